@@ -1,1 +1,28 @@
-//! Skeleton.
+//! Geodesic distances on triangle meshes.
+//!
+//! `mesh::IntrinsicMesh` -> **geodesics** -> `linalg::LandmarkDistances` -> `nmds`
+//!
+//! **Invariant.** Nothing here reads vertex coordinates: solvers see edge lengths only, so an
+//! isometry of the surface cannot change their output.
+
+mod breadth_first;
+mod dijkstra;
+mod error;
+mod fast_marching;
+mod graph;
+mod heap;
+mod method;
+mod sampling;
+mod solver;
+mod unfold;
+mod update;
+mod wedges;
+
+pub use breadth_first::BreadthFirst;
+pub use dijkstra::Dijkstra;
+pub use error::GeodesicError;
+pub use fast_marching::{FastMarching, FastMarchingOptions, Update};
+pub use method::Method;
+pub use sampling::{FirstSample, farthest_point_sampling};
+pub use solver::DistanceSolver;
+pub use wedges::{CornerReport, ObtuseTreatment};

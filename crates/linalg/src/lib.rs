@@ -1,1 +1,22 @@
-//! Skeleton.
+//! Matrices of distances and the decompositions behind every embedding.
+//!
+//! `geodesics` -> **[`LandmarkDistances`], [`DistanceMatrix`]** -> `nmds`, `retrieval`
+//!
+//! The only crate that names a linear-algebra backend: public types are nalgebra's, the
+//! decompositions of large matrices are faer's, run sequentially so that no result depends on
+//! the number of threads. Knows nothing of meshes.
+
+mod decomposition;
+mod distance_matrix;
+mod error;
+mod krylov;
+mod landmark_distances;
+
+pub use decomposition::{SymmetricEigen, symmetric_eigen, thin_qr};
+pub use distance_matrix::DistanceMatrix;
+pub use error::LinalgError;
+pub use krylov::{SymmetricOperator, largest_eigenpairs};
+pub use landmark_distances::LandmarkDistances;
+
+/// A dense matrix of `f64`, column by column.
+pub type Matrix = nalgebra::DMatrix<f64>;

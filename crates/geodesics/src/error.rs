@@ -1,0 +1,32 @@
+//! What can go wrong when distances are asked for.
+
+use mesh::VertexId;
+
+/// Errors of this crate.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum GeodesicError {
+    /// The surface falls into pieces.
+    #[error(
+        "mesh is disconnected: {unreached} of {n_vertices} vertices not reached from vertex {source_vertex}; \
+         keep the largest component or pass --components bridge"
+    )]
+    Disconnected {
+        /// Number of vertices without a finite distance.
+        unreached: usize,
+        /// Number of vertices.
+        n_vertices: usize,
+        /// The source.
+        source_vertex: VertexId,
+    },
+    /// A source or first sample that does not exist.
+    #[error("vertex {vertex} does not exist; the mesh has {n_vertices} vertices, counted from 0")]
+    NoSuchVertex {
+        /// The vertex asked for.
+        vertex: VertexId,
+        /// Number of vertices.
+        n_vertices: usize,
+    },
+    /// A sampling without samples.
+    #[error("at least 1 sample is needed, got 0")]
+    NoSamples,
+}

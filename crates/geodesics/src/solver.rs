@@ -1,0 +1,62 @@
+//! What every way of measuring distances has in common.
+
+use std::sync::{Mutex, PoisonError};
+
+use linalg::Matrix;
+use mesh::VertexId;
+use rayon::prelude::*;
+
+/// Distances from a vertex to all vertices of one surface.
+///
+/// A solver holds what can be computed once per surface; a call may come from any thread.
+pub trait DistanceSolver: Sync + std::fmt::Debug {
+    /// Number of vertices of the surface.
+    fn n_vertices(&self) -> usize;
+
+    /// Writes the distance from `source` to every vertex, in mesh units; infinite where there is
+    /// no way.
+    ///
+    /// # Panics
+    /// When `out` does not have one entry per vertex or `source` is out of range.
+    fn distances_into(&self, source: VertexId, out: &mut [f64]);
+
+    /// The distance from `source` to every vertex, in mesh units; infinite where there is no way.
+    ///
+    /// # Panics
+    /// When `source` is out of range.
+    fn distances(&self, source: VertexId) -> Vec<f64> {
+        let mut out = vec![f64::INFINITY; self.n_vertices()];
+        self.distances_into(source, &mut out);
+        out
+    }
+
+    /// One column of distances per source, computed in parallel; the result does not depend on the
+    /// number of threads.
+    fn distance_columns(&self, sources: &[VertexId]) -> Matrix {
+        let p = self.n_vertices();
+        let mut columns = Matrix::zeros(p, sources.len());
+        if p > 0 {
+            columns
+                .as_mut_slice()
+                .par_chunks_mut(p)
+                .zip(sources)
+                .for_each(|(column, source)| self.distances_into(*source, column));
+        }
+        columns
+    }
+}
+
+/// Scratch memory that calls borrow and give back, so that none is allocated after the first calls.
+#[derive(Debug, Default)]
+pub(crate) struct Pool<T>(Mutex<Vec<T>>);
+
+impl<T: Default> Pool<T> {
+    /// Runs `work` on a piece of scratch memory in whatever state the previous user left it.
+    pub(crate) fn with<R>(&self, work: impl FnOnce(&mut T) -> R) -> R {
+        let lock = || self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut scratch = lock().pop().unwrap_or_default();
+        let result = work(&mut scratch);
+        lock().push(scratch);
+        result
+    }
+}

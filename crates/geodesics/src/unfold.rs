@@ -1,0 +1,183 @@
+//! Splitting of obtuse corners by unfolding the surface across their base.
+//!
+//! A front can reach an obtuse corner `C` before it has passed both ends of the base `AB`. Following
+//! Kimmel and Sethian 1998, the triangles behind the base are laid out in the plane of `ABC` until a
+//! vertex `D` falls into the cone of directions that make an acute angle with both `CA` and `CB`;
+//! the segment `CD` then lies inside the unfolded strip and splits the corner into two acute ones.
+
+use mesh::{CornerId, IntrinsicMesh, Topology, VertexId};
+
+use crate::update::Corner;
+
+/// More steps than any reasonable strip of triangles needs; a strip of slivers may go on for ever.
+const MAX_STEPS: usize = 12;
+
+/// How an obtuse corner was treated.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Unfolding {
+    /// The corner is not obtuse.
+    Acute,
+    /// A vertex of the unfolded strip splits it.
+    Split(Split),
+    /// A boundary, a non-manifold edge or too long a strip: only the edges carry the front.
+    Stopped,
+}
+
+/// The two acute corners at `C` that replace an obtuse one.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Split {
+    /// The vertex that splits the corner.
+    pub(crate) vertex: VertexId,
+    /// Its straight distance to the corner's vertex inside the strip.
+    pub(crate) length: f64,
+    /// The corner over the base from `A` to the splitting vertex, laid out from `A`.
+    pub(crate) left: Corner,
+    /// The corner over the base from the splitting vertex to `B`, laid out from the vertex.
+    pub(crate) right: Corner,
+}
+
+type Point = [f64; 2];
+
+fn sub(a: Point, b: Point) -> Point {
+    [a[0] - b[0], a[1] - b[1]]
+}
+
+fn dot(a: Point, b: Point) -> f64 {
+    a[0] * b[0] + a[1] * b[1]
+}
+
+fn norm(a: Point) -> f64 {
+    dot(a, a).sqrt()
+}
+
+/// Lengths of the sides of the face of `corner`: the base opposite it, then from the base's first
+/// and second end (the next and the next but one corner of the face) to the corner.
+pub(crate) fn sides(mesh: &IntrinsicMesh, corner: CornerId) -> [f64; 3] {
+    let (face, slot) = (corner.face().0, corner.slot() as u32);
+    let opposite = |slot: u32| mesh.length(mesh.topology().opposite_edge(CornerId(3 * face + slot % 3)));
+    [opposite(slot), opposite(slot + 2), opposite(slot + 1)]
+}
+
+/// The ends of the base of `corner`: the next and the next but one corner of its face.
+pub(crate) fn base(topology: &Topology, corner: CornerId) -> [VertexId; 2] {
+    let face = topology.faces()[corner.face().index()];
+    [face[(corner.slot() + 1) % 3], face[(corner.slot() + 2) % 3]]
+}
+
+/// Unfolds the surface behind `corner` if it is obtuse.
+pub(crate) fn unfold(mesh: &IntrinsicMesh, corner: CornerId) -> Unfolding {
+    let [c, b, a] = sides(mesh, corner);
+    if a * a + b * b >= c * c {
+        return Unfolding::Acute;
+    }
+    let flat = Corner::from_lengths(c, b, a);
+    let apex = [flat.x, flat.y];
+    let (at_a, at_b) = ([0.0, 0.0], [c, 0.0]);
+    let (to_a, to_b) = (sub(at_a, apex), sub(at_b, apex));
+    let topology = mesh.topology();
+
+    // The strip's last edge, from the side of A to the side of B, and the corner facing it.
+    let mut facing = corner;
+    let [mut left, mut right] = base(topology, corner);
+    let (mut at_left, mut at_right) = (at_a, at_b);
+    for _ in 0..MAX_STEPS {
+        let Some(next) = topology.across(facing) else { return Unfolding::Stopped };
+        let vertex = topology.corner_vertex(next);
+        let [edge, from_first, from_second] = sides(mesh, next);
+        let starts_left = base(topology, next)[0] == left;
+        let (from_left, from_right) =
+            if starts_left { (from_first, from_second) } else { (from_second, from_first) };
+        let beyond = Corner::from_lengths(edge, from_left, from_right);
+        if !beyond.y.is_finite() {
+            return Unfolding::Stopped;
+        }
+        // The new vertex, on the other side of the edge than the apex.
+        let along = sub(at_right, at_left).map(|x| x / edge);
+        let away = [along[1], -along[0]];
+        let at = [
+            at_left[0] + beyond.x * along[0] + beyond.y * away[0],
+            at_left[1] + beyond.x * along[1] + beyond.y * away[1],
+        ];
+        let ray = sub(at, apex);
+        let (acute_to_a, acute_to_b) = (dot(ray, to_a) > 0.0, dot(ray, to_b) > 0.0);
+        if acute_to_a && acute_to_b {
+            let length = norm(ray);
+            return Unfolding::Split(Split {
+                vertex,
+                length,
+                left: Corner::from_lengths(norm(sub(at, at_a)), b, length),
+                right: Corner::from_lengths(norm(sub(at_b, at)), length, a),
+            });
+        }
+        // The cone passes through the edge on the other side of the new vertex.
+        let slot = next.slot();
+        let first_end = (slot + 1) % 3;
+        let corner_at = |slot: usize| CornerId(next.face().0 * 3 + slot as u32);
+        let (corner_at_left, corner_at_right) = if starts_left {
+            (corner_at(first_end), corner_at((slot + 2) % 3))
+        } else {
+            (corner_at((slot + 2) % 3), corner_at(first_end))
+        };
+        if acute_to_a {
+            // Too far on the side of A: go on across the edge from the new vertex to the right end,
+            // which faces the left one.
+            (left, at_left, facing) = (vertex, at, corner_at_left);
+        } else {
+            (right, at_right, facing) = (vertex, at, corner_at_right);
+        }
+        if left == right {
+            return Unfolding::Stopped;
+        }
+    }
+    Unfolding::Stopped
+}
+
+#[cfg(test)]
+mod tests {
+    use mesh::Topology;
+
+    use super::*;
+
+    /// Vertices in the plane and faces over them.
+    fn flat(points: &[Point], faces: &[[u32; 3]]) -> IntrinsicMesh {
+        let faces = faces.iter().map(|f| f.map(VertexId)).collect();
+        let topology = Topology::new(points.len(), faces);
+        let lengths =
+            topology.edges().iter().map(|[a, b]| norm(sub(points[a.index()], points[b.index()]))).collect();
+        IntrinsicMesh::new(topology, lengths)
+    }
+
+    #[test]
+    fn splits_by_the_vertex_opposite() {
+        let points = [[0.0, 0.4], [-2.0, 0.0], [2.0, 0.0], [0.2, -1.0]];
+        let mesh = flat(&points, &[[0, 1, 2], [2, 1, 3]]);
+        let Unfolding::Split(split) = unfold(&mesh, CornerId(0)) else { panic!("not split") };
+        assert_eq!(split.vertex, VertexId(3));
+        assert!((split.length - 0.2f64.hypot(1.4)).abs() < 1e-14);
+        assert!((split.left.base - 2.2f64.hypot(1.0)).abs() < 1e-14);
+        assert!((split.right.base - 1.8f64.hypot(1.0)).abs() < 1e-14);
+        assert_eq!(unfold(&mesh, CornerId(5)), Unfolding::Acute);
+    }
+
+    #[test]
+    fn walks_on_where_the_first_vertex_is_outside_the_cone_whatever_the_orientation() {
+        // Vertex 3 lies far on A's side; vertex 4 behind it is inside the cone.
+        let points = [[0.0, 0.4], [-2.0, 0.0], [2.0, 0.0], [-3.0, -0.5], [0.1, -2.0]];
+        for second in [[2, 1, 3], [1, 2, 3], [3, 2, 1]] {
+            for third in [[2, 3, 4], [4, 3, 2]] {
+                let mesh = flat(&points, &[[0, 1, 2], second, third]);
+                let Unfolding::Split(split) = unfold(&mesh, CornerId(0)) else { panic!("not split") };
+                assert_eq!(split.vertex, VertexId(4));
+                assert!((split.length - 0.1f64.hypot(2.4)).abs() < 1e-13);
+            }
+        }
+    }
+
+    #[test]
+    fn stops_at_a_boundary_and_at_a_non_manifold_edge() {
+        let points = [[0.0, 0.4], [-2.0, 0.0], [2.0, 0.0], [0.3, -1.0], [0.2, -3.0]];
+        assert_eq!(unfold(&flat(&points, &[[0, 1, 2]]), CornerId(0)), Unfolding::Stopped);
+        let fan = flat(&points, &[[0, 1, 2], [2, 1, 3], [1, 2, 4]]);
+        assert_eq!(unfold(&fan, CornerId(0)), Unfolding::Stopped);
+    }
+}

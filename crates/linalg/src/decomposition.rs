@@ -1,0 +1,104 @@
+//! Dense decompositions.
+
+use faer::{Mat, MatRef, Side};
+
+use crate::{LinalgError, Matrix};
+
+/// Eigenvalues in descending algebraic order and orthonormal eigenvectors, one column each.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SymmetricEigen {
+    /// Eigenvalues, largest first.
+    pub values: Vec<f64>,
+    /// Eigenvectors as columns, in the order of `values`.
+    pub vectors: Matrix,
+}
+
+impl SymmetricEigen {
+    /// The eigenpairs at `order`, in that order.
+    #[must_use]
+    pub fn select(&self, order: &[usize]) -> Self {
+        Self {
+            values: order.iter().map(|&i| self.values[i]).collect(),
+            vectors: self.vectors.select_columns(order),
+        }
+    }
+}
+
+/// A view of a nalgebra matrix for faer, without a copy.
+pub(crate) fn view(a: &Matrix) -> MatRef<'_, f64> {
+    MatRef::from_column_major_slice(a.as_slice(), a.nrows(), a.ncols())
+}
+
+/// A faer matrix as a nalgebra one.
+pub(crate) fn from_faer(a: MatRef<'_, f64>) -> Matrix {
+    Matrix::from_fn(a.nrows(), a.ncols(), |i, j| a[(i, j)])
+}
+
+/// All eigenpairs of a symmetric matrix, of which the lower triangle is read.
+///
+/// Cost `O(n^3)` time, `O(n^2)` memory.
+///
+/// # Errors
+/// [`LinalgError::NotConverged`], which a NaN entry causes.
+pub fn symmetric_eigen(a: &Matrix) -> Result<SymmetricEigen, LinalgError> {
+    let n = a.nrows();
+    if a.iter().any(|x| !x.is_finite()) {
+        return Err(LinalgError::NotConverged { n });
+    }
+    let eigen = view(a).self_adjoint_eigen(Side::Lower).map_err(|_| LinalgError::NotConverged { n })?;
+    // faer sorts ascending.
+    let (s, u) = (eigen.S(), eigen.U());
+    Ok(SymmetricEigen {
+        values: (0..n).rev().map(|i| s[i]).collect(),
+        vectors: Matrix::from_fn(n, n, |i, j| u[(i, n - 1 - j)]),
+    })
+}
+
+/// The thin QR decomposition of a p x n matrix with p >= n: an orthonormal p x n `Q` and an upper
+/// triangular n x n `R`.
+///
+/// `Q` stays orthonormal when `a` is rank deficient. Cost `O(p n^2)`.
+#[must_use]
+pub fn thin_qr(a: &Matrix) -> (Matrix, Matrix) {
+    let qr = view(a).qr();
+    let q: Mat<f64> = qr.compute_thin_Q();
+    (from_faer(q.as_ref()), from_faer(qr.thin_R()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn wave(n: usize, m: usize) -> Matrix {
+        Matrix::from_fn(n, m, |i, j| ((i * 7 + j * 3) as f64).sin() + if i == j { 2.0 } else { 0.0 })
+    }
+
+    #[test]
+    fn eigenpairs_are_sorted_orthonormal_and_small_in_residual() {
+        let a = wave(40, 40);
+        let a = &a + a.transpose();
+        let eigen = symmetric_eigen(&a).unwrap();
+        assert!(eigen.values.windows(2).all(|w| w[0] >= w[1]));
+        let residual =
+            &a * &eigen.vectors - &eigen.vectors * Matrix::from_diagonal(&eigen.values.clone().into());
+        assert!(residual.norm() < 1e-12 * a.norm());
+        assert!((eigen.vectors.transpose() * &eigen.vectors - Matrix::identity(40, 40)).norm() < 1e-12);
+    }
+
+    #[test]
+    fn nan_is_an_error() {
+        let a = Matrix::from_element(3, 3, f64::NAN);
+        assert_eq!(symmetric_eigen(&a), Err(LinalgError::NotConverged { n: 3 }));
+    }
+
+    #[test]
+    fn thin_qr_reproduces_its_input_and_stays_orthonormal_without_full_rank() {
+        let mut a = wave(50, 6);
+        let twice = a.column(0) * 2.0;
+        a.set_column(3, &twice);
+        let (q, r) = thin_qr(&a);
+        assert!((&q * &r - &a).norm() < 1e-13 * a.norm());
+        assert!((q.transpose() * &q - Matrix::identity(6, 6)).norm() < 1e-13);
+        assert!((0..6).all(|i| (0..i).all(|j| r[(i, j)] == 0.0)));
+    }
+}

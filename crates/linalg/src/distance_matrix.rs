@@ -1,0 +1,116 @@
+//! All distances between n points.
+
+use crate::LinalgError;
+
+/// The n x n matrix of distances between n points, row by row.
+///
+/// **Invariant.** Symmetric, finite, not negative, zero on the diagonal.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DistanceMatrix {
+    n: usize,
+    values: Vec<f64>,
+}
+
+impl DistanceMatrix {
+    /// Takes n x n distances row by row and averages each with its mirror image: distances that
+    /// were computed from either end differ by rounding or by the order of the scheme.
+    ///
+    /// # Errors
+    /// [`LinalgError::Shape`] and [`LinalgError::BadDistance`].
+    pub fn from_rows(n: usize, mut values: Vec<f64>) -> Result<Self, LinalgError> {
+        if values.len() != n * n {
+            return Err(LinalgError::Shape {
+                n_rows: n,
+                n_columns: n,
+                expected: n * n,
+                actual: values.len(),
+            });
+        }
+        if let Some(bad) = values.iter().position(|d| !(d.is_finite() && *d >= 0.0)) {
+            return Err(LinalgError::BadDistance { row: bad / n, column: bad % n, value: values[bad] });
+        }
+        for i in 0..n {
+            values[i * n + i] = 0.0;
+            for j in 0..i {
+                let mean = 0.5 * (values[i * n + j] + values[j * n + i]);
+                values[i * n + j] = mean;
+                values[j * n + i] = mean;
+            }
+        }
+        Ok(Self { n, values })
+    }
+
+    /// Evaluates `distance(i, j)` for every pair `i < j`.
+    ///
+    /// # Errors
+    /// [`LinalgError::BadDistance`] at the first value that is NaN, infinite or negative.
+    pub fn from_pairs(n: usize, mut distance: impl FnMut(usize, usize) -> f64) -> Result<Self, LinalgError> {
+        let mut values = vec![0.0; n * n];
+        for i in 0..n {
+            for j in i + 1..n {
+                let d = distance(i, j);
+                values[i * n + j] = d;
+                values[j * n + i] = d;
+            }
+        }
+        Self::from_rows(n, values)
+    }
+
+    /// Number of points.
+    #[must_use]
+    pub fn n_points(&self) -> usize {
+        self.n
+    }
+
+    /// The distance between points `i` and `j`.
+    #[inline]
+    #[must_use]
+    pub fn get(&self, i: usize, j: usize) -> f64 {
+        self.values[i * self.n + j]
+    }
+
+    /// The distances from point `i` to all points.
+    #[inline]
+    #[must_use]
+    pub fn row(&self, i: usize) -> &[f64] {
+        &self.values[i * self.n..(i + 1) * self.n]
+    }
+
+    /// All values, row by row.
+    #[must_use]
+    pub fn as_slice(&self) -> &[f64] {
+        &self.values
+    }
+
+    /// The largest distance; zero without points.
+    #[must_use]
+    pub fn max(&self) -> f64 {
+        self.values.iter().copied().fold(0.0, f64::max)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn mirror_images_are_averaged_and_the_diagonal_is_zero() {
+        let d = DistanceMatrix::from_rows(2, vec![0.1, 1.0, 3.0, 0.0]).unwrap();
+        assert_eq!(d.as_slice(), &[0.0, 2.0, 2.0, 0.0]);
+        assert_eq!(d.max(), 2.0);
+        assert_eq!(d.row(1), &[2.0, 0.0]);
+    }
+
+    #[test]
+    fn faults_name_their_place() {
+        assert_eq!(
+            DistanceMatrix::from_rows(2, vec![0.0, 1.0, f64::INFINITY, 0.0]),
+            Err(LinalgError::BadDistance { row: 1, column: 0, value: f64::INFINITY })
+        );
+        assert!(matches!(DistanceMatrix::from_rows(2, vec![0.0; 3]), Err(LinalgError::Shape { .. })));
+        assert!(matches!(
+            DistanceMatrix::from_pairs(3, |_, _| -1.0),
+            Err(LinalgError::BadDistance { row: 0, column: 1, .. })
+        ));
+    }
+}

@@ -1,0 +1,207 @@
+//! A few eigenpairs of a large symmetric operator.
+
+use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
+use faer::matrix_free::LinOp;
+use faer::matrix_free::eigen::{
+    PartialEigenParams, partial_self_adjoint_eigen, partial_self_adjoint_eigen_scratch,
+};
+use faer::{ColRef, Mat, MatMut, MatRef, Par};
+
+use crate::decomposition::from_faer;
+use crate::{LinalgError, Matrix, SymmetricEigen, symmetric_eigen};
+
+/// A symmetric n x n matrix known by its products with vectors.
+pub trait SymmetricOperator: Sync + std::fmt::Debug {
+    /// The order n of the matrix.
+    fn order(&self) -> usize;
+
+    /// Writes the product of the matrix with `x` into `y`; both have n entries.
+    fn apply(&self, x: &[f64], y: &mut [f64]);
+}
+
+/// Below this order the full decomposition is both faster and simpler than an iteration.
+const DENSE_ORDER: usize = 256;
+
+/// The `k` algebraically largest eigenpairs of a symmetric operator, to a residual of `1e-11` of
+/// its norm; fewer when the order is less than `k`.
+///
+/// A Krylov iteration with thick restarts finds pairs of largest *magnitude*; it is asked for more
+/// until `k` positive ones are among them, and when they do not come (a nearly negative definite
+/// operator) the full decomposition decides.
+///
+/// Cost `O(m)` products and `O(n m^2)` work for m a small multiple of `k`; `O(n m)` memory.
+///
+/// # Errors
+/// [`LinalgError::NotConverged`].
+pub fn largest_eigenpairs(operator: &dyn SymmetricOperator, k: usize) -> Result<SymmetricEigen, LinalgError> {
+    let n = operator.order();
+    let mut wanted = k + 4;
+    while n > DENSE_ORDER && 8 * wanted < n {
+        let found = largest_magnitude(operator, wanted);
+        let mut positive: Vec<usize> = (0..found.values.len()).filter(|&i| found.values[i] > 0.0).collect();
+        if positive.len() >= k {
+            positive.sort_by(|&i, &j| found.values[j].total_cmp(&found.values[i]));
+            positive.truncate(k);
+            return Ok(found.select(&positive));
+        }
+        wanted *= 3;
+    }
+    let mut dense = Matrix::zeros(n, n);
+    let mut unit = vec![0.0; n];
+    let mut column = vec![0.0; n];
+    for j in 0..n {
+        unit[j] = 1.0;
+        operator.apply(&unit, &mut column);
+        unit[j] = 0.0;
+        dense.column_mut(j).copy_from_slice(&column);
+    }
+    let eigen = symmetric_eigen(&dense)?;
+    Ok(eigen.select(&(0..k.min(n)).collect::<Vec<_>>()))
+}
+
+/// Up to `m` converged eigenpairs of largest magnitude; requires `8 m < n`.
+fn largest_magnitude(operator: &dyn SymmetricOperator, m: usize) -> SymmetricEigen {
+    let n = operator.order();
+    let wrapped = Wrapped(operator);
+    // A fixed start without symmetry, so that no eigenvector of a symmetric shape is orthogonal to it.
+    let start: Vec<f64> = (0..n).map(|i| 1.0 + 0.5 * (i as f64 * 0.754_877_666).fract()).collect();
+    let params =
+        PartialEigenParams { min_dim: 2 * m, max_dim: (4 * m).max(64).min(n - 1), ..Default::default() };
+    let tolerance = 1e-11 * operator_scale(operator, &start);
+    let mut vectors = Mat::<f64>::zeros(n, m);
+    let mut values = vec![0.0; m];
+    let mut memory = MemBuffer::new(partial_self_adjoint_eigen_scratch(&wrapped, m, Par::Seq, params));
+    let info = partial_self_adjoint_eigen(
+        vectors.as_mut(),
+        &mut values,
+        &wrapped,
+        ColRef::from_slice(&start),
+        tolerance,
+        Par::Seq,
+        MemStack::new(&mut memory),
+        params,
+    );
+    values.truncate(info.n_converged_eigen);
+    SymmetricEigen { vectors: from_faer(vectors.as_ref().subcols(0, values.len())), values }
+}
+
+/// A lower estimate of the operator's norm by a few power steps, to make tolerances relative.
+fn operator_scale(operator: &dyn SymmetricOperator, start: &[f64]) -> f64 {
+    let norm = |x: &[f64]| x.iter().map(|v| v * v).sum::<f64>().sqrt();
+    let mut x = start.to_vec();
+    let mut y = vec![0.0; x.len()];
+    let mut scale = 0.0;
+    for _ in 0..4 {
+        let length = norm(&x);
+        if length == 0.0 {
+            break;
+        }
+        x.iter_mut().for_each(|v| *v /= length);
+        operator.apply(&x, &mut y);
+        scale = f64::max(scale, norm(&y));
+        std::mem::swap(&mut x, &mut y);
+    }
+    scale.max(f64::MIN_POSITIVE)
+}
+
+/// Shows a [`SymmetricOperator`] to faer.
+#[derive(Debug)]
+struct Wrapped<'a>(&'a dyn SymmetricOperator);
+
+impl LinOp<f64> for Wrapped<'_> {
+    fn apply_scratch(&self, _: usize, _: Par) -> StackReq {
+        StackReq::EMPTY
+    }
+
+    fn nrows(&self) -> usize {
+        self.0.order()
+    }
+
+    fn ncols(&self) -> usize {
+        self.0.order()
+    }
+
+    fn apply(&self, mut out: MatMut<'_, f64>, rhs: MatRef<'_, f64>, _: Par, _: &mut MemStack) {
+        let n = self.0.order();
+        let mut y = vec![0.0; n];
+        for j in 0..rhs.ncols() {
+            let x: Vec<f64> = (0..n).map(|i| rhs[(i, j)]).collect();
+            self.0.apply(&x, &mut y);
+            for (i, value) in y.iter().enumerate() {
+                out[(i, j)] = *value;
+            }
+        }
+    }
+
+    fn conj_apply(&self, out: MatMut<'_, f64>, rhs: MatRef<'_, f64>, par: Par, stack: &mut MemStack) {
+        self.apply(out, rhs, par, stack);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A diagonal matrix seen through a Householder reflection: known spectrum, dense vectors.
+    #[derive(Debug)]
+    struct Reflected {
+        spectrum: Vec<f64>,
+    }
+
+    impl Reflected {
+        fn reflect(x: &mut [f64]) {
+            let n = x.len() as f64;
+            let mean = 2.0 * x.iter().sum::<f64>() / n;
+            x.iter_mut().for_each(|v| *v -= mean);
+        }
+    }
+
+    impl SymmetricOperator for Reflected {
+        fn order(&self) -> usize {
+            self.spectrum.len()
+        }
+
+        fn apply(&self, x: &[f64], y: &mut [f64]) {
+            y.copy_from_slice(x);
+            Self::reflect(y);
+            y.iter_mut().zip(&self.spectrum).for_each(|(v, s)| *v *= s);
+            Self::reflect(y);
+        }
+    }
+
+    fn check(spectrum: Vec<f64>, k: usize) {
+        let mut sorted = spectrum.clone();
+        sorted.sort_by(|a, b| b.total_cmp(a));
+        let operator = Reflected { spectrum };
+        let n = operator.order();
+        let found = largest_eigenpairs(&operator, k).unwrap();
+        let scale = sorted[0].abs().max(sorted[n - 1].abs());
+        assert_eq!(found.values.len(), k.min(n));
+        for (j, value) in found.values.iter().enumerate() {
+            assert!((value - sorted[j]).abs() < 1e-10 * scale, "{j}: {value} against {}", sorted[j]);
+            let x = found.vectors.column(j).as_slice().to_vec();
+            let mut y = vec![0.0; n];
+            operator.apply(&x, &mut y);
+            let residual: f64 = y.iter().zip(&x).map(|(y, x)| (y - value * x).powi(2)).sum::<f64>().sqrt();
+            assert!(residual < 1e-10 * scale, "{j}: residual {residual}");
+        }
+    }
+
+    #[test]
+    fn large_operator_with_negative_pairs_of_larger_magnitude() {
+        let n = 1500;
+        let spectrum =
+            (0..n).map(|i| if i < 12 { -100.0 - i as f64 } else { 90.0 / (i - 11) as f64 }).collect();
+        check(spectrum, 3);
+    }
+
+    #[test]
+    fn nearly_negative_definite_operator_falls_back_to_the_full_decomposition() {
+        check((0..300).map(|i| if i == 5 { 1.0 } else { -1.0 - i as f64 }).collect(), 2);
+    }
+
+    #[test]
+    fn small_operator_is_decomposed_whole() {
+        check(vec![3.0, -7.0, 2.0], 5);
+    }
+}
