@@ -1,1 +1,22 @@
-//! Skeleton.
+//! Embeddings of points from distances: straight lines in the result equal given distances.
+//!
+//! `linalg::LandmarkDistances` -> **nmds** -> [`Embedding`] -> `descriptors`
+//!
+//! NMDS is Nystrom multidimensional scaling throughout, never the nonmetric kind. Knows nothing of
+//! meshes or of where distances come from.
+
+mod classical;
+mod embedding;
+mod error;
+mod kernel_pca;
+mod nystrom;
+mod stress;
+#[cfg(test)]
+mod testing;
+
+pub use classical::{classical, classical_full};
+pub use embedding::Embedding;
+pub use error::NmdsError;
+pub use kernel_pca::{Bandwidth, KernelPcaOptions, kernel_pca};
+pub use nystrom::{NystromOptions, nystrom};
+pub use stress::{DistanceRows, StressEstimate, estimate_paper_stress, paper_stress};

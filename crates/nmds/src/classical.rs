@@ -1,0 +1,153 @@
+//! Classical multidimensional scaling.
+
+use linalg::{
+    DistanceMatrix, LinalgError, Matrix, SymmetricEigen, SymmetricOperator, largest_eigenpairs,
+    symmetric_eigen,
+};
+use rayon::prelude::*;
+
+use crate::{Embedding, NmdsError};
+
+/// Classical multidimensional scaling: the `dim` largest eigenpairs of `B = -1/2 J E J`, with
+/// `E_ij = d_ij^2` and `J = I - 11'/p`, give the coordinates `Z = U √L`.
+///
+/// * The best embedding in the sense of strain `‖Z Z' - B‖`; exact for Euclidean distances.
+/// * `eigenvalues` holds `dim` values only, so `negative_mass` says nothing of the rest; see
+///   [`classical_full`].
+/// * Cost `O(p^2)` memory (given) and `O(p^2)` per step of a Krylov iteration.
+///
+/// # Errors
+/// [`NmdsError::BadDimension`], [`NmdsError::NoExtent`], [`NmdsError::Linalg`].
+pub fn classical(distances: &DistanceMatrix, dim: usize) -> Result<Embedding, NmdsError> {
+    embed(distances, dim, |operator| largest_eigenpairs(operator, dim))
+}
+
+/// [`classical`] by the full decomposition: all eigenvalues and so the true negative mass.
+///
+/// Cost `O(p^3)` time, `O(p^2)` memory; the reference for small p.
+///
+/// # Errors
+/// As [`classical`].
+pub fn classical_full(distances: &DistanceMatrix, dim: usize) -> Result<Embedding, NmdsError> {
+    embed(distances, dim, |operator| symmetric_eigen(&operator.dense()))
+}
+
+fn embed(
+    distances: &DistanceMatrix,
+    dim: usize,
+    decompose: impl FnOnce(&CentredSquares<'_>) -> Result<SymmetricEigen, LinalgError>,
+) -> Result<Embedding, NmdsError> {
+    let p = distances.n_points();
+    if dim == 0 || dim > p {
+        return Err(NmdsError::BadDimension { dim, limit: p });
+    }
+    let unit = distances.max();
+    if unit <= 0.0 {
+        return Err(NmdsError::NoExtent { n_points: p });
+    }
+    let eigen = decompose(&CentredSquares { distances, unit })?;
+    let mut columns = Matrix::zeros(p, dim);
+    let found = dim.min(eigen.vectors.ncols());
+    columns.columns_mut(0, found).copy_from(&eigen.vectors.columns(0, found));
+    let rank = eigen.values.len();
+    Ok(Embedding::from_orthonormal(columns, eigen.values, unit, rank))
+}
+
+/// The matrix `-1/2 J E J` of distances measured in `unit`, without forming it.
+#[derive(Debug)]
+struct CentredSquares<'a> {
+    distances: &'a DistanceMatrix,
+    unit: f64,
+}
+
+impl CentredSquares<'_> {
+    fn dense(&self) -> Matrix {
+        let p = self.order();
+        let square = |i: usize, j: usize| (self.distances.get(i, j) / self.unit).powi(2);
+        let means: Vec<f64> = (0..p).map(|i| (0..p).map(|j| square(i, j)).sum::<f64>() / p as f64).collect();
+        let mean = means.iter().sum::<f64>() / p as f64;
+        Matrix::from_fn(p, p, |i, j| -0.5 * (square(i, j) - means[i] - means[j] + mean))
+    }
+}
+
+impl SymmetricOperator for CentredSquares<'_> {
+    fn order(&self) -> usize {
+        self.distances.n_points()
+    }
+
+    fn apply(&self, x: &[f64], y: &mut [f64]) {
+        let p = self.order() as f64;
+        let mean = x.iter().sum::<f64>() / p;
+        let centred: Vec<f64> = x.iter().map(|v| v - mean).collect();
+        let factor = -0.5 / (self.unit * self.unit);
+        y.par_iter_mut().enumerate().for_each(|(i, out)| {
+            // Four sums, so that the loop is not one chain of additions.
+            let mut sums = [0.0; 4];
+            let (row, x) = (self.distances.row(i).chunks_exact(4), centred.chunks_exact(4));
+            let tail: f64 = row.remainder().iter().zip(x.remainder()).map(|(d, x)| d * d * x).sum();
+            for (d, x) in row.zip(x) {
+                for lane in 0..4 {
+                    sums[lane] += d[lane] * d[lane] * x[lane];
+                }
+            }
+            *out = factor * (sums.iter().sum::<f64>() + tail);
+        });
+        let mean = y.iter().sum::<f64>() / p;
+        y.iter_mut().for_each(|v| *v -= mean);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::{Cloud, procrustes_free_gap};
+    use crate::{NystromOptions, nystrom};
+    use linalg::LandmarkDistances;
+
+    /// Distances of points on a circle along its arc: far from Euclidean.
+    fn circle(p: usize) -> DistanceMatrix {
+        DistanceMatrix::from_pairs(p, |i, j| (j - i).min(p - (j - i)) as f64).unwrap()
+    }
+
+    #[test]
+    fn euclidean_points_come_back_exactly() {
+        for p in [40, 700] {
+            let cloud = Cloud::new(p, 3, 5);
+            let distances = DistanceMatrix::from_pairs(p, |i, j| cloud.distance(i, j)).unwrap();
+            let embedding = classical(&distances, 3).unwrap();
+            assert!(procrustes_free_gap(&cloud, &embedding) < 1e-9);
+        }
+    }
+
+    #[test]
+    fn a_few_eigenpairs_equal_those_of_the_full_decomposition() {
+        let distances = circle(601);
+        let (few, all) = (classical(&distances, 4).unwrap(), classical_full(&distances, 4).unwrap());
+        for j in 0..4 {
+            assert!((few.eigenvalues[j] - all.eigenvalues[j]).abs() < 1e-8 * all.eigenvalues[0]);
+        }
+        assert!(all.negative_mass > 0.05 && all.eigenvalues.len() == 601);
+    }
+
+    #[test]
+    fn nystrom_with_all_samples_is_classical_scaling() {
+        let p = 60;
+        let cloud = Cloud::new(p, 5, 7);
+        let distances = DistanceMatrix::from_pairs(p, |i, j| cloud.distance(i, j).powf(0.8)).unwrap();
+        let all = LandmarkDistances::new((0..p).collect(), Matrix::from_fn(p, p, |i, j| distances.get(i, j)))
+            .unwrap();
+        let nmds = nystrom(&all, &NystromOptions { rank: Some(p), dim: 3 }).unwrap();
+        let mds = classical_full(&distances, 3).unwrap();
+        assert!((nmds.coords - &mds.coords).amax() < 1e-8 * mds.coords.amax());
+        assert!((nmds.negative_mass - mds.negative_mass).abs() < 1e-8);
+    }
+
+    #[test]
+    fn impossible_requests_are_refused() {
+        let distances = circle(5);
+        assert_eq!(classical(&distances, 6), Err(NmdsError::BadDimension { dim: 6, limit: 5 }));
+        assert_eq!(classical(&distances, 0), Err(NmdsError::BadDimension { dim: 0, limit: 5 }));
+        let nothing = DistanceMatrix::from_pairs(3, |_, _| 0.0).unwrap();
+        assert_eq!(classical(&nothing, 2), Err(NmdsError::NoExtent { n_points: 3 }));
+    }
+}

@@ -1,0 +1,146 @@
+//! Kernel PCA with the Nystrom method: the paper's baseline.
+
+use linalg::{LandmarkDistances, Matrix, symmetric_eigen, thin_qr};
+
+use crate::embedding::center_columns;
+use crate::{Embedding, NmdsError};
+
+/// The width sigma of the Gaussian kernel `exp(-d^2 / (2 sigma^2))`.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum Bandwidth {
+    /// The mean distance between landmarks and points, as Liu, Jain and Zhang do.
+    #[default]
+    Mean,
+    /// The median of these distances.
+    Median,
+    /// Their maximum: the kernel is then nearly linear in the squared distance.
+    Max,
+    /// This width, in the unit of the distances.
+    Value(f64),
+}
+
+impl Bandwidth {
+    fn sigma(self, distances: &LandmarkDistances) -> Result<f64, NmdsError> {
+        let values = distances.matrix().as_slice();
+        let sigma = match self {
+            Self::Mean => values.iter().sum::<f64>() / values.len().max(1) as f64,
+            Self::Median => {
+                let mut sorted = values.to_vec();
+                let middle = sorted.len() / 2;
+                *sorted.select_nth_unstable_by(middle, f64::total_cmp).1
+            }
+            Self::Max => distances.max(),
+            Self::Value(sigma) => sigma,
+        };
+        if sigma > 0.0 && sigma.is_finite() { Ok(sigma) } else { Err(NmdsError::BadBandwidth { sigma }) }
+    }
+}
+
+/// Options of [`kernel_pca`].
+#[derive(Debug, Clone, PartialEq)]
+pub struct KernelPcaOptions {
+    /// Width of the kernel. Default: [`Bandwidth::Mean`].
+    pub bandwidth: Bandwidth,
+    /// Eigenpairs of the sample kernel to keep. Default: half of n, at least `dim + 2`, as in NMDS.
+    pub rank: Option<usize>,
+    /// Dimensions of the embedding. Default: 3.
+    pub dim: usize,
+}
+
+impl Default for KernelPcaOptions {
+    fn default() -> Self {
+        Self { bandwidth: Bandwidth::default(), rank: None, dim: 3 }
+    }
+}
+
+/// Kernel PCA of geodesic distances with a Gaussian kernel, extrapolated from n landmarks.
+///
+/// | symbol | here | shape | meaning |
+/// |---|---|---|---|
+/// | `K` | `kernel` | p x n | `exp(-d^2 / (2 sigma^2))` |
+/// | `U L U'` | `kept` | n x n1 | leading eigenpairs of its rows at the landmarks |
+/// | `Phi` | result | p x k | principal components of the centred kernel `K U L^-1 U' K'` |
+///
+/// * The kernel is centred over all p points, so the constant leading vector is gone, and the
+///   components are scaled by the roots of their eigenvalues. They have no unit.
+/// * Cost `O(p n n1)` time, `O(p n)` memory.
+///
+/// After Liu, Jain and Zhang 2006 (`liu2006` in `REFERENCES.bib`).
+///
+/// # Errors
+/// [`NmdsError::BadBandwidth`], [`NmdsError::BadRank`], [`NmdsError::BadDimension`],
+/// [`NmdsError::NoExtent`], [`NmdsError::Linalg`].
+pub fn kernel_pca(distances: &LandmarkDistances, options: &KernelPcaOptions) -> Result<Embedding, NmdsError> {
+    let shape = crate::NystromOptions { rank: options.rank, dim: options.dim };
+    let rank = shape.validate(distances.n_landmarks())?;
+    if distances.max() <= 0.0 {
+        return Err(NmdsError::NoExtent { n_points: distances.n_points() });
+    }
+    let sigma = options.bandwidth.sigma(distances)?;
+    let gauss = |sq: f64| (-0.5 * sq / (sigma * sigma)).exp();
+    let kernel = distances.matrix().map(|d| gauss(d * d));
+    let block = distances.sq_block().map(gauss);
+
+    let eigen = symmetric_eigen(&block)?;
+    // A geodesic Gaussian need not be positive definite: keep what is above rounding.
+    let floor = block.nrows() as f64 * f64::EPSILON * eigen.values[0];
+    let leading: Vec<usize> = (0..rank).filter(|&i| eigen.values[i] > floor).collect();
+    let kept = eigen.select(&leading);
+    let mut columns = kernel * &kept.vectors;
+    for (mut column, value) in columns.column_iter_mut().zip(&kept.values) {
+        column /= value.sqrt();
+    }
+    center_columns(&mut columns);
+    let (q, w) = thin_qr(&columns);
+    let inner = symmetric_eigen(&(&w * w.transpose()))?;
+    let dim = options.dim.min(leading.len());
+    let mut coords = Matrix::zeros(distances.n_points(), options.dim);
+    coords.columns_mut(0, dim).copy_from(&(q * inner.vectors.columns(0, dim)));
+    Ok(Embedding::from_orthonormal(coords, inner.values, 1.0, leading.len()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::{Cloud, landmark_distances};
+
+    #[test]
+    fn with_all_samples_it_is_the_principal_components_of_the_centred_kernel() {
+        let p = 40;
+        let cloud = Cloud::new(p, 3, 11);
+        let distances = landmark_distances(&cloud, p);
+        let options = KernelPcaOptions { bandwidth: Bandwidth::Value(4.0), rank: Some(p), dim: 3 };
+        let embedding = kernel_pca(&distances, &options).unwrap();
+        let mut kernel = Matrix::from_fn(p, p, |i, j| (-cloud.distance(i, j).powi(2) / 32.0).exp());
+        center_columns(&mut kernel);
+        kernel = kernel.transpose();
+        center_columns(&mut kernel);
+        let reference = symmetric_eigen(&((&kernel + kernel.transpose()) * 0.5)).unwrap();
+        for j in 0..3 {
+            assert!((embedding.eigenvalues[j] - reference.values[j]).abs() < 1e-9);
+            let overlap = embedding.coords.column(j).dot(&reference.vectors.column(j)).abs();
+            assert!((overlap - reference.values[j].sqrt()).abs() < 1e-8);
+        }
+    }
+
+    #[test]
+    fn the_unit_of_length_does_not_matter_when_the_width_is_relative() {
+        let distances = landmark_distances(&Cloud::new(100, 3, 12), 10);
+        let scaled =
+            LandmarkDistances::new(distances.landmarks().to_vec(), distances.matrix() * 1e3).unwrap();
+        for bandwidth in [Bandwidth::Mean, Bandwidth::Median, Bandwidth::Max] {
+            let options = KernelPcaOptions { bandwidth, ..Default::default() };
+            let (a, b) = (kernel_pca(&distances, &options).unwrap(), kernel_pca(&scaled, &options).unwrap());
+            assert!((a.coords - b.coords).amax() < 1e-9);
+        }
+    }
+
+    #[test]
+    fn a_width_must_be_positive() {
+        let distances = landmark_distances(&Cloud::new(30, 3, 13), 6);
+        for sigma in [0.0, -1.0, f64::INFINITY] {
+            let options = KernelPcaOptions { bandwidth: Bandwidth::Value(sigma), ..Default::default() };
+            assert_eq!(kernel_pca(&distances, &options), Err(NmdsError::BadBandwidth { sigma }));
+        }
+    }
+}

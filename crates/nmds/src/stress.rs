@@ -1,0 +1,222 @@
+//! How far an embedding is from the distances it was made from.
+
+use linalg::{DistanceMatrix, Matrix};
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::{Rng, SeedableRng};
+use rayon::prelude::*;
+
+/// The rows of a p x p matrix of distances, in memory or computed when asked for.
+pub trait DistanceRows: Sync {
+    /// Number of points p.
+    fn n_points(&self) -> usize;
+
+    /// Writes the distances from point `i` to all points.
+    fn row_into(&self, i: usize, out: &mut [f64]);
+}
+
+impl DistanceRows for DistanceMatrix {
+    fn n_points(&self) -> usize {
+        self.n_points()
+    }
+
+    fn row_into(&self, i: usize, out: &mut [f64]) {
+        out.copy_from_slice(self.row(i));
+    }
+}
+
+/// Rows a block of the exact stress holds: its size fixes the order of summation, so that the
+/// result does not depend on the number of threads.
+const BLOCK: usize = 64;
+
+/// The paper's stress `‖Z Z' + 1/2 J E J‖_F / p`, exact, in blocks of rows.
+///
+/// | paper | here | shape | meaning |
+/// |---|---|---|---|
+/// | `Z` | `coords` | p x k | centred coordinates |
+/// | `E` | squares of `rows` | p x p | squared distances |
+///
+/// With `D_ij = d_ij^2 - |z_i - z_j|^2` the matrix in the norm is `1/2 J D J`, whose norm follows from
+/// the sums of squares, of rows and of columns of `D` in one pass over the rows. The unit is that of
+/// a squared distance.
+///
+/// **Deviation**: eq. 17 prints `1/p^2`; the figures of the paper come out with `1/p`.
+///
+/// Cost: every row once, `O(p k)` work each; `O(p)` memory per block.
+#[must_use]
+pub fn paper_stress(coords: &Matrix, rows: &dyn DistanceRows) -> f64 {
+    let p = rows.n_points();
+    let starts: Vec<usize> = (0..p).step_by(BLOCK).collect();
+    let blocks: Vec<_> = starts
+        .par_iter()
+        .map(|&start| {
+            let mut column_sums = vec![0.0; p];
+            let mut row = vec![0.0; p];
+            let (mut squares, mut row_sums_sq, mut total) = (0.0, 0.0, 0.0);
+            for i in start..(start + BLOCK).min(p) {
+                residuals(coords, rows, i, &mut row);
+                let sum: f64 = row.iter().sum();
+                squares += row.iter().map(|d| d * d).sum::<f64>();
+                row_sums_sq += sum * sum;
+                total += sum;
+                column_sums.iter_mut().zip(&row).for_each(|(c, d)| *c += d);
+            }
+            (squares, row_sums_sq, total, column_sums)
+        })
+        .collect();
+    let mut column_sums = vec![0.0; p];
+    let (mut squares, mut row_sums_sq, mut total) = (0.0, 0.0, 0.0);
+    for (s, r, t, columns) in blocks {
+        squares += s;
+        row_sums_sq += r;
+        total += t;
+        column_sums.iter_mut().zip(&columns).for_each(|(c, d)| *c += d);
+    }
+    let column_sums_sq: f64 = column_sums.iter().map(|c| c * c).sum();
+    let n = p as f64;
+    let norm_sq = squares - (row_sums_sq + column_sums_sq) / n + total * total / (n * n);
+    0.5 * norm_sq.max(0.0).sqrt() / n
+}
+
+/// `d_ij^2 - |z_i - z_j|^2` for all `j`.
+fn residuals(coords: &Matrix, rows: &dyn DistanceRows, i: usize, out: &mut [f64]) {
+    rows.row_into(i, out);
+    out.iter_mut().for_each(|d| *d *= *d);
+    for column in coords.column_iter() {
+        let at = column[i];
+        for (d, x) in out.iter_mut().zip(column.iter()) {
+            *d -= (x - at) * (x - at);
+        }
+    }
+}
+
+/// An estimate of [`paper_stress`] from some of the rows.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StressEstimate {
+    /// The estimate, in the unit of a squared distance.
+    pub value: f64,
+    /// A 95 % confidence interval by the jackknife.
+    pub interval: [f64; 2],
+    /// Number of rows used.
+    pub n_rows: usize,
+}
+
+/// Estimates [`paper_stress`] from `n_rows` different rows drawn with `seed`, when all p are too many.
+///
+/// The three sums of the exact formula are means over rows, so a sample of rows estimates each of
+/// them without bias (rows and columns have the same sums, `E` being symmetric).
+///
+/// Cost: `n_rows` rows, `O(p k)` work each.
+#[must_use]
+pub fn estimate_paper_stress(
+    coords: &Matrix,
+    rows: &dyn DistanceRows,
+    n_rows: usize,
+    seed: u64,
+) -> StressEstimate {
+    let p = rows.n_points();
+    let sample = draw(p, n_rows.min(p), seed);
+    let n = p as f64;
+    // Per row: mean square and mean of the residuals.
+    let moments: Vec<[f64; 2]> = sample
+        .par_iter()
+        .map(|&i| {
+            let mut row = vec![0.0; p];
+            residuals(coords, rows, i, &mut row);
+            [row.iter().map(|d| d * d).sum::<f64>() / n, row.iter().sum::<f64>() / n]
+        })
+        .collect();
+    let stress = |sums: [f64; 3], m: f64| {
+        let [squares, means, means_sq] = sums.map(|s| s / m);
+        0.5 * (squares - 2.0 * means_sq + means * means).max(0.0).sqrt()
+    };
+    let sums = moments.iter().fold([0.0; 3], |[a, b, c], [s, m]| [a + s, b + m, c + m * m]);
+    let m = moments.len() as f64;
+    let value = stress(sums, m);
+    let half = if moments.len() < 2 {
+        f64::INFINITY
+    } else {
+        let left_out: Vec<f64> = moments
+            .iter()
+            .map(|[s, mean]| stress([sums[0] - s, sums[1] - mean, sums[2] - mean * mean], m - 1.0))
+            .collect();
+        let centre = left_out.iter().sum::<f64>() / m;
+        let variance = left_out.iter().map(|v| (v - centre).powi(2)).sum::<f64>() * (m - 1.0) / m;
+        // Rows are drawn without replacement: nothing is uncertain when all are used.
+        1.96 * (variance * (1.0 - m / n)).sqrt()
+    };
+    StressEstimate { value, interval: [(value - half).max(0.0), value + half], n_rows: moments.len() }
+}
+
+/// `m` different numbers below `p`, ascending (Floyd's algorithm).
+fn draw(p: usize, m: usize, seed: u64) -> Vec<usize> {
+    let mut rng = ChaCha8Rng::seed_from_u64(seed);
+    let mut chosen = std::collections::BTreeSet::new();
+    for limit in p - m..p {
+        let pick = (rng.next_u64() % (limit as u64 + 1)) as usize;
+        if !chosen.insert(pick) {
+            chosen.insert(limit);
+        }
+    }
+    chosen.into_iter().collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::classical;
+
+    fn circle(p: usize) -> DistanceMatrix {
+        DistanceMatrix::from_pairs(p, |i, j| (j - i).min(p - (j - i)) as f64).unwrap()
+    }
+
+    /// The definition, term by term.
+    fn by_definition(coords: &Matrix, distances: &DistanceMatrix) -> f64 {
+        let p = distances.n_points();
+        let squares = Matrix::from_fn(p, p, |i, j| distances.get(i, j).powi(2));
+        let centring = Matrix::identity(p, p).add_scalar(-1.0 / p as f64);
+        (coords * coords.transpose() + &centring * squares * &centring * 0.5).norm() / p as f64
+    }
+
+    #[test]
+    fn equals_its_definition_and_the_eigenvalues_left_out() {
+        let distances = circle(151);
+        let embedding = classical(&distances, 3).unwrap();
+        let stress = paper_stress(&embedding.coords, &distances);
+        assert!((stress / by_definition(&embedding.coords, &distances) - 1.0).abs() < 1e-12);
+        let all = crate::classical_full(&distances, 3).unwrap().eigenvalues;
+        let rest = all[3..].iter().map(|v| v * v).sum::<f64>().sqrt() / 151.0;
+        assert!((stress / rest - 1.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn does_not_depend_on_the_number_of_threads() {
+        let distances = circle(500);
+        let embedding = classical(&distances, 2).unwrap();
+        let with = |threads: usize| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| {
+                let estimate = estimate_paper_stress(&embedding.coords, &distances, 50, 1);
+                (paper_stress(&embedding.coords, &distances).to_bits(), estimate)
+            })
+        };
+        assert_eq!(with(1), with(4));
+    }
+
+    #[test]
+    fn the_estimate_covers_the_exact_value_and_equals_it_with_all_rows() {
+        let cloud = crate::testing::Cloud::new(400, 3, 21);
+        let distances = DistanceMatrix::from_pairs(400, |i, j| cloud.distance(i, j).powf(0.7)).unwrap();
+        let coords = classical(&distances, 2).unwrap().coords;
+        let exact = paper_stress(&coords, &distances);
+        let covered = (0..40)
+            .filter(|&seed| {
+                let [lo, hi] = estimate_paper_stress(&coords, &distances, 60, seed).interval;
+                (lo..=hi).contains(&exact)
+            })
+            .count();
+        assert!(covered >= 34, "only {covered} of 40 intervals hold the exact value");
+        let whole = estimate_paper_stress(&coords, &distances, 1000, 0);
+        assert!((whole.value / exact - 1.0).abs() < 1e-12 && whole.n_rows == 400);
+        assert!(whole.interval[1] - whole.interval[0] < 1e-9 * exact);
+    }
+}

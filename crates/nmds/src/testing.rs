@@ -1,0 +1,48 @@
+//! Points with known coordinates for the tests of this crate.
+
+use linalg::{LandmarkDistances, Matrix};
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::{Rng, SeedableRng};
+
+use crate::Embedding;
+
+/// Points drawn evenly from a box whose sides shrink, so that no two axes are equal.
+pub(crate) struct Cloud {
+    points: Vec<Vec<f64>>,
+}
+
+impl Cloud {
+    pub(crate) fn new(p: usize, dim: usize, seed: u64) -> Self {
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        let mut uniform = || (rng.next_u64() >> 11) as f64 / (1u64 << 53) as f64;
+        let points = (0..p).map(|_| (0..dim).map(|j| uniform() * 10.0 / (j + 1) as f64).collect()).collect();
+        Self { points }
+    }
+
+    pub(crate) fn distance(&self, i: usize, j: usize) -> f64 {
+        self.points[i].iter().zip(&self.points[j]).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt()
+    }
+
+    pub(crate) fn len(&self) -> usize {
+        self.points.len()
+    }
+}
+
+/// Exact distances from the first `n` points.
+pub(crate) fn landmark_distances(cloud: &Cloud, n: usize) -> LandmarkDistances {
+    let columns = Matrix::from_fn(cloud.len(), n, |i, j| cloud.distance(i, j));
+    LandmarkDistances::new((0..n).collect(), columns).unwrap()
+}
+
+/// Largest difference between a distance in the cloud and in the embedding: zero exactly when the
+/// two are congruent.
+pub(crate) fn procrustes_free_gap(cloud: &Cloud, embedding: &Embedding) -> f64 {
+    let mut gap = 0.0f64;
+    for i in 0..cloud.len() {
+        for j in 0..i {
+            let embedded = (embedding.coords.row(i) - embedding.coords.row(j)).norm();
+            gap = gap.max((embedded - cloud.distance(i, j)).abs());
+        }
+    }
+    gap
+}
