@@ -1,0 +1,154 @@
+//! The embedded surface.
+
+use mesh::TriMesh;
+use nalgebra::{Point3, Vector3};
+use nmds::Embedding;
+
+use crate::DescriptorError;
+
+/// What is divided out of a form before it is compared.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Normalization {
+    /// Nothing: a small cat and a large cat differ.
+    #[default]
+    Raw,
+    /// The root of the mean squared distance from the centroid (area weighted): size does not count.
+    UnitSpread,
+}
+
+/// A surface embedded so that straight lines equal surface distances: its pose-free shape.
+///
+/// Centred at its area-weighted centroid. Invariant to bending of the surface; with
+/// [`Normalization::UnitSpread`] to scale as well. Defined up to a rigid motion *and reflection*:
+/// distances cannot tell a left hand from a right one.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CanonicalForm {
+    points: Vec<Point3<f64>>,
+    weights: Vec<f64>,
+    spread: f64,
+}
+
+impl CanonicalForm {
+    /// The form of `mesh` from an embedding of its vertices; the areas around the vertices of
+    /// `mesh` become the weights of the points.
+    ///
+    /// # Errors
+    /// [`DescriptorError::NotThreeDimensional`], [`DescriptorError::SizeMismatch`],
+    /// [`DescriptorError::NoExtent`].
+    pub fn new(embedding: &Embedding, mesh: &TriMesh) -> Result<Self, DescriptorError> {
+        if embedding.dim() != 3 {
+            return Err(DescriptorError::NotThreeDimensional { dim: embedding.dim() });
+        }
+        if embedding.n_points() != mesh.n_vertices() {
+            return Err(DescriptorError::SizeMismatch {
+                n_points: embedding.n_points(),
+                n_vertices: mesh.n_vertices(),
+            });
+        }
+        let points = embedding.coords.row_iter().map(|row| Point3::new(row[0], row[1], row[2])).collect();
+        Self::from_points(points, mesh.vertex_areas())
+    }
+
+    /// A form of bare points with weights that are not negative; with equal weights when they sum to
+    /// zero.
+    ///
+    /// # Errors
+    /// [`DescriptorError::NoExtent`].
+    pub fn from_points(mut points: Vec<Point3<f64>>, mut weights: Vec<f64>) -> Result<Self, DescriptorError> {
+        let total: f64 = weights.iter().sum();
+        let even = 1.0 / points.len().max(1) as f64;
+        weights.iter_mut().for_each(|w| *w = if total > 0.0 { *w / total } else { even });
+        let centroid = points.iter().zip(&weights).fold(Vector3::zeros(), |sum, (p, w)| sum + p.coords * *w);
+        points.iter_mut().for_each(|p| *p -= centroid);
+        let spread =
+            points.iter().zip(&weights).map(|(p, w)| w * p.coords.norm_squared()).sum::<f64>().sqrt();
+        if !(spread > 0.0 && spread.is_finite()) {
+            return Err(DescriptorError::NoExtent { n_points: points.len() });
+        }
+        Ok(Self { points, weights, spread })
+    }
+
+    /// The centred points, one per vertex, in the unit of the distances.
+    #[must_use]
+    pub fn points(&self) -> &[Point3<f64>] {
+        &self.points
+    }
+
+    /// The share of the surface around each point; they sum to one.
+    #[must_use]
+    pub fn weights(&self) -> &[f64] {
+        &self.weights
+    }
+
+    /// Root of the mean squared distance from the centroid.
+    #[must_use]
+    pub fn spread(&self) -> f64 {
+        self.spread
+    }
+
+    /// The form with what `normalization` names divided out.
+    #[must_use]
+    pub fn normalized(&self, normalization: Normalization) -> Self {
+        match normalization {
+            Normalization::Raw => self.clone(),
+            Normalization::UnitSpread => Self {
+                points: self.points.iter().map(|p| p / self.spread).collect(),
+                weights: self.weights.clone(),
+                spread: 1.0,
+            },
+        }
+    }
+
+    /// The form as a surface: its points with the faces of the mesh it was made from.
+    #[must_use]
+    pub fn to_mesh(&self, mesh: &TriMesh) -> TriMesh {
+        TriMesh { positions: self.points.clone(), faces: mesh.faces.clone() }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use linalg::Matrix;
+
+    fn embedding(coords: Matrix) -> Embedding {
+        Embedding { coords, eigenvalues: vec![1.0; 3], negative_mass: 0.0, rank: 3 }
+    }
+
+    fn square() -> TriMesh {
+        let positions =
+            [[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [2.0, 2.0, 0.0], [0.0, 2.0, 0.0]].map(Point3::from).to_vec();
+        let faces = [[0, 1, 2], [0, 2, 3]].map(|f: [u32; 3]| f.map(mesh::VertexId)).to_vec();
+        TriMesh { positions, faces }
+    }
+
+    #[test]
+    fn is_centred_by_area_and_spread_scales() {
+        let mesh = square();
+        let coords = Matrix::from_fn(4, 3, |i, j| mesh.positions[i][j] + 7.0);
+        let form = CanonicalForm::new(&embedding(coords.clone()), &mesh).unwrap();
+        let centroid =
+            form.points().iter().zip(form.weights()).fold(Vector3::zeros(), |s, (p, w)| s + p.coords * *w);
+        assert!(centroid.norm() < 1e-15);
+        assert!((form.weights().iter().sum::<f64>() - 1.0).abs() < 1e-15);
+        assert!((form.spread() - 2f64.sqrt()).abs() < 1e-15);
+        let scaled = CanonicalForm::new(&embedding(coords * 5.0), &mesh).unwrap();
+        let (a, b) =
+            (form.normalized(Normalization::UnitSpread), scaled.normalized(Normalization::UnitSpread));
+        assert!(a.points().iter().zip(b.points()).all(|(p, q)| (p - q).norm() < 1e-14));
+        assert_eq!(form.to_mesh(&mesh).faces, mesh.faces);
+    }
+
+    #[test]
+    fn impossible_forms_are_refused() {
+        let mesh = square();
+        let new = |coords| CanonicalForm::new(&embedding(coords), &mesh);
+        assert_eq!(new(Matrix::zeros(4, 2)), Err(DescriptorError::NotThreeDimensional { dim: 2 }));
+        assert_eq!(
+            new(Matrix::zeros(5, 3)),
+            Err(DescriptorError::SizeMismatch { n_points: 5, n_vertices: 4 })
+        );
+        assert_eq!(new(Matrix::zeros(4, 3)), Err(DescriptorError::NoExtent { n_points: 4 }));
+        assert_eq!(new(Matrix::from_element(4, 3, f64::NAN)), Err(DescriptorError::NoExtent { n_points: 4 }));
+    }
+}

@@ -1,0 +1,125 @@
+//! A form made ready to be matched with many others.
+
+use kiddo::{ImmutableKdTree, SquaredEuclidean};
+use nalgebra::{Matrix3, Point3};
+
+use crate::{Alignment, CanonicalForm, DescriptorError};
+
+/// Below this many points a sample is of no use.
+const MIN_SAMPLES: usize = 4;
+
+/// A canonical form in its principal axes with evenly spread samples and a search tree.
+pub struct PreparedForm {
+    points: Vec<Point3<f64>>,
+    samples: Vec<Point3<f64>>,
+    axis_spread: [f64; 3],
+    to_principal: Alignment,
+    tree: ImmutableKdTree<f64, 3>,
+}
+
+impl std::fmt::Debug for PreparedForm {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("PreparedForm")
+            .field("n_points", &self.points.len())
+            .field("n_samples", &self.samples.len())
+            .field("axis_spread", &self.axis_spread)
+            .finish_non_exhaustive()
+    }
+}
+
+impl PreparedForm {
+    /// Turns a form into its area-weighted principal axes, so that the triangulation does not
+    /// count, and spreads up to `n_samples` of its points evenly by farthest point sampling.
+    ///
+    /// Cost `O(p n_samples)`.
+    ///
+    /// # Errors
+    /// [`DescriptorError::BadOption`] for fewer than 4 samples.
+    pub fn new(form: &CanonicalForm, n_samples: usize) -> Result<Self, DescriptorError> {
+        if n_samples < MIN_SAMPLES {
+            return Err(DescriptorError::BadOption {
+                option: "the number of matched points",
+                value: n_samples as f64,
+                range: "at least 4",
+            });
+        }
+        let mut covariance = Matrix3::zeros();
+        for (p, w) in form.points().iter().zip(form.weights()) {
+            covariance += p.coords * p.coords.transpose() * *w;
+        }
+        let eigen = covariance.symmetric_eigen();
+        let mut order = [0, 1, 2];
+        order.sort_by(|&i, &j| eigen.eigenvalues[j].total_cmp(&eigen.eigenvalues[i]));
+        let axes = Matrix3::from_columns(&order.map(|i| eigen.eigenvectors.column(i).into_owned()));
+        let to_principal = Alignment::about_origin(axes.transpose());
+        let points: Vec<_> = form.points().iter().map(|p| to_principal.apply(p)).collect();
+        let coordinates: Vec<[f64; 3]> = points.iter().map(|p| p.coords.into()).collect();
+        let tree = ImmutableKdTree::new_from_slice(&coordinates)
+            .map_err(|_| DescriptorError::NoExtent { n_points: points.len() })?;
+        Ok(Self {
+            samples: spread_samples(&points, n_samples),
+            axis_spread: order.map(|i| eigen.eigenvalues[i].max(0.0).sqrt()),
+            points,
+            to_principal,
+            tree,
+        })
+    }
+
+    /// All points, in the principal axes.
+    #[must_use]
+    pub fn points(&self) -> &[Point3<f64>] {
+        &self.points
+    }
+
+    /// Evenly spread points, farthest first: any leading part of them is evenly spread too.
+    #[must_use]
+    pub fn samples(&self) -> &[Point3<f64>] {
+        &self.samples
+    }
+
+    /// Standard deviation along each principal axis, descending.
+    #[must_use]
+    pub fn axis_spread(&self) -> [f64; 3] {
+        self.axis_spread
+    }
+
+    /// The motion from the form's own coordinates to its principal axes.
+    #[must_use]
+    pub fn to_principal(&self) -> &Alignment {
+        &self.to_principal
+    }
+
+    /// The point nearest to `query` and the squared distance to it.
+    #[inline]
+    pub(crate) fn nearest(&self, query: &Point3<f64>) -> (Point3<f64>, f64) {
+        let query: [f64; 3] = query.coords.into();
+        let hit = self.tree.query(&query).nearest_one::<SquaredEuclidean<f64>>().execute();
+        (self.points[hit.item as usize], hit.distance)
+    }
+}
+
+/// Farthest point sampling in space, from the point farthest from the origin.
+fn spread_samples(points: &[Point3<f64>], n: usize) -> Vec<Point3<f64>> {
+    let mut gap: Vec<f64> = points.iter().map(|p| p.coords.norm_squared()).collect();
+    let mut samples = Vec::with_capacity(n.min(points.len()));
+    let mut first = true;
+    while samples.len() < n.min(points.len()) {
+        let (mut next, mut widest) = (0, f64::NEG_INFINITY);
+        for (i, g) in gap.iter().enumerate() {
+            if *g > widest {
+                (next, widest) = (i, *g);
+            }
+        }
+        if !first && widest == 0.0 {
+            break;
+        }
+        let at = points[next];
+        samples.push(at);
+        for (g, p) in gap.iter_mut().zip(points) {
+            let d = (p - at).norm_squared();
+            *g = if first { d } else { g.min(d) };
+        }
+        first = false;
+    }
+    samples
+}
