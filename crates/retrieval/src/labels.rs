@@ -1,0 +1,71 @@
+//! Which class every shape belongs to.
+
+/// Class names and the class of every shape.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Labels {
+    classes: Vec<String>,
+    of: Vec<usize>,
+    sizes: Vec<usize>,
+}
+
+impl Labels {
+    /// Numbers the different names in alphabetical order.
+    #[must_use]
+    pub fn new<S: AsRef<str>>(names: &[S]) -> Self {
+        let mut classes: Vec<String> = names.iter().map(|name| name.as_ref().to_owned()).collect();
+        classes.sort();
+        classes.dedup();
+        let of: Vec<usize> = names
+            .iter()
+            .map(|name| classes.partition_point(|class| class.as_str() < name.as_ref()))
+            .collect();
+        let mut sizes = vec![0; classes.len()];
+        of.iter().for_each(|&class| sizes[class] += 1);
+        Self { classes, of, sizes }
+    }
+
+    /// Number of shapes.
+    #[must_use]
+    pub fn n_points(&self) -> usize {
+        self.of.len()
+    }
+
+    /// The class names, sorted.
+    #[must_use]
+    pub fn classes(&self) -> &[String] {
+        &self.classes
+    }
+
+    /// The class of shape `i`, as an index into [`classes`](Self::classes).
+    #[must_use]
+    pub fn class(&self, i: usize) -> usize {
+        self.of[i]
+    }
+
+    /// Number of shapes in a class.
+    #[must_use]
+    pub fn size(&self, class: usize) -> usize {
+        self.sizes[class]
+    }
+
+    /// Whether shape `i` is scored as a query: its class has more than two members, the convention of
+    /// the Princeton shape benchmark.
+    #[must_use]
+    pub fn is_query(&self, i: usize) -> bool {
+        self.size(self.of[i]) > 2
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn classes_are_sorted_and_small_ones_are_no_queries() {
+        let labels = Labels::new(&["wolf", "cat", "cat", "shark", "cat", "wolf"]);
+        assert_eq!(labels.classes(), ["cat", "shark", "wolf"]);
+        assert_eq!((0..6).map(|i| labels.class(i)).collect::<Vec<_>>(), [2, 0, 0, 1, 0, 2]);
+        assert_eq!(labels.size(0), 3);
+        assert!(labels.is_query(1) && !labels.is_query(0) && !labels.is_query(3));
+    }
+}
