@@ -1,23 +1,25 @@
 //! Index newtypes: a vertex can never be used where a face is meant.
 
+use serde::Serialize;
+
 /// Index of a vertex of a mesh, counted from zero.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
 #[repr(transparent)]
 pub struct VertexId(pub u32);
 
 /// Index of a face of a mesh, counted from zero.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
 #[repr(transparent)]
 pub struct FaceId(pub u32);
 
 /// Index of an undirected edge of a [`Topology`](crate::Topology), counted from zero.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
 #[repr(transparent)]
 pub struct EdgeId(pub u32);
 
 /// A corner of a face: corner `i` of face `f` is `3 f + i`. It names the vertex in that corner and,
 /// equally, the edge of the face that lies opposite.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
 #[repr(transparent)]
 pub struct CornerId(pub u32);
 

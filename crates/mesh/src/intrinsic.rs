@@ -1,5 +1,7 @@
 //! A surface as its inhabitants know it: connectivity and edge lengths, no coordinates.
 
+use serde::Serialize;
+
 use crate::{EdgeId, Topology, TriMesh, VertexId};
 
 /// A triangle mesh reduced to its intrinsic geometry.
@@ -15,7 +17,7 @@ pub struct IntrinsicMesh {
 
 /// A straight connection between two vertices that belongs to no face, for example the bridge
 /// between two components.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Link {
     /// The two vertices it joins.
     pub ends: [VertexId; 2],

@@ -1,0 +1,103 @@
+//! From what a file lists to a mesh: triangles out of polygons, limits of the indices.
+
+use nalgebra::Point3;
+
+use crate::error::{Fault, Located};
+use crate::{TriMesh, VertexId};
+
+/// The most vertices a mesh may have.
+const MAX_VERTICES: u64 = u32::MAX as u64;
+/// The most faces: their corners are counted in 32 bits.
+const MAX_FACES: u64 = u32::MAX as u64 / 3;
+
+/// Cuts a polygon into triangles and adds them.
+///
+/// A quadrilateral is cut along the diagonal that folds neither half over, or else the shorter one;
+/// larger polygons become fans around their first corner. Corners are in range.
+pub(super) fn push_polygon(
+    positions: &[Point3<f64>],
+    corners: &[VertexId],
+    faces: &mut Vec<[VertexId; 3]>,
+) -> Result<(), Fault> {
+    match *corners {
+        [] | [_] | [_, _] => return Err(Fault::TooFewCorners { corners: corners.len() }),
+        [a, b, c] => faces.push([a, b, c]),
+        [a, b, c, d] if prefers_second_diagonal(positions, [a, b, c, d]) => {
+            faces.extend([[a, b, d], [b, c, d]]);
+        }
+        [apex, ..] => faces.extend(corners[1..].windows(2).map(|edge| [apex, edge[0], edge[1]])),
+    }
+    Ok(())
+}
+
+/// Whether the quadrilateral a b c d is better cut from b to d than from a to c.
+fn prefers_second_diagonal(positions: &[Point3<f64>], quad: [VertexId; 4]) -> bool {
+    let [a, b, c, d] = quad.map(|v| positions[v.index()]);
+    let folds_over = |p: Point3<f64>, q: Point3<f64>, r: Point3<f64>, s: Point3<f64>| {
+        let (first, second) = ((q - p).cross(&(r - p)), (r - p).cross(&(s - p)));
+        first.dot(&second) <= 0.0
+    };
+    match (folds_over(a, b, c, d), folds_over(b, c, d, a)) {
+        (true, false) => true,
+        (false, true) => false,
+        _ => (d - b).norm_squared() < (c - a).norm_squared(),
+    }
+}
+
+/// Refuses more vertices or faces than the index types can count; called with what a header
+/// promises, before anything is read.
+pub(super) fn check_counts(n_vertices: u64, n_faces: u64) -> Result<(), Fault> {
+    if n_vertices > MAX_VERTICES {
+        return Err(Fault::TooLarge { items: "vertices", count: n_vertices, limit: MAX_VERTICES });
+    }
+    if n_faces > MAX_FACES {
+        return Err(Fault::TooLarge { items: "faces", count: n_faces, limit: MAX_FACES });
+    }
+    Ok(())
+}
+
+/// The mesh, if it is a surface at all.
+pub(super) fn finish(positions: Vec<Point3<f64>>, faces: Vec<[VertexId; 3]>) -> Result<TriMesh, Located> {
+    if faces.is_empty() {
+        return Err(Fault::NoFaces { n_vertices: positions.len() }.whole());
+    }
+    check_counts(positions.len() as u64, faces.len() as u64).map_err(Fault::whole)?;
+    Ok(TriMesh { positions, faces })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn cut(points: &[[f64; 2]]) -> Vec<[u32; 3]> {
+        let positions: Vec<_> = points.iter().map(|p| Point3::new(p[0], p[1], 0.0)).collect();
+        let corners: Vec<_> = (0..points.len()).map(VertexId::from).collect();
+        let mut faces = Vec::new();
+        push_polygon(&positions, &corners, &mut faces).unwrap();
+        faces.iter().map(|f| f.map(|v| v.0)).collect()
+    }
+
+    #[test]
+    fn quads_take_the_diagonal_that_stays_inside_or_is_shorter() {
+        assert_eq!(cut(&[[0., 0.], [1., 0.], [1., 1.], [0., 1.]]), [[0, 1, 2], [0, 2, 3]]);
+        assert_eq!(cut(&[[0., 0.], [1., 0.], [4., 1.], [0., 1.]]), [[0, 1, 3], [1, 2, 3]]);
+        // An arrow head with its notch at corner 1: only the diagonal from the notch stays inside.
+        assert_eq!(cut(&[[0., 0.], [1., 1.], [2., 0.], [1., 3.]]), [[0, 1, 3], [1, 2, 3]]);
+        assert_eq!(cut(&[[1., 1.], [2., 0.], [1., 3.], [0., 0.]]), [[0, 1, 2], [0, 2, 3]]);
+    }
+
+    #[test]
+    fn larger_polygons_become_fans_and_smaller_ones_are_refused() {
+        let hexagon: Vec<[f64; 2]> = (0..6).map(|i| (f64::from(i)).sin_cos().into()).collect();
+        assert_eq!(cut(&hexagon), [[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 5]]);
+        let refused = push_polygon(&[], &[VertexId(0), VertexId(1)], &mut Vec::new());
+        assert_eq!(refused, Err(Fault::TooFewCorners { corners: 2 }));
+    }
+
+    #[test]
+    fn counts_beyond_the_index_types_are_refused() {
+        assert!(check_counts(1 << 32, 0).is_err_and(|f| matches!(f, Fault::TooLarge { .. })));
+        assert!(check_counts(3, 1 << 31).is_err_and(|f| matches!(f, Fault::TooLarge { .. })));
+        assert_eq!(check_counts(1 << 30, 1 << 30), Ok(()));
+    }
+}

@@ -1,0 +1,6 @@
+//! MATLAB 5 files with a surface as TOSCA stores it: a struct with the fields `X Y Z TRIV`.
+
+mod container;
+mod surface;
+
+pub(super) use surface::parse;

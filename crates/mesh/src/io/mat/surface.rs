@@ -1,0 +1,198 @@
+//! The surface in a MATLAB file.
+
+use flate2::read::ZlibDecoder;
+use nalgebra::Point3;
+
+use crate::error::{Fault, Located};
+use crate::io::assembly::{check_counts, finish};
+use crate::{TriMesh, VertexId};
+
+use super::container::{COMPRESSED, Elements, HEADER, MATRIX, Tag, parse_header};
+
+/// The fields of the struct, and where each goes.
+const FIELDS: [&str; 4] = ["X", "Y", "Z", "TRIV"];
+
+/// Types of the elements inside a matrix, and the classes of matrices.
+const INT8: u32 = 1;
+const INT32: u32 = 5;
+const UINT32: u32 = 6;
+const STRUCT_CLASS: u8 = 2;
+const NUMERIC_CLASSES: std::ops::RangeInclusive<u8> = 6..=15;
+
+/// Decompressed bytes taken for each byte of the file, and for any file. Meshes compress three- to
+/// tenfold, deflate could reach a thousandfold.
+const INFLATION: u64 = 32;
+const ALWAYS_TAKEN: u64 = 16 << 20;
+
+/// Reads the first struct in the file with the numeric fields `X`, `Y`, `Z` (one column each) and
+/// `TRIV` (three columns, one-based); other variables and fields are passed over.
+pub(in crate::io) fn parse(bytes: &[u8]) -> Result<TriMesh, Located> {
+    let order = parse_header(bytes)?;
+    let limit = ALWAYS_TAKEN + INFLATION * bytes.len() as u64;
+    let mut at = HEADER;
+    let mut seen = Vec::new();
+    while at < bytes.len() {
+        let mut top = Elements::new(&bytes[at..], order, bytes.len() as u64, at);
+        let Tag { kind, length, .. } = top.tag()?;
+        let begin = at + 8;
+        let end = begin + length as usize;
+        let Some(data) = bytes.get(begin..end) else {
+            let found = (bytes.len() - begin) as u64;
+            let items = "bytes of a variable".into();
+            return Err(Fault::Truncated { items, promised: u64::from(length), found }.at_byte(at));
+        };
+        let variable = match kind {
+            MATRIX => Some(Elements::new(data, order, limit, begin)),
+            COMPRESSED => {
+                let mut inflated = Elements::new(ZlibDecoder::new(data), order, limit, begin);
+                let tag = inflated.tag()?;
+                inflated.limit_to(u64::from(tag.length));
+                (tag.kind == MATRIX).then_some(inflated)
+            }
+            _ => None,
+        };
+        if let Some(variable) = variable {
+            match Variable::parse(variable)? {
+                Variable::Surface(surface) => return surface.into_mesh(begin),
+                Variable::Other(name) => seen.push(name),
+            }
+        }
+        at = end;
+    }
+    let seen = if seen.is_empty() { "no variables".to_string() } else { seen.join(", ") };
+    Err(Fault::Unsupported {
+        what: format!("no struct with the fields X Y Z TRIV in the file (it holds {seen})"),
+        remedy: "save one, as `surface.X = ...; save(file, 'surface', '-v7')`",
+    }
+    .whole())
+}
+
+/// A variable of the file.
+enum Variable {
+    Surface(Surface),
+    /// Anything else: its name.
+    Other(String),
+}
+
+/// A numeric matrix, column by column.
+struct Matrix {
+    rows: usize,
+    columns: usize,
+    values: Vec<f64>,
+}
+
+#[derive(Default)]
+struct Surface {
+    fields: [Option<Matrix>; 4],
+}
+
+/// What stands at the beginning of every matrix.
+struct MatrixHead {
+    class: u8,
+    dimensions: Vec<u32>,
+    name: String,
+}
+
+impl MatrixHead {
+    fn parse(elements: &mut Elements<'_>) -> Result<Self, Located> {
+        let flags = elements.expect(UINT32, "the flags of a matrix")?;
+        let words = |data: &[u8]| -> Vec<u32> {
+            data.as_chunks().0.iter().map(|&word| elements.order().u32(word)).collect()
+        };
+        let class = words(&flags).first().map_or(0, |word| (word & 0xff) as u8);
+        let dimensions = elements.expect(INT32, "the dimensions of a matrix")?;
+        let dimensions = dimensions.as_chunks().0.iter().map(|&word| elements.order().u32(word)).collect();
+        let name = elements.expect(INT8, "the name of a matrix")?;
+        Ok(Self { class, dimensions, name: String::from_utf8_lossy(&name).into_owned() })
+    }
+}
+
+impl Variable {
+    fn parse(mut elements: Elements<'_>) -> Result<Self, Located> {
+        let head = MatrixHead::parse(&mut elements)?;
+        if head.class != STRUCT_CLASS || head.dimensions.iter().any(|&n| n != 1) {
+            return Ok(Self::Other(head.name));
+        }
+        let name_length = elements.expect(INT32, "the length of field names")?;
+        let name_length = name_length.first_chunk().map_or(0, |&word| elements.order().u32(word)) as usize;
+        let names = elements.expect(INT8, "the names of the fields")?;
+        if name_length == 0 {
+            return Ok(Self::Other(head.name));
+        }
+        let trimmed = |name: &[u8]| name.split(|&b| b == 0).next().unwrap_or_default().to_vec();
+        let names: Vec<Vec<u8>> = names.chunks(name_length).map(trimmed).collect();
+        if !FIELDS.iter().all(|field| names.iter().any(|name| name == field.as_bytes())) {
+            return Ok(Self::Other(head.name));
+        }
+        let mut surface = Surface::default();
+        for name in names {
+            let tag = elements.tag()?;
+            match FIELDS.iter().position(|field| name == field.as_bytes()) {
+                Some(i) if tag.kind == MATRIX => surface.fields[i] = Some(Matrix::parse(&mut elements)?),
+                Some(_) => return Err(elements.broken("a matrix in each field of the surface")),
+                None => elements.pass(tag)?,
+            }
+        }
+        Ok(Self::Surface(surface))
+    }
+}
+
+impl Matrix {
+    fn parse(elements: &mut Elements<'_>) -> Result<Self, Located> {
+        let head = MatrixHead::parse(elements)?;
+        if !NUMERIC_CLASSES.contains(&head.class) {
+            return Err(elements.broken("a full matrix of numbers in the fields X Y Z TRIV"));
+        }
+        let tag = elements.tag()?;
+        let data = elements.data(tag)?;
+        let values = elements.order().numbers(tag.kind, &data);
+        let values = values.ok_or_else(|| elements.broken("numbers in the fields X Y Z TRIV"))?;
+        let (rows, columns) = match *head.dimensions {
+            [rows, columns] => (rows as usize, columns as usize),
+            _ => return Err(elements.broken("matrices of two dimensions in the fields X Y Z TRIV")),
+        };
+        if rows.checked_mul(columns) != Some(values.len()) {
+            let promised = u64::from(head.dimensions[0]) * u64::from(head.dimensions[1]);
+            let found = values.len() as u64;
+            return Err(Fault::Truncated { items: "numbers of a matrix".into(), promised, found }
+                .at_byte(elements.start));
+        }
+        Ok(Self { rows, columns, values })
+    }
+}
+
+impl Surface {
+    fn into_mesh(self, at: usize) -> Result<TriMesh, Located> {
+        let syntax = |expected, found: String| Fault::Syntax { expected, found }.at_byte(at);
+        let [Some(x), Some(y), Some(z), Some(triv)] = self.fields else {
+            return Err(syntax("one value for each of X Y Z TRIV", "a field without one".into()));
+        };
+        let n = x.values.len();
+        if [&x, &y, &z].iter().any(|m| m.values.len() != n || m.rows.min(m.columns) > 1) {
+            let found = [x, y, z].map(|m| format!("{} x {}", m.rows, m.columns)).join(", ");
+            return Err(syntax("columns X Y Z of one length", found));
+        }
+        if triv.columns != 3 && !triv.values.is_empty() {
+            return Err(syntax("three columns in TRIV", format!("{} x {}", triv.rows, triv.columns)));
+        }
+        check_counts(n as u64, triv.rows as u64).map_err(|fault| fault.at_byte(at))?;
+        let mut positions = Vec::with_capacity(n);
+        for (i, ((&x, &y), &z)) in x.values.iter().zip(&y.values).zip(&z.values).enumerate() {
+            if let Some(value) = [x, y, z].into_iter().find(|x| !x.is_finite()) {
+                return Err(Fault::NonFinite { vertex: i as u64 + 1, value }.at_byte(at));
+            }
+            positions.push(Point3::new(x, y, z));
+        }
+        let vertex = |value: f64| {
+            if value.fract() == 0.0 && (1.0..=n as f64).contains(&value) {
+                return Ok(VertexId(value as u32 - 1));
+            }
+            Err(Fault::IndexOutOfRange { index: value.to_string(), first: 1, last: n as u64 }.at_byte(at))
+        };
+        let corner = |face: usize, slot: usize| vertex(triv.values[slot * triv.rows + face]);
+        let faces = (0..if triv.values.is_empty() { 0 } else { triv.rows })
+            .map(|face| Ok([corner(face, 0)?, corner(face, 1)?, corner(face, 2)?]))
+            .collect::<Result<_, Located>>()?;
+        finish(positions, faces)
+    }
+}

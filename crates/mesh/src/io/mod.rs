@@ -1,0 +1,157 @@
+//! Mesh files: OFF, OBJ, PLY, STL, TOSCA's `.vert`/`.tri` pairs and MATLAB `.mat`.
+//!
+//! The format follows from the extension, in upper or lower case. Vertices keep the order of the
+//! file, used by a face or not; polygons become triangles; everything else a file may hold is
+//! passed over. What cannot be read faithfully is a [`MeshError`] that names file, place, fault and
+//! remedy: readers never panic, and reserve no more than the file's size warrants.
+
+mod assembly;
+mod atomic;
+mod colormap;
+mod mat;
+#[cfg(test)]
+mod mutations;
+mod obj;
+mod off;
+mod ply;
+mod stl;
+mod text;
+mod tosca;
+
+use std::fs;
+use std::io::{self, Write};
+use std::path::Path;
+
+use crate::TriMesh;
+use crate::error::{Fault, MeshError};
+use crate::face_set::check_input;
+use atomic::Pending;
+
+/// A mesh file format.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Format {
+    Off,
+    Obj,
+    Ply,
+    Stl,
+    Tosca,
+    Mat,
+}
+
+impl Format {
+    fn of(path: &Path) -> Result<Self, MeshError> {
+        let extension = path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase();
+        Ok(match extension.as_str() {
+            "off" => Self::Off,
+            "obj" => Self::Obj,
+            "ply" => Self::Ply,
+            "stl" => Self::Stl,
+            "vert" | "tri" => Self::Tosca,
+            "mat" => Self::Mat,
+            _ => return Err(MeshError::UnknownFormat { path: path.to_path_buf(), extension }),
+        })
+    }
+}
+
+/// Whether a name is that of a mesh, by its extension alone.
+///
+/// `.vert` stands for the pair; its other half `.tri` is not a mesh path, so that a folder lists
+/// each shape once.
+#[must_use]
+pub fn is_mesh_path(path: &Path) -> bool {
+    let is_second_half = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("tri"));
+    Format::of(path).is_ok() && !is_second_half
+}
+
+/// Reads a mesh; of a `.vert`/`.tri` pair either name will do.
+///
+/// # Errors
+/// When the file cannot be opened or is not a mesh of at least one face, see [`Fault`] for what may
+/// be wrong with it; [`MeshError::UnknownFormat`] for a foreign extension.
+pub fn read(path: &Path) -> Result<TriMesh, MeshError> {
+    let format = Format::of(path)?;
+    if format == Format::Tosca {
+        return tosca::read(path);
+    }
+    let bytes = load(path)?;
+    let parsed = match format {
+        Format::Off => off::parse(&bytes),
+        Format::Obj => obj::parse(&bytes),
+        Format::Ply => ply::parse(&bytes),
+        Format::Stl => stl::parse(bytes),
+        Format::Mat | Format::Tosca => mat::parse(&bytes),
+    };
+    parsed.map_err(|fault| fault.in_file(path))
+}
+
+/// All bytes of a regular file.
+fn load(path: &Path) -> Result<Vec<u8>, MeshError> {
+    let cannot_read = |source| MeshError::Io { action: "read", path: path.to_path_buf(), source };
+    if !fs::metadata(path).map_err(cannot_read)?.is_file() {
+        return Err(cannot_read(io::Error::new(io::ErrorKind::InvalidInput, "not a regular file")));
+    }
+    let bytes = fs::read(path).map_err(cannot_read)?;
+    if bytes.is_empty() {
+        return Err(Fault::Empty.whole().in_file(path));
+    }
+    Ok(bytes)
+}
+
+/// Writes a mesh in the format of the extension; the file is there whole or not at all.
+///
+/// OFF, OBJ, PLY and the `.vert`/`.tri` pair (written together under either name) read back bit for
+/// bit. STL rounds coordinates to 32 bits and knows no vertex numbers.
+///
+/// # Errors
+/// When the file cannot be written, the extension is foreign or `.mat`, a coordinate is not finite
+/// or beyond what the format can hold, or a face names a vertex out of range.
+pub fn write(path: &Path, mesh: &TriMesh) -> Result<(), MeshError> {
+    let format = Format::of(path)?;
+    // What `read` would refuse to take back.
+    check_input(mesh)?;
+    match format {
+        Format::Off => write_whole(path, |out| off::write(out, mesh)),
+        Format::Obj => write_whole(path, |out| obj::write(out, mesh)),
+        Format::Ply => write_whole(path, |out| ply::write(out, mesh)),
+        Format::Stl => {
+            let triangles = stl::triangles(mesh)?;
+            write_whole(path, |out| stl::write(out, &triangles))
+        }
+        Format::Tosca => {
+            let pair = tosca::Pair::of(path);
+            let vert = Pending::write(&pair.vert, |out| tosca::write_positions(out, mesh))?;
+            let tri = Pending::write(&pair.tri, |out| tosca::write_faces(out, mesh))?;
+            vert.publish()?;
+            tri.publish()
+        }
+        Format::Mat => Err(MeshError::ReadOnlyFormat { path: path.to_path_buf(), extension: "mat" }),
+    }
+}
+
+/// Writes a mesh with a value for each vertex as PLY: the property `name` (double) and colours
+/// `red green blue` from dark at the least value to bright at the greatest, grey where the value is
+/// NaN or infinite.
+///
+/// # Errors
+/// As [`write()`]; and when `path` does not end in `.ply`, there is not one value per vertex, or PLY
+/// cannot carry `name`.
+pub fn write_scalar_field(path: &Path, mesh: &TriMesh, values: &[f64], name: &str) -> Result<(), MeshError> {
+    if Format::of(path)? != Format::Ply {
+        return Err(MeshError::ScalarFieldNotPly { path: path.to_path_buf() });
+    }
+    if values.len() != mesh.n_vertices() {
+        return Err(MeshError::FieldLength { values: values.len(), n_vertices: mesh.n_vertices() });
+    }
+    let is_word = name.starts_with(|c: char| c.is_ascii_alphabetic())
+        && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
+    if !is_word || ["x", "y", "z", "red", "green", "blue"].contains(&name) {
+        return Err(MeshError::FieldName { name: name.into() });
+    }
+    check_input(mesh)?;
+    let color = colormap::colors(values);
+    write_whole(path, |out| ply::write_with_field(out, mesh, name, |v| (values[v], color(values[v]))))
+}
+
+fn write_whole(path: &Path, content: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), MeshError> {
+    Pending::write(path, content)?.publish()
+}

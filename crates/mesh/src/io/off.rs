@@ -1,0 +1,208 @@
+//! OFF, the Object File Format of Geomview, as text.
+
+use std::io::{self, Write};
+
+use crate::error::{Fault, Located};
+use crate::{TriMesh, VertexId};
+
+use super::assembly::{check_counts, finish, push_polygon};
+use super::text::{Line, Lines, excerpt, parse_integer, parse_position};
+
+/// The fewest bytes that a vertex, `0 0 0` and a line end, and a face, `3 0 1 2` and a line end, take.
+const SHORTEST_VERTEX: usize = 6;
+const SHORTEST_FACE: usize = 8;
+
+/// Reads OFF, COFF, NOFF, STOFF and their combinations; normals, colours and texture coordinates,
+/// which follow the position of a vertex, are passed over.
+pub(super) fn parse(bytes: &[u8]) -> Result<TriMesh, Located> {
+    let mut lines = Lines::new(bytes);
+    let header = lines.next().ok_or_else(|| Fault::Empty.whole())?;
+    let counts = match after_keyword(header)? {
+        [] => lines.next().ok_or_else(|| cut_short(&lines, "the counts of vertices and faces"))?,
+        rest => Line { text: rest, ..header },
+    };
+    let (n_vertices, n_faces) = parse_counts(counts)?;
+    check_counts(n_vertices, n_faces).map_err(|fault| fault.in_line(counts.number))?;
+
+    let mut positions = Vec::with_capacity((n_vertices as usize).min(lines.remaining() / SHORTEST_VERTEX));
+    for found in 0..n_vertices {
+        let line = lines.next().ok_or_else(|| truncated(&lines, "vertices", n_vertices, found))?;
+        positions.push(parse_position(line, &mut line.tokens(), found as usize)?);
+    }
+    let mut faces = Vec::with_capacity((n_faces as usize).min(lines.remaining() / SHORTEST_FACE));
+    let mut corners = Vec::new();
+    for found in 0..n_faces {
+        let line = lines.next().ok_or_else(|| truncated(&lines, "faces", n_faces, found))?;
+        parse_corners(line, n_vertices, &mut corners)?;
+        push_polygon(&positions, &corners, &mut faces).map_err(|fault| fault.in_line(line.number))?;
+    }
+    if let Some(line) = lines.next() {
+        return Err(Fault::Leftover { items: "faces", promised: n_faces }.in_line(line.number));
+    }
+    finish(positions, faces)
+}
+
+fn cut_short(lines: &Lines<'_>, expected: &str) -> Located {
+    Fault::CutShort { expected: expected.into() }.in_line(lines.number())
+}
+
+fn truncated(lines: &Lines<'_>, items: &str, promised: u64, found: u64) -> Located {
+    Fault::Truncated { items: items.into(), promised, found }.in_line(lines.number())
+}
+
+/// What follows the keyword on the header line: nothing, or the counts, which some programs glue
+/// to it.
+fn after_keyword(header: Line<'_>) -> Result<&[u8], Located> {
+    let text = header.text;
+    let not_off = || {
+        let found = format!("it begins with `{}`", excerpt(text));
+        Fault::WrongFormat { expected: "an OFF file", found }.in_line(header.number)
+    };
+    let at = text.windows(3).take(6).position(|w| w.eq_ignore_ascii_case(b"OFF")).ok_or_else(not_off)?;
+    let (mut prefix, rest) = (&text[..at], text[at + 3..].trim_ascii());
+    for part in [&b"ST"[..], b"C", b"N"] {
+        prefix = prefix.strip_prefix(part).unwrap_or(prefix);
+    }
+    if matches!(prefix, b"4" | b"n" | b"4n") {
+        return Err(Fault::Unsupported {
+            what: "vertices of four or more dimensions".into(),
+            remedy: "project them to three and save as OFF",
+        }
+        .in_line(header.number));
+    }
+    if !prefix.is_empty() {
+        return Err(not_off());
+    }
+    if rest.starts_with(b"BINARY") {
+        return Err(Fault::Unsupported {
+            what: "a binary OFF file".into(),
+            remedy: "save it as text OFF or as binary PLY",
+        }
+        .in_line(header.number));
+    }
+    Ok(rest)
+}
+
+/// Numbers of vertices and faces; the number of edges may follow and is not used.
+fn parse_counts(line: Line<'_>) -> Result<(u64, u64), Located> {
+    let expected = || line.expected("the counts of vertices, faces and edges");
+    let counts: Option<Vec<u64>> =
+        line.tokens().take(4).map(|t| parse_integer(t).and_then(|n| u64::try_from(n).ok())).collect();
+    match *counts.ok_or_else(expected)? {
+        [vertices, faces] | [vertices, faces, _] => Ok((vertices, faces)),
+        _ => Err(expected()),
+    }
+}
+
+/// The corners of one face, into `corners`; colours may follow and are passed over.
+fn parse_corners(line: Line<'_>, n_vertices: u64, corners: &mut Vec<VertexId>) -> Result<(), Located> {
+    let expected = || line.expected("a number of corners and as many vertices");
+    let mut tokens = line.tokens();
+    let n_corners = tokens.next().and_then(parse_integer).filter(|n| *n >= 0).ok_or_else(expected)?;
+    corners.clear();
+    for _ in 0..n_corners {
+        let token = tokens.next().ok_or_else(expected)?;
+        let index = parse_integer(token).ok_or_else(expected)?;
+        if !(0..n_vertices as i64).contains(&index) {
+            let last = n_vertices.saturating_sub(1);
+            return Err(Fault::IndexOutOfRange { index: excerpt(token), first: 0, last }.in_line(line.number));
+        }
+        corners.push(VertexId(index as u32));
+    }
+    Ok(())
+}
+
+/// Writes OFF; coordinates are read back bit for bit.
+pub(super) fn write(out: &mut dyn Write, mesh: &TriMesh) -> io::Result<()> {
+    writeln!(out, "OFF\n{} {} 0", mesh.n_vertices(), mesh.n_faces())?;
+    for p in &mesh.positions {
+        writeln!(out, "{:?} {:?} {:?}", p.x, p.y, p.z)?;
+    }
+    for [a, b, c] in &mesh.faces {
+        writeln!(out, "3 {a} {b} {c}")?;
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::error::Place;
+
+    const SQUARE: &str = "4 1 4\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n";
+
+    fn fault(text: &str) -> (Place, Fault) {
+        let Located { place, fault } = parse(text.as_bytes()).unwrap_err();
+        (place, fault)
+    }
+
+    #[test]
+    fn headers_in_every_dialect() {
+        let expected = parse(format!("OFF\n{SQUARE}").as_bytes()).unwrap();
+        assert_eq!(expected.faces.len(), 2);
+        for header in ["OFF ", "OFF", "off\n", "# c\nOFF # c\n\n", "\u{feff}OFF\r\n"] {
+            assert_eq!(parse(format!("{header}{SQUARE}").as_bytes()).unwrap(), expected, "{header:?}");
+        }
+        assert_eq!(parse(format!("OFF\n{}", SQUARE.replace('\n', "\r\n")).as_bytes()).unwrap(), expected);
+        let two_counts = SQUARE.replace("4 1 4\n", "4 1\n");
+        assert_eq!(parse(format!("OFF\n{two_counts}").as_bytes()).unwrap(), expected);
+    }
+
+    #[test]
+    fn what_follows_position_and_corners_is_passed_over() {
+        let plain = parse(b"OFF 3 1 3 \n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n").unwrap();
+        for text in [
+            "COFF\n3 1 0\n0 0 0 255 0 0 255\n1 0 0 0 0 0 255\n0 1 0 9 9 9 9\n3 0 1 2 0.5 0.5 0.5\n",
+            "NOFF\n3 1 0\n0 0 0 0 0 1\n1 0 0 0 0 1\n0 1 0 0 0 1\n3 0 1 2\n",
+            "STCNOFF\n3 1 0\n0 0 0 0 0 1 9 9 9 9 .1 .2\n1 0 0 0 0 1\n0 1 0 0 0 1\n3 0 1 2 7\n",
+        ] {
+            assert_eq!(parse(text.as_bytes()).unwrap(), plain);
+        }
+    }
+
+    #[test]
+    fn faults_name_the_line() {
+        let truncated =
+            |items: &str, promised, found| Fault::Truncated { items: items.into(), promised, found };
+        assert_eq!(fault("OFF\n4 1 0\n0 0 0\n"), (Place::Line(3), truncated("vertices", 4, 1)));
+        assert_eq!(fault("OFF\n1 2 0\n0 0 0\n3 0 0 0\n"), (Place::Line(4), truncated("faces", 2, 1)));
+        let index = Fault::IndexOutOfRange { index: "3".into(), first: 0, last: 2 };
+        assert_eq!(fault("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n"), (Place::Line(6), index));
+        assert!(matches!(
+            fault("OFF\n1 1 0\n0 nan 0\n"),
+            (Place::Line(3), Fault::NonFinite { vertex: 0, value }) if value.is_nan()
+        ));
+        assert!(matches!(fault("OFF\n1 1 0\n0 inf 0\n").1, Fault::NonFinite { .. }));
+        assert_eq!(
+            fault("OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n3 0 1 2\n"),
+            (Place::Line(7), Fault::Leftover { items: "faces", promised: 1 })
+        );
+        assert!(matches!(fault("OFF\n3 1 0\n0 0\n"), (Place::Line(3), Fault::Syntax { .. })));
+        assert!(matches!(fault("OFF\nthree\n"), (Place::Line(2), Fault::Syntax { .. })));
+        assert!(matches!(fault("OFF\n-3 1 0\n"), (Place::Line(2), Fault::Syntax { .. })));
+        assert!(matches!(fault("OFF\n"), (Place::Line(1), Fault::CutShort { .. })));
+        assert_eq!(fault("OFF 1 0 0\n0 0 0\n"), (Place::File, Fault::NoFaces { n_vertices: 1 }));
+        assert_eq!(
+            fault("OFF 2 1 0\n0 0 0\n1 0 0\n2 0 1\n"),
+            (Place::Line(4), Fault::TooFewCorners { corners: 2 })
+        );
+        assert_eq!(fault(" \n# nothing\n"), (Place::File, Fault::Empty));
+    }
+
+    #[test]
+    fn other_formats_are_not_taken_for_off() {
+        for text in ["ply\nformat", "v 0 0 0\n", "\u{0}\u{1}\u{2}", "XOFF\n"] {
+            assert!(matches!(fault(text), (Place::Line(1), Fault::WrongFormat { .. })), "{text:?}");
+        }
+        for text in ["4OFF\n", "nOFF 3\n", "OFF BINARY\n"] {
+            assert!(matches!(fault(text), (Place::Line(1), Fault::Unsupported { .. })), "{text:?}");
+        }
+    }
+
+    #[test]
+    fn a_bold_promise_allocates_nothing() {
+        let text = "OFF\n4000000000 1000000000 0\n0 0 0\n";
+        assert!(matches!(fault(text).1, Fault::Truncated { promised: 4_000_000_000, found: 1, .. }));
+        assert!(matches!(fault("OFF\n5000000000 1 0\n").1, Fault::TooLarge { .. }));
+    }
+}

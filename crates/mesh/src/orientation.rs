@@ -1,0 +1,176 @@
+//! Which way round the faces run.
+
+use crate::{CornerId, Topology, TriMesh, VertexId};
+
+/// The faces of a mesh split into patches joined by manifold edges, and which faces of each patch
+/// run against the others.
+#[derive(Debug, Clone)]
+pub(crate) struct Orientation {
+    /// The patch of every face.
+    pub(crate) patch: Vec<u32>,
+    /// Faces to turn over so that a patch runs one way; the fewest that do it.
+    pub(crate) turned: Vec<bool>,
+    /// Per patch: whether turning them over does make it run one way (a Moebius strip never does).
+    pub(crate) orientable: Vec<bool>,
+    /// Per patch: whether every edge of every face joins exactly two faces.
+    pub(crate) closed: Vec<bool>,
+}
+
+/// Whether the two faces that meet in the edge opposite `corner` run along it in the same
+/// direction, which is the wrong way.
+pub(crate) fn runs_against(topology: &Topology, corner: CornerId, twin: CornerId) -> bool {
+    start_of_opposite_edge(topology, corner) == start_of_opposite_edge(topology, twin)
+}
+
+/// The vertex from which a face runs along the edge opposite one of its corners.
+fn start_of_opposite_edge(topology: &Topology, corner: CornerId) -> VertexId {
+    let next = CornerId(corner.face().0 * 3 + (corner.slot() as u32 + 1) % 3);
+    topology.corner_vertex(next)
+}
+
+impl Orientation {
+    /// Spreads the orientation of the first face of every patch, in linear time.
+    pub(crate) fn of(topology: &Topology) -> Self {
+        const UNSEEN: u32 = u32::MAX;
+        let n_faces = topology.n_faces();
+        let mut patch = vec![UNSEEN; n_faces];
+        let mut turned = vec![false; n_faces];
+        let (mut orientable, mut closed) = (Vec::new(), Vec::new());
+        let mut members = Vec::new();
+        for seed in 0..n_faces {
+            if patch[seed] != UNSEEN {
+                continue;
+            }
+            let number = orientable.len() as u32;
+            let (mut one_way, mut sealed) = (true, true);
+            patch[seed] = number;
+            members.clear();
+            members.push(seed);
+            let mut at = 0;
+            while let Some(&face) = members.get(at) {
+                at += 1;
+                for corner in (0..3).map(|slot| CornerId((3 * face + slot) as u32)) {
+                    let Some(twin) = topology.across(corner) else {
+                        sealed = false;
+                        continue;
+                    };
+                    let neighbor = twin.face().index();
+                    let turn = turned[face] ^ runs_against(topology, corner, twin);
+                    if patch[neighbor] == UNSEEN {
+                        patch[neighbor] = number;
+                        turned[neighbor] = turn;
+                        members.push(neighbor);
+                    } else if turned[neighbor] != turn {
+                        one_way = false;
+                    }
+                }
+            }
+            if 2 * members.iter().filter(|&&f| turned[f]).count() > members.len() {
+                members.iter().for_each(|&f| turned[f] = !turned[f]);
+            }
+            orientable.push(one_way);
+            closed.push(sealed);
+        }
+        Self { patch, turned, orientable, closed }
+    }
+}
+
+/// Turns faces over so that neighbours run the same way round; returns how many were turned.
+///
+/// Patches, faces joined by edges of exactly two faces, are treated one by one: a closed patch ends
+/// up facing outward (positive signed volume), any other keeps the orientation of the majority of
+/// its faces. Non-manifold edges separate patches; a patch that cannot run one way, such as a
+/// Moebius strip, keeps as many faces as a spanning tree allows. Faces that name a vertex twice are
+/// left alone. Linear time.
+pub fn orient_consistently(mesh: &mut TriMesh) -> usize {
+    let proper: Vec<usize> = (0..mesh.n_faces())
+        .filter(|&f| {
+            let [a, b, c] = mesh.faces[f];
+            a != b && b != c && c != a
+        })
+        .collect();
+    let topology = Topology::new(mesh.n_vertices(), proper.iter().map(|&f| mesh.faces[f]).collect());
+    let Orientation { patch, mut turned, orientable, closed } = Orientation::of(&topology);
+
+    // Six times the signed volume of every patch, seen from its first vertex to keep the terms small.
+    let mut volume = vec![0.0; closed.len()];
+    let mut origin = vec![None; closed.len()];
+    for (i, &f) in proper.iter().enumerate() {
+        let [a, b, c] = mesh.triangle(f);
+        let from = *origin[patch[i] as usize].get_or_insert(a);
+        let term = (a - from).dot(&(b - from).cross(&(c - from)));
+        volume[patch[i] as usize] += if turned[i] { -term } else { term };
+    }
+    let inside_out = |p: usize| closed[p] && orientable[p] && volume[p] < 0.0;
+    for (turn, &p) in turned.iter_mut().zip(&patch) {
+        *turn ^= inside_out(p as usize);
+    }
+    let to_turn = proper.iter().zip(&turned).filter(|(_, turn)| **turn);
+    to_turn.fold(0, |count, (&f, _)| {
+        mesh.faces[f].swap(1, 2);
+        count + 1
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shapes;
+
+    fn signed_volume(mesh: &TriMesh) -> f64 {
+        (0..mesh.n_faces())
+            .map(|f| {
+                let [a, b, c] = mesh.triangle(f);
+                a.coords.dot(&b.coords.cross(&c.coords)) / 6.0
+            })
+            .sum()
+    }
+
+    #[test]
+    fn a_closed_surface_turns_outward_whatever_was_flipped() {
+        let sphere = shapes::icosphere(2);
+        for keep_every in [1, 2, 3, 7] {
+            let mut mixed = sphere.clone();
+            for face in mixed.faces.iter_mut().step_by(keep_every) {
+                face.swap(0, 1);
+            }
+            let flipped = sphere.n_faces().div_ceil(keep_every);
+            assert_eq!(orient_consistently(&mut mixed), flipped);
+            assert!((signed_volume(&mixed) - signed_volume(&sphere)).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn the_majority_of_an_open_patch_stays() {
+        let sheet = shapes::grid(5, 5, 1.0);
+        let mut mixed = sheet.clone();
+        for f in [0, 3, 17] {
+            mixed.faces[f].swap(1, 2);
+        }
+        assert_eq!(orient_consistently(&mut mixed), 3);
+        assert_eq!(mixed, sheet);
+        assert_eq!(orient_consistently(&mut mixed), 0);
+    }
+
+    #[test]
+    fn patches_are_oriented_each_for_itself() {
+        let mut inward = shapes::torus(8, 6, 2.0, 0.5);
+        inward.faces.iter_mut().for_each(|f| f.swap(1, 2));
+        let n_inward = inward.n_faces();
+        let mut both = shapes::disjoint(&[shapes::icosphere(1), inward]);
+        assert_eq!(orient_consistently(&mut both), n_inward);
+    }
+
+    #[test]
+    fn a_moebius_strip_is_not_orientable_and_does_no_harm() {
+        // Three quads around, the last glued with a twist.
+        let ids = [[0, 1, 2], [1, 3, 2], [2, 3, 4], [3, 5, 4], [4, 5, 1], [5, 0, 1]];
+        let faces: Vec<_> = ids.iter().map(|f| f.map(VertexId)).collect();
+        let topology = Topology::new(6, faces.clone());
+        assert_eq!(Orientation::of(&topology).orientable, [false]);
+        let positions = (0..6).map(|i| nalgebra::Point3::new(f64::from(i), f64::from(i * i), 0.0)).collect();
+        let mut strip = TriMesh { positions, faces };
+        orient_consistently(&mut strip);
+        assert_eq!(strip.n_faces(), 6);
+    }
+}

@@ -1,0 +1,117 @@
+//! Flat sheets, and sheets folded along a mesh line.
+
+use nalgebra::Point3;
+
+use crate::{TriMesh, VertexId};
+
+/// A flat sheet of `nx` x `ny` vertices, `step` apart, in the plane z = 0 with its first vertex in
+/// the origin; vertex `(i, j)` has the index `j * nx + i` and all diagonals run the same way.
+///
+/// # Panics
+/// When `nx` or `ny` is below two.
+#[must_use]
+pub fn grid(nx: usize, ny: usize, step: f64) -> TriMesh {
+    sheared_grid(nx, ny, step, 0.0)
+}
+
+/// A [`grid`] whose rows are pushed along x by `shear` steps each: at 1 and more every triangle is
+/// obtuse, at `-0.5` (with the diagonals as they are) nearly equilateral.
+///
+/// # Panics
+/// When `nx` or `ny` is below two.
+#[must_use]
+pub fn sheared_grid(nx: usize, ny: usize, step: f64, shear: f64) -> TriMesh {
+    assert!(nx >= 2 && ny >= 2, "a grid needs two vertices a side, not {nx} x {ny}");
+    let positions = (0..nx * ny)
+        .map(|v| {
+            let (x, y) = ((v % nx) as f64, (v / nx) as f64);
+            Point3::new(step * (x + shear * y), step * y, 0.0)
+        })
+        .collect();
+    let mut faces = Vec::with_capacity(2 * (nx - 1) * (ny - 1));
+    for (i, j) in (0..ny - 1).flat_map(|j| (0..nx - 1).map(move |i| (i, j))) {
+        let [a, b, c, d] = [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)].map(|(i, j)| j * nx + i);
+        faces.push([a, b, c].map(VertexId::from));
+        faces.push([a, c, d].map(VertexId::from));
+    }
+    TriMesh { positions, faces }
+}
+
+/// A [`grid`] whose inner vertices are moved within the plane by up to `jitter` steps along each
+/// axis, the same way for the same `seed`; below 0.25 no triangle turns over.
+///
+/// # Panics
+/// When `nx` or `ny` is below two.
+#[must_use]
+pub fn jittered_grid(nx: usize, ny: usize, step: f64, jitter: f64, seed: u64) -> TriMesh {
+    let mut mesh = grid(nx, ny, step);
+    let mut state = seed;
+    for (j, i) in (1..ny - 1).flat_map(|j| (1..nx - 1).map(move |i| (j, i))) {
+        let p = &mut mesh.positions[j * nx + i];
+        p.x += step * jitter * uniform(&mut state);
+        p.y += step * jitter * uniform(&mut state);
+    }
+    mesh
+}
+
+/// The next number in [-1, 1) of a splitmix64 stream.
+fn uniform(state: &mut u64) -> f64 {
+    *state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
+    let mut z = *state;
+    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+}
+
+/// Turns everything beyond the line `x = crease, z = 0` around that line by `angle` radians.
+///
+/// An isometry of a sheet in the plane z = 0 whose edges do not cross the line.
+#[must_use]
+pub fn fold(sheet: &TriMesh, crease: f64, angle: f64) -> TriMesh {
+    let mut folded = sheet.clone();
+    let (sin, cos) = angle.sin_cos();
+    for p in folded.positions.iter_mut().filter(|p| p.x > crease) {
+        let (x, z) = (p.x - crease, p.z);
+        p.x = crease + cos * x - sin * z;
+        p.z = sin * x + cos * z;
+    }
+    folded
+}
+
+/// A [`grid`] folded by `angle` radians along its column `column` of vertices.
+///
+/// # Panics
+/// When `nx` or `ny` is below two.
+#[must_use]
+pub fn folded_sheet(nx: usize, ny: usize, step: f64, column: usize, angle: f64) -> TriMesh {
+    fold(&grid(nx, ny, step), step * column as f64, angle)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::IntrinsicMesh;
+
+    #[test]
+    fn flat_sheets_have_the_area_of_their_outline() {
+        assert_eq!(grid(4, 3, 2.0).area(), 24.0);
+        assert!((sheared_grid(5, 6, 1.0, 1.7).area() - 20.0).abs() < 1e-12);
+        let jittered = jittered_grid(9, 7, 0.5, 0.24, 3);
+        assert!((jittered.area() - 12.0).abs() < 1e-12);
+        assert_ne!(jittered, grid(9, 7, 0.5));
+        assert_eq!(jittered, jittered_grid(9, 7, 0.5, 0.24, 3));
+    }
+
+    #[test]
+    fn folding_keeps_every_edge_length() {
+        let flat = IntrinsicMesh::from_mesh(&grid(9, 4, 0.3));
+        for angle in [0.1, 1.0, 2.5, -3.0] {
+            let sheet = folded_sheet(9, 4, 0.3, 4, angle);
+            assert!(sheet.positions.iter().any(|p| p.z.abs() > 0.1));
+            let folded = IntrinsicMesh::from_mesh(&sheet);
+            for (a, b) in flat.edge_lengths().iter().zip(folded.edge_lengths()) {
+                assert!((a - b).abs() < 1e-14);
+            }
+        }
+    }
+}

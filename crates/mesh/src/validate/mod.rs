@@ -1,0 +1,316 @@
+//! What there is to know of a mesh, and what is wrong with it.
+
+mod fans;
+
+use serde::Serialize;
+
+use crate::components::components_of_faces;
+use crate::face_set::{names_twice, repeats};
+use crate::orientation::{Orientation, runs_against};
+use crate::position_key::position_key;
+use crate::{EdgeId, Topology, TriMesh, VertexId};
+use fans::Fans;
+
+/// Facts about a mesh, as [`validate`] finds them.
+///
+/// Whatever concerns connectivity (from `n_edges` to `genus`) is counted on the faces that are left
+/// once degenerate and duplicate ones are set aside, since [`repair()`](crate::repair()) removes
+/// those in any case and they would be counted as non-manifold edges again.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct MeshReport {
+    /// Vertices in the file, used by a face or not.
+    pub n_vertices: usize,
+    /// Faces in the file.
+    pub n_faces: usize,
+    /// Faces that name a vertex twice.
+    pub degenerate_faces: usize,
+    /// Faces with the same three vertices as an earlier one.
+    pub duplicate_faces: usize,
+    /// Faces of three different vertices but no area to speak of: their height is below 1e-12 of
+    /// their longest side. They are kept by repair unless two corners are in one place.
+    pub zero_area_faces: usize,
+    /// Vertices that no face names.
+    pub unreferenced_vertices: usize,
+    /// Vertices in exactly the place of an earlier one.
+    pub duplicate_vertices: usize,
+
+    /// Undirected edges.
+    pub n_edges: usize,
+    /// Connected components.
+    pub n_components: usize,
+    /// Number of faces of each component, in the order of their lowest vertices.
+    pub component_faces: Vec<usize>,
+    /// Edges with one face.
+    pub n_boundary_edges: usize,
+    /// Closed chains of boundary edges, or open ones where a boundary runs into a non-manifold
+    /// edge.
+    pub n_boundary_loops: usize,
+    /// Edges with three faces or more.
+    pub non_manifold_edges: usize,
+    /// Vertices whose faces, joined across the edges they share there, form more than one fan.
+    pub non_manifold_vertices: usize,
+    /// Edges whose two faces run along them in the same direction: one of the two is flipped.
+    pub inconsistent_edges: usize,
+    /// The fewest faces to turn over so that neighbours across manifold edges agree.
+    pub flipped_faces: usize,
+    /// Whether turning faces over can make all neighbours across manifold edges agree.
+    pub orientable: bool,
+    /// Vertices that a face names, less edges, plus faces.
+    pub euler_characteristic: i64,
+    /// Number of handles; only for a closed, connected, orientable manifold.
+    pub genus: Option<u64>,
+
+    /// Faces with an angle above 90 degrees as a share of all that are not degenerate, 0 to 1.
+    pub obtuse_share: f64,
+    /// Shortest edge, in mesh units; zero without edges.
+    pub min_edge_length: f64,
+    /// Mean over all edges, in mesh units; zero without edges.
+    pub mean_edge_length: f64,
+    /// Longest edge, in mesh units; zero without edges.
+    pub max_edge_length: f64,
+    /// Sum of the areas of all faces, duplicates left out, in squared mesh units.
+    pub area: f64,
+    /// Diagonal of the axis-aligned bounding box of all vertices, in mesh units.
+    pub bounding_box_diagonal: f64,
+}
+
+impl MeshReport {
+    /// Whether the mesh is a connected manifold, with or without boundary, on which nothing is to
+    /// be mended.
+    #[must_use]
+    pub fn is_clean(&self) -> bool {
+        self.n_components == 1
+            && [
+                self.degenerate_faces,
+                self.duplicate_faces,
+                self.zero_area_faces,
+                self.unreferenced_vertices,
+                self.duplicate_vertices,
+                self.non_manifold_edges,
+                self.non_manifold_vertices,
+                self.inconsistent_edges,
+            ]
+            .iter()
+            .all(|&count| count == 0)
+    }
+}
+
+/// Inspects any mesh whose faces are in range, degenerate or not; changes nothing.
+///
+/// Takes time linear in the size of the mesh but for one sort of the vertices.
+///
+/// # Panics
+/// When a face names a vertex out of range; no reader lets one through.
+#[must_use]
+pub fn validate(mesh: &TriMesh) -> MeshReport {
+    let n_vertices = mesh.n_vertices();
+    let mut faces: Vec<[VertexId; 3]> = mesh.faces.iter().copied().filter(|&f| !names_twice(f)).collect();
+    let degenerate_faces = mesh.n_faces() - faces.len();
+    let mut repeated = repeats(n_vertices, &faces).into_iter();
+    faces.retain(|_| !repeated.next().unwrap_or(false));
+    let duplicate_faces = mesh.n_faces() - degenerate_faces - faces.len();
+
+    let mut referenced = vec![false; n_vertices];
+    mesh.faces.iter().flatten().for_each(|v| referenced[v.index()] = true);
+    let components = components_of_faces(n_vertices, &faces);
+    let mut component_faces = vec![0; components.count];
+    faces.iter().for_each(|f| component_faces[components.of(f[0])] += 1);
+    let n_used = components.labels.iter().flatten().count();
+
+    let n_faces = faces.len();
+    let shape = FaceShapes::of(&mesh.positions, &faces);
+    let topology = Topology::new(n_vertices, faces);
+    let edges = EdgeCounts::of(&topology);
+    let fans = Fans::of(&topology);
+    let orientation = Orientation::of(&topology);
+    let orientable = orientation.orientable.iter().all(|&o| o);
+    let euler_characteristic = n_used as i64 - topology.n_edges() as i64 + n_faces as i64;
+    let is_closed_manifold = components.count == 1
+        && orientable
+        && edges.boundary + edges.non_manifold + fans.non_manifold_vertices == 0;
+    let lengths = Lengths::of(mesh, &topology);
+
+    MeshReport {
+        n_vertices,
+        n_faces: mesh.n_faces(),
+        degenerate_faces,
+        duplicate_faces,
+        zero_area_faces: shape.zero_area,
+        unreferenced_vertices: referenced.iter().filter(|&&r| !r).count(),
+        duplicate_vertices: duplicate_vertices(mesh),
+        n_edges: topology.n_edges(),
+        n_components: components.count,
+        component_faces,
+        n_boundary_edges: edges.boundary,
+        n_boundary_loops: fans.boundary_loops,
+        non_manifold_edges: edges.non_manifold,
+        non_manifold_vertices: fans.non_manifold_vertices,
+        inconsistent_edges: edges.inconsistent,
+        flipped_faces: orientation.turned.iter().filter(|&&t| t).count(),
+        orientable,
+        euler_characteristic,
+        genus: is_closed_manifold.then_some((2 - euler_characteristic).unsigned_abs() / 2),
+        obtuse_share: if n_faces == 0 { 0.0 } else { shape.obtuse as f64 / n_faces as f64 },
+        min_edge_length: lengths.min,
+        mean_edge_length: lengths.mean,
+        max_edge_length: lengths.max,
+        area: shape.area,
+        bounding_box_diagonal: mesh.bounds().map_or(0.0, |[lo, hi]| (hi - lo).norm()),
+    }
+}
+
+fn duplicate_vertices(mesh: &TriMesh) -> usize {
+    let mut keys: Vec<[u64; 3]> = mesh.positions.iter().map(position_key).collect();
+    keys.sort_unstable();
+    keys.windows(2).filter(|pair| pair[0] == pair[1]).count()
+}
+
+struct EdgeCounts {
+    boundary: usize,
+    non_manifold: usize,
+    inconsistent: usize,
+}
+
+impl EdgeCounts {
+    fn of(topology: &Topology) -> Self {
+        let mut counts = Self { boundary: 0, non_manifold: 0, inconsistent: 0 };
+        for edge in (0..topology.n_edges()).map(EdgeId::from) {
+            match *topology.edge_corners(edge) {
+                [_] => counts.boundary += 1,
+                [a, b] => counts.inconsistent += usize::from(runs_against(topology, a, b)),
+                _ => counts.non_manifold += 1,
+            }
+        }
+        counts
+    }
+}
+
+struct FaceShapes {
+    obtuse: usize,
+    zero_area: usize,
+    area: f64,
+}
+
+impl FaceShapes {
+    fn of(positions: &[nalgebra::Point3<f64>], faces: &[[VertexId; 3]]) -> Self {
+        /// Height over longest side below which a face counts as flat: some thousand roundings.
+        const FLAT: f64 = 1e-12;
+        let mut shapes = Self { obtuse: 0, zero_area: 0, area: 0.0 };
+        for face in faces {
+            let [a, b, c] = face.map(|v| positions[v.index()]);
+            let sides = [b - a, c - b, a - c];
+            let twice_area = sides[0].cross(&sides[1]).norm();
+            let longest = sides.iter().fold(0.0, |longest, s| f64::max(longest, s.norm_squared()));
+            // The sides run around, so those that meet in an obtuse corner have a positive product.
+            shapes.obtuse += usize::from((0..3).any(|i| sides[i].dot(&sides[(i + 1) % 3]) > 0.0));
+            shapes.zero_area += usize::from(twice_area <= FLAT * longest);
+            shapes.area += 0.5 * twice_area;
+        }
+        shapes
+    }
+}
+
+struct Lengths {
+    min: f64,
+    mean: f64,
+    max: f64,
+}
+
+impl Lengths {
+    fn of(mesh: &TriMesh, topology: &Topology) -> Self {
+        let (mut min, mut max, mut sum) = (f64::INFINITY, 0.0, 0.0);
+        for [a, b] in topology.edges() {
+            let length = (mesh.positions[a.index()] - mesh.positions[b.index()]).norm();
+            (min, max, sum) = (length.min(min), length.max(max), sum + length);
+        }
+        match topology.n_edges() {
+            0 => Self { min: 0.0, mean: 0.0, max: 0.0 },
+            n => Self { min, mean: sum / n as f64, max },
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::shapes;
+
+    fn from(points: usize, faces: &[[u32; 3]]) -> TriMesh {
+        let place = |i: usize| nalgebra::Point3::new(i as f64, (i * i % 7) as f64, (i * i * i % 11) as f64);
+        TriMesh {
+            positions: (0..points).map(place).collect(),
+            faces: faces.iter().map(|f| f.map(VertexId)).collect(),
+        }
+    }
+
+    #[test]
+    fn a_sheet_is_measured() {
+        let report = validate(&shapes::grid(4, 3, 2.0));
+        assert!(report.is_clean());
+        assert_eq!((report.n_vertices, report.n_faces, report.n_edges), (12, 12, 23));
+        assert_eq!((report.n_boundary_edges, report.n_boundary_loops), (10, 1));
+        assert_eq!((report.euler_characteristic, report.genus), (1, None));
+        assert_eq!((report.area, report.obtuse_share), (24.0, 0.0));
+        assert_eq!((report.min_edge_length, report.max_edge_length), (2.0, 8f64.sqrt()));
+        assert!((report.bounding_box_diagonal - 52f64.sqrt()).abs() < 1e-12);
+        assert_eq!(validate(&shapes::sheared_grid(4, 3, 1.0, 1.5)).obtuse_share, 1.0);
+    }
+
+    #[test]
+    fn every_fault_is_counted_once() {
+        let dirty = from(9, &[[0, 1, 2], [2, 1, 0], [3, 3, 4], [1, 0, 5], [0, 1, 6], [5, 5, 5]]);
+        let report = validate(&dirty);
+        assert_eq!((report.degenerate_faces, report.duplicate_faces), (2, 1));
+        assert_eq!((report.non_manifold_edges, report.n_boundary_edges), (1, 6));
+        assert_eq!((report.unreferenced_vertices, report.n_components), (2, 1));
+        assert_eq!(report.component_faces, [3]);
+        assert_eq!((report.non_manifold_vertices, report.genus), (0, None));
+        assert!(!report.is_clean());
+    }
+
+    #[test]
+    fn two_cones_that_share_their_tip_are_not_manifold_there() {
+        let report = validate(&from(7, &[[0, 1, 2], [0, 2, 3], [0, 4, 5], [0, 5, 6]]));
+        assert_eq!((report.non_manifold_vertices, report.non_manifold_edges), (1, 0));
+        assert_eq!((report.n_components, report.n_boundary_loops), (1, 2));
+    }
+
+    #[test]
+    fn flipped_faces_show_in_edges_and_faces() {
+        let mut sphere = shapes::icosphere(2);
+        sphere.faces[7].swap(0, 1);
+        let report = validate(&sphere);
+        assert_eq!((report.inconsistent_edges, report.flipped_faces, report.orientable), (3, 1, true));
+        assert_eq!(report.genus, Some(0));
+    }
+
+    #[test]
+    fn holes_are_counted_by_their_rims() {
+        let mut torus = shapes::torus(20, 12, 2.0, 0.5);
+        torus.faces.remove(300);
+        torus.faces.remove(100);
+        torus.faces.remove(0);
+        let report = validate(&torus);
+        assert_eq!((report.n_boundary_edges, report.n_boundary_loops), (9, 3));
+        assert_eq!((report.euler_characteristic, report.genus), (-3, None));
+    }
+
+    #[test]
+    fn coincident_vertices_and_flat_faces_are_told_apart_from_degenerate_ones() {
+        let mut mesh = from(6, &[[0, 1, 2], [3, 4, 5]]);
+        mesh.positions[5] = nalgebra::center(&mesh.positions[3], &mesh.positions[4]);
+        mesh.positions[1] = mesh.positions[4];
+        let report = validate(&mesh);
+        assert_eq!((report.zero_area_faces, report.degenerate_faces), (1, 0));
+        assert_eq!(report.duplicate_vertices, 1);
+    }
+
+    #[test]
+    fn meshes_without_faces_or_vertices_have_a_report_too() {
+        for mesh in [TriMesh::default(), from(3, &[]), from(2, &[[0, 0, 1]])] {
+            let report = validate(&mesh);
+            assert_eq!((report.n_components, report.n_edges, report.mean_edge_length), (0, 0, 0.0));
+            assert!(serde_json::to_string(&report).unwrap().contains("\"genus\":null"));
+        }
+    }
+}
