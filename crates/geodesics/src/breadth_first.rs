@@ -2,10 +2,11 @@
 
 use std::collections::VecDeque;
 
-use mesh::{IntrinsicMesh, VertexId};
+use mesh::IntrinsicMesh;
 
+use crate::Source;
 use crate::graph::EdgeGraph;
-use crate::solver::{DistanceSolver, Pool};
+use crate::solver::{DistanceSolver, Pool, within};
 
 /// Number of edges between vertices times the mean edge length: the baseline of Civril et al. that
 /// the paper calls BFS.
@@ -32,13 +33,19 @@ impl DistanceSolver for BreadthFirst {
         self.graph.n_vertices()
     }
 
-    fn distances_into(&self, source: VertexId, out: &mut [f64]) {
+    fn solve_into(&self, sources: &[Source], max_distance: f64, out: &mut [f64]) {
         assert_eq!(out.len(), self.n_vertices(), "one distance per vertex");
         out.fill(f64::INFINITY);
-        out[source.index()] = 0.0;
         self.scratch.with(|queue| {
             queue.clear();
-            queue.push_back(source.0);
+            // A point on an edge or a face is at its nearest vertex, no hops away.
+            for source in sources {
+                let nearest = source.reach().iter().min_by(|a, b| a.1.total_cmp(&b.1));
+                if let Some((vertex, _)) = nearest {
+                    out[vertex.index()] = 0.0;
+                    queue.push_back(vertex.0);
+                }
+            }
             while let Some(vertex) = queue.pop_front() {
                 let hops = out[vertex as usize] + 1.0;
                 for &(target, _) in self.graph.neighbours(vertex) {
@@ -49,6 +56,6 @@ impl DistanceSolver for BreadthFirst {
                 }
             }
         });
-        out.iter_mut().for_each(|distance| *distance *= self.hop);
+        out.iter_mut().for_each(|distance| *distance = within(*distance * self.hop, max_distance));
     }
 }

@@ -1,10 +1,11 @@
 //! Distances along edges.
 
-use mesh::{IntrinsicMesh, VertexId};
+use mesh::IntrinsicMesh;
 
+use crate::Source;
 use crate::graph::EdgeGraph;
 use crate::heap::Front;
-use crate::solver::{DistanceSolver, Pool};
+use crate::solver::{DistanceSolver, Pool, within};
 
 /// Lengths of shortest paths along edges: an upper bound of the geodesic distance that does not
 /// converge to it under refinement.
@@ -29,19 +30,23 @@ impl DistanceSolver for Dijkstra {
         self.graph.n_vertices()
     }
 
-    fn distances_into(&self, source: VertexId, out: &mut [f64]) {
+    fn solve_into(&self, sources: &[Source], max_distance: f64, out: &mut [f64]) {
         assert_eq!(out.len(), self.n_vertices(), "one distance per vertex");
         self.scratch.with(|front| {
             front.reset(out.len());
-            front.relax(source.0, 0.0);
+            for (vertex, distance) in sources.iter().flat_map(Source::reach) {
+                front.relax(vertex.0, *distance);
+            }
             while let Some((distance, vertex)) = front.pop() {
-                out[vertex as usize] = distance;
+                if distance > max_distance {
+                    break;
+                }
                 for &(target, length) in self.graph.neighbours(vertex) {
                     front.relax(target, distance + length);
                 }
             }
             for (v, distance) in out.iter_mut().enumerate() {
-                *distance = front.distance(v as u32);
+                *distance = within(front.distance(v as u32), max_distance);
             }
         });
     }

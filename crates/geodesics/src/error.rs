@@ -26,6 +26,12 @@ pub enum GeodesicError {
         /// Number of vertices.
         n_vertices: usize,
     },
+    /// A source that is not on the surface.
+    #[error("no such point on the surface: {reason}")]
+    BadPoint {
+        /// What is wrong with it.
+        reason: String,
+    },
     /// A sampling without samples.
     #[error("at least 1 sample is needed, got 0")]
     NoSamples,

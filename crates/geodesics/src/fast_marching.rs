@@ -1,9 +1,10 @@
 //! Fast marching on triangles.
 
-use mesh::{IntrinsicMesh, VertexId};
+use mesh::IntrinsicMesh;
 
+use crate::Source;
 use crate::heap::Front;
-use crate::solver::{DistanceSolver, Pool};
+use crate::solver::{DistanceSolver, Pool, within};
 use crate::update::Corner;
 use crate::wedges::{CornerReport, ObtuseTreatment, Wedges};
 
@@ -73,8 +74,11 @@ impl FastMarching {
         self.report
     }
 
-    fn march(&self, front: &mut Front, solve: impl Fn(Corner, f64, f64) -> f64) {
+    fn march(&self, front: &mut Front, max_distance: f64, solve: impl Fn(Corner, f64, f64) -> f64) {
         while let Some((distance, vertex)) = front.pop() {
+            if distance > max_distance {
+                break;
+            }
             for wedge in self.wedges.of(vertex) {
                 let known = front.distance(wedge.target);
                 let at_other = front.distance(wedge.other);
@@ -98,17 +102,21 @@ impl DistanceSolver for FastMarching {
         self.wedges.order.len()
     }
 
-    fn distances_into(&self, source: VertexId, out: &mut [f64]) {
+    fn solve_into(&self, sources: &[Source], max_distance: f64, out: &mut [f64]) {
         assert_eq!(out.len(), self.n_vertices(), "one distance per vertex");
         self.scratch.with(|front| {
             front.reset(out.len());
-            front.relax(self.wedges.rank[source.index()], 0.0);
+            for (vertex, distance) in sources.iter().flat_map(Source::reach) {
+                front.relax(self.wedges.rank[vertex.index()], *distance);
+            }
             match self.update {
-                Update::PointSource => self.march(front, |corner, a, b| corner.point_source(a, b)),
-                Update::Planar => self.march(front, |corner, a, b| corner.planar(a, b)),
+                Update::PointSource => {
+                    self.march(front, max_distance, |corner, a, b| corner.point_source(a, b));
+                }
+                Update::Planar => self.march(front, max_distance, |corner, a, b| corner.planar(a, b)),
             }
             for (internal, v) in self.wedges.order.iter().enumerate() {
-                out[*v as usize] = front.distance(internal as u32);
+                out[*v as usize] = within(front.distance(internal as u32), max_distance);
             }
         });
     }

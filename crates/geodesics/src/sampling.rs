@@ -15,7 +15,7 @@ pub enum FirstSample {
     Vertex(VertexId),
 }
 
-/// Farthest point sampling: `n` landmarks, each the vertex farthest from those before it, and the
+/// Farthest point sampling: landmarks, each the vertex farthest from those before it, and the
 /// distances from each to all vertices (Procedure 1 of the paper).
 ///
 /// | paper | here | shape | meaning |
@@ -23,53 +23,98 @@ pub enum FirstSample {
 /// | `r_i` | `landmarks()` of the result | n | the samples |
 /// | `F` | `matrix()` of the result | p x n | distances |
 ///
-/// * Ties go to the lowest vertex, so the result depends on the first sample alone.
+/// * Ties go to the lowest vertex, so the result depends on the first sample alone; the first n of
+///   2n samples are the n samples.
 /// * Covers the surface at most twice as coarsely as the best choice of `n` vertices
 ///   (Hochbaum and Shmoys 1985).
-/// * Stops early, with fewer than `n` landmarks, when every vertex coincides with one.
+/// * Ends early, with fewer landmarks than asked for, when every vertex coincides with one.
 ///
-/// Cost: `n` runs of the solver.
+/// Cost: one run of the solver per landmark.
+#[derive(Debug)]
+pub struct FarthestPointSampler<'a> {
+    solver: &'a dyn DistanceSolver,
+    landmarks: Vec<usize>,
+    /// The columns of all landmarks, one after the other.
+    columns: Vec<f64>,
+    /// Distance of every vertex to its nearest landmark.
+    nearest: Vec<f64>,
+}
+
+impl<'a> FarthestPointSampler<'a> {
+    /// Takes the first sample.
+    ///
+    /// # Errors
+    /// [`GeodesicError::Disconnected`] when a vertex cannot be reached, so that no infinite distance
+    /// ever gets into a matrix; [`GeodesicError::NoSuchVertex`].
+    pub fn new(solver: &'a dyn DistanceSolver, first: FirstSample) -> Result<Self, GeodesicError> {
+        let n_vertices = solver.n_vertices();
+        let start = match first {
+            FirstSample::Vertex(vertex) => vertex,
+            FirstSample::Farthest => VertexId(0),
+        };
+        if start.index() >= n_vertices {
+            return Err(GeodesicError::NoSuchVertex { vertex: start, n_vertices });
+        }
+        let mut landmark = start.index();
+        let mut column = reached(solver, start)?;
+        if first == FirstSample::Farthest {
+            landmark = farthest(&column);
+            column = reached(solver, VertexId::from(landmark))?;
+        }
+        Ok(Self { solver, landmarks: vec![landmark], nearest: column.clone(), columns: column })
+    }
+
+    /// Goes on until there are `n` landmarks, or as many as there are different points.
+    ///
+    /// # Errors
+    /// [`GeodesicError::Disconnected`].
+    pub fn extend_to(&mut self, n: usize) -> Result<(), GeodesicError> {
+        while self.landmarks.len() < n.min(self.nearest.len()) {
+            let next = farthest(&self.nearest);
+            if self.nearest[next] == 0.0 {
+                break;
+            }
+            let column = reached(self.solver, VertexId::from(next))?;
+            self.nearest.iter_mut().zip(&column).for_each(|(near, d)| *near = near.min(*d));
+            self.columns.extend_from_slice(&column);
+            self.landmarks.push(next);
+        }
+        Ok(())
+    }
+
+    /// Number of landmarks so far.
+    #[must_use]
+    pub fn n_landmarks(&self) -> usize {
+        self.landmarks.len()
+    }
+
+    /// The distances from the first `n` landmarks, or from all when there are fewer.
+    ///
+    /// # Errors
+    /// [`GeodesicError::NoSamples`] when `n` is zero.
+    pub fn distances(&self, n: usize) -> Result<LandmarkDistances, GeodesicError> {
+        let (p, n) = (self.nearest.len(), n.min(self.landmarks.len()));
+        if n == 0 {
+            return Err(GeodesicError::NoSamples);
+        }
+        let columns = Matrix::from_column_slice(p, n, &self.columns[..p * n]);
+        Ok(LandmarkDistances::new(self.landmarks[..n].to_vec(), columns)
+            .unwrap_or_else(|fault| unreachable!("every column was checked: {fault}")))
+    }
+}
+
+/// The distances from `n` landmarks chosen by [`FarthestPointSampler`].
 ///
 /// # Errors
-/// [`GeodesicError::Disconnected`] when a vertex cannot be reached, so that no infinite distance
-/// ever gets into a matrix; [`GeodesicError::NoSuchVertex`]; [`GeodesicError::NoSamples`].
+/// [`GeodesicError::Disconnected`], [`GeodesicError::NoSuchVertex`], [`GeodesicError::NoSamples`].
 pub fn farthest_point_sampling(
     solver: &dyn DistanceSolver,
     n: usize,
     first: FirstSample,
 ) -> Result<LandmarkDistances, GeodesicError> {
-    let p = solver.n_vertices();
-    if n == 0 {
-        return Err(GeodesicError::NoSamples);
-    }
-    let start = match first {
-        FirstSample::Vertex(vertex) => vertex,
-        FirstSample::Farthest => VertexId(0),
-    };
-    if start.index() >= p {
-        return Err(GeodesicError::NoSuchVertex { vertex: start, n_vertices: p });
-    }
-    let mut column = reached(solver, start)?;
-    let mut landmarks = vec![start.index()];
-    if first == FirstSample::Farthest {
-        landmarks[0] = farthest(&column);
-        column = reached(solver, VertexId::from(landmarks[0]))?;
-    }
-    let mut nearest = column.clone();
-    let mut values = column;
-    while landmarks.len() < n.min(p) {
-        let next = farthest(&nearest);
-        if nearest[next] == 0.0 {
-            break;
-        }
-        let column = reached(solver, VertexId::from(next))?;
-        nearest.iter_mut().zip(&column).for_each(|(near, d)| *near = near.min(*d));
-        values.extend_from_slice(&column);
-        landmarks.push(next);
-    }
-    let columns = Matrix::from_vec(p, landmarks.len(), values);
-    Ok(LandmarkDistances::new(landmarks, columns)
-        .unwrap_or_else(|fault| unreachable!("every column was checked: {fault}")))
+    let mut sampler = FarthestPointSampler::new(solver, first)?;
+    sampler.extend_to(n)?;
+    sampler.distances(n)
 }
 
 /// The distances from `source`, all finite.

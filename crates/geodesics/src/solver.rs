@@ -6,6 +6,8 @@ use linalg::Matrix;
 use mesh::VertexId;
 use rayon::prelude::*;
 
+use crate::Source;
+
 /// Distances from a vertex to all vertices of one surface.
 ///
 /// A solver holds what can be computed once per surface; a call may come from any thread.
@@ -13,12 +15,21 @@ pub trait DistanceSolver: Sync + std::fmt::Debug {
     /// Number of vertices of the surface.
     fn n_vertices(&self) -> usize;
 
-    /// Writes the distance from `source` to every vertex, in mesh units; infinite where there is
-    /// no way.
+    /// Writes the distance from the nearest of `sources` to every vertex, in mesh units; infinite
+    /// where there is no way and beyond `max_distance`.
+    ///
+    /// # Panics
+    /// When `out` does not have one entry per vertex or a source belongs to another surface.
+    fn solve_into(&self, sources: &[Source], max_distance: f64, out: &mut [f64]);
+
+    /// Writes the distance from the vertex `source` to every vertex, in mesh units; infinite where
+    /// there is no way.
     ///
     /// # Panics
     /// When `out` does not have one entry per vertex or `source` is out of range.
-    fn distances_into(&self, source: VertexId, out: &mut [f64]);
+    fn distances_into(&self, source: VertexId, out: &mut [f64]) {
+        self.solve_into(&[Source::vertex(source)], f64::INFINITY, out);
+    }
 
     /// The distance from `source` to every vertex, in mesh units; infinite where there is no way.
     ///
@@ -44,6 +55,12 @@ pub trait DistanceSolver: Sync + std::fmt::Debug {
         }
         columns
     }
+}
+
+/// The distance, or infinity beyond the limit: the front leaves tentative values behind it.
+#[inline]
+pub(crate) fn within(distance: f64, max_distance: f64) -> f64 {
+    if distance <= max_distance { distance } else { f64::INFINITY }
 }
 
 /// Scratch memory that calls borrow and give back, so that none is allocated after the first calls.
