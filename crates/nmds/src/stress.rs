@@ -100,21 +100,16 @@ pub struct StressEstimate {
     pub n_rows: usize,
 }
 
-/// Estimates [`paper_stress`] from `n_rows` different rows drawn with `seed`, when all p are too many.
+/// Estimates [`paper_stress`] from the rows `sample`, when all p are too many; they should be different
+/// and drawn evenly, as [`sample_rows`] does.
 ///
 /// The three sums of the exact formula are means over rows, so a sample of rows estimates each of
 /// them without bias (rows and columns have the same sums, `E` being symmetric).
 ///
-/// Cost: `n_rows` rows, `O(p k)` work each.
+/// Cost: every row of the sample once, `O(p k)` work each.
 #[must_use]
-pub fn estimate_paper_stress(
-    coords: &Matrix,
-    rows: &dyn DistanceRows,
-    n_rows: usize,
-    seed: u64,
-) -> StressEstimate {
+pub fn estimate_paper_stress(coords: &Matrix, rows: &dyn DistanceRows, sample: &[usize]) -> StressEstimate {
     let p = rows.n_points();
-    let sample = draw(p, n_rows.min(p), seed);
     let n = p as f64;
     // Per row: mean square and mean of the residuals.
     let moments: Vec<[f64; 2]> = sample
@@ -147,8 +142,11 @@ pub fn estimate_paper_stress(
     StressEstimate { value, interval: [(value - half).max(0.0), value + half], n_rows: moments.len() }
 }
 
-/// `m` different numbers below `p`, ascending (Floyd's algorithm).
-fn draw(p: usize, m: usize, seed: u64) -> Vec<usize> {
+/// `m` different numbers below `p` (all of them when there are fewer), ascending, drawn with `seed` by
+/// Floyd's algorithm.
+#[must_use]
+pub fn sample_rows(p: usize, m: usize, seed: u64) -> Vec<usize> {
+    let m = m.min(p);
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let mut chosen = std::collections::BTreeSet::new();
     for limit in p - m..p {
@@ -195,7 +193,7 @@ mod tests {
         let with = |threads: usize| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
             pool.install(|| {
-                let estimate = estimate_paper_stress(&embedding.coords, &distances, 50, 1);
+                let estimate = estimate_paper_stress(&embedding.coords, &distances, &sample_rows(500, 50, 1));
                 (paper_stress(&embedding.coords, &distances).to_bits(), estimate)
             })
         };
@@ -210,12 +208,13 @@ mod tests {
         let exact = paper_stress(&coords, &distances);
         let covered = (0..40)
             .filter(|&seed| {
-                let [lo, hi] = estimate_paper_stress(&coords, &distances, 60, seed).interval;
+                let [lo, hi] =
+                    estimate_paper_stress(&coords, &distances, &sample_rows(400, 60, seed)).interval;
                 (lo..=hi).contains(&exact)
             })
             .count();
         assert!(covered >= 34, "only {covered} of 40 intervals hold the exact value");
-        let whole = estimate_paper_stress(&coords, &distances, 1000, 0);
+        let whole = estimate_paper_stress(&coords, &distances, &sample_rows(400, 1000, 0));
         assert!((whole.value / exact - 1.0).abs() < 1e-12 && whole.n_rows == 400);
         assert!(whole.interval[1] - whole.interval[0] < 1e-9 * exact);
     }

@@ -1,1 +1,32 @@
-//! Skeleton.
+//! The facade: which stage follows which, and with what options.
+//!
+//! file -> [`Surface`] -> [`embed`] -> `descriptors::CanonicalForm` -> [`form_distances`] -> scores
+//!
+//! Everything a program needs to go from a mesh or a folder of meshes to forms, distances and scores.
+//! Knows nothing of terminals or plots; long work reports its progress to a callback.
+
+mod compare;
+mod dataset;
+mod embed;
+mod error;
+mod forms;
+mod observer;
+mod options;
+mod stress;
+mod surface;
+
+pub use compare::{Comparison, MatchKind, compare_forms};
+pub use dataset::{LabelFile, ShapeFile, label_of, list_shapes};
+pub use embed::{EmbedReport, Embedded, SecondsReport, embed};
+pub use error::PipelineError;
+pub use forms::{PreparedForms, embedded_distances, form_distances, map_of};
+pub use observer::Observer;
+pub use options::{EmbedMethod, EmbedOptions, Samples, StressChoice};
+pub use stress::{StressKind, StressReport};
+pub use surface::Surface;
+
+pub use descriptors::{FormDistance, MatchOptions, Normalization, Reflections};
+pub use geodesics::{
+    DistanceSolver, FastMarchingOptions, FirstSample, Method as GeodesicMethod, ObtuseTreatment, Update,
+};
+pub use nmds::Bandwidth;

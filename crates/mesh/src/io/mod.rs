@@ -110,12 +110,12 @@ pub fn write(path: &Path, mesh: &TriMesh) -> Result<(), MeshError> {
     // What `read` would refuse to take back.
     check_input(mesh)?;
     match format {
-        Format::Off => write_whole(path, |out| off::write(out, mesh)),
-        Format::Obj => write_whole(path, |out| obj::write(out, mesh)),
-        Format::Ply => write_whole(path, |out| ply::write(out, mesh)),
+        Format::Off => write_atomically(path, |out| off::write(out, mesh)),
+        Format::Obj => write_atomically(path, |out| obj::write(out, mesh)),
+        Format::Ply => write_atomically(path, |out| ply::write(out, mesh)),
         Format::Stl => {
             let triangles = stl::triangles(mesh)?;
-            write_whole(path, |out| stl::write(out, &triangles))
+            write_atomically(path, |out| stl::write(out, &triangles))
         }
         Format::Tosca => {
             let pair = tosca::Pair::of(path);
@@ -149,9 +149,17 @@ pub fn write_scalar_field(path: &Path, mesh: &TriMesh, values: &[f64], name: &st
     }
     check_input(mesh)?;
     let color = colormap::colors(values);
-    write_whole(path, |out| ply::write_with_field(out, mesh, name, |v| (values[v], color(values[v]))))
+    write_atomically(path, |out| ply::write_with_field(out, mesh, name, |v| (values[v], color(values[v]))))
 }
 
-fn write_whole(path: &Path, content: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), MeshError> {
+/// Writes a file of any kind so that it is there whole or not at all: into a neighbouring temporary
+/// file first, which takes the place of `path` once complete.
+///
+/// # Errors
+/// [`MeshError::Io`] names the file.
+pub fn write_atomically(
+    path: &Path,
+    content: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> Result<(), MeshError> {
     Pending::write(path, content)?.publish()
 }

@@ -1,0 +1,331 @@
+//! The command line: a contract that other people's scripts rely on.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use mesh::{ComponentPolicy, Orient, RepairOptions, VertexId, Weld};
+use pipeline::{
+    Bandwidth, EmbedMethod, EmbedOptions, FastMarchingOptions, FirstSample, GeodesicMethod, Samples,
+    StressChoice, Update,
+};
+
+/// Nonrigid 3D shapes: surface distances, canonical forms, comparison.
+///
+/// A cat that sits and a cat that leaps are one shape. A mesh is embedded so that straight lines
+/// equal its surface distances (Nystrom multidimensional scaling); bending drops out.
+#[derive(Debug, Parser)]
+#[command(name = "canonform", version, max_term_width = 100)]
+pub(crate) struct Arguments {
+    #[command(flatten)]
+    pub(crate) common: Common,
+    #[command(subcommand)]
+    pub(crate) command: Command,
+}
+
+/// Options of every command.
+#[derive(Debug, Clone, Args)]
+pub(crate) struct Common {
+    /// Print one JSON object on standard output and nothing else
+    #[arg(long, global = true)]
+    pub(crate) json: bool,
+    /// Worker threads; 0 takes all cores. The result does not depend on it
+    #[arg(long, global = true, default_value_t = 0, value_name = "N")]
+    pub(crate) threads: usize,
+    /// Seed of everything random
+    #[arg(long, global = true, default_value_t = 0, value_name = "S")]
+    pub(crate) seed: u64,
+    /// No progress bars
+    #[arg(long, short, global = true)]
+    pub(crate) quiet: bool,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Say what is in a mesh, what is broken and what would be repaired
+    Info(InfoArgs),
+    /// Measure distances along the surface from one or more vertices
+    Geodesic(GeodesicArgs),
+    /// Turn a mesh, or every mesh in a folder, into its canonical form
+    Embed(EmbedArgs),
+    /// Align the canonical forms of two meshes and say how far apart they are
+    Compare(CompareArgs),
+    /// Print a script that completes this program's arguments in a shell
+    Completions(CompletionsArgs),
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct InfoArgs {
+    /// Mesh files or folders of them
+    #[arg(required = true, value_name = "MESH")]
+    pub(crate) meshes: Vec<PathBuf>,
+    #[command(flatten)]
+    pub(crate) repair: RepairArgs,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct GeodesicArgs {
+    /// Mesh file
+    pub(crate) mesh: PathBuf,
+    /// Source vertices of the input, counted from 0; one row of distances each
+    #[arg(long, required = true, value_delimiter = ',', value_name = "V")]
+    pub(crate) source: Vec<u32>,
+    /// Where to write: .npy (sources x vertices, float64), .csv (one row a source) or .ply (one
+    /// coloured mesh a source)
+    #[arg(short, long, value_name = "OUT")]
+    pub(crate) output: PathBuf,
+    /// How distances are measured
+    #[arg(long, value_enum, default_value_t = GeodesicName::FastMarching)]
+    pub(crate) method: GeodesicName,
+    /// Local solver of fast marching
+    #[arg(long, value_enum, default_value_t = UpdateName::PointSource)]
+    pub(crate) update: UpdateName,
+    #[command(flatten)]
+    pub(crate) repair: RepairArgs,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct EmbedArgs {
+    /// Mesh file, or a folder of them
+    pub(crate) mesh: PathBuf,
+    /// Where to write the form: .npy (vertices x dim, float64), .ply, .obj or .off; for a folder, the
+    /// folder to write NAME.EXT into
+    #[arg(short, long, value_name = "FORM")]
+    pub(crate) output: PathBuf,
+    /// Format of the forms of a folder
+    #[arg(long, value_enum, default_value_t = FormFormat::Ply)]
+    pub(crate) format: FormFormat,
+    #[command(flatten)]
+    pub(crate) embedding: EmbeddingArgs,
+    /// How the stress is found
+    #[arg(long, value_enum, default_value_t = StressName::Auto)]
+    pub(crate) stress: StressName,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct CompareArgs {
+    /// First mesh
+    pub(crate) a: PathBuf,
+    /// Second mesh
+    pub(crate) b: PathBuf,
+    /// Distance between aligned forms
+    #[arg(long, value_enum, default_value_t = DistanceName::NnRms)]
+    pub(crate) distance: DistanceName,
+    /// Exit with 1 when the distance at equal size is larger than this
+    #[arg(long, value_name = "D")]
+    pub(crate) threshold: Option<f64>,
+    #[command(flatten)]
+    pub(crate) embedding: EmbeddingArgs,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct CompletionsArgs {
+    /// The shell
+    #[arg(value_enum)]
+    pub(crate) shell: clap_complete::Shell,
+}
+
+/// How meshes are repaired before anything is measured.
+#[derive(Debug, Clone, Args)]
+pub(crate) struct RepairArgs {
+    /// What happens to a mesh in several pieces
+    #[arg(long, value_enum, default_value_t = ComponentsName::Largest, value_name = "POLICY")]
+    pub(crate) components: ComponentsName,
+    /// Which vertices in exactly the same place become one
+    #[arg(long, value_enum, default_value_t = WeldName::Seams)]
+    pub(crate) weld: WeldName,
+}
+
+impl RepairArgs {
+    pub(crate) fn options(&self) -> RepairOptions {
+        RepairOptions {
+            components: match self.components {
+                ComponentsName::Largest => ComponentPolicy::Largest,
+                ComponentsName::Bridge => ComponentPolicy::Bridge,
+                ComponentsName::Error => ComponentPolicy::Error,
+            },
+            weld: match self.weld {
+                WeldName::None => Weld::None,
+                WeldName::Seams => Weld::Seams,
+                WeldName::All => Weld::All,
+            },
+            orient: Orient::Keep,
+        }
+    }
+}
+
+/// How a surface is embedded.
+#[derive(Debug, Clone, Args)]
+pub(crate) struct EmbeddingArgs {
+    /// How distances become coordinates
+    #[arg(long, value_enum, default_value_t = MethodName::Nmds)]
+    pub(crate) method: MethodName,
+    /// Number of samples, or `auto` to take as many as it needs
+    #[arg(short = 'n', long, default_value = "100", value_name = "SAMPLES|auto", value_parser = parse_samples)]
+    pub(crate) samples: Samples,
+    /// Eigenpairs of the sample matrix to keep [default: half the samples]
+    #[arg(long, value_name = "N1")]
+    pub(crate) rank: Option<usize>,
+    /// Dimensions of the embedding
+    #[arg(long, default_value_t = 3, value_name = "K")]
+    pub(crate) dim: usize,
+    /// How distances are measured
+    #[arg(long, value_enum, default_value_t = GeodesicName::FastMarching, value_name = "METHOD")]
+    pub(crate) geodesic: GeodesicName,
+    /// Local solver of fast marching
+    #[arg(long, value_enum, default_value_t = UpdateName::PointSource)]
+    pub(crate) update: UpdateName,
+    /// First sample, a vertex of the input [default: the vertex farthest from the first]
+    #[arg(long, value_name = "V")]
+    pub(crate) first_sample: Option<u32>,
+    #[command(flatten)]
+    pub(crate) repair: RepairArgs,
+}
+
+impl EmbeddingArgs {
+    pub(crate) fn options(&self, common: &Common, stress: StressChoice) -> EmbedOptions {
+        let rank = self.rank;
+        EmbedOptions {
+            geodesic: self.geodesic.method(self.update),
+            samples: self.samples,
+            first_sample: match self.first_sample {
+                Some(vertex) => FirstSample::Vertex(VertexId(vertex)),
+                None => FirstSample::Farthest,
+            },
+            method: match self.method {
+                MethodName::Nmds => EmbedMethod::Nystrom { rank },
+                MethodName::Mds => EmbedMethod::Classical,
+                MethodName::Kpca => EmbedMethod::KernelPca { rank, bandwidth: Bandwidth::Mean },
+            },
+            dim: self.dim,
+            stress,
+            seed: common.seed,
+            ..EmbedOptions::default()
+        }
+    }
+}
+
+fn parse_samples(text: &str) -> Result<Samples, String> {
+    match text.parse() {
+        _ if text == "auto" => Ok(Samples::Auto),
+        Ok(0) | Err(_) => Err(format!("`{text}` is neither a positive number nor `auto`")),
+        Ok(n) => Ok(Samples::Count(n)),
+    }
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum GeodesicName {
+    /// Fast marching on triangles
+    FastMarching,
+    /// Shortest paths along edges
+    Dijkstra,
+    /// Number of edges times the mean edge length
+    Bfs,
+}
+
+impl GeodesicName {
+    pub(crate) fn method(self, update: UpdateName) -> GeodesicMethod {
+        let update = match update {
+            UpdateName::PointSource => Update::PointSource,
+            UpdateName::Planar => Update::Planar,
+        };
+        match self {
+            Self::FastMarching => {
+                GeodesicMethod::FastMarching(FastMarchingOptions { update, ..Default::default() })
+            }
+            Self::Dijkstra => GeodesicMethod::Dijkstra,
+            Self::Bfs => GeodesicMethod::BreadthFirst,
+        }
+    }
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum UpdateName {
+    /// The front in a triangle comes from one point (more accurate)
+    PointSource,
+    /// The front in a triangle is a straight line (Kimmel and Sethian)
+    Planar,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum MethodName {
+    /// Nystrom multidimensional scaling
+    Nmds,
+    /// Classical multidimensional scaling of all pairs
+    Mds,
+    /// Kernel PCA with the Nystrom method
+    Kpca,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum StressName {
+    /// Exact up to 5,000 vertices, estimated beyond
+    Auto,
+    /// From all pairs of vertices
+    Exact,
+    /// From 100 vertices to all others
+    Estimate,
+    /// Not at all
+    Skip,
+}
+
+impl From<StressName> for StressChoice {
+    fn from(name: StressName) -> Self {
+        match name {
+            StressName::Auto => Self::Auto,
+            StressName::Exact => Self::Exact,
+            StressName::Estimate => Self::Estimate,
+            StressName::Skip => Self::Skip,
+        }
+    }
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum ComponentsName {
+    /// Keep the piece of the largest area
+    Largest,
+    /// Join the pieces by the shortest links between them
+    Bridge,
+    /// Refuse the mesh
+    Error,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum WeldName {
+    /// None
+    None,
+    /// Those on boundaries, so that cracks close
+    Seams,
+    /// All
+    All,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum FormFormat {
+    /// Binary PLY mesh
+    Ply,
+    /// Wavefront mesh
+    Obj,
+    /// OFF mesh
+    Off,
+    /// NumPy array
+    Npy,
+}
+
+impl FormFormat {
+    pub(crate) fn extension(self) -> &'static str {
+        match self {
+            Self::Ply => "ply",
+            Self::Obj => "obj",
+            Self::Off => "off",
+            Self::Npy => "npy",
+        }
+    }
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum DistanceName {
+    /// Root mean square of nearest-neighbour distances
+    NnRms,
+    /// Hausdorff distance of the closest 95 %
+    Hausdorff95,
+}

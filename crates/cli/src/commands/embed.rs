@@ -1,0 +1,209 @@
+//! `canonform embed`.
+
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use anyhow::{Context, Result, bail};
+use pipeline::{EmbedOptions, EmbedReport, Embedded, Surface, list_shapes};
+use rayon::prelude::*;
+use serde::Serialize;
+
+use super::{named, read_surface, say_repair};
+use crate::args::{Common, EmbedArgs};
+use crate::output::{extension, facts, print, print_json, write_npy};
+use crate::progress::Bars;
+
+#[derive(Serialize)]
+struct EmbedJson {
+    #[serde(flatten)]
+    report: EmbedReport,
+    output: PathBuf,
+}
+
+#[derive(Serialize)]
+struct BatchJson {
+    shapes: Vec<ShapeJson>,
+    failed: Vec<Failure>,
+}
+
+#[derive(Serialize)]
+struct ShapeJson {
+    name: String,
+    label: String,
+    path: PathBuf,
+    #[serde(flatten)]
+    result: EmbedJson,
+}
+
+#[derive(Serialize)]
+struct Failure {
+    name: String,
+    path: PathBuf,
+    error: String,
+}
+
+/// Embeds a mesh, or every mesh in a folder.
+pub(crate) fn embed(args: &EmbedArgs, common: &Common) -> Result<ExitCode> {
+    let options = args.embedding.options(common, args.stress.into());
+    if args.mesh.is_dir() {
+        return batch(args, &options, common);
+    }
+    check_format(&args.output, args.embedding.dim)?;
+    let surface = read_surface(&args.mesh, &args.embedding.repair)?;
+    let bars = Bars::new(common);
+    let embedded = pipeline::embed(&surface, &options, &bars).map_err(|fault| named(&args.mesh, fault))?;
+    bars.finish();
+    warn(&args.mesh.display().to_string(), &embedded.report);
+    write(&args.output, &surface, &embedded)?;
+    let json = EmbedJson { report: embedded.report, output: args.output.clone() };
+    if common.json {
+        print_json(&json)?
+    } else {
+        print(&table(&json))?
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Embeds a folder in parallel; what cannot be read is named at the end and does not stop the rest.
+fn batch(args: &EmbedArgs, options: &EmbedOptions, common: &Common) -> Result<ExitCode> {
+    let extension = args.format.extension();
+    check_format(&PathBuf::from(format!("form.{extension}")), args.embedding.dim)?;
+    let shapes = list_shapes(&args.mesh, None)?;
+    let bars = Bars::new(common);
+    let bar = bars.bar("shapes", shapes.len());
+    let results: Vec<Result<EmbedJson>> = shapes
+        .par_iter()
+        .map(|shape| {
+            let output = args.output.join(format!("{}.{extension}", shape.name));
+            let one = || {
+                let surface = Surface::read(&shape.path, &args.embedding.repair.options())
+                    .map_err(|fault| named(&shape.path, fault))?;
+                let embedded =
+                    pipeline::embed(&surface, options, &()).map_err(|fault| named(&shape.path, fault))?;
+                if let Some(folder) = output.parent() {
+                    std::fs::create_dir_all(folder)
+                        .with_context(|| format!("cannot make the folder {}", folder.display()))?;
+                }
+                write(&output, &surface, &embedded)?;
+                Ok(EmbedJson { report: embedded.report, output: output.clone() })
+            };
+            let result = one();
+            bar.inc(1);
+            result
+        })
+        .collect();
+    bar.finish_and_clear();
+
+    let mut json = BatchJson { shapes: Vec::new(), failed: Vec::new() };
+    for (shape, result) in shapes.into_iter().zip(results) {
+        let (name, path) = (shape.name, shape.path);
+        match result {
+            Ok(result) => {
+                say_repair(&name, &result.report.repair);
+                warn(&name, &result.report);
+                json.shapes.push(ShapeJson { name, label: shape.label, path, result });
+            }
+            Err(fault) => {
+                json.failed.push(Failure { name, path, error: format!("{fault:#}") });
+            }
+        }
+    }
+    for failure in &json.failed {
+        eprintln!("error: {}", failure.error);
+    }
+    if common.json {
+        print_json(&json)?
+    } else {
+        print(&batch_table(&json, &args.output))?
+    }
+    Ok(if json.failed.is_empty() { ExitCode::SUCCESS } else { ExitCode::from(2) })
+}
+
+/// Refuses an output that could not be written before any work is done.
+fn check_format(output: &Path, dim: usize) -> Result<()> {
+    match extension(output).as_str() {
+        "npy" => Ok(()),
+        "ply" | "obj" | "off" if dim == 3 => Ok(()),
+        "ply" | "obj" | "off" => {
+            bail!("{}: a mesh has 3 dimensions, not {dim}; write .npy or leave out --dim", output.display())
+        }
+        _ => bail!(
+            "{}: forms are written as .npy, .ply, .obj or .off; end the name in one of them",
+            output.display()
+        ),
+    }
+}
+
+/// Writes the form: an array in the input's order of vertices, or a mesh with the input's faces.
+fn write(output: &Path, surface: &Surface, embedded: &Embedded) -> Result<()> {
+    let coords = &embedded.embedding.coords;
+    if extension(output) == "npy" {
+        let dim = coords.ncols();
+        let rows: Vec<Vec<f64>> = coords.row_iter().map(|row| row.iter().copied().collect()).collect();
+        let missing = vec![f64::NAN; dim];
+        let slices: Vec<&[f64]> = rows.iter().map(Vec::as_slice).collect();
+        let in_order = surface.in_input_order(&slices, missing.as_slice());
+        return write_npy(output, dim, in_order.into_iter());
+    }
+    let positions: Vec<_> = coords.row_iter().map(|row| [row[0], row[1], row[2]].into()).collect();
+    Ok(mesh::io::write(output, &surface.with_positions(&positions))?)
+}
+
+/// Says what a person should know of the result besides the repair.
+fn warn(name: &str, report: &EmbedReport) {
+    if report.empty_dimensions > 0 {
+        eprintln!(
+            "{name}: {} of {} dimensions found no positive eigenvalue and are zero; take more samples with -n",
+            report.empty_dimensions, report.dim
+        );
+    }
+}
+
+fn stress_text(report: &EmbedReport) -> String {
+    match &report.stress {
+        None => "-".to_owned(),
+        Some(s) if s.interval[0] == s.interval[1] => format!("{:.6}", s.value),
+        Some(s) => format!("{:.6} (95 %: {:.6} to {:.6})", s.value, s.interval[0], s.interval[1]),
+    }
+}
+
+fn table(json: &EmbedJson) -> String {
+    let r = &json.report;
+    let eigenvalues: Vec<String> = r.eigenvalues.iter().take(r.dim).map(|v| format!("{v:.5e}")).collect();
+    facts(&[
+        ("method", format!("{} on {} distances", r.method, r.geodesic)),
+        ("vertices, faces", format!("{}, {}", r.n_vertices, r.n_faces)),
+        ("samples, rank", format!("{}, {}", r.n_samples, r.rank)),
+        ("eigenvalues", eigenvalues.join(" ")),
+        ("negative mass", format!("{:.4}", r.negative_mass)),
+        ("stress", stress_text(r)),
+        (
+            "seconds",
+            format!(
+                "{:.3} (distances {:.3}, embedding {:.3}) + stress {:.3}",
+                r.seconds.total, r.seconds.geodesics, r.seconds.embedding, r.seconds.stress
+            ),
+        ),
+        ("wrote", json.output.display().to_string()),
+    ])
+}
+
+fn batch_table(json: &BatchJson, folder: &Path) -> String {
+    let mut table = comfy_table::Table::new();
+    table
+        .load_style(comfy_table::presets::NOTHING)
+        .set_header(["shape", "class", "vertices", "samples", "stress", "seconds"]);
+    for shape in &json.shapes {
+        let r = &shape.result.report;
+        table.add_row([
+            shape.name.clone(),
+            shape.label.clone(),
+            r.n_embedded.to_string(),
+            r.n_samples.to_string(),
+            stress_text(r),
+            format!("{:.3}", r.seconds.total),
+        ]);
+    }
+    let counts = format!("{} forms in {}, {} failed", json.shapes.len(), folder.display(), json.failed.len());
+    format!("{table}\n{counts}")
+}

@@ -1,0 +1,120 @@
+//! `canonform info`.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use anyhow::Result;
+use mesh::{MeshReport, RepairReport, repair, validate};
+use serde::Serialize;
+
+use crate::args::{Common, InfoArgs};
+use crate::output::{facts, print, print_json};
+
+#[derive(Serialize)]
+struct InfoJson {
+    meshes: Vec<MeshInfo>,
+    failed: Vec<Failure>,
+}
+
+#[derive(Serialize)]
+struct MeshInfo {
+    path: PathBuf,
+    mesh: MeshReport,
+    /// What the commands that measure on this mesh would change first.
+    repair: RepairReport,
+}
+
+#[derive(Serialize)]
+struct Failure {
+    path: PathBuf,
+    error: String,
+}
+
+/// Reports on meshes; unreadable ones are named and do not stop the others.
+pub(crate) fn info(args: &InfoArgs, common: &Common) -> Result<ExitCode> {
+    let mut json = InfoJson { meshes: Vec::new(), failed: Vec::new() };
+    for path in paths(&args.meshes)? {
+        let report = mesh::io::read(&path)
+            .and_then(|mesh| Ok((validate(&mesh), repair(&mesh, &args.repair.options())?.report)));
+        match report {
+            Ok((mesh, repair)) => {
+                let info = MeshInfo { path, mesh, repair };
+                if !common.json {
+                    print(&table(&info))?;
+                }
+                json.meshes.push(info);
+            }
+            Err(fault) => {
+                eprintln!("error: {fault}");
+                json.failed.push(Failure { path, error: fault.to_string() });
+            }
+        }
+    }
+    if common.json {
+        print_json(&json)?;
+    }
+    Ok(if json.failed.is_empty() { ExitCode::SUCCESS } else { ExitCode::from(2) })
+}
+
+/// The files named, and those in the folders named.
+fn paths(arguments: &[PathBuf]) -> Result<Vec<PathBuf>> {
+    let mut paths = Vec::new();
+    for path in arguments {
+        if path.is_dir() {
+            paths.extend(pipeline::list_shapes(path, None)?.into_iter().map(|shape| shape.path));
+        } else {
+            paths.push(path.clone());
+        }
+    }
+    Ok(paths)
+}
+
+fn table(info: &MeshInfo) -> String {
+    let mut rows = facts_of(&info.mesh);
+    let changes = info.repair.summary();
+    if changes.is_empty() {
+        rows.push(("would repair", "nothing".to_owned()));
+    }
+    rows.extend(changes.into_iter().map(|line| ("would repair", line)));
+    format!("{}\n{}", info.path.display(), facts(&rows))
+}
+
+/// What is always of interest, then whatever is out of order.
+fn facts_of(mesh: &MeshReport) -> Vec<(&'static str, String)> {
+    let mut rows = vec![
+        ("vertices, edges, faces", format!("{}, {}, {}", mesh.n_vertices, mesh.n_edges, mesh.n_faces)),
+        ("components", mesh.n_components.to_string()),
+        ("boundary", format!("{} edges in {} loops", mesh.n_boundary_edges, mesh.n_boundary_loops)),
+        ("Euler characteristic", mesh.euler_characteristic.to_string()),
+    ];
+    if let Some(genus) = mesh.genus {
+        rows.push(("genus", genus.to_string()));
+    }
+    rows.extend([
+        ("area", format!("{:.6}", mesh.area)),
+        ("bounding box diagonal", format!("{:.6}", mesh.bounding_box_diagonal)),
+        (
+            "edge length",
+            format!(
+                "{:.4e} to {:.4e}, mean {:.4e}",
+                mesh.min_edge_length, mesh.max_edge_length, mesh.mean_edge_length
+            ),
+        ),
+        ("obtuse triangles", format!("{:.1} %", 100.0 * mesh.obtuse_share)),
+    ]);
+    let faults = [
+        ("degenerate faces", mesh.degenerate_faces),
+        ("duplicate faces", mesh.duplicate_faces),
+        ("faces without area", mesh.zero_area_faces),
+        ("unreferenced vertices", mesh.unreferenced_vertices),
+        ("duplicate vertices", mesh.duplicate_vertices),
+        ("non-manifold edges", mesh.non_manifold_edges),
+        ("non-manifold vertices", mesh.non_manifold_vertices),
+        ("flipped faces", mesh.flipped_faces),
+    ];
+    rows.extend(faults.into_iter().filter(|(_, n)| *n > 0).map(|(name, n)| (name, n.to_string())));
+    if !mesh.orientable {
+        rows.push(("orientable", "no".to_owned()));
+    }
+    rows
+}

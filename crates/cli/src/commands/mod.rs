@@ -1,0 +1,43 @@
+//! One file a command.
+
+mod compare;
+mod completions;
+mod embed;
+mod geodesic;
+mod info;
+
+pub(crate) use compare::compare;
+pub(crate) use completions::completions;
+pub(crate) use embed::embed;
+pub(crate) use geodesic::geodesic;
+pub(crate) use info::info;
+
+use mesh::RepairReport;
+use pipeline::Surface;
+
+/// Says on standard error what was repaired; a repair is never silent.
+fn say_repair(name: &str, report: &RepairReport) {
+    for line in report.summary() {
+        eprintln!("{name}: {line}");
+    }
+}
+
+/// How a path is named in messages.
+fn file_name(path: &std::path::Path) -> String {
+    path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
+}
+
+/// Reads and repairs a mesh and says what was repaired.
+fn read_surface(path: &std::path::Path, repair: &crate::args::RepairArgs) -> anyhow::Result<Surface> {
+    let surface = Surface::read(path, &repair.options()).map_err(|fault| named(path, fault))?;
+    say_repair(&file_name(path), &surface.repaired.report);
+    Ok(surface)
+}
+
+/// An error that names the file once, whether or not it does so itself.
+fn named(path: &std::path::Path, fault: pipeline::PipelineError) -> anyhow::Error {
+    let text = fault.to_string();
+    let path = path.display().to_string();
+    let partner = path.rsplit_once('.').map_or(path.as_str(), |(stem, _)| stem);
+    if text.contains(partner) { fault.into() } else { anyhow::Error::from(fault).context(path) }
+}

@@ -1,0 +1,64 @@
+//! What leaves the program: JSON, tables and files.
+
+use std::io::Write;
+use std::path::Path;
+
+use anyhow::{Context, Result};
+use npyz::WriterBuilder;
+use serde::Serialize;
+
+/// Prints one JSON object on standard output.
+pub(crate) fn print_json(value: &impl Serialize) -> Result<()> {
+    let mut out = std::io::stdout().lock();
+    serde_json::to_writer(&mut out, value).map_err(std::io::Error::from)?;
+    writeln!(out)?;
+    Ok(())
+}
+
+/// Prints text on standard output.
+pub(crate) fn print(text: &str) -> Result<()> {
+    let mut out = std::io::stdout().lock();
+    writeln!(out, "{text}")?;
+    Ok(())
+}
+
+/// Two columns: what, and its value.
+pub(crate) fn facts(rows: &[(&str, String)]) -> String {
+    let width = rows.iter().map(|(name, _)| name.len()).max().unwrap_or(0);
+    let line = |(name, value): &(&str, String)| format!("  {name:<width$}  {value}");
+    rows.iter().map(line).collect::<Vec<_>>().join("\n")
+}
+
+/// Writes rows of equal length as a little-endian float64 NumPy array.
+pub(crate) fn write_npy<'a>(
+    path: &Path,
+    n_columns: usize,
+    rows: impl ExactSizeIterator<Item = &'a [f64]>,
+) -> Result<()> {
+    let shape = [rows.len() as u64, n_columns as u64];
+    mesh::io::write_atomically(path, |out| {
+        let mut array = npyz::WriteOptions::new().default_dtype().shape(&shape).writer(out).begin_nd()?;
+        for row in rows {
+            array.extend(row)?;
+        }
+        array.finish()
+    })
+    .with_context(|| format!("cannot write {}", path.display()))
+}
+
+/// Writes rows of numbers separated by commas, in full precision.
+pub(crate) fn write_csv<'a>(path: &Path, rows: impl Iterator<Item = &'a [f64]>) -> Result<()> {
+    mesh::io::write_atomically(path, |out| {
+        for row in rows {
+            let text: Vec<String> = row.iter().map(f64::to_string).collect();
+            writeln!(out, "{}", text.join(","))?;
+        }
+        Ok(())
+    })
+    .with_context(|| format!("cannot write {}", path.display()))
+}
+
+/// The extension of a file name in lower case.
+pub(crate) fn extension(path: &Path) -> String {
+    path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default()
+}

@@ -1,0 +1,52 @@
+//! Progress on standard error, for people only.
+
+use std::io::IsTerminal;
+use std::sync::{Mutex, PoisonError};
+
+use indicatif::{ProgressBar, ProgressStyle};
+use pipeline::Observer;
+
+use crate::args::Common;
+
+/// A bar per stage while a person watches; nothing otherwise.
+pub(crate) struct Bars {
+    visible: bool,
+    current: Mutex<Option<ProgressBar>>,
+}
+
+impl Bars {
+    pub(crate) fn new(common: &Common) -> Self {
+        Self { visible: !common.quiet && std::io::stderr().is_terminal(), current: Mutex::new(None) }
+    }
+
+    /// A bar over the steps of one stage, to be advanced by the caller.
+    pub(crate) fn bar(&self, stage: &str, total: usize) -> ProgressBar {
+        if !self.visible {
+            return ProgressBar::hidden();
+        }
+        let style = ProgressStyle::with_template("{msg:>12} {wide_bar} {pos}/{len} {eta:>5} left");
+        let bar = ProgressBar::new(total as u64).with_message(stage.to_owned());
+        bar.set_style(style.unwrap_or_else(|_| ProgressStyle::default_bar()));
+        bar
+    }
+
+    /// Clears the line.
+    pub(crate) fn finish(&self) {
+        if let Some(bar) = self.current.lock().unwrap_or_else(PoisonError::into_inner).take() {
+            bar.finish_and_clear();
+        }
+    }
+}
+
+impl Observer for Bars {
+    fn begin(&self, stage: &str, total: usize) {
+        self.finish();
+        *self.current.lock().unwrap_or_else(PoisonError::into_inner) = Some(self.bar(stage, total));
+    }
+
+    fn step(&self) {
+        if let Some(bar) = self.current.lock().unwrap_or_else(PoisonError::into_inner).as_ref() {
+            bar.inc(1);
+        }
+    }
+}

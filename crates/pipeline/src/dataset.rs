@@ -1,0 +1,154 @@
+//! A folder of meshes as a labelled dataset.
+
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+
+use mesh::io::is_mesh_path;
+
+use crate::PipelineError;
+
+/// A mesh file of a dataset.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ShapeFile {
+    /// Its file name without extension, after its sub-folder if it is in one: `cats/sitting`.
+    pub name: String,
+    /// Its class.
+    pub label: String,
+    /// Where it is.
+    pub path: PathBuf,
+}
+
+/// Labels from a file of lines `name,label`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LabelFile {
+    path: PathBuf,
+    labels: HashMap<String, String>,
+}
+
+impl LabelFile {
+    /// Reads a label file. Names are those of [`ShapeFile`], with or without extension; empty lines,
+    /// lines that begin with `#` and a header `name,label` are skipped.
+    ///
+    /// # Errors
+    /// [`PipelineError::Io`] and [`PipelineError::BadLabelLine`].
+    pub fn read(path: &Path) -> Result<Self, PipelineError> {
+        let text = std::fs::read_to_string(path)
+            .map_err(|source| PipelineError::Io { path: path.to_owned(), source })?;
+        let mut labels = HashMap::new();
+        for (number, line) in text.lines().enumerate() {
+            let line = line.trim();
+            if line.is_empty() || line.starts_with('#') || (number == 0 && line == "name,label") {
+                continue;
+            }
+            match line.split(',').map(str::trim).collect::<Vec<_>>()[..] {
+                [name, label] if !name.is_empty() && !label.is_empty() => {
+                    labels.insert(stem(Path::new(name)), label.to_owned());
+                }
+                _ => {
+                    return Err(PipelineError::BadLabelLine {
+                        path: path.to_owned(),
+                        line: number + 1,
+                        found: line.to_owned(),
+                    });
+                }
+            }
+        }
+        Ok(Self { path: path.to_owned(), labels })
+    }
+
+    fn label(&self, name: &str) -> Result<String, PipelineError> {
+        self.labels
+            .get(name)
+            .cloned()
+            .ok_or_else(|| PipelineError::NoLabel { path: self.path.clone(), name: name.to_owned() })
+    }
+}
+
+/// Path without extension, with `/` between its parts.
+fn stem(path: &Path) -> String {
+    let parts: Vec<_> =
+        path.with_extension("").iter().map(|part| part.to_string_lossy().into_owned()).collect();
+    parts.join("/")
+}
+
+/// The class of a shape by its name: its sub-folder, else the leading letters of its file name
+/// (`cat0` is a `cat`), else the whole name.
+#[must_use]
+pub fn label_of(name: &str) -> String {
+    if let Some((folder, _)) = name.rsplit_once('/') {
+        return folder.to_owned();
+    }
+    let letters = name.trim_start_matches(char::is_alphabetic).len();
+    match &name[..name.len() - letters] {
+        "" => name.to_owned(),
+        leading => leading.to_owned(),
+    }
+}
+
+/// The meshes in a folder and its sub-folders, in natural order of their names (`cat2` before
+/// `cat10`).
+///
+/// # Errors
+/// [`PipelineError::Io`], [`PipelineError::NoShapes`], [`PipelineError::NoLabel`].
+pub fn list_shapes(folder: &Path, labels: Option<&LabelFile>) -> Result<Vec<ShapeFile>, PipelineError> {
+    let mut shapes = Vec::new();
+    let mut folders = vec![folder.to_owned()];
+    while let Some(current) = folders.pop() {
+        let fault = |source| PipelineError::Io { path: current.clone(), source };
+        for entry in std::fs::read_dir(&current).map_err(fault)? {
+            let path = entry.map_err(fault)?.path();
+            if path.is_dir() {
+                folders.push(path);
+            } else if is_mesh_path(&path) {
+                let name = stem(path.strip_prefix(folder).unwrap_or(&path));
+                let label = labels.map_or_else(|| Ok(label_of(&name)), |file| file.label(&name))?;
+                shapes.push(ShapeFile { name, label, path });
+            }
+        }
+    }
+    if shapes.is_empty() {
+        return Err(PipelineError::NoShapes { path: folder.to_owned() });
+    }
+    shapes.sort_by(|a, b| natural_key(&a.name).cmp(&natural_key(&b.name)).then_with(|| a.path.cmp(&b.path)));
+    Ok(shapes)
+}
+
+/// Splits a name into text and numbers, so that numbers sort by value.
+fn natural_key(name: &str) -> Vec<(String, u64)> {
+    let mut key: Vec<(String, u64)> = vec![(String::new(), 0)];
+    let mut in_number = false;
+    for c in name.chars() {
+        if c.is_ascii_digit() {
+            in_number = true;
+        } else if in_number {
+            key.push((String::new(), 0));
+            in_number = false;
+        }
+        if let Some((text, number)) = key.last_mut() {
+            match c.to_digit(10) {
+                Some(digit) => *number = number.saturating_mul(10).saturating_add(u64::from(digit)),
+                None => text.push(c),
+            }
+        }
+    }
+    key
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn labels_come_from_folders_or_leading_letters() {
+        for (name, label) in [("cat0", "cat"), ("cats/sitting1", "cats"), ("0001", "0001"), ("T_rex", "T")] {
+            assert_eq!(label_of(name), label);
+        }
+    }
+
+    #[test]
+    fn names_sort_by_number() {
+        let mut names = ["cat10", "cat9", "ant1", "cat"];
+        names.sort_by_key(|name| natural_key(name));
+        assert_eq!(names, ["ant1", "cat", "cat9", "cat10"]);
+    }
+}

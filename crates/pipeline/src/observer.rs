@@ -1,0 +1,42 @@
+//! How long work tells of its progress.
+
+use geodesics::{DistanceSolver, Source};
+
+/// Hears of the progress of long work, from any thread.
+pub trait Observer: Sync {
+    /// A stage of `total` steps begins; the previous one has ended.
+    fn begin(&self, stage: &str, total: usize);
+
+    /// A step of the current stage is done.
+    fn step(&self);
+}
+
+/// Nobody listens.
+impl Observer for () {
+    fn begin(&self, _: &str, _: usize) {}
+
+    fn step(&self) {}
+}
+
+/// A solver whose every solve is a step.
+pub(crate) struct Observed<'a> {
+    pub(crate) solver: &'a dyn DistanceSolver,
+    pub(crate) observer: &'a dyn Observer,
+}
+
+impl std::fmt::Debug for Observed<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        self.solver.fmt(f)
+    }
+}
+
+impl DistanceSolver for Observed<'_> {
+    fn n_vertices(&self) -> usize {
+        self.solver.n_vertices()
+    }
+
+    fn solve_into(&self, sources: &[Source], max_distance: f64, out: &mut [f64]) {
+        self.solver.solve_into(sources, max_distance, out);
+        self.observer.step();
+    }
+}

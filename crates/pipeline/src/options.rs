@@ -1,0 +1,100 @@
+//! The options tree of an embedding.
+
+use geodesics::{FirstSample, Method};
+use nmds::Bandwidth;
+
+/// How a surface is embedded.
+#[derive(Debug, Clone, PartialEq)]
+pub struct EmbedOptions {
+    /// How distances are measured. Default: fast marching with the point-source update.
+    pub geodesic: Method,
+    /// Number of samples. Default: 100, as in the paper's Fig. 4.
+    pub samples: Samples,
+    /// The first sample, a vertex of the input. Default: the vertex farthest from the first.
+    pub first_sample: FirstSample,
+    /// How distances become coordinates. Default: NMDS.
+    pub method: EmbedMethod,
+    /// Dimensions of the embedding. Default: 3.
+    pub dim: usize,
+    /// How the stress is found. Default: [`StressChoice::Auto`].
+    pub stress: StressChoice,
+    /// Seed of the rows that an estimated stress is measured on. Default: 0.
+    pub seed: u64,
+    /// Most memory for a matrix of all pairs, in bytes. Default: 4 GiB.
+    pub all_pairs_limit: usize,
+}
+
+impl Default for EmbedOptions {
+    fn default() -> Self {
+        Self {
+            geodesic: Method::default(),
+            samples: Samples::Count(100),
+            first_sample: FirstSample::default(),
+            method: EmbedMethod::default(),
+            dim: 3,
+            stress: StressChoice::default(),
+            seed: 0,
+            all_pairs_limit: 4 << 30,
+        }
+    }
+}
+
+/// How many samples are taken.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Samples {
+    /// This many.
+    Count(usize),
+    /// Doubled from 10 until the stress measured on the samples gains less than 1 %, at most 640.
+    Auto,
+}
+
+/// How distances become coordinates.
+#[derive(Debug, Clone, PartialEq)]
+pub enum EmbedMethod {
+    /// Nystrom multidimensional scaling, the paper's method.
+    Nystrom {
+        /// Eigenpairs of the sample matrix to keep. Default: half the samples.
+        rank: Option<usize>,
+    },
+    /// Classical multidimensional scaling of all pairs: the optimum, at quadratic cost.
+    Classical,
+    /// Kernel PCA with the Nystrom method, the paper's baseline.
+    KernelPca {
+        /// Eigenpairs of the sample kernel to keep. Default: half the samples.
+        rank: Option<usize>,
+        /// Width of the kernel.
+        bandwidth: Bandwidth,
+    },
+}
+
+impl Default for EmbedMethod {
+    fn default() -> Self {
+        Self::Nystrom { rank: None }
+    }
+}
+
+impl EmbedMethod {
+    /// The name used on the command line and in records.
+    #[must_use]
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Nystrom { .. } => "nmds",
+            Self::Classical => "mds",
+            Self::KernelPca { .. } => "kpca",
+        }
+    }
+}
+
+/// How the stress of an embedding is found.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum StressChoice {
+    /// Exactly up to 5,000 vertices, estimated beyond.
+    #[default]
+    Auto,
+    /// From the distances between all pairs of vertices.
+    Exact,
+    /// From the distances of 100 vertices to all others.
+    Estimate,
+    /// Not at all.
+    Skip,
+}

@@ -1,0 +1,91 @@
+//! The stress of an embedding of a surface.
+
+use geodesics::DistanceSolver;
+use linalg::{LandmarkDistances, Matrix};
+use mesh::VertexId;
+use nmds::{DistanceRows, estimate_paper_stress, paper_stress, sample_rows};
+use serde::Serialize;
+
+use crate::{Observer, StressChoice};
+
+/// Up to this many vertices [`StressChoice::Auto`] is exact.
+const EXACT_LIMIT: usize = 5000;
+
+/// Rows an estimate is made from.
+const ESTIMATE_ROWS: usize = 100;
+
+/// The paper's stress of an embedding and how it was found.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct StressReport {
+    /// Always `paper_stress`: `‖Z Z' + 1/2 J E J‖_F / p`, in squared mesh units.
+    pub measure: &'static str,
+    /// Its value.
+    pub value: f64,
+    /// Exact or estimated.
+    pub kind: StressKind,
+    /// A 95 % confidence interval; the value twice when it is exact.
+    pub interval: [f64; 2],
+}
+
+/// Where a stress comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum StressKind {
+    /// All pairs of vertices.
+    Exact,
+    /// A sample of rows.
+    Estimated,
+}
+
+/// Rows marched when they are asked for.
+pub(crate) struct MarchedRows<'a>(pub(crate) &'a dyn DistanceSolver);
+
+impl DistanceRows for MarchedRows<'_> {
+    fn n_points(&self) -> usize {
+        self.0.n_vertices()
+    }
+
+    fn row_into(&self, i: usize, out: &mut [f64]) {
+        self.0.distances_into(VertexId::from(i), out);
+    }
+}
+
+/// The rows that are known already: those of the landmarks.
+pub(crate) struct KnownRows<'a>(pub(crate) &'a LandmarkDistances);
+
+impl DistanceRows for KnownRows<'_> {
+    fn n_points(&self) -> usize {
+        self.0.n_points()
+    }
+
+    fn row_into(&self, i: usize, out: &mut [f64]) {
+        let landmark = self.0.landmarks().iter().position(|&l| l == i);
+        out.copy_from_slice(self.0.column(landmark.unwrap_or_else(|| unreachable!("row {i} is not known"))));
+    }
+}
+
+/// The stress of `coords`, found as `choice` says.
+pub(crate) fn measure(
+    coords: &Matrix,
+    rows: &dyn DistanceRows,
+    choice: StressChoice,
+    seed: u64,
+    observer: &dyn Observer,
+) -> Option<StressReport> {
+    let exact = match choice {
+        StressChoice::Auto => rows.n_points() <= EXACT_LIMIT,
+        StressChoice::Exact => true,
+        StressChoice::Estimate => false,
+        StressChoice::Skip => return None,
+    };
+    let report = |value, kind, interval| StressReport { measure: "paper_stress", value, kind, interval };
+    observer.begin("stress", if exact { rows.n_points() } else { ESTIMATE_ROWS });
+    Some(if exact {
+        let value = paper_stress(coords, rows);
+        report(value, StressKind::Exact, [value; 2])
+    } else {
+        let sample = sample_rows(rows.n_points(), ESTIMATE_ROWS, seed);
+        let estimate = estimate_paper_stress(coords, rows, &sample);
+        report(estimate.value, StressKind::Estimated, estimate.interval)
+    })
+}
