@@ -1,1 +1,26 @@
-//! Skeleton.
+//! Pictures, tables and the page made of result records.
+//!
+//! `experiments` -> [`results`] (JSON) -> **report** -> SVG / PNG / text / one HTML page
+//!
+//! Knows nothing of how a number came about: every value drawn or printed here stands in a record.
+//! The one thing it works out itself is where to put ink, such as a camera, a tick or a tile.
+
+mod canvas;
+mod classes;
+mod color;
+mod error;
+pub mod figure1;
+pub mod figure4;
+mod files;
+#[cfg(test)]
+mod fixtures;
+mod image;
+mod markers;
+mod numbers;
+pub mod page;
+pub mod render;
+pub mod results;
+pub mod tables;
+
+pub use error::ReportError;
+pub use image::RgbaImage;

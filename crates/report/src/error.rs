@@ -1,0 +1,72 @@
+//! What can go wrong between a record and a picture.
+
+use std::path::PathBuf;
+
+/// Errors of reading records and of drawing and writing figures.
+#[derive(Debug, thiserror::Error)]
+pub enum ReportError {
+    /// A file could not be read.
+    #[error("{}: cannot be read: {source}; check that the path exists and is readable", path.display())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// A file could not be written; nothing of it is left behind.
+    #[error("{}: cannot be written: {source}; check that the folder exists, is writable and has room", path.display())]
+    Write {
+        /// The file.
+        path: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// A file is not the record it should be.
+    #[error("{}: is not a record this version reads: {source}; run the experiment again", path.display())]
+    Parse {
+        /// The file.
+        path: PathBuf,
+        /// Where and why reading stopped.
+        source: serde_json::Error,
+    },
+    /// A record contradicts itself.
+    #[error(
+        "{what} has {found} entries where {expected} are needed, one for each {unit}; run the experiment again"
+    )]
+    Shape {
+        /// Which part of the record.
+        what: String,
+        /// Entries it has.
+        found: usize,
+        /// Entries it needs.
+        expected: usize,
+        /// What each entry belongs to.
+        unit: &'static str,
+    },
+    /// A record holds a number that JSON cannot hold and a picture cannot show.
+    #[error(
+        "{what} is {value}, not a finite number; look for a failed embedding and run the experiment again"
+    )]
+    NotFinite {
+        /// Which number of the record.
+        what: String,
+        /// The number.
+        value: f64,
+    },
+    /// A figure was asked for without anything to draw.
+    #[error("{figure} has nothing to draw: give it at least one {unit}")]
+    Empty {
+        /// Which figure.
+        figure: &'static str,
+        /// What it draws.
+        unit: &'static str,
+    },
+    /// The drawing backend failed.
+    #[error("{figure} could not be drawn: {reason}; this is a fault of the program, please report it")]
+    Draw {
+        /// Which figure.
+        figure: String,
+        /// What the backend said.
+        reason: String,
+    },
+}

@@ -1,0 +1,153 @@
+//! Small made-up records and meshes for the tests.
+
+use mesh::{TriMesh, VertexId};
+use nalgebra::Point3;
+use retrieval::Evaluation;
+use serde_json::json;
+
+use crate::results::{
+    Expectation, Figure1Record, Figure1Shape, Figure4Panel, Figure4Record, Provenance, Scale,
+};
+
+pub(crate) fn provenance() -> Provenance {
+    Provenance {
+        program: "experiments".into(),
+        version: "0.1.0".into(),
+        command: "experiments run all --dataset 'a & b'".into(),
+        dataset: "a & b".into(),
+        classes: vec!["cat".into(), "dog".into()],
+        seed: 7,
+        options: json!({"embedding": {"rank": 5, "note": "<b>"}}),
+        seconds: [("embedding".to_string(), 0.25)].into(),
+    }
+}
+
+pub(crate) fn evaluation() -> Evaluation {
+    Evaluation {
+        n: 5,
+        classes: vec!["cat".into(), "dog".into()],
+        nn: 1.0,
+        ft: 0.91,
+        st: 0.92,
+        e: 0.5,
+        dcg: 0.93,
+        map: 0.94,
+        knn_accuracy: 0.95,
+        knn_k: 3,
+        confusion: vec![vec![3, 0], vec![0, 2]],
+        silhouette: -0.125,
+    }
+}
+
+pub(crate) fn figure1_record() -> Figure1Record {
+    let shape = |name: &str, label: &str| Figure1Shape {
+        name: name.into(),
+        label: label.into(),
+        n_vertices: 3400,
+        n_faces: 6796,
+        stress: 262.05,
+        repair: vec!["2 duplicate faces removed".into()],
+    };
+    Figure1Record {
+        provenance: provenance(),
+        shapes: vec![shape("cat0", "cat"), shape("dog<3>", "dog")],
+        expectations: vec![],
+        analysis: "Forms of one class agree.\n\nSecond paragraph.".into(),
+    }
+}
+
+/// Points in clusters on a line, one cluster a class, at both scales and for two methods.
+pub(crate) fn figure4_record(classes: &[(&str, usize)]) -> Figure4Record {
+    let labels: Vec<String> =
+        classes.iter().flat_map(|(name, n)| std::iter::repeat_n(name.to_string(), *n)).collect();
+    let place = |shape: usize| {
+        let class = classes.iter().position(|(name, _)| *name == labels[shape]).unwrap() as f64;
+        [10.0 * class + (shape as f64 * 0.7).sin(), (shape as f64 * 1.3).cos()]
+    };
+    let map: Vec<[f64; 2]> = (0..labels.len()).map(place).collect();
+    let distance = |a: &[f64; 2], b: &[f64; 2]| (a[0] - b[0]).hypot(a[1] - b[1]);
+    let matrix: Vec<Vec<f64>> = map.iter().map(|a| map.iter().map(|b| distance(a, b)).collect()).collect();
+    let panel = |method: &str, scale| Figure4Panel {
+        method: method.into(),
+        scale,
+        matrix: matrix.clone(),
+        map: map.clone(),
+        map_stress: 0.0521,
+        negative_mass: 0.01,
+        scores: evaluation(),
+        map_silhouette: 0.875,
+    };
+    Figure4Record {
+        provenance: provenance(),
+        names: (0..labels.len()).map(|i| format!("{}{i}", labels[i])).collect(),
+        panels: [Scale::Raw, Scale::Normalized]
+            .into_iter()
+            .flat_map(|scale| [panel("NMDS", scale), panel("KPCA-Nyström", scale)])
+            .collect(),
+        labels,
+        expectations: vec![
+            Expectation {
+                what: "NMDS, raw: first tier".into(),
+                expected: "at least 0.9".into(),
+                measured: "0.910".into(),
+                held: true,
+            },
+            Expectation {
+                what: "NMDS, raw: silhouette".into(),
+                expected: "at least 0.9".into(),
+                measured: "-0.125".into(),
+                held: false,
+            },
+        ],
+        analysis: "Two clusters.".into(),
+    }
+}
+
+pub(crate) fn mesh(positions: &[[f64; 3]], faces: &[[u32; 3]]) -> TriMesh {
+    TriMesh {
+        positions: positions.iter().map(|p| Point3::from(*p)).collect(),
+        faces: faces.iter().map(|f| f.map(VertexId)).collect(),
+    }
+}
+
+/// A unit sphere of `2 n` times `n` patches around the z axis.
+pub(crate) fn sphere(n: usize) -> TriMesh {
+    let mut positions = Vec::new();
+    for ring in 0..=n {
+        for slice in 0..2 * n {
+            let (polar, azimuth) = (
+                ring as f64 / n as f64 * std::f64::consts::PI,
+                slice as f64 / n as f64 * std::f64::consts::PI,
+            );
+            positions.push([polar.sin() * azimuth.cos(), polar.sin() * azimuth.sin(), polar.cos()]);
+        }
+    }
+    let at = |ring: usize, slice: usize| (ring * 2 * n + slice % (2 * n)) as u32;
+    let faces: Vec<[u32; 3]> = (0..n)
+        .flat_map(|r| (0..2 * n).map(move |s| (r, s)))
+        .flat_map(|(r, s)| {
+            [[at(r, s), at(r + 1, s), at(r + 1, s + 1)], [at(r, s), at(r + 1, s + 1), at(r, s + 1)]]
+        })
+        .collect();
+    mesh(&positions, &faces)
+}
+
+/// Panics unless every element of an XML or HTML text is closed in order.
+pub(crate) fn assert_balanced(markup: &str) {
+    let mut open: Vec<&str> = Vec::new();
+    let mut rest = markup;
+    while let Some(start) = rest.find('<') {
+        let end = start + rest[start..].find('>').expect("a tag ends");
+        let tag = &rest[start + 1..end];
+        rest = &rest[end + 1..];
+        let name = tag.trim_start_matches('/').split([' ', '\n']).next().unwrap_or_default();
+        let void = tag.ends_with('/') || tag.starts_with(['!', '?']) || ["meta", "img"].contains(&name);
+        if tag.starts_with('/') {
+            assert_eq!(open.pop(), Some(name), "closed out of order");
+        } else if !void {
+            assert_eq!(tag.matches('"').count() % 2, 0, "quotes in <{tag}>");
+            open.push(name);
+        }
+    }
+    assert!(open.is_empty(), "left open: {open:?}");
+}

@@ -1,0 +1,137 @@
+//! Raster pictures and their PNG encoding.
+
+use std::path::Path;
+
+use crate::ReportError;
+use crate::files::write_atomically;
+
+/// A picture of 8-bit sRGB pixels with straight (not premultiplied) alpha.
+///
+/// **Invariant.** `pixels.len() == width * height`, row by row from the top left.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct RgbaImage {
+    width: u32,
+    height: u32,
+    pixels: Vec<[u8; 4]>,
+}
+
+impl RgbaImage {
+    /// A picture of one colour.
+    #[must_use]
+    pub fn new(width: u32, height: u32, color: [u8; 4]) -> Self {
+        Self { width, height, pixels: vec![color; width as usize * height as usize] }
+    }
+
+    /// Columns of pixels.
+    #[must_use]
+    pub fn width(&self) -> u32 {
+        self.width
+    }
+
+    /// Rows of pixels.
+    #[must_use]
+    pub fn height(&self) -> u32 {
+        self.height
+    }
+
+    /// All pixels as `[red, green, blue, alpha]`, row by row from the top left.
+    #[must_use]
+    pub fn pixels(&self) -> &[[u8; 4]] {
+        &self.pixels
+    }
+
+    /// The same, to paint on.
+    #[must_use]
+    pub fn pixels_mut(&mut self) -> &mut [[u8; 4]] {
+        &mut self.pixels
+    }
+
+    /// The pixel in column `x` and row `y`, counted from the top left.
+    ///
+    /// # Panics
+    /// When the pixel is outside.
+    #[must_use]
+    pub fn pixel(&self, x: u32, y: u32) -> [u8; 4] {
+        assert!(x < self.width && y < self.height, "pixel {x}, {y} outside {} x {}", self.width, self.height);
+        self.pixels[y as usize * self.width as usize + x as usize]
+    }
+
+    /// Red, green and blue bytes without the alpha, every pixel drawn as a square of `zoom` x `zoom`.
+    pub(crate) fn rgb_bytes(&self, zoom: u32) -> Vec<u8> {
+        let zoom = zoom as usize;
+        let mut bytes = Vec::with_capacity(self.pixels.len() * 3 * zoom * zoom);
+        for row in self.pixels.chunks(self.width.max(1) as usize) {
+            let line: Vec<u8> =
+                row.iter().flat_map(|p| std::iter::repeat_n([p[0], p[1], p[2]], zoom)).flatten().collect();
+            (0..zoom).for_each(|_| bytes.extend_from_slice(&line));
+        }
+        bytes
+    }
+
+    /// Writes the picture as a PNG file, whole or not at all.
+    ///
+    /// # Errors
+    /// [`ReportError::Write`] when the file cannot be written or the picture has no pixels.
+    pub fn write_png(&self, path: impl AsRef<Path>) -> Result<(), ReportError> {
+        let path = path.as_ref();
+        let bytes = self.pixels.as_flattened();
+        let encoded = encode_png(self.width, self.height, png::ColorType::Rgba, bytes)
+            .map_err(|e| ReportError::Write { path: path.to_path_buf(), source: e.into() })?;
+        write_atomically(path, &encoded)
+    }
+}
+
+/// A PNG file of 8-bit sRGB samples; `bytes` holds the channels of `color`, row by row.
+pub(crate) fn encode_png(
+    width: u32,
+    height: u32,
+    color: png::ColorType,
+    bytes: &[u8],
+) -> Result<Vec<u8>, png::EncodingError> {
+    let mut file = Vec::new();
+    let mut encoder = png::Encoder::new(&mut file, width, height);
+    encoder.set_color(color);
+    encoder.set_depth(png::BitDepth::Eight);
+    encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
+    encoder.set_compression(png::Compression::Default);
+    encoder.set_adaptive_filter(png::AdaptiveFilterType::Adaptive);
+    let mut writer = encoder.write_header()?;
+    writer.write_image_data(bytes)?;
+    writer.finish()?;
+    Ok(file)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_png_reads_back_as_it_was_written() {
+        let mut image = RgbaImage::new(3, 2, [10, 20, 30, 255]);
+        image.pixels_mut()[4] = [1, 2, 3, 4];
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("x.png");
+        image.write_png(&path).unwrap();
+        let mut reader = png::Decoder::new(std::fs::File::open(&path).unwrap()).read_info().unwrap();
+        let mut bytes = vec![0; reader.output_buffer_size()];
+        let info = reader.next_frame(&mut bytes).unwrap();
+        assert_eq!((info.width, info.height), (3, 2));
+        assert_eq!(bytes, image.pixels().as_flattened());
+        assert_eq!(image.pixel(1, 1), [1, 2, 3, 4]);
+    }
+
+    #[test]
+    fn a_picture_without_pixels_is_an_error() {
+        let folder = tempfile::tempdir().unwrap();
+        let error = RgbaImage::new(0, 5, [0; 4]).write_png(folder.path().join("x.png")).unwrap_err();
+        assert!(matches!(error, ReportError::Write { .. }), "{error}");
+    }
+
+    #[test]
+    fn zooming_repeats_pixels_and_rows() {
+        let mut image = RgbaImage::new(2, 1, [1, 1, 1, 255]);
+        image.pixels_mut()[1] = [2, 2, 2, 255];
+        let line = [1, 1, 1, 1, 1, 1, 2, 2, 2, 2, 2, 2];
+        assert_eq!(image.rgb_bytes(2), [line, line].concat());
+    }
+}

@@ -1,0 +1,175 @@
+//! Where the viewer stands, and the scale at which the mesh fills the picture.
+
+use mesh::TriMesh;
+use nalgebra::{Matrix3, Point3, SymmetricEigen, Vector3};
+
+/// Direction of an orthographic view: parallel rays, no vanishing point.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum View {
+    /// For shapes that stand: `up` points up in the picture.
+    ///
+    /// At azimuth and elevation 0 the x axis points right (the y axis when `up` is along x).
+    Upright {
+        /// Angle by which the viewer walks counter-clockwise (seen from above) around the shape, in
+        /// degrees.
+        azimuth: f64,
+        /// Angle by which the viewer looks down, in degrees.
+        elevation: f64,
+        /// Direction that is up, of any length; z when zero or not finite.
+        up: Vector3<f64>,
+    },
+    /// For canonical forms, which have no up: the longest principal axis of the surface runs along the
+    /// longer side of the picture (upright in a square one), the second along the other side.
+    ///
+    /// Each axis points so that the surface's longer tail lies left or below, which gives two forms of one shape the same
+    /// picture although their axes may come with opposite signs. A mirror image is seen from its other
+    /// side: the outline is the same.
+    Principal,
+}
+
+impl Default for View {
+    /// From the right front and slightly above, z up.
+    fn default() -> Self {
+        Self::Upright { azimuth: 30.0, elevation: 12.0, up: Vector3::z() }
+    }
+}
+
+/// An orthographic camera whose picture plane is measured in samples.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Camera {
+    /// Rows: right, up, towards the viewer; orthonormal.
+    pub(super) axes: Matrix3<f64>,
+    /// Samples per mesh unit.
+    scale: f64,
+    /// Turned coordinates of the picture's centre, and the depth counted as zero.
+    center: Vector3<f64>,
+    /// Half the picture, in samples.
+    half: [f64; 2],
+}
+
+impl Camera {
+    /// The camera that sees all `faces` in a picture of `size` samples with an empty `margin`, a share
+    /// of the shorter side.
+    pub(super) fn fit(
+        mesh: &TriMesh,
+        faces: &[[usize; 3]],
+        view: &View,
+        size: [u32; 2],
+        margin: f64,
+    ) -> Self {
+        let axes = view.axes(mesh, faces, size[0] > size[1]);
+        let [low, high] = bounds(mesh, faces, &axes);
+        let half = size.map(|s| f64::from(s) / 2.0);
+        let border = 2.0 * margin * half[0].min(half[1]);
+        let room = |i: usize| (2.0 * (half[i] - border) / (high[i] - low[i])).max(0.0);
+        let scale = room(0).min(room(1));
+        // No faces at all, or all in one point: any scale does.
+        let scale = if scale.is_finite() { scale } else { 1.0 };
+        let center = if faces.is_empty() { Vector3::zeros() } else { low + (high - low) / 2.0 };
+        Self { axes, scale, center, half }
+    }
+
+    /// Column, row (downwards) and depth (larger is nearer) of a point, all in samples.
+    pub(super) fn project(&self, point: &Point3<f64>) -> [f64; 3] {
+        let p = (self.axes * point.coords - self.center) * self.scale;
+        [self.half[0] + p.x, self.half[1] - p.y, p.z]
+    }
+}
+
+/// Lower and upper corner of the faces' bounding box, turned by `axes`.
+fn bounds(mesh: &TriMesh, faces: &[[usize; 3]], axes: &Matrix3<f64>) -> [Vector3<f64>; 2] {
+    let nothing = [Vector3::repeat(f64::INFINITY), Vector3::repeat(f64::NEG_INFINITY)];
+    faces.iter().flatten().fold(nothing, |[low, high], &v| {
+        let turned = axes * mesh.positions[v].coords;
+        [low.inf(&turned), high.sup(&turned)]
+    })
+}
+
+/// Width and height of the faces as seen in an upright picture, in mesh units.
+pub(super) fn extent(mesh: &TriMesh, faces: &[[usize; 3]], view: &View) -> [f64; 2] {
+    let [low, high] = bounds(mesh, faces, &view.axes(mesh, faces, false));
+    [high.x - low.x, high.y - low.y]
+}
+
+impl View {
+    /// Orthonormal rows: right, up, towards the viewer.
+    fn axes(&self, mesh: &TriMesh, faces: &[[usize; 3]], landscape: bool) -> Matrix3<f64> {
+        match *self {
+            Self::Upright { azimuth, elevation, up } => upright(azimuth, elevation, up),
+            Self::Principal => {
+                let [first, second] = principal_axes(mesh, faces);
+                let (right, up) = if landscape { (first, second) } else { (second, first) };
+                rows(right, up)
+            }
+        }
+    }
+}
+
+fn rows(right: Vector3<f64>, up: Vector3<f64>) -> Matrix3<f64> {
+    Matrix3::from_rows(&[right.transpose(), up.transpose(), right.cross(&up).transpose()])
+}
+
+fn upright(azimuth: f64, elevation: f64, up: Vector3<f64>) -> Matrix3<f64> {
+    let up = up.try_normalize(0.0).filter(|u| u.iter().all(|c| c.is_finite())).unwrap_or_else(Vector3::z);
+    let finite = |degrees: f64| if degrees.is_finite() { degrees.to_radians() } else { 0.0 };
+    let (azimuth, elevation) = (finite(azimuth), finite(elevation));
+    let reference = if up.x.abs() > 0.9 { Vector3::y() } else { Vector3::x() };
+    let right = (reference - up * up.dot(&reference)).normalize();
+    let towards = right.cross(&up);
+    let right_turned = right * azimuth.cos() - towards * azimuth.sin();
+    let towards_turned = right_turned.cross(&up);
+    rows(right_turned, up * elevation.cos() - towards_turned * elevation.sin())
+}
+
+/// The two longest principal axes of the surface, orthonormal; x and y when it has no extent.
+fn principal_axes(mesh: &TriMesh, faces: &[[usize; 3]]) -> [Vector3<f64>; 2] {
+    // Four weighted points a face, its corners and its centroid, have exactly the first and second
+    // moments of the face: the axes are those of the surface however it is cut into triangles.
+    let points: Vec<(f64, Vector3<f64>)> = faces
+        .iter()
+        .flat_map(|f| {
+            let [a, b, c] = f.map(|v| mesh.positions[v].coords);
+            let area = (b - a).cross(&(c - a)).norm();
+            [(area / 12.0, a), (area / 12.0, b), (area / 12.0, c), (area * 0.75, (a + b + c) / 3.0)]
+        })
+        .collect();
+    let area: f64 = points.iter().map(|p| p.0).sum();
+    if !(area > 0.0 && area.is_finite()) {
+        return [Vector3::x(), Vector3::y()];
+    }
+    let mean: Vector3<f64> = points.iter().map(|(w, p)| p * (w / area)).sum();
+    let covariance: Matrix3<f64> =
+        points.iter().map(|(w, p)| (p - mean) * (p - mean).transpose() * (w / area)).sum();
+    let eigen = SymmetricEigen::new(covariance);
+    let mut order = [0, 1, 2];
+    order.sort_by(|&i, &j| eigen.eigenvalues[j].total_cmp(&eigen.eigenvalues[i]));
+    let signed = |k: usize| {
+        let axis: Vector3<f64> = eigen.eigenvectors.column(order[k]).into_owned();
+        let skew: f64 = points.iter().map(|(w, p)| w / area * (p - mean).dot(&axis).powi(3)).sum();
+        if skew > 0.0 { -axis } else { axis }
+    };
+    [signed(0), signed(1)]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn upright_views_put_the_axes_where_they_say() {
+        let front = upright(0.0, 0.0, Vector3::z());
+        assert!((front - rows(Vector3::x(), Vector3::z())).norm() < 1e-15);
+        assert!((front * -Vector3::y() - Vector3::z()).norm() < 1e-15, "the viewer stands at -y");
+        // A quarter walk counter-clockwise from -y leads to +x.
+        let side = upright(90.0, 0.0, Vector3::z());
+        assert!((side * Vector3::x() - Vector3::z()).norm() < 1e-12);
+        // From straight above, z points at the viewer.
+        let above = upright(0.0, 90.0, Vector3::z() * 7.0);
+        assert!((above * Vector3::z() - Vector3::z()).norm() < 1e-12);
+        for up in [Vector3::x(), Vector3::y(), Vector3::zeros(), Vector3::repeat(f64::NAN)] {
+            let axes = upright(33.0, 21.0, up);
+            assert!((axes * axes.transpose() - Matrix3::identity()).norm() < 1e-12);
+            assert!((axes.determinant() - 1.0).abs() < 1e-12, "never mirrored");
+        }
+    }
+}

@@ -1,0 +1,76 @@
+//! Normals for smooth shading that need no consistent orientation.
+
+use mesh::TriMesh;
+use nalgebra::Vector3;
+
+use super::camera::Camera;
+
+/// One unit normal for each corner of each face, in the camera's axes (right, up, towards the viewer),
+/// on the side of the face that the viewer sees.
+///
+/// A corner's normal sums the area vectors of the faces around its vertex that bend by less than
+/// `crease` degrees against the corner's own face, each first turned to that face's side: the outcome
+/// does not depend on how faces are oriented, and the two sides of a thin sheet do not cancel.
+pub(super) fn corner_normals(
+    mesh: &TriMesh,
+    faces: &[[usize; 3]],
+    camera: &Camera,
+    crease: f64,
+) -> Vec<[Vector3<f32>; 3]> {
+    let areas: Vec<Vector3<f64>> = faces
+        .iter()
+        .map(|f| {
+            let [a, b, c] = f.map(|v| mesh.positions[v]);
+            camera.axes * (b - a).cross(&(c - a))
+        })
+        .map(|area| if area.z < 0.0 { -area } else { area })
+        .collect();
+    let units: Vec<Vector3<f64>> =
+        areas.iter().map(|a| a.try_normalize(0.0).unwrap_or_else(Vector3::z)).collect();
+    let around = FacesAround::new(mesh.n_vertices(), faces);
+    let limit = crease.to_radians().cos() - 1e-9;
+    let normal = |face: usize, vertex: usize| {
+        let own = units[face];
+        let sum: Vector3<f64> = around
+            .of(vertex)
+            .iter()
+            .map(|&g| {
+                let bend = units[g as usize].dot(&own);
+                if bend.abs() < limit { Vector3::zeros() } else { areas[g as usize] * bend.signum() }
+            })
+            .sum();
+        sum.try_normalize(0.0).unwrap_or(own).cast::<f32>()
+    };
+    faces.iter().enumerate().map(|(f, face)| face.map(|v| normal(f, v))).collect()
+}
+
+/// The faces at each vertex, back to back.
+struct FacesAround {
+    offsets: Vec<usize>,
+    faces: Vec<u32>,
+}
+
+impl FacesAround {
+    fn new(n_vertices: usize, faces: &[[usize; 3]]) -> Self {
+        let mut offsets = vec![0; n_vertices + 1];
+        for &v in faces.iter().flatten() {
+            offsets[v + 1] += 1;
+        }
+        for v in 0..n_vertices {
+            offsets[v + 1] += offsets[v];
+        }
+        let mut next = offsets.clone();
+        let mut list = vec![0; faces.len() * 3];
+        for (f, face) in faces.iter().enumerate() {
+            for &v in face {
+                list[next[v]] = f as u32;
+                next[v] += 1;
+            }
+        }
+        Self { offsets, faces: list }
+    }
+
+    fn of(&self, vertex: usize) -> &[u32] {
+        &self.faces[self.offsets[vertex]..self.offsets[vertex + 1]]
+    }
+}

@@ -1,0 +1,202 @@
+use mesh::TriMesh;
+use nalgebra::{Point3, Rotation3, Vector3};
+
+use super::*;
+use crate::fixtures::{mesh, sphere};
+
+const FRONT: View = View::Upright { azimuth: 0.0, elevation: 0.0, up: Vector3::new(0.0, 0.0, 1.0) };
+
+fn small(view: View) -> RenderOptions {
+    RenderOptions {
+        width: 120,
+        height: 120,
+        view,
+        background: Background::Transparent,
+        ..RenderOptions::default()
+    }
+}
+
+fn covered(image: &RgbaImage) -> f64 {
+    image.pixels().iter().map(|p| f64::from(p[3]) / 255.0).sum()
+}
+
+fn light(pixel: [u8; 4]) -> f64 {
+    f64::from(pixel[0]) + f64::from(pixel[1]) + f64::from(pixel[2])
+}
+
+/// Mean absolute difference of the channels of two pictures.
+fn difference(a: &RgbaImage, b: &RgbaImage) -> f64 {
+    let (a, b) = (a.pixels().as_flattened(), b.pixels().as_flattened());
+    a.iter().zip(b).map(|(x, y)| f64::from(x.abs_diff(*y))).sum::<f64>() / a.len() as f64
+}
+
+/// A closed, lopsided body: no two principal axes alike, none symmetric.
+fn pear() -> TriMesh {
+    let mut pear = sphere(24);
+    for p in &mut pear.positions {
+        let bulge = 1.0 + 0.5 * (1.2 * p.z).sin();
+        *p = Point3::new(bulge * (p.x + 0.25 * p.x * p.x), 0.6 * bulge * p.y, 1.9 * p.z);
+    }
+    pear
+}
+
+#[test]
+fn a_sphere_is_a_disc_of_the_radius_the_margin_leaves() {
+    let options = RenderOptions { margin: 0.1, ..small(FRONT) };
+    let image = render(&sphere(60), &options);
+    let radius = (covered(&image) / std::f64::consts::PI).sqrt();
+    assert!((radius - 48.0).abs() < 0.3, "radius {radius}");
+    for y in 0..120 {
+        for x in 0..120 {
+            let distance = (f64::from(x) - 59.5).hypot(f64::from(y) - 59.5);
+            let alpha = image.pixel(x, y)[3];
+            assert!(distance > 47.0 || alpha == 255, "hole at {x}, {y}");
+            assert!(distance < 49.5 || alpha == 0, "speck at {x}, {y}");
+        }
+    }
+}
+
+#[test]
+fn a_sphere_looks_the_same_from_everywhere_and_is_lit_from_the_upper_left() {
+    let ball = sphere(40);
+    let front = render(&ball, &small(FRONT));
+    let other = render(&ball, &small(View::Upright { azimuth: 77.0, elevation: 50.0, up: Vector3::y() }));
+    assert!(difference(&front, &other) < 0.5, "{}", difference(&front, &other));
+    let [upper_left, lower_right] = [front.pixel(45, 40), front.pixel(75, 80)].map(light);
+    assert!(upper_left > 1.3 * lower_right, "{upper_left} {lower_right}");
+    // The light stands off the diagonal, yet no two points of a sphere lit alike differ.
+    assert!((light(front.pixel(59, 20)) - light(front.pixel(60, 20))).abs() < 12.0);
+}
+
+#[test]
+fn orientation_of_faces_does_not_matter() {
+    let mut flipped = pear();
+    let expected = render(&flipped, &small(View::default()));
+    for (i, face) in flipped.faces.iter_mut().enumerate() {
+        if i % 3 != 1 {
+            face.swap(1, 2);
+        }
+    }
+    assert!(difference(&expected, &render(&flipped, &small(View::default()))) < 0.05);
+}
+
+#[test]
+fn the_near_face_hides_the_far_one() {
+    // Seen from -y: red at y = -1 before blue at y = 1, in either order of the list.
+    let positions = [
+        [-1.0, 1.0, -1.0],
+        [1.0, 1.0, -1.0],
+        [0.0, 1.0, 1.0],
+        [-1.0, -1.0, -1.0],
+        [1.0, -1.0, -1.0],
+        [0.0, -1.0, 1.0],
+    ];
+    let colors = [[[0, 0, 255]; 3], [[255, 0, 0]; 3]].concat();
+    for faces in [[[0, 1, 2], [3, 4, 5]], [[3, 4, 5], [0, 1, 2]]] {
+        let options = RenderOptions { surface: Surface::Colors(colors.clone()), ..small(FRONT) };
+        let [r, _, b, a] = render(&mesh(&positions, &faces), &options).pixel(60, 70);
+        assert!(a == 255 && r > 150 && b < 90, "{r} {b}");
+        let back = View::Upright { azimuth: 180.0, elevation: 0.0, up: Vector3::z() };
+        let [r, _, b, _] =
+            render(&mesh(&positions, &faces), &RenderOptions { view: back, ..options }).pixel(60, 70);
+        assert!(b > 150 && r < 90, "{r} {b}");
+    }
+}
+
+#[test]
+fn principal_axes_undo_a_motion_and_follow_the_aspect() {
+    let still = pear();
+    let motion = Rotation3::from_euler_angles(0.4, 1.1, -2.0);
+    let mut moved = still.clone();
+    moved.positions.iter_mut().for_each(|p| *p = motion * (*p * 3.5) + Vector3::new(5.0, -7.0, 11.0));
+    let expected = render(&still, &small(View::Principal));
+    assert!(difference(&expected, &render(&moved, &small(View::Principal))) < 0.05);
+    // A mirror image is seen from its other side: shaded differently, the same outline.
+    let mut mirrored = still.clone();
+    mirrored.positions.iter_mut().for_each(|p| p.y = -p.y);
+    let mirrored = render(&mirrored, &small(View::Principal));
+    assert!((covered(&expected) - covered(&mirrored)).abs() < 1.0);
+
+    let extent = |image: &RgbaImage| {
+        let seen = |x, y| image.pixel(x, y)[3] > 0;
+        let columns = (0..image.width()).filter(|&x| (0..image.height()).any(|y| seen(x, y))).count();
+        let rows = (0..image.height()).filter(|&y| (0..image.width()).any(|x| seen(x, y))).count();
+        (columns, rows)
+    };
+    let (wide, high) = extent(&expected);
+    assert!(high > wide, "upright in a square picture");
+    let (wide, high) = extent(&render(&still, &RenderOptions { width: 200, ..small(View::Principal) }));
+    assert!(wide > high, "lying in a wide one");
+}
+
+#[test]
+fn nothing_to_draw_gives_an_empty_picture_and_no_panic() {
+    let triangle = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]];
+    let mut far = triangle;
+    far[1][0] = 1e308;
+    far[2][2] = -1e308;
+    let cases = [
+        TriMesh::default(),
+        mesh(&triangle, &[]),
+        mesh(&triangle, &[[0, 0, 1]]),
+        mesh(&triangle, &[[0, 1, 9]]),
+        mesh(&[[0.0; 3]; 3], &[[0, 1, 2]]),
+        mesh(&[[f64::NAN; 3], [0.0; 3], [1.0; 3]], &[[0, 1, 2]]),
+        mesh(&[[0.0; 3], [1.0; 3], [2.0; 3]], &[[0, 1, 2]]),
+    ];
+    let mut sizes = vec![small(FRONT), small(View::Principal)];
+    sizes.push(RenderOptions { width: 0, height: 0, supersampling: 0, margin: 9.0, ..small(FRONT) });
+    for options in &sizes {
+        for case in &cases {
+            assert_eq!(covered(&render(case, options)), 0.0, "{case:?}");
+        }
+        let _ = render(&mesh(&far, &[[0, 1, 2]]), options);
+        assert!(covered(&render(&mesh(&triangle, &[[0, 1, 2]]), options)) > 0.0);
+    }
+    let missing = Surface::Scalars { values: vec![f64::NAN], range: Some([3.0, 3.0]), isolines: 4 };
+    let options = RenderOptions { surface: missing, ..small(FRONT) };
+    assert!(covered(&render(&mesh(&triangle, &[[0, 1, 2]]), &options)) > 0.0);
+}
+
+#[test]
+fn scalars_run_through_the_map_with_lines_at_equal_steps() {
+    let square = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 0.0, 1.0], [0.0, 0.0, 1.0]];
+    let flat = mesh(&square, &[[0, 1, 2], [0, 2, 3]]);
+    let surface = |isolines| Surface::Scalars { values: vec![0.0, 1.0, 1.0, 0.0], range: None, isolines };
+    let image = |isolines| render(&flat, &RenderOptions { surface: surface(isolines), ..small(FRONT) });
+    let [low, high] = [image(0).pixel(8, 60), image(0).pixel(111, 60)];
+    assert!(low[2] > low[1] && high[1] > high[2], "from violet to yellow: {low:?} {high:?}");
+    let (plain, lined) = (image(0), image(4));
+    let darker = |x: u32| light(lined.pixel(x, 60)) < 0.93 * light(plain.pixel(x, 60));
+    let lines = (8..112).filter(|&x| darker(x) && !darker(x - 1)).count();
+    assert_eq!(lines, 3, "at a quarter, a half and three quarters");
+}
+
+#[test]
+fn white_backgrounds_are_opaque_and_pictures_repeat() {
+    let options = RenderOptions { background: Background::White, ..small(View::default()) };
+    let image = render(&pear(), &options);
+    assert_eq!(image.pixel(0, 0), [255; 4]);
+    assert!(image.pixels().iter().all(|p| p[3] == 255));
+    assert_eq!(image, render(&pear(), &options));
+}
+
+#[test]
+fn sharp_edges_stay_sharp_below_the_crease_angle() {
+    // A roof seen from the front left and right: two slopes that meet at a right angle.
+    let roof = [
+        [-1.0, -1.0, 0.0],
+        [-1.0, 1.0, 0.0],
+        [0.0, 1.0, 1.0],
+        [0.0, -1.0, 1.0],
+        [1.0, -1.0, 0.0],
+        [1.0, 1.0, 0.0],
+    ];
+    let faces = [[0, 1, 2], [0, 2, 3], [3, 2, 5], [3, 5, 4]];
+    let above = View::Upright { azimuth: 0.0, elevation: 90.0, up: Vector3::z() };
+    let jump = |crease| {
+        let image = render(&mesh(&roof, &faces), &RenderOptions { crease, ..small(above) });
+        (light(image.pixel(57, 60)) - light(image.pixel(62, 60))).abs()
+    };
+    assert!(jump(30.0) > 4.0 * jump(90.0), "{} {}", jump(30.0), jump(90.0));
+}
