@@ -49,8 +49,15 @@ impl Orientation {
             let mut at = 0;
             while let Some(&face) = members.get(at) {
                 at += 1;
-                for corner in (0..3).map(|slot| CornerId((3 * face + slot) as u32)) {
-                    let Some(twin) = topology.across(corner) else {
+                let corners = [0, 1, 2].map(|slot| CornerId((3 * face + slot) as u32));
+                let mut across = corners.map(|corner| topology.across(corner).map(|twin| (twin, corner)));
+                // In an order that turning faces over does not change, so that a second run finds
+                // nothing to do even where no orientation is right.
+                across.sort_unstable_by_key(|pair| {
+                    pair.map(|(twin, corner)| (twin.face(), topology.opposite_edge(corner)))
+                });
+                for pair in across {
+                    let Some((twin, corner)) = pair else {
                         sealed = false;
                         continue;
                     };

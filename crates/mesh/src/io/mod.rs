@@ -1,9 +1,11 @@
 //! Mesh files: OFF, OBJ, PLY, STL, TOSCA's `.vert`/`.tri` pairs and MATLAB `.mat`.
 //!
 //! The format follows from the extension, in upper or lower case. Vertices keep the order of the
-//! file, used by a face or not; polygons become triangles; everything else a file may hold is
-//! passed over. What cannot be read faithfully is a [`MeshError`] that names file, place, fault and
-//! remedy: readers never panic, and reserve no more than the file's size warrants.
+//! file, used by a face or not. Polygons become triangles: quadrilaterals along the better diagonal,
+//! larger ones as fans, so concave ones of five corners and more should be cut beforehand.
+//! Everything else a file may hold is passed over. What cannot be read faithfully is a [`MeshError`]
+//! that names file, place, fault and remedy: readers never panic, and reserve no more than the
+//! file's size warrants.
 
 mod assembly;
 mod atomic;

@@ -78,7 +78,7 @@ impl<'a> Feed<'a> {
     fn advance(&mut self) -> Result<(), Located> {
         self.current.clear();
         self.taken = 0;
-        while let Some(line) = self.lines.next() {
+        for line in self.lines.by_ref() {
             self.line = line.number;
             let mut tokens = line.tokens();
             match tokens.next() {

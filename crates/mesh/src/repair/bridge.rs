@@ -203,10 +203,7 @@ impl BoxTree {
     fn compare(&self, here: &Node, there: &Node, nearest: &mut [Candidate]) {
         for p in &self.items[here.items.clone()] {
             for q in self.items[there.items.clone()].iter().filter(|q| q.group != p.group) {
-                let mut gap = [0.0; 3];
-                for axis in 0..3 {
-                    gap[axis] = p.position[axis] - q.position[axis];
-                }
+                let gap = [0, 1, 2].map(|axis| p.position[axis] - q.position[axis]);
                 let ends = [p.vertex.min(q.vertex), p.vertex.max(q.vertex)];
                 let candidate = Candidate { sq_length: sq_norm(gap), ends };
                 nearest[p.group as usize].improve(candidate);
@@ -219,10 +216,7 @@ impl BoxTree {
 /// Squared distance between two boxes; never above the squared distance of points in them, rounding
 /// included, since every step is monotonic.
 fn sq_gap(a: &Node, b: &Node) -> f64 {
-    let mut gap = [0.0; 3];
-    for axis in 0..3 {
-        gap[axis] = (a.low[axis] - b.high[axis]).max(b.low[axis] - a.high[axis]).max(0.0);
-    }
+    let gap = [0, 1, 2].map(|axis| (a.low[axis] - b.high[axis]).max(b.low[axis] - a.high[axis]).max(0.0));
     sq_norm(gap)
 }
 

@@ -41,6 +41,10 @@ impl Repaired {
 /// Diagonal of the bounding box from which on areas come near the end of the numbers, in mesh units.
 const MAX_DIAGONAL: f64 = 1e150;
 
+/// Passes of merging vertices: merging may make faces equal, and taking them out a new boundary with
+/// more to weld. Real meshes need two; the limit keeps a contrived one from taking one pass a vertex.
+const MAX_PASSES: usize = 16;
+
 /// Makes any mesh fit for algorithms: proper faces, and one surface or a said reason why not.
 ///
 /// Always done: faces that name a vertex twice and repeated faces are removed, edges of length zero
@@ -71,11 +75,16 @@ pub fn repair(mesh: &TriMesh, options: &RepairOptions) -> Result<Repaired, MeshE
     report.degenerate_faces = remove_degenerate(&mut faces);
     report.duplicate_faces = remove_repeated(n_input, &mut faces);
     let mut merged = DisjointSets::new(n_input);
-    report.welded_vertices = weld::weld(&mesh.positions, &faces, options.weld, &mut merged);
-    report.collapsed_vertices = weld::collapse_zero_edges(&mesh.positions, &faces, &mut merged);
-    if report.welded_vertices + report.collapsed_vertices > 0 {
+    for _ in 0..MAX_PASSES {
+        let welded = weld::weld(&mesh.positions, &faces, options.weld, &mut merged);
+        let collapsed = weld::collapse_zero_edges(&mesh.positions, &faces, &mut merged);
+        if welded + collapsed == 0 {
+            break;
+        }
         faces.iter_mut().flatten().for_each(|v| *v = VertexId(merged.find(v.0)));
-        report.zero_length_faces = remove_degenerate(&mut faces);
+        report.welded_vertices += welded;
+        report.collapsed_vertices += collapsed;
+        report.zero_length_faces += remove_degenerate(&mut faces);
         report.duplicate_faces += remove_repeated(n_input, &mut faces);
     }
     if faces.is_empty() {

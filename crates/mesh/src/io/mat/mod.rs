@@ -1,6 +1,8 @@
 //! MATLAB 5 files with a surface as TOSCA stores it: a struct with the fields `X Y Z TRIV`.
 
 mod container;
+#[cfg(test)]
+pub(super) mod sample;
 mod surface;
 
 pub(super) use surface::parse;

@@ -196,3 +196,109 @@ impl Surface {
         finish(positions, faces)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use std::io::Write;
+
+    use super::super::sample::{PLAIN, Style};
+    use super::*;
+    use crate::error::Place;
+    use crate::shapes;
+
+    fn fault(bytes: &[u8]) -> Fault {
+        parse(bytes).unwrap_err().fault
+    }
+
+    #[test]
+    fn surfaces_in_every_encoding() {
+        let torus = shapes::torus(8, 5, 2.0, 0.5);
+        for index_type in [4, 5, 7, 9] {
+            for (big_endian, compressed) in [(false, false), (false, true), (true, false), (true, true)] {
+                let style = Style { big_endian, compressed, index_type };
+                assert_eq!(parse(&style.surface(&torus)).unwrap(), torus);
+            }
+        }
+    }
+
+    #[test]
+    fn rows_are_as_good_as_columns() {
+        let tetrahedron = shapes::tetrahedron(0);
+        let mut fields = PLAIN.fields(&tetrahedron);
+        let x: Vec<f64> = tetrahedron.positions.iter().map(|p| p.x).collect();
+        fields[0].1 = PLAIN.matrix("", 9, 1, 4, &x);
+        assert_eq!(parse(&PLAIN.file(&[PLAIN.structure("s", &fields)])).unwrap(), tetrahedron);
+    }
+
+    #[test]
+    fn what_is_no_surface_is_said() {
+        let other = PLAIN.file(&[PLAIN.matrix("other", 9, 1, 1, &[1.0])]);
+        assert!(matches!(fault(&other), Fault::Unsupported { what, .. } if what.contains("it holds other")));
+        let empty = PLAIN.file(&[]);
+        assert!(matches!(fault(&empty), Fault::Unsupported { what, .. } if what.contains("no variables")));
+        assert!(matches!(fault(b"MATLAB 7.3 MAT-file"), Fault::Unsupported { .. }));
+        assert!(matches!(fault(b"\x89HDF\r\n"), Fault::Unsupported { .. }));
+        assert!(matches!(fault(&[7; 300]), Fault::WrongFormat { .. }));
+        assert!(matches!(fault(b"OFF"), Fault::WrongFormat { .. }));
+        assert_eq!(fault(b"  "), Fault::Empty);
+    }
+
+    #[test]
+    fn faults_in_the_fields_are_named() {
+        let mesh = shapes::tetrahedron(0);
+        let with = |i: usize, matrix: Vec<u8>| {
+            let mut fields = PLAIN.fields(&mesh);
+            fields[i].1 = matrix;
+            fault(&PLAIN.file(&[PLAIN.structure("surface", &fields)]))
+        };
+        let nan = with(1, PLAIN.matrix("", 9, 4, 1, &[0.0, 0.0, f64::NAN, 0.0]));
+        assert!(matches!(nan, Fault::NonFinite { vertex: 3, .. }));
+        assert!(matches!(with(1, PLAIN.matrix("", 9, 3, 1, &[0.0; 3])), Fault::Syntax { .. }));
+        assert!(matches!(with(3, PLAIN.matrix("", 9, 3, 4, &[1.0; 12])), Fault::Syntax { .. }));
+        let index = |index: &str| Fault::IndexOutOfRange { index: index.into(), first: 1, last: 4 };
+        assert_eq!(with(3, PLAIN.matrix("", 9, 1, 3, &[1.0, 2.0, 5.0])), index("5"));
+        assert_eq!(with(3, PLAIN.matrix("", 9, 1, 3, &[1.0, 2.0, 2.5])), index("2.5"));
+        assert_eq!(with(3, PLAIN.matrix("", 9, 1, 3, &[1.0, 2.0, f64::NAN])), index("NaN"));
+        assert_eq!(with(3, PLAIN.matrix("", 9, 0, 3, &[])), Fault::NoFaces { n_vertices: 4 });
+        // A header that promises more numbers than the element holds.
+        assert!(matches!(
+            with(0, PLAIN.matrix("", 9, 1_000_000, 1_000_000, &[0.0; 4])),
+            Fault::Truncated { promised: 1_000_000_000_000, found: 4, .. }
+        ));
+        assert!(matches!(with(0, PLAIN.structure("", &[])), Fault::Syntax { .. }));
+    }
+
+    #[test]
+    fn a_variable_longer_than_the_file_is_cut_short() {
+        let bytes = PLAIN.surface(&shapes::tetrahedron(0));
+        let cut = parse(&bytes[..bytes.len() - 8]).unwrap_err();
+        assert!(matches!(cut.fault, Fault::Truncated { .. }));
+        assert!(matches!(cut.place, Place::Byte(byte) if byte > 128));
+    }
+
+    #[test]
+    fn a_bomb_is_cut_off() {
+        let style = Style { compressed: true, ..PLAIN };
+        // A column of 320 MB of zeros, declared as such, in a file of a few.
+        let length = 320u32 << 20;
+        let triangle = PLAIN.fields(&shapes::tetrahedron(0));
+        let mut small = style.structure("surface", &triangle);
+        let start =
+            small.len() - [&triangle[1], &triangle[2], &triangle[3]].map(|f| f.1.len()).iter().sum::<usize>();
+        let column = start - triangle[0].1.len();
+        let head = 8 + 16 + 16 + 8;
+        small[column + head + 4..column + head + 8].copy_from_slice(&length.to_le_bytes());
+        small.truncate(column + head + 8);
+        small[4..8].copy_from_slice(&(length + 4096).to_le_bytes());
+        let mut zlib = flate2::write::ZlibEncoder::new(Vec::new(), flate2::Compression::fast());
+        zlib.write_all(&small).unwrap();
+        let zeros = vec![0; 1 << 20];
+        (0..length >> 20).for_each(|_| zlib.write_all(&zeros).unwrap());
+        let data = zlib.finish().unwrap();
+        let mut bytes = PLAIN.file(&[]);
+        bytes.extend([COMPRESSED.to_le_bytes(), (data.len() as u32).to_le_bytes()].concat());
+        bytes.extend(data);
+        assert!(bytes.len() < 4 << 20);
+        assert!(matches!(fault(&bytes), Fault::Inflates { .. }), "{:?}", fault(&bytes));
+    }
+}

@@ -1,0 +1,249 @@
+//! Files as a whole: round trips, names, pairs, errors that say what to do, nothing half-written.
+
+// Helper functions are test code too, which clippy cannot see.
+#![allow(clippy::unwrap_used)]
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use mesh::io::{is_mesh_path, read, write, write_scalar_field};
+use mesh::{Fault, MeshError, TriMesh, VertexId, shapes};
+use nalgebra::Point3;
+use proptest::prelude::*;
+use tempfile::TempDir;
+
+fn folder() -> TempDir {
+    tempfile::tempdir().unwrap()
+}
+
+fn names_in(folder: &TempDir) -> Vec<String> {
+    let mut names: Vec<String> =
+        fs::read_dir(folder.path()).unwrap().map(|e| e.unwrap().file_name().into_string().unwrap()).collect();
+    names.sort();
+    names
+}
+
+/// The fault in the file of this content.
+fn fault_of(name: &str, content: &[u8]) -> Fault {
+    let folder = folder();
+    let path = folder.path().join(name);
+    fs::write(&path, content).unwrap();
+    match read(&path) {
+        Err(MeshError::File { path: named, fault, .. }) if named == path => fault,
+        other => panic!("{other:?}"),
+    }
+}
+
+const EXACT: [&str; 6] = ["m.off", "m.obj", "m.ply", "m.vert", "m.tri", "M.PLY"];
+
+#[test]
+fn awkward_numbers_and_loose_vertices_survive_a_round_trip() {
+    let numbers = [0.1, -0.0, 1e300, -5e-324, 1.0 / 3.0, f64::MAX, 123_456_789.123_456_79, 1e-7, 42.0];
+    let positions = numbers.iter().map(|&x| Point3::new(x, -x, x / 7.0)).collect();
+    let faces = vec![[1, 8, 3].map(VertexId), [3, 8, 5].map(VertexId), [3, 3, 5].map(VertexId)];
+    let mesh = TriMesh { positions, faces };
+    for name in EXACT {
+        let folder = folder();
+        let path = folder.path().join(name);
+        write(&path, &mesh).unwrap();
+        let back = read(&path).unwrap();
+        assert_eq!(back.faces, mesh.faces, "{name}");
+        for (p, q) in back.positions.iter().zip(&mesh.positions) {
+            assert!((0..3).all(|i| p[i].to_bits() == q[i].to_bits()), "{name}: {p} {q}");
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(40))]
+
+    #[test]
+    fn any_mesh_survives_a_round_trip(
+        points in prop::collection::vec(prop::array::uniform3(prop::num::f64::NORMAL), 1..30),
+        corners in prop::collection::vec(prop::array::uniform3(any::<prop::sample::Index>()), 1..30),
+    ) {
+        let n = points.len();
+        let mesh = TriMesh {
+            positions: points.into_iter().map(Point3::from).collect(),
+            faces: corners.iter().map(|f| f.map(|i| VertexId::from(i.index(n)))).collect(),
+        };
+        let folder = folder();
+        for name in EXACT {
+            let path = folder.path().join(name);
+            write(&path, &mesh).unwrap();
+            prop_assert_eq!(&read(&path).unwrap(), &mesh);
+        }
+    }
+}
+
+#[test]
+fn stl_keeps_the_triangles() {
+    let sphere = shapes::icosphere(2);
+    let folder = folder();
+    let path = folder.path().join("s.StL");
+    write(&path, &sphere).unwrap();
+    let back = read(&path).unwrap();
+    assert_eq!((back.n_vertices(), back.n_faces()), (sphere.n_vertices(), sphere.n_faces()));
+    assert!((back.area() - sphere.area()).abs() < 1e-5);
+}
+
+#[test]
+fn names_of_meshes() {
+    for name in ["a.off", "a.OBJ", "x/a.ply", "a.stl", "cat0.vert", "CAT0.VERT", "a.b.mat"] {
+        assert!(is_mesh_path(Path::new(name)), "{name}");
+    }
+    for name in ["cat0.tri", "CAT0.TRI", "a.txt", "off", "a", "", ".off"] {
+        assert!(!is_mesh_path(Path::new(name)), "{name}");
+    }
+}
+
+#[test]
+fn a_pair_is_found_in_either_case_and_missed_by_name() {
+    let tetrahedron = shapes::tetrahedron(0);
+    let folder = folder();
+    write(&folder.path().join("t.vert"), &tetrahedron).unwrap();
+    assert_eq!(names_in(&folder), ["t.tri", "t.vert"]);
+    for (vert, tri) in [("T.VERT", "T.TRI"), ("u.VERT", "u.tri"), ("v.vert", "v.TRI")] {
+        for (from, to) in [("t.vert", vert), ("t.tri", tri)] {
+            fs::copy(folder.path().join(from), folder.path().join(to)).unwrap();
+        }
+        assert_eq!(read(&folder.path().join(vert)).unwrap(), tetrahedron);
+        assert_eq!(read(&folder.path().join(tri)).unwrap(), tetrahedron);
+    }
+    fs::remove_file(folder.path().join("t.tri")).unwrap();
+    let error = read(&folder.path().join("t.vert")).unwrap_err().to_string();
+    assert!(error.contains("its other half t.tri is missing"), "{error}");
+}
+
+#[test]
+fn an_empty_half_of_a_pair_is_named() {
+    let folder = folder();
+    let path = folder.path().join("victoria14.vert");
+    write(&path, &shapes::tetrahedron(0)).unwrap();
+    fs::write(path.with_extension("tri"), "").unwrap();
+    let error = read(&path).unwrap_err().to_string();
+    assert!(error.ends_with("victoria14.tri: the file is empty; copy or export it again"), "{error}");
+}
+
+#[test]
+fn errors_name_file_place_fault_and_remedy() {
+    let folder = folder();
+    let path = folder.path().join("broken.off");
+    fs::write(&path, "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 7\n").unwrap();
+    let expected = format!(
+        "{}, line 6: a face names vertex 7, but the file's vertices run from 0 to 2; correct or remove the face",
+        path.display()
+    );
+    assert_eq!(read(&path).unwrap_err().to_string(), expected);
+}
+
+#[test]
+fn empty_and_foreign_files_are_refused_in_every_format() {
+    for name in ["a.off", "a.obj", "a.ply", "a.stl", "a.mat", "a.tri"] {
+        if name != "a.tri" {
+            assert_eq!(fault_of(name, b""), Fault::Empty, "{name}");
+            assert_eq!(fault_of(name, b" \n\t\r\n"), Fault::Empty, "{name}");
+        }
+        let picture = b"\x89PNG\r\n\x1a\n\x00\x00\x00\rIHDR and so on \xff\xfe\xfd";
+        let fault = fault_of(name, picture);
+        let is_said = matches!(
+            fault,
+            Fault::WrongFormat { .. }
+                | Fault::Syntax { .. }
+                | Fault::NoFaces { .. }
+                | Fault::NoPartner { .. }
+        );
+        assert!(is_said, "{name}: {fault:?}");
+    }
+}
+
+#[test]
+fn paths_that_are_no_mesh_files_are_refused() {
+    let folder = folder();
+    let missing = read(&folder.path().join("none.off")).unwrap_err();
+    assert!(matches!(missing, MeshError::Io { action: "read", .. }));
+    assert!(missing.to_string().contains("none.off"));
+    let directory = folder.path().join("folder.off");
+    fs::create_dir(&directory).unwrap();
+    assert!(read(&directory).unwrap_err().to_string().contains("not a regular file"));
+    for name in ["a.txt", "a"] {
+        let path = PathBuf::from(name);
+        assert!(matches!(read(&path), Err(MeshError::UnknownFormat { .. })));
+        assert!(matches!(write(&path, &shapes::cube(0)), Err(MeshError::UnknownFormat { .. })));
+    }
+}
+
+#[test]
+fn what_cannot_be_written_leaves_the_old_file_and_no_other() {
+    let folder = folder();
+    let cube = shapes::cube(0);
+    for name in ["a.off", "a.obj", "a.ply", "a.stl", "a.vert"] {
+        write(&folder.path().join(name), &cube).unwrap();
+    }
+    let before = names_in(&folder);
+    let broken = |change: &dyn Fn(&mut TriMesh)| {
+        let mut mesh = cube.clone();
+        change(&mut mesh);
+        mesh
+    };
+    let nan = broken(&|m| m.positions[2].y = f64::NAN);
+    let index = broken(&|m| m.faces[5][1] = VertexId(8));
+    let huge = broken(&|m| m.positions[1].x = 1e39);
+    for name in ["a.off", "a.obj", "a.ply", "a.stl", "a.vert"] {
+        let path = folder.path().join(name);
+        assert!(matches!(write(&path, &nan), Err(MeshError::NonFinitePosition { vertex: VertexId(2) })));
+        let out_of_range = write(&path, &index);
+        assert!(matches!(out_of_range, Err(MeshError::FaceOutOfRange { face: 5, n_vertices: 8, .. })));
+        assert_eq!(read(&path).unwrap().n_faces(), 12);
+    }
+    let overflow = write(&folder.path().join("a.stl"), &huge);
+    assert!(matches!(overflow, Err(MeshError::CoordinateOverflow { vertex: VertexId(1), .. })));
+    assert_eq!(read(&folder.path().join("a.stl")).unwrap().n_faces(), 12);
+    let mat = write(&folder.path().join("a.mat"), &cube);
+    assert!(matches!(mat, Err(MeshError::ReadOnlyFormat { extension: "mat", .. })));
+    let nowhere = write(&folder.path().join("none/a.off"), &cube);
+    assert!(matches!(nowhere, Err(MeshError::Io { action: "write", .. })));
+    assert_eq!(names_in(&folder), before);
+}
+
+#[cfg(unix)]
+#[test]
+fn new_files_have_ordinary_permissions() {
+    use std::os::unix::fs::PermissionsExt;
+    let folder = folder();
+    let (ours, ordinary) = (folder.path().join("a.off"), folder.path().join("b"));
+    write(&ours, &shapes::cube(0)).unwrap();
+    fs::write(&ordinary, "").unwrap();
+    let mode = |path: &Path| fs::metadata(path).unwrap().permissions().mode();
+    assert_eq!(mode(&ours), mode(&ordinary));
+}
+
+#[test]
+fn a_scalar_field_is_a_coloured_ply() {
+    let cube = shapes::cube(0);
+    let values = [0.0, 1.0, 2.0, f64::INFINITY, f64::NAN, 5.0, 6.0, 7.0];
+    let folder = folder();
+    let path = folder.path().join("field.ply");
+    write_scalar_field(&path, &cube, &values, "distance").unwrap();
+    assert_eq!(read(&path).unwrap(), cube);
+    let bytes = fs::read(&path).unwrap();
+    let header = "property double distance\nproperty uchar red\nproperty uchar green\nproperty uchar blue\n";
+    assert!(bytes.windows(header.len()).any(|w| w == header.as_bytes()));
+    let end = b"end_header\n";
+    let start = bytes.windows(end.len()).position(|w| w == end).unwrap() + end.len();
+    let row = |v: usize| &bytes[start + 35 * v..start + 35 * (v + 1)];
+    assert_eq!(row(5)[24..32], 5f64.to_le_bytes());
+    assert_eq!(
+        [&row(0)[32..], &row(3)[32..], &row(4)[32..], &row(7)[32..]],
+        [[68, 1, 84], [128; 3], [128; 3], [253, 231, 37]]
+    );
+
+    let wrong = |path: &Path, values: &[f64], name: &str| write_scalar_field(path, &cube, values, name);
+    let off = folder.path().join("field.off");
+    assert!(matches!(wrong(&off, &values, "d"), Err(MeshError::ScalarFieldNotPly { .. })));
+    let short = wrong(&path, &values[1..], "d");
+    assert!(matches!(short, Err(MeshError::FieldLength { values: 7, n_vertices: 8 })));
+    for name in ["", "x", "red", "two words", "1st", "d\nelement", "\u{e9}"] {
+        assert!(matches!(wrong(&path, &values, name), Err(MeshError::FieldName { .. })), "{name}");
+    }
+}
