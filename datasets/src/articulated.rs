@@ -1,0 +1,177 @@
+//! The built-in dataset: labelled shapes of articulated families.
+
+use mesh::TriMesh;
+use rayon::prelude::*;
+
+use crate::error::DatasetError;
+use crate::model::Model;
+use crate::pose::PosedSkeleton;
+use crate::shape::{posed_positions, rest_surface, shuffled};
+use crate::stream::{Purpose, Stream};
+use crate::{cat, centaur, david};
+
+/// Area of every family's rest surface, in squared units: size alone must not tell families apart.
+/// Lengths come out like centimetres of a grown man.
+const AREA: f64 = 18_000.0;
+
+/// A family of shapes: one body in many poses.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Family {
+    /// A cat; nine shapes.
+    Cat,
+    /// The body of a horse with a man's trunk, arms and head; six shapes.
+    Centaur,
+    /// A man; fifteen shapes.
+    David,
+}
+
+impl Family {
+    /// All families, in the order of the dataset.
+    #[must_use]
+    pub fn all() -> [Self; 3] {
+        [Self::Cat, Self::Centaur, Self::David]
+    }
+
+    /// The class label: `cat`, `centaur` or `david`.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Cat => "cat",
+            Self::Centaur => "centaur",
+            Self::David => "david",
+        }
+    }
+
+    /// Number of shapes of the family in the dataset.
+    #[must_use]
+    pub fn n_shapes(self) -> usize {
+        match self {
+            Self::Cat => 9,
+            Self::Centaur => 6,
+            Self::David => 15,
+        }
+    }
+
+    pub(crate) fn model(self) -> Model {
+        match self {
+            Self::Cat => cat::model(),
+            Self::Centaur => centaur::model(),
+            Self::David => david::model(),
+        }
+    }
+}
+
+/// Options of [`articulated`].
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ArticulatedOptions {
+    /// Decides joint angles, triangulations and vertex numbers. The same seed gives the same bytes on
+    /// any number of threads. Default: 1.
+    pub seed: u64,
+    /// Vertices of every shape, exactly; 1,000 to 1,000,000. Default: 3,400.
+    pub n_vertices: usize,
+}
+
+impl Default for ArticulatedOptions {
+    fn default() -> Self {
+        Self { seed: 1, n_vertices: 3400 }
+    }
+}
+
+impl ArticulatedOptions {
+    /// Fewest vertices with which the bodies are still recognisable.
+    pub const MIN_VERTICES: usize = 1_000;
+    /// Most vertices offered.
+    pub const MAX_VERTICES: usize = 1_000_000;
+
+    /// Checks the ranges.
+    ///
+    /// # Errors
+    /// [`DatasetError::TooFewVertices`] and [`DatasetError::TooManyVertices`].
+    pub fn validate(&self) -> Result<(), DatasetError> {
+        let n_vertices = self.n_vertices;
+        if n_vertices < Self::MIN_VERTICES {
+            return Err(DatasetError::TooFewVertices { n_vertices, least: Self::MIN_VERTICES });
+        }
+        if n_vertices > Self::MAX_VERTICES {
+            return Err(DatasetError::TooManyVertices { n_vertices, most: Self::MAX_VERTICES });
+        }
+        Ok(())
+    }
+}
+
+/// A mesh with its name and class.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LabeledShape {
+    /// Family and number, such as `cat0`.
+    pub name: String,
+    /// Family, such as `cat`.
+    pub label: String,
+    /// A closed surface without handles, oriented outwards; `z` is up and the ground at zero.
+    pub mesh: TriMesh,
+}
+
+/// The built-in dataset: 9 cats, 6 centaurs and 15 davids, in that order.
+///
+/// All shapes of a family are one body bent into different poses, so their surfaces are nearly
+/// isometric. Each is triangulated anew on a lattice of its own and numbered at random: nothing in two
+/// meshes corresponds. All families have the same area at rest. Shapes are made in parallel.
+///
+/// # Errors
+/// As [`ArticulatedOptions::validate`], and [`DatasetError::NoSurface`].
+pub fn articulated(options: &ArticulatedOptions) -> Result<Vec<LabeledShape>, DatasetError> {
+    options.validate()?;
+    let models = Family::all().map(Family::model);
+    let shapes: Vec<(usize, usize)> = Family::all()
+        .iter()
+        .enumerate()
+        .flat_map(|(f, family)| (0..family.n_shapes()).map(move |pose| (f, pose)))
+        .collect();
+    shapes.into_par_iter().map(|(f, pose)| shape(Family::all()[f], &models[f], pose, options)).collect()
+}
+
+/// One shape of the dataset, the same as in the list of [`articulated`].
+///
+/// Pose 0 is the rest pose, on all fours or standing with arms spread. Poses beyond the family's
+/// [`n_shapes`](Family::n_shapes) are further random variations.
+///
+/// # Errors
+/// As [`articulated`].
+pub fn articulated_shape(
+    family: Family,
+    pose: usize,
+    options: &ArticulatedOptions,
+) -> Result<LabeledShape, DatasetError> {
+    options.validate()?;
+    shape(family, &family.model(), pose, options)
+}
+
+fn shape(
+    family: Family,
+    model: &Model,
+    pose: usize,
+    options: &ArticulatedOptions,
+) -> Result<LabeledShape, DatasetError> {
+    let ArticulatedOptions { seed, n_vertices } = *options;
+    let name = format!("{}{pose}", family.name());
+    let stream = |purpose| Stream::new(seed, family as usize, pose, purpose);
+    let surface = rest_surface(model, n_vertices, &mut stream(Purpose::Lattice))
+        .ok_or_else(|| DatasetError::NoSurface { shape: name.clone(), n_vertices, seed })?;
+    let posed = posed_skeleton(model, pose, &mut stream(Purpose::Pose));
+    let positions = posed_positions(&surface, &posed, scale(model));
+    let mesh = shuffled(&surface, &positions, &mut stream(Purpose::Numbering));
+    Ok(LabeledShape { name, label: family.name().to_owned(), mesh })
+}
+
+/// From body units to the units of the dataset.
+pub(crate) fn scale(model: &Model) -> f64 {
+    (AREA / model.area).sqrt()
+}
+
+/// Typical poses in turn, each varied at random; number 0 is the rest pose as it is.
+pub(crate) fn posed_skeleton<'a>(model: &'a Model, pose: usize, stream: &mut Stream) -> PosedSkeleton<'a> {
+    let typical = &model.poses[pose % model.poses.len()];
+    if pose == 0 {
+        return PosedSkeleton::new(&model.skeleton, typical);
+    }
+    PosedSkeleton::new(&model.skeleton, &typical.varied(&model.skeleton, stream))
+}

@@ -1,0 +1,111 @@
+//! How the surface crosses one cube of the lattice, for each of the 256 sign patterns.
+//!
+//! Nothing is tabulated by hand: on every face of the cube the inside corners are cut off by
+//! directed segments, and the segments chain into loops around the cube. Two cubes that share a face
+//! see the same signs on it and so draw the same segments: the loops of all cubes fit together into
+//! one closed oriented surface.
+
+/// The corners of a cube: corner `c` sits at `(c & 1, c >> 1 & 1, c >> 2 & 1)`.
+pub(crate) const fn corner(c: usize) -> [usize; 3] {
+    [c & 1, c >> 1 & 1, c >> 2 & 1]
+}
+
+/// Lower corner and direction of the twelve edges.
+pub(crate) const EDGES: [(usize, usize); 12] = [
+    (0, 0), (2, 0), (4, 0), (6, 0), // along x
+    (0, 1), (1, 1), (4, 1), (5, 1), // along y
+    (0, 2), (1, 2), (2, 2), (3, 2), // along z
+];
+
+/// The corners of each face in counter-clockwise order seen from outside.
+const FACES: [[usize; 4]; 6] =
+    [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
+
+/// A closed polygon of the surface in a cube: the cube edges it crosses, counter-clockwise seen from
+/// outside the body.
+pub(crate) type Loop = Vec<u8>;
+
+/// The loops of every sign pattern; bit `c` of the pattern is set when corner `c` is inside.
+pub(crate) fn all_loops() -> Vec<Vec<Loop>> {
+    (0..256).map(loops).collect()
+}
+
+fn edge_between(a: usize, b: usize) -> usize {
+    let (low, axis) = (a.min(b), (a ^ b).trailing_zeros() as usize);
+    EDGES.iter().position(|&e| e == (low, axis)).unwrap_or(EDGES.len())
+}
+
+fn loops(pattern: usize) -> Vec<Loop> {
+    let inside = |c: usize| pattern >> c & 1 == 1;
+    let mut next = [None; 12];
+    for face in FACES {
+        for i in 0..4 {
+            let (before, first) = (face[(i + 3) % 4], face[i]);
+            if inside(before) || !inside(first) {
+                continue;
+            }
+            // A run of inside corners starts here; walk to its end. Diagonal runs stay apart.
+            let last = (0..4).take_while(|k| inside(face[(i + k) % 4])).last().unwrap_or(0);
+            let (end, after) = (face[(i + last) % 4], face[(i + last + 1) % 4]);
+            next[edge_between(before, first)] = Some(edge_between(end, after));
+        }
+    }
+    let mut found = Vec::new();
+    for start in 0..12 {
+        let mut polygon = Loop::new();
+        let mut edge = start;
+        while let Some(following) = next[edge].take() {
+            polygon.push(edge as u8);
+            edge = following;
+        }
+        if !polygon.is_empty() {
+            found.push(polygon);
+        }
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::Vector3;
+
+    #[test]
+    fn every_crossed_edge_is_in_exactly_one_loop() {
+        for (pattern, loops) in all_loops().iter().enumerate() {
+            let mut seen: Vec<u8> = loops.iter().flatten().copied().collect();
+            seen.sort_unstable();
+            let crossed = (0..12u8).filter(|&e| {
+                let (low, axis) = EDGES[usize::from(e)];
+                (pattern >> low & 1) != (pattern >> (low | 1 << axis) & 1)
+            });
+            assert_eq!(seen, crossed.collect::<Vec<u8>>(), "pattern {pattern:08b}");
+            assert!(loops.iter().all(|l| l.len() >= 3));
+        }
+    }
+
+    #[test]
+    fn a_lone_corner_is_cut_off_facing_outwards() {
+        for c in 0..8 {
+            let loops = &all_loops()[1 << c];
+            assert_eq!(loops.len(), 1);
+            let at = |e: u8| {
+                let (low, axis) = EDGES[usize::from(e)];
+                let mut p = Vector3::from(corner(low).map(|x| x as f64));
+                p[axis] = 0.5;
+                p
+            };
+            let [a, b, d] = [0, 1, 2].map(|i| at(loops[0][i]));
+            let out = Vector3::from_element(0.5) - Vector3::from(corner(c).map(|x| x as f64));
+            assert!((b - a).cross(&(d - a)).dot(&out) > 0.0, "corner {c}");
+        }
+    }
+
+    #[test]
+    fn opposite_corners_stay_apart_and_an_edge_joins() {
+        assert_eq!(all_loops()[0b1000_0001].len(), 2);
+        assert_eq!(all_loops()[0b0000_1001].len(), 2);
+        assert_eq!(all_loops()[0b0000_0011].len(), 1);
+        assert_eq!(all_loops()[0b0000_0011][0].len(), 4);
+    }
+}

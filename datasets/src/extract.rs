@@ -1,0 +1,290 @@
+//! From implicit body to closed triangle surface: marching cubes on a randomly placed lattice.
+
+use std::collections::HashMap;
+
+use mesh::VertexId;
+use nalgebra::{Matrix3, Point3, Vector3};
+use rayon::prelude::*;
+
+use crate::cases::{EDGES, Loop, all_loops, corner};
+use crate::implicit::Body;
+
+/// Cells along a block: blocks are what is searched, skipped and given to threads.
+const BLOCK: usize = 8;
+const SAMPLES: usize = BLOCK + 1;
+const NONE: u32 = u32::MAX;
+
+/// Where the lattice lies; another placement gives another triangulation of the same surface.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Lattice {
+    /// Columns are the lattice directions.
+    pub(crate) rotation: Matrix3<f64>,
+    /// Shift in units of the spacing.
+    pub(crate) shift: Vector3<f64>,
+    /// Edge length of a cell, in body units.
+    pub(crate) spacing: f64,
+}
+
+/// Vertices and faces as they come out of the lattice: closed, oriented outwards, badly shaped.
+pub(crate) struct RawSurface {
+    pub(crate) positions: Vec<Point3<f64>>,
+    pub(crate) faces: Vec<[VertexId; 3]>,
+}
+
+/// The part of the surface inside one block.
+struct Leaf {
+    origin: [i64; 3],
+    /// Sign patterns of the crossed cells, with the cell's place in the block.
+    cells: Vec<(u16, u8)>,
+    /// Crossings of the edges this block owns, then centres of loops with more than four corners.
+    positions: Vec<Point3<f64>>,
+    /// Vertex on edge `3 * sample + axis`, counted inside the block.
+    on_edge: Vec<u32>,
+}
+
+/// Extracts the surface of `body`.
+///
+/// Every crossed lattice edge carries one vertex. Loops of three and four vertices become one or two
+/// triangles, longer ones a fan around their centre, so that no two triangles ever share more than
+/// an edge and the result is a closed manifold whatever the body looks like. The search descends from
+/// a cube around the body and drops blocks that the surface cannot reach (the value at the centre
+/// exceeds the half diagonal of the 1-Lipschitz function); time and memory are `O(area / spacing^2)`.
+pub(crate) fn extract(body: &Body, lattice: Lattice) -> RawSurface {
+    let loops = all_loops();
+    let (center, radius) = body.bounding_ball();
+    let leaves: Vec<Leaf> = crossed_blocks(body, lattice, center, radius)
+        .into_par_iter()
+        .map(|origin| leaf(body, lattice, center, origin, &loops))
+        .collect();
+    let mut offsets = Vec::with_capacity(leaves.len());
+    let mut positions = Vec::new();
+    for leaf in &leaves {
+        offsets.push(positions.len() as u32);
+        positions.extend_from_slice(&leaf.positions);
+    }
+    let by_origin: HashMap<[i64; 3], usize> = leaves.iter().enumerate().map(|(i, l)| (l.origin, i)).collect();
+    let faces = (0..leaves.len())
+        .into_par_iter()
+        .map(|i| triangles(&leaves, &offsets, &by_origin, i, &loops))
+        .collect::<Vec<_>>()
+        .concat();
+    RawSurface { positions, faces }
+}
+
+impl Lattice {
+    fn point(&self, center: Point3<f64>, at: [f64; 3]) -> Point3<f64> {
+        center + self.rotation * ((Vector3::from(at) + self.shift) * self.spacing)
+    }
+}
+
+/// Origins (in cells) of the blocks that the surface may cross, in a fixed order.
+fn crossed_blocks(body: &Body, lattice: Lattice, center: Point3<f64>, radius: f64) -> Vec<[i64; 3]> {
+    // One extra block on each side leaves room for the shift.
+    let needed = (radius / lattice.spacing + lattice.shift.amax() + 1.0).ceil() as i64;
+    let mut half = BLOCK as i64;
+    while half < needed {
+        half *= 2;
+    }
+    let mut size = 2 * half;
+    let mut blocks = vec![[-half; 3]];
+    while size > BLOCK as i64 {
+        size /= 2;
+        let reach = 0.5 * 3f64.sqrt() * size as f64 * lattice.spacing * (1.0 + 1e-9);
+        blocks = blocks
+            .into_par_iter()
+            .flat_map_iter(|origin| {
+                (0..8).map(move |c| {
+                    let step = corner(c);
+                    [0, 1, 2].map(|i| origin[i] + size * step[i] as i64)
+                })
+            })
+            .filter(|origin| {
+                let middle = origin.map(|x| x as f64 + 0.5 * size as f64);
+                body.value(lattice.point(center, middle)).abs() <= reach
+            })
+            .collect();
+    }
+    blocks
+}
+
+fn sample_index(at: [usize; 3]) -> usize {
+    (at[2] * SAMPLES + at[1]) * SAMPLES + at[0]
+}
+
+fn each(n: usize) -> impl Iterator<Item = [usize; 3]> {
+    (0..n * n * n).map(move |i| [i % n, i / n % n, i / (n * n)])
+}
+
+/// Values at the lattice points of a block.
+///
+/// Where the value at the middle of two by two by two cells rules out that the surface passes, it
+/// stands for the corners too: it has their sign, and nothing else is asked of them.
+fn samples(body: &Body, spacing: f64, point: &impl Fn([f64; 3]) -> Point3<f64>) -> Vec<f64> {
+    let reach = 3f64.sqrt() * spacing * (1.0 + 1e-9);
+    let mut values = vec![f64::NAN; SAMPLES * SAMPLES * SAMPLES];
+    let mut crossed = Vec::new();
+    for middle in each(BLOCK / 2) {
+        let low = middle.map(|x| 2 * x);
+        let value = body.value(point(low.map(|x| x as f64 + 1.0)));
+        if value.abs() <= reach {
+            crossed.push(low);
+        } else {
+            for step in each(3) {
+                values[sample_index([0, 1, 2].map(|i| low[i] + step[i]))] = value;
+            }
+        }
+    }
+    // Second, so that true values replace the stand-ins at shared corners.
+    let mut is_true = [false; SAMPLES * SAMPLES * SAMPLES];
+    for low in crossed {
+        for step in each(3) {
+            let at = [0, 1, 2].map(|i| low[i] + step[i]);
+            if !std::mem::replace(&mut is_true[sample_index(at)], true) {
+                values[sample_index(at)] = body.value(point(at.map(|x| x as f64)));
+            }
+        }
+    }
+    values
+}
+
+fn leaf(body: &Body, lattice: Lattice, center: Point3<f64>, origin: [i64; 3], loops: &[Vec<Loop>]) -> Leaf {
+    let point = |at: [f64; 3]| lattice.point(center, [0, 1, 2].map(|i| origin[i] as f64 + at[i]));
+    let values = samples(body, lattice.spacing, &point);
+    let inside = |at: [usize; 3]| values[sample_index(at)] < 0.0;
+    let crossing = |at: [usize; 3], axis: usize| {
+        let mut to = at;
+        to[axis] += 1;
+        let (a, b) = (values[sample_index(at)], values[sample_index(to)]);
+        // Kept off the ends, where vertices of several edges would coincide.
+        let t = (a / (a - b)).clamp(0.02, 0.98);
+        let [p, q] = [at, to].map(|at| point(at.map(|x| x as f64)));
+        p + (q - p) * t
+    };
+    let mut positions = Vec::new();
+    let mut on_edge = vec![NONE; 3 * SAMPLES * SAMPLES * SAMPLES];
+    for at in each(BLOCK) {
+        for axis in 0..3 {
+            let mut to = at;
+            to[axis] += 1;
+            if inside(at) != inside(to) {
+                on_edge[3 * sample_index(at) + axis] = positions.len() as u32;
+                positions.push(crossing(at, axis));
+            }
+        }
+    }
+    let mut cells = Vec::new();
+    for (place, at) in each(BLOCK).enumerate() {
+        let shifted = |c: usize| {
+            let step = corner(c);
+            [0, 1, 2].map(|i| at[i] + step[i])
+        };
+        let pattern = (0..8).fold(0, |bits, c| bits | usize::from(inside(shifted(c))) << c);
+        if pattern == 0 || pattern == 255 {
+            continue;
+        }
+        cells.push((place as u16, pattern as u8));
+        for polygon in loops[pattern].iter().filter(|l| l.len() > 4) {
+            let sum = polygon.iter().fold(Vector3::zeros(), |sum, &e| {
+                let (low, axis) = EDGES[usize::from(e)];
+                sum + crossing(shifted(low), axis).coords
+            });
+            positions.push(Point3::from(sum / polygon.len() as f64));
+        }
+    }
+    Leaf { origin, cells, positions, on_edge }
+}
+
+/// The triangles of block `i`; vertices on its upper faces belong to its neighbours.
+fn triangles(
+    leaves: &[Leaf],
+    offsets: &[u32],
+    by_origin: &HashMap<[i64; 3], usize>,
+    i: usize,
+    loops: &[Vec<Loop>],
+) -> Vec<[VertexId; 3]> {
+    let leaf = &leaves[i];
+    // The block itself and its seven upper neighbours.
+    let neighbors: [Option<usize>; 8] = [0, 1, 2, 3, 4, 5, 6, 7].map(|c| {
+        let step = corner(c);
+        by_origin.get(&[0, 1, 2].map(|k| leaf.origin[k] + (BLOCK * step[k]) as i64)).copied()
+    });
+    let vertex = |at: [usize; 3], axis: usize| {
+        let over = at.map(|x| x / BLOCK);
+        let owner = neighbors[over[0] | over[1] << 1 | over[2] << 2].unwrap_or(i);
+        let place = leaves[owner].on_edge[3 * sample_index(at.map(|x| x % BLOCK)) + axis];
+        VertexId(offsets[owner] + place)
+    };
+    let mut faces = Vec::new();
+    let n_long: usize =
+        leaf.cells.iter().map(|&(_, p)| loops[usize::from(p)].iter().filter(|l| l.len() > 4).count()).sum();
+    let mut middle = offsets[i] + (leaf.positions.len() - n_long) as u32;
+    for &(place, pattern) in &leaf.cells {
+        let place = usize::from(place);
+        let at = [place % BLOCK, place / BLOCK % BLOCK, place / (BLOCK * BLOCK)];
+        for polygon in &loops[usize::from(pattern)] {
+            let corners: Vec<VertexId> = polygon
+                .iter()
+                .map(|&e| {
+                    let (low, axis) = EDGES[usize::from(e)];
+                    let step = corner(low);
+                    vertex([0, 1, 2].map(|k| at[k] + step[k]), axis)
+                })
+                .collect();
+            match corners[..] {
+                [a, b, c] => faces.push([a, b, c]),
+                [a, b, c, d] => faces.extend([[a, b, c], [a, c, d]]),
+                _ => {
+                    let n = corners.len();
+                    faces.extend((0..n).map(|k| [corners[k], corners[(k + 1) % n], VertexId(middle)]));
+                    middle += 1;
+                }
+            }
+        }
+    }
+    faces
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::corner_table::CornerTable;
+    use crate::implicit::{Blob, Part};
+    use crate::trig::rotation;
+
+    fn lattice(spacing: f64) -> Lattice {
+        Lattice { rotation: rotation(10.0, 20.0, 30.0), shift: Vector3::new(0.3, 0.1, -0.4), spacing }
+    }
+
+    #[test]
+    fn a_ball_has_its_area_and_volume() {
+        let body = Body::new(vec![Part::added(0.0, vec![Blob::ball([0.0, 2.0, 1.0], 5.0)])]);
+        let raw = extract(&body, lattice(0.3));
+        let (mut area, mut volume) = (0.0, 0.0);
+        for face in &raw.faces {
+            let [a, b, c] = face.map(|v| raw.positions[v.index()]);
+            area += 0.5 * (b - a).cross(&(c - a)).norm();
+            volume += a.coords.dot(&b.coords.cross(&c.coords)) / 6.0;
+        }
+        let ball = 4.0 * std::f64::consts::PI * 25.0;
+        assert!((area / ball - 1.0).abs() < 0.01, "area {area} of {ball}");
+        assert!((volume / (ball * 5.0 / 3.0) - 1.0).abs() < 0.01, "volume {volume}");
+    }
+
+    /// Noise crosses the lattice in every way, ambiguous faces included.
+    #[test]
+    fn every_surface_is_closed_and_manifold() {
+        let mut blobs = Vec::new();
+        let mut x: u64 = 1;
+        for _ in 0..200 {
+            let mut next = || {
+                x = x.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+                (x >> 40) as f64 / (1u64 << 24) as f64 * 10.0 - 5.0
+            };
+            blobs.push(Blob::ball([next(), next(), next()], 0.7));
+        }
+        let raw = extract(&Body::new(vec![Part::added(0.0, blobs)]), lattice(0.6));
+        assert!(raw.faces.len() > 1000);
+        let table = CornerTable::new(raw.positions.len(), &raw.faces);
+        assert!(table.is_some(), "an edge does not have two faces, or a vertex has two fans");
+    }
+}

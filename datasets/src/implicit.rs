@@ -1,0 +1,401 @@
+//! The rest-pose body as an implicit function: negative inside, positive outside.
+//!
+//! A body is a list of parts, a part a list of blobs (round cones). Unions are smooth, with a radius
+//! of their own for every blob and part, so that a toe blends into its foot but not into the other
+//! foot. The function has Lipschitz constant 1, on which the search for the surface relies.
+
+use nalgebra::{Point3, Vector3};
+
+/// Value and gradient of an implicit function at a point.
+pub(crate) type Sample = (f64, Vector3<f64>);
+
+/// A round cone: the convex hull of two balls, possibly flattened along one direction.
+#[derive(Debug, Clone)]
+pub(crate) struct Blob {
+    ends: [Point3<f64>; 2],
+    radii: [f64; 2],
+    /// Unit direction and the factor below one that thicknesses along it are multiplied with.
+    flattening: Option<(Vector3<f64>, f64)>,
+    /// How far the union with the blobs before it reaches; see [`smooth_min`].
+    blend: f64,
+    axis: Axis,
+}
+
+/// What the distance to a round cone needs, worked out once.
+#[derive(Debug, Clone, Default)]
+struct Axis {
+    start: Vector3<f64>,
+    direction: Vector3<f64>,
+    length: f64,
+    /// Loss of radius per unit of length, the sine of the cone's half angle.
+    taper: f64,
+    /// Its tangent.
+    slope: f64,
+    scale: f64,
+}
+
+impl Blob {
+    /// The hull of the ball of radius `ra` around `a` and that of radius `rb` around `b`.
+    pub(crate) fn cone(a: [f64; 3], ra: f64, b: [f64; 3], rb: f64) -> Self {
+        let mut blob = Self {
+            ends: [a.into(), b.into()],
+            radii: [ra, rb],
+            flattening: None,
+            blend: 0.0,
+            axis: Axis::default(),
+        };
+        blob.prepare();
+        blob
+    }
+
+    /// The ball of radius `r` around `a`.
+    pub(crate) fn ball(a: [f64; 3], r: f64) -> Self {
+        Self::cone(a, r, a, r)
+    }
+
+    /// Squeezes the blob to `factor` (below one) of its thickness along `direction`.
+    pub(crate) fn flat(mut self, direction: [f64; 3], factor: f64) -> Self {
+        self.flattening = Some((Vector3::from(direction).normalize(), factor));
+        self.prepare();
+        self
+    }
+
+    /// Sets the reach of the smooth union with what comes before it in the part.
+    pub(crate) fn blend(mut self, reach: f64) -> Self {
+        self.blend = reach;
+        self
+    }
+
+    fn moved(&self, scale: f64, offset: Vector3<f64>) -> Self {
+        let mut blob = self.clone();
+        blob.ends = blob.ends.map(|p| Point3::from(p.coords * scale + offset));
+        blob.radii = blob.radii.map(|r| r * scale);
+        blob.blend *= scale;
+        blob.prepare();
+        blob
+    }
+
+    fn prepare(&mut self) {
+        let [a, b] = self.ends.map(|p| self.stretch(p.coords));
+        let [ra, rb] = self.radii;
+        let length = (b - a).norm();
+        // One ball inside the other: only the larger is seen.
+        let (start, direction, length, taper) = if length <= (ra - rb).abs() {
+            (if ra >= rb { a } else { b }, Vector3::zeros(), 0.0, 0.0)
+        } else {
+            (a, (b - a) / length, length, (ra - rb) / length)
+        };
+        if length == 0.0 {
+            self.radii = [ra.max(rb); 2];
+        }
+        let slope = taper / (1.0 - taper * taper).sqrt();
+        let scale = self.flattening.map_or(1.0, |(_, factor)| factor);
+        self.axis = Axis { start, direction, length, taper, slope, scale };
+    }
+
+    /// Takes space to where the flattened blob is a true round cone.
+    #[inline]
+    fn stretch(&self, p: Vector3<f64>) -> Vector3<f64> {
+        match self.flattening {
+            None => p,
+            Some((direction, factor)) => p + direction * ((1.0 / factor - 1.0) * direction.dot(&p)),
+        }
+    }
+
+    /// Vector to `p` from its foot on the axis, and the value: a lower bound of the distance to the
+    /// blob, exact unless it is flattened.
+    ///
+    /// The nearest surface point lies where the normal through `p` meets the axis: a cone that
+    /// loses `sin(a)` of radius per unit of length has normals tilted by `a`, so the foot of `p`
+    /// lies `rho tan(a)` before its projection, `rho` being its distance from the axis.
+    #[inline]
+    fn from_foot(&self, p: Point3<f64>) -> (Vector3<f64>, f64) {
+        let axis = &self.axis;
+        let q = self.stretch(p.coords) - axis.start;
+        let along = q.dot(&axis.direction);
+        let rho = (q.norm_squared() - along * along).max(0.0).sqrt();
+        let foot = (along - rho * axis.slope).clamp(0.0, axis.length);
+        let away = q - axis.direction * foot;
+        (away, axis.scale * (away.norm() - (self.radii[0] - foot * axis.taper)))
+    }
+
+    #[inline]
+    fn sample(&self, p: Point3<f64>) -> Sample {
+        let (away, value) = self.from_foot(p);
+        let distance = away.norm();
+        if distance == 0.0 {
+            return (value, Vector3::zeros());
+        }
+        let normal = away / distance;
+        // The stretch is symmetric, so it is its own transpose in the chain rule.
+        (value, self.stretch(normal) * self.axis.scale)
+    }
+}
+
+/// How a part changes what comes before it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Effect {
+    Add,
+    Carve,
+}
+
+/// Blobs that belong together: an arm, a head.
+#[derive(Debug, Clone)]
+pub(crate) struct Part {
+    blobs: Vec<Blob>,
+    effect: Effect,
+    /// Reach of the smooth union with the parts before it.
+    blend: f64,
+    center: Point3<f64>,
+    radius: f64,
+    /// Least flattening factor.
+    scale: f64,
+    /// By how much blending may lower the value below that of the nearest blob.
+    slack: f64,
+}
+
+impl Part {
+    /// A part that is added to the body with a smooth union of reach `blend`.
+    pub(crate) fn added(blend: f64, blobs: Vec<Blob>) -> Self {
+        Self::new(Effect::Add, blend, blobs)
+    }
+
+    /// A part that is taken away from what comes before it.
+    pub(crate) fn carved(blend: f64, blobs: Vec<Blob>) -> Self {
+        Self::new(Effect::Carve, blend, blobs)
+    }
+
+    fn new(effect: Effect, blend: f64, blobs: Vec<Blob>) -> Self {
+        let ends = || blobs.iter().flat_map(|b| b.ends);
+        let n = (2 * blobs.len()).max(1) as f64;
+        let center = Point3::from(ends().fold(Vector3::zeros(), |sum, p| sum + p.coords) / n);
+        let reach = |b: &Blob| (0..2).map(|i| (b.ends[i] - center).norm() + b.radii[i]).fold(0.0, f64::max);
+        let radius = blobs.iter().map(reach).fold(0.0, f64::max);
+        let scale = blobs.iter().map(|b| b.axis.scale).fold(1.0, f64::min);
+        let slack = blobs.iter().map(|b| 0.25 * b.blend).sum();
+        Self { blobs, effect, blend, center, radius, scale, slack }
+    }
+
+    /// The part scaled about the origin, then shifted.
+    pub(crate) fn moved(&self, scale: f64, offset: [f64; 3]) -> Self {
+        let blobs = self.blobs.iter().map(|b| b.moved(scale, offset.into())).collect();
+        Self::new(self.effect, self.blend * scale, blobs)
+    }
+
+    #[inline]
+    fn sample(&self, p: Point3<f64>) -> Sample {
+        self.blobs
+            .iter()
+            .fold((f64::INFINITY, Vector3::zeros()), |sum, blob| smooth_min(sum, blob.sample(p), blob.blend))
+    }
+
+    #[inline]
+    fn value(&self, p: Point3<f64>) -> f64 {
+        self.blobs.iter().fold(f64::INFINITY, |least, blob| {
+            let value = blob.from_foot(p).1;
+            least.min(value) - dip(least, value, blob.blend)
+        })
+    }
+
+    /// Whether the part can change the value `so_far` at `p`. Skipping it otherwise is exact: beyond
+    /// its reach a smooth union returns the smaller operand.
+    #[inline]
+    fn matters(&self, p: Point3<f64>, so_far: f64) -> bool {
+        let operand = match self.effect {
+            Effect::Add => so_far,
+            Effect::Carve => -so_far,
+        };
+        self.lower_bound(p) < operand + self.blend
+    }
+
+    /// A lower bound of the part's value that costs one square root.
+    #[inline]
+    fn lower_bound(&self, p: Point3<f64>) -> f64 {
+        self.scale * ((p - self.center).norm() - self.radius) - self.slack
+    }
+}
+
+/// The smaller of two values, rounded off where they differ by less than `reach`.
+///
+/// `min(a, b) - (reach - |a - b|)^2 / (4 reach)`: continuously differentiable, exactly the smaller
+/// one outside the reach, and its gradient is a convex combination of the two.
+#[inline]
+fn smooth_min(a: Sample, b: Sample, reach: f64) -> Sample {
+    let (near, far) = if a.0 <= b.0 { (a, b) } else { (b, a) };
+    let depth = dip(near.0, far.0, reach);
+    if depth == 0.0 {
+        return near;
+    }
+    let weight = 0.5 * (reach - (far.0 - near.0)) / reach;
+    (near.0 - depth, near.1 * (1.0 - weight) + far.1 * weight)
+}
+
+fn negated(s: Sample) -> Sample {
+    (-s.0, -s.1)
+}
+
+/// By how much the smooth union of two values lies below the smaller one.
+#[inline]
+fn dip(a: f64, b: f64, reach: f64) -> f64 {
+    let overlap = reach - (a - b).abs();
+    if overlap <= 0.0 { 0.0 } else { 0.25 * overlap * overlap / reach }
+}
+
+/// A whole body, symmetric under `x -> -x`; only its half `x >= 0` is described.
+#[derive(Debug, Clone)]
+pub(crate) struct Body {
+    parts: Vec<Part>,
+}
+
+impl Body {
+    pub(crate) fn new(parts: Vec<Part>) -> Self {
+        Self { parts }
+    }
+
+    /// Value and gradient at `p`. The value is 1-Lipschitz.
+    pub(crate) fn sample(&self, p: Point3<f64>) -> Sample {
+        let folded = Point3::new(p.x.abs(), p.y, p.z);
+        let mut sum = (f64::INFINITY, Vector3::zeros());
+        for part in &self.parts {
+            if part.matters(folded, sum.0) {
+                sum = match part.effect {
+                    Effect::Add => smooth_min(sum, part.sample(folded), part.blend),
+                    Effect::Carve => negated(smooth_min(negated(sum), part.sample(folded), part.blend)),
+                };
+            }
+        }
+        if p.x < 0.0 {
+            sum.1.x = -sum.1.x;
+        }
+        sum
+    }
+
+    /// The value alone at `p`, the same as that of [`sample`](Self::sample).
+    pub(crate) fn value(&self, p: Point3<f64>) -> f64 {
+        let folded = Point3::new(p.x.abs(), p.y, p.z);
+        let mut sum = f64::INFINITY;
+        for part in &self.parts {
+            if part.matters(folded, sum) {
+                let value = part.value(folded);
+                sum = match part.effect {
+                    Effect::Add => sum.min(value) - dip(sum, value, part.blend),
+                    Effect::Carve => dip(-sum, value, part.blend) - (-sum).min(value),
+                };
+            }
+        }
+        sum
+    }
+
+    /// A ball around the body: centre in the plane of symmetry, and radius.
+    pub(crate) fn bounding_ball(&self) -> (Point3<f64>, f64) {
+        let added = || self.parts.iter().filter(|part| part.effect == Effect::Add);
+        let n = added().count().max(1) as f64;
+        let mut center = Point3::from(added().fold(Vector3::zeros(), |sum, p| sum + p.center.coords) / n);
+        center.x = 0.0;
+        let slack: f64 = added().map(|p| p.slack + 0.25 * p.blend).sum();
+        let radius = added().map(|p| (p.center - center).norm() + p.radius).fold(0.0, f64::max);
+        (center, radius + slack)
+    }
+
+    /// The point of the surface near `p`, by Newton steps along the gradient.
+    pub(crate) fn project(&self, mut p: Point3<f64>, n_steps: usize, longest: f64) -> Point3<f64> {
+        for _ in 0..n_steps {
+            let (value, gradient) = self.sample(p);
+            let squared = gradient.norm_squared();
+            if squared > 1e-6 {
+                let step = (value / squared).clamp(-longest / squared.sqrt(), longest / squared.sqrt());
+                p -= gradient * step;
+            }
+        }
+        p
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn body() -> Body {
+        Body::new(vec![
+            Part::added(0.0, vec![Blob::cone([0.0, 0.0, 0.0], 3.0, [0.0, 1.0, 9.0], 1.5)]),
+            Part::added(1.0, vec![
+                Blob::ball([4.0, 0.0, 0.0], 2.0).flat([0.0, 1.0, 1.0], 0.4),
+                Blob::cone([5.0, 0.0, 0.0], 1.0, [9.0, 0.0, 1.0], 0.5).blend(0.7),
+            ]),
+            Part::carved(0.5, vec![Blob::ball([0.0, -3.0, 3.0], 1.5)]),
+        ])
+    }
+
+    fn grid() -> impl Iterator<Item = Point3<f64>> {
+        (0..1000).map(|i| {
+            let at = |k: i32| f64::from(k % 10) * 2.3 - 10.1;
+            Point3::new(at(i), at(i / 10), at(i / 100))
+        })
+    }
+
+    #[test]
+    fn a_round_cone_touches_both_balls_and_the_tangent_between() {
+        let cone = Blob::cone([0.0, 0.0, 0.0], 2.0, [0.0, 0.0, 5.0], 1.0);
+        let value = |x, z| cone.sample(Point3::new(x, 0.0, z)).0;
+        assert!((value(0.0, -3.0) - 1.0).abs() < 1e-12);
+        assert!((value(0.0, 7.0) - 1.0).abs() < 1e-12);
+        // The common tangent: sin(a) = 1/5, so the point of the axis at z sees radius 2 - z/5.
+        let (sin, cos) = (0.2, 0.96f64.sqrt());
+        let on_surface = |z: f64| (cos * (2.0 - z * sin), z + sin * (2.0 - z * sin));
+        for z in [0.0, 1.0, 2.5, 5.0] {
+            let (x, z) = on_surface(z);
+            assert!(value(x, z).abs() < 1e-12);
+        }
+        let inside_out = Blob::cone([0.0; 3], 2.0, [0.0, 0.0, 0.5], 1.0);
+        assert!((inside_out.sample(Point3::new(0.0, 0.0, 4.0)).0 - 2.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn gradient_is_the_derivative_and_never_longer_than_one() {
+        let (body, h) = (body(), 1e-6);
+        for p in grid() {
+            let (_, gradient) = body.sample(p);
+            assert!(gradient.norm() <= 1.0 + 1e-9);
+            let slope = Vector3::from_fn(|i, _| {
+                let mut step = Vector3::zeros();
+                step[i] = h;
+                (body.value(p + step) - body.value(p - step)) / (2.0 * h)
+            });
+            assert!((slope - gradient).norm() < 1e-4, "{p}: {slope} {gradient}");
+        }
+    }
+
+    #[test]
+    fn skipping_far_parts_changes_nothing() {
+        let body = body();
+        let mut everything = body.clone();
+        for part in &mut everything.parts {
+            part.radius = 1e6;
+        }
+        for p in grid() {
+            assert_eq!(body.sample(p), everything.sample(p));
+            assert_eq!(body.value(p), body.sample(p).0);
+        }
+    }
+
+    #[test]
+    fn the_bounding_ball_holds_the_body_and_projection_finds_it() {
+        let body = body();
+        let (center, radius) = body.bounding_ball();
+        for p in grid().filter(|p| (p - center).norm() > radius) {
+            assert!(body.value(p) > 0.0);
+        }
+        for p in grid().filter(|p| body.value(*p).abs() < 1.0) {
+            assert!(body.value(body.project(p, 12, 1.0)).abs() < 1e-3);
+        }
+    }
+
+    #[test]
+    fn moving_a_part_moves_its_values() {
+        let part = Part::added(1.0, vec![Blob::cone([1.0, 2.0, 3.0], 1.0, [2.0, 2.0, 5.0], 0.5).blend(0.3)]);
+        let moved = part.moved(2.0, [1.0, -1.0, 0.5]);
+        let p = Point3::new(0.3, 0.1, 2.0);
+        let q = Point3::from(p.coords * 2.0 + Vector3::new(1.0, -1.0, 0.5));
+        assert!((moved.sample(q).0 - 2.0 * part.sample(p).0).abs() < 1e-12);
+    }
+}

@@ -1,0 +1,18 @@
+//! What the description of a family consists of.
+
+use crate::implicit::Body;
+use crate::pose::Pose;
+use crate::skeleton::Skeleton;
+
+/// A body at rest, its skeleton, and what it can do.
+#[derive(Debug, Clone)]
+pub(crate) struct Model {
+    pub(crate) body: Body,
+    pub(crate) skeleton: Skeleton,
+    /// Typical poses; the first is the rest pose.
+    pub(crate) poses: Vec<Pose>,
+    /// Area of the rest surface, in squared body units; families are scaled to a common one.
+    pub(crate) area: f64,
+    /// Coarsest lattice that resolves the smallest features, in body units.
+    pub(crate) spacing: f64,
+}

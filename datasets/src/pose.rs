@@ -1,0 +1,208 @@
+//! Bending a body: turns of joints in, positions of points out.
+
+use nalgebra::{Matrix3, Point3, Vector3};
+
+use crate::skeleton::{Chain, JointId, JointPair, Side, Skeleton};
+use crate::stream::Stream;
+use crate::trig::rotation;
+
+/// A turn of a joint in degrees: about its y axis first, then x, then z. For the right side it is
+/// mirrored, so that the same numbers give the mirror image.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(crate) struct Turn {
+    pub(crate) x: f64,
+    pub(crate) y: f64,
+    pub(crate) z: f64,
+}
+
+/// Shorthand for tables of turns.
+pub(crate) fn turn(x: f64, y: f64, z: f64) -> Turn {
+    Turn { x, y, z }
+}
+
+/// The turns of all joints of one skeleton.
+#[derive(Debug, Clone)]
+pub(crate) struct Pose {
+    /// Turn of the whole body about its first node.
+    pub(crate) root: Turn,
+    turns: Vec<Vec<Turn>>,
+}
+
+impl Pose {
+    /// Nothing turned.
+    pub(crate) fn rest(skeleton: &Skeleton) -> Self {
+        let turns = skeleton.chains.iter().map(|c| vec![Turn::default(); c.joints.len()]).collect();
+        Self { root: Turn::default(), turns }
+    }
+
+    pub(crate) fn root(mut self, turn: Turn) -> Self {
+        self.root = turn;
+        self
+    }
+
+    /// Sets one joint.
+    pub(crate) fn set(mut self, id: JointId, turn: Turn) -> Self {
+        self.turns[id.chain][id.joint] = turn;
+        self
+    }
+
+    /// Sets a joint on the left and on the right.
+    pub(crate) fn both(self, [left, right]: JointPair, turns: [Turn; 2]) -> Self {
+        self.set(left, turns[0]).set(right, turns[1])
+    }
+
+    /// Sets both sides alike.
+    pub(crate) fn same(self, pair: JointPair, turn: Turn) -> Self {
+        self.both(pair, [turn; 2])
+    }
+
+    /// A random variation: every turn 15 % more or less, then the play of every joint, then left and
+    /// right exchanged half of the time.
+    pub(crate) fn varied(&self, skeleton: &Skeleton, stream: &mut Stream) -> Self {
+        let mut pose = self.clone();
+        for (chain, turns) in skeleton.chains.iter().zip(&mut pose.turns) {
+            for (joint, turn) in chain.joints.iter().zip(turns) {
+                let vigour = stream.uniform(0.85, 1.15);
+                let [x, y, z] = joint.play.map(|play| stream.uniform(-play, play));
+                *turn = Turn { x: turn.x * vigour + x, y: turn.y * vigour + y, z: turn.z * vigour + z };
+            }
+        }
+        if stream.uniform(0.0, 1.0) < 0.5 { pose.mirrored(skeleton) } else { pose }
+    }
+
+    fn mirrored(&self, skeleton: &Skeleton) -> Self {
+        let flip = |t: Turn| Turn { x: t.x, y: -t.y, z: -t.z };
+        let mut pose = self.clone();
+        pose.root = flip(self.root);
+        let mut c = 0;
+        while c < skeleton.chains.len() {
+            let paired = skeleton.chains.get(c + 1).is_some_and(|next| next.side == Side::Right);
+            if paired {
+                pose.turns.swap(c, c + 1);
+                c += 2;
+            } else {
+                pose.turns[c].iter_mut().for_each(|t| *t = flip(*t));
+                c += 1;
+            }
+        }
+        pose
+    }
+}
+
+/// A rigid motion of space.
+#[derive(Debug, Clone, Copy)]
+struct Motion {
+    rotation: Matrix3<f64>,
+    shift: Vector3<f64>,
+}
+
+impl Motion {
+    fn apply(&self, p: Point3<f64>) -> Point3<f64> {
+        Point3::from(self.rotation * p.coords + self.shift)
+    }
+}
+
+/// A skeleton bent into a pose: a rigid motion for every place along every chain.
+#[derive(Debug, Clone)]
+pub(crate) struct PosedSkeleton<'a> {
+    skeleton: &'a Skeleton,
+    /// Motions at equal steps along each chain.
+    motions: Vec<Vec<Motion>>,
+}
+
+/// Steps along a chain; between them motions are interpolated linearly, which at a degree or two a
+/// step changes lengths by less than 1e-3.
+const N_STEPS: usize = 96;
+
+impl<'a> PosedSkeleton<'a> {
+    /// Bends the skeleton.
+    pub(crate) fn new(skeleton: &'a Skeleton, pose: &Pose) -> Self {
+        let mut motions: Vec<Vec<Motion>> = Vec::with_capacity(skeleton.chains.len());
+        for (chain, turns) in skeleton.chains.iter().zip(&pose.turns) {
+            let base = match chain.parent {
+                Some((parent, arc)) => {
+                    interpolate(&motions[parent], arc / length(&skeleton.chains[parent]))
+                }
+                None => {
+                    let rotation = rotation(pose.root.x, pose.root.y, pose.root.z);
+                    let pivot = chain.nodes[0].at.coords;
+                    Motion { rotation, shift: pivot - rotation * pivot }
+                }
+            };
+            motions.push(bend(chain, turns, base));
+        }
+        Self { skeleton, motions }
+    }
+
+    /// Where the rest-pose point `p` goes.
+    pub(crate) fn deform(&self, p: Point3<f64>) -> Point3<f64> {
+        let mut sum = Vector3::zeros();
+        let mut total = 0.0;
+        for (c, member) in self.skeleton.memberships(p).enumerate() {
+            let motion = interpolate(&self.motions[c], member.arc / length(&self.skeleton.chains[c]));
+            sum += motion.apply(p).coords * member.weight;
+            total += member.weight;
+        }
+        Point3::from(sum / total)
+    }
+}
+
+fn length(chain: &Chain) -> f64 {
+    chain.arcs[chain.arcs.len() - 1]
+}
+
+/// The motion at a fraction of a chain's length.
+fn interpolate(motions: &[Motion], fraction: f64) -> Motion {
+    let step = (fraction * N_STEPS as f64).clamp(0.0, N_STEPS as f64);
+    let i = (step as usize).min(N_STEPS - 1);
+    let t = step - i as f64;
+    let (a, b) = (motions[i], motions[i + 1]);
+    Motion { rotation: a.rotation * (1.0 - t) + b.rotation * t, shift: a.shift * (1.0 - t) + b.shift * t }
+}
+
+/// Motions along a chain whose start moves by `base`.
+///
+/// The rotation at arc length `s` is the base followed by every joint's turn times the share that lies
+/// before `s`; the axis is the integral of the rotated rest axis, so its length is kept exactly.
+fn bend(chain: &Chain, turns: &[Turn], base: Motion) -> Vec<Motion> {
+    let mirror = match chain.side {
+        Side::Left => 1.0,
+        Side::Right => -1.0,
+    };
+    let reflect = Matrix3::from_diagonal(&Vector3::new(mirror, 1.0, 1.0));
+    let rotation_at = |arc: f64| {
+        chain.joints.iter().zip(turns).fold(base.rotation, |product, (joint, t)| {
+            let middle = chain.arcs[joint.node];
+            let share = smooth_step((arc - (middle - joint.before)) / (joint.before + joint.after));
+            let turned = joint.frame * rotation(t.x * share, t.y * share, t.z * share) * joint.frame.transpose();
+            product * (reflect * turned * reflect)
+        })
+    };
+    let step = length(chain) / N_STEPS as f64;
+    let mut axis = axis_point(chain, 0.0);
+    let mut moved = base.apply(axis).coords;
+    let mut motions = Vec::with_capacity(N_STEPS + 1);
+    for i in 0..=N_STEPS {
+        let arc = step * i as f64;
+        if i > 0 {
+            let following = axis_point(chain, arc);
+            moved += rotation_at(arc - 0.5 * step) * (following - axis);
+            axis = following;
+        }
+        let rotation = rotation_at(arc);
+        motions.push(Motion { rotation, shift: moved - rotation * axis.coords });
+    }
+    motions
+}
+
+/// Zero before the interval, one after it, with zero slope at both ends.
+fn smooth_step(t: f64) -> f64 {
+    let t = t.clamp(0.0, 1.0);
+    t * t * (3.0 - 2.0 * t)
+}
+
+fn axis_point(chain: &Chain, arc: f64) -> Point3<f64> {
+    let i = chain.arcs[1..chain.arcs.len() - 1].partition_point(|&a| a <= arc);
+    let t = (arc - chain.arcs[i]) / (chain.arcs[i + 1] - chain.arcs[i]);
+    chain.nodes[i].at + (chain.nodes[i + 1].at - chain.nodes[i].at) * t.clamp(0.0, 1.0)
+}

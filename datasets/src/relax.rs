@@ -1,0 +1,102 @@
+//! Better triangles on the same surface: edge flips, tangential smoothing, projection.
+
+use nalgebra::{Point3, Vector3};
+use rayon::prelude::*;
+
+use crate::corner_table::{DEAD, next, prev};
+use crate::implicit::Body;
+use crate::simplify::Surface;
+
+/// Vertices a task of the thread pool works on.
+const CHUNK: usize = 1024;
+/// Flips that straighten a dihedral angle sharper than this cosine would cut a ridge off.
+const RIDGE_COSINE: f64 = 0.7;
+
+/// Repeats flips and smoothing `n_rounds` times; vertices end on the body's surface.
+pub(crate) fn relax(surface: &mut Surface, body: &Body, n_rounds: usize) {
+    flip_to_delaunay(surface);
+    for _ in 0..n_rounds {
+        smooth(surface, body);
+        flip_to_delaunay(surface);
+    }
+}
+
+/// Flips edges whose opposite angles sum to more than 180 degrees, until few are left.
+fn flip_to_delaunay(surface: &mut Surface) {
+    const N_SWEEPS: usize = 3;
+    for _ in 0..N_SWEEPS {
+        let mut n_flips = 0usize;
+        for c in 0..surface.table.n_corners() {
+            if surface.table.vertex(c) != DEAD && surface.wants_flip(c) && surface.table.can_flip(c) {
+                surface.table.flip(c);
+                n_flips += 1;
+            }
+        }
+        if n_flips == 0 {
+            break;
+        }
+    }
+}
+
+impl Surface {
+    fn wants_flip(&self, c: u32) -> bool {
+        let o = self.table.twin(c);
+        if o < c {
+            return false;
+        }
+        let at = |corner: u32| self.positions[self.table.vertex(corner) as usize];
+        let (p, q, u, w) = (at(c), at(o), at(next(c)), at(prev(c)));
+        let cotangents = cotangent(p, u, w) + cotangent(q, u, w);
+        if cotangents >= -1e-9 {
+            return false;
+        }
+        let (before, beside) = ((u - p).cross(&(w - p)), (w - q).cross(&(u - q)));
+        let (after, behind) = ((u - p).cross(&(q - p)), (w - q).cross(&(p - q)));
+        let cosine = |a: &Vector3<f64>, b: &Vector3<f64>| a.dot(b) / (a.norm() * b.norm());
+        cosine(&before, &beside) > RIDGE_COSINE && cosine(&after, &behind) > RIDGE_COSINE
+    }
+}
+
+/// Cotangent of the angle at `apex` between `a` and `b`.
+fn cotangent(apex: Point3<f64>, a: Point3<f64>, b: Point3<f64>) -> f64 {
+    let (x, y) = (a - apex, b - apex);
+    x.dot(&y) / x.cross(&y).norm().max(1e-300)
+}
+
+/// Moves each vertex in its tangent plane towards the centre of its neighbours, then back onto the
+/// surface. Neighbours pull in proportion to the length of their edge over its grain, so that edges
+/// approach lengths proportional to the grain. All vertices move at once: the result does not depend
+/// on the order or on the number of threads.
+fn smooth(surface: &mut Surface, body: &Body) {
+    let (table, old, grain) = (&surface.table, &surface.positions, &surface.grain);
+    let target = |v: usize| {
+        let mut pull = Vector3::zeros();
+        let (mut total, mut shortest) = (0.0, f64::INFINITY);
+        for x in table.neighbors(v as u32) {
+            let x = x as usize;
+            let edge = old[x] - old[v];
+            let length = edge.norm();
+            let weight = length / (grain[x] + grain[v]);
+            pull += edge * weight;
+            total += weight;
+            shortest = shortest.min(length);
+        }
+        let (value, gradient) = body.sample(old[v]);
+        let squared = gradient.norm_squared().max(1e-12);
+        let step = pull / total.max(1e-300);
+        let tangential = step - gradient * (step.dot(&gradient) / squared);
+        // The value pulls back what the last round's curvature left over.
+        let moved = old[v] + tangential * 0.6 - gradient * (value / squared).clamp(-shortest, shortest);
+        body.project(moved, 1, shortest)
+    };
+    let mut moved = old.clone();
+    moved.par_chunks_mut(CHUNK).enumerate().for_each(|(chunk, positions)| {
+        for (i, p) in positions.iter_mut().enumerate() {
+            let v = chunk * CHUNK + i;
+            if table.is_alive(v as u32) {
+                *p = target(v);
+            }
+        }
+    });
+    surface.positions = moved;
+}

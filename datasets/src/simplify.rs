@@ -1,0 +1,152 @@
+//! From many badly shaped triangles to a wanted number of vertices.
+
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
+use nalgebra::Point3;
+
+use crate::corner_table::{CornerTable, next, prev};
+
+/// A closed surface being worked on.
+#[derive(Debug, Clone)]
+pub(crate) struct Surface {
+    pub(crate) table: CornerTable,
+    pub(crate) positions: Vec<Point3<f64>>,
+    /// Wanted edge length at each vertex, up to one common factor.
+    pub(crate) grain: Vec<f64>,
+}
+
+/// Least cosine between the normals of a triangle before and after an edit.
+const LEAST_COSINE: f64 = 0.2;
+
+/// Collapses edges, the shortest for their grain first, until `n_vertices` are left.
+///
+/// A vertex is merged into its neighbour without moving it, so what remains lies on the surface. An
+/// edge is left alone when the collapse would tear the manifold or turn a triangle over. Edges far
+/// shorter than those of the result go first in a few sweeps, the rest by a queue: `O(m)` for the bulk
+/// and `O(k log k)` for the last. Returns the number of vertices left, more than wanted only when no
+/// edge can be collapsed any more.
+pub(crate) fn simplify(surface: &mut Surface, n_vertices: usize) -> usize {
+    let mut n_left = (0..surface.positions.len() as u32).filter(|&v| surface.table.is_alive(v)).count();
+    // Equilateral triangles of cost c cover 2 sqrt(3) c grains^2 a vertex: the cost to end up with.
+    let final_cost = surface.area_in_grains() / (12f64.sqrt() * n_vertices as f64);
+    for share in [1.0 / 64.0, 1.0 / 24.0, 1.0 / 10.0, 0.2] {
+        n_left = sweep(surface, final_cost * share, n_left, n_vertices);
+    }
+    while n_left > n_vertices {
+        // Edges refused in one round may have become possible by the next.
+        let n_before = n_left;
+        n_left = collapse_by_queue(surface, n_left, n_vertices);
+        if n_left == n_before {
+            break;
+        }
+    }
+    n_left
+}
+
+/// Collapses edges cheaper than `limit` in the order of their vertices.
+fn sweep(surface: &mut Surface, limit: f64, mut n_left: usize, n_vertices: usize) -> usize {
+    let mut neighbors = Vec::new();
+    for v in 0..surface.positions.len() as u32 {
+        if n_left <= n_vertices {
+            break;
+        }
+        if !surface.table.is_alive(v) {
+            continue;
+        }
+        neighbors.clear();
+        neighbors.extend(surface.table.neighbors(v).map(|x| (surface.cost(v, x), x)));
+        neighbors.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+        for &(_, x) in neighbors.iter().take_while(|(cost, _)| *cost < limit) {
+            if surface.collapse(v, x) {
+                n_left -= 1;
+                break;
+            }
+        }
+    }
+    n_left
+}
+
+fn collapse_by_queue(surface: &mut Surface, mut n_left: usize, n_vertices: usize) -> usize {
+    let mut entries = Vec::new();
+    for v in (0..surface.positions.len() as u32).filter(|&v| surface.table.is_alive(v)) {
+        entries.extend(surface.table.neighbors(v).filter(|&x| v < x).map(|x| Reverse(surface.entry(v, x))));
+    }
+    let mut queue = BinaryHeap::from(entries);
+    while n_left > n_vertices
+        && let Some(Reverse((_, u, w))) = queue.pop()
+    {
+        // An edge between two living vertices is never removed by collapsing another one.
+        if !(surface.table.is_alive(u) && surface.table.is_alive(w)) {
+            continue;
+        }
+        let kept = if surface.collapse(u, w) {
+            w
+        } else if surface.collapse(w, u) {
+            u
+        } else {
+            continue;
+        };
+        n_left -= 1;
+        queue.extend(surface.table.neighbors(kept).map(|x| Reverse(surface.entry(kept.min(x), kept.max(x)))));
+    }
+    n_left
+}
+
+impl Surface {
+    /// Renumbers vertices and faces so that no removed ones are left.
+    pub(crate) fn compact(&mut self) {
+        let alive: Vec<usize> =
+            (0..self.positions.len()).filter(|&v| self.table.is_alive(v as u32)).collect();
+        self.positions = alive.iter().map(|&v| self.positions[v]).collect();
+        self.grain = alive.iter().map(|&v| self.grain[v]).collect();
+        self.table = self.table.compacted();
+    }
+
+    /// Area of the surface measured in squared grains.
+    fn area_in_grains(&self) -> f64 {
+        let at = |v: u32| self.positions[v as usize];
+        let area = |[a, b, c]: [u32; 3]| {
+            let grain = [a, b, c].map(|v| self.grain[v as usize]).iter().sum::<f64>() / 3.0;
+            0.5 * (at(b) - at(a)).cross(&(at(c) - at(a))).norm() / (grain * grain)
+        };
+        self.table.faces().map(area).sum()
+    }
+
+    /// Squared length of an edge over the square of twice its grain.
+    fn cost(&self, u: u32, w: u32) -> f64 {
+        let (a, b) = (u as usize, w as usize);
+        let grain = self.grain[a] + self.grain[b];
+        (self.positions[a] - self.positions[b]).norm_squared() / (grain * grain)
+    }
+
+    /// Queue entry of an edge: its cost as bits, which for non-negative floats order like the numbers,
+    /// then its ends.
+    fn entry(&self, u: u32, w: u32) -> (u64, u32, u32) {
+        (self.cost(u, w).to_bits(), u, w)
+    }
+
+    /// Merges `gone` into `kept` if that is possible, and says whether it was.
+    fn collapse(&mut self, gone: u32, kept: u32) -> bool {
+        let Some(c) = self.table.facing(gone, kept) else { return false };
+        let possible = self.table.can_collapse(c) && self.stays_unfolded(gone, kept);
+        if possible {
+            self.table.collapse(c);
+        }
+        possible
+    }
+
+    /// Whether the triangles around `gone` keep their side when it moves to `kept`.
+    fn stays_unfolded(&self, gone: u32, kept: u32) -> bool {
+        let at = |v: u32| self.positions[v as usize];
+        self.table.around(gone).all(|c| {
+            let (b, d) = (self.table.vertex(next(c)), self.table.vertex(prev(c)));
+            if b == kept || d == kept {
+                return true;
+            }
+            let edge = at(d) - at(b);
+            let (old, new) = ((at(gone) - at(b)).cross(&edge), (at(kept) - at(b)).cross(&edge));
+            old.dot(&new) > LEAST_COSINE * (old.norm_squared() * new.norm_squared()).sqrt()
+        })
+    }
+}

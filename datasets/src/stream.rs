@@ -1,0 +1,93 @@
+//! Random numbers: one independent stream for every shape.
+
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::{Rng, SeedableRng};
+
+use crate::trig::rotation;
+use nalgebra::Matrix3;
+
+/// What a stream of random numbers is for. Each purpose draws from its own stream, so that asking
+/// for more vertices changes no pose.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Purpose {
+    /// The angles of the joints.
+    Pose,
+    /// The lattice from which the surface is extracted.
+    Lattice,
+    /// The order of vertices and faces.
+    Numbering,
+}
+
+/// A stream of random numbers that depends on nothing but seed, family, pose and purpose.
+#[derive(Debug, Clone)]
+pub(crate) struct Stream(ChaCha8Rng);
+
+impl Stream {
+    pub(crate) fn new(seed: u64, family: usize, pose: usize, purpose: Purpose) -> Self {
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        let purpose = match purpose {
+            Purpose::Pose => 0,
+            Purpose::Lattice => 1,
+            Purpose::Numbering => 2,
+        };
+        rng.set_stream((pose as u64) * 16 + (family as u64) * 4 + purpose);
+        Self(rng)
+    }
+
+    /// Uniform in `[lo, hi)`.
+    pub(crate) fn uniform(&mut self, lo: f64, hi: f64) -> f64 {
+        // 53 random bits are exactly a double in [0, 1).
+        let unit = (self.0.next_u64() >> 11) as f64 / (1u64 << 53) as f64;
+        lo + (hi - lo) * unit
+    }
+
+    /// Uniform in `0..bound`; the bias of at most `bound / 2^64` is of no account here.
+    pub(crate) fn below(&mut self, bound: usize) -> usize {
+        ((u128::from(self.0.next_u64()) * bound as u128) >> 64) as usize
+    }
+
+    /// A random order of `0..n`.
+    pub(crate) fn permutation(&mut self, n: usize) -> Vec<u32> {
+        let mut order: Vec<u32> = (0..n as u32).collect();
+        for i in (1..n).rev() {
+            order.swap(i, self.below(i + 1));
+        }
+        order
+    }
+
+    /// A random rotation; not exactly uniform, merely different every time.
+    pub(crate) fn rotation(&mut self) -> Matrix3<f64> {
+        let [x, y, z] = [(); 3].map(|()| self.uniform(-180.0, 180.0));
+        rotation(x, y, z)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn streams_are_independent_and_repeatable() {
+        let draw = |family, pose, purpose| Stream::new(7, family, pose, purpose).uniform(0.0, 1.0);
+        let all = [
+            draw(0, 0, Purpose::Pose),
+            draw(1, 0, Purpose::Pose),
+            draw(0, 1, Purpose::Pose),
+            draw(0, 0, Purpose::Lattice),
+            draw(0, 0, Purpose::Numbering),
+        ];
+        for (i, a) in all.iter().enumerate() {
+            assert!(all[..i].iter().all(|b| a != b));
+        }
+        assert_eq!(all[0], draw(0, 0, Purpose::Pose));
+    }
+
+    #[test]
+    fn a_permutation_holds_every_number_once() {
+        let order = Stream::new(3, 0, 0, Purpose::Numbering).permutation(1000);
+        let mut sorted = order.clone();
+        sorted.sort_unstable();
+        assert_eq!(sorted, (0..1000).collect::<Vec<u32>>());
+        assert_ne!(order, sorted);
+    }
+}

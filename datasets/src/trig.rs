@@ -1,0 +1,62 @@
+//! Sine and cosine from arithmetic alone.
+//!
+//! The standard library leaves `sin` and `cos` to the platform, whose last bits differ. Additions,
+//! multiplications and square roots are the same everywhere, and so are the datasets made of them.
+
+use std::f64::consts::{FRAC_PI_2, PI};
+
+use nalgebra::Matrix3;
+
+/// Sine and cosine of `angle` (radians, up to a few turns) within 1e-15.
+pub(crate) fn sin_cos(angle: f64) -> (f64, f64) {
+    let quarters = (angle / FRAC_PI_2).round();
+    let x = angle - quarters * FRAC_PI_2;
+    // |x| <= pi/4, where the remainders of both series stay below 1e-16.
+    let x2 = x * x;
+    let (mut sin, mut cos) = (0.0, 0.0);
+    for k in (1..=9).rev() {
+        let k = f64::from(k);
+        sin = (1.0 + sin) * -x2 / ((2.0 * k) * (2.0 * k + 1.0));
+        cos = (1.0 + cos) * -x2 / ((2.0 * k - 1.0) * (2.0 * k));
+    }
+    let (sin, cos) = (x * (1.0 + sin), 1.0 + cos);
+    match (quarters as i64).rem_euclid(4) {
+        0 => (sin, cos),
+        1 => (cos, -sin),
+        2 => (-sin, -cos),
+        _ => (-cos, sin),
+    }
+}
+
+/// The rotation by `degrees.y` about the y axis, then `degrees.x` about x, then `degrees.z` about z.
+pub(crate) fn rotation(x: f64, y: f64, z: f64) -> Matrix3<f64> {
+    let [(sx, cx), (sy, cy), (sz, cz)] = [x, y, z].map(|degrees| sin_cos(degrees * (PI / 180.0)));
+    let about_x = Matrix3::new(1.0, 0.0, 0.0, 0.0, cx, -sx, 0.0, sx, cx);
+    let about_y = Matrix3::new(cy, 0.0, sy, 0.0, 1.0, 0.0, -sy, 0.0, cy);
+    let about_z = Matrix3::new(cz, -sz, 0.0, sz, cz, 0.0, 0.0, 0.0, 1.0);
+    about_z * about_x * about_y
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn agrees_with_the_standard_library() {
+        for i in -4000..=4000 {
+            let angle = f64::from(i) * 0.005;
+            let (sin, cos) = sin_cos(angle);
+            assert!((sin - angle.sin()).abs() < 1e-14, "sin {angle}");
+            assert!((cos - angle.cos()).abs() < 1e-14, "cos {angle}");
+        }
+    }
+
+    #[test]
+    fn rotations_are_orthogonal_and_ordered() {
+        let r = rotation(20.0, -35.0, 110.0);
+        assert!((r * r.transpose() - Matrix3::identity()).norm() < 1e-14);
+        assert!((r.determinant() - 1.0).abs() < 1e-14);
+        let apart = rotation(0.0, 0.0, 110.0) * rotation(20.0, 0.0, 0.0) * rotation(0.0, -35.0, 0.0);
+        assert!((r - apart).norm() < 1e-14);
+    }
+}
