@@ -25,12 +25,14 @@ pub struct Figure1Pair<'a> {
     pub facts: &'a Figure1Shape,
     /// The shape.
     pub shape: &'a TriMesh,
-    /// Its canonical form: the same faces, in the first three dimensions of the embedding.
+    /// Its canonical form: the same faces, in the first three dimensions of the embedding, turned (or
+    /// mirrored, as embeddings are free to be) to match the first form of its class.
     pub form: &'a TriMesh,
 }
 
 /// Draws the first [`PAIRS`] pairs of each class, in the order given, and returns the paths of
-/// `STEM-forms.png` and `STEM-forms.svg`. Shapes are seen from `view`, forms along their principal axes.
+/// `STEM-forms.png` and `STEM-forms.svg`. Shapes are seen from `view`; the forms of a class all
+/// from one side, on which the principal axes of the first lie in the picture.
 ///
 /// # Errors
 /// [`ReportError::Empty`] without a pair, [`ReportError::Write`] and [`ReportError::Draw`].
@@ -92,7 +94,8 @@ impl Grid {
             .map(|(class, group)| {
                 let mean = group.iter().map(|p| aspect(p.shape, view)).sum::<f64>() / group.len() as f64;
                 let height = (tile / mean.clamp(0.6, 1.4)).round();
-                let cells = group.iter().map(|pair| Cell::new(pair, view, class, [tile, height])).collect();
+                let views = [*view, View::Principal.fixed(group[0].form, tile > height)];
+                let cells = group.iter().map(|pair| Cell::new(pair, views, class, [tile, height])).collect();
                 Row { title: classes.name(class).to_string(), height, cells }
             })
             .collect();
@@ -106,11 +109,11 @@ impl Grid {
 }
 
 impl Cell {
-    fn new(pair: &Figure1Pair, view: &View, class: usize, tile: [f64; 2]) -> Self {
+    fn new(pair: &Figure1Pair, views: [View; 2], class: usize, tile: [f64; 2]) -> Self {
         let [width, height] = tile.map(|side| side as u32 * RASTER);
         let surface = Surface::Plain(class_clay(class));
-        let shape = RenderOptions { width, height, view: *view, surface, ..RenderOptions::default() };
-        let form = RenderOptions { view: View::Principal, ..shape.clone() };
+        let shape = RenderOptions { width, height, view: views[0], surface, ..RenderOptions::default() };
+        let form = RenderOptions { view: views[1], ..shape.clone() };
         Self {
             images: [render(pair.shape, &shape), render(pair.form, &form)],
             captions: [pair.facts.name.clone(), format!("stress {}", stress_digits(pair.facts.stress))],

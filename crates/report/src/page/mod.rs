@@ -101,9 +101,8 @@ fn figure1_section(folder: &Path) -> Result<Section, ReportError> {
         folder,
         name,
         figure1::PART,
-        "Pairs of a shape (left) and its canonical form (right), up to three of each class. A form is turned so that its \
-         longest axis runs along the longer side of its picture; under it stands its stress in squared mesh units. \
-         Colours go by class and agree with those of Figure 4.",
+        "Pairs of a shape (left) and its canonical form (right), up to three of each class. The forms \
+         of a class are all seen from one side; under each stands its stress in squared mesh units. Colours go by class and agree with those of Figure 4.",
     )?);
     body.push_str(&expectations(&record.expectations));
     let rows: Vec<Vec<Cell>> = record

@@ -18,6 +18,14 @@ pub enum View {
         /// Direction that is up, of any length; z when zero or not finite.
         up: Vector3<f64>,
     },
+    /// From anywhere.
+    Along {
+        /// Direction from the shape to the viewer, of any length; -y when zero or not finite.
+        towards: Vector3<f64>,
+        /// Direction that is up in the picture, as far as it is across `towards`; z, then x, when there
+        /// is nothing of it across.
+        up: Vector3<f64>,
+    },
     /// For canonical forms, which have no up: the longest principal axis of the surface runs along the
     /// longer side of the picture (upright in a square one), the second along the other side.
     ///
@@ -92,10 +100,18 @@ pub(super) fn extent(mesh: &TriMesh, faces: &[[usize; 3]], view: &View) -> [f64;
 }
 
 impl View {
+    /// The same view of `mesh` in a picture that is wider than high (`landscape`) or not, held fast: it
+    /// shows other meshes from there too.
+    pub(crate) fn fixed(&self, mesh: &TriMesh, landscape: bool) -> Self {
+        let axes = self.axes(mesh, &super::drawable_faces(mesh), landscape);
+        Self::Along { towards: axes.row(2).transpose(), up: axes.row(1).transpose() }
+    }
+
     /// Orthonormal rows: right, up, towards the viewer.
     fn axes(&self, mesh: &TriMesh, faces: &[[usize; 3]], landscape: bool) -> Matrix3<f64> {
         match *self {
             Self::Upright { azimuth, elevation, up } => upright(azimuth, elevation, up),
+            Self::Along { towards, up } => along(towards, up),
             Self::Principal => {
                 let [first, second] = principal_axes(mesh, faces);
                 let (right, up) = if landscape { (first, second) } else { (second, first) };
@@ -109,8 +125,22 @@ fn rows(right: Vector3<f64>, up: Vector3<f64>) -> Matrix3<f64> {
     Matrix3::from_rows(&[right.transpose(), up.transpose(), right.cross(&up).transpose()])
 }
 
+/// The vector at length one; `None` when it has no direction.
+fn direction(vector: Vector3<f64>) -> Option<Vector3<f64>> {
+    vector.try_normalize(0.0).filter(|unit| unit.iter().all(|c| c.is_finite()))
+}
+
+fn along(towards: Vector3<f64>, up: Vector3<f64>) -> Matrix3<f64> {
+    let towards = direction(towards).unwrap_or_else(|| -Vector3::y());
+    let across = |v: Vector3<f64>| {
+        direction(v - towards * towards.dot(&v)).filter(|_| v.cross(&towards).norm() > 1e-9 * v.norm())
+    };
+    let up = [up, Vector3::z(), Vector3::x()].into_iter().find_map(across).unwrap_or_else(Vector3::y);
+    rows(up.cross(&towards), up)
+}
+
 fn upright(azimuth: f64, elevation: f64, up: Vector3<f64>) -> Matrix3<f64> {
-    let up = up.try_normalize(0.0).filter(|u| u.iter().all(|c| c.is_finite())).unwrap_or_else(Vector3::z);
+    let up = direction(up).unwrap_or_else(Vector3::z);
     let finite = |degrees: f64| if degrees.is_finite() { degrees.to_radians() } else { 0.0 };
     let (azimuth, elevation) = (finite(azimuth), finite(elevation));
     let reference = if up.x.abs() > 0.9 { Vector3::y() } else { Vector3::x() };
@@ -154,6 +184,26 @@ fn principal_axes(mesh: &TriMesh, faces: &[[usize; 3]]) -> [Vector3<f64>; 2] {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_view_from_anywhere_is_orthonormal_and_looks_where_it_should() {
+        let nan = Vector3::repeat(f64::NAN);
+        for towards in [
+            Vector3::x(),
+            -Vector3::y() * 4.0,
+            Vector3::z(),
+            Vector3::new(1.0, 2.0, 3.0),
+            Vector3::zeros(),
+            nan,
+        ] {
+            for up in [Vector3::z() * 9.0, Vector3::x(), Vector3::zeros(), towards, nan] {
+                let axes = along(towards, up);
+                assert!((axes * axes.transpose() - Matrix3::identity()).norm() < 1e-12, "{towards} {up}");
+                assert!((axes.determinant() - 1.0).abs() < 1e-12);
+            }
+        }
+        assert!((along(-Vector3::y(), Vector3::z()) - upright(0.0, 0.0, Vector3::z())).norm() < 1e-15);
+    }
 
     #[test]
     fn upright_views_put_the_axes_where_they_say() {
