@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use mesh::{ComponentPolicy, Orient, RepairOptions, VertexId, Weld};
 use pipeline::{
-    Bandwidth, EmbedMethod, EmbedOptions, FastMarchingOptions, FirstSample, GeodesicMethod, Samples,
-    StressChoice, Update,
+    Bandwidth, EmbedMethod, EmbedOptions, FastMarchingOptions, FirstSample, GeodesicMethod, ObtuseTreatment,
+    Samples, StressChoice, Update,
 };
 
 /// Nonrigid 3D shapes: surface distances, canonical forms, comparison.
@@ -76,9 +76,8 @@ pub(crate) struct GeodesicArgs {
     /// How distances are measured
     #[arg(long, value_enum, default_value_t = GeodesicName::FastMarching)]
     pub(crate) method: GeodesicName,
-    /// Local solver of fast marching
-    #[arg(long, value_enum, default_value_t = UpdateName::PointSource)]
-    pub(crate) update: UpdateName,
+    #[command(flatten)]
+    pub(crate) marching: MarchingArgs,
     #[command(flatten)]
     pub(crate) repair: RepairArgs,
 }
@@ -153,6 +152,17 @@ impl RepairArgs {
     }
 }
 
+/// How fast marching marches.
+#[derive(Debug, Clone, Copy, Args)]
+pub(crate) struct MarchingArgs {
+    /// Local solver of fast marching
+    #[arg(long, value_enum, default_value_t = UpdateName::PointSource)]
+    pub(crate) update: UpdateName,
+    /// What fast marching does at corners wider than 90 degrees
+    #[arg(long, value_enum, default_value_t = ObtuseName::Unfold)]
+    pub(crate) obtuse: ObtuseName,
+}
+
 /// How a surface is embedded.
 #[derive(Debug, Clone, Args)]
 pub(crate) struct EmbeddingArgs {
@@ -171,9 +181,8 @@ pub(crate) struct EmbeddingArgs {
     /// How distances are measured
     #[arg(long, value_enum, default_value_t = GeodesicName::FastMarching, value_name = "METHOD")]
     pub(crate) geodesic: GeodesicName,
-    /// Local solver of fast marching
-    #[arg(long, value_enum, default_value_t = UpdateName::PointSource)]
-    pub(crate) update: UpdateName,
+    #[command(flatten)]
+    pub(crate) marching: MarchingArgs,
     /// First sample, a vertex of the input [default: the vertex farthest from the first]
     #[arg(long, value_name = "V")]
     pub(crate) first_sample: Option<u32>,
@@ -185,7 +194,7 @@ impl EmbeddingArgs {
     pub(crate) fn options(&self, common: &Common, stress: StressChoice) -> EmbedOptions {
         let rank = self.rank;
         EmbedOptions {
-            geodesic: self.geodesic.method(self.update),
+            geodesic: self.geodesic.method(self.marching),
             samples: self.samples,
             first_sample: match self.first_sample {
                 Some(vertex) => FirstSample::Vertex(VertexId(vertex)),
@@ -223,15 +232,17 @@ pub(crate) enum GeodesicName {
 }
 
 impl GeodesicName {
-    pub(crate) fn method(self, update: UpdateName) -> GeodesicMethod {
-        let update = match update {
+    pub(crate) fn method(self, marching: MarchingArgs) -> GeodesicMethod {
+        let update = match marching.update {
             UpdateName::PointSource => Update::PointSource,
             UpdateName::Planar => Update::Planar,
         };
+        let obtuse = match marching.obtuse {
+            ObtuseName::Unfold => ObtuseTreatment::Unfold,
+            ObtuseName::Ignore => ObtuseTreatment::Ignore,
+        };
         match self {
-            Self::FastMarching => {
-                GeodesicMethod::FastMarching(FastMarchingOptions { update, ..Default::default() })
-            }
+            Self::FastMarching => GeodesicMethod::FastMarching(FastMarchingOptions { update, obtuse }),
             Self::Dijkstra => GeodesicMethod::Dijkstra,
             Self::Bfs => GeodesicMethod::BreadthFirst,
         }
@@ -244,6 +255,14 @@ pub(crate) enum UpdateName {
     PointSource,
     /// The front in a triangle is a straight line (Kimmel and Sethian)
     Planar,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum ObtuseName {
+    /// Unfold the surface behind the corner and split it (more accurate)
+    Unfold,
+    /// Treat it like any other
+    Ignore,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]

@@ -52,7 +52,7 @@ pub(crate) fn geodesic(args: &GeodesicArgs, common: &Common) -> Result<ExitCode>
         .collect::<Result<Vec<_>, _>>()
         .map_err(|fault| named(&args.mesh, fault))?;
 
-    let method = args.method.method(args.update);
+    let method = args.method.method(args.marching);
     let start = Instant::now();
     let solver = method.prepare(&surface.intrinsic);
     let setup = surface.repair_seconds + start.elapsed().as_secs_f64();
