@@ -41,7 +41,7 @@ impl Bandwidth {
 pub struct KernelPcaOptions {
     /// Width of the kernel. Default: [`Bandwidth::Mean`].
     pub bandwidth: Bandwidth,
-    /// Eigenpairs of the sample kernel to keep. Default: half of n, at least `dim + 2`, as in NMDS.
+    /// Eigenpairs of the sample kernel to keep. Default: half of n, at least `dim + 4`, as in NMDS.
     pub rank: Option<usize>,
     /// Dimensions of the embedding. Default: 3.
     pub dim: usize,

@@ -19,4 +19,6 @@ pub use embedding::Embedding;
 pub use error::NmdsError;
 pub use kernel_pca::{Bandwidth, KernelPcaOptions, kernel_pca};
 pub use nystrom::{NystromOptions, nystrom};
-pub use stress::{DistanceRows, StressEstimate, estimate_paper_stress, paper_stress, sample_rows};
+pub use stress::{
+    DistanceRows, StressEstimate, estimate_paper_stress, normalized_stress, paper_stress, sample_rows,
+};

@@ -9,7 +9,9 @@ use crate::{Embedding, NmdsError};
 #[derive(Debug, Clone, PartialEq)]
 pub struct NystromOptions {
     /// Eigenpairs of the sample matrix to keep (`n1`), 1 to the number of samples n. Fewer regularise
-    /// more; with all n the result may blow up. Default: half of n, at least `dim + 2`.
+    /// more; with all n the result may blow up. Default: half of n, at least `dim + 4`: the least rank
+    /// that is exact for Euclidean distances, `dim + 2`, leaves some first samples 50 % above the
+    /// optimal stress at n = 10, two more leave none above 13 %.
     pub rank: Option<usize>,
     /// Dimensions of the embedding (`k`). Default: 3.
     pub dim: usize,
@@ -27,7 +29,7 @@ impl NystromOptions {
     /// # Errors
     /// [`NmdsError::BadRank`] and [`NmdsError::BadDimension`].
     pub fn validate(&self, n_landmarks: usize) -> Result<usize, NmdsError> {
-        let rank = self.rank.unwrap_or((self.dim + 2).max(n_landmarks.div_ceil(2)).min(n_landmarks));
+        let rank = self.rank.unwrap_or((self.dim + 4).max(n_landmarks.div_ceil(2)).min(n_landmarks));
         if rank == 0 || rank > n_landmarks {
             return Err(NmdsError::BadRank { rank, n_landmarks });
         }

@@ -89,6 +89,22 @@ fn residuals(coords: &Matrix, rows: &dyn DistanceRows, i: usize, out: &mut [f64]
     }
 }
 
+/// `sqrt(sum (d_ij - |z_i - z_j|)^2 / sum d_ij^2)` over all pairs: Kruskal's stress of the coordinates
+/// as they are, 0 for an embedding without distortion. For small p, as that of a map.
+#[must_use]
+pub fn normalized_stress(coords: &Matrix, distances: &DistanceMatrix) -> f64 {
+    let p = distances.n_points();
+    let (mut residual, mut total) = (0.0, 0.0);
+    for i in 0..p {
+        for j in 0..i {
+            let d = distances.get(i, j);
+            residual += (d - (coords.row(i) - coords.row(j)).norm()).powi(2);
+            total += d * d;
+        }
+    }
+    if total > 0.0 { (residual / total).sqrt() } else { 0.0 }
+}
+
 /// An estimate of [`paper_stress`] from some of the rows.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StressEstimate {
@@ -184,6 +200,16 @@ mod tests {
         let all = crate::classical_full(&distances, 3).unwrap().eigenvalues;
         let rest = all[3..].iter().map(|v| v * v).sum::<f64>().sqrt() / 151.0;
         assert!((stress / rest - 1.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn normalized_stress_is_zero_for_points_of_the_plane_and_relative_otherwise() {
+        let coords = Matrix::from_fn(20, 2, |i, j| ((3 * i + 7 * j) as f64).sin());
+        let distance = |i: usize, j: usize| (coords.row(i) - coords.row(j)).norm();
+        let exact = DistanceMatrix::from_pairs(20, distance).unwrap();
+        assert_eq!(normalized_stress(&coords, &exact), 0.0);
+        let stretched = DistanceMatrix::from_pairs(20, |i, j| 1.25 * distance(i, j)).unwrap();
+        assert!((normalized_stress(&coords, &stretched) - 0.2).abs() < 1e-14);
     }
 
     #[test]

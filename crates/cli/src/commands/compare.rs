@@ -10,7 +10,7 @@ use serde::Serialize;
 use super::{named, read_surface};
 use crate::args::{Common, CompareArgs, DistanceName};
 use crate::output::{facts, print, print_json};
-use crate::progress::Bars;
+use terminal::Bars;
 
 #[derive(Serialize)]
 struct CompareJson {
@@ -27,7 +27,7 @@ pub(crate) fn compare(args: &CompareArgs, common: &Common) -> Result<ExitCode> {
         bail!("forms are compared in 3 dimensions; leave out --dim {}", args.embedding.dim);
     }
     let options = args.embedding.options(common, StressChoice::Skip);
-    let bars = Bars::new(common);
+    let bars = Bars::new(common.quiet);
     let form = |path: &Path| {
         let surface = read_surface(path, &args.embedding.repair)?;
         let embedded = embed(&surface, &options, &bars).map_err(|fault| named(path, fault))?;

@@ -11,7 +11,7 @@ use serde::Serialize;
 use super::{named, read_surface, say_repair};
 use crate::args::{Common, EmbedArgs};
 use crate::output::{extension, facts, print, print_json, write_npy};
-use crate::progress::Bars;
+use terminal::Bars;
 
 #[derive(Serialize)]
 struct EmbedJson {
@@ -50,7 +50,7 @@ pub(crate) fn embed(args: &EmbedArgs, common: &Common) -> Result<ExitCode> {
     }
     check_format(&args.output, args.embedding.dim)?;
     let surface = read_surface(&args.mesh, &args.embedding.repair)?;
-    let bars = Bars::new(common);
+    let bars = Bars::new(common.quiet);
     let embedded = pipeline::embed(&surface, &options, &bars).map_err(|fault| named(&args.mesh, fault))?;
     bars.finish();
     warn(&args.mesh.display().to_string(), &embedded.report);
@@ -69,7 +69,7 @@ fn batch(args: &EmbedArgs, options: &EmbedOptions, common: &Common) -> Result<Ex
     let extension = args.format.extension();
     check_format(&PathBuf::from(format!("form.{extension}")), args.embedding.dim)?;
     let shapes = list_shapes(&args.mesh, None)?;
-    let bars = Bars::new(common);
+    let bars = Bars::new(common.quiet);
     let bar = bars.bar("shapes", shapes.len());
     let results: Vec<Result<EmbedJson>> = shapes
         .par_iter()

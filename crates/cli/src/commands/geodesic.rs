@@ -12,7 +12,7 @@ use serde::Serialize;
 use super::{named, read_surface};
 use crate::args::{Common, GeodesicArgs};
 use crate::output::{extension, facts, print, print_json, write_csv, write_npy};
-use crate::progress::Bars;
+use terminal::Bars;
 
 #[derive(Serialize)]
 struct GeodesicJson {
@@ -56,7 +56,7 @@ pub(crate) fn geodesic(args: &GeodesicArgs, common: &Common) -> Result<ExitCode>
     let start = Instant::now();
     let solver = method.prepare(&surface.intrinsic);
     let setup = surface.repair_seconds + start.elapsed().as_secs_f64();
-    let bars = Bars::new(common);
+    let bars = Bars::new(common.quiet);
     let bar = bars.bar("distances", sources.len());
     let mut rows = Vec::with_capacity(sources.len());
     let mut per_source = Vec::with_capacity(sources.len());

@@ -6,21 +6,23 @@ use std::sync::{Mutex, PoisonError};
 use indicatif::{ProgressBar, ProgressStyle};
 use pipeline::Observer;
 
-use crate::args::Common;
-
 /// A bar per stage while a person watches; nothing otherwise.
-pub(crate) struct Bars {
+#[derive(Debug)]
+pub struct Bars {
     visible: bool,
     current: Mutex<Option<ProgressBar>>,
 }
 
 impl Bars {
-    pub(crate) fn new(common: &Common) -> Self {
-        Self { visible: !common.quiet && std::io::stderr().is_terminal(), current: Mutex::new(None) }
+    /// Bars that are seen unless `quiet`, or standard error is no terminal.
+    #[must_use]
+    pub fn new(quiet: bool) -> Self {
+        Self { visible: !quiet && std::io::stderr().is_terminal(), current: Mutex::new(None) }
     }
 
     /// A bar over the steps of one stage, to be advanced by the caller.
-    pub(crate) fn bar(&self, stage: &str, total: usize) -> ProgressBar {
+    #[must_use]
+    pub fn bar(&self, stage: &str, total: usize) -> ProgressBar {
         if !self.visible {
             return ProgressBar::hidden();
         }
@@ -31,7 +33,7 @@ impl Bars {
     }
 
     /// Clears the line.
-    pub(crate) fn finish(&self) {
+    pub fn finish(&self) {
         if let Some(bar) = self.current.lock().unwrap_or_else(PoisonError::into_inner).take() {
             bar.finish_and_clear();
         }

@@ -1,0 +1,44 @@
+//! What the programs share towards the person at the terminal: progress, threads, exit codes.
+//!
+//! Knows nothing of arguments or results.
+
+mod progress;
+
+use std::process::ExitCode;
+
+use anyhow::{Context, Result};
+
+pub use progress::Bars;
+
+/// Runs a program on `threads` worker threads (0 for all cores) and turns its result into an exit code:
+/// its own, or 2 with the error on standard error. That nobody reads the output any more is no error.
+pub fn run(threads: usize, program: impl FnOnce() -> Result<ExitCode>) -> ExitCode {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
+    match pool.context("cannot start the worker threads").and_then(|()| program()) {
+        Ok(code) => code,
+        Err(error) if is_closed_pipe(&error) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error:#}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+fn is_closed_pipe(error: &anyhow::Error) -> bool {
+    error
+        .chain()
+        .filter_map(|cause| cause.downcast_ref::<std::io::Error>())
+        .any(|cause| cause.kind() == std::io::ErrorKind::BrokenPipe)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_closed_pipe_is_recognised_beneath_its_context() {
+        let pipe = std::io::Error::from(std::io::ErrorKind::BrokenPipe);
+        assert!(is_closed_pipe(&anyhow::Error::from(pipe).context("writing")));
+        assert!(!is_closed_pipe(&anyhow::anyhow!("something else")));
+    }
+}

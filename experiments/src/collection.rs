@@ -1,0 +1,152 @@
+//! The shapes of a run.
+
+use anyhow::{Context, Result, bail};
+use datasets::{ArticulatedOptions, articulated};
+use mesh::RepairOptions;
+use pipeline::{LabelFile, Observer, Surface, list_shapes};
+use rayon::prelude::*;
+
+use crate::args::RunArgs;
+
+/// Name of the built-in dataset in records.
+pub(crate) const BUILT_IN: &str = "built-in articulated families";
+
+/// The classes of the paper's Figure 4.
+pub(crate) const PAPER_CLASSES: [&str; 3] = ["cat", "centaur", "david"];
+
+/// Labelled surfaces, class by class.
+pub(crate) struct Collection {
+    /// Where they come from.
+    pub(crate) dataset: String,
+    /// The classes, in the order of the shapes.
+    pub(crate) classes: Vec<String>,
+    pub(crate) shapes: Vec<Shape>,
+}
+
+/// One shape of a collection.
+pub(crate) struct Shape {
+    pub(crate) name: String,
+    pub(crate) label: String,
+    pub(crate) surface: Surface,
+}
+
+impl Collection {
+    /// Generates or reads the shapes that `args` ask for. A file that cannot be read is named on standard
+    /// error and left out.
+    pub(crate) fn load(args: &RunArgs, observer: &dyn Observer) -> Result<Self> {
+        let repair = RepairOptions::default();
+        let (dataset, found) = match &args.dataset {
+            None => {
+                let options = ArticulatedOptions { seed: args.seed, n_vertices: args.vertices };
+                observer.begin("generating", 0);
+                let shapes = articulated(&options)?;
+                let shape = |shape: datasets::LabeledShape| {
+                    (shape.name, shape.label, Surface::new(&shape.mesh, &repair))
+                };
+                (BUILT_IN.to_owned(), shapes.into_par_iter().map(shape).collect::<Vec<_>>())
+            }
+            Some(folder) => {
+                let labels = args.labels.as_deref().map(LabelFile::read).transpose()?;
+                let mut files = list_shapes(folder, labels.as_ref())?;
+                files.retain(|file| args.classes.is_empty() || args.classes.contains(&file.label));
+                observer.begin("reading", files.len());
+                let shape = |file: pipeline::ShapeFile| {
+                    let surface = Surface::read(&file.path, &repair);
+                    observer.step();
+                    (file.name, file.label, surface)
+                };
+                (folder.display().to_string(), files.into_par_iter().map(shape).collect())
+            }
+        };
+        let mut shapes = Vec::new();
+        for (name, label, surface) in found {
+            match surface {
+                Ok(surface) => shapes.push(Shape { name, label, surface }),
+                Err(fault) => eprintln!("left out {name}: {fault}"),
+            }
+        }
+        Self::in_class_order(dataset, shapes, &args.classes)
+    }
+
+    /// Sorts shapes by class, in the order asked for or of first appearance.
+    fn in_class_order(dataset: String, mut shapes: Vec<Shape>, wanted: &[String]) -> Result<Self> {
+        let mut classes = wanted.to_vec();
+        if classes.is_empty() {
+            for shape in &shapes {
+                if !classes.contains(&shape.label) {
+                    classes.push(shape.label.clone());
+                }
+            }
+        }
+        if let Some(empty) = classes.iter().find(|class| shapes.iter().all(|s| s.label != **class)) {
+            bail!("no readable shape of the class `{empty}` in {dataset}; leave it out of --classes");
+        }
+        let rank = |label: &String| classes.iter().position(|class| class == label);
+        shapes.retain(|shape| rank(&shape.label).is_some());
+        shapes.sort_by_key(|shape| rank(&shape.label));
+        Ok(Self { dataset, classes, shapes })
+    }
+
+    /// Names of the shapes.
+    pub(crate) fn names(&self) -> Vec<String> {
+        self.shapes.iter().map(|shape| shape.name.clone()).collect()
+    }
+
+    /// Classes of the shapes.
+    pub(crate) fn labels(&self) -> Vec<String> {
+        self.shapes.iter().map(|shape| shape.label.clone()).collect()
+    }
+
+    /// Which of the configured expectations apply.
+    pub(crate) fn setting(&self) -> Setting {
+        if self.dataset == BUILT_IN {
+            Setting::BuiltIn
+        } else if self.classes == PAPER_CLASSES {
+            Setting::Paper
+        } else {
+            Setting::Other
+        }
+    }
+
+    /// All shapes.
+    pub(crate) fn all(&self) -> Vec<&Shape> {
+        self.shapes.iter().collect()
+    }
+
+    /// Up to `n` shapes of each class.
+    pub(crate) fn first_of_each_class(&self, n: usize) -> Vec<&Shape> {
+        let of = |class: &'_ String| {
+            let class = class.clone();
+            self.shapes.iter().filter(move |shape| shape.label == class).take(n)
+        };
+        self.classes.iter().flat_map(of).collect()
+    }
+}
+
+/// Calls `work` on shapes in parallel, a step of `stage` each.
+pub(crate) fn map<T: Send>(
+    shapes: &[&Shape],
+    stage: &str,
+    observer: &dyn Observer,
+    work: impl Fn(&Shape) -> Result<T> + Sync,
+) -> Result<Vec<T>> {
+    observer.begin(stage, shapes.len());
+    let one = |shape: &&Shape| {
+        let result = work(shape).with_context(|| shape.name.clone());
+        observer.step();
+        result
+    };
+    shapes.par_iter().map(one).collect()
+}
+
+/// What kind of collection a run has, for what can be expected of it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum Setting {
+    /// The built-in dataset.
+    BuiltIn,
+    /// The paper's classes from a folder.
+    Paper,
+    /// Anything else, of which nothing is known.
+    Other,
+}

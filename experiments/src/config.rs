@@ -1,0 +1,145 @@
+//! What an experiment does, is expected to show, and means: `configs/*.toml`.
+
+use anyhow::{Context, Result};
+use pipeline::{Bandwidth, EmbedMethod, EmbedOptions, Samples, StressChoice};
+use report::results::Expectation;
+use serde::Deserialize;
+
+use crate::collection::Setting;
+
+/// The configuration of an experiment.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Config {
+    /// One line for `list`.
+    pub(crate) title: String,
+    /// Samples of the Nystrom methods.
+    pub(crate) samples: usize,
+    /// Eigenpairs they keep.
+    pub(crate) rank: usize,
+    /// Neighbours that vote.
+    #[serde(default = "one")]
+    pub(crate) knn: usize,
+    /// What is expected.
+    #[serde(default)]
+    pub(crate) expect: Vec<Bound>,
+    /// What the figure shows, in paragraphs.
+    pub(crate) analysis: String,
+}
+
+fn one() -> usize {
+    1
+}
+
+/// Bounds on one of an experiment's numbers.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Bound {
+    /// Which number; every experiment documents its names.
+    pub(crate) value: String,
+    pub(crate) at_least: Option<f64>,
+    pub(crate) at_most: Option<f64>,
+    /// Whether the bound is open.
+    #[serde(default)]
+    pub(crate) strictly: bool,
+    /// Where it applies; everywhere when empty.
+    #[serde(default)]
+    pub(crate) on: Vec<Setting>,
+}
+
+impl Config {
+    /// Reads an embedded configuration.
+    pub(crate) fn parse(name: &str, text: &str) -> Result<Self> {
+        toml::from_str(text).with_context(|| format!("experiments/configs/{name}.toml"))
+    }
+
+    /// Options of the paper's method.
+    pub(crate) fn nmds(&self, seed: u64) -> EmbedOptions {
+        EmbedOptions {
+            samples: Samples::Count(self.samples),
+            method: EmbedMethod::Nystrom { rank: Some(self.rank) },
+            stress: StressChoice::Skip,
+            seed,
+            ..EmbedOptions::default()
+        }
+    }
+
+    /// Options of the baseline.
+    pub(crate) fn kernel_pca(&self, seed: u64) -> EmbedOptions {
+        let method = EmbedMethod::KernelPca { rank: Some(self.rank), bandwidth: Bandwidth::Mean };
+        EmbedOptions { method, ..self.nmds(seed) }
+    }
+
+    /// Holds the bounds that apply against what was measured.
+    pub(crate) fn check(
+        &self,
+        setting: Setting,
+        measured: impl Fn(&str) -> Option<f64>,
+    ) -> Result<Vec<Expectation>> {
+        let applies = |bound: &&Bound| match setting {
+            Setting::Other => false,
+            _ => bound.on.is_empty() || bound.on.contains(&setting),
+        };
+        self.expect.iter().filter(applies).map(|bound| bound.check(&measured)).collect()
+    }
+}
+
+impl Bound {
+    fn check(&self, measured: impl Fn(&str) -> Option<f64>) -> Result<Expectation> {
+        let value = measured(&self.value).with_context(|| format!("nothing measures `{}`", self.value))?;
+        let strict = if self.strictly { " (strictly)" } else { "" };
+        let low = self.at_least.map(|limit| {
+            (format!("at least {limit}{strict}"), if self.strictly { value > limit } else { value >= limit })
+        });
+        let high = self.at_most.map(|limit| {
+            (format!("at most {limit}{strict}"), if self.strictly { value < limit } else { value <= limit })
+        });
+        let bounds: Vec<_> = low.into_iter().chain(high).collect();
+        Ok(Expectation {
+            what: self.value.clone(),
+            expected: bounds.iter().map(|(text, _)| text.as_str()).collect::<Vec<_>>().join(", "),
+            measured: format!("{value:.4}"),
+            held: bounds.iter().all(|(_, held)| *held),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TEXT: &str = r#"
+        title = "t"
+        samples = 10
+        rank = 5
+        analysis = "a"
+        [[expect]]
+        value = "x"
+        at_least = 1.0
+        [[expect]]
+        value = "x"
+        at_least = 1.0
+        strictly = true
+        on = ["paper"]
+    "#;
+
+    #[test]
+    fn bounds_apply_where_they_say_and_may_be_open() {
+        let config = Config::parse("test", TEXT).unwrap();
+        let held = |setting, x: f64| {
+            let found = config.check(setting, |name| (name == "x").then_some(x)).unwrap();
+            found.iter().map(|e| e.held).collect::<Vec<_>>()
+        };
+        assert_eq!(held(Setting::BuiltIn, 1.0), [true]);
+        assert_eq!(held(Setting::Paper, 1.0), [true, false]);
+        assert_eq!(held(Setting::Paper, 0.5), [false, false]);
+        assert!(held(Setting::Other, 0.0).is_empty());
+        assert!(config.check(Setting::Paper, |_| None).is_err());
+    }
+
+    #[test]
+    fn unknown_keys_are_refused_by_name() {
+        let fault = Config::parse("test", &format!("typo = 1\n{TEXT}")).unwrap_err();
+        assert!(format!("{fault:#}").contains("typo"));
+    }
+}
