@@ -42,4 +42,15 @@ pub enum LinalgError {
         /// Order of the matrix.
         n: usize,
     },
+    /// A sparse matrix has no Cholesky factor, or none that fits.
+    #[error(
+        "the sparse {n} x {n} matrix cannot be factorised: {reason}; add a larger share of a positive \
+         diagonal to it"
+    )]
+    NotFactorised {
+        /// Order of the matrix.
+        n: usize,
+        /// What was in the way.
+        reason: String,
+    },
 }

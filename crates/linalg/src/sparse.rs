@@ -1,0 +1,165 @@
+//! Large symmetric matrices most of whose entries are zero.
+
+use crate::SymmetricOperator;
+
+/// A symmetric n x n matrix of which only the lower triangle is stored, column by column.
+///
+/// **Invariants.** The rows of a column ascend and start with the diagonal, which is always stored;
+/// no entry is stored twice. The pattern is that of the entries given, zero or not, so two matrices
+/// from the same places share one [`EliminationOrder`](crate::EliminationOrder).
+#[derive(Debug, Clone, PartialEq)]
+pub struct SparseSymmetric {
+    column_starts: Vec<usize>,
+    rows: Vec<usize>,
+    values: Vec<f64>,
+}
+
+impl SparseSymmetric {
+    /// The matrix with the given `(row, column, value)` entries, each standing for itself and for
+    /// its mirror image; entries of the same place are summed, those not given are zero.
+    ///
+    /// Linear in the entries, for columns of bounded length.
+    ///
+    /// # Panics
+    /// When a row or column is not below `order`.
+    #[must_use]
+    pub fn from_entries(order: usize, entries: impl IntoIterator<Item = (usize, usize, f64)>) -> Self {
+        let diagonal = (0..order).map(|i| (i, i, 0.0));
+        let entries: Vec<(usize, usize, f64)> = diagonal.chain(entries).collect();
+        // Counted and dropped into the buckets of their columns, in the order in which they came.
+        let mut next = vec![0; order + 1];
+        for &(i, j, _) in &entries {
+            assert!(i.max(j) < order, "entry ({i}, {j}) is outside of a matrix of order {order}");
+            next[i.min(j) + 1] += 1;
+        }
+        for j in 0..order {
+            next[j + 1] += next[j];
+        }
+        let mut buckets = vec![(0, 0.0); entries.len()];
+        for (i, j, value) in entries {
+            let slot = &mut next[i.min(j)];
+            buckets[*slot] = (i.max(j), value);
+            *slot += 1;
+        }
+        let mut matrix = Self { column_starts: vec![0], rows: Vec::new(), values: Vec::new() };
+        let mut start = 0;
+        // Each bucket now ends where its next entry would go.
+        for end in next.into_iter().take(order) {
+            let bucket = &mut buckets[start..end];
+            // Stable, so that sums are taken in the order of the entries.
+            bucket.sort_by_key(|(row, _)| *row);
+            for run in bucket.chunk_by(|a, b| a.0 == b.0) {
+                matrix.rows.push(run[0].0);
+                matrix.values.push(run.iter().map(|(_, value)| value).sum());
+            }
+            matrix.column_starts.push(matrix.rows.len());
+            start = end;
+        }
+        matrix
+    }
+
+    /// The order n.
+    #[must_use]
+    pub fn order(&self) -> usize {
+        self.column_starts.len() - 1
+    }
+
+    /// Number of stored entries, all in the lower triangle.
+    #[must_use]
+    pub fn n_stored(&self) -> usize {
+        self.values.len()
+    }
+
+    /// The stored entries as `(row, column, value)` with `row >= column`.
+    pub fn entries(&self) -> impl Iterator<Item = (usize, usize, f64)> {
+        (0..self.order()).flat_map(move |j| self.column(j).map(move |(i, value)| (i, j, value)))
+    }
+
+    /// The diagonal.
+    #[must_use]
+    pub fn diagonal(&self) -> Vec<f64> {
+        (0..self.order()).map(|j| self.values[self.column_starts[j]]).collect()
+    }
+
+    /// Adds one number to each entry of the diagonal.
+    ///
+    /// # Panics
+    /// When there is not one number for each.
+    pub fn add_to_diagonal(&mut self, numbers: impl ExactSizeIterator<Item = f64>) {
+        assert_eq!(numbers.len(), self.order(), "one number for each diagonal entry");
+        for (start, number) in self.column_starts.iter().zip(numbers) {
+            self.values[*start] += number;
+        }
+    }
+
+    fn column(&self, j: usize) -> impl Iterator<Item = (usize, f64)> {
+        let range = self.column_starts[j]..self.column_starts[j + 1];
+        self.rows[range.clone()].iter().copied().zip(self.values[range].iter().copied())
+    }
+
+    pub(crate) fn column_starts(&self) -> &[usize] {
+        &self.column_starts
+    }
+
+    pub(crate) fn rows(&self) -> &[usize] {
+        &self.rows
+    }
+
+    pub(crate) fn values(&self) -> &[f64] {
+        &self.values
+    }
+}
+
+impl SymmetricOperator for SparseSymmetric {
+    fn order(&self) -> usize {
+        self.order()
+    }
+
+    fn apply(&self, x: &[f64], y: &mut [f64]) {
+        y.fill(0.0);
+        for j in 0..self.order() {
+            let mut sum = 0.0;
+            for (i, value) in self.column(j) {
+                sum += value * x[i];
+                if i != j {
+                    y[i] += value * x[j];
+                }
+            }
+            y[j] += sum;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn entries_are_summed_mirrored_and_sorted_and_the_diagonal_is_always_there() {
+        let a = SparseSymmetric::from_entries(3, [(2, 0, 1.5), (0, 2, 0.5), (1, 1, 4.0), (1, 0, -1.0)]);
+        let entries: Vec<_> = a.entries().collect();
+        assert_eq!(entries, [(0, 0, 0.0), (1, 0, -1.0), (2, 0, 2.0), (1, 1, 4.0), (2, 2, 0.0)]);
+        assert_eq!((a.order(), a.n_stored(), a.diagonal()), (3, 5, vec![0.0, 4.0, 0.0]));
+    }
+
+    #[test]
+    fn the_product_is_that_of_the_whole_symmetric_matrix() {
+        let mut a = SparseSymmetric::from_entries(3, [(2, 0, 2.0), (1, 1, 4.0), (1, 0, -1.0)]);
+        a.add_to_diagonal([1.0, 2.0, 3.0].into_iter());
+        let mut y = [f64::NAN; 3];
+        a.apply(&[1.0, 10.0, 100.0], &mut y);
+        assert_eq!(y, [1.0 - 10.0 + 200.0, -1.0 + 60.0, 2.0 + 300.0]);
+    }
+
+    #[test]
+    fn a_matrix_may_be_empty() {
+        let a = SparseSymmetric::from_entries(0, []);
+        assert_eq!((a.order(), a.n_stored(), a.entries().count()), (0, 0, 0));
+    }
+
+    #[test]
+    #[should_panic(expected = "outside of a matrix of order 2")]
+    fn entries_outside_are_refused() {
+        let _ = SparseSymmetric::from_entries(2, [(0, 2, 1.0)]);
+    }
+}
