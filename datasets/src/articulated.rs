@@ -61,7 +61,7 @@ impl Family {
     }
 }
 
-/// Options of [`articulated`].
+/// Options of [`articulated()`].
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ArticulatedOptions {
     /// Decides joint angles, triangulations and vertex numbers. The same seed gives the same bytes on
@@ -129,13 +129,13 @@ pub fn articulated(options: &ArticulatedOptions) -> Result<Vec<LabeledShape>, Da
     shapes.into_par_iter().map(|(f, pose)| shape(Family::all()[f], &models[f], pose, options)).collect()
 }
 
-/// One shape of the dataset, the same as in the list of [`articulated`].
+/// One shape of the dataset, the same as in the list of [`articulated()`].
 ///
 /// Pose 0 is the rest pose, on all fours or standing with arms spread. Poses beyond the family's
 /// [`n_shapes`](Family::n_shapes) are further random variations.
 ///
 /// # Errors
-/// As [`articulated`].
+/// As [`articulated()`].
 pub fn articulated_shape(
     family: Family,
     pose: usize,
@@ -174,4 +174,86 @@ pub(crate) fn posed_skeleton<'a>(model: &'a Model, pose: usize, stream: &mut Str
         return PosedSkeleton::new(&model.skeleton, typical);
     }
     PosedSkeleton::new(&model.skeleton, &typical.varied(&model.skeleton, stream))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::cmp::Reverse;
+    use std::collections::BinaryHeap;
+
+    use nalgebra::Point3;
+
+    use super::*;
+    use crate::implicit::{Blob, Body, Part};
+    use crate::simplify::Surface;
+
+    /// Lengths of shortest paths along edges from `source`.
+    fn path_lengths(surface: &Surface, positions: &[Point3<f64>], source: u32) -> Vec<f64> {
+        let mut lengths = vec![f64::INFINITY; positions.len()];
+        let mut queue = BinaryHeap::from([Reverse((0u64, source))]);
+        lengths[source as usize] = 0.0;
+        while let Some(Reverse((bits, v))) = queue.pop() {
+            let length = f64::from_bits(bits);
+            if length > lengths[v as usize] {
+                continue;
+            }
+            for x in surface.table.neighbors(v) {
+                let longer = length + (positions[x as usize] - positions[v as usize]).norm();
+                if longer < lengths[x as usize] {
+                    lengths[x as usize] = longer;
+                    queue.push(Reverse((longer.to_bits(), x)));
+                }
+            }
+        }
+        lengths
+    }
+
+    /// Relative changes of path lengths between two poses of one triangulation, ascending.
+    fn changes(surface: &Surface, a: &[Point3<f64>], b: &[Point3<f64>]) -> Vec<f64> {
+        let mut changes = Vec::new();
+        for source in (0..a.len() as u32).step_by(67) {
+            let (before, after) = (path_lengths(surface, a, source), path_lengths(surface, b, source));
+            let pairs = before.iter().zip(&after).filter(|(d, _)| **d > 0.0);
+            changes.extend(pairs.map(|(d, e)| (e / d - 1.0).abs()));
+        }
+        changes.sort_by(f64::total_cmp);
+        changes
+    }
+
+    #[test]
+    fn poses_of_a_family_are_nearly_isometric() {
+        for family in Family::all() {
+            let model = family.model();
+            let surface = rest_surface(&model, 2000, &mut Stream::new(5, 0, 0, Purpose::Lattice)).unwrap();
+            let positions = |pose: usize| {
+                let mut stream = Stream::new(1, family as usize, pose, Purpose::Pose);
+                posed_positions(&surface, &posed_skeleton(&model, pose, &mut stream), scale(&model))
+            };
+            let rest = positions(0);
+            let mut medians = Vec::new();
+            for pose in 1..family.n_shapes() {
+                let changes = changes(&surface, &rest, &positions(pose));
+                let quantile = |q: f64| changes[(q * changes.len() as f64) as usize];
+                println!("{}{pose}: median {:.3}, 90 % {:.3}", family.name(), quantile(0.5), quantile(0.9));
+                assert!(quantile(0.5) < 0.06, "{}{pose}: median {:.3}", family.name(), quantile(0.5));
+                assert!(quantile(0.9) < 0.17, "{}{pose}: 90 % {:.3}", family.name(), quantile(0.9));
+                medians.push(quantile(0.5));
+            }
+            let mean = medians.iter().sum::<f64>() / medians.len() as f64;
+            assert!(mean < 0.04, "{}: {mean:.3} on average", family.name());
+        }
+    }
+
+    #[test]
+    fn a_body_in_two_pieces_gives_no_surface() {
+        let mut model = Family::Cat.model();
+        model.body = Body::new(vec![
+            Part::added(0.0, vec![Blob::ball([0.0, 0.0, 0.0], 10.0)]),
+            Part::added(0.0, vec![Blob::ball([0.0, 50.0, 0.0], 10.0)]),
+        ]);
+        let error = shape(Family::Cat, &model, 3, &ArticulatedOptions::default()).unwrap_err();
+        let expected = DatasetError::NoSurface { shape: "cat3".to_owned(), n_vertices: 3400, seed: 1 };
+        assert_eq!(error, expected);
+        assert!(error.to_string().contains("try another seed"));
+    }
 }

@@ -12,9 +12,18 @@ pub(crate) const fn corner(c: usize) -> [usize; 3] {
 
 /// Lower corner and direction of the twelve edges.
 pub(crate) const EDGES: [(usize, usize); 12] = [
-    (0, 0), (2, 0), (4, 0), (6, 0), // along x
-    (0, 1), (1, 1), (4, 1), (5, 1), // along y
-    (0, 2), (1, 2), (2, 2), (3, 2), // along z
+    (0, 0),
+    (2, 0),
+    (4, 0),
+    (6, 0), // along x
+    (0, 1),
+    (1, 1),
+    (4, 1),
+    (5, 1), // along y
+    (0, 2),
+    (1, 2),
+    (2, 2),
+    (3, 2), // along z
 ];
 
 /// The corners of each face in counter-clockwise order seen from outside.

@@ -25,13 +25,16 @@ fn body() -> Body {
 
 fn trunk() -> Part {
     let sideways = [1.0, 0.0, 0.0];
-    Part::added(0.0, vec![
-        Blob::cone([0.0, -24.0, 57.0], 16.5, [0.0, 4.0, 58.0], 15.6).flat(sideways, 0.80),
-        Blob::cone([0.0, 4.0, 58.0], 15.6, [0.0, 26.0, 60.0], 13.8).flat(sideways, 0.80).blend(1.0),
-        // Rump and chest.
-        Blob::cone([0.0, 26.0, 60.0], 14.2, [0.0, 34.0, 60.0], 12.4).flat(sideways, 0.85).blend(2.0),
-        Blob::ball([0.0, -33.0, 56.0], 13.0).flat(sideways, 0.88).blend(4.0),
-    ])
+    Part::added(
+        0.0,
+        vec![
+            Blob::cone([0.0, -24.0, 57.0], 16.5, [0.0, 4.0, 58.0], 15.6).flat(sideways, 0.80),
+            Blob::cone([0.0, 4.0, 58.0], 15.6, [0.0, 26.0, 60.0], 13.8).flat(sideways, 0.80).blend(1.0),
+            // Rump and chest.
+            Blob::cone([0.0, 26.0, 60.0], 14.2, [0.0, 34.0, 60.0], 12.4).flat(sideways, 0.85).blend(2.0),
+            Blob::ball([0.0, -33.0, 56.0], 13.0).flat(sideways, 0.88).blend(4.0),
+        ],
+    )
 }
 
 fn neck() -> Part {
@@ -39,14 +42,17 @@ fn neck() -> Part {
 }
 
 fn head() -> Part {
-    Part::added(4.0, vec![
-        Blob::ball([0.0, -54.0, 80.0], 13.4).flat([0.0, 0.0, 1.0], 0.92),
-        // Cheeks, muzzle, chin.
-        Blob::ball([6.4, -56.0, 76.0], 7.8).blend(4.0),
-        Blob::cone([0.0, -61.0, 75.5], 7.4, [0.0, -66.6, 74.0], 5.4).blend(4.0),
-        Blob::ball([2.9, -67.8, 73.2], 4.0).blend(1.6),
-        Blob::ball([0.0, -66.2, 69.9], 3.4).blend(1.6),
-    ])
+    Part::added(
+        4.0,
+        vec![
+            Blob::ball([0.0, -54.0, 80.0], 13.4).flat([0.0, 0.0, 1.0], 0.92),
+            // Cheeks, muzzle, chin.
+            Blob::ball([6.4, -56.0, 76.0], 7.8).blend(4.0),
+            Blob::cone([0.0, -61.0, 75.5], 7.4, [0.0, -66.6, 74.0], 5.4).blend(4.0),
+            Blob::ball([2.9, -67.8, 73.2], 4.0).blend(1.6),
+            Blob::ball([0.0, -66.2, 69.9], 3.4).blend(1.6),
+        ],
+    )
 }
 
 fn face() -> Vec<Part> {
@@ -54,43 +60,54 @@ fn face() -> Vec<Part> {
         Part::carved(2.0, vec![Blob::ball([5.8, -68.4, 82.0], 3.9)]),
         Part::added(1.0, vec![Blob::ball([5.5, -63.6, 81.8], 2.9)]),
         // Bridge and tip of the nose.
-        Part::added(2.0, vec![
-            Blob::cone([0.0, -64.0, 81.0], 2.4, [0.0, -70.2, 76.4], 1.8),
-            Blob::ball([0.0, -71.0, 76.0], 1.8).blend(0.8),
-        ]),
+        Part::added(
+            2.0,
+            vec![
+                Blob::cone([0.0, -64.0, 81.0], 2.4, [0.0, -70.2, 76.4], 1.8),
+                Blob::ball([0.0, -71.0, 76.0], 1.8).blend(0.8),
+            ],
+        ),
     ]
 }
 
 fn ear() -> Part {
-    Part::added(3.0, vec![
-        Blob::cone([7.4, -51.5, 88.0], 7.4, [11.4, -49.8, 101.5], 2.6).flat([0.28, 1.0, -0.1], 0.52),
-    ])
+    Part::added(
+        3.0,
+        vec![Blob::cone([7.4, -51.5, 88.0], 7.4, [11.4, -49.8, 101.5], 2.6).flat([0.28, 1.0, -0.1], 0.52)],
+    )
 }
 
 fn ear_hollow() -> Part {
-    Part::carved(1.2, vec![
-        Blob::cone([8.6, -57.0, 92.0], 3.9, [10.6, -55.4, 98.5], 1.6).flat([0.28, 1.0, -0.1], 0.6),
-    ])
+    Part::carved(
+        1.2,
+        vec![Blob::cone([8.6, -57.0, 92.0], 3.9, [10.6, -55.4, 98.5], 1.6).flat([0.28, 1.0, -0.1], 0.6)],
+    )
 }
 
 fn foreleg() -> Part {
-    Part::added(5.0, vec![
-        // Shoulder blade and upper arm lie against the chest.
-        Blob::cone([7.6, -22.0, 64.0], 7.0, [8.0, -32.0, 52.0], 8.2),
-        Blob::cone([8.0, -32.0, 52.0], 8.0, [8.6, -25.0, 37.0], 5.5).blend(1.0),
-        Blob::cone([8.6, -25.0, 37.0], 5.5, [8.8, -28.5, 13.0], 4.0),
-        Blob::cone([8.8, -28.5, 13.0], 4.0, [8.8, -29.5, 5.5], 4.3),
-        Blob::cone([8.8, -30.5, 4.0], 5.0, [8.8, -34.0, 3.8], 4.9).flat([0.0, 0.0, 1.0], 0.76).blend(1.5),
-    ])
+    Part::added(
+        5.0,
+        vec![
+            // Shoulder blade and upper arm lie against the chest.
+            Blob::cone([7.6, -22.0, 64.0], 7.0, [8.0, -32.0, 52.0], 8.2),
+            Blob::cone([8.0, -32.0, 52.0], 8.0, [8.6, -25.0, 37.0], 5.5).blend(1.0),
+            Blob::cone([8.6, -25.0, 37.0], 5.5, [8.8, -28.5, 13.0], 4.0),
+            Blob::cone([8.8, -28.5, 13.0], 4.0, [8.8, -29.5, 5.5], 4.3),
+            Blob::cone([8.8, -30.5, 4.0], 5.0, [8.8, -34.0, 3.8], 4.9).flat([0.0, 0.0, 1.0], 0.76).blend(1.5),
+        ],
+    )
 }
 
 fn hindleg() -> Part {
-    Part::added(6.0, vec![
-        Blob::cone([7.4, 29.0, 58.0], 12.4, [9.4, 23.0, 42.0], 8.0),
-        Blob::cone([9.4, 24.0, 42.0], 7.4, [9.8, 38.0, 21.5], 4.0).blend(4.0),
-        Blob::cone([9.8, 38.0, 21.5], 4.0, [9.8, 34.0, 6.5], 3.8),
-        Blob::cone([9.8, 32.0, 4.2], 4.6, [9.8, 27.0, 3.8], 5.0).flat([0.0, 0.0, 1.0], 0.76).blend(1.5),
-    ])
+    Part::added(
+        6.0,
+        vec![
+            Blob::cone([7.4, 29.0, 58.0], 12.4, [9.4, 23.0, 42.0], 8.0),
+            Blob::cone([9.4, 24.0, 42.0], 7.4, [9.8, 38.0, 21.5], 4.0).blend(4.0),
+            Blob::cone([9.8, 38.0, 21.5], 4.0, [9.8, 34.0, 6.5], 3.8),
+            Blob::cone([9.8, 32.0, 4.2], 4.6, [9.8, 27.0, 3.8], 5.0).flat([0.0, 0.0, 1.0], 0.76).blend(1.5),
+        ],
+    )
 }
 
 /// The axis of the tail at rest.
@@ -123,6 +140,7 @@ struct Joints {
     hip: JointPair,
     knee: JointPair,
     hock: JointPair,
+    toes: JointPair,
 }
 
 fn skeleton() -> (Skeleton, Joints) {
@@ -168,7 +186,7 @@ fn skeleton() -> (Skeleton, Joints) {
             node([8.8, -36.0, 3.6], 4.4, 0.42),
         ],
         vec![
-            Joint::ball(1, 10.0, 12.0, [10.0, 2.0, 3.0]),
+            Joint::ball(1, 12.0, 15.0, [7.0, 2.0, 3.0]),
             Joint::hinge(2, 8.0, 8.0, sideways, down, 8.0),
             Joint::hinge(3, 6.0, 6.0, sideways, down, 10.0),
         ],
@@ -184,9 +202,10 @@ fn skeleton() -> (Skeleton, Joints) {
             node([9.8, 25.0, 3.8], 4.4, 0.42),
         ],
         vec![
-            Joint::ball(1, 5.0, 13.0, [10.0, 3.0, 4.0]),
+            Joint::ball(1, 6.0, 16.0, [7.0, 3.0, 4.0]),
             Joint::hinge(2, 8.0, 8.0, sideways, down, 8.0),
-            Joint::hinge(3, 7.0, 6.0, sideways, down, 8.0),
+            Joint::hinge(3, 9.0, 8.0, sideways, down, 8.0),
+            Joint::hinge(4, 4.0, 6.0, sideways, down, 8.0),
         ],
     );
     // Ears do not move; their chains only ask for small triangles.
@@ -208,6 +227,7 @@ fn skeleton() -> (Skeleton, Joints) {
         hip: both(hindlegs, 0),
         knee: both(hindlegs, 1),
         hock: both(hindlegs, 2),
+        toes: both(hindlegs, 3),
     };
     (skeleton, joints)
 }
@@ -225,10 +245,10 @@ fn curled(pose: Pose, j: &Joints, up: [f64; 5], left: [f64; 5]) -> Pose {
 fn poses(skeleton: &Skeleton, j: &Joints) -> Vec<Pose> {
     let rest = || Pose::rest(skeleton);
     let legs = |pose: Pose, fore: [[f64; 3]; 2], hind: [[f64; 3]; 2]| {
-        pose.both(j.shoulder, fore.map(|t| flex(t[0])))
+        pose.both(j.shoulder, fore.map(|t| turn(t[0], -2.0, 0.0)))
             .both(j.elbow, fore.map(|t| flex(t[1])))
             .both(j.wrist, fore.map(|t| flex(t[2])))
-            .both(j.hip, hind.map(|t| flex(t[0])))
+            .both(j.hip, hind.map(|t| turn(t[0], -2.0, 0.0)))
             .both(j.knee, hind.map(|t| flex(t[1])))
             .both(j.hock, hind.map(|t| flex(t[2])))
     };
@@ -246,12 +266,12 @@ fn poses(skeleton: &Skeleton, j: &Joints) -> Vec<Pose> {
             [0.0; 5],
         )
         .set(j.neck, flex(-8.0)),
-        // Running, stretched out.
+        // Running.
         curled(
             legs(
                 rest().root(flex(-4.0)),
-                [[-62.0, -20.0, 6.0], [-46.0, -26.0, 30.0]],
-                [[54.0, -36.0, 32.0], [40.0, -26.0, 26.0]],
+                [[-38.0, -22.0, 6.0], [-22.0, -34.0, 34.0]],
+                [[30.0, -18.0, 24.0], [18.0, -8.0, 16.0]],
             ),
             j,
             [8.0, 4.0, 0.0, 6.0, 10.0],
@@ -263,12 +283,13 @@ fn poses(skeleton: &Skeleton, j: &Joints) -> Vec<Pose> {
             legs(
                 rest().root(flex(-40.0)),
                 [[42.0, 4.0, 0.0], [46.0, 2.0, 0.0]],
-                [[-12.0, 68.0, -96.0], [-12.0, 68.0, -96.0]],
+                [[-10.0, 62.0, -84.0], [-10.0, 62.0, -84.0]],
             ),
             j,
             [26.0, 14.0, 4.0, 0.0, 0.0],
             [25.0, 30.0, 30.0, 30.0, 30.0],
         )
+        .same(j.toes, flex(62.0))
         .set(j.loin, flex(-8.0))
         .set(j.neck, turn(40.0, 0.0, 16.0)),
         // Arched back.
@@ -300,11 +321,7 @@ fn poses(skeleton: &Skeleton, j: &Joints) -> Vec<Pose> {
         .set(j.neck, flex(-26.0)),
         // Lifting a paw, looking aside.
         curled(
-            legs(
-                rest(),
-                [[-62.0, 38.0, 48.0], [4.0, -2.0, 0.0]],
-                [[6.0, 0.0, 4.0], [-8.0, 8.0, -6.0]],
-            ),
+            legs(rest(), [[-62.0, 38.0, 48.0], [4.0, -2.0, 0.0]], [[6.0, 0.0, 4.0], [-8.0, 8.0, -6.0]]),
             j,
             [-20.0, -10.0, 10.0, 28.0, 30.0],
             [10.0, 20.0, 20.0, 0.0, -20.0],
@@ -324,11 +341,7 @@ fn poses(skeleton: &Skeleton, j: &Joints) -> Vec<Pose> {
         .set(j.neck, flex(10.0)),
         // Turning round.
         curled(
-            legs(
-                rest(),
-                [[-16.0, -4.0, 4.0], [14.0, -14.0, 22.0]],
-                [[12.0, -4.0, 6.0], [-12.0, 8.0, -8.0]],
-            ),
+            legs(rest(), [[-16.0, -4.0, 4.0], [14.0, -14.0, 22.0]], [[12.0, -4.0, 6.0], [-12.0, 8.0, -8.0]]),
             j,
             [20.0, 10.0, 10.0, 10.0, 10.0],
             [-30.0, -30.0, -20.0, -10.0, 10.0],

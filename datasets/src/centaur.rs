@@ -12,6 +12,8 @@ use crate::skeleton::{Joint, JointId, JointPair, Node, Skeleton, node};
 /// The man's size and place: his navel comes above the horse's shoulders.
 const MAN_SCALE: f64 = 1.0;
 const MAN_OFFSET: [f64; 3] = [0.0, -46.0, 14.0];
+/// The man is small beside the horse: his hands and face need smaller triangles.
+const MAN_GRAIN: f64 = 0.7;
 
 /// The family's model.
 pub(crate) fn model() -> Model {
@@ -29,36 +31,45 @@ fn body() -> Body {
 
 fn barrel() -> Part {
     let sideways = [1.0, 0.0, 0.0];
-    Part::added(0.0, vec![
-        Blob::cone([0.0, -34.0, 93.0], 23.0, [0.0, 6.0, 92.0], 24.0).flat(sideways, 0.84),
-        Blob::cone([0.0, 6.0, 92.0], 24.0, [0.0, 40.0, 95.0], 21.5).flat(sideways, 0.84).blend(1.0),
-        // Croup and breast.
-        Blob::cone([0.0, 40.0, 96.0], 21.5, [0.0, 52.0, 97.0], 18.0).flat(sideways, 0.9).blend(3.0),
-        Blob::cone([0.0, -44.0, 92.0], 18.5, [0.0, -46.0, 112.0], 13.5).flat(sideways, 0.95).blend(5.0),
-    ])
+    Part::added(
+        0.0,
+        vec![
+            Blob::cone([0.0, -34.0, 93.0], 23.0, [0.0, 6.0, 92.0], 24.0).flat(sideways, 0.84),
+            Blob::cone([0.0, 6.0, 92.0], 24.0, [0.0, 40.0, 95.0], 21.5).flat(sideways, 0.84).blend(1.0),
+            // Croup and breast.
+            Blob::cone([0.0, 40.0, 96.0], 21.5, [0.0, 52.0, 97.0], 18.0).flat(sideways, 0.9).blend(3.0),
+            Blob::cone([0.0, -44.0, 92.0], 18.5, [0.0, -46.0, 112.0], 13.5).flat(sideways, 0.95).blend(5.0),
+        ],
+    )
 }
 
 fn foreleg() -> Part {
-    Part::added(6.0, vec![
-        Blob::cone([10.0, -38.0, 98.0], 11.5, [11.5, -46.0, 82.0], 11.5),
-        Blob::cone([11.5, -46.0, 82.0], 11.0, [12.0, -41.0, 64.0], 8.0).blend(2.0),
-        Blob::cone([12.0, -41.0, 64.0], 7.8, [12.5, -43.0, 40.0], 4.8).blend(1.5),
-        Blob::ball([12.5, -43.6, 39.0], 5.0).blend(1.5),
-        Blob::cone([12.5, -43.0, 38.0], 4.2, [12.5, -42.0, 14.0], 3.6).blend(1.0),
-        Blob::ball([12.5, -41.6, 13.0], 4.2).blend(1.5),
-        Blob::cone([12.5, -42.0, 13.0], 3.6, [12.5, -46.0, 6.0], 3.8).blend(1.0),
-    ])
+    Part::added(
+        6.0,
+        vec![
+            Blob::cone([10.0, -38.0, 98.0], 11.5, [11.5, -46.0, 82.0], 11.5),
+            Blob::cone([11.5, -46.0, 82.0], 11.0, [12.0, -41.0, 64.0], 8.0).blend(2.0),
+            Blob::cone([12.0, -41.0, 64.0], 7.8, [12.5, -43.0, 40.0], 4.8).blend(1.5),
+            Blob::ball([12.5, -43.6, 39.0], 5.0).blend(1.5),
+            Blob::cone([12.5, -43.0, 38.0], 4.2, [12.5, -42.0, 14.0], 3.6).blend(1.0),
+            Blob::ball([12.5, -41.6, 13.0], 4.2).blend(1.5),
+            Blob::cone([12.5, -42.0, 13.0], 3.6, [12.5, -46.0, 6.0], 3.8).blend(1.0),
+        ],
+    )
 }
 
 fn hindleg() -> Part {
-    Part::added(7.0, vec![
-        Blob::cone([10.5, 44.0, 92.0], 17.0, [13.0, 38.0, 70.0], 11.5),
-        Blob::cone([13.0, 38.0, 69.0], 10.5, [13.0, 56.0, 45.0], 5.0).blend(2.5),
-        Blob::ball([13.0, 56.6, 44.5], 5.0).blend(1.5),
-        Blob::cone([13.0, 56.0, 44.0], 4.6, [13.0, 53.0, 14.0], 3.8).blend(1.0),
-        Blob::ball([13.0, 53.4, 13.0], 4.3).blend(1.5),
-        Blob::cone([13.0, 53.0, 13.0], 3.8, [12.8, 49.0, 6.0], 3.9).blend(1.0),
-    ])
+    Part::added(
+        7.0,
+        vec![
+            Blob::cone([10.5, 44.0, 92.0], 17.0, [13.0, 38.0, 70.0], 11.5),
+            Blob::cone([13.0, 38.0, 69.0], 10.5, [13.0, 56.0, 45.0], 5.0).blend(2.5),
+            Blob::ball([13.0, 56.6, 44.5], 5.0).blend(1.5),
+            Blob::cone([13.0, 56.0, 44.0], 4.6, [13.0, 53.0, 14.0], 3.8).blend(1.0),
+            Blob::ball([13.0, 53.4, 13.0], 4.3).blend(1.5),
+            Blob::cone([13.0, 53.0, 13.0], 3.8, [12.8, 49.0, 6.0], 3.9).blend(1.0),
+        ],
+    )
 }
 
 fn hoof(y: f64) -> Part {
@@ -72,13 +83,8 @@ fn ground() -> Part {
 }
 
 /// The axis of the tail at rest.
-const TAIL: [[f64; 3]; 5] = [
-    [0.0, 68.0, 103.0],
-    [0.0, 78.0, 98.0],
-    [0.0, 85.0, 84.0],
-    [0.0, 89.0, 66.0],
-    [0.0, 91.0, 46.0],
-];
+const TAIL: [[f64; 3]; 5] =
+    [[0.0, 68.0, 103.0], [0.0, 78.0, 98.0], [0.0, 85.0, 84.0], [0.0, 89.0, 66.0], [0.0, 91.0, 46.0]];
 
 fn tail() -> Part {
     let radii = [4.4, 5.6, 6.8, 6.4, 2.6];
@@ -109,7 +115,8 @@ struct Joints {
 }
 
 fn man(nodes: Vec<Node>) -> Vec<Node> {
-    nodes.into_iter().map(|n| n.moved(MAN_SCALE, MAN_OFFSET)).collect()
+    let fine = |n: Node| Node { grain: n.grain * MAN_GRAIN, ..n.moved(MAN_SCALE, MAN_OFFSET) };
+    nodes.into_iter().map(fine).collect()
 }
 
 fn skeleton() -> (Skeleton, Joints) {
@@ -123,10 +130,8 @@ fn skeleton() -> (Skeleton, Joints) {
     ];
     let first = nodes.len();
     nodes.extend(man(human::spine_nodes()));
-    let mut joints = vec![
-        Joint::ball(1, 24.0, 24.0, [4.0, 2.0, 6.0]),
-        Joint::ball(4, 16.0, 12.0, [5.0, 4.0, 8.0]),
-    ];
+    let mut joints =
+        vec![Joint::ball(1, 24.0, 24.0, [4.0, 2.0, 6.0]), Joint::ball(4, 16.0, 12.0, [5.0, 4.0, 8.0])];
     joints.extend(human::spine_joints(first));
     let spine = skeleton.chain(None, nodes, joints);
     let arms = skeleton.pair((spine, first + 2), man(human::arm_nodes()), human::arm_joints());
@@ -203,11 +208,11 @@ fn flex(x: f64) -> Turn {
 fn poses(skeleton: &Skeleton, j: &Joints) -> Vec<Pose> {
     let rest = || Pose::rest(skeleton);
     let legs = |pose: Pose, fore: [[f64; 4]; 2], hind: [[f64; 4]; 2]| {
-        pose.both(j.shoulder, fore.map(|t| flex(t[0])))
+        pose.both(j.shoulder, fore.map(|t| turn(t[0], -3.0, 0.0)))
             .both(j.elbow, fore.map(|t| flex(t[1])))
             .both(j.knee, fore.map(|t| flex(t[2])))
             .both(j.fetlock, fore.map(|t| flex(t[3])))
-            .both(j.hip, hind.map(|t| flex(t[0])))
+            .both(j.hip, hind.map(|t| turn(t[0], -3.0, 0.0)))
             .both(j.stifle, hind.map(|t| flex(t[1])))
             .both(j.hock, hind.map(|t| flex(t[2])))
             .both(j.hind_fetlock, hind.map(|t| flex(t[3])))

@@ -22,7 +22,7 @@ pub(crate) fn next(c: u32) -> u32 {
 }
 
 pub(crate) fn prev(c: u32) -> u32 {
-    if c % 3 == 0 { c + 2 } else { c - 1 }
+    if c.is_multiple_of(3) { c + 2 } else { c - 1 }
 }
 
 impl CornerTable {
@@ -131,7 +131,8 @@ impl CornerTable {
             self.twin[b as usize] = a;
             // `a` and `b` face the merged edge from w to the apex.
             let p = self.vertex(apex) as usize;
-            let (at_w, at_p) = if self.vertex(next(a)) == w { (next(a), prev(a)) } else { (prev(a), next(a)) };
+            let (at_w, at_p) =
+                if self.vertex(next(a)) == w { (next(a), prev(a)) } else { (prev(a), next(a)) };
             self.corner[w as usize] = at_w;
             self.corner[p] = at_p;
         }

@@ -26,37 +26,48 @@ fn body() -> Body {
 }
 
 fn pelvis() -> Part {
-    Part::added(0.0, vec![
-        Blob::cone([0.0, 0.6, 94.5], 9.4, [5.4, 0.8, 93.5], 9.3),
-        Blob::cone([4.6, 0.4, 94.0], 9.3, [4.2, -0.1, 104.0], 8.9).blend(1.5),
-        // Buttocks.
-        Blob::ball([6.2, 6.0, 89.5], 7.6).blend(2.5),
-    ])
+    Part::added(
+        0.0,
+        vec![
+            Blob::cone([0.0, 0.6, 94.5], 9.4, [5.4, 0.8, 93.5], 9.3),
+            Blob::cone([4.6, 0.4, 94.0], 9.3, [4.2, -0.1, 104.0], 8.9).blend(1.5),
+            // Buttocks.
+            Blob::ball([6.2, 6.0, 89.5], 7.6).blend(2.5),
+        ],
+    )
 }
 
 fn leg() -> Part {
-    Part::added(4.0, vec![
-        Blob::cone([9.0, 0.8, 87.0], 8.6, [11.0, -0.4, 50.0], 5.1),
-        // Thigh muscles.
-        Blob::cone([10.2, -2.2, 74.0], 6.6, [11.2, -2.2, 58.0], 4.8).blend(2.0),
-        Blob::cone([9.6, 2.6, 76.0], 6.2, [11.0, 1.6, 58.0], 4.4).blend(2.0),
-        Blob::ball([11.2, -2.6, 48.5], 3.9).blend(2.0),
-        // Shin and calf.
-        Blob::cone([11.1, -0.2, 50.0], 5.0, [13.0, 1.4, 8.0], 3.1).blend(0.6),
-        Blob::cone([11.2, 2.4, 41.0], 4.6, [12.0, 2.4, 31.0], 4.0).blend(3.0),
-    ])
+    Part::added(
+        4.0,
+        vec![
+            Blob::cone([9.0, 0.8, 87.0], 8.6, [11.0, -0.4, 50.0], 5.1),
+            // Thigh muscles.
+            Blob::cone([10.2, -2.2, 74.0], 6.6, [11.2, -2.2, 58.0], 4.8).blend(2.0),
+            Blob::cone([9.6, 2.6, 76.0], 6.2, [11.0, 1.6, 58.0], 4.4).blend(2.0),
+            Blob::ball([11.2, -2.6, 48.5], 3.9).blend(2.0),
+            // Shin and calf.
+            Blob::cone([11.1, -0.2, 50.0], 5.0, [13.0, 1.4, 8.0], 3.1).blend(0.6),
+            Blob::cone([11.2, 2.4, 41.0], 4.6, [12.0, 2.4, 31.0], 4.0).blend(3.0),
+        ],
+    )
 }
 
 fn foot() -> Part {
-    Part::added(3.0, vec![
-        Blob::ball([13.0, 4.6, 3.6], 3.6),
-        Blob::cone([13.0, 2.0, 5.4], 3.8, [14.2, -9.5, 2.9], 3.2).blend(1.5),
-        Blob::cone([13.6, -8.0, 2.6], 4.6, [14.4, -12.5, 2.2], 4.4).flat([0.0, 0.0, 1.0], 0.55).blend(2.0),
-        // Big toe and the row of the others.
-        Blob::cone([12.0, -12.0, 1.9], 1.8, [12.0, -18.0, 1.7], 1.55).blend(0.8),
-        Blob::cone([14.4, -13.5, 1.8], 1.5, [14.6, -17.0, 1.5], 1.25).blend(0.7),
-        Blob::cone([16.4, -12.5, 1.7], 1.5, [17.0, -15.6, 1.4], 1.2).blend(0.7),
-    ])
+    Part::added(
+        3.0,
+        vec![
+            Blob::ball([13.0, 4.6, 3.6], 3.6),
+            Blob::cone([13.0, 2.0, 5.4], 3.8, [14.2, -9.5, 2.9], 3.2).blend(1.5),
+            Blob::cone([13.6, -8.0, 2.6], 4.6, [14.4, -12.5, 2.2], 4.4)
+                .flat([0.0, 0.0, 1.0], 0.55)
+                .blend(2.0),
+            // Big toe and the row of the others.
+            Blob::cone([12.0, -12.0, 1.9], 1.8, [12.0, -18.0, 1.7], 1.55).blend(0.8),
+            Blob::cone([14.4, -13.5, 1.8], 1.5, [14.6, -17.0, 1.5], 1.25).blend(0.7),
+            Blob::cone([16.4, -12.5, 1.7], 1.5, [17.0, -15.6, 1.4], 1.2).blend(0.7),
+        ],
+    )
 }
 
 struct Joints {
@@ -83,14 +94,14 @@ fn skeleton() -> (Skeleton, Joints) {
     let down = [0.0, 0.0, -1.0];
     let leg_nodes = vec![
         node([4.0, -1.0, 94.0], 11.0, 1.1),
-        node([9.0, -2.0, 88.0], 9.5, 1.0),
-        node([11.0, 1.0, 48.5], 5.5, 0.85),
+        node([9.0, -3.5, 88.0], 9.5, 1.0),
+        node([11.0, 2.2, 48.5], 5.5, 0.85),
         node([13.0, 0.4, 8.0], 3.9, 0.58),
         node([13.6, -6.5, 3.2], 3.8, 0.5),
         node([14.4, -16.0, 1.8], 3.2, 0.36),
     ];
     let leg_joints = vec![
-        Joint::ball(1, 5.0, 17.0, [10.0, 4.0, 6.0]),
+        Joint::ball(1, 5.0, 17.0, [10.0, 2.5, 6.0]),
         Joint::hinge(2, 11.0, 11.0, sideways, down, 8.0),
         Joint::hinge(3, 5.0, 6.0, sideways, down, 8.0),
     ];
@@ -124,7 +135,7 @@ fn poses(skeleton: &Skeleton, j: &Joints) -> Vec<Pose> {
         rest(),
         // Walking.
         rest()
-            .both(j.hip, [flex(-28.0), flex(22.0)])
+            .both(j.hip, [turn(-28.0, -3.0, 0.0), turn(22.0, -3.0, 0.0)])
             .both(j.knee, [flex(12.0), flex(32.0)])
             .both(j.ankle, [flex(-6.0), flex(18.0)])
             .both(j.shoulder, [turn(26.0, down, 0.0), turn(-30.0, down, 0.0)])
@@ -133,7 +144,7 @@ fn poses(skeleton: &Skeleton, j: &Joints) -> Vec<Pose> {
         // Running.
         rest()
             .root(turn(10.0, 0.0, 0.0))
-            .both(j.hip, [flex(-68.0), flex(28.0)])
+            .both(j.hip, [turn(-68.0, -4.0, 0.0), turn(28.0, -4.0, 0.0)])
             .both(j.knee, [flex(78.0), flex(68.0)])
             .both(j.ankle, [flex(-8.0), flex(30.0)])
             .both(j.shoulder, [turn(45.0, down, 0.0), turn(-40.0, down, 0.0)])
@@ -157,7 +168,7 @@ fn poses(skeleton: &Skeleton, j: &Joints) -> Vec<Pose> {
         rest()
             .both(j.shoulder, [turn(0.0, -26.0, -72.0), turn(20.0, down, 0.0)])
             .both(j.elbow, [flex(8.0), flex(40.0)])
-            .both(j.hip, [flex(-38.0), flex(18.0)])
+            .both(j.hip, [turn(-38.0, -5.0, 0.0), turn(18.0, -5.0, 0.0)])
             .both(j.knee, [flex(46.0), flex(10.0)])
             .set(j.waist, turn(18.0, 0.0, -12.0)),
         // Waving, the other hand on the hip.
@@ -168,7 +179,7 @@ fn poses(skeleton: &Skeleton, j: &Joints) -> Vec<Pose> {
             .both(j.hip, [turn(0.0, -10.0, 0.0), turn(-4.0, -4.0, 0.0)]),
         // Kneeling on one knee.
         rest()
-            .both(j.hip, [flex(-84.0), flex(6.0)])
+            .both(j.hip, [turn(-84.0, -6.0, 0.0), turn(6.0, -4.0, 0.0)])
             .both(j.knee, [flex(86.0), flex(92.0)])
             .both(j.ankle, [flex(0.0), flex(30.0)])
             .both(j.shoulder, [turn(-48.0, down, 0.0), turn(10.0, down - 6.0, 0.0)])

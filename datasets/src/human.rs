@@ -31,33 +31,46 @@ pub(crate) fn parts() -> Vec<Part> {
 }
 
 fn trunk() -> Part {
-    Part::added(5.0, vec![
-        Blob::cone([4.2, -0.2, 104.0], 8.9, [4.4, 0.0, 111.0], 8.8),
-        Blob::cone([4.4, 0.0, 112.0], 8.8, [7.6, 0.6, 130.0], 9.7).blend(2.0),
-        Blob::cone([0.0, 0.4, 120.0], 9.2, [0.0, 0.6, 134.0], 9.4).blend(3.0),
-        Blob::ball([6.5, 1.2, 135.5], 8.4).blend(3.0),
-        // Chest muscles, and the broad muscles of the back.
-        Blob::cone([5.6, -6.6, 131.5], 6.4, [9.4, -5.8, 132.0], 6.4).flat([0.25, 1.0, 0.05], 0.5).blend(1.8),
-        Blob::cone([9.5, 5.0, 131.0], 6.0, [6.0, 4.6, 119.0], 4.6).blend(3.0),
-    ])
+    Part::added(
+        5.0,
+        vec![
+            Blob::cone([4.2, -0.2, 104.0], 8.9, [4.4, 0.0, 111.0], 8.8),
+            Blob::cone([4.4, 0.0, 112.0], 8.8, [7.6, 0.6, 130.0], 9.7).blend(2.0),
+            Blob::cone([0.0, 0.4, 120.0], 9.2, [0.0, 0.6, 134.0], 9.4).blend(3.0),
+            Blob::ball([6.5, 1.2, 135.5], 8.4).blend(3.0),
+            // Chest muscles, and the broad muscles of the back.
+            Blob::cone([5.6, -6.6, 131.5], 6.4, [9.4, -5.8, 132.0], 6.4)
+                .flat([0.25, 1.0, 0.05], 0.5)
+                .blend(1.8),
+            Blob::cone([9.5, 5.0, 131.0], 6.0, [6.0, 4.6, 119.0], 4.6).blend(3.0),
+        ],
+    )
 }
 
 fn shoulders() -> Part {
-    Part::added(5.0, vec![
-        Blob::cone([0.0, 2.2, 140.0], 6.6, [0.0, 1.0, 153.0], 5.6),
-        Blob::cone([2.5, 2.8, 147.0], 4.4, [13.5, 1.8, 142.0], 4.8).blend(4.0),
-        Blob::cone([11.0, 1.5, 138.5], 6.2, [18.5, 0.8, 139.0], 5.8).blend(3.0),
-    ])
+    Part::added(
+        5.0,
+        vec![
+            Blob::cone([0.0, 2.2, 140.0], 6.6, [0.0, 1.0, 153.0], 5.6),
+            Blob::cone([2.5, 2.8, 147.0], 4.4, [13.5, 1.8, 142.0], 4.8).blend(4.0),
+            Blob::cone([11.0, 1.5, 138.5], 6.2, [18.5, 0.8, 139.0], 5.8).blend(3.0),
+        ],
+    )
 }
 
 fn head() -> Part {
-    Part::added(3.0, vec![
-        Blob::ball([0.0, 1.4, 165.2], 9.8).flat([1.0, 0.0, 0.0], 0.80),
-        Blob::cone([0.0, -2.2, 162.5], 7.2, [0.0, -4.0, 157.5], 5.0).flat([1.0, 0.0, 0.0], 0.88).blend(3.0),
-        // Jaw: from the ear to the chin.
-        Blob::cone([4.4, -0.4, 157.6], 1.7, [0.8, -6.6, 153.2], 1.9).blend(3.0),
-        Blob::ball([0.0, -7.5, 153.6], 1.9).blend(1.5),
-    ])
+    Part::added(
+        3.0,
+        vec![
+            Blob::ball([0.0, 1.4, 165.2], 9.8).flat([1.0, 0.0, 0.0], 0.80),
+            Blob::cone([0.0, -2.2, 162.5], 7.2, [0.0, -4.0, 157.5], 5.0)
+                .flat([1.0, 0.0, 0.0], 0.88)
+                .blend(3.0),
+            // Jaw: from the ear to the chin.
+            Blob::cone([4.4, -0.4, 157.6], 1.7, [0.8, -6.6, 153.2], 1.9).blend(3.0),
+            Blob::ball([0.0, -7.5, 153.6], 1.9).blend(1.5),
+        ],
+    )
 }
 
 fn face() -> Vec<Part> {
@@ -67,37 +80,49 @@ fn face() -> Vec<Part> {
         Part::added(0.9, vec![Blob::ball([3.2, -7.6, 162.2], 1.5)]),
         // Brow, nose, lips.
         Part::added(1.2, vec![Blob::cone([0.8, -8.9, 164.3], 1.0, [4.4, -7.4, 164.5], 0.9)]),
-        Part::added(1.4, vec![
-            Blob::cone([0.0, -8.9, 163.2], 0.9, [0.0, -11.4, 159.2], 1.3),
-            Blob::ball([1.1, -10.1, 158.7], 0.95).blend(0.8),
-        ]),
-        Part::added(0.8, vec![
-            Blob::cone([0.0, -8.7, 156.6], 0.9, [1.9, -7.8, 156.4], 0.5),
-            Blob::cone([0.0, -8.6, 155.5], 0.9, [1.7, -7.7, 155.7], 0.5).blend(0.3),
-        ]),
+        Part::added(
+            1.4,
+            vec![
+                Blob::cone([0.0, -8.9, 163.2], 0.9, [0.0, -11.4, 159.2], 1.3),
+                Blob::ball([1.1, -10.1, 158.7], 0.95).blend(0.8),
+            ],
+        ),
+        Part::added(
+            0.8,
+            vec![
+                Blob::cone([0.0, -8.7, 156.6], 0.9, [1.9, -7.8, 156.4], 0.5),
+                Blob::cone([0.0, -8.6, 155.5], 0.9, [1.7, -7.7, 155.7], 0.5).blend(0.3),
+            ],
+        ),
         // Ears.
-        Part::added(0.8, vec![
-            Blob::cone([7.4, 1.2, 159.4], 1.4, [8.1, 2.4, 163.0], 2.3).flat([1.0, -0.45, 0.0], 0.42),
-        ]),
+        Part::added(
+            0.8,
+            vec![Blob::cone([7.4, 1.2, 159.4], 1.4, [8.1, 2.4, 163.0], 2.3).flat([1.0, -0.45, 0.0], 0.42)],
+        ),
     ]
 }
 
 fn arm_part() -> Part {
-    Part::added(4.0, vec![
-        Blob::cone(arm(0.0, 0.0, 0.4), 6.4, arm(10.0, 0.0, 0.0), 4.8),
-        Blob::cone(arm(8.0, 0.0, 0.0), 4.7, arm(ELBOW, 0.0, 0.0), 3.7).blend(1.0),
-        // Biceps (palms down, it looks forward) and triceps.
-        Blob::cone(arm(11.0, 1.4, 0.0), 4.4, arm(19.0, 1.4, 0.0), 4.0).blend(1.5),
-        Blob::cone(arm(9.0, -1.6, 0.0), 4.4, arm(18.0, -1.4, 0.0), 3.8).blend(1.5),
-        Blob::cone(arm(ELBOW, 0.0, 0.0), 3.7, arm(ELBOW + 7.0, 0.4, 0.0), 4.2).blend(0.6),
-        Blob::cone(arm(ELBOW + 7.0, 0.4, 0.0), 4.2, arm(WRIST, 0.0, 0.0), 2.7).blend(0.6),
-    ])
+    Part::added(
+        4.0,
+        vec![
+            Blob::cone(arm(0.0, 0.0, 0.4), 6.4, arm(10.0, 0.0, 0.0), 4.8),
+            Blob::cone(arm(8.0, 0.0, 0.0), 4.7, arm(ELBOW, 0.0, 0.0), 3.7).blend(1.0),
+            // Biceps (palms down, it looks forward) and triceps.
+            Blob::cone(arm(11.0, 1.4, 0.0), 4.4, arm(19.0, 1.4, 0.0), 4.0).blend(1.5),
+            Blob::cone(arm(9.0, -1.6, 0.0), 4.4, arm(18.0, -1.4, 0.0), 3.8).blend(1.5),
+            Blob::cone(arm(ELBOW, 0.0, 0.0), 3.7, arm(ELBOW + 7.0, 0.4, 0.0), 4.2).blend(0.6),
+            Blob::cone(arm(ELBOW + 7.0, 0.4, 0.0), 4.2, arm(WRIST, 0.0, 0.0), 2.7).blend(0.6),
+        ],
+    )
 }
 
 fn hand() -> Part {
     let mut blobs = vec![
         Blob::cone(arm(WRIST, 0.0, 0.0), 2.9, arm(WRIST + 4.5, 0.0, 0.0), 4.0).flat(DORSAL, 0.62),
-        Blob::cone(arm(WRIST + 4.0, 0.2, 0.0), 3.9, arm(KNUCKLES - 1.5, 0.0, 0.0), 4.3).flat(DORSAL, 0.42).blend(1.5),
+        Blob::cone(arm(WRIST + 4.0, 0.2, 0.0), 3.9, arm(KNUCKLES - 1.5, 0.0, 0.0), 4.3)
+            .flat(DORSAL, 0.42)
+            .blend(1.5),
         // Thumb.
         Blob::cone(arm(WRIST + 2.5, 2.2, -0.3), 1.7, arm(WRIST + 6.5, 5.0, -0.5), 1.35).blend(1.5),
         Blob::cone(arm(WRIST + 6.5, 5.0, -0.5), 1.3, arm(WRIST + 10.0, 6.5, -0.5), 1.0).blend(0.3),
@@ -105,7 +130,8 @@ fn hand() -> Part {
     // Index to little finger: place at the knuckles, spread at the tips, length.
     for (front, spread, length) in [(3.0, 5.7, 8.2), (1.0, 1.9, 9.3), (-1.0, -2.0, 8.8), (-2.8, -5.6, 7.0)] {
         blobs.push(
-            Blob::cone(arm(KNUCKLES - 2.5, front, 0.0), 1.2, arm(KNUCKLES + length, spread, -0.4), 0.85).blend(0.5),
+            Blob::cone(arm(KNUCKLES - 2.5, front, 0.0), 1.2, arm(KNUCKLES + length, spread, -0.4), 0.85)
+                .blend(0.5),
         );
     }
     Part::added(1.5, blobs)
@@ -114,9 +140,9 @@ fn hand() -> Part {
 /// Spine of the trunk and head; the first node is where the lower body takes over.
 pub(crate) fn spine_nodes() -> Vec<Node> {
     vec![
-        node([0.0, -0.5, 106.0], 12.5, 1.15),
-        node([0.0, -0.5, 120.0], 13.0, 1.15),
-        node([0.0, 0.5, 134.0], 13.0, 1.05),
+        node([0.0, -2.5, 106.0], 12.5, 1.15),
+        node([0.0, -2.5, 120.0], 13.0, 1.15),
+        node([0.0, -1.5, 134.0], 13.0, 1.05),
         node([0.0, 1.0, 144.0], 8.0, 0.8),
         node([0.0, 0.0, 154.5], 6.5, 0.62),
         node([0.0, 2.0, 166.0], 9.0, 0.66),

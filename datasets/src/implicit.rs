@@ -109,7 +109,7 @@ impl Blob {
     /// loses `sin(a)` of radius per unit of length has normals tilted by `a`, so the foot of `p`
     /// lies `rho tan(a)` before its projection, `rho` being its distance from the axis.
     #[inline]
-    fn from_foot(&self, p: Point3<f64>) -> (Vector3<f64>, f64) {
+    fn offset_and_value(&self, p: Point3<f64>) -> (Vector3<f64>, f64) {
         let axis = &self.axis;
         let q = self.stretch(p.coords) - axis.start;
         let along = q.dot(&axis.direction);
@@ -121,7 +121,7 @@ impl Blob {
 
     #[inline]
     fn sample(&self, p: Point3<f64>) -> Sample {
-        let (away, value) = self.from_foot(p);
+        let (away, value) = self.offset_and_value(p);
         let distance = away.norm();
         if distance == 0.0 {
             return (value, Vector3::zeros());
@@ -192,7 +192,7 @@ impl Part {
     #[inline]
     fn value(&self, p: Point3<f64>) -> f64 {
         self.blobs.iter().fold(f64::INFINITY, |least, blob| {
-            let value = blob.from_foot(p).1;
+            let value = blob.offset_and_value(p).1;
             least.min(value) - dip(least, value, blob.blend)
         })
     }
@@ -318,10 +318,13 @@ mod tests {
     fn body() -> Body {
         Body::new(vec![
             Part::added(0.0, vec![Blob::cone([0.0, 0.0, 0.0], 3.0, [0.0, 1.0, 9.0], 1.5)]),
-            Part::added(1.0, vec![
-                Blob::ball([4.0, 0.0, 0.0], 2.0).flat([0.0, 1.0, 1.0], 0.4),
-                Blob::cone([5.0, 0.0, 0.0], 1.0, [9.0, 0.0, 1.0], 0.5).blend(0.7),
-            ]),
+            Part::added(
+                1.0,
+                vec![
+                    Blob::ball([4.0, 0.0, 0.0], 2.0).flat([0.0, 1.0, 1.0], 0.4),
+                    Blob::cone([5.0, 0.0, 0.0], 1.0, [9.0, 0.0, 1.0], 0.5).blend(0.7),
+                ],
+            ),
             Part::carved(0.5, vec![Blob::ball([0.0, -3.0, 3.0], 1.5)]),
         ])
     }

@@ -2,7 +2,7 @@
 //!
 //! `ArticulatedOptions` -> **datasets** -> `LabeledShape` (`mesh::TriMesh`, name, class) -> `experiments`
 //!
-//! [`articulated`] gives thirty closed surfaces of three families, cats, centaurs and men, in different
+//! [`articulated()`] gives thirty closed surfaces of three families, cats, centaurs and men, in different
 //! poses: a stand-in for scanned datasets that needs no download. A shape is made in steps, one module
 //! each:
 //!

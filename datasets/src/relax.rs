@@ -100,3 +100,41 @@ fn smooth(surface: &mut Surface, body: &Body) {
     });
     surface.positions = moved;
 }
+
+#[cfg(test)]
+mod tests {
+    use nalgebra::Matrix3;
+
+    use super::*;
+    use crate::corner_table::CornerTable;
+    use crate::extract::{Lattice, extract};
+    use crate::implicit::{Blob, Part};
+    use crate::simplify::simplify;
+
+    #[test]
+    fn triangles_become_well_shaped_and_stay_on_the_surface() {
+        let body = Body::new(vec![Part::added(0.0, vec![Blob::cone([0.0; 3], 3.0, [0.0, 0.0, 8.0], 1.5)])]);
+        let lattice = Lattice { rotation: Matrix3::identity(), shift: Vector3::repeat(0.37), spacing: 0.25 };
+        let raw = extract(&body, lattice);
+        let table = CornerTable::new(raw.positions.len(), &raw.faces).unwrap();
+        let grain = vec![1.0; raw.positions.len()];
+        let mut surface = Surface { table, positions: raw.positions, grain };
+        simplify(&mut surface, 800);
+        surface.compact();
+        relax(&mut surface, &body, 6);
+        let mut angles = Vec::new();
+        for face in surface.table.faces() {
+            let [a, b, c] = face.map(|v| surface.positions[v as usize]);
+            let least = [(a, b, c), (b, c, a), (c, a, b)].map(|(p, q, r)| (q - p).angle(&(r - p)));
+            angles.push(least.into_iter().fold(f64::INFINITY, f64::min).to_degrees());
+            let outwards = body.sample(nalgebra::center(&a, &b)).1;
+            assert!((b - a).cross(&(c - a)).dot(&outwards) > 0.0, "a triangle lies upside down");
+        }
+        angles.sort_by(f64::total_cmp);
+        assert!(angles[0] > 20.0, "least angle {}", angles[0]);
+        assert!(angles[angles.len() / 2] > 45.0, "median of least angles {}", angles[angles.len() / 2]);
+        for p in &surface.positions {
+            assert!(body.value(*p).abs() < 1e-3, "{}", body.value(*p));
+        }
+    }
+}

@@ -19,6 +19,9 @@ pub(crate) struct Surface {
 /// Least cosine between the normals of a triangle before and after an edit.
 const LEAST_COSINE: f64 = 0.2;
 
+/// A vertex that gathers more neighbours than this blocks its surroundings.
+const MOST_NEIGHBORS: usize = 12;
+
 /// Collapses edges, the shortest for their grain first, until `n_vertices` are left.
 ///
 /// A vertex is merged into its neighbour without moving it, so what remains lies on the surface. An
@@ -45,13 +48,17 @@ pub(crate) fn simplify(surface: &mut Surface, n_vertices: usize) -> usize {
 }
 
 /// Collapses edges cheaper than `limit` in the order of their vertices.
+///
+/// A vertex into which another was merged stays until the next sweep. Otherwise a whole region of
+/// short edges would run together, one vertex after the other, into a single one.
 fn sweep(surface: &mut Surface, limit: f64, mut n_left: usize, n_vertices: usize) -> usize {
     let mut neighbors = Vec::new();
+    let mut stays = vec![false; surface.positions.len()];
     for v in 0..surface.positions.len() as u32 {
         if n_left <= n_vertices {
             break;
         }
-        if !surface.table.is_alive(v) {
+        if stays[v as usize] || !surface.table.is_alive(v) {
             continue;
         }
         neighbors.clear();
@@ -59,6 +66,7 @@ fn sweep(surface: &mut Surface, limit: f64, mut n_left: usize, n_vertices: usize
         neighbors.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
         for &(_, x) in neighbors.iter().take_while(|(cost, _)| *cost < limit) {
             if surface.collapse(v, x) {
+                stays[x as usize] = true;
                 n_left -= 1;
                 break;
             }
@@ -129,7 +137,9 @@ impl Surface {
     /// Merges `gone` into `kept` if that is possible, and says whether it was.
     fn collapse(&mut self, gone: u32, kept: u32) -> bool {
         let Some(c) = self.table.facing(gone, kept) else { return false };
-        let possible = self.table.can_collapse(c) && self.stays_unfolded(gone, kept);
+        let n_neighbors = self.table.neighbors(gone).count() + self.table.neighbors(kept).count() - 4;
+        let possible =
+            n_neighbors <= MOST_NEIGHBORS && self.table.can_collapse(c) && self.stays_unfolded(gone, kept);
         if possible {
             self.table.collapse(c);
         }
@@ -148,5 +158,71 @@ impl Surface {
             let (old, new) = ((at(gone) - at(b)).cross(&edge), (at(kept) - at(b)).cross(&edge));
             old.dot(&new) > LEAST_COSINE * (old.norm_squared() * new.norm_squared()).sqrt()
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use mesh::VertexId;
+
+    use super::*;
+
+    /// A ball's surface as a grid of latitudes and longitudes: crowded at the poles.
+    fn globe(n: u32) -> Surface {
+        let pole = n * (n - 1);
+        let at = |i: u32, j: u32| (i - 1) * n + j % n;
+        let mut faces = Vec::new();
+        for j in 0..n {
+            faces.extend([[pole, at(1, j), at(1, j + 1)], [pole + 1, at(n - 1, j + 1), at(n - 1, j)]]);
+            for i in 1..n - 1 {
+                faces.extend([
+                    [at(i, j), at(i + 1, j), at(i + 1, j + 1)],
+                    [at(i, j), at(i + 1, j + 1), at(i, j + 1)],
+                ]);
+            }
+        }
+        let angle = |i: u32, n: u32| f64::from(i) / f64::from(n) * std::f64::consts::PI;
+        let place = |v: u32| {
+            let (t, u) = (angle(v / n + 1, n), angle(2 * (v % n), n));
+            Point3::new(t.sin() * u.cos(), t.sin() * u.sin(), t.cos())
+        };
+        let mut positions: Vec<Point3<f64>> = (0..pole).map(place).collect();
+        positions.extend([Point3::new(0.0, 0.0, 1.0), Point3::new(0.0, 0.0, -1.0)]);
+        let faces: Vec<_> = faces.iter().map(|f| f.map(VertexId)).collect();
+        let grain = vec![1.0; positions.len()];
+        Surface { table: CornerTable::new(positions.len(), &faces).unwrap(), positions, grain }
+    }
+
+    #[test]
+    fn the_wanted_number_is_met_and_the_rest_stays_a_sphere() {
+        for n_vertices in [2000, 500, 60, 4] {
+            let mut surface = globe(50);
+            assert_eq!(simplify(&mut surface, n_vertices), n_vertices);
+            surface.compact();
+            assert_eq!(surface.positions.len(), n_vertices);
+            let faces: Vec<_> = surface.table.faces().map(|f| f.map(VertexId)).collect();
+            assert_eq!(faces.len(), 2 * n_vertices - 4);
+            assert!(CornerTable::new(n_vertices, &faces).is_some());
+        }
+    }
+
+    #[test]
+    fn edges_come_out_alike_where_the_grain_is_and_finer_where_it_is_finer() {
+        let mut surface = globe(60);
+        for (grain, p) in surface.grain.iter_mut().zip(&surface.positions) {
+            *grain = if p.z > 0.0 { 1.0 } else { 0.5 };
+        }
+        simplify(&mut surface, 600);
+        surface.compact();
+        let n_north = surface.positions.iter().filter(|p| p.z > 0.0).count();
+        let ratio = (600 - n_north) as f64 / n_north as f64;
+        assert!((3.0..5.0).contains(&ratio), "half the edge, four times the vertices: {ratio}");
+    }
+
+    #[test]
+    fn more_than_there_are_cannot_be_had() {
+        let mut surface = globe(10);
+        let n = surface.positions.len();
+        assert_eq!(simplify(&mut surface, n + 5), n);
     }
 }

@@ -18,10 +18,10 @@ pub(crate) fn node(at: [f64; 3], radius: f64, grain: f64) -> Node {
 }
 
 impl Node {
-    /// The node scaled about the origin, then shifted; its grain scales along.
+    /// The node scaled about the origin, then shifted; its grain stays.
     pub(crate) fn moved(self, scale: f64, offset: [f64; 3]) -> Self {
         let at = Point3::from(self.at.coords * scale + Vector3::from(offset));
-        Self { at, radius: self.radius * scale, grain: self.grain * scale }
+        Self { at, radius: self.radius * scale, grain: self.grain }
     }
 }
 
@@ -92,7 +92,12 @@ pub(crate) struct Membership {
 
 impl Skeleton {
     /// Adds a chain fixed at node `parent.1` of chain `parent.0`, with its joints.
-    pub(crate) fn chain(&mut self, parent: Option<(usize, usize)>, nodes: Vec<Node>, joints: Vec<Joint>) -> usize {
+    pub(crate) fn chain(
+        &mut self,
+        parent: Option<(usize, usize)>,
+        nodes: Vec<Node>,
+        joints: Vec<Joint>,
+    ) -> usize {
         let mut arcs = vec![0.0];
         for pair in nodes.windows(2) {
             arcs.push(arcs[arcs.len() - 1] + (pair[1].at - pair[0].at).norm());
@@ -103,7 +108,12 @@ impl Skeleton {
     }
 
     /// Adds a chain and its mirror image.
-    pub(crate) fn pair(&mut self, parent: (usize, usize), nodes: Vec<Node>, joints: Vec<Joint>) -> [usize; 2] {
+    pub(crate) fn pair(
+        &mut self,
+        parent: (usize, usize),
+        nodes: Vec<Node>,
+        joints: Vec<Joint>,
+    ) -> [usize; 2] {
         let left = self.chain(Some(parent), nodes, joints);
         let mut mirrored = self.chains[left].clone();
         for node in &mut mirrored.nodes {
@@ -155,11 +165,59 @@ impl Joint {
     }
 
     /// A joint that flexes about `axis`; its second axis is the limb's direction `along`.
-    pub(crate) fn hinge(node: usize, before: f64, after: f64, axis: [f64; 3], along: [f64; 3], play: f64) -> Self {
+    pub(crate) fn hinge(
+        node: usize,
+        before: f64,
+        after: f64,
+        axis: [f64; 3],
+        along: [f64; 3],
+        play: f64,
+    ) -> Self {
         let x = Vector3::from(axis).normalize();
         let along = Vector3::from(along);
         let y = (along - x * x.dot(&along)).normalize();
         let frame = Matrix3::from_columns(&[x, y, x.cross(&y)]);
         Self { node, before, after, frame, play: [play, 0.0, 0.0] }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn points_belong_to_the_nearest_chain_at_their_arc_length() {
+        let mut skeleton = Skeleton::default();
+        let trunk = skeleton.chain(
+            None,
+            vec![
+                node([0.0, 0.0, 0.0], 4.0, 1.0),
+                node([0.0, 0.0, 10.0], 4.0, 1.0),
+                node([0.0, 0.0, 30.0], 4.0, 2.0),
+            ],
+            Vec::new(),
+        );
+        skeleton.pair(
+            (trunk, 1),
+            vec![node([5.0, 0.0, 10.0], 2.0, 0.5), node([25.0, 0.0, 10.0], 2.0, 0.5)],
+            Vec::new(),
+        );
+        let at = |p: [f64; 3]| skeleton.memberships(p.into()).collect::<Vec<_>>();
+        let high = at([0.0, 4.0, 25.0]);
+        assert!((high[0].arc - 25.0).abs() < 0.1 && (high[0].grain - 1.75).abs() < 0.01);
+        assert!(high[0].weight > 1e3 * high[1].weight);
+        let left = at([20.0, 2.0, 10.0]);
+        assert!((left[1].arc - 15.0).abs() < 1e-9);
+        assert!(left[1].weight > 100.0 * left[0].weight && left[1].weight > 1e6 * left[2].weight);
+        let right = at([-20.0, 2.0, 10.0]);
+        assert_eq!((left[1].arc, left[1].weight), (right[2].arc, right[2].weight));
+        assert!((skeleton.grain([20.0, 2.0, 10.0].into()) - 0.5).abs() < 0.02);
+    }
+
+    #[test]
+    fn a_hinge_has_an_orthogonal_frame() {
+        let hinge = Joint::hinge(1, 1.0, 1.0, [1.0, 0.2, 0.0], [0.3, 0.1, -2.0], 5.0);
+        assert!((hinge.frame.transpose() * hinge.frame - Matrix3::identity()).norm() < 1e-12);
+        assert!((hinge.frame.determinant() - 1.0).abs() < 1e-12);
     }
 }

@@ -28,7 +28,7 @@ pub(crate) fn sin_cos(angle: f64) -> (f64, f64) {
     }
 }
 
-/// The rotation by `degrees.y` about the y axis, then `degrees.x` about x, then `degrees.z` about z.
+/// The rotation by `y` degrees about the y axis, then `x` about the x axis, then `z` about the z axis.
 pub(crate) fn rotation(x: f64, y: f64, z: f64) -> Matrix3<f64> {
     let [(sx, cx), (sy, cy), (sz, cz)] = [x, y, z].map(|degrees| sin_cos(degrees * (PI / 180.0)));
     let about_x = Matrix3::new(1.0, 0.0, 0.0, 0.0, cx, -sx, 0.0, sx, cx);
