@@ -1,0 +1,56 @@
+# Every command that a person or CI runs. `make help` lists them.
+
+CARGO ?= cargo
+OUT ?= out
+# A folder of meshes with the paper's classes, for `make reproduce`; the built-in dataset without it.
+DATASET ?=
+
+.PHONY: help setup build run test lint fmt doc bench reproduce report deny ci clean
+
+help: ## List these commands
+	@grep -hE '^[a-z]+:.*## ' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "  make %-10s %s\n", $$1, $$2}'
+
+setup: ## Fetch what the build needs from the package registry
+	$(CARGO) fetch --locked
+
+build: ## Build the programs
+	$(CARGO) build --release --locked
+
+run: ## Generate the built-in shapes, run figures 1 and 4, write out/report.html
+	$(CARGO) run --release --locked -p experiments -- run figure1 figure4 --output $(OUT)
+
+test: ## Run all tests
+	$(CARGO) test --workspace --locked
+
+lint: ## Format, clippy and rustdoc, warnings denied
+	$(CARGO) fmt --all --check
+	$(CARGO) clippy --workspace --all-targets --locked -- -D warnings
+	RUSTDOCFLAGS="-D warnings" $(CARGO) doc --workspace --no-deps --locked
+
+fmt: ## Format the sources
+	$(CARGO) fmt --all
+
+doc: ## Build the documentation
+	$(CARGO) doc --workspace --no-deps --locked
+
+reproduce: ## Run every experiment, on DATASET=folder with the paper's classes if given
+	$(CARGO) run --release --locked -p experiments -- run all --output $(OUT) \
+	  $(if $(DATASET),--dataset $(DATASET) --classes cat$(comma)centaur$(comma)david)
+
+comma := ,
+
+report: ## Make the page again from the results in OUT
+	$(CARGO) run --release --locked -p experiments -- report --output $(OUT)
+
+deny: ## Check licences, sources and duplicate versions with cargo-deny (installs it if missing)
+	@command -v cargo-deny >/dev/null || $(CARGO) install --locked cargo-deny
+	cargo-deny --all-features check licenses bans sources
+
+ci: lint test ## What CI runs: lint, tests, a small experiment from end to end
+	$(CARGO) run --release --locked -p experiments -- run figure1 figure4 --vertices 1000 --quiet --output target/ci-out
+	test -s target/ci-out/report.html
+	@echo "ci: all good"
+
+clean: ## Remove what was built and written
+	$(CARGO) clean
+	rm -rf $(OUT)
