@@ -72,7 +72,7 @@ fn panel(
 ) -> Result<Figure4Panel> {
     let normalization = match scale {
         Scale::Raw => Normalization::Raw,
-        Scale::Normalized => Normalization::UnitSpread,
+        Scale::Normalized => Normalization::UnitArea,
     };
     let prepared = PreparedForms::new(forms, normalization)?;
     let distances = form_distances(&prepared, &MatchOptions::default(), context.observer)?;

@@ -12,20 +12,21 @@ pub enum Normalization {
     /// Nothing: a small cat and a large cat differ.
     #[default]
     Raw,
-    /// The root of the mean squared distance from the centroid (area weighted): size does not count.
-    UnitSpread,
+    /// The root of the surface's area, which bending does not change: size does not count. Forms without
+    /// a unit of length stay as they are.
+    UnitArea,
 }
 
 /// A surface embedded so that straight lines equal surface distances: its pose-free shape.
 ///
 /// Centred at its area-weighted centroid. Invariant to bending of the surface; with
-/// [`Normalization::UnitSpread`] to scale as well. Defined up to a rigid motion *and reflection*:
+/// [`Normalization::UnitArea`] to scale as well. Defined up to a rigid motion *and reflection*:
 /// distances cannot tell a left hand from a right one.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CanonicalForm {
     points: Vec<Point3<f64>>,
     weights: Vec<f64>,
-    spread: f64,
+    area: Option<f64>,
 }
 
 impl CanonicalForm {
@@ -46,10 +47,18 @@ impl CanonicalForm {
             });
         }
         let points = embedding.coords.row_iter().map(|row| Point3::new(row[0], row[1], row[2])).collect();
-        Self::from_points(points, mesh.vertex_areas())
+        let form = Self::from_points(points, mesh.vertex_areas())?;
+        Ok(Self { area: Some(mesh.area()).filter(|area| *area > 0.0), ..form })
     }
 
-    /// A form of bare points with weights that are not negative; with equal weights when they sum to
+    /// The same form when its coordinates have no unit of length, as those of a kernel: its size is then
+    /// not that of the surface.
+    #[must_use]
+    pub fn without_unit(self) -> Self {
+        Self { area: None, ..self }
+    }
+
+    /// A form of bare points, without a unit of length, with weights that are not negative; with equal weights when they sum to
     /// zero.
     ///
     /// # Errors
@@ -65,7 +74,7 @@ impl CanonicalForm {
         if !(spread > 0.0 && spread.is_finite()) {
             return Err(DescriptorError::NoExtent { n_points: points.len() });
         }
-        Ok(Self { points, weights, spread })
+        Ok(Self { points, weights, area: None })
     }
 
     /// The centred points, one per vertex, in the unit of the distances.
@@ -80,22 +89,28 @@ impl CanonicalForm {
         &self.weights
     }
 
+    /// The area of the surface in squared units of the form; `None` when these are no lengths.
+    #[must_use]
+    pub fn area(&self) -> Option<f64> {
+        self.area
+    }
+
     /// Root of the mean squared distance from the centroid.
     #[must_use]
     pub fn spread(&self) -> f64 {
-        self.spread
+        spread(&self.points, &self.weights)
     }
 
     /// The form with what `normalization` names divided out.
     #[must_use]
     pub fn normalized(&self, normalization: Normalization) -> Self {
-        match normalization {
-            Normalization::Raw => self.clone(),
-            Normalization::UnitSpread => Self {
-                points: self.points.iter().map(|p| p / self.spread).collect(),
+        match (normalization, self.area) {
+            (Normalization::UnitArea, Some(area)) => Self {
+                points: self.points.iter().map(|p| p / area.sqrt()).collect(),
                 weights: self.weights.clone(),
-                spread: 1.0,
+                area: Some(1.0),
             },
+            _ => self.clone(),
         }
     }
 
@@ -104,6 +119,11 @@ impl CanonicalForm {
     pub fn to_mesh(&self, mesh: &TriMesh) -> TriMesh {
         TriMesh { positions: self.points.clone(), faces: mesh.faces.clone() }
     }
+}
+
+/// Root of the weighted mean squared distance from the origin.
+fn spread(points: &[Point3<f64>], weights: &[f64]) -> f64 {
+    points.iter().zip(weights).map(|(p, w)| w * p.coords.norm_squared()).sum::<f64>().sqrt()
 }
 
 #[cfg(test)]
@@ -133,8 +153,7 @@ mod tests {
         assert!((form.weights().iter().sum::<f64>() - 1.0).abs() < 1e-15);
         assert!((form.spread() - 2f64.sqrt()).abs() < 1e-15);
         let scaled = CanonicalForm::new(&embedding(coords * 5.0), &mesh).unwrap();
-        let (a, b) =
-            (form.normalized(Normalization::UnitSpread), scaled.normalized(Normalization::UnitSpread));
+        let (a, b) = (form.normalized(Normalization::UnitArea), scaled.normalized(Normalization::UnitArea));
         assert!(a.points().iter().zip(b.points()).all(|(p, q)| (p - q).norm() < 1e-14));
         assert_eq!(form.to_mesh(&mesh).faces, mesh.faces);
     }

@@ -35,11 +35,13 @@ pub struct MatchOptions {
     pub reflections: Reflections,
     /// Axes whose spreads differ by less than this factor may be exchanged. Default: 1.15.
     pub near_equal_axes: f64,
-    /// Share of the closest pairs that a step of the alignment believes, in (0, 1]. Default: 0.9.
+    /// Share of the closest pairs that a step of the alignment believes, in (0, 1]. Default: 1, so that
+    /// the alignment minimises the very distance that is measured.
     pub trim: f64,
     /// Largest number of steps of the alignment. Default: 30.
     pub max_iterations: usize,
-    /// Hypotheses that are refined after the coarse comparison. Default: 3.
+    /// Hypotheses that are refined after the coarse comparison, whose order is a poor guess of the
+    /// order after refinement. Default: 8, all signs of three different axes.
     pub refined: usize,
 }
 
@@ -49,9 +51,9 @@ impl Default for MatchOptions {
             distance: FormDistance::default(),
             reflections: Reflections::default(),
             near_equal_axes: 1.15,
-            trim: 0.9,
+            trim: 1.0,
             max_iterations: 30,
-            refined: 3,
+            refined: 8,
         }
     }
 }
@@ -93,8 +95,10 @@ const LEAST_GAIN: f64 = 1e-3;
 ///
 /// * The principal axes of both are matched under all signs, and with near-equal axes exchanged: 8 to
 ///   48 hypotheses (half of them without reflections), compared on a coarse sample.
-/// * The best few are refined by trimmed iterative closest points. Pairs are taken in both directions,
-///   so that neither form is favoured; each step solves Kabsch's problem and keeps the chirality of
+/// * The best eight are refined on the coarse sample by iterative closest points, trimmed if asked for,
+///   and the best of them on all samples. Pairs are taken in both directions, so that neither form is
+///   favoured; samples are spread evenly over the form and count the same, so that the triangulation
+///   does not matter; each step solves Kabsch's problem and keeps the chirality of
 ///   its hypothesis.
 /// * Reflections are allowed by default: distances cannot see them.
 /// * The distance is symmetric up to the local minimum the refinement ends in.
@@ -112,17 +116,16 @@ pub fn match_forms(
         .map(|start| (error(&pairs(a, b, &start, COARSE_SAMPLES), 1.0), start))
         .collect();
     ranked.sort_by(|x, y| x.0.total_cmp(&y.0));
-    let mut best: Option<FormMatch> = None;
+    let mut best = (f64::INFINITY, ranked[0].1);
     for (_, start) in ranked.into_iter().take(options.refined) {
-        let motion = refine(a, b, start, options);
-        let distance = distance(a, b, &motion, options.distance);
-        if best.is_none_or(|known| distance < known.distance) {
-            best = Some(FormMatch { alignment: motion, distance });
+        let found = refine(a, b, start, COARSE_SAMPLES, options);
+        if found.0 < best.0 {
+            best = found;
         }
     }
-    let best = best.unwrap_or_else(|| unreachable!("there is always a hypothesis"));
-    let alignment = b.to_principal().inverse().after(&best.alignment).after(a.to_principal());
-    Ok(FormMatch { alignment, ..best })
+    let (_, motion) = refine(a, b, best.1, usize::MAX, options);
+    let alignment = b.to_principal().inverse().after(&motion).after(a.to_principal());
+    Ok(FormMatch { alignment, distance: distance(a, b, &motion, options.distance) })
 }
 
 /// Signed permutations of the principal axes that may bring `a` onto `b`.
@@ -189,17 +192,27 @@ fn believed(n: usize, trim: f64) -> usize {
     ((n as f64 * trim).ceil() as usize).min(n)
 }
 
-/// Trimmed iterative closest points from `start`.
-fn refine(a: &PreparedForm, b: &PreparedForm, start: Alignment, options: &MatchOptions) -> Alignment {
+/// Trimmed iterative closest points from `start`, asked by the first `n` samples of either form; the best
+/// motion and its error.
+fn refine(
+    a: &PreparedForm,
+    b: &PreparedForm,
+    start: Alignment,
+    n: usize,
+    options: &MatchOptions,
+) -> (f64, Alignment) {
     let mut motion = start;
-    let mut reached = f64::INFINITY;
-    for _ in 0..options.max_iterations {
-        let mut found = pairs(a, b, &motion, usize::MAX);
+    let mut best = (f64::INFINITY, start);
+    for _ in 0..=options.max_iterations {
+        let mut found = pairs(a, b, &motion, n);
         let error = error(&found, options.trim);
-        if error > reached * (1.0 - LEAST_GAIN) {
+        let settled = error > best.0 * (1.0 - LEAST_GAIN);
+        if error < best.0 {
+            best = (error, motion);
+        }
+        if settled {
             break;
         }
-        reached = error;
         let kept = believed(found.len(), options.trim);
         if kept < found.len() {
             found.select_nth_unstable_by(kept, |x, y| x.2.total_cmp(&y.2));
@@ -210,7 +223,7 @@ fn refine(a: &PreparedForm, b: &PreparedForm, start: Alignment, options: &MatchO
             None => break,
         }
     }
-    motion
+    best
 }
 
 fn distance(a: &PreparedForm, b: &PreparedForm, motion: &Alignment, kind: FormDistance) -> f64 {

@@ -31,6 +31,8 @@ pub struct Embedded {
     pub embedding: Embedding,
     /// Facts about the run.
     pub report: EmbedReport,
+    /// Whether coordinates are lengths; the components of a kernel are not.
+    has_unit: bool,
 }
 
 /// Facts about an embedding; what `canonform embed --json` prints.
@@ -91,7 +93,8 @@ impl Embedded {
     /// # Errors
     /// [`PipelineError::Descriptor`] when the embedding is not three-dimensional.
     pub fn form(&self, surface: &Surface) -> Result<CanonicalForm, PipelineError> {
-        Ok(CanonicalForm::new(&self.embedding, surface.mesh())?)
+        let form = CanonicalForm::new(&self.embedding, surface.mesh())?;
+        Ok(if self.has_unit { form } else { form.without_unit() })
     }
 }
 
@@ -180,7 +183,7 @@ pub fn embed(
         seconds,
         repair: surface.repaired.report.clone(),
     };
-    Ok(Embedded { embedding, report })
+    Ok(Embedded { embedding, report, has_unit })
 }
 
 fn embed_landmarks(
