@@ -35,4 +35,19 @@ pub enum GeodesicError {
     /// A sampling without samples.
     #[error("at least 1 sample is needed, got 0")]
     NoSamples,
+    /// A heat time without meaning.
+    #[error(
+        "the heat time {time} (in squared mean edge lengths) is not positive and finite; the usual \
+         time is 0.85"
+    )]
+    BadHeatTime {
+        /// The time asked for.
+        time: f64,
+    },
+    /// The matrices of the heat method have no factors.
+    #[error("the heat method cannot be set up: {reason}; take --method fast-marching")]
+    NotFactorised {
+        /// What was in the way.
+        reason: String,
+    },
 }

@@ -2,13 +2,18 @@
 
 use mesh::IntrinsicMesh;
 
-use crate::{BreadthFirst, Dijkstra, DistanceSolver, FastMarching, FastMarchingOptions};
+use crate::{
+    BreadthFirst, Dijkstra, DistanceSolver, FastMarching, FastMarchingOptions, GeodesicError, HeatMethod,
+    HeatOptions,
+};
 
 /// A way of measuring distances on a surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Method {
     /// [`FastMarching`].
     FastMarching(FastMarchingOptions),
+    /// [`HeatMethod`].
+    Heat(HeatOptions),
     /// [`Dijkstra`].
     Dijkstra,
     /// [`BreadthFirst`].
@@ -27,18 +32,49 @@ impl Method {
     pub fn name(self) -> &'static str {
         match self {
             Self::FastMarching(_) => "fast-marching",
+            Self::Heat(_) => "heat",
             Self::Dijkstra => "dijkstra",
             Self::BreadthFirst => "bfs",
         }
     }
 
     /// Prepares a surface for this method.
-    #[must_use]
-    pub fn prepare(self, mesh: &IntrinsicMesh) -> Box<dyn DistanceSolver> {
-        match self {
+    ///
+    /// # Errors
+    /// Those of [`HeatMethod::new`]; the other methods take any surface.
+    pub fn try_prepare(self, mesh: &IntrinsicMesh) -> Result<Box<dyn DistanceSolver>, GeodesicError> {
+        Ok(match self {
             Self::FastMarching(options) => Box::new(FastMarching::new(mesh, options)),
+            Self::Heat(options) => Box::new(HeatMethod::new(mesh, options)?),
             Self::Dijkstra => Box::new(Dijkstra::new(mesh)),
             Self::BreadthFirst => Box::new(BreadthFirst::new(mesh)),
+        })
+    }
+
+    /// Prepares a surface for a method that takes any surface.
+    ///
+    /// # Panics
+    /// Where [`Method::try_prepare`] has an error, which only [`Method::Heat`] can.
+    #[must_use]
+    pub fn prepare(self, mesh: &IntrinsicMesh) -> Box<dyn DistanceSolver> {
+        self.try_prepare(mesh).unwrap_or_else(|error| panic!("{}: {error}", self.name()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use mesh::shapes::icosphere;
+
+    use super::*;
+
+    #[test]
+    fn every_method_prepares_or_says_why_not() {
+        let mesh = IntrinsicMesh::from_mesh(&icosphere(1));
+        let heat = Method::Heat(HeatOptions::default());
+        for method in [Method::default(), heat, Method::Dijkstra, Method::BreadthFirst] {
+            assert_eq!(method.try_prepare(&mesh).unwrap().n_vertices(), 42, "{}", method.name());
         }
+        let frozen = Method::Heat(HeatOptions { time: 0.0 });
+        assert_eq!(frozen.try_prepare(&mesh).unwrap_err(), GeodesicError::BadHeatTime { time: 0.0 });
     }
 }

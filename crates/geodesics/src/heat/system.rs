@@ -1,0 +1,108 @@
+//! The two matrices and their factors.
+
+use linalg::{EliminationOrder, LinalgError, SparseCholesky, SparseSymmetric};
+
+use super::elements::{Bar, Element};
+use crate::GeodesicError;
+
+/// Shares of its diagonal that are added, one after the other, to a matrix which cannot be factorised.
+const SHIFTS: [f64; 4] = [0.0, 1e-12, 1e-9, 1e-6];
+
+/// The factors of `M + t L` and of `L`, in the same order of elimination.
+#[derive(Debug)]
+pub(super) struct System {
+    /// Of `M + t L`.
+    pub(super) heat: SparseCholesky,
+    /// Of `L`, grounded at one vertex in each component.
+    pub(super) poisson: SparseCholesky,
+}
+
+impl System {
+    /// Assembles and factorises over `n` vertices; `grounded` has one vertex of each component.
+    ///
+    /// The cotangent stiffness `L` maps constants to zero. One added to its diagonal at one vertex of
+    /// each component makes it definite, and as right-hand sides sum to zero over a component, sets
+    /// the solution to zero there and changes nothing else.
+    pub(super) fn new(
+        n: usize,
+        elements: &[Element],
+        bars: &[Bar],
+        time: f64,
+        grounded: &[usize],
+    ) -> Result<Self, GeodesicError> {
+        let mut masses = vec![0.0; n];
+        for Element { vertices, triangle, share } in elements {
+            vertices.iter().for_each(|&v| masses[v as usize] += share * triangle.area() / 3.0);
+        }
+        let mut heat = stiffness(n, elements, time, bars.iter().map(|bar| (bar.ends, bar.heat())));
+        heat.add_to_diagonal(masses.into_iter());
+        // A vertex with nothing around it is an equation of its own.
+        let missing: Vec<f64> = heat.diagonal().iter().map(|d| if *d == 0.0 { 1.0 } else { 0.0 }).collect();
+        heat.add_to_diagonal(missing.into_iter());
+        let order = EliminationOrder::new(&heat).map_err(failed)?;
+        let heat = factorise(&order, heat)?;
+
+        let mut poisson =
+            stiffness(n, elements, 1.0, bars.iter().map(|bar| (bar.ends, [bar.weight(), -bar.weight()])));
+        let mut ground = vec![0.0; n];
+        grounded.iter().for_each(|&v| ground[v] = 1.0);
+        poisson.add_to_diagonal(ground.into_iter());
+        Ok(Self { heat, poisson: factorise(&order, poisson)? })
+    }
+}
+
+/// `scale` times the stiffness of the triangles, and what each bar adds at and between its ends.
+fn stiffness(
+    n: usize,
+    elements: &[Element],
+    scale: f64,
+    bars: impl Iterator<Item = ([u32; 2], [f64; 2])>,
+) -> SparseSymmetric {
+    let weights = elements.iter().flat_map(Element::weights);
+    let triangles = weights.map(|(ends, weight)| (ends, [scale * weight, -scale * weight]));
+    let mut diagonal = vec![0.0; n];
+    let mut entries = Vec::with_capacity(3 * elements.len());
+    for (ends, [at, between]) in triangles.chain(bars) {
+        let [i, j] = ends.map(|v| v as usize);
+        diagonal[i] += at;
+        diagonal[j] += at;
+        entries.push((i, j, between));
+    }
+    let mut matrix = SparseSymmetric::from_entries(n, entries);
+    matrix.add_to_diagonal(diagonal.into_iter());
+    matrix
+}
+
+/// The factor of a matrix, or of the matrix with the first of [`SHIFTS`] that has one.
+fn factorise(order: &EliminationOrder, mut matrix: SparseSymmetric) -> Result<SparseCholesky, GeodesicError> {
+    let diagonal = matrix.diagonal();
+    let mut result = Err(GeodesicError::NotFactorised { reason: String::new() });
+    for shift in SHIFTS {
+        matrix.add_to_diagonal(diagonal.iter().map(|d| shift * d));
+        result = SparseCholesky::with_order(order, &matrix).map_err(failed);
+        if result.is_ok() {
+            break;
+        }
+    }
+    result
+}
+
+fn failed(error: LinalgError) -> GeodesicError {
+    GeodesicError::NotFactorised { reason: error.to_string() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_semidefinite_matrix_is_shifted_and_an_indefinite_one_refused() {
+        let matrix = |at| SparseSymmetric::from_entries(2, [(0, 0, at), (1, 1, at), (0, 1, -1.0)]);
+        let order = EliminationOrder::new(&matrix(1.0)).unwrap();
+        // Constants have no image; the shift makes the solution large and keeps its difference.
+        let mut x = [1.0, -1.0];
+        factorise(&order, matrix(1.0)).unwrap().solve(&mut x);
+        assert!((x[0] - x[1] - 1.0).abs() < 1e-3, "{x:?}");
+        assert!(matches!(factorise(&order, matrix(0.5)), Err(GeodesicError::NotFactorised { .. })));
+    }
+}

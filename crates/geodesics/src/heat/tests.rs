@@ -1,0 +1,368 @@
+use linalg::Matrix;
+use mesh::shapes::{cylinder, disjoint, fold, grid, icosphere, jittered_grid, sheared_grid};
+use mesh::{FaceId, Link, Topology, TriMesh};
+
+use super::*;
+
+mod reference;
+
+fn surface(mesh: &TriMesh) -> IntrinsicMesh {
+    IntrinsicMesh::from_mesh(mesh)
+}
+
+fn heat(mesh: &IntrinsicMesh) -> HeatMethod {
+    HeatMethod::new(mesh, HeatOptions::default()).unwrap()
+}
+
+/// Mean of `|found - expected| / expected` over all but the source.
+fn mean_error(found: &[f64], expected: impl Fn(usize) -> f64) -> f64 {
+    let errors = found.iter().enumerate().map(|(v, d)| (d, expected(v))).filter(|(_, e)| *e > 0.0);
+    errors.map(|(d, e)| (d - e).abs() / e).sum::<f64>() / (found.len() - 1) as f64
+}
+
+fn great_circle(mesh: &TriMesh, source: usize) -> impl Fn(usize) -> f64 {
+    let p = mesh.positions.clone();
+    move |v| p[source].coords.dot(&p[v].coords).clamp(-1.0, 1.0).acos()
+}
+
+fn straight(mesh: &TriMesh, source: usize) -> impl Fn(usize) -> f64 {
+    let p = mesh.positions.clone();
+    move |v| (p[source] - p[v]).norm()
+}
+
+fn assert_close(found: &[f64], expected: &[f64], tolerance: f64) {
+    for (v, (a, b)) in found.iter().zip(expected).enumerate() {
+        assert!((a - b).abs() <= tolerance * b.abs() || a == b, "vertex {v}: {a} against {b}");
+    }
+}
+
+#[test]
+fn error_falls_with_the_edges_on_a_plane_and_on_a_sphere() {
+    let mut previous = f64::INFINITY;
+    for n in [11, 21, 41, 81] {
+        let mesh = jittered_grid(n, n, 1.0 / (n - 1) as f64, 0.24, 7);
+        let source = mesh.n_vertices() / 2;
+        let found = heat(&surface(&mesh)).distances(VertexId::from(source));
+        let error = mean_error(&found, straight(&mesh, source));
+        assert!(error < previous / 1.25, "{n}: {error} after {previous}");
+        previous = error;
+    }
+    assert!(previous < 0.009, "{previous}");
+    for (level, bound) in [(2, 0.008), (3, 0.005), (4, 0.0025)] {
+        let mesh = icosphere(level);
+        let error = mean_error(&heat(&surface(&mesh)).distances(VertexId(0)), great_circle(&mesh, 0));
+        assert!(error < bound, "{level}: {error}");
+    }
+}
+
+#[test]
+fn a_time_of_first_order_makes_the_error_vanish() {
+    let mut previous = f64::INFINITY;
+    for (level, n) in [(3, 16.0), (4, 32.0), (5, 64.0)] {
+        let mesh = icosphere(level);
+        let method = HeatMethod::new(&surface(&mesh), HeatOptions { time: n / 16.0 }).unwrap();
+        let error = mean_error(&method.distances(VertexId(0)), great_circle(&mesh, 0));
+        assert!(error < previous / 1.5, "{level}: {error} after {previous}");
+        previous = error;
+    }
+    assert!(previous < 0.0015, "{previous}");
+}
+
+#[test]
+fn obtuse_triangles_do_no_harm() {
+    // All triangles obtuse, up to 176 degrees; the sheet stays convex, so distances are straight.
+    for shear in [1.0, 3.0, 15.0] {
+        let mesh = sheared_grid(31, 31, 1.0, shear);
+        let source = 15 * 31 + 15;
+        let error =
+            mean_error(&heat(&surface(&mesh)).distances(VertexId(source)), straight(&mesh, source as usize));
+        assert!(error < 0.03, "{shear}: {error}");
+    }
+}
+
+#[test]
+fn scale_scales() {
+    let mesh = surface(&icosphere(3));
+    let distances = |scale: f64| {
+        let lengths = mesh.edge_lengths().iter().map(|length| scale * length).collect();
+        heat(&IntrinsicMesh::new(mesh.topology().clone(), lengths)).distances(VertexId(17))
+    };
+    let unit = distances(1.0);
+    let times = |scale: f64| unit.iter().map(|d| scale * d).collect::<Vec<_>>();
+    assert_eq!(distances(1024.0), times(1024.0));
+    for scale in [3.7, 1e-9, 1e200, 1e-200] {
+        assert_close(&distances(scale), &times(scale), 1e-9);
+    }
+}
+
+#[test]
+fn folding_and_moving_change_nothing() {
+    let sheet = jittered_grid(17, 17, 0.1, 0.2, 3);
+    let crease = fold(&grid(17, 17, 0.1), 0.8, 1.9);
+    for (a, b) in [(grid(17, 17, 0.1), crease), (sheet.clone(), fold(&sheet, -1.0, 0.7))] {
+        let [a, b] = [a, b].map(|mesh| heat(&surface(&mesh)).distances(VertexId(40)));
+        assert_close(&b, &a, 1e-9);
+    }
+}
+
+#[test]
+fn names_of_vertices_and_faces_change_nothing_beyond_rounding() {
+    let mesh = jittered_grid(19, 15, 1.0, 0.24, 11);
+    let n = mesh.n_vertices();
+    let renamed = |v: usize| v * 101 % n;
+    let mut other = mesh.clone();
+    for v in 0..n {
+        other.positions[renamed(v)] = mesh.positions[v];
+    }
+    other.faces = mesh.faces.iter().rev().map(|f| f.map(|v| VertexId::from(renamed(v.index())))).collect();
+    for (i, face) in other.faces.iter_mut().enumerate() {
+        face.rotate_left(i % 3);
+        if i % 5 == 0 {
+            face.swap(0, 1);
+        }
+    }
+    let expected = heat(&surface(&mesh)).distances(VertexId(20));
+    let found = heat(&surface(&other)).distances(VertexId::from(renamed(20)));
+    let back: Vec<f64> = (0..n).map(|v| found[renamed(v)]).collect();
+    assert_close(&back, &expected, 1e-9);
+}
+
+#[test]
+fn several_sources_measure_to_the_nearest() {
+    let mesh = icosphere(4);
+    let method = heat(&surface(&mesh));
+    let sources = [0, 1, 700, 2000].map(VertexId);
+    let mut found = vec![0.0; mesh.n_vertices()];
+    method.solve_into(&sources.map(Source::vertex), f64::INFINITY, &mut found);
+    let circles = sources.map(|s| great_circle(&mesh, s.index()));
+    let nearest = |v: usize| circles.iter().map(|d| d(v)).fold(f64::INFINITY, f64::min);
+    assert!(sources.iter().all(|s| found[s.index()] == 0.0));
+    // Fronts that meet are rounded off.
+    assert!(mean_error(&found, nearest) < 0.04);
+    // The same source twice is one, and no source is none.
+    let mut twice = vec![0.0; mesh.n_vertices()];
+    method.solve_into(&[0, 0].map(|v| Source::vertex(VertexId(v))), f64::INFINITY, &mut twice);
+    assert_close(&twice, &method.distances(VertexId(0)), 1e-9);
+    method.solve_into(&[], f64::INFINITY, &mut found);
+    assert!(found.iter().all(|d| *d == f64::INFINITY));
+}
+
+#[test]
+fn sources_may_lie_in_faces_and_on_edges() {
+    let mesh = jittered_grid(31, 31, 1.0, 0.2, 2);
+    let intrinsic = surface(&mesh);
+    let method = heat(&intrinsic);
+    let topology = intrinsic.topology();
+    let edge = topology.edge_between(VertexId(480), VertexId(481)).unwrap();
+    let [p, q] = [480, 481].map(|v| mesh.positions[v].coords);
+    let triangle = mesh.triangle(900).map(|p| p.coords);
+    let barycentric = [0.2, 0.5, 0.3];
+    let inside = triangle.iter().zip(barycentric).map(|(p, b)| p * b).sum();
+    let points = [
+        (SurfacePoint::Edge { edge, t: 0.3 }, p * 0.7 + q * 0.3),
+        (SurfacePoint::Face { face: FaceId(900), barycentric }, inside),
+        (SurfacePoint::Edge { edge, t: 0.0 }, p),
+        (SurfacePoint::Vertex(VertexId(481)), q),
+    ];
+    for (point, at) in points {
+        let source = Source::new(&intrinsic, point).unwrap();
+        let mut found = vec![0.0; mesh.n_vertices()];
+        method.solve_into(std::slice::from_ref(&source), f64::INFINITY, &mut found);
+        let error = mean_error(&found, |v| (mesh.positions[v].coords - at).norm());
+        assert!(error < 0.03, "{point:?}: {error}");
+        assert!(source.reach().iter().all(|(v, straight)| found[v.index()] <= straight * (1.0 + 1e-15)));
+    }
+}
+
+#[test]
+fn distances_end_with_the_component_and_with_the_limit() {
+    let mesh = surface(&disjoint(&[icosphere(2), grid(5, 5, 0.1), icosphere(1)]));
+    let method = heat(&mesh);
+    let (sphere, sheet) = (162, 25);
+    let found = method.distances(VertexId(163));
+    for (v, d) in found.iter().enumerate() {
+        assert_eq!(d.is_finite(), (sphere..sphere + sheet).contains(&v), "{v}");
+    }
+    // A component does not know of the others beyond the time that heat flows, which is common.
+    let mut both = vec![0.0; mesh.n_vertices()];
+    let sources = [5, 163].map(|v| Source::vertex(VertexId(v)));
+    method.solve_into(&sources, f64::INFINITY, &mut both);
+    assert_close(&both[..sphere], &method.distances(VertexId(5))[..sphere], 1e-9);
+    assert_close(&both[sphere..], &found[sphere..], 1e-9);
+
+    let mut limited = vec![0.0; mesh.n_vertices()];
+    method.solve_into(&sources, 0.2, &mut limited);
+    for (d, limited) in both.iter().zip(&limited) {
+        assert_eq!(*limited, if *d <= 0.2 { *d } else { f64::INFINITY });
+    }
+}
+
+/// Two spheres of 642 vertices joined by a link between their first vertices.
+fn dumbbell(length: f64) -> IntrinsicMesh {
+    let link = Link { ends: [VertexId(0), VertexId(642)], length };
+    surface(&disjoint(&[icosphere(3), icosphere(3)])).with_links(vec![link])
+}
+
+#[test]
+fn a_bridge_adds_its_length() {
+    let alone = heat(&surface(&icosphere(3)));
+    for length in [0.0, 0.05, 1.0, 300.0] {
+        let found = heat(&dumbbell(length)).distances(VertexId(100));
+        let near = alone.distances(VertexId(100));
+        let far = alone.distances(VertexId(0));
+        // As good as without it on either side; the shifts at both ends are of the order of an edge.
+        assert!(mean_error(&found[..642], |v| near[v]) < 0.02, "{length}");
+        let beyond = |v: usize| near[0] + length + far[v];
+        assert!(mean_error(&found[642..], beyond) < 0.05, "{length}");
+        // Short times end where heat would no longer arrive.
+        let brief = HeatMethod::new(&dumbbell(length), HeatOptions { time: 1e-12 }).unwrap();
+        let found = brief.distances(VertexId(100));
+        assert!(mean_error(&found[642..], beyond) < 0.4, "{length}");
+    }
+}
+
+#[test]
+fn a_link_between_vertices_of_one_component_is_taken_when_it_is_short() {
+    // From one end of a long strip to the other.
+    let strip = surface(&grid(101, 6, 0.1));
+    let (left, right) = (VertexId(303), VertexId(403));
+    let with = |length: f64| {
+        let link = Link { ends: [left, right], length };
+        heat(&strip.clone().with_links(vec![link])).distances(left)
+    };
+    let without = heat(&strip).distances(left);
+    let short = with(0.5);
+    assert!((short[right.index()] - 0.5).abs() < 0.1, "{}", short[right.index()]);
+    assert!((short[right.index() - 10] - 1.5).abs() < 0.2, "{}", short[right.index() - 10]);
+    let useless = with(30.0);
+    assert!(mean_error(&useless, |v| without[v]) < 0.02);
+}
+
+#[test]
+fn loose_vertices_are_reached_over_links_alone() {
+    let mut mesh = grid(3, 3, 1.0);
+    mesh.positions.extend([0, 1].map(|v| 9.0 * mesh.positions[v]));
+    let links = vec![
+        Link { ends: [VertexId(8), VertexId(9)], length: 2.5 },
+        Link { ends: [VertexId(4), VertexId(4)], length: 1.0 },
+    ];
+    let method = heat(&surface(&mesh).with_links(links));
+    let found = method.distances(VertexId(8));
+    assert!((found[9] - 2.5).abs() < 0.3 && found[10] == f64::INFINITY, "{found:?}");
+    let back = method.distances(VertexId(9));
+    assert!(back[9] == 0.0 && (back[8] - 2.5).abs() < 0.3 && back[0] > 4.0, "{back:?}");
+    let alone = method.distances(VertexId(10));
+    assert!(alone.iter().enumerate().all(|(v, d)| if v == 10 { *d == 0.0 } else { *d == f64::INFINITY }));
+}
+
+#[test]
+fn heat_reaches_the_far_end_of_a_very_long_surface() {
+    let pipe = cylinder(4, 4000, 0.5, 3000.0);
+    let method = heat(&surface(&pipe));
+    assert!(method.time() > 1.2, "{}", method.time());
+    let found = method.distances(VertexId(0));
+    let far = found.len() - 4;
+    assert!((found[far] / 3000.0 - 1.0).abs() < 0.01, "{}", found[far]);
+    assert!((0..found.len() - 4).all(|v| found[v + 4] > found[v] || v < 4));
+}
+
+#[test]
+fn columns_are_the_single_solutions_on_any_number_of_threads() {
+    let mesh = surface(&icosphere(3));
+    let method = heat(&mesh);
+    for count in [0, 1, 2, 4, 9, 10] {
+        let sources: Vec<VertexId> = (0..count).map(|i| VertexId(61 * i)).collect();
+        let on = |threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| method.distance_columns(&sources))
+        };
+        let mut expected = Matrix::zeros(642, sources.len());
+        for (j, source) in sources.iter().enumerate() {
+            expected.column_mut(j).copy_from_slice(&method.distances(*source));
+        }
+        // Bit for bit.
+        assert_eq!(on(1), expected);
+        assert_eq!(on(3), expected);
+    }
+    assert_eq!(heat(&mesh).distances(VertexId(5)), method.distances(VertexId(5)));
+}
+
+/// Pseudo-random numbers in [0, 1).
+fn noise(i: usize) -> f64 {
+    (i as f64 * 0.618_033_988_749_894_9 + (i * i) as f64 * 0.414_213_562_373_095).fract()
+}
+
+#[test]
+fn degenerate_surfaces_give_no_nan() {
+    let check = |mesh: IntrinsicMesh, what: &str| {
+        let n = mesh.n_vertices();
+        let method = heat(&mesh);
+        let graph = Dijkstra::new(&mesh);
+        for source in [0, n / 2, n - 1].map(VertexId::from) {
+            let (found, reached) = (method.distances(source), graph.distances(source));
+            assert_eq!(found[source.index()], 0.0, "{what}");
+            for (d, r) in found.iter().zip(reached) {
+                assert!(*d >= 0.0 && d.is_finite() == r.is_finite(), "{what}: {d} where Dijkstra has {r}");
+            }
+        }
+    };
+    let grid_topology = || Topology::new(36, grid(6, 6, 1.0).faces);
+    let n_edges = grid_topology().n_edges();
+    type Length = fn(usize) -> f64;
+    let lengths: [(&str, Length); 7] = [
+        ("points", |_| 0.0),
+        ("random", noise),
+        ("random over many scales", |i| 10f64.powf(40.0 * noise(i) - 20.0)),
+        ("half of them zero", |i| if noise(i) < 0.5 { 0.0 } else { 1.0 }),
+        ("one huge", |i| if i == 20 { 1e300 } else { 1.0 }),
+        ("huge", |_| 1e306),
+        ("tiny", |_| 5e-324),
+    ];
+    for (what, length) in lengths {
+        check(IntrinsicMesh::new(grid_topology(), (0..n_edges).map(length).collect()), what);
+    }
+    let mut squashed = grid(6, 6, 1.0);
+    squashed.positions.iter_mut().for_each(|p| p.y = 0.0);
+    check(surface(&squashed), "a sheet without width");
+    let mut pinched = grid(6, 6, 1.0);
+    pinched.positions[14] = pinched.positions[15];
+    pinched.positions[20] = pinched.positions[15];
+    check(surface(&pinched), "a face that is a point");
+    let mut messy = icosphere(1);
+    messy.faces.extend_from_within(..7);
+    messy.faces.extend([[0, 11, 40], [0, 11, 41], [41, 11, 5]].map(|f| f.map(VertexId)));
+    messy.positions.extend_from_within(..3);
+    check(surface(&messy), "double faces, edges of many faces, loose vertices");
+    check(IntrinsicMesh::new(Topology::new(2, Vec::new()), Vec::new()), "no faces");
+}
+
+#[test]
+fn a_surface_without_vertices_has_no_distances() {
+    let method = heat(&IntrinsicMesh::new(Topology::new(0, Vec::new()), Vec::new()));
+    assert_eq!(method.n_vertices(), 0);
+    method.solve_into(&[], f64::INFINITY, &mut []);
+    assert_eq!(method.distance_columns(&[]), Matrix::zeros(0, 0));
+}
+
+#[test]
+fn times_without_meaning_are_refused() {
+    let mesh = surface(&icosphere(0));
+    for time in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        let error = HeatMethod::new(&mesh, HeatOptions { time }).unwrap_err();
+        assert!(matches!(error, GeodesicError::BadHeatTime { .. }), "{error}");
+    }
+    // Beyond the range of numbers there is no matrix.
+    let error = HeatMethod::new(&mesh, HeatOptions { time: f64::MAX }).unwrap_err();
+    assert!(matches!(error, GeodesicError::NotFactorised { .. }), "{error}");
+    // A long time is still a direction.
+    let long = HeatMethod::new(&mesh, HeatOptions { time: 1e6 }).unwrap();
+    assert!(long.distances(VertexId(0)).iter().all(|d| d.is_finite()));
+}
+
+#[test]
+fn time_is_in_squared_mesh_units() {
+    let mesh = surface(&icosphere(2));
+    let time = HeatMethod::new(&mesh, HeatOptions { time: 2.0 }).unwrap().time();
+    assert!((time - 2.0 * mesh.mean_edge_length().powi(2)).abs() < 1e-12 * time);
+    assert!(heat(&surface(&grid(300, 300, 1.0))).time() > 1.2);
+}
