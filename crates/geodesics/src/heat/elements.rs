@@ -158,3 +158,87 @@ impl Bar {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use mesh::{IntrinsicMesh, TriMesh, shapes};
+
+    use super::*;
+
+    fn of(mesh: &TriMesh) -> Vec<Element> {
+        let mesh = IntrinsicMesh::from_mesh(mesh);
+        let mut cover = Cover::new(&mesh, mesh.edge_lengths());
+        cover.flip_to_delaunay();
+        elements(&cover)
+    }
+
+    #[test]
+    fn front_and_back_are_one_wherever_they_were_flipped_alike() {
+        for mesh in [shapes::icosphere(3), shapes::torus(24, 4, 2.0, 0.7)] {
+            let found = of(&mesh);
+            assert_eq!(found.len(), mesh.n_faces());
+            assert!(found.iter().all(|element| element.share == 1.0));
+        }
+        // All sides of this sheet are flipped, those on its boundary against their own backs.
+        let sheet = shapes::sheared_grid(9, 9, 1.0, 2.4);
+        let found = of(&sheet);
+        let shares: f64 = found.iter().map(|element| element.share).sum();
+        assert_eq!(shares, sheet.n_faces() as f64);
+        assert!(found.iter().any(|element| element.share == 0.5) && found.len() < 2 * sheet.n_faces());
+        let (_, area) = mean_side_and_area(&found);
+        assert!((area - 64.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn delaunay_weights_are_not_negative_even_at_boundaries() {
+        for mesh in [shapes::jittered_grid(12, 12, 1.0, 0.24, 1), shapes::sheared_grid(8, 8, 1.0, 3.2)] {
+            let mut sums = std::collections::BTreeMap::new();
+            for ([i, j], weight) in of(&mesh).iter().flat_map(Element::weights) {
+                *sums.entry((i.min(j), i.max(j))).or_insert(0.0) += weight;
+            }
+            assert!(sums.values().all(|weight: &f64| *weight > -1e-9));
+        }
+    }
+
+    #[test]
+    fn a_linear_function_has_the_divergence_of_its_direction() {
+        // u = 3 x + 4 y on the triangle (0, 0), (2, 0), (1, 1): X = -(0.6, 0.8).
+        let triangle = Triangle { base: 2.0, x: 1.0, y: 1.0 };
+        let element = Element { vertices: [0, 1, 2], triangle, share: 1.0 };
+        for scale in [1.0, 1e300, 1e-300] {
+            let mut b = [[0.0]; 3];
+            element.add_divergence(&[[0.0], [6.0 * scale], [7.0 * scale]], &mut b);
+            // Gradients of the hat functions: (-1/2, -1/2), (1/2, -1/2), (0, 1); the area is 1.
+            let expected = [0.7, 0.1, -0.8];
+            assert!(b.iter().zip(expected).all(|([b], e)| (b - e).abs() < 1e-15), "{b:?}");
+        }
+        let mut b = [[0.0]; 3];
+        element.add_divergence(&[[5.0]; 3], &mut b);
+        assert_eq!(b, [[0.0]; 3]);
+    }
+
+    #[test]
+    fn a_bar_rises_by_its_length_or_to_where_heat_from_both_ends_meets() {
+        let link = Link { ends: [0, 1].map(mesh::VertexId), length: 3.0 };
+        let bar = Bar::new(&link, 0.5);
+        let rise = |u: [f64; 2]| {
+            let mut b = [[0.0]; 2];
+            bar.add_divergence(&u.map(|u| [u]), &mut b);
+            assert_eq!(b[0][0], -b[1][0]);
+            b[1][0] / bar.weight()
+        };
+        let at = |x: f64| (x / 0.5).cosh();
+        for (heat, expected) in [
+            ([1.0, 0.0], 3.0),
+            ([0.0, 1.0], -3.0),
+            // Nothing leaves the far end.
+            ([at(3.0), 1.0], 3.0),
+            // Least heat after 2 of 3.
+            ([at(2.0), at(1.0)], 1.0),
+            ([7.0, 7.0], 0.0),
+            ([0.0, 0.0], 0.0),
+        ] {
+            assert!((rise(heat) - expected).abs() < 1e-9, "{heat:?}: {}", rise(heat));
+        }
+    }
+}
