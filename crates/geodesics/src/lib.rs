@@ -8,6 +8,7 @@
 mod breadth_first;
 mod dijkstra;
 mod error;
+mod exact;
 mod fast_marching;
 mod graph;
 mod heap;
@@ -23,6 +24,7 @@ mod wedges;
 pub use breadth_first::BreadthFirst;
 pub use dijkstra::Dijkstra;
 pub use error::GeodesicError;
+pub use exact::Exact;
 pub use fast_marching::{FastMarching, FastMarchingOptions, Update};
 pub use heat::{HeatMethod, HeatOptions};
 pub use method::Method;

@@ -3,8 +3,8 @@
 use mesh::IntrinsicMesh;
 
 use crate::{
-    BreadthFirst, Dijkstra, DistanceSolver, FastMarching, FastMarchingOptions, GeodesicError, HeatMethod,
-    HeatOptions,
+    BreadthFirst, Dijkstra, DistanceSolver, Exact, FastMarching, FastMarchingOptions, GeodesicError,
+    HeatMethod, HeatOptions,
 };
 
 /// A way of measuring distances on a surface.
@@ -14,6 +14,8 @@ pub enum Method {
     FastMarching(FastMarchingOptions),
     /// [`HeatMethod`].
     Heat(HeatOptions),
+    /// [`Exact`].
+    Exact,
     /// [`Dijkstra`].
     Dijkstra,
     /// [`BreadthFirst`].
@@ -33,6 +35,7 @@ impl Method {
         match self {
             Self::FastMarching(_) => "fast-marching",
             Self::Heat(_) => "heat",
+            Self::Exact => "exact",
             Self::Dijkstra => "dijkstra",
             Self::BreadthFirst => "bfs",
         }
@@ -46,6 +49,7 @@ impl Method {
         Ok(match self {
             Self::FastMarching(options) => Box::new(FastMarching::new(mesh, options)),
             Self::Heat(options) => Box::new(HeatMethod::new(mesh, options)?),
+            Self::Exact => Box::new(Exact::new(mesh)),
             Self::Dijkstra => Box::new(Dijkstra::new(mesh)),
             Self::BreadthFirst => Box::new(BreadthFirst::new(mesh)),
         })

@@ -1,0 +1,148 @@
+//! The lower envelope of the windows at one edge that come from one side.
+//!
+//! Where two windows overlap, the one whose light comes from further left gains on the other as one
+//! goes right: the derivative of a distance along the edge is the cosine of the angle at which the
+//! light falls. Which of the two comes from further left changes at most once along the edge, where
+//! the line through both sources meets it. On the part before and after, the distances are equal at
+//! one point at most.
+
+use super::window::{Cut, Window, crossing};
+
+/// From how many windows on sorting by insertion is not the fastest any more.
+const FEW: usize = 40;
+
+/// Two sources nearer to each other than this share of their distance from the edge are one: the
+/// same source, seen past both sides of a vertex without curvature. On flat parts of a surface this
+/// leaves one window instead of one for every vertex passed.
+const SAME_SOURCE: f64 = 1e-12;
+
+/// Two windows with the same source are joined over a gap of this many lengths of the edge.
+const GAP: f64 = 1e-12;
+
+/// Share of the narrower of two windows up to which an overlap stays: cutting costs more than
+/// carrying it on until it is wider.
+const OVERLAP: f64 = 0.5;
+
+/// Leaves of `windows` at an edge of the given length only what may be a shortest path, in order
+/// along the edge; `ends` are the labels of the edge's ends.
+pub(super) fn trim(windows: &mut Vec<Window>, length: f64, ends: [f64; 2]) {
+    sort(windows);
+    cut_ends(windows, length, ends);
+    // The window before is held back, since the next one may cut it; `kept` windows are in place.
+    let Some(mut last) = windows.first().copied() else { return };
+    let mut kept = 0;
+    let touch = |left: &Window, right: &Window| right.start - left.end <= GAP * length;
+    for i in 1..windows.len() {
+        let mut window = windows[i];
+        let mut fate = Fate::BothStay;
+        if touch(&last, &window) {
+            fate = meet(&mut last, &mut window);
+            while fate == Fate::RightStays && kept > 0 {
+                kept -= 1;
+                last = windows[kept];
+                fate = if touch(&last, &window) { meet(&mut last, &mut window) } else { Fate::BothStay };
+            }
+        }
+        if fate == Fate::BothStay {
+            windows[kept] = last;
+            kept += 1;
+        }
+        if fate != Fate::LeftStays {
+            last = window;
+        }
+    }
+    windows[kept] = last;
+    windows.truncate(kept + 1);
+}
+
+/// Insertion keeps few windows, and those that come in order from either side, cheap.
+fn sort(windows: &mut [Window]) {
+    if windows.len() > FEW {
+        windows.sort_unstable_by(|p, q| p.start.total_cmp(&q.start));
+        return;
+    }
+    for i in 1..windows.len() {
+        if windows[i].start < windows[i - 1].start {
+            let window = windows[i];
+            let mut hole = i;
+            while hole > 0 && windows[hole - 1].start > window.start {
+                windows[hole] = windows[hole - 1];
+                hole -= 1;
+            }
+            windows[hole] = window;
+        }
+    }
+}
+
+/// Cuts the outermost windows where paths through the ends of the edge are shorter.
+fn cut_ends(windows: &mut Vec<Window>, length: f64, ends: [f64; 2]) {
+    while let Some(last) = windows.last_mut() {
+        if last.cut_end(length, ends[1]) != Cut::All {
+            break;
+        }
+        windows.pop();
+    }
+    let mut gone = 0;
+    while gone < windows.len() && windows[gone].cut_start(ends[0]) == Cut::All {
+        gone += 1;
+    }
+    if gone > 0 {
+        windows.drain(..gone);
+    }
+}
+
+/// What is left of two windows that meet.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Fate {
+    BothStay,
+    LeftStays,
+    RightStays,
+}
+
+/// Shares the overlap of two windows, of which `left` starts first.
+#[inline]
+fn meet(left: &mut Window, right: &mut Window) -> Fate {
+    let same = SAME_SOURCE * (left.depth + left.x.abs());
+    if (left.x - right.x).abs() <= same
+        && (left.depth - right.depth).abs() <= same
+        && (left.offset - right.offset).abs() <= same
+    {
+        left.end = left.end.max(right.end);
+        return Fate::LeftStays;
+    }
+    let (low, high) = (right.start.max(left.start), left.end.min(right.end));
+    if high - low <= OVERLAP * (left.end - left.start).min(right.end - right.start) {
+        return Fate::BothStay;
+    }
+    // By how much `right` is nearer.
+    let at_low = left.distance(low) - right.distance(low);
+    let at_high = left.distance(high) - right.distance(high);
+    // Positive where the light of `left` comes from further left, so that `right` gains.
+    let order = |t: f64| (t - left.x) * right.depth - (t - right.x) * left.depth;
+    let is_nested = right.end < left.end;
+    if at_low < 0.0 && at_high > 0.0 {
+        let at = crossing(left, right, [low, high], [-at_low, at_high]);
+        right.start = at;
+        if !is_nested {
+            left.end = at;
+        }
+    } else if at_low <= 0.0 && at_high <= 0.0 {
+        // Between two points where `left` is nearer, `right` may be, if it first gains, then loses.
+        if order(low) > 0.0 && order(high) < 0.0 {
+            return Fate::BothStay;
+        }
+        right.start = high;
+    } else if at_low >= 0.0 && at_high >= 0.0 && !is_nested {
+        if order(low) < 0.0 && order(high) > 0.0 {
+            return Fate::BothStay;
+        }
+        left.end = low;
+    }
+    if right.end <= right.start {
+        Fate::LeftStays
+    } else if left.end <= left.start {
+        Fate::RightStays
+    } else {
+        Fate::BothStay
+    }
+}

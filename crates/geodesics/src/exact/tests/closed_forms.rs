@@ -1,0 +1,291 @@
+//! Surfaces whose distances have a formula.
+
+use mesh::{FaceId, IntrinsicMesh, Link, Topology, VertexId, shapes};
+
+use super::super::Exact;
+use super::{all_pairs, assert_close, faces, points, spatial};
+use crate::{DistanceSolver, Source, SurfacePoint};
+
+#[test]
+fn on_flat_sheets_distances_are_euclidean_whatever_the_triangles() {
+    for (sheet, tolerance) in [
+        (shapes::grid(15, 12, 0.7), 1e-14),
+        (shapes::sheared_grid(14, 15, 1.0, 2.3), 1e-13),
+        (shapes::sheared_grid(12, 12, 1.0, -9.5), 1e-12),
+        (shapes::jittered_grid(20, 18, 1e-3, 0.24, 5), 1e-13),
+    ] {
+        let solver = Exact::new(&IntrinsicMesh::from_mesh(&sheet));
+        for source in [0, 17, 100, 143] {
+            let from = sheet.positions[source];
+            for (found, p) in solver.distances(VertexId::from(source)).iter().zip(&sheet.positions) {
+                assert_close(*found, (p - from).norm(), tolerance);
+            }
+        }
+    }
+}
+
+#[test]
+fn folding_changes_nothing() {
+    let flat = all_pairs(&IntrinsicMesh::from_mesh(&shapes::grid(9, 7, 0.3)));
+    let folded = all_pairs(&IntrinsicMesh::from_mesh(&shapes::folded_sheet(9, 7, 0.3, 4, 2.9)));
+    for (found, expected) in folded.iter().flatten().zip(flat.iter().flatten()) {
+        assert_close(*found, *expected, 1e-12);
+    }
+}
+
+/// Distance on the unit cube from `(p, q)` on the bottom to `(x, y)` on the top: the shortest of the
+/// straight lines through one side or two.
+fn bottom_to_top([p, q]: [f64; 2], [x, y]: [f64; 2]) -> f64 {
+    let mut shortest = f64::INFINITY;
+    // Both mirror images, and both roles of the axes.
+    for (p, x) in [(p, x), (1.0 - p, 1.0 - x)] {
+        for (q, y) in [(q, y), (1.0 - q, 1.0 - y)] {
+            for ([p, x], [q, y]) in [([p, x], [q, y]), ([q, y], [p, x])] {
+                let one_side = (p + 1.0 + x).hypot(q - y);
+                let two_sides = (q + x).hypot(p + 1.0 + y);
+                shortest = shortest.min(one_side).min(two_sides);
+            }
+        }
+    }
+    shortest
+}
+
+#[test]
+fn on_a_cube_distances_are_those_of_the_best_unfolding() {
+    let cube = shapes::cube(2);
+    let mesh = IntrinsicMesh::from_mesh(&cube);
+    let solver = Exact::new(&mesh);
+    let top = |v: usize| (cube.positions[v].z == 1.0).then(|| [cube.positions[v].x, cube.positions[v].y]);
+    let mut out = vec![0.0; cube.positions.len()];
+    let mut sources = Vec::new();
+    for (v, p) in cube.positions.iter().enumerate().filter(|(_, p)| p.z == 0.0) {
+        sources.push((Source::vertex(VertexId::from(v)), [p.x, p.y]));
+    }
+    for (f, face) in cube.faces.iter().enumerate() {
+        let [a, b, c] = face.map(|v| cube.positions[v.index()]);
+        if a.z == 0.0 && b.z == 0.0 && c.z == 0.0 {
+            let barycentric = [0.5, 0.3, 0.2];
+            let at = a.coords * 0.5 + b.coords * 0.3 + c.coords * 0.2;
+            let point = SurfacePoint::Face { face: FaceId::from(f), barycentric };
+            sources.push((Source::new(&mesh, point).unwrap(), [at.x, at.y]));
+        }
+    }
+    for (source, from) in sources {
+        solver.solve_into(&[source], f64::INFINITY, &mut out);
+        for (v, found) in out.iter().enumerate() {
+            if let Some(to) = top(v) {
+                assert_close(*found, bottom_to_top(from, to), 1e-14);
+            }
+        }
+    }
+}
+
+/// Flat rings of `n` sectors with the angle `alpha` around vertex 0, closed or open, by their
+/// lengths alone: ring `r`, sector `s` is vertex `1 + r * spokes + s`.
+fn cone(n: usize, alpha: f64, n_rings: usize, is_closed: bool) -> IntrinsicMesh {
+    let spokes = if is_closed { n } else { n + 1 };
+    let at = |ring: usize, sector: usize| (1 + ring * spokes + sector % spokes) as u32;
+    let mut faces = Vec::new();
+    for s in 0..n {
+        faces.push([0, at(0, s), at(0, s + 1)]);
+        for r in 1..n_rings {
+            faces.push([at(r - 1, s), at(r, s), at(r, s + 1)]);
+            faces.push([at(r - 1, s), at(r, s + 1), at(r - 1, s + 1)]);
+        }
+    }
+    let topology = Topology::new(1 + n_rings * spokes, faces.iter().map(|f| f.map(VertexId)).collect());
+    let polar = |v: VertexId| match v.index() {
+        0 => (0.0, 0),
+        v => (((v - 1) / spokes + 1) as f64, (v - 1) % spokes),
+    };
+    let lengths = topology.edges().iter().map(|[a, b]| {
+        let ((p, s), (q, t)) = (polar(*a), polar(*b));
+        if s == t || p == 0.0 { (p - q).abs() } else { apart(p, q, alpha) }
+    });
+    let lengths = lengths.collect();
+    IntrinsicMesh::new(topology, lengths)
+}
+
+/// Distance of two points at these distances from the origin, at this angle.
+fn apart(p: f64, q: f64, angle: f64) -> f64 {
+    ((p - q).powi(2) + 4.0 * p * q * (0.5 * angle).sin().powi(2)).sqrt()
+}
+
+#[test]
+fn around_a_cone_or_a_saddle_the_shorter_way_counts_and_paths_bend_at_the_tip() {
+    use std::f64::consts::PI;
+    for (n, total, is_closed) in [
+        (12, 1.6 * PI, true),
+        (12, 2.0 * PI, true),
+        (14, 2.9 * PI, true),
+        (16, 4.0 * PI, true),
+        (10, 1.7 * PI, false),
+        (10, 1.0 * PI, false),
+        (14, 3.1 * PI, false),
+    ] {
+        let (n_rings, alpha) = (4, total / n as f64);
+        let spokes = if is_closed { n } else { n + 1 };
+        let mesh = cone(n, alpha, n_rings, is_closed);
+        let found = all_pairs(&mesh);
+        for (v, row) in found.iter().enumerate().skip(1) {
+            assert_close(row[0], ((v - 1) / spokes + 1) as f64, 1e-14);
+            for (w, found) in row.iter().enumerate().skip(1) {
+                let [(p, s), (q, t)] = [v, w].map(|v| (((v - 1) / spokes + 1) as f64, (v - 1) % spokes));
+                let sectors = s.abs_diff(t);
+                let sectors = if is_closed { sectors.min(n - sectors) } else { sectors };
+                let angle = sectors as f64 * alpha;
+                let expected = if angle >= PI { p + q } else { apart(p, q, angle) };
+                assert_close(*found, expected, 1e-13);
+            }
+        }
+    }
+}
+
+/// A grid of squares with the given ones left out.
+fn grid_without(n: usize, hole: impl Fn(usize, usize) -> bool) -> (Vec<[f64; 3]>, Vec<[u32; 3]>) {
+    let sheet = shapes::grid(n, n, 1.0);
+    let cell = |f: usize| ((f / 2) % (n - 1), (f / 2) / (n - 1));
+    let all = faces(&sheet).into_iter().enumerate();
+    let kept = all.filter(|(f, _)| !hole(cell(*f).0, cell(*f).1)).map(|(_, face)| face).collect();
+    (points(&sheet), kept)
+}
+
+#[test]
+fn around_a_hole_paths_bend_at_its_corners() {
+    // The hole is the square from (3, 3) to (6, 6).
+    let n = 10;
+    let (points, faces) = grid_without(n, |i, j| (3..6).contains(&i) && (3..6).contains(&j));
+    let solver = Exact::new(&spatial(&points, &faces));
+    let at = |i: usize, j: usize| j * n + i;
+    let from_left = solver.distances(VertexId::from(at(0, 4)));
+    let leg = |a: [f64; 2], b: [f64; 2]| (a[0] - b[0]).hypot(a[1] - b[1]);
+    // Along the lower side: (0, 4) - (3, 3) - (6, 3) - (9, 4).
+    let around = leg([0.0, 4.0], [3.0, 3.0]) + 3.0 + leg([6.0, 3.0], [9.0, 4.0]);
+    assert_close(from_left[at(9, 4)], around, 1e-14);
+    // Past one corner: (0, 4) - (3, 3) - (7, 2) is no bend the right way, (0, 4) sees (7, 1).
+    assert_close(from_left[at(7, 1)], leg([0.0, 4.0], [7.0, 1.0]), 1e-14);
+    assert_close(from_left[at(8, 3)], leg([0.0, 4.0], [3.0, 3.0]) + 5.0, 1e-14);
+    assert!(solver.distances(VertexId::from(at(4, 4)))[0].is_infinite(), "inside the hole");
+}
+
+#[test]
+fn around_a_slit_paths_bend_at_its_tip() {
+    // Cut from (5, 0) to (5, 6): the vertices below (5, 6) have copies for the faces to their right.
+    let n = 11;
+    let sheet = shapes::grid(n, n, 1.0);
+    let (mut at, mut cut) = (points(&sheet), faces(&sheet));
+    for j in 0..6usize {
+        let (old, copy) = ((j * n + 5) as u32, at.len() as u32);
+        at.push(at[old as usize]);
+        for face in cut.iter_mut().filter(|f| f.iter().any(|v| at[*v as usize][0] > 5.0)) {
+            face.iter_mut().filter(|v| **v == old).for_each(|v| *v = copy);
+        }
+    }
+    let found = Exact::new(&spatial(&at, &cut)).distances(VertexId(3 * n as u32 + 2));
+    let tip = 3f64.hypot(3.0);
+    for (v, p) in at.iter().enumerate() {
+        let is_right = p[0] > 5.0 || v >= n * n;
+        // The line from (2, 3) passes above the tip from slope 1 on.
+        let is_hidden = is_right && p[1] - 3.0 < p[0] - 2.0;
+        let straight = (p[0] - 2.0).hypot(p[1] - 3.0);
+        let bent = tip + (p[0] - 5.0).hypot(p[1] - 6.0);
+        assert_close(found[v], if is_hidden { bent } else { straight }, 1e-14);
+    }
+}
+
+/// Three half-planes on the spine `x = 0`, each a grid; vertex `(i, j)` of page `k` for `i > 0`.
+fn book(n: usize) -> (IntrinsicMesh, impl Fn(usize, usize, usize) -> usize) {
+    let index = move |page: usize, i: usize, j: usize| {
+        if i == 0 { j } else { n + page * n * (n - 1) + j * (n - 1) + i - 1 }
+    };
+    let mut all = Vec::new();
+    for page in 0..3 {
+        for face in faces(&shapes::grid(n, n, 1.0)) {
+            let mut face = face.map(|v| index(page, v as usize % n, v as usize / n) as u32);
+            // Orientation must not matter.
+            if face[0].is_multiple_of(2) {
+                face.swap(0, 1);
+            }
+            all.push(face);
+        }
+    }
+    let mut at = vec![[0.0; 3]; n + 3 * n * (n - 1)];
+    for page in 0..3 {
+        for (i, j) in (0..n * n).map(|v| (v % n, v / n)) {
+            let angle = page as f64 * 2.0;
+            let (x, y) = (i as f64, j as f64);
+            at[index(page, i, j)] = [x * angle.cos(), x * angle.sin(), y];
+        }
+    }
+    (spatial(&at, &all), index)
+}
+
+#[test]
+fn from_page_to_page_of_a_book_the_way_leads_straight_over_the_spine() {
+    let n = 7;
+    let (mesh, index) = book(n);
+    let found = all_pairs(&mesh);
+    for (p, q) in [(0, 1), (1, 2), (2, 0), (1, 1)] {
+        for (from, to) in (0..n * n).flat_map(|v| (0..n * n).map(move |w| (v, w))) {
+            let ((i, j), (k, l)) = ((from % n, from / n), (to % n, to / n));
+            let x = if p == q { i.abs_diff(k) } else { i + k } as f64;
+            assert_close(found[index(p, i, j)][index(q, k, l)], x.hypot(j.abs_diff(l) as f64), 1e-13);
+        }
+    }
+}
+
+#[test]
+fn links_join_what_is_apart() {
+    let sheet = shapes::grid(6, 5, 1.0);
+    let two = IntrinsicMesh::from_mesh(&shapes::disjoint(&[sheet.clone(), sheet.clone()]));
+    let apart = Exact::new(&two).distances(VertexId(0));
+    assert!(apart[..30].iter().all(|d| d.is_finite()) && apart[30..].iter().all(|d| d.is_infinite()));
+    let link = |a: u32, b: u32, length| Link { ends: [VertexId(a), VertexId(b)], length };
+    let joined = two.with_links(vec![link(8, 30 + 21, 2.5), link(8, 30 + 2, 9.0)]);
+    let found = Exact::new(&joined).distances(VertexId(3));
+    let euclid = |a: usize, b: usize| (sheet.positions[a] - sheet.positions[b]).norm();
+    for (v, found) in found.iter().enumerate() {
+        let expected = if v < 30 {
+            euclid(3, v)
+        } else {
+            euclid(3, 8) + (2.5 + euclid(21, v - 30)).min(9.0 + euclid(2, v - 30))
+        };
+        assert_close(*found, expected, 1e-14);
+    }
+}
+
+#[test]
+fn points_on_edges_and_in_faces_see_euclidean_distances() {
+    let sheet = shapes::jittered_grid(9, 9, 1.0, 0.2, 8);
+    let mesh = IntrinsicMesh::from_mesh(&sheet);
+    let solver = Exact::new(&mesh);
+    let mut out = vec![0.0; mesh.n_vertices()];
+    let mut check = |point: SurfacePoint, at: [f64; 2]| {
+        solver.solve_into(&[Source::new(&mesh, point).unwrap()], f64::INFINITY, &mut out);
+        for (found, p) in out.iter().zip(&sheet.positions) {
+            let expected = (p.x - at[0]).hypot(p.y - at[1]);
+            assert!((found - expected).abs() < 1e-9 * expected.max(1.0), "{point:?}: {found} {expected}");
+        }
+    };
+    for face in [0usize, 31, 64, 127].map(FaceId::from) {
+        let corners = sheet.faces[face.index()].map(|v| sheet.positions[v.index()]);
+        for barycentric in [
+            [0.2, 0.5, 0.3],
+            [1.0, 0.0, 0.0],
+            [0.0, 0.4, 0.6],
+            [0.5, 0.5, 0.0],
+            [1e-13, 0.3, 0.7 - 1e-13],
+            [1e-7, 1.0 - 2e-7, 1e-7],
+            [1.0 - 2e-10, 1e-10, 1e-10],
+        ] {
+            let at = [0, 1].map(|axis| (0..3).map(|i| barycentric[i] * corners[i][axis]).sum());
+            check(SurfacePoint::Face { face, barycentric }, at);
+        }
+    }
+    for edge in [0usize, 50, 150].map(mesh::EdgeId::from) {
+        let [a, b] = mesh.topology().edges()[edge.index()].map(|v| sheet.positions[v.index()]);
+        for t in [0.0, 0.25, 0.9, 1.0, 1e-14] {
+            check(SurfacePoint::Edge { edge, t }, [a.x + t * (b.x - a.x), a.y + t * (b.y - a.y)]);
+        }
+    }
+}

@@ -1,0 +1,184 @@
+//! Surfaces that are hardly any.
+
+use mesh::{IntrinsicMesh, Topology, TriMesh, VertexId, shapes};
+use proptest::prelude::*;
+
+use super::super::Exact;
+use super::{all_pairs, assert_close, faces, points, spatial};
+use crate::{Dijkstra, DistanceSolver};
+
+/// No distance is missing, negative or longer than along the edges.
+fn assert_sane(mesh: &IntrinsicMesh) {
+    let (solver, dijkstra) = (Exact::new(mesh), Dijkstra::new(mesh));
+    for v in (0..mesh.n_vertices()).map(VertexId::from) {
+        for (found, along_edges) in solver.distances(v).iter().zip(dijkstra.distances(v)) {
+            assert!(*found >= 0.0, "{found}");
+            assert!(*found <= along_edges * (1.0 + 1e-12), "{found} {along_edges}");
+            assert_eq!(found.is_finite(), along_edges.is_finite());
+        }
+    }
+}
+
+/// A flat sheet whose distances must stay Euclidean when vertices are added.
+fn assert_flat(points: &[[f64; 3]], faces: &[[u32; 3]], relative: f64) {
+    for (v, row) in all_pairs(&spatial(points, faces)).iter().enumerate() {
+        for (w, found) in row.iter().enumerate() {
+            let [p, q] = [points[v], points[w]];
+            assert_close(*found, (p[0] - q[0]).hypot(p[1] - q[1]), relative);
+        }
+    }
+}
+
+#[test]
+fn caps_without_area_do_not_stop_light() {
+    // Every face gets a vertex on the middle of an edge that its neighbour does not know of, and a
+    // face without area in between.
+    let sheet = shapes::grid(5, 4, 1.0);
+    let (mut at, mut split) = (points(&sheet), faces(&sheet));
+    for f in 0..split.len() {
+        let [a, b, c] = split[f];
+        let [p, q] = [at[a as usize], at[b as usize]];
+        let middle = at.len() as u32;
+        at.push([0.25 * p[0] + 0.75 * q[0], 0.25 * p[1] + 0.75 * q[1], 0.0]);
+        split[f] = [a, middle, c];
+        split.extend([[middle, b, c], [a, b, middle]]);
+    }
+    assert_flat(&at, &split, 1e-11);
+}
+
+#[test]
+fn needles_and_near_caps_are_exact() {
+    // A row of faces with angles up to 179.7 degrees and 0.15 degrees: heights of 0.0026 over 1.
+    for height in [0.0026, 1e-5, 1e-9] {
+        let n = 8;
+        let at: Vec<[f64; 3]> = (0..3 * n)
+            .map(|v| [(v % n) as f64 + 0.5 * ((v / n) % 2) as f64, (v / n) as f64 * height, 0.0])
+            .collect();
+        let mut strip = Vec::new();
+        for (i, j) in (0..2).flat_map(|j| (0..n - 1).map(move |i| (i, j))) {
+            let [a, b, c, d] = [j * n + i, j * n + i + 1, (j + 1) * n + i, (j + 1) * n + i + 1];
+            let cells = if j == 0 { [[a, b, c], [b, d, c]] } else { [[a, b, d], [a, d, c]] };
+            strip.extend(cells.map(|f| f.map(|v| v as u32)));
+        }
+        let mesh = spatial(&at, &strip);
+        assert_sane(&mesh);
+        // The strip is not convex, but what is seen straight within a row is Euclidean.
+        let found = all_pairs(&mesh);
+        for j in 0..3 {
+            assert_close(found[j * n][j * n + n - 1], (n - 1) as f64, 1e-12);
+        }
+    }
+}
+
+#[test]
+fn stretched_sheets_stay_euclidean() {
+    let sheet = shapes::jittered_grid(8, 8, 1.0, 0.2, 1);
+    // The lengths of needles say less and less about their heights.
+    for (stretch, relative) in [(30.0, 1e-12), (1e3, 1e-9), (1e5, 1e-5)] {
+        let mut at = points(&sheet);
+        at.iter_mut().for_each(|p| p[0] *= stretch);
+        assert_flat(&at, &faces(&sheet), relative);
+    }
+}
+
+#[test]
+fn a_thin_needle_with_light_around_it_ends() {
+    // A double cone with n needles and a total angle far below a full turn at either tip.
+    for (n, width) in [(3, 1e-3), (3, 1e-5), (5, 1e-8), (40, 1e-3)] {
+        let mut at = vec![[0.0, 0.0, 1.0], [0.0, 0.0, -1.0], [0.0, 0.0, 3.0]];
+        let mut tube = Vec::new();
+        for i in 0..n {
+            let angle = std::f64::consts::TAU * f64::from(i) / f64::from(n);
+            at.push([width * angle.cos(), width * angle.sin(), 0.1 * angle.sin()]);
+            let (a, b) = ((3 + i) as u32, (3 + (i + 1) % n) as u32);
+            tube.extend([[0, a, b], [b, a, 1]]);
+        }
+        tube.push([0, 2, 3]);
+        assert_sane(&spatial(&at, &tube));
+    }
+}
+
+#[test]
+fn repeated_faces_and_pillows_are_like_one_sheet() {
+    let sheet = shapes::grid(6, 5, 1.0);
+    let expected = all_pairs(&IntrinsicMesh::from_mesh(&sheet));
+    for copies in [2, 3, 5] {
+        let repeated = TriMesh { faces: sheet.faces.repeat(copies), ..sheet.clone() };
+        let found = all_pairs(&IntrinsicMesh::from_mesh(&repeated));
+        for (found, expected) in found.iter().flatten().zip(expected.iter().flatten()) {
+            assert_close(*found, *expected, 1e-13);
+        }
+    }
+}
+
+#[test]
+fn edges_without_length_are_points() {
+    // A sheet whose column 3 is doubled, with faces of no width in between.
+    let (n, m) = (8, 6);
+    let sheet = shapes::grid(n, m, 1.0);
+    let mut at = points(&sheet);
+    at.iter_mut().filter(|p| p[0] > 3.0).for_each(|p| p[0] -= 1.0);
+    assert_flat(&at, &faces(&sheet), 1e-12);
+}
+
+#[test]
+fn nothing_at_all_is_no_surface_but_no_reason_to_fail() {
+    for n in [0, 1, 5] {
+        let mesh = IntrinsicMesh::new(Topology::new(n, Vec::new()), Vec::new());
+        for (v, row) in all_pairs(&mesh).iter().enumerate() {
+            assert!(row.iter().enumerate().all(|(w, d)| if v == w { *d == 0.0 } else { d.is_infinite() }));
+        }
+    }
+    let points = [[0.0; 3]; 4];
+    let collapsed = spatial(&points, &[[0, 1, 2], [0, 2, 3], [1, 2, 3]]);
+    assert!(all_pairs(&collapsed).iter().flatten().all(|d| *d == 0.0));
+}
+
+/// Lengths that belong to no triangles.
+fn lengths_of_nothing() -> impl Strategy<Value = f64> {
+    prop_oneof![
+        0.5..1.5f64,
+        Just(0.0),
+        Just(1.0),
+        Just(1e-300),
+        Just(1e-14),
+        0.0..1e-9f64,
+        Just(7.0),
+        Just(2.0)
+    ]
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 200, ..ProptestConfig::default() })]
+
+    #[test]
+    fn impossible_lengths_do_no_harm(
+        raw in prop::collection::vec((0..9u32, 1..9u32, 0..9u32), 1..30),
+        lengths in prop::collection::vec(lengths_of_nothing(), 40),
+    ) {
+        let faces: Vec<[VertexId; 3]> = raw
+            .iter()
+            .map(|(a, b, c)| [*a, (a + b) % 9, *c])
+            .filter(|[a, b, c]| a != c && b != c)
+            .map(|f| f.map(VertexId))
+            .collect();
+        let topology = Topology::new(9, faces);
+        let lengths = lengths[..topology.n_edges()].to_vec();
+        assert_sane(&IntrinsicMesh::new(topology, lengths));
+    }
+
+    #[test]
+    fn vertices_in_the_same_places_do_no_harm(
+        picks in prop::collection::vec(0..27usize, 40),
+        jitter in prop::collection::vec(-1.0..1.0f64, 120),
+        scale in prop_oneof![Just(0.0), Just(1e-16), Just(1e-13), Just(1e-8), Just(1e-3)],
+    ) {
+        // Points of a 3 x 3 x 3 lattice, hardly moved: collinear, coplanar, coincident.
+        let axis = |p: usize, i: usize| (p / 3usize.pow(i as u32) % 3) as f64;
+        let at: Vec<[f64; 3]> = (0..40)
+            .map(|v| [0, 1, 2].map(|i| axis(picks[v], i) + scale * jitter[3 * v + i]))
+            .collect();
+        let sheet = shapes::grid(8, 5, 1.0);
+        assert_sane(&spatial(&at, &faces(&sheet)));
+    }
+}
