@@ -2,6 +2,7 @@
 
 use nalgebra::{Matrix3, Point3};
 
+use crate::prepared::Detail;
 use crate::{Alignment, DescriptorError, PreparedForm};
 
 /// How far apart two aligned forms are.
@@ -33,15 +34,13 @@ pub struct MatchOptions {
     pub distance: FormDistance,
     /// Default: [`Reflections::Allow`].
     pub reflections: Reflections,
-    /// Axes whose spreads differ by less than this factor may be exchanged. Default: 1.15.
+    /// Axes whose spreads differ by less than this factor may be exchanged. Default: 2: forms
+    /// of different shapes may fit best with axes exchanged that are far from equal.
     pub near_equal_axes: f64,
     /// Share of the closest pairs that a step of the alignment believes, in (0, 1]. Default: 1, so that
     /// the alignment minimises the very distance that is measured.
     pub trim: f64,
-    /// Largest number of steps of the alignment. Default: 30.
-    pub max_iterations: usize,
-    /// Hypotheses that are refined after the coarse comparison, whose order is a poor guess of the
-    /// order after refinement. Default: 8, all signs of three different axes.
+    /// Hypotheses that are refined until they settle, after a few steps of all of them. Default: 8.
     pub refined: usize,
 }
 
@@ -50,9 +49,8 @@ impl Default for MatchOptions {
         Self {
             distance: FormDistance::default(),
             reflections: Reflections::default(),
-            near_equal_axes: 1.15,
+            near_equal_axes: 2.0,
             trim: 1.0,
-            max_iterations: 30,
             refined: 8,
         }
     }
@@ -85,8 +83,26 @@ pub struct FormMatch {
     pub distance: f64,
 }
 
-/// Samples of either form used to compare hypotheses before any is refined.
-const COARSE_SAMPLES: usize = 100;
+/// How carefully a stage of the alignment looks.
+#[derive(Debug, Clone, Copy)]
+struct Stage {
+    /// Samples of either form that ask for their nearest point.
+    n_samples: usize,
+    /// Points that are asked.
+    among: Detail,
+    /// Largest number of steps.
+    steps: usize,
+}
+
+/// All hypotheses, far enough to tell them apart: their order before the first steps is a poor guess of
+/// their order in the end.
+const SKETCH: Stage = Stage { n_samples: 50, among: Detail::Samples, steps: 4 };
+
+/// The best hypotheses.
+const ROUGH: Stage = Stage { n_samples: 100, among: Detail::Samples, steps: 20 };
+
+/// The best of these.
+const FINE: Stage = Stage { n_samples: usize::MAX, among: Detail::Points, steps: 30 };
 
 /// A step that gains less than this share of the error ends the alignment.
 const LEAST_GAIN: f64 = 1e-3;
@@ -94,8 +110,8 @@ const LEAST_GAIN: f64 = 1e-3;
 /// Aligns two canonical forms rigidly and measures how far apart they are.
 ///
 /// * The principal axes of both are matched under all signs, and with near-equal axes exchanged: 8 to
-///   48 hypotheses (half of them without reflections), compared on a coarse sample.
-/// * The best eight are refined on the coarse sample by iterative closest points, trimmed if asked for,
+///   48 hypotheses (half of them without reflections), told apart by a few steps on a coarse sample.
+/// * The best of them are refined on a coarse sample by iterative closest points, trimmed if asked for,
 ///   and the best of them on all samples. Pairs are taken in both directions, so that neither form is
 ///   favoured; samples are spread evenly over the form and count the same, so that the triangulation
 ///   does not matter; each step solves Kabsch's problem and keeps the chirality of
@@ -111,19 +127,15 @@ pub fn match_forms(
     options: &MatchOptions,
 ) -> Result<FormMatch, DescriptorError> {
     options.validate()?;
-    let mut ranked: Vec<(f64, Alignment)> = hypotheses(a, b, options)
-        .into_iter()
-        .map(|start| (error(&pairs(a, b, &start, COARSE_SAMPLES), 1.0), start))
-        .collect();
-    ranked.sort_by(|x, y| x.0.total_cmp(&y.0));
-    let mut best = (f64::INFINITY, ranked[0].1);
-    for (_, start) in ranked.into_iter().take(options.refined) {
-        let found = refine(a, b, start, COARSE_SAMPLES, options);
-        if found.0 < best.0 {
-            best = found;
-        }
-    }
-    let (_, motion) = refine(a, b, best.1, usize::MAX, options);
+    let refine_all = |stage, starts: Vec<Alignment>| {
+        let refined = starts.into_iter().map(|start| refine(a, b, start, stage, options.trim));
+        let mut found: Vec<(f64, Alignment)> = refined.collect();
+        found.sort_by(|x, y| x.0.total_cmp(&y.0));
+        found.into_iter().map(|(_, motion)| motion)
+    };
+    let sketched = refine_all(SKETCH, hypotheses(a, b, options));
+    let rough = refine_all(ROUGH, sketched.take(options.refined).collect());
+    let (_, motion) = refine(a, b, rough.collect::<Vec<_>>()[0], FINE, options.trim);
     let alignment = b.to_principal().inverse().after(&motion).after(a.to_principal());
     Ok(FormMatch { alignment, distance: distance(a, b, &motion, options.distance) })
 }
@@ -164,15 +176,15 @@ fn hypotheses(a: &PreparedForm, b: &PreparedForm, options: &MatchOptions) -> Vec
 type Pair = (Point3<f64>, Point3<f64>, f64);
 
 /// Closest pairs in both directions: a point of `a`, its partner in `b`, their squared distance under
-/// `motion`. The first `n` samples of either form ask.
-fn pairs(a: &PreparedForm, b: &PreparedForm, motion: &Alignment, n: usize) -> Vec<Pair> {
+/// `motion`.
+fn pairs(a: &PreparedForm, b: &PreparedForm, motion: &Alignment, stage: Stage) -> Vec<Pair> {
     let back = motion.inverse();
-    let from_a = a.samples().iter().take(n).map(|p| {
-        let (partner, sq) = b.nearest(&motion.apply(p));
+    let from_a = a.samples().iter().take(stage.n_samples).map(|p| {
+        let (partner, sq) = b.nearest(&motion.apply(p), stage.among);
         (*p, partner, sq)
     });
-    let from_b = b.samples().iter().take(n).map(|q| {
-        let (partner, sq) = a.nearest(&back.apply(q));
+    let from_b = b.samples().iter().take(stage.n_samples).map(|q| {
+        let (partner, sq) = a.nearest(&back.apply(q), stage.among);
         (partner, *q, sq)
     });
     from_a.chain(from_b).collect()
@@ -192,20 +204,13 @@ fn believed(n: usize, trim: f64) -> usize {
     ((n as f64 * trim).ceil() as usize).min(n)
 }
 
-/// Trimmed iterative closest points from `start`, asked by the first `n` samples of either form; the best
-/// motion and its error.
-fn refine(
-    a: &PreparedForm,
-    b: &PreparedForm,
-    start: Alignment,
-    n: usize,
-    options: &MatchOptions,
-) -> (f64, Alignment) {
+/// Trimmed iterative closest points from `start`; the best motion and its error.
+fn refine(a: &PreparedForm, b: &PreparedForm, start: Alignment, stage: Stage, trim: f64) -> (f64, Alignment) {
     let mut motion = start;
     let mut best = (f64::INFINITY, start);
-    for _ in 0..=options.max_iterations {
-        let mut found = pairs(a, b, &motion, n);
-        let error = error(&found, options.trim);
+    for _ in 0..=stage.steps {
+        let mut found = pairs(a, b, &motion, stage);
+        let error = error(&found, trim);
         let settled = error > best.0 * (1.0 - LEAST_GAIN);
         if error < best.0 {
             best = (error, motion);
@@ -213,7 +218,7 @@ fn refine(
         if settled {
             break;
         }
-        let kept = believed(found.len(), options.trim);
+        let kept = believed(found.len(), trim);
         if kept < found.len() {
             found.select_nth_unstable_by(kept, |x, y| x.2.total_cmp(&y.2));
         }
@@ -227,7 +232,7 @@ fn refine(
 }
 
 fn distance(a: &PreparedForm, b: &PreparedForm, motion: &Alignment, kind: FormDistance) -> f64 {
-    let found = pairs(a, b, motion, usize::MAX);
+    let found = pairs(a, b, motion, FINE);
     let (from_a, from_b) = found.split_at(a.samples().len());
     match kind {
         FormDistance::NearestNeighborRms => {
@@ -342,7 +347,7 @@ mod tests {
         };
         let (a, b) = (prepared(&cross(4.0, 4.4)), prepared(&cross(4.4, 4.0)));
         let exchanged = match_forms(&a, &b, &MatchOptions::default()).unwrap().distance;
-        let fixed = MatchOptions { near_equal_axes: 1.0, max_iterations: 0, ..Default::default() };
+        let fixed = MatchOptions { near_equal_axes: 1.0, ..Default::default() };
         assert!(exchanged < match_forms(&a, &b, &fixed).unwrap().distance);
     }
 

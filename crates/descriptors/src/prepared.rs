@@ -15,6 +15,16 @@ pub struct PreparedForm {
     axis_spread: [f64; 3],
     to_principal: Alignment,
     tree: ImmutableKdTree<f64, 3>,
+    sample_tree: ImmutableKdTree<f64, 3>,
+}
+
+/// Which points of a form are searched for a nearest one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Detail {
+    /// Its samples.
+    Samples,
+    /// All of them.
+    Points,
 }
 
 impl std::fmt::Debug for PreparedForm {
@@ -53,15 +63,14 @@ impl PreparedForm {
         let axes = Matrix3::from_columns(&order.map(|i| eigen.eigenvectors.column(i).into_owned()));
         let to_principal = Alignment::about_origin(axes.transpose());
         let points: Vec<_> = form.points().iter().map(|p| to_principal.apply(p)).collect();
-        let coordinates: Vec<[f64; 3]> = points.iter().map(|p| p.coords.into()).collect();
-        let tree = ImmutableKdTree::new_from_slice(&coordinates)
-            .map_err(|_| DescriptorError::NoExtent { n_points: points.len() })?;
+        let samples = spread_samples(&points, n_samples);
         Ok(Self {
-            samples: spread_samples(&points, n_samples),
+            tree: tree(&points)?,
+            sample_tree: tree(&samples)?,
+            samples,
             axis_spread: order.map(|i| eigen.eigenvalues[i].max(0.0).sqrt()),
             points,
             to_principal,
-            tree,
         })
     }
 
@@ -91,11 +100,21 @@ impl PreparedForm {
 
     /// The point nearest to `query` and the squared distance to it.
     #[inline]
-    pub(crate) fn nearest(&self, query: &Point3<f64>) -> (Point3<f64>, f64) {
+    pub(crate) fn nearest(&self, query: &Point3<f64>, among: Detail) -> (Point3<f64>, f64) {
         let query: [f64; 3] = query.coords.into();
-        let hit = self.tree.query(&query).nearest_one::<SquaredEuclidean<f64>>().execute();
-        (self.points[hit.item as usize], hit.distance)
+        let (tree, points) = match among {
+            Detail::Samples => (&self.sample_tree, &self.samples),
+            Detail::Points => (&self.tree, &self.points),
+        };
+        let hit = tree.query(&query).nearest_one::<SquaredEuclidean<f64>>().execute();
+        (points[hit.item as usize], hit.distance)
     }
+}
+
+fn tree(points: &[Point3<f64>]) -> Result<ImmutableKdTree<f64, 3>, DescriptorError> {
+    let coordinates: Vec<[f64; 3]> = points.iter().map(|p| p.coords.into()).collect();
+    ImmutableKdTree::new_from_slice(&coordinates)
+        .map_err(|_| DescriptorError::NoExtent { n_points: points.len() })
 }
 
 /// Farthest point sampling in space, from the point farthest from the origin.
