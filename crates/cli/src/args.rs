@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use mesh::{ComponentPolicy, Orient, RepairOptions, VertexId, Weld};
 use pipeline::{
-    Bandwidth, EmbedMethod, EmbedOptions, FastMarchingOptions, FirstSample, GeodesicMethod, ObtuseTreatment,
-    Samples, StressChoice, Update,
+    Bandwidth, EmbedMethod, EmbedOptions, FastMarchingOptions, FirstSample, GeodesicMethod, HeatOptions,
+    ObtuseTreatment, Samples, StressChoice, Update,
 };
 
 /// Nonrigid 3D shapes: surface distances, canonical forms, comparison.
@@ -225,6 +225,8 @@ fn parse_samples(text: &str) -> Result<Samples, String> {
 pub(crate) enum GeodesicName {
     /// Fast marching on triangles
     FastMarching,
+    /// From the flow of heat: smooth, fast for many sources
+    Heat,
     /// Shortest paths along edges
     Dijkstra,
     /// Number of edges times the mean edge length
@@ -243,6 +245,7 @@ impl GeodesicName {
         };
         match self {
             Self::FastMarching => GeodesicMethod::FastMarching(FastMarchingOptions { update, obtuse }),
+            Self::Heat => GeodesicMethod::Heat(HeatOptions::default()),
             Self::Dijkstra => GeodesicMethod::Dijkstra,
             Self::Bfs => GeodesicMethod::BreadthFirst,
         }

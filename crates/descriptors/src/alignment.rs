@@ -85,7 +85,7 @@ mod tests {
             let mut motion = Alignment::about_origin(rotation);
             motion.translation = Vector3::new(1.0, 2.0, -3.0);
             let points: Vec<_> = (0..20)
-                .map(|i| f64::from(i))
+                .map(f64::from)
                 .map(|i| Point3::new((i * 1.3).sin(), (i * 0.7).cos() * 2.0, (i * i * 0.1).sin() * 0.5))
                 .collect();
             let pairs: Vec<_> = points.iter().map(|p| (*p, motion.apply(p))).collect();

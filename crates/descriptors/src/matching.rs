@@ -34,8 +34,8 @@ pub struct MatchOptions {
     pub distance: FormDistance,
     /// Default: [`Reflections::Allow`].
     pub reflections: Reflections,
-    /// Axes whose spreads differ by less than this factor may be exchanged. Default: 2: forms
-    /// of different shapes may fit best with axes exchanged that are far from equal.
+    /// Axes whose spreads differ by less than this factor in both forms may be exchanged: their order
+    /// is then a matter of chance. Default: 1.15.
     pub near_equal_axes: f64,
     /// Share of the closest pairs that a step of the alignment believes, in (0, 1]. Default: 1, so that
     /// the alignment minimises the very distance that is measured.
@@ -49,7 +49,7 @@ impl Default for MatchOptions {
         Self {
             distance: FormDistance::default(),
             reflections: Reflections::default(),
-            near_equal_axes: 2.0,
+            near_equal_axes: 1.15,
             trim: 1.0,
             refined: 8,
         }
@@ -61,7 +61,7 @@ impl MatchOptions {
     /// [`DescriptorError::BadOption`] names the option, its value and what is allowed.
     pub fn validate(&self) -> Result<(), DescriptorError> {
         let bad = |option, value, range| Err(DescriptorError::BadOption { option, value, range });
-        if !(self.near_equal_axes >= 1.0) {
+        if self.near_equal_axes.is_nan() || self.near_equal_axes < 1.0 {
             return bad("near_equal_axes", self.near_equal_axes, "at least 1");
         }
         if !(self.trim > 0.0 && self.trim <= 1.0) {
@@ -145,7 +145,7 @@ fn hypotheses(a: &PreparedForm, b: &PreparedForm, options: &MatchOptions) -> Vec
     const PERMUTATIONS: [[usize; 3]; 6] = [[0, 1, 2], [1, 0, 2], [0, 2, 1], [2, 1, 0], [1, 2, 0], [2, 0, 1]];
     let exchangeable = |i: usize, j: usize| {
         let near = |spread: [f64; 3]| spread[i.min(j)] <= options.near_equal_axes * spread[i.max(j)];
-        near(a.axis_spread()) || near(b.axis_spread())
+        near(a.axis_spread()) && near(b.axis_spread())
     };
     let mut motions = Vec::new();
     for permutation in PERMUTATIONS {

@@ -45,7 +45,7 @@ impl Method {
     ///
     /// # Errors
     /// Those of [`HeatMethod::new`]; the other methods take any surface.
-    pub fn try_prepare(self, mesh: &IntrinsicMesh) -> Result<Box<dyn DistanceSolver>, GeodesicError> {
+    pub fn prepare(self, mesh: &IntrinsicMesh) -> Result<Box<dyn DistanceSolver>, GeodesicError> {
         Ok(match self {
             Self::FastMarching(options) => Box::new(FastMarching::new(mesh, options)),
             Self::Heat(options) => Box::new(HeatMethod::new(mesh, options)?),
@@ -53,15 +53,6 @@ impl Method {
             Self::Dijkstra => Box::new(Dijkstra::new(mesh)),
             Self::BreadthFirst => Box::new(BreadthFirst::new(mesh)),
         })
-    }
-
-    /// Prepares a surface for a method that takes any surface.
-    ///
-    /// # Panics
-    /// Where [`Method::try_prepare`] has an error, which only [`Method::Heat`] can.
-    #[must_use]
-    pub fn prepare(self, mesh: &IntrinsicMesh) -> Box<dyn DistanceSolver> {
-        self.try_prepare(mesh).unwrap_or_else(|error| panic!("{}: {error}", self.name()))
     }
 }
 
@@ -76,9 +67,9 @@ mod tests {
         let mesh = IntrinsicMesh::from_mesh(&icosphere(1));
         let heat = Method::Heat(HeatOptions::default());
         for method in [Method::default(), heat, Method::Dijkstra, Method::BreadthFirst] {
-            assert_eq!(method.try_prepare(&mesh).unwrap().n_vertices(), 42, "{}", method.name());
+            assert_eq!(method.prepare(&mesh).unwrap().n_vertices(), 42, "{}", method.name());
         }
         let frozen = Method::Heat(HeatOptions { time: 0.0 });
-        assert_eq!(frozen.try_prepare(&mesh).unwrap_err(), GeodesicError::BadHeatTime { time: 0.0 });
+        assert_eq!(frozen.prepare(&mesh).unwrap_err(), GeodesicError::BadHeatTime { time: 0.0 });
     }
 }

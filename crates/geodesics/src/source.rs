@@ -78,7 +78,8 @@ impl Source {
                     return Err(bad(format!("face {face} of {}", topology.n_faces())));
                 }
                 let sum: f64 = barycentric.iter().sum();
-                if barycentric.iter().any(|b| *b < 0.0) || !((sum - 1.0).abs() <= BARYCENTRIC_SLACK) {
+                let whole = (1.0 - BARYCENTRIC_SLACK..=1.0 + BARYCENTRIC_SLACK).contains(&sum);
+                if barycentric.iter().any(|b| *b < 0.0) || !whole {
                     return Err(bad(format!(
                         "barycentric coordinates {barycentric:?} are negative or do not sum to 1"
                     )));

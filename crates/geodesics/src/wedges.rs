@@ -77,11 +77,9 @@ impl Wedges {
         let mut previous = None;
         let mut packed = Vec::with_capacity(wedges.len());
         for (v, mut wedge) in wedges {
-            if previous == Some((v, wedge.target)) {
-                if let Some(last) = packed.last_mut() {
-                    let last: &mut Wedge = last;
-                    wedge.edge = wedge.edge.min(std::mem::replace(&mut last.edge, f64::INFINITY));
-                }
+            if let Some(last) = packed.last_mut().filter(|_| previous == Some((v, wedge.target))) {
+                let last: &mut Wedge = last;
+                wedge.edge = wedge.edge.min(std::mem::replace(&mut last.edge, f64::INFINITY));
             }
             previous = Some((v, wedge.target));
             offsets[v as usize + 1] += 1;

@@ -116,7 +116,7 @@ pub fn embed(
         FirstSample::Vertex(input) => FirstSample::Vertex(surface.repaired_vertex(input)?),
     };
     let start = Instant::now();
-    let solver = options.geodesic.prepare(&surface.intrinsic);
+    let solver = options.geodesic.prepare(&surface.intrinsic)?;
     let solver = Observed { solver: solver.as_ref(), observer };
     let (embedding, samples) = match &options.method {
         EmbedMethod::Classical => {

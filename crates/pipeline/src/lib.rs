@@ -27,6 +27,7 @@ pub use surface::Surface;
 
 pub use descriptors::{FormDistance, MatchOptions, Normalization, Reflections};
 pub use geodesics::{
-    DistanceSolver, FastMarchingOptions, FirstSample, Method as GeodesicMethod, ObtuseTreatment, Update,
+    DistanceSolver, FastMarchingOptions, FirstSample, HeatOptions, Method as GeodesicMethod, ObtuseTreatment,
+    Update,
 };
 pub use nmds::Bandwidth;

@@ -1,6 +1,8 @@
 //! How long work tells of its progress.
 
 use geodesics::{DistanceSolver, Source};
+use linalg::Matrix;
+use mesh::VertexId;
 
 /// Hears of the progress of long work, from any thread.
 pub trait Observer: Sync {
@@ -17,6 +19,9 @@ impl Observer for () {
 
     fn step(&self) {}
 }
+
+/// Sources solved between two reports of progress.
+const BATCH: usize = 64;
 
 /// A solver whose every solve is a step.
 pub(crate) struct Observed<'a> {
@@ -38,5 +43,17 @@ impl DistanceSolver for Observed<'_> {
     fn solve_into(&self, sources: &[Source], max_distance: f64, out: &mut [f64]) {
         self.solver.solve_into(sources, max_distance, out);
         self.observer.step();
+    }
+
+    fn distance_columns(&self, sources: &[VertexId]) -> Matrix {
+        let p = self.n_vertices();
+        let mut columns = Matrix::zeros(p, sources.len());
+        for (i, batch) in sources.chunks(BATCH).enumerate() {
+            // Solvers may have a faster way to solve many at once than one by one.
+            let solved = self.solver.distance_columns(batch);
+            columns.columns_mut(i * BATCH, batch.len()).copy_from(&solved);
+            batch.iter().for_each(|_| self.observer.step());
+        }
+        columns
     }
 }

@@ -54,7 +54,7 @@ pub(crate) fn geodesic(args: &GeodesicArgs, common: &Common) -> Result<ExitCode>
 
     let method = args.method.method(args.marching);
     let start = Instant::now();
-    let solver = method.prepare(&surface.intrinsic);
+    let solver = method.prepare(&surface.intrinsic).map_err(|fault| named(&args.mesh, fault.into()))?;
     let setup = surface.repair_seconds + start.elapsed().as_secs_f64();
     let bars = Bars::new(common.quiet);
     let bar = bars.bar("distances", sources.len());
