@@ -225,6 +225,8 @@ fn parse_samples(text: &str) -> Result<Samples, String> {
 pub(crate) enum GeodesicName {
     /// Fast marching on triangles
     FastMarching,
+    /// Exact on the polyhedral surface
+    Exact,
     /// From the flow of heat: smooth, fast for many sources
     Heat,
     /// Shortest paths along edges
@@ -245,6 +247,7 @@ impl GeodesicName {
         };
         match self {
             Self::FastMarching => GeodesicMethod::FastMarching(FastMarchingOptions { update, obtuse }),
+            Self::Exact => GeodesicMethod::Exact,
             Self::Heat => GeodesicMethod::Heat(HeatOptions::default()),
             Self::Dijkstra => GeodesicMethod::Dijkstra,
             Self::Bfs => GeodesicMethod::BreadthFirst,
