@@ -6,7 +6,7 @@
 //! the line through both sources meets it. On the part before and after, the distances are equal at
 //! one point at most.
 
-use super::window::{Cut, Window, crossing};
+use super::window::{Cut, Window, crossing, order};
 
 /// From how many windows on sorting by insertion is not the fastest any more.
 const FEW: usize = 40;
@@ -26,8 +26,8 @@ const OVERLAP: f64 = 0.5;
 /// Leaves of `windows` at an edge of the given length only what may be a shortest path, in order
 /// along the edge; `ends` are the labels of the edge's ends.
 pub(super) fn trim(windows: &mut Vec<Window>, length: f64, ends: [f64; 2]) {
-    sort(windows);
     cut_ends(windows, length, ends);
+    sort(windows);
     // The window before is held back, since the next one may cut it; `kept` windows are in place.
     let Some(mut last) = windows.first().copied() else { return };
     let mut kept = 0;
@@ -99,7 +99,7 @@ enum Fate {
     RightStays,
 }
 
-/// Shares the overlap of two windows, of which `left` starts first.
+/// Shares the overlap of two windows, of which `left` comes first.
 #[inline]
 fn meet(left: &mut Window, right: &mut Window) -> Fate {
     let same = SAME_SOURCE * (left.depth + left.x.abs());
@@ -110,30 +110,29 @@ fn meet(left: &mut Window, right: &mut Window) -> Fate {
         left.end = left.end.max(right.end);
         return Fate::LeftStays;
     }
-    let (low, high) = (right.start.max(left.start), left.end.min(right.end));
-    if high - low <= OVERLAP * (left.end - left.start).min(right.end - right.start) {
+    // A window that lost its start to the one before it may start after the one behind it.
+    let (low, high) = (right.start, left.end.min(right.end));
+    if low < left.start || high - low <= OVERLAP * (left.end - left.start).min(right.end - right.start) {
         return Fate::BothStay;
     }
     // By how much `right` is nearer.
     let at_low = left.distance(low) - right.distance(low);
     let at_high = left.distance(high) - right.distance(high);
-    // Positive where the light of `left` comes from further left, so that `right` gains.
-    let order = |t: f64| (t - left.x) * right.depth - (t - right.x) * left.depth;
     let is_nested = right.end < left.end;
     if at_low < 0.0 && at_high > 0.0 {
-        let at = crossing(left, right, [low, high], [-at_low, at_high]);
+        let Some(at) = crossing(left, right, [low, high]) else { return Fate::BothStay };
         right.start = at;
         if !is_nested {
             left.end = at;
         }
     } else if at_low <= 0.0 && at_high <= 0.0 {
         // Between two points where `left` is nearer, `right` may be, if it first gains, then loses.
-        if order(low) > 0.0 && order(high) < 0.0 {
+        if order(left, right, low) > 0.0 && order(left, right, high) < 0.0 {
             return Fate::BothStay;
         }
         right.start = high;
     } else if at_low >= 0.0 && at_high >= 0.0 && !is_nested {
-        if order(low) < 0.0 && order(high) > 0.0 {
+        if order(left, right, low) < 0.0 && order(left, right, high) > 0.0 {
             return Fate::BothStay;
         }
         left.end = low;

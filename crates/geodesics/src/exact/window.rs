@@ -97,12 +97,24 @@ fn cut_at(x: f64, depth: f64, lead: f64) -> Option<f64> {
     if slope > 0.0 { Some(excess / (2.0 * slope)) } else { None }
 }
 
-/// Where in `low..high` the distances of two windows are equal, if `left` is nearer at `low` and
-/// `right` at `high`, by `gain` and `loss`.
+/// Positive where the light of `left` comes from further left than that of `right`, which then gains
+/// on it as one goes right; linear in the position.
+#[inline]
+pub(super) fn order(left: &Window, right: &Window, t: f64) -> f64 {
+    (t - left.x) * right.depth - (t - right.x) * left.depth
+}
+
+/// How far from equal two distances may be, in units of them, for a crossing to be one.
+const EQUAL: f64 = 1e-12;
+
+/// Where in `low..high` the nearer of two windows changes from `left` to `right`; `None` when
+/// rounding hides it.
 ///
 /// With `r`, `s` the distances to the unfolded sources and `d` the difference of their offsets,
-/// `r = s + d` squared is linear in the position but for `2 d s`; squared again it is quadratic.
-pub(super) fn crossing(left: &Window, right: &Window, [low, high]: [f64; 2], [gain, loss]: [f64; 2]) -> f64 {
+/// `r = s + d` squared is linear in the position but for `2 d s`; squared again it is quadratic. One
+/// of its roots may belong to `-d`, and where the two sources lie in a line with a nearly double
+/// root, rounding leaves little of either: a root is only believed if the distances agree there.
+pub(super) fn crossing(left: &Window, right: &Window, [low, high]: [f64; 2]) -> Option<f64> {
     let (p, q) = (left.x - low, right.x - low);
     let (rr, ss) = (p * p + left.depth * left.depth, q * q + right.depth * right.depth);
     let d = right.offset - left.offset;
@@ -111,11 +123,65 @@ pub(super) fn crossing(left: &Window, right: &Window, [low, high]: [f64; 2], [ga
     let at_zero = rr - ss - d * d;
     let dd = 4.0 * d * d;
     let (a, half_b, c) = (slope * slope - dd, slope * at_zero + dd * q, at_zero * at_zero - dd * ss);
-    let width = high - low;
     let root = (half_b * half_b - a * c).max(0.0).sqrt();
     let big = if half_b > 0.0 { -(half_b + root) } else { root - half_b };
-    let slack = 1e-9 * (slope * width).abs();
-    let valid = |t: f64| (0.0..=width).contains(&t) && (slope * t + at_zero) * d >= -slack * d.abs();
-    let t = [big / a, c / big].into_iter().find(|t| valid(*t));
-    low + t.unwrap_or_else(|| (width * gain / (gain + loss)).max(0.0).min(width))
+    let is_change = |t: &f64| {
+        let at = low + t;
+        let r = left.distance(at) - left.offset;
+        *t >= 0.0
+            && at <= high
+            && (r + left.offset - right.distance(at)).abs() <= EQUAL * (r + d.abs())
+            && order(left, right, at) >= 0.0
+    };
+    [big / a, c / big].into_iter().find(is_change).map(|t| low + t)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const NEAR: Window = Window { start: 0.0, end: 4.0, x: 1.0, depth: 2.0, offset: 0.5, turn: 3 };
+
+    #[test]
+    fn a_mirrored_window_has_the_same_distances_from_the_other_end() {
+        let mirrored = Window { start: 1.0, ..NEAR }.mirrored(5.0);
+        assert_eq!((mirrored.start, mirrored.end, mirrored.turn), (1.0, 4.0, -3));
+        for t in [0.0, 1.3, 5.0] {
+            assert_eq!(NEAR.distance(t), mirrored.distance(5.0 - t));
+        }
+        assert_eq!(NEAR.least_distance(), 2.5);
+        assert_eq!(Window { start: 2.0, ..NEAR }.least_distance(), NEAR.distance(2.0));
+    }
+
+    #[test]
+    fn what_is_cut_off_is_nearer_through_the_vertex() {
+        for distance in [0.9, 1.5, 2.0, 2.6] {
+            let mut window = NEAR;
+            assert_eq!(window.cut_start(distance), Cut::Part);
+            assert!((window.distance(window.start) - (distance + window.start)).abs() < 1e-14);
+            let mut mirrored = NEAR.mirrored(5.0);
+            assert_eq!(mirrored.cut_end(5.0, distance), Cut::Part);
+            assert!((mirrored.end - (5.0 - window.start)).abs() < 1e-14);
+        }
+        assert_eq!({ NEAR }.cut_start(NEAR.distance(0.0) + 0.1), Cut::Nothing);
+        assert_eq!({ NEAR }.cut_start(f64::INFINITY), Cut::Nothing);
+        assert_eq!({ NEAR }.cut_start(-0.6), Cut::All);
+        assert_eq!({ NEAR }.cut_start(NEAR.distance(4.0) - 4.1), Cut::All);
+    }
+
+    #[test]
+    fn at_a_crossing_distances_are_equal_and_the_right_window_gains() {
+        for (x, depth, offset) in [(3.0, 2.0, 0.5), (4.0, 1.0, 0.7), (2.5, 0.1, 1.0), (9.0, 0.5, -4.9)] {
+            let right = Window { x, depth, offset, ..NEAR };
+            let at = crossing(&NEAR, &right, [0.0, 4.0]).unwrap();
+            assert!((NEAR.distance(at) - right.distance(at)).abs() < 1e-13);
+            assert!(NEAR.distance(at - 0.1) < right.distance(at - 0.1), "{x}");
+            assert!(NEAR.distance(at + 0.1) > right.distance(at + 0.1), "{x}");
+        }
+        // One source behind the other: equal along one ray only, and never the other way round.
+        let behind = Window { x: 1.5, depth: 3.0, offset: 0.5 - 1.25f64.sqrt(), ..NEAR };
+        if let Some(at) = crossing(&NEAR, &behind, [0.0, 4.0]) {
+            assert!((NEAR.distance(at) - behind.distance(at)).abs() < 1e-12);
+        }
+    }
 }

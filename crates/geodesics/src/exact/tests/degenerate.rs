@@ -149,8 +149,6 @@ fn lengths_of_nothing() -> impl Strategy<Value = f64> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 200, ..ProptestConfig::default() })]
-
     #[test]
     fn impossible_lengths_do_no_harm(
         raw in prop::collection::vec((0..9u32, 1..9u32, 0..9u32), 1..30),

@@ -5,7 +5,7 @@ use mesh::{CornerId, IntrinsicMesh, Link, Topology, VertexId};
 use proptest::prelude::*;
 
 use super::super::Exact;
-use super::{all_pairs, assert_close, spatial};
+use super::{all_pairs, assert_close, bumpy, faces, spatial};
 use crate::{DistanceSolver, Source, SurfacePoint};
 
 type Point = [f64; 2];
@@ -26,6 +26,9 @@ struct View {
     right: Point,
     left: Point,
 }
+
+/// Narrower views, in radians, show nothing that is not seen past a vertex, and may be mere rounding.
+const LEAST_VIEW: f64 = 1e-9;
 
 struct Oracle<'a> {
     mesh: &'a IntrinsicMesh,
@@ -49,6 +52,10 @@ impl Oracle<'_> {
     }
 
     fn look_through(&mut self, edge_of: CornerId, view: &View) {
+        let (r, l) = (view.right, view.left);
+        if cross(r, l).atan2(r[0] * l[0] + r[1] * l[1]) <= LEAST_VIEW {
+            return;
+        }
         let edge = self.mesh.topology().opposite_edge(edge_of);
         for corner in self.mesh.topology().edge_corners(edge).to_vec() {
             let face = corner.face().index();
@@ -68,13 +75,9 @@ impl Oracle<'_> {
             };
             let (facing_p, facing_q) = (other(view.p.0), other(view.q.0));
             let left = if cross(at, view.left) > 0.0 { at } else { view.left };
-            if cross(view.right, left) > 0.0 {
-                self.look_through(facing_q, &View { p: view.p, q: (apex, at), right: view.right, left });
-            }
+            self.look_through(facing_q, &View { p: view.p, q: (apex, at), right: view.right, left });
             let right = if cross(view.right, at) > 0.0 { at } else { view.right };
-            if cross(right, view.left) > 0.0 {
-                self.look_through(facing_p, &View { p: (apex, at), q: view.q, right, left: view.left });
-            }
+            self.look_through(facing_p, &View { p: (apex, at), q: view.q, right, left: view.left });
             self.visited[face] = false;
         }
     }
@@ -141,14 +144,88 @@ fn polyhedra_have_the_distances_of_their_lines_of_sight() {
     }
 }
 
-/// Any faces over a few points in space, with their corners in any order.
+#[test]
+fn paths_of_equal_length_do_not_hide_each_other() {
+    // Found among the soups below: two windows with a common point at a vertex, where one of the two
+    // points of equal distance is no change of the nearer source, and two sources in a line.
+    let cases: [(&[[u32; 3]], &[f64]); 2] = [
+        (
+            &[[1, 6, 2], [3, 4, 5], [2, 1, 7], [6, 0, 1], [3, 1, 2], [4, 7, 1]],
+            &[
+                2.236067977500607,
+                2.23606797749979,
+                3.0000000000005493,
+                1.000000000001685,
+                2.0000000000013074,
+                2.0,
+                2.828427124746857,
+                2.44948974278326,
+                2.2360679774998427,
+                1.0000000000004219,
+                0.9999999999996221,
+                2.2360679775001557,
+                2.4494897427833386,
+                2.000000000000515,
+            ],
+        ),
+        (
+            &[[1, 0, 2], [0, 7, 2], [2, 4, 7], [0, 3, 2]],
+            &[
+                0.9999996120389114,
+                2.000000627507593,
+                1.414213322281007,
+                0.9999985985815869,
+                2.236068116685629,
+                2.449490185505493,
+                0.9999992620147626,
+                2.2360682814689614,
+                2.4494894913450374,
+            ],
+        ),
+    ];
+    for (faces, lengths) in cases {
+        let topology = Topology::new(8, faces.iter().map(|f| f.map(VertexId)).collect());
+        assert_same(&IntrinsicMesh::new(topology, lengths.to_vec()));
+    }
+}
+
+/// Faces over `n` vertices, with their corners in any order.
+fn any_faces(n: u32, n_faces: usize) -> impl Strategy<Value = Vec<[u32; 3]>> {
+    let face = (0..n, 1..n, 2..n).prop_map(move |(a, b, c)| {
+        // The second differs from the first, the third from both.
+        let third = if c > b { c } else { c - 1 };
+        [a, (a + b) % n, (a + third) % n]
+    });
+    prop::collection::vec(face, 1..=n_faces)
+}
+
+/// Any faces over a few points in space.
 fn soup(n: u32, n_faces: usize) -> impl Strategy<Value = IntrinsicMesh> {
     let points = prop::collection::vec([-1.0..1.0, -1.0..1.0, -1.0..1.0f64], n as usize);
-    let face = (0..n, 1..n, 0..n)
-        .prop_map(move |(a, b, c)| [a, (a + b) % n, c])
-        .prop_filter("three different vertices", |[a, b, c]| a != c && b != c);
-    let faces = prop::collection::vec(face, 1..=n_faces);
-    (points, faces).prop_map(|(points, faces)| spatial(&points, &faces))
+    (points, any_faces(n, n_faces)).prop_map(|(points, faces)| spatial(&points, &faces))
+}
+
+/// The same over different points of a lattice, which are often in one plane, hardly moved: paths
+/// meet vertices, and there are several of the same length. The slow way is at a loss where a face
+/// has no area.
+fn lattice_soup(n: usize, n_faces: usize) -> impl Strategy<Value = IntrinsicMesh> {
+    let points = prop::sample::subsequence((0..18u32).collect::<Vec<_>>(), n).prop_shuffle();
+    let moves = prop::collection::vec([-1.0..1.0, -1.0..1.0, -1.0..1.0f64], n);
+    let scale = prop_oneof![Just(0.0), Just(1e-15), Just(1e-12), Just(1e-6), Just(1e-3)];
+    (points, any_faces(n as u32, n_faces), moves, scale).prop_map(|(points, faces, moves, scale)| {
+        let at = |(p, by): (&u32, &[f64; 3])| {
+            let lattice = [p % 3, p / 3 % 3, p / 9].map(f64::from);
+            [0, 1, 2].map(|i| lattice[i] + scale * by[i])
+        };
+        let points: Vec<[f64; 3]> = points.iter().zip(&moves).map(at).collect();
+        let has_area = |face: &[u32; 3]| {
+            let [a, b, c] = face.map(|v| points[v as usize]);
+            let ([p, q, r], [s, t, u]) = ([0, 1, 2].map(|i| b[i] - a[i]), [0, 1, 2].map(|i| c[i] - a[i]));
+            (q * u - r * t).abs() + (r * s - p * u).abs() + (p * t - q * s).abs() > 0.5
+        };
+        let faces: Vec<[u32; 3]> = faces.into_iter().filter(has_area).collect();
+        spatial(&points, &faces)
+    })
 }
 
 /// A fan of faces over points in space, two rings around a vertex: a manifold with a saddle or a peak.
@@ -171,10 +248,13 @@ fn star(n: u32) -> impl Strategy<Value = IntrinsicMesh> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 150, ..ProptestConfig::default() })]
+    #[test]
+    fn soups_of_faces_have_the_distances_of_their_lines_of_sight(mesh in soup(8, 12)) {
+        assert_same(&mesh);
+    }
 
     #[test]
-    fn soups_of_faces_have_the_distances_of_their_lines_of_sight(mesh in soup(7, 9)) {
+    fn soups_over_a_lattice_too(mesh in lattice_soup(8, 12)) {
         assert_same(&mesh);
     }
 
@@ -185,7 +265,23 @@ proptest! {
     }
 
     #[test]
-    fn stars_have_the_distances_of_their_lines_of_sight(mesh in star(6)) {
+    fn landscapes_have_the_distances_of_their_lines_of_sight(height in 0.1..3.0f64, seed in any::<u32>()) {
+        assert_same(&bumpy(4, height, seed.into()));
+    }
+
+    #[test]
+    fn stairs_have_the_distances_of_their_lines_of_sight(
+        heights in prop::collection::vec(0..3u8, 16), moves in prop::collection::vec(-1.0..1.0f64, 16),
+        scale in prop_oneof![Just(0.0), Just(1e-15), Just(1e-12), Just(1e-9), Just(1e-6)],
+    ) {
+        let at: Vec<[f64; 3]> = (0..16)
+            .map(|v| [f64::from(v % 4), f64::from(v / 4), f64::from(heights[v as usize]) + scale * moves[v as usize]])
+            .collect();
+        assert_same(&spatial(&at, &faces(&mesh::shapes::grid(4, 4, 1.0))));
+    }
+
+    #[test]
+    fn stars_have_the_distances_of_their_lines_of_sight(mesh in star(8)) {
         assert_same(&mesh);
     }
 
