@@ -172,7 +172,7 @@ pub(crate) struct EmbeddingArgs {
     /// Number of samples, or `auto` to take as many as it needs
     #[arg(short = 'n', long, default_value = "100", value_name = "SAMPLES|auto", value_parser = parse_samples)]
     pub(crate) samples: Samples,
-    /// Eigenpairs of the sample matrix to keep [default: half the samples]
+    /// Eigenpairs of the sample matrix to keep [default: half the samples, at least 4 more than dimensions]
     #[arg(long, value_name = "N1")]
     pub(crate) rank: Option<usize>,
     /// Dimensions of the embedding

@@ -3,7 +3,7 @@
 use std::io::Write;
 use std::path::Path;
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, bail};
 use npyz::WriterBuilder;
 use serde::Serialize;
 
@@ -56,6 +56,16 @@ pub(crate) fn write_csv<'a>(path: &Path, rows: impl Iterator<Item = &'a [f64]>) 
         Ok(())
     })
     .with_context(|| format!("cannot write {}", path.display()))
+}
+
+/// Refuses a file in a folder that does not exist, before any work is done for it.
+pub(crate) fn check_folder(path: &Path) -> Result<()> {
+    match path.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() && !folder.is_dir() => {
+            bail!("{}: the folder {} does not exist; make it first", path.display(), folder.display())
+        }
+        _ => Ok(()),
+    }
 }
 
 /// The extension of a file name in lower case.

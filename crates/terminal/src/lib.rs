@@ -18,10 +18,25 @@ pub fn run(threads: usize, program: impl FnOnce() -> Result<ExitCode>) -> ExitCo
         Ok(code) => code,
         Err(error) if is_closed_pipe(&error) => ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("error: {error:#}");
+            eprintln!("error: {}", message(&error));
             ExitCode::from(2)
         }
     }
+}
+
+/// An error and its causes, without those that an error before them has quoted already.
+#[must_use]
+pub fn message(error: &anyhow::Error) -> String {
+    let mut text = String::new();
+    for cause in error.chain().map(ToString::to_string) {
+        if !text.contains(&cause) {
+            if !text.is_empty() {
+                text += ": ";
+            }
+            text += &cause;
+        }
+    }
+    text
 }
 
 fn is_closed_pipe(error: &anyhow::Error) -> bool {
@@ -34,6 +49,15 @@ fn is_closed_pipe(error: &anyhow::Error) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_cause_that_was_quoted_is_not_said_again() {
+        let cause = std::io::Error::other("no such file");
+        let error = anyhow::Error::from(cause).context("cannot read a.off: no such file; check the path");
+        assert_eq!(message(&error), "cannot read a.off: no such file; check the path");
+        let error = anyhow::anyhow!("the reason").context("the work");
+        assert_eq!(message(&error), "the work: the reason");
+    }
 
     #[test]
     fn a_closed_pipe_is_recognised_beneath_its_context() {

@@ -10,7 +10,7 @@ use serde::Serialize;
 
 use super::{named, read_surface, say_repair};
 use crate::args::{Common, EmbedArgs};
-use crate::output::{extension, facts, print, print_json, write_npy};
+use crate::output::{check_folder, extension, facts, print, print_json, write_npy};
 use terminal::Bars;
 
 #[derive(Serialize)]
@@ -49,6 +49,7 @@ pub(crate) fn embed(args: &EmbedArgs, common: &Common) -> Result<ExitCode> {
         return batch(args, &options, common);
     }
     check_format(&args.output, args.embedding.dim)?;
+    check_folder(&args.output)?;
     let surface = read_surface(&args.mesh, &args.embedding.repair)?;
     let bars = Bars::new(common.quiet);
     let embedded = pipeline::embed(&surface, &options, &bars).map_err(|fault| named(&args.mesh, fault))?;
@@ -104,7 +105,7 @@ fn batch(args: &EmbedArgs, options: &EmbedOptions, common: &Common) -> Result<Ex
                 json.shapes.push(ShapeJson { name, label: shape.label, path, result });
             }
             Err(fault) => {
-                json.failed.push(Failure { name, path, error: format!("{fault:#}") });
+                json.failed.push(Failure { name, path, error: terminal::message(&fault) });
             }
         }
     }

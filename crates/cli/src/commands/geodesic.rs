@@ -11,7 +11,7 @@ use serde::Serialize;
 
 use super::{named, read_surface};
 use crate::args::{Common, GeodesicArgs};
-use crate::output::{extension, facts, print, print_json, write_csv, write_npy};
+use crate::output::{check_folder, extension, facts, print, print_json, write_csv, write_npy};
 use terminal::Bars;
 
 #[derive(Serialize)]
@@ -44,6 +44,7 @@ pub(crate) fn geodesic(args: &GeodesicArgs, common: &Common) -> Result<ExitCode>
             args.output.display()
         );
     }
+    check_folder(&args.output)?;
     let surface = read_surface(&args.mesh, &args.repair)?;
     let sources = args
         .source
