@@ -3,7 +3,7 @@
 use std::io::Write;
 use std::path::Path;
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Result, bail};
 use npyz::WriterBuilder;
 use serde::Serialize;
 
@@ -36,26 +36,24 @@ pub(crate) fn write_npy<'a>(
     rows: impl ExactSizeIterator<Item = &'a [f64]>,
 ) -> Result<()> {
     let shape = [rows.len() as u64, n_columns as u64];
-    mesh::io::write_atomically(path, |out| {
+    Ok(mesh::io::write_atomically(path, |out| {
         let mut array = npyz::WriteOptions::new().default_dtype().shape(&shape).writer(out).begin_nd()?;
         for row in rows {
             array.extend(row)?;
         }
         array.finish()
-    })
-    .with_context(|| format!("cannot write {}", path.display()))
+    })?)
 }
 
 /// Writes rows of numbers separated by commas, in full precision.
 pub(crate) fn write_csv<'a>(path: &Path, rows: impl Iterator<Item = &'a [f64]>) -> Result<()> {
-    mesh::io::write_atomically(path, |out| {
+    Ok(mesh::io::write_atomically(path, |out| {
         for row in rows {
             let text: Vec<String> = row.iter().map(f64::to_string).collect();
             writeln!(out, "{}", text.join(","))?;
         }
         Ok(())
-    })
-    .with_context(|| format!("cannot write {}", path.display()))
+    })?)
 }
 
 /// Refuses a file in a folder that does not exist, before any work is done for it.

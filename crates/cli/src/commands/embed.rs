@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::{Context, Result, bail};
-use pipeline::{EmbedOptions, EmbedReport, Embedded, Surface, list_shapes};
+use pipeline::{EmbedOptions, EmbedReport, Embedded, ShapeFile, Surface, list_shapes};
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -70,6 +70,7 @@ fn batch(args: &EmbedArgs, options: &EmbedOptions, common: &Common) -> Result<Ex
     let extension = args.format.extension();
     check_format(&PathBuf::from(format!("form.{extension}")), args.embedding.dim)?;
     let shapes = list_shapes(&args.mesh, None)?;
+    check_names(&shapes, &args.mesh, &args.output)?;
     let bars = Bars::new(common.quiet);
     let bar = bars.bar("shapes", shapes.len());
     let results: Vec<Result<EmbedJson>> = shapes
@@ -118,6 +119,23 @@ fn batch(args: &EmbedArgs, options: &EmbedOptions, common: &Common) -> Result<Ex
         print(&batch_table(&json, &args.output))?
     }
     Ok(if json.failed.is_empty() { ExitCode::SUCCESS } else { ExitCode::from(2) })
+}
+
+/// Refuses a folder whose forms would take the place of each other or of the meshes.
+fn check_names(shapes: &[ShapeFile], input: &Path, output: &Path) -> Result<()> {
+    let place = |folder: &Path| folder.canonicalize().ok();
+    if place(output).is_some_and(|output| place(input) == Some(output)) {
+        bail!("{}: forms would take the place of meshes; choose another folder with -o", output.display());
+    }
+    // Shapes are sorted by name.
+    match shapes.windows(2).find(|pair| pair[0].name == pair[1].name) {
+        None => Ok(()),
+        Some(pair) => bail!(
+            "{} and {} would be written to one form; rename one of them",
+            pair[0].path.display(),
+            pair[1].path.display()
+        ),
+    }
 }
 
 /// Refuses an output that could not be written before any work is done.

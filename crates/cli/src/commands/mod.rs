@@ -37,7 +37,9 @@ fn read_surface(path: &std::path::Path, repair: &crate::args::RepairArgs) -> any
 /// An error that names the file once, whether or not it does so itself.
 fn named(path: &std::path::Path, fault: pipeline::PipelineError) -> anyhow::Error {
     let text = fault.to_string();
-    let path = path.display().to_string();
-    let partner = path.rsplit_once('.').map_or(path.as_str(), |(stem, _)| stem);
-    if text.contains(partner) { fault.into() } else { anyhow::Error::from(fault).context(path) }
+    // Of a `.vert`/`.tri` pair the fault may lie in the other half.
+    let names = [path.to_owned(), path.with_extension("vert"), path.with_extension("tri")];
+    let is_named = names.iter().any(|name| text.contains(&name.display().to_string()));
+    let error = anyhow::Error::from(fault);
+    if is_named { error } else { error.context(path.display().to_string()) }
 }

@@ -1,0 +1,200 @@
+//! Every command on a sound mesh, and where its words go.
+
+use std::process::Stdio;
+
+use crate::support::{Workplace, assert_keys, broken_ring, one_object, program, ring};
+
+#[test]
+fn info_tells_what_is_in_a_mesh() {
+    let place = Workplace::new();
+    place.add("ring.off", &ring());
+    place.add("broken.ply", &broken_ring());
+    let text = place.done(&["info", "ring.off"]).out;
+    assert!(text.contains("160, 480, 320") && text.contains("genus") && text.contains("nothing"), "{text}");
+
+    let json = place.json(&["info", "ring.off", "broken.ply"]);
+    let meshes = json["meshes"].as_array().unwrap();
+    assert_eq!(meshes.len(), 2);
+    assert_eq!(meshes[0]["mesh"]["genus"], 1);
+    assert_eq!(meshes[1]["mesh"]["n_components"], 2);
+    assert_eq!(meshes[1]["repair"]["dropped_components"], 1);
+    // A folder stands for the meshes in it.
+    assert_eq!(place.json(&["info", "."])["meshes"].as_array().unwrap().len(), 2);
+}
+
+#[test]
+fn geodesic_keeps_the_contract_of_its_json() {
+    let place = Workplace::new();
+    place.add("broken.off", &broken_ring());
+    let json = place.json(&["geodesic", "broken.off", "--source", "0,7", "-o", "d.npy"]);
+    assert_keys(&json, &["method", "n_vertices", "sources", "seconds", "unreached", "repair"]);
+    assert_keys(&json["seconds"], &["load", "setup", "per_source"]);
+    assert_eq!(json["method"], "fast-marching");
+    assert_eq!(json["n_vertices"], 170);
+    assert_eq!(json["sources"], serde_json::json!([0, 7]));
+    assert_eq!(json["seconds"]["per_source"].as_array().unwrap().len(), 2);
+    assert_eq!(json["unreached"], serde_json::json!((160..170).collect::<Vec<_>>()));
+    assert_eq!(json["unreached"], json["repair"]["dropped_vertices"]);
+}
+
+#[test]
+fn geodesic_knows_its_methods() {
+    let place = Workplace::new();
+    place.add("ring.off", &ring());
+    let farthest = |options: &[&str]| {
+        let arguments = [&["geodesic", "ring.off", "--source", "3", "-o", "d.csv"], options].concat();
+        place.json(&arguments)["farthest"][0].as_f64().unwrap()
+    };
+    let marched = farthest(&[]);
+    assert!(marched <= farthest(&["--method", "dijkstra"]));
+    assert!((farthest(&["--update", "planar"]) / marched - 1.0).abs() < 0.1);
+    assert!(farthest(&["--method", "bfs"]) > 0.0);
+}
+
+#[test]
+fn embed_keeps_the_contract_of_its_json() {
+    let place = Workplace::new();
+    place.add("ring.off", &ring());
+    let json = place.json(&["embed", "ring.off", "-n", "20", "--rank", "9", "-o", "form.ply"]);
+    assert_keys(
+        &json,
+        &[
+            "method",
+            "n_vertices",
+            "n_faces",
+            "n_samples",
+            "rank",
+            "dim",
+            "samples",
+            "eigenvalues",
+            "negative_mass",
+            "stress",
+            "seconds",
+            "repair",
+        ],
+    );
+    assert_keys(&json["stress"], &["value", "kind", "interval"]);
+    assert_keys(&json["seconds"], &["geodesics", "embedding", "total"]);
+    assert_eq!((&json["method"], &json["stress"]["kind"]), (&"nmds".into(), &"exact".into()));
+    assert_eq!((&json["n_vertices"], &json["n_faces"]), (&160.into(), &320.into()));
+    assert_eq!((&json["n_samples"], &json["rank"], &json["dim"]), (&20.into(), &9.into(), &3.into()));
+    assert_eq!(json["samples"].as_array().unwrap().len(), 20);
+    let [low, high] = [0, 1].map(|i| json["stress"]["interval"][i].as_f64().unwrap());
+    let value = json["stress"]["value"].as_f64().unwrap();
+    assert!(low <= value && value <= high);
+
+    let text = place.done(&["embed", "ring.off", "-n", "20", "-o", "form.ply"]).out;
+    assert!(text.contains("stress") && text.contains("form.ply"), "{text}");
+}
+
+#[test]
+fn embed_knows_its_options() {
+    let place = Workplace::new();
+    place.add("ring.off", &ring());
+    let embed = |options: &[&str]| place.json(&[&["embed", "ring.off", "-o", "form.npy"], options].concat());
+    assert_eq!(embed(&["--method", "mds"])["n_samples"], 160);
+    assert_eq!(embed(&["--method", "kpca", "-n", "30"])["method"], "kpca");
+    assert_eq!(embed(&["--geodesic", "dijkstra", "-n", "30"])["geodesic"], "dijkstra");
+    assert_eq!(embed(&["--first-sample", "11", "-n", "30"])["samples"][0], 11);
+    assert_eq!(embed(&["--dim", "5", "-n", "30"])["dim"], 5);
+    assert_eq!(embed(&["--stress", "estimate", "-n", "30", "--seed", "4"])["stress"]["kind"], "estimated");
+    assert!(embed(&["--stress", "skip", "-n", "30"])["stress"].is_null());
+    assert!(embed(&["-n", "auto"])["n_samples"].as_u64().unwrap() >= 20);
+}
+
+#[test]
+fn compare_says_what_kind_of_match_it_is_and_holds_a_threshold() {
+    let place = Workplace::new();
+    place.add("ring.off", &ring());
+    place.add("ball.off", &mesh::shapes::icosphere(3));
+    let same = place.json(&["compare", "ring.off", "ring.off"]);
+    assert_keys(&same, &["distance", "normalized_distance", "rotation", "translation", "reflected", "kind"]);
+    assert_eq!(same["kind"], "same");
+    assert!(same["normalized_distance"].as_f64().unwrap() < 1e-9);
+    assert_eq!(place.json(&["compare", "ring.off", "ball.off"])["kind"], "different");
+
+    assert_eq!(place.run(&["compare", "ring.off", "ring.off", "--threshold", "0.01"]).code, 0);
+    let apart = place.run(&["compare", "ring.off", "ball.off", "--threshold", "0.01"]);
+    assert_eq!(apart.code, 1);
+    assert!(apart.out.contains("exceeded"), "{}", apart.out);
+    let apart = place.run(&["compare", "ring.off", "ball.off", "--threshold", "0.01", "--json"]);
+    assert_eq!((apart.code, &one_object(&apart.out)["threshold"]), (1, &0.01.into()));
+}
+
+#[test]
+fn completions_are_there_for_every_shell() {
+    let place = Workplace::new();
+    for shell in ["bash", "zsh", "fish"] {
+        let script = place.done(&["completions", shell]).out;
+        assert!(script.contains("canonform") && script.contains("geodesic"), "{shell}: {script}");
+    }
+}
+
+#[test]
+fn help_mentions_every_option() {
+    let place = Workplace::new();
+    let common = ["--json", "--threads", "--seed"];
+    let embedding =
+        ["--method", "-n", "--rank", "--dim", "--geodesic", "--first-sample", "nmds", "mds", "kpca", "auto"];
+    let geodesic = ["--source", "--method", "--update", "-o", "fast-marching", "dijkstra", "bfs", "planar"];
+    let pages: [(&str, Vec<&str>); 5] = [
+        ("info", vec!["MESH"]),
+        ("geodesic", geodesic.to_vec()),
+        ("embed", [&embedding[..], &["-o"]].concat()),
+        ("compare", [&embedding[..], &["--threshold"]].concat()),
+        ("completions", vec!["bash", "zsh", "fish"]),
+    ];
+    let front = place.done(&["--help"]).out;
+    for (command, words) in pages {
+        assert!(front.contains(command), "no `{command}` in {front}");
+        let page = place.done(&[command, "--help"]).out;
+        for word in words.iter().chain(&common) {
+            assert!(page.contains(word), "{command} --help does not mention {word}");
+        }
+    }
+    assert!(place.done(&["--version"]).out.starts_with("canonform "));
+}
+
+#[test]
+fn json_alone_is_on_standard_output_and_notes_are_on_standard_error() {
+    let place = Workplace::new();
+    place.add("broken.off", &broken_ring());
+    for arguments in [
+        vec!["embed", "broken.off", "-n", "20", "-o", "form.npy", "--json"],
+        vec!["geodesic", "broken.off", "--source", "0", "-o", "d.npy", "--json"],
+        vec!["compare", "broken.off", "broken.off", "-n", "20", "--json"],
+    ] {
+        let outcome = place.done(&arguments);
+        one_object(&outcome.out);
+        assert!(outcome.err.contains("broken.off: 1 vertex without a face dropped"), "{}", outcome.err);
+        assert!(outcome.err.contains("1 of 2 components dropped"), "{}", outcome.err);
+    }
+}
+
+#[test]
+fn a_closed_pipe_is_no_error() {
+    let place = Workplace::new();
+    place.add("ring.off", &ring());
+    let ring = place.path("ring.off");
+    let form = place.path("form.npy");
+    let [ring, form] = [&ring, &form].map(|path| path.to_str().unwrap());
+    for arguments in [
+        vec!["info", ring, ring, ring],
+        vec!["info", ring, "--json"],
+        vec!["embed", ring, "-n", "20", "-o", form],
+        vec!["completions", "bash"],
+        vec!["--help"],
+    ] {
+        let mut child = std::process::Command::new(program())
+            .args(&arguments)
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        drop(child.stdout.take());
+        let output = child.wait_with_output().unwrap();
+        let message = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success(), "{arguments:?}: {message}");
+        assert!(!message.contains("panicked") && !message.contains("error"), "{arguments:?}: {message}");
+    }
+}

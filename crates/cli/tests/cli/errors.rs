@@ -1,0 +1,120 @@
+//! What the program refuses: an error names the file, what is wrong and what to do, and nothing is
+//! left behind.
+
+use std::fs;
+
+use crate::support::{Workplace, broken_ring, one_object, ring};
+
+/// A sound mesh, and a broken one with the shortest of names.
+fn place() -> Workplace {
+    let place = Workplace::new();
+    place.add("ring.off", &ring());
+    place.add("a.off", &broken_ring());
+    place
+}
+
+#[test]
+fn files_that_are_no_meshes_are_named() {
+    let place = place();
+    fs::write(place.path("empty.off"), "").unwrap();
+    fs::write(place.path("notes.txt"), "no mesh").unwrap();
+    fs::write(place.path("garbage.obj"), "v 0 0\nf 1 2 x\n").unwrap();
+    let before = place.names();
+    for (file, fault, remedy) in [
+        ("missing.off", "No such file", "check"),
+        ("empty.off", "empty", "export it again"),
+        ("notes.txt", "`.txt` is not a mesh format", "use one of .off .obj .ply"),
+        ("garbage.obj", "line 1", ""),
+    ] {
+        place.refused(&["info", file], &[file, fault, remedy]);
+        place.refused(&["embed", file, "-o", "form.ply"], &[file, fault, remedy]);
+        place.refused(&["geodesic", file, "--source", "0", "-o", "d.npy"], &[file, fault, remedy]);
+        place.refused(&["compare", "ring.off", file], &[file, fault, remedy]);
+    }
+    assert_eq!(place.names(), before);
+}
+
+#[test]
+fn info_goes_on_after_a_file_it_cannot_read() {
+    let place = place();
+    let outcome = place.run(&["info", "missing.off", "ring.off", "--json"]);
+    let json = one_object(&outcome.out);
+    assert_eq!(outcome.code, 2);
+    assert_eq!(json["meshes"].as_array().unwrap().len(), 1);
+    assert_eq!(json["failed"][0]["path"], "missing.off");
+}
+
+#[test]
+fn vertices_that_are_not_there_are_named_with_their_file() {
+    let place = place();
+    let before = place.names();
+    // The file is called `a.off`, and there is an `a` in every message.
+    let geodesic = |v| ["geodesic", "a.off", "--source", v, "-o", "d.npy"];
+    place.refused(&geodesic("170"), &["a.off: ", "vertex 170", "170 vertices, counted from 0"]);
+    for dropped in ["160", "165"] {
+        place.refused(&geodesic(dropped), &["a.off: vertex", dropped, "left out", "--components bridge"]);
+    }
+    place.refused(&["embed", "a.off", "--first-sample", "170", "-o", "f.npy"], &["a.off: vertex 170"]);
+    place.refused(&["embed", "a.off", "--first-sample", "169", "-o", "f.npy"], &["a.off: vertex 169"]);
+    place.refused(
+        &["embed", "a.off", "--components", "error", "-o", "f.npy"],
+        &["a.off: mesh", "9 of 169", "bridge"],
+    );
+    assert_eq!(place.names(), before);
+    // The remedy works.
+    place.done(&["geodesic", "a.off", "--source", "165", "--components", "bridge", "-o", "d.npy"]);
+}
+
+#[test]
+fn options_out_of_range_are_named() {
+    let place = place();
+    let before = place.names();
+    let embed = |options: &[&'static str], words: &[&str]| {
+        place.refused(&[&["embed", "ring.off"], options].concat(), words);
+    };
+    embed(&["-n", "0", "-o", "f.npy"], &["--samples", "`0`", "positive", "auto"]);
+    embed(&["-n", "many", "-o", "f.npy"], &["`many`", "auto"]);
+    embed(&["--dim", "4", "-o", "f.ply"], &["f.ply", "3 dimensions, not 4", "--dim"]);
+    embed(&["--dim", "0", "-o", "f.npy"], &["dimension", "0"]);
+    embed(&["--dim", "30", "-n", "20", "-o", "f.npy"], &["30", "20"]);
+    embed(&["--rank", "21", "-n", "20", "-o", "f.npy"], &["rank", "21", "20"]);
+    embed(&["-o", "f.stl"], &["f.stl", ".npy, .ply, .obj or .off"]);
+    embed(&["-o", "f"], &["f: ", ".npy, .ply, .obj or .off"]);
+    embed(&[], &["--output"]);
+    place
+        .refused(&["geodesic", "ring.off", "--source", "0", "-o", "d.off"], &["d.off", ".npy, .csv or .ply"]);
+    place.refused(&["geodesic", "ring.off", "--source", "-1", "-o", "d.npy"], &["-1"]);
+    place.refused(&["geodesic", "ring.off", "-o", "d.npy"], &["--source"]);
+    place.refused(&["compare", "ring.off", "ring.off", "--dim", "2"], &["3 dimensions", "--dim"]);
+    place.refused(&["completions", "tcsh"], &["tcsh", "bash"]);
+    place.refused(&["no-such-command"], &["no-such-command"]);
+    assert_eq!(place.names(), before);
+}
+
+#[test]
+fn what_cannot_be_written_is_named_once_and_leaves_nothing() {
+    let place = place();
+    // A folder where the file should go: writing fails at the very end, for any user.
+    for name in ["taken.npy", "taken.csv", "taken.ply", "taken.off"] {
+        fs::create_dir(place.path(name)).unwrap();
+    }
+    let before = place.names();
+    for file in ["nowhere/form.npy", "nowhere/form.ply", "taken.npy", "taken.ply", "taken.off"] {
+        let outcome = place.run(&["embed", "ring.off", "-n", "20", "-o", file]);
+        assert_eq!((outcome.code, outcome.out.as_str()), (2, ""), "{file}");
+        assert_eq!(outcome.err.matches(&format!("cannot write {file}")).count(), 1, "{}", outcome.err);
+    }
+    for file in ["nowhere/d.npy", "nowhere/d.csv", "nowhere/d.ply", "taken.npy", "taken.csv", "taken.ply"] {
+        place.refused(&["geodesic", "ring.off", "--source", "0", "-o", file], &["cannot write", file]);
+    }
+    assert_eq!(place.names(), before);
+}
+
+#[test]
+fn a_failure_leaves_what_was_there() {
+    let place = place();
+    fs::write(place.path("form.npy"), "precious").unwrap();
+    place.refused(&["embed", "ring.off", "--rank", "99", "-n", "20", "-o", "form.npy"], &["99"]);
+    place.refused(&["geodesic", "ring.off", "--source", "0,500", "-o", "form.npy"], &["500"]);
+    assert_eq!(fs::read(place.path("form.npy")).unwrap(), b"precious");
+}

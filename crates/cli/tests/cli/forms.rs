@@ -1,0 +1,133 @@
+//! The files that come out.
+
+use std::fs;
+
+use mesh::{VertexId, io};
+use serde_json::Value;
+
+use crate::support::{Workplace, broken_ring, read_npy, ring};
+
+#[test]
+fn an_array_has_a_row_a_vertex_and_nan_where_one_was_dropped() {
+    let place = Workplace::new();
+    place.add("broken.off", &broken_ring());
+    place.add("ring.off", &ring());
+    let json = place.json(&["embed", "broken.off", "-n", "20", "-o", "form.npy"]);
+    let (shape, rows) = read_npy(&place.path("form.npy"));
+    assert_eq!(shape, [170, 3]);
+    let dropped: Vec<u64> =
+        json["repair"]["dropped_vertices"].as_array().unwrap().iter().filter_map(Value::as_u64).collect();
+    assert_eq!(dropped, (160..170).collect::<Vec<_>>());
+    for (v, row) in rows.chunks(3).enumerate() {
+        let is_dropped = dropped.contains(&(v as u64));
+        assert!(row.iter().all(|x| x.is_nan() == is_dropped && !x.is_infinite()), "vertex {v}: {row:?}");
+    }
+    // What was dropped leaves no trace in the rest.
+    place.done(&["embed", "ring.off", "-n", "20", "-o", "whole.npy"]);
+    assert_eq!(read_npy(&place.path("whole.npy")).1, rows[..480]);
+    // As many columns as dimensions.
+    place.done(&["embed", "ring.off", "-n", "20", "--dim", "5", "-o", "five.npy"]);
+    assert_eq!(read_npy(&place.path("five.npy")).0, [160, 5]);
+}
+
+#[test]
+fn rows_follow_the_vertices_of_the_input() {
+    let place = Workplace::new();
+    let (mesh, p) = (ring(), ring().n_vertices());
+    let mut reversed = mesh.clone();
+    reversed.positions.reverse();
+    for face in &mut reversed.faces {
+        *face = face.map(|v| VertexId::from(p - 1 - v.index()));
+    }
+    place.add("ring.off", &mesh);
+    place.add("reversed.off", &reversed);
+    place.done(&["geodesic", "ring.off", "--source", "5", "--method", "dijkstra", "-o", "a.npy"]);
+    let source = (p - 1 - 5).to_string();
+    place.done(&["geodesic", "reversed.off", "--source", &source, "--method", "dijkstra", "-o", "b.npy"]);
+    let (_, there) = read_npy(&place.path("a.npy"));
+    let (_, mut back) = read_npy(&place.path("b.npy"));
+    back.reverse();
+    for (a, b) in there.iter().zip(&back) {
+        assert!((a - b).abs() < 1e-12);
+    }
+    assert_eq!(there[5], 0.0);
+}
+
+#[test]
+fn distances_have_a_row_a_source_in_both_formats() {
+    let place = Workplace::new();
+    place.add("broken.off", &broken_ring());
+    place.done(&["geodesic", "broken.off", "--source", "4,99,0", "-o", "d.npy"]);
+    let (shape, rows) = read_npy(&place.path("d.npy"));
+    assert_eq!(shape, [3, 170]);
+    for (row, source) in rows.chunks(170).zip([4, 99, 0]) {
+        assert_eq!(row[source], 0.0);
+        assert!(row[..160].iter().all(|d| d.is_finite()) && row[160..].iter().all(|d| *d == f64::INFINITY));
+    }
+    place.done(&["geodesic", "broken.off", "--source", "4,99,0", "-o", "d.csv"]);
+    let text = fs::read_to_string(place.path("d.csv")).unwrap();
+    let numbers: Vec<f64> =
+        text.lines().flat_map(|line| line.split(',')).map(|x| x.parse().unwrap()).collect();
+    assert_eq!((text.lines().count(), numbers), (3, rows));
+}
+
+#[test]
+fn coloured_meshes_are_one_a_source() {
+    let place = Workplace::new();
+    place.add("ring.off", &ring());
+    place.done(&["geodesic", "ring.off", "--source", "4", "-o", "one.ply"]);
+    let json = place.json(&["geodesic", "ring.off", "--source", "4,9", "-o", "two.ply"]);
+    assert_eq!(json["outputs"], serde_json::json!(["two-4.ply", "two-9.ply"]));
+    for name in ["one.ply", "two-4.ply", "two-9.ply"] {
+        assert_eq!(io::read(&place.path(name)).unwrap(), ring(), "{name}");
+    }
+}
+
+#[test]
+fn meshes_of_forms_keep_the_faces_of_the_input() {
+    let place = Workplace::new();
+    place.add("ring.ply", &ring());
+    place.add("broken.ply", &broken_ring());
+    place.done(&["embed", "ring.ply", "-n", "20", "-o", "form.npy"]);
+    let (_, rows) = read_npy(&place.path("form.npy"));
+    for format in ["ply", "obj", "off"] {
+        let name = format!("form.{format}");
+        place.done(&["embed", "ring.ply", "-n", "20", "-o", &name]);
+        let form = io::read(&place.path(&name)).unwrap();
+        assert_eq!(form.faces, ring().faces, "{format}");
+        let coords: Vec<f64> = form.positions.iter().flat_map(|p| [p.x, p.y, p.z]).collect();
+        assert_eq!(coords, rows, "{format}");
+
+        place.done(&["embed", "broken.ply", "-n", "20", "-o", &name]);
+        assert_eq!(io::read(&place.path(&name)).unwrap().faces, ring().faces, "{format}");
+    }
+}
+
+/// What is printed, but for the time it took.
+fn without_seconds(mut json: Value) -> Value {
+    json.as_object_mut().unwrap().remove("seconds");
+    json
+}
+
+#[test]
+fn bytes_do_not_depend_on_threads() {
+    let place = Workplace::new();
+    place.add("ring.off", &ring());
+    for output in ["form.npy", "form.ply", "form.off", "form.obj"] {
+        let [one, two] = ["1", "2"].map(|threads| {
+            let arguments =
+                ["embed", "ring.off", "-n", "40", "--threads", threads, "--seed", "3", "-o", output];
+            let json = without_seconds(place.json(&arguments));
+            (json, fs::read(place.path(output)).unwrap())
+        });
+        assert!(one == two, "{output}");
+    }
+    let [one, two] = ["1", "2"].map(|threads| {
+        let arguments = ["geodesic", "ring.off", "--source", "1,2,3", "--threads", threads, "-o", "d.npy"];
+        (without_seconds(place.json(&arguments)), fs::read(place.path("d.npy")).unwrap())
+    });
+    assert!(one == two);
+    let [one, two] =
+        ["1", "2"].map(|threads| place.done(&["compare", "ring.off", "ring.off", "--threads", threads]).out);
+    assert_eq!(one, two);
+}

@@ -1,0 +1,15 @@
+//! The program as its users see it: arguments in; files, output and exit codes out.
+//!
+//! `commands` (what each prints), `forms` (the files it writes), `errors` (what it refuses, and that
+//! nothing is left behind), `folders` (many meshes at once).
+
+#[cfg(test)]
+mod commands;
+#[cfg(test)]
+mod errors;
+#[cfg(test)]
+mod folders;
+#[cfg(test)]
+mod forms;
+#[cfg(test)]
+mod support;

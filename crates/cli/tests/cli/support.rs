@@ -1,0 +1,112 @@
+//! A folder to work in, meshes to work on, and the program.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use assert_cmd::Command;
+use mesh::{TriMesh, io, shapes};
+use serde_json::Value;
+use tempfile::TempDir;
+
+/// A folder of its own for each test; gone with it.
+pub(crate) struct Workplace(TempDir);
+
+/// What the program left: exit code, standard output, standard error.
+pub(crate) struct Outcome {
+    pub(crate) code: i32,
+    pub(crate) out: String,
+    pub(crate) err: String,
+}
+
+impl Workplace {
+    pub(crate) fn new() -> Self {
+        Self(TempDir::new().unwrap())
+    }
+
+    pub(crate) fn path(&self, name: &str) -> PathBuf {
+        self.0.path().join(name)
+    }
+
+    pub(crate) fn add(&self, name: &str, mesh: &TriMesh) {
+        let path = self.path(name);
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+        io::write(&path, mesh).unwrap();
+    }
+
+    /// Runs the program in the folder.
+    pub(crate) fn run(&self, arguments: &[&str]) -> Outcome {
+        let output = Command::new(program()).current_dir(self.0.path()).args(arguments).output().unwrap();
+        let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
+        Outcome { code: output.status.code().unwrap(), out: text(output.stdout), err: text(output.stderr) }
+    }
+
+    /// Runs the program, which must succeed.
+    pub(crate) fn done(&self, arguments: &[&str]) -> Outcome {
+        let outcome = self.run(arguments);
+        assert_eq!(outcome.code, 0, "{arguments:?}: {}", outcome.err);
+        outcome
+    }
+
+    /// Runs the program with `--json`: standard output must be one object on one line.
+    pub(crate) fn json(&self, arguments: &[&str]) -> Value {
+        let outcome = self.done(&[arguments, &["--json"]].concat());
+        one_object(&outcome.out)
+    }
+
+    /// Runs the program, which must fail with 2 and a message that holds all of `words`.
+    pub(crate) fn refused(&self, arguments: &[&str], words: &[&str]) {
+        let outcome = self.run(arguments);
+        assert_eq!(outcome.code, 2, "{arguments:?}: {}{}", outcome.out, outcome.err);
+        assert!(outcome.out.is_empty(), "{arguments:?} printed {}", outcome.out);
+        for word in words {
+            assert!(outcome.err.contains(word), "{arguments:?}: no `{word}` in: {}", outcome.err);
+        }
+    }
+
+    /// Names of all files and folders, sorted.
+    pub(crate) fn names(&self) -> Vec<String> {
+        let entries = fs::read_dir(self.0.path()).unwrap();
+        let mut names: Vec<String> =
+            entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+        names.sort();
+        names
+    }
+}
+
+pub(crate) fn program() -> &'static str {
+    env!("CARGO_BIN_EXE_canonform")
+}
+
+pub(crate) fn one_object(text: &str) -> Value {
+    assert_eq!(text.lines().count(), 1, "more than one line: {text}");
+    let value: Value = serde_json::from_str(text).unwrap();
+    assert!(value.is_object(), "{text}");
+    value
+}
+
+pub(crate) fn assert_keys(value: &Value, keys: &[&str]) {
+    for key in keys {
+        assert!(value.get(key).is_some(), "no `{key}` in {value}");
+    }
+}
+
+/// A clean closed surface of 160 vertices.
+pub(crate) fn ring() -> TriMesh {
+    shapes::torus(16, 10, 2.0, 0.6)
+}
+
+/// [`ring`], then a vertex without a face, then a small sheet apart: vertices 160 to 169 are dropped.
+pub(crate) fn broken_ring() -> TriMesh {
+    let mut mesh = ring();
+    mesh.positions.push([9.0, 9.0, 9.0].into());
+    shapes::disjoint(&[mesh, shapes::grid(3, 3, 0.1)])
+}
+
+/// Shape and rows of a NumPy array, which must be little-endian float64 in C order.
+pub(crate) fn read_npy(path: &Path) -> (Vec<u64>, Vec<f64>) {
+    let bytes = fs::read(path).unwrap();
+    let file = npyz::NpyFile::new(&bytes[..]).unwrap();
+    assert_eq!(file.dtype().descr(), "'<f8'");
+    assert_eq!(file.order(), npyz::Order::C);
+    (file.shape().to_vec(), file.into_vec().unwrap())
+}
