@@ -1,0 +1,109 @@
+//! What the embedding of distances must be, whatever they were measured on.
+
+use datasets::Family;
+use geodesics::{FirstSample, farthest_point_sampling};
+use linalg::{DistanceMatrix, LandmarkDistances, Matrix};
+use mesh::{IntrinsicMesh, shapes};
+use nmds::{NystromOptions, classical, classical_full, nystrom, paper_stress};
+use pipeline::{EmbedMethod, EmbedOptions, StressChoice, StressKind, embedded_distances};
+
+use crate::support::{all_vertices, body, columns, embedded, gap, marching};
+
+/// The columns of some points of a matrix of distances.
+fn landmark_columns(distances: &DistanceMatrix, landmarks: Vec<usize>) -> LandmarkDistances {
+    let p = distances.n_points();
+    let values: Vec<f64> = landmarks.iter().flat_map(|&l| distances.row(l).iter().copied()).collect();
+    LandmarkDistances::new(landmarks, Matrix::from_vec(p, values.len() / p, values)).unwrap()
+}
+
+fn straight_distances(points: &[nalgebra::Point3<f64>]) -> DistanceMatrix {
+    DistanceMatrix::from_pairs(points.len(), |i, j| (points[i] - points[j]).norm()).unwrap()
+}
+
+#[test]
+fn points_in_space_come_back_from_a_few_columns_at_rank_five() {
+    let points = shapes::torus(20, 13, 2.0, 0.7).positions;
+    let distances = straight_distances(&points);
+    for n in [5, 10, 40] {
+        let landmarks = (0..n).map(|i| (i * 97 + 3) % points.len()).collect();
+        let options = NystromOptions { rank: Some(5), dim: 3 };
+        let embedding = nystrom(&landmark_columns(&distances, landmarks), &options).unwrap();
+        let found = embedded_distances(&embedding.coords).unwrap();
+        let gap = gap(found.as_slice(), distances.as_slice());
+        println!("{n} landmarks: largest error {gap:.1e}");
+        assert!(gap < 1e-9, "{n} landmarks: {gap:e}");
+    }
+}
+
+#[test]
+fn a_rank_too_small_for_space_is_not_exact() {
+    let points = shapes::torus(20, 13, 2.0, 0.7).positions;
+    let distances = straight_distances(&points);
+    let options = NystromOptions { rank: Some(4), dim: 3 };
+    let landmarks = landmark_columns(&distances, (0..10).map(|i| i * 26).collect());
+    let found = embedded_distances(&nystrom(&landmarks, &options).unwrap().coords).unwrap();
+    assert!(gap(found.as_slice(), distances.as_slice()) > 1e-3);
+}
+
+#[test]
+fn all_points_as_samples_is_classical_scaling() {
+    let mesh = shapes::torus(14, 9, 2.0, 0.7);
+    let rows = columns(&mesh, marching(), &all_vertices(&mesh));
+    let distances = DistanceMatrix::from_rows(mesh.n_vertices(), rows.data.into()).unwrap();
+    let p = distances.n_points();
+    let all = landmark_columns(&distances, (0..p).collect());
+    let sampled = nystrom(&all, &NystromOptions { rank: Some(p), dim: 3 }).unwrap();
+    let full = classical_full(&distances, 3).unwrap();
+    let pairs = |coords: &Matrix| embedded_distances(coords).unwrap();
+    let gap_pairs = gap(pairs(&sampled.coords).as_slice(), pairs(&full.coords).as_slice());
+    let gap_values = gap(&sampled.eigenvalues[..3], &full.eigenvalues[..3]);
+    println!("coordinates {gap_pairs:.1e}, eigenvalues {gap_values:.1e}");
+    assert!(gap_pairs < 1e-9 && gap_values < 1e-9, "{gap_pairs:e} {gap_values:e}");
+}
+
+#[test]
+fn more_samples_come_closer_to_the_optimum_and_never_below_it() {
+    let mesh = body(Family::Cat);
+    let solver = marching().prepare(&IntrinsicMesh::from_mesh(&mesh));
+    let rows = solver.distance_columns(&all_vertices(&mesh));
+    let distances = DistanceMatrix::from_rows(mesh.n_vertices(), rows.data.into()).unwrap();
+    let optimum = paper_stress(&classical(&distances, 3).unwrap().coords, &distances);
+    let excess = |n: usize| {
+        let samples = farthest_point_sampling(solver.as_ref(), n, FirstSample::default()).unwrap();
+        let embedding = nystrom(&samples, &NystromOptions::default()).unwrap();
+        paper_stress(&embedding.coords, &distances) / optimum - 1.0
+    };
+    let [few, many] = [10, 100].map(excess);
+    println!("above classical scaling: {few:.2e} with 10 samples, {many:.2e} with 100");
+    assert!(many > -1e-12 && many < 0.002 && many < few && few < 0.2, "{few} {many}");
+}
+
+#[test]
+fn the_estimated_stress_brackets_the_exact_one() {
+    let mesh = body(Family::Cat);
+    let stress = |choice| {
+        let options = EmbedOptions { stress: choice, ..EmbedOptions::default() };
+        embedded(&mesh, &options).report.stress.unwrap()
+    };
+    let exact = stress(StressChoice::Exact);
+    let estimate = stress(StressChoice::Estimate);
+    assert_eq!((exact.kind, estimate.kind), (StressKind::Exact, StressKind::Estimated));
+    let [low, high] = estimate.interval;
+    println!("exact {}, estimated {} in {low}..{high}", exact.value, estimate.value);
+    assert!(low <= exact.value && exact.value <= high);
+    assert!((estimate.value / exact.value - 1.0).abs() < 0.1);
+}
+
+#[test]
+fn methods_of_the_pipeline_agree_on_a_flat_sheet() {
+    let sheet = shapes::grid(17, 12, 0.5);
+    let flat = straight_distances(&sheet.positions);
+    for method in [EmbedMethod::Classical, EmbedMethod::Nystrom { rank: Some(4) }] {
+        let options = EmbedOptions { method, dim: 2, ..EmbedOptions::default() };
+        let result = embedded(&sheet, &options);
+        let found = embedded_distances(&result.embedding.coords).unwrap();
+        let gap = gap(found.as_slice(), flat.as_slice());
+        println!("{} on a sheet: largest error {gap:.1e}", result.report.method);
+        assert!(gap < 1e-9, "{}: {gap:e}", result.report.method);
+    }
+}

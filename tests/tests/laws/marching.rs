@@ -1,0 +1,134 @@
+//! What fast marching must come out as on surfaces whose distances are known.
+
+use geodesics::{DistanceSolver, FastMarching, FastMarchingOptions, ObtuseTreatment};
+use mesh::{IntrinsicMesh, TriMesh, VertexId, shapes};
+use pipeline::GeodesicMethod;
+
+use crate::support::{all_vertices, body, columns, marching};
+
+/// The largest error against straight lines, as a share of the size of a flat sheet.
+fn error_on_plane(sheet: &TriMesh, source: usize, obtuse: ObtuseTreatment) -> f64 {
+    let options = FastMarchingOptions { obtuse, ..FastMarchingOptions::default() };
+    let solver = FastMarching::new(&IntrinsicMesh::from_mesh(sheet), options);
+    let found = solver.distances(VertexId::from(source));
+    let straight: Vec<f64> = sheet.positions.iter().map(|p| (p - sheet.positions[source]).norm()).collect();
+    crate::support::gap(&found, &straight)
+}
+
+/// Corners, a side, the middle and somewhere between.
+fn sources(nx: usize, ny: usize) -> [usize; 6] {
+    [0, nx - 1, nx * ny - 1, nx / 2, nx * (ny / 2) + nx / 2, 5 * nx + 3]
+}
+
+#[test]
+fn regular_sheets_are_exact_from_everywhere_whatever_their_angles() {
+    let (nx, ny) = (21, 17);
+    // From nearly equilateral triangles over right ones to obtuse ones of up to 150 degrees.
+    for shear in [-1.0, -0.5, -0.3, 0.0, 0.5, 1.0, 1.7] {
+        let sheet = shapes::sheared_grid(nx, ny, 0.3, shear);
+        for source in sources(nx, ny) {
+            let error = error_on_plane(&sheet, source, ObtuseTreatment::Unfold);
+            assert!(error < 1e-12, "shear {shear}, source {source}: {error:e}");
+        }
+    }
+}
+
+#[test]
+fn without_unfolding_obtuse_sheets_are_nearly_exact() {
+    let (nx, ny) = (21, 17);
+    for (shear, limit) in [(0.0, 1e-12), (-0.5, 1e-12), (0.5, 3e-6), (1.0, 3e-6), (1.7, 3e-6)] {
+        let sheet = shapes::sheared_grid(nx, ny, 0.3, shear);
+        for source in sources(nx, ny) {
+            let error = error_on_plane(&sheet, source, ObtuseTreatment::Ignore);
+            assert!(error < limit, "shear {shear}, source {source}: {error:e}");
+        }
+    }
+}
+
+/// In uneven triangles a corner may be passed before its base, and no order of the front is exact.
+#[test]
+fn uneven_sheets_are_exact_to_a_few_thousandths() {
+    let (nx, ny) = (21, 17);
+    for (jitter, limit) in [(0.1, 5e-4), (0.2, 2e-3), (0.24, 5e-3)] {
+        let worst = (1..4)
+            .flat_map(|seed| sources(nx, ny).map(|source| (seed, source)))
+            .map(|(seed, source)| {
+                let sheet = shapes::jittered_grid(nx, ny, 0.3, jitter, seed);
+                error_on_plane(&sheet, source, ObtuseTreatment::Unfold)
+            })
+            .fold(0.0, f64::max);
+        println!("jitter {jitter}: largest error {worst:.1e}");
+        assert!(worst < limit, "jitter {jitter}: {worst:e}");
+    }
+}
+
+#[test]
+fn errors_halve_with_the_edges_of_a_sphere() {
+    let errors: Vec<f64> = (2..=5)
+        .map(|level| {
+            let sphere = shapes::icosphere(level);
+            let found = marching().prepare(&IntrinsicMesh::from_mesh(&sphere)).distances(VertexId(0));
+            let axis = sphere.positions[0].coords;
+            let arc = |v: usize| {
+                axis.cross(&sphere.positions[v].coords).norm().atan2(axis.dot(&sphere.positions[v].coords))
+            };
+            (0..found.len()).map(|v| (found[v] - arc(v)).abs()).sum::<f64>() / found.len() as f64
+        })
+        .collect();
+    println!("mean errors on spheres of halving edges: {errors:?}");
+    for pair in errors.windows(2) {
+        assert!(pair[1] < 0.6 * pair[0], "{errors:?}");
+    }
+}
+
+#[test]
+fn distances_grow_no_faster_than_edges_and_stay_below_paths_along_them() {
+    for mesh in [body(datasets::Family::Cat), shapes::icosphere(4), shapes::sheared_grid(20, 15, 1.0, 1.7)] {
+        let sources: Vec<VertexId> = (0..10).map(|i| VertexId::from(i * mesh.n_vertices() / 10)).collect();
+        let surface = IntrinsicMesh::from_mesh(&mesh);
+        let marched = columns(&mesh, marching(), &sources);
+        let walked = columns(&mesh, GeodesicMethod::Dijkstra, &sources);
+        let slack = 1e-12 * walked.max();
+        for s in 0..sources.len() {
+            for (edge, ends) in surface.topology().edges().iter().enumerate() {
+                let [a, b] = ends.map(|v| marched[(v.index(), s)]);
+                assert!((a - b).abs() <= surface.edge_lengths()[edge] + slack);
+            }
+        }
+        assert!(marched.iter().zip(walked.iter()).all(|(m, w)| m.is_finite() && *m <= w + slack));
+    }
+}
+
+#[test]
+fn other_pieces_are_infinitely_far_and_nothing_else_is() {
+    let parts = [shapes::icosphere(2), shapes::grid(6, 5, 1.0), shapes::torus(8, 6, 2.0, 0.5)];
+    let whole = shapes::disjoint(&parts);
+    let mut start = 0;
+    for part in &parts {
+        let end = start + part.n_vertices();
+        for method in [marching(), GeodesicMethod::Dijkstra, GeodesicMethod::BreadthFirst] {
+            let surface = IntrinsicMesh::from_mesh(&whole);
+            let found = method.prepare(&surface).distances(VertexId::from(start + 1));
+            for (v, d) in found.iter().enumerate() {
+                assert_eq!(d.is_finite(), (start..end).contains(&v), "{} {v}", method.name());
+                assert!(!d.is_nan() && *d >= 0.0);
+            }
+        }
+        start = end;
+    }
+}
+
+#[test]
+fn there_is_nearly_as_far_as_back() {
+    let mesh = body(datasets::Family::David);
+    let d = columns(&mesh, marching(), &all_vertices(&mesh));
+    let (longest, n_pairs) = (d.max(), (d.nrows() * (d.nrows() - 1)) as f64);
+    let worst = (&d - d.transpose()).abs().max() / longest;
+    let mut total = 0.0;
+    for (i, j) in (0..d.nrows()).flat_map(|i| (0..i).map(move |j| (i, j))) {
+        total += 2.0 * (d[(i, j)] - d[(j, i)]).abs() / d[(i, j)].max(d[(j, i)]);
+    }
+    let mean = total / n_pairs;
+    println!("there and back differ by {mean:.1e} on average, by {worst:.1e} of the longest way at most");
+    assert!(mean < 0.005 && worst < 0.03, "{mean} {worst}");
+}

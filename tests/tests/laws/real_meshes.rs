@@ -1,0 +1,149 @@
+//! What real meshes must come out as: scans and the animals of TOSCA.
+//!
+//! They are not part of the repository. Their folder is named by `CANONFORM_DATA`, else it is
+//! `../shared/data` beside the workspace; without it these tests say that they are skipped.
+
+use std::path::{Path, PathBuf};
+
+use geodesics::{FirstSample, farthest_point_sampling};
+use linalg::DistanceMatrix;
+use mesh::{IntrinsicMesh, RepairOptions, VertexId};
+use nmds::{NystromOptions, classical, nystrom, paper_stress};
+use pipeline::{
+    EmbedOptions, MatchOptions, Normalization, PreparedForms, StressChoice, Surface, embed, form_distances,
+    label_of,
+};
+use retrieval::{Labels, evaluate};
+
+use crate::support::{marching, workspace_root};
+
+/// The folder of real meshes, or a line that says that the test is skipped.
+fn data(test: &str) -> Option<PathBuf> {
+    let folder = std::env::var_os("CANONFORM_DATA")
+        .map_or_else(|| workspace_root().join("../shared/data"), PathBuf::from);
+    if folder.is_dir() {
+        return Some(folder);
+    }
+    println!("skipped {test}: no folder {}; name one in CANONFORM_DATA", folder.display());
+    None
+}
+
+fn read(path: &Path) -> Surface {
+    let surface = Surface::read(path, &RepairOptions::default()).unwrap();
+    assert_eq!(surface.n_input_vertices(), surface.intrinsic.n_vertices(), "{}", path.display());
+    surface
+}
+
+fn tosca(data: &Path, name: &str) -> Surface {
+    read(&data.join("tosca-lowres").join(format!("{name}.vert")))
+}
+
+fn read_npy<T: npyz::Deserialize>(path: &Path) -> Vec<T> {
+    npyz::NpyFile::new(std::fs::File::open(path).unwrap()).unwrap().into_vec().unwrap()
+}
+
+/// Mean error of fast marching as a share of the exact distance, over all vertices but the source,
+/// and the largest beyond the ring around the source.
+fn errors(data: &Path, name: &str, surface: &IntrinsicMesh) -> (f64, f64) {
+    let exact = |what| data.join("exact").join(format!("{name}-{what}.npy"));
+    let sources: Vec<u32> = read_npy(&exact("sources"));
+    let rows: Vec<f64> = read_npy(&exact("distances"));
+    let p = surface.n_vertices();
+    assert_eq!(rows.len(), sources.len() * p, "{name}");
+    let solver = marching().prepare(surface);
+    let (mut total, mut count, mut worst) = (0.0, 0usize, 0.0f64);
+    for (source, exact) in sources.into_iter().zip(rows.chunks(p)) {
+        let source = VertexId(source);
+        let found = solver.distances(source);
+        for v in (0..p).filter(|&v| v != source.index()) {
+            let error = (found[v] - exact[v]).abs() / exact[v];
+            total += error;
+            count += 1;
+            if surface.topology().edge_between(source, VertexId::from(v)).is_none() {
+                worst = worst.max(error);
+            }
+        }
+    }
+    (total / count as f64, worst)
+}
+
+#[test]
+fn marching_is_close_to_exact_distances() {
+    let Some(data) = data("marching against exact distances") else { return };
+    for name in ["armadillo", "spot"] {
+        let surface = read(&data.join("single").join(format!("{name}.obj")));
+        let (mean, worst) = errors(&data, name, &surface.intrinsic);
+        println!("{name}: mean error {:.3} %, worst beyond the ring {:.2} %", 100.0 * mean, 100.0 * worst);
+        assert!(mean <= 0.01, "{name}: {mean}");
+    }
+    for name in ["cat0", "cat1", "centaur1", "horse0", "wolf0"] {
+        let surface = tosca(&data, name);
+        let (mean, worst) = errors(&data, name, &surface.intrinsic);
+        println!("{name}: mean error {:.3} %, worst beyond the ring {:.2} %", 100.0 * mean, 100.0 * worst);
+        assert!(mean <= 0.007 && worst <= 0.1, "{name}: {mean} {worst}");
+    }
+}
+
+/// Shares by which the stress of NMDS may exceed that of classical scaling.
+struct Excess {
+    ten_samples: f64,
+    hundred_samples: f64,
+}
+
+fn near_optimal_stress(name: &str, allowed: &Excess) {
+    let Some(data) = data("stress against classical scaling") else { return };
+    let surface = tosca(&data, name);
+    let p = surface.intrinsic.n_vertices();
+    let solver = marching().prepare(&surface.intrinsic);
+    let all: Vec<VertexId> = (0..p).map(VertexId::from).collect();
+    let distances = DistanceMatrix::from_rows(p, solver.distance_columns(&all).data.into()).unwrap();
+    let optimum = paper_stress(&classical(&distances, 3).unwrap().coords, &distances);
+    for (n, rank, limit) in [(10, 5, allowed.ten_samples), (100, 50, allowed.hundred_samples)] {
+        let sampled = farthest_point_sampling(solver.as_ref(), n, FirstSample::default()).unwrap();
+        let embedding = nystrom(&sampled, &NystromOptions { rank: Some(rank), dim: 3 }).unwrap();
+        let excess = paper_stress(&embedding.coords, &distances) / optimum - 1.0;
+        println!("{name}, {n} samples, rank {rank}: {:.3} % above classical scaling", 100.0 * excess);
+        assert!(excess <= limit, "{name}, {n} samples: {excess}");
+    }
+}
+
+#[test]
+fn few_samples_of_a_man_come_close_to_classical_scaling() {
+    near_optimal_stress("david0", &Excess { ten_samples: 0.02, hundred_samples: 0.002 });
+}
+
+#[test]
+fn few_samples_of_a_cat_come_close_to_classical_scaling() {
+    near_optimal_stress("cat0", &Excess { ten_samples: 0.2, hundred_samples: 0.002 });
+}
+
+#[test]
+fn a_mesh_whose_faces_were_lost_is_named() {
+    let Some(data) = data("the damaged mesh") else { return };
+    let path = data.join("tosca-lowres/victoria14.vert");
+    let message = Surface::read(&path, &RepairOptions::default()).unwrap_err().to_string();
+    println!("{message}");
+    assert!(message.contains("victoria14"), "{message}");
+}
+
+#[test]
+fn animals_find_their_kind() {
+    let Some(data) = data("three classes of TOSCA") else { return };
+    let names = ["cat0", "cat1", "cat2", "centaur0", "centaur1", "centaur2", "david0", "david1", "david10"];
+    let options = EmbedOptions { stress: StressChoice::Skip, ..EmbedOptions::default() };
+    let forms: Vec<_> = names
+        .iter()
+        .map(|name| {
+            let surface = tosca(&data, name);
+            embed(&surface, &options, &()).unwrap().form(&surface).unwrap()
+        })
+        .collect();
+    let labels = Labels::new(&names.map(label_of));
+    for normalization in [Normalization::Raw, Normalization::UnitSpread] {
+        let prepared = PreparedForms::new(&forms, normalization).unwrap();
+        let distances = form_distances(&prepared, &MatchOptions::default(), &()).unwrap();
+        let scores = evaluate(&distances, &labels, 1).unwrap();
+        println!("{normalization:?}: NN {}, mAP {:.4}", scores.nn, scores.map);
+        assert_eq!(scores.nn, 1.0, "{normalization:?}");
+    }
+}

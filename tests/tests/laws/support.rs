@@ -1,0 +1,60 @@
+//! What several modules need.
+
+use std::path::PathBuf;
+
+use datasets::{ArticulatedOptions, Family, articulated_shape};
+use linalg::{DistanceMatrix, Matrix};
+use mesh::{IntrinsicMesh, RepairOptions, TriMesh, VertexId};
+use nalgebra::Point3;
+use pipeline::{EmbedOptions, Embedded, GeodesicMethod, Surface, embed, embedded_distances};
+
+/// The folder of the workspace's manifest.
+pub(crate) fn workspace_root() -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("..")
+}
+
+/// A body with limbs: a shape of the built-in dataset with 1,000 vertices, no two distances alike.
+pub(crate) fn body(family: Family) -> TriMesh {
+    let options = ArticulatedOptions { n_vertices: 1000, ..ArticulatedOptions::default() };
+    articulated_shape(family, 1, &options).unwrap().mesh
+}
+
+/// A clean mesh as a surface.
+pub(crate) fn surface(mesh: &TriMesh) -> Surface {
+    Surface::new(mesh, &RepairOptions::default()).unwrap()
+}
+
+pub(crate) fn embedded(mesh: &TriMesh, options: &EmbedOptions) -> Embedded {
+    embed(&surface(mesh), options, &()).unwrap()
+}
+
+/// All distances between the points of the embedding of a mesh.
+pub(crate) fn form_pairs(mesh: &TriMesh, options: &EmbedOptions) -> DistanceMatrix {
+    embedded_distances(&embedded(mesh, options).embedding.coords).unwrap()
+}
+
+/// Fast marching as it is by default.
+pub(crate) fn marching() -> GeodesicMethod {
+    GeodesicMethod::default()
+}
+
+/// Distances from some vertices of a mesh, a column each.
+pub(crate) fn columns(mesh: &TriMesh, method: GeodesicMethod, sources: &[VertexId]) -> Matrix {
+    method.prepare(&IntrinsicMesh::from_mesh(mesh)).distance_columns(sources)
+}
+
+pub(crate) fn all_vertices(mesh: &TriMesh) -> Vec<VertexId> {
+    (0..mesh.n_vertices()).map(VertexId::from).collect()
+}
+
+/// The largest difference between two lists, as a share of the largest value of the second.
+pub(crate) fn gap(a: &[f64], b: &[f64]) -> f64 {
+    assert_eq!(a.len(), b.len());
+    let largest = b.iter().fold(0.0f64, |most, x| most.max(x.abs()));
+    a.iter().zip(b).fold(0.0f64, |most, (x, y)| most.max((x - y).abs())) / largest
+}
+
+/// The mesh with every position moved.
+pub(crate) fn moved(mesh: &TriMesh, motion: impl Fn(&Point3<f64>) -> Point3<f64>) -> TriMesh {
+    TriMesh { positions: mesh.positions.iter().map(motion).collect(), faces: mesh.faces.clone() }
+}

@@ -1,0 +1,63 @@
+//! The same bits for any number of threads.
+
+use datasets::Family;
+use pipeline::{
+    EmbedMethod, EmbedOptions, Embedded, MatchOptions, Normalization, PreparedForms, Samples, StressChoice,
+    form_distances,
+};
+
+use crate::support::{body, embedded, surface};
+
+/// Runs work on pools of 1, 2 and 5 threads.
+fn on_each_pool<T: Send>(work: impl Fn() -> T + Sync) -> [T; 3] {
+    [1, 2, 5].map(|n| rayon::ThreadPoolBuilder::new().num_threads(n).build().unwrap().install(&work))
+}
+
+fn bits(values: &[f64]) -> Vec<u64> {
+    values.iter().map(|x| x.to_bits()).collect()
+}
+
+/// Everything of an embedding but the time it took.
+fn facts(result: &Embedded) -> (Vec<u64>, Vec<u64>, Vec<u32>, Option<[u64; 3]>) {
+    let stress = result.report.stress.as_ref();
+    (
+        bits(result.embedding.coords.as_slice()),
+        bits(&result.embedding.eigenvalues),
+        result.report.samples.clone(),
+        stress.map(|s| [s.value, s.interval[0], s.interval[1]].map(f64::to_bits)),
+    )
+}
+
+#[test]
+fn an_embedding_does_not_depend_on_threads() {
+    let mesh = body(Family::Centaur);
+    for (method, samples, stress) in [
+        (EmbedMethod::default(), Samples::Count(100), StressChoice::Exact),
+        (EmbedMethod::default(), Samples::Auto, StressChoice::Estimate),
+        (EmbedMethod::Classical, Samples::Auto, StressChoice::Exact),
+    ] {
+        let options = EmbedOptions { method, samples, stress, ..EmbedOptions::default() };
+        let [one, two, five] = on_each_pool(|| facts(&embedded(&mesh, &options)));
+        assert!(one.3.is_some());
+        assert!(one == two && one == five, "{options:?}");
+    }
+}
+
+#[test]
+fn distances_between_forms_do_not_depend_on_threads() {
+    let forms: Vec<_> = Family::all()
+        .into_iter()
+        .map(|family| {
+            let surface = surface(&body(family));
+            let options = EmbedOptions { stress: StressChoice::Skip, ..EmbedOptions::default() };
+            pipeline::embed(&surface, &options, &()).unwrap().form(&surface).unwrap()
+        })
+        .collect();
+    for normalization in [Normalization::Raw, Normalization::UnitSpread] {
+        let [one, two, five] = on_each_pool(|| {
+            let prepared = PreparedForms::new(&forms, normalization).unwrap();
+            bits(form_distances(&prepared, &MatchOptions::default(), &()).unwrap().as_slice())
+        });
+        assert!(one == two && one == five, "{normalization:?}");
+    }
+}
