@@ -75,7 +75,11 @@ impl FastMarching {
     }
 
     fn march(&self, front: &mut Front, max_distance: f64, solve: impl Fn(Corner, f64, f64) -> f64) {
+        // How far the front has been. A corrected vertex is behind it: the other end of a base then counts
+        // as passed although it lies farther away, or the result would depend on the order of the wedges.
+        let mut passed = 0.0f64;
         while let Some((distance, vertex)) = front.pop() {
+            passed = passed.max(distance);
             if distance > max_distance {
                 break;
             }
@@ -86,7 +90,7 @@ impl FastMarching {
                     continue;
                 }
                 let mut reached = distance + wedge.edge;
-                if at_other <= distance {
+                if at_other <= passed {
                     reached = reached.min(solve(wedge.corner, distance, at_other));
                 }
                 if reached < known * SIGNIFICANT {

@@ -64,7 +64,7 @@ fn all_points_as_samples_is_classical_scaling() {
 #[test]
 fn more_samples_come_closer_to_the_optimum_and_never_below_it() {
     let mesh = body(Family::Cat);
-    let solver = marching().prepare(&IntrinsicMesh::from_mesh(&mesh));
+    let solver = marching().prepare(&IntrinsicMesh::from_mesh(&mesh)).unwrap();
     let rows = solver.distance_columns(&all_vertices(&mesh));
     let distances = DistanceMatrix::from_rows(mesh.n_vertices(), rows.data.into()).unwrap();
     let optimum = paper_stress(&classical(&distances, 3).unwrap().coords, &distances);

@@ -1,21 +1,54 @@
-//! What must change nothing: folding, moving and, up to the unit, scaling.
+//! What must change nothing: folding, moving, renumbering and, up to the unit, scaling.
 
 use datasets::Family;
 use linalg::DistanceMatrix;
-use mesh::{IntrinsicMesh, VertexId, shapes};
+use mesh::{IntrinsicMesh, TriMesh, VertexId, shapes};
 use nalgebra::{Isometry3, Point3, Vector3};
 use pipeline::{
-    EmbedMethod, EmbedOptions, GeodesicMethod, MatchOptions, Normalization, PreparedForms, Samples,
-    form_distances,
+    EmbedMethod, EmbedOptions, FirstSample, GeodesicMethod, MatchOptions, Normalization, PreparedForms,
+    Samples, form_distances,
 };
 
-use crate::support::{all_vertices, body, columns, embedded, form_pairs, gap, marching, moved, surface};
+use crate::support::{
+    all_vertices, body, columns, embedded, form_pairs, gap, marching, moved, permutation, surface,
+};
 
 fn few_samples() -> EmbedOptions {
     EmbedOptions {
         samples: Samples::Count(30),
         method: EmbedMethod::Nystrom { rank: Some(8) },
         ..EmbedOptions::default()
+    }
+}
+
+/// A sheet of uneven triangles whose column 7 of vertices is straight, so that it can be folded.
+fn creased_sheet() -> (TriMesh, f64) {
+    let (nx, ny, step, column) = (19, 14, 0.3, 7);
+    let mut sheet = shapes::jittered_grid(nx, ny, step, 0.2, 5);
+    let crease = step * column as f64;
+    for j in 0..ny {
+        sheet.positions[j * nx + column].x = crease;
+    }
+    (sheet, crease)
+}
+
+#[test]
+fn folding_along_a_mesh_line_changes_no_distance_and_no_embedding() {
+    let (sheet, crease) = creased_sheet();
+    let sources = all_vertices(&sheet);
+    let flat_form = form_pairs(&sheet, &few_samples());
+    for angle in [0.4, 1.6, 2.9] {
+        let folded = shapes::fold(&sheet, crease, angle);
+        for method in [marching(), GeodesicMethod::Dijkstra] {
+            let [a, b] = [&folded, &sheet].map(|mesh| columns(mesh, method, &sources));
+            let gap = gap(a.as_slice(), b.as_slice());
+            println!("folded by {angle}: {} distances differ by {gap:.1e}", method.name());
+            assert!(gap < 1e-12, "{} {angle}: {gap:e}", method.name());
+        }
+        let form = form_pairs(&folded, &few_samples());
+        let gap = gap(form.as_slice(), flat_form.as_slice());
+        println!("folded by {angle}: embeddings differ by {gap:.1e}");
+        assert!(gap < 1e-12, "{angle}: {gap:e}");
     }
 }
 
@@ -45,6 +78,50 @@ fn a_rigid_motion_changes_no_form() {
     }
 }
 
+/// The mesh with its vertices renumbered and its faces in another order and rotation; vertex `v`
+/// becomes `number[v]`.
+fn renumbered(mesh: &TriMesh) -> (TriMesh, Vec<usize>) {
+    let number = permutation(mesh.n_vertices());
+    let mut positions = mesh.positions.clone();
+    for (v, p) in mesh.positions.iter().enumerate() {
+        positions[number[v]] = *p;
+    }
+    let faces = permutation(mesh.n_faces()).into_iter().map(|f| {
+        let mut face = mesh.faces[f].map(|v| VertexId::from(number[v.index()]));
+        face.rotate_left(f % 3);
+        face
+    });
+    (TriMesh { positions, faces: faces.collect() }, number)
+}
+
+#[test]
+fn renumbering_renumbers_distances_and_form() {
+    for family in [Family::Cat, Family::David] {
+        let mesh = body(family);
+        let (other, number) = renumbered(&mesh);
+        let sources: Vec<VertexId> = (0..20).map(|i| VertexId(i * 49)).collect();
+        let targets: Vec<VertexId> = sources.iter().map(|v| VertexId::from(number[v.index()])).collect();
+        for method in [marching(), GeodesicMethod::Dijkstra, GeodesicMethod::BreadthFirst] {
+            let here = columns(&mesh, method, &sources);
+            let there = columns(&other, method, &targets);
+            let back = linalg::Matrix::from_fn(here.nrows(), here.ncols(), |v, s| there[(number[v], s)]);
+            let gap = gap(back.as_slice(), here.as_slice());
+            println!("{}: {} distances differ by {gap:.1e}", family.name(), method.name());
+            assert!(gap < 1e-9, "{}: {gap:e}", method.name());
+        }
+
+        let first =
+            |vertex| EmbedOptions { first_sample: FirstSample::Vertex(vertex), ..EmbedOptions::default() };
+        let [here, there] =
+            [embedded(&mesh, &first(VertexId(0))), embedded(&other, &first(VertexId::from(number[0])))];
+        let samples: Vec<u32> = here.report.samples.iter().map(|&v| number[v as usize] as u32).collect();
+        assert_eq!(samples, there.report.samples);
+        let [a, b] = [here, there].map(|e| e.report.stress.unwrap().value);
+        println!("{}: stresses differ by {:.1e}", family.name(), (a / b - 1.0).abs());
+        assert!((a / b - 1.0).abs() < 1e-9);
+    }
+}
+
 fn scaled_pairs(pairs: &DistanceMatrix, factor: f64) -> Vec<f64> {
     pairs.as_slice().iter().map(|d| d * factor).collect()
 }
@@ -55,11 +132,11 @@ fn a_change_of_unit_changes_the_unit_alone() {
     let options = EmbedOptions::default();
     let (form, stress) =
         (form_pairs(&mesh, &options), embedded(&mesh, &options).report.stress.unwrap().value);
-    let solver = marching().prepare(&IntrinsicMesh::from_mesh(&mesh));
+    let solver = marching().prepare(&IntrinsicMesh::from_mesh(&mesh)).unwrap();
     let distances = solver.distances(VertexId(5));
     for factor in [1e-3, 1e3] {
         let scaled = moved(&mesh, |p| p * factor);
-        let found = marching().prepare(&IntrinsicMesh::from_mesh(&scaled)).distances(VertexId(5));
+        let found = marching().prepare(&IntrinsicMesh::from_mesh(&scaled)).unwrap().distances(VertexId(5));
         let expected: Vec<f64> = distances.iter().map(|d| d * factor).collect();
         assert!(gap(&found, &expected) < 1e-12);
         let form_gap = gap(form_pairs(&scaled, &options).as_slice(), &scaled_pairs(&form, factor));
@@ -79,7 +156,7 @@ fn normalised_distances_between_forms_know_no_size() {
             pipeline::embed(&surface, &few_samples(), &()).unwrap().form(&surface).unwrap()
         });
         let forms: Vec<_> = forms.collect();
-        let prepared = PreparedForms::new(&forms, Normalization::UnitSpread).unwrap();
+        let prepared = PreparedForms::new(&forms, Normalization::UnitArea).unwrap();
         form_distances(&prepared, &MatchOptions::default(), &()).unwrap().get(0, 1)
     };
     let one = distances(1.0);

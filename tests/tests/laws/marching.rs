@@ -45,20 +45,16 @@ fn without_unfolding_obtuse_sheets_are_nearly_exact() {
     }
 }
 
-/// In uneven triangles a corner may be passed before its base, and no order of the front is exact.
+/// In uneven triangles a corner may be passed before its base, and is corrected afterwards.
 #[test]
-fn uneven_sheets_are_exact_to_a_few_thousandths() {
+fn uneven_sheets_are_exact_as_well() {
     let (nx, ny) = (21, 17);
-    for (jitter, limit) in [(0.1, 5e-4), (0.2, 2e-3), (0.24, 5e-3)] {
-        let worst = (1..4)
-            .flat_map(|seed| sources(nx, ny).map(|source| (seed, source)))
-            .map(|(seed, source)| {
-                let sheet = shapes::jittered_grid(nx, ny, 0.3, jitter, seed);
-                error_on_plane(&sheet, source, ObtuseTreatment::Unfold)
-            })
-            .fold(0.0, f64::max);
-        println!("jitter {jitter}: largest error {worst:.1e}");
-        assert!(worst < limit, "jitter {jitter}: {worst:e}");
+    for (jitter, seed) in [(0.1, 1), (0.1, 2), (0.2, 1), (0.2, 2), (0.24, 1), (0.24, 3)] {
+        let sheet = shapes::jittered_grid(nx, ny, 0.3, jitter, seed);
+        for source in sources(nx, ny) {
+            let error = error_on_plane(&sheet, source, ObtuseTreatment::Unfold);
+            assert!(error < 1e-12, "jitter {jitter}, seed {seed}, source {source}: {error:e}");
+        }
     }
 }
 
@@ -67,7 +63,8 @@ fn errors_halve_with_the_edges_of_a_sphere() {
     let errors: Vec<f64> = (2..=5)
         .map(|level| {
             let sphere = shapes::icosphere(level);
-            let found = marching().prepare(&IntrinsicMesh::from_mesh(&sphere)).distances(VertexId(0));
+            let found =
+                marching().prepare(&IntrinsicMesh::from_mesh(&sphere)).unwrap().distances(VertexId(0));
             let axis = sphere.positions[0].coords;
             let arc = |v: usize| {
                 axis.cross(&sphere.positions[v].coords).norm().atan2(axis.dot(&sphere.positions[v].coords))
@@ -108,7 +105,7 @@ fn other_pieces_are_infinitely_far_and_nothing_else_is() {
         let end = start + part.n_vertices();
         for method in [marching(), GeodesicMethod::Dijkstra, GeodesicMethod::BreadthFirst] {
             let surface = IntrinsicMesh::from_mesh(&whole);
-            let found = method.prepare(&surface).distances(VertexId::from(start + 1));
+            let found = method.prepare(&surface).unwrap().distances(VertexId::from(start + 1));
             for (v, d) in found.iter().enumerate() {
                 assert_eq!(d.is_finite(), (start..end).contains(&v), "{} {v}", method.name());
                 assert!(!d.is_nan() && *d >= 0.0);

@@ -50,7 +50,7 @@ fn errors(data: &Path, name: &str, surface: &IntrinsicMesh) -> (f64, f64) {
     let rows: Vec<f64> = read_npy(&exact("distances"));
     let p = surface.n_vertices();
     assert_eq!(rows.len(), sources.len() * p, "{name}");
-    let solver = marching().prepare(surface);
+    let solver = marching().prepare(surface).unwrap();
     let (mut total, mut count, mut worst) = (0.0, 0usize, 0.0f64);
     for (source, exact) in sources.into_iter().zip(rows.chunks(p)) {
         let source = VertexId(source);
@@ -94,7 +94,7 @@ fn near_optimal_stress(name: &str, allowed: &Excess) {
     let Some(data) = data("stress against classical scaling") else { return };
     let surface = tosca(&data, name);
     let p = surface.intrinsic.n_vertices();
-    let solver = marching().prepare(&surface.intrinsic);
+    let solver = marching().prepare(&surface.intrinsic).unwrap();
     let all: Vec<VertexId> = (0..p).map(VertexId::from).collect();
     let distances = DistanceMatrix::from_rows(p, solver.distance_columns(&all).data.into()).unwrap();
     let optimum = paper_stress(&classical(&distances, 3).unwrap().coords, &distances);
@@ -139,7 +139,7 @@ fn animals_find_their_kind() {
         })
         .collect();
     let labels = Labels::new(&names.map(label_of));
-    for normalization in [Normalization::Raw, Normalization::UnitSpread] {
+    for normalization in [Normalization::Raw, Normalization::UnitArea] {
         let prepared = PreparedForms::new(&forms, normalization).unwrap();
         let distances = form_distances(&prepared, &MatchOptions::default(), &()).unwrap();
         let scores = evaluate(&distances, &labels, 1).unwrap();

@@ -40,7 +40,7 @@ pub(crate) fn marching() -> GeodesicMethod {
 
 /// Distances from some vertices of a mesh, a column each.
 pub(crate) fn columns(mesh: &TriMesh, method: GeodesicMethod, sources: &[VertexId]) -> Matrix {
-    method.prepare(&IntrinsicMesh::from_mesh(mesh)).distance_columns(sources)
+    method.prepare(&IntrinsicMesh::from_mesh(mesh)).unwrap().distance_columns(sources)
 }
 
 pub(crate) fn all_vertices(mesh: &TriMesh) -> Vec<VertexId> {
@@ -57,4 +57,15 @@ pub(crate) fn gap(a: &[f64], b: &[f64]) -> f64 {
 /// The mesh with every position moved.
 pub(crate) fn moved(mesh: &TriMesh, motion: impl Fn(&Point3<f64>) -> Point3<f64>) -> TriMesh {
     TriMesh { positions: mesh.positions.iter().map(motion).collect(), faces: mesh.faces.clone() }
+}
+
+/// A shuffle of `0..n`, always the same.
+pub(crate) fn permutation(n: usize) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..n).collect();
+    let mut state = 12345u64;
+    for i in (1..n).rev() {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        order.swap(i, (state >> 33) as usize % (i + 1));
+    }
+    order
 }

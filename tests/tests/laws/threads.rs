@@ -53,7 +53,7 @@ fn distances_between_forms_do_not_depend_on_threads() {
             pipeline::embed(&surface, &options, &()).unwrap().form(&surface).unwrap()
         })
         .collect();
-    for normalization in [Normalization::Raw, Normalization::UnitSpread] {
+    for normalization in [Normalization::Raw, Normalization::UnitArea] {
         let [one, two, five] = on_each_pool(|| {
             let prepared = PreparedForms::new(&forms, normalization).unwrap();
             bits(form_distances(&prepared, &MatchOptions::default(), &()).unwrap().as_slice())
