@@ -152,8 +152,13 @@ mod tests {
         assert!(centroid.norm() < 1e-15);
         assert!((form.weights().iter().sum::<f64>() - 1.0).abs() < 1e-15);
         assert!((form.spread() - 2f64.sqrt()).abs() < 1e-15);
-        let scaled = CanonicalForm::new(&embedding(coords * 5.0), &mesh).unwrap();
-        let (a, b) = (form.normalized(Normalization::UnitArea), scaled.normalized(Normalization::UnitArea));
+        let mut large = mesh.clone();
+        large.positions.iter_mut().for_each(|p| *p *= 5.0);
+        let scaled = CanonicalForm::new(&embedding(coords * 5.0), &large).unwrap();
+        let [a, b] = [&form, &scaled].map(|form| form.normalized(Normalization::UnitArea));
+        assert!((a.spread() - 0.5f64.sqrt()).abs() < 1e-15);
+        let bare = form.clone().without_unit();
+        assert_eq!(bare.normalized(Normalization::UnitArea), bare);
         assert!(a.points().iter().zip(b.points()).all(|(p, q)| (p - q).norm() < 1e-14));
         assert_eq!(form.to_mesh(&mesh).faces, mesh.faces);
     }

@@ -137,7 +137,7 @@ mod tests {
         assert_eq!(ask(Some(7), 3), Err(NmdsError::BadRank { rank: 7, n_landmarks: 6 }));
         assert_eq!(ask(Some(0), 3), Err(NmdsError::BadRank { rank: 0, n_landmarks: 6 }));
         assert_eq!(ask(Some(2), 3), Err(NmdsError::BadDimension { dim: 3, limit: 2 }));
-        assert_eq!(ask(None, 0), Err(NmdsError::BadDimension { dim: 0, limit: 3 }));
+        assert_eq!(ask(None, 0), Err(NmdsError::BadDimension { dim: 0, limit: 4 }));
         let nothing = LandmarkDistances::new(vec![0, 1, 2], Matrix::zeros(4, 3)).unwrap();
         assert_eq!(nystrom(&nothing, &NystromOptions::default()), Err(NmdsError::NoExtent { n_points: 4 }));
     }
