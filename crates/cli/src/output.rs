@@ -60,7 +60,11 @@ pub(crate) fn write_csv<'a>(path: &Path, rows: impl Iterator<Item = &'a [f64]>) 
 pub(crate) fn check_folder(path: &Path) -> Result<()> {
     match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() && !folder.is_dir() => {
-            bail!("{}: the folder {} does not exist; make it first", path.display(), folder.display())
+            bail!(
+                "cannot write {}: the folder {} does not exist; make it first",
+                path.display(),
+                folder.display()
+            )
         }
         _ => Ok(()),
     }

@@ -93,7 +93,18 @@ fn one_crate_names_the_numerical_backend() {
 fn geodesics_reads_no_coordinates() {
     let mut faults = Vec::new();
     for path in source_files(&workspace_root().join("crates/geodesics/src")) {
-        for (number, line) in fs::read_to_string(&path).unwrap().lines().enumerate() {
+        // Tests may make surfaces from coordinates.
+        if path
+            .iter()
+            .rev()
+            .take_while(|part| *part != "src")
+            .any(|part| part == "tests" || part == "tests.rs")
+        {
+            continue;
+        }
+        let source = fs::read_to_string(&path).unwrap();
+        let shipped = source.lines().take_while(|line| *line != "#[cfg(test)]");
+        for (number, line) in shipped.enumerate() {
             let code = line.split("//").next().unwrap_or_default();
             let found = ["TriMesh", "positions", "Point3"].into_iter().filter(|word| code.contains(word));
             faults.extend(found.map(|word| {
