@@ -5,7 +5,7 @@ OUT ?= out
 # A folder of meshes with the paper's classes, for `make reproduce`; the built-in dataset without it.
 DATASET ?=
 
-.PHONY: help setup build run test lint fmt doc bench reproduce report deny ci clean
+.PHONY: help setup build run test lint fmt doc reproduce report deny ci clean
 
 help: ## List these commands
 	@grep -hE '^[a-z]+:.*## ' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "  make %-10s %s\n", $$1, $$2}'
