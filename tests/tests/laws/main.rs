@@ -1,7 +1,7 @@
 //! Laws that hold across crates, and what real meshes must come out as.
 //!
 //! One binary, so that everything is linked once. The modules, from the house to its contents:
-//! `architecture` (which crate may know which), `marching` (distances), `embedding` (coordinates),
+//! `architecture` (which crate may know which), `licences` (what may come in), `marching` (distances), `embedding` (coordinates),
 //! `isometry` (what must change nothing), `threads` (the same bytes for any number of them),
 //! `builtin` (the built-in dataset) and `real_meshes`, which is skipped without the meshes.
 
@@ -13,6 +13,8 @@ mod builtin;
 mod embedding;
 #[cfg(test)]
 mod isometry;
+#[cfg(test)]
+mod licences;
 #[cfg(test)]
 mod marching;
 #[cfg(test)]

@@ -1,0 +1,66 @@
+//! Whether everything that is built in may be: the licences of all packages against `deny.toml`.
+//!
+//! `make deny` asks cargo-deny for the same and more; this needs no other program.
+
+use std::fs;
+use std::process::Command;
+
+use cargo_metadata::{Metadata, MetadataCommand};
+
+use crate::support::workspace_root;
+
+/// All packages that are built on this platform, without asking the registry.
+fn metadata() -> Metadata {
+    let version = Command::new("rustc").arg("-vV").output().unwrap();
+    let version = String::from_utf8(version.stdout).unwrap();
+    let host = version.lines().find_map(|line| line.strip_prefix("host: ")).unwrap();
+    MetadataCommand::new()
+        .manifest_path(workspace_root().join("Cargo.toml"))
+        .other_options(["--offline", "--filter-platform", host].map(str::to_owned))
+        .exec()
+        .unwrap()
+}
+
+/// The licences that `deny.toml` allows.
+fn allowed() -> Vec<String> {
+    let text = fs::read_to_string(workspace_root().join("deny.toml")).unwrap();
+    let table: toml::Table = text.parse().unwrap();
+    let list = table["licenses"]["allow"].as_array().unwrap();
+    list.iter().map(|licence| licence.as_str().unwrap().to_owned()).collect()
+}
+
+/// Whether an SPDX expression can be met: every part joined by AND has an allowed alternative.
+fn permits(expression: &str, allowed: &[String]) -> bool {
+    let expression = expression.replace('/', " OR ");
+    expression.split(" AND ").all(|part| {
+        let part = part.replace(['(', ')'], "");
+        part.split(" OR ").any(|licence| allowed.iter().any(|a| a == licence.trim()))
+    })
+}
+
+#[test]
+fn expressions_are_read_as_they_are_meant() {
+    let allowed = ["MIT", "Unicode-3.0"].map(str::to_owned);
+    for (expression, expected) in [
+        ("MIT", true),
+        ("GPL-3.0", false),
+        ("GPL-3.0 OR MIT", true),
+        ("MIT/Apache-2.0", true),
+        ("(MIT OR Apache-2.0) AND Unicode-3.0", true),
+        ("MIT AND GPL-3.0", false),
+    ] {
+        assert_eq!(permits(expression, &allowed), expected, "{expression}");
+    }
+}
+
+#[test]
+fn every_package_has_an_allowed_licence() {
+    let allowed = allowed();
+    let faults: Vec<String> = metadata()
+        .packages
+        .iter()
+        .filter(|package| !package.license.as_deref().is_some_and(|l| permits(l, &allowed)))
+        .map(|package| format!("{} {}: {:?}", package.name, package.version, package.license))
+        .collect();
+    assert!(faults.is_empty(), "not allowed by deny.toml:\n{}", faults.join("\n"));
+}
