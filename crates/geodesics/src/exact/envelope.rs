@@ -28,31 +28,30 @@ const OVERLAP: f64 = 0.5;
 pub(super) fn trim(windows: &mut Vec<Window>, length: f64, ends: [f64; 2]) {
     cut_ends(windows, length, ends);
     sort(windows);
-    // The window before is held back, since the next one may cut it; `kept` windows are in place.
-    let Some(mut last) = windows.first().copied() else { return };
+    // Of the windows before the current one, `kept` are left, in place.
     let mut kept = 0;
-    let touch = |left: &Window, right: &Window| right.start - left.end <= GAP * length;
-    for i in 1..windows.len() {
-        let mut window = windows[i];
+    for i in 0..windows.len() {
         let mut fate = Fate::BothStay;
-        if touch(&last, &window) {
-            fate = meet(&mut last, &mut window);
-            while fate == Fate::RightStays && kept > 0 {
-                kept -= 1;
-                last = windows[kept];
-                fate = if touch(&last, &window) { meet(&mut last, &mut window) } else { Fate::BothStay };
+        while kept > 0 {
+            let (before, rest) = windows.split_at_mut(i);
+            let (left, right) = (&mut before[kept - 1], &mut rest[0]);
+            if right.start - left.end > GAP * length {
+                break;
             }
-        }
-        if fate == Fate::BothStay {
-            windows[kept] = last;
-            kept += 1;
+            fate = meet(left, right);
+            if fate != Fate::RightStays {
+                break;
+            }
+            kept -= 1;
         }
         if fate != Fate::LeftStays {
-            last = window;
+            if kept < i {
+                windows[kept] = windows[i];
+            }
+            kept += 1;
         }
     }
-    windows[kept] = last;
-    windows.truncate(kept + 1);
+    windows.truncate(kept);
 }
 
 /// Insertion keeps few windows, and those that come in order from either side, cheap.
@@ -99,14 +98,19 @@ enum Fate {
     RightStays,
 }
 
+/// Whether two windows see the same source at the same place.
+#[inline]
+fn have_same_source(left: &Window, right: &Window) -> bool {
+    let same = SAME_SOURCE * (left.depth + left.x.abs());
+    (left.x - right.x).abs() <= same
+        && (left.depth - right.depth).abs() <= same
+        && (left.offset - right.offset).abs() <= same
+}
+
 /// Shares the overlap of two windows, of which `left` comes first.
 #[inline]
 fn meet(left: &mut Window, right: &mut Window) -> Fate {
-    let same = SAME_SOURCE * (left.depth + left.x.abs());
-    if (left.x - right.x).abs() <= same
-        && (left.depth - right.depth).abs() <= same
-        && (left.offset - right.offset).abs() <= same
-    {
+    if have_same_source(left, right) {
         left.end = left.end.max(right.end);
         return Fate::LeftStays;
     }

@@ -25,7 +25,7 @@ pub(super) enum Arrival {
 pub(super) struct Front {
     nodes: Vec<Node>,
     arrivals: Vec<Arrival>,
-    /// A 4-ary min-heap of vertices by distance, then by number.
+    /// A 4-ary min-heap of vertices by distance.
     heap: Vec<(f64, u32)>,
     /// The queue of windows at the base of every corner.
     gates: Vec<u32>,
@@ -124,7 +124,15 @@ impl Front {
                 let queue = self.open(corner, ends);
                 std::mem::swap(&mut self.queues[queue as usize].windows, windows);
             }
-            queue => self.queues[queue as usize].windows.extend_from_slice(windows),
+            queue => {
+                let before = &mut self.queues[queue as usize].windows;
+                // Both are in order, and one before the other but for overlaps.
+                let start = |windows: &[Window]| windows.first().map(|window| window.start);
+                if start(windows) < start(before) {
+                    std::mem::swap(before, windows);
+                }
+                before.extend_from_slice(windows);
+            }
         }
     }
 
@@ -170,15 +178,10 @@ impl Front {
     }
 
     #[inline]
-    fn before(a: (f64, u32), b: (f64, u32)) -> bool {
-        a.0 < b.0 || (a.0 == b.0 && a.1 < b.1)
-    }
-
-    #[inline]
     fn sift_up(&mut self, mut hole: usize, item: (f64, u32)) {
         while hole > 0 {
             let parent = (hole - 1) / 4;
-            if !Self::before(item, self.heap[parent]) {
+            if item.0 >= self.heap[parent].0 {
                 break;
             }
             self.place(hole, self.heap[parent]);
@@ -189,23 +192,24 @@ impl Front {
 
     #[inline]
     fn sift_down(&mut self, item: (f64, u32)) {
+        let nearer = |p: (usize, f64), q: (usize, f64)| if q.1 < p.1 { q } else { p };
         let mut hole = 0;
         loop {
             let first = 4 * hole + 1;
-            if first >= self.heap.len() {
-                break;
-            }
-            let mut child = first;
-            for other in first + 1..self.heap.len().min(first + 4) {
-                if Self::before(self.heap[other], self.heap[child]) {
-                    child = other;
+            let (child, nearest) = match self.heap.get(first..) {
+                // All four without a branch, which would be mispredicted.
+                Some([p, q, r, s, ..]) => nearer(nearer((0, p.0), (1, q.0)), nearer((2, r.0), (3, s.0))),
+                Some(few) => {
+                    let distances = few.iter().map(|child| child.0).enumerate();
+                    distances.reduce(nearer).unwrap_or((0, f64::INFINITY))
                 }
-            }
-            if !Self::before(self.heap[child], item) {
+                None => break,
+            };
+            if nearest >= item.0 {
                 break;
             }
-            self.place(hole, self.heap[child]);
-            hole = child;
+            self.place(hole, self.heap[first + child]);
+            hole = first + child;
         }
         self.place(hole, item);
     }

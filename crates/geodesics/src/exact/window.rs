@@ -46,34 +46,31 @@ impl Window {
         }
     }
 
-    /// Cuts away the part that is nearer through the edge's start, a vertex at `distance`; `None`
-    /// when that is all of it.
+    /// Cuts away the part that is nearer through the edge's start, a vertex at `distance`.
     ///
     /// Along the edge, the window's distance never grows faster than that from the vertex, so the part is
     /// an interval from the start; its end solves a linear equation.
     #[inline]
     pub(super) fn cut_start(&mut self, distance: f64) -> Cut {
-        match cut_at(self.x, self.depth, distance - self.offset) {
-            Some(at) if at <= self.start => Cut::Nothing,
-            Some(at) if at < self.end => {
-                self.start = at;
-                Cut::Part
-            }
-            _ => Cut::All,
+        let start = nearer_until(self.x, self.depth, distance - self.offset).max(self.start);
+        if start >= self.end {
+            return Cut::All;
         }
+        let cut = if start > self.start { Cut::Part } else { Cut::Nothing };
+        self.start = start;
+        cut
     }
 
     /// The same from the other end of the edge, which has the given length.
     #[inline]
     pub(super) fn cut_end(&mut self, length: f64, distance: f64) -> Cut {
-        match cut_at(length - self.x, self.depth, distance - self.offset) {
-            Some(at) if length - at >= self.end => Cut::Nothing,
-            Some(at) if length - at > self.start => {
-                self.end = length - at;
-                Cut::Part
-            }
-            _ => Cut::All,
+        let end = (length - nearer_until(length - self.x, self.depth, distance - self.offset)).min(self.end);
+        if end <= self.start {
+            return Cut::All;
         }
+        let cut = if end < self.end { Cut::Part } else { Cut::Nothing };
+        self.end = end;
+        cut
     }
 }
 
@@ -85,16 +82,14 @@ pub(super) enum Cut {
     All,
 }
 
-/// Up to which point the origin, with a head start of `-lead`, is nearer than the source at
-/// `(x, -depth)`; `None` when it is everywhere.
+/// Up to which point the origin is nearer than the source at `(x, -depth)` when it is further by
+/// `lead` to begin with: not positive when nowhere, infinite when everywhere.
 #[inline]
-fn cut_at(x: f64, depth: f64, lead: f64) -> Option<f64> {
-    let excess = x * x + depth * depth - lead * lead;
-    if lead >= 0.0 && excess <= 0.0 {
-        return Some(0.0);
-    }
+fn nearer_until(x: f64, depth: f64, lead: f64) -> f64 {
     let slope = lead + x;
-    if slope > 0.0 { Some(excess / (2.0 * slope)) } else { None }
+    // Not a number for an infinite lead, which `max` and `min` take for nowhere.
+    let until = (x * x + depth * depth - lead * lead) / (2.0 * slope);
+    if slope > 0.0 { until } else { f64::INFINITY }
 }
 
 /// Positive where the light of `left` comes from further left than that of `right`, which then gains
