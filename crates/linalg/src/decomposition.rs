@@ -65,6 +65,31 @@ pub fn thin_qr(a: &Matrix) -> (Matrix, Matrix) {
     (from_faer(q.as_ref()), from_faer(qr.thin_R()))
 }
 
+/// The pseudo-inverse of a matrix; singular values below `max(rows, columns) * 2.2e-16` of the largest
+/// count as zero.
+///
+/// Cost `O(m n min(m, n))`.
+///
+/// # Errors
+/// [`LinalgError::NotConverged`], which a NaN entry causes.
+pub fn pseudo_inverse(a: &Matrix) -> Result<Matrix, LinalgError> {
+    let n = a.nrows().max(a.ncols());
+    if a.is_empty() {
+        return Ok(a.transpose());
+    }
+    if a.iter().any(|x| !x.is_finite()) {
+        return Err(LinalgError::NotConverged { n });
+    }
+    let svd = view(a).thin_svd().map_err(|_| LinalgError::NotConverged { n })?;
+    let (u, mut v) = (from_faer(svd.U()), from_faer(svd.V()));
+    let values = svd.S();
+    let floor = n as f64 * f64::EPSILON * values[0];
+    for (j, mut column) in v.column_iter_mut().enumerate() {
+        column *= if values[j] > floor { 1.0 / values[j] } else { 0.0 };
+    }
+    Ok(v * u.transpose())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -100,5 +125,24 @@ mod tests {
         assert!((&q * &r - &a).norm() < 1e-13 * a.norm());
         assert!((q.transpose() * &q - Matrix::identity(6, 6)).norm() < 1e-13);
         assert!((0..6).all(|i| (0..i).all(|j| r[(i, j)] == 0.0)));
+    }
+
+    #[test]
+    fn the_pseudo_inverse_satisfies_the_penrose_conditions() {
+        let mut a = wave(12, 5);
+        let twice = a.column(0) * 2.0;
+        a.set_column(3, &twice);
+        for a in [a.clone(), a.transpose(), wave(4, 4), Matrix::zeros(3, 2)] {
+            let x = pseudo_inverse(&a).unwrap();
+            assert_eq!(x.shape(), (a.ncols(), a.nrows()));
+            let gaps = [&a * &x * &a - &a, &x * &a * &x - &x];
+            assert!(gaps.iter().all(|gap| gap.norm() < 1e-12 * (1.0 + a.norm())));
+            for product in [&a * &x, &x * &a] {
+                assert!((&product - product.transpose()).norm() < 1e-13);
+            }
+        }
+        assert_eq!(pseudo_inverse(&Matrix::zeros(3, 0)).unwrap().shape(), (0, 3));
+        let nan = Matrix::from_element(3, 2, f64::NAN);
+        assert_eq!(pseudo_inverse(&nan), Err(LinalgError::NotConverged { n: 3 }));
     }
 }

@@ -17,7 +17,7 @@ mod panels;
 mod sparse;
 
 pub use cholesky::{EliminationOrder, SparseCholesky};
-pub use decomposition::{SymmetricEigen, symmetric_eigen, thin_qr};
+pub use decomposition::{SymmetricEigen, pseudo_inverse, symmetric_eigen, thin_qr};
 pub use distance_matrix::DistanceMatrix;
 pub use error::LinalgError;
 pub use krylov::{SymmetricOperator, largest_eigenpairs};

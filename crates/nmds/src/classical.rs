@@ -101,8 +101,6 @@ impl SymmetricOperator for CentredSquares<'_> {
 mod tests {
     use super::*;
     use crate::testing::{Cloud, procrustes_free_gap};
-    use crate::{NystromOptions, nystrom};
-    use linalg::LandmarkDistances;
 
     /// Distances of points on a circle along its arc: far from Euclidean.
     fn circle(p: usize) -> DistanceMatrix {
@@ -127,19 +125,6 @@ mod tests {
             assert!((few.eigenvalues[j] - all.eigenvalues[j]).abs() < 1e-8 * all.eigenvalues[0]);
         }
         assert!(all.negative_mass > 0.05 && all.eigenvalues.len() == 601);
-    }
-
-    #[test]
-    fn nystrom_with_all_samples_is_classical_scaling() {
-        let p = 60;
-        let cloud = Cloud::new(p, 5, 7);
-        let distances = DistanceMatrix::from_pairs(p, |i, j| cloud.distance(i, j).powf(0.8)).unwrap();
-        let all = LandmarkDistances::new((0..p).collect(), Matrix::from_fn(p, p, |i, j| distances.get(i, j)))
-            .unwrap();
-        let nmds = nystrom(&all, &NystromOptions { rank: Some(p), dim: 3 }).unwrap();
-        let mds = classical_full(&distances, 3).unwrap();
-        assert!((nmds.coords - &mds.coords).amax() < 1e-8 * mds.coords.amax());
-        assert!((nmds.negative_mass - mds.negative_mass).abs() < 1e-8);
     }
 
     #[test]

@@ -1,6 +1,8 @@
 //! The result of every method.
 
-use linalg::Matrix;
+use linalg::{Matrix, symmetric_eigen, thin_qr};
+
+use crate::NmdsError;
 
 /// Coordinates of p points in k dimensions, and what is known of their quality.
 #[derive(Debug, Clone, PartialEq)]
@@ -54,10 +56,24 @@ impl Embedding {
         let negative_mass = negative_mass(&eigenvalues);
         Self { coords: columns, eigenvalues, negative_mass, rank }
     }
+
+    /// Centres coordinates in units of `unit` and turns them to their principal axes; `eigenvalues` become
+    /// those of `Z' Z`. Straight lines between points stay as they are.
+    pub(crate) fn along_principal_axes(
+        mut coords: Matrix,
+        unit: f64,
+        rank: usize,
+    ) -> Result<Self, NmdsError> {
+        center_columns(&mut coords);
+        let (q, w) = thin_qr(&coords);
+        let axes = symmetric_eigen(&(&w * w.transpose()))?;
+        let eigenvalues = axes.values.iter().map(|value| value.max(0.0)).collect();
+        Ok(Self::from_orthonormal(q * axes.vectors, eigenvalues, unit, rank))
+    }
 }
 
 /// Share of negative eigenvalues in the sum of magnitudes; zero when all are zero.
-fn negative_mass(eigenvalues: &[f64]) -> f64 {
+pub(crate) fn negative_mass(eigenvalues: &[f64]) -> f64 {
     let total: f64 = eigenvalues.iter().map(|value| value.abs()).sum();
     let negative: f64 = eigenvalues.iter().filter(|value| **value < 0.0).map(|value| -value).sum();
     if total > 0.0 { negative / total } else { 0.0 }

@@ -19,6 +19,26 @@ pub enum NmdsError {
         /// The largest possible.
         limit: usize,
     },
+    /// A regularisation parameter that is not a positive number.
+    #[error("the regularisation alpha = {alpha} sigma1^4 needs a positive number; 1e-10 is a good one")]
+    BadAlpha {
+        /// The number given.
+        alpha: f64,
+    },
+    /// Distances, or a start, of another number of points.
+    #[error("{given} points were given where the distances are of {n_points}")]
+    PointMismatch {
+        /// Points given.
+        given: usize,
+        /// Points of the distances.
+        n_points: usize,
+    },
+    /// A convergence tolerance without meaning.
+    #[error("the tolerance {tolerance} must be a number from 0 on; 1e-6 stops in time")]
+    BadTolerance {
+        /// The tolerance given.
+        tolerance: f64,
+    },
     /// All distances are zero.
     #[error("all distances are zero: {n_points} points coincide and have no shape")]
     NoExtent {

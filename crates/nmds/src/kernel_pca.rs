@@ -3,7 +3,7 @@
 use linalg::{LandmarkDistances, Matrix, symmetric_eigen, thin_qr};
 
 use crate::embedding::center_columns;
-use crate::{Embedding, NmdsError};
+use crate::{Embedding, NmdsError, NystromOptions, Regularization};
 
 /// The width sigma of the Gaussian kernel `exp(-d^2 / (2 sigma^2))`.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -71,7 +71,8 @@ impl Default for KernelPcaOptions {
 /// [`NmdsError::BadBandwidth`], [`NmdsError::BadRank`], [`NmdsError::BadDimension`],
 /// [`NmdsError::NoExtent`], [`NmdsError::Linalg`].
 pub fn kernel_pca(distances: &LandmarkDistances, options: &KernelPcaOptions) -> Result<Embedding, NmdsError> {
-    let shape = crate::NystromOptions { rank: options.rank, dim: options.dim };
+    let regularization = Regularization::LowRank { rank: options.rank };
+    let shape = NystromOptions { regularization, dim: options.dim };
     let rank = shape.validate(distances.n_landmarks())?;
     if distances.max() <= 0.0 {
         return Err(NmdsError::NoExtent { n_points: distances.n_points() });

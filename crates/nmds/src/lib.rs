@@ -9,7 +9,11 @@ mod classical;
 mod embedding;
 mod error;
 mod kernel_pca;
+mod landmark;
 mod nystrom;
+mod reconstruction;
+mod regularization;
+mod smacof;
 mod stress;
 #[cfg(test)]
 mod testing;
@@ -18,7 +22,11 @@ pub use classical::{classical, classical_full};
 pub use embedding::Embedding;
 pub use error::NmdsError;
 pub use kernel_pca::{Bandwidth, KernelPcaOptions, kernel_pca};
+pub use landmark::landmark_mds;
 pub use nystrom::{NystromOptions, nystrom};
+pub use reconstruction::{Reconstruction, ReconstructionError, sample_eigenvalues};
+pub use regularization::{Regularization, RpiAlpha};
+pub use smacof::{SmacofOptions, SmacofReport, SmacofStop, smacof};
 pub use stress::{
     DistanceRows, StressEstimate, estimate_paper_stress, normalized_stress, paper_stress, sample_rows,
 };

@@ -1,0 +1,276 @@
+//! How well few columns of squared distances say all of them.
+
+use linalg::{LandmarkDistances, Matrix, thin_qr};
+use rayon::prelude::*;
+
+use crate::regularization::by_magnitude;
+use crate::{DistanceRows, NmdsError, Regularization};
+
+/// How far an approximation `Ê` is from the matrix `E` of all squared distances.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ReconstructionError {
+    /// `‖Ê - E‖_F / ‖E‖_F`, without a unit.
+    pub relative: f64,
+    /// `‖Ê - E‖_F² / p²`, in the fourth power of a length: what the paper's Fig. 5 and 6 show.
+    pub mean_square: f64,
+}
+
+/// The errors of all approximations `Ê = R X R'` of a matrix `E` of squared distances by n of its columns
+/// `R`: those of every [`Regularization`], and the best there is.
+///
+/// | paper | here | shape | meaning |
+/// |---|---|---|---|
+/// | `E` | squares of `rows` | p x p | all squared distances; symmetric |
+/// | `R` | squares of `distances` | p x n | the samples' columns |
+/// | `Q` | of the QR decomposition of `R` | p x n | orthonormal basis of what `Ê` can reach |
+/// | `RR⁺E` | `Q Q' E` | p x p | projection of `E`, the best that columns in the span of `R` can do (eq. 5) |
+///
+/// With `A = Q' E Q` and `Ê = Q Â Q'` the error is a sum of squares that are never subtracted from each other,
+/// `‖E - Ê‖² = ‖E - QQ'E‖² + ‖Q'E - A Q'‖² + ‖A - Â‖²`: the first term is the error of the best projection, the
+/// first two that of the best symmetric choice of `X`, and only the last depends on the regularisation. So
+/// two passes over the rows of `E` are enough for any number of regularisations of the same samples.
+///
+/// * Cost of [`Self::new`] `O(p^2 n)` time, in blocks of rows, and `O(p n)` memory; of an error `O(n^3)`.
+/// * The number of threads changes nothing.
+/// * `rows` and `distances` may come from different solvers: an approximation by hops of marched distances.
+#[derive(Debug)]
+pub struct Reconstruction {
+    /// Samples' columns and block in units of `unit²`.
+    sq_columns: Matrix,
+    sq_block: Matrix,
+    unit: f64,
+    q: Matrix,
+    /// `A`, n x n.
+    projected: Matrix,
+    /// `‖E‖²`, `‖E - QQ'E‖²` and `‖Q'E - A Q'‖²`.
+    norm_sq: f64,
+    outside_sq: f64,
+    beside_sq: f64,
+}
+
+/// Rows in a block: fixes the order of summation.
+const BLOCK: usize = 64;
+
+impl Reconstruction {
+    /// Takes the samples' columns and the rows of all distances, each of which is asked for twice.
+    ///
+    /// # Errors
+    /// [`NmdsError::PointMismatch`], [`NmdsError::NoExtent`].
+    pub fn new(distances: &LandmarkDistances, rows: &dyn DistanceRows) -> Result<Self, NmdsError> {
+        let p = rows.n_points();
+        if p != distances.n_points() {
+            return Err(NmdsError::PointMismatch { given: distances.n_points(), n_points: p });
+        }
+        let unit = distances.max();
+        if unit <= 0.0 {
+            return Err(NmdsError::NoExtent { n_points: p });
+        }
+        let sq_columns = distances.matrix().map(|d| (d / unit).powi(2));
+        let sq_block = distances.sq_block() / (unit * unit);
+        let (q, _) = thin_qr(&sq_columns);
+        // Row i of E Q, which is column i of Q' E.
+        let blocks = by_blocks(rows, unit, |_, block| (block.norm_squared(), block * &q));
+        let mut image = Matrix::zeros(p, q.ncols());
+        let mut norm_sq = 0.0;
+        for (i, (sum, rows)) in blocks.into_iter().enumerate() {
+            norm_sq += sum;
+            image.rows_mut(i * BLOCK, rows.nrows()).copy_from(&rows);
+        }
+        let projected = q.tr_mul(&image);
+        let beside_sq = (&image - &q * projected.transpose()).norm_squared();
+        let (across, image) = (&q, image.transpose());
+        let outside = by_blocks(rows, unit, |start, block| {
+            let within = across.rows(start, block.nrows()) * &image;
+            (block - within).norm_squared()
+        });
+        let outside_sq = outside.iter().sum();
+        Ok(Self { sq_columns, sq_block, unit, projected, norm_sq, outside_sq, beside_sq, q })
+    }
+
+    /// The error of `RR⁺E` (eq. 5), for which all of `E` must be known: the reference of Fig. 6.
+    #[must_use]
+    pub fn best_projection(&self) -> ReconstructionError {
+        self.error_of(self.outside_sq)
+    }
+
+    /// The error of the Nystrom approximation with this regularisation, by eq. 4, 3 or 9. Where
+    /// the rank is left to the default it is half of n, at least 7.
+    ///
+    /// # Errors
+    /// [`NmdsError::BadRank`], [`NmdsError::BadAlpha`], [`NmdsError::Linalg`].
+    pub fn error(&self, regularization: Regularization) -> Result<ReconstructionError, NmdsError> {
+        let rank = regularization.rank(self.sq_block.nrows(), 3)?;
+        let inverse = regularization.pseudo_inverse(&self.sq_block, self.unit, rank)?;
+        let reached = self.q.tr_mul(&inverse.apply(self.sq_columns.clone()));
+        let approximated = &reached * &inverse.core * reached.transpose();
+        let inside_sq = (&self.projected - approximated).norm_squared();
+        Ok(self.error_of(self.outside_sq + self.beside_sq + inside_sq))
+    }
+
+    fn error_of(&self, sum_sq: f64) -> ReconstructionError {
+        let p = self.sq_columns.nrows() as f64;
+        let relative = if self.norm_sq > 0.0 { (sum_sq / self.norm_sq).sqrt() } else { 0.0 };
+        ReconstructionError { relative, mean_square: sum_sq * self.unit.powi(4) / (p * p) }
+    }
+}
+
+/// Evaluates `work(start, block)` for all blocks of rows of squared distances, in units of `unit²`.
+fn by_blocks<T: Send>(
+    rows: &dyn DistanceRows,
+    unit: f64,
+    work: impl Fn(usize, Matrix) -> T + Sync,
+) -> Vec<T> {
+    let p = rows.n_points();
+    let starts: Vec<usize> = (0..p).step_by(BLOCK).collect();
+    let block = |start: usize| {
+        let height = BLOCK.min(p - start);
+        let mut row = vec![0.0; p];
+        let mut block = Matrix::zeros(height, p);
+        for i in 0..height {
+            rows.row_into(start + i, &mut row);
+            for (square, d) in block.row_mut(i).iter_mut().zip(&row) {
+                *square = (d / unit).powi(2);
+            }
+        }
+        work(start, block)
+    };
+    starts.par_iter().map(|&start| block(start)).collect()
+}
+
+/// The eigenvalues of the squared distances between samples (`S`), largest magnitude first, in squared units
+/// of the distances; those that are rounding errors are left out. The first one is the `σ1` of
+/// [`RpiAlpha`](crate::RpiAlpha).
+///
+/// # Errors
+/// [`NmdsError::Linalg`].
+pub fn sample_eigenvalues(distances: &LandmarkDistances) -> Result<Vec<f64>, NmdsError> {
+    let unit = if distances.max() > 0.0 { distances.max() } else { 1.0 };
+    let kept = by_magnitude(&(distances.sq_block() / (unit * unit)), distances.n_landmarks())?;
+    Ok(kept.values.iter().map(|value| value * unit * unit).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::RpiAlpha;
+    use crate::testing::{Cloud, scaled};
+    use linalg::{DistanceMatrix, pseudo_inverse};
+
+    /// All distances of a cloud raised to a power (1: Euclidean), and the columns of the first n points.
+    fn problem(p: usize, n: usize, power: f64) -> (DistanceMatrix, LandmarkDistances) {
+        let cloud = Cloud::new(p, 3, 41);
+        let all = DistanceMatrix::from_pairs(p, |i, j| cloud.distance(i, j).powf(power)).unwrap();
+        let columns = Matrix::from_fn(p, n, |i, j| all.get(i, j));
+        (all, LandmarkDistances::new((0..n).collect(), columns).unwrap())
+    }
+
+    const RPI: Regularization = Regularization::Rpi { alpha: RpiAlpha::Relative(1e-10) };
+
+    fn low_rank(rank: usize) -> Regularization {
+        Regularization::LowRank { rank: Some(rank) }
+    }
+
+    fn cur(rank: usize) -> Regularization {
+        Regularization::Cur { rank: Some(rank) }
+    }
+
+    #[test]
+    fn a_matrix_of_rank_five_is_reconstructed_from_rank_five() {
+        let (all, columns) = problem(150, 9, 1.0);
+        let affinity = Reconstruction::new(&columns, &all).unwrap();
+        assert!(affinity.best_projection().relative < 1e-13);
+        for exact in [low_rank(5), cur(5), Regularization::None, cur(9)] {
+            assert!(affinity.error(exact).unwrap().relative < 1e-11, "{exact:?}");
+        }
+        for short in [low_rank(4), cur(4)] {
+            assert!(affinity.error(short).unwrap().relative > 1e-4, "{short:?}");
+        }
+        assert!(affinity.error(RPI).unwrap().relative < 1e-3);
+    }
+
+    #[test]
+    fn errors_are_those_of_the_definition() {
+        let (p, n) = (90, 8);
+        let (all, columns) = problem(p, n, 0.7);
+        let affinity = Reconstruction::new(&columns, &all).unwrap();
+        let squares = Matrix::from_fn(p, p, |i, j| all.get(i, j).powi(2));
+        let r = squares.columns(0, n).into_owned();
+        let s = squares.view((0, 0), (n, n)).into_owned();
+        let check = |approximation: Matrix, error: ReconstructionError| {
+            let gap = approximation - &squares;
+            assert!((error.relative / (gap.norm() / squares.norm()) - 1.0).abs() < 1e-9);
+            assert!((error.mean_square / (gap.norm_squared() / (p * p) as f64) - 1.0).abs() < 1e-9);
+        };
+        let inverse = pseudo_inverse(&s).unwrap();
+        check(&r * &inverse * r.transpose(), affinity.error(Regularization::None).unwrap());
+        let kept = by_magnitude(&s, 5).unwrap();
+        let diagonal = |f: &dyn Fn(f64) -> f64, values: &[f64]| {
+            Matrix::from_diagonal(&values.iter().map(|v| f(*v)).collect::<Vec<_>>().into())
+        };
+        let c = &r * &kept.vectors;
+        check(&c * diagonal(&f64::recip, &kept.values) * c.transpose(), affinity.error(low_rank(5)).unwrap());
+        let u = pseudo_inverse(&s.columns(0, 5).into_owned()).unwrap();
+        check(r.columns(0, 5) * u * r.transpose(), affinity.error(cur(5)).unwrap());
+        let whole = by_magnitude(&s, n).unwrap();
+        let c = &r * &whole.vectors;
+        let alpha = 1e-10 * whole.values[0].powi(4);
+        let rpi = diagonal(&|v| v.signum() * v.abs() / (v * v + alpha / (v * v)), &whole.values);
+        check(&c * rpi * c.transpose(), affinity.error(RPI).unwrap());
+        check(&r * pseudo_inverse(&r).unwrap() * &squares, affinity.best_projection());
+    }
+
+    #[test]
+    fn nothing_is_better_than_the_projection_and_more_samples_bring_it_closer() {
+        let mut last = f64::INFINITY;
+        for n in [6, 12, 24, 48] {
+            let (all, columns) = problem(100, n, 0.7);
+            let affinity = Reconstruction::new(&columns, &all).unwrap();
+            let best = affinity.best_projection().relative;
+            assert!(best < last);
+            last = best;
+            for other in [Regularization::default(), RPI, Regularization::None, cur(5)] {
+                assert!(affinity.error(other).unwrap().relative >= best, "{other:?}");
+            }
+        }
+        let (all, columns) = problem(40, 40, 0.7);
+        let affinity = Reconstruction::new(&columns, &all).unwrap();
+        assert!(affinity.best_projection().relative < 1e-13);
+        assert!(affinity.error(Regularization::None).unwrap().relative < 1e-11);
+    }
+
+    #[test]
+    fn relative_errors_have_no_unit_and_do_not_depend_on_threads() {
+        let (all, columns) = problem(130, 10, 0.7);
+        let base = Reconstruction::new(&columns, &all).unwrap();
+        for scale in [1e-3, 1e3] {
+            let scaled_all = DistanceMatrix::from_pairs(130, |i, j| scale * all.get(i, j)).unwrap();
+            let other = Reconstruction::new(&scaled(&columns, scale), &scaled_all).unwrap();
+            for regularization in [low_rank(6), RPI, Regularization::None, cur(6)] {
+                let [a, b] = [&base, &other].map(|affinity| affinity.error(regularization).unwrap());
+                assert!((a.relative / b.relative - 1.0).abs() < 1e-9, "{regularization:?}");
+                assert!((b.mean_square / scale.powi(4) / a.mean_square - 1.0).abs() < 1e-9);
+            }
+        }
+        let with = |threads: usize| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| Reconstruction::new(&columns, &all).unwrap().error(low_rank(6)).unwrap())
+        };
+        assert_eq!(with(1), with(4));
+    }
+
+    #[test]
+    fn what_does_not_fit_is_refused() {
+        let (all, columns) = problem(20, 5, 1.0);
+        let (other, _) = problem(21, 5, 1.0);
+        let mismatch = NmdsError::PointMismatch { given: 20, n_points: 21 };
+        assert_eq!(Reconstruction::new(&columns, &other).unwrap_err(), mismatch);
+        let nothing = LandmarkDistances::new(vec![0, 1], Matrix::zeros(20, 2)).unwrap();
+        assert_eq!(Reconstruction::new(&nothing, &all).unwrap_err(), NmdsError::NoExtent { n_points: 20 });
+        let affinity = Reconstruction::new(&columns, &all).unwrap();
+        let bad = Err(NmdsError::BadRank { rank: 6, n_landmarks: 5 });
+        assert_eq!(affinity.error(low_rank(6)), bad);
+        assert_eq!(affinity.error(cur(6)), bad);
+        let alpha = Regularization::Rpi { alpha: RpiAlpha::Relative(-1.0) };
+        assert_eq!(affinity.error(alpha), Err(NmdsError::BadAlpha { alpha: -1.0 }));
+    }
+}

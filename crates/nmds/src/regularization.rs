@@ -1,0 +1,175 @@
+//! What takes the place of the inverse of the sample matrix.
+
+use linalg::{Matrix, SymmetricEigen, pseudo_inverse, symmetric_eigen};
+
+use crate::NmdsError;
+
+/// How the pseudo-inverse `S⁺` in the Nystrom approximation `Ê = R S⁺ R'` is kept from blowing up: the
+/// small eigenvalues of `S` are mostly noise, and their reciprocals are large.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Regularization {
+    /// The reciprocals of the `rank` eigenvalues of largest magnitude, zero for the rest (eq. 4): the
+    /// paper's own, and the fastest.
+    LowRank {
+        /// Eigenpairs to keep (`n1`), 1 to the number of samples n. Default: half of n, at least
+        /// `dim + 4`: the least rank that is exact for Euclidean distances, `dim + 2`, leaves some
+        /// first samples 50 % above the optimal stress at n = 10, two more leave none above 13 %.
+        rank: Option<usize>,
+    },
+    /// The regularised pseudo-inverse: `σ / (σ² + α / σ²)` for every reciprocal `1 / σ` (eq. 3), with the
+    /// sign of the eigenvalue.
+    Rpi {
+        /// How much small eigenvalues are held back.
+        alpha: RpiAlpha,
+    },
+    /// All reciprocals, but for eigenvalues that are rounding errors: the plain Nystrom method.
+    None,
+    /// The CUR decomposition `Ê = C U R'` with `C` the columns of the first `rank` samples and `U` the
+    /// pseudo-inverse of their rows at the samples (eq. 9). It is not symmetric; an embedding uses the mean
+    /// of it and its transpose.
+    Cur {
+        /// Columns in `C` (`n1`), as `rank` of [`Regularization::LowRank`].
+        rank: Option<usize>,
+    },
+}
+
+impl Default for Regularization {
+    fn default() -> Self {
+        Self::LowRank { rank: None }
+    }
+}
+
+/// The `α` of [`Regularization::Rpi`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum RpiAlpha {
+    /// `α = c σ1⁴` for this c, with `σ1` the largest eigenvalue in magnitude. It has no unit; 1e-10 is a
+    /// good choice, 1e-8 often a better one below 20 samples.
+    Relative(f64),
+    /// `α = σ1³`, the paper's choice after Civril et al. (`civril2007` in `REFERENCES.bib`).
+    ///
+    /// **The one thing that depends on the unit of length**: `α` is compared with `σ⁴`, so
+    /// `c = 1 / σ1` with `σ1` a squared distance in the unit of the caller. It is taken in that unit
+    /// because only then it is the paper's; in metres it regularises a million times as much as in
+    /// millimetres.
+    Paper,
+}
+
+impl Default for RpiAlpha {
+    fn default() -> Self {
+        Self::Relative(1e-10)
+    }
+}
+
+impl RpiAlpha {
+    /// `α / σ1⁴`, without a unit, where `sigma_1` is the largest eigenvalue of `S` in magnitude in the unit
+    /// of a squared distance of the caller.
+    #[must_use]
+    pub fn relative(self, sigma_1: f64) -> f64 {
+        match self {
+            Self::Relative(c) => c,
+            Self::Paper => 1.0 / sigma_1,
+        }
+    }
+}
+
+impl Regularization {
+    /// The name used on the command line and in records.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::LowRank { .. } => "low-rank",
+            Self::Rpi { .. } => "rpi",
+            Self::None => "none",
+            Self::Cur { .. } => "cur",
+        }
+    }
+
+    /// The number of eigenpairs (of columns, for CUR) used with `n_landmarks` samples to embed in `dim`
+    /// dimensions: n1, or n where all are used.
+    ///
+    /// # Errors
+    /// [`NmdsError::BadRank`], [`NmdsError::BadAlpha`].
+    pub fn rank(self, n_landmarks: usize, dim: usize) -> Result<usize, NmdsError> {
+        let rank = match self {
+            Self::LowRank { rank } | Self::Cur { rank } => {
+                rank.unwrap_or((dim + 4).max(n_landmarks.div_ceil(2)).min(n_landmarks))
+            }
+            Self::None => n_landmarks,
+            Self::Rpi { alpha: RpiAlpha::Relative(alpha) } if !(alpha > 0.0 && alpha.is_finite()) => {
+                return Err(NmdsError::BadAlpha { alpha });
+            }
+            Self::Rpi { .. } => n_landmarks,
+        };
+        if rank == 0 || rank > n_landmarks {
+            return Err(NmdsError::BadRank { rank, n_landmarks });
+        }
+        Ok(rank)
+    }
+
+    /// The pseudo-inverse of `sq_block`, the squared distances between samples in units of `unit²`, with
+    /// `rank` as [`Self::rank`] says.
+    pub(crate) fn pseudo_inverse(
+        self,
+        sq_block: &Matrix,
+        unit: f64,
+        rank: usize,
+    ) -> Result<PseudoInverse, NmdsError> {
+        if let Self::Cur { .. } = self {
+            let n = sq_block.nrows();
+            let mut core = Matrix::zeros(n, n);
+            core.rows_mut(0, rank).copy_from(&pseudo_inverse(&sq_block.columns(0, rank).into_owned())?);
+            return Ok(PseudoInverse { basis: None, core, rank });
+        }
+        let kept = by_magnitude(sq_block, rank)?;
+        let sigma_1 = kept.values[0].abs();
+        let reciprocal = |value: f64| match self {
+            // Samples that coincide, or a single one.
+            _ if value == 0.0 => 0.0,
+            Self::Rpi { alpha } => {
+                let ratio = value / sigma_1;
+                ratio.powi(3) / (ratio.powi(4) + alpha.relative(sigma_1 * unit * unit)) / sigma_1
+            }
+            _ => 1.0 / value,
+        };
+        let reciprocals: Vec<f64> = kept.values.iter().map(|value| reciprocal(*value)).collect();
+        let rank = reciprocals.len();
+        Ok(PseudoInverse {
+            basis: Some(kept.vectors),
+            core: Matrix::from_diagonal(&reciprocals.into()),
+            rank,
+        })
+    }
+}
+
+/// `S⁺ = T M T'`, which makes `Ê = (R T) M (R T)'`.
+#[derive(Debug)]
+pub(crate) struct PseudoInverse {
+    /// `T`, n x m; the identity when there is none.
+    basis: Option<Matrix>,
+    /// `M`, m x m; symmetric but for CUR.
+    pub(crate) core: Matrix,
+    /// Eigenpairs or columns that were used.
+    pub(crate) rank: usize,
+}
+
+impl PseudoInverse {
+    /// `R T` for a matrix `R` with n columns.
+    pub(crate) fn apply(&self, columns: Matrix) -> Matrix {
+        match &self.basis {
+            Some(basis) => columns * basis,
+            None => columns,
+        }
+    }
+}
+
+/// Up to `rank` eigenpairs of largest magnitude that are more than rounding errors; at least one.
+pub(crate) fn by_magnitude(sq_block: &Matrix, rank: usize) -> Result<SymmetricEigen, NmdsError> {
+    let eigen = symmetric_eigen(sq_block)?;
+    let mut order: Vec<usize> = (0..eigen.values.len()).collect();
+    order.sort_by(|&i, &j| eigen.values[j].abs().total_cmp(&eigen.values[i].abs()));
+    order.truncate(rank);
+    let first = order[0];
+    let floor = sq_block.nrows() as f64 * f64::EPSILON * eigen.values[first].abs();
+    order.retain(|&i| i == first || eigen.values[i].abs() > floor);
+    Ok(eigen.select(&order))
+}

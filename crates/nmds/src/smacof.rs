@@ -1,0 +1,270 @@
+//! SMACOF: the metric stress made smaller step by step.
+
+use linalg::{DistanceMatrix, Matrix};
+use rayon::prelude::*;
+
+use crate::{Embedding, NmdsError};
+
+/// Options of [`smacof`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SmacofOptions {
+    /// Steps at most. Default: 300.
+    pub max_iterations: usize,
+    /// Ends when a step lowers the stress by less than this share of it. Default: 1e-5.
+    pub tolerance: f64,
+}
+
+impl Default for SmacofOptions {
+    fn default() -> Self {
+        Self { max_iterations: 300, tolerance: 1e-5 }
+    }
+}
+
+/// Facts about a run of [`smacof`].
+#[derive(Debug, Clone, PartialEq)]
+pub struct SmacofReport {
+    /// Kruskal's stress `sqrt(sum (d_ij - |x_i - x_j|)^2 / sum d_ij^2)` of the start and after every step:
+    /// never ascending.
+    pub normalized_stress: Vec<f64>,
+    /// Why it ended.
+    pub stop: SmacofStop,
+}
+
+impl SmacofReport {
+    /// Number of steps that were taken.
+    #[must_use]
+    pub fn iterations(&self) -> usize {
+        self.normalized_stress.len() - 1
+    }
+}
+
+/// Why [`smacof`] ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SmacofStop {
+    /// The stress hardly fell any more.
+    Converged,
+    /// All the steps allowed were taken.
+    IterationLimit,
+}
+
+/// SMACOF with equal weights: moves the points of `start` (p x k) until straight lines between them fit
+/// the distances best, by `sum (d_ij - |x_i - x_j|)^2` (the raw stress).
+///
+/// Each step is the Guttman transform `X <- B(X) X / p` with `B_ij = -d_ij / |x_i - x_j|` (zero where points
+/// coincide) and rows that sum to zero: the minimum of a quadratic function that touches the stress from
+/// above, so the stress never rises.
+///
+/// * A local minimum: which one depends on the start. Classical or Nystrom scaling is a good one. A
+///   dimension that is zero in the start stays zero.
+/// * Fits distances where classical scaling fits their squares, so the paper's stress of the result is
+///   larger than that of classical scaling, and [`normalized_stress`](crate::normalized_stress) smaller.
+/// * The result is centred and turned to its principal axes; `eigenvalues` are the k of `X' X`.
+/// * Cost `O(p^2 k)` a step; `O(p k)` memory besides the distances. The number of threads changes nothing.
+///
+/// After de Leeuw 1977 (`deleeuw1977` in `REFERENCES.bib`).
+///
+/// # Errors
+/// [`NmdsError::PointMismatch`], [`NmdsError::BadDimension`], [`NmdsError::BadTolerance`],
+/// [`NmdsError::NoExtent`], [`NmdsError::Linalg`] when a coordinate is not finite.
+pub fn smacof(
+    start: &Matrix,
+    distances: &DistanceMatrix,
+    options: &SmacofOptions,
+) -> Result<(Embedding, SmacofReport), NmdsError> {
+    let (p, dim) = start.shape();
+    if p != distances.n_points() {
+        return Err(NmdsError::PointMismatch { given: p, n_points: distances.n_points() });
+    }
+    if dim == 0 || dim > p {
+        return Err(NmdsError::BadDimension { dim, limit: p });
+    }
+    let tolerance = options.tolerance;
+    if !(tolerance >= 0.0 && tolerance.is_finite()) {
+        return Err(NmdsError::BadTolerance { tolerance });
+    }
+    let unit = distances.max();
+    if unit <= 0.0 {
+        return Err(NmdsError::NoExtent { n_points: p });
+    }
+    let total: f64 = distances.as_slice().iter().map(|d| (d / unit).powi(2)).sum();
+
+    let mut current = start / unit;
+    let (mut stress, mut next) = guttman(&current, distances, unit);
+    let mut report = SmacofReport { normalized_stress: vec![], stop: SmacofStop::IterationLimit };
+    let mut note = |stress: f64| report.normalized_stress.push((stress / total).sqrt());
+    note(stress);
+    let mut stop = SmacofStop::IterationLimit;
+    for _ in 0..options.max_iterations {
+        let (lower, after) = guttman(&next, distances, unit);
+        // Only rounding can make it rise.
+        if lower < stress {
+            note(lower);
+            current = next;
+            next = after;
+        }
+        if stress - lower <= tolerance * stress {
+            stop = SmacofStop::Converged;
+            break;
+        }
+        stress = lower;
+    }
+    report.stop = stop;
+    Ok((Embedding::along_principal_axes(current, unit, dim)?, report))
+}
+
+/// The raw stress of `x`, every pair counted twice, and its Guttman transform; distances in `unit`.
+fn guttman(x: &Matrix, distances: &DistanceMatrix, unit: f64) -> (f64, Matrix) {
+    let (p, dim) = x.shape();
+    let mut moved = vec![0.0; p * dim];
+    let stresses: Vec<f64> = moved
+        .par_chunks_mut(dim)
+        .enumerate()
+        .map_init(
+            || vec![0.0; p],
+            |ratios, (i, moved)| {
+                ratios.fill(0.0);
+                for column in x.column_iter() {
+                    let at = column[i];
+                    for (sq, x) in ratios.iter_mut().zip(column.iter()) {
+                        *sq += (x - at) * (x - at);
+                    }
+                }
+                let mut stress = 0.0;
+                for (ratio, d) in ratios.iter_mut().zip(distances.row(i)) {
+                    let (target, length) = (d / unit, ratio.sqrt());
+                    stress += (target - length) * (target - length);
+                    *ratio = if length > 0.0 { target / length } else { 0.0 };
+                }
+                for (moved, column) in moved.iter_mut().zip(x.column_iter()) {
+                    let at = column[i];
+                    let pull: f64 = ratios.iter().zip(column.iter()).map(|(r, x)| r * (at - x)).sum();
+                    *moved = pull / p as f64;
+                }
+                stress
+            },
+        )
+        .collect();
+    (stresses.iter().sum(), Matrix::from_row_slice(p, dim, &moved))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::{Cloud, procrustes_free_gap};
+    use crate::{classical, normalized_stress};
+
+    /// Distances of a cloud raised to a power, and their classical scaling.
+    fn problem(p: usize, power: f64) -> (DistanceMatrix, Matrix) {
+        let cloud = Cloud::new(p, 4, 51);
+        let distances = DistanceMatrix::from_pairs(p, |i, j| cloud.distance(i, j).powf(power)).unwrap();
+        let start = classical(&distances, 3).unwrap().coords;
+        (distances, start)
+    }
+
+    #[test]
+    fn the_stress_never_rises_and_is_that_of_the_coordinates() {
+        let (distances, start) = problem(120, 0.7);
+        for tolerance in [0.0, 1e-5] {
+            let options = SmacofOptions { tolerance, ..Default::default() };
+            let (embedding, report) = smacof(&start, &distances, &options).unwrap();
+            let stress = &report.normalized_stress;
+            assert!(stress.windows(2).all(|pair| pair[1] < pair[0]), "{stress:?}");
+            assert!((stress[0] / normalized_stress(&start, &distances) - 1.0).abs() < 1e-9);
+            let last = stress[report.iterations()];
+            assert!((last / normalized_stress(&embedding.coords, &distances) - 1.0).abs() < 1e-9);
+            assert!(last < 0.9 * stress[0]);
+        }
+    }
+
+    #[test]
+    fn points_in_space_stay_where_they_are() {
+        let cloud = Cloud::new(90, 3, 52);
+        let distances = DistanceMatrix::from_pairs(90, |i, j| cloud.distance(i, j)).unwrap();
+        let start = classical(&distances, 3).unwrap();
+        let (embedding, report) = smacof(&start.coords, &distances, &SmacofOptions::default()).unwrap();
+        assert!(procrustes_free_gap(&cloud, &embedding) < 1e-9);
+        assert_eq!(report.stop, SmacofStop::Converged);
+        // A shaken start comes back.
+        let shaken = start.coords.map_with_location(|i, j, x| x + 0.5 * ((7 * i + 3 * j) as f64).sin());
+        let options = SmacofOptions { tolerance: 0.0, max_iterations: 2000 };
+        let (embedding, _) = smacof(&shaken, &distances, &options).unwrap();
+        assert!(procrustes_free_gap(&cloud, &embedding) < 1e-6);
+    }
+
+    #[test]
+    fn a_step_is_the_guttman_transform() {
+        let (distances, start) = problem(30, 0.7);
+        let p = 30;
+        let mut b = Matrix::from_fn(p, p, |i, j| {
+            if i == j { 0.0 } else { -distances.get(i, j) / (start.row(i) - start.row(j)).norm() }
+        });
+        for i in 0..p {
+            b[(i, i)] = -b.row(i).sum();
+        }
+        let expected = b * &start / p as f64;
+        let (stress, moved) = guttman(&start, &distances, 1.0);
+        assert!((moved - &expected).amax() < 1e-12);
+        let total: f64 = distances.as_slice().iter().map(|d| d * d).sum();
+        assert!(((stress / total).sqrt() / normalized_stress(&start, &distances) - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn it_ends_where_it_is_told_to() {
+        let (distances, start) = problem(80, 0.7);
+        let run = |max_iterations, tolerance| {
+            smacof(&start, &distances, &SmacofOptions { max_iterations, tolerance }).unwrap().1
+        };
+        let cut = run(5, 0.0);
+        assert_eq!((cut.iterations(), cut.stop), (5, SmacofStop::IterationLimit));
+        let none = run(0, 0.0);
+        assert_eq!((none.iterations(), none.stop), (0, SmacofStop::IterationLimit));
+        let (rough, fine) = (run(10_000, 1e-3), run(10_000, 1e-7));
+        assert_eq!([rough.stop, fine.stop], [SmacofStop::Converged; 2]);
+        assert!(rough.iterations() < fine.iterations());
+    }
+
+    #[test]
+    fn neither_the_unit_of_length_nor_threads_matter() {
+        let (distances, start) = problem(100, 0.7);
+        let options = SmacofOptions { max_iterations: 40, tolerance: 0.0 };
+        let (base, _) = smacof(&start, &distances, &options).unwrap();
+        for scale in [1e-3, 1e3] {
+            let other = DistanceMatrix::from_pairs(100, |i, j| scale * distances.get(i, j)).unwrap();
+            let (scaled, report) = smacof(&(&start * scale), &other, &options).unwrap();
+            assert!((scaled.coords / scale - &base.coords).amax() < 1e-9 * base.coords.amax());
+            assert_eq!(report.iterations(), 40);
+        }
+        let with = |threads: usize| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| smacof(&start, &distances, &options).unwrap())
+        };
+        assert_eq!(with(1), with(4));
+    }
+
+    #[test]
+    fn coinciding_points_and_empty_dimensions_give_no_nan() {
+        let (distances, mut start) = problem(40, 0.7);
+        let row = start.row(0).into_owned();
+        start.row_mut(1).copy_from(&row);
+        start.column_mut(2).fill(0.0);
+        let (embedding, _) = smacof(&start, &distances, &SmacofOptions::default()).unwrap();
+        assert!(embedding.coords.iter().all(|x| x.is_finite()));
+        assert!(embedding.coords.column(2).amax() < 1e-9);
+    }
+
+    #[test]
+    fn what_does_not_fit_is_refused() {
+        let (distances, start) = problem(20, 1.0);
+        let ask = |start: &Matrix, tolerance| {
+            smacof(start, &distances, &SmacofOptions { tolerance, ..Default::default() }).unwrap_err()
+        };
+        let short = start.rows(0, 19).into_owned();
+        assert_eq!(ask(&short, 1e-5), NmdsError::PointMismatch { given: 19, n_points: 20 });
+        let flat = Matrix::zeros(20, 0);
+        assert_eq!(ask(&flat, 1e-5), NmdsError::BadDimension { dim: 0, limit: 20 });
+        assert_eq!(ask(&start, -1.0), NmdsError::BadTolerance { tolerance: -1.0 });
+        let nothing = DistanceMatrix::from_pairs(3, |_, _| 0.0).unwrap();
+        let fault = smacof(&Matrix::zeros(3, 2), &nothing, &SmacofOptions::default()).unwrap_err();
+        assert_eq!(fault, NmdsError::NoExtent { n_points: 3 });
+    }
+}
