@@ -57,7 +57,7 @@ impl Config {
     pub(crate) fn nmds(&self, seed: u64) -> EmbedOptions {
         EmbedOptions {
             samples: Samples::Count(self.samples),
-            method: EmbedMethod::Nystrom { rank: Some(self.rank) },
+            method: EmbedMethod::low_rank(self.rank),
             stress: StressChoice::Skip,
             seed,
             ..EmbedOptions::default()

@@ -75,7 +75,7 @@ impl Embedding {
 /// Share of negative eigenvalues in the sum of magnitudes; zero when all are zero.
 pub(crate) fn negative_mass(eigenvalues: &[f64]) -> f64 {
     let total: f64 = eigenvalues.iter().map(|value| value.abs()).sum();
-    let negative: f64 = eigenvalues.iter().filter(|value| **value < 0.0).map(|value| -value).sum();
+    let negative: f64 = eigenvalues.iter().map(|value| (-value).max(0.0)).sum();
     if total > 0.0 { negative / total } else { 0.0 }
 }
 

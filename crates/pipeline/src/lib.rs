@@ -12,22 +12,25 @@ mod error;
 mod forms;
 mod observer;
 mod options;
+mod report;
+mod run;
 mod stress;
 mod surface;
 
 pub use compare::{Comparison, MatchKind, compare_forms};
 pub use dataset::{LabelFile, ShapeFile, label_of, list_shapes};
-pub use embed::{EmbedReport, Embedded, SecondsReport, embed};
+pub use embed::{Embedded, embed};
 pub use error::PipelineError;
 pub use forms::{PreparedForms, embedded_distances, form_distances, map_of};
 pub use observer::Observer;
 pub use options::{EmbedMethod, EmbedOptions, Samples, StressChoice};
+pub use report::{DescentReport, EmbedReport, SecondsReport};
 pub use stress::{StressKind, StressReport};
 pub use surface::Surface;
 
 pub use descriptors::{FormDistance, MatchOptions, Normalization, Reflections};
 pub use geodesics::{
     DistanceSolver, FastMarchingOptions, FirstSample, HeatOptions, Method as GeodesicMethod, ObtuseTreatment,
-    Update,
+    Sampling, Update, Variance,
 };
-pub use nmds::Bandwidth;
+pub use nmds::{Bandwidth, Regularization, RpiAlpha, SmacofOptions};

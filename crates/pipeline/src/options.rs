@@ -1,7 +1,7 @@
 //! The options tree of an embedding.
 
-use geodesics::{FirstSample, Method};
-use nmds::Bandwidth;
+use geodesics::{FirstSample, Method, Sampling};
+use nmds::{Bandwidth, Regularization, SmacofOptions};
 
 /// How a surface is embedded.
 #[derive(Debug, Clone, PartialEq)]
@@ -10,7 +10,10 @@ pub struct EmbedOptions {
     pub geodesic: Method,
     /// Number of samples. Default: 100, as in the paper's Fig. 4.
     pub samples: Samples,
-    /// The first sample, a vertex of the input. Default: the vertex farthest from the first.
+    /// How samples are taken. Default: farthest point sampling, as in the paper.
+    pub sampling: Sampling,
+    /// The first sample, a vertex of the input. Default: the vertex farthest from the first for farthest point
+    /// sampling, drawn for the others.
     pub first_sample: FirstSample,
     /// How distances become coordinates. Default: NMDS.
     pub method: EmbedMethod,
@@ -18,7 +21,8 @@ pub struct EmbedOptions {
     pub dim: usize,
     /// How the stress is found. Default: [`StressChoice::Auto`].
     pub stress: StressChoice,
-    /// Seed of the rows that an estimated stress is measured on. Default: 0.
+    /// Seed of the samples, where they are drawn, and of the rows that an estimated stress is measured on.
+    /// Default: 0.
     pub seed: u64,
     /// Most memory for a matrix of all pairs, in bytes. Default: 4 GiB.
     pub all_pairs_limit: usize,
@@ -29,6 +33,7 @@ impl Default for EmbedOptions {
         Self {
             geodesic: Method::default(),
             samples: Samples::Count(100),
+            sampling: Sampling::default(),
             first_sample: FirstSample::default(),
             method: EmbedMethod::default(),
             dim: 3,
@@ -53,11 +58,13 @@ pub enum Samples {
 pub enum EmbedMethod {
     /// Nystrom multidimensional scaling, the paper's method.
     Nystrom {
-        /// Eigenpairs of the sample matrix to keep. Default: half the samples.
-        rank: Option<usize>,
+        /// What takes the place of the inverse of the sample matrix. Default: low rank, half the samples.
+        regularization: Regularization,
     },
     /// Classical multidimensional scaling of all pairs: the optimum, at quadratic cost.
     Classical,
+    /// Landmark MDS: classical scaling of the samples, the other vertices placed by their distances to them.
+    Landmark,
     /// Kernel PCA with the Nystrom method, the paper's baseline.
     KernelPca {
         /// Eigenpairs of the sample kernel to keep. Default: half the samples.
@@ -65,23 +72,54 @@ pub enum EmbedMethod {
         /// Width of the kernel.
         bandwidth: Bandwidth,
     },
+    /// SMACOF on all pairs from the result of NMDS: straight lines fit distances, not their squares.
+    Smacof {
+        /// Of the NMDS it starts from.
+        regularization: Regularization,
+        /// When it ends.
+        descent: SmacofOptions,
+    },
 }
 
 impl Default for EmbedMethod {
     fn default() -> Self {
-        Self::Nystrom { rank: None }
+        Self::Nystrom { regularization: Regularization::default() }
     }
 }
 
 impl EmbedMethod {
+    /// NMDS with the low-rank regularisation of this rank.
+    #[must_use]
+    pub fn low_rank(rank: usize) -> Self {
+        Self::Nystrom { regularization: Regularization::LowRank { rank: Some(rank) } }
+    }
+
     /// The name used on the command line and in records.
     #[must_use]
     pub fn name(&self) -> &'static str {
         match self {
             Self::Nystrom { .. } => "nmds",
             Self::Classical => "mds",
+            Self::Landmark => "landmark",
             Self::KernelPca { .. } => "kpca",
+            Self::Smacof { .. } => "smacof",
         }
+    }
+
+    /// How the inverse of the sample matrix is regularised, by the methods that have one.
+    #[must_use]
+    pub fn regularization(&self) -> Option<Regularization> {
+        match self {
+            Self::Nystrom { regularization } | Self::Smacof { regularization, .. } => Some(*regularization),
+            Self::Classical | Self::Landmark | Self::KernelPca { .. } => None,
+        }
+    }
+
+    /// Whether coordinates are lengths that distances can be compared with; the components of a kernel
+    /// are not.
+    #[must_use]
+    pub fn has_unit(&self) -> bool {
+        !matches!(self, Self::KernelPca { .. })
     }
 }
 

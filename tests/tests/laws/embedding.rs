@@ -4,7 +4,7 @@ use datasets::Family;
 use geodesics::{FirstSample, farthest_point_sampling};
 use linalg::{DistanceMatrix, LandmarkDistances, Matrix};
 use mesh::{IntrinsicMesh, shapes};
-use nmds::{NystromOptions, classical, classical_full, nystrom, paper_stress};
+use nmds::{NystromOptions, Regularization, classical, classical_full, nystrom, paper_stress};
 use pipeline::{EmbedMethod, EmbedOptions, StressChoice, StressKind, embedded_distances};
 
 use crate::support::{all_vertices, body, columns, embedded, gap, marching};
@@ -26,7 +26,7 @@ fn points_in_space_come_back_from_a_few_columns_at_rank_five() {
     let distances = straight_distances(&points);
     for n in [5, 10, 40] {
         let landmarks = (0..n).map(|i| (i * 97 + 3) % points.len()).collect();
-        let options = NystromOptions { rank: Some(5), dim: 3 };
+        let options = NystromOptions { regularization: Regularization::LowRank { rank: Some(5) }, dim: 3 };
         let embedding = nystrom(&landmark_columns(&distances, landmarks), &options).unwrap();
         let found = embedded_distances(&embedding.coords).unwrap();
         let gap = gap(found.as_slice(), distances.as_slice());
@@ -39,7 +39,7 @@ fn points_in_space_come_back_from_a_few_columns_at_rank_five() {
 fn a_rank_too_small_for_space_is_not_exact() {
     let points = shapes::torus(20, 13, 2.0, 0.7).positions;
     let distances = straight_distances(&points);
-    let options = NystromOptions { rank: Some(4), dim: 3 };
+    let options = NystromOptions { regularization: Regularization::LowRank { rank: Some(4) }, dim: 3 };
     let landmarks = landmark_columns(&distances, (0..10).map(|i| i * 26).collect());
     let found = embedded_distances(&nystrom(&landmarks, &options).unwrap().coords).unwrap();
     assert!(gap(found.as_slice(), distances.as_slice()) > 1e-3);
@@ -52,7 +52,7 @@ fn all_points_as_samples_is_classical_scaling() {
     let distances = DistanceMatrix::from_rows(mesh.n_vertices(), rows.data.into()).unwrap();
     let p = distances.n_points();
     let all = landmark_columns(&distances, (0..p).collect());
-    let sampled = nystrom(&all, &NystromOptions { rank: Some(p), dim: 3 }).unwrap();
+    let sampled = nystrom(&all, &NystromOptions { regularization: Regularization::None, dim: 3 }).unwrap();
     let full = classical_full(&distances, 3).unwrap();
     let pairs = |coords: &Matrix| embedded_distances(coords).unwrap();
     let gap_pairs = gap(pairs(&sampled.coords).as_slice(), pairs(&full.coords).as_slice());
@@ -98,7 +98,7 @@ fn the_estimated_stress_brackets_the_exact_one() {
 fn methods_of_the_pipeline_agree_on_a_flat_sheet() {
     let sheet = shapes::grid(17, 12, 0.5);
     let flat = straight_distances(&sheet.positions);
-    for method in [EmbedMethod::Classical, EmbedMethod::Nystrom { rank: Some(4) }] {
+    for method in [EmbedMethod::Classical, EmbedMethod::low_rank(4)] {
         let options = EmbedOptions { method, dim: 2, ..EmbedOptions::default() };
         let result = embedded(&sheet, &options);
         let found = embedded_distances(&result.embedding.coords).unwrap();

@@ -14,11 +14,7 @@ use crate::support::{
 };
 
 fn few_samples() -> EmbedOptions {
-    EmbedOptions {
-        samples: Samples::Count(30),
-        method: EmbedMethod::Nystrom { rank: Some(8) },
-        ..EmbedOptions::default()
-    }
+    EmbedOptions { samples: Samples::Count(30), method: EmbedMethod::low_rank(8), ..EmbedOptions::default() }
 }
 
 /// A sheet of uneven triangles whose column 7 of vertices is straight, so that it can be folded.

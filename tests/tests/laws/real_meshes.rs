@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use geodesics::{FirstSample, farthest_point_sampling};
 use linalg::DistanceMatrix;
 use mesh::{IntrinsicMesh, RepairOptions, VertexId};
-use nmds::{NystromOptions, classical, nystrom, paper_stress};
+use nmds::{NystromOptions, Regularization, classical, nystrom, paper_stress};
 use pipeline::{
     EmbedOptions, MatchOptions, Normalization, PreparedForms, StressChoice, Surface, embed, form_distances,
     label_of,
@@ -100,7 +100,11 @@ fn near_optimal_stress(name: &str, allowed: &Excess) {
     let optimum = paper_stress(&classical(&distances, 3).unwrap().coords, &distances);
     for (n, rank, limit) in [(10, 5, allowed.ten_samples), (100, 50, allowed.hundred_samples)] {
         let sampled = farthest_point_sampling(solver.as_ref(), n, FirstSample::default()).unwrap();
-        let embedding = nystrom(&sampled, &NystromOptions { rank: Some(rank), dim: 3 }).unwrap();
+        let embedding = nystrom(
+            &sampled,
+            &NystromOptions { regularization: Regularization::LowRank { rank: Some(rank) }, dim: 3 },
+        )
+        .unwrap();
         let excess = paper_stress(&embedding.coords, &distances) / optimum - 1.0;
         println!("{name}, {n} samples, rank {rank}: {:.3} % above classical scaling", 100.0 * excess);
         assert!(excess <= limit, "{name}, {n} samples: {excess}");

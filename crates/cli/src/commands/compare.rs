@@ -26,7 +26,7 @@ pub(crate) fn compare(args: &CompareArgs, common: &Common) -> Result<ExitCode> {
     if args.embedding.dim != 3 {
         bail!("forms are compared in 3 dimensions; leave out --dim {}", args.embedding.dim);
     }
-    let options = args.embedding.options(common, StressChoice::Skip);
+    let options = args.embedding.options(common, StressChoice::Skip)?;
     let bars = Bars::new(common.quiet);
     let form = |path: &Path| {
         let surface = read_surface(path, &args.embedding.repair)?;

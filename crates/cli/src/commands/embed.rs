@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::{Context, Result, bail};
-use pipeline::{EmbedOptions, EmbedReport, Embedded, ShapeFile, Surface, list_shapes};
+use pipeline::{EmbedMethod, EmbedOptions, EmbedReport, Embedded, ShapeFile, Surface, list_shapes};
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -44,7 +44,10 @@ struct Failure {
 
 /// Embeds a mesh, or every mesh in a folder.
 pub(crate) fn embed(args: &EmbedArgs, common: &Common) -> Result<ExitCode> {
-    let options = args.embedding.options(common, args.stress.into());
+    let options = args.embedding.options(common, args.stress.into())?;
+    if args.embedding.samples.is_some() && options.method == EmbedMethod::Classical {
+        eprintln!("note: --method mds measures all pairs of vertices; -n has no effect on it");
+    }
     if args.mesh.is_dir() {
         return batch(args, &options, common);
     }
@@ -186,11 +189,22 @@ fn stress_text(report: &EmbedReport) -> String {
     }
 }
 
+/// The method with what was chosen of it.
+fn method_text(report: &EmbedReport) -> String {
+    let regularization = report.regularization.map_or(String::new(), |name| format!(" ({name})"));
+    let sampling = report.sampling.map_or(String::new(), |name| format!(", {name} samples"));
+    let descent = report
+        .descent
+        .as_ref()
+        .map_or(String::new(), |descent| format!(", {} steps ({})", descent.iterations, descent.stop));
+    format!("{}{regularization} on {} distances{sampling}{descent}", report.method, report.geodesic)
+}
+
 fn table(json: &EmbedJson) -> String {
     let r = &json.report;
     let eigenvalues: Vec<String> = r.eigenvalues.iter().take(r.dim).map(|v| format!("{v:.5e}")).collect();
     facts(&[
-        ("method", format!("{} on {} distances", r.method, r.geodesic)),
+        ("method", method_text(r)),
         ("vertices, faces", format!("{}, {}", r.n_vertices, r.n_faces)),
         ("samples, rank", format!("{}, {}", r.n_samples, r.rank)),
         ("eigenvalues", eigenvalues.join(" ")),

@@ -103,6 +103,61 @@ fn embed_knows_its_options() {
 }
 
 #[test]
+fn embed_knows_its_methods() {
+    let place = Workplace::new();
+    place.add("ring.off", &ring());
+    let embed = |options: &str| {
+        let options: Vec<&str> = options.split(' ').collect();
+        place.json(&[&["embed", "ring.off", "-n", "30", "-o", "form.npy"], &options[..]].concat())
+    };
+    let stress = |json: &serde_json::Value| json["stress"]["value"].as_f64().unwrap();
+    let optimum = stress(&embed("--method mds"));
+    for (options, regularization) in [
+        ("--method nmds --regularization low-rank --rank 9", "low-rank"),
+        ("--method nmds --regularization rpi", "rpi"),
+        ("--method nmds --regularization rpi --alpha paper", "rpi"),
+        ("--method nmds --regularization none", "none"),
+        ("--method nmds --regularization cur --rank 9", "cur"),
+    ] {
+        let json = embed(options);
+        assert_eq!((&json["method"], &json["regularization"]), (&"nmds".into(), &regularization.into()));
+        assert!(stress(&json) >= optimum * (1.0 - 1e-12), "{options}");
+    }
+    let landmark = embed("--method landmark");
+    assert_eq!((&landmark["method"], &landmark["rank"]), (&"landmark".into(), &3.into()));
+    assert!(landmark["regularization"].is_null() && stress(&landmark) >= optimum * (1.0 - 1e-12));
+
+    let smacof = embed("--method smacof --rank 9 --iterations 4 --tolerance 0");
+    assert_eq!((&smacof["method"], &smacof["rank"]), (&"smacof".into(), &9.into()));
+    let descent = &smacof["descent"];
+    assert_eq!((&descent["iterations"], &descent["stop"]), (&4.into(), &"iteration-limit".into()));
+    assert_eq!(descent["normalized_stress"].as_array().unwrap().len(), 5);
+
+    let eigenvalue = |sigma: &str| embed(&format!("--method kpca --sigma {sigma}"))["eigenvalues"][0].clone();
+    let [mean, median, max, value] = ["mean", "median", "max", "0.7"].map(eigenvalue);
+    assert!(mean != median && median != max && max != value);
+}
+
+#[test]
+fn embed_knows_its_samplings() {
+    let place = Workplace::new();
+    place.add("ring.off", &ring());
+    let samples = |options: &[&str]| {
+        let arguments = [&["embed", "ring.off", "-n", "12", "-o", "form.npy"], options].concat();
+        let json = place.json(&arguments);
+        (json["sampling"].as_str().unwrap().to_owned(), json["samples"].clone())
+    };
+    for sampling in ["farthest", "random", "min-variance"] {
+        let [(name, one), (_, same), (_, other)] =
+            ["1", "1", "2"].map(|seed| samples(&["--sampling", sampling, "--seed", seed]));
+        assert_eq!((name.as_str(), &one), (sampling, &same));
+        assert_eq!(one == other, sampling == "farthest", "{sampling}");
+        let (_, from) = samples(&["--sampling", sampling, "--first-sample", "11"]);
+        assert_eq!((&from[0], from.as_array().unwrap().len()), (&11.into(), 12), "{sampling}");
+    }
+}
+
+#[test]
 fn compare_says_what_kind_of_match_it_is_and_holds_a_threshold() {
     let place = Workplace::new();
     place.add("ring.off", &ring());
@@ -134,8 +189,10 @@ fn completions_are_there_for_every_shell() {
 fn help_mentions_every_option() {
     let place = Workplace::new();
     let common = ["--json", "--threads", "--seed"];
-    let embedding =
-        ["--method", "-n", "--rank", "--dim", "--geodesic", "--first-sample", "nmds", "mds", "kpca", "auto"];
+    let embedding = "--method nmds mds landmark kpca smacof -n auto --rank --dim --sampling farthest random \
+                     min-variance --first-sample --regularization low-rank rpi none cur --alpha paper --sigma \
+                     median --iterations --tolerance --geodesic";
+    let embedding: Vec<&str> = embedding.split_whitespace().collect();
     let geodesic = ["--source", "--method", "--update", "-o", "fast-marching", "dijkstra", "bfs", "planar"];
     let pages: [(&str, Vec<&str>); 5] = [
         ("info", vec!["MESH"]),

@@ -92,6 +92,39 @@ fn options_out_of_range_are_named() {
 }
 
 #[test]
+fn options_that_do_not_apply_together_are_named_with_what_they_belong_to() {
+    let place = place();
+    let before = place.names();
+    for (options, words) in [
+        ("--method mds --rank 5", ["--rank", "--method mds", "nmds or kpca or smacof"]),
+        ("--method mds --sampling random", ["--sampling", "--method mds", "landmark"]),
+        ("--method mds --first-sample 3", ["--first-sample", "--method mds", "landmark"]),
+        ("--method landmark --rank 5", ["--rank", "--method landmark", "nmds"]),
+        ("--method kpca --regularization rpi", ["--regularization", "--method kpca", "nmds or smacof"]),
+        ("--sigma max", ["--sigma", "--method nmds", "kpca"]),
+        ("--iterations 5", ["--iterations", "--method nmds", "smacof"]),
+        ("--method landmark --tolerance 0.1", ["--tolerance", "--method landmark", "smacof"]),
+        ("--regularization none --rank 5", ["--rank", "--regularization none", "low-rank or cur"]),
+        ("--regularization rpi --rank 5", ["--rank", "--regularization rpi", "low-rank or cur"]),
+        ("--alpha 1e-9", ["--alpha", "--regularization rpi", "leave"]),
+        ("--alpha paper --regularization cur", ["--alpha", "--regularization rpi", "leave"]),
+        ("--alpha 0 --regularization rpi", ["ring.off", "alpha = 0", "1e-10"]),
+        ("--alpha much --regularization rpi", ["--alpha", "`much`", "`paper`"]),
+        ("--sigma wide --method kpca", ["--sigma", "`wide`", "`median`"]),
+        ("--sigma=-1 --method kpca", ["ring.off", "width -1", "positive"]),
+        ("--tolerance nan --method smacof", ["ring.off", "tolerance NaN", "1e-5"]),
+        ("--method landmark -n 3", ["ring.off", "3 dimensions", "1 to 2"]),
+    ] {
+        let options: Vec<&str> = options.split(' ').collect();
+        place.refused(&[&["embed", "ring.off", "-o", "f.npy"], &options[..]].concat(), &words);
+        place.refused(&[&["compare", "ring.off", "ring.off"], &options[..]].concat(), &words);
+    }
+    assert_eq!(place.names(), before);
+    let noted = place.done(&["embed", "ring.off", "--method", "mds", "-n", "20", "-o", "f.npy"]);
+    assert!(noted.err.contains("-n has no effect"), "{}", noted.err);
+}
+
+#[test]
 fn what_cannot_be_written_is_named_once_and_leaves_nothing() {
     let place = place();
     // A folder where the file should go: writing fails at the very end, for any user.

@@ -1,13 +1,14 @@
 //! The command line: a contract that other people's scripts rely on.
 
+mod embedding;
+
 use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use mesh::{ComponentPolicy, Orient, RepairOptions, VertexId, Weld};
-use pipeline::{
-    Bandwidth, EmbedMethod, EmbedOptions, FastMarchingOptions, FirstSample, GeodesicMethod, HeatOptions,
-    ObtuseTreatment, Samples, StressChoice, Update,
-};
+use mesh::{ComponentPolicy, Orient, RepairOptions, Weld};
+use pipeline::{FastMarchingOptions, GeodesicMethod, HeatOptions, ObtuseTreatment, StressChoice, Update};
+
+pub(crate) use embedding::EmbeddingArgs;
 
 /// Nonrigid 3D shapes: surface distances, canonical forms, comparison.
 ///
@@ -163,64 +164,6 @@ pub(crate) struct MarchingArgs {
     pub(crate) obtuse: ObtuseName,
 }
 
-/// How a surface is embedded.
-#[derive(Debug, Clone, Args)]
-pub(crate) struct EmbeddingArgs {
-    /// How distances become coordinates
-    #[arg(long, value_enum, default_value_t = MethodName::Nmds)]
-    pub(crate) method: MethodName,
-    /// Number of samples, or `auto` to take as many as it needs
-    #[arg(short = 'n', long, default_value = "100", value_name = "SAMPLES|auto", value_parser = parse_samples)]
-    pub(crate) samples: Samples,
-    /// Eigenpairs of the sample matrix to keep [default: half the samples, at least 4 more than dimensions]
-    #[arg(long, value_name = "N1")]
-    pub(crate) rank: Option<usize>,
-    /// Dimensions of the embedding
-    #[arg(long, default_value_t = 3, value_name = "K")]
-    pub(crate) dim: usize,
-    /// How distances are measured
-    #[arg(long, value_enum, default_value_t = GeodesicName::FastMarching, value_name = "METHOD")]
-    pub(crate) geodesic: GeodesicName,
-    #[command(flatten)]
-    pub(crate) marching: MarchingArgs,
-    /// First sample, a vertex of the input [default: the vertex farthest from the first]
-    #[arg(long, value_name = "V")]
-    pub(crate) first_sample: Option<u32>,
-    #[command(flatten)]
-    pub(crate) repair: RepairArgs,
-}
-
-impl EmbeddingArgs {
-    pub(crate) fn options(&self, common: &Common, stress: StressChoice) -> EmbedOptions {
-        let rank = self.rank;
-        EmbedOptions {
-            geodesic: self.geodesic.method(self.marching),
-            samples: self.samples,
-            first_sample: match self.first_sample {
-                Some(vertex) => FirstSample::Vertex(VertexId(vertex)),
-                None => FirstSample::Farthest,
-            },
-            method: match self.method {
-                MethodName::Nmds => EmbedMethod::Nystrom { rank },
-                MethodName::Mds => EmbedMethod::Classical,
-                MethodName::Kpca => EmbedMethod::KernelPca { rank, bandwidth: Bandwidth::Mean },
-            },
-            dim: self.dim,
-            stress,
-            seed: common.seed,
-            ..EmbedOptions::default()
-        }
-    }
-}
-
-fn parse_samples(text: &str) -> Result<Samples, String> {
-    match text.parse() {
-        _ if text == "auto" => Ok(Samples::Auto),
-        Ok(0) | Err(_) => Err(format!("`{text}` is neither a positive number nor `auto`")),
-        Ok(n) => Ok(Samples::Count(n)),
-    }
-}
-
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum GeodesicName {
     /// Fast marching on triangles
@@ -269,16 +212,6 @@ pub(crate) enum ObtuseName {
     Unfold,
     /// Treat it like any other
     Ignore,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum MethodName {
-    /// Nystrom multidimensional scaling
-    Nmds,
-    /// Classical multidimensional scaling of all pairs
-    Mds,
-    /// Kernel PCA with the Nystrom method
-    Kpca,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]

@@ -1,0 +1,178 @@
+//! The choice between ways to take landmarks.
+
+mod columns;
+mod random;
+mod variance;
+
+use linalg::LandmarkDistances;
+
+pub use random::RandomSampler;
+pub use variance::{Variance, VarianceSampler};
+
+use crate::{DistanceSolver, FarthestPointSampler, FirstSample, GeodesicError};
+
+/// Takes landmarks on one surface, in an order that does not depend on how many will be taken: the first
+/// n of 2n landmarks are the n landmarks.
+pub trait Sampler: std::fmt::Debug {
+    /// Goes on until there are `n` landmarks, or as many as the surface has.
+    ///
+    /// # Errors
+    /// [`GeodesicError::Disconnected`] when a vertex cannot be reached.
+    fn extend_to(&mut self, n: usize) -> Result<(), GeodesicError>;
+
+    /// The distances from the first `n` landmarks, or from all when there are fewer.
+    ///
+    /// # Errors
+    /// [`GeodesicError::NoSamples`] when `n` is zero.
+    fn distances(&self, n: usize) -> Result<LandmarkDistances, GeodesicError>;
+}
+
+impl Sampler for FarthestPointSampler<'_> {
+    fn extend_to(&mut self, n: usize) -> Result<(), GeodesicError> {
+        self.extend_to(n)
+    }
+
+    fn distances(&self, n: usize) -> Result<LandmarkDistances, GeodesicError> {
+        self.distances(n)
+    }
+}
+
+/// A way to take landmarks.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Sampling {
+    /// [`FarthestPointSampler`]: each the farthest from those before it.
+    #[default]
+    Farthest,
+    /// [`RandomSampler`]: all vertices with the same chance.
+    Random,
+    /// [`VarianceSampler`]: each the vertex whose squared distances to those before vary least, or most.
+    Incremental(Variance),
+}
+
+impl Sampling {
+    /// The name used on the command line and in records.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Farthest => "farthest",
+            Self::Random => "random",
+            Self::Incremental(Variance::Least) => "min-variance",
+            Self::Incremental(Variance::Greatest) => "max-variance",
+        }
+    }
+
+    /// Begins to sample. `first` is the first landmark; where it is left to the sampling, farthest point
+    /// sampling takes the vertex farthest from vertex 0, the others draw one with `seed`.
+    ///
+    /// # Errors
+    /// [`GeodesicError::NoSuchVertex`], [`GeodesicError::NoSamples`] on an empty surface,
+    /// [`GeodesicError::Disconnected`].
+    pub fn start<'a>(
+        self,
+        solver: &'a dyn DistanceSolver,
+        first: FirstSample,
+        seed: u64,
+    ) -> Result<Box<dyn Sampler + 'a>, GeodesicError> {
+        Ok(match self {
+            Self::Farthest => Box::new(FarthestPointSampler::new(solver, first)?),
+            Self::Random => Box::new(RandomSampler::new(solver, first, seed)?),
+            Self::Incremental(variance) => Box::new(VarianceSampler::new(solver, first, seed, variance)?),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use mesh::shapes::{disjoint, grid, icosphere};
+    use mesh::{IntrinsicMesh, TriMesh, VertexId};
+
+    use super::*;
+    use crate::{Dijkstra, farthest_point_sampling};
+
+    const ALL: [Sampling; 4] = [
+        Sampling::Farthest,
+        Sampling::Random,
+        Sampling::Incremental(Variance::Least),
+        Sampling::Incremental(Variance::Greatest),
+    ];
+
+    fn solver(mesh: &TriMesh) -> Dijkstra {
+        Dijkstra::new(&IntrinsicMesh::from_mesh(mesh))
+    }
+
+    fn sample(sampling: Sampling, first: FirstSample, seed: u64, n: usize) -> LandmarkDistances {
+        let solver = solver(&icosphere(2));
+        let mut sampler = sampling.start(&solver, first, seed).unwrap();
+        sampler.extend_to(n).unwrap();
+        sampler.distances(n).unwrap()
+    }
+
+    #[test]
+    fn the_first_of_more_landmarks_are_the_landmarks_and_columns_are_theirs() {
+        let solver = solver(&icosphere(2));
+        for sampling in ALL {
+            let few = sample(sampling, FirstSample::default(), 3, 7);
+            let mut sampler = sampling.start(&solver, FirstSample::default(), 3).unwrap();
+            for n in [1, 2, 3, 7, 20] {
+                sampler.extend_to(n).unwrap();
+            }
+            assert_eq!(sampler.distances(7).unwrap(), few, "{sampling:?}");
+            let many = sampler.distances(20).unwrap();
+            assert_eq!(many.n_landmarks(), 20);
+            for (i, landmark) in many.landmarks().iter().enumerate() {
+                assert_eq!(many.column(i), solver.distances(VertexId::from(*landmark)), "{sampling:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_first_landmark_may_be_chosen() {
+        for sampling in ALL {
+            let chosen = sample(sampling, FirstSample::Vertex(VertexId(17)), 3, 5);
+            assert_eq!(chosen.landmarks()[0], 17, "{sampling:?}");
+        }
+    }
+
+    #[test]
+    fn the_seed_decides_where_something_is_drawn() {
+        for sampling in ALL {
+            let [a, b, c] = [3, 3, 4].map(|seed| sample(sampling, FirstSample::default(), seed, 6));
+            assert_eq!(a, b, "{sampling:?}");
+            assert_eq!(a == c, sampling == Sampling::Farthest, "{sampling:?}");
+        }
+    }
+
+    #[test]
+    fn the_farthest_are_those_of_farthest_point_sampling() {
+        let solver = solver(&icosphere(2));
+        let direct = farthest_point_sampling(&solver, 9, FirstSample::default()).unwrap();
+        assert_eq!(sample(Sampling::Farthest, FirstSample::default(), 0, 9), direct);
+    }
+
+    #[test]
+    fn there_are_never_more_landmarks_than_vertices() {
+        for sampling in ALL {
+            let all = sample(sampling, FirstSample::default(), 1, 1000);
+            let mut landmarks = all.landmarks().to_vec();
+            landmarks.sort_unstable();
+            assert_eq!(landmarks, (0..162).collect::<Vec<_>>(), "{sampling:?}");
+        }
+    }
+
+    #[test]
+    fn what_cannot_be_sampled_is_refused() {
+        let parts = solver(&disjoint(&[grid(3, 3, 1.0), grid(3, 3, 1.0)]));
+        let empty = solver(&TriMesh { positions: vec![], faces: vec![] });
+        let whole = solver(&icosphere(1));
+        for sampling in ALL {
+            let split = sampling.start(&parts, FirstSample::default(), 1).and_then(|mut s| s.extend_to(2));
+            assert!(matches!(split, Err(GeodesicError::Disconnected { unreached: 9, .. })), "{sampling:?}");
+            let beyond = FirstSample::Vertex(VertexId(42));
+            let fault = sampling.start(&whole, beyond, 1).map(|_| ()).unwrap_err();
+            assert_eq!(fault, GeodesicError::NoSuchVertex { vertex: VertexId(42), n_vertices: 42 });
+            assert!(sampling.start(&empty, FirstSample::default(), 1).is_err());
+            let none = sampling.start(&whole, FirstSample::default(), 1).unwrap().distances(0);
+            assert_eq!(none, Err(GeodesicError::NoSamples));
+        }
+    }
+}

@@ -1,0 +1,83 @@
+//! Landmarks drawn by chance.
+
+use linalg::LandmarkDistances;
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::SeedableRng;
+
+use super::Sampler;
+use super::columns::{Columns, below, first_vertex};
+use crate::{DistanceSolver, FirstSample, GeodesicError};
+
+/// Random sampling: every set of n vertices has the same chance.
+///
+/// * The seed decides, whatever the number of threads.
+/// * The baseline that other samplings must beat.
+///
+/// Cost: one run of the solver per landmark, in parallel; `O(p)` to begin.
+#[derive(Debug)]
+pub struct RandomSampler<'a> {
+    columns: Columns<'a>,
+    /// All vertices, in the order in which they are taken.
+    order: Vec<usize>,
+}
+
+impl<'a> RandomSampler<'a> {
+    /// Draws an order of all vertices that begins with `first`, or with any vertex.
+    ///
+    /// # Errors
+    /// [`GeodesicError::NoSuchVertex`], [`GeodesicError::NoSamples`] on an empty surface,
+    /// [`GeodesicError::Disconnected`].
+    pub fn new(solver: &'a dyn DistanceSolver, first: FirstSample, seed: u64) -> Result<Self, GeodesicError> {
+        let mut rng = ChaCha8Rng::seed_from_u64(seed);
+        let p = solver.n_vertices();
+        let mut order: Vec<usize> = (0..p).collect();
+        order.swap(0, first_vertex(first, p, &mut rng)?);
+        for i in 1..p {
+            order.swap(i, i + below(p - i, &mut rng));
+        }
+        let mut columns = Columns::new(solver);
+        columns.add(&order[..1])?;
+        Ok(Self { columns, order })
+    }
+}
+
+impl Sampler for RandomSampler<'_> {
+    fn extend_to(&mut self, n: usize) -> Result<(), GeodesicError> {
+        match self.order.get(self.columns.len()..n.min(self.order.len())) {
+            Some(next) => self.columns.add(next),
+            None => Ok(()),
+        }
+    }
+
+    fn distances(&self, n: usize) -> Result<LandmarkDistances, GeodesicError> {
+        self.columns.distances(n)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use mesh::IntrinsicMesh;
+    use mesh::shapes::grid;
+
+    use super::*;
+    use crate::BreadthFirst;
+
+    #[test]
+    fn every_vertex_is_as_likely_as_any_other() {
+        let solver = BreadthFirst::new(&IntrinsicMesh::from_mesh(&grid(4, 3, 1.0)));
+        let p = solver.n_vertices();
+        let (runs, n) = (3000, 4);
+        let mut taken = vec![0usize; p];
+        for seed in 0..runs {
+            let mut sampler = RandomSampler::new(&solver, FirstSample::default(), seed).unwrap();
+            sampler.extend_to(n).unwrap();
+            for landmark in sampler.distances(n).unwrap().landmarks() {
+                taken[*landmark] += 1;
+            }
+        }
+        // Each count is binomial; five deviations are never reached by chance.
+        let share = n as f64 / p as f64;
+        let (mean, deviation) = (runs as f64 * share, (runs as f64 * share * (1.0 - share)).sqrt());
+        assert!(taken.iter().all(|count| (*count as f64 - mean).abs() < 5.0 * deviation), "{taken:?}");
+    }
+}
