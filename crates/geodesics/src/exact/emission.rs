@@ -31,12 +31,15 @@ impl Wave<'_> {
             }
             SurfacePoint::Face { face, barycentric } => {
                 let face = exact.faces[face.index()];
-                let at = |slot: usize| (exact.surface.faces[face as usize].vertices[slot], barycentric[slot]);
-                match [0, 1, 2].into_iter().find(|slot| barycentric[*slot] < ON_EDGE) {
-                    None => self.leave_face(face, barycentric),
+                let vertices = exact.surface.faces[face as usize].vertices;
+                // A face that repeats another may have its corners in another order.
+                let slot_of = |v: u32| source.reach().iter().position(|(w, _)| inside(*w) == v);
+                let shares = vertices.map(|v| slot_of(v).map_or(0.0, |slot| barycentric[slot]));
+                match shares.iter().position(|share| *share < ON_EDGE) {
+                    None => self.leave_face(face, shares),
                     Some(slot) => {
-                        let ((a, s), (b, t)) = (at(next(slot)), at(next(next(slot))));
-                        self.leave_edge([a, b], [s, t]);
+                        let [a, b] = [next(slot), next(next(slot))];
+                        self.leave_edge([vertices[a], vertices[b]], [shares[a], shares[b]]);
                     }
                 }
             }
@@ -94,31 +97,23 @@ impl Wave<'_> {
             self.front.reach(*end, distance + length, Arrival::Anywhere);
         }
         let fan = exact.fans.around(vertex);
-        let Some(open) = exact.fans.open_angles(&exact.surface, vertex, arrival) else {
+        let Some(open) = exact.fans.open_angles(vertex, arrival) else {
             for corner in fan {
                 self.leave_corner(corner.corner, distance, [0.0, f64::INFINITY]);
             }
             return;
         };
-        for (i, corner) in fan.iter().enumerate() {
-            let is_past = |low| fan.get(i + 1).is_some_and(|next| low >= next.start);
+        for FanCorner { corner, winding, start, end } in fan {
             for [low, high] in open {
-                if high > low && high > corner.start && !is_past(low) {
-                    self.leave_between(corner, distance, [low - corner.start, high - corner.start]);
+                if high > low && high > *start && low < *end {
+                    let [low, high] = match winding {
+                        Winding::Forward => [low - start, high - start],
+                        Winding::Backward => [end - high, end - low],
+                    };
+                    let high = if high < end - start { high } else { f64::INFINITY };
+                    self.leave_corner(*corner, distance, [low, high]);
                 }
             }
-        }
-    }
-
-    /// A window from a corner between two angles from its first side in the fan.
-    fn leave_between(&mut self, corner: &FanCorner, distance: f64, [low, high]: [f64; 2]) {
-        let span = self.exact.surface.face(corner.corner).angle(corner.corner as usize % 3);
-        if low < span {
-            let angles = match corner.winding {
-                Winding::Forward => [low, if high < span { high } else { f64::INFINITY }],
-                Winding::Backward => [span - high, if low > 0.0 { span - low } else { f64::INFINITY }],
-            };
-            self.leave_corner(corner.corner, distance, angles);
         }
     }
 

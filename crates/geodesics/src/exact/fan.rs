@@ -30,8 +30,9 @@ const LEAST_EXCESS: f64 = 1e-12;
 pub(super) struct FanCorner {
     pub(super) corner: u32,
     pub(super) winding: Winding,
-    /// Angle from the fan's first side to the corner's first.
+    /// Angles from the fan's first side to the corner's first and to its last.
     pub(super) start: f64,
+    pub(super) end: f64,
 }
 
 /// Which side of a corner comes first in the fan.
@@ -93,27 +94,20 @@ impl Fans {
 
     /// The angles from the fan's first side between which a shortest path with this arrival may go
     /// on; `None` for all of them.
-    pub(super) fn open_angles(
-        &self,
-        surface: &Surface,
-        vertex: u32,
-        arrival: Arrival,
-    ) -> Option<[[f64; 2]; 2]> {
+    pub(super) fn open_angles(&self, vertex: u32, arrival: Arrival) -> Option<[[f64; 2]; 2]> {
         let bend = self.bend(vertex);
         let (Bend::Inside | Bend::Boundary, Arrival::Through { corner, sin, cos }) = (bend, arrival) else {
             return None;
         };
         let fan = self.around(vertex);
-        let fan_corner = fan.iter().find(|c| c.corner == corner)?;
-        let last = fan.last()?;
-        let angle = last.start + surface.face(last.corner).angle(last.corner as usize % 3);
-        let span = surface.face(corner).angle(corner as usize % 3);
-        let within = sin.atan2(cos).max(0.0).min(span);
-        let at = fan_corner.start
-            + match fan_corner.winding {
-                Winding::Forward => within,
-                Winding::Backward => span - within,
-            };
+        let FanCorner { winding, start, end, .. } = *fan.iter().find(|c| c.corner == corner)?;
+        let angle = fan.last()?.end;
+        let within = sin.atan2(cos);
+        let at = match winding {
+            Winding::Forward => start + within,
+            Winding::Backward => end - within,
+        };
+        let at = at.max(start).min(end);
         Some(match bend {
             Bend::Inside => [[at + PI, at + angle - PI], [at + PI - angle, at - PI]],
             _ => [[at + PI, angle], [0.0, at - PI]],
@@ -144,8 +138,9 @@ fn walk(topology: &Topology, surface: &Surface, vertex: VertexId, fan: &mut Vec<
             // All around; there may be a second fan at the vertex.
             break fan.len() - first == corners.len();
         }
-        fan.push(FanCorner { corner: corner.0, winding, start: angle });
+        let start = angle;
         angle += surface.face(corner.0).angle(corner.slot());
+        fan.push(FanCorner { corner: corner.0, winding, start, end: angle });
         let across = third(corner, winding, Side::Last);
         step = topology.across(across).map(|far| {
             // The vertex is in one of the two other corners of the far face; the side between it and
@@ -168,7 +163,7 @@ fn walk(topology: &Topology, surface: &Surface, vertex: VertexId, fan: &mut Vec<
     };
     if !is_fan {
         fan.truncate(first);
-        let loose = |c: &CornerId| FanCorner { corner: c.0, winding: Winding::Forward, start: 0.0 };
+        let loose = |c: &CornerId| FanCorner { corner: c.0, winding: Winding::Forward, start: 0.0, end: 0.0 };
         fan.extend(corners.iter().map(loose));
         return Bend::Anyhow;
     }

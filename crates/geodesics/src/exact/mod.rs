@@ -2,7 +2,7 @@
 //!
 //! | module | what it does |
 //! |---|---|
-//! | `order` | renumbers the surface so that neighbours are neighbours in memory |
+//! | `order` | leaves out faces that repeat another, and makes neighbours neighbours in memory |
 //! | `surface`, `fan` | the faces, and the corners around every vertex with their angles |
 //! | `window` | what an edge sees of a source through one strip of unfolded faces |
 //! | `envelope` | leaves of the windows at an edge what may be shortest |
@@ -60,13 +60,13 @@ use wave::Scratch;
 ///   the same source that meet again behind a vertex without curvature are joined.
 /// * **Any mesh.** At an edge with more than two faces windows go into all the others; where faces
 ///   do not form one fan around a vertex, at the ends of links and of edges without length, paths
-///   bend in any direction. Orientation does not matter. A face without area is blown up to `1e-12`
-///   of its longest edge.
+///   bend in any direction. Orientation does not matter. Of faces with the same vertices one is
+///   enough. A face without area is blown up to `1e-12` of its longest edge.
 /// * **Guarantees.** Every distance is the length of a path, up to rounding; symmetric, and never
 ///   longer than along edges. Infinite where nothing leads. It always ends: the number of windows
 ///   is bounded, by a limit that no known surface comes near.
 /// * **Cost.** `O(p^2)` at worst in the number of vertices, near `O(p^1.2)` in practice, linear on
-///   flat parts; about 350 bytes a vertex.
+///   flat parts; about 400 bytes a vertex.
 ///
 /// After Mitchell, Mount and Papadimitriou 1987; the splitting of windows at one apex only is Xin
 /// and Wang's 2009, the order by vertices that of Qin et al. 2016 (`mitchell1987`, `xin2009`, `qin2016` in

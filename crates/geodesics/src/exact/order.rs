@@ -7,34 +7,42 @@ pub(super) struct Renumbered {
     pub(super) mesh: IntrinsicMesh,
     /// New number of every vertex.
     pub(super) vertices: Vec<u32>,
-    /// New number of every face. The order of a face's corners stays.
+    /// New number of every face. The order of its corners stays, or is that of the face it repeats.
     pub(super) faces: Vec<u32>,
 }
 
-/// Numbers vertices breadth first, one component after the other, and faces by their lowest vertex.
+/// Numbers vertices breadth first, one component after the other, and faces by their vertices.
+///
+/// Of faces with the same vertices the first is kept: whatever path runs through another of them
+/// can run through this one. Light would find a new way in every copy at every face.
 pub(super) fn renumbered(mesh: &IntrinsicMesh) -> Renumbered {
     let topology = mesh.topology();
     let vertices = breadth_first(topology);
     let new = |face: &[VertexId; 3]| face.map(|v| VertexId(vertices[v.index()]));
-    let mut by_lowest: Vec<(VertexId, u32)> = (0u32..)
+    let mut sorted: Vec<([VertexId; 3], u32)> = (0u32..)
         .zip(topology.faces())
         .map(|(f, face)| {
-            let [a, b, c] = new(face);
-            (a.min(b).min(c), f)
+            let mut key = new(face);
+            key.sort_unstable();
+            (key, f)
         })
         .collect();
-    by_lowest.sort_unstable();
+    sorted.sort_unstable();
 
     let mut faces = vec![0; topology.n_faces()];
-    for (now, (_, before)) in (0u32..).zip(&by_lowest) {
-        faces[*before as usize] = now;
+    let mut kept: Vec<u32> = Vec::with_capacity(sorted.len());
+    for group in sorted.chunk_by(|p, q| p.0 == q.0) {
+        for (_, f) in group {
+            faces[*f as usize] = kept.len() as u32;
+        }
+        kept.push(group[0].1);
     }
     let renumbered = Topology::new(
         topology.n_vertices(),
-        by_lowest.iter().map(|(_, f)| new(&topology.faces()[*f as usize])).collect(),
+        kept.iter().map(|f| new(&topology.faces()[*f as usize])).collect(),
     );
     let mut lengths = vec![0.0; renumbered.n_edges()];
-    for (now, (_, before)) in (0u32..).zip(&by_lowest) {
+    for (now, before) in (0u32..).zip(&kept) {
         for slot in 0..3 {
             let old = topology.opposite_edge(CornerId(3 * before + slot));
             lengths[renumbered.opposite_edge(CornerId(3 * now + slot)).index()] = mesh.length(old);

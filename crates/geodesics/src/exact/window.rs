@@ -87,9 +87,7 @@ pub(super) enum Cut {
 #[inline]
 fn nearer_until(x: f64, depth: f64, lead: f64) -> f64 {
     let slope = lead + x;
-    // Not a number for an infinite lead, which `max` and `min` take for nowhere.
-    let until = (x * x + depth * depth - lead * lead) / (2.0 * slope);
-    if slope > 0.0 { until } else { f64::INFINITY }
+    if slope > 0.0 { 0.5 * (x - lead + depth * depth / slope) } else { f64::INFINITY }
 }
 
 /// Positive where the light of `left` comes from further left than that of `right`, which then gains

@@ -1,11 +1,11 @@
 //! Surfaces that are hardly any.
 
-use mesh::{IntrinsicMesh, Topology, TriMesh, VertexId, shapes};
+use mesh::{FaceId, IntrinsicMesh, Topology, VertexId, shapes};
 use proptest::prelude::*;
 
 use super::super::Exact;
-use super::{all_pairs, assert_close, faces, points, spatial};
-use crate::{Dijkstra, DistanceSolver};
+use super::{all_pairs, assert_close, bumpy, faces, points, spatial};
+use crate::{Dijkstra, DistanceSolver, Source, SurfacePoint};
 
 /// No distance is missing, negative or longer than along the edges.
 fn assert_sane(mesh: &IntrinsicMesh) {
@@ -100,13 +100,32 @@ fn a_thin_needle_with_light_around_it_ends() {
 
 #[test]
 fn repeated_faces_and_pillows_are_like_one_sheet() {
-    let sheet = shapes::grid(6, 5, 1.0);
-    let expected = all_pairs(&IntrinsicMesh::from_mesh(&sheet));
-    for copies in [2, 3, 5] {
-        let repeated = TriMesh { faces: sheet.faces.repeat(copies), ..sheet.clone() };
-        let found = all_pairs(&IntrinsicMesh::from_mesh(&repeated));
-        for (found, expected) in found.iter().flatten().zip(expected.iter().flatten()) {
-            assert_close(*found, *expected, 1e-13);
+    let sheet = bumpy(9, 0.8, 6);
+    let faces = sheet.topology().faces();
+    let expected = all_pairs(&sheet);
+    for copies in 2..=4 {
+        // Corners of a copy in another order, and in every other copy of the other orientation.
+        let copy =
+            |k: usize| faces.iter().map(move |[a, b, c]| [[*a, *b, *c], [*b, *a, *c], [*c, *a, *b]][k % 3]);
+        let topology = Topology::new(sheet.n_vertices(), (0..copies).flat_map(copy).collect());
+        let repeated = IntrinsicMesh::new(topology, sheet.edge_lengths().to_vec());
+        assert_eq!(all_pairs(&repeated), expected);
+
+        let solve = |mesh: &IntrinsicMesh, face: usize, barycentric: [f64; 3]| {
+            let point = SurfacePoint::Face { face: FaceId::from(face), barycentric };
+            let mut out = vec![0.0; mesh.n_vertices()];
+            let source = Source::new(mesh, point).unwrap();
+            Exact::new(mesh).solve_into(&[source], f64::INFINITY, &mut out);
+            out
+        };
+        for [s, t, u] in [[0.2, 0.3, 0.5], [0.6, 0.4, 0.0], [0.0, 0.3, 0.7]] {
+            let expected = solve(&sheet, 50, [s, t, u]);
+            for k in 1..copies {
+                let found = solve(&repeated, 50 + k * faces.len(), [[s, t, u], [t, s, u], [u, s, t]][k % 3]);
+                for (found, expected) in found.iter().zip(&expected) {
+                    assert_close(*found, *expected, 1e-14);
+                }
+            }
         }
     }
 }

@@ -47,7 +47,7 @@ fn distances_are_those_of_mitchell_mount_and_papadimitriou() {
         let sources = numbers(&data.join(format!("exact/{name}-sources.npy")), u32::from_le_bytes);
         let expected = numbers(&data.join(format!("exact/{name}-distances.npy")), f64::from_le_bytes);
         let n = solver.n_vertices();
-        for (source, expected) in sources.iter().zip(expected.chunks_exact(n)).take(2) {
+        for (source, expected) in sources.iter().zip(expected.chunks_exact(n)) {
             for (found, expected) in solver.distances(VertexId(*source)).iter().zip(expected) {
                 assert_close(*found, *expected, 1e-12);
             }
