@@ -2,6 +2,8 @@
 
 use mesh::VertexId;
 
+use crate::SurfacePoint;
+
 /// Errors of this crate.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum GeodesicError {
@@ -31,6 +33,15 @@ pub enum GeodesicError {
     BadPoint {
         /// What is wrong with it.
         reason: String,
+    },
+    /// A path to where no distance is known.
+    #[error(
+        "no way is known from a source to {point}: it lies on another component or beyond the limit of the \
+         distances; choose another target or raise --max-distance"
+    )]
+    NoWay {
+        /// The end of the path.
+        point: SurfacePoint,
     },
     /// A sampling without samples.
     #[error("at least 1 sample is needed, got 0")]

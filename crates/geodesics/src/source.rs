@@ -26,6 +26,16 @@ pub enum SurfacePoint {
     },
 }
 
+impl std::fmt::Display for SurfacePoint {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Vertex(vertex) => write!(f, "vertex {vertex}"),
+            Self::Edge { edge, t } => write!(f, "edge {edge} at {t}"),
+            Self::Face { face, barycentric: [a, b, c] } => write!(f, "face {face} at {a}, {b}, {c}"),
+        }
+    }
+}
+
 /// A point from which distances are measured, and the vertices it sees within its own faces.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Source {

@@ -5,6 +5,7 @@ use proptest::prelude::*;
 
 use super::super::Exact;
 use super::{all_pairs, assert_close, bumpy, faces, points, spatial};
+use crate::testing::lengths_of_nothing;
 use crate::{Dijkstra, DistanceSolver, Source, SurfacePoint};
 
 /// No distance is missing, negative or longer than along the edges.
@@ -151,20 +152,6 @@ fn nothing_at_all_is_no_surface_but_no_reason_to_fail() {
     let points = [[0.0; 3]; 4];
     let collapsed = spatial(&points, &[[0, 1, 2], [0, 2, 3], [1, 2, 3]]);
     assert!(all_pairs(&collapsed).iter().flatten().all(|d| *d == 0.0));
-}
-
-/// Lengths that belong to no triangles.
-fn lengths_of_nothing() -> impl Strategy<Value = f64> {
-    prop_oneof![
-        0.5..1.5f64,
-        Just(0.0),
-        Just(1.0),
-        Just(1e-300),
-        Just(1e-14),
-        0.0..1e-9f64,
-        Just(7.0),
-        Just(2.0)
-    ]
 }
 
 proptest! {

@@ -1,54 +1,33 @@
-//! Beside the distances of other implementations on real meshes, which are not part of the project:
-//! `CANONFORM_DATA` says where they are, and without them these tests say so and pass.
+//! Beside the distances of other implementations on real meshes.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use mesh::{IntrinsicMesh, RepairOptions, VertexId, io};
 use rayon::prelude::*;
 
 use super::super::Exact;
-use super::assert_close;
+use crate::testing::{Reference, assert_close, data, reference};
 use crate::{Dijkstra, DistanceSolver};
-
-fn data() -> Option<PathBuf> {
-    let default = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
-    let path = std::env::var_os("CANONFORM_DATA").map_or_else(default, PathBuf::from);
-    if !path.join("exact").is_dir() {
-        println!("skipped: no exact distances in {}", path.display());
-        return None;
-    }
-    Some(path)
-}
-
-/// The numbers of a one- or two-dimensional `.npy` file, `N` bytes each.
-fn numbers<const N: usize, T>(path: &Path, read: fn([u8; N]) -> T) -> Vec<T> {
-    let bytes = std::fs::read(path).unwrap();
-    let header = 10 + usize::from(u16::from_le_bytes([bytes[8], bytes[9]]));
-    bytes[header..].as_chunks().0.iter().map(|chunk| read(*chunk)).collect()
-}
 
 #[test]
 fn distances_are_those_of_mitchell_mount_and_papadimitriou() {
     let Some(data) = data() else { return };
-    for (name, mesh) in [
-        ("cat0", "tosca-lowres/cat0.vert"),
-        ("cat1", "tosca-lowres/cat1.vert"),
-        ("centaur1", "tosca-lowres/centaur1.vert"),
-        ("centaur2", "tosca-lowres/centaur2.vert"),
-        ("horse0", "tosca-lowres/horse0.vert"),
-        ("wolf0", "tosca-lowres/wolf0.vert"),
-        ("wolf1", "tosca-lowres/wolf1.vert"),
-        ("spot", "single/spot.obj"),
-        ("rocker-arm", "single/rocker-arm.obj"),
-        ("armadillo", "single/armadillo.obj"),
+    for mesh in [
+        "tosca-lowres/cat0.vert",
+        "tosca-lowres/cat1.vert",
+        "tosca-lowres/centaur1.vert",
+        "tosca-lowres/centaur2.vert",
+        "tosca-lowres/horse0.vert",
+        "tosca-lowres/wolf0.vert",
+        "tosca-lowres/wolf1.vert",
+        "single/spot.obj",
+        "single/rocker-arm.obj",
+        "single/armadillo.obj",
     ] {
-        // As it was read: so were the references made.
-        let solver = Exact::new(&IntrinsicMesh::from_mesh(&io::read(&data.join(mesh)).unwrap()));
-        let sources = numbers(&data.join(format!("exact/{name}-sources.npy")), u32::from_le_bytes);
-        let expected = numbers(&data.join(format!("exact/{name}-distances.npy")), f64::from_le_bytes);
-        let n = solver.n_vertices();
-        for (source, expected) in sources.iter().zip(expected.chunks_exact(n)) {
-            for (found, expected) in solver.distances(VertexId(*source)).iter().zip(expected) {
+        let Reference { mesh, rows } = reference(&data, mesh);
+        let solver = Exact::new(&IntrinsicMesh::from_mesh(&mesh));
+        for (source, expected) in &rows {
+            for (found, expected) in solver.distances(*source).iter().zip(expected) {
                 assert_close(*found, *expected, 1e-12);
             }
         }

@@ -1,0 +1,241 @@
+//! The shortest way through a strip.
+
+use std::collections::VecDeque;
+
+use mesh::{IntrinsicMesh, VertexId};
+
+use super::plane::{Point, cross, sub};
+use super::strip::{Gate, Laid, Portal, Section, Strip};
+use crate::SurfacePoint;
+
+/// A way that crosses an edge within this share of its length from a vertex goes through the vertex.
+const SNAP: f64 = 1e-10;
+
+/// A vertex on the side of a strip that the shortest way touches.
+#[derive(Debug, Clone, Copy)]
+struct Touch {
+    vertex: VertexId,
+    at: Point,
+    /// The first and the last of the gates in a row that have it as an end.
+    first: usize,
+    last: usize,
+}
+
+/// The shortest way between two points through a strip: the nodes on it, and the sections before,
+/// between and after them.
+pub(super) fn shortest_through(
+    mesh: &IntrinsicMesh,
+    strip: Strip,
+    start: SurfacePoint,
+    end: SurfacePoint,
+) -> (Vec<SurfacePoint>, Vec<Section>) {
+    let strip = strip.simplified(mesh, start, end);
+    let laid = strip.lay_out(mesh, start, end);
+    let touches = touches(&laid);
+    let nodes = touches.iter().map(|touch| SurfacePoint::Vertex(touch.vertex)).collect();
+    let mut sections = Vec::with_capacity(touches.len() + 1);
+    // The last touch and the gate after those that have it as an end.
+    let (mut here, mut first, mut next) = (laid.start, 0, 0);
+    for touch in touches.iter().map(Some).chain([None]) {
+        let (to, until) = touch.map_or((laid.end, laid.gates.len()), |t| (t.at, t.first));
+        sections.push(Section::Strip(if until < next {
+            // Along an edge that is itself a gate.
+            Strip::within(strip.faces[until.max(first)])
+        } else {
+            let cross = |(portal, gate): (&Portal, &Gate)| {
+                let share = share(gate, here, to);
+                let t = if gate.left.0 < gate.right.0 { share } else { 1.0 - share };
+                Portal { t, ..*portal }
+            };
+            Strip {
+                faces: strip.faces[next..=until].to_vec(),
+                portals: strip.portals[next..until].iter().zip(&laid.gates[next..until]).map(cross).collect(),
+            }
+        }));
+        if let Some(touch) = touch {
+            (here, first, next) = (touch.at, touch.first, touch.last + 1);
+        }
+    }
+    (nodes, sections)
+}
+
+/// Where a straight line crosses a gate, from 0 at its left end to 1 at its right.
+fn share(gate: &Gate, from: Point, to: Point) -> f64 {
+    let direction = sub(to, from);
+    let left = cross(direction, sub(gate.left.1, from));
+    let right = cross(direction, sub(gate.right.1, from));
+    let share = left / (left - right);
+    // A line along the gate, or none at all, may take either end.
+    if share.is_nan() { 0.0 } else { share.clamp(0.0, 1.0) }
+}
+
+/// All vertices that the shortest way touches, whether it bends there or only passes.
+fn touches(laid: &Laid) -> Vec<Touch> {
+    let mut all: Vec<Touch> = Vec::new();
+    let (mut here, mut next) = (laid.start, 0);
+    for bend in bends(laid).into_iter().map(Some).chain([None]) {
+        let (to, until) = bend.map_or((laid.end, laid.gates.len()), |b| (b.at, b.first));
+        while next < until {
+            let share = share(&laid.gates[next], here, to);
+            if (SNAP..=1.0 - SNAP).contains(&share) {
+                next += 1;
+            } else {
+                let end = if share < 0.5 { End::Left } else { End::Right };
+                let touch = touch(&laid.gates, next, end);
+                (here, next) = (touch.at, touch.last + 1);
+                all.push(touch);
+            }
+        }
+        if let Some(bend) = bend {
+            if all.last().is_none_or(|last| last.vertex != bend.vertex || last.last < bend.first) {
+                all.push(bend);
+            }
+            (here, next) = (bend.at, next.max(bend.last + 1));
+        }
+    }
+    all
+}
+
+/// An end of a gate.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum End {
+    Left,
+    Right,
+}
+
+impl End {
+    fn of(self, gate: &Gate) -> (VertexId, Point) {
+        match self {
+            Self::Left => gate.left,
+            Self::Right => gate.right,
+        }
+    }
+}
+
+/// An end of a gate, and of the gates before and after it that share it.
+fn touch(gates: &[Gate], gate: usize, end: End) -> Touch {
+    let (vertex, at) = end.of(&gates[gate]);
+    let is_same = |other: &&Gate| end.of(other).0 == vertex;
+    Touch {
+        vertex,
+        at,
+        first: gate - gates[..gate].iter().rev().take_while(is_same).count(),
+        last: gate + gates[gate + 1..].iter().take_while(is_same).count(),
+    }
+}
+
+/// A point that the funnel has come to, and the one before it on the shortest way there.
+#[derive(Debug, Clone, Copy)]
+struct Reached {
+    at: Point,
+    before: usize,
+    gate: usize,
+    end: End,
+}
+
+/// The vertices where the shortest way bends, in order (Lee and Preparata 1984, `lee1984`).
+///
+/// The shortest ways from the start to the two ends of a gate run together up to the apex, then apart
+/// along two chains that bend outwards: the funnel. The next gate has a new point on one side; it
+/// straightens the chain of that side, or, when that is used up, moves the apex along the other.
+fn bends(laid: &Laid) -> Vec<Touch> {
+    let mut reached = vec![Reached { at: laid.start, before: 0, gate: 0, end: End::Left }];
+    let mut apex = 0;
+    let mut chains = [VecDeque::new(), VecDeque::new()];
+    let mut extend = |at: Point, gate: usize, end: End| {
+        let [left, right] = &mut chains;
+        // Everything is said of the left side; on the right, left and right change places.
+        let (own, other, sign) = match end {
+            End::Left => (left, right, 1.0),
+            End::Right => (right, left, -1.0),
+        };
+        let turns_left = |a: Point, b: Point, c: Point| sign * cross(sub(b, a), sub(c, b)) > 0.0;
+        while let Some(&last) = own.back() {
+            let before = own.len().checked_sub(2).map_or(apex, |i| own[i]);
+            if turns_left(reached[before].at, reached[last].at, at) {
+                break;
+            }
+            own.pop_back();
+        }
+        if own.is_empty() {
+            while let Some(&first) = other.front() {
+                if turns_left(reached[apex].at, reached[first].at, at) {
+                    break;
+                }
+                apex = first;
+                other.pop_front();
+            }
+        }
+        reached.push(Reached { at, before: own.back().copied().unwrap_or(apex), gate, end });
+        own.push_back(reached.len() - 1);
+    };
+    for (i, gate) in laid.gates.iter().enumerate() {
+        let is_new = |end: End| i == 0 || end.of(&laid.gates[i - 1]).0 != end.of(gate).0;
+        for end in [End::Left, End::Right] {
+            if is_new(end) {
+                extend(end.of(gate).1, i, end);
+            }
+        }
+    }
+    extend(laid.end, laid.gates.len(), End::Left);
+    let mut bends = Vec::new();
+    let mut at = reached[reached.len() - 1].before;
+    while at != 0 {
+        bends.push(touch(&laid.gates, reached[at].gate, reached[at].end));
+        at = reached[at].before;
+    }
+    bends.reverse();
+    bends
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn gate(left: (u32, Point), right: (u32, Point)) -> Gate {
+        Gate { left: (VertexId(left.0), left.1), right: (VertexId(right.0), right.1) }
+    }
+
+    /// A corridor that goes up, to the right around vertex 1, and up again around vertex 4.
+    fn corridor(end: Point) -> Laid {
+        let gates = vec![
+            gate((0, [-1.0, 1.0]), (1, [1.0, 1.0])),
+            gate((2, [0.0, 3.0]), (1, [1.0, 1.0])),
+            gate((3, [3.0, 3.0]), (1, [1.0, 1.0])),
+            gate((3, [3.0, 3.0]), (4, [4.0, 1.0])),
+        ];
+        Laid { start: [0.0, 0.0], gates, end }
+    }
+
+    fn vertices(touches: &[Touch]) -> Vec<u32> {
+        touches.iter().map(|touch| touch.vertex.0).collect()
+    }
+
+    #[test]
+    fn the_way_bends_where_the_corridor_does() {
+        assert_eq!(vertices(&bends(&corridor([5.0, 0.5]))), [1, 4]);
+        assert_eq!(vertices(&bends(&corridor([6.0, 4.0]))), [1]);
+        let straight = Laid { gates: corridor([0.0; 2]).gates[..2].to_vec(), ..corridor([0.5, 2.5]) };
+        assert!(bends(&straight).is_empty());
+        assert!(touches(&straight).is_empty());
+        let bend = bends(&corridor([6.0, 4.0]))[0];
+        assert_eq!((bend.first, bend.last), (0, 2));
+    }
+
+    #[test]
+    fn a_vertex_on_the_straight_line_is_touched_once() {
+        // From the origin over vertex 1 at (1, 1) straight to (3.5, 3.5), which also touches vertex 3.
+        let laid = corridor([3.5, 3.5]);
+        assert_eq!(vertices(&touches(&laid)), [1, 3]);
+    }
+
+    #[test]
+    fn gates_without_length_do_no_harm() {
+        let point = [1.0, 1.0];
+        let gates = vec![gate((0, point), (1, point)), gate((2, point), (1, point))];
+        let laid = Laid { start: [0.0, 0.0], gates, end: [2.0, 2.0] };
+        assert!(touches(&laid).len() <= 2);
+        let nowhere = Laid { start: point, end: point, ..laid };
+        assert!(touches(&nowhere).len() <= 2);
+    }
+}

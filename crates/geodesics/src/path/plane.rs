@@ -1,0 +1,124 @@
+//! Faces laid out in the plane.
+
+use mesh::{CornerId, EdgeId, FaceId, IntrinsicMesh, VertexId};
+
+use crate::SurfacePoint;
+use crate::update::Corner;
+
+/// A point in the plane.
+pub(super) type Point = [f64; 2];
+
+pub(super) fn sub(a: Point, b: Point) -> Point {
+    [a[0] - b[0], a[1] - b[1]]
+}
+
+/// Twice the area of the triangle from the origin over `a` and `b`; positive if `b` lies to the left.
+pub(super) fn cross(a: Point, b: Point) -> f64 {
+    a[0] * b[1] - a[1] * b[0]
+}
+
+pub(super) fn between(a: Point, b: Point, t: f64) -> Point {
+    [a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])]
+}
+
+pub(super) fn distance(a: Point, b: Point) -> f64 {
+    let [x, y] = sub(a, b);
+    x.hypot(y)
+}
+
+/// The third corner of a triangle whose base goes from the origin along the x-axis; above it.
+pub(super) fn apex(base: f64, from_start: f64, from_end: f64) -> Point {
+    if base > 0.0 {
+        let corner = Corner::from_lengths(base, from_start, from_end);
+        // Lengths that belong to no triangle may put it anywhere on the line.
+        [corner.x.clamp(-from_start, from_start), corner.y]
+    } else {
+        [0.0, from_start]
+    }
+}
+
+/// Which side of a gate, for someone who passes it with its left end on the left.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Side {
+    Behind,
+    Ahead,
+}
+
+/// The third corner of a face on one side of a gate with these ends on the left and on the right, from
+/// the lengths of the gate and of the sides from its left and its right end.
+pub(super) fn beyond([left, right]: [Point; 2], lengths: [f64; 3], side: Side) -> Point {
+    let [base, from_left, from_right] = lengths;
+    let [x, y] = if base > 0.0 { sub(right, left).map(|x| x / base) } else { [1.0, 0.0] };
+    let [along, away] = apex(base, from_left, from_right);
+    let ahead = if side == Side::Ahead { away } else { -away };
+    [left[0] + along * x - ahead * y, left[1] + along * y + ahead * x]
+}
+
+/// A face laid out in the plane: one corner in the origin, the next on the x-axis.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Flat {
+    vertices: [VertexId; 3],
+    at: [Point; 3],
+}
+
+impl Flat {
+    /// A face with the corner in `slot` in the origin.
+    pub(super) fn new(mesh: &IntrinsicMesh, face: FaceId, slot: usize) -> Self {
+        let vertices = mesh.topology().faces()[face.index()];
+        let slots = [slot, (slot + 1) % 3, (slot + 2) % 3];
+        let opposite =
+            slots.map(|slot| mesh.length(mesh.topology().opposite_edge(CornerId(3 * face.0 + slot as u32))));
+        let at = [[0.0, 0.0], [opposite[2], 0.0], apex(opposite[2], opposite[1], opposite[0])];
+        Self { vertices: slots.map(|slot| vertices[slot]), at }
+    }
+
+    /// Any triangle.
+    pub(super) fn of(vertices: [VertexId; 3], at: [Point; 3]) -> Self {
+        Self { vertices, at }
+    }
+
+    /// Where a vertex of the face is.
+    pub(super) fn vertex(&self, vertex: VertexId) -> Point {
+        self.at[self.vertices.iter().position(|v| *v == vertex).unwrap_or_default()]
+    }
+
+    /// Where the corner is that is neither in the origin nor on the x-axis.
+    pub(super) fn last(&self) -> Point {
+        self.at[2]
+    }
+
+    /// Where a point of the face is.
+    pub(super) fn point(&self, mesh: &IntrinsicMesh, point: SurfacePoint) -> Point {
+        match point {
+            SurfacePoint::Vertex(vertex) => self.vertex(vertex),
+            SurfacePoint::Edge { edge, t } => {
+                let [a, b] = mesh.topology().edges()[edge.index()].map(|v| self.vertex(v));
+                between(a, b, t)
+            }
+            SurfacePoint::Face { face, barycentric } => {
+                let corners = mesh.topology().faces()[face.index()].map(|v| self.vertex(v));
+                [0, 1].map(|axis| (0..3).map(|i| barycentric[i] * corners[i][axis]).sum())
+            }
+        }
+    }
+}
+
+/// The length of the straight line between two points of a face.
+pub(super) fn segment(mesh: &IntrinsicMesh, face: FaceId, p: SurfacePoint, q: SurfacePoint) -> f64 {
+    let along = |edge: EdgeId, point| match point {
+        SurfacePoint::Vertex(v) => {
+            mesh.topology().edges()[edge.index()].iter().position(|end| *end == v).map(|end| end as f64)
+        }
+        SurfacePoint::Edge { edge: other, t } => (other == edge).then_some(t),
+        SurfacePoint::Face { .. } => None,
+    };
+    // On one edge nothing needs to be laid out, and nothing gets lost in flat faces.
+    for slot in 0..3 {
+        let edge = mesh.topology().opposite_edge(CornerId(3 * face.0 + slot));
+        if let (Some(s), Some(t)) = (along(edge, p), along(edge, q)) {
+            return (s - t).abs() * mesh.length(edge);
+        }
+    }
+    let flat = Flat::new(mesh, face, 0);
+    distance(flat.point(mesh, p), flat.point(mesh, q))
+}

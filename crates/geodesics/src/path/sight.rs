@@ -1,0 +1,196 @@
+//! The vertex in sight over which the source is nearest.
+
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
+use mesh::{CornerId, EdgeId, FaceId, VertexId};
+
+use super::PathTracer;
+use super::edges::faces_around;
+use super::plane::{Flat, Point, Side, between, beyond, cross, distance, sub};
+use super::strip::{Gate, Portal, Strip};
+use crate::SurfacePoint;
+
+/// Share of a length within which two are the same.
+const SAME: f64 = 1e-12;
+
+/// Where a straight line leads, and over which faces.
+#[derive(Debug, Clone)]
+pub(super) struct Aim {
+    pub(super) end: SurfacePoint,
+    pub(super) strip: Strip,
+}
+
+/// The rays from a point that cross one edge after the same faces, in the plane with that point in the
+/// origin.
+#[derive(Debug, Clone, Copy)]
+struct Rays {
+    /// Those that they come from.
+    before: Option<usize>,
+    /// The face that they come through, and the edge they cross.
+    face: FaceId,
+    edge: EdgeId,
+    gate: Gate,
+    /// Points on the outermost rays on either side.
+    left: Point,
+    right: Point,
+}
+
+/// What is known of the search.
+struct Search<'a> {
+    tracer: &'a PathTracer<'a>,
+    rays: Vec<Rays>,
+    /// How many may be sent.
+    most: usize,
+    /// By the least length of a path along them.
+    queue: BinaryHeap<Reverse<(u64, usize)>>,
+    /// Length of the best path, its end, the face of its end, and the rays that lead there.
+    best: (f64, Option<(SurfacePoint, FaceId, Option<usize>)>),
+}
+
+/// Looks from a point in all directions for the vertex or source over which the way to a source is
+/// shortest, if it is shorter than `known`. Stops at the first that is no longer than `enough`, and when
+/// there are no more rays to send.
+///
+/// Rays are followed over the faces as long as they may lead to something: from an edge with ends `A`
+/// and `B`, the source is no nearer to a point `P` than `T(A) - |AP|` and `T(B) - |BP|`. This leaves a
+/// lens around the shortest path. When `T` is exact, so is the result.
+pub(super) fn look(
+    tracer: &PathTracer,
+    from: SurfacePoint,
+    known: f64,
+    enough: f64,
+    n_rays: &mut usize,
+) -> Option<Aim> {
+    let best = (known * (1.0 - SAME), None);
+    let mut search = Search { tracer, rays: Vec::new(), most: *n_rays, queue: BinaryHeap::new(), best };
+    search.start(from);
+    while let Some(Reverse((bits, at))) = search.queue.pop() {
+        let best = search.best.0;
+        if f64::from_bits(bits) >= best || best <= enough * (1.0 + SAME) {
+            break;
+        }
+        search.follow(at);
+    }
+    *n_rays -= search.rays.len();
+    let (end, face, mut at) = search.best.1?;
+    let mut strip = Strip::within(face);
+    while let Some(i) = at {
+        let rays = &search.rays[i];
+        strip.faces.push(rays.face);
+        strip.portals.push(Portal { edge: rays.edge, t: 0.5 });
+        at = rays.before;
+    }
+    strip.faces.reverse();
+    strip.portals.reverse();
+    Some(Aim { end, strip })
+}
+
+impl Search<'_> {
+    /// Sends rays over all edges around a point that it does not lie on.
+    fn start(&mut self, from: SurfacePoint) {
+        let mesh = self.tracer.mesh;
+        let topology = mesh.topology();
+        for face in faces_around(mesh, from) {
+            let flat = Flat::new(mesh, face, 0);
+            let origin = flat.point(mesh, from);
+            let at = |v: VertexId| sub(flat.vertex(v), origin);
+            let vertices = topology.faces()[face.index()];
+            for v in vertices.into_iter().filter(|v| SurfacePoint::Vertex(*v) != from) {
+                self.offer(distance(at(v), [0.0; 2]) + self.tracer.distances[v.index()], v, face, None);
+            }
+            self.look_for_sources(face, &flat, origin, None);
+            for slot in 0..3 {
+                // Counter-clockwise, so that the first end is on the right seen from inside.
+                let [right, left] = [1, 2].map(|step| vertices[(slot + step) % 3]).map(|v| (v, at(v)));
+                if cross(right.1, left.1) > 0.0 {
+                    let edge = topology.opposite_edge(CornerId(3 * face.0 + slot as u32));
+                    let gate = Gate { left, right };
+                    self.send(Rays { before: None, face, edge, gate, left: left.1, right: right.1 });
+                }
+            }
+        }
+    }
+
+    /// Follows rays into the faces beyond their edge.
+    fn follow(&mut self, index: usize) {
+        let mesh = self.tracer.mesh;
+        let topology = mesh.topology();
+        let rays = self.rays[index];
+        let ((left, at_left), (right, at_right)) = (rays.gate.left, rays.gate.right);
+        for facing in topology.edge_corners(rays.edge).iter().filter(|c| c.face() != rays.face) {
+            let face = facing.face();
+            let third = topology.corner_vertex(*facing);
+            let edges = [1, 2]
+                .map(|step| topology.opposite_edge(CornerId(3 * face.0 + (facing.slot() as u32 + step) % 3)));
+            let [to_left, to_right] =
+                if topology.edges()[edges[0].index()].contains(&left) { edges } else { [edges[1], edges[0]] };
+            let lengths = [rays.edge, to_left, to_right].map(|edge| mesh.length(edge));
+            let at = beyond([at_left, at_right], lengths, Side::Ahead);
+            self.look_for_sources(
+                face,
+                &Flat::of([left, right, third], [at_left, at_right, at]),
+                [0.0; 2],
+                Some(index),
+            );
+            let before = Some(index);
+            let [from_left, from_right] = [cross(at, rays.left), cross(rays.right, at)];
+            let is_seen = from_left >= 0.0 && from_right >= 0.0;
+            if is_seen {
+                let total = distance(at, [0.0; 2]) + self.tracer.distances[third.index()];
+                self.offer(total, third, face, before);
+            }
+            if from_right > 0.0 {
+                // Some rays pass on the right of the vertex.
+                let (gate, left) =
+                    (Gate { left: (third, at), ..rays.gate }, if is_seen { at } else { rays.left });
+                self.send(Rays { before, face, edge: to_right, gate, left, right: rays.right });
+            }
+            if from_left > 0.0 {
+                let (gate, right) =
+                    (Gate { right: (third, at), ..rays.gate }, if is_seen { at } else { rays.right });
+                self.send(Rays { before, face, edge: to_left, gate, left: rays.left, right });
+            }
+        }
+    }
+
+    fn look_for_sources(&mut self, face: FaceId, flat: &Flat, origin: Point, before: Option<usize>) {
+        for source in self.tracer.sources_within(face) {
+            let at = sub(flat.point(self.tracer.mesh, *source), origin);
+            let is_seen = before.is_none_or(|i| {
+                let rays = &self.rays[i];
+                cross(at, rays.left) >= 0.0 && cross(rays.right, at) >= 0.0
+            });
+            let total = distance(at, [0.0; 2]);
+            if is_seen && total < self.best.0 {
+                self.best = (total, Some((*source, face, before)));
+            }
+        }
+    }
+
+    fn offer(&mut self, total: f64, vertex: VertexId, face: FaceId, before: Option<usize>) {
+        if total < self.best.0 {
+            self.best = (total, Some((SurfacePoint::Vertex(vertex), face, before)));
+        }
+    }
+
+    /// Keeps rays that may lead to a shorter path than the best so far.
+    fn send(&mut self, rays: Rays) {
+        let Gate { left, right } = rays.gate;
+        // Where the outermost rays cross the edge.
+        let [p, q] = [rays.left, rays.right].map(|ray| {
+            let (a, b) = (cross(ray, left.1), cross(ray, right.1));
+            let share = a / (a - b);
+            between(left.1, right.1, if share.is_nan() { 0.5 } else { share.clamp(0.0, 1.0) })
+        });
+        // The length of a path over the edge falls towards the end that is farther.
+        let over = |(vertex, at): (VertexId, Point), far: Point| {
+            self.tracer.distances[vertex.index()] + distance(far, [0.0; 2]) - distance(far, at)
+        };
+        let least = over(left, q).max(over(right, p)).max(0.0);
+        if least < self.best.0 && self.rays.len() < self.most {
+            self.queue.push(Reverse((least.to_bits(), self.rays.len())));
+            self.rays.push(rays);
+        }
+    }
+}

@@ -1,0 +1,153 @@
+//! Ways over faces that are crossed one after the other.
+
+use mesh::{EdgeId, FaceId, IntrinsicMesh, VertexId};
+
+use super::plane::{Flat, Point, Side, beyond, segment};
+use crate::SurfacePoint;
+
+/// A way along the surface: nodes, and how it goes straight from each to the next.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Way {
+    pub(super) nodes: Vec<SurfacePoint>,
+    /// One fewer than nodes.
+    pub(super) sections: Vec<Section>,
+}
+
+/// The part of a way between two nodes.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Section {
+    /// Over a link of this length.
+    Link(f64),
+    /// Over faces.
+    Strip(Strip),
+}
+
+/// Faces crossed one after the other.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Strip {
+    /// One more than portals: portal `i` leads from face `i` to face `i + 1`.
+    pub(super) faces: Vec<FaceId>,
+    pub(super) portals: Vec<Portal>,
+}
+
+/// An edge that is crossed.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Portal {
+    pub(super) edge: EdgeId,
+    /// Where, as a share of the way from its lower to its higher vertex.
+    pub(super) t: f64,
+}
+
+impl Portal {
+    pub(super) fn point(self) -> SurfacePoint {
+        SurfacePoint::Edge { edge: self.edge, t: self.t }
+    }
+}
+
+impl Way {
+    pub(super) fn length(&self, mesh: &IntrinsicMesh) -> f64 {
+        let ends = self.nodes.iter().zip(self.nodes.iter().skip(1));
+        self.sections.iter().zip(ends).map(|(section, (a, b))| section.length(mesh, *a, *b)).sum()
+    }
+}
+
+impl Section {
+    pub(super) fn length(&self, mesh: &IntrinsicMesh, start: SurfacePoint, end: SurfacePoint) -> f64 {
+        match self {
+            Self::Link(length) => *length,
+            Self::Strip(strip) => {
+                let stops = strip.portals.iter().map(|portal| portal.point()).chain([end]);
+                let mut here = start;
+                let straight = |(stop, face): (SurfacePoint, &FaceId)| {
+                    segment(mesh, *face, std::mem::replace(&mut here, stop), stop)
+                };
+                stops.zip(&strip.faces).map(straight).sum()
+            }
+        }
+    }
+}
+
+/// A portal laid out in the plane, seen by someone on the way.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Gate {
+    pub(super) left: (VertexId, Point),
+    pub(super) right: (VertexId, Point),
+}
+
+/// A strip laid out in the plane.
+#[derive(Debug, Clone)]
+pub(super) struct Laid {
+    pub(super) start: Point,
+    pub(super) gates: Vec<Gate>,
+    pub(super) end: Point,
+}
+
+impl Strip {
+    /// A single face.
+    pub(super) fn within(face: FaceId) -> Self {
+        Self { faces: vec![face], portals: Vec::new() }
+    }
+
+    /// Takes out what leads nowhere: faces that are left by the edge they were entered by, and edges
+    /// at either end that the end itself lies on.
+    pub(super) fn simplified(self, mesh: &IntrinsicMesh, start: SurfacePoint, end: SurfacePoint) -> Self {
+        let mut faces = self.faces.into_iter();
+        let mut simple = Self { faces: faces.next().into_iter().collect(), portals: Vec::new() };
+        for (portal, face) in self.portals.into_iter().zip(faces) {
+            if simple.portals.last().is_some_and(|last| last.edge == portal.edge) {
+                simple.faces.pop();
+                simple.portals.pop();
+            }
+            if simple.faces.last() != Some(&face) {
+                simple.faces.push(face);
+                simple.portals.push(portal);
+            }
+        }
+        let on = |point, portal: &Portal| match point {
+            SurfacePoint::Vertex(v) => mesh.topology().edges()[portal.edge.index()].contains(&v),
+            SurfacePoint::Edge { edge, .. } => edge == portal.edge,
+            SurfacePoint::Face { .. } => false,
+        };
+        let past_start = simple.portals.iter().take_while(|portal| on(start, portal)).count();
+        simple.portals.drain(..past_start);
+        simple.faces.drain(..past_start);
+        while simple.portals.last().is_some_and(|portal| on(end, portal)) {
+            simple.portals.pop();
+            simple.faces.pop();
+        }
+        simple
+    }
+
+    /// Lays the strip out in the plane, each face beyond the portal that leads into it.
+    pub(super) fn lay_out(&self, mesh: &IntrinsicMesh, start: SurfacePoint, end: SurfacePoint) -> Laid {
+        let topology = mesh.topology();
+        let length = |a, b| topology.edge_between(a, b).map_or(0.0, |edge| mesh.length(edge));
+        let Some(first) = self.portals.first() else {
+            let flat = Flat::new(mesh, self.faces[0], 0);
+            return Laid { start: flat.point(mesh, start), gates: Vec::new(), end: flat.point(mesh, end) };
+        };
+        let triangle = |face: FaceId, gate: &Gate, side: Side| {
+            let ((left, at_left), (right, at_right)) = (gate.left, gate.right);
+            let vertices = topology.faces()[face.index()];
+            let third = vertices.into_iter().find(|v| *v != left && *v != right).unwrap_or(left);
+            let lengths = [length(left, right), length(left, third), length(right, third)];
+            let at = beyond([at_left, at_right], lengths, side);
+            (third, at, Flat::of([left, right, third], [at_left, at_right, at]))
+        };
+        let [left, right] = topology.edges()[first.edge.index()];
+        let mut gate = Gate { left: (left, [0.0, 0.0]), right: (right, [mesh.length(first.edge), 0.0]) };
+        let start = triangle(self.faces[0], &gate, Side::Behind).2.point(mesh, start);
+        let mut gates = vec![gate];
+        for (face, portal) in self.faces[1..].iter().zip(&self.portals[1..]) {
+            let (third, at, _) = triangle(*face, &gate, Side::Ahead);
+            if topology.edges()[portal.edge.index()].contains(&gate.left.0) {
+                gate.right = (third, at);
+            } else {
+                gate.left = (third, at);
+            }
+            gates.push(gate);
+        }
+        let last = self.faces[self.faces.len() - 1];
+        Laid { start, gates, end: triangle(last, &gate, Side::Ahead).2.point(mesh, end) }
+    }
+}

@@ -1,0 +1,117 @@
+//! Surfaces that are hardly any.
+
+use mesh::{IntrinsicMesh, Link, Topology, VertexId, shapes};
+use proptest::prelude::*;
+
+use super::{assert_path, vertex};
+use crate::testing::{faces, lengths_of_nothing, spatial};
+use crate::{Dijkstra, DistanceSolver, Exact, PathTracer, Source, SurfacePoint};
+
+/// Every path is one, and no longer than along edges, or there is none.
+fn assert_sane(mesh: &IntrinsicMesh) {
+    let dijkstra = Dijkstra::new(mesh);
+    let solvers: [&dyn DistanceSolver; 2] = [&Exact::new(mesh), &dijkstra];
+    for source in (0..mesh.n_vertices()).step_by(3) {
+        let along_edges = dijkstra.distances(VertexId::from(source));
+        for solver in solvers {
+            let sources = [Source::vertex(VertexId::from(source))];
+            let field = solver.distances(VertexId::from(source));
+            let tracer = PathTracer::new(mesh, &sources, &field);
+            for (target, limit) in along_edges.iter().enumerate() {
+                match tracer.path_to(vertex(target)) {
+                    Err(_) => assert!(limit.is_infinite()),
+                    Ok(path) => {
+                        assert_path(mesh, &path, vertex(source), vertex(target));
+                        assert!(path.length <= limit * (1.0 + 1e-12), "{} {limit}", path.length);
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn repeated_faces_do_no_harm() {
+    let sheet = shapes::jittered_grid(5, 4, 1.0, 0.2, 2);
+    for copies in [2, 3] {
+        let repeated = mesh::TriMesh { faces: sheet.faces.repeat(copies), ..sheet.clone() };
+        assert_sane(&IntrinsicMesh::from_mesh(&repeated));
+    }
+}
+
+#[test]
+fn a_needle_does_no_harm() {
+    let mut at = vec![[0.0, 0.0, 1.0], [0.0, 0.0, -1.0], [0.0, 0.0, 3.0]];
+    let mut tube = Vec::new();
+    for i in 0..7u32 {
+        let angle = std::f64::consts::TAU * f64::from(i) / 7.0;
+        at.push([1e-7 * angle.cos(), 1e-7 * angle.sin(), 0.1 * angle.sin()]);
+        let (a, b) = (3 + i, 3 + (i + 1) % 7);
+        tube.extend([[0, a, b], [b, a, 1]]);
+    }
+    tube.push([0, 2, 3]);
+    assert_sane(&spatial(&at, &tube));
+}
+
+#[test]
+fn a_vertex_alone_reaches_itself() {
+    let mesh = IntrinsicMesh::new(Topology::new(2, Vec::new()), Vec::new());
+    assert_sane(&mesh);
+    assert_sane(&mesh.with_links(vec![Link { ends: [0, 1].map(VertexId), length: 1.0 }]));
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    #[test]
+    fn impossible_lengths_do_no_harm(
+        raw in prop::collection::vec((0..9u32, 1..9u32, 0..9u32), 1..30),
+        lengths in prop::collection::vec(lengths_of_nothing(), 40),
+        link in prop::option::of((0..9u32, lengths_of_nothing())),
+    ) {
+        let faces: Vec<[VertexId; 3]> = raw
+            .iter()
+            .map(|(a, b, c)| [*a, (a + b) % 9, *c])
+            .filter(|[a, b, c]| a != c && b != c)
+            .map(|f| f.map(VertexId))
+            .collect();
+        let topology = Topology::new(9, faces);
+        let lengths = lengths[..topology.n_edges()].to_vec();
+        let link = link.map(|(a, length)| Link { ends: [a, (a + 4) % 9].map(VertexId), length });
+        assert_sane(&IntrinsicMesh::new(topology, lengths).with_links(link.into_iter().collect()));
+    }
+
+    #[test]
+    fn vertices_in_the_same_places_do_no_harm(
+        picks in prop::collection::vec(0..27usize, 20),
+        jitter in prop::collection::vec(-1.0..1.0f64, 60),
+        scale in prop_oneof![Just(0.0), Just(1e-16), Just(1e-13), Just(1e-8), Just(1e-3)],
+    ) {
+        // Points of a 3 x 3 x 3 lattice, hardly moved: collinear, coplanar, coincident.
+        let axis = |p: usize, i: usize| (p / 3usize.pow(i as u32) % 3) as f64;
+        let at: Vec<[f64; 3]> = (0..20)
+            .map(|v| [0, 1, 2].map(|i| axis(picks[v], i) + scale * jitter[3 * v + i]))
+            .collect();
+        assert_sane(&spatial(&at, &faces(&shapes::grid(5, 4, 1.0))));
+    }
+
+    #[test]
+    fn points_anywhere_have_paths(
+        face in 0..80u32, other in 0..80u32,
+        weights in prop::array::uniform6(prop_oneof![Just(0.0), Just(1e-14), 0.01..1.0f64]),
+    ) {
+        let mesh = IntrinsicMesh::from_mesh(&shapes::icosphere(1));
+        let point = |face, weights: &[f64]| {
+            let sum: f64 = weights.iter().sum();
+            let barycentric = if sum > 0.01 { [0, 1, 2].map(|i| weights[i] / sum) } else { [0.2, 0.3, 0.5] };
+            SurfacePoint::Face { face: mesh::FaceId(face), barycentric }
+        };
+        let (p, q) = (point(face, &weights[..3]), point(other, &weights[3..]));
+        let sources = [Source::new(&mesh, p).unwrap()];
+        let mut field = vec![0.0; mesh.n_vertices()];
+        Exact::new(&mesh).solve_into(&sources, f64::INFINITY, &mut field);
+        let path = PathTracer::new(&mesh, &sources, &field).path_to(q).unwrap();
+        assert_path(&mesh, &path, path.points[0], *path.points.last().unwrap());
+        assert!(path.length < 4.0);
+    }
+}

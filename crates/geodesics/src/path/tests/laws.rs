@@ -1,0 +1,150 @@
+//! What holds on every surface.
+
+use mesh::{EdgeId, FaceId, IntrinsicMesh, VertexId, shapes};
+
+use super::super::plane::segment;
+use super::{assert_path, shortest, vertex};
+use crate::testing::{assert_close, bumpy, faces, points, spatial};
+use crate::{
+    BreadthFirst, Dijkstra, DistanceSolver, Exact, FastMarching, HeatMethod, PathTracer, Source, SurfacePoint,
+};
+
+#[test]
+fn exact_distances_give_exactly_shortest_paths_between_all_pairs() {
+    for (n, height, seed) in [(8, 0.5, 1), (9, 0.9, 3), (7, 2.0, 5)] {
+        let mesh = bumpy(n, height, seed);
+        let solver = Exact::new(&mesh);
+        for source in (0..mesh.n_vertices()).map(VertexId::from) {
+            let distances = solver.distances(source);
+            let sources = [Source::vertex(source)];
+            let tracer = PathTracer::new(&mesh, &sources, &distances);
+            for (target, distance) in distances.iter().enumerate() {
+                let path = tracer.path_to(vertex(target)).unwrap();
+                assert_path(&mesh, &path, SurfacePoint::Vertex(source), vertex(target));
+                assert_close(path.length, *distance, 1e-11);
+            }
+        }
+    }
+}
+
+#[test]
+fn paths_between_points_of_edges_and_faces_are_as_short_there_as_back() {
+    let mesh = bumpy(10, 1.2, 4);
+    let edge = |edge: u32, t| SurfacePoint::Edge { edge: EdgeId(edge), t };
+    let face = |face: u32, barycentric| SurfacePoint::Face { face: FaceId(face), barycentric };
+    let all = [
+        vertex(44),
+        edge(3, 0.3),
+        edge(150, 0.999),
+        edge(200, 0.5),
+        face(0, [0.2, 0.3, 0.5]),
+        face(80, [1e-9, 0.5, 0.5 - 1e-9]),
+        face(131, [0.0, 0.6, 0.4]),
+        face(160, [0.1, 0.8, 0.1]),
+    ];
+    for p in all {
+        for q in all {
+            let [there, back] = [(p, q), (q, p)].map(|(source, target)| {
+                let sources = [Source::new(&mesh, source).unwrap()];
+                let mut distances = vec![0.0; mesh.n_vertices()];
+                Exact::new(&mesh).solve_into(&sources, f64::INFINITY, &mut distances);
+                PathTracer::new(&mesh, &sources, &distances).path_to(target).unwrap().length
+            });
+            assert_close(there, back, 1e-11);
+        }
+    }
+}
+
+#[test]
+fn any_field_gives_a_path_between_the_exact_distance_and_that_along_edges() {
+    let sphere = shapes::icosphere(2);
+    let mut at = points(&sphere);
+    for p in &mut at {
+        p[0] *= 2.0 + 0.6 * (3.0 * p[1]).sin();
+        p[2] *= 1.0 + 0.3 * (5.0 * p[0]).cos();
+    }
+    let mesh = spatial(&at, &faces(&sphere));
+    let (exact, dijkstra) = (Exact::new(&mesh), Dijkstra::new(&mesh));
+    let solvers: [&dyn DistanceSolver; 5] = [
+        &exact,
+        &FastMarching::new(&mesh, Default::default()),
+        &HeatMethod::new(&mesh, Default::default()).unwrap(),
+        &dijkstra,
+        &BreadthFirst::new(&mesh),
+    ];
+    for source in [0, 101].map(VertexId) {
+        let (shortest, along_edges) = (exact.distances(source), dijkstra.distances(source));
+        let nonsense = (0..mesh.n_vertices()).map(|v| ((v * 7919) % 101) as f64).collect();
+        let nothing = vec![0.0; mesh.n_vertices()];
+        let fields = solvers.map(|solver| solver.distances(source)).into_iter().chain([nonsense, nothing]);
+        for field in fields {
+            let sources = [Source::vertex(source)];
+            let tracer = PathTracer::new(&mesh, &sources, &field);
+            for target in (0..mesh.n_vertices()).step_by(4) {
+                let path = tracer.path_to(vertex(target)).unwrap();
+                assert_path(&mesh, &path, SurfacePoint::Vertex(source), vertex(target));
+                assert!(path.length >= shortest[target] * (1.0 - 1e-12), "{}", path.length);
+                // The field may claim more than the distance along edges.
+                let limit = along_edges[target].max(field[target]);
+                assert!(path.length <= limit * (1.0 + 1e-12), "{} {limit}", path.length);
+            }
+        }
+    }
+}
+
+#[test]
+fn no_corner_can_be_cut() {
+    // A path that is moved a little at any of its crossings gets longer.
+    let mesh = bumpy(12, 1.0, 8);
+    let path = shortest(&mesh, vertex(1), vertex(140));
+    assert!(path.points.len() > 10);
+    for (i, point) in path.points.iter().enumerate() {
+        let SurfacePoint::Edge { edge, t } = *point else { continue };
+        let length = |t: f64| {
+            let moved = SurfacePoint::Edge { edge, t };
+            let sides = [(path.points[i - 1], moved), (moved, path.points[i + 1])];
+            sides.iter().map(|(p, q)| super::step(&mesh, *p, *q)).sum::<f64>()
+        };
+        for moved in [t - 1e-4, t + 1e-4, 0.0, 1.0] {
+            assert!(length(moved.clamp(0.0, 1.0)) >= length(t));
+        }
+    }
+}
+
+#[test]
+fn folding_a_sheet_changes_no_path() {
+    let flat = shapes::jittered_grid(9, 6, 1.0, 0.0, 1);
+    for angle in [0.3, 1.5, 3.0] {
+        let folded = IntrinsicMesh::from_mesh(&shapes::folded_sheet(9, 6, 1.0, 4, angle));
+        let expected = shortest(&IntrinsicMesh::from_mesh(&flat), vertex(1), vertex(52));
+        let found = shortest(&folded, vertex(1), vertex(52));
+        assert_close(found.length, expected.length, 1e-13);
+    }
+}
+
+#[test]
+fn distances_with_a_limit_give_the_same_paths_within_it() {
+    let mesh = bumpy(12, 0.8, 6);
+    let solver = Exact::new(&mesh);
+    let sources = [Source::vertex(VertexId(60))];
+    let (full, mut limited) = (solver.distances(VertexId(60)), vec![0.0; mesh.n_vertices()]);
+    solver.solve_into(&sources, 4.0, &mut limited);
+    let [all, some] = [&full, &limited].map(|field| PathTracer::new(&mesh, &sources, field));
+    for (v, distance) in full.iter().enumerate() {
+        match some.path_to(vertex(v)) {
+            Ok(path) => assert_close(path.length, all.path_to(vertex(v)).unwrap().length, 1e-12),
+            Err(_) => assert!(*distance > 4.0),
+        }
+    }
+}
+
+#[test]
+fn segments_on_an_edge_are_measured_along_it() {
+    let mesh = IntrinsicMesh::from_mesh(&shapes::grid(2, 2, 1.0));
+    let edge = mesh.topology().edge_between(VertexId(0), VertexId(1)).unwrap();
+    let face = mesh.topology().edge_corners(edge)[0].face();
+    let at = |t| SurfacePoint::Edge { edge, t };
+    assert_eq!(segment(&mesh, face, at(0.25), at(0.75)), 0.5);
+    assert_eq!(segment(&mesh, face, vertex(1), at(0.25)), 0.75);
+    assert_eq!(segment(&mesh, face, vertex(1), vertex(0)), 1.0);
+}

@@ -1,0 +1,61 @@
+//! Beside exact distances on real meshes.
+
+use mesh::{IntrinsicMesh, RepairOptions, io, repair};
+use rayon::prelude::*;
+
+use super::vertex;
+use crate::testing::{Reference, assert_close, data, reference};
+use crate::{Dijkstra, DistanceSolver, Exact, FastMarching, PathTracer, Source};
+
+#[test]
+fn paths_are_as_long_as_exact_distances() {
+    let Some(data) = data() else { return };
+    for mesh in
+        ["tosca-lowres/cat0.vert", "tosca-lowres/centaur1.vert", "single/spot.obj", "single/rocker-arm.obj"]
+    {
+        let Reference { mesh, rows } = reference(&data, mesh);
+        let surface = IntrinsicMesh::from_mesh(&mesh);
+        let marching = FastMarching::new(&surface, Default::default());
+        for (source, exact) in rows.iter().take(2) {
+            let sources = [Source::vertex(*source)];
+            let tracer = PathTracer::new(&surface, &sources, exact);
+            let marched = marching.distances(*source);
+            let rough = PathTracer::new(&surface, &sources, &marched);
+            let (mut excess, mut count) = (0.0, 0);
+            for (v, distance) in exact.iter().enumerate().step_by(11).filter(|(_, d)| **d > 0.0) {
+                assert_close(tracer.path_to(vertex(v)).unwrap().length, *distance, 1e-11);
+                let length = rough.path_to(vertex(v)).unwrap().length;
+                assert!(length >= distance * (1.0 - 1e-11));
+                excess += length / distance - 1.0;
+                count += 1;
+            }
+            // Several times closer than the distances that led there.
+            assert!(excess / f64::from(count) < 1e-3, "{excess}");
+        }
+    }
+}
+
+#[test]
+fn every_tosca_mesh_has_its_shortest_paths() {
+    let Some(data) = data() else { return };
+    let mut paths: Vec<_> =
+        std::fs::read_dir(data.join("tosca-lowres")).unwrap().map(|entry| entry.unwrap().path()).collect();
+    paths.retain(|path| path.extension().is_some_and(|e| e == "vert"));
+    let done = paths.par_iter().filter(|path| {
+        // One of them is damaged.
+        let Ok(read) = io::read(path) else { return false };
+        let mesh = repair(&read, &RepairOptions::default()).unwrap().intrinsic();
+        let source = mesh::VertexId::from(mesh.n_vertices() / 3);
+        let sources = [Source::vertex(source)];
+        let exact = Exact::new(&mesh).distances(source);
+        let tracer = PathTracer::new(&mesh, &sources, &exact);
+        let along_edges = Dijkstra::new(&mesh).distances(source);
+        for v in (0..mesh.n_vertices()).step_by(97) {
+            let length = tracer.path_to(vertex(v)).unwrap().length;
+            assert!((length - exact[v]).abs() <= 1e-10 * exact[v], "{}: {v}", path.display());
+            assert!(length <= along_edges[v] * (1.0 + 1e-12));
+        }
+        true
+    });
+    assert_eq!(done.count(), 147);
+}
