@@ -34,7 +34,7 @@ pub enum NmdsError {
         n_points: usize,
     },
     /// A convergence tolerance without meaning.
-    #[error("the tolerance {tolerance} must be a number from 0 on; 1e-5 stops in time")]
+    #[error("the tolerance {tolerance} must be a number from 0 on; 1e-6 stops in time")]
     BadTolerance {
         /// The tolerance given.
         tolerance: f64,

@@ -137,6 +137,36 @@ mod tests {
     }
 
     #[test]
+    fn relative_widths_are_statistics_of_the_measured_distances() {
+        let distances = landmark_distances(&Cloud::new(101, 3, 14), 9);
+        let mut sorted = distances.matrix().as_slice().to_vec();
+        sorted.sort_by(f64::total_cmp);
+        let mean = sorted.iter().sum::<f64>() / sorted.len() as f64;
+        let embed = |bandwidth| {
+            kernel_pca(&distances, &KernelPcaOptions { bandwidth, ..Default::default() }).unwrap()
+        };
+        let expected = [mean, sorted[sorted.len() / 2], sorted[sorted.len() - 1]];
+        for (bandwidth, sigma) in
+            [Bandwidth::Mean, Bandwidth::Median, Bandwidth::Max].into_iter().zip(expected)
+        {
+            let (by_name, by_value) = (embed(bandwidth), embed(Bandwidth::Value(sigma)));
+            assert!((by_name.coords - by_value.coords).amax() < 1e-12, "{bandwidth:?}");
+        }
+    }
+
+    #[test]
+    fn a_wide_kernel_is_scaling_of_the_distances() {
+        // exp(-x) is nearly 1 - x: the centred kernel is then that of classical scaling over sigma^2.
+        let cloud = Cloud::new(60, 3, 15);
+        let distances = landmark_distances(&cloud, 60);
+        let sigma = 1e3 * distances.max();
+        let options = KernelPcaOptions { bandwidth: Bandwidth::Value(sigma), rank: Some(60), dim: 3 };
+        let mut embedding = kernel_pca(&distances, &options).unwrap();
+        embedding.coords *= sigma;
+        assert!(crate::testing::procrustes_free_gap(&cloud, &embedding) < 1e-4);
+    }
+
+    #[test]
     fn a_width_must_be_positive() {
         let distances = landmark_distances(&Cloud::new(30, 3, 13), 6);
         for sigma in [0.0, -1.0, f64::INFINITY] {

@@ -47,7 +47,7 @@ pub(crate) struct EmbeddingArgs {
     /// Steps of smacof at most [default: 300]
     #[arg(long, value_name = "N")]
     pub(crate) iterations: Option<usize>,
-    /// Share of the stress that a step of smacof must gain for another one to follow [default: 1e-5]
+    /// Share of the stress that a step of smacof must gain for another one to follow [default: 1e-6]
     #[arg(long, value_name = "T")]
     pub(crate) tolerance: Option<f64>,
     /// How distances are measured

@@ -112,7 +112,7 @@ fn options_that_do_not_apply_together_are_named_with_what_they_belong_to() {
         ("--alpha much --regularization rpi", ["--alpha", "`much`", "`paper`"]),
         ("--sigma wide --method kpca", ["--sigma", "`wide`", "`median`"]),
         ("--sigma=-1 --method kpca", ["ring.off", "width -1", "positive"]),
-        ("--tolerance nan --method smacof", ["ring.off", "tolerance NaN", "1e-5"]),
+        ("--tolerance nan --method smacof", ["ring.off", "tolerance NaN", "1e-6"]),
         ("--method landmark -n 3", ["ring.off", "3 dimensions", "1 to 2"]),
     ] {
         let options: Vec<&str> = options.split(' ').collect();
