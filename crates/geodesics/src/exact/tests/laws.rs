@@ -3,7 +3,7 @@
 use mesh::{FaceId, IntrinsicMesh, Topology, VertexId, shapes};
 
 use super::super::Exact;
-use super::{all_pairs, assert_close, bumpy, faces, points, spatial};
+use super::{all_pairs, assert_close, bumpy};
 use crate::{Dijkstra, DistanceSolver, Source, SurfacePoint};
 
 #[test]
@@ -104,33 +104,6 @@ fn a_limit_hides_what_is_beyond_and_changes_nothing_else() {
         }
         // What an aborted run left behind does no harm.
         assert_eq!(solver.distances(VertexId(50)), full);
-    }
-}
-
-#[test]
-fn a_point_of_a_face_is_like_a_vertex_put_there() {
-    let sphere = shapes::icosphere(2);
-    let (mut at, mut split) = (points(&sphere), faces(&sphere));
-    for p in &mut at {
-        p[0] *= 1.5;
-        p[1] *= 1.0 + 0.3 * p[2];
-    }
-    let mesh = spatial(&at, &split);
-    let (face, barycentric) = (FaceId(100), [0.2, 0.7, 0.1]);
-    let [a, b, c] = split[face.index()];
-    let new = at.len() as u32;
-    let corner = |axis: usize, v: u32| at[v as usize][axis];
-    let point = [0, 1, 2].map(|i| 0.2 * corner(i, a) + 0.7 * corner(i, b) + 0.1 * corner(i, c));
-    at.push(point);
-    split[face.index()] = [a, b, new];
-    split.extend([[b, c, new], [c, a, new]]);
-
-    let mut out = vec![0.0; mesh.n_vertices()];
-    let source = Source::new(&mesh, SurfacePoint::Face { face, barycentric }).unwrap();
-    Exact::new(&mesh).solve_into(&[source], f64::INFINITY, &mut out);
-    let expected = Exact::new(&spatial(&at, &split)).distances(VertexId(new));
-    for (found, expected) in out.iter().zip(&expected) {
-        assert_close(*found, *expected, 1e-12);
     }
 }
 

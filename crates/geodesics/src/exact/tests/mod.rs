@@ -4,7 +4,9 @@ mod closed_forms;
 mod degenerate;
 mod laws;
 mod oracle;
+mod random;
 mod reference;
+mod sources;
 
 use mesh::{IntrinsicMesh, VertexId};
 

@@ -4,9 +4,8 @@
 use mesh::{CornerId, IntrinsicMesh, Link, Topology, VertexId};
 use proptest::prelude::*;
 
-use super::super::Exact;
+use super::random::{lattice_soup, soup, star};
 use super::{all_pairs, assert_close, bumpy, faces, spatial};
-use crate::{DistanceSolver, Source, SurfacePoint};
 
 type Point = [f64; 2];
 
@@ -189,64 +188,6 @@ fn paths_of_equal_length_do_not_hide_each_other() {
     }
 }
 
-/// Faces over `n` vertices, with their corners in any order.
-fn any_faces(n: u32, n_faces: usize) -> impl Strategy<Value = Vec<[u32; 3]>> {
-    let face = (0..n, 1..n, 2..n).prop_map(move |(a, b, c)| {
-        // The second differs from the first, the third from both.
-        let third = if c > b { c } else { c - 1 };
-        [a, (a + b) % n, (a + third) % n]
-    });
-    prop::collection::vec(face, 1..=n_faces)
-}
-
-/// Any faces over a few points in space.
-fn soup(n: u32, n_faces: usize) -> impl Strategy<Value = IntrinsicMesh> {
-    let points = prop::collection::vec([-1.0..1.0, -1.0..1.0, -1.0..1.0f64], n as usize);
-    (points, any_faces(n, n_faces)).prop_map(|(points, faces)| spatial(&points, &faces))
-}
-
-/// The same over different points of a lattice, which are often in one plane, hardly moved: paths
-/// meet vertices, and there are several of the same length. The slow way is at a loss where a face
-/// has no area.
-fn lattice_soup(n: usize, n_faces: usize) -> impl Strategy<Value = IntrinsicMesh> {
-    let points = prop::sample::subsequence((0..18u32).collect::<Vec<_>>(), n).prop_shuffle();
-    let moves = prop::collection::vec([-1.0..1.0, -1.0..1.0, -1.0..1.0f64], n);
-    let scale = prop_oneof![Just(0.0), Just(1e-15), Just(1e-12), Just(1e-6), Just(1e-3)];
-    (points, any_faces(n as u32, n_faces), moves, scale).prop_map(|(points, faces, moves, scale)| {
-        let at = |(p, by): (&u32, &[f64; 3])| {
-            let lattice = [p % 3, p / 3 % 3, p / 9].map(f64::from);
-            [0, 1, 2].map(|i| lattice[i] + scale * by[i])
-        };
-        let points: Vec<[f64; 3]> = points.iter().zip(&moves).map(at).collect();
-        let has_area = |face: &[u32; 3]| {
-            let [a, b, c] = face.map(|v| points[v as usize]);
-            let ([p, q, r], [s, t, u]) = ([0, 1, 2].map(|i| b[i] - a[i]), [0, 1, 2].map(|i| c[i] - a[i]));
-            (q * u - r * t).abs() + (r * s - p * u).abs() + (p * t - q * s).abs() > 0.5
-        };
-        let faces: Vec<[u32; 3]> = faces.into_iter().filter(has_area).collect();
-        spatial(&points, &faces)
-    })
-}
-
-/// A fan of faces over points in space, two rings around a vertex: a manifold with a saddle or a peak.
-fn star(n: u32) -> impl Strategy<Value = IntrinsicMesh> {
-    prop::collection::vec([0.4..1.6, -1.0..1.0f64], 2 * n as usize).prop_map(move |raw| {
-        let mut points = vec![[0.0; 3]];
-        for (i, [radius, z]) in raw.iter().enumerate() {
-            let (ring, angle) =
-                (i as u32 / n, f64::from(i as u32 % n) * std::f64::consts::TAU / f64::from(n));
-            let radius = radius + 1.5 * f64::from(ring);
-            points.push([radius * angle.cos(), radius * angle.sin(), *z * f64::from(1 + ring)]);
-        }
-        let mut faces = Vec::new();
-        for i in 0..n {
-            let (a, b) = (1 + i, 1 + (i + 1) % n);
-            faces.extend([[0, a, b], [a, a + n, b + n], [a, b, b + n]]);
-        }
-        spatial(&points, &faces)
-    })
-}
-
 proptest! {
     #[test]
     fn soups_of_faces_have_the_distances_of_their_lines_of_sight(mesh in soup(8, 12)) {
@@ -283,33 +224,5 @@ proptest! {
     #[test]
     fn stars_have_the_distances_of_their_lines_of_sight(mesh in star(8)) {
         assert_same(&mesh);
-    }
-
-    #[test]
-    fn points_of_soups_are_like_vertices_put_there(
-        mesh in soup(6, 8), face in 0..8usize, s in 0.05..0.95f64, t in 0.05..0.95f64,
-    ) {
-        let face = mesh::FaceId::from(face % mesh.topology().n_faces());
-        let barycentric = [s, (1.0 - s) * t, (1.0 - s) * (1.0 - t)];
-        let source = Source::new(&mesh, SurfacePoint::Face { face, barycentric }).unwrap();
-        let mut faces = mesh.topology().faces().to_vec();
-        let (n, [a, b, c]) = (mesh.n_vertices(), faces[face.index()]);
-        let new = VertexId::from(n);
-        faces[face.index()] = [a, b, new];
-        faces.extend([[b, c, new], [c, a, new]]);
-        let topology = Topology::new(n + 1, faces);
-        let length = |[p, q]: &[VertexId; 2]| match mesh.topology().edge_between(*p, *q) {
-            Some(edge) => mesh.length(edge),
-            None => source.reach().iter().find(|(v, _)| v == p).unwrap().1,
-        };
-        let lengths = topology.edges().iter().map(length).collect();
-        let with_vertex = IntrinsicMesh::new(topology, lengths);
-
-        let mut out = vec![0.0; n];
-        Exact::new(&mesh).solve_into(&[source], f64::INFINITY, &mut out);
-        let expected = Exact::new(&with_vertex).distances(new);
-        for (found, expected) in out.iter().zip(&expected) {
-            assert_close(*found, *expected, 1e-9);
-        }
     }
 }
