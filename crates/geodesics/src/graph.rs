@@ -1,52 +1,30 @@
 //! The edges of a surface as a graph.
 
-use mesh::{IntrinsicMesh, VertexId};
+use mesh::IntrinsicMesh;
 
-/// Neighbours of every vertex along edges and links, stored back to back.
+use crate::rows::Rows;
+
+/// Neighbours of every vertex along edges and links.
 #[derive(Debug, Clone)]
-pub(crate) struct EdgeGraph {
-    offsets: Vec<u32>,
-    neighbours: Vec<(u32, f64)>,
-}
+pub(crate) struct EdgeGraph(Rows<(u32, f64)>);
 
 impl EdgeGraph {
     /// The edges and links of `mesh`, in both directions.
     pub(crate) fn new(mesh: &IntrinsicMesh) -> Self {
         let edges = mesh.topology().edges().iter().zip(mesh.edge_lengths()).map(|(ends, l)| (*ends, *l));
         let links = mesh.links().iter().map(|link| (link.ends, link.length));
-        Self::from_edges(mesh.n_vertices(), edges.chain(links))
-    }
-
-    fn from_edges(n: usize, edges: impl Iterator<Item = ([VertexId; 2], f64)> + Clone) -> Self {
-        let mut offsets = vec![0u32; n + 1];
-        for (ends, _) in edges.clone() {
-            for end in ends {
-                offsets[end.index() + 1] += 1;
-            }
-        }
-        for v in 0..n {
-            offsets[v + 1] += offsets[v];
-        }
-        let mut next = offsets.clone();
-        let mut neighbours = vec![(0, 0.0); offsets[n] as usize];
-        for ([a, b], length) in edges {
-            for (from, to) in [(a, b), (b, a)] {
-                let slot = &mut next[from.index()];
-                neighbours[*slot as usize] = (to.0, length);
-                *slot += 1;
-            }
-        }
-        Self { offsets, neighbours }
+        let both =
+            edges.chain(links).flat_map(|([a, b], length)| [(a.0, (b.0, length)), (b.0, (a.0, length))]);
+        Self(Rows::collect(mesh.n_vertices(), both))
     }
 
     pub(crate) fn n_vertices(&self) -> usize {
-        self.offsets.len() - 1
+        self.0.n_rows()
     }
 
     #[inline]
     pub(crate) fn neighbours(&self, vertex: u32) -> &[(u32, f64)] {
-        let v = vertex as usize;
-        &self.neighbours[self.offsets[v] as usize..self.offsets[v + 1] as usize]
+        self.0.of(vertex)
     }
 
     /// Vertices in breadth-first order, one component after the other: neighbours on the surface

@@ -6,56 +6,54 @@ const FAR: u32 = u32::MAX;
 /// Tentative distances of all vertices and a 4-ary heap over those in the front.
 ///
 /// Four children share a cache line, which halves the depth of a binary heap for the same line
-/// count; equal distances are ordered by vertex, so the order of removal never depends on the
-/// order of insertion.
+/// count, and the least of them is found without branches, which would be mispredicted.
 #[derive(Debug, Default)]
 pub(crate) struct Front {
-    /// Tentative distance and heap position of every vertex.
-    nodes: Vec<Node>,
+    distances: Vec<f64>,
+    /// Where a vertex stands in the heap.
+    places: Vec<u32>,
     heap: Vec<(f64, u32)>,
-}
-
-#[derive(Debug, Clone, Copy)]
-struct Node {
-    distance: f64,
-    position: u32,
 }
 
 impl Front {
     /// Forgets everything: `n` vertices at infinity, none in the front. Allocates only to grow.
     pub(crate) fn reset(&mut self, n: usize) {
-        self.nodes.clear();
-        self.nodes.resize(n, Node { distance: f64::INFINITY, position: FAR });
+        self.distances.clear();
+        self.distances.resize(n, f64::INFINITY);
+        self.places.clear();
+        self.places.resize(n, FAR);
         self.heap.clear();
     }
 
     /// The best distance known so far; infinite where the front has not been.
     #[inline]
     pub(crate) fn distance(&self, vertex: u32) -> f64 {
-        self.nodes[vertex as usize].distance
+        self.distances[vertex as usize]
     }
 
     /// Lowers the distance of `vertex` to `distance` if that is an improvement, putting it (back)
-    /// into the front.
+    /// into the front; whether it was.
     #[inline]
-    pub(crate) fn relax(&mut self, vertex: u32, distance: f64) {
-        let node = &mut self.nodes[vertex as usize];
-        if distance < node.distance {
-            node.distance = distance;
-            let mut position = node.position;
+    pub(crate) fn relax(&mut self, vertex: u32, distance: f64) -> bool {
+        let known = &mut self.distances[vertex as usize];
+        let improves = distance < *known;
+        if improves {
+            *known = distance;
+            let mut position = self.places[vertex as usize];
             if position == FAR {
                 position = self.heap.len() as u32;
                 self.heap.push((distance, vertex));
             }
             self.sift_up(position as usize, (distance, vertex));
         }
+        improves
     }
 
     /// Removes the nearest vertex of the front.
     #[inline]
     pub(crate) fn pop(&mut self) -> Option<(f64, u32)> {
         let top = *self.heap.first()?;
-        self.nodes[top.1 as usize].position = FAR;
+        self.places[top.1 as usize] = FAR;
         if let Some(last) = self.heap.pop()
             && !self.heap.is_empty()
         {
@@ -65,15 +63,10 @@ impl Front {
     }
 
     #[inline]
-    fn before(a: (f64, u32), b: (f64, u32)) -> bool {
-        a.0 < b.0 || (a.0 == b.0 && a.1 < b.1)
-    }
-
-    #[inline]
     fn sift_up(&mut self, mut hole: usize, item: (f64, u32)) {
         while hole > 0 {
             let parent = (hole - 1) / 4;
-            if !Self::before(item, self.heap[parent]) {
+            if item.0 >= self.heap[parent].0 {
                 break;
             }
             self.place(hole, self.heap[parent]);
@@ -82,30 +75,32 @@ impl Front {
         self.place(hole, item);
     }
 
+    /// Lets the hole sink to the bottom along the nearest children and the item rise from there: it came
+    /// from the bottom and nearly always belongs there, so comparing it on the way down is no use.
     #[inline]
     fn sift_down(&mut self, item: (f64, u32)) {
+        let nearer = |p: (usize, f64), q: (usize, f64)| if q.1 < p.1 { q } else { p };
         let mut hole = 0;
         loop {
             let first = 4 * hole + 1;
-            let Some(children) = self.heap.get(first..self.heap.len().min(first + 4)) else { break };
-            let Some((offset, &child)) =
-                children.iter().enumerate().reduce(|a, b| if Self::before(*b.1, *a.1) { b } else { a })
-            else {
-                break;
+            let child = match self.heap.get(first..) {
+                Some([p, q, r, s, ..]) => nearer(nearer((0, p.0), (1, q.0)), nearer((2, r.0), (3, s.0))),
+                Some(few) => match few.iter().map(|child| child.0).enumerate().reduce(nearer) {
+                    Some(child) => child,
+                    None => break,
+                },
+                None => break,
             };
-            if !Self::before(child, item) {
-                break;
-            }
-            self.place(hole, child);
-            hole = first + offset;
+            self.place(hole, self.heap[first + child.0]);
+            hole = first + child.0;
         }
-        self.place(hole, item);
+        self.sift_up(hole, item);
     }
 
     #[inline]
     fn place(&mut self, hole: usize, item: (f64, u32)) {
         self.heap[hole] = item;
-        self.nodes[item.1 as usize].position = hole as u32;
+        self.places[item.1 as usize] = hole as u32;
     }
 }
 
@@ -114,22 +109,24 @@ mod tests {
     use super::*;
 
     #[test]
-    fn pops_in_order_of_distance_then_vertex_whatever_was_relaxed_when() {
+    fn pops_in_order_of_distance_whatever_was_relaxed_when() {
         let n = 500u32;
         let mut front = Front::default();
         front.reset(n as usize);
         let key = |v: u32| f64::from((v * 7919) % 101);
         for v in 0..n {
-            front.relax(v, key(v) + 50.0);
+            assert!(front.relax(v, key(v) + 50.0));
         }
         for v in (0..n).rev() {
-            front.relax(v, key(v));
-            front.relax(v, key(v) + 1.0);
+            assert!(front.relax(v, key(v)));
+            assert!(!front.relax(v, key(v) + 1.0));
         }
-        let mut expected: Vec<(f64, u32)> = (0..n).map(|v| (key(v), v)).collect();
-        expected.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         let popped: Vec<_> = std::iter::from_fn(|| front.pop()).collect();
-        assert_eq!(popped, expected);
+        assert!(popped.is_sorted_by_key(|(distance, _)| *distance));
+        let mut vertices: Vec<u32> = popped.iter().map(|(_, v)| *v).collect();
+        vertices.sort_unstable();
+        assert!(vertices.into_iter().eq(0..n));
+        assert!(popped.iter().all(|(distance, v)| *distance == key(*v)));
     }
 
     #[test]

@@ -6,6 +6,7 @@
 //! isometry of the surface cannot change their output.
 
 mod breadth_first;
+mod corner;
 mod dijkstra;
 mod error;
 mod exact;
@@ -15,21 +16,19 @@ mod heap;
 mod heat;
 mod method;
 mod path;
+mod rows;
 mod samplers;
 mod sampling;
 mod solver;
 mod source;
 #[cfg(test)]
 mod testing;
-mod unfold;
-mod update;
-mod wedges;
 
 pub use breadth_first::BreadthFirst;
 pub use dijkstra::Dijkstra;
 pub use error::GeodesicError;
 pub use exact::Exact;
-pub use fast_marching::{FastMarching, FastMarchingOptions, Update};
+pub use fast_marching::{CornerReport, FastMarching, FastMarchingOptions, ObtuseTreatment, Update};
 pub use heat::{HeatMethod, HeatOptions};
 pub use method::Method;
 pub use path::{GeodesicPath, PathTracer};
@@ -37,4 +36,3 @@ pub use samplers::{RandomSampler, Sampler, Sampling, Variance, VarianceSampler};
 pub use sampling::{FarthestPointSampler, FirstSample, farthest_point_sampling};
 pub use solver::DistanceSolver;
 pub use source::{Source, SurfacePoint};
-pub use wedges::{CornerReport, ObtuseTreatment};

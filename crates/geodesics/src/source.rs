@@ -3,7 +3,7 @@
 use mesh::{EdgeId, FaceId, IntrinsicMesh, VertexId};
 
 use crate::GeodesicError;
-use crate::update::Corner;
+use crate::corner::Corner;
 
 /// A point of a surface.
 #[derive(Debug, Clone, Copy, PartialEq)]

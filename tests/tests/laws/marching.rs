@@ -27,14 +27,16 @@ fn regular_sheets_are_exact_from_everywhere_whatever_their_angles() {
     for shear in [-1.0, -0.5, -0.3, 0.0, 0.5, 1.0, 1.7] {
         let sheet = shapes::sheared_grid(nx, ny, 0.3, shear);
         for source in sources(nx, ny) {
-            let error = error_on_plane(&sheet, source, ObtuseTreatment::Unfold);
-            assert!(error < 1e-12, "shear {shear}, source {source}: {error:e}");
+            for obtuse in [ObtuseTreatment::Flip, ObtuseTreatment::Unfold] {
+                let error = error_on_plane(&sheet, source, obtuse);
+                assert!(error < 1e-12, "{obtuse:?}, shear {shear}, source {source}: {error:e}");
+            }
         }
     }
 }
 
 #[test]
-fn without_unfolding_obtuse_sheets_are_nearly_exact() {
+fn left_alone_obtuse_sheets_are_nearly_exact() {
     let (nx, ny) = (21, 17);
     for (shear, limit) in [(0.0, 1e-12), (-0.5, 1e-12), (0.5, 3e-6), (1.0, 3e-6), (1.7, 3e-6)] {
         let sheet = shapes::sheared_grid(nx, ny, 0.3, shear);
@@ -52,8 +54,13 @@ fn uneven_sheets_are_exact_as_well() {
     for (jitter, seed) in [(0.1, 1), (0.1, 2), (0.2, 1), (0.2, 2), (0.24, 1), (0.24, 3)] {
         let sheet = shapes::jittered_grid(nx, ny, 0.3, jitter, seed);
         for source in sources(nx, ny) {
-            let error = error_on_plane(&sheet, source, ObtuseTreatment::Unfold);
-            assert!(error < 1e-12, "jitter {jitter}, seed {seed}, source {source}: {error:e}");
+            for obtuse in [ObtuseTreatment::Flip, ObtuseTreatment::Unfold] {
+                let error = error_on_plane(&sheet, source, obtuse);
+                assert!(
+                    error < 1e-12,
+                    "{obtuse:?}, jitter {jitter}, seed {seed}, source {source}: {error:e}"
+                );
+            }
         }
     }
 }
@@ -127,5 +134,5 @@ fn there_is_nearly_as_far_as_back() {
     }
     let mean = total / n_pairs;
     println!("there and back differ by {mean:.1e} on average, by {worst:.1e} of the longest way at most");
-    assert!(mean < 0.005 && worst < 0.03, "{mean} {worst}");
+    assert!(mean < 0.006 && worst < 0.03, "{mean} {worst}");
 }

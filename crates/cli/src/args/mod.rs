@@ -160,7 +160,7 @@ pub(crate) struct MarchingArgs {
     #[arg(long, value_enum, default_value_t = UpdateName::PointSource)]
     pub(crate) update: UpdateName,
     /// What fast marching does at corners wider than 90 degrees
-    #[arg(long, value_enum, default_value_t = ObtuseName::Unfold)]
+    #[arg(long, value_enum, default_value_t = ObtuseName::Flip)]
     pub(crate) obtuse: ObtuseName,
 }
 
@@ -185,6 +185,7 @@ impl GeodesicName {
             UpdateName::Planar => Update::Planar,
         };
         let obtuse = match marching.obtuse {
+            ObtuseName::Flip => ObtuseTreatment::Flip,
             ObtuseName::Unfold => ObtuseTreatment::Unfold,
             ObtuseName::Ignore => ObtuseTreatment::Ignore,
         };
@@ -208,7 +209,9 @@ pub(crate) enum UpdateName {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum ObtuseName {
-    /// Unfold the surface behind the corner and split it (more accurate)
+    /// Flip edges inside the surface until few are left
+    Flip,
+    /// Unfold the surface behind the corner and split it (Kimmel and Sethian)
     Unfold,
     /// Treat it like any other
     Ignore,

@@ -9,7 +9,8 @@ use super::edges::faces_around;
 use super::plane::{Flat, Point, between, distance, segment};
 use super::strip::{Portal, Section, Strip, Way};
 use crate::SurfacePoint;
-use crate::update::Corner;
+use crate::corner::Corner;
+use crate::fast_marching::Sector;
 
 /// The next stop on the way.
 #[derive(Debug, Clone, Copy)]
@@ -153,16 +154,18 @@ impl Walker<'_> {
 /// the base; `None` if the straight line misses it.
 fn seen_through(here: Point, base: [Point; 2], [at_a, at_b]: [f64; 2]) -> Option<(f64, f64)> {
     let [a, b] = base;
-    let corner = Corner::from_lengths(distance(a, b), distance(a, here), distance(b, here));
-    let total = corner.point_source(at_a, at_b);
+    let (length, side) = (distance(a, b), distance(a, here));
+    let corner = Corner::from_lengths(length, side, distance(b, here));
+    let sector = Sector { base: length, side, dot: corner.x * length, cross: corner.y * length };
+    let total = sector.point_source(at_a, at_b);
     if !total.is_finite() {
         return None;
     }
     // The crossing divides the line as the heights of its ends above the base do.
-    let x = 0.5 * (corner.base + (at_a - at_b) * (at_a + at_b) / corner.base);
+    let x = 0.5 * (length + (at_a - at_b) * (at_a + at_b) / length);
     let depth = ((at_a - x) * (at_a + x)).max(0.0).sqrt();
     let height = depth + corner.y;
-    let t = if height > 0.0 { (x * corner.y + corner.x * depth) / (height * corner.base) } else { 0.5 };
+    let t = if height > 0.0 { (x * corner.y + corner.x * depth) / (height * length) } else { 0.5 };
     let crossing = between(a, b, t.clamp(0.0, 1.0));
     // Lengths of no triangle, or rounding in a flat one, may claim a source nearer than the base.
     (total >= distance(here, crossing)).then_some((total, t.clamp(0.0, 1.0)))

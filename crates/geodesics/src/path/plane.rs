@@ -3,7 +3,7 @@
 use mesh::{CornerId, EdgeId, FaceId, IntrinsicMesh, VertexId};
 
 use crate::SurfacePoint;
-use crate::update::Corner;
+use crate::corner::Corner;
 
 /// A point in the plane.
 pub(super) type Point = [f64; 2];

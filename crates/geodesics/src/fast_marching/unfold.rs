@@ -7,14 +7,14 @@
 
 use mesh::{CornerId, IntrinsicMesh, Topology, VertexId};
 
-use crate::update::Corner;
+use crate::corner::Corner;
 
 /// More steps than any reasonable strip of triangles needs; a strip of slivers may go on for ever.
 const MAX_STEPS: usize = 12;
 
 /// How an obtuse corner was treated.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum Unfolding {
+pub(super) enum Unfolding {
     /// The corner is not obtuse.
     Acute,
     /// A vertex of the unfolded strip splits it.
@@ -25,15 +25,13 @@ pub(crate) enum Unfolding {
 
 /// The two acute corners at `C` that replace an obtuse one.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Split {
+pub(super) struct Split {
     /// The vertex that splits the corner.
-    pub(crate) vertex: VertexId,
+    pub(super) vertex: VertexId,
     /// Its straight distance to the corner's vertex inside the strip.
-    pub(crate) length: f64,
-    /// The corner over the base from `A` to the splitting vertex, laid out from `A`.
-    pub(crate) left: Corner,
-    /// The corner over the base from the splitting vertex to `B`, laid out from the vertex.
-    pub(crate) right: Corner,
+    pub(super) length: f64,
+    /// Its straight distances to `A` and `B` in the plane of the strip.
+    pub(super) bases: [f64; 2],
 }
 
 type Point = [f64; 2];
@@ -52,20 +50,20 @@ fn norm(a: Point) -> f64 {
 
 /// Lengths of the sides of the face of `corner`: the base opposite it, then from the base's first
 /// and second end (the next and the next but one corner of the face) to the corner.
-pub(crate) fn sides(mesh: &IntrinsicMesh, corner: CornerId) -> [f64; 3] {
+pub(super) fn sides(mesh: &IntrinsicMesh, corner: CornerId) -> [f64; 3] {
     let (face, slot) = (corner.face().0, corner.slot() as u32);
     let opposite = |slot: u32| mesh.length(mesh.topology().opposite_edge(CornerId(3 * face + slot % 3)));
     [opposite(slot), opposite(slot + 2), opposite(slot + 1)]
 }
 
 /// The ends of the base of `corner`: the next and the next but one corner of its face.
-pub(crate) fn base(topology: &Topology, corner: CornerId) -> [VertexId; 2] {
+pub(super) fn base(topology: &Topology, corner: CornerId) -> [VertexId; 2] {
     let face = topology.faces()[corner.face().index()];
     [face[(corner.slot() + 1) % 3], face[(corner.slot() + 2) % 3]]
 }
 
 /// Unfolds the surface behind `corner` if it is obtuse.
-pub(crate) fn unfold(mesh: &IntrinsicMesh, corner: CornerId) -> Unfolding {
+pub(super) fn unfold(mesh: &IntrinsicMesh, corner: CornerId) -> Unfolding {
     let [c, b, a] = sides(mesh, corner);
     if a * a + b * b >= c * c {
         return Unfolding::Acute;
@@ -101,12 +99,10 @@ pub(crate) fn unfold(mesh: &IntrinsicMesh, corner: CornerId) -> Unfolding {
         let ray = sub(at, apex);
         let (acute_to_a, acute_to_b) = (dot(ray, to_a) > 0.0, dot(ray, to_b) > 0.0);
         if acute_to_a && acute_to_b {
-            let length = norm(ray);
             return Unfolding::Split(Split {
                 vertex,
-                length,
-                left: Corner::from_lengths(norm(sub(at, at_a)), b, length),
-                right: Corner::from_lengths(norm(sub(at_b, at)), length, a),
+                length: norm(ray),
+                bases: [norm(sub(at, at_a)), norm(sub(at_b, at))],
             });
         }
         // The cone passes through the edge on the other side of the new vertex.
@@ -154,8 +150,8 @@ mod tests {
         let Unfolding::Split(split) = unfold(&mesh, CornerId(0)) else { panic!("not split") };
         assert_eq!(split.vertex, VertexId(3));
         assert!((split.length - 0.2f64.hypot(1.4)).abs() < 1e-14);
-        assert!((split.left.base - 2.2f64.hypot(1.0)).abs() < 1e-14);
-        assert!((split.right.base - 1.8f64.hypot(1.0)).abs() < 1e-14);
+        assert!((split.bases[0] - 2.2f64.hypot(1.0)).abs() < 1e-14);
+        assert!((split.bases[1] - 1.8f64.hypot(1.0)).abs() < 1e-14);
         assert_eq!(unfold(&mesh, CornerId(1)), Unfolding::Acute);
     }
 

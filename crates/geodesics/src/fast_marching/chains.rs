@@ -1,0 +1,195 @@
+//! Stringing the triangles at a vertex together.
+
+use super::spokes::{Spoke, Ways};
+use crate::corner::Corner;
+
+/// A way from a vertex: where it ends, and whether the front may go along it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Arm {
+    end: u32,
+    length: f64,
+    is_way: bool,
+}
+
+impl Arm {
+    /// A straight way inside the surface.
+    pub(super) fn edge(end: u32, length: f64) -> Self {
+        Self { end, length, is_way: true }
+    }
+
+    /// A side of a triangle that may leave the surface.
+    pub(super) fn side(end: u32, length: f64) -> Self {
+        Self { end, length, is_way: false }
+    }
+
+    fn ways(&self) -> Ways {
+        if self.is_way { Ways::ALONG } else { Ways::NONE }
+    }
+}
+
+/// Something that the front may do at a vertex.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Part {
+    /// Cross a triangle.
+    Triangle {
+        arms: [Arm; 2],
+        /// Scalar product of the arms.
+        dot: f64,
+        /// Twice the area.
+        cross: f64,
+        reaches: Reaches,
+    },
+    /// Go along a way between no triangles.
+    Bare(Arm),
+}
+
+/// Which ends of its arms a triangle gives distances to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Reaches {
+    Both,
+    First,
+}
+
+impl Part {
+    /// The triangle between two arms, with the length of its third side.
+    pub(super) fn triangle(arms: [Arm; 2], third: f64, reaches: Reaches) -> Self {
+        let corner = Corner::from_lengths(arms[0].length, arms[1].length, third);
+        let (dot, cross) = (corner.x * arms[0].length, corner.y * arms[0].length);
+        Self::Triangle { arms, dot, cross, reaches }
+    }
+
+    /// A straight way between two vertices, as a part of either.
+    pub(super) fn segment([a, b]: [u32; 2], length: f64) -> [(u32, Self); 2] {
+        [(a, Self::Bare(Arm::edge(b, length))), (b, Self::Bare(Arm::edge(a, length)))]
+    }
+
+    fn has(&self, arm: &Arm) -> bool {
+        matches!(self, Self::Triangle { arms, .. } if arms.contains(arm))
+    }
+}
+
+/// The sum of the angles of the triangles at a vertex.
+pub(super) fn total_angle(parts: &[Part]) -> f64 {
+    let angle = |part: &Part| match part {
+        Part::Triangle { dot, cross, .. } => cross.atan2(*dot),
+        Part::Bare(_) => 0.0,
+    };
+    parts.iter().map(angle).sum()
+}
+
+/// Whether the triangles at a vertex leave a gap between them.
+pub(super) fn is_cut(parts: &[Part]) -> bool {
+    let is_odd = |arm: &Arm| parts.iter().filter(|part| part.has(arm)).count() % 2 == 1;
+    parts.iter().any(|part| matches!(part, Part::Triangle { arms, .. } if arms.iter().any(is_odd)))
+}
+
+/// Makes spokes of parts.
+#[derive(Debug, Default)]
+pub(super) struct Chains {
+    /// Parts that have become spokes.
+    used: Vec<bool>,
+}
+
+impl Chains {
+    /// Appends the spokes of a vertex with the given parts.
+    pub(super) fn append(&mut self, parts: &[Part], spokes: &mut Vec<Spoke>) {
+        let first = spokes.len();
+        self.used.clear();
+        self.used.resize(parts.len(), false);
+        // Arms of an odd number of triangles are where chains must begin or end; what is left are rings.
+        for begins in [Self::is_loose, |_: &Self, _: &[Part], _: &Arm| true] {
+            for i in 0..parts.len() {
+                while let Part::Triangle { arms, .. } = &parts[i]
+                    && !self.used[i]
+                    && let Some(arm) = arms.iter().find(|arm| begins(self, parts, arm))
+                {
+                    self.chain(parts, *arm, spokes);
+                }
+            }
+        }
+        for part in parts {
+            let Part::Bare(arm) = part else { continue };
+            let is_shorter = |spoke: &Spoke| {
+                spoke.end == arm.end && spoke.ways.allow(Ways::ALONG) && spoke.length <= arm.length
+            };
+            if !spokes[first..].iter().any(is_shorter) {
+                spokes.push(start(arm));
+            }
+        }
+    }
+
+    /// A chain from an arm on through unused triangles.
+    fn chain(&mut self, parts: &[Part], mut arm: Arm, spokes: &mut Vec<Spoke>) {
+        spokes.push(start(&arm));
+        while let Some(i) = (0..parts.len()).find(|&i| !self.used[i] && parts[i].has(&arm)) {
+            let Part::Triangle { arms, dot, cross, reaches } = parts[i] else { return };
+            self.used[i] = true;
+            let is_first = arms[1] == arm;
+            arm = if is_first { arms[0] } else { arms[1] };
+            let through = match (reaches, is_first) {
+                (Reaches::Both, _) => Ways::ONWARD.and(Ways::BACK),
+                (Reaches::First, true) => Ways::ONWARD,
+                (Reaches::First, false) => Ways::BACK,
+            };
+            let ways = through.and(arm.ways());
+            spokes.push(Spoke { end: arm.end, ways, length: arm.length, dot, cross });
+        }
+    }
+
+    /// Whether an arm belongs to an odd number of unused triangles.
+    fn is_loose(&self, parts: &[Part], arm: &Arm) -> bool {
+        let unused = self.used.iter().zip(parts).filter(|(used, part)| !**used && part.has(arm));
+        unused.count() % 2 == 1
+    }
+}
+
+/// A spoke without a triangle behind it.
+fn start(arm: &Arm) -> Spoke {
+    Spoke { end: arm.end, ways: arm.ways(), length: arm.length, dot: 0.0, cross: 0.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Equilateral triangles between the given pairs of arms.
+    fn triangles(pairs: &[[u32; 2]]) -> Vec<Part> {
+        let arms = |ends: &[u32; 2]| ends.map(|end| Arm::edge(end, 1.0));
+        pairs.iter().map(|ends| Part::triangle(arms(ends), 1.0, Reaches::Both)).collect()
+    }
+
+    fn ends(parts: &[Part]) -> Vec<u32> {
+        let mut spokes = Vec::new();
+        Chains::default().append(parts, &mut spokes);
+        spokes.iter().map(|spoke| spoke.end).collect()
+    }
+
+    #[test]
+    fn a_ring_ends_where_it_began() {
+        let ring = triangles(&[[1, 2], [3, 4], [2, 3], [1, 4]]);
+        assert_eq!(ends(&ring), [1, 2, 3, 4, 1]);
+        assert!(!is_cut(&ring));
+        assert!((total_angle(&ring) - 4.0 * std::f64::consts::FRAC_PI_3).abs() < 1e-14);
+    }
+
+    #[test]
+    fn an_open_chain_goes_from_end_to_end() {
+        let chain = triangles(&[[1, 2], [3, 4], [2, 3]]);
+        assert_eq!(ends(&chain), [1, 2, 3, 4]);
+        assert!(is_cut(&chain));
+    }
+
+    #[test]
+    fn every_triangle_of_a_fan_over_one_edge_is_met_once() {
+        let fan = triangles(&[[1, 2], [1, 3], [1, 4]]);
+        let ends = ends(&fan);
+        assert_eq!(ends.len(), 5, "three triangles in two chains: {ends:?}");
+    }
+
+    #[test]
+    fn a_bare_way_is_kept_unless_a_shorter_one_is_there() {
+        let mut parts = triangles(&[[1, 2]]);
+        parts.extend([Part::Bare(Arm::edge(2, 3.0)), Part::Bare(Arm::edge(5, 3.0))]);
+        assert_eq!(ends(&parts), [1, 2, 5]);
+    }
+}

@@ -1,0 +1,125 @@
+//! What a vertex does when the front leaves it, laid out in the order in which it is needed.
+
+use std::f64::consts::{PI, TAU};
+
+use mesh::IntrinsicMesh;
+
+use super::chains::{Chains, Part, is_cut, total_angle};
+use super::triangulation::Triangulation;
+use super::update::Sector;
+use crate::graph::EdgeGraph;
+use crate::rows::Rows;
+
+/// A straight way from a vertex to another, and the triangle between it and the spoke before.
+///
+/// The spokes of a vertex form chains. Around an ordinary vertex there is one, which ends where it
+/// began: each triangle is met once, between two spokes, and each neighbour is looked at once.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Spoke {
+    /// The vertex at its end.
+    pub(super) end: u32,
+    pub(super) ways: Ways,
+    pub(super) length: f64,
+    /// Scalar product of this spoke and the one before in the plane of their triangle.
+    pub(super) dot: f64,
+    /// Twice the area of that triangle.
+    pub(super) cross: f64,
+}
+
+impl Spoke {
+    /// The triangle behind this spoke, seen by a front on its way from the spoke before to this one.
+    #[inline]
+    pub(super) fn onward_from(&self, before: &Self) -> Sector {
+        Sector { base: before.length, side: self.length, dot: self.dot, cross: self.cross }
+    }
+
+    /// The same for a front from this spoke to the one before.
+    #[inline]
+    pub(super) fn back_to(&self, before: &Self) -> Sector {
+        Sector { base: self.length, side: before.length, dot: self.dot, cross: self.cross }
+    }
+}
+
+/// What the front may do at a spoke: a set of flags.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Ways(u32);
+
+impl Ways {
+    pub(super) const NONE: Self = Self(0);
+    /// Go along the spoke.
+    pub(super) const ALONG: Self = Self(1);
+    /// Go through the triangle, over the spoke before, to the end of this one.
+    pub(super) const ONWARD: Self = Self(2);
+    /// Go through the triangle, over this spoke, to the end of the one before.
+    pub(super) const BACK: Self = Self(4);
+
+    #[inline]
+    pub(super) fn allow(self, way: Self) -> bool {
+        self.0 & way.0 != 0
+    }
+
+    pub(super) fn and(self, other: Self) -> Self {
+        Self(self.0 | other.0)
+    }
+}
+
+/// The spokes of every vertex, stored back to back, over vertices renumbered for locality.
+#[derive(Debug, Clone)]
+pub(super) struct Spokes {
+    offsets: Vec<u32>,
+    spokes: Vec<Spoke>,
+    /// Whether shortest ways may bend at a vertex.
+    bends: Vec<bool>,
+    /// Mesh vertex of every internal number.
+    pub(super) order: Vec<u32>,
+    /// Internal number of every mesh vertex.
+    pub(super) rank: Vec<u32>,
+}
+
+/// Angles that exceed a straight one by less than this share do so by rounding.
+const STRAIGHT: f64 = 1.0 + 1e-9;
+
+impl Spokes {
+    #[inline]
+    pub(super) fn of(&self, vertex: u32) -> &[Spoke] {
+        let v = vertex as usize;
+        &self.spokes[self.offsets[v] as usize..self.offsets[v + 1] as usize]
+    }
+
+    /// Whether shortest ways may bend at a vertex: where more than 360 degrees meet, and at
+    /// boundaries more than 180.
+    #[inline]
+    pub(super) fn bend_at(&self, vertex: u32) -> bool {
+        self.bends[vertex as usize]
+    }
+
+    /// The spokes of a triangulation of `mesh`, with further parts of vertices from elsewhere.
+    pub(super) fn new(mesh: &IntrinsicMesh, triangulation: &Triangulation, extras: &[(u32, Part)]) -> Self {
+        let order = EdgeGraph::new(mesh).breadth_first_order();
+        let mut rank = vec![0; order.len()];
+        for (internal, v) in order.iter().enumerate() {
+            rank[*v as usize] = internal as u32;
+        }
+        let corners = triangulation.corners();
+        let segments = triangulation.segments.iter().flat_map(|(ends, length)| Part::segment(*ends, *length));
+        let extras = Rows::collect(order.len(), extras.iter().copied().chain(segments));
+        let mut spokes = Vec::with_capacity(7 * triangulation.faces.len() / 2 + order.len());
+        let mut bends = Vec::with_capacity(order.len());
+        let mut offsets = Vec::with_capacity(order.len() + 1);
+        offsets.push(0);
+        let (mut parts, mut chains) = (Vec::new(), Chains::default());
+        for v in &order {
+            parts.clear();
+            parts.extend(corners.of(*v).iter().map(|(face, slot)| triangulation.part(*face, *slot)));
+            let straight = if is_cut(&parts) { PI } else { TAU };
+            bends.push(total_angle(&parts) > straight * STRAIGHT);
+            parts.extend_from_slice(extras.of(*v));
+            chains.append(&parts, &mut spokes);
+            offsets.push(spokes.len() as u32);
+        }
+        for spoke in &mut spokes {
+            spoke.end = rank[spoke.end as usize];
+        }
+        Self { offsets, spokes, bends, order, rank }
+    }
+}

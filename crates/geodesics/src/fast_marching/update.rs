@@ -1,0 +1,130 @@
+//! The two local solvers: the distance at one vertex of a triangle from those at the two others.
+
+/// A triangle `ABC` that the front crosses from the side `AB` to the vertex `C`, seen from `A`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Sector {
+    /// `|AB|`.
+    pub(crate) base: f64,
+    /// `|AC|`.
+    pub(crate) side: f64,
+    /// `AB . AC`.
+    pub(crate) dot: f64,
+    /// `|AB x AC|`.
+    pub(crate) cross: f64,
+}
+
+/// A point source whose squared height above the line through the base is below this share of its
+/// squared distance lies on that line but for rounding. The edges then carry the front just as well, and
+/// which of the two ways wins would depend on rounding.
+const COLLINEAR: f64 = 1e-12;
+
+impl Sector {
+    /// Whether a front that enters through the base can reach `C` before `A`.
+    ///
+    /// If it does, the angle at `C` exceeds the angle at `A`, so the base is longer than `BC`.
+    #[inline]
+    pub(super) fn may_complete_late(self) -> bool {
+        2.0 * self.dot > self.side * self.side
+    }
+
+    /// Distance at `C` if the front comes from a single point beyond the base, given the distances at
+    /// `A` and `B`; infinite when the straight line from that point to `C` misses the base or no such
+    /// point exists (the edges then carry the front).
+    ///
+    /// Exact in the plane. Novotni and Klein 2002, in coordinates that are multiples of `|AB|`.
+    #[inline]
+    pub(crate) fn point_source(self, at_a: f64, at_b: f64) -> f64 {
+        let Self { base, side, dot, cross } = self;
+        let sq_base = base * base;
+        // The point lies at (along, -height) / |AB|: at distance `at_a` from A and `at_b` from B.
+        let along = 0.5 * (sq_base + (at_a - at_b) * (at_a + at_b));
+        let reach = base * at_a;
+        let sq_height = (reach - along) * (reach + along);
+        if sq_height < COLLINEAR * reach * reach {
+            return f64::INFINITY;
+        }
+        let height = sq_height.sqrt();
+        // Where the line crosses the base, as a share of it, times its positive denominator.
+        let crossing = along * cross + dot * height;
+        if crossing >= 0.0 && crossing <= sq_base * (height + cross) {
+            (side * side + at_a * at_a + 2.0 * (cross * height - dot * along) / sq_base).sqrt()
+        } else {
+            f64::INFINITY
+        }
+    }
+
+    /// Distance at `C` if the front is a straight line, given the distances at `A` and `B`; infinite
+    /// when the characteristic through `C` misses the base.
+    ///
+    /// Kimmel and Sethian 1998: the larger root of their quadratic, here as the unit gradient whose
+    /// component along the base is `(at_b - at_a) / |AB|`.
+    #[inline]
+    pub(super) fn planar(self, at_a: f64, at_b: f64) -> f64 {
+        let Self { base, dot, cross, .. } = self;
+        let rise = at_b - at_a;
+        let sq_height = (base - rise) * (base + rise);
+        if sq_height <= 0.0 {
+            return f64::INFINITY;
+        }
+        let (height, sq_base) = (sq_height.sqrt(), base * base);
+        let crossing = dot * height - cross * rise;
+        if crossing >= 0.0 && crossing <= sq_base * height {
+            at_a + (rise * dot + height * cross) / sq_base
+        } else {
+            f64::INFINITY
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sector(base: f64, [x, y]: [f64; 2]) -> Sector {
+        Sector { base, side: x.hypot(y), dot: base * x, cross: base * y }
+    }
+
+    #[test]
+    fn point_source_is_exact_in_the_plane_and_silent_when_the_line_misses_the_base() {
+        let triangle = sector(2.0, [0.7, 1.5]);
+        for sx in [-3.0f64, -0.5, 0.1, 1.0, 1.9, 4.0] {
+            for sy in [1e-9, 0.3, 2.0, 50.0] {
+                let at_a = sx.hypot(sy);
+                let at_b = (sx - 2.0).hypot(sy);
+                let exact = (sx - 0.7).hypot(sy + 1.5);
+                let crossing = sx + (0.7 - sx) * sy / (sy + 1.5);
+                let t = triangle.point_source(at_a, at_b);
+                // A source within rounding of the base's line has no height that could be recovered.
+                let tolerance = if sy < 1e-6 { 1e-7 } else { 1e-12 };
+                if (0.01..=1.99).contains(&crossing) && (sy > 1e-6 || t.is_finite()) {
+                    assert!((t - exact).abs() < tolerance * exact.max(1.0), "{t} against {exact}");
+                } else if !(-0.01..=2.01).contains(&crossing) {
+                    assert_eq!(t, f64::INFINITY);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn planar_is_exact_for_a_straight_front() {
+        let triangle = sector(2.0, [0.7, 1.5]);
+        for angle in [-0.35f64, -0.1, 0.0, 0.2, 0.4] {
+            let (gx, gy) = angle.sin_cos();
+            let front = |p: [f64; 2]| 5.0 + gx * p[0] + gy * p[1];
+            let t = triangle.planar(front([0.0, 0.0]), front([2.0, 0.0]));
+            assert!((t - front([0.7, 1.5])).abs() < 1e-13);
+        }
+        assert_eq!(triangle.planar(0.0, 1.9), f64::INFINITY);
+        assert_eq!(triangle.planar(0.0, 2.1), f64::INFINITY);
+    }
+
+    #[test]
+    fn a_base_without_length_never_updates() {
+        for void in [sector(0.0, [1.0, 0.0]), Sector { base: 0.0, side: 1.0, dot: f64::NAN, cross: f64::NAN }]
+        {
+            for update in [void.point_source(1.0, 1.0), void.planar(1.0, 1.0)] {
+                assert_eq!(f64::min(7.0, update), 7.0);
+            }
+        }
+    }
+}
