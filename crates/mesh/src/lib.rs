@@ -9,6 +9,7 @@
 //!   beyond that is in [`RepairOptions`].
 //! * [`Topology`] and [`IntrinsicMesh`] are what algorithms work on: connectivity of any kind,
 //!   non-manifold edges included, and edge lengths.
+//! * [`laplacian`] has the stiffness and masses of functions on a surface of any kind.
 //! * [`shapes`] are small analytic surfaces for tests, benches and documentation.
 //!
 //! **Invariant.** Vertices keep the order of their file: repair drops and merges, never reorders,
@@ -37,6 +38,7 @@ mod face_set;
 mod ids;
 mod intrinsic;
 pub mod io;
+pub mod laplacian;
 mod orientation;
 mod position_key;
 mod repair;

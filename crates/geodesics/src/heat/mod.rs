@@ -1,21 +1,17 @@
 //! Distances from the flow of heat.
 
 mod components;
-mod delaunay;
-mod elements;
-mod metric;
+mod flow;
 mod ring;
 mod system;
-mod triangle;
 
 use linalg::Matrix;
+use mesh::laplacian::{Element, Laplacian, Metric};
 use mesh::{IntrinsicMesh, Link, VertexId};
 use rayon::prelude::*;
 
 use self::components::Components;
-use self::delaunay::Cover;
-use self::elements::{Bar, Element, LONGEST_BAR};
-use self::metric::Metric;
+use self::flow::{Bar, LONGEST_BAR};
 use self::ring::Ring;
 use self::system::System;
 use crate::solver::{Pool, within};
@@ -134,26 +130,23 @@ impl HeatMethod {
     /// or memory ran out.
     pub fn new(mesh: &IntrinsicMesh, options: HeatOptions) -> Result<Self, GeodesicError> {
         options.validate()?;
-        let metric = Metric::new(mesh);
-        let mut cover = Cover::new(mesh, &metric.edges);
-        cover.flip_to_delaunay();
-        let mut elements = elements::elements(&cover);
-        drop(cover);
+        let laplacian = Laplacian::new(mesh);
+        let metric = laplacian.metric();
         let components = Components::new(mesh);
-        let (side, area) = elements::mean_side_and_area(&elements);
+        let (side, area) = laplacian.mean_side_and_area();
         let time = options.time * side * side.max(FINE * area.sqrt());
-        let time = time.max((extent(mesh, &metric, &components) / RANGE).powi(2));
+        let time = time.max((extent(mesh, metric, &components) / RANGE).powi(2));
         let links = metric.links.iter().filter(|link| link.ends[0] != link.ends[1]);
         let mut bars: Vec<Bar> = links.map(|link| Bar::new(link, time.sqrt())).collect();
-        let system = System::new(mesh.n_vertices(), &elements, &bars, time, &components.first)?;
-        let ring = Ring::new(mesh.n_vertices(), &elements);
+        let system = System::new(&laplacian, &bars, time, &components.first)?;
+        let ring = Ring::new(mesh.n_vertices(), laplacian.elements());
         let mut step = vec![0; mesh.n_vertices()];
         for (i, row) in system.heat.order().rows().iter().enumerate() {
             step[*row] = i as u32;
         }
-        for element in &mut elements {
-            element.vertices = element.vertices.map(|v| step[v as usize]);
-        }
+        let renamed =
+            |element: &Element| Element { vertices: element.vertices.map(|v| step[v as usize]), ..*element };
+        let elements = laplacian.elements().iter().map(renamed).collect();
         for bar in &mut bars {
             bar.ends = bar.ends.map(|v| step[v as usize]);
         }
@@ -190,7 +183,7 @@ impl HeatMethod {
                 }
             }
             self.system.heat.solve_ordered(u);
-            self.elements.iter().for_each(|element| element.add_divergence(u, phi));
+            self.elements.iter().for_each(|element| flow::add_divergence(element, u, phi));
             self.bars.iter().for_each(|bar| bar.add_divergence(u, phi));
             self.system.poisson.solve_ordered(phi);
             for ((lane, sources), column) in sets.iter().enumerate().zip(out.chunks_exact_mut(n)) {

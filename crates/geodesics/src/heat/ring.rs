@@ -1,6 +1,6 @@
 //! The vertices around each vertex.
 
-use super::elements::Element;
+use mesh::laplacian::Element;
 
 /// For each vertex the other corners of its triangles and the lengths of the sides that lead there,
 /// stored back to back.

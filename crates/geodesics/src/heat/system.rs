@@ -1,8 +1,9 @@
 //! The two matrices and their factors.
 
 use linalg::{EliminationOrder, LinalgError, SparseCholesky, SparseSymmetric};
+use mesh::laplacian::{Element, Laplacian};
 
-use super::elements::{Bar, Element};
+use super::flow::Bar;
 use crate::GeodesicError;
 
 /// Shares of its diagonal that are added, one after the other, to a matrix which cannot be factorised.
@@ -18,24 +19,20 @@ pub(super) struct System {
 }
 
 impl System {
-    /// Assembles and factorises over `n` vertices; `grounded` has one vertex of each component.
+    /// Assembles and factorises; `grounded` has one vertex of each component.
     ///
     /// The cotangent stiffness `L` maps constants to zero. One added to its diagonal at one vertex of
     /// each component makes it definite, and as right-hand sides sum to zero over a component, sets
     /// the solution to zero there and changes nothing else.
     pub(super) fn new(
-        n: usize,
-        elements: &[Element],
+        laplacian: &Laplacian,
         bars: &[Bar],
         time: f64,
         grounded: &[usize],
     ) -> Result<Self, GeodesicError> {
-        let mut masses = vec![0.0; n];
-        for Element { vertices, triangle, share } in elements {
-            vertices.iter().for_each(|&v| masses[v as usize] += share * triangle.area() / 3.0);
-        }
+        let (n, elements) = (laplacian.n_vertices(), laplacian.elements());
         let mut heat = stiffness(n, elements, time, bars.iter().map(|bar| (bar.ends, bar.heat())));
-        heat.add_to_diagonal(masses.into_iter());
+        heat.add_to_diagonal(laplacian.masses().into_iter());
         // A vertex with nothing around it is an equation of its own.
         let missing: Vec<f64> = heat.diagonal().iter().map(|d| if *d == 0.0 { 1.0 } else { 0.0 }).collect();
         heat.add_to_diagonal(missing.into_iter());

@@ -1,8 +1,7 @@
 //! The intrinsic Delaunay triangulation of a surface of any topology.
 
-use mesh::{CornerId, EdgeId, IntrinsicMesh, VertexId};
-
 use super::triangle::Triangle;
+use crate::{CornerId, EdgeId, IntrinsicMesh, VertexId};
 
 /// Flips are bounded by this many for each side; meshes in practice need less than one.
 const FLIPS_PER_SIDE: usize = 32;
@@ -148,9 +147,8 @@ impl Cover {
 
 #[cfg(test)]
 mod tests {
-    use mesh::{Topology, shapes};
-
     use super::*;
+    use crate::{Topology, shapes};
 
     fn double(mesh: &IntrinsicMesh) -> Cover {
         Cover::new(mesh, mesh.edge_lengths())

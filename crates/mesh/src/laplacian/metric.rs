@@ -1,6 +1,6 @@
 //! Edge lengths made safe for cotangents.
 
-use mesh::{CornerId, IntrinsicMesh, Link};
+use crate::{CornerId, IntrinsicMesh, Link};
 
 /// Smallest excess of two sides of a triangle over the third, in mean edge lengths. The height of
 /// the flattest triangle is then about a thousandth of its base, and no cotangent exceeds a million.
@@ -10,14 +10,14 @@ const SLACK: f64 = 1e-6;
 const MAX_ROUNDS: usize = 16;
 
 /// The lengths of a surface in units of their mean, such that every face is a triangle with an inside.
-#[derive(Debug)]
-pub(super) struct Metric {
+#[derive(Debug, Clone)]
+pub struct Metric {
     /// Mean length of edges and links, in mesh units; zero when all are zero.
-    pub(super) unit: f64,
+    pub unit: f64,
     /// The length of every edge, in units; positive.
-    pub(super) edges: Vec<f64>,
+    pub edges: Vec<f64>,
     /// The links, their lengths in units; positive.
-    pub(super) links: Vec<Link>,
+    pub links: Vec<Link>,
 }
 
 impl Metric {
@@ -25,7 +25,8 @@ impl Metric {
     ///   that is the distance between its ends.
     /// * When a face is still flat, or flatter than [`SLACK`], all edges grow by what it lacks, at
     ///   most about `SLACK` (intrinsic mollification, Sharp and Crane 2020).
-    pub(super) fn new(mesh: &IntrinsicMesh) -> Self {
+    #[must_use]
+    pub fn new(mesh: &IntrinsicMesh) -> Self {
         let all = || mesh.edge_lengths().iter().copied().chain(mesh.links().iter().map(|link| link.length));
         let longest = all().fold(0.0, f64::max);
         // Relative to the longest, so that no sum overflows.
@@ -77,7 +78,7 @@ fn shorten(mesh: &IntrinsicMesh, edges: &mut [f64]) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use mesh::{Topology, VertexId};
+    use crate::{Topology, VertexId};
 
     fn strip(lengths: Vec<f64>) -> IntrinsicMesh {
         // Edges in order: 01, 02, 12, 13, 23.

@@ -2,10 +2,13 @@
 
 /// A triangle with corner 0 at the origin, corner 1 at `(base, 0)` and corner 2 at `(x, y)`, `y >= 0`.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Triangle {
-    pub(super) base: f64,
-    pub(super) x: f64,
-    pub(super) y: f64,
+pub struct Triangle {
+    /// Length of the side from corner 0 to corner 1.
+    pub base: f64,
+    /// Where corner 2 is along that side.
+    pub x: f64,
+    /// How far corner 2 is from that side.
+    pub y: f64,
 }
 
 impl Triangle {
@@ -13,7 +16,8 @@ impl Triangle {
     /// triangle has these sides. The base is positive.
     ///
     /// The height is Kahan's form of Heron's formula, accurate for needles.
-    pub(super) fn from_sides([base, right, left]: [f64; 3]) -> Self {
+    #[must_use]
+    pub fn from_sides([base, right, left]: [f64; 3]) -> Self {
         let (low, high) = if base < right { (base, right) } else { (right, base) };
         let (a, low) = if high < left { (left, (low, high)) } else { (high, (low, left)) };
         let (b, c) = if low.0 < low.1 { (low.1, low.0) } else { low };
@@ -24,17 +28,20 @@ impl Triangle {
     }
 
     /// The sides from corner 0 to 1, from 1 to 2 and from 2 to 0.
-    pub(super) fn sides(self) -> [f64; 3] {
+    #[must_use]
+    pub fn sides(self) -> [f64; 3] {
         let Self { base, x, y } = self;
         [base, (base - x).hypot(y), x.hypot(y)]
     }
 
-    pub(super) fn area(self) -> f64 {
+    #[must_use]
+    pub fn area(self) -> f64 {
         0.5 * self.base * self.y
     }
 
     /// The cotangent of the angle in each corner; infinite or NaN in a flat triangle.
-    pub(super) fn cotangents(self) -> [f64; 3] {
+    #[must_use]
+    pub fn cotangents(self) -> [f64; 3] {
         let Self { base, x, y } = self;
         [x / y, (base - x) / y, self.apex_cotangent()]
     }

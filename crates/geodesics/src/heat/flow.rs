@@ -1,0 +1,138 @@
+//! How triangles and links carry heat.
+
+use mesh::Link;
+use mesh::laplacian::{Element, Triangle};
+
+/// A link longer than this, in units, transports heat as if it were this long: behind a bridge the
+/// amount of heat is of no importance, but there has to be some.
+pub(super) const LONGEST_BAR: f64 = 400.0;
+
+/// The same in heat lengths, for short times: `exp(-DEEPEST)` is still a number.
+const DEEPEST: f64 = 600.0;
+
+/// Adds to `b` the integral over the triangle of `X . grad` of the hat function of each corner,
+/// `X = -grad u / |grad u|`, lane by lane: its part of `-div X`.
+///
+/// The gradient is found up to a positive factor, which is all its direction needs, from
+/// differences relative to the largest, so that no `u`, huge or tiny, over- or underflows.
+#[inline]
+pub(super) fn add_divergence<const K: usize>(element: &Element, u: &[[f64; K]], b: &mut [[f64; K]]) {
+    let Triangle { base, x, y } = element.triangle;
+    let [i, j, k] = element.vertices.map(|v| v as usize);
+    for lane in 0..K {
+        let (to_j, to_k) = (u[j][lane] - u[i][lane], u[k][lane] - u[i][lane]);
+        let largest = to_j.abs().max(to_k.abs());
+        if largest == 0.0 {
+            continue;
+        }
+        let (to_j, to_k) = (to_j / largest, to_k / largest);
+        let (along, across) = (y * to_j, base * to_k - x * to_j);
+        let length = (along * along + across * across).sqrt();
+        if length == 0.0 {
+            continue;
+        }
+        let scale = -0.5 * element.share / length;
+        let at_k = scale * base * across;
+        let at_j = scale * (y * along - x * across);
+        b[k][lane] += at_k;
+        b[j][lane] += at_j;
+        b[i][lane] -= at_j + at_k;
+    }
+}
+
+/// A link as a thin bar whose ends are two vertices, a heat length wide.
+///
+/// In the heat equation it is exact for one dimension: heat on it is a sum of `exp(x)` and `exp(-x)`,
+/// `x` in heat lengths, and falls along it as it does along the surface.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Bar {
+    pub(super) ends: [u32; 2],
+    length: f64,
+    /// `sqrt(t)`.
+    heat_length: f64,
+    /// The length that heat sees, in heat lengths.
+    depth: f64,
+}
+
+impl Bar {
+    pub(super) fn new(link: &Link, heat_length: f64) -> Self {
+        let depth = (link.length.min(LONGEST_BAR) / heat_length).min(DEEPEST);
+        Self { ends: link.ends.map(|v| v.0), length: link.length, heat_length, depth }
+    }
+
+    /// What it adds to `M + t L`: to the diagonal at both ends, and between them.
+    pub(super) fn heat(&self) -> [f64; 2] {
+        let t = self.heat_length * self.heat_length;
+        [t / self.depth.tanh(), -t / self.depth.sinh()]
+    }
+
+    /// Its weight in `L`.
+    pub(super) fn weight(&self) -> f64 {
+        self.heat_length / self.length
+    }
+
+    /// Adds to `b` the bar's part of `-div X`, lane by lane: its weight times how much farther one end
+    /// is than the other, the integral of `-sign u'`.
+    pub(super) fn add_divergence<const K: usize>(&self, u: &[[f64; K]], b: &mut [[f64; K]]) {
+        let [i, j] = self.ends.map(|v| v as usize);
+        let lost = (-self.depth).exp();
+        for lane in 0..K {
+            // Heat is least where the parts that came in at either end are equal.
+            let (at_i, at_j) = (u[i][lane], u[j][lane]);
+            let (from_i, from_j) = ((at_i - lost * at_j).max(0.0), (at_j - lost * at_i).max(0.0));
+            if from_i == from_j {
+                continue;
+            }
+            let rise = (self.length / self.depth * (from_i / from_j).ln()).clamp(-self.length, self.length);
+            b[i][lane] -= self.weight() * rise;
+            b[j][lane] += self.weight() * rise;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_linear_function_has_the_divergence_of_its_direction() {
+        // u = 3 x + 4 y on the triangle (0, 0), (2, 0), (1, 1): X = -(0.6, 0.8).
+        let triangle = Triangle { base: 2.0, x: 1.0, y: 1.0 };
+        let element = Element { vertices: [0, 1, 2], triangle, share: 1.0 };
+        for scale in [1.0, 1e300, 1e-300] {
+            let mut b = [[0.0]; 3];
+            add_divergence(&element, &[[0.0], [6.0 * scale], [7.0 * scale]], &mut b);
+            // Gradients of the hat functions: (-1/2, -1/2), (1/2, -1/2), (0, 1); the area is 1.
+            let expected = [0.7, 0.1, -0.8];
+            assert!(b.iter().zip(expected).all(|([b], e)| (b - e).abs() < 1e-15), "{b:?}");
+        }
+        let mut b = [[0.0]; 3];
+        add_divergence(&element, &[[5.0]; 3], &mut b);
+        assert_eq!(b, [[0.0]; 3]);
+    }
+
+    #[test]
+    fn a_bar_rises_by_its_length_or_to_where_heat_from_both_ends_meets() {
+        let link = Link { ends: [0, 1].map(mesh::VertexId), length: 3.0 };
+        let bar = Bar::new(&link, 0.5);
+        let rise = |u: [f64; 2]| {
+            let mut b = [[0.0]; 2];
+            bar.add_divergence(&u.map(|u| [u]), &mut b);
+            assert_eq!(b[0][0], -b[1][0]);
+            b[1][0] / bar.weight()
+        };
+        let at = |x: f64| (x / 0.5).cosh();
+        for (heat, expected) in [
+            ([1.0, 0.0], 3.0),
+            ([0.0, 1.0], -3.0),
+            // Nothing leaves the far end.
+            ([at(3.0), 1.0], 3.0),
+            // Least heat after 2 of 3.
+            ([at(2.0), at(1.0)], 1.0),
+            ([7.0, 7.0], 0.0),
+            ([0.0, 0.0], 0.0),
+        ] {
+            assert!((rise(heat) - expected).abs() < 1e-9, "{heat:?}: {}", rise(heat));
+        }
+    }
+}

@@ -1,0 +1,114 @@
+//! The triangles that functions on the surface are linear on.
+
+use super::delaunay::Cover;
+use super::triangle::Triangle;
+
+/// Two triangles on the same vertices are one when their sides differ by no more than this share.
+const SAME: f64 = 1e-9;
+
+/// Largest cotangent that enters a matrix: beyond it there is only rounding.
+const STEEPEST: f64 = 1e9;
+
+/// A triangle with the number of sheets of the surface it stands for.
+#[derive(Debug, Clone, Copy)]
+pub struct Element {
+    /// The three vertices; one may occur twice.
+    pub vertices: [u32; 3],
+    /// Its sides run from the first vertex to the second, the third and back, in units of the metric.
+    pub triangle: Triangle,
+    /// One for a face of the mesh, a half where front and back of the cover went different ways.
+    pub share: f64,
+}
+
+/// The triangles of a cover of which each counts half; a front and its back are merged into one
+/// again wherever both were flipped alike, which is everywhere but next to boundaries and
+/// non-manifold edges.
+pub(super) fn elements(cover: &Cover) -> Vec<Element> {
+    let mut sorted: Vec<([u32; 3], [f64; 3])> = cover
+        .triangles()
+        .map(|([a, b, c], [ab, bc, ca])| {
+            let mut opposite = [(a, bc), (b, ca), (c, ab)];
+            opposite.sort_by(|(v, l), (w, m)| v.cmp(w).then(l.total_cmp(m)));
+            let [(a, bc), (b, ca), (c, ab)] = opposite;
+            ([a, b, c], [ab, bc, ca])
+        })
+        .collect();
+    let by_length = |a: &[f64; 3], b: &[f64; 3]| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1]));
+    sorted.sort_by(|(v, a), (w, b)| v.cmp(w).then(by_length(a, b)));
+    let mut elements: Vec<Element> = Vec::with_capacity(sorted.len() / 2 + 1);
+    let mut previous = [0.0; 3];
+    for (vertices, sides) in sorted {
+        let same = sides.iter().zip(previous).all(|(a, b)| (a - b).abs() <= SAME * a);
+        match elements.last_mut() {
+            Some(last) if last.vertices == vertices && same => last.share += 0.5,
+            _ => elements.push(Element { vertices, triangle: Triangle::from_sides(sides), share: 0.5 }),
+        }
+        previous = sides;
+    }
+    elements
+}
+
+/// The mean length of the sides of all triangles, in units, and their area; zeros without triangles.
+pub(super) fn mean_side_and_area(elements: &[Element]) -> (f64, f64) {
+    let [mut shares, mut perimeter, mut area] = [0.0; 3];
+    for Element { triangle, share, .. } in elements {
+        shares += share;
+        perimeter += share * triangle.sides().iter().sum::<f64>();
+        area += share * triangle.area();
+    }
+    if shares > 0.0 { (perimeter / (3.0 * shares), area) } else { (0.0, 0.0) }
+}
+
+impl Element {
+    /// The cotangent weight of each pair of different vertices: `1/2 cot` of the angle opposite.
+    pub fn weights(&self) -> impl Iterator<Item = ([u32; 2], f64)> {
+        let [a, b, c] = self.vertices;
+        let [at_a, at_b, at_c] = self.triangle.cotangents();
+        let share = 0.5 * self.share;
+        [([b, c], at_a), ([c, a], at_b), ([a, b], at_c)]
+            .into_iter()
+            .filter(|([i, j], _)| i != j)
+            .map(move |(ends, cot)| (ends, share * cot.clamp(-STEEPEST, STEEPEST)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{IntrinsicMesh, TriMesh, shapes};
+
+    fn of(mesh: &TriMesh) -> Vec<Element> {
+        let mesh = IntrinsicMesh::from_mesh(mesh);
+        let mut cover = Cover::new(&mesh, mesh.edge_lengths());
+        cover.flip_to_delaunay();
+        elements(&cover)
+    }
+
+    #[test]
+    fn front_and_back_are_one_wherever_they_were_flipped_alike() {
+        for mesh in [shapes::icosphere(3), shapes::torus(24, 4, 2.0, 0.7)] {
+            let found = of(&mesh);
+            assert_eq!(found.len(), mesh.n_faces());
+            assert!(found.iter().all(|element| element.share == 1.0));
+        }
+        // All sides of this sheet are flipped, those on its boundary against their own backs.
+        let sheet = shapes::sheared_grid(9, 9, 1.0, 2.4);
+        let found = of(&sheet);
+        let shares: f64 = found.iter().map(|element| element.share).sum();
+        assert_eq!(shares, sheet.n_faces() as f64);
+        assert!(found.iter().any(|element| element.share == 0.5) && found.len() < 2 * sheet.n_faces());
+        let (_, area) = mean_side_and_area(&found);
+        assert!((area - 64.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn delaunay_weights_are_not_negative_even_at_boundaries() {
+        for mesh in [shapes::jittered_grid(12, 12, 1.0, 0.24, 1), shapes::sheared_grid(8, 8, 1.0, 3.2)] {
+            let mut sums = std::collections::BTreeMap::new();
+            for ([i, j], weight) in of(&mesh).iter().flat_map(Element::weights) {
+                *sums.entry((i.min(j), i.max(j))).or_insert(0.0) += weight;
+            }
+            assert!(sums.values().all(|weight: &f64| *weight > -1e-9));
+        }
+    }
+}
