@@ -33,4 +33,7 @@ pub enum DescriptorError {
         /// What is allowed.
         range: &'static str,
     },
+    /// A decomposition failed.
+    #[error(transparent)]
+    Linalg(#[from] linalg::LinalgError),
 }

@@ -76,6 +76,14 @@ impl EliminationOrder {
         &self.0.rows
     }
 
+    pub(crate) fn symbolic(&self) -> &SymbolicCholesky<usize> {
+        &self.0.symbolic
+    }
+
+    pub(crate) fn panels(&self) -> &Panels {
+        &self.0.panels
+    }
+
     /// Number of entries of the factor, those included that are zero to fill a panel.
     #[must_use]
     pub fn n_factor(&self) -> usize {
@@ -170,7 +178,7 @@ impl SparseCholesky {
 }
 
 /// A view of the lower triangle for faer, without a copy.
-fn view(matrix: &SparseSymmetric) -> SparseColMatRef<'_, usize, f64> {
+pub(crate) fn view(matrix: &SparseSymmetric) -> SparseColMatRef<'_, usize, f64> {
     let n = matrix.order();
     let pattern = SymbolicSparseColMatRef::new_checked(n, n, matrix.column_starts(), None, matrix.rows());
     SparseColMatRef::new(pattern, matrix.values())

@@ -42,6 +42,19 @@ pub enum LinalgError {
         /// Order of the matrix.
         n: usize,
     },
+    /// Eigenvalues that were counted could not be found.
+    #[error(
+        "{missing} of the eigenvalues of a sparse {n} x {n} matrix below number {found} were not found; they are \
+         multiple or the matrix is ill-conditioned: remove degenerate elements or ask for fewer"
+    )]
+    MissedEigenvalues {
+        /// Order of the matrix.
+        n: usize,
+        /// How many are missing.
+        missing: usize,
+        /// How many were found in their place.
+        found: usize,
+    },
     /// A sparse matrix has no Cholesky factor, or none that fits.
     #[error(
         "the sparse {n} x {n} matrix cannot be factorised: {reason}; add a larger share of a positive \

@@ -43,6 +43,16 @@ impl Panels {
         result
     }
 
+    /// The diagonal of a factor stored in this pattern, in elimination order.
+    pub(crate) fn diagonal(&self, factor: &[f64]) -> Vec<f64> {
+        let of = |panel: &Panel| {
+            let height = panel.columns.len() + panel.rows.len();
+            let values = &factor[panel.values.clone()];
+            (0..panel.columns.len()).map(move |j| values[j * height + j]).collect::<Vec<_>>()
+        };
+        self.panels.iter().flat_map(of).collect()
+    }
+
     /// Overwrites `x` with the solution `y` of `L L' y = x`, all in elimination order.
     pub(crate) fn solve<const K: usize>(&self, factor: &[f64], x: &mut [Lanes<K>]) {
         let mut below = vec![[0.0; K]; self.tallest];

@@ -8,12 +8,14 @@
 mod classical;
 mod embedding;
 mod error;
+mod interpolated;
 mod kernel_pca;
 mod landmark;
 mod nystrom;
 mod reconstruction;
 mod regularization;
 mod smacof;
+mod spectral;
 mod stress;
 #[cfg(test)]
 mod testing;
@@ -27,6 +29,7 @@ pub use nystrom::{NystromOptions, nystrom};
 pub use reconstruction::{Reconstruction, ReconstructionError, sample_eigenvalues};
 pub use regularization::{Regularization, RpiAlpha};
 pub use smacof::{SmacofOptions, SmacofReport, SmacofStop, smacof};
+pub use spectral::{SpectralBasis, SpectralOptions, spectral};
 pub use stress::{
     DistanceRows, StressEstimate, estimate_paper_stress, normalized_stress, paper_stress, sample_rows,
 };

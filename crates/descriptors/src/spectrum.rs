@@ -1,0 +1,111 @@
+//! The Laplace-Beltrami spectrum of a surface.
+
+use linalg::{GeneralizedEigen, Matrix, SparseSymmetric, smallest_eigenpairs};
+use mesh::IntrinsicMesh;
+use mesh::laplacian::Laplacian;
+
+use crate::DescriptorError;
+
+/// The smallest eigenpairs of the Laplace-Beltrami operator of a surface scaled to unit area,
+/// `W Φ = A Φ Λ`.
+///
+/// Invariant to isometries, so to bending, and to scale; hardly changes with the triangulation.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LaplaceSpectrum {
+    /// Eigenvalues, ascending from zero: that of the surface itself times its area.
+    pub values: Vec<f64>,
+    /// Eigenfunctions at the vertices as columns: `Φ' A Φ = I`.
+    pub vectors: Matrix,
+    /// The diagonal of `A`: the share of the area around every vertex.
+    pub masses: Vec<f64>,
+    /// The area of the surface, in squared mesh units.
+    pub area: f64,
+}
+
+impl LaplaceSpectrum {
+    /// The `m` smallest eigenpairs, the constant function among them; fewer on a surface of fewer vertices.
+    ///
+    /// Cotangent stiffness on an intrinsic Delaunay triangulation, lumped masses: see
+    /// [`Laplacian`] and [`smallest_eigenpairs`].
+    ///
+    /// # Errors
+    /// [`DescriptorError::NoExtent`] without faces; [`DescriptorError::Linalg`].
+    pub fn new(mesh: &IntrinsicMesh, m: usize) -> Result<Self, DescriptorError> {
+        let laplacian = Laplacian::new(mesh);
+        let mut masses = laplacian.masses();
+        let area: f64 = masses.iter().sum();
+        if area <= 0.0 || laplacian.metric().unit <= 0.0 {
+            return Err(DescriptorError::NoExtent { n_points: mesh.n_vertices() });
+        }
+        masses.iter_mut().for_each(|mass| *mass /= area);
+        let stiffness = SparseSymmetric::from_entries(mesh.n_vertices(), laplacian.stiffness_entries());
+        let GeneralizedEigen { values, vectors } = smallest_eigenpairs(&stiffness, &masses, m)?;
+        Ok(Self { values, vectors, masses, area: area * laplacian.metric().unit.powi(2) })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::PI;
+
+    use super::*;
+    use mesh::{TriMesh, shapes};
+
+    fn spectrum(mesh: &TriMesh, m: usize) -> LaplaceSpectrum {
+        LaplaceSpectrum::new(&IntrinsicMesh::from_mesh(mesh), m).unwrap()
+    }
+
+    #[test]
+    fn a_sphere_has_eigenvalues_l_times_l_plus_1_with_2_l_plus_1_copies() {
+        let mut previous = f64::INFINITY;
+        for level in [3, 4] {
+            let found = spectrum(&shapes::icosphere(level), 49);
+            let expected = (0..7).flat_map(|l| vec![4.0 * PI * f64::from(l * (l + 1)); 2 * l as usize + 1]);
+            let error = |(a, e): (&f64, f64)| if e > 0.0 { (a / e - 1.0).abs() } else { *a };
+            let worst = found.values.iter().zip(expected).map(error).fold(0.0, f64::max);
+            assert!(worst < previous / 3.0, "level {level}: {worst} after {previous}");
+            previous = worst;
+        }
+        assert!(previous < 0.02, "{previous}");
+    }
+
+    #[test]
+    fn a_rectangle_has_those_of_standing_waves() {
+        // With free ends: pi^2 (a^2 / w^2 + b^2 / h^2), times the area w h.
+        let (w, h) = (60, 40);
+        let found = spectrum(&shapes::grid(w + 1, h + 1, 0.1), 30);
+        let ratio = w as f64 / h as f64;
+        let wave = |a: usize, b: usize| PI * PI * ((a * a) as f64 / ratio + (b * b) as f64 * ratio);
+        let mut expected: Vec<f64> = (0..12).flat_map(|a| (0..12).map(move |b| wave(a, b))).collect();
+        expected.sort_by(f64::total_cmp);
+        for (j, (a, e)) in found.values.iter().zip(&expected).enumerate().skip(1) {
+            assert!((a / e - 1.0).abs() < 0.02, "{j}: {a} against {e}");
+        }
+        assert!((found.area - 24.0).abs() < 1e-9 && (found.masses.iter().sum::<f64>() - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn bending_and_scale_change_nothing() {
+        let sheet = shapes::grid(21, 17, 0.1);
+        let mut large = shapes::fold(&sheet, 0.8, 1.9);
+        large.positions.iter_mut().for_each(|p| p.coords *= 1e3);
+        let (a, b) = (spectrum(&sheet, 20), spectrum(&large, 20));
+        for (x, y) in a.values.iter().zip(&b.values).skip(1) {
+            assert!((x / y - 1.0).abs() < 1e-9);
+        }
+        assert!((b.area / a.area / 1e6 - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn every_component_has_a_constant_function() {
+        let parts = [shapes::icosphere(2), shapes::grid(9, 9, 0.2), shapes::torus(20, 9, 1.0, 0.3)];
+        let found = spectrum(&shapes::disjoint(&parts), 12);
+        assert!(found.values[2] < 1e-9 && found.values[3] > 0.1, "{:?}", found.values);
+    }
+
+    #[test]
+    fn a_surface_without_area_has_no_spectrum() {
+        let none = LaplaceSpectrum::new(&IntrinsicMesh::from_mesh(&TriMesh::default()), 5);
+        assert_eq!(none, Err(DescriptorError::NoExtent { n_points: 0 }));
+    }
+}

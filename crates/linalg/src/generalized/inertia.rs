@@ -1,0 +1,96 @@
+//! How many eigenvalues of a sparse symmetric matrix are negative.
+
+use faer::Par;
+use faer::dyn_stack::{MemBuffer, MemStack};
+
+use crate::cholesky::view;
+use crate::{EliminationOrder, LinalgError, SparseSymmetric};
+
+/// The number of negative eigenvalues of a matrix whose pattern has been analysed: by Sylvester's law
+/// that of the block diagonal `B` in `A = L B L'` (Bunch and Kaufman, pivoting inside of panels).
+///
+/// With `A = W - sigma M`, `M` positive semidefinite, it is the number of eigenvalues of
+/// `W x = lambda M x` below `sigma`.
+///
+/// None when a pivot is zero to rounding: the matrix has an eigenvalue there, or a panel by itself does.
+///
+/// # Errors
+/// [`LinalgError::NotFactorised`] when memory runs out.
+pub(super) fn n_negative(
+    order: &EliminationOrder,
+    matrix: &SparseSymmetric,
+) -> Result<Option<usize>, LinalgError> {
+    let n = matrix.order();
+    let symbolic = order.symbolic();
+    let mut values = vec![0.0; symbolic.len_val()];
+    let mut beside = vec![0.0; n];
+    let [mut forward, mut inverse] = [vec![0; n], vec![0; n]];
+    let scratch = symbolic.factorize_numeric_intranode_lblt_scratch::<f64>(Par::Seq, Default::default());
+    let mut memory = MemBuffer::try_new(scratch)
+        .map_err(|e| LinalgError::NotFactorised { n, reason: format!("{e:?}") })?;
+    symbolic.factorize_numeric_intranode_lblt(
+        &mut values,
+        &mut beside,
+        &mut forward,
+        &mut inverse,
+        view(matrix),
+        faer::Side::Lower,
+        Par::Seq,
+        MemStack::new(&mut memory),
+        Default::default(),
+    );
+    let diagonal = order.panels().diagonal(&values);
+    let mut negative = 0;
+    let mut i = 0;
+    while i < n {
+        let (pivot, count, width) = match beside[i] {
+            0.0 => (diagonal[i], usize::from(diagonal[i] < 0.0), 1),
+            off => {
+                let [a, b] = [diagonal[i], diagonal[i + 1]];
+                let determinant = a * b - off * off;
+                (determinant, if determinant < 0.0 { 1 } else { 2 * usize::from(a < 0.0) }, 2)
+            }
+        };
+        if pivot == 0.0 || !pivot.is_finite() {
+            return Ok(None);
+        }
+        negative += count;
+        i += width;
+    }
+    Ok(Some(negative))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Matrix, symmetric_eigen};
+
+    #[test]
+    fn the_count_is_that_of_the_dense_eigenvalues() {
+        // A ring with chords, the diagonal small beside them and of both signs: 2 x 2 pivots are needed.
+        let n = 90;
+        let entries = || {
+            (0..n).flat_map(move |i| {
+                let diagonal = ((i * 37 % 11) as f64 - 5.05) * 0.3;
+                [(i, i, diagonal), (i, (i + 1) % n, -1.0), (i, (i + 13) % n, 0.4)]
+            })
+        };
+        for shift in [-4.0, -1.3, -0.2, 0.0, 0.1, 0.7, 2.0, 9.0] {
+            let mut a = SparseSymmetric::from_entries(n, entries());
+            a.add_to_diagonal((0..n).map(|_| -shift));
+            let mut dense = Matrix::zeros(n, n);
+            for (i, j, value) in a.entries() {
+                dense[(i, j)] = value;
+                dense[(j, i)] = value;
+            }
+            let expected = symmetric_eigen(&dense).unwrap().values.iter().filter(|v| **v < 0.0).count();
+            assert_eq!(n_negative(&EliminationOrder::new(&a).unwrap(), &a), Ok(Some(expected)), "{shift}");
+        }
+    }
+
+    #[test]
+    fn a_zero_pivot_is_not_counted() {
+        let a = SparseSymmetric::from_entries(3, [(0, 0, 1.0), (1, 1, 0.0), (2, 2, -1.0)]);
+        assert_eq!(n_negative(&EliminationOrder::new(&a).unwrap(), &a), Ok(None));
+    }
+}

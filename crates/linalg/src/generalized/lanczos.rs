@@ -1,0 +1,244 @@
+//! A block Lanczos process with full orthogonalisation.
+
+use super::operator::ShiftInverse;
+use super::strips::Strips;
+use crate::{LinalgError, Matrix, SymmetricEigen, symmetric_eigen};
+
+/// Vectors the process starts with: as many copies of a multiple eigenvalue are found at once. More make
+/// products faster and need a larger basis.
+const BLOCK: usize = 4;
+
+/// A vector of which orthogonalisation leaves less than this share is rounding.
+const ROUNDING: f64 = 1e-13;
+
+/// A vector of which orthogonalisation leaves less than this share is orthogonalised again.
+const CANCELLED: f64 = 0.1;
+
+/// A block Lanczos process for the largest eigenvalues of an operator `C`, symmetric in the inner
+/// product of its masses `x' M y`.
+///
+/// | symbol | here | meaning |
+/// |---|---|---|
+/// | `V` | `basis` | M-orthonormal vectors: the blocks `X_1 .. X_k` |
+/// | `T` | [`projected`](Self::projected) | `V' M C V`, block tridiagonal |
+/// | `X` | `next` | the next block, orthonormal too |
+/// | `B` | last coupling | the coefficients of `X` in `C X_k` |
+///
+/// **Invariant.** `C V = V T + X B E'` with `E'` the last rows of the identity, to rounding.
+///
+/// Blocks may grow: a vector of `X` that is not in `C X_k` has a zero row in `B`. They shrink where
+/// nothing new is found, down to nothing once the basis spans all there is.
+#[derive(Debug)]
+pub(super) struct Lanczos<'a> {
+    operator: &'a ShiftInverse,
+    basis: Strips,
+    /// For every block `X_k` of the basis `X_k' M C X_k`, and its coupling `B` to the next.
+    blocks: Vec<[Matrix; 2]>,
+    /// The last block of the basis.
+    last: Matrix,
+    next: Matrix,
+    random: SplitMix,
+}
+
+impl<'a> Lanczos<'a> {
+    /// A process that starts from random vectors, always the same.
+    pub(super) fn new(operator: &'a ShiftInverse) -> Self {
+        let n = operator.n_rows();
+        let none = || Matrix::zeros(n, 0);
+        let random = SplitMix(0x9e37_79b9_7f4a_7c15);
+        let mut process =
+            Self { operator, basis: Strips::new(n), blocks: Vec::new(), last: none(), next: none(), random };
+        process.add_random(BLOCK);
+        process
+    }
+
+    /// Number of vectors in the basis.
+    pub(super) fn dim(&self) -> usize {
+        self.basis.n_columns()
+    }
+
+    /// Whether the basis spans all there is.
+    pub(super) fn is_exhausted(&self) -> bool {
+        self.next.ncols() == 0
+    }
+
+    /// Takes the next block into the basis.
+    pub(super) fn step(&mut self) {
+        let block = std::mem::replace(&mut self.next, Matrix::zeros(self.operator.n_rows(), 0));
+        self.basis.append(&block);
+        let mut image = self.operator.apply(&block);
+        let lengths = self.lengths(&image);
+        // What is there in exact arithmetic first, then what rounding left.
+        if let Some([_, coupling]) = self.blocks.last() {
+            image -= &self.last * coupling.transpose();
+        }
+        let within = block.transpose() * self.operator.weighted(&image);
+        let within = (&within + within.transpose()) * 0.5;
+        image -= &block * &within;
+        self.last = block;
+        let coupling = self.orthonormalise(&mut image, &lengths);
+        self.next = image;
+        self.blocks.push([within, coupling]);
+        if self.is_exhausted() {
+            self.add_random(BLOCK);
+        }
+    }
+
+    /// Lets up to `count` random vectors into the next block, fewer when there are no more directions: to
+    /// find what is orthogonal to all that was started from.
+    pub(super) fn add_random(&mut self, count: usize) {
+        let n = self.operator.n_rows();
+        let random = Matrix::from_fn(n, count, |_, _| self.random.next());
+        let mut fresh = self.operator.apply(&random);
+        let lengths = self.lengths(&fresh);
+        self.orthonormalise(&mut fresh, &lengths);
+        let old = self.next.ncols();
+        self.next = Matrix::from_fn(n, old + fresh.ncols(), |i, j| {
+            if j < old { self.next[(i, j)] } else { fresh[(i, j - old)] }
+        });
+        if let Some([_, coupling]) = self.blocks.last_mut() {
+            *coupling = coupling.clone().resize_vertically(self.next.ncols(), 0.0);
+        }
+    }
+
+    /// Makes the columns of `w` orthonormal and orthogonal to the basis and the next block, and drops those
+    /// that are rounding beside their original `lengths`. With `w` the result and `h` some matrix, the
+    /// columns were `V h + w R`; returns `R`.
+    fn orthonormalise(&self, w: &mut Matrix, lengths: &[f64]) -> Matrix {
+        let mut r = Matrix::identity(w.ncols(), w.ncols());
+        let mut lengths = lengths.to_vec();
+        // Once is enough unless most of a vector cancels; after three times it never does.
+        for _ in 0..3 {
+            let before = self.lengths(w);
+            let weighted = self.operator.weighted(w);
+            self.basis.subtract_from(w, &self.basis.products(&weighted));
+            *w -= &self.next * (self.next.transpose() * weighted);
+            let (factor, left) = self.gram_schmidt(w, &lengths);
+            r = factor * r;
+            let cancelled = left.iter().zip(&before).any(|(left, before)| *left < CANCELLED * before);
+            lengths = vec![1.0; w.ncols()];
+            if !cancelled {
+                break;
+            }
+        }
+        r
+    }
+
+    /// Makes the columns of `w` orthonormal among themselves, dropping those that are rounding. Returns `R`
+    /// with the old columns `w R`, and the length that each column had in the end.
+    fn gram_schmidt(&self, w: &mut Matrix, lengths: &[f64]) -> (Matrix, Vec<f64>) {
+        let (n, m) = w.shape();
+        let mut r = Matrix::zeros(m, m);
+        let mut left = Vec::with_capacity(m);
+        let mut kept = 0;
+        for j in 0..m {
+            let (done, rest) = w.as_mut_slice().split_at_mut(j * n);
+            let column = &mut rest[..n];
+            for _ in 0..2 {
+                for (i, other) in done[..kept * n].chunks_exact(n).enumerate() {
+                    let share = self.operator.inner(other, column);
+                    column.iter_mut().zip(other).for_each(|(x, y)| *x -= share * y);
+                    r[(i, j)] += share;
+                }
+            }
+            let length = self.operator.inner(column, column).sqrt();
+            left.push(length);
+            if length > ROUNDING * lengths[j] {
+                column.iter_mut().for_each(|x| *x /= length);
+                r[(kept, j)] = length;
+                w.as_mut_slice().copy_within(j * n..(j + 1) * n, kept * n);
+                kept += 1;
+            }
+        }
+        *w = w.columns(0, kept).into_owned();
+        (r.rows(0, kept).into_owned(), left)
+    }
+
+    /// The length of each column.
+    fn lengths(&self, w: &Matrix) -> Vec<f64> {
+        w.column_iter().map(|x| self.operator.inner(x.as_slice(), x.as_slice()).sqrt()).collect()
+    }
+
+    /// `T`.
+    fn projected(&self) -> Matrix {
+        let dim = self.dim();
+        let mut t = Matrix::zeros(dim, dim);
+        let mut start = 0;
+        for [within, coupling] in &self.blocks {
+            let width = within.ncols();
+            t.view_mut((start, start), (width, width)).copy_from(within);
+            if start + width < dim {
+                let below = coupling.nrows();
+                t.view_mut((start + width, start), (below, width)).copy_from(coupling);
+                t.view_mut((start, start + width), (width, below)).copy_from(&coupling.transpose());
+            }
+            start += width;
+        }
+        t
+    }
+
+    /// The eigenpairs of `T`, largest first.
+    ///
+    /// # Errors
+    /// [`LinalgError::NotConverged`].
+    pub(super) fn ritz(&self) -> Result<Ritz, LinalgError> {
+        let eigen = symmetric_eigen(&self.projected())?;
+        let dim = self.dim();
+        let outside = match self.blocks.last() {
+            Some([within, coupling]) => {
+                let width = within.ncols();
+                coupling * eigen.vectors.rows(dim - width, width)
+            }
+            None => Matrix::zeros(0, 0),
+        };
+        Ok(Ritz { eigen, outside })
+    }
+
+    /// The vectors `C V y / theta` of the first `m` pairs of `T`, M-orthonormal: one step of inverse iteration
+    /// on `V y` that costs nothing, as `C V y = theta V y + X B E' y`.
+    pub(super) fn vectors(&self, ritz: &Ritz, m: usize) -> Matrix {
+        let mut result = self.basis.combine(&ritz.eigen.vectors.columns(0, m).into_owned());
+        for (j, mut vector) in result.column_iter_mut().enumerate() {
+            let theta = ritz.eigen.values[j];
+            vector += &self.next * ritz.outside.column(j) / theta;
+            vector /= 1.0f64.hypot(ritz.residual(j));
+        }
+        result
+    }
+}
+
+/// Approximate eigenpairs.
+#[derive(Debug)]
+pub(super) struct Ritz {
+    eigen: SymmetricEigen,
+    /// `B E' y` for every eigenvector `y` of `T`.
+    outside: Matrix,
+}
+
+impl Ritz {
+    /// The eigenvalues of `T`, largest first.
+    pub(super) fn values(&self) -> &[f64] {
+        &self.eigen.values
+    }
+
+    /// `|C x - theta x| / theta` of a pair, `x = V y`.
+    pub(super) fn residual(&self, j: usize) -> f64 {
+        let theta = self.eigen.values[j];
+        if theta > 0.0 { self.outside.column(j).norm() / theta } else { f64::INFINITY }
+    }
+}
+
+/// Pseudo-random numbers (Steele, Lea and Flood 2014).
+#[derive(Debug)]
+struct SplitMix(u64);
+
+impl SplitMix {
+    /// Even in [-1, 1).
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    }
+}

@@ -1,0 +1,115 @@
+//! A growing set of long vectors.
+
+use faer::linalg::matmul::matmul;
+use faer::{Accum, MatMut, MatRef, Par};
+use rayon::prelude::*;
+
+use crate::Matrix;
+use crate::decomposition::view;
+
+/// Rows that are worked on at a time: a few vectors of so many rows stay in the nearest cache, and the
+/// order of summation is fixed, so that the number of threads changes nothing.
+const ROWS: usize = 512;
+
+/// Vectors of n rows cut into strips of [`ROWS`] rows, each stored column by column, so that vectors
+/// can be appended in place and strips worked on in parallel.
+#[derive(Debug)]
+pub(super) struct Strips {
+    n_rows: usize,
+    n_columns: usize,
+    strips: Vec<Vec<f64>>,
+}
+
+impl Strips {
+    /// No vectors of `n_rows` rows.
+    pub(super) fn new(n_rows: usize) -> Self {
+        Self { n_rows, n_columns: 0, strips: vec![Vec::new(); n_rows.div_ceil(ROWS)] }
+    }
+
+    /// Number of vectors.
+    pub(super) fn n_columns(&self) -> usize {
+        self.n_columns
+    }
+
+    /// Appends vectors, the columns of a matrix.
+    pub(super) fn append(&mut self, columns: &Matrix) {
+        for column in columns.as_slice().chunks_exact(self.n_rows) {
+            self.strips.iter_mut().zip(column.chunks(ROWS)).for_each(|(strip, rows)| strip.extend(rows));
+        }
+        self.n_columns += columns.ncols();
+    }
+
+    /// The products `V' W` of all vectors with the columns of a matrix.
+    pub(super) fn products(&self, w: &Matrix) -> Matrix {
+        let (n, m) = (self.n_columns, w.ncols());
+        let parts: Vec<Matrix> = (0..self.strips.len())
+            .into_par_iter()
+            .map(|s| {
+                let mut part = Matrix::zeros(n, m);
+                let out = MatMut::from_column_major_slice_mut(part.as_mut_slice(), n, m);
+                let rows = view(w).subrows(s * ROWS, self.height(s));
+                matmul(out, Accum::Replace, self.strip(s).transpose(), rows, 1.0, Par::Seq);
+                part
+            })
+            .collect();
+        parts.iter().fold(Matrix::zeros(n, m), |sum, part| sum + part)
+    }
+
+    /// Subtracts the combinations `V H` from the columns of a matrix.
+    pub(super) fn subtract_from(&self, w: &mut Matrix, h: &Matrix) {
+        self.add_combinations(w, h, -1.0);
+    }
+
+    /// The combinations `V H`.
+    pub(super) fn combine(&self, h: &Matrix) -> Matrix {
+        let mut w = Matrix::zeros(self.n_rows, h.ncols());
+        self.add_combinations(&mut w, h, 1.0);
+        w
+    }
+
+    fn add_combinations(&self, w: &mut Matrix, h: &Matrix, factor: f64) {
+        let m = w.ncols();
+        let mut rest = MatMut::from_column_major_slice_mut(w.as_mut_slice(), self.n_rows, m);
+        let mut outs = Vec::with_capacity(self.strips.len());
+        for s in 0..self.strips.len() {
+            let (out, below) = rest.split_at_row_mut(self.height(s));
+            outs.push((s, out));
+            rest = below;
+        }
+        outs.into_par_iter().for_each(|(s, out)| {
+            matmul(out, Accum::Add, self.strip(s), view(h), factor, Par::Seq);
+        });
+    }
+
+    /// Rows of a strip.
+    fn height(&self, s: usize) -> usize {
+        self.n_rows.min((s + 1) * ROWS) - s * ROWS
+    }
+
+    fn strip(&self, s: usize) -> MatRef<'_, f64> {
+        MatRef::from_column_major_slice(&self.strips[s], self.height(s), self.n_columns)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn products_and_combinations_are_those_of_the_matrix() {
+        for n in [1, 511, 512, 1300] {
+            let v = Matrix::from_fn(n, 7, |i, j| ((i * 5 + j * 31) as f64).sin());
+            let w = Matrix::from_fn(n, 3, |i, j| ((i * 3 + j) as f64).cos());
+            let mut strips = Strips::new(n);
+            strips.append(&v.columns(0, 3).into_owned());
+            strips.append(&v.columns(3, 4).into_owned());
+            let h = strips.products(&w);
+            assert_eq!(strips.n_columns(), 7);
+            assert!((&h - v.transpose() * &w).amax() < 1e-12 * n as f64);
+            let mut rest = w.clone();
+            strips.subtract_from(&mut rest, &h);
+            assert!((rest + &v * &h - w).amax() < 1e-11 * n as f64);
+            assert!((strips.combine(&h) - &v * &h).amax() < 1e-11 * n as f64);
+        }
+    }
+}

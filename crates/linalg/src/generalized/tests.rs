@@ -1,0 +1,159 @@
+use std::f64::consts::PI;
+
+use super::*;
+use crate::SymmetricOperator;
+
+/// Springs of the given weights between pairs of `n` points.
+fn springs(n: usize, pairs: impl IntoIterator<Item = (usize, usize, f64)>) -> SparseSymmetric {
+    let entries = pairs.into_iter().flat_map(|(i, j, w)| [(i, i, w), (j, j, w), (i, j, -w)]);
+    SparseSymmetric::from_entries(n, entries)
+}
+
+/// A grid that is closed in both directions, of `k` x `l` points and unit springs.
+fn torus(k: usize, l: usize) -> SparseSymmetric {
+    let at = |i: usize, j: usize| (i % k) * l + j % l;
+    springs(
+        k * l,
+        (0..k)
+            .flat_map(|i| (0..l).map(move |j| (i, j)))
+            .flat_map(|(i, j)| [(at(i, j), at(i + 1, j), 1.0), (at(i, j), at(i, j + 1), 1.0)]),
+    )
+}
+
+/// Its eigenvalues, `4 sin^2(pi a / k) + 4 sin^2(pi b / l)`, the smallest `m`.
+fn torus_spectrum(k: usize, l: usize, m: usize) -> Vec<f64> {
+    let sine = |a: usize, k: usize| 4.0 * (PI * a as f64 / k as f64).sin().powi(2);
+    let mut all: Vec<f64> = (0..k).flat_map(|a| (0..l).map(move |b| sine(a, k) + sine(b, l))).collect();
+    all.sort_by(f64::total_cmp);
+    all.truncate(m);
+    all
+}
+
+/// Largest `|W x - lambda M x|` in units of the largest eigenvalue found, and largest entry of `X' M X - I`.
+fn faults(w: &SparseSymmetric, masses: &[f64], found: &GeneralizedEigen) -> [f64; 2] {
+    let n = w.order();
+    let scale = found.values.last().copied().unwrap_or(1.0);
+    let mut weighted = found.vectors.clone();
+    let mut worst = 0.0f64;
+    for (x, value) in found.vectors.column_iter().zip(&found.values) {
+        let mut image = vec![0.0; n];
+        w.apply(x.as_slice(), &mut image);
+        let residual = (0..n).map(|i| image[i] - value * masses[i] * x[i]).map(|r| r * r).sum::<f64>().sqrt();
+        worst = worst.max(residual / scale);
+    }
+    for mut column in weighted.column_iter_mut() {
+        column.iter_mut().zip(masses).for_each(|(x, m)| *x *= m);
+    }
+    let gram = found.vectors.transpose() * weighted;
+    [worst, (&gram - Matrix::identity(gram.nrows(), gram.ncols())).amax()]
+}
+
+#[test]
+fn a_torus_has_the_eigenvalues_of_its_closed_form_with_all_multiplicities() {
+    // Fourfold and eightfold on the square one.
+    for (k, l, m) in [(40, 40, 90), (37, 23, 60), (9, 8, 72), (100, 3, 13)] {
+        let w = torus(k, l);
+        let masses = vec![1.0; k * l];
+        let found = smallest_eigenpairs(&w, &masses, m).unwrap();
+        let expected = torus_spectrum(k, l, m);
+        assert_eq!(found.values.len(), m);
+        for (i, (a, b)) in found.values.iter().zip(&expected).enumerate() {
+            assert!((a - b).abs() < 1e-9 * (b + 1e-3), "{k} x {l}, {i}: {a} against {b}");
+        }
+        let [residual, orthogonality] = faults(&w, &masses, &found);
+        assert!(residual < 1e-9 && orthogonality < 1e-12, "{residual} {orthogonality}");
+    }
+}
+
+#[test]
+fn masses_scale_as_they_should() {
+    let w = torus(30, 20);
+    let masses: Vec<f64> = (0..600).map(|i| 1.0 + 0.9 * (i as f64).sin()).collect();
+    let found = smallest_eigenpairs(&w, &masses, 40).unwrap();
+    let [residual, orthogonality] = faults(&w, &masses, &found);
+    assert!(residual < 1e-9 && orthogonality < 1e-12, "{residual} {orthogonality}");
+    for scale in [1e-12, 1e12] {
+        let scaled: Vec<f64> = masses.iter().map(|m| scale * m).collect();
+        let other = smallest_eigenpairs(&w, &scaled, 40).unwrap();
+        for j in 1..40 {
+            let ratio = other.values[j] * scale / found.values[j];
+            assert!((ratio - 1.0).abs() < 1e-9, "{j} {scale}: {ratio}");
+        }
+    }
+}
+
+#[test]
+fn the_kernel_has_a_dimension_for_each_component() {
+    // Thirty rings of 24 points: every eigenvalue but the first is at least 60-fold.
+    let rings = 30;
+    let w = springs(24 * rings, (0..24 * rings).map(|v| (v, v / 24 * 24 + (v + 1) % 24, 1.0)));
+    let masses = vec![1.0; 24 * rings];
+    let found = smallest_eigenpairs(&w, &masses, 70).unwrap();
+    let ring = |a: f64| 4.0 * (PI * a / 24.0).sin().powi(2);
+    for (j, value) in found.values.iter().enumerate() {
+        let expected = if j < rings { 0.0 } else { ring(1.0) };
+        assert!((value - expected).abs() < 1e-10, "{j}: {value} against {expected}");
+    }
+    let [residual, orthogonality] = faults(&w, &masses, &found);
+    assert!(residual < 1e-9 && orthogonality < 1e-11, "{residual} {orthogonality}");
+}
+
+#[test]
+fn rows_without_mass_follow_the_others_and_loose_ones_are_zero() {
+    // A path on which every second point has no mass is one of half as many, its springs half as stiff.
+    let n = 81;
+    let path = springs(n + 1, (1..n).map(|i| (i - 1, i, 1.0)));
+    let masses: Vec<f64> = (0..=n).map(|i| if i < n && i % 2 == 0 { 1.0 } else { 0.0 }).collect();
+    let found = smallest_eigenpairs(&path, &masses, 100).unwrap();
+    assert_eq!(found.values.len(), 41, "one pair for each mass");
+    for (j, value) in found.values.iter().enumerate() {
+        let expected = 2.0 * (PI * j as f64 / 82.0).sin().powi(2);
+        assert!((value - expected).abs() < 1e-10, "{j}: {value} against {expected}");
+    }
+    // Those of the largest eigenvalues are rougher.
+    for x in found.vectors.column_iter().take(20) {
+        let fault = |i: usize| (x[i] - 0.5 * (x[i - 1] + x[i + 1])).abs();
+        let worst = (1..n - 1).step_by(2).map(fault).fold(0.0, f64::max);
+        assert!(worst < 1e-8, "{worst}");
+        assert_eq!(x[n], 0.0);
+    }
+}
+
+#[test]
+fn the_number_of_threads_changes_nothing() {
+    let w = torus(45, 31);
+    let masses: Vec<f64> = (0..45 * 31).map(|i| 1.0 + 0.3 * (i as f64).cos()).collect();
+    let on = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| smallest_eigenpairs(&w, &masses, 30).unwrap())
+    };
+    let one = on(1);
+    // Bit for bit, whatever memory the vectors happen to lie in.
+    assert_eq!(one, on(1));
+    let padding = vec![0u8; 24];
+    assert_eq!(one, on(2));
+    drop(padding);
+    assert_eq!(one, on(4));
+}
+
+#[test]
+fn small_and_empty_matrices_have_all_their_pairs() {
+    let one = smallest_eigenpairs(&SparseSymmetric::from_entries(1, [(0, 0, 6.0)]), &[2.0], 5).unwrap();
+    assert!(one.values.len() == 1 && (one.values[0] - 3.0).abs() < 1e-14);
+    assert!((one.vectors[(0, 0)] - 0.5f64.sqrt()).abs() < 1e-15);
+    let none = smallest_eigenpairs(&SparseSymmetric::from_entries(0, []), &[], 5).unwrap();
+    assert_eq!((none.values.len(), none.vectors.shape()), (0, (0, 0)));
+    let unasked = smallest_eigenpairs(&torus(4, 4), &[1.0; 16], 0).unwrap();
+    assert_eq!((unasked.values.len(), unasked.vectors.shape()), (0, (16, 0)));
+    let massless = smallest_eigenpairs(&torus(4, 4), &[0.0; 16], 3);
+    assert_eq!(massless.map(|found| found.values.len()), Ok(0));
+}
+
+#[test]
+fn what_cannot_be_factorised_is_an_error() {
+    let negative = torus(5, 5).entries().map(|(i, j, v)| (i, j, -v)).collect::<Vec<_>>();
+    let w = SparseSymmetric::from_entries(25, negative);
+    assert!(matches!(smallest_eigenpairs(&w, &[1.0; 25], 3), Err(LinalgError::NotFactorised { n: 25, .. })));
+    let w = SparseSymmetric::from_entries(2, [(0, 1, f64::NAN)]);
+    assert!(matches!(smallest_eigenpairs(&w, &[1.0; 2], 1), Err(LinalgError::NotFactorised { n: 2, .. })));
+}

@@ -1,0 +1,287 @@
+//! Spectral multidimensional scaling.
+
+use linalg::{LandmarkDistances, Matrix};
+
+use crate::interpolated::embed_interpolated;
+use crate::{Embedding, NmdsError};
+
+/// The smallest eigenpairs of a Laplacian, `W Φ = A Φ Λ`.
+#[derive(Debug, Clone, Copy)]
+pub struct SpectralBasis<'a> {
+    /// The eigenvalues, ascending from zero.
+    pub values: &'a [f64],
+    /// The eigenvectors as columns, p x m, with `Φ' A Φ = I`.
+    pub vectors: &'a Matrix,
+    /// The diagonal of `A`: the area around each of the p points.
+    pub masses: &'a [f64],
+}
+
+/// Options of [`spectral`].
+#[derive(Debug, Clone, PartialEq)]
+pub struct SpectralOptions {
+    /// Weight of the known distances against smoothness, positive, for a surface of unit area; infinite
+    /// to interpolate them, which takes as many eigenvectors as samples. Default: infinite.
+    pub mu: f64,
+    /// Dimensions of the embedding. Default: 3.
+    pub dim: usize,
+}
+
+impl Default for SpectralOptions {
+    fn default() -> Self {
+        Self { mu: f64::INFINITY, dim: 3 }
+    }
+}
+
+/// An eigenvalue at most this, for a surface of unit area, is zero.
+const KERNEL: f64 = 1e-10;
+
+/// Spectral multidimensional scaling (SMDS): embeds p points from the distances between n of them,
+/// interpolated as smoothly as the surface allows.
+///
+/// | paper | here | shape | meaning |
+/// |---|---|---|---|
+/// | `Φ`, `Λ` | `basis` | p x m, m | smallest eigenpairs of the Laplace-Beltrami operator |
+/// | `D` | `S` | n x n | squared distances between the samples |
+/// | `M` | | m x n | `(Λ + mu Φ_s' Φ_s)^-1 mu Φ_s'`, `Φ_s` the rows of `Φ` at the samples |
+/// | `α` | `M S M'` | m x m | squared distances in the basis |
+/// | | `P = Φ M` | p x n | what a function given at the samples is elsewhere |
+///
+/// `Z = Q U √L` with the `k` algebraically largest eigenpairs `U L U'` of `-1/2 W S W'`, `Q W = J P`: classical
+/// scaling of `P S P' = Φ α Φ'` (Aflalo and Kimmel 2013, [`aflalo2013`] in `REFERENCES.bib`; the separable
+/// solution of their published code).
+///
+/// * Uses distances between samples alone; those to other points are not looked at.
+/// * Areas are relative to that of the surface and distances to their maximum, so no unit matters.
+/// * `M` comes from an n x n system that is as good for an infinite `mu` as for any:
+///   `M = Λ^-1 Φ_s' C` off the kernel, where `(Φ_s Λ^-1 Φ_s' + I / mu) C = I` up to functions in the kernel.
+/// * Cost `O(p n (m + n))` time beside the basis, `O(p n)` memory.
+///
+/// # Errors
+/// [`NmdsError::BadBasis`], [`NmdsError::BadSmoothness`], [`NmdsError::TooFewEigenvectors`],
+/// [`NmdsError::NotDetermined`], [`NmdsError::BadDimension`], [`NmdsError::NoExtent`], [`NmdsError::Linalg`].
+///
+/// [`aflalo2013`]: https://doi.org/10.1073/pnas.1308708110
+pub fn spectral(
+    distances: &LandmarkDistances,
+    basis: &SpectralBasis<'_>,
+    options: &SpectralOptions,
+) -> Result<Embedding, NmdsError> {
+    let (p, m) = basis.vectors.shape();
+    let expected = distances.n_points();
+    if p != expected || basis.masses.len() != expected || basis.values.len() != m {
+        let found = [p, basis.masses.len(), m, basis.values.len()];
+        return Err(NmdsError::BadBasis { n_points: expected, found });
+    }
+    if options.mu.is_nan() || options.mu <= 0.0 {
+        return Err(NmdsError::BadSmoothness { mu: options.mu });
+    }
+    let n = distances.n_landmarks();
+    if options.mu.is_infinite() && m < n {
+        return Err(NmdsError::TooFewEigenvectors { n_vectors: m, n_landmarks: n });
+    }
+    let interpolant = interpolant(distances.landmarks(), basis, options.mu)?;
+    embed_interpolated(interpolant, distances, options.dim)
+}
+
+/// `P = Φ M`: column j is the smoothest function that is one at sample j and zero at the others.
+fn interpolant(samples: &[usize], basis: &SpectralBasis<'_>, mu: f64) -> Result<Matrix, NmdsError> {
+    let area: f64 = basis.masses.iter().sum();
+    let n = samples.len();
+    let kernel = basis.values.iter().take_while(|value| *value * area <= KERNEL).count();
+    let smooth = basis.values.len() - kernel;
+    // For unit area eigenvalues are multiplied by the area and eigenvectors by its root.
+    let at_samples = basis.vectors.select_rows(samples) * area.sqrt();
+    let mut filtered = at_samples.columns(kernel, smooth).transpose();
+    for (mut row, value) in filtered.row_iter_mut().zip(&basis.values[kernel..]) {
+        row /= value * area;
+    }
+    let mut system = Matrix::zeros(n + kernel, n + kernel);
+    system.view_mut((0, 0), (n, n)).copy_from(&(at_samples.columns(kernel, smooth) * &filtered));
+    for i in 0..n {
+        system[(i, i)] += 1.0 / mu;
+    }
+    let null = at_samples.columns(0, kernel);
+    system.view_mut((0, n), (n, kernel)).copy_from(&null);
+    system.view_mut((n, 0), (kernel, n)).copy_from(&null.transpose());
+    let solution =
+        system.lu().solve(&Matrix::identity(n + kernel, n)).filter(|x| x.iter().all(|v| v.is_finite()));
+    let solution = solution.ok_or(NmdsError::NotDetermined { n_landmarks: n })?;
+    let mut coefficients = Matrix::zeros(basis.values.len(), n);
+    coefficients.rows_mut(0, kernel).copy_from(&solution.rows(n, kernel));
+    coefficients.rows_mut(kernel, smooth).copy_from(&(filtered * solution.rows(0, n)));
+    Ok(basis.vectors * coefficients * area.sqrt())
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::PI;
+
+    use linalg::DistanceMatrix;
+
+    use super::*;
+    use crate::classical_full;
+
+    /// A ring of `p` points a unit apart: the smallest `m` eigenpairs of its springs, orthonormal.
+    struct Ring {
+        values: Vec<f64>,
+        vectors: Matrix,
+        masses: Vec<f64>,
+    }
+
+    impl Ring {
+        fn new(p: usize, m: usize) -> Self {
+            let n = p as f64;
+            let frequency = |j: usize| j.div_ceil(2) as f64;
+            let vectors = Matrix::from_fn(p, m, |i, j| {
+                let angle = 2.0 * PI * frequency(j) * i as f64 / n;
+                let wave = if j % 2 == 1 { angle.cos() } else { angle.sin() };
+                match j {
+                    0 => 1.0 / n.sqrt(),
+                    _ if 2 * j.div_ceil(2) == p => wave / n.sqrt(),
+                    _ => wave * (2.0 / n).sqrt(),
+                }
+            });
+            let value = |j: usize| 4.0 * (PI * frequency(j) / n).sin().powi(2);
+            Self { values: (0..m).map(value).collect(), vectors, masses: vec![1.0; p] }
+        }
+
+        fn basis(&self) -> SpectralBasis<'_> {
+            SpectralBasis { values: &self.values, vectors: &self.vectors, masses: &self.masses }
+        }
+    }
+
+    /// Distances from every `step`th of `p` points in a ring.
+    fn columns(p: usize, step: usize, distance: impl Fn(usize, usize) -> f64) -> LandmarkDistances {
+        let samples: Vec<usize> = (0..p).step_by(step).collect();
+        let columns = Matrix::from_fn(p, samples.len(), |i, j| distance(i, samples[j]));
+        LandmarkDistances::new(samples, columns).unwrap()
+    }
+
+    fn arc(p: usize) -> impl Fn(usize, usize) -> f64 {
+        move |i, j| i.abs_diff(j).min(p - i.abs_diff(j)) as f64
+    }
+
+    #[test]
+    fn with_all_samples_and_the_whole_basis_it_is_classical_scaling() {
+        let p = 31;
+        let found = spectral(&columns(p, 1, arc(p)), &Ring::new(p, p).basis(), &Default::default()).unwrap();
+        let mds = classical_full(&DistanceMatrix::from_pairs(p, arc(p)).unwrap(), 3).unwrap();
+        for (a, b) in found.eigenvalues.iter().zip(&mds.eigenvalues) {
+            assert!((a - b).abs() < 1e-9 * mds.eigenvalues[0], "{a} {b}");
+        }
+        let gram = |z: &Matrix| z.columns(0, 2) * z.columns(0, 2).transpose();
+        assert!((gram(&found.coords) - gram(&mds.coords)).amax() < 1e-9 * mds.eigenvalues[0]);
+    }
+
+    #[test]
+    fn squared_distances_that_the_basis_can_hold_come_back_from_as_many_samples() {
+        // Chords of a circle: 2 - 2 cos(s - t) is of frequency one.
+        let p = 90;
+        let chord = |i: usize, j: usize| 2.0 * (PI * i.abs_diff(j) as f64 / p as f64).sin();
+        let found = spectral(&columns(p, 30, chord), &Ring::new(p, 3).basis(), &Default::default()).unwrap();
+        for i in 0..p {
+            for j in 0..i {
+                let d = (found.coords.row(i) - found.coords.row(j)).norm();
+                assert!((d - chord(i, j)).abs() < 1e-9, "{i} {j}: {d}");
+            }
+        }
+    }
+
+    #[test]
+    fn coefficients_are_those_of_the_definition() {
+        let (p, m) = (60, 25);
+        let ring = Ring::new(p, m);
+        let area = p as f64;
+        let samples: Vec<usize> = (0..p).step_by(6).collect();
+        for mu in [0.01, 1.0, 1e4] {
+            let vectors = &ring.vectors * area.sqrt();
+            let at = vectors.select_rows(&samples);
+            let energy: Vec<f64> = ring.values.iter().map(|v| v * area).collect();
+            let normal = Matrix::from_diagonal(&energy.into()) + at.transpose() * &at * mu;
+            let expected = vectors * normal.try_inverse().unwrap() * at.transpose() * mu;
+            let found = interpolant(&samples, &ring.basis(), mu).unwrap();
+            assert!((found - expected).amax() < 1e-9, "{mu}");
+        }
+    }
+
+    #[test]
+    fn infinite_mu_passes_through_the_samples_and_large_ones_tend_to_it() {
+        let (p, step) = (60, 6);
+        let ring = Ring::new(p, 25);
+        let samples: Vec<usize> = (0..p).step_by(step).collect();
+        let limit = interpolant(&samples, &ring.basis(), f64::INFINITY).unwrap();
+        assert!((limit.select_rows(&samples) - Matrix::identity(10, 10)).amax() < 1e-10);
+        let near = interpolant(&samples, &ring.basis(), 1e9).unwrap();
+        assert!((near - limit).amax() < 1e-6);
+    }
+
+    #[test]
+    fn no_unit_matters() {
+        let p = 80;
+        let ring = Ring::new(p, 40);
+        let distances = columns(p, 8, arc(p));
+        for mu in [10.0, f64::INFINITY] {
+            let options = SpectralOptions { mu, dim: 2 };
+            let base = spectral(&distances, &ring.basis(), &options).unwrap();
+            for scale in [1e-3, 1e3] {
+                // Lengths times `scale`: the stiffness stays, areas are multiplied by its square.
+                let scaled = Ring {
+                    values: ring.values.iter().map(|v| v / (scale * scale)).collect(),
+                    vectors: &ring.vectors / scale,
+                    masses: ring.masses.iter().map(|m| m * scale * scale).collect(),
+                };
+                let longer =
+                    LandmarkDistances::new(distances.landmarks().to_vec(), distances.matrix() * scale)
+                        .unwrap();
+                let found = spectral(&longer, &scaled.basis(), &options).unwrap();
+                // A circle has no axes: distances are compared.
+                let gap = (0..p).map(|i| {
+                    let d = |z: &Matrix| (z.row(0) - z.row(i)).norm();
+                    (d(&found.coords) / scale - d(&base.coords)).abs()
+                });
+                assert!(gap.fold(0.0, f64::max) < 1e-9 * base.coords.amax());
+            }
+        }
+    }
+
+    #[test]
+    fn impossible_requests_are_refused() {
+        let p = 20;
+        let distances = columns(p, 2, arc(p));
+        let ask =
+            |m: usize, options: SpectralOptions| spectral(&distances, &Ring::new(p, m).basis(), &options);
+        let with = |mu| SpectralOptions { mu, dim: 3 };
+        for mu in [0.0, -1.0] {
+            assert_eq!(ask(15, with(mu)), Err(NmdsError::BadSmoothness { mu }));
+        }
+        assert!(matches!(ask(15, with(f64::NAN)), Err(NmdsError::BadSmoothness { .. })));
+        assert_eq!(
+            ask(9, with(f64::INFINITY)),
+            Err(NmdsError::TooFewEigenvectors { n_vectors: 9, n_landmarks: 10 })
+        );
+        assert!(ask(9, with(1e3)).is_ok());
+        assert_eq!(
+            ask(15, SpectralOptions { dim: 11, ..Default::default() }),
+            Err(NmdsError::BadDimension { dim: 11, limit: 10 })
+        );
+        let other = Ring::new(19, 15);
+        assert_eq!(
+            spectral(&distances, &other.basis(), &Default::default()),
+            Err(NmdsError::BadBasis { n_points: 20, found: [19, 19, 15, 15] })
+        );
+        // A second function in the kernel that vanishes at all samples.
+        let ring = Ring::new(p, 15);
+        let mut vectors = ring.vectors.clone();
+        vectors.set_column(1, &nalgebra::DVector::from_fn(p, |i, _| (i % 2) as f64 * 0.3));
+        let mut values = ring.values.clone();
+        values[1] = 0.0;
+        let basis = SpectralBasis { values: &values, vectors: &vectors, masses: &ring.masses };
+        let undetermined = spectral(&distances, &basis, &Default::default());
+        assert_eq!(undetermined, Err(NmdsError::NotDetermined { n_landmarks: 10 }));
+        let nothing = LandmarkDistances::new(vec![0, 1, 2], Matrix::zeros(p, 3)).unwrap();
+        assert_eq!(
+            spectral(&nothing, &ring.basis(), &Default::default()),
+            Err(NmdsError::NoExtent { n_points: 20 })
+        );
+    }
+}
