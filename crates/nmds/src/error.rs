@@ -69,17 +69,6 @@ pub enum NmdsError {
         /// The weight given.
         mu: f64,
     },
-    /// Too few eigenvectors to pass through all samples.
-    #[error(
-        "{n_vectors} eigenvectors cannot interpolate {n_landmarks} samples; take at least as many, fewer samples \
-         or a finite mu"
-    )]
-    TooFewEigenvectors {
-        /// Number of eigenvectors.
-        n_vectors: usize,
-        /// Number of samples.
-        n_landmarks: usize,
-    },
     /// The samples say nothing of a part of the surface.
     #[error(
         "{n_landmarks} samples do not determine a function on the surface; take one in each connected component, \
