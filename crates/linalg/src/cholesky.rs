@@ -10,9 +10,10 @@ use faer::sparse::linalg::cholesky::{
 };
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Par, Side};
+use rayon::prelude::*;
 
 use crate::panels::Panels;
-use crate::{LinalgError, SparseSymmetric};
+use crate::{LinalgError, Matrix, SparseSymmetric};
 
 /// The order in which a sparse matrix is eliminated, and the pattern of its Cholesky factor: all
 /// that depends on the places of the entries and not on their values.
@@ -164,6 +165,45 @@ impl SparseCholesky {
         }
     }
 
+    /// Overwrites each column of `b` with the solution for it, in parallel; none depends on the others.
+    ///
+    /// # Panics
+    /// When `b` does not have as many rows as the matrix.
+    pub fn solve_columns(&self, b: &mut Matrix) {
+        let rows = self.order.rows();
+        assert_eq!(b.nrows(), rows.len(), "one right-hand side entry for each row");
+        let mut ordered = b.select_rows(rows);
+        self.solve_ordered_columns(ordered.as_mut_slice());
+        for (mut to, from) in b.column_iter_mut().zip(ordered.column_iter()) {
+            rows.iter().zip(from.iter()).for_each(|(&row, value)| to[row] = *value);
+        }
+    }
+
+    /// The same for columns one after the other whose rows are in the order of elimination.
+    pub(crate) fn solve_ordered_columns(&self, columns: &mut [f64]) {
+        let n = self.order.rows().len();
+        if n == 0 {
+            return;
+        }
+        // As few together as keep all threads busy, but no more than pay.
+        let lanes = (columns.len() / n).div_ceil(rayon::current_num_threads()).clamp(1, 4);
+        columns.par_chunks_mut(lanes * n).for_each(|part| match part.len() / n {
+            1 => self.solve_lanes::<1>(part),
+            2 => self.solve_lanes::<2>(part),
+            3 => self.solve_lanes::<3>(part),
+            _ => self.solve_lanes::<4>(part),
+        });
+    }
+
+    fn solve_lanes<const K: usize>(&self, columns: &mut [f64]) {
+        let n = self.order.rows().len();
+        let mut lanes: Vec<[f64; K]> = (0..n).map(|i| std::array::from_fn(|k| columns[k * n + i])).collect();
+        self.solve_ordered(&mut lanes);
+        for (i, lane) in lanes.iter().enumerate() {
+            lane.iter().enumerate().for_each(|(k, value)| columns[k * n + i] = *value);
+        }
+    }
+
     /// The same for `K` right-hand sides at once whose rows are in [the order of
     /// elimination](EliminationOrder::rows); a lane's result does not depend on the others.
     ///
@@ -187,7 +227,7 @@ pub(crate) fn view(matrix: &SparseSymmetric) -> SparseColMatRef<'_, usize, f64> 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Matrix, SymmetricOperator};
+    use crate::SymmetricOperator;
 
     /// Differences between neighbours on a `side` x `side` grid plus `mass` on the diagonal, rows
     /// numbered by a stride so that the given order is a bad one.
@@ -257,6 +297,20 @@ mod tests {
                 (0..n).map(|i| [if lane == 1 { sparse(i) } else { columns[lane][i] }]).collect();
             factor.solve_ordered(&mut one);
             assert!(one.iter().zip(&four).all(|([a], b)| a.to_bits() == b[lane].to_bits()), "lane {lane}");
+        }
+    }
+
+    #[test]
+    fn columns_are_solved_for_as_if_alone() {
+        let a = grid(31, 0.1);
+        let factor = SparseCholesky::new(&a).unwrap();
+        for count in [0, 1, 3, 9] {
+            let b = Matrix::from_fn(a.order(), count, |i, j| right_hand_side(a.order(), j)[i]);
+            let mut expected = b.clone();
+            expected.column_iter_mut().for_each(|mut column| factor.solve(column.as_mut_slice()));
+            let mut found = b;
+            factor.solve_columns(&mut found);
+            assert_eq!(found, expected);
         }
     }
 

@@ -51,18 +51,6 @@ pub enum NmdsError {
         /// The width given.
         sigma: f64,
     },
-    /// A basis that does not fit the points.
-    #[error(
-        "a basis of {} x {} vectors, {} masses and {} eigenvalues does not belong to {n_points} points; it takes \
-         one row and one mass for each point and one eigenvalue for each vector",
-        found[0], found[2], found[1], found[3]
-    )]
-    BadBasis {
-        /// Number of points of the distances.
-        n_points: usize,
-        /// Rows of the vectors, number of masses, of vectors and of eigenvalues.
-        found: [usize; 4],
-    },
     /// A weight of distances that is not a positive number.
     #[error("the weight mu = {mu} of known distances must be positive; it may be infinite")]
     BadSmoothness {
@@ -71,8 +59,8 @@ pub enum NmdsError {
     },
     /// The samples say nothing of a part of the surface.
     #[error(
-        "{n_landmarks} samples do not determine a function on the surface; take one in each connected component, \
-         and more eigenvectors than samples"
+        "{n_landmarks} samples do not determine a function on the surface; take one in each of its components, or \
+         keep its largest one only"
     )]
     NotDetermined {
         /// Number of samples.

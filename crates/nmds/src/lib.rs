@@ -8,7 +8,7 @@
 mod classical;
 mod embedding;
 mod error;
-mod interpolated;
+mod fmds;
 mod kernel_pca;
 mod landmark;
 mod nystrom;
@@ -23,6 +23,7 @@ mod testing;
 pub use classical::{classical, classical_full};
 pub use embedding::Embedding;
 pub use error::NmdsError;
+pub use fmds::fmds;
 pub use kernel_pca::{Bandwidth, KernelPcaOptions, kernel_pca};
 pub use landmark::landmark_mds;
 pub use nystrom::{NystromOptions, nystrom};

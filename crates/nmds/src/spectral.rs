@@ -1,8 +1,8 @@
 //! Spectral multidimensional scaling.
 
-use linalg::{LandmarkDistances, Matrix, thin_qr};
+use linalg::{LandmarkDistances, Matrix, symmetric_eigen, thin_qr};
 
-use crate::interpolated::embed_interpolated;
+use crate::embedding::center_columns;
 use crate::{Embedding, NmdsError};
 
 /// The smallest eigenpairs of a Laplacian, `W Φ = A Φ Λ`.
@@ -62,8 +62,11 @@ const KERNEL: f64 = 1e-10;
 /// * Cost `O(p n (m + n))` time beside the basis, `O(p n)` memory.
 ///
 /// # Errors
-/// [`NmdsError::BadBasis`], [`NmdsError::BadSmoothness`], [`NmdsError::NotDetermined`],
+/// [`NmdsError::PointMismatch`], [`NmdsError::BadSmoothness`], [`NmdsError::NotDetermined`],
 /// [`NmdsError::BadDimension`], [`NmdsError::NoExtent`], [`NmdsError::Linalg`].
+///
+/// # Panics
+/// When there is not one eigenvalue for each eigenvector.
 ///
 /// [`aflalo2013`]: https://doi.org/10.1073/pnas.1308708110
 pub fn spectral(
@@ -72,16 +75,31 @@ pub fn spectral(
     options: &SpectralOptions,
 ) -> Result<Embedding, NmdsError> {
     let (p, m) = basis.vectors.shape();
-    let expected = distances.n_points();
-    if p != expected || basis.masses.len() != expected || basis.values.len() != m {
-        let found = [p, basis.masses.len(), m, basis.values.len()];
-        return Err(NmdsError::BadBasis { n_points: expected, found });
+    assert_eq!(basis.values.len(), m, "one eigenvalue for each eigenvector");
+    for given in [p, basis.masses.len()] {
+        if given != distances.n_points() {
+            return Err(NmdsError::PointMismatch { given, n_points: distances.n_points() });
+        }
+    }
+    // The constant function spans no dimension.
+    let limit = distances.n_landmarks().min(m.saturating_sub(1));
+    if options.dim == 0 || options.dim > limit {
+        return Err(NmdsError::BadDimension { dim: options.dim, limit });
     }
     if options.mu.is_nan() || options.mu <= 0.0 {
         return Err(NmdsError::BadSmoothness { mu: options.mu });
     }
-    let interpolant = interpolant(distances.landmarks(), basis, options.mu)?;
-    embed_interpolated(interpolant, distances, options.dim)
+    let unit = distances.max();
+    if unit <= 0.0 {
+        return Err(NmdsError::NoExtent { n_points: distances.n_points() });
+    }
+    let mut interpolant = interpolant(distances.landmarks(), basis, options.mu)?;
+    center_columns(&mut interpolant);
+    let (q, w) = thin_qr(&interpolant);
+    let middle = &w * (distances.sq_block() / (-2.0 * unit * unit)) * w.transpose();
+    let inner = symmetric_eigen(&((&middle + middle.transpose()) * 0.5))?;
+    let columns = q * inner.vectors.columns(0, options.dim);
+    Ok(Embedding::from_orthonormal(columns, inner.values, unit, distances.n_landmarks()))
 }
 
 /// `P = Φ M`: column j is the smoothest function that is one at sample j and zero at the others, or as near
@@ -199,7 +217,8 @@ mod tests {
         // Chords of a circle: 2 - 2 cos(s - t) is of frequency one.
         let p = 90;
         let chord = |i: usize, j: usize| 2.0 * (PI * i.abs_diff(j) as f64 / p as f64).sin();
-        let found = spectral(&columns(p, 30, chord), &Ring::new(p, 3).basis(), &EXACT).unwrap();
+        let options = SpectralOptions { dim: 2, ..EXACT };
+        let found = spectral(&columns(p, 30, chord), &Ring::new(p, 3).basis(), &options).unwrap();
         for i in 0..p {
             for j in 0..i {
                 let d = (found.coords.row(i) - found.coords.row(j)).norm();
@@ -287,10 +306,11 @@ mod tests {
             ask(15, SpectralOptions { dim: 11, ..Default::default() }),
             Err(NmdsError::BadDimension { dim: 11, limit: 10 })
         );
+        assert_eq!(ask(3, with(1.0)), Err(NmdsError::BadDimension { dim: 3, limit: 2 }));
         let other = Ring::new(19, 15);
         assert_eq!(
             spectral(&distances, &other.basis(), &Default::default()),
-            Err(NmdsError::BadBasis { n_points: 20, found: [19, 19, 15, 15] })
+            Err(NmdsError::PointMismatch { given: 19, n_points: 20 })
         );
         // A second function in the kernel that vanishes at all samples.
         let ring = Ring::new(p, 15);

@@ -2,13 +2,14 @@
 
 use std::time::Instant;
 
-use descriptors::CanonicalForm;
+use descriptors::{CanonicalForm, LaplaceSpectrum};
 use geodesics::FirstSample;
-use linalg::LandmarkDistances;
+use linalg::{LandmarkDistances, SparseSymmetric};
 use mesh::VertexId;
+use mesh::laplacian::Laplacian;
 use nmds::{
-    Embedding, KernelPcaOptions, NystromOptions, SmacofReport, classical, kernel_pca, landmark_mds, nystrom,
-    smacof,
+    Embedding, KernelPcaOptions, NystromOptions, SmacofReport, SpectralBasis, SpectralOptions, classical,
+    fmds, kernel_pca, landmark_mds, nystrom, smacof, spectral,
 };
 
 use crate::observer::Observed;
@@ -74,7 +75,7 @@ pub fn embed(
     let solver = Observed { solver: solver.as_ref(), observer };
     let geodesic_seconds = start.elapsed().as_secs_f64();
     let mut run = Run { solver: &solver, options, first, observer, geodesic_seconds };
-    let Outcome { embedding, samples, descent } = outcome(&mut run)?;
+    let Outcome { embedding, samples, descent } = outcome(surface, &mut run)?;
     let elapsed = start.elapsed().as_secs_f64();
     seconds.geodesics = run.geodesic_seconds;
     seconds.embedding = elapsed - seconds.geodesics;
@@ -118,7 +119,7 @@ pub fn embed(
 }
 
 /// Runs the method: which distances it needs, and what it makes of them.
-fn outcome(run: &mut Run<'_>) -> Result<Outcome, PipelineError> {
+fn outcome(surface: &Surface, run: &mut Run<'_>) -> Result<Outcome, PipelineError> {
     let dim = run.options.dim;
     Ok(match run.options.method {
         EmbedMethod::Classical => {
@@ -129,6 +130,18 @@ fn outcome(run: &mut Run<'_>) -> Result<Outcome, PipelineError> {
             run.sampled(|distances| nystrom(distances, &NystromOptions { regularization, dim }))?.into()
         }
         EmbedMethod::Landmark => run.sampled(|distances| landmark_mds(distances, dim))?.into(),
+        EmbedMethod::Spectral { eigenvectors, mu } => {
+            let LaplaceSpectrum { values, vectors, masses, .. } =
+                LaplaceSpectrum::new(&surface.intrinsic, eigenvectors)?;
+            let basis = SpectralBasis { values: &values, vectors: &vectors, masses: &masses };
+            run.sampled(|distances| spectral(distances, &basis, &SpectralOptions { mu, dim }))?.into()
+        }
+        EmbedMethod::Fmds => {
+            let laplacian = Laplacian::new(&surface.intrinsic);
+            let (p, masses) = (laplacian.n_vertices(), laplacian.masses());
+            let stiffness = SparseSymmetric::from_entries(p, laplacian.stiffness_entries());
+            run.sampled(|distances| fmds(distances, &stiffness, &masses, dim))?.into()
+        }
         EmbedMethod::KernelPca { rank, bandwidth } => {
             run.sampled(|distances| kernel_pca(distances, &KernelPcaOptions { bandwidth, rank, dim }))?.into()
         }

@@ -1,7 +1,7 @@
 //! The options tree of an embedding.
 
 use geodesics::{FirstSample, Method, Sampling};
-use nmds::{Bandwidth, Regularization, SmacofOptions};
+use nmds::{Bandwidth, Regularization, SmacofOptions, SpectralOptions};
 
 /// How a surface is embedded.
 #[derive(Debug, Clone, PartialEq)]
@@ -65,6 +65,15 @@ pub enum EmbedMethod {
     Classical,
     /// Landmark MDS: classical scaling of the samples, the other vertices placed by their distances to them.
     Landmark,
+    /// Spectral multidimensional scaling: distances between samples, smooth in eigenfunctions of the surface.
+    Spectral {
+        /// Eigenfunctions of the Laplace-Beltrami operator. The paper's comparisons take 300.
+        eigenvectors: usize,
+        /// Weight of the distances against smoothness on a surface of unit area, positive, perhaps infinite.
+        mu: f64,
+    },
+    /// Fast multidimensional scaling: columns of distances, smooth on the surface beyond the samples.
+    Fmds,
     /// Kernel PCA with the Nystrom method, the paper's baseline.
     KernelPca {
         /// Eigenpairs of the sample kernel to keep. Default: half the samples.
@@ -94,6 +103,12 @@ impl EmbedMethod {
         Self::Nystrom { regularization: Regularization::LowRank { rank: Some(rank) } }
     }
 
+    /// Spectral scaling in 300 eigenfunctions, as in the paper, with the default weight of the distances.
+    #[must_use]
+    pub fn spectral() -> Self {
+        Self::Spectral { eigenvectors: 300, mu: SpectralOptions::default().mu }
+    }
+
     /// The name used on the command line and in records.
     #[must_use]
     pub fn name(&self) -> &'static str {
@@ -101,6 +116,8 @@ impl EmbedMethod {
             Self::Nystrom { .. } => "nmds",
             Self::Classical => "mds",
             Self::Landmark => "landmark",
+            Self::Spectral { .. } => "spectral",
+            Self::Fmds => "fmds",
             Self::KernelPca { .. } => "kpca",
             Self::Smacof { .. } => "smacof",
         }
@@ -111,7 +128,11 @@ impl EmbedMethod {
     pub fn regularization(&self) -> Option<Regularization> {
         match self {
             Self::Nystrom { regularization } | Self::Smacof { regularization, .. } => Some(*regularization),
-            Self::Classical | Self::Landmark | Self::KernelPca { .. } => None,
+            Self::Classical
+            | Self::Landmark
+            | Self::Spectral { .. }
+            | Self::Fmds
+            | Self::KernelPca { .. } => None,
         }
     }
 

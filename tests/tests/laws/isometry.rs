@@ -125,9 +125,6 @@ fn scaled_pairs(pairs: &DistanceMatrix, factor: f64) -> Vec<f64> {
 #[test]
 fn a_change_of_unit_changes_the_unit_alone() {
     let mesh = body(Family::Centaur);
-    let options = EmbedOptions::default();
-    let (form, stress) =
-        (form_pairs(&mesh, &options), embedded(&mesh, &options).report.stress.unwrap().value);
     let solver = marching().prepare(&IntrinsicMesh::from_mesh(&mesh)).unwrap();
     let distances = solver.distances(VertexId(5));
     for factor in [1e-3, 1e3] {
@@ -135,11 +132,20 @@ fn a_change_of_unit_changes_the_unit_alone() {
         let found = marching().prepare(&IntrinsicMesh::from_mesh(&scaled)).unwrap().distances(VertexId(5));
         let expected: Vec<f64> = distances.iter().map(|d| d * factor).collect();
         assert!(gap(&found, &expected) < 1e-12);
-        let form_gap = gap(form_pairs(&scaled, &options).as_slice(), &scaled_pairs(&form, factor));
-        let scaled_stress = embedded(&scaled, &options).report.stress.unwrap().value;
-        let stress_gap = (scaled_stress / (stress * factor * factor) - 1.0).abs();
-        println!("times {factor}: forms differ by {form_gap:.1e}, stresses by {stress_gap:.1e}");
-        assert!(form_gap < 1e-9 && stress_gap < 1e-9, "{form_gap:e} {stress_gap:e}");
+    }
+    for method in [EmbedMethod::default(), EmbedMethod::spectral(), EmbedMethod::Fmds] {
+        let options = EmbedOptions { method, ..EmbedOptions::default() };
+        let (form, stress) =
+            (form_pairs(&mesh, &options), embedded(&mesh, &options).report.stress.unwrap().value);
+        for factor in [1e-3, 1e3] {
+            let scaled = moved(&mesh, |p| p * factor);
+            let form_gap = gap(form_pairs(&scaled, &options).as_slice(), &scaled_pairs(&form, factor));
+            let scaled_stress = embedded(&scaled, &options).report.stress.unwrap().value;
+            let stress_gap = (scaled_stress / (stress * factor * factor) - 1.0).abs();
+            let name = options.method.name();
+            println!("{name} times {factor}: forms differ by {form_gap:.1e}, stresses by {stress_gap:.1e}");
+            assert!(form_gap < 1e-9 && stress_gap < 1e-9, "{name}: {form_gap:e} {stress_gap:e}");
+        }
     }
 }
 

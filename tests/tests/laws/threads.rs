@@ -35,6 +35,8 @@ fn an_embedding_does_not_depend_on_threads() {
         (EmbedMethod::default(), Samples::Count(100), StressChoice::Exact),
         (EmbedMethod::default(), Samples::Auto, StressChoice::Estimate),
         (EmbedMethod::Classical, Samples::Auto, StressChoice::Exact),
+        (EmbedMethod::spectral(), Samples::Auto, StressChoice::Estimate),
+        (EmbedMethod::Fmds, Samples::Count(20), StressChoice::Estimate),
     ] {
         let options = EmbedOptions { method, samples, stress, ..EmbedOptions::default() };
         let [one, two, five] = on_each_pool(|| facts(&embedded(&mesh, &options)));

@@ -44,6 +44,13 @@ pub(crate) struct EmbeddingArgs {
     /// Width of the kernel of kpca, in mesh units or as a statistic of the measured distances [default: mean]
     #[arg(long, value_name = "mean|median|max|WIDTH", value_parser = parse_bandwidth)]
     pub(crate) sigma: Option<Bandwidth>,
+    /// Eigenfunctions of the Laplace-Beltrami operator for spectral [default: 300]
+    #[arg(long, value_name = "M")]
+    pub(crate) eigenvectors: Option<usize>,
+    /// Weight of the distances against smoothness in spectral, for a surface of unit area; `inf` fits the
+    /// distances exactly [default: 1000]
+    #[arg(long, value_name = "MU")]
+    pub(crate) mu: Option<f64>,
     /// Steps of smacof at most [default: 300]
     #[arg(long, value_name = "N")]
     pub(crate) iterations: Option<usize>,
@@ -92,6 +99,8 @@ impl EmbeddingArgs {
                 MethodName::Nmds => EmbedMethod::Nystrom { regularization },
                 MethodName::Mds => EmbedMethod::Classical,
                 MethodName::Landmark => EmbedMethod::Landmark,
+                MethodName::Spectral => self.spectral(),
+                MethodName::Fmds => EmbedMethod::Fmds,
                 MethodName::Kpca => {
                     EmbedMethod::KernelPca { rank, bandwidth: self.sigma.unwrap_or_default() }
                 }
@@ -104,14 +113,27 @@ impl EmbeddingArgs {
         })
     }
 
+    fn spectral(&self) -> EmbedMethod {
+        match EmbedMethod::spectral() {
+            EmbedMethod::Spectral { eigenvectors, mu } => EmbedMethod::Spectral {
+                eigenvectors: self.eigenvectors.unwrap_or(eigenvectors),
+                mu: self.mu.unwrap_or(mu),
+            },
+            other => other,
+        }
+    }
+
     /// Refuses options that would have no effect.
     fn check(&self) -> Result<()> {
-        use MethodName::{Kpca, Landmark, Nmds, Smacof};
-        let of_method: [(&str, bool, &[MethodName]); 7] = [
+        use MethodName::{Fmds, Kpca, Landmark, Nmds, Smacof, Spectral};
+        let sampled: &[MethodName] = &[Nmds, Landmark, Spectral, Fmds, Kpca, Smacof];
+        let of_method: [(&str, bool, &[MethodName]); 9] = [
             ("--rank", self.rank.is_some(), &[Nmds, Kpca, Smacof]),
-            ("--sampling", self.sampling.is_some(), &[Nmds, Landmark, Kpca, Smacof]),
-            ("--first-sample", self.first_sample.is_some(), &[Nmds, Landmark, Kpca, Smacof]),
+            ("--sampling", self.sampling.is_some(), sampled),
+            ("--first-sample", self.first_sample.is_some(), sampled),
             ("--regularization", self.regularization.is_some(), &[Nmds, Smacof]),
+            ("--eigenvectors", self.eigenvectors.is_some(), &[Spectral]),
+            ("--mu", self.mu.is_some(), &[Spectral]),
             ("--sigma", self.sigma.is_some(), &[Kpca]),
             ("--iterations", self.iterations.is_some(), &[Smacof]),
             ("--tolerance", self.tolerance.is_some(), &[Smacof]),
@@ -180,6 +202,10 @@ pub(crate) enum MethodName {
     Mds,
     /// Landmark MDS: the samples embedded, the rest placed by its distances to them
     Landmark,
+    /// Spectral scaling: distances between samples, in eigenfunctions of the surface
+    Spectral,
+    /// Fast MDS: distances from samples, smooth on the surface in between
+    Fmds,
     /// Kernel PCA with the Nystrom method
     Kpca,
     /// SMACOF on all pairs, from the result of nmds

@@ -127,6 +127,17 @@ fn embed_knows_its_methods() {
     assert_eq!((&landmark["method"], &landmark["rank"]), (&"landmark".into(), &3.into()));
     assert!(landmark["regularization"].is_null() && stress(&landmark) >= optimum * (1.0 - 1e-12));
 
+    for (options, method) in [
+        ("--method spectral", "spectral"),
+        ("--method spectral --eigenvectors 60 --mu inf", "spectral"),
+        ("--method fmds", "fmds"),
+    ] {
+        let json = embed(options);
+        assert_eq!((&json["method"], &json["rank"]), (&method.into(), &30.into()));
+        let found = stress(&json);
+        assert!(found >= optimum * (1.0 - 1e-12) && found < 1.2 * optimum, "{options}: {found} {optimum}");
+    }
+
     let smacof = embed("--method smacof --rank 9 --iterations 4 --tolerance 0");
     assert_eq!((&smacof["method"], &smacof["rank"]), (&"smacof".into(), &9.into()));
     let descent = &smacof["descent"];

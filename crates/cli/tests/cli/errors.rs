@@ -113,6 +113,11 @@ fn options_that_do_not_apply_together_are_named_with_what_they_belong_to() {
         ("--sigma wide --method kpca", ["--sigma", "`wide`", "`median`"]),
         ("--sigma=-1 --method kpca", ["ring.off", "width -1", "positive"]),
         ("--tolerance nan --method smacof", ["ring.off", "tolerance NaN", "1e-6"]),
+        ("--mu 5", ["--mu has no effect", "--method nmds", "spectral"]),
+        ("--eigenvectors 50 --method fmds", ["--eigenvectors has no effect", "--method fmds", "spectral"]),
+        ("--mu=-1 --method spectral", ["ring.off", "mu = -1", "positive"]),
+        ("--eigenvectors 3 --method spectral", ["ring.off", "3 dimensions", "1 to 2"]),
+        ("--method fmds -n 2", ["ring.off", "3 dimensions", "1 to 2"]),
         ("--method landmark -n 3", ["ring.off", "3 dimensions", "1 to 2"]),
     ] {
         let options: Vec<&str> = options.split(' ').collect();

@@ -1,7 +1,5 @@
 //! The shifted and inverted operator whose largest eigenvalues are the smallest of the pencil.
 
-use rayon::prelude::*;
-
 use crate::{EliminationOrder, LinalgError, Matrix, SparseCholesky, SparseSymmetric};
 
 /// `C = (W + s M)^-1 s M` with diagonal `M`, on vectors whose rows are in the order of elimination.
@@ -79,32 +77,11 @@ impl ShiftInverse {
         sums.iter().sum::<f64>() + tail.sum::<f64>()
     }
 
-    /// The operator on each column; columns are solved for together and in parallel, and none depends on
-    /// the others.
+    /// The operator on each column.
     pub(super) fn apply(&self, columns: &Matrix) -> Matrix {
         let mut result = self.weighted(columns);
-        let n = self.n_rows();
-        if n == 0 {
-            return result;
-        }
-        // As few together as keep all threads busy, but no more than pay.
-        let lanes = columns.ncols().div_ceil(rayon::current_num_threads()).clamp(1, 4);
-        result.as_mut_slice().par_chunks_mut(lanes * n).for_each(|part| match part.len() / n {
-            1 => self.solve::<1>(part),
-            2 => self.solve::<2>(part),
-            3 => self.solve::<3>(part),
-            _ => self.solve::<4>(part),
-        });
+        self.factor.solve_ordered_columns(result.as_mut_slice());
         result
-    }
-
-    fn solve<const K: usize>(&self, columns: &mut [f64]) {
-        let n = self.n_rows();
-        let mut lanes: Vec<[f64; K]> = (0..n).map(|i| std::array::from_fn(|k| columns[k * n + i])).collect();
-        self.factor.solve_ordered(&mut lanes);
-        for (i, lane) in lanes.iter().enumerate() {
-            lane.iter().enumerate().for_each(|(k, value)| columns[k * n + i] = *value);
-        }
     }
 }
 

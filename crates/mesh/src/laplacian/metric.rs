@@ -21,10 +21,12 @@ pub struct Metric {
 }
 
 impl Metric {
+    /// Makes the lengths of a surface safe.
+    ///
     /// * A length beyond the way around one of its faces (no surface in space has any) is cut to it:
     ///   that is the distance between its ends.
-    /// * When a face is still flat, or flatter than [`SLACK`], all edges grow by what it lacks, at
-    ///   most about `SLACK` (intrinsic mollification, Sharp and Crane 2020).
+    /// * When two sides of a face exceed the third by less than 1e-6, all edges grow by what it lacks
+    ///   (intrinsic mollification, Sharp and Crane 2020).
     #[must_use]
     pub fn new(mesh: &IntrinsicMesh) -> Self {
         let all = || mesh.edge_lengths().iter().copied().chain(mesh.links().iter().map(|link| link.length));

@@ -1,6 +1,6 @@
 //! The Laplacian of a surface, from edge lengths alone.
 //!
-//! [`IntrinsicMesh`](crate::IntrinsicMesh) -> [`Metric`] -> Delaunay [`Element`]s -> [`Laplacian`] ->
+//! [`IntrinsicMesh`] -> [`Metric`] -> Delaunay [`Element`]s -> [`Laplacian`] ->
 //! `geodesics` (heat), `descriptors` (spectra), `pipeline` (spectral embeddings)
 //!
 //! Robust where the textbook formula is not: any lengths become triangles ([`Metric`]), boundaries,

@@ -34,6 +34,7 @@ impl Triangle {
         [base, (base - x).hypot(y), x.hypot(y)]
     }
 
+    /// Its area.
     #[must_use]
     pub fn area(self) -> f64 {
         0.5 * self.base * self.y
