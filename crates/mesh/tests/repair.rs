@@ -135,7 +135,11 @@ fn the_largest_component_is_the_one_of_the_largest_area() {
     assert_eq!(report.dropped_vertices.len(), fine_but_small.n_vertices());
     let share = fine_but_small.area() / both.area();
     assert!((report.dropped_area_share - share).abs() < 1e-12);
-    assert!(report.summary()[0].starts_with("1 of 2 components dropped, the largest kept: 1280 faces"));
+    let summary = report.summary().remove(0);
+    assert!(summary.starts_with("1 of 2 components dropped, 1280 faces and 642 vertices with "), "{summary}");
+    let speck = TriMesh { faces: coarse_but_large.faces[..1].to_vec(), ..coarse_but_large.clone() };
+    let summary = mend(&shapes::disjoint(&[shapes::icosphere(5), speck])).report.summary();
+    assert!(summary.iter().any(|line| line.contains("dropped, 1 face and 3 vertices with")), "{summary:?}");
     // Of equals the first.
     let twins = shapes::disjoint(&[shapes::cube(1), shifted(shapes::cube(1), [3.0, 0.0, 0.0])]);
     assert_eq!(mend(&twins).mesh.positions, shapes::cube(1).positions);

@@ -33,4 +33,5 @@ pub use geodesics::{
     DistanceSolver, FastMarchingOptions, FirstSample, HeatOptions, Method as GeodesicMethod, ObtuseTreatment,
     Sampling, Update, Variance,
 };
+pub use mesh::io::abandon_unfinished;
 pub use nmds::{Bandwidth, Regularization, RpiAlpha, SmacofOptions};

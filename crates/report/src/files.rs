@@ -1,30 +1,22 @@
-//! Writing files so that a reader finds the old one or the new one, never half of one.
+//! Writing files of this crate's.
 
 use std::fs;
-use std::io::Write;
 use std::path::Path;
+
+use mesh::MeshError;
 
 use crate::ReportError;
 
-/// Writes `bytes` to `path` by way of a neighbouring file that is renamed once complete. Missing
-/// folders are made.
+/// Writes `bytes` to `path`, whole or not at all. Missing folders are made.
 pub(crate) fn write_atomically(path: &Path, bytes: &[u8]) -> Result<(), ReportError> {
     let error = |source| ReportError::Write { path: path.to_path_buf(), source };
-    let folder = match path.parent() {
-        Some(folder) if !folder.as_os_str().is_empty() => folder,
-        _ => Path::new("."),
-    };
-    fs::create_dir_all(folder).map_err(error)?;
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".report-");
-    // Private by default, while a result is to be read by whoever may read the folder.
-    #[cfg(unix)]
-    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    let mut file = builder.tempfile_in(folder).map_err(error)?;
-    file.write_all(bytes).map_err(error)?;
-    file.as_file().sync_all().map_err(error)?;
-    file.persist(path).map_err(|e| error(e.error))?;
-    Ok(())
+    if let Some(folder) = path.parent() {
+        fs::create_dir_all(folder).map_err(error)?;
+    }
+    mesh::io::write_atomically(path, |out| out.write_all(bytes)).map_err(|fault| match fault {
+        MeshError::Io { source, .. } => error(source),
+        other => error(std::io::Error::other(other)),
+    })
 }
 
 #[cfg(test)]

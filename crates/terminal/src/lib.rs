@@ -1,4 +1,5 @@
-//! What the programs share towards the person at the terminal: progress, threads, exit codes.
+//! What the programs share towards the person at the terminal: progress, threads, interruption, exit
+//! codes.
 //!
 //! Knows nothing of arguments or results.
 
@@ -10,11 +11,24 @@ use anyhow::{Context, Result};
 
 pub use progress::Bars;
 
+/// Exit code of a program that was interrupted, as shells know it: 128 and the number of the signal.
+const INTERRUPTED: i32 = 130;
+
 /// Runs a program on `threads` worker threads (0 for all cores) and turns its result into an exit code:
 /// its own, or 2 with the error on standard error. That nobody reads the output any more is no error.
+///
+/// When it is interrupted (Ctrl-C) or terminated, nothing half-written is left behind.
 pub fn run(threads: usize, program: impl FnOnce() -> Result<ExitCode>) -> ExitCode {
+    let interruption = ctrlc::set_handler(|| {
+        pipeline::abandon_unfinished();
+        eprintln!("interrupted");
+        std::process::exit(INTERRUPTED);
+    });
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
-    match pool.context("cannot start the worker threads").and_then(|()| program()) {
+    let ready = interruption
+        .context("cannot prepare for interruption")
+        .and_then(|()| pool.context("cannot start the worker threads"));
+    match ready.and_then(|()| program()) {
         Ok(code) => code,
         Err(error) if is_closed_pipe(&error) => ExitCode::SUCCESS,
         Err(error) => {

@@ -29,6 +29,8 @@ use crate::error::{Fault, MeshError};
 use crate::face_set::check_input;
 use atomic::Pending;
 
+pub use atomic::abandon_unfinished;
+
 /// A mesh file format.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Format {
@@ -164,4 +166,16 @@ pub fn write_atomically(
     content: impl FnOnce(&mut dyn Write) -> io::Result<()>,
 ) -> Result<(), MeshError> {
     Pending::write(path, content)?.publish()
+}
+
+/// As [`write_atomically()`], for content that is not written from front to back: `content` may write
+/// anywhere in the file and read what it has written.
+///
+/// # Errors
+/// [`MeshError::Io`] names the file.
+pub fn fill_atomically(
+    path: &Path,
+    content: impl FnOnce(&mut fs::File) -> io::Result<()>,
+) -> Result<(), MeshError> {
+    Pending::fill(path, content)?.publish()
 }

@@ -63,11 +63,9 @@ impl RepairReport {
     pub fn summary(&self) -> Vec<String> {
         let mut lines = Vec::new();
         let mut say = |count: usize, one: &str, many: &str| {
-            match count {
-                0 => {}
-                1 => lines.push(format!("1 {one}")),
-                _ => lines.push(format!("{count} {many}")),
-            };
+            if count > 0 {
+                lines.push(counted(count, one, many));
+            }
         };
         say(
             self.degenerate_faces,
@@ -94,22 +92,27 @@ impl RepairReport {
         say(self.flipped_faces, "face turned over", "faces turned over");
         if self.dropped_components > 0 {
             lines.push(format!(
-                "{} of {} components dropped, the largest kept: {} faces, {} vertices, {:.2} % of the area",
+                "{} of {} components dropped, {} and {} with {:.2} % of the area; the largest is kept",
                 self.dropped_components,
                 self.components,
-                self.dropped_component_faces,
-                self.dropped_component_vertices,
+                counted(self.dropped_component_faces, "face", "faces"),
+                counted(self.dropped_component_vertices, "vertex", "vertices"),
                 100.0 * self.dropped_area_share
             ));
         }
         if !self.bridges.is_empty() {
             lines.push(format!(
-                "{} components joined by {} links of total length {:.6}",
+                "{} components joined by {} of total length {:.6}",
                 self.components,
-                self.bridges.len(),
+                counted(self.bridges.len(), "link", "links"),
                 self.bridge_length
             ));
         }
         lines
     }
+}
+
+/// "1 face" or "7 faces".
+fn counted(count: usize, one: &str, many: &str) -> String {
+    format!("{count} {}", if count == 1 { one } else { many })
 }
