@@ -1,6 +1,7 @@
 //! What leaves the program: JSON, tables and files.
 
-use std::io::Write;
+use std::fs::File;
+use std::io::{self, Write};
 use std::path::Path;
 
 use anyhow::{Result, bail};
@@ -42,6 +43,24 @@ pub(crate) fn write_npy<'a>(
             array.extend(row)?;
         }
         array.finish()
+    })?)
+}
+
+/// Writes a little-endian float64 NumPy array of this shape whose numbers `content` writes, in any
+/// order, from where the file stands.
+pub(crate) fn fill_npy(
+    path: &Path,
+    shape: [usize; 2],
+    content: impl FnOnce(&mut File) -> io::Result<()>,
+) -> Result<()> {
+    let mut header = Vec::new();
+    let shape = shape.map(|n| n as u64);
+    let array: npyz::NpyWriter<f64, _> =
+        npyz::WriteOptions::new().default_dtype().shape(&shape).writer(&mut header).begin_nd()?;
+    drop(array);
+    Ok(mesh::io::fill_atomically(path, |file| {
+        file.write_all(&header)?;
+        content(file)
     })?)
 }
 

@@ -57,6 +57,13 @@ pub enum MeshError {
         path: PathBuf,
     },
 
+    /// The format cannot hold lines.
+    #[error("{path}: lines are written as OBJ or PLY; end the name in .obj or .ply")]
+    LinesFormat {
+        /// The file.
+        path: PathBuf,
+    },
+
     /// A field with more or fewer values than vertices.
     #[error("{values} values for {n_vertices} vertices; give exactly one value per vertex")]
     FieldLength {

@@ -2,7 +2,9 @@
 
 use std::path::PathBuf;
 
-use mesh::VertexId;
+use mesh::{FaceId, VertexId};
+
+use crate::InputPoint;
 
 /// Errors of this crate and of every stage beneath it.
 #[derive(Debug, thiserror::Error)]
@@ -41,6 +43,71 @@ pub enum PipelineError {
     DroppedVertex {
         /// The vertex asked for.
         vertex: VertexId,
+    },
+    /// A face of the input that is not there.
+    #[error("face {face} does not exist; the mesh has {n_faces} faces, counted from 0")]
+    NoSuchFace {
+        /// The face asked for.
+        face: FaceId,
+        /// Faces of the input.
+        n_faces: usize,
+    },
+    /// A face of the input that the repair left out.
+    #[error(
+        "face {face} was left out by the repair (degenerate, or not in the largest component); choose another \
+         one, or pass --components bridge"
+    )]
+    DroppedFace {
+        /// The face asked for.
+        face: FaceId,
+    },
+    /// Two vertices of the input without an edge between them.
+    #[error("there is no edge between vertices {a} and {b}; take two vertices of one face", a = ends[0], b = ends[1])]
+    NoSuchEdge {
+        /// The vertices.
+        ends: [VertexId; 2],
+    },
+    /// An edge of the input that the repair left out.
+    #[error(
+        "the edge between vertices {a} and {b} was left out by the repair (it has no length); \
+         take one of its vertices",
+        a = ends[0],
+        b = ends[1]
+    )]
+    DroppedEdge {
+        /// Its vertices.
+        ends: [VertexId; 2],
+    },
+    /// Text that is no point of a mesh.
+    #[error(
+        "`{text}` is no point of a mesh; write 17 for a vertex, 17-42@0.3 for a point of an edge (here 0.3 of \
+         the way from 17 to 42), or f8@2:1:1 for a point of a face with these weights of its corners"
+    )]
+    BadPoint {
+        /// The text.
+        text: String,
+    },
+    /// A path to where no distance is known.
+    #[error(
+        "no way is known from a source to {target}: it lies beyond the limit of the distances; choose another \
+         target or raise --max-distance"
+    )]
+    NoWay {
+        /// The end of the path.
+        target: InputPoint,
+    },
+    /// Too little memory for distances between all pairs.
+    #[error(
+        "distances between all pairs of {n_vertices} vertices need at least {needed} bytes of memory at once, \
+         more than the {limit} allowed; raise --memory"
+    )]
+    MemoryTooSmall {
+        /// Vertices of the input.
+        n_vertices: usize,
+        /// The least that is needed, in bytes.
+        needed: usize,
+        /// The limit, in bytes.
+        limit: usize,
     },
     /// All pairs of distances would not fit.
     #[error(

@@ -5,6 +5,7 @@
 //! Everything a program needs to go from a mesh or a folder of meshes to forms, distances and scores.
 //! Knows nothing of terminals or plots; long work reports its progress to a callback.
 
+mod all_pairs;
 mod compare;
 mod dataset;
 mod embed;
@@ -12,11 +13,14 @@ mod error;
 mod forms;
 mod observer;
 mod options;
+mod paths;
+mod points;
 mod report;
 mod run;
 mod stress;
 mod surface;
 
+pub use all_pairs::{AllPairs, Asymmetry};
 pub use compare::{Comparison, MatchKind, compare_forms};
 pub use dataset::{LabelFile, ShapeFile, label_of, list_shapes};
 pub use embed::{Embedded, embed};
@@ -24,6 +28,8 @@ pub use error::PipelineError;
 pub use forms::{PreparedForms, embedded_distances, form_distances, map_of};
 pub use observer::Observer;
 pub use options::{EmbedMethod, EmbedOptions, Samples, StressChoice};
+pub use paths::{PathPoint, SurfacePath};
+pub use points::InputPoint;
 pub use report::{DescentReport, EmbedReport, SecondsReport};
 pub use stress::{StressKind, StressReport};
 pub use surface::Surface;
@@ -31,7 +37,7 @@ pub use surface::Surface;
 pub use descriptors::{FormDistance, MatchOptions, Normalization, Reflections};
 pub use geodesics::{
     DistanceSolver, FastMarchingOptions, FirstSample, HeatOptions, Method as GeodesicMethod, ObtuseTreatment,
-    Sampling, Update, Variance,
+    PathTracer, Sampling, Source, SurfacePoint, Update, Variance,
 };
 pub use mesh::io::abandon_unfinished;
 pub use nmds::{Bandwidth, Regularization, RpiAlpha, SmacofOptions};

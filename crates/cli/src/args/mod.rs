@@ -1,6 +1,7 @@
 //! The command line: a contract that other people's scripts rely on.
 
 mod embedding;
+mod geodesic;
 
 use std::path::PathBuf;
 
@@ -9,6 +10,7 @@ use mesh::{ComponentPolicy, Orient, RepairOptions, Weld};
 use pipeline::{FastMarchingOptions, GeodesicMethod, HeatOptions, ObtuseTreatment, StressChoice, Update};
 
 pub(crate) use embedding::EmbeddingArgs;
+pub(crate) use geodesic::GeodesicArgs;
 
 /// Nonrigid 3D shapes: surface distances, canonical forms, comparison.
 ///
@@ -44,7 +46,7 @@ pub(crate) struct Common {
 pub(crate) enum Command {
     /// Say what is in a mesh, what is broken and what would be repaired
     Info(InfoArgs),
-    /// Measure distances along the surface from one or more vertices
+    /// Measure distances and find shortest paths along the surface
     Geodesic(GeodesicArgs),
     /// Turn a mesh, or every mesh in a folder, into its canonical form
     Embed(EmbedArgs),
@@ -59,26 +61,6 @@ pub(crate) struct InfoArgs {
     /// Mesh files or folders of them
     #[arg(required = true, value_name = "MESH")]
     pub(crate) meshes: Vec<PathBuf>,
-    #[command(flatten)]
-    pub(crate) repair: RepairArgs,
-}
-
-#[derive(Debug, Args)]
-pub(crate) struct GeodesicArgs {
-    /// Mesh file
-    pub(crate) mesh: PathBuf,
-    /// Source vertices of the input, counted from 0; one row of distances each
-    #[arg(long, required = true, value_delimiter = ',', value_name = "V")]
-    pub(crate) source: Vec<u32>,
-    /// Where to write: .npy (sources x vertices, float64), .csv (one row a source) or .ply (one
-    /// coloured mesh a source)
-    #[arg(short, long, value_name = "OUT")]
-    pub(crate) output: PathBuf,
-    /// How distances are measured
-    #[arg(long, value_enum, default_value_t = GeodesicName::FastMarching)]
-    pub(crate) method: GeodesicName,
-    #[command(flatten)]
-    pub(crate) marching: MarchingArgs,
     #[command(flatten)]
     pub(crate) repair: RepairArgs,
 }

@@ -204,7 +204,23 @@ fn help_mentions_every_option() {
                      min-variance --first-sample --regularization low-rank rpi none cur --alpha paper --sigma \
                      median --iterations --tolerance --geodesic";
     let embedding: Vec<&str> = embedding.split_whitespace().collect();
-    let geodesic = ["--source", "--method", "--update", "-o", "fast-marching", "dijkstra", "bfs", "planar"];
+    let geodesic = [
+        "--source",
+        "--nearest",
+        "--max-distance",
+        "--path-to",
+        "--all-pairs",
+        "--memory",
+        "17-42@0.3",
+        "f8@2:1:1",
+        "--method",
+        "--update",
+        "-o",
+        "fast-marching",
+        "dijkstra",
+        "bfs",
+        "planar",
+    ];
     let pages: [(&str, Vec<&str>); 5] = [
         ("info", vec!["MESH"]),
         ("geodesic", geodesic.to_vec()),

@@ -1,7 +1,8 @@
 //! The program as its users see it: arguments in; files, output and exit codes out.
 //!
 //! `commands` (what each prints), `forms` (the files it writes), `errors` (what it refuses, and that
-//! nothing is left behind), `folders` (many meshes at once).
+//! nothing is left behind), `folders` (many meshes at once),
+//! `geodesic` (sources, paths, all pairs).
 
 #[cfg(test)]
 mod commands;
@@ -11,5 +12,7 @@ mod errors;
 mod folders;
 #[cfg(test)]
 mod forms;
+#[cfg(test)]
+mod geodesic;
 #[cfg(test)]
 mod support;

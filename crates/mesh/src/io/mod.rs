@@ -16,6 +16,7 @@ mod mutations;
 mod obj;
 mod off;
 mod ply;
+mod polyline;
 mod stl;
 mod text;
 mod tosca;
@@ -24,9 +25,11 @@ use std::fs;
 use std::io::{self, Write};
 use std::path::Path;
 
-use crate::TriMesh;
+use nalgebra::Point3;
+
 use crate::error::{Fault, MeshError};
 use crate::face_set::check_input;
+use crate::{TriMesh, VertexId};
 use atomic::Pending;
 
 pub use atomic::abandon_unfinished;
@@ -154,6 +157,22 @@ pub fn write_scalar_field(path: &Path, mesh: &TriMesh, values: &[f64], name: &st
     check_input(mesh)?;
     let color = colormap::colors(values);
     write_atomically(path, |out| ply::write_with_field(out, mesh, name, |v| (values[v], color(values[v]))))
+}
+
+/// Writes lines through points in space as OBJ or PLY (an element `edge` from point to point).
+///
+/// # Errors
+/// When the file cannot be written, the extension is another, or a coordinate is not finite.
+pub fn write_polylines(path: &Path, lines: &[Vec<Point3<f64>>]) -> Result<(), MeshError> {
+    let is_finite = |p: &Point3<f64>| p.iter().all(|x| x.is_finite());
+    if let Some(vertex) = lines.iter().flatten().position(|p| !is_finite(p)) {
+        return Err(MeshError::NonFinitePosition { vertex: VertexId::from(vertex) });
+    }
+    match Format::of(path)? {
+        Format::Obj => write_atomically(path, |out| polyline::write_obj(out, lines)),
+        Format::Ply => write_atomically(path, |out| polyline::write_ply(out, lines)),
+        _ => Err(MeshError::LinesFormat { path: path.to_path_buf() }),
+    }
 }
 
 /// Writes a file of any kind so that it is there whole or not at all: into a neighbouring temporary

@@ -1,0 +1,109 @@
+//! What `canonform geodesic` is asked for.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use pipeline::InputPoint;
+
+use super::{GeodesicName, MarchingArgs, RepairArgs};
+
+/// What a point of a mesh looks like.
+const POINTS: &str = "\
+Points are written in the numbers of the input file, counted from 0:
+  17          vertex 17
+  17-42@0.3   the point of the edge from vertex 17 to vertex 42, 0.3 of the way
+  f8@2:1:1    the point of face 8 with these weights of its corners, in the order of the file
+Without `@` the middle of the edge or of the face is meant.
+
+Distances are infinite (inf) at vertices that the repair left out and beyond --max-distance.
+
+Examples:
+  canonform geodesic cat.off --source 0,17 -o rows.npy
+  canonform geodesic cat.off --source 0,f8 --nearest --max-distance 5 -o near.ply
+  canonform geodesic cat.off --source 0 --path-to 17,42 --method exact -o paths.obj
+  canonform geodesic cat.off --all-pairs --memory 2G -o pairs.npy";
+
+#[derive(Debug, Args)]
+#[command(after_long_help = POINTS, after_help = "`--help` says how points are written, with examples.")]
+pub(crate) struct GeodesicArgs {
+    /// Mesh file
+    pub(crate) mesh: PathBuf,
+    /// Where distances start: vertices, or points of edges and faces; one row of distances each
+    #[arg(
+        long,
+        required_unless_present = "all_pairs",
+        value_delimiter = ',',
+        value_name = "POINT[,POINT...]"
+    )]
+    pub(crate) source: Vec<InputPoint>,
+    /// Where to write. Distances: .npy (sources x vertices, float64), .csv (one row a source) or .ply
+    /// (one coloured mesh a source). Paths: .obj or .ply (lines), .csv or .json. All pairs: .npy
+    #[arg(short, long, value_name = "OUT")]
+    pub(crate) output: PathBuf,
+    /// Measure to the nearest source: one row in all
+    #[arg(long)]
+    pub(crate) nearest: bool,
+    /// Measure no farther than this, in mesh units; what is beyond is inf
+    #[arg(long, value_name = "D", value_parser = parse_distance)]
+    pub(crate) max_distance: Option<f64>,
+    /// Write the shortest paths to these points instead of distances: from every source, or from the
+    /// nearest with --nearest. They are the shortest of all with --method exact
+    #[arg(long, value_delimiter = ',', value_name = "POINT[,POINT...]")]
+    pub(crate) path_to: Vec<InputPoint>,
+    /// Write the distances between all pairs of vertices (vertices x vertices, symmetric: the average
+    /// of both directions), a block of rows at a time
+    #[arg(long, conflicts_with_all = ["source", "nearest", "max_distance", "path_to"])]
+    pub(crate) all_pairs: bool,
+    /// Memory for the distances held at once by --all-pairs, in bytes or with K, M, G or T [default: 1G]
+    #[arg(long, value_name = "BYTES", value_parser = parse_bytes, conflicts_with = "source")]
+    pub(crate) memory: Option<usize>,
+    /// How distances are measured
+    #[arg(long, value_enum, default_value_t = GeodesicName::FastMarching)]
+    pub(crate) method: GeodesicName,
+    #[command(flatten)]
+    pub(crate) marching: MarchingArgs,
+    #[command(flatten)]
+    pub(crate) repair: RepairArgs,
+}
+
+fn parse_distance(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(distance) if distance >= 0.0 => Ok(distance),
+        _ => Err(format!("`{text}` is no distance; give a number of mesh units, not negative")),
+    }
+}
+
+/// Bytes, in multiples of 1024 with a letter.
+fn parse_bytes(text: &str) -> Result<usize, String> {
+    let wrong = || format!("`{text}` is no amount of memory; write for example 800M or 2G");
+    let (number, unit) = match text.find(|c: char| !c.is_ascii_digit()) {
+        Some(end) => text.split_at(end),
+        None => (text, ""),
+    };
+    let power = match unit.to_ascii_uppercase().trim_end_matches("IB").trim_end_matches('B') {
+        "" => 0,
+        "K" => 1,
+        "M" => 2,
+        "G" => 3,
+        "T" => 4,
+        _ => return Err(wrong()),
+    };
+    let number: usize = number.parse().map_err(|_| wrong())?;
+    number.checked_mul(1 << (10 * power)).ok_or_else(wrong)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn memory_is_read_with_and_without_units() {
+        for (text, bytes) in [("0", 0), ("4096", 4096), ("3k", 3 << 10), ("2M", 2 << 20), ("1G", 1 << 30)] {
+            assert_eq!(parse_bytes(text), Ok(bytes));
+        }
+        assert_eq!(parse_bytes("7GB"), parse_bytes("7GiB"));
+        for text in ["", "G", "-1", "1.5G", "1X", "9999999999999999T"] {
+            assert!(parse_bytes(text).is_err(), "{text}");
+        }
+    }
+}

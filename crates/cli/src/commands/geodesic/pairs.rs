@@ -1,0 +1,84 @@
+//! Distances between all pairs of vertices.
+
+use std::path::PathBuf;
+use std::time::Instant;
+
+use anyhow::Result;
+use mesh::{RepairReport, VertexId};
+use pipeline::{AllPairs, Asymmetry};
+use serde::Serialize;
+use terminal::Bars;
+
+use super::super::named;
+use super::Task;
+use crate::output::{facts, fill_npy, print, print_json};
+
+/// Memory for distances, in bytes.
+const DEFAULT_MEMORY: usize = 1 << 30;
+
+#[derive(Serialize)]
+struct PairsJson {
+    method: &'static str,
+    n_vertices: usize,
+    output: PathBuf,
+    /// How much the directions differ that were averaged.
+    asymmetry: Asymmetry,
+    seconds: Seconds,
+    /// Input vertices without a way to any other.
+    unreached: Vec<VertexId>,
+    repair: RepairReport,
+}
+
+#[derive(Serialize)]
+struct Seconds {
+    load: f64,
+    setup: f64,
+    /// All sources, on all threads, and the file.
+    all_pairs: f64,
+}
+
+/// Measures and writes all pairs and says what they are.
+pub(super) fn write(task: &Task) -> Result<()> {
+    let Task { args, surface, .. } = task;
+    let memory = args.memory.unwrap_or(DEFAULT_MEMORY);
+    let pairs = AllPairs::new(surface, task.solver, memory).map_err(|fault| named(&args.mesh, fault))?;
+    let bars = Bars::new(task.common.quiet);
+    let start = Instant::now();
+    let mut asymmetry = Asymmetry::default();
+    fill_npy(&args.output, [pairs.n_vertices(); 2], |file| {
+        asymmetry = pairs.write(file, &bars)?;
+        Ok(())
+    })?;
+    bars.finish();
+    let json = PairsJson {
+        method: args.method.method(args.marching).name(),
+        n_vertices: pairs.n_vertices(),
+        output: args.output.clone(),
+        asymmetry,
+        seconds: Seconds {
+            load: surface.load_seconds,
+            setup: task.setup,
+            all_pairs: start.elapsed().as_secs_f64(),
+        },
+        unreached: surface.repaired.report.dropped_vertices.clone(),
+        repair: surface.repaired.report.clone(),
+    };
+    if task.common.json { print_json(&json) } else { print(&table(&json)) }
+}
+
+fn table(json: &PairsJson) -> String {
+    let percent = |share: f64| format!("{:.3} %", 100.0 * share);
+    let Asymmetry { mean, largest } = json.asymmetry;
+    let mut lines = vec![
+        ("method", json.method.to_owned()),
+        ("vertices", json.n_vertices.to_string()),
+        ("setup", format!("{:.1} ms", 1e3 * json.seconds.setup)),
+        ("all pairs", format!("{:.1} s", json.seconds.all_pairs)),
+        ("asymmetry", format!("{} on average, {} at most; averaged out", percent(mean), percent(largest))),
+    ];
+    if !json.unreached.is_empty() {
+        lines.push(("unreached", format!("{} vertices, written as inf", json.unreached.len())));
+    }
+    lines.push(("wrote", json.output.display().to_string()));
+    facts(&lines)
+}

@@ -1,0 +1,163 @@
+//! Shortest paths from sources to targets.
+
+use std::io::{self, Write};
+use std::path::PathBuf;
+use std::time::Instant;
+
+use anyhow::Result;
+use mesh::RepairReport;
+use pipeline::{InputPoint, PathTracer, Source, Surface, SurfacePath};
+use serde::Serialize;
+
+use super::super::named;
+use super::{Row, Seconds, Task, spelled};
+use crate::output::{facts, print, print_json};
+
+#[derive(Serialize)]
+struct PathsJson {
+    method: &'static str,
+    n_vertices: usize,
+    sources: Vec<InputPoint>,
+    targets: Vec<InputPoint>,
+    outputs: Vec<PathBuf>,
+    paths: Vec<PathFacts>,
+    seconds: Seconds,
+    /// All paths, on one thread.
+    path_seconds: f64,
+    repair: RepairReport,
+}
+
+#[derive(Serialize)]
+struct PathFacts {
+    /// Where it starts: the nearest of several sources.
+    source: InputPoint,
+    target: InputPoint,
+    length: f64,
+    /// What the method says of a target that is a vertex.
+    distance: Option<f64>,
+    n_points: usize,
+}
+
+/// Finds paths, writes them and says what they are.
+pub(super) fn write(task: &Task) -> Result<()> {
+    let Task { args, surface, .. } = task;
+    let fault = |fault| named(&args.mesh, fault);
+    // Before any work is done for nothing.
+    let targets: Result<Vec<_>, _> = args.path_to.iter().map(|point| surface.locate(point)).collect();
+    let targets = targets.map_err(fault)?;
+    let (rows, seconds) = task.solve()?;
+    let start = Instant::now();
+    let (mut paths, mut facts) = (Vec::new(), Vec::new());
+    for row in &rows {
+        let tracer = PathTracer::new(&surface.intrinsic, &row.sources, &row.distances);
+        for (target, at) in args.path_to.iter().zip(&targets) {
+            let mut path = surface.path(&tracer, *at).map_err(fault)?;
+            // Its ends as the user wrote them.
+            let source = source_of(&path, row, surface).unwrap_or(*target);
+            let n = path.points.len();
+            path.points[0].at = source;
+            path.points[n - 1].at = *target;
+            let distance = match target {
+                InputPoint::Vertex(v) => {
+                    Some(row.distances[surface.repaired_vertex(*v).map_err(fault)?.index()])
+                }
+                _ => None,
+            };
+            let (length, n_points) = (path.length, path.points.len());
+            facts.push(PathFacts { source, target: *target, length, distance, n_points });
+            paths.push(path);
+        }
+    }
+    let path_seconds = start.elapsed().as_secs_f64();
+    write_paths(task, &paths, &facts)?;
+    let json = PathsJson {
+        method: args.method.method(args.marching).name(),
+        n_vertices: surface.n_input_vertices(),
+        sources: args.source.clone(),
+        targets: args.path_to.clone(),
+        outputs: vec![args.output.clone()],
+        paths: facts,
+        seconds,
+        path_seconds,
+        repair: surface.repaired.report.clone(),
+    };
+    if task.common.json { print_json(&json) } else { print(&table(&json)) }
+}
+
+/// Which of the sources a path comes from.
+fn source_of(path: &SurfacePath, row: &Row, surface: &Surface) -> Option<InputPoint> {
+    let start = path.points.first()?.position;
+    let away = |source: &Source| (surface.position(source.point()) - start).norm();
+    let all = row.from.iter().zip(&row.sources);
+    all.min_by(|(_, a), (_, b)| away(a).total_cmp(&away(b))).map(|(from, _)| *from)
+}
+
+fn table(json: &PathsJson) -> String {
+    let mut lines = vec![
+        ("method", json.method.to_owned()),
+        ("vertices", json.n_vertices.to_string()),
+        ("setup", format!("{:.1} ms", 1e3 * json.seconds.setup)),
+        ("distances", format!("{:.2} ms", 1e3 * json.seconds.per_source.iter().sum::<f64>())),
+        ("paths", format!("{:.2} ms", 1e3 * json.path_seconds)),
+    ];
+    for path in &json.paths {
+        let ends = format!("{} to {}", spelled(&[path.source]), spelled(&[path.target]));
+        lines.push(("path", format!("{ends}: length {:.6}, {} points", path.length, path.n_points)));
+    }
+    lines.extend(json.outputs.iter().map(|path| ("wrote", path.display().to_string())));
+    facts(&lines)
+}
+
+fn write_paths(task: &Task, paths: &[SurfacePath], facts: &[PathFacts]) -> Result<()> {
+    let output = &task.args.output;
+    match task.format {
+        "csv" => mesh::io::write_atomically(output, |out| write_csv(out, paths))?,
+        "json" => mesh::io::write_atomically(output, |out| write_json(out, paths, facts))?,
+        _ => {
+            let lines: Vec<Vec<_>> =
+                paths.iter().map(|path| path.points.iter().map(|point| point.position).collect()).collect();
+            mesh::io::write_polylines(output, &lines)?;
+        }
+    }
+    Ok(())
+}
+
+/// A line a point.
+fn write_csv(out: &mut dyn Write, paths: &[SurfacePath]) -> io::Result<()> {
+    writeln!(out, "path,x,y,z,distance,at")?;
+    for (i, path) in paths.iter().enumerate() {
+        for point in &path.points {
+            let [x, y, z] = point.position.into();
+            writeln!(out, "{i},{x},{y},{z},{},{}", point.distance, point.at)?;
+        }
+    }
+    Ok(())
+}
+
+/// One object: the facts of each path and its points.
+fn write_json(out: &mut dyn Write, paths: &[SurfacePath], facts: &[PathFacts]) -> io::Result<()> {
+    #[derive(Serialize)]
+    struct Point {
+        at: InputPoint,
+        position: [f64; 3],
+        distance: f64,
+    }
+    #[derive(Serialize)]
+    struct Path<'a> {
+        #[serde(flatten)]
+        facts: &'a PathFacts,
+        points: Vec<Point>,
+    }
+    #[derive(Serialize)]
+    struct File<'a> {
+        paths: Vec<Path<'a>>,
+    }
+    let points = |path: &SurfacePath| {
+        let point =
+            |p: &pipeline::PathPoint| Point { at: p.at, position: p.position.into(), distance: p.distance };
+        path.points.iter().map(point).collect()
+    };
+    let paths = paths.iter().zip(facts).map(|(path, facts)| Path { facts, points: points(path) }).collect();
+    serde_json::to_writer(&mut *out, &File { paths })?;
+    writeln!(out)
+}

@@ -1,0 +1,113 @@
+//! Distances from sources: a row, or a coloured mesh, each.
+
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result};
+use mesh::RepairReport;
+use pipeline::InputPoint;
+use serde::Serialize;
+
+use super::{Row, Seconds, Task, spelled};
+use crate::output::{facts, print, print_json, write_csv, write_npy};
+
+#[derive(Serialize)]
+struct RowsJson {
+    method: &'static str,
+    n_vertices: usize,
+    sources: Vec<InputPoint>,
+    outputs: Vec<PathBuf>,
+    /// Largest distance in each row, over the vertices reached.
+    farthest: Vec<f64>,
+    seconds: Seconds,
+    /// Input vertices without a way from the sources.
+    unreached: Vec<u32>,
+    max_distance: Option<f64>,
+    /// Vertices farther than that from each row's source.
+    beyond: Vec<usize>,
+    repair: RepairReport,
+}
+
+/// Measures distances, writes them and says what they are.
+pub(super) fn write(task: &Task) -> Result<()> {
+    let Task { args, surface, .. } = task;
+    let (solved, seconds) = task.solve()?;
+    let rows: Vec<Vec<f64>> =
+        solved.iter().map(|row| surface.in_input_order(&row.distances, f64::INFINITY)).collect();
+    let outputs = write_rows(task, &solved, &rows)?;
+    let is_infinite = |v: &u32| rows.iter().any(|row| !row[*v as usize].is_finite());
+    // A repaired surface is one component: with a limit, what is not reached is beyond it.
+    let unreached = if args.max_distance.is_some() {
+        surface.repaired.report.dropped_vertices.iter().map(|v| v.0).collect()
+    } else {
+        (0..surface.n_input_vertices() as u32).filter(is_infinite).collect()
+    };
+    let infinite = |row: &Vec<f64>| row.iter().filter(|d| d.is_infinite()).count();
+    let finite = |row: &Vec<f64>| row.iter().copied().filter(|d| d.is_finite()).fold(0.0, f64::max);
+    let dropped = surface.repaired.report.dropped_vertices.len();
+    let json = RowsJson {
+        method: args.method.method(args.marching).name(),
+        n_vertices: surface.n_input_vertices(),
+        sources: args.source.clone(),
+        outputs,
+        farthest: rows.iter().map(finite).collect(),
+        seconds,
+        unreached,
+        max_distance: args.max_distance,
+        beyond: match args.max_distance {
+            Some(_) => rows.iter().map(|row| infinite(row) - dropped).collect(),
+            None => vec![0; rows.len()],
+        },
+        repair: surface.repaired.report.clone(),
+    };
+    if task.common.json { print_json(&json) } else { print(&table(&json, &solved)) }
+}
+
+fn table(json: &RowsJson, rows: &[Row]) -> String {
+    let mut lines = vec![
+        ("method", json.method.to_owned()),
+        ("vertices", json.n_vertices.to_string()),
+        ("setup", format!("{:.1} ms", 1e3 * json.seconds.setup)),
+    ];
+    for (i, row) in rows.iter().enumerate() {
+        let [farthest, ms] = [json.farthest[i], 1e3 * json.seconds.per_source[i]];
+        let beyond = match (json.max_distance, json.beyond[i]) {
+            (Some(limit), 1..) => format!(", {} vertices beyond {limit} written as inf", json.beyond[i]),
+            _ => String::new(),
+        };
+        let name = if row.from.len() == 1 { "source" } else { "nearest of" };
+        lines.push((name, format!("{}: farthest {farthest:.6}, {ms:.2} ms{beyond}", spelled(&row.from))));
+    }
+    if !json.unreached.is_empty() {
+        lines.push(("unreached", format!("{} vertices, written as inf", json.unreached.len())));
+    }
+    lines.extend(json.outputs.iter().map(|path| ("wrote", path.display().to_string())));
+    facts(&lines)
+}
+
+/// Writes the distances, in the input's order of vertices, and returns the files.
+fn write_rows(task: &Task, solved: &[Row], rows: &[Vec<f64>]) -> Result<Vec<PathBuf>> {
+    let (output, slices) = (&task.args.output, rows.iter().map(Vec::as_slice));
+    match task.format {
+        "npy" => write_npy(output, task.surface.n_input_vertices(), slices)?,
+        "csv" => write_csv(output, slices)?,
+        _ => {
+            let mesh = mesh::io::read(&task.args.mesh)?;
+            let mut outputs = Vec::new();
+            for (row, distances) in solved.iter().zip(rows) {
+                let path = if rows.len() == 1 { output.clone() } else { numbered(output, &row.from) };
+                mesh::io::write_scalar_field(&path, &mesh, distances, "distance")
+                    .with_context(|| format!("source {}", spelled(&row.from)))?;
+                outputs.push(path);
+            }
+            return Ok(outputs);
+        }
+    }
+    Ok(vec![output.clone()])
+}
+
+/// `out.ply` for source 7 of several: `out-7.ply`.
+fn numbered(output: &Path, from: &[InputPoint]) -> PathBuf {
+    let stem = output.file_stem().unwrap_or_default().to_string_lossy();
+    // Not every system takes a colon in a file's name.
+    output.with_file_name(format!("{stem}-{}.ply", spelled(from).replace(':', "_")))
+}

@@ -1,0 +1,255 @@
+//! Distances between all pairs of vertices, more than fit into memory.
+
+use std::io::{self, Read, Seek, SeekFrom, Write};
+
+use geodesics::DistanceSolver;
+use linalg::Matrix;
+use mesh::VertexId;
+use serde::Serialize;
+
+use crate::{Observer, PipelineError, Surface};
+
+/// How much the two directions of a pair differ, which the average of both hides.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
+pub struct Asymmetry {
+    /// Mean of `|d(a, b) - d(b, a)|` as a share of the larger one, over all pairs of different places.
+    pub mean: f64,
+    /// The largest.
+    pub largest: f64,
+}
+
+/// The distances between all pairs of input vertices, computed a block of rows at a time.
+#[derive(Debug)]
+pub struct AllPairs<'a> {
+    surface: &'a Surface,
+    solver: &'a dyn DistanceSolver,
+    /// Rows in a block, and sources solved at a time.
+    block: usize,
+    batch: usize,
+}
+
+/// Sources that are solved at a time, at most.
+const BATCH: usize = 64;
+
+/// Columns of a block that are averaged at a time: some cache lines of each row.
+const STRIPE: usize = 64;
+
+const BYTES: usize = size_of::<f64>();
+
+impl<'a> AllPairs<'a> {
+    /// Plans the work so that no more than `memory` bytes of distances are held at once. A solver
+    /// needs some more for itself.
+    ///
+    /// # Errors
+    /// [`PipelineError::MemoryTooSmall`] for less than two rows.
+    pub fn new(
+        surface: &'a Surface,
+        solver: &'a dyn DistanceSolver,
+        memory: usize,
+    ) -> Result<Self, PipelineError> {
+        let n_vertices = surface.n_input_vertices();
+        let rows = memory / (BYTES * n_vertices.max(1));
+        if rows < 2 {
+            let needed = 2 * BYTES * n_vertices;
+            return Err(PipelineError::MemoryTooSmall { n_vertices, needed, limit: memory });
+        }
+        let batch = (rows / 4).clamp(1, BATCH);
+        Ok(Self { surface, solver, block: (rows - batch).min(n_vertices), batch })
+    }
+
+    /// Number of input vertices, and so of rows and of columns.
+    #[must_use]
+    pub fn n_vertices(&self) -> usize {
+        self.surface.n_input_vertices()
+    }
+
+    /// Writes the matrix to `out` from where it stands, row by row as little-endian float64; infinite
+    /// for vertices that the repair left out.
+    ///
+    /// An entry is the average of both directions, which are solved far apart: a block of rows is
+    /// written as it was solved, and when a later block has the other direction, that part is read back
+    /// and both halves are written. So every distance is solved once, a quarter of the file is read,
+    /// and half of it is written twice. The result depends neither on `memory` nor on the number of
+    /// threads.
+    ///
+    /// # Errors
+    /// Those of `out`.
+    pub fn write(
+        &self,
+        out: &mut (impl Read + Write + Seek),
+        observer: &dyn Observer,
+    ) -> io::Result<Asymmetry> {
+        let p = self.n_vertices();
+        let origin = out.stream_position()?;
+        let at = |row: usize, column: usize| SeekFrom::Start(origin + ((row * p + column) * BYTES) as u64);
+        let mut tally = Tally::default();
+        let mut block = vec![0.0; self.block * p];
+        let mut bytes = vec![0; self.block * STRIPE * BYTES];
+        observer.begin("all pairs", p);
+        for first in (0..p).step_by(self.block.max(1)) {
+            let n = self.block.min(p - first);
+            let rows = &mut block[..n * p];
+            self.solve(first, rows, observer);
+            // The stripes before the block were written by earlier ones.
+            for left in (0..first).step_by(STRIPE) {
+                let width = STRIPE.min(first - left);
+                let stripe = &mut bytes[..width * n * BYTES];
+                for (i, column) in stripe.chunks_exact_mut(n * BYTES).enumerate() {
+                    out.seek(at(left + i, first))?;
+                    out.read_exact(column)?;
+                }
+                for (i, row) in rows.chunks_exact_mut(p).enumerate() {
+                    for (j, there) in row[left..left + width].iter_mut().enumerate() {
+                        let back = &mut stripe[(j * n + i) * BYTES..][..BYTES];
+                        *there = tally.average(*there, f64::from_le_bytes(copied(back)));
+                        back.copy_from_slice(&there.to_le_bytes());
+                    }
+                }
+                for (i, column) in stripe.chunks_exact(n * BYTES).enumerate() {
+                    out.seek(at(left + i, first))?;
+                    out.write_all(column)?;
+                }
+            }
+            for i in 0..n {
+                for j in 0..i {
+                    let average = tally.average(rows[i * p + first + j], rows[j * p + first + i]);
+                    rows[i * p + first + j] = average;
+                    rows[j * p + first + i] = average;
+                }
+            }
+            out.seek(at(first, 0))?;
+            for part in rows.chunks(bytes.len() / BYTES) {
+                for (number, place) in part.iter().zip(bytes.chunks_exact_mut(BYTES)) {
+                    place.copy_from_slice(&number.to_le_bytes());
+                }
+                out.write_all(&bytes[..part.len() * BYTES])?;
+            }
+        }
+        Ok(tally.asymmetry())
+    }
+
+    /// Solves the rows of input vertices from `first` on.
+    fn solve(&self, first: usize, rows: &mut [f64], observer: &dyn Observer) {
+        let p = self.n_vertices();
+        let to_repaired = &self.surface.repaired.input_to_repaired;
+        for (i, rows) in rows.chunks_mut(self.batch * p).enumerate() {
+            let start = first + i * self.batch;
+            let wanted = &to_repaired[start..start + rows.len() / p];
+            let mut sources: Vec<VertexId> = wanted.iter().flatten().copied().collect();
+            sources.sort_unstable();
+            sources.dedup();
+            let columns: Matrix = self.solver.distance_columns(&sources);
+            for (row, source) in rows.chunks_exact_mut(p).zip(wanted) {
+                let column = source.and_then(|source| sources.binary_search(&source).ok());
+                let column = column.map(|column| columns.column(column));
+                for (distance, vertex) in row.iter_mut().zip(to_repaired) {
+                    *distance = match (&column, vertex) {
+                        (Some(column), Some(vertex)) => column[vertex.index()],
+                        _ => f64::INFINITY,
+                    };
+                }
+                observer.step();
+            }
+        }
+    }
+}
+
+fn copied(bytes: &[u8]) -> [u8; BYTES] {
+    std::array::from_fn(|i| bytes[i])
+}
+
+/// What is known of the asymmetry so far.
+#[derive(Debug, Default)]
+struct Tally {
+    sum: f64,
+    largest: f64,
+    count: u64,
+}
+
+impl Tally {
+    fn average(&mut self, there: f64, back: f64) -> f64 {
+        let longer = there.max(back);
+        if longer > 0.0 && longer < f64::INFINITY {
+            let share = (there - back).abs() / longer;
+            self.sum += share;
+            self.largest = self.largest.max(share);
+            self.count += 1;
+        }
+        0.5 * (there + back)
+    }
+
+    fn asymmetry(&self) -> Asymmetry {
+        Asymmetry { mean: self.sum / self.count.max(1) as f64, largest: self.largest }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::io::Cursor;
+
+    use geodesics::Method;
+    use mesh::{RepairOptions, TriMesh, shapes};
+
+    use super::*;
+
+    fn surface(mesh: &TriMesh) -> Surface {
+        Surface::new(mesh, &RepairOptions::default()).unwrap()
+    }
+
+    /// The matrix written with so many rows of memory, after some bytes of a header.
+    fn written(surface: &Surface, rows: usize) -> (Vec<f64>, Asymmetry) {
+        let solver = Method::default().prepare(&surface.intrinsic).unwrap();
+        let memory = rows * surface.n_input_vertices() * BYTES;
+        let mut out = Cursor::new(b"header".to_vec());
+        out.set_position(6);
+        let pairs = AllPairs::new(surface, solver.as_ref(), memory).unwrap();
+        let asymmetry = pairs.write(&mut out, &()).unwrap();
+        let bytes = out.into_inner();
+        assert_eq!(&bytes[..6], b"header");
+        (bytes[6..].chunks_exact(BYTES).map(|b| f64::from_le_bytes(copied(b))).collect(), asymmetry)
+    }
+
+    #[test]
+    fn the_matrix_is_the_average_of_both_directions_whatever_the_memory() {
+        let surface = surface(&shapes::jittered_grid(13, 11, 1.0, 0.2, 4));
+        let p = surface.n_input_vertices();
+        let solver = Method::default().prepare(&surface.intrinsic).unwrap();
+        let all: Vec<VertexId> = (0..p).map(VertexId::from).collect();
+        let columns = solver.distance_columns(&all);
+        let expected: Vec<f64> =
+            (0..p * p).map(|k| 0.5 * (columns[(k / p, k % p)] + columns[(k % p, k / p)])).collect();
+        for rows in [2, 3, 5, 17, 100, p, 10 * p] {
+            let (found, asymmetry) = written(&surface, rows);
+            assert_eq!(found, expected, "{rows} rows");
+            assert!(asymmetry.mean <= asymmetry.largest && asymmetry.largest < 1e-3);
+        }
+    }
+
+    #[test]
+    fn merged_vertices_are_in_one_place_and_dropped_ones_are_nowhere() {
+        let mut mesh = shapes::disjoint(&[shapes::icosphere(2), shapes::cube(0)]);
+        // A crack: a vertex of the sphere is doubled, in some of its faces.
+        let twin = VertexId::from(mesh.n_vertices());
+        mesh.positions.push(mesh.positions[0]);
+        let faces = mesh.faces.iter_mut().filter(|f| f.contains(&VertexId(0)));
+        faces.take(2).flatten().filter(|v| **v == VertexId(0)).for_each(|v| *v = twin);
+        let surface = surface(&mesh);
+        let p = surface.n_input_vertices();
+        let (found, _) = written(&surface, 7);
+        let at = |i: usize, j: usize| found[i * p + j];
+        assert_eq!((at(0, twin.index()), at(5, 5)), (0.0, 0.0));
+        for j in 0..162 {
+            assert_eq!(at(0, j), at(twin.index(), j));
+            assert!(at(j, 163).is_infinite() && at(163, j).is_infinite());
+        }
+    }
+
+    #[test]
+    fn less_than_two_rows_are_refused() {
+        let surface = surface(&shapes::grid(4, 4, 1.0));
+        let solver = Method::default().prepare(&surface.intrinsic).unwrap();
+        let error = AllPairs::new(&surface, solver.as_ref(), 2 * 16 * BYTES - 1).unwrap_err();
+        assert!(matches!(error, PipelineError::MemoryTooSmall { needed: 256, limit: 255, .. }));
+        assert!(error.to_string().contains("--memory"));
+    }
+}
