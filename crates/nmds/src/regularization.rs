@@ -12,8 +12,8 @@ pub enum Regularization {
     /// paper's own, and the fastest.
     LowRank {
         /// Eigenpairs to keep (`n1`), 1 to the number of samples n. Default: half of n, at least
-        /// `dim + 4`: the least rank that is exact for Euclidean distances, `dim + 2`, leaves some
-        /// first samples 50 % above the optimal stress at n = 10, two more leave none above 13 %.
+        /// `dim + 4`: the least rank that is exact for Euclidean distances, `dim + 2`, is too little for some
+        /// first samples, and all n eigenpairs are too much for most.
         rank: Option<usize>,
     },
     /// The regularised pseudo-inverse: `σ / (σ² + α / σ²)` for every reciprocal `1 / σ` (eq. 3), with the

@@ -14,8 +14,10 @@ use nmds::{
 
 use crate::observer::Observed;
 use crate::run::Run;
-use crate::stress::{MarchedRows, measure};
-use crate::{EmbedMethod, EmbedOptions, EmbedReport, Observer, PipelineError, SecondsReport, Surface};
+use crate::stress::measure;
+use crate::{
+    EmbedMethod, EmbedOptions, EmbedReport, Observer, PipelineError, SecondsReport, StressChoice, Surface,
+};
 
 /// An embedded surface.
 #[derive(Debug, Clone)]
@@ -83,10 +85,14 @@ pub fn embed(
 
     let start = Instant::now();
     let has_unit = options.method.has_unit();
-    let rows = MarchedRows(&solver);
-    let stress = match has_unit {
-        true => measure(&embedding.coords, &rows, options.stress, options.seed, observer),
-        false => None,
+    let stress = match options.stress_against {
+        _ if !has_unit || options.stress == StressChoice::Skip => None,
+        Some(other) if other != options.geodesic => {
+            let solver = other.prepare(&surface.intrinsic)?;
+            let solver = Observed { solver: solver.as_ref(), observer };
+            Some(measure(&embedding.coords, &solver, other, options, observer))
+        }
+        _ => Some(measure(&embedding.coords, &solver, options.geodesic, options, observer)),
     };
     seconds.stress = start.elapsed().as_secs_f64();
 

@@ -21,6 +21,9 @@ pub struct EmbedOptions {
     pub dim: usize,
     /// How the stress is found. Default: [`StressChoice::Auto`].
     pub stress: StressChoice,
+    /// How the distances are measured that the stress holds the embedding against. Default: as those that it
+    /// was made from. By better ones, poor distances cannot hide behind their own stress.
+    pub stress_against: Option<Method>,
     /// Seed of the samples, where they are drawn, and of the rows that an estimated stress is measured on.
     /// Default: 0.
     pub seed: u64,
@@ -38,6 +41,7 @@ impl Default for EmbedOptions {
             method: EmbedMethod::default(),
             dim: 3,
             stress: StressChoice::default(),
+            stress_against: None,
             seed: 0,
             all_pairs_limit: 4 << 30,
         }

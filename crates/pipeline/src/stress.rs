@@ -1,12 +1,12 @@
 //! The stress of an embedding of a surface.
 
-use geodesics::DistanceSolver;
+use geodesics::{DistanceSolver, Method};
 use linalg::{LandmarkDistances, Matrix};
 use mesh::VertexId;
 use nmds::{DistanceRows, estimate_paper_stress, paper_stress, sample_rows};
 use serde::Serialize;
 
-use crate::{Observer, StressChoice};
+use crate::{EmbedOptions, Observer, StressChoice};
 
 /// Up to this many vertices [`StressChoice::Auto`] is exact.
 const EXACT_LIMIT: usize = 5000;
@@ -19,6 +19,8 @@ const ESTIMATE_ROWS: usize = 100;
 pub struct StressReport {
     /// Always `paper_stress`: `‖Z Z' + 1/2 J E J‖_F / p`, in squared mesh units.
     pub measure: &'static str,
+    /// Name of the way the distances were measured that the embedding is held against.
+    pub geodesic: &'static str,
     /// Its value.
     pub value: f64,
     /// Exact or estimated.
@@ -38,7 +40,7 @@ pub enum StressKind {
 }
 
 /// Rows marched when they are asked for.
-pub(crate) struct MarchedRows<'a>(pub(crate) &'a dyn DistanceSolver);
+struct MarchedRows<'a>(&'a dyn DistanceSolver);
 
 impl DistanceRows for MarchedRows<'_> {
     fn n_points(&self) -> usize {
@@ -64,28 +66,32 @@ impl DistanceRows for KnownRows<'_> {
     }
 }
 
-/// The stress of `coords`, found as `choice` says.
+/// The stress of `coords`, found as the options say, against the distances of `solver`, which is the one of
+/// `method`.
 pub(crate) fn measure(
     coords: &Matrix,
-    rows: &dyn DistanceRows,
-    choice: StressChoice,
-    seed: u64,
+    solver: &dyn DistanceSolver,
+    method: Method,
+    options: &EmbedOptions,
     observer: &dyn Observer,
-) -> Option<StressReport> {
-    let exact = match choice {
+) -> StressReport {
+    let rows = MarchedRows(solver);
+    let exact = match options.stress {
         StressChoice::Auto => rows.n_points() <= EXACT_LIMIT,
         StressChoice::Exact => true,
-        StressChoice::Estimate => false,
-        StressChoice::Skip => return None,
+        StressChoice::Estimate | StressChoice::Skip => false,
     };
-    let report = |value, kind, interval| StressReport { measure: "paper_stress", value, kind, interval };
+    let report = |value, kind, interval| {
+        let (measure, geodesic) = ("paper_stress", method.name());
+        StressReport { measure, geodesic, value, kind, interval }
+    };
     observer.begin("stress", if exact { rows.n_points() } else { ESTIMATE_ROWS });
-    Some(if exact {
-        let value = paper_stress(coords, rows);
+    if exact {
+        let value = paper_stress(coords, &rows);
         report(value, StressKind::Exact, [value; 2])
     } else {
-        let sample = sample_rows(rows.n_points(), ESTIMATE_ROWS, seed);
-        let estimate = estimate_paper_stress(coords, rows, &sample);
+        let sample = sample_rows(rows.n_points(), ESTIMATE_ROWS, options.seed);
+        let estimate = estimate_paper_stress(coords, &rows, &sample);
         report(estimate.value, StressKind::Estimated, estimate.interval)
-    })
+    }
 }

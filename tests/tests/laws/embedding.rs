@@ -4,10 +4,15 @@ use datasets::Family;
 use geodesics::{FirstSample, farthest_point_sampling};
 use linalg::{DistanceMatrix, LandmarkDistances, Matrix};
 use mesh::{IntrinsicMesh, shapes};
-use nmds::{NystromOptions, Regularization, classical, classical_full, nystrom, paper_stress};
-use pipeline::{EmbedMethod, EmbedOptions, StressChoice, StressKind, embedded_distances};
+use nmds::{
+    NystromOptions, Regularization, classical, classical_full, normalized_stress, nystrom, paper_stress,
+};
+use pipeline::{
+    Bandwidth, EmbedMethod, EmbedOptions, RpiAlpha, Samples, Sampling, SmacofOptions, StressChoice,
+    StressKind, Variance, embedded_distances,
+};
 
-use crate::support::{all_vertices, body, columns, embedded, gap, marching};
+use crate::support::{all_vertices, body, columns, embedded, gap, marching, moved};
 
 /// The columns of some points of a matrix of distances.
 fn landmark_columns(distances: &DistanceMatrix, landmarks: Vec<usize>) -> LandmarkDistances {
@@ -98,12 +103,87 @@ fn the_estimated_stress_brackets_the_exact_one() {
 fn methods_of_the_pipeline_agree_on_a_flat_sheet() {
     let sheet = shapes::grid(17, 12, 0.5);
     let flat = straight_distances(&sheet.positions);
-    for method in [EmbedMethod::Classical, EmbedMethod::low_rank(4)] {
+    let descent = SmacofOptions::default();
+    let rank = Regularization::Cur { rank: Some(4) };
+    for method in [
+        EmbedMethod::Classical,
+        EmbedMethod::low_rank(4),
+        EmbedMethod::Nystrom { regularization: rank },
+        EmbedMethod::Landmark,
+        EmbedMethod::Smacof { regularization: rank, descent },
+    ] {
         let options = EmbedOptions { method, dim: 2, ..EmbedOptions::default() };
         let result = embedded(&sheet, &options);
         let found = embedded_distances(&result.embedding.coords).unwrap();
         let gap = gap(found.as_slice(), flat.as_slice());
         println!("{} on a sheet: largest error {gap:.1e}", result.report.method);
         assert!(gap < 1e-9, "{}: {gap:e}", result.report.method);
+    }
+}
+
+/// Every method, with every choice that does not depend on the unit of length.
+fn methods() -> Vec<EmbedMethod> {
+    let regularizations = [
+        Regularization::LowRank { rank: None },
+        Regularization::Rpi { alpha: RpiAlpha::default() },
+        Regularization::None,
+        Regularization::Cur { rank: None },
+    ];
+    let nystrom = regularizations.map(|regularization| EmbedMethod::Nystrom { regularization });
+    let descent = SmacofOptions { max_iterations: 10, ..SmacofOptions::default() };
+    let smacof = EmbedMethod::Smacof { regularization: Regularization::default(), descent };
+    let kernel = [Bandwidth::Mean, Bandwidth::Median, Bandwidth::Max]
+        .map(|bandwidth| EmbedMethod::KernelPca { rank: None, bandwidth });
+    let others = [EmbedMethod::Classical, EmbedMethod::Landmark, smacof];
+    nystrom.into_iter().chain(kernel).chain(others).collect()
+}
+
+#[test]
+fn the_unit_of_length_changes_no_method() {
+    let mesh = body(Family::Cat);
+    let embed = |mesh: &_, method: &EmbedMethod, sampling| {
+        let (stress, samples) = (StressChoice::Estimate, Samples::Count(100));
+        embedded(
+            mesh,
+            &EmbedOptions { method: method.clone(), sampling, stress, samples, ..EmbedOptions::default() },
+        )
+    };
+    let samplings = [Sampling::Farthest, Sampling::Random, Sampling::Incremental(Variance::Least)];
+    let defaults = samplings.map(|sampling| (EmbedMethod::default(), sampling));
+    for (method, sampling) in methods().into_iter().map(|m| (m, Sampling::Farthest)).chain(defaults) {
+        let base = embed(&mesh, &method, sampling);
+        for scale in [1e-3, 1e3] {
+            let other = embed(&moved(&mesh, |point| point * scale), &method, sampling);
+            assert_eq!(other.report.samples, base.report.samples, "{method:?} {sampling:?}");
+            let length = if method.has_unit() { scale } else { 1.0 };
+            let coords = &other.embedding.coords / length;
+            let gap = gap(coords.as_slice(), base.embedding.coords.as_slice());
+            assert!(gap < 1e-9, "{method:?} {sampling:?} at {scale}: {gap:e}");
+            assert!((other.report.negative_mass - base.report.negative_mass).abs() < 1e-9, "{method:?}");
+            if let [Some(a), Some(b)] = [&other, &base].map(|e| e.report.stress.as_ref()) {
+                let ratio = a.value / length.powi(2) / b.value;
+                assert!((ratio - 1.0).abs() < 1e-9, "{method:?} {sampling:?} at {scale}: {ratio}");
+            }
+        }
+    }
+}
+
+#[test]
+fn no_method_is_below_classical_scaling_and_straight_lines_of_smacof_fit_best() {
+    let mesh = body(Family::Cat);
+    let rows = columns(&mesh, marching(), &all_vertices(&mesh));
+    let distances = DistanceMatrix::from_rows(mesh.n_vertices(), rows.data.into()).unwrap();
+    let coords = |method: EmbedMethod| {
+        let options = EmbedOptions { method, stress: StressChoice::Skip, ..EmbedOptions::default() };
+        embedded(&mesh, &options).embedding.coords
+    };
+    let optimum = paper_stress(&coords(EmbedMethod::Classical), &distances);
+    let descended = methods().into_iter().find(|method| method.name() == "smacof").map(coords).unwrap();
+    let best = normalized_stress(&descended, &distances);
+    for method in methods().into_iter().filter(EmbedMethod::has_unit) {
+        let coords = coords(method.clone());
+        let stress = paper_stress(&coords, &distances);
+        assert!(stress > optimum * (1.0 - 1e-12), "{method:?}: {stress} {optimum}");
+        assert!(normalized_stress(&coords, &distances) >= best, "{method:?}");
     }
 }

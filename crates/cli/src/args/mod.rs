@@ -81,6 +81,9 @@ pub(crate) struct EmbedArgs {
     /// How the stress is found
     #[arg(long, value_enum, default_value_t = StressName::Auto)]
     pub(crate) stress: StressName,
+    /// How the distances are measured that the stress holds the form against [default: as --geodesic]
+    #[arg(long, value_enum, value_name = "METHOD")]
+    pub(crate) stress_against: Option<GeodesicName>,
 }
 
 #[derive(Debug, Args)]

@@ -44,7 +44,10 @@ struct Failure {
 
 /// Embeds a mesh, or every mesh in a folder.
 pub(crate) fn embed(args: &EmbedArgs, common: &Common) -> Result<ExitCode> {
-    let options = args.embedding.options(common, args.stress.into())?;
+    let options = EmbedOptions {
+        stress_against: args.stress_against.map(|name| name.method(args.embedding.marching)),
+        ..args.embedding.options(common, args.stress.into())?
+    };
     if args.embedding.samples.is_some() && options.method == EmbedMethod::Classical {
         eprintln!("note: --method mds measures all pairs of vertices; -n has no effect on it");
     }

@@ -99,6 +99,11 @@ fn embed_knows_its_options() {
     assert_eq!(embed(&["--dim", "5", "-n", "30"])["dim"], 5);
     assert_eq!(embed(&["--stress", "estimate", "-n", "30", "--seed", "4"])["stress"]["kind"], "estimated");
     assert!(embed(&["--stress", "skip", "-n", "30"])["stress"].is_null());
+    let hops = ["--geodesic", "bfs", "-n", "30"];
+    let [own, marched] = [&hops[..], &[&hops[..], &["--stress-against", "fast-marching"]].concat()]
+        .map(|o| embed(o)["stress"].clone());
+    assert_eq!((&own["geodesic"], &marched["geodesic"]), (&"bfs".into(), &"fast-marching".into()));
+    assert!(own["value"] != marched["value"]);
     assert!(embed(&["-n", "auto"])["n_samples"].as_u64().unwrap() >= 20);
 }
 
@@ -224,7 +229,7 @@ fn help_mentions_every_option() {
     let pages: [(&str, Vec<&str>); 5] = [
         ("info", vec!["MESH"]),
         ("geodesic", geodesic.to_vec()),
-        ("embed", [&embedding[..], &["-o"]].concat()),
+        ("embed", [&embedding[..], &["-o", "--stress", "--stress-against"]].concat()),
         ("compare", [&embedding[..], &["--threshold"]].concat()),
         ("completions", vec!["bash", "zsh", "fish"]),
     ];
