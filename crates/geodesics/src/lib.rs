@@ -34,5 +34,5 @@ pub use method::Method;
 pub use path::{GeodesicPath, PathTracer};
 pub use samplers::{RandomSampler, Sampler, Sampling, Variance, VarianceSampler};
 pub use sampling::{FarthestPointSampler, FirstSample, farthest_point_sampling};
-pub use solver::DistanceSolver;
+pub use solver::{DistanceSolver, PrunedSolver};
 pub use source::{Source, SurfacePoint};

@@ -3,7 +3,7 @@
 use linalg::{LandmarkDistances, Matrix};
 use mesh::VertexId;
 
-use crate::{DistanceSolver, GeodesicError};
+use crate::{DistanceSolver, GeodesicError, PrunedSolver};
 
 /// The first sample of [`farthest_point_sampling`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -29,7 +29,8 @@ pub enum FirstSample {
 ///   (Hochbaum and Shmoys 1985).
 /// * Ends early, with fewer landmarks than asked for, when every vertex coincides with one.
 ///
-/// Cost: one run of the solver per landmark.
+/// Cost: one run of the solver per landmark, in parallel where the solver can prune, and then about
+/// `1 + 1/2 + ... + 1/n` further runs to choose them.
 #[derive(Debug)]
 pub struct FarthestPointSampler<'a> {
     solver: &'a dyn DistanceSolver,
@@ -69,7 +70,16 @@ impl<'a> FarthestPointSampler<'a> {
     /// # Errors
     /// [`GeodesicError::Disconnected`].
     pub fn extend_to(&mut self, n: usize) -> Result<(), GeodesicError> {
-        while self.landmarks.len() < n.min(self.nearest.len()) {
+        match self.solver.pruned() {
+            Some(pruned) => self.extend_pruned(pruned, n.min(self.nearest.len())),
+            None => self.extend_fully(n.min(self.nearest.len()))?,
+        }
+        Ok(())
+    }
+
+    /// Takes each sample from the distances of the one before.
+    fn extend_fully(&mut self, n: usize) -> Result<(), GeodesicError> {
+        while self.landmarks.len() < n {
             let next = farthest(&self.nearest);
             if self.nearest[next] == 0.0 {
                 break;
@@ -80,6 +90,26 @@ impl<'a> FarthestPointSampler<'a> {
             self.landmarks.push(next);
         }
         Ok(())
+    }
+
+    /// Takes samples by fronts that stop half-way to the samples before, while other threads find the
+    /// distances of those that are known. Every vertex was reached from the first sample, so all are.
+    fn extend_pruned(&mut self, pruned: &dyn PrunedSolver, n: usize) {
+        let (p, solver, before) = (self.nearest.len(), self.solver, self.landmarks.len());
+        let Self { landmarks, columns, nearest, .. } = self;
+        columns.resize(p * n.max(before), 0.0);
+        rayon::scope(|scope| {
+            for column in columns[p * before..].chunks_mut(p.max(1)) {
+                let next = farthest(nearest);
+                if nearest[next] == 0.0 {
+                    break;
+                }
+                landmarks.push(next);
+                scope.spawn(move |_| solver.distances_into(VertexId::from(next), column));
+                pruned.lower(VertexId::from(next), nearest);
+            }
+        });
+        columns.truncate(p * landmarks.len());
     }
 
     /// Number of landmarks so far.

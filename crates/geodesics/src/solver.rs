@@ -41,6 +41,11 @@ pub trait DistanceSolver: Sync + std::fmt::Debug {
         out
     }
 
+    /// The solver that stops where another source is nearer, if there is one.
+    fn pruned(&self) -> Option<&dyn PrunedSolver> {
+        None
+    }
+
     /// One column of distances per source, computed in parallel; the result does not depend on the
     /// number of threads.
     fn distance_columns(&self, sources: &[VertexId]) -> Matrix {
@@ -55,6 +60,17 @@ pub trait DistanceSolver: Sync + std::fmt::Debug {
         }
         columns
     }
+}
+
+/// A solver whose fronts can stop where another source is nearer: the cost is that of the part of the
+/// surface that is nearest to the new source.
+pub trait PrunedSolver: Sync + std::fmt::Debug {
+    /// Lowers `nearest`, the distance from every vertex to the nearest of some sources, to the distance
+    /// from `source` wherever that is smaller.
+    ///
+    /// # Panics
+    /// When `nearest` does not have one entry per vertex or `source` is out of range.
+    fn lower(&self, source: VertexId, nearest: &mut [f64]);
 }
 
 /// The distance, or infinity beyond the limit: the front leaves tentative values behind it.

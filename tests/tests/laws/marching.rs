@@ -1,6 +1,10 @@
 //! What fast marching must come out as on surfaces whose distances are known.
 
-use geodesics::{DistanceSolver, FastMarching, FastMarchingOptions, ObtuseTreatment};
+use datasets::Family;
+use geodesics::{
+    DistanceSolver, FastMarching, FastMarchingOptions, FirstSample, ObtuseTreatment, Source,
+    farthest_point_sampling,
+};
 use mesh::{IntrinsicMesh, TriMesh, VertexId, shapes};
 use pipeline::GeodesicMethod;
 
@@ -124,7 +128,7 @@ fn other_pieces_are_infinitely_far_and_nothing_else_is() {
 
 #[test]
 fn there_is_nearly_as_far_as_back() {
-    let mesh = body(datasets::Family::David);
+    let mesh = body(Family::David);
     let d = columns(&mesh, marching(), &all_vertices(&mesh));
     let (longest, n_pairs) = (d.max(), (d.nrows() * (d.nrows() - 1)) as f64);
     let worst = (&d - d.transpose()).abs().max() / longest;
@@ -135,4 +139,37 @@ fn there_is_nearly_as_far_as_back() {
     let mean = total / n_pairs;
     println!("there and back differ by {mean:.1e} on average, by {worst:.1e} of the longest way at most");
     assert!(mean < 0.006 && worst < 0.03, "{mean} {worst}");
+}
+
+/// A solver that has to find all distances from each sample, as Procedure 1 of the paper says.
+#[derive(Debug)]
+struct Unpruned<'a>(&'a dyn DistanceSolver);
+
+impl DistanceSolver for Unpruned<'_> {
+    fn n_vertices(&self) -> usize {
+        self.0.n_vertices()
+    }
+
+    fn solve_into(&self, sources: &[Source], max_distance: f64, out: &mut [f64]) {
+        self.0.solve_into(sources, max_distance, out);
+    }
+}
+
+/// Asserts that pruned fronts choose the samples of Procedure 1, with the same distances.
+pub(crate) fn pruning_changes_nothing(name: &str, surface: &IntrinsicMesh, n: usize) {
+    let solver = FastMarching::new(surface, FastMarchingOptions::default());
+    for first in [FirstSample::Farthest, FirstSample::Vertex(VertexId(7))] {
+        let pruned = farthest_point_sampling(&solver, n, first).unwrap();
+        let full = farthest_point_sampling(&Unpruned(&solver), n, first).unwrap();
+        assert_eq!(pruned.landmarks(), full.landmarks(), "{name} from {first:?}");
+        assert_eq!(pruned.matrix(), full.matrix(), "{name} from {first:?}");
+    }
+}
+
+#[test]
+fn pruned_fronts_choose_the_samples_of_full_ones() {
+    for family in [Family::Cat, Family::Centaur, Family::David] {
+        pruning_changes_nothing(family.name(), &IntrinsicMesh::from_mesh(&body(family)), 200);
+    }
+    pruning_changes_nothing("torus", &IntrinsicMesh::from_mesh(&shapes::torus(60, 23, 2.0, 0.7)), 100);
 }

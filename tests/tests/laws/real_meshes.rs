@@ -151,3 +151,11 @@ fn animals_find_their_kind() {
         assert_eq!(scores.nn, 1.0, "{normalization:?}");
     }
 }
+
+#[test]
+fn pruned_fronts_choose_the_samples_of_full_ones_on_real_meshes() {
+    let Some(data) = data("pruned farthest point sampling") else { return };
+    for name in ["cat0", "david0", "centaur3", "horse5", "wolf1", "michael2"] {
+        crate::marching::pruning_changes_nothing(name, &tosca(&data, name).intrinsic, 100);
+    }
+}

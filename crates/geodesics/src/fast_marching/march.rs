@@ -43,11 +43,11 @@ impl March {
         self.front.distance(vertex)
     }
 
-    /// Lets the front run as far as `max_distance`.
+    /// Lets the front run until it stops at every vertex where `stops` says so of its distance.
     pub(super) fn run(
         &mut self,
         spokes: &Spokes,
-        max_distance: f64,
+        stops: impl Fn(u32, f64) -> Stop,
         solve: impl Fn(Sector, f64, f64) -> f64,
     ) {
         // How far the front has been. A corrected vertex is behind it: the other end of a base then counts
@@ -55,8 +55,10 @@ impl March {
         let mut passed = 0.0f64;
         while let Some((distance, vertex)) = self.front.pop() {
             passed = passed.max(distance);
-            if distance > max_distance {
-                break;
+            match stops(vertex, distance) {
+                Stop::No => {}
+                Stop::Here => continue,
+                Stop::Everywhere => break,
             }
             let bend = self.bends[vertex as usize];
             let bend_along = if spokes.bend_at(vertex) { distance } else { bend };
@@ -111,6 +113,16 @@ impl March {
             *bend = bend.min(arrival.bend);
         }
     }
+}
+
+/// Whether the front goes on from a vertex.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Stop {
+    No,
+    /// Not from this vertex.
+    Here,
+    /// Not from this vertex or any that is farther.
+    Everywhere,
 }
 
 /// A distance that a vertex may have, and the bend of its way.

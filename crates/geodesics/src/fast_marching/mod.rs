@@ -17,11 +17,11 @@ mod triangulation;
 mod unfold;
 mod update;
 
-use mesh::IntrinsicMesh;
+use mesh::{IntrinsicMesh, VertexId};
 
 use crate::Source;
-use crate::solver::{DistanceSolver, Pool, within};
-use march::March;
+use crate::solver::{DistanceSolver, Pool, PrunedSolver, within};
+use march::{March, Stop};
 use spokes::Spokes;
 use triangulation::Triangulation;
 pub(crate) use update::Sector;
@@ -135,12 +135,35 @@ impl FastMarching {
         Self { spokes, report, update: options.update, scratch: Pool::default() }
     }
 
+    fn march<R>(
+        &self,
+        sources: &[Source],
+        stops: impl Fn(u32, f64) -> Stop,
+        read: impl FnOnce(&March) -> R,
+    ) -> R {
+        self.scratch.with(|march| {
+            march.reset(self.n_vertices());
+            for (vertex, distance) in sources.iter().flat_map(Source::reach) {
+                march.start(self.spokes.rank[vertex.index()], *distance);
+            }
+            match self.update {
+                Update::PointSource => march.run(&self.spokes, stops, Sector::point_source),
+                Update::Planar => march.run(&self.spokes, stops, Sector::planar),
+            }
+            read(march)
+        })
+    }
+
     /// What was done about obtuse corners.
     #[must_use]
     pub fn corner_report(&self) -> CornerReport {
         self.report
     }
 }
+
+/// Beyond the vertices that a new source is nearest to, a pruned front goes on for this many times the
+/// longest way from the vertex it is at: distances near the border come out as without pruning.
+const BORDER: f64 = 2.0;
 
 impl DistanceSolver for FastMarching {
     fn n_vertices(&self) -> usize {
@@ -149,18 +172,34 @@ impl DistanceSolver for FastMarching {
 
     fn solve_into(&self, sources: &[Source], max_distance: f64, out: &mut [f64]) {
         assert_eq!(out.len(), self.n_vertices(), "one distance per vertex");
-        self.scratch.with(|march| {
-            march.reset(out.len());
-            for (vertex, distance) in sources.iter().flat_map(Source::reach) {
-                march.start(self.spokes.rank[vertex.index()], *distance);
-            }
-            match self.update {
-                Update::PointSource => march.run(&self.spokes, max_distance, Sector::point_source),
-                Update::Planar => march.run(&self.spokes, max_distance, Sector::planar),
-            }
+        let stops = |_, distance| if distance > max_distance { Stop::Everywhere } else { Stop::No };
+        self.march(sources, stops, |march| {
             for (internal, v) in self.spokes.order.iter().enumerate() {
                 out[*v as usize] = within(march.distance(internal as u32), max_distance);
             }
         });
+    }
+
+    fn pruned(&self) -> Option<&dyn PrunedSolver> {
+        Some(self)
+    }
+}
+
+impl PrunedSolver for FastMarching {
+    fn lower(&self, source: VertexId, nearest: &mut [f64]) {
+        assert_eq!(nearest.len(), self.n_vertices(), "one distance per vertex");
+        let stops = |vertex: u32, distance: f64| {
+            let excess = distance - nearest[self.spokes.order[vertex as usize] as usize];
+            let is_far = excess > 0.0 && excess > BORDER * self.spokes.longest(vertex);
+            if is_far { Stop::Here } else { Stop::No }
+        };
+        let lowered = self.march(&[Source::vertex(source)], stops, |march| {
+            let internal = 0..self.n_vertices() as u32;
+            internal.map(|v| march.distance(v)).collect::<Vec<_>>()
+        });
+        for (distance, v) in lowered.into_iter().zip(&self.spokes.order) {
+            let known = &mut nearest[*v as usize];
+            *known = known.min(distance);
+        }
     }
 }

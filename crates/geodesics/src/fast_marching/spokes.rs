@@ -86,6 +86,11 @@ impl Spokes {
         &self.spokes[self.offsets[v] as usize..self.offsets[v + 1] as usize]
     }
 
+    /// The length of the longest spoke of a vertex.
+    pub(super) fn longest(&self, vertex: u32) -> f64 {
+        self.of(vertex).iter().map(|spoke| spoke.length).fold(0.0, f64::max)
+    }
+
     /// Whether shortest ways may bend at a vertex: where more than 360 degrees meet, and at
     /// boundaries more than 180.
     #[inline]
