@@ -5,10 +5,10 @@ OUT ?= out
 # A folder of meshes with the paper's classes, for `make reproduce`; the built-in dataset without it.
 DATASET ?=
 
-.PHONY: help setup build run test lint fmt doc reproduce report deny ci clean
+.PHONY: help setup build run test lint bench bench-peers fmt doc reproduce report deny ci clean
 
 help: ## List these commands
-	@grep -hE '^[a-z]+:.*## ' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "  make %-10s %s\n", $$1, $$2}'
+	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "  make %-12s %s\n", $$1, $$2}'
 
 setup: ## Fetch what the build needs from the package registry
 	$(CARGO) fetch --locked
@@ -26,6 +26,14 @@ lint: ## Format, clippy and rustdoc, warnings denied
 	$(CARGO) fmt --all --check
 	$(CARGO) clippy --workspace --all-targets --locked -- -D warnings
 	RUSTDOCFLAGS="-D warnings" $(CARGO) doc --workspace --no-deps --locked
+
+bench: ## Time the solvers over sizes
+	$(CARGO) bench --locked -p geodesics
+
+bench-peers: build ## Measure other programs beside this one and write docs/benchmarks.md (needs Python and test meshes)
+	test -x target/peers/bin/python || python3 -m venv target/peers
+	target/peers/bin/pip install --quiet numpy scipy potpourri3d pygeodesic meshlib
+	target/peers/bin/python bench/peers.py
 
 fmt: ## Format the sources
 	$(CARGO) fmt --all

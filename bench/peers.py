@@ -1,0 +1,292 @@
+#!/usr/bin/env python3
+"""Surface distances beside other programs: time per source, one thread, and error, in one run.
+
+    make bench-peers            builds the program, makes the environment, writes docs/benchmarks.md
+
+Every round takes one source and runs every solver on it, so that whatever else the machine does falls on
+all of them; the table gives medians over the rounds. `canonform` is the built program and reports its own
+solver time, as its peers are timed around their solve call; what each prepares once per mesh stands beside
+it. Errors are relative to the exact polyhedral distances of `canonform --method exact`, which tests hold
+to an independent implementation. pygeodesic ends the process on some meshes, so it runs in one of its own.
+"""
+import argparse
+import json
+import math
+import multiprocessing
+import os
+import platform
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+
+for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
+    os.environ[variable] = "1"
+
+import numpy as np
+
+OURS = ["fast-marching", "exact", "heat", "dijkstra"]
+FIRST = "canonform fast-marching"
+
+
+def read_mesh(path):
+    if path.endswith(".vert"):
+        return np.loadtxt(path), np.loadtxt(path[:-5] + ".tri").astype(np.int64) - 1
+    vertices, faces = [], []
+    for line in open(path):
+        words = line.split()
+        if words[:1] == ["v"]:
+            vertices.append([float(x) for x in words[1:4]])
+        elif words[:1] == ["f"]:
+            faces.append([int(x.split("/")[0]) - 1 for x in words[1:4]])
+    return np.array(vertices), np.array(faces)
+
+
+def write_mesh(path, vertices, faces):
+    with open(path, "w") as file:
+        file.writelines("v %.17g %.17g %.17g\n" % tuple(v) for v in vertices)
+        file.writelines("f %d %d %d\n" % tuple(f + 1) for f in faces)
+
+
+def edges_of(faces):
+    return np.sort(np.vstack([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1)
+
+
+def bisected(vertices, faces, n_vertices):
+    """Cuts longest edges in half until there are so many vertices: the surface stays as it is."""
+    import heapq
+
+    vertices, faces = [tuple(v) for v in vertices], [list(f) for f in faces]
+    at_edge = {}
+    length = lambda a, b: math.dist(vertices[a], vertices[b])
+    key = lambda a, b: (min(a, b), max(a, b))
+    heap = []
+
+    def attach(face):
+        f = faces[face]
+        for k in range(3):
+            edge = key(f[k], f[(k + 1) % 3])
+            at_edge.setdefault(edge, set()).add(face)
+            heapq.heappush(heap, (-length(*edge), edge))
+
+    for face in range(len(faces)):
+        attach(face)
+    while len(vertices) < n_vertices:
+        _, edge = heapq.heappop(heap)
+        if edge not in at_edge:
+            continue
+        middle = len(vertices)
+        vertices.append(tuple(0.5 * (p + q) for p, q in zip(vertices[edge[0]], vertices[edge[1]])))
+        for face in sorted(at_edge[edge]):
+            old = faces[face]
+            for k in range(3):
+                at_edge[key(old[k], old[(k + 1) % 3])].discard(face)
+            faces[face] = [middle if v == edge[1] else v for v in old]
+            faces.append([middle if v == edge[0] else v for v in old])
+            attach(face)
+            attach(len(faces) - 1)
+        del at_edge[edge]
+    return np.array(vertices), np.array(faces)
+
+
+def canonform(program, mesh, method, sources):
+    with tempfile.TemporaryDirectory() as folder:
+        out = os.path.join(folder, "distances.npy")
+        command = [program, "geodesic", mesh, "--method", method, "--threads", "1", "--json", "-o", out,
+                   "--source", ",".join(map(str, sources))]
+        done = subprocess.run(command, check=True, capture_output=True, text=True)
+        seconds = json.loads(done.stdout)["seconds"]
+        return np.atleast_2d(np.load(out)), seconds["per_source"], seconds["setup"]
+
+
+def serve_pygeodesic(pipe, vertices, faces):
+    from pygeodesic import geodesic
+
+    solver = geodesic.PyGeodesicAlgorithmExact(vertices, faces)
+    pipe.send("ready")
+    while True:
+        source = pipe.recv()
+        start = time.perf_counter()
+        row = solver.geodesicDistances(np.array([source]))[0]
+        pipe.send((row, time.perf_counter() - start))
+
+
+class Elsewhere:
+    """A solver in a process of its own, which may end."""
+
+    def __init__(self, serve, *args):
+        self.pipe, theirs = multiprocessing.Pipe()
+        self.process = multiprocessing.Process(target=serve, args=(theirs, *args), daemon=True)
+        self.process.start()
+        theirs.close()
+        self.pipe.recv()
+
+    def __call__(self, source):
+        self.pipe.send(source)
+        return self.pipe.recv()
+
+
+def timed(solve):
+    def run(source):
+        start = time.perf_counter()
+        row = solve(source)
+        return np.asarray(row, float), time.perf_counter() - start
+
+    return run
+
+
+def peers(vertices, faces):
+    """Name -> (solve, seconds of preparation), and what refused the mesh."""
+    import potpourri3d as pp3d
+    import scipy.sparse as sp
+    from scipy.sparse.csgraph import dijkstra
+    import meshlib.mrmeshpy as mr
+    import meshlib.mrmeshnumpy as mn
+
+    def heat():
+        solver = pp3d.MeshHeatMethodDistanceSolver(vertices, faces)
+        return timed(solver.compute_distance)
+
+    def marching():
+        solver = pp3d.MeshFastMarchingDistanceSolver(vertices, faces)
+        return timed(lambda s: solver.compute_distance([[(s, [])]]))
+
+    def graph():
+        e = np.unique(edges_of(faces), axis=0)
+        lengths = np.linalg.norm(vertices[e[:, 0]] - vertices[e[:, 1]], axis=1)
+        half = sp.csr_matrix((lengths, (e[:, 0], e[:, 1])), shape=(len(vertices),) * 2)
+        both = (half + half.T).tocsr()
+        return timed(lambda s: dijkstra(both, indices=s))
+
+    def meshlib():
+        mesh = mn.meshFromFacesVerts(faces.astype(np.int32), vertices)
+
+        def run(s):
+            start = time.perf_counter()
+            field = mr.computeSurfaceDistances(mesh, mr.MeshTriPoint(mesh.topology, mr.VertId(s)))
+            seconds = time.perf_counter() - start
+            return np.array([field.vec[i] for i in range(len(vertices))]), seconds
+
+        return run
+
+    solvers, refused = {}, {}
+    for name, make in [
+        ("MeshLib computeSurfaceDistances", meshlib),
+        ("potpourri3d heat", heat),
+        ("potpourri3d fast marching", marching),
+        ("pygeodesic (exact)", lambda: Elsewhere(serve_pygeodesic, vertices, faces)),
+        ("SciPy Dijkstra", graph),
+    ]:
+        start = time.perf_counter()
+        try:
+            solvers[name] = make(), time.perf_counter() - start
+        except Exception as error:
+            refused[name] = str(error).splitlines()[0] if str(error) else "ended its process"
+    return solvers, refused
+
+
+def measure(program, path, rounds):
+    vertices, faces = read_mesh(path)
+    sources = [int(s) for s in np.random.default_rng(0).integers(0, len(vertices), rounds)]
+    solvers, refused = peers(vertices, faces)
+    rows, seconds = {}, {}
+    setup = {name: prepared for name, (_, prepared) in solvers.items()}
+    for source in sources:
+        for method in OURS:
+            name = f"canonform {method}"
+            # The solver's memory is warm from the second source on, as that of its peers is.
+            row, per_source, prepared = canonform(program, path, method, [source] * 4)
+            rows.setdefault(name, []).append(row[-1])
+            seconds.setdefault(name, []).append(statistics.median(per_source[1:]))
+            setup[name] = min(prepared, setup.get(name, math.inf))
+        for name, (solve, _) in list(solvers.items()):
+            try:
+                row, spent = solve(source)
+            except (EOFError, BrokenPipeError):
+                refused[name] = "ended its process"
+                del solvers[name]
+                continue
+            rows.setdefault(name, []).append(row)
+            seconds.setdefault(name, []).append(spent)
+    exact = np.array(rows["canonform exact"])
+    known = np.isfinite(exact) & (exact > 0)
+    ours = statistics.median(seconds[FIRST])
+    lines = ["| solver | ms a source | times ours | ms to prepare | mean error | largest |", "|---|---|---|---|---|---|"]
+    for name in sorted(seconds, key=lambda name: statistics.median(seconds[name])):
+        if name in refused:
+            continue
+        relative = np.abs(np.array(rows[name]) - exact)[known] / exact[known]
+        spent = statistics.median(seconds[name])
+        lines.append(f"| {name} | {1e3 * spent:.2f} | {spent / ours:.2f} | {1e3 * setup[name]:.0f} "
+                     f"| {100 * relative.mean():.3f} % | {100 * relative.max():.1f} % |")
+    lines += [f"\n{name} refused this mesh: {why}." for name, why in refused.items()]
+    return len(vertices), "\n".join(lines)
+
+
+def wavy_torus(n_vertices):
+    """An uneven closed surface of any size."""
+    m = int(round(math.sqrt(n_vertices / 3)))
+    n = n_vertices // m
+    random = np.random.default_rng(1)
+    u, v = np.meshgrid(np.arange(n), np.arange(m), indexing="ij")
+    u = 2 * np.pi * (u + random.uniform(-0.3, 0.3, u.shape)) / n
+    v = 2 * np.pi * (v + random.uniform(-0.3, 0.3, v.shape)) / m
+    r = 1 + 0.1 * np.sin(5 * u) * np.cos(3 * v)
+    vertices = np.stack([(3 + r * np.cos(v)) * np.cos(u), (3 + r * np.cos(v)) * np.sin(u), r * np.sin(v)], -1)
+    i, j = np.meshgrid(np.arange(n), np.arange(m), indexing="ij")
+    at = lambda i, j: ((i % n) * m + j % m).ravel()
+    a, b, c, d = at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)
+    return vertices.reshape(-1, 3), np.vstack([np.stack([a, b, c], 1), np.stack([a, c, d], 1)])
+
+
+def growth(program, folder):
+    sizes, best = [4_000, 16_000, 64_000, 256_000, 1_000_000], []
+    for size in sizes:
+        path = os.path.join(folder, f"torus{size}.obj")
+        write_mesh(path, *wavy_torus(size))
+        _, per_source, _ = canonform(program, path, "fast-marching", [0] * 5)
+        best.append(min(per_source))
+        os.remove(path)
+    exponent = np.polyfit(np.log(sizes), np.log(best), 1)[0]
+    table = "| vertices | ms a source |\n|---|---|\n"
+    table += "\n".join(f"| {size:,} | {1e3 * spent:.2f} |" for size, spent in zip(sizes, best))
+    return exponent, table
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--program", default="target/release/canonform")
+    parser.add_argument("--data", default=os.environ.get("CANONFORM_DATA", "../shared/data"))
+    parser.add_argument("--rounds", type=int, default=7)
+    parser.add_argument("--output", default="docs/benchmarks.md")
+    args = parser.parse_args()
+    page = [
+        "# Surface distances beside other programs",
+        f"\nMeasured by `make bench-peers` on {platform.machine()}, {os.cpu_count()} cores, one thread each, "
+        f"medians over {args.rounds} sources, all solvers interleaved in one run. Errors are relative to exact "
+        "polyhedral distances. Ratios count; the milliseconds are those of one machine on one day.\n",
+    ]
+    cat = os.path.join(args.data, "tosca-lowres", "cat0.vert")
+    if not os.path.exists(cat):
+        sys.exit(f"{cat} is missing: pass --data FOLDER with tosca-lowres/ and single/")
+    with tempfile.TemporaryDirectory() as folder:
+        fine = os.path.join(folder, "cat0-28k.obj")
+        write_mesh(fine, *bisected(*read_mesh(cat), 27_894))
+        armadillo = os.path.join(args.data, "single", "armadillo.obj")
+        for title, path in [("cat0 of TOSCA (a third of its triangles obtuse, not clean)", cat),
+                            ("cat0, longest edges bisected", fine), ("armadillo", armadillo)]:
+            n_vertices, table = measure(args.program, path, args.rounds)
+            page.append(f"## {title}, {n_vertices:,} vertices\n\n{table}\n")
+            print(page[-1], flush=True)
+        exponent, table = growth(args.program, folder)
+    page.append(f"## Growth of fast marching on an uneven torus\n\n{table}\n\nTime grows as vertices to the {exponent:.2f}.\n")
+    print(page[-1])
+    os.makedirs(os.path.dirname(args.output) or ".", exist_ok=True)
+    with open(args.output + ".part", "w") as file:
+        file.write("\n".join(page))
+    os.replace(args.output + ".part", args.output)
+
+
+if __name__ == "__main__":
+    main()

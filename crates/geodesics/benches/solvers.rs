@@ -1,0 +1,63 @@
+//! Time per source of every solver and of farthest point sampling, over sizes: `make bench`.
+//!
+//! Comparisons with other programs stand in `bench/peers.py`.
+
+use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
+use geodesics::{FirstSample, HeatOptions, Method, farthest_point_sampling};
+use mesh::{IntrinsicMesh, VertexId, shapes};
+
+/// A torus with triangles of all shapes, of about so many vertices.
+fn torus(n_vertices: usize) -> IntrinsicMesh {
+    let around = ((n_vertices / 3) as f64).sqrt().round() as usize;
+    IntrinsicMesh::from_mesh(&shapes::torus(n_vertices / around, around, 3.0, 1.0))
+}
+
+fn solvers(criterion: &mut Criterion) {
+    let methods = [
+        (Method::default(), 1_000_000),
+        (Method::Dijkstra, 1_000_000),
+        (Method::Heat(HeatOptions::default()), 64_000),
+        (Method::Exact, 64_000),
+    ];
+    for (method, largest) in methods {
+        let mut group = criterion.benchmark_group(method.name());
+        group.sample_size(10);
+        for size in [4_000, 16_000, 64_000, 256_000, 1_000_000] {
+            if size > largest {
+                continue;
+            }
+            let surface = torus(size);
+            let Ok(solver) = method.prepare(&surface) else { continue };
+            let mut out = vec![0.0; surface.n_vertices()];
+            group.bench_function(BenchmarkId::new("source", size), |bencher| {
+                bencher.iter(|| solver.distances_into(VertexId(0), &mut out));
+            });
+        }
+    }
+}
+
+/// Ten samples with their distances beside one full map, on one thread and on two.
+fn sampling(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("sampling");
+    group.sample_size(10);
+    let surface = torus(28_000);
+    let Ok(solver) = Method::default().prepare(&surface) else { return };
+    let mut out = vec![0.0; surface.n_vertices()];
+    group.bench_function("one full map", |bencher| {
+        bencher.iter(|| solver.distances_into(VertexId(0), &mut out));
+    });
+    for threads in [1, 2] {
+        let Ok(pool) = rayon::ThreadPoolBuilder::new().num_threads(threads).build() else { continue };
+        for (name, first) in [
+            ("given first sample", FirstSample::Vertex(VertexId(0))),
+            ("farthest first", FirstSample::Farthest),
+        ] {
+            group.bench_function(BenchmarkId::new(format!("ten samples, {name}"), threads), |bencher| {
+                pool.install(|| bencher.iter(|| farthest_point_sampling(solver.as_ref(), 10, first)));
+            });
+        }
+    }
+}
+
+criterion_group!(benches, solvers, sampling);
+criterion_main!(benches);
