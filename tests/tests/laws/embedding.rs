@@ -5,7 +5,8 @@ use geodesics::{FirstSample, farthest_point_sampling};
 use linalg::{DistanceMatrix, LandmarkDistances, Matrix};
 use mesh::{IntrinsicMesh, shapes};
 use nmds::{
-    NystromOptions, Regularization, classical, classical_full, normalized_stress, nystrom, paper_stress,
+    NystromOptions, Reconstruction, Regularization, SpectralOptions, classical, classical_full,
+    normalized_stress, nystrom, paper_stress,
 };
 use pipeline::{
     Bandwidth, EmbedMethod, EmbedOptions, RpiAlpha, Samples, Sampling, SmacofOptions, StressChoice,
@@ -134,7 +135,8 @@ fn methods() -> Vec<EmbedMethod> {
     let smacof = EmbedMethod::Smacof { regularization: Regularization::default(), descent };
     let kernel = [Bandwidth::Mean, Bandwidth::Median, Bandwidth::Max]
         .map(|bandwidth| EmbedMethod::KernelPca { rank: None, bandwidth });
-    let others = [EmbedMethod::Classical, EmbedMethod::Landmark, smacof];
+    let spectral = EmbedMethod::Spectral { eigenvectors: 60, mu: SpectralOptions::default().mu };
+    let others = [EmbedMethod::Classical, EmbedMethod::Landmark, spectral, EmbedMethod::Fmds, smacof];
     nystrom.into_iter().chain(kernel).chain(others).collect()
 }
 
@@ -186,4 +188,25 @@ fn no_method_is_below_classical_scaling_and_straight_lines_of_smacof_fit_best() 
         assert!(stress > optimum * (1.0 - 1e-12), "{method:?}: {stress} {optimum}");
         assert!(normalized_stress(&coords, &distances) >= best, "{method:?}");
     }
+}
+
+/// What the paper's Fig. 5 shows: noise of marched distances makes the small eigenvalues harmful.
+#[test]
+fn the_best_rank_lies_inside_and_beats_both_cur_and_all_eigenpairs() {
+    let mesh = body(Family::Cat);
+    let solver = marching().prepare(&IntrinsicMesh::from_mesh(&mesh)).unwrap();
+    let rows = solver.distance_columns(&all_vertices(&mesh));
+    let distances = DistanceMatrix::from_rows(mesh.n_vertices(), rows.data.into()).unwrap();
+    let samples = farthest_point_sampling(solver.as_ref(), 60, FirstSample::default()).unwrap();
+    let affinity = Reconstruction::new(&samples, &distances).unwrap();
+    let error = |regularization| affinity.error(regularization).unwrap().relative;
+    let ranks = [5, 10, 20, 30, 40, 50, 60];
+    let low_rank = ranks.map(|n1| error(Regularization::LowRank { rank: Some(n1) }));
+    let cur = ranks.map(|n1| error(Regularization::Cur { rank: Some(n1) }));
+    let lowest = |errors: [f64; 7]| errors.into_iter().fold(f64::INFINITY, f64::min);
+    println!("low-rank {low_rank:?}, CUR {cur:?}, best {:.1e}", affinity.best_projection().relative);
+    assert!(lowest(low_rank) < low_rank[0].min(low_rank[6]) / 2.0);
+    assert!(lowest(low_rank) < lowest(cur));
+    assert!((low_rank[6] / cur[6] - 1.0).abs() < 1e-6, "both are the inverse of the whole sample matrix");
+    assert!(affinity.best_projection().relative < lowest(low_rank));
 }
