@@ -7,32 +7,38 @@
 use crate::implicit::{Blob, Body, Part};
 use crate::model::Model;
 use crate::pose::{Pose, Turn, turn};
-use crate::skeleton::{Joint, JointId, JointPair, Skeleton, node};
+use crate::skeleton::{Joint, JointId, JointPair, Node, Skeleton, node};
 
 /// The family's model.
 pub(crate) fn model() -> Model {
     let (skeleton, joints) = skeleton();
     let poses = poses(&skeleton, &joints);
-    Model { body: body(), skeleton, poses, area: 19_930.0, spacing: 1.4 }
+    Model { body: body(), skeleton, poses, area: 19_750.0, spacing: 1.4 }
 }
 
 fn body() -> Body {
-    let mut parts = vec![trunk(), neck(), head()];
-    parts.extend(face());
-    parts.extend([ear(), ear_hollow(), foreleg(), hindleg(), tail()]);
+    let mut parts = vec![trunk(), neck()];
+    let head = std::iter::once(head()).chain(face()).chain([ear(), ear_hollow()]);
+    parts.extend(head.map(|part| part.moved(HEAD_SCALE, HEAD_OFFSET)));
+    parts.extend([foreleg(), hindleg(), tail()]);
     Body::new(parts)
 }
+
+/// The head is described in a larger size than it has.
+const HEAD_SCALE: f64 = 0.8;
+/// Its scaling leaves the nape where it is.
+const HEAD_OFFSET: [f64; 3] = [0.0, -48.0 * (1.0 - HEAD_SCALE), 75.0 * (1.0 - HEAD_SCALE)];
 
 fn trunk() -> Part {
     let sideways = [1.0, 0.0, 0.0];
     Part::added(
         0.0,
         vec![
-            Blob::cone([0.0, -24.0, 57.0], 16.5, [0.0, 4.0, 58.0], 15.6).flat(sideways, 0.80),
-            Blob::cone([0.0, 4.0, 58.0], 15.6, [0.0, 26.0, 60.0], 13.8).flat(sideways, 0.80).blend(1.0),
+            Blob::cone([0.0, -24.0, 53.0], 19.6, [0.0, 4.0, 53.0], 20.0).flat(sideways, 0.84),
+            Blob::cone([0.0, 4.0, 53.0], 20.0, [0.0, 26.0, 55.0], 17.6).flat(sideways, 0.84).blend(1.0),
             // Rump and chest.
-            Blob::cone([0.0, 26.0, 60.0], 14.2, [0.0, 34.0, 60.0], 12.4).flat(sideways, 0.85).blend(2.0),
-            Blob::ball([0.0, -33.0, 56.0], 13.0).flat(sideways, 0.88).blend(4.0),
+            Blob::cone([0.0, 26.0, 56.0], 16.8, [0.0, 34.0, 58.0], 14.0).flat(sideways, 0.88).blend(2.0),
+            Blob::ball([0.0, -33.0, 54.0], 16.0).flat(sideways, 0.9).blend(4.0),
         ],
     )
 }
@@ -89,11 +95,13 @@ fn foreleg() -> Part {
         5.0,
         vec![
             // Shoulder blade and upper arm lie against the chest.
-            Blob::cone([7.6, -22.0, 64.0], 7.0, [8.0, -32.0, 52.0], 8.2),
-            Blob::cone([8.0, -32.0, 52.0], 8.0, [8.6, -25.0, 37.0], 5.5).blend(1.0),
-            Blob::cone([8.6, -25.0, 37.0], 5.5, [8.8, -28.5, 13.0], 4.0),
-            Blob::cone([8.8, -28.5, 13.0], 4.0, [8.8, -29.5, 5.5], 4.3),
-            Blob::cone([8.8, -30.5, 4.0], 5.0, [8.8, -34.0, 3.8], 4.9).flat([0.0, 0.0, 1.0], 0.76).blend(1.5),
+            Blob::cone([8.6, -22.0, 64.0], 7.0, [9.4, -32.0, 52.0], 8.2),
+            Blob::cone([9.4, -32.0, 52.0], 8.0, [10.2, -25.0, 37.0], 5.5).blend(1.0),
+            Blob::cone([10.2, -25.0, 37.0], 5.5, [10.4, -28.5, 13.0], 4.0),
+            Blob::cone([10.4, -28.5, 13.0], 4.0, [10.4, -29.5, 5.5], 4.3),
+            Blob::cone([10.4, -30.5, 4.0], 5.0, [10.4, -34.0, 3.8], 4.9)
+                .flat([0.0, 0.0, 1.0], 0.76)
+                .blend(1.5),
         ],
     )
 }
@@ -102,26 +110,26 @@ fn hindleg() -> Part {
     Part::added(
         6.0,
         vec![
-            Blob::cone([7.4, 29.0, 58.0], 12.4, [9.4, 23.0, 42.0], 8.0),
-            Blob::cone([9.4, 24.0, 42.0], 7.4, [9.8, 38.0, 21.5], 4.0).blend(4.0),
-            Blob::cone([9.8, 38.0, 21.5], 4.0, [9.8, 34.0, 6.5], 3.8),
-            Blob::cone([9.8, 32.0, 4.2], 4.6, [9.8, 27.0, 3.8], 5.0).flat([0.0, 0.0, 1.0], 0.76).blend(1.5),
+            Blob::cone([8.6, 29.0, 58.0], 12.4, [11.0, 23.0, 42.0], 8.0),
+            Blob::cone([11.0, 24.0, 42.0], 7.4, [11.4, 38.0, 21.5], 4.0).blend(4.0),
+            Blob::cone([11.4, 38.0, 21.5], 4.0, [11.4, 34.0, 6.5], 3.8),
+            Blob::cone([11.4, 32.0, 4.2], 4.6, [11.4, 27.0, 3.8], 5.0).flat([0.0, 0.0, 1.0], 0.76).blend(1.5),
         ],
     )
 }
 
 /// The axis of the tail at rest.
 const TAIL: [[f64; 3]; 6] = [
-    [0.0, 42.0, 66.0],
-    [0.0, 56.0, 66.5],
-    [0.0, 70.0, 65.0],
-    [0.0, 84.0, 63.5],
-    [0.0, 98.0, 63.0],
-    [0.0, 112.0, 64.0],
+    [0.0, 42.0, 65.0],
+    [0.0, 58.0, 65.5],
+    [0.0, 74.0, 64.0],
+    [0.0, 90.0, 62.5],
+    [0.0, 105.0, 62.0],
+    [0.0, 120.0, 63.0],
 ];
 
 fn tail() -> Part {
-    let radii = [5.2, 4.3, 4.0, 3.8, 3.6, 3.0];
+    let radii = [4.4, 3.6, 3.3, 3.1, 2.9, 2.5];
     let segment = |i: usize| Blob::cone(TAIL[i], radii[i], TAIL[i + 1], radii[i + 1]);
     let root = Blob::cone([0.0, 34.0, 64.0], 7.0, TAIL[0], radii[0]);
     Part::added(4.0, std::iter::once(root).chain((0..5).map(segment)).collect())
@@ -143,19 +151,24 @@ struct Joints {
     toes: JointPair,
 }
 
+/// A node described like the parts of the head.
+fn in_head(at: [f64; 3], radius: f64, grain: f64) -> Node {
+    node(at, radius, grain).moved(HEAD_SCALE, HEAD_OFFSET)
+}
+
 fn skeleton() -> (Skeleton, Joints) {
     let mut skeleton = Skeleton::default();
     let spine = skeleton.chain(
         None,
         vec![
-            node([0.0, 32.0, 60.0], 13.0, 1.0),
-            node([0.0, 16.0, 59.0], 13.5, 1.1),
-            node([0.0, -8.0, 58.0], 14.5, 1.1),
-            node([0.0, -28.0, 58.0], 13.0, 1.0),
-            node([0.0, -36.0, 65.0], 11.5, 0.85),
+            node([0.0, 32.0, 58.0], 13.5, 1.0),
+            node([0.0, 16.0, 56.0], 15.5, 1.1),
+            node([0.0, -8.0, 55.0], 16.5, 1.1),
+            node([0.0, -28.0, 56.0], 14.5, 1.0),
+            node([0.0, -36.0, 64.0], 12.0, 0.85),
             node([0.0, -46.0, 73.0], 10.5, 0.75),
-            node([0.0, -54.0, 82.0], 13.0, 0.58),
-            node([0.0, -70.0, 76.0], 6.5, 0.34),
+            in_head([0.0, -54.0, 82.0], 13.0, 0.58),
+            in_head([0.0, -70.0, 76.0], 6.5, 0.34),
         ],
         vec![
             Joint::ball(1, 15.0, 16.0, [5.0, 4.0, 10.0]),
@@ -164,7 +177,7 @@ fn skeleton() -> (Skeleton, Joints) {
         ],
     );
     let tail_nodes: Vec<_> = std::iter::once(node([0.0, 33.0, 63.0], 8.0, 0.8))
-        .chain(TAIL.iter().zip([0.62, 0.55, 0.52, 0.5, 0.48, 0.42]).map(|(&p, grain)| node(p, 4.2, grain)))
+        .chain(TAIL.iter().zip([0.62, 0.55, 0.52, 0.5, 0.48, 0.42]).map(|(&p, grain)| node(p, 3.6, grain)))
         .collect();
     let tail_joints: Vec<_> = (1..6)
         .map(|i| {
@@ -178,12 +191,12 @@ fn skeleton() -> (Skeleton, Joints) {
     let forelegs = skeleton.pair(
         (spine, 3),
         vec![
-            node([6.0, -26.0, 62.0], 8.5, 1.0),
-            node([8.0, -29.0, 50.0], 8.0, 0.9),
-            node([8.6, -26.0, 37.0], 5.6, 0.75),
-            node([8.8, -28.0, 13.0], 4.1, 0.58),
-            node([8.8, -30.0, 5.0], 4.6, 0.5),
-            node([8.8, -36.0, 3.6], 4.4, 0.42),
+            node([7.0, -26.0, 62.0], 8.5, 1.0),
+            node([9.4, -29.0, 50.0], 8.0, 0.9),
+            node([10.2, -26.0, 37.0], 5.6, 0.75),
+            node([10.4, -28.0, 13.0], 4.1, 0.58),
+            node([10.4, -30.0, 5.0], 4.6, 0.5),
+            node([10.4, -36.0, 3.6], 4.4, 0.42),
         ],
         vec![
             Joint::ball(1, 12.0, 15.0, [7.0, 2.0, 3.0]),
@@ -194,12 +207,12 @@ fn skeleton() -> (Skeleton, Joints) {
     let hindlegs = skeleton.pair(
         (spine, 0),
         vec![
-            node([5.0, 31.0, 60.0], 11.0, 1.0),
-            node([7.6, 29.0, 54.0], 11.5, 0.95),
-            node([9.6, 23.5, 40.0], 8.0, 0.8),
-            node([9.8, 37.5, 21.5], 4.2, 0.6),
-            node([9.8, 34.0, 6.5], 4.0, 0.5),
-            node([9.8, 25.0, 3.8], 4.4, 0.42),
+            node([6.0, 31.0, 60.0], 11.0, 1.0),
+            node([8.8, 29.0, 54.0], 11.5, 0.95),
+            node([11.2, 23.5, 40.0], 8.0, 0.8),
+            node([11.4, 37.5, 21.5], 4.2, 0.6),
+            node([11.4, 34.0, 6.5], 4.0, 0.5),
+            node([11.4, 25.0, 3.8], 4.4, 0.42),
         ],
         vec![
             Joint::ball(1, 6.0, 16.0, [7.0, 3.0, 4.0]),
@@ -211,7 +224,7 @@ fn skeleton() -> (Skeleton, Joints) {
     // Ears do not move; their chains only ask for small triangles.
     skeleton.pair(
         (spine, 6),
-        vec![node([6.5, -52.0, 90.0], 5.0, 0.5), node([11.4, -49.8, 101.5], 3.6, 0.3)],
+        vec![in_head([6.5, -52.0, 90.0], 5.0, 0.5), in_head([11.4, -49.8, 101.5], 3.6, 0.3)],
         Vec::new(),
     );
     let at = |chain, joint| JointId { chain, joint };
@@ -254,100 +267,111 @@ fn poses(skeleton: &Skeleton, j: &Joints) -> Vec<Pose> {
     };
     vec![
         rest(),
-        // Walking, tail up.
+        // Trotting, tail up.
         curled(
             legs(
                 rest(),
-                [[-26.0, -8.0, 4.0], [22.0, -20.0, 40.0]],
-                [[24.0, -6.0, 10.0], [-24.0, 16.0, -18.0]],
+                [[-40.0, -12.0, 6.0], [30.0, -34.0, 56.0]],
+                [[34.0, -8.0, 14.0], [-36.0, 28.0, -26.0]],
             ),
             j,
-            [35.0, 25.0, 10.0, -15.0, -25.0],
+            [45.0, 30.0, 10.0, -20.0, -35.0],
             [0.0; 5],
         )
-        .set(j.neck, flex(-8.0)),
-        // Running.
+        .set(j.neck, turn(-10.0, 0.0, -20.0)),
+        // Leaping, stretched out.
         curled(
             legs(
-                rest().root(flex(-4.0)),
-                [[-38.0, -22.0, 6.0], [-22.0, -34.0, 34.0]],
-                [[30.0, -18.0, 24.0], [18.0, -8.0, 16.0]],
+                rest().root(flex(-18.0)),
+                [[-36.0, -18.0, 10.0], [-26.0, -34.0, 28.0]],
+                [[22.0, -18.0, 26.0], [16.0, -10.0, 20.0]],
             ),
             j,
-            [8.0, 4.0, 0.0, 6.0, 10.0],
-            [4.0; 5],
+            [-6.0, -4.0, 6.0, 14.0, 20.0],
+            [8.0; 5],
         )
-        .set(j.neck, flex(16.0)),
-        // Sitting.
+        .set(j.neck, flex(14.0)),
+        // Sitting, licking a paw.
         curled(
             legs(
-                rest().root(flex(-40.0)),
-                [[42.0, 4.0, 0.0], [46.0, 2.0, 0.0]],
-                [[-10.0, 62.0, -84.0], [-10.0, 62.0, -84.0]],
+                rest().root(flex(-44.0)),
+                [[38.0, 2.0, 0.0], [-12.0, -60.0, 44.0]],
+                [[-8.0, 58.0, -84.0], [-12.0, 58.0, -84.0]],
             ),
             j,
-            [26.0, 14.0, 4.0, 0.0, 0.0],
-            [25.0, 30.0, 30.0, 30.0, 30.0],
+            [34.0, 22.0, 4.0, 0.0, 0.0],
+            [30.0, 34.0, 34.0, 34.0, 34.0],
         )
         .same(j.toes, flex(62.0))
-        .set(j.loin, flex(-8.0))
-        .set(j.neck, turn(40.0, 0.0, 16.0)),
+        .set(j.loin, flex(6.0))
+        .set(j.chest, flex(6.0))
+        .set(j.neck, turn(46.0, 0.0, -14.0)),
         // Arched back.
         curled(
             legs(
-                rest().root(flex(-26.0)),
-                [[18.0, -4.0, 4.0], [14.0, -4.0, 4.0]],
-                [[8.0, -6.0, 12.0], [12.0, -6.0, 10.0]],
+                rest().root(flex(-20.0)),
+                [[14.0, -4.0, 4.0], [8.0, -4.0, 4.0]],
+                [[8.0, -8.0, 14.0], [12.0, -8.0, 12.0]],
             ),
             j,
-            [55.0, 35.0, 10.0, -10.0, -15.0],
+            [44.0, 40.0, 14.0, -15.0, -20.0],
             [0.0; 5],
         )
-        .set(j.loin, flex(32.0))
-        .set(j.chest, flex(28.0))
-        .set(j.neck, flex(-24.0)),
+        .set(j.loin, flex(22.0))
+        .set(j.chest, flex(20.0))
+        .set(j.neck, flex(-12.0)),
         // Play bow: front down, rump up.
         curled(
             legs(
-                rest().root(flex(14.0)),
-                [[-58.0, -14.0, 10.0], [-52.0, -14.0, 10.0]],
-                [[-14.0, 2.0, 0.0], [-10.0, 0.0, 0.0]],
+                rest().root(flex(18.0)),
+                [[-46.0, -22.0, 16.0], [-38.0, -26.0, 20.0]],
+                [[-18.0, 4.0, 0.0], [-12.0, 0.0, 0.0]],
             ),
             j,
-            [40.0, 28.0, 20.0, 16.0, 10.0],
-            [10.0, 10.0, 20.0, 20.0, 10.0],
+            [46.0, 34.0, 24.0, 20.0, 14.0],
+            [14.0, 14.0, 24.0, 24.0, 14.0],
         )
         .set(j.chest, flex(-6.0))
-        .set(j.neck, flex(-26.0)),
-        // Lifting a paw, looking aside.
+        .set(j.neck, flex(-24.0)),
+        // Upright on its hind legs, batting at something.
         curled(
-            legs(rest(), [[-62.0, 38.0, 48.0], [4.0, -2.0, 0.0]], [[6.0, 0.0, 4.0], [-8.0, 8.0, -6.0]]),
+            legs(
+                rest().root(flex(-48.0)),
+                [[-20.0, -48.0, 24.0], [0.0, -64.0, 40.0]],
+                [[16.0, 26.0, -2.0], [10.0, 32.0, -10.0]],
+            ),
             j,
-            [-20.0, -10.0, 10.0, 28.0, 30.0],
-            [10.0, 20.0, 20.0, 0.0, -20.0],
+            [-16.0, 14.0, 34.0, 34.0, 24.0],
+            [10.0, 14.0, 14.0, 10.0, 0.0],
         )
-        .set(j.neck, turn(-6.0, 0.0, 40.0)),
-        // Creeping.
+        .set(j.loin, flex(8.0))
+        .set(j.neck, turn(32.0, 0.0, 12.0)),
+        // Crouching, ready to spring.
         curled(
             legs(
                 rest(),
-                [[38.0, -62.0, 34.0], [-22.0, -24.0, 26.0]],
-                [[-38.0, 48.0, -30.0], [6.0, 34.0, -18.0]],
+                [[54.0, -92.0, 40.0], [46.0, -84.0, 38.0]],
+                [[-46.0, 74.0, -58.0], [-40.0, 68.0, -54.0]],
             ),
             j,
-            [-22.0, -4.0, 8.0, 14.0, 14.0],
-            [-14.0, -20.0, -24.0, 20.0, 30.0],
+            [-26.0, -8.0, 8.0, 16.0, 16.0],
+            [-20.0, -26.0, -30.0, -20.0, 30.0],
         )
-        .set(j.neck, flex(10.0)),
-        // Turning round.
+        .same(j.toes, flex(26.0))
+        .set(j.neck, turn(4.0, 0.0, 18.0)),
+        // Chasing its tail.
         curled(
-            legs(rest(), [[-16.0, -4.0, 4.0], [14.0, -14.0, 22.0]], [[12.0, -4.0, 6.0], [-12.0, 8.0, -8.0]]),
+            legs(
+                rest(),
+                [[-26.0, -8.0, 8.0], [20.0, -22.0, 34.0]],
+                [[18.0, -6.0, 10.0], [-20.0, 14.0, -14.0]],
+            ),
             j,
-            [20.0, 10.0, 10.0, 10.0, 10.0],
-            [-30.0, -30.0, -20.0, -10.0, 10.0],
+            [14.0, 6.0, 6.0, 6.0, 6.0],
+            [40.0, 36.0, 30.0, 24.0, 16.0],
         )
-        .set(j.loin, turn(0.0, 0.0, 28.0))
-        .set(j.chest, turn(0.0, 0.0, 26.0))
-        .set(j.neck, turn(0.0, 0.0, 42.0)),
+        .set(j.loin, turn(4.0, 0.0, 20.0))
+        .set(j.chest, turn(4.0, 0.0, 20.0))
+        .set(j.neck, turn(0.0, 0.0, 40.0)),
     ]
 }

@@ -223,77 +223,82 @@ fn poses(skeleton: &Skeleton, j: &Joints) -> Vec<Pose> {
     let down = 48.0;
     vec![
         rest(),
-        // Walking.
-        tail(
-            legs(
-                rest(),
-                [[-24.0, -4.0, 6.0, 0.0], [14.0, -14.0, 42.0, 20.0]],
-                [[18.0, -4.0, 6.0, 6.0], [-20.0, 14.0, -14.0, 8.0]],
-            ),
-            [20.0, 8.0, 4.0, 0.0],
-            [0.0; 4],
-        )
-        .both(j.arm_shoulder, [turn(22.0, down, 0.0), turn(-28.0, down, 0.0)])
-        .same(j.arm_elbow, flex(30.0)),
         // Galloping.
         tail(
             legs(
-                rest().root(flex(-4.0)),
-                [[-50.0, -10.0, 20.0, 10.0], [-34.0, -18.0, 66.0, 26.0]],
-                [[34.0, -20.0, 20.0, 16.0], [24.0, -12.0, 14.0, 16.0]],
+                rest().root(flex(-8.0)),
+                [[-42.0, -18.0, 26.0, 12.0], [-26.0, -32.0, 88.0, 34.0]],
+                [[26.0, -18.0, 22.0, 20.0], [18.0, -12.0, 16.0, 20.0]],
             ),
-            [44.0, 16.0, 8.0, 4.0],
+            [48.0, 20.0, 10.0, 4.0],
             [0.0; 4],
         )
-        .set(j.withers, flex(16.0))
-        .both(j.arm_shoulder, [turn(34.0, down, 0.0), turn(-40.0, down, 0.0)])
-        .same(j.arm_elbow, flex(74.0))
-        .same(j.fingers, flex(50.0)),
+        .set(j.withers, flex(14.0))
+        .set(j.waist, turn(10.0, 0.0, 14.0))
+        .both(j.arm_shoulder, [turn(44.0, down, 0.0), turn(-50.0, down, 0.0)])
+        .same(j.arm_elbow, flex(88.0))
+        .same(j.fingers, flex(60.0)),
         // Rearing.
         tail(
             legs(
                 rest().root(flex(-44.0)),
-                [[-20.0, -24.0, 84.0, 30.0], [-40.0, -16.0, 62.0, 24.0]],
-                [[30.0, 8.0, 4.0, 4.0], [24.0, 8.0, 6.0, 4.0]],
+                [[-10.0, -36.0, 100.0, 36.0], [-30.0, -28.0, 76.0, 30.0]],
+                [[24.0, 14.0, 4.0, 4.0], [18.0, 16.0, 6.0, 4.0]],
             ),
-            [22.0, 10.0, 4.0, 0.0],
-            [6.0; 4],
+            [30.0, 14.0, 6.0, 0.0],
+            [8.0; 4],
         )
-        .set(j.withers, flex(24.0))
-        .both(j.arm_shoulder, [turn(0.0, -74.0, -10.0), turn(-40.0, 34.0, 0.0)])
-        .both(j.arm_elbow, [flex(24.0), flex(60.0)])
-        .set(j.neck, flex(-8.0)),
-        // Drawing a bow.
+        .set(j.withers, flex(18.0))
+        .both(j.arm_shoulder, [turn(0.0, -80.0, -10.0), turn(-60.0, 30.0, 0.0)])
+        .both(j.arm_elbow, [flex(24.0), flex(84.0)])
+        .set(j.neck, flex(-12.0)),
+        // Kicking out behind.
+        tail(
+            legs(
+                rest().root(flex(38.0)),
+                [[-44.0, -6.0, 10.0, 0.0], [-34.0, -8.0, 12.0, 0.0]],
+                [[52.0, -26.0, 26.0, 24.0], [40.0, -6.0, -16.0, 30.0]],
+            ),
+            [54.0, 20.0, 8.0, 0.0],
+            [14.0; 4],
+        )
+        .set(j.loin, flex(-10.0))
+        .set(j.withers, flex(-34.0))
+        .same(j.arm_shoulder, turn(0.0, -16.0, 18.0))
+        .both(j.arm_elbow, [flex(28.0), flex(46.0)])
+        .set(j.neck, turn(-12.0, 0.0, 18.0)),
+        // Drawing a bow, turned to the side.
         tail(
             legs(
                 rest(),
-                [[-14.0, -2.0, 4.0, 0.0], [6.0, -4.0, 6.0, 0.0]],
-                [[10.0, -2.0, 4.0, 2.0], [-8.0, 6.0, -6.0, 0.0]],
+                [[-24.0, -6.0, 8.0, 0.0], [14.0, -10.0, 18.0, 8.0]],
+                [[18.0, -6.0, 8.0, 4.0], [-16.0, 12.0, -12.0, 0.0]],
             ),
-            [10.0, 4.0, 0.0, 0.0],
-            [-10.0; 4],
+            [14.0, 6.0, 0.0, 0.0],
+            [-16.0; 4],
         )
-        .set(j.waist, turn(0.0, 0.0, -34.0))
-        .set(j.chest, turn(0.0, 0.0, -20.0))
-        .set(j.neck, turn(0.0, 0.0, 48.0))
-        .both(j.arm_shoulder, [turn(0.0, -28.0, -12.0), turn(0.0, -26.0, -10.0)])
-        .both(j.arm_elbow, [flex(6.0), flex(118.0)])
-        .same(j.fingers, flex(60.0)),
-        // Looking back, one hoof lifted.
+        .set(j.loin, turn(0.0, 0.0, -16.0))
+        .set(j.waist, turn(0.0, 0.0, -40.0))
+        .set(j.chest, turn(0.0, 0.0, -26.0))
+        .set(j.neck, turn(0.0, 0.0, 52.0))
+        .both(j.arm_shoulder, [turn(0.0, -30.0, -14.0), turn(0.0, -28.0, -10.0)])
+        .both(j.arm_elbow, [flex(6.0), flex(126.0)])
+        .same(j.fingers, flex(70.0)),
+        // Bending down, one hoof lifted.
         tail(
             legs(
                 rest(),
-                [[-44.0, 10.0, 76.0, 26.0], [2.0, 0.0, 0.0, 0.0]],
-                [[-6.0, 4.0, -4.0, 0.0], [8.0, -2.0, 4.0, 0.0]],
+                [[-58.0, -10.0, 98.0, 34.0], [6.0, -2.0, 0.0, 0.0]],
+                [[-14.0, 8.0, -8.0, 0.0], [16.0, -6.0, 8.0, 4.0]],
             ),
-            [30.0, 14.0, 0.0, -6.0],
-            [20.0, 10.0, 10.0, 0.0],
+            [36.0, 18.0, 0.0, -8.0],
+            [24.0, 14.0, 12.0, 0.0],
         )
-        .set(j.loin, turn(0.0, 0.0, 12.0))
-        .set(j.waist, turn(6.0, 0.0, 36.0))
-        .set(j.chest, turn(0.0, 0.0, 22.0))
-        .set(j.neck, turn(0.0, 0.0, 36.0))
-        .both(j.arm_shoulder, [turn(16.0, 34.0, 0.0), turn(0.0, -20.0, -50.0)])
-        .both(j.arm_elbow, [turn(86.0, 40.0, 0.0), flex(30.0)]),
+        .set(j.withers, flex(12.0))
+        .set(j.waist, turn(42.0, 0.0, 16.0))
+        .set(j.chest, turn(22.0, 0.0, 10.0))
+        .set(j.neck, turn(-26.0, 0.0, 14.0))
+        .both(j.arm_shoulder, [turn(-64.0, 30.0, 0.0), turn(-20.0, 14.0, -40.0)])
+        .both(j.arm_elbow, [flex(34.0), flex(60.0)]),
     ]
 }

@@ -133,114 +133,136 @@ fn poses(skeleton: &Skeleton, j: &Joints) -> Vec<Pose> {
     let down = 48.0;
     vec![
         rest(),
-        // Walking.
+        // Striding.
         rest()
-            .both(j.hip, [turn(-28.0, -3.0, 0.0), turn(22.0, -3.0, 0.0)])
-            .both(j.knee, [flex(12.0), flex(32.0)])
-            .both(j.ankle, [flex(-6.0), flex(18.0)])
-            .both(j.shoulder, [turn(26.0, down, 0.0), turn(-30.0, down, 0.0)])
-            .same(j.elbow, flex(28.0))
-            .set(j.chest, turn(0.0, 0.0, 10.0)),
-        // Running.
+            .both(j.hip, [turn(-44.0, -3.0, 0.0), turn(30.0, -3.0, 0.0)])
+            .both(j.knee, [flex(20.0), flex(46.0)])
+            .both(j.ankle, [flex(-8.0), flex(26.0)])
+            .both(j.shoulder, [turn(40.0, down, 0.0), turn(-46.0, down, 0.0)])
+            .same(j.elbow, flex(42.0))
+            .set(j.chest, turn(0.0, 0.0, 16.0)),
+        // Sprinting.
         rest()
-            .root(turn(10.0, 0.0, 0.0))
-            .both(j.hip, [turn(-68.0, -4.0, 0.0), turn(28.0, -4.0, 0.0)])
-            .both(j.knee, [flex(78.0), flex(68.0)])
-            .both(j.ankle, [flex(-8.0), flex(30.0)])
-            .both(j.shoulder, [turn(45.0, down, 0.0), turn(-40.0, down, 0.0)])
-            .same(j.elbow, flex(80.0))
-            .same(j.fingers, flex(45.0))
-            .set(j.chest, turn(6.0, 0.0, 16.0)),
-        // Sitting.
+            .root(turn(16.0, 0.0, 0.0))
+            .both(j.hip, [turn(-94.0, -4.0, 0.0), turn(32.0, -4.0, 0.0)])
+            .both(j.knee, [flex(102.0), flex(96.0)])
+            .both(j.ankle, [flex(-10.0), flex(36.0)])
+            .both(j.shoulder, [turn(58.0, down, 0.0), turn(-58.0, down, 0.0)])
+            .same(j.elbow, flex(98.0))
+            .same(j.fingers, flex(60.0))
+            .set(j.chest, turn(8.0, 0.0, 20.0)),
+        // Sitting on the ground, leaning back on his hands.
         rest()
-            .same(j.hip, turn(-82.0, -6.0, 0.0))
-            .same(j.knee, flex(82.0))
-            .same(j.shoulder, turn(-32.0, down, 0.0))
-            .same(j.elbow, flex(38.0))
-            .set(j.waist, flex(8.0)),
-        // Both arms up.
+            .root(turn(-32.0, 0.0, 0.0))
+            .both(j.hip, [turn(-84.0, -12.0, 0.0), turn(-62.0, -8.0, 0.0)])
+            .both(j.knee, [flex(92.0), flex(14.0)])
+            .both(j.ankle, [flex(20.0), flex(14.0)])
+            .same(j.shoulder, turn(54.0, 30.0, 0.0))
+            .same(j.elbow, flex(8.0))
+            .same(j.wrist, flex(-30.0))
+            .set(j.waist, flex(16.0))
+            .set(j.neck, turn(14.0, 0.0, 20.0)),
+        // Jumping, all limbs spread.
         rest()
-            .same(j.shoulder, turn(0.0, -95.0, 0.0))
+            .same(j.shoulder, turn(0.0, -84.0, 0.0))
             .same(j.elbow, flex(12.0))
-            .set(j.neck, flex(-20.0))
-            .both(j.hip, [turn(-6.0, -12.0, 0.0), turn(4.0, -10.0, 0.0)]),
-        // Reaching forwards.
+            .set(j.neck, flex(-24.0))
+            .set(j.waist, flex(-12.0))
+            .both(j.hip, [turn(10.0, -36.0, 0.0), turn(-18.0, -34.0, 0.0)])
+            .both(j.knee, [flex(26.0), flex(40.0)])
+            .same(j.ankle, flex(28.0)),
+        // Lunging, one arm forwards.
         rest()
-            .both(j.shoulder, [turn(0.0, -26.0, -72.0), turn(20.0, down, 0.0)])
-            .both(j.elbow, [flex(8.0), flex(40.0)])
-            .both(j.hip, [turn(-38.0, -5.0, 0.0), turn(18.0, -5.0, 0.0)])
-            .both(j.knee, [flex(46.0), flex(10.0)])
-            .set(j.waist, turn(18.0, 0.0, -12.0)),
+            .both(j.shoulder, [turn(0.0, -28.0, -84.0), turn(44.0, down, 0.0)])
+            .both(j.elbow, [flex(8.0), flex(52.0)])
+            .both(j.hip, [turn(-86.0, -8.0, 0.0), turn(34.0, -6.0, 0.0)])
+            .both(j.knee, [flex(84.0), flex(16.0)])
+            .both(j.ankle, [flex(0.0), flex(24.0)])
+            .set(j.waist, turn(26.0, 0.0, -18.0))
+            .set(j.neck, flex(-20.0)),
         // Waving, the other hand on the hip.
         rest()
-            .both(j.shoulder, [turn(0.0, -45.0, -10.0), turn(12.0, 26.0, 0.0)])
-            .both(j.elbow, [turn(75.0, -80.0, 0.0), turn(85.0, 50.0, 0.0)])
-            .set(j.neck, turn(0.0, 8.0, 22.0))
-            .both(j.hip, [turn(0.0, -10.0, 0.0), turn(-4.0, -4.0, 0.0)]),
-        // Kneeling on one knee.
+            .both(j.shoulder, [turn(0.0, -56.0, -10.0), turn(16.0, 26.0, 0.0)])
+            .both(j.elbow, [turn(84.0, -80.0, 0.0), turn(96.0, 50.0, 0.0)])
+            .set(j.waist, turn(0.0, 14.0, 0.0))
+            .set(j.neck, turn(0.0, 10.0, 34.0))
+            .both(j.hip, [turn(0.0, -22.0, 0.0), turn(-8.0, -4.0, 0.0)]),
+        // Crouching at the start of a race, hands to the ground.
         rest()
-            .both(j.hip, [turn(-84.0, -6.0, 0.0), turn(6.0, -4.0, 0.0)])
-            .both(j.knee, [flex(86.0), flex(92.0)])
-            .both(j.ankle, [flex(0.0), flex(30.0)])
-            .both(j.shoulder, [turn(-48.0, down, 0.0), turn(10.0, down - 6.0, 0.0)])
-            .both(j.elbow, [flex(30.0), flex(25.0)]),
-        // Kicking.
+            .root(turn(52.0, 0.0, 0.0))
+            .both(j.hip, [turn(-112.0, -8.0, 0.0), turn(-64.0, -6.0, 0.0)])
+            .both(j.knee, [flex(112.0), flex(104.0)])
+            .both(j.ankle, [flex(-6.0), flex(10.0)])
+            .same(j.shoulder, turn(-70.0, 34.0, 0.0))
+            .same(j.elbow, flex(8.0))
+            .set(j.waist, flex(24.0))
+            .set(j.chest, flex(12.0))
+            .set(j.neck, flex(-34.0)),
+        // Kicking high.
         rest()
-            .root(turn(-10.0, 0.0, 0.0))
-            .both(j.hip, [turn(-78.0, -4.0, 0.0), turn(8.0, -4.0, 0.0)])
-            .both(j.knee, [flex(14.0), flex(16.0)])
-            .both(j.ankle, [flex(24.0), flex(-4.0)])
-            .both(j.shoulder, [turn(20.0, 5.0, 24.0), turn(0.0, -6.0, -38.0)])
-            .both(j.elbow, [flex(30.0), flex(50.0)]),
+            .root(turn(-22.0, 0.0, 0.0))
+            .both(j.hip, [turn(-106.0, -6.0, 0.0), turn(18.0, -6.0, 0.0)])
+            .both(j.knee, [flex(10.0), flex(24.0)])
+            .both(j.ankle, [flex(28.0), flex(-4.0)])
+            .both(j.shoulder, [turn(30.0, 8.0, 30.0), turn(0.0, -10.0, -50.0)])
+            .both(j.elbow, [flex(44.0), flex(70.0)])
+            .set(j.waist, flex(14.0)),
         // Squatting, arms forwards.
         rest()
-            .root(turn(14.0, 0.0, 0.0))
-            .same(j.hip, turn(-92.0, -14.0, 0.0))
-            .same(j.knee, flex(100.0))
-            .same(j.ankle, flex(-16.0))
-            .same(j.shoulder, turn(0.0, -22.0, -66.0))
+            .root(turn(24.0, 0.0, 0.0))
+            .same(j.hip, turn(-112.0, -20.0, 0.0))
+            .same(j.knee, flex(124.0))
+            .same(j.ankle, flex(-22.0))
+            .same(j.shoulder, turn(0.0, -28.0, -74.0))
             .same(j.elbow, flex(14.0))
-            .set(j.neck, flex(-10.0)),
+            .set(j.neck, flex(-18.0)),
         // Throwing.
         rest()
-            .both(j.shoulder, [turn(0.0, -52.0, 28.0), turn(0.0, -8.0, -62.0)])
-            .both(j.elbow, [turn(62.0, -70.0, 0.0), flex(22.0)])
-            .both(j.hip, [turn(24.0, -6.0, 0.0), turn(-34.0, -6.0, 0.0)])
-            .both(j.knee, [flex(24.0), flex(30.0)])
-            .set(j.waist, turn(-10.0, 0.0, 26.0))
-            .set(j.neck, turn(0.0, 0.0, -24.0)),
-        // Bowing.
+            .both(j.shoulder, [turn(0.0, -60.0, 38.0), turn(0.0, -12.0, -70.0)])
+            .both(j.elbow, [turn(80.0, -70.0, 0.0), flex(30.0)])
+            .both(j.hip, [turn(34.0, -8.0, 0.0), turn(-56.0, -8.0, 0.0)])
+            .both(j.knee, [flex(36.0), flex(44.0)])
+            .set(j.waist, turn(-16.0, 0.0, 32.0))
+            .set(j.chest, turn(-6.0, 0.0, 14.0))
+            .set(j.neck, turn(0.0, 0.0, -36.0)),
+        // Bending down to his toes.
         rest()
+            .root(turn(34.0, 0.0, 0.0))
+            .same(j.hip, turn(-46.0, -4.0, 0.0))
+            .same(j.knee, flex(14.0))
             .set(j.waist, flex(48.0))
-            .set(j.chest, flex(22.0))
-            .set(j.neck, flex(14.0))
-            .same(j.shoulder, turn(-30.0, down, 0.0))
-            .same(j.elbow, flex(15.0))
-            .same(j.hip, turn(-10.0, -3.0, 0.0))
-            .same(j.knee, flex(12.0)),
-        // Boxing.
+            .set(j.chest, flex(26.0))
+            .set(j.neck, flex(18.0))
+            .same(j.shoulder, turn(-74.0, down - 4.0, 0.0))
+            .same(j.elbow, flex(10.0)),
+        // Boxing, ducked.
         rest()
-            .both(j.shoulder, [turn(-30.0, 34.0, -10.0), turn(-52.0, 30.0, 0.0)])
-            .both(j.elbow, [flex(108.0), flex(70.0)])
-            .same(j.fingers, flex(75.0))
-            .both(j.hip, [turn(-26.0, -8.0, 0.0), turn(16.0, -8.0, 0.0)])
-            .both(j.knee, [flex(30.0), flex(24.0)])
-            .set(j.waist, turn(8.0, 0.0, 22.0)),
+            .both(j.shoulder, [turn(-44.0, 34.0, -14.0), turn(-68.0, 26.0, 0.0)])
+            .both(j.elbow, [flex(116.0), flex(64.0)])
+            .same(j.fingers, flex(80.0))
+            .both(j.hip, [turn(-58.0, -12.0, 0.0), turn(-14.0, -12.0, 0.0)])
+            .both(j.knee, [flex(66.0), flex(58.0)])
+            .set(j.waist, turn(26.0, 0.0, 28.0))
+            .set(j.chest, turn(12.0, 0.0, 8.0))
+            .set(j.neck, turn(-20.0, 0.0, -20.0)),
         // Climbing.
         rest()
-            .both(j.shoulder, [turn(0.0, -92.0, -24.0), turn(-55.0, 30.0, 0.0)])
-            .both(j.elbow, [flex(16.0), flex(80.0)])
-            .both(j.hip, [turn(8.0, -6.0, 0.0), turn(-88.0, -20.0, 0.0)])
-            .both(j.knee, [flex(14.0), flex(88.0)])
-            .set(j.neck, turn(-22.0, 0.0, 10.0)),
-        // Standing at ease, looking aside.
+            .both(j.shoulder, [turn(0.0, -92.0, -24.0), turn(-70.0, 24.0, 0.0)])
+            .both(j.elbow, [flex(16.0), flex(96.0)])
+            .both(j.hip, [turn(12.0, -6.0, 0.0), turn(-108.0, -22.0, 0.0)])
+            .both(j.knee, [flex(16.0), flex(112.0)])
+            .set(j.waist, turn(0.0, -12.0, 0.0))
+            .set(j.neck, turn(-30.0, 0.0, 14.0)),
+        // Asleep on his side, curled up.
         rest()
-            .same(j.shoulder, turn(6.0, down, 0.0))
-            .same(j.elbow, flex(18.0))
-            .same(j.wrist, flex(8.0))
-            .both(j.hip, [turn(-8.0, -10.0, -8.0), turn(4.0, -3.0, 0.0)])
-            .both(j.knee, [flex(14.0), flex(2.0)])
-            .set(j.waist, turn(0.0, 5.0, 8.0))
-            .set(j.neck, turn(0.0, 0.0, 38.0)),
+            .root(turn(0.0, 84.0, 0.0))
+            .both(j.hip, [turn(-76.0, -4.0, 0.0), turn(-60.0, -6.0, 0.0)])
+            .both(j.knee, [flex(96.0), flex(84.0)])
+            .same(j.ankle, flex(20.0))
+            .both(j.shoulder, [turn(-56.0, 38.0, 0.0), turn(-74.0, 32.0, 0.0)])
+            .both(j.elbow, [flex(70.0), flex(96.0)])
+            .set(j.waist, flex(26.0))
+            .set(j.chest, flex(18.0))
+            .set(j.neck, flex(22.0)),
     ]
 }

@@ -10,7 +10,7 @@
 //! cat | centaur | david   a body (implicit), a skeleton, typical poses
 //!   -> extract            the rest surface, on a lattice placed at random
 //!   -> simplify, relax    the wanted number of vertices, well-shaped triangles
-//!   -> pose               bent along the skeleton, lengths kept
+//!   -> pose, clearance    bent along the skeleton, lengths kept, limbs clear of each other
 //!   -> shape              vertices and faces in random order
 //! ```
 //!
@@ -22,6 +22,7 @@ mod articulated;
 mod cases;
 mod cat;
 mod centaur;
+mod clearance;
 mod corner_table;
 mod david;
 mod error;

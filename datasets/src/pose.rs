@@ -132,6 +132,17 @@ impl<'a> PosedSkeleton<'a> {
         Self { skeleton, motions }
     }
 
+    /// The skeleton that is bent.
+    pub(crate) fn skeleton(&self) -> &'a Skeleton {
+        self.skeleton
+    }
+
+    /// Where the point of a chain's axis at length `arc` goes.
+    pub(crate) fn axis_point(&self, chain: usize, arc: f64) -> Point3<f64> {
+        let bones = &self.skeleton.chains[chain];
+        interpolate(&self.motions[chain], arc / length(bones)).apply(axis_point(bones, arc))
+    }
+
     /// Where the rest-pose point `p` goes.
     pub(crate) fn deform(&self, p: Point3<f64>) -> Point3<f64> {
         let mut sum = Vector3::zeros();
@@ -200,7 +211,8 @@ fn smooth_step(t: f64) -> f64 {
     t * t * (3.0 - 2.0 * t)
 }
 
-fn axis_point(chain: &Chain, arc: f64) -> Point3<f64> {
+/// The point of a chain's axis at length `arc`, at rest.
+pub(crate) fn axis_point(chain: &Chain, arc: f64) -> Point3<f64> {
     let i = chain.arcs[1..chain.arcs.len() - 1].partition_point(|&a| a <= arc);
     let t = (arc - chain.arcs[i]) / (chain.arcs[i + 1] - chain.arcs[i]);
     chain.nodes[i].at + (chain.nodes[i + 1].at - chain.nodes[i].at) * t.clamp(0.0, 1.0)

@@ -19,6 +19,12 @@ const SURPLUS: f64 = 1.5;
 /// Lattices tried, each finer than the one before.
 const N_ATTEMPTS: usize = 8;
 const REFINEMENT: f64 = 0.9;
+/// How far edge lengths follow what the skeleton asks for: 0 would make all alike, 1 makes hands and faces
+/// as fine as they deserve. Drawn anew for every shape, for shapes that are scanned or simplified one by
+/// one are denser here in one and there in another. In this range the mean distance between two vertices
+/// exceeds that between two points of the surface by about as much as on the low-resolution TOSCA shapes
+/// of the same families, where it is 6 to 15 %.
+const GRADING: [f64; 2] = [0.25, 0.6];
 /// Rounds of flips and smoothing.
 const N_ROUNDS: usize = 6;
 
@@ -26,19 +32,20 @@ const N_ROUNDS: usize = 6;
 pub(crate) fn rest_surface(model: &Model, n_vertices: usize, stream: &mut Stream) -> Option<Surface> {
     let dense = (CROSSINGS * model.area / (SURPLUS * n_vertices as f64)).sqrt();
     let mut spacing = model.spacing.min(dense);
+    let grading = stream.uniform(GRADING[0], GRADING[1]);
     for _ in 0..N_ATTEMPTS {
         let rotation = stream.rotation();
         let shift = Vector3::from([(); 3].map(|()| stream.uniform(0.0, 1.0)));
         let raw = extract(&model.body, Lattice { rotation, shift, spacing });
         spacing *= REFINEMENT;
-        if let Some(surface) = sphere(model, raw, n_vertices) {
+        if let Some(surface) = sphere(model, raw, grading, n_vertices) {
             return Some(surface);
         }
     }
     None
 }
 
-fn sphere(model: &Model, raw: RawSurface, n_vertices: usize) -> Option<Surface> {
+fn sphere(model: &Model, raw: RawSurface, grading: f64, n_vertices: usize) -> Option<Surface> {
     let n_raw = raw.positions.len();
     // On a closed surface, Euler's formula of the sphere reads F = 2 V - 4; being connected is checked
     // by walking.
@@ -49,7 +56,7 @@ fn sphere(model: &Model, raw: RawSurface, n_vertices: usize) -> Option<Surface> 
     if !table.is_connected() {
         return None;
     }
-    let grain = raw.positions.par_iter().map(|&p| model.skeleton.grain(p)).collect();
+    let grain = raw.positions.par_iter().map(|&p| 1.0 + grading * (model.skeleton.grain(p) - 1.0)).collect();
     let mut surface = Surface { table, positions: raw.positions, grain };
     if simplify(&mut surface, n_vertices) != n_vertices {
         return None;
