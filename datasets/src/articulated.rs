@@ -114,7 +114,7 @@ pub struct LabeledShape {
 /// The built-in dataset: 9 cats, 6 centaurs and 15 davids, in that order.
 ///
 /// All shapes of a family are one body bent into different poses within the limits of its joints, so their
-/// surfaces are nearly isometric: half of the shortest paths change by less than 4 %. Each is triangulated
+/// surfaces are nearly isometric: on average half of the shortest paths change by less than 4 %. Each is triangulated
 /// anew on a lattice of its own, denser here in one and there in another, and numbered at random: nothing
 /// in two meshes corresponds. Triangles are made on the body at rest, so that limbs which come close do not
 /// grow together. All families have the same area at rest. Shapes are made in parallel.
