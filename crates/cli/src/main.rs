@@ -18,6 +18,7 @@ fn main() -> ExitCode {
         Command::Info(args) => commands::info(args, &common),
         Command::Geodesic(args) => commands::geodesic(args, &common),
         Command::Embed(args) => commands::embed(args, &common),
+        Command::Methods(args) => commands::methods(args, &common),
         Command::Compare(args) => commands::compare(args, &common),
         Command::Completions(args) => commands::completions(args),
     })

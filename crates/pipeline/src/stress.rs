@@ -9,10 +9,10 @@ use serde::Serialize;
 use crate::{EmbedOptions, Observer, StressChoice};
 
 /// Up to this many vertices [`StressChoice::Auto`] is exact.
-const EXACT_LIMIT: usize = 5000;
+pub(crate) const EXACT_LIMIT: usize = 5000;
 
 /// Rows an estimate is made from.
-const ESTIMATE_ROWS: usize = 100;
+pub(crate) const ESTIMATE_ROWS: usize = 100;
 
 /// The paper's stress of an embedding and how it was found.
 #[derive(Debug, Clone, PartialEq, Serialize)]

@@ -1,14 +1,16 @@
-//! What the programs share towards the person at the terminal: progress, threads, interruption, exit
-//! codes.
+//! What the programs share towards the person at the terminal: progress, threads, memory, interruption,
+//! exit codes.
 //!
 //! Knows nothing of arguments or results.
 
+mod memory;
 mod progress;
 
 use std::process::ExitCode;
 
 use anyhow::{Context, Result};
 
+pub use memory::PeakMemory;
 pub use progress::Bars;
 
 /// Exit code of a program that was interrupted, as shells know it: 128 and the number of the signal.

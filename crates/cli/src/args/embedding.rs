@@ -168,7 +168,7 @@ fn name(value: impl ValueEnum) -> String {
     value.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned())
 }
 
-fn parse_samples(text: &str) -> Result<Samples, String> {
+pub(super) fn parse_samples(text: &str) -> Result<Samples, String> {
     match text.parse() {
         _ if text == "auto" => Ok(Samples::Auto),
         Ok(0) | Err(_) => Err(format!("`{text}` is neither a positive number nor `auto`")),

@@ -7,7 +7,9 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use mesh::{ComponentPolicy, Orient, RepairOptions, Weld};
-use pipeline::{FastMarchingOptions, GeodesicMethod, HeatOptions, ObtuseTreatment, StressChoice, Update};
+use pipeline::{
+    FastMarchingOptions, GeodesicMethod, HeatOptions, ObtuseTreatment, Samples, StressChoice, Update,
+};
 
 pub(crate) use embedding::EmbeddingArgs;
 pub(crate) use geodesic::GeodesicArgs;
@@ -50,6 +52,8 @@ pub(crate) enum Command {
     Geodesic(GeodesicArgs),
     /// Turn a mesh, or every mesh in a folder, into its canonical form
     Embed(EmbedArgs),
+    /// Embed a mesh by every method and set their stress, time and memory side by side
+    Methods(MethodsArgs),
     /// Align the canonical forms of two meshes and say how far apart they are
     Compare(CompareArgs),
     /// Print a script that completes this program's arguments in a shell
@@ -84,6 +88,28 @@ pub(crate) struct EmbedArgs {
     /// How the distances are measured that the stress holds the form against [default: as --geodesic]
     #[arg(long, value_enum, value_name = "METHOD")]
     pub(crate) stress_against: Option<GeodesicName>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct MethodsArgs {
+    /// Mesh file
+    pub(crate) mesh: PathBuf,
+    /// Number of samples, or `auto` to take as many as each method needs [default: 100]
+    #[arg(short = 'n', long, value_name = "SAMPLES|auto", value_parser = embedding::parse_samples)]
+    pub(crate) samples: Option<Samples>,
+    /// Dimensions of the embeddings
+    #[arg(long, default_value_t = 3, value_name = "K")]
+    pub(crate) dim: usize,
+    /// How distances are measured
+    #[arg(long, value_enum, default_value_t = GeodesicName::FastMarching, value_name = "METHOD")]
+    pub(crate) geodesic: GeodesicName,
+    #[command(flatten)]
+    pub(crate) marching: MarchingArgs,
+    /// How the stress is found
+    #[arg(long, value_enum, default_value_t = SharedStressName::Auto)]
+    pub(crate) stress: SharedStressName,
+    #[command(flatten)]
+    pub(crate) repair: RepairArgs,
 }
 
 #[derive(Debug, Args)]
@@ -221,6 +247,27 @@ impl From<StressName> for StressChoice {
             StressName::Exact => Self::Exact,
             StressName::Estimate => Self::Estimate,
             StressName::Skip => Self::Skip,
+        }
+    }
+}
+
+/// How the stress of all methods is found.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum SharedStressName {
+    /// Exact up to 5,000 vertices, estimated beyond
+    Auto,
+    /// From all pairs of vertices
+    Exact,
+    /// From 100 vertices to all others, the same for all methods
+    Estimate,
+}
+
+impl From<SharedStressName> for StressChoice {
+    fn from(name: SharedStressName) -> Self {
+        match name {
+            SharedStressName::Auto => Self::Auto,
+            SharedStressName::Exact => Self::Exact,
+            SharedStressName::Estimate => Self::Estimate,
         }
     }
 }

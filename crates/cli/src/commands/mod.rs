@@ -5,12 +5,14 @@ mod completions;
 mod embed;
 mod geodesic;
 mod info;
+mod methods;
 
 pub(crate) use compare::compare;
 pub(crate) use completions::completions;
 pub(crate) use embed::embed;
 pub(crate) use geodesic::geodesic;
 pub(crate) use info::info;
+pub(crate) use methods::methods;
 
 use mesh::RepairReport;
 use pipeline::Surface;

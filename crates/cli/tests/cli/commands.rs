@@ -287,3 +287,37 @@ fn a_closed_pipe_is_no_error() {
         assert!(!message.contains("panicked") && !message.contains("error"), "{arguments:?}: {message}");
     }
 }
+
+#[test]
+fn methods_sets_every_method_side_by_side() {
+    let place = Workplace::new();
+    place.add("ring.off", &ring());
+    let json = place.json(&["methods", "ring.off", "-n", "20"]);
+    assert_keys(&json, &["n_vertices", "n_embedded", "dim", "geodesic", "methods", "best", "repair"]);
+    let methods = json["methods"].as_array().unwrap();
+    let name = |m: &serde_json::Value| m["method"].as_str().unwrap().to_owned();
+    for wanted in ["nmds", "landmark", "spectral", "fmds", "kpca", "mds", "smacof"] {
+        assert!(methods.iter().any(|m| name(m) == wanted), "{wanted}");
+    }
+    for method in methods.iter().filter(|m| m["error"].is_null()) {
+        assert_keys(method, &["options", "negative_mass", "n_samples", "seconds", "peak_bytes"]);
+        assert!(method["peak_bytes"].as_u64().unwrap() > 160 * 20 * 8, "{method}");
+        assert_eq!(method["stress"].is_null(), name(method) == "kpca", "{method}");
+    }
+    let stress = |m: &serde_json::Value| m["stress"]["value"].as_f64();
+    let best = json["best"].as_u64().unwrap() as usize;
+    assert!(methods.iter().filter_map(stress).all(|s| stress(&methods[best]).unwrap() <= s));
+    // No other form has less strain than that of classical scaling.
+    let least = stress(methods.iter().find(|m| name(m) == "mds").unwrap()).unwrap();
+    assert!(methods.iter().filter_map(stress).all(|s| s >= least * (1.0 - 1e-9)));
+}
+
+#[test]
+fn methods_marks_the_best_and_a_method_that_fails_stops_no_other() {
+    let place = Workplace::new();
+    place.add("ring.off", &ring());
+    let text = place.done(&["methods", "ring.off", "-n", "3", "--stress", "estimate"]).out;
+    assert!(text.contains("landmark  ") && text.contains("landmark  failed: cannot embed"), "{text}");
+    assert!(text.contains(" *") && text.contains("mds") && text.contains("estimated"), "{text}");
+    place.refused(&["methods", "absent.off"], &["absent.off"]);
+}

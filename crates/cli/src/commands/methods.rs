@@ -1,0 +1,97 @@
+//! `canonform methods`.
+
+use std::process::ExitCode;
+
+use anyhow::Result;
+use pipeline::{EmbedOptions, MethodFacts, MethodsReport, compare_methods};
+use terminal::{Bars, PeakMemory};
+
+use super::{named, read_surface};
+use crate::args::{Common, MethodsArgs};
+use crate::output::{print, print_json};
+
+/// Embeds a mesh by every method and sets them side by side.
+pub(crate) fn methods(args: &MethodsArgs, common: &Common) -> Result<ExitCode> {
+    let usual = EmbedOptions::default();
+    let options = EmbedOptions {
+        geodesic: args.geodesic.method(args.marching),
+        samples: args.samples.unwrap_or(usual.samples),
+        dim: args.dim,
+        stress: args.stress.into(),
+        seed: common.seed,
+        ..usual
+    };
+    let surface = read_surface(&args.mesh, &args.repair)?;
+    let bars = Bars::new(common.quiet);
+    let watch = |work: &mut dyn FnMut()| {
+        let memory = PeakMemory::begin();
+        work();
+        memory.bytes()
+    };
+    let report =
+        compare_methods(&surface, &options, &bars, &watch).map_err(|fault| named(&args.mesh, fault))?;
+    bars.finish();
+    if common.json {
+        print_json(&report)?;
+    } else {
+        print(&table(&report))?;
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// One row a method; the least of a column is starred.
+fn table(report: &MethodsReport) -> String {
+    let least = |value: &dyn Fn(&MethodFacts) -> Option<f64>| {
+        let facts = report.methods.iter().filter_map(|m| m.facts.as_ref());
+        facts.filter_map(value).fold(f64::INFINITY, f64::min)
+    };
+    let stress = |f: &MethodFacts| f.stress.as_ref().map(|s| s.value);
+    let seconds = |f: &MethodFacts| Some(f.seconds);
+    let memory = |f: &MethodFacts| Some(f.peak_bytes as f64);
+    let best = [least(&stress), least(&seconds), least(&memory)];
+    let star = |value: Option<f64>, best: f64| if value == Some(best) { " *" } else { "  " };
+
+    let mut table = comfy_table::Table::new();
+    table.load_style(comfy_table::presets::NOTHING).set_header([
+        "method",
+        "options",
+        "samples",
+        "stress  ",
+        "seconds  ",
+        "memory  ",
+        "negative mass",
+    ]);
+    for method in &report.methods {
+        let mut row = vec![method.method.to_owned(), method.options.to_owned()];
+        match &method.facts {
+            Some(f) => {
+                let value = stress(f).map_or_else(|| "no unit".to_owned(), |s| format!("{s:.4}"));
+                row.extend([
+                    f.n_samples.to_string(),
+                    value + star(stress(f), best[0]),
+                    report::tables::seconds_digits(f.seconds) + star(seconds(f), best[1]),
+                    report::tables::bytes_digits(f.peak_bytes) + star(memory(f), best[2]),
+                    format!("{:.4}", f.negative_mass),
+                ]);
+            }
+            None => row.extend(["", "failed  ", "", "", ""].map(str::to_owned)),
+        }
+        table.add_row(row);
+    }
+    for column in table.column_iter_mut().skip(2) {
+        column.set_cell_alignment(comfy_table::CellAlignment::Right);
+    }
+    let mut text = table.trim_fmt();
+    for method in &report.methods {
+        if let Some(error) = &method.error {
+            text += &format!("\n{} {} failed: {error}", method.method, method.options);
+        }
+    }
+    let kind = report.methods.iter().find_map(|m| m.facts.as_ref()?.stress.as_ref());
+    let kind = kind.map_or_else(String::new, |s| format!(", {:?}", s.kind).to_lowercase());
+    text + &format!(
+        "\n* least of the column. {} vertices, {} dimensions; stress against {} distances{kind}; seconds from the \
+         repaired mesh to coordinates.",
+        report.n_embedded, report.dim, report.geodesic
+    )
+}
