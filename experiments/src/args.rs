@@ -36,7 +36,8 @@ pub(crate) struct RunArgs {
     /// A file of lines `name,label` that gives the classes of the shapes in the folder
     #[arg(long, value_name = "FILE", requires = "dataset")]
     pub(crate) labels: Option<PathBuf>,
-    /// Classes to use, in this order [default: all]
+    /// Classes to use, in this order, or `all` [default: cat, centaur and david, which the paper shows,
+    /// where a folder has these; else all]
     #[arg(long, value_delimiter = ',', value_name = "CLASS,...")]
     pub(crate) classes: Vec<String>,
     /// Folder for the results

@@ -14,6 +14,9 @@ pub(crate) const BUILT_IN: &str = "built-in articulated families";
 /// The classes of the paper's Figure 4.
 pub(crate) const PAPER_CLASSES: [&str; 3] = ["cat", "centaur", "david"];
 
+/// What asks for every class of a folder.
+const ALL_CLASSES: &str = "all";
+
 /// Labelled surfaces, class by class.
 pub(crate) struct Collection {
     /// Where they come from.
@@ -35,6 +38,8 @@ impl Collection {
     /// error and left out.
     pub(crate) fn load(args: &RunArgs, observer: &dyn Observer) -> Result<Self> {
         let repair = RepairOptions::default();
+        let takes_all = args.classes == [ALL_CLASSES];
+        let mut wanted = if takes_all { Vec::new() } else { args.classes.clone() };
         let (dataset, found) = match &args.dataset {
             None => {
                 let options = ArticulatedOptions { seed: args.seed, n_vertices: args.vertices };
@@ -48,7 +53,11 @@ impl Collection {
             Some(folder) => {
                 let labels = args.labels.as_deref().map(LabelFile::read).transpose()?;
                 let mut files = list_shapes(folder, labels.as_ref())?;
-                files.retain(|file| args.classes.is_empty() || args.classes.contains(&file.label));
+                let is_there = |class: &&str| files.iter().any(|file| file.label == *class);
+                if wanted.is_empty() && !takes_all && PAPER_CLASSES.iter().all(is_there) {
+                    wanted = PAPER_CLASSES.map(str::to_owned).to_vec();
+                }
+                files.retain(|file| wanted.is_empty() || wanted.contains(&file.label));
                 observer.begin("reading", files.len());
                 let shape = |file: pipeline::ShapeFile| {
                     let surface = Surface::read(&file.path, &repair);
@@ -65,7 +74,7 @@ impl Collection {
                 Err(fault) => eprintln!("left out {name}: {fault}"),
             }
         }
-        Self::in_class_order(dataset, shapes, &args.classes)
+        Self::in_class_order(dataset, shapes, &wanted)
     }
 
     /// Sorts shapes by class, in the order asked for or of first appearance.

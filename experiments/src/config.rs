@@ -1,7 +1,10 @@
 //! What an experiment does, is expected to show, and means: `configs/*.toml`.
 
 use anyhow::{Context, Result};
-use pipeline::{Bandwidth, EmbedMethod, EmbedOptions, Samples, StressChoice};
+use pipeline::{
+    Bandwidth, EmbedMethod, EmbedOptions, FastMarchingOptions, GeodesicMethod, ObtuseTreatment, Samples,
+    StressChoice,
+};
 use report::results::Expectation;
 use serde::Deserialize;
 
@@ -13,10 +16,30 @@ use crate::collection::Setting;
 pub(crate) struct Config {
     /// One line for `list`.
     pub(crate) title: String,
-    /// Samples of the Nystrom methods.
+    /// Samples of the Nystrom methods; 0 where the experiment varies them.
+    #[serde(default)]
     pub(crate) samples: usize,
-    /// Eigenpairs they keep.
+    /// Eigenpairs they keep; 0 where the experiment varies them.
+    #[serde(default)]
     pub(crate) rank: usize,
+    /// How distances are marched around wide corners; the default of the solver when absent.
+    #[serde(default)]
+    pub(crate) obtuse: Option<Obtuse>,
+    /// Runs that differ in the first sample, or repeat a measurement of time.
+    #[serde(default = "one")]
+    pub(crate) runs: usize,
+    /// Eigenfunctions of spectral scaling.
+    #[serde(default)]
+    pub(crate) eigenvectors: usize,
+    /// What varies along the horizontal axis: samples, or ranks.
+    #[serde(default)]
+    pub(crate) counts: Vec<usize>,
+    /// What varies along the horizontal axis, as exponents of ten.
+    #[serde(default)]
+    pub(crate) exponents: Vec<f64>,
+    /// Numbers that the paper prints.
+    #[serde(default)]
+    pub(crate) printed: Vec<Printed>,
     /// Neighbours that vote.
     #[serde(default = "one")]
     pub(crate) knn: usize,
@@ -29,6 +52,36 @@ pub(crate) struct Config {
 
 fn one() -> usize {
     1
+}
+
+/// The treatments of wide corners by their names on the command line.
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub(crate) enum Obtuse {
+    Flip,
+    Unfold,
+    Ignore,
+}
+
+impl From<Obtuse> for ObtuseTreatment {
+    fn from(obtuse: Obtuse) -> Self {
+        match obtuse {
+            Obtuse::Flip => Self::Flip,
+            Obtuse::Unfold => Self::Unfold,
+            Obtuse::Ignore => Self::Ignore,
+        }
+    }
+}
+
+/// A number of the paper.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Printed {
+    /// Its row: a class, or a number of vertices.
+    pub(crate) row: String,
+    /// Its column: a method.
+    pub(crate) method: String,
+    pub(crate) value: f64,
 }
 
 /// Bounds on one of an experiment's numbers.
@@ -55,7 +108,10 @@ impl Config {
 
     /// Options of the paper's method.
     pub(crate) fn nmds(&self, seed: u64) -> EmbedOptions {
+        let marching = FastMarchingOptions::default();
+        let obtuse = self.obtuse.map_or(marching.obtuse, Into::into);
         EmbedOptions {
+            geodesic: GeodesicMethod::FastMarching(FastMarchingOptions { obtuse, ..marching }),
             samples: Samples::Count(self.samples),
             method: EmbedMethod::low_rank(self.rank),
             stress: StressChoice::Skip,
@@ -98,9 +154,18 @@ impl Bound {
         Ok(Expectation {
             what: self.value.clone(),
             expected: bounds.iter().map(|(text, _)| text.as_str()).collect::<Vec<_>>().join(", "),
-            measured: format!("{value:.4}"),
+            measured: digits(value),
             held: bounds.iter().all(|(_, held)| *held),
         })
+    }
+}
+
+/// A number with at least four digits.
+fn digits(value: f64) -> String {
+    if value != 0.0 && (value.abs() < 0.01 || value.abs() >= 1e6) {
+        format!("{value:.3e}")
+    } else {
+        format!("{value:.4}")
     }
 }
 

@@ -14,7 +14,7 @@ use report::render::View;
 use report::results::{Figure1Record, Figure1Shape, write};
 
 use crate::collection::{Shape, map};
-use crate::run::Context;
+use crate::run::{Context, described};
 
 /// Points of a form that are matched with the first form of its class.
 const MATCHED_POINTS: usize = 400;
@@ -48,7 +48,7 @@ pub(crate) fn run(context: &Context<'_>) -> Result<()> {
     let record = Figure1Record {
         expectations: context.check(|name| (name == "largest stress ratio").then_some(worst))?,
         analysis: context.config.analysis.trim().to_owned(),
-        provenance: context.provenance(&[("embedding", &options)], start.elapsed())?,
+        provenance: context.provenance(described(&[("embedding", &options)]), start.elapsed()),
         shapes: facts.clone(),
     };
 

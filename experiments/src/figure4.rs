@@ -20,7 +20,7 @@ use report::tables::figure4_table;
 use retrieval::{Labels, evaluate, silhouette};
 
 use crate::collection::map;
-use crate::run::Context;
+use crate::run::{Context, described};
 
 /// Name of the paper's method in the record.
 const NMDS: &str = "NMDS";
@@ -46,7 +46,7 @@ pub(crate) fn run(context: &Context<'_>) -> Result<()> {
     let record = Figure4Record {
         expectations: context.check(|name| measured(&panels, name))?,
         analysis: config.analysis.trim().to_owned(),
-        provenance: context.provenance(&options, start.elapsed())?,
+        provenance: context.provenance(described(&options), start.elapsed()),
         names: context.collection.names(),
         labels,
         panels,

@@ -9,8 +9,16 @@ mod args;
 mod collection;
 mod config;
 mod figure1;
+mod figure3;
 mod figure4;
+mod figure5;
+mod figure6;
+mod figure7;
+mod figure8;
+mod figure9;
 mod run;
+mod specimen;
+mod sweep;
 
 use std::process::ExitCode;
 

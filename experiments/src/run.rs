@@ -12,26 +12,51 @@ use report::results::{Expectation, Provenance};
 use terminal::Bars;
 
 use crate::args::{ReportArgs, RunArgs};
-use crate::collection::Collection;
+use crate::collection::{Collection, Setting};
 use crate::config::Config;
-use crate::{figure1, figure4};
+use crate::specimen::{Distances, Specimen, specimens};
+use crate::{figure1, figure3, figure4, figure5, figure6, figure7, figure8, figure9};
 
 /// An experiment of the runner.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Experiment {
     All,
     Figure1,
+    Figure3,
     Figure4,
+    Figure5a,
+    Figure5b,
+    Figure6,
+    Figure7,
+    Figure8,
+    Figure9,
 }
 
 impl Experiment {
-    const EACH: [Self; 2] = [Self::Figure1, Self::Figure4];
+    const EACH: [Self; 9] = [
+        Self::Figure1,
+        Self::Figure3,
+        Self::Figure4,
+        Self::Figure5a,
+        Self::Figure5b,
+        Self::Figure6,
+        Self::Figure7,
+        Self::Figure8,
+        Self::Figure9,
+    ];
 
     fn name(self) -> &'static str {
         match self {
             Self::All => "all",
             Self::Figure1 => "figure1",
+            Self::Figure3 => "figure3",
             Self::Figure4 => "figure4",
+            Self::Figure5a => "figure5a",
+            Self::Figure5b => "figure5b",
+            Self::Figure6 => "figure6",
+            Self::Figure7 => "figure7",
+            Self::Figure8 => "figure8",
+            Self::Figure9 => "figure9",
         }
     }
 
@@ -49,7 +74,14 @@ impl Experiment {
         let text = match self {
             Self::All => bail!("`all` is not one experiment"),
             Self::Figure1 => include_str!("../configs/figure1.toml"),
+            Self::Figure3 => include_str!("../configs/figure3.toml"),
             Self::Figure4 => include_str!("../configs/figure4.toml"),
+            Self::Figure5a => include_str!("../configs/figure5a.toml"),
+            Self::Figure5b => include_str!("../configs/figure5b.toml"),
+            Self::Figure6 => include_str!("../configs/figure6.toml"),
+            Self::Figure7 => include_str!("../configs/figure7.toml"),
+            Self::Figure8 => include_str!("../configs/figure8.toml"),
+            Self::Figure9 => include_str!("../configs/figure9.toml"),
         };
         Config::parse(self.name(), text)
     }
@@ -58,7 +90,14 @@ impl Experiment {
         match self {
             Self::All => bail!("`all` is not one experiment"),
             Self::Figure1 => figure1::run(context),
+            Self::Figure3 => figure3::run(context),
             Self::Figure4 => figure4::run(context),
+            Self::Figure5a => figure5::rank(context),
+            Self::Figure5b => figure5::alpha(context),
+            Self::Figure6 => figure6::run(context),
+            Self::Figure7 => figure7::run(context),
+            Self::Figure8 => figure8::run(context),
+            Self::Figure9 => figure9::run(context),
         }
     }
 }
@@ -67,6 +106,8 @@ impl Experiment {
 pub(crate) struct Context<'a> {
     pub(crate) args: &'a RunArgs,
     pub(crate) collection: &'a Collection,
+    /// The shapes that figures look at closely.
+    pub(crate) specimens: &'a [Specimen<'a>],
     pub(crate) config: Config,
     pub(crate) observer: &'a dyn Observer,
     bars: &'a Bars,
@@ -89,23 +130,39 @@ impl Context<'_> {
     }
 
     /// What made the record.
-    pub(crate) fn provenance(
-        &self,
-        options: &[(&str, &EmbedOptions)],
-        elapsed: Duration,
-    ) -> Result<Provenance> {
-        let options: serde_json::Map<_, _> =
-            options.iter().map(|(name, options)| ((*name).to_owned(), described(options))).collect();
-        Ok(Provenance {
+    pub(crate) fn provenance(&self, options: serde_json::Value, elapsed: Duration) -> Provenance {
+        Provenance {
             program: "canonform experiments".to_owned(),
             version: env!("CARGO_PKG_VERSION").to_owned(),
             command: command(self.args),
             dataset: self.collection.dataset.clone(),
             classes: self.collection.classes.clone(),
             seed: self.args.seed,
-            options: serde_json::Value::Object(options),
+            options,
             seconds: [("run".to_owned(), elapsed.as_secs_f64())].into(),
+        }
+    }
+
+    /// The options of an experiment on the specimens, as a record shows them.
+    pub(crate) fn setup(&self) -> serde_json::Value {
+        let config = &self.config;
+        serde_json::json!({
+            "shapes": self.specimens.iter().map(Specimen::name).collect::<Vec<_>>(),
+            "samples": config.samples,
+            "rank": config.rank,
+            "runs": config.runs,
+            "eigenvectors": config.eigenvectors,
+            "counts": config.counts,
+            "exponents": config.exponents,
+            "distances": format!("{:?}", Distances::default().method),
         })
+    }
+
+    /// A number of the paper, where this is its data.
+    pub(crate) fn printed(&self, row: &str, method: &str) -> Option<f64> {
+        let is_there = self.collection.setting() == Setting::Paper;
+        let printed = self.config.printed.iter().find(|p| p.row == row && p.method == method);
+        printed.filter(|_| is_there).map(|p| p.value)
     }
 
     /// Prints text for people.
@@ -116,8 +173,13 @@ impl Context<'_> {
     }
 }
 
-/// The options of an embedding as a record shows them.
-fn described(options: &EmbedOptions) -> serde_json::Value {
+/// The options of embeddings as a record shows them.
+pub(crate) fn described(options: &[(&str, &EmbedOptions)]) -> serde_json::Value {
+    let options = options.iter().map(|(name, options)| ((*name).to_owned(), of_embedding(options)));
+    serde_json::Value::Object(options.collect())
+}
+
+fn of_embedding(options: &EmbedOptions) -> serde_json::Value {
     serde_json::json!({
         "method": format!("{:?}", options.method),
         "geodesic": format!("{:?}", options.geodesic),
@@ -153,12 +215,20 @@ fn command(args: &RunArgs) -> String {
 pub(crate) fn run(args: &RunArgs) -> Result<ExitCode> {
     let bars = Bars::new(args.quiet);
     let collection = Collection::load(args, &bars)?;
+    let specimens = specimens(&collection);
     for experiment in Experiment::EACH {
         if !(args.names.contains(&experiment) || args.names.contains(&Experiment::All)) {
             continue;
         }
         let config = experiment.config()?;
-        experiment.run(&Context { args, collection: &collection, config, observer: &bars, bars: &bars })?;
+        experiment.run(&Context {
+            args,
+            collection: &collection,
+            specimens: &specimens,
+            config,
+            observer: &bars,
+            bars: &bars,
+        })?;
         bars.finish();
     }
     let page = write_report(&args.output)?;

@@ -6,7 +6,9 @@ use retrieval::Evaluation;
 use serde_json::json;
 
 use crate::results::{
-    Expectation, Figure1Record, Figure1Shape, Figure4Panel, Figure4Record, Provenance, Scale,
+    Axis, AxisScale, CurvesPanel, CurvesRecord, Expectation, Figure1Record, Figure1Shape, Figure3Form,
+    Figure3Record, Figure3Shape, Figure3Stress, Figure4Panel, Figure4Record, Figure9Measured, Figure9Record,
+    Figure9Row, Mark, Provenance, Scale, Series, SeriesPoint,
 };
 
 pub(crate) fn provenance() -> Provenance {
@@ -53,6 +55,83 @@ pub(crate) fn figure1_record() -> Figure1Record {
         shapes: vec![shape("cat0", "cat"), shape("dog<3>", "dog")],
         expectations: vec![],
         analysis: "Forms of one class agree.\n\nSecond paragraph.".into(),
+    }
+}
+
+/// Two shapes with two forms each.
+pub(crate) fn figure3_record() -> Figure3Record {
+    let form = |method: &str, stress, paper| Figure3Form { method: method.into(), stress, paper };
+    let shape = |name: &str, label: &str| Figure3Shape {
+        name: name.into(),
+        label: label.into(),
+        n_vertices: 3400,
+        forms: vec![form("MDS", 262.05, Some(394.41)), form("NMDS", 300.0, None)],
+    };
+    let stress = Figure3Stress {
+        shape: "david<0>".into(),
+        distances: "default".into(),
+        method: "MDS".into(),
+        median: 386.25,
+        low: 386.0,
+        high: 387.0,
+        runs: 3,
+        paper: Some(394.41),
+    };
+    Figure3Record {
+        provenance: provenance(),
+        shapes: vec![shape("david<0>", "david"), shape("cat0", "cat")],
+        stresses: vec![stress],
+        expectations: vec![],
+        analysis: "Order as printed.".into(),
+    }
+}
+
+/// Two panels of two curves, logarithmic upwards.
+pub(crate) fn curves_record() -> CurvesRecord {
+    let axis = |name: &str, unit: &str, scale| Axis { name: name.into(), unit: unit.into(), scale };
+    let points = |factor: f64| -> Vec<SeriesPoint> {
+        let at = |x: f64| factor * 1e5 / x;
+        let point = |x| SeriesPoint { x, median: at(x), low: 0.7 * at(x), high: 1.5 * at(x), runs: 5 };
+        [10.0, 50.0, 100.0].map(point).to_vec()
+    };
+    let panel = |title: &str| CurvesPanel {
+        title: title.into(),
+        x: axis("samples n", "", AxisScale::Linear),
+        y: axis("error", "m⁴", AxisScale::Log),
+        series: vec![
+            Series { name: "NMDS".into(), points: points(1.0) },
+            Series { name: "a & b".into(), points: points(30.0) },
+        ],
+        marks: vec![Mark { x: 70.0, name: "recommended".into() }],
+    };
+    CurvesRecord {
+        provenance: provenance(),
+        caption: "Errors.".into(),
+        panels: vec![panel("david0"), panel("cat0")],
+        expectations: vec![],
+        analysis: "Falls.".into(),
+    }
+}
+
+/// A method that ran and one that did not.
+pub(crate) fn figure9_record() -> Figure9Record {
+    let measured = Figure9Measured { geodesics: 0.02, embedding: 0.005, runs: 3, peak_bytes: 3 << 20 };
+    let row = Figure9Row {
+        shape: "david0".into(),
+        n_vertices: 3400,
+        method: "NMDS".into(),
+        measured: Some(measured),
+        paper_seconds: Some(0.24),
+        note: String::new(),
+    };
+    let note = "all pairs need <5.8> GiB".to_string();
+    let absent =
+        Figure9Row { method: "MDS".into(), measured: None, paper_seconds: None, note, ..row.clone() };
+    Figure9Record {
+        provenance: provenance(),
+        threads: 2,
+        rows: vec![row, absent],
+        ..Figure9Record::default()
     }
 }
 

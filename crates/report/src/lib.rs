@@ -8,8 +8,10 @@
 mod canvas;
 mod classes;
 mod color;
+pub mod curves;
 mod error;
 pub mod figure1;
+pub mod figure3;
 pub mod figure4;
 mod files;
 #[cfg(test)]

@@ -29,15 +29,20 @@ impl Numbers {
 
     /// What stands beside the axis: the unit, and the power of ten that was left out of the numbers.
     pub(crate) fn unit(self, unit: &str) -> String {
-        const DIGITS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
         if self.exponent == 0 {
             return unit.to_string();
         }
-        let sign = if self.exponent < 0 { "⁻" } else { "" };
-        let digits = self.exponent.unsigned_abs().to_string();
-        let raised: String = digits.bytes().map(|d| DIGITS[usize::from(d - b'0')]).collect();
-        format!("×10{sign}{raised}, {unit}")
+        format!("×10{}, {unit}", raised(self.exponent))
     }
+}
+
+/// An exponent in raised digits.
+pub(crate) fn raised(exponent: i32) -> String {
+    const DIGITS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
+    let sign = if exponent < 0 { "⁻" } else { "" };
+    let digits: String =
+        exponent.unsigned_abs().to_string().bytes().map(|d| DIGITS[usize::from(d - b'0')]).collect();
+    format!("{sign}{digits}")
 }
 
 /// A number with a proper minus sign, none before zero.

@@ -4,6 +4,7 @@
 //! are linked beside it.
 
 mod html;
+mod reproduced;
 
 use std::fmt::Write;
 use std::fs;
@@ -24,7 +25,7 @@ pub const FILE: &str = "report.html";
 
 /// Writes `report.html` into a folder of results and returns its path.
 ///
-/// Shows `figure1.json` and `figure4.json` with the PNG files beside them. A record or a picture that is missing is
+/// Shows the records of all experiments (`figure1.json`, ...) with the PNG files beside them. A record or a picture that is missing is
 /// named on the page together with what makes it, so a page can be written after any run.
 ///
 /// # Errors
@@ -32,7 +33,12 @@ pub const FILE: &str = "report.html";
 /// [`ReportError::Write`] when the page cannot be written.
 pub fn write_report(out_dir: impl AsRef<Path>) -> Result<PathBuf, ReportError> {
     let folder = out_dir.as_ref();
-    let sections = [figure1_section(folder)?, figure4_section(folder)?];
+    let mut sections =
+        vec![figure1_section(folder)?, reproduced::figure3_section(folder)?, figure4_section(folder)?];
+    for experiment in reproduced::CURVES {
+        sections.push(reproduced::curves_section(folder, experiment)?);
+    }
+    sections.push(reproduced::figure9_section(folder)?);
     let path = folder.join(FILE);
     write_atomically(&path, page(&sections).as_bytes())?;
     Ok(path)

@@ -1,5 +1,8 @@
 use super::*;
-use crate::fixtures::{assert_balanced, figure1_record, figure4_record};
+use crate::curves::curves;
+use crate::fixtures::{
+    assert_balanced, curves_record, figure1_record, figure3_record, figure4_record, figure9_record,
+};
 use crate::results::write;
 
 fn page_of(folder: &Path) -> String {
@@ -14,7 +17,9 @@ fn page_of(folder: &Path) -> String {
 fn what_was_not_run_is_said_with_the_command_that_runs_it() {
     let folder = tempfile::tempdir().unwrap();
     let html = page_of(folder.path());
-    for name in ["figure1", "figure4"] {
+    for name in
+        ["figure1", "figure3", "figure4", "figure5a", "figure5b", "figure6", "figure7", "figure8", "figure9"]
+    {
         assert!(html.contains(&format!("{name}.json</code> is not in this folder")));
         assert!(html.contains(&format!("run {name}</code>")));
     }
@@ -84,4 +89,24 @@ fn a_broken_record_is_an_error_that_names_the_file() {
         "{error}"
     );
     assert!(!folder.path().join(FILE).exists());
+}
+
+#[test]
+fn figures_that_compare_methods_show_medians_ranges_and_the_papers_numbers() {
+    let folder = tempfile::tempdir().unwrap();
+    let place = |name: &str| folder.path().join(name);
+    write(&figure3_record(), place("figure3.json")).unwrap();
+    write(&curves_record(), place("figure6.json")).unwrap();
+    curves(&curves_record(), place("figure6")).unwrap();
+    write(&figure9_record(), place("figure9.json")).unwrap();
+    let html = page_of(folder.path());
+    assert!(
+        html.contains("href=\"figure6-curves.svg\"") && html.contains("figure3-forms.png</code> is missing")
+    );
+    for text in ["394.41", "386.2", "david&lt;0&gt;", "<summary>cat0</summary>", "1.0e4", "error, in m⁴"] {
+        assert!(html.contains(text), "{text}");
+    }
+    for text in ["0.025", "3.0 MiB", "0.24", "all pairs need &lt;5.8&gt; GiB", "2 worker threads"] {
+        assert!(html.contains(text), "{text}");
+    }
 }

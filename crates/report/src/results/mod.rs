@@ -3,8 +3,16 @@
 //! A record is written once by the run and read as often as it is drawn. It carries what made it
 //! ([`Provenance`]), what was expected of it ([`Expectation`]) and a few words on what it means.
 
+mod curves;
+mod figure3;
+mod figure9;
+
 use std::collections::BTreeMap;
 use std::path::Path;
+
+pub use curves::{Axis, AxisScale, CurvesPanel, CurvesRecord, Mark, Series, SeriesPoint};
+pub use figure3::{Figure3Form, Figure3Record, Figure3Shape, Figure3Stress};
+pub use figure9::{Figure9Measured, Figure9Record, Figure9Row};
 
 use retrieval::Evaluation;
 use serde::de::DeserializeOwned;

@@ -1,0 +1,169 @@
+//! The shapes that figures look at closely, and what is worth measuring only once on each.
+
+use std::sync::{Arc, Mutex, PoisonError};
+
+use anyhow::{Context, Result, bail};
+use descriptors::LaplaceSpectrum;
+use geodesics::{DistanceSolver, FirstSample, Sampling};
+use linalg::{DistanceMatrix, LandmarkDistances};
+use mesh::VertexId;
+use nmds::{Embedding, Reconstruction, classical, paper_stress, sample_rows};
+use pipeline::GeodesicMethod;
+
+use crate::collection::{Collection, Shape};
+
+/// The classes that the paper's Figures 3 and 5 to 9 look at, in its order.
+const PAPER: [&str; 2] = ["david", "cat"];
+
+/// Most memory for all pairs of a shape, in bytes.
+const ALL_PAIRS_LIMIT: usize = 4 << 30;
+
+/// Dimensions of canonical forms.
+pub(crate) const DIM: usize = 3;
+
+/// A value that is made once and then shared.
+type Once<K, T> = Mutex<Vec<(K, Arc<T>)>>;
+
+/// One shape, and what has been measured on it.
+pub(crate) struct Specimen<'a> {
+    pub(crate) shape: &'a Shape,
+    all_pairs: Once<&'static str, DistanceMatrix>,
+    optimum: Once<&'static str, Optimum>,
+    spectrum: Once<usize, LaplaceSpectrum>,
+    reconstruction: Once<(usize, VertexId), Reconstruction>,
+}
+
+/// Classical scaling of all pairs.
+pub(crate) struct Optimum {
+    pub(crate) embedding: Embedding,
+    pub(crate) stress: f64,
+}
+
+/// The first david and the first cat; of other collections the first shapes of two classes.
+pub(crate) fn specimens(collection: &Collection) -> Vec<Specimen<'_>> {
+    let first = |class: &str| collection.shapes.iter().find(|shape| shape.label == class);
+    let mut chosen: Vec<&Shape> = PAPER.into_iter().filter_map(first).collect();
+    if chosen.len() < PAPER.len() {
+        chosen = collection.first_of_each_class(1).into_iter().take(PAPER.len()).collect();
+    }
+    chosen.into_iter().map(Specimen::new).collect()
+}
+
+impl<'a> Specimen<'a> {
+    pub(crate) fn new(shape: &'a Shape) -> Self {
+        let (all_pairs, optimum) = Default::default();
+        let (spectrum, reconstruction) = Default::default();
+        Self { shape, all_pairs, optimum, spectrum, reconstruction }
+    }
+
+    pub(crate) fn name(&self) -> &'a str {
+        &self.shape.name
+    }
+
+    pub(crate) fn label(&self) -> &'a str {
+        &self.shape.label
+    }
+
+    pub(crate) fn n_vertices(&self) -> usize {
+        self.shape.surface.mesh().n_vertices()
+    }
+
+    pub(crate) fn solver(&self, distances: &Distances) -> Result<Box<dyn DistanceSolver>> {
+        Ok(distances.method.prepare(&self.shape.surface.intrinsic)?)
+    }
+
+    /// The distances between all pairs of vertices.
+    pub(crate) fn all_pairs(&self, distances: &Distances) -> Result<Arc<DistanceMatrix>> {
+        once(&self.all_pairs, distances.name, || {
+            let p = self.n_vertices();
+            if p.saturating_mul(p) > ALL_PAIRS_LIMIT / size_of::<f64>() {
+                bail!(
+                    "{}: this experiment measures all pairs, and those of {p} vertices need {} GiB; take shapes \
+                     of at most 23,000 vertices",
+                    self.name(),
+                    (p * p * size_of::<f64>()) >> 30
+                );
+            }
+            let sources: Vec<VertexId> = (0..p).map(VertexId::from).collect();
+            let columns = self.solver(distances)?.distance_columns(&sources);
+            Ok(DistanceMatrix::from_rows(p, columns.data.into())?)
+        })
+    }
+
+    /// The form of least strain, by classical scaling of all pairs.
+    pub(crate) fn optimum(&self, distances: &Distances) -> Result<Arc<Optimum>> {
+        once(&self.optimum, distances.name, || {
+            let all = self.all_pairs(distances)?;
+            let embedding = classical(&all, DIM)?;
+            let stress = paper_stress(&embedding.coords, all.as_ref());
+            Ok(Optimum { embedding, stress })
+        })
+    }
+
+    /// Eigenfunctions of the surface.
+    pub(crate) fn spectrum(&self, n_eigenvectors: usize) -> Result<Arc<LaplaceSpectrum>> {
+        once(&self.spectrum, n_eigenvectors, || {
+            Ok(LaplaceSpectrum::new(&self.shape.surface.intrinsic, n_eigenvectors)?)
+        })
+    }
+
+    /// The errors of approximations by `n` farthest samples, by the default distances.
+    pub(crate) fn reconstruction(&self, n: usize, first: VertexId) -> Result<Arc<Reconstruction>> {
+        once(&self.reconstruction, (n, first), || {
+            let samples = self.nested(&Distances::default(), Sampling::Farthest, first, &[n])?;
+            let all = self.all_pairs(&Distances::default())?;
+            Ok(Reconstruction::new(&samples[0], all.as_ref())?)
+        })
+    }
+
+    /// Different first samples, drawn with `seed`: what repeated runs differ in.
+    pub(crate) fn first_samples(&self, runs: usize, seed: u64) -> Vec<VertexId> {
+        sample_rows(self.n_vertices(), runs, seed).into_iter().map(VertexId::from).collect()
+    }
+
+    /// The distances from the first n of the samples that begin with `first`, for each n of `counts`.
+    pub(crate) fn nested(
+        &self,
+        distances: &Distances,
+        sampling: Sampling,
+        first: VertexId,
+        counts: &[usize],
+    ) -> Result<Vec<LandmarkDistances>> {
+        let solver = self.solver(distances)?;
+        let seed = u64::from(first.0);
+        let mut sampler = sampling.start(solver.as_ref(), FirstSample::Vertex(first), seed)?;
+        sampler.extend_to(counts.iter().copied().max().unwrap_or(0))?;
+        counts.iter().map(|&n| Ok(sampler.distances(n)?)).collect()
+    }
+}
+
+/// A way to measure distances, by the name that records and expectations use.
+#[derive(Debug, Clone)]
+pub(crate) struct Distances {
+    pub(crate) name: &'static str,
+    pub(crate) method: GeodesicMethod,
+}
+
+impl Default for Distances {
+    fn default() -> Self {
+        Self { name: "default", method: GeodesicMethod::default() }
+    }
+}
+
+impl Distances {
+    /// Hops times the mean edge length.
+    pub(crate) fn hops() -> Self {
+        Self { name: "hops", method: GeodesicMethod::BreadthFirst }
+    }
+}
+
+/// Looks a value up, or makes it.
+fn once<K: PartialEq, T>(known: &Once<K, T>, key: K, make: impl FnOnce() -> Result<T>) -> Result<Arc<T>> {
+    let lock = || known.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some((_, value)) = lock().iter().find(|(k, _)| *k == key) {
+        return Ok(Arc::clone(value));
+    }
+    let value = Arc::new(make().context("measuring a shape")?);
+    lock().push((key, Arc::clone(&value)));
+    Ok(value)
+}

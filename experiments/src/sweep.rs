@@ -1,0 +1,71 @@
+//! Repeated runs as points of curves, and numbers by the names that expectations use.
+
+use std::collections::BTreeMap;
+
+use report::results::{Axis, AxisScale, Series, SeriesPoint};
+
+/// Numbers by name.
+pub(crate) type Measured = BTreeMap<String, f64>;
+
+/// The median of some values, the lower of two in the middle, and where it is among them.
+pub(crate) fn median(values: &[f64]) -> (usize, f64) {
+    let mut order: Vec<usize> = (0..values.len()).collect();
+    order.sort_by(|&i, &j| values[i].total_cmp(&values[j]));
+    order.get(values.len().saturating_sub(1) / 2).map_or((0, f64::NAN), |&i| (i, values[i]))
+}
+
+/// Median and range of the runs at one place.
+pub(crate) fn point(x: f64, runs: &[f64]) -> SeriesPoint {
+    SeriesPoint {
+        x,
+        median: median(runs).1,
+        low: runs.iter().copied().fold(f64::INFINITY, f64::min),
+        high: runs.iter().copied().fold(f64::NEG_INFINITY, f64::max),
+        runs: runs.len(),
+    }
+}
+
+/// A curve of what the runs gave at each place: `runs[run][place]`.
+pub(crate) fn series(name: &str, places: &[f64], runs: &[Vec<f64>]) -> Series {
+    let at = |place: usize| runs.iter().map(|run| run[place]).collect::<Vec<_>>();
+    let points = places.iter().enumerate().map(|(i, &x)| point(x, &at(i))).collect();
+    Series { name: name.to_owned(), points }
+}
+
+/// The medians of a curve.
+pub(crate) fn medians(series: &Series) -> Vec<f64> {
+    series.points.iter().map(|p| p.median).collect()
+}
+
+/// The share of places at which the median of `a` is at most that of every other curve.
+pub(crate) fn share_lowest(a: &Series, others: &[&Series]) -> f64 {
+    let lowest = |i: &usize| others.iter().all(|other| a.points[*i].median <= other.points[*i].median);
+    (0..a.points.len()).filter(lowest).count() as f64 / a.points.len().max(1) as f64
+}
+
+/// An axis.
+pub(crate) fn axis(name: &str, unit: &str, scale: AxisScale) -> Axis {
+    Axis { name: name.to_owned(), unit: unit.to_owned(), scale }
+}
+
+/// Whole numbers as places on an axis.
+pub(crate) fn places(counts: &[usize]) -> Vec<f64> {
+    counts.iter().map(|&n| n as f64).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_median_is_one_of_the_runs() {
+        assert_eq!(median(&[3.0, 1.0, 2.0]), (2, 2.0));
+        assert_eq!(median(&[4.0, 1.0, 2.0, 3.0]), (2, 2.0));
+        let found = series("a", &[1.0, 2.0], &[vec![5.0, 1.0], vec![7.0, 3.0], vec![6.0, 2.0]]);
+        assert_eq!(found.points[0], SeriesPoint { x: 1.0, median: 6.0, low: 5.0, high: 7.0, runs: 3 });
+        assert_eq!(medians(&found), [6.0, 2.0]);
+        assert_eq!(share_lowest(&found, &[&found]), 1.0);
+        let lower = series("b", &[1.0, 2.0], &[vec![5.0, 2.5]]);
+        assert_eq!(share_lowest(&found, &[&lower]), 0.5);
+    }
+}
