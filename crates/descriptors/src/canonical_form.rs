@@ -3,11 +3,14 @@
 use mesh::TriMesh;
 use nalgebra::{Point3, Vector3};
 use nmds::Embedding;
+use serde::{Deserialize, Serialize};
 
 use crate::DescriptorError;
+use crate::spread::spread as spread_evenly;
 
 /// What is divided out of a form before it is compared.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Normalization {
     /// Nothing: a small cat and a large cat differ.
     #[default]
@@ -75,6 +78,41 @@ impl CanonicalForm {
             return Err(DescriptorError::NoExtent { n_points: points.len() });
         }
         Ok(Self { points, weights, area: None })
+    }
+
+    /// A form as another one was taken apart, to the last bit: nothing is centred or normalised.
+    ///
+    /// # Errors
+    /// [`DescriptorError::SizeMismatch`] when there is not one weight for each point, [`DescriptorError::NoExtent`]
+    /// when a number is not finite, a weight negative, the area not positive, or all points coincide.
+    pub fn from_parts(
+        points: Vec<Point3<f64>>,
+        weights: Vec<f64>,
+        area: Option<f64>,
+    ) -> Result<Self, DescriptorError> {
+        let n_points = points.len();
+        if weights.len() != n_points {
+            return Err(DescriptorError::SizeMismatch { n_points, n_vertices: weights.len() });
+        }
+        let sound = weights.iter().all(|w| w.is_finite() && *w >= 0.0)
+            && area.is_none_or(|area| area.is_finite() && area > 0.0);
+        let spread = spread(&points, &weights);
+        match sound && spread.is_finite() && spread > 0.0 {
+            true => Ok(Self { points, weights, area }),
+            false => Err(DescriptorError::NoExtent { n_points }),
+        }
+    }
+
+    /// The form at up to `n` of its points, spread evenly, each with the weight of all points nearest to it.
+    ///
+    /// The first of them are spread evenly too. Centroid and axes stay about where they were. Cost `O(p n)`.
+    #[must_use]
+    pub fn reduced(&self, n: usize) -> Self {
+        let spread = spread_evenly(&self.points, n);
+        let mut weights = vec![0.0; spread.samples.len()];
+        spread.nearest.iter().zip(&self.weights).for_each(|(&owner, w)| weights[owner] += w);
+        let points = spread.samples.iter().map(|&i| self.points[i]).collect();
+        Self { points, weights, area: self.area }
     }
 
     /// The centred points, one per vertex, in the unit of the distances.

@@ -33,6 +33,15 @@ pub enum DescriptorError {
         /// What is allowed.
         range: &'static str,
     },
+    /// A signature that does not exist.
+    #[error(
+        "there is no signature `{name}`; choose from moments, d2, geodesic-spectrum, shape-dna, heat-kernel, \
+         wave-kernel"
+    )]
+    UnknownSignature {
+        /// The name given.
+        name: String,
+    },
     /// A decomposition failed.
     #[error(transparent)]
     Linalg(#[from] linalg::LinalgError),

@@ -3,6 +3,7 @@
 use kiddo::{ImmutableKdTree, SquaredEuclidean};
 use nalgebra::{Matrix3, Point3};
 
+use crate::spread::spread;
 use crate::{Alignment, CanonicalForm, DescriptorError};
 
 /// Below this many points a sample is of no use.
@@ -63,7 +64,7 @@ impl PreparedForm {
         let axes = Matrix3::from_columns(&order.map(|i| eigen.eigenvectors.column(i).into_owned()));
         let to_principal = Alignment::about_origin(axes.transpose());
         let points: Vec<_> = form.points().iter().map(|p| to_principal.apply(p)).collect();
-        let samples = spread_samples(&points, n_samples);
+        let samples: Vec<_> = spread(&points, n_samples).samples.into_iter().map(|i| points[i]).collect();
         Ok(Self {
             tree: tree(&points)?,
             sample_tree: tree(&samples)?,
@@ -115,30 +116,4 @@ fn tree(points: &[Point3<f64>]) -> Result<ImmutableKdTree<f64, 3>, DescriptorErr
     let coordinates: Vec<[f64; 3]> = points.iter().map(|p| p.coords.into()).collect();
     ImmutableKdTree::new_from_slice(&coordinates)
         .map_err(|_| DescriptorError::NoExtent { n_points: points.len() })
-}
-
-/// Farthest point sampling in space, from the point farthest from the origin.
-fn spread_samples(points: &[Point3<f64>], n: usize) -> Vec<Point3<f64>> {
-    let mut gap: Vec<f64> = points.iter().map(|p| p.coords.norm_squared()).collect();
-    let mut samples = Vec::with_capacity(n.min(points.len()));
-    let mut first = true;
-    while samples.len() < n.min(points.len()) {
-        let (mut next, mut widest) = (0, f64::NEG_INFINITY);
-        for (i, g) in gap.iter().enumerate() {
-            if *g > widest {
-                (next, widest) = (i, *g);
-            }
-        }
-        if !first && widest == 0.0 {
-            break;
-        }
-        let at = points[next];
-        samples.push(at);
-        for (g, p) in gap.iter_mut().zip(points) {
-            let d = (p - at).norm_squared();
-            *g = if first { d } else { g.min(d) };
-        }
-        first = false;
-    }
-    samples
 }

@@ -23,6 +23,9 @@ pub struct LaplaceSpectrum {
 }
 
 impl LaplaceSpectrum {
+    /// Eigenpairs that the signatures of a surface are made from.
+    pub const DESCRIBING: usize = 60;
+
     /// The `m` smallest eigenpairs, the constant function among them; fewer on a surface of fewer vertices.
     ///
     /// Cotangent stiffness on an intrinsic Delaunay triangulation, lumped masses: see

@@ -96,6 +96,16 @@ pub enum PipelineError {
         /// The end of the path.
         target: InputPoint,
     },
+    /// An option of a description that is too small.
+    #[error("a description needs at least {least} {option}, got {value}")]
+    BadDescription {
+        /// Name of the option.
+        option: &'static str,
+        /// The value given.
+        value: usize,
+        /// The least it can be.
+        least: usize,
+    },
     /// Too little memory for distances between all pairs.
     #[error(
         "distances between all pairs of {n_vertices} vertices need at least {needed} bytes of memory at once, \

@@ -2,12 +2,15 @@
 //!
 //! file -> [`Surface`] -> [`embed`] -> `descriptors::CanonicalForm` -> [`form_distances`] -> scores
 //!
+//! file -> [`Surface`] -> [`describe`] -> [`ShapeDescription`] -> an index
+//!
 //! Everything a program needs to go from a mesh or a folder of meshes to forms, distances and scores.
 //! Knows nothing of terminals or plots; long work reports its progress to a callback.
 
 mod all_pairs;
 mod compare;
 mod dataset;
+mod describe;
 mod embed;
 mod error;
 mod forms;
@@ -24,6 +27,7 @@ mod surface;
 pub use all_pairs::{AllPairs, Asymmetry};
 pub use compare::{Comparison, MatchKind, compare_forms};
 pub use dataset::{LabelFile, ShapeFile, label_of, list_shapes};
+pub use describe::{DESCRIPTION_VERSION, DescribeOptions, ShapeDescription, describe, describe_surface};
 pub use embed::{Embedded, embed};
 pub use error::PipelineError;
 pub use forms::{PreparedForms, embedded_distances, form_distances, map_of};
@@ -36,7 +40,9 @@ pub use report::{DescentReport, EmbedReport, SecondsReport};
 pub use stress::{StressKind, StressReport};
 pub use surface::Surface;
 
-pub use descriptors::{FormDistance, MatchOptions, Normalization, Reflections};
+pub use descriptors::{
+    FormDistance, MatchOptions, Normalization, PreparedForm, Reflections, Signature, SignatureKind,
+};
 pub use geodesics::{
     DistanceSolver, FastMarchingOptions, FirstSample, HeatOptions, Method as GeodesicMethod, ObtuseTreatment,
     PathTracer, Sampling, Source, SurfacePoint, Update, Variance,
