@@ -4,7 +4,9 @@
 // Helper functions are test code too, which clippy cannot see.
 #![allow(clippy::unwrap_used)]
 
-use geodesics::{Dijkstra, DistanceSolver, Exact, FastMarching, HeatOptions, Method, PathTracer, Source, SurfacePoint};
+use geodesics::{
+    Dijkstra, DistanceSolver, Exact, FastMarching, HeatOptions, Method, PathTracer, Source, SurfacePoint,
+};
 use mesh::{IntrinsicMesh, TriMesh, VertexId, shapes};
 use nalgebra::Point3;
 use proptest::prelude::*;
@@ -53,7 +55,8 @@ fn soup() -> impl Strategy<Value = TriMesh> {
 /// have two faces already, and perhaps a second one apart.
 fn tame() -> impl Strategy<Value = TriMesh> {
     let base = prop_oneof![
-        (4..8usize, 4..8usize, 0u64..1000).prop_map(|(nx, ny, seed)| shapes::jittered_grid(nx, ny, 1.0, 0.2, seed)),
+        (4..8usize, 4..8usize, 0u64..1000)
+            .prop_map(|(nx, ny, seed)| shapes::jittered_grid(nx, ny, 1.0, 0.2, seed)),
         Just(shapes::icosphere(1)),
     ];
     let moves = prop::collection::vec(prop::array::uniform3(-1.0..1.0f64), 64);

@@ -1,0 +1,162 @@
+//! Reading a finished index.
+
+use std::path::{Path, PathBuf};
+
+use redb::Database;
+
+use super::overlay::Overlay;
+use super::sealed::Sealed;
+use super::tables::{CACHE, ENTRIES, Snapshot, Store, fault_at};
+use super::{IndexError, Shape, ShapeEntry, ShapeVectors};
+
+/// A finished index, open to be read.
+///
+/// It stays as it was when it was opened, whatever writers do. Every byte is checked before it is
+/// believed.
+#[derive(Debug)]
+pub struct Index {
+    path: PathBuf,
+    database: Database,
+    options: String,
+    n_shapes: usize,
+    fingerprint: u64,
+    size: u64,
+}
+
+impl Index {
+    /// Opens an index; nothing but what is asked for is read.
+    ///
+    /// # Errors
+    /// [`IndexError::Foreign`], [`IndexError::FutureVersion`], [`IndexError::Damaged`],
+    /// [`IndexError::Io`].
+    pub fn open(path: &Path) -> Result<Self, IndexError> {
+        let sealed = Sealed::open(path)?;
+        let (fingerprint, size) = (sealed.footer().fingerprint(), sealed.len());
+        let database = Database::builder()
+            .set_cache_size(CACHE)
+            .create_with_backend(Overlay::new(sealed))
+            .map_err(|fault| fault_at(path, "read", fault))?;
+        let store = Store { database: &database, path, action: "read" };
+        let about = store.read()?;
+        let damaged =
+            || IndexError::Damaged { path: path.to_owned(), what: "it does not say what it holds".into() };
+        let options = about.about("options")?.ok_or_else(damaged)?;
+        let n_shapes = about.len()?;
+        drop(about);
+        Ok(Self { path: path.to_owned(), database, options, n_shapes, fingerprint, size })
+    }
+
+    pub(crate) fn store(&self) -> Store<'_> {
+        Store { database: &self.database, path: &self.path, action: "read" }
+    }
+
+    /// Where it is.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// How its shapes were described.
+    #[must_use]
+    pub fn options(&self) -> &str {
+        &self.options
+    }
+
+    /// # Errors
+    /// [`IndexError::OtherOptions`] unless its shapes were described with these.
+    pub fn expect_options(&self, asked: &str) -> Result<(), IndexError> {
+        match self.options == asked {
+            true => Ok(()),
+            false => Err(IndexError::OtherOptions {
+                path: self.path.clone(),
+                found: self.options.clone(),
+                asked: asked.to_owned(),
+            }),
+        }
+    }
+
+    /// Number of shapes.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.n_shapes
+    }
+
+    /// Whether there is none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.n_shapes == 0
+    }
+
+    /// Bytes of its database.
+    #[must_use]
+    pub fn n_bytes(&self) -> u64 {
+        self.size
+    }
+
+    /// A number that changes with the file.
+    pub(super) fn fingerprint(&self) -> u64 {
+        self.fingerprint
+    }
+
+    fn with<T>(
+        &self,
+        ask: impl FnOnce(&Snapshot<'_>) -> Result<Option<T>, IndexError>,
+        id: &str,
+    ) -> Result<T, IndexError> {
+        let store = self.store();
+        ask(&store.read()?)?
+            .ok_or_else(|| IndexError::NoSuchShape { path: self.path.clone(), id: id.to_owned() })
+    }
+
+    /// Whether there is a shape of this name.
+    ///
+    /// # Errors
+    /// [`IndexError::Io`], [`IndexError::Damaged`].
+    pub fn contains(&self, id: &str) -> Result<bool, IndexError> {
+        Ok(self.store().read()?.entry(id)?.is_some())
+    }
+
+    /// What is known of a shape.
+    ///
+    /// # Errors
+    /// [`IndexError::NoSuchShape`], [`IndexError::Io`], [`IndexError::Damaged`].
+    pub fn entry(&self, id: &str) -> Result<ShapeEntry, IndexError> {
+        self.with(|snapshot| snapshot.entry(id), id)
+    }
+
+    /// The vectors of a shape.
+    ///
+    /// # Errors
+    /// As [`entry`](Self::entry).
+    pub fn vectors(&self, id: &str) -> Result<ShapeVectors, IndexError> {
+        self.with(|snapshot| snapshot.vectors(id), id)
+    }
+
+    /// Calls `visit` with every shape in ascending order of names; one at a time is in memory.
+    ///
+    /// # Errors
+    /// Whatever `visit` returns; [`IndexError::Io`], [`IndexError::Damaged`].
+    pub fn each<E: From<IndexError>>(&self, mut visit: impl FnMut(Shape) -> Result<(), E>) -> Result<(), E> {
+        let store = self.store();
+        let snapshot = store.read()?;
+        snapshot.each(ENTRIES, |id, entry| {
+            let missing =
+                || IndexError::Damaged { path: self.path.clone(), what: format!("`{id}` has no vectors") };
+            let vectors = snapshot.vectors(id)?.ok_or_else(missing)?;
+            visit(Shape { id: id.to_owned(), entry, vectors })
+        })
+    }
+
+    /// All names with what is known of them, ascending.
+    ///
+    /// # Errors
+    /// [`IndexError::Io`], [`IndexError::Damaged`].
+    pub fn entries(&self) -> Result<Vec<(String, ShapeEntry)>, IndexError> {
+        let mut entries = Vec::with_capacity(self.n_shapes);
+        self.store().read()?.each(ENTRIES, |id, entry| {
+            entries.push((id.to_owned(), entry));
+            Ok::<(), IndexError>(())
+        })?;
+        Ok(entries)
+    }
+}

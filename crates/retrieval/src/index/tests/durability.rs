@@ -1,0 +1,156 @@
+//! Readers, writers and interruptions.
+
+use std::fs;
+
+use super::super::{Index, IndexError, IndexWriter, Job, work_path};
+use super::{Folder, OPTIONS, export, shape};
+
+#[test]
+fn readers_see_the_old_index_until_the_new_one_is_finished() {
+    let folder = Folder::new();
+    let path = folder.index("a", 5);
+    let early = Index::open(&path).unwrap();
+    let mut writer = IndexWriter::open(&path, Job::Add, None).unwrap();
+    writer.put(&[shape(5)]).unwrap();
+    let meanwhile = Index::open(&path).unwrap();
+    let index = writer.finish().unwrap();
+    assert_eq!((early.len(), meanwhile.len(), index.len()), (5, 5, 6));
+    // Those who had it open still read what they had.
+    assert!(early.entry(&shape(5).id).is_err());
+    assert_eq!(early.vectors(&shape(4).id).unwrap(), shape(4).vectors);
+    assert_eq!(Index::open(&path).unwrap().vectors(&shape(5).id).unwrap(), shape(5).vectors);
+}
+
+#[test]
+fn there_is_one_writer() {
+    let folder = Folder::new();
+    let path = folder.index("a", 5);
+    let before = fs::read(&path).unwrap();
+    let first = IndexWriter::open(&path, Job::Add, None).unwrap();
+    let fault = IndexWriter::open(&path, Job::Add, None).unwrap_err();
+    assert!(
+        matches!(&fault, IndexError::Busy { .. }) && fault.to_string().contains("another program"),
+        "{fault}"
+    );
+    assert_eq!(fs::read(&path).unwrap(), before);
+    drop(first);
+    assert!(IndexWriter::open(&path, Job::Add, None).unwrap().is_resumed());
+}
+
+#[test]
+fn work_of_another_kind_or_with_other_options_is_not_mixed() {
+    let folder = Folder::new();
+    let path = folder.path("a");
+    let mut writer = IndexWriter::open(&path, Job::Build, Some(OPTIONS)).unwrap();
+    writer.put(&[shape(0)]).unwrap();
+    drop(writer);
+    let fault = IndexWriter::open(&path, Job::Build, Some("n=50")).unwrap_err().to_string();
+    assert!(fault.contains("a.work") && fault.contains("n=50") && fault.contains(OPTIONS), "{fault}");
+    let fault = IndexWriter::open(&path, Job::Add, Some(OPTIONS)).unwrap_err().to_string();
+    assert!(fault.contains("`build`") && fault.contains("a.work") && fault.contains("delete"), "{fault}");
+    IndexWriter::open(&path, Job::Build, Some(OPTIONS)).unwrap().finish().unwrap();
+    let fault = IndexWriter::open(&path, Job::Build, Some("n=50")).unwrap_err().to_string();
+    assert!(fault.contains("other options") && fault.contains("n=50"), "{fault}");
+    let fault = IndexWriter::open(&folder.path("none"), Job::Add, None).unwrap_err().to_string();
+    assert!(fault.contains("none") && fault.contains("check the path"), "{fault}");
+    assert_eq!(folder.names(), ["a"]);
+}
+
+#[test]
+fn short_work_starts_over() {
+    let folder = Folder::new();
+    let path = folder.index("a", 5);
+    let mut writer = IndexWriter::open(&path, Job::Remove, None).unwrap();
+    writer.remove(&[shape(1).id]).unwrap();
+    drop(writer);
+    let writer = IndexWriter::open(&path, Job::Add, None).unwrap();
+    assert_eq!((writer.is_resumed(), writer.len().unwrap()), (false, 5));
+}
+
+#[test]
+fn additions_to_an_index_that_changed_meanwhile_start_over() {
+    let folder = Folder::new();
+    let path = folder.index("a", 5);
+    let mut writer = IndexWriter::open(&path, Job::Add, None).unwrap();
+    writer.put(&[shape(9)]).unwrap();
+    drop(writer);
+    fs::rename(folder.index("b", 7), &path).unwrap();
+    let writer = IndexWriter::open(&path, Job::Add, None).unwrap();
+    assert_eq!((writer.is_resumed(), writer.len().unwrap()), (false, 7));
+}
+
+#[test]
+fn an_interruption_anywhere_between_two_files_is_survived() {
+    let folder = Folder::new();
+    let path = folder.index("a", 30);
+    let whole = export(&path);
+    let finished = fs::read(&path).unwrap();
+    let work = work_path(&path);
+    // While the index is copied: the first block is not there yet.
+    for length in [0, 100, 4096, finished.len() / 2] {
+        let mut cut = finished[..length].to_vec();
+        let head = cut.len().min(4096);
+        cut[..head].fill(0);
+        fs::write(&work, cut).unwrap();
+        let writer = IndexWriter::open(&path, Job::Build, Some(OPTIONS)).unwrap();
+        assert_eq!((writer.is_resumed(), writer.len().unwrap()), (false, 30));
+        writer.discard().unwrap();
+    }
+    // While checksums and footer are written, and just before the file is renamed.
+    let mut writer = IndexWriter::open(&path, Job::Build, Some(OPTIONS)).unwrap();
+    writer.put(&[shape(30)]).unwrap();
+    drop(writer);
+    IndexWriter::open(&path, Job::Build, Some(OPTIONS)).unwrap().finish().unwrap();
+    let sealed = fs::read(&path).unwrap();
+    fs::remove_file(&path).unwrap();
+    let database = sealed.len() - sealed.len() % 4096;
+    for length in (database..sealed.len()).step_by(7).chain([sealed.len() - 1, sealed.len()]) {
+        fs::write(&work, &sealed[..length]).unwrap();
+        let resumed = IndexWriter::open(&path, Job::Build, Some(OPTIONS)).unwrap();
+        assert_eq!((resumed.is_resumed(), resumed.len().unwrap()), (true, 31), "{length}");
+    }
+    IndexWriter::open(&path, Job::Build, Some(OPTIONS)).unwrap().finish().unwrap();
+    fs::rename(&path, &work).unwrap();
+    let resumed = IndexWriter::open(&path, Job::Build, Some(OPTIONS)).unwrap();
+    assert_eq!((resumed.is_resumed(), resumed.len().unwrap()), (true, 31));
+    let mut index = resumed;
+    index.remove(&[shape(30).id]).unwrap();
+    index.finish().unwrap();
+    assert_eq!(export(&path), whole);
+}
+
+#[test]
+fn a_folder_that_cannot_be_written_to_is_named() {
+    let folder = Folder::new();
+    let before = fs::read(folder.index("a", 3)).unwrap();
+    let path = folder.path("nowhere/a");
+    let fault = IndexWriter::open(&path, Job::Build, Some(OPTIONS)).unwrap_err().to_string();
+    assert!(fault.contains("nowhere") && fault.contains("cannot write"), "{fault}");
+    // In the place of the work file is a folder: nobody can write there.
+    fs::create_dir(folder.path("a.work")).unwrap();
+    let fault = IndexWriter::open(&folder.path("a"), Job::Add, None).unwrap_err().to_string();
+    assert!(fault.contains("cannot write") && fault.contains("a.work"), "{fault}");
+    assert_eq!(fs::read(folder.path("a")).unwrap(), before);
+}
+
+#[test]
+fn vectors_that_cannot_be_compared_are_refused() {
+    let folder = Folder::new();
+    let path = folder.path("a");
+    let mut writer = IndexWriter::open(&path, Job::Build, Some(OPTIONS)).unwrap();
+    writer.put(&[shape(0)]).unwrap();
+    let with = |fused: Vec<f32>| {
+        let mut shape = shape(1);
+        shape.vectors.fused = fused;
+        [shape]
+    };
+    assert!(matches!(writer.put(&with(vec![])), Err(IndexError::BadVector { .. })));
+    assert!(matches!(writer.put(&with(vec![1.0, f32::NAN, 1.0])), Err(IndexError::BadVector { .. })));
+    let fault = writer.put(&with(vec![1.0; 4])).unwrap_err();
+    assert!(matches!(fault, IndexError::OtherLength { found: 4, expected: 3, .. }));
+    let mut large = shape(1);
+    large.vectors.form = vec![[0.0; 3]; 6 << 20];
+    assert!(matches!(writer.put(&[large]), Err(IndexError::Codec { .. })));
+    assert_eq!(writer.len().unwrap(), 1);
+    assert_eq!(writer.finish().unwrap().len(), 1);
+}

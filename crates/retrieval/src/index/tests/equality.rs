@@ -1,0 +1,81 @@
+//! The same shapes give the same export, whatever way they came in.
+
+use super::super::{Index, IndexError, IndexWriter, Job, verify};
+use super::{Folder, OPTIONS, export, shape};
+
+#[test]
+fn order_batches_and_history_do_not_matter() {
+    let folder = Folder::new();
+    let whole = export(&folder.index("whole", 30));
+    let path = folder.path("other");
+    let mut writer = IndexWriter::open(&path, Job::Build, Some(OPTIONS)).unwrap();
+    for i in (0..30).rev().chain([5, 5, 40, 41]) {
+        writer.put(&[shape(i)]).unwrap();
+    }
+    writer.finish().unwrap();
+    assert_ne!(export(&path), whole);
+    let mut writer = IndexWriter::open(&path, Job::Remove, None).unwrap();
+    writer.remove(&[shape(41).id, shape(40).id]).unwrap();
+    writer.finish().unwrap();
+    assert_eq!(export(&path), whole);
+    // Every line is an object, the first on the whole.
+    let lines: Vec<serde_json::Value> = whole
+        .split(|b| *b == b'\n')
+        .filter(|l| !l.is_empty())
+        .map(|l| serde_json::from_slice(l).unwrap())
+        .collect();
+    assert_eq!(lines.len(), 31);
+    assert_eq!((&lines[0]["shapes"], &lines[0]["options"]), (&30.into(), &OPTIONS.into()));
+    assert_eq!(lines[1]["id"], "class0/0000");
+    assert_eq!(lines[1]["facts"]["area"], 0.0);
+}
+
+#[test]
+fn an_interrupted_writer_is_taken_up_where_it_was() {
+    let folder = Folder::new();
+    let whole = export(&folder.index("whole", 30));
+    let path = folder.path("cut");
+    for part in 0..3 {
+        let mut writer = IndexWriter::open(&path, Job::Build, Some(OPTIONS)).unwrap();
+        assert_eq!((writer.is_resumed(), writer.len().unwrap()), (part > 0, 10 * part));
+        for i in 10 * part..10 * part + 10 {
+            assert_eq!(writer.entry(&shape(i).id).unwrap(), None);
+            writer.put(&[shape(i)]).unwrap();
+        }
+        // It is dropped, as by an error, and never finished.
+    }
+    assert_eq!(folder.names(), ["cut.work", "whole"]);
+    let writer = IndexWriter::open(&path, Job::Build, Some(OPTIONS)).unwrap();
+    assert_eq!(writer.ids().unwrap().len(), 30);
+    writer.finish().unwrap();
+    assert_eq!(export(&path), whole);
+    assert_eq!(folder.names(), ["cut", "whole"]);
+}
+
+#[test]
+fn labels_change_without_vectors() {
+    let folder = Folder::new();
+    let path = folder.index("a", 4);
+    let mut writer = IndexWriter::open(&path, Job::Add, None).unwrap();
+    let mut entry = writer.entry(&shape(2).id).unwrap().unwrap();
+    entry.label = "dog".to_owned();
+    writer.set_entries(&[(shape(2).id, entry.clone())]).unwrap();
+    assert!(matches!(writer.set_entries(&[("no".to_owned(), entry)]), Err(IndexError::NoSuchShape { .. })));
+    writer.finish().unwrap();
+    let index = Index::open(&path).unwrap();
+    assert_eq!(index.entry(&shape(2).id).unwrap().label, "dog");
+    assert_eq!(index.vectors(&shape(2).id).unwrap(), shape(2).vectors);
+    assert_eq!(verify(&path, || ()).unwrap().faults, Vec::<String>::new());
+}
+
+#[test]
+fn taking_away_what_is_not_there_takes_nothing() {
+    let folder = Folder::new();
+    let path = folder.index("a", 4);
+    let mut writer = IndexWriter::open(&path, Job::Remove, None).unwrap();
+    let fault = writer.remove(&[shape(1).id, "cat9".to_owned()]).unwrap_err();
+    assert!(fault.to_string().contains("`cat9`"), "{fault}");
+    assert_eq!(writer.len().unwrap(), 4);
+    writer.discard().unwrap();
+    assert_eq!(folder.names(), ["a"]);
+}

@@ -1,0 +1,122 @@
+//! What an index promises: nothing lost, nothing wrong, the same whatever way it came about.
+
+mod damage;
+mod durability;
+mod equality;
+
+use std::path::{Path, PathBuf};
+
+use tempfile::TempDir;
+
+use super::{ContentHash, Index, IndexWriter, Job, Shape, ShapeEntry, ShapeVectors};
+use crate::SearchMode;
+
+pub(super) const OPTIONS: &str = "n=100";
+
+/// A folder of its own for each test; gone with it.
+pub(super) struct Folder(TempDir);
+
+impl Folder {
+    pub(super) fn new() -> Self {
+        Self(TempDir::new().unwrap())
+    }
+
+    pub(super) fn path(&self, name: &str) -> PathBuf {
+        self.0.path().join(name)
+    }
+
+    pub(super) fn names(&self) -> Vec<String> {
+        let entries = std::fs::read_dir(self.0.path()).unwrap();
+        let mut names: Vec<String> =
+            entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+        names.sort();
+        names
+    }
+
+    /// A finished index of shapes 0 to `n`.
+    pub(super) fn index(&self, name: &str, n: usize) -> PathBuf {
+        let path = self.path(name);
+        let mut writer = IndexWriter::open(&path, Job::Build, Some(OPTIONS)).unwrap();
+        writer.put(&(0..n).map(shape).collect::<Vec<_>>()).unwrap();
+        writer.finish().unwrap();
+        path
+    }
+}
+
+/// The shape of this number: another number, another everything.
+pub(super) fn shape(i: usize) -> Shape {
+    let x = i as f32;
+    Shape {
+        id: format!("class{}/{i:04}", i % 3),
+        entry: ShapeEntry {
+            label: format!("class{}", i % 3),
+            path: format!("meshes/{i}.off"),
+            content: ContentHash::of(&[i.to_le_bytes()]),
+            facts: vec![("area".to_owned(), 0.1 * i as f64), ("vertices".to_owned(), i as f64)],
+        },
+        vectors: ShapeVectors {
+            fused: vec![x, (x * 0.7).sin(), 0.1],
+            signatures: vec![("moments".to_owned(), vec![x; 4]), ("spectrum".to_owned(), vec![0.5 * x; 3])],
+            form: (0..40).map(|j| [x, j as f32, 0.1 + x * j as f32]).collect(),
+        },
+    }
+}
+
+pub(super) fn export(path: &Path) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    Index::open(path).unwrap().export(&mut bytes).unwrap();
+    bytes
+}
+
+#[test]
+fn shapes_come_back_as_they_were() {
+    let folder = Folder::new();
+    let index = Index::open(&folder.index("a", 20)).unwrap();
+    assert_eq!((index.len(), index.options()), (20, OPTIONS));
+    for i in 0..20 {
+        let Shape { id, entry, vectors } = shape(i);
+        assert_eq!(index.entry(&id).unwrap(), entry);
+        assert_eq!(index.vectors(&id).unwrap(), vectors);
+        assert_eq!(entry.fact("vertices"), Some(i as f64));
+    }
+    let ids: Vec<String> = index.entries().unwrap().into_iter().map(|(id, _)| id).collect();
+    assert!(ids.is_sorted() && ids.len() == 20);
+    assert!(index.contains("class0/0000").unwrap() && !index.contains("class1/0000").unwrap());
+}
+
+#[test]
+fn the_nearest_are_found_in_the_file_and_in_memory() {
+    let folder = Folder::new();
+    let index = Index::open(&folder.index("a", 50)).unwrap();
+    let searcher = crate::Searcher::load(&index).unwrap();
+    for mode in [SearchMode::Auto, SearchMode::Exact] {
+        for query in [shape(7).vectors.fused, vec![3.2, 0.0, 0.0]] {
+            let found = index.nearest(&query, 5, mode).unwrap();
+            assert_eq!(found, searcher.nearest(&query, 5, mode).unwrap());
+            assert_eq!((found.n_measured, found.n_shapes, found.recall), (50, 50, 1.0));
+            let mut expected: Vec<(f64, String)> = (0..50)
+                .map(|i| {
+                    let gaps =
+                        shape(i).vectors.fused.into_iter().zip(&query).map(|(x, y)| f64::from(x - y).powi(2));
+                    (gaps.sum::<f64>().sqrt(), shape(i).id)
+                })
+                .collect();
+            expected.sort_by(|a, b| a.partial_cmp(b).unwrap());
+            for (found, (distance, id)) in found.shapes.iter().zip(&expected) {
+                assert!(found.id == *id && (found.distance - distance).abs() < 1e-6);
+            }
+        }
+    }
+    assert_eq!(index.nearest(&shape(3).vectors.fused, 999, SearchMode::Auto).unwrap().shapes.len(), 50);
+    assert!(index.nearest(&[1.0], 5, SearchMode::Auto).unwrap_err().to_string().contains("the query"));
+    assert!(index.nearest(&[1.0, f32::NAN, 0.0], 5, SearchMode::Auto).is_err());
+}
+
+#[test]
+fn an_empty_index_finds_nothing() {
+    let folder = Folder::new();
+    let path = folder.index("empty", 0);
+    let index = Index::open(&path).unwrap();
+    assert!(index.is_empty() && super::verify(&path, || ()).unwrap().faults.is_empty());
+    assert!(index.nearest(&[1.0, 2.0], 5, SearchMode::Auto).unwrap().shapes.is_empty());
+}

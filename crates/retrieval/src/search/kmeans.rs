@@ -1,0 +1,113 @@
+//! Centres of cells.
+
+use rayon::prelude::*;
+
+use super::kernels::nearest_centroids;
+
+/// Points assigned by one thread at a time.
+const BLOCK: usize = 512;
+
+/// Rounds of Lloyd's algorithm: more gain nothing in recall.
+const ROUNDS: usize = 8;
+
+/// Cell centres and what is needed to find the nearest.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Centroids {
+    pub(crate) rows: Vec<f32>,
+    half_squares: Vec<f32>,
+    /// Length of a row.
+    n: usize,
+}
+
+impl Centroids {
+    pub(crate) fn new(rows: Vec<f32>, n: usize) -> Self {
+        let half_squares = rows.chunks_exact(n).map(|c| 0.5 * c.iter().map(|x| x * x).sum::<f32>()).collect();
+        Self { rows, half_squares, n }
+    }
+
+    /// The nearest centre of each point, in parallel.
+    pub(crate) fn assign(&self, points: &[f32]) -> Vec<u32> {
+        points
+            .par_chunks(BLOCK * self.n)
+            .flat_map_iter(|part| nearest_centroids(part, &self.rows, &self.half_squares, self.n))
+            .collect()
+    }
+
+    /// `k` centres of the `n`-long `points` by Lloyd's algorithm, from points at even steps of their order.
+    /// An empty cell takes a point of the largest one.
+    ///
+    /// The result does not depend on the number of threads.
+    pub(crate) fn of(points: &[f32], k: usize, n: usize) -> Self {
+        let n_points = points.len() / n;
+        let rows = (0..k).flat_map(|i| &points[i * n_points / k * n..][..n]).copied().collect();
+        let mut centroids = Self::new(rows, n);
+        for _ in 0..ROUNDS {
+            let cells = centroids.assign(points);
+            centroids = Self::new(means(points, &cells, &centroids.rows, n), n);
+        }
+        centroids
+    }
+}
+
+/// The mean of the points of every cell; sums are in double precision, in the order of the points.
+fn means(points: &[f32], cells: &[u32], old: &[f32], n: usize) -> Vec<f32> {
+    let k = old.len() / n;
+    let mut members = vec![Vec::new(); k];
+    for (i, cell) in cells.iter().enumerate() {
+        members[*cell as usize].push(i);
+    }
+    // The cells with most points give one each to those that have none.
+    let empty: Vec<usize> = (0..k).filter(|cell| members[*cell].is_empty()).collect();
+    for cell in empty {
+        let largest = (0..k).max_by_key(|other| (members[*other].len(), k - other)).unwrap_or(cell);
+        if members[largest].len() > 1
+            && let Some(given) = members[largest].pop()
+        {
+            members[cell].push(given);
+        }
+    }
+    let mean = |(members, old): (&Vec<usize>, &[f32])| {
+        let mut sum = vec![0.0f64; n];
+        for point in members {
+            sum.iter_mut().zip(&points[point * n..][..n]).for_each(|(sum, x)| *sum += f64::from(*x));
+        }
+        match members.len() {
+            0 => old.to_vec(),
+            count => sum.iter().map(|sum| (sum / count as f64) as f32).collect(),
+        }
+    };
+    members.par_iter().zip(old.par_chunks_exact(n)).flat_map_iter(mean).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::{clustered, noise};
+    use super::*;
+
+    #[test]
+    fn separate_clusters_are_found() {
+        let (points, of) = clustered(400, 8, 16, 0.01);
+        let cells = Centroids::of(&points, 8, 16).assign(&points);
+        // Lloyd's algorithm may merge two, but never splits a tight cluster over merged ones.
+        let mut pairs: Vec<_> = of.iter().zip(&cells).collect();
+        pairs.sort_unstable();
+        pairs.dedup();
+        assert!(pairs.len() <= 12, "{} pairs of cluster and cell", pairs.len());
+    }
+
+    #[test]
+    fn no_cell_is_empty_and_threads_change_nothing() {
+        let points = noise(1000, 16, 1);
+        let on = |threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| Centroids::of(&points, 40, 16))
+        };
+        let centroids = on(1);
+        assert_eq!(centroids, on(3));
+        // Copies of one point cannot fill two cells, and need not.
+        let same = Centroids::of(&[1.0; 16 * 10], 3, 16);
+        assert_eq!(same.assign(&[1.0; 16]), [0]);
+        let filled: std::collections::BTreeSet<u32> = centroids.assign(&points).into_iter().collect();
+        assert!(filled.len() >= 39);
+    }
+}
