@@ -49,6 +49,12 @@ impl Front {
         improves
     }
 
+    /// The nearest vertex of the front, if there is one.
+    #[inline]
+    pub(crate) fn nearest(&self) -> Option<u32> {
+        self.heap.first().map(|(_, vertex)| *vertex)
+    }
+
     /// Removes the nearest vertex of the front.
     #[inline]
     pub(crate) fn pop(&mut self) -> Option<(f64, u32)> {

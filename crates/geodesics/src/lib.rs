@@ -16,6 +16,7 @@ mod heap;
 mod heat;
 mod method;
 mod path;
+mod prefetch;
 mod rows;
 mod samplers;
 mod sampling;

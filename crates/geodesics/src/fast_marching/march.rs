@@ -3,6 +3,7 @@
 use super::spokes::{Spoke, Spokes, Ways};
 use super::update::Sector;
 use crate::heap::Front;
+use crate::prefetch::prefetch;
 
 /// Distances that differ by less than this share are equal but for rounding: a correction is not worth
 /// another visit, and of two ways the one that bent earlier is taken, whatever their order.
@@ -62,6 +63,9 @@ impl March {
         while let Some((distance, vertex)) = self.front.pop() {
             if distance < passed {
                 corrections = corrections.saturating_sub(1);
+            }
+            if let Some(next) = self.front.nearest() {
+                prefetch(spokes.of(next));
             }
             passed = passed.max(distance);
             // Later on, triangles lower only what the front has not passed; edges always end by themselves.

@@ -1,0 +1,30 @@
+//! Asking for memory before it is needed.
+//!
+//! A front reads what belongs to a vertex once, wherever it lies: on large meshes a quarter of the time
+//! went by waiting for it, although which vertex comes next is known one step ahead. No safe function of
+//! the standard library asks for memory without reading it, hence the exception here. The instruction
+//! has no effect but on time, and none at all on other processors.
+
+#![allow(unsafe_code)]
+
+/// Size of a cache line on the processors that have the instruction, in bytes.
+#[cfg(target_arch = "x86_64")]
+const LINE: usize = 64;
+
+/// Asks for all of `items`.
+#[inline]
+pub(crate) fn prefetch<T>(items: &[T]) {
+    #[cfg(target_arch = "x86_64")]
+    {
+        use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
+
+        let lines = size_of_val(items).div_ceil(LINE);
+        for line in 0..lines {
+            // SAFETY: SSE is part of the architecture; a prefetch of any address, valid or not, is defined to do
+            // nothing that a program could see.
+            unsafe { _mm_prefetch::<_MM_HINT_T0>(items.as_ptr().cast::<i8>().wrapping_add(line * LINE)) };
+        }
+    }
+    #[cfg(not(target_arch = "x86_64"))]
+    let _ = items;
+}
