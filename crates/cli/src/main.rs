@@ -20,6 +20,7 @@ fn main() -> ExitCode {
         Command::Embed(args) => commands::embed(args, &common),
         Command::Methods(args) => commands::methods(args, &common),
         Command::Compare(args) => commands::compare(args, &common),
+        Command::Index(args) => commands::index(&args.command, &common),
         Command::Completions(args) => commands::completions(args),
     })
 }

@@ -56,7 +56,7 @@ impl LabelFile {
         Ok(Self { path: path.to_owned(), labels })
     }
 
-    fn label(&self, name: &str) -> Result<String, PipelineError> {
+    pub(crate) fn label(&self, name: &str) -> Result<String, PipelineError> {
         self.labels
             .get(name)
             .cloned()

@@ -27,6 +27,62 @@ pub enum PipelineError {
     /// The scores.
     #[error(transparent)]
     Retrieval(#[from] retrieval::RetrievalError),
+    /// The index.
+    #[error(transparent)]
+    Index(#[from] retrieval::IndexError),
+    /// The text of an index.
+    #[error(transparent)]
+    Export(#[from] retrieval::ExportError),
+    /// An index whose options this program cannot read.
+    #[error(
+        "{path} describes its shapes in a way that this program does not know ({options}); build it again",
+        path = path.display()
+    )]
+    UnknownOptions {
+        /// The index.
+        path: PathBuf,
+        /// What it says.
+        options: String,
+    },
+    /// A shape that would take the place of another.
+    #[error(
+        "`{id}` is in the index already, from {path}; remove it first, rename the new one, or pass --replace",
+        path = path.display()
+    )]
+    AlreadyThere {
+        /// The name.
+        id: String,
+        /// Where the known one came from.
+        path: PathBuf,
+    },
+    /// A share of a collection that is none.
+    #[error("shard {shard} of {n_shards} does not exist; count shards from 1 to {n_shards}, or from 0")]
+    NoSuchShard {
+        /// The shard.
+        shard: usize,
+        /// How many there are.
+        n_shards: usize,
+    },
+    /// Too many shapes for a matrix.
+    #[error(
+        "distances between all pairs of {n_shapes} shapes are too many; evaluate up to {limit} at once, for example          one shard"
+    )]
+    TooManyShapes {
+        /// Shapes of the index.
+        n_shapes: usize,
+        /// Largest number.
+        limit: usize,
+    },
+    /// A file of distances that is no matrix.
+    #[error("{path}, line {line}: {what}", path = path.display())]
+    BadMatrix {
+        /// The file.
+        path: PathBuf,
+        /// The line, counted from one.
+        line: usize,
+        /// What is wrong and what is expected.
+        what: String,
+    },
     /// A vertex of the input that is not there.
     #[error("vertex {vertex} does not exist; the mesh has {n_vertices} vertices, counted from 0")]
     NoSuchVertex {

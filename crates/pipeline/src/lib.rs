@@ -14,6 +14,7 @@ mod describe;
 mod embed;
 mod error;
 mod forms;
+mod index;
 mod methods;
 mod observer;
 mod options;
@@ -31,6 +32,10 @@ pub use describe::{DESCRIPTION_VERSION, DescribeOptions, ShapeDescription, descr
 pub use embed::{Embedded, embed};
 pub use error::PipelineError;
 pub use forms::{PreparedForms, embedded_distances, form_distances, map_of};
+pub use index::{
+    BuildOptions, BuildReport, Failure, Inputs, MergeReport, Shard, add_to_index, build_index, merge_indexes,
+    remove_from_index,
+};
 pub use methods::{MethodFacts, MethodReport, MethodsReport, compare_methods};
 pub use observer::Observer;
 pub use options::{EmbedMethod, EmbedOptions, Samples, StressChoice};

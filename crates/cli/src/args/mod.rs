@@ -2,6 +2,7 @@
 
 mod embedding;
 mod geodesic;
+mod index;
 
 use std::path::PathBuf;
 
@@ -13,6 +14,9 @@ use pipeline::{
 
 pub(crate) use embedding::EmbeddingArgs;
 pub(crate) use geodesic::GeodesicArgs;
+pub(crate) use index::{
+    AddArgs, BuildArgs, ExportArgs, IndexArgs, IndexCommand, MergeArgs, OneIndexArgs, RemoveArgs,
+};
 
 /// Nonrigid 3D shapes: surface distances, canonical forms, comparison.
 ///
@@ -56,6 +60,8 @@ pub(crate) enum Command {
     Methods(MethodsArgs),
     /// Align the canonical forms of two meshes and say how far apart they are
     Compare(CompareArgs),
+    /// Make, change, check and write out an index of shapes
+    Index(IndexArgs),
     /// Print a script that completes this program's arguments in a shell
     Completions(CompletionsArgs),
 }

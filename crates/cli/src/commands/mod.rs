@@ -4,6 +4,7 @@ mod compare;
 mod completions;
 mod embed;
 mod geodesic;
+mod index;
 mod info;
 mod methods;
 
@@ -11,6 +12,7 @@ pub(crate) use compare::compare;
 pub(crate) use completions::completions;
 pub(crate) use embed::embed;
 pub(crate) use geodesic::geodesic;
+pub(crate) use index::index;
 pub(crate) use info::info;
 pub(crate) use methods::methods;
 
@@ -38,10 +40,14 @@ fn read_surface(path: &std::path::Path, repair: &crate::args::RepairArgs) -> any
 
 /// An error that names the file once, whether or not it does so itself.
 fn named(path: &std::path::Path, fault: pipeline::PipelineError) -> anyhow::Error {
-    let text = fault.to_string();
-    // Of a `.vert`/`.tri` pair the fault may lie in the other half.
-    let names = [path.to_owned(), path.with_extension("vert"), path.with_extension("tri")];
-    let is_named = names.iter().any(|name| text.contains(&name.display().to_string()));
+    let is_named = is_named(path, &fault.to_string());
     let error = anyhow::Error::from(fault);
     if is_named { error } else { error.context(path.display().to_string()) }
+}
+
+/// Whether a message names a file.
+fn is_named(path: &std::path::Path, text: &str) -> bool {
+    // Of a `.vert`/`.tri` pair the fault may lie in the other half.
+    let names = [path.to_owned(), path.with_extension("vert"), path.with_extension("tri")];
+    names.iter().any(|name| text.contains(&name.display().to_string()))
 }

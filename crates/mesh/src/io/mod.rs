@@ -23,7 +23,7 @@ mod tosca;
 
 use std::fs;
 use std::io::{self, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use nalgebra::Point3;
 
@@ -68,6 +68,19 @@ impl Format {
 pub fn is_mesh_path(path: &Path) -> bool {
     let is_second_half = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("tri"));
     Format::of(path).is_ok() && !is_second_half
+}
+
+/// The files that [`read()`] looks into for this name: two for a `.vert`/`.tri` pair, whichever half is
+/// named.
+#[must_use]
+pub fn files_of(path: &Path) -> Vec<PathBuf> {
+    match Format::of(path) {
+        Ok(Format::Tosca) => {
+            let pair = tosca::Pair::of(path);
+            vec![pair.vert, pair.tri]
+        }
+        _ => vec![path.to_owned()],
+    }
 }
 
 /// Reads a mesh; of a `.vert`/`.tri` pair either name will do.

@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
 use super::{Index, IndexError, Shape};
 
@@ -22,10 +22,19 @@ struct Line<'a> {
     label: &'a str,
     path: &'a str,
     content: String,
-    facts: serde_json::Map<String, serde_json::Value>,
+    facts: Named<'a, f64>,
     fused: &'a [f32],
-    signatures: serde_json::Map<String, serde_json::Value>,
-    form: &'a [[f32; 3]],
+    signatures: Named<'a, Vec<f32>>,
+    form: &'a [[f32; 4]],
+}
+
+/// Pairs as an object, in their order.
+struct Named<'a, T>(&'a [(String, T)]);
+
+impl<T: Serialize> Serialize for Named<'_, T> {
+    fn serialize<S: Serializer>(&self, out: S) -> Result<S::Ok, S::Error> {
+        out.collect_map(self.0.iter().map(|(name, value)| (name, value)))
+    }
 }
 
 /// What stopped an export.
@@ -58,17 +67,14 @@ impl Index {
 
 fn line(shape: &Shape) -> Line<'_> {
     let Shape { id, entry, vectors } = shape;
-    let facts = entry.facts.iter().map(|(name, value)| (name.clone(), (*value).into()));
-    let signatures =
-        vectors.signatures.iter().map(|(name, values)| (name.clone(), serde_json::json!(values)));
     Line {
         id,
         label: &entry.label,
         path: &entry.path,
         content: entry.content.to_string(),
-        facts: facts.collect(),
+        facts: Named(&entry.facts),
         fused: &vectors.fused,
-        signatures: signatures.collect(),
+        signatures: Named(&vectors.signatures),
         form: &vectors.form,
     }
 }

@@ -79,8 +79,8 @@ pub struct ShapeVectors {
     pub fused: Vec<f32>,
     /// Named signatures.
     pub signatures: Vec<(String, Vec<f32>)>,
-    /// Points of its form.
-    pub form: Vec<[f32; 3]>,
+    /// Points of its form: `x y z` and weight.
+    pub form: Vec<[f32; 4]>,
 }
 
 /// A shape of an index.
@@ -114,7 +114,7 @@ impl StoredBody {
         ShapeVectors {
             fused: fused.0,
             signatures: self.signatures.into_iter().map(|(name, values)| (name, values.0)).collect(),
-            form: self.form.0.as_chunks::<3>().0.to_vec(),
+            form: self.form.0.as_chunks::<4>().0.to_vec(),
         }
     }
 }

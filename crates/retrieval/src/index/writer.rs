@@ -145,6 +145,8 @@ impl IndexWriter {
                 _ => {}
             }
         }
+        // What is joined begins with nothing.
+        let base = base.filter(|_| job != Job::Merge);
         begin(&mut file, base.as_ref()).map_err(|fault| match fault.kind() {
             io::ErrorKind::InvalidData => {
                 IndexError::Damaged { path: path.to_owned(), what: fault.to_string() }

@@ -149,7 +149,7 @@ fn vectors_that_cannot_be_compared_are_refused() {
     let fault = writer.put(&with(vec![1.0; 4])).unwrap_err();
     assert!(matches!(fault, IndexError::OtherLength { found: 4, expected: 3, .. }));
     let mut large = shape(1);
-    large.vectors.form = vec![[0.0; 3]; 6 << 20];
+    large.vectors.form = vec![[0.0; 4]; 5 << 20];
     assert!(matches!(writer.put(&[large]), Err(IndexError::Codec { .. })));
     assert_eq!(writer.len().unwrap(), 1);
     assert_eq!(writer.finish().unwrap().len(), 1);

@@ -57,7 +57,7 @@ pub(super) fn shape(i: usize) -> Shape {
         vectors: ShapeVectors {
             fused: vec![x, (x * 0.7).sin(), 0.1],
             signatures: vec![("moments".to_owned(), vec![x; 4]), ("spectrum".to_owned(), vec![0.5 * x; 3])],
-            form: (0..40).map(|j| [x, j as f32, 0.1 + x * j as f32]).collect(),
+            form: (0..40).map(|j| [x, j as f32, 0.1 + x * j as f32, 1.0]).collect(),
         },
     }
 }

@@ -1,0 +1,134 @@
+//! What `canonform index` is asked for.
+
+use std::path::PathBuf;
+
+use clap::{Args, Subcommand};
+use pipeline::{DescribeOptions, Normalization, Shard};
+
+use super::RepairArgs;
+
+#[derive(Debug, Args)]
+pub(crate) struct IndexArgs {
+    #[command(subcommand)]
+    pub(crate) command: IndexCommand,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum IndexCommand {
+    /// Index every mesh in a folder; only what is new or has changed is described
+    ///
+    /// An interrupted run keeps what is done in INDEX.work; the same command goes on with it. Readers see the
+    /// old index until the new one is finished. Meshes that cannot be read are listed at the end, and the exit
+    /// code is then 2.
+    Build(BuildArgs),
+    /// Add meshes, or folders of them
+    Add(AddArgs),
+    /// Take shapes out
+    Remove(RemoveArgs),
+    /// Join indexes, for example those of shards, into one
+    Merge(MergeArgs),
+    /// Read every byte and every shape; exit with 2 if anything is not what was written
+    Verify(OneIndexArgs),
+    /// Say what an index holds
+    Info(OneIndexArgs),
+    /// Write an index as lines of JSON, the same however the index came about
+    Export(ExportArgs),
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct BuildArgs {
+    /// Folder of meshes. Classes come from sub-folders, else from the leading letters of file names
+    #[arg(value_name = "DIR")]
+    pub(crate) folder: PathBuf,
+    /// The index
+    #[arg(short, long, value_name = "INDEX")]
+    pub(crate) output: PathBuf,
+    /// Classes, a file of lines `name,label`
+    #[arg(long, value_name = "FILE.csv")]
+    pub(crate) labels: Option<PathBuf>,
+    /// Index only the I-th of N even shares of the folder, for `merge`
+    #[arg(long, value_name = "I/N")]
+    pub(crate) shard: Option<Shard>,
+    #[command(flatten)]
+    pub(crate) describe: DescribeArgs,
+}
+
+/// How shapes are described.
+#[derive(Debug, Clone, Args)]
+pub(crate) struct DescribeArgs {
+    /// Samples that distances are measured from [default: 100]
+    #[arg(short = 'n', long)]
+    pub(crate) samples: Option<usize>,
+    /// Points of a form that are kept for alignment [default: 1000]
+    #[arg(long)]
+    pub(crate) points: Option<usize>,
+    /// Let size count: all meshes have the same unit of length
+    #[arg(long)]
+    pub(crate) size: bool,
+    #[command(flatten)]
+    pub(crate) repair: RepairArgs,
+}
+
+impl DescribeArgs {
+    pub(crate) fn options(&self) -> DescribeOptions {
+        let usual = DescribeOptions::default();
+        DescribeOptions {
+            repair: self.repair.options(),
+            samples: self.samples.unwrap_or(usual.samples),
+            points: self.points.unwrap_or(usual.points),
+            size: if self.size { Normalization::Raw } else { Normalization::UnitArea },
+        }
+    }
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct AddArgs {
+    /// The index
+    pub(crate) index: PathBuf,
+    /// Meshes, or folders of them
+    #[arg(required = true, value_name = "MESH|DIR")]
+    pub(crate) meshes: Vec<PathBuf>,
+    /// Class of all of them [default: from their names]
+    #[arg(long, value_name = "CLASS", conflicts_with = "labels")]
+    pub(crate) label: Option<String>,
+    /// Classes, a file of lines `name,label`
+    #[arg(long, value_name = "FILE.csv")]
+    pub(crate) labels: Option<PathBuf>,
+    /// Let them take the place of other shapes of the same names
+    #[arg(long)]
+    pub(crate) replace: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct RemoveArgs {
+    /// The index
+    pub(crate) index: PathBuf,
+    /// Names of shapes
+    #[arg(required = true, value_name = "ID")]
+    pub(crate) ids: Vec<String>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct MergeArgs {
+    /// The indexes
+    #[arg(required = true, value_name = "INDEX")]
+    pub(crate) inputs: Vec<PathBuf>,
+    /// The index of all their shapes
+    #[arg(short, long, value_name = "INDEX")]
+    pub(crate) output: PathBuf,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct OneIndexArgs {
+    /// The index
+    pub(crate) index: PathBuf,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ExportArgs {
+    /// The index
+    pub(crate) index: PathBuf,
+    /// Where to write [default: standard output]
+    #[arg(short, long, value_name = "FILE.jsonl")]
+    pub(crate) output: Option<PathBuf>,
+}

@@ -1,0 +1,22 @@
+//! `canonform index`.
+
+mod change;
+mod look;
+
+use std::process::ExitCode;
+
+use anyhow::Result;
+
+use crate::args::{Common, IndexCommand};
+
+pub(crate) fn index(command: &IndexCommand, common: &Common) -> Result<ExitCode> {
+    match command {
+        IndexCommand::Build(args) => change::build(args, common),
+        IndexCommand::Add(args) => change::add(args, common),
+        IndexCommand::Remove(args) => change::remove(args, common),
+        IndexCommand::Merge(args) => change::merge(args, common),
+        IndexCommand::Verify(args) => look::verify(args, common),
+        IndexCommand::Info(args) => look::info(args, common),
+        IndexCommand::Export(args) => look::export(args, common),
+    }
+}
