@@ -21,6 +21,8 @@ fn main() -> ExitCode {
         Command::Methods(args) => commands::methods(args, &common),
         Command::Compare(args) => commands::compare(args, &common),
         Command::Index(args) => commands::index(&args.command, &common),
+        Command::Search(args) => commands::search(args, &common),
+        Command::Evaluate(args) => commands::evaluate(args, &common),
         Command::Completions(args) => commands::completions(args),
     })
 }

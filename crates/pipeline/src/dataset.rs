@@ -23,18 +23,21 @@ pub struct ShapeFile {
 pub struct LabelFile {
     path: PathBuf,
     labels: HashMap<String, String>,
+    in_order: Vec<String>,
 }
 
 impl LabelFile {
     /// Reads a label file. Names are those of [`ShapeFile`], with or without extension; empty lines,
-    /// lines that begin with `#` and a header `name,label` are skipped.
+    /// lines that begin with `#` and a header `name,label` are skipped. A file of labels alone says which
+    /// are those of the first, the second, ... row of a matrix.
     ///
     /// # Errors
     /// [`PipelineError::Io`] and [`PipelineError::BadLabelLine`].
     pub fn read(path: &Path) -> Result<Self, PipelineError> {
         let text = std::fs::read_to_string(path)
             .map_err(|source| PipelineError::Io { path: path.to_owned(), source })?;
-        let mut labels = HashMap::new();
+        let (mut labels, mut in_order) = (HashMap::new(), Vec::new());
+        let has_names = text.contains(',');
         for (number, line) in text.lines().enumerate() {
             let line = line.trim();
             if line.is_empty() || line.starts_with('#') || (number == 0 && line == "name,label") {
@@ -43,7 +46,9 @@ impl LabelFile {
             match line.split(',').map(str::trim).collect::<Vec<_>>()[..] {
                 [name, label] if !name.is_empty() && !label.is_empty() => {
                     labels.insert(stem(Path::new(name)), label.to_owned());
+                    in_order.push(label.to_owned());
                 }
+                [label] if !has_names => in_order.push(label.to_owned()),
                 _ => {
                     return Err(PipelineError::BadLabelLine {
                         path: path.to_owned(),
@@ -53,7 +58,12 @@ impl LabelFile {
                 }
             }
         }
-        Ok(Self { path: path.to_owned(), labels })
+        Ok(Self { path: path.to_owned(), labels, in_order })
+    }
+
+    /// The labels in the order of the lines.
+    pub(crate) fn in_order(&self) -> &[String] {
+        &self.in_order
     }
 
     pub(crate) fn label(&self, name: &str) -> Result<String, PipelineError> {

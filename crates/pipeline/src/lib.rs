@@ -33,8 +33,9 @@ pub use embed::{Embedded, embed};
 pub use error::PipelineError;
 pub use forms::{PreparedForms, embedded_distances, form_distances, map_of};
 pub use index::{
-    BuildOptions, BuildReport, Failure, Inputs, MergeReport, Shard, add_to_index, build_index, merge_indexes,
-    remove_from_index,
+    BuildOptions, BuildReport, Explain, Failure, Inputs, Measure, MergeReport, Prediction, SearchOptions,
+    SearchReport, SearchResult, SearchSeconds, ShapeSearch, Shard, add_to_index, build_index, evaluate_index,
+    evaluate_matrix, merge_indexes, remove_from_index,
 };
 pub use methods::{MethodFacts, MethodReport, MethodsReport, compare_methods};
 pub use observer::Observer;
@@ -46,7 +47,8 @@ pub use stress::{StressKind, StressReport};
 pub use surface::Surface;
 
 pub use descriptors::{
-    FormDistance, MatchOptions, Normalization, PreparedForm, Reflections, Signature, SignatureKind,
+    DescriptorError, FormDistance, MatchOptions, Normalization, PreparedForm, Reflections, Signature,
+    SignatureKind,
 };
 pub use geodesics::{
     DistanceSolver, FastMarchingOptions, FirstSample, HeatOptions, Method as GeodesicMethod, ObtuseTreatment,
@@ -54,3 +56,4 @@ pub use geodesics::{
 };
 pub use mesh::io::abandon_unfinished;
 pub use nmds::{Bandwidth, Regularization, RpiAlpha, SmacofOptions};
+pub use retrieval::{Evaluation, SearchMode};

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
-use pipeline::{DescribeOptions, Normalization, Shard};
+use pipeline::{DescribeOptions, Measure, Normalization, Shard};
 
 use super::RepairArgs;
 
@@ -131,4 +131,50 @@ pub(crate) struct ExportArgs {
     /// Where to write [default: standard output]
     #[arg(short, long, value_name = "FILE.jsonl")]
     pub(crate) output: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct SearchArgs {
+    /// The index
+    pub(crate) index: PathBuf,
+    /// Meshes to look for
+    #[arg(required = true, value_name = "QUERY")]
+    pub(crate) queries: Vec<PathBuf>,
+    /// Shapes wanted
+    #[arg(short, default_value_t = 10)]
+    pub(crate) k: usize,
+    /// Say of every shape what kind of match it is
+    #[arg(long)]
+    pub(crate) explain: bool,
+    /// Measure the signatures of all shapes, however many there are
+    #[arg(long)]
+    pub(crate) exact: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct EvaluateArgs {
+    /// An index; or distances, one line of numbers separated by commas for each shape, perhaps below a line of
+    /// names
+    #[arg(value_name = "INDEX|MATRIX.csv")]
+    pub(crate) input: PathBuf,
+    /// Classes, a file of lines `name,label`; for a matrix without names in the order of its rows, as bare
+    /// labels too [default: those of the index; from names]
+    #[arg(long, value_name = "FILE")]
+    pub(crate) labels: Option<PathBuf>,
+    /// What distances are measured between, in an index: `fused`, `moments`, `d2`, `geodesic-spectrum`,
+    /// `shape-dna`, `heat-kernel` or `wave-kernel`
+    #[arg(long, value_name = "SIGNATURE", default_value = "fused", value_parser = parse_measure)]
+    pub(crate) by: Measure,
+    /// Neighbours that vote on the class of a shape
+    #[arg(short, default_value_t = 1)]
+    pub(crate) k: usize,
+}
+
+fn parse_measure(text: &str) -> Result<Measure, String> {
+    match text {
+        "fused" => Ok(Measure::Fused),
+        kind => {
+            kind.parse().map(Measure::Signature).map_err(|fault: pipeline::DescriptorError| fault.to_string())
+        }
+    }
 }

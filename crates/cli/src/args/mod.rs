@@ -15,7 +15,8 @@ use pipeline::{
 pub(crate) use embedding::EmbeddingArgs;
 pub(crate) use geodesic::GeodesicArgs;
 pub(crate) use index::{
-    AddArgs, BuildArgs, ExportArgs, IndexArgs, IndexCommand, MergeArgs, OneIndexArgs, RemoveArgs,
+    AddArgs, BuildArgs, EvaluateArgs, ExportArgs, IndexArgs, IndexCommand, MergeArgs, OneIndexArgs,
+    RemoveArgs, SearchArgs,
 };
 
 /// Nonrigid 3D shapes: surface distances, canonical forms, comparison.
@@ -62,6 +63,10 @@ pub(crate) enum Command {
     Compare(CompareArgs),
     /// Make, change, check and write out an index of shapes
     Index(IndexArgs),
+    /// Find the shapes of an index that are most like a mesh, and its class
+    Search(SearchArgs),
+    /// Score how well an index, or a matrix of distances, separates classes
+    Evaluate(EvaluateArgs),
     /// Print a script that completes this program's arguments in a shell
     Completions(CompletionsArgs),
 }

@@ -3,18 +3,22 @@
 mod compare;
 mod completions;
 mod embed;
+mod evaluate;
 mod geodesic;
 mod index;
 mod info;
 mod methods;
+mod search;
 
 pub(crate) use compare::compare;
 pub(crate) use completions::completions;
 pub(crate) use embed::embed;
+pub(crate) use evaluate::evaluate;
 pub(crate) use geodesic::geodesic;
 pub(crate) use index::index;
 pub(crate) use info::info;
 pub(crate) use methods::methods;
+pub(crate) use search::search;
 
 use mesh::RepairReport;
 use pipeline::Surface;

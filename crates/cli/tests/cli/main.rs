@@ -2,7 +2,8 @@
 //!
 //! `commands` (what each prints), `forms` (the files it writes), `errors` (what it refuses, and that
 //! nothing is left behind), `folders` (many meshes at once),
-//! `geodesic` (sources, paths, all pairs).
+//! `geodesic` (sources, paths, all pairs), `index` (making, changing and asking one), `killed` (interruptions,
+//! full disks).
 
 #[cfg(test)]
 mod commands;
@@ -14,5 +15,9 @@ mod folders;
 mod forms;
 #[cfg(test)]
 mod geodesic;
+#[cfg(test)]
+mod index;
+#[cfg(test)]
+mod killed;
 #[cfg(test)]
 mod support;

@@ -10,8 +10,10 @@ use retrieval::{Index, IndexError, IndexWriter, Job, Shape, ShapeEntry, work_pat
 use serde::Serialize;
 
 use super::record::{options_text, path_text, same_source, shape};
-use super::source::{Hashed, Inputs, Shard, hash_all, share};
-use crate::{DescribeOptions, LabelFile, Observer, PipelineError, ShapeFile, Surface, describe_surface};
+use super::source::{Hashed, Shard, hash_all, name_apart, share};
+use crate::{
+    DescribeOptions, LabelFile, Observer, PipelineError, ShapeFile, Surface, describe_surface, list_shapes,
+};
 
 /// Shapes put on the disk together at most, when several are waiting.
 const BATCH: usize = 64;
@@ -86,9 +88,9 @@ pub fn build_index(
 ) -> Result<BuildReport, PipelineError> {
     let start = Instant::now();
     options.describe.validate()?;
-    let folder = [folder.to_owned()];
-    let inputs = Inputs { paths: &folder, labels: options.labels, label: None };
-    let files = share(inputs.list()?, options.shard);
+    let mut files = list_shapes(folder, options.labels)?;
+    name_apart(&mut files);
+    let files = share(files, options.shard);
     let text = options_text(options.describe);
     // What cannot work is refused before anything is read.
     if path.exists() {

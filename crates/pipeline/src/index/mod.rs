@@ -2,13 +2,20 @@
 //!
 //! ```text
 //! files -> content hash -> unchanged? -> describe -> retrieval::IndexWriter -> retrieval::Index
+//! mesh -> describe -> Index::nearest (fused signatures) -> rerank (aligned forms) -> vote
 //! ```
 
 mod build;
 mod change;
+mod evaluate;
 mod record;
+mod search;
 mod source;
 
 pub use build::{BuildOptions, BuildReport, Failure, build_index};
 pub use change::{MergeReport, add_to_index, merge_indexes, remove_from_index};
+pub use evaluate::{Measure, evaluate_index, evaluate_matrix};
+pub use search::{
+    Explain, Prediction, SearchOptions, SearchReport, SearchResult, SearchSeconds, ShapeSearch,
+};
 pub use source::{Inputs, Shard};

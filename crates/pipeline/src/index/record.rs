@@ -89,7 +89,6 @@ pub(super) fn shape(file: &ShapeFile, content: ContentHash, described: ShapeDesc
 ///
 /// # Errors
 /// [`PipelineError::Descriptor`] when it has none.
-#[expect(dead_code, reason = "search comes next")]
 pub(super) fn form(entry: &ShapeEntry, vectors: &ShapeVectors) -> Result<CanonicalForm, PipelineError> {
     let points = vectors.form.iter().map(|[x, y, z, _]| Point3::new(*x, *y, *z).cast());
     let weights = vectors.form.iter().map(|[.., w]| f64::from(*w)).collect();

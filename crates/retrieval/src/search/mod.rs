@@ -17,6 +17,7 @@ mod searcher;
 mod stored;
 #[cfg(test)]
 mod testing;
+mod threshold;
 
 pub use searcher::{Found, NearShape, SearchMode, Searcher};
 pub(crate) use stored::{check, write};

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::kernels::sq_distances_into;
 use super::kmeans::Centroids;
 use super::nearest::{Hit, Nearest};
+use crate::UnknownThreshold;
 
 /// Up to this many vectors all of them are measured: that takes less than two milliseconds, and is
 /// exact.
@@ -39,6 +40,8 @@ pub(crate) struct About {
     pub(crate) probes: usize,
     /// Share of the ten nearest that are found so, by trial; 1 when all cells are looked into.
     pub(crate) recall: f64,
+    /// Beyond this distance nothing is near, by the classes of the shapes.
+    pub(crate) threshold: Option<UnknownThreshold>,
 }
 
 impl About {
@@ -71,7 +74,8 @@ impl Plan {
     pub(crate) fn with_cells(rows: &[f32], dim: usize, n: usize, n_cells: usize) -> Self {
         let n_rows = rows.len() / n;
         if n_cells < 2 || n_rows < n_cells {
-            let about = About { dim, n: n_rows, sizes: vec![n_rows as u32], probes: 1, recall: 1.0 };
+            let about =
+                About { dim, n: n_rows, sizes: vec![n_rows as u32], probes: 1, recall: 1.0, threshold: None };
             let centroids = Centroids::new(vec![0.0; n], n);
             return Self { about, centroids, slots: (0..n_rows as u32).collect() };
         }
@@ -86,7 +90,7 @@ impl Plan {
         let mut slots: Vec<u32> = (0..n_rows as u32).collect();
         slots.sort_by_key(|slot| cells[*slot as usize]);
         let (probes, recall) = calibrated(rows, n, &cells, &centroids);
-        Self { about: About { dim, n: n_rows, sizes, probes, recall }, centroids, slots }
+        Self { about: About { dim, n: n_rows, sizes, probes, recall, threshold: None }, centroids, slots }
     }
 }
 

@@ -7,6 +7,7 @@ use super::kmeans::Centroids;
 use super::nearest::{Hit, Nearest};
 use super::plan::{About, nearest_cells, scan};
 use super::stored::Stored;
+use crate::UnknownThreshold;
 use crate::index::{Index, IndexError};
 
 /// Rows that are worth a task of their own.
@@ -52,6 +53,9 @@ pub struct Found {
     /// Share of the ten nearest that a search like this finds, by trial when the index was finished; 1
     /// for an exact search.
     pub recall: f64,
+    /// A shape whose nearest one is farther is of no class of the index; `None` where classes are too small to
+    /// tell.
+    pub threshold: Option<UnknownThreshold>,
 }
 
 impl Found {
@@ -64,7 +68,13 @@ impl Found {
         // What was chosen in single precision is put in order in double.
         shapes.sort_by(|a, b| a.distance.total_cmp(&b.distance).then_with(|| a.id.cmp(&b.id)));
         let is_exact = mode == SearchMode::Exact || about.is_exact();
-        Self { shapes, n_measured, n_shapes: about.n, recall: if is_exact { 1.0 } else { about.recall } }
+        Self {
+            shapes,
+            n_measured,
+            n_shapes: about.n,
+            recall: if is_exact { 1.0 } else { about.recall },
+            threshold: about.threshold,
+        }
     }
 }
 

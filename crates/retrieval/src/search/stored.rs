@@ -1,5 +1,7 @@
 //! Cells in an index file.
 
+use std::collections::HashMap;
+
 use serde::{Deserialize, Serialize};
 
 use super::kernels::padded;
@@ -7,9 +9,10 @@ use super::kmeans::Centroids;
 use super::nearest::{Hit, Nearest};
 use super::plan::{About, Plan, nearest_cells, scan};
 use super::searcher::{Found, NearShape, SearchMode, distance};
+use super::threshold::threshold;
 use crate::index::codec::{Floats, encode};
-use crate::index::tables::{FUSED, SEARCH, Snapshot, Store};
-use crate::index::{Index, IndexError};
+use crate::index::tables::{ENTRIES, FUSED, SEARCH, Snapshot, Store};
+use crate::index::{Index, IndexError, ShapeEntry};
 
 /// Bytes of vectors in one value.
 const PART: usize = 1 << 20;
@@ -39,7 +42,8 @@ fn rows_in_part(n: usize) -> usize {
 pub(crate) fn write(store: &Store<'_>) -> Result<(), IndexError> {
     let (names, rows, dim) = vectors(store)?;
     let n = padded(dim);
-    let plan = Plan::of(&rows, dim, n);
+    let mut plan = Plan::of(&rows, dim, n);
+    plan.about.threshold = threshold(&rows, n, &classes(store)?);
     store.write(|transaction| {
         transaction.delete_table(SEARCH).map_err(|fault| store.fault(fault))?;
         let mut table = transaction.open_table(SEARCH).map_err(|fault| store.fault(fault))?;
@@ -69,6 +73,18 @@ pub(crate) fn write(store: &Store<'_>) -> Result<(), IndexError> {
         }
         Ok(())
     })
+}
+
+/// The classes of all shapes in order of their names, as numbers.
+fn classes(store: &Store<'_>) -> Result<Vec<u32>, IndexError> {
+    let mut numbers: HashMap<String, u32> = HashMap::new();
+    let mut classes = Vec::new();
+    store.read()?.each(ENTRIES, |_, entry: ShapeEntry| {
+        let next = numbers.len() as u32;
+        classes.push(*numbers.entry(entry.label).or_insert(next));
+        Ok::<(), IndexError>(())
+    })?;
+    Ok(classes)
 }
 
 /// All vectors in order of their names, padded, and their length.

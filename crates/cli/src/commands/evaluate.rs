@@ -1,0 +1,53 @@
+//! `canonform evaluate`.
+
+use std::process::ExitCode;
+
+use anyhow::Result;
+use pipeline::{Evaluation, LabelFile, evaluate_index, evaluate_matrix};
+use terminal::Bars;
+
+use super::named;
+use crate::args::{Common, EvaluateArgs};
+use crate::output::{extension, facts, print, print_json};
+
+/// Scores an index or a matrix.
+pub(crate) fn evaluate(args: &EvaluateArgs, common: &Common) -> Result<ExitCode> {
+    let labels = args.labels.as_ref().map(|path| LabelFile::read(path)).transpose()?;
+    let scores = if extension(&args.input) == "csv" {
+        evaluate_matrix(&args.input, labels.as_ref(), args.k)
+    } else {
+        let bars = Bars::new(common.quiet);
+        let scores = evaluate_index(&args.input, args.by, labels.as_ref(), args.k, &bars);
+        bars.finish();
+        scores
+    };
+    let scores = scores.map_err(|fault| named(&args.input, fault))?;
+    match common.json {
+        true => print_json(&scores)?,
+        false => print(&table(&scores))?,
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+fn table(scores: &Evaluation) -> String {
+    let rows = [
+        ("nearest neighbour", scores.nn),
+        ("first tier", scores.ft),
+        ("second tier", scores.st),
+        ("E-measure", scores.e),
+        ("DCG", scores.dcg),
+        ("mAP", scores.map),
+        ("silhouette", scores.silhouette),
+    ];
+    let mut rows: Vec<_> = rows.into_iter().map(|(name, score)| (name, format!("{score:.4}"))).collect();
+    let votes = format!("{:.4} (k = {})", scores.knn_accuracy, scores.knn_k);
+    rows.push(("classified right", votes));
+    rows.push(("shapes, classes", format!("{}, {}", scores.n, scores.classes.len())));
+    let mut table = comfy_table::Table::new();
+    table.load_style(comfy_table::presets::NOTHING);
+    table.set_header(["is \\ taken for"].into_iter().chain(scores.classes.iter().map(String::as_str)));
+    for (class, row) in scores.classes.iter().zip(&scores.confusion) {
+        table.add_row([class.clone()].into_iter().chain(row.iter().map(usize::to_string)));
+    }
+    format!("{}\n{table}", facts(&rows))
+}

@@ -1,0 +1,138 @@
+//! `canonform search`.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use anyhow::Result;
+use pipeline::{Explain, MatchKind, SearchMode, SearchOptions, SearchReport, SearchResult, ShapeSearch};
+use serde::Serialize;
+
+use super::named;
+use crate::args::{Common, SearchArgs};
+use crate::output::{print, print_json};
+
+#[derive(Serialize)]
+struct Answer {
+    query: PathBuf,
+    #[serde(flatten)]
+    report: SearchReport,
+}
+
+/// One answer as it is, several in a list.
+#[derive(Serialize)]
+#[serde(untagged)]
+enum Json {
+    One(Box<Answer>),
+    Several { queries: Vec<Answer>, failed: Vec<Failure> },
+}
+
+#[derive(Serialize)]
+struct Failure {
+    query: PathBuf,
+    error: String,
+}
+
+/// Asks an index about meshes; what cannot be read is named and does not stop the others. Exits with 1 when
+/// nothing was found for some.
+pub(crate) fn search(args: &SearchArgs, common: &Common) -> Result<ExitCode> {
+    let index = ShapeSearch::open(&args.index)?;
+    let options = SearchOptions {
+        k: args.k,
+        mode: if args.exact { SearchMode::Exact } else { SearchMode::Auto },
+        explain: if args.explain { Explain::Kind } else { Explain::No },
+        ..SearchOptions::default()
+    };
+    let (mut answers, mut failed) = (Vec::new(), Vec::new());
+    for query in &args.queries {
+        let report = mesh::io::read(query)
+            .map_err(Into::into)
+            .and_then(|mesh| index.search(&mesh, &options))
+            .map_err(|fault| named(query, fault));
+        match report {
+            Ok(report) => {
+                if !common.json {
+                    print(&table(query.display().to_string(), &report))?;
+                }
+                answers.push(Answer { query: query.to_path_buf(), report });
+            }
+            Err(fault) if args.queries.len() == 1 => return Err(fault),
+            Err(fault) => {
+                let error = terminal::message(&fault);
+                eprintln!("error: {error}");
+                failed.push(Failure { query: query.to_path_buf(), error });
+            }
+        }
+    }
+    let nothing = answers.iter().any(|answer| answer.report.results.is_empty());
+    let code = match (failed.is_empty(), nothing) {
+        (false, _) => ExitCode::from(2),
+        (true, true) => ExitCode::from(1),
+        (true, false) => ExitCode::SUCCESS,
+    };
+    if common.json {
+        let json = match args.queries.len() {
+            1 => answers.pop().map(|answer| Json::One(Box::new(answer))),
+            _ => Some(Json::Several { queries: answers, failed }),
+        };
+        print_json(&json)?;
+    }
+    Ok(code)
+}
+
+fn table(query: String, report: &SearchReport) -> String {
+    let mut table = comfy_table::Table::new();
+    table.load_style(comfy_table::presets::NOTHING);
+    let explained = report.results.iter().any(|result| result.comparison.is_some());
+    let mut head = vec!["", "shape", "class", "distance", "path"];
+    if explained {
+        head.push("match");
+    }
+    table.set_header(head);
+    for result in &report.results {
+        let mut row = vec![
+            result.rank.to_string(),
+            result.id.clone(),
+            result.label.clone(),
+            format!("{:.4}", result.distance),
+            result.path.clone(),
+        ];
+        row.extend(kind(result));
+        table.add_row(row);
+    }
+    let predicted = &report.predicted;
+    let class = match (&predicted.label, report.results.is_empty()) {
+        (_, true) => "the index holds nothing".to_owned(),
+        (Some(label), _) => format!(
+            "{label}, by {} of {} votes, confidence {:.2}",
+            predicted.votes, predicted.voters, predicted.confidence
+        ),
+        (None, _) => format!(
+            "unknown: nothing is nearer than {:.2} by signatures",
+            predicted.threshold.unwrap_or(f64::INFINITY)
+        ),
+    };
+    let exactness = if report.recall < 1.0 {
+        format!(", {:.1} % of the nearest are found", 100.0 * report.recall)
+    } else {
+        String::new()
+    };
+    format!(
+        "{query}\n{table}\n  class: {class}\n  {} of {} shapes measured{exactness}, {} aligned, {:.3} s",
+        report.measured,
+        report.n_shapes,
+        report.aligned,
+        report.seconds.describe + report.seconds.search
+    )
+}
+
+fn kind(result: &SearchResult) -> Option<String> {
+    let comparison = result.comparison.as_ref()?;
+    let resized = format!("scaled by {:.3}", comparison.scale);
+    Some(match comparison.kind {
+        MatchKind::Same => "the same shape".to_owned(),
+        MatchKind::Scaled => format!("the same, {resized}"),
+        MatchKind::Mirrored => "mirrored".to_owned(),
+        MatchKind::MirroredAndScaled => format!("mirrored, {resized}"),
+        MatchKind::Different => format!("different ({:.3} apart)", comparison.normalized_distance),
+    })
+}

@@ -1,0 +1,255 @@
+//! An index from making it to asking it.
+
+use std::fs;
+
+use mesh::{TriMesh, shapes};
+use serde_json::Value;
+
+use crate::support::{Workplace, assert_keys, one_object};
+
+/// A closed surface of one of three kinds, each a little different from the others of its kind.
+pub(crate) fn body(kind: usize, variant: usize) -> TriMesh {
+    let mut mesh = match kind {
+        0 => shapes::torus(14, 8, 2.0, 0.6),
+        1 => shapes::icosphere(2),
+        _ => shapes::cube(4),
+    };
+    let (a, b) = (1.0 + 0.02 * variant as f64, [1.0, 1.6, 2.5][kind]);
+    for p in &mut mesh.positions {
+        *p = [p.x * a, p.y * b, p.z + 0.01 * variant as f64 * p.x * p.x].into();
+    }
+    mesh
+}
+
+/// Nine shapes of three classes.
+fn collection() -> Workplace {
+    let place = Workplace::new();
+    for (kind, name) in ["ring", "ball", "box"].into_iter().enumerate() {
+        (0..3).for_each(|i| place.add(&format!("meshes/{name}{i}.off"), &body(kind, i)));
+    }
+    place
+}
+
+const BUILD: [&str; 7] = ["index", "build", "meshes", "-n", "20", "-o", "all.canonform"];
+
+fn export(place: &Workplace, index: &str) -> String {
+    place.done(&["index", "export", index]).out
+}
+
+#[test]
+fn a_folder_becomes_an_index_that_finds_its_shapes() {
+    let place = collection();
+    let built = place.json(&BUILD);
+    assert_eq!((&built["n_shapes"], &built["described"]), (&9.into(), &9.into()));
+    place.add("query.ply", &body(0, 7));
+    let found = place.json(&["search", "all.canonform", "query.ply", "-k", "4", "--explain"]);
+    assert_keys(&found, &["query", "results", "predicted", "seconds"]);
+    let results = found["results"].as_array().unwrap();
+    assert_eq!(results.len(), 4);
+    for (i, result) in results.iter().enumerate() {
+        assert_keys(result, &["rank", "id", "label", "path", "distance", "match"]);
+        assert_eq!(result["rank"], i + 1);
+    }
+    assert_eq!((&results[0]["label"], &results[0]["id"]), (&"ring".into(), &"ring2".into()));
+    assert_eq!(results[0]["path"], "meshes/ring2.off");
+    assert_eq!(found["predicted"]["label"], "ring");
+    assert!(found["predicted"]["votes"].as_u64().unwrap() >= 3);
+    // What is in the index is at no distance from itself.
+    let own = place.json(&["search", "all.canonform", "meshes/box1.off"]);
+    assert_eq!(own["results"][0]["id"], "box1");
+    assert!(own["results"][0]["distance"].as_f64().unwrap() < 1e-3, "{own}");
+    assert_eq!(own["results"].as_array().unwrap().len(), 9);
+    // Several queries, one of them no mesh.
+    let outcome =
+        place.run(&["search", "all.canonform", "meshes/box1.off", "none.off", "meshes/ball0.off", "--json"]);
+    let json = one_object(&outcome.out);
+    assert_eq!((outcome.code, json["queries"].as_array().unwrap().len()), (2, 2));
+    assert_eq!(json["failed"][0]["query"], "none.off");
+    let text = place.done(&["search", "all.canonform", "query.ply", "--explain", "--exact"]).out;
+    assert!(text.contains("class: ring") && text.contains("9 of 9 shapes measured"), "{text}");
+}
+
+#[test]
+fn only_what_changed_is_described_again() {
+    let place = collection();
+    place.done(&BUILD);
+    let before = fs::read(place.path("all.canonform")).unwrap();
+    let again = place.json(&BUILD);
+    assert_eq!((&again["described"], &again["unchanged"]), (&0.into(), &9.into()));
+    assert_eq!(fs::read(place.path("all.canonform")).unwrap(), before, "not even written");
+    place.add("meshes/ring1.off", &body(0, 5));
+    place.add("meshes/ring9.off", &body(0, 6));
+    fs::remove_file(place.path("meshes/box0.off")).unwrap();
+    let changed = place.json(&BUILD);
+    let counts = ["described", "unchanged", "removed", "n_shapes"].map(|key| changed[key].as_u64().unwrap());
+    assert_eq!(counts, [2, 7, 1, 9]);
+    let text = export(&place, "all.canonform");
+    fs::remove_file(place.path("all.canonform")).unwrap();
+    place.done(&BUILD);
+    assert_eq!(export(&place, "all.canonform"), text, "as if it was built at once");
+    // Other classes need no new description.
+    fs::write(place.path("labels.csv"), export_labels(&text)).unwrap();
+    let labelled = place.json(&[&BUILD[..], &["--labels", "labels.csv"]].concat());
+    assert_eq!((&labelled["described"], &labelled["renamed"]), (&0.into(), &9.into()));
+    assert!(export(&place, "all.canonform").contains("\"label\":\"of ring\""));
+}
+
+/// A label file that calls a `ring` an `of ring`.
+fn export_labels(text: &str) -> String {
+    let shapes = text.lines().skip(1).map(|line| serde_json::from_str::<Value>(line).unwrap());
+    let line = |s: Value| format!("{},of {}\n", s["id"].as_str().unwrap(), s["label"].as_str().unwrap());
+    shapes.map(line).collect()
+}
+
+#[test]
+fn shards_merged_are_the_whole() {
+    let place = collection();
+    place.done(&BUILD);
+    for i in ["1", "2", "3", "4"] {
+        let shard = format!("{i}/4");
+        let output = format!("part{i}");
+        let counts = place.json(&["index", "build", "meshes", "-n", "20", "--shard", &shard, "-o", &output]);
+        assert!((2..=3).contains(&counts["n_shapes"].as_u64().unwrap()));
+    }
+    let parts = ["part3", "part1", "part4", "part2", "part1"];
+    let merged = place.json(&[&["index", "merge", "-o", "merged"], &parts[..]].concat());
+    assert_eq!((&merged["n_shapes"], &merged["repeated"]), (&9.into(), &3.into()));
+    assert_eq!(export(&place, "merged"), export(&place, "all.canonform"));
+    // Merging again begins anew.
+    place.done(&["index", "merge", "part1", "-o", "merged"]);
+    assert_eq!(export(&place, "merged"), export(&place, "part1"));
+    place.refused(&["index", "build", "meshes", "--shard", "5/4", "-o", "x"], &["--shard", "5", "4"]);
+    place.add("meshes/ring0.off", &body(0, 3));
+    place.done(&["index", "build", "meshes", "-n", "20", "-o", "new"]);
+    place.refused(
+        &["index", "merge", "part1", "part2", "part3", "part4", "new", "-o", "x"],
+        &["`ring0`", "new"],
+    );
+    place.done(&["index", "build", "meshes", "-n", "21", "-o", "other"]);
+    place.refused(&["index", "merge", "new", "other", "-o", "x"], &["other options", "21", "20"]);
+    assert!(!place.path("x").exists() && export(&place, "merged") == export(&place, "part1"));
+}
+
+#[test]
+fn shapes_are_added_and_removed() {
+    let place = collection();
+    place.done(&BUILD);
+    let whole = export(&place, "all.canonform");
+    place.add("more/ring7.off", &body(0, 7));
+    place.add("extra.ply", &body(1, 8));
+    let added = place.json(&["index", "add", "all.canonform", "more", "extra.ply", "--label", "new"]);
+    assert_eq!((&added["described"], &added["n_shapes"]), (&2.into(), &11.into()));
+    assert_eq!(place.json(&["index", "info", "all.canonform"])["classes"]["new"], 2);
+    let again = place.json(&["index", "add", "all.canonform", "more", "--label", "new"]);
+    assert_eq!((&again["described"], &again["n_shapes"]), (&0.into(), &11.into()));
+    place.add("more/ring7.off", &body(2, 0));
+    place.refused(&["index", "add", "all.canonform", "more"], &["`ring7`", "more/ring7.off", "--replace"]);
+    place.done(&["index", "add", "all.canonform", "more", "--replace"]);
+    place.refused(&["index", "remove", "all.canonform", "ring7", "cat5"], &["`cat5`", "all.canonform"]);
+    let removed = place.json(&["index", "remove", "all.canonform", "ring7", "extra", "ring7"]);
+    assert_eq!((&removed["removed"], &removed["n_shapes"]), (&2.into(), &9.into()));
+    assert_eq!(export(&place, "all.canonform"), whole);
+    assert!(!place.path("all.canonform.work").exists());
+}
+
+#[test]
+fn what_fails_is_listed_and_stays_out() {
+    let place = collection();
+    fs::write(place.path("meshes/bad.off"), "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 zero\n3 0 1 2\n").unwrap();
+    for _ in 0..2 {
+        let outcome = place.run(&[&BUILD[..], &["--json"]].concat());
+        let json = one_object(&outcome.out);
+        assert_eq!((outcome.code, &json["n_shapes"]), (2, &9.into()));
+        assert_eq!(json["failed"][0]["id"], "bad");
+        assert!(outcome.err.contains("meshes/bad.off") && outcome.err.contains("line 5"), "{}", outcome.err);
+    }
+    // A shape whose file cannot be read any more is no shape of the folder.
+    fs::write(place.path("meshes/ring1.off"), "OFF\n").unwrap();
+    let outcome = place.run(&[&BUILD[..], &["--json"]].concat());
+    let json = one_object(&outcome.out);
+    assert_eq!((&json["n_shapes"], &json["removed"]), (&8.into(), &1.into()));
+    // Nothing but failures is no index.
+    fs::create_dir(place.path("broken")).unwrap();
+    fs::write(place.path("broken/a.off"), "OFF\n").unwrap();
+    let outcome = place.run(&["index", "build", "broken", "-o", "none"]);
+    assert_eq!(outcome.code, 2);
+    assert!(!place.path("none").exists() && !place.path("none.work").exists());
+}
+
+#[test]
+fn an_index_is_verified_described_and_scored() {
+    let place = collection();
+    place.done(&BUILD);
+    let sound = place.json(&["index", "verify", "all.canonform"]);
+    assert_eq!((&sound["sound"], &sound["n_shapes"]), (&true.into(), &9.into()));
+    let info = place.json(&["index", "info", "all.canonform"]);
+    assert_eq!((&info["n_shapes"], &info["options"]["samples"]), (&9.into(), &20.into()));
+    let scores = place.json(&["evaluate", "all.canonform"]);
+    let keys =
+        ["n", "classes", "nn", "ft", "st", "e", "dcg", "map", "knn_accuracy", "confusion", "silhouette"];
+    assert_keys(&scores, &keys);
+    assert_eq!((&scores["nn"], &scores["map"], &scores["n"]), (&1.0.into(), &1.0.into(), &9.into()));
+    let dna = place.json(&["evaluate", "all.canonform", "--by", "shape-dna"]);
+    assert_ne!(dna["silhouette"], scores["silhouette"]);
+    place.refused(&["evaluate", "all.canonform", "--by", "colour"], &["colour", "shape-dna"]);
+    assert!(place.done(&["evaluate", "all.canonform"]).out.contains("nearest neighbour"));
+    // Written to a file as to standard output.
+    place.done(&["index", "export", "all.canonform", "-o", "all.jsonl"]);
+    assert_eq!(fs::read_to_string(place.path("all.jsonl")).unwrap(), export(&place, "all.canonform"));
+    // One byte in the middle.
+    let mut bytes = fs::read(place.path("all.canonform")).unwrap();
+    let middle = bytes.len() / 2;
+    bytes[middle] ^= 4;
+    fs::write(place.path("all.canonform"), bytes).unwrap();
+    let outcome = place.run(&["index", "verify", "all.canonform", "--json"]);
+    assert_eq!((outcome.code, &one_object(&outcome.out)["sound"]), (2, &false.into()));
+    assert!(outcome.err.contains("all.canonform is damaged"), "{}", outcome.err);
+}
+
+#[test]
+fn a_matrix_of_distances_is_scored() {
+    let place = Workplace::new();
+    let places = [0.0f64, 1.0, 2.0, 50.0, 51.0, 53.0];
+    let rows: Vec<String> = places
+        .iter()
+        .map(|x| places.iter().map(|y| (x - y).abs().to_string()).collect::<Vec<_>>().join(","))
+        .collect();
+    fs::write(place.path("bare.csv"), rows.join("\n")).unwrap();
+    fs::write(place.path("named.csv"), format!("a1,a2,a3,b1,b2,b3\n{}\n", rows.join("\n"))).unwrap();
+    fs::write(place.path("labels.csv"), "name,label\na1,a\na2,a\na3,a\nb1,b\nb2,b\nb3,b\n").unwrap();
+    fs::write(place.path("labels.txt"), "a\na\na\nb\nb\nb\n").unwrap();
+    let scores = place.json(&["evaluate", "named.csv"]);
+    assert_eq!((&scores["nn"], &scores["confusion"]), (&1.0.into(), &serde_json::json!([[3, 0], [0, 3]])));
+    for labels in ["labels.csv", "labels.txt"] {
+        assert_eq!(place.json(&["evaluate", "bare.csv", "--labels", labels]), scores);
+    }
+    assert_eq!(place.json(&["evaluate", "named.csv", "--labels", "labels.csv"]), scores);
+    place.refused(&["evaluate", "bare.csv"], &["bare.csv", "--labels"]);
+    place.refused(&["evaluate", "none.csv"], &["none.csv", "No such file"]);
+    place.refused(&["evaluate", "labels.csv"], &["labels.csv"]);
+}
+
+#[test]
+fn what_is_no_index_or_cannot_be_written_is_named() {
+    let place = collection();
+    place.done(&BUILD);
+    let before = fs::read(place.path("all.canonform")).unwrap();
+    fs::write(place.path("notes.txt"), "dear diary").unwrap();
+    place.refused(&["index", "info", "notes.txt"], &["notes.txt", "not a shape index"]);
+    place.refused(&["search", "notes.txt", "meshes/box0.off"], &["notes.txt", "not a shape index"]);
+    place.refused(&["evaluate", "notes.txt"], &["notes.txt", "not a shape index"]);
+    place.refused(&["index", "build", "meshes", "-o", "notes.txt"], &["notes.txt", "not a shape index"]);
+    place.refused(&["index", "info", "none"], &["none", "No such file"]);
+    place.refused(&["index", "build", "meshes", "-o", "nowhere/a"], &["nowhere", "make it first"]);
+    place.refused(&["index", "build", "nowhere", "-o", "a"], &["nowhere"]);
+    place.refused(
+        &["index", "build", "meshes", "-n", "30", "-o", "all.canonform"],
+        &["other options", "30", "20"],
+    );
+    place.refused(&["index", "build", "meshes", "-n", "3", "-o", "a"], &["at least 8 samples", "3"]);
+    place.refused(&["search", "all.canonform", "none.off"], &["none.off"]);
+    fs::create_dir(place.path("all.canonform.work")).unwrap();
+    place.refused(&["index", "add", "all.canonform", "meshes"], &["all.canonform.work", "cannot write"]);
+    assert_eq!(fs::read(place.path("all.canonform")).unwrap(), before);
+    assert_eq!(fs::read_to_string(place.path("notes.txt")).unwrap(), "dear diary");
+}

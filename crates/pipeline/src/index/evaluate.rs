@@ -1,0 +1,190 @@
+//! How well an index, or any matrix of distances, separates classes.
+
+use std::path::Path;
+
+use linalg::DistanceMatrix;
+use retrieval::{Evaluation, Index, Labels, evaluate, pairwise_distances};
+
+use crate::{LabelFile, Observer, PipelineError, SignatureKind, label_of};
+
+/// Most shapes between which all distances are measured: 800 MB.
+const MOST: usize = 10_000;
+
+/// What distances are measured between.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Measure {
+    /// Fused signatures, what an index is searched by.
+    #[default]
+    Fused,
+    /// Signatures of one kind.
+    Signature(SignatureKind),
+}
+
+/// Scores an index by the distances between all pairs of its shapes. Classes are those of the index, or of
+/// `labels`.
+///
+/// # Errors
+/// [`PipelineError::TooManyShapes`], [`PipelineError::Index`], [`PipelineError::Retrieval`].
+pub fn evaluate_index(
+    path: &Path,
+    measure: Measure,
+    labels: Option<&LabelFile>,
+    knn_k: usize,
+    observer: &dyn Observer,
+) -> Result<Evaluation, PipelineError> {
+    let index = Index::open(path)?;
+    let n = index.len();
+    if n > MOST {
+        return Err(PipelineError::TooManyShapes { n_shapes: n, limit: MOST });
+    }
+    let (mut names, mut rows) = (Vec::with_capacity(n), Vec::with_capacity(n));
+    index.each(|shape| {
+        names.push(match labels {
+            Some(file) => file.label(&shape.id)?,
+            None => shape.entry.label,
+        });
+        rows.push(match measure {
+            Measure::Fused => shape.vectors.fused,
+            Measure::Signature(kind) => {
+                let mut signatures = shape.vectors.signatures.into_iter();
+                let found = signatures.find(|(name, _)| name == kind.name());
+                let missing = || PipelineError::UnknownOptions {
+                    path: path.to_owned(),
+                    options: format!("`{}` has no signature {}", shape.id, kind.name()),
+                };
+                found.ok_or_else(missing)?.1
+            }
+        });
+        Ok::<(), PipelineError>(())
+    })?;
+    observer.begin("distances", n * n.saturating_sub(1) / 2);
+    let distance = |i: usize, j: usize| -> Result<f64, PipelineError> {
+        let gaps = rows[i].iter().zip(&rows[j]).map(|(x, y)| (f64::from(*x) - f64::from(*y)).powi(2));
+        Ok(gaps.sum::<f64>().sqrt())
+    };
+    let distances = pairwise_distances(n, distance, || observer.step())?;
+    Ok(evaluate(&distances, &Labels::new(&names), knn_k)?)
+}
+
+/// Scores a matrix of distances: lines of numbers separated by commas, perhaps with a first line of names.
+///
+/// Classes are those of `labels`, by name; or by the order of its lines when the matrix has no names; or
+/// they follow from the names. The matrix is made symmetric by the mean of both directions.
+///
+/// # Errors
+/// [`PipelineError::BadMatrix`], [`PipelineError::Retrieval`].
+pub fn evaluate_matrix(
+    path: &Path,
+    labels: Option<&LabelFile>,
+    knn_k: usize,
+) -> Result<Evaluation, PipelineError> {
+    let text = std::fs::read_to_string(path)
+        .map_err(|source| PipelineError::Io { path: path.to_owned(), source })?;
+    let Matrix { names, rows } = Matrix::parse(&text, path)?;
+    let n = rows.len();
+    let classes = match (labels, names) {
+        (Some(file), Some(names)) => names.iter().map(|name| file.label(name)).collect::<Result<_, _>>()?,
+        (Some(file), None) => file.in_order().to_vec(),
+        (None, Some(names)) => names.iter().map(|name| label_of(name)).collect(),
+        (None, None) => {
+            let what =
+                "no names in the first line; give classes with --labels FILE.csv, one line a row".to_owned();
+            return Err(PipelineError::BadMatrix { path: path.to_owned(), line: 1, what });
+        }
+    };
+    let distances = DistanceMatrix::from_pairs(n, |i, j| 0.5 * (rows[i][j] + rows[j][i]))?;
+    Ok(evaluate(&distances, &Labels::new(&classes), knn_k)?)
+}
+
+/// A square of numbers and what its rows are called.
+struct Matrix {
+    names: Option<Vec<String>>,
+    rows: Vec<Vec<f64>>,
+}
+
+impl Matrix {
+    fn parse(text: &str, path: &Path) -> Result<Self, PipelineError> {
+        let bad = |line: usize, what: String| PipelineError::BadMatrix { path: path.to_owned(), line, what };
+        let lines = text.lines().enumerate().map(|(i, line)| (i + 1, line.trim()));
+        let mut lines = lines.filter(|(_, line)| !line.is_empty() && !line.starts_with('#')).peekable();
+        let fields =
+            |line: &str| line.split(',').map(|field| field.trim().trim_matches('"').to_owned()).collect();
+        let is_number = |field: &str| field.trim().trim_matches('"').parse::<f64>().is_ok();
+        let head: Option<Vec<String>> =
+            lines.next_if(|(_, line)| !line.split(',').skip(1).all(is_number)).map(|(_, line)| fields(line));
+        let mut rows: Vec<Vec<f64>> = Vec::new();
+        let mut firsts = Vec::new();
+        let mut last = 1;
+        for (number, line) in lines {
+            last = number;
+            let mut fields: Vec<String> = fields(line);
+            if fields.first().is_some_and(|first| !is_number(first)) {
+                firsts.push(fields.remove(0));
+            }
+            let row = fields.iter().map(|field| match field.parse::<f64>() {
+                Ok(distance) if distance.is_finite() && distance >= 0.0 => Ok(distance),
+                _ => Err(bad(number, format!("`{field}` is no distance; write a number, not negative"))),
+            });
+            rows.push(row.collect::<Result<_, _>>()?);
+        }
+        let n = rows.len();
+        if n == 0 {
+            return Err(bad(last, "no numbers; write one line of distances for each shape".to_owned()));
+        }
+        if let Some(i) = rows.iter().position(|row| row.len() != n) {
+            let what = format!("row {} of {n} has {} distances, not {n}", i + 1, rows[i].len());
+            return Err(bad(last, what));
+        }
+        let names = match (head, firsts.len()) {
+            // The corner above the names of the rows.
+            (Some(mut head), _) if head.len() == n + 1 => Some(head.split_off(1)),
+            (Some(head), _) if head.len() == n => Some(head),
+            (Some(head), _) => {
+                return Err(bad(1, format!("{} names for {n} rows of distances", head.len())));
+            }
+            (None, count) if count == n => Some(firsts),
+            (None, _) => None,
+        };
+        Ok(Self { names, rows })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn parse(text: &str) -> Result<Matrix, String> {
+        Matrix::parse(text, Path::new("m.csv")).map_err(|fault| fault.to_string())
+    }
+
+    #[test]
+    fn matrices_are_read_with_and_without_names() {
+        let rows = [[0.0, 1.5], [2.5, 0.0]];
+        for (text, names) in [
+            ("0,1.5\n2.5,0\n", None),
+            ("# distances\n0, 1.5\n\n2.5, 0", None),
+            ("a1,b1\n0,1.5\n2.5,0\n", Some(["a1", "b1"])),
+            (",a1,b1\na1,0,1.5\nb1,2.5,0\n", Some(["a1", "b1"])),
+            ("a1,0,1.5\nb1,2.5,0\n", Some(["a1", "b1"])),
+        ] {
+            let found = parse(text).unwrap_or_else(|fault| panic!("{text}: {fault}"));
+            assert_eq!(found.rows, rows, "{text}");
+            assert_eq!(found.names, names.map(|names| names.map(str::to_owned).to_vec()), "{text}");
+        }
+    }
+
+    #[test]
+    fn what_is_no_matrix_is_named() {
+        for (text, words) in [
+            ("", "no numbers"),
+            ("0,1\n1,0,2\n", "row 2 of 2 has 3"),
+            ("a,b,c,d\n0,1\n1,0\n", "4 names for 2"),
+            ("0,1\n-1,0\n", "line 2: `-1`"),
+            ("0,1\n1,nan\n", "`nan`"),
+            ("0,1\n1,x\n", "`x`"),
+        ] {
+            let fault = parse(text).err().unwrap_or_default();
+            assert!(fault.contains(words) && fault.contains("m.csv"), "{text}: {fault}");
+        }
+    }
+}

@@ -1,0 +1,234 @@
+//! Asking an index what a mesh is.
+
+use std::path::Path;
+use std::time::Instant;
+
+use descriptors::{MatchOptions, Normalization, PreparedForm, match_forms};
+use mesh::TriMesh;
+use retrieval::{Candidate, Index, SearchMode, ShapeEntry, ShapeVectors, refine_nearest, vote};
+use serde::Serialize;
+
+use super::record::{form, options_of};
+use crate::forms::MATCHED_POINTS;
+use crate::{Comparison, DescribeOptions, PipelineError, ShapeDescription, compare_forms, describe};
+
+/// Neighbours that vote on the class of a query.
+const VOTERS: usize = 5;
+
+/// Shapes whose forms may be aligned, for every one that is wanted, and at least.
+const CANDIDATES: usize = 4;
+const LEAST_CANDIDATES: usize = 40;
+
+/// Root mean square of the distances between aligned forms of two poses of one body, at unit area.
+const FORM_UNIT: f64 = 0.035;
+
+/// How an index is asked.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SearchOptions {
+    /// Shapes wanted. Default: 10.
+    pub k: usize,
+    /// How carefully signatures are searched. Default: [`SearchMode::Auto`].
+    pub mode: SearchMode,
+    /// Whether every shape found is told apart from the query: resized, mirrored, different. Default: no.
+    pub explain: Explain,
+    /// How forms are aligned.
+    pub matching: MatchOptions,
+}
+
+/// Whether matches are explained.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Explain {
+    /// No.
+    #[default]
+    No,
+    /// What kind of match each is.
+    Kind,
+}
+
+impl Default for SearchOptions {
+    fn default() -> Self {
+        Self { k: 10, mode: SearchMode::Auto, explain: Explain::No, matching: MatchOptions::default() }
+    }
+}
+
+/// A shape that was found.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SearchResult {
+    /// From 1 on.
+    pub rank: usize,
+    /// Its name.
+    pub id: String,
+    /// Its class.
+    pub label: String,
+    /// Where it came from.
+    pub path: String,
+    /// How far it is, by signatures and aligned forms; the order of the results.
+    pub distance: f64,
+    /// How far it is by fused signatures alone.
+    pub fused: f64,
+    /// What kind of match it is, when asked for.
+    #[serde(rename = "match", skip_serializing_if = "Option::is_none")]
+    pub comparison: Option<Comparison>,
+}
+
+/// The class that the nearest shapes suggest.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Prediction {
+    /// The class; `None` when nothing is near.
+    pub label: Option<String>,
+    /// Neighbours of that class.
+    pub votes: usize,
+    /// Neighbours that are near enough to vote.
+    pub voters: usize,
+    /// Share of the votes that the class has, nearer neighbours counting more, 0 to 1.
+    pub confidence: f64,
+    /// Distance of fused signatures beyond which nothing is near; `None` when the classes of the index are
+    /// too small to tell.
+    pub threshold: Option<f64>,
+}
+
+/// What an index says to a mesh.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SearchReport {
+    /// Nearest first.
+    pub results: Vec<SearchResult>,
+    /// The class.
+    pub predicted: Prediction,
+    /// Shapes of the index.
+    pub n_shapes: usize,
+    /// Shapes whose signatures were measured.
+    pub measured: usize,
+    /// Shapes whose forms were aligned, or begun to be.
+    pub aligned: usize,
+    /// Share of the ten nearest signatures that searches in this index find: 1 when it is exact.
+    pub recall: f64,
+    /// Wall-clock seconds.
+    pub seconds: SearchSeconds,
+}
+
+/// Where the time of a search went.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
+pub struct SearchSeconds {
+    /// Repair, distances, form and signatures of the query.
+    pub describe: f64,
+    /// Finding, aligning and voting.
+    pub search: f64,
+}
+
+/// An index that is asked.
+#[derive(Debug)]
+pub struct ShapeSearch {
+    index: Index,
+    describe: DescribeOptions,
+}
+
+impl ShapeSearch {
+    /// # Errors
+    /// [`PipelineError::Index`], [`PipelineError::UnknownOptions`].
+    pub fn open(path: &Path) -> Result<Self, PipelineError> {
+        let index = Index::open(path)?;
+        let describe = options_of(&index)?;
+        Ok(Self { index, describe })
+    }
+
+    /// The shapes of the index that are nearest to a mesh: by fused signatures, then by aligned forms.
+    ///
+    /// # Errors
+    /// [`PipelineError::Index`], and those of describing the mesh.
+    pub fn search(&self, mesh: &TriMesh, options: &SearchOptions) -> Result<SearchReport, PipelineError> {
+        let start = Instant::now();
+        let query = describe(mesh, &self.describe)?;
+        let described = start.elapsed().as_secs_f64();
+        let report = self.nearest(&query, options)?;
+        let seconds =
+            SearchSeconds { describe: described, search: start.elapsed().as_secs_f64() - described };
+        Ok(SearchReport { seconds, ..report })
+    }
+
+    fn nearest(
+        &self,
+        query: &ShapeDescription,
+        options: &SearchOptions,
+    ) -> Result<SearchReport, PipelineError> {
+        let wanted = options.k.max(VOTERS);
+        let asked = (CANDIDATES * wanted).max(LEAST_CANDIDATES);
+        let found = self.index.nearest(&query.fused, asked, options.mode)?;
+        let near = &found.shapes;
+        let candidates =
+            near.iter().enumerate().map(|(index, near)| Candidate { index, bound: near.distance });
+        let size = self.describe.size;
+        let form_of = |i: usize| {
+            let (entry, vectors) = self.shape(&near[i].id)?;
+            let form = form(&entry, &vectors)?.normalized(size);
+            Ok::<PreparedForm, PipelineError>(PreparedForm::new(&form, MATCHED_POINTS)?)
+        };
+        let unit = match size {
+            Normalization::UnitArea => FORM_UNIT,
+            Normalization::Raw => FORM_UNIT * query.area.sqrt(),
+        };
+        let prepared = query.prepare(size)?;
+        let refined = refine_nearest(candidates, wanted, |candidate, _| {
+            let found = match_forms(&prepared, &form_of(candidate.index)?, &options.matching)?;
+            Ok::<_, PipelineError>(Some(candidate.bound.hypot(found.distance / unit)))
+        })?;
+
+        let mut results = Vec::with_capacity(wanted);
+        for (place, neighbor) in refined.nearest.iter().enumerate() {
+            let near = &near[neighbor.index];
+            let entry = self.index.entry(&near.id)?;
+            results.push(SearchResult {
+                rank: place + 1,
+                id: near.id.clone(),
+                label: entry.label,
+                path: entry.path,
+                distance: neighbor.distance,
+                fused: near.distance,
+                comparison: None,
+            });
+        }
+        let predicted = predicted(&results, found.threshold);
+        results.truncate(options.k);
+        if options.explain == Explain::Kind {
+            for result in &mut results {
+                let (entry, vectors) = self.shape(&result.id)?;
+                let comparison = compare_forms(&query.form, &form(&entry, &vectors)?, &options.matching)?;
+                result.comparison = Some(comparison);
+            }
+        }
+        Ok(SearchReport {
+            results,
+            predicted,
+            n_shapes: found.n_shapes,
+            measured: found.n_measured,
+            aligned: refined.asked,
+            recall: found.recall,
+            seconds: SearchSeconds::default(),
+        })
+    }
+
+    fn shape(&self, id: &str) -> Result<(ShapeEntry, ShapeVectors), PipelineError> {
+        Ok((self.index.entry(id)?, self.index.vectors(id)?))
+    }
+}
+
+/// The vote of the first results. Who comes first was decided by forms as well; how near is near enough is
+/// known for fused signatures.
+fn predicted(results: &[SearchResult], threshold: Option<retrieval::UnknownThreshold>) -> Prediction {
+    let mut classes: Vec<&str> = results.iter().map(|result| result.label.as_str()).collect();
+    classes.sort_unstable();
+    classes.dedup();
+    let class_of = |i: usize| classes.partition_point(|class| *class < results[i].label.as_str());
+    let neighbors: Vec<_> = results
+        .iter()
+        .enumerate()
+        .map(|(index, result)| retrieval::Neighbor { index, distance: result.fused })
+        .collect();
+    let vote = vote(&neighbors, class_of, VOTERS, threshold);
+    Prediction {
+        label: vote.class.map(|class| classes[class].to_owned()),
+        votes: vote.votes,
+        voters: vote.voters,
+        confidence: vote.confidence,
+        threshold: threshold.map(|threshold| threshold.distance),
+    }
+}

@@ -1,0 +1,58 @@
+//! How far a shape may be from all others and still be of one of their classes.
+
+use rayon::prelude::*;
+
+use super::kernels::sq_distances_into;
+use super::plan::CHUNK;
+use crate::UnknownThreshold;
+
+/// Shapes that are asked about, each as if it was new.
+const ASKED: usize = 1024;
+
+/// The threshold that labelled vectors suggest, see [`UnknownThreshold::of`]; `rows` are `n` long, one for
+/// each of `classes`.
+pub(super) fn threshold(rows: &[f32], n: usize, classes: &[u32]) -> Option<UnknownThreshold> {
+    let asked = ASKED.min(classes.len());
+    let asked: Vec<usize> = (0..asked).map(|i| (2 * i + 1) * classes.len() / (2 * asked)).collect();
+    let nearest: Vec<[f32; 2]> =
+        asked.par_iter().map(|&query| own_and_foreign(rows, n, classes, query)).collect();
+    let [own, foreign] = [0, 1].map(|i| {
+        let found = nearest.iter().map(|pair| f64::from(pair[i]).sqrt());
+        found.filter(|distance| distance.is_finite()).collect::<Vec<_>>()
+    });
+    UnknownThreshold::of(&own, &foreign)
+}
+
+/// Squared distances to the nearest other shape of the own class and of any other.
+fn own_and_foreign(rows: &[f32], n: usize, classes: &[u32], query: usize) -> [f32; 2] {
+    let mut nearest = [f32::INFINITY; 2];
+    let mut sqs = [0.0; CHUNK];
+    let row = &rows[query * n..][..n];
+    for (i, (rows, of)) in rows.chunks(CHUNK * n).zip(classes.chunks(CHUNK)).enumerate() {
+        let sqs = &mut sqs[..of.len()];
+        sq_distances_into(row, rows, sqs);
+        for (j, (sq, class)) in sqs.iter().zip(of).enumerate() {
+            let place = &mut nearest[usize::from(*class != classes[query])];
+            if i * CHUNK + j != query {
+                *place = place.min(*sq);
+            }
+        }
+    }
+    nearest
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn it_is_that_of_all_pairs() {
+        let places = [0.0f32, 1.0, 2.5, 10.0, 11.0, 30.0];
+        let rows: Vec<f32> = places.iter().flat_map(|x| [&[*x][..], &[0.0; 15]].concat()).collect();
+        let found = threshold(&rows, 16, &[0, 0, 0, 1, 1, 2]).unwrap();
+        // Own: 1, 1, 1.5, 1, 1; foreign: 10, 9, 7.5, 7.5, 8.5, 19.
+        assert_eq!(found, UnknownThreshold { distance: 4.5, missed: 0.0, mistaken: 0.0 });
+        assert_eq!(threshold(&rows, 16, &[0, 1, 2, 3, 4, 5]), None);
+        assert_eq!(threshold(&[], 16, &[]), None);
+    }
+}
