@@ -22,6 +22,8 @@ pub(crate) enum Command {
     List,
     /// Make the page again from the results in a folder
     Report(ReportArgs),
+    /// Measure what poses and triangulations of the built-in shapes do to every signature
+    Units(UnitsArgs),
 }
 
 #[derive(Debug, Args)]
@@ -62,4 +64,14 @@ pub(crate) struct ReportArgs {
     /// Folder with the results
     #[arg(short, long, default_value = "out", value_name = "OUT")]
     pub(crate) output: PathBuf,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct UnitsArgs {
+    /// Seeds of the built-in dataset that take part, from 1 on; 30 shapes each
+    #[arg(long, default_value_t = 5, value_name = "N")]
+    pub(crate) seeds: usize,
+    /// No progress bars
+    #[arg(long, short)]
+    pub(crate) quiet: bool,
 }

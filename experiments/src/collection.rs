@@ -17,6 +17,12 @@ pub(crate) const PAPER_CLASSES: [&str; 3] = ["cat", "centaur", "david"];
 /// What asks for every class of a folder.
 const ALL_CLASSES: &str = "all";
 
+/// The classes of TOSCA, by which it is known.
+const TOSCA_CLASSES: [&str; 12] = [
+    "cat", "centaur", "david", "dog", "gorilla", "horse", "lioness", "michael", "seahorse", "shark",
+    "victoria", "wolf",
+];
+
 /// Labelled surfaces, class by class.
 pub(crate) struct Collection {
     /// Where they come from.
@@ -112,9 +118,17 @@ impl Collection {
             Setting::BuiltIn
         } else if self.classes == PAPER_CLASSES {
             Setting::Paper
+        } else if self.is_tosca() {
+            Setting::Tosca
         } else {
             Setting::Other
         }
+    }
+
+    fn is_tosca(&self) -> bool {
+        let mut classes: Vec<&str> = self.classes.iter().map(String::as_str).collect();
+        classes.sort_unstable();
+        classes == TOSCA_CLASSES
     }
 
     /// All shapes.
@@ -156,6 +170,8 @@ pub(crate) enum Setting {
     BuiltIn,
     /// The paper's classes from a folder.
     Paper,
+    /// All classes of TOSCA from a folder.
+    Tosca,
     /// Anything else, of which nothing is known.
     Other,
 }

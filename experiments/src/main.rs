@@ -16,9 +16,11 @@ mod figure6;
 mod figure7;
 mod figure8;
 mod figure9;
+mod retrieve;
 mod run;
 mod specimen;
 mod sweep;
+mod units;
 
 use std::process::ExitCode;
 
@@ -30,11 +32,12 @@ fn main() -> ExitCode {
     let arguments = Arguments::parse();
     let threads = match &arguments.command {
         Command::Run(args) => args.threads,
-        Command::List | Command::Report(_) => 0,
+        Command::List | Command::Report(_) | Command::Units(_) => 0,
     };
     terminal::run(threads, || match &arguments.command {
         Command::Run(args) => run::run(args),
         Command::List => run::list(),
         Command::Report(args) => run::report(args),
+        Command::Units(args) => units::units(args),
     })
 }

@@ -15,7 +15,7 @@ use crate::args::{ReportArgs, RunArgs};
 use crate::collection::{Collection, Setting};
 use crate::config::Config;
 use crate::specimen::{Distances, Specimen, specimens};
-use crate::{figure1, figure3, figure4, figure5, figure6, figure7, figure8, figure9};
+use crate::{figure1, figure3, figure4, figure5, figure6, figure7, figure8, figure9, retrieve};
 
 /// An experiment of the runner.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -30,10 +30,11 @@ pub(crate) enum Experiment {
     Figure7,
     Figure8,
     Figure9,
+    Retrieval,
 }
 
 impl Experiment {
-    const EACH: [Self; 9] = [
+    const EACH: [Self; 10] = [
         Self::Figure1,
         Self::Figure3,
         Self::Figure4,
@@ -43,6 +44,7 @@ impl Experiment {
         Self::Figure7,
         Self::Figure8,
         Self::Figure9,
+        Self::Retrieval,
     ];
 
     fn name(self) -> &'static str {
@@ -57,6 +59,7 @@ impl Experiment {
             Self::Figure7 => "figure7",
             Self::Figure8 => "figure8",
             Self::Figure9 => "figure9",
+            Self::Retrieval => "retrieval",
         }
     }
 
@@ -82,6 +85,7 @@ impl Experiment {
             Self::Figure7 => include_str!("../configs/figure7.toml"),
             Self::Figure8 => include_str!("../configs/figure8.toml"),
             Self::Figure9 => include_str!("../configs/figure9.toml"),
+            Self::Retrieval => include_str!("../configs/retrieval.toml"),
         };
         Config::parse(self.name(), text)
     }
@@ -98,6 +102,7 @@ impl Experiment {
             Self::Figure7 => figure7::run(context),
             Self::Figure8 => figure8::run(context),
             Self::Figure9 => figure9::run(context),
+            Self::Retrieval => retrieve::run(context),
         }
     }
 }

@@ -9,6 +9,7 @@
 //! Knows nothing of files or indexes.
 
 mod alignment;
+mod bound;
 mod canonical_form;
 mod error;
 mod matching;
@@ -20,10 +21,10 @@ mod spread;
 pub use alignment::Alignment;
 pub use canonical_form::{CanonicalForm, Normalization};
 pub use error::DescriptorError;
-pub use matching::{FormDistance, FormMatch, MatchOptions, Reflections, match_forms};
+pub use matching::{FormDistance, FormMatch, MatchOptions, Reflections, match_forms, match_forms_within};
 pub use prepared::PreparedForm;
 pub use signature::{
     FUSED_SIZE, Signature, SignatureKind, d2_histogram, fuse, geodesic_spectrum, heat_kernel_signature,
-    moment_signature, shape_dna, wave_kernel_signature,
+    moment_signature, shape_dna, size_coordinate, wave_kernel_signature,
 };
 pub use spectrum::LaplaceSpectrum;

@@ -104,6 +104,9 @@ const ROUGH: Stage = Stage { n_samples: 100, among: Detail::Samples, steps: 20 }
 /// The best of these.
 const FINE: Stage = Stage { n_samples: usize::MAX, among: Detail::Points, steps: 30 };
 
+/// An error on the coarse sample this many times the limit will not come below it.
+const HOPELESS: f64 = 2.0;
+
 /// A step that gains less than this share of the error ends the alignment.
 const LEAST_GAIN: f64 = 1e-3;
 
@@ -126,18 +129,48 @@ pub fn match_forms(
     b: &PreparedForm,
     options: &MatchOptions,
 ) -> Result<FormMatch, DescriptorError> {
+    // Nothing is farther than infinitely far.
+    let found = match_forms_within(a, b, options, f64::INFINITY)?;
+    found.ok_or(DescriptorError::NoExtent { n_points: a.points().len() })
+}
+
+/// A match as [`match_forms`] finds it, or `None` once it is clear that its distance is larger than `limit`.
+///
+/// * Nothing is aligned when the [least distance](PreparedForm::least_distance) is larger; that is certain.
+/// * The alignment is given up when after its second stage the error on a coarse sample is more than twice
+///   the limit. That is not certain, but the last stage hardly moves a form any more; on the built-in
+///   dataset no neighbour is lost. With an infinite limit nothing is given up.
+///
+/// # Errors
+/// [`DescriptorError::BadOption`].
+pub fn match_forms_within(
+    a: &PreparedForm,
+    b: &PreparedForm,
+    options: &MatchOptions,
+    limit: f64,
+) -> Result<Option<FormMatch>, DescriptorError> {
     options.validate()?;
+    let bounded = options.distance == FormDistance::NearestNeighborRms;
+    if bounded && a.least_distance(b) > limit {
+        return Ok(None);
+    }
     let refine_all = |stage, starts: Vec<Alignment>| {
         let refined = starts.into_iter().map(|start| refine(a, b, start, stage, options.trim));
         let mut found: Vec<(f64, Alignment)> = refined.collect();
         found.sort_by(|x, y| x.0.total_cmp(&y.0));
-        found.into_iter().map(|(_, motion)| motion)
+        found
     };
+    let motions = |found: Vec<(f64, Alignment)>| found.into_iter().map(|(_, motion)| motion);
     let sketched = refine_all(SKETCH, hypotheses(a, b, options));
-    let rough = refine_all(ROUGH, sketched.take(options.refined).collect());
-    let (_, motion) = refine(a, b, rough.collect::<Vec<_>>()[0], FINE, options.trim);
+    let rough = refine_all(ROUGH, motions(sketched).take(options.refined).collect());
+    let (error, start) = rough[0];
+    if bounded && error > HOPELESS * limit {
+        return Ok(None);
+    }
+    let (_, motion) = refine(a, b, start, FINE, options.trim);
+    let distance = distance(a, b, &motion, options.distance);
     let alignment = b.to_principal().inverse().after(&motion).after(a.to_principal());
-    Ok(FormMatch { alignment, distance: distance(a, b, &motion, options.distance) })
+    Ok(Some(FormMatch { alignment, distance }).filter(|found| found.distance <= limit))
 }
 
 /// Signed permutations of the principal axes that may bring `a` onto `b`.
@@ -330,6 +363,25 @@ mod tests {
             assert!(distance > last);
             last = distance;
         }
+    }
+
+    #[test]
+    fn the_least_distance_is_never_above_the_distance_and_far_pairs_are_given_up() {
+        let forms: Vec<_> = [0.2, 1.0, 2.5, 4.0, 9.0].map(|bend| prepared(&figure(500, bend))).into();
+        let options = MatchOptions::default();
+        let mut bounded = 0;
+        for (a, b) in forms.iter().flat_map(|a| forms.iter().map(move |b| (a, b))) {
+            let whole = match_forms(a, b, &options).unwrap();
+            let least = a.least_distance(b);
+            assert!(least <= whole.distance + 1e-12, "{least} {}", whole.distance);
+            assert_eq!(least, b.least_distance(a));
+            bounded += usize::from(least > 0.1 * whole.distance);
+            let within = |limit| match_forms_within(a, b, &options, limit).unwrap();
+            assert_eq!(within(f64::INFINITY), Some(whole));
+            assert_eq!(within(whole.distance), Some(whole), "nothing is given up at its own distance");
+            assert_eq!(within(0.9 * whole.distance - 1e-9), None);
+        }
+        assert!(bounded > 0, "the bound says something");
     }
 
     #[test]

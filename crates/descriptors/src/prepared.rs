@@ -3,6 +3,7 @@
 use kiddo::{ImmutableKdTree, SquaredEuclidean};
 use nalgebra::{Matrix3, Point3};
 
+use crate::bound::Extent;
 use crate::spread::spread;
 use crate::{Alignment, CanonicalForm, DescriptorError};
 
@@ -13,6 +14,7 @@ const MIN_SAMPLES: usize = 4;
 pub struct PreparedForm {
     points: Vec<Point3<f64>>,
     samples: Vec<Point3<f64>>,
+    extent: Extent,
     axis_spread: [f64; 3],
     to_principal: Alignment,
     tree: ImmutableKdTree<f64, 3>,
@@ -64,10 +66,12 @@ impl PreparedForm {
         let axes = Matrix3::from_columns(&order.map(|i| eigen.eigenvectors.column(i).into_owned()));
         let to_principal = Alignment::about_origin(axes.transpose());
         let points: Vec<_> = form.points().iter().map(|p| to_principal.apply(p)).collect();
-        let samples: Vec<_> = spread(&points, n_samples).samples.into_iter().map(|i| points[i]).collect();
+        let spread = spread(&points, n_samples);
+        let samples: Vec<_> = spread.samples.iter().map(|&i| points[i]).collect();
         Ok(Self {
             tree: tree(&points)?,
             sample_tree: tree(&samples)?,
+            extent: Extent::new(&samples, spread.covering),
             samples,
             axis_spread: order.map(|i| eigen.eigenvalues[i].max(0.0).sqrt()),
             points,
@@ -97,6 +101,12 @@ impl PreparedForm {
     #[must_use]
     pub fn to_principal(&self) -> &Alignment {
         &self.to_principal
+    }
+
+    /// What their root mean square distance is at least, however the forms are aligned.
+    #[must_use]
+    pub fn least_distance(&self, other: &Self) -> f64 {
+        self.extent.least_distance(&other.extent)
     }
 
     /// The point nearest to `query` and the squared distance to it.

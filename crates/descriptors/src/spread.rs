@@ -8,6 +8,8 @@ pub(crate) struct Spread {
     pub(crate) samples: Vec<usize>,
     /// For every point the position in `samples` of the nearest one; of the first among equals.
     pub(crate) nearest: Vec<usize>,
+    /// No point is farther than this from the nearest sample.
+    pub(crate) covering: f64,
 }
 
 /// Up to `n` of the points, the one farthest from the origin first; fewer where points coincide.
@@ -37,5 +39,6 @@ pub(crate) fn spread(points: &[Point3<f64>], n: usize) -> Spread {
         }
         samples.push(next);
     }
-    Spread { samples, nearest }
+    let covering = gap.iter().copied().fold(0.0, f64::max).sqrt();
+    Spread { samples, nearest, covering }
 }

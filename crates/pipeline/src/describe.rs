@@ -9,6 +9,7 @@ use mesh::{RepairOptions, RepairReport, TriMesh};
 use nmds::{NystromOptions, nystrom};
 use serde::{Deserialize, Serialize};
 
+use crate::forms::MATCHED_POINTS;
 use crate::{PipelineError, Surface};
 
 /// Counts every change of what the same mesh and options are turned into: descriptions of different versions
@@ -83,12 +84,12 @@ pub struct ShapeDescription {
 }
 
 impl ShapeDescription {
-    /// The form made ready to be matched, of unit area unless size counts.
+    /// [`prepare_form`] of the form.
     ///
     /// # Errors
     /// [`PipelineError::Descriptor`].
-    pub fn prepare(&self, size: Normalization) -> Result<PreparedForm, PipelineError> {
-        Ok(PreparedForm::new(&self.form.normalized(size), crate::forms::MATCHED_POINTS)?)
+    pub fn prepare(&self) -> Result<PreparedForm, PipelineError> {
+        prepare_form(&self.form)
     }
 
     /// The signature of one kind.
@@ -96,6 +97,15 @@ impl ShapeDescription {
     pub fn signature(&self, kind: SignatureKind) -> Option<&Signature> {
         self.signatures.iter().find(|signature| signature.kind == kind)
     }
+}
+
+/// The form of a description, at unit area, made ready to be matched. Where size counts it does so as a number of
+/// its own, see [`fuse`], so that a body and its likeness in another size still have forms that match.
+///
+/// # Errors
+/// [`PipelineError::Descriptor`].
+pub fn prepare_form(form: &CanonicalForm) -> Result<PreparedForm, PipelineError> {
+    Ok(PreparedForm::new(&form.normalized(Normalization::UnitArea), MATCHED_POINTS)?)
 }
 
 /// Describes a mesh: repair, one Laplacian, distances from one set of samples, one embedding.
@@ -210,15 +220,14 @@ mod tests {
     }
 
     #[test]
-    fn the_fused_distance_is_the_sum_of_those_of_the_parts() {
+    fn the_fused_distance_is_the_weighted_sum_of_those_of_the_parts() {
         let (a, b) = (described(&lopsided()), described(&shapes::icosphere(3)));
-        let parts: f64 = a
-            .signatures
-            .iter()
-            .zip(&b.signatures)
-            .map(|(a, b)| (a.distance(b) / a.kind.unit()).powi(2))
-            .sum();
-        assert!((fused_distance(&a, &b) / parts.sqrt() - 1.0).abs() < 1e-5);
+        let total: f64 = SignatureKind::ALL.iter().map(|kind| kind.weight()).sum();
+        assert!((total - 1.0).abs() < 1e-9);
+        let part =
+            |(a, b): (&Signature, &Signature)| a.kind.weight() * (a.distance(b) / a.kind.unit()).powi(2);
+        let expected = a.signatures.iter().zip(&b.signatures).map(part).sum::<f64>().sqrt();
+        assert!((fused_distance(&a, &b) / expected - 1.0).abs() < 1e-5);
         assert_eq!(a.fused.len(), descriptors::FUSED_SIZE);
         assert!(a.signatures.iter().all(|s| s.values.len() == s.kind.n_values()));
     }
@@ -252,7 +261,7 @@ mod tests {
             let found = described(&mesh);
             assert!(found.fused.iter().all(|x| x.is_finite()), "{:?}", found.signatures);
             assert_eq!(found.fused.len(), descriptors::FUSED_SIZE);
-            found.prepare(Normalization::UnitArea).unwrap();
+            found.prepare().unwrap();
         }
     }
 

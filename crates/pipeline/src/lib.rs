@@ -21,6 +21,7 @@ mod options;
 mod paths;
 mod points;
 mod report;
+mod rerank;
 mod run;
 mod stress;
 mod surface;
@@ -28,7 +29,9 @@ mod surface;
 pub use all_pairs::{AllPairs, Asymmetry};
 pub use compare::{Comparison, MatchKind, compare_forms};
 pub use dataset::{LabelFile, ShapeFile, label_of, list_shapes};
-pub use describe::{DESCRIPTION_VERSION, DescribeOptions, ShapeDescription, describe, describe_surface};
+pub use describe::{
+    DESCRIPTION_VERSION, DescribeOptions, ShapeDescription, describe, describe_surface, prepare_form,
+};
 pub use embed::{Embedded, embed};
 pub use error::PipelineError;
 pub use forms::{PreparedForms, embedded_distances, form_distances, map_of};
@@ -43,6 +46,7 @@ pub use options::{EmbedMethod, EmbedOptions, Samples, StressChoice};
 pub use paths::{PathPoint, SurfacePath};
 pub use points::InputPoint;
 pub use report::{DescentReport, EmbedReport, SecondsReport};
+pub use rerank::{FORM_UNIT, FORM_WEIGHT, combined_distance, rerank};
 pub use stress::{StressKind, StressReport};
 pub use surface::Surface;
 

@@ -2,13 +2,13 @@
 
 use mesh::{TriMesh, VertexId};
 use nalgebra::Point3;
-use retrieval::Evaluation;
+use retrieval::{Evaluation, MeanScores};
 use serde_json::json;
 
 use crate::results::{
-    Axis, AxisScale, CurvesPanel, CurvesRecord, Expectation, Figure1Record, Figure1Shape, Figure3Form,
-    Figure3Record, Figure3Shape, Figure3Stress, Figure4Panel, Figure4Record, Figure9Measured, Figure9Record,
-    Figure9Row, Mark, Provenance, Scale, Series, SeriesPoint,
+    Axis, AxisScale, Classification, CurvesPanel, CurvesRecord, Expectation, Figure1Record, Figure1Shape,
+    Figure3Form, Figure3Record, Figure3Shape, Figure3Stress, Figure4Panel, Figure4Record, Figure9Measured,
+    Figure9Record, Figure9Row, Mark, Provenance, RetrievalRecord, RetrievalRow, Scale, Series, SeriesPoint,
 };
 
 pub(crate) fn provenance() -> Provenance {
@@ -132,6 +132,37 @@ pub(crate) fn figure9_record() -> Figure9Record {
         threads: 2,
         rows: vec![row, absent],
         ..Figure9Record::default()
+    }
+}
+
+/// One signature at both scales, two classes.
+pub(crate) fn retrieval_record() -> RetrievalRecord {
+    let scores = MeanScores { nn: 1.0, ft: 0.75, st: 0.9, e: 0.5, dcg: 0.95, map: 0.875 };
+    let row = |scale| RetrievalRow {
+        method: "wave-kernel".into(),
+        scale,
+        micro: scores,
+        macro_average: scores,
+        knn_accuracy: 0.9,
+        held_out_map: 0.625,
+        precision: vec![1.0, 0.9, 0.6],
+    };
+    RetrievalRecord {
+        provenance: provenance(),
+        names: ["cat0", "cat1", "a0", "a1"].map(String::from).into(),
+        labels: ["cat", "cat", "a & b", "a & b"].map(String::from).into(),
+        rows: vec![row(Scale::Normalized), row(Scale::Raw)],
+        classification: Classification {
+            method: "wave-kernel".into(),
+            voters: 3,
+            classes: vec!["a & b".into(), "cat".into()],
+            confusion: vec![vec![1, 0, 1], vec![0, 2, 0]],
+            threshold: 0.5,
+            missed: 0.25,
+            mistaken: 0.0,
+        },
+        expectations: vec![],
+        analysis: "Near is alike.".into(),
     }
 }
 

@@ -22,6 +22,7 @@ mod numbers;
 pub mod page;
 pub mod render;
 pub mod results;
+pub mod retrieval;
 pub mod tables;
 
 pub use error::ReportError;

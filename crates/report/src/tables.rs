@@ -1,11 +1,13 @@
 //! Tables for the terminal.
 
+use ::retrieval::Evaluation;
 use comfy_table::{CellAlignment, Table, presets};
-use retrieval::Evaluation;
 
 use crate::figure1::stress_digits;
 use crate::numbers::signed;
-use crate::results::{CurvesRecord, Figure3Record, Figure4Record, Figure9Record};
+use crate::results::{
+    CurvesRecord, Figure3Record, Figure4Record, Figure9Record, RetrievalRecord, RetrievalRow,
+};
 
 /// Headings of [`values`]; also those of the page's table.
 pub(crate) const HEADINGS: [&str; 8] = ["NN", "FT", "ST", "E", "DCG", "mAP", "k-NN", "silhouette"];
@@ -95,6 +97,26 @@ pub fn figure9_table(record: &Figure9Record) -> String {
         (vec![row.n_vertices.to_string(), row.method.clone()], numbers)
     });
     table(&["vertices", "method"], &["distances", "algebra", "total", "memory", "paper"], rows)
+}
+
+/// Headings of the table of retrieval: method, size, then [`retrieval_values`].
+pub(crate) const RETRIEVAL_HEADINGS: [&str; 12] =
+    ["method", "size", "NN", "FT", "ST", "E", "DCG", "mAP", "macro NN", "macro mAP", "k-NN", "least mAP"];
+
+/// The scores of one way to compare, in the order of [`RETRIEVAL_HEADINGS`].
+pub(crate) fn retrieval_values(row: &RetrievalRow) -> [f64; 10] {
+    let (s, m) = (&row.micro, &row.macro_average);
+    [s.nn, s.ft, s.st, s.e, s.dcg, s.map, m.nn, m.map, row.knn_accuracy, row.held_out_map]
+}
+
+/// The scores of every way to compare; no trailing newline.
+#[must_use]
+pub fn retrieval_table(record: &RetrievalRecord) -> String {
+    let rows = record.rows.iter().map(|row| {
+        let numbers = retrieval_values(row).map(digits).to_vec();
+        (vec![row.method.clone(), row.scale.name().to_string()], numbers)
+    });
+    table(&RETRIEVAL_HEADINGS[..2], &RETRIEVAL_HEADINGS[2..], rows)
 }
 
 /// A number with three digits, as short as it can be.

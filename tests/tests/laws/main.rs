@@ -3,7 +3,7 @@
 //! One binary, so that everything is linked once. The modules, from the house to its contents:
 //! `architecture` (which crate may know which), `licences` (what may come in), `marching` (distances), `embedding` (coordinates),
 //! `isometry` (what must change nothing), `threads` (the same bytes for any number of them),
-//! `builtin` (the built-in dataset) and `real_meshes`, which is skipped without the meshes.
+//! `signatures` (what tells bodies apart), `builtin` (the built-in dataset) and `real_meshes`, which is skipped without the meshes.
 
 #[cfg(test)]
 mod architecture;
@@ -19,6 +19,8 @@ mod licences;
 mod marching;
 #[cfg(test)]
 mod real_meshes;
+#[cfg(test)]
+mod signatures;
 #[cfg(test)]
 mod support;
 #[cfg(test)]

@@ -18,7 +18,7 @@ use retrieval::{Labels, evaluate};
 use crate::support::{marching, workspace_root};
 
 /// The folder of real meshes, or a line that says that the test is skipped.
-fn data(test: &str) -> Option<PathBuf> {
+pub(crate) fn data(test: &str) -> Option<PathBuf> {
     let folder = std::env::var_os("CANONFORM_DATA")
         .map_or_else(|| workspace_root().join("../shared/data"), PathBuf::from);
     if folder.is_dir() {

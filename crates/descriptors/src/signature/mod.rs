@@ -23,7 +23,7 @@ mod shape_dna;
 
 use std::str::FromStr;
 
-pub use fusion::{FUSED_SIZE, fuse};
+pub use fusion::{FUSED_SIZE, fuse, size_coordinate};
 pub use geodesic_spectrum::geodesic_spectrum;
 pub use kernels::{heat_kernel_signature, wave_kernel_signature};
 pub use moments::moment_signature;
@@ -86,11 +86,23 @@ impl SignatureKind {
     /// Root mean square of the distances between two poses of one body, triangulated each on its own: what
     /// a distance has to be measured against.
     ///
-    /// Found on the built-in articulated families (seeds 1 to 5) by `experiments run units`, which
-    /// measures them again.
+    /// Found on the built-in articulated families, in meshes of 1,500 to 8,000 vertices;
+    /// `cargo run --release -p experiments -- units` measures it again.
     #[must_use]
     pub fn unit(self) -> f64 {
         fusion::unit(self)
+    }
+
+    /// How much the kind counts beside the others, all weights summing to one: the product of its separation and the
+    /// number of its components, over the sum of all products.
+    ///
+    /// The separation is the mean squared distance between two of the built-in families over that between two poses of
+    /// one, as in Fisher's discriminant. The components are `tr(C)² / tr(C²)` with `C` the covariance of
+    /// the values within families: in so many independent ways poses move a signature, and were they whitened,
+    /// squared distances would grow with them. Found as the [unit](Self::unit).
+    #[must_use]
+    pub fn weight(self) -> f64 {
+        fusion::weight(self)
     }
 }
 
@@ -115,13 +127,11 @@ pub struct Signature {
 }
 
 impl Signature {
-    /// The same with the size of the surface: `ln √area`, one value more, weighted so that sizes that differ by
-    /// 5 % are as far apart as two poses of one body.
-    ///
-    /// The area is in squared units of the mesh; those of two surfaces must be of one unit.
+    /// The same with the size of the surface, one value more: its [coordinate](size_coordinate) times the kind's
+    /// [unit](SignatureKind::unit), so that sizes that differ by 5 % are as far apart as two poses of one body.
     #[must_use]
     pub fn with_size(mut self, area: f64) -> Self {
-        self.values.push(self.kind.unit() * fusion::size(area));
+        self.values.push(self.kind.unit() * size_coordinate(area));
         self
     }
 

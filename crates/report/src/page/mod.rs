@@ -5,6 +5,7 @@
 
 mod html;
 mod reproduced;
+mod retrieval;
 
 use std::fmt::Write;
 use std::fs;
@@ -39,6 +40,7 @@ pub fn write_report(out_dir: impl AsRef<Path>) -> Result<PathBuf, ReportError> {
         sections.push(reproduced::curves_section(folder, experiment)?);
     }
     sections.push(reproduced::figure9_section(folder)?);
+    sections.push(retrieval::retrieval_section(folder)?);
     let path = folder.join(FILE);
     write_atomically(&path, page(&sections).as_bytes())?;
     Ok(path)

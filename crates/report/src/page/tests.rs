@@ -2,6 +2,7 @@ use super::*;
 use crate::curves::curves;
 use crate::fixtures::{
     assert_balanced, curves_record, figure1_record, figure3_record, figure4_record, figure9_record,
+    retrieval_record,
 };
 use crate::results::write;
 
@@ -17,9 +18,18 @@ fn page_of(folder: &Path) -> String {
 fn what_was_not_run_is_said_with_the_command_that_runs_it() {
     let folder = tempfile::tempdir().unwrap();
     let html = page_of(folder.path());
-    for name in
-        ["figure1", "figure3", "figure4", "figure5a", "figure5b", "figure6", "figure7", "figure8", "figure9"]
-    {
+    for name in [
+        "figure1",
+        "figure3",
+        "figure4",
+        "figure5a",
+        "figure5b",
+        "figure6",
+        "figure7",
+        "figure8",
+        "figure9",
+        "retrieval",
+    ] {
         assert!(html.contains(&format!("{name}.json</code> is not in this folder")));
         assert!(html.contains(&format!("run {name}</code>")));
     }
@@ -52,6 +62,21 @@ fn figures_numbers_options_and_expectations_are_all_there() {
         assert!(html.contains(text), "{text}");
     }
     assert_eq!(html, page_of(folder.path()), "the page is deterministic");
+}
+
+#[test]
+fn retrieval_has_its_scores_curves_and_confusion() {
+    let folder = tempfile::tempdir().unwrap();
+    let record = retrieval_record();
+    write(&record, folder.path().join("retrieval.json")).unwrap();
+    crate::retrieval::retrieval(&record, folder.path().join("retrieval")).unwrap();
+    let html = page_of(folder.path());
+    assert_eq!(html.matches("data:image/png;base64,").count(), 2);
+    for text in
+        ["wave-kernel", "ignored", "counts", "0.875", "0.625", "Near is alike.", "3 nearest by wave-kernel"]
+    {
+        assert!(html.contains(text), "{text}");
+    }
 }
 
 #[test]

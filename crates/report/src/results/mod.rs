@@ -6,15 +6,17 @@
 mod curves;
 mod figure3;
 mod figure9;
+mod retrieval;
 
 use std::collections::BTreeMap;
 use std::path::Path;
 
+pub use self::retrieval::{Classification, RetrievalRecord, RetrievalRow};
 pub use curves::{Axis, AxisScale, CurvesPanel, CurvesRecord, Mark, Series, SeriesPoint};
 pub use figure3::{Figure3Form, Figure3Record, Figure3Shape, Figure3Stress};
 pub use figure9::{Figure9Measured, Figure9Record, Figure9Row};
 
-use retrieval::Evaluation;
+use ::retrieval::Evaluation;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 

@@ -1,0 +1,128 @@
+//! What poses and triangulations do to signatures: the units that distances are measured in.
+
+use std::io::Write;
+use std::process::ExitCode;
+
+use anyhow::Result;
+use datasets::{ArticulatedOptions, Family, articulated};
+use descriptors::match_forms;
+use linalg::Matrix;
+use pipeline::{
+    DescribeOptions, FORM_UNIT, FORM_WEIGHT, MatchOptions, Observer, PreparedForm, ShapeDescription,
+    SignatureKind, describe,
+};
+use rayon::prelude::*;
+use terminal::Bars;
+
+use crate::args::UnitsArgs;
+
+struct Described {
+    label: String,
+    seed: usize,
+    description: ShapeDescription,
+    form: PreparedForm,
+}
+
+/// Vertices of the shapes of each seed in turn: collections mix resolutions.
+const VERTICES: [usize; 5] = [3400, 1500, 8000, 2500, 5000];
+
+/// `experiments units`: for every signature and for aligned forms, the root mean square distance between two shapes of a
+/// built-in family, each posed and triangulated on its own, and the mean squared distance between families over its
+/// square; beside the numbers in use.
+pub(crate) fn units(args: &UnitsArgs) -> Result<ExitCode> {
+    let bars = Bars::new(args.quiet);
+    let mut shapes = Vec::new();
+    bars.begin("describing", 0);
+    for seed in 1..=args.seeds {
+        let options =
+            ArticulatedOptions { seed: seed as u64, n_vertices: VERTICES[(seed - 1) % VERTICES.len()] };
+        let one = |shape: &datasets::LabeledShape| {
+            let description = describe(&shape.mesh, &DescribeOptions::default())?;
+            let form = description.prepare()?;
+            Ok(Described { label: shape.label.clone(), seed, description, form })
+        };
+        shapes.extend(articulated(&options)?.par_iter().map(one).collect::<Result<Vec<_>>>()?);
+    }
+    let (within, between): (Vec<Pair<'_>>, Vec<Pair<'_>>) = shapes
+        .iter()
+        .enumerate()
+        .flat_map(|(i, a)| shapes[..i].iter().map(move |b| (a, b)))
+        .partition(|(a, b)| a.label == b.label);
+    bars.finish();
+    let mut parts = Vec::new();
+    for kind in SignatureKind::ALL {
+        let distance = |(a, b): &Pair<'_>| {
+            let of = |shape: &Described| shape.description.signature(kind).cloned();
+            of(a).zip(of(b)).map_or(f64::NAN, |(a, b)| a.distance(&b))
+        };
+        let means = [&within, &between].map(|pairs| mean_square(pairs.iter().map(distance)));
+        parts.push(Part::new(kind.name(), means, components(&shapes, kind), [kind.unit(), kind.weight()]));
+    }
+    let total: f64 = parts.iter().map(Part::importance).sum();
+    let mut means = [0.0; 2];
+    for (mean, pairs) in means.iter_mut().zip([&within, &between]) {
+        // Alignment takes long.
+        let close: Vec<_> = pairs.iter().filter(|(a, b)| a.seed == 1 && b.seed == 1).collect();
+        let distances: Vec<f64> = close
+            .par_iter()
+            .map(|(a, b)| Ok(match_forms(&a.form, &b.form, &MatchOptions::default())?.distance))
+            .collect::<Result<_>>()?;
+        *mean = mean_square(distances.into_iter());
+    }
+    parts.push(Part::new("aligned forms", means, 1.0, [FORM_UNIT, FORM_WEIGHT]));
+    let mut out = std::io::stdout().lock();
+    writeln!(out, "{:<18}    unit  separation  components  weight   in use: unit  weight", "")?;
+    for part in parts {
+        let Part { name, unit, separation, components, in_use: [used_unit, used_weight] } = part;
+        let weight = separation * components / total;
+        writeln!(
+            out,
+            "{name:<18} {unit:>7.4} {separation:>11.1} {components:>11.1} {weight:>7.4} {used_unit:>14.4} {used_weight:>7.4}"
+        )?;
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// What was measured of one part of a fused signature, and what is in use.
+struct Part {
+    name: &'static str,
+    unit: f64,
+    separation: f64,
+    components: f64,
+    in_use: [f64; 2],
+}
+
+impl Part {
+    fn new(name: &'static str, [within, between]: [f64; 2], components: f64, in_use: [f64; 2]) -> Self {
+        Self { name, unit: within.sqrt(), separation: between / within, components, in_use }
+    }
+
+    fn importance(&self) -> f64 {
+        self.separation * self.components
+    }
+}
+
+/// `tr(C)² / tr(C²)` with `C` the covariance of a signature within families.
+fn components(shapes: &[Described], kind: SignatureKind) -> f64 {
+    let n_values = kind.n_values();
+    let mut covariance = Matrix::zeros(n_values, n_values);
+    for family in Family::all() {
+        let members: Vec<&[f64]> = shapes
+            .iter()
+            .filter(|shape| shape.label == family.name())
+            .filter_map(|shape| shape.description.signature(kind).map(|s| s.values.as_slice()))
+            .collect();
+        let mean = |i: usize| members.iter().map(|values| values[i]).sum::<f64>() / members.len() as f64;
+        let means: Vec<f64> = (0..n_values).map(mean).collect();
+        let centred = Matrix::from_fn(members.len(), n_values, |row, i| members[row][i] - means[i]);
+        covariance += centred.transpose() * centred;
+    }
+    covariance.trace().powi(2) / covariance.norm_squared()
+}
+
+type Pair<'a> = (&'a Described, &'a Described);
+
+fn mean_square(values: impl Iterator<Item = f64>) -> f64 {
+    let (sum, n) = values.fold((0.0, 0usize), |(sum, n), value| (sum + value * value, n + 1));
+    sum / n.max(1) as f64
+}

@@ -1,0 +1,85 @@
+//! Signatures: blind to poses and triangulations, sharp on bodies, fit for any mesh.
+
+use datasets::{ArticulatedOptions, Family, articulated_shape};
+use pipeline::{
+    DescribeOptions, ShapeDescription, SignatureKind, Surface, describe, describe_surface, rerank,
+};
+use rayon::prelude::*;
+use retrieval::Candidate;
+
+use crate::real_meshes::data;
+use crate::support::body;
+
+fn fused_distance(a: &ShapeDescription, b: &ShapeDescription) -> f64 {
+    let sq = |(x, y): (&f32, &f32)| f64::from(x - y).powi(2);
+    a.fused.iter().zip(&b.fused).map(sq).sum::<f64>().sqrt()
+}
+
+/// Three poses of each family, each triangulated on its own and at another resolution, class by class.
+fn described() -> Vec<ShapeDescription> {
+    let shape = |i: usize| {
+        let (family, pose) = (Family::all()[i / 3], i % 3);
+        let options = ArticulatedOptions { seed: 11 + pose as u64, n_vertices: 1000 + 500 * pose };
+        let mesh = articulated_shape(family, pose + 1, &options).unwrap().mesh;
+        describe(&mesh, &DescribeOptions::default()).unwrap()
+    };
+    (0..9).into_par_iter().map(shape).collect()
+}
+
+#[test]
+fn poses_and_triangulations_are_nearer_than_other_bodies_by_every_signature() {
+    let shapes = described();
+    for kind in SignatureKind::ALL {
+        let of = |i: usize| shapes[i].signature(kind).unwrap();
+        let mean = |same: bool| {
+            let pairs = (0..9).flat_map(|i| (0..i).map(move |j| (i, j)));
+            let found: Vec<f64> =
+                pairs.filter(|(i, j)| (i / 3 == j / 3) == same).map(|(i, j)| of(i).distance(of(j))).collect();
+            found.iter().sum::<f64>() / found.len() as f64
+        };
+        assert!(mean(false) > 2.0 * mean(true), "{}: {} {}", kind.name(), mean(true), mean(false));
+    }
+}
+
+#[test]
+fn the_first_answers_are_of_the_same_body() {
+    let shapes = described();
+    let forms: Vec<_> = shapes.iter().map(|shape| shape.prepare().unwrap()).collect();
+    for query in 0..9 {
+        let mut candidates: Vec<_> = (0..9)
+            .filter(|&i| i != query)
+            .map(|index| Candidate { index, bound: fused_distance(&shapes[query], &shapes[index]) })
+            .collect();
+        candidates.sort_by(|a, b| a.bound.total_cmp(&b.bound));
+        assert!(candidates[..2].iter().all(|c| c.index / 3 == query / 3), "{query}: {candidates:?}");
+        let found = rerank(&forms[query], candidates, 2, &Default::default(), |i| Ok(&forms[i])).unwrap();
+        assert!(found.nearest.iter().all(|n| n.index / 3 == query / 3), "{query}: {found:?}");
+    }
+}
+
+#[test]
+fn a_description_does_not_depend_on_threads() {
+    let mesh = body(Family::Cat);
+    let on = |n: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(n).build().unwrap();
+        pool.install(|| describe(&mesh, &DescribeOptions::default()).unwrap())
+    };
+    let (one, three) = (on(1), on(3));
+    assert_eq!(one, three);
+}
+
+#[test]
+fn dirty_real_meshes_are_described() {
+    let Some(folder) = data("dirty_real_meshes_are_described") else { return };
+    // Components, boundaries, edges of three faces, obtuse triangles.
+    for name in ["gorilla0", "seahorse0", "lioness0", "shark0", "david0"] {
+        let surface =
+            Surface::read(&folder.join("tosca-lowres").join(format!("{name}.vert")), &Default::default())
+                .unwrap();
+        let found = describe_surface(&surface, &DescribeOptions::default()).unwrap();
+        assert!(found.fused.iter().all(|x| x.is_finite()), "{name}");
+        // By Weyl's law all values of ShapeDNA are near one.
+        let dna = &found.signature(SignatureKind::ShapeDna).unwrap().values;
+        assert!(dna.iter().all(|x| (0.01..3.0).contains(x)), "{name}: {dna:?}");
+    }
+}
