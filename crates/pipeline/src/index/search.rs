@@ -3,14 +3,16 @@
 use std::path::Path;
 use std::time::Instant;
 
-use descriptors::{MatchOptions, Normalization, PreparedForm, match_forms};
+use descriptors::MatchOptions;
 use mesh::TriMesh;
-use retrieval::{Candidate, Index, SearchMode, ShapeEntry, ShapeVectors, refine_nearest, vote};
+use retrieval::{Candidate, Index, SearchMode, ShapeEntry, ShapeVectors, vote};
 use serde::Serialize;
 
 use super::record::{form, options_of};
-use crate::forms::MATCHED_POINTS;
-use crate::{Comparison, DescribeOptions, PipelineError, ShapeDescription, compare_forms, describe};
+use crate::{
+    Comparison, DescribeOptions, PipelineError, ShapeDescription, compare_forms, describe, prepare_form,
+    rerank,
+};
 
 /// Neighbours that vote on the class of a query.
 const VOTERS: usize = 5;
@@ -18,9 +20,6 @@ const VOTERS: usize = 5;
 /// Shapes whose forms may be aligned, for every one that is wanted, and at least.
 const CANDIDATES: usize = 4;
 const LEAST_CANDIDATES: usize = 40;
-
-/// Root mean square of the distances between aligned forms of two poses of one body, at unit area.
-const FORM_UNIT: f64 = 0.035;
 
 /// How an index is asked.
 #[derive(Debug, Clone, PartialEq)]
@@ -156,21 +155,11 @@ impl ShapeSearch {
         let near = &found.shapes;
         let candidates =
             near.iter().enumerate().map(|(index, near)| Candidate { index, bound: near.distance });
-        let size = self.describe.size;
         let form_of = |i: usize| {
             let (entry, vectors) = self.shape(&near[i].id)?;
-            let form = form(&entry, &vectors)?.normalized(size);
-            Ok::<PreparedForm, PipelineError>(PreparedForm::new(&form, MATCHED_POINTS)?)
+            prepare_form(&form(&entry, &vectors)?)
         };
-        let unit = match size {
-            Normalization::UnitArea => FORM_UNIT,
-            Normalization::Raw => FORM_UNIT * query.area.sqrt(),
-        };
-        let prepared = query.prepare(size)?;
-        let refined = refine_nearest(candidates, wanted, |candidate, _| {
-            let found = match_forms(&prepared, &form_of(candidate.index)?, &options.matching)?;
-            Ok::<_, PipelineError>(Some(candidate.bound.hypot(found.distance / unit)))
-        })?;
+        let refined = rerank(&query.prepare()?, candidates, wanted, &options.matching, form_of)?;
 
         let mut results = Vec::with_capacity(wanted);
         for (place, neighbor) in refined.nearest.iter().enumerate() {
