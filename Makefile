@@ -5,7 +5,7 @@ OUT ?= out
 # A folder of meshes with the paper's classes, for `make reproduce`; the built-in dataset without it.
 DATASET ?=
 
-.PHONY: help setup build run test lint bench bench-peers bench-eigsh fmt doc reproduce report deny ci clean
+.PHONY: help setup build run test lint bench bench-peers bench-nmds bench-eigsh fmt doc reproduce report deny ci clean
 
 help: ## List these commands
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "  make %-12s %s\n", $$1, $$2}'
@@ -34,6 +34,11 @@ bench-peers: build ## Measure other programs beside this one and write docs/benc
 	test -x target/peers/bin/python || python3 -m venv target/peers
 	target/peers/bin/pip install --quiet numpy scipy potpourri3d pygeodesic meshlib
 	target/peers/bin/python bench/peers.py
+
+bench-nmds: build ## Measure whole canonical forms beside potpourri3d and NumPy and write docs/nmds.md (needs Python and test meshes)
+	test -x target/peers/bin/python || python3 -m venv target/peers
+	target/peers/bin/pip install --quiet numpy potpourri3d
+	target/peers/bin/python bench/nmds.py
 
 bench-eigsh: ## Measure eigenpairs beside SciPy and write docs/eigenpairs.md (needs Python and test meshes)
 	$(CARGO) build --release --locked -p descriptors --example eigenpairs
