@@ -20,7 +20,9 @@ mod update;
 use mesh::{IntrinsicMesh, VertexId};
 
 use crate::Source;
+use crate::graph::EdgeGraph;
 use crate::solver::{DistanceSolver, Pool, PrunedSolver, within};
+use chains::Part;
 use march::{March, Stop};
 use spokes::Spokes;
 use triangulation::Triangulation;
@@ -111,27 +113,9 @@ impl FastMarching {
     /// Prepares a surface for marching.
     #[must_use]
     pub fn new(mesh: &IntrinsicMesh, options: FastMarchingOptions) -> Self {
-        let plain = Triangulation::new(mesh);
-        let mut report = CornerReport {
-            corners: 3 * plain.faces.len(),
-            obtuse: plain.obtuse_corners(),
-            left: plain.obtuse_corners(),
-            flips: 0,
-        };
-        let spokes = match options.obtuse {
-            ObtuseTreatment::Flip => {
-                let (flipped, flips) = flips::flipped(mesh);
-                report.flips = flips;
-                report.left = flipped.obtuse_corners();
-                Spokes::new(mesh, &flipped, &[])
-            }
-            ObtuseTreatment::Unfold => {
-                let (splits, not_split) = splits::splits(mesh);
-                report.left = not_split;
-                Spokes::new(mesh, &plain, &splits)
-            }
-            ObtuseTreatment::Ignore => Spokes::new(mesh, &plain, &[]),
-        };
+        let ((triangulation, extras, report), order) =
+            rayon::join(|| prepared(mesh, options.obtuse), || EdgeGraph::new(mesh).breadth_first_order());
+        let spokes = Spokes::new(order, &triangulation, &extras);
         Self { spokes, report, update: options.update, scratch: Pool::default() }
     }
 
@@ -158,6 +142,28 @@ impl FastMarching {
     #[must_use]
     pub fn corner_report(&self) -> CornerReport {
         self.report
+    }
+}
+
+/// The triangles to march over, parts of vertices beside them, and what was done about obtuse corners.
+fn prepared(
+    mesh: &IntrinsicMesh,
+    obtuse: ObtuseTreatment,
+) -> (Triangulation, Vec<(u32, Part)>, CornerReport) {
+    let plain = Triangulation::new(mesh);
+    let wide = plain.obtuse_corners();
+    let report = CornerReport { corners: 3 * plain.faces.len(), obtuse: wide, flips: 0, left: wide };
+    match obtuse {
+        ObtuseTreatment::Flip => {
+            let (flipped, flips) = flips::flipped(mesh, plain);
+            let left = flipped.obtuse_corners();
+            (flipped, Vec::new(), CornerReport { flips, left, ..report })
+        }
+        ObtuseTreatment::Unfold => {
+            let (splits, left) = splits::splits(mesh);
+            (plain, splits, CornerReport { left, ..report })
+        }
+        ObtuseTreatment::Ignore => (plain, Vec::new(), report),
     }
 }
 

@@ -2,12 +2,11 @@
 
 use std::f64::consts::{PI, TAU};
 
-use mesh::IntrinsicMesh;
+use rayon::prelude::*;
 
 use super::chains::{Chains, Part, is_cut, total_angle};
 use super::triangulation::Triangulation;
 use super::update::Sector;
-use crate::graph::EdgeGraph;
 use crate::rows::Rows;
 
 /// A straight way from a vertex to another, and the triangle between it and the spoke before.
@@ -76,6 +75,18 @@ pub(super) struct Spokes {
     pub(super) rank: Vec<u32>,
 }
 
+/// Vertices whose spokes are made by one thread at a time.
+const BLOCK: usize = 1024;
+
+/// The spokes of some vertices.
+#[derive(Debug, Default)]
+struct Block {
+    spokes: Vec<Spoke>,
+    /// How many each vertex has.
+    counts: Vec<u32>,
+    bends: Vec<bool>,
+}
+
 /// Angles that exceed a straight one by less than this share do so by rounding.
 const STRAIGHT: f64 = 1.0 + 1e-9;
 
@@ -98,9 +109,9 @@ impl Spokes {
         self.bends[vertex as usize]
     }
 
-    /// The spokes of a triangulation of `mesh`, with further parts of vertices from elsewhere.
-    pub(super) fn new(mesh: &IntrinsicMesh, triangulation: &Triangulation, extras: &[(u32, Part)]) -> Self {
-        let order = EdgeGraph::new(mesh).breadth_first_order();
+    /// The spokes of a triangulation, with further parts of vertices from elsewhere, over vertices in an
+    /// order in which neighbours are close.
+    pub(super) fn new(order: Vec<u32>, triangulation: &Triangulation, extras: &[(u32, Part)]) -> Self {
         let mut rank = vec![0; order.len()];
         for (internal, v) in order.iter().enumerate() {
             rank[*v as usize] = internal as u32;
@@ -108,22 +119,40 @@ impl Spokes {
         let corners = triangulation.corners();
         let segments = triangulation.segments.iter().flat_map(|(ends, length)| Part::segment(*ends, *length));
         let extras = Rows::collect(order.len(), extras.iter().copied().chain(segments));
-        let mut spokes = Vec::with_capacity(7 * triangulation.faces.len() / 2 + order.len());
+        let blocks: Vec<Block> = order
+            .par_chunks(BLOCK)
+            .map(|vertices| {
+                let mut block = Block::default();
+                let (mut parts, mut chains) = (Vec::new(), Chains::default());
+                for v in vertices {
+                    parts.clear();
+                    parts.extend(corners.of(*v).iter().map(|(face, slot)| triangulation.part(*face, *slot)));
+                    let angle = total_angle(&parts);
+                    let bends = angle > TAU * STRAIGHT || (angle > PI * STRAIGHT && is_cut(&parts));
+                    block.bends.push(bends);
+                    parts.extend_from_slice(extras.of(*v));
+                    let first = block.spokes.len();
+                    chains.append(&parts, &mut block.spokes);
+                    block.counts.push((block.spokes.len() - first) as u32);
+                }
+                for spoke in &mut block.spokes {
+                    spoke.end = rank[spoke.end as usize];
+                }
+                block
+            })
+            .collect();
+        let mut spokes = Vec::with_capacity(blocks.iter().map(|block| block.spokes.len()).sum());
         let mut bends = Vec::with_capacity(order.len());
         let mut offsets = Vec::with_capacity(order.len() + 1);
-        offsets.push(0);
-        let (mut parts, mut chains) = (Vec::new(), Chains::default());
-        for v in &order {
-            parts.clear();
-            parts.extend(corners.of(*v).iter().map(|(face, slot)| triangulation.part(*face, *slot)));
-            let straight = if is_cut(&parts) { PI } else { TAU };
-            bends.push(total_angle(&parts) > straight * STRAIGHT);
-            parts.extend_from_slice(extras.of(*v));
-            chains.append(&parts, &mut spokes);
-            offsets.push(spokes.len() as u32);
-        }
-        for spoke in &mut spokes {
-            spoke.end = rank[spoke.end as usize];
+        let mut next = 0;
+        offsets.push(next);
+        for block in &blocks {
+            spokes.extend_from_slice(&block.spokes);
+            bends.extend_from_slice(&block.bends);
+            offsets.extend(block.counts.iter().map(|count| {
+                next += count;
+                next
+            }));
         }
         Self { offsets, spokes, bends, order, rank }
     }
