@@ -5,7 +5,7 @@ OUT ?= out
 # A folder of meshes with the paper's classes, for `make reproduce`; the built-in dataset without it.
 DATASET ?=
 
-.PHONY: help setup build run test lint bench bench-peers bench-nmds bench-eigsh fmt doc reproduce report deny ci clean
+.PHONY: help setup build run test lint bench bench-peers bench-nmds bench-search bench-eigsh fmt doc reproduce report deny ci clean
 
 help: ## List these commands
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "  make %-12s %s\n", $$1, $$2}'
@@ -45,6 +45,12 @@ bench-eigsh: ## Measure eigenpairs beside SciPy and write docs/eigenpairs.md (ne
 	test -x target/peers/bin/python || python3 -m venv target/peers
 	target/peers/bin/pip install --quiet numpy scipy
 	target/peers/bin/python bench/eigsh.py
+
+bench-search: ## Search a million signatures beside hnswlib and faiss and write docs/search.md (needs Python, half an hour)
+	$(CARGO) build --release --locked -p retrieval --example vectors
+	test -x target/peers/bin/python || python3 -m venv target/peers
+	target/peers/bin/pip install --quiet numpy hnswlib faiss-cpu
+	target/peers/bin/python bench/search.py
 
 fmt: ## Format the sources
 	$(CARGO) fmt --all

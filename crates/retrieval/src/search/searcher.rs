@@ -106,9 +106,40 @@ pub struct Searcher {
     starts: Vec<usize>,
     slots: Vec<u32>,
     rows: Vec<f32>,
-    names: Vec<String>,
+    names: Names,
     /// Place of every slot among `rows`.
     places: Vec<u32>,
+}
+
+/// Names one behind the other.
+#[derive(Debug, Default)]
+struct Names {
+    text: String,
+    ends: Vec<usize>,
+}
+
+impl Names {
+    fn of(stored: &Stored<'_>) -> Result<Self, IndexError> {
+        let mut names = Self::default();
+        stored.each_names(|part| {
+            for name in part {
+                names.text += &name;
+                names.ends.push(names.text.len());
+            }
+        })?;
+        names.text.shrink_to_fit();
+        names.ends.shrink_to_fit();
+        Ok(names)
+    }
+
+    fn len(&self) -> usize {
+        self.ends.len()
+    }
+
+    fn get(&self, slot: u32) -> &str {
+        let start = slot.checked_sub(1).map_or(0, |before| self.ends[before as usize]);
+        &self.text[start..self.ends[slot as usize]]
+    }
 }
 
 impl Searcher {
@@ -126,7 +157,7 @@ impl Searcher {
             slots.extend_from_slice(of_part);
             rows.extend_from_slice(of_rows);
         })?;
-        let names = stored.names()?;
+        let names = Names::of(&stored)?;
         let mut places = vec![0; names.len()];
         for (place, slot) in slots.iter().enumerate() {
             if let Some(entry) = places.get_mut(*slot as usize) {
@@ -175,7 +206,7 @@ impl Searcher {
         };
         let neighbor = |Hit { slot, .. }: Hit| {
             let place = self.places[slot as usize] as usize;
-            let id = self.names[slot as usize].clone();
+            let id = self.names.get(slot).to_owned();
             NearShape { id, distance: distance(query, &self.rows[place * n..][..query.len()]) }
         };
         let neighbors = nearest.into_sorted().into_iter().map(neighbor).collect();

@@ -178,12 +178,10 @@ impl<'a> Stored<'a> {
         })
     }
 
-    pub(super) fn names(&self) -> Result<Vec<String>, IndexError> {
-        let mut names = Vec::with_capacity(self.about.n);
-        for i in 0..self.about.n.div_ceil(NAMES) {
-            names.extend(part::<Vec<String>>(&self.snapshot, (NAMED, i as u32, 0))?);
-        }
-        Ok(names)
+    /// Calls `visit` with some names after others, in order.
+    pub(super) fn each_names(&self, mut visit: impl FnMut(Vec<String>)) -> Result<(), IndexError> {
+        (0..self.about.n.div_ceil(NAMES))
+            .try_for_each(|i| part(&self.snapshot, (NAMED, i as u32, 0)).map(&mut visit))
     }
 
     fn name(&self, slot: u32) -> Result<String, IndexError> {

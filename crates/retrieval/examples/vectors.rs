@@ -1,0 +1,113 @@
+//! Indexes the rows of a NumPy array and answers queries line by line: the side of `bench/search.py` that
+//! is measured.
+//!
+//! ```text
+//! vectors build BASE.npy INDEX           stores and finishes an index; prints seconds
+//! vectors serve INDEX QUERIES.npy        then, for every line `memory|file|scan K FIRST COUNT` it reads, prints
+//!                                        {"seconds": [..], "found": [[..], ..]}
+//! ```
+//!
+//! Arrays are little-endian float32 in C order.
+
+use std::error::Error;
+use std::io::{BufRead, Write};
+use std::path::Path;
+use std::time::Instant;
+
+use retrieval::{
+    ContentHash, Found, Index, IndexWriter, Job, SearchMode, Searcher, Shape, ShapeEntry, ShapeVectors,
+};
+use serde_json::json;
+
+/// Shapes put on the disk together.
+const BATCH: usize = 20_000;
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    match arguments.iter().map(String::as_str).collect::<Vec<_>>()[..] {
+        ["build", base, index] => build(Path::new(base), Path::new(index)),
+        ["serve", index, queries] => serve(Path::new(index), Path::new(queries)),
+        _ => Err("usage: vectors build BASE.npy INDEX | vectors serve INDEX QUERIES.npy".into()),
+    }
+}
+
+/// The rows of an array and their length.
+fn read(path: &Path) -> Result<(Vec<f32>, usize), Box<dyn Error>> {
+    let bytes = std::fs::read(path)?;
+    let array = npyz::NpyFile::new(&bytes[..])?;
+    let dim = *array.shape().last().ok_or("an array without dimensions")? as usize;
+    Ok((array.into_vec()?, dim))
+}
+
+fn build(base: &Path, path: &Path) -> Result<(), Box<dyn Error>> {
+    let (rows, dim) = read(base)?;
+    let start = Instant::now();
+    let mut writer = IndexWriter::open(path, Job::Build, Some("vectors"))?;
+    let shape = |(i, row): (usize, &[f32])| Shape {
+        id: format!("{i:08}"),
+        entry: ShapeEntry {
+            label: String::new(),
+            path: String::new(),
+            content: ContentHash::of(&[i.to_le_bytes()]),
+            facts: Vec::new(),
+        },
+        vectors: ShapeVectors { fused: row.to_vec(), ..Default::default() },
+    };
+    let mut shapes = rows.chunks_exact(dim).enumerate().map(shape).peekable();
+    while shapes.peek().is_some() {
+        writer.put(&shapes.by_ref().take(BATCH).collect::<Vec<_>>())?;
+    }
+    let stored = start.elapsed().as_secs_f64();
+    drop(shapes);
+    drop(rows);
+    writer.finish()?;
+    let finished = start.elapsed().as_secs_f64() - stored;
+    println!("{}", json!({ "stored": stored, "finished": finished, "megabytes": peak_memory() }));
+    Ok(())
+}
+
+fn serve(path: &Path, queries: &Path) -> Result<(), Box<dyn Error>> {
+    let (queries, dim) = read(queries)?;
+    let start = Instant::now();
+    let index = Index::open(path)?;
+    let opened = start.elapsed().as_secs_f64();
+    let searcher = Searcher::load(&index)?;
+    let loaded = start.elapsed().as_secs_f64();
+    let about = searcher.nearest(&queries[..dim], 1, SearchMode::Auto)?;
+    let ready =
+        json!({ "opened": opened, "loaded": loaded, "recall": about.recall, "megabytes": peak_memory() });
+    println!("{ready}");
+    std::io::stdout().flush()?;
+    for line in std::io::stdin().lock().lines() {
+        let line = line?;
+        let words: Vec<&str> = line.split_whitespace().collect();
+        let [from, k, first, count] = words[..] else { return Err(format!("`{line}`?").into()) };
+        let (k, first, count): (usize, usize, usize) = (k.parse()?, first.parse()?, count.parse()?);
+        let (mut seconds, mut found, mut measured) = (Vec::new(), Vec::new(), 0);
+        for query in queries[first * dim..(first + count) * dim].chunks_exact(dim) {
+            let start = Instant::now();
+            let answer: Found = match from {
+                "memory" => searcher.nearest(query, k, SearchMode::Auto)?,
+                "scan" => searcher.nearest(query, k, SearchMode::Exact)?,
+                _ => index.nearest(query, k, SearchMode::Auto)?,
+            };
+            seconds.push(start.elapsed().as_secs_f64());
+            measured += answer.n_measured;
+            found.push(answer.shapes.iter().map(|near| near.id.parse()).collect::<Result<Vec<u32>, _>>()?);
+        }
+        println!(
+            "{}",
+            json!({ "seconds": seconds, "found": found, "measured": measured as f64 / count as f64 })
+        );
+        std::io::stdout().flush()?;
+    }
+    Ok(())
+}
+
+/// The most memory this process has had, in megabytes; 0 where the system does not say.
+fn peak_memory() -> u64 {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
+    let kibibytes = line.and_then(|line| line.split_whitespace().next()?.parse::<u64>().ok());
+    kibibytes.unwrap_or(0) / 1000
+}
