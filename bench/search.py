@@ -7,8 +7,8 @@ Signatures are made up as those of shapes are: families, classes in them, and po
 sheet of few dimensions, with noise; classes differ in size. Queries are signatures of the same kind
 that are not in the index. Every solver lives in a process of its own, is asked one query at a time on one
 thread (the exact scan of ours takes all), and the rounds are interleaved, so that whatever else the machine does
-falls on all of them. Peers are set to the cheapest setting that reaches the recall on the first queries; ours is used as it
-is.
+falls on all of them. Peers are set to the cheapest setting that reaches the recall on these very queries; ours finds its own
+while building, on signatures of the index.
 """
 import argparse
 import gc
@@ -25,7 +25,7 @@ import numpy as np
 
 K = 10
 RECALL = 0.99
-TUNING = 500
+WARMING = 500
 
 
 def signatures(n, dim, seed, width):
@@ -186,7 +186,7 @@ def measure(program, folder, n, dim, width, n_queries, rounds):
     truth = exact.ask(0, n_queries)[1]
     for peer in peers.values():
         if peer is not exact:
-            peer.tune(truth[:TUNING])
+            peer.tune(truth)
     solvers = {
         "canonform, in memory": lambda *span: ours.ask("memory", *span),
         "canonform, from the file": lambda *span: ours.ask("file", *span),
@@ -194,7 +194,7 @@ def measure(program, folder, n, dim, width, n_queries, rounds):
         **{name: peer.ask for name, peer in peers.items()},
     }
     seconds, found = {name: [] for name in solvers}, {name: [] for name in solvers}
-    spans = np.array_split(np.arange(TUNING, n_queries), rounds)
+    spans = np.array_split(np.arange(WARMING, n_queries), rounds)
     for span in spans:
         for name, ask in solvers.items():
             # Exact scans are slow and steady: fewer of them will do.
@@ -202,7 +202,7 @@ def measure(program, folder, n, dim, width, n_queries, rounds):
             spent, ids = ask(int(span[0]), count)
             seconds[name] += spent
             found[name] += [(int(span[0]) + i, row) for i, row in enumerate(ids)]
-    ours.ask("memory", TUNING, 200)
+    ours.ask("memory", WARMING, 200)
     measured = ours.measured
     lines = ["| | recall@10 | p50 ms | p99 ms | build s | memory MB |", "|---|---|---|---|---|---|"]
     for name in solvers:
@@ -239,7 +239,7 @@ def main():
     page = [
         "# Search among many signatures",
         f"\nMeasured by `make bench-search` on {platform.machine()}, {os.cpu_count()} cores: {args.n:,} made-up signatures of "
-        f"{args.dim} numbers in families, classes and poses, {args.queries - TUNING:,} queries that are not among them, one at a time, all solvers "
+        f"{args.dim} numbers in families, classes and poses, {args.queries - WARMING:,} queries that are not among them, one at a time, all solvers "
         "interleaved in one run. Peers run at the cheapest setting that reaches a recall of "
         f"{RECALL}. Ratios count; the milliseconds are those of one machine on one day.\n",
     ]

@@ -11,8 +11,8 @@ pub(crate) const LANES: usize = 16;
 /// Rows measured at a time, so that one sum need not wait for another.
 const ROWS: usize = 4;
 
-/// Bytes of centroids that stay in the nearest cache while many points pass.
-const TILE: usize = 16 << 10;
+/// Points compared with a group of centres at a time.
+const POINTS: usize = 8;
 
 /// Length of a row of `dim` numbers once padded.
 pub(crate) fn padded(dim: usize) -> usize {
@@ -64,37 +64,43 @@ impl WithSimd for SqDistances<'_> {
     }
 }
 
-/// For each of `points` the nearest of `centroids`, the first among equally near ones. `half_squares` are
-/// half the squared lengths of the centroids; all rows are `n` long.
-pub(crate) fn nearest_centroids(
-    points: &[f32],
-    centroids: &[f32],
-    half_squares: &[f32],
+/// Centres side by side, so that a vector register holds one number of each of several: sums then need not
+/// be collected across a register.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct SideBySide {
+    /// Groups of [`LANES`] centres: the first number of each, then the second of each, ...
+    numbers: Vec<f32>,
+    /// Half their squared lengths; infinite where a group is not full.
+    half_squares: Vec<f32>,
+    /// Numbers of a centre.
     n: usize,
-) -> Vec<u32> {
-    let mut best = vec![(f32::INFINITY, 0u32); points.len() / n];
-    let tile = (TILE / (4 * n)).max(2);
-    for (i, part) in centroids.chunks(tile * n).enumerate() {
-        let first = i * tile;
-        let half_squares = &half_squares[first..][..part.len() / n];
-        Arch::new().dispatch(Closest {
-            points,
-            centroids: part,
-            half_squares,
-            n,
-            first: first as u32,
-            best: &mut best,
-        });
+}
+
+impl SideBySide {
+    /// Of centres of `n` numbers one behind the other.
+    pub(crate) fn new(centroids: &[f32], n: usize) -> Self {
+        let n_groups = (centroids.len() / n).div_ceil(LANES);
+        let mut numbers = vec![0.0; n_groups * LANES * n];
+        let mut half_squares = vec![f32::INFINITY; n_groups * LANES];
+        for (c, centroid) in centroids.chunks_exact(n).enumerate() {
+            let group = &mut numbers[c / LANES * LANES * n..][..LANES * n];
+            centroid.iter().enumerate().for_each(|(i, x)| group[i * LANES + c % LANES] = *x);
+            half_squares[c] = 0.5 * centroid.iter().map(|x| x * x).sum::<f32>();
+        }
+        Self { numbers, half_squares, n }
     }
-    best.into_iter().map(|(_, centroid)| centroid).collect()
+
+    /// The nearest centre of each of `points`, the first among equally near ones.
+    pub(crate) fn nearest(&self, points: &[f32]) -> Vec<u32> {
+        let mut best = vec![(f32::INFINITY, 0); points.len() / self.n];
+        Arch::new().dispatch(Closest { centres: self, points, best: &mut best });
+        best.into_iter().map(|(_, centre)| centre).collect()
+    }
 }
 
 struct Closest<'a> {
+    centres: &'a SideBySide,
     points: &'a [f32],
-    centroids: &'a [f32],
-    half_squares: &'a [f32],
-    n: usize,
-    first: u32,
     best: &'a mut [(f32, u32)],
 }
 
@@ -103,48 +109,34 @@ impl WithSimd for Closest<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let n = self.n;
-        let mut groups = self.points.chunks_exact(ROWS * n);
-        let mut places = self.best.chunks_exact_mut(ROWS);
-        for (points, best) in groups.by_ref().zip(places.by_ref()) {
-            let points: [&[S::f32s]; ROWS] =
-                std::array::from_fn(|r| S::as_simd_f32s(&points[r * n..][..n]).0);
-            let length = points[0].len();
-            let points = points.map(|point| &point[..length]);
-            for (c, (pair, halves)) in
-                self.centroids.chunks(2 * n).zip(self.half_squares.chunks(2)).enumerate()
-            {
-                // The last one alone is paired with itself.
-                let centroids =
-                    [&pair[..n], &pair[pair.len() - n..]].map(|c| &S::as_simd_f32s(c).0[..length]);
-                let mut sums = [[simd.splat_f32s(0.0); ROWS]; 2];
-                for i in 0..length {
-                    for (sums, centroid) in sums.iter_mut().zip(&centroids) {
-                        for (sum, point) in sums.iter_mut().zip(&points) {
-                            *sum = simd.mul_add_f32s(point[i], centroid[i], *sum);
+        let Self { centres, points, best } = self;
+        let n = centres.n;
+        let mut scores = [0.0; LANES];
+        let groups = centres.numbers.chunks_exact(LANES * n).zip(centres.half_squares.chunks_exact(LANES));
+        // A group stays in the nearest cache while the points pass.
+        for (first, (numbers, halves)) in (0u32..).step_by(LANES).zip(groups) {
+            for (points, best) in points.chunks(POINTS * n).zip(best.chunks_mut(POINTS)) {
+                // The last few are joined by copies of the last.
+                let rows: [&[f32]; POINTS] =
+                    std::array::from_fn(|r| &points[r.min(best.len() - 1) * n..][..n]);
+                for part in 0..LANES / S::F32_LANES {
+                    let mut sums = [simd.splat_f32s(0.0); POINTS];
+                    for (i, numbers) in numbers.chunks_exact(LANES).enumerate() {
+                        let numbers = S::as_simd_f32s(numbers).0[part];
+                        for (sum, row) in sums.iter_mut().zip(&rows) {
+                            *sum = simd.mul_add_f32s(simd.splat_f32s(row[i]), numbers, *sum);
                         }
                     }
-                }
-                for (j, (sums, half)) in sums.iter().zip(halves).enumerate() {
+                    let halves = S::as_simd_f32s(halves).0[part];
+                    let first = first + (part * S::F32_LANES) as u32;
                     for (best, sum) in best.iter_mut().zip(sums) {
-                        let score = half - simd.reduce_sum_f32s(*sum);
-                        if score < best.0 {
-                            *best = (score, self.first + (2 * c + j) as u32);
+                        S::as_mut_simd_f32s(&mut scores).0[0] = simd.sub_f32s(halves, sum);
+                        for (lane, score) in (0..).zip(&scores[..S::F32_LANES]) {
+                            if *score < best.0 {
+                                *best = (*score, first + lane);
+                            }
                         }
                     }
-                }
-            }
-        }
-        for (point, best) in groups.remainder().chunks_exact(n).zip(places.into_remainder()) {
-            let point = S::as_simd_f32s(point).0;
-            for (c, (centroid, half)) in self.centroids.chunks_exact(n).zip(self.half_squares).enumerate() {
-                let mut sum = simd.splat_f32s(0.0);
-                for (x, y) in point.iter().zip(S::as_simd_f32s(centroid).0) {
-                    sum = simd.mul_add_f32s(*x, *y, sum);
-                }
-                let score = half - simd.reduce_sum_f32s(sum);
-                if score < best.0 {
-                    *best = (score, self.first + c as u32);
                 }
             }
         }
@@ -180,9 +172,7 @@ mod tests {
             if k > 3 {
                 centroids.copy_within(0..dim, 2 * dim);
             }
-            let halves: Vec<f32> =
-                centroids.chunks(dim).map(|c| 0.5 * c.iter().map(|x| x * x).sum::<f32>()).collect();
-            let found = nearest_centroids(&points, &centroids, &halves, dim);
+            let found = SideBySide::new(&centroids, dim).nearest(&points);
             for (point, found) in points.chunks(dim).zip(found) {
                 let mut gaps = vec![0.0; k];
                 sq_distances_into(point, &centroids, &mut gaps);

@@ -2,35 +2,31 @@
 
 use rayon::prelude::*;
 
-use super::kernels::nearest_centroids;
+use super::kernels::SideBySide;
 
 /// Points assigned by one thread at a time.
-const BLOCK: usize = 512;
+const BLOCK: usize = 256;
 
 /// Rounds of Lloyd's algorithm: more gain nothing in recall.
 const ROUNDS: usize = 8;
 
-/// Cell centres and what is needed to find the nearest.
+/// Cell centres.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Centroids {
     pub(crate) rows: Vec<f32>,
-    half_squares: Vec<f32>,
     /// Length of a row.
     n: usize,
 }
 
 impl Centroids {
     pub(crate) fn new(rows: Vec<f32>, n: usize) -> Self {
-        let half_squares = rows.chunks_exact(n).map(|c| 0.5 * c.iter().map(|x| x * x).sum::<f32>()).collect();
-        Self { rows, half_squares, n }
+        Self { rows, n }
     }
 
     /// The nearest centre of each point, in parallel.
     pub(crate) fn assign(&self, points: &[f32]) -> Vec<u32> {
-        points
-            .par_chunks(BLOCK * self.n)
-            .flat_map_iter(|part| nearest_centroids(part, &self.rows, &self.half_squares, self.n))
-            .collect()
+        let centres = SideBySide::new(&self.rows, self.n);
+        points.par_chunks(BLOCK * self.n).flat_map_iter(|part| centres.nearest(part)).collect()
     }
 
     /// `k` centres of the `n`-long `points` by Lloyd's algorithm, from points at even steps of their order.

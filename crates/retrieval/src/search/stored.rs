@@ -14,11 +14,12 @@ use crate::index::codec::{Floats, encode};
 use crate::index::tables::{ENTRIES, FUSED, SEARCH, Snapshot, Store};
 use crate::index::{Index, IndexError, ShapeEntry};
 
-/// Bytes of vectors in one value.
-const PART: usize = 1 << 20;
+/// Bytes of vectors in one value: with all that comes with them, just below a power of two, to which redb
+/// rounds.
+const PART: usize = 62 << 10;
 
 /// Names in one value.
-const NAMES: usize = 1024;
+const NAMES: usize = 128;
 
 /// Kinds of parts: the first number of a key. The others are the cell and its part, or the part and zero.
 const ABOUT: u8 = 0;
@@ -247,6 +248,6 @@ mod tests {
     #[test]
     fn parts_hold_at_least_one_row() {
         assert_eq!(rows_in_part(1 << 20), 1);
-        assert_eq!(rows_in_part(128), 2048);
+        assert_eq!(rows_in_part(128), 124);
     }
 }

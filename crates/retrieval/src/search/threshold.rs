@@ -7,15 +7,34 @@ use super::plan::CHUNK;
 use crate::UnknownThreshold;
 
 /// Shapes that are asked about, each as if it was new.
-const ASKED: usize = 1024;
+const ASKED: usize = 512;
 
 /// The threshold that labelled vectors suggest, see [`UnknownThreshold::of`]; `rows` are `n` long, one for
 /// each of `classes`.
 pub(super) fn threshold(rows: &[f32], n: usize, classes: &[u32]) -> Option<UnknownThreshold> {
     let asked = ASKED.min(classes.len());
     let asked: Vec<usize> = (0..asked).map(|i| (2 * i + 1) * classes.len() / (2 * asked)).collect();
-    let nearest: Vec<[f32; 2]> =
-        asked.par_iter().map(|&query| own_and_foreign(rows, n, classes, query)).collect();
+    let start = || vec![[f32::INFINITY; 2]; asked.len()];
+    let least = |a: [f32; 2], b: [f32; 2]| [a[0].min(b[0]), a[1].min(b[1])];
+    // All that are asked about meet a few rows before the next ones are read.
+    let nearest = rows
+        .par_chunks(CHUNK * n)
+        .zip(classes.par_chunks(CHUNK))
+        .enumerate()
+        .fold(start, |mut nearest, (i, (part, of))| {
+            for (nearest, &query) in nearest.iter_mut().zip(&asked) {
+                let found = own_and_foreign(
+                    &rows[query * n..][..n],
+                    part,
+                    of,
+                    classes[query],
+                    query.checked_sub(i * CHUNK),
+                );
+                *nearest = least(*nearest, found);
+            }
+            nearest
+        })
+        .reduce(start, |a, b| a.into_iter().zip(b).map(|(a, b)| least(a, b)).collect());
     let [own, foreign] = [0, 1].map(|i| {
         let found = nearest.iter().map(|pair| f64::from(pair[i]).sqrt());
         found.filter(|distance| distance.is_finite()).collect::<Vec<_>>()
@@ -23,19 +42,23 @@ pub(super) fn threshold(rows: &[f32], n: usize, classes: &[u32]) -> Option<Unkno
     UnknownThreshold::of(&own, &foreign)
 }
 
-/// Squared distances to the nearest other shape of the own class and of any other.
-fn own_and_foreign(rows: &[f32], n: usize, classes: &[u32], query: usize) -> [f32; 2] {
+/// Squared distances from `query`, of the class `own`, to the nearest of `rows` of that class and of any other;
+/// row `itself` is not counted.
+fn own_and_foreign(
+    query: &[f32],
+    rows: &[f32],
+    classes: &[u32],
+    own: u32,
+    itself: Option<usize>,
+) -> [f32; 2] {
     let mut nearest = [f32::INFINITY; 2];
     let mut sqs = [0.0; CHUNK];
-    let row = &rows[query * n..][..n];
-    for (i, (rows, of)) in rows.chunks(CHUNK * n).zip(classes.chunks(CHUNK)).enumerate() {
-        let sqs = &mut sqs[..of.len()];
-        sq_distances_into(row, rows, sqs);
-        for (j, (sq, class)) in sqs.iter().zip(of).enumerate() {
-            let place = &mut nearest[usize::from(*class != classes[query])];
-            if i * CHUNK + j != query {
-                *place = place.min(*sq);
-            }
+    let sqs = &mut sqs[..classes.len()];
+    sq_distances_into(query, rows, sqs);
+    for (i, (sq, class)) in sqs.iter().zip(classes).enumerate() {
+        let place = &mut nearest[usize::from(*class != own)];
+        if *sq < *place && itself != Some(i) {
+            *place = *sq;
         }
     }
     nearest
