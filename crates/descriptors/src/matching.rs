@@ -25,6 +25,8 @@ pub enum Reflections {
     Allow,
     /// Only proper motions.
     Forbid,
+    /// Only motions that reflect.
+    Require,
 }
 
 /// Options of [`match_forms`].
@@ -198,7 +200,12 @@ fn hypotheses(a: &PreparedForm, b: &PreparedForm, options: &MatchOptions) -> Vec
                 matrix[(i, j)] = if signs >> i & 1 == 0 { 1.0 } else { -1.0 };
             }
             let motion = Alignment::about_origin(matrix);
-            if !(motion.reflected && options.reflections == Reflections::Forbid) {
+            let allowed = match options.reflections {
+                Reflections::Allow => true,
+                Reflections::Forbid => !motion.reflected,
+                Reflections::Require => motion.reflected,
+            };
+            if allowed {
                 motions.push(motion);
             }
         }
@@ -344,6 +351,9 @@ mod tests {
         let options = MatchOptions { reflections: Reflections::Forbid, ..Default::default() };
         let found = match_forms(&prepared(&points), &prepared(&turned(&points, -1.0)), &options).unwrap();
         assert!(found.distance > 0.05 && !found.alignment.reflected);
+        let options = MatchOptions { reflections: Reflections::Require, ..Default::default() };
+        let same = match_forms(&prepared(&points), &prepared(&points), &options).unwrap();
+        assert!(same.distance > 0.05 && same.alignment.reflected);
     }
 
     #[test]

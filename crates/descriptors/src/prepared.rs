@@ -103,6 +103,14 @@ impl PreparedForm {
         &self.to_principal
     }
 
+    /// Which point of the form is nearest to `query`, in the form's own coordinates, and how far it is.
+    #[must_use]
+    pub fn nearest_to(&self, query: &Point3<f64>) -> (usize, f64) {
+        let query: [f64; 3] = self.to_principal.apply(query).coords.into();
+        let hit = self.tree.query(&query).nearest_one::<SquaredEuclidean<f64>>().execute();
+        (hit.item as usize, hit.distance.sqrt())
+    }
+
     /// What their root mean square distance is at least, however the forms are aligned.
     #[must_use]
     pub fn least_distance(&self, other: &Self) -> f64 {

@@ -3,10 +3,12 @@
 use descriptors::{
     Alignment, CanonicalForm, MatchOptions, Normalization, PreparedForm, Reflections, match_forms,
 };
+use nalgebra::Point3;
 use serde::Serialize;
 
-use crate::PipelineError;
 use crate::forms::MATCHED_POINTS;
+use crate::handedness::{Handedness, OutwardForm, handedness};
+use crate::{PipelineError, Surface};
 
 /// Forms of unit area closer than this are called the same shape. Between poses of the cats, centaurs
 /// and davids of TOSCA the distance is mostly below 0.07, between the animals above 0.1.
@@ -14,9 +16,6 @@ const SAME: f64 = 0.08;
 
 /// Sizes that differ by less than this factor are called equal.
 const SAME_SIZE: f64 = 1.05;
-
-/// A proper motion this much worse than the best one means that a mirror was needed.
-const MIRROR_NEEDED: f64 = 1.5;
 
 /// How two shapes resemble each other, and how far apart they are.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -35,6 +34,9 @@ pub struct Comparison {
     pub reflected: bool,
     /// `normalized_distance` when only proper motions are allowed.
     pub unreflected_distance: f64,
+    /// Whether one is the mirror image of the other. Forms cannot tell: distances on a surface and on its mirror image
+    /// are the same, and the sign of every axis is left to chance. It takes the two surfaces.
+    pub handedness: Handedness,
     /// Rows of the matrix that turns the first form onto the second.
     pub rotation: [[f64; 3]; 3],
     /// What is added after the rotation, in mesh units.
@@ -58,8 +60,8 @@ pub enum MatchKind {
 }
 
 impl MatchKind {
-    fn new(normalized: f64, unreflected: f64, scale: f64) -> Self {
-        let mirrored = unreflected > MIRROR_NEEDED * normalized && unreflected > 0.5 * SAME;
+    fn new(normalized: f64, handedness: Handedness, scale: f64) -> Self {
+        let mirrored = handedness == Handedness::Mirrored;
         let resized = scale.max(1.0 / scale) > SAME_SIZE;
         match (normalized < SAME, mirrored, resized) {
             (false, _, _) => Self::Different,
@@ -71,7 +73,8 @@ impl MatchKind {
     }
 }
 
-/// Aligns two canonical forms, as they are and at unit spread.
+/// Aligns two canonical forms, as they are and at unit area. They do not tell a shape from its mirror image: see
+/// [`compare_surfaces`].
 ///
 /// # Errors
 /// [`PipelineError::Descriptor`].
@@ -95,28 +98,158 @@ pub fn compare_forms(
     };
     let Alignment { rotation, translation, reflected } = raw.alignment;
     Ok(Comparison {
-        kind: MatchKind::new(normalized, unreflected, scale),
+        kind: MatchKind::new(normalized, Handedness::Unknown, scale),
         distance: raw.distance,
         normalized_distance: normalized,
         same_below: SAME,
         scale,
         reflected,
         unreflected_distance: unreflected,
+        handedness: Handedness::Unknown,
         rotation: [0, 1, 2].map(|i| [0, 1, 2].map(|j| rotation[(i, j)])),
         translation: translation.into(),
     })
 }
 
+/// Whether two meshes are the same triangles.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Triangulation {
+    /// The same faces over the same vertex numbers: one mesh in two poses.
+    Same,
+    /// Others, or others' numbers: at least one of the two was meshed anew.
+    Other,
+}
+
+/// What two surfaces are to each other, beyond what their forms say.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SurfaceComparison {
+    /// What the forms say, and the handedness.
+    pub comparison: Comparison,
+    /// Whether the meshes are one.
+    pub triangulation: Triangulation,
+    /// For every vertex of the first surface how far its point of the form is from the second form, once aligned
+    /// and of the first one's size, in units of the first mesh.
+    pub residuals: Vec<f64>,
+}
+
+/// Compares two surfaces by their forms, which must be of all their vertices: what kind of match they are, and where
+/// they differ.
+///
+/// Which of two mirror images a surface is, its distances do not say. It is found by carrying the outside of
+/// the first surface over to the second by the nearest points of the aligned forms: a map that fits and turns
+/// inside out means a mirror image. That takes surfaces with an inside, and bodies whose left differs from
+/// their right.
+///
+/// # Errors
+/// [`PipelineError::Descriptor`].
+pub fn compare_surfaces(
+    [a, b]: [&Surface; 2],
+    [form_a, form_b]: [&CanonicalForm; 2],
+    options: &MatchOptions,
+) -> Result<SurfaceComparison, PipelineError> {
+    let mut comparison = compare_forms(form_a, form_b, options)?;
+    let [unit_a, unit_b] = [form_a, form_b].map(|form| form.normalized(Normalization::UnitArea));
+    let (from, onto) =
+        (PreparedForm::new(&unit_a, MATCHED_POINTS)?, PreparedForm::new(&unit_b, MATCHED_POINTS)?);
+    let matched = |reflections| {
+        let found = match_forms(&from, &onto, &MatchOptions { reflections, ..options.clone() })?;
+        Ok::<_, PipelineError>((found.distance, found.alignment))
+    };
+    let found = [matched(Reflections::Forbid)?, matched(Reflections::Require)?];
+    let outward = [(&unit_a, a), (&unit_b, b)].map(|(form, s)| OutwardForm::new(form, s.mesh()));
+    if let ([Some(a), Some(b)], true) = (&outward, comparison.normalized_distance < SAME) {
+        comparison.handedness = handedness(a, b, &onto, found);
+        comparison.kind =
+            MatchKind::new(comparison.normalized_distance, comparison.handedness, comparison.scale);
+    }
+    let best = if found[1].0 < found[0].0 { found[1].1 } else { found[0].1 };
+    let size = form_a.area().map_or(1.0, f64::sqrt);
+    let residual = |p: &Point3<f64>| onto.nearest_to(&best.apply(p)).1 * size;
+    let same = a.input_faces == b.input_faces && a.n_input_vertices() == b.n_input_vertices();
+    Ok(SurfaceComparison {
+        comparison,
+        triangulation: if same { Triangulation::Same } else { Triangulation::Other },
+        residuals: unit_a.points().iter().map(residual).collect(),
+    })
+}
+
 #[cfg(test)]
 mod tests {
+    use mesh::{RepairOptions, TriMesh, shapes};
+
     use super::*;
+    use crate::{EmbedOptions, StressChoice, embed};
 
     #[test]
-    fn kinds_follow_distance_size_and_chirality() {
-        assert_eq!(MatchKind::new(0.2, 0.2, 1.0), MatchKind::Different);
-        assert_eq!(MatchKind::new(0.01, 0.012, 1.0), MatchKind::Same);
-        assert_eq!(MatchKind::new(0.01, 0.012, 0.5), MatchKind::Scaled);
-        assert_eq!(MatchKind::new(0.01, 0.2, 1.02), MatchKind::Mirrored);
-        assert_eq!(MatchKind::new(0.01, 0.2, 2.0), MatchKind::MirroredAndScaled);
+    fn kinds_follow_distance_size_and_handedness() {
+        let kind = |normalized, handedness, scale| MatchKind::new(normalized, handedness, scale);
+        assert_eq!(kind(0.2, Handedness::Mirrored, 1.0), MatchKind::Different);
+        for unclear in [Handedness::Same, Handedness::Either, Handedness::Unknown] {
+            assert_eq!(kind(0.01, unclear, 1.0), MatchKind::Same);
+            assert_eq!(kind(0.01, unclear, 0.5), MatchKind::Scaled);
+        }
+        assert_eq!(kind(0.01, Handedness::Mirrored, 1.02), MatchKind::Mirrored);
+        assert_eq!(kind(0.01, Handedness::Mirrored, 2.0), MatchKind::MirroredAndScaled);
+    }
+
+    /// A ball with arms of these lengths towards the corners of a tetrahedron: one hand, or the other.
+    fn four_arms(lengths: [f64; 4]) -> TriMesh {
+        let corners = [[1.0, 1.0, 1.0], [1.0, -1.0, -1.0], [-1.0, 1.0, -1.0], [-1.0, -1.0, 1.0]];
+        let mut mesh = shapes::icosphere(4);
+        for p in &mut mesh.positions {
+            let direction = p.coords;
+            for (corner, length) in corners.iter().zip(lengths) {
+                let towards = direction.dot(&nalgebra::Vector3::from(*corner)) / 3f64.sqrt();
+                p.coords += direction * length * (-(1.0 - towards) * 12.0).exp();
+            }
+        }
+        mesh
+    }
+
+    fn compared(a: &TriMesh, b: &TriMesh) -> SurfaceComparison {
+        let options = EmbedOptions { stress: StressChoice::Skip, ..Default::default() };
+        let [a, b] = [a, b].map(|mesh| {
+            let surface = Surface::new(mesh, &RepairOptions::default()).unwrap();
+            let form = embed(&surface, &options, &()).unwrap().form(&surface).unwrap();
+            (surface, form)
+        });
+        compare_surfaces([&a.0, &b.0], [&a.1, &b.1], &MatchOptions::default()).unwrap()
+    }
+
+    #[test]
+    fn mirror_images_are_told_from_shapes_and_sizes() {
+        let hand = four_arms([1.0, 1.7, 2.6, 3.5]);
+        // Reflected as by a mirror: positions, and faces so that outside stays outside.
+        let mut other = hand.clone();
+        other.positions.iter_mut().for_each(|p| p.x = -p.x);
+        let inside_out = other.clone();
+        other.faces.iter_mut().for_each(|face| face.swap(1, 2));
+        let mut large = other.clone();
+        large.positions.iter_mut().for_each(|p| p.coords *= 3.0);
+        let found = compared(&hand, &hand);
+        assert_eq!((found.comparison.kind, found.triangulation), (MatchKind::Same, Triangulation::Same));
+        assert_eq!(found.comparison.handedness, Handedness::Same);
+        assert!(found.residuals.iter().all(|r| *r < 1e-9));
+        for mirrored in [&other, &inside_out] {
+            let found = compared(&hand, mirrored);
+            assert_eq!(found.comparison.kind, MatchKind::Mirrored, "{:?}", found.comparison);
+        }
+        let found = compared(&hand, &large);
+        assert_eq!(found.comparison.kind, MatchKind::MirroredAndScaled);
+        assert_eq!(found.triangulation, Triangulation::Other, "faces run the other way round");
+        let ball = shapes::icosphere(3);
+        assert_eq!(compared(&ball, &ball).comparison.handedness, Handedness::Either);
+        let sheet = shapes::grid(12, 9, 0.1);
+        assert_eq!(compared(&sheet, &sheet).comparison.handedness, Handedness::Unknown);
+    }
+
+    #[test]
+    fn residuals_are_largest_where_a_shape_was_changed() {
+        let (whole, changed) = (four_arms([1.0, 1.7, 2.6, 3.5]), four_arms([1.0, 1.7, 2.6, 3.1]));
+        let found = compared(&whole, &changed);
+        let worst =
+            (0..found.residuals.len()).max_by(|&i, &j| found.residuals[i].total_cmp(&found.residuals[j]));
+        assert!(whole.positions[worst.unwrap()].z > 2.0, "the tip of the long arm");
     }
 }

@@ -14,6 +14,7 @@ mod describe;
 mod embed;
 mod error;
 mod forms;
+mod handedness;
 mod index;
 mod methods;
 mod observer;
@@ -27,7 +28,7 @@ mod stress;
 mod surface;
 
 pub use all_pairs::{AllPairs, Asymmetry};
-pub use compare::{Comparison, MatchKind, compare_forms};
+pub use compare::{Comparison, MatchKind, SurfaceComparison, Triangulation, compare_forms, compare_surfaces};
 pub use dataset::{LabelFile, ShapeFile, label_of, list_shapes};
 pub use describe::{
     DESCRIPTION_VERSION, DescribeOptions, ShapeDescription, describe, describe_surface, prepare_form,
@@ -35,6 +36,7 @@ pub use describe::{
 pub use embed::{Embedded, embed};
 pub use error::PipelineError;
 pub use forms::{PreparedForms, embedded_distances, form_distances, map_of};
+pub use handedness::Handedness;
 pub use index::{
     BuildOptions, BuildReport, Explain, Failure, Inputs, Measure, MergeReport, Prediction, SearchOptions,
     SearchReport, SearchResult, SearchSeconds, ShapeSearch, Shard, add_to_index, build_index, evaluate_index,

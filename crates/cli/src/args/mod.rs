@@ -132,6 +132,9 @@ pub(crate) struct CompareArgs {
     /// Distance between aligned forms
     #[arg(long, value_enum, default_value_t = DistanceName::NnRms)]
     pub(crate) distance: DistanceName,
+    /// Write the first mesh coloured by how far each vertex is from the second shape, once aligned; .ply
+    #[arg(long, value_name = "OUT.ply")]
+    pub(crate) residual_mesh: Option<PathBuf>,
     /// Exit with 1 when the distance at equal size is larger than this
     #[arg(long, value_name = "D")]
     pub(crate) threshold: Option<f64>,

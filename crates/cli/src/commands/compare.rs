@@ -4,12 +4,15 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::{Result, bail};
-use pipeline::{Comparison, FormDistance, MatchKind, MatchOptions, StressChoice, compare_forms, embed};
+use pipeline::{
+    Comparison, FormDistance, Handedness, MatchKind, MatchOptions, StressChoice, Surface, SurfaceComparison,
+    Triangulation, compare_surfaces, embed,
+};
 use serde::Serialize;
 
 use super::{named, read_surface};
 use crate::args::{Common, CompareArgs, DistanceName};
-use crate::output::{facts, print, print_json};
+use crate::output::{check_folder, extension, facts, print, print_json};
 use terminal::Bars;
 
 #[derive(Serialize)]
@@ -18,7 +21,30 @@ struct CompareJson {
     b: PathBuf,
     #[serde(flatten)]
     comparison: Comparison,
+    triangulation: Triangulation,
+    residual: ResidualJson,
     threshold: Option<f64>,
+}
+
+/// How far the first shape is from the second, over its vertices, in units of the first mesh.
+#[derive(Serialize)]
+struct ResidualJson {
+    median: f64,
+    max: f64,
+    /// Vertex of the input where it is largest.
+    max_vertex: u32,
+    output: Option<PathBuf>,
+}
+
+impl ResidualJson {
+    fn new(surface: &Surface, residuals: &[f64], output: Option<PathBuf>) -> Self {
+        let mut order: Vec<usize> = (0..residuals.len()).collect();
+        order.sort_by(|&i, &j| residuals[i].total_cmp(&residuals[j]));
+        let at =
+            |i: Option<&usize>| i.map_or((0.0, 0), |&i| (residuals[i], surface.input_vertex(i.into()).0));
+        let (max, max_vertex) = at(order.last());
+        Self { median: at(order.get(order.len() / 2)).0, max, max_vertex, output }
+    }
 }
 
 /// Embeds, aligns and compares two meshes.
@@ -27,12 +53,19 @@ pub(crate) fn compare(args: &CompareArgs, common: &Common) -> Result<ExitCode> {
         bail!("forms are compared in 3 dimensions; leave out --dim {}", args.embedding.dim);
     }
     let options = args.embedding.options(common, StressChoice::Skip)?;
+    if let Some(path) = &args.residual_mesh {
+        if extension(path) != "ply" {
+            bail!("residuals are written as a coloured .ply; {} is none", path.display());
+        }
+        check_folder(path)?;
+    }
     let bars = Bars::new(common.quiet);
     let form = |path: &Path| {
         let surface = read_surface(path, &args.embedding.repair)?;
         let embedded = embed(&surface, &options, &bars).map_err(|fault| named(path, fault))?;
         bars.finish();
-        embedded.form(&surface).map_err(|fault| named(path, fault))
+        let form = embedded.form(&surface).map_err(|fault| named(path, fault))?;
+        anyhow::Ok((surface, form))
     };
     let matching = MatchOptions {
         distance: match args.distance {
@@ -41,9 +74,22 @@ pub(crate) fn compare(args: &CompareArgs, common: &Common) -> Result<ExitCode> {
         },
         ..MatchOptions::default()
     };
-    let comparison = compare_forms(&form(&args.a)?, &form(&args.b)?, &matching)?;
+    let ((a, form_a), (b, form_b)) = (form(&args.a)?, form(&args.b)?);
+    let SurfaceComparison { comparison, triangulation, residuals } =
+        compare_surfaces([&a, &b], [&form_a, &form_b], &matching)?;
+    if let Some(path) = &args.residual_mesh {
+        mesh::io::write_scalar_field(path, a.mesh(), &residuals, "residual")?;
+    }
+    let residual = ResidualJson::new(&a, &residuals, args.residual_mesh.clone());
     let too_far = args.threshold.is_some_and(|limit| comparison.normalized_distance > limit);
-    let json = CompareJson { a: args.a.clone(), b: args.b.clone(), comparison, threshold: args.threshold };
+    let json = CompareJson {
+        a: args.a.clone(),
+        b: args.b.clone(),
+        comparison,
+        triangulation,
+        residual,
+        threshold: args.threshold,
+    };
     if common.json {
         print_json(&json)?
     } else {
@@ -61,12 +107,28 @@ fn table(json: &CompareJson) -> String {
         MatchKind::MirroredAndScaled => format!("mirror images up to pose, scaled by {:.3}", c.scale),
         MatchKind::Different => "different shapes".to_owned(),
     };
+    let handedness = match c.handedness {
+        Handedness::Same => "no",
+        Handedness::Mirrored => "yes",
+        Handedness::Either => "both fit: left and right are alike",
+        Handedness::Unknown => "not known: no inside, or no match",
+    };
+    let triangulation = match json.triangulation {
+        Triangulation::Same => "the same faces",
+        Triangulation::Other => "other faces: meshed anew",
+    };
+    let r = &json.residual;
+    let residual =
+        format!("{:.6} median, {:.6} at most (vertex {}), mesh units", r.median, r.max, r.max_vertex);
     let mut rows = vec![
         ("match", kind),
         ("distance", format!("{:.6} mesh units", c.distance)),
         ("at equal size", format!("{:.6} (the same shape below {})", c.normalized_distance, c.same_below)),
         ("size, second over first", format!("{:.6}", c.scale)),
-        ("reflected", if c.reflected { "yes" } else { "no" }.to_owned()),
+        ("mirror image", handedness.to_owned()),
+        ("triangulation", triangulation.to_owned()),
+        ("residual", residual),
+        ("form reflected", if c.reflected { "yes" } else { "no" }.to_owned()),
     ];
     for (name, row) in ["rotation", "", ""].into_iter().zip(c.rotation) {
         rows.push((name, row.map(|x| format!("{x:>10.6}")).join(" ")));

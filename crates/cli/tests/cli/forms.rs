@@ -131,3 +131,20 @@ fn bytes_do_not_depend_on_threads() {
         ["1", "2"].map(|threads| place.done(&["compare", "ring.off", "ring.off", "--threads", threads]).out);
     assert_eq!(one, two);
 }
+
+#[test]
+fn comparisons_say_where_shapes_differ() {
+    let place = Workplace::new();
+    place.add("ring.off", &ring());
+    let mut bumpy = ring();
+    bumpy.positions[7].coords *= 1.3;
+    place.add("bumpy.off", &bumpy);
+    let json = place.json(&["compare", "ring.off", "bumpy.off", "--residual-mesh", "r.ply"]);
+    assert_eq!((&json["triangulation"], &json["residual"]["output"]), (&"same".into(), &"r.ply".into()));
+    assert!(json["residual"]["max"].as_f64().unwrap() > 0.0 && json["handedness"].is_string());
+    assert_eq!(io::read(&place.path("r.ply")).unwrap(), ring());
+    place.refused(
+        &["compare", "ring.off", "bumpy.off", "--residual-mesh", "r.obj"],
+        &["coloured .ply", "r.obj"],
+    );
+}
