@@ -72,7 +72,7 @@ deny: ## Check licences, sources and duplicate versions with cargo-deny (install
 	cargo-deny --all-features check licenses bans sources
 
 ci: lint test ## What CI runs: lint, tests, a small experiment from end to end
-	$(CARGO) run --release --locked -p experiments -- run figure1 figure4 --vertices 1000 --quiet --output target/ci-out
+	$(CARGO) run --locked -p experiments -- run figure1 figure4 --vertices 1000 --quiet --output target/ci-out
 	test -s target/ci-out/report.html
 	@echo "ci: all good"
 
