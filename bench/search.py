@@ -140,6 +140,10 @@ class Peer:
     def memory(self):
         return resident(self.process.pid)
 
+    def end(self):
+        self.process.terminate()
+        self.process.join()
+
 
 class Ours:
     """`vectors serve`, asked for answers from memory, from the file, or by the exact scan."""
@@ -158,6 +162,10 @@ class Ours:
 
     def memory(self):
         return resident(self.process.pid)
+
+    def end(self):
+        self.process.stdin.close()
+        self.process.wait()
 
 
 def recall(found, truth):
@@ -221,6 +229,8 @@ def measure(program, folder, n, dim, width, n_queries, rounds):
     note = (f"\nOurs promises a recall of {ours.ready['recall']:.4f}, found by trial while building, and measures {measured:,.0f} "
             f"signatures a query. Opening the file takes {1e3 * ours.ready['opened']:.1f} ms, reading it into memory "
             f"{ours.ready['loaded']:.2f} s; building takes {built['megabytes']} MB.")
+    for process in [ours, *peers.values()]:
+        process.end()
     return "\n".join(lines) + "\n" + note
 
 

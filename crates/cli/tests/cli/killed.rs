@@ -4,6 +4,8 @@ use std::fs;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
+use retrieval::{Index, IndexWriter, Job, work_path};
+
 use crate::index::body;
 use crate::support::{Workplace, program};
 
@@ -19,17 +21,20 @@ fn build(output: &str) -> [&str; 9] {
     ["index", "build", "meshes", "-n", "20", "--threads", "1", "-o", output]
 }
 
-/// How many shapes are in the unfinished work: the next run finds them unchanged.
+/// How many shapes are in the unfinished work of an index like `whole`.
 fn kept(place: &Workplace, index: &str) -> usize {
-    // A copy, so that looking changes nothing.
     let work = place.path(&format!("{index}.work"));
     if !work.exists() {
         return 0;
     }
-    fs::copy(work, place.path("look.work")).unwrap();
-    let json = place.json(&build("look"));
-    fs::remove_file(place.path("look")).unwrap();
-    json["unchanged"].as_u64().unwrap() as usize
+    // A copy, so that looking changes nothing.
+    let look = place.path("look");
+    fs::copy(work, work_path(&look)).unwrap();
+    let options = Index::open(&place.path("whole")).unwrap().options().to_owned();
+    let writer = IndexWriter::open(&look, Job::Build, Some(&options)).unwrap();
+    let n = writer.len().unwrap();
+    writer.discard().unwrap();
+    n
 }
 
 /// `CANONFORM_KILLS=50 cargo test -p cli killed` kills more often.
