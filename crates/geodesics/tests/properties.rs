@@ -206,6 +206,8 @@ proptest! {
     #[test]
     fn paths_are_between_the_exact_distance_and_that_along_edges(mesh in prop_oneof![soup(), tame()]) {
         let surface = IntrinsicMesh::from_mesh(&mesh);
+        // Exact distances may miss ways through faces with a side of no length, which repair drops.
+        prop_assume!(surface.edge_lengths().iter().all(|length| *length > 0.0));
         let open = left_open(&surface);
         for source in sources(&mesh) {
             let Found { exact, marched, along_edges } = found(&surface, source);

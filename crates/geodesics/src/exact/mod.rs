@@ -61,7 +61,8 @@ use wave::Scratch;
 /// * **Any mesh.** At an edge with more than two faces windows go into all the others; where faces
 ///   do not form one fan around a vertex, at the ends of links and of edges without length, paths
 ///   bend in any direction. Orientation does not matter. Of faces with the same vertices one is
-///   enough. A face without area is blown up to `1e-12` of its longest edge.
+///   enough. A face without area is blown up to `1e-12` of its longest edge. Of faces with a side of
+///   no length, which repair drops, several in a row may hide a way through them.
 /// * **Guarantees.** Every distance is the length of a path, up to rounding; symmetric, and never
 ///   longer than along edges. Infinite where nothing leads. It always ends: the number of windows
 ///   is bounded, by a limit that no known surface comes near.
