@@ -119,23 +119,15 @@ impl FastMarching {
         Self { spokes, report, update: options.update, scratch: Pool::default() }
     }
 
-    fn march<R>(
-        &self,
-        sources: &[Source],
-        stops: impl Fn(u32, f64) -> Stop,
-        read: impl FnOnce(&March) -> R,
-    ) -> R {
-        self.scratch.with(|march| {
-            march.reset(self.n_vertices());
-            for (vertex, distance) in sources.iter().flat_map(Source::reach) {
-                march.start(self.spokes.rank[vertex.index()], *distance);
-            }
-            match self.update {
-                Update::PointSource => march.run(&self.spokes, stops, Sector::point_source),
-                Update::Planar => march.run(&self.spokes, stops, Sector::planar),
-            }
-            read(march)
-        })
+    fn run(&self, march: &mut March, sources: &[Source], stops: impl Fn(u32, f64) -> Stop) {
+        march.reset(self.n_vertices());
+        for (vertex, distance) in sources.iter().flat_map(Source::reach) {
+            march.start(self.spokes.rank[vertex.index()], *distance);
+        }
+        match self.update {
+            Update::PointSource => march.run(&self.spokes, stops, Sector::point_source),
+            Update::Planar => march.run(&self.spokes, stops, Sector::planar),
+        }
     }
 
     /// What was done about obtuse corners.
@@ -179,7 +171,8 @@ impl DistanceSolver for FastMarching {
     fn solve_into(&self, sources: &[Source], max_distance: f64, out: &mut [f64]) {
         assert_eq!(out.len(), self.n_vertices(), "one distance per vertex");
         let stops = |_, distance| if distance > max_distance { Stop::Everywhere } else { Stop::No };
-        self.march(sources, stops, |march| {
+        self.scratch.with(|march| {
+            self.run(march, sources, stops);
             for (internal, v) in self.spokes.order.iter().enumerate() {
                 out[*v as usize] = within(march.distance(internal as u32), max_distance);
             }
@@ -194,18 +187,16 @@ impl DistanceSolver for FastMarching {
 impl PrunedSolver for FastMarching {
     fn lower(&self, source: VertexId, nearest: &mut [f64]) {
         assert_eq!(nearest.len(), self.n_vertices(), "one distance per vertex");
-        let stops = |vertex: u32, distance: f64| {
-            let excess = distance - nearest[self.spokes.order[vertex as usize] as usize];
-            let is_far = excess > 0.0 && excess > BORDER * self.spokes.longest(vertex);
-            if is_far { Stop::Here } else { Stop::No }
-        };
-        let lowered = self.march(&[Source::vertex(source)], stops, |march| {
-            let internal = 0..self.n_vertices() as u32;
-            internal.map(|v| march.distance(v)).collect::<Vec<_>>()
+        self.scratch.with(|march| {
+            self.run(march, &[Source::vertex(source)], |vertex, distance| {
+                let excess = distance - nearest[self.spokes.order[vertex as usize] as usize];
+                let is_far = excess > 0.0 && excess > BORDER * self.spokes.longest(vertex);
+                if is_far { Stop::Here } else { Stop::No }
+            });
+            for (internal, v) in self.spokes.order.iter().enumerate() {
+                let known = &mut nearest[*v as usize];
+                *known = known.min(march.distance(internal as u32));
+            }
         });
-        for (distance, v) in lowered.into_iter().zip(&self.spokes.order) {
-            let known = &mut nearest[*v as usize];
-            *known = known.min(distance);
-        }
     }
 }
