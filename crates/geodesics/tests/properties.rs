@@ -90,22 +90,40 @@ fn sources(mesh: &TriMesh) -> impl Iterator<Item = VertexId> {
     (0..mesh.n_vertices()).step_by(3).map(VertexId::from)
 }
 
+fn from_everywhere(solver: &dyn DistanceSolver) -> Vec<Vec<f64>> {
+    (0..solver.n_vertices()).map(|v| solver.distances(VertexId::from(v))).collect()
+}
+
 fn euclid(mesh: &TriMesh, a: VertexId, b: usize) -> f64 {
     (mesh.positions[a.index()] - mesh.positions[b]).norm()
 }
 
-/// Distances from one source, by every method that must give some.
+/// The solvers that must all give some distance, prepared for one surface.
+struct Solvers {
+    exact: Exact,
+    marching: FastMarching,
+    along_edges: Dijkstra,
+}
+
+/// Distances from one source.
 struct Found {
     exact: Vec<f64>,
     marched: Vec<f64>,
     along_edges: Vec<f64>,
 }
 
-fn found(surface: &IntrinsicMesh, source: VertexId) -> Found {
-    Found {
-        exact: Exact::new(surface).distances(source),
-        marched: FastMarching::new(surface, Default::default()).distances(source),
-        along_edges: Dijkstra::new(surface).distances(source),
+impl Solvers {
+    fn new(surface: &IntrinsicMesh) -> Self {
+        let marching = FastMarching::new(surface, Default::default());
+        Self { exact: Exact::new(surface), marching, along_edges: Dijkstra::new(surface) }
+    }
+
+    fn from(&self, source: VertexId) -> Found {
+        Found {
+            exact: self.exact.distances(source),
+            marched: self.marching.distances(source),
+            along_edges: self.along_edges.distances(source),
+        }
     }
 }
 
@@ -122,8 +140,9 @@ fn assert_lipschitz(surface: &IntrinsicMesh, distances: &[f64], name: &str) {
 fn assert_laws(mesh: &TriMesh) {
     let surface = IntrinsicMesh::from_mesh(mesh);
     let (longest, open) = (longest_edge(&surface), left_open(&surface));
+    let solvers = Solvers::new(&surface);
     for source in sources(mesh) {
-        let Found { exact, marched, along_edges } = found(&surface, source);
+        let Found { exact, marched, along_edges } = solvers.from(source);
         assert_lipschitz(&surface, &exact, "exact");
         assert_lipschitz(&surface, &marched, "fast marching");
         assert_lipschitz(&surface, &along_edges, "Dijkstra");
@@ -159,9 +178,9 @@ proptest! {
     fn every_method_reaches_what_can_be_reached_and_nothing_is_nan(mesh in prop_oneof![soup(), tame()]) {
         let surface = IntrinsicMesh::from_mesh(&mesh);
         let heat = Method::Heat(HeatOptions::default());
+        let dijkstra = Dijkstra::new(&surface);
         for method in [Method::default(), Method::Exact, Method::Dijkstra, Method::BreadthFirst, heat] {
             let solver = method.prepare(&surface).unwrap();
-            let dijkstra = Dijkstra::new(&surface);
             for source in sources(&mesh) {
                 for (found, known) in solver.distances(source).iter().zip(dijkstra.distances(source)) {
                     prop_assert!(found.is_finite() == known.is_finite(), "{} {found} {known}", method.name());
@@ -175,8 +194,7 @@ proptest! {
     fn there_is_as_far_as_back(mesh in prop_oneof![soup(), tame()]) {
         let surface = IntrinsicMesh::from_mesh(&mesh);
         let (exact, open) = (Exact::new(&surface), left_open(&surface));
-        let all: Vec<Vec<f64>> =
-            (0..mesh.n_vertices()).map(|v| exact.distances(VertexId::from(v))).collect();
+        let all = from_everywhere(&exact);
         for (i, row) in all.iter().enumerate() {
             for (j, there) in row.iter().enumerate() {
                 let back = all[j][i];
@@ -188,12 +206,11 @@ proptest! {
     #[test]
     fn marching_stays_close_on_surfaces(mesh in tame()) {
         let surface = IntrinsicMesh::from_mesh(&mesh);
-        let marching = FastMarching::new(&surface, Default::default());
-        let all: Vec<Vec<f64>> =
-            (0..mesh.n_vertices()).map(|v| marching.distances(VertexId::from(v))).collect();
+        let (marching, exact) = (FastMarching::new(&surface, Default::default()), Exact::new(&surface));
+        let all = from_everywhere(&marching);
         let longest = longest_edge(&surface);
         for source in sources(&mesh) {
-            let exact = Exact::new(&surface).distances(source);
+            let exact = exact.distances(source);
             for (v, e) in exact.iter().enumerate().filter(|(_, e)| e.is_finite()) {
                 let [there, back] = [all[source.index()][v], all[v][source.index()]];
                 prop_assert!((there - back).abs() <= longest, "{there} {back} {longest}");
@@ -208,9 +225,9 @@ proptest! {
         let surface = IntrinsicMesh::from_mesh(&mesh);
         // Exact distances may miss ways through faces with a side of no length, which repair drops.
         prop_assume!(surface.edge_lengths().iter().all(|length| *length > 0.0));
-        let open = left_open(&surface);
+        let (open, solvers) = (left_open(&surface), Solvers::new(&surface));
         for source in sources(&mesh) {
-            let Found { exact, marched, along_edges } = found(&surface, source);
+            let Found { exact, marched, along_edges } = solvers.from(source);
             let sources = [Source::vertex(source)];
             for field in [&exact, &marched] {
                 let tracer = PathTracer::new(&surface, &sources, field);
