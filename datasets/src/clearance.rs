@@ -49,9 +49,8 @@ pub(crate) fn entanglement(posed: &PosedSkeleton<'_>) -> f64 {
 
 fn balls<'a>(posed: &'a PosedSkeleton<'_>, chain: usize) -> impl Iterator<Item = Ball> + 'a {
     let bones = &posed.skeleton().chains[chain];
-    let length = bones.arcs[bones.arcs.len() - 1];
     (0..N_BALLS).map(move |i| {
-        let arc = length * (i as f64 + 0.5) / N_BALLS as f64;
+        let arc = bones.length() * (i as f64 + 0.5) / N_BALLS as f64;
         let (rest, posed) = (axis_point(bones, arc), posed.axis_point(chain, arc));
         Ball { chain, arc, radius: radius(bones, arc), rest, posed }
     })
@@ -59,8 +58,7 @@ fn balls<'a>(posed: &'a PosedSkeleton<'_>, chain: usize) -> impl Iterator<Item =
 
 /// The radius of a chain at a length along its axis, between those of its nodes.
 fn radius(bones: &Chain, arc: f64) -> f64 {
-    let i = bones.arcs[1..bones.arcs.len() - 1].partition_point(|&a| a <= arc);
-    let t = (arc - bones.arcs[i]) / (bones.arcs[i + 1] - bones.arcs[i]);
+    let (i, t) = bones.bone_at(arc);
     bones.nodes[i].radius + (bones.nodes[i + 1].radius - bones.nodes[i].radius) * t
 }
 

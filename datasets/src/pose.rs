@@ -120,7 +120,7 @@ impl<'a> PosedSkeleton<'a> {
         let mut motions: Vec<Vec<Motion>> = Vec::with_capacity(skeleton.chains.len());
         for (chain, turns) in skeleton.chains.iter().zip(&pose.turns) {
             let base = match chain.parent {
-                Some((parent, arc)) => interpolate(&motions[parent], arc / length(&skeleton.chains[parent])),
+                Some((parent, arc)) => interpolate(&motions[parent], arc / skeleton.chains[parent].length()),
                 None => {
                     let rotation = rotation(pose.root.x, pose.root.y, pose.root.z);
                     let pivot = chain.nodes[0].at.coords;
@@ -140,7 +140,7 @@ impl<'a> PosedSkeleton<'a> {
     /// Where the point of a chain's axis at length `arc` goes.
     pub(crate) fn axis_point(&self, chain: usize, arc: f64) -> Point3<f64> {
         let bones = &self.skeleton.chains[chain];
-        interpolate(&self.motions[chain], arc / length(bones)).apply(axis_point(bones, arc))
+        interpolate(&self.motions[chain], arc / bones.length()).apply(axis_point(bones, arc))
     }
 
     /// Where the rest-pose point `p` goes.
@@ -148,16 +148,12 @@ impl<'a> PosedSkeleton<'a> {
         let mut sum = Vector3::zeros();
         let mut total = 0.0;
         for (c, member) in self.skeleton.memberships(p).enumerate() {
-            let motion = interpolate(&self.motions[c], member.arc / length(&self.skeleton.chains[c]));
+            let motion = interpolate(&self.motions[c], member.arc / self.skeleton.chains[c].length());
             sum += motion.apply(p).coords * member.weight;
             total += member.weight;
         }
         Point3::from(sum / total)
     }
-}
-
-fn length(chain: &Chain) -> f64 {
-    chain.arcs[chain.arcs.len() - 1]
 }
 
 /// The motion at a fraction of a chain's length.
@@ -188,7 +184,7 @@ fn bend(chain: &Chain, turns: &[Turn], base: Motion) -> Vec<Motion> {
             product * (reflect * turned * reflect)
         })
     };
-    let step = length(chain) / N_STEPS as f64;
+    let step = chain.length() / N_STEPS as f64;
     let mut axis = axis_point(chain, 0.0);
     let mut moved = base.apply(axis).coords;
     let mut motions = Vec::with_capacity(N_STEPS + 1);
@@ -213,9 +209,8 @@ fn smooth_step(t: f64) -> f64 {
 
 /// The point of a chain's axis at length `arc`, at rest.
 pub(crate) fn axis_point(chain: &Chain, arc: f64) -> Point3<f64> {
-    let i = chain.arcs[1..chain.arcs.len() - 1].partition_point(|&a| a <= arc);
-    let t = (arc - chain.arcs[i]) / (chain.arcs[i + 1] - chain.arcs[i]);
-    chain.nodes[i].at + (chain.nodes[i + 1].at - chain.nodes[i].at) * t.clamp(0.0, 1.0)
+    let (i, t) = chain.bone_at(arc);
+    chain.nodes[i].at + (chain.nodes[i + 1].at - chain.nodes[i].at) * t
 }
 
 #[cfg(test)]

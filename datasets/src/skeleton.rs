@@ -66,6 +66,21 @@ pub(crate) struct Chain {
     pub(crate) side: Side,
 }
 
+impl Chain {
+    /// Length of the axis.
+    pub(crate) fn length(&self) -> f64 {
+        self.arcs[self.arcs.len() - 1]
+    }
+
+    /// The bone at length `arc` along the axis, by the node it begins with, and the share of it before
+    /// that place.
+    pub(crate) fn bone_at(&self, arc: f64) -> (usize, f64) {
+        let i = self.arcs[1..self.arcs.len() - 1].partition_point(|&a| a <= arc);
+        let t = (arc - self.arcs[i]) / (self.arcs[i + 1] - self.arcs[i]);
+        (i, t.clamp(0.0, 1.0))
+    }
+}
+
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Side {
     /// As described: in the middle, or at `x > 0`.
