@@ -4,6 +4,7 @@
 
 mod args;
 mod commands;
+mod field;
 mod output;
 
 use std::process::ExitCode;
@@ -20,6 +21,7 @@ fn main() -> ExitCode {
         Command::Embed(args) => commands::embed(args, &common),
         Command::Methods(args) => commands::methods(args, &common),
         Command::Compare(args) => commands::compare(args, &common),
+        Command::Render(args) => commands::picture(args, &common),
         Command::Index(args) => commands::index(&args.command, &common),
         Command::Search(args) => commands::search(args, &common),
         Command::Evaluate(args) => commands::evaluate(args, &common),

@@ -43,6 +43,12 @@ pub(crate) const GRID: RGBColor = RGBColor(228, 228, 228);
 #[derive(Debug)]
 pub(crate) struct DrawError(String);
 
+impl DrawError {
+    pub(crate) fn reason(self) -> String {
+        self.0
+    }
+}
+
 impl<E: std::error::Error + Send + Sync> From<DrawingAreaErrorKind<E>> for DrawError {
     fn from(error: DrawingAreaErrorKind<E>) -> Self {
         Self(error.to_string())
@@ -81,6 +87,17 @@ fn register_fonts() -> Result<(), DrawError> {
             && register_font(FONT, FontStyle::Bold, dejavu::sans::bold()).is_ok()
     });
     if *done { Ok(()) } else { Err(DrawError("the embedded font cannot be read".into())) }
+}
+
+/// The share of every pixel that the ink of a drawing in black covers, 0 to 255, row by row; a pixel a unit.
+pub(crate) fn ink(drawing: &impl Drawing) -> Result<Vec<u8>, DrawError> {
+    register_fonts()?;
+    let (width, height) = drawing.size();
+    let (wide, high) = (width * OVERSAMPLING, height * OVERSAMPLING);
+    let mut pixels = vec![255; wide as usize * high as usize * 3];
+    draw_on(drawing, BitMapBackend::with_buffer(&mut pixels, (wide, high)), OVERSAMPLING, 0.22)?;
+    let pixels = average(&pixels, wide as usize, OVERSAMPLING as usize);
+    Ok(pixels.chunks_exact(3).map(|p| 255 - p[1]).collect())
 }
 
 fn png_bytes(drawing: &impl Drawing) -> Result<Vec<u8>, DrawError> {

@@ -3,6 +3,7 @@
 mod embedding;
 mod geodesic;
 mod index;
+mod render;
 
 use std::path::PathBuf;
 
@@ -18,6 +19,7 @@ pub(crate) use index::{
     AddArgs, BuildArgs, EvaluateArgs, ExportArgs, IndexArgs, IndexCommand, MergeArgs, OneIndexArgs,
     RemoveArgs, SearchArgs,
 };
+pub(crate) use render::{Place, RenderArgs};
 
 /// Nonrigid 3D shapes: surface distances, canonical forms, comparison.
 ///
@@ -61,6 +63,8 @@ pub(crate) enum Command {
     Methods(MethodsArgs),
     /// Align the canonical forms of two meshes and say how far apart they are
     Compare(CompareArgs),
+    /// Draw a shaded picture of a mesh, coloured by distances or other numbers
+    Render(RenderArgs),
     /// Make, change, check and write out an index of shapes
     Index(IndexArgs),
     /// Find the shapes of an index that are most like a mesh, and its class

@@ -8,6 +8,7 @@ mod geodesic;
 mod index;
 mod info;
 mod methods;
+mod render;
 mod search;
 
 pub(crate) use compare::compare;
@@ -18,6 +19,7 @@ pub(crate) use geodesic::geodesic;
 pub(crate) use index::index;
 pub(crate) use info::info;
 pub(crate) use methods::methods;
+pub(crate) use render::picture;
 pub(crate) use search::search;
 
 use mesh::RepairReport;

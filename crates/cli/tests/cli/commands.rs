@@ -197,7 +197,10 @@ fn completions_are_there_for_every_shell() {
     let place = Workplace::new();
     for shell in ["bash", "zsh", "fish"] {
         let script = place.done(&["completions", shell]).out;
-        assert!(script.contains("canonform") && script.contains("geodesic"), "{shell}: {script}");
+        assert!(
+            script.contains("canonform") && script.contains("geodesic") && script.contains("render"),
+            "{shell}: {script}"
+        );
     }
 }
 
@@ -226,7 +229,10 @@ fn help_mentions_every_option() {
         "bfs",
         "planar",
     ];
-    let pages: [(&str, Vec<&str>); 5] = [
+    let render = "-o --size --view principal --up --background transparent --color --field --row --distance-from \
+                  --isolines --range --no-bar --form .npy .csv";
+    let pages: [(&str, Vec<&str>); 6] = [
+        ("render", render.split_whitespace().collect()),
         ("info", vec!["MESH"]),
         ("geodesic", geodesic.to_vec()),
         ("embed", [&embedding[..], &["-o", "--stress", "--stress-against"]].concat()),

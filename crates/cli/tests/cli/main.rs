@@ -3,7 +3,7 @@
 //! `commands` (what each prints), `forms` (the files it writes), `errors` (what it refuses, and that
 //! nothing is left behind), `folders` (many meshes at once),
 //! `geodesic` (sources, paths, all pairs), `index` (making, changing and asking one), `killed` (interruptions,
-//! full disks).
+//! full disks), `render` (pictures).
 
 #[cfg(test)]
 mod commands;
@@ -19,5 +19,7 @@ mod geodesic;
 mod index;
 #[cfg(test)]
 mod killed;
+#[cfg(test)]
+mod render;
 #[cfg(test)]
 mod support;

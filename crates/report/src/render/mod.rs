@@ -5,11 +5,13 @@
 //! than the picture, every visible sample is lit, and the samples of a pixel are averaged in linear
 //! light. The same mesh and options give the same bytes.
 
+mod bar;
 mod camera;
 mod normals;
 mod raster;
 mod shade;
 
+pub use bar::render_with_bar;
 pub use camera::View;
 
 use mesh::TriMesh;
@@ -62,6 +64,8 @@ impl Default for RenderOptions {
 pub enum Background {
     /// Opaque white.
     White,
+    /// An opaque sRGB colour.
+    Color([u8; 3]),
     /// Nothing: alpha 0, and edges with the alpha of their share of the pixel.
     Transparent,
 }
@@ -79,7 +83,8 @@ pub enum Surface {
         values: Vec<f64>,
         /// The numbers drawn darkest and lightest. `None`: the least and greatest of `values`.
         range: Option<[f64; 2]>,
-        /// Lines of equal value, at this many equal steps of the range. 0 draws none.
+        /// Lines of equal value between this many equal steps of the range, one less than steps. None at
+        /// the ends of the range, beyond it, and where the value is the same all over a face.
         isolines: u32,
     },
 }
@@ -116,6 +121,17 @@ fn drawable_faces(mesh: &TriMesh) -> Vec<[usize; 3]> {
     mesh.faces.iter().map(|f| f.map(|v| v.index())).filter(|f| f.iter().all(usable)).collect()
 }
 
+/// The least and the greatest of the numbers that are finite.
+#[must_use]
+pub fn value_range(values: &[f64]) -> Option<[f64; 2]> {
+    let finite = || values.iter().copied().filter(|v| v.is_finite());
+    let low = finite().reduce(f64::min)?;
+    Some([low, finite().fold(low, f64::max)])
+}
+
+/// What an isoline leaves of the light of its surface.
+const ISOLINE_LIGHT: f32 = 0.35;
+
 /// A [`Surface`] ready to be asked for a colour at a point of a face, in linear light.
 enum Paint {
     Plain([f32; 3]),
@@ -138,10 +154,7 @@ impl Paint {
                 (0..n_vertices).map(|v| colors.get(v).unwrap_or(&[255; 3]).map(to_linear)).collect(),
             ),
             Surface::Scalars { values, range, isolines } => {
-                let finite = || values.iter().copied().filter(|v| v.is_finite());
-                let [low, high] = range.unwrap_or_else(|| {
-                    [finite().fold(f64::INFINITY, f64::min), finite().fold(f64::NEG_INFINITY, f64::max)]
-                });
+                let [low, high] = range.or_else(|| value_range(values)).unwrap_or([0.0; 2]);
                 let span = if high > low { high - low } else { 1.0 };
                 let scaled = |v: usize| values.get(v).map_or(f64::NAN, |value| (value - low) / span);
                 let scaled = |v| if scaled(v).is_finite() { scaled(v) as f32 } else { f32::NAN };
@@ -165,9 +178,10 @@ impl Paint {
                 let value = corners.dot(&at);
                 let color = Vector3::from(perceptual(f64::from(value)).map(to_linear));
                 let level = value * steps;
+                let line = level.round();
                 let slope = corners.dot(&slopes[0]).hypot(corners.dot(&slopes[1])) * steps;
-                let samples_away = (level - level.round()).abs() / slope.max(f32::MIN_POSITIVE);
-                if *steps > 0.0 && samples_away < *half_width { color * 0.35 } else { color }
+                let is_line = line > 0.5 && line < steps - 0.5 && (level - line).abs() < half_width * slope;
+                if is_line { color * ISOLINE_LIGHT } else { color }
             }
         }
     }

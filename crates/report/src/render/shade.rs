@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 use super::raster::DepthBuffer;
 use super::{Background, Paint};
 use crate::RgbaImage;
-use crate::color::from_linear;
+use crate::color::{from_linear, to_linear};
 
 /// A light far away, in the camera's axes.
 struct Lights {
@@ -136,6 +136,9 @@ pub(super) fn shade(
         }
         let (light, alpha) = match background {
             Background::White => ((sum + Vector3::repeat(total - covered)) / total, 1.0),
+            Background::Color(color) => {
+                ((sum + Vector3::from(color.map(to_linear)) * (total - covered)) / total, 1.0)
+            }
             Background::Transparent if covered > 0.0 => (sum / covered, covered / total),
             Background::Transparent => (Vector3::zeros(), 0.0),
         };

@@ -173,6 +173,28 @@ fn scalars_run_through_the_map_with_lines_at_equal_steps() {
 }
 
 #[test]
+fn a_field_that_stands_still_has_no_lines() {
+    let square = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 0.0, 1.0], [0.0, 0.0, 1.0]];
+    let flat = mesh(&square, &[[0, 1, 2], [0, 2, 3]]);
+    let image = |level, isolines| {
+        let surface = Surface::Scalars { values: vec![level; 4], range: Some([0.0, 4.0]), isolines };
+        render(&flat, &RenderOptions { surface, ..small(FRONT) })
+    };
+    for level in [0.0, 1.0, 4.0, -3.0, 9.0] {
+        assert_eq!(image(level, 4), image(level, 0), "{level}");
+    }
+}
+
+#[test]
+fn coloured_backgrounds_are_opaque() {
+    let options = RenderOptions { background: Background::Color([20, 30, 40]), ..small(View::default()) };
+    let image = render(&pear(), &options);
+    assert_eq!(image.pixel(0, 0), [20, 30, 40, 255]);
+    assert!(image.pixels().iter().all(|p| p[3] == 255));
+    assert!(light(image.pixel(60, 60)) > 300.0);
+}
+
+#[test]
 fn white_backgrounds_are_opaque_and_pictures_repeat() {
     let options = RenderOptions { background: Background::White, ..small(View::default()) };
     let image = render(&pear(), &options);

@@ -1,0 +1,184 @@
+//! `render`: pictures of meshes, of fields on them and of forms.
+
+use std::fs;
+
+use mesh::shapes;
+
+use crate::support::{Workplace, assert_keys, broken_ring, ring};
+
+fn place() -> Workplace {
+    let place = Workplace::new();
+    place.add("ring.off", &ring());
+    place
+}
+
+/// Width and height, and the pixels as red, green, blue, alpha.
+fn pixels(place: &Workplace, name: &str) -> ((u32, u32), Vec<[u8; 4]>) {
+    let file = fs::File::open(place.path(name)).unwrap();
+    let mut reader = png::Decoder::new(std::io::BufReader::new(file)).read_info().unwrap();
+    let mut bytes = vec![0; reader.output_buffer_size()];
+    let info = reader.next_frame(&mut bytes).unwrap();
+    assert_eq!(info.color_type, png::ColorType::Rgba);
+    ((info.width, info.height), bytes.chunks_exact(4).map(|p| [p[0], p[1], p[2], p[3]]).collect())
+}
+
+fn drawn(place: &Workplace, options: &[&str]) -> Vec<[u8; 4]> {
+    place.done(&[&["render", "ring.off", "--size", "200", "-o", "x.png"], options].concat());
+    pixels(place, "x.png").1
+}
+
+#[test]
+fn a_picture_has_the_size_and_the_background_asked_for() {
+    let place = place();
+    let json = place.json(&["render", "ring.off", "--size", "90x60", "-o", "x.png"]);
+    assert_keys(&json, &["mesh", "output", "width", "height", "n_vertices", "n_faces", "field", "seconds"]);
+    assert_eq!((&json["width"], &json["height"], &json["n_faces"]), (&90.into(), &60.into(), &320.into()));
+    assert!(json["field"].is_null());
+    let (size, seen) = pixels(&place, "x.png");
+    assert_eq!((size, seen[0]), ((90, 60), [255; 4]));
+    assert!(seen.iter().any(|p| p[0] < 200), "there is something to see");
+    let corner = |background: &str| drawn(&place, &["--background", background])[0];
+    assert_eq!(corner("transparent")[3], 0);
+    assert_eq!(corner("#102030"), [16, 32, 48, 255]);
+    assert!(corner("dark").iter().take(3).all(|c| *c < 40));
+    let red = drawn(&place, &["--color", "#ff0000"]);
+    assert!(red.iter().any(|p| p[0] > 150 && p[1] < 80));
+}
+
+#[test]
+fn views_show_other_sides() {
+    let place = place();
+    let covered = |view: &str| {
+        let seen = drawn(&place, &["--background", "transparent", "--view", view]);
+        seen.iter().filter(|p| p[3] > 127).count()
+    };
+    // From above there is a hole in the ring, from the front none.
+    assert!(covered("top") > 2 * covered("front"));
+    assert!(covered("top").abs_diff(covered("bottom")) < 100);
+    let front = drawn(&place, &["--view", "front"]);
+    assert_eq!(front, drawn(&place, &["--view", "0,0"]));
+    assert!(front != drawn(&place, &["--view=-40,25"]));
+    assert!(
+        covered("top").abs_diff(
+            drawn(&place, &["--view", "front", "--up", "y", "--background", "transparent"])
+                .iter()
+                .filter(|p| p[3] > 127)
+                .count()
+        ) < 100
+    );
+}
+
+#[test]
+fn distances_and_the_same_numbers_from_files_give_the_same_picture() {
+    let place = place();
+    let [npy, csv] = ["d.npy", "d.csv"].map(|name| {
+        place.done(&["geodesic", "ring.off", "--source", "3", "-o", name]);
+        drawn(&place, &["--field", name, "--isolines", "5", "--no-bar"])
+    });
+    let asked = drawn(&place, &["--distance-from", "3", "--isolines", "5", "--no-bar"]);
+    assert!(npy == csv && csv == asked);
+    assert!(asked != drawn(&place, &["--distance-from", "3", "--no-bar"]), "lines");
+    assert!(asked != drawn(&place, &["--distance-from", "3", "--isolines", "5"]), "a bar");
+    assert!(
+        asked != drawn(&place, &["--distance-from", "3,90", "--isolines", "5", "--no-bar"]),
+        "two sources"
+    );
+    let narrow = place.json(&["render", "ring.off", "--distance-from", "3", "--range", "0,1", "-o", "n.png"]);
+    assert_eq!(narrow["field"]["range"], serde_json::json!([0.0, 1.0]));
+    assert_eq!((&narrow["field"]["values"][0], &narrow["field"]["missing"]), (&0.0.into(), &0.into()));
+}
+
+#[test]
+fn a_row_of_several_is_chosen() {
+    let place = place();
+    place.done(&["geodesic", "ring.off", "--source", "3,90", "-o", "two.npy"]);
+    place.done(&["geodesic", "ring.off", "--source", "90", "-o", "one.csv"]);
+    let row = |row: &str| drawn(&place, &["--field", "two.npy", "--row", row, "--no-bar"]);
+    assert!(row("0") != row("1"));
+    assert_eq!(row("1"), drawn(&place, &["--field", "one.csv", "--no-bar"]));
+    // One number a line is a field as well, and so is a list of whole numbers.
+    let column: Vec<String> = (0..160).map(|v| v.to_string()).collect();
+    fs::write(place.path("column.csv"), column.join("\n")).unwrap();
+    fs::write(place.path("row.csv"), column.join(" , ")).unwrap();
+    assert_eq!(
+        drawn(&place, &["--field", "column.csv", "--no-bar"]),
+        drawn(&place, &["--field", "row.csv", "--no-bar"])
+    );
+}
+
+#[test]
+fn what_has_no_value_is_grey_and_counted() {
+    let place = place();
+    place.add("broken.off", &broken_ring());
+    let json = place.json(&["render", "broken.off", "--distance-from", "0", "-o", "x.png"]);
+    assert_eq!(json["field"]["missing"], 10);
+    let text = place.done(&["render", "broken.off", "--distance-from", "0", "-o", "x.png"]).out;
+    assert!(text.contains("10 vertices without a finite value"), "{text}");
+    fs::write(place.path("nan.csv"), vec!["nan"; 160].join(",")).unwrap();
+    let grey = drawn(&place, &["--field", "nan.csv", "--background", "transparent"]);
+    assert!(grey.iter().filter(|p| p[3] == 255).all(|p| p[0].abs_diff(p[2]) < 30));
+}
+
+#[test]
+fn a_form_is_drawn_in_place_of_its_mesh() {
+    let place = place();
+    place.add("sheet.off", &shapes::grid(12, 9, 0.1));
+    place.add("broken.off", &broken_ring());
+    place.done(&["render", "sheet.off", "--form", "-o", "form.png", "--size", "160"]);
+    place.done(&["render", "sheet.off", "--view", "principal", "-o", "mesh.png", "--size", "160"]);
+    // A flat sheet is its own form, seen along the same axes.
+    let covered = |name: &str| pixels(&place, name).1.iter().filter(|p| p[0] < 250).count();
+    assert!(covered("form.png").abs_diff(covered("mesh.png")) < covered("mesh.png") / 20);
+    let json = place.json(&["render", "broken.off", "--form", "--distance-from", "0", "-o", "x.png"]);
+    assert_eq!(json["repair"]["dropped_components"], 1);
+}
+
+#[test]
+fn pictures_do_not_depend_on_threads_and_meshes_with_any_fault_are_drawn() {
+    let place = place();
+    let mut broken = broken_ring();
+    broken.faces.push([broken.faces[0][0], broken.faces[0][1], broken.faces[9][2]]);
+    broken.faces.push([broken.faces[0][0]; 3]);
+    place.add("broken.off", &broken);
+    for threads in ["1", "2"] {
+        let output = format!("{threads}.png");
+        place.done(&["render", "broken.off", "--threads", threads, "-o", &output, "--size", "120"]);
+    }
+    assert_eq!(fs::read(place.path("1.png")).unwrap(), fs::read(place.path("2.png")).unwrap());
+}
+
+#[test]
+fn what_cannot_be_drawn_is_refused_and_nothing_is_left() {
+    let place = place();
+    fs::write(place.path("three.csv"), "1,2,3").unwrap();
+    fs::write(place.path("ragged.csv"), "1,2\n3").unwrap();
+    fs::write(place.path("words.csv"), "1,two").unwrap();
+    fs::write(place.path("no.npy"), "numbers").unwrap();
+    fs::write(place.path("points.off"), "OFF\n3 0 0\n0 0 0\n1 0 0\n0 1 0\n").unwrap();
+    place.done(&["geodesic", "ring.off", "--source", "3,90", "-o", "two.npy"]);
+    let before = place.names();
+    let refused = |options: &[&'static str], words: &[&str]| {
+        place.refused(&[&["render", "ring.off"], options].concat(), words);
+    };
+    refused(&["-o", "x.jpg"], &["x.jpg", ".png"]);
+    refused(&[], &["--output"]);
+    refused(&["-o", "absent/x.png"], &["absent", "does not exist"]);
+    refused(&["-o", "x.png", "--size", "9"], &["`9`", "800x600", "4096"]);
+    refused(&["-o", "x.png", "--view", "up"], &["`up`", "principal"]);
+    refused(&["-o", "x.png", "--color", "red"], &["`red`", "#rrggbb"]);
+    refused(&["-o", "x.png", "--background", "sky"], &["`sky`", "transparent"]);
+    refused(&["-o", "x.png", "--range", "2,1", "--distance-from", "0"], &["`2,1`", "least"]);
+    refused(&["-o", "x.png", "--isolines", "5"], &["--isolines", "--field", "--distance-from"]);
+    refused(&["-o", "x.png", "--field", "three.csv"], &["three.csv", "3 numbers", "160 vertices"]);
+    refused(&["-o", "x.png", "--field", "ragged.csv"], &["ragged.csv", "line 2", "1 numbers"]);
+    refused(&["-o", "x.png", "--field", "words.csv"], &["words.csv", "line 1", "`two`"]);
+    refused(&["-o", "x.png", "--field", "no.npy"], &["no.npy"]);
+    refused(&["-o", "x.png", "--field", "no.txt"], &["no.txt", ".npy or .csv"]);
+    refused(&["-o", "x.png", "--field", "gone.npy"], &["gone.npy", "No such file"]);
+    refused(&["-o", "x.png", "--field", "two.npy"], &["two.npy", "2 rows", "--row"]);
+    refused(&["-o", "x.png", "--field", "two.npy", "--row", "2"], &["two.npy", "no row 2"]);
+    refused(&["-o", "x.png", "--distance-from", "160"], &["ring.off", "vertex 160"]);
+    refused(&["-o", "x.png", "--distance-from", "0", "--field", "two.npy"], &["--field"]);
+    place.refused(&["render", "points.off", "-o", "x.png"], &["points.off"]);
+    assert_eq!(place.names(), before);
+}
