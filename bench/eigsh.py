@@ -8,13 +8,9 @@ both; the table gives the least wall-clock and processor time over the rounds. S
 matrix (SuperLU) and runs ARPACK, once as it comes and once asked for no more accuracy than ours. Residuals
 are |W x - lambda M x| / (lambda |M x|), the largest over all pairs but the constant one.
 """
-import argparse
-import json
 import os
 import platform
 import resource
-import subprocess
-import sys
 import tempfile
 import time
 
@@ -26,15 +22,13 @@ import scipy
 import scipy.sparse as sp
 from scipy.sparse.linalg import eigsh
 
-from peers import bisected, read_mesh, write_mesh
+from support import answer, mesh_arguments, test_meshes, write_page
 
 
 def ours(program, path, pairs, folder, threads):
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
-    done = subprocess.run([program, path, str(pairs), folder], check=True, capture_output=True, text=True,
-                          env=dict(os.environ, RAYON_NUM_THREADS=str(threads)))
+    seconds = answer([program, path, str(pairs), folder], env=dict(os.environ, RAYON_NUM_THREADS=str(threads)))["seconds"]
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
-    seconds = json.loads(done.stdout)["seconds"]
     read = lambda name: np.fromfile(os.path.join(folder, name))
     rows, columns = read("rows").astype(int), read("columns").astype(int)
     masses, values = read("masses"), read("values")
@@ -80,13 +74,7 @@ def measure(program, path, pairs, rounds):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--program", default="target/release/examples/eigenpairs")
-    parser.add_argument("--data", default=os.environ.get("CANONFORM_DATA", "../shared/data"))
-    parser.add_argument("--pairs", type=int, default=300)
-    parser.add_argument("--rounds", type=int, default=3)
-    parser.add_argument("--output", default="docs/eigenpairs.md")
-    args = parser.parse_args()
+    args = mesh_arguments(__doc__, "target/release/examples/eigenpairs", "docs/eigenpairs.md", rounds=3, pairs=300)
     page = [
         "# Eigenpairs beside SciPy",
         f"\nThe {args.pairs} smallest eigenpairs of the Laplacian, by `make bench-eigsh` on {platform.machine()}, "
@@ -94,21 +82,12 @@ def main():
         "interleaved. The processor time of canonform holds reading, repair and writing too. Ratios count; the "
         "seconds are those of one machine on one day.\n",
     ]
-    cat = os.path.join(args.data, "tosca-lowres", "cat0.vert")
-    if not os.path.exists(cat):
-        sys.exit(f"{cat} is missing: pass --data FOLDER with tosca-lowres/ and single/")
-    with tempfile.TemporaryDirectory() as folder:
-        fine = os.path.join(folder, "cat0-28k.obj")
-        write_mesh(fine, *bisected(*read_mesh(cat), 27_894))
-        armadillo = os.path.join(args.data, "single", "armadillo.obj")
-        for title, path in [("cat0 of TOSCA", cat), ("cat0, longest edges bisected", fine), ("armadillo", armadillo)]:
+    with test_meshes(args.data) as meshes:
+        for title, path in meshes.items():
             n_vertices, table = measure(args.program, path, args.pairs, args.rounds)
             page.append(f"## {title}, {n_vertices:,} vertices\n\n{table}\n")
             print(page[-1], flush=True)
-    os.makedirs(os.path.dirname(args.output) or ".", exist_ok=True)
-    with open(args.output + ".part", "w") as file:
-        file.write("\n".join(page))
-    os.replace(args.output + ".part", args.output)
+    write_page(args.output, page)
 
 
 if __name__ == "__main__":

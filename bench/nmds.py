@@ -8,19 +8,15 @@ ten farthest samples with their distances to all vertices, and Nystrom scaling o
 is Procedures 1 and 2 of the paper in NumPy, once with potpourri3d's fast marching and once with its heat
 method; NumPy may use all cores. Stress is that of eq. 17 against exact distances from some vertices.
 """
-import argparse
-import json
 import os
 import platform
 import statistics
-import subprocess
-import sys
 import tempfile
 import time
 
 import numpy as np
 
-from peers import bisected, canonform, read_mesh, write_mesh
+from support import answer, distances, mesh_arguments, read_mesh, test_meshes, write_page
 
 SAMPLES, RANK, DIM = 10, 5, 3
 
@@ -67,8 +63,7 @@ def peers(vertices, faces):
 def ours(program, path, threads, out):
     command = [program, "embed", path, "-n", str(SAMPLES), "--rank", str(RANK), "--first-sample", "0", "--stress", "skip",
                "--threads", str(threads), "--json", "-o", out]
-    done = subprocess.run(command, check=True, capture_output=True, text=True)
-    return json.loads(done.stdout)["seconds"], np.load(out)
+    return answer(command)["seconds"], np.load(out)
 
 
 def stress(form, sources, exact):
@@ -82,15 +77,7 @@ def stress(form, sources, exact):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--program", default="target/release/canonform")
-    parser.add_argument("--data", default=os.environ.get("CANONFORM_DATA", "../shared/data"))
-    parser.add_argument("--rounds", type=int, default=9)
-    parser.add_argument("--output", default="docs/nmds.md")
-    args = parser.parse_args()
-    cat = os.path.join(args.data, "tosca-lowres", "cat0.vert")
-    if not os.path.exists(cat):
-        sys.exit(f"{cat} is missing: pass --data FOLDER with tosca-lowres/ and single/")
+    args = mesh_arguments(__doc__, "target/release/canonform", "docs/nmds.md", rounds=9)
     cores = os.cpu_count()
     page = [
         "# Canonical forms beside potpourri3d and NumPy",
@@ -98,14 +85,11 @@ def main():
         f"interleaved in one run. {SAMPLES} samples, rank {RANK}, preparation and distances included, reading and "
         "writing not. Ratios count; the milliseconds are those of one machine on one day.\n",
     ]
-    with tempfile.TemporaryDirectory() as folder:
-        fine = os.path.join(folder, "cat0-28k.obj")
-        write_mesh(fine, *bisected(*read_mesh(cat), 27_894))
-        armadillo = os.path.join(args.data, "single", "armadillo.obj")
-        for title, path in [("cat0 of TOSCA, longest edges bisected", fine), ("armadillo", armadillo)]:
+    with test_meshes(args.data) as meshes, tempfile.TemporaryDirectory() as folder:
+        for title, path in list(meshes.items())[1:]:
             vertices, faces = read_mesh(path)
             sources = [int(s) for s in np.random.default_rng(0).integers(0, len(vertices), 40)]
-            exact, _, _ = canonform(args.program, path, "exact", sources)
+            exact, _, _ = distances(args.program, path, "exact", sources)
             seconds, forms, algebra = {}, {}, []
             for _ in range(args.rounds):
                 for threads in sorted({1, cores}):
@@ -127,10 +111,7 @@ def main():
             table = "\n".join(lines)
             page.append(f"## {title}, {len(vertices):,} vertices\n\n{table}")
             print(page[-1], flush=True)
-    os.makedirs(os.path.dirname(args.output) or ".", exist_ok=True)
-    with open(args.output + ".part", "w") as file:
-        file.write("\n".join(page))
-    os.replace(args.output + ".part", args.output)
+    write_page(args.output, page)
 
 
 if __name__ == "__main__":

@@ -9,15 +9,11 @@ solver time, as its peers are timed around their solve call; what each prepares 
 it. Errors are relative to the exact polyhedral distances of `canonform --method exact`, which tests hold
 to an independent implementation. pygeodesic ends the process on some meshes, so it runs in one of its own.
 """
-import argparse
-import json
 import math
 import multiprocessing
 import os
 import platform
 import statistics
-import subprocess
-import sys
 import tempfile
 import time
 
@@ -26,78 +22,14 @@ for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
 
 import numpy as np
 
+from support import distances, mesh_arguments, read_mesh, test_meshes, write_mesh, write_page
+
 OURS = ["fast-marching", "exact", "heat", "dijkstra"]
 FIRST = "canonform fast-marching"
 
 
-def read_mesh(path):
-    if path.endswith(".vert"):
-        return np.loadtxt(path), np.loadtxt(path[:-5] + ".tri").astype(np.int64) - 1
-    vertices, faces = [], []
-    for line in open(path):
-        words = line.split()
-        if words[:1] == ["v"]:
-            vertices.append([float(x) for x in words[1:4]])
-        elif words[:1] == ["f"]:
-            faces.append([int(x.split("/")[0]) - 1 for x in words[1:4]])
-    return np.array(vertices), np.array(faces)
-
-
-def write_mesh(path, vertices, faces):
-    with open(path, "w") as file:
-        file.writelines("v %.17g %.17g %.17g\n" % tuple(v) for v in vertices)
-        file.writelines("f %d %d %d\n" % tuple(f + 1) for f in faces)
-
-
 def edges_of(faces):
     return np.sort(np.vstack([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1)
-
-
-def bisected(vertices, faces, n_vertices):
-    """Cuts longest edges in half until there are so many vertices: the surface stays as it is."""
-    import heapq
-
-    vertices, faces = [tuple(v) for v in vertices], [list(f) for f in faces]
-    at_edge = {}
-    length = lambda a, b: math.dist(vertices[a], vertices[b])
-    key = lambda a, b: (min(a, b), max(a, b))
-    heap = []
-
-    def attach(face):
-        f = faces[face]
-        for k in range(3):
-            edge = key(f[k], f[(k + 1) % 3])
-            at_edge.setdefault(edge, set()).add(face)
-            heapq.heappush(heap, (-length(*edge), edge))
-
-    for face in range(len(faces)):
-        attach(face)
-    while len(vertices) < n_vertices:
-        _, edge = heapq.heappop(heap)
-        if edge not in at_edge:
-            continue
-        middle = len(vertices)
-        vertices.append(tuple(0.5 * (p + q) for p, q in zip(vertices[edge[0]], vertices[edge[1]])))
-        for face in sorted(at_edge[edge]):
-            old = faces[face]
-            for k in range(3):
-                at_edge[key(old[k], old[(k + 1) % 3])].discard(face)
-            faces[face] = [middle if v == edge[1] else v for v in old]
-            faces.append([middle if v == edge[0] else v for v in old])
-            attach(face)
-            attach(len(faces) - 1)
-        del at_edge[edge]
-    return np.array(vertices), np.array(faces)
-
-
-def canonform(program, mesh, method, sources):
-    with tempfile.TemporaryDirectory() as folder:
-        out = os.path.join(folder, "distances.npy")
-        command = [program, "geodesic", mesh, "--method", method, "--threads", "1", "--json", "-o", out,
-                   "--source", ",".join(map(str, sources))]
-        done = subprocess.run(command, check=True, capture_output=True, text=True)
-        seconds = json.loads(done.stdout)["seconds"]
-        return np.atleast_2d(np.load(out)), seconds["per_source"], seconds["setup"]
 
 
 def serve_pygeodesic(pipe, vertices, faces):
@@ -196,7 +128,7 @@ def measure(program, path, rounds):
         for method in OURS:
             name = f"canonform {method}"
             # The solver's memory is warm from the second source on, as that of its peers is.
-            row, per_source, prepared = canonform(program, path, method, [source] * 4)
+            row, per_source, prepared = distances(program, path, method, [source] * 4)
             rows.setdefault(name, []).append(row[-1])
             seconds.setdefault(name, []).append(statistics.median(per_source[1:]))
             setup[name] = min(prepared, setup.get(name, math.inf))
@@ -245,7 +177,7 @@ def growth(program, folder):
     for size in sizes:
         path = os.path.join(folder, f"torus{size}.obj")
         write_mesh(path, *wavy_torus(size))
-        _, per_source, _ = canonform(program, path, "fast-marching", [0] * 5)
+        _, per_source, _ = distances(program, path, "fast-marching", [0] * 5)
         best.append(min(per_source))
         os.remove(path)
     exponent = np.polyfit(np.log(sizes), np.log(best), 1)[0]
@@ -255,37 +187,23 @@ def growth(program, folder):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--program", default="target/release/canonform")
-    parser.add_argument("--data", default=os.environ.get("CANONFORM_DATA", "../shared/data"))
-    parser.add_argument("--rounds", type=int, default=7)
-    parser.add_argument("--output", default="docs/benchmarks.md")
-    args = parser.parse_args()
+    args = mesh_arguments(__doc__, "target/release/canonform", "docs/benchmarks.md", rounds=7)
     page = [
         "# Surface distances beside other programs",
         f"\nMeasured by `make bench-peers` on {platform.machine()}, {os.cpu_count()} cores, one thread each, "
         f"medians over {args.rounds} sources, all solvers interleaved in one run. Errors are relative to exact "
         "polyhedral distances. Ratios count; the milliseconds are those of one machine on one day.\n",
     ]
-    cat = os.path.join(args.data, "tosca-lowres", "cat0.vert")
-    if not os.path.exists(cat):
-        sys.exit(f"{cat} is missing: pass --data FOLDER with tosca-lowres/ and single/")
-    with tempfile.TemporaryDirectory() as folder:
-        fine = os.path.join(folder, "cat0-28k.obj")
-        write_mesh(fine, *bisected(*read_mesh(cat), 27_894))
-        armadillo = os.path.join(args.data, "single", "armadillo.obj")
-        for title, path in [("cat0 of TOSCA (a third of its triangles obtuse, not clean)", cat),
-                            ("cat0, longest edges bisected", fine), ("armadillo", armadillo)]:
+    with test_meshes(args.data) as meshes:
+        for title, path in meshes.items():
             n_vertices, table = measure(args.program, path, args.rounds)
             page.append(f"## {title}, {n_vertices:,} vertices\n\n{table}\n")
             print(page[-1], flush=True)
+    with tempfile.TemporaryDirectory() as folder:
         exponent, table = growth(args.program, folder)
     page.append(f"## Growth of fast marching on an uneven torus\n\n{table}\n\nTime grows as vertices to the {exponent:.2f}.\n")
     print(page[-1])
-    os.makedirs(os.path.dirname(args.output) or ".", exist_ok=True)
-    with open(args.output + ".part", "w") as file:
-        file.write("\n".join(page))
-    os.replace(args.output + ".part", args.output)
+    write_page(args.output, page)
 
 
 if __name__ == "__main__":

@@ -10,7 +10,6 @@ thread (the exact scan of ours takes all), and the rounds are interleaved, so th
 falls on all of them. Peers are set to the cheapest setting that reaches the recall on these very queries; ours finds its own
 while building, on signatures of the index.
 """
-import argparse
 import gc
 import json
 import multiprocessing
@@ -22,6 +21,8 @@ import tempfile
 import time
 
 import numpy as np
+
+from support import answer, arguments, write_page
 
 K = 10
 RECALL = 0.99
@@ -179,8 +180,7 @@ def measure(program, folder, n, dim, width, n_queries, rounds):
     np.save(base_path, rows[:n])
     np.save(queries_path, rows[n:])
     del rows
-    built = json.loads(subprocess.run([program, "build", base_path, index], check=True, capture_output=True,
-                                      text=True).stdout)
+    built = answer([program, "build", base_path, index])
     print("ours built", built, flush=True)
     size = os.path.getsize(index) / 1e6
     peers = {}
@@ -235,14 +235,9 @@ def measure(program, folder, n, dim, width, n_queries, rounds):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--program", default="target/release/examples/vectors")
-    parser.add_argument("--n", type=int, default=1_000_000)
-    parser.add_argument("--dim", type=int, default=128)
-    parser.add_argument("--queries", type=int, default=2500)
-    parser.add_argument("--rounds", type=int, default=5)
+    parser = arguments(__doc__, "target/release/examples/vectors", "docs/search.md", rounds=5, n=1_000_000, dim=128,
+                       queries=2500)
     parser.add_argument("--widths", type=float, nargs="+", default=[0.3, 1.0])
-    parser.add_argument("--output", default="docs/search.md")
     args = parser.parse_args()
     if not os.path.exists(args.program):
         sys.exit(f"{args.program} is missing: run `make bench-search`")
@@ -259,10 +254,7 @@ def main():
             table = measure(args.program, folder, args.n, args.dim, width, args.queries, args.rounds)
         page.append(f"## {kind.capitalize()} (poses vary by {width} where classes differ by 0.6)\n\n{table}\n")
         print(page[-1], flush=True)
-    os.makedirs(os.path.dirname(args.output) or ".", exist_ok=True)
-    with open(args.output + ".part", "w") as file:
-        file.write("\n".join(page))
-    os.replace(args.output + ".part", args.output)
+    write_page(args.output, page)
 
 
 if __name__ == "__main__":

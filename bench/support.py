@@ -1,0 +1,121 @@
+"""What the benches share: arguments, meshes, asking the program, writing pages."""
+import argparse
+import contextlib
+import heapq
+import json
+import math
+import os
+import subprocess
+import sys
+import tempfile
+
+import numpy as np
+
+# As many vertices as the peers' published figures are for.
+FINE = 27_894
+
+
+def arguments(doc, program, output, rounds, **more):
+    """Those of every bench, and `more` numbers by their defaults."""
+    parser = argparse.ArgumentParser(description=doc.splitlines()[0])
+    parser.add_argument("--program", default=program)
+    parser.add_argument("--output", default=output)
+    for name, default in {"rounds": rounds, **more}.items():
+        parser.add_argument(f"--{name}", type=int, default=default)
+    return parser
+
+
+def mesh_arguments(*args, **more):
+    parser = arguments(*args, **more)
+    parser.add_argument("--data", default=os.environ.get("CANONFORM_DATA", "../shared/data"))
+    return parser.parse_args()
+
+
+@contextlib.contextmanager
+def test_meshes(data):
+    """Title -> path of each mesh that the benches run on; the second is made for as long as they are open."""
+    cat = os.path.join(data, "tosca-lowres", "cat0.vert")
+    if not os.path.exists(cat):
+        sys.exit(f"{cat} is missing: pass --data FOLDER with tosca-lowres/ and single/")
+    with tempfile.TemporaryDirectory() as folder:
+        fine = os.path.join(folder, "cat0-28k.obj")
+        write_mesh(fine, *bisected(*read_mesh(cat), FINE))
+        yield {"cat0 of TOSCA": cat, "cat0, longest edges bisected": fine,
+               "armadillo": os.path.join(data, "single", "armadillo.obj")}
+
+
+def read_mesh(path):
+    if path.endswith(".vert"):
+        return np.loadtxt(path), np.loadtxt(path[:-5] + ".tri").astype(np.int64) - 1
+    vertices, faces = [], []
+    with open(path) as file:
+        for line in file:
+            words = line.split()
+            if words[:1] == ["v"]:
+                vertices.append([float(x) for x in words[1:4]])
+            elif words[:1] == ["f"]:
+                faces.append([int(x.split("/")[0]) - 1 for x in words[1:4]])
+    return np.array(vertices), np.array(faces)
+
+
+def write_mesh(path, vertices, faces):
+    with open(path, "w") as file:
+        file.writelines("v %.17g %.17g %.17g\n" % tuple(v) for v in vertices)
+        file.writelines("f %d %d %d\n" % tuple(f + 1) for f in faces)
+
+
+def bisected(vertices, faces, n_vertices):
+    """Cuts longest edges in half until there are so many vertices: the surface stays as it is."""
+    vertices, faces = [tuple(v) for v in vertices], [list(f) for f in faces]
+    at_edge = {}
+    length = lambda a, b: math.dist(vertices[a], vertices[b])
+    key = lambda a, b: (min(a, b), max(a, b))
+    heap = []
+
+    def attach(face):
+        f = faces[face]
+        for k in range(3):
+            edge = key(f[k], f[(k + 1) % 3])
+            at_edge.setdefault(edge, set()).add(face)
+            heapq.heappush(heap, (-length(*edge), edge))
+
+    for face in range(len(faces)):
+        attach(face)
+    while len(vertices) < n_vertices:
+        _, edge = heapq.heappop(heap)
+        if edge not in at_edge:
+            continue
+        middle = len(vertices)
+        vertices.append(tuple(0.5 * (p + q) for p, q in zip(vertices[edge[0]], vertices[edge[1]])))
+        for face in sorted(at_edge[edge]):
+            old = faces[face]
+            for k in range(3):
+                at_edge[key(old[k], old[(k + 1) % 3])].discard(face)
+            faces[face] = [middle if v == edge[1] else v for v in old]
+            faces.append([middle if v == edge[0] else v for v in old])
+            attach(face)
+            attach(len(faces) - 1)
+        del at_edge[edge]
+    return np.array(vertices), np.array(faces)
+
+
+def answer(command, **how):
+    """What a program says as JSON."""
+    return json.loads(subprocess.run(command, check=True, capture_output=True, text=True, **how).stdout)
+
+
+def distances(program, mesh, method, sources):
+    """Of `canonform geodesic` on one thread: a row a source, seconds a source, seconds of preparation."""
+    with tempfile.TemporaryDirectory() as folder:
+        out = os.path.join(folder, "distances.npy")
+        seconds = answer([program, "geodesic", mesh, "--method", method, "--threads", "1", "--json", "-o", out,
+                          "--source", ",".join(map(str, sources))])["seconds"]
+        return np.atleast_2d(np.load(out)), seconds["per_source"], seconds["setup"]
+
+
+def write_page(path, sections):
+    """The page is there whole or not at all."""
+    os.makedirs(os.path.dirname(path) or ".", exist_ok=True)
+    with open(path + ".part", "w") as file:
+        file.write("\n".join(sections))
+    os.replace(path + ".part", path)
