@@ -8,7 +8,6 @@ use std::time::Instant;
 
 use anyhow::{Context as _, Result};
 use datasets::{ArticulatedOptions, Family, articulated_shape};
-use linalg::DistanceMatrix;
 use mesh::{RepairOptions, VertexId};
 use nmds::classical_full;
 use pipeline::{EmbedMethod, EmbedOptions, Samples, StressChoice, Surface, embed};
@@ -122,11 +121,7 @@ fn timed(context: &Context<'_>, shape: &Shape, method: EmbedMethod) -> Result<Fi
 fn full(shape: &Shape) -> Result<Figure9Measured> {
     let memory = PeakMemory::begin();
     let start = Instant::now();
-    let p = shape.surface.mesh().n_vertices();
-    let solver = Distances::default().method.prepare(&shape.surface.intrinsic)?;
-    let sources: Vec<VertexId> = (0..p).map(VertexId::from).collect();
-    let columns = solver.distance_columns(&sources);
-    let all = DistanceMatrix::from_rows(p, columns.data.into())?;
+    let all = Distances::default().method.prepare(&shape.surface.intrinsic)?.distance_matrix()?;
     let geodesics = start.elapsed().as_secs_f64();
     classical_full(&all, DIM)?;
     let embedding = start.elapsed().as_secs_f64() - geodesics;

@@ -84,9 +84,7 @@ impl<'a> Specimen<'a> {
                     (p * p * size_of::<f64>()) >> 30
                 );
             }
-            let sources: Vec<VertexId> = (0..p).map(VertexId::from).collect();
-            let columns = self.solver(distances)?.distance_columns(&sources);
-            Ok(DistanceMatrix::from_rows(p, columns.data.into())?)
+            Ok(self.solver(distances)?.distance_matrix()?)
         })
     }
 

@@ -2,7 +2,7 @@
 
 use std::sync::{Mutex, PoisonError};
 
-use linalg::Matrix;
+use linalg::{DistanceMatrix, LinalgError, Matrix};
 use mesh::VertexId;
 use rayon::prelude::*;
 
@@ -59,6 +59,15 @@ pub trait DistanceSolver: Sync + std::fmt::Debug {
                 .for_each(|(column, source)| self.distances_into(*source, column));
         }
         columns
+    }
+
+    /// The distances between all pairs of vertices, each the mean of there and back, `n_vertices^2` numbers.
+    ///
+    /// # Errors
+    /// When a vertex cannot be reached from another one.
+    fn distance_matrix(&self) -> Result<DistanceMatrix, LinalgError> {
+        let all: Vec<VertexId> = (0..self.n_vertices()).map(VertexId::from).collect();
+        DistanceMatrix::from_rows(all.len(), self.distance_columns(&all).data.into())
     }
 }
 

@@ -173,21 +173,16 @@ impl Reference {
             StressChoice::Estimate | StressChoice::Skip => false,
             StressChoice::Auto => p <= EXACT_LIMIT,
         };
-        let rows = if is_exact { (0..p).collect() } else { sample_rows(p, ESTIMATE_ROWS, options.seed) };
-        let needed = p.saturating_mul(rows.len()).saturating_mul(size_of::<f64>());
-        if needed > options.all_pairs_limit {
-            let [needed_mib, limit_mib] = [needed, options.all_pairs_limit].map(|bytes| bytes >> 20);
-            return Err(PipelineError::AllPairsTooLarge { n_vertices: p, needed_mib, limit_mib });
-        }
+        options.check_memory(p, if is_exact { p } else { ESTIMATE_ROWS.min(p) })?;
         observer.begin("stress", 1);
         let solver = options.geodesic.prepare(&surface.intrinsic)?;
+        if is_exact {
+            return Ok(Self::All(solver.distance_matrix()?));
+        }
+        let rows = sample_rows(p, ESTIMATE_ROWS, options.seed);
         let sources: Vec<VertexId> = rows.iter().copied().map(VertexId::from).collect();
         let columns = solver.distance_columns(&sources);
-        Ok(if is_exact {
-            Self::All(DistanceMatrix::from_rows(p, columns.data.into())?)
-        } else {
-            Self::Some(LandmarkDistances::new(rows, columns)?)
-        })
+        Ok(Self::Some(LandmarkDistances::new(rows, columns)?))
     }
 
     fn stress(&self, coords: &Matrix, options: &EmbedOptions) -> StressReport {

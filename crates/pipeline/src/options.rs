@@ -3,6 +3,8 @@
 use geodesics::{FirstSample, Method, Sampling};
 use nmds::{Bandwidth, Regularization, SmacofOptions, SpectralOptions};
 
+use crate::PipelineError;
+
 /// How a surface is embedded.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EmbedOptions {
@@ -45,6 +47,21 @@ impl Default for EmbedOptions {
             seed: 0,
             all_pairs_limit: 4 << 30,
         }
+    }
+}
+
+impl EmbedOptions {
+    /// Refuses `n_columns` columns of distances to `n_vertices` vertices that need more than the limit.
+    ///
+    /// # Errors
+    /// [`PipelineError::AllPairsTooLarge`].
+    pub(crate) fn check_memory(&self, n_vertices: usize, n_columns: usize) -> Result<(), PipelineError> {
+        let needed = n_vertices.saturating_mul(n_columns).saturating_mul(size_of::<f64>());
+        if needed <= self.all_pairs_limit {
+            return Ok(());
+        }
+        let [needed_mib, limit_mib] = [needed, self.all_pairs_limit].map(|bytes| bytes >> 20);
+        Err(PipelineError::AllPairsTooLarge { n_vertices, needed_mib, limit_mib })
     }
 }
 

@@ -4,7 +4,6 @@ use std::time::Instant;
 
 use geodesics::{DistanceSolver, FirstSample, Sampler};
 use linalg::{DistanceMatrix, LandmarkDistances};
-use mesh::VertexId;
 use nmds::{Embedding, NmdsError, estimate_paper_stress};
 
 use crate::stress::KnownRows;
@@ -84,18 +83,9 @@ impl Run<'_> {
     /// The distances between all pairs of vertices.
     pub(crate) fn all_pairs(&mut self) -> Result<DistanceMatrix, PipelineError> {
         let p = self.solver.n_vertices();
-        let needed = p.saturating_mul(p).saturating_mul(size_of::<f64>());
-        let limit = self.options.all_pairs_limit;
-        if needed > limit {
-            let [needed_mib, limit_mib] = [needed, limit].map(|bytes| bytes >> 20);
-            return Err(PipelineError::AllPairsTooLarge { n_vertices: p, needed_mib, limit_mib });
-        }
+        self.options.check_memory(p, p)?;
         self.observer.begin("distances", p);
-        let sources: Vec<VertexId> = (0..p).map(VertexId::from).collect();
-        self.timed(|run| {
-            let columns = run.solver.distance_columns(&sources);
-            Ok(DistanceMatrix::from_rows(p, columns.data.into())?)
-        })
+        self.timed(|run| Ok(run.solver.distance_matrix()?))
     }
 
     /// Counts the time of `work` as time spent on distances.

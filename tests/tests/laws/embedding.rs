@@ -13,7 +13,7 @@ use pipeline::{
     StressKind, Variance, embedded_distances,
 };
 
-use crate::support::{all_vertices, body, columns, embedded, gap, marching, moved};
+use crate::support::{body, embedded, gap, marching, moved};
 
 /// The columns of some points of a matrix of distances.
 fn landmark_columns(distances: &DistanceMatrix, landmarks: Vec<usize>) -> LandmarkDistances {
@@ -54,8 +54,8 @@ fn a_rank_too_small_for_space_is_not_exact() {
 #[test]
 fn all_points_as_samples_is_classical_scaling() {
     let mesh = shapes::torus(14, 9, 2.0, 0.7);
-    let rows = columns(&mesh, marching(), &all_vertices(&mesh));
-    let distances = DistanceMatrix::from_rows(mesh.n_vertices(), rows.data.into()).unwrap();
+    let solver = marching().prepare(&IntrinsicMesh::from_mesh(&mesh)).unwrap();
+    let distances = solver.distance_matrix().unwrap();
     let p = distances.n_points();
     let all = landmark_columns(&distances, (0..p).collect());
     let sampled = nystrom(&all, &NystromOptions { regularization: Regularization::None, dim: 3 }).unwrap();
@@ -71,8 +71,7 @@ fn all_points_as_samples_is_classical_scaling() {
 fn more_samples_come_closer_to_the_optimum_and_never_below_it() {
     let mesh = body(Family::Cat);
     let solver = marching().prepare(&IntrinsicMesh::from_mesh(&mesh)).unwrap();
-    let rows = solver.distance_columns(&all_vertices(&mesh));
-    let distances = DistanceMatrix::from_rows(mesh.n_vertices(), rows.data.into()).unwrap();
+    let distances = solver.distance_matrix().unwrap();
     let optimum = paper_stress(&classical(&distances, 3).unwrap().coords, &distances);
     let excess = |n: usize| {
         let samples = farthest_point_sampling(solver.as_ref(), n, FirstSample::default()).unwrap();
@@ -173,8 +172,8 @@ fn the_unit_of_length_changes_no_method() {
 #[test]
 fn no_method_is_below_classical_scaling_and_straight_lines_of_smacof_fit_best() {
     let mesh = body(Family::Cat);
-    let rows = columns(&mesh, marching(), &all_vertices(&mesh));
-    let distances = DistanceMatrix::from_rows(mesh.n_vertices(), rows.data.into()).unwrap();
+    let solver = marching().prepare(&IntrinsicMesh::from_mesh(&mesh)).unwrap();
+    let distances = solver.distance_matrix().unwrap();
     let coords = |method: EmbedMethod| {
         let options = EmbedOptions { method, stress: StressChoice::Skip, ..EmbedOptions::default() };
         embedded(&mesh, &options).embedding.coords
@@ -195,8 +194,7 @@ fn no_method_is_below_classical_scaling_and_straight_lines_of_smacof_fit_best() 
 fn the_best_rank_lies_inside_and_beats_both_cur_and_all_eigenpairs() {
     let mesh = body(Family::Cat);
     let solver = marching().prepare(&IntrinsicMesh::from_mesh(&mesh)).unwrap();
-    let rows = solver.distance_columns(&all_vertices(&mesh));
-    let distances = DistanceMatrix::from_rows(mesh.n_vertices(), rows.data.into()).unwrap();
+    let distances = solver.distance_matrix().unwrap();
     let samples = farthest_point_sampling(solver.as_ref(), 60, FirstSample::default()).unwrap();
     let affinity = Reconstruction::new(&samples, &distances).unwrap();
     let error = |regularization| affinity.error(regularization).unwrap().relative;

@@ -6,7 +6,6 @@
 use std::path::{Path, PathBuf};
 
 use geodesics::{FirstSample, farthest_point_sampling};
-use linalg::DistanceMatrix;
 use mesh::{IntrinsicMesh, RepairOptions, VertexId};
 use nmds::{NystromOptions, Regularization, classical, nystrom, paper_stress};
 use pipeline::{
@@ -93,10 +92,8 @@ struct Excess {
 fn near_optimal_stress(name: &str, allowed: &Excess) {
     let Some(data) = data("stress against classical scaling") else { return };
     let surface = tosca(&data, name);
-    let p = surface.intrinsic.n_vertices();
     let solver = marching().prepare(&surface.intrinsic).unwrap();
-    let all: Vec<VertexId> = (0..p).map(VertexId::from).collect();
-    let distances = DistanceMatrix::from_rows(p, solver.distance_columns(&all).data.into()).unwrap();
+    let distances = solver.distance_matrix().unwrap();
     let optimum = paper_stress(&classical(&distances, 3).unwrap().coords, &distances);
     for (n, rank, limit) in [(10, 5, allowed.ten_samples), (100, 50, allowed.hundred_samples)] {
         let sampled = farthest_point_sampling(solver.as_ref(), n, FirstSample::default()).unwrap();
