@@ -8,16 +8,13 @@ use std::time::Instant;
 use anyhow::Result;
 use descriptors::{CanonicalForm, MatchOptions, PreparedForm, match_forms};
 use mesh::{TriMesh, orient_consistently};
-use pipeline::{EmbedOptions, StressChoice, embed};
+use pipeline::{EmbedOptions, MATCHED_POINTS, StressChoice, embed};
 use report::figure1::{Figure1Pair, PAIRS, figure1};
 use report::render::View;
 use report::results::{Figure1Record, Figure1Shape, write};
 
 use crate::collection::{Shape, map};
 use crate::run::{Context, described};
-
-/// Points of a form that are matched with the first form of its class.
-const MATCHED_POINTS: usize = 400;
 
 /// Runs the experiment and writes `figure1.json` and its pictures.
 pub(crate) fn run(context: &Context<'_>) -> Result<()> {

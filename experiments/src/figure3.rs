@@ -17,7 +17,7 @@ use nmds::{
     Embedding, NystromOptions, Regularization, SpectralBasis, SpectralOptions, nystrom, paper_stress,
     spectral,
 };
-use pipeline::{FastMarchingOptions, GeodesicMethod, ObtuseTreatment, Update};
+use pipeline::{FastMarchingOptions, GeodesicMethod, MATCHED_POINTS, ObtuseTreatment, Update};
 use report::figure3::{Figure3Surfaces, figure3};
 use report::render::View;
 use report::results::{Figure3Form, Figure3Record, Figure3Shape, Figure3Stress, write};
@@ -26,9 +26,6 @@ use report::tables::figure3_table;
 use crate::run::Context;
 use crate::specimen::{DIM, Distances, Specimen};
 use crate::sweep::{Measured, median, point};
-
-/// Points of a form that are matched with the first of its row.
-const MATCHED_POINTS: usize = 400;
 
 /// The columns, as the paper has them.
 const METHODS: [&str; 5] = ["MDS", "NMDS", "SMDS", "Min-Var", "BFS"];

@@ -1,7 +1,7 @@
 //! The embedded surface.
 
 use mesh::TriMesh;
-use nalgebra::{Point3, Vector3};
+use nalgebra::{Matrix3, Point3, Vector3};
 use nmds::Embedding;
 use serde::{Deserialize, Serialize};
 
@@ -137,6 +137,21 @@ impl CanonicalForm {
     #[must_use]
     pub fn spread(&self) -> f64 {
         spread(&self.points, &self.weights)
+    }
+
+    /// The turn into principal axes: by rows, the directions in which the form is widest, second widest and
+    /// narrowest, and the spread along each, a length. The signs of axes, and the order of those with equal
+    /// spreads, are left to chance.
+    pub(crate) fn principal_axes(&self) -> (Matrix3<f64>, [f64; 3]) {
+        let mut covariance = Matrix3::zeros();
+        for (p, w) in self.points.iter().zip(&self.weights) {
+            covariance += p.coords * p.coords.transpose() * *w;
+        }
+        let eigen = covariance.symmetric_eigen();
+        let mut order = [0, 1, 2];
+        order.sort_by(|&i, &j| eigen.eigenvalues[j].total_cmp(&eigen.eigenvalues[i]));
+        let axes = Matrix3::from_columns(&order.map(|i| eigen.eigenvectors.column(i).into_owned()));
+        (axes.transpose(), order.map(|i| eigen.eigenvalues[i].max(0.0).sqrt()))
     }
 
     /// The form with what `normalization` names divided out.

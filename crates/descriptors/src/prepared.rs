@@ -1,7 +1,7 @@
 //! A form made ready to be matched with many others.
 
 use kiddo::{ImmutableKdTree, SquaredEuclidean};
-use nalgebra::{Matrix3, Point3};
+use nalgebra::Point3;
 
 use crate::bound::Extent;
 use crate::spread::spread;
@@ -56,15 +56,8 @@ impl PreparedForm {
                 range: "at least 4",
             });
         }
-        let mut covariance = Matrix3::zeros();
-        for (p, w) in form.points().iter().zip(form.weights()) {
-            covariance += p.coords * p.coords.transpose() * *w;
-        }
-        let eigen = covariance.symmetric_eigen();
-        let mut order = [0, 1, 2];
-        order.sort_by(|&i, &j| eigen.eigenvalues[j].total_cmp(&eigen.eigenvalues[i]));
-        let axes = Matrix3::from_columns(&order.map(|i| eigen.eigenvectors.column(i).into_owned()));
-        let to_principal = Alignment::about_origin(axes.transpose());
+        let (axes, axis_spread) = form.principal_axes();
+        let to_principal = Alignment::about_origin(axes);
         let points: Vec<_> = form.points().iter().map(|p| to_principal.apply(p)).collect();
         let spread = spread(&points, n_samples);
         let samples: Vec<_> = spread.samples.iter().map(|&i| points[i]).collect();
@@ -73,7 +66,7 @@ impl PreparedForm {
             sample_tree: tree(&samples)?,
             extent: Extent::new(&samples, spread.covering),
             samples,
-            axis_spread: order.map(|i| eigen.eigenvalues[i].max(0.0).sqrt()),
+            axis_spread,
             points,
             to_principal,
         })

@@ -8,8 +8,8 @@ use retrieval::pairwise_distances;
 
 use crate::{Observer, PipelineError};
 
-/// Points of every form that are matched.
-pub(crate) const MATCHED_POINTS: usize = 400;
+/// Points of every form that are matched with another one.
+pub const MATCHED_POINTS: usize = 400;
 
 /// Forms made ready to be matched with each other.
 #[derive(Debug)]

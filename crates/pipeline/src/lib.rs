@@ -35,7 +35,7 @@ pub use describe::{
 };
 pub use embed::{Embedded, embed};
 pub use error::PipelineError;
-pub use forms::{PreparedForms, embedded_distances, form_distances, map_of};
+pub use forms::{MATCHED_POINTS, PreparedForms, embedded_distances, form_distances, map_of};
 pub use handedness::Handedness;
 pub use index::{
     BuildOptions, BuildReport, Explain, Failure, Inputs, Measure, MergeReport, Prediction, SearchOptions,

@@ -1,6 +1,6 @@
 //! Moments of the canonical form.
 
-use nalgebra::{Matrix3, Point3};
+use nalgebra::Point3;
 
 use super::{Signature, SignatureKind};
 use crate::CanonicalForm;
@@ -37,14 +37,7 @@ pub(super) const LENGTH: usize = 13;
 #[must_use]
 pub fn moment_signature(form: &CanonicalForm) -> Signature {
     let unit = form.area().map_or_else(|| form.spread(), f64::sqrt);
-    let mut covariance = Matrix3::zeros();
-    for (p, w) in form.points().iter().zip(form.weights()) {
-        covariance += p.coords * p.coords.transpose() * *w;
-    }
-    let eigen = covariance.symmetric_eigen();
-    let mut order = [0, 1, 2];
-    order.sort_by(|&i, &j| eigen.eigenvalues[j].total_cmp(&eigen.eigenvalues[i]));
-    let axes = Matrix3::from_columns(&order.map(|i| eigen.eigenvectors.column(i).into_owned())).transpose();
+    let (axes, _) = form.principal_axes();
     let turned: Vec<Point3<f64>> = form.points().iter().map(|p| axes * p / unit).collect();
     let moment = |exponents: [i32; 3]| {
         let at = |p: &Point3<f64>| (0..3).map(|axis| p[axis].powi(exponents[axis])).product::<f64>();
