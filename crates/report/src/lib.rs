@@ -17,6 +17,7 @@ mod files;
 #[cfg(test)]
 mod fixtures;
 mod image;
+pub mod interactive;
 mod markers;
 mod numbers;
 pub mod page;

@@ -1,0 +1,311 @@
+// Surfaces in the browser, on top of plotly's mesh3d. Defines one global, `canonform`; expects `Plotly`.
+//
+//   handle = canonform.view(element, geometry | [geometry, ...], options)
+//   handle.update(geometry | [geometry, ...], options)   other surfaces in the same scene; the camera stays
+//   handle.link(handle | [handle, ...])                  their cameras move together from now on
+//   handle.reset()                                       the camera as at the start
+//   handle.element
+//
+// geometry: { positions, faces, values?, values_name?, color? }, arrays as base64 of little-endian f32 / u32 or as
+//   typed arrays. Several geometries lie over each other in one scene, where they are.
+// options: { title, linkedWith, opacity: [one for each geometry], names: [legend], range: [low, high] of the values }
+//
+// The element keeps the height that it has (20rem if none). Within it: p.canonform-title, div.canonform-scene
+// (plotly's), p.canonform-fallback instead of the scene where there is no WebGL. data-state of the element is
+// `drawing`, `ready` or `failed`.
+'use strict';
+
+const canonform = (() => {
+  // Viridis: equal steps look equal, in grey and to the colour-blind too.
+  const VIRIDIS = ['#440154', '#482878', '#3e4989', '#31688e', '#26828e', '#1f9e89', '#35b779', '#6ece58',
+    '#b5de2b', '#fde725'].map((color, i) => [i / 9, color]);
+  const CLAY = '#b9b4aa';
+  const NO_VALUE = '#9a9a9a';
+  // From the right front and slightly above, z up: the view of the static pictures.
+  const CAMERA = { eye: { x: 0.75, y: -1.3, z: 0.32 }, up: { x: 0, y: 0, z: 1 }, center: { x: 0, y: 0, z: 0 } };
+  const CONFIG = { displaylogo: false, displayModeBar: false, responsive: false, typesetMath: false };
+  const LIGHT = { ambient: 0.45, diffuse: 0.6, specular: 0.04, roughness: 0.9, fresnel: 0.02 };
+
+  const darkScheme = matchMedia('(prefers-color-scheme: dark)');
+  const handles = new Set();
+
+  // plotly reads a little HTML in every text; names are to be shown as they are.
+  const plain = (text) => String(text).replaceAll('&', '&amp;').replaceAll('<', '&lt;').replaceAll('>', '&gt;');
+
+  // Colours of the page, where it names them.
+  function theme() {
+    const style = getComputedStyle(document.documentElement);
+    const color = (name, light, dark) => style.getPropertyValue(name).trim() || (darkScheme.matches ? dark : light);
+    return {
+      page: color('--page', '#ffffff', '#14171a'),
+      ink: color('--ink', '#1d2126', '#e4e7ea'),
+      pale: color('--pale', '#59616b', '#a3abb5'),
+      line: color('--line', '#d9dde2', '#353b42'),
+      font: getComputedStyle(document.body).fontFamily,
+    };
+  }
+
+  function decode(array, Type) {
+    if (array instanceof Type) return array;
+    const text = atob(array);
+    const bytes = new Uint8Array(text.length);
+    for (let i = 0; i < text.length; i += 1) bytes[i] = text.charCodeAt(i);
+    return new Type(bytes.buffer);
+  }
+
+  // Every third number from `first` on.
+  function strided(array, first) {
+    const part = new array.constructor(array.length / 3);
+    for (let i = 0; i < part.length; i += 1) part[i] = array[3 * i + first];
+    return part;
+  }
+
+  function traces(geometry, { opacity = 1, name, range, colors }) {
+    const positions = decode(geometry.positions, Float32Array);
+    const faces = decode(geometry.faces, Uint32Array);
+    const values = geometry.values ? decode(geometry.values, Float32Array) : null;
+    const base = {
+      type: 'mesh3d', x: strided(positions, 0), y: strided(positions, 1), z: strided(positions, 2),
+      // plotly takes small triangles for degenerate ones otherwise, and leaves them black.
+      facenormalsepsilon: 0, vertexnormalsepsilon: 0,
+      lighting: LIGHT, lightposition: { x: 2000, y: -4000, z: 6000 }, opacity, hoverinfo: 'skip',
+      name: name === undefined ? '' : plain(name), showlegend: name !== undefined,
+    };
+    const drawn = (indices, more) => ({
+      ...base, i: strided(indices, 0), j: strided(indices, 1), k: strided(indices, 2), ...more,
+    });
+    if (!values) return [drawn(faces, { color: geometry.color || CLAY })];
+    // A face with a corner without value is grey.
+    const [known, unknown] = [[], []];
+    for (let f = 0; f < faces.length; f += 3) {
+      const face = faces.subarray(f, f + 3);
+      (face.every((v) => Number.isFinite(values[v])) ? known : unknown).push(...face);
+    }
+    const list = [];
+    if (unknown.length > 0) list.push(drawn(Uint32Array.from(unknown), { color: NO_VALUE, showlegend: false }));
+    if (known.length > 0) {
+      const [low, high] = range || extent(values);
+      list.push(drawn(Uint32Array.from(known), {
+        intensity: values, colorscale: VIRIDIS, cmin: low, cmax: high > low ? high : low + 1,
+        colorbar: {
+          title: { text: plain(geometry.values_name || ''), side: 'right', font: { size: 12 } },
+          thickness: 12, len: 0.8, x: 1, xanchor: 'right', outlinewidth: 0, nticks: 6,
+          tickfont: { color: colors.ink, size: 11 },
+        },
+      }));
+    }
+    return list;
+  }
+
+  function extent(values) {
+    let [low, high] = [Infinity, -Infinity];
+    for (const value of values) {
+      if (Number.isFinite(value)) [low, high] = [Math.min(low, value), Math.max(high, value)];
+    }
+    return [low, high];
+  }
+
+  // Ranges of the axes, and their lengths in the scene: the surfaces fill it whatever their size and shape.
+  function bounds(data) {
+    const ranges = ['x', 'y', 'z'].map((axis) => extent(data.flatMap((trace) => extent(trace[axis]))));
+    const sides = ranges.map(([low, high]) => high - low);
+    const size = Math.hypot(...sides) || 1;
+    const thick = (side) => Math.max(side, 1e-3 * size);
+    return ranges.map(([low, high], i) => {
+      const [middle, half] = [(low + high) / 2, thick(sides[i]) / 2];
+      return { range: [middle - half, middle + half], length: (1.3 * thick(sides[i])) / size };
+    });
+  }
+
+  function layout(data, colors, hasLegend) {
+    const sides = bounds(data);
+    // Without titles and ticks plotly does not set any text in 3D.
+    const axis = (i) => ({
+      visible: false, showspikes: false, title: { text: '' }, tickmode: 'array', tickvals: [], showticklabels: false,
+      range: sides[i].range,
+    });
+    return {
+      margin: { l: 0, r: 0, t: 0, b: 0 }, paper_bgcolor: 'rgba(0,0,0,0)', uirevision: 'kept',
+      font: { color: colors.ink, family: colors.font, size: 12 },
+      showlegend: hasLegend,
+      legend: { x: 0, y: 0, yanchor: 'bottom', bgcolor: 'rgba(0,0,0,0)', itemclick: 'toggle', itemdoubleclick: false },
+      scene: {
+        dragmode: 'orbit', hovermode: false, camera: structuredClone(CAMERA), uirevision: 'kept',
+        aspectmode: 'manual', aspectratio: { x: sides[0].length, y: sides[1].length, z: sides[2].length },
+        xaxis: axis(0), yaxis: axis(1), zaxis: axis(2),
+      },
+    };
+  }
+
+  function hasWebGL() {
+    const canvas = document.createElement('canvas');
+    const context = canvas.getContext('webgl2') || canvas.getContext('webgl');
+    // Browsers hold only a few contexts: this one is given back.
+    context?.getExtension('WEBGL_lose_context')?.loseContext();
+    return context !== null;
+  }
+
+  class View {
+    constructor(element, geometries, options) {
+      this.element = element;
+      this.linked = new Set();
+      this.following = false;
+      element.classList.add('canonform-view');
+      if (element.clientHeight < 40) element.style.height = '20rem';
+      element.replaceChildren();
+      this.heading = element.appendChild(document.createElement('p'));
+      this.heading.className = 'canonform-title';
+      this.scene = element.appendChild(document.createElement('div'));
+      this.scene.className = 'canonform-scene';
+      handles.add(this);
+      if (hasWebGL()) {
+        this.listen();
+        this.update(geometries, options);
+      } else {
+        this.fail('This picture needs WebGL, which the browser does not offer.', geometries, options);
+      }
+    }
+
+    update(geometries, options = {}) {
+      this.shown = { geometries: [].concat(geometries), options };
+      if (options.linkedWith) this.link(options.linkedWith);
+      if (this.element.dataset.state === 'failed') return Promise.resolve();
+      return this.draw();
+    }
+
+    async draw() {
+      const { geometries, options } = this.shown;
+      const { title = '', opacity = [], names = [], range } = options;
+      const colors = theme();
+      this.element.dataset.state = 'drawing';
+      this.heading.textContent = title;
+      this.heading.hidden = title === '';
+      this.fit();
+      const data = geometries.flatMap((geometry, i) =>
+        traces(geometry, { opacity: opacity[i], name: names[i], range, colors }));
+      await Plotly.react(this.scene, data, layout(data, colors, names.length > 0), CONFIG);
+      this.element.dataset.state = 'ready';
+      if (!this.observer) this.watch();
+    }
+
+    // The scene takes what the title leaves of the element.
+    fit() {
+      const height = this.element.clientHeight - this.heading.offsetHeight;
+      this.scene.style.height = `${Math.max(height, 40)}px`;
+    }
+
+    // From the first drawing on.
+    watch() {
+      this.observer = new ResizeObserver(() => {
+        if (this.scene.clientWidth === 0) return;
+        this.fit();
+        Plotly.Plots.resize(this.scene);
+      });
+      this.observer.observe(this.element);
+      const moved = (event) => { if (event['scene.camera']) this.lead(event['scene.camera']); };
+      this.scene.on('plotly_relayouting', moved);
+      this.scene.on('plotly_relayout', moved);
+      this.follow([...this.linked].find((other) => other.camera)?.camera);
+    }
+
+    get camera() {
+      return this.scene.layout?.scene?.camera;
+    }
+
+    link(others) {
+      for (const other of [].concat(others)) {
+        if (other === this) continue;
+        this.linked.add(other);
+        other.linked.add(this);
+      }
+    }
+
+    // Passes a movement on. Views that follow are deaf to the events of their own following, or they would pass it back.
+    lead(camera) {
+      if (!this.following) for (const other of this.linked) other.follow(camera);
+    }
+
+    async follow(camera) {
+      if (!camera || !this.observer) return;
+      this.wanted = camera;
+      if (this.following) return;
+      this.following = true;
+      while (this.wanted) {
+        const next = this.wanted;
+        this.wanted = null;
+        await Plotly.relayout(this.scene, { 'scene.camera': next });
+      }
+      this.following = false;
+    }
+
+    move(camera) {
+      return Plotly.relayout(this.scene, { 'scene.camera': camera });
+    }
+
+    reset() {
+      return this.move(structuredClone(CAMERA));
+    }
+
+    listen() {
+      // A wheel over a picture scrolls the page until the picture was clicked: pages stay scrollable.
+      this.scene.addEventListener('wheel', (event) => {
+        if (!this.scene.contains(document.activeElement)) event.stopPropagation();
+      }, { capture: true });
+      this.scene.tabIndex = 0;
+      this.scene.setAttribute('role', 'application');
+      this.scene.setAttribute('aria-label', 'Surface in 3D. Arrow keys turn it, plus and minus zoom, Home resets.');
+      this.scene.addEventListener('pointerdown', () => this.scene.focus({ preventScroll: true }));
+      this.scene.addEventListener('keydown', (event) => this.steer(event));
+    }
+
+    steer(event) {
+      const turns = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] };
+      const zooms = { '+': 0.85, '=': 0.85, '-': 1 / 0.85 };
+      const camera = this.camera;
+      if (!camera || event.ctrlKey || event.metaKey || event.altKey) return;
+      if (event.key in turns) this.move(turned(camera, ...turns[event.key].map((step) => (step * Math.PI) / 18)));
+      else if (event.key in zooms) this.move({ ...camera, eye: scaled(camera.eye, zooms[event.key]) });
+      else if (event.key === 'Home') this.reset();
+      else return;
+      event.preventDefault();
+    }
+
+    fail(reason, geometries, options = {}) {
+      this.element.dataset.state = 'failed';
+      this.heading.textContent = options.title || '';
+      const count = (geometry) => decode(geometry.positions, Float32Array).length / 3;
+      const vertices = [].concat(geometries).map(count).join(' and ');
+      this.scene.className = 'canonform-fallback';
+      this.scene.textContent = `${reason} The surface has ${vertices} vertices.`;
+    }
+  }
+
+  const scaled = ({ x, y, z }, by) => ({ x: x * by, y: y * by, z: z * by });
+  const sum = (a, b) => ({ x: a.x + b.x, y: a.y + b.y, z: a.z + b.z });
+  const cross = (a, b) => ({ x: a.y * b.z - a.z * b.y, y: a.z * b.x - a.x * b.z, z: a.x * b.y - a.y * b.x });
+  const unit = (a) => scaled(a, 1 / (Math.hypot(a.x, a.y, a.z) || 1));
+
+  // The camera walked by angles to its right and upwards around what it looks at.
+  function turned(camera, right, up) {
+    const across = unit(cross(camera.up, camera.eye));
+    const above = unit(cross(camera.eye, across));
+    const distance = Math.hypot(camera.eye.x, camera.eye.y, camera.eye.z);
+    const towards = unit(camera.eye);
+    const angle = right || up;
+    const aside = right ? across : above;
+    const eye = scaled(sum(scaled(towards, Math.cos(angle)), scaled(aside, Math.sin(angle))), distance);
+    return { ...camera, eye, up: up ? unit(cross(eye, across)) : camera.up };
+  }
+
+  darkScheme.addEventListener('change', () => {
+    for (const handle of handles) {
+      if (!handle.element.isConnected) handles.delete(handle);
+      else if (handle.observer) handle.draw();
+    }
+  });
+
+  return {
+    view: (element, geometries, options) => new View(element, geometries, options),
+    decode, plain, theme, VIRIDIS,
+  };
+})();
