@@ -15,7 +15,7 @@ enum May {
 }
 
 /// Every crate of the workspace.
-const RULES: [(&str, May); 13] = [
+const RULES: [(&str, May); 14] = [
     ("mesh", May::Know(&[])),
     ("linalg", May::Know(&[])),
     ("datasets", May::Know(&["mesh"])),
@@ -27,6 +27,7 @@ const RULES: [(&str, May); 13] = [
     ("report", May::Know(&["mesh", "linalg", "retrieval"])),
     ("terminal", May::Know(&["pipeline"])),
     ("cli", May::Know(&["pipeline", "report", "retrieval", "mesh", "terminal"])),
+    ("browser", May::Know(&[])),
     ("experiments", May::KnowEverything),
     ("tests", May::KnowEverything),
 ];

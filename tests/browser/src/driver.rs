@@ -1,0 +1,89 @@
+//! The process `chromedriver`.
+
+use std::io::{BufRead, BufReader};
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
+use std::sync::mpsc;
+use std::thread;
+use std::time::Duration;
+
+use crate::BrowserError;
+
+/// How long anything may take that should take a second.
+pub(crate) const PATIENCE: Duration = Duration::from_secs(30);
+
+/// A running chromedriver, stopped when dropped.
+pub(crate) struct Driver {
+    process: Child,
+    port: u16,
+}
+
+impl Driver {
+    /// Starts it on a free port. Its temporary files, and those of its browsers, go to `folder`.
+    pub(crate) fn start(program: &Path, folder: &Path) -> Result<Self, BrowserError> {
+        let mut process = Command::new(program)
+            .arg("--port=0")
+            .env("TMPDIR", folder)
+            .stdin(Stdio::null())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::null())
+            .spawn()
+            .map_err(BrowserError::Start)?;
+        let output = process.stdout.take();
+        let mut driver = Self { process, port: 0 };
+        let (sender, receiver) = mpsc::channel();
+        // Reads on to the end: a driver whose words nobody takes stops in the middle of one.
+        thread::spawn(move || {
+            for line in output.into_iter().flat_map(|output| BufReader::new(output).lines()) {
+                let Ok(line) = line else { break };
+                let _ = sender.send(line);
+            }
+        });
+        let mut said = String::new();
+        while let Ok(line) = receiver.recv_timeout(PATIENCE) {
+            if let Some(port) = port(&line) {
+                driver.port = port;
+                return Ok(driver);
+            }
+            said.push_str(&line);
+        }
+        Err(BrowserError::Silent { said })
+    }
+
+    pub(crate) fn port(&self) -> u16 {
+        self.port
+    }
+}
+
+impl Drop for Driver {
+    fn drop(&mut self) {
+        let _ = self.process.kill();
+        let _ = self.process.wait();
+    }
+}
+
+/// The port in `ChromeDriver was started successfully on port 12345.`
+fn port(line: &str) -> Option<u16> {
+    let (_, port) = line.split_once("started successfully on port ")?;
+    port.trim_end_matches('.').parse().ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_port_is_read_from_its_words() {
+        assert_eq!(port("ChromeDriver was started successfully on port 34567."), Some(34567));
+        assert_eq!(port("Only local connections are allowed."), None);
+    }
+
+    #[test]
+    fn a_program_that_is_no_driver_is_an_error() {
+        let folder = tempfile::tempdir().unwrap();
+        let absent = Driver::start(&folder.path().join("absent"), folder.path()).err().unwrap();
+        assert!(matches!(absent, BrowserError::Start(_)), "{absent}");
+        let silent = Driver::start(Path::new("/bin/echo"), folder.path()).err().unwrap();
+        assert!(matches!(&silent, BrowserError::Silent { said } if said == "--port=0"), "{silent}");
+    }
+}
