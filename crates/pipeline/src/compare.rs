@@ -8,11 +8,12 @@ use serde::Serialize;
 
 use crate::forms::MATCHED_POINTS;
 use crate::handedness::{Handedness, OutwardForm, handedness};
-use crate::{PipelineError, Surface};
+use crate::{PipelineError, ShapeDistance, Surface};
 
-/// Forms of unit area closer than this are called the same shape. Between poses of the cats, centaurs
-/// and davids of TOSCA the distance is mostly below 0.07, between the animals above 0.1.
-const SAME: f64 = 0.08;
+/// Forms of unit area closer than this fit: they may be those of one shape, which takes a [`ShapeDistance`] to say, and
+/// their surfaces can be held against each other. Between poses of the cats, centaurs and davids of TOSCA the
+/// distance is mostly below 0.07, between them mostly above 0.1, but a cat and a dog may be 0.06 apart.
+const FITTING: f64 = 0.08;
 
 /// Sizes that differ by less than this factor are called equal.
 const SAME_SIZE: f64 = 1.05;
@@ -26,8 +27,12 @@ pub struct Comparison {
     pub distance: f64,
     /// Distance of the aligned forms once both have unit area: 0 for the same shape at any size.
     pub normalized_distance: f64,
-    /// Distance at which [`MatchKind`] stops speaking of one shape, for `normalized_distance`.
+    /// Distance at which [`MatchKind`] stops speaking of one shape, for `normalized_distance`; 0 when signatures
+    /// alone tell the shapes apart.
     pub same_below: f64,
+    /// How far apart the shapes are by all that is known of them, which decides on `kind`.
+    #[serde(flatten, skip_serializing_if = "Option::is_none")]
+    pub shape_distance: Option<ShapeDistance>,
     /// Size of the second surface over that of the first, by the roots of their areas.
     pub scale: f64,
     /// Whether the best motion reflects.
@@ -60,10 +65,10 @@ pub enum MatchKind {
 }
 
 impl MatchKind {
-    fn new(normalized: f64, handedness: Handedness, scale: f64) -> Self {
+    fn new(is_same: bool, handedness: Handedness, scale: f64) -> Self {
         let mirrored = handedness == Handedness::Mirrored;
         let resized = scale.max(1.0 / scale) > SAME_SIZE;
-        match (normalized < SAME, mirrored, resized) {
+        match (is_same, mirrored, resized) {
             (false, _, _) => Self::Different,
             (true, false, false) => Self::Same,
             (true, false, true) => Self::Scaled,
@@ -73,7 +78,21 @@ impl MatchKind {
     }
 }
 
-/// Aligns two canonical forms, as they are and at unit area. They do not tell a shape from its mirror image: see
+impl Comparison {
+    /// The same comparison with its kind decided by signatures and forms together, as a search orders its answers.
+    #[must_use]
+    pub fn decided_by(self, distance: ShapeDistance) -> Self {
+        Self {
+            kind: MatchKind::new(distance.is_same(), self.handedness, self.scale),
+            same_below: distance.form_limit(),
+            shape_distance: Some(distance),
+            ..self
+        }
+    }
+}
+
+/// Aligns two canonical forms, as they are and at unit area. The kind of match is decided by their fit alone, which
+/// also different shapes may have: see [`Comparison::decided_by`]. Forms do not tell a shape from its mirror image: see
 /// [`compare_surfaces`].
 ///
 /// # Errors
@@ -98,10 +117,11 @@ pub fn compare_forms(
     };
     let Alignment { rotation, translation, reflected } = raw.alignment;
     Ok(Comparison {
-        kind: MatchKind::new(normalized, Handedness::Unknown, scale),
+        kind: MatchKind::new(normalized < FITTING, Handedness::Unknown, scale),
         distance: raw.distance,
         normalized_distance: normalized,
-        same_below: SAME,
+        same_below: FITTING,
+        shape_distance: None,
         scale,
         reflected,
         unreflected_distance: unreflected,
@@ -158,10 +178,9 @@ pub fn compare_surfaces(
     };
     let found = [matched(Reflections::Forbid)?, matched(Reflections::Require)?];
     let outward = [(&unit_a, a), (&unit_b, b)].map(|(form, s)| OutwardForm::new(form, s.mesh()));
-    if let ([Some(a), Some(b)], true) = (&outward, comparison.normalized_distance < SAME) {
+    if let ([Some(a), Some(b)], true) = (&outward, comparison.normalized_distance < FITTING) {
         comparison.handedness = handedness(a, b, &onto, found);
-        comparison.kind =
-            MatchKind::new(comparison.normalized_distance, comparison.handedness, comparison.scale);
+        comparison.kind = MatchKind::new(true, comparison.handedness, comparison.scale);
     }
     let best = if found[1].0 < found[0].0 { found[1].1 } else { found[0].1 };
     let size = form_a.area().map_or(1.0, f64::sqrt);
@@ -179,18 +198,18 @@ mod tests {
     use mesh::{RepairOptions, TriMesh, shapes};
 
     use super::*;
-    use crate::{EmbedOptions, StressChoice, embed};
+    use crate::{DescribeOptions, EmbedOptions, StressChoice, describe, embed};
 
     #[test]
     fn kinds_follow_distance_size_and_handedness() {
-        let kind = |normalized, handedness, scale| MatchKind::new(normalized, handedness, scale);
-        assert_eq!(kind(0.2, Handedness::Mirrored, 1.0), MatchKind::Different);
+        let kind = MatchKind::new;
+        assert_eq!(kind(false, Handedness::Mirrored, 1.0), MatchKind::Different);
         for unclear in [Handedness::Same, Handedness::Either, Handedness::Unknown] {
-            assert_eq!(kind(0.01, unclear, 1.0), MatchKind::Same);
-            assert_eq!(kind(0.01, unclear, 0.5), MatchKind::Scaled);
+            assert_eq!(kind(true, unclear, 1.0), MatchKind::Same);
+            assert_eq!(kind(true, unclear, 0.5), MatchKind::Scaled);
         }
-        assert_eq!(kind(0.01, Handedness::Mirrored, 1.02), MatchKind::Mirrored);
-        assert_eq!(kind(0.01, Handedness::Mirrored, 2.0), MatchKind::MirroredAndScaled);
+        assert_eq!(kind(true, Handedness::Mirrored, 1.02), MatchKind::Mirrored);
+        assert_eq!(kind(true, Handedness::Mirrored, 2.0), MatchKind::MirroredAndScaled);
     }
 
     /// A ball with arms of these lengths towards the corners of a tetrahedron: one hand, or the other.
@@ -242,6 +261,24 @@ mod tests {
         assert_eq!(compared(&ball, &ball).comparison.handedness, Handedness::Either);
         let sheet = shapes::grid(12, 9, 0.1);
         assert_eq!(compared(&sheet, &sheet).comparison.handedness, Handedness::Unknown);
+    }
+
+    #[test]
+    fn signatures_and_forms_together_decide_on_the_kind() {
+        let (hand, ball) = (four_arms([1.0, 1.7, 2.6, 3.5]), shapes::icosphere(3));
+        let mut large = hand.clone();
+        large.positions.iter_mut().for_each(|p| p.coords *= 2.0);
+        for (other, kind) in [(&large, MatchKind::Scaled), (&ball, MatchKind::Different)] {
+            let [a, b] = [&hand, other].map(|mesh| describe(mesh, &DescribeOptions::default()).unwrap());
+            let distance = ShapeDistance::between(&a, &b).unwrap();
+            let by_forms = compare_forms(&a.form, &b.form, &MatchOptions::default()).unwrap();
+            let found = by_forms.clone().decided_by(distance);
+            assert_eq!((found.kind, found.shape_distance), (kind, Some(distance)));
+            assert_eq!(found.normalized_distance < found.same_below, kind != MatchKind::Different);
+            // A fit of forms makes no shape of two.
+            let apart = ShapeDistance { fused: 9.0, combined: 9.0 };
+            assert_eq!(by_forms.decided_by(apart).kind, MatchKind::Different);
+        }
     }
 
     #[test]

@@ -11,6 +11,7 @@ mod all_pairs;
 mod compare;
 mod dataset;
 mod describe;
+mod distance;
 mod embed;
 mod error;
 mod forms;
@@ -33,6 +34,7 @@ pub use dataset::{LabelFile, ShapeFile, label_of, list_shapes};
 pub use describe::{
     DESCRIPTION_VERSION, DescribeOptions, ShapeDescription, describe, describe_surface, prepare_form,
 };
+pub use distance::{SAME_BELOW, ShapeDistance};
 pub use embed::{Embedded, embed};
 pub use error::PipelineError;
 pub use forms::{MATCHED_POINTS, PreparedForms, embedded_distances, form_distances, map_of};

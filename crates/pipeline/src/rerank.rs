@@ -26,7 +26,7 @@ pub fn combined_distance(fused: f64, form: f64) -> f64 {
 }
 
 /// The largest `form` that takes [`combined_distance`] from `fused` no farther than `limit`.
-fn form_limit(fused: f64, limit: f64) -> f64 {
+pub(crate) fn form_limit(fused: f64, limit: f64) -> f64 {
     // Rounding must not give up what lies at the limit.
     (limit.powi(2) - fused.powi(2)).max(0.0).sqrt() * FORM_UNIT / FORM_WEIGHT.sqrt() * (1.0 + 1e-9)
 }

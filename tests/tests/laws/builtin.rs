@@ -2,7 +2,8 @@
 
 use datasets::{ArticulatedOptions, articulated};
 use pipeline::{
-    EmbedOptions, MatchOptions, Normalization, PreparedForms, StressChoice, embed, form_distances,
+    DescribeOptions, EmbedOptions, MatchOptions, Normalization, PreparedForms, ShapeDistance, StressChoice,
+    describe, embed, form_distances,
 };
 use rayon::prelude::*;
 use retrieval::{Labels, evaluate};
@@ -28,4 +29,19 @@ fn forms_of_the_built_in_shapes_find_their_families() {
     println!("{} shapes: NN {}, mAP {:.4}", scores.n, scores.nn, scores.map);
     assert_eq!((scores.n, scores.nn), (30, 1.0));
     assert!(scores.map >= 0.97, "mAP {}", scores.map);
+}
+
+#[test]
+fn two_poses_are_one_shape_and_two_families_are_not() {
+    let options = ArticulatedOptions { n_vertices: 1000, ..ArticulatedOptions::default() };
+    let shapes = articulated(&options).unwrap();
+    let described: Vec<_> =
+        shapes.par_iter().map(|shape| describe(&shape.mesh, &DescribeOptions::default()).unwrap()).collect();
+    let pairs: Vec<(usize, usize)> =
+        (0..shapes.len()).flat_map(|i| (i + 1..shapes.len()).map(move |j| (i, j))).collect();
+    pairs.par_iter().for_each(|&(i, j)| {
+        let distance = ShapeDistance::between(&described[i], &described[j]).unwrap();
+        let is_family = shapes[i].label == shapes[j].label;
+        assert_eq!(distance.is_same(), is_family, "{} {} {distance:?}", shapes[i].name, shapes[j].name);
+    });
 }

@@ -9,9 +9,10 @@ use geodesics::{FirstSample, farthest_point_sampling};
 use mesh::{IntrinsicMesh, RepairOptions, VertexId};
 use nmds::{NystromOptions, Regularization, classical, nystrom, paper_stress};
 use pipeline::{
-    EmbedOptions, MatchOptions, Normalization, PreparedForms, StressChoice, Surface, embed, form_distances,
-    label_of,
+    DescribeOptions, EmbedOptions, MatchOptions, Normalization, PreparedForms, ShapeDistance, StressChoice,
+    Surface, describe_surface, embed, form_distances, label_of, list_shapes,
 };
+use rayon::prelude::*;
 use retrieval::{Labels, evaluate};
 
 use crate::support::{marching, workspace_root};
@@ -155,4 +156,30 @@ fn pruned_fronts_choose_the_samples_of_full_ones_on_real_meshes() {
     for name in ["cat0", "david0", "centaur3", "horse5", "wolf1", "michael2"] {
         crate::marching::pruning_changes_nothing(name, &tosca(&data, name).intrinsic, 100);
     }
+}
+
+/// Pairs of cats, centaurs, davids and dogs: how far two poses of one are apart, and two animals.
+#[test]
+fn two_poses_of_an_animal_are_one_shape_and_two_animals_are_not() {
+    let Some(data) = data("two_poses_of_an_animal_are_one_shape_and_two_animals_are_not") else { return };
+    let shapes = list_shapes(&data.join("tosca-lowres"), None).unwrap();
+    // Every other pose: all of them give the same answer in four times as long.
+    let classes = ["cat", "centaur", "david", "dog"];
+    let shapes: Vec<_> =
+        shapes.into_iter().filter(|s| classes.contains(&s.label.as_str())).step_by(2).collect();
+    let described: Vec<_> = shapes
+        .par_iter()
+        .map(|s| describe_surface(&read(&s.path), &DescribeOptions::default()).unwrap())
+        .collect();
+    let pairs: Vec<(usize, usize)> =
+        (0..shapes.len()).flat_map(|i| (i + 1..shapes.len()).map(move |j| (i, j))).collect();
+    let distance = |&(i, j): &(usize, usize)| {
+        (shapes[i].label == shapes[j].label, ShapeDistance::between(&described[i], &described[j]).unwrap())
+    };
+    let distances: Vec<_> = pairs.par_iter().map(distance).collect();
+    let of = |same| distances.iter().filter(move |d| d.0 == same).map(|d| d.1.combined);
+    let (farthest, nearest) = (of(true).fold(0.0, f64::max), of(false).fold(f64::INFINITY, f64::min));
+    println!("{} pairs: one animal up to {farthest:.2} apart, two from {nearest:.2}", pairs.len());
+    assert!(distances.iter().all(|(same, distance)| distance.is_same() == *same));
+    assert!(nearest > 2.0 * farthest, "{farthest} {nearest}");
 }

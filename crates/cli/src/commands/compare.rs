@@ -5,8 +5,9 @@ use std::process::ExitCode;
 
 use anyhow::{Result, bail};
 use pipeline::{
-    Comparison, FormDistance, Handedness, MatchKind, MatchOptions, StressChoice, Surface, SurfaceComparison,
-    Triangulation, compare_surfaces, embed,
+    Comparison, DescribeOptions, FormDistance, Handedness, MatchKind, MatchOptions, SAME_BELOW,
+    ShapeDistance, StressChoice, Surface, SurfaceComparison, Triangulation, compare_surfaces,
+    describe_surface, embed,
 };
 use serde::Serialize;
 
@@ -60,12 +61,16 @@ pub(crate) fn compare(args: &CompareArgs, common: &Common) -> Result<ExitCode> {
         check_folder(path)?;
     }
     let bars = Bars::new(common.quiet);
+    // The kind of match must not depend on how forms are made for a closer look.
+    let describing =
+        DescribeOptions { repair: args.embedding.repair.options(), ..DescribeOptions::default() };
     let form = |path: &Path| {
         let surface = read_surface(path, &args.embedding.repair)?;
         let embedded = embed(&surface, &options, &bars).map_err(|fault| named(path, fault))?;
         bars.finish();
         let form = embedded.form(&surface).map_err(|fault| named(path, fault))?;
-        anyhow::Ok((surface, form))
+        let description = describe_surface(&surface, &describing).map_err(|fault| named(path, fault))?;
+        anyhow::Ok((surface, form, description))
     };
     let matching = MatchOptions {
         distance: match args.distance {
@@ -74,9 +79,10 @@ pub(crate) fn compare(args: &CompareArgs, common: &Common) -> Result<ExitCode> {
         },
         ..MatchOptions::default()
     };
-    let ((a, form_a), (b, form_b)) = (form(&args.a)?, form(&args.b)?);
+    let ((a, form_a, described_a), (b, form_b, described_b)) = (form(&args.a)?, form(&args.b)?);
     let SurfaceComparison { comparison, triangulation, residuals } =
         compare_surfaces([&a, &b], [&form_a, &form_b], &matching)?;
+    let comparison = comparison.decided_by(ShapeDistance::between(&described_a, &described_b)?);
     if let Some(path) = &args.residual_mesh {
         mesh::io::write_scalar_field(path, a.mesh(), &residuals, "residual")?;
     }
@@ -107,6 +113,9 @@ fn table(json: &CompareJson) -> String {
         MatchKind::MirroredAndScaled => format!("mirror images up to pose, scaled by {:.3}", c.scale),
         MatchKind::Different => "different shapes".to_owned(),
     };
+    let apart = c.shape_distance.map_or(String::new(), |d| {
+        format!("{:.3} by signatures and forms (the same shape below {SAME_BELOW})", d.combined)
+    });
     let handedness = match c.handedness {
         Handedness::Same => "no",
         Handedness::Mirrored => "yes",
@@ -122,8 +131,9 @@ fn table(json: &CompareJson) -> String {
         format!("{:.6} median, {:.6} at most (vertex {}), mesh units", r.median, r.max, r.max_vertex);
     let mut rows = vec![
         ("match", kind),
+        ("apart", apart),
         ("distance", format!("{:.6} mesh units", c.distance)),
-        ("at equal size", format!("{:.6} (the same shape below {})", c.normalized_distance, c.same_below)),
+        ("at equal size", format!("{:.6}", c.normalized_distance)),
         ("size, second over first", format!("{:.6}", c.scale)),
         ("mirror image", handedness.to_owned()),
         ("triangulation", triangulation.to_owned()),

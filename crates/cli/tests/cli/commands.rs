@@ -179,10 +179,33 @@ fn compare_says_what_kind_of_match_it_is_and_holds_a_threshold() {
     place.add("ring.off", &ring());
     place.add("ball.off", &mesh::shapes::icosphere(3));
     let same = place.json(&["compare", "ring.off", "ring.off"]);
-    assert_keys(&same, &["distance", "normalized_distance", "rotation", "translation", "reflected", "kind"]);
+    assert_keys(
+        &same,
+        &[
+            "distance",
+            "normalized_distance",
+            "rotation",
+            "translation",
+            "reflected",
+            "kind",
+            "same_below",
+            "combined_distance",
+            "fused_distance",
+        ],
+    );
     assert_eq!(same["kind"], "same");
     assert!(same["normalized_distance"].as_f64().unwrap() < 1e-9);
-    assert_eq!(place.json(&["compare", "ring.off", "ball.off"])["kind"], "different");
+    let apart = place.json(&["compare", "ring.off", "ball.off"]);
+    assert_eq!(apart["kind"], "different");
+    // However forms are made and measured, the kind is the same.
+    for options in [["-n", "20"], ["--method", "kpca"], ["--distance", "hausdorff95"], ["--geodesic", "bfs"]]
+    {
+        let again = place.json(&[&["compare", "ring.off", "ball.off"], &options[..]].concat());
+        assert_eq!(
+            (&again["kind"], &again["combined_distance"]),
+            (&apart["kind"], &apart["combined_distance"])
+        );
+    }
 
     assert_eq!(place.run(&["compare", "ring.off", "ring.off", "--threshold", "0.01"]).code, 0);
     let apart = place.run(&["compare", "ring.off", "ball.off", "--threshold", "0.01"]);

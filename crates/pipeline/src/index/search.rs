@@ -10,8 +10,8 @@ use serde::Serialize;
 
 use super::record::{form, options_of};
 use crate::{
-    Comparison, DescribeOptions, PipelineError, ShapeDescription, compare_forms, describe, prepare_form,
-    rerank,
+    Comparison, DescribeOptions, PipelineError, ShapeDescription, ShapeDistance, compare_forms, describe,
+    prepare_form, rerank,
 };
 
 /// Neighbours that vote on the class of a query.
@@ -181,7 +181,9 @@ impl ShapeSearch {
             for result in &mut results {
                 let (entry, vectors) = self.shape(&result.id)?;
                 let comparison = compare_forms(&query.form, &form(&entry, &vectors)?, &options.matching)?;
-                result.comparison = Some(comparison);
+                let distance =
+                    ShapeDistance::new([&query.fused, &vectors.fused], comparison.normalized_distance);
+                result.comparison = Some(comparison.decided_by(distance));
             }
         }
         Ok(SearchReport {
