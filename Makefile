@@ -64,7 +64,7 @@ reproduce: ## Run every experiment, on DATASET=folder with the paper's classes i
 
 comma := ,
 
-report: ## Make the page again from the results in OUT
+report: ## Make the interactive page OUT/report.html again from the results in OUT, without running anything
 	$(CARGO) run --release --locked -p experiments -- report --output $(OUT)
 
 deny: ## Check licences, sources and duplicate versions with cargo-deny (installs it if missing)

@@ -6,21 +6,23 @@
 
 use std::time::Instant;
 
-use anyhow::Result;
+use anyhow::{Context as _, Result};
 use descriptors::CanonicalForm;
 use linalg::DistanceMatrix;
 use nmds::normalized_stress;
 use pipeline::{
-    EmbedOptions, MatchOptions, Normalization, PreparedForms, embed, embedded_distances, form_distances,
-    map_of,
+    EmbedOptions, FormMatches, MatchOptions, Normalization, PreparedForms, embed, embedded_distances,
+    form_matches, map_of,
 };
+use rayon::prelude::*;
 use report::figure4::figure4;
-use report::results::{Figure4Panel, Figure4Record, Scale, write};
+use report::results::{Figure4Panel, Figure4Record, Motions, SHAPES_FILE, Scale, ShapesRecord, write};
 use report::tables::figure4_table;
 use retrieval::{Labels, evaluate, silhouette};
 
 use crate::collection::map;
 use crate::run::{Context, described};
+use crate::seen::{Formed, motions, seen, vertex_limit};
 
 /// Name of the paper's method in the record.
 const NMDS: &str = "NMDS";
@@ -28,18 +30,23 @@ const NMDS: &str = "NMDS";
 /// Name of the baseline.
 const BASELINE: &str = "KPCA-Nystrom";
 
-/// Runs the experiment, writes `figure4.json` and its pictures and prints the scores.
+/// Runs the experiment, writes `figure4.json`, `figure4-shapes.json` and its pictures and prints the scores.
 pub(crate) fn run(context: &Context<'_>) -> Result<()> {
     let start = Instant::now();
     let (seed, config) = (context.args.seed, &context.config);
     let methods = [(NMDS, config.nmds(seed)), (BASELINE, config.kernel_pca(seed))];
     let labels = context.collection.labels();
-    let mut panels = Vec::new();
+    let classes = Labels::new(&labels);
+    let (mut panels, mut formed, mut moved) = (Vec::new(), Vec::new(), Vec::new());
     for (method, options) in &methods {
-        let forms = forms(context, options)?;
+        let made = formed_by(context, options)?;
+        let forms: Vec<CanonicalForm> = made.iter().map(|made| made.form.clone()).collect();
         for scale in [Scale::Raw, Scale::Normalized] {
-            panels.push(panel(context, method, scale, &forms, &Labels::new(&labels))?);
+            let matches = matches(context, scale, &forms)?;
+            panels.push(panel(context, method, scale, &matches.distances, &classes)?);
+            moved.push(motions(method, scale, &made, &matches.alignments));
         }
+        formed.push(made);
     }
     panels.sort_by_key(|panel| panel.scale);
     let options: Vec<_> = methods.iter().map(|(name, options)| (*name, options)).collect();
@@ -53,38 +60,66 @@ pub(crate) fn run(context: &Context<'_>) -> Result<()> {
     };
     figure4(&record, context.output("figure4"))?;
     write(&record, context.output("figure4.json"))?;
+    write(&shapes(context, &methods, &formed, moved)?, context.output(SHAPES_FILE))?;
     context.say(&figure4_table(&record))?;
     Ok(())
 }
 
-fn forms(context: &Context<'_>, options: &EmbedOptions) -> Result<Vec<CanonicalForm>> {
+fn formed_by(context: &Context<'_>, options: &EmbedOptions) -> Result<Vec<Formed>> {
     map(&context.collection.all(), options.method.name(), context.observer, |shape| {
-        Ok(embed(&shape.surface, options, &())?.form(&shape.surface)?)
+        Formed::new(shape, &embed(&shape.surface, options, &())?)
     })
+}
+
+/// What the page shows when shapes are turned.
+fn shapes(
+    context: &Context<'_>,
+    methods: &[(&str, EmbedOptions)],
+    formed: &[Vec<Formed>],
+    motions: Vec<Motions>,
+) -> Result<ShapesRecord> {
+    let all = context.collection.all();
+    let limit = vertex_limit(all.len());
+    let (_, options) = &methods[0];
+    context.observer.begin("shapes to turn", all.len());
+    let one = |i: usize| {
+        let forms: Vec<&Formed> = formed.iter().map(|of_method| &of_method[i]).collect();
+        let shown = seen(all[i], &forms, options, limit).with_context(|| all[i].name.clone());
+        context.observer.step();
+        shown
+    };
+    Ok(ShapesRecord {
+        methods: methods.iter().map(|(name, _)| (*name).to_owned()).collect(),
+        shapes: (0..all.len()).into_par_iter().map(one).collect::<Result<_>>()?,
+        motions,
+    })
+}
+
+fn matches(context: &Context<'_>, scale: Scale, forms: &[CanonicalForm]) -> Result<FormMatches> {
+    let normalization = match scale {
+        Scale::Raw => Normalization::Raw,
+        Scale::Normalized => Normalization::UnitArea,
+    };
+    let prepared = PreparedForms::new(forms, normalization)?;
+    Ok(form_matches(&prepared, &MatchOptions::default(), context.observer)?)
 }
 
 fn panel(
     context: &Context<'_>,
     method: &str,
     scale: Scale,
-    forms: &[CanonicalForm],
+    distances: &DistanceMatrix,
     labels: &Labels,
 ) -> Result<Figure4Panel> {
-    let normalization = match scale {
-        Scale::Raw => Normalization::Raw,
-        Scale::Normalized => Normalization::UnitArea,
-    };
-    let prepared = PreparedForms::new(forms, normalization)?;
-    let distances = form_distances(&prepared, &MatchOptions::default(), context.observer)?;
-    let plane = map_of(&distances)?;
+    let plane = map_of(distances)?;
     Ok(Figure4Panel {
         method: method.to_owned(),
         scale,
-        matrix: rows(&distances),
+        matrix: rows(distances),
         map: plane.coords.row_iter().map(|row| [row[0], row[1]]).collect(),
-        map_stress: normalized_stress(&plane.coords, &distances),
+        map_stress: normalized_stress(&plane.coords, distances),
         negative_mass: plane.negative_mass,
-        scores: evaluate(&distances, labels, context.config.knn)?,
+        scores: evaluate(distances, labels, context.config.knn)?,
         map_silhouette: silhouette(&embedded_distances(&plane.coords)?, labels),
     })
 }

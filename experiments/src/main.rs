@@ -6,6 +6,7 @@
 //! module that runs it; results are data, pictures are made from them.
 
 mod args;
+mod coarse;
 mod collection;
 mod config;
 mod figure1;
@@ -18,6 +19,7 @@ mod figure8;
 mod figure9;
 mod retrieve;
 mod run;
+mod seen;
 mod specimen;
 mod sweep;
 mod units;

@@ -1,10 +1,11 @@
 //! Comparing the forms of many shapes.
 
-use descriptors::{CanonicalForm, MatchOptions, Normalization, PreparedForm, match_forms};
+use descriptors::{
+    Alignment, CanonicalForm, FormMatch, MatchOptions, Normalization, PreparedForm, match_forms,
+};
 use linalg::{DistanceMatrix, Matrix};
 use nmds::{Embedding, classical_full};
 use rayon::prelude::*;
-use retrieval::pairwise_distances;
 
 use crate::{Observer, PipelineError};
 
@@ -39,19 +40,50 @@ impl PreparedForms {
     }
 }
 
+/// How all pairs of forms match.
+#[derive(Debug, Clone)]
+pub struct FormMatches {
+    /// Their distances once aligned.
+    pub distances: DistanceMatrix,
+    /// For every pair `i < j`, row by row, the motion that takes form `i` onto form `j`, both as they were prepared.
+    pub alignments: Vec<Alignment>,
+}
+
+/// Aligns all pairs of forms, in parallel; every pair is a step that `observer` hears of.
+///
+/// # Errors
+/// [`PipelineError::Descriptor`], the first in order of the pairs, and [`PipelineError::Linalg`].
+pub fn form_matches(
+    forms: &PreparedForms,
+    options: &MatchOptions,
+    observer: &dyn Observer,
+) -> Result<FormMatches, PipelineError> {
+    let n = forms.len();
+    let pairs: Vec<(usize, usize)> = (0..n).flat_map(|i| (i + 1..n).map(move |j| (i, j))).collect();
+    observer.begin("alignment", pairs.len());
+    let one = |&(i, j): &(usize, usize)| {
+        let found = match_forms(&forms.0[i], &forms.0[j], options);
+        observer.step();
+        found
+    };
+    let found: Vec<_> = pairs.par_iter().map(one).collect();
+    let found: Vec<FormMatch> = found.into_iter().collect::<Result<_, _>>()?;
+    let mut next = found.iter();
+    let distances = DistanceMatrix::from_pairs(n, |_, _| next.next().map_or(f64::NAN, |m| m.distance))?;
+    Ok(FormMatches { distances, alignments: found.iter().map(|m| m.alignment).collect() })
+}
+
 /// The distances of all pairs of forms once aligned, in parallel; every pair is a step that
 /// `observer` hears of.
 ///
 /// # Errors
-/// [`PipelineError::Descriptor`].
+/// Those of [`form_matches`].
 pub fn form_distances(
     forms: &PreparedForms,
     options: &MatchOptions,
     observer: &dyn Observer,
 ) -> Result<DistanceMatrix, PipelineError> {
-    let distance = |i: usize, j: usize| Ok(match_forms(&forms.0[i], &forms.0[j], options)?.distance);
-    observer.begin("alignment", forms.len() * forms.len().saturating_sub(1) / 2);
-    pairwise_distances::<PipelineError>(forms.len(), distance, || observer.step())
+    Ok(form_matches(forms, options, observer)?.distances)
 }
 
 /// The two-dimensional map of a matrix of distances by classical scaling, with all its eigenvalues.

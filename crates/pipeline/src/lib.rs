@@ -37,7 +37,9 @@ pub use describe::{
 pub use distance::{SAME_BELOW, ShapeDistance};
 pub use embed::{Embedded, embed};
 pub use error::PipelineError;
-pub use forms::{MATCHED_POINTS, PreparedForms, embedded_distances, form_distances, map_of};
+pub use forms::{
+    FormMatches, MATCHED_POINTS, PreparedForms, embedded_distances, form_distances, form_matches, map_of,
+};
 pub use handedness::Handedness;
 pub use index::{
     BuildOptions, BuildReport, Explain, Failure, Inputs, Measure, MergeReport, Prediction, SearchOptions,

@@ -5,10 +5,12 @@ use nalgebra::Point3;
 use retrieval::{Evaluation, MeanScores};
 use serde_json::json;
 
+use crate::interactive::Geometry;
 use crate::results::{
     Axis, AxisScale, Classification, CurvesPanel, CurvesRecord, Expectation, Figure1Record, Figure1Shape,
     Figure3Form, Figure3Record, Figure3Shape, Figure3Stress, Figure4Panel, Figure4Record, Figure9Measured,
-    Figure9Record, Figure9Row, Mark, Provenance, RetrievalRecord, RetrievalRow, Scale, Series, SeriesPoint,
+    Figure9Record, Figure9Row, Mark, Motions, Provenance, RetrievalRecord, RetrievalRow, Scale, SeenForm,
+    SeenShape, Series, SeriesPoint, ShapesRecord,
 };
 
 pub(crate) fn provenance() -> Provenance {
@@ -166,6 +168,34 @@ pub(crate) fn retrieval_record() -> RetrievalRecord {
     }
 }
 
+/// The shapes of [`figure4_record`]: balls that grow.
+pub(crate) fn shapes_record(classes: &[(&str, usize)]) -> ShapesRecord {
+    let figure = figure4_record(classes);
+    let shape = |(i, (name, label)): (usize, (&String, &String))| {
+        let mut ball = sphere(6);
+        ball.positions.iter_mut().for_each(|p| *p *= 1.0 + i as f64);
+        let heights: Vec<f64> = ball.positions.iter().map(|p| p.z).collect();
+        let surface = Geometry::new(&ball).with_values("distance", &heights);
+        let residual = heights.iter().map(|z| z.abs() as f32).collect();
+        let form = SeenForm { positions: surface.positions.clone(), size: 2.0, residual: Some(residual) };
+        let other = SeenForm { residual: None, ..form.clone() };
+        let (name, label, n_vertices) = (name.clone(), label.clone(), ball.n_vertices());
+        SeenShape { name, label, n_vertices, surface, forms: vec![form, other] }
+    };
+    let shapes: Vec<SeenShape> = figure.names.iter().zip(&figure.labels).enumerate().map(shape).collect();
+    let still = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.0, 0.0, 0.0]];
+    let motions = still.repeat(shapes.len() * shapes.len().saturating_sub(1) / 2);
+    let panel = |panel: &Figure4Panel| Motions {
+        method: panel.method.clone(),
+        scale: panel.scale,
+        motions: motions.clone(),
+    };
+    let mut methods: Vec<String> = figure.panels.iter().map(|panel| panel.method.clone()).collect();
+    methods.dedup();
+    methods.truncate(2);
+    ShapesRecord { methods, motions: figure.panels.iter().map(panel).collect(), shapes }
+}
+
 /// Points in clusters on a line, one cluster a class, at both scales and for two methods.
 pub(crate) fn figure4_record(classes: &[(&str, usize)]) -> Figure4Record {
     let labels: Vec<String> =
@@ -242,10 +272,22 @@ pub(crate) fn sphere(n: usize) -> TriMesh {
     mesh(&positions, &faces)
 }
 
+/// A page without what stands inside its scripts and islands of data.
+pub(crate) fn without_scripts(html: &str) -> String {
+    let mut parts = html.split("<script");
+    let mut kept = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        let (_, rest) = part.split_once("</script>").expect("a script ends");
+        kept.push_str(rest);
+    }
+    kept
+}
+
 /// Panics unless every element of an XML or HTML text is closed in order.
 pub(crate) fn assert_balanced(markup: &str) {
     let mut open: Vec<&str> = Vec::new();
-    let mut rest = markup;
+    let plain = without_scripts(markup);
+    let mut rest = plain.as_str();
     while let Some(start) = rest.find('<') {
         let end = start + rest[start..].find('>').expect("a tag ends");
         let tag = &rest[start + 1..end];

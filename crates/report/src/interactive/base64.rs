@@ -30,7 +30,7 @@ impl Word for u32 {
 }
 
 /// The text of a list of numbers.
-fn encode<T: Word>(numbers: impl Iterator<Item = T>) -> String {
+pub(crate) fn encode<T: Word>(numbers: impl Iterator<Item = T>) -> String {
     STANDARD.encode(numbers.flat_map(Word::to_bytes).collect::<Vec<u8>>())
 }
 

@@ -68,9 +68,14 @@ impl Geometry {
 
     /// With a plain colour, 8-bit sRGB.
     #[must_use]
-    pub fn with_color(self, [red, green, blue]: [u8; 3]) -> Self {
-        Self { color: Some(format!("#{red:02x}{green:02x}{blue:02x}")), ..self }
+    pub fn with_color(self, color: [u8; 3]) -> Self {
+        Self { color: Some(hex(color)), ..self }
     }
+}
+
+/// 8-bit sRGB as `#rrggbb`.
+pub(crate) fn hex([red, green, blue]: [u8; 3]) -> String {
+    format!("#{red:02x}{green:02x}{blue:02x}")
 }
 
 #[cfg(test)]

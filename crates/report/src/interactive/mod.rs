@@ -6,11 +6,12 @@
 //! `script-src` for its own text and plotly's, `style-src 'unsafe-inline'` for the rules that plotly inserts, and
 //! `img-src data: blob:` for plotly's downloads of pictures; nothing else, and no address.
 
-mod base64;
+pub(crate) mod base64;
 mod geometry;
 mod plotly;
 
 pub use geometry::Geometry;
+pub(crate) use geometry::hex;
 pub use plotly::plotly_js;
 
 /// The viewer: a plain script that defines the global `canonform` and expects `Plotly` before its first view.

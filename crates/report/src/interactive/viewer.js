@@ -89,7 +89,7 @@ const canonform = (() => {
         intensity: values, colorscale: VIRIDIS, cmin: low, cmax: high > low ? high : low + 1,
         colorbar: {
           title: { text: plain(geometry.values_name || ''), side: 'right', font: { size: 12 } },
-          thickness: 12, len: 0.8, x: 1, xanchor: 'right', outlinewidth: 0, nticks: 6,
+          thickness: 12, len: 0.85, x: 1, xanchor: 'right', outlinewidth: 0, nticks: 6,
           tickfont: { color: colors.ink, size: 11 },
         },
       }));
@@ -113,12 +113,16 @@ const canonform = (() => {
     const thick = (side) => Math.max(side, 1e-3 * size);
     return ranges.map(([low, high], i) => {
       const [middle, half] = [(low + high) / 2, thick(sides[i]) / 2];
-      return { range: [middle - half, middle + half], length: (1.3 * thick(sides[i])) / size };
+      return { range: [middle - half, middle + half], length: (1.4 * thick(sides[i])) / size };
     });
   }
 
-  function layout(data, colors, hasLegend) {
+  // A colour bar takes its width from the scene.
+  const BAR = 64;
+
+  function layout(data, width, colors, hasLegend) {
     const sides = bounds(data);
+    const hasBar = data.some((trace) => trace.colorbar);
     // Without titles and ticks plotly does not set any text in 3D.
     const axis = (i) => ({
       visible: false, showspikes: false, title: { text: '' }, tickmode: 'array', tickvals: [], showticklabels: false,
@@ -130,6 +134,7 @@ const canonform = (() => {
       showlegend: hasLegend,
       legend: { x: 0, y: 0, yanchor: 'bottom', bgcolor: 'rgba(0,0,0,0)', itemclick: 'toggle', itemdoubleclick: false },
       scene: {
+        domain: { x: [0, hasBar ? Math.max(1 - BAR / width, 0.6) : 1] },
         dragmode: 'orbit', hovermode: false, camera: structuredClone(CAMERA), uirevision: 'kept',
         aspectmode: 'manual', aspectratio: { x: sides[0].length, y: sides[1].length, z: sides[2].length },
         xaxis: axis(0), yaxis: axis(1), zaxis: axis(2),
@@ -183,7 +188,7 @@ const canonform = (() => {
       this.fit();
       const data = geometries.flatMap((geometry, i) =>
         traces(geometry, { opacity: opacity[i], name: names[i], range, colors }));
-      await Plotly.react(this.scene, data, layout(data, colors, names.length > 0), CONFIG);
+      await Plotly.react(this.scene, data, layout(data, this.scene.clientWidth, colors, names.length > 0), CONFIG);
       this.element.dataset.state = 'ready';
       if (!this.observer) this.watch();
     }

@@ -1,11 +1,15 @@
 //! One page for all results of a folder: figures, numbers, expectations, and what made them.
 //!
-//! The page stands alone: style and pictures are inside, nothing is fetched. The vector versions of the pictures
-//! are linked beside it.
+//! The page stands alone: style, scripts, data and pictures are inside, and its content-security policy lets it fetch
+//! nothing. Figures are plots and surfaces to turn where scripts run, and pictures elsewhere and on paper; the files of
+//! the pictures are linked beside it.
 
+mod chart;
+mod explorer;
 mod html;
 mod reproduced;
 mod retrieval;
+mod scripts;
 
 use std::fmt::Write;
 use std::fs;
@@ -72,7 +76,8 @@ fn page(sections: &[Section]) -> String {
     html.push_str("<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n");
     let _ = writeln!(
         html,
-        "<title>canonform: results</title>\n<style>\n{}</style>\n</head>",
+        "{}<title>canonform: results</title>\n<style>\n{}</style>\n</head>",
+        scripts::head(),
         include_str!("style.css")
     );
     html.push_str("<body>\n<header>\n<h1>canonform: results</h1>\n");
@@ -93,7 +98,9 @@ fn page(sections: &[Section]) -> String {
     for Section { name, title, body, .. } in sections {
         let _ = write!(html, "<section id=\"{name}\">\n<h2>{title}</h2>\n{body}</section>\n");
     }
-    html.push_str("</main>\n</body>\n</html>\n");
+    html.push_str("</main>\n");
+    html.push_str(&scripts::tail());
+    html.push_str("</body>\n</html>\n");
     html
 }
 
@@ -143,16 +150,13 @@ fn figure4_section(folder: &Path) -> Result<Section, ReportError> {
     }
     let record: Figure4Record = read(path)?;
     let mut body = paragraphs(&record.analysis);
+    let mut still = String::new();
     for (part, scale, content) in figure4::PARTS {
         if record.panels_at(scale).next().is_some() {
-            body.push_str(&picture(
-                folder,
-                name,
-                part,
-                &figure4_caption(scale, content, record.names.len()),
-            )?);
+            still += &picture(folder, name, part, &figure4_caption(scale, content, record.names.len()))?;
         }
     }
+    body.push_str(&explorer::explorer(folder, &record, &still)?);
     body.push_str(&expectations(&record.expectations));
     let rows: Vec<Vec<Cell>> = record
         .panels
@@ -208,7 +212,7 @@ fn picture(folder: &Path, name: &str, part: &str, caption: &str) -> Result<Strin
     let (width, height) = (word(16), word(20));
     Ok(format!(
         "<figure>\n<a href=\"{svg}\"><img src=\"data:image/png;base64,{}\" width=\"{width}\" height=\"{height}\" \
-         alt=\"{alt}\"></a>\n<figcaption>{alt} <a href=\"{svg}\">SVG</a></figcaption>\n</figure>\n",
+         alt=\"{alt}\"></a>\n<figcaption>{alt} <a href=\"{png}\">PNG</a> <a href=\"{svg}\">SVG</a></figcaption>\n</figure>\n",
         STANDARD.encode(&bytes),
         alt = escape(caption),
     ))

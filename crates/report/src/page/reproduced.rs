@@ -3,10 +3,14 @@
 use std::fmt::Write;
 use std::path::Path;
 
+use serde_json::json;
+
+use super::chart::{Plot, chart};
 use super::html::{Cell, paragraphs, table};
 use super::{Section, expectations, folded, picture, provenance};
+use crate::classes::Classes;
 use crate::figure1::stress_digits;
-use crate::results::{CurvesRecord, Figure3Record, Figure9Record, read};
+use crate::results::{CurvesPanel, CurvesRecord, Figure3Record, Figure9Record, read};
 use crate::tables::{bytes_digits, seconds_digits, significant};
 use crate::{ReportError, curves, figure3};
 
@@ -35,6 +39,10 @@ pub(super) fn figure3_section(folder: &Path) -> Result<Section, ReportError> {
         "Shapes (left) and their forms by each method. Each form fills its tile and is turned to match the first of its \
          row. Under it stands its stress in squared mesh units, of the run of median stress, and the paper's number.",
     )?);
+    let shapes = Classes::of(record.stresses.iter().map(|s| s.shape.as_str()));
+    let plot = |i| Plot::new("stress", i, format!("Stress of the methods on {}", shapes.name(i)));
+    let plots: Vec<Plot> = (0..shapes.len()).map(plot).collect();
+    body.push_str(&chart(name, &plots, &json!({"stresses": record.stresses}), ""));
     body.push_str(&expectations(&record.expectations));
     let rows: Vec<Vec<Cell>> = record
         .stresses
@@ -65,7 +73,11 @@ pub(super) fn curves_section(
     }
     let record: CurvesRecord = read(path)?;
     let mut body = paragraphs(&record.analysis);
-    body.push_str(&picture(folder, name, curves::PART, &record.caption)?);
+    let still = picture(folder, name, curves::PART, &record.caption)?;
+    let label = |title: &str| format!("{}: {title}", record.caption);
+    let plot = |(i, panel): (usize, &CurvesPanel)| Plot::new("curves", i, label(&panel.title));
+    let plots: Vec<Plot> = record.panels.iter().enumerate().map(plot).collect();
+    body.push_str(&chart(name, &plots, &json!({"panels": record.panels}), &still));
     body.push_str(&expectations(&record.expectations));
     body.push_str("<h3>Numbers</h3>\n");
     for panel in &record.panels {
@@ -98,6 +110,8 @@ pub(super) fn figure9_section(folder: &Path) -> Result<Section, ReportError> {
     }
     let record: Figure9Record = read(path)?;
     let mut body = paragraphs(&record.analysis);
+    let plots = [Plot::new("times", 0, "Seconds of every method on every shape")];
+    body.push_str(&chart(name, &plots, &json!({"rows": record.rows}), ""));
     let rows: Vec<Vec<Cell>> = record
         .rows
         .iter()

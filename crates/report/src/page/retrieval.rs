@@ -3,6 +3,9 @@
 use std::fmt::Write;
 use std::path::Path;
 
+use serde_json::json;
+
+use super::chart::{Plot, chart};
 use super::html::{Cell, paragraphs, table};
 use super::{Section, expectations, folded, picture, provenance};
 use crate::curves::PART;
@@ -24,14 +27,28 @@ pub(super) fn retrieval_section(folder: &Path) -> Result<Section, ReportError> {
         "Precision over recall, means over the queries among {} shapes: further right and up is better.",
         record.names.len()
     );
-    body.push_str(&picture(folder, name, PART, &caption)?);
+    let mut still = picture(folder, name, PART, &caption)?;
     let c = &record.classification;
     let caption = format!(
         "What the vote of the {} nearest by {} takes every shape for, itself left out; a shape is unknown \
          when nothing is nearer than {:.3}.",
         c.voters, c.method, c.threshold
     );
-    body.push_str(&picture(folder, name, CONFUSION_PART, &caption)?);
+    still += &picture(folder, name, CONFUSION_PART, &caption)?;
+    let mut scales: Vec<Scale> = record.rows.iter().map(|row| row.scale).collect();
+    scales.dedup();
+    let plot = |(i, scale): (usize, &Scale)| {
+        Plot::new("precision", i, format!("Precision over recall of all ways to compare, {}", scale.name()))
+    };
+    let mut plots: Vec<Plot> = scales.iter().enumerate().map(plot).collect();
+    plots.push(Plot::new("confusion", 0, "True classes against predicted ones"));
+    let rows = record.rows.iter().map(|row| {
+        json!({"method": row.method, "scale": row.scale, "precision": row.precision, "map": row.micro.map})
+    });
+    let classification = json!({"classes": c.classes, "confusion": c.confusion});
+    let data = json!({"rows": rows.collect::<Vec<_>>(), "classification": classification});
+    body.push_str(&chart(name, &plots, &data, &still));
+    body.push_str(&paragraphs(&caption));
     body.push_str(&expectations(&record.expectations));
     body.push_str("<h3>Numbers</h3>\n");
     let caption = "NN nearest neighbour, FT and ST first and second tier, E E-measure, DCG discounted cumulative gain, \

@@ -1,10 +1,12 @@
+use std::collections::BTreeMap;
+
 use super::*;
 use crate::curves::curves;
 use crate::fixtures::{
     assert_balanced, curves_record, figure1_record, figure3_record, figure4_record, figure9_record,
-    retrieval_record,
+    retrieval_record, shapes_record, without_scripts,
 };
-use crate::results::write;
+use crate::results::{SHAPES_FILE, ShapesRecord, write};
 
 fn page_of(folder: &Path) -> String {
     let path = write_report(folder).unwrap();
@@ -33,7 +35,7 @@ fn what_was_not_run_is_said_with_the_command_that_runs_it() {
         assert!(html.contains(&format!("{name}.json</code> is not in this folder")));
         assert!(html.contains(&format!("run {name}</code>")));
     }
-    assert!(!html.contains("expectations"));
+    assert!(!without_scripts(&html).contains("expectations"));
 }
 
 #[test]
@@ -43,7 +45,7 @@ fn figures_numbers_options_and_expectations_are_all_there() {
     write(&record, folder.path().join("figure4.json")).unwrap();
     figure4::figure4(&record, folder.path().join("figure4")).unwrap();
     let html = page_of(folder.path());
-    assert_eq!(html.matches("data:image/png;base64,").count(), 4);
+    assert_eq!(without_scripts(&html).matches("data:image/png;base64,").count(), 4);
     for (part, _, _) in figure4::PARTS {
         assert!(html.contains(&format!("href=\"figure4{part}.svg\"")), "{part}");
     }
@@ -71,7 +73,7 @@ fn retrieval_has_its_scores_curves_and_confusion() {
     write(&record, folder.path().join("retrieval.json")).unwrap();
     crate::retrieval::retrieval(&record, folder.path().join("retrieval")).unwrap();
     let html = page_of(folder.path());
-    assert_eq!(html.matches("data:image/png;base64,").count(), 2);
+    assert_eq!(without_scripts(&html).matches("data:image/png;base64,").count(), 2);
     for text in
         ["wave-kernel", "ignored", "counts", "0.875", "0.625", "Near is alike.", "3 nearest by wave-kernel"]
     {
@@ -89,6 +91,7 @@ fn names_from_files_never_become_markup() {
     record.provenance.command = "run '<u>'".into();
     write(&record, folder.path().join("figure1.json")).unwrap();
     let html = page_of(folder.path());
+    let html = without_scripts(&html);
     for raw in ["<script", "<i>", "<u>", "a < b", "dog<3>", "<b>"] {
         assert!(!html.contains(raw), "{raw}");
     }
@@ -133,5 +136,101 @@ fn figures_that_compare_methods_show_medians_ranges_and_the_papers_numbers() {
     }
     for text in ["0.025", "3.0 MiB", "0.24", "all pairs need &lt;5.8&gt; GiB", "2 worker threads"] {
         assert!(html.contains(text), "{text}");
+    }
+}
+
+/// Everything that can be shown, in one folder.
+fn full_folder(figure4: &Figure4Record, shapes: Option<&ShapesRecord>) -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    let place = |name: &str| folder.path().join(name);
+    write(&figure1_record(), place("figure1.json")).unwrap();
+    write(&figure3_record(), place("figure3.json")).unwrap();
+    write(figure4, place("figure4.json")).unwrap();
+    shapes.iter().for_each(|shapes| write(shapes, place(SHAPES_FILE)).unwrap());
+    for (name, _) in reproduced::CURVES {
+        write(&curves_record(), place(&format!("{name}.json"))).unwrap();
+    }
+    write(&figure9_record(), place("figure9.json")).unwrap();
+    write(&retrieval_record(), place("retrieval.json")).unwrap();
+    folder
+}
+
+/// The islands of data on a page, by name.
+fn islands(html: &str) -> BTreeMap<String, serde_json::Value> {
+    let parts = html.split("<script type=\"application/json\" id=\"").skip(1);
+    let island = |part: &str| {
+        let (id, rest) = part.split_once("\">").unwrap();
+        let (json, _) = rest.split_once("</script>").unwrap();
+        (id.to_owned(), serde_json::from_str(json).unwrap())
+    };
+    parts.map(island).collect()
+}
+
+const CLASSES: [(&str, usize); 2] = [("cat", 3), ("dog", 2)];
+
+#[test]
+fn every_experiment_has_one_section_its_plots_and_their_data() {
+    let folder = full_folder(&figure4_record(&CLASSES), Some(&shapes_record(&CLASSES)));
+    let html = page_of(folder.path());
+    assert_eq!(html.matches("* plotly.js v").count(), 1, "plotly is there once");
+    assert_eq!(html.matches("const canonform = ").count(), 1);
+    let names = ["figure1", "figure3", "figure4", "figure5a", "figure5b", "figure6", "figure7", "figure8"];
+    for name in names.into_iter().chain(["figure9", "retrieval"]) {
+        assert_eq!(html.matches(&format!("<section id=\"{name}\">")).count(), 1, "{name}");
+    }
+    let islands = islands(&html);
+    for name in &names[1..] {
+        assert_eq!(html.matches(&format!("id=\"{name}-chart\"")).count(), 1, "{name}");
+        assert!(islands.contains_key(&format!("{name}-data")), "{name}");
+    }
+    let plain = without_scripts(&html);
+    for source in plain.split("data-source=\"").skip(1) {
+        let (source, _) = source.split_once('"').unwrap();
+        assert!(islands.contains_key(source), "{source}");
+    }
+    assert_eq!(plain.matches("data-plot=\"curves\"").count(), 10);
+    assert_eq!(islands["figure4-data"]["names"].as_array().map(Vec::len), Some(5));
+    assert_eq!(islands["figure4-data"]["thumbnails"][4]["forms"].as_array().map(Vec::len), Some(2));
+    assert_eq!(islands["figure4-shape-4"]["forms"][0]["size"], 2.0);
+    let ids: Vec<&str> = html.split(" id=\"").skip(1).filter_map(|part| part.split('"').next()).collect();
+    assert_eq!(ids.iter().collect::<std::collections::BTreeSet<_>>().len(), ids.len(), "no id twice");
+}
+
+#[test]
+fn nothing_is_fetched() {
+    let folder = full_folder(&figure4_record(&CLASSES), Some(&shapes_record(&CLASSES)));
+    let html = page_of(folder.path());
+    assert!(html.contains("default-src 'none'"));
+    let plain = without_scripts(&html);
+    for source in plain.split("src=\"").skip(1) {
+        assert!(source.starts_with("data:"), "{}", &source[..20]);
+    }
+    for outside in
+        ["<link", "http:", "https:", "@import", "url(", "srcset", "<iframe", " onerror", " onclick"]
+    {
+        assert!(!plain.contains(outside), "{outside}");
+    }
+    assert!(!html.contains("<script src"));
+}
+
+#[test]
+fn names_are_inert_in_plots_and_data_too() {
+    let evil = "</script><img src=x onerror=alert(1)>";
+    let classes = [(evil, 2), ("\" onclick=\"x", 1)];
+    let folder = full_folder(&figure4_record(&classes), Some(&shapes_record(&classes)));
+    let html = page_of(folder.path());
+    assert!(!html.contains("<img src=x") && !without_scripts(&html).contains("\" onclick=\""));
+    assert_eq!(islands(&html)["figure4-data"]["labels"][0], evil, "and yet they are there");
+}
+
+#[test]
+fn older_folders_have_their_maps_and_say_what_adds_the_shapes() {
+    let figure4 = figure4_record(&CLASSES);
+    let others = shapes_record(&[("cat", 2)]);
+    for shapes in [None, Some(&others)] {
+        let html = page_of(full_folder(&figure4, shapes).path());
+        assert!(html.contains("id=\"figure4-map\"") && !html.contains("id=\"figure4-overlay\""));
+        assert!(html.contains("<code>experiments run all --dataset &#39;a &amp; b&#39;</code> adds them"));
+        assert!(!html.contains("id=\"figure4-shape-0\""));
     }
 }

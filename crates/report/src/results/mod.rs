@@ -7,6 +7,7 @@ mod curves;
 mod figure3;
 mod figure9;
 mod retrieval;
+mod shapes;
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -15,6 +16,7 @@ pub use self::retrieval::{Classification, RetrievalRecord, RetrievalRow};
 pub use curves::{Axis, AxisScale, CurvesPanel, CurvesRecord, Mark, Series, SeriesPoint};
 pub use figure3::{Figure3Form, Figure3Record, Figure3Shape, Figure3Stress};
 pub use figure9::{Figure9Measured, Figure9Record, Figure9Row};
+pub use shapes::{Motions, SHAPES_FILE, SeenForm, SeenShape, ShapesRecord};
 
 use ::retrieval::Evaluation;
 use serde::de::DeserializeOwned;

@@ -1,0 +1,138 @@
+//! The record of the shapes behind Figure 4, for looking at them in a browser.
+
+use serde::{Deserialize, Serialize};
+
+use super::{Figure4Record, Scale};
+use crate::ReportError;
+use crate::interactive::Geometry;
+use crate::interactive::base64::{optional_list, triples};
+
+/// Name of the record in a folder of results.
+pub const SHAPES_FILE: &str = "figure4-shapes.json";
+
+/// The shapes of Figure 4 and their forms, as they are shown.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct ShapesRecord {
+    /// The methods that made forms, in the order of [`SeenShape::forms`].
+    pub methods: Vec<String>,
+    /// The shapes, in the order of Figure 4.
+    pub shapes: Vec<SeenShape>,
+    /// How forms are laid over each other, for each method and scale.
+    pub motions: Vec<Motions>,
+}
+
+/// A shape and its forms, all over the same faces.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct SeenShape {
+    /// Its name, for example `cat0`.
+    pub name: String,
+    /// Its class, for example `cat`.
+    pub label: String,
+    /// Vertices that were embedded; the surface below may be a coarser one, for viewing only.
+    pub n_vertices: usize,
+    /// The shape, in mesh units, with the distances over the surface from the first sample.
+    pub surface: Geometry,
+    /// Its form by each method.
+    pub forms: Vec<SeenForm>,
+}
+
+/// A canonical form over the faces of its shape.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct SeenForm {
+    /// Positions in units of the form around its centroid, turned (and where needed mirrored) so that vertices lie as
+    /// near as they can to where they are on the shape.
+    #[serde(with = "triples")]
+    pub positions: Vec<[f32; 3]>,
+    /// What positions are divided by where size does not count.
+    pub size: f64,
+    /// Root mean square over the samples, for each vertex, of straight line in the form less distance over the
+    /// surface, in mesh units; nothing where forms have no unit of length.
+    #[serde(with = "optional_list", default, skip_serializing_if = "Option::is_none")]
+    pub residual: Option<Vec<f32>>,
+}
+
+/// The motions between the forms of one method at one scale.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Motions {
+    /// Name of the method.
+    pub method: String,
+    /// Whether forms kept their size; the positions that move are those of [`SeenForm`], over the size if not.
+    pub scale: Scale,
+    /// For each pair `i < j` of shapes, row by row, four triples: the rows of a rotation (or reflection) and a
+    /// translation, which take form `i` onto form `j`.
+    #[serde(with = "triples")]
+    pub motions: Vec<[f32; 3]>,
+}
+
+impl ShapesRecord {
+    /// Whether these are the shapes of `figure4`, in its order.
+    #[must_use]
+    pub fn belongs_to(&self, figure4: &Figure4Record) -> bool {
+        let own = self.shapes.iter().map(|shape| (&shape.name, &shape.label));
+        own.eq(figure4.names.iter().zip(&figure4.labels))
+    }
+
+    /// Checks that every list has the length that the others ask for.
+    ///
+    /// # Errors
+    /// [`ReportError::Shape`], naming the part of the record.
+    pub fn validate(&self) -> Result<(), ReportError> {
+        let length = |what: String, found: usize, expected: usize, unit| match found == expected {
+            true => Ok(()),
+            false => Err(ReportError::Shape { what, found, expected, unit }),
+        };
+        for shape in &self.shapes {
+            let n = shape.surface.positions.len();
+            length(format!("the forms of {}", shape.name), shape.forms.len(), self.methods.len(), "method")?;
+            if let Some(values) = &shape.surface.values {
+                length(format!("the distances on {}", shape.name), values.len(), n, "vertex")?;
+            }
+            for form in &shape.forms {
+                length(format!("a form of {}", shape.name), form.positions.len(), n, "vertex")?;
+                let residual = form.residual.as_ref().map_or(n, Vec::len);
+                length(format!("a residual of {}", shape.name), residual, n, "vertex")?;
+            }
+        }
+        let pairs = self.shapes.len() * self.shapes.len().saturating_sub(1) / 2;
+        for Motions { method, scale, motions } in &self.motions {
+            let what = format!("the motions of {method} ({})", scale.name());
+            length(what, motions.len(), 4 * pairs, "row of a motion")?;
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fixtures::{figure4_record, shapes_record};
+    use crate::results::{read, write};
+
+    #[test]
+    fn the_record_reads_back_and_belongs_to_its_figure() {
+        let record = shapes_record(&[("cat", 2), ("dog", 1)]);
+        record.validate().unwrap();
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("shapes.json");
+        write(&record, &path).unwrap();
+        assert_eq!(read::<ShapesRecord>(&path).unwrap(), record);
+        assert!(record.belongs_to(&figure4_record(&[("cat", 2), ("dog", 1)])));
+        assert!(!record.belongs_to(&figure4_record(&[("cat", 1), ("dog", 2)])));
+        assert!(!record.belongs_to(&figure4_record(&[("cat", 2)])));
+    }
+
+    #[test]
+    fn a_record_that_contradicts_itself_is_told_so() {
+        let good = shapes_record(&[("cat", 2), ("dog", 1)]);
+        let broken = |change: &dyn Fn(&mut ShapesRecord)| {
+            let mut record = good.clone();
+            change(&mut record);
+            record.validate().unwrap_err().to_string()
+        };
+        assert!(broken(&|r| r.methods.truncate(1)).starts_with("the forms of cat0 has 2 entries where 1"));
+        assert!(broken(&|r| r.shapes[1].forms[0].positions.truncate(2)).contains("a form of cat1"));
+        assert!(broken(&|r| r.shapes[1].forms[0].residual = Some(vec![])).contains("a residual of cat1"));
+        assert!(broken(&|r| r.shapes[2].surface.values = Some(vec![])).contains("the distances on dog2"));
+        assert!(broken(&|r| r.motions[1].motions.truncate(3)).contains("where 12 are needed"));
+    }
+}

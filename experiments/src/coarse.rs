@@ -1,0 +1,108 @@
+//! Coarser meshes for viewing.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use mesh::TriMesh;
+use nalgebra::{Point3, Vector3};
+
+/// Cells along the longest side of a mesh, at most.
+const FINEST: usize = 2048;
+
+/// Some vertices of a mesh and the faces over them.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Coarse {
+    /// The vertices that stay, ascending.
+    pub(crate) vertices: Vec<usize>,
+    /// Faces, as places in `vertices`.
+    pub(crate) faces: Vec<[u32; 3]>,
+}
+
+/// At most `limit` vertices of a mesh, for looking at it and nothing else; all of them where they are not more.
+///
+/// Of the vertices in each cell of the finest cubic grid with few enough occupied cells, the one nearest to their
+/// mean stays (Rossignac and Borrel 1993); faces that lose a corner to another one go. Since vertices stay where they are, forms
+/// and values are thinned alike.
+pub(crate) fn coarse(mesh: &TriMesh, limit: usize) -> Coarse {
+    if mesh.n_vertices() <= limit {
+        let faces = mesh.faces.iter().map(|face| face.map(|v| v.0)).collect();
+        return Coarse { vertices: (0..mesh.n_vertices()).collect(), faces };
+    }
+    // More cells along a side hardly ever occupy fewer of them.
+    let (mut fits, mut too_fine) = (1, FINEST);
+    while fits + 1 < too_fine {
+        let middle = usize::midpoint(fits, too_fine);
+        let few = cells(mesh, middle).into_iter().collect::<BTreeSet<_>>().len() <= limit;
+        if few { fits = middle } else { too_fine = middle }
+    }
+    thinned(mesh, &cells(mesh, fits))
+}
+
+/// The cell of every vertex, `n` of them along the longest side.
+fn cells(mesh: &TriMesh, n: usize) -> Vec<[usize; 3]> {
+    let [low, high] = mesh.bounds().unwrap_or_default();
+    let side = (high - low).max() / n as f64;
+    let cell = |p: &Point3<f64>| ((p - low) / side).map(|c| (c as usize).min(n - 1)).into();
+    mesh.positions.iter().map(cell).collect()
+}
+
+fn thinned(mesh: &TriMesh, cells: &[[usize; 3]]) -> Coarse {
+    let mut members: BTreeMap<[usize; 3], Vec<usize>> = BTreeMap::new();
+    cells.iter().enumerate().for_each(|(v, cell)| members.entry(*cell).or_default().push(v));
+    let mut stays = vec![0; cells.len()];
+    for vertices in members.values() {
+        let sum: Vector3<f64> = vertices.iter().map(|&v| mesh.positions[v].coords).sum();
+        let mean = sum / vertices.len() as f64;
+        let off = |v: usize| (mesh.positions[v].coords - mean).norm_squared();
+        let nearest = vertices.iter().copied().min_by(|&a, &b| off(a).total_cmp(&off(b)));
+        vertices.iter().for_each(|&v| stays[v] = nearest.unwrap_or(v));
+    }
+    let vertices: Vec<usize> = (0..stays.len()).filter(|&v| stays[v] == v).collect();
+    let mut place = vec![0_u32; stays.len()];
+    vertices.iter().zip(0..).for_each(|(&v, at)| place[v] = at);
+    let mut seen = BTreeSet::new();
+    let mut kept = |face: &[u32; 3]| {
+        let mut corners = *face;
+        corners.sort_unstable();
+        corners[0] != corners[1] && corners[1] != corners[2] && seen.insert(corners)
+    };
+    let faces = mesh.faces.iter().map(|face| face.map(|v| place[stays[v.index()]]));
+    let faces = faces.filter(|face| kept(face)).collect();
+    Coarse { vertices, faces }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use mesh::shapes::icosphere;
+
+    #[test]
+    fn few_vertices_all_stay() {
+        let ball = icosphere(1);
+        let all = coarse(&ball, ball.n_vertices());
+        assert_eq!(all.vertices.len(), ball.n_vertices());
+        assert_eq!(all.faces.len(), ball.n_faces());
+    }
+
+    #[test]
+    fn a_coarse_ball_is_still_a_ball() {
+        let ball = icosphere(5);
+        for limit in [100, 1000] {
+            let thin = coarse(&ball, limit);
+            let n = thin.vertices.len();
+            assert!(n <= limit && n > limit / 3, "{n} of {limit}");
+            assert!(thin.faces.iter().flatten().all(|&v| (v as usize) < n));
+            let positions = thin.vertices.iter().map(|&v| ball.positions[v]).collect();
+            let faces = thin.faces.iter().map(|face| face.map(mesh::VertexId)).collect();
+            let area = TriMesh { positions, faces }.area() / ball.area();
+            assert!((0.8..1.05).contains(&area), "{area}");
+        }
+    }
+
+    #[test]
+    fn a_mesh_without_extent_does_no_harm() {
+        let flat =
+            TriMesh { positions: vec![Point3::origin(); 9], faces: vec![[0, 1, 2].map(mesh::VertexId)] };
+        let point = coarse(&flat, 4);
+        assert!(point.vertices.len() == 1 && point.faces.is_empty());
+    }
+}

@@ -1,0 +1,116 @@
+//! What the page shows of shapes and forms when they are turned: `figure4-shapes.json`.
+
+use anyhow::{Result, bail};
+use descriptors::{Alignment, CanonicalForm};
+use geodesics::DistanceSolver;
+use linalg::Matrix;
+use mesh::{TriMesh, VertexId, orient_consistently};
+use nalgebra::Point3;
+use pipeline::{EmbedOptions, Embedded, Normalization};
+use report::interactive::Geometry;
+use report::results::{Motions, Scale, SeenForm, SeenShape};
+
+use crate::coarse::coarse;
+use crate::collection::Shape;
+
+/// Vertices of all shapes together, at most: a page of about 20 MB.
+const ALL_VERTICES: usize = 200_000;
+
+/// Vertices of one shape, at most: more than a picture has room for.
+const SHAPE_VERTICES: usize = 20_000;
+
+/// Vertices that a shape is shown with, at most, when there are `n_shapes`.
+pub(crate) fn vertex_limit(n_shapes: usize) -> usize {
+    (ALL_VERTICES / n_shapes.max(1)).clamp(100, SHAPE_VERTICES)
+}
+
+/// A form, what it was made of, and how it is turned to be shown.
+pub(crate) struct Formed {
+    pub(crate) form: CanonicalForm,
+    /// Vertices of the repaired mesh.
+    samples: Vec<VertexId>,
+    turn: Alignment,
+}
+
+impl Formed {
+    /// The form of an embedded shape.
+    pub(crate) fn new(shape: &Shape, embedded: &Embedded) -> Result<Self> {
+        let surface = &shape.surface;
+        let form = embedded.form(surface)?;
+        let to_repaired = |&input: &u32| surface.repaired_vertex(VertexId(input));
+        let samples = embedded.report.samples.iter().map(to_repaired).collect::<Result<_, _>>()?;
+        let turn = turned_like(form.points(), &surface.mesh().positions);
+        Ok(Self { form, samples, turn })
+    }
+
+    /// The form as it is shown, at the vertices that are.
+    fn seen(&self, vertices: &[usize], from_samples: &Matrix) -> SeenForm {
+        let points = self.form.points();
+        let single = |&v: &usize| self.turn.apply(&points[v]).coords.map(|c| c as f32).into();
+        let off = |v: usize| {
+            let sample = |(j, &s): (usize, &VertexId)| {
+                let straight = (points[v] - points[s.index()]).norm();
+                (straight - from_samples[(v, j)]).powi(2)
+            };
+            let sum: f64 = self.samples.iter().enumerate().map(sample).sum();
+            (sum / self.samples.len() as f64).sqrt() as f32
+        };
+        SeenForm {
+            positions: vertices.iter().map(single).collect(),
+            size: self.form.spread() / self.form.normalized(Normalization::UnitArea).spread(),
+            residual: self.form.area().map(|_| vertices.iter().map(|&v| off(v)).collect()),
+        }
+    }
+}
+
+/// The rotation or reflection about the origin that brings points closest to where they were on the shape.
+fn turned_like(points: &[Point3<f64>], shape: &[Point3<f64>]) -> Alignment {
+    let pairs: Vec<_> = points.iter().copied().zip(shape.iter().copied()).collect();
+    let off =
+        |motion: &Alignment| pairs.iter().map(|(p, q)| (motion.apply(p) - q).norm_squared()).sum::<f64>();
+    let fits = [false, true].into_iter().filter_map(|reflected| Alignment::fit(&pairs, reflected));
+    let best = fits.min_by(|a, b| off(a).total_cmp(&off(b)));
+    Alignment::about_origin(best.map_or_else(nalgebra::Matrix3::identity, |motion| motion.rotation))
+}
+
+/// A shape with its forms by several methods, at no more than `limit` vertices.
+pub(crate) fn seen(
+    shape: &Shape,
+    forms: &[&Formed],
+    options: &EmbedOptions,
+    limit: usize,
+) -> Result<SeenShape> {
+    let mut mesh: TriMesh = shape.surface.mesh().clone();
+    orient_consistently(&mut mesh);
+    let solver: Box<dyn DistanceSolver> = options.geodesic.prepare(&shape.surface.intrinsic)?;
+    let Some(first) = forms.first() else { bail!("no method made a form") };
+    let thin = coarse(&mesh, limit);
+    let kept = TriMesh {
+        positions: thin.vertices.iter().map(|&v| mesh.positions[v]).collect(),
+        faces: thin.faces.iter().map(|face| face.map(VertexId)).collect(),
+    };
+    let distances = solver.distance_columns(&first.samples[..1.min(first.samples.len())]);
+    let distance: Vec<f64> = thin.vertices.iter().map(|&v| distances[(v, 0)]).collect();
+    let seen = |formed: &&Formed| {
+        let from_samples = solver.distance_columns(&formed.samples);
+        formed.seen(&thin.vertices, &from_samples)
+    };
+    Ok(SeenShape {
+        name: shape.name.clone(),
+        label: shape.label.clone(),
+        n_vertices: mesh.n_vertices(),
+        surface: Geometry::new(&kept).with_values("distance (mesh units)", &distance),
+        forms: forms.iter().map(seen).collect(),
+    })
+}
+
+/// The motions between forms, for forms as they are shown.
+pub(crate) fn motions(method: &str, scale: Scale, forms: &[Formed], alignments: &[Alignment]) -> Motions {
+    let pairs = (0..forms.len()).flat_map(|i| (i + 1..forms.len()).map(move |j| (i, j)));
+    let shown = pairs.zip(alignments).flat_map(|((i, j), alignment)| {
+        let motion = forms[j].turn.after(&alignment.after(&forms[i].turn.inverse()));
+        let row = |r: usize| std::array::from_fn(|c| motion.rotation[(r, c)] as f32);
+        [row(0), row(1), row(2), motion.translation.map(|c| c as f32).into()]
+    });
+    Motions { method: method.to_owned(), scale, motions: shown.collect() }
+}
