@@ -85,20 +85,24 @@ impl Front {
     /// from the bottom and nearly always belongs there, so comparing it on the way down is no use.
     #[inline]
     fn sift_down(&mut self, item: (f64, u32)) {
-        let nearer = |p: (usize, f64), q: (usize, f64)| if q.1 < p.1 { q } else { p };
         let mut hole = 0;
         loop {
             let first = 4 * hole + 1;
             let child = match self.heap.get(first..) {
-                Some([p, q, r, s, ..]) => nearer(nearer((0, p.0), (1, q.0)), nearer((2, r.0), (3, s.0))),
-                Some(few) => match few.iter().map(|child| child.0).enumerate().reduce(nearer) {
+                Some([p, q, r, s, ..]) => {
+                    let near = usize::from(q.0 < p.0);
+                    let far = 2 | usize::from(s.0 < r.0);
+                    let is_far = usize::from(r.0.min(s.0) < p.0.min(q.0));
+                    near ^ ((near ^ far) & is_far.wrapping_neg())
+                }
+                Some(few) => match (0..few.len()).min_by(|i, j| few[*i].0.total_cmp(&few[*j].0)) {
                     Some(child) => child,
                     None => break,
                 },
                 None => break,
             };
-            self.place(hole, self.heap[first + child.0]);
-            hole = first + child.0;
+            self.place(hole, self.heap[first + child]);
+            hole = first + child;
         }
         self.sift_up(hole, item);
     }
