@@ -36,6 +36,7 @@ bench-peers: build ## Measure other programs beside this one and write docs/benc
 	target/peers/bin/python bench/peers.py
 
 bench-nmds: build ## Measure whole canonical forms beside potpourri3d and NumPy and write docs/nmds.md (needs Python and test meshes)
+	$(CARGO) build --release --locked -p pipeline --example forms
 	test -x target/peers/bin/python || python3 -m venv target/peers
 	target/peers/bin/pip install --quiet numpy potpourri3d
 	target/peers/bin/python bench/nmds.py

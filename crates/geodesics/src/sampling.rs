@@ -29,8 +29,9 @@ pub enum FirstSample {
 ///   (Hochbaum and Shmoys 1985).
 /// * Ends early, with fewer landmarks than asked for, when every vertex coincides with one.
 ///
-/// Cost: one run of the solver per landmark, in parallel where the solver can prune, and then about
-/// `1 + 1/2 + ... + 1/n` further runs to choose them.
+/// Cost: one run of the solver per landmark. On several threads they run side by side where the solver can
+/// prune, which takes about `1/2 + ... + 1/n` further runs to choose the landmarks ahead; the result is the
+/// same.
 #[derive(Debug)]
 pub struct FarthestPointSampler<'a> {
     solver: &'a dyn DistanceSolver,
@@ -70,11 +71,13 @@ impl<'a> FarthestPointSampler<'a> {
     /// # Errors
     /// [`GeodesicError::Disconnected`].
     pub fn extend_to(&mut self, n: usize) -> Result<(), GeodesicError> {
-        match self.solver.pruned() {
-            Some(pruned) => self.extend_pruned(pruned, n.min(self.nearest.len())),
-            None => self.extend_fully(n.min(self.nearest.len()))?,
+        let n = n.min(self.nearest.len());
+        if rayon::current_num_threads() > 1
+            && let Some(pruned) = self.solver.pruned()
+        {
+            self.extend_pruned(pruned, n);
         }
-        Ok(())
+        self.extend_fully(n)
     }
 
     /// Takes each sample from the distances of the one before.
@@ -85,7 +88,7 @@ impl<'a> FarthestPointSampler<'a> {
                 break;
             }
             let column = reached(self.solver, VertexId::from(next))?;
-            self.nearest.iter_mut().zip(&column).for_each(|(near, d)| *near = near.min(*d));
+            lower(&mut self.nearest, &column);
             self.columns.extend_from_slice(&column);
             self.landmarks.push(next);
         }
@@ -94,22 +97,33 @@ impl<'a> FarthestPointSampler<'a> {
 
     /// Takes samples by fronts that stop half-way to the samples before, while other threads find the
     /// distances of those that are known. Every vertex was reached from the first sample, so all are.
+    ///
+    /// Where such a front stopped its distances may be too long. The samples are therefore looked at again once
+    /// all distances are known, and kept as far as they are the farthest ones.
     fn extend_pruned(&mut self, pruned: &dyn PrunedSolver, n: usize) {
         let (p, solver, before) = (self.nearest.len(), self.solver, self.landmarks.len());
-        let Self { landmarks, columns, nearest, .. } = self;
-        columns.resize(p * n.max(before), 0.0);
+        let mut nearest = self.nearest.clone();
+        let mut guesses = Vec::new();
+        self.columns.resize(p * n.max(before), 0.0);
         rayon::scope(|scope| {
-            for column in columns[p * before..].chunks_mut(p.max(1)) {
-                let next = farthest(nearest);
+            for column in self.columns[p * before..].chunks_mut(p.max(1)) {
+                let next = farthest(&nearest);
                 if nearest[next] == 0.0 {
                     break;
                 }
-                landmarks.push(next);
+                guesses.push(next);
                 scope.spawn(move |_| solver.distances_into(VertexId::from(next), column));
-                pruned.lower(VertexId::from(next), nearest);
+                pruned.lower(VertexId::from(next), &mut nearest);
             }
         });
-        columns.truncate(p * landmarks.len());
+        for (guess, column) in guesses.into_iter().zip(self.columns[p * before..].chunks(p.max(1))) {
+            if guess != farthest(&self.nearest) {
+                break;
+            }
+            self.landmarks.push(guess);
+            lower(&mut self.nearest, column);
+        }
+        self.columns.truncate(p * self.landmarks.len());
     }
 
     /// Number of landmarks so far.
@@ -145,6 +159,10 @@ pub fn farthest_point_sampling(
     let mut sampler = FarthestPointSampler::new(solver, first)?;
     sampler.extend_to(n)?;
     sampler.distances(n)
+}
+
+fn lower(nearest: &mut [f64], column: &[f64]) {
+    nearest.iter_mut().zip(column).for_each(|(near, d)| *near = near.min(*d));
 }
 
 /// The distances from `source`, all finite.

@@ -1,6 +1,6 @@
 //! How long work tells of its progress.
 
-use geodesics::{DistanceSolver, Source};
+use geodesics::{DistanceSolver, PrunedSolver, Source};
 use linalg::Matrix;
 use mesh::VertexId;
 
@@ -55,5 +55,9 @@ impl DistanceSolver for Observed<'_> {
             batch.iter().for_each(|_| self.observer.step());
         }
         columns
+    }
+
+    fn pruned(&self) -> Option<&dyn PrunedSolver> {
+        self.solver.pruned()
     }
 }
