@@ -63,6 +63,10 @@ impl Part {
         [(a, Self::Bare(Arm::edge(b, length))), (b, Self::Bare(Arm::edge(a, length)))]
     }
 
+    pub(super) fn is_triangle(&self) -> bool {
+        matches!(self, Self::Triangle { .. })
+    }
+
     fn has(&self, arm: &Arm) -> bool {
         matches!(self, Self::Triangle { arms, .. } if arms.contains(arm))
     }
@@ -83,6 +87,15 @@ pub(super) fn is_cut(parts: &[Part]) -> bool {
     parts.iter().any(|part| matches!(part, Part::Triangle { arms, .. } if arms.iter().any(is_odd)))
 }
 
+/// How the triangles at a vertex hang together.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Strung {
+    /// In one ring.
+    Ring,
+    /// In open chains, in several rings, or there are none.
+    Otherwise,
+}
+
 /// Makes spokes of parts.
 #[derive(Debug, Default)]
 pub(super) struct Chains {
@@ -92,10 +105,41 @@ pub(super) struct Chains {
 
 impl Chains {
     /// Appends the spokes of a vertex with the given parts.
-    pub(super) fn append(&mut self, parts: &[Part], spokes: &mut Vec<Spoke>) {
+    pub(super) fn append(&mut self, parts: &[Part], spokes: &mut Vec<Spoke>) -> Strung {
         let first = spokes.len();
+        let strung = self.ring(parts, spokes);
+        if strung == Strung::Otherwise {
+            spokes.truncate(first);
+            self.strings(parts, spokes);
+        }
+        for part in parts {
+            let Part::Bare(arm) = part else { continue };
+            let is_shorter = |spoke: &Spoke| {
+                spoke.end == arm.end && spoke.ways.allow(Ways::ALONG) && spoke.length <= arm.length
+            };
+            if !spokes[first..].iter().any(is_shorter) {
+                spokes.push(start(arm));
+            }
+        }
+        strung
+    }
+
+    /// Tries whether the triangles are one ring, as they are at nearly all vertices.
+    fn ring(&mut self, parts: &[Part], spokes: &mut Vec<Spoke>) -> Strung {
         self.used.clear();
         self.used.resize(parts.len(), false);
+        let mut triangles = parts.iter().filter(|part| part.is_triangle());
+        let Some(Part::Triangle { arms: [begin, _], .. }) = triangles.next() else {
+            return Strung::Otherwise;
+        };
+        let end = self.chain(parts, *begin, spokes);
+        let n_used = self.used.iter().filter(|used| **used).count();
+        if end == *begin && n_used == 1 + triangles.count() { Strung::Ring } else { Strung::Otherwise }
+    }
+
+    /// Strings the triangles together in as few chains as there can be.
+    fn strings(&mut self, parts: &[Part], spokes: &mut Vec<Spoke>) {
+        self.used.fill(false);
         // Arms of an odd number of triangles are where chains must begin or end; what is left are rings.
         for begins in [Self::is_loose, |_: &Self, _: &[Part], _: &Arm| true] {
             for i in 0..parts.len() {
@@ -107,22 +151,13 @@ impl Chains {
                 }
             }
         }
-        for part in parts {
-            let Part::Bare(arm) = part else { continue };
-            let is_shorter = |spoke: &Spoke| {
-                spoke.end == arm.end && spoke.ways.allow(Ways::ALONG) && spoke.length <= arm.length
-            };
-            if !spokes[first..].iter().any(is_shorter) {
-                spokes.push(start(arm));
-            }
-        }
     }
 
-    /// A chain from an arm on through unused triangles.
-    fn chain(&mut self, parts: &[Part], mut arm: Arm, spokes: &mut Vec<Spoke>) {
+    /// A chain from an arm on through unused triangles; its last arm.
+    fn chain(&mut self, parts: &[Part], mut arm: Arm, spokes: &mut Vec<Spoke>) -> Arm {
         spokes.push(start(&arm));
         while let Some(i) = (0..parts.len()).find(|&i| !self.used[i] && parts[i].has(&arm)) {
-            let Part::Triangle { arms, dot, cross, reaches } = parts[i] else { return };
+            let Part::Triangle { arms, dot, cross, reaches } = parts[i] else { break };
             self.used[i] = true;
             let is_first = arms[1] == arm;
             arm = if is_first { arms[0] } else { arms[1] };
@@ -134,6 +169,7 @@ impl Chains {
             let ways = through.and(arm.ways());
             spokes.push(Spoke { end: arm.end, ways, length: arm.length, dot, cross });
         }
+        arm
     }
 
     /// Whether an arm belongs to an odd number of unused triangles.
@@ -160,7 +196,8 @@ mod tests {
 
     fn ends(parts: &[Part]) -> Vec<u32> {
         let mut spokes = Vec::new();
-        Chains::default().append(parts, &mut spokes);
+        let strung = Chains::default().append(parts, &mut spokes);
+        assert!(!(strung == Strung::Ring && is_cut(parts)));
         spokes.iter().map(|spoke| spoke.end).collect()
     }
 

@@ -4,7 +4,7 @@ use std::f64::consts::{PI, TAU};
 
 use rayon::prelude::*;
 
-use super::chains::{Chains, Part, is_cut, total_angle};
+use super::chains::{Chains, Part, Strung, is_cut, total_angle};
 use super::triangulation::Triangulation;
 use super::update::Sector;
 use crate::rows::Rows;
@@ -127,12 +127,15 @@ impl Spokes {
                 for v in vertices {
                     parts.clear();
                     parts.extend(corners.of(*v).iter().map(|(face, slot)| triangulation.part(*face, *slot)));
-                    let angle = total_angle(&parts);
-                    let bends = angle > TAU * STRAIGHT || (angle > PI * STRAIGHT && is_cut(&parts));
-                    block.bends.push(bends);
+                    let own = parts.len();
                     parts.extend_from_slice(extras.of(*v));
                     let first = block.spokes.len();
-                    chains.append(&parts, &mut block.spokes);
+                    let strung = chains.append(&parts, &mut block.spokes);
+                    let is_one_ring = strung == Strung::Ring && !parts[own..].iter().any(Part::is_triangle);
+                    let own = &parts[..own];
+                    let angle = total_angle(own);
+                    let is_cut = || !is_one_ring && is_cut(own);
+                    block.bends.push(angle > TAU * STRAIGHT || (angle > PI * STRAIGHT && is_cut()));
                     block.counts.push((block.spokes.len() - first) as u32);
                 }
                 for spoke in &mut block.spokes {
