@@ -105,7 +105,7 @@ const canonform = (() => {
     return [low, high];
   }
 
-  // Ranges of the axes, and their lengths in the scene: the surfaces fill it whatever their size and shape.
+  // Ranges of the axes, and their lengths as shares of the diagonal: surfaces fill the scene whatever their size.
   function bounds(data) {
     const ranges = ['x', 'y', 'z'].map((axis) => extent(data.flatMap((trace) => extent(trace[axis]))));
     const sides = ranges.map(([low, high]) => high - low);
@@ -113,16 +113,18 @@ const canonform = (() => {
     const thick = (side) => Math.max(side, 1e-3 * size);
     return ranges.map(([low, high], i) => {
       const [middle, half] = [(low + high) / 2, thick(sides[i]) / 2];
-      return { range: [middle - half, middle + half], length: (1.4 * thick(sides[i])) / size };
+      return { range: [middle - half, middle + half], share: thick(sides[i]) / size };
     });
   }
 
   // A colour bar takes its width from the scene.
   const BAR = 64;
 
-  function layout(data, width, colors, hasLegend) {
+  function layout(data, [width, height], colors, hasLegend) {
     const sides = bounds(data);
-    const hasBar = data.some((trace) => trace.colorbar);
+    const share = data.some((trace) => trace.colorbar) ? Math.max(1 - BAR / width, 0.6) : 1;
+    // The field of view is that of the height.
+    const zoom = Math.min(1.4, (1.7 * share * width) / height);
     // Without titles and ticks plotly does not set any text in 3D.
     const axis = (i) => ({
       visible: false, showspikes: false, title: { text: '' }, tickmode: 'array', tickvals: [], showticklabels: false,
@@ -134,9 +136,9 @@ const canonform = (() => {
       showlegend: hasLegend,
       legend: { x: 0, y: 0, yanchor: 'bottom', bgcolor: 'rgba(0,0,0,0)', itemclick: 'toggle', itemdoubleclick: false },
       scene: {
-        domain: { x: [0, hasBar ? Math.max(1 - BAR / width, 0.6) : 1] },
+        domain: { x: [0, share] },
         dragmode: 'orbit', hovermode: false, camera: structuredClone(CAMERA), uirevision: 'kept',
-        aspectmode: 'manual', aspectratio: { x: sides[0].length, y: sides[1].length, z: sides[2].length },
+        aspectmode: 'manual', aspectratio: { x: zoom * sides[0].share, y: zoom * sides[1].share, z: zoom * sides[2].share },
         xaxis: axis(0), yaxis: axis(1), zaxis: axis(2),
       },
     };
@@ -188,7 +190,7 @@ const canonform = (() => {
       this.fit();
       const data = geometries.flatMap((geometry, i) =>
         traces(geometry, { opacity: opacity[i], name: names[i], range, colors }));
-      await Plotly.react(this.scene, data, layout(data, this.scene.clientWidth, colors, names.length > 0), CONFIG);
+      await Plotly.react(this.scene, data, layout(data, [this.scene.clientWidth, this.scene.clientHeight], colors, names.length > 0), CONFIG);
       this.element.dataset.state = 'ready';
       if (!this.observer) this.watch();
     }

@@ -23,8 +23,8 @@ impl Plot {
     }
 }
 
-/// The plots of an experiment over one island of data, and its static figure, which may be empty.
-pub(super) fn chart(name: &str, plots: &[Plot], data: &Value, still: &str) -> String {
+/// The plots of an experiment over one island of data with a caption, and its static figure, which may be empty.
+pub(super) fn chart(name: &str, plots: &[Plot], caption: &str, data: &Value, still: &str) -> String {
     let mut boxes = String::new();
     for Plot { kind, panel, label } in plots {
         let _ = writeln!(
@@ -34,7 +34,8 @@ pub(super) fn chart(name: &str, plots: &[Plot], data: &Value, still: &str) -> St
             escape(label)
         );
     }
-    let plots = format!("<div class=\"plots\">\n{boxes}</div>\n");
+    let caption = escape(caption);
+    let plots = format!("<div class=\"plots\">\n{boxes}</div>\n<p class=\"pale\">{caption}</p>\n");
     format!("{}{}", framed(name, &plots, still), island(&format!("{name}-data"), data))
 }
 

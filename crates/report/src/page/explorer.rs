@@ -18,21 +18,24 @@ use crate::color::class_clay;
 use crate::interactive::base64::encode;
 use crate::interactive::hex;
 use crate::render::{RenderOptions, Surface, View, render};
-use crate::results::{Figure4Record, SHAPES_FILE, Scale, SeenShape, ShapesRecord, read};
+use crate::results::{Figure1Record, Figure4Record, SHAPES_FILE, Scale, SeenShape, ShapesRecord, read};
 
 /// Width and height of a thumbnail, in pixels: twice what the card shows.
 const THUMBNAIL: [u32; 2] = [224, 192];
 
 /// The map and the matrix, and the shapes and forms behind them where the folder has them; `still` in their place.
-pub(super) fn explorer(folder: &Path, record: &Figure4Record, still: &str) -> Result<String, ReportError> {
+pub(super) fn explorer(
+    record: &Figure4Record,
+    shapes: Option<&ShapesRecord>,
+    still: &str,
+) -> Result<String, ReportError> {
     if record.names.is_empty() || record.panels.is_empty() {
         return Ok(still.to_owned());
     }
-    let shapes = shapes(folder, record)?;
-    let live = live(record, shapes.as_ref());
+    let live = live(record, shapes);
     let mut html = framed("figure4", &live, still);
-    html.push_str(&island("figure4-data", &data(record, shapes.as_ref())?));
-    for (i, shape) in shapes.iter().flat_map(|record| &record.shapes).enumerate() {
+    html.push_str(&island("figure4-data", &data(record, shapes)?));
+    for (i, shape) in shapes.iter().flat_map(|shapes| &shapes.shapes).enumerate() {
         let SeenShape { n_vertices, surface, forms, .. } = shape;
         let shape = json!({"n_vertices": n_vertices, "surface": surface, "forms": forms});
         html.push_str(&island(&format!("figure4-shape-{i}"), &shape));
@@ -40,15 +43,44 @@ pub(super) fn explorer(folder: &Path, record: &Figure4Record, still: &str) -> Re
     Ok(html)
 }
 
-/// The record of shapes, where there is one of this very figure.
-fn shapes(folder: &Path, figure: &Figure4Record) -> Result<Option<ShapesRecord>, ReportError> {
-    let path = folder.join(SHAPES_FILE);
-    if !path.exists() {
+/// The record of the shapes of Figure 4, where the folder has both and they belong together.
+pub(super) fn shapes(folder: &Path) -> Result<Option<ShapesRecord>, ReportError> {
+    let (figure, shapes) = (folder.join("figure4.json"), folder.join(SHAPES_FILE));
+    if !(figure.exists() && shapes.exists()) {
         return Ok(None);
     }
-    let record: ShapesRecord = read(path)?;
-    record.validate()?;
-    Ok(Some(record).filter(|record| record.belongs_to(figure)))
+    let figure: Figure4Record = read(figure)?;
+    let shapes: ShapesRecord = read(shapes)?;
+    shapes.validate()?;
+    Ok(Some(shapes).filter(|shapes| shapes.belongs_to(&figure)))
+}
+
+/// The shapes of Figure 1 to turn, those that Figure 4 has; empty when it has none.
+pub(super) fn gallery(record: &Figure1Record, shapes: Option<&ShapesRecord>) -> String {
+    let Some(shapes) = shapes else { return String::new() };
+    let place = |name: &String| shapes.shapes.iter().position(|shape| shape.name == *name);
+    let options: Vec<_> = record
+        .shapes
+        .iter()
+        .filter_map(|s| Some((place(&s.name)?.to_string(), s.name.clone(), false)))
+        .collect();
+    let Some(method) = shapes.methods.first().filter(|_| !options.is_empty()) else { return String::new() };
+    let controls = select("figure1-shape", "Shape", options.into_iter()) + &color_select("figure1-color");
+    let scenes =
+        ["shape", "form"].map(|name| format!("<div class=\"view\" id=\"figure1-view-{name}\"></div>\n"));
+    format!(
+        "<div class=\"live\" id=\"figure1-explorer\" data-method=\"{}\">\n<form class=\"controls\" autocomplete=\"off\">\n{controls}</form>\n\
+         <div class=\"views two\">\n{}</div>\n<p class=\"pale\">Drag to turn both; the colours are explained at \
+         <a href=\"#figure4-explorer\">Figure 4</a>, which has all shapes.</p>\n</div>\n",
+        escape(method),
+        scenes.concat()
+    )
+}
+
+fn color_select(id: &str) -> String {
+    let colors =
+        [("class", "class"), ("distance", "distance from a sample"), ("residual", "residual of the form")];
+    select(id, "Colours", colors.into_iter().map(|(value, text)| (value.to_owned(), text.to_owned(), false)))
 }
 
 fn data(record: &Figure4Record, shapes: Option<&ShapesRecord>) -> Result<Value, ReportError> {
@@ -108,17 +140,12 @@ fn live(record: &Figure4Record, shapes: Option<&ShapesRecord>) -> String {
     let scales = [(Scale::Raw, "original"), (Scale::Normalized, "ignored")];
     let scales = scales.into_iter().filter(|(scale, _)| record.panels_at(*scale).next().is_some());
     let plain = |value: &str, text: &str| (value.to_owned(), text.to_owned(), false);
-    let mut controls = select("method", "Method", methods.iter().map(|m| plain(m, m)));
-    controls += &select("scale", "Size", scales.map(|(scale, text)| plain(scale.name(), text)));
-    controls += &select("first", "Shape 1", numbered(0).into_iter());
-    controls += &select("second", "Shape 2", numbered(1.min(record.names.len() - 1)).into_iter());
+    let mut controls = select("figure4-method", "Method", methods.iter().map(|m| plain(m, m)));
+    controls += &select("figure4-scale", "Size", scales.map(|(scale, text)| plain(scale.name(), text)));
+    controls += &select("figure4-first", "Shape 1", numbered(0).into_iter());
+    controls += &select("figure4-second", "Shape 2", numbered(1.min(record.names.len() - 1)).into_iter());
     if shapes.is_some() {
-        let colors = [
-            plain("class", "class"),
-            plain("distance", "distance from a sample"),
-            plain("residual", "residual of the form"),
-        ];
-        controls += &select("color", "Colours", colors.into_iter());
+        controls += &color_select("figure4-color");
     }
     let mut html = format!(
         "<div id=\"figure4-explorer\">\n<form class=\"controls\" autocomplete=\"off\">\n{controls}</form>\n<div class=\"plots\">\n\
@@ -128,6 +155,8 @@ fn live(record: &Figure4Record, shapes: Option<&ShapesRecord>) -> String {
          <img class=\"form\" alt=\"\" width=\"112\" height=\"96\"></div><p><b class=\"name\"></b> <span class=\"class\"></span></p></div></div>\n\
          <div class=\"plot square\" id=\"figure4-matrix\" data-plot=\"matrix\" role=\"img\" \
          aria-label=\"Distances of all pairs; choose a pair above or by a click\"></div>\n</div>\n\
+         <p class=\"pale\">Left: the shapes as points of the plane, by multidimensional scaling of the distances between their forms; near points \
+         are similar forms. Right: these distances, grouped by class; dark is near. A click on a point chooses shape 1, on a cell a pair.</p>\n\
          <p id=\"figure4-facts\" role=\"status\"></p>\n"
     );
     html.push_str(&match shapes {
@@ -142,8 +171,8 @@ fn live(record: &Figure4Record, shapes: Option<&ShapesRecord>) -> String {
     html
 }
 
-fn select(name: &str, label: &str, options: impl Iterator<Item = (String, String, bool)>) -> String {
-    let mut html = format!("<label>{label} <select id=\"figure4-{name}\">");
+fn select(id: &str, label: &str, options: impl Iterator<Item = (String, String, bool)>) -> String {
+    let mut html = format!("<label>{label} <select id=\"{id}\">");
     for (value, text, chosen) in options {
         let chosen = if chosen { " selected" } else { "" };
         let _ = write!(html, "<option value=\"{}\"{chosen}>{}</option>", escape(&value), escape(&text));

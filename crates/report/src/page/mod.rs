@@ -21,7 +21,7 @@ use base64::engine::general_purpose::STANDARD;
 use crate::figure4::Content;
 use crate::files::write_atomically;
 use crate::numbers::signed;
-use crate::results::{Expectation, Figure1Record, Figure4Record, Provenance, Scale, read};
+use crate::results::{Expectation, Figure1Record, Figure4Record, Provenance, Scale, ShapesRecord, read};
 use crate::{ReportError, figure1, figure4, tables};
 use html::{Cell, escape, paragraphs, table};
 
@@ -38,8 +38,12 @@ pub const FILE: &str = "report.html";
 /// [`ReportError::Write`] when the page cannot be written.
 pub fn write_report(out_dir: impl AsRef<Path>) -> Result<PathBuf, ReportError> {
     let folder = out_dir.as_ref();
-    let mut sections =
-        vec![figure1_section(folder)?, reproduced::figure3_section(folder)?, figure4_section(folder)?];
+    let shapes = explorer::shapes(folder)?;
+    let mut sections = vec![
+        figure1_section(folder, shapes.as_ref())?,
+        reproduced::figure3_section(folder)?,
+        figure4_section(folder, shapes.as_ref())?,
+    ];
     for experiment in reproduced::CURVES {
         sections.push(reproduced::curves_section(folder, experiment)?);
     }
@@ -104,7 +108,7 @@ fn page(sections: &[Section]) -> String {
     html
 }
 
-fn figure1_section(folder: &Path) -> Result<Section, ReportError> {
+fn figure1_section(folder: &Path, shapes: Option<&ShapesRecord>) -> Result<Section, ReportError> {
     let (name, title) = ("figure1", "Figure 1. Shapes and their canonical forms");
     let path = folder.join("figure1.json");
     if !path.exists() {
@@ -119,6 +123,7 @@ fn figure1_section(folder: &Path) -> Result<Section, ReportError> {
         "Pairs of a shape (left) and its canonical form (right), up to three of each class. The forms \
          of a class are all seen from one side; under each stands its stress in squared mesh units. Colours go by class and agree with those of Figure 4.",
     )?);
+    body.push_str(&explorer::gallery(&record, shapes));
     body.push_str(&expectations(&record.expectations));
     let rows: Vec<Vec<Cell>> = record
         .shapes
@@ -142,7 +147,7 @@ fn figure1_section(folder: &Path) -> Result<Section, ReportError> {
     Ok(Section { name, title, body, expectations: record.expectations })
 }
 
-fn figure4_section(folder: &Path) -> Result<Section, ReportError> {
+fn figure4_section(folder: &Path, shapes: Option<&ShapesRecord>) -> Result<Section, ReportError> {
     let (name, title) = ("figure4", "Figure 4. Classification of shapes by their canonical forms");
     let path = folder.join("figure4.json");
     if !path.exists() {
@@ -156,7 +161,7 @@ fn figure4_section(folder: &Path) -> Result<Section, ReportError> {
             still += &picture(folder, name, part, &figure4_caption(scale, content, record.names.len()))?;
         }
     }
-    body.push_str(&explorer::explorer(folder, &record, &still)?);
+    body.push_str(&explorer::explorer(&record, shapes, &still)?);
     body.push_str(&expectations(&record.expectations));
     let rows: Vec<Vec<Cell>> = record
         .panels

@@ -39,10 +39,12 @@ pub(super) fn figure3_section(folder: &Path) -> Result<Section, ReportError> {
         "Shapes (left) and their forms by each method. Each form fills its tile and is turned to match the first of its \
          row. Under it stands its stress in squared mesh units, of the run of median stress, and the paper's number.",
     )?);
+    let caption = "Medians and ranges of the stress over runs that differ in the first sample, for three ways to measure distances, and the \
+                   paper's numbers.";
     let shapes = Classes::of(record.stresses.iter().map(|s| s.shape.as_str()));
     let plot = |i| Plot::new("stress", i, format!("Stress of the methods on {}", shapes.name(i)));
     let plots: Vec<Plot> = (0..shapes.len()).map(plot).collect();
-    body.push_str(&chart(name, &plots, &json!({"stresses": record.stresses}), ""));
+    body.push_str(&chart(name, &plots, caption, &json!({"stresses": record.stresses}), ""));
     body.push_str(&expectations(&record.expectations));
     let rows: Vec<Vec<Cell>> = record
         .stresses
@@ -77,7 +79,7 @@ pub(super) fn curves_section(
     let label = |title: &str| format!("{}: {title}", record.caption);
     let plot = |(i, panel): (usize, &CurvesPanel)| Plot::new("curves", i, label(&panel.title));
     let plots: Vec<Plot> = record.panels.iter().enumerate().map(plot).collect();
-    body.push_str(&chart(name, &plots, &json!({"panels": record.panels}), &still));
+    body.push_str(&chart(name, &plots, &record.caption, &json!({"panels": record.panels}), &still));
     body.push_str(&expectations(&record.expectations));
     body.push_str("<h3>Numbers</h3>\n");
     for panel in &record.panels {
@@ -111,7 +113,13 @@ pub(super) fn figure9_section(folder: &Path) -> Result<Section, ReportError> {
     let record: Figure9Record = read(path)?;
     let mut body = paragraphs(&record.analysis);
     let plots = [Plot::new("times", 0, "Seconds of every method on every shape")];
-    body.push_str(&chart(name, &plots, &json!({"rows": record.rows}), ""));
+    body.push_str(&chart(
+        name,
+        &plots,
+        "Filled: here; hollow: the paper, on a laptop of 2015.",
+        &json!({"rows": record.rows}),
+        "",
+    ));
     let rows: Vec<Vec<Cell>> = record
         .rows
         .iter()

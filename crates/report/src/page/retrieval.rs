@@ -23,11 +23,11 @@ pub(super) fn retrieval_section(folder: &Path) -> Result<Section, ReportError> {
     }
     let record: RetrievalRecord = read(path)?;
     let mut body = paragraphs(&record.analysis);
-    let caption = format!(
+    let curves = format!(
         "Precision over recall, means over the queries among {} shapes: further right and up is better.",
         record.names.len()
     );
-    let mut still = picture(folder, name, PART, &caption)?;
+    let mut still = picture(folder, name, PART, &curves)?;
     let c = &record.classification;
     let caption = format!(
         "What the vote of the {} nearest by {} takes every shape for, itself left out; a shape is unknown \
@@ -47,8 +47,7 @@ pub(super) fn retrieval_section(folder: &Path) -> Result<Section, ReportError> {
     });
     let classification = json!({"classes": c.classes, "confusion": c.confusion});
     let data = json!({"rows": rows.collect::<Vec<_>>(), "classification": classification});
-    body.push_str(&chart(name, &plots, &data, &still));
-    body.push_str(&paragraphs(&caption));
+    body.push_str(&chart(name, &plots, &format!("{curves} {caption}"), &data, &still));
     body.push_str(&expectations(&record.expectations));
     body.push_str("<h3>Numbers</h3>\n");
     let caption = "NN nearest neighbour, FT and ST first and second tier, E E-measure, DCG discounted cumulative gain, \

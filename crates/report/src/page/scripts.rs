@@ -11,13 +11,15 @@ use crate::interactive::{VIEWER_JS, plotly_js};
 const FIRST: &str = "document.documentElement.classList.add('js');";
 
 /// All scripts but the first, in the order they run.
-fn scripts() -> [&'static str; 6] {
+fn scripts() -> [&'static str; 8] {
     [
         plotly_js(),
         VIEWER_JS,
         include_str!("scripts/plots.js"),
         include_str!("scripts/charts.js"),
+        include_str!("scripts/surfaces.js"),
         include_str!("scripts/explorer.js"),
+        include_str!("scripts/gallery.js"),
         include_str!("scripts/start.js"),
     ]
 }
@@ -73,7 +75,7 @@ mod tests {
             }
         }
         let head = head();
-        assert_eq!(head.matches("'sha256-").count(), 7);
+        assert_eq!(head.matches("'sha256-").count(), 9);
         assert!(!head.contains("unsafe-eval") && head.contains("default-src 'none'"));
     }
 }

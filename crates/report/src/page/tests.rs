@@ -192,6 +192,7 @@ fn every_experiment_has_one_section_its_plots_and_their_data() {
     assert_eq!(islands["figure4-data"]["names"].as_array().map(Vec::len), Some(5));
     assert_eq!(islands["figure4-data"]["thumbnails"][4]["forms"].as_array().map(Vec::len), Some(2));
     assert_eq!(islands["figure4-shape-4"]["forms"][0]["size"], 2.0);
+    assert!(plain.contains("id=\"figure1-explorer\"") && plain.contains("<option value=\"0\">cat0</option>"));
     let ids: Vec<&str> = html.split(" id=\"").skip(1).filter_map(|part| part.split('"').next()).collect();
     assert_eq!(ids.iter().collect::<std::collections::BTreeSet<_>>().len(), ids.len(), "no id twice");
 }
@@ -231,6 +232,6 @@ fn older_folders_have_their_maps_and_say_what_adds_the_shapes() {
         let html = page_of(full_folder(&figure4, shapes).path());
         assert!(html.contains("id=\"figure4-map\"") && !html.contains("id=\"figure4-overlay\""));
         assert!(html.contains("<code>experiments run all --dataset &#39;a &amp; b&#39;</code> adds them"));
-        assert!(!html.contains("id=\"figure4-shape-0\""));
+        assert!(!html.contains("id=\"figure4-shape-0\"") && !html.contains("id=\"figure1-explorer\""));
     }
 }

@@ -30,7 +30,6 @@
     const flat = decode(of.matrix, Float32Array);
     return Array.from({ length: n }, (_, i) => flat.subarray(i * n, (i + 1) * n));
   };
-  const rank = () => Math.max(methods.indexOf(panel().method), 0);
 
   // The map: one trace for each class, and rings around what is chosen.
   plots.kind('map', () => {
@@ -112,7 +111,7 @@
   function showCard(i, event) {
     const { shape, forms } = figure.thumbnails[i];
     card.querySelector('img.shape').src = shape;
-    card.querySelector('img.form').src = forms[rank()];
+    card.querySelector('img.form').src = forms[Math.max(methods.indexOf(panel().method), 0)];
     card.querySelector('.name').textContent = names[i];
     card.querySelector('.class').textContent = labels[i];
     card.hidden = false;
@@ -121,92 +120,6 @@
     const place = (at, size, room) => Math.max(0, Math.min(at + 14 + size > room ? at - size - 14 : at + 14, room - size));
     card.style.left = `${place(event.clientX - box.left, card.offsetWidth, box.width)}px`;
     card.style.top = `${place(event.clientY - box.top, card.offsetHeight, box.height)}px`;
-  }
-
-  // Surfaces in 3D.
-
-  const shapeOf = (i) => island(`figure4-shape-${i}`);
-  const clay = (i) => figure.clay[classes.indexOf(labels[i])];
-
-  // What surfaces are coloured by.
-  function painted(i) {
-    const { surface, forms } = shapeOf(i);
-    const { residual } = forms[rank()];
-    const choice = controls.color.value;
-    if (choice === 'distance') return { values: surface.values, values_name: surface.values_name };
-    if (choice === 'residual' && residual) return { values: residual, values_name: 'residual (mesh units)' };
-    return { color: clay(i) };
-  }
-
-  function pair(i) {
-    const { surface: { positions, faces }, forms } = shapeOf(i);
-    const paint = painted(i);
-    return [{ positions, faces, ...paint }, { positions: forms[rank()].positions, faces, ...paint }];
-  }
-
-  // Positions of the form of shape `i` at the chosen scale, and where the motion onto the form of shape `j` takes them.
-  function formAt(i, j) {
-    const { positions, size } = shapeOf(i).forms[rank()];
-    const by = panel().scale === 'raw' ? 1 : 1 / size;
-    const from = decode(positions, Float32Array);
-    const to = new Float32Array(from.length);
-    const move = motion(i, j);
-    for (let v = 0; v < from.length; v += 3) {
-      const moved = move(from[v] * by, from[v + 1] * by, from[v + 2] * by);
-      [to[v], to[v + 1], to[v + 2]] = moved;
-    }
-    return to;
-  }
-
-  // The record has motions from the earlier shape onto the later one; the way back is the inverse.
-  function motion(i, j) {
-    if (i === j) return (x, y, z) => [x, y, z];
-    const [a, b] = [Math.min(i, j), Math.max(i, j)];
-    const { method, scale } = panel();
-    const all = decode(figure.motions.find((m) => m.method === method && m.scale === scale).motions, Float32Array);
-    const r = all.subarray(12 * (a * n - (a * (a + 1)) / 2 + b - a - 1));
-    if (i < j) {
-      return (x, y, z) => [0, 3, 6].map((row, c) => r[row] * x + r[row + 1] * y + r[row + 2] * z + r[9 + c]);
-    }
-    return (x, y, z) => {
-      const [p, q, s] = [x - r[9], y - r[10], z - r[11]];
-      return [0, 1, 2].map((column) => r[column] * p + r[3 + column] * q + r[6 + column] * s);
-    };
-  }
-
-  // The distance from each of some points to the nearest of others: outwards from the same place along x, until x alone is farther.
-  function nearest(points, others) {
-    const order = Array.from({ length: others.length / 3 }, (_, v) => 3 * v).sort((a, b) => others[a] - others[b]);
-    const along = Float32Array.from(order, (v) => others[v]);
-    const found = new Float32Array(points.length / 3);
-    for (let v = 0; v < found.length; v += 1) {
-      const [x, y, z] = points.subarray(3 * v, 3 * v + 3);
-      let [low, high] = [0, along.length];
-      while (low < high) {
-        const middle = (low + high) >> 1;
-        if (along[middle] < x) low = middle + 1; else high = middle;
-      }
-      let best = Infinity;
-      const look = (at) => {
-        const dx = along[at] - x;
-        if (dx * dx >= best) return false;
-        const o = order[at];
-        best = Math.min(best, dx * dx + (others[o + 1] - y) ** 2 + (others[o + 2] - z) ** 2);
-        return true;
-      };
-      for (let at = low; at < along.length && look(at); at += 1);
-      for (let at = low - 1; at >= 0 && look(at); at -= 1);
-      found[v] = Math.sqrt(best);
-    }
-    return found;
-  }
-
-  function overlaid(i, j) {
-    const [own, other] = [formAt(i, j), formAt(j, j)];
-    return [
-      { positions: own, faces: shapeOf(i).surface.faces, values: nearest(own, other), values_name: `to form 2 (${panel().unit})` },
-      { positions: other, faces: shapeOf(j).surface.faces, color: clay(j) },
-    ];
   }
 
   const views = new Map();
@@ -219,12 +132,13 @@
 
   function showSurfaces() {
     const [i, j] = [chosen(controls.first), chosen(controls.second)];
+    const { method } = panel();
     for (const [which, shape] of [['first', i], ['second', j]]) {
-      const [surface, form] = pair(shape);
+      const [surface, form] = surfaces.pair(shape, method, controls.color.value);
       display(`${which}-shape`, surface, { title: names[shape] });
-      display(`${which}-form`, form, { title: `its form (${panel().method})` });
+      display(`${which}-form`, form, { title: `its form (${method})` });
     }
-    display('overlay', overlaid(i, j), { title: 'Form 1 laid over form 2', opacity: [1, 0.35] });
+    display('overlay', surfaces.overlay(i, j, panel()), { title: 'Form 1 laid over form 2', opacity: [1, 0.35] });
   }
 
   function describe() {
@@ -233,11 +147,12 @@
     const distance = distances(panel())[i][j].toPrecision(4);
     const sentences = [`${names[i]} (${labels[i]}) and ${names[j]} (${labels[j]}): their forms by ${method} are ${distance} apart (${unit}).`];
     if (hasShapes) {
-      const coarse = [i, j].filter((s, at, both) => both.indexOf(s) === at && shownVertices(s) < shapeOf(s).n_vertices);
+      const coarse = [...new Set([i, j])].map((s) => [names[s], ...surfaces.vertices(s)]).filter(([, shown, all]) => shown < all);
       if (coarse.length > 0) {
-        sentences.push(`Shown coarser than computed: ${coarse.map((s) => `${names[s]} with ${shownVertices(s)} of ${shapeOf(s).n_vertices} vertices`).join(', ')}.`);
+        const counts = coarse.map(([name, shown, all]) => `${name} with ${shown} of ${all} vertices`).join(', ');
+        sentences.push(`Shown coarser than computed: ${counts}.`);
       }
-      if (controls.color.value === 'residual' && !shapeOf(i).forms[rank()].residual) {
+      if (controls.color.value === 'residual' && !surfaces.hasResidual(i, method)) {
         sentences.push('Forms of a kernel have no unit of length, so there is no residual to show: classes are.');
       }
     }
@@ -246,17 +161,19 @@
     facts.dataset.second = j;
   }
 
-  const shownVertices = (i) => decode(shapeOf(i).surface.positions, Float32Array).length / 3;
-
   function show() {
-    card.hidden = true;
     describe();
     redraw(map);
     redraw(matrix);
     if (views.size > 0) showSurfaces();
   }
 
-  for (const control of Object.values(controls)) control?.addEventListener('change', show);
+  for (const control of Object.values(controls)) {
+    control?.addEventListener('change', () => {
+      card.hidden = true;
+      show();
+    });
+  }
   describe();
   const scenes = root.querySelector('.views');
   if (scenes) plots.whenNear(scenes, showSurfaces);

@@ -6,13 +6,15 @@
 //   script[type="application/json"][id=NAME-data]      the numbers of an experiment
 //   .chart > .toggle             the button that shows the static figure instead
 //   #NAME                        the section of an experiment (figure1, ..., retrieval)
-// Figure 4 is described in explorer.js.
+// Figure 1 is described in gallery.js, Figure 4 in explorer.js.
 'use strict';
 
 const plots = (() => {
   // Okabe and Ito: told apart with every common colour blindness. In the dark the darkest turns pale.
   const COLORS = ['#0072b2', '#d55e00', '#009e73', '#cc79a7', '#e69f00', '#56b4e9', '#3c3c3c', '#f0e442'];
-  const SYMBOLS = ['circle', 'square', 'diamond', 'triangle-up', 'x', 'triangle-down', 'star', 'cross'];
+  // In the order of the static figures.
+  const SYMBOLS = ['circle', 'triangle-up', 'square', 'diamond', 'cross', 'triangle-down', 'star', 'hexagon', 'x', 'triangle-left',
+    'pentagon', 'triangle-right'];
   const NEAR = '400px';
 
   const { plain, theme } = canonform;
@@ -26,7 +28,7 @@ const plots = (() => {
     const found = COLORS[i % COLORS.length];
     return darkScheme.matches && found === '#3c3c3c' ? '#c9ccd1' : found;
   };
-  const symbol = (i) => SYMBOLS[(i + Math.floor(i / SYMBOLS.length)) % SYMBOLS.length];
+  const symbol = (i) => SYMBOLS[i % SYMBOLS.length];
 
   // The data of an island, parsed when first asked for.
   function island(id) {
