@@ -144,7 +144,9 @@ const canonform = (() => {
     };
   }
 
-  function hasWebGL() {
+  let hasWebGL;
+
+  function findWebGL() {
     const canvas = document.createElement('canvas');
     const context = canvas.getContext('webgl2') || canvas.getContext('webgl');
     // Browsers hold only a few contexts: this one is given back.
@@ -165,19 +167,16 @@ const canonform = (() => {
       this.scene = element.appendChild(document.createElement('div'));
       this.scene.className = 'canonform-scene';
       handles.add(this);
-      if (hasWebGL()) {
-        this.listen();
-        this.update(geometries, options);
-      } else {
-        this.fail('This picture needs WebGL, which the browser does not offer.', geometries, options);
-      }
+      hasWebGL ??= findWebGL();
+      if (hasWebGL) this.listen();
+      else element.dataset.state = 'failed';
+      this.update(geometries, options);
     }
 
     update(geometries, options = {}) {
       this.shown = { geometries: [].concat(geometries), options };
       if (options.linkedWith) this.link(options.linkedWith);
-      if (this.element.dataset.state === 'failed') return Promise.resolve();
-      return this.draw();
+      return this.element.dataset.state === 'failed' ? this.stand() : this.draw();
     }
 
     async draw() {
@@ -190,7 +189,8 @@ const canonform = (() => {
       this.fit();
       const data = geometries.flatMap((geometry, i) =>
         traces(geometry, { opacity: opacity[i], name: names[i], range, colors }));
-      await Plotly.react(this.scene, data, layout(data, [this.scene.clientWidth, this.scene.clientHeight], colors, names.length > 0), CONFIG);
+      const size = [this.scene.clientWidth, this.scene.clientHeight];
+      await Plotly.react(this.scene, data, layout(data, size, colors, names.length > 0), CONFIG);
       this.element.dataset.state = 'ready';
       if (!this.observer) this.watch();
     }
@@ -277,13 +277,13 @@ const canonform = (() => {
       event.preventDefault();
     }
 
-    fail(reason, geometries, options = {}) {
-      this.element.dataset.state = 'failed';
+    // Words in the place of a picture.
+    async stand() {
+      const { geometries, options } = this.shown;
       this.heading.textContent = options.title || '';
-      const count = (geometry) => decode(geometry.positions, Float32Array).length / 3;
-      const vertices = [].concat(geometries).map(count).join(' and ');
+      const vertices = geometries.map(({ positions }) => decode(positions, Float32Array).length / 3).join(' and ');
       this.scene.className = 'canonform-fallback';
-      this.scene.textContent = `${reason} The surface has ${vertices} vertices.`;
+      this.scene.textContent = `This picture needs WebGL, which the browser does not offer. It has ${vertices} vertices.`;
     }
   }
 
