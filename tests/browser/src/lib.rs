@@ -75,6 +75,10 @@ impl Browser {
         let logs = Mutex::new(Logs::default());
         let browser = Self { session, _driver: driver, _profile: profile, logs, _turn: turn };
         browser.resize(1280, 800)?;
+        // What the page of a new tab has asked for is nobody's business.
+        browser.open("about:blank")?;
+        browser.requests()?;
+        *browser.logs() = Logs::default();
         Ok(browser)
     }
 
@@ -164,7 +168,7 @@ impl Browser {
     }
 
     /// All messages of the console since the start, oldest first; the browser's own complaints, such as
-    /// what a content-security policy has refused, are among them.
+    /// what a content-security policy has refused, are among them, but not that WebGL is slow in software.
     ///
     /// # Errors
     /// [`BrowserError::Refused`] and [`BrowserError::Connection`].

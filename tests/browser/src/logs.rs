@@ -11,6 +11,10 @@ pub struct Message {
     pub text: String,
 }
 
+/// What the browser says of itself where there is no graphics card: it reads every WebGL picture back to show it,
+/// whatever the page does, which is slow. A test holds it to that.
+const SOFTWARE: [&str; 2] = ["GL Driver Message (OpenGL, Performance", "GPU stall due to ReadPixels"];
+
 /// Everything since the start; the driver hands out each entry once.
 #[derive(Debug, Default)]
 pub(crate) struct Logs {
@@ -21,7 +25,10 @@ pub(crate) struct Logs {
 impl Logs {
     pub(crate) fn read_console(&mut self, entries: &Value) {
         let text = |entry: &Value, key: &str| entry[key].as_str().unwrap_or_default().to_owned();
-        let entries = entries.as_array().into_iter().flatten();
+        let is_ours = |entry: &&Value| {
+            !entry["message"].as_str().is_some_and(|text| SOFTWARE.iter().all(|part| text.contains(part)))
+        };
+        let entries = entries.as_array().into_iter().flatten().filter(is_ours);
         self.console.extend(entries.map(|e| Message { level: text(e, "level"), text: text(e, "message") }));
     }
 

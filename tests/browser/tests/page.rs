@@ -101,7 +101,21 @@ fn requests_and_refusals_are_seen_and_other_machines_not_reached() {
 #[test]
 fn meshes_are_drawn_without_a_graphics_card() {
     let Some(browser) = Browser::start() else { return };
-    let drawn = "const gl = document.createElement('canvas').getContext('webgl'); return gl !== null";
     browser.open("about:blank").unwrap();
+    // Some frames of a scene that is seen and that the page never reads back.
+    let drawn = "const canvas = document.body.appendChild(document.createElement('canvas'));
+        const gl = canvas.getContext('webgl');
+        if (!gl) return false;
+        let frames = 0;
+        return new Promise(done => {
+            const draw = () => {
+                gl.clearColor(frames % 2, 1, 0, 1);
+                gl.clear(gl.COLOR_BUFFER_BIT);
+                if (++frames < 20) requestAnimationFrame(draw); else done(true);
+            };
+            draw();
+        })";
     assert_eq!(browser.eval(drawn).unwrap(), true);
+    browser.screenshot(&tempfile::tempdir().unwrap().path().join("scene.png")).unwrap();
+    assert_eq!(browser.console().unwrap(), []);
 }

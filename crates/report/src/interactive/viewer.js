@@ -144,9 +144,7 @@ const canonform = (() => {
     };
   }
 
-  let hasWebGL;
-
-  function findWebGL() {
+  function hasWebGL() {
     const canvas = document.createElement('canvas');
     const context = canvas.getContext('webgl2') || canvas.getContext('webgl');
     // Browsers hold only a few contexts: this one is given back.
@@ -167,16 +165,19 @@ const canonform = (() => {
       this.scene = element.appendChild(document.createElement('div'));
       this.scene.className = 'canonform-scene';
       handles.add(this);
-      hasWebGL ??= findWebGL();
-      if (hasWebGL) this.listen();
-      else element.dataset.state = 'failed';
-      this.update(geometries, options);
+      if (hasWebGL()) {
+        this.listen();
+        this.update(geometries, options);
+      } else {
+        this.fail('This picture needs WebGL, which the browser does not offer.', geometries, options);
+      }
     }
 
     update(geometries, options = {}) {
       this.shown = { geometries: [].concat(geometries), options };
       if (options.linkedWith) this.link(options.linkedWith);
-      return this.element.dataset.state === 'failed' ? this.stand() : this.draw();
+      if (this.element.dataset.state === 'failed') return Promise.resolve();
+      return this.draw();
     }
 
     async draw() {
@@ -189,8 +190,7 @@ const canonform = (() => {
       this.fit();
       const data = geometries.flatMap((geometry, i) =>
         traces(geometry, { opacity: opacity[i], name: names[i], range, colors }));
-      const size = [this.scene.clientWidth, this.scene.clientHeight];
-      await Plotly.react(this.scene, data, layout(data, size, colors, names.length > 0), CONFIG);
+      await Plotly.react(this.scene, data, layout(data, [this.scene.clientWidth, this.scene.clientHeight], colors, names.length > 0), CONFIG);
       this.element.dataset.state = 'ready';
       if (!this.observer) this.watch();
     }
@@ -277,13 +277,13 @@ const canonform = (() => {
       event.preventDefault();
     }
 
-    // Words in the place of a picture.
-    async stand() {
-      const { geometries, options } = this.shown;
+    fail(reason, geometries, options = {}) {
+      this.element.dataset.state = 'failed';
       this.heading.textContent = options.title || '';
-      const vertices = geometries.map(({ positions }) => decode(positions, Float32Array).length / 3).join(' and ');
+      const count = (geometry) => decode(geometry.positions, Float32Array).length / 3;
+      const vertices = [].concat(geometries).map(count).join(' and ');
       this.scene.className = 'canonform-fallback';
-      this.scene.textContent = `This picture needs WebGL, which the browser does not offer. It has ${vertices} vertices.`;
+      this.scene.textContent = `${reason} The surface has ${vertices} vertices.`;
     }
   }
 

@@ -2,7 +2,7 @@
 'use strict';
 
 (() => {
-  const { color, symbol, island, layout, heading, brief } = plots;
+  const { color, symbol, island, layout, heading } = plots;
   const { plain, VIRIDIS } = canonform;
 
   const panelOf = (element, list) => list[Number(element.dataset.panel)];
@@ -169,8 +169,8 @@
       }],
       layout: layout({
         title: heading('What shapes are taken for'),
-        xaxis: { title: { text: 'predicted class' }, tickvals: across.map((_, i) => i), ticktext: across.map(brief), showgrid: false },
-        yaxis: { title: { text: 'true class' }, tickvals: classes.map((_, i) => i), ticktext: classes.map(brief), showgrid: false, autorange: 'reversed' },
+        xaxis: { title: { text: 'predicted class' }, tickvals: across.map((_, i) => i), ticktext: across.map(plain), showgrid: false },
+        yaxis: { title: { text: 'true class' }, tickvals: classes.map((_, i) => i), ticktext: classes.map(plain), showgrid: false, autorange: 'reversed' },
       }),
     };
   });

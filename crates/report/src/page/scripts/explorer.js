@@ -13,7 +13,7 @@
   const root = document.getElementById('figure4-explorer');
   if (!root) return;
 
-  const { island, layout, color, symbol, redraw, brief } = plots;
+  const { island, layout, color, symbol, redraw } = plots;
   const { plain, decode, VIRIDIS } = canonform;
   const get = (name) => document.getElementById(`figure4-${name}`);
   const controls = { method: get('method'), scale: get('scale'), color: get('color'), first: get('first'), second: get('second') };
@@ -26,7 +26,6 @@
 
   const chosen = (control) => Number(control?.value ?? 0);
   const panel = () => panels.find(({ method, scale }) => method === controls.method.value && scale === controls.scale.value) ?? panels[0];
-  const view = () => `${panel().method} ${panel().scale}`;
   const distances = (of) => {
     const flat = decode(of.matrix, Float32Array);
     return Array.from({ length: n }, (_, i) => flat.subarray(i * n, (i + 1) * n));
@@ -38,7 +37,7 @@
     const data = classes.map((label, c) => {
       const members = labels.flatMap((own, i) => (own === label ? [i] : []));
       return {
-        mode: 'markers', name: brief(label), x: members.map((i) => points[i][0]), y: members.map((i) => points[i][1]),
+        mode: 'markers', name: plain(label), x: members.map((i) => points[i][0]), y: members.map((i) => points[i][1]),
         customdata: members, marker: { color: color(c), symbol: symbol(c), size: 10, line: { width: 0.5, color: canonform.theme().page } },
         // Where there are pictures, a card says more than plotly's label.
         hovertemplate: hasShapes ? undefined : members.map((i) => `<b>${plain(names[i])}</b><br>${plain(label)}<extra></extra>`),
@@ -55,8 +54,7 @@
     return {
       data,
       layout: layout({
-        // What was zoomed to stays until other distances are asked for.
-        uirevision: view(), margin: { l: 56, r: 12, t: 8, b: 44 },
+        margin: { l: 56, r: 12, t: 8, b: 44 },
         xaxis: { title: { text: `MDS axis 1 (${unit})` } },
         yaxis: { title: { text: `MDS axis 2 (${unit})` }, scaleanchor: 'x' },
       }),
@@ -69,7 +67,7 @@
     const borders = labels.flatMap((label, i) => (i > 0 && labels[i - 1] !== label ? [i - 0.5] : []));
     const edges = [-0.5, ...borders, n - 0.5];
     const centers = edges.slice(1).map((end, i) => (edges[i] + end) / 2);
-    const ticks = { tickvals: centers, ticktext: centers.map((at) => brief(labels[Math.round(at)])), showgrid: false, ticks: '', showline: false };
+    const ticks = { tickvals: centers, ticktext: centers.map((at) => plain(labels[Math.round(at)])), showgrid: false, ticks: '', showline: false };
     const { page, ink } = canonform.theme();
     const line = (x0, y0, x1, y1) => ({ type: 'line', x0, y0, x1, y1, line: { color: page, width: 1 } });
     const [i, j] = [chosen(controls.first), chosen(controls.second)];
@@ -81,7 +79,7 @@
         colorbar: { title: { text: `distance (${unit})`, side: 'right' }, thickness: 12, outlinewidth: 0 },
       }],
       layout: layout({
-        uirevision: view(), margin: { l: 56, r: 12, t: 8, b: 44 },
+        margin: { l: 56, r: 12, t: 8, b: 44 },
         xaxis: { ...ticks, constrain: 'domain' },
         yaxis: { ...ticks, autorange: 'reversed', scaleanchor: 'x', tickangle: -90, constrain: 'domain' },
         shapes: [
@@ -94,13 +92,8 @@
   });
 
   map.addEventListener('plotted', () => {
-    map.on('plotly_click', async ({ points: [point], event }) => {
-      await choose(point.customdata);
-      // A finger does not hover: its card comes with the tap and goes with the next.
-      if (hasShapes && Number.isInteger(point.customdata)) showCard(point.customdata, event.changedTouches?.[0] ?? event);
-    });
+    map.on('plotly_click', ({ points: [point] }) => choose(point.customdata));
     if (!hasShapes) return;
-    document.addEventListener('pointerdown', () => { card.hidden = true; });
     map.on('plotly_hover', ({ points: [point], event }) => showCard(point.customdata, event));
     map.on('plotly_unhover', () => { card.hidden = true; });
   });
@@ -109,10 +102,10 @@
   });
 
   function choose(first, second) {
-    if (!Number.isInteger(first)) return undefined;
+    if (!Number.isInteger(first)) return;
     controls.first.value = first;
     if (Number.isInteger(second)) controls.second.value = second;
-    return show();
+    show();
   }
 
   function showCard(i, event) {
@@ -170,8 +163,9 @@
 
   function show() {
     describe();
+    redraw(map);
+    redraw(matrix);
     if (views.size > 0) showSurfaces();
-    return Promise.all([redraw(map), redraw(matrix)]);
   }
 
   for (const control of Object.values(controls)) {

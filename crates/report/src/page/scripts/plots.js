@@ -57,9 +57,6 @@ const plots = (() => {
     };
   }
 
-  // A long name where there is little room; labels under the cursor have all of it.
-  const brief = (text) => plain(text.length > 18 ? `${text.slice(0, 17)}…` : text);
-
   const heading = (text) => ({ text: plain(text), font: { size: 14 }, x: 0, xref: 'paper', xanchor: 'left', y: 0.99, yanchor: 'top' });
 
   async function draw(element) {
@@ -111,7 +108,7 @@ const plots = (() => {
   darkScheme.addEventListener('change', () => drawn.forEach(redraw));
 
   return {
-    color, symbol, island, layout, heading, brief, whenNear, redraw, start,
+    color, symbol, island, layout, heading, whenNear, redraw, start,
     // Registers what draws plots of a kind: a function from the element to { data, layout }.
     kind: (name, make) => kinds.set(name, make),
   };

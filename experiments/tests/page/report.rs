@@ -1,0 +1,260 @@
+use std::path::PathBuf;
+use std::process::Command;
+use std::sync::OnceLock;
+
+use browser::Browser;
+use serde_json::{Value, json};
+
+/// Figures 1 and 4 of the built-in shapes, as small as these can be made; made once.
+fn report() -> PathBuf {
+    static FOLDER: OnceLock<PathBuf> = OnceLock::new();
+    let folder = FOLDER.get_or_init(|| {
+        let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("report-page");
+        let run = Command::new(env!("CARGO_BIN_EXE_experiments"))
+            .args(["run", "figure1", "figure4", "--vertices", "1000", "--quiet", "--output"])
+            .arg(&folder)
+            .output()
+            .unwrap();
+        assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stderr));
+        folder
+    });
+    folder.join("report.html")
+}
+
+/// The page, opened in a browser of this size and drawn as far as it is seen.
+fn opened(size: [u32; 2]) -> Option<Browser> {
+    let browser = Browser::start()?;
+    browser.resize(size[0], size[1]).unwrap();
+    // Before anything is laid out: every shift that nobody asked for is counted.
+    let watch = "window.shifts = 0; new PerformanceObserver(list => {
+        for (const shift of list.getEntries()) if (!shift.hadRecentInput) window.shifts += shift.value;
+    }).observe({ type: 'layout-shift', buffered: true });";
+    browser.devtools("Page.addScriptToEvaluateOnNewDocument", &json!({ "source": watch })).unwrap();
+    browser.open_file(&report()).unwrap();
+    Some(browser)
+}
+
+/// Scrolls an element into view and waits until it is drawn.
+fn shown(browser: &Browser, css: &str) {
+    let found = format!("document.querySelector({})", json!(css));
+    browser.eval(&format!("{found}.scrollIntoView({{ block: 'center', behavior: 'instant' }})")).unwrap();
+    browser.wait_for(&format!("{found}.dataset.state === 'ready'")).unwrap();
+}
+
+/// Goes through the page from top to bottom as a reader does.
+fn scrolled_through(browser: &Browser) {
+    let step = "scrollBy({ top: innerHeight * 0.7, behavior: 'instant' });
+        return new Promise(done => setTimeout(() => done(scrollY + innerHeight >= document.documentElement.scrollHeight - 2), 150))";
+    for _ in 0..200 {
+        if browser.eval(step).unwrap() == true {
+            break;
+        }
+    }
+    browser
+        .wait_for(
+            "[...document.querySelectorAll('[data-plot]')].every(plot => plot.dataset.state === 'ready')",
+        )
+        .unwrap();
+}
+
+/// Nothing was said, and nothing asked for but the file and what is written in it.
+fn assert_silent(browser: &Browser) {
+    assert_eq!(browser.console().unwrap(), []);
+    let outside = |address: &String| {
+        let is_page = address.starts_with("file://") && address.ends_with("/report.html");
+        !is_page && !["data:", "blob:"].iter().any(|inside| address.starts_with(inside))
+    };
+    let asked: Vec<String> = browser.requests().unwrap().into_iter().filter(outside).collect();
+    assert!(asked.is_empty(), "{asked:?}");
+}
+
+fn picture(name: &str) -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../target/browser").join(format!("{name}.png"))
+}
+
+fn number(value: &Value) -> f64 {
+    value.as_f64().unwrap()
+}
+
+/// Where the eye of a view stands.
+fn eye(browser: &Browser, css: &str) -> [f64; 3] {
+    let scene = format!("document.querySelector('{css} .canonform-scene')");
+    let eye = browser
+        .eval(&format!("const e = {scene}._fullLayout.scene._scene.getCamera().eye; return [e.x, e.y, e.z]"))
+        .unwrap();
+    [0, 1, 2].map(|i| number(&eye[i]))
+}
+
+/// The point of the window where the map has a shape.
+fn point_on_map(browser: &Browser, shape: usize) -> [i32; 2] {
+    let at = browser
+        .eval(&format!(
+            "const plot = document.querySelector('#figure4-map');
+             const box = plot.querySelector('.nsewdrag').getBoundingClientRect();
+             const trace = plot._fullData.findIndex(t => t.customdata && [...t.customdata].includes({shape}));
+             const at = [...plot._fullData[trace].customdata].indexOf({shape});
+             const {{ xaxis, yaxis }} = plot._fullLayout;
+             return [box.left + xaxis.d2p(plot._fullData[trace].x[at]), box.top + yaxis.d2p(plot._fullData[trace].y[at])];"
+        ))
+        .unwrap();
+    [0, 1].map(|i| number(&at[i]).round() as i32)
+}
+
+/// In the dark, text stays readable.
+fn assert_readable_in_the_dark(browser: &Browser) {
+    browser.prefer("prefers-color-scheme", "dark").unwrap();
+    let light = "const light = color => { const [r, g, b] = color.match(/[\\d.]+/g).map(Number); return (r + g + b) / 765; };
+        const style = getComputedStyle(document.body); const page = getComputedStyle(document.documentElement).backgroundColor;
+        const back = style.backgroundColor === 'rgba(0, 0, 0, 0)' ? page : style.backgroundColor;
+        return [light(back), light(style.color)];";
+    let light = browser.eval(light).unwrap();
+    assert!(number(&light[0]) < 0.2 && number(&light[1]) > 0.7, "{light}");
+    let tick = "getComputedStyle(document.querySelector('#figure4-map .xtick text')).fill";
+    browser.wait_for(&format!("{tick}.startsWith('rgb(2')")).unwrap();
+    browser.screenshot_all(&picture("report-dark-1280")).unwrap();
+}
+
+/// On paper there are the static figures, and nothing that only a screen can show.
+fn assert_printable(browser: &Browser) {
+    let seen = |css: &str| {
+        browser
+            .eval(&format!(
+                "return [...document.querySelectorAll('{css}')].filter(e => e.offsetHeight > 0).length"
+            ))
+            .unwrap()
+            .as_u64()
+            .unwrap()
+    };
+    let figures = seen("figure img");
+    assert!(seen(".live [data-plot]") > 0);
+    browser.media("print").unwrap();
+    assert_eq!(seen(".live [data-plot]"), 0);
+    assert!(seen("figure img") > figures, "{figures}");
+    browser.screenshot_all(&picture("report-print")).unwrap();
+}
+
+#[test]
+fn a_point_shows_its_shape_and_a_click_brings_it_into_the_scene() {
+    let Some(browser) = opened([1280, 900]) else { return };
+    shown(&browser, "#figure4-map");
+    let facts = |key: &str| {
+        browser.eval(&format!("return document.querySelector('#figure4-facts').dataset.{key}")).unwrap()
+    };
+    browser.hover_at(point_on_map(&browser, 20)).unwrap();
+    browser.wait_for("!document.querySelector('#figure4-card').hidden").unwrap();
+    let name = browser
+        .eval("return JSON.parse(document.querySelector('#figure4-data').textContent).names[20]")
+        .unwrap();
+    let card = browser.eval("return document.querySelector('#figure4-card .name').textContent").unwrap();
+    assert_eq!(card, name);
+    let drawn =
+        "[...document.querySelectorAll('#figure4-card img')].every(i => i.complete && i.naturalWidth > 0)";
+    browser.wait_for(drawn).unwrap();
+    browser.screenshot(&picture("report-card-1280")).unwrap();
+
+    browser.click_at(point_on_map(&browser, 20)).unwrap();
+    browser.wait_for("document.querySelector('#figure4-facts').dataset.first === '20'").unwrap();
+    for view in ["first-shape", "first-form", "second-shape", "second-form", "overlay"] {
+        shown(&browser, &format!("#figure4-{view}"));
+    }
+    let title = browser
+        .eval("return document.querySelector('#figure4-first-shape .canonform-title').textContent")
+        .unwrap();
+    assert_eq!(title, name);
+
+    // A cell of the matrix names its two shapes, and a click takes both.
+    shown(&browser, "#figure4-matrix");
+    let cell = browser
+        .eval(
+            "const plot = document.querySelector('#figure4-matrix');
+             const box = plot.querySelector('.nsewdrag').getBoundingClientRect();
+             const { xaxis, yaxis } = plot._fullLayout;
+             return [box.left + xaxis.d2p(3), box.top + yaxis.d2p(12)];",
+        )
+        .unwrap();
+    let cell = [0, 1].map(|i| number(&cell[i]).round() as i32);
+    browser.hover_at(cell).unwrap();
+    browser.wait_for("document.querySelector('#figure4-matrix .hoverlayer').textContent !== ''").unwrap();
+    let label =
+        browser.eval("return document.querySelector('#figure4-matrix .hoverlayer').textContent").unwrap();
+    let names =
+        browser.eval("return JSON.parse(document.querySelector('#figure4-data').textContent).names").unwrap();
+    for shape in [12, 3] {
+        assert!(label.as_str().unwrap().contains(names[shape].as_str().unwrap()), "{label}");
+    }
+    browser.click_at(cell).unwrap();
+    browser.wait_for("document.querySelector('#figure4-facts').dataset.first === '12'").unwrap();
+    assert_eq!(facts("second"), "3");
+    assert_silent(&browser);
+}
+
+#[test]
+fn pictures_are_turned_together_by_hand_and_by_keys() {
+    let Some(browser) = opened([1280, 900]) else { return };
+    shown(&browser, "#figure4-map");
+    let views = ["#figure4-first-shape", "#figure4-second-form", "#figure4-overlay"];
+    views.iter().for_each(|view| shown(&browser, view));
+    let before = eye(&browser, views[0]);
+    browser.drag(&format!("{} .canonform-scene", views[0]), [70, -25]).unwrap();
+    let same = |a: [f64; 3], b: [f64; 3]| a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-6);
+    let settled = || {
+        for _ in 0..50 {
+            let eyes = views.map(|view| eye(&browser, view));
+            if eyes.iter().all(|e| same(*e, eyes[0])) && !same(eyes[0], before) {
+                return true;
+            }
+            std::thread::sleep(std::time::Duration::from_millis(100));
+        }
+        false
+    };
+    assert!(settled(), "{:?}", views.map(|view| eye(&browser, view)));
+    browser.screenshot(&picture("report-turned-1280")).unwrap();
+    // The scene has the keyboard since it was pressed on.
+    let turned = eye(&browser, views[2]);
+    browser.eval("document.activeElement.dispatchEvent(new KeyboardEvent('keydown', { key: 'ArrowLeft', bubbles: true }))").unwrap();
+    for _ in 0..50 {
+        if !same(eye(&browser, views[2]), turned) {
+            break;
+        }
+        std::thread::sleep(std::time::Duration::from_millis(100));
+    }
+    assert!(!same(eye(&browser, views[2]), turned));
+    for choice in ["distance", "residual", "class"] {
+        browser
+            .eval(&format!(
+                "const select = document.querySelector('#figure4-color'); select.value = '{choice}';
+                 select.dispatchEvent(new Event('change', {{ bubbles: true }}));"
+            ))
+            .unwrap();
+        views.iter().for_each(|view| shown(&browser, view));
+        let has_bar = browser
+            .eval("return document.querySelector('#figure4-first-shape .canonform-scene')._fullData.some(t => t.showscale)")
+            .unwrap();
+        assert_eq!(has_bar, choice != "class", "{choice}");
+    }
+    assert_silent(&browser);
+}
+
+#[test]
+fn the_page_holds_still_and_fits_on_a_laptop_and_a_telephone_in_the_dark_and_on_paper() {
+    for (name, size) in [("1280", [1280, 900]), ("390", [390, 844])] {
+        let Some(browser) = opened(size) else { return };
+        scrolled_through(&browser);
+        let shifts = number(&browser.eval("return window.shifts").unwrap());
+        assert!(shifts < 0.001, "{name}: the layout shifts by {shifts}");
+        let widths = browser.eval("return [document.documentElement.scrollWidth, innerWidth]").unwrap();
+        assert!(number(&widths[0]) <= number(&widths[1]), "{name}: {widths}");
+        for part in ["map", "overlay"] {
+            shown(&browser, &format!("#figure4-{part}"));
+            browser.screenshot(&picture(&format!("report-{part}-{name}"))).unwrap();
+        }
+        browser.eval("scrollTo({ top: 0, behavior: 'instant' })").unwrap();
+        browser.screenshot(&picture(&format!("report-top-{name}"))).unwrap();
+        browser.screenshot_all(&picture(&format!("report-{name}"))).unwrap();
+        if name == "1280" {
+            assert_readable_in_the_dark(&browser);
+            assert_printable(&browser);
+        }
+        assert_silent(&browser);
+    }
+}
