@@ -17,7 +17,7 @@ use crate::classes::Classes;
 use crate::color::class_clay;
 use crate::interactive::base64::encode;
 use crate::interactive::hex;
-use crate::render::{RenderOptions, Surface, View, render};
+use crate::render::{Background, RenderOptions, Surface, render};
 use crate::results::{Figure1Record, Figure4Record, SHAPES_FILE, Scale, SeenShape, ShapesRecord, read};
 
 /// Width and height of a thumbnail, in pixels: twice what the card shows.
@@ -115,8 +115,8 @@ fn thumbnails(record: &ShapesRecord, classes: &Classes<'_>) -> Result<Vec<Value>
         };
         let surface = Surface::Plain(class_clay(classes.index(&shape.label)));
         let [width, height] = THUMBNAIL;
-        let options =
-            RenderOptions { width, height, view: View::default(), surface, ..RenderOptions::default() };
+        let background = Background::Transparent;
+        let options = RenderOptions { width, height, surface, background, ..RenderOptions::default() };
         let png = render(&mesh, &options).png()?;
         Ok(format!("data:image/png;base64,{}", STANDARD.encode(png)))
     };
