@@ -41,6 +41,19 @@ pub enum MeshError {
         extension: String,
     },
 
+    /// Files that are no mesh together.
+    #[error(
+        "{extra} does not belong to {path}; a mesh is one file, or a .vert and a .tri file of one name",
+        extra = extra.display(),
+        path = path.display()
+    )]
+    StrayFile {
+        /// The mesh.
+        path: PathBuf,
+        /// The other file.
+        extra: PathBuf,
+    },
+
     /// The format can be read only.
     #[error("{path}: .{extension} files are only read; write one of .ply .obj .off .stl .vert instead")]
     ReadOnlyFormat {
@@ -281,6 +294,17 @@ pub enum Fault {
         items: &'static str,
         /// How many.
         count: u64,
+        /// How many are taken.
+        limit: u64,
+    },
+
+    /// More vertices or faces than are taken.
+    #[error(
+        "the mesh has more than {limit} {items}, the most that are taken here; simplify it, or raise the limit"
+    )]
+    OverLimit {
+        /// Of what.
+        items: &'static str,
         /// How many are taken.
         limit: u64,
     },

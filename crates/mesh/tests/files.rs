@@ -6,7 +6,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use mesh::io::{is_mesh_path, read, write, write_scalar_field};
+use mesh::io::{MemoryFile, ReadLimits, is_mesh_path, read, read_memory, write, write_scalar_field};
 use mesh::{Fault, MeshError, TriMesh, VertexId, shapes};
 use nalgebra::Point3;
 use proptest::prelude::*;
@@ -85,6 +85,60 @@ fn stl_keeps_the_triangles() {
     let back = read(&path).unwrap();
     assert_eq!((back.n_vertices(), back.n_faces()), (sphere.n_vertices(), sphere.n_faces()));
     assert!((back.area() - sphere.area()).abs() < 1e-5);
+}
+
+fn from_memory(files: &[(&str, &[u8])]) -> Result<TriMesh, MeshError> {
+    let files: Vec<_> =
+        files.iter().map(|(name, bytes)| MemoryFile { name: Path::new(*name), bytes }).collect();
+    read_memory(&files, &ReadLimits::default())
+}
+
+#[test]
+fn memory_is_read_as_files_are() {
+    let sphere = shapes::icosphere(2);
+    let folder = folder();
+    for name in ["m.off", "m.obj", "m.ply", "m.stl"] {
+        let path = folder.path().join(name);
+        write(&path, &sphere).unwrap();
+        assert_eq!(from_memory(&[(name, &fs::read(&path).unwrap())]).unwrap(), read(&path).unwrap());
+    }
+    write(&folder.path().join("p.vert"), &sphere).unwrap();
+    let [vert, tri] = ["p.vert", "p.tri"].map(|name| fs::read(folder.path().join(name)).unwrap());
+    for names in [["cat0.vert", "cat0.tri"], ["CAT0.VERT", "CAT0.TRI"], ["cat0.VERT", "cat0.tri"]] {
+        let mut files = [(names[0], &vert[..]), (names[1], &tri[..])];
+        assert_eq!(from_memory(&files).unwrap(), sphere);
+        files.reverse();
+        assert_eq!(from_memory(&files).unwrap(), sphere);
+    }
+}
+
+#[test]
+fn what_is_wrong_in_memory_is_said_as_of_files() {
+    let folder = folder();
+    for (name, content) in [
+        ("a.off", &b"OFF\n3 1 0\n0 0 0\n"[..]),
+        ("a.ply", b"ply\nformat ascii 2.0\n"),
+        ("a.stl", b""),
+        ("a.obj", b"v 0 0 nan\n"),
+        ("a.mat", b"MATLAB 7.3"),
+        ("a.vert", b"0 0 0\n"),
+        ("a.tri", b"1 2 3\n"),
+        ("a.txt", b"hello"),
+    ] {
+        let path = folder.path().join(name);
+        fs::write(&path, content).unwrap();
+        let on_disk = read(&path).unwrap_err().to_string();
+        fs::remove_file(&path).unwrap();
+        let place = format!("{}/", folder.path().display());
+        assert_eq!(from_memory(&[(name, content)]).unwrap_err().to_string(), on_disk.replace(&place, ""));
+    }
+    let (vert, tri) = (("a.vert", &b"0 0 0\n1 0 0\n0 1 0\n"[..]), ("b.tri", &b"1 2 3\n"[..]));
+    let other_half = from_memory(&[vert, tri]).unwrap_err().to_string();
+    assert!(other_half.starts_with("a.vert: its other half a.tri is missing"), "{other_half}");
+    for files in [&[("a.off", tri.1), vert][..], &[vert, ("a.tri", tri.1), ("c.off", tri.1)]] {
+        assert!(matches!(from_memory(files), Err(MeshError::StrayFile { .. })));
+    }
+    assert!(matches!(from_memory(&[]), Err(MeshError::UnknownFormat { .. })));
 }
 
 #[test]

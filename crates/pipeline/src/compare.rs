@@ -148,9 +148,58 @@ pub struct SurfaceComparison {
     pub comparison: Comparison,
     /// Whether the meshes are one.
     pub triangulation: Triangulation,
-    /// For every vertex of the first surface how far its point of the form is from the second form, once aligned
-    /// and of the first one's size, in units of the first mesh.
-    pub residuals: Vec<f64>,
+    /// The two forms laid over each other.
+    pub overlay: Overlay,
+}
+
+/// Two forms laid over each other, both of the first one's size, in units of the first mesh and where the second
+/// one is.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Overlay {
+    /// The points of either form.
+    pub points: [Vec<Point3<f64>>; 2],
+    /// For every point of either form how far it is from the nearest point of the other.
+    pub residuals: [Vec<f64>; 2],
+}
+
+impl Overlay {
+    /// Applies the motion of the first form of unit area onto the second.
+    fn new([a, b]: [(&CanonicalForm, &PreparedForm); 2], motion: &Alignment, size: f64) -> Self {
+        let back = motion.inverse();
+        let moved = |p: &Point3<f64>| motion.apply(p) * size;
+        Self {
+            points: [
+                a.0.points().iter().map(moved).collect(),
+                b.0.points().iter().map(|p| p * size).collect(),
+            ],
+            residuals: [
+                a.0.points().iter().map(|p| b.1.nearest_to(&motion.apply(p)).1 * size).collect(),
+                b.0.points().iter().map(|p| a.1.nearest_to(&back.apply(p)).1 * size).collect(),
+            ],
+        }
+    }
+}
+
+/// Compares two forms as [`compare_forms`] does, and lays them over each other.
+///
+/// # Errors
+/// [`PipelineError::Descriptor`].
+pub fn overlay_forms(
+    [a, b]: [&CanonicalForm; 2],
+    options: &MatchOptions,
+) -> Result<(Comparison, Overlay), PipelineError> {
+    let comparison = compare_forms(a, b, options)?;
+    let [unit_a, unit_b] = [a, b].map(|form| form.normalized(Normalization::UnitArea));
+    let [from, onto] =
+        [PreparedForm::new(&unit_a, MATCHED_POINTS)?, PreparedForm::new(&unit_b, MATCHED_POINTS)?];
+    let motion = match_forms(&from, &onto, options)?.alignment;
+    let overlay = Overlay::new([(&unit_a, &from), (&unit_b, &onto)], &motion, size_of(a));
+    Ok((comparison, overlay))
+}
+
+/// Root of the area of the surface; 1 where that is not known.
+fn size_of(form: &CanonicalForm) -> f64 {
+    form.area().map_or(1.0, f64::sqrt)
 }
 
 /// Compares two surfaces by their forms, which must be of all their vertices: what kind of match they are, and where
@@ -183,13 +232,11 @@ pub fn compare_surfaces(
         comparison.kind = MatchKind::new(true, comparison.handedness, comparison.scale);
     }
     let best = if found[1].0 < found[0].0 { found[1].1 } else { found[0].1 };
-    let size = form_a.area().map_or(1.0, f64::sqrt);
-    let residual = |p: &Point3<f64>| onto.nearest_to(&best.apply(p)).1 * size;
     let same = a.input_faces == b.input_faces && a.n_input_vertices() == b.n_input_vertices();
     Ok(SurfaceComparison {
         comparison,
         triangulation: if same { Triangulation::Same } else { Triangulation::Other },
-        residuals: unit_a.points().iter().map(residual).collect(),
+        overlay: Overlay::new([(&unit_a, &from), (&unit_b, &onto)], &best, size_of(form_a)),
     })
 }
 
@@ -249,7 +296,7 @@ mod tests {
         let found = compared(&hand, &hand);
         assert_eq!((found.comparison.kind, found.triangulation), (MatchKind::Same, Triangulation::Same));
         assert_eq!(found.comparison.handedness, Handedness::Same);
-        assert!(found.residuals.iter().all(|r| *r < 1e-9));
+        assert!(found.overlay.residuals.iter().flatten().all(|r| *r < 1e-9));
         for mirrored in [&other, &inside_out] {
             let found = compared(&hand, mirrored);
             assert_eq!(found.comparison.kind, MatchKind::Mirrored, "{:?}", found.comparison);
@@ -282,11 +329,35 @@ mod tests {
     }
 
     #[test]
+    fn residuals_are_distances_to_the_other_form_as_it_is_laid_over() {
+        let (hand, changed) = (four_arms([1.0, 1.7, 2.6, 3.5]), four_arms([1.0, 1.4, 2.6, 3.1]));
+        let mut large = changed.clone();
+        large.positions.iter_mut().for_each(|p| p.coords *= 5.0);
+        let options = EmbedOptions { stress: StressChoice::Skip, ..Default::default() };
+        let [a, b] = [&hand, &large].map(|mesh| {
+            let surface = Surface::new(mesh, &RepairOptions::default()).unwrap();
+            embed(&surface, &options, &()).unwrap().form(&surface).unwrap()
+        });
+        let (comparison, overlay) = overlay_forms([&a, &b], &MatchOptions::default()).unwrap();
+        assert_eq!(comparison, compare_forms(&a, &b, &MatchOptions::default()).unwrap());
+        for (mine, other) in [(0, 1), (1, 0)] {
+            let (points, others) = (&overlay.points[mine], &overlay.points[other]);
+            for (p, residual) in points.iter().zip(&overlay.residuals[mine]).step_by(97) {
+                let nearest = others.iter().map(|q| (p - q).norm()).fold(f64::INFINITY, f64::min);
+                assert!((nearest - residual).abs() < 1e-9, "{nearest} {residual}");
+            }
+        }
+        let spread = |points: &[Point3<f64>]| points.iter().map(|p| p.coords.norm()).fold(0.0, f64::max);
+        let ratio = spread(&overlay.points[0]) / spread(&overlay.points[1]);
+        assert!((0.8..1.3).contains(&ratio), "of one size: {ratio}");
+    }
+
+    #[test]
     fn residuals_are_largest_where_a_shape_was_changed() {
         let (whole, changed) = (four_arms([1.0, 1.7, 2.6, 3.5]), four_arms([1.0, 1.7, 2.6, 3.1]));
         let found = compared(&whole, &changed);
-        let worst =
-            (0..found.residuals.len()).max_by(|&i, &j| found.residuals[i].total_cmp(&found.residuals[j]));
+        let residuals = &found.overlay.residuals[0];
+        let worst = (0..residuals.len()).max_by(|&i, &j| residuals[i].total_cmp(&residuals[j]));
         assert!(whole.positions[worst.unwrap()].z > 2.0, "the tip of the long arm");
     }
 }

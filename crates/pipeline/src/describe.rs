@@ -5,6 +5,7 @@ use descriptors::{
     fuse, geodesic_spectrum, heat_kernel_signature, moment_signature, shape_dna, wave_kernel_signature,
 };
 use geodesics::{FirstSample, Method, Sampling};
+use linalg::LandmarkDistances;
 use mesh::{RepairOptions, RepairReport, TriMesh};
 use nmds::{NystromOptions, nystrom};
 use serde::{Deserialize, Serialize};
@@ -127,7 +128,23 @@ pub fn describe_surface(
     surface: &Surface,
     options: &DescribeOptions,
 ) -> Result<ShapeDescription, PipelineError> {
+    Ok(describe_with_form(surface, options)?.0)
+}
+
+/// The canonical form of all vertices of a surface, as descriptions have it at some of them.
+///
+/// # Errors
+/// As [`describe`].
+pub fn form_of(surface: &Surface, options: &DescribeOptions) -> Result<CanonicalForm, PipelineError> {
     options.validate()?;
+    Ok(embedded(surface, options)?.1)
+}
+
+/// Distances from the samples, and the form of all vertices.
+fn embedded(
+    surface: &Surface,
+    options: &DescribeOptions,
+) -> Result<(LandmarkDistances, CanonicalForm), PipelineError> {
     let solver = Method::default().prepare(&surface.intrinsic)?;
     let distances = {
         let mut sampler = Sampling::default().start(solver.as_ref(), FirstSample::default(), 0)?;
@@ -136,6 +153,19 @@ pub fn describe_surface(
     };
     let embedding = nystrom(&distances, &NystromOptions::default())?;
     let form = CanonicalForm::new(&embedding, surface.mesh())?;
+    Ok((distances, form))
+}
+
+/// Describes a surface and keeps the form of all its vertices, which descriptions have at some of them.
+///
+/// # Errors
+/// As [`describe`].
+pub fn describe_with_form(
+    surface: &Surface,
+    options: &DescribeOptions,
+) -> Result<(ShapeDescription, CanonicalForm), PipelineError> {
+    options.validate()?;
+    let (distances, form) = embedded(surface, options)?;
     let reduced = form.reduced(options.points);
     let spectrum = LaplaceSpectrum::new(&surface.intrinsic, LaplaceSpectrum::DESCRIBING)?;
     let signatures = vec![
@@ -150,14 +180,15 @@ pub fn describe_surface(
         Normalization::Raw => Some(spectrum.area),
         Normalization::UnitArea => None,
     };
-    Ok(ShapeDescription {
+    let description = ShapeDescription {
         fused: fuse(&signatures, area),
         form: reduced,
         signatures,
         area: spectrum.area,
         diameter: distances.max(),
         repair: surface.repaired.report.clone(),
-    })
+    };
+    Ok((description, form))
 }
 
 #[cfg(test)]
@@ -263,6 +294,17 @@ mod tests {
             assert_eq!(found.fused.len(), descriptors::FUSED_SIZE);
             found.prepare().unwrap();
         }
+    }
+
+    #[test]
+    fn the_form_of_all_vertices_is_that_of_the_description() {
+        let (mesh, options) = (lopsided(), DescribeOptions::default());
+        let surface = Surface::new(&mesh, &options.repair).unwrap();
+        let (description, form) = describe_with_form(&surface, &options).unwrap();
+        assert_eq!(description, describe(&mesh, &options).unwrap());
+        assert_eq!(form, form_of(&surface, &options).unwrap());
+        assert_eq!(form.points().len(), mesh.n_vertices());
+        assert_eq!(form.reduced(options.points), description.form);
     }
 
     #[test]

@@ -55,6 +55,31 @@ pub enum PipelineError {
         /// Where the known one came from.
         path: PathBuf,
     },
+    /// The mesh of an indexed shape is where it was no longer.
+    #[error(
+        "the mesh of `{id}` cannot be read from {path} ({source}); put it back, start in the folder that the \
+         index was built in, or build the index again",
+        path = path.display()
+    )]
+    MeshGone {
+        /// Name of the shape.
+        id: String,
+        /// Where its mesh was.
+        path: PathBuf,
+        /// What the operating system said.
+        source: std::io::Error,
+    },
+    /// The mesh of an indexed shape is another one now.
+    #[error(
+        "the mesh of `{id}` in {path} has changed since it was indexed; restore it, or build the index again",
+        path = path.display()
+    )]
+    MeshChanged {
+        /// Name of the shape.
+        id: String,
+        /// Where its mesh was.
+        path: PathBuf,
+    },
     /// A share of a collection that is none.
     #[error("shard {shard} of {n_shards} does not exist; count shards from 1 to {n_shards}, or from 0")]
     NoSuchShard {

@@ -29,10 +29,14 @@ mod stress;
 mod surface;
 
 pub use all_pairs::{AllPairs, Asymmetry};
-pub use compare::{Comparison, MatchKind, SurfaceComparison, Triangulation, compare_forms, compare_surfaces};
+pub use compare::{
+    Comparison, MatchKind, Overlay, SurfaceComparison, Triangulation, compare_forms, compare_surfaces,
+    overlay_forms,
+};
 pub use dataset::{LabelFile, ShapeFile, label_of, list_shapes};
 pub use describe::{
-    DESCRIPTION_VERSION, DescribeOptions, ShapeDescription, describe, describe_surface, prepare_form,
+    DESCRIPTION_VERSION, DescribeOptions, ShapeDescription, describe, describe_surface, describe_with_form,
+    form_of, prepare_form,
 };
 pub use distance::{SAME_BELOW, ShapeDistance};
 pub use embed::{Embedded, embed};
@@ -57,8 +61,8 @@ pub use stress::{StressKind, StressReport};
 pub use surface::Surface;
 
 pub use descriptors::{
-    DescriptorError, FormDistance, MatchOptions, Normalization, PreparedForm, Reflections, Signature,
-    SignatureKind,
+    CanonicalForm, DescriptorError, FormDistance, MatchOptions, Normalization, PreparedForm, Reflections,
+    Signature, SignatureKind,
 };
 pub use geodesics::{
     DistanceSolver, FastMarchingOptions, FirstSample, HeatOptions, Method as GeodesicMethod, ObtuseTreatment,
@@ -66,4 +70,4 @@ pub use geodesics::{
 };
 pub use mesh::io::abandon_unfinished;
 pub use nmds::{Bandwidth, Regularization, RpiAlpha, SmacofOptions};
-pub use retrieval::{Evaluation, SearchMode};
+pub use retrieval::{ContentHash, Evaluation, IndexError, SearchMode, ShapeEntry};

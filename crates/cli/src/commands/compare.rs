@@ -80,13 +80,14 @@ pub(crate) fn compare(args: &CompareArgs, common: &Common) -> Result<ExitCode> {
         ..MatchOptions::default()
     };
     let ((a, form_a, described_a), (b, form_b, described_b)) = (form(&args.a)?, form(&args.b)?);
-    let SurfaceComparison { comparison, triangulation, residuals } =
+    let SurfaceComparison { comparison, triangulation, overlay } =
         compare_surfaces([&a, &b], [&form_a, &form_b], &matching)?;
     let comparison = comparison.decided_by(ShapeDistance::between(&described_a, &described_b)?);
+    let [residuals, _] = &overlay.residuals;
     if let Some(path) = &args.residual_mesh {
-        mesh::io::write_scalar_field(path, a.mesh(), &residuals, "residual")?;
+        mesh::io::write_scalar_field(path, a.mesh(), residuals, "residual")?;
     }
-    let residual = ResidualJson::new(&a, &residuals, args.residual_mesh.clone());
+    let residual = ResidualJson::new(&a, residuals, args.residual_mesh.clone());
     let too_far = args.threshold.is_some_and(|limit| comparison.normalized_distance > limit);
     let json = CompareJson {
         a: args.a.clone(),

@@ -5,10 +5,7 @@ use nalgebra::Point3;
 use crate::error::{Fault, Located};
 use crate::{TriMesh, VertexId};
 
-/// The most vertices a mesh may have.
-const MAX_VERTICES: u64 = u32::MAX as u64;
-/// The most faces: their corners are counted in 32 bits.
-const MAX_FACES: u64 = u32::MAX as u64 / 3;
+use super::ReadLimits;
 
 /// Cuts a polygon into triangles and adds them.
 ///
@@ -18,7 +15,9 @@ pub(super) fn push_polygon(
     positions: &[Point3<f64>],
     corners: &[VertexId],
     faces: &mut Vec<[VertexId; 3]>,
+    limits: &ReadLimits,
 ) -> Result<(), Fault> {
+    limits.check(0, (faces.len() + corners.len().saturating_sub(2)) as u64)?;
     match *corners {
         [] | [_] | [_, _] => return Err(Fault::TooFewCorners { corners: corners.len() }),
         [a, b, c] => faces.push([a, b, c]),
@@ -44,24 +43,16 @@ fn prefers_second_diagonal(positions: &[Point3<f64>], quad: [VertexId; 4]) -> bo
     }
 }
 
-/// Refuses more vertices or faces than the index types can count; called with what a header
-/// promises, before anything is read.
-pub(super) fn check_counts(n_vertices: u64, n_faces: u64) -> Result<(), Fault> {
-    if n_vertices > MAX_VERTICES {
-        return Err(Fault::TooLarge { items: "vertices", count: n_vertices, limit: MAX_VERTICES });
-    }
-    if n_faces > MAX_FACES {
-        return Err(Fault::TooLarge { items: "faces", count: n_faces, limit: MAX_FACES });
-    }
-    Ok(())
-}
-
 /// The mesh, if it is a surface at all.
-pub(super) fn finish(positions: Vec<Point3<f64>>, faces: Vec<[VertexId; 3]>) -> Result<TriMesh, Located> {
+pub(super) fn finish(
+    positions: Vec<Point3<f64>>,
+    faces: Vec<[VertexId; 3]>,
+    limits: &ReadLimits,
+) -> Result<TriMesh, Located> {
     if faces.is_empty() {
         return Err(Fault::NoFaces { n_vertices: positions.len() }.whole());
     }
-    check_counts(positions.len() as u64, faces.len() as u64).map_err(Fault::whole)?;
+    limits.check(positions.len() as u64, faces.len() as u64).map_err(Fault::whole)?;
     Ok(TriMesh { positions, faces })
 }
 
@@ -73,7 +64,7 @@ mod tests {
         let positions: Vec<_> = points.iter().map(|p| Point3::new(p[0], p[1], 0.0)).collect();
         let corners: Vec<_> = (0..points.len()).map(VertexId::from).collect();
         let mut faces = Vec::new();
-        push_polygon(&positions, &corners, &mut faces).unwrap();
+        push_polygon(&positions, &corners, &mut faces, &ReadLimits::default()).unwrap();
         faces.iter().map(|f| f.map(|v| v.0)).collect()
     }
 
@@ -90,14 +81,16 @@ mod tests {
     fn larger_polygons_become_fans_and_smaller_ones_are_refused() {
         let hexagon: Vec<[f64; 2]> = (0..6).map(|i| (f64::from(i)).sin_cos().into()).collect();
         assert_eq!(cut(&hexagon), [[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 5]]);
-        let refused = push_polygon(&[], &[VertexId(0), VertexId(1)], &mut Vec::new());
+        let refused = push_polygon(&[], &[VertexId(0); 2], &mut Vec::new(), &ReadLimits::default());
         assert_eq!(refused, Err(Fault::TooFewCorners { corners: 2 }));
     }
 
     #[test]
-    fn counts_beyond_the_index_types_are_refused() {
-        assert!(check_counts(1 << 32, 0).is_err_and(|f| matches!(f, Fault::TooLarge { .. })));
-        assert!(check_counts(3, 1 << 31).is_err_and(|f| matches!(f, Fault::TooLarge { .. })));
-        assert_eq!(check_counts(1 << 30, 1 << 30), Ok(()));
+    fn a_polygon_beyond_the_limit_is_refused_before_it_is_cut() {
+        let limits = ReadLimits { max_faces: 3, ..ReadLimits::default() };
+        let mut faces = Vec::new();
+        let refused = push_polygon(&[], &[VertexId(0); 6], &mut faces, &limits);
+        assert_eq!(refused, Err(Fault::OverLimit { items: "faces", limit: 3 }));
+        assert!(faces.is_empty());
     }
 }

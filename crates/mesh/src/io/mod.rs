@@ -10,6 +10,7 @@
 mod assembly;
 mod atomic;
 mod colormap;
+mod limits;
 mod mat;
 #[cfg(test)]
 mod mutations;
@@ -17,6 +18,7 @@ mod obj;
 mod off;
 mod ply;
 mod polyline;
+mod source;
 mod stl;
 mod text;
 mod tosca;
@@ -27,12 +29,15 @@ use std::path::{Path, PathBuf};
 
 use nalgebra::Point3;
 
-use crate::error::{Fault, MeshError};
+use crate::error::MeshError;
 use crate::face_set::check_input;
 use crate::{TriMesh, VertexId};
 use atomic::Pending;
+use source::{Disk, Memory, Source};
 
 pub use atomic::abandon_unfinished;
+pub use limits::ReadLimits;
+pub use source::MemoryFile;
 
 /// A mesh file format.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -76,7 +81,7 @@ pub fn is_mesh_path(path: &Path) -> bool {
 pub fn files_of(path: &Path) -> Vec<PathBuf> {
     match Format::of(path) {
         Ok(Format::Tosca) => {
-            let pair = tosca::Pair::of(path);
+            let pair = tosca::Pair::of(path, &Disk);
             vec![pair.vert, pair.tri]
         }
         _ => vec![path.to_owned()],
@@ -86,35 +91,47 @@ pub fn files_of(path: &Path) -> Vec<PathBuf> {
 /// Reads a mesh; of a `.vert`/`.tri` pair either name will do.
 ///
 /// # Errors
-/// When the file cannot be opened or is not a mesh of at least one face, see [`Fault`] for what may
-/// be wrong with it; [`MeshError::UnknownFormat`] for a foreign extension.
+/// When the file cannot be opened or is not a mesh of at least one face, see
+/// [`Fault`](crate::Fault) for what may be wrong with it; [`MeshError::UnknownFormat`] for a foreign
+/// extension.
 pub fn read(path: &Path) -> Result<TriMesh, MeshError> {
-    let format = Format::of(path)?;
-    if format == Format::Tosca {
-        return tosca::read(path);
-    }
-    let bytes = load(path)?;
-    let parsed = match format {
-        Format::Off => off::parse(&bytes),
-        Format::Obj => obj::parse(&bytes),
-        Format::Ply => ply::parse(&bytes),
-        Format::Stl => stl::parse(bytes),
-        Format::Mat | Format::Tosca => mat::parse(&bytes),
-    };
-    parsed.map_err(|fault| fault.in_file(path))
+    parse(path, &Disk, &ReadLimits::default())
 }
 
-/// All bytes of a regular file.
-fn load(path: &Path) -> Result<Vec<u8>, MeshError> {
-    let cannot_read = |source| MeshError::Io { action: "read", path: path.to_path_buf(), source };
-    if !fs::metadata(path).map_err(cannot_read)?.is_file() {
-        return Err(cannot_read(io::Error::new(io::ErrorKind::InvalidInput, "not a regular file")));
+/// Reads a mesh from files in memory, with the same words about what is wrong with them: one file, or a
+/// `.vert`/`.tri` pair in either order. No other file is looked for.
+///
+/// # Errors
+/// As [`read()`]; [`Fault::OverLimit`](crate::Fault::OverLimit) beyond `limits`,
+/// [`MeshError::StrayFile`] when there are more files than a mesh has.
+pub fn read_memory(files: &[MemoryFile<'_>], limits: &ReadLimits) -> Result<TriMesh, MeshError> {
+    let nothing = MemoryFile { name: Path::new(""), bytes: &[] };
+    let (first, others) = files.split_first().unwrap_or((&nothing, &[]));
+    // Whether the two belong together, the pair itself says.
+    let stray = match Format::of(first.name)? {
+        Format::Tosca => others.get(1),
+        _ => others.first(),
+    };
+    if let Some(extra) = stray {
+        return Err(MeshError::StrayFile { path: first.name.to_owned(), extra: extra.name.to_owned() });
     }
-    let bytes = fs::read(path).map_err(cannot_read)?;
-    if bytes.is_empty() {
-        return Err(Fault::Empty.whole().in_file(path));
+    parse(first.name, &Memory(files), limits)
+}
+
+fn parse(path: &Path, source: &dyn Source, limits: &ReadLimits) -> Result<TriMesh, MeshError> {
+    let format = Format::of(path)?;
+    if format == Format::Tosca {
+        return tosca::read(path, source, limits);
     }
-    Ok(bytes)
+    let bytes = source.load(path)?;
+    let parsed = match format {
+        Format::Off => off::parse(&bytes, limits),
+        Format::Obj => obj::parse(&bytes, limits),
+        Format::Ply => ply::parse(&bytes, limits),
+        Format::Stl => stl::parse(bytes.into_owned(), limits),
+        Format::Mat | Format::Tosca => mat::parse(&bytes, limits),
+    };
+    parsed.map_err(|fault| fault.in_file(path))
 }
 
 /// Writes a mesh in the format of the extension; the file is there whole or not at all.
@@ -138,7 +155,7 @@ pub fn write(path: &Path, mesh: &TriMesh) -> Result<(), MeshError> {
             write_atomically(path, |out| stl::write(out, &triangles))
         }
         Format::Tosca => {
-            let pair = tosca::Pair::of(path);
+            let pair = tosca::Pair::of(path, &Disk);
             let vert = Pending::write(&pair.vert, |out| tosca::write_positions(out, mesh))?;
             let tri = Pending::write(&pair.tri, |out| tosca::write_faces(out, mesh))?;
             vert.publish()?;

@@ -3,26 +3,26 @@
 
 use proptest::prelude::*;
 
-use crate::error::Located;
+use crate::error::{Fault, Located};
 use crate::{TriMesh, VertexId, shapes};
 
 use super::mat::sample::{PLAIN, Style};
-use super::{mat, obj, off, ply, stl, tosca};
+use super::{ReadLimits, mat, obj, off, ply, stl, tosca};
 
 /// A parser with a valid file for it.
 struct Sample {
     name: &'static str,
-    parse: fn(&[u8]) -> Result<TriMesh, Located>,
+    parse: fn(&[u8], &ReadLimits) -> Result<TriMesh, Located>,
     bytes: Vec<u8>,
 }
 
-fn parse_vert(bytes: &[u8]) -> Result<TriMesh, Located> {
-    let positions = tosca::parse_positions(bytes)?;
+fn parse_vert(bytes: &[u8], limits: &ReadLimits) -> Result<TriMesh, Located> {
+    let positions = tosca::parse_positions(bytes, limits)?;
     Ok(TriMesh { positions, faces: vec![[VertexId(0); 3]] })
 }
 
-fn parse_tri(bytes: &[u8]) -> Result<TriMesh, Located> {
-    let faces = tosca::parse_faces(bytes, 12)?;
+fn parse_tri(bytes: &[u8], limits: &ReadLimits) -> Result<TriMesh, Located> {
+    let faces = tosca::parse_faces(bytes, 12, limits)?;
     Ok(TriMesh { positions: vec![nalgebra::Point3::origin(); 12], faces })
 }
 
@@ -47,7 +47,7 @@ fn samples() -> Vec<Sample> {
     let ascii_stl = format!("solid s\n{}endsolid s\n", (0..4).map(facet).collect::<String>());
     let binary_stl = written(&|out| stl::write(out, &stl::triangles(&mesh).unwrap()).unwrap());
     let zipped = Style { compressed: true, big_endian: true, index_type: 4 };
-    let parse_stl = |bytes: &[u8]| stl::parse(bytes.to_vec());
+    let parse_stl = |bytes: &[u8], limits: &ReadLimits| stl::parse(bytes.to_vec(), limits);
     let sample = |name, parse, bytes| Sample { name, parse, bytes };
     vec![
         sample("off", off::parse, written(&|out| off::write(out, &mesh).unwrap())),
@@ -72,12 +72,35 @@ fn samples() -> Vec<Sample> {
 
 /// Parses and, where that succeeds, holds the mesh to what readers promise.
 fn check(sample: &Sample, bytes: &[u8]) -> Option<TriMesh> {
-    let mesh = (sample.parse)(bytes).ok()?;
+    let mesh = (sample.parse)(bytes, &ReadLimits::default()).ok()?;
     let n = mesh.n_vertices();
     assert!(mesh.n_faces() > 0, "{}", sample.name);
     assert!(mesh.faces.iter().flatten().all(|v| v.index() < n), "{}", sample.name);
     assert!(mesh.positions.iter().all(|p| p.iter().all(|x| x.is_finite())), "{}", sample.name);
     Some(mesh)
+}
+
+#[test]
+fn meshes_beyond_the_limits_are_refused_in_every_format() {
+    for sample in samples().into_iter().filter(|sample| !["obj groups", "stl ascii"].contains(&sample.name)) {
+        let read = |max_vertices, max_faces| {
+            let limits = ReadLimits { max_vertices, max_faces };
+            (sample.parse)(&sample.bytes, &limits).map_err(|located| located.fault)
+        };
+        assert!(read(12, 20).is_ok(), "{}", sample.name);
+        for (limits, items) in [((11, 20), "vertices"), ((12, 19), "faces")] {
+            let half = ["vert", "tri"].iter().position(|half| *half == sample.name);
+            if half.is_none() || (half == Some(0)) == (items == "vertices") {
+                let limit = if items == "vertices" { limits.0 } else { limits.1 };
+                assert_eq!(
+                    read(limits.0, limits.1),
+                    Err(Fault::OverLimit { items, limit }),
+                    "{}",
+                    sample.name
+                );
+            }
+        }
+    }
 }
 
 #[test]

@@ -11,14 +11,15 @@ use nalgebra::Point3;
 use crate::error::{Fault, Located};
 use crate::{TriMesh, VertexId};
 
-use super::assembly::{check_counts, finish, push_polygon};
+use super::ReadLimits;
+use super::assembly::{finish, push_polygon};
 use super::text::{Line, Lines, excerpt, parse_f64, parse_integer, parse_position};
 
 /// Reads all objects and groups of an OBJ file as one mesh: vertices in the order of the `v` lines,
 /// used or not, faces in the order of the `f` lines. Negative indices count back from the last
 /// vertex; normals, texture coordinates, materials, lines and points are passed over.
-pub(super) fn parse(bytes: &[u8]) -> Result<TriMesh, Located> {
-    let mut feed = Feed::new(bytes);
+pub(super) fn parse(bytes: &[u8], limits: &ReadLimits) -> Result<TriMesh, Located> {
+    let mut feed = Feed::new(bytes, *limits);
     let no_materials = |_: &std::path::Path| Err(tobj::LoadError::OpenFileFailed);
     let outcome = tobj::load_obj_buf(&mut feed, &tobj::LoadOptions::default(), no_materials);
     let models = match outcome {
@@ -41,29 +42,32 @@ pub(super) fn parse(bytes: &[u8]) -> Result<TriMesh, Located> {
             rest = others;
             corners.clear();
             corners.extend(these.iter().map(|&i| VertexId(mesh.positions[3 * i as usize] as u32)));
-            push_polygon(&positions, &corners, &mut faces).map_err(Fault::whole)?;
+            push_polygon(&positions, &corners, &mut faces, limits).map_err(Fault::whole)?;
         }
     }
-    finish(positions, faces)
+    finish(positions, faces, limits)
 }
 
 /// The thinned file, produced line by line so that the line number at an error is known.
 struct Feed<'a> {
     bytes: &'a [u8],
+    limits: ReadLimits,
     lines: Lines<'a>,
     /// The line being handed out and how much of it is gone.
     current: Vec<u8>,
     taken: usize,
     line: usize,
     positions: Vec<Point3<f64>>,
+    /// Triangles that the faces so far become.
     n_faces: usize,
     fault: Option<Located>,
 }
 
 impl<'a> Feed<'a> {
-    fn new(bytes: &'a [u8]) -> Self {
+    fn new(bytes: &'a [u8], limits: ReadLimits) -> Self {
         Self {
             bytes,
+            limits,
             lines: Lines::new(bytes),
             current: Vec::new(),
             taken: 0,
@@ -83,7 +87,8 @@ impl<'a> Feed<'a> {
             let mut tokens = line.tokens();
             match tokens.next() {
                 Some(b"v") => {
-                    check_counts(self.positions.len() as u64 + 1, 0)
+                    self.limits
+                        .check(self.positions.len() as u64 + 1, 0)
                         .map_err(|fault| fault.in_line(line.number))?;
                     self.positions.push(parse_vertex(line, tokens, self.positions.len() + 1)?);
                     let index = self.positions.len() - 1;
@@ -95,7 +100,8 @@ impl<'a> Feed<'a> {
                     if corners < 3 {
                         return Err(Fault::TooFewCorners { corners }.in_line(line.number));
                     }
-                    self.n_faces += 1;
+                    self.n_faces += corners - 2;
+                    self.limits.check(0, self.n_faces as u64).map_err(|fault| fault.in_line(line.number))?;
                     self.current.extend_from_slice(line.text);
                     self.current.push(b'\n');
                     return Ok(());
@@ -200,6 +206,10 @@ pub(super) fn write(out: &mut dyn Write, mesh: &TriMesh) -> io::Result<()> {
 mod tests {
     use super::*;
     use crate::error::Place;
+
+    fn parse(bytes: &[u8]) -> Result<TriMesh, Located> {
+        super::parse(bytes, &ReadLimits::default())
+    }
 
     fn faces(text: &str) -> Vec<[u32; 3]> {
         parse(text.as_bytes()).unwrap().faces.iter().map(|f| f.map(|v| v.0)).collect()

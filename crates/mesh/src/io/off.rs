@@ -5,7 +5,8 @@ use std::io::{self, Write};
 use crate::error::{Fault, Located};
 use crate::{TriMesh, VertexId};
 
-use super::assembly::{check_counts, finish, push_polygon};
+use super::ReadLimits;
+use super::assembly::{finish, push_polygon};
 use super::text::{Line, Lines, excerpt, parse_integer, parse_position};
 
 /// The fewest bytes that a vertex, `0 0 0` and a line end, and a face, `3 0 1 2` and a line end, take.
@@ -14,7 +15,7 @@ const SHORTEST_FACE: usize = 8;
 
 /// Reads OFF, COFF, NOFF, STOFF and their combinations; normals, colours and texture coordinates,
 /// which follow the position of a vertex, are passed over.
-pub(super) fn parse(bytes: &[u8]) -> Result<TriMesh, Located> {
+pub(super) fn parse(bytes: &[u8], limits: &ReadLimits) -> Result<TriMesh, Located> {
     let mut lines = Lines::new(bytes);
     let header = lines.next().ok_or_else(|| Fault::Empty.whole())?;
     let counts = match after_keyword(header)? {
@@ -22,7 +23,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<TriMesh, Located> {
         rest => Line { text: rest, ..header },
     };
     let (n_vertices, n_faces) = parse_counts(counts)?;
-    check_counts(n_vertices, n_faces).map_err(|fault| fault.in_line(counts.number))?;
+    limits.check(n_vertices, n_faces).map_err(|fault| fault.in_line(counts.number))?;
 
     let mut positions = Vec::with_capacity((n_vertices as usize).min(lines.remaining() / SHORTEST_VERTEX));
     for found in 0..n_vertices {
@@ -34,12 +35,12 @@ pub(super) fn parse(bytes: &[u8]) -> Result<TriMesh, Located> {
     for found in 0..n_faces {
         let line = lines.next().ok_or_else(|| truncated(&lines, "faces", n_faces, found))?;
         parse_corners(line, n_vertices, &mut corners)?;
-        push_polygon(&positions, &corners, &mut faces).map_err(|fault| fault.in_line(line.number))?;
+        push_polygon(&positions, &corners, &mut faces, limits).map_err(|fault| fault.in_line(line.number))?;
     }
     if let Some(line) = lines.next() {
         return Err(Fault::Leftover { items: "faces", promised: n_faces }.in_line(line.number));
     }
-    finish(positions, faces)
+    finish(positions, faces, limits)
 }
 
 fn cut_short(lines: &Lines<'_>, expected: &str) -> Located {
@@ -128,6 +129,10 @@ pub(super) fn write(out: &mut dyn Write, mesh: &TriMesh) -> io::Result<()> {
 mod tests {
     use super::*;
     use crate::error::Place;
+
+    fn parse(bytes: &[u8]) -> Result<TriMesh, Located> {
+        super::parse(bytes, &ReadLimits::default())
+    }
 
     const SQUARE: &str = "4 1 4\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n";
 

@@ -10,7 +10,8 @@ use crate::error::{Fault, Located, MeshError, Place};
 use crate::position_key::position_key;
 use crate::{TriMesh, VertexId};
 
-use super::assembly::{check_counts, finish};
+use super::ReadLimits;
+use super::assembly::finish;
 use super::text::{Lines, excerpt, parse_f64};
 
 /// Bytes of a binary file: free text, a 32-bit count, then the triangles.
@@ -20,7 +21,7 @@ const TRIANGLE: usize = 50;
 
 /// Reads STL. The format lists each triangle with its own three corners; corners in the same place
 /// become one vertex, numbered in the order of first appearance.
-pub(super) fn parse(bytes: Vec<u8>) -> Result<TriMesh, Located> {
+pub(super) fn parse(bytes: Vec<u8>, limits: &ReadLimits) -> Result<TriMesh, Located> {
     let text = bytes.trim_ascii_start();
     if text.is_empty() {
         return Err(Fault::Empty.whole());
@@ -30,7 +31,7 @@ pub(super) fn parse(bytes: Vec<u8>) -> Result<TriMesh, Located> {
     let fills_file = bytes.len() % TRIANGLE == PREFIX % TRIANGLE && promised == Some(held);
     // Binary files may say "solid" in their free text too.
     if text.get(..5).is_some_and(|word| word.eq_ignore_ascii_case(b"solid")) && !fills_file {
-        return parse_ascii(&bytes);
+        return parse_ascii(&bytes, limits);
     }
     match promised {
         None => {
@@ -40,16 +41,16 @@ pub(super) fn parse(bytes: Vec<u8>) -> Result<TriMesh, Located> {
         Some(promised) if promised > held => {
             Err(Fault::Truncated { items: "triangles".into(), promised, found: held }.whole())
         }
-        Some(promised) => parse_binary(bytes, promised),
+        Some(promised) => parse_binary(bytes, promised, limits),
     }
 }
 
-fn parse_binary(mut bytes: Vec<u8>, n_triangles: u64) -> Result<TriMesh, Located> {
-    check_counts(0, n_triangles).map_err(Fault::whole)?;
+fn parse_binary(mut bytes: Vec<u8>, n_triangles: u64, limits: &ReadLimits) -> Result<TriMesh, Located> {
+    limits.check(0, n_triangles).map_err(Fault::whole)?;
     // By the word "solid" stl_io would take the file for ascii.
     bytes[..HEADER].fill(0);
     let place = |triangle: u64| Place::Byte(PREFIX as u64 + triangle * TRIANGLE as u64);
-    merge_corners(bytes, |triangle, error| match error {
+    merge_corners(bytes, limits, |triangle, error| match error {
         Broken::Parser(error) => {
             let expected = format!("a triangle ({error})");
             Located { place: place(triangle), fault: Fault::CutShort { expected } }
@@ -60,9 +61,10 @@ fn parse_binary(mut bytes: Vec<u8>, n_triangles: u64) -> Result<TriMesh, Located
 
 /// Reads the ascii form after writing it the one way `stl_io` takes: lower case, a single solid with
 /// a name, and zero normals, which many programs write as NaN and nothing here reads.
-fn parse_ascii(bytes: &[u8]) -> Result<TriMesh, Located> {
+fn parse_ascii(bytes: &[u8], limits: &ReadLimits) -> Result<TriMesh, Located> {
     let mut plain = b"solid s\n".to_vec();
     let mut is_open = true;
+    let mut n_triangles = 0;
     let mut lines = Lines::new(bytes);
     for line in lines.by_ref() {
         let text = line.text.to_ascii_lowercase();
@@ -71,6 +73,8 @@ fn parse_ascii(bytes: &[u8]) -> Result<TriMesh, Located> {
         } else if text.starts_with(b"endsolid") || text.starts_with(b"end solid") {
             is_open = false;
         } else if text.starts_with(b"facet") {
+            n_triangles += 1;
+            limits.check(0, n_triangles).map_err(|fault| fault.in_line(line.number))?;
             plain.extend_from_slice(b"facet normal 0 0 0\n");
         } else {
             plain.extend_from_slice(&text);
@@ -81,7 +85,7 @@ fn parse_ascii(bytes: &[u8]) -> Result<TriMesh, Located> {
         return Err(Fault::CutShort { expected: "`endsolid`".into() }.in_line(lines.number()));
     }
     plain.extend_from_slice(b"endsolid\n");
-    merge_corners(plain, |triangle, error| diagnose_ascii(bytes, triangle, error))
+    merge_corners(plain, limits, |triangle, error| diagnose_ascii(bytes, triangle, error))
 }
 
 /// Places a fault of the ascii form: in the line of a vertex that is no point, or else in the first
@@ -118,7 +122,11 @@ enum Broken {
     NonFinite(Fault),
 }
 
-fn merge_corners(bytes: Vec<u8>, place: impl Fn(u64, Broken) -> Located) -> Result<TriMesh, Located> {
+fn merge_corners(
+    bytes: Vec<u8>,
+    limits: &ReadLimits,
+    place: impl Fn(u64, Broken) -> Located,
+) -> Result<TriMesh, Located> {
     let most = bytes.len() / TRIANGLE;
     let mut cursor = Cursor::new(bytes);
     let triangles = stl_io::create_stl_reader(&mut cursor).map_err(|e| place(0, Broken::Parser(e)))?;
@@ -139,9 +147,10 @@ fn merge_corners(bytes: Vec<u8>, place: impl Fn(u64, Broken) -> Located) -> Resu
                 VertexId::from(positions.len() - 1)
             });
         }
+        limits.check(positions.len() as u64, 0).map_err(Fault::whole)?;
         faces.push(face);
     }
-    finish(positions, faces)
+    finish(positions, faces, limits)
 }
 
 /// The triangles as STL stores them; an error names a coordinate that 32-bit floats cannot hold.
@@ -174,6 +183,10 @@ mod tests {
     use crate::shapes;
 
     const FACET: &str = "facet normal 0 0 1\n outer loop\n  vertex 0 0 0\n  vertex 1 0 0\n  vertex 0 1 0\n endloop\nendfacet\n";
+
+    fn parse(bytes: Vec<u8>) -> Result<TriMesh, Located> {
+        super::parse(bytes, &ReadLimits::default())
+    }
 
     fn binary(mesh: &TriMesh) -> Vec<u8> {
         let mut bytes = Vec::new();

@@ -8,7 +8,9 @@ use nalgebra::Point3;
 use crate::error::{Fault, Located, MeshError};
 use crate::{TriMesh, VertexId};
 
-use super::assembly::{check_counts, finish};
+use super::ReadLimits;
+use super::assembly::finish;
+use super::source::Source;
 use super::text::{Lines, excerpt, parse_integer, parse_position};
 
 /// The fewest bytes of a line: three digits, two separators, a line end.
@@ -23,7 +25,7 @@ pub(super) struct Pair {
 impl Pair {
     /// The pair that `path`, either half, belongs to. The other half's extension is in upper case
     /// where this one's is, unless only the lower-case file exists.
-    pub(super) fn of(path: &Path) -> Self {
+    pub(super) fn of(path: &Path, source: &dyn Source) -> Self {
         let extension = path.extension().unwrap_or_default().to_string_lossy();
         let is_vert = extension.eq_ignore_ascii_case("vert");
         let other = if is_vert { "tri" } else { "vert" };
@@ -31,8 +33,8 @@ impl Pair {
         let upper = path.with_extension(other.to_ascii_uppercase());
         let prefers_upper = extension.chars().all(|c| c.is_ascii_uppercase());
         let partner = match prefers_upper {
-            true if upper.exists() || !lower.exists() => upper,
-            false if upper.exists() && !lower.exists() => upper,
+            true if source.holds(&upper) || !source.holds(&lower) => upper,
+            false if source.holds(&upper) && !source.holds(&lower) => upper,
             _ => lower,
         };
         let this = path.to_path_buf();
@@ -41,22 +43,23 @@ impl Pair {
 }
 
 /// Reads a pair; `path` is the half that was asked for.
-pub(super) fn read(path: &Path) -> Result<TriMesh, MeshError> {
-    let pair = Pair::of(path);
+pub(super) fn read(path: &Path, source: &dyn Source, limits: &ReadLimits) -> Result<TriMesh, MeshError> {
+    let pair = Pair::of(path, source);
     let half = |half: &Path| {
-        if half != path && !half.exists() {
+        if half != path && !source.holds(half) {
             let partner = half.file_name().unwrap_or_default().to_string_lossy().into_owned();
             return Err(Fault::NoPartner { partner }.whole().in_file(path));
         }
-        super::load(half)
+        source.load(half)
     };
-    let positions = parse_positions(&half(&pair.vert)?).map_err(|fault| fault.in_file(&pair.vert))?;
-    let faces = parse_faces(&half(&pair.tri)?, positions.len()).map_err(|fault| fault.in_file(&pair.tri))?;
-    finish(positions, faces).map_err(|fault| fault.in_file(&pair.tri))
+    let positions = parse_positions(&half(&pair.vert)?, limits).map_err(|fault| fault.in_file(&pair.vert))?;
+    let faces =
+        parse_faces(&half(&pair.tri)?, positions.len(), limits).map_err(|fault| fault.in_file(&pair.tri))?;
+    finish(positions, faces, limits).map_err(|fault| fault.in_file(&pair.tri))
 }
 
 /// One vertex a line, three coordinates.
-pub(super) fn parse_positions(bytes: &[u8]) -> Result<Vec<Point3<f64>>, Located> {
+pub(super) fn parse_positions(bytes: &[u8], limits: &ReadLimits) -> Result<Vec<Point3<f64>>, Located> {
     let mut positions = Vec::with_capacity(bytes.len() / (4 * SHORTEST_LINE));
     for line in Lines::new(bytes) {
         let mut tokens = line.tokens();
@@ -64,16 +67,20 @@ pub(super) fn parse_positions(bytes: &[u8]) -> Result<Vec<Point3<f64>>, Located>
         if tokens.next().is_some() {
             return Err(line.expected("three coordinates and no more"));
         }
+        limits.check(positions.len() as u64, 0).map_err(|fault| fault.in_line(line.number))?;
     }
     if positions.is_empty() {
         return Err(Fault::Empty.whole());
     }
-    check_counts(positions.len() as u64, 0).map_err(Fault::whole)?;
     Ok(positions)
 }
 
 /// One triangle a line, three vertices counted from one.
-pub(super) fn parse_faces(bytes: &[u8], n_vertices: usize) -> Result<Vec<[VertexId; 3]>, Located> {
+pub(super) fn parse_faces(
+    bytes: &[u8],
+    n_vertices: usize,
+    limits: &ReadLimits,
+) -> Result<Vec<[VertexId; 3]>, Located> {
     let mut faces = Vec::with_capacity(bytes.len() / (2 * SHORTEST_LINE));
     for line in Lines::new(bytes) {
         let expected = || line.expected("three vertices, counted from one");
@@ -92,6 +99,7 @@ pub(super) fn parse_faces(bytes: &[u8], n_vertices: usize) -> Result<Vec<[Vertex
             return Err(expected());
         }
         faces.push(face);
+        limits.check(0, faces.len() as u64).map_err(|fault| fault.in_line(line.number))?;
     }
     if faces.is_empty() {
         return Err(Fault::Empty.whole());
@@ -116,6 +124,14 @@ pub(super) fn write_faces(out: &mut dyn Write, mesh: &TriMesh) -> io::Result<()>
 mod tests {
     use super::*;
     use crate::error::Place;
+
+    fn parse_positions(bytes: &[u8]) -> Result<Vec<Point3<f64>>, Located> {
+        super::parse_positions(bytes, &ReadLimits::default())
+    }
+
+    fn parse_faces(bytes: &[u8], n_vertices: usize) -> Result<Vec<[VertexId; 3]>, Located> {
+        super::parse_faces(bytes, n_vertices, &ReadLimits::default())
+    }
 
     #[test]
     fn both_halves_in_either_line_end_and_notation() {

@@ -3,12 +3,13 @@
 use std::path::Path;
 use std::time::Instant;
 
-use descriptors::MatchOptions;
+use descriptors::{CanonicalForm, MatchOptions};
 use mesh::TriMesh;
 use retrieval::{Candidate, Index, SearchMode, ShapeEntry, ShapeVectors, vote};
 use serde::Serialize;
 
 use super::record::{form, options_of};
+use super::source::read_unchanged;
 use crate::{
     Comparison, DescribeOptions, PipelineError, ShapeDescription, ShapeDistance, compare_forms, describe,
     prepare_form, rerank,
@@ -130,6 +131,46 @@ impl ShapeSearch {
         Ok(Self { index, describe })
     }
 
+    /// How its shapes were described, and queries are.
+    #[must_use]
+    pub fn describe_options(&self) -> &DescribeOptions {
+        &self.describe
+    }
+
+    /// All names with what is known of them, ascending.
+    ///
+    /// # Errors
+    /// [`PipelineError::Index`].
+    pub fn entries(&self) -> Result<Vec<(String, ShapeEntry)>, PipelineError> {
+        Ok(self.index.entries()?)
+    }
+
+    /// What is known of a shape.
+    ///
+    /// # Errors
+    /// [`PipelineError::Index`].
+    pub fn entry(&self, id: &str) -> Result<ShapeEntry, PipelineError> {
+        Ok(self.index.entry(id)?)
+    }
+
+    /// The form of a shape as the index keeps it, at some points.
+    ///
+    /// # Errors
+    /// [`PipelineError::Index`].
+    pub fn form(&self, id: &str) -> Result<CanonicalForm, PipelineError> {
+        let (entry, vectors) = self.shape(id)?;
+        form(&entry, &vectors)
+    }
+
+    /// The mesh of a shape, read again from where it was when it was indexed.
+    ///
+    /// # Errors
+    /// [`PipelineError::MeshGone`] and [`PipelineError::MeshChanged`] unless it is still the same;
+    /// [`PipelineError::Index`], [`PipelineError::Mesh`].
+    pub fn mesh(&self, id: &str) -> Result<TriMesh, PipelineError> {
+        read_unchanged(id, &self.index.entry(id)?)
+    }
+
     /// The shapes of the index that are nearest to a mesh: by fused signatures, then by aligned forms.
     ///
     /// # Errors
@@ -137,21 +178,43 @@ impl ShapeSearch {
     pub fn search(&self, mesh: &TriMesh, options: &SearchOptions) -> Result<SearchReport, PipelineError> {
         let start = Instant::now();
         let query = describe(mesh, &self.describe)?;
-        let described = start.elapsed().as_secs_f64();
-        let report = self.nearest(&query, options)?;
-        let seconds =
-            SearchSeconds { describe: described, search: start.elapsed().as_secs_f64() - described };
-        Ok(SearchReport { seconds, ..report })
+        let describe = start.elapsed().as_secs_f64();
+        let report = self.search_described(&query, options)?;
+        Ok(SearchReport { seconds: SearchSeconds { describe, ..report.seconds }, ..report })
     }
 
-    fn nearest(
+    /// As [`search`](Self::search), with a mesh that was described with
+    /// [`describe_options`](Self::describe_options).
+    ///
+    /// # Errors
+    /// [`PipelineError::Index`].
+    pub fn search_described(
         &self,
         query: &ShapeDescription,
         options: &SearchOptions,
     ) -> Result<SearchReport, PipelineError> {
+        self.nearest(&query.fused, &query.form, options)
+    }
+
+    /// As [`search`](Self::search), with a shape of the index; its mesh is not needed. It finds itself.
+    ///
+    /// # Errors
+    /// [`PipelineError::Index`].
+    pub fn search_shape(&self, id: &str, options: &SearchOptions) -> Result<SearchReport, PipelineError> {
+        let (entry, vectors) = self.shape(id)?;
+        self.nearest(&vectors.fused, &form(&entry, &vectors)?, options)
+    }
+
+    fn nearest(
+        &self,
+        fused: &[f32],
+        query: &CanonicalForm,
+        options: &SearchOptions,
+    ) -> Result<SearchReport, PipelineError> {
+        let start = Instant::now();
         let wanted = options.k.max(VOTERS);
         let asked = (CANDIDATES * wanted).max(LEAST_CANDIDATES);
-        let found = self.index.nearest(&query.fused, asked, options.mode)?;
+        let found = self.index.nearest(fused, asked, options.mode)?;
         let near = &found.shapes;
         let candidates =
             near.iter().enumerate().map(|(index, near)| Candidate { index, bound: near.distance });
@@ -159,7 +222,7 @@ impl ShapeSearch {
             let (entry, vectors) = self.shape(&near[i].id)?;
             prepare_form(&form(&entry, &vectors)?)
         };
-        let refined = rerank(&query.prepare()?, candidates, wanted, &options.matching, form_of)?;
+        let refined = rerank(&prepare_form(query)?, candidates, wanted, &options.matching, form_of)?;
 
         let mut results = Vec::with_capacity(wanted);
         for (place, neighbor) in refined.nearest.iter().enumerate() {
@@ -180,9 +243,9 @@ impl ShapeSearch {
         if options.explain == Explain::Kind {
             for result in &mut results {
                 let (entry, vectors) = self.shape(&result.id)?;
-                let comparison = compare_forms(&query.form, &form(&entry, &vectors)?, &options.matching)?;
+                let comparison = compare_forms(query, &form(&entry, &vectors)?, &options.matching)?;
                 let distance =
-                    ShapeDistance::new([&query.fused, &vectors.fused], comparison.normalized_distance);
+                    ShapeDistance::new([fused, &vectors.fused], comparison.normalized_distance);
                 result.comparison = Some(comparison.decided_by(distance));
             }
         }
@@ -193,7 +256,7 @@ impl ShapeSearch {
             measured: found.n_measured,
             aligned: refined.asked,
             recall: found.recall,
-            seconds: SearchSeconds::default(),
+            seconds: SearchSeconds { describe: 0.0, search: start.elapsed().as_secs_f64() },
         })
     }
 
@@ -221,5 +284,73 @@ fn predicted(results: &[SearchResult], threshold: Option<retrieval::UnknownThres
         voters: vote.voters,
         confidence: vote.confidence,
         threshold: threshold.map(|threshold| threshold.distance),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fs;
+
+    use mesh::shapes;
+    use tempfile::TempDir;
+
+    use super::*;
+    use crate::{BuildOptions, build_index, describe_with_form};
+
+    /// An index of a few bodies.
+    fn indexed() -> (TempDir, ShapeSearch) {
+        let folder = tempfile::tempdir().unwrap();
+        let bodies = [
+            ("ball0.off", shapes::icosphere(3)),
+            ("ring0.off", shapes::torus(24, 12, 2.0, 0.6)),
+            ("ring1.off", shapes::torus(24, 12, 2.0, 0.9)),
+            ("box0.vert", shapes::cube(3)),
+        ];
+        for (name, mesh) in bodies {
+            mesh::io::write(&folder.path().join(name), &mesh).unwrap();
+        }
+        let path = folder.path().join("all.canonform");
+        let options = BuildOptions { describe: &DescribeOptions::default(), labels: None, shard: None };
+        build_index(folder.path(), &path, &options, &()).unwrap();
+        let search = ShapeSearch::open(&path).unwrap();
+        (folder, search)
+    }
+
+    #[test]
+    fn a_shape_finds_what_its_mesh_finds() {
+        let (_folder, search) = indexed();
+        let options = SearchOptions { explain: Explain::Kind, ..SearchOptions::default() };
+        let mesh = search.mesh("ring0").unwrap();
+        let by_mesh = search.search(&mesh, &options).unwrap();
+        let by_name = search.search_shape("ring0", &options).unwrap();
+        let surface = crate::Surface::new(&mesh, &search.describe_options().repair).unwrap();
+        let (described, form) = describe_with_form(&surface, search.describe_options()).unwrap();
+        let by_description = search.search_described(&described, &options).unwrap();
+        let found = |report: &SearchReport| -> Vec<_> {
+            report.results.iter().map(|r| (r.id.clone(), (r.distance * 1e4).round())).collect()
+        };
+        assert_eq!(found(&by_mesh)[0], ("ring0".to_owned(), 0.0));
+        assert_eq!(found(&by_mesh), found(&by_name));
+        assert_eq!(found(&by_mesh), found(&by_description));
+        assert_eq!(search.form("ring0").unwrap().points().len(), form.points().len());
+        assert!(matches!(search.search_shape("none", &options), Err(PipelineError::Index(_))));
+        let names: Vec<String> = search.entries().unwrap().into_iter().map(|(id, _)| id).collect();
+        assert_eq!(names, ["ball0", "box0", "ring0", "ring1"]);
+        assert_eq!(search.entry("box0").unwrap().label, "box");
+    }
+
+    #[test]
+    fn a_mesh_that_is_gone_or_another_is_told_from_the_one_that_was_indexed() {
+        let (folder, search) = indexed();
+        assert_eq!(search.mesh("box0").unwrap(), shapes::cube(3));
+        fs::copy(folder.path().join("ring1.off"), folder.path().join("ring0.off")).unwrap();
+        fs::remove_file(folder.path().join("box0.tri")).unwrap();
+        let changed = search.mesh("ring0").unwrap_err();
+        assert!(matches!(&changed, PipelineError::MeshChanged { id, .. } if id == "ring0"));
+        assert!(changed.to_string().contains("build the index again"), "{changed}");
+        let gone = search.mesh("box0").unwrap_err();
+        assert!(matches!(&gone, PipelineError::MeshGone { id, .. } if id == "box0"));
+        assert!(gone.to_string().contains("box0.vert"), "{gone}");
+        search.form("box0").unwrap();
     }
 }

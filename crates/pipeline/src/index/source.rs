@@ -4,9 +4,10 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
-use mesh::MeshError;
+use mesh::io::{MemoryFile, ReadLimits};
+use mesh::{MeshError, TriMesh};
 use rayon::prelude::*;
-use retrieval::ContentHash;
+use retrieval::{ContentHash, ShapeEntry};
 
 use crate::{LabelFile, Observer, PipelineError, ShapeFile, label_of, list_shapes};
 
@@ -115,6 +116,21 @@ pub(super) fn hash_all(shapes: Vec<ShapeFile>, observer: &dyn Observer) -> Vec<H
             (shape, hash)
         })
         .collect()
+}
+
+/// The mesh of an indexed shape, if it is still what it was.
+pub(super) fn read_unchanged(id: &str, entry: &ShapeEntry) -> Result<TriMesh, PipelineError> {
+    let path = PathBuf::from(&entry.path);
+    let files = mesh::io::files_of(&path);
+    let pieces = files.iter().map(std::fs::read).collect::<Result<Vec<_>, _>>();
+    let pieces =
+        pieces.map_err(|source| PipelineError::MeshGone { id: id.to_owned(), path: path.clone(), source })?;
+    if ContentHash::of(&pieces) != entry.content {
+        return Err(PipelineError::MeshChanged { id: id.to_owned(), path });
+    }
+    // Read from memory: between two looks at the disk the file might be exchanged.
+    let files = files.iter().zip(&pieces).map(|(name, bytes)| MemoryFile { name, bytes });
+    Ok(mesh::io::read_memory(&files.collect::<Vec<_>>(), &ReadLimits::default())?)
 }
 
 fn content(path: &Path) -> Result<ContentHash, PipelineError> {

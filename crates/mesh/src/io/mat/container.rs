@@ -165,6 +165,17 @@ impl ByteOrder {
         }
     }
 
+    /// Bytes of a number of this type; `None` for a type that is no number.
+    pub(super) fn size_of(kind: u32) -> Option<u32> {
+        match kind {
+            1 | 2 => Some(1),
+            3 | 4 => Some(2),
+            5..=7 => Some(4),
+            9 | 12 | 13 => Some(8),
+            _ => None,
+        }
+    }
+
     /// The numbers of an element of any numeric type; `None` for another type.
     pub(super) fn numbers(self, kind: u32, data: &[u8]) -> Option<Vec<f64>> {
         macro_rules! decode {

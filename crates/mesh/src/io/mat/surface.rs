@@ -4,10 +4,12 @@ use flate2::read::ZlibDecoder;
 use nalgebra::Point3;
 
 use crate::error::{Fault, Located};
-use crate::io::assembly::{check_counts, finish};
+use crate::io::ReadLimits;
+use crate::io::assembly::finish;
+use crate::io::text::excerpt;
 use crate::{TriMesh, VertexId};
 
-use super::container::{COMPRESSED, Elements, HEADER, MATRIX, Tag, parse_header};
+use super::container::{ByteOrder, COMPRESSED, Elements, HEADER, MATRIX, Tag, parse_header};
 
 /// The fields of the struct, and where each goes.
 const FIELDS: [&str; 4] = ["X", "Y", "Z", "TRIV"];
@@ -24,13 +26,16 @@ const NUMERIC_CLASSES: std::ops::RangeInclusive<u8> = 6..=15;
 const INFLATION: u64 = 32;
 const ALWAYS_TAKEN: u64 = 16 << 20;
 
+/// Variables that a message names.
+const NAMED: usize = 8;
+
 /// Reads the first struct in the file with the numeric fields `X`, `Y`, `Z` (one column each) and
 /// `TRIV` (three columns, one-based); other variables and fields are passed over.
-pub(in crate::io) fn parse(bytes: &[u8]) -> Result<TriMesh, Located> {
+pub(in crate::io) fn parse(bytes: &[u8], limits: &ReadLimits) -> Result<TriMesh, Located> {
     let order = parse_header(bytes)?;
     let limit = ALWAYS_TAKEN + INFLATION * bytes.len() as u64;
     let mut at = HEADER;
-    let mut seen = Vec::new();
+    let (mut seen, mut n_more) = (Vec::new(), 0);
     while at < bytes.len() {
         let mut top = Elements::new(&bytes[at..], order, bytes.len() as u64, at);
         let Tag { kind, length, .. } = top.tag()?;
@@ -52,14 +57,19 @@ pub(in crate::io) fn parse(bytes: &[u8]) -> Result<TriMesh, Located> {
             _ => None,
         };
         if let Some(variable) = variable {
-            match Variable::parse(variable)? {
-                Variable::Surface(surface) => return surface.into_mesh(begin),
-                Variable::Other(name) => seen.push(name),
+            match Variable::parse(variable, limits)? {
+                Variable::Surface(surface) => return surface.into_mesh(begin, limits),
+                Variable::Other(name) if seen.len() < NAMED => seen.push(name),
+                Variable::Other(_) => n_more += 1,
             }
         }
         at = end;
     }
-    let seen = if seen.is_empty() { "no variables".to_string() } else { seen.join(", ") };
+    let seen = match (seen.is_empty(), n_more) {
+        (true, _) => "no variables".to_owned(),
+        (false, 0) => seen.join(", "),
+        (false, more) => format!("{} and {more} more", seen.join(", ")),
+    };
     Err(Fault::Unsupported {
         what: format!("no struct with the fields X Y Z TRIV in the file (it holds {seen})"),
         remedy: "save one, as `surface.X = ...; save(file, 'surface', '-v7')`",
@@ -103,12 +113,12 @@ impl MatrixHead {
         let dimensions = elements.expect(INT32, "the dimensions of a matrix")?;
         let dimensions = dimensions.as_chunks().0.iter().map(|&word| elements.order().u32(word)).collect();
         let name = elements.expect(INT8, "the name of a matrix")?;
-        Ok(Self { class, dimensions, name: String::from_utf8_lossy(&name).into_owned() })
+        Ok(Self { class, dimensions, name: excerpt(&name) })
     }
 }
 
 impl Variable {
-    fn parse(mut elements: Elements<'_>) -> Result<Self, Located> {
+    fn parse(mut elements: Elements<'_>, limits: &ReadLimits) -> Result<Self, Located> {
         let head = MatrixHead::parse(&mut elements)?;
         if head.class != STRUCT_CLASS || head.dimensions.iter().any(|&n| n != 1) {
             return Ok(Self::Other(head.name));
@@ -128,7 +138,9 @@ impl Variable {
         for name in names {
             let tag = elements.tag()?;
             match FIELDS.iter().position(|field| name == field.as_bytes()) {
-                Some(i) if tag.kind == MATRIX => surface.fields[i] = Some(Matrix::parse(&mut elements)?),
+                Some(i) if tag.kind == MATRIX => {
+                    surface.fields[i] = Some(Matrix::parse(&mut elements, limits)?)
+                }
                 Some(_) => return Err(elements.broken("a matrix in each field of the surface")),
                 None => elements.pass(tag)?,
             }
@@ -138,31 +150,40 @@ impl Variable {
 }
 
 impl Matrix {
-    fn parse(elements: &mut Elements<'_>) -> Result<Self, Located> {
+    /// Reads the numbers once it is clear that there are as many as the matrix says, and not too many.
+    fn parse(elements: &mut Elements<'_>, limits: &ReadLimits) -> Result<Self, Located> {
         let head = MatrixHead::parse(elements)?;
         if !NUMERIC_CLASSES.contains(&head.class) {
             return Err(elements.broken("a full matrix of numbers in the fields X Y Z TRIV"));
         }
-        let tag = elements.tag()?;
-        let data = elements.data(tag)?;
-        let values = elements.order().numbers(tag.kind, &data);
-        let values = values.ok_or_else(|| elements.broken("numbers in the fields X Y Z TRIV"))?;
         let (rows, columns) = match *head.dimensions {
             [rows, columns] => (rows as usize, columns as usize),
             _ => return Err(elements.broken("matrices of two dimensions in the fields X Y Z TRIV")),
         };
-        if rows.checked_mul(columns) != Some(values.len()) {
-            let promised = u64::from(head.dimensions[0]) * u64::from(head.dimensions[1]);
-            let found = values.len() as u64;
+        let tag = elements.tag()?;
+        let size = ByteOrder::size_of(tag.kind);
+        let size = size.ok_or_else(|| elements.broken("numbers in the fields X Y Z TRIV"))?;
+        let promised = rows as u64 * columns as u64;
+        let found = u64::from(tag.length / size);
+        if promised != found {
             return Err(Fault::Truncated { items: "numbers of a matrix".into(), promised, found }
                 .at_byte(elements.start));
         }
+        // A row a vertex, or a column for all of them, or a row a face.
+        let fault = |fault: Fault| fault.at_byte(elements.start);
+        match (rows, columns) {
+            (_, 3) => limits.check(0, rows as u64).map_err(fault)?,
+            _ => limits.check(promised, 0).map_err(fault)?,
+        }
+        let data = elements.data(tag)?;
+        let values = elements.order().numbers(tag.kind, &data);
+        let values = values.ok_or_else(|| elements.broken("numbers in the fields X Y Z TRIV"))?;
         Ok(Self { rows, columns, values })
     }
 }
 
 impl Surface {
-    fn into_mesh(self, at: usize) -> Result<TriMesh, Located> {
+    fn into_mesh(self, at: usize, limits: &ReadLimits) -> Result<TriMesh, Located> {
         let syntax = |expected, found: String| Fault::Syntax { expected, found }.at_byte(at);
         let [Some(x), Some(y), Some(z), Some(triv)] = self.fields else {
             return Err(syntax("one value for each of X Y Z TRIV", "a field without one".into()));
@@ -175,7 +196,7 @@ impl Surface {
         if triv.columns != 3 && !triv.values.is_empty() {
             return Err(syntax("three columns in TRIV", format!("{} x {}", triv.rows, triv.columns)));
         }
-        check_counts(n as u64, triv.rows as u64).map_err(|fault| fault.at_byte(at))?;
+        limits.check(n as u64, triv.rows as u64).map_err(|fault| fault.at_byte(at))?;
         let mut positions = Vec::with_capacity(n);
         for (i, ((&x, &y), &z)) in x.values.iter().zip(&y.values).zip(&z.values).enumerate() {
             if let Some(value) = [x, y, z].into_iter().find(|x| !x.is_finite()) {
@@ -193,7 +214,7 @@ impl Surface {
         let faces = (0..if triv.values.is_empty() { 0 } else { triv.rows })
             .map(|face| Ok([corner(face, 0)?, corner(face, 1)?, corner(face, 2)?]))
             .collect::<Result<_, Located>>()?;
-        finish(positions, faces)
+        finish(positions, faces, limits)
     }
 }
 
@@ -205,6 +226,10 @@ mod tests {
     use super::*;
     use crate::error::Place;
     use crate::shapes;
+
+    fn parse(bytes: &[u8]) -> Result<TriMesh, Located> {
+        super::parse(bytes, &ReadLimits::default())
+    }
 
     fn fault(bytes: &[u8]) -> Fault {
         parse(bytes).unwrap_err().fault
@@ -287,6 +312,7 @@ mod tests {
             small.len() - [&triangle[1], &triangle[2], &triangle[3]].map(|f| f.1.len()).iter().sum::<usize>();
         let column = start - triangle[0].1.len();
         let head = 8 + 16 + 16 + 8;
+        small[column + 32..column + 36].copy_from_slice(&(length / 8).to_le_bytes());
         small[column + head + 4..column + head + 8].copy_from_slice(&length.to_le_bytes());
         small.truncate(column + head + 8);
         small[4..8].copy_from_slice(&(length + 4096).to_le_bytes());
@@ -300,5 +326,14 @@ mod tests {
         bytes.extend(data);
         assert!(bytes.len() < 4 << 20);
         assert!(matches!(fault(&bytes), Fault::Inflates { .. }), "{:?}", fault(&bytes));
+        let limited = super::parse(&bytes, &ReadLimits::of_vertices(1000)).unwrap_err();
+        assert_eq!(limited.fault, Fault::OverLimit { items: "vertices", limit: 1000 });
+    }
+
+    #[test]
+    fn what_a_message_names_is_short() {
+        let many: Vec<_> = (0..100).map(|i| PLAIN.matrix(&format!("{i:06000}"), 9, 1, 1, &[1.0])).collect();
+        let message = fault(&PLAIN.file(&many)).to_string();
+        assert!(message.contains("and 92 more") && message.len() < 1000, "{message}");
     }
 }

@@ -9,12 +9,13 @@ use crate::error::{Fault, Located, Place};
 use crate::{TriMesh, VertexId};
 
 use super::elements::{CORNER_LISTS, FaceIn, OtherIn, VertexIn};
-use crate::io::assembly::{check_counts, finish, push_polygon};
+use crate::io::ReadLimits;
+use crate::io::assembly::{finish, push_polygon};
 use crate::io::text::{excerpt, parse_f64, tokens};
 
 /// Reads PLY: the element `vertex` with `x y z`, then `face` with a list `vertex_indices` or
 /// `vertex_index`; other elements and properties are passed over.
-pub(crate) fn parse(bytes: &[u8]) -> Result<TriMesh, Located> {
+pub(crate) fn parse(bytes: &[u8], limits: &ReadLimits) -> Result<TriMesh, Located> {
     if bytes.trim_ascii().is_empty() {
         return Err(Fault::Empty.whole());
     }
@@ -26,7 +27,7 @@ pub(crate) fn parse(bytes: &[u8]) -> Result<TriMesh, Located> {
     let header = Parser::<OtherIn>::new().read_header(&mut reader).map_err(|e| in_header(bytes, &e))?;
     let mut body = Body { encoding: header.encoding, line: reader.line(), bytes, at: 0 };
     body.at = bytes.len() - reader.into_inner().len();
-    check_header(&header, bytes.len() - body.at).map_err(Fault::whole)?;
+    check_header(&header, bytes.len() - body.at, limits).map_err(Fault::whole)?;
 
     let mut positions = Vec::new();
     let mut faces = Vec::new();
@@ -49,7 +50,7 @@ pub(crate) fn parse(bytes: &[u8]) -> Result<TriMesh, Located> {
                 "face" => {
                     let (place, FaceIn(indices)) = body.next(element, row)?;
                     let pushed = corners_in_range(&indices, positions.len(), &mut corners)
-                        .and_then(|()| push_polygon(&positions, &corners, &mut faces));
+                        .and_then(|()| push_polygon(&positions, &corners, &mut faces, limits));
                     pushed.map_err(|fault| Located { place, fault })?;
                 }
                 _ => _ = body.next::<OtherIn>(element, row)?,
@@ -61,7 +62,7 @@ pub(crate) fn parse(bytes: &[u8]) -> Result<TriMesh, Located> {
         let fault = Fault::Leftover { items: "elements", promised };
         return Err(Located { place: body.place(), fault });
     }
-    finish(positions, faces)
+    finish(positions, faces, limits)
 }
 
 fn corners_in_range(indices: &[i64], n_vertices: usize, corners: &mut Vec<VertexId>) -> Result<(), Fault> {
@@ -89,7 +90,7 @@ fn in_header(bytes: &[u8], error: &ParseError) -> Located {
 
 /// Refuses a header that lacks what a mesh needs or promises more than `payload` bytes can hold,
 /// before anything is read or reserved.
-fn check_header(header: &Header, payload: usize) -> Result<(), Fault> {
+fn check_header(header: &Header, payload: usize, limits: &ReadLimits) -> Result<(), Fault> {
     let remedy = "export the mesh with vertices `x y z`, then faces `vertex_indices`";
     let unsupported = |what: &str| Err(Fault::Unsupported { what: what.into(), remedy });
     let position_of = |name: &str| header.elements.get_index_of(name);
@@ -99,7 +100,7 @@ fn check_header(header: &Header, payload: usize) -> Result<(), Fault> {
     let (Some(face_at), Some(face)) = (position_of("face"), header.elements.get("face")) else {
         return Err(Fault::NoFaces { n_vertices: vertex.count });
     };
-    check_counts(vertex.count as u64, face.count as u64)?;
+    limits.check(vertex.count as u64, face.count as u64)?;
     if face_at < vertex_at {
         return unsupported("the faces come before the vertices");
     }
@@ -245,6 +246,10 @@ mod tests {
         property float y\nproperty double z\nproperty uchar red\nelement face 2\n\
         property list uchar int vertex_indices\nproperty int flags\nend_header\n";
     const BODY: &str = "0 0 0 255\n1 0 0 9\n1 1 0 9\n0 1 .5 9\n3 0 1 2 7\n3 0 2 3 7\n";
+
+    fn parse(bytes: &[u8]) -> Result<TriMesh, Located> {
+        super::parse(bytes, &ReadLimits::default())
+    }
 
     fn fault(text: &str) -> (Place, Fault) {
         let Located { place, fault } = parse(text.as_bytes()).unwrap_err();
