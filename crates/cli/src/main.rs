@@ -25,6 +25,7 @@ fn main() -> ExitCode {
         Command::Index(args) => commands::index(&args.command, &common),
         Command::Search(args) => commands::search(args, &common),
         Command::Evaluate(args) => commands::evaluate(args, &common),
+        Command::Serve(args) => commands::serve(args),
         Command::Completions(args) => commands::completions(args),
     })
 }

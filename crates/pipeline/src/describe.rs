@@ -131,13 +131,25 @@ pub fn describe_surface(
     Ok(describe_with_form(surface, options)?.0)
 }
 
-/// The canonical form of all vertices of a surface, as descriptions have it at some of them.
-///
-/// # Errors
-/// As [`describe`].
-pub fn form_of(surface: &Surface, options: &DescribeOptions) -> Result<CanonicalForm, PipelineError> {
-    options.validate()?;
-    Ok(embedded(surface, options)?.1)
+/// The canonical form of all vertices of a surface, which a description has at some of them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SurfaceForm {
+    /// The form.
+    pub form: CanonicalForm,
+    /// How far every vertex is from the first sample along the surface, in mesh units.
+    pub distances: Vec<f64>,
+}
+
+impl SurfaceForm {
+    /// The form that [`describe_surface`] makes of a surface on the way, without the signatures.
+    ///
+    /// # Errors
+    /// As [`describe`].
+    pub fn new(surface: &Surface, options: &DescribeOptions) -> Result<Self, PipelineError> {
+        options.validate()?;
+        let (distances, form) = embedded(surface, options)?;
+        Ok(Self { form, distances: distances.column(0).to_vec() })
+    }
 }
 
 /// Distances from the samples, and the form of all vertices.
@@ -163,7 +175,7 @@ fn embedded(
 pub fn describe_with_form(
     surface: &Surface,
     options: &DescribeOptions,
-) -> Result<(ShapeDescription, CanonicalForm), PipelineError> {
+) -> Result<(ShapeDescription, SurfaceForm), PipelineError> {
     options.validate()?;
     let (distances, form) = embedded(surface, options)?;
     let reduced = form.reduced(options.points);
@@ -188,7 +200,7 @@ pub fn describe_with_form(
         diameter: distances.max(),
         repair: surface.repaired.report.clone(),
     };
-    Ok((description, form))
+    Ok((description, SurfaceForm { form, distances: distances.column(0).to_vec() }))
 }
 
 #[cfg(test)]
@@ -302,9 +314,10 @@ mod tests {
         let surface = Surface::new(&mesh, &options.repair).unwrap();
         let (description, form) = describe_with_form(&surface, &options).unwrap();
         assert_eq!(description, describe(&mesh, &options).unwrap());
-        assert_eq!(form, form_of(&surface, &options).unwrap());
-        assert_eq!(form.points().len(), mesh.n_vertices());
-        assert_eq!(form.reduced(options.points), description.form);
+        assert_eq!(form, SurfaceForm::new(&surface, &options).unwrap());
+        assert_eq!(form.form.points().len(), mesh.n_vertices());
+        assert_eq!(form.form.reduced(options.points), description.form);
+        assert!((form.distances.iter().copied().fold(0.0, f64::max) / description.diameter) > 0.5);
     }
 
     #[test]

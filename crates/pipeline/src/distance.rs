@@ -1,10 +1,10 @@
 //! How far apart two shapes are, all that is known of them taken together.
 
-use descriptors::{FUSED_SIZE, MatchOptions, match_forms};
+use descriptors::{CanonicalForm, FUSED_SIZE, MatchOptions, match_forms};
 use serde::Serialize;
 
 use crate::rerank::form_limit;
-use crate::{PipelineError, ShapeDescription, combined_distance};
+use crate::{PipelineError, ShapeDescription, combined_distance, prepare_form};
 
 /// Shapes nearer than this by [`combined_distance`], size left out, are called one shape in two poses.
 ///
@@ -31,8 +31,16 @@ impl ShapeDistance {
     /// # Errors
     /// [`PipelineError::Descriptor`].
     pub fn between(a: &ShapeDescription, b: &ShapeDescription) -> Result<Self, PipelineError> {
-        let form = match_forms(&a.prepare()?, &b.prepare()?, &MatchOptions::default())?.distance;
-        Ok(Self::new([&a.fused, &b.fused], form))
+        Self::of([(&a.fused, &a.form), (&b.fused, &b.form)])
+    }
+
+    /// Aligns forms, and measures fused signatures, as indexes keep them.
+    ///
+    /// # Errors
+    /// [`PipelineError::Descriptor`].
+    pub fn of([a, b]: [(&[f32], &CanonicalForm); 2]) -> Result<Self, PipelineError> {
+        let form = match_forms(&prepare_form(a.1)?, &prepare_form(b.1)?, &MatchOptions::default())?.distance;
+        Ok(Self::new([a.0, b.0], form))
     }
 
     /// Of two fused vectors, and the distance of the aligned forms of unit area.

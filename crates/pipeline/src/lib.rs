@@ -35,8 +35,8 @@ pub use compare::{
 };
 pub use dataset::{LabelFile, ShapeFile, label_of, list_shapes};
 pub use describe::{
-    DESCRIPTION_VERSION, DescribeOptions, ShapeDescription, describe, describe_surface, describe_with_form,
-    form_of, prepare_form,
+    DESCRIPTION_VERSION, DescribeOptions, ShapeDescription, SurfaceForm, describe, describe_surface,
+    describe_with_form, prepare_form,
 };
 pub use distance::{SAME_BELOW, ShapeDistance};
 pub use embed::{Embedded, embed};

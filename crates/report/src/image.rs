@@ -1,5 +1,6 @@
 //! Raster pictures and their PNG encoding.
 
+use std::io;
 use std::path::Path;
 
 use crate::ReportError;
@@ -84,10 +85,18 @@ impl RgbaImage {
     /// [`ReportError::Write`] when the file cannot be written or the picture has no pixels.
     pub fn write_png(&self, path: impl AsRef<Path>) -> Result<(), ReportError> {
         let path = path.as_ref();
-        let bytes = self.pixels.as_flattened();
-        let encoded = encode_png(self.width, self.height, png::ColorType::Rgba, bytes)
-            .map_err(|e| ReportError::Write { path: path.to_path_buf(), source: e.into() })?;
+        let encoded =
+            self.to_png().map_err(|source| ReportError::Write { path: path.to_path_buf(), source })?;
         write_atomically(path, &encoded)
+    }
+
+    /// The picture as the bytes of a PNG file.
+    ///
+    /// # Errors
+    /// When the picture has no pixels.
+    pub fn to_png(&self) -> io::Result<Vec<u8>> {
+        let bytes = self.pixels.as_flattened();
+        Ok(encode_png(self.width, self.height, png::ColorType::Rgba, bytes)?)
     }
 }
 

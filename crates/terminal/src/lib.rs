@@ -7,11 +7,21 @@ mod memory;
 mod progress;
 
 use std::process::ExitCode;
+use std::sync::{Mutex, PoisonError};
 
 use anyhow::{Context, Result};
 
 pub use memory::PeakMemory;
 pub use progress::Bars;
+
+/// What to do when the program is interrupted for the first time, instead of ending at once.
+static INSTEAD: Mutex<Option<Box<dyn FnOnce() + Send>>> = Mutex::new(None);
+
+/// Has `stop` called when the program is interrupted or terminated, so that it can end by itself; the second time it ends
+/// at once.
+pub fn on_interruption(stop: impl FnOnce() + Send + 'static) {
+    *INSTEAD.lock().unwrap_or_else(PoisonError::into_inner) = Some(Box::new(stop));
+}
 
 /// Exit code of a program that was interrupted, as shells know it: 128 and the number of the signal.
 const INTERRUPTED: i32 = 130;
@@ -19,9 +29,13 @@ const INTERRUPTED: i32 = 130;
 /// Runs a program on `threads` worker threads (0 for all cores) and turns its result into an exit code:
 /// its own, or 2 with the error on standard error. That nobody reads the output any more is no error.
 ///
-/// When it is interrupted (Ctrl-C) or terminated, nothing half-written is left behind.
+/// When it is interrupted (Ctrl-C) or terminated, nothing half-written is left behind; see also
+/// [`on_interruption`].
 pub fn run(threads: usize, program: impl FnOnce() -> Result<ExitCode>) -> ExitCode {
     let interruption = ctrlc::set_handler(|| {
+        if let Some(stop) = INSTEAD.lock().unwrap_or_else(PoisonError::into_inner).take() {
+            return stop();
+        }
         pipeline::abandon_unfinished();
         eprintln!("interrupted");
         std::process::exit(INTERRUPTED);

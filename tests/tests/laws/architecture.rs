@@ -15,7 +15,7 @@ enum May {
 }
 
 /// Every crate of the workspace.
-const RULES: [(&str, May); 14] = [
+const RULES: [(&str, May); 15] = [
     ("mesh", May::Know(&[])),
     ("linalg", May::Know(&[])),
     ("datasets", May::Know(&["mesh"])),
@@ -26,7 +26,8 @@ const RULES: [(&str, May); 14] = [
     ("pipeline", May::Know(&["mesh", "linalg", "geodesics", "nmds", "retrieval", "descriptors"])),
     ("report", May::Know(&["mesh", "linalg", "retrieval"])),
     ("terminal", May::Know(&["pipeline"])),
-    ("cli", May::Know(&["pipeline", "report", "retrieval", "mesh", "terminal"])),
+    ("server", May::Know(&["pipeline", "report", "mesh"])),
+    ("cli", May::Know(&["pipeline", "report", "retrieval", "mesh", "server", "terminal"])),
     ("browser", May::Know(&[])),
     ("experiments", May::KnowEverything),
     ("tests", May::KnowEverything),

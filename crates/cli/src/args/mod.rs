@@ -4,6 +4,7 @@ mod embedding;
 mod geodesic;
 mod index;
 mod render;
+mod serve;
 
 use std::path::PathBuf;
 
@@ -20,6 +21,7 @@ pub(crate) use index::{
     RemoveArgs, SearchArgs,
 };
 pub(crate) use render::{Place, RenderArgs};
+pub(crate) use serve::ServeArgs;
 
 /// Nonrigid 3D shapes: surface distances, canonical forms, comparison.
 ///
@@ -71,6 +73,8 @@ pub(crate) enum Command {
     Search(SearchArgs),
     /// Score how well an index, or a matrix of distances, separates classes
     Evaluate(EvaluateArgs),
+    /// Show an index in a browser: drop a mesh, see what it is like
+    Serve(ServeArgs),
     /// Print a script that completes this program's arguments in a shell
     Completions(CompletionsArgs),
 }

@@ -10,6 +10,7 @@ mod info;
 mod methods;
 mod render;
 mod search;
+mod serve;
 
 pub(crate) use compare::compare;
 pub(crate) use completions::completions;
@@ -21,6 +22,7 @@ pub(crate) use info::info;
 pub(crate) use methods::methods;
 pub(crate) use render::picture;
 pub(crate) use search::search;
+pub(crate) use serve::serve;
 
 use mesh::RepairReport;
 use pipeline::Surface;

@@ -22,4 +22,6 @@ mod killed;
 #[cfg(test)]
 mod render;
 #[cfg(test)]
+mod serve;
+#[cfg(test)]
 mod support;

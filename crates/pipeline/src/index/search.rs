@@ -5,6 +5,7 @@ use std::time::Instant;
 
 use descriptors::{CanonicalForm, MatchOptions};
 use mesh::TriMesh;
+use rayon::prelude::*;
 use retrieval::{Candidate, Index, SearchMode, ShapeEntry, ShapeVectors, vote};
 use serde::Serialize;
 
@@ -162,6 +163,17 @@ impl ShapeSearch {
         form(&entry, &vectors)
     }
 
+    /// The fused signature and the form of a shape: what tells it from others, see
+    /// [`ShapeDistance::of`].
+    ///
+    /// # Errors
+    /// [`PipelineError::Index`].
+    pub fn description(&self, id: &str) -> Result<(Vec<f32>, CanonicalForm), PipelineError> {
+        let (entry, vectors) = self.shape(id)?;
+        let form = form(&entry, &vectors)?;
+        Ok((vectors.fused, form))
+    }
+
     /// The mesh of a shape, read again from where it was when it was indexed.
     ///
     /// # Errors
@@ -241,13 +253,13 @@ impl ShapeSearch {
         let predicted = predicted(&results, found.threshold);
         results.truncate(options.k);
         if options.explain == Explain::Kind {
-            for result in &mut results {
+            results.par_iter_mut().try_for_each(|result| {
                 let (entry, vectors) = self.shape(&result.id)?;
                 let comparison = compare_forms(query, &form(&entry, &vectors)?, &options.matching)?;
-                let distance =
-                    ShapeDistance::new([fused, &vectors.fused], comparison.normalized_distance);
+                let distance = ShapeDistance::new([fused, &vectors.fused], comparison.normalized_distance);
                 result.comparison = Some(comparison.decided_by(distance));
-            }
+                Ok::<_, PipelineError>(())
+            })?;
         }
         Ok(SearchReport {
             results,
@@ -332,7 +344,7 @@ mod tests {
         assert_eq!(found(&by_mesh)[0], ("ring0".to_owned(), 0.0));
         assert_eq!(found(&by_mesh), found(&by_name));
         assert_eq!(found(&by_mesh), found(&by_description));
-        assert_eq!(search.form("ring0").unwrap().points().len(), form.points().len());
+        assert_eq!(search.form("ring0").unwrap().points().len(), form.form.points().len());
         assert!(matches!(search.search_shape("none", &options), Err(PipelineError::Index(_))));
         let names: Vec<String> = search.entries().unwrap().into_iter().map(|(id, _)| id).collect();
         assert_eq!(names, ["ball0", "box0", "ring0", "ring1"]);

@@ -7,12 +7,14 @@
 
 mod bar;
 mod camera;
+mod dots;
 mod normals;
 mod raster;
 mod shade;
 
 pub use bar::render_with_bar;
 pub use camera::View;
+pub use dots::dots;
 
 use mesh::TriMesh;
 use nalgebra::Vector3;

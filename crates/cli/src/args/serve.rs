@@ -1,0 +1,43 @@
+//! Arguments of `canonform serve`.
+
+use std::net::SocketAddr;
+use std::path::PathBuf;
+use std::time::Duration;
+
+use clap::Args;
+use server::ServeOptions;
+
+#[derive(Debug, Args)]
+pub(crate) struct ServeArgs {
+    /// The index
+    pub(crate) index: PathBuf,
+    /// Address and port; port 0 takes a free one. With any address but those of this machine to itself, everybody who
+    /// reaches it can search, and see the index with its meshes
+    #[arg(long, value_name = "ADDRESS:PORT", default_value_t = ServeOptions::default().listen)]
+    pub(crate) listen: SocketAddr,
+    /// Largest upload, in megabytes
+    #[arg(long, value_name = "MB", default_value_t = 64, value_parser = clap::value_parser!(u32).range(1..=2000))]
+    pub(crate) max_upload: u32,
+    /// Largest mesh that is measured, in vertices
+    #[arg(long, value_name = "N", default_value_t = 200_000, value_parser = clap::value_parser!(u64).range(1..))]
+    pub(crate) max_vertices: u64,
+    /// Seconds that a request may take
+    #[arg(long, value_name = "S", default_value_t = 60, value_parser = clap::value_parser!(u64).range(1..=3600))]
+    pub(crate) time_limit: u64,
+    /// Requests that are worked on at once [default: one a core]
+    #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true)]
+    pub(crate) jobs: usize,
+}
+
+impl ServeArgs {
+    pub(crate) fn options(&self) -> ServeOptions {
+        ServeOptions {
+            listen: self.listen,
+            max_upload: self.max_upload as usize * 1_000_000,
+            max_vertices: self.max_vertices,
+            time_limit: Duration::from_secs(self.time_limit),
+            jobs: self.jobs,
+            ..ServeOptions::default()
+        }
+    }
+}

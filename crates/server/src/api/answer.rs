@@ -1,0 +1,80 @@
+//! Parameters in, JSON and pictures out.
+
+use axum::body::{Body, Bytes};
+use axum::extract::{FromRequestParts, Path, Query};
+use axum::http::request::Parts;
+use axum::http::{HeaderMap, HeaderValue, StatusCode, header};
+use axum::response::{IntoResponse, Response};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+
+use crate::error::ApiError;
+
+/// What stands behind the `?` of an address.
+pub(super) struct Params<T>(pub(super) T);
+
+impl<T: DeserializeOwned, S: Send + Sync> FromRequestParts<S> for Params<T> {
+    type Rejection = ApiError;
+
+    async fn from_request_parts(parts: &mut Parts, _: &S) -> Result<Self, ApiError> {
+        let found = Query::try_from_uri(&parts.uri);
+        found.map(|Query(params)| Self(params)).map_err(|fault| ApiError::bad_request(fault.body_text()))
+    }
+}
+
+/// The name in a path.
+pub(super) struct Id(pub(super) String);
+
+impl<S: Send + Sync> FromRequestParts<S> for Id {
+    type Rejection = ApiError;
+
+    async fn from_request_parts(parts: &mut Parts, state: &S) -> Result<Self, ApiError> {
+        let found = Path::from_request_parts(parts, state).await;
+        found.map(|Path(id)| Self(id)).map_err(|fault| ApiError::bad_request(fault.body_text()))
+    }
+}
+
+/// An answer as JSON, made where it was computed: large ones take their time.
+pub(super) struct Written(Vec<u8>);
+
+impl Written {
+    pub(super) fn new(answer: &impl Serialize) -> Result<Self, ApiError> {
+        serde_json::to_vec(answer).map(Self).map_err(|_| ApiError::fault())
+    }
+}
+
+impl IntoResponse for Written {
+    fn into_response(self) -> Response {
+        ([(header::CONTENT_TYPE, "application/json")], self.0).into_response()
+    }
+}
+
+pub(super) fn json_text(text: &'static str) -> Response {
+    ([(header::CONTENT_TYPE, "application/json")], text).into_response()
+}
+
+/// A quoted tag of something that is the same as long as the text is.
+pub(crate) fn tag(text: &str) -> HeaderValue {
+    // Made of digits and letters: always a header.
+    HeaderValue::from_str(&format!("\"{text}\"")).unwrap_or(HeaderValue::from_static("\"\""))
+}
+
+/// Whether the client has what the tag names.
+pub(crate) fn is_known(headers: &HeaderMap, tag: &HeaderValue) -> bool {
+    let known = headers.get(header::IF_NONE_MATCH).and_then(|known| known.to_str().ok());
+    let tag = tag.to_str().unwrap_or_default();
+    known.is_some_and(|known| known.split(',').any(|known| known.trim().trim_start_matches("W/") == tag))
+}
+
+/// Something that clients may keep, if they ask every time whether it is still the same.
+pub(crate) fn tagged(tag: HeaderValue, kind: &'static str, content: Option<Bytes>) -> Response {
+    let status = if content.is_some() { StatusCode::OK } else { StatusCode::NOT_MODIFIED };
+    let mut response = (status, Body::from(content.unwrap_or_default())).into_response();
+    let headers = response.headers_mut();
+    headers.insert(header::ETAG, tag);
+    headers.insert(header::CACHE_CONTROL, HeaderValue::from_static("private, no-cache"));
+    if status == StatusCode::OK {
+        headers.insert(header::CONTENT_TYPE, HeaderValue::from_static(kind));
+    }
+    response
+}

@@ -1,0 +1,152 @@
+//! Two forms laid over each other.
+
+use std::sync::Arc;
+
+use axum::extract::State;
+use axum::http::StatusCode;
+use pipeline::{
+    CanonicalForm, Comparison, MatchOptions, Overlay, PipelineError, ShapeDistance, SurfaceComparison,
+    Triangulation, compare_surfaces, overlay_forms,
+};
+use report::interactive::Geometry;
+use serde::{Deserialize, Serialize};
+
+use super::answer::{Params, Written};
+use super::shapes::is_missing;
+use crate::app::{App, Query};
+use crate::error::ApiError;
+use crate::measured::{Measured, overlaid};
+
+/// Which two are compared: `query` or `a`, and `b`.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct CompareParams {
+    /// The `query_id` of an upload.
+    query: Option<String>,
+    /// A shape of the index.
+    a: Option<String>,
+    /// Another one.
+    b: String,
+}
+
+#[derive(Serialize)]
+struct Answer {
+    a: String,
+    b: String,
+    #[serde(flatten)]
+    comparison: Comparison,
+    /// Whether both are the same triangles; not known where a mesh is gone.
+    triangulation: Option<Triangulation>,
+    residual: [Residual; 2],
+    /// Both forms where they lie over each other, coloured by how far each point is from the other form.
+    forms: [Geometry; 2],
+}
+
+/// How far the points of a form are from the other one, in units of the first mesh.
+#[derive(Serialize)]
+struct Residual {
+    median: f64,
+    max: f64,
+}
+
+impl Residual {
+    fn new(residuals: &[f64]) -> Self {
+        let mut sorted = residuals.to_vec();
+        sorted.sort_by(f64::total_cmp);
+        let at = |place: Option<&f64>| place.copied().unwrap_or_default();
+        Self { median: at(sorted.get(sorted.len() / 2)), max: at(sorted.last()) }
+    }
+}
+
+/// One of the two: what decides on the kind of match, and what is shown.
+struct Side {
+    description: (Vec<f32>, CanonicalForm),
+    shown: Shown,
+}
+
+enum Shown {
+    Query(Arc<Query>),
+    Shape(Arc<Measured>),
+    /// The mesh of the shape is gone.
+    Points,
+}
+
+impl Side {
+    fn of_query(query: Arc<Query>) -> Self {
+        Self { description: query.description.clone(), shown: Shown::Query(query) }
+    }
+
+    fn of_shape(app: &App, id: &str) -> Result<Self, PipelineError> {
+        let shown = match app.indexed(id) {
+            Ok(measured) => Shown::Shape(measured),
+            Err(fault) if is_missing(&fault) => Shown::Points,
+            Err(fault) => return Err(fault),
+        };
+        Ok(Self { description: app.search.description(id)?, shown })
+    }
+
+    fn described(&self) -> (&[f32], &CanonicalForm) {
+        (&self.description.0, &self.description.1)
+    }
+
+    fn measured(&self) -> Option<&Measured> {
+        match &self.shown {
+            Shown::Query(query) => Some(&query.measured),
+            Shown::Shape(measured) => Some(measured),
+            Shown::Points => None,
+        }
+    }
+
+    fn form(&self) -> &CanonicalForm {
+        self.measured().map_or(&self.description.1, |measured| &measured.form.form)
+    }
+}
+
+pub(super) async fn compare(
+    State(app): State<Arc<App>>,
+    Params(params): Params<CompareParams>,
+) -> Result<Written, ApiError> {
+    let shared = app.clone();
+    app.work.run(None, move || Written::new(&answer(&shared, params)?)).await
+}
+
+fn answer(app: &App, params: CompareParams) -> Result<Answer, ApiError> {
+    let (name, a) = match (params.query, params.a) {
+        (Some(query), None) => {
+            let query = app.queries.get(&query).ok_or_else(forgotten)?;
+            (query.name.clone(), Side::of_query(query))
+        }
+        (None, Some(id)) => {
+            let side = Side::of_shape(app, &id)?;
+            (id, side)
+        }
+        _ => return Err(ApiError::bad_request("name either an upload with `query` or a shape with `a`")),
+    };
+    let b = Side::of_shape(app, &params.b)?;
+    let (forms, options) = ([a.form(), b.form()], MatchOptions::default());
+    let (comparison, triangulation, overlay) = match (a.measured(), b.measured()) {
+        (Some(a), Some(b)) => {
+            let SurfaceComparison { comparison, triangulation, overlay } =
+                compare_surfaces([&a.surface, &b.surface], forms, &options)?;
+            (comparison, Some(triangulation), overlay)
+        }
+        _ => {
+            let (comparison, overlay): (_, Overlay) = overlay_forms(forms, &options)?;
+            (comparison, None, overlay)
+        }
+    };
+    let comparison = comparison.decided_by(ShapeDistance::of([a.described(), b.described()])?);
+    let dot = a.form().spread();
+    Ok(Answer {
+        a: name,
+        b: params.b,
+        comparison,
+        triangulation,
+        residual: [0, 1].map(|i| Residual::new(&overlay.residuals[i])),
+        forms: [overlaid(&overlay, 0, a.measured(), dot), overlaid(&overlay, 1, b.measured(), dot)],
+    })
+}
+
+fn forgotten() -> ApiError {
+    ApiError::new(StatusCode::GONE, "this query is not kept any more").with_remedy("send the mesh again")
+}

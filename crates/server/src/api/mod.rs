@@ -1,0 +1,99 @@
+//! The JSON interface, as `openapi.json` describes it.
+
+mod answer;
+mod compare;
+mod search;
+mod shapes;
+
+use std::sync::Arc;
+
+use axum::extract::State;
+use axum::http::StatusCode;
+use axum::response::Response;
+use axum::routing::{MethodRouter, get, post};
+use axum::{Json, Router};
+use serde::Serialize;
+
+use crate::app::App;
+use crate::error::ApiError;
+
+pub(crate) use answer::{is_known, tag, tagged};
+
+/// The description of the interface.
+const OPENAPI: &str = include_str!("../../openapi.json");
+
+/// A route: its method as the description names it, its path, and who answers.
+type Route = (&'static str, &'static str, MethodRouter<Arc<App>>);
+
+fn routes() -> Vec<Route> {
+    vec![
+        ("post", "/api/search", post(search::search)),
+        ("get", "/api/shapes", get(shapes::list)),
+        ("get", "/api/shapes/{id}/mesh", get(shapes::mesh)),
+        ("get", "/api/shapes/{id}/form", get(shapes::form)),
+        ("get", "/api/shapes/{id}/thumbnail", get(shapes::thumbnail)),
+        ("get", "/api/compare", get(compare::compare)),
+        ("get", "/api/openapi.json", get(openapi)),
+        ("get", "/healthz", get(health)),
+    ]
+}
+
+pub(crate) fn router() -> Router<Arc<App>> {
+    let all =
+        routes().into_iter().fold(Router::new(), |router, (_, path, answers)| router.route(path, answers));
+    all.fallback(nothing_there).method_not_allowed_fallback(wrong_method)
+}
+
+async fn openapi() -> Response {
+    answer::json_text(OPENAPI)
+}
+
+async fn nothing_there() -> ApiError {
+    ApiError::new(StatusCode::NOT_FOUND, "there is nothing of this name")
+        .with_remedy("/api/openapi.json describes all that there is")
+}
+
+async fn wrong_method() -> ApiError {
+    ApiError::new(StatusCode::METHOD_NOT_ALLOWED, "this does not take requests of this kind")
+        .with_remedy("/api/openapi.json describes all that there is")
+}
+
+/// That the server is up, what it serves and what it takes.
+#[derive(Serialize)]
+struct Health {
+    status: &'static str,
+    version: &'static str,
+    shapes: usize,
+    max_upload: usize,
+    max_vertices: u64,
+}
+
+async fn health(State(app): State<Arc<App>>) -> Json<Health> {
+    Json(Health {
+        status: "ok",
+        version: env!("CARGO_PKG_VERSION"),
+        shapes: app.shapes.len(),
+        max_upload: app.options.max_upload,
+        max_vertices: app.options.max_vertices,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use super::*;
+
+    #[test]
+    fn every_route_is_described_and_every_description_is_a_route() {
+        let description: serde_json::Value = serde_json::from_str(OPENAPI).unwrap();
+        let mut described = BTreeSet::new();
+        for (path, methods) in description["paths"].as_object().unwrap() {
+            for method in methods.as_object().unwrap().keys().filter(|name| *name != "parameters") {
+                described.insert((method.clone(), path.clone()));
+            }
+        }
+        let routes = routes().into_iter().map(|(method, path, _)| (method.to_owned(), path.to_owned()));
+        assert_eq!(routes.collect::<BTreeSet<_>>(), described);
+    }
+}

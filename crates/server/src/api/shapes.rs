@@ -1,0 +1,138 @@
+//! The shapes of the index: their list, meshes, forms and pictures.
+
+use std::sync::Arc;
+
+use axum::extract::State;
+use axum::http::HeaderMap;
+use axum::response::Response;
+use mesh::TriMesh;
+use pipeline::PipelineError;
+use report::interactive::Geometry;
+use report::render::{Background, RenderOptions, View, render};
+use serde::{Deserialize, Serialize};
+
+use super::answer::{Id, Params, Written, is_known, tag, tagged};
+use crate::app::{App, ShapeSummary};
+use crate::error::ApiError;
+use crate::measured::dots;
+
+/// Shapes of one page of the list.
+const MOST_LISTED: usize = 500;
+
+/// Pixels of a thumbnail, either way.
+const THUMBNAIL: u32 = 176;
+
+/// Counts changes of how thumbnails are drawn.
+const DRAWING: u32 = 1;
+
+/// Which shapes are listed.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct ListParams {
+    #[serde(default)]
+    offset: usize,
+    #[serde(default = "usual_limit")]
+    limit: usize,
+    /// Part of a name or a label, in any case.
+    #[serde(default)]
+    q: String,
+    label: Option<String>,
+}
+
+fn usual_limit() -> usize {
+    50
+}
+
+#[derive(Serialize)]
+struct List<'a> {
+    total: usize,
+    offset: usize,
+    shapes: Vec<&'a ShapeSummary>,
+}
+
+pub(super) async fn list(
+    State(app): State<Arc<App>>,
+    Params(params): Params<ListParams>,
+) -> Result<Written, ApiError> {
+    if !(1..=MOST_LISTED).contains(&params.limit) {
+        let error = format!("limit is {}; it goes from 1 to {MOST_LISTED}", params.limit);
+        return Err(ApiError::bad_request(error));
+    }
+    let part = params.q.to_lowercase();
+    let is_meant = |shape: &&ShapeSummary| {
+        params.label.as_ref().is_none_or(|label| *label == shape.label)
+            && (shape.id.to_lowercase().contains(&part) || shape.label.to_lowercase().contains(&part))
+    };
+    let (mut total, mut shapes) = (0, Vec::new());
+    for shape in app.shapes.iter().filter(is_meant) {
+        if total >= params.offset && shapes.len() < params.limit {
+            shapes.push(shape);
+        }
+        total += 1;
+    }
+    Written::new(&List { total, offset: params.offset, shapes })
+}
+
+/// The mesh of a shape, as it was repaired.
+pub(super) async fn mesh(State(app): State<Arc<App>>, Id(id): Id) -> Result<Written, ApiError> {
+    let shared = app.clone();
+    app.work.run(None, move || Written::new(&shared.indexed(&id)?.mesh())).await
+}
+
+/// The form of a shape: as a surface, or as the points in the index where its mesh is gone.
+pub(super) async fn form(State(app): State<Arc<App>>, Id(id): Id) -> Result<Written, ApiError> {
+    let shared = app.clone();
+    app.work.run(None, move || Written::new(&form_of(&shared, &id)?)).await
+}
+
+pub(super) fn form_of(app: &App, id: &str) -> Result<Geometry, PipelineError> {
+    match app.indexed(id) {
+        Ok(measured) => Ok(measured.form()),
+        Err(fault) if is_missing(&fault) => Ok(Geometry::new(&dots(&app.search.form(id)?))),
+        Err(fault) => Err(fault),
+    }
+}
+
+/// Whether a shape is known but its mesh is not what it was.
+pub(super) fn is_missing(fault: &PipelineError) -> bool {
+    matches!(fault, PipelineError::MeshGone { .. } | PipelineError::MeshChanged { .. })
+}
+
+/// A picture of a shape: of its mesh, or of the points of its form where that is gone.
+pub(super) async fn thumbnail(
+    State(app): State<Arc<App>>,
+    Id(id): Id,
+    headers: HeaderMap,
+) -> Result<Response, ApiError> {
+    const PNG: &str = "image/png";
+    let shared = app.clone();
+    let drawing = move || {
+        let tag = tag(&format!("{}-{DRAWING}", shared.search.entry(&id)?.content));
+        if is_known(&headers, &tag) {
+            return Ok(tagged(tag, PNG, None));
+        }
+        if let Some(picture) = shared.thumbnails.get(&id) {
+            return Ok(tagged(tag, PNG, Some(picture)));
+        }
+        let (mesh, view) = match shared.search.mesh(&id) {
+            Ok(mesh) => (mesh, View::default()),
+            Err(fault) if is_missing(&fault) => (dots(&shared.search.form(&id)?), View::Principal),
+            Err(fault) => return Err(fault.into()),
+        };
+        let picture = axum::body::Bytes::from(draw(&mesh, view)?);
+        shared.thumbnails.put(id, picture.clone(), picture.len());
+        Ok(tagged(tag, PNG, Some(picture)))
+    };
+    app.work.run(None, drawing).await
+}
+
+fn draw(mesh: &TriMesh, view: View) -> Result<Vec<u8>, ApiError> {
+    let options = RenderOptions {
+        width: THUMBNAIL,
+        height: THUMBNAIL,
+        background: Background::Transparent,
+        view,
+        ..RenderOptions::default()
+    };
+    render(mesh, &options).to_png().map_err(|_| ApiError::fault())
+}

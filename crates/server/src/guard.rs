@@ -1,0 +1,102 @@
+//! What every request passes: whether it is meant for this server, headers of every answer, panics.
+
+use std::net::IpAddr;
+use std::panic::AssertUnwindSafe;
+use std::sync::Arc;
+
+use axum::extract::{Request, State};
+use axum::http::{HeaderMap, HeaderName, HeaderValue, Method, StatusCode, header};
+use axum::middleware::Next;
+use axum::response::{IntoResponse, Response};
+use futures_util::FutureExt;
+
+use crate::app::App;
+use crate::error::ApiError;
+
+/// Headers of every answer. Plotly inserts rules of style and makes pictures of its own drawings.
+const HEADERS: [(HeaderName, &str); 5] = [
+    (
+        header::CONTENT_SECURITY_POLICY,
+        "default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' data: blob:; \
+         connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'",
+    ),
+    (header::X_CONTENT_TYPE_OPTIONS, "nosniff"),
+    (header::REFERRER_POLICY, "no-referrer"),
+    (header::X_FRAME_OPTIONS, "DENY"),
+    (HeaderName::from_static("cross-origin-resource-policy"), "same-origin"),
+];
+
+/// Refuses what is meant for another server, turns panics into answers, and adds the headers.
+pub(crate) async fn guard(State(app): State<Arc<App>>, request: Request, next: Next) -> Response {
+    let mut response = match check(&app, request.method(), request.headers()) {
+        Ok(()) => {
+            let answer = AssertUnwindSafe(next.run(request)).catch_unwind().await;
+            answer.unwrap_or_else(|_| ApiError::fault().into_response())
+        }
+        Err(refused) => refused.into_response(),
+    };
+    let headers = response.headers_mut();
+    for (name, value) in HEADERS {
+        headers.insert(name, HeaderValue::from_static(value));
+    }
+    // What was sent in or computed stays in no cache; pictures and scripts say otherwise.
+    headers.entry(header::CACHE_CONTROL).or_insert(HeaderValue::from_static("no-store"));
+    response
+}
+
+fn check(app: &App, method: &Method, headers: &HeaderMap) -> Result<(), ApiError> {
+    let text = |name| headers.get(name).and_then(|value: &HeaderValue| value.to_str().ok());
+    let host = text(header::HOST).ok_or_else(|| ApiError::bad_request("the request names no host"))?;
+    // A page elsewhere can have its name point to this machine; it cannot name it otherwise.
+    if app.options.listen.ip().is_loopback() && !is_loopback(host) {
+        let error = format!("this server is not `{}`", host.chars().take(100).collect::<String>());
+        return Err(ApiError::new(StatusCode::MISDIRECTED_REQUEST, error)
+            .with_remedy("open it as localhost, or pass --listen with the address that others use"));
+    }
+    let origin = text(header::ORIGIN);
+    let foreign = origin.is_some_and(|origin| origin.strip_prefix("http://") != Some(host));
+    if foreign && method != Method::GET && method != Method::HEAD {
+        return Err(ApiError::new(
+            StatusCode::FORBIDDEN,
+            "requests from pages of other servers are not taken",
+        ));
+    }
+    Ok(())
+}
+
+/// Whether a host, with or without a port, is this machine to itself.
+fn is_loopback(host: &str) -> bool {
+    let is_port = |port: &str| port.bytes().all(|digit| digit.is_ascii_digit());
+    let name = match host.rsplit_once(':') {
+        Some((name, port)) if is_port(port) && !name.ends_with(':') => name,
+        _ => host,
+    };
+    let address = name.strip_prefix('[').and_then(|name| name.strip_suffix(']')).unwrap_or(name);
+    name.eq_ignore_ascii_case("localhost")
+        || address.parse().is_ok_and(|address: IpAddr| address.is_loopback())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_of_this_machine() {
+        for host in
+            ["localhost", "LOCALHOST:7878", "127.0.0.1", "127.0.0.1:1", "127.1.2.3:80", "[::1]:7878", "[::1]"]
+        {
+            assert!(is_loopback(host), "{host}");
+        }
+        for host in [
+            "",
+            ":80",
+            "example.com",
+            "localhost.example.com",
+            "127.0.0.1.example.com:80",
+            "10.0.0.1",
+            "[::2]:1",
+        ] {
+            assert!(!is_loopback(host), "{host}");
+        }
+    }
+}

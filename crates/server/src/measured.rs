@@ -1,0 +1,70 @@
+//! A mesh with its form, as they are shown.
+
+use mesh::TriMesh;
+use pipeline::{CanonicalForm, DescribeOptions, Overlay, PipelineError, Surface, SurfaceForm};
+use report::interactive::Geometry;
+
+/// Bytes of a vertex and of a face in memory, with the connectivity, all arrays together.
+const VERTEX_BYTES: usize = 250;
+const FACE_BYTES: usize = 150;
+
+/// What the values of meshes and forms are called.
+const DISTANCE: &str = "distance along the surface";
+const RESIDUAL: &str = "distance to the other form";
+
+/// Size of the dots that stand for points, as a share of the form's spread.
+const DOT: f64 = 0.025;
+
+/// A repaired surface and the form of all its vertices.
+pub(crate) struct Measured {
+    pub(crate) surface: Surface,
+    pub(crate) form: SurfaceForm,
+}
+
+impl Measured {
+    /// Measures a mesh as the shapes of an index are.
+    pub(crate) fn new(mesh: &TriMesh, options: &DescribeOptions) -> Result<Self, PipelineError> {
+        let surface = Surface::new(mesh, &options.repair)?;
+        let form = SurfaceForm::new(&surface, options)?;
+        Ok(Self { surface, form })
+    }
+
+    /// About as many bytes as it takes.
+    pub(crate) fn bytes(&self) -> usize {
+        let mesh = self.surface.mesh();
+        VERTEX_BYTES * mesh.n_vertices() + FACE_BYTES * mesh.n_faces()
+    }
+
+    /// The repaired mesh, coloured by how far every vertex is from the first sample.
+    pub(crate) fn mesh(&self) -> Geometry {
+        Geometry::new(self.surface.mesh()).with_values(DISTANCE, &self.form.distances)
+    }
+
+    /// The form over the faces of the mesh, in the same colours.
+    pub(crate) fn form(&self) -> Geometry {
+        let form = self.form.form.to_mesh(self.surface.mesh());
+        Geometry::new(&form).with_values(DISTANCE, &self.form.distances)
+    }
+}
+
+/// A form without a mesh: its points as dots.
+pub(crate) fn dots(form: &CanonicalForm) -> TriMesh {
+    report::render::dots(form.points(), DOT * form.spread())
+}
+
+/// A form of an overlay: with faces where there are some, else dots.
+pub(crate) fn overlaid(overlay: &Overlay, place: usize, measured: Option<&Measured>, dot: f64) -> Geometry {
+    let (points, residuals) = (&overlay.points[place], &overlay.residuals[place]);
+    match measured {
+        Some(measured) => {
+            let faces = measured.surface.mesh().faces.clone();
+            Geometry::in_place(&TriMesh { positions: points.clone(), faces }).with_values(RESIDUAL, residuals)
+        }
+        None => {
+            let mesh = report::render::dots(points, DOT * dot);
+            let each = mesh.n_vertices() / points.len().max(1);
+            let values: Vec<f64> = residuals.iter().flat_map(|r| std::iter::repeat_n(*r, each)).collect();
+            Geometry::in_place(&mesh).with_values(RESIDUAL, &values)
+        }
+    }
+}

@@ -1,0 +1,160 @@
+// The answer: what was repaired, mesh and form, the class, the nearest shapes, and two forms laid over each other.
+import { mark, tile } from './shapes.js';
+
+const byId = (id) => document.getElementById(id);
+const KINDS = {
+  same: 'The same shape up to pose',
+  scaled: 'The same shape up to pose, of another size',
+  mirrored: 'Mirror images up to pose',
+  'mirrored-and-scaled': 'Mirror images up to pose, of another size',
+  different: 'Different shapes',
+};
+const number = (value) => Number(value).toPrecision(3).replace(/\.?0+$/, '');
+
+// Views are made once and shown other things later: browsers hold only a few scenes in 3D.
+const views = {};
+function view(id, geometries, options) {
+  if (views[id]) return views[id].update(geometries, options);
+  views[id] = canonform.view(byId(id), geometries, options);
+  return undefined;
+}
+
+export class Answer {
+  constructor() {
+    this.root = byId('answer');
+    this.root.dataset.state = 'empty';
+    this.comparison = 0;
+    byId('overlay-shown').addEventListener('change', () => this.drawOverlay());
+  }
+
+  begin(name) {
+    this.root.dataset.state = 'busy';
+    this.root.dataset.query = name;
+    this.root.setAttribute('aria-busy', 'true');
+    byId('found').classList.add('busy');
+  }
+
+  fail() {
+    this.root.dataset.state = 'failed';
+    this.root.removeAttribute('aria-busy');
+    this.hide();
+  }
+
+  // What was found before is no answer to this question.
+  hide() {
+    byId('found').hidden = true;
+    byId('nothing').hidden = false;
+  }
+
+  show(found) {
+    this.found = found;
+    this.comparison += 1;
+    byId('nothing').hidden = true;
+    byId('found').hidden = false;
+    byId('found').classList.remove('busy');
+    byId('overlay').hidden = true;
+    byId('query-name').textContent = found.query;
+    this.showVerdict(found);
+    view('form-view', found.form, { title: found.mesh ? 'Canonical form' : 'Canonical form, at the points in the index' });
+    byId('mesh-view').hidden = !found.mesh;
+    if (found.mesh) view('mesh-view', found.mesh, { title: 'Shape', linkedWith: views['form-view'] });
+    const tiles = found.results.map(({ rank, id, label, distance }) => {
+      const lines = [['more', label], ['more', `distance ${distance.toFixed(3)}`]];
+      const item = tile(id, label, lines, (hit) => this.compare(hit));
+      Object.assign(item.firstChild.dataset, { distance, rank });
+      return item;
+    });
+    byId('results').replaceChildren(...tiles);
+    this.root.dataset.query = found.query;
+    this.root.dataset.state = 'ready';
+    this.root.removeAttribute('aria-busy');
+    // On a narrow screen it is below what was asked with.
+    if (this.root.getBoundingClientRect().top > 0.6 * innerHeight) this.root.scrollIntoView({ block: 'start' });
+  }
+
+  showVerdict({ predicted, repair, repaired, mesh_missing: missing, n_shapes: known, seconds, results }) {
+    const [label, line] = [predicted.label, byId('predicted')];
+    line.dataset.label = label ?? '';
+    if (results.length === 0) {
+      line.textContent = 'The index holds nothing.';
+    } else if (label === null) {
+      line.textContent = `Class: unknown. Nothing is nearer than ${number(predicted.threshold)} by signatures.`;
+    } else {
+      const strong = document.createElement('strong');
+      strong.textContent = label;
+      line.replaceChildren('Class: ', strong,
+        `, by ${predicted.votes} of ${predicted.voters} votes, confidence ${predicted.confidence.toFixed(2)}`);
+    }
+    const size = repair ? `${repair.input_vertices} vertices, ${repair.input_faces} faces; ` : '';
+    const time = (seconds.describe + seconds.search).toFixed(2);
+    byId('facts').textContent = `${size}compared with ${known} shapes in ${time} s`;
+    const lines = [...repaired];
+    if (missing) lines.push(missing);
+    else if (lines.length === 0) lines.push('Nothing had to be repaired.');
+    byId('repaired').replaceChildren(...lines.map((text) => {
+      const item = document.createElement('li');
+      item.textContent = text;
+      return item;
+    }));
+  }
+
+  async compare(id) {
+    const overlay = byId('overlay');
+    const comparison = ++this.comparison;
+    const { query, query_id: queryId } = this.found;
+    mark(byId('results'), id);
+    const isNew = overlay.hidden;
+    overlay.hidden = false;
+    overlay.dataset.state = 'busy';
+    overlay.dataset.id = id;
+    byId('overlay-title').textContent = `${query} over ${id}`;
+    byId('overlay-kind').textContent = 'Aligning ...';
+    byId('overlay-kind').dataset.kind = '';
+    byId('overlay-facts').textContent = '';
+    if (isNew) byId('overlay-title').focus({ preventScroll: true });
+    overlay.scrollIntoView({ block: 'nearest' });
+    const answer = await this.ask(new URLSearchParams({ ...(queryId ? { query: queryId } : { a: query }), b: id }));
+    if (comparison !== this.comparison) return;
+    if (answer.error) {
+      overlay.dataset.state = 'failed';
+      byId('overlay-kind').textContent = answer.remedy ? `${answer.error}; ${answer.remedy}` : answer.error;
+      return;
+    }
+    const { kind, scale, distance, normalized_distance: normalized, residual, handedness } = answer;
+    const sizes = kind.includes('scaled') ? `, ${number(scale)} times as large` : '';
+    byId('overlay-kind').textContent = `${KINDS[kind]}${sizes}.`;
+    byId('overlay-kind').dataset.kind = kind;
+    byId('overlay-facts').textContent = `Forms ${number(distance)} apart, ${number(normalized)} at equal size; ` +
+      `half of the first one's points are within ${number(residual[0].median)} of the second, ` +
+      `the farthest is ${number(residual[0].max)} off. Left and right: ${handedness}.`;
+    byId('shown-first').textContent = answer.a;
+    byId('shown-second').textContent = answer.b;
+    this.overlaid = answer;
+    await this.drawOverlay();
+    overlay.dataset.state = 'ready';
+  }
+
+  async ask(params) {
+    try {
+      return await (await fetch(`/api/compare?${params}`)).json();
+    } catch {
+      return { error: 'The server did not answer', remedy: 'check that it is running' };
+    }
+  }
+
+  // Coloured by the residual; of both, the second is a pale shell around the first.
+  drawOverlay() {
+    if (!this.overlaid) return undefined;
+    const { forms, residual, a, b } = this.overlaid;
+    const shown = document.querySelector('input[name=shown]:checked').value;
+    const range = [0, Math.max(residual[0].max, residual[1].max)];
+    const shell = { ...forms[1], values: undefined, color: '#8fa3b8' };
+    const [surfaces, opacity] = {
+      both: [[forms[0], shell], [1, 0.35]],
+      first: [[forms[0]], [1]],
+      second: [[forms[1]], [1]],
+    }[shown];
+    const title = { both: `${a}, within ${b}`, first: a, second: b }[shown];
+    return view('overlay-view', surfaces, { title, opacity, range });
+  }
+}

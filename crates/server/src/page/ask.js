@@ -1,0 +1,117 @@
+// Asking: with files that are dropped or chosen, or with a shape of the index.
+
+const byId = (id) => document.getElementById(id);
+
+export class Ask {
+  // `to` hears of the beginning, the answer and the failure of a question; the last question counts.
+  constructor(to) {
+    this.to = to;
+    this.maxUpload = Infinity;
+    this.question = 0;
+    const [drop, file] = [byId('drop'), byId('file')];
+    file.addEventListener('change', () => {
+      this.withFiles([...file.files]);
+      // The same file again is a new question.
+      file.value = '';
+    });
+    let depth = 0;
+    const over = (change) => {
+      depth = change === 0 ? 0 : depth + change;
+      drop.classList.toggle('over', depth > 0);
+    };
+    // A file dropped beside the zone would take the place of the page.
+    addEventListener('dragenter', (event) => { event.preventDefault(); over(1); });
+    addEventListener('dragleave', () => over(-1));
+    addEventListener('dragover', (event) => event.preventDefault());
+    addEventListener('drop', (event) => {
+      event.preventDefault();
+      over(0);
+      if (event.dataTransfer.files.length > 0) this.withFiles([...event.dataTransfer.files]);
+    });
+    byId('upload').addEventListener('submit', (event) => event.preventDefault());
+  }
+
+  limit({ max_upload: maxUpload }) {
+    this.maxUpload = maxUpload;
+  }
+
+  withFiles(files) {
+    if (files.length === 0) return;
+    const form = new FormData();
+    for (const file of files) form.append('mesh', file, file.name);
+    form.append('k', '12');
+    const size = files.reduce((sum, file) => sum + file.size, 0);
+    const name = files.map((file) => file.name).join(' and ');
+    if (size > this.maxUpload) {
+      this.begin(name);
+      this.fail(`${name}: ${megabytes(size)} are more than the ${megabytes(this.maxUpload)} that are taken; ` +
+        'simplify the mesh, or start the server with a larger --max-upload');
+      return;
+    }
+    this.send('/api/search', form, name);
+  }
+
+  withShape(id) {
+    this.send(`/api/search?${new URLSearchParams({ shape: id, k: '12' })}`, null, id);
+  }
+
+  begin(name) {
+    this.question += 1;
+    this.request?.abort();
+    this.request = null;
+    byId('error').textContent = '';
+    byId('status').textContent = '';
+    this.to.begin(name);
+    return this.question;
+  }
+
+  // XMLHttpRequest: fetch tells nothing of an upload on its way.
+  send(address, body, name) {
+    const question = this.begin(name);
+    const current = () => question === this.question;
+    const [progress, status] = [byId('progress'), byId('status')];
+    const request = new XMLHttpRequest();
+    this.request = request;
+    const measuring = () => {
+      progress.removeAttribute('value');
+      status.textContent = `Measuring ${name} ...`;
+    };
+    progress.hidden = false;
+    progress.value = 0;
+    if (body) {
+      status.textContent = `Sending ${name} ...`;
+      request.upload.addEventListener('progress', (event) => {
+        if (current() && event.lengthComputable) progress.value = (100 * event.loaded) / event.total;
+      });
+      request.upload.addEventListener('load', () => { if (current()) measuring(); });
+    } else {
+      measuring();
+    }
+    request.addEventListener('loadend', () => {
+      if (!current()) return;
+      progress.hidden = true;
+      const found = request.response;
+      if (request.status === 200 && found) {
+        status.textContent = `${name}: done.`;
+        this.to.answer(found);
+      } else if (found?.error) {
+        this.fail(found.remedy ? `${found.error}; ${found.remedy}` : found.error);
+      } else {
+        this.fail('The server did not answer; check that it is running and send the mesh again.');
+      }
+    });
+    request.responseType = 'json';
+    request.open('POST', address);
+    request.send(body);
+  }
+
+  fail(text) {
+    byId('progress').hidden = true;
+    byId('status').textContent = '';
+    byId('error').textContent = text;
+    this.to.failed();
+    byId('error').scrollIntoView({ block: 'nearest' });
+  }
+}
+
+const megabytes = (bytes) => `${(bytes / 1e6).toFixed(bytes < 1e6 ? 2 : 0)} MB`;

@@ -1,0 +1,48 @@
+//! The page: files that are part of the program.
+
+use std::collections::hash_map::DefaultHasher;
+use std::hash::{Hash, Hasher};
+use std::sync::Arc;
+
+use axum::Router;
+use axum::body::Bytes;
+use axum::http::HeaderMap;
+use axum::response::Response;
+use axum::routing::get;
+
+use crate::api::{is_known, tag, tagged};
+use crate::app::App;
+
+const HTML: &str = "text/html; charset=utf-8";
+const CSS: &str = "text/css; charset=utf-8";
+const JS: &str = "text/javascript; charset=utf-8";
+
+pub(crate) fn router() -> Router<Arc<App>> {
+    let files = [
+        ("/", HTML, include_str!("index.html")),
+        ("/assets/style.css", CSS, include_str!("style.css")),
+        ("/assets/app.js", JS, include_str!("app.js")),
+        ("/assets/ask.js", JS, include_str!("ask.js")),
+        ("/assets/shapes.js", JS, include_str!("shapes.js")),
+        ("/assets/answer.js", JS, include_str!("answer.js")),
+        ("/assets/viewer.js", JS, report::interactive::VIEWER_JS),
+        ("/assets/plotly.js", JS, report::interactive::plotly_js()),
+    ];
+    files.into_iter().fold(Router::new(), |router, (path, kind, text)| {
+        let mut hash = DefaultHasher::new();
+        text.hash(&mut hash);
+        let tag = tag(&format!("{:016x}", hash.finish()));
+        let answer = move |headers: HeaderMap| async move { file(&headers, tag, kind, text) };
+        router.route(path, get(answer))
+    })
+}
+
+fn file(
+    headers: &HeaderMap,
+    tag: axum::http::HeaderValue,
+    kind: &'static str,
+    text: &'static str,
+) -> Response {
+    let content = (!is_known(headers, &tag)).then(|| Bytes::from_static(text.as_bytes()));
+    tagged(tag, kind, content)
+}

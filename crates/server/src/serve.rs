@@ -1,0 +1,150 @@
+//! Connections, and the end of them.
+
+use std::net::{SocketAddr, TcpListener};
+use std::path::Path;
+use std::pin::pin;
+use std::sync::Arc;
+use std::time::Duration;
+
+use axum::middleware::from_fn_with_state;
+use futures_util::future::{Either, select};
+use hyper::server::conn::http1;
+use hyper_util::rt::{TokioIo, TokioTimer};
+use hyper_util::server::graceful::GracefulShutdown;
+use hyper_util::service::TowerToHyperService;
+use tokio::net::TcpStream;
+use tokio::sync::{Semaphore, watch};
+
+use crate::app::App;
+use crate::guard::guard;
+use crate::{ServeOptions, ServerError, api, page};
+
+/// Bytes that a request's header may have, and that are read of a body at once.
+const BUFFER: usize = 64 << 10;
+
+/// After a connection could not be accepted, as when there are too many open files.
+const BREATH: Duration = Duration::from_millis(100);
+
+/// Stack of the threads that measure.
+const STACK: usize = 8 << 20;
+
+/// A server that has its address and its index, and waits to be [`run`](Self::run).
+pub struct Server {
+    listener: TcpListener,
+    address: SocketAddr,
+    app: Arc<App>,
+    stop: (watch::Sender<bool>, watch::Receiver<bool>),
+}
+
+impl std::fmt::Debug for Server {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Server").field("address", &self.address).finish_non_exhaustive()
+    }
+}
+
+/// Ends a server.
+#[derive(Debug, Clone)]
+pub struct Stop(watch::Sender<bool>);
+
+impl Stop {
+    /// No more connections are taken; what is being worked on is finished.
+    pub fn stop(&self) {
+        self.0.send_replace(true);
+    }
+}
+
+impl Server {
+    /// Opens the index and takes the address.
+    ///
+    /// # Errors
+    /// [`ServerError::Pipeline`] for the index, [`ServerError::Listen`] for the address.
+    pub fn bind(index: &Path, options: ServeOptions) -> Result<Self, ServerError> {
+        let app = Arc::new(App::open(index, options)?);
+        let asked = app.options.listen;
+        let fault = |source| ServerError::Listen { address: asked, source };
+        let listener = TcpListener::bind(asked).map_err(fault)?;
+        listener.set_nonblocking(true).map_err(fault)?;
+        let address = listener.local_addr().map_err(fault)?;
+        Ok(Self { listener, address, app, stop: watch::channel(false) })
+    }
+
+    /// Where it listens, with the port that was free when 0 was asked for.
+    #[must_use]
+    pub fn address(&self) -> SocketAddr {
+        self.address
+    }
+
+    /// Number of shapes in its index.
+    #[must_use]
+    pub fn n_shapes(&self) -> usize {
+        self.app.shapes.len()
+    }
+
+    /// What ends it, from anywhere.
+    #[must_use]
+    pub fn stop_handle(&self) -> Stop {
+        Stop(self.stop.0.clone())
+    }
+
+    /// Serves until it is stopped, and what is being worked on then is done, or its time is up.
+    ///
+    /// # Errors
+    /// [`ServerError::Runtime`] when there are no threads to be had.
+    pub fn run(self) -> Result<(), ServerError> {
+        let runtime = tokio::runtime::Builder::new_multi_thread()
+            .enable_all()
+            .thread_stack_size(STACK)
+            .build()
+            .map_err(ServerError::Runtime)?;
+        let farewell = self.app.options.farewell;
+        let served = runtime.block_on(self.serve());
+        runtime.shutdown_timeout(farewell);
+        served
+    }
+
+    async fn serve(self) -> Result<(), ServerError> {
+        let listener = tokio::net::TcpListener::from_std(self.listener).map_err(ServerError::Runtime)?;
+        let (app, mut stop) = (self.app, self.stop.1);
+        let router = api::router()
+            .merge(page::router())
+            .layer(from_fn_with_state(app.clone(), guard))
+            .with_state(app.clone());
+        let places = Arc::new(Semaphore::new(app.options.connections));
+        let graceful = GracefulShutdown::new();
+        loop {
+            let next = pin!(async {
+                let place = places.clone().acquire_owned().await;
+                (place, listener.accept().await)
+            });
+            // Its sender lives in `self.stop` and cannot be gone.
+            let stopped = pin!(stop.wait_for(|stopped| *stopped));
+            let Either::Left(((place, accepted), _)) = select(next, stopped).await else { break };
+            let Ok((stream, _)) = accepted else {
+                tokio::time::sleep(BREATH).await;
+                continue;
+            };
+            let connection = graceful.watch(connection(stream, router.clone(), app.options.idle_time));
+            tokio::spawn(async move {
+                let _place = place;
+                // A connection that breaks is the client's affair.
+                let _ = connection.await;
+            });
+        }
+        drop(listener);
+        let _ = tokio::time::timeout(app.options.farewell, graceful.shutdown()).await;
+        Ok(())
+    }
+}
+
+/// One connection and all requests on it.
+fn connection(
+    stream: TcpStream,
+    router: axum::Router,
+    idle_time: Duration,
+) -> http1::Connection<TokioIo<TcpStream>, TowerToHyperService<axum::Router>> {
+    http1::Builder::new()
+        .timer(TokioTimer::new())
+        .header_read_timeout(idle_time)
+        .max_buf_size(BUFFER)
+        .serve_connection(TokioIo::new(stream), TowerToHyperService::new(router))
+}

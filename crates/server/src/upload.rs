@@ -1,0 +1,211 @@
+//! A form with a mesh, received into memory within limits.
+
+use std::path::PathBuf;
+use std::pin::Pin;
+use std::sync::{Arc, Mutex, PoisonError};
+use std::task::{Context, Poll};
+use std::time::Duration;
+
+use axum::body::{BodyDataStream, Bytes};
+use axum::extract::Request;
+use axum::http::{StatusCode, header};
+use futures_util::{Stream, StreamExt};
+use multer::{Multipart, parse_boundary};
+
+use crate::ServeOptions;
+use crate::error::ApiError;
+
+/// Bytes of a form around its files: boundaries, headers, other fields.
+const FRAME: usize = 64 << 10;
+
+/// Parts of a form, and bytes of one that is no file.
+const MOST_PARTS: usize = 16;
+const LONGEST_FIELD: usize = 1 << 10;
+
+/// Letters of a file's name that are kept.
+const LONGEST_NAME: usize = 200;
+
+/// What is still read from a client that was refused, so that it comes to read why.
+const REFUSED_TIME: Duration = Duration::from_secs(5);
+const REFUSED_BYTES: usize = 256 << 20;
+
+/// What was sent.
+#[derive(Debug, Default)]
+pub(crate) struct Upload {
+    /// Names, without folders, and contents.
+    pub(crate) files: Vec<(PathBuf, Vec<u8>)>,
+    /// Names and texts.
+    pub(crate) fields: Vec<(String, String)>,
+}
+
+/// Receives a form.
+pub(crate) async fn receive(request: Request, options: &ServeOptions) -> Result<Upload, ApiError> {
+    let headers = request.headers();
+    let text = |name| headers.get(name).and_then(|value: &header::HeaderValue| value.to_str().ok());
+    let boundary = text(header::CONTENT_TYPE).and_then(|kind| parse_boundary(kind).ok());
+    let announced = text(header::CONTENT_LENGTH).and_then(|length| length.parse::<usize>().ok());
+    let body = Body(Arc::new(Mutex::new(request.into_body().into_data_stream())));
+    let received = async {
+        if announced.is_some_and(|length| length > options.max_upload + FRAME) {
+            return Err(ApiError::upload_too_large(options.max_upload));
+        }
+        let boundary = boundary.ok_or_else(|| {
+            ApiError::new(StatusCode::UNSUPPORTED_MEDIA_TYPE, "the request is no form with a file")
+                .with_remedy("send multipart/form-data with one mesh, or with a .vert and its .tri")
+        })?;
+        let metered = Metered { body: body.clone(), left: options.max_upload + FRAME };
+        let form = Multipart::new(metered, boundary);
+        let all = tokio::time::timeout(options.upload_time, read(form, options));
+        all.await.unwrap_or_else(|_| Err(ApiError::upload_too_slow()))
+    };
+    let received = received.await;
+    if received.is_err() {
+        tokio::spawn(body.pass());
+    }
+    received
+}
+
+/// Passes over what is sent by somebody who is refused before a look at it.
+pub(crate) fn pass(request: Request) {
+    let body = Body(Arc::new(Mutex::new(request.into_body().into_data_stream())));
+    tokio::spawn(body.pass());
+}
+
+async fn read(mut form: Multipart<'static>, options: &ServeOptions) -> Result<Upload, ApiError> {
+    let mut upload = Upload::default();
+    let mut n_parts = 0;
+    while let Some(mut part) = in_time(form.next_field(), options).await? {
+        n_parts += 1;
+        if n_parts > MOST_PARTS {
+            return Err(ApiError::bad_request(format!("the form has more than {MOST_PARTS} parts")));
+        }
+        let file = part.file_name().map(clean_name);
+        let mut content = Vec::new();
+        while let Some(chunk) = in_time(part.chunk(), options).await? {
+            let limit = if file.is_some() { options.max_upload } else { LONGEST_FIELD };
+            if content.len() + chunk.len() > limit {
+                return Err(match file {
+                    Some(_) => ApiError::upload_too_large(options.max_upload),
+                    None => ApiError::bad_request(format!("a field of the form has more than {limit} bytes")),
+                });
+            }
+            content.extend_from_slice(&chunk);
+        }
+        match file {
+            // What browsers send for a field where no file was chosen.
+            Some(name) if name.as_os_str().is_empty() && content.is_empty() => {}
+            Some(name) => upload.files.push((name, content)),
+            None => {
+                let name = part.name().unwrap_or_default().to_owned();
+                upload.fields.push((name, String::from_utf8_lossy(&content).trim().to_owned()));
+            }
+        }
+    }
+    Ok(upload)
+}
+
+/// The next piece, unless it is too long in coming.
+async fn in_time<T>(
+    piece: impl Future<Output = Result<T, multer::Error>>,
+    options: &ServeOptions,
+) -> Result<T, ApiError> {
+    match tokio::time::timeout(options.idle_time, piece).await {
+        Err(_) => Err(ApiError::upload_too_slow()),
+        Ok(Ok(piece)) => Ok(piece),
+        Ok(Err(multer::Error::StreamReadFailed(fault))) if fault.is::<TooLong>() => {
+            Err(ApiError::upload_too_large(options.max_upload))
+        }
+        Ok(Err(fault)) => Err(ApiError::bad_request(format!("the form cannot be read: {fault}"))
+            .with_remedy("send multipart/form-data with one mesh, or with a .vert and its .tri")),
+    }
+}
+
+/// A file's name without folders and without what no terminal should print; the end of one that is too long.
+fn clean_name(name: &str) -> PathBuf {
+    let name = name.rsplit(['/', '\\']).next().unwrap_or_default();
+    let skipped = name.chars().count().saturating_sub(LONGEST_NAME);
+    let clean = |c: char| if c.is_control() { char::REPLACEMENT_CHARACTER } else { c };
+    name.chars().skip(skipped).map(clean).collect::<String>().into()
+}
+
+/// The body of a request, shared by whoever reads it and whoever passes over what is left.
+#[derive(Clone)]
+struct Body(Arc<Mutex<BodyDataStream>>);
+
+impl Stream for Body {
+    type Item = Result<Bytes, axum::Error>;
+
+    fn poll_next(self: Pin<&mut Self>, context: &mut Context<'_>) -> Poll<Option<Self::Item>> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).poll_next_unpin(context)
+    }
+}
+
+impl Body {
+    /// Reads on for a while and keeps nothing: many clients read the answer only when they have sent all, or never when
+    /// the connection breaks before.
+    async fn pass(mut self) {
+        let mut left = REFUSED_BYTES;
+        let passing = async {
+            while let Some(Ok(piece)) = self.next().await {
+                left = left.saturating_sub(piece.len());
+                if left == 0 {
+                    break;
+                }
+            }
+        };
+        // Both ways to end are fine.
+        let _ = tokio::time::timeout(REFUSED_TIME, passing).await;
+    }
+}
+
+/// A body that breaks off when it is too long.
+struct Metered {
+    body: Body,
+    left: usize,
+}
+
+#[derive(Debug, thiserror::Error)]
+#[error("the body is too long")]
+struct TooLong;
+
+impl Stream for Metered {
+    type Item = Result<Bytes, Box<dyn std::error::Error + Send + Sync>>;
+
+    fn poll_next(mut self: Pin<&mut Self>, context: &mut Context<'_>) -> Poll<Option<Self::Item>> {
+        let piece = match Pin::new(&mut self.body).poll_next(context) {
+            Poll::Ready(Some(Ok(piece))) => piece,
+            Poll::Ready(Some(Err(fault))) => return Poll::Ready(Some(Err(fault.into()))),
+            Poll::Ready(None) => return Poll::Ready(None),
+            Poll::Pending => return Poll::Pending,
+        };
+        Poll::Ready(Some(match self.left.checked_sub(piece.len()) {
+            Some(left) => {
+                self.left = left;
+                Ok(piece)
+            }
+            None => Err(TooLong.into()),
+        }))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_lose_folders_and_control_characters() {
+        for (name, expected) in [
+            ("cat0.off", "cat0.off"),
+            ("../../etc/passwd", "passwd"),
+            ("C:\\meshes\\cat.obj", "cat.obj"),
+            ("a\u{1b}[2J\n.off", "a\u{fffd}[2J\u{fffd}.off"),
+            ("folder/", ""),
+            ("..", ".."),
+        ] {
+            assert_eq!(clean_name(name), PathBuf::from(expected), "{name:?}");
+        }
+        let long = clean_name(&format!("{}.off", "x".repeat(5000)));
+        assert_eq!(long.to_string_lossy().len(), LONGEST_NAME);
+        assert!(mesh::io::is_mesh_path(&long));
+    }
+}

@@ -1,0 +1,133 @@
+//! A bounded number of jobs at once, and a bounded number that wait.
+
+use std::num::NonZero;
+use std::sync::Arc;
+use std::time::Duration;
+
+use tokio::sync::{OwnedSemaphorePermit, Semaphore};
+
+use crate::ServeOptions;
+use crate::error::ApiError;
+
+/// Seconds after which somebody who was sent away may ask again.
+const ASK_AGAIN: u32 = 2;
+
+/// Where requests that take time queue up.
+pub(crate) struct Work {
+    jobs: Arc<Semaphore>,
+    waiting: Arc<Semaphore>,
+    uploads: Arc<Semaphore>,
+    time_limit: Duration,
+}
+
+/// The right to send a mesh; given back when it is measured.
+pub(crate) struct UploadPermit {
+    _permit: OwnedSemaphorePermit,
+}
+
+impl Work {
+    pub(crate) fn new(options: &ServeOptions) -> Self {
+        let cores = || std::thread::available_parallelism().map_or(1, NonZero::get);
+        let jobs = if options.jobs == 0 { cores() } else { options.jobs };
+        Self {
+            jobs: Arc::new(Semaphore::new(jobs)),
+            waiting: Arc::new(Semaphore::new(jobs + options.queue)),
+            uploads: Arc::new(Semaphore::new(options.max_uploads)),
+            time_limit: options.time_limit,
+        }
+    }
+
+    /// Refuses an upload before its first byte when too many are there.
+    pub(crate) fn upload(&self) -> Result<UploadPermit, ApiError> {
+        let permit = self.uploads.clone().try_acquire_owned();
+        permit.map(|permit| UploadPermit { _permit: permit }).map_err(|_| ApiError::busy(ASK_AGAIN))
+    }
+
+    /// Runs `job` on a thread of its own once it is its turn. A job that takes too long is not waited for, but it counts
+    /// until it ends; `held` is dropped then.
+    pub(crate) async fn run<T: Send + 'static>(
+        &self,
+        held: Option<UploadPermit>,
+        job: impl FnOnce() -> Result<T, ApiError> + Send + 'static,
+    ) -> Result<T, ApiError> {
+        let place = self.waiting.clone().try_acquire_owned().map_err(|_| ApiError::busy(ASK_AGAIN))?;
+        let work = async {
+            let turn = self.jobs.clone().acquire_owned().await.map_err(|_| ApiError::busy(ASK_AGAIN))?;
+            let outcome = tokio::task::spawn_blocking(move || {
+                let _held = (place, turn, held);
+                job()
+            });
+            // The only other way to end is a panic, which has been printed.
+            outcome.await.unwrap_or_else(|_| Err(ApiError::fault()))
+        };
+        let late = |_| Err(ApiError::too_slow(self.time_limit));
+        tokio::time::timeout(self.time_limit, work).await.unwrap_or_else(late)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::mpsc;
+
+    use super::*;
+
+    fn runtime() -> tokio::runtime::Runtime {
+        tokio::runtime::Builder::new_multi_thread().worker_threads(2).enable_time().build().unwrap()
+    }
+
+    #[test]
+    fn a_job_that_is_late_still_counts_and_the_queue_has_an_end() {
+        let options = ServeOptions {
+            jobs: 1,
+            queue: 1,
+            time_limit: Duration::from_millis(200),
+            ..ServeOptions::default()
+        };
+        let work = Work::new(&options);
+        let (finish, finished) = mpsc::channel::<()>();
+        runtime().block_on(async {
+            let late = work.run(None, move || {
+                let _ = finished.recv();
+                Ok(())
+            });
+            assert_eq!(late.await.unwrap_err().status(), 503);
+            // The thread is still at it: one may wait, in vain, and no second one.
+            let (waiting, refused) = (work.run(None, || Ok(())), async {
+                tokio::time::sleep(Duration::from_millis(50)).await;
+                work.run(None, || Ok(())).await
+            });
+            let (waiting, refused) = futures_util::future::join(waiting, refused).await;
+            assert_eq!((waiting.unwrap_err().status(), refused.unwrap_err().status()), (503, 503));
+            finish.send(()).unwrap();
+            let ends = async {
+                while work.run(None, || Ok(())).await.is_err() {
+                    tokio::time::sleep(Duration::from_millis(10)).await;
+                }
+            };
+            tokio::time::timeout(Duration::from_secs(20), ends).await.unwrap();
+        });
+    }
+
+    #[test]
+    fn a_panic_is_an_error_and_frees_its_place() {
+        let work = Work::new(&ServeOptions { jobs: 1, queue: 0, ..ServeOptions::default() });
+        runtime().block_on(async {
+            for _ in 0..3 {
+                let fault = work.run::<()>(None, || panic!("for the test")).await.unwrap_err();
+                assert_eq!(fault.status(), 500);
+            }
+            assert_eq!(work.run(None, || Ok(7)).await.unwrap(), 7);
+        });
+    }
+
+    #[test]
+    fn uploads_are_counted_until_they_are_measured() {
+        let work = Work::new(&ServeOptions { max_uploads: 1, ..ServeOptions::default() });
+        runtime().block_on(async {
+            let permit = work.upload().unwrap();
+            assert_eq!(work.upload().err().unwrap().status(), 503);
+            work.run(Some(permit), || Ok(())).await.unwrap();
+            work.upload().unwrap();
+        });
+    }
+}

@@ -1,0 +1,283 @@
+//! What is answered: the right thing, and what `openapi.json` says.
+
+use std::fs;
+
+use mesh::shapes;
+use report::interactive::Geometry;
+use serde_json::Value;
+
+use crate::client::{Answer, ask, upload};
+use crate::schema::Description;
+use crate::support::{AWKWARD, INDEX, Running, bodies, options, written};
+
+fn get(server: &Running, target: &str) -> Answer {
+    ask(server.address, "GET", target, &[], b"").unwrap()
+}
+
+fn description(server: &Running) -> Description {
+    Description(get(server, "/api/openapi.json").json())
+}
+
+fn geometry(value: &Value) -> Geometry {
+    serde_json::from_value(value.clone()).unwrap()
+}
+
+/// A name as an address has it.
+fn escaped(id: &str) -> String {
+    id.bytes().map(|byte| format!("%{byte:02x}")).collect()
+}
+
+fn ids(answer: &Value) -> Vec<&str> {
+    answer["results"].as_array().unwrap().iter().map(|r| r["id"].as_str().unwrap()).collect()
+}
+
+#[test]
+fn an_upload_finds_itself_in_every_format() {
+    let server = Running::start(options());
+    let description = description(&server);
+    let ring = shapes::torus(24, 12, 2.0, 0.6);
+    for names in
+        [&["q.off"][..], &["q.obj"], &["q.ply"], &["q.stl"], &["q.vert", "q.tri"], &["q.tri", "q.vert"]]
+    {
+        let contents: Vec<_> = names.iter().map(|name| written(name, &ring)).collect();
+        let files: Vec<_> =
+            names.iter().zip(&contents).map(|(name, content)| (*name, &content[..])).collect();
+        let answer = upload(server.address, &files, &[("k", "3"), ("explain", "true")]).unwrap();
+        let json = answer.json();
+        assert_eq!(answer.status, 200, "{json}");
+        description.check("post", "/api/search", 200, &json);
+        assert_eq!(
+            (json["query"].as_str().unwrap(), json["results"].as_array().unwrap().len()),
+            (names[0], 3)
+        );
+        assert_eq!(ids(&json)[0], "ring0");
+        // STL numbers vertices anew, and the distances of a ring do not say which way it is turned.
+        let distance = json["results"][0]["distance"].as_f64().unwrap();
+        assert!(distance < 0.05 || names == ["q.stl"], "{names:?}: {distance}");
+        assert_eq!(json["results"][0]["match"]["kind"], "same");
+        assert_eq!(json["predicted"]["label"], "ring");
+        let (mesh, form) = (geometry(&json["mesh"]), geometry(&json["form"]));
+        assert_eq!((mesh.positions.len(), mesh.faces.len()), (ring.n_vertices(), ring.n_faces()));
+        assert_eq!((&mesh.faces, &mesh.values), (&form.faces, &form.values));
+        assert_eq!(mesh.values.unwrap().len(), ring.n_vertices());
+    }
+}
+
+#[test]
+fn the_answer_is_that_of_the_command_line() {
+    let server = Running::start(options());
+    let mesh = shapes::torus(24, 12, 2.0, 0.7);
+    let search = pipeline::ShapeSearch::open(&server.folder.join(INDEX)).unwrap();
+    let report = search.search(&mesh, &pipeline::SearchOptions::default()).unwrap();
+    let answer = upload(server.address, &[("q.off", &written("q.off", &mesh))], &[]).unwrap().json();
+    for (name, expected) in serde_json::to_value(&report).unwrap().as_object().unwrap() {
+        if name != "seconds" {
+            assert_eq!(&answer[name], expected, "{name}");
+        }
+    }
+}
+
+#[test]
+fn repairs_are_told() {
+    let server = Running::start(options());
+    let two = shapes::disjoint(&[shapes::torus(24, 12, 2.0, 0.6), shapes::tetrahedron(0)]);
+    let answer = upload(server.address, &[("q.ply", &written("q.ply", &two))], &[]).unwrap().json();
+    let said = answer["repaired"][0].as_str().unwrap();
+    assert!(said.starts_with("1 of 2 components dropped, 4 faces and 4 vertices"), "{said}");
+    assert_eq!(answer["repair"]["dropped_vertices"].as_array().unwrap().len(), 4);
+    assert_eq!(geometry(&answer["mesh"]).positions.len(), two.n_vertices() - 4);
+}
+
+#[test]
+fn a_shape_of_the_index_finds_itself() {
+    let server = Running::start(options());
+    let description = description(&server);
+    for (id, _) in bodies() {
+        let target = format!("/api/search?shape={}&k=2&explain=true", escaped(id));
+        let answer = ask(server.address, "POST", &target, &[], b"").unwrap();
+        let json = answer.json();
+        assert_eq!(answer.status, 200, "{json}");
+        description.check("post", "/api/search", 200, &json);
+        assert_eq!((ids(&json)[0], json["query"].as_str().unwrap()), (id, id));
+        assert!(json["query_id"].is_null() && json["mesh_missing"].is_null());
+    }
+}
+
+#[test]
+fn the_list_is_cut_and_filtered() {
+    let server = Running::start(options());
+    let description = description(&server);
+    let list = |target: &str| {
+        let answer = get(&server, target);
+        assert_eq!(answer.status, 200);
+        let json = answer.json();
+        description.check("get", "/api/shapes", 200, &json);
+        let shapes = json["shapes"].as_array().unwrap();
+        let ids = shapes.iter().map(|shape| shape["id"].as_str().unwrap().to_owned()).collect::<Vec<_>>();
+        (json["total"].as_u64().unwrap(), ids.join(" "))
+    };
+    assert_eq!(list("/api/shapes?offset=1&limit=2"), (7, "ball0 ball1".to_owned()));
+    assert_eq!(list("/api/shapes?q=OX"), (2, "box0 box1".to_owned()));
+    assert_eq!(list("/api/shapes?label=ring&limit=1"), (2, "ring0".to_owned()));
+    assert_eq!(list("/api/shapes?q=%3Cb%3E"), (1, AWKWARD.to_owned()));
+    assert_eq!(list("/api/shapes?q=none"), (0, String::new()));
+    assert_eq!(list("/api/shapes?offset=99"), (7, String::new()));
+    for bad in ["limit=0", "limit=501", "limit=x", "offset=-1", "other=1"] {
+        let answer = get(&server, &format!("/api/shapes?{bad}"));
+        assert_eq!(answer.status, 400, "{bad}");
+        description.check("get", "/api/shapes", 400, &answer.json());
+    }
+}
+
+#[test]
+fn meshes_forms_and_pictures_of_shapes() {
+    let server = Running::start(options());
+    let description = description(&server);
+    for (id, mesh) in bodies() {
+        let part = |part: &str| get(&server, &format!("/api/shapes/{}/{part}", escaped(id)));
+        let [shown, form] = ["mesh", "form"].map(|name| {
+            let answer = part(name);
+            assert_eq!(answer.status, 200);
+            description.check("get", &format!("/api/shapes/{{id}}/{name}"), 200, &answer.json());
+            geometry(&answer.json())
+        });
+        assert_eq!((shown.positions.len(), form.positions.len()), (mesh.n_vertices(), mesh.n_vertices()));
+        let picture = part("thumbnail");
+        assert!(picture.status == 200 && picture.body.starts_with(b"\x89PNG\r\n"));
+        assert_eq!(picture.header("content-type"), Some("image/png"));
+        let tag = picture.header("etag").unwrap();
+        let target = format!("/api/shapes/{}/thumbnail", escaped(id));
+        let same = ask(server.address, "GET", &target, &[("If-None-Match", tag)], b"").unwrap();
+        assert!(same.status == 304 && same.body.is_empty() && same.header("etag") == Some(tag));
+    }
+    for part in ["mesh", "form", "thumbnail"] {
+        for id in ["none", "..%2f..%2fmeshes%2fball0", "%2fetc%2fpasswd"] {
+            let answer = get(&server, &format!("/api/shapes/{id}/{part}"));
+            assert_eq!(answer.status, 404);
+            assert!(answer.json()["error"].as_str().unwrap().contains("has no shape"), "{part}");
+        }
+        assert_eq!(get(&server, &format!("/api/shapes/%ff/{part}")).status, 400);
+    }
+}
+
+#[test]
+fn a_mesh_that_is_gone_leaves_the_points_of_its_form() {
+    let server = Running::start_apart(options());
+    let description = description(&server);
+    fs::remove_file(server.mesh("ring0")).unwrap();
+    fs::copy(server.mesh("box0"), server.mesh("box1")).unwrap();
+    for (id, status, words) in
+        [("ring0", 404, "put it back"), ("box1", 410, "has changed since it was indexed")]
+    {
+        let mesh = get(&server, &format!("/api/shapes/{id}/mesh"));
+        assert_eq!(mesh.status, status);
+        description.check("get", "/api/shapes/{id}/mesh", status, &mesh.json());
+        let error = mesh.json()["error"].as_str().unwrap().to_owned();
+        assert!(error.contains(words) && error.contains(&format!("`{id}`")), "{error}");
+        assert_eq!(get(&server, &format!("/api/shapes/{id}/thumbnail")).status, 200);
+        let form = geometry(&get(&server, &format!("/api/shapes/{id}/form")).json());
+        assert!(!form.faces.is_empty() && form.positions.len().is_multiple_of(6), "dots");
+        let found = ask(server.address, "POST", &format!("/api/search?shape={id}"), &[], b"").unwrap().json();
+        description.check("post", "/api/search", 200, &found);
+        assert_eq!((ids(&found)[0], found["mesh_missing"].as_str().unwrap()), (id, &*error));
+        let compared = get(&server, &format!("/api/compare?a={id}&b=ring1"));
+        description.check("get", "/api/compare", 200, &compared.json());
+        assert!(compared.json()["triangulation"].is_null());
+    }
+}
+
+#[test]
+fn an_upload_is_laid_over_what_it_found() {
+    let server = Running::start(options());
+    let description = description(&server);
+    let mut mesh = shapes::torus(24, 12, 2.0, 0.8);
+    mesh.positions.iter_mut().for_each(|p| p.coords *= 3.0);
+    let found = upload(server.address, &[("q.off", &written("q.off", &mesh))], &[]).unwrap().json();
+    let query = found["query_id"].as_str().unwrap();
+    assert!(query.len() == 32 && query.bytes().all(|c| c.is_ascii_hexdigit()));
+    let answer = get(&server, &format!("/api/compare?query={query}&b=ring1"));
+    let json = answer.json();
+    assert_eq!(answer.status, 200, "{json}");
+    description.check("get", "/api/compare", 200, &json);
+    assert_eq!((json["a"].as_str(), json["b"].as_str()), (Some("q.off"), Some("ring1")));
+    assert_eq!((json["kind"].as_str(), json["triangulation"].as_str()), (Some("scaled"), Some("same")));
+    assert!((json["scale"].as_f64().unwrap() * 3.0 - 1.0).abs() < 1e-6);
+    let forms = [0, 1].map(|i| geometry(&json["forms"][i]));
+    for (i, form) in forms.iter().enumerate() {
+        let largest = form.values.as_ref().unwrap().iter().copied().fold(0.0, f32::max);
+        let told = json["residual"][i]["max"].as_f64().unwrap();
+        assert!((f64::from(largest) - told).abs() < 1e-5, "{largest}, {told}");
+        // A ring finds itself turned about its axis by less than an edge.
+        assert!(told < 0.3, "one shape: {told}");
+    }
+    let away = |p: &[f32; 3], q: &[f32; 3]| (0..3).map(|i| (p[i] - q[i]).powi(2)).sum::<f32>().sqrt();
+    for (p, residual) in forms[0].positions.iter().zip(forms[0].values.as_ref().unwrap()) {
+        let nearest = forms[1].positions.iter().map(|q| away(p, q)).fold(f32::INFINITY, f32::min);
+        assert!((nearest - residual).abs() < 1e-4, "they lie as they are laid: {nearest}, {residual}");
+    }
+    let pair = get(&server, "/api/compare?a=ring0&b=box0").json();
+    description.check("get", "/api/compare", 200, &pair);
+    assert_eq!(pair["kind"], "different");
+    for (target, status) in [
+        ("query=0123456789abcdef0123456789abcdef&b=ring1".to_owned(), 410),
+        ("a=none&b=ring1".to_owned(), 404),
+        ("a=ring1&b=none".to_owned(), 404),
+        ("b=ring1".to_owned(), 400),
+        (format!("query={query}&a=ring0&b=ring1"), 400),
+        ("a=ring1".to_owned(), 400),
+    ] {
+        let answer = get(&server, &format!("/api/compare?{target}"));
+        assert_eq!(answer.status, status, "{target}");
+        description.check("get", "/api/compare", status, &answer.json());
+    }
+}
+
+#[test]
+fn the_page_its_files_and_the_health_of_the_server() {
+    let server = Running::start(options());
+    let health = get(&server, "/healthz");
+    description(&server).check("get", "/healthz", 200, &health.json());
+    assert_eq!(health.json()["shapes"], 7);
+    let page = get(&server, "/");
+    assert_eq!((page.status, page.header("content-type")), (200, Some("text/html; charset=utf-8")));
+    let html = String::from_utf8(page.body.clone()).unwrap();
+    let mut files = 0;
+    for address in html.split(['"', '\'']).filter(|text| text.starts_with("/assets/")) {
+        let file = get(&server, address);
+        assert!(file.status == 200 && !file.body.is_empty(), "{address}");
+        let again =
+            ask(server.address, "GET", address, &[("If-None-Match", file.header("etag").unwrap())], b"");
+        assert_eq!(again.unwrap().status, 304);
+        files += 1;
+    }
+    assert_eq!(files, 4);
+    assert!(
+        !html.contains("http:/")
+            || html.matches("http:/").count() == html.matches("http://www.w3.org").count()
+    );
+    for answer in [page, health, get(&server, "/none")] {
+        let policy = answer.header("content-security-policy").unwrap();
+        assert!(policy.starts_with("default-src 'none'; script-src 'self';"), "{policy}");
+        assert_eq!(answer.header("x-content-type-options"), Some("nosniff"));
+        assert_eq!(answer.header("referrer-policy"), Some("no-referrer"));
+        assert_eq!(answer.header("access-control-allow-origin"), None);
+        assert!(answer.header("cache-control").is_some());
+    }
+}
+
+#[test]
+fn what_is_not_there_is_said_in_json() {
+    let server = Running::start(options());
+    for (method, target, status) in [
+        ("GET", "/none", 404),
+        ("GET", "/../../etc/passwd", 404),
+        ("GET", "/assets/../openapi.json", 404),
+        ("GET", "/api/search", 405),
+        ("POST", "/api/shapes", 405),
+        ("DELETE", "/api/shapes/ring0/mesh", 405),
+    ] {
+        let answer = ask(server.address, method, target, &[], b"").unwrap();
+        assert_eq!(answer.status, status, "{target}");
+        assert!(answer.json()["error"].is_string(), "{target}");
+    }
+}

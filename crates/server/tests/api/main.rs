@@ -1,0 +1,14 @@
+//! The server as clients meet it, over the wire.
+
+#[cfg(test)]
+mod answers;
+#[cfg(test)]
+mod client;
+#[cfg(test)]
+mod hostile;
+#[cfg(test)]
+mod limits;
+#[cfg(test)]
+mod schema;
+#[cfg(test)]
+mod support;

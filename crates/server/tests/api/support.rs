@@ -1,0 +1,118 @@
+//! A server on an index of a few bodies, in this process.
+
+use std::fs;
+use std::net::SocketAddr;
+use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
+use std::thread::JoinHandle;
+
+use mesh::{TriMesh, shapes};
+use pipeline::{BuildOptions, DescribeOptions, build_index};
+use server::{ServeOptions, Server, ServerError, Stop};
+use tempfile::TempDir;
+
+/// Name of the index in its folder.
+pub(crate) const INDEX: &str = "all.canonform";
+
+/// The bodies; the last one goes by an awkward name.
+pub(crate) const AWKWARD: &str = "<b>&'\" ü 100%#?";
+
+pub(crate) fn bodies() -> Vec<(&'static str, TriMesh)> {
+    vec![
+        ("ball0", shapes::icosphere(3)),
+        ("ball1", egg()),
+        ("box0", shapes::cube(3)),
+        ("box1", shapes::cube(4)),
+        ("ring0", shapes::torus(24, 12, 2.0, 0.6)),
+        ("ring1", shapes::torus(24, 12, 2.0, 0.8)),
+        (AWKWARD, shapes::torus(20, 12, 2.0, 1.2)),
+    ]
+}
+
+fn egg() -> TriMesh {
+    let mut mesh = shapes::icosphere(3);
+    mesh.positions.iter_mut().for_each(|p| p.z *= 0.8);
+    mesh
+}
+
+/// A running server; it is stopped at the end of the test.
+pub(crate) struct Running {
+    pub(crate) address: SocketAddr,
+    pub(crate) folder: PathBuf,
+    pub(crate) stop: Stop,
+    thread: Option<JoinHandle<Result<(), ServerError>>>,
+    _own: Option<TempDir>,
+}
+
+/// Makes an index of the bodies.
+fn index(folder: &Path) {
+    let meshes = folder.join("meshes");
+    fs::create_dir_all(&meshes).unwrap();
+    for (name, mesh) in bodies() {
+        mesh::io::write(&meshes.join(format!("{name}.off")), &mesh).unwrap();
+    }
+    let options = BuildOptions { describe: &DescribeOptions::default(), labels: None, shard: None };
+    build_index(&meshes, &folder.join(INDEX), &options, &()).unwrap();
+}
+
+/// The folder of an index that all tests share; nobody changes anything in it.
+fn shared() -> PathBuf {
+    static FOLDER: OnceLock<PathBuf> = OnceLock::new();
+    let make = || {
+        let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("server");
+        index(&folder);
+        folder
+    };
+    FOLDER.get_or_init(make).clone()
+}
+
+pub(crate) fn options() -> ServeOptions {
+    ServeOptions { listen: "127.0.0.1:0".parse().unwrap(), ..ServeOptions::default() }
+}
+
+impl Running {
+    /// A server on the index that is shared.
+    pub(crate) fn start(options: ServeOptions) -> Self {
+        Self::serve(shared(), None, options)
+    }
+
+    /// A server on an index of its own, whose meshes may be changed.
+    pub(crate) fn start_apart(options: ServeOptions) -> Self {
+        let own = tempfile::tempdir().unwrap();
+        index(own.path());
+        Self::serve(own.path().to_owned(), Some(own), options)
+    }
+
+    fn serve(folder: PathBuf, own: Option<TempDir>, options: ServeOptions) -> Self {
+        let server = Server::bind(&folder.join(INDEX), options).unwrap();
+        let (address, stop) = (server.address(), server.stop_handle());
+        let thread = Some(std::thread::spawn(move || server.run()));
+        Self { address, folder, stop, thread, _own: own }
+    }
+
+    /// Where the mesh of a body lies.
+    pub(crate) fn mesh(&self, id: &str) -> PathBuf {
+        self.folder.join("meshes").join(format!("{id}.off"))
+    }
+
+    /// Waits for the end of a server that was stopped.
+    pub(crate) fn join(&mut self) -> Result<(), ServerError> {
+        self.thread.take().unwrap().join().unwrap()
+    }
+}
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        self.stop.stop();
+        if let Some(thread) = self.thread.take() {
+            let _ = thread.join();
+        }
+    }
+}
+
+/// The bytes of a mesh in the format of this name.
+pub(crate) fn written(name: &str, mesh: &TriMesh) -> Vec<u8> {
+    let folder = tempfile::tempdir().unwrap();
+    mesh::io::write(&folder.path().join(name), mesh).unwrap();
+    fs::read(folder.path().join(name)).unwrap()
+}
