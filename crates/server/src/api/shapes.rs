@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use axum::body::Bytes;
 use axum::extract::State;
 use axum::http::HeaderMap;
 use axum::response::Response;
@@ -114,19 +115,24 @@ pub(super) async fn thumbnail(
         if let Some(picture) = shared.thumbnails.get(&id) {
             return Ok(tagged(tag, PNG, Some(picture)));
         }
-        let (mesh, view) = match shared.search.mesh(&id) {
-            Ok(mesh) => (mesh, View::default()),
-            Err(fault) if is_missing(&fault) => (dots(&shared.search.form(&id)?), View::Principal),
-            Err(fault) => return Err(fault.into()),
-        };
-        let picture = axum::body::Bytes::from(draw(&mesh, view)?);
-        shared.thumbnails.put(id, picture.clone(), picture.len());
-        Ok(tagged(tag, PNG, Some(picture)))
+        match shared.search.mesh(&id) {
+            Ok(mesh) => {
+                let picture = draw(&mesh, View::default())?;
+                shared.thumbnails.put(id, picture.clone(), picture.len());
+                Ok(tagged(tag, PNG, Some(picture)))
+            }
+            // Under another tag, and not kept: the mesh may come back.
+            Err(fault) if is_missing(&fault) => {
+                let picture = draw(&dots(&shared.search.form(&id)?), View::Principal)?;
+                Ok(tagged(super::answer::tag("points"), PNG, Some(picture)))
+            }
+            Err(fault) => Err(fault.into()),
+        }
     };
     app.work.run(None, drawing).await
 }
 
-fn draw(mesh: &TriMesh, view: View) -> Result<Vec<u8>, ApiError> {
+fn draw(mesh: &TriMesh, view: View) -> Result<Bytes, ApiError> {
     let options = RenderOptions {
         width: THUMBNAIL,
         height: THUMBNAIL,
@@ -134,5 +140,5 @@ fn draw(mesh: &TriMesh, view: View) -> Result<Vec<u8>, ApiError> {
         view,
         ..RenderOptions::default()
     };
-    render(mesh, &options).to_png().map_err(|_| ApiError::fault())
+    render(mesh, &options).to_png().map(Bytes::from).map_err(|_| ApiError::fault())
 }
