@@ -19,6 +19,7 @@ mod figure8;
 mod figure9;
 mod retrieve;
 mod run;
+mod scaling;
 mod seen;
 mod specimen;
 mod sweep;

@@ -15,7 +15,7 @@ use crate::args::{ReportArgs, RunArgs};
 use crate::collection::{Collection, Setting};
 use crate::config::Config;
 use crate::specimen::{Distances, Specimen, specimens};
-use crate::{figure1, figure3, figure4, figure5, figure6, figure7, figure8, figure9, retrieve};
+use crate::{figure1, figure3, figure4, figure5, figure6, figure7, figure8, figure9, retrieve, scaling};
 
 /// An experiment of the runner.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -31,10 +31,11 @@ pub(crate) enum Experiment {
     Figure8,
     Figure9,
     Retrieval,
+    Scaling,
 }
 
 impl Experiment {
-    const EACH: [Self; 10] = [
+    const EACH: [Self; 11] = [
         Self::Figure1,
         Self::Figure3,
         Self::Figure4,
@@ -45,6 +46,7 @@ impl Experiment {
         Self::Figure8,
         Self::Figure9,
         Self::Retrieval,
+        Self::Scaling,
     ];
 
     fn name(self) -> &'static str {
@@ -60,6 +62,7 @@ impl Experiment {
             Self::Figure8 => "figure8",
             Self::Figure9 => "figure9",
             Self::Retrieval => "retrieval",
+            Self::Scaling => "scaling",
         }
     }
 
@@ -86,6 +89,7 @@ impl Experiment {
             Self::Figure8 => include_str!("../configs/figure8.toml"),
             Self::Figure9 => include_str!("../configs/figure9.toml"),
             Self::Retrieval => include_str!("../configs/retrieval.toml"),
+            Self::Scaling => include_str!("../configs/scaling.toml"),
         };
         Config::parse(self.name(), text)
     }
@@ -103,6 +107,7 @@ impl Experiment {
             Self::Figure8 => figure8::run(context),
             Self::Figure9 => figure9::run(context),
             Self::Retrieval => retrieve::run(context),
+            Self::Scaling => scaling::run(context),
         }
     }
 }

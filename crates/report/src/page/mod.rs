@@ -49,6 +49,7 @@ pub fn write_report(out_dir: impl AsRef<Path>) -> Result<PathBuf, ReportError> {
     }
     sections.push(reproduced::figure9_section(folder)?);
     sections.push(retrieval::retrieval_section(folder)?);
+    sections.push(reproduced::curves_section(folder, reproduced::SCALING)?);
     let path = folder.join(FILE);
     write_atomically(&path, page(&sections).as_bytes())?;
     Ok(path)

@@ -23,6 +23,9 @@ pub(super) const CURVES: [(&str, &str); 5] = [
     ("figure8", "Figure 8. Time against the number of samples"),
 ];
 
+/// What the paper has no figure of, in curves as well.
+pub(super) const SCALING: (&str, &str) = ("scaling", "Scaling. Time and memory up to a million vertices");
+
 /// Forms by several methods.
 pub(super) fn figure3_section(folder: &Path) -> Result<Section, ReportError> {
     let (name, title) = ("figure3", "Figure 3. Canonical forms by several methods");

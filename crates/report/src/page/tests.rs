@@ -31,6 +31,7 @@ fn what_was_not_run_is_said_with_the_command_that_runs_it() {
         "figure8",
         "figure9",
         "retrieval",
+        "scaling",
     ] {
         assert!(html.contains(&format!("{name}.json</code> is not in this folder")));
         assert!(html.contains(&format!("run {name}</code>")));
@@ -147,7 +148,7 @@ fn full_folder(figure4: &Figure4Record, shapes: Option<&ShapesRecord>) -> tempfi
     write(&figure3_record(), place("figure3.json")).unwrap();
     write(figure4, place("figure4.json")).unwrap();
     shapes.iter().for_each(|shapes| write(shapes, place(SHAPES_FILE)).unwrap());
-    for (name, _) in reproduced::CURVES {
+    for (name, _) in reproduced::CURVES.into_iter().chain([reproduced::SCALING]) {
         write(&curves_record(), place(&format!("{name}.json"))).unwrap();
     }
     write(&figure9_record(), place("figure9.json")).unwrap();
@@ -175,7 +176,7 @@ fn every_experiment_has_one_section_its_plots_and_their_data() {
     assert_eq!(html.matches("* plotly.js v").count(), 1, "plotly is there once");
     assert_eq!(html.matches("const canonform = ").count(), 1);
     let names = ["figure1", "figure3", "figure4", "figure5a", "figure5b", "figure6", "figure7", "figure8"];
-    for name in names.into_iter().chain(["figure9", "retrieval"]) {
+    for name in names.into_iter().chain(["figure9", "retrieval", "scaling"]) {
         assert_eq!(html.matches(&format!("<section id=\"{name}\">")).count(), 1, "{name}");
     }
     let islands = islands(&html);
@@ -188,7 +189,7 @@ fn every_experiment_has_one_section_its_plots_and_their_data() {
         let (source, _) = source.split_once('"').unwrap();
         assert!(islands.contains_key(source), "{source}");
     }
-    assert_eq!(plain.matches("data-plot=\"curves\"").count(), 10);
+    assert_eq!(plain.matches("data-plot=\"curves\"").count(), 12);
     assert_eq!(islands["figure4-data"]["names"].as_array().map(Vec::len), Some(5));
     assert_eq!(islands["figure4-data"]["thumbnails"][4]["forms"].as_array().map(Vec::len), Some(2));
     assert_eq!(islands["figure4-shape-4"]["forms"][0]["size"], 2.0);

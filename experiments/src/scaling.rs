@@ -1,0 +1,125 @@
+//! How time and memory grow with the number of vertices, on one generated body.
+//!
+//! Measures `map growth`, `preparation growth`, `NMDS growth` and `memory growth`, exponents in the number of
+//! vertices, and `NMDS seconds`, the time of a whole form at the greatest number.
+
+use std::time::Instant;
+
+use anyhow::Result;
+use datasets::{ArticulatedOptions, Family, articulated_shape};
+use mesh::{RepairOptions, VertexId};
+use pipeline::{EmbedMethod, EmbedOptions, Samples, StressChoice, Surface, embed};
+use report::results::{AxisScale, CurvesPanel, Series};
+use terminal::PeakMemory;
+
+use crate::figure5::finish;
+use crate::run::Context;
+use crate::specimen::Distances;
+use crate::sweep::{Measured, axis, places, series};
+
+/// The curves of time.
+const STEPS: [&str; 3] = ["preparation", "map", "NMDS"];
+
+/// Bytes in the unit of the second panel.
+const MIB: f64 = (1u64 << 20) as f64;
+
+/// Runs the experiment.
+pub(crate) fn run(context: &Context<'_>) -> Result<()> {
+    let start = Instant::now();
+    let config = &context.config;
+    let mut seconds = vec![vec![Vec::new(); config.runs]; STEPS.len()];
+    let mut memory = vec![Vec::new(); config.runs];
+    context.observer.begin("scaling", config.counts.len() * (config.runs + 1));
+    for &n_vertices in &config.counts {
+        let options = ArticulatedOptions { seed: context.args.seed, n_vertices };
+        let body = articulated_shape(Family::David, 0, &options)?;
+        let surface = Surface::new(&body.mesh, &RepairOptions::default())?;
+        drop(body);
+        context.observer.step();
+        for run in 0..config.runs {
+            let ([preparation, map], whole) = (of_one_map(&surface)?, of_form(context, &surface)?);
+            for (curve, spent) in seconds.iter_mut().zip([preparation, map, whole.seconds]) {
+                curve[run].push(spent);
+            }
+            memory[run].push(whole.mib);
+            context.observer.step();
+        }
+    }
+    let at = places(&config.counts);
+    let times: Vec<Series> = STEPS.iter().zip(&seconds).map(|(name, runs)| series(name, &at, runs)).collect();
+    let memory = series("NMDS", &at, &memory);
+    let mut measured: Measured =
+        times.iter().map(|curve| (format!("{} growth", curve.name), growth(curve))).collect();
+    measured.insert("memory growth".to_owned(), growth(&memory));
+    measured.insert("NMDS seconds".to_owned(), times[2].points.last().map_or(f64::NAN, |p| p.low));
+    let panel = |title: &str, unit: &str, series| CurvesPanel {
+        title: title.to_owned(),
+        x: axis("vertices", "", AxisScale::Log),
+        y: axis(&title.to_lowercase(), unit, AxisScale::Log),
+        series,
+        marks: Vec::new(),
+    };
+    let panels = vec![panel("Time", "seconds", times), panel("Memory", "MiB", vec![memory])];
+    let caption = format!(
+        "A generated human body in ever finer triangles. Preparation and map: fast marching, prepared for the surface, \
+         and the distances from one vertex on one thread. NMDS: both and {} samples with their form, on {} threads; memory is \
+         what that takes beside the mesh. Lines: medians of {} runs; bands: all runs.",
+        config.samples,
+        rayon::current_num_threads(),
+        config.runs
+    );
+    finish(context, "scaling", start, &caption, panels, &measured)
+}
+
+/// Seconds to prepare a surface, and of one map from a vertex once the solver is warm.
+fn of_one_map(surface: &Surface) -> Result<[f64; 2]> {
+    let start = Instant::now();
+    let solver = Distances::default().method.prepare(&surface.intrinsic)?;
+    let preparation = start.elapsed().as_secs_f64();
+    let mut distances = solver.distances(VertexId(0));
+    let start = Instant::now();
+    solver.distances_into(VertexId(0), &mut distances);
+    Ok([preparation, start.elapsed().as_secs_f64()])
+}
+
+/// What a form takes.
+struct Cost {
+    seconds: f64,
+    mib: f64,
+}
+
+fn of_form(context: &Context<'_>, surface: &Surface) -> Result<Cost> {
+    let options = EmbedOptions {
+        samples: Samples::Count(context.config.samples),
+        method: EmbedMethod::low_rank(context.config.rank),
+        stress: StressChoice::Skip,
+        ..EmbedOptions::default()
+    };
+    let memory = PeakMemory::begin();
+    let start = Instant::now();
+    embed(surface, &options, &())?;
+    Ok(Cost { seconds: start.elapsed().as_secs_f64(), mib: memory.bytes() as f64 / MIB })
+}
+
+/// The exponent of a curve's least values in its places: the slope of the straight line that fits their logarithms
+/// best.
+fn growth(curve: &Series) -> f64 {
+    let logs: Vec<[f64; 2]> = curve.points.iter().map(|p| [p.x.ln(), p.low.ln()]).collect();
+    let mean = |i: usize| logs.iter().map(|log| log[i]).sum::<f64>() / logs.len() as f64;
+    let (x, y) = (mean(0), mean(1));
+    let slope = |i: usize| logs.iter().map(|log| (log[0] - x) * (log[i] - [x, y][i])).sum::<f64>();
+    slope(1) / slope(0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_power_grows_by_its_exponent() {
+        let at = [1e3, 4e3, 5e4, 1e6];
+        let power = at.map(|p: f64| 3.0 * p.powf(1.1)).to_vec();
+        let slower = power.iter().map(|y| 2.0 * y).collect();
+        assert!((growth(&series("power", &at, &[power, slower])) - 1.1).abs() < 1e-12);
+    }
+}
