@@ -123,8 +123,8 @@ const canonform = (() => {
   function layout(data, [width, height], colors, hasLegend) {
     const sides = bounds(data);
     const share = data.some((trace) => trace.colorbar) ? Math.max(1 - BAR / width, 0.6) : 1;
-    // The field of view is that of the height.
-    const zoom = Math.min(1.4, (1.7 * share * width) / height);
+    // The field of view is that of the height: a narrow scene would cut off what it is turned to show.
+    const zoom = Math.min(1.4, (1.45 * share * width) / height);
     // Without titles and ticks plotly does not set any text in 3D.
     const axis = (i) => ({
       visible: false, showspikes: false, title: { text: '' }, tickmode: 'array', tickvals: [], showticklabels: false,

@@ -1,0 +1,147 @@
+//! A server on a small index of the built-in shapes, and a browser on its page.
+
+use std::fs;
+use std::net::SocketAddr;
+use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
+use std::thread::JoinHandle;
+
+use browser::Browser;
+use datasets::{ArticulatedOptions, Family, LabeledShape, articulated_shape};
+use pipeline::{BuildOptions, DescribeOptions, build_index};
+use serde_json::{Value, json};
+use server::{ServeOptions, Server, ServerError, Stop};
+
+/// A name that is HTML, as far as a name of a file can be.
+pub(crate) const AWKWARD: &str = "<img src=x onerror=console.error(1)>&'\" ü";
+
+/// A body of 1,000 vertices; no two numbers give the same pose.
+pub(crate) fn body(family: Family, number: usize) -> LabeledShape {
+    let options = ArticulatedOptions { n_vertices: 1000, ..ArticulatedOptions::default() };
+    articulated_shape(family, number, &options).unwrap()
+}
+
+/// A folder with `all.canonform`, and `meshes` of which the index was made; made once.
+fn collection() -> PathBuf {
+    static FOLDER: OnceLock<PathBuf> = OnceLock::new();
+    let make = || {
+        let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("page");
+        let meshes = folder.join("meshes");
+        fs::create_dir_all(&meshes).unwrap();
+        for family in [Family::Cat, Family::Centaur, Family::David] {
+            for number in 0..3 {
+                let body = body(family, number);
+                mesh::io::write(&meshes.join(format!("{}.off", body.name)), &body.mesh).unwrap();
+            }
+        }
+        mesh::io::write(&meshes.join(format!("{AWKWARD}.off")), &mesh::shapes::torus(24, 12, 2.0, 0.6))
+            .unwrap();
+        let options = BuildOptions { describe: &DescribeOptions::default(), labels: None, shard: None };
+        build_index(&meshes, &folder.join("all.canonform"), &options, &()).unwrap();
+        folder
+    };
+    FOLDER.get_or_init(make).clone()
+}
+
+/// A server that ends with the test.
+struct Running {
+    address: SocketAddr,
+    stop: Stop,
+    thread: Option<JoinHandle<Result<(), ServerError>>>,
+}
+
+impl Running {
+    fn start() -> Self {
+        let options = ServeOptions { listen: "127.0.0.1:0".parse().unwrap(), ..ServeOptions::default() };
+        let server = Server::bind(&collection().join("all.canonform"), options).unwrap();
+        let (address, stop) = (server.address(), server.stop_handle());
+        Self { address, stop, thread: Some(std::thread::spawn(move || server.run())) }
+    }
+}
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        self.stop.stop();
+        if let Some(thread) = self.thread.take() {
+            let _ = thread.join();
+        }
+    }
+}
+
+/// The page of a server in a browser.
+pub(crate) struct Page {
+    pub(crate) browser: Browser,
+    server: Running,
+}
+
+impl Page {
+    /// Opens the page in a window of this size; `None` where there is no browser.
+    pub(crate) fn open(width: u32, height: u32) -> Option<Self> {
+        let browser = Browser::start()?;
+        let server = Running::start();
+        browser.resize(width, height).unwrap();
+        // Before anything is laid out: every shift that nobody asked for is counted.
+        let watch = "window.shifts = 0; window.moved = []; new PerformanceObserver(list => {
+            for (const shift of list.getEntries()) if (!shift.hadRecentInput) {
+                window.shifts += shift.value;
+                window.moved.push(...shift.sources.map(({ node, previousRect: a, currentRect: b }) =>
+                    `${node?.id || node?.className || node?.nodeName} ${a.y} to ${b.y}, ${a.height} to ${b.height}`));
+            }
+        }).observe({ type: 'layout-shift', buffered: true });";
+        browser.devtools("Page.addScriptToEvaluateOnNewDocument", &json!({ "source": watch })).unwrap();
+        browser.open(&format!("http://{}/", server.address)).unwrap();
+        browser.wait_for("document.querySelectorAll('#shapes .tile').length === 10").unwrap();
+        Some(Self { browser, server })
+    }
+
+    pub(crate) fn eval(&self, expression: &str) -> Value {
+        self.browser.eval(&format!("return {expression}")).unwrap()
+    }
+
+    pub(crate) fn wait_for(&self, expression: &str) {
+        self.browser.wait_for(expression).unwrap();
+    }
+
+    /// The text of an element.
+    pub(crate) fn text(&self, css: &str) -> String {
+        let text = self.eval(&format!("document.querySelector({}).textContent", json!(css)));
+        text.as_str().unwrap().to_owned()
+    }
+
+    /// Waits for the answer to a question, with all that is drawn of it.
+    pub(crate) fn answered(&self) {
+        self.wait_for("document.querySelector('#answer').dataset.state === 'ready'");
+        self.wait_for("document.querySelector('#form-view').dataset.state === 'ready'");
+    }
+
+    /// Scrolls an element to the top and leaves a picture of the window.
+    pub(crate) fn picture(&self, css: &str, name: &str) {
+        let scroll = format!(
+            "document.querySelector({}).scrollIntoView({{ block: 'start', behavior: 'instant' }})",
+            json!(css)
+        );
+        self.browser.eval(&scroll).unwrap();
+        let seen =
+            "[...document.images].every(i => i.complete || i.getBoundingClientRect().top > innerHeight)";
+        self.wait_for(seen);
+        // A frame for what has just arrived.
+        self.browser
+            .eval("return new Promise(done => requestAnimationFrame(() => setTimeout(done, 300)))")
+            .unwrap();
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../target/browser");
+        self.browser.screenshot(&folder.join(format!("server-{name}.png"))).unwrap();
+    }
+
+    /// Nothing was said, everything asked for came from this server, and nothing is wider than the window.
+    pub(crate) fn assert_sound(&self) {
+        assert_eq!(self.browser.console().unwrap(), []);
+        let origin = format!("http://{}/", self.server.address);
+        let inside =
+            |address: &String| ["data:", "blob:", &origin].iter().any(|own| address.starts_with(own));
+        let asked: Vec<String> =
+            self.browser.requests().unwrap().into_iter().filter(|a| !inside(a)).collect();
+        assert!(asked.is_empty(), "{asked:?}");
+        let widths = self.eval("[document.documentElement.scrollWidth, innerWidth]");
+        assert!(widths[0].as_f64() <= widths[1].as_f64(), "{widths}");
+    }
+}
