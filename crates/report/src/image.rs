@@ -69,16 +69,6 @@ impl RgbaImage {
         bytes
     }
 
-    /// The picture as the bytes of a PNG file.
-    ///
-    /// # Errors
-    /// [`ReportError::Draw`] when the picture has no pixels.
-    pub fn png(&self) -> Result<Vec<u8>, ReportError> {
-        let bytes = self.pixels.as_flattened();
-        encode_png(self.width, self.height, png::ColorType::Rgba, bytes)
-            .map_err(|e| ReportError::Draw { figure: "a picture".into(), reason: e.to_string() })
-    }
-
     /// Writes the picture as a PNG file, whole or not at all.
     ///
     /// # Errors

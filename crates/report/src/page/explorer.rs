@@ -117,7 +117,9 @@ fn thumbnails(record: &ShapesRecord, classes: &Classes<'_>) -> Result<Vec<Value>
         let [width, height] = THUMBNAIL;
         let background = Background::Transparent;
         let options = RenderOptions { width, height, surface, background, ..RenderOptions::default() };
-        let png = render(&mesh, &options).png()?;
+        let png = render(&mesh, &options)
+            .to_png()
+            .map_err(|e| ReportError::Draw { figure: "a picture".into(), reason: e.to_string() })?;
         Ok(format!("data:image/png;base64,{}", STANDARD.encode(png)))
     };
     let of_shape = |shape: &SeenShape| {
