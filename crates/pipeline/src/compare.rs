@@ -1,7 +1,7 @@
 //! Two shapes side by side.
 
 use descriptors::{
-    Alignment, CanonicalForm, MatchOptions, Normalization, PreparedForm, Reflections, match_forms,
+    Alignment, CanonicalForm, FormMatch, MatchOptions, Normalization, PreparedForm, Reflections, match_forms,
 };
 use nalgebra::Point3;
 use serde::Serialize;
@@ -102,33 +102,69 @@ pub fn compare_forms(
     b: &CanonicalForm,
     options: &MatchOptions,
 ) -> Result<Comparison, PipelineError> {
-    let matched = |normalization, options: &MatchOptions| {
-        let prepare =
-            |form: &CanonicalForm| PreparedForm::new(&form.normalized(normalization), MATCHED_POINTS);
-        match_forms(&prepare(a)?, &prepare(b)?, options)
-    };
-    let raw = matched(Normalization::Raw, options)?;
-    let normalized = matched(Normalization::UnitArea, options)?.distance;
-    let proper = MatchOptions { reflections: Reflections::Forbid, ..options.clone() };
-    let unreflected = matched(Normalization::UnitArea, &proper)?.distance.max(normalized);
-    let scale = match (a.area(), b.area()) {
-        (Some(a), Some(b)) => (b / a).sqrt(),
-        _ => 1.0,
-    };
-    let Alignment { rotation, translation, reflected } = raw.alignment;
-    Ok(Comparison {
-        kind: MatchKind::new(normalized < FITTING, Handedness::Unknown, scale),
-        distance: raw.distance,
-        normalized_distance: normalized,
-        same_below: FITTING,
-        shape_distance: None,
-        scale,
-        reflected,
-        unreflected_distance: unreflected,
-        handedness: Handedness::Unknown,
-        rotation: [0, 1, 2].map(|i| [0, 1, 2].map(|j| rotation[(i, j)])),
-        translation: translation.into(),
-    })
+    Ok(Compared::new([a, b], options)?.comparison)
+}
+
+/// A comparison of two forms, and what it was made from.
+struct Compared {
+    comparison: Comparison,
+    /// The forms at unit area.
+    units: [CanonicalForm; 2],
+    prepared: [PreparedForm; 2],
+    /// How the first of them matches the second, and how it does by proper motions alone.
+    best: FormMatch,
+    proper: FormMatch,
+}
+
+impl Compared {
+    fn new([a, b]: [&CanonicalForm; 2], options: &MatchOptions) -> Result<Self, PipelineError> {
+        let raw = match_forms(
+            &PreparedForm::new(a, MATCHED_POINTS)?,
+            &PreparedForm::new(b, MATCHED_POINTS)?,
+            options,
+        )?;
+        let units = [a, b].map(|form| form.normalized(Normalization::UnitArea));
+        let prepared =
+            [PreparedForm::new(&units[0], MATCHED_POINTS)?, PreparedForm::new(&units[1], MATCHED_POINTS)?];
+        let best = match_forms(&prepared[0], &prepared[1], options)?;
+        let proper = MatchOptions { reflections: Reflections::Forbid, ..options.clone() };
+        let proper = match_forms(&prepared[0], &prepared[1], &proper)?;
+        let scale = match (a.area(), b.area()) {
+            (Some(a), Some(b)) => (b / a).sqrt(),
+            _ => 1.0,
+        };
+        let Alignment { rotation, translation, reflected } = raw.alignment;
+        let comparison = Comparison {
+            kind: MatchKind::new(best.distance < FITTING, Handedness::Unknown, scale),
+            distance: raw.distance,
+            normalized_distance: best.distance,
+            same_below: FITTING,
+            shape_distance: None,
+            scale,
+            reflected,
+            unreflected_distance: proper.distance.max(best.distance),
+            handedness: Handedness::Unknown,
+            rotation: [0, 1, 2].map(|i| [0, 1, 2].map(|j| rotation[(i, j)])),
+            translation: translation.into(),
+        };
+        Ok(Self { comparison, units, prepared, best, proper })
+    }
+
+    /// The forms laid over each other by a motion of the first one of unit area, at this size.
+    fn overlay(&self, motion: &Alignment, size: f64) -> Overlay {
+        let [(a, of_a), (b, of_b)] = [0, 1].map(|i| (self.units[i].points(), &self.prepared[i]));
+        let back = motion.inverse();
+        Overlay {
+            points: [
+                a.iter().map(|p| motion.apply(p) * size).collect(),
+                b.iter().map(|p| p * size).collect(),
+            ],
+            residuals: [
+                a.iter().map(|p| of_b.nearest_to(&motion.apply(p)).1 * size).collect(),
+                b.iter().map(|p| of_a.nearest_to(&back.apply(p)).1 * size).collect(),
+            ],
+        }
+    }
 }
 
 /// Whether two meshes are the same triangles.
@@ -162,24 +198,6 @@ pub struct Overlay {
     pub residuals: [Vec<f64>; 2],
 }
 
-impl Overlay {
-    /// Applies the motion of the first form of unit area onto the second.
-    fn new([a, b]: [(&CanonicalForm, &PreparedForm); 2], motion: &Alignment, size: f64) -> Self {
-        let back = motion.inverse();
-        let moved = |p: &Point3<f64>| motion.apply(p) * size;
-        Self {
-            points: [
-                a.0.points().iter().map(moved).collect(),
-                b.0.points().iter().map(|p| p * size).collect(),
-            ],
-            residuals: [
-                a.0.points().iter().map(|p| b.1.nearest_to(&motion.apply(p)).1 * size).collect(),
-                b.0.points().iter().map(|p| a.1.nearest_to(&back.apply(p)).1 * size).collect(),
-            ],
-        }
-    }
-}
-
 /// Compares two forms as [`compare_forms`] does, and lays them over each other.
 ///
 /// # Errors
@@ -188,13 +206,9 @@ pub fn overlay_forms(
     [a, b]: [&CanonicalForm; 2],
     options: &MatchOptions,
 ) -> Result<(Comparison, Overlay), PipelineError> {
-    let comparison = compare_forms(a, b, options)?;
-    let [unit_a, unit_b] = [a, b].map(|form| form.normalized(Normalization::UnitArea));
-    let [from, onto] =
-        [PreparedForm::new(&unit_a, MATCHED_POINTS)?, PreparedForm::new(&unit_b, MATCHED_POINTS)?];
-    let motion = match_forms(&from, &onto, options)?.alignment;
-    let overlay = Overlay::new([(&unit_a, &from), (&unit_b, &onto)], &motion, size_of(a));
-    Ok((comparison, overlay))
+    let compared = Compared::new([a, b], options)?;
+    let overlay = compared.overlay(&compared.best.alignment, size_of(a));
+    Ok((compared.comparison, overlay))
 }
 
 /// Root of the area of the surface; 1 where that is not known.
@@ -217,18 +231,16 @@ pub fn compare_surfaces(
     [form_a, form_b]: [&CanonicalForm; 2],
     options: &MatchOptions,
 ) -> Result<SurfaceComparison, PipelineError> {
-    let mut comparison = compare_forms(form_a, form_b, options)?;
-    let [unit_a, unit_b] = [form_a, form_b].map(|form| form.normalized(Normalization::UnitArea));
-    let (from, onto) =
-        (PreparedForm::new(&unit_a, MATCHED_POINTS)?, PreparedForm::new(&unit_b, MATCHED_POINTS)?);
-    let matched = |reflections| {
-        let found = match_forms(&from, &onto, &MatchOptions { reflections, ..options.clone() })?;
-        Ok::<_, PipelineError>((found.distance, found.alignment))
-    };
-    let found = [matched(Reflections::Forbid)?, matched(Reflections::Require)?];
-    let outward = [(&unit_a, a), (&unit_b, b)].map(|(form, s)| OutwardForm::new(form, s.mesh()));
+    let compared = Compared::new([form_a, form_b], options)?;
+    let [from, onto] = &compared.prepared;
+    let reflecting = MatchOptions { reflections: Reflections::Require, ..options.clone() };
+    let reflected = match_forms(from, onto, &reflecting)?;
+    let found = [&compared.proper, &reflected].map(|found| (found.distance, found.alignment));
+    let outward = [(&compared.units[0], a), (&compared.units[1], b)]
+        .map(|(form, surface)| OutwardForm::new(form, surface.mesh()));
+    let mut comparison = compared.comparison.clone();
     if let ([Some(a), Some(b)], true) = (&outward, comparison.normalized_distance < FITTING) {
-        comparison.handedness = handedness(a, b, &onto, found);
+        comparison.handedness = handedness(a, b, onto, found);
         comparison.kind = MatchKind::new(true, comparison.handedness, comparison.scale);
     }
     let best = if found[1].0 < found[0].0 { found[1].1 } else { found[0].1 };
@@ -236,7 +248,7 @@ pub fn compare_surfaces(
     Ok(SurfaceComparison {
         comparison,
         triangulation: if same { Triangulation::Same } else { Triangulation::Other },
-        overlay: Overlay::new([(&unit_a, &from), (&unit_b, &onto)], &best, size_of(form_a)),
+        overlay: compared.overlay(&best, size_of(form_a)),
     })
 }
 
