@@ -25,11 +25,7 @@ fn report() -> PathBuf {
 fn opened(size: [u32; 2]) -> Option<Browser> {
     let browser = Browser::start()?;
     browser.resize(size[0], size[1]).unwrap();
-    // Before anything is laid out: every shift that nobody asked for is counted.
-    let watch = "window.shifts = 0; new PerformanceObserver(list => {
-        for (const shift of list.getEntries()) if (!shift.hadRecentInput) window.shifts += shift.value;
-    }).observe({ type: 'layout-shift', buffered: true });";
-    browser.devtools("Page.addScriptToEvaluateOnNewDocument", &json!({ "source": watch })).unwrap();
+    browser.watch_layout().unwrap();
     browser.open_file(&report()).unwrap();
     Some(browser)
 }
@@ -240,8 +236,8 @@ fn the_page_holds_still_and_fits_on_a_laptop_and_a_telephone_in_the_dark_and_on_
     for (name, size) in [("1280", [1280, 900]), ("390", [390, 844])] {
         let Some(browser) = opened(size) else { return };
         scrolled_through(&browser);
-        let shifts = number(&browser.eval("return window.shifts").unwrap());
-        assert!(shifts < 0.001, "{name}: the layout shifts by {shifts}");
+        let (shifts, moved) = browser.shifts().unwrap();
+        assert!(shifts < 0.001, "{name}: the layout shifts by {shifts}: {moved}");
         let widths = browser.eval("return [document.documentElement.scrollWidth, innerWidth]").unwrap();
         assert!(number(&widths[0]) <= number(&widths[1]), "{name}: {widths}");
         for part in ["map", "overlay"] {

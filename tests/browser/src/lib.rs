@@ -8,6 +8,7 @@
 mod actions;
 mod driver;
 mod error;
+mod layout;
 mod logs;
 mod program;
 mod session;

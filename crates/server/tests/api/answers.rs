@@ -7,14 +7,15 @@ use report::interactive::Geometry;
 use serde_json::Value;
 
 use crate::client::{Answer, ask, upload};
+use crate::running::options;
 use crate::schema::Description;
-use crate::support::{AWKWARD, INDEX, Running, bodies, options, written};
+use crate::support::{AWKWARD, INDEX, Served, bodies, written};
 
-fn get(server: &Running, target: &str) -> Answer {
+fn get(server: &Served, target: &str) -> Answer {
     ask(server.address, "GET", target, &[], b"").unwrap()
 }
 
-fn description(server: &Running) -> Description {
+fn description(server: &Served) -> Description {
     Description(get(server, "/api/openapi.json").json())
 }
 
@@ -33,7 +34,7 @@ fn ids(answer: &Value) -> Vec<&str> {
 
 #[test]
 fn an_upload_finds_itself_in_every_format() {
-    let server = Running::start(options());
+    let server = Served::start(options());
     let description = description(&server);
     let ring = shapes::torus(24, 12, 2.0, 0.6);
     for names in
@@ -65,7 +66,7 @@ fn an_upload_finds_itself_in_every_format() {
 
 #[test]
 fn the_answer_is_that_of_the_command_line() {
-    let server = Running::start(options());
+    let server = Served::start(options());
     let mesh = shapes::torus(24, 12, 2.0, 0.7);
     let search = pipeline::ShapeSearch::open(&server.folder.join(INDEX)).unwrap();
     let report = search.search(&mesh, &pipeline::SearchOptions::default()).unwrap();
@@ -79,7 +80,7 @@ fn the_answer_is_that_of_the_command_line() {
 
 #[test]
 fn repairs_are_told() {
-    let server = Running::start(options());
+    let server = Served::start(options());
     let two = shapes::disjoint(&[shapes::torus(24, 12, 2.0, 0.6), shapes::tetrahedron(0)]);
     let answer = upload(server.address, &[("q.ply", &written("q.ply", &two))], &[]).unwrap().json();
     let said = answer["repaired"][0].as_str().unwrap();
@@ -90,7 +91,7 @@ fn repairs_are_told() {
 
 #[test]
 fn a_shape_of_the_index_finds_itself() {
-    let server = Running::start(options());
+    let server = Served::start(options());
     let description = description(&server);
     for (id, _) in bodies() {
         let target = format!("/api/search?shape={}&k=2&explain=true", escaped(id));
@@ -105,7 +106,7 @@ fn a_shape_of_the_index_finds_itself() {
 
 #[test]
 fn the_list_is_cut_and_filtered() {
-    let server = Running::start(options());
+    let server = Served::start(options());
     let description = description(&server);
     let list = |target: &str| {
         let answer = get(&server, target);
@@ -131,7 +132,7 @@ fn the_list_is_cut_and_filtered() {
 
 #[test]
 fn meshes_forms_and_pictures_of_shapes() {
-    let server = Running::start(options());
+    let server = Served::start(options());
     let description = description(&server);
     for (id, mesh) in bodies() {
         let part = |part: &str| get(&server, &format!("/api/shapes/{}/{part}", escaped(id)));
@@ -162,7 +163,7 @@ fn meshes_forms_and_pictures_of_shapes() {
 
 #[test]
 fn a_mesh_that_is_gone_leaves_the_points_of_its_form() {
-    let server = Running::start_apart(options());
+    let server = Served::start_apart(options());
     let description = description(&server);
     fs::remove_file(server.mesh("ring0")).unwrap();
     fs::copy(server.mesh("box0"), server.mesh("box1")).unwrap();
@@ -188,7 +189,7 @@ fn a_mesh_that_is_gone_leaves_the_points_of_its_form() {
 
 #[test]
 fn an_upload_is_laid_over_what_it_found() {
-    let server = Running::start(options());
+    let server = Served::start(options());
     let description = description(&server);
     let mut mesh = shapes::torus(24, 12, 2.0, 0.8);
     mesh.positions.iter_mut().for_each(|p| p.coords *= 3.0);
@@ -234,7 +235,7 @@ fn an_upload_is_laid_over_what_it_found() {
 
 #[test]
 fn the_page_its_files_and_the_health_of_the_server() {
-    let server = Running::start(options());
+    let server = Served::start(options());
     let health = get(&server, "/healthz");
     description(&server).check("get", "/healthz", 200, &health.json());
     assert_eq!(health.json()["shapes"], 7);
@@ -267,7 +268,7 @@ fn the_page_its_files_and_the_health_of_the_server() {
 
 #[test]
 fn what_is_not_there_is_said_in_json() {
-    let server = Running::start(options());
+    let server = Served::start(options());
     for (method, target, status) in [
         ("GET", "/none", 404),
         ("GET", "/../../etc/passwd", 404),

@@ -9,7 +9,8 @@ use mesh::shapes;
 use server::ServeOptions;
 
 use crate::client::{Answer, ask, connect, form, read_answer, upload};
-use crate::support::{Running, options, written};
+use crate::running::options;
+use crate::support::{Served, written};
 
 type Files = Vec<(String, Vec<u8>)>;
 
@@ -194,7 +195,7 @@ fn check(what: &str, answer: &Answer) {
     assert!(!error.contains("etc/") && !error.contains("boot\\"), "{what}: {error}");
 }
 
-fn still_serves(server: &Running) {
+fn still_serves(server: &Served) {
     let mesh = fs::read(server.mesh("ring0")).unwrap();
     let found = upload(server.address, &[("q.off", &mesh)], &[]).unwrap();
     assert_eq!((found.status, found.json()["predicted"]["label"].as_str()), (200, Some("ring")));
@@ -202,7 +203,7 @@ fn still_serves(server: &Running) {
 
 #[test]
 fn two_hundred_bad_meshes_are_told_why() {
-    let server = Running::start(options());
+    let server = Served::start(options());
     let all = hostile();
     assert!(all.len() >= 200, "{}", all.len());
     for (i, (what, files)) in all.iter().enumerate() {
@@ -217,7 +218,7 @@ fn two_hundred_bad_meshes_are_told_why() {
 
 #[test]
 fn forms_that_are_none_are_told_why() {
-    let server = Running::start(options());
+    let server = Served::start(options());
     let mesh = fs::read(server.mesh("ring0")).unwrap();
     let (body, boundary) = form(&[("q.off", &mesh)], &[]);
     let multipart = format!("multipart/form-data; boundary={boundary}");
@@ -257,7 +258,7 @@ fn forms_that_are_none_are_told_why() {
 #[test]
 fn a_gigabyte_of_zeros_is_cut_off() {
     let limited = ServeOptions { max_upload: 1 << 20, ..options() };
-    let server = Running::start(limited);
+    let server = Served::start(limited);
     let head = |length: &str| {
         format!(
             "POST /api/search HTTP/1.1\r\nHost: {}\r\nContent-Type: multipart/form-data; boundary=x\r\n{length}\r\n\r\n",

@@ -8,7 +8,8 @@ use mesh::shapes;
 use server::{ServeOptions, Server, ServerError};
 
 use crate::client::{ask, connect, form, upload};
-use crate::support::{INDEX, Running, options, written};
+use crate::running::options;
+use crate::support::{INDEX, Served, written};
 
 /// The bytes of a mesh that takes a while.
 fn large() -> Vec<u8> {
@@ -17,7 +18,7 @@ fn large() -> Vec<u8> {
 
 #[test]
 fn meshes_beyond_the_limit_are_refused() {
-    let server = Running::start(ServeOptions { max_vertices: 287, ..options() });
+    let server = Served::start(ServeOptions { max_vertices: 287, ..options() });
     let mesh = fs::read(server.mesh("ring0")).unwrap();
     let answer = upload(server.address, &[("q.off", &mesh)], &[]).unwrap();
     assert_eq!(answer.status, 413);
@@ -29,7 +30,7 @@ fn meshes_beyond_the_limit_are_refused() {
 
 #[test]
 fn who_comes_to_a_full_queue_may_come_again() {
-    let server = Running::start(ServeOptions { jobs: 1, queue: 1, max_uploads: 3, ..options() });
+    let server = Served::start(ServeOptions { jobs: 1, queue: 1, max_uploads: 3, ..options() });
     let mesh = large();
     let answers: Vec<_> = std::thread::scope(|scope| {
         let clients: Vec<_> = (0..12)
@@ -49,7 +50,7 @@ fn who_comes_to_a_full_queue_may_come_again() {
 
 #[test]
 fn work_that_takes_too_long_is_not_waited_for() {
-    let server = Running::start(ServeOptions { time_limit: Duration::from_millis(30), ..options() });
+    let server = Served::start(ServeOptions { time_limit: Duration::from_millis(30), ..options() });
     let answer = upload(server.address, &[("q.ply", &large())], &[]).unwrap();
     assert_eq!(answer.status, 503);
     assert!(answer.json()["error"].as_str().unwrap().contains("within 0.03 seconds"));
@@ -58,7 +59,7 @@ fn work_that_takes_too_long_is_not_waited_for() {
 #[test]
 fn who_is_silent_is_cut_off() {
     let idle = Duration::from_millis(300);
-    let server = Running::start(ServeOptions { idle_time: idle, upload_time: 4 * idle, ..options() });
+    let server = Served::start(ServeOptions { idle_time: idle, upload_time: 4 * idle, ..options() });
     let start = Instant::now();
     // A header that does not end; nothing at all; a body that does not come; one that drips.
     let mut header = connect(server.address).unwrap();
@@ -92,7 +93,7 @@ fn who_is_silent_is_cut_off() {
 
 #[test]
 fn requests_for_others_are_refused() {
-    let server = Running::start(options());
+    let server = Served::start(options());
     let port = server.address.port();
     let status = |method: &str, target: &str, headers: &[(&str, &str)]| {
         ask(server.address, method, target, headers, b"").unwrap().status
@@ -117,7 +118,7 @@ fn requests_for_others_are_refused() {
 
 #[test]
 fn what_is_being_worked_on_is_finished() {
-    let mut server = Running::start(options());
+    let mut server = Served::start(options());
     let (address, mesh) = (server.address, large());
     let client = std::thread::spawn(move || upload(address, &[("q.ply", &mesh)], &[]).unwrap());
     // Until the upload has come in and is being measured.
@@ -130,7 +131,7 @@ fn what_is_being_worked_on_is_finished() {
 
 #[test]
 fn what_cannot_be_served_is_said() {
-    let server = Running::start(options());
+    let server = Served::start(options());
     let index = server.folder.join(INDEX);
     let taken = Server::bind(&index, ServeOptions { listen: server.address, ..options() }).unwrap_err();
     assert!(matches!(&taken, ServerError::Listen { address, .. } if *address == server.address));

@@ -9,6 +9,9 @@ mod hostile;
 #[cfg(test)]
 mod limits;
 #[cfg(test)]
+#[path = "../support/running.rs"]
+mod running;
+#[cfg(test)]
 mod schema;
 #[cfg(test)]
 mod support;

@@ -1,15 +1,16 @@
 //! A server on an index of a few bodies, in this process.
 
 use std::fs;
-use std::net::SocketAddr;
+use std::ops::Deref;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
-use std::thread::JoinHandle;
 
 use mesh::{TriMesh, shapes};
 use pipeline::{BuildOptions, DescribeOptions, build_index};
-use server::{ServeOptions, Server, ServerError, Stop};
+use server::{ServeOptions, ServerError};
 use tempfile::TempDir;
+
+use crate::running::Running;
 
 /// Name of the index in its folder.
 pub(crate) const INDEX: &str = "all.canonform";
@@ -35,13 +36,19 @@ fn egg() -> TriMesh {
     mesh
 }
 
-/// A running server; it is stopped at the end of the test.
-pub(crate) struct Running {
-    pub(crate) address: SocketAddr,
+/// A running server, and the folder of its index.
+pub(crate) struct Served {
+    running: Running,
     pub(crate) folder: PathBuf,
-    pub(crate) stop: Stop,
-    thread: Option<JoinHandle<Result<(), ServerError>>>,
     _own: Option<TempDir>,
+}
+
+impl Deref for Served {
+    type Target = Running;
+
+    fn deref(&self) -> &Running {
+        &self.running
+    }
 }
 
 /// Makes an index of the bodies.
@@ -66,11 +73,7 @@ fn shared() -> PathBuf {
     FOLDER.get_or_init(make).clone()
 }
 
-pub(crate) fn options() -> ServeOptions {
-    ServeOptions { listen: "127.0.0.1:0".parse().unwrap(), ..ServeOptions::default() }
-}
-
-impl Running {
+impl Served {
     /// A server on the index that is shared.
     pub(crate) fn start(options: ServeOptions) -> Self {
         Self::serve(shared(), None, options)
@@ -84,10 +87,7 @@ impl Running {
     }
 
     fn serve(folder: PathBuf, own: Option<TempDir>, options: ServeOptions) -> Self {
-        let server = Server::bind(&folder.join(INDEX), options).unwrap();
-        let (address, stop) = (server.address(), server.stop_handle());
-        let thread = Some(std::thread::spawn(move || server.run()));
-        Self { address, folder, stop, thread, _own: own }
+        Self { running: Running::start(&folder.join(INDEX), options), folder, _own: own }
     }
 
     /// Where the mesh of a body lies.
@@ -97,16 +97,7 @@ impl Running {
 
     /// Waits for the end of a server that was stopped.
     pub(crate) fn join(&mut self) -> Result<(), ServerError> {
-        self.thread.take().unwrap().join().unwrap()
-    }
-}
-
-impl Drop for Running {
-    fn drop(&mut self) {
-        self.stop.stop();
-        if let Some(thread) = self.thread.take() {
-            let _ = thread.join();
-        }
+        self.running.join().unwrap().unwrap()
     }
 }
 

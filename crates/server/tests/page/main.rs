@@ -3,6 +3,9 @@
 //! Pictures of it are left in `target/browser`.
 
 #[cfg(test)]
+#[path = "../support/running.rs"]
+mod running;
+#[cfg(test)]
 mod search;
 #[cfg(test)]
 mod support;

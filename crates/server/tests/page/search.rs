@@ -68,8 +68,8 @@ fn a_chosen_mesh_is_classified_and_its_nearest_are_laid_over_it() {
         page.browser.click("input[name=shown][value=second]").unwrap();
         page.wait_for("document.querySelector('#overlay-view .canonform-scene').data.length === 1");
         page.assert_sound();
-        let shifts = page.eval("window.shifts").as_f64().unwrap();
-        assert!(shifts < 0.01, "{name}: the layout shifts by {shifts}: {}", page.eval("window.moved"));
+        let (shifts, moved) = page.browser.shifts().unwrap();
+        assert!(shifts < 0.01, "{name}: the layout shifts by {shifts}: {moved}");
     }
 }
 

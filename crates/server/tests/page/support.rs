@@ -1,16 +1,15 @@
 //! A server on a small index of the built-in shapes, and a browser on its page.
 
 use std::fs;
-use std::net::SocketAddr;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
-use std::thread::JoinHandle;
 
 use browser::Browser;
 use datasets::{ArticulatedOptions, Family, LabeledShape, articulated_shape};
 use pipeline::{BuildOptions, DescribeOptions, build_index};
 use serde_json::{Value, json};
-use server::{ServeOptions, Server, ServerError, Stop};
+
+use crate::running::{Running, options};
 
 /// A name that is HTML, as far as a name of a file can be.
 pub(crate) const AWKWARD: &str = "<img src=x onerror=console.error(1)>&'\" ü";
@@ -43,31 +42,6 @@ fn collection() -> PathBuf {
     FOLDER.get_or_init(make).clone()
 }
 
-/// A server that ends with the test.
-struct Running {
-    address: SocketAddr,
-    stop: Stop,
-    thread: Option<JoinHandle<Result<(), ServerError>>>,
-}
-
-impl Running {
-    fn start() -> Self {
-        let options = ServeOptions { listen: "127.0.0.1:0".parse().unwrap(), ..ServeOptions::default() };
-        let server = Server::bind(&collection().join("all.canonform"), options).unwrap();
-        let (address, stop) = (server.address(), server.stop_handle());
-        Self { address, stop, thread: Some(std::thread::spawn(move || server.run())) }
-    }
-}
-
-impl Drop for Running {
-    fn drop(&mut self) {
-        self.stop.stop();
-        if let Some(thread) = self.thread.take() {
-            let _ = thread.join();
-        }
-    }
-}
-
 /// The page of a server in a browser.
 pub(crate) struct Page {
     pub(crate) browser: Browser,
@@ -78,17 +52,9 @@ impl Page {
     /// Opens the page in a window of this size; `None` where there is no browser.
     pub(crate) fn open(width: u32, height: u32) -> Option<Self> {
         let browser = Browser::start()?;
-        let server = Running::start();
+        let server = Running::start(&collection().join("all.canonform"), options());
         browser.resize(width, height).unwrap();
-        // Before anything is laid out: every shift that nobody asked for is counted.
-        let watch = "window.shifts = 0; window.moved = []; new PerformanceObserver(list => {
-            for (const shift of list.getEntries()) if (!shift.hadRecentInput) {
-                window.shifts += shift.value;
-                window.moved.push(...shift.sources.map(({ node, previousRect: a, currentRect: b }) =>
-                    `${node?.id || node?.className || node?.nodeName} ${a.y} to ${b.y}, ${a.height} to ${b.height}`));
-            }
-        }).observe({ type: 'layout-shift', buffered: true });";
-        browser.devtools("Page.addScriptToEvaluateOnNewDocument", &json!({ "source": watch })).unwrap();
+        browser.watch_layout().unwrap();
         browser.open(&format!("http://{}/", server.address)).unwrap();
         browser.wait_for("document.querySelectorAll('#shapes .tile').length === 10").unwrap();
         Some(Self { browser, server })
