@@ -106,14 +106,17 @@ impl<'a> FarthestPointSampler<'a> {
         let mut guesses = Vec::new();
         self.columns.resize(p * n.max(before), 0.0);
         rayon::scope(|scope| {
-            for column in self.columns[p * before..].chunks_mut(p.max(1)) {
+            let mut unknown = self.columns[p * before..].chunks_mut(p.max(1)).peekable();
+            while let Some(column) = unknown.next() {
                 let next = farthest(&nearest);
                 if nearest[next] == 0.0 {
                     break;
                 }
                 guesses.push(next);
                 scope.spawn(move |_| solver.distances_into(VertexId::from(next), column));
-                pruned.lower(VertexId::from(next), &mut nearest);
+                if unknown.peek().is_some() {
+                    pruned.lower(VertexId::from(next), &mut nearest);
+                }
             }
         });
         for (guess, column) in guesses.into_iter().zip(self.columns[p * before..].chunks(p.max(1))) {
