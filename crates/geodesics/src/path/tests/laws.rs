@@ -103,7 +103,7 @@ fn no_corner_can_be_cut() {
         let length = |t: f64| {
             let moved = SurfacePoint::Edge { edge, t };
             let sides = [(path.points[i - 1], moved), (moved, path.points[i + 1])];
-            sides.iter().map(|(p, q)| super::step(&mesh, *p, *q)).sum::<f64>()
+            sides.iter().map(|(p, q)| super::step(&mesh, *p, *q)[0]).sum::<f64>()
         };
         for moved in [t - 1e-4, t + 1e-4, 0.0, 1.0] {
             assert!(length(moved.clamp(0.0, 1.0)) >= length(t));
