@@ -1,4 +1,4 @@
-//! The front: a min-heap of tentative distances with decrease-key.
+//! The front of Dijkstra's method: a min-heap of tentative distances with decrease-key.
 
 /// A vertex in no heap yet.
 const FAR: u32 = u32::MAX;
@@ -47,12 +47,6 @@ impl Front {
             self.sift_up(position as usize, (distance, vertex));
         }
         improves
-    }
-
-    /// The nearest vertex of the front, if there is one.
-    #[inline]
-    pub(crate) fn nearest(&self) -> Option<u32> {
-        self.heap.first().map(|(_, vertex)| *vertex)
     }
 
     /// Removes the nearest vertex of the front.

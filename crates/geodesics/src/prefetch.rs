@@ -1,7 +1,7 @@
 //! Asking for memory before it is needed.
 //!
 //! A front reads what belongs to a vertex once, wherever it lies: on large meshes a quarter of the time
-//! went by waiting for it, although which vertex comes next is known one step ahead. No safe function of
+//! went by waiting for it, although which vertices come next is known a round ahead. No safe function of
 //! the standard library asks for memory without reading it, hence the exception here. The instruction
 //! has no effect but on time, and none at all on other processors.
 

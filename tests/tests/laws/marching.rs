@@ -69,6 +69,23 @@ fn uneven_sheets_are_exact_as_well() {
     }
 }
 
+/// From one corner to the other triangles become ten thousand times larger: no width of the bands in which a
+/// front goes on suits all of them.
+#[test]
+fn graded_sheets_are_exact_whatever_the_size_of_their_triangles() {
+    let (nx, ny) = (51, 51);
+    for jitter in [0.0, 0.2] {
+        let mut sheet = shapes::jittered_grid(nx, ny, 1.0, jitter, 4);
+        for p in &mut sheet.positions {
+            (p.x, p.y) = (1.2f64.powf(p.x), 1.2f64.powf(p.y));
+        }
+        for source in sources(nx, ny) {
+            let error = error_on_plane(&sheet, source, ObtuseTreatment::Flip);
+            assert!(error < 1e-12, "jitter {jitter}, source {source}: {error:e}");
+        }
+    }
+}
+
 #[test]
 fn errors_halve_with_the_edges_of_a_sphere() {
     let errors: Vec<f64> = (2..=5)

@@ -105,6 +105,9 @@ pub(super) struct Chains {
 
 impl Chains {
     /// Appends the spokes of a vertex with the given parts.
+    ///
+    /// A ring that is all that there is begins with the spoke that closes it: the spoke before the first is the
+    /// last then. Everything else begins with a spoke that has no triangle behind it.
     pub(super) fn append(&mut self, parts: &[Part], spokes: &mut Vec<Spoke>) -> Strung {
         let first = spokes.len();
         let strung = self.ring(parts, spokes);
@@ -112,6 +115,7 @@ impl Chains {
             spokes.truncate(first);
             self.strings(parts, spokes);
         }
+        let n_strung = spokes.len();
         for part in parts {
             let Part::Bare(arm) = part else { continue };
             let is_shorter = |spoke: &Spoke| {
@@ -120,6 +124,9 @@ impl Chains {
             if !spokes[first..].iter().any(is_shorter) {
                 spokes.push(start(arm));
             }
+        }
+        if strung == Strung::Ring && spokes.len() == n_strung {
+            spokes.swap_remove(first);
         }
         strung
     }
@@ -202,9 +209,9 @@ mod tests {
     }
 
     #[test]
-    fn a_ring_ends_where_it_began() {
+    fn a_ring_is_closed_by_its_first_spoke() {
         let ring = triangles(&[[1, 2], [3, 4], [2, 3], [1, 4]]);
-        assert_eq!(ends(&ring), [1, 2, 3, 4, 1]);
+        assert_eq!(ends(&ring), [1, 2, 3, 4]);
         assert!(!is_cut(&ring));
         assert!((total_angle(&ring) - 4.0 * std::f64::consts::FRAC_PI_3).abs() < 1e-14);
     }

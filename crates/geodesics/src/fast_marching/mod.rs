@@ -6,11 +6,18 @@
 //! | `unfold`, `splits` | the other way with obtuse corners |
 //! | `spokes`, `chains` | what a vertex does when the front leaves it, laid out for speed |
 //! | `update` | the local solvers |
-//! | `march` | the front on its way |
+//! | `march` | the front on its way, round by round |
+//! | `bands` | which vertices are in a round |
+//! | `departures`, `sieve` | what these may lower, along edges and through triangles |
+//! | `crossings` | the triangles among that, solved side by side |
 
+mod bands;
 mod chains;
+mod crossings;
+mod departures;
 mod flips;
 mod march;
+mod sieve;
 mod splits;
 mod spokes;
 mod triangulation;
@@ -23,7 +30,7 @@ use crate::Source;
 use crate::graph::EdgeGraph;
 use crate::solver::{DistanceSolver, Pool, PrunedSolver, within};
 use chains::Part;
-use march::{March, Stop};
+use march::March;
 use spokes::Spokes;
 use triangulation::Triangulation;
 pub(crate) use update::Sector;
@@ -78,6 +85,9 @@ pub struct CornerReport {
 
 /// Approximate geodesic distances by a front that passes every vertex about once.
 ///
+/// The front goes on in narrow bands. What the vertices of a band may lower is found for all of them before
+/// any is lowered, and the triangles among that are solved side by side.
+///
 /// * A vertex `C` takes the smallest of the edge candidates `T(A) + |AC|` and, for each triangle at
 ///   `C` whose side `AB` the front has passed, the solution of the local solver.
 /// * Distances are 1-Lipschitz along edges, at most Dijkstra's, never NaN, and infinite exactly on
@@ -86,14 +96,16 @@ pub struct CornerReport {
 /// * Triangles are independent of each other, so edges with any number of faces and any mixture of
 ///   orientations are nothing special; only flips and unfolding stop at them.
 ///
-/// Cost `O(p)` to set up, `O(p log p)` per source.
+/// Cost `O(p)` to set up; per source `O(p)` where neighbouring edges are of similar length.
 ///
-/// [`kimmel1998`], [`novotni2002`] in `REFERENCES.bib`.
+/// [`kimmel1998`], [`novotni2002`], [`dial1969`] and [`meyer2003`] (bands), [`kim2001`] (a band at a time) in
+/// `REFERENCES.bib`.
 ///
 /// **Deviations** from Kimmel and Sethian:
 /// * Edges are flipped inside the surface instead of unfolding obtuse corners.
-/// * A vertex that the front has passed is corrected when a triangle that completes later gives it a
-///   smaller distance (in an acute triangle the far end of the base may be reached after the apex).
+/// * Vertices of one band have no order among each other. A vertex that the front has passed is corrected
+///   when it gets a smaller distance, from its own band or by a triangle that completes later (in an acute
+///   triangle the far end of the base may be reached after the apex).
 /// * Each vertex remembers at which distance the way to it last bent around a vertex (more than 360
 ///   degrees, or a boundary), as exact algorithms do. The front in a triangle is a circle around that
 ///   bend and not around the source: with circles that are too large, distances came out too long. Where
@@ -101,6 +113,9 @@ pub struct CornerReport {
 ///
 /// [`kimmel1998`]: https://doi.org/10.1073/pnas.95.15.8431
 /// [`novotni2002`]: https://cg.cs.uni-bonn.de
+/// [`dial1969`]: https://doi.org/10.1145/363269.363610
+/// [`meyer2003`]: https://doi.org/10.1016/S0196-6774(03)00076-2
+/// [`kim2001`]: https://doi.org/10.1137/S1064827500367130
 #[derive(Debug)]
 pub struct FastMarching {
     spokes: Spokes,
@@ -119,8 +134,8 @@ impl FastMarching {
         Self { spokes, report, update: options.update, scratch: Pool::default() }
     }
 
-    fn run(&self, march: &mut March, sources: &[Source], stops: impl Fn(u32, f64) -> Stop) {
-        march.reset(self.n_vertices());
+    fn run(&self, march: &mut March, sources: &[Source], stops: impl Fn(u32, f64) -> bool) {
+        march.reset(&self.spokes);
         for (vertex, distance) in sources.iter().flat_map(Source::reach) {
             march.start(self.spokes.rank[vertex.index()], *distance);
         }
@@ -170,7 +185,7 @@ impl DistanceSolver for FastMarching {
 
     fn solve_into(&self, sources: &[Source], max_distance: f64, out: &mut [f64]) {
         assert_eq!(out.len(), self.n_vertices(), "one distance per vertex");
-        let stops = |_, distance| if distance > max_distance { Stop::Everywhere } else { Stop::No };
+        let stops = |_, distance| distance > max_distance;
         self.scratch.with(|march| {
             self.run(march, sources, stops);
             for (internal, v) in self.spokes.order.iter().enumerate() {
@@ -190,8 +205,7 @@ impl PrunedSolver for FastMarching {
         self.scratch.with(|march| {
             self.run(march, &[Source::vertex(source)], |vertex, distance| {
                 let excess = distance - nearest[self.spokes.order[vertex as usize] as usize];
-                let is_far = excess > 0.0 && excess > BORDER * self.spokes.longest(vertex);
-                if is_far { Stop::Here } else { Stop::No }
+                excess > 0.0 && excess > BORDER * self.spokes.longest_of(vertex)
             });
             for (internal, v) in self.spokes.order.iter().enumerate() {
                 let known = &mut nearest[*v as usize];

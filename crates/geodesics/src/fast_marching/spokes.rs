@@ -11,8 +11,9 @@ use crate::rows::Rows;
 
 /// A straight way from a vertex to another, and the triangle between it and the spoke before.
 ///
-/// The spokes of a vertex form chains. Around an ordinary vertex there is one, which ends where it
-/// began: each triangle is met once, between two spokes, and each neighbour is looked at once.
+/// The spokes of a vertex form chains. Around an ordinary vertex there is one, and it is closed: each
+/// triangle is met once, between two spokes, the first and the last one included, and each neighbour is
+/// looked at once.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Spoke {
     /// The vertex at its end.
@@ -27,30 +28,57 @@ pub(super) struct Spoke {
 
 impl Spoke {
     /// The triangle behind this spoke, seen by a front on its way from the spoke before to this one.
-    #[inline]
-    pub(super) fn onward_from(&self, before: &Self) -> Sector {
+    fn onward_from(&self, before: &Self) -> Sector {
         Sector { base: before.length, side: self.length, dot: self.dot, cross: self.cross }
     }
 
     /// The same for a front from this spoke to the one before.
-    #[inline]
-    pub(super) fn back_to(&self, before: &Self) -> Sector {
+    fn back_to(&self, before: &Self) -> Sector {
         Sector { base: self.length, side: before.length, dot: self.dot, cross: self.cross }
+    }
+
+    /// Finds out which ways through the triangle may be completed late.
+    fn set_late_ways(&mut self, before: &Self) {
+        for (sector, shift) in [(self.back_to(before), 0), (self.onward_from(before), 1)] {
+            if sector.may_complete_late() {
+                self.ways.0 |= Ways::LATE_NEARBY.0 << shift;
+            }
+            if sector.may_complete_late_from_afar() {
+                self.ways.0 |= Ways::LATE.0 << shift;
+            }
+        }
     }
 }
 
 /// What the front may do at a spoke: a set of flags.
+///
+/// A flag of a way back through the triangle is followed by the same flag of the way onward.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Ways(u32);
 
 impl Ways {
     pub(super) const NONE: Self = Self(0);
-    /// Go along the spoke.
-    pub(super) const ALONG: Self = Self(1);
+    /// Go through the triangle, over this spoke, to the end of the one before.
+    pub(super) const BACK: Self = Self(1);
     /// Go through the triangle, over the spoke before, to the end of this one.
     pub(super) const ONWARD: Self = Self(2);
-    /// Go through the triangle, over this spoke, to the end of the one before.
-    pub(super) const BACK: Self = Self(4);
+    /// Do so although the front has been there before it came to the vertex, wherever the source is.
+    const LATE: Self = Self(4);
+    /// The same, unless the source is far away.
+    const LATE_NEARBY: Self = Self(16);
+    /// Go along the spoke.
+    pub(super) const ALONG: Self = Self(64);
+
+    /// What a front may do that does or does not correct what it has passed, near its source or far away.
+    pub(super) fn of_front(corrects: bool, is_nearby: bool) -> Self {
+        let both_ways = |way: Self| way.and(Self(way.0 << 1));
+        let all = both_ways(Self::BACK).and(Self::ALONG);
+        match (corrects, is_nearby) {
+            (false, _) => all,
+            (true, false) => all.and(both_ways(Self::LATE)),
+            (true, true) => all.and(both_ways(Self::LATE)).and(both_ways(Self::LATE_NEARBY)),
+        }
+    }
 
     #[inline]
     pub(super) fn allow(self, way: Self) -> bool {
@@ -59,6 +87,18 @@ impl Ways {
 
     pub(super) fn and(self, other: Self) -> Self {
         Self(self.0 | other.0)
+    }
+
+    #[inline]
+    pub(super) fn only(self, others: Self) -> Self {
+        Self(self.0 & others.0)
+    }
+
+    /// Whether the front may go through the triangle, onward or back, to a vertex that is ahead of it or not.
+    #[inline]
+    pub(super) fn allow_through(self, is_onward: bool, is_ahead: bool) -> bool {
+        let ways = self.0 >> u32::from(is_onward);
+        ways & (u32::from(is_ahead) | ways >> 2 | ways >> 4) & 1 != 0
     }
 }
 
@@ -73,7 +113,15 @@ pub(super) struct Spokes {
     pub(super) order: Vec<u32>,
     /// Internal number of every mesh vertex.
     pub(super) rank: Vec<u32>,
+    /// The length of the longest spoke.
+    pub(super) longest: f64,
+    /// How wide the bands of a front should be.
+    pub(super) band: f64,
 }
+
+/// How wide the bands of a front are, as a share of the mean length of an edge. In wider ones more vertices have
+/// to be corrected, in narrower ones too few are dealt with together.
+const BAND: f64 = 0.05;
 
 /// Vertices whose spokes are made by one thread at a time.
 const BLOCK: usize = 1024;
@@ -97,8 +145,20 @@ impl Spokes {
         &self.spokes[self.offsets[v] as usize..self.offsets[v + 1] as usize]
     }
 
+    /// The spoke of this number.
+    #[inline]
+    pub(super) fn at(&self, spoke: u32) -> &Spoke {
+        &self.spokes[spoke as usize]
+    }
+
+    /// The numbers of the first spoke of a vertex and of the first one that is no more one of its.
+    #[inline]
+    pub(super) fn range_of(&self, vertex: u32) -> [u32; 2] {
+        [self.offsets[vertex as usize], self.offsets[vertex as usize + 1]]
+    }
+
     /// The length of the longest spoke of a vertex.
-    pub(super) fn longest(&self, vertex: u32) -> f64 {
+    pub(super) fn longest_of(&self, vertex: u32) -> f64 {
         self.of(vertex).iter().map(|spoke| spoke.length).fold(0.0, f64::max)
     }
 
@@ -131,6 +191,12 @@ impl Spokes {
                     parts.extend_from_slice(extras.of(*v));
                     let first = block.spokes.len();
                     let strung = chains.append(&parts, &mut block.spokes);
+                    if let Some(mut before) = block.spokes[first..].last().copied() {
+                        for spoke in &mut block.spokes[first..] {
+                            spoke.set_late_ways(&before);
+                            before = *spoke;
+                        }
+                    }
                     let is_one_ring = strung == Strung::Ring && !parts[own..].iter().any(Part::is_triangle);
                     let own = &parts[..own];
                     let angle = total_angle(own);
@@ -157,6 +223,8 @@ impl Spokes {
                 next
             }));
         }
-        Self { offsets, spokes, bends, order, rank }
+        let longest = spokes.iter().map(|spoke: &Spoke| spoke.length).fold(0.0, f64::max);
+        let band = BAND * triangulation.mean_length;
+        Self { offsets, spokes, bends, order, rank, longest, band }
     }
 }

@@ -1,4 +1,7 @@
 //! The two local solvers: the distance at one vertex of a triangle from those at the two others.
+//!
+//! They have no branches, so that several triangles can be solved by the same instructions. What is not a
+//! number fails every comparison.
 
 /// A triangle `ABC` that the front crosses from the side `AB` to the vertex `C`, seen from `A`.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -18,13 +21,25 @@ pub(crate) struct Sector {
 /// which of the two ways wins would depend on rounding.
 const COLLINEAR: f64 = 1e-12;
 
+/// See [`Sector::may_complete_late_from_afar`].
+pub(super) const FAR: f64 = 2.0;
+
 impl Sector {
     /// Whether a front that enters through the base can reach `C` before `A`.
     ///
     /// If it does, the angle at `C` exceeds the angle at `A`, so the base is longer than `BC`.
-    #[inline]
     pub(super) fn may_complete_late(self) -> bool {
         2.0 * self.dot > self.side * self.side
+    }
+
+    /// The same for a front whose source is farther than [`FAR`] times the side `|AC|` away.
+    ///
+    /// The source, `C` and `A` form a triangle whose angle at `C` is no wider than the sector's, and in which
+    /// the source is farther from `A`: `|AC| > 2 T cos C`, where `T` is the distance at `C`.
+    pub(super) fn may_complete_late_from_afar(self) -> bool {
+        let Self { base, side, dot, .. } = self;
+        let third = || (base * base + side * side - 2.0 * dot).max(0.0).sqrt();
+        self.may_complete_late() && 2.0 * FAR * (side * side - dot) <= side * third()
     }
 
     /// Distance at `C` if the front comes from a single point beyond the base, given the distances at
@@ -40,17 +55,14 @@ impl Sector {
         let along = 0.5 * (sq_base + (at_a - at_b) * (at_a + at_b));
         let reach = base * at_a;
         let sq_height = (reach - along) * (reach + along);
-        if sq_height < COLLINEAR * reach * reach {
-            return f64::INFINITY;
-        }
         let height = sq_height.sqrt();
         // Where the line crosses the base, as a share of it, times its positive denominator.
         let crossing = along * cross + dot * height;
-        if crossing >= 0.0 && crossing <= sq_base * (height + cross) {
-            (side * side + at_a * at_a + 2.0 * (cross * height - dot * along) / sq_base).sqrt()
-        } else {
-            f64::INFINITY
-        }
+        let distance = (side * side + at_a * at_a + 2.0 * (cross * height - dot * along) / sq_base).sqrt();
+        let is_hit = (sq_height >= COLLINEAR * reach * reach)
+            & (crossing >= 0.0)
+            & (crossing <= sq_base * (height + cross));
+        if is_hit { distance } else { f64::INFINITY }
     }
 
     /// Distance at `C` if the front is a straight line, given the distances at `A` and `B`; infinite
@@ -63,16 +75,11 @@ impl Sector {
         let Self { base, dot, cross, .. } = self;
         let rise = at_b - at_a;
         let sq_height = (base - rise) * (base + rise);
-        if sq_height <= 0.0 {
-            return f64::INFINITY;
-        }
         let (height, sq_base) = (sq_height.sqrt(), base * base);
         let crossing = dot * height - cross * rise;
-        if crossing >= 0.0 && crossing <= sq_base * height {
-            at_a + (rise * dot + height * cross) / sq_base
-        } else {
-            f64::INFINITY
-        }
+        let distance = at_a + (rise * dot + height * cross) / sq_base;
+        let is_hit = (sq_height > 0.0) & (crossing >= 0.0) & (crossing <= sq_base * height);
+        if is_hit { distance } else { f64::INFINITY }
     }
 }
 
