@@ -1,7 +1,8 @@
 //! Stringing the triangles at a vertex together.
 
+use std::f64::consts::PI;
+
 use super::spokes::{Spoke, Ways};
-use crate::corner::Corner;
 
 /// A way from a vertex: where it ends, and whether the front may go along it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -51,10 +52,15 @@ pub(super) enum Reaches {
 }
 
 impl Part {
-    /// The triangle between two arms, with the length of its third side.
+    /// The triangle between two arms, with the length of its third side; NaN when the first arm has none.
     pub(super) fn triangle(arms: [Arm; 2], third: f64, reaches: Reaches) -> Self {
-        let corner = Corner::from_lengths(arms[0].length, arms[1].length, third);
-        let (dot, cross) = (corner.x * arms[0].length, corner.y * arms[0].length);
+        let [base, side] = [arms[0].length, arms[1].length];
+        if base <= 0.0 {
+            return Self::Triangle { arms, dot: f64::NAN, cross: f64::NAN, reaches };
+        }
+        let dot = 0.5 * (base * base + (side - third) * (side + third));
+        // Rounding, or lengths that break the triangle inequality, may leave no height at all.
+        let cross = ((base * side - dot) * (base * side + dot)).max(0.0).sqrt();
         Self::Triangle { arms, dot, cross, reaches }
     }
 
@@ -73,12 +79,23 @@ impl Part {
 }
 
 /// The sum of the angles of the triangles at a vertex.
+///
+/// A direction is turned by one after the other and half turns are counted, so that one arc tangent is enough.
 pub(super) fn total_angle(parts: &[Part]) -> f64 {
-    let angle = |part: &Part| match part {
-        Part::Triangle { dot, cross, .. } => cross.atan2(*dot),
-        Part::Bare(_) => 0.0,
-    };
-    parts.iter().map(angle).sum()
+    let (mut x, mut y, mut half_turns) = (1.0, 0.0, 0.0);
+    for part in parts {
+        let Part::Triangle { dot, cross, .. } = part else { continue };
+        if *dot == 0.0 && *cross == 0.0 {
+            continue;
+        }
+        (x, y) = (x * dot - y * cross, x * cross + y * dot);
+        let size = f64::max(x.abs(), y.abs());
+        (x, y) = (x / size, y / size);
+        if y < 0.0 || (y == 0.0 && x < 0.0) {
+            (x, y, half_turns) = (-x, -y, half_turns + 1.0);
+        }
+    }
+    half_turns * PI + y.atan2(x)
 }
 
 /// Whether the triangles at a vertex leave a gap between them.
@@ -193,6 +210,8 @@ fn start(arm: &Arm) -> Spoke {
 
 #[cfg(test)]
 mod tests {
+    use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
+
     use super::*;
 
     /// Equilateral triangles between the given pairs of arms.
@@ -214,6 +233,30 @@ mod tests {
         assert_eq!(ends(&ring), [1, 2, 3, 4]);
         assert!(!is_cut(&ring));
         assert!((total_angle(&ring) - 4.0 * std::f64::consts::FRAC_PI_3).abs() < 1e-14);
+    }
+
+    #[test]
+    fn angles_add_up_beyond_any_number_of_turns() {
+        let corner = |dot, cross| {
+            let arms = [1, 2].map(|end| Arm::edge(end, 1.0));
+            Part::Triangle { arms, dot, cross, reaches: Reaches::Both }
+        };
+        for angle in [0.0, 1e-9, 1.0, FRAC_PI_2, 2.5, 3.0, PI] {
+            for n in [1, 2, 3, 4, 7, 40] {
+                // Of sizes whose product no number holds.
+                let parts: Vec<Part> = (0..n)
+                    .map(|i| [1e200, 1e-200][i % 2])
+                    .map(|size: f64| corner(size * angle.cos(), size * angle.sin()))
+                    .collect();
+                let expected = n as f64 * angle;
+                assert!(
+                    (total_angle(&parts) - expected).abs() < 1e-13 * (1.0 + expected),
+                    "{n} times {angle}"
+                );
+            }
+        }
+        let point = corner(0.0, 0.0);
+        assert_eq!(total_angle(&[point, corner(1.0, 1.0), point, Part::Bare(Arm::edge(1, 1.0))]), FRAC_PI_4);
     }
 
     #[test]

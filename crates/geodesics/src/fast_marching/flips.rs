@@ -92,6 +92,10 @@ impl Flips {
         let d = faces[g][gd];
         let base = lengths[f][fc];
         let (from_a, from_b) = ([lengths[f][fb], lengths[g][gb]], [lengths[f][fa], lengths[g][ga]]);
+        // Nearly all edges face two acute angles, and stay.
+        if (0..2).all(|k| base * base <= from_a[k] * from_a[k] + from_b[k] * from_b[k]) {
+            return None;
+        }
         let [up, down] = [0, 1].map(|k| Corner::from_lengths(base, from_a[k], from_b[k]));
         let cotangent = |apex: Corner| (apex.x * (apex.x - base) + apex.y * apex.y) / (base * apex.y);
         let (at_c, at_d) = (cotangent(up), cotangent(down));
