@@ -51,6 +51,8 @@ pub(super) struct Bands {
     beyond: Vec<u32>,
     /// The nearest of these bands.
     beyond_from: u32,
+    /// Vertices while they are put into bands again.
+    moving: Vec<u32>,
     /// The band that every vertex is in.
     bands: Vec<u32>,
     /// Vertices that came into the current band after it was emptied.
@@ -176,13 +178,21 @@ impl Bands {
     /// Sorts the vertices beyond the ring again.
     #[cold]
     fn bring_near(&mut self, distance: &impl Fn(u32) -> f64) {
+        std::mem::swap(&mut self.beyond, &mut self.moving);
         self.beyond_from = NOWHERE;
-        for vertex in std::mem::take(&mut self.beyond) {
-            if self.bands[vertex as usize] == BEYOND {
-                self.bands[vertex as usize] = NOWHERE;
-                self.put(vertex, distance(vertex));
-            }
+        let bands = &self.bands;
+        self.moving.retain(|vertex| bands[*vertex as usize] == BEYOND);
+        self.put_moving(distance);
+    }
+
+    /// Puts all vertices that are being moved where they belong.
+    fn put_moving(&mut self, distance: &impl Fn(u32) -> f64) {
+        for i in 0..self.moving.len() {
+            let vertex = self.moving[i];
+            self.bands[vertex as usize] = NOWHERE;
+            self.put(vertex, distance(vertex));
         }
+        self.moving.clear();
     }
 
     /// Makes bands narrower or wider if that is due.
@@ -202,19 +212,18 @@ impl Bands {
     /// Puts all vertices into bands of another width.
     #[cold]
     fn sort_again(&mut self, width: f64, distance: &impl Fn(u32) -> f64) {
-        let mut vertices = std::mem::take(&mut self.beyond);
-        self.ring.iter_mut().for_each(|band| vertices.append(band));
-        vertices.retain(|vertex| std::mem::replace(&mut self.bands[*vertex as usize], NOWHERE) != NOWHERE);
+        self.moving.append(&mut self.beyond);
+        self.ring.iter_mut().for_each(|band| self.moving.append(band));
+        let bands = &mut self.bands;
+        self.moving.retain(|vertex| std::mem::replace(&mut bands[*vertex as usize], NOWHERE) != NOWHERE);
         (self.n_entries, self.beyond_from, self.n_late) = (0, NOWHERE, 0);
         if !self.is_fresh {
             self.passed = self.passed.max(self.end());
         }
         self.set_width(width);
-        let nearest = vertices.iter().map(|vertex| distance(*vertex)).fold(f64::INFINITY, f64::min);
+        let nearest = self.moving.iter().map(|vertex| distance(*vertex)).fold(f64::INFINITY, f64::min);
         (self.current, self.is_fresh) = (self.band(nearest), true);
-        for vertex in vertices {
-            self.put(vertex, distance(vertex));
-        }
+        self.put_moving(distance);
     }
 }
 
