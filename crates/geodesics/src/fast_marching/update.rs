@@ -21,8 +21,8 @@ pub(crate) struct Sector {
 /// which of the two ways wins would depend on rounding.
 const COLLINEAR: f64 = 1e-12;
 
-/// See [`Sector::may_complete_late_from_afar`].
-pub(super) const FAR: f64 = 2.0;
+/// See [`Sector::may_complete_late_from_afar`]: far fronts get late into corners wider than 86 degrees alone.
+pub(super) const FAR: f64 = 8.0;
 
 impl Sector {
     /// Whether a front that enters through the base can reach `C` before `A`.
