@@ -283,6 +283,28 @@ mod tests {
     }
 
     #[test]
+    fn a_band_that_fills_again_and_again_becomes_narrower() {
+        let (n, step) = (3000u32, 1e-3);
+        let mut bands = Bands::default();
+        bands.reset(n as usize, 1.0, 1.0);
+        bands.put(0, 0.0);
+        let (mut round, mut next, mut before) = (Vec::new(), 0, 0.0);
+        while let Some(passed) = bands.next_round(&mut round, |v| f64::from(v) * step) {
+            assert!(passed >= before);
+            before = passed;
+            for v in &round {
+                assert_eq!(*v, next);
+                next += 1;
+                if next < n {
+                    bands.put(next, f64::from(next) * step);
+                }
+            }
+        }
+        assert_eq!(next, n);
+        assert!(bands.width < 0.1, "{}", bands.width);
+    }
+
+    #[test]
     fn no_width_at_all_is_one_band() {
         let mut bands = Bands::default();
         for width in [0.0, f64::NAN, 1e-310] {
