@@ -199,10 +199,11 @@ impl Bands {
     #[inline]
     fn fit_width(&mut self, distance: &impl Fn(u32) -> f64) {
         let share = self.n_entries / SHARE;
+        let is_too_high = self.current > TOO_HIGH;
         if self.n_late > LATE + share && self.current < TOO_HIGH / FACTOR as u32 {
             self.sort_again(self.width / FACTOR, distance);
-        } else if self.n_bands > PERIOD + share || self.current > TOO_HIGH {
-            if self.n_taken < self.n_bands / SPARSE || self.current > TOO_HIGH {
+        } else if self.n_bands > PERIOD + share || is_too_high {
+            if self.n_taken < self.n_bands / SPARSE || is_too_high {
                 self.sort_again(self.width * FACTOR, distance);
             }
             (self.n_bands, self.n_taken) = (0, 0);

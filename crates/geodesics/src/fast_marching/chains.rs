@@ -3,6 +3,7 @@
 use std::f64::consts::PI;
 
 use super::spokes::{Spoke, Ways};
+use crate::corner::Corner;
 
 /// A way from a vertex: where it ends, and whether the front may go along it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -52,15 +53,10 @@ pub(super) enum Reaches {
 }
 
 impl Part {
-    /// The triangle between two arms, with the length of its third side; NaN when the first arm has none.
+    /// The triangle between two arms, with the length of its third side.
     pub(super) fn triangle(arms: [Arm; 2], third: f64, reaches: Reaches) -> Self {
-        let [base, side] = [arms[0].length, arms[1].length];
-        if base <= 0.0 {
-            return Self::Triangle { arms, dot: f64::NAN, cross: f64::NAN, reaches };
-        }
-        let dot = 0.5 * (base * base + (side - third) * (side + third));
-        // Rounding, or lengths that break the triangle inequality, may leave no height at all.
-        let cross = ((base * side - dot) * (base * side + dot)).max(0.0).sqrt();
+        let corner = Corner::from_lengths(arms[0].length, arms[1].length, third);
+        let (dot, cross) = (corner.x * arms[0].length, corner.y * arms[0].length);
         Self::Triangle { arms, dot, cross, reaches }
     }
 

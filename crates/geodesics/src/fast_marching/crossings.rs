@@ -73,7 +73,9 @@ impl Block {
     fn solve(&mut self, update: &impl Fn(Sector, f64, f64) -> f64) {
         for i in 0..LANES {
             let (p, q) = (self.bend_a[i], self.bend_b[i]);
-            let bend = if p < q { p } else { q } + LATER_BEND * (p - q).abs();
+            // Not `min`, which looks for NaN as well.
+            let earlier = if p < q { p } else { q };
+            let bend = earlier + LATER_BEND * (p - q).abs();
             let (base, side, dot, cross) = (self.base[i], self.side[i], self.dot[i], self.cross[i]);
             let sector = Sector { base, side, dot, cross };
             self.at_apex[i] = bend + update(sector, self.at_a[i] - bend, self.at_b[i] - bend);

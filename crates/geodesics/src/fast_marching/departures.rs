@@ -84,28 +84,28 @@ impl Departures {
             }
             let own = spokes.of(vertex);
             let Some(last) = own.last() else { continue };
+            let [first, end] = spokes.range_of(vertex);
             let bend_along = if spokes.bend_at(vertex) { distance } else { bend };
             let is_nearby = distance - bend <= (1.0 + FAR) * spokes.longest;
             let allowed = Ways::of_front(corrects, is_nearby);
-            let passed = if passed > distance { passed } else { distance };
+            let passed = passed.max(distance);
             // What is farther away than this any triangle may lower, what is nearer only those completed late.
             let ahead_of = if corrects { distance } else { passed };
-            let [mut number, end] = spokes.range_of(vertex);
             let (mut before, mut at_before) = (end - 1, reached[last.end as usize].distance);
-            for spoke in own {
+            for (number, spoke) in (first..).zip(own) {
                 let at_end = reached[spoke.end as usize].distance;
                 let ways = spoke.ways.only(allowed);
                 let along = distance + spoke.length;
                 let step = Step { end: spoke.end, reached: Reached { distance: along, bend: bend_along } };
                 steps.add(step, (along <= at_end * (1.0 + ROUNDING)) & ways.allow(Ways::ALONG));
                 let is_onward = at_before < at_end;
+                // Not `min` and `max`, which look for NaN as well.
                 let near = if at_before < at_end { at_before } else { at_end };
                 let far = if at_before > at_end { at_before } else { at_end };
                 let crossing =
                     Crossing { from: vertex, spoke: number, before, is_onward: u32::from(is_onward) };
                 crossings.add(crossing, (near <= passed) & ways.allow_through(is_onward, far > ahead_of));
                 (before, at_before) = (number, at_end);
-                number += 1;
             }
             if corrects && passed > distance {
                 round.cross_both_ways(vertex, passed, &mut crossings);

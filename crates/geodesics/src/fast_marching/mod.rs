@@ -130,7 +130,7 @@ impl FastMarching {
     pub fn new(mesh: &IntrinsicMesh, options: FastMarchingOptions) -> Self {
         let ((triangulation, extras, report), order) =
             rayon::join(|| prepared(mesh, options.obtuse), || EdgeGraph::new(mesh).breadth_first_order());
-        let spokes = Spokes::new(order, &triangulation, &extras);
+        let spokes = Spokes::new(order, &triangulation, &extras, mesh.mean_edge_length());
         Self { spokes, report, update: options.update, scratch: Pool::default() }
     }
 

@@ -171,7 +171,14 @@ impl Spokes {
 
     /// The spokes of a triangulation, with further parts of vertices from elsewhere, over vertices in an
     /// order in which neighbours are close.
-    pub(super) fn new(order: Vec<u32>, triangulation: &Triangulation, extras: &[(u32, Part)]) -> Self {
+    ///
+    /// The mean length of an edge is that of the mesh: after flips it may depend on the numbering of vertices.
+    pub(super) fn new(
+        order: Vec<u32>,
+        triangulation: &Triangulation,
+        extras: &[(u32, Part)],
+        mean_edge_length: f64,
+    ) -> Self {
         let mut rank = vec![0; order.len()];
         for (internal, v) in order.iter().enumerate() {
             rank[*v as usize] = internal as u32;
@@ -224,7 +231,6 @@ impl Spokes {
             }));
         }
         let longest = spokes.iter().map(|spoke: &Spoke| spoke.length).fold(0.0, f64::max);
-        let band = BAND * triangulation.mean_length;
-        Self { offsets, spokes, bends, order, rank, longest, band }
+        Self { offsets, spokes, bends, order, rank, longest, band: BAND * mean_edge_length }
     }
 }

@@ -15,19 +15,13 @@ pub(super) struct Triangulation {
     pub(super) lengths: Vec<[f64; 3]>,
     /// Links between components, and edges that were flipped away.
     pub(super) segments: Vec<([u32; 2], f64)>,
-    /// The mean length of the edges and links of the mesh: the same after flips, which may depend on the
-    /// numbering of vertices.
-    pub(super) mean_length: f64,
 }
 
 impl Triangulation {
     pub(super) fn new(mesh: &IntrinsicMesh) -> Self {
         let topology = mesh.topology();
         let side = |corner: u32| mesh.length(topology.opposite_edge(CornerId(corner)));
-        let lengths =
-            || mesh.edge_lengths().iter().copied().chain(mesh.links().iter().map(|link| link.length));
         Self {
-            mean_length: lengths().sum::<f64>() / lengths().count().max(1) as f64,
             n_vertices: mesh.n_vertices(),
             faces: topology.faces().iter().map(|face| face.map(|v| v.0)).collect(),
             lengths: (0..topology.n_faces() as u32).map(|f| [0, 1, 2].map(|k| side(3 * f + k))).collect(),
