@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 use std::f64::consts::PI;
 
-use datasets::{ArticulatedOptions, DatasetError, Family, LabeledShape, articulated, articulated_shape};
+use canonform_datasets::{ArticulatedOptions, DatasetError, Family, LabeledShape, articulated, articulated_shape};
 use mesh::{Topology, TriMesh, VertexId, validate};
 use nalgebra::Point3;
 use rayon::prelude::*;

@@ -3,7 +3,7 @@
 use anyhow::{Context, Result, bail};
 use datasets::{ArticulatedOptions, articulated};
 use mesh::RepairOptions;
-use pipeline::{LabelFile, Observer, Surface, list_shapes};
+use canonform::{LabelFile, Observer, Surface, list_shapes};
 use rayon::prelude::*;
 
 use crate::args::RunArgs;
@@ -65,7 +65,7 @@ impl Collection {
                 }
                 files.retain(|file| wanted.is_empty() || wanted.contains(&file.label));
                 observer.begin("reading", files.len());
-                let shape = |file: pipeline::ShapeFile| {
+                let shape = |file: canonform::ShapeFile| {
                     let surface = Surface::read(&file.path, &repair);
                     observer.step();
                     (file.name, file.label, surface)

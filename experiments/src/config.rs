@@ -1,7 +1,7 @@
 //! What an experiment does, is expected to show, and means: `configs/*.toml`.
 
 use anyhow::{Context, Result};
-use pipeline::{
+use canonform::{
     Bandwidth, EmbedMethod, EmbedOptions, FastMarchingOptions, GeodesicMethod, ObtuseTreatment, Samples,
     StressChoice,
 };

@@ -8,7 +8,7 @@ use std::time::Instant;
 use anyhow::Result;
 use descriptors::{CanonicalForm, MatchOptions, PreparedForm, match_forms};
 use mesh::{TriMesh, orient_consistently};
-use pipeline::{EmbedOptions, MATCHED_POINTS, StressChoice, embed};
+use canonform::{EmbedOptions, MATCHED_POINTS, StressChoice, embed};
 use report::figure1::{Figure1Pair, PAIRS, figure1};
 use report::render::View;
 use report::results::{Figure1Record, Figure1Shape, write};

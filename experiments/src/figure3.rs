@@ -17,7 +17,7 @@ use nmds::{
     Embedding, NystromOptions, Regularization, SpectralBasis, SpectralOptions, nystrom, paper_stress,
     spectral,
 };
-use pipeline::{FastMarchingOptions, GeodesicMethod, MATCHED_POINTS, ObtuseTreatment, Update};
+use canonform::{FastMarchingOptions, GeodesicMethod, MATCHED_POINTS, ObtuseTreatment, Update};
 use report::figure3::{Figure3Surfaces, figure3};
 use report::render::View;
 use report::results::{Figure3Form, Figure3Record, Figure3Shape, Figure3Stress, write};

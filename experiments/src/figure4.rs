@@ -10,7 +10,7 @@ use anyhow::{Context as _, Result};
 use descriptors::CanonicalForm;
 use linalg::DistanceMatrix;
 use nmds::normalized_stress;
-use pipeline::{
+use canonform::{
     EmbedOptions, FormMatches, MatchOptions, Normalization, PreparedForms, embed, embedded_distances,
     form_matches, map_of,
 };

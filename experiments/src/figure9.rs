@@ -10,7 +10,7 @@ use anyhow::{Context as _, Result};
 use datasets::{ArticulatedOptions, Family, articulated_shape};
 use mesh::{RepairOptions, VertexId};
 use nmds::classical_full;
-use pipeline::{EmbedMethod, EmbedOptions, Samples, StressChoice, Surface, embed};
+use canonform::{EmbedMethod, EmbedOptions, Samples, StressChoice, Surface, embed};
 use report::results::{Figure9Measured, Figure9Record, Figure9Row, write};
 use report::tables::figure9_table;
 use terminal::PeakMemory;

@@ -10,7 +10,7 @@ use std::time::Instant;
 use anyhow::Result;
 use descriptors::{CanonicalForm, fuse, size_coordinate};
 use linalg::DistanceMatrix;
-use pipeline::{
+use canonform::{
     DescribeOptions, FORM_UNIT, MatchOptions, Normalization, PreparedForms, ShapeDescription, SignatureKind,
     combined_distance, describe_surface, form_distances,
 };

@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use std::time::Duration;
 
 use anyhow::{Result, bail};
-use pipeline::{EmbedOptions, Observer};
+use canonform::{EmbedOptions, Observer};
 use report::page::write_report;
 use report::results::{Expectation, Provenance};
 use terminal::Bars;

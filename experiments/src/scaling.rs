@@ -8,7 +8,7 @@ use std::time::Instant;
 use anyhow::Result;
 use datasets::{ArticulatedOptions, Family, articulated_shape};
 use mesh::{RepairOptions, VertexId};
-use pipeline::{EmbedMethod, EmbedOptions, Samples, StressChoice, Surface, embed};
+use canonform::{EmbedMethod, EmbedOptions, Samples, StressChoice, Surface, embed};
 use report::results::{AxisScale, CurvesPanel, Series};
 use terminal::PeakMemory;
 

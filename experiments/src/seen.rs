@@ -6,7 +6,7 @@ use geodesics::DistanceSolver;
 use linalg::Matrix;
 use mesh::{TriMesh, VertexId, orient_consistently};
 use nalgebra::Point3;
-use pipeline::{EmbedOptions, Embedded, Normalization};
+use canonform::{EmbedOptions, Embedded, Normalization};
 use report::interactive::Geometry;
 use report::results::{Motions, Scale, SeenForm, SeenShape};
 

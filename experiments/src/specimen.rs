@@ -8,7 +8,7 @@ use geodesics::{DistanceSolver, FirstSample, Sampling};
 use linalg::{DistanceMatrix, LandmarkDistances};
 use mesh::VertexId;
 use nmds::{Embedding, Reconstruction, classical, paper_stress, sample_rows};
-use pipeline::GeodesicMethod;
+use canonform::GeodesicMethod;
 
 use crate::collection::{Collection, Shape};
 

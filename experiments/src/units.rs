@@ -7,7 +7,7 @@ use anyhow::Result;
 use datasets::{ArticulatedOptions, Family, articulated};
 use descriptors::match_forms;
 use linalg::Matrix;
-use pipeline::{
+use canonform::{
     DescribeOptions, FORM_UNIT, FORM_WEIGHT, MatchOptions, Observer, PreparedForm, ShapeDescription,
     SignatureKind, describe,
 };

@@ -1,6 +1,6 @@
 //! The program `canonform`: nonrigid shapes on the command line.
 //!
-//! Parses arguments, calls `pipeline`, prints. Knows no numerical code.
+//! Parses arguments, calls `canonform`, prints. Knows no numerical code.
 
 mod args;
 mod commands;

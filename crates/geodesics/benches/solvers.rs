@@ -3,7 +3,7 @@
 //! Comparisons with other programs stand in `bench/peers.py`.
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
-use geodesics::{FirstSample, HeatOptions, Method, farthest_point_sampling};
+use canonform_geodesics::{FirstSample, HeatOptions, Method, farthest_point_sampling};
 use mesh::{IntrinsicMesh, VertexId, shapes};
 
 /// A torus with triangles of all shapes, of about so many vertices.

@@ -4,7 +4,7 @@
 // Helper functions are test code too, which clippy cannot see.
 #![allow(clippy::unwrap_used)]
 
-use geodesics::{
+use canonform_geodesics::{
     Dijkstra, DistanceSolver, Exact, FastMarching, HeatOptions, Method, PathTracer, Source, SurfacePoint,
 };
 use mesh::{IntrinsicMesh, TriMesh, VertexId, shapes};

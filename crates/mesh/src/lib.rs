@@ -20,9 +20,9 @@
 //! ```no_run
 //! use std::path::Path;
 //!
-//! # fn main() -> Result<(), mesh::MeshError> {
-//! let mesh = mesh::io::read(Path::new("david0.vert"))?;
-//! let repaired = mesh::repair(&mesh, &mesh::RepairOptions::default())?;
+//! # fn main() -> Result<(), canonform_mesh::MeshError> {
+//! let mesh = canonform_mesh::io::read(Path::new("david0.vert"))?;
+//! let repaired = canonform_mesh::repair(&mesh, &canonform_mesh::RepairOptions::default())?;
 //! for line in repaired.report.summary() {
 //!     eprintln!("{line}");
 //! }

@@ -6,8 +6,8 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use mesh::io::{MemoryFile, ReadLimits, is_mesh_path, read, read_memory, write, write_scalar_field};
-use mesh::{Fault, MeshError, TriMesh, VertexId, shapes};
+use canonform_mesh::io::{MemoryFile, ReadLimits, is_mesh_path, read, read_memory, write, write_scalar_field};
+use canonform_mesh::{Fault, MeshError, TriMesh, VertexId, shapes};
 use nalgebra::Point3;
 use proptest::prelude::*;
 use tempfile::TempDir;

@@ -6,8 +6,8 @@
 
 use std::path::{Path, PathBuf};
 
-use mesh::{ComponentPolicy, Fault, MeshError, RepairOptions, TriMesh, VertexId};
-use mesh::{io, repair, validate};
+use canonform_mesh::{ComponentPolicy, Fault, MeshError, RepairOptions, TriMesh, VertexId};
+use canonform_mesh::{io, repair, validate};
 
 fn data(folder: &str) -> Option<PathBuf> {
     let default = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");

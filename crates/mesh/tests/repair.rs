@@ -3,7 +3,7 @@
 // Helper functions are test code too, which clippy cannot see.
 #![allow(clippy::unwrap_used)]
 
-use mesh::{
+use canonform_mesh::{
     ComponentPolicy, MeshError, Orient, RepairOptions, Repaired, TriMesh, VertexId, Weld, repair, shapes,
     validate,
 };

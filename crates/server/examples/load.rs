@@ -10,7 +10,7 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
-use server::{ServeOptions, Server};
+use canonform_server::{ServeOptions, Server};
 
 #[path = "../tests/api/client.rs"]
 mod client;

@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use axum::body::Bytes;
-use pipeline::{CanonicalForm, PipelineError, ShapeSearch};
+use canonform::{CanonicalForm, PipelineError, ShapeSearch};
 use serde::Serialize;
 
 use crate::ServeOptions;

@@ -8,7 +8,7 @@ use axum::Json;
 use axum::http::{HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use mesh::{Fault, MeshError};
-use pipeline::{IndexError, PipelineError};
+use canonform::{IndexError, PipelineError};
 use serde::Serialize;
 
 /// Why a server does not start or does not go on.

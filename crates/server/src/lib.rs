@@ -1,6 +1,6 @@
 //! Shape search over HTTP: a page for people, a JSON interface beneath it.
 //!
-//! index file -> `pipeline::ShapeSearch` -> **server** -> JSON, `report::interactive::Geometry`, pictures, one page
+//! index file -> `canonform::ShapeSearch` -> **server** -> JSON, `report::interactive::Geometry`, pictures, one page
 //!
 //! ```text
 //! request -> guard (host, origin, headers) -> api / page -> work (a bounded number of jobs) -> pipeline
@@ -10,7 +10,7 @@
 //! index, and their meshes are read from where the index says. Uploads stay in memory. Whatever is asked, by as many
 //! as like, memory and time have limits, see [`ServeOptions`].
 //!
-//! Knows no numerical code: what is measured, `pipeline` measures.
+//! Knows no numerical code: what is measured, `canonform` measures.
 
 mod api;
 mod app;

@@ -4,7 +4,7 @@ use std::io::IsTerminal;
 use std::sync::{Mutex, PoisonError};
 
 use indicatif::{ProgressBar, ProgressStyle};
-use pipeline::Observer;
+use canonform::Observer;
 
 /// A bar per stage while a person watches; nothing otherwise.
 #[derive(Debug)]

@@ -1,7 +1,7 @@
 //! What the built-in dataset must come out as.
 
 use datasets::{ArticulatedOptions, articulated};
-use pipeline::{
+use canonform::{
     DescribeOptions, EmbedOptions, MatchOptions, Normalization, PreparedForms, ShapeDistance, StressChoice,
     describe, embed, form_distances,
 };

@@ -8,7 +8,7 @@ use nmds::{
     NystromOptions, Reconstruction, Regularization, SpectralOptions, classical, classical_full,
     normalized_stress, nystrom, paper_stress,
 };
-use pipeline::{
+use canonform::{
     Bandwidth, EmbedMethod, EmbedOptions, RpiAlpha, Samples, Sampling, SmacofOptions, StressChoice,
     StressKind, Variance, embedded_distances,
 };

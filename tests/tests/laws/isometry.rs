@@ -4,7 +4,7 @@ use datasets::Family;
 use linalg::DistanceMatrix;
 use mesh::{IntrinsicMesh, TriMesh, VertexId, shapes};
 use nalgebra::{Isometry3, Point3, Vector3};
-use pipeline::{
+use canonform::{
     EmbedMethod, EmbedOptions, FirstSample, GeodesicMethod, MatchOptions, Normalization, PreparedForms,
     Samples, form_distances,
 };
@@ -155,7 +155,7 @@ fn normalised_distances_between_forms_know_no_size() {
     let distances = |factor: f64| {
         let forms = meshes.iter().map(|mesh| {
             let surface = surface(&moved(mesh, |p| p * factor));
-            pipeline::embed(&surface, &few_samples(), &()).unwrap().form(&surface).unwrap()
+            canonform::embed(&surface, &few_samples(), &()).unwrap().form(&surface).unwrap()
         });
         let forms: Vec<_> = forms.collect();
         let prepared = PreparedForms::new(&forms, Normalization::UnitArea).unwrap();

@@ -6,7 +6,7 @@ use geodesics::{
     farthest_point_sampling,
 };
 use mesh::{IntrinsicMesh, TriMesh, VertexId, shapes};
-use pipeline::GeodesicMethod;
+use canonform::GeodesicMethod;
 
 use crate::support::{all_vertices, body, columns, marching};
 

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use geodesics::{FirstSample, farthest_point_sampling};
 use mesh::{IntrinsicMesh, RepairOptions, VertexId};
 use nmds::{NystromOptions, Regularization, classical, nystrom, paper_stress};
-use pipeline::{
+use canonform::{
     DescribeOptions, EmbedOptions, MatchOptions, Normalization, PreparedForms, ShapeDistance, StressChoice,
     Surface, describe_surface, embed, form_distances, label_of, list_shapes,
 };

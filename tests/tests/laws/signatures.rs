@@ -1,7 +1,7 @@
 //! Signatures: blind to poses and triangulations, sharp on bodies, fit for any mesh.
 
 use datasets::{ArticulatedOptions, Family, articulated_shape};
-use pipeline::{
+use canonform::{
     DescribeOptions, ShapeDescription, SignatureKind, Surface, describe, describe_surface, rerank,
 };
 use rayon::prelude::*;

@@ -6,7 +6,7 @@ use datasets::{ArticulatedOptions, Family, articulated_shape};
 use linalg::{DistanceMatrix, Matrix};
 use mesh::{IntrinsicMesh, RepairOptions, TriMesh, VertexId};
 use nalgebra::Point3;
-use pipeline::{EmbedOptions, Embedded, GeodesicMethod, Surface, embed, embedded_distances};
+use canonform::{EmbedOptions, Embedded, GeodesicMethod, Surface, embed, embedded_distances};
 
 /// The folder of the workspace's manifest.
 pub(crate) fn workspace_root() -> PathBuf {

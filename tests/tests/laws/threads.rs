@@ -1,7 +1,7 @@
 //! The same bits for any number of threads.
 
 use datasets::Family;
-use pipeline::{
+use canonform::{
     EmbedMethod, EmbedOptions, Embedded, MatchOptions, Normalization, PreparedForms, Samples, StressChoice,
     form_distances,
 };
@@ -52,7 +52,7 @@ fn distances_between_forms_do_not_depend_on_threads() {
         .map(|family| {
             let surface = surface(&body(family));
             let options = EmbedOptions { stress: StressChoice::Skip, ..EmbedOptions::default() };
-            pipeline::embed(&surface, &options, &()).unwrap().form(&surface).unwrap()
+            canonform::embed(&surface, &options, &()).unwrap().form(&surface).unwrap()
         })
         .collect();
     for normalization in [Normalization::Raw, Normalization::UnitArea] {

@@ -3,7 +3,7 @@
 use anyhow::{Result, bail};
 use clap::{Args, ValueEnum};
 use mesh::VertexId;
-use pipeline::{
+use canonform::{
     Bandwidth, EmbedMethod, EmbedOptions, FirstSample, Regularization, RpiAlpha, Samples, Sampling,
     SmacofOptions, StressChoice, Variance,
 };

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, Subcommand};
-use pipeline::{DescribeOptions, Measure, Normalization, Shard};
+use canonform::{DescribeOptions, Measure, Normalization, Shard};
 
 use super::RepairArgs;
 
@@ -174,7 +174,7 @@ fn parse_measure(text: &str) -> Result<Measure, String> {
     match text {
         "fused" => Ok(Measure::Fused),
         kind => {
-            kind.parse().map(Measure::Signature).map_err(|fault: pipeline::DescriptorError| fault.to_string())
+            kind.parse().map(Measure::Signature).map_err(|fault: canonform::DescriptorError| fault.to_string())
         }
     }
 }

@@ -10,7 +10,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use mesh::{ComponentPolicy, Orient, RepairOptions, Weld};
-use pipeline::{
+use canonform::{
     FastMarchingOptions, GeodesicMethod, HeatOptions, ObtuseTreatment, Samples, StressChoice, Update,
 };
 

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use clap::Args;
-use pipeline::InputPoint;
+use canonform::InputPoint;
 use report::render::{Background, View};
 
 use super::RepairArgs;

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::{Result, bail};
-use pipeline::{
+use canonform::{
     Comparison, DescribeOptions, FormDistance, Handedness, MatchKind, MatchOptions, SAME_BELOW,
     ShapeDistance, StressChoice, Surface, SurfaceComparison, Triangulation, compare_surfaces,
     describe_surface, embed,

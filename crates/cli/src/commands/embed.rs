@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::{Context, Result, bail};
-use pipeline::{EmbedMethod, EmbedOptions, EmbedReport, Embedded, ShapeFile, Surface, list_shapes};
+use canonform::{EmbedMethod, EmbedOptions, EmbedReport, Embedded, ShapeFile, Surface, list_shapes};
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -58,7 +58,7 @@ pub(crate) fn embed(args: &EmbedArgs, common: &Common) -> Result<ExitCode> {
     check_folder(&args.output)?;
     let surface = read_surface(&args.mesh, &args.embedding.repair)?;
     let bars = Bars::new(common.quiet);
-    let embedded = pipeline::embed(&surface, &options, &bars).map_err(|fault| named(&args.mesh, fault))?;
+    let embedded = canonform::embed(&surface, &options, &bars).map_err(|fault| named(&args.mesh, fault))?;
     bars.finish();
     warn(&args.mesh.display().to_string(), &embedded.report);
     write(&args.output, &surface, &embedded)?;
@@ -87,7 +87,7 @@ fn batch(args: &EmbedArgs, options: &EmbedOptions, common: &Common) -> Result<Ex
                 let surface = Surface::read(&shape.path, &args.embedding.repair.options())
                     .map_err(|fault| named(&shape.path, fault))?;
                 let embedded =
-                    pipeline::embed(&surface, options, &()).map_err(|fault| named(&shape.path, fault))?;
+                    canonform::embed(&surface, options, &()).map_err(|fault| named(&shape.path, fault))?;
                 if let Some(folder) = output.parent() {
                     std::fs::create_dir_all(folder)
                         .with_context(|| format!("cannot make the folder {}", folder.display()))?;

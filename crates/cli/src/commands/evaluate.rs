@@ -3,7 +3,7 @@
 use std::process::ExitCode;
 
 use anyhow::Result;
-use pipeline::{Evaluation, LabelFile, evaluate_index, evaluate_matrix};
+use canonform::{Evaluation, LabelFile, evaluate_index, evaluate_matrix};
 use terminal::Bars;
 
 use super::named;

@@ -61,7 +61,7 @@ fn paths(arguments: &[PathBuf]) -> Result<Vec<PathBuf>> {
     let mut paths = Vec::new();
     for path in arguments {
         if path.is_dir() {
-            paths.extend(pipeline::list_shapes(path, None)?.into_iter().map(|shape| shape.path));
+            paths.extend(canonform::list_shapes(path, None)?.into_iter().map(|shape| shape.path));
         } else {
             paths.push(path.clone());
         }

@@ -3,7 +3,7 @@
 use std::process::ExitCode;
 
 use anyhow::Result;
-use pipeline::{EmbedOptions, MethodFacts, MethodsReport, compare_methods};
+use canonform::{EmbedOptions, MethodFacts, MethodsReport, compare_methods};
 use terminal::{Bars, PeakMemory};
 
 use super::{named, read_surface};

@@ -25,7 +25,7 @@ pub(crate) use search::search;
 pub(crate) use serve::serve;
 
 use mesh::RepairReport;
-use pipeline::Surface;
+use canonform::Surface;
 
 /// Says on standard error what was repaired; a repair is never silent.
 fn say_repair(name: &str, report: &RepairReport) {
@@ -47,7 +47,7 @@ fn read_surface(path: &std::path::Path, repair: &crate::args::RepairArgs) -> any
 }
 
 /// An error that names the file once, whether or not it does so itself.
-fn named(path: &std::path::Path, fault: pipeline::PipelineError) -> anyhow::Error {
+fn named(path: &std::path::Path, fault: canonform::PipelineError) -> anyhow::Error {
     let is_named = is_named(path, &fault.to_string());
     let error = anyhow::Error::from(fault);
     if is_named { error } else { error.context(path.display().to_string()) }

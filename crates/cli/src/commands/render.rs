@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use anyhow::{Result, bail};
 use mesh::{RepairReport, TriMesh};
-use pipeline::{EmbedOptions, GeodesicMethod, Source, StressChoice, Surface, embed};
+use canonform::{EmbedOptions, GeodesicMethod, Source, StressChoice, Surface, embed};
 use report::render::{RenderOptions, Surface as Paint, render, render_with_bar, value_range};
 use serde::Serialize;
 use terminal::Bars;
@@ -134,9 +134,9 @@ fn field(args: &RenderArgs, mesh: &TriMesh, surface: Option<&Surface>) -> Result
     }
 }
 
-fn distances(args: &RenderArgs, surface: &Surface) -> Result<Vec<f64>, pipeline::PipelineError> {
+fn distances(args: &RenderArgs, surface: &Surface) -> Result<Vec<f64>, canonform::PipelineError> {
     let source = |point| Ok(Source::new(&surface.intrinsic, surface.locate(point)?)?);
-    let sources: Result<Vec<_>, pipeline::PipelineError> = args.distance_from.iter().map(source).collect();
+    let sources: Result<Vec<_>, canonform::PipelineError> = args.distance_from.iter().map(source).collect();
     let solver = GeodesicMethod::default().prepare(&surface.intrinsic)?;
     let mut distances = vec![0.0; solver.n_vertices()];
     solver.solve_into(&sources?, f64::INFINITY, &mut distances);

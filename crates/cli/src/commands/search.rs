@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::Result;
-use pipeline::{Explain, MatchKind, SearchMode, SearchOptions, SearchReport, SearchResult, ShapeSearch};
+use canonform::{Explain, MatchKind, SearchMode, SearchOptions, SearchReport, SearchResult, ShapeSearch};
 use serde::Serialize;
 
 use super::named;

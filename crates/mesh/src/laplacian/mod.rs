@@ -1,7 +1,7 @@
 //! The Laplacian of a surface, from edge lengths alone.
 //!
 //! [`IntrinsicMesh`] -> [`Metric`] -> Delaunay [`Element`]s -> [`Laplacian`] ->
-//! `geodesics` (heat), `descriptors` (spectra), `pipeline` (spectral embeddings)
+//! `geodesics` (heat), `descriptors` (spectra), `canonform` (spectral embeddings)
 //!
 //! Robust where the textbook formula is not: any lengths become triangles ([`Metric`]), boundaries,
 //! non-manifold edges and faces of opposite orientation are nothing special, and obtuse triangles are

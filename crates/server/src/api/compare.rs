@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use axum::extract::State;
 use axum::http::StatusCode;
-use pipeline::{
+use canonform::{
     CanonicalForm, Comparison, MatchOptions, Overlay, PipelineError, ShapeDistance, SurfaceComparison,
     Triangulation, compare_surfaces, overlay_forms,
 };

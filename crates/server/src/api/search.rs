@@ -7,7 +7,7 @@ use std::time::Instant;
 use axum::extract::{Request, State};
 use mesh::RepairReport;
 use mesh::io::{MemoryFile, ReadLimits, read_memory};
-use pipeline::{
+use canonform::{
     Explain, PipelineError, SearchOptions, SearchReport, SearchSeconds, Surface, describe_with_form,
 };
 use report::interactive::Geometry;

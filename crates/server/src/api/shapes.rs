@@ -7,7 +7,7 @@ use axum::extract::State;
 use axum::http::HeaderMap;
 use axum::response::Response;
 use mesh::TriMesh;
-use pipeline::PipelineError;
+use canonform::PipelineError;
 use report::interactive::Geometry;
 use report::render::{Background, RenderOptions, View, render};
 use serde::{Deserialize, Serialize};

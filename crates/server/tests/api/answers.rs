@@ -68,8 +68,8 @@ fn an_upload_finds_itself_in_every_format() {
 fn the_answer_is_that_of_the_command_line() {
     let server = Served::start(options());
     let mesh = shapes::torus(24, 12, 2.0, 0.7);
-    let search = pipeline::ShapeSearch::open(&server.folder.join(INDEX)).unwrap();
-    let report = search.search(&mesh, &pipeline::SearchOptions::default()).unwrap();
+    let search = canonform::ShapeSearch::open(&server.folder.join(INDEX)).unwrap();
+    let report = search.search(&mesh, &canonform::SearchOptions::default()).unwrap();
     let answer = upload(server.address, &[("q.off", &written("q.off", &mesh))], &[]).unwrap().json();
     for (name, expected) in serde_json::to_value(&report).unwrap().as_object().unwrap() {
         if name != "seconds" {

@@ -6,7 +6,7 @@ use std::io::{Read, Write};
 use flate2::Compression;
 use flate2::write::ZlibEncoder;
 use mesh::shapes;
-use server::ServeOptions;
+use canonform_server::ServeOptions;
 
 use crate::client::{Answer, ask, connect, form, read_answer, upload};
 use crate::running::options;

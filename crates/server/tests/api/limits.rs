@@ -5,7 +5,7 @@ use std::io::{Read, Write};
 use std::time::{Duration, Instant};
 
 use mesh::shapes;
-use server::{ServeOptions, Server, ServerError};
+use canonform_server::{ServeOptions, Server, ServerError};
 
 use crate::client::{ask, connect, form, upload};
 use crate::running::options;

@@ -6,8 +6,8 @@ use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
 use mesh::{TriMesh, shapes};
-use pipeline::{BuildOptions, DescribeOptions, build_index};
-use server::{ServeOptions, ServerError};
+use canonform::{BuildOptions, DescribeOptions, build_index};
+use canonform_server::{ServeOptions, ServerError};
 use tempfile::TempDir;
 
 use crate::running::Running;

@@ -6,7 +6,7 @@ use std::sync::OnceLock;
 
 use browser::Browser;
 use datasets::{ArticulatedOptions, Family, LabeledShape, articulated_shape};
-use pipeline::{BuildOptions, DescribeOptions, build_index};
+use canonform::{BuildOptions, DescribeOptions, build_index};
 use serde_json::{Value, json};
 
 use crate::running::{Running, options};

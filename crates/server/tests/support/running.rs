@@ -4,7 +4,7 @@ use std::net::SocketAddr;
 use std::path::Path;
 use std::thread::JoinHandle;
 
-use server::{ServeOptions, Server, ServerError, Stop};
+use canonform_server::{ServeOptions, Server, ServerError, Stop};
 
 /// Options with a port that is free.
 pub(crate) fn options() -> ServeOptions {

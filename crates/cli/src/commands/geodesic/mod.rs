@@ -10,7 +10,7 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use anyhow::{Result, bail};
-use pipeline::{DistanceSolver, InputPoint, Source, Surface};
+use canonform::{DistanceSolver, InputPoint, Source, Surface};
 use serde::Serialize;
 
 use super::{named, read_surface};

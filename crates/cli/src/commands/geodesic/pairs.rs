@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use anyhow::Result;
 use mesh::{RepairReport, VertexId};
-use pipeline::{AllPairs, Asymmetry};
+use canonform::{AllPairs, Asymmetry};
 use serde::Serialize;
 use terminal::Bars;
 

@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use anyhow::Result;
 use mesh::RepairReport;
-use pipeline::{InputPoint, PathTracer, Source, Surface, SurfacePath};
+use canonform::{InputPoint, PathTracer, Source, Surface, SurfacePath};
 use serde::Serialize;
 
 use super::super::named;
@@ -154,7 +154,7 @@ fn write_json(out: &mut dyn Write, paths: &[SurfacePath], facts: &[PathFacts]) -
     }
     let points = |path: &SurfacePath| {
         let point =
-            |p: &pipeline::PathPoint| Point { at: p.at, position: p.position.into(), distance: p.distance };
+            |p: &canonform::PathPoint| Point { at: p.at, position: p.position.into(), distance: p.distance };
         path.points.iter().map(point).collect()
     };
     let paths = paths.iter().zip(facts).map(|(path, facts)| Path { facts, points: points(path) }).collect();

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
 use mesh::RepairReport;
-use pipeline::InputPoint;
+use canonform::InputPoint;
 use serde::Serialize;
 
 use super::{Row, Seconds, Task, spelled};

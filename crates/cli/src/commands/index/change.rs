@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::Result;
-use pipeline::{
+use canonform::{
     BuildOptions, BuildReport, Inputs, LabelFile, MergeReport, add_to_index, build_index, merge_indexes,
     remove_from_index,
 };

@@ -15,7 +15,7 @@ use std::path::Path;
 use std::time::Instant;
 
 use mesh::{RepairOptions, VertexId};
-use pipeline::{
+use canonform::{
     EmbedMethod, EmbedOptions, FirstSample, Regularization, Samples, StressChoice, Surface, embed,
 };
 
