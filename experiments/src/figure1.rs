@@ -10,7 +10,7 @@ use descriptors::{CanonicalForm, MatchOptions, PreparedForm, match_forms};
 use mesh::{TriMesh, orient_consistently};
 use canonform::{EmbedOptions, MATCHED_POINTS, StressChoice, embed};
 use report::figure1::{Figure1Pair, PAIRS, figure1};
-use report::render::View;
+use view::render::View;
 use report::results::{Figure1Record, Figure1Shape, write};
 
 use crate::collection::{Shape, map};

@@ -19,7 +19,7 @@ use nmds::{
 };
 use canonform::{FastMarchingOptions, GeodesicMethod, MATCHED_POINTS, ObtuseTreatment, Update};
 use report::figure3::{Figure3Surfaces, figure3};
-use report::render::View;
+use view::render::View;
 use report::results::{Figure3Form, Figure3Record, Figure3Shape, Figure3Stress, write};
 use report::tables::figure3_table;
 

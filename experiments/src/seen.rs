@@ -7,7 +7,7 @@ use linalg::Matrix;
 use mesh::{TriMesh, VertexId, orient_consistently};
 use nalgebra::Point3;
 use canonform::{EmbedOptions, Embedded, Normalization};
-use report::interactive::Geometry;
+use view::interactive::Geometry;
 use report::results::{Motions, Scale, SeenForm, SeenShape};
 
 use crate::coarse::coarse;

@@ -68,6 +68,5 @@ pub use geodesics::{
     DistanceSolver, FastMarchingOptions, FirstSample, HeatOptions, Method as GeodesicMethod, ObtuseTreatment,
     PathTracer, Sampling, Source, SurfacePoint, Update, Variance,
 };
-pub use mesh::io::abandon_unfinished;
 pub use nmds::{Bandwidth, Regularization, RpiAlpha, SmacofOptions};
 pub use retrieval::{ContentHash, Evaluation, IndexError, SearchMode, ShapeEntry};

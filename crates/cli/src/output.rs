@@ -37,7 +37,7 @@ pub(crate) fn write_npy<'a>(
     rows: impl ExactSizeIterator<Item = &'a [f64]>,
 ) -> Result<()> {
     let shape = [rows.len() as u64, n_columns as u64];
-    Ok(mesh::io::write_atomically(path, |out| {
+    Ok(files::write_atomically(path, |out| {
         let mut array = npyz::WriteOptions::new().default_dtype().shape(&shape).writer(out).begin_nd()?;
         for row in rows {
             array.extend(row)?;
@@ -58,7 +58,7 @@ pub(crate) fn fill_npy(
     let array: npyz::NpyWriter<f64, _> =
         npyz::WriteOptions::new().default_dtype().shape(&shape).writer(&mut header).begin_nd()?;
     drop(array);
-    Ok(mesh::io::fill_atomically(path, |file| {
+    Ok(files::fill_atomically(path, |file| {
         file.write_all(&header)?;
         content(file)
     })?)
@@ -66,7 +66,7 @@ pub(crate) fn fill_npy(
 
 /// Writes rows of numbers separated by commas, in full precision.
 pub(crate) fn write_csv<'a>(path: &Path, rows: impl Iterator<Item = &'a [f64]>) -> Result<()> {
-    Ok(mesh::io::write_atomically(path, |out| {
+    Ok(files::write_atomically(path, |out| {
         for row in rows {
             let text: Vec<String> = row.iter().map(f64::to_string).collect();
             writeln!(out, "{}", text.join(","))?;

@@ -11,15 +11,8 @@ use crate::VertexId;
 #[non_exhaustive]
 pub enum MeshError {
     /// The operating system refused.
-    #[error("cannot {action} {path}: {source}; check that the path exists and its permissions allow it")]
-    Io {
-        /// What was tried: "read" or "write".
-        action: &'static str,
-        /// The file.
-        path: PathBuf,
-        /// What the operating system said.
-        source: std::io::Error,
-    },
+    #[error(transparent)]
+    Io(#[from] files::FileError),
 
     /// The file was opened but is not a usable mesh.
     #[error("{path}{place}: {fault}")]

@@ -5,22 +5,12 @@ use std::path::PathBuf;
 /// Errors of reading records and of drawing and writing figures.
 #[derive(Debug, thiserror::Error)]
 pub enum ReportError {
-    /// A file could not be read.
-    #[error("{}: cannot be read: {source}; check that the path exists and is readable", path.display())]
-    Read {
-        /// The file.
-        path: PathBuf,
-        /// What the system said.
-        source: std::io::Error,
-    },
-    /// A file could not be written; nothing of it is left behind.
-    #[error("{}: cannot be written: {source}; check that the folder exists, is writable and has room", path.display())]
-    Write {
-        /// The file.
-        path: PathBuf,
-        /// What the system said.
-        source: std::io::Error,
-    },
+    /// A file could not be read or written; nothing of it is left behind.
+    #[error(transparent)]
+    File(#[from] files::FileError),
+    /// A picture could not be drawn or written.
+    #[error(transparent)]
+    View(#[from] view::ViewError),
     /// A file is not the record it should be.
     #[error("{}: is not a record this version reads: {source}; run the experiment again", path.display())]
     Parse {
@@ -60,13 +50,5 @@ pub enum ReportError {
         figure: &'static str,
         /// What it draws.
         unit: &'static str,
-    },
-    /// The drawing backend failed.
-    #[error("{figure} could not be drawn: {reason}; this is a fault of the program, please report it")]
-    Draw {
-        /// Which figure.
-        figure: String,
-        /// What the backend said.
-        reason: String,
     },
 }

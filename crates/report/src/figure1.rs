@@ -5,12 +5,14 @@ use std::path::{Path, PathBuf};
 use mesh::TriMesh;
 use plotters::prelude::DrawingBackend;
 
-use crate::canvas::{Anchor, Canvas, DrawError, Drawing, GRID, RASTER, SMALL, TEXT, TITLE, Type, save};
+use view::canvas::{Anchor, Canvas, DrawError, Drawing, GRID, RASTER, SMALL, TEXT, TITLE, Type, save};
 use crate::classes::Classes;
-use crate::color::class_clay;
-use crate::render::{RenderOptions, Surface, View, aspect, render};
+use view::color::class_clay;
+use view::render::{RenderOptions, Surface, View, aspect, render};
 use crate::results::Figure1Shape;
-use crate::{ReportError, RgbaImage};
+use view::RgbaImage;
+
+use crate::ReportError;
 
 /// What is appended to the stem of Figure 1's files, before `.png` and `.svg`.
 pub const PART: &str = "-forms";
@@ -35,7 +37,7 @@ pub struct Figure1Pair<'a> {
 /// from one side, on which the principal axes of the first lie in the picture.
 ///
 /// # Errors
-/// [`ReportError::Empty`] without a pair, [`ReportError::Write`] and [`ReportError::Draw`].
+/// [`ReportError::Empty`] without a pair, [`ReportError::View`].
 pub fn figure1(
     pairs: &[Figure1Pair],
     view: &View,
@@ -46,7 +48,7 @@ pub fn figure1(
     }
     let mut stem = stem.as_ref().as_os_str().to_owned();
     stem.push(PART);
-    save(&Grid::new(pairs, view), Path::new(&stem))
+    Ok(save(&Grid::new(pairs, view), Path::new(&stem))?)
 }
 
 const WIDTH: f64 = 1000.0;
@@ -168,14 +170,16 @@ impl Drawing for Grid {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fixtures::{assert_balanced, figure1_record, sphere};
+    use mesh::shapes::icosphere;
+
+    use crate::fixtures::{assert_balanced, figure1_record};
 
     #[test]
     fn every_shape_is_named_and_files_repeat() {
         let mut shapes = figure1_record().shapes;
         let first = shapes[0].clone();
         shapes.extend((1..6).map(|i| Figure1Shape { name: format!("cat{i}"), ..first.clone() }));
-        let ball = sphere(8);
+        let ball = icosphere(2);
         let pairs: Vec<Figure1Pair> =
             shapes.iter().map(|facts| Figure1Pair { facts, shape: &ball, form: &ball }).collect();
         let folder = tempfile::tempdir().unwrap();

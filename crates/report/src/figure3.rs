@@ -5,12 +5,14 @@ use std::path::{Path, PathBuf};
 use mesh::TriMesh;
 use plotters::prelude::DrawingBackend;
 
-use crate::canvas::{Anchor, Canvas, DrawError, Drawing, GRID, RASTER, SMALL, TEXT, TITLE, Type, save};
-use crate::color::class_clay;
+use view::canvas::{Anchor, Canvas, DrawError, Drawing, GRID, RASTER, SMALL, TEXT, TITLE, Type, save};
+use view::color::class_clay;
 use crate::figure1::stress_digits;
-use crate::render::{RenderOptions, Surface, View, aspect, render};
+use view::render::{RenderOptions, Surface, View, aspect, render};
 use crate::results::Figure3Shape;
-use crate::{ReportError, RgbaImage};
+use view::RgbaImage;
+
+use crate::ReportError;
 
 /// What is appended to the stem of Figure 3's files, before `.png` and `.svg`.
 pub const PART: &str = "-forms";
@@ -32,7 +34,7 @@ pub struct Figure3Surfaces<'a> {
 ///
 /// # Errors
 /// [`ReportError::Empty`] without a row, [`ReportError::Shape`] when forms and facts do not pair up,
-/// [`ReportError::Write`] and [`ReportError::Draw`].
+/// [`ReportError::View`].
 pub fn figure3(
     rows: &[Figure3Surfaces<'_>],
     view: &View,
@@ -50,7 +52,7 @@ pub fn figure3(
     }
     let mut stem = stem.as_ref().as_os_str().to_owned();
     stem.push(PART);
-    save(&Grid::new(rows, view), Path::new(&stem))
+    Ok(save(&Grid::new(rows, view), Path::new(&stem))?)
 }
 
 const WIDTH: f64 = 1000.0;
@@ -146,12 +148,14 @@ impl Drawing for Grid {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fixtures::{assert_balanced, figure3_record, sphere};
+    use mesh::shapes::icosphere;
+
+    use crate::fixtures::{assert_balanced, figure3_record};
 
     #[test]
     fn every_form_has_its_stress_and_that_of_the_paper() {
         let record = figure3_record();
-        let ball = sphere(8);
+        let ball = icosphere(2);
         let forms = vec![ball.clone(); record.shapes[0].forms.len()];
         let rows: Vec<_> = record
             .shapes
@@ -175,8 +179,8 @@ mod tests {
         let empty = figure3(&[], &View::default(), &stem).unwrap_err();
         assert!(matches!(empty, ReportError::Empty { .. }), "{empty}");
         let record = figure3_record();
-        let ball = sphere(4);
-        let row = Figure3Surfaces { facts: &record.shapes[0], shape: &ball, forms: &[sphere(4)] };
+        let ball = icosphere(2);
+        let row = Figure3Surfaces { facts: &record.shapes[0], shape: &ball, forms: &[icosphere(2)] };
         let short = figure3(&[row], &View::default(), &stem).unwrap_err();
         assert!(short.to_string().starts_with("forms of david<0> has 1 entries where 2"), "{short}");
     }

@@ -1,11 +1,9 @@
 //! Small made-up records and meshes for the tests.
 
-use mesh::{TriMesh, VertexId};
-use nalgebra::Point3;
 use retrieval::{Evaluation, MeanScores};
 use serde_json::json;
 
-use crate::interactive::Geometry;
+use view::interactive::Geometry;
 use crate::results::{
     Axis, AxisScale, Classification, CurvesPanel, CurvesRecord, Expectation, Figure1Record, Figure1Shape,
     Figure3Form, Figure3Record, Figure3Shape, Figure3Stress, Figure4Panel, Figure4Record, Figure9Measured,
@@ -172,7 +170,7 @@ pub(crate) fn retrieval_record() -> RetrievalRecord {
 pub(crate) fn shapes_record(classes: &[(&str, usize)]) -> ShapesRecord {
     let figure = figure4_record(classes);
     let shape = |(i, (name, label)): (usize, (&String, &String))| {
-        let mut ball = sphere(6);
+        let mut ball = mesh::shapes::icosphere(2);
         ball.positions.iter_mut().for_each(|p| *p *= 1.0 + i as f64);
         let heights: Vec<f64> = ball.positions.iter().map(|p| p.z).collect();
         let surface = Geometry::new(&ball).with_values("distance", &heights);
@@ -241,35 +239,6 @@ pub(crate) fn figure4_record(classes: &[(&str, usize)]) -> Figure4Record {
         ],
         analysis: "Two clusters.".into(),
     }
-}
-
-pub(crate) fn mesh(positions: &[[f64; 3]], faces: &[[u32; 3]]) -> TriMesh {
-    TriMesh {
-        positions: positions.iter().map(|p| Point3::from(*p)).collect(),
-        faces: faces.iter().map(|f| f.map(VertexId)).collect(),
-    }
-}
-
-/// A unit sphere of `2 n` times `n` patches around the z axis.
-pub(crate) fn sphere(n: usize) -> TriMesh {
-    let mut positions = Vec::new();
-    for ring in 0..=n {
-        for slice in 0..2 * n {
-            let (polar, azimuth) = (
-                ring as f64 / n as f64 * std::f64::consts::PI,
-                slice as f64 / n as f64 * std::f64::consts::PI,
-            );
-            positions.push([polar.sin() * azimuth.cos(), polar.sin() * azimuth.sin(), polar.cos()]);
-        }
-    }
-    let at = |ring: usize, slice: usize| (ring * 2 * n + slice % (2 * n)) as u32;
-    let faces: Vec<[u32; 3]> = (0..n)
-        .flat_map(|r| (0..2 * n).map(move |s| (r, s)))
-        .flat_map(|(r, s)| {
-            [[at(r, s), at(r + 1, s), at(r + 1, s + 1)], [at(r, s), at(r + 1, s + 1), at(r, s + 1)]]
-        })
-        .collect();
-    mesh(&positions, &faces)
 }
 
 /// A page without what stands inside its scripts and islands of data.

@@ -5,26 +5,18 @@
 //! Knows nothing of how a number came about: every value drawn or printed here stands in a record.
 //! The one thing it works out itself is where to put ink, such as a camera, a tick or a tile.
 
-mod canvas;
 mod classes;
-mod color;
 pub mod curves;
 mod error;
 pub mod figure1;
 pub mod figure3;
 pub mod figure4;
-mod files;
 #[cfg(test)]
 mod fixtures;
-mod image;
-pub mod interactive;
 mod markers;
-mod numbers;
 pub mod page;
-pub mod render;
 pub mod results;
 pub mod retrieval;
 pub mod tables;
 
 pub use error::ReportError;
-pub use image::RgbaImage;

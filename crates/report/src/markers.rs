@@ -4,8 +4,8 @@ use std::f64::consts::PI;
 
 use plotters::prelude::*;
 
-use crate::canvas::{Canvas, DrawError};
-use crate::color::{class_color, mix};
+use view::canvas::{Canvas, DrawError};
+use view::color::{class_color, mix};
 
 /// Half the size of a marker, in units.
 const RADIUS: f64 = 5.8;

@@ -4,7 +4,7 @@ use ::retrieval::Evaluation;
 use comfy_table::{CellAlignment, Table, presets};
 
 use crate::figure1::stress_digits;
-use crate::numbers::signed;
+use view::numbers::signed;
 use crate::results::{
     CurvesRecord, Figure3Record, Figure4Record, Figure9Record, RetrievalRecord, RetrievalRow,
 };

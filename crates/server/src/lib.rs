@@ -1,6 +1,6 @@
 //! Shape search over HTTP: a page for people, a JSON interface beneath it.
 //!
-//! index file -> `canonform::ShapeSearch` -> **server** -> JSON, `report::interactive::Geometry`, pictures, one page
+//! index file -> `canonform::ShapeSearch` -> **server** -> JSON, `view::interactive::Geometry`, pictures, one page
 //!
 //! ```text
 //! request -> guard (host, origin, headers) -> api / page -> work (a bounded number of jobs) -> pipeline

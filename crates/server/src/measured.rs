@@ -2,7 +2,7 @@
 
 use mesh::TriMesh;
 use canonform::{CanonicalForm, DescribeOptions, Overlay, PipelineError, Surface, SurfaceForm};
-use report::interactive::Geometry;
+use view::interactive::Geometry;
 
 /// Bytes of a vertex and of a face in memory, with the connectivity, all arrays together.
 const VERTEX_BYTES: usize = 250;
@@ -49,7 +49,7 @@ impl Measured {
 
 /// A form without a mesh: its points as dots.
 pub(crate) fn dots(form: &CanonicalForm) -> TriMesh {
-    report::render::dots(form.points(), DOT * form.spread())
+    view::render::dots(form.points(), DOT * form.spread())
 }
 
 /// A form of an overlay: with faces where there are some, else dots.
@@ -61,7 +61,7 @@ pub(crate) fn overlaid(overlay: &Overlay, place: usize, measured: Option<&Measur
             Geometry::in_place(&TriMesh { positions: points.clone(), faces }).with_values(RESIDUAL, residuals)
         }
         None => {
-            let mesh = report::render::dots(points, DOT * dot);
+            let mesh = view::render::dots(points, DOT * dot);
             let each = mesh.n_vertices() / points.len().max(1);
             let values: Vec<f64> = residuals.iter().flat_map(|r| std::iter::repeat_n(*r, each)).collect();
             Geometry::in_place(&mesh).with_values(RESIDUAL, &values)

@@ -36,7 +36,7 @@ pub fn run(threads: usize, program: impl FnOnce() -> Result<ExitCode>) -> ExitCo
         if let Some(stop) = INSTEAD.lock().unwrap_or_else(PoisonError::into_inner).take() {
             return stop();
         }
-        canonform::abandon_unfinished();
+        files::abandon_unfinished();
         eprintln!("interrupted");
         std::process::exit(INTERRUPTED);
     });

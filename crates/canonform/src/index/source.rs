@@ -4,6 +4,7 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
+use files::FileError;
 use mesh::io::{MemoryFile, ReadLimits};
 use mesh::{MeshError, TriMesh};
 use rayon::prelude::*;
@@ -135,7 +136,7 @@ pub(super) fn read_unchanged(id: &str, entry: &ShapeEntry) -> Result<TriMesh, Pi
 
 fn content(path: &Path) -> Result<ContentHash, PipelineError> {
     let read = |path: &PathBuf| {
-        std::fs::read(path).map_err(|source| MeshError::Io { action: "read", path: path.clone(), source })
+        std::fs::read(path).map_err(|source| MeshError::from(FileError::read(path, source)))
     };
     let pieces = mesh::io::files_of(path).iter().map(read).collect::<Result<Vec<_>, _>>()?;
     Ok(ContentHash::of(&pieces))

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use canonform::InputPoint;
-use report::render::{Background, View};
+use view::render::{Background, View};
 
 use super::RepairArgs;
 

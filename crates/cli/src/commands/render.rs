@@ -7,7 +7,7 @@ use std::time::Instant;
 use anyhow::{Result, bail};
 use mesh::{RepairReport, TriMesh};
 use canonform::{EmbedOptions, GeodesicMethod, Source, StressChoice, Surface, embed};
-use report::render::{RenderOptions, Surface as Paint, render, render_with_bar, value_range};
+use view::render::{RenderOptions, Surface as Paint, render, render_with_bar, value_range};
 use serde::Serialize;
 use terminal::Bars;
 

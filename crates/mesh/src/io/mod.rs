@@ -8,7 +8,6 @@
 //! file's size warrants.
 
 mod assembly;
-mod atomic;
 mod colormap;
 mod limits;
 mod mat;
@@ -23,19 +22,16 @@ mod stl;
 mod text;
 mod tosca;
 
-use std::fs;
-use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
+use files::{Pending, write_atomically};
 use nalgebra::Point3;
 
 use crate::error::MeshError;
 use crate::face_set::check_input;
 use crate::{TriMesh, VertexId};
-use atomic::Pending;
 use source::{Disk, Memory, Source};
 
-pub use atomic::abandon_unfinished;
 pub use limits::ReadLimits;
 pub use source::MemoryFile;
 
@@ -147,19 +143,19 @@ pub fn write(path: &Path, mesh: &TriMesh) -> Result<(), MeshError> {
     // What `read` would refuse to take back.
     check_input(mesh)?;
     match format {
-        Format::Off => write_atomically(path, |out| off::write(out, mesh)),
-        Format::Obj => write_atomically(path, |out| obj::write(out, mesh)),
-        Format::Ply => write_atomically(path, |out| ply::write(out, mesh)),
+        Format::Off => Ok(write_atomically(path, |out| off::write(out, mesh))?),
+        Format::Obj => Ok(write_atomically(path, |out| obj::write(out, mesh))?),
+        Format::Ply => Ok(write_atomically(path, |out| ply::write(out, mesh))?),
         Format::Stl => {
             let triangles = stl::triangles(mesh)?;
-            write_atomically(path, |out| stl::write(out, &triangles))
+            Ok(write_atomically(path, |out| stl::write(out, &triangles))?)
         }
         Format::Tosca => {
             let pair = tosca::Pair::of(path, &Disk);
             let vert = Pending::write(&pair.vert, |out| tosca::write_positions(out, mesh))?;
             let tri = Pending::write(&pair.tri, |out| tosca::write_faces(out, mesh))?;
             vert.publish()?;
-            tri.publish()
+            Ok(tri.publish()?)
         }
         Format::Mat => Err(MeshError::ReadOnlyFormat { path: path.to_path_buf(), extension: "mat" }),
     }
@@ -186,7 +182,8 @@ pub fn write_scalar_field(path: &Path, mesh: &TriMesh, values: &[f64], name: &st
     }
     check_input(mesh)?;
     let color = colormap::colors(values);
-    write_atomically(path, |out| ply::write_with_field(out, mesh, name, |v| (values[v], color(values[v]))))
+    let with_field = |v: usize| (values[v], color(values[v]));
+    Ok(write_atomically(path, |out| ply::write_with_field(out, mesh, name, with_field))?)
 }
 
 /// Writes lines through points in space as OBJ or PLY (an element `edge` from point to point).
@@ -199,32 +196,8 @@ pub fn write_polylines(path: &Path, lines: &[Vec<Point3<f64>>]) -> Result<(), Me
         return Err(MeshError::NonFinitePosition { vertex: VertexId::from(vertex) });
     }
     match Format::of(path)? {
-        Format::Obj => write_atomically(path, |out| polyline::write_obj(out, lines)),
-        Format::Ply => write_atomically(path, |out| polyline::write_ply(out, lines)),
+        Format::Obj => Ok(write_atomically(path, |out| polyline::write_obj(out, lines))?),
+        Format::Ply => Ok(write_atomically(path, |out| polyline::write_ply(out, lines))?),
         _ => Err(MeshError::LinesFormat { path: path.to_path_buf() }),
     }
-}
-
-/// Writes a file of any kind so that it is there whole or not at all: into a neighbouring temporary
-/// file first, which takes the place of `path` once complete.
-///
-/// # Errors
-/// [`MeshError::Io`] names the file.
-pub fn write_atomically(
-    path: &Path,
-    content: impl FnOnce(&mut dyn Write) -> io::Result<()>,
-) -> Result<(), MeshError> {
-    Pending::write(path, content)?.publish()
-}
-
-/// As [`write_atomically()`], for content that is not written from front to back: `content` may write
-/// anywhere in the file and read what it has written.
-///
-/// # Errors
-/// [`MeshError::Io`] names the file.
-pub fn fill_atomically(
-    path: &Path,
-    content: impl FnOnce(&mut fs::File) -> io::Result<()>,
-) -> Result<(), MeshError> {
-    Pending::fill(path, content)?.publish()
 }

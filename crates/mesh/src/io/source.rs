@@ -3,7 +3,9 @@
 use std::borrow::Cow;
 use std::fs;
 use std::io;
-use std::path::{Path, PathBuf};
+use std::path::Path;
+
+use files::FileError;
 
 use crate::error::{Fault, MeshError};
 
@@ -34,7 +36,7 @@ impl Source for Disk {
     }
 
     fn load(&self, path: &Path) -> Result<Cow<'_, [u8]>, MeshError> {
-        let cannot_read = |source| MeshError::Io { action: "read", path: path.to_path_buf(), source };
+        let cannot_read = |source| FileError::read(path, source).into();
         if !fs::metadata(path).map_err(cannot_read)?.is_file() {
             return Err(cannot_read(io::Error::new(io::ErrorKind::InvalidInput, "not a regular file")));
         }
@@ -52,11 +54,7 @@ impl Source for Memory<'_> {
     }
 
     fn load(&self, path: &Path) -> Result<Cow<'_, [u8]>, MeshError> {
-        let missing = || MeshError::Io {
-            action: "read",
-            path: PathBuf::from(path),
-            source: io::Error::from(io::ErrorKind::NotFound),
-        };
+        let missing = || FileError::read(path, io::ErrorKind::NotFound.into());
         let file = self.0.iter().find(|file| file.name == path).ok_or_else(missing)?;
         not_empty(path, file.bytes.into())
     }

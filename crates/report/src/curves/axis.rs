@@ -3,7 +3,7 @@
 use plotters::coord::ranged1d::Ranged;
 use plotters::coord::types::RangedCoordf64;
 
-use crate::numbers::{Numbers, raised};
+use view::numbers::{Numbers, raised};
 use crate::results::{Axis, AxisScale, CurvesPanel};
 
 /// Ticks wanted at most.

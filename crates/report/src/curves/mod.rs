@@ -7,11 +7,11 @@ use std::path::{Path, PathBuf};
 use plotters::prelude::*;
 
 use crate::ReportError;
-use crate::canvas::{
+use view::canvas::{
     Anchor, Canvas, DrawError, Drawing, GRID, INK, PALE_INK, SMALL, TEXT, TITLE, Type, save, text_width,
 };
 use crate::classes::Classes;
-use crate::color::{class_color, mix};
+use view::color::{class_color, mix};
 use crate::markers::draw_marker;
 use crate::results::{CurvesPanel, CurvesRecord, Series};
 use axis::Span;
@@ -23,13 +23,13 @@ pub const PART: &str = "-curves";
 /// `STEM-curves.svg`. On a logarithmic axis what is not positive is left out.
 ///
 /// # Errors
-/// Those of [`CurvesRecord::validate`], [`ReportError::Write`] and [`ReportError::Draw`].
+/// Those of [`CurvesRecord::validate`], [`ReportError::View`].
 pub fn curves(record: &CurvesRecord, stem: impl AsRef<Path>) -> Result<Vec<PathBuf>, ReportError> {
     record.validate()?;
     let names = record.panels.iter().flat_map(|panel| panel.series.iter().map(|s| s.name.as_str()));
     let mut stem = stem.as_ref().as_os_str().to_owned();
     stem.push(PART);
-    save(&Plots { panels: &record.panels, names: Classes::of(names) }, Path::new(&stem))
+    Ok(save(&Plots { panels: &record.panels, names: Classes::of(names) }, Path::new(&stem))?)
 }
 
 /// Measures of the figure, in units.

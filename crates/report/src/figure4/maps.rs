@@ -5,12 +5,12 @@ use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 
 use super::{COLUMN, WIDTH, corner, rows, title};
-use crate::canvas::{
+use view::canvas::{
     Anchor, Canvas, DrawError, Drawing, GRID, INK, PALE_INK, RASTER, SMALL, TEXT, Type, style, text_width,
 };
 use crate::classes::Classes;
 use crate::markers::draw_marker;
-use crate::numbers::{Numbers, signed};
+use view::numbers::{Numbers, signed};
 use crate::results::Figure4Panel;
 
 /// The maps of one scale.

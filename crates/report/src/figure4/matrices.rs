@@ -5,11 +5,11 @@ use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 
 use super::{COLUMN, WIDTH, corner, rows, title};
-use crate::RgbaImage;
-use crate::canvas::{Anchor, Canvas, DrawError, Drawing, PALE_INK, RASTER, SMALL, TEXT, Type, text_width};
+use view::RgbaImage;
+use view::canvas::{Anchor, Canvas, DrawError, Drawing, PALE_INK, RASTER, SMALL, TEXT, Type, text_width};
 use crate::classes::Classes;
-use crate::color::perceptual;
-use crate::numbers::Numbers;
+use view::color::perceptual;
+use view::numbers::Numbers;
 use crate::results::Figure4Panel;
 
 /// The matrices of one scale.

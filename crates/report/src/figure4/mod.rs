@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use plotters::prelude::DrawingBackend;
 
 use crate::ReportError;
-use crate::canvas::{Anchor, Canvas, DrawError, TITLE, Type, save};
+use view::canvas::{Anchor, Canvas, DrawError, TITLE, Type, save};
 use crate::classes::Classes;
 use crate::results::{Figure4Panel, Figure4Record, Scale};
 use maps::Maps;
@@ -39,7 +39,7 @@ pub enum Content {
 ///
 /// # Errors
 /// [`ReportError::Empty`] without shapes or panels; [`ReportError::Shape`] and [`ReportError::NotFinite`]
-/// when the record contradicts itself; [`ReportError::Write`] and [`ReportError::Draw`].
+/// when the record contradicts itself; [`ReportError::View`].
 pub fn figure4(record: &Figure4Record, stem: impl AsRef<Path>) -> Result<Vec<PathBuf>, ReportError> {
     record.validate()?;
     if record.names.is_empty() {

@@ -12,12 +12,14 @@ use serde_json::{Value, json};
 use super::chart::framed;
 use super::html::escape;
 use super::scripts::island;
+use view::ViewError;
+
 use crate::ReportError;
 use crate::classes::Classes;
-use crate::color::class_clay;
-use crate::interactive::base64::encode;
-use crate::interactive::hex;
-use crate::render::{Background, RenderOptions, Surface, render};
+use view::color::class_clay;
+use view::interactive::base64::encode;
+use view::interactive::hex;
+use view::render::{Background, RenderOptions, Surface, render};
 use crate::results::{Figure1Record, Figure4Record, SHAPES_FILE, Scale, SeenShape, ShapesRecord, read};
 
 /// Width and height of a thumbnail, in pixels: twice what the card shows.
@@ -119,7 +121,7 @@ fn thumbnails(record: &ShapesRecord, classes: &Classes<'_>) -> Result<Vec<Value>
         let options = RenderOptions { width, height, surface, background, ..RenderOptions::default() };
         let png = render(&mesh, &options)
             .to_png()
-            .map_err(|e| ReportError::Draw { figure: "a picture".into(), reason: e.to_string() })?;
+            .map_err(|e| ViewError::Draw { figure: "a picture".into(), reason: e.to_string() })?;
         Ok(format!("data:image/png;base64,{}", STANDARD.encode(png)))
     };
     let of_shape = |shape: &SeenShape| {

@@ -19,8 +19,8 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 
 use crate::figure4::Content;
-use crate::files::write_atomically;
-use crate::numbers::signed;
+use files::{FileError, write_bytes};
+use view::numbers::signed;
 use crate::results::{Expectation, Figure1Record, Figure4Record, Provenance, Scale, ShapesRecord, read};
 use crate::{ReportError, figure1, figure4, tables};
 use html::{Cell, escape, paragraphs, table};
@@ -34,8 +34,8 @@ pub const FILE: &str = "report.html";
 /// named on the page together with what makes it, so a page can be written after any run.
 ///
 /// # Errors
-/// [`ReportError::Read`] and [`ReportError::Parse`] when a record is there but cannot be read,
-/// [`ReportError::Write`] when the page cannot be written.
+/// [`ReportError::File`] and [`ReportError::Parse`] when a record is there but cannot be read,
+/// [`ReportError::File`] when the page cannot be written.
 pub fn write_report(out_dir: impl AsRef<Path>) -> Result<PathBuf, ReportError> {
     let folder = out_dir.as_ref();
     let shapes = explorer::shapes(folder)?;
@@ -51,7 +51,7 @@ pub fn write_report(out_dir: impl AsRef<Path>) -> Result<PathBuf, ReportError> {
     sections.push(retrieval::retrieval_section(folder)?);
     sections.push(reproduced::curves_section(folder, reproduced::SCALING)?);
     let path = folder.join(FILE);
-    write_atomically(&path, page(&sections).as_bytes())?;
+    write_bytes(&path, page(&sections).as_bytes())?;
     Ok(path)
 }
 
@@ -211,7 +211,7 @@ fn picture(folder: &Path, name: &str, part: &str, caption: &str) -> Result<Strin
             "<div class=\"missing\"><p>The picture <code>{png}</code> is missing: run {name} again.</p></div>\n"
         ));
     }
-    let bytes = fs::read(&path).map_err(|source| ReportError::Read { path, source })?;
+    let bytes = fs::read(&path).map_err(|source| FileError::read(&path, source))?;
     // The header of a PNG: width and height as big-endian words. They keep the page from jumping while it loads.
     let word =
         |at: usize| bytes.get(at..at + 4).and_then(|w| w.try_into().ok()).map_or(0, u32::from_be_bytes);

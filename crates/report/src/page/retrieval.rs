@@ -9,7 +9,7 @@ use super::chart::{Plot, chart};
 use super::html::{Cell, paragraphs, table};
 use super::{Section, expectations, folded, picture, provenance};
 use crate::curves::PART;
-use crate::numbers::signed;
+use view::numbers::signed;
 use crate::results::{RetrievalRecord, RetrievalRow, Scale, read};
 use crate::retrieval::CONFUSION_PART;
 use crate::{ReportError, tables};

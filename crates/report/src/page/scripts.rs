@@ -5,7 +5,7 @@ use base64::engine::general_purpose::STANDARD;
 use serde_json::Value;
 use sha2::{Digest, Sha256};
 
-use crate::interactive::{VIEWER_JS, plotly_js};
+use view::interactive::{VIEWER_JS, plotly_js};
 
 /// Before anything is seen: what only scripts can fill may be shown, what stands in for it not.
 const FIRST: &str = "document.documentElement.classList.add('js');";

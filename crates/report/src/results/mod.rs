@@ -23,7 +23,7 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
 use crate::ReportError;
-use crate::files::write_atomically;
+use files::{FileError, write_bytes};
 
 /// What made a record.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
@@ -217,24 +217,24 @@ impl Figure4Record {
 /// Writes a record as indented JSON, whole or not at all.
 ///
 /// # Errors
-/// [`ReportError::Write`] when the file cannot be written or the record holds what JSON cannot.
+/// [`ReportError::File`] when the file cannot be written or the record holds what JSON cannot.
 pub fn write<T: Serialize>(record: &T, path: impl AsRef<Path>) -> Result<(), ReportError> {
     let path = path.as_ref();
     let mut json = serde_json::to_vec_pretty(record)
-        .map_err(|e| ReportError::Write { path: path.to_path_buf(), source: e.into() })?;
+        .map_err(|e| FileError::write(path, e.into()))?;
     json.push(b'\n');
-    write_atomically(path, &json)
+    Ok(write_bytes(path, &json)?)
 }
 
 /// Reads a record back.
 ///
 /// # Errors
-/// [`ReportError::Read`] when the file cannot be read, [`ReportError::Parse`] when it is not such a
+/// [`ReportError::File`] when the file cannot be read, [`ReportError::Parse`] when it is not such a
 /// record.
 pub fn read<T: DeserializeOwned>(path: impl AsRef<Path>) -> Result<T, ReportError> {
     let path = path.as_ref();
     let bytes =
-        std::fs::read(path).map_err(|source| ReportError::Read { path: path.to_path_buf(), source })?;
+        std::fs::read(path).map_err(|source| FileError::read(path, source))?;
     serde_json::from_slice(&bytes).map_err(|source| ReportError::Parse { path: path.to_path_buf(), source })
 }
 
@@ -267,7 +267,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("absent.json");
         let error = read::<Figure1Record>(&path).unwrap_err();
-        assert!(matches!(error, ReportError::Read { .. }) && error.to_string().contains("absent.json"));
+        assert!(matches!(error, ReportError::File(_)) && error.to_string().contains("absent.json"));
         std::fs::write(&path, "[1, 2]").unwrap();
         assert!(matches!(read::<Figure1Record>(&path), Err(ReportError::Parse { .. })));
     }

@@ -4,8 +4,8 @@ use serde::{Deserialize, Serialize};
 
 use super::{Figure4Record, Scale};
 use crate::ReportError;
-use crate::interactive::Geometry;
-use crate::interactive::base64::{optional_list, triples};
+use view::interactive::Geometry;
+use view::interactive::base64::{optional_list, triples};
 
 /// Name of the record in a folder of results.
 pub const SHAPES_FILE: &str = "figure4-shapes.json";

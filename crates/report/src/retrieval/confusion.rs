@@ -2,8 +2,8 @@
 
 use plotters::prelude::*;
 
-use crate::canvas::{Anchor, Canvas, DrawError, Drawing, GRID, INK, SMALL, TEXT, Type, text_width};
-use crate::color::mix;
+use view::canvas::{Anchor, Canvas, DrawError, Drawing, GRID, INK, SMALL, TEXT, Type, text_width};
+use view::color::mix;
 use crate::results::Classification;
 
 pub(super) struct ConfusionPlot<'a>(pub(super) &'a Classification);

@@ -5,7 +5,7 @@ mod confusion;
 use std::path::{Path, PathBuf};
 
 use crate::ReportError;
-use crate::canvas::save;
+use view::canvas::save;
 use crate::curves::curves;
 use crate::results::{
     Axis, AxisScale, CurvesPanel, CurvesRecord, RetrievalRecord, Scale, Series, SeriesPoint,
@@ -19,7 +19,7 @@ pub const CONFUSION_PART: &str = "-confusion";
 /// `STEM-confusion`, as PNG and SVG each.
 ///
 /// # Errors
-/// Those of [`RetrievalRecord::validate`], [`ReportError::Write`] and [`ReportError::Draw`].
+/// Those of [`RetrievalRecord::validate`], [`ReportError::View`].
 pub fn retrieval(record: &RetrievalRecord, stem: impl AsRef<Path>) -> Result<Vec<PathBuf>, ReportError> {
     record.validate()?;
     let mut files = curves(&precision_curves(record), &stem)?;

@@ -8,7 +8,7 @@ use canonform::{
     CanonicalForm, Comparison, MatchOptions, Overlay, PipelineError, ShapeDistance, SurfaceComparison,
     Triangulation, compare_surfaces, overlay_forms,
 };
-use report::interactive::Geometry;
+use view::interactive::Geometry;
 use serde::{Deserialize, Serialize};
 
 use super::answer::{Params, Written};

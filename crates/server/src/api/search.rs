@@ -10,7 +10,7 @@ use mesh::io::{MemoryFile, ReadLimits, read_memory};
 use canonform::{
     Explain, PipelineError, SearchOptions, SearchReport, SearchSeconds, Surface, describe_with_form,
 };
-use report::interactive::Geometry;
+use view::interactive::Geometry;
 use serde::{Deserialize, Serialize};
 
 use super::answer::{Params, Written};

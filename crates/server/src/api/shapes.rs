@@ -8,8 +8,8 @@ use axum::http::HeaderMap;
 use axum::response::Response;
 use mesh::TriMesh;
 use canonform::PipelineError;
-use report::interactive::Geometry;
-use report::render::{Background, RenderOptions, View, render};
+use view::interactive::Geometry;
+use view::render::{Background, RenderOptions, View, render};
 use serde::{Deserialize, Serialize};
 
 use super::answer::{Id, Params, Written, is_known, tag, tagged};

@@ -25,8 +25,8 @@ pub(crate) fn router() -> Router<Arc<App>> {
         ("/assets/ask.js", JS, include_str!("ask.js")),
         ("/assets/shapes.js", JS, include_str!("shapes.js")),
         ("/assets/answer.js", JS, include_str!("answer.js")),
-        ("/assets/viewer.js", JS, report::interactive::VIEWER_JS),
-        ("/assets/plotly.js", JS, report::interactive::plotly_js()),
+        ("/assets/viewer.js", JS, view::interactive::VIEWER_JS),
+        ("/assets/plotly.js", JS, view::interactive::plotly_js()),
     ];
     files.into_iter().fold(Router::new(), |router, (path, kind, text)| {
         let mut hash = DefaultHasher::new();

@@ -3,7 +3,7 @@
 use std::fs;
 
 use mesh::shapes;
-use report::interactive::Geometry;
+use view::interactive::Geometry;
 use serde_json::Value;
 
 use crate::client::{Answer, ask, upload};

@@ -111,8 +111,8 @@ fn table(json: &PathsJson) -> String {
 fn write_paths(task: &Task, paths: &[SurfacePath], facts: &[PathFacts]) -> Result<()> {
     let output = &task.args.output;
     match task.format {
-        "csv" => mesh::io::write_atomically(output, |out| write_csv(out, paths))?,
-        "json" => mesh::io::write_atomically(output, |out| write_json(out, paths, facts))?,
+        "csv" => files::write_atomically(output, |out| write_csv(out, paths))?,
+        "json" => files::write_atomically(output, |out| write_json(out, paths, facts))?,
         _ => {
             let lines: Vec<Vec<_>> =
                 paths.iter().map(|path| path.points.iter().map(|point| point.position).collect()).collect();

@@ -111,7 +111,7 @@ pub(super) fn export(args: &ExportArgs, _: &Common) -> Result<ExitCode> {
         Some(path) => {
             check_folder(path)?;
             let mut stopped = None;
-            let written = mesh::io::write_atomically(path, |out| match index.export(out) {
+            let written = files::write_atomically(path, |out| match index.export(out) {
                 Ok(()) => Ok(()),
                 Err(ExportError::Write(fault)) => Err(fault),
                 Err(ExportError::Index(fault)) => {

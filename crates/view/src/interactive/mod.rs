@@ -6,12 +6,12 @@
 //! `script-src` for its own text and plotly's, `style-src 'unsafe-inline'` for the rules that plotly inserts, and
 //! `img-src data: blob:` for plotly's downloads of pictures; nothing else, and no address.
 
-pub(crate) mod base64;
+pub mod base64;
 mod geometry;
 mod plotly;
 
 pub use geometry::Geometry;
-pub(crate) use geometry::hex;
+pub use geometry::hex;
 pub use plotly::plotly_js;
 
 /// The viewer: a plain script that defines the global `canonform` and expects `Plotly` before its first view.
@@ -19,15 +19,3 @@ pub use plotly::plotly_js;
 /// `canonform.view(element, geometry | [geometry, ...], options)` draws surfaces into one scene; the head of the
 /// script describes it all.
 pub const VIEWER_JS: &str = include_str!("viewer.js");
-
-/// The colour of class number `class`, counted in the order of first appearance: the one that the figures use.
-#[must_use]
-pub fn class_color(class: usize) -> [u8; 3] {
-    crate::color::class_color(class)
-}
-
-/// The same as a pale clay, on which shading shows: the colour of surfaces.
-#[must_use]
-pub fn class_clay(class: usize) -> [u8; 3] {
-    crate::color::class_clay(class)
-}

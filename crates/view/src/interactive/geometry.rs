@@ -74,7 +74,7 @@ impl Geometry {
 }
 
 /// 8-bit sRGB as `#rrggbb`.
-pub(crate) fn hex([red, green, blue]: [u8; 3]) -> String {
+pub fn hex([red, green, blue]: [u8; 3]) -> String {
     format!("#{red:02x}{green:02x}{blue:02x}")
 }
 

@@ -2,14 +2,14 @@
 
 /// A common power of ten and a number of decimals for all numbers along an axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Numbers {
+pub struct Numbers {
     exponent: i32,
     decimals: usize,
 }
 
 impl Numbers {
     /// The shortest way to write all of `ticks`. Very large and very small ones share a power of ten.
-    pub(crate) fn for_ticks(ticks: &[f64]) -> Self {
+    pub fn for_ticks(ticks: &[f64]) -> Self {
         let largest = ticks.iter().fold(0.0_f64, |m, t| m.max(t.abs()));
         let plain = largest == 0.0 || (0.01..10_000.0).contains(&largest);
         let exponent = if plain { 0 } else { 3 * (largest.log10() / 3.0).floor() as i32 };
@@ -23,12 +23,12 @@ impl Numbers {
     }
 
     /// A number as it stands at its tick.
-    pub(crate) fn write(self, value: f64) -> String {
+    pub fn write(self, value: f64) -> String {
         signed(value / 10f64.powi(self.exponent), self.decimals)
     }
 
     /// What stands beside the axis: the unit, and the power of ten that was left out of the numbers.
-    pub(crate) fn unit(self, unit: &str) -> String {
+    pub fn unit(self, unit: &str) -> String {
         if self.exponent == 0 {
             return unit.to_string();
         }
@@ -37,7 +37,7 @@ impl Numbers {
 }
 
 /// An exponent in raised digits.
-pub(crate) fn raised(exponent: i32) -> String {
+pub fn raised(exponent: i32) -> String {
     const DIGITS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
     let sign = if exponent < 0 { "⁻" } else { "" };
     let digits: String =
@@ -46,7 +46,7 @@ pub(crate) fn raised(exponent: i32) -> String {
 }
 
 /// A number with a proper minus sign, none before zero.
-pub(crate) fn signed(value: f64, decimals: usize) -> String {
+pub fn signed(value: f64, decimals: usize) -> String {
     let text = format!("{value:.decimals$}");
     match text.strip_prefix('-') {
         Some(zero) if zero.chars().all(|c| matches!(c, '0' | '.')) => zero.to_string(),

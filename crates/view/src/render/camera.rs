@@ -102,7 +102,7 @@ pub(super) fn extent(mesh: &TriMesh, faces: &[[usize; 3]], view: &View) -> [f64;
 impl View {
     /// The same view of `mesh` in a picture that is wider than high (`landscape`) or not, held fast: it
     /// shows other meshes from there too.
-    pub(crate) fn fixed(&self, mesh: &TriMesh, landscape: bool) -> Self {
+    pub fn fixed(&self, mesh: &TriMesh, landscape: bool) -> Self {
         let axes = self.axes(mesh, &super::drawable_faces(mesh), landscape);
         Self::Along { towards: axes.row(2).transpose(), up: axes.row(1).transpose() }
     }

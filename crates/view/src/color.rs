@@ -3,7 +3,7 @@
 use plotters::prelude::ViridisRGB;
 
 /// 8-bit sRGB.
-pub(crate) type Rgb = [u8; 3];
+pub type Rgb = [u8; 3];
 
 /// The eight colours of Okabe and Ito, told apart with every common colour blindness; the strongest
 /// on white first, yellow last.
@@ -20,24 +20,24 @@ const OKABE_ITO: [Rgb; 8] = [
 
 /// The colour of class number `class`. From the ninth class on colours repeat, shifted by one each
 /// time round so that colour and marker shape together stay unique.
-pub(crate) fn class_color(class: usize) -> Rgb {
+pub fn class_color(class: usize) -> Rgb {
     OKABE_ITO[class % OKABE_ITO.len()]
 }
 
 /// The surface colour of class number `class`: its colour thinned to a pale clay that shading shows
 /// on, recognisably the same.
-pub(crate) fn class_clay(class: usize) -> Rgb {
+pub fn class_clay(class: usize) -> Rgb {
     mix(class_color(class), [226, 224, 220], 0.55)
 }
 
 /// `a` and `b` mixed, `share` of it being `b`.
-pub(crate) fn mix(a: Rgb, b: Rgb, share: f64) -> Rgb {
+pub fn mix(a: Rgb, b: Rgb, share: f64) -> Rgb {
     std::array::from_fn(|i| (f64::from(a[i]) * (1.0 - share) + f64::from(b[i]) * share).round() as u8)
 }
 
 /// Viridis: dark for 0, light for 1, equal steps look equal. Values outside 0..=1 are clamped, NaN
 /// is grey.
-pub(crate) fn perceptual(t: f64) -> Rgb {
+pub fn perceptual(t: f64) -> Rgb {
     if t.is_nan() {
         return [160, 160, 160];
     }
@@ -46,13 +46,13 @@ pub(crate) fn perceptual(t: f64) -> Rgb {
 }
 
 /// The linear light of an 8-bit sRGB channel, in 0..=1.
-pub(crate) fn to_linear(channel: u8) -> f32 {
+pub fn to_linear(channel: u8) -> f32 {
     let c = f32::from(channel) / 255.0;
     if c <= 0.040_45 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) }
 }
 
 /// The 8-bit sRGB channel of a linear light; clamped to 0..=1.
-pub(crate) fn from_linear(light: f32) -> u8 {
+pub fn from_linear(light: f32) -> u8 {
     let l = light.clamp(0.0, 1.0);
     let c = if l <= 0.003_130_8 { 12.92 * l } else { 1.055 * l.powf(1.0 / 2.4) - 0.055 };
     (c * 255.0).round() as u8

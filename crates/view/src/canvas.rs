@@ -11,12 +11,13 @@ use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{FontStyle, FontTransform, register_font};
 
-use crate::files::write_atomically;
+use files::write_bytes;
+
 use crate::image::encode_png;
-use crate::{ReportError, RgbaImage};
+use crate::{RgbaImage, ViewError};
 
 /// Pixels a unit of both files, and of every raster inside them: 286 dots per inch in print.
-pub(crate) const RASTER: u32 = 2;
+pub const RASTER: u32 = 2;
 
 /// The PNG is drawn this many times finer and averaged, which smooths every edge.
 const OVERSAMPLING: u32 = 2;
@@ -26,25 +27,27 @@ const OVERSAMPLING: u32 = 2;
 const FONT: &str = "DejaVu Sans, Bitstream Vera Sans, Verdana, sans-serif";
 
 /// Plain text, axis labels.
-pub(crate) const TEXT: u32 = 16;
+pub const TEXT: u32 = 16;
 /// Notes, tick labels.
-pub(crate) const SMALL: u32 = 14;
+pub const SMALL: u32 = 14;
 /// Titles of panels.
-pub(crate) const TITLE: u32 = 19;
+pub const TITLE: u32 = 19;
 
 /// Text and lines.
-pub(crate) const INK: RGBColor = RGBColor(34, 34, 34);
+pub const INK: RGBColor = RGBColor(34, 34, 34);
 /// Secondary text and frames.
-pub(crate) const PALE_INK: RGBColor = RGBColor(105, 105, 105);
+pub const PALE_INK: RGBColor = RGBColor(105, 105, 105);
 /// Grid lines.
-pub(crate) const GRID: RGBColor = RGBColor(228, 228, 228);
+pub const GRID: RGBColor = RGBColor(228, 228, 228);
 
 /// Why a backend stopped, as text: the error types of the two backends have nothing else in common.
 #[derive(Debug)]
-pub(crate) struct DrawError(String);
+pub struct DrawError(String);
 
 impl DrawError {
-    pub(crate) fn reason(self) -> String {
+    /// What the backend said.
+    #[must_use]
+    pub fn reason(self) -> String {
         self.0
     }
 }
@@ -56,7 +59,7 @@ impl<E: std::error::Error + Send + Sync> From<DrawingAreaErrorKind<E>> for DrawE
 }
 
 /// Something that can be drawn by any backend.
-pub(crate) trait Drawing {
+pub trait Drawing {
     /// Width and height, in units.
     fn size(&self) -> (u32, u32);
 
@@ -65,8 +68,8 @@ pub(crate) trait Drawing {
 }
 
 /// Writes `stem.png` and `stem.svg` (the extensions are appended to the stem) and returns their paths.
-pub(crate) fn save(drawing: &impl Drawing, stem: &Path) -> Result<Vec<PathBuf>, ReportError> {
-    let failed = |reason: String| ReportError::Draw { figure: stem.display().to_string(), reason };
+pub fn save(drawing: &impl Drawing, stem: &Path) -> Result<Vec<PathBuf>, ViewError> {
+    let failed = |reason: String| ViewError::Draw { figure: stem.display().to_string(), reason };
     register_fonts().map_err(|e| failed(e.0))?;
     let path = |extension: &str| {
         let mut name = stem.as_os_str().to_owned();
@@ -74,8 +77,8 @@ pub(crate) fn save(drawing: &impl Drawing, stem: &Path) -> Result<Vec<PathBuf>, 
         PathBuf::from(name)
     };
     let (png, svg) = (path(".png"), path(".svg"));
-    write_atomically(&png, &png_bytes(drawing).map_err(|e| failed(e.0))?)?;
-    write_atomically(&svg, svg_text(drawing).map_err(|e| failed(e.0))?.as_bytes())?;
+    write_bytes(&png, &png_bytes(drawing).map_err(|e| failed(e.0))?)?;
+    write_bytes(&svg, svg_text(drawing).map_err(|e| failed(e.0))?.as_bytes())?;
     Ok(vec![png, svg])
 }
 
@@ -90,7 +93,7 @@ fn register_fonts() -> Result<(), DrawError> {
 }
 
 /// The share of every pixel that the ink of a drawing in black covers, 0 to 255, row by row; a pixel a unit.
-pub(crate) fn ink(drawing: &impl Drawing) -> Result<Vec<u8>, DrawError> {
+pub fn ink(drawing: &impl Drawing) -> Result<Vec<u8>, DrawError> {
     register_fonts()?;
     let (width, height) = drawing.size();
     let (wide, high) = (width * OVERSAMPLING, height * OVERSAMPLING);
@@ -155,7 +158,7 @@ fn average(pixels: &[u8], width: usize, n: usize) -> Vec<u8> {
 }
 
 /// A rectangle of the drawing, measured in units from its own top left corner.
-pub(crate) struct Canvas<DB: DrawingBackend> {
+pub struct Canvas<DB: DrawingBackend> {
     area: DrawingArea<DB, Shift>,
     pixels: u32,
     /// How far below the place that the backend writes at a text has to go, in ems, for its letters to
@@ -165,15 +168,18 @@ pub(crate) struct Canvas<DB: DrawingBackend> {
 
 /// Where a text's anchor point lies on it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Anchor {
+pub enum Anchor {
+    /// Its left end.
     Left,
+    /// Its middle.
     Center,
+    /// Its right end.
     Right,
 }
 
 /// Which way a text runs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Run {
+pub enum Run {
     /// Left to right.
     Level,
     /// Bottom to top.
@@ -182,52 +188,65 @@ pub(crate) enum Run {
 
 /// How a text looks; its anchor point is always at half its height.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Type {
-    pub(crate) size: u32,
-    pub(crate) bold: bool,
-    pub(crate) color: RGBColor,
-    pub(crate) anchor: Anchor,
-    pub(crate) run: Run,
+pub struct Type {
+    /// Size of the type, in units.
+    pub size: u32,
+    /// Whether it is bold.
+    pub bold: bool,
+    /// Its colour.
+    pub color: RGBColor,
+    /// Where the anchor point lies on it.
+    pub anchor: Anchor,
+    /// Which way it runs.
+    pub run: Run,
 }
 
 impl Type {
-    pub(crate) const fn new(size: u32, anchor: Anchor) -> Self {
+    /// Plain text from left to right in ink.
+    #[must_use]
+    pub const fn new(size: u32, anchor: Anchor) -> Self {
         Self { size, bold: false, color: INK, anchor, run: Run::Level }
     }
 
-    pub(crate) fn bold(self) -> Self {
+    /// The same in bold.
+    #[must_use]
+    pub fn bold(self) -> Self {
         Self { bold: true, ..self }
     }
 
-    pub(crate) fn pale(self) -> Self {
+    /// The same in pale ink.
+    #[must_use]
+    pub fn pale(self) -> Self {
         Self { color: PALE_INK, ..self }
     }
 
-    pub(crate) fn up(self) -> Self {
+    /// The same from bottom to top.
+    #[must_use]
+    pub fn up(self) -> Self {
         Self { run: Run::Up, ..self }
     }
 }
 
 impl<DB: DrawingBackend> Canvas<DB> {
     /// The plotters area behind it, for charts.
-    pub(crate) fn area(&self) -> &DrawingArea<DB, Shift> {
+    pub fn area(&self) -> &DrawingArea<DB, Shift> {
         &self.area
     }
 
     /// Backend pixels of a length in units.
-    pub(crate) fn px(&self, units: f64) -> i32 {
+    pub fn px(&self, units: f64) -> i32 {
         (units * f64::from(self.pixels)).round() as i32
     }
 
     /// The part of the canvas at `corner`, of `size`.
-    pub(crate) fn part(&self, corner: (f64, f64), size: (f64, f64)) -> Self {
+    pub fn part(&self, corner: (f64, f64), size: (f64, f64)) -> Self {
         let (left, top) = (self.px(corner.0), self.px(corner.1));
         let area = self.area.clone().shrink((left, top), (self.px(size.0), self.px(size.1)));
         Self { area, pixels: self.pixels, text_drop: self.text_drop }
     }
 
     /// Writes a text with its anchor at `at`, on half the height of its letters.
-    pub(crate) fn text(&self, text: &str, at: (f64, f64), kind: Type) -> Result<(), DrawError> {
+    pub fn text(&self, text: &str, at: (f64, f64), kind: Type) -> Result<(), DrawError> {
         let down = self.text_drop * f64::from(kind.size);
         let (x, y) = match kind.run {
             Run::Level => (at.0, at.1 + down),
@@ -238,7 +257,7 @@ impl<DB: DrawingBackend> Canvas<DB> {
     }
 
     /// Draws a raster of [`RASTER`] pixels a unit with its top left corner at `at`.
-    pub(crate) fn image(&self, image: &RgbaImage, at: (f64, f64)) -> Result<(), DrawError> {
+    pub fn image(&self, image: &RgbaImage, at: (f64, f64)) -> Result<(), DrawError> {
         let zoom = self.pixels / RASTER;
         let size = (image.width() * zoom, image.height() * zoom);
         let corner = (self.px(at.0), self.px(at.1));
@@ -250,7 +269,7 @@ impl<DB: DrawingBackend> Canvas<DB> {
     }
 
     /// A straight line of `width` units.
-    pub(crate) fn line(
+    pub fn line(
         &self,
         from: (f64, f64),
         to: (f64, f64),
@@ -264,7 +283,7 @@ impl<DB: DrawingBackend> Canvas<DB> {
 }
 
 /// A plotters text style of the registered font, for backends with `pixels` a unit.
-pub(crate) fn style(kind: Type, pixels: u32) -> TextStyle<'static> {
+pub fn style(kind: Type, pixels: u32) -> TextStyle<'static> {
     // plotters sizes a font by its line; type is measured by its em, 1.164 of which DejaVu needs for a line.
     let size = f64::from(kind.size * pixels) * 1.164;
     let style = if kind.bold { FontStyle::Bold } else { FontStyle::Normal };
@@ -282,7 +301,7 @@ pub(crate) fn style(kind: Type, pixels: u32) -> TextStyle<'static> {
 }
 
 /// Length of a text, in units.
-pub(crate) fn text_width(text: &str, kind: Type) -> f64 {
+pub fn text_width(text: &str, kind: Type) -> f64 {
     // Measured large, as the backend rounds to whole pixels.
     const FINE: u32 = 8;
     let measured = register_fonts().ok().and_then(|()| style(kind, FINE).font.layout_box(text).ok());
@@ -338,7 +357,7 @@ mod tests {
     fn a_backend_that_fails_is_an_error_and_leaves_no_file() {
         let folder = tempfile::tempdir().unwrap();
         let error = save(&Word((0, 30)), &folder.path().join("empty")).unwrap_err();
-        assert!(matches!(error, ReportError::Draw { .. }), "{error}");
+        assert!(matches!(error, ViewError::Draw { .. }), "{error}");
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
     }
 

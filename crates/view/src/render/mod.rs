@@ -111,7 +111,7 @@ pub fn render(mesh: &TriMesh, options: &RenderOptions) -> RgbaImage {
 }
 
 /// Width over height of what a view sees of a mesh; 1 when that is nothing.
-pub(crate) fn aspect(mesh: &TriMesh, view: &View) -> f64 {
+pub fn aspect(mesh: &TriMesh, view: &View) -> f64 {
     let [width, height] = camera::extent(mesh, &drawable_faces(mesh), view);
     let aspect = width / height;
     if aspect.is_finite() && aspect > 0.0 { aspect } else { 1.0 }

@@ -9,7 +9,7 @@ use super::{Background, ISOLINE_LIGHT, RenderOptions, Surface, render, value_ran
 use crate::canvas::{Anchor, Canvas, DrawError, Drawing, Type, ink, text_width};
 use crate::color::{Rgb, from_linear, mix, perceptual, to_linear};
 use crate::numbers::Numbers;
-use crate::{ReportError, RgbaImage};
+use crate::{ViewError, RgbaImage};
 
 /// Draws like [`render`] and sets a colour bar with numbers and its `name` to the right of the mesh, in a
 /// picture of the same size.
@@ -18,17 +18,17 @@ use crate::{ReportError, RgbaImage};
 /// a picture that the bar would take more than half of.
 ///
 /// # Errors
-/// [`ReportError::Draw`] when text cannot be written.
+/// [`ViewError::Draw`] when text cannot be written.
 pub fn render_with_bar(
     mesh: &TriMesh,
     options: &RenderOptions,
     name: &str,
-) -> Result<RgbaImage, ReportError> {
+) -> Result<RgbaImage, ViewError> {
     let Some(bar) = Bar::new(options, name) else { return Ok(render(mesh, options)) };
     let room = RenderOptions { width: bar.size.0 - bar.width(), ..options.clone() };
     let mut image = bar.beside(&render(mesh, &room), options.background);
     bar.paint(&mut image);
-    let failed = |e: DrawError| ReportError::Draw { figure: "colour bar".into(), reason: e.reason() };
+    let failed = |e: DrawError| ViewError::Draw { figure: "colour bar".into(), reason: e.reason() };
     let pen = pen(options.background);
     let covers = ink(&bar).map_err(failed)?;
     for (pixel, cover) in image.pixels_mut().iter_mut().zip(covers) {
@@ -202,7 +202,7 @@ fn over([r, g, b, alpha]: [u8; 4], color: Rgb, share: f64) -> [u8; 4] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fixtures::sphere;
+    use crate::testing::sphere;
 
     fn options(values: Vec<f64>) -> RenderOptions {
         let surface = Surface::Scalars { values, range: None, isolines: 4 };

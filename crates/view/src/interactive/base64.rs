@@ -6,31 +6,37 @@ use serde::de::{Deserialize, Deserializer, Error};
 use serde::ser::Serializer;
 
 /// A number of four bytes.
-pub(crate) trait Word: Copy {
+pub trait Word: Copy {
+    /// Its bytes, least significant first.
     fn to_bytes(self) -> [u8; 4];
+    /// The number of these bytes.
     fn from_bytes(bytes: [u8; 4]) -> Self;
 }
 
 impl Word for f32 {
+    /// Its bytes, least significant first.
     fn to_bytes(self) -> [u8; 4] {
         self.to_le_bytes()
     }
+    /// The number of these bytes.
     fn from_bytes(bytes: [u8; 4]) -> Self {
         Self::from_le_bytes(bytes)
     }
 }
 
 impl Word for u32 {
+    /// Its bytes, least significant first.
     fn to_bytes(self) -> [u8; 4] {
         self.to_le_bytes()
     }
+    /// The number of these bytes.
     fn from_bytes(bytes: [u8; 4]) -> Self {
         Self::from_le_bytes(bytes)
     }
 }
 
 /// The text of a list of numbers.
-pub(crate) fn encode<T: Word>(numbers: impl Iterator<Item = T>) -> String {
+pub fn encode<T: Word>(numbers: impl Iterator<Item = T>) -> String {
     STANDARD.encode(numbers.flat_map(Word::to_bytes).collect::<Vec<u8>>())
 }
 
@@ -44,14 +50,22 @@ fn decode<T: Word>(text: &str, width: usize) -> Result<Vec<T>, String> {
 }
 
 /// For `#[serde(with = ...)]` on a list of triples.
-pub(crate) mod triples {
+pub mod triples {
     use super::{Deserialize, Deserializer, Error, Serializer, Word, decode, encode};
 
-    pub(crate) fn serialize<T: Word, S: Serializer>(list: &[[T; 3]], to: S) -> Result<S::Ok, S::Error> {
+    /// Writes the list as one text.
+    ///
+    /// # Errors
+    /// Those of the serializer.
+    pub fn serialize<T: Word, S: Serializer>(list: &[[T; 3]], to: S) -> Result<S::Ok, S::Error> {
         to.serialize_str(&encode(list.as_flattened().iter().copied()))
     }
 
-    pub(crate) fn deserialize<'de, T: Word, D: Deserializer<'de>>(from: D) -> Result<Vec<[T; 3]>, D::Error> {
+    /// Reads such a text.
+    ///
+    /// # Errors
+    /// When the text is not base64, or not a whole number of triples.
+    pub fn deserialize<'de, T: Word, D: Deserializer<'de>>(from: D) -> Result<Vec<[T; 3]>, D::Error> {
         let text = <std::borrow::Cow<'de, str>>::deserialize(from)?;
         let flat = decode(&text, 3).map_err(D::Error::custom)?;
         Ok(flat.as_chunks::<3>().0.to_vec())
@@ -59,10 +73,14 @@ pub(crate) mod triples {
 }
 
 /// For `#[serde(with = ...)]` on a list of numbers that may be absent.
-pub(crate) mod optional_list {
+pub mod optional_list {
     use super::{Deserialize, Deserializer, Error, Serializer, Word, decode, encode};
 
-    pub(crate) fn serialize<T: Word, S: Serializer>(
+    /// Writes the numbers as one text, or nothing.
+    ///
+    /// # Errors
+    /// Those of the serializer.
+    pub fn serialize<T: Word, S: Serializer>(
         numbers: &Option<Vec<T>>,
         to: S,
     ) -> Result<S::Ok, S::Error> {
@@ -72,7 +90,11 @@ pub(crate) mod optional_list {
         }
     }
 
-    pub(crate) fn deserialize<'de, T: Word, D: Deserializer<'de>>(
+    /// Reads such a text, if there is one.
+    ///
+    /// # Errors
+    /// When the text is not base64, or not a whole number of numbers.
+    pub fn deserialize<'de, T: Word, D: Deserializer<'de>>(
         from: D,
     ) -> Result<Option<Vec<T>>, D::Error> {
         let text = Option::<std::borrow::Cow<'de, str>>::deserialize(from)?;

@@ -1,0 +1,192 @@
+//! Writing to a temporary neighbour and renaming it.
+
+use std::fs::{self, File};
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use tempfile::NamedTempFile;
+
+use crate::FileError;
+
+/// The temporary files of this process. Whoever creates, renames or removes one holds the lock meanwhile, so
+/// the list is always accurate.
+static UNFINISHED: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+
+fn unfinished() -> MutexGuard<'static, Vec<PathBuf>> {
+    UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Removes the temporary files of everything that is being written: the last thing a program does before it
+/// exits because of an interruption.
+///
+/// From then on every thread that starts or finishes a file blocks forever, so that nothing is left behind
+/// when the process exits.
+pub fn abandon_unfinished() {
+    let paths = unfinished();
+    for path in paths.iter() {
+        // A file that cannot be removed can only be left.
+        let _ = fs::remove_file(path);
+    }
+    std::mem::forget(paths);
+}
+
+/// Writes a file from front to back; it replaces `path` once it is complete.
+///
+/// # Errors
+/// [`FileError`] names the file; the previous version stays.
+pub fn write_atomically(
+    path: &Path,
+    content: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> Result<(), FileError> {
+    Pending::write(path, content)?.publish()
+}
+
+/// As [`write_atomically`], for content that is not written from front to back: `content` may write anywhere in
+/// the file and read what it has written.
+///
+/// # Errors
+/// [`FileError`] names the file; the previous version stays.
+pub fn fill_atomically(
+    path: &Path,
+    content: impl FnOnce(&mut File) -> io::Result<()>,
+) -> Result<(), FileError> {
+    Pending::fill(path, content)?.publish()
+}
+
+/// Writes `bytes` to `path` atomically and creates missing parent folders.
+///
+/// # Errors
+/// [`FileError`] names the file; the previous version stays.
+pub fn write_bytes(path: &Path, bytes: &[u8]) -> Result<(), FileError> {
+    if let Some(folder) = path.parent() {
+        fs::create_dir_all(folder).map_err(|source| FileError::write(path, source))?;
+    }
+    write_atomically(path, |out| out.write_all(bytes))
+}
+
+/// A complete file next to its destination that has not replaced it yet.
+///
+/// Several files that belong together are written as pending files first and published one after the other, so
+/// that a failure to write the second leaves the first one's previous version untouched.
+#[derive(Debug)]
+pub struct Pending<'a> {
+    /// Taken when it is published or dropped.
+    file: Option<NamedTempFile>,
+    path: &'a Path,
+}
+
+impl<'a> Pending<'a> {
+    /// Writes a file from front to back; nothing remains after an error.
+    ///
+    /// # Errors
+    /// [`FileError`] names the file.
+    pub fn write(
+        path: &'a Path,
+        content: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+    ) -> Result<Self, FileError> {
+        Self::fill(path, |file| {
+            let mut out = BufWriter::with_capacity(1 << 16, file);
+            content(&mut out)?;
+            out.flush()
+        })
+    }
+
+    /// Writes a file in any order; nothing remains after an error.
+    ///
+    /// # Errors
+    /// [`FileError`] names the file.
+    pub fn fill(
+        path: &'a Path,
+        content: impl FnOnce(&mut File) -> io::Result<()>,
+    ) -> Result<Self, FileError> {
+        let written = || {
+            let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
+            let mut pending = Self { file: Some(new_file_in(folder)?), path };
+            if let Some(file) = &mut pending.file {
+                content(file.as_file_mut())?;
+            }
+            Ok(pending)
+        };
+        written().map_err(|source| FileError::write(path, source))
+    }
+
+    /// Moves the file to its destination, replacing the previous version.
+    ///
+    /// # Errors
+    /// [`FileError`] names the file.
+    pub fn publish(mut self) -> Result<(), FileError> {
+        let Some(file) = self.file.take() else { return Ok(()) };
+        let mut paths = unfinished();
+        forget(&mut paths, file.path());
+        file.persist(self.path).map(drop).map_err(|e| FileError::write(self.path, e.error))
+    }
+}
+
+impl Drop for Pending<'_> {
+    fn drop(&mut self) {
+        if let Some(file) = self.file.take() {
+            let mut paths = unfinished();
+            forget(&mut paths, file.path());
+            drop(file);
+        }
+    }
+}
+
+fn forget(paths: &mut Vec<PathBuf>, path: &Path) {
+    paths.retain(|unfinished| unfinished != path);
+}
+
+/// A temporary file with the permissions of an ordinary new file, not only for its owner.
+fn new_file_in(folder: &Path) -> io::Result<NamedTempFile> {
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".unfinished-");
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        builder.permissions(std::fs::Permissions::from_mode(0o666));
+    }
+    let mut paths = unfinished();
+    let file = builder.tempfile_in(folder)?;
+    paths.push(file.path().to_owned());
+    Ok(file)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_is_replaced_completely_and_nothing_else_is_left() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("deep/er/record.json");
+        write_bytes(&path, b"a longer first version").unwrap();
+        write_bytes(&path, b"second").unwrap();
+        assert_eq!(fs::read(&path).unwrap(), b"second");
+        assert_eq!(fs::read_dir(path.parent().unwrap()).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn a_folder_in_the_way_is_an_error_that_names_the_path() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("record.json");
+        fs::create_dir(&path).unwrap();
+        let error = write_bytes(&path, b"x").unwrap_err();
+        assert!(error.to_string().starts_with("cannot write ") && error.to_string().contains("record.json"));
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1, "the temporary file is gone");
+    }
+
+    #[test]
+    fn content_that_fails_leaves_the_previous_version() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("record.json");
+        write_bytes(&path, b"first").unwrap();
+        let failed = write_atomically(&path, |out| {
+            out.write_all(b"sec")?;
+            Err(io::Error::other("disk full"))
+        });
+        assert!(failed.unwrap_err().to_string().contains("disk full"));
+        assert_eq!(fs::read(&path).unwrap(), b"first");
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+}

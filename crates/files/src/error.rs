@@ -1,0 +1,47 @@
+//! What the operating system refuses.
+
+use std::fmt;
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// A file that could not be read or written.
+#[derive(Debug, thiserror::Error)]
+#[error("cannot {action} {path}: {source}; check that the path exists and its permissions allow it")]
+pub struct FileError {
+    /// What was tried.
+    pub action: Action,
+    /// The file.
+    pub path: PathBuf,
+    /// What the operating system said.
+    pub source: io::Error,
+}
+
+/// What was tried with a file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Action {
+    /// Reading it.
+    Read,
+    /// Writing it.
+    Write,
+}
+
+impl fmt::Display for Action {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Read => "read",
+            Self::Write => "write",
+        })
+    }
+}
+
+impl FileError {
+    /// A file that could not be read.
+    pub fn read(path: &Path, source: io::Error) -> Self {
+        Self { action: Action::Read, path: path.to_path_buf(), source }
+    }
+
+    /// A file that could not be written.
+    pub fn write(path: &Path, source: io::Error) -> Self {
+        Self { action: Action::Write, path: path.to_path_buf(), source }
+    }
+}

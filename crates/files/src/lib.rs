@@ -1,0 +1,18 @@
+//! Files that appear complete or not at all, and what to do with them when a program is interrupted.
+//!
+//! Every file is written to a temporary neighbour first and renamed once complete, so a reader never sees half
+//! of it and a failure leaves the previous version in place.
+//!
+//! ```
+//! # let folder = tempfile::tempdir().unwrap();
+//! let path = folder.path().join("report.txt");
+//! canonform_files::write_atomically(&path, |out| out.write_all(b"complete"))?;
+//! assert_eq!(std::fs::read(&path).unwrap(), b"complete");
+//! # Ok::<(), canonform_files::FileError>(())
+//! ```
+
+mod atomic;
+mod error;
+
+pub use atomic::{Pending, abandon_unfinished, fill_atomically, write_atomically, write_bytes};
+pub use error::{Action, FileError};
