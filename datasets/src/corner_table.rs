@@ -1,6 +1,6 @@
 //! A closed triangle surface that can be edited: edges collapsed and flipped.
 
-use mesh::VertexId;
+use surface::VertexId;
 
 pub(crate) const DEAD: u32 = u32::MAX;
 

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use mesh::VertexId;
+use surface::VertexId;
 use nalgebra::{Matrix3, Point3, Vector3};
 use rayon::prelude::*;
 

@@ -1,6 +1,7 @@
 //! One shape: body and pose of a family through extraction, simplification, relaxation and bending.
 
-use mesh::{TriMesh, VertexId};
+use mesh::TriMesh;
+use surface::VertexId;
 use nalgebra::{Point3, Vector3};
 use rayon::prelude::*;
 

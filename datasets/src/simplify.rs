@@ -163,7 +163,7 @@ impl Surface {
 
 #[cfg(test)]
 mod tests {
-    use mesh::VertexId;
+    use surface::VertexId;
 
     use super::*;
 

@@ -4,7 +4,8 @@ use std::collections::HashSet;
 use std::f64::consts::PI;
 
 use canonform_datasets::{ArticulatedOptions, DatasetError, Family, LabeledShape, articulated, articulated_shape};
-use mesh::{Topology, TriMesh, VertexId, validate};
+use mesh::{TriMesh, validate};
+use surface::{Topology, VertexId};
 use nalgebra::Point3;
 use rayon::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};

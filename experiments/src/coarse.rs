@@ -92,7 +92,7 @@ mod tests {
             assert!(n <= limit && n > limit / 3, "{n} of {limit}");
             assert!(thin.faces.iter().flatten().all(|&v| (v as usize) < n));
             let positions = thin.vertices.iter().map(|&v| ball.positions[v]).collect();
-            let faces = thin.faces.iter().map(|face| face.map(mesh::VertexId)).collect();
+            let faces = thin.faces.iter().map(|face| face.map(surface::VertexId)).collect();
             let area = TriMesh { positions, faces }.area() / ball.area();
             assert!((0.8..1.05).contains(&area), "{area}");
         }
@@ -101,7 +101,7 @@ mod tests {
     #[test]
     fn a_mesh_without_extent_does_no_harm() {
         let flat =
-            TriMesh { positions: vec![Point3::origin(); 9], faces: vec![[0, 1, 2].map(mesh::VertexId)] };
+            TriMesh { positions: vec![Point3::origin(); 9], faces: vec![[0, 1, 2].map(surface::VertexId)] };
         let point = coarse(&flat, 4);
         assert!(point.vertices.len() == 1 && point.faces.is_empty());
     }

@@ -12,7 +12,8 @@ use anyhow::Result;
 use descriptors::{CanonicalForm, MatchOptions, PreparedForm, match_forms};
 use geodesics::{Sampling, Variance};
 use linalg::LandmarkDistances;
-use mesh::{TriMesh, VertexId, orient_consistently};
+use mesh::{TriMesh, orient_consistently};
+use surface::VertexId;
 use nmds::{
     Embedding, NystromOptions, Regularization, SpectralBasis, SpectralOptions, nystrom, paper_stress,
     spectral,

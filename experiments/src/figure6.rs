@@ -9,7 +9,7 @@ use std::time::Instant;
 use anyhow::Result;
 use geodesics::{Sampling, Variance};
 use linalg::LandmarkDistances;
-use mesh::VertexId;
+use surface::VertexId;
 use nmds::{Reconstruction, Regularization};
 use report::results::{AxisScale, CurvesPanel, Series};
 

@@ -10,7 +10,7 @@ use std::time::Instant;
 use anyhow::Result;
 use geodesics::{Sampling, Variance};
 use linalg::LandmarkDistances;
-use mesh::VertexId;
+use surface::VertexId;
 use nmds::{
     Embedding, NmdsError, NystromOptions, Regularization, SpectralBasis, SpectralOptions, landmark_mds,
     nystrom, paper_stress, spectral,

@@ -8,7 +8,8 @@ use std::time::Instant;
 
 use anyhow::{Context as _, Result};
 use datasets::{ArticulatedOptions, Family, articulated_shape};
-use mesh::{RepairOptions, VertexId};
+use mesh::RepairOptions;
+use surface::VertexId;
 use nmds::classical_full;
 use canonform::{EmbedMethod, EmbedOptions, Samples, StressChoice, Surface, embed};
 use report::results::{Figure9Measured, Figure9Record, Figure9Row, write};

@@ -7,7 +7,8 @@ use std::time::Instant;
 
 use anyhow::Result;
 use datasets::{ArticulatedOptions, Family, articulated_shape};
-use mesh::{RepairOptions, VertexId};
+use mesh::RepairOptions;
+use surface::VertexId;
 use canonform::{EmbedMethod, EmbedOptions, Samples, StressChoice, Surface, embed};
 use report::results::{AxisScale, CurvesPanel, Series};
 use terminal::PeakMemory;

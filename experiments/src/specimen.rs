@@ -6,7 +6,7 @@ use anyhow::{Context, Result, bail};
 use descriptors::LaplaceSpectrum;
 use geodesics::{DistanceSolver, FirstSample, Sampling};
 use linalg::{DistanceMatrix, LandmarkDistances};
-use mesh::VertexId;
+use surface::VertexId;
 use nmds::{Embedding, Reconstruction, classical, paper_stress, sample_rows};
 use canonform::GeodesicMethod;
 

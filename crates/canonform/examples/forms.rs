@@ -14,7 +14,8 @@ use std::io::Write;
 use std::path::Path;
 use std::time::Instant;
 
-use mesh::{RepairOptions, VertexId};
+use mesh::RepairOptions;
+use surface::VertexId;
 use canonform::{
     EmbedMethod, EmbedOptions, FirstSample, Regularization, Samples, StressChoice, Surface, embed,
 };

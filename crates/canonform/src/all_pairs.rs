@@ -4,7 +4,7 @@ use std::io::{self, Read, Seek, SeekFrom, Write};
 
 use geodesics::DistanceSolver;
 use linalg::Matrix;
-use mesh::VertexId;
+use surface::VertexId;
 use serde::Serialize;
 
 use crate::{Observer, PipelineError, Surface};

@@ -205,7 +205,8 @@ pub fn describe_with_form(
 
 #[cfg(test)]
 mod tests {
-    use mesh::{VertexId, shapes};
+    use mesh::shapes;
+    use surface::VertexId;
     use nalgebra::{Point3, Rotation3};
 
     use super::*;

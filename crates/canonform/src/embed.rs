@@ -5,8 +5,8 @@ use std::time::Instant;
 use descriptors::{CanonicalForm, LaplaceSpectrum};
 use geodesics::FirstSample;
 use linalg::{LandmarkDistances, SparseSymmetric};
-use mesh::VertexId;
-use mesh::laplacian::Laplacian;
+use surface::VertexId;
+use surface::laplacian::Laplacian;
 use nmds::{
     Embedding, KernelPcaOptions, NystromOptions, SmacofReport, SpectralBasis, SpectralOptions, classical,
     fmds, kernel_pca, landmark_mds, nystrom, smacof, spectral,

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use mesh::{FaceId, VertexId};
+use surface::{FaceId, VertexId};
 
 use crate::InputPoint;
 

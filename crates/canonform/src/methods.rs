@@ -2,7 +2,8 @@
 
 use geodesics::{Method, Sampling, Variance};
 use linalg::{DistanceMatrix, LandmarkDistances, Matrix};
-use mesh::{RepairReport, VertexId};
+use mesh::RepairReport;
+use surface::VertexId;
 use nmds::{
     Bandwidth, Regularization, RpiAlpha, SmacofOptions, estimate_paper_stress, paper_stress, sample_rows,
 };

@@ -2,7 +2,7 @@
 
 use geodesics::{DistanceSolver, PrunedSolver, Source};
 use linalg::Matrix;
-use mesh::VertexId;
+use surface::VertexId;
 
 /// Hears of the progress of long work, from any thread.
 pub trait Observer: Sync {

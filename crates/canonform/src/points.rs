@@ -4,7 +4,7 @@ use std::fmt;
 use std::str::FromStr;
 
 use geodesics::SurfacePoint;
-use mesh::{EdgeId, FaceId, VertexId};
+use surface::{EdgeId, FaceId, VertexId};
 use nalgebra::Point3;
 use serde::{Serialize, Serializer};
 

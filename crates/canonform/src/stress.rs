@@ -2,7 +2,7 @@
 
 use geodesics::{DistanceSolver, Method};
 use linalg::{LandmarkDistances, Matrix};
-use mesh::VertexId;
+use surface::VertexId;
 use nmds::{DistanceRows, estimate_paper_stress, paper_stress, sample_rows};
 use serde::Serialize;
 

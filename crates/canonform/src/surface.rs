@@ -5,7 +5,8 @@ use std::time::Instant;
 
 use nalgebra::Point3;
 
-use mesh::{IntrinsicMesh, RepairOptions, Repaired, TriMesh, VertexId, io, repair};
+use mesh::{RepairOptions, Repaired, TriMesh, io, repair};
+use surface::{IntrinsicMesh, VertexId};
 
 use crate::PipelineError;
 

@@ -10,7 +10,7 @@ use std::path::Path;
 use std::time::Instant;
 
 use linalg::{SparseSymmetric, smallest_eigenpairs};
-use mesh::laplacian::Laplacian;
+use surface::laplacian::Laplacian;
 use mesh::{RepairOptions, io, repair};
 
 fn main() -> Result<(), Box<dyn Error>> {

@@ -191,7 +191,7 @@ mod tests {
     fn square() -> TriMesh {
         let positions =
             [[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [2.0, 2.0, 0.0], [0.0, 2.0, 0.0]].map(Point3::from).to_vec();
-        let faces = [[0, 1, 2], [0, 2, 3]].map(|f: [u32; 3]| f.map(mesh::VertexId)).to_vec();
+        let faces = [[0, 1, 2], [0, 2, 3]].map(|f: [u32; 3]| f.map(surface::VertexId)).to_vec();
         TriMesh { positions, faces }
     }
 

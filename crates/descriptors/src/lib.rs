@@ -2,7 +2,7 @@
 //!
 //! `nmds::Embedding` -> **[`CanonicalForm`] -> [`PreparedForm`] -> [`match_forms`]** -> `retrieval`
 //!
-//! `mesh::IntrinsicMesh` -> **[`LaplaceSpectrum`]** -> `nmds` (spectral embeddings)
+//! `surface::IntrinsicMesh` -> **[`LaplaceSpectrum`]** -> `nmds` (spectral embeddings)
 //!
 //! forms, distances, spectra -> **[`Signature`] -> [`fuse`]** -> `retrieval`
 //!

@@ -1,8 +1,8 @@
 //! The Laplace-Beltrami spectrum of a surface.
 
 use linalg::{GeneralizedEigen, Matrix, SparseSymmetric, smallest_eigenpairs};
-use mesh::IntrinsicMesh;
-use mesh::laplacian::Laplacian;
+use surface::IntrinsicMesh;
+use surface::laplacian::Laplacian;
 
 use crate::DescriptorError;
 
@@ -55,7 +55,7 @@ mod tests {
     use mesh::{TriMesh, shapes};
 
     fn spectrum(mesh: &TriMesh, m: usize) -> LaplaceSpectrum {
-        LaplaceSpectrum::new(&IntrinsicMesh::from_mesh(mesh), m).unwrap()
+        LaplaceSpectrum::new(&mesh.intrinsic(), m).unwrap()
     }
 
     #[test]
@@ -108,7 +108,7 @@ mod tests {
 
     #[test]
     fn a_surface_without_area_has_no_spectrum() {
-        let none = LaplaceSpectrum::new(&IntrinsicMesh::from_mesh(&TriMesh::default()), 5);
+        let none = LaplaceSpectrum::new(&TriMesh::default().intrinsic(), 5);
         assert_eq!(none, Err(DescriptorError::NoExtent { n_points: 0 }));
     }
 }

@@ -4,12 +4,13 @@
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use canonform_geodesics::{FirstSample, HeatOptions, Method, farthest_point_sampling};
-use mesh::{IntrinsicMesh, VertexId, shapes};
+use mesh::shapes;
+use surface::{IntrinsicMesh, VertexId};
 
 /// A torus with triangles of all shapes, of about so many vertices.
 fn torus(n_vertices: usize) -> IntrinsicMesh {
     let around = ((n_vertices / 3) as f64).sqrt().round() as usize;
-    IntrinsicMesh::from_mesh(&shapes::torus(n_vertices / around, around, 3.0, 1.0))
+    shapes::torus(n_vertices / around, around, 3.0, 1.0).intrinsic()
 }
 
 fn solvers(criterion: &mut Criterion) {

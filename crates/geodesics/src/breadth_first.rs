@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use mesh::IntrinsicMesh;
+use surface::IntrinsicMesh;
 
 use crate::Source;
 use crate::graph::EdgeGraph;

@@ -1,6 +1,6 @@
 //! Distances along edges.
 
-use mesh::IntrinsicMesh;
+use surface::IntrinsicMesh;
 
 use crate::Source;
 use crate::graph::EdgeGraph;

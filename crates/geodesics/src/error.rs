@@ -1,6 +1,6 @@
 //! What can go wrong when distances are asked for.
 
-use mesh::VertexId;
+use surface::VertexId;
 
 use crate::SurfacePoint;
 

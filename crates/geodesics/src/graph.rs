@@ -1,6 +1,6 @@
 //! The edges of a surface as a graph.
 
-use mesh::IntrinsicMesh;
+use surface::IntrinsicMesh;
 
 use crate::rows::Rows;
 

@@ -1,6 +1,6 @@
 //! Geodesic distances on triangle meshes.
 //!
-//! `mesh::IntrinsicMesh` -> **geodesics** -> `linalg::LandmarkDistances` -> `nmds`
+//! `surface::IntrinsicMesh` -> **geodesics** -> `linalg::LandmarkDistances` -> `nmds`
 //!
 //! **Invariant.** Nothing here reads vertex coordinates: solvers see edge lengths only, so an
 //! isometry of the surface cannot change their output.

@@ -1,6 +1,6 @@
 //! The choice between solvers.
 
-use mesh::IntrinsicMesh;
+use surface::IntrinsicMesh;
 
 use crate::{
     BreadthFirst, Dijkstra, DistanceSolver, Exact, FastMarching, FastMarchingOptions, GeodesicError,
@@ -64,7 +64,7 @@ mod tests {
 
     #[test]
     fn every_method_prepares_or_says_why_not() {
-        let mesh = IntrinsicMesh::from_mesh(&icosphere(1));
+        let mesh = icosphere(1).intrinsic();
         let heat = Method::Heat(HeatOptions::default());
         for method in [Method::default(), heat, Method::Dijkstra, Method::BreadthFirst] {
             assert_eq!(method.prepare(&mesh).unwrap().n_vertices(), 42, "{}", method.name());

@@ -1,7 +1,7 @@
 //! Choice of landmarks.
 
 use linalg::{LandmarkDistances, Matrix};
-use mesh::VertexId;
+use surface::VertexId;
 
 use crate::{DistanceSolver, GeodesicError, PrunedSolver};
 

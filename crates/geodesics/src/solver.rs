@@ -3,7 +3,7 @@
 use std::sync::{Mutex, PoisonError};
 
 use linalg::{DistanceMatrix, LinalgError, Matrix};
-use mesh::VertexId;
+use surface::VertexId;
 use rayon::prelude::*;
 
 use crate::Source;

@@ -1,6 +1,6 @@
 //! Where distances start.
 
-use mesh::{EdgeId, FaceId, IntrinsicMesh, VertexId};
+use surface::{EdgeId, FaceId, IntrinsicMesh, VertexId};
 
 use crate::GeodesicError;
 use crate::corner::Corner;
@@ -98,7 +98,7 @@ impl Source {
                 // In the plane of the face: the squared distance from a point with barycentric
                 // coordinates b to corner i is -sum_{j<k} e_j e_k |v_j v_k|^2 with e = b - unit_i.
                 let sides = [0, 1, 2].map(|slot| {
-                    mesh.length(topology.opposite_edge(mesh::CornerId(3 * face.0 + slot))).powi(2)
+                    mesh.length(topology.opposite_edge(surface::CornerId(3 * face.0 + slot))).powi(2)
                 });
                 let reach = [0, 1, 2].map(|i| {
                     let mut e = barycentric;
@@ -128,7 +128,7 @@ impl Source {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use mesh::Topology;
+    use surface::Topology;
 
     /// Two right triangles over the unit square.
     fn square() -> IntrinsicMesh {

@@ -5,7 +5,8 @@
 
 use std::path::{Path, PathBuf};
 
-use mesh::{IntrinsicMesh, Topology, TriMesh, VertexId, io, shapes};
+use mesh::{TriMesh, io, shapes};
+use surface::{IntrinsicMesh, Topology, VertexId};
 
 /// Connectivity and lengths of a mesh in space.
 pub(crate) fn spatial(points: &[[f64; 3]], faces: &[[u32; 3]]) -> IntrinsicMesh {

@@ -7,7 +7,8 @@
 use canonform_geodesics::{
     Dijkstra, DistanceSolver, Exact, FastMarching, HeatOptions, Method, PathTracer, Source, SurfacePoint,
 };
-use mesh::{IntrinsicMesh, TriMesh, VertexId, shapes};
+use mesh::{TriMesh, shapes};
+use surface::{IntrinsicMesh, VertexId};
 use nalgebra::Point3;
 use proptest::prelude::*;
 
@@ -138,7 +139,7 @@ fn assert_lipschitz(surface: &IntrinsicMesh, distances: &[f64], name: &str) {
 
 /// What holds whatever the triangles.
 fn assert_laws(mesh: &TriMesh) {
-    let surface = IntrinsicMesh::from_mesh(mesh);
+    let surface = mesh.intrinsic();
     let (longest, open) = (longest_edge(&surface), left_open(&surface));
     let solvers = Solvers::new(&surface);
     for source in sources(mesh) {
@@ -176,7 +177,7 @@ proptest! {
 
     #[test]
     fn every_method_reaches_what_can_be_reached_and_nothing_is_nan(mesh in prop_oneof![soup(), tame()]) {
-        let surface = IntrinsicMesh::from_mesh(&mesh);
+        let surface = mesh.intrinsic();
         let heat = Method::Heat(HeatOptions::default());
         let dijkstra = Dijkstra::new(&surface);
         for method in [Method::default(), Method::Exact, Method::Dijkstra, Method::BreadthFirst, heat] {
@@ -192,7 +193,7 @@ proptest! {
 
     #[test]
     fn there_is_as_far_as_back(mesh in prop_oneof![soup(), tame()]) {
-        let surface = IntrinsicMesh::from_mesh(&mesh);
+        let surface = mesh.intrinsic();
         let (exact, open) = (Exact::new(&surface), left_open(&surface));
         let all = from_everywhere(&exact);
         for (i, row) in all.iter().enumerate() {
@@ -205,7 +206,7 @@ proptest! {
 
     #[test]
     fn marching_stays_close_on_surfaces(mesh in tame()) {
-        let surface = IntrinsicMesh::from_mesh(&mesh);
+        let surface = mesh.intrinsic();
         let (marching, exact) = (FastMarching::new(&surface, Default::default()), Exact::new(&surface));
         let all = from_everywhere(&marching);
         let longest = longest_edge(&surface);
@@ -222,7 +223,7 @@ proptest! {
 
     #[test]
     fn paths_are_between_the_exact_distance_and_that_along_edges(mesh in prop_oneof![soup(), tame()]) {
-        let surface = IntrinsicMesh::from_mesh(&mesh);
+        let surface = mesh.intrinsic();
         // Exact distances may miss ways through faces with a side of no length, which repair drops.
         prop_assume!(surface.edge_lengths().iter().all(|length| *length > 0.0));
         let (open, solvers) = (left_open(&surface), Solvers::new(&surface));

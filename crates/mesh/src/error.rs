@@ -3,7 +3,7 @@
 use std::fmt;
 use std::path::{Path, PathBuf};
 
-use crate::VertexId;
+use surface::VertexId;
 
 /// Why a mesh could not be read, written or repaired; the text names the file, the place, the fault
 /// and what to do.

@@ -1,6 +1,7 @@
 //! What may be wrong with the faces of a mesh: vertices out of range, named twice, faces repeated.
 
-use crate::{MeshError, TriMesh, VertexId};
+use crate::{MeshError, TriMesh};
+use surface::VertexId;
 
 /// Refuses a mesh whose faces name vertices that do not exist, or with coordinates that are not
 /// finite; what readers return passes.

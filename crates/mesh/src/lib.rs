@@ -31,28 +31,18 @@
 //! # }
 //! ```
 
-mod components;
-mod disjoint_sets;
 mod error;
 mod face_set;
-mod ids;
-mod intrinsic;
 pub mod io;
-pub mod laplacian;
 mod orientation;
 mod position_key;
 mod repair;
 pub mod shapes;
-mod topology;
 mod tri_mesh;
 mod validate;
 
-pub use components::{Components, components};
 pub use error::{Fault, MeshError, Place};
-pub use ids::{CornerId, EdgeId, FaceId, VertexId};
-pub use intrinsic::{IntrinsicMesh, Link};
 pub use orientation::orient_consistently;
 pub use repair::{ComponentPolicy, Orient, RepairOptions, RepairReport, Repaired, Weld, repair};
-pub use topology::Topology;
 pub use tri_mesh::TriMesh;
 pub use validate::{MeshReport, validate};

@@ -1,6 +1,7 @@
 //! Which way round the faces run.
 
-use crate::{CornerId, Topology, TriMesh, VertexId};
+use crate::TriMesh;
+use surface::{CornerId, Topology, VertexId};
 
 /// The faces of a mesh split into patches joined by manifold edges, and which faces of each patch
 /// run against the others.

@@ -2,7 +2,7 @@
 
 use nalgebra::{Point3, Vector3};
 
-use crate::VertexId;
+use surface::{IntrinsicMesh, Topology, VertexId};
 
 /// An indexed triangle mesh: vertex positions and faces, exactly as they were read.
 ///
@@ -60,6 +60,19 @@ impl TriMesh {
             }
         }
         areas
+    }
+
+    /// The intrinsic geometry: connectivity and the length of every edge.
+    ///
+    /// # Panics
+    /// When a face is degenerate in its indices or out of range, see [`Topology::new`]; [`repair`](crate::repair())
+    /// removes such faces.
+    #[must_use]
+    pub fn intrinsic(&self) -> IntrinsicMesh {
+        let topology = Topology::new(self.n_vertices(), self.faces.clone());
+        let length = |[a, b]: &[VertexId; 2]| (self.positions[a.index()] - self.positions[b.index()]).norm();
+        let lengths = topology.edges().iter().map(length).collect();
+        IntrinsicMesh::new(topology, lengths)
     }
 
     /// Lower and upper corner of the axis-aligned bounding box; `None` without vertices.

@@ -8,7 +8,8 @@ use std::path::{Path, PathBuf};
 
 use canonform_mesh::io::{MemoryFile, ReadLimits, is_mesh_path, read, read_memory, write, write_scalar_field};
 use files::Action;
-use canonform_mesh::{Fault, MeshError, TriMesh, VertexId, shapes};
+use canonform_mesh::{Fault, MeshError, TriMesh, shapes};
+use surface::VertexId;
 use nalgebra::Point3;
 use proptest::prelude::*;
 use tempfile::TempDir;

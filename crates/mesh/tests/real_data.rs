@@ -6,7 +6,8 @@
 
 use std::path::{Path, PathBuf};
 
-use canonform_mesh::{ComponentPolicy, Fault, MeshError, RepairOptions, TriMesh, VertexId};
+use canonform_mesh::{ComponentPolicy, Fault, MeshError, RepairOptions, TriMesh};
+use surface::VertexId;
 use canonform_mesh::{io, repair, validate};
 
 fn data(folder: &str) -> Option<PathBuf> {

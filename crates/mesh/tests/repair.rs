@@ -3,10 +3,8 @@
 // Helper functions are test code too, which clippy cannot see.
 #![allow(clippy::unwrap_used)]
 
-use canonform_mesh::{
-    ComponentPolicy, MeshError, Orient, RepairOptions, Repaired, TriMesh, VertexId, Weld, repair, shapes,
-    validate,
-};
+use canonform_mesh::{ComponentPolicy, MeshError, Orient, RepairOptions, Repaired, TriMesh, Weld, repair, shapes, validate};
+use surface::VertexId;
 use nalgebra::{Point3, Rotation3, Vector3};
 use proptest::prelude::*;
 

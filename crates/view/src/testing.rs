@@ -1,6 +1,7 @@
 //! Small surfaces for the tests.
 
-use mesh::{TriMesh, VertexId};
+use mesh::TriMesh;
+use surface::VertexId;
 use nalgebra::Point3;
 
 pub(crate) fn mesh(positions: &[[f64; 3]], faces: &[[u32; 3]]) -> TriMesh {

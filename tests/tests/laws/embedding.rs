@@ -3,7 +3,7 @@
 use datasets::Family;
 use geodesics::{FirstSample, farthest_point_sampling};
 use linalg::{DistanceMatrix, LandmarkDistances, Matrix};
-use mesh::{IntrinsicMesh, shapes};
+use mesh::shapes;
 use nmds::{
     NystromOptions, Reconstruction, Regularization, SpectralOptions, classical, classical_full,
     normalized_stress, nystrom, paper_stress,
@@ -54,7 +54,7 @@ fn a_rank_too_small_for_space_is_not_exact() {
 #[test]
 fn all_points_as_samples_is_classical_scaling() {
     let mesh = shapes::torus(14, 9, 2.0, 0.7);
-    let solver = marching().prepare(&IntrinsicMesh::from_mesh(&mesh)).unwrap();
+    let solver = marching().prepare(&mesh.intrinsic()).unwrap();
     let distances = solver.distance_matrix().unwrap();
     let p = distances.n_points();
     let all = landmark_columns(&distances, (0..p).collect());
@@ -70,7 +70,7 @@ fn all_points_as_samples_is_classical_scaling() {
 #[test]
 fn more_samples_come_closer_to_the_optimum_and_never_below_it() {
     let mesh = body(Family::Cat);
-    let solver = marching().prepare(&IntrinsicMesh::from_mesh(&mesh)).unwrap();
+    let solver = marching().prepare(&mesh.intrinsic()).unwrap();
     let distances = solver.distance_matrix().unwrap();
     let optimum = paper_stress(&classical(&distances, 3).unwrap().coords, &distances);
     let excess = |n: usize| {
@@ -172,7 +172,7 @@ fn the_unit_of_length_changes_no_method() {
 #[test]
 fn no_method_is_below_classical_scaling_and_straight_lines_of_smacof_fit_best() {
     let mesh = body(Family::Cat);
-    let solver = marching().prepare(&IntrinsicMesh::from_mesh(&mesh)).unwrap();
+    let solver = marching().prepare(&mesh.intrinsic()).unwrap();
     let distances = solver.distance_matrix().unwrap();
     let coords = |method: EmbedMethod| {
         let options = EmbedOptions { method, stress: StressChoice::Skip, ..EmbedOptions::default() };
@@ -193,7 +193,7 @@ fn no_method_is_below_classical_scaling_and_straight_lines_of_smacof_fit_best() 
 #[test]
 fn the_best_rank_lies_inside_and_beats_both_cur_and_all_eigenpairs() {
     let mesh = body(Family::Cat);
-    let solver = marching().prepare(&IntrinsicMesh::from_mesh(&mesh)).unwrap();
+    let solver = marching().prepare(&mesh.intrinsic()).unwrap();
     let distances = solver.distance_matrix().unwrap();
     let samples = farthest_point_sampling(solver.as_ref(), 60, FirstSample::default()).unwrap();
     let affinity = Reconstruction::new(&samples, &distances).unwrap();

@@ -2,7 +2,8 @@
 
 use datasets::Family;
 use linalg::DistanceMatrix;
-use mesh::{IntrinsicMesh, TriMesh, VertexId, shapes};
+use mesh::{TriMesh, shapes};
+use surface::VertexId;
 use nalgebra::{Isometry3, Point3, Vector3};
 use canonform::{
     EmbedMethod, EmbedOptions, FirstSample, GeodesicMethod, MatchOptions, Normalization, PreparedForms,
@@ -125,11 +126,11 @@ fn scaled_pairs(pairs: &DistanceMatrix, factor: f64) -> Vec<f64> {
 #[test]
 fn a_change_of_unit_changes_the_unit_alone() {
     let mesh = body(Family::Centaur);
-    let solver = marching().prepare(&IntrinsicMesh::from_mesh(&mesh)).unwrap();
+    let solver = marching().prepare(&mesh.intrinsic()).unwrap();
     let distances = solver.distances(VertexId(5));
     for factor in [1e-3, 1e3] {
         let scaled = moved(&mesh, |p| p * factor);
-        let found = marching().prepare(&IntrinsicMesh::from_mesh(&scaled)).unwrap().distances(VertexId(5));
+        let found = marching().prepare(&scaled.intrinsic()).unwrap().distances(VertexId(5));
         let expected: Vec<f64> = distances.iter().map(|d| d * factor).collect();
         assert!(gap(&found, &expected) < 1e-12);
     }

@@ -5,7 +5,8 @@ use geodesics::{
     DistanceSolver, FastMarching, FastMarchingOptions, FirstSample, ObtuseTreatment, PrunedSolver, Source,
     farthest_point_sampling,
 };
-use mesh::{IntrinsicMesh, TriMesh, VertexId, shapes};
+use mesh::{TriMesh, shapes};
+use surface::{IntrinsicMesh, VertexId};
 use canonform::GeodesicMethod;
 
 use crate::support::{all_vertices, body, columns, marching};
@@ -13,7 +14,7 @@ use crate::support::{all_vertices, body, columns, marching};
 /// The largest error against straight lines, as a share of the size of a flat sheet.
 fn error_on_plane(sheet: &TriMesh, source: usize, obtuse: ObtuseTreatment) -> f64 {
     let options = FastMarchingOptions { obtuse, ..FastMarchingOptions::default() };
-    let solver = FastMarching::new(&IntrinsicMesh::from_mesh(sheet), options);
+    let solver = FastMarching::new(&sheet.intrinsic(), options);
     let found = solver.distances(VertexId::from(source));
     let straight: Vec<f64> = sheet.positions.iter().map(|p| (p - sheet.positions[source]).norm()).collect();
     crate::support::gap(&found, &straight)
@@ -92,7 +93,7 @@ fn errors_halve_with_the_edges_of_a_sphere() {
         .map(|level| {
             let sphere = shapes::icosphere(level);
             let found =
-                marching().prepare(&IntrinsicMesh::from_mesh(&sphere)).unwrap().distances(VertexId(0));
+                marching().prepare(&sphere.intrinsic()).unwrap().distances(VertexId(0));
             let axis = sphere.positions[0].coords;
             let arc = |v: usize| {
                 axis.cross(&sphere.positions[v].coords).norm().atan2(axis.dot(&sphere.positions[v].coords))
@@ -110,7 +111,7 @@ fn errors_halve_with_the_edges_of_a_sphere() {
 fn distances_grow_no_faster_than_edges_and_stay_below_paths_along_them() {
     for mesh in [body(datasets::Family::Cat), shapes::icosphere(4), shapes::sheared_grid(20, 15, 1.0, 1.7)] {
         let sources: Vec<VertexId> = (0..10).map(|i| VertexId::from(i * mesh.n_vertices() / 10)).collect();
-        let surface = IntrinsicMesh::from_mesh(&mesh);
+        let surface = mesh.intrinsic();
         let marched = columns(&mesh, marching(), &sources);
         let walked = columns(&mesh, GeodesicMethod::Dijkstra, &sources);
         let slack = 1e-12 * walked.max();
@@ -132,7 +133,7 @@ fn other_pieces_are_infinitely_far_and_nothing_else_is() {
     for part in &parts {
         let end = start + part.n_vertices();
         for method in [marching(), GeodesicMethod::Dijkstra, GeodesicMethod::BreadthFirst] {
-            let surface = IntrinsicMesh::from_mesh(&whole);
+            let surface = whole.intrinsic();
             let found = method.prepare(&surface).unwrap().distances(VertexId::from(start + 1));
             for (v, d) in found.iter().enumerate() {
                 assert_eq!(d.is_finite(), (start..end).contains(&v), "{} {v}", method.name());
@@ -217,7 +218,7 @@ pub(crate) fn pruning_changes_nothing(name: &str, surface: &IntrinsicMesh, n: us
 #[test]
 fn pruned_fronts_choose_the_samples_of_full_ones() {
     for family in [Family::Cat, Family::Centaur, Family::David] {
-        pruning_changes_nothing(family.name(), &IntrinsicMesh::from_mesh(&body(family)), 200);
+        pruning_changes_nothing(family.name(), &body(family).intrinsic(), 200);
     }
-    pruning_changes_nothing("torus", &IntrinsicMesh::from_mesh(&shapes::torus(60, 23, 2.0, 0.7)), 100);
+    pruning_changes_nothing("torus", &shapes::torus(60, 23, 2.0, 0.7).intrinsic(), 100);
 }

@@ -6,7 +6,8 @@
 use std::path::{Path, PathBuf};
 
 use geodesics::{FirstSample, farthest_point_sampling};
-use mesh::{IntrinsicMesh, RepairOptions, VertexId};
+use mesh::RepairOptions;
+use surface::{IntrinsicMesh, VertexId};
 use nmds::{NystromOptions, Regularization, classical, nystrom, paper_stress};
 use canonform::{
     DescribeOptions, EmbedOptions, MatchOptions, Normalization, PreparedForms, ShapeDistance, StressChoice,

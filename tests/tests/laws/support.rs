@@ -4,7 +4,8 @@ use std::path::PathBuf;
 
 use datasets::{ArticulatedOptions, Family, articulated_shape};
 use linalg::{DistanceMatrix, Matrix};
-use mesh::{IntrinsicMesh, RepairOptions, TriMesh, VertexId};
+use mesh::{RepairOptions, TriMesh};
+use surface::VertexId;
 use nalgebra::Point3;
 use canonform::{EmbedOptions, Embedded, GeodesicMethod, Surface, embed, embedded_distances};
 
@@ -40,7 +41,7 @@ pub(crate) fn marching() -> GeodesicMethod {
 
 /// Distances from some vertices of a mesh, a column each.
 pub(crate) fn columns(mesh: &TriMesh, method: GeodesicMethod, sources: &[VertexId]) -> Matrix {
-    method.prepare(&IntrinsicMesh::from_mesh(mesh)).unwrap().distance_columns(sources)
+    method.prepare(&mesh.intrinsic()).unwrap().distance_columns(sources)
 }
 
 pub(crate) fn all_vertices(mesh: &TriMesh) -> Vec<VertexId> {

@@ -2,7 +2,7 @@
 
 use anyhow::{Result, bail};
 use clap::{Args, ValueEnum};
-use mesh::VertexId;
+use surface::VertexId;
 use canonform::{
     Bandwidth, EmbedMethod, EmbedOptions, FirstSample, Regularization, RpiAlpha, Samples, Sampling,
     SmacofOptions, StressChoice, Variance,

@@ -2,7 +2,8 @@
 
 use std::fs;
 
-use mesh::{VertexId, io};
+use mesh::io;
+use surface::VertexId;
 use serde_json::Value;
 
 use crate::support::{Workplace, broken_ring, read_npy, ring};

@@ -3,7 +3,8 @@
 use std::fs;
 use std::time::{Duration, Instant};
 
-use mesh::{TriMesh, VertexId, io, shapes};
+use mesh::{TriMesh, io, shapes};
+use surface::VertexId;
 use nalgebra::Point3;
 
 use crate::support::{Workplace, assert_keys, broken_ring, program, read_npy, ring};

@@ -1,11 +1,11 @@
 //! New windows: from vertices where paths bend, and from sources.
 
-use mesh::VertexId;
+use surface::VertexId;
 
 use super::fan::{FanCorner, Winding};
 use super::frame::Frame;
 use super::front::Arrival;
-use super::surface::{Along, next};
+use super::faces::{Along, next};
 use super::wave::Wave;
 use super::window::Window;
 use crate::{Source, SurfacePoint};

@@ -2,10 +2,10 @@
 
 use std::f64::consts::PI;
 
-use mesh::{CornerId, IntrinsicMesh, Topology, VertexId};
+use surface::{CornerId, IntrinsicMesh, Topology, VertexId};
 
 use super::front::Arrival;
-use super::surface::{Surface, next};
+use super::faces::{Surface, next};
 
 /// How shortest paths may run through a vertex.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -1,6 +1,6 @@
 //! Faces laid out in the plane, and windows falling through them.
 
-use super::surface::{Beyond, Surface, next};
+use super::faces::{Beyond, Surface, next};
 use super::window::Window;
 
 /// The face of a corner, laid out with its base `ab`, the edge opposite the corner, on the x-axis

@@ -3,7 +3,7 @@
 //! | module | what it does |
 //! |---|---|
 //! | `order` | leaves out faces that repeat another, and makes neighbours neighbours in memory |
-//! | `surface`, `fan` | the faces, and the corners around every vertex with their angles |
+//! | `faces`, `fan` | the faces, and the corners around every vertex with their angles |
 //! | `window` | what an edge sees of a source through one strip of unfolded faces |
 //! | `envelope` | leaves of the windows at an edge what may be shortest |
 //! | `frame`, `apex` | a face laid out, windows falling through it, and what its apex sees of them |
@@ -17,20 +17,20 @@ mod fan;
 mod frame;
 mod front;
 mod order;
-mod surface;
+mod faces;
 mod wave;
 mod window;
 
 #[cfg(test)]
 mod tests;
 
-use mesh::IntrinsicMesh;
+use surface::IntrinsicMesh;
 
 use crate::Source;
 use crate::solver::{DistanceSolver, Pool, within};
 use fan::Fans;
 use order::{Renumbered, renumbered};
-use surface::Surface;
+use faces::Surface;
 use wave::Scratch;
 
 /// Exact distances on the surface: no other error than rounding.

@@ -1,6 +1,6 @@
 //! Neighbours on the surface become neighbours in memory.
 
-use mesh::{CornerId, IntrinsicMesh, Link, Topology, VertexId};
+use surface::{CornerId, IntrinsicMesh, Link, Topology, VertexId};
 
 /// A surface renumbered breadth first, and what became of the vertices and faces.
 pub(super) struct Renumbered {

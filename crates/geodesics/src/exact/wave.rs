@@ -6,7 +6,7 @@ use super::envelope::trim;
 use super::fan::Bend;
 use super::frame::{Frame, Until};
 use super::front::{Arrival, Front};
-use super::surface::{Along, Facing, next};
+use super::faces::{Along, Facing, next};
 use super::window::Window;
 
 /// Memory that runs share.

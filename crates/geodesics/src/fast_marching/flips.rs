@@ -5,7 +5,7 @@
 //! where no such edge is left (the intrinsic Delaunay triangulation; Bobenko and Springborn 2007),
 //! few angles are obtuse.
 
-use mesh::{CornerId, EdgeId, IntrinsicMesh};
+use surface::{CornerId, EdgeId, IntrinsicMesh};
 
 use super::triangulation::Triangulation;
 use crate::corner::Corner;
@@ -131,7 +131,8 @@ impl Flips {
 mod tests {
     use std::collections::HashMap;
 
-    use mesh::{Topology, VertexId, shapes};
+    use mesh::shapes;
+    use surface::{Topology, VertexId};
 
     use super::*;
 
@@ -154,7 +155,7 @@ mod tests {
 
     #[test]
     fn a_sheared_sheet_becomes_right_again() {
-        let sheet = IntrinsicMesh::from_mesh(&shapes::sheared_grid(9, 7, 1.0, 1.0));
+        let sheet = shapes::sheared_grid(9, 7, 1.0, 1.0).intrinsic();
         assert!(!is_delaunay(&Triangulation::new(&sheet)));
         let (triangulation, flips) = all_flipped(&sheet);
         assert!(flips > 0 && is_delaunay(&triangulation));
@@ -163,7 +164,7 @@ mod tests {
     #[test]
     fn lengths_are_those_in_the_plane_and_nothing_is_lost() {
         let sheet = shapes::jittered_grid(12, 9, 1.0, 0.3, 5);
-        let surface = IntrinsicMesh::from_mesh(&sheet);
+        let surface = sheet.intrinsic();
         let (triangulation, flips) = all_flipped(&surface);
         assert!(flips > 0 && is_delaunay(&triangulation));
         let distance = |a: u32, b: u32| (sheet.positions[a as usize] - sheet.positions[b as usize]).norm();

@@ -24,7 +24,7 @@ mod triangulation;
 mod unfold;
 mod update;
 
-use mesh::{IntrinsicMesh, VertexId};
+use surface::{IntrinsicMesh, VertexId};
 
 use crate::Source;
 use crate::graph::EdgeGraph;

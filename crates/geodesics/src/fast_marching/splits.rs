@@ -1,6 +1,6 @@
 //! Obtuse corners replaced by two acute ones.
 
-use mesh::{CornerId, IntrinsicMesh, VertexId};
+use surface::{CornerId, IntrinsicMesh, VertexId};
 
 use super::chains::{Arm, Part, Reaches};
 use super::unfold::{Split, Unfolding, base, sides, unfold};

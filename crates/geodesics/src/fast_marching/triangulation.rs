@@ -1,6 +1,6 @@
 //! The triangles that a front runs over.
 
-use mesh::{CornerId, IntrinsicMesh};
+use surface::{CornerId, IntrinsicMesh};
 
 use super::chains::{Arm, Part, Reaches};
 use crate::rows::Rows;

@@ -5,7 +5,7 @@
 //! vertex `D` falls into the cone of directions that make an acute angle with both `CA` and `CB`;
 //! the segment `CD` then lies inside the unfolded strip and splits the corner into two acute ones.
 
-use mesh::{CornerId, IntrinsicMesh, Topology, VertexId};
+use surface::{CornerId, IntrinsicMesh, Topology, VertexId};
 
 use crate::corner::Corner;
 
@@ -130,7 +130,7 @@ pub(super) fn unfold(mesh: &IntrinsicMesh, corner: CornerId) -> Unfolding {
 
 #[cfg(test)]
 mod tests {
-    use mesh::Topology;
+    use surface::Topology;
 
     use super::*;
 

@@ -1,6 +1,6 @@
 //! Which vertices heat can reach from which.
 
-use mesh::IntrinsicMesh;
+use surface::IntrinsicMesh;
 
 /// The component of every vertex along edges and links, and one vertex of each.
 #[derive(Debug)]

@@ -1,7 +1,7 @@
 //! How triangles and links carry heat.
 
-use mesh::Link;
-use mesh::laplacian::{Element, Triangle};
+use surface::Link;
+use surface::laplacian::{Element, Triangle};
 
 /// A link longer than this, in units, transports heat as if it were this long: behind a bridge the
 /// amount of heat is of no importance, but there has to be some.
@@ -113,7 +113,7 @@ mod tests {
 
     #[test]
     fn a_bar_rises_by_its_length_or_to_where_heat_from_both_ends_meets() {
-        let link = Link { ends: [0, 1].map(mesh::VertexId), length: 3.0 };
+        let link = Link { ends: [0, 1].map(surface::VertexId), length: 3.0 };
         let bar = Bar::new(&link, 0.5);
         let rise = |u: [f64; 2]| {
             let mut b = [[0.0]; 2];

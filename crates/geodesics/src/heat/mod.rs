@@ -6,8 +6,8 @@ mod ring;
 mod system;
 
 use linalg::Matrix;
-use mesh::laplacian::{Element, Laplacian, Metric};
-use mesh::{IntrinsicMesh, Link, VertexId};
+use surface::laplacian::{Element, Laplacian, Metric};
+use surface::{IntrinsicMesh, Link, VertexId};
 use rayon::prelude::*;
 
 use self::components::Components;

@@ -1,6 +1,6 @@
 //! The vertices around each vertex.
 
-use mesh::laplacian::Element;
+use surface::laplacian::Element;
 
 /// For each vertex the other corners of its triangles and the lengths of the sides that lead there,
 /// stored back to back.
@@ -34,7 +34,7 @@ impl Ring {
     }
 
     /// The vertices around `vertex` and how far they are, in units.
-    pub(super) fn of(&self, vertex: mesh::VertexId) -> &[(u32, f64)] {
+    pub(super) fn of(&self, vertex: surface::VertexId) -> &[(u32, f64)] {
         let v = vertex.index();
         &self.spokes[self.starts[v] as usize..self.starts[v + 1] as usize]
     }

@@ -1,7 +1,7 @@
 //! The two matrices and their factors.
 
 use linalg::{EliminationOrder, LinalgError, SparseCholesky, SparseSymmetric};
-use mesh::laplacian::{Element, Laplacian};
+use surface::laplacian::{Element, Laplacian};
 
 use super::flow::Bar;
 use crate::GeodesicError;

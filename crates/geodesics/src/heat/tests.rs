@@ -1,13 +1,14 @@
 use linalg::Matrix;
 use mesh::shapes::{cylinder, disjoint, fold, grid, icosphere, jittered_grid, sheared_grid};
-use mesh::{FaceId, Link, Topology, TriMesh};
+use mesh::TriMesh;
+use surface::{FaceId, Link, Topology};
 
 use super::*;
 
 mod reference;
 
 fn surface(mesh: &TriMesh) -> IntrinsicMesh {
-    IntrinsicMesh::from_mesh(mesh)
+    mesh.intrinsic()
 }
 
 fn heat(mesh: &IntrinsicMesh) -> HeatMethod {

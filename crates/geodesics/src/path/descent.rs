@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use mesh::{CornerId, EdgeId, FaceId, VertexId};
+use surface::{CornerId, EdgeId, FaceId, VertexId};
 
 use super::PathTracer;
 use super::edges::faces_around;

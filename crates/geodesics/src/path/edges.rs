@@ -3,7 +3,7 @@
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-use mesh::{CornerId, FaceId, IntrinsicMesh, VertexId};
+use surface::{CornerId, FaceId, IntrinsicMesh, VertexId};
 
 use super::strip::{Section, Strip, Way};
 use super::{PathTracer, on_the_least};

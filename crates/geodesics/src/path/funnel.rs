@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use mesh::{IntrinsicMesh, VertexId};
+use surface::{IntrinsicMesh, VertexId};
 
 use super::plane::{Point, cross, sub};
 use super::strip::{Gate, Laid, Portal, Section, Strip};

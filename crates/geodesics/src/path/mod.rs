@@ -25,7 +25,7 @@ mod turn;
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::OnceLock;
 
-use mesh::{CornerId, FaceId, IntrinsicMesh, VertexId};
+use surface::{CornerId, FaceId, IntrinsicMesh, VertexId};
 
 use crate::{GeodesicError, Source, SurfacePoint};
 use descent::descend;
@@ -92,7 +92,7 @@ impl<'a> PathTracer<'a> {
     pub fn new(mesh: &'a IntrinsicMesh, sources: &'a [Source], distances: &'a [f64]) -> Self {
         assert_eq!(distances.len(), mesh.n_vertices(), "one distance per vertex");
         let both =
-            |link: &mesh::Link| [(0, 1), (1, 0)].map(|(i, j)| (link.ends[i], link.ends[j], link.length));
+            |link: &surface::Link| [(0, 1), (1, 0)].map(|(i, j)| (link.ends[i], link.ends[j], link.length));
         let mut links: Vec<_> = mesh.links().iter().flat_map(both).collect();
         links.sort_unstable_by(|p, q| (p.0, p.1).cmp(&(q.0, q.1)).then(p.2.total_cmp(&q.2)));
         let mut at_vertices = BTreeSet::new();

@@ -1,6 +1,6 @@
 //! Faces laid out in the plane.
 
-use mesh::{CornerId, EdgeId, FaceId, IntrinsicMesh, VertexId};
+use surface::{CornerId, EdgeId, FaceId, IntrinsicMesh, VertexId};
 
 use crate::SurfacePoint;
 use crate::corner::Corner;

@@ -3,7 +3,7 @@
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-use mesh::{CornerId, EdgeId, FaceId, VertexId};
+use surface::{CornerId, EdgeId, FaceId, VertexId};
 
 use super::PathTracer;
 use super::edges::faces_around;

@@ -1,6 +1,6 @@
 //! Making a way as short as it gets without lifting it over anything.
 
-use mesh::IntrinsicMesh;
+use surface::IntrinsicMesh;
 
 use super::funnel::shortest_through;
 use super::strip::{Portal, Section, Strip, Way};

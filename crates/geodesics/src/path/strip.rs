@@ -1,6 +1,6 @@
 //! Ways over faces that are crossed one after the other.
 
-use mesh::{EdgeId, FaceId, IntrinsicMesh, VertexId};
+use surface::{EdgeId, FaceId, IntrinsicMesh, VertexId};
 
 use super::plane::{Flat, Point, Side, beyond, segment};
 use crate::SurfacePoint;

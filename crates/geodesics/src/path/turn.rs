@@ -4,7 +4,7 @@ use std::cmp::Reverse;
 use std::collections::{BTreeMap, BinaryHeap};
 use std::f64::consts::PI;
 
-use mesh::{CornerId, EdgeId, FaceId, IntrinsicMesh, VertexId};
+use surface::{CornerId, EdgeId, FaceId, IntrinsicMesh, VertexId};
 
 use super::plane::Flat;
 use super::strip::{Portal, Strip};

@@ -1,7 +1,7 @@
 //! The landmarks taken so far and their columns.
 
 use linalg::{LandmarkDistances, Matrix};
-use mesh::VertexId;
+use surface::VertexId;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::Rng;
 

@@ -84,7 +84,8 @@ impl Sampling {
 #[cfg(test)]
 mod tests {
     use mesh::shapes::{disjoint, grid, icosphere};
-    use mesh::{IntrinsicMesh, TriMesh, VertexId};
+    use mesh::TriMesh;
+    use surface::VertexId;
 
     use super::*;
     use crate::{Dijkstra, farthest_point_sampling};
@@ -97,7 +98,7 @@ mod tests {
     ];
 
     fn solver(mesh: &TriMesh) -> Dijkstra {
-        Dijkstra::new(&IntrinsicMesh::from_mesh(mesh))
+        Dijkstra::new(&mesh.intrinsic())
     }
 
     fn sample(sampling: Sampling, first: FirstSample, seed: u64, n: usize) -> LandmarkDistances {

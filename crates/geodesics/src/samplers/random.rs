@@ -56,7 +56,7 @@ impl Sampler for RandomSampler<'_> {
 
 #[cfg(test)]
 mod tests {
-    use mesh::IntrinsicMesh;
+    
     use mesh::shapes::grid;
 
     use super::*;
@@ -64,7 +64,7 @@ mod tests {
 
     #[test]
     fn every_vertex_is_as_likely_as_any_other() {
-        let solver = BreadthFirst::new(&IntrinsicMesh::from_mesh(&grid(4, 3, 1.0)));
+        let solver = BreadthFirst::new(&grid(4, 3, 1.0).intrinsic());
         let p = solver.n_vertices();
         let (runs, n) = (3000, 4);
         let mut taken = vec![0usize; p];

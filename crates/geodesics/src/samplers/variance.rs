@@ -114,14 +114,14 @@ impl Sampler for VarianceSampler<'_> {
 #[cfg(test)]
 mod tests {
     use mesh::shapes::{grid, icosphere};
-    use mesh::{IntrinsicMesh, VertexId};
+    use surface::VertexId;
 
     use super::*;
     use crate::Dijkstra;
 
     #[test]
     fn every_landmark_has_the_extreme_variance_of_the_definition() {
-        let solver = Dijkstra::new(&IntrinsicMesh::from_mesh(&icosphere(2)));
+        let solver = Dijkstra::new(&icosphere(2).intrinsic());
         for (variance, sign) in [(Variance::Least, 1.0), (Variance::Greatest, -1.0)] {
             let mut sampler = VarianceSampler::new(&solver, FirstSample::default(), 5, variance).unwrap();
             sampler.extend_to(12).unwrap();
@@ -145,7 +145,7 @@ mod tests {
         // A long strip: what is equally far from both ends lies in the middle.
         let strip = grid(41, 2, 1.0);
         let middle = |v: usize| (strip.positions[v].x - 20.0).abs() < 1.1;
-        let solver = Dijkstra::new(&IntrinsicMesh::from_mesh(&strip));
+        let solver = Dijkstra::new(&strip.intrinsic());
         for seed in 0..5 {
             let third = |variance| {
                 let first = FirstSample::Vertex(VertexId(0));

@@ -3,7 +3,8 @@
 use nalgebra::Point3;
 
 use crate::error::{Fault, Located};
-use crate::{TriMesh, VertexId};
+use crate::TriMesh;
+use surface::VertexId;
 
 use super::ReadLimits;
 

@@ -29,7 +29,8 @@ use nalgebra::Point3;
 
 use crate::error::MeshError;
 use crate::face_set::check_input;
-use crate::{TriMesh, VertexId};
+use crate::TriMesh;
+use surface::VertexId;
 use source::{Disk, Memory, Source};
 
 pub use limits::ReadLimits;

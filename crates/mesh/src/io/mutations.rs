@@ -4,7 +4,8 @@
 use proptest::prelude::*;
 
 use crate::error::{Fault, Located};
-use crate::{TriMesh, VertexId, shapes};
+use crate::{TriMesh, shapes};
+use surface::VertexId;
 
 use super::mat::sample::{PLAIN, Style};
 use super::{ReadLimits, mat, obj, off, ply, stl, tosca};

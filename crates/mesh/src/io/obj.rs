@@ -9,7 +9,8 @@ use std::io::{self, BufRead, Read, Write};
 use nalgebra::Point3;
 
 use crate::error::{Fault, Located};
-use crate::{TriMesh, VertexId};
+use crate::TriMesh;
+use surface::VertexId;
 
 use super::ReadLimits;
 use super::assembly::{finish, push_polygon};

@@ -3,7 +3,8 @@
 use std::io::{self, Write};
 
 use crate::error::{Fault, Located};
-use crate::{TriMesh, VertexId};
+use crate::TriMesh;
+use surface::VertexId;
 
 use super::ReadLimits;
 use super::assembly::{finish, push_polygon};

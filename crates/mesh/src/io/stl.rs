@@ -8,7 +8,8 @@ use stl_io::{Normal, Triangle, Vertex};
 
 use crate::error::{Fault, Located, MeshError, Place};
 use crate::position_key::position_key;
-use crate::{TriMesh, VertexId};
+use crate::TriMesh;
+use surface::VertexId;
 
 use super::ReadLimits;
 use super::assembly::finish;

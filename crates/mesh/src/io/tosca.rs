@@ -6,7 +6,8 @@ use std::path::{Path, PathBuf};
 use nalgebra::Point3;
 
 use crate::error::{Fault, Located, MeshError};
-use crate::{TriMesh, VertexId};
+use crate::TriMesh;
+use surface::VertexId;
 
 use super::ReadLimits;
 use super::assembly::finish;

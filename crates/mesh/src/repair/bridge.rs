@@ -9,8 +9,8 @@
 
 use nalgebra::Point3;
 
-use crate::disjoint_sets::DisjointSets;
-use crate::{Link, VertexId};
+use surface::DisjointSets;
+use surface::{Link, VertexId};
 
 /// The most points in a leaf of the tree.
 const LEAF: usize = 8;

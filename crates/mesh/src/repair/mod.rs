@@ -8,11 +8,10 @@ mod weld;
 pub use options::{ComponentPolicy, Orient, RepairOptions, Weld};
 pub use report::RepairReport;
 
-use crate::components::{Components, components_of_faces};
-use crate::disjoint_sets::DisjointSets;
 use crate::face_set::{check_input, names_twice, repeats};
 use crate::orientation::orient_consistently;
-use crate::{IntrinsicMesh, Link, MeshError, TriMesh, VertexId};
+use crate::{MeshError, TriMesh};
+use surface::{Components, DisjointSets, IntrinsicMesh, Link, VertexId, components_of_faces};
 
 /// A mended mesh, and what became of the input.
 #[derive(Debug, Clone, PartialEq)]
@@ -34,7 +33,7 @@ impl Repaired {
     /// The intrinsic geometry of the mesh, with the links.
     #[must_use]
     pub fn intrinsic(&self) -> IntrinsicMesh {
-        IntrinsicMesh::from_mesh(&self.mesh).with_links(self.links.clone())
+        self.mesh.intrinsic().with_links(self.links.clone())
     }
 }
 

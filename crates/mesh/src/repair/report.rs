@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::{Link, VertexId};
+use surface::{Link, VertexId};
 
 /// Every change that [`repair()`](crate::repair()) has made to a mesh.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]

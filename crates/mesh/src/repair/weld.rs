@@ -2,9 +2,9 @@
 
 use nalgebra::Point3;
 
-use crate::disjoint_sets::DisjointSets;
+use surface::DisjointSets;
 use crate::position_key::position_key;
-use crate::{EdgeId, Topology, VertexId};
+use surface::{EdgeId, Topology, VertexId};
 
 use super::Weld;
 

@@ -5,7 +5,8 @@ use std::f64::consts::TAU;
 use nalgebra::Point3;
 
 use super::subdivide;
-use crate::{TriMesh, VertexId};
+use crate::TriMesh;
+use surface::VertexId;
 
 fn from_arrays(positions: &[[f64; 3]], faces: &[[u32; 3]]) -> TriMesh {
     TriMesh {

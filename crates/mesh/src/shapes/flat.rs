@@ -2,7 +2,8 @@
 
 use nalgebra::Point3;
 
-use crate::{TriMesh, VertexId};
+use crate::TriMesh;
+use surface::VertexId;
 
 /// A flat sheet of `nx` x `ny` vertices, `step` apart, in the plane z = 0 with its first vertex in
 /// the origin; vertex `(i, j)` has the index `j * nx + i` and all diagonals run the same way.
@@ -90,7 +91,6 @@ pub fn folded_sheet(nx: usize, ny: usize, step: f64, column: usize, angle: f64) 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::IntrinsicMesh;
 
     #[test]
     fn flat_sheets_have_the_area_of_their_outline() {
@@ -104,11 +104,11 @@ mod tests {
 
     #[test]
     fn folding_keeps_every_edge_length() {
-        let flat = IntrinsicMesh::from_mesh(&grid(9, 4, 0.3));
+        let flat = grid(9, 4, 0.3).intrinsic();
         for angle in [0.1, 1.0, 2.5, -3.0] {
             let sheet = folded_sheet(9, 4, 0.3, 4, angle);
             assert!(sheet.positions.iter().any(|p| p.z.abs() > 0.1));
-            let folded = IntrinsicMesh::from_mesh(&sheet);
+            let folded = sheet.intrinsic();
             for (a, b) in flat.edge_lengths().iter().zip(folded.edge_lengths()) {
                 assert!((a - b).abs() < 1e-14);
             }

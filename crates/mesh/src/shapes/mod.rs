@@ -11,7 +11,8 @@ pub use closed::{cube, cylinder, icosphere, tetrahedron, torus};
 pub use flat::{fold, folded_sheet, grid, jittered_grid, sheared_grid};
 pub use subdivision::subdivide;
 
-use crate::{TriMesh, VertexId};
+use crate::TriMesh;
+use surface::VertexId;
 
 /// One mesh that holds copies of all the given ones side by side, in order, sharing nothing.
 #[must_use]

@@ -1,6 +1,7 @@
 //! Midpoint subdivision.
 
-use crate::{CornerId, Topology, TriMesh};
+use crate::TriMesh;
+use surface::{CornerId, Topology};
 
 /// Cuts every face into four through the midpoints of its edges; the surface stays where it is.
 ///
@@ -13,7 +14,7 @@ use crate::{CornerId, Topology, TriMesh};
 pub fn subdivide(mesh: &TriMesh) -> TriMesh {
     let n_old = mesh.n_vertices();
     let topology = Topology::new(n_old, mesh.faces.clone());
-    let midpoint = |[a, b]: [crate::VertexId; 2]| {
+    let midpoint = |[a, b]: [surface::VertexId; 2]| {
         nalgebra::center(&mesh.positions[a.index()], &mesh.positions[b.index()])
     };
     let mut positions = mesh.positions.clone();
@@ -21,7 +22,7 @@ pub fn subdivide(mesh: &TriMesh) -> TriMesh {
     let faces = mesh.faces.iter().enumerate().flat_map(|(f, &[a, b, c])| {
         let [bc, ca, ab] = [0, 1, 2].map(|slot| {
             let edge = topology.opposite_edge(CornerId((3 * f + slot) as u32));
-            crate::VertexId::from(n_old + edge.index())
+            surface::VertexId::from(n_old + edge.index())
         });
         [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]
     });
@@ -30,7 +31,7 @@ pub fn subdivide(mesh: &TriMesh) -> TriMesh {
 
 #[cfg(test)]
 mod tests {
-    use crate::{IntrinsicMesh, shapes, validate};
+    use crate::{shapes, validate};
 
     #[test]
     fn subdivision_keeps_area_orientation_and_old_vertices_and_halves_edges() {
@@ -42,7 +43,7 @@ mod tests {
         assert_eq!(fine.positions[..coarse.n_vertices()], coarse.positions);
         assert!((after.area - before.area).abs() < 1e-12 * before.area);
         assert_eq!((after.genus, after.inconsistent_edges), (Some(1), 0));
-        let longest = |m| IntrinsicMesh::from_mesh(m).edge_lengths().iter().fold(0.0, |a, b| f64::max(a, *b));
+        let longest = |m: &crate::TriMesh| m.intrinsic().edge_lengths().iter().fold(0.0, |a, b| f64::max(a, *b));
         assert!((longest(&fine) - 0.5 * longest(&coarse)).abs() < 1e-12);
     }
 }

@@ -1,7 +1,7 @@
 //! How the faces around each vertex hang together.
 
-use crate::disjoint_sets::DisjointSets;
-use crate::{CornerId, EdgeId, Topology, VertexId};
+use surface::DisjointSets;
+use surface::{CornerId, EdgeId, Topology, VertexId};
 
 /// What the fans of faces around the vertices tell of a mesh.
 pub(super) struct Fans {

@@ -4,11 +4,12 @@ mod fans;
 
 use serde::Serialize;
 
-use crate::components::components_of_faces;
+use surface::components_of_faces;
 use crate::face_set::{names_twice, repeats};
 use crate::orientation::{Orientation, runs_against};
 use crate::position_key::position_key;
-use crate::{EdgeId, Topology, TriMesh, VertexId};
+use crate::TriMesh;
+use surface::{EdgeId, Topology, VertexId};
 use fans::Fans;
 
 /// Facts about a mesh, as [`validate`] finds them.

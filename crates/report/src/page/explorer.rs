@@ -5,7 +5,8 @@ use std::path::Path;
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
-use mesh::{TriMesh, VertexId};
+use mesh::TriMesh;
+use surface::VertexId;
 use nalgebra::Point3;
 use serde_json::{Value, json};
 

@@ -81,7 +81,7 @@ pub fn hex([red, green, blue]: [u8; 3]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use mesh::VertexId;
+    use surface::VertexId;
 
     fn triangle() -> TriMesh {
         let positions = [[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [0.0, 6.0, 4.0]].map(Point3::from).to_vec();

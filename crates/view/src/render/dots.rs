@@ -1,6 +1,7 @@
 //! Points as something that can be drawn.
 
-use mesh::{TriMesh, VertexId};
+use mesh::TriMesh;
+use surface::VertexId;
 use nalgebra::{Point3, Vector3};
 
 /// A small octahedron around every point: six vertices a point, in their order.

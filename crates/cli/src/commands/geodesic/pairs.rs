@@ -4,7 +4,8 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use anyhow::Result;
-use mesh::{RepairReport, VertexId};
+use mesh::RepairReport;
+use surface::VertexId;
 use canonform::{AllPairs, Asymmetry};
 use serde::Serialize;
 use terminal::Bars;

@@ -1,6 +1,7 @@
 //! Surfaces whose distances have a formula.
 
-use mesh::{FaceId, IntrinsicMesh, Link, Topology, VertexId, shapes};
+use mesh::shapes;
+use surface::{FaceId, IntrinsicMesh, Link, Topology, VertexId};
 
 use super::super::Exact;
 use super::{all_pairs, assert_close, faces, points, spatial};
@@ -14,7 +15,7 @@ fn on_flat_sheets_distances_are_euclidean_whatever_the_triangles() {
         (shapes::sheared_grid(12, 12, 1.0, -9.5), 1e-12),
         (shapes::jittered_grid(20, 18, 1e-3, 0.24, 5), 1e-13),
     ] {
-        let solver = Exact::new(&IntrinsicMesh::from_mesh(&sheet));
+        let solver = Exact::new(&sheet.intrinsic());
         for source in [0, 17, 100, 143] {
             let from = sheet.positions[source];
             for (found, p) in solver.distances(VertexId::from(source)).iter().zip(&sheet.positions) {
@@ -26,8 +27,8 @@ fn on_flat_sheets_distances_are_euclidean_whatever_the_triangles() {
 
 #[test]
 fn folding_changes_nothing() {
-    let flat = all_pairs(&IntrinsicMesh::from_mesh(&shapes::grid(9, 7, 0.3)));
-    let folded = all_pairs(&IntrinsicMesh::from_mesh(&shapes::folded_sheet(9, 7, 0.3, 4, 2.9)));
+    let flat = all_pairs(&shapes::grid(9, 7, 0.3).intrinsic());
+    let folded = all_pairs(&shapes::folded_sheet(9, 7, 0.3, 4, 2.9).intrinsic());
     for (found, expected) in folded.iter().flatten().zip(flat.iter().flatten()) {
         assert_close(*found, *expected, 1e-12);
     }
@@ -53,7 +54,7 @@ fn bottom_to_top([p, q]: [f64; 2], [x, y]: [f64; 2]) -> f64 {
 #[test]
 fn on_a_cube_distances_are_those_of_the_best_unfolding() {
     let cube = shapes::cube(2);
-    let mesh = IntrinsicMesh::from_mesh(&cube);
+    let mesh = cube.intrinsic();
     let solver = Exact::new(&mesh);
     let top = |v: usize| (cube.positions[v].z == 1.0).then(|| [cube.positions[v].x, cube.positions[v].y]);
     let mut out = vec![0.0; cube.positions.len()];
@@ -237,7 +238,7 @@ fn from_page_to_page_of_a_book_the_way_leads_straight_over_the_spine() {
 #[test]
 fn links_join_what_is_apart() {
     let sheet = shapes::grid(6, 5, 1.0);
-    let two = IntrinsicMesh::from_mesh(&shapes::disjoint(&[sheet.clone(), sheet.clone()]));
+    let two = shapes::disjoint(&[sheet.clone(), sheet.clone()]).intrinsic();
     let apart = Exact::new(&two).distances(VertexId(0));
     assert!(apart[..30].iter().all(|d| d.is_finite()) && apart[30..].iter().all(|d| d.is_infinite()));
     let link = |a: u32, b: u32, length| Link { ends: [VertexId(a), VertexId(b)], length };
@@ -257,7 +258,7 @@ fn links_join_what_is_apart() {
 #[test]
 fn points_on_edges_and_in_faces_see_euclidean_distances() {
     let sheet = shapes::jittered_grid(9, 9, 1.0, 0.2, 8);
-    let mesh = IntrinsicMesh::from_mesh(&sheet);
+    let mesh = sheet.intrinsic();
     let solver = Exact::new(&mesh);
     let mut out = vec![0.0; mesh.n_vertices()];
     let mut check = |point: SurfacePoint, at: [f64; 2]| {
@@ -282,7 +283,7 @@ fn points_on_edges_and_in_faces_see_euclidean_distances() {
             check(SurfacePoint::Face { face, barycentric }, at);
         }
     }
-    for edge in [0usize, 50, 150].map(mesh::EdgeId::from) {
+    for edge in [0usize, 50, 150].map(surface::EdgeId::from) {
         let [a, b] = mesh.topology().edges()[edge.index()].map(|v| sheet.positions[v.index()]);
         for t in [0.0, 0.25, 0.9, 1.0, 1e-14] {
             check(SurfacePoint::Edge { edge, t }, [a.x + t * (b.x - a.x), a.y + t * (b.y - a.y)]);

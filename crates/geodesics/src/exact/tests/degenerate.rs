@@ -1,6 +1,7 @@
 //! Surfaces that are hardly any.
 
-use mesh::{FaceId, IntrinsicMesh, Topology, VertexId, shapes};
+use mesh::shapes;
+use surface::{FaceId, IntrinsicMesh, Topology, VertexId};
 use proptest::prelude::*;
 
 use super::super::Exact;

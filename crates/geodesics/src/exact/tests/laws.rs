@@ -1,6 +1,7 @@
 //! What holds on every surface.
 
-use mesh::{FaceId, IntrinsicMesh, Topology, VertexId, shapes};
+use mesh::shapes;
+use surface::{FaceId, IntrinsicMesh, Topology, VertexId};
 
 use super::super::Exact;
 use super::{all_pairs, assert_close, bumpy};
@@ -70,7 +71,7 @@ fn the_nearest_of_several_sources_counts() {
     let mesh = bumpy(12, 0.8, 2);
     let solver = Exact::new(&mesh);
     let point = SurfacePoint::Face { face: FaceId(77), barycentric: [0.3, 0.1, 0.6] };
-    let edge = SurfacePoint::Edge { edge: mesh::EdgeId(200), t: 0.3 };
+    let edge = SurfacePoint::Edge { edge: surface::EdgeId(200), t: 0.3 };
     let sources = [
         Source::vertex(VertexId(3)),
         Source::new(&mesh, point).unwrap(),
@@ -92,7 +93,7 @@ fn the_nearest_of_several_sources_counts() {
 
 #[test]
 fn a_limit_hides_what_is_beyond_and_changes_nothing_else() {
-    for mesh in [bumpy(15, 1.0, 4), IntrinsicMesh::from_mesh(&shapes::sheared_grid(12, 9, 1.0, 6.0))] {
+    for mesh in [bumpy(15, 1.0, 4), shapes::sheared_grid(12, 9, 1.0, 6.0).intrinsic()] {
         let solver = Exact::new(&mesh);
         let full = solver.distances(VertexId(50));
         let mut out = vec![0.0; full.len()];
@@ -110,9 +111,9 @@ fn a_limit_hides_what_is_beyond_and_changes_nothing_else() {
 #[test]
 fn refining_a_surface_does_not_change_it() {
     let sphere = shapes::icosphere(1);
-    let coarse = all_pairs(&IntrinsicMesh::from_mesh(&sphere));
+    let coarse = all_pairs(&sphere.intrinsic());
     let fine = shapes::subdivide(&shapes::subdivide(&sphere));
-    let solver = Exact::new(&IntrinsicMesh::from_mesh(&fine));
+    let solver = Exact::new(&fine.intrinsic());
     for (v, row) in coarse.iter().enumerate() {
         let refined = solver.distances(VertexId::from(v));
         for (found, expected) in refined.iter().zip(row) {

@@ -8,7 +8,7 @@ mod random;
 mod reference;
 mod sources;
 
-use mesh::{IntrinsicMesh, VertexId};
+use surface::{IntrinsicMesh, VertexId};
 
 use super::Exact;
 use crate::DistanceSolver;

@@ -1,7 +1,7 @@
 //! Beside a slow way that shares nothing with the windows: the straight lines between all pairs of
 //! vertices through all strips of faces, and shortest paths in their graph.
 
-use mesh::{CornerId, IntrinsicMesh, Link, Topology, VertexId};
+use surface::{CornerId, IntrinsicMesh, Link, Topology, VertexId};
 use proptest::prelude::*;
 
 use super::random::{lattice_soup, soup, star};
@@ -130,7 +130,7 @@ fn assert_same(mesh: &IntrinsicMesh) {
 
 #[test]
 fn the_slow_way_is_right_on_a_cube() {
-    let found = by_sight(&IntrinsicMesh::from_mesh(&mesh::shapes::cube(0)));
+    let found = by_sight(&mesh::shapes::cube(0).intrinsic());
     // Corners by their coordinates in binary: across a face, and across the cube.
     assert_close(found[0][3], 2f64.sqrt(), 1e-14);
     assert_close(found[0][7], 5f64.sqrt(), 1e-14);
@@ -139,7 +139,7 @@ fn the_slow_way_is_right_on_a_cube() {
 #[test]
 fn polyhedra_have_the_distances_of_their_lines_of_sight() {
     for shape in [mesh::shapes::tetrahedron(1), mesh::shapes::cube(0), mesh::shapes::icosphere(0)] {
-        assert_same(&IntrinsicMesh::from_mesh(&shape));
+        assert_same(&shape.intrinsic());
     }
 }
 

@@ -1,6 +1,6 @@
 //! Random surfaces, non-manifold as a rule.
 
-use mesh::IntrinsicMesh;
+use surface::IntrinsicMesh;
 use proptest::prelude::*;
 
 use super::spatial;

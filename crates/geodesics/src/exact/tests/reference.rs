@@ -2,7 +2,8 @@
 
 use std::path::PathBuf;
 
-use mesh::{IntrinsicMesh, RepairOptions, VertexId, io};
+use mesh::{RepairOptions, io};
+use surface::VertexId;
 use rayon::prelude::*;
 
 use super::super::Exact;
@@ -25,7 +26,7 @@ fn distances_are_those_of_mitchell_mount_and_papadimitriou() {
         "single/armadillo.obj",
     ] {
         let Reference { mesh, rows } = reference(&data, mesh);
-        let solver = Exact::new(&IntrinsicMesh::from_mesh(&mesh));
+        let solver = Exact::new(&mesh.intrinsic());
         for (source, expected) in &rows {
             for (found, expected) in solver.distances(*source).iter().zip(expected) {
                 assert_close(*found, *expected, 1e-12);

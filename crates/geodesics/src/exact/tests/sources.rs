@@ -1,6 +1,7 @@
 //! Points on edges and in faces, several sources, and limits, on surfaces of any kind.
 
-use mesh::{EdgeId, FaceId, IntrinsicMesh, Topology, VertexId, shapes};
+use mesh::shapes;
+use surface::{EdgeId, FaceId, IntrinsicMesh, Topology, VertexId};
 use proptest::prelude::*;
 
 use super::super::Exact;

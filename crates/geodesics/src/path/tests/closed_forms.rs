@@ -2,7 +2,8 @@
 
 use std::f64::consts::PI;
 
-use mesh::{FaceId, IntrinsicMesh, Link, TriMesh, VertexId, shapes};
+use mesh::{TriMesh, shapes};
+use surface::{FaceId, Link, VertexId};
 
 use super::{assert_path, shortest, vertex};
 use crate::testing::{assert_close, spatial};
@@ -16,7 +17,7 @@ fn paths_in_the_plane_are_straight_whatever_the_triangles() {
         shapes::sheared_grid(9, 7, 0.5, 6.0),
         shapes::jittered_grid(9, 7, 0.5, 0.24, 3),
     ] {
-        let mesh = IntrinsicMesh::from_mesh(&sheet);
+        let mesh = sheet.intrinsic();
         for (a, b) in [(0, 62), (8, 54), (3, 60), (31, 1), (20, 21), (0, 8)] {
             let straight = (sheet.positions[a] - sheet.positions[b]).norm();
             assert_close(shortest(&mesh, vertex(a), vertex(b)).length, straight, 1e-13);
@@ -26,7 +27,7 @@ fn paths_in_the_plane_are_straight_whatever_the_triangles() {
 
 #[test]
 fn a_path_to_where_it_starts_is_a_point() {
-    let mesh = IntrinsicMesh::from_mesh(&shapes::icosphere(1));
+    let mesh = shapes::icosphere(1).intrinsic();
     let inside = SurfacePoint::Face { face: FaceId(7), barycentric: [0.25, 0.25, 0.5] };
     for point in [vertex(5), inside] {
         let path = shortest(&mesh, point, point);
@@ -34,7 +35,7 @@ fn a_path_to_where_it_starts_is_a_point() {
     }
     // The same vertex in other words.
     let [a, _] = mesh.topology().edges()[9];
-    let edge = SurfacePoint::Edge { edge: mesh::EdgeId(9), t: 0.0 };
+    let edge = SurfacePoint::Edge { edge: surface::EdgeId(9), t: 0.0 };
     let sources = [Source::vertex(a)];
     let distances = Exact::new(&mesh).distances(a);
     assert_eq!(PathTracer::new(&mesh, &sources, &distances).path_to(edge).unwrap().length, 0.0);
@@ -45,7 +46,7 @@ fn around_a_cube() {
     // The surface of the unit cube, unfolded: from a corner to the opposite one it is sqrt(5).
     for level in [0, 1, 3] {
         let cube = shapes::cube(level);
-        let mesh = IntrinsicMesh::from_mesh(&cube);
+        let mesh = cube.intrinsic();
         let [low, high] = cube.bounds().unwrap();
         let side = high.x - low.x;
         let at = |corner| vertex(cube.positions.iter().position(|p| *p == corner).unwrap());
@@ -56,7 +57,7 @@ fn around_a_cube() {
 #[test]
 fn around_a_cylinder() {
     let cylinder = shapes::cylinder(24, 9, 1.0, 3.0);
-    let mesh = IntrinsicMesh::from_mesh(&cylinder);
+    let mesh = cylinder.intrinsic();
     let chord = 2.0 * (PI / 24.0).sin();
     for (around, rings) in [(1, 5), (7, 8), (11, 3)] {
         let height = cylinder.positions[24 * rings].z - cylinder.positions[0].z;
@@ -71,7 +72,7 @@ fn around_the_corner_of_a_boundary() {
     let sheet = shapes::grid(9, 9, 1.0);
     let is_cut = |f: &[VertexId; 3]| f.iter().all(|v| v.0 % 9 >= 4 && v.0 / 9 >= 4);
     let faces = sheet.faces.iter().copied().filter(|f| !is_cut(f)).collect();
-    let mesh = IntrinsicMesh::from_mesh(&TriMesh { faces, ..sheet });
+    let mesh = (TriMesh { faces, ..sheet }).intrinsic();
     // From (8, 2) to (1, 8) around (4, 4).
     let path = shortest(&mesh, vertex(2 * 9 + 8), vertex(8 * 9 + 1));
     assert_close(path.length, 4f64.hypot(2.0) + 3f64.hypot(4.0), 1e-13);
@@ -109,7 +110,7 @@ fn from_page_to_page_of_a_book() {
 #[test]
 fn over_links_and_not_between_components() {
     let apart = shapes::disjoint(&[shapes::grid(5, 5, 1.0), shapes::grid(4, 4, 1.0)]);
-    let mesh = IntrinsicMesh::from_mesh(&apart);
+    let mesh = apart.intrinsic();
     let ends = [24, 25].map(VertexId);
     let linked = mesh.clone().with_links(vec![Link { ends, length: 2.5 }]);
     let expected = 4f64.hypot(4.0) + 2.5 + 3f64.hypot(3.0);
@@ -130,7 +131,7 @@ fn over_links_and_not_between_components() {
 #[test]
 fn to_the_nearest_of_several_sources() {
     let sheet = shapes::jittered_grid(12, 10, 1.0, 0.2, 5);
-    let mesh = IntrinsicMesh::from_mesh(&sheet);
+    let mesh = sheet.intrinsic();
     let point = SurfacePoint::Face { face: FaceId(100), barycentric: [0.2, 0.5, 0.3] };
     let sources =
         [Source::vertex(VertexId(3)), Source::new(&mesh, point).unwrap(), Source::vertex(VertexId(115))];

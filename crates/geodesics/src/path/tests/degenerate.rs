@@ -1,6 +1,7 @@
 //! Surfaces that are hardly any.
 
-use mesh::{IntrinsicMesh, Link, Topology, VertexId, shapes};
+use mesh::shapes;
+use surface::{IntrinsicMesh, Link, Topology, VertexId};
 use proptest::prelude::*;
 
 use super::{assert_path, vertex};
@@ -35,7 +36,7 @@ fn repeated_faces_do_no_harm() {
     let sheet = shapes::jittered_grid(5, 4, 1.0, 0.2, 2);
     for copies in [2, 3] {
         let repeated = mesh::TriMesh { faces: sheet.faces.repeat(copies), ..sheet.clone() };
-        assert_sane(&IntrinsicMesh::from_mesh(&repeated));
+        assert_sane(&repeated.intrinsic());
     }
 }
 
@@ -100,11 +101,11 @@ proptest! {
         face in 0..80u32, other in 0..80u32,
         weights in prop::array::uniform6(prop_oneof![Just(0.0), Just(1e-14), 0.01..1.0f64]),
     ) {
-        let mesh = IntrinsicMesh::from_mesh(&shapes::icosphere(1));
+        let mesh = shapes::icosphere(1).intrinsic();
         let point = |face, weights: &[f64]| {
             let sum: f64 = weights.iter().sum();
             let barycentric = if sum > 0.01 { [0, 1, 2].map(|i| weights[i] / sum) } else { [0.2, 0.3, 0.5] };
-            SurfacePoint::Face { face: mesh::FaceId(face), barycentric }
+            SurfacePoint::Face { face: surface::FaceId(face), barycentric }
         };
         let (p, q) = (point(face, &weights[..3]), point(other, &weights[3..]));
         let sources = [Source::new(&mesh, p).unwrap()];

@@ -1,6 +1,7 @@
 //! What holds on every surface.
 
-use mesh::{EdgeId, FaceId, IntrinsicMesh, VertexId, shapes};
+use mesh::shapes;
+use surface::{EdgeId, FaceId, VertexId};
 
 use super::super::plane::segment;
 use super::{assert_path, shortest, vertex};
@@ -115,8 +116,8 @@ fn no_corner_can_be_cut() {
 fn folding_a_sheet_changes_no_path() {
     let flat = shapes::jittered_grid(9, 6, 1.0, 0.0, 1);
     for angle in [0.3, 1.5, 3.0] {
-        let folded = IntrinsicMesh::from_mesh(&shapes::folded_sheet(9, 6, 1.0, 4, angle));
-        let expected = shortest(&IntrinsicMesh::from_mesh(&flat), vertex(1), vertex(52));
+        let folded = shapes::folded_sheet(9, 6, 1.0, 4, angle).intrinsic();
+        let expected = shortest(&flat.intrinsic(), vertex(1), vertex(52));
         let found = shortest(&folded, vertex(1), vertex(52));
         assert_close(found.length, expected.length, 1e-13);
     }
@@ -140,7 +141,7 @@ fn distances_with_a_limit_give_the_same_paths_within_it() {
 
 #[test]
 fn segments_on_an_edge_are_measured_along_it() {
-    let mesh = IntrinsicMesh::from_mesh(&shapes::grid(2, 2, 1.0));
+    let mesh = shapes::grid(2, 2, 1.0).intrinsic();
     let edge = mesh.topology().edge_between(VertexId(0), VertexId(1)).unwrap();
     let face = mesh.topology().edge_corners(edge)[0].face();
     let at = |t| SurfacePoint::Edge { edge, t };

@@ -5,7 +5,7 @@ mod degenerate;
 mod laws;
 mod reference;
 
-use mesh::{FaceId, IntrinsicMesh, VertexId};
+use surface::{FaceId, IntrinsicMesh, VertexId};
 
 use super::edges::faces_around;
 use super::plane::segment;

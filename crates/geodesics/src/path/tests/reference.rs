@@ -1,6 +1,6 @@
 //! Beside exact distances on real meshes.
 
-use mesh::{IntrinsicMesh, RepairOptions, io, repair};
+use mesh::{RepairOptions, io, repair};
 use rayon::prelude::*;
 
 use super::vertex;
@@ -14,7 +14,7 @@ fn paths_are_as_long_as_exact_distances() {
         ["tosca-lowres/cat0.vert", "tosca-lowres/centaur1.vert", "single/spot.obj", "single/rocker-arm.obj"]
     {
         let Reference { mesh, rows } = reference(&data, mesh);
-        let surface = IntrinsicMesh::from_mesh(&mesh);
+        let surface = mesh.intrinsic();
         let marching = FastMarching::new(&surface, Default::default());
         for (source, exact) in rows.iter().take(2) {
             let sources = [Source::vertex(*source)];
@@ -45,7 +45,7 @@ fn every_tosca_mesh_has_its_shortest_paths() {
         // One of them is damaged.
         let Ok(read) = io::read(path) else { return false };
         let mesh = repair(&read, &RepairOptions::default()).unwrap().intrinsic();
-        let source = mesh::VertexId::from(mesh.n_vertices() / 3);
+        let source = surface::VertexId::from(mesh.n_vertices() / 3);
         let sources = [Source::vertex(source)];
         let exact = Exact::new(&mesh).distances(source);
         let tracer = PathTracer::new(&mesh, &sources, &exact);

@@ -7,7 +7,8 @@ use crate::error::{Fault, Located};
 use crate::io::ReadLimits;
 use crate::io::assembly::finish;
 use crate::io::text::excerpt;
-use crate::{TriMesh, VertexId};
+use crate::TriMesh;
+use surface::VertexId;
 
 use super::container::{ByteOrder, COMPRESSED, Elements, HEADER, MATRIX, Tag, parse_header};
 

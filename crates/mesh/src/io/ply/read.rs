@@ -6,7 +6,8 @@ use ply_rs_bw::parser::{ParseError, Parser, Reader};
 use ply_rs_bw::ply::{ElementDef, Encoding, Header, PropertyAccess, PropertyType, ScalarType};
 
 use crate::error::{Fault, Located, Place};
-use crate::{TriMesh, VertexId};
+use crate::TriMesh;
+use surface::VertexId;
 
 use super::elements::{CORNER_LISTS, FaceIn, OtherIn, VertexIn};
 use crate::io::ReadLimits;

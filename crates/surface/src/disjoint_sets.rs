@@ -2,18 +2,18 @@
 
 /// A union-find forest whose answers do not depend on the order of the unions.
 #[derive(Debug, Clone)]
-pub(crate) struct DisjointSets {
+pub struct DisjointSets {
     parent: Vec<u32>,
 }
 
 impl DisjointSets {
     /// `n` sets of one member each; `n` fits into 32 bits.
-    pub(crate) fn new(n: usize) -> Self {
+    pub fn new(n: usize) -> Self {
         Self { parent: (0..n as u32).collect() }
     }
 
     /// The lowest member of the set of `item`.
-    pub(crate) fn find(&mut self, item: u32) -> u32 {
+    pub fn find(&mut self, item: u32) -> u32 {
         let mut item = item;
         while self.parent[item as usize] != item {
             let grandparent = self.parent[self.parent[item as usize] as usize];
@@ -24,14 +24,14 @@ impl DisjointSets {
     }
 
     /// Joins two sets; false when they were one already.
-    pub(crate) fn union(&mut self, a: u32, b: u32) -> bool {
+    pub fn union(&mut self, a: u32, b: u32) -> bool {
         let (a, b) = (self.find(a), self.find(b));
         self.parent[a.max(b) as usize] = a.min(b);
         a != b
     }
 
     /// Number of members.
-    pub(crate) fn len(&self) -> usize {
+    pub fn len(&self) -> usize {
         self.parent.len()
     }
 }

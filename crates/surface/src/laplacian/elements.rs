@@ -75,10 +75,12 @@ impl Element {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{IntrinsicMesh, TriMesh, shapes};
+    use mesh::{TriMesh, shapes};
+
+    use crate::testing::intrinsic;
 
     fn of(mesh: &TriMesh) -> Vec<Element> {
-        let mesh = IntrinsicMesh::from_mesh(mesh);
+        let mesh = intrinsic(mesh);
         let mut cover = Cover::new(&mesh, mesh.edge_lengths());
         cover.flip_to_delaunay();
         elements(&cover)

@@ -22,7 +22,7 @@ pub fn components(topology: &Topology) -> Components {
 }
 
 /// The same for any list of faces, degenerate ones included.
-pub(crate) fn components_of_faces(n_vertices: usize, faces: &[[VertexId; 3]]) -> Components {
+pub fn components_of_faces(n_vertices: usize, faces: &[[VertexId; 3]]) -> Components {
     let mut sets = DisjointSets::new(n_vertices);
     let mut named = vec![false; n_vertices];
     for [a, b, c] in faces {
@@ -49,7 +49,7 @@ pub(crate) fn components_of_faces(n_vertices: usize, faces: &[[VertexId; 3]]) ->
 
 impl Components {
     /// The component of a vertex that a face names.
-    pub(crate) fn of(&self, vertex: VertexId) -> usize {
+    pub fn of(&self, vertex: VertexId) -> usize {
         self.labels[vertex.index()].map_or(0, |label| label as usize)
     }
 }

@@ -57,7 +57,7 @@ impl Topology {
     /// Builds the connectivity of `faces` over `n_vertices` vertices, in linear time.
     ///
     /// # Panics
-    /// When a face names a vertex twice or one out of range; [`repair`](crate::repair()) removes the
+    /// When a face names a vertex twice or one out of range; [`repair`](mesh::repair()) removes the
     /// former, every reader rejects the latter.
     #[must_use]
     pub fn new(n_vertices: usize, faces: Vec<[VertexId; 3]>) -> Self {

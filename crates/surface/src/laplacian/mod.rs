@@ -105,10 +105,13 @@ impl Laplacian {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Link, TriMesh, VertexId, shapes};
+    use mesh::{TriMesh, shapes};
+
+    use crate::testing::intrinsic;
+    use crate::{Link, VertexId};
 
     fn of(mesh: &TriMesh) -> Laplacian {
-        Laplacian::new(&IntrinsicMesh::from_mesh(mesh))
+        Laplacian::new(&intrinsic(mesh))
     }
 
     /// `x' W x`
@@ -173,7 +176,7 @@ mod tests {
 
     #[test]
     fn links_join_and_have_no_mass() {
-        let mesh = IntrinsicMesh::from_mesh(&shapes::disjoint(&[shapes::cube(1), shapes::cube(1)]));
+        let mesh = intrinsic(&shapes::disjoint(&[shapes::cube(1), shapes::cube(1)]));
         let n = mesh.n_vertices();
         let ends = [VertexId(0), VertexId::from(n - 1)];
         let apart = Laplacian::new(&mesh);

@@ -148,7 +148,10 @@ impl Cover {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Topology, shapes};
+    use mesh::shapes;
+
+    use crate::Topology;
+    use crate::testing::intrinsic;
 
     fn double(mesh: &IntrinsicMesh) -> Cover {
         Cover::new(mesh, mesh.edge_lengths())
@@ -187,7 +190,7 @@ mod tests {
             shapes::cylinder(5, 40, 1.0, 2.0),
             shapes::tetrahedron(2),
         ] {
-            let mesh = IntrinsicMesh::from_mesh(&mesh);
+            let mesh = intrinsic(&mesh);
             let (before, after) = (double(&mesh), flipped(&mesh));
             assert_delaunay(&after);
             assert!((area(&after) / area(&before) - 1.0).abs() < 1e-12);
@@ -196,10 +199,10 @@ mod tests {
 
     #[test]
     fn a_delaunay_surface_stays_as_it_is() {
-        let mesh = IntrinsicMesh::from_mesh(&shapes::icosphere(2));
+        let mesh = intrinsic(&shapes::icosphere(2));
         assert_eq!(flipped(&mesh).lengths, double(&mesh).lengths);
         // Right angles on both sides: a tie, and no reason to flip.
-        let mesh = IntrinsicMesh::from_mesh(&shapes::grid(7, 5, 0.3));
+        let mesh = intrinsic(&shapes::grid(7, 5, 0.3));
         assert_eq!(flipped(&mesh).lengths, double(&mesh).lengths);
     }
 
@@ -245,7 +248,7 @@ mod tests {
             p.x += if p.y > 0.5 { 7.3 } else { 0.0 };
             p.y *= 1e-3;
         }
-        let mesh = IntrinsicMesh::from_mesh(&sheet);
+        let mesh = intrinsic(&sheet);
         let cover = flipped(&mesh);
         assert_delaunay(&cover);
         assert!((area(&cover) / area(&double(&mesh)) - 1.0).abs() < 1e-6);

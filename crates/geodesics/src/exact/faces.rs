@@ -1,6 +1,6 @@
 //! The surface as windows travel over it: one cache line a face.
 
-use mesh::{CornerId, IntrinsicMesh, Topology};
+use surface::{CornerId, IntrinsicMesh, Topology};
 
 /// The faces of a surface and who is next to whom.
 #[derive(Debug)]

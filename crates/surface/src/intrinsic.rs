@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::{EdgeId, Topology, TriMesh, VertexId};
+use crate::{EdgeId, Topology, VertexId};
 
 /// A triangle mesh reduced to its intrinsic geometry.
 ///
@@ -26,21 +26,6 @@ pub struct Link {
 }
 
 impl IntrinsicMesh {
-    /// The intrinsic geometry of a mesh in space.
-    ///
-    /// # Panics
-    /// When a face is degenerate in its indices or out of range, see [`Topology::new`].
-    #[must_use]
-    pub fn from_mesh(mesh: &TriMesh) -> Self {
-        let topology = Topology::new(mesh.n_vertices(), mesh.faces.clone());
-        let edge_lengths = topology
-            .edges()
-            .iter()
-            .map(|[a, b]| (mesh.positions[a.index()] - mesh.positions[b.index()]).norm())
-            .collect();
-        Self { topology, edge_lengths, links: Vec::new() }
-    }
-
     /// A surface given by connectivity and one length per edge, in the order of
     /// [`Topology::edges`].
     ///
