@@ -28,7 +28,7 @@ lint: ## Format, clippy and rustdoc, warnings denied
 	RUSTDOCFLAGS="-D warnings" $(CARGO) doc --workspace --no-deps --locked
 
 bench: ## Time the solvers over sizes
-	$(CARGO) bench --locked -p geodesics
+	$(CARGO) bench --locked -p canonform-geodesics
 
 bench-peers: build ## Measure other programs beside this one and write docs/benchmarks.md (needs Python and test meshes)
 	test -x target/peers/bin/python || python3 -m venv target/peers
@@ -36,19 +36,19 @@ bench-peers: build ## Measure other programs beside this one and write docs/benc
 	target/peers/bin/python bench/peers.py
 
 bench-nmds: build ## Measure whole canonical forms beside potpourri3d and NumPy and write docs/nmds.md (needs Python and test meshes)
-	$(CARGO) build --release --locked -p pipeline --example forms
+	$(CARGO) build --release --locked -p canonform --example forms
 	test -x target/peers/bin/python || python3 -m venv target/peers
 	target/peers/bin/pip install --quiet numpy potpourri3d
 	target/peers/bin/python bench/nmds.py
 
 bench-eigsh: ## Measure eigenpairs beside SciPy and write docs/eigenpairs.md (needs Python and test meshes)
-	$(CARGO) build --release --locked -p descriptors --example eigenpairs
+	$(CARGO) build --release --locked -p canonform-descriptors --example eigenpairs
 	test -x target/peers/bin/python || python3 -m venv target/peers
 	target/peers/bin/pip install --quiet numpy scipy
 	target/peers/bin/python bench/eigsh.py
 
 bench-search: ## Search a million signatures beside hnswlib and faiss and write docs/search.md (needs Python, half an hour)
-	$(CARGO) build --release --locked -p retrieval --example vectors
+	$(CARGO) build --release --locked -p canonform-index --example vectors
 	test -x target/peers/bin/python || python3 -m venv target/peers
 	target/peers/bin/pip install --quiet numpy hnswlib faiss-cpu
 	target/peers/bin/python bench/search.py

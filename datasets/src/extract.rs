@@ -2,9 +2,9 @@
 
 use std::collections::HashMap;
 
-use surface::VertexId;
 use nalgebra::{Matrix3, Point3, Vector3};
 use rayon::prelude::*;
+use surface::VertexId;
 
 use crate::cases::{EDGES, Loop, all_loops, corner};
 use crate::implicit::Body;

@@ -1,9 +1,9 @@
 //! One shape: body and pose of a family through extraction, simplification, relaxation and bending.
 
 use mesh::TriMesh;
-use surface::VertexId;
 use nalgebra::{Point3, Vector3};
 use rayon::prelude::*;
+use surface::VertexId;
 
 use crate::corner_table::CornerTable;
 use crate::extract::{Lattice, RawSurface, extract};

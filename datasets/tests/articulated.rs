@@ -3,12 +3,14 @@
 use std::collections::HashSet;
 use std::f64::consts::PI;
 
-use canonform_datasets::{ArticulatedOptions, DatasetError, Family, LabeledShape, articulated, articulated_shape};
+use canonform_datasets::{
+    ArticulatedOptions, DatasetError, Family, LabeledShape, articulated, articulated_shape,
+};
 use mesh::{TriMesh, validate};
-use surface::{Topology, VertexId};
 use nalgebra::Point3;
 use rayon::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
+use surface::{Topology, VertexId};
 
 fn options(n_vertices: usize) -> ArticulatedOptions {
     ArticulatedOptions { n_vertices, ..ArticulatedOptions::default() }

@@ -1,9 +1,9 @@
 //! The shapes of a run.
 
 use anyhow::{Context, Result, bail};
+use canonform::{LabelFile, Observer, Surface, list_shapes};
 use datasets::{ArticulatedOptions, articulated};
 use mesh::RepairOptions;
-use canonform::{LabelFile, Observer, Surface, list_shapes};
 use rayon::prelude::*;
 
 use crate::args::RunArgs;

@@ -6,12 +6,12 @@
 use std::time::Instant;
 
 use anyhow::Result;
+use canonform::{EmbedOptions, MATCHED_POINTS, StressChoice, embed};
 use descriptors::{CanonicalForm, MatchOptions, PreparedForm, match_forms};
 use mesh::{TriMesh, orient_consistently};
-use canonform::{EmbedOptions, MATCHED_POINTS, StressChoice, embed};
 use report::figure1::{Figure1Pair, PAIRS, figure1};
-use view::render::View;
 use report::results::{Figure1Record, Figure1Shape, write};
+use view::render::View;
 
 use crate::collection::{Shape, map};
 use crate::run::{Context, described};

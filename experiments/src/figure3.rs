@@ -9,20 +9,20 @@
 use std::time::Instant;
 
 use anyhow::Result;
+use canonform::{FastMarchingOptions, GeodesicMethod, MATCHED_POINTS, ObtuseTreatment, Update};
 use descriptors::{CanonicalForm, MatchOptions, PreparedForm, match_forms};
 use geodesics::{Sampling, Variance};
 use linalg::LandmarkDistances;
 use mesh::{TriMesh, orient_consistently};
-use surface::VertexId;
 use nmds::{
     Embedding, NystromOptions, Regularization, SpectralBasis, SpectralOptions, nystrom, paper_stress,
     spectral,
 };
-use canonform::{FastMarchingOptions, GeodesicMethod, MATCHED_POINTS, ObtuseTreatment, Update};
 use report::figure3::{Figure3Surfaces, figure3};
-use view::render::View;
 use report::results::{Figure3Form, Figure3Record, Figure3Shape, Figure3Stress, write};
 use report::tables::figure3_table;
+use surface::VertexId;
+use view::render::View;
 
 use crate::run::Context;
 use crate::specimen::{DIM, Distances, Specimen};

@@ -7,13 +7,13 @@
 use std::time::Instant;
 
 use anyhow::{Context as _, Result};
-use descriptors::CanonicalForm;
-use linalg::DistanceMatrix;
-use nmds::normalized_stress;
 use canonform::{
     EmbedOptions, FormMatches, MatchOptions, Normalization, PreparedForms, embed, embedded_distances,
     form_matches, map_of,
 };
+use descriptors::CanonicalForm;
+use linalg::DistanceMatrix;
+use nmds::normalized_stress;
 use rayon::prelude::*;
 use report::figure4::figure4;
 use report::results::{Figure4Panel, Figure4Record, Motions, SHAPES_FILE, Scale, ShapesRecord, write};

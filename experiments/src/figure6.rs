@@ -9,9 +9,9 @@ use std::time::Instant;
 use anyhow::Result;
 use geodesics::{Sampling, Variance};
 use linalg::LandmarkDistances;
-use surface::VertexId;
 use nmds::{Reconstruction, Regularization};
 use report::results::{AxisScale, CurvesPanel, Series};
+use surface::VertexId;
 
 use crate::figure5::{ERROR, ERROR_UNIT, finish};
 use crate::run::Context;

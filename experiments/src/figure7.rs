@@ -10,12 +10,12 @@ use std::time::Instant;
 use anyhow::Result;
 use geodesics::{Sampling, Variance};
 use linalg::LandmarkDistances;
-use surface::VertexId;
 use nmds::{
     Embedding, NmdsError, NystromOptions, Regularization, SpectralBasis, SpectralOptions, landmark_mds,
     nystrom, paper_stress, spectral,
 };
 use report::results::{AxisScale, CurvesPanel, Series};
+use surface::VertexId;
 
 use crate::figure5::finish;
 use crate::run::Context;

@@ -7,13 +7,13 @@
 use std::time::Instant;
 
 use anyhow::{Context as _, Result};
+use canonform::{EmbedMethod, EmbedOptions, Samples, StressChoice, Surface, embed};
 use datasets::{ArticulatedOptions, Family, articulated_shape};
 use mesh::RepairOptions;
-use surface::VertexId;
 use nmds::classical_full;
-use canonform::{EmbedMethod, EmbedOptions, Samples, StressChoice, Surface, embed};
 use report::results::{Figure9Measured, Figure9Record, Figure9Row, write};
 use report::tables::figure9_table;
+use surface::VertexId;
 use terminal::PeakMemory;
 
 use crate::collection::Shape;

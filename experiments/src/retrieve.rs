@@ -8,12 +8,12 @@ use std::collections::BTreeMap;
 use std::time::Instant;
 
 use anyhow::Result;
-use descriptors::{CanonicalForm, fuse, size_coordinate};
-use linalg::DistanceMatrix;
 use canonform::{
     DescribeOptions, FORM_UNIT, MatchOptions, Normalization, PreparedForms, ShapeDescription, SignatureKind,
     combined_distance, describe_surface, form_distances,
 };
+use descriptors::{CanonicalForm, fuse, size_coordinate};
+use linalg::DistanceMatrix;
 use report::results::{Classification, RetrievalRecord, RetrievalRow, Scale, write};
 use report::retrieval::retrieval;
 use report::tables::retrieval_table;

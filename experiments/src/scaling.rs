@@ -6,11 +6,11 @@
 use std::time::Instant;
 
 use anyhow::Result;
+use canonform::{EmbedMethod, EmbedOptions, Samples, StressChoice, Surface, embed};
 use datasets::{ArticulatedOptions, Family, articulated_shape};
 use mesh::RepairOptions;
-use surface::VertexId;
-use canonform::{EmbedMethod, EmbedOptions, Samples, StressChoice, Surface, embed};
 use report::results::{AxisScale, CurvesPanel, Series};
+use surface::VertexId;
 use terminal::PeakMemory;
 
 use crate::figure5::finish;

@@ -1,15 +1,15 @@
 //! What the page shows of shapes and forms when they are turned: `figure4-shapes.json`.
 
 use anyhow::{Result, bail};
+use canonform::{EmbedOptions, Embedded, Normalization};
 use descriptors::{Alignment, CanonicalForm};
 use geodesics::DistanceSolver;
 use linalg::Matrix;
 use mesh::{TriMesh, orient_consistently};
-use surface::VertexId;
 use nalgebra::Point3;
-use canonform::{EmbedOptions, Embedded, Normalization};
-use view::interactive::Geometry;
 use report::results::{Motions, Scale, SeenForm, SeenShape};
+use surface::VertexId;
+use view::interactive::Geometry;
 
 use crate::coarse::coarse;
 use crate::collection::Shape;

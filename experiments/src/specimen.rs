@@ -3,12 +3,12 @@
 use std::sync::{Arc, Mutex, PoisonError};
 
 use anyhow::{Context, Result, bail};
+use canonform::GeodesicMethod;
 use descriptors::LaplaceSpectrum;
 use geodesics::{DistanceSolver, FirstSample, Sampling};
 use linalg::{DistanceMatrix, LandmarkDistances};
-use surface::VertexId;
 use nmds::{Embedding, Reconstruction, classical, paper_stress, sample_rows};
-use canonform::GeodesicMethod;
+use surface::VertexId;
 
 use crate::collection::{Collection, Shape};
 

@@ -4,13 +4,13 @@ use std::io::Write;
 use std::process::ExitCode;
 
 use anyhow::Result;
-use datasets::{ArticulatedOptions, Family, articulated};
-use descriptors::match_forms;
-use linalg::Matrix;
 use canonform::{
     DescribeOptions, FORM_UNIT, FORM_WEIGHT, MatchOptions, Observer, PreparedForm, ShapeDescription,
     SignatureKind, describe,
 };
+use datasets::{ArticulatedOptions, Family, articulated};
+use descriptors::match_forms;
+use linalg::Matrix;
 use rayon::prelude::*;
 use terminal::Bars;
 

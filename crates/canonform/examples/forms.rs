@@ -3,7 +3,7 @@
 //! embedding (`bench/nmds.py`).
 //!
 //! ```text
-//! cargo run --release -p pipeline --example forms -- MESH SAMPLES RANK FORM
+//! cargo run --release -p canonform --example forms -- MESH SAMPLES RANK FORM
 //! ```
 //!
 //! Every line on standard input is answered by one run and a line of JSON, all seconds. `FORM` then holds the
@@ -14,11 +14,11 @@ use std::io::Write;
 use std::path::Path;
 use std::time::Instant;
 
-use mesh::RepairOptions;
-use surface::VertexId;
 use canonform::{
     EmbedMethod, EmbedOptions, FirstSample, Regularization, Samples, StressChoice, Surface, embed,
 };
+use mesh::RepairOptions;
+use surface::VertexId;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().collect();

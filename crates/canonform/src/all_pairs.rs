@@ -4,8 +4,8 @@ use std::io::{self, Read, Seek, SeekFrom, Write};
 
 use geodesics::DistanceSolver;
 use linalg::Matrix;
-use surface::VertexId;
 use serde::Serialize;
+use surface::VertexId;
 
 use crate::{Observer, PipelineError, Surface};
 

@@ -206,8 +206,8 @@ pub fn describe_with_form(
 #[cfg(test)]
 mod tests {
     use mesh::shapes;
-    use surface::VertexId;
     use nalgebra::{Point3, Rotation3};
+    use surface::VertexId;
 
     use super::*;
 

@@ -5,12 +5,12 @@ use std::time::Instant;
 use descriptors::{CanonicalForm, LaplaceSpectrum};
 use geodesics::FirstSample;
 use linalg::{LandmarkDistances, SparseSymmetric};
-use surface::VertexId;
-use surface::laplacian::Laplacian;
 use nmds::{
     Embedding, KernelPcaOptions, NystromOptions, SmacofReport, SpectralBasis, SpectralOptions, classical,
     fmds, kernel_pca, landmark_mds, nystrom, smacof, spectral,
 };
+use surface::VertexId;
+use surface::laplacian::Laplacian;
 
 use crate::observer::Observed;
 use crate::run::Run;

@@ -29,10 +29,10 @@ pub enum PipelineError {
     Retrieval(#[from] retrieval::RetrievalError),
     /// The index.
     #[error(transparent)]
-    Index(#[from] retrieval::IndexError),
+    Index(#[from] index::IndexError),
     /// The text of an index.
     #[error(transparent)]
-    Export(#[from] retrieval::ExportError),
+    Export(#[from] index::ExportError),
     /// An index whose options this program cannot read.
     #[error(
         "{path} describes its shapes in a way that this program does not know ({options}); build it again",

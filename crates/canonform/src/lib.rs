@@ -16,7 +16,7 @@ mod embed;
 mod error;
 mod forms;
 mod handedness;
-mod index;
+mod indexing;
 mod methods;
 mod observer;
 mod options;
@@ -45,7 +45,7 @@ pub use forms::{
     FormMatches, MATCHED_POINTS, PreparedForms, embedded_distances, form_distances, form_matches, map_of,
 };
 pub use handedness::Handedness;
-pub use index::{
+pub use indexing::{
     BuildOptions, BuildReport, Explain, Failure, Inputs, Measure, MergeReport, Prediction, SearchOptions,
     SearchReport, SearchResult, SearchSeconds, ShapeSearch, Shard, add_to_index, build_index, evaluate_index,
     evaluate_matrix, merge_indexes, remove_from_index,
@@ -68,5 +68,6 @@ pub use geodesics::{
     DistanceSolver, FastMarchingOptions, FirstSample, HeatOptions, Method as GeodesicMethod, ObtuseTreatment,
     PathTracer, Sampling, Source, SurfacePoint, Update, Variance,
 };
+pub use index::{ContentHash, IndexError, SearchMode, ShapeEntry};
 pub use nmds::{Bandwidth, Regularization, RpiAlpha, SmacofOptions};
-pub use retrieval::{ContentHash, Evaluation, IndexError, SearchMode, ShapeEntry};
+pub use retrieval::Evaluation;

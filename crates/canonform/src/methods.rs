@@ -3,11 +3,11 @@
 use geodesics::{Method, Sampling, Variance};
 use linalg::{DistanceMatrix, LandmarkDistances, Matrix};
 use mesh::RepairReport;
-use surface::VertexId;
 use nmds::{
     Bandwidth, Regularization, RpiAlpha, SmacofOptions, estimate_paper_stress, paper_stress, sample_rows,
 };
 use serde::Serialize;
+use surface::VertexId;
 
 use crate::stress::{ESTIMATE_ROWS, EXACT_LIMIT, KnownRows};
 use crate::{

@@ -4,9 +4,9 @@ use std::fmt;
 use std::str::FromStr;
 
 use geodesics::SurfacePoint;
-use surface::{EdgeId, FaceId, VertexId};
 use nalgebra::Point3;
 use serde::{Serialize, Serializer};
+use surface::{EdgeId, FaceId, VertexId};
 
 use crate::{PipelineError, Surface};
 

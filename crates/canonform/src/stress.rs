@@ -2,9 +2,9 @@
 
 use geodesics::{DistanceSolver, Method};
 use linalg::{LandmarkDistances, Matrix};
-use surface::VertexId;
 use nmds::{DistanceRows, estimate_paper_stress, paper_stress, sample_rows};
 use serde::Serialize;
+use surface::VertexId;
 
 use crate::{EmbedOptions, Observer, StressChoice};
 

@@ -2,7 +2,7 @@
 //! other programs to solve the same problem (`bench/eigsh.py`).
 //!
 //! ```text
-//! cargo run --release -p descriptors --example eigenpairs -- MESH PAIRS FOLDER
+//! cargo run --release -p canonform-descriptors --example eigenpairs -- MESH PAIRS FOLDER
 //! ```
 
 use std::error::Error;
@@ -10,8 +10,8 @@ use std::path::Path;
 use std::time::Instant;
 
 use linalg::{SparseSymmetric, smallest_eigenpairs};
-use surface::laplacian::Laplacian;
 use mesh::{RepairOptions, io, repair};
+use surface::laplacian::Laplacian;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().collect();

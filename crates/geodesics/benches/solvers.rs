@@ -2,8 +2,8 @@
 //!
 //! Comparisons with other programs stand in `bench/peers.py`.
 
-use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use canonform_geodesics::{FirstSample, HeatOptions, Method, farthest_point_sampling};
+use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use mesh::shapes;
 use surface::{IntrinsicMesh, VertexId};
 

@@ -3,8 +3,8 @@
 use std::sync::{Mutex, PoisonError};
 
 use linalg::{DistanceMatrix, LinalgError, Matrix};
-use surface::VertexId;
 use rayon::prelude::*;
+use surface::VertexId;
 
 use crate::Source;
 

@@ -8,9 +8,9 @@ use canonform_geodesics::{
     Dijkstra, DistanceSolver, Exact, FastMarching, HeatOptions, Method, PathTracer, Source, SurfacePoint,
 };
 use mesh::{TriMesh, shapes};
-use surface::{IntrinsicMesh, VertexId};
 use nalgebra::Point3;
 use proptest::prelude::*;
+use surface::{IntrinsicMesh, VertexId};
 
 /// Share of a distance that rounding may take or add.
 const ROUNDING: f64 = 1e-11;

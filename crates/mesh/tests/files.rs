@@ -6,12 +6,14 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use canonform_mesh::io::{MemoryFile, ReadLimits, is_mesh_path, read, read_memory, write, write_scalar_field};
-use files::Action;
+use canonform_mesh::io::{
+    MemoryFile, ReadLimits, is_mesh_path, read, read_memory, write, write_scalar_field,
+};
 use canonform_mesh::{Fault, MeshError, TriMesh, shapes};
-use surface::VertexId;
+use files::Action;
 use nalgebra::Point3;
 use proptest::prelude::*;
+use surface::VertexId;
 use tempfile::TempDir;
 
 fn folder() -> TempDir {

@@ -7,8 +7,8 @@
 use std::path::{Path, PathBuf};
 
 use canonform_mesh::{ComponentPolicy, Fault, MeshError, RepairOptions, TriMesh};
-use surface::VertexId;
 use canonform_mesh::{io, repair, validate};
+use surface::VertexId;
 
 fn data(folder: &str) -> Option<PathBuf> {
     let default = || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");

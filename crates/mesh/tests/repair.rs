@@ -3,10 +3,12 @@
 // Helper functions are test code too, which clippy cannot see.
 #![allow(clippy::unwrap_used)]
 
-use canonform_mesh::{ComponentPolicy, MeshError, Orient, RepairOptions, Repaired, TriMesh, Weld, repair, shapes, validate};
-use surface::VertexId;
+use canonform_mesh::{
+    ComponentPolicy, MeshError, Orient, RepairOptions, Repaired, TriMesh, Weld, repair, shapes, validate,
+};
 use nalgebra::{Point3, Rotation3, Vector3};
 use proptest::prelude::*;
+use surface::VertexId;
 
 fn mesh(points: &[[f64; 3]], faces: &[[u32; 3]]) -> TriMesh {
     TriMesh {

@@ -5,12 +5,12 @@ use std::path::{Path, PathBuf};
 use mesh::TriMesh;
 use plotters::prelude::DrawingBackend;
 
-use view::canvas::{Anchor, Canvas, DrawError, Drawing, GRID, RASTER, SMALL, TEXT, TITLE, Type, save};
-use view::color::class_clay;
 use crate::figure1::stress_digits;
-use view::render::{RenderOptions, Surface, View, aspect, render};
 use crate::results::Figure3Shape;
 use view::RgbaImage;
+use view::canvas::{Anchor, Canvas, DrawError, Drawing, GRID, RASTER, SMALL, TEXT, TITLE, Type, save};
+use view::color::class_clay;
+use view::render::{RenderOptions, Surface, View, aspect, render};
 
 use crate::ReportError;
 

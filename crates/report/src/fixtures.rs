@@ -3,13 +3,13 @@
 use retrieval::{Evaluation, MeanScores};
 use serde_json::json;
 
-use view::interactive::Geometry;
 use crate::results::{
     Axis, AxisScale, Classification, CurvesPanel, CurvesRecord, Expectation, Figure1Record, Figure1Shape,
     Figure3Form, Figure3Record, Figure3Shape, Figure3Stress, Figure4Panel, Figure4Record, Figure9Measured,
     Figure9Record, Figure9Row, Mark, Motions, Provenance, RetrievalRecord, RetrievalRow, Scale, SeenForm,
     SeenShape, Series, SeriesPoint, ShapesRecord,
 };
+use view::interactive::Geometry;
 
 pub(crate) fn provenance() -> Provenance {
     Provenance {

@@ -4,10 +4,10 @@ use ::retrieval::Evaluation;
 use comfy_table::{CellAlignment, Table, presets};
 
 use crate::figure1::stress_digits;
-use view::numbers::signed;
 use crate::results::{
     CurvesRecord, Figure3Record, Figure4Record, Figure9Record, RetrievalRecord, RetrievalRow,
 };
+use view::numbers::signed;
 
 /// Headings of [`values`]; also those of the page's table.
 pub(crate) const HEADINGS: [&str; 8] = ["NN", "FT", "ST", "E", "DCG", "mAP", "k-NN", "silhouette"];

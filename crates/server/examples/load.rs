@@ -1,6 +1,6 @@
 //! Many clients search with one mesh at once.
 //!
-//! `cargo run --release -p server --example load -- INDEX MESH [--clients 8] [--seconds 60]` serves the index in this
+//! `cargo run --release -p canonform-server --example load -- INDEX MESH [--clients 8] [--seconds 60]` serves the index in this
 //! process and prints requests, errors, the median and 99th percentile of answers, and the memory at the start, in the
 //! middle and at the end.
 

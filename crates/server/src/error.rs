@@ -7,8 +7,8 @@ use std::time::Duration;
 use axum::Json;
 use axum::http::{HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
-use mesh::{Fault, MeshError};
 use canonform::{IndexError, PipelineError};
+use mesh::{Fault, MeshError};
 use serde::Serialize;
 
 /// Why a server does not start or does not go on.

@@ -1,7 +1,7 @@
 //! A mesh with its form, as they are shown.
 
-use mesh::TriMesh;
 use canonform::{CanonicalForm, DescribeOptions, Overlay, PipelineError, Surface, SurfaceForm};
+use mesh::TriMesh;
 use view::interactive::Geometry;
 
 /// Bytes of a vertex and of a face in memory, with the connectivity, all arrays together.

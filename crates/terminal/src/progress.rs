@@ -3,8 +3,8 @@
 use std::io::IsTerminal;
 use std::sync::{Mutex, PoisonError};
 
-use indicatif::{ProgressBar, ProgressStyle};
 use canonform::Observer;
+use indicatif::{ProgressBar, ProgressStyle};
 
 /// A bar per stage while a person watches; nothing otherwise.
 #[derive(Debug)]

@@ -1,8 +1,8 @@
 //! Small surfaces for the tests.
 
 use mesh::TriMesh;
-use surface::VertexId;
 use nalgebra::Point3;
+use surface::VertexId;
 
 pub(crate) fn mesh(positions: &[[f64; 3]], faces: &[[u32; 3]]) -> TriMesh {
     TriMesh {

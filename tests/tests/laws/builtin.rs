@@ -1,10 +1,10 @@
 //! What the built-in dataset must come out as.
 
-use datasets::{ArticulatedOptions, articulated};
 use canonform::{
     DescribeOptions, EmbedOptions, MatchOptions, Normalization, PreparedForms, ShapeDistance, StressChoice,
     describe, embed, form_distances,
 };
+use datasets::{ArticulatedOptions, articulated};
 use rayon::prelude::*;
 use retrieval::{Labels, evaluate};
 

@@ -1,5 +1,9 @@
 //! What the embedding of distances must be, whatever they were measured on.
 
+use canonform::{
+    Bandwidth, EmbedMethod, EmbedOptions, RpiAlpha, Samples, Sampling, SmacofOptions, StressChoice,
+    StressKind, Variance, embedded_distances,
+};
 use datasets::Family;
 use geodesics::{FirstSample, farthest_point_sampling};
 use linalg::{DistanceMatrix, LandmarkDistances, Matrix};
@@ -7,10 +11,6 @@ use mesh::shapes;
 use nmds::{
     NystromOptions, Reconstruction, Regularization, SpectralOptions, classical, classical_full,
     normalized_stress, nystrom, paper_stress,
-};
-use canonform::{
-    Bandwidth, EmbedMethod, EmbedOptions, RpiAlpha, Samples, Sampling, SmacofOptions, StressChoice,
-    StressKind, Variance, embedded_distances,
 };
 
 use crate::support::{body, embedded, gap, marching, moved};

@@ -1,14 +1,14 @@
 //! What must change nothing: folding, moving, renumbering and, up to the unit, scaling.
 
-use datasets::Family;
-use linalg::DistanceMatrix;
-use mesh::{TriMesh, shapes};
-use surface::VertexId;
-use nalgebra::{Isometry3, Point3, Vector3};
 use canonform::{
     EmbedMethod, EmbedOptions, FirstSample, GeodesicMethod, MatchOptions, Normalization, PreparedForms,
     Samples, form_distances,
 };
+use datasets::Family;
+use linalg::DistanceMatrix;
+use mesh::{TriMesh, shapes};
+use nalgebra::{Isometry3, Point3, Vector3};
+use surface::VertexId;
 
 use crate::support::{
     all_vertices, body, columns, embedded, form_pairs, gap, marching, moved, permutation, surface,

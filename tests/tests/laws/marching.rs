@@ -1,5 +1,6 @@
 //! What fast marching must come out as on surfaces whose distances are known.
 
+use canonform::GeodesicMethod;
 use datasets::Family;
 use geodesics::{
     DistanceSolver, FastMarching, FastMarchingOptions, FirstSample, ObtuseTreatment, PrunedSolver, Source,
@@ -7,7 +8,6 @@ use geodesics::{
 };
 use mesh::{TriMesh, shapes};
 use surface::{IntrinsicMesh, VertexId};
-use canonform::GeodesicMethod;
 
 use crate::support::{all_vertices, body, columns, marching};
 
@@ -92,8 +92,7 @@ fn errors_halve_with_the_edges_of_a_sphere() {
     let errors: Vec<f64> = (2..=5)
         .map(|level| {
             let sphere = shapes::icosphere(level);
-            let found =
-                marching().prepare(&sphere.intrinsic()).unwrap().distances(VertexId(0));
+            let found = marching().prepare(&sphere.intrinsic()).unwrap().distances(VertexId(0));
             let axis = sphere.positions[0].coords;
             let arc = |v: usize| {
                 axis.cross(&sphere.positions[v].coords).norm().atan2(axis.dot(&sphere.positions[v].coords))

@@ -5,16 +5,16 @@
 
 use std::path::{Path, PathBuf};
 
-use geodesics::{FirstSample, farthest_point_sampling};
-use mesh::RepairOptions;
-use surface::{IntrinsicMesh, VertexId};
-use nmds::{NystromOptions, Regularization, classical, nystrom, paper_stress};
 use canonform::{
     DescribeOptions, EmbedOptions, MatchOptions, Normalization, PreparedForms, ShapeDistance, StressChoice,
     Surface, describe_surface, embed, form_distances, label_of, list_shapes,
 };
+use geodesics::{FirstSample, farthest_point_sampling};
+use mesh::RepairOptions;
+use nmds::{NystromOptions, Regularization, classical, nystrom, paper_stress};
 use rayon::prelude::*;
 use retrieval::{Labels, evaluate};
+use surface::{IntrinsicMesh, VertexId};
 
 use crate::support::{marching, workspace_root};
 

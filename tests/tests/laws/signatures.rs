@@ -1,9 +1,9 @@
 //! Signatures: blind to poses and triangulations, sharp on bodies, fit for any mesh.
 
-use datasets::{ArticulatedOptions, Family, articulated_shape};
 use canonform::{
     DescribeOptions, ShapeDescription, SignatureKind, Surface, describe, describe_surface, rerank,
 };
+use datasets::{ArticulatedOptions, Family, articulated_shape};
 use rayon::prelude::*;
 use retrieval::Candidate;
 

@@ -2,12 +2,12 @@
 
 use std::path::PathBuf;
 
+use canonform::{EmbedOptions, Embedded, GeodesicMethod, Surface, embed, embedded_distances};
 use datasets::{ArticulatedOptions, Family, articulated_shape};
 use linalg::{DistanceMatrix, Matrix};
 use mesh::{RepairOptions, TriMesh};
-use surface::VertexId;
 use nalgebra::Point3;
-use canonform::{EmbedOptions, Embedded, GeodesicMethod, Surface, embed, embedded_distances};
+use surface::VertexId;
 
 /// The folder of the workspace's manifest.
 pub(crate) fn workspace_root() -> PathBuf {

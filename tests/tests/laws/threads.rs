@@ -1,10 +1,10 @@
 //! The same bits for any number of threads.
 
-use datasets::Family;
 use canonform::{
     EmbedMethod, EmbedOptions, Embedded, MatchOptions, Normalization, PreparedForms, Samples, StressChoice,
     form_distances,
 };
+use datasets::Family;
 
 use crate::support::{body, embedded, surface};
 

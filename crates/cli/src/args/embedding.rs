@@ -1,12 +1,12 @@
 //! How a surface is embedded: methods, and which options belong to which.
 
 use anyhow::{Result, bail};
-use clap::{Args, ValueEnum};
-use surface::VertexId;
 use canonform::{
     Bandwidth, EmbedMethod, EmbedOptions, FirstSample, Regularization, RpiAlpha, Samples, Sampling,
     SmacofOptions, StressChoice, Variance,
 };
+use clap::{Args, ValueEnum};
+use surface::VertexId;
 
 use super::{Common, GeodesicName, MarchingArgs, RepairArgs};
 

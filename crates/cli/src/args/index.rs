@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, Subcommand};
 use canonform::{DescribeOptions, Measure, Normalization, Shard};
+use clap::{Args, Subcommand};
 
 use super::RepairArgs;
 
@@ -173,8 +173,9 @@ pub(crate) struct EvaluateArgs {
 fn parse_measure(text: &str) -> Result<Measure, String> {
     match text {
         "fused" => Ok(Measure::Fused),
-        kind => {
-            kind.parse().map(Measure::Signature).map_err(|fault: canonform::DescriptorError| fault.to_string())
-        }
+        kind => kind
+            .parse()
+            .map(Measure::Signature)
+            .map_err(|fault: canonform::DescriptorError| fault.to_string()),
     }
 }

@@ -8,11 +8,11 @@ mod serve;
 
 use std::path::PathBuf;
 
-use clap::{Args, Parser, Subcommand, ValueEnum};
-use mesh::{ComponentPolicy, Orient, RepairOptions, Weld};
 use canonform::{
     FastMarchingOptions, GeodesicMethod, HeatOptions, ObtuseTreatment, Samples, StressChoice, Update,
 };
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use mesh::{ComponentPolicy, Orient, RepairOptions, Weld};
 
 pub(crate) use embedding::EmbeddingArgs;
 pub(crate) use geodesic::GeodesicArgs;

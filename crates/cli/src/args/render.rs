@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
-use clap::Args;
 use canonform::InputPoint;
+use clap::Args;
 use view::render::{Background, View};
 
 use super::RepairArgs;

@@ -24,8 +24,8 @@ pub(crate) use render::picture;
 pub(crate) use search::search;
 pub(crate) use serve::serve;
 
-use mesh::RepairReport;
 use canonform::Surface;
+use mesh::RepairReport;
 
 /// Says on standard error what was repaired; a repair is never silent.
 fn say_repair(name: &str, report: &RepairReport) {

@@ -5,11 +5,11 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use anyhow::{Result, bail};
-use mesh::{RepairReport, TriMesh};
 use canonform::{EmbedOptions, GeodesicMethod, Source, StressChoice, Surface, embed};
-use view::render::{RenderOptions, Surface as Paint, render, render_with_bar, value_range};
+use mesh::{RepairReport, TriMesh};
 use serde::Serialize;
 use terminal::Bars;
+use view::render::{RenderOptions, Surface as Paint, render, render_with_bar, value_range};
 
 use super::{file_name, named, say_repair};
 use crate::args::{Common, Place, RenderArgs};

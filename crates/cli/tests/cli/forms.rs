@@ -3,8 +3,8 @@
 use std::fs;
 
 use mesh::io;
-use surface::VertexId;
 use serde_json::Value;
+use surface::VertexId;
 
 use crate::support::{Workplace, broken_ring, read_npy, ring};
 

@@ -4,8 +4,8 @@ use std::fs;
 use std::time::{Duration, Instant};
 
 use mesh::{TriMesh, io, shapes};
-use surface::VertexId;
 use nalgebra::Point3;
+use surface::VertexId;
 
 use crate::support::{Workplace, assert_keys, broken_ring, program, read_npy, ring};
 

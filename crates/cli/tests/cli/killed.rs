@@ -4,7 +4,7 @@ use std::fs;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-use retrieval::{Index, IndexWriter, Job, work_path};
+use index::{Index, IndexWriter, Job, work_path};
 
 use crate::index::body;
 use crate::support::{Workplace, program};
@@ -37,7 +37,7 @@ fn kept(place: &Workplace, index: &str) -> usize {
     n
 }
 
-/// `CANONFORM_KILLS=50 cargo test -p cli killed` kills more often.
+/// `CANONFORM_KILLS=50 cargo test -p canonform-cli killed` kills more often.
 #[test]
 fn a_build_killed_at_any_moment_goes_on_and_loses_nothing() {
     let kills: u32 = std::env::var("CANONFORM_KILLS").ok().and_then(|n| n.parse().ok()).unwrap_or(8);

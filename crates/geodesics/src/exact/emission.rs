@@ -2,10 +2,10 @@
 
 use surface::VertexId;
 
+use super::faces::{Along, next};
 use super::fan::{FanCorner, Winding};
 use super::frame::Frame;
 use super::front::Arrival;
-use super::faces::{Along, next};
 use super::wave::Wave;
 use super::window::Window;
 use crate::{Source, SurfacePoint};

@@ -4,8 +4,8 @@ use std::f64::consts::PI;
 
 use surface::{CornerId, IntrinsicMesh, Topology, VertexId};
 
-use super::front::Arrival;
 use super::faces::{Surface, next};
+use super::front::Arrival;
 
 /// How shortest paths may run through a vertex.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -13,11 +13,11 @@
 mod apex;
 mod emission;
 mod envelope;
+mod faces;
 mod fan;
 mod frame;
 mod front;
 mod order;
-mod faces;
 mod wave;
 mod window;
 
@@ -28,9 +28,9 @@ use surface::IntrinsicMesh;
 
 use crate::Source;
 use crate::solver::{DistanceSolver, Pool, within};
+use faces::Surface;
 use fan::Fans;
 use order::{Renumbered, renumbered};
-use faces::Surface;
 use wave::Scratch;
 
 /// Exact distances on the surface: no other error than rounding.

@@ -3,10 +3,10 @@
 use super::Exact;
 use super::apex::{Apex, Passes};
 use super::envelope::trim;
+use super::faces::{Along, Facing, next};
 use super::fan::Bend;
 use super::frame::{Frame, Until};
 use super::front::{Arrival, Front};
-use super::faces::{Along, Facing, next};
 use super::window::Window;
 
 /// Memory that runs share.

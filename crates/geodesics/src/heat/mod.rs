@@ -6,9 +6,9 @@ mod ring;
 mod system;
 
 use linalg::Matrix;
+use rayon::prelude::*;
 use surface::laplacian::{Element, Laplacian, Metric};
 use surface::{IntrinsicMesh, Link, VertexId};
-use rayon::prelude::*;
 
 use self::components::Components;
 use self::flow::{Bar, LONGEST_BAR};

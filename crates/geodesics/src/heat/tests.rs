@@ -1,6 +1,6 @@
 use linalg::Matrix;
-use mesh::shapes::{cylinder, disjoint, fold, grid, icosphere, jittered_grid, sheared_grid};
 use mesh::TriMesh;
+use mesh::shapes::{cylinder, disjoint, fold, grid, icosphere, jittered_grid, sheared_grid};
 use surface::{FaceId, Link, Topology};
 
 use super::*;

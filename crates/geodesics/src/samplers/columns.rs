@@ -1,9 +1,9 @@
 //! The landmarks taken so far and their columns.
 
 use linalg::{LandmarkDistances, Matrix};
-use surface::VertexId;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::Rng;
+use surface::VertexId;
 
 use crate::{DistanceSolver, FirstSample, GeodesicError};
 

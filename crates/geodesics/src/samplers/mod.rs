@@ -83,8 +83,8 @@ impl Sampling {
 
 #[cfg(test)]
 mod tests {
-    use mesh::shapes::{disjoint, grid, icosphere};
     use mesh::TriMesh;
+    use mesh::shapes::{disjoint, grid, icosphere};
     use surface::VertexId;
 
     use super::*;

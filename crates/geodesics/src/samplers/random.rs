@@ -56,7 +56,7 @@ impl Sampler for RandomSampler<'_> {
 
 #[cfg(test)]
 mod tests {
-    
+
     use mesh::shapes::grid;
 
     use super::*;

@@ -2,8 +2,8 @@
 
 use nalgebra::Point3;
 
-use crate::error::{Fault, Located};
 use crate::TriMesh;
+use crate::error::{Fault, Located};
 use surface::VertexId;
 
 use super::ReadLimits;

@@ -27,11 +27,11 @@ use std::path::{Path, PathBuf};
 use files::{Pending, write_atomically};
 use nalgebra::Point3;
 
+use crate::TriMesh;
 use crate::error::MeshError;
 use crate::face_set::check_input;
-use crate::TriMesh;
-use surface::VertexId;
 use source::{Disk, Memory, Source};
+use surface::VertexId;
 
 pub use limits::ReadLimits;
 pub use source::MemoryFile;

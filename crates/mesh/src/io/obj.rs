@@ -8,8 +8,8 @@ use std::io::{self, BufRead, Read, Write};
 
 use nalgebra::Point3;
 
-use crate::error::{Fault, Located};
 use crate::TriMesh;
+use crate::error::{Fault, Located};
 use surface::VertexId;
 
 use super::ReadLimits;

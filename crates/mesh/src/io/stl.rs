@@ -6,9 +6,9 @@ use std::io::{self, Cursor, Write};
 use nalgebra::Point3;
 use stl_io::{Normal, Triangle, Vertex};
 
+use crate::TriMesh;
 use crate::error::{Fault, Located, MeshError, Place};
 use crate::position_key::position_key;
-use crate::TriMesh;
 use surface::VertexId;
 
 use super::ReadLimits;

@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 
 use nalgebra::Point3;
 
-use crate::error::{Fault, Located, MeshError};
 use crate::TriMesh;
+use crate::error::{Fault, Located, MeshError};
 use surface::VertexId;
 
 use super::ReadLimits;

@@ -2,8 +2,8 @@
 
 use nalgebra::Point3;
 
-use surface::DisjointSets;
 use crate::position_key::position_key;
+use surface::DisjointSets;
 use surface::{EdgeId, Topology, VertexId};
 
 use super::Weld;

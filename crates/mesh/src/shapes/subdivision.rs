@@ -43,7 +43,8 @@ mod tests {
         assert_eq!(fine.positions[..coarse.n_vertices()], coarse.positions);
         assert!((after.area - before.area).abs() < 1e-12 * before.area);
         assert_eq!((after.genus, after.inconsistent_edges), (Some(1), 0));
-        let longest = |m: &crate::TriMesh| m.intrinsic().edge_lengths().iter().fold(0.0, |a, b| f64::max(a, *b));
+        let longest =
+            |m: &crate::TriMesh| m.intrinsic().edge_lengths().iter().fold(0.0, |a, b| f64::max(a, *b));
         assert!((longest(&fine) - 0.5 * longest(&coarse)).abs() < 1e-12);
     }
 }

@@ -4,13 +4,13 @@ mod fans;
 
 use serde::Serialize;
 
-use surface::components_of_faces;
+use crate::TriMesh;
 use crate::face_set::{names_twice, repeats};
 use crate::orientation::{Orientation, runs_against};
 use crate::position_key::position_key;
-use crate::TriMesh;
-use surface::{EdgeId, Topology, VertexId};
 use fans::Fans;
+use surface::components_of_faces;
+use surface::{EdgeId, Topology, VertexId};
 
 /// Facts about a mesh, as [`validate`] finds them.
 ///

@@ -3,8 +3,8 @@
 use plotters::coord::ranged1d::Ranged;
 use plotters::coord::types::RangedCoordf64;
 
-use view::numbers::{Numbers, raised};
 use crate::results::{Axis, AxisScale, CurvesPanel};
+use view::numbers::{Numbers, raised};
 
 /// Ticks wanted at most.
 const TICKS: usize = 7;

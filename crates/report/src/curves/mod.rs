@@ -7,14 +7,14 @@ use std::path::{Path, PathBuf};
 use plotters::prelude::*;
 
 use crate::ReportError;
-use view::canvas::{
-    Anchor, Canvas, DrawError, Drawing, GRID, INK, PALE_INK, SMALL, TEXT, TITLE, Type, save, text_width,
-};
 use crate::classes::Classes;
-use view::color::{class_color, mix};
 use crate::markers::draw_marker;
 use crate::results::{CurvesPanel, CurvesRecord, Series};
 use axis::Span;
+use view::canvas::{
+    Anchor, Canvas, DrawError, Drawing, GRID, INK, PALE_INK, SMALL, TEXT, TITLE, Type, save, text_width,
+};
+use view::color::{class_color, mix};
 
 /// What is appended to the stem of the files, before `.png` and `.svg`.
 pub const PART: &str = "-curves";

@@ -5,13 +5,13 @@ use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 
 use super::{COLUMN, WIDTH, corner, rows, title};
+use crate::classes::Classes;
+use crate::markers::draw_marker;
+use crate::results::Figure4Panel;
 use view::canvas::{
     Anchor, Canvas, DrawError, Drawing, GRID, INK, PALE_INK, RASTER, SMALL, TEXT, Type, style, text_width,
 };
-use crate::classes::Classes;
-use crate::markers::draw_marker;
 use view::numbers::{Numbers, signed};
-use crate::results::Figure4Panel;
 
 /// The maps of one scale.
 pub(super) struct Maps<'a> {

@@ -5,12 +5,12 @@ use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 
 use super::{COLUMN, WIDTH, corner, rows, title};
+use crate::classes::Classes;
+use crate::results::Figure4Panel;
 use view::RgbaImage;
 use view::canvas::{Anchor, Canvas, DrawError, Drawing, PALE_INK, RASTER, SMALL, TEXT, Type, text_width};
-use crate::classes::Classes;
 use view::color::perceptual;
 use view::numbers::Numbers;
-use crate::results::Figure4Panel;
 
 /// The matrices of one scale.
 pub(super) struct Matrices<'a> {

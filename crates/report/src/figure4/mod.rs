@@ -11,11 +11,11 @@ use std::path::{Path, PathBuf};
 use plotters::prelude::DrawingBackend;
 
 use crate::ReportError;
-use view::canvas::{Anchor, Canvas, DrawError, TITLE, Type, save};
 use crate::classes::Classes;
 use crate::results::{Figure4Panel, Figure4Record, Scale};
 use maps::Maps;
 use matrices::Matrices;
+use view::canvas::{Anchor, Canvas, DrawError, TITLE, Type, save};
 
 /// The pictures of Figure 4: what is appended to the stem before `.png` and `.svg`, and what is seen.
 pub const PARTS: [(&str, Scale, Content); 4] = [

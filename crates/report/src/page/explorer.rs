@@ -6,9 +6,9 @@ use std::path::Path;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use mesh::TriMesh;
-use surface::VertexId;
 use nalgebra::Point3;
 use serde_json::{Value, json};
+use surface::VertexId;
 
 use super::chart::framed;
 use super::html::escape;
@@ -17,11 +17,11 @@ use view::ViewError;
 
 use crate::ReportError;
 use crate::classes::Classes;
+use crate::results::{Figure1Record, Figure4Record, SHAPES_FILE, Scale, SeenShape, ShapesRecord, read};
 use view::color::class_clay;
 use view::interactive::base64::encode;
 use view::interactive::hex;
 use view::render::{Background, RenderOptions, Surface, render};
-use crate::results::{Figure1Record, Figure4Record, SHAPES_FILE, Scale, SeenShape, ShapesRecord, read};
 
 /// Width and height of a thumbnail, in pixels: twice what the card shows.
 const THUMBNAIL: [u32; 2] = [224, 192];

@@ -19,11 +19,11 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 
 use crate::figure4::Content;
-use files::{FileError, write_bytes};
-use view::numbers::signed;
 use crate::results::{Expectation, Figure1Record, Figure4Record, Provenance, Scale, ShapesRecord, read};
 use crate::{ReportError, figure1, figure4, tables};
+use files::{FileError, write_bytes};
 use html::{Cell, escape, paragraphs, table};
+use view::numbers::signed;
 
 /// Name of the page inside the folder of results.
 pub const FILE: &str = "report.html";

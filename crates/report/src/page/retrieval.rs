@@ -9,10 +9,10 @@ use super::chart::{Plot, chart};
 use super::html::{Cell, paragraphs, table};
 use super::{Section, expectations, folded, picture, provenance};
 use crate::curves::PART;
-use view::numbers::signed;
 use crate::results::{RetrievalRecord, RetrievalRow, Scale, read};
 use crate::retrieval::CONFUSION_PART;
 use crate::{ReportError, tables};
+use view::numbers::signed;
 
 /// Scores, curves and confusion of all ways to compare.
 pub(super) fn retrieval_section(folder: &Path) -> Result<Section, ReportError> {

@@ -220,8 +220,7 @@ impl Figure4Record {
 /// [`ReportError::File`] when the file cannot be written or the record holds what JSON cannot.
 pub fn write<T: Serialize>(record: &T, path: impl AsRef<Path>) -> Result<(), ReportError> {
     let path = path.as_ref();
-    let mut json = serde_json::to_vec_pretty(record)
-        .map_err(|e| FileError::write(path, e.into()))?;
+    let mut json = serde_json::to_vec_pretty(record).map_err(|e| FileError::write(path, e.into()))?;
     json.push(b'\n');
     Ok(write_bytes(path, &json)?)
 }
@@ -233,8 +232,7 @@ pub fn write<T: Serialize>(record: &T, path: impl AsRef<Path>) -> Result<(), Rep
 /// record.
 pub fn read<T: DeserializeOwned>(path: impl AsRef<Path>) -> Result<T, ReportError> {
     let path = path.as_ref();
-    let bytes =
-        std::fs::read(path).map_err(|source| FileError::read(path, source))?;
+    let bytes = std::fs::read(path).map_err(|source| FileError::read(path, source))?;
     serde_json::from_slice(&bytes).map_err(|source| ReportError::Parse { path: path.to_path_buf(), source })
 }
 

@@ -2,9 +2,9 @@
 
 use plotters::prelude::*;
 
+use crate::results::Classification;
 use view::canvas::{Anchor, Canvas, DrawError, Drawing, GRID, INK, SMALL, TEXT, Type, text_width};
 use view::color::mix;
-use crate::results::Classification;
 
 pub(super) struct ConfusionPlot<'a>(pub(super) &'a Classification);
 

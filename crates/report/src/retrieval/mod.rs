@@ -5,12 +5,12 @@ mod confusion;
 use std::path::{Path, PathBuf};
 
 use crate::ReportError;
-use view::canvas::save;
 use crate::curves::curves;
 use crate::results::{
     Axis, AxisScale, CurvesPanel, CurvesRecord, RetrievalRecord, Scale, Series, SeriesPoint,
 };
 use confusion::ConfusionPlot;
+use view::canvas::save;
 
 /// What is appended to the stem of the confusion matrix; the curves have [`crate::curves::PART`].
 pub const CONFUSION_PART: &str = "-confusion";

@@ -8,8 +8,8 @@ use canonform::{
     CanonicalForm, Comparison, MatchOptions, Overlay, PipelineError, ShapeDistance, SurfaceComparison,
     Triangulation, compare_surfaces, overlay_forms,
 };
-use view::interactive::Geometry;
 use serde::{Deserialize, Serialize};
+use view::interactive::Geometry;
 
 use super::answer::{Params, Written};
 use super::shapes::is_missing;

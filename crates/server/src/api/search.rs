@@ -5,13 +5,13 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use axum::extract::{Request, State};
-use mesh::RepairReport;
-use mesh::io::{MemoryFile, ReadLimits, read_memory};
 use canonform::{
     Explain, PipelineError, SearchOptions, SearchReport, SearchSeconds, Surface, describe_with_form,
 };
-use view::interactive::Geometry;
+use mesh::RepairReport;
+use mesh::io::{MemoryFile, ReadLimits, read_memory};
 use serde::{Deserialize, Serialize};
+use view::interactive::Geometry;
 
 use super::answer::{Params, Written};
 use super::shapes::{form_of, is_missing};

@@ -6,11 +6,11 @@ use axum::body::Bytes;
 use axum::extract::State;
 use axum::http::HeaderMap;
 use axum::response::Response;
-use mesh::TriMesh;
 use canonform::PipelineError;
+use mesh::TriMesh;
+use serde::{Deserialize, Serialize};
 use view::interactive::Geometry;
 use view::render::{Background, RenderOptions, View, render};
-use serde::{Deserialize, Serialize};
 
 use super::answer::{Id, Params, Written, is_known, tag, tagged};
 use crate::app::{App, ShapeSummary};

@@ -3,8 +3,8 @@
 use std::fs;
 
 use mesh::shapes;
-use view::interactive::Geometry;
 use serde_json::Value;
+use view::interactive::Geometry;
 
 use crate::client::{Answer, ask, upload};
 use crate::running::options;

@@ -3,10 +3,10 @@
 use std::fs;
 use std::io::{Read, Write};
 
+use canonform_server::ServeOptions;
 use flate2::Compression;
 use flate2::write::ZlibEncoder;
 use mesh::shapes;
-use canonform_server::ServeOptions;
 
 use crate::client::{Answer, ask, connect, form, read_answer, upload};
 use crate::running::options;

@@ -4,8 +4,8 @@ use std::fs;
 use std::io::{Read, Write};
 use std::time::{Duration, Instant};
 
-use mesh::shapes;
 use canonform_server::{ServeOptions, Server, ServerError};
+use mesh::shapes;
 
 use crate::client::{ask, connect, form, upload};
 use crate::running::options;

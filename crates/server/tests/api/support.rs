@@ -5,9 +5,9 @@ use std::ops::Deref;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
-use mesh::{TriMesh, shapes};
 use canonform::{BuildOptions, DescribeOptions, build_index};
 use canonform_server::{ServeOptions, ServerError};
+use mesh::{TriMesh, shapes};
 use tempfile::TempDir;
 
 use crate::running::Running;

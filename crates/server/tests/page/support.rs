@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
 use browser::Browser;
-use datasets::{ArticulatedOptions, Family, LabeledShape, articulated_shape};
 use canonform::{BuildOptions, DescribeOptions, build_index};
+use datasets::{ArticulatedOptions, Family, LabeledShape, articulated_shape};
 use serde_json::{Value, json};
 
 use crate::running::{Running, options};

@@ -80,10 +80,7 @@ pub mod optional_list {
     ///
     /// # Errors
     /// Those of the serializer.
-    pub fn serialize<T: Word, S: Serializer>(
-        numbers: &Option<Vec<T>>,
-        to: S,
-    ) -> Result<S::Ok, S::Error> {
+    pub fn serialize<T: Word, S: Serializer>(numbers: &Option<Vec<T>>, to: S) -> Result<S::Ok, S::Error> {
         match numbers {
             Some(numbers) => to.serialize_str(&encode(numbers.iter().copied())),
             None => to.serialize_none(),
@@ -94,9 +91,7 @@ pub mod optional_list {
     ///
     /// # Errors
     /// When the text is not base64, or not a whole number of numbers.
-    pub fn deserialize<'de, T: Word, D: Deserializer<'de>>(
-        from: D,
-    ) -> Result<Option<Vec<T>>, D::Error> {
+    pub fn deserialize<'de, T: Word, D: Deserializer<'de>>(from: D) -> Result<Option<Vec<T>>, D::Error> {
         let text = Option::<std::borrow::Cow<'de, str>>::deserialize(from)?;
         text.map(|text| decode(&text, 1).map_err(D::Error::custom)).transpose()
     }

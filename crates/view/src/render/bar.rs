@@ -9,7 +9,7 @@ use super::{Background, ISOLINE_LIGHT, RenderOptions, Surface, render, value_ran
 use crate::canvas::{Anchor, Canvas, DrawError, Drawing, Type, ink, text_width};
 use crate::color::{Rgb, from_linear, mix, perceptual, to_linear};
 use crate::numbers::Numbers;
-use crate::{ViewError, RgbaImage};
+use crate::{RgbaImage, ViewError};
 
 /// Draws like [`render`] and sets a colour bar with numbers and its `name` to the right of the mesh, in a
 /// picture of the same size.
@@ -19,11 +19,7 @@ use crate::{ViewError, RgbaImage};
 ///
 /// # Errors
 /// [`ViewError::Draw`] when text cannot be written.
-pub fn render_with_bar(
-    mesh: &TriMesh,
-    options: &RenderOptions,
-    name: &str,
-) -> Result<RgbaImage, ViewError> {
+pub fn render_with_bar(mesh: &TriMesh, options: &RenderOptions, name: &str) -> Result<RgbaImage, ViewError> {
     let Some(bar) = Bar::new(options, name) else { return Ok(render(mesh, options)) };
     let room = RenderOptions { width: bar.size.0 - bar.width(), ..options.clone() };
     let mut image = bar.beside(&render(mesh, &room), options.background);

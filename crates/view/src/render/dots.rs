@@ -1,8 +1,8 @@
 //! Points as something that can be drawn.
 
 use mesh::TriMesh;
-use surface::VertexId;
 use nalgebra::{Point3, Vector3};
+use surface::VertexId;
 
 /// A small octahedron around every point: six vertices a point, in their order.
 #[must_use]

@@ -4,10 +4,10 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use anyhow::Result;
-use mesh::RepairReport;
-use surface::VertexId;
 use canonform::{AllPairs, Asymmetry};
+use mesh::RepairReport;
 use serde::Serialize;
+use surface::VertexId;
 use terminal::Bars;
 
 use super::super::named;

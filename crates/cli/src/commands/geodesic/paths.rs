@@ -5,8 +5,8 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use anyhow::Result;
-use mesh::RepairReport;
 use canonform::{InputPoint, PathTracer, Source, Surface, SurfacePath};
+use mesh::RepairReport;
 use serde::Serialize;
 
 use super::super::named;

@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use anyhow::{Context, Result};
-use mesh::RepairReport;
 use canonform::InputPoint;
+use mesh::RepairReport;
 use serde::Serialize;
 
 use super::{Row, Seconds, Task, spelled};

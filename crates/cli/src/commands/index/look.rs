@@ -6,7 +6,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::Result;
-use retrieval::{ExportError, Index, work_path};
+use index::{ExportError, Index, work_path};
 use serde::Serialize;
 
 use crate::args::{Common, ExportArgs, OneIndexArgs};
@@ -22,7 +22,7 @@ struct VerifyJson {
 }
 
 pub(super) fn verify(args: &OneIndexArgs, common: &Common) -> Result<ExitCode> {
-    let found = retrieval::verify(&args.index, || ())?;
+    let found = index::verify(&args.index, || ())?;
     let sound = found.faults.is_empty();
     if common.json {
         let (n_shapes, n_bytes) = (found.n_shapes, found.n_bytes);
@@ -69,7 +69,7 @@ pub(super) fn info(args: &OneIndexArgs, common: &Common) -> Result<ExitCode> {
     let options = serde_json::from_str(index.options()).unwrap_or_else(|_| index.options().into());
     let json = InfoJson {
         index: args.index.clone(),
-        format: retrieval::FORMAT_VERSION,
+        format: index::FORMAT_VERSION,
         n_shapes: index.len(),
         n_bytes: index.n_bytes(),
         options,

@@ -1,8 +1,8 @@
 //! Surfaces that are hardly any.
 
 use mesh::shapes;
-use surface::{FaceId, IntrinsicMesh, Topology, VertexId};
 use proptest::prelude::*;
+use surface::{FaceId, IntrinsicMesh, Topology, VertexId};
 
 use super::super::Exact;
 use super::{all_pairs, assert_close, bumpy, faces, points, spatial};

@@ -1,8 +1,8 @@
 //! Beside a slow way that shares nothing with the windows: the straight lines between all pairs of
 //! vertices through all strips of faces, and shortest paths in their graph.
 
-use surface::{CornerId, IntrinsicMesh, Link, Topology, VertexId};
 use proptest::prelude::*;
+use surface::{CornerId, IntrinsicMesh, Link, Topology, VertexId};
 
 use super::random::{lattice_soup, soup, star};
 use super::{all_pairs, assert_close, bumpy, faces, spatial};

@@ -1,7 +1,7 @@
 //! Random surfaces, non-manifold as a rule.
 
-use surface::IntrinsicMesh;
 use proptest::prelude::*;
+use surface::IntrinsicMesh;
 
 use super::spatial;
 

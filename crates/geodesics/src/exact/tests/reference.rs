@@ -3,8 +3,8 @@
 use std::path::PathBuf;
 
 use mesh::{RepairOptions, io};
-use surface::VertexId;
 use rayon::prelude::*;
+use surface::VertexId;
 
 use super::super::Exact;
 use crate::testing::{Reference, assert_close, data, reference};

@@ -1,8 +1,8 @@
 //! Points on edges and in faces, several sources, and limits, on surfaces of any kind.
 
 use mesh::shapes;
-use surface::{EdgeId, FaceId, IntrinsicMesh, Topology, VertexId};
 use proptest::prelude::*;
+use surface::{EdgeId, FaceId, IntrinsicMesh, Topology, VertexId};
 
 use super::super::Exact;
 use super::random::{soup, star};

@@ -1,8 +1,8 @@
 //! Surfaces that are hardly any.
 
 use mesh::shapes;
-use surface::{IntrinsicMesh, Link, Topology, VertexId};
 use proptest::prelude::*;
+use surface::{IntrinsicMesh, Link, Topology, VertexId};
 
 use super::{assert_path, vertex};
 use crate::testing::{faces, lengths_of_nothing, spatial};

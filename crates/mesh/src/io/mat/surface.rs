@@ -3,11 +3,11 @@
 use flate2::read::ZlibDecoder;
 use nalgebra::Point3;
 
+use crate::TriMesh;
 use crate::error::{Fault, Located};
 use crate::io::ReadLimits;
 use crate::io::assembly::finish;
 use crate::io::text::excerpt;
-use crate::TriMesh;
 use surface::VertexId;
 
 use super::container::{ByteOrder, COMPRESSED, Elements, HEADER, MATRIX, Tag, parse_header};

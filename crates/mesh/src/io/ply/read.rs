@@ -5,8 +5,8 @@ use std::io::ErrorKind;
 use ply_rs_bw::parser::{ParseError, Parser, Reader};
 use ply_rs_bw::ply::{ElementDef, Encoding, Header, PropertyAccess, PropertyType, ScalarType};
 
-use crate::error::{Fault, Located, Place};
 use crate::TriMesh;
+use crate::error::{Fault, Located, Place};
 use surface::VertexId;
 
 use super::elements::{CORNER_LISTS, FaceIn, OtherIn, VertexIn};

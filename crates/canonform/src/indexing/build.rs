@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, sync_channel};
 use std::time::Instant;
 
+use index::{Index, IndexError, IndexWriter, Job, Shape, ShapeEntry, work_path};
 use rayon::prelude::*;
-use retrieval::{Index, IndexError, IndexWriter, Job, Shape, ShapeEntry, work_path};
 use serde::Serialize;
 
 use super::record::{options_text, path_text, same_source, shape};

@@ -10,9 +10,9 @@ use super::nearest::{Hit, Nearest};
 use super::plan::{About, Plan, nearest_cells, scan};
 use super::searcher::{Found, NearShape, SearchMode, distance};
 use super::threshold::threshold;
-use crate::index::codec::{Floats, encode};
-use crate::index::tables::{ENTRIES, FUSED, SEARCH, Snapshot, Store};
-use crate::index::{Index, IndexError, ShapeEntry};
+use crate::codec::{Floats, encode};
+use crate::tables::{ENTRIES, FUSED, SEARCH, Snapshot, Store};
+use crate::{Index, IndexError, ShapeEntry};
 
 /// Bytes of vectors in one value: with all that comes with them, just below a power of two, to which redb
 /// rounds.

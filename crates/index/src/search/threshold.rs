@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use super::kernels::sq_distances_into;
 use super::plan::CHUNK;
-use crate::UnknownThreshold;
+use retrieval::UnknownThreshold;
 
 /// Shapes that are asked about, each as if it was new.
 const ASKED: usize = 512;

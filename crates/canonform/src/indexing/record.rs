@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use descriptors::CanonicalForm;
+use index::{ContentHash, Index, Shape, ShapeEntry, ShapeVectors};
 use nalgebra::Point3;
-use retrieval::{ContentHash, Index, Shape, ShapeEntry, ShapeVectors};
 use serde::{Deserialize, Serialize};
 
 use crate::describe::DESCRIPTION_VERSION;

@@ -4,9 +4,10 @@ use std::path::Path;
 use std::time::Instant;
 
 use descriptors::{CanonicalForm, MatchOptions};
+use index::{Index, SearchMode, ShapeEntry, ShapeVectors};
 use mesh::TriMesh;
 use rayon::prelude::*;
-use retrieval::{Candidate, Index, SearchMode, ShapeEntry, ShapeVectors, vote};
+use retrieval::{Candidate, vote};
 use serde::Serialize;
 
 use super::record::{form, options_of};

@@ -1,7 +1,7 @@
 //! Collections of meshes as an index: the order of the stages of making, changing and asking it.
 //!
 //! ```text
-//! files -> content hash -> unchanged? -> describe -> retrieval::IndexWriter -> retrieval::Index
+//! files -> content hash -> unchanged? -> describe -> index::IndexWriter -> index::Index
 //! mesh -> describe -> Index::nearest (fused signatures) -> rerank (aligned forms) -> vote
 //! ```
 

@@ -14,7 +14,7 @@ use std::io::{BufRead, Write};
 use std::path::Path;
 use std::time::Instant;
 
-use canonform_retrieval::{
+use canonform_index::{
     ContentHash, Found, Index, IndexWriter, Job, SearchMode, Searcher, Shape, ShapeEntry, ShapeVectors,
 };
 use serde_json::json;

@@ -7,8 +7,8 @@ use super::kmeans::Centroids;
 use super::nearest::{Hit, Nearest};
 use super::plan::{About, nearest_cells, scan};
 use super::stored::Stored;
-use crate::UnknownThreshold;
-use crate::index::{Index, IndexError};
+use crate::{Index, IndexError};
+use retrieval::UnknownThreshold;
 
 /// Rows that are worth a task of their own.
 const TASK: usize = 8192;

@@ -5,10 +5,10 @@ use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 use files::FileError;
+use index::{ContentHash, ShapeEntry};
 use mesh::io::{MemoryFile, ReadLimits};
 use mesh::{MeshError, TriMesh};
 use rayon::prelude::*;
-use retrieval::{ContentHash, ShapeEntry};
 
 use crate::{LabelFile, Observer, PipelineError, ShapeFile, label_of, list_shapes};
 
@@ -135,9 +135,8 @@ pub(super) fn read_unchanged(id: &str, entry: &ShapeEntry) -> Result<TriMesh, Pi
 }
 
 fn content(path: &Path) -> Result<ContentHash, PipelineError> {
-    let read = |path: &PathBuf| {
-        std::fs::read(path).map_err(|source| MeshError::from(FileError::read(path, source)))
-    };
+    let read =
+        |path: &PathBuf| std::fs::read(path).map_err(|source| MeshError::from(FileError::read(path, source)));
     let pieces = mesh::io::files_of(path).iter().map(read).collect::<Result<Vec<_>, _>>()?;
     Ok(ContentHash::of(&pieces))
 }

@@ -10,14 +10,15 @@
 //!
 //! Vectors come from outside; nothing here knows what they were made of.
 
-pub(crate) mod codec;
+mod codec;
 mod error;
 mod export;
 mod overlay;
 mod reader;
 mod sealed;
+mod search;
 mod shape;
-pub(crate) mod tables;
+mod tables;
 mod verify;
 mod writer;
 
@@ -29,6 +30,7 @@ pub use error::IndexError;
 pub use export::ExportError;
 pub use reader::Index;
 pub use sealed::FORMAT_VERSION;
+pub use search::{Found, NearShape, SearchMode, Searcher};
 pub use shape::{ContentHash, Shape, ShapeEntry, ShapeVectors};
 pub use verify::{Verification, verify};
 pub use writer::{IndexWriter, Job, work_path};

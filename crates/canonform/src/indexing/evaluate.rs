@@ -2,8 +2,9 @@
 
 use std::path::Path;
 
+use index::Index;
 use linalg::DistanceMatrix;
-use retrieval::{Evaluation, Index, Labels, evaluate, pairwise_distances};
+use retrieval::{Evaluation, Labels, evaluate, pairwise_distances};
 
 use crate::{LabelFile, Observer, PipelineError, SignatureKind, label_of};
 

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::kernels::sq_distances_into;
 use super::kmeans::Centroids;
 use super::nearest::{Hit, Nearest};
-use crate::UnknownThreshold;
+use retrieval::UnknownThreshold;
 
 /// Up to this many vectors all of them are measured: that takes less than two milliseconds, and is
 /// exact.

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use retrieval::{Index, IndexError, IndexWriter, Job, Shape};
+use index::{Index, IndexError, IndexWriter, Job, Shape};
 use serde::Serialize;
 
 use super::build::{BuildReport, fill};
