@@ -11,16 +11,16 @@ use crate::shape::{posed_positions, rest_surface, shuffled};
 use crate::stream::{Purpose, Stream};
 use crate::{cat, centaur, david};
 
-/// Area of every family's rest surface, in squared units: size alone must not tell families apart.
-/// Lengths come out like centimetres of a grown man.
+/// Area of the rest surface of every family, in squared units, so that families do not differ by size alone.
+/// Lengths are roughly centimetres of a grown man.
 const AREA: f64 = 18_000.0;
 
-/// A family of shapes: one body in many poses.
+/// A family of shapes: poses of one body.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Family {
     /// A cat; nine shapes.
     Cat,
-    /// The body of a horse with a man's trunk, arms and head; six shapes.
+    /// A horse with the trunk, arms and head of a man; six shapes.
     Centaur,
     /// A man; fifteen shapes.
     David,
@@ -65,10 +65,9 @@ impl Family {
 /// Options of [`articulated()`].
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ArticulatedOptions {
-    /// Decides joint angles, triangulations and vertex numbers. The same seed gives the same bytes on
-    /// any number of threads. Default: 1.
+    /// Determines joint angles, triangulations and vertex numbers, for any number of threads. Default: 1.
     pub seed: u64,
-    /// Vertices of every shape, exactly; 1,000 to 1,000,000. Default: 3,400.
+    /// Exact number of vertices of every shape; 1,000 to 1,000,000. Default: 3,400.
     pub n_vertices: usize,
 }
 
@@ -79,9 +78,9 @@ impl Default for ArticulatedOptions {
 }
 
 impl ArticulatedOptions {
-    /// Fewest vertices with which the bodies are still recognisable.
+    /// Fewest vertices with which a body is recognisable.
     pub const MIN_VERTICES: usize = 1_000;
-    /// Most vertices offered.
+    /// Most vertices.
     pub const MAX_VERTICES: usize = 1_000_000;
 
     /// Checks the ranges.
@@ -111,16 +110,26 @@ pub struct LabeledShape {
     pub mesh: TriMesh,
 }
 
-/// The built-in dataset: 9 cats, 6 centaurs and 15 davids, in that order.
+/// Generates the built-in dataset: 9 cats, 6 centaurs and 15 davids, in that order.
 ///
-/// All shapes of a family are one body bent into different poses within the limits of its joints, so their
-/// surfaces are nearly isometric: on average half of the shortest paths change by less than 4 %. Each is triangulated
-/// anew on a lattice of its own, denser here in one and there in another, and numbered at random: nothing
-/// in two meshes corresponds. Triangles are made on the body at rest, so that limbs which come close do not
-/// grow together. All families have the same area at rest. Shapes are made in parallel.
+/// The shapes of a family are one body, bent into different poses within the limits of its joints, so their
+/// surfaces are nearly isometric: on average, half of the shortest paths change by less than 4 %. Each shape
+/// has its own triangulation with its own density and a random numbering, so that nothing corresponds between
+/// two meshes. Bodies are triangulated at rest, so that limbs which touch do not merge. All families have the
+/// same area at rest. Shapes are generated in parallel.
 ///
 /// # Errors
 /// As [`ArticulatedOptions::validate`], and [`DatasetError::NoSurface`].
+///
+/// ```
+/// use canonform_datasets::{ArticulatedOptions, Family, articulated_shape};
+///
+/// let options = ArticulatedOptions { n_vertices: 1000, ..Default::default() };
+/// let cat = articulated_shape(Family::Cat, 3, &options)?;
+/// assert_eq!((cat.name.as_str(), cat.label.as_str()), ("cat3", "cat"));
+/// assert_eq!(cat.mesh.n_vertices(), 1000);
+/// # Ok::<(), canonform_datasets::DatasetError>(())
+/// ```
 pub fn articulated(options: &ArticulatedOptions) -> Result<Vec<LabeledShape>, DatasetError> {
     options.validate()?;
     let models = Family::all().map(Family::model);
@@ -132,10 +141,10 @@ pub fn articulated(options: &ArticulatedOptions) -> Result<Vec<LabeledShape>, Da
     shapes.into_par_iter().map(|(f, pose)| shape(Family::all()[f], &models[f], pose, options)).collect()
 }
 
-/// One shape of the dataset, the same as in the list of [`articulated()`].
+/// Generates one shape of the dataset, the same as in [`articulated()`].
 ///
-/// Pose 0 is the rest pose, on all fours or standing with arms spread. Poses beyond the family's
-/// [`n_shapes`](Family::n_shapes) are further random variations.
+/// Pose 0 is the rest pose, on all fours or standing with arms spread. Poses from
+/// [`n_shapes`](Family::n_shapes) on are further random variations.
 ///
 /// # Errors
 /// As [`articulated()`].
@@ -170,12 +179,11 @@ pub(crate) fn scale(model: &Model) -> f64 {
     (AREA / model.area).sqrt()
 }
 
-/// Variations of a pose that are drawn before the least entangled one is taken.
+/// Most variations of a pose to draw; the least entangled one is used.
 const N_DRAWS: usize = 12;
 
-/// Typical poses in turn, each varied at random; number 0 is the rest pose as it is.
-///
-/// Variations in which limbs run through each other are drawn anew.
+/// The skeleton in a random variation of a typical pose without intersecting limbs; number 0 is exactly the
+/// rest pose.
 pub(crate) fn posed_skeleton<'a>(model: &'a Model, pose: usize, stream: &mut Stream) -> PosedSkeleton<'a> {
     let typical = &model.poses[pose % model.poses.len()];
     if pose == 0 {
@@ -230,7 +238,7 @@ mod tests {
         lengths
     }
 
-    /// Relative changes of path lengths between two poses of one triangulation, ascending.
+    /// Relative changes of path lengths between two poses of one triangulation, in ascending order.
     fn changes(surface: &Surface, a: &[Point3<f64>], b: &[Point3<f64>]) -> Vec<f64> {
         let mut changes = Vec::new();
         for source in (0..a.len() as u32).step_by(67) {
@@ -267,7 +275,7 @@ mod tests {
     }
 
     #[test]
-    fn limbs_are_clear_of_each_other_whatever_the_seed() {
+    fn limbs_do_not_intersect_for_any_seed() {
         let mut n_entangled = 0;
         for family in Family::all() {
             let model = family.model();
@@ -280,11 +288,11 @@ mod tests {
                 assert!(depth <= 0.0, "{}{pose}, seed {seed}: {depth}", family.name());
             }
         }
-        assert!(n_entangled > 0, "no pose was ever drawn anew");
+        assert!(n_entangled > 0, "no pose was drawn again");
     }
 
     #[test]
-    fn a_body_in_two_pieces_gives_no_surface() {
+    fn a_body_with_two_components_is_an_error() {
         let mut model = Family::Cat.model();
         model.body = Body::new(vec![
             Part::added(0.0, vec![Blob::ball([0.0, 0.0, 0.0], 10.0)]),

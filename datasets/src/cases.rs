@@ -1,11 +1,11 @@
-//! How the surface crosses one cube of the lattice, for each of the 256 sign patterns.
+//! The surface in one cube of the lattice, for each of the 256 sign patterns.
 //!
-//! Nothing is tabulated by hand: on every face of the cube the inside corners are cut off by
-//! directed segments, and the segments chain into loops around the cube. Two cubes that share a face
-//! see the same signs on it and so draw the same segments: the loops of all cubes fit together into
-//! one closed oriented surface.
+//! The cases are computed, not tabulated. On every face of the cube, directed segments separate the inside
+//! corners from the others, and the segments form loops around the cube. Two cubes that share a face have the
+//! same signs and hence the same segments on it, so that the loops of all cubes form one closed oriented
+//! surface.
 
-/// The corners of a cube: corner `c` sits at `(c & 1, c >> 1 & 1, c >> 2 & 1)`.
+/// Corner `c` of a cube: `(c & 1, c >> 1 & 1, c >> 2 & 1)`.
 pub(crate) const fn corner(c: usize) -> [usize; 3] {
     [c & 1, c >> 1 & 1, c >> 2 & 1]
 }
@@ -26,15 +26,15 @@ pub(crate) const EDGES: [(usize, usize); 12] = [
     (3, 2), // along z
 ];
 
-/// The corners of each face in counter-clockwise order seen from outside.
+/// The corners of each face, counter-clockwise as seen from outside.
 const FACES: [[usize; 4]; 6] =
     [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]];
 
-/// A closed polygon of the surface in a cube: the cube edges it crosses, counter-clockwise seen from
+/// A closed polygon of the surface in a cube: the cube edges that it crosses, counter-clockwise as seen from
 /// outside the body.
 pub(crate) type Loop = Vec<u8>;
 
-/// The loops of every sign pattern; bit `c` of the pattern is set when corner `c` is inside.
+/// The loops of every sign pattern; bit `c` of the pattern is set if corner `c` is inside.
 pub(crate) fn all_loops() -> Vec<Vec<Loop>> {
     (0..256).map(loops).collect()
 }
@@ -53,7 +53,7 @@ fn loops(pattern: usize) -> Vec<Loop> {
             if inside(before) || !inside(first) {
                 continue;
             }
-            // A run of inside corners starts here; walk to its end. Diagonal runs stay apart.
+            // A run of inside corners starts here; walk to its end. Diagonal runs stay separate.
             let last = (0..4).take_while(|k| inside(face[(i + k) % 4])).last().unwrap_or(0);
             let (end, after) = (face[(i + last) % 4], face[(i + last + 1) % 4]);
             next[edge_between(before, first)] = Some(edge_between(end, after));
@@ -94,7 +94,7 @@ mod tests {
     }
 
     #[test]
-    fn a_lone_corner_is_cut_off_facing_outwards() {
+    fn a_single_corner_is_separated_by_an_outward_facing_loop() {
         for c in 0..8 {
             let loops = &all_loops()[1 << c];
             assert_eq!(loops.len(), 1);
@@ -111,7 +111,7 @@ mod tests {
     }
 
     #[test]
-    fn opposite_corners_stay_apart_and_an_edge_joins() {
+    fn opposite_corners_are_separate_and_adjacent_ones_are_joined() {
         assert_eq!(all_loops()[0b1000_0001].len(), 2);
         assert_eq!(all_loops()[0b0000_1001].len(), 2);
         assert_eq!(all_loops()[0b0000_0011].len(), 1);

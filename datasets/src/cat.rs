@@ -1,15 +1,15 @@
 //! A cat: standing, walking, stretching, sitting, hunting.
 //!
-//! Centimetres of a large cat; `z` up, facing `-y`, its left at `x > 0`. Angles in degrees. For legs a
-//! negative `x` swings forwards; for the trunk a positive `x` turns the front end down, for the neck it
-//! nods, for the tail a positive `x` curls upwards.
+//! Lengths are centimetres of a large cat, `z` is up, it faces `-y`, and its left is at `x > 0`. Angles are
+//! in degrees. A negative `x` swings a leg forwards; a positive `x` turns the front of the trunk down, nods
+//! the head and curls the tail upwards.
 
 use crate::implicit::{Blob, Body, Part};
 use crate::model::Model;
-use crate::pose::{Pose, Turn, turn};
-use crate::skeleton::{Joint, JointId, JointPair, Node, Skeleton, node};
+use crate::pose::{Pose, flex, turn};
+use crate::skeleton::{Joint, JointId, JointPair, Node, Skeleton, joint_pairs, joints, node};
 
-/// The family's model.
+/// The model of the family.
 pub(crate) fn model() -> Model {
     let (skeleton, joints) = skeleton();
     let poses = poses(&skeleton, &joints);
@@ -24,9 +24,9 @@ fn body() -> Body {
     Body::new(parts)
 }
 
-/// The head is described in a larger size than it has.
+/// The head is described in a larger size and scaled down.
 const HEAD_SCALE: f64 = 0.8;
-/// Its scaling leaves the nape where it is.
+/// The scaling keeps the nape in its place.
 const HEAD_OFFSET: [f64; 3] = [0.0, -48.0 * (1.0 - HEAD_SCALE), 75.0 * (1.0 - HEAD_SCALE)];
 
 fn trunk() -> Part {
@@ -94,7 +94,7 @@ fn foreleg() -> Part {
     Part::added(
         5.0,
         vec![
-            // Shoulder blade and upper arm lie against the chest.
+            // Shoulder blade and upper arm, close to the chest.
             Blob::cone([8.6, -22.0, 64.0], 7.0, [9.4, -32.0, 52.0], 8.2),
             Blob::cone([9.4, -32.0, 52.0], 8.0, [10.2, -25.0, 37.0], 5.5).blend(1.0),
             Blob::cone([10.2, -25.0, 37.0], 5.5, [10.4, -28.5, 13.0], 4.0),
@@ -129,29 +129,24 @@ const TAIL: [[f64; 3]; 6] = [
 ];
 
 fn tail() -> Part {
-    let radii = [4.4, 3.6, 3.3, 3.1, 2.9, 2.5];
-    let segment = |i: usize| Blob::cone(TAIL[i], radii[i], TAIL[i + 1], radii[i + 1]);
-    let root = Blob::cone([0.0, 34.0, 64.0], 7.0, TAIL[0], radii[0]);
-    Part::added(4.0, std::iter::once(root).chain((0..5).map(segment)).collect())
+    Part::added(4.0, Blob::tube(([0.0, 34.0, 64.0], 7.0), TAIL, [4.4, 3.6, 3.3, 3.1, 2.9, 2.5]))
 }
 
 struct Joints {
-    /// Loins and chest: `x` turns the front down, `z` to its left.
+    /// For loin and chest, `x` turns the front down and `z` turns it to the left.
     loin: JointId,
     chest: JointId,
     neck: JointId,
     /// From root to tip.
     tail: [JointId; 5],
-    shoulder: JointPair,
-    elbow: JointPair,
-    wrist: JointPair,
-    hip: JointPair,
-    knee: JointPair,
-    hock: JointPair,
+    /// Shoulder, elbow, wrist.
+    forelegs: [JointPair; 3],
+    /// Hip, knee, hock.
+    hindlegs: [JointPair; 3],
     toes: JointPair,
 }
 
-/// A node described like the parts of the head.
+/// A node of the head, described in the same size as its parts.
 fn in_head(at: [f64; 3], radius: f64, grain: f64) -> Node {
     node(at, radius, grain).moved(HEAD_SCALE, HEAD_OFFSET)
 }
@@ -176,18 +171,15 @@ fn skeleton() -> (Skeleton, Joints) {
             Joint::ball(4, 7.0, 16.0, [10.0, 8.0, 22.0]),
         ],
     );
-    let tail_nodes: Vec<_> = std::iter::once(node([0.0, 33.0, 63.0], 8.0, 0.8))
-        .chain(TAIL.iter().zip([0.62, 0.55, 0.52, 0.5, 0.48, 0.42]).map(|(&p, grain)| node(p, 3.6, grain)))
-        .collect();
-    let tail_joints: Vec<_> = (1..6)
-        .map(|i| {
-            let play = if i == 1 { [12.0, 0.0, 12.0] } else { [20.0, 0.0, 20.0] };
-            Joint::ball(i, 7.0, 9.0, play)
-        })
-        .collect();
-    let tail = skeleton.chain(Some((spine, 0)), tail_nodes, tail_joints);
-    let sideways = [1.0, 0.0, 0.0];
-    let down = [0.0, 0.0, -1.0];
+    let (stiff, loose) = ([12.0, 0.0, 12.0], [20.0, 0.0, 20.0]);
+    let tail = skeleton.tail(
+        (spine, 0),
+        node([0.0, 33.0, 63.0], 8.0, 0.8),
+        TAIL,
+        3.6,
+        [0.62, 0.55, 0.52, 0.5, 0.48, 0.42],
+        &[stiff, loose, loose, loose, loose],
+    );
     let forelegs = skeleton.pair(
         (spine, 3),
         vec![
@@ -200,8 +192,8 @@ fn skeleton() -> (Skeleton, Joints) {
         ],
         vec![
             Joint::ball(1, 12.0, 15.0, [7.0, 2.0, 3.0]),
-            Joint::hinge(2, 8.0, 8.0, sideways, down, 8.0),
-            Joint::hinge(3, 6.0, 6.0, sideways, down, 10.0),
+            Joint::leg(2, 8.0, 8.0, 8.0),
+            Joint::leg(3, 6.0, 6.0, 10.0),
         ],
     );
     let hindlegs = skeleton.pair(
@@ -216,162 +208,92 @@ fn skeleton() -> (Skeleton, Joints) {
         ],
         vec![
             Joint::ball(1, 6.0, 16.0, [7.0, 3.0, 4.0]),
-            Joint::hinge(2, 8.0, 8.0, sideways, down, 8.0),
-            Joint::hinge(3, 9.0, 8.0, sideways, down, 8.0),
-            Joint::hinge(4, 4.0, 6.0, sideways, down, 8.0),
+            Joint::leg(2, 8.0, 8.0, 8.0),
+            Joint::leg(3, 9.0, 8.0, 8.0),
+            Joint::leg(4, 4.0, 6.0, 8.0),
         ],
     );
-    // Ears do not move; their chains only ask for small triangles.
+    // The ears do not move; their chains only cause small triangles.
     skeleton.pair(
         (spine, 6),
         vec![in_head([6.5, -52.0, 90.0], 5.0, 0.5), in_head([11.4, -49.8, 101.5], 3.6, 0.3)],
         Vec::new(),
     );
-    let at = |chain, joint| JointId { chain, joint };
-    let both = |pair: [usize; 2], joint| pair.map(|chain| at(chain, joint));
-    let joints = Joints {
-        loin: at(spine, 0),
-        chest: at(spine, 1),
-        neck: at(spine, 2),
-        tail: [0, 1, 2, 3, 4].map(|i| at(tail, i)),
-        shoulder: both(forelegs, 0),
-        elbow: both(forelegs, 1),
-        wrist: both(forelegs, 2),
-        hip: both(hindlegs, 0),
-        knee: both(hindlegs, 1),
-        hock: both(hindlegs, 2),
-        toes: both(hindlegs, 3),
-    };
-    (skeleton, joints)
-}
-
-/// A turn about `x` alone.
-fn flex(x: f64) -> Turn {
-    turn(x, 0.0, 0.0)
-}
-
-/// Turns of the tail's joints from root to tip: upwards and to its left.
-fn curled(pose: Pose, j: &Joints, up: [f64; 5], left: [f64; 5]) -> Pose {
-    (0..5).fold(pose, |pose, i| pose.set(j.tail[i], turn(up[i], 0.0, -left[i])))
+    let ([loin, chest, neck], [hip, knee, hock, toes]) = (joints(spine), joint_pairs(hindlegs));
+    let (tail, forelegs, hindlegs) = (joints(tail), joint_pairs(forelegs), [hip, knee, hock]);
+    (skeleton, Joints { loin, chest, neck, tail, forelegs, hindlegs, toes })
 }
 
 fn poses(skeleton: &Skeleton, j: &Joints) -> Vec<Pose> {
     let rest = || Pose::rest(skeleton);
-    let legs = |pose: Pose, fore: [[f64; 3]; 2], hind: [[f64; 3]; 2]| {
-        pose.both(j.shoulder, fore.map(|t| turn(t[0], -2.0, 0.0)))
-            .both(j.elbow, fore.map(|t| flex(t[1])))
-            .both(j.wrist, fore.map(|t| flex(t[2])))
-            .both(j.hip, hind.map(|t| turn(t[0], -2.0, 0.0)))
-            .both(j.knee, hind.map(|t| flex(t[1])))
-            .both(j.hock, hind.map(|t| flex(t[2])))
-    };
+    let legs = |pose: Pose, fore, hind| pose.legs(j.forelegs, -2.0, fore).legs(j.hindlegs, -2.0, hind);
     vec![
         rest(),
         // Trotting, tail up.
-        curled(
-            legs(
-                rest(),
-                [[-40.0, -12.0, 6.0], [30.0, -34.0, 56.0]],
-                [[34.0, -8.0, 14.0], [-36.0, 28.0, -26.0]],
-            ),
-            j,
-            [45.0, 30.0, 10.0, -20.0, -35.0],
-            [0.0; 5],
-        )
-        .set(j.neck, turn(-10.0, 0.0, -20.0)),
+        legs(rest(), [[-40.0, -12.0, 6.0], [30.0, -34.0, 56.0]], [[34.0, -8.0, 14.0], [-36.0, 28.0, -26.0]])
+            .tail(j.tail, [45.0, 30.0, 10.0, -20.0, -35.0], [0.0; 5])
+            .set(j.neck, turn(-10.0, 0.0, -20.0)),
         // Leaping, stretched out.
-        curled(
-            legs(
-                rest().root(flex(-18.0)),
-                [[-36.0, -18.0, 10.0], [-26.0, -34.0, 28.0]],
-                [[22.0, -18.0, 26.0], [16.0, -10.0, 20.0]],
-            ),
-            j,
-            [-6.0, -4.0, 6.0, 14.0, 20.0],
-            [8.0; 5],
+        legs(
+            rest().root(flex(-18.0)),
+            [[-36.0, -18.0, 10.0], [-26.0, -34.0, 28.0]],
+            [[22.0, -18.0, 26.0], [16.0, -10.0, 20.0]],
         )
+        .tail(j.tail, [-6.0, -4.0, 6.0, 14.0, 20.0], [8.0; 5])
         .set(j.neck, flex(14.0)),
         // Sitting, licking a paw.
-        curled(
-            legs(
-                rest().root(flex(-44.0)),
-                [[38.0, 2.0, 0.0], [-12.0, -60.0, 44.0]],
-                [[-8.0, 58.0, -84.0], [-12.0, 58.0, -84.0]],
-            ),
-            j,
-            [34.0, 22.0, 4.0, 0.0, 0.0],
-            [30.0, 34.0, 34.0, 34.0, 34.0],
+        legs(
+            rest().root(flex(-44.0)),
+            [[38.0, 2.0, 0.0], [-12.0, -60.0, 44.0]],
+            [[-8.0, 58.0, -84.0], [-12.0, 58.0, -84.0]],
         )
+        .tail(j.tail, [34.0, 22.0, 4.0, 0.0, 0.0], [30.0, 34.0, 34.0, 34.0, 34.0])
         .same(j.toes, flex(62.0))
         .set(j.loin, flex(6.0))
         .set(j.chest, flex(6.0))
         .set(j.neck, turn(46.0, 0.0, -14.0)),
         // Arched back.
-        curled(
-            legs(
-                rest().root(flex(-20.0)),
-                [[14.0, -4.0, 4.0], [8.0, -4.0, 4.0]],
-                [[8.0, -8.0, 14.0], [12.0, -8.0, 12.0]],
-            ),
-            j,
-            [44.0, 40.0, 14.0, -15.0, -20.0],
-            [0.0; 5],
+        legs(
+            rest().root(flex(-20.0)),
+            [[14.0, -4.0, 4.0], [8.0, -4.0, 4.0]],
+            [[8.0, -8.0, 14.0], [12.0, -8.0, 12.0]],
         )
+        .tail(j.tail, [44.0, 40.0, 14.0, -15.0, -20.0], [0.0; 5])
         .set(j.loin, flex(22.0))
         .set(j.chest, flex(20.0))
         .set(j.neck, flex(-12.0)),
         // Play bow: front down, rump up.
-        curled(
-            legs(
-                rest().root(flex(18.0)),
-                [[-46.0, -22.0, 16.0], [-38.0, -26.0, 20.0]],
-                [[-18.0, 4.0, 0.0], [-12.0, 0.0, 0.0]],
-            ),
-            j,
-            [46.0, 34.0, 24.0, 20.0, 14.0],
-            [14.0, 14.0, 24.0, 24.0, 14.0],
+        legs(
+            rest().root(flex(18.0)),
+            [[-46.0, -22.0, 16.0], [-38.0, -26.0, 20.0]],
+            [[-18.0, 4.0, 0.0], [-12.0, 0.0, 0.0]],
         )
+        .tail(j.tail, [46.0, 34.0, 24.0, 20.0, 14.0], [14.0, 14.0, 24.0, 24.0, 14.0])
         .set(j.chest, flex(-6.0))
         .set(j.neck, flex(-24.0)),
         // Upright on its hind legs, batting at something.
-        curled(
-            legs(
-                rest().root(flex(-48.0)),
-                [[-20.0, -48.0, 24.0], [0.0, -64.0, 40.0]],
-                [[16.0, 26.0, -2.0], [10.0, 32.0, -10.0]],
-            ),
-            j,
-            [-16.0, 14.0, 34.0, 34.0, 24.0],
-            [10.0, 14.0, 14.0, 10.0, 0.0],
+        legs(
+            rest().root(flex(-48.0)),
+            [[-20.0, -48.0, 24.0], [0.0, -64.0, 40.0]],
+            [[16.0, 26.0, -2.0], [10.0, 32.0, -10.0]],
         )
+        .tail(j.tail, [-16.0, 14.0, 34.0, 34.0, 24.0], [10.0, 14.0, 14.0, 10.0, 0.0])
         .set(j.loin, flex(8.0))
         .set(j.neck, turn(32.0, 0.0, 12.0)),
         // Crouching, ready to spring.
-        curled(
-            legs(
-                rest(),
-                [[54.0, -92.0, 40.0], [46.0, -84.0, 38.0]],
-                [[-46.0, 74.0, -58.0], [-40.0, 68.0, -54.0]],
-            ),
-            j,
-            [-26.0, -8.0, 8.0, 16.0, 16.0],
-            [-20.0, -26.0, -30.0, -20.0, 30.0],
+        legs(
+            rest(),
+            [[54.0, -92.0, 40.0], [46.0, -84.0, 38.0]],
+            [[-46.0, 74.0, -58.0], [-40.0, 68.0, -54.0]],
         )
+        .tail(j.tail, [-26.0, -8.0, 8.0, 16.0, 16.0], [-20.0, -26.0, -30.0, -20.0, 30.0])
         .same(j.toes, flex(26.0))
         .set(j.neck, turn(4.0, 0.0, 18.0)),
         // Chasing its tail.
-        curled(
-            legs(
-                rest(),
-                [[-26.0, -8.0, 8.0], [20.0, -22.0, 34.0]],
-                [[18.0, -6.0, 10.0], [-20.0, 14.0, -14.0]],
-            ),
-            j,
-            [14.0, 6.0, 6.0, 6.0, 6.0],
-            [40.0, 36.0, 30.0, 24.0, 16.0],
-        )
-        .set(j.loin, turn(4.0, 0.0, 20.0))
-        .set(j.chest, turn(4.0, 0.0, 20.0))
-        .set(j.neck, turn(0.0, 0.0, 40.0)),
+        legs(rest(), [[-26.0, -8.0, 8.0], [20.0, -22.0, 34.0]], [[18.0, -6.0, 10.0], [-20.0, 14.0, -14.0]])
+            .tail(j.tail, [14.0, 6.0, 6.0, 6.0, 6.0], [40.0, 36.0, 30.0, 24.0, 16.0])
+            .set(j.loin, turn(4.0, 0.0, 20.0))
+            .set(j.chest, turn(4.0, 0.0, 20.0))
+            .set(j.neck, turn(0.0, 0.0, 40.0)),
     ]
 }

@@ -1,21 +1,21 @@
-//! A centaur: the body of a horse, and a man's trunk, arms and head where its neck would be.
+//! A centaur: a horse with the trunk, arms and head of a man in place of its neck.
 //!
-//! Centimetres; `z` up, facing `-y`, its left at `x > 0`. Angles in degrees, with the signs of cat (legs,
-//! trunk, tail) and david (arms, neck).
+//! Lengths are in centimetres, `z` is up, it faces `-y`, and its left is at `x > 0`. Angles are in degrees,
+//! with the signs of the cat for legs, trunk and tail, and of david for arms and neck.
 
 use crate::human;
 use crate::implicit::{Blob, Body, Part};
 use crate::model::Model;
-use crate::pose::{Pose, Turn, turn};
-use crate::skeleton::{Joint, JointId, JointPair, Node, Skeleton, node};
+use crate::pose::{Pose, flex, turn};
+use crate::skeleton::{Joint, JointId, JointPair, Node, Skeleton, joint_pairs, joints, node};
 
-/// The man's size and place: his navel comes above the horse's shoulders.
+/// Size and offset of the man: his navel is above the shoulders of the horse.
 const MAN_SCALE: f64 = 1.0;
 const MAN_OFFSET: [f64; 3] = [0.0, -46.0, 14.0];
-/// The man is small beside the horse: his hands and face need smaller triangles.
+/// The man is small compared with the horse, so that his hands and face need smaller triangles.
 const MAN_GRAIN: f64 = 0.7;
 
-/// The family's model.
+/// The model of the family.
 pub(crate) fn model() -> Model {
     let (skeleton, joints) = skeleton();
     let poses = poses(&skeleton, &joints);
@@ -76,7 +76,7 @@ fn hoof(y: f64) -> Part {
     Part::added(1.0, vec![Blob::cone([12.7, y + 1.0, 7.5], 3.9, [12.7, y - 1.2, 1.0], 5.6)])
 }
 
-/// Hooves are flat below: a ball so large that its top is the ground.
+/// The hooves are flat below: the top of a very large ball is the ground.
 fn ground() -> Part {
     const RADIUS: f64 = 2000.0;
     Part::carved(0.8, vec![Blob::ball([0.0, 0.0, 0.4 - RADIUS], RADIUS)])
@@ -87,15 +87,12 @@ const TAIL: [[f64; 3]; 5] =
     [[0.0, 68.0, 103.0], [0.0, 78.0, 98.0], [0.0, 85.0, 84.0], [0.0, 89.0, 66.0], [0.0, 91.0, 46.0]];
 
 fn tail() -> Part {
-    let radii = [4.4, 5.6, 6.8, 6.4, 2.6];
-    let segment = |i: usize| Blob::cone(TAIL[i], radii[i], TAIL[i + 1], radii[i + 1]);
-    let root = Blob::cone([0.0, 56.0, 103.0], 6.0, TAIL[0], radii[0]);
-    Part::added(4.0, std::iter::once(root).chain((0..4).map(segment)).collect())
+    Part::added(4.0, Blob::tube(([0.0, 56.0, 103.0], 6.0), TAIL, [4.4, 5.6, 6.8, 6.4, 2.6]))
 }
 
 struct Joints {
     loin: JointId,
-    /// Between the horse's back and the man's trunk.
+    /// Between the back of the horse and the trunk of the man.
     withers: JointId,
     waist: JointId,
     chest: JointId,
@@ -104,14 +101,10 @@ struct Joints {
     arm_shoulder: JointPair,
     arm_elbow: JointPair,
     fingers: JointPair,
-    shoulder: JointPair,
-    elbow: JointPair,
-    knee: JointPair,
-    fetlock: JointPair,
-    hip: JointPair,
-    stifle: JointPair,
-    hock: JointPair,
-    hind_fetlock: JointPair,
+    /// Shoulder, elbow, knee, fetlock.
+    forelegs: [JointPair; 4],
+    /// Hip, stifle, hock, fetlock.
+    hindlegs: [JointPair; 4],
 }
 
 fn man(nodes: Vec<Node>) -> Vec<Node> {
@@ -130,18 +123,19 @@ fn skeleton() -> (Skeleton, Joints) {
     ];
     let first = nodes.len();
     nodes.extend(man(human::spine_nodes()));
-    let mut joints =
+    let mut spine_joints =
         vec![Joint::ball(1, 24.0, 24.0, [4.0, 2.0, 6.0]), Joint::ball(4, 16.0, 12.0, [5.0, 4.0, 8.0])];
-    joints.extend(human::spine_joints(first));
-    let spine = skeleton.chain(None, nodes, joints);
+    spine_joints.extend(human::spine_joints(first));
+    let spine = skeleton.chain(None, nodes, spine_joints);
     let arms = skeleton.pair((spine, first + 2), man(human::arm_nodes()), human::arm_joints());
-    let tail_nodes: Vec<_> = std::iter::once(node([0.0, 52.0, 100.0], 10.0, 1.0))
-        .chain(TAIL.iter().zip([0.75, 0.7, 0.7, 0.68, 0.55]).map(|(&p, grain)| node(p, 6.0, grain)))
-        .collect();
-    let tail_joints: Vec<_> = (1..5).map(|i| Joint::ball(i, 7.0, 9.0, [10.0, 0.0, 12.0])).collect();
-    let tail = skeleton.chain(Some((spine, 0)), tail_nodes, tail_joints);
-    let sideways = [1.0, 0.0, 0.0];
-    let down = [0.0, 0.0, -1.0];
+    let tail = skeleton.tail(
+        (spine, 0),
+        node([0.0, 52.0, 100.0], 10.0, 1.0),
+        TAIL,
+        6.0,
+        [0.75, 0.7, 0.7, 0.68, 0.55],
+        &[[10.0, 0.0, 12.0]; 4],
+    );
     let forelegs = skeleton.pair(
         (spine, 3),
         vec![
@@ -154,9 +148,9 @@ fn skeleton() -> (Skeleton, Joints) {
         ],
         vec![
             Joint::ball(1, 12.0, 14.0, [8.0, 3.0, 3.0]),
-            Joint::hinge(2, 10.0, 10.0, sideways, down, 8.0),
-            Joint::hinge(3, 8.0, 7.0, sideways, down, 10.0),
-            Joint::hinge(4, 5.0, 5.0, sideways, down, 10.0),
+            Joint::leg(2, 10.0, 10.0, 8.0),
+            Joint::leg(3, 8.0, 7.0, 10.0),
+            Joint::leg(4, 5.0, 5.0, 10.0),
         ],
     );
     let hindlegs = skeleton.pair(
@@ -171,112 +165,78 @@ fn skeleton() -> (Skeleton, Joints) {
         ],
         vec![
             Joint::ball(1, 8.0, 17.0, [8.0, 2.0, 3.0]),
-            Joint::hinge(2, 11.0, 11.0, sideways, down, 6.0),
-            Joint::hinge(3, 9.0, 8.0, sideways, down, 8.0),
-            Joint::hinge(4, 5.0, 5.0, sideways, down, 10.0),
+            Joint::leg(2, 11.0, 11.0, 6.0),
+            Joint::leg(3, 9.0, 8.0, 8.0),
+            Joint::leg(4, 5.0, 5.0, 10.0),
         ],
     );
-    let at = |chain, joint| JointId { chain, joint };
-    let both = |pair: [usize; 2], joint| pair.map(|chain| at(chain, joint));
+    let ([loin, withers, waist, chest, neck], tail) = (joints(spine), joints(tail));
+    let [arm_shoulder, arm_elbow, _, fingers] = joint_pairs(arms);
+    let (forelegs, hindlegs) = (joint_pairs(forelegs), joint_pairs(hindlegs));
     let joints = Joints {
-        loin: at(spine, 0),
-        withers: at(spine, 1),
-        waist: at(spine, 2),
-        chest: at(spine, 3),
-        neck: at(spine, 4),
-        tail: [0, 1, 2, 3].map(|i| at(tail, i)),
-        arm_shoulder: both(arms, 0),
-        arm_elbow: both(arms, 1),
-        fingers: both(arms, 3),
-        shoulder: both(forelegs, 0),
-        elbow: both(forelegs, 1),
-        knee: both(forelegs, 2),
-        fetlock: both(forelegs, 3),
-        hip: both(hindlegs, 0),
-        stifle: both(hindlegs, 1),
-        hock: both(hindlegs, 2),
-        hind_fetlock: both(hindlegs, 3),
+        loin,
+        withers,
+        waist,
+        chest,
+        neck,
+        tail,
+        arm_shoulder,
+        arm_elbow,
+        fingers,
+        forelegs,
+        hindlegs,
     };
     (skeleton, joints)
 }
 
-/// A turn about `x` alone.
-fn flex(x: f64) -> Turn {
-    turn(x, 0.0, 0.0)
-}
-
 fn poses(skeleton: &Skeleton, j: &Joints) -> Vec<Pose> {
     let rest = || Pose::rest(skeleton);
-    let legs = |pose: Pose, fore: [[f64; 4]; 2], hind: [[f64; 4]; 2]| {
-        pose.both(j.shoulder, fore.map(|t| turn(t[0], -3.0, 0.0)))
-            .both(j.elbow, fore.map(|t| flex(t[1])))
-            .both(j.knee, fore.map(|t| flex(t[2])))
-            .both(j.fetlock, fore.map(|t| flex(t[3])))
-            .both(j.hip, hind.map(|t| turn(t[0], -3.0, 0.0)))
-            .both(j.stifle, hind.map(|t| flex(t[1])))
-            .both(j.hock, hind.map(|t| flex(t[2])))
-            .both(j.hind_fetlock, hind.map(|t| flex(t[3])))
-    };
-    let tail = |pose: Pose, up: [f64; 4], left: [f64; 4]| {
-        (0..4).fold(pose, |pose, i| pose.set(j.tail[i], turn(up[i], 0.0, -left[i])))
-    };
+    let legs = |pose: Pose, fore, hind| pose.legs(j.forelegs, -3.0, fore).legs(j.hindlegs, -3.0, hind);
     let down = 48.0;
     vec![
         rest(),
         // Galloping.
-        tail(
-            legs(
-                rest().root(flex(-8.0)),
-                [[-42.0, -18.0, 26.0, 12.0], [-26.0, -32.0, 88.0, 34.0]],
-                [[26.0, -18.0, 22.0, 20.0], [18.0, -12.0, 16.0, 20.0]],
-            ),
-            [48.0, 20.0, 10.0, 4.0],
-            [0.0; 4],
+        legs(
+            rest().root(flex(-8.0)),
+            [[-42.0, -18.0, 26.0, 12.0], [-26.0, -32.0, 88.0, 34.0]],
+            [[26.0, -18.0, 22.0, 20.0], [18.0, -12.0, 16.0, 20.0]],
         )
+        .tail(j.tail, [48.0, 20.0, 10.0, 4.0], [0.0; 4])
         .set(j.withers, flex(14.0))
         .set(j.waist, turn(10.0, 0.0, 14.0))
         .both(j.arm_shoulder, [turn(44.0, down, 0.0), turn(-50.0, down, 0.0)])
         .same(j.arm_elbow, flex(88.0))
         .same(j.fingers, flex(60.0)),
         // Rearing.
-        tail(
-            legs(
-                rest().root(flex(-44.0)),
-                [[-10.0, -36.0, 100.0, 36.0], [-30.0, -28.0, 76.0, 30.0]],
-                [[24.0, 14.0, 4.0, 4.0], [18.0, 16.0, 6.0, 4.0]],
-            ),
-            [30.0, 14.0, 6.0, 0.0],
-            [8.0; 4],
+        legs(
+            rest().root(flex(-44.0)),
+            [[-10.0, -36.0, 100.0, 36.0], [-30.0, -28.0, 76.0, 30.0]],
+            [[24.0, 14.0, 4.0, 4.0], [18.0, 16.0, 6.0, 4.0]],
         )
+        .tail(j.tail, [30.0, 14.0, 6.0, 0.0], [8.0; 4])
         .set(j.withers, flex(18.0))
         .both(j.arm_shoulder, [turn(0.0, -80.0, -10.0), turn(-60.0, 30.0, 0.0)])
         .both(j.arm_elbow, [flex(24.0), flex(84.0)])
         .set(j.neck, flex(-12.0)),
         // Kicking out behind.
-        tail(
-            legs(
-                rest().root(flex(38.0)),
-                [[-44.0, -6.0, 10.0, 0.0], [-34.0, -8.0, 12.0, 0.0]],
-                [[52.0, -26.0, 26.0, 24.0], [40.0, -6.0, -16.0, 30.0]],
-            ),
-            [54.0, 20.0, 8.0, 0.0],
-            [14.0; 4],
+        legs(
+            rest().root(flex(38.0)),
+            [[-44.0, -6.0, 10.0, 0.0], [-34.0, -8.0, 12.0, 0.0]],
+            [[52.0, -26.0, 26.0, 24.0], [40.0, -6.0, -16.0, 30.0]],
         )
+        .tail(j.tail, [54.0, 20.0, 8.0, 0.0], [14.0; 4])
         .set(j.loin, flex(-10.0))
         .set(j.withers, flex(-34.0))
         .same(j.arm_shoulder, turn(0.0, -16.0, 18.0))
         .both(j.arm_elbow, [flex(28.0), flex(46.0)])
         .set(j.neck, turn(-12.0, 0.0, 18.0)),
         // Drawing a bow, turned to the side.
-        tail(
-            legs(
-                rest(),
-                [[-24.0, -6.0, 8.0, 0.0], [14.0, -10.0, 18.0, 8.0]],
-                [[18.0, -6.0, 8.0, 4.0], [-16.0, 12.0, -12.0, 0.0]],
-            ),
-            [14.0, 6.0, 0.0, 0.0],
-            [-16.0; 4],
+        legs(
+            rest(),
+            [[-24.0, -6.0, 8.0, 0.0], [14.0, -10.0, 18.0, 8.0]],
+            [[18.0, -6.0, 8.0, 4.0], [-16.0, 12.0, -12.0, 0.0]],
         )
+        .tail(j.tail, [14.0, 6.0, 0.0, 0.0], [-16.0; 4])
         .set(j.loin, turn(0.0, 0.0, -16.0))
         .set(j.waist, turn(0.0, 0.0, -40.0))
         .set(j.chest, turn(0.0, 0.0, -26.0))
@@ -285,15 +245,12 @@ fn poses(skeleton: &Skeleton, j: &Joints) -> Vec<Pose> {
         .both(j.arm_elbow, [flex(6.0), flex(126.0)])
         .same(j.fingers, flex(70.0)),
         // Bending down, one hoof lifted.
-        tail(
-            legs(
-                rest(),
-                [[-58.0, -10.0, 98.0, 34.0], [6.0, -2.0, 0.0, 0.0]],
-                [[-14.0, 8.0, -8.0, 0.0], [16.0, -6.0, 8.0, 4.0]],
-            ),
-            [36.0, 18.0, 0.0, -8.0],
-            [24.0, 14.0, 12.0, 0.0],
+        legs(
+            rest(),
+            [[-58.0, -10.0, 98.0, 34.0], [6.0, -2.0, 0.0, 0.0]],
+            [[-14.0, 8.0, -8.0, 0.0], [16.0, -6.0, 8.0, 4.0]],
         )
+        .tail(j.tail, [36.0, 18.0, 0.0, -8.0], [24.0, 14.0, 12.0, 0.0])
         .set(j.withers, flex(12.0))
         .set(j.waist, turn(42.0, 0.0, 16.0))
         .set(j.chest, turn(22.0, 0.0, 10.0))

@@ -1,17 +1,17 @@
-//! Whether the limbs of a posed body run through each other.
+//! Intersections between the limbs of a posed body.
 
 use nalgebra::Point3;
 
 use crate::pose::{PosedSkeleton, axis_point};
 use crate::skeleton::{Chain, Skeleton};
 
-/// Balls along every chain that stand for its flesh.
+/// Balls along every chain that approximate the limb.
 const N_BALLS: usize = 24;
-/// Share of the sum of two radii to which two balls may come close: flesh gives, and trunks are flatter
+/// Smallest distance of two balls as a share of the sum of their radii: flesh is soft, and trunks are flatter
 /// than the balls in them.
 const SOFTNESS: f64 = 0.8;
-/// Parts that are joined by a way along the bones shorter than this many times the sum of their radii
-/// belong to one bend, where flesh meets flesh.
+/// Balls that are closer along the bones than this multiple of the sum of their radii belong to the same bend
+/// and may touch.
 const BEND: f64 = 2.5;
 
 /// A ball around a point of a chain's axis.
@@ -23,11 +23,12 @@ struct Ball {
     posed: Point3<f64>,
 }
 
-/// How deep the limbs sink into each other at the worst place, as a share of their thickness there; zero or
-/// less when all are clear.
+/// The largest depth to which two limbs intersect, as a share of their thickness there; zero or less if none
+/// do.
 ///
-/// Limbs are balls along the bones. Two count when they are apart in the rest pose, and farther along the
-/// bones than one bend. Cost: the square of 24 balls a chain, well under a millisecond.
+/// Limbs are approximated by balls along the bones. A pair of balls counts if the balls are separate in the
+/// rest pose and do not belong to the same bend. The cost is quadratic in the number of balls, well under a
+/// millisecond.
 pub(crate) fn entanglement(posed: &PosedSkeleton<'_>) -> f64 {
     let skeleton = posed.skeleton();
     let balls: Vec<Ball> = (0..skeleton.chains.len()).flat_map(|chain| balls(posed, chain)).collect();
@@ -38,7 +39,7 @@ pub(crate) fn entanglement(posed: &PosedSkeleton<'_>) -> f64 {
             let depth = SOFTNESS - (a.posed - b.posed).norm() / sum;
             if depth > worst
                 && (a.rest - b.rest).norm() > sum
-                && way(skeleton, (a.chain, a.arc), (b.chain, b.arc)) > BEND * sum
+                && path_length(skeleton, (a.chain, a.arc), (b.chain, b.arc)) > BEND * sum
             {
                 worst = depth;
             }
@@ -56,17 +57,17 @@ fn balls<'a>(posed: &'a PosedSkeleton<'_>, chain: usize) -> impl Iterator<Item =
     })
 }
 
-/// The radius of a chain at a length along its axis, between those of its nodes.
+/// The radius of a chain at a length along its axis, interpolated between its nodes.
 fn radius(bones: &Chain, arc: f64) -> f64 {
     let (i, t) = bones.bone_at(arc);
     bones.nodes[i].radius + (bones.nodes[i + 1].radius - bones.nodes[i].radius) * t
 }
 
-/// Length of the way along the bones between two places, each a chain and a length along it.
-fn way(skeleton: &Skeleton, mut a: (usize, f64), mut b: (usize, f64)) -> f64 {
+/// Length of the path along the bones between two places, each given by a chain and a length along it.
+fn path_length(skeleton: &Skeleton, mut a: (usize, f64), mut b: (usize, f64)) -> f64 {
     let mut climbed = 0.0;
     while a.0 != b.0 {
-        // Parents come first: the later chain is the one to leave.
+        // Parents come first, so the later chain is the one to leave.
         let lower = if a.0 > b.0 { &mut a } else { &mut b };
         let Some(parent) = skeleton.chains[lower.0].parent else {
             return f64::INFINITY;
@@ -99,15 +100,15 @@ mod tests {
     }
 
     #[test]
-    fn ways_lead_along_the_bones() {
+    fn path_lengths_follow_the_bones() {
         let skeleton = skeleton();
-        assert_eq!(way(&skeleton, (0, 3.0), (0, 11.0)), 8.0);
-        assert_eq!(way(&skeleton, (1, 10.0), (0, 35.0)), 10.0 + 15.0);
-        assert_eq!(way(&skeleton, (1, 10.0), (2, 7.0)), 17.0);
+        assert_eq!(path_length(&skeleton, (0, 3.0), (0, 11.0)), 8.0);
+        assert_eq!(path_length(&skeleton, (1, 10.0), (0, 35.0)), 10.0 + 15.0);
+        assert_eq!(path_length(&skeleton, (1, 10.0), (2, 7.0)), 17.0);
     }
 
     #[test]
-    fn a_forearm_in_the_trunk_is_found_and_a_bent_elbow_is_not() {
+    fn a_forearm_in_the_trunk_is_an_intersection_and_a_bent_elbow_is_not() {
         let skeleton = skeleton();
         assert!(depth(&skeleton, 0.0) < 0.0);
         assert!(depth(&skeleton, 90.0) < 0.0, "hanging down: {}", depth(&skeleton, 90.0));

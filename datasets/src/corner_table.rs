@@ -1,14 +1,17 @@
-//! A closed triangle surface that can be edited: edges collapsed and flipped.
+//! A closed triangle surface whose edges can be collapsed and flipped.
+//!
+//! `surface::Topology` provides the initial connectivity but cannot be edited.
 
-use surface::VertexId;
+use surface::{CornerId, Topology, VertexId};
 
 pub(crate) const DEAD: u32 = u32::MAX;
 
 /// Connectivity of a closed oriented manifold as corners and their twins.
 ///
-/// Corner `c` belongs to face `c / 3`; `twin(c)` is the corner on the other side of the edge opposite
-/// to `c`. **Invariants.** Every living corner's twin lives and names it back; the corners of a vertex
-/// form one cycle under [`around`](Self::around); corners of removed faces carry the vertex [`DEAD`].
+/// Corner `c` belongs to face `c / 3`; `twin(c)` is the corner on the other side of the edge opposite to `c`.
+///
+/// **Invariants.** Twins of living corners are living and mutual. The corners of a vertex form one cycle
+/// under [`around`](Self::around). The corners of removed faces have the vertex [`DEAD`].
 #[derive(Debug, Clone)]
 pub(crate) struct CornerTable {
     vertex: Vec<u32>,
@@ -26,48 +29,21 @@ pub(crate) fn prev(c: u32) -> u32 {
 }
 
 impl CornerTable {
-    /// `None` when the faces do not form a closed, consistently oriented manifold in which every
-    /// vertex is used.
+    /// `None` unless the faces form a closed, consistently oriented manifold that uses every vertex.
     pub(crate) fn new(n_vertices: usize, faces: &[[VertexId; 3]]) -> Option<Self> {
+        let topology = Topology::new(n_vertices, faces.to_vec());
         let vertex: Vec<u32> = faces.iter().flatten().map(|v| v.0).collect();
-        let n = vertex.len() as u32;
-        // Directed edges leave from their start vertex; bucket them by it.
-        let mut starts = vec![0u32; n_vertices + 1];
-        for c in 0..n {
-            starts[vertex[next(c) as usize] as usize + 1] += 1;
-        }
-        for v in 0..n_vertices {
-            starts[v + 1] += starts[v];
-        }
-        let mut fill = starts.clone();
-        let mut leaving = vec![0u32; n as usize];
-        for c in 0..n {
-            let slot = &mut fill[vertex[next(c) as usize] as usize];
-            leaving[*slot as usize] = c;
-            *slot += 1;
-        }
-        let mut twin = vec![DEAD; n as usize];
-        for c in 0..n {
-            let (from, to) = (vertex[next(c) as usize], vertex[prev(c) as usize]);
-            let bucket = &leaving[starts[to as usize] as usize..starts[to as usize + 1] as usize];
-            let mut opposite = bucket.iter().filter(|&&o| vertex[prev(o) as usize] == from);
-            match (opposite.next(), opposite.next()) {
-                (Some(&o), None) => twin[c as usize] = o,
-                _ => return None,
-            }
-        }
-        if (0..n).any(|c| twin[twin[c as usize] as usize] != c) {
+        let n_corners = vertex.len() as u32;
+        let twin = |c: u32| topology.across(CornerId(c)).map(|twin| twin.0);
+        let twin = (0..n_corners).map(twin).collect::<Option<Vec<u32>>>()?;
+        // The two faces at an edge traverse it in opposite directions.
+        if (0..n_corners).any(|c| vertex[next(c) as usize] == vertex[next(twin[c as usize]) as usize]) {
             return None;
         }
-        let mut corner = vec![DEAD; n_vertices];
-        let mut n_corners = vec![0usize; n_vertices];
-        for c in 0..n {
-            corner[vertex[c as usize] as usize] = c;
-            n_corners[vertex[c as usize] as usize] += 1;
-        }
+        let corners = |v: usize| topology.vertex_corners(VertexId::from(v));
+        let corner = (0..n_vertices).map(|v| corners(v).last().map(|c| c.0)).collect::<Option<_>>()?;
         let table = Self { vertex, twin, corner };
-        let one_fan = |v: usize| n_corners[v] > 0 && table.around(v as u32).count() == n_corners[v];
-        (0..n_vertices).all(one_fan).then_some(table)
+        (0..n_vertices).all(|v| table.around(v as u32).count() == corners(v).len()).then_some(table)
     }
 
     pub(crate) fn n_corners(&self) -> u32 {
@@ -86,7 +62,7 @@ impl CornerTable {
         self.corner[v as usize] != DEAD
     }
 
-    /// The corners at `v`, one for each face around it, counter-clockwise seen from outside.
+    /// The corners at `v`, one per face, counter-clockwise as seen from outside.
     pub(crate) fn around(&self, v: u32) -> impl Iterator<Item = u32> + '_ {
         let first = self.corner[v as usize];
         let mut c = Some(first);
@@ -98,18 +74,18 @@ impl CornerTable {
         })
     }
 
-    /// The vertices joined to `v` by an edge, one for each corner of [`around`](Self::around).
+    /// The neighbours of `v`, one for each corner of [`around`](Self::around).
     pub(crate) fn neighbors(&self, v: u32) -> impl Iterator<Item = u32> + '_ {
         self.around(v).map(|c| self.vertex(next(c)))
     }
 
-    /// The corner opposite the edge from `u` to `w`, in the face where it runs in that direction.
+    /// The corner opposite the edge from `u` to `w`, in the face that traverses it in that direction.
     pub(crate) fn facing(&self, u: u32, w: u32) -> Option<u32> {
         self.around(u).find(|&c| self.vertex(next(c)) == w).map(prev)
     }
 
-    /// Whether the edge facing `c` can be collapsed and leave a manifold: its ends have no common
-    /// neighbours but the two apexes, and the apexes keep three neighbours.
+    /// Whether the surface stays a manifold if the edge opposite `c` is collapsed: its ends have no common
+    /// neighbours but the two apexes, and the apexes keep at least three neighbours.
     pub(crate) fn can_collapse(&self, c: u32) -> bool {
         let (u, w) = (self.vertex(next(c)), self.vertex(prev(c)));
         let apexes = [self.vertex(c), self.vertex(self.twin(c))];
@@ -117,7 +93,7 @@ impl CornerTable {
         n_common == 2 && apexes.iter().all(|&p| self.neighbors(p).take(4).count() > 3)
     }
 
-    /// Merges the vertex at `next(c)` into the one at `prev(c)`; the two faces of the edge vanish.
+    /// Merges the vertex at `next(c)` into the one at `prev(c)` and removes the two faces of the edge.
     pub(crate) fn collapse(&mut self, c: u32) {
         let o = self.twin(c);
         let (u, w) = (self.vertex(next(c)), self.vertex(prev(c)));
@@ -129,7 +105,7 @@ impl CornerTable {
             let (a, b) = (self.twin(next(apex)), self.twin(prev(apex)));
             self.twin[a as usize] = b;
             self.twin[b as usize] = a;
-            // `a` and `b` face the merged edge from w to the apex.
+            // `a` and `b` are opposite the merged edge from w to the apex.
             let p = self.vertex(apex) as usize;
             let (at_w, at_p) =
                 if self.vertex(next(a)) == w { (next(a), prev(a)) } else { (prev(a), next(a)) };
@@ -142,8 +118,8 @@ impl CornerTable {
         self.corner[u as usize] = DEAD;
     }
 
-    /// Whether the edge facing `c` can be flipped: its apexes are not joined yet, its ends keep three
-    /// neighbours.
+    /// Whether the edge opposite `c` can be flipped: its apexes are not neighbours, and its ends keep at
+    /// least three neighbours.
     pub(crate) fn can_flip(&self, c: u32) -> bool {
         let (p, q) = (self.vertex(c), self.vertex(self.twin(c)));
         let ends = [self.vertex(next(c)), self.vertex(prev(c))];
@@ -152,7 +128,7 @@ impl CornerTable {
             && !self.neighbors(p).any(|x| x == q)
     }
 
-    /// Replaces the edge facing `c` by the one between the two apexes; both faces keep their numbers.
+    /// Replaces the edge opposite `c` by the one between the two apexes; both faces keep their numbers.
     pub(crate) fn flip(&mut self, c: u32) {
         let o = self.twin(c);
         let (p, q) = (self.vertex(c), self.vertex(o));
@@ -176,25 +152,7 @@ impl CornerTable {
         self.twin[b as usize] = a;
     }
 
-    /// Whether every living vertex can be reached from every other.
-    pub(crate) fn is_connected(&self) -> bool {
-        let n_alive = (0..self.corner.len() as u32).filter(|&v| self.is_alive(v)).count();
-        let Some(first) = (0..self.corner.len() as u32).find(|&v| self.is_alive(v)) else { return true };
-        let mut seen = vec![false; self.corner.len()];
-        seen[first as usize] = true;
-        let (mut stack, mut n_seen) = (vec![first], 0);
-        while let Some(v) = stack.pop() {
-            n_seen += 1;
-            for x in self.neighbors(v) {
-                if !std::mem::replace(&mut seen[x as usize], true) {
-                    stack.push(x);
-                }
-            }
-        }
-        n_seen == n_alive
-    }
-
-    /// The same surface without the removed vertices and faces; the others keep their order.
+    /// The same surface without removed vertices and faces; the others keep their order.
     pub(crate) fn compacted(&self) -> Self {
         let mut corner_to = vec![DEAD; self.vertex.len()];
         let living: Vec<u32> = (0..self.n_corners()).filter(|&c| self.vertex(c) != DEAD).collect();
@@ -226,7 +184,7 @@ mod tests {
         list.iter().map(|f| f.map(VertexId)).collect()
     }
 
-    /// A double pyramid over a polygon of `n` corners; the tips are `n` and `n + 1`.
+    /// A double pyramid over a polygon with `n` corners; the tips are `n` and `n + 1`.
     fn double_pyramid(n: u32) -> CornerTable {
         let sides = (0..n).flat_map(|i| [[i, (i + 1) % n, n], [(i + 1) % n, i, n + 1]]);
         CornerTable::new(n as usize + 2, &faces(&sides.collect::<Vec<_>>())).unwrap()
@@ -245,7 +203,7 @@ mod tests {
     }
 
     #[test]
-    fn a_fan_goes_once_around_its_vertex() {
+    fn a_fan_visits_every_neighbour_once() {
         let table = double_pyramid(5);
         assert_eq!(table.neighbors(5).collect::<std::collections::BTreeSet<_>>(), (0..5).collect());
         assert_eq!(table.neighbors(0).count(), 4);
@@ -268,7 +226,7 @@ mod tests {
     }
 
     #[test]
-    fn collapsing_down_to_the_smallest_sphere_stays_a_sphere() {
+    fn collapses_end_at_a_tetrahedron() {
         let mut table = double_pyramid(12);
         for _ in 0..100 {
             let Some(c) = (0..table.n_corners()).find(|&c| table.vertex(c) != DEAD && table.can_collapse(c))
@@ -282,7 +240,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_a_closed_oriented_manifold_is_refused() {
+    fn only_closed_oriented_manifolds_have_a_corner_table() {
         let tetrahedron = [[0, 1, 2], [0, 3, 1], [1, 3, 2], [2, 3, 0]];
         assert!(CornerTable::new(4, &faces(&tetrahedron)).is_some());
         assert!(CornerTable::new(5, &faces(&tetrahedron)).is_none(), "an unused vertex");

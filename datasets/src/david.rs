@@ -1,16 +1,16 @@
 //! David: a man, standing, walking, sitting.
 //!
-//! Centimetres; `z` up, facing `-y`, his left at `x > 0`. Angles in degrees. For legs and hanging arms
-//! a negative `x` swings forwards; knees and elbows flex with positive `x`. For raised arms a positive
-//! `y` lowers the arm and a negative `z` swings it forwards.
+//! Lengths are in centimetres, `z` is up, he faces `-y`, and his left is at `x > 0`. Angles are in degrees. A
+//! negative `x` swings legs and hanging arms forwards; a positive `x` flexes knees and elbows. A positive `y`
+//! lowers a raised arm, and a negative `z` swings it forwards.
 
 use crate::human;
 use crate::implicit::{Blob, Body, Part};
 use crate::model::Model;
-use crate::pose::{Pose, Turn, turn};
-use crate::skeleton::{Joint, JointId, JointPair, Skeleton, node};
+use crate::pose::{Pose, flex, turn};
+use crate::skeleton::{Joint, JointId, JointPair, Skeleton, joint_pairs, joints, node};
 
-/// The family's model.
+/// The model of the family.
 pub(crate) fn model() -> Model {
     let (skeleton, joints) = skeleton();
     let poses = poses(&skeleton, &joints);
@@ -71,7 +71,7 @@ fn foot() -> Part {
 }
 
 struct Joints {
-    /// Waist, chest, neck: `x` forwards, `y` sideways, `z` turns to his left.
+    /// For waist, chest and neck, `x` bends forwards, `y` sideways, and `z` turns to the left.
     waist: JointId,
     chest: JointId,
     neck: JointId,
@@ -90,8 +90,6 @@ fn skeleton() -> (Skeleton, Joints) {
     nodes.extend(human::spine_nodes());
     let spine = skeleton.chain(None, nodes, human::spine_joints(1));
     let arms = skeleton.pair((spine, 3), human::arm_nodes(), human::arm_joints());
-    let sideways = [1.0, 0.0, 0.0];
-    let down = [0.0, 0.0, -1.0];
     let leg_nodes = vec![
         node([4.0, -1.0, 94.0], 11.0, 1.1),
         node([9.0, -3.5, 88.0], 9.5, 1.0),
@@ -102,30 +100,13 @@ fn skeleton() -> (Skeleton, Joints) {
     ];
     let leg_joints = vec![
         Joint::ball(1, 5.0, 17.0, [10.0, 2.5, 6.0]),
-        Joint::hinge(2, 11.0, 11.0, sideways, down, 8.0),
-        Joint::hinge(3, 5.0, 6.0, sideways, down, 8.0),
+        Joint::leg(2, 11.0, 11.0, 8.0),
+        Joint::leg(3, 5.0, 6.0, 8.0),
     ];
     let legs = skeleton.pair((spine, 0), leg_nodes, leg_joints);
-    let at = |chain, joint| JointId { chain, joint };
-    let both = |pair: [usize; 2], joint| pair.map(|chain| at(chain, joint));
-    let joints = Joints {
-        waist: at(spine, 0),
-        chest: at(spine, 1),
-        neck: at(spine, 2),
-        shoulder: both(arms, 0),
-        elbow: both(arms, 1),
-        wrist: both(arms, 2),
-        fingers: both(arms, 3),
-        hip: both(legs, 0),
-        knee: both(legs, 1),
-        ankle: both(legs, 2),
-    };
-    (skeleton, joints)
-}
-
-/// A turn about `x` alone.
-fn flex(x: f64) -> Turn {
-    turn(x, 0.0, 0.0)
+    let ([waist, chest, neck], [hip, knee, ankle]) = (joints(spine), joint_pairs(legs));
+    let [shoulder, elbow, wrist, fingers] = joint_pairs(arms);
+    (skeleton, Joints { waist, chest, neck, shoulder, elbow, wrist, fingers, hip, knee, ankle })
 }
 
 fn poses(skeleton: &Skeleton, j: &Joints) -> Vec<Pose> {

@@ -1,36 +1,36 @@
-//! What can go wrong.
+//! Errors of dataset generation.
 
-/// Why no dataset came out.
+/// Why a dataset could not be generated.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum DatasetError {
     /// Fewer vertices than a recognisable body needs.
-    #[error("{n_vertices} vertices are too few for an articulated shape: ask for at least {least}")]
+    #[error("{n_vertices} vertices are too few for an articulated shape; use at least {least}")]
     TooFewVertices {
-        /// Vertices asked for.
+        /// Requested number of vertices.
         n_vertices: usize,
-        /// Smallest number possible.
+        /// Smallest number.
         least: usize,
     },
-    /// More vertices than are offered.
-    #[error("{n_vertices} vertices are too many for an articulated shape: ask for at most {most}")]
+    /// More vertices than the generator supports.
+    #[error("{n_vertices} vertices are too many for an articulated shape; use at most {most}")]
     TooManyVertices {
-        /// Vertices asked for.
+        /// Requested number of vertices.
         n_vertices: usize,
-        /// Largest number possible.
+        /// Largest number.
         most: usize,
     },
-    /// No attempt gave a closed surface without handles and with the wanted number of vertices.
+    /// No attempt gave a topological sphere with the requested number of vertices.
     #[error(
-        "no closed surface with {n_vertices} vertices for {shape} under seed {seed}: \\
+        "found no closed surface with {n_vertices} vertices for {shape} with seed {seed}; \
          try another seed or another number of vertices"
     )]
     NoSurface {
         /// Name of the shape.
         shape: String,
-        /// Vertices asked for.
+        /// Requested number of vertices.
         n_vertices: usize,
-        /// Seed asked for.
+        /// The seed.
         seed: u64,
     },
 }

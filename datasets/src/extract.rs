@@ -1,4 +1,4 @@
-//! From implicit body to closed triangle surface: marching cubes on a randomly placed lattice.
+//! From an implicit body to a closed triangle surface: marching cubes on a randomly placed lattice.
 
 use std::collections::HashMap;
 
@@ -9,12 +9,12 @@ use surface::VertexId;
 use crate::cases::{EDGES, Loop, all_loops, corner};
 use crate::implicit::Body;
 
-/// Cells along a block: blocks are what is searched, skipped and given to threads.
+/// Cells along the side of a block. Blocks are searched, skipped and distributed to threads.
 const BLOCK: usize = 8;
 const SAMPLES: usize = BLOCK + 1;
 const NONE: u32 = u32::MAX;
 
-/// Where the lattice lies; another placement gives another triangulation of the same surface.
+/// Placement of the lattice; each gives another triangulation of the same surface.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Lattice {
     /// Columns are the lattice directions.
@@ -25,7 +25,7 @@ pub(crate) struct Lattice {
     pub(crate) spacing: f64,
 }
 
-/// Vertices and faces as they come out of the lattice: closed, oriented outwards, badly shaped.
+/// A closed surface with badly shaped triangles, oriented outwards.
 pub(crate) struct RawSurface {
     pub(crate) positions: Vec<Point3<f64>>,
     pub(crate) faces: Vec<[VertexId; 3]>,
@@ -34,21 +34,21 @@ pub(crate) struct RawSurface {
 /// The part of the surface inside one block.
 struct Leaf {
     origin: [i64; 3],
-    /// Sign patterns of the crossed cells, with the cell's place in the block.
+    /// Place in the block and sign pattern of each crossed cell.
     cells: Vec<(u16, u8)>,
-    /// Crossings of the edges this block owns, then centres of loops with more than four corners.
+    /// Crossings of the edges that this block owns, then centres of loops with more than four corners.
     positions: Vec<Point3<f64>>,
-    /// Vertex on edge `3 * sample + axis`, counted inside the block.
+    /// Vertex on edge `3 * sample + axis`, counted within the block.
     on_edge: Vec<u32>,
 }
 
 /// Extracts the surface of `body`.
 ///
-/// Every crossed lattice edge carries one vertex. Loops of three and four vertices become one or two
-/// triangles, longer ones a fan around their centre, so that no two triangles ever share more than
-/// an edge and the result is a closed manifold whatever the body looks like. The search descends from
-/// a cube around the body and drops blocks that the surface cannot reach (the value at the centre
-/// exceeds the half diagonal of the 1-Lipschitz function); time and memory are `O(area / spacing^2)`.
+/// Every crossed lattice edge has one vertex. Loops of three and four vertices become one or two triangles,
+/// longer ones a fan around their centre. No two triangles share more than an edge, so the result is a closed
+/// manifold for any body. The search descends from a cube around the body and drops blocks that the surface
+/// cannot reach: those where the value of the 1-Lipschitz function at the centre exceeds half the diagonal.
+/// Time and memory are `O(area / spacing^2)`.
 pub(crate) fn extract(body: &Body, lattice: Lattice) -> RawSurface {
     let loops = all_loops();
     let (center, radius) = body.bounding_ball();
@@ -77,7 +77,7 @@ impl Lattice {
     }
 }
 
-/// Origins (in cells) of the blocks that the surface may cross, in a fixed order.
+/// Origins of the blocks that the surface may cross, in cells, in a fixed order.
 fn crossed_blocks(body: &Body, lattice: Lattice, center: Point3<f64>, radius: f64) -> Vec<[i64; 3]> {
     // One extra block on each side leaves room for the shift.
     let needed = (radius / lattice.spacing + lattice.shift.amax() + 1.0).ceil() as i64;
@@ -117,8 +117,8 @@ fn each(n: usize) -> impl Iterator<Item = [usize; 3]> {
 
 /// Values at the lattice points of a block.
 ///
-/// Where the value at the middle of two by two by two cells rules out that the surface passes, it
-/// stands for the corners too: it has their sign, and nothing else is asked of them.
+/// If the value at the centre of 2 x 2 x 2 cells rules out that the surface passes, it is used for the
+/// corners too: they have the same sign, and only the sign matters.
 fn samples(body: &Body, spacing: f64, point: &impl Fn([f64; 3]) -> Point3<f64>) -> Vec<f64> {
     let reach = 3f64.sqrt() * spacing * (1.0 + 1e-9);
     let mut values = vec![f64::NAN; SAMPLES * SAMPLES * SAMPLES];
@@ -134,7 +134,7 @@ fn samples(body: &Body, spacing: f64, point: &impl Fn([f64; 3]) -> Point3<f64>) 
             }
         }
     }
-    // Second, so that true values replace the stand-ins at shared corners.
+    // In a second pass, so that true values replace those of centres at shared corners.
     let mut is_true = [false; SAMPLES * SAMPLES * SAMPLES];
     for low in crossed {
         for step in each(3) {
@@ -155,7 +155,7 @@ fn leaf(body: &Body, lattice: Lattice, center: Point3<f64>, origin: [i64; 3], lo
         let mut to = at;
         to[axis] += 1;
         let (a, b) = (values[sample_index(at)], values[sample_index(to)]);
-        // Kept off the ends, where vertices of several edges would coincide.
+        // Not at the ends, where vertices of several edges would coincide.
         let t = (a / (a - b)).clamp(0.02, 0.98);
         let [p, q] = [at, to].map(|at| point(at.map(|x| x as f64)));
         p + (q - p) * t
@@ -270,7 +270,7 @@ mod tests {
         assert!((volume / (ball * 5.0 / 3.0) - 1.0).abs() < 0.01, "volume {volume}");
     }
 
-    /// Noise crosses the lattice in every way, ambiguous faces included.
+    /// Random balls cross the lattice in every way, ambiguous faces included.
     #[test]
     fn every_surface_is_closed_and_manifold() {
         let mut blobs = Vec::new();

@@ -1,12 +1,12 @@
-//! The upper half of a man: what a david and a centaur share.
+//! The upper half of a man, which david and the centaur share.
 //!
-//! Centimetres; `z` up, facing `-y`, his left at `x > 0`; the navel at height 106. Arms stand 30
-//! degrees below the horizontal, palms down.
+//! Lengths are in centimetres, `z` is up, he faces `-y`, his left is at `x > 0`, and the navel is at height
+//! 106. The arms are 30 degrees below the horizontal with the palms down.
 
 use crate::implicit::{Blob, Part};
 use crate::skeleton::{Joint, Node, node};
 
-/// Shoulder joint, and the directions along the arm, to its front and to the back of the hand.
+/// The shoulder joint, and the directions along the arm and to the back of the hand.
 const SHOULDER: [f64; 3] = [19.0, 0.5, 139.5];
 const ALONG: [f64; 3] = [0.866_025, 0.0, -0.5];
 const DORSAL: [f64; 3] = [0.5, 0.0, 0.866_025];
@@ -16,12 +16,13 @@ const WRIST: f64 = 54.5;
 const KNUCKLES: f64 = 63.5;
 const FINGERTIPS: f64 = 72.5;
 
-/// A point of the left arm: distance from the shoulder, towards the front, towards the back of the hand.
+/// A point of the left arm, given by its distances from the shoulder, to the front and to the back of the
+/// hand.
 fn arm(along: f64, front: f64, dorsal: f64) -> [f64; 3] {
     [0, 1, 2].map(|i| SHOULDER[i] + along * ALONG[i] + dorsal * DORSAL[i] - if i == 1 { front } else { 0.0 })
 }
 
-/// Trunk from the navel up, neck, head and arms.
+/// Trunk above the navel, neck, head and arms.
 pub(crate) fn parts() -> Vec<Part> {
     let mut parts = vec![trunk(), shoulders(), head()];
     parts.extend(face());
@@ -108,7 +109,7 @@ fn arm_part() -> Part {
         vec![
             Blob::cone(arm(0.0, 0.0, 0.4), 6.4, arm(10.0, 0.0, 0.0), 4.8),
             Blob::cone(arm(8.0, 0.0, 0.0), 4.7, arm(ELBOW, 0.0, 0.0), 3.7).blend(1.0),
-            // Biceps (palms down, it looks forward) and triceps.
+            // Biceps (in front, since the palms are down) and triceps.
             Blob::cone(arm(11.0, 1.4, 0.0), 4.4, arm(19.0, 1.4, 0.0), 4.0).blend(1.5),
             Blob::cone(arm(9.0, -1.6, 0.0), 4.4, arm(18.0, -1.4, 0.0), 3.8).blend(1.5),
             Blob::cone(arm(ELBOW, 0.0, 0.0), 3.7, arm(ELBOW + 7.0, 0.4, 0.0), 4.2).blend(0.6),
@@ -127,7 +128,7 @@ fn hand() -> Part {
         Blob::cone(arm(WRIST + 2.5, 2.2, -0.3), 1.7, arm(WRIST + 6.5, 5.0, -0.5), 1.35).blend(1.5),
         Blob::cone(arm(WRIST + 6.5, 5.0, -0.5), 1.3, arm(WRIST + 10.0, 6.5, -0.5), 1.0).blend(0.3),
     ];
-    // Index to little finger: place at the knuckles, spread at the tips, length.
+    // Index to little finger: position at the knuckles, position at the tip, length.
     for (front, spread, length) in [(3.0, 5.7, 8.2), (1.0, 1.9, 9.3), (-1.0, -2.0, 8.8), (-2.8, -5.6, 7.0)] {
         blobs.push(
             Blob::cone(arm(KNUCKLES - 2.5, front, 0.0), 1.2, arm(KNUCKLES + length, spread, -0.4), 0.85)
@@ -137,7 +138,7 @@ fn hand() -> Part {
     Part::added(1.5, blobs)
 }
 
-/// Spine of the trunk and head; the first node is where the lower body takes over.
+/// Spine of the trunk and head; the lower body is attached to the first node.
 pub(crate) fn spine_nodes() -> Vec<Node> {
     vec![
         node([0.0, -2.5, 106.0], 12.5, 1.15),
@@ -171,8 +172,8 @@ pub(crate) fn arm_nodes() -> Vec<Node> {
     ]
 }
 
-/// Shoulder (about the axes of the body), elbow (positive flexes, `y` twists the forearm), wrist and
-/// knuckles (positive flexes).
+/// Shoulder (about the axes of the body), elbow (a positive `x` flexes, `y` twists the forearm), wrist and
+/// knuckles (a positive `x` flexes).
 pub(crate) fn arm_joints() -> Vec<Joint> {
     let towards_palm = [0.0, 1.0, 0.0];
     let forwards = DORSAL.map(|x| -x);

@@ -1,8 +1,8 @@
 //! The rest-pose body as an implicit function: negative inside, positive outside.
 //!
-//! A body is a list of parts, a part a list of blobs (round cones). Unions are smooth, with a radius
-//! of their own for every blob and part, so that a toe blends into its foot but not into the other
-//! foot. The function has Lipschitz constant 1, on which the search for the surface relies.
+//! A body is a list of parts, and a part is a list of blobs (round cones). Unions are smooth; every blob and
+//! part has its own blending radius, so that a toe blends into its foot but not into the other foot. The
+//! function has the Lipschitz constant 1, which the search for the surface needs.
 
 use nalgebra::{Point3, Vector3};
 
@@ -14,14 +14,14 @@ pub(crate) type Sample = (f64, Vector3<f64>);
 pub(crate) struct Blob {
     ends: [Point3<f64>; 2],
     radii: [f64; 2],
-    /// Unit direction and the factor below one that thicknesses along it are multiplied with.
+    /// Unit direction, and the factor below one by which the thickness along it is multiplied.
     flattening: Option<(Vector3<f64>, f64)>,
-    /// How far the union with the blobs before it reaches; see [`smooth_min`].
+    /// Blending radius of the union with the blobs before it; see [`smooth_min`].
     blend: f64,
     axis: Axis,
 }
 
-/// What the distance to a round cone needs, worked out once.
+/// Precomputed values for the distance to a round cone.
 #[derive(Debug, Clone, Default)]
 struct Axis {
     start: Vector3<f64>,
@@ -48,6 +48,20 @@ impl Blob {
         blob
     }
 
+    /// A bent tube: cones from the ball `root` along the points `axis`, with the given radii.
+    pub(crate) fn tube<const N: usize>(
+        root: ([f64; 3], f64),
+        axis: [[f64; 3]; N],
+        radii: [f64; N],
+    ) -> Vec<Self> {
+        let mut last = root;
+        let cone = |(b, rb)| {
+            let (a, ra) = std::mem::replace(&mut last, (b, rb));
+            Self::cone(a, ra, b, rb)
+        };
+        axis.into_iter().zip(radii).map(cone).collect()
+    }
+
     /// The ball of radius `r` around `a`.
     pub(crate) fn ball(a: [f64; 3], r: f64) -> Self {
         Self::cone(a, r, a, r)
@@ -60,7 +74,7 @@ impl Blob {
         self
     }
 
-    /// Sets the reach of the smooth union with what comes before it in the part.
+    /// Sets the blending radius of the union with the blobs before it in the part.
     pub(crate) fn blend(mut self, reach: f64) -> Self {
         self.blend = reach;
         self
@@ -79,7 +93,7 @@ impl Blob {
         let [a, b] = self.ends.map(|p| self.stretch(p.coords));
         let [ra, rb] = self.radii;
         let length = (b - a).norm();
-        // One ball inside the other: only the larger is seen.
+        // If one ball contains the other, only the larger one counts.
         let (start, direction, length, taper) = if length <= (ra - rb).abs() {
             (if ra >= rb { a } else { b }, Vector3::zeros(), 0.0, 0.0)
         } else {
@@ -93,7 +107,7 @@ impl Blob {
         self.axis = Axis { start, direction, length, taper, slope, scale };
     }
 
-    /// Takes space to where the flattened blob is a true round cone.
+    /// Stretches space such that the flattened blob becomes a true round cone.
     #[inline]
     fn stretch(&self, p: Vector3<f64>) -> Vector3<f64> {
         match self.flattening {
@@ -102,12 +116,12 @@ impl Blob {
         }
     }
 
-    /// Vector to `p` from its foot on the axis, and the value: a lower bound of the distance to the
-    /// blob, exact unless it is flattened.
+    /// Vector to `p` from its foot on the axis, and the value: a lower bound of the distance to the blob,
+    /// exact unless the blob is flattened.
     ///
-    /// The nearest surface point lies where the normal through `p` meets the axis: a cone that
-    /// loses `sin(a)` of radius per unit of length has normals tilted by `a`, so the foot of `p`
-    /// lies `rho tan(a)` before its projection, `rho` being its distance from the axis.
+    /// The foot is the point where the surface normal through `p` meets the axis. A cone that loses `sin(a)`
+    /// of its radius per unit of length has normals tilted by `a`, so the foot lies `rho tan(a)` before the
+    /// projection of `p`, where `rho` is the distance of `p` from the axis.
     #[inline]
     fn offset_and_value(&self, p: Point3<f64>) -> (Vector3<f64>, f64) {
         let axis = &self.axis;
@@ -127,12 +141,12 @@ impl Blob {
             return (value, Vector3::zeros());
         }
         let normal = away / distance;
-        // The stretch is symmetric, so it is its own transpose in the chain rule.
+        // The stretch is symmetric: the chain rule needs no transpose.
         (value, self.stretch(normal) * self.axis.scale)
     }
 }
 
-/// How a part changes what comes before it.
+/// How a part changes the body so far.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Effect {
     Add,
@@ -144,23 +158,23 @@ enum Effect {
 pub(crate) struct Part {
     blobs: Vec<Blob>,
     effect: Effect,
-    /// Reach of the smooth union with the parts before it.
+    /// Blending radius of the union with the parts before it.
     blend: f64,
     center: Point3<f64>,
     radius: f64,
-    /// Least flattening factor.
+    /// Smallest flattening factor.
     scale: f64,
-    /// By how much blending may lower the value below that of the nearest blob.
+    /// The most by which blending lowers the value below that of the nearest blob.
     slack: f64,
 }
 
 impl Part {
-    /// A part that is added to the body with a smooth union of reach `blend`.
+    /// A part that is added to the body by a smooth union with blending radius `blend`.
     pub(crate) fn added(blend: f64, blobs: Vec<Blob>) -> Self {
         Self::new(Effect::Add, blend, blobs)
     }
 
-    /// A part that is taken away from what comes before it.
+    /// A part that is subtracted from the body so far.
     pub(crate) fn carved(blend: f64, blobs: Vec<Blob>) -> Self {
         Self::new(Effect::Carve, blend, blobs)
     }
@@ -197,8 +211,8 @@ impl Part {
         })
     }
 
-    /// Whether the part can change the value `so_far` at `p`. Skipping it otherwise is exact: beyond
-    /// its reach a smooth union returns the smaller operand.
+    /// Whether the part can change the value `so_far` at `p`. Skipping it otherwise is exact: beyond its
+    /// blending radius a smooth union returns the smaller operand.
     #[inline]
     fn matters(&self, p: Point3<f64>, so_far: f64) -> bool {
         let operand = match self.effect {
@@ -215,10 +229,10 @@ impl Part {
     }
 }
 
-/// The smaller of two values, rounded off where they differ by less than `reach`.
+/// The smaller of two values, smoothed where they differ by less than `reach`.
 ///
-/// `min(a, b) - (reach - |a - b|)^2 / (4 reach)`: continuously differentiable, exactly the smaller
-/// one outside the reach, and its gradient is a convex combination of the two.
+/// `min(a, b) - (reach - |a - b|)^2 / (4 reach)` is continuously differentiable, equals the smaller value
+/// where they differ by more, and its gradient is a convex combination of the two.
 #[inline]
 fn smooth_min(a: Sample, b: Sample, reach: f64) -> Sample {
     let (near, far) = if a.0 <= b.0 { (a, b) } else { (b, a) };
@@ -234,14 +248,14 @@ fn negated(s: Sample) -> Sample {
     (-s.0, -s.1)
 }
 
-/// By how much the smooth union of two values lies below the smaller one.
+/// The amount by which the smooth union of two values lies below the smaller one.
 #[inline]
 fn dip(a: f64, b: f64, reach: f64) -> f64 {
     let overlap = reach - (a - b).abs();
     if overlap <= 0.0 { 0.0 } else { 0.25 * overlap * overlap / reach }
 }
 
-/// A whole body, symmetric under `x -> -x`; only its half `x >= 0` is described.
+/// A whole body, symmetric under `x -> -x`. Its parts describe the half `x >= 0`.
 #[derive(Debug, Clone)]
 pub(crate) struct Body {
     parts: Vec<Part>,
@@ -286,7 +300,7 @@ impl Body {
         sum
     }
 
-    /// A ball around the body: centre in the plane of symmetry, and radius.
+    /// Centre, in the plane of symmetry, and radius of a ball around the body.
     pub(crate) fn bounding_ball(&self) -> (Point3<f64>, f64) {
         let added = || self.parts.iter().filter(|part| part.effect == Effect::Add);
         let n = added().count().max(1) as f64;
@@ -297,7 +311,7 @@ impl Body {
         (center, radius + slack)
     }
 
-    /// The point of the surface near `p`, by Newton steps along the gradient.
+    /// A point of the surface near `p`, by Newton steps along the gradient.
     pub(crate) fn project(&self, mut p: Point3<f64>, n_steps: usize, longest: f64) -> Point3<f64> {
         for _ in 0..n_steps {
             let (value, gradient) = self.sample(p);
@@ -337,12 +351,12 @@ mod tests {
     }
 
     #[test]
-    fn a_round_cone_touches_both_balls_and_the_tangent_between() {
+    fn the_value_of_a_round_cone_is_the_distance_to_its_balls_and_common_tangent() {
         let cone = Blob::cone([0.0, 0.0, 0.0], 2.0, [0.0, 0.0, 5.0], 1.0);
         let value = |x, z| cone.sample(Point3::new(x, 0.0, z)).0;
         assert!((value(0.0, -3.0) - 1.0).abs() < 1e-12);
         assert!((value(0.0, 7.0) - 1.0).abs() < 1e-12);
-        // The common tangent: sin(a) = 1/5, so the point of the axis at z sees radius 2 - z/5.
+        // The common tangent: sin(a) = 1/5, so the radius at the point z of the axis is 2 - z/5.
         let (sin, cos) = (0.2, 0.96f64.sqrt());
         let on_surface = |z: f64| (cos * (2.0 - z * sin), z + sin * (2.0 - z * sin));
         for z in [0.0, 1.0, 2.5, 5.0] {
@@ -354,7 +368,7 @@ mod tests {
     }
 
     #[test]
-    fn gradient_is_the_derivative_and_never_longer_than_one() {
+    fn the_gradient_is_the_derivative_and_at_most_one() {
         let (body, h) = (body(), 1e-6);
         for p in grid() {
             let (_, gradient) = body.sample(p);
@@ -369,7 +383,7 @@ mod tests {
     }
 
     #[test]
-    fn skipping_far_parts_changes_nothing() {
+    fn skipping_distant_parts_changes_nothing() {
         let body = body();
         let mut everything = body.clone();
         for part in &mut everything.parts {
@@ -382,7 +396,7 @@ mod tests {
     }
 
     #[test]
-    fn the_bounding_ball_holds_the_body_and_projection_finds_it() {
+    fn the_bounding_ball_contains_the_body_and_projection_reaches_it() {
         let body = body();
         let (center, radius) = body.bounding_ball();
         for p in grid().filter(|p| (p - center).norm() > radius) {

@@ -1,22 +1,21 @@
-//! Datasets of labelled shapes, made on the spot.
+//! Generated datasets of labelled shapes.
 //!
 //! `ArticulatedOptions` -> **datasets** -> `LabeledShape` (`mesh::TriMesh`, name, class) -> `experiments`
 //!
-//! [`articulated()`] gives thirty closed surfaces of three families, cats, centaurs and men, in different
-//! poses: a stand-in for scanned datasets that needs no download. A shape is made in steps, one module
-//! each:
+//! [`articulated()`] generates thirty closed surfaces of three families, cats, centaurs and men, in different
+//! poses. They stand in for scanned datasets and need no download. A shape is made in steps, one module each:
 //!
 //! ```text
 //! cat | centaur | david   a body (implicit), a skeleton, typical poses
-//!   -> extract            the rest surface, on a lattice placed at random
+//!   -> extract            the rest surface, on a randomly placed lattice
 //!   -> simplify, relax    the wanted number of vertices, well-shaped triangles
-//!   -> pose, clearance    bent along the skeleton, lengths kept, limbs clear of each other
+//!   -> pose, clearance    the surface bent along the skeleton, without intersecting limbs
 //!   -> shape              vertices and faces in random order
 //! ```
 //!
-//! **Invariant.** The same options give the same bytes on any machine and any number of threads: every
-//! shape draws from random streams of its own, and all arithmetic is made of operations that IEEE 754
-//! fixes. Nothing here knows a distance, an embedding or an algorithm that will see the shapes.
+//! **Invariant.** The same options give the same bytes on any machine and any number of threads: every shape
+//! has its own random streams, and all arithmetic consists of operations that IEEE 754 defines exactly.
+//! Nothing here depends on distances, embeddings or the algorithms that will use the shapes.
 
 mod articulated;
 mod cases;

@@ -1,10 +1,10 @@
-//! What the description of a family consists of.
+//! The description of a family.
 
 use crate::implicit::Body;
 use crate::pose::Pose;
 use crate::skeleton::Skeleton;
 
-/// A body at rest, its skeleton, and what it can do.
+/// A body at rest, its skeleton and its poses.
 #[derive(Debug, Clone)]
 pub(crate) struct Model {
     pub(crate) body: Body,

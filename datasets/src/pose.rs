@@ -1,4 +1,4 @@
-//! Bending a body: turns of joints in, positions of points out.
+//! Bending a body: from turns of joints to positions of points.
 
 use nalgebra::{Matrix3, Point3, Vector3};
 
@@ -6,8 +6,8 @@ use crate::skeleton::{Chain, JointId, JointPair, Side, Skeleton};
 use crate::stream::Stream;
 use crate::trig::rotation;
 
-/// A turn of a joint in degrees: about its y axis first, then x, then z. For the right side it is
-/// mirrored, so that the same numbers give the mirror image.
+/// A rotation of a joint in degrees: about its y axis first, then x, then z. It is mirrored for the right
+/// side, so that the same numbers give the mirror image.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct Turn {
     pub(crate) x: f64,
@@ -20,16 +20,21 @@ pub(crate) fn turn(x: f64, y: f64, z: f64) -> Turn {
     Turn { x, y, z }
 }
 
+/// A turn about `x` alone.
+pub(crate) fn flex(x: f64) -> Turn {
+    turn(x, 0.0, 0.0)
+}
+
 /// The turns of all joints of one skeleton.
 #[derive(Debug, Clone)]
 pub(crate) struct Pose {
-    /// Turn of the whole body about its first node.
+    /// Rotation of the whole body about its first node.
     pub(crate) root: Turn,
     turns: Vec<Vec<Turn>>,
 }
 
 impl Pose {
-    /// Nothing turned.
+    /// The rest pose.
     pub(crate) fn rest(skeleton: &Skeleton) -> Self {
         let turns = skeleton.chains.iter().map(|c| vec![Turn::default(); c.joints.len()]).collect();
         Self { root: Turn::default(), turns }
@@ -51,13 +56,31 @@ impl Pose {
         self.set(left, turns[0]).set(right, turns[1])
     }
 
-    /// Sets both sides alike.
+    /// Sets both sides to the same turn.
     pub(crate) fn same(self, pair: JointPair, turn: Turn) -> Self {
         self.both(pair, [turn; 2])
     }
 
-    /// A random variation: every turn 15 % more or less, then the play of every joint, then left and
-    /// right exchanged half of the time.
+    /// Flexes a pair of legs from the trunk down, by angles for the left and the right one. The topmost
+    /// joints also turn by `spread` about the y axis.
+    pub(crate) fn legs<const N: usize>(
+        self,
+        joints: [JointPair; N],
+        spread: f64,
+        angles: [[f64; N]; 2],
+    ) -> Self {
+        (0..N).fold(self, |pose, i| {
+            pose.both(joints[i], angles.map(|leg| turn(leg[i], if i == 0 { spread } else { 0.0 }, 0.0)))
+        })
+    }
+
+    /// Curls a tail, from root to tip: upwards and to its left.
+    pub(crate) fn tail<const N: usize>(self, joints: [JointId; N], up: [f64; N], left: [f64; N]) -> Self {
+        (0..N).fold(self, |pose, i| pose.set(joints[i], turn(up[i], 0.0, -left[i])))
+    }
+
+    /// A random variation: every turn is scaled by up to 15 %, the play of every joint is added, and half of
+    /// the time left and right are exchanged.
     pub(crate) fn varied(&self, skeleton: &Skeleton, stream: &mut Stream) -> Self {
         let mut pose = self.clone();
         for (chain, turns) in skeleton.chains.iter().zip(&mut pose.turns) {
@@ -110,8 +133,8 @@ pub(crate) struct PosedSkeleton<'a> {
     motions: Vec<Vec<Motion>>,
 }
 
-/// Steps along a chain. Between them motions are interpolated linearly, which at the five degrees a
-/// step of the sharpest bends shortens lengths by 1e-3.
+/// Steps along a chain. Between them, motions are interpolated linearly. The sharpest bends turn by five
+/// degrees per step, where this shortens lengths by 1e-3.
 const N_STEPS: usize = 256;
 
 impl<'a> PosedSkeleton<'a> {
@@ -132,18 +155,18 @@ impl<'a> PosedSkeleton<'a> {
         Self { skeleton, motions }
     }
 
-    /// The skeleton that is bent.
+    /// The skeleton at rest.
     pub(crate) fn skeleton(&self) -> &'a Skeleton {
         self.skeleton
     }
 
-    /// Where the point of a chain's axis at length `arc` goes.
+    /// The posed point of a chain's axis at length `arc`.
     pub(crate) fn axis_point(&self, chain: usize, arc: f64) -> Point3<f64> {
         let bones = &self.skeleton.chains[chain];
         interpolate(&self.motions[chain], arc / bones.length()).apply(axis_point(bones, arc))
     }
 
-    /// Where the rest-pose point `p` goes.
+    /// The posed position of the point `p` of the body at rest.
     pub(crate) fn deform(&self, p: Point3<f64>) -> Point3<f64> {
         let mut sum = Vector3::zeros();
         let mut total = 0.0;
@@ -167,8 +190,9 @@ fn interpolate(motions: &[Motion], fraction: f64) -> Motion {
 
 /// Motions along a chain whose start moves by `base`.
 ///
-/// The rotation at arc length `s` is the base followed by every joint's turn times the share that lies
-/// before `s`; the axis is the integral of the rotated rest axis, so its length is kept exactly.
+/// The rotation at arc length `s` is that of the base, followed by the turn of every joint times the share of
+/// the joint's interval before `s`. The axis is the integral of the rotated rest axis, which keeps its length
+/// exactly.
 fn bend(chain: &Chain, turns: &[Turn], base: Motion) -> Vec<Motion> {
     let mirror = match chain.side {
         Side::Left => 1.0,
@@ -201,7 +225,7 @@ fn bend(chain: &Chain, turns: &[Turn], base: Motion) -> Vec<Motion> {
     motions
 }
 
-/// Zero before the interval, one after it, with zero slope at both ends.
+/// Rises from zero to one for `t` in 0..=1, with zero slope at both ends.
 fn smooth_step(t: f64) -> f64 {
     let t = t.clamp(0.0, 1.0);
     t * t * (3.0 - 2.0 * t)
@@ -237,7 +261,7 @@ mod tests {
     }
 
     #[test]
-    fn the_rest_pose_moves_nothing() {
+    fn the_rest_pose_is_the_identity() {
         let skeleton = skeleton();
         let posed = PosedSkeleton::new(&skeleton, &Pose::rest(&skeleton));
         for p in [[0.0, 0.0, 0.0], [1.5, -2.0, 33.0], [-30.0, 1.0, 30.5]].map(Point3::from) {
@@ -246,7 +270,7 @@ mod tests {
     }
 
     #[test]
-    fn a_bent_axis_keeps_its_length_and_turns_as_told() {
+    fn a_bent_axis_keeps_its_length_and_turns_by_the_given_angle() {
         let skeleton = skeleton();
         let posed = PosedSkeleton::new(&skeleton, &Pose::rest(&skeleton).set(TRUNK, turn(90.0, 0.0, 0.0)));
         let axis: Vec<_> = (0..=4000)
@@ -262,7 +286,7 @@ mod tests {
         assert!((length - 40.0).abs() < 0.04, "length {length}");
         let end = (axis[4000] - axis[3000]).normalize();
         assert!((end - Vector3::new(0.0, -1.0, 0.0)).norm() < 1e-9, "{end}");
-        // A symmetric bend spread over a length of 10 looks like a sharp one from afar.
+        // Far away, a symmetric bend over a length of 10 is close to a sharp one.
         assert!(axis[4000].y < -30.0 && axis[4000].y > -32.0);
     }
 
@@ -294,7 +318,7 @@ mod tests {
     }
 
     #[test]
-    fn variations_differ_and_repeat() {
+    fn variations_are_determined_by_the_seed() {
         let skeleton = skeleton();
         let pose = Pose::rest(&skeleton).set(TRUNK, turn(40.0, 0.0, 0.0));
         let varied = |seed| pose.varied(&skeleton, &mut Stream::new(seed, 0, 1, Purpose::Pose)).turns;

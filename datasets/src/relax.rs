@@ -1,4 +1,4 @@
-//! Better triangles on the same surface: edge flips, tangential smoothing, projection.
+//! Improvement of triangles on a surface: edge flips, tangential smoothing, projection.
 
 use nalgebra::{Point3, Vector3};
 use rayon::prelude::*;
@@ -7,12 +7,12 @@ use crate::corner_table::{DEAD, next, prev};
 use crate::implicit::Body;
 use crate::simplify::Surface;
 
-/// Vertices a task of the thread pool works on.
+/// Vertices per task of the thread pool.
 const CHUNK: usize = 1024;
-/// Flips that straighten a dihedral angle sharper than this cosine would cut a ridge off.
+/// Smallest cosine of a dihedral angle, before and after a flip; beyond it, a flip would cut off a ridge.
 const RIDGE_COSINE: f64 = 0.7;
 
-/// Repeats flips and smoothing `n_rounds` times; vertices end on the body's surface.
+/// Alternates flips and smoothing for `n_rounds` rounds; vertices end on the surface of the body.
 pub(crate) fn relax(surface: &mut Surface, body: &Body, n_rounds: usize) {
     flip_to_delaunay(surface);
     for _ in 0..n_rounds {
@@ -21,7 +21,7 @@ pub(crate) fn relax(surface: &mut Surface, body: &Body, n_rounds: usize) {
     }
 }
 
-/// Flips edges whose opposite angles sum to more than 180 degrees, until few are left.
+/// Flips edges whose opposite angles add up to more than 180 degrees, in a few sweeps.
 fn flip_to_delaunay(surface: &mut Surface) {
     const N_SWEEPS: usize = 3;
     for _ in 0..N_SWEEPS {
@@ -63,10 +63,10 @@ fn cotangent(apex: Point3<f64>, a: Point3<f64>, b: Point3<f64>) -> f64 {
     x.dot(&y) / x.cross(&y).norm().max(1e-300)
 }
 
-/// Moves each vertex in its tangent plane towards the centre of its neighbours, then back onto the
-/// surface. Neighbours pull in proportion to the length of their edge over its grain, so that edges
-/// approach lengths proportional to the grain. All vertices move at once: the result does not depend
-/// on the order or on the number of threads.
+/// Moves each vertex in its tangent plane towards the weighted centre of its neighbours, then back onto the
+/// surface. The weights are proportional to the length of an edge over its grain, so that edges approach
+/// lengths proportional to the grain. All vertices move at once, so the result does not depend on their order
+/// or on the number of threads.
 fn smooth(surface: &mut Surface, body: &Body) {
     let (table, old, grain) = (&surface.table, &surface.positions, &surface.grain);
     let target = |v: usize| {
@@ -85,7 +85,7 @@ fn smooth(surface: &mut Surface, body: &Body) {
         let squared = gradient.norm_squared().max(1e-12);
         let step = pull / total.max(1e-300);
         let tangential = step - gradient * (step.dot(&gradient) / squared);
-        // The value pulls back what the last round's curvature left over.
+        // The value corrects what the curvature caused in the last round.
         let moved = old[v] + tangential * 0.6 - gradient * (value / squared).clamp(-shortest, shortest);
         body.project(moved, 1, shortest)
     };

@@ -3,7 +3,7 @@
 use mesh::TriMesh;
 use nalgebra::{Point3, Vector3};
 use rayon::prelude::*;
-use surface::VertexId;
+use surface::{VertexId, components_of_faces};
 
 use crate::corner_table::CornerTable;
 use crate::extract::{Lattice, RawSurface, extract};
@@ -13,23 +13,22 @@ use crate::relax::relax;
 use crate::simplify::{Surface, simplify};
 use crate::stream::Stream;
 
-/// Vertices of a lattice surface per unit of area over squared spacing, at least.
+/// Lower bound of the number of vertices of a lattice surface, per area over squared spacing.
 const CROSSINGS: f64 = 1.35;
-/// Vertices extracted for every vertex wanted: simplification needs some to choose from.
+/// Extracted vertices per requested vertex, so that simplification has a choice.
 const SURPLUS: f64 = 1.5;
-/// Lattices tried, each finer than the one before.
+/// Most lattices to try, each finer than the one before.
 const N_ATTEMPTS: usize = 8;
 const REFINEMENT: f64 = 0.9;
-/// How far edge lengths follow what the skeleton asks for: 0 would make all alike, 1 makes hands and faces
-/// as fine as they deserve. Drawn anew for every shape, for shapes that are scanned or simplified one by
-/// one are denser here in one and there in another. In this range the mean distance between two vertices
-/// exceeds that between two points of the surface by about as much as on the low-resolution TOSCA shapes
-/// of the same families, where it is 6 to 15 %.
+/// Range of the influence of the skeleton's grain on edge lengths: 0 makes all edges equal, 1 follows the
+/// grain. It is drawn for every shape, since the density of scanned shapes differs from one to the next. In
+/// this range, the mean distance between two vertices exceeds that between two points of the surface by about
+/// as much as on the low-resolution TOSCA shapes of the same families, 6 to 15 %.
 const GRADING: [f64; 2] = [0.25, 0.6];
 /// Rounds of flips and smoothing.
 const N_ROUNDS: usize = 6;
 
-/// The rest surface with `n_vertices`, or `None` if no lattice gives a sphere (in topology) of that size.
+/// The rest surface with `n_vertices` vertices; `None` if no lattice gives a topological sphere of that size.
 pub(crate) fn rest_surface(model: &Model, n_vertices: usize, stream: &mut Stream) -> Option<Surface> {
     let dense = (CROSSINGS * model.area / (SURPLUS * n_vertices as f64)).sqrt();
     let mut spacing = model.spacing.min(dense);
@@ -48,15 +47,12 @@ pub(crate) fn rest_surface(model: &Model, n_vertices: usize, stream: &mut Stream
 
 fn sphere(model: &Model, raw: RawSurface, grading: f64, n_vertices: usize) -> Option<Surface> {
     let n_raw = raw.positions.len();
-    // On a closed surface, Euler's formula of the sphere reads F = 2 V - 4; being connected is checked
-    // by walking.
-    if n_raw < n_vertices || raw.faces.len() + 4 != 2 * n_raw {
+    // For a closed surface, Euler's formula of the sphere is F = 2 V - 4.
+    let is_sphere = raw.faces.len() + 4 == 2 * n_raw && components_of_faces(n_raw, &raw.faces).count == 1;
+    if n_raw < n_vertices || !is_sphere {
         return None;
     }
     let table = CornerTable::new(n_raw, &raw.faces)?;
-    if !table.is_connected() {
-        return None;
-    }
     let grain = raw.positions.par_iter().map(|&p| 1.0 + grading * (model.skeleton.grain(p) - 1.0)).collect();
     let mut surface = Surface { table, positions: raw.positions, grain };
     if simplify(&mut surface, n_vertices) != n_vertices {
@@ -67,7 +63,7 @@ fn sphere(model: &Model, raw: RawSurface, grading: f64, n_vertices: usize) -> Op
     Some(surface)
 }
 
-/// The surface bent into a pose, scaled and set on the ground.
+/// The positions of the surface in a pose, scaled and standing on the ground.
 pub(crate) fn posed_positions(surface: &Surface, posed: &PosedSkeleton, scale: f64) -> Vec<Point3<f64>> {
     let mut moved: Vec<Point3<f64>> =
         surface.positions.par_iter().map(|&p| posed.deform(p) * scale).collect();
@@ -76,7 +72,7 @@ pub(crate) fn posed_positions(surface: &Surface, posed: &PosedSkeleton, scale: f
     moved
 }
 
-/// A mesh of the surface with the given positions, vertices and faces in random order.
+/// A mesh of the surface with the given positions and with vertices and faces in random order.
 pub(crate) fn shuffled(surface: &Surface, positions: &[Point3<f64>], stream: &mut Stream) -> TriMesh {
     let order = stream.permutation(positions.len());
     let mut mesh = TriMesh { positions: vec![Point3::origin(); positions.len()], faces: Vec::new() };

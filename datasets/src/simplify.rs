@@ -1,4 +1,4 @@
-//! From many badly shaped triangles to a wanted number of vertices.
+//! Simplification to a given number of vertices.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -7,37 +7,37 @@ use nalgebra::Point3;
 
 use crate::corner_table::{CornerTable, next, prev};
 
-/// A closed surface being worked on.
+/// A closed surface under construction.
 #[derive(Debug, Clone)]
 pub(crate) struct Surface {
     pub(crate) table: CornerTable,
     pub(crate) positions: Vec<Point3<f64>>,
-    /// Wanted edge length at each vertex, up to one common factor.
+    /// Target edge length at each vertex, up to a common factor.
     pub(crate) grain: Vec<f64>,
 }
 
-/// Least cosine between the normals of a triangle before and after an edit.
+/// Smallest cosine between the normals of a triangle before and after a collapse.
 const LEAST_COSINE: f64 = 0.2;
 
-/// A vertex that gathers more neighbours than this blocks its surroundings.
+/// Most neighbours of a vertex after a collapse; with more, it would block further collapses.
 const MOST_NEIGHBORS: usize = 12;
 
-/// Collapses edges, the shortest for their grain first, until `n_vertices` are left.
+/// Collapses edges, the shortest relative to their grain first, until `n_vertices` vertices are left.
 ///
-/// A vertex is merged into its neighbour without moving it, so what remains lies on the surface. An
-/// edge is left alone when the collapse would tear the manifold or turn a triangle over. Edges far
-/// shorter than those of the result go first in a few sweeps, the rest by a queue: `O(m)` for the bulk
-/// and `O(k log k)` for the last. Returns the number of vertices left, more than wanted only when no
-/// edge can be collapsed any more.
+/// A vertex is merged into its neighbour without moving it, so that all vertices stay on the surface. An edge
+/// stays if its collapse would break the manifold or invert a triangle. Edges far shorter than those of the
+/// result are collapsed in a few sweeps, `O(m)` for the bulk, the others in the order of a queue, `O(k log
+/// k)` for the rest. Returns the number of vertices left, which exceeds `n_vertices` only if no other edge
+/// can be collapsed.
 pub(crate) fn simplify(surface: &mut Surface, n_vertices: usize) -> usize {
     let mut n_left = (0..surface.positions.len() as u32).filter(|&v| surface.table.is_alive(v)).count();
-    // Equilateral triangles of cost c cover 2 sqrt(3) c grains^2 a vertex: the cost to end up with.
+    // The cost c of the final edges: equilateral triangles cover 2 sqrt(3) c grains^2 per vertex.
     let final_cost = surface.area_in_grains() / (12f64.sqrt() * n_vertices as f64);
     for share in [1.0 / 64.0, 1.0 / 24.0, 1.0 / 10.0, 0.2] {
         n_left = sweep(surface, final_cost * share, n_left, n_vertices);
     }
     while n_left > n_vertices {
-        // Edges refused in one round may have become possible by the next.
+        // An edge that could not be collapsed in one round may be possible in the next.
         let n_before = n_left;
         n_left = collapse_by_queue(surface, n_left, n_vertices);
         if n_left == n_before {
@@ -47,10 +47,10 @@ pub(crate) fn simplify(surface: &mut Surface, n_vertices: usize) -> usize {
     n_left
 }
 
-/// Collapses edges cheaper than `limit` in the order of their vertices.
+/// Collapses edges with a cost below `limit` in the order of their vertices.
 ///
-/// A vertex into which another was merged stays until the next sweep. Otherwise a whole region of
-/// short edges would run together, one vertex after the other, into a single one.
+/// A vertex into which another was merged stays until the next sweep. Otherwise a whole region of short edges
+/// would collapse into a single vertex.
 fn sweep(surface: &mut Surface, limit: f64, mut n_left: usize, n_vertices: usize) -> usize {
     let mut neighbors = Vec::new();
     let mut stays = vec![false; surface.positions.len()];
@@ -84,7 +84,7 @@ fn collapse_by_queue(surface: &mut Surface, mut n_left: usize, n_vertices: usize
     while n_left > n_vertices
         && let Some(Reverse((_, u, w))) = queue.pop()
     {
-        // An edge between two living vertices is never removed by collapsing another one.
+        // Collapses never remove an edge between two living vertices.
         if !(surface.table.is_alive(u) && surface.table.is_alive(w)) {
             continue;
         }
@@ -102,7 +102,7 @@ fn collapse_by_queue(surface: &mut Surface, mut n_left: usize, n_vertices: usize
 }
 
 impl Surface {
-    /// Renumbers vertices and faces so that no removed ones are left.
+    /// Renumbers vertices and faces without the removed ones.
     pub(crate) fn compact(&mut self) {
         let alive: Vec<usize> =
             (0..self.positions.len()).filter(|&v| self.table.is_alive(v as u32)).collect();
@@ -111,7 +111,7 @@ impl Surface {
         self.table = self.table.compacted();
     }
 
-    /// Area of the surface measured in squared grains.
+    /// Area of the surface in squared grains.
     fn area_in_grains(&self) -> f64 {
         let at = |v: u32| self.positions[v as usize];
         let area = |[a, b, c]: [u32; 3]| {
@@ -121,20 +121,20 @@ impl Surface {
         self.table.faces().map(area).sum()
     }
 
-    /// Squared length of an edge over the square of twice its grain.
+    /// Squared length of an edge over the squared sum of the grains of its ends.
     fn cost(&self, u: u32, w: u32) -> f64 {
         let (a, b) = (u as usize, w as usize);
         let grain = self.grain[a] + self.grain[b];
         (self.positions[a] - self.positions[b]).norm_squared() / (grain * grain)
     }
 
-    /// Queue entry of an edge: its cost as bits, which for non-negative floats order like the numbers,
-    /// then its ends.
+    /// Queue entry of an edge: the bits of its cost, which order like the numbers since they are not
+    /// negative, then its ends.
     fn entry(&self, u: u32, w: u32) -> (u64, u32, u32) {
         (self.cost(u, w).to_bits(), u, w)
     }
 
-    /// Merges `gone` into `kept` if that is possible, and says whether it was.
+    /// Merges `gone` into `kept` if possible; returns whether it was.
     fn collapse(&mut self, gone: u32, kept: u32) -> bool {
         let Some(c) = self.table.facing(gone, kept) else { return false };
         let n_neighbors = self.table.neighbors(gone).count() + self.table.neighbors(kept).count() - 4;
@@ -146,7 +146,7 @@ impl Surface {
         possible
     }
 
-    /// Whether the triangles around `gone` keep their side when it moves to `kept`.
+    /// Whether no triangle around `gone` is inverted when it moves to `kept`.
     fn stays_unfolded(&self, gone: u32, kept: u32) -> bool {
         let at = |v: u32| self.positions[v as usize];
         self.table.around(gone).all(|c| {
@@ -167,7 +167,7 @@ mod tests {
 
     use super::*;
 
-    /// A ball's surface as a grid of latitudes and longitudes: crowded at the poles.
+    /// A sphere as a grid of latitudes and longitudes, dense at the poles.
     fn globe(n: u32) -> Surface {
         let pole = n * (n - 1);
         let at = |i: u32, j: u32| (i - 1) * n + j % n;
@@ -194,7 +194,7 @@ mod tests {
     }
 
     #[test]
-    fn the_wanted_number_is_met_and_the_rest_stays_a_sphere() {
+    fn the_result_is_a_sphere_with_exactly_the_requested_number_of_vertices() {
         for n_vertices in [2000, 500, 60, 4] {
             let mut surface = globe(50);
             assert_eq!(simplify(&mut surface, n_vertices), n_vertices);
@@ -207,7 +207,7 @@ mod tests {
     }
 
     #[test]
-    fn edges_come_out_alike_where_the_grain_is_and_finer_where_it_is_finer() {
+    fn half_the_grain_gives_four_times_the_vertices() {
         let mut surface = globe(60);
         for (grain, p) in surface.grain.iter_mut().zip(&surface.positions) {
             *grain = if p.z > 0.0 { 1.0 } else { 0.5 };
@@ -220,7 +220,7 @@ mod tests {
     }
 
     #[test]
-    fn more_than_there_are_cannot_be_had() {
+    fn a_larger_number_than_there_are_changes_nothing() {
         let mut surface = globe(10);
         let n = surface.positions.len();
         assert_eq!(simplify(&mut surface, n + 5), n);

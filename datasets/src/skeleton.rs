@@ -1,4 +1,4 @@
-//! Chains of bones through the rest-pose body, and where a point of the body sits along them.
+//! Chains of bones in the body at rest, and the position of a point of the body along them.
 
 use nalgebra::{Matrix3, Point3, Vector3};
 
@@ -6,19 +6,19 @@ use nalgebra::{Matrix3, Point3, Vector3};
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Node {
     pub(crate) at: Point3<f64>,
-    /// Rough distance from the axis to the skin: thick chains reach farther than thin ones.
+    /// Rough distance from the axis to the skin; it determines how far the chain reaches.
     pub(crate) radius: f64,
-    /// Wanted edge length of triangles around here, up to a common factor.
+    /// Target edge length of the triangles nearby, up to a common factor.
     pub(crate) grain: f64,
 }
 
-/// Shorthand for tables of nodes.
+/// Short constructor for tables of nodes.
 pub(crate) fn node(at: [f64; 3], radius: f64, grain: f64) -> Node {
     Node { at: at.into(), radius, grain }
 }
 
 impl Node {
-    /// The node scaled about the origin, then shifted; its grain stays.
+    /// The node scaled about the origin, then shifted, with the same grain.
     pub(crate) fn moved(self, scale: f64, offset: [f64; 3]) -> Self {
         let at = Point3::from(self.at.coords * scale + Vector3::from(offset));
         Self { at, radius: self.radius * scale, grain: self.grain }
@@ -27,23 +27,23 @@ impl Node {
 
 /// A place where a chain bends.
 ///
-/// The turn is spread over an interval of the axis: the limb becomes a bent tube, whose axis keeps its
-/// length, rather than a folded one.
+/// The rotation is spread over an interval of the axis, so that the limb becomes a bent tube whose axis keeps
+/// its length.
 #[derive(Debug, Clone)]
 pub(crate) struct Joint {
-    /// Node around which it bends.
+    /// Node at its centre.
     pub(crate) node: usize,
-    /// Length of axis before the node that takes part.
+    /// Length of the interval before the node.
     pub(crate) before: f64,
-    /// Length of axis after the node that takes part.
+    /// Length of the interval after the node.
     pub(crate) after: f64,
-    /// Columns are the axes of its turns.
+    /// Columns are the axes of rotation.
     pub(crate) frame: Matrix3<f64>,
-    /// Random play about each axis, in degrees either way.
+    /// Random play about each axis, in degrees in either direction.
     pub(crate) play: [f64; 3],
 }
 
-/// Names a joint of a skeleton.
+/// Identifies a joint of a skeleton.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct JointId {
     pub(crate) chain: usize,
@@ -53,16 +53,27 @@ pub(crate) struct JointId {
 /// The same joint on the left (`x > 0`) and on the right.
 pub(crate) type JointPair = [JointId; 2];
 
-/// Bones in a row: an arm, a spine.
+/// The first joints of a chain.
+pub(crate) fn joints<const N: usize>(chain: usize) -> [JointId; N] {
+    std::array::from_fn(|joint| JointId { chain, joint })
+}
+
+/// The first joints of a chain and of its mirror image.
+pub(crate) fn joint_pairs<const N: usize>(pair: [usize; 2]) -> [JointPair; N] {
+    std::array::from_fn(|joint| pair.map(|chain| JointId { chain, joint }))
+}
+
+/// A sequence of bones, such as an arm or a spine.
 #[derive(Debug, Clone)]
 pub(crate) struct Chain {
-    /// Chain and length along it where this one is fixed; its parent comes earlier in the skeleton.
+    /// The chain to which this one is attached, and the length along it; parents come earlier in the
+    /// skeleton.
     pub(crate) parent: Option<(usize, f64)>,
     pub(crate) nodes: Vec<Node>,
     /// Length of the axis from the first node to each node.
     pub(crate) arcs: Vec<f64>,
     pub(crate) joints: Vec<Joint>,
-    /// Whether it is the mirror image, under `x -> -x`, of the chain its joints were described for.
+    /// Whether it is the mirror image, under `x -> -x`, of the chain for which its joints were described.
     pub(crate) side: Side,
 }
 
@@ -72,8 +83,7 @@ impl Chain {
         self.arcs[self.arcs.len() - 1]
     }
 
-    /// The bone at length `arc` along the axis, by the node it begins with, and the share of it before
-    /// that place.
+    /// First node of the bone at length `arc` along the axis, and the share of the bone before that place.
     pub(crate) fn bone_at(&self, arc: f64) -> (usize, f64) {
         let i = self.arcs[1..self.arcs.len() - 1].partition_point(|&a| a <= arc);
         let t = (arc - self.arcs[i]) / (self.arcs[i + 1] - self.arcs[i]);
@@ -95,18 +105,18 @@ pub(crate) struct Skeleton {
     pub(crate) chains: Vec<Chain>,
 }
 
-/// Position of a point along a chain and how much it belongs to it.
+/// Position of a point along a chain, and its weight.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Membership {
     /// Length along the axis.
     pub(crate) arc: f64,
-    /// Share, not normalised over the chains.
+    /// Not normalised over the chains.
     pub(crate) weight: f64,
     pub(crate) grain: f64,
 }
 
 impl Skeleton {
-    /// Adds a chain fixed at node `parent.1` of chain `parent.0`, with its joints.
+    /// Adds a chain attached to node `parent.1` of chain `parent.0`, with its joints.
     pub(crate) fn chain(
         &mut self,
         parent: Option<(usize, usize)>,
@@ -139,10 +149,28 @@ impl Skeleton {
         [left, left + 1]
     }
 
-    /// How `p` belongs to each chain.
+    /// Adds a tail attached to node `parent.1` of chain `parent.0`: from the node `root` along the points
+    /// `axis` with the given `grains`, with a joint at each of the first nodes of `axis` that has the given
+    /// play.
+    pub(crate) fn tail<const N: usize>(
+        &mut self,
+        parent: (usize, usize),
+        root: Node,
+        axis: [[f64; 3]; N],
+        radius: f64,
+        grains: [f64; N],
+        plays: &[[f64; 3]],
+    ) -> usize {
+        let along = axis.into_iter().zip(grains).map(|(at, grain)| node(at, radius, grain));
+        let nodes = std::iter::once(root).chain(along).collect();
+        let joints = (1..).zip(plays).map(|(i, &play)| Joint::ball(i, 7.0, 9.0, play)).collect();
+        self.chain(Some(parent), nodes, joints)
+    }
+
+    /// The membership of `p` in each chain.
     ///
-    /// Each segment claims `p` with the eighth power of `radius / distance`; claims of the segments of
-    /// a chain add up and average their arc lengths, so that nothing jumps where limbs or segments
+    /// The weight of a segment is the eighth power of `radius / distance`. The weights of the segments of a
+    /// chain add up and average their arc lengths, so that everything is continuous where limbs or segments
     /// meet.
     pub(crate) fn memberships(&self, p: Point3<f64>) -> impl Iterator<Item = Membership> + '_ {
         self.chains.iter().map(move |chain| {
@@ -164,7 +192,7 @@ impl Skeleton {
         })
     }
 
-    /// Wanted edge length at `p`, up to a common factor.
+    /// Target edge length at `p`, up to a common factor.
     pub(crate) fn grain(&self, p: Point3<f64>) -> f64 {
         let (sum, weight) = self
             .memberships(p)
@@ -174,12 +202,17 @@ impl Skeleton {
 }
 
 impl Joint {
-    /// A joint that turns about the axes of the body.
+    /// A joint that rotates about the axes of the body.
     pub(crate) fn ball(node: usize, before: f64, after: f64, play: [f64; 3]) -> Self {
         Self { node, before, after, frame: Matrix3::identity(), play }
     }
 
-    /// A joint that flexes about `axis`; its second axis is the limb's direction `along`.
+    /// A joint of a leg that points down; it flexes about the x axis.
+    pub(crate) fn leg(node: usize, before: f64, after: f64, play: f64) -> Self {
+        Self::hinge(node, before, after, [1.0, 0.0, 0.0], [0.0, 0.0, -1.0], play)
+    }
+
+    /// A joint that flexes about `axis`; its second axis is the direction `along` of the limb.
     pub(crate) fn hinge(
         node: usize,
         before: f64,
@@ -201,7 +234,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn points_belong_to_the_nearest_chain_at_their_arc_length() {
+    fn points_belong_to_the_nearest_chain_at_the_right_arc_length() {
         let mut skeleton = Skeleton::default();
         let trunk = skeleton.chain(
             None,

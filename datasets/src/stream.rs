@@ -6,19 +6,19 @@ use rand_chacha::rand_core::{Rng, SeedableRng};
 use crate::trig::rotation;
 use nalgebra::Matrix3;
 
-/// What a stream of random numbers is for. Each purpose draws from its own stream, so that asking
-/// for more vertices changes no pose.
+/// The purpose of a stream of random numbers. Each purpose has its own stream, so that for example the number
+/// of vertices does not affect poses.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Purpose {
-    /// The angles of the joints.
+    /// Angles of joints.
     Pose,
-    /// The lattice from which the surface is extracted.
+    /// Placement of the lattice from which the surface is extracted.
     Lattice,
-    /// The order of vertices and faces.
+    /// Order of vertices and faces.
     Numbering,
 }
 
-/// A stream of random numbers that depends on nothing but seed, family, pose and purpose.
+/// A stream of random numbers that depends only on seed, family, pose and purpose.
 #[derive(Debug, Clone)]
 pub(crate) struct Stream(ChaCha8Rng);
 
@@ -36,17 +36,17 @@ impl Stream {
 
     /// Uniform in `[lo, hi)`.
     pub(crate) fn uniform(&mut self, lo: f64, hi: f64) -> f64 {
-        // 53 random bits are exactly a double in [0, 1).
+        // 53 random bits give a double in [0, 1) exactly.
         let unit = (self.0.next_u64() >> 11) as f64 / (1u64 << 53) as f64;
         lo + (hi - lo) * unit
     }
 
-    /// Uniform in `0..bound`; the bias of at most `bound / 2^64` is of no account here.
+    /// Uniform in `0..bound`, with a negligible bias of at most `bound / 2^64`.
     pub(crate) fn below(&mut self, bound: usize) -> usize {
         ((u128::from(self.0.next_u64()) * bound as u128) >> 64) as usize
     }
 
-    /// A random order of `0..n`.
+    /// A random permutation of `0..n`.
     pub(crate) fn permutation(&mut self, n: usize) -> Vec<u32> {
         let mut order: Vec<u32> = (0..n as u32).collect();
         for i in (1..n).rev() {
@@ -55,7 +55,7 @@ impl Stream {
         order
     }
 
-    /// A random rotation; not exactly uniform, merely different every time.
+    /// A random rotation, not exactly uniform.
     pub(crate) fn rotation(&mut self) -> Matrix3<f64> {
         let [x, y, z] = [(); 3].map(|()| self.uniform(-180.0, 180.0));
         rotation(x, y, z)
@@ -67,7 +67,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn streams_are_independent_and_repeatable() {
+    fn streams_differ_and_are_reproducible() {
         let draw = |family, pose, purpose| Stream::new(7, family, pose, purpose).uniform(0.0, 1.0);
         let all = [
             draw(0, 0, Purpose::Pose),
@@ -83,7 +83,7 @@ mod tests {
     }
 
     #[test]
-    fn a_permutation_holds_every_number_once() {
+    fn a_permutation_contains_every_number_once() {
         let order = Stream::new(3, 0, 0, Purpose::Numbering).permutation(1000);
         let mut sorted = order.clone();
         sorted.sort_unstable();

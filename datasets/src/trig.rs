@@ -1,7 +1,7 @@
-//! Sine and cosine from arithmetic alone.
+//! Sine and cosine from basic arithmetic.
 //!
-//! The standard library leaves `sin` and `cos` to the platform, whose last bits differ. Additions,
-//! multiplications and square roots are the same everywhere, and so are the datasets made of them.
+//! The last bits of `sin` and `cos` in the standard library depend on the platform. Additions,
+//! multiplications and square roots do not, and so neither do the datasets.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -42,7 +42,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn agrees_with_the_standard_library() {
+    fn sine_and_cosine_agree_with_the_standard_library() {
         for i in -4000..=4000 {
             let angle = f64::from(i) * 0.005;
             let (sin, cos) = sin_cos(angle);
@@ -52,7 +52,7 @@ mod tests {
     }
 
     #[test]
-    fn rotations_are_orthogonal_and_ordered() {
+    fn rotations_are_orthogonal_and_composed_in_order() {
         let r = rotation(20.0, -35.0, 110.0);
         assert!((r * r.transpose() - Matrix3::identity()).norm() < 1e-14);
         assert!((r.determinant() - 1.0).abs() < 1e-14);

@@ -46,7 +46,7 @@ fn volume(mesh: &TriMesh) -> f64 {
 }
 
 #[test]
-fn every_shape_is_a_clean_sphere_of_the_common_size() {
+fn every_shape_is_a_clean_sphere_of_the_same_size() {
     let shapes = articulated(&ArticulatedOptions::default()).unwrap();
     let names: Vec<&str> = shapes.iter().map(|s| s.name.as_str()).collect();
     assert_eq!(
@@ -69,7 +69,7 @@ fn every_shape_is_a_clean_sphere_of_the_common_size() {
 }
 
 #[test]
-fn bytes_depend_on_the_options_alone() {
+fn bytes_depend_only_on_the_options() {
     let options = options(1000);
     let all = threads(2).unwrap().install(|| articulated(&options)).unwrap();
     assert_eq!(hash(&all), GOLDEN, "{:#018x}", hash(&all));
@@ -81,11 +81,11 @@ fn bytes_depend_on_the_options_alone() {
     assert_ne!(other.mesh, all[8].mesh);
 }
 
-/// Hash of the thirty shapes with 1,000 vertices under seed 1, the same on every platform. It changes
-/// with bodies, poses and meshing; so do all numbers measured on the dataset.
+/// Hash of the thirty shapes with 1,000 vertices and seed 1 on every platform. It changes with bodies, poses
+/// and meshing, and so do all numbers measured on the dataset.
 const GOLDEN: u64 = 0x6460_21d9_b654_0991;
 
-/// How often the surface winds around `p`: one inside, zero outside, two where a limb is in the trunk.
+/// The winding number of the surface around `p`: one inside, zero outside, two where limbs intersect.
 fn winding_number(mesh: &TriMesh, p: Point3<f64>) -> f64 {
     let solid_angle = |f| {
         let [a, b, c] = mesh.triangle(f).map(|corner| corner - p);
@@ -97,7 +97,7 @@ fn winding_number(mesh: &TriMesh, p: Point3<f64>) -> f64 {
 }
 
 #[test]
-fn hardly_any_of_the_skin_is_inside_the_body() {
+fn hardly_any_skin_is_inside_the_body() {
     articulated(&options(1000)).unwrap().par_iter().for_each(|LabeledShape { name, mesh, .. }| {
         let centers: Vec<Point3<f64>> = (0..mesh.n_faces())
             .step_by(10)
@@ -108,7 +108,7 @@ fn hardly_any_of_the_skin_is_inside_the_body() {
             })
             .collect();
         let inside = centers.iter().filter(|p| winding_number(mesh, **p) > 0.5).count();
-        // Where knees and elbows fold, flesh meets flesh.
+        // Some skin folds inwards at bent knees and elbows.
         assert!(inside * 20 <= centers.len(), "{name}: {inside} of {} faces", centers.len());
     });
 }
@@ -144,7 +144,7 @@ fn nothing_corresponds_between_poses() {
 }
 
 #[test]
-fn the_size_is_met_exactly() {
+fn shapes_have_exactly_the_requested_size() {
     for n_vertices in [1234, 20_000] {
         for family in Family::all() {
             let shape = articulated_shape(family, 2, &options(n_vertices)).unwrap();
@@ -155,7 +155,7 @@ fn the_size_is_met_exactly() {
 }
 
 #[test]
-fn poses_past_the_list_are_further_variations() {
+fn poses_beyond_the_dataset_are_further_variations() {
     let options = options(1000);
     let shape = articulated_shape(Family::Cat, 100, &options).unwrap();
     assert_eq!(shape.name, "cat100");
@@ -163,10 +163,10 @@ fn poses_past_the_list_are_further_variations() {
 }
 
 #[test]
-fn sizes_out_of_range_are_refused() {
+fn sizes_out_of_range_are_errors() {
     let few = articulated(&options(999)).unwrap_err();
     assert_eq!(few, DatasetError::TooFewVertices { n_vertices: 999, least: 1000 });
-    assert_eq!(few.to_string(), "999 vertices are too few for an articulated shape: ask for at least 1000");
+    assert_eq!(few.to_string(), "999 vertices are too few for an articulated shape; use at least 1000");
     let many = articulated_shape(Family::Cat, 0, &options(1_000_001)).unwrap_err();
     assert_eq!(many, DatasetError::TooManyVertices { n_vertices: 1_000_001, most: 1_000_000 });
     assert!(many.to_string().contains("at most 1000000"));

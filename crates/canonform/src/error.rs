@@ -224,8 +224,9 @@ pub enum PipelineError {
     /// A folder without meshes.
     #[error(
         "{path}: no mesh found in this folder or its sub-folders; \
-         meshes end in .off .obj .ply .stl .vert or .mat",
-        path = path.display()
+         a mesh is {meshes}",
+        path = path.display(),
+        meshes = mesh::io::mesh_files()
     )]
     NoShapes {
         /// The folder.

@@ -5,8 +5,11 @@ use std::io::{self, Write};
 use std::path::Path;
 
 use anyhow::{Result, bail};
+use mesh::io::VertexField;
+use mesh::{MeshError, TriMesh};
 use npyz::WriterBuilder;
 use serde::Serialize;
+use view::color::{Rgb, color_scale};
 
 /// Prints one JSON object on standard output.
 pub(crate) fn print_json(value: &impl Serialize) -> Result<()> {
@@ -87,6 +90,17 @@ pub(crate) fn check_folder(path: &Path) -> Result<()> {
         }
         _ => Ok(()),
     }
+}
+
+/// Writes a mesh coloured by a value per vertex.
+pub(crate) fn write_colored(
+    path: &Path,
+    mesh: &TriMesh,
+    name: &str,
+    values: &[f64],
+) -> Result<(), MeshError> {
+    let colors: Vec<Rgb> = values.iter().copied().map(color_scale(values)).collect();
+    mesh::io::write_scalar_field(path, mesh, &VertexField { name, values, colors: &colors })
 }
 
 /// The extension of a file name in lower case.

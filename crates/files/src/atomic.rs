@@ -1,4 +1,4 @@
-//! Writing to a temporary neighbour and renaming it.
+//! Writing to a temporary file in the same folder and renaming it.
 
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
@@ -7,34 +7,32 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use tempfile::NamedTempFile;
 
-use crate::FileError;
+use crate::error::FileError;
 
-/// The temporary files of this process. Whoever creates, renames or removes one holds the lock meanwhile, so
-/// the list is always accurate.
+/// The temporary files of this process. The lock is held while one is created, renamed or removed, so that the
+/// list is always accurate.
 static UNFINISHED: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
 fn unfinished() -> MutexGuard<'static, Vec<PathBuf>> {
     UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Removes the temporary files of everything that is being written: the last thing a program does before it
-/// exits because of an interruption.
+/// Removes all temporary files, as the last action of an interrupted program before it exits.
 ///
-/// From then on every thread that starts or finishes a file blocks forever, so that nothing is left behind
-/// when the process exits.
+/// From then on, every thread that starts or finishes a file blocks forever, so that nothing is left behind.
 pub fn abandon_unfinished() {
     let paths = unfinished();
     for path in paths.iter() {
-        // A file that cannot be removed can only be left.
+        // Nothing more can be done if removal fails.
         let _ = fs::remove_file(path);
     }
     std::mem::forget(paths);
 }
 
-/// Writes a file from front to back; it replaces `path` once it is complete.
+/// Writes a file sequentially; it replaces `path` once it is complete.
 ///
 /// # Errors
-/// [`FileError`] names the file; the previous version stays.
+/// [`FileError`] with the path; the previous version stays.
 pub fn write_atomically(
     path: &Path,
     content: impl FnOnce(&mut dyn Write) -> io::Result<()>,
@@ -42,11 +40,10 @@ pub fn write_atomically(
     Pending::write(path, content)?.publish()
 }
 
-/// As [`write_atomically`], for content that is not written from front to back: `content` may write anywhere in
-/// the file and read what it has written.
+/// As [`write_atomically`], but `content` may write anywhere in the file and read what it has written.
 ///
 /// # Errors
-/// [`FileError`] names the file; the previous version stays.
+/// [`FileError`] with the path; the previous version stays.
 pub fn fill_atomically(
     path: &Path,
     content: impl FnOnce(&mut File) -> io::Result<()>,
@@ -57,7 +54,7 @@ pub fn fill_atomically(
 /// Writes `bytes` to `path` atomically and creates missing parent folders.
 ///
 /// # Errors
-/// [`FileError`] names the file; the previous version stays.
+/// [`FileError`] with the path; the previous version stays.
 pub fn write_bytes(path: &Path, bytes: &[u8]) -> Result<(), FileError> {
     if let Some(folder) = path.parent() {
         fs::create_dir_all(folder).map_err(|source| FileError::write(path, source))?;
@@ -65,22 +62,22 @@ pub fn write_bytes(path: &Path, bytes: &[u8]) -> Result<(), FileError> {
     write_atomically(path, |out| out.write_all(bytes))
 }
 
-/// A complete file next to its destination that has not replaced it yet.
+/// A complete file that has not replaced its destination yet.
 ///
-/// Several files that belong together are written as pending files first and published one after the other, so
-/// that a failure to write the second leaves the first one's previous version untouched.
+/// Several files that belong together are all written as pending files before the first is published, so that a
+/// failure leaves the previous versions untouched.
 #[derive(Debug)]
 pub struct Pending<'a> {
-    /// Taken when it is published or dropped.
+    /// `None` once it is published or dropped.
     file: Option<NamedTempFile>,
     path: &'a Path,
 }
 
 impl<'a> Pending<'a> {
-    /// Writes a file from front to back; nothing remains after an error.
+    /// Writes a file sequentially; nothing remains after an error.
     ///
     /// # Errors
-    /// [`FileError`] names the file.
+    /// [`FileError`] with the path.
     pub fn write(
         path: &'a Path,
         content: impl FnOnce(&mut dyn Write) -> io::Result<()>,
@@ -95,7 +92,7 @@ impl<'a> Pending<'a> {
     /// Writes a file in any order; nothing remains after an error.
     ///
     /// # Errors
-    /// [`FileError`] names the file.
+    /// [`FileError`] with the path.
     pub fn fill(
         path: &'a Path,
         content: impl FnOnce(&mut File) -> io::Result<()>,
@@ -111,10 +108,10 @@ impl<'a> Pending<'a> {
         written().map_err(|source| FileError::write(path, source))
     }
 
-    /// Moves the file to its destination, replacing the previous version.
+    /// Moves the file to its destination and replaces the previous version.
     ///
     /// # Errors
-    /// [`FileError`] names the file.
+    /// [`FileError`] with the path.
     pub fn publish(mut self) -> Result<(), FileError> {
         let Some(file) = self.file.take() else { return Ok(()) };
         let mut paths = unfinished();
@@ -137,7 +134,7 @@ fn forget(paths: &mut Vec<PathBuf>, path: &Path) {
     paths.retain(|unfinished| unfinished != path);
 }
 
-/// A temporary file with the permissions of an ordinary new file, not only for its owner.
+/// A temporary file with the permissions of an ordinary new file.
 fn new_file_in(folder: &Path) -> io::Result<NamedTempFile> {
     let mut builder = tempfile::Builder::new();
     builder.prefix(".unfinished-");
@@ -157,7 +154,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_file_is_replaced_completely_and_nothing_else_is_left() {
+    fn a_file_is_replaced_and_nothing_else_remains() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("deep/er/record.json");
         write_bytes(&path, b"a longer first version").unwrap();
@@ -167,7 +164,7 @@ mod tests {
     }
 
     #[test]
-    fn a_folder_in_the_way_is_an_error_that_names_the_path() {
+    fn a_folder_at_the_destination_is_an_error_that_names_the_path() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("record.json");
         fs::create_dir(&path).unwrap();
@@ -177,7 +174,7 @@ mod tests {
     }
 
     #[test]
-    fn content_that_fails_leaves_the_previous_version() {
+    fn a_failed_write_leaves_the_previous_version() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("record.json");
         write_bytes(&path, b"first").unwrap();

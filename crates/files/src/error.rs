@@ -1,4 +1,4 @@
-//! What the operating system refuses.
+//! Errors of the file system.
 
 use std::fmt;
 use std::io;
@@ -8,20 +8,20 @@ use std::path::{Path, PathBuf};
 #[derive(Debug, thiserror::Error)]
 #[error("cannot {action} {path}: {source}; check that the path exists and its permissions allow it")]
 pub struct FileError {
-    /// What was tried.
+    /// The failed action.
     pub action: Action,
     /// The file.
     pub path: PathBuf,
-    /// What the operating system said.
+    /// The error of the operating system.
     pub source: io::Error,
 }
 
-/// What was tried with a file.
+/// An action on a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Action {
-    /// Reading it.
+    /// Reading.
     Read,
-    /// Writing it.
+    /// Writing.
     Write,
 }
 
@@ -35,12 +35,12 @@ impl fmt::Display for Action {
 }
 
 impl FileError {
-    /// A file that could not be read.
+    /// The error that a file could not be read.
     pub fn read(path: &Path, source: io::Error) -> Self {
         Self { action: Action::Read, path: path.to_path_buf(), source }
     }
 
-    /// A file that could not be written.
+    /// The error that a file could not be written.
     pub fn write(path: &Path, source: io::Error) -> Self {
         Self { action: Action::Write, path: path.to_path_buf(), source }
     }

@@ -1,7 +1,7 @@
-//! Files that appear complete or not at all, and what to do with them when a program is interrupted.
+//! Files that appear complete or not at all, even if the program is interrupted.
 //!
-//! Every file is written to a temporary neighbour first and renamed once complete, so a reader never sees half
-//! of it and a failure leaves the previous version in place.
+//! Every file is written to a temporary file in the same folder and renamed once it is complete. A reader never
+//! sees half a file, and a failure leaves the previous version in place.
 //!
 //! ```
 //! # let folder = tempfile::tempdir().unwrap();

@@ -1,42 +1,44 @@
-//! What can go wrong with a mesh or its file.
+//! What can be wrong with a mesh or its file.
 
 use std::fmt;
 use std::path::{Path, PathBuf};
 
 use surface::VertexId;
 
-/// Why a mesh could not be read, written or repaired; the text names the file, the place, the fault
-/// and what to do.
+/// Why a mesh could not be read, written or repaired. The message names the file, the place, the fault and a
+/// remedy.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum MeshError {
-    /// The operating system refused.
+    /// The operating system could not open, read or write a file.
     #[error(transparent)]
     Io(#[from] files::FileError),
 
-    /// The file was opened but is not a usable mesh.
+    /// The file was opened but does not hold a usable mesh.
     #[error("{path}{place}: {fault}")]
     File {
-        /// The file; of a `.vert`/`.tri` pair the one at fault.
+        /// The file; for a `.vert`/`.tri` pair the one at fault.
         path: PathBuf,
-        /// Where in it.
+        /// Where in the file.
         place: Place,
         /// What is wrong.
         fault: Fault,
     },
 
-    /// The name ends in nothing known.
-    #[error("{path}: `.{extension}` is not a mesh format; use one of .off .obj .ply .stl .vert .mat")]
+    /// The file name has an unknown extension or none.
+    #[error("{path}: {}; use {supported}", unknown_extension(extension))]
     UnknownFormat {
         /// The file.
         path: PathBuf,
-        /// How its name ends.
+        /// Its extension in lower case; empty if it has none.
         extension: String,
+        /// The extensions of all formats, as a phrase.
+        supported: String,
     },
 
-    /// Files that are no mesh together.
+    /// More files than one mesh has.
     #[error(
-        "{extra} does not belong to {path}; a mesh is one file, or a .vert and a .tri file of one name",
+        "{extra} does not belong to {path}; provide the files of one mesh: {supported}",
         extra = extra.display(),
         path = path.display()
     )]
@@ -45,35 +47,27 @@ pub enum MeshError {
         path: PathBuf,
         /// The other file.
         extra: PathBuf,
+        /// What one mesh consists of, as a phrase.
+        supported: String,
     },
 
-    /// The format can be read only.
-    #[error("{path}: .{extension} files are only read; write one of .ply .obj .off .stl .vert instead")]
-    ReadOnlyFormat {
+    /// The format cannot be written with this content.
+    #[error("{path}: {format} files cannot be written with {content}; use {supported}")]
+    UnsupportedContent {
         /// The file.
         path: PathBuf,
-        /// Its extension.
-        extension: &'static str,
+        /// Name of its format.
+        format: &'static str,
+        /// What it was to hold.
+        content: Content,
+        /// The extensions of the formats that can, as a phrase.
+        supported: String,
     },
 
-    /// The format cannot hold a value per vertex.
-    #[error("{path}: a value per vertex needs the PLY format; end the name in .ply")]
-    ScalarFieldNotPly {
-        /// The file.
-        path: PathBuf,
-    },
-
-    /// The format cannot hold lines.
-    #[error("{path}: lines are written as OBJ or PLY; end the name in .obj or .ply")]
-    LinesFormat {
-        /// The file.
-        path: PathBuf,
-    },
-
-    /// A field with more or fewer values than vertices.
-    #[error("{values} values for {n_vertices} vertices; give exactly one value per vertex")]
+    /// A scalar field with more or fewer values or colours than there are vertices.
+    #[error("{values} values for {n_vertices} vertices; provide exactly one value and one colour per vertex")]
     FieldLength {
-        /// Number of values.
+        /// Number of values or colours.
         values: usize,
         /// Number of vertices.
         n_vertices: usize,
@@ -81,8 +75,8 @@ pub enum MeshError {
 
     /// A field name that PLY cannot carry.
     #[error(
-        "`{name}` cannot name a PLY property; use letters, digits and `_`, beginning with a letter, \
-             and none of x y z red green blue"
+        "`{name}` is not a valid name of a PLY property; use letters, digits and `_`, begin with a letter, \
+         and avoid x y z red green blue"
     )]
     FieldName {
         /// The name.
@@ -91,34 +85,36 @@ pub enum MeshError {
 
     /// A coordinate that the format's 32-bit floats cannot hold.
     #[error(
-        "vertex {vertex} has the coordinate {value:e}, beyond the 32-bit floats of STL; \
-             write .ply, .off or .obj, or scale the mesh down"
+        "vertex {vertex} has the coordinate {value:e}, beyond the 32-bit floats of {format}; \
+         scale the mesh down or use another format"
     )]
     CoordinateOverflow {
         /// The vertex.
         vertex: VertexId,
         /// The coordinate.
         value: f64,
+        /// Name of the format.
+        format: &'static str,
     },
 
     /// NaN or infinity in a mesh in memory.
-    #[error("vertex {vertex} has a coordinate that is not finite; set it to a number or drop the vertex")]
+    #[error("vertex {vertex} has a coordinate that is not finite; correct it or remove the vertex")]
     NonFinitePosition {
         /// The vertex.
         vertex: VertexId,
     },
 
-    /// A face of a mesh in memory names a vertex that does not exist.
+    /// A face of a mesh in memory refers to a vertex that does not exist.
     #[error(
-        "face {face} names vertex {vertex}, but the mesh has {n_vertices} vertices; \
-             correct the face or drop it"
+        "face {face} refers to vertex {vertex}, but the mesh has {n_vertices} vertices; \
+         correct or remove the face"
     )]
     FaceOutOfRange {
         /// Index of the face.
         face: usize,
-        /// The vertex it names.
+        /// The vertex it refers to.
         vertex: VertexId,
-        /// How many there are.
+        /// Number of vertices.
         n_vertices: usize,
     },
 
@@ -127,40 +123,68 @@ pub enum MeshError {
     TooWide {
         /// Diagonal of the bounding box, in mesh units.
         diagonal: f64,
-        /// The largest diagonal taken.
+        /// Largest supported diagonal, in mesh units.
         limit: f64,
     },
 
-    /// Nothing is left to work on.
+    /// Repair leaves no face.
     #[error(
         "none of the {n_faces} faces is usable ({degenerate} degenerate); \
-             a surface needs at least one triangle with three different corners"
+         a surface needs at least one triangle with three distinct corners"
     )]
     NoUsableFace {
         /// Faces in the input.
         n_faces: usize,
-        /// Faces that name a vertex twice or have two corners in one place.
+        /// Faces with a repeated vertex or with two corners in the same position.
         degenerate: usize,
     },
 
-    /// The mesh falls into pieces and [`ComponentPolicy::Error`](crate::ComponentPolicy::Error) was
-    /// asked for.
+    /// The mesh has several components and the policy is
+    /// [`ComponentPolicy::Error`](crate::ComponentPolicy::Error).
     #[error(
-        "mesh is disconnected: {unreached} of {n_vertices} vertices not reached; \
-             keep the largest component or pass --components bridge"
+        "the mesh is disconnected: {unreached} of {n_vertices} vertices lie outside the largest component; \
+         keep only the largest component or bridge the components"
     )]
     Disconnected {
         /// Vertices outside the largest component.
         unreached: usize,
-        /// Vertices of the mesh, those that no face names left out.
+        /// Vertices of the mesh that a face uses.
         n_vertices: usize,
     },
+}
+
+fn unknown_extension(extension: &str) -> String {
+    match extension {
+        "" => "the file name has no extension".into(),
+        _ => format!("unknown mesh format `.{extension}`"),
+    }
+}
+
+/// What a mesh file can be written with.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Content {
+    /// Vertices and faces.
+    Mesh,
+    /// Vertices, faces, and a value and a colour per vertex.
+    Field,
+    /// Polylines.
+    Lines,
+}
+
+impl fmt::Display for Content {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Mesh => "a mesh",
+            Self::Field => "a value per vertex",
+            Self::Lines => "lines",
+        })
+    }
 }
 
 /// Where in a file a fault is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Place {
-    /// In the file as a whole, or at a place the parser does not know.
+    /// In the file as a whole, or at an unknown place.
     File,
     /// In this line, counted from one.
     Line(usize),
@@ -182,80 +206,80 @@ impl fmt::Display for Place {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum Fault {
-    /// No content at all.
+    /// The file has no content.
     #[error("the file is empty; copy or export it again")]
     Empty,
 
     /// The content is of another format.
-    #[error("this is not {expected} ({found}); rename the file after its real format or export it again")]
+    #[error("this is not {expected} ({found}); correct the file name or export the mesh again")]
     WrongFormat {
-        /// The format that the name promises.
+        /// The format that the file name promises.
         expected: &'static str,
-        /// What speaks against it.
+        /// The evidence.
         found: String,
     },
 
-    /// A part of the format that is not read.
+    /// A feature of the format that the reader does not support.
     #[error("{what}; {remedy}")]
     Unsupported {
-        /// The part.
+        /// The feature.
         what: String,
-        /// How to get around it.
+        /// How to avoid it.
         remedy: &'static str,
     },
 
-    /// Less in the file than its header says.
+    /// Less in the file than its header promises.
     #[error(
         "the header promises {promised} {items} but the file holds only {found}; \
-             it is cut short or its header is wrong: copy or export it again"
+         it is truncated or its header is wrong: copy or export it again"
     )]
     Truncated {
         /// Of what.
         items: String,
-        /// How many the header promises.
+        /// Number in the header.
         promised: u64,
-        /// How many are there, or at most could be.
+        /// Number in the file, or an upper bound of it.
         found: u64,
     },
 
-    /// The file ends in the middle of something.
+    /// The file ends early.
     #[error("the file ends where {expected} should follow; copy or export it again")]
     CutShort {
         /// What should follow.
         expected: String,
     },
 
-    /// More in the file than its header says.
-    #[error("the file goes on after the {promised} {items} that its header promises; correct the header")]
+    /// More in the file than its header promises.
+    #[error("the file continues after the {promised} {items} that its header promises; correct the header")]
     Leftover {
         /// Of what.
         items: &'static str,
-        /// How many the header promises.
+        /// Number in the header.
         promised: u64,
     },
 
-    /// Something that should read otherwise.
+    /// Text or data that the format does not allow here.
     #[error("expected {expected}, found `{found}`; correct the file or export it again")]
     Syntax {
-        /// What should stand there.
+        /// What the format requires.
         expected: &'static str,
-        /// What does.
+        /// What the file has.
         found: String,
     },
 
-    /// A coordinate that is NaN or infinite.
+    /// A coordinate that is NaN, infinite or too large for its type.
     #[error("vertex {vertex} has the coordinate {value}; correct the coordinate or remove the vertex")]
     NonFinite {
         /// The vertex, counted as the format counts.
         vertex: u64,
-        /// NaN, inf or -inf.
+        /// The coordinate.
         value: f64,
     },
 
-    /// A face that names a vertex which is not in the file.
+    /// A face refers to a vertex that does not exist.
     #[error(
-        "a face names vertex {index}, but the file's vertices run from {first} to {last}; \
-             correct or remove the face"
+        "a face refers to vertex {index}, but the vertices of the file run from {first} to {last}; \
+         correct or remove the face"
     )]
     IndexOutOfRange {
         /// The index as written.
@@ -266,71 +290,73 @@ pub enum Fault {
         last: u64,
     },
 
-    /// A face with one or two corners.
-    #[error("a face with {corners} corners; a face needs at least three: remove it")]
+    /// A face with fewer than three corners.
+    #[error("a face has {corners} corners but needs at least three; remove it")]
     TooFewCorners {
-        /// How many it has.
+        /// Number of corners.
         corners: usize,
     },
 
-    /// Vertices only.
-    #[error("{n_vertices} vertices but not one face; a surface is needed: triangulate the points first")]
+    /// A file without faces.
+    #[error("the file has {n_vertices} vertices but no faces; triangulate the points first")]
     NoFaces {
-        /// How many vertices there are.
+        /// Number of vertices.
         n_vertices: usize,
     },
 
     /// More vertices or faces than 32-bit indices can count.
-    #[error("{count} {items} are more than the {limit} that fit into 32-bit indices; simplify the mesh")]
+    #[error("{count} {items} exceed the {limit} that 32-bit indices can count; simplify the mesh")]
     TooLarge {
         /// Of what.
         items: &'static str,
-        /// How many.
+        /// Number in the file.
         count: u64,
-        /// How many are taken.
+        /// Largest supported number.
         limit: u64,
     },
 
-    /// More vertices or faces than are taken.
-    #[error(
-        "the mesh has more than {limit} {items}, the most that are taken here; simplify it, or raise the limit"
-    )]
+    /// More vertices or faces than [`ReadLimits`](crate::io::ReadLimits) allow.
+    #[error("the mesh has more than {limit} {items}, the limit here; simplify it or raise the limit")]
     OverLimit {
         /// Of what.
         items: &'static str,
-        /// How many are taken.
+        /// The limit.
         limit: u64,
     },
 
-    /// Compressed data that would grow out of proportion.
+    /// Compressed data that grows out of proportion.
     #[error(
         "the compressed data grows beyond {limit} bytes, out of proportion to the file; \
-             it is damaged or hostile: save it again without compression if it is neither"
+         the file is damaged or malicious: if it is neither, save it without compression"
     )]
     Inflates {
-        /// The most that is decompressed, in bytes.
+        /// Largest decompressed size, in bytes.
         limit: u64,
     },
 
     /// Half a `.vert`/`.tri` pair.
-    #[error(
-        "its other half {partner} is missing; a shape in this format is a pair of files: \
-             put both into the same folder"
-    )]
+    #[error("its other half {partner} is missing; put both files of the pair into the same folder")]
     NoPartner {
-        /// The name of the missing half.
+        /// Name of the missing half.
         partner: String,
     },
 }
 
-/// A fault and its place in a file not yet named; the result of every parser.
+/// A fault and its place in a file that has no name yet; the error of every parser.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Located {
+    /// Which of the files of the mesh.
+    pub(crate) file: usize,
     pub(crate) place: Place,
     pub(crate) fault: Fault,
 }
 
 impl Located {
+    /// Moves the fault to another file of the mesh.
+    pub(crate) fn of_file(self, file: usize) -> Self {
+        Self { file, ..self }
+    }
+
     /// Names the file.
     pub(crate) fn in_file(self, path: &Path) -> MeshError {
         MeshError::File { path: path.to_path_buf(), place: self.place, fault: self.fault }
@@ -340,16 +366,21 @@ impl Located {
 impl Fault {
     /// The fault of the file as a whole.
     pub(crate) fn whole(self) -> Located {
-        Located { place: Place::File, fault: self }
+        self.at(Place::File)
     }
 
     /// The fault in a line, counted from one.
     pub(crate) fn in_line(self, line: usize) -> Located {
-        Located { place: Place::Line(line), fault: self }
+        self.at(Place::Line(line))
     }
 
     /// The fault at a byte, counted from zero.
     pub(crate) fn at_byte(self, byte: usize) -> Located {
-        Located { place: Place::Byte(byte as u64), fault: self }
+        self.at(Place::Byte(byte as u64))
+    }
+
+    /// The fault at a place in the first file.
+    pub(crate) fn at(self, place: Place) -> Located {
+        Located { file: 0, place, fault: self }
     }
 }

@@ -1,10 +1,12 @@
-//! What may be wrong with the faces of a mesh: vertices out of range, named twice, faces repeated.
+//! Faces that are out of range, degenerate or duplicate.
 
-use crate::{MeshError, TriMesh};
 use surface::VertexId;
 
-/// Refuses a mesh whose faces name vertices that do not exist, or with coordinates that are not
-/// finite; what readers return passes.
+use crate::error::MeshError;
+use crate::tri_mesh::TriMesh;
+
+/// Returns an error if a face refers to a vertex that does not exist or a coordinate is not finite. The
+/// meshes that readers return pass.
 pub(crate) fn check_input(mesh: &TriMesh) -> Result<(), MeshError> {
     let n_vertices = mesh.n_vertices();
     for (face, corners) in mesh.faces.iter().enumerate() {
@@ -18,16 +20,29 @@ pub(crate) fn check_input(mesh: &TriMesh) -> Result<(), MeshError> {
     }
 }
 
-/// Whether a face names a vertex twice.
-pub(crate) fn names_twice([a, b, c]: [VertexId; 3]) -> bool {
+/// Whether a face has a repeated vertex.
+pub(crate) fn is_degenerate([a, b, c]: [VertexId; 3]) -> bool {
     a == b || b == c || c == a
 }
 
-/// For every face whether an earlier one has the same three vertices, in any order; linear time.
-///
-/// No face names a vertex twice.
-pub(crate) fn repeats(n_vertices: usize, faces: &[[VertexId; 3]]) -> Vec<bool> {
-    // Faces in the buckets of their lowest vertices; within one, in their order.
+/// Removes degenerate faces; returns how many.
+pub(crate) fn remove_degenerate(faces: &mut Vec<[VertexId; 3]>) -> usize {
+    let before = faces.len();
+    faces.retain(|&face| !is_degenerate(face));
+    before - faces.len()
+}
+
+/// Removes faces with the same vertices as an earlier one; returns how many.
+pub(crate) fn remove_duplicates(n_vertices: usize, faces: &mut Vec<[VertexId; 3]>) -> usize {
+    let before = faces.len();
+    let mut duplicates = duplicates(n_vertices, faces).into_iter();
+    faces.retain(|_| !duplicates.next().unwrap_or(false));
+    before - faces.len()
+}
+
+/// For each face, whether an earlier one has the same three vertices in any order; linear time.
+fn duplicates(n_vertices: usize, faces: &[[VertexId; 3]]) -> Vec<bool> {
+    // Bucket the faces by their lowest vertex, keeping their order.
     let mut ends = vec![0u32; n_vertices + 1];
     for face in faces {
         ends[sorted(*face)[0].index()] += 1;
@@ -44,17 +59,17 @@ pub(crate) fn repeats(n_vertices: usize, faces: &[[VertexId; 3]]) -> Vec<bool> {
         buckets[*slot as usize] = ([middle, highest], f as u32);
         *slot += 1;
     }
-    let mut repeated = vec![false; faces.len()];
+    let mut duplicate = vec![false; faces.len()];
     let mut begin = 0;
     for &end in &ends[..n_vertices] {
         let bucket = &mut buckets[begin..end as usize];
         begin = end as usize;
         bucket.sort_unstable();
         for pair in bucket.windows(2).filter(|pair| pair[0].0 == pair[1].0) {
-            repeated[pair[1].1 as usize] = true;
+            duplicate[pair[1].1 as usize] = true;
         }
     }
-    repeated
+    duplicate
 }
 
 fn sorted(mut face: [VertexId; 3]) -> [VertexId; 3] {
@@ -67,10 +82,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_first_of_equal_faces_is_no_repeat() {
+    fn the_first_of_equal_faces_is_not_a_duplicate() {
         let faces =
             [[0, 1, 2], [2, 1, 3], [1, 2, 0], [0, 1, 3], [2, 1, 0], [3, 1, 2]].map(|f| f.map(VertexId));
-        assert_eq!(repeats(5, &faces), [false, false, true, false, true, true]);
-        assert_eq!(repeats(0, &[]), [false; 0]);
+        assert_eq!(duplicates(5, &faces), [false, false, true, false, true, true]);
+        assert_eq!(duplicates(0, &[]), [false; 0]);
     }
 }

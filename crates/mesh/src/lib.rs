@@ -1,41 +1,40 @@
-//! Triangle meshes: reading and writing, validation and repair, connectivity, intrinsic geometry.
+//! Triangle meshes: files, validation, repair, analytic shapes.
 //!
-//! file -> [`io`] -> [`TriMesh`] -> [`repair()`] -> [`IntrinsicMesh`] -> `geodesics`
+//! file -> [`io`] -> [`TriMesh`] -> [`repair()`] -> `surface::IntrinsicMesh` -> `geodesics`
 //!
-//! * [`io`] reads and writes mesh files; whatever is in a file, it ends in a mesh or in a
-//!   [`MeshError`] that names file, place, fault and remedy.
-//! * [`validate`] reports all there is to know of a mesh and changes nothing.
-//! * [`repair()`] mends what algorithms cannot take, and reports each change; what was asked for
-//!   beyond that is in [`RepairOptions`].
-//! * [`Topology`] and [`IntrinsicMesh`] are what algorithms work on: connectivity of any kind,
-//!   non-manifold edges included, and edge lengths.
-//! * [`laplacian`] has the stiffness and masses of functions on a surface of any kind.
-//! * [`shapes`] are small analytic surfaces for tests, benches and documentation.
+//! * [`io`] reads and writes mesh files. A file that is not a mesh is a [`MeshError`] that names file, place,
+//!   fault and remedy.
+//! * [`validate`] reports the properties and defects of a mesh.
+//! * [`repair()`] removes defects that algorithms cannot handle, as [`RepairOptions`] say, and reports every
+//!   change.
+//! * [`shapes`] has small analytic surfaces for tests, benches and documentation.
 //!
-//! **Invariant.** Vertices keep the order of their file: repair drops and merges, never reorders,
-//! and says where each input vertex went.
+//! **Invariant.** Vertices keep the order of the file: repair drops and merges vertices but never reorders
+//! them, and tells where each input vertex went.
 //!
-//! Knows nothing of distances, embeddings or matrices.
+//! The crate knows nothing of distances, embeddings or matrices.
 //!
-//! ```no_run
-//! use std::path::Path;
+//! ```
+//! use canonform_mesh::{RepairOptions, io, repair, shapes};
 //!
-//! # fn main() -> Result<(), canonform_mesh::MeshError> {
-//! let mesh = canonform_mesh::io::read(Path::new("david0.vert"))?;
-//! let repaired = canonform_mesh::repair(&mesh, &canonform_mesh::RepairOptions::default())?;
-//! for line in repaired.report.summary() {
-//!     eprintln!("{line}");
-//! }
+//! let folder = tempfile::tempdir()?;
+//! let path = folder.path().join("two-cubes.off");
+//! io::write(&path, &shapes::disjoint(&[shapes::cube(2), shapes::cube(0)]))?;
+//!
+//! let repaired = repair(&io::read(&path)?, &RepairOptions::default())?;
+//! let summary = repaired.report.summary();
+//! assert_eq!(summary.len(), 1);
+//! assert!(summary[0].starts_with("1 of 2 components dropped, 12 faces and 8 vertices"));
 //! let surface = repaired.intrinsic();
-//! # Ok(())
-//! # }
+//! assert_eq!(surface.n_vertices(), 98);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod coincidence;
 mod error;
 mod face_set;
 pub mod io;
 mod orientation;
-mod position_key;
 mod repair;
 pub mod shapes;
 mod tri_mesh;

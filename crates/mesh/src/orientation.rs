@@ -1,36 +1,38 @@
-//! Which way round the faces run.
+//! The orientation of faces.
 
-use crate::TriMesh;
 use surface::{CornerId, Topology, VertexId};
 
-/// The faces of a mesh split into patches joined by manifold edges, and which faces of each patch
-/// run against the others.
+use crate::face_set::is_degenerate;
+use crate::tri_mesh::TriMesh;
+
+/// The faces of a mesh grouped into patches, which manifold edges hold together, and the orientation of each
+/// patch.
 #[derive(Debug, Clone)]
 pub(crate) struct Orientation {
     /// The patch of every face.
     pub(crate) patch: Vec<u32>,
-    /// Faces to turn over so that a patch runs one way; the fewest that do it.
+    /// Per face: whether to flip it, so that the patch is oriented consistently with the fewest flips.
     pub(crate) turned: Vec<bool>,
-    /// Per patch: whether turning them over does make it run one way (a Moebius strip never does).
+    /// Per patch: whether it is orientable (a Moebius strip is not).
     pub(crate) orientable: Vec<bool>,
     /// Per patch: whether every edge of every face joins exactly two faces.
     pub(crate) closed: Vec<bool>,
 }
 
-/// Whether the two faces that meet in the edge opposite `corner` run along it in the same
-/// direction, which is the wrong way.
+/// Whether the two faces at the edge opposite `corner` traverse it in the same direction, that is, are
+/// oriented inconsistently.
 pub(crate) fn runs_against(topology: &Topology, corner: CornerId, twin: CornerId) -> bool {
     start_of_opposite_edge(topology, corner) == start_of_opposite_edge(topology, twin)
 }
 
-/// The vertex from which a face runs along the edge opposite one of its corners.
+/// The vertex at which a face starts to traverse the edge opposite one of its corners.
 fn start_of_opposite_edge(topology: &Topology, corner: CornerId) -> VertexId {
     let next = CornerId(corner.face().0 * 3 + (corner.slot() as u32 + 1) % 3);
     topology.corner_vertex(next)
 }
 
 impl Orientation {
-    /// Spreads the orientation of the first face of every patch, in linear time.
+    /// Propagates the orientation of the first face of every patch, in linear time.
     pub(crate) fn of(topology: &Topology) -> Self {
         const UNSEEN: u32 = u32::MAX;
         let n_faces = topology.n_faces();
@@ -52,8 +54,8 @@ impl Orientation {
                 at += 1;
                 let corners = [0, 1, 2].map(|slot| CornerId((3 * face + slot) as u32));
                 let mut across = corners.map(|corner| topology.across(corner).map(|twin| (twin, corner)));
-                // In an order that turning faces over does not change, so that a second run finds
-                // nothing to do even where no orientation is right.
+                // An order that does not depend on the orientation of faces, so that a second run changes
+                // nothing, even on a patch that is not orientable.
                 across.sort_unstable_by_key(|pair| {
                     pair.map(|(twin, corner)| (twin.face(), topology.opposite_edge(corner)))
                 });
@@ -83,24 +85,18 @@ impl Orientation {
     }
 }
 
-/// Turns faces over so that neighbours run the same way round; returns how many were turned.
+/// Flips faces so that neighbours are oriented consistently; returns how many were flipped.
 ///
-/// Patches, faces joined by edges of exactly two faces, are treated one by one: a closed patch ends
-/// up facing outward (positive signed volume), any other keeps the orientation of the majority of
-/// its faces. Non-manifold edges separate patches; a patch that cannot run one way, such as a
-/// Moebius strip, keeps as many faces as a spanning tree allows. Faces that name a vertex twice are
-/// left alone. Linear time.
+/// A patch is a set of faces joined by edges with exactly two faces. A closed patch ends up facing outward
+/// (positive signed volume); any other keeps the orientation of the majority of its faces. A patch that is
+/// not orientable, such as a Moebius strip, is made consistent along a spanning tree of its faces. Degenerate
+/// faces are left alone. Linear time.
 pub fn orient_consistently(mesh: &mut TriMesh) -> usize {
-    let proper: Vec<usize> = (0..mesh.n_faces())
-        .filter(|&f| {
-            let [a, b, c] = mesh.faces[f];
-            a != b && b != c && c != a
-        })
-        .collect();
+    let proper: Vec<usize> = (0..mesh.n_faces()).filter(|&f| !is_degenerate(mesh.faces[f])).collect();
     let topology = Topology::new(mesh.n_vertices(), proper.iter().map(|&f| mesh.faces[f]).collect());
     let Orientation { patch, mut turned, orientable, closed } = Orientation::of(&topology);
 
-    // Six times the signed volume of every patch, seen from its first vertex to keep the terms small.
+    // Six times the signed volume of every patch, relative to its first vertex to keep the terms small.
     let mut volume = vec![0.0; closed.len()];
     let mut origin = vec![None; closed.len()];
     for (i, &f) in proper.iter().enumerate() {
@@ -135,7 +131,7 @@ mod tests {
     }
 
     #[test]
-    fn a_closed_surface_turns_outward_whatever_was_flipped() {
+    fn a_closed_surface_ends_up_facing_outward() {
         let sphere = shapes::icosphere(2);
         for keep_every in [1, 2, 3, 7] {
             let mut mixed = sphere.clone();
@@ -149,7 +145,7 @@ mod tests {
     }
 
     #[test]
-    fn the_majority_of_an_open_patch_stays() {
+    fn an_open_patch_keeps_the_orientation_of_the_majority() {
         let sheet = shapes::grid(5, 5, 1.0);
         let mut mixed = sheet.clone();
         for f in [0, 3, 17] {
@@ -161,7 +157,7 @@ mod tests {
     }
 
     #[test]
-    fn patches_are_oriented_each_for_itself() {
+    fn patches_are_oriented_independently() {
         let mut inward = shapes::torus(8, 6, 2.0, 0.5);
         inward.faces.iter_mut().for_each(|f| f.swap(1, 2));
         let n_inward = inward.n_faces();
@@ -170,8 +166,8 @@ mod tests {
     }
 
     #[test]
-    fn a_moebius_strip_is_not_orientable_and_does_no_harm() {
-        // Three quads around, the last glued with a twist.
+    fn a_moebius_strip_is_not_orientable() {
+        // A loop of three quads, the last glued with a twist.
         let ids = [[0, 1, 2], [1, 3, 2], [2, 3, 4], [3, 5, 4], [4, 5, 1], [5, 0, 1]];
         let faces: Vec<_> = ids.iter().map(|f| f.map(VertexId)).collect();
         let topology = Topology::new(6, faces.clone());

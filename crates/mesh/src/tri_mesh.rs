@@ -1,19 +1,30 @@
 //! Triangle meshes in space.
 
 use nalgebra::{Point3, Vector3};
-
 use surface::{IntrinsicMesh, Topology, VertexId};
 
 /// An indexed triangle mesh: vertex positions and faces, exactly as they were read.
 ///
-/// Nothing is assumed of the faces beyond indices in range: duplicate, degenerate, flipped and
-/// non-manifold faces, holes and several components are all allowed. [`validate`](crate::validate)
-/// reports them and [`repair`](crate::repair()) mends what an algorithm cannot take.
+/// Faces refer to existing vertices. Duplicate, degenerate, flipped and non-manifold faces, holes and several
+/// components are all allowed: [`validate`](crate::validate) reports them and [`repair`](crate::repair())
+/// removes what an algorithm cannot handle.
+///
+/// ```
+/// use canonform_mesh::TriMesh;
+/// use surface::VertexId;
+///
+/// let mesh = TriMesh {
+///     positions: vec![[0.0, 0.0, 0.0].into(), [4.0, 0.0, 0.0].into(), [0.0, 3.0, 0.0].into()],
+///     faces: vec![[0, 1, 2].map(VertexId)],
+/// };
+/// assert_eq!(mesh.area(), 6.0);
+/// assert_eq!(mesh.intrinsic().edge_lengths(), [4.0, 3.0, 5.0]);
+/// ```
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct TriMesh {
     /// Vertex positions, in mesh units.
     pub positions: Vec<Point3<f64>>,
-    /// The three vertices of each face, counter-clockwise seen from outside where the input says so.
+    /// The three vertices of each face, counter-clockwise as seen from outside if the input is so.
     pub faces: Vec<[VertexId; 3]>,
 }
 
@@ -36,7 +47,7 @@ impl TriMesh {
         self.faces[face].map(|v| self.positions[v.index()])
     }
 
-    /// Normal of face `face` whose length is twice the face's area.
+    /// The normal of face `face`; its length is twice the area of the face.
     #[must_use]
     pub fn area_vector(&self, face: usize) -> Vector3<f64> {
         let [a, b, c] = self.triangle(face);
@@ -49,7 +60,7 @@ impl TriMesh {
         (0..self.n_faces()).map(|f| 0.5 * self.area_vector(f).norm()).sum()
     }
 
-    /// A third of the area of the faces around each vertex (the lumped mass), in squared mesh units.
+    /// The lumped mass of each vertex, a third of the area of its faces, in squared mesh units.
     #[must_use]
     pub fn vertex_areas(&self) -> Vec<f64> {
         let mut areas = vec![0.0; self.n_vertices()];
@@ -65,8 +76,8 @@ impl TriMesh {
     /// The intrinsic geometry: connectivity and the length of every edge.
     ///
     /// # Panics
-    /// When a face is degenerate in its indices or out of range, see [`Topology::new`]; [`repair`](crate::repair())
-    /// removes such faces.
+    /// If a face has a repeated vertex or one that does not exist, see [`Topology::new`];
+    /// [`repair`](crate::repair()) removes such faces.
     #[must_use]
     pub fn intrinsic(&self) -> IntrinsicMesh {
         let topology = Topology::new(self.n_vertices(), self.faces.clone());
@@ -75,7 +86,7 @@ impl TriMesh {
         IntrinsicMesh::new(topology, lengths)
     }
 
-    /// Lower and upper corner of the axis-aligned bounding box; `None` without vertices.
+    /// Lower and upper corner of the axis-aligned bounding box, in mesh units; `None` without vertices.
     #[must_use]
     pub fn bounds(&self) -> Option<[Point3<f64>; 2]> {
         let first = *self.positions.first()?;

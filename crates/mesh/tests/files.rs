@@ -1,4 +1,4 @@
-//! Files as a whole: round trips, names, pairs, errors that say what to do, nothing half-written.
+//! Whole files: round trips, names, pairs, error messages, atomic writes.
 
 // Helper functions are test code too, which clippy cannot see.
 #![allow(clippy::unwrap_used)]
@@ -7,7 +7,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use canonform_mesh::io::{
-    MemoryFile, ReadLimits, is_mesh_path, read, read_memory, write, write_scalar_field,
+    Content, FORMATS, MemoryFile, ReadLimits, VertexField, is_mesh_path, read, read_memory, write,
+    write_polylines, write_scalar_field,
 };
 use canonform_mesh::{Fault, MeshError, TriMesh, shapes};
 use files::Action;
@@ -27,7 +28,7 @@ fn names_in(folder: &TempDir) -> Vec<String> {
     names
 }
 
-/// The fault in the file of this content.
+/// The fault in a file with this content.
 fn fault_of(name: &str, content: &[u8]) -> Fault {
     let folder = folder();
     let path = folder.path().join(name);
@@ -41,7 +42,7 @@ fn fault_of(name: &str, content: &[u8]) -> Fault {
 const EXACT: [&str; 6] = ["m.off", "m.obj", "m.ply", "m.vert", "m.tri", "M.PLY"];
 
 #[test]
-fn awkward_numbers_and_loose_vertices_survive_a_round_trip() {
+fn awkward_numbers_and_unused_vertices_survive_a_round_trip() {
     let numbers = [0.1, -0.0, 1e300, -5e-324, 1.0 / 3.0, f64::MAX, 123_456_789.123_456_79, 1e-7, 42.0];
     let positions = numbers.iter().map(|&x| Point3::new(x, -x, x / 7.0)).collect();
     let faces = vec![[1, 8, 3].map(VertexId), [3, 8, 5].map(VertexId), [3, 3, 5].map(VertexId)];
@@ -98,7 +99,7 @@ fn from_memory(files: &[(&str, &[u8])]) -> Result<TriMesh, MeshError> {
 }
 
 #[test]
-fn memory_is_read_as_files_are() {
+fn files_in_memory_read_like_files_on_disk() {
     let sphere = shapes::icosphere(2);
     let folder = folder();
     for name in ["m.off", "m.obj", "m.ply", "m.stl"] {
@@ -117,7 +118,7 @@ fn memory_is_read_as_files_are() {
 }
 
 #[test]
-fn what_is_wrong_in_memory_is_said_as_of_files() {
+fn errors_of_files_in_memory_equal_those_of_files_on_disk() {
     let folder = folder();
     for (name, content) in [
         ("a.off", &b"OFF\n3 1 0\n0 0 0\n"[..]),
@@ -146,7 +147,7 @@ fn what_is_wrong_in_memory_is_said_as_of_files() {
 }
 
 #[test]
-fn names_of_meshes() {
+fn mesh_paths_are_recognised_by_extension() {
     for name in ["a.off", "a.OBJ", "x/a.ply", "a.stl", "cat0.vert", "CAT0.VERT", "a.b.mat"] {
         assert!(is_mesh_path(Path::new(name)), "{name}");
     }
@@ -156,7 +157,7 @@ fn names_of_meshes() {
 }
 
 #[test]
-fn a_pair_is_found_in_either_case_and_missed_by_name() {
+fn the_other_half_of_a_pair_is_found_in_either_case() {
     let tetrahedron = shapes::tetrahedron(0);
     let folder = folder();
     write(&folder.path().join("t.vert"), &tetrahedron).unwrap();
@@ -174,7 +175,7 @@ fn a_pair_is_found_in_either_case_and_missed_by_name() {
 }
 
 #[test]
-fn an_empty_half_of_a_pair_is_named() {
+fn an_error_names_the_empty_half_of_a_pair() {
     let folder = folder();
     let path = folder.path().join("victoria14.vert");
     write(&path, &shapes::tetrahedron(0)).unwrap();
@@ -189,14 +190,14 @@ fn errors_name_file_place_fault_and_remedy() {
     let path = folder.path().join("broken.off");
     fs::write(&path, "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 7\n").unwrap();
     let expected = format!(
-        "{}, line 6: a face names vertex 7, but the file's vertices run from 0 to 2; correct or remove the face",
+        "{}, line 6: a face refers to vertex 7, but the vertices of the file run from 0 to 2; correct or remove the face",
         path.display()
     );
     assert_eq!(read(&path).unwrap_err().to_string(), expected);
 }
 
 #[test]
-fn empty_and_foreign_files_are_refused_in_every_format() {
+fn empty_and_foreign_files_are_errors_in_every_format() {
     for name in ["a.off", "a.obj", "a.ply", "a.stl", "a.mat", "a.tri"] {
         if name != "a.tri" {
             assert_eq!(fault_of(name, b""), Fault::Empty, "{name}");
@@ -204,19 +205,19 @@ fn empty_and_foreign_files_are_refused_in_every_format() {
         }
         let picture = b"\x89PNG\r\n\x1a\n\x00\x00\x00\rIHDR and so on \xff\xfe\xfd";
         let fault = fault_of(name, picture);
-        let is_said = matches!(
+        let is_expected = matches!(
             fault,
             Fault::WrongFormat { .. }
                 | Fault::Syntax { .. }
                 | Fault::NoFaces { .. }
                 | Fault::NoPartner { .. }
         );
-        assert!(is_said, "{name}: {fault:?}");
+        assert!(is_expected, "{name}: {fault:?}");
     }
 }
 
 #[test]
-fn paths_that_are_no_mesh_files_are_refused() {
+fn paths_without_a_mesh_are_errors() {
     let folder = folder();
     let missing = read(&folder.path().join("none.off")).unwrap_err();
     assert!(matches!(&missing, MeshError::Io(fault) if fault.action == Action::Read));
@@ -232,7 +233,7 @@ fn paths_that_are_no_mesh_files_are_refused() {
 }
 
 #[test]
-fn what_cannot_be_written_leaves_the_old_file_and_no_other() {
+fn a_failed_write_leaves_the_old_file_and_no_other() {
     let folder = folder();
     let cube = shapes::cube(0);
     for name in ["a.off", "a.obj", "a.ply", "a.stl", "a.vert"] {
@@ -258,7 +259,7 @@ fn what_cannot_be_written_leaves_the_old_file_and_no_other() {
     assert!(matches!(overflow, Err(MeshError::CoordinateOverflow { vertex: VertexId(1), .. })));
     assert_eq!(read(&folder.path().join("a.stl")).unwrap().n_faces(), 12);
     let mat = write(&folder.path().join("a.mat"), &cube);
-    assert!(matches!(mat, Err(MeshError::ReadOnlyFormat { extension: "mat", .. })));
+    assert!(matches!(mat, Err(MeshError::UnsupportedContent { content: Content::Mesh, .. })));
     let nowhere = write(&folder.path().join("none/a.off"), &cube);
     assert!(matches!(nowhere, Err(MeshError::Io(fault)) if fault.action == Action::Write));
     assert_eq!(names_in(&folder), before);
@@ -277,12 +278,14 @@ fn new_files_have_ordinary_permissions() {
 }
 
 #[test]
-fn a_scalar_field_is_a_coloured_ply() {
+fn a_scalar_field_has_a_value_and_a_colour_per_vertex() {
     let cube = shapes::cube(0);
     let values = [0.0, 1.0, 2.0, f64::INFINITY, f64::NAN, 5.0, 6.0, 7.0];
     let folder = folder();
     let path = folder.path().join("field.ply");
-    write_scalar_field(&path, &cube, &values, "distance").unwrap();
+    let colors: Vec<[u8; 3]> = (0..8).map(|v| [v, 10 * v, 255]).collect();
+    let field = VertexField { name: "distance", values: &values, colors: &colors };
+    write_scalar_field(&path, &cube, &field).unwrap();
     assert_eq!(read(&path).unwrap(), cube);
     let bytes = fs::read(&path).unwrap();
     let header = "property double distance\nproperty uchar red\nproperty uchar green\nproperty uchar blue\n";
@@ -291,17 +294,51 @@ fn a_scalar_field_is_a_coloured_ply() {
     let start = bytes.windows(end.len()).position(|w| w == end).unwrap() + end.len();
     let row = |v: usize| &bytes[start + 35 * v..start + 35 * (v + 1)];
     assert_eq!(row(5)[24..32], 5f64.to_le_bytes());
-    assert_eq!(
-        [&row(0)[32..], &row(3)[32..], &row(4)[32..], &row(7)[32..]],
-        [[68, 1, 84], [128; 3], [128; 3], [253, 231, 37]]
-    );
+    for v in 0..8 {
+        assert_eq!(row(v)[32..], colors[v]);
+    }
 
-    let wrong = |path: &Path, values: &[f64], name: &str| write_scalar_field(path, &cube, values, name);
-    let off = folder.path().join("field.off");
-    assert!(matches!(wrong(&off, &values, "d"), Err(MeshError::ScalarFieldNotPly { .. })));
-    let short = wrong(&path, &values[1..], "d");
-    assert!(matches!(short, Err(MeshError::FieldLength { values: 7, n_vertices: 8 })));
+    let wrong = |path: &Path, field: VertexField| write_scalar_field(path, &cube, &field).unwrap_err();
+    let off = wrong(&folder.path().join("field.off"), field);
+    assert!(matches!(off, MeshError::UnsupportedContent { content: Content::Field, .. }));
+    assert!(
+        off.to_string().ends_with("OFF files cannot be written with a value per vertex; use .ply"),
+        "{off}"
+    );
+    let short = wrong(&path, VertexField { values: &values[1..], ..field });
+    assert!(matches!(short, MeshError::FieldLength { values: 7, n_vertices: 8 }));
+    let colorless = wrong(&path, VertexField { colors: &[], ..field });
+    assert!(matches!(colorless, MeshError::FieldLength { values: 0, n_vertices: 8 }));
     for name in ["", "x", "red", "two words", "1st", "d\nelement", "\u{e9}"] {
-        assert!(matches!(wrong(&path, &values, name), Err(MeshError::FieldName { .. })), "{name}");
+        let error = wrong(&path, VertexField { name, ..field });
+        assert!(matches!(error, MeshError::FieldName { .. }), "{name}");
+    }
+}
+
+#[test]
+fn lines_that_a_file_cannot_hold_are_errors() {
+    let folder = folder();
+    let wrong = |name: &str, lines: &[Vec<Point3<f64>>]| {
+        write_polylines(&folder.path().join(name), lines).unwrap_err()
+    };
+    let line = vec![Point3::origin(), Point3::new(1.0, 0.0, 0.0)];
+    let error = wrong("lines.stl", &[line]);
+    assert!(matches!(error, MeshError::UnsupportedContent { content: Content::Lines, .. }));
+    assert!(
+        error.to_string().ends_with("STL files cannot be written with lines; use .obj or .ply"),
+        "{error}"
+    );
+    let nowhere = vec![Point3::new(f64::NAN, 0.0, 0.0)];
+    assert!(matches!(wrong("lines.obj", &[nowhere]), MeshError::NonFinitePosition { .. }));
+    assert!(matches!(wrong("lines.txt", &[]), MeshError::UnknownFormat { .. }));
+}
+
+#[test]
+fn messages_about_extensions_list_the_formats() {
+    let listed = |path: &str| read(Path::new(path)).unwrap_err().to_string();
+    assert!(listed("notes.txt").starts_with("notes.txt: unknown mesh format `.txt`; use .off"));
+    assert!(listed("notes").starts_with("notes: the file name has no extension; use .off"));
+    for format in &FORMATS {
+        assert!(listed("notes.txt").contains(&format!(".{}", format.extensions[0])));
     }
 }

@@ -1,5 +1,5 @@
-//! Real meshes, dirty as they are, through reading, validation and repair. The data is not part of
-//! the project: `CANONFORM_DATA` says where it is, and without it these tests say so and pass.
+//! Real meshes with all their defects through reading, validation and repair. The data is not part of the
+//! project: `CANONFORM_DATA` is its folder; without it these tests print that they are skipped, and pass.
 
 // Helper functions are test code too, which clippy cannot see.
 #![allow(clippy::unwrap_used)]
@@ -28,8 +28,8 @@ fn meshes_in(folder: &Path) -> Vec<PathBuf> {
     paths
 }
 
-/// Repair under every policy keeps its promises.
-fn assert_mends(path: &Path, mesh: &TriMesh) {
+/// The laws of repair under every policy.
+fn assert_repairs(path: &Path, mesh: &TriMesh) {
     let report = validate(mesh);
     for components in [ComponentPolicy::Largest, ComponentPolicy::Bridge] {
         let repaired = repair(mesh, &RepairOptions { components, ..Default::default() }).unwrap();
@@ -55,7 +55,7 @@ fn assert_mends(path: &Path, mesh: &TriMesh) {
         let dropped = repaired.input_to_repaired.iter().filter(|to| to.is_none()).count();
         assert_eq!(dropped, repaired.report.dropped_vertices.len(), "{name}");
 
-        // Mending twice changes nothing more.
+        // A second repair changes nothing.
         let policy = if pieces == 1 { ComponentPolicy::Error } else { components };
         let again =
             repair(&repaired.mesh, &RepairOptions { components: policy, ..Default::default() }).unwrap();
@@ -65,7 +65,7 @@ fn assert_mends(path: &Path, mesh: &TriMesh) {
 }
 
 #[test]
-fn all_of_tosca_loads_and_mends_but_the_one_without_faces() {
+fn all_tosca_shapes_load_and_can_be_repaired_except_the_one_without_faces() {
     let Some(folder) = data("tosca-lowres") else { return };
     let paths = meshes_in(&folder);
     assert_eq!(paths.len(), 148);
@@ -76,7 +76,7 @@ fn all_of_tosca_loads_and_mends_but_the_one_without_faces() {
                 readable += 1;
                 clean += usize::from(validate(&mesh).is_clean());
                 assert_eq!(io::read(&path.with_extension("tri")).unwrap(), mesh);
-                assert_mends(path, &mesh);
+                assert_repairs(path, &mesh);
             }
             Err(error) => {
                 let expected = folder.join("victoria14.tri");
@@ -93,7 +93,7 @@ fn all_of_tosca_loads_and_mends_but_the_one_without_faces() {
 }
 
 #[test]
-fn the_pieces_of_gorillas_and_seahorses_are_bridged_or_dropped() {
+fn the_components_of_gorillas_and_seahorses_are_bridged_or_dropped() {
     let Some(folder) = data("tosca-lowres") else { return };
     let gorilla = io::read(&folder.join("gorilla1.vert")).unwrap();
     let bridge = RepairOptions { components: ComponentPolicy::Bridge, ..Default::default() };
@@ -103,19 +103,19 @@ fn the_pieces_of_gorillas_and_seahorses_are_bridged_or_dropped() {
     assert!(bridged.links.iter().all(|link| link.length < 0.1 * size));
     let strict = RepairOptions { components: ComponentPolicy::Error, ..Default::default() };
     let error = repair(&gorilla, &strict).unwrap_err().to_string();
-    assert!(error.contains("mesh is disconnected") && error.contains("--components bridge"), "{error}");
+    assert!(error.contains("mesh is disconnected") && error.contains("bridge the components"), "{error}");
     let seahorse = repair(&io::read(&folder.join("seahorse1.vert")).unwrap(), &Default::default()).unwrap();
     assert_eq!(seahorse.report.dropped_components, 2);
     assert!(seahorse.report.dropped_area_share < 0.2);
 }
 
 #[test]
-fn matlab_files_hold_the_shapes_of_the_text_files() {
+fn matlab_files_equal_the_text_files() {
     let (Some(mat), Some(text)) = (data("tosca-mat"), data("tosca-lowres")) else { return };
     for (name, n_faces) in [("cat0", 6768), ("centaur0", 6796), ("victoria14", 6768)] {
         let from_mat = io::read(&mat.join(name).with_extension("mat")).unwrap();
         assert_eq!((from_mat.n_vertices(), from_mat.n_faces()), (3400, n_faces));
-        assert_mends(&mat.join(name), &from_mat);
+        assert_repairs(&mat.join(name), &from_mat);
         // The text has eight decimals.
         let Ok(from_text) = io::read(&text.join(name).with_extension("vert")) else { continue };
         assert_eq!(from_mat.faces, from_text.faces);
@@ -125,7 +125,7 @@ fn matlab_files_hold_the_shapes_of_the_text_files() {
     }
     let david = io::read(&mat.join("david0-hires.mat")).unwrap();
     assert_eq!(david.n_vertices(), 52_565);
-    assert_mends(&mat, &david);
+    assert_repairs(&mat, &david);
 }
 
 #[test]
@@ -143,7 +143,7 @@ fn obj_vertices_keep_their_order() {
         let report = validate(&mesh);
         let found = (report.n_vertices, report.n_faces, report.unreferenced_vertices);
         assert_eq!(found, (n_vertices, n_faces, unused), "{name}");
-        assert_mends(&path, &mesh);
+        assert_repairs(&path, &mesh);
 
         // Straight from the text: the positions of `v` lines, the corners of `f` lines.
         let text = std::fs::read_to_string(&path).unwrap();

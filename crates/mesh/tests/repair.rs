@@ -1,4 +1,4 @@
-//! The promises of repair, and each of its errors.
+//! Laws of repair, and each of its errors.
 
 // Helper functions are test code too, which clippy cannot see.
 #![allow(clippy::unwrap_used)]
@@ -30,12 +30,12 @@ fn shifted(mut mesh: TriMesh, by: [f64; 3]) -> TriMesh {
     mesh
 }
 
-/// The vertices each input vertex became, -1 for none.
+/// The vertex that each input vertex became, -1 for none.
 fn fates(repaired: &Repaired) -> Vec<i64> {
     repaired.input_to_repaired.iter().map(|to| to.map_or(-1, |v| i64::from(v.0))).collect()
 }
 
-/// Faces cut loose from each other, each with vertices of its own.
+/// The same faces, each with vertices of its own.
 fn soup(mesh: &TriMesh) -> TriMesh {
     let positions: Vec<_> = (0..mesh.n_faces()).flat_map(|f| mesh.triangle(f)).collect();
     let faces = (0..mesh.n_faces()).map(|f| [3 * f, 3 * f + 1, 3 * f + 2].map(VertexId::from));
@@ -43,7 +43,7 @@ fn soup(mesh: &TriMesh) -> TriMesh {
 }
 
 #[test]
-fn a_clean_mesh_comes_back_as_it_is() {
+fn a_clean_mesh_is_returned_unchanged() {
     for clean in [shapes::grid(5, 4, 1.0), shapes::torus(9, 7, 2.0, 0.5), shapes::cylinder(9, 3, 1.0, 2.0)] {
         let repaired = mend(&clean);
         assert_eq!(repaired.mesh, clean);
@@ -54,7 +54,7 @@ fn a_clean_mesh_comes_back_as_it_is() {
 }
 
 #[test]
-fn degenerate_duplicate_and_unused_go_and_the_rest_keeps_its_order() {
+fn degenerate_duplicate_and_unused_items_are_removed_and_the_rest_keeps_its_order() {
     let points: Vec<[f64; 3]> = (0..8).map(|i| [f64::from(i), f64::from(i * i), 0.0]).collect();
     let dirty = mesh(&points, &[[5, 3, 1], [1, 1, 3], [3, 1, 5], [3, 5, 6], [7, 7, 7], [6, 5, 3]]);
     let repaired = mend(&dirty);
@@ -64,7 +64,7 @@ fn degenerate_duplicate_and_unused_go_and_the_rest_keeps_its_order() {
     assert_eq!(report.dropped_vertices, [0, 2, 4, 7].map(VertexId));
     assert_eq!(repaired.mesh.faces, [[2, 1, 0], [1, 2, 3]].map(|f| f.map(VertexId)));
     let expected = [
-        "2 faces that named a vertex twice removed",
+        "2 faces with a repeated vertex removed",
         "2 duplicate faces removed",
         "4 vertices without a face dropped",
     ];
@@ -73,11 +73,11 @@ fn degenerate_duplicate_and_unused_go_and_the_rest_keeps_its_order() {
 }
 
 #[test]
-fn slivers_stay_and_edges_of_length_zero_are_collapsed_without_a_slit() {
+fn slivers_stay_and_edges_of_length_zero_collapse_without_a_slit() {
     let flat = mesh(&[[0., 0., 0.], [1., 0., 0.], [2., 0., 0.], [1., 1., 0.]], &[[0, 1, 2], [0, 2, 3]]);
     assert_eq!(mend(&flat).mesh, flat);
 
-    // A strip whose middle edge has length zero, off the boundary at neither end.
+    // A strip whose middle edge has length zero and ends inside the boundary.
     let mut strip = shapes::grid(4, 3, 1.0);
     strip.positions[6] = strip.positions[5];
     let options = with(ComponentPolicy::Error, Weld::None, Orient::Keep);
@@ -90,8 +90,8 @@ fn slivers_stay_and_edges_of_length_zero_are_collapsed_without_a_slit() {
 }
 
 #[test]
-fn welding_does_what_it_says() {
-    // Two sheets side by side that share the places of their common rim, not its vertices.
+fn welding_follows_its_policy() {
+    // Two adjacent sheets whose common boundary has the same positions but separate vertices.
     let left = shapes::grid(3, 3, 1.0);
     let halves = shapes::disjoint(&[left.clone(), shifted(left.clone(), [2.0, 0.0, 0.0])]);
     let joined = mend(&halves);
@@ -102,7 +102,7 @@ fn welding_does_what_it_says() {
     let apart = repair(&halves, &with(ComponentPolicy::Bridge, Weld::None, Orient::Keep)).unwrap();
     assert_eq!((apart.mesh.n_vertices(), apart.report.bridge_length), (18, 0.0));
 
-    // Two closed surfaces that touch in a point stay two, unless all is welded.
+    // Two closed surfaces that touch in a point stay separate, unless all vertices are welded.
     let cubes = shapes::disjoint(&[shapes::cube(0), shifted(shapes::cube(0), [1.0, 1.0, 1.0])]);
     assert_eq!(mend(&cubes).report.dropped_components, 1);
     let all = repair(&cubes, &with(ComponentPolicy::Error, Weld::All, Orient::Keep)).unwrap();
@@ -114,7 +114,7 @@ fn welding_does_what_it_says() {
 }
 
 #[test]
-fn a_soup_is_stitched_into_the_surface_it_was() {
+fn a_triangle_soup_is_welded_into_its_surface() {
     let sphere = shapes::icosphere(2);
     let stitched = mend(&soup(&sphere));
     assert_eq!(validate(&stitched.mesh).genus, Some(0));
@@ -140,7 +140,7 @@ fn the_largest_component_is_the_one_of_the_largest_area() {
     let speck = TriMesh { faces: coarse_but_large.faces[..1].to_vec(), ..coarse_but_large.clone() };
     let summary = mend(&shapes::disjoint(&[shapes::icosphere(5), speck])).report.summary();
     assert!(summary.iter().any(|line| line.contains("dropped, 1 face and 3 vertices with")), "{summary:?}");
-    // Of equals the first.
+    // The first one in case of a tie.
     let twins = shapes::disjoint(&[shapes::cube(1), shifted(shapes::cube(1), [3.0, 0.0, 0.0])]);
     assert_eq!(mend(&twins).mesh.positions, shapes::cube(1).positions);
 }
@@ -176,17 +176,18 @@ fn orientation_is_touched_only_on_request() {
     let oriented = repair(&sphere, &with(ComponentPolicy::Error, Weld::None, Orient::Consistent)).unwrap();
     assert_eq!(oriented.report.flipped_faces, 1);
     assert_eq!(validate(&oriented.mesh).inconsistent_edges, 0);
-    assert_eq!(oriented.report.summary(), ["1 face turned over"]);
+    assert_eq!(oriented.report.summary(), ["1 face flipped"]);
 }
 
 #[test]
-fn every_error() {
+fn unusable_meshes_are_errors() {
     let cube = shapes::cube(0);
     let two = shapes::disjoint(&[shapes::tetrahedron(0), shifted(cube.clone(), [9.0, 0.0, 0.0])]);
     let error = repair(&two, &with(ComponentPolicy::Error, Weld::None, Orient::Keep)).unwrap_err();
     assert_eq!(
         error.to_string(),
-        "mesh is disconnected: 4 of 12 vertices not reached; keep the largest component or pass --components bridge"
+        "the mesh is disconnected: 4 of 12 vertices lie outside the largest component; \
+         keep only the largest component or bridge the components"
     );
     let fails = |change: &dyn Fn(&mut TriMesh)| {
         let mut mesh = cube.clone();
@@ -218,9 +219,9 @@ fn the_report_serialises() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(300))]
 
-    /// Meshes on a small lattice: coincident points, repeated and degenerate faces abound.
+    /// Meshes on a small lattice have many coincident points, duplicate and degenerate faces.
     #[test]
-    fn any_mesh_is_mended_or_refused(
+    fn any_mesh_is_repaired_or_an_error(
         points in prop::collection::vec(prop::array::uniform3(0i8..3), 1..25),
         corners in prop::collection::vec(prop::array::uniform3(any::<prop::sample::Index>()), 0..60),
         policy in prop::sample::select(vec![ComponentPolicy::Largest, ComponentPolicy::Bridge]),
@@ -259,12 +260,12 @@ proptest! {
             .map(|v| fates(&repaired).iter().position(|&to| to == v as i64).unwrap() as u32)
             .collect();
         prop_assert!(first.is_sorted());
-        // The same again, and the result is a fixed point.
+        // Repair is deterministic, and its result is a fixed point.
         prop_assert_eq!(&repair(&input, &options).unwrap(), &repaired);
         prop_assert_eq!(repair(&repaired.mesh, &options).unwrap().mesh, repaired.mesh);
     }
 
-    /// Counts and shape do not depend on where the mesh is or how its vertices are numbered.
+    /// Counts and measures do not depend on rigid motions and on the numbering of vertices.
     #[test]
     fn reports_are_invariant(seed in any::<u32>(), angle in 0.0..6.0, shift in -10.0..10.0) {
         let parts = [shapes::torus(6, 5, 2.0, 0.5), shifted(shapes::cylinder(5, 3, 1.0, 1.0), [6.0, 1.0, 2.0])];

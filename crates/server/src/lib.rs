@@ -16,6 +16,7 @@ mod api;
 mod app;
 mod cache;
 mod error;
+mod formats;
 mod guard;
 mod measured;
 mod options;

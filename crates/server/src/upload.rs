@@ -10,6 +10,7 @@ use axum::body::{BodyDataStream, Bytes};
 use axum::extract::Request;
 use axum::http::{StatusCode, header};
 use futures_util::{Stream, StreamExt};
+use mesh::io::mesh_files;
 use multer::{Multipart, parse_boundary};
 
 use crate::ServeOptions;
@@ -51,7 +52,7 @@ pub(crate) async fn receive(request: Request, options: &ServeOptions) -> Result<
         }
         let boundary = boundary.ok_or_else(|| {
             ApiError::new(StatusCode::UNSUPPORTED_MEDIA_TYPE, "the request is no form with a file")
-                .with_remedy("send multipart/form-data with one mesh, or with a .vert and its .tri")
+                .with_remedy(form_remedy())
         })?;
         let metered = Metered { body: body.clone(), left: options.max_upload + FRAME };
         let form = Multipart::new(metered, boundary);
@@ -104,6 +105,10 @@ async fn read(mut form: Multipart<'static>, options: &ServeOptions) -> Result<Up
     Ok(upload)
 }
 
+fn form_remedy() -> String {
+    format!("send multipart/form-data with one mesh: {}", mesh_files())
+}
+
 /// The next piece, unless it is too long in coming.
 async fn in_time<T>(
     piece: impl Future<Output = Result<T, multer::Error>>,
@@ -115,8 +120,9 @@ async fn in_time<T>(
         Ok(Err(multer::Error::StreamReadFailed(fault))) if fault.is::<TooLong>() => {
             Err(ApiError::upload_too_large(options.max_upload))
         }
-        Ok(Err(fault)) => Err(ApiError::bad_request(format!("the form cannot be read: {fault}"))
-            .with_remedy("send multipart/form-data with one mesh, or with a .vert and its .tri")),
+        Ok(Err(fault)) => {
+            Err(ApiError::bad_request(format!("the form cannot be read: {fault}")).with_remedy(form_remedy()))
+        }
     }
 }
 

@@ -45,6 +45,19 @@ pub fn perceptual(t: f64) -> Rgb {
     [color.0, color.1, color.2]
 }
 
+/// The colours of values in [`perceptual`], from the least finite value (dark) to the greatest (bright);
+/// other values are grey.
+pub fn color_scale(values: &[f64]) -> impl Fn(f64) -> Rgb + use<> {
+    let finite = values.iter().copied().filter(|x| x.is_finite());
+    let (least, most) = finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), x| (lo.min(x), hi.max(x)));
+    // Halved first: the range of finite values may overflow.
+    let range = most / 2.0 - least / 2.0;
+    move |value| {
+        let share = if range > 0.0 { (value / 2.0 - least / 2.0) / range } else { 0.0 };
+        perceptual(if value.is_finite() { share } else { f64::NAN })
+    }
+}
+
 /// The linear light of an 8-bit sRGB channel, in 0..=1.
 pub fn to_linear(channel: u8) -> f32 {
     let c = f32::from(channel) / 255.0;
@@ -79,5 +92,21 @@ mod tests {
         assert_eq!(perceptual(-5.0), perceptual(0.0));
         assert_eq!(perceptual(f64::INFINITY), perceptual(1.0));
         assert_eq!(perceptual(f64::NAN), [160, 160, 160]);
+    }
+
+    #[test]
+    fn a_scale_spans_the_finite_values() {
+        let color = color_scale(&[3.0, f64::NAN, 1.0, f64::INFINITY, 2.0]);
+        assert_eq!([1.0, 2.0, 3.0].map(color), [0.0, 0.5, 1.0].map(perceptual));
+        let color = color_scale(&[f64::INFINITY, 1.0, 2.0]);
+        assert_eq!([color(f64::NAN), color(f64::INFINITY)], [perceptual(f64::NAN); 2]);
+    }
+
+    #[test]
+    fn a_scale_without_a_range_is_dark() {
+        assert_eq!(color_scale(&[])(f64::NAN), perceptual(f64::NAN));
+        assert_eq!(color_scale(&[5.0; 3])(5.0), perceptual(0.0));
+        let wide = color_scale(&[f64::MIN, f64::MAX]);
+        assert_eq!([f64::MIN, 0.0, f64::MAX].map(wide), [0.0, 0.5, 1.0].map(perceptual));
     }
 }

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use canonform::InputPoint;
 use clap::Args;
+use mesh::io::{Content, or_list, writable};
 
 use super::{GeodesicName, MarchingArgs, RepairArgs};
 
@@ -36,9 +37,7 @@ pub(crate) struct GeodesicArgs {
         value_name = "POINT[,POINT...]"
     )]
     pub(crate) source: Vec<InputPoint>,
-    /// Where to write. Distances: .npy (sources x vertices, float64), .csv (one row a source) or .ply
-    /// (one coloured mesh a source). Paths: .obj or .ply (lines), .csv or .json. All pairs: .npy
-    #[arg(short, long, value_name = "OUT")]
+    #[arg(short, long, value_name = "OUT", help = output_help())]
     pub(crate) output: PathBuf,
     /// Measure to the nearest source: one row in all
     #[arg(long)]
@@ -64,6 +63,15 @@ pub(crate) struct GeodesicArgs {
     pub(crate) marching: MarchingArgs,
     #[command(flatten)]
     pub(crate) repair: RepairArgs,
+}
+
+fn output_help() -> String {
+    format!(
+        "Where to write. Distances: .npy (sources x vertices, float64), .csv (one row per source) or {} (one \
+         coloured mesh per source). Paths: {} (lines), .csv or .json. All pairs: .npy",
+        or_list(writable(Content::Field)),
+        or_list(writable(Content::Lines))
+    )
 }
 
 fn parse_distance(text: &str) -> Result<f64, String> {

@@ -12,6 +12,7 @@ use canonform::{
     FastMarchingOptions, GeodesicMethod, HeatOptions, ObtuseTreatment, Samples, StressChoice, Update,
 };
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use mesh::io::{Content, mesh_files, or_list, writable};
 use mesh::{ComponentPolicy, Orient, RepairOptions, Weld};
 
 pub(crate) use embedding::EmbeddingArgs;
@@ -28,12 +29,16 @@ pub(crate) use serve::ServeArgs;
 /// A cat that sits and a cat that leaps are one shape. A mesh is embedded so that straight lines
 /// equal its surface distances (Nystrom multidimensional scaling); bending drops out.
 #[derive(Debug, Parser)]
-#[command(name = "canonform", version, max_term_width = 100)]
+#[command(name = "canonform", version, max_term_width = 100, after_help = meshes_help())]
 pub(crate) struct Arguments {
     #[command(flatten)]
     pub(crate) common: Common,
     #[command(subcommand)]
     pub(crate) command: Command,
+}
+
+fn meshes_help() -> String {
+    format!("A mesh is {}.", mesh_files())
 }
 
 /// Options of every command.
@@ -92,9 +97,7 @@ pub(crate) struct InfoArgs {
 pub(crate) struct EmbedArgs {
     /// Mesh file, or a folder of them
     pub(crate) mesh: PathBuf,
-    /// Where to write the form: .npy (vertices x dim, float64), .ply, .obj or .off; for a folder, the
-    /// folder to write NAME.EXT into
-    #[arg(short, long, value_name = "FORM")]
+    #[arg(short, long, value_name = "FORM", help = form_help())]
     pub(crate) output: PathBuf,
     /// Format of the forms of a folder
     #[arg(long, value_enum, default_value_t = FormFormat::Ply)]
@@ -140,8 +143,7 @@ pub(crate) struct CompareArgs {
     /// Distance between aligned forms
     #[arg(long, value_enum, default_value_t = DistanceName::NnRms)]
     pub(crate) distance: DistanceName,
-    /// Write the first mesh coloured by how far each vertex is from the second shape, once aligned; .ply
-    #[arg(long, value_name = "OUT.ply")]
+    #[arg(long, value_name = "OUT", help = residual_help())]
     pub(crate) residual_mesh: Option<PathBuf>,
     /// Exit with 1 when the distance at equal size is larger than this
     #[arg(long, value_name = "D")]
@@ -155,6 +157,21 @@ pub(crate) struct CompletionsArgs {
     /// The shell
     #[arg(value_enum)]
     pub(crate) shell: clap_complete::Shell,
+}
+
+fn form_help() -> String {
+    format!(
+        "Where to write the form: {} (.npy: vertices x dim, float64); for a folder of meshes, the folder to write \
+         NAME.EXT into",
+        or_list(FormFormat::extensions())
+    )
+}
+
+fn residual_help() -> String {
+    format!(
+        "Write the first mesh coloured by how far each vertex is from the second shape, once aligned ({})",
+        or_list(writable(Content::Field))
+    )
 }
 
 /// How meshes are repaired before anything is measured.
@@ -327,6 +344,10 @@ pub(crate) enum FormFormat {
 }
 
 impl FormFormat {
+    pub(crate) fn extensions() -> impl Iterator<Item = &'static str> {
+        Self::value_variants().iter().map(|format| format.extension())
+    }
+
     pub(crate) fn extension(self) -> &'static str {
         match self {
             Self::Ply => "ply",

@@ -9,11 +9,12 @@ use canonform::{
     ShapeDistance, StressChoice, Surface, SurfaceComparison, Triangulation, compare_surfaces,
     describe_surface, embed,
 };
+use mesh::io::{Content, or_list, writable};
 use serde::Serialize;
 
 use super::{named, read_surface};
 use crate::args::{Common, CompareArgs, DistanceName};
-use crate::output::{check_folder, extension, facts, print, print_json};
+use crate::output::{check_folder, extension, facts, print, print_json, write_colored};
 use terminal::Bars;
 
 #[derive(Serialize)]
@@ -55,8 +56,9 @@ pub(crate) fn compare(args: &CompareArgs, common: &Common) -> Result<ExitCode> {
     }
     let options = args.embedding.options(common, StressChoice::Skip)?;
     if let Some(path) = &args.residual_mesh {
-        if extension(path) != "ply" {
-            bail!("residuals are written as a coloured .ply; {} is none", path.display());
+        let formats: Vec<_> = writable(Content::Field).collect();
+        if !formats.contains(&extension(path).as_str()) {
+            bail!("{}: residuals are written as a coloured {}", path.display(), or_list(formats));
         }
         check_folder(path)?;
     }
@@ -85,7 +87,7 @@ pub(crate) fn compare(args: &CompareArgs, common: &Common) -> Result<ExitCode> {
     let comparison = comparison.decided_by(ShapeDistance::between(&described_a, &described_b)?);
     let [residuals, _] = &overlay.residuals;
     if let Some(path) = &args.residual_mesh {
-        mesh::io::write_scalar_field(path, a.mesh(), residuals, "residual")?;
+        write_colored(path, a.mesh(), "residual", residuals)?;
     }
     let residual = ResidualJson::new(&a, residuals, args.residual_mesh.clone());
     let too_far = args.threshold.is_some_and(|limit| comparison.normalized_distance > limit);

@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::{named, read_surface, say_repair};
-use crate::args::{Common, EmbedArgs};
+use crate::args::{Common, EmbedArgs, FormFormat};
 use crate::output::{check_folder, extension, facts, print, print_json, write_npy};
 use terminal::Bars;
 
@@ -147,15 +147,14 @@ fn check_names(shapes: &[ShapeFile], input: &Path, output: &Path) -> Result<()> 
 /// Refuses an output that could not be written before any work is done.
 fn check_format(output: &Path, dim: usize) -> Result<()> {
     match extension(output).as_str() {
-        "npy" => Ok(()),
-        "ply" | "obj" | "off" if dim == 3 => Ok(()),
-        "ply" | "obj" | "off" => {
-            bail!("{}: a mesh has 3 dimensions, not {dim}; write .npy or leave out --dim", output.display())
-        }
-        _ => bail!(
-            "{}: forms are written as .npy, .ply, .obj or .off; end the name in one of them",
-            output.display()
+        format if !FormFormat::extensions().any(|known| known == format) => bail!(
+            "{}: forms are written as {}",
+            output.display(),
+            mesh::io::or_list(FormFormat::extensions())
         ),
+        "npy" => Ok(()),
+        _ if dim == 3 => Ok(()),
+        _ => bail!("{}: a mesh has 3 dimensions, not {dim}; write .npy or leave out --dim", output.display()),
     }
 }
 

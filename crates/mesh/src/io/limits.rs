@@ -2,18 +2,20 @@
 
 use crate::error::Fault;
 
-/// The most vertices that indices of 32 bits can count.
+/// The most vertices that 32-bit indices can count.
 const MOST_VERTICES: u64 = u32::MAX as u64;
-/// The most faces: their corners are counted in 32 bits.
+/// The most faces whose corners 32-bit indices can count.
 const MOST_FACES: u64 = u32::MAX as u64 / 3;
 
-/// The largest mesh that is read. What a header promises is held to it before anything is read, and
-/// what has no header as soon as it is passed.
+/// The largest mesh to read.
+///
+/// The numbers in a header are checked before anything else is read. A file without a header is rejected as
+/// soon as it exceeds a limit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ReadLimits {
-    /// Vertices. Default: as many as 32-bit indices count.
+    /// Vertices. Default: as many as 32-bit indices can count.
     pub max_vertices: u64,
-    /// Triangles. Default: as many as have corners that 32-bit indices count.
+    /// Triangles. Default: as many as have corners that 32-bit indices can count.
     pub max_faces: u64,
 }
 
@@ -24,14 +26,14 @@ impl Default for ReadLimits {
 }
 
 impl ReadLimits {
-    /// Meshes of up to so many vertices, and of four times as many faces: twice what a closed surface has.
+    /// At most `max_vertices` vertices and four times as many faces, twice as many as a closed surface has.
     #[must_use]
     pub fn of_vertices(max_vertices: u64) -> Self {
         let max_vertices = max_vertices.min(MOST_VERTICES);
         Self { max_vertices, max_faces: max_vertices.saturating_mul(4).min(MOST_FACES) }
     }
 
-    /// Refuses more than the limits.
+    /// Returns a fault if a count exceeds its limit.
     pub(super) fn check(&self, n_vertices: u64, n_faces: u64) -> Result<(), Fault> {
         let check = |items, count, limit, most| match count {
             _ if count <= limit => Ok(()),
@@ -48,7 +50,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn counts_beyond_the_index_types_are_refused() {
+    fn counts_beyond_the_index_types_are_errors() {
         let limits = ReadLimits::default();
         assert!(limits.check(1 << 32, 0).is_err_and(|f| matches!(f, Fault::TooLarge { .. })));
         assert!(limits.check(3, 1 << 31).is_err_and(|f| matches!(f, Fault::TooLarge { .. })));
@@ -56,7 +58,7 @@ mod tests {
     }
 
     #[test]
-    fn counts_beyond_what_is_asked_for_are_refused() {
+    fn counts_beyond_the_given_limits_are_errors() {
         let limits = ReadLimits::of_vertices(100);
         assert_eq!(limits.check(100, 400), Ok(()));
         assert_eq!(limits.check(101, 0), Err(Fault::OverLimit { items: "vertices", limit: 100 }));

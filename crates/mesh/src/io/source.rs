@@ -12,22 +12,22 @@ use crate::error::{Fault, MeshError};
 /// A file in memory.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct MemoryFile<'a> {
-    /// Its name; the extension tells the format, the rest serves messages.
+    /// Its name. The extension determines the format; the rest only appears in messages.
     pub name: &'a Path,
-    /// All that is in it.
+    /// Its content.
     pub bytes: &'a [u8],
 }
 
-/// Where files are looked up.
+/// A place that holds files.
 pub(super) trait Source {
-    /// Whether there is a file of this name.
+    /// Whether there is a file with this name.
     fn holds(&self, path: &Path) -> bool;
 
-    /// All bytes of a file, at least one.
+    /// Reads a file that is not empty.
     fn load(&self, path: &Path) -> Result<Cow<'_, [u8]>, MeshError>;
 }
 
-/// The file system; regular files only.
+/// The regular files of the file system.
 pub(super) struct Disk;
 
 impl Source for Disk {
@@ -45,7 +45,7 @@ impl Source for Disk {
     }
 }
 
-/// Files in memory, and no others.
+/// Files in memory.
 pub(super) struct Memory<'a>(pub(super) &'a [MemoryFile<'a>]);
 
 impl Source for Memory<'_> {

@@ -1,11 +1,13 @@
-//! Lines and numbers straight from bytes, without a string per token.
+//! Lines and numbers of text files, straight from bytes.
+
+use std::io::{self, Write};
+use std::str::FromStr;
 
 use nalgebra::Point3;
 
 use crate::error::{Fault, Located};
 
-/// The lines of a text that hold something, with comments, blanks and line ends of any system
-/// taken off.
+/// The non-blank lines of a text, without comments, surrounding blanks and line ends of any system.
 #[derive(Debug, Clone)]
 pub(super) struct Lines<'a> {
     rest: &'a [u8],
@@ -26,12 +28,12 @@ impl<'a> Lines<'a> {
         Self { rest: bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes), number: 0 }
     }
 
-    /// Number of bytes not read yet.
+    /// Number of unread bytes.
     pub(super) fn remaining(&self) -> usize {
         self.rest.len()
     }
 
-    /// The number of the line read last.
+    /// Number of the last line read.
     pub(super) fn number(&self) -> usize {
         self.number
     }
@@ -42,11 +44,15 @@ impl<'a> Iterator for Lines<'a> {
 
     fn next(&mut self) -> Option<Line<'a>> {
         while !self.rest.is_empty() {
-            let end = self.rest.iter().position(|b| matches!(b, b'\n' | b'\r')).unwrap_or(self.rest.len());
-            let (line, tail) = self.rest.split_at(end);
+            let end_of_text = self.rest.iter().position(|b| matches!(b, b'\n' | b'\r' | b'#'));
+            let (text, mut tail) = self.rest.split_at(end_of_text.unwrap_or(self.rest.len()));
+            if tail.first() == Some(&b'#') {
+                let end_of_line = tail.iter().position(|b| matches!(b, b'\n' | b'\r'));
+                tail = &tail[end_of_line.unwrap_or(tail.len())..];
+            }
             self.rest = tail.strip_prefix(b"\r\n").or_else(|| tail.get(1..)).unwrap_or_default();
             self.number += 1;
-            let text = line.split(|&b| b == b'#').next().unwrap_or_default().trim_ascii();
+            let text = text.trim_ascii();
             if !text.is_empty() {
                 return Some(Line { number: self.number, text });
             }
@@ -58,18 +64,13 @@ impl<'a> Iterator for Lines<'a> {
 impl<'a> Line<'a> {
     /// The words of the line.
     pub(super) fn tokens(self) -> impl Iterator<Item = &'a [u8]> {
-        tokens(self.text)
+        self.text.split(u8::is_ascii_whitespace).filter(|token| !token.is_empty())
     }
 
-    /// The fault that this line should read otherwise.
+    /// The fault that this line is not what the format requires.
     pub(super) fn expected(self, expected: &'static str) -> Located {
         Fault::Syntax { expected, found: excerpt(self.text) }.in_line(self.number)
     }
-}
-
-/// The words of a text.
-pub(super) fn tokens(text: &[u8]) -> impl Iterator<Item = &[u8]> {
-    text.split(u8::is_ascii_whitespace).filter(|token| !token.is_empty())
 }
 
 /// The beginning of a text, fit for an error message.
@@ -81,29 +82,28 @@ pub(super) fn excerpt(text: &[u8]) -> String {
     if clean.len() < text.len() { clean + "..." } else { clean }
 }
 
-/// A floating-point number; NaN and infinities are numbers here.
-pub(super) fn parse_f64(token: &[u8]) -> Option<f64> {
+/// A number; a floating-point one may be NaN or infinite.
+pub(super) fn parse_number<T: FromStr>(token: &[u8]) -> Option<T> {
     std::str::from_utf8(token).ok()?.parse().ok()
 }
 
-/// A whole number, also where a program has written it as `3.0` or `3.000e+00`.
+/// An integer, also one written as `3.0` or `3.000e+00`.
 pub(super) fn parse_integer(token: &[u8]) -> Option<i64> {
-    let text = std::str::from_utf8(token).ok()?;
-    text.parse().ok().or_else(|| {
-        let value: f64 = text.parse().ok()?;
+    parse_number(token).or_else(|| {
+        let value: f64 = parse_number(token)?;
         (value.fract() == 0.0 && value.abs() < 9e15).then_some(value as i64)
     })
 }
 
-/// The first three words of a line as the position of vertex `vertex`, which only serves messages.
+/// The first three words of a line as a position; `vertex` only appears in messages.
 pub(super) fn parse_position<'a>(
     line: Line<'a>,
     tokens: &mut impl Iterator<Item = &'a [u8]>,
     vertex: usize,
 ) -> Result<Point3<f64>, Located> {
-    let mut p = [0.0; 3];
+    let mut p = [0.0f64; 3];
     for x in &mut p {
-        *x = tokens.next().and_then(parse_f64).ok_or_else(|| line.expected("three coordinates"))?;
+        *x = tokens.next().and_then(parse_number).ok_or_else(|| line.expected("three coordinates"))?;
         if !x.is_finite() {
             return Err(Fault::NonFinite { vertex: vertex as u64, value: *x }.in_line(line.number));
         }
@@ -111,12 +111,17 @@ pub(super) fn parse_position<'a>(
     Ok(Point3::from(p))
 }
 
+/// Writes a line with a position after `prefix`; it reads back bit for bit.
+pub(super) fn write_position(out: &mut dyn Write, prefix: &str, p: &Point3<f64>) -> io::Result<()> {
+    writeln!(out, "{prefix}{:?} {:?} {:?}", p.x, p.y, p.z)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
-    fn lines_of_every_system_are_numbered_alike() {
+    fn line_numbers_do_not_depend_on_the_line_ends() {
         for text in
             ["a\n\n#x\nb c # d", "a\r\n\r\n#x\r\nb c # d\r\n", "a\r\r#x\rb c\r", "\u{feff}a\n\n\n b c"]
         {
@@ -126,13 +131,13 @@ mod tests {
     }
 
     #[test]
-    fn numbers_in_every_notation() {
-        assert_eq!(parse_f64(b"-1.5e3"), Some(-1500.0));
-        assert_eq!(parse_f64(b".5"), Some(0.5));
-        assert_eq!(parse_f64(b"5."), Some(5.0));
-        assert!(parse_f64(b"nan").is_some_and(f64::is_nan));
-        assert_eq!(parse_f64(b"1,5"), None);
-        assert_eq!(parse_f64(b"\xff"), None);
+    fn numbers_parse_in_every_notation() {
+        assert_eq!(parse_number(b"-1.5e3"), Some(-1500.0));
+        assert_eq!(parse_number(b".5"), Some(0.5));
+        assert_eq!(parse_number(b"5."), Some(5.0));
+        assert!(parse_number(b"nan").is_some_and(f64::is_nan));
+        assert_eq!(parse_number::<f64>(b"1,5"), None);
+        assert_eq!(parse_number::<f64>(b"\xff"), None);
         assert_eq!(parse_integer(b"12"), Some(12));
         assert_eq!(parse_integer(b"1.2000e+01"), Some(12));
         assert_eq!(parse_integer(b"1.5"), None);

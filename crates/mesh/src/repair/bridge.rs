@@ -1,25 +1,23 @@
-//! The shortest links that join all pieces of a mesh: a minimum spanning tree of its components,
-//! their distance being that of their nearest vertices.
+//! The shortest links that join the components of a mesh: a minimum spanning tree, where the distance of two
+//! components is that of their nearest vertices.
 //!
-//! Boruvka's algorithm: in each round every group of joined components finds its nearest foreign
-//! vertex, and all these links are made at once; the number of groups at least halves. The search
-//! runs over pairs of nodes of one box tree and cuts off pairs within one group and pairs farther
-//! apart than the best link known, so that nested and interwoven pieces cost no more than separate
-//! ones.
+//! This is Boruvka's algorithm. In each round, every group of joined components finds its nearest vertex
+//! outside, and all these links are added, so that the number of groups at least halves. The search visits
+//! pairs of nodes of one box tree and prunes pairs within one group and pairs farther apart than the best
+//! link so far. Nested and interwoven components therefore cost no more than separate ones. (kiddo cannot
+//! skip the points of the query's own component.)
 
 use nalgebra::Point3;
-
-use surface::DisjointSets;
-use surface::{Link, VertexId};
+use surface::{DisjointSets, Link, VertexId};
 
 /// The most points in a leaf of the tree.
 const LEAF: usize = 8;
-/// The group of a node whose points belong to several.
+/// The group of a node with points of several groups.
 const MIXED: u32 = u32::MAX;
 
-/// The links of least total length that join the components of a set of points, ordered by their
-/// ends; `labels` are the components, numbered from zero. Of equally long links the one with the
-/// lowest vertices is taken.
+/// The links of least total length that join the components of a set of points, ordered by their ends.
+/// `labels` are the components, numbered from zero. Of equally long links, the one with the lowest vertices
+/// is used.
 pub(super) fn shortest_links(positions: &[Point3<f64>], labels: &[u32]) -> Vec<Link> {
     let mut tree = BoxTree::build(positions, labels);
     let n_components = labels.iter().max().map_or(0, |&most| most as usize + 1);
@@ -57,8 +55,8 @@ struct Candidate {
 impl Candidate {
     const NONE: Self = Self { sq_length: f64::INFINITY, ends: [u32::MAX; 2] };
 
-    /// Shorter links first, then those with lower ends: with a total order, equal lengths cannot
-    /// make a cycle.
+    /// Shorter links first, then those with lower ends. In a total order, equal lengths cannot create a
+    /// cycle.
     fn order(&self, other: &Self) -> std::cmp::Ordering {
         self.sq_length.total_cmp(&other.sq_length).then(self.ends.cmp(&other.ends))
     }
@@ -70,7 +68,7 @@ impl Candidate {
     }
 }
 
-/// A point as the tree stores it.
+/// A point in the tree.
 #[derive(Debug, Clone, Copy)]
 struct Item {
     position: [f64; 3],
@@ -79,7 +77,7 @@ struct Item {
     group: u32,
 }
 
-/// Boxes around boxes around points, in one array; a parent comes before its children.
+/// A tree of bounding boxes in one array, parents before their children.
 struct BoxTree {
     items: Vec<Item>,
     nodes: Vec<Node>,
@@ -92,7 +90,7 @@ struct Node {
     items: std::ops::Range<usize>,
     /// The two children; `None` for a leaf.
     children: Option<[usize; 2]>,
-    /// The group that all points belong to, or [`MIXED`].
+    /// The group of all its points, or [`MIXED`].
     group: u32,
 }
 
@@ -134,7 +132,7 @@ impl BoxTree {
         index
     }
 
-    /// Renews the groups of points and nodes.
+    /// Updates the groups of points and nodes.
     fn assign_groups(&mut self, groups: &mut DisjointSets) {
         for item in &mut self.items {
             item.group = groups.find(item.label);
@@ -154,7 +152,7 @@ impl BoxTree {
         }
     }
 
-    /// Finds for every group its shortest link to another.
+    /// Finds the shortest link from every group to another.
     fn search_all(&self, nearest: &mut [Candidate]) {
         let mut pending = vec![0];
         while let Some(index) = pending.pop() {
@@ -165,8 +163,8 @@ impl BoxTree {
         }
     }
 
-    /// Searches the points of node `there` for neighbours of the points of node `here`, which is of
-    /// one group or a leaf.
+    /// Searches the points of node `there` for neighbours of the points of node `here`, which has a single
+    /// group or is a leaf.
     fn search(&self, here: usize, there: usize, nearest: &mut [Candidate]) {
         let (h, t) = (&self.nodes[here], &self.nodes[there]);
         let is_own = h.group != MIXED && h.group == t.group;
@@ -189,8 +187,8 @@ impl BoxTree {
         }
     }
 
-    /// The squared length beyond which no link is of interest to any point of a node of one group or
-    /// a leaf.
+    /// The largest squared length that can improve the link of a point of `node`, which has a single group or
+    /// is a leaf.
     fn bound(&self, node: &Node, nearest: &[Candidate]) -> f64 {
         if node.group != MIXED {
             return nearest[node.group as usize].sq_length;
@@ -213,8 +211,8 @@ impl BoxTree {
     }
 }
 
-/// Squared distance between two boxes; never above the squared distance of points in them, rounding
-/// included, since every step is monotonic.
+/// Squared distance between two boxes. Never larger than that of two points in them, even with rounding,
+/// since every step is monotonic.
 fn sq_gap(a: &Node, b: &Node) -> f64 {
     let gap = [0, 1, 2].map(|axis| (a.low[axis] - b.high[axis]).max(b.low[axis] - a.high[axis]).max(0.0));
     sq_norm(gap)
@@ -260,11 +258,11 @@ mod tests {
     }
 
     #[test]
-    fn links_are_those_of_kruskal_on_all_pairs() {
+    fn links_equal_those_of_kruskal_on_all_pairs() {
         for seed in 0..20 {
             let mut next = stream(seed);
             let n_components = 2 + (next() * 12.0) as usize;
-            // Half the runs on a coarse lattice, so that equal distances abound.
+            // Half of the runs use a coarse lattice with many equal distances.
             let round = |x: f64| if seed % 2 == 0 { x } else { (x * 4.0).floor() };
             let labels: Vec<u32> = (0..120).map(|i| (i % n_components) as u32).collect();
             let spread = if seed % 3 == 0 { 5.0 } else { 0.0 };
@@ -279,7 +277,7 @@ mod tests {
     }
 
     #[test]
-    fn a_thousand_nested_shells_are_no_trouble() {
+    fn a_thousand_nested_shells_are_linked() {
         let mut next = stream(7);
         let (shells, per_shell) = (1000, 40);
         let mut positions = Vec::new();
@@ -297,7 +295,7 @@ mod tests {
     }
 
     #[test]
-    fn one_piece_or_none_needs_no_link() {
+    fn one_component_or_none_needs_no_link() {
         assert_eq!(shortest_links(&[], &[]), []);
         assert_eq!(shortest_links(&[Point3::origin(); 3], &[0; 3]), []);
     }

@@ -1,4 +1,4 @@
-//! Mending what algorithms cannot take.
+//! Repair of defects that algorithms cannot handle.
 
 mod bridge;
 mod options;
@@ -8,24 +8,24 @@ mod weld;
 pub use options::{ComponentPolicy, Orient, RepairOptions, Weld};
 pub use report::RepairReport;
 
-use crate::face_set::{check_input, names_twice, repeats};
-use crate::orientation::orient_consistently;
-use crate::{MeshError, TriMesh};
 use surface::{Components, DisjointSets, IntrinsicMesh, Link, VertexId, components_of_faces};
 
-/// A mended mesh, and what became of the input.
+use crate::error::MeshError;
+use crate::face_set::{check_input, remove_degenerate, remove_duplicates};
+use crate::orientation::orient_consistently;
+use crate::tri_mesh::TriMesh;
+
+/// A repaired mesh and its relation to the input.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Repaired {
-    /// The mesh that is left: its vertices are in the input's order, and each face has its three
-    /// corners in three different places.
+    /// The repaired mesh. Its vertices are in the order of the input, and the three corners of each face are
+    /// in three different positions.
     pub mesh: TriMesh,
-    /// Straight connections between components, in vertices of `mesh`; only with
-    /// [`ComponentPolicy::Bridge`].
+    /// Straight connections between components, in vertices of `mesh`; only with [`ComponentPolicy::Bridge`].
     pub links: Vec<Link>,
-    /// For every input vertex the one it became in `mesh`, which merged vertices share; `None` for
-    /// one that was dropped.
+    /// For each input vertex, its vertex in `mesh`, which merged vertices share; `None` if it was dropped.
     pub input_to_repaired: Vec<Option<VertexId>>,
-    /// Everything that was changed.
+    /// All changes.
     pub report: RepairReport,
 }
 
@@ -37,29 +37,38 @@ impl Repaired {
     }
 }
 
-/// Diagonal of the bounding box from which on areas come near the end of the numbers, in mesh units.
+/// Largest supported diagonal of the bounding box, in mesh units; beyond it, areas come close to overflow.
 const MAX_DIAGONAL: f64 = 1e150;
 
-/// Passes of merging vertices: merging may make faces equal, and taking them out a new boundary with
-/// more to weld. Real meshes need two; the limit keeps a contrived one from taking one pass a vertex.
+/// Most passes of merging vertices. Merging can create duplicate faces, and removing these a new boundary
+/// with more to weld. Real meshes need two passes; a contrived one could need one per vertex.
 const MAX_PASSES: usize = 16;
 
-/// Makes any mesh fit for algorithms: proper faces, and one surface or a said reason why not.
+/// Repairs defects that would break distance computation, and reports them.
 ///
-/// Always done: faces that name a vertex twice and repeated faces are removed, edges of length zero
-/// are collapsed together with the faces on them, vertices that no face names are dropped. On
-/// request: welding, orientation and the treatment of components, see [`RepairOptions`]. Faces
-/// without area but with their corners in three places stay, as do non-manifold edges and vertices.
-/// The input is not touched, every change is in the report, and a mesh with nothing to mend comes
-/// back as it is.
+/// Always removed: degenerate and duplicate faces, edges of length zero together with their faces, and
+/// vertices without a face. [`RepairOptions`] select welding, orientation and the treatment of components.
+/// Faces without area stay if their corners are in three different positions, and so do non-manifold edges
+/// and vertices. A mesh without defects is returned unchanged.
 ///
-/// Linear time, but for sorting the vertices that are welded, and for bridges about
-/// `O(n log n)` in the number of vertices for each doubling of the number of components.
+/// Linear time, except for sorting the vertices to weld and for bridges, about `O(n log n)` in the number of
+/// vertices for each doubling of the number of components.
 ///
 /// # Errors
-/// [`MeshError::FaceOutOfRange`], [`MeshError::NonFinitePosition`] and [`MeshError::TooWide`] for a
-/// mesh no algorithm can use, [`MeshError::NoUsableFace`] when nothing is left, and
-/// [`MeshError::Disconnected`] when [`ComponentPolicy::Error`] says so.
+/// [`MeshError::FaceOutOfRange`], [`MeshError::NonFinitePosition`] and [`MeshError::TooWide`] for a mesh that
+/// no algorithm can use, [`MeshError::NoUsableFace`] if no face is left, and [`MeshError::Disconnected`] if
+/// there are several components and the policy is [`ComponentPolicy::Error`].
+///
+/// ```
+/// use canonform_mesh::{RepairOptions, repair, shapes};
+///
+/// let two_components = shapes::disjoint(&[shapes::icosphere(3), shapes::cube(0)]);
+/// let repaired = repair(&two_components, &RepairOptions::default())?;
+/// assert_eq!(repaired.mesh, shapes::icosphere(3));
+/// assert_eq!(repaired.report.dropped_component_vertices, 8);
+/// assert_eq!(repaired.input_to_repaired.last(), Some(&None));
+/// # Ok::<(), canonform_mesh::MeshError>(())
+/// ```
 pub fn repair(mesh: &TriMesh, options: &RepairOptions) -> Result<Repaired, MeshError> {
     check_input(mesh)?;
     let diagonal = mesh.bounds().map_or(0.0, |[lo, hi]| (hi - lo).norm());
@@ -72,7 +81,7 @@ pub fn repair(mesh: &TriMesh, options: &RepairOptions) -> Result<Repaired, MeshE
 
     let mut faces = mesh.faces.clone();
     report.degenerate_faces = remove_degenerate(&mut faces);
-    report.duplicate_faces = remove_repeated(n_input, &mut faces);
+    report.duplicate_faces = remove_duplicates(n_input, &mut faces);
     let mut merged = DisjointSets::new(n_input);
     for _ in 0..MAX_PASSES {
         let welded = weld::weld(&mesh.positions, &faces, options.weld, &mut merged);
@@ -84,7 +93,7 @@ pub fn repair(mesh: &TriMesh, options: &RepairOptions) -> Result<Repaired, MeshE
         report.welded_vertices += welded;
         report.collapsed_vertices += collapsed;
         report.zero_length_faces += remove_degenerate(&mut faces);
-        report.duplicate_faces += remove_repeated(n_input, &mut faces);
+        report.duplicate_faces += remove_duplicates(n_input, &mut faces);
     }
     if faces.is_empty() {
         let degenerate = report.degenerate_faces + report.zero_length_faces;
@@ -122,21 +131,6 @@ pub fn repair(mesh: &TriMesh, options: &RepairOptions) -> Result<Repaired, MeshE
     Ok(Repaired { mesh: repaired, links, input_to_repaired: compact.input_to_repaired, report })
 }
 
-/// Removes faces that name a vertex twice; returns how many.
-fn remove_degenerate(faces: &mut Vec<[VertexId; 3]>) -> usize {
-    let before = faces.len();
-    faces.retain(|&face| !names_twice(face));
-    before - faces.len()
-}
-
-/// Removes faces with the vertices of an earlier one; returns how many.
-fn remove_repeated(n_vertices: usize, faces: &mut Vec<[VertexId; 3]>) -> usize {
-    let before = faces.len();
-    let mut repeated = repeats(n_vertices, faces).into_iter();
-    faces.retain(|_| !repeated.next().unwrap_or(false));
-    before - faces.len()
-}
-
 fn disconnected(components: &Components) -> MeshError {
     let mut sizes = vec![0; components.count];
     components.labels.iter().flatten().for_each(|&label| sizes[label as usize] += 1);
@@ -145,8 +139,7 @@ fn disconnected(components: &Components) -> MeshError {
     MeshError::Disconnected { unreached: n_vertices - largest, n_vertices }
 }
 
-/// Removes the faces of all components but the one of the largest area, the first of equals;
-/// returns its number.
+/// Removes all components but the one with the largest area, the first in case of a tie; returns its number.
 fn keep_largest(
     positions: &[nalgebra::Point3<f64>],
     faces: &mut Vec<[VertexId; 3]>,
@@ -168,18 +161,18 @@ fn keep_largest(
     largest as u32
 }
 
-/// The vertices that are left, numbered anew in the input's order.
+/// The remaining vertices, renumbered in the order of the input.
 struct Compact {
     positions: Vec<nalgebra::Point3<f64>>,
     /// The component of each.
     labels: Vec<u32>,
-    /// The input vertex that each is.
+    /// The input vertex of each.
     sources: Vec<VertexId>,
     input_to_repaired: Vec<Option<VertexId>>,
 }
 
 impl Compact {
-    /// Keeps what a face names, of the component `kept` only if there is one.
+    /// Keeps the vertices with a face; if `kept` is given, only those of that component.
     fn of(mesh: &TriMesh, merged: &mut DisjointSets, components: &Components, kept: Option<u32>) -> Self {
         let mut compact = Self {
             positions: Vec::new(),
@@ -188,7 +181,7 @@ impl Compact {
             input_to_repaired: vec![None; mesh.n_vertices()],
         };
         for v in 0..mesh.n_vertices() {
-            // The lowest vertex of a merged set stands for it, so it has been here first.
+            // The lowest vertex of a merged set represents it, so it was visited before.
             let source = merged.find(v as u32) as usize;
             if source != v {
                 compact.input_to_repaired[v] = compact.input_to_repaired[source];
@@ -204,7 +197,7 @@ impl Compact {
         compact
     }
 
-    /// Lists the dropped vertices, by reason.
+    /// Adds the dropped vertices to the report.
     fn report_dropped(&self, merged: &mut DisjointSets, components: &Components, report: &mut RepairReport) {
         for v in (0..self.input_to_repaired.len()).filter(|&v| self.input_to_repaired[v].is_none()) {
             report.dropped_vertices.push(VertexId::from(v));

@@ -1,4 +1,4 @@
-//! What repair is to do beyond what is needed.
+//! Options of repair.
 
 use serde::{Deserialize, Serialize};
 
@@ -6,49 +6,47 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(default, rename_all = "kebab-case")]
 pub struct RepairOptions {
-    /// What happens to a mesh in several pieces. Default: [`ComponentPolicy::Largest`].
+    /// What happens to a mesh with several components. Default: [`ComponentPolicy::Largest`].
     pub components: ComponentPolicy,
-    /// Which vertices in the same place become one. Default: [`Weld::Seams`].
+    /// Which vertices in the same position are merged. Default: [`Weld::Seams`].
     pub weld: Weld,
-    /// Whether faces are turned over. Default: [`Orient::Keep`].
+    /// Whether faces are oriented. Default: [`Orient::Keep`].
     pub orient: Orient,
 }
 
-/// What happens to a mesh in several pieces.
+/// What happens to a mesh with several components.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ComponentPolicy {
-    /// Only the piece of the largest area stays.
+    /// Keep only the component with the largest area.
     #[default]
     Largest,
-    /// All pieces stay and are joined by the shortest straight links between vertices, a minimum
-    /// spanning set of them.
+    /// Keep all components and join them by straight links between vertices, a minimum spanning tree.
     Bridge,
-    /// [`MeshError::Disconnected`](crate::MeshError::Disconnected).
+    /// Fail with [`MeshError::Disconnected`](crate::MeshError::Disconnected).
     Error,
 }
 
-/// Which vertices in exactly the same place become one.
+/// Which vertices in exactly the same position are merged.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Weld {
-    /// None, but for the two ends of an edge of length zero.
+    /// None, except for the two ends of an edge of length zero.
     None,
-    /// Those that lie on a boundary: cracks along seams are closed, while sheets that merely touch
-    /// stay apart.
+    /// Vertices on a boundary: this closes cracks along seams and keeps sheets apart that merely touch.
     #[default]
     Seams,
-    /// All of them.
+    /// All.
     All,
 }
 
-/// Whether faces are turned over so that neighbours run the same way round.
+/// Whether faces are flipped so that neighbours are oriented consistently.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Orient {
-    /// They stay as they are; nothing intrinsic depends on it.
+    /// Keep all faces as they are. Intrinsic geometry does not depend on orientation.
     #[default]
     Keep,
-    /// They are, see [`orient_consistently`](crate::orient_consistently).
+    /// Flip faces, see [`orient_consistently`](crate::orient_consistently).
     Consistent,
 }

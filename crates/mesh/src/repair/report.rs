@@ -1,10 +1,10 @@
-//! What repair has done.
+//! The report of a repair.
 
 use serde::Serialize;
 
 use surface::{Link, VertexId};
 
-/// Every change that [`repair()`](crate::repair()) has made to a mesh.
+/// All changes that [`repair()`](crate::repair()) made to a mesh.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct RepairReport {
     /// Vertices before.
@@ -16,19 +16,19 @@ pub struct RepairReport {
     /// Faces after.
     pub output_faces: usize,
 
-    /// Faces removed because they named a vertex twice.
+    /// Faces removed because of a repeated vertex.
     pub degenerate_faces: usize,
     /// Faces removed because an earlier one has the same three vertices.
     pub duplicate_faces: usize,
-    /// Faces removed because two of their corners were in one place.
+    /// Faces removed because two of their corners were in the same position.
     pub zero_length_faces: usize,
-    /// Vertices merged into an earlier one in the same place, as welding was asked for.
+    /// Vertices merged by welding into an earlier one in the same position.
     pub welded_vertices: usize,
     /// Vertices merged into an earlier one at the other end of an edge of length zero.
     pub collapsed_vertices: usize,
-    /// Vertices dropped because no face that is left names them.
+    /// Vertices dropped because no remaining face uses them.
     pub unreferenced_vertices: usize,
-    /// Faces turned over.
+    /// Faces flipped.
     pub flipped_faces: usize,
 
     /// Connected components found.
@@ -43,11 +43,11 @@ pub struct RepairReport {
     pub dropped_area_share: f64,
     /// Links added between components, in input vertices; lengths in mesh units.
     pub bridges: Vec<Link>,
-    /// Sum of their lengths, in mesh units.
+    /// Sum of the lengths of all bridges, in mesh units.
     pub bridge_length: f64,
 
-    /// The input vertices that are in no way part of the result, ascending: those without a row of
-    /// coordinates in anything computed from it.
+    /// The input vertices that are not part of the result, ascending. Nothing computed from the result has
+    /// coordinates for them.
     pub dropped_vertices: Vec<VertexId>,
 }
 
@@ -58,45 +58,32 @@ impl RepairReport {
         self.summary().is_empty()
     }
 
-    /// One short line for each kind of change; none when nothing was changed.
+    /// One short line per kind of change; empty if nothing was changed.
     #[must_use]
     pub fn summary(&self) -> Vec<String> {
-        let mut lines = Vec::new();
-        let mut say = |count: usize, one: &str, many: &str| {
-            if count > 0 {
-                lines.push(counted(count, one, many));
-            }
-        };
-        say(
-            self.degenerate_faces,
-            "face that named a vertex twice removed",
-            "faces that named a vertex twice removed",
-        );
-        say(self.duplicate_faces, "duplicate face removed", "duplicate faces removed");
-        say(
-            self.welded_vertices,
-            "vertex welded to another in the same place",
-            "vertices welded to others in the same place",
-        );
-        say(
-            self.collapsed_vertices,
-            "vertex merged along an edge of length zero",
-            "vertices merged along edges of length zero",
-        );
-        say(
-            self.zero_length_faces,
-            "face with two corners in one place removed",
-            "faces with two corners in one place removed",
-        );
-        say(self.unreferenced_vertices, "vertex without a face dropped", "vertices without a face dropped");
-        say(self.flipped_faces, "face turned over", "faces turned over");
+        const FACES: [&str; 2] = ["face", "faces"];
+        const VERTICES: [&str; 2] = ["vertex", "vertices"];
+        let counts = [
+            (self.degenerate_faces, FACES, "with a repeated vertex removed"),
+            (self.duplicate_faces, ["duplicate face", "duplicate faces"], "removed"),
+            (self.welded_vertices, VERTICES, "merged into one in the same position"),
+            (self.collapsed_vertices, VERTICES, "merged across an edge of length zero"),
+            (self.zero_length_faces, FACES, "with two corners in the same position removed"),
+            (self.unreferenced_vertices, VERTICES, "without a face dropped"),
+            (self.flipped_faces, FACES, "flipped"),
+        ];
+        let mut lines: Vec<String> = counts
+            .into_iter()
+            .filter(|(count, ..)| *count > 0)
+            .map(|(count, noun, what)| format!("{} {what}", counted(count, noun)))
+            .collect();
         if self.dropped_components > 0 {
             lines.push(format!(
                 "{} of {} components dropped, {} and {} with {:.2} % of the area; the largest is kept",
                 self.dropped_components,
                 self.components,
-                counted(self.dropped_component_faces, "face", "faces"),
-                counted(self.dropped_component_vertices, "vertex", "vertices"),
+                counted(self.dropped_component_faces, FACES),
+                counted(self.dropped_component_vertices, VERTICES),
                 100.0 * self.dropped_area_share
             ));
         }
@@ -104,7 +91,7 @@ impl RepairReport {
             lines.push(format!(
                 "{} components joined by {} of total length {:.6}",
                 self.components,
-                counted(self.bridges.len(), "link", "links"),
+                counted(self.bridges.len(), ["link", "links"]),
                 self.bridge_length
             ));
         }
@@ -113,6 +100,6 @@ impl RepairReport {
 }
 
 /// "1 face" or "7 faces".
-fn counted(count: usize, one: &str, many: &str) -> String {
+fn counted(count: usize, [one, many]: [&str; 2]) -> String {
     format!("{count} {}", if count == 1 { one } else { many })
 }

@@ -1,32 +1,25 @@
-//! Making one vertex of several in the same place.
+//! Merging vertices in the same position.
 
 use nalgebra::Point3;
+use surface::{DisjointSets, EdgeId, Topology, VertexId};
 
-use crate::position_key::position_key;
-use surface::DisjointSets;
-use surface::{EdgeId, Topology, VertexId};
+use super::options::Weld;
+use crate::coincidence::coincident_pairs;
 
-use super::Weld;
-
-/// Merges vertices in the same place as `policy` says; returns how many went into another.
-///
-/// No face names a vertex twice.
+/// Merges vertices in the same position according to `policy`; returns how many were merged into another. No
+/// face is degenerate.
 pub(super) fn weld(
     positions: &[Point3<f64>],
     faces: &[[VertexId; 3]],
     policy: Weld,
     merged: &mut DisjointSets,
 ) -> usize {
-    let candidates = match policy {
+    let pairs = match policy {
         Weld::None => return 0,
-        Weld::Seams => boundary_vertices(positions.len(), faces),
-        Weld::All => (0..positions.len() as u32).collect(),
+        Weld::Seams => coincident_pairs(positions, boundary_vertices(positions.len(), faces)),
+        Weld::All => coincident_pairs(positions, 0..positions.len() as u32),
     };
-    let mut placed: Vec<([u64; 3], u32)> =
-        candidates.into_iter().map(|v| (position_key(&positions[v as usize]), v)).collect();
-    placed.sort_unstable();
-    let twins = placed.windows(2).filter(|pair| pair[0].0 == pair[1].0);
-    twins.filter(|pair| merged.union(pair[0].1, pair[1].1)).count()
+    pairs.into_iter().filter(|&[a, b]| merged.union(a, b)).count()
 }
 
 fn boundary_vertices(n_vertices: usize, faces: &[[VertexId; 3]]) -> Vec<u32> {
@@ -40,9 +33,10 @@ fn boundary_vertices(n_vertices: usize, faces: &[[VertexId; 3]]) -> Vec<u32> {
     (0..n_vertices as u32).filter(|&v| on_boundary[v as usize]).collect()
 }
 
-/// Merges the ends of every edge of length zero; returns how many vertices went into another.
+/// Merges the ends of every edge of length zero; returns how many vertices were merged into another.
 ///
-/// The face on such an edge must go, and with its ends kept apart it would leave a slit.
+/// The faces at such an edge become degenerate and are removed. If its ends stayed apart, that would leave a
+/// slit.
 pub(super) fn collapse_zero_edges(
     positions: &[Point3<f64>],
     faces: &[[VertexId; 3]],

@@ -3,10 +3,11 @@
 use std::f64::consts::TAU;
 
 use nalgebra::Point3;
-
-use super::subdivide;
-use crate::TriMesh;
 use surface::VertexId;
+
+use super::lattice::triangles;
+use super::subdivision::subdivide;
+use crate::tri_mesh::TriMesh;
 
 fn from_arrays(positions: &[[f64; 3]], faces: &[[u32; 3]]) -> TriMesh {
     TriMesh {
@@ -19,14 +20,14 @@ fn subdivided(mesh: TriMesh, level: u32) -> TriMesh {
     (0..level).fold(mesh, |mesh, _| subdivide(&mesh))
 }
 
-/// A regular tetrahedron with corners at (+-1, +-1, +-1), each face cut into `4^level`.
+/// A regular tetrahedron with corners at (+-1, +-1, +-1), each face split into `4^level`.
 #[must_use]
 pub fn tetrahedron(level: u32) -> TriMesh {
     let corners = [[1.0, 1.0, 1.0], [1.0, -1.0, -1.0], [-1.0, 1.0, -1.0], [-1.0, -1.0, 1.0]];
     subdivided(from_arrays(&corners, &[[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]]), level)
 }
 
-/// The unit cube [0, 1]^3, each of its twelve triangles cut into `4^level`.
+/// The unit cube [0, 1]^3, each of its twelve triangles split into `4^level`.
 #[must_use]
 pub fn cube(level: u32) -> TriMesh {
     let corners: Vec<[f64; 3]> =
@@ -36,8 +37,8 @@ pub fn cube(level: u32) -> TriMesh {
     subdivided(from_arrays(&corners, &faces), level)
 }
 
-/// A unit sphere: an icosahedron subdivided `level` times, every vertex on the sphere;
-/// `10 * 4^level + 2` vertices.
+/// A unit sphere: an icosahedron subdivided `level` times with all vertices on the sphere, `10 * 4^level + 2`
+/// of them.
 #[must_use]
 pub fn icosphere(level: u32) -> TriMesh {
     let g = (1.0 + 5f64.sqrt()) / 2.0;
@@ -69,11 +70,11 @@ pub fn icosphere(level: u32) -> TriMesh {
     (0..level).fold(on_sphere(from_arrays(&corners, &faces)), |mesh, _| on_sphere(subdivide(&mesh)))
 }
 
-/// The side of a cylinder around the z axis, open at both ends: `n_around` x `n_along` vertices,
-/// ring by ring from z = 0 to z = `height`.
+/// The side of a cylinder around the z axis, open at both ends: `n_around` x `n_along` vertices, ring by ring
+/// from z = 0 to z = `height`.
 ///
 /// # Panics
-/// When `n_around` is below three or `n_along` below two.
+/// If `n_around` is below three or `n_along` below two.
 #[must_use]
 pub fn cylinder(n_around: usize, n_along: usize, radius: f64, height: f64) -> TriMesh {
     assert!(n_around >= 3 && n_along >= 2, "a cylinder needs 3 x 2 vertices, not {n_around} x {n_along}");
@@ -84,16 +85,14 @@ pub fn cylinder(n_around: usize, n_along: usize, radius: f64, height: f64) -> Tr
             Point3::new(radius * cos, radius * sin, z)
         })
         .collect();
-    let faces =
-        quads(n_around, n_along - 1, |i, j| j * n_around + i % n_around).flat_map(split_quad).collect();
-    TriMesh { positions, faces }
+    TriMesh { positions, faces: triangles(n_around, n_along - 1, |i, j| j * n_around + i % n_around) }
 }
 
-/// A torus around the z axis with radii `major` (of the ring) and `minor` (of the tube),
-/// `n_major` x `n_minor` vertices.
+/// A torus around the z axis with the radii `major` of the ring and `minor` of the tube: `n_major` x
+/// `n_minor` vertices.
 ///
 /// # Panics
-/// When `n_major` or `n_minor` is below three.
+/// If `n_major` or `n_minor` is below three.
 #[must_use]
 pub fn torus(n_major: usize, n_minor: usize, major: f64, minor: f64) -> TriMesh {
     assert!(n_major >= 3 && n_minor >= 3, "a torus needs 3 x 3 vertices, not {n_major} x {n_minor}");
@@ -106,24 +105,7 @@ pub fn torus(n_major: usize, n_minor: usize, major: f64, minor: f64) -> TriMesh 
         })
         .collect();
     let vertex = |i, j| (j % n_minor) * n_major + i % n_major;
-    let faces = quads(n_major, n_minor, vertex).flat_map(split_quad).collect();
-    TriMesh { positions, faces }
-}
-
-/// The corners of `nx` x `ny` quads over a lattice of vertices.
-fn quads(
-    nx: usize,
-    ny: usize,
-    vertex: impl Fn(usize, usize) -> usize,
-) -> impl Iterator<Item = [VertexId; 4]> {
-    (0..nx * ny).map(move |q| {
-        let (i, j) = (q % nx, q / nx);
-        [vertex(i, j), vertex(i + 1, j), vertex(i + 1, j + 1), vertex(i, j + 1)].map(VertexId::from)
-    })
-}
-
-fn split_quad([a, b, c, d]: [VertexId; 4]) -> [[VertexId; 3]; 2] {
-    [[a, b, c], [a, c, d]]
+    TriMesh { positions, faces: triangles(n_major, n_minor, vertex) }
 }
 
 #[cfg(test)]
@@ -134,7 +116,7 @@ mod tests {
     use crate::validate;
 
     #[test]
-    fn closed_shapes_are_manifold_of_the_right_genus_and_face_outward() {
+    fn closed_shapes_are_manifold_have_the_right_genus_and_face_outward() {
         for (mesh, genus) in [
             (tetrahedron(0), 0),
             (tetrahedron(3), 0),

@@ -2,47 +2,41 @@
 
 use nalgebra::Point3;
 
-use crate::TriMesh;
-use surface::VertexId;
+use super::lattice::triangles;
+use crate::tri_mesh::TriMesh;
 
-/// A flat sheet of `nx` x `ny` vertices, `step` apart, in the plane z = 0 with its first vertex in
-/// the origin; vertex `(i, j)` has the index `j * nx + i` and all diagonals run the same way.
+/// A flat sheet of `nx` x `ny` vertices with spacing `step` in the plane z = 0. The first vertex is the
+/// origin, vertex `(i, j)` has the index `j * nx + i`, and all diagonals are parallel.
 ///
 /// # Panics
-/// When `nx` or `ny` is below two.
+/// If `nx` or `ny` is below two.
 #[must_use]
 pub fn grid(nx: usize, ny: usize, step: f64) -> TriMesh {
     sheared_grid(nx, ny, step, 0.0)
 }
 
-/// A [`grid`] whose rows are pushed along x by `shear` steps each: at 1 and more every triangle is
-/// obtuse, at `-0.5` (with the diagonals as they are) nearly equilateral.
+/// A [`grid`] whose rows are shifted along x by `shear` steps each. From 1 on every triangle is obtuse; at
+/// `-0.5` triangles are nearly equilateral.
 ///
 /// # Panics
-/// When `nx` or `ny` is below two.
+/// If `nx` or `ny` is below two.
 #[must_use]
 pub fn sheared_grid(nx: usize, ny: usize, step: f64, shear: f64) -> TriMesh {
-    assert!(nx >= 2 && ny >= 2, "a grid needs two vertices a side, not {nx} x {ny}");
+    assert!(nx >= 2 && ny >= 2, "a grid needs two vertices per side, not {nx} x {ny}");
     let positions = (0..nx * ny)
         .map(|v| {
             let (x, y) = ((v % nx) as f64, (v / nx) as f64);
             Point3::new(step * (x + shear * y), step * y, 0.0)
         })
         .collect();
-    let mut faces = Vec::with_capacity(2 * (nx - 1) * (ny - 1));
-    for (i, j) in (0..ny - 1).flat_map(|j| (0..nx - 1).map(move |i| (i, j))) {
-        let [a, b, c, d] = [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)].map(|(i, j)| j * nx + i);
-        faces.push([a, b, c].map(VertexId::from));
-        faces.push([a, c, d].map(VertexId::from));
-    }
-    TriMesh { positions, faces }
+    TriMesh { positions, faces: triangles(nx - 1, ny - 1, |i, j| j * nx + i) }
 }
 
-/// A [`grid`] whose inner vertices are moved within the plane by up to `jitter` steps along each
-/// axis, the same way for the same `seed`; below 0.25 no triangle turns over.
+/// A [`grid`] whose inner vertices are moved within the plane by up to `jitter` steps along each axis,
+/// determined by `seed`. Below 0.25 no triangle is inverted.
 ///
 /// # Panics
-/// When `nx` or `ny` is below two.
+/// If `nx` or `ny` is below two.
 #[must_use]
 pub fn jittered_grid(nx: usize, ny: usize, step: f64, jitter: f64, seed: u64) -> TriMesh {
     let mut mesh = grid(nx, ny, step);
@@ -64,9 +58,9 @@ fn uniform(state: &mut u64) -> f64 {
     ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 52) as f64 - 1.0
 }
 
-/// Turns everything beyond the line `x = crease, z = 0` around that line by `angle` radians.
+/// Rotates everything beyond the line `x = crease, z = 0` around that line by `angle` radians.
 ///
-/// An isometry of a sheet in the plane z = 0 whose edges do not cross the line.
+/// This is an isometry of a sheet in the plane z = 0 if no edge crosses the line.
 #[must_use]
 pub fn fold(sheet: &TriMesh, crease: f64, angle: f64) -> TriMesh {
     let mut folded = sheet.clone();
@@ -79,10 +73,10 @@ pub fn fold(sheet: &TriMesh, crease: f64, angle: f64) -> TriMesh {
     folded
 }
 
-/// A [`grid`] folded by `angle` radians along its column `column` of vertices.
+/// A [`grid`] folded by `angle` radians along the vertices of column `column`.
 ///
 /// # Panics
-/// When `nx` or `ny` is below two.
+/// If `nx` or `ny` is below two.
 #[must_use]
 pub fn folded_sheet(nx: usize, ny: usize, step: f64, column: usize, angle: f64) -> TriMesh {
     fold(&grid(nx, ny, step), step * column as f64, angle)

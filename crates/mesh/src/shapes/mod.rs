@@ -1,20 +1,33 @@
 //! Small analytic shapes for tests, benches and documentation.
 //!
-//! Closed shapes run counter-clockwise seen from outside. The functions panic, as said at each, on
-//! sizes that make no shape: their arguments are written by programmers, not read from files.
+//! The faces of closed shapes are counter-clockwise as seen from outside. Sizes too small for a shape are
+//! programming errors and panic.
+//!
+//! ```
+//! use canonform_mesh::{shapes, validate};
+//!
+//! let torus = shapes::torus(40, 20, 2.0, 0.5);
+//! assert_eq!(validate(&torus).genus, Some(1));
+//!
+//! // Folding a sheet along a column of vertices keeps all edge lengths.
+//! let sheet = shapes::folded_sheet(9, 4, 0.5, 4, 1.0);
+//! assert!((sheet.area() - 6.0).abs() < 1e-12);
+//! ```
 
 mod closed;
 mod flat;
+mod lattice;
 mod subdivision;
 
 pub use closed::{cube, cylinder, icosphere, tetrahedron, torus};
 pub use flat::{fold, folded_sheet, grid, jittered_grid, sheared_grid};
 pub use subdivision::subdivide;
 
-use crate::TriMesh;
 use surface::VertexId;
 
-/// One mesh that holds copies of all the given ones side by side, in order, sharing nothing.
+use crate::tri_mesh::TriMesh;
+
+/// One mesh with copies of all the given ones, in order, that share no vertices.
 #[must_use]
 pub fn disjoint(parts: &[TriMesh]) -> TriMesh {
     let mut whole = TriMesh::default();

@@ -1,28 +1,28 @@
 //! Midpoint subdivision.
 
-use crate::TriMesh;
-use surface::{CornerId, Topology};
+use surface::{CornerId, Topology, VertexId};
 
-/// Cuts every face into four through the midpoints of its edges; the surface stays where it is.
+use crate::tri_mesh::TriMesh;
+
+/// Splits every face into four at the midpoints of its edges, without changing the surface.
 ///
-/// The old vertices come first, unchanged, then one per edge in the order of
-/// [`Topology::edges`]. Face `f` becomes the faces `4 f .. 4 f + 4`, the one in the middle last.
+/// The old vertices come first, unchanged, then one per edge in the order of [`Topology::edges`]. Face `f`
+/// becomes the faces `4 f .. 4 f + 4`, the one in the middle last.
 ///
 /// # Panics
-/// When a face is degenerate in its indices or out of range, see [`Topology::new`].
+/// If a face has a repeated vertex or one that does not exist, see [`Topology::new`].
 #[must_use]
 pub fn subdivide(mesh: &TriMesh) -> TriMesh {
     let n_old = mesh.n_vertices();
     let topology = Topology::new(n_old, mesh.faces.clone());
-    let midpoint = |[a, b]: [surface::VertexId; 2]| {
-        nalgebra::center(&mesh.positions[a.index()], &mesh.positions[b.index()])
-    };
+    let midpoint =
+        |[a, b]: [VertexId; 2]| nalgebra::center(&mesh.positions[a.index()], &mesh.positions[b.index()]);
     let mut positions = mesh.positions.clone();
     positions.extend(topology.edges().iter().map(|&edge| midpoint(edge)));
     let faces = mesh.faces.iter().enumerate().flat_map(|(f, &[a, b, c])| {
         let [bc, ca, ab] = [0, 1, 2].map(|slot| {
             let edge = topology.opposite_edge(CornerId((3 * f + slot) as u32));
-            surface::VertexId::from(n_old + edge.index())
+            VertexId::from(n_old + edge.index())
         });
         [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]
     });
@@ -34,7 +34,7 @@ mod tests {
     use crate::{shapes, validate};
 
     #[test]
-    fn subdivision_keeps_area_orientation_and_old_vertices_and_halves_edges() {
+    fn subdivision_keeps_area_orientation_and_vertices_and_halves_edges() {
         let coarse = shapes::torus(7, 5, 2.0, 0.6);
         let fine = super::subdivide(&coarse);
         let (before, after) = (validate(&coarse), validate(&fine));

@@ -1,38 +1,36 @@
-//! What there is to know of a mesh, and what is wrong with it.
+//! Facts about a mesh and its defects.
 
 mod fans;
 
 use serde::Serialize;
+use surface::{EdgeId, Topology, VertexId, components_of_faces};
 
-use crate::TriMesh;
-use crate::face_set::{names_twice, repeats};
+use crate::coincidence::coincident_pairs;
+use crate::face_set::{remove_degenerate, remove_duplicates};
 use crate::orientation::{Orientation, runs_against};
-use crate::position_key::position_key;
+use crate::tri_mesh::TriMesh;
 use fans::Fans;
-use surface::components_of_faces;
-use surface::{EdgeId, Topology, VertexId};
 
 /// Facts about a mesh, as [`validate`] finds them.
 ///
-/// Whatever concerns connectivity (from `n_edges` to `genus`) is counted on the faces that are left
-/// once degenerate and duplicate ones are set aside, since [`repair()`](crate::repair()) removes
-/// those in any case and they would be counted as non-manifold edges again.
+/// Facts about connectivity (from `n_edges` to `genus`) leave out degenerate and duplicate faces:
+/// [`repair()`](crate::repair()) always removes them, and they would count again as non-manifold edges.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct MeshReport {
     /// Vertices in the file, used by a face or not.
     pub n_vertices: usize,
     /// Faces in the file.
     pub n_faces: usize,
-    /// Faces that name a vertex twice.
+    /// Faces with a repeated vertex.
     pub degenerate_faces: usize,
     /// Faces with the same three vertices as an earlier one.
     pub duplicate_faces: usize,
-    /// Faces of three different vertices but no area to speak of: their height is below 1e-12 of
-    /// their longest side. They are kept by repair unless two corners are in one place.
+    /// Faces with three distinct vertices whose height is below 1e-12 of their longest side. Repair keeps
+    /// them unless two corners are in the same position.
     pub zero_area_faces: usize,
-    /// Vertices that no face names.
+    /// Vertices without a face.
     pub unreferenced_vertices: usize,
-    /// Vertices in exactly the place of an earlier one.
+    /// Vertices in exactly the position of an earlier one.
     pub duplicate_vertices: usize,
 
     /// Undirected edges.
@@ -43,41 +41,40 @@ pub struct MeshReport {
     pub component_faces: Vec<usize>,
     /// Edges with one face.
     pub n_boundary_edges: usize,
-    /// Closed chains of boundary edges, or open ones where a boundary runs into a non-manifold
-    /// edge.
+    /// Closed chains of boundary edges, or open ones where the boundary meets a non-manifold edge.
     pub n_boundary_loops: usize,
     /// Edges with three faces or more.
     pub non_manifold_edges: usize,
-    /// Vertices whose faces, joined across the edges they share there, form more than one fan.
+    /// Vertices whose faces form more than one fan.
     pub non_manifold_vertices: usize,
-    /// Edges whose two faces run along them in the same direction: one of the two is flipped.
+    /// Edges that their two faces traverse in the same direction: one of the faces is flipped.
     pub inconsistent_edges: usize,
-    /// The fewest faces to turn over so that neighbours across manifold edges agree.
+    /// The fewest faces to flip so that neighbours across manifold edges are oriented consistently.
     pub flipped_faces: usize,
-    /// Whether turning faces over can make all neighbours across manifold edges agree.
+    /// Whether neighbours across manifold edges can be oriented consistently.
     pub orientable: bool,
-    /// Vertices that a face names, less edges, plus faces.
+    /// Vertices with a face, minus edges, plus faces.
     pub euler_characteristic: i64,
-    /// Number of handles; only for a closed, connected, orientable manifold.
+    /// Number of handles of a closed, connected, orientable manifold; `None` otherwise.
     pub genus: Option<u64>,
 
-    /// Faces with an angle above 90 degrees as a share of all that are not degenerate, 0 to 1.
+    /// Share of faces with an angle above 90 degrees among those that are not degenerate, 0 to 1.
     pub obtuse_share: f64,
-    /// Shortest edge, in mesh units; zero without edges.
+    /// Length of the shortest edge, in mesh units; zero without edges.
     pub min_edge_length: f64,
-    /// Mean over all edges, in mesh units; zero without edges.
+    /// Mean length of edges, in mesh units; zero without edges.
     pub mean_edge_length: f64,
-    /// Longest edge, in mesh units; zero without edges.
+    /// Length of the longest edge, in mesh units; zero without edges.
     pub max_edge_length: f64,
-    /// Sum of the areas of all faces, duplicates left out, in squared mesh units.
+    /// Sum of the areas of all faces but duplicates, in squared mesh units.
     pub area: f64,
     /// Diagonal of the axis-aligned bounding box of all vertices, in mesh units.
     pub bounding_box_diagonal: f64,
 }
 
 impl MeshReport {
-    /// Whether the mesh is a connected manifold, with or without boundary, on which nothing is to
-    /// be mended.
+    /// Whether the mesh is a connected, consistently oriented manifold, with or without boundary, without
+    /// defects.
     #[must_use]
     pub fn is_clean(&self) -> bool {
         self.n_components == 1
@@ -96,20 +93,26 @@ impl MeshReport {
     }
 }
 
-/// Inspects any mesh whose faces are in range, degenerate or not; changes nothing.
-///
-/// Takes time linear in the size of the mesh but for one sort of the vertices.
+/// Inspects a mesh, whatever its defects. Linear time but for one sort of the vertices.
 ///
 /// # Panics
-/// When a face names a vertex out of range; no reader lets one through.
+/// If a face refers to a vertex that does not exist; readers return no such mesh.
+///
+/// ```
+/// use canonform_mesh::{shapes, validate};
+///
+/// let mut sheet = shapes::grid(4, 3, 2.0);
+/// sheet.faces.push(sheet.faces[0]);
+/// let report = validate(&sheet);
+/// assert_eq!((report.duplicate_faces, report.n_boundary_loops, report.area), (1, 1, 24.0));
+/// assert!(!report.is_clean());
+/// ```
 #[must_use]
 pub fn validate(mesh: &TriMesh) -> MeshReport {
     let n_vertices = mesh.n_vertices();
-    let mut faces: Vec<[VertexId; 3]> = mesh.faces.iter().copied().filter(|&f| !names_twice(f)).collect();
-    let degenerate_faces = mesh.n_faces() - faces.len();
-    let mut repeated = repeats(n_vertices, &faces).into_iter();
-    faces.retain(|_| !repeated.next().unwrap_or(false));
-    let duplicate_faces = mesh.n_faces() - degenerate_faces - faces.len();
+    let mut faces = mesh.faces.clone();
+    let degenerate_faces = remove_degenerate(&mut faces);
+    let duplicate_faces = remove_duplicates(n_vertices, &mut faces);
 
     let mut referenced = vec![false; n_vertices];
     mesh.faces.iter().flatten().for_each(|v| referenced[v.index()] = true);
@@ -138,7 +141,7 @@ pub fn validate(mesh: &TriMesh) -> MeshReport {
         duplicate_faces,
         zero_area_faces: shape.zero_area,
         unreferenced_vertices: referenced.iter().filter(|&&r| !r).count(),
-        duplicate_vertices: duplicate_vertices(mesh),
+        duplicate_vertices: coincident_pairs(&mesh.positions, 0..n_vertices as u32).len(),
         n_edges: topology.n_edges(),
         n_components: components.count,
         component_faces,
@@ -158,12 +161,6 @@ pub fn validate(mesh: &TriMesh) -> MeshReport {
         area: shape.area,
         bounding_box_diagonal: mesh.bounds().map_or(0.0, |[lo, hi]| (hi - lo).norm()),
     }
-}
-
-fn duplicate_vertices(mesh: &TriMesh) -> usize {
-    let mut keys: Vec<[u64; 3]> = mesh.positions.iter().map(position_key).collect();
-    keys.sort_unstable();
-    keys.windows(2).filter(|pair| pair[0] == pair[1]).count()
 }
 
 struct EdgeCounts {
@@ -194,7 +191,7 @@ struct FaceShapes {
 
 impl FaceShapes {
     fn of(positions: &[nalgebra::Point3<f64>], faces: &[[VertexId; 3]]) -> Self {
-        /// Height over longest side below which a face counts as flat: some thousand roundings.
+        /// Ratio of height to longest side below which a face has no area: some thousand rounding errors.
         const FLAT: f64 = 1e-12;
         let mut shapes = Self { obtuse: 0, zero_area: 0, area: 0.0 };
         for face in faces {
@@ -202,7 +199,7 @@ impl FaceShapes {
             let sides = [b - a, c - b, a - c];
             let twice_area = sides[0].cross(&sides[1]).norm();
             let longest = sides.iter().fold(0.0, |longest, s| f64::max(longest, s.norm_squared()));
-            // The sides run around, so those that meet in an obtuse corner have a positive product.
+            // The sides form a cycle, so two that meet in an obtuse corner have a positive product.
             shapes.obtuse += usize::from((0..3).any(|i| sides[i].dot(&sides[(i + 1) % 3]) > 0.0));
             shapes.zero_area += usize::from(twice_area <= FLAT * longest);
             shapes.area += 0.5 * twice_area;
@@ -245,7 +242,7 @@ mod tests {
     }
 
     #[test]
-    fn a_sheet_is_measured() {
+    fn a_sheet_has_its_known_measures() {
         let report = validate(&shapes::grid(4, 3, 2.0));
         assert!(report.is_clean());
         assert_eq!((report.n_vertices, report.n_faces, report.n_edges), (12, 12, 23));
@@ -258,7 +255,7 @@ mod tests {
     }
 
     #[test]
-    fn every_fault_is_counted_once() {
+    fn every_defect_is_counted_once() {
         let dirty = from(9, &[[0, 1, 2], [2, 1, 0], [3, 3, 4], [1, 0, 5], [0, 1, 6], [5, 5, 5]]);
         let report = validate(&dirty);
         assert_eq!((report.degenerate_faces, report.duplicate_faces), (2, 1));
@@ -270,14 +267,14 @@ mod tests {
     }
 
     #[test]
-    fn two_cones_that_share_their_tip_are_not_manifold_there() {
+    fn the_common_tip_of_two_cones_is_not_manifold() {
         let report = validate(&from(7, &[[0, 1, 2], [0, 2, 3], [0, 4, 5], [0, 5, 6]]));
         assert_eq!((report.non_manifold_vertices, report.non_manifold_edges), (1, 0));
         assert_eq!((report.n_components, report.n_boundary_loops), (1, 2));
     }
 
     #[test]
-    fn flipped_faces_show_in_edges_and_faces() {
+    fn a_flipped_face_counts_in_edges_and_faces() {
         let mut sphere = shapes::icosphere(2);
         sphere.faces[7].swap(0, 1);
         let report = validate(&sphere);
@@ -286,7 +283,7 @@ mod tests {
     }
 
     #[test]
-    fn holes_are_counted_by_their_rims() {
+    fn holes_are_counted_by_their_boundary_loops() {
         let mut torus = shapes::torus(20, 12, 2.0, 0.5);
         torus.faces.remove(300);
         torus.faces.remove(100);
@@ -297,7 +294,7 @@ mod tests {
     }
 
     #[test]
-    fn coincident_vertices_and_flat_faces_are_told_apart_from_degenerate_ones() {
+    fn coincident_vertices_and_flat_faces_are_not_degenerate_faces() {
         let mut mesh = from(6, &[[0, 1, 2], [3, 4, 5]]);
         mesh.positions[5] = nalgebra::center(&mesh.positions[3], &mesh.positions[4]);
         mesh.positions[1] = mesh.positions[4];
@@ -307,7 +304,7 @@ mod tests {
     }
 
     #[test]
-    fn meshes_without_faces_or_vertices_have_a_report_too() {
+    fn meshes_without_faces_or_vertices_have_a_report() {
         for mesh in [TriMesh::default(), from(3, &[]), from(2, &[[0, 0, 1]])] {
             let report = validate(&mesh);
             assert_eq!((report.n_components, report.n_edges, report.mean_edge_length), (0, 0, 0.0));

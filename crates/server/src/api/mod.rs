@@ -5,7 +5,7 @@ mod compare;
 mod search;
 mod shapes;
 
-use std::sync::Arc;
+use std::sync::{Arc, LazyLock};
 
 use axum::extract::State;
 use axum::http::StatusCode;
@@ -16,11 +16,12 @@ use serde::Serialize;
 
 use crate::app::App;
 use crate::error::ApiError;
+use crate::formats::filled_in;
 
 pub(crate) use answer::{is_known, tag, tagged};
 
 /// The description of the interface.
-const OPENAPI: &str = include_str!("../../openapi.json");
+static OPENAPI: LazyLock<String> = LazyLock::new(|| filled_in(include_str!("../../openapi.json")));
 
 /// A route: its method as the description names it, its path, and who answers.
 type Route = (&'static str, &'static str, MethodRouter<Arc<App>>);
@@ -45,7 +46,7 @@ pub(crate) fn router() -> Router<Arc<App>> {
 }
 
 async fn openapi() -> Response {
-    answer::json_text(OPENAPI)
+    answer::json_text(&OPENAPI)
 }
 
 async fn nothing_there() -> ApiError {
@@ -86,7 +87,7 @@ mod tests {
 
     #[test]
     fn every_route_is_described_and_every_description_is_a_route() {
-        let description: serde_json::Value = serde_json::from_str(OPENAPI).unwrap();
+        let description: serde_json::Value = serde_json::from_str(&OPENAPI).unwrap();
         let mut described = BTreeSet::new();
         for (path, methods) in description["paths"].as_object().unwrap() {
             for method in methods.as_object().unwrap().keys().filter(|name| *name != "parameters") {

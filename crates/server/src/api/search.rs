@@ -9,7 +9,7 @@ use canonform::{
     Explain, PipelineError, SearchOptions, SearchReport, SearchSeconds, Surface, describe_with_form,
 };
 use mesh::RepairReport;
-use mesh::io::{MemoryFile, ReadLimits, read_memory};
+use mesh::io::{MemoryFile, ReadLimits, mesh_files, read_memory};
 use serde::{Deserialize, Serialize};
 use view::interactive::Geometry;
 
@@ -125,9 +125,10 @@ fn with_upload(app: &App, upload: Upload, options: &SearchOptions) -> Result<Ans
     let name: PathBuf = match upload.files.first() {
         Some((name, _)) => name.clone(),
         None => {
-            return Err(ApiError::bad_request("no file came with the request").with_remedy(
-                "send one mesh, or a .vert and its .tri; or name a shape of the index with ?shape=",
-            ));
+            return Err(ApiError::bad_request("no file came with the request").with_remedy(format!(
+                "send one mesh, {}; or name a shape of the index with ?shape=",
+                mesh_files()
+            )));
         }
     };
     let (query, report) =

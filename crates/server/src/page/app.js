@@ -6,7 +6,7 @@
 // answer.js   the answer: verdict, views, nearest shapes, overlay
 //
 // Names that do not change, for tests and other scripts:
-//   #file #drop              file input (a mesh, or .vert and .tri together); drop zone, class `over` while dragged over
+//   #file #drop              file input (the files of one mesh); drop zone, class `over` while dragged over
 //   #progress #status #error progress bar; what is going on; what went wrong, in the words of the command line
 //   #filter #shapes #more    search field, list of the index, button for more of it; #shapes-count
 //     #shapes button.tile[data-id][data-label], aria-pressed on the one that was asked with

@@ -12,6 +12,7 @@ use axum::routing::get;
 
 use crate::api::{is_known, tag, tagged};
 use crate::app::App;
+use crate::formats::filled_in;
 
 const HTML: &str = "text/html; charset=utf-8";
 const CSS: &str = "text/css; charset=utf-8";
@@ -19,7 +20,6 @@ const JS: &str = "text/javascript; charset=utf-8";
 
 pub(crate) fn router() -> Router<Arc<App>> {
     let files = [
-        ("/", HTML, include_str!("index.html")),
         ("/assets/style.css", CSS, include_str!("style.css")),
         ("/assets/app.js", JS, include_str!("app.js")),
         ("/assets/ask.js", JS, include_str!("ask.js")),
@@ -28,7 +28,9 @@ pub(crate) fn router() -> Router<Arc<App>> {
         ("/assets/viewer.js", JS, view::interactive::VIEWER_JS),
         ("/assets/plotly.js", JS, view::interactive::plotly_js()),
     ];
-    files.into_iter().fold(Router::new(), |router, (path, kind, text)| {
+    let page = ("/", HTML, Bytes::from(filled_in(include_str!("index.html"))));
+    let files = files.map(|(path, kind, text)| (path, kind, Bytes::from_static(text.as_bytes())));
+    std::iter::once(page).chain(files).fold(Router::new(), |router, (path, kind, text)| {
         let mut hash = DefaultHasher::new();
         text.hash(&mut hash);
         let tag = tag(&format!("{:016x}", hash.finish()));
@@ -37,12 +39,7 @@ pub(crate) fn router() -> Router<Arc<App>> {
     })
 }
 
-fn file(
-    headers: &HeaderMap,
-    tag: axum::http::HeaderValue,
-    kind: &'static str,
-    text: &'static str,
-) -> Response {
-    let content = (!is_known(headers, &tag)).then(|| Bytes::from_static(text.as_bytes()));
+fn file(headers: &HeaderMap, tag: axum::http::HeaderValue, kind: &'static str, text: Bytes) -> Response {
+    let content = (!is_known(headers, &tag)).then_some(text);
     tagged(tag, kind, content)
 }

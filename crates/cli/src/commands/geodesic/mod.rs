@@ -11,6 +11,7 @@ use std::time::Instant;
 
 use anyhow::{Result, bail};
 use canonform::{DistanceSolver, InputPoint, Source, Surface};
+use mesh::io::{Content, or_list, writable};
 use serde::Serialize;
 
 use super::{named, read_surface};
@@ -22,9 +23,9 @@ use terminal::Bars;
 pub(crate) fn geodesic(args: &GeodesicArgs, common: &Common) -> Result<ExitCode> {
     let output = Output::of(args);
     let format = extension(&args.output);
-    let (formats, written) = output.formats();
+    let (what, formats) = output.formats();
     if !formats.contains(&format.as_str()) {
-        bail!("{}: {written}; end the name so", args.output.display());
+        bail!("{}: {what} are written as {}", args.output.display(), or_list(formats));
     }
     check_folder(&args.output)?;
     let surface = read_surface(&args.mesh, &args.repair)?;
@@ -58,12 +59,12 @@ impl Output {
         }
     }
 
-    /// The extensions of its files, and a sentence on them.
-    fn formats(self) -> (&'static [&'static str], &'static str) {
+    /// Its name and the extensions of its files.
+    fn formats(self) -> (&'static str, Vec<&'static str>) {
         match self {
-            Self::Rows => (&["npy", "csv", "ply"], "distances are written as .npy, .csv or .ply"),
-            Self::Paths => (&["obj", "ply", "csv", "json"], "paths are written as .obj, .ply, .csv or .json"),
-            Self::Pairs => (&["npy"], "all pairs are written as .npy"),
+            Self::Rows => ("distances", ["npy", "csv"].into_iter().chain(writable(Content::Field)).collect()),
+            Self::Paths => ("paths", writable(Content::Lines).chain(["csv", "json"]).collect()),
+            Self::Pairs => ("all pairs", vec!["npy"]),
         }
     }
 }

@@ -8,7 +8,7 @@ use mesh::RepairReport;
 use serde::Serialize;
 
 use super::{Row, Seconds, Task, spelled};
-use crate::output::{facts, print, print_json, write_csv, write_npy};
+use crate::output::{facts, print, print_json, write_colored, write_csv, write_npy};
 
 #[derive(Serialize)]
 struct RowsJson {
@@ -94,8 +94,9 @@ fn write_rows(task: &Task, solved: &[Row], rows: &[Vec<f64>]) -> Result<Vec<Path
             let mesh = mesh::io::read(&task.args.mesh)?;
             let mut outputs = Vec::new();
             for (row, distances) in solved.iter().zip(rows) {
-                let path = if rows.len() == 1 { output.clone() } else { numbered(output, &row.from) };
-                mesh::io::write_scalar_field(&path, &mesh, distances, "distance")
+                let path =
+                    if rows.len() == 1 { output.clone() } else { numbered(output, &row.from, task.format) };
+                write_colored(&path, &mesh, "distance", distances)
                     .with_context(|| format!("source {}", spelled(&row.from)))?;
                 outputs.push(path);
             }
@@ -106,8 +107,8 @@ fn write_rows(task: &Task, solved: &[Row], rows: &[Vec<f64>]) -> Result<Vec<Path
 }
 
 /// `out.ply` for source 7 of several: `out-7.ply`.
-fn numbered(output: &Path, from: &[InputPoint]) -> PathBuf {
+fn numbered(output: &Path, from: &[InputPoint], extension: &str) -> PathBuf {
     let stem = output.file_stem().unwrap_or_default().to_string_lossy();
     // Not every system takes a colon in a file's name.
-    output.with_file_name(format!("{stem}-{}.ply", spelled(from).replace(':', "_")))
+    output.with_file_name(format!("{stem}-{}.{extension}", spelled(from).replace(':', "_")))
 }

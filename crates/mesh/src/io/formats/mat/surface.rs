@@ -2,39 +2,38 @@
 
 use flate2::read::ZlibDecoder;
 use nalgebra::Point3;
-
-use crate::TriMesh;
-use crate::error::{Fault, Located};
-use crate::io::ReadLimits;
-use crate::io::assembly::finish;
-use crate::io::text::excerpt;
 use surface::VertexId;
 
-use super::container::{ByteOrder, COMPRESSED, Elements, HEADER, MATRIX, Tag, parse_header};
+use super::container::{COMPRESSED, Elements, HEADER, MATRIX, Tag, parse_header, scalar};
+use crate::error::{Fault, Located};
+use crate::io::limits::ReadLimits;
+use crate::io::polygons::finish;
+use crate::io::text::excerpt;
+use crate::tri_mesh::TriMesh;
 
-/// The fields of the struct, and where each goes.
+/// The fields of the struct.
 const FIELDS: [&str; 4] = ["X", "Y", "Z", "TRIV"];
 
-/// Types of the elements inside a matrix, and the classes of matrices.
+/// Types of the elements of a matrix, and classes of matrices.
 const INT8: u32 = 1;
 const INT32: u32 = 5;
 const UINT32: u32 = 6;
 const STRUCT_CLASS: u8 = 2;
 const NUMERIC_CLASSES: std::ops::RangeInclusive<u8> = 6..=15;
 
-/// Decompressed bytes taken for each byte of the file, and for any file. Meshes compress three- to
-/// tenfold, deflate could reach a thousandfold.
+/// Limits of the decompressed size, per byte of the file and for small files. Meshes compress by a factor of
+/// three to ten; deflate can reach a thousand.
 const INFLATION: u64 = 32;
-const ALWAYS_TAKEN: u64 = 16 << 20;
+const SMALL_FILE: u64 = 16 << 20;
 
-/// Variables that a message names.
+/// The most variables that a message lists.
 const NAMED: usize = 8;
 
-/// Reads the first struct in the file with the numeric fields `X`, `Y`, `Z` (one column each) and
-/// `TRIV` (three columns, one-based); other variables and fields are passed over.
-pub(in crate::io) fn parse(bytes: &[u8], limits: &ReadLimits) -> Result<TriMesh, Located> {
+/// Reads the first struct in the file with the numeric fields `X`, `Y`, `Z` (one column each) and `TRIV`
+/// (three columns, one-based). Other variables and fields are ignored.
+pub(in crate::io::formats) fn parse(bytes: &[u8], limits: &ReadLimits) -> Result<TriMesh, Located> {
     let order = parse_header(bytes)?;
-    let limit = ALWAYS_TAKEN + INFLATION * bytes.len() as u64;
+    let limit = SMALL_FILE + INFLATION * bytes.len() as u64;
     let mut at = HEADER;
     let (mut seen, mut n_more) = (Vec::new(), 0);
     while at < bytes.len() {
@@ -67,12 +66,12 @@ pub(in crate::io) fn parse(bytes: &[u8], limits: &ReadLimits) -> Result<TriMesh,
         at = end;
     }
     let seen = match (seen.is_empty(), n_more) {
-        (true, _) => "no variables".to_owned(),
+        (true, _) => "none".to_owned(),
         (false, 0) => seen.join(", "),
         (false, more) => format!("{} and {more} more", seen.join(", ")),
     };
     Err(Fault::Unsupported {
-        what: format!("no struct with the fields X Y Z TRIV in the file (it holds {seen})"),
+        what: format!("the file has no struct with the fields X Y Z TRIV (its variables: {seen})"),
         remedy: "save one, as `surface.X = ...; save(file, 'surface', '-v7')`",
     }
     .whole())
@@ -97,7 +96,7 @@ struct Surface {
     fields: [Option<Matrix>; 4],
 }
 
-/// What stands at the beginning of every matrix.
+/// The beginning of every matrix.
 struct MatrixHead {
     class: u8,
     dimensions: Vec<u32>,
@@ -107,12 +106,9 @@ struct MatrixHead {
 impl MatrixHead {
     fn parse(elements: &mut Elements<'_>) -> Result<Self, Located> {
         let flags = elements.expect(UINT32, "the flags of a matrix")?;
-        let words = |data: &[u8]| -> Vec<u32> {
-            data.as_chunks().0.iter().map(|&word| elements.order().u32(word)).collect()
-        };
-        let class = words(&flags).first().map_or(0, |word| (word & 0xff) as u8);
+        let class = flags.first_chunk().map_or(0, |&word| (elements.u32(word) & 0xff) as u8);
         let dimensions = elements.expect(INT32, "the dimensions of a matrix")?;
-        let dimensions = dimensions.as_chunks().0.iter().map(|&word| elements.order().u32(word)).collect();
+        let dimensions = dimensions.as_chunks().0.iter().map(|&word| elements.u32(word)).collect();
         let name = elements.expect(INT8, "the name of a matrix")?;
         Ok(Self { class, dimensions, name: excerpt(&name) })
     }
@@ -125,7 +121,7 @@ impl Variable {
             return Ok(Self::Other(head.name));
         }
         let name_length = elements.expect(INT32, "the length of field names")?;
-        let name_length = name_length.first_chunk().map_or(0, |&word| elements.order().u32(word)) as usize;
+        let name_length = name_length.first_chunk().map_or(0, |&word| elements.u32(word)) as usize;
         let names = elements.expect(INT8, "the names of the fields")?;
         if name_length == 0 {
             return Ok(Self::Other(head.name));
@@ -143,7 +139,7 @@ impl Variable {
                     surface.fields[i] = Some(Matrix::parse(&mut elements, limits)?)
                 }
                 Some(_) => return Err(elements.broken("a matrix in each field of the surface")),
-                None => elements.pass(tag)?,
+                None => elements.skip_data(tag)?,
             }
         }
         Ok(Self::Surface(surface))
@@ -151,7 +147,7 @@ impl Variable {
 }
 
 impl Matrix {
-    /// Reads the numbers once it is clear that there are as many as the matrix says, and not too many.
+    /// Checks the number of entries, then reads them.
     fn parse(elements: &mut Elements<'_>, limits: &ReadLimits) -> Result<Self, Located> {
         let head = MatrixHead::parse(elements)?;
         if !NUMERIC_CLASSES.contains(&head.class) {
@@ -162,23 +158,22 @@ impl Matrix {
             _ => return Err(elements.broken("matrices of two dimensions in the fields X Y Z TRIV")),
         };
         let tag = elements.tag()?;
-        let size = ByteOrder::size_of(tag.kind);
-        let size = size.ok_or_else(|| elements.broken("numbers in the fields X Y Z TRIV"))?;
+        let scalar = scalar(tag.kind).ok_or_else(|| elements.broken("numbers in the fields X Y Z TRIV"))?;
         let promised = rows as u64 * columns as u64;
-        let found = u64::from(tag.length / size);
+        let found = u64::from(tag.length) / scalar.size() as u64;
         if promised != found {
             return Err(Fault::Truncated { items: "numbers of a matrix".into(), promised, found }
                 .at_byte(elements.start));
         }
-        // A row a vertex, or a column for all of them, or a row a face.
+        // TRIV has one row per face; X, Y and Z have one row or one column.
         let fault = |fault: Fault| fault.at_byte(elements.start);
         match (rows, columns) {
             (_, 3) => limits.check(0, rows as u64).map_err(fault)?,
             _ => limits.check(promised, 0).map_err(fault)?,
         }
         let data = elements.data(tag)?;
-        let values = elements.order().numbers(tag.kind, &data);
-        let values = values.ok_or_else(|| elements.broken("numbers in the fields X Y Z TRIV"))?;
+        let number = |bytes: &[u8]| scalar.decode(elements.order, bytes);
+        let values = data.chunks_exact(scalar.size()).filter_map(number).collect();
         Ok(Self { rows, columns, values })
     }
 }
@@ -187,12 +182,12 @@ impl Surface {
     fn into_mesh(self, at: usize, limits: &ReadLimits) -> Result<TriMesh, Located> {
         let syntax = |expected, found: String| Fault::Syntax { expected, found }.at_byte(at);
         let [Some(x), Some(y), Some(z), Some(triv)] = self.fields else {
-            return Err(syntax("one value for each of X Y Z TRIV", "a field without one".into()));
+            return Err(syntax("a matrix in each of the fields X Y Z TRIV", "an empty field".into()));
         };
         let n = x.values.len();
         if [&x, &y, &z].iter().any(|m| m.values.len() != n || m.rows.min(m.columns) > 1) {
             let found = [x, y, z].map(|m| format!("{} x {}", m.rows, m.columns)).join(", ");
-            return Err(syntax("columns X Y Z of one length", found));
+            return Err(syntax("columns X Y Z of equal length", found));
         }
         if triv.columns != 3 && !triv.values.is_empty() {
             return Err(syntax("three columns in TRIV", format!("{} x {}", triv.rows, triv.columns)));
@@ -237,7 +232,7 @@ mod tests {
     }
 
     #[test]
-    fn surfaces_in_every_encoding() {
+    fn surfaces_read_in_every_encoding() {
         let torus = shapes::torus(8, 5, 2.0, 0.5);
         for index_type in [4, 5, 7, 9] {
             for (big_endian, compressed) in [(false, false), (false, true), (true, false), (true, true)] {
@@ -248,7 +243,7 @@ mod tests {
     }
 
     #[test]
-    fn rows_are_as_good_as_columns() {
+    fn coordinates_may_be_rows_or_columns() {
         let tetrahedron = shapes::tetrahedron(0);
         let mut fields = PLAIN.fields(&tetrahedron);
         let x: Vec<f64> = tetrahedron.positions.iter().map(|p| p.x).collect();
@@ -257,11 +252,13 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_surface_is_said() {
+    fn files_without_a_surface_are_errors() {
         let other = PLAIN.file(&[PLAIN.matrix("other", 9, 1, 1, &[1.0])]);
-        assert!(matches!(fault(&other), Fault::Unsupported { what, .. } if what.contains("it holds other")));
+        assert!(
+            matches!(fault(&other), Fault::Unsupported { what, .. } if what.contains("variables: other"))
+        );
         let empty = PLAIN.file(&[]);
-        assert!(matches!(fault(&empty), Fault::Unsupported { what, .. } if what.contains("no variables")));
+        assert!(matches!(fault(&empty), Fault::Unsupported { what, .. } if what.contains("variables: none")));
         assert!(matches!(fault(b"MATLAB 7.3 MAT-file"), Fault::Unsupported { .. }));
         assert!(matches!(fault(b"\x89HDF\r\n"), Fault::Unsupported { .. }));
         assert!(matches!(fault(&[7; 300]), Fault::WrongFormat { .. }));
@@ -270,7 +267,7 @@ mod tests {
     }
 
     #[test]
-    fn faults_in_the_fields_are_named() {
+    fn faults_in_the_fields_are_errors() {
         let mesh = shapes::tetrahedron(0);
         let with = |i: usize, matrix: Vec<u8>| {
             let mut fields = PLAIN.fields(&mesh);
@@ -295,7 +292,7 @@ mod tests {
     }
 
     #[test]
-    fn a_variable_longer_than_the_file_is_cut_short() {
+    fn a_variable_longer_than_the_file_is_truncated() {
         let bytes = PLAIN.surface(&shapes::tetrahedron(0));
         let cut = parse(&bytes[..bytes.len() - 8]).unwrap_err();
         assert!(matches!(cut.fault, Fault::Truncated { .. }));
@@ -303,7 +300,7 @@ mod tests {
     }
 
     #[test]
-    fn a_bomb_is_cut_off() {
+    fn decompression_bombs_are_cut_off() {
         let style = Style { compressed: true, ..PLAIN };
         // A column of 320 MB of zeros, declared as such, in a file of a few.
         let length = 320u32 << 20;
@@ -332,7 +329,7 @@ mod tests {
     }
 
     #[test]
-    fn what_a_message_names_is_short() {
+    fn messages_list_few_variables() {
         let many: Vec<_> = (0..100).map(|i| PLAIN.matrix(&format!("{i:06000}"), 9, 1, 1, &[1.0])).collect();
         let message = fault(&PLAIN.file(&many)).to_string();
         assert!(message.contains("and 92 more") && message.len() < 1000, "{message}");

@@ -1,72 +1,34 @@
 //! The native layout of the TOSCA shapes: coordinates in `NAME.vert`, one-based faces in `NAME.tri`.
 
 use std::io::{self, Write};
-use std::path::{Path, PathBuf};
 
 use nalgebra::Point3;
-
-use crate::TriMesh;
-use crate::error::{Fault, Located, MeshError};
 use surface::VertexId;
 
-use super::ReadLimits;
-use super::assembly::finish;
-use super::source::Source;
-use super::text::{Lines, excerpt, parse_integer, parse_position};
+use crate::error::{Fault, Located};
+use crate::io::limits::ReadLimits;
+use crate::io::polygons::finish;
+use crate::io::text::{Lines, excerpt, parse_integer, parse_position, write_position};
+use crate::tri_mesh::TriMesh;
 
 /// The fewest bytes of a line: three digits, two separators, a line end.
 const SHORTEST_LINE: usize = 6;
 
-/// The two files of a shape.
-pub(super) struct Pair {
-    pub(super) vert: PathBuf,
-    pub(super) tri: PathBuf,
+/// Reads the two files of a shape.
+pub(super) fn parse(vert: &[u8], tri: &[u8], limits: &ReadLimits) -> Result<TriMesh, Located> {
+    let positions = parse_positions(vert, limits)?;
+    let faces = parse_faces(tri, positions.len(), limits).map_err(|fault| fault.of_file(1))?;
+    finish(positions, faces, limits).map_err(|fault| fault.of_file(1))
 }
 
-impl Pair {
-    /// The pair that `path`, either half, belongs to. The other half's extension is in upper case
-    /// where this one's is, unless only the lower-case file exists.
-    pub(super) fn of(path: &Path, source: &dyn Source) -> Self {
-        let extension = path.extension().unwrap_or_default().to_string_lossy();
-        let is_vert = extension.eq_ignore_ascii_case("vert");
-        let other = if is_vert { "tri" } else { "vert" };
-        let lower = path.with_extension(other);
-        let upper = path.with_extension(other.to_ascii_uppercase());
-        let prefers_upper = extension.chars().all(|c| c.is_ascii_uppercase());
-        let partner = match prefers_upper {
-            true if source.holds(&upper) || !source.holds(&lower) => upper,
-            false if source.holds(&upper) && !source.holds(&lower) => upper,
-            _ => lower,
-        };
-        let this = path.to_path_buf();
-        if is_vert { Self { vert: this, tri: partner } } else { Self { vert: partner, tri: this } }
-    }
-}
-
-/// Reads a pair; `path` is the half that was asked for.
-pub(super) fn read(path: &Path, source: &dyn Source, limits: &ReadLimits) -> Result<TriMesh, MeshError> {
-    let pair = Pair::of(path, source);
-    let half = |half: &Path| {
-        if half != path && !source.holds(half) {
-            let partner = half.file_name().unwrap_or_default().to_string_lossy().into_owned();
-            return Err(Fault::NoPartner { partner }.whole().in_file(path));
-        }
-        source.load(half)
-    };
-    let positions = parse_positions(&half(&pair.vert)?, limits).map_err(|fault| fault.in_file(&pair.vert))?;
-    let faces =
-        parse_faces(&half(&pair.tri)?, positions.len(), limits).map_err(|fault| fault.in_file(&pair.tri))?;
-    finish(positions, faces, limits).map_err(|fault| fault.in_file(&pair.tri))
-}
-
-/// One vertex a line, three coordinates.
-pub(super) fn parse_positions(bytes: &[u8], limits: &ReadLimits) -> Result<Vec<Point3<f64>>, Located> {
+/// Reads three coordinates per line.
+fn parse_positions(bytes: &[u8], limits: &ReadLimits) -> Result<Vec<Point3<f64>>, Located> {
     let mut positions = Vec::with_capacity(bytes.len() / (4 * SHORTEST_LINE));
     for line in Lines::new(bytes) {
         let mut tokens = line.tokens();
         positions.push(parse_position(line, &mut tokens, positions.len() + 1)?);
         if tokens.next().is_some() {
-            return Err(line.expected("three coordinates and no more"));
+            return Err(line.expected("exactly three coordinates"));
         }
         limits.check(positions.len() as u64, 0).map_err(|fault| fault.in_line(line.number))?;
     }
@@ -76,12 +38,8 @@ pub(super) fn parse_positions(bytes: &[u8], limits: &ReadLimits) -> Result<Vec<P
     Ok(positions)
 }
 
-/// One triangle a line, three vertices counted from one.
-pub(super) fn parse_faces(
-    bytes: &[u8],
-    n_vertices: usize,
-    limits: &ReadLimits,
-) -> Result<Vec<[VertexId; 3]>, Located> {
+/// Reads three vertices per line, counted from one.
+fn parse_faces(bytes: &[u8], n_vertices: usize, limits: &ReadLimits) -> Result<Vec<[VertexId; 3]>, Located> {
     let mut faces = Vec::with_capacity(bytes.len() / (2 * SHORTEST_LINE));
     for line in Lines::new(bytes) {
         let expected = || line.expected("three vertices, counted from one");
@@ -108,9 +66,9 @@ pub(super) fn parse_faces(
     Ok(faces)
 }
 
-/// Writes the `.vert` half; coordinates are read back bit for bit.
+/// Writes the `.vert` half; coordinates read back bit for bit.
 pub(super) fn write_positions(out: &mut dyn Write, mesh: &TriMesh) -> io::Result<()> {
-    mesh.positions.iter().try_for_each(|p| writeln!(out, "{:?} {:?} {:?}", p.x, p.y, p.z))
+    mesh.positions.iter().try_for_each(|p| write_position(out, "", p))
 }
 
 /// Writes the `.tri` half.
@@ -135,7 +93,7 @@ mod tests {
     }
 
     #[test]
-    fn both_halves_in_either_line_end_and_notation() {
+    fn both_halves_parse_with_any_line_end_and_notation() {
         let positions = parse_positions(b"0 0 0\r\n1.5 -2e-1 3\r\n\r\n.5 1. 0").unwrap();
         assert_eq!(positions[1], Point3::new(1.5, -0.2, 3.0));
         assert_eq!(positions.len(), 3);

@@ -5,27 +5,26 @@ use std::io::Write;
 use flate2::Compression;
 use flate2::write::ZlibEncoder;
 
-use crate::TriMesh;
-
 use super::container::{COMPRESSED, HEADER, MATRIX};
+use crate::tri_mesh::TriMesh;
 
 /// How to write.
 #[derive(Clone, Copy)]
-pub(in crate::io) struct Style {
-    pub(in crate::io) big_endian: bool,
-    pub(in crate::io) compressed: bool,
+pub(in crate::io::formats) struct Style {
+    pub(in crate::io::formats) big_endian: bool,
+    pub(in crate::io::formats) compressed: bool,
     /// Type of the numbers of TRIV as stored: 4 (u16), 5 (i32), 7 (f32) or 9 (f64).
-    pub(in crate::io) index_type: u32,
+    pub(in crate::io::formats) index_type: u32,
 }
 
-pub(in crate::io) const PLAIN: Style = Style { big_endian: false, compressed: false, index_type: 9 };
+pub(in crate::io::formats) const PLAIN: Style = Style { big_endian: false, compressed: false, index_type: 9 };
 
 impl Style {
     fn word(self, x: u32) -> [u8; 4] {
         if self.big_endian { x.to_be_bytes() } else { x.to_le_bytes() }
     }
 
-    /// An element; short ones inside their tag as MATLAB does.
+    /// An element; short ones are stored in their tag, as MATLAB does.
     fn element(self, kind: u32, data: &[u8]) -> Vec<u8> {
         let mut out = Vec::new();
         if (1..=4).contains(&data.len()) && kind != MATRIX {
@@ -62,7 +61,7 @@ impl Style {
         .concat()
     }
 
-    pub(in crate::io) fn matrix(
+    pub(in crate::io::formats) fn matrix(
         self,
         name: &str,
         kind: u32,
@@ -80,7 +79,7 @@ impl Style {
         self.element(MATRIX, &data)
     }
 
-    pub(in crate::io) fn structure(self, name: &str, fields: &[(&str, Vec<u8>)]) -> Vec<u8> {
+    pub(in crate::io::formats) fn structure(self, name: &str, fields: &[(&str, Vec<u8>)]) -> Vec<u8> {
         const NAME_LENGTH: usize = 8;
         let mut names = Vec::new();
         for (field, _) in fields {
@@ -94,7 +93,7 @@ impl Style {
         self.element(MATRIX, &data)
     }
 
-    pub(in crate::io) fn file(self, variables: &[Vec<u8>]) -> Vec<u8> {
+    pub(in crate::io::formats) fn file(self, variables: &[Vec<u8>]) -> Vec<u8> {
         let mut out = format!("{:124}", "MATLAB 5.0 MAT-file, a test").into_bytes();
         out.extend(if self.big_endian { *b"\x01\x00MI" } else { *b"\x00\x01IM" });
         assert_eq!(out.len(), HEADER);
@@ -113,7 +112,7 @@ impl Style {
     }
 
     /// The fields of a mesh.
-    pub(in crate::io) fn fields(self, mesh: &TriMesh) -> [(&'static str, Vec<u8>); 4] {
+    pub(in crate::io::formats) fn fields(self, mesh: &TriMesh) -> [(&'static str, Vec<u8>); 4] {
         let n = mesh.n_vertices();
         let column = |axis: usize| {
             let values: Vec<f64> = mesh.positions.iter().map(|p| p[axis]).collect();
@@ -124,8 +123,8 @@ impl Style {
         [("X", column(0)), ("Y", column(1)), ("Z", column(2)), ("TRIV", triv)]
     }
 
-    /// A file with a mesh, after a variable of no interest and with a field of no interest.
-    pub(in crate::io) fn surface(self, mesh: &TriMesh) -> Vec<u8> {
+    /// A file with a mesh, preceded by another variable and with another field.
+    pub(in crate::io::formats) fn surface(self, mesh: &TriMesh) -> Vec<u8> {
         let [x, y, z, triv] = self.fields(mesh);
         let extra = ("name", self.matrix("", 9, 2, 2, &[1.0, 2.0, 3.0, 4.0]));
         let other = self.matrix("other", 5, 1, 3, &[7.0, 8.0, 9.0]);

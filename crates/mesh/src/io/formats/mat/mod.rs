@@ -1,4 +1,4 @@
-//! MATLAB 5 files with a surface as TOSCA stores it: a struct with the fields `X Y Z TRIV`.
+//! MATLAB 5 files with a surface in the layout of TOSCA: a struct with the fields `X Y Z TRIV`.
 
 mod container;
 #[cfg(test)]

@@ -1,11 +1,12 @@
-//! The MAT-file level 5 container: a 128-byte header, then tagged elements, each compressed or not.
+//! The MAT-file level 5 container: a 128-byte header, then tagged elements, compressed or not.
 //!
-//! Everything is read as a stream with a budget, so a length that lies costs no memory and data
-//! that inflates without end is cut off.
+//! Everything is read as a stream with a budget, so a wrong length costs no memory and data that inflates
+//! without end is cut off.
 
 use std::io::{self, Read};
 
 use crate::error::{Fault, Located};
+use crate::io::binary::{ByteOrder, Scalar};
 
 pub(super) const HEADER: usize = 128;
 
@@ -13,34 +14,27 @@ pub(super) const HEADER: usize = 128;
 pub(super) const MATRIX: u32 = 14;
 pub(super) const COMPRESSED: u32 = 15;
 
-/// The order of the bytes of every number, from the header.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum ByteOrder {
-    Little,
-    Big,
-}
-
 /// Type and length in bytes of an element.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Tag {
     pub(super) kind: u32,
     pub(super) length: u32,
-    /// Lengths up to four sit in the tag itself, together with their data.
+    /// Up to four bytes of data are stored in the tag itself.
     inline: Option<[u8; 4]>,
 }
 
 /// A stream of elements.
 pub(super) struct Elements<'a> {
     source: Box<dyn Read + 'a>,
-    order: ByteOrder,
+    pub(super) order: ByteOrder,
     /// Bytes that may still be read.
     budget: u64,
     limit: u64,
-    /// Where in the file the stream begins, for messages.
+    /// Byte of the file at which the stream begins, for messages.
     pub(super) start: usize,
 }
 
-/// Reads the file's header.
+/// Reads the header of the file.
 pub(super) fn parse_header(bytes: &[u8]) -> Result<ByteOrder, Located> {
     let wrong = |found: &str| Fault::WrongFormat { expected: "a MATLAB 5 file", found: found.into() }.whole();
     if bytes.starts_with(b"MATLAB 7.3") || bytes.starts_with(b"\x89HDF") {
@@ -56,35 +50,35 @@ pub(super) fn parse_header(bytes: &[u8]) -> Result<ByteOrder, Located> {
     match bytes.get(124..HEADER) {
         Some([_, 1, b'I', b'M']) => Ok(ByteOrder::Little),
         Some([1, _, b'M', b'I']) => Ok(ByteOrder::Big),
-        Some(_) => Err(wrong("its header has no version and byte order of one")),
-        None => Err(wrong("it is shorter than the header of one")),
+        Some(_) => Err(wrong("its header lacks the version and byte order")),
+        None => Err(wrong("it is shorter than the header")),
     }
 }
 
 impl<'a> Elements<'a> {
-    /// The elements in `source`, of which at most `limit` bytes are read.
+    /// The elements in `source`; reads at most `limit` bytes.
     pub(super) fn new(source: impl Read + 'a, order: ByteOrder, limit: u64, start: usize) -> Self {
         Self { source: Box::new(source), order, budget: limit, limit, start }
     }
 
-    /// Lowers the number of bytes that may still be read to what an element declares.
+    /// Lowers the number of bytes that may still be read to the declared length of an element.
     pub(super) fn limit_to(&mut self, declared: u64) {
         self.budget = self.budget.min(declared);
     }
 
-    /// The next tag.
+    /// Reads the next tag.
     pub(super) fn tag(&mut self) -> Result<Tag, Located> {
         let mut word = [0; 4];
         self.fill(&mut word, "the tag of an element")?;
-        let first = self.order.u32(word);
+        let first = self.u32(word);
         self.fill(&mut word, "the tag of an element")?;
         Ok(match first >> 16 {
-            0 => Tag { kind: first, length: self.order.u32(word), inline: None },
+            0 => Tag { kind: first, length: self.u32(word), inline: None },
             length => Tag { kind: first & 0xffff, length, inline: Some(word) },
         })
     }
 
-    /// The data of an element, with the padding after it taken off.
+    /// Reads the data of an element and skips the padding after it.
     pub(super) fn data(&mut self, tag: Tag) -> Result<Vec<u8>, Located> {
         if let Some(word) = tag.inline {
             let data = word.get(..tag.length as usize);
@@ -92,22 +86,22 @@ impl<'a> Elements<'a> {
         }
         self.spend(u64::from(tag.length))?;
         let mut data = Vec::new();
-        // Grows with what arrives, not with what is promised.
+        // Grows with the data, not with the declared length.
         let read = self.source.by_ref().take(u64::from(tag.length)).read_to_end(&mut data);
         self.check(read.map(|n| n == tag.length as usize), "the rest of an element")?;
         self.skip(u64::from(tag.length.wrapping_neg() % 8))?;
         Ok(data)
     }
 
-    /// Passes over the data of an element.
-    pub(super) fn pass(&mut self, tag: Tag) -> Result<(), Located> {
+    /// Skips the data of an element.
+    pub(super) fn skip_data(&mut self, tag: Tag) -> Result<(), Located> {
         match tag.inline {
             Some(_) => Ok(()),
             None => self.skip(u64::from(tag.length).next_multiple_of(8)),
         }
     }
 
-    /// Data of an element that must be of one kind and whose length is small.
+    /// Reads the data of a short element of a given kind.
     pub(super) fn expect(&mut self, kind: u32, what: &'static str) -> Result<Vec<u8>, Located> {
         const LONGEST: u32 = 1 << 16;
         let tag = self.tag()?;
@@ -117,7 +111,7 @@ impl<'a> Elements<'a> {
         self.data(tag)
     }
 
-    /// The fault that something else should stand here.
+    /// The fault that `expected` is missing here.
     pub(super) fn broken(&self, expected: &'static str) -> Located {
         Fault::Syntax { expected, found: "other data".into() }.at_byte(self.start)
     }
@@ -140,7 +134,7 @@ impl<'a> Elements<'a> {
         Ok(())
     }
 
-    /// A short read is the end of the file, any other error damaged compression.
+    /// A short read means that the file ends early; any other error means damaged compression.
     fn check(&self, outcome: io::Result<bool>, what: &str) -> Result<(), Located> {
         match outcome {
             Ok(true) => Ok(()),
@@ -151,55 +145,28 @@ impl<'a> Elements<'a> {
         }
     }
 
-    /// The order of the bytes.
-    pub(super) fn order(&self) -> ByteOrder {
-        self.order
+    /// A 32-bit word in the byte order of the file.
+    pub(super) fn u32(&self, word: [u8; 4]) -> u32 {
+        match self.order {
+            ByteOrder::Little => u32::from_le_bytes(word),
+            ByteOrder::Big => u32::from_be_bytes(word),
+        }
     }
 }
 
-impl ByteOrder {
-    pub(super) fn u32(self, bytes: [u8; 4]) -> u32 {
-        match self {
-            Self::Little => u32::from_le_bytes(bytes),
-            Self::Big => u32::from_be_bytes(bytes),
-        }
-    }
-
-    /// Bytes of a number of this type; `None` for a type that is no number.
-    pub(super) fn size_of(kind: u32) -> Option<u32> {
-        match kind {
-            1 | 2 => Some(1),
-            3 | 4 => Some(2),
-            5..=7 => Some(4),
-            9 | 12 | 13 => Some(8),
-            _ => None,
-        }
-    }
-
-    /// The numbers of an element of any numeric type; `None` for another type.
-    pub(super) fn numbers(self, kind: u32, data: &[u8]) -> Option<Vec<f64>> {
-        macro_rules! decode {
-            ($type:ty) => {{
-                let (chunks, _) = data.as_chunks::<{ size_of::<$type>() }>();
-                let number = |&bytes: &[u8; size_of::<$type>()]| match self {
-                    Self::Little => <$type>::from_le_bytes(bytes) as f64,
-                    Self::Big => <$type>::from_be_bytes(bytes) as f64,
-                };
-                Some(chunks.iter().map(number).collect())
-            }};
-        }
-        match kind {
-            1 => decode!(i8),
-            2 => decode!(u8),
-            3 => decode!(i16),
-            4 => decode!(u16),
-            5 => decode!(i32),
-            6 => decode!(u32),
-            7 => decode!(f32),
-            9 => decode!(f64),
-            12 => decode!(i64),
-            13 => decode!(u64),
-            _ => None,
-        }
-    }
+/// The type behind the number of a numeric element; `None` for any other element.
+pub(super) fn scalar(kind: u32) -> Option<Scalar> {
+    Some(match kind {
+        1 => Scalar::I8,
+        2 => Scalar::U8,
+        3 => Scalar::I16,
+        4 => Scalar::U16,
+        5 => Scalar::I32,
+        6 => Scalar::U32,
+        7 => Scalar::F32,
+        9 => Scalar::F64,
+        12 => Scalar::I64,
+        13 => Scalar::U64,
+        _ => return None,
+    })
 }

@@ -1,17 +1,16 @@
-//! From what a file lists to a mesh: triangles out of polygons, limits of the indices.
+//! From the polygons of a file to a triangle mesh.
 
 use nalgebra::Point3;
-
-use crate::TriMesh;
-use crate::error::{Fault, Located};
 use surface::VertexId;
 
-use super::ReadLimits;
+use super::limits::ReadLimits;
+use crate::error::{Fault, Located};
+use crate::tri_mesh::TriMesh;
 
-/// Cuts a polygon into triangles and adds them.
+/// Triangulates a polygon whose corners are in range and appends the triangles to `faces`.
 ///
-/// A quadrilateral is cut along the diagonal that folds neither half over, or else the shorter one;
-/// larger polygons become fans around their first corner. Corners are in range.
+/// A quadrilateral is split along the diagonal that folds neither half over, else along the shorter one;
+/// larger polygons become fans around their first corner.
 pub(super) fn push_polygon(
     positions: &[Point3<f64>],
     corners: &[VertexId],
@@ -30,7 +29,7 @@ pub(super) fn push_polygon(
     Ok(())
 }
 
-/// Whether the quadrilateral a b c d is better cut from b to d than from a to c.
+/// Whether the quadrilateral a b c d is better split from b to d than from a to c.
 fn prefers_second_diagonal(positions: &[Point3<f64>], quad: [VertexId; 4]) -> bool {
     let [a, b, c, d] = quad.map(|v| positions[v.index()]);
     let folds_over = |p: Point3<f64>, q: Point3<f64>, r: Point3<f64>, s: Point3<f64>| {
@@ -44,7 +43,7 @@ fn prefers_second_diagonal(positions: &[Point3<f64>], quad: [VertexId; 4]) -> bo
     }
 }
 
-/// The mesh, if it is a surface at all.
+/// The mesh, if it has a face and is within the limits.
 pub(super) fn finish(
     positions: Vec<Point3<f64>>,
     faces: Vec<[VertexId; 3]>,
@@ -61,7 +60,7 @@ pub(super) fn finish(
 mod tests {
     use super::*;
 
-    fn cut(points: &[[f64; 2]]) -> Vec<[u32; 3]> {
+    fn split(points: &[[f64; 2]]) -> Vec<[u32; 3]> {
         let positions: Vec<_> = points.iter().map(|p| Point3::new(p[0], p[1], 0.0)).collect();
         let corners: Vec<_> = (0..points.len()).map(VertexId::from).collect();
         let mut faces = Vec::new();
@@ -70,24 +69,24 @@ mod tests {
     }
 
     #[test]
-    fn quads_take_the_diagonal_that_stays_inside_or_is_shorter() {
-        assert_eq!(cut(&[[0., 0.], [1., 0.], [1., 1.], [0., 1.]]), [[0, 1, 2], [0, 2, 3]]);
-        assert_eq!(cut(&[[0., 0.], [1., 0.], [4., 1.], [0., 1.]]), [[0, 1, 3], [1, 2, 3]]);
+    fn quads_are_split_along_the_inner_or_the_shorter_diagonal() {
+        assert_eq!(split(&[[0., 0.], [1., 0.], [1., 1.], [0., 1.]]), [[0, 1, 2], [0, 2, 3]]);
+        assert_eq!(split(&[[0., 0.], [1., 0.], [4., 1.], [0., 1.]]), [[0, 1, 3], [1, 2, 3]]);
         // An arrow head with its notch at corner 1: only the diagonal from the notch stays inside.
-        assert_eq!(cut(&[[0., 0.], [1., 1.], [2., 0.], [1., 3.]]), [[0, 1, 3], [1, 2, 3]]);
-        assert_eq!(cut(&[[1., 1.], [2., 0.], [1., 3.], [0., 0.]]), [[0, 1, 2], [0, 2, 3]]);
+        assert_eq!(split(&[[0., 0.], [1., 1.], [2., 0.], [1., 3.]]), [[0, 1, 3], [1, 2, 3]]);
+        assert_eq!(split(&[[1., 1.], [2., 0.], [1., 3.], [0., 0.]]), [[0, 1, 2], [0, 2, 3]]);
     }
 
     #[test]
-    fn larger_polygons_become_fans_and_smaller_ones_are_refused() {
+    fn larger_polygons_become_fans_and_smaller_ones_are_errors() {
         let hexagon: Vec<[f64; 2]> = (0..6).map(|i| (f64::from(i)).sin_cos().into()).collect();
-        assert_eq!(cut(&hexagon), [[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 5]]);
+        assert_eq!(split(&hexagon), [[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 5]]);
         let refused = push_polygon(&[], &[VertexId(0); 2], &mut Vec::new(), &ReadLimits::default());
         assert_eq!(refused, Err(Fault::TooFewCorners { corners: 2 }));
     }
 
     #[test]
-    fn a_polygon_beyond_the_limit_is_refused_before_it_is_cut() {
+    fn a_polygon_beyond_the_limit_is_not_split() {
         let limits = ReadLimits { max_faces: 3, ..ReadLimits::default() };
         let mut faces = Vec::new();
         let refused = push_polygon(&[], &[VertexId(0); 6], &mut faces, &limits);

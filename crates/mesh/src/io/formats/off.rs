@@ -2,20 +2,20 @@
 
 use std::io::{self, Write};
 
-use crate::TriMesh;
-use crate::error::{Fault, Located};
 use surface::VertexId;
 
-use super::ReadLimits;
-use super::assembly::{finish, push_polygon};
-use super::text::{Line, Lines, excerpt, parse_integer, parse_position};
+use crate::error::{Fault, Located};
+use crate::io::limits::ReadLimits;
+use crate::io::polygons::{finish, push_polygon};
+use crate::io::text::{Line, Lines, excerpt, parse_integer, parse_position, write_position};
+use crate::tri_mesh::TriMesh;
 
-/// The fewest bytes that a vertex, `0 0 0` and a line end, and a face, `3 0 1 2` and a line end, take.
+/// The fewest bytes of a vertex, `0 0 0` and a line end, and of a face, `3 0 1 2` and a line end.
 const SHORTEST_VERTEX: usize = 6;
 const SHORTEST_FACE: usize = 8;
 
-/// Reads OFF, COFF, NOFF, STOFF and their combinations; normals, colours and texture coordinates,
-/// which follow the position of a vertex, are passed over.
+/// Reads OFF, COFF, NOFF, STOFF and their combinations. Normals, colours and texture coordinates, which
+/// follow the position of a vertex, are ignored.
 pub(super) fn parse(bytes: &[u8], limits: &ReadLimits) -> Result<TriMesh, Located> {
     let mut lines = Lines::new(bytes);
     let header = lines.next().ok_or_else(|| Fault::Empty.whole())?;
@@ -52,8 +52,7 @@ fn truncated(lines: &Lines<'_>, items: &str, promised: u64, found: u64) -> Locat
     Fault::Truncated { items: items.into(), promised, found }.in_line(lines.number())
 }
 
-/// What follows the keyword on the header line: nothing, or the counts, which some programs glue
-/// to it.
+/// The rest of the header line after the keyword: nothing, or the counts, even without a space between.
 fn after_keyword(header: Line<'_>) -> Result<&[u8], Located> {
     let text = header.text;
     let not_off = || {
@@ -85,7 +84,7 @@ fn after_keyword(header: Line<'_>) -> Result<&[u8], Located> {
     Ok(rest)
 }
 
-/// Numbers of vertices and faces; the number of edges may follow and is not used.
+/// Numbers of vertices and faces; the number of edges may follow and is ignored.
 fn parse_counts(line: Line<'_>) -> Result<(u64, u64), Located> {
     let expected = || line.expected("the counts of vertices, faces and edges");
     let counts: Option<Vec<u64>> =
@@ -96,9 +95,9 @@ fn parse_counts(line: Line<'_>) -> Result<(u64, u64), Located> {
     }
 }
 
-/// The corners of one face, into `corners`; colours may follow and are passed over.
+/// Reads the corners of one face into `corners`; colours may follow and are ignored.
 fn parse_corners(line: Line<'_>, n_vertices: u64, corners: &mut Vec<VertexId>) -> Result<(), Located> {
-    let expected = || line.expected("a number of corners and as many vertices");
+    let expected = || line.expected("a number of corners and that many vertices");
     let mut tokens = line.tokens();
     let n_corners = tokens.next().and_then(parse_integer).filter(|n| *n >= 0).ok_or_else(expected)?;
     corners.clear();
@@ -114,16 +113,11 @@ fn parse_corners(line: Line<'_>, n_vertices: u64, corners: &mut Vec<VertexId>) -
     Ok(())
 }
 
-/// Writes OFF; coordinates are read back bit for bit.
+/// Writes OFF; coordinates read back bit for bit.
 pub(super) fn write(out: &mut dyn Write, mesh: &TriMesh) -> io::Result<()> {
     writeln!(out, "OFF\n{} {} 0", mesh.n_vertices(), mesh.n_faces())?;
-    for p in &mesh.positions {
-        writeln!(out, "{:?} {:?} {:?}", p.x, p.y, p.z)?;
-    }
-    for [a, b, c] in &mesh.faces {
-        writeln!(out, "3 {a} {b} {c}")?;
-    }
-    Ok(())
+    mesh.positions.iter().try_for_each(|p| write_position(out, "", p))?;
+    mesh.faces.iter().try_for_each(|[a, b, c]| writeln!(out, "3 {a} {b} {c}"))
 }
 
 #[cfg(test)]
@@ -138,12 +132,12 @@ mod tests {
     const SQUARE: &str = "4 1 4\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n";
 
     fn fault(text: &str) -> (Place, Fault) {
-        let Located { place, fault } = parse(text.as_bytes()).unwrap_err();
+        let Located { place, fault, .. } = parse(text.as_bytes()).unwrap_err();
         (place, fault)
     }
 
     #[test]
-    fn headers_in_every_dialect() {
+    fn headers_parse_in_every_dialect() {
         let expected = parse(format!("OFF\n{SQUARE}").as_bytes()).unwrap();
         assert_eq!(expected.faces.len(), 2);
         for header in ["OFF ", "OFF", "off\n", "# c\nOFF # c\n\n", "\u{feff}OFF\r\n"] {
@@ -155,7 +149,7 @@ mod tests {
     }
 
     #[test]
-    fn what_follows_position_and_corners_is_passed_over() {
+    fn values_after_position_and_corners_are_ignored() {
         let plain = parse(b"OFF 3 1 3 \n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n").unwrap();
         for text in [
             "COFF\n3 1 0\n0 0 0 255 0 0 255\n1 0 0 0 0 0 255\n0 1 0 9 9 9 9\n3 0 1 2 0.5 0.5 0.5\n",
@@ -196,7 +190,7 @@ mod tests {
     }
 
     #[test]
-    fn other_formats_are_not_taken_for_off() {
+    fn other_formats_are_not_mistaken_for_off() {
         for text in ["ply\nformat", "v 0 0 0\n", "\u{0}\u{1}\u{2}", "XOFF\n"] {
             assert!(matches!(fault(text), (Place::Line(1), Fault::WrongFormat { .. })), "{text:?}");
         }
@@ -206,7 +200,7 @@ mod tests {
     }
 
     #[test]
-    fn a_bold_promise_allocates_nothing() {
+    fn large_counts_in_the_header_allocate_nothing() {
         let text = "OFF\n4000000000 1000000000 0\n0 0 0\n";
         assert!(matches!(fault(text).1, Fault::Truncated { promised: 4_000_000_000, found: 1, .. }));
         assert!(matches!(fault("OFF\n5000000000 1 0\n").1, Fault::TooLarge { .. }));

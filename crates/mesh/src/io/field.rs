@@ -1,0 +1,31 @@
+//! A number and a colour per vertex.
+
+use crate::error::MeshError;
+
+/// A scalar field on the vertices of a mesh, with the colours to show it in.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct VertexField<'a> {
+    /// Name of the property in the file: letters, digits and `_`, beginning with a letter.
+    pub name: &'a str,
+    /// One value per vertex; NaN and infinities are allowed.
+    pub values: &'a [f64],
+    /// One colour per vertex: red, green, blue.
+    pub colors: &'a [[u8; 3]],
+}
+
+impl VertexField<'_> {
+    /// Refuses a field that does not fit the mesh or whose name a file cannot carry.
+    pub(super) fn check(&self, n_vertices: usize) -> Result<(), MeshError> {
+        for values in [self.values.len(), self.colors.len()] {
+            if values != n_vertices {
+                return Err(MeshError::FieldLength { values, n_vertices });
+            }
+        }
+        let is_word = self.name.starts_with(|c: char| c.is_ascii_alphabetic())
+            && self.name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
+        if !is_word || ["x", "y", "z", "red", "green", "blue"].contains(&self.name) {
+            return Err(MeshError::FieldName { name: self.name.into() });
+        }
+        Ok(())
+    }
+}

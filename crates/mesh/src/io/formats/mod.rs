@@ -1,0 +1,200 @@
+//! The mesh formats, one module each, and the table of their names, extensions and abilities.
+
+mod mat;
+#[cfg(test)]
+mod mutations;
+mod obj;
+mod off;
+mod ply;
+mod stl;
+mod tosca;
+
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+
+use nalgebra::Point3;
+
+use crate::error::{Content, Located, MeshError};
+use crate::io::field::VertexField;
+use crate::io::limits::ReadLimits;
+use crate::io::source::Source;
+use crate::tri_mesh::TriMesh;
+
+type Parse = fn(&[&[u8]], &ReadLimits) -> Result<TriMesh, Located>;
+type WriteMesh = fn(&mut dyn Write, &TriMesh) -> io::Result<()>;
+type WriteField = fn(&mut dyn Write, &TriMesh, &VertexField<'_>) -> io::Result<()>;
+type WriteLines = fn(&mut dyn Write, &[Vec<Point3<f64>>]) -> io::Result<()>;
+
+/// A mesh file format; [`FORMATS`] lists them.
+#[derive(Debug)]
+pub struct Format {
+    /// The name used in messages.
+    pub name: &'static str,
+    /// The extensions of the files that together hold one mesh, lower case, without a dot. Where there are
+    /// two, the first one stands for the pair.
+    pub extensions: &'static [&'static str],
+    pub(super) precision: Precision,
+    /// Parses the files, given in the order of `extensions`.
+    parse: Parse,
+    /// Writers of the files, in the order of `extensions`; empty if the format is read-only.
+    pub(super) write: &'static [WriteMesh],
+    pub(super) write_field: Option<WriteField>,
+    pub(super) write_lines: Option<WriteLines>,
+}
+
+/// How a format stores coordinates.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Precision {
+    /// Rounded to 32 bits.
+    Single,
+    /// Such that 64-bit numbers read back bit for bit.
+    Double,
+}
+
+/// All formats that can be read.
+pub static FORMATS: [Format; 6] = [
+    Format {
+        write: &[off::write],
+        ..read_only("OFF", &["off"], |files, limits| off::parse(files[0], limits))
+    },
+    Format {
+        write: &[obj::write],
+        write_lines: Some(obj::write_lines),
+        ..read_only("OBJ", &["obj"], |files, limits| obj::parse(files[0], limits))
+    },
+    Format {
+        write: &[ply::write],
+        write_field: Some(ply::write_field),
+        write_lines: Some(ply::write_lines),
+        ..read_only("PLY", &["ply"], |files, limits| ply::parse(files[0], limits))
+    },
+    Format {
+        precision: Precision::Single,
+        write: &[stl::write],
+        ..read_only("STL", &["stl"], |files, limits| stl::parse(files[0], limits))
+    },
+    read_only("MATLAB", &["mat"], |files, limits| mat::parse(files[0], limits)),
+    Format {
+        write: &[tosca::write_positions, tosca::write_faces],
+        ..read_only("TOSCA", &["vert", "tri"], |files, limits| tosca::parse(files[0], files[1], limits))
+    },
+];
+
+/// A format with 64-bit coordinates that cannot be written.
+const fn read_only(name: &'static str, extensions: &'static [&'static str], parse: Parse) -> Format {
+    let precision = Precision::Double;
+    Format { name, extensions, precision, parse, write: &[], write_field: None, write_lines: None }
+}
+
+impl Format {
+    /// The format that the extension of a file name stands for, in upper or lower case.
+    ///
+    /// # Errors
+    /// [`MeshError::UnknownFormat`].
+    pub fn of(path: &Path) -> Result<&'static Self, MeshError> {
+        let extension = extension(path);
+        let format = FORMATS.iter().find(|format| format.extensions.contains(&extension.as_str()));
+        format.ok_or_else(|| MeshError::UnknownFormat {
+            path: path.to_path_buf(),
+            extension,
+            supported: or_list(FORMATS.iter().map(|format| format.extensions[0])),
+        })
+    }
+
+    /// Whether files of this format can be written with this content.
+    #[must_use]
+    pub fn can_write(&self, content: Content) -> bool {
+        match content {
+            Content::Mesh => !self.write.is_empty(),
+            Content::Field => self.write_field.is_some(),
+            Content::Lines => self.write_lines.is_some(),
+        }
+    }
+
+    /// The error that files of this format cannot be written with this content.
+    pub(super) fn cannot_write(&self, path: &Path, content: Content) -> MeshError {
+        let (path, supported) = (path.to_path_buf(), or_list(writable(content)));
+        MeshError::UnsupportedContent { path, format: self.name, content, supported }
+    }
+
+    /// The files of the mesh that `path` names, in the order of `extensions`.
+    ///
+    /// The extension of a companion file has the case of the given one, unless only the other one exists.
+    pub(super) fn files(&self, path: &Path, source: &dyn Source) -> Vec<PathBuf> {
+        let given = path.extension().unwrap_or_default().to_string_lossy();
+        let prefers_upper = given.chars().all(|c| c.is_ascii_uppercase());
+        let companion = |extension: &str| {
+            let cases = [path.with_extension(extension), path.with_extension(extension.to_ascii_uppercase())];
+            let [preferred, other] = if prefers_upper { [1, 0] } else { [0, 1] };
+            let takes_other = source.holds(&cases[other]) && !source.holds(&cases[preferred]);
+            cases[if takes_other { other } else { preferred }].clone()
+        };
+        let file = |extension: &&str| match given.eq_ignore_ascii_case(extension) {
+            true => path.to_path_buf(),
+            false => companion(extension),
+        };
+        self.extensions.iter().map(file).collect()
+    }
+
+    /// Parses the contents of [`files`](Self::files).
+    pub(super) fn parse(&self, files: &[&[u8]], limits: &ReadLimits) -> Result<TriMesh, Located> {
+        (self.parse)(files, limits)
+    }
+}
+
+/// The extension of a file name in lower case; empty if there is none.
+pub(super) fn extension(path: &Path) -> String {
+    path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase()
+}
+
+/// Extensions of the formats that can be written with this content, in the order of [`FORMATS`].
+pub fn writable(content: Content) -> impl Iterator<Item = &'static str> {
+    FORMATS.iter().filter(move |format| format.can_write(content)).map(|format| format.extensions[0])
+}
+
+/// Extensions as a phrase, such as `.npy, .csv or .ply`.
+#[must_use]
+pub fn or_list<'a>(extensions: impl IntoIterator<Item = &'a str>) -> String {
+    let dotted: Vec<String> = extensions.into_iter().map(|extension| format!(".{extension}")).collect();
+    match dotted.split_last() {
+        Some((last, others)) if !others.is_empty() => format!("{} or {last}", others.join(", ")),
+        _ => dotted.concat(),
+    }
+}
+
+/// The files of one mesh, as a phrase: `a .off, ... or .mat file, or a .vert with its .tri`.
+#[must_use]
+pub fn mesh_files() -> String {
+    let (single, paired): (Vec<&Format>, Vec<&Format>) =
+        FORMATS.iter().partition(|format| format.extensions.len() == 1);
+    let paired = paired.iter().map(|format| format!(", or a .{}", format.extensions.join(" with its .")));
+    let single = or_list(single.iter().map(|format| format.extensions[0]));
+    format!("a {single} file{}", paired.collect::<String>())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn extensions_are_unique_and_every_file_of_a_writable_format_has_a_writer() {
+        let mut all: Vec<&str> = FORMATS.iter().flat_map(|format| format.extensions).copied().collect();
+        all.sort_unstable();
+        assert!(all.windows(2).all(|pair| pair[0] != pair[1]), "{all:?}");
+        for format in &FORMATS {
+            assert!(format.write.is_empty() || format.write.len() == format.extensions.len());
+            assert!(format.extensions.iter().all(|e| e.chars().all(|c| c.is_ascii_lowercase())));
+        }
+    }
+
+    #[test]
+    fn lists_read_as_phrases() {
+        assert_eq!(or_list([]), "");
+        assert_eq!(or_list(["ply"]), ".ply");
+        assert_eq!(or_list(["npy", "csv", "ply"]), ".npy, .csv or .ply");
+        assert_eq!(or_list(writable(Content::Lines)), ".obj or .ply");
+        assert_eq!(or_list(writable(Content::Field)), ".ply");
+        assert_eq!(or_list(writable(Content::Mesh)), ".off, .obj, .ply, .stl or .vert");
+        assert_eq!(mesh_files(), "a .off, .obj, .ply, .stl or .mat file, or a .vert with its .tri");
+    }
+}

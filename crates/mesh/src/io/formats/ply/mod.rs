@@ -1,0 +1,8 @@
+//! PLY, ASCII and binary.
+
+mod header;
+mod read;
+mod write;
+
+pub(super) use read::parse;
+pub(super) use write::{write, write_field, write_lines};

@@ -1,0 +1,255 @@
+//! STL, ASCII and binary.
+
+use std::collections::HashMap;
+use std::io::{self, Write};
+
+use nalgebra::Point3;
+use surface::VertexId;
+
+use crate::coincidence::position_key;
+use crate::error::{Fault, Located};
+use crate::io::limits::ReadLimits;
+use crate::io::polygons::finish;
+use crate::io::text::{Line, Lines, excerpt, parse_number};
+use crate::tri_mesh::TriMesh;
+
+/// Bytes of a binary file: 80 of free text, the 32-bit number of triangles, then per triangle its normal, its
+/// three corners and two unused bytes.
+const HEADER: usize = 80;
+const PREFIX: usize = HEADER + 4;
+const TRIANGLE: usize = 50;
+
+/// Reads STL. The format stores three corners per triangle; corners in the same position become one vertex,
+/// numbered in the order of first appearance.
+pub(super) fn parse(bytes: &[u8], limits: &ReadLimits) -> Result<TriMesh, Located> {
+    let text = bytes.trim_ascii_start();
+    if text.is_empty() {
+        return Err(Fault::Empty.whole());
+    }
+    let promised =
+        bytes.get(HEADER..).and_then(<[u8]>::first_chunk).map(|&n| u64::from(u32::from_le_bytes(n)));
+    let size = promised.map(|n| PREFIX as u64 + TRIANGLE as u64 * n);
+    // The free text of a binary file may begin with "solid" too.
+    if begins_with(text, "solid") && size != Some(bytes.len() as u64) {
+        return parse_ascii(bytes, limits);
+    }
+    let Some(promised) = promised else {
+        let found = format!("{} bytes beginning with `{}`", bytes.len(), excerpt(text));
+        return Err(Fault::WrongFormat { expected: "an STL file", found }.whole());
+    };
+    let found = (bytes.len() - PREFIX) as u64 / TRIANGLE as u64;
+    if promised > found {
+        return Err(Fault::Truncated { items: "triangles".into(), promised, found }.whole());
+    }
+    parse_binary(bytes, promised, limits)
+}
+
+fn parse_binary(bytes: &[u8], n_triangles: u64, limits: &ReadLimits) -> Result<TriMesh, Located> {
+    limits.check(0, n_triangles).map_err(Fault::whole)?;
+    let mut soup = Soup::default();
+    for (t, triangle) in bytes[PREFIX..].chunks_exact(TRIANGLE).take(n_triangles as usize).enumerate() {
+        // Three numbers each for the normal and the corners.
+        for corner in triangle[..48].as_chunks::<4>().0.as_chunks::<3>().0.iter().skip(1) {
+            let pushed = soup.push(corner.map(f32::from_le_bytes), limits);
+            pushed.map_err(|fault| fault.at_byte(PREFIX + t * TRIANGLE))?;
+        }
+    }
+    soup.into_mesh(limits)
+}
+
+fn parse_ascii(bytes: &[u8], limits: &ReadLimits) -> Result<TriMesh, Located> {
+    let mut soup = Soup::default();
+    let mut lines = Lines::new(bytes);
+    let mut is_open = true;
+    while let Some(line) = lines.next() {
+        if begins_with(line.text, "solid") {
+            is_open = true;
+        } else if begins_with(line.text, "endsolid") || begins_with(line.text, "end solid") {
+            is_open = false;
+        } else if begins_with(line.text, "facet") {
+            limits.check(0, soup.n_triangles() + 1).map_err(|fault| fault.in_line(line.number))?;
+            expect(&mut lines, "`outer loop`")?;
+            for _ in 0..3 {
+                let line = next_line(&mut lines)?;
+                let corner = parse_corner(line)?;
+                soup.push(corner, limits).map_err(|fault| fault.in_line(line.number))?;
+            }
+            expect(&mut lines, "`endloop`")?;
+            expect(&mut lines, "`endfacet`")?;
+        } else {
+            return Err(line.expected("`facet` or `endsolid`"));
+        }
+    }
+    if is_open {
+        return Err(cut_short(&lines));
+    }
+    soup.into_mesh(limits)
+}
+
+fn begins_with(text: &[u8], keyword: &str) -> bool {
+    text.get(..keyword.len()).is_some_and(|begin| begin.eq_ignore_ascii_case(keyword.as_bytes()))
+}
+
+fn cut_short(lines: &Lines<'_>) -> Located {
+    Fault::CutShort { expected: "`endsolid`".into() }.in_line(lines.number())
+}
+
+fn next_line<'a>(lines: &mut Lines<'a>) -> Result<Line<'a>, Located> {
+    lines.next().ok_or_else(|| cut_short(lines))
+}
+
+/// Skips a line that consists of these words, in upper or lower case.
+fn expect(lines: &mut Lines<'_>, words: &'static str) -> Result<(), Located> {
+    let line = next_line(lines)?;
+    let found = line.tokens().map(<[u8]>::to_ascii_lowercase);
+    match found.eq(words.trim_matches('`').as_bytes().split(|&b| b == b' ')) {
+        true => Ok(()),
+        false => Err(line.expected(words)),
+    }
+}
+
+fn parse_corner(line: Line<'_>) -> Result<[f32; 3], Located> {
+    let expected = || line.expected("`vertex` and three coordinates");
+    let mut tokens = line.tokens();
+    let is_vertex = tokens.next().is_some_and(|word| word.eq_ignore_ascii_case(b"vertex"));
+    let mut corner = [0.0; 3];
+    for x in &mut corner {
+        *x = tokens.next().and_then(parse_number).ok_or_else(expected)?;
+    }
+    if is_vertex && tokens.next().is_none() { Ok(corner) } else { Err(expected()) }
+}
+
+/// Triangles whose corners are merged by position.
+#[derive(Default)]
+struct Soup {
+    numbers: HashMap<[u64; 3], VertexId>,
+    positions: Vec<Point3<f64>>,
+    /// The vertices of all corners, three per triangle.
+    corners: Vec<VertexId>,
+}
+
+impl Soup {
+    fn n_triangles(&self) -> u64 {
+        self.corners.len() as u64 / 3
+    }
+
+    /// Adds the next corner.
+    fn push(&mut self, corner: [f32; 3], limits: &ReadLimits) -> Result<(), Fault> {
+        let p = Point3::from(corner.map(f64::from));
+        if let Some(&value) = p.iter().find(|x| !x.is_finite()) {
+            return Err(Fault::NonFinite { vertex: self.corners.len() as u64, value });
+        }
+        self.corners.push(*self.numbers.entry(position_key(&p)).or_insert_with(|| {
+            self.positions.push(p);
+            VertexId::from(self.positions.len() - 1)
+        }));
+        limits.check(self.positions.len() as u64, 0)
+    }
+
+    fn into_mesh(self, limits: &ReadLimits) -> Result<TriMesh, Located> {
+        finish(self.positions, self.corners.as_chunks().0.to_vec(), limits)
+    }
+}
+
+/// Writes binary STL. Rounds coordinates to 32 bits; vertex numbers and unused vertices are lost.
+pub(super) fn write(out: &mut dyn Write, mesh: &TriMesh) -> io::Result<()> {
+    out.write_all(&[0; HEADER])?;
+    out.write_all(&(mesh.n_faces() as u32).to_le_bytes())?;
+    for f in 0..mesh.n_faces() {
+        let normal = mesh.area_vector(f).try_normalize(0.0).unwrap_or_default();
+        let corners = mesh.triangle(f).map(|p| p.coords);
+        for x in [normal].iter().chain(&corners).flat_map(|v| v.iter()) {
+            out.write_all(&(*x as f32).to_le_bytes())?;
+        }
+        out.write_all(&[0; 2])?;
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::error::Place;
+    use crate::shapes;
+
+    const FACET: &str = "facet normal 0 0 1\n outer loop\n  vertex 0 0 0\n  vertex 1 0 0\n  vertex 0 1 0\n endloop\nendfacet\n";
+
+    fn parse(bytes: &[u8]) -> Result<TriMesh, Located> {
+        super::parse(bytes, &ReadLimits::default())
+    }
+
+    fn binary(mesh: &TriMesh) -> Vec<u8> {
+        let mut bytes = Vec::new();
+        write(&mut bytes, mesh).unwrap();
+        bytes
+    }
+
+    fn fault(text: &str) -> (Place, Fault) {
+        let Located { place, fault, .. } = parse(text.as_bytes()).unwrap_err();
+        (place, fault)
+    }
+
+    #[test]
+    fn corners_in_the_same_position_become_one_vertex() {
+        let cube = shapes::cube(1);
+        for header in ["", "solid but binary"] {
+            let mut bytes = binary(&cube);
+            bytes[..header.len()].copy_from_slice(header.as_bytes());
+            let back = parse(&bytes).unwrap();
+            assert_eq!((back.n_vertices(), back.n_faces()), (cube.n_vertices(), cube.n_faces()));
+            for f in 0..cube.n_faces() {
+                assert_eq!(back.triangle(f), cube.triangle(f));
+            }
+        }
+    }
+
+    #[test]
+    fn ascii_parses_in_every_dialect() {
+        let expected = parse(format!("solid a\n{FACET}endsolid a\n").as_bytes()).unwrap();
+        assert_eq!((expected.n_vertices(), expected.n_faces()), (3, 1));
+        for text in [
+            format!("solid\n{FACET}endsolid"),
+            format!("SOLID X\r\n{}ENDSOLID\r\n", FACET.to_uppercase().replace('\n', "\r\n")),
+            format!("solid a\n{}endsolid\n", FACET.replace("0 0 1", "nan nan nan")),
+            format!("solid a\n{}endsolid\n", FACET.replace("  vertex 0 0 0", "vertex -0 0e5 -0.0")),
+        ] {
+            assert_eq!(parse(text.as_bytes()).unwrap(), expected);
+        }
+        let two = format!("solid a\n{FACET}endsolid a\nsolid b\n{FACET}endsolid b\n");
+        assert_eq!(parse(two.as_bytes()).unwrap().n_faces(), 2);
+    }
+
+    #[test]
+    fn ascii_faults_name_the_line() {
+        let cut = fault(&format!("solid a\n{FACET}"));
+        assert_eq!(cut, (Place::Line(8), Fault::CutShort { expected: "`endsolid`".into() }));
+        let broken = FACET.replace("endloop", "endlop");
+        let (place, broken) = fault(&format!("solid a\n{FACET}{broken}endsolid\n"));
+        assert_eq!(place, Place::Line(14));
+        assert!(matches!(broken, Fault::Syntax { expected: "`endloop`", .. }));
+        for word in ["nan", "inf", "1e300"] {
+            let broken = FACET.replace("1 0 0", &format!("1 {word} 0"));
+            let (place, fault) = fault(&format!("solid a\n{FACET}{broken}endsolid\n"));
+            assert_eq!(place, Place::Line(12));
+            assert!(matches!(fault, Fault::NonFinite { vertex: 4, .. }));
+        }
+        assert_eq!(fault("solid a\nendsolid\n"), (Place::File, Fault::NoFaces { n_vertices: 0 }));
+        assert_eq!(fault(" \n"), (Place::File, Fault::Empty));
+        assert!(matches!(fault("OFF\n"), (Place::File, Fault::WrongFormat { .. })));
+    }
+
+    #[test]
+    fn binary_faults_name_the_byte() {
+        let mut bytes = binary(&shapes::tetrahedron(0));
+        bytes[PREFIX + TRIANGLE + 16..PREFIX + TRIANGLE + 20].copy_from_slice(&f32::NAN.to_le_bytes());
+        let nan = parse(&bytes).unwrap_err();
+        assert_eq!(nan.place, Place::Byte(134));
+        assert!(matches!(nan.fault, Fault::NonFinite { vertex: 3, .. }));
+        bytes.pop();
+        let short = Fault::Truncated { items: "triangles".into(), promised: 4, found: 3 };
+        assert_eq!(parse(&bytes).unwrap_err().fault, short);
+        assert_eq!(parse(&[0; PREFIX]).unwrap_err().fault, Fault::NoFaces { n_vertices: 0 });
+        let bold = [[0u8; HEADER].as_slice(), &u32::MAX.to_le_bytes()].concat();
+        assert!(matches!(parse(&bold).unwrap_err().fault, Fault::Truncated { found: 0, .. }));
+    }
+}

@@ -1,0 +1,30 @@
+//! Texts that list the mesh formats.
+
+use mesh::io::{FORMATS, mesh_files};
+
+/// Fills in `{{mesh files}}`, a phrase, and `{{mesh extensions}}`, a list of extensions separated by commas.
+pub(crate) fn filled_in(text: &str) -> String {
+    let extensions: Vec<String> = FORMATS
+        .iter()
+        .flat_map(|format| format.extensions)
+        .map(|extension| format!(".{extension}"))
+        .collect();
+    text.replace("{{mesh files}}", &mesh_files()).replace("{{mesh extensions}}", &extensions.join(","))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn placeholders_are_replaced_by_all_formats() {
+        let page = filled_in(include_str!("page/index.html"));
+        let description = filled_in(include_str!("../openapi.json"));
+        for text in [&page, &description] {
+            assert!(text.contains(&mesh_files()) && !text.contains("{{"));
+        }
+        for extension in FORMATS.iter().flat_map(|format| format.extensions) {
+            assert!(page.contains(&format!(".{extension},")) || page.contains(&format!(".{extension}\"")));
+        }
+    }
+}
