@@ -146,8 +146,8 @@ fn animals_find_their_kind() {
         let prepared = PreparedForms::new(&forms, normalization).unwrap();
         let distances = form_distances(&prepared, &MatchOptions::default(), &()).unwrap();
         let scores = evaluate(&distances, &labels, 1).unwrap();
-        println!("{normalization:?}: NN {}, mAP {:.4}", scores.nn, scores.map);
-        assert_eq!(scores.nn, 1.0, "{normalization:?}");
+        println!("{normalization:?}: NN {}, mAP {:.4}", scores.mean.nn, scores.mean.map);
+        assert_eq!(scores.mean.nn, 1.0, "{normalization:?}");
     }
 }
 
