@@ -11,7 +11,8 @@
 //! Vectors come from outside; the index does not know what they describe.
 //!
 //! ```
-//! use canonform_index::{ContentHash, Index, IndexWriter, Job, SearchMode, Shape, ShapeEntry, ShapeVectors};
+//! use canonform_index::{ContentHash, Index, IndexWriter, Job, SearchMode, Searcher};
+//! use canonform_index::{Shape, ShapeEntry, ShapeVectors};
 //!
 //! # let folder = tempfile::tempdir().unwrap();
 //! let path = folder.path().join("animals.canonform");
@@ -29,8 +30,11 @@
 //! writer.put(&[shape("cat0", "cat", [0.0, 0.1]), shape("dog0", "dog", [5.0, 0.2])])?;
 //! writer.finish()?;
 //!
-//! let found = Index::open(&path)?.nearest(&[4.0, 0.0], 1, SearchMode::Auto)?;
+//! let index = Index::open(&path)?;
+//! assert_eq!((index.len(), index.entry("cat0")?.path.as_str()), (2, "cat0.off"));
+//! let found = index.nearest(&[4.0, 0.0], 1, SearchMode::Auto)?; // in the file
 //! assert_eq!(found.shapes[0].id, "dog0");
+//! assert_eq!(found, Searcher::load(&index)?.nearest(&[4.0, 0.0], 1, SearchMode::Auto)?); // in memory
 //! # Ok::<(), canonform_index::IndexError>(())
 //! ```
 //!

@@ -10,19 +10,6 @@ use crate::{IndexError, Shape, ShapeEntry, ShapeVectors};
 /// A finished index, open for reading.
 ///
 /// It keeps the state it had when it was opened, whatever writers do. Every byte is checked before it is used.
-///
-/// ```
-/// use canonform_index::{Index, IndexError, IndexWriter, Job};
-///
-/// # let folder = tempfile::tempdir().unwrap();
-/// let path = folder.path().join("empty.canonform");
-/// IndexWriter::open(&path, Job::Build, Some("options"))?.finish()?;
-///
-/// let index = Index::open(&path)?;
-/// assert_eq!((index.len(), index.options()), (0, "options"));
-/// assert!(matches!(index.entry("cat0"), Err(IndexError::NoSuchShape { .. })));
-/// # Ok::<(), IndexError>(())
-/// ```
 #[derive(Debug)]
 pub struct Index {
     path: PathBuf,

@@ -245,7 +245,7 @@ fn impossible_dimensions_and_points_without_extent_are_rejected() {
         for dim in [0, 10] {
             match embed(&problem, dim) {
                 Err(NmdsError::BadDimension { dim: found, limit }) => {
-                    assert_eq!((found, limit <= 9 && limit >= 3), (dim, true), "{name}");
+                    assert_eq!((found, (3..=9).contains(&limit)), (dim, true), "{name}");
                 }
                 other => panic!("{name}: {other:?}"),
             }

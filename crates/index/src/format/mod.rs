@@ -1,13 +1,4 @@
-//! The index file, from bytes to tables.
-//!
-//! | module | contents |
-//! |---|---|
-//! | `codec` | values as bytes with a checksum |
-//! | `error` | [`IndexError`] |
-//! | `sealed` | a finished file: the database, checksums of its blocks, a footer |
-//! | `overlay` | a sealed file as a database that keeps writes in memory |
-//! | `tables` | the tables of the database, and how to read and write them |
-//! | `stored_cells` | vectors divided into cells, in one of the tables |
+//! The index file, from bytes (`codec`, `sealed`) to a database (`overlay`) and its tables (`tables`, `stored_cells`).
 
 mod codec;
 mod error;

@@ -10,32 +10,7 @@ use crate::{Index, IndexError};
 /// Rows in one parallel task.
 const TASK: usize = 8192;
 
-/// All vectors of an index in memory, for many searches.
-///
-/// ```
-/// use canonform_index::{IndexWriter, Job, SearchMode, Searcher};
-/// use canonform_index::{ContentHash, Shape, ShapeEntry, ShapeVectors};
-///
-/// # let folder = tempfile::tempdir().unwrap();
-/// # let path = folder.path().join("index");
-/// let shape = |i: u8| Shape {
-///     id: format!("shape{i}"),
-///     entry: ShapeEntry {
-///         label: String::new(),
-///         path: String::new(),
-///         content: ContentHash::of(&[[i]]),
-///         facts: vec![],
-///     },
-///     vectors: ShapeVectors { fused: vec![f32::from(i), 1.0], ..ShapeVectors::default() },
-/// };
-/// let mut writer = IndexWriter::open(&path, Job::Build, Some(""))?;
-/// writer.put(&(0..100).map(shape).collect::<Vec<_>>())?;
-///
-/// let searcher = Searcher::load(&writer.finish()?)?;
-/// let found = searcher.nearest(&[41.9, 1.0], 2, SearchMode::Auto)?;
-/// assert_eq!((found.shapes[0].id.as_str(), found.shapes[1].id.as_str()), ("shape42", "shape41"));
-/// # Ok::<(), canonform_index::IndexError>(())
-/// ```
+/// All vectors of an index in memory, for many searches; see the [example](crate) of this crate.
 #[derive(Debug)]
 pub struct Searcher {
     header: CellsHeader,
