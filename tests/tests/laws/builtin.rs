@@ -1,4 +1,4 @@
-//! What the built-in dataset must come out as.
+//! Expected results on the built-in dataset.
 
 use canonform::{
     DescribeOptions, EmbedOptions, MatchOptions, Normalization, PreparedForms, ShapeDistance, StressChoice,
@@ -11,7 +11,7 @@ use retrieval::{Labels, evaluate};
 use crate::support::surface;
 
 #[test]
-fn forms_of_the_built_in_shapes_find_their_families() {
+fn canonical_forms_retrieve_their_families() {
     let options = ArticulatedOptions { n_vertices: 1000, ..ArticulatedOptions::default() };
     let shapes = articulated(&options).unwrap();
     let labels = Labels::new(&shapes.iter().map(|shape| shape.label.as_str()).collect::<Vec<_>>());
@@ -32,7 +32,7 @@ fn forms_of_the_built_in_shapes_find_their_families() {
 }
 
 #[test]
-fn two_poses_are_one_shape_and_two_families_are_not() {
+fn verdicts_distinguish_poses_from_families() {
     let options = ArticulatedOptions { n_vertices: 1000, ..ArticulatedOptions::default() };
     let shapes = articulated(&options).unwrap();
     let described: Vec<_> =
