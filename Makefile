@@ -28,7 +28,7 @@ lint: ## Check formatting, clippy and rustdoc; warnings are errors
 	RUSTDOCFLAGS="-D warnings" $(CARGO) doc --workspace --no-deps --locked
 
 bench: ## Time the distance solvers on meshes of several sizes
-	$(CARGO) bench --locked -p canonform-geodesics
+	$(CARGO) bench --locked -p bench
 
 bench-peers: build ## Compare distance solvers with other programs and write docs/benchmarks.md (needs Python and test meshes)
 	test -x target/peers/bin/python || python3 -m venv target/peers

@@ -12,7 +12,7 @@ enum May {
 }
 
 /// All crates of the workspace, by folder name; packages are called `canonform-FOLDER`.
-const RULES: [(&str, May); 19] = [
+const RULES: [(&str, May); 20] = [
     ("files", May::Know(&[])),
     ("surface", May::Know(&[])),
     ("linalg", May::Know(&[])),
@@ -56,6 +56,7 @@ const RULES: [(&str, May); 19] = [
             "terminal",
         ]),
     ),
+    ("bench", May::Know(&[])),
     ("browser", May::Know(&[])),
     ("experiments", May::KnowEverything),
     ("tests", May::KnowEverything),

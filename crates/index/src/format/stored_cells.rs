@@ -49,7 +49,7 @@ fn rows_in_part(n: usize) -> usize {
     (PART / (4 * n)).max(1)
 }
 
-/// Divides the vectors of a database into cells and stores these, over what was there.
+/// Divides the vectors of a database into cells and stores them, replacing earlier cells.
 pub(crate) fn write_cells(store: &Store<'_>) -> Result<(), IndexError> {
     let (names, rows, dim) = vectors(store)?;
     let n = padded(dim);

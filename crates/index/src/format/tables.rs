@@ -33,7 +33,7 @@ pub(crate) const CACHE: usize = 64 << 20;
 pub(crate) struct Store<'a> {
     pub(crate) database: &'a Database,
     pub(crate) path: &'a Path,
-    /// `read` or `write`.
+    /// `read` or `write`, for errors.
     pub(crate) action: &'static str,
 }
 
@@ -62,7 +62,7 @@ impl Store<'_> {
         decode(bytes).map_err(|error| IndexError::damaged(self.path, format!("{what}: {error}")))
     }
 
-    /// Writes a value under a name, over what was there.
+    /// Writes a value under a name, replacing an earlier one.
     fn insert<T: Serialize>(
         &self,
         transaction: &WriteTransaction,
