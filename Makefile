@@ -1,53 +1,53 @@
-# Every command that a person or CI runs. `make help` lists them.
+# All commands that people and CI run. `make help` lists them.
 
 CARGO ?= cargo
 OUT ?= out
-# A folder of meshes with the paper's classes, for `make reproduce`; the built-in dataset without it.
+# For `make reproduce`: a folder of meshes with the classes of the paper. Default: the built-in dataset.
 DATASET ?=
 
-.PHONY: help setup build run test lint bench bench-peers bench-nmds bench-search bench-eigsh fmt doc reproduce report deny ci clean
+.PHONY: help setup build run test lint bench bench-peers bench-nmds bench-search bench-eigsh fmt doc reproduce report deny package ci clean
 
 help: ## List these commands
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "  make %-12s %s\n", $$1, $$2}'
 
-setup: ## Fetch what the build needs from the package registry
+setup: ## Download the dependencies
 	$(CARGO) fetch --locked
 
 build: ## Build the programs
 	$(CARGO) build --release --locked
 
-run: ## Generate the built-in shapes, run figures 1 and 4, write out/report.html
+run: ## Generate the built-in shapes, run figures 1 and 4, and write out/report.html
 	$(CARGO) run --release --locked -p experiments -- run figure1 figure4 --output $(OUT)
 
 test: ## Run all tests
 	$(CARGO) test --workspace --locked
 
-lint: ## Format, clippy and rustdoc, warnings denied
+lint: ## Check formatting, clippy and rustdoc; warnings are errors
 	$(CARGO) fmt --all --check
 	$(CARGO) clippy --workspace --all-targets --locked -- -D warnings
 	RUSTDOCFLAGS="-D warnings" $(CARGO) doc --workspace --no-deps --locked
 
-bench: ## Time the solvers over sizes
-	$(CARGO) bench --locked -p canonform-geodesics
+bench: ## Time the distance solvers on meshes of several sizes
+	$(CARGO) bench --locked -p bench
 
-bench-peers: build ## Measure other programs beside this one and write docs/benchmarks.md (needs Python and test meshes)
+bench-peers: build ## Compare distance solvers with other programs and write docs/benchmarks.md (needs Python and test meshes)
 	test -x target/peers/bin/python || python3 -m venv target/peers
 	target/peers/bin/pip install --quiet numpy scipy potpourri3d pygeodesic meshlib
 	target/peers/bin/python bench/peers.py
 
-bench-nmds: build ## Measure whole canonical forms beside potpourri3d and NumPy and write docs/nmds.md (needs Python and test meshes)
+bench-nmds: build ## Compare canonical forms with potpourri3d and NumPy and write docs/nmds.md (needs Python and test meshes)
 	$(CARGO) build --release --locked -p canonform --example forms
 	test -x target/peers/bin/python || python3 -m venv target/peers
 	target/peers/bin/pip install --quiet numpy potpourri3d
 	target/peers/bin/python bench/nmds.py
 
-bench-eigsh: ## Measure eigenpairs beside SciPy and write docs/eigenpairs.md (needs Python and test meshes)
+bench-eigsh: ## Compare eigenpairs with SciPy and write docs/eigenpairs.md (needs Python and test meshes)
 	$(CARGO) build --release --locked -p canonform-descriptors --example eigenpairs
 	test -x target/peers/bin/python || python3 -m venv target/peers
 	target/peers/bin/pip install --quiet numpy scipy
 	target/peers/bin/python bench/eigsh.py
 
-bench-search: ## Search a million signatures beside hnswlib and faiss and write docs/search.md (needs Python, half an hour)
+bench-search: ## Compare search among a million vectors with hnswlib and faiss and write docs/search.md (needs Python; takes half an hour)
 	$(CARGO) build --release --locked -p canonform-index --example vectors
 	test -x target/peers/bin/python || python3 -m venv target/peers
 	target/peers/bin/pip install --quiet numpy hnswlib faiss-cpu
@@ -59,25 +59,28 @@ fmt: ## Format the sources
 doc: ## Build the documentation
 	$(CARGO) doc --workspace --no-deps --locked
 
-reproduce: ## Run every experiment, on DATASET=folder with the paper's classes if given
+reproduce: ## Run all experiments, on DATASET=folder with the classes of the paper if given
 	$(CARGO) run --release --locked -p experiments -- run all --output $(OUT) \
 	  $(if $(DATASET),--dataset $(DATASET) --classes cat$(comma)centaur$(comma)david)
 
 comma := ,
 
-report: ## Make the interactive page OUT/report.html again from the results in OUT, without running anything
+report: ## Write OUT/report.html from the results in OUT without running experiments
 	$(CARGO) run --release --locked -p experiments -- report --output $(OUT)
 
-deny: ## Check licences, sources and duplicate versions with cargo-deny (installs it if missing)
+deny: ## Check licences and sources of dependencies with cargo-deny (installs it if missing)
 	@command -v cargo-deny >/dev/null || $(CARGO) install --locked cargo-deny
 	cargo-deny --all-features check licenses bans sources
 
-# The program is the one that the tests were run with: built for itself alone, half of what it depends on differs.
-ci: lint test ## What CI runs: lint, tests, a small experiment from end to end
+package: ## Check that all packages can be published
+	$(CARGO) package --workspace --no-verify --allow-dirty --offline --no-metadata --quiet
+
+# Runs the program that the tests built: building it alone would compile half of its dependencies again.
+ci: lint test package ## What CI runs: lint, tests, packaging, a small experiment from end to end
 	$${CARGO_TARGET_DIR:-target}/debug/experiments run figure1 figure4 --vertices 1000 --quiet --output target/ci-out
 	test -s target/ci-out/report.html
 	@echo "ci: all good"
 
-clean: ## Remove what was built and written
+clean: ## Remove build products and results
 	$(CARGO) clean
 	rm -rf $(OUT)

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Laplace-Beltrami eigenpairs beside SciPy's `eigsh`: the same two matrices, in one run.
+"""Compares Laplace-Beltrami eigenpairs with SciPy's `eigsh` on the same matrices.
 
-    make bench-eigsh            builds the example, makes the environment, writes docs/eigenpairs.md
+    make bench-eigsh            builds the example, sets up the environment, writes docs/eigenpairs.md
 
-Every round solves each mesh with both, one thread each, so that whatever else the machine does falls on
-both; the table gives the least wall-clock and processor time over the rounds. SciPy inverts the same shifted
-matrix (SuperLU) and runs ARPACK, once as it comes and once asked for no more accuracy than ours. Residuals
-are |W x - lambda M x| / (lambda |M x|), the largest over all pairs but the constant one.
+Each round runs both solvers on one thread each, so that other load on the machine affects both alike. The table gives
+the smallest wall-clock and processor time over the rounds. SciPy factorises the same shifted matrix (SuperLU) and runs
+ARPACK, with its default tolerance and with that of canonform. Residuals are |W x - lambda M x| / (lambda |M x|), the
+largest over all pairs except the constant one.
 """
 import os
 import platform
@@ -22,7 +22,7 @@ import scipy
 import scipy.sparse as sp
 from scipy.sparse.linalg import eigsh
 
-from support import answer, mesh_arguments, test_meshes, write_page
+from support import answer, mesh_arguments, mesh_sections, write_page
 
 
 def ours(program, path, pairs, folder, threads):
@@ -35,7 +35,7 @@ def ours(program, path, pairs, folder, threads):
     half = sp.coo_matrix((read("stiffness"), (rows, columns)), shape=(len(masses),) * 2)
     stiffness = (half + half.T - sp.diags(half.diagonal())).tocsc()
     vectors = read("vectors").reshape(len(values), len(masses)).T
-    # Reading, repair and writing are in here too.
+    # Includes reading, repair and writing.
     spent = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
     return stiffness, sp.diags(masses).tocsc(), values, vectors, (seconds, spent)
 
@@ -67,7 +67,7 @@ def measure(program, path, pairs, rounds):
             n, cores = w.shape[0], os.cpu_count()
             *_, spent = ours(program, path, pairs, folder, cores)
             note(f"canonform, {cores} threads", spent, faults["canonform"])
-    lines = ["| solver | seconds | times ours | processor seconds | largest residual |", "|---|---|---|---|---|"]
+    lines = ["| solver | seconds | relative time | processor seconds | largest residual |", "|---|---|---|---|---|"]
     for name, (wall, cpu) in times.items():
         lines.append(f"| {name} | {wall:.2f} | {wall / times['canonform'][0]:.2f} | {cpu:.2f} | {faults[name]:.1e} |")
     return n, "\n".join(lines)
@@ -76,17 +76,13 @@ def measure(program, path, pairs, rounds):
 def main():
     args = mesh_arguments(__doc__, "target/release/examples/eigenpairs", "docs/eigenpairs.md", rounds=3, pairs=300)
     page = [
-        "# Eigenpairs beside SciPy",
+        "# Eigenpairs compared with SciPy",
         f"\nThe {args.pairs} smallest eigenpairs of the Laplacian, by `make bench-eigsh` on {platform.machine()}, "
-        f"{os.cpu_count()} cores, one thread unless said, SciPy {scipy.__version__}: the least of {args.rounds} rounds, "
-        "interleaved. The processor time of canonform holds reading, repair and writing too. Ratios count; the "
-        "seconds are those of one machine on one day.\n",
+        f"{os.cpu_count()} cores, one thread unless stated, SciPy {scipy.__version__}: the fastest of {args.rounds} rounds, "
+        "interleaved. The processor time of canonform includes reading, repair and writing. Compare ratios; absolute "
+        "times depend on the machine.\n",
     ]
-    with test_meshes(args.data) as meshes:
-        for title, path in meshes.items():
-            n_vertices, table = measure(args.program, path, args.pairs, args.rounds)
-            page.append(f"## {title}, {n_vertices:,} vertices\n\n{table}\n")
-            print(page[-1], flush=True)
+    page += mesh_sections(args.data, lambda path: measure(args.program, path, args.pairs, args.rounds))
     write_page(args.output, page)
 
 

@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
-"""From a mesh to its canonical form beside the same pipeline on potpourri3d and NumPy, in one run.
+"""Compares the way from a mesh to its canonical form with the same pipeline on potpourri3d and NumPy.
 
-    make bench-nmds             builds the program, makes the environment, writes docs/nmds.md
+    make bench-nmds             builds the program, sets up the environment, writes docs/nmds.md
 
-Both sides start from vertices and faces in memory and end with coordinates: what is prepared once per mesh
-(on our side repair, too), ten farthest samples with their distances to all vertices, and Nystrom scaling of
-rank five, in processes that have done it before. The peer's side is Procedures 1 and 2 of the paper in
-NumPy, once with potpourri3d's fast marching and once with its heat method; NumPy may use all cores. Stress
-is that of eq. 17 against exact distances from some vertices.
+Both sides start from vertices and faces in memory and end with coordinates: setup per mesh (for canonform including
+repair), ten farthest samples with their distances to all vertices, and Nystrom scaling of rank five, in processes
+that have run once before. The peers implement Procedures 1 and 2 of the paper in NumPy, with potpourri3d's fast
+marching and with its heat method; NumPy may use all cores. Stress is that of eq. 17, against exact distances from
+some vertices.
 """
 import json
 import os
@@ -19,13 +19,13 @@ import time
 
 import numpy as np
 
-from support import distances, mesh_arguments, read_mesh, test_meshes, write_page
+from support import distances, mesh_arguments, mesh_sections, read_mesh, write_page
 
 SAMPLES, RANK, DIM = 10, 5, 3
 
 
 def farthest_samples(solve, n):
-    """Distances to every vertex from `n` samples, the first of them vertex 0: p x n."""
+    """The p x n distances from `n` samples to all vertices; the first sample is vertex 0."""
     rows, samples = [], [0]
     nearest = np.inf
     for _ in range(n):
@@ -64,7 +64,7 @@ def peers(vertices, faces):
 
 
 class Ours:
-    """The example `forms`, which embeds one mesh as often as it is asked to."""
+    """The example `forms`, which embeds a mesh on each request."""
 
     def __init__(self, program, path, threads, form):
         self.form = form
@@ -84,7 +84,7 @@ class Ours:
 
 
 def stress(form, sources, exact):
-    """Eq. 17 from some rows, as if from all."""
+    """Eq. 17, extrapolated from some rows."""
     p = len(form)
     total = 0.0
     for source, row in zip(sources, exact):
@@ -113,31 +113,27 @@ def measure(program, solver, path, rounds, folder):
     for one in canonform.values():
         one.end()
     best = statistics.median(seconds[name(cores)])
-    lines = ["| pipeline | ms | times ours | stress |", "|---|---|---|---|"]
+    lines = ["| pipeline | ms | relative time | stress |", "|---|---|---|---|"]
     for who, spent in sorted(seconds.items(), key=lambda item: statistics.median(item[1])):
         spent = statistics.median(spent)
         lines.append(f"| {who} | {1e3 * spent:.1f} | {spent / best:.2f} | {stress(forms[who], sources, exact):.4g} |")
     repair, geodesics, algebra = 100 * np.median(parts, 0)
-    lines.append(f"\nOf ours on {cores} threads, repair and connectivity are {repair:.1f} %, distances with what is prepared "
-                 f"for them {geodesics:.1f} %, linear algebra {algebra:.1f} %.\n")
+    lines.append(f"\nOn {cores} threads, canonform spends {repair:.1f} % of the time on repair and connectivity, "
+                 f"{geodesics:.1f} % on distances and their setup, {algebra:.1f} % on linear algebra.")
     return len(vertices), "\n".join(lines)
 
 
 def main():
     args = mesh_arguments(__doc__, "target/release/canonform", "docs/nmds.md", rounds=9)
     page = [
-        "# Canonical forms beside potpourri3d and NumPy",
+        "# Canonical forms compared with potpourri3d and NumPy",
         f"\nMeasured by `make bench-nmds` on {platform.machine()}, {os.cpu_count()} cores: medians of {args.rounds} rounds, "
-        f"all interleaved in one run, in processes that have run once before. {SAMPLES} samples, rank {RANK}, from vertices "
-        "and faces in memory; reading and writing files is left out. Ratios count; the milliseconds are those of one machine "
-        "on one day.\n",
+        f"interleaved in one run, in processes that have run once before. {SAMPLES} samples, rank {RANK}, from vertices "
+        "and faces in memory, without file access. Compare ratios; absolute times depend on the machine.\n",
     ]
     solver = os.path.join(os.path.dirname(args.program), "examples", "forms")
-    with test_meshes(args.data) as meshes, tempfile.TemporaryDirectory() as folder:
-        for title, path in list(meshes.items())[1:]:
-            n_vertices, table = measure(args.program, solver, path, args.rounds, folder)
-            page.append(f"## {title}, {n_vertices:,} vertices\n\n{table}")
-            print(page[-1], flush=True)
+    with tempfile.TemporaryDirectory() as folder:
+        page += mesh_sections(args.data, lambda path: measure(args.program, solver, path, args.rounds, folder), 1)
     write_page(args.output, page)
 
 

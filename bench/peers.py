@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
-"""Surface distances beside other programs: time per source, one thread, and error, in one run.
+"""Compares distance solvers with other programs: time per source on one thread, and error.
 
-    make bench-peers            builds the program, makes the environment, writes docs/benchmarks.md
+    make bench-peers            builds the program, sets up the environment, writes docs/benchmarks.md
 
-Every round takes one source and runs every solver on it, so that whatever else the machine does falls on
-all of them; the table gives medians over the rounds. `canonform` is the built program and reports its own
-solver time, as its peers are timed around their solve call; what each prepares once per mesh stands beside
-it. Errors are relative to the exact polyhedral distances of `canonform --method exact`, which tests hold
-to an independent implementation. pygeodesic ends the process on some meshes, so it runs in one of its own.
+Each round runs all solvers on one source, so that other load on the machine affects all of them alike. The table
+gives medians over the rounds. `canonform` reports the time of its solver; its peers are timed around their solve
+call. Setup per mesh is listed separately. Errors are relative to the exact polyhedral distances of
+`canonform --method exact`, which tests compare with an independent implementation. pygeodesic crashes on some meshes,
+so it runs in its own process.
 """
 import math
 import multiprocessing
@@ -22,7 +22,7 @@ for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
 
 import numpy as np
 
-from support import distances, mesh_arguments, read_mesh, test_meshes, write_mesh, write_page
+from support import distances, mesh_arguments, mesh_sections, read_mesh, write_mesh, write_page
 
 OURS = ["fast-marching", "exact", "heat", "dijkstra"]
 FIRST = "canonform fast-marching"
@@ -44,8 +44,8 @@ def serve_pygeodesic(pipe, vertices, faces):
         pipe.send((row, time.perf_counter() - start))
 
 
-class Elsewhere:
-    """A solver in a process of its own, which may end."""
+class Isolated:
+    """A solver in its own process, which may crash."""
 
     def __init__(self, serve, *args):
         self.pipe, theirs = multiprocessing.Pipe()
@@ -69,7 +69,7 @@ def timed(solve):
 
 
 def peers(vertices, faces):
-    """Name -> (solve, seconds of preparation), and what refused the mesh."""
+    """Name -> (solve, seconds of setup), and name -> error of the solvers that failed."""
     import potpourri3d as pp3d
     import scipy.sparse as sp
     from scipy.sparse.csgraph import dijkstra
@@ -102,32 +102,32 @@ def peers(vertices, faces):
 
         return run
 
-    solvers, refused = {}, {}
+    solvers, failed = {}, {}
     for name, make in [
         ("MeshLib computeSurfaceDistances", meshlib),
         ("potpourri3d heat", heat),
         ("potpourri3d fast marching", marching),
-        ("pygeodesic (exact)", lambda: Elsewhere(serve_pygeodesic, vertices, faces)),
+        ("pygeodesic (exact)", lambda: Isolated(serve_pygeodesic, vertices, faces)),
         ("SciPy Dijkstra", graph),
     ]:
         start = time.perf_counter()
         try:
             solvers[name] = make(), time.perf_counter() - start
         except Exception as error:
-            refused[name] = str(error).splitlines()[0] if str(error) else "ended its process"
-    return solvers, refused
+            failed[name] = str(error).splitlines()[0] if str(error) else "it crashed"
+    return solvers, failed
 
 
 def measure(program, path, rounds):
     vertices, faces = read_mesh(path)
     sources = [int(s) for s in np.random.default_rng(0).integers(0, len(vertices), rounds)]
-    solvers, refused = peers(vertices, faces)
+    solvers, failed = peers(vertices, faces)
     rows, seconds = {}, {}
     setup = {name: prepared for name, (_, prepared) in solvers.items()}
     for source in sources:
         for method in OURS:
             name = f"canonform {method}"
-            # The solver's memory is warm from the second source on, as that of its peers is.
+            # Repeats the source, because memory is warm from the second time on, as with the peers.
             row, per_source, prepared = distances(program, path, method, [source] * 4)
             rows.setdefault(name, []).append(row[-1])
             seconds.setdefault(name, []).append(statistics.median(per_source[1:]))
@@ -136,7 +136,7 @@ def measure(program, path, rounds):
             try:
                 row, spent = solve(source)
             except (EOFError, BrokenPipeError):
-                refused[name] = "ended its process"
+                failed[name] = "it crashed"
                 del solvers[name]
                 continue
             rows.setdefault(name, []).append(row)
@@ -144,20 +144,20 @@ def measure(program, path, rounds):
     exact = np.array(rows["canonform exact"])
     known = np.isfinite(exact) & (exact > 0)
     ours = statistics.median(seconds[FIRST])
-    lines = ["| solver | ms a source | times ours | ms to prepare | mean error | largest |", "|---|---|---|---|---|---|"]
+    lines = ["| solver | ms per source | relative time | setup ms | mean error | largest error |", "|---|---|---|---|---|---|"]
     for name in sorted(seconds, key=lambda name: statistics.median(seconds[name])):
-        if name in refused:
+        if name in failed:
             continue
         relative = np.abs(np.array(rows[name]) - exact)[known] / exact[known]
         spent = statistics.median(seconds[name])
         lines.append(f"| {name} | {1e3 * spent:.2f} | {spent / ours:.2f} | {1e3 * setup[name]:.0f} "
                      f"| {100 * relative.mean():.3f} % | {100 * relative.max():.1f} % |")
-    lines += [f"\n{name} refused this mesh: {why}." for name, why in refused.items()]
+    lines += [f"\n{name} failed on this mesh: {why}." for name, why in failed.items()]
     return len(vertices), "\n".join(lines)
 
 
 def wavy_torus(n_vertices):
-    """An uneven closed surface of any size."""
+    """An irregular closed surface of any size."""
     m = int(round(math.sqrt(n_vertices / 3)))
     n = n_vertices // m
     random = np.random.default_rng(1)
@@ -181,7 +181,7 @@ def growth(program, folder):
         best.append(min(per_source))
         os.remove(path)
     exponent = np.polyfit(np.log(sizes), np.log(best), 1)[0]
-    table = "| vertices | ms a source |\n|---|---|\n"
+    table = "| vertices | ms per source |\n|---|---|\n"
     table += "\n".join(f"| {size:,} | {1e3 * spent:.2f} |" for size, spent in zip(sizes, best))
     return exponent, table
 
@@ -189,19 +189,15 @@ def growth(program, folder):
 def main():
     args = mesh_arguments(__doc__, "target/release/canonform", "docs/benchmarks.md", rounds=7)
     page = [
-        "# Surface distances beside other programs",
-        f"\nMeasured by `make bench-peers` on {platform.machine()}, {os.cpu_count()} cores, one thread each, "
+        "# Distance solvers compared with other programs",
+        f"\nMeasured by `make bench-peers` on {platform.machine()}, {os.cpu_count()} cores, one thread each: "
         f"medians over {args.rounds} sources, all solvers interleaved in one run. Errors are relative to exact "
-        "polyhedral distances. Ratios count; the milliseconds are those of one machine on one day.\n",
+        "polyhedral distances. Compare ratios; absolute times depend on the machine.\n",
     ]
-    with test_meshes(args.data) as meshes:
-        for title, path in meshes.items():
-            n_vertices, table = measure(args.program, path, args.rounds)
-            page.append(f"## {title}, {n_vertices:,} vertices\n\n{table}\n")
-            print(page[-1], flush=True)
+    page += mesh_sections(args.data, lambda path: measure(args.program, path, args.rounds))
     with tempfile.TemporaryDirectory() as folder:
         exponent, table = growth(args.program, folder)
-    page.append(f"## Growth of fast marching on an uneven torus\n\n{table}\n\nTime grows as vertices to the {exponent:.2f}.\n")
+    page.append(f"## Scaling of fast marching on an irregular torus\n\n{table}\n\nTime grows with the number of vertices to the power {exponent:.2f}.\n")
     print(page[-1])
     write_page(args.output, page)
 

@@ -1,14 +1,13 @@
 #!/usr/bin/env python3
-"""Search among a million signatures beside hnswlib and faiss: recall, latency, build time, memory, in one run.
+"""Compares search among a million signatures with hnswlib and faiss: recall, latency, build time, memory.
 
-    make bench-search           builds, makes the environment, writes docs/search.md
+    make bench-search           builds the program, sets up the environment, writes docs/search.md
 
-Signatures are made up as those of shapes are: families, classes in them, and poses of a class on a curved
-sheet of few dimensions, with noise; classes differ in size. Queries are signatures of the same kind
-that are not in the index. Every solver lives in a process of its own, is asked one query at a time on one
-thread (the exact scan of ours takes all), and the rounds are interleaved, so that whatever else the machine does
-falls on all of them. Peers are set to the cheapest setting that reaches the recall on these very queries; ours finds its own
-while building, on signatures of the index.
+Synthetic signatures imitate those of shapes: families, classes of different sizes within them, and poses of a class on
+a curved manifold of few dimensions, with noise. Queries are such signatures that are not in the index. Each solver
+runs in its own process and answers one query at a time on one thread (exact scans use all threads). Rounds are
+interleaved, so that other load on the machine affects all solvers alike. Peers use the cheapest setting that reaches
+the recall on these queries; canonform calibrates its own while building, on signatures of the index.
 """
 import gc
 import json
@@ -30,7 +29,7 @@ WARMING = 500
 
 
 def signatures(n, dim, seed, width):
-    """n points: families > classes of uneven size > poses on a sheet of six dimensions."""
+    """n points: families > classes of different sizes > poses on a manifold of six dimensions."""
     random = np.random.default_rng(seed)
     families, classes, sheet = 50, max(50, n // 200), 6
     centre = random.normal(size=(families, dim)).astype("f4")[random.integers(0, families, classes)]
@@ -123,7 +122,7 @@ def serve(pipe, make, base_path, queries_path, threads):
 
 class Peer:
     def __init__(self, make, *args):
-        # A fresh interpreter: nothing of ours counts as its memory.
+        # A fresh interpreter, so that its memory contains nothing else.
         context = multiprocessing.get_context("spawn")
         self.pipe, theirs = context.Pipe()
         self.process = context.Process(target=serve, args=(theirs, make, *args), daemon=True)
@@ -147,7 +146,7 @@ class Peer:
 
 
 class Ours:
-    """`vectors serve`, asked for answers from memory, from the file, or by the exact scan."""
+    """`vectors serve`, which searches in memory, in the file, or by an exact scan."""
 
     def __init__(self, program, index, queries):
         self.process = subprocess.Popen([program, "serve", index, queries], stdin=subprocess.PIPE,
@@ -181,7 +180,7 @@ def measure(program, folder, n, dim, width, n_queries, rounds):
     np.save(queries_path, rows[n:])
     del rows
     built = answer([program, "build", base_path, index])
-    print("ours built", built, flush=True)
+    print("canonform built", built, flush=True)
     size = os.path.getsize(index) / 1e6
     peers = {}
     for name, make in [("faiss IndexFlatL2 (exact, all threads)", make_flat), ("faiss IndexIVFFlat", make_ivf),
@@ -205,7 +204,7 @@ def measure(program, folder, n, dim, width, n_queries, rounds):
     spans = np.array_split(np.arange(WARMING, n_queries), rounds)
     for span in spans:
         for name, ask in solvers.items():
-            # Exact scans are slow and steady: fewer of them will do.
+            # Exact scans are slow and vary little, so fewer suffice.
             count = len(span) // 8 if "exact" in name else len(span)
             spent, ids = ask(int(span[0]), count)
             seconds[name] += spent
@@ -226,8 +225,8 @@ def measure(program, folder, n, dim, width, n_queries, rounds):
             if "file" in name:
                 build, memory = "", f"(file of {size:.0f})"
         lines.append(f"| {label} | {hit:.4f} | {p50:.3f} | {p99:.3f} | {build} | {memory} |")
-    note = (f"\nOurs promises a recall of {ours.ready['recall']:.4f}, found by trial while building, and measures {measured:,.0f} "
-            f"signatures a query. Opening the file takes {1e3 * ours.ready['opened']:.1f} ms, reading it into memory "
+    note = (f"\ncanonform calibrates a recall of {ours.ready['recall']:.4f} while building and measures {measured:,.0f} signatures per "
+            f"query. Opening the file takes {1e3 * ours.ready['opened']:.1f} ms, reading it into memory "
             f"{ours.ready['loaded']:.2f} s; building takes {built['megabytes']} MB.")
     for process in [ours, *peers.values()]:
         process.end()
@@ -242,14 +241,14 @@ def main():
     if not os.path.exists(args.program):
         sys.exit(f"{args.program} is missing: run `make bench-search`")
     page = [
-        "# Search among many signatures",
-        f"\nMeasured by `make bench-search` on {platform.machine()}, {os.cpu_count()} cores: {args.n:,} made-up signatures of "
-        f"{args.dim} numbers in families, classes and poses, {args.queries - WARMING:,} queries that are not among them, one at a time, all solvers "
-        "interleaved in one run. Peers run at the cheapest setting that reaches a recall of "
-        f"{RECALL}. Ratios count; the milliseconds are those of one machine on one day.\n",
+        "# Search among many signatures, compared with hnswlib and faiss",
+        f"\nMeasured by `make bench-search` on {platform.machine()}, {os.cpu_count()} cores: {args.n:,} synthetic signatures of "
+        f"{args.dim} numbers in families, classes and poses, {args.queries - WARMING:,} queries that are not among them, one at a time, "
+        "all solvers interleaved in one run. Peers use the cheapest setting that reaches a recall of "
+        f"{RECALL}. Compare ratios; absolute times depend on the machine.\n",
     ]
     for width in args.widths:
-        kind = "classes apart" if width < 0.6 else "classes that overlap"
+        kind = "separate classes" if width < 0.6 else "overlapping classes"
         with tempfile.TemporaryDirectory(dir=os.path.dirname(args.program)) as folder:
             table = measure(args.program, folder, args.n, args.dim, width, args.queries, args.rounds)
         page.append(f"## {kind.capitalize()} (poses vary by {width} where classes differ by 0.6)\n\n{table}\n")

@@ -1,4 +1,4 @@
-"""What the benches share: arguments, meshes, asking the program, writing pages."""
+"""Shared by the benchmarks: arguments, meshes, calls of the program, pages."""
 import argparse
 import contextlib
 import heapq
@@ -11,12 +11,12 @@ import tempfile
 
 import numpy as np
 
-# As many vertices as the peers' published figures are for.
+# The number of vertices in the published figures of the peers.
 FINE = 27_894
 
 
 def arguments(doc, program, output, rounds, **more):
-    """Those of every bench, and `more` numbers by their defaults."""
+    """A parser of the options of all benchmarks, and of `more` numbers, given by their defaults."""
     parser = argparse.ArgumentParser(description=doc.splitlines()[0])
     parser.add_argument("--program", default=program)
     parser.add_argument("--output", default=output)
@@ -33,7 +33,7 @@ def mesh_arguments(*args, **more):
 
 @contextlib.contextmanager
 def test_meshes(data):
-    """Title -> path of each mesh that the benches run on; the second is made for as long as they are open."""
+    """Title -> path of each test mesh. Generates the second one for the duration of the context."""
     cat = os.path.join(data, "tosca-lowres", "cat0.vert")
     if not os.path.exists(cat):
         sys.exit(f"{cat} is missing: pass --data FOLDER with tosca-lowres/ and single/")
@@ -65,7 +65,7 @@ def write_mesh(path, vertices, faces):
 
 
 def bisected(vertices, faces, n_vertices):
-    """Cuts longest edges in half until there are so many vertices: the surface stays as it is."""
+    """Bisects longest edges up to a number of vertices, without changing the surface."""
     vertices, faces = [tuple(v) for v in vertices], [list(f) for f in faces]
     at_edge = {}
     length = lambda a, b: math.dist(vertices[a], vertices[b])
@@ -100,12 +100,12 @@ def bisected(vertices, faces, n_vertices):
 
 
 def answer(command, **how):
-    """What a program says as JSON."""
+    """The JSON output of a program."""
     return json.loads(subprocess.run(command, check=True, capture_output=True, text=True, **how).stdout)
 
 
 def distances(program, mesh, method, sources):
-    """Of `canonform geodesic` on one thread: a row a source, seconds a source, seconds of preparation."""
+    """`canonform geodesic` on one thread: distances (one row per source), seconds per source, seconds of setup."""
     with tempfile.TemporaryDirectory() as folder:
         out = os.path.join(folder, "distances.npy")
         seconds = answer([program, "geodesic", mesh, "--method", method, "--threads", "1", "--json", "-o", out,
@@ -113,8 +113,17 @@ def distances(program, mesh, method, sources):
         return np.atleast_2d(np.load(out)), seconds["per_source"], seconds["setup"]
 
 
+def mesh_sections(data, measure, first=0):
+    """A section with the table of `measure(path)`, which returns the number of vertices too, for each test mesh."""
+    with test_meshes(data) as meshes:
+        for title, path in list(meshes.items())[first:]:
+            n_vertices, table = measure(path)
+            print(f"## {title}, {n_vertices:,} vertices\n\n{table}\n", flush=True)
+            yield f"## {title}, {n_vertices:,} vertices\n\n{table}\n"
+
+
 def write_page(path, sections):
-    """The page is there whole or not at all."""
+    """Writes a page atomically."""
     os.makedirs(os.path.dirname(path) or ".", exist_ok=True)
     with open(path + ".part", "w") as file:
         file.write("\n".join(sections))

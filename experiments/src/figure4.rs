@@ -134,12 +134,12 @@ fn measured(panels: &[Figure4Panel], name: &str) -> Option<f64> {
     let score = |method: &str, scale: &str, score: &str| {
         let panel = panels.iter().find(|p| p.method == method && p.scale.name() == scale)?;
         Some(match score {
-            "nn" => panel.scores.nn,
-            "ft" => panel.scores.ft,
-            "st" => panel.scores.st,
-            "e" => panel.scores.e,
-            "dcg" => panel.scores.dcg,
-            "map" => panel.scores.map,
+            "nn" => panel.scores.mean.nn,
+            "ft" => panel.scores.mean.ft,
+            "st" => panel.scores.mean.st,
+            "e" => panel.scores.mean.e,
+            "dcg" => panel.scores.mean.dcg,
+            "map" => panel.scores.mean.map,
             "knn" => panel.scores.knn_accuracy,
             "silhouette" => panel.scores.silhouette,
             "map silhouette" => panel.map_silhouette,

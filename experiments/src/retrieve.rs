@@ -18,8 +18,7 @@ use report::results::{Classification, RetrievalRecord, RetrievalRow, Scale, writ
 use report::retrieval::retrieval;
 use report::tables::retrieval_table;
 use retrieval::{
-    Averaging, Labels, Neighbor, UnknownThreshold, confusion_matrix, mean_scores, precision_recall, rank,
-    vote,
+    Averaging, Labels, UnknownThreshold, confusion_matrix, mean_scores, precision_recall, rank, vote,
 };
 
 use crate::collection::map;
@@ -173,14 +172,7 @@ fn classified(
     let threshold = UnknownThreshold::leave_one_out(distances, labels);
     let mut confusion = vec![vec![0; classes.len() + 1]; classes.len()];
     for i in 0..names.len() {
-        let ranking = rank(distances, i);
-        let neighbors: Vec<Neighbor> = ranking
-            .order
-            .iter()
-            .zip(&ranking.distances)
-            .map(|(&index, &distance)| Neighbor { index, distance })
-            .collect();
-        let found = vote(&neighbors, |i| labels.class(i), voters, threshold).class;
+        let found = vote(&rank(distances, i), |i| labels.class(i), voters, threshold).class;
         confusion[labels.class(i)][found.unwrap_or(classes.len())] += 1;
     }
     let (mut missed, mut mistaken) = ([0usize; 2], [0usize; 2]);
@@ -190,9 +182,9 @@ fn classified(
         for i in (0..names.len()).filter(|&i| labels.class(i) == class) {
             let ranking = rank(distances, i);
             for (same, [errors, all]) in [(true, &mut missed), (false, &mut mistaken)] {
-                let is = |j: &usize| (labels.class(*j) == class) == same;
-                let Some(at) = ranking.order.iter().position(is) else { continue };
-                let near = ranking.distances[at] <= threshold.distance;
+                let nearest = ranking.iter().find(|n| (labels.class(n.index) == class) == same);
+                let Some(nearest) = nearest else { continue };
+                let near = nearest.distance <= threshold.distance;
                 *errors += usize::from(near != same);
                 *all += 1;
             }

@@ -1,9 +1,8 @@
-//! Indexes the rows of a NumPy array and answers queries line by line: the side of `bench/search.py` that
-//! is measured.
+//! Indexes the rows of a NumPy array and answers queries, for `bench/search.py`.
 //!
 //! ```text
-//! vectors build BASE.npy INDEX           stores and finishes an index; prints seconds
-//! vectors serve INDEX QUERIES.npy        then, for every line `memory|file|scan K FIRST COUNT` it reads, prints
+//! vectors build BASE.npy INDEX           builds an index and prints the seconds taken
+//! vectors serve INDEX QUERIES.npy        for each input line `memory|file|scan K FIRST COUNT`, prints
 //!                                        {"seconds": [..], "found": [[..], ..]}
 //! ```
 //!
@@ -19,7 +18,7 @@ use canonform_index::{
 };
 use serde_json::json;
 
-/// Shapes put on the disk together.
+/// Shapes in one transaction.
 const BATCH: usize = 20_000;
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -31,7 +30,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
 }
 
-/// The rows of an array and their length.
+/// Reads the rows of an array and their length.
 fn read(path: &Path) -> Result<(Vec<f32>, usize), Box<dyn Error>> {
     let bytes = std::fs::read(path)?;
     let array = npyz::NpyFile::new(&bytes[..])?;
@@ -104,7 +103,7 @@ fn serve(path: &Path, queries: &Path) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// The most memory this process has had, in megabytes; 0 where the system does not say.
+/// Peak memory of this process in megabytes; 0 if the system does not report it.
 fn peak_memory() -> u64 {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));

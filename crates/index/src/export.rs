@@ -1,10 +1,10 @@
-//! An index as text that does not depend on how it came about.
+//! Export of an index as text that does not depend on its history.
 
 use std::io::{self, Write};
 
 use serde::{Serialize, Serializer};
 
-use super::{Index, IndexError, Shape};
+use crate::{Index, IndexError, Shape};
 
 /// The first line of an export.
 #[derive(Serialize)]
@@ -15,7 +15,7 @@ struct Head<'a> {
     shapes: usize,
 }
 
-/// Any other line.
+/// Each further line.
 #[derive(Serialize)]
 struct Line<'a> {
     id: &'a str,
@@ -28,7 +28,7 @@ struct Line<'a> {
     form: &'a [[f32; 4]],
 }
 
-/// Pairs as an object, in their order.
+/// Pairs serialised as an object, in order.
 struct Named<'a, T>(&'a [(String, T)]);
 
 impl<T: Serialize> Serialize for Named<'_, T> {
@@ -37,23 +37,22 @@ impl<T: Serialize> Serialize for Named<'_, T> {
     }
 }
 
-/// What stopped an export.
+/// Errors of an export.
 #[derive(Debug, thiserror::Error)]
 pub enum ExportError {
-    /// Reading the index.
+    /// The index cannot be read.
     #[error(transparent)]
     Index(#[from] IndexError),
-    /// Writing the text.
+    /// The text cannot be written.
     #[error("cannot write the export: {0}")]
     Write(#[from] io::Error),
 }
 
 impl Index {
-    /// Writes the index as lines of JSON: one on the whole, then one a shape in ascending order of names.
-    /// Numbers are written in full: they read back bit for bit.
+    /// Writes the index as lines of JSON: first a header, then one line per shape in ascending order of names. Numbers
+    /// read back bit for bit.
     ///
-    /// Equal indexes give equal bytes, whether they were built at once, after interruptions, or in parts
-    /// that were merged.
+    /// Equal indexes give equal bytes, whether they were built at once, after interruptions, or merged from parts.
     ///
     /// # Errors
     /// [`ExportError`].

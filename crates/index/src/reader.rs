@@ -4,15 +4,12 @@ use std::path::{Path, PathBuf};
 
 use redb::Database;
 
-use super::overlay::Overlay;
-use super::sealed::Sealed;
-use super::tables::{CACHE, ENTRIES, Snapshot, Store, fault_at};
-use super::{IndexError, Shape, ShapeEntry, ShapeVectors};
+use crate::format::{CACHE, ENTRIES, Overlay, Sealed, Snapshot, Store, database_error};
+use crate::{IndexError, Shape, ShapeEntry, ShapeVectors};
 
-/// A finished index, open to be read.
+/// A finished index, open for reading.
 ///
-/// It stays as it was when it was opened, whatever writers do. Every byte is checked before it is
-/// believed.
+/// It keeps the state it had when it was opened, whatever writers do. Every byte is checked before it is used.
 #[derive(Debug)]
 pub struct Index {
     path: PathBuf,
@@ -24,23 +21,21 @@ pub struct Index {
 }
 
 impl Index {
-    /// Opens an index; nothing but what is asked for is read.
+    /// Opens an index. Shapes are read on demand.
     ///
     /// # Errors
-    /// [`IndexError::Foreign`], [`IndexError::FutureVersion`], [`IndexError::Damaged`],
-    /// [`IndexError::Io`].
+    /// [`IndexError::Foreign`], [`IndexError::FutureVersion`], [`IndexError::Damaged`], [`IndexError::Io`].
     pub fn open(path: &Path) -> Result<Self, IndexError> {
         let sealed = Sealed::open(path)?;
         let (fingerprint, size) = (sealed.footer().fingerprint(), sealed.len());
         let database = Database::builder()
             .set_cache_size(CACHE)
             .create_with_backend(Overlay::new(sealed))
-            .map_err(|fault| fault_at(path, "read", fault))?;
+            .map_err(|error| database_error(path, "read", error))?;
         let store = Store { database: &database, path, action: "read" };
         let about = store.read()?;
-        let damaged =
-            || IndexError::Damaged { path: path.to_owned(), what: "it does not say what it holds".into() };
-        let options = about.about("options")?.ok_or_else(damaged)?;
+        let missing = || IndexError::damaged(path, "its options are missing");
+        let options = about.about("options")?.ok_or_else(missing)?;
         let n_shapes = about.len()?;
         drop(about);
         Ok(Self { path: path.to_owned(), database, options, n_shapes, fingerprint, size })
@@ -50,20 +45,22 @@ impl Index {
         Store { database: &self.database, path: &self.path, action: "read" }
     }
 
-    /// Where it is.
+    /// The file.
     #[must_use]
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// How its shapes were described.
+    /// The options its shapes were described with.
     #[must_use]
     pub fn options(&self) -> &str {
         &self.options
     }
 
+    /// Checks that its shapes were described with the options `asked`.
+    ///
     /// # Errors
-    /// [`IndexError::OtherOptions`] unless its shapes were described with these.
+    /// [`IndexError::OtherOptions`].
     pub fn expect_options(&self, asked: &str) -> Result<(), IndexError> {
         match self.options == asked {
             true => Ok(()),
@@ -81,30 +78,30 @@ impl Index {
         self.n_shapes
     }
 
-    /// Whether there is none.
+    /// Whether the index holds no shapes.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.n_shapes == 0
     }
 
-    /// Bytes of its database.
+    /// Size of the database in bytes.
     #[must_use]
     pub fn n_bytes(&self) -> u64 {
         self.size
     }
 
-    /// A number that changes with the file.
-    pub(super) fn fingerprint(&self) -> u64 {
+    /// A number that changes with the content of the file.
+    pub(crate) fn fingerprint(&self) -> u64 {
         self.fingerprint
     }
 
     fn with<T>(
         &self,
-        ask: impl FnOnce(&Snapshot<'_>) -> Result<Option<T>, IndexError>,
+        read: impl FnOnce(&Snapshot<'_>) -> Result<Option<T>, IndexError>,
         id: &str,
     ) -> Result<T, IndexError> {
         let store = self.store();
-        ask(&store.read()?)?
+        read(&store.read()?)?
             .ok_or_else(|| IndexError::NoSuchShape { path: self.path.clone(), id: id.to_owned() })
     }
 
@@ -116,7 +113,7 @@ impl Index {
         Ok(self.store().read()?.entry(id)?.is_some())
     }
 
-    /// What is known of a shape.
+    /// The entry of a shape.
     ///
     /// # Errors
     /// [`IndexError::NoSuchShape`], [`IndexError::Io`], [`IndexError::Damaged`].
@@ -132,22 +129,21 @@ impl Index {
         self.with(|snapshot| snapshot.vectors(id), id)
     }
 
-    /// Calls `visit` with every shape in ascending order of names; one at a time is in memory.
+    /// Calls `visit` with each shape in ascending order of names. Holds one shape in memory at a time.
     ///
     /// # Errors
-    /// Whatever `visit` returns; [`IndexError::Io`], [`IndexError::Damaged`].
+    /// Any error of `visit`; [`IndexError::Io`], [`IndexError::Damaged`].
     pub fn each<E: From<IndexError>>(&self, mut visit: impl FnMut(Shape) -> Result<(), E>) -> Result<(), E> {
         let store = self.store();
         let snapshot = store.read()?;
         snapshot.each(ENTRIES, |id, entry| {
-            let missing =
-                || IndexError::Damaged { path: self.path.clone(), what: format!("`{id}` has no vectors") };
+            let missing = || IndexError::damaged(&self.path, format!("`{id}` has no vectors"));
             let vectors = snapshot.vectors(id)?.ok_or_else(missing)?;
             visit(Shape { id: id.to_owned(), entry, vectors })
         })
     }
 
-    /// All names with what is known of them, ascending.
+    /// All names and entries, in ascending order of names.
     ///
     /// # Errors
     /// [`IndexError::Io`], [`IndexError::Damaged`].

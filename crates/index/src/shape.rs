@@ -1,4 +1,4 @@
-//! What an index knows of a shape.
+//! The record of one shape.
 
 use std::fmt;
 use std::str::FromStr;
@@ -6,14 +6,12 @@ use std::str::FromStr;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 
-use super::codec::Floats;
-
-/// SHA-256 of whatever a shape was made of.
+/// SHA-256 hash of what a shape was made from.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct ContentHash([u8; 32]);
 
 impl ContentHash {
-    /// The hash of several pieces of bytes in this order; where one ends and the next begins counts.
+    /// Hashes several pieces of bytes in order, including where each of them ends.
     #[must_use]
     pub fn of<B: AsRef<[u8]>>(pieces: &[B]) -> Self {
         let mut hash = Sha256::new();
@@ -51,21 +49,21 @@ impl FromStr for ContentHash {
     }
 }
 
-/// What is known of a shape without its vectors.
+/// Properties of a shape, without its vectors.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ShapeEntry {
-    /// Its class; empty when it has none.
+    /// Its class; empty if it has none.
     pub label: String,
-    /// Where it came from.
+    /// The file it was read from.
     pub path: String,
-    /// Hash of what it was made of.
+    /// Hash of what it was made from.
     pub content: ContentHash,
-    /// Named numbers about it, in the order of whoever described it.
+    /// Named numbers about it, in the order given.
     pub facts: Vec<(String, f64)>,
 }
 
 impl ShapeEntry {
-    /// The fact of this name.
+    /// The fact of this name, if any.
     #[must_use]
     pub fn fact(&self, name: &str) -> Option<f64> {
         self.facts.iter().find(|(known, _)| known == name).map(|(_, value)| *value)
@@ -75,48 +73,24 @@ impl ShapeEntry {
 /// The vectors of a shape.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ShapeVectors {
-    /// What is searched: near in the Euclidean norm means alike. Of equal length in all of an index.
+    /// The vector that is searched: similar shapes are near in the Euclidean norm. All vectors of an index have the
+    /// same length.
     pub fused: Vec<f32>,
     /// Named signatures.
     pub signatures: Vec<(String, Vec<f32>)>,
-    /// Points of its form: `x y z` and weight.
+    /// Points of its canonical form: `x y z` and weight.
     pub form: Vec<[f32; 4]>,
 }
 
-/// A shape of an index.
+/// A shape in an index.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Shape {
-    /// Its name, unique in an index.
+    /// Its name, unique within an index.
     pub id: String,
-    /// Facts.
+    /// Its properties.
     pub entry: ShapeEntry,
-    /// Vectors.
+    /// Its vectors.
     pub vectors: ShapeVectors,
-}
-
-/// Signatures and form as they are stored; the fused vector lies apart.
-#[derive(Serialize, Deserialize)]
-pub(super) struct StoredBody {
-    signatures: Vec<(String, Floats)>,
-    form: Floats,
-}
-
-impl StoredBody {
-    pub(super) fn new(vectors: &ShapeVectors) -> Self {
-        let signatures = vectors.signatures.iter();
-        Self {
-            signatures: signatures.map(|(name, values)| (name.clone(), Floats(values.clone()))).collect(),
-            form: Floats(vectors.form.as_flattened().to_vec()),
-        }
-    }
-
-    pub(super) fn with(self, fused: Floats) -> ShapeVectors {
-        ShapeVectors {
-            fused: fused.0,
-            signatures: self.signatures.into_iter().map(|(name, values)| (name, values.0)).collect(),
-            form: self.form.0.as_chunks::<4>().0.to_vec(),
-        }
-    }
 }
 
 #[cfg(test)]
@@ -124,7 +98,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn hashes_are_those_of_sha_256_and_pieces_do_not_run_together() {
+    fn hashes_are_sha_256_and_depend_on_where_pieces_end() {
         let hash = ContentHash::of::<&[u8]>(&[]);
         let empty = "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855";
         assert_eq!(hash.to_string(), empty);

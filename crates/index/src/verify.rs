@@ -1,68 +1,93 @@
-//! Is all of an index what was written?
+//! Integrity check of a whole index.
 
 use std::path::Path;
 
-use super::sealed::Sealed;
-use super::tables::{BODIES, FUSED};
-use super::{Index, IndexError, Shape, ShapeEntry};
+use crate::format::{BODIES, FUSED, Sealed, StoredCells, vectors};
+use crate::vectors::padded;
+use crate::{Index, IndexError, Shape};
 
-/// What [`verify`] found.
+/// The result of [`verify`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct Verification {
-    /// Shapes that were read.
+    /// Number of shapes read.
     pub n_shapes: usize,
-    /// Bytes of the file that were read.
+    /// Number of bytes read.
     pub n_bytes: u64,
-    /// What is wrong; nothing in a sound index.
+    /// The defects found; empty if the index is intact.
     pub faults: Vec<String>,
 }
 
-/// Reads every byte of an index, every shape, and what is searched, and holds them against each other.
-/// `done` is called after each mebibyte.
+/// Reads every byte, every shape and all search data of an index, and checks that they agree.
+///
+/// Calls `done` after each mebibyte.
 ///
 /// # Errors
-/// Those of [`Index::open`] when it is no index at all.
+/// As [`Index::open`], if the file is not an index.
 pub fn verify(path: &Path, done: impl FnMut()) -> Result<Verification, IndexError> {
     let sealed = Sealed::open(path)?;
     let mut found = Verification { n_shapes: 0, n_bytes: sealed.len(), faults: Vec::new() };
-    if let Err(fault) = sealed.check(done) {
-        found.faults.push(fault.to_string());
+    if let Err(error) = sealed.check(done) {
+        found.faults.push(error.to_string());
         return Ok(found);
     }
     let index = Index::open(path)?;
-    let mut tell = |result: Result<(), IndexError>| {
-        if let Err(fault) = result {
-            found.faults.push(fault.to_string());
-        }
-    };
     let mut n_shapes = 0;
-    tell(index.each(|_: Shape| {
+    let read = index.each(|_: Shape| {
         n_shapes += 1;
         Ok(())
-    }));
-    let mut others = [0; 2];
-    let store = index.store();
-    let counted = store.read().and_then(|snapshot| {
-        let known = |id: &str| match snapshot.entry(id)? {
-            Some(ShapeEntry { .. }) => Ok(()),
-            None => {
-                Err(IndexError::Damaged { path: path.to_owned(), what: format!("`{id}` has vectors only") })
-            }
-        };
-        for (table, count) in [FUSED, BODIES].into_iter().zip(&mut others) {
-            for id in snapshot.keys(table)? {
-                *count += 1;
-                known(&id)?;
-            }
-        }
-        Ok(())
     });
-    tell(counted);
-    tell(match crate::search::check(&index) {
-        Ok(faults) if faults.is_empty() => Ok(()),
-        Ok(faults) => Err(IndexError::Damaged { path: path.to_owned(), what: faults.join("; ") }),
-        Err(fault) => Err(fault),
+    let searched = check_cells(&index).and_then(|faults| match faults.is_empty() {
+        true => Ok(()),
+        false => Err(IndexError::damaged(path, faults.join("; "))),
     });
+    for result in [read, check_entries(&index), searched] {
+        found.faults.extend(result.err().map(|error| error.to_string()));
+    }
     found.n_shapes = n_shapes;
     Ok(found)
+}
+
+/// Checks that all vectors belong to an entry.
+fn check_entries(index: &Index) -> Result<(), IndexError> {
+    let store = index.store();
+    let snapshot = store.read()?;
+    for table in [FUSED, BODIES] {
+        for id in snapshot.keys(table)? {
+            if snapshot.entry(&id)?.is_none() {
+                return Err(IndexError::damaged(index.path(), format!("`{id}` has vectors but no entry")));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Compares the cells with the vectors that they were made from. Returns the differences.
+fn check_cells(index: &Index) -> Result<Vec<String>, IndexError> {
+    let store = index.store();
+    let (names, rows, dim) = vectors(&store)?;
+    let n = padded(dim);
+    let stored = StoredCells::open(&store)?;
+    let mut faults = Vec::new();
+    let mut seen = vec![false; names.len()];
+    for cell in 0..stored.header.sizes.len() as u32 {
+        stored.each_part(cell, |part| {
+            for (slot, row) in part.slots.iter().zip(part.rows().chunks_exact(n)) {
+                let slot = *slot as usize;
+                match seen.get_mut(slot) {
+                    Some(seen) if !*seen && rows[slot * n..][..n] == *row => *seen = true,
+                    _ => faults.push(format!("row {slot} of cell {cell} is not the vector of a shape")),
+                }
+            }
+            Ok(())
+        })?;
+    }
+    let unseen = seen.iter().zip(&names).filter(|(seen, _)| !**seen);
+    faults.extend(unseen.map(|(_, id)| format!("`{id}` is in no cell")));
+    let stored_names: Vec<String> = stored.names().collect::<Result<Vec<_>, _>>()?.concat();
+    for (slot, id) in names.iter().enumerate() {
+        if stored_names.get(slot) != Some(id) {
+            faults.push(format!("row {slot} is not named `{id}`"));
+        }
+    }
+    Ok(faults)
 }

@@ -14,7 +14,7 @@ pub struct SymmetricEigen {
 }
 
 impl SymmetricEigen {
-    /// The eigenpairs at `order`, in that order.
+    /// The eigenpairs with the indices `order`, in that order.
     #[must_use]
     pub fn select(&self, order: &[usize]) -> Self {
         Self {
@@ -24,22 +24,41 @@ impl SymmetricEigen {
     }
 }
 
+/// The sign, 1 or -1, of the first entry of at least 0.999 times the largest magnitude: multiplied by it, a column has
+/// a reproducible sign. (The largest entry itself is not reproducible: rounding may reorder nearly equal ones.)
+#[must_use]
+pub fn leading_sign(column: &[f64]) -> f64 {
+    let largest = column.iter().fold(0.0f64, |largest, x| largest.max(x.abs()));
+    match column.iter().find(|x| x.abs() >= 0.999 * largest) {
+        Some(lead) if *lead < 0.0 => -1.0,
+        _ => 1.0,
+    }
+}
+
 /// A view of a nalgebra matrix for faer, without a copy.
 pub(crate) fn view(a: &Matrix) -> MatRef<'_, f64> {
     MatRef::from_column_major_slice(a.as_slice(), a.nrows(), a.ncols())
 }
 
-/// A faer matrix as a nalgebra one.
+/// Converts a faer matrix to nalgebra.
 pub(crate) fn from_faer(a: MatRef<'_, f64>) -> Matrix {
     Matrix::from_fn(a.nrows(), a.ncols(), |i, j| a[(i, j)])
 }
 
-/// All eigenpairs of a symmetric matrix, of which the lower triangle is read.
+/// All eigenpairs of a symmetric matrix. Reads only its lower triangle.
 ///
-/// Cost `O(n^3)` time, `O(n^2)` memory.
+/// Cost: `O(n^3)` time, `O(n^2)` memory.
 ///
 /// # Errors
-/// [`LinalgError::NotConverged`], which a NaN entry causes.
+/// [`LinalgError::NotConverged`], also if an entry is not finite.
+///
+/// ```
+/// use canonform_linalg::{Matrix, symmetric_eigen};
+///
+/// let eigen = symmetric_eigen(&Matrix::from_row_slice(2, 2, &[2.0, 1.0, 1.0, 2.0]))?;
+/// assert!((eigen.values[0] - 3.0).abs() < 1e-12 && (eigen.values[1] - 1.0).abs() < 1e-12);
+/// # Ok::<(), canonform_linalg::LinalgError>(())
+/// ```
 pub fn symmetric_eigen(a: &Matrix) -> Result<SymmetricEigen, LinalgError> {
     let n = a.nrows();
     if a.iter().any(|x| !x.is_finite()) {
@@ -57,7 +76,7 @@ pub fn symmetric_eigen(a: &Matrix) -> Result<SymmetricEigen, LinalgError> {
 /// The thin QR decomposition of a p x n matrix with p >= n: an orthonormal p x n `Q` and an upper
 /// triangular n x n `R`.
 ///
-/// `Q` stays orthonormal when `a` is rank deficient. Cost `O(p n^2)`.
+/// `Q` is orthonormal even if `a` is rank deficient. Cost: `O(p n^2)`.
 #[must_use]
 pub fn thin_qr(a: &Matrix) -> (Matrix, Matrix) {
     let qr = view(a).qr();
@@ -65,13 +84,12 @@ pub fn thin_qr(a: &Matrix) -> (Matrix, Matrix) {
     (from_faer(q.as_ref()), from_faer(qr.thin_R()))
 }
 
-/// The pseudo-inverse of a matrix; singular values below `max(rows, columns) * 2.2e-16` of the largest
-/// count as zero.
+/// The pseudo-inverse of a matrix. Singular values below `max(rows, columns) * 2.2e-16` of the largest count as zero.
 ///
-/// Cost `O(m n min(m, n))`.
+/// Cost: `O(m n min(m, n))`.
 ///
 /// # Errors
-/// [`LinalgError::NotConverged`], which a NaN entry causes.
+/// [`LinalgError::NotConverged`], also if an entry is not finite.
 pub fn pseudo_inverse(a: &Matrix) -> Result<Matrix, LinalgError> {
     let n = a.nrows().max(a.ncols());
     if a.is_empty() {
@@ -99,7 +117,7 @@ mod tests {
     }
 
     #[test]
-    fn eigenpairs_are_sorted_orthonormal_and_small_in_residual() {
+    fn eigenpairs_are_sorted_and_orthonormal_with_small_residuals() {
         let a = wave(40, 40);
         let a = &a + a.transpose();
         let eigen = symmetric_eigen(&a).unwrap();
@@ -117,7 +135,7 @@ mod tests {
     }
 
     #[test]
-    fn thin_qr_reproduces_its_input_and_stays_orthonormal_without_full_rank() {
+    fn thin_qr_reproduces_a_rank_deficient_matrix() {
         let mut a = wave(50, 6);
         let twice = a.column(0) * 2.0;
         a.set_column(3, &twice);

@@ -1,10 +1,19 @@
-//! All distances between n points.
+//! Distances between all pairs of points.
 
 use crate::LinalgError;
 
-/// The n x n matrix of distances between n points, row by row.
+/// The n x n matrix of distances between n points, stored row by row.
 ///
 /// **Invariant.** Symmetric, finite, not negative, zero on the diagonal.
+///
+/// ```
+/// use canonform_linalg::DistanceMatrix;
+///
+/// let distances = DistanceMatrix::from_rows(2, vec![0.0, 2.0, 4.0, 0.0])?;
+/// assert_eq!(distances.get(0, 1), 3.0); // the mean of both directions
+/// assert!(DistanceMatrix::from_pairs(2, |_, _| f64::NAN).is_err());
+/// # Ok::<(), canonform_linalg::LinalgError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct DistanceMatrix {
     n: usize,
@@ -12,11 +21,11 @@ pub struct DistanceMatrix {
 }
 
 impl DistanceMatrix {
-    /// Takes n x n distances row by row and averages each with its mirror image: distances that
-    /// were computed from either end differ by rounding or by the order of the scheme.
+    /// Takes n x n distances row by row and averages the two directions of each pair, which may differ by rounding or
+    /// by the error of the solver.
     ///
     /// # Errors
-    /// [`LinalgError::Shape`] and [`LinalgError::BadDistance`].
+    /// [`LinalgError::Shape`], [`LinalgError::BadDistance`].
     pub fn from_rows(n: usize, mut values: Vec<f64>) -> Result<Self, LinalgError> {
         if values.len() != n * n {
             return Err(LinalgError::Shape {
@@ -40,10 +49,10 @@ impl DistanceMatrix {
         Ok(Self { n, values })
     }
 
-    /// Evaluates `distance(i, j)` for every pair `i < j`.
+    /// Evaluates `distance(i, j)` for each pair `i < j`.
     ///
     /// # Errors
-    /// [`LinalgError::BadDistance`] at the first value that is NaN, infinite or negative.
+    /// [`LinalgError::BadDistance`] for the first value that is NaN, infinite or negative.
     pub fn from_pairs(n: usize, mut distance: impl FnMut(usize, usize) -> f64) -> Result<Self, LinalgError> {
         let mut values = vec![0.0; n * n];
         for i in 0..n {
@@ -82,7 +91,7 @@ impl DistanceMatrix {
         &self.values
     }
 
-    /// The largest distance; zero without points.
+    /// The largest distance; zero if there are no points.
     #[must_use]
     pub fn max(&self) -> f64 {
         self.values.iter().copied().fold(0.0, f64::max)
@@ -94,7 +103,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn mirror_images_are_averaged_and_the_diagonal_is_zero() {
+    fn both_directions_are_averaged_and_the_diagonal_is_zero() {
         let d = DistanceMatrix::from_rows(2, vec![0.1, 1.0, 3.0, 0.0]).unwrap();
         assert_eq!(d.as_slice(), &[0.0, 2.0, 2.0, 0.0]);
         assert_eq!(d.max(), 2.0);
@@ -102,7 +111,7 @@ mod tests {
     }
 
     #[test]
-    fn faults_name_their_place() {
+    fn errors_name_the_entry() {
         assert_eq!(
             DistanceMatrix::from_rows(2, vec![0.0, 1.0, f64::INFINITY, 0.0]),
             Err(LinalgError::BadDistance { row: 1, column: 0, value: f64::INFINITY })

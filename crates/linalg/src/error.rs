@@ -1,34 +1,34 @@
-//! What can be wrong with distances, and what a decomposition can fail at.
+//! Errors of this crate.
 
 /// Errors of this crate.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum LinalgError {
     /// A distance is NaN, infinite or negative.
     #[error(
-        "the distance between points {row} and {column} is {value}; distances are finite and not negative \
-         (unreached points must be left out before a matrix is made)"
+        "the distance between points {row} and {column} is {value}; distances must be finite and not negative \
+         (leave out unreachable points)"
     )]
     BadDistance {
-        /// Row of the offending entry.
+        /// Row of the entry.
         row: usize,
-        /// Column of the offending entry.
+        /// Column of the entry.
         column: usize,
         /// Its value.
         value: f64,
     },
-    /// The number of values does not fit the shape.
+    /// The number of values does not match the shape.
     #[error("expected {expected} values for a {n_rows} x {n_columns} matrix, got {actual}")]
     Shape {
-        /// Rows of the wanted matrix.
+        /// Rows of the matrix.
         n_rows: usize,
-        /// Columns of the wanted matrix.
+        /// Columns of the matrix.
         n_columns: usize,
         /// Their product.
         expected: usize,
         /// Number of values given.
         actual: usize,
     },
-    /// A landmark names a point that does not exist, or one twice.
+    /// A landmark is not a point, or is given twice.
     #[error("landmark {landmark} is out of range or given twice; there are {n_points} points")]
     BadLandmark {
         /// The landmark's point.
@@ -36,34 +36,34 @@ pub enum LinalgError {
         /// Number of points.
         n_points: usize,
     },
-    /// An iterative decomposition ran out of iterations.
+    /// An iterative decomposition did not converge.
     #[error("the eigenvalue decomposition of a {n} x {n} matrix did not converge; check its entries for NaN")]
     NotConverged {
         /// Order of the matrix.
         n: usize,
     },
-    /// Eigenvalues that were counted could not be found.
+    /// Some eigenvalues exist but were not found.
     #[error(
-        "{missing} of the eigenvalues of a sparse {n} x {n} matrix below number {found} were not found; they are \
-         multiple or the matrix is ill-conditioned: remove degenerate elements or ask for fewer"
+        "{missing} eigenvalues of a sparse {n} x {n} matrix were not found, {found} were; they are multiple or the \
+         matrix is ill-conditioned: remove degenerate elements or request fewer"
     )]
     MissedEigenvalues {
         /// Order of the matrix.
         n: usize,
-        /// How many are missing.
+        /// Number of eigenvalues that were not found.
         missing: usize,
-        /// How many were found in their place.
+        /// Number of eigenvalues found in the same range.
         found: usize,
     },
-    /// A sparse matrix has no Cholesky factor, or none that fits.
+    /// A sparse matrix has no Cholesky factor, or the factor does not fit into memory.
     #[error(
-        "the sparse {n} x {n} matrix cannot be factorised: {reason}; add a larger share of a positive \
-         diagonal to it"
+        "the sparse {n} x {n} matrix cannot be factorised: {reason}; add a larger multiple of a positive diagonal to \
+         it"
     )]
     NotFactorised {
         /// Order of the matrix.
         n: usize,
-        /// What was in the way.
+        /// The reason.
         reason: String,
     },
 }

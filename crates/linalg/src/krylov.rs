@@ -10,7 +10,7 @@ use faer::{ColRef, Mat, MatMut, MatRef, Par};
 use crate::decomposition::from_faer;
 use crate::{LinalgError, Matrix, SymmetricEigen, symmetric_eigen};
 
-/// A symmetric n x n matrix known by its products with vectors.
+/// A symmetric n x n matrix, given by its products with vectors.
 pub trait SymmetricOperator: Sync + std::fmt::Debug {
     /// The order n of the matrix.
     fn order(&self) -> usize;
@@ -19,20 +19,28 @@ pub trait SymmetricOperator: Sync + std::fmt::Debug {
     fn apply(&self, x: &[f64], y: &mut [f64]);
 }
 
-/// Below this order the full decomposition is both faster and simpler than an iteration.
+/// Up to this order the full decomposition is faster than the iteration.
 const DENSE_ORDER: usize = 256;
 
-/// The `k` algebraically largest eigenpairs of a symmetric operator, to a residual of `1e-11` of
-/// its norm; fewer when the order is less than `k`.
+/// The `k` algebraically largest eigenpairs of a symmetric operator (all if the order is less than `k`), to a residual
+/// of `1e-11` of its norm.
 ///
-/// A Krylov iteration with thick restarts finds pairs of largest *magnitude*; it is asked for more
-/// until `k` positive ones are among them, and when they do not come (a nearly negative definite
-/// operator) the full decomposition decides.
+/// A Krylov iteration with thick restarts finds the pairs of largest *magnitude*. It computes more of them until `k` are
+/// positive, and falls back to the full decomposition if there are not enough (a nearly negative definite operator).
 ///
-/// Cost `O(m)` products and `O(n m^2)` work for m a small multiple of `k`; `O(n m)` memory.
+/// Cost: `O(m)` products and `O(n m^2)` operations for m a small multiple of `k`; `O(n m)` memory.
 ///
 /// # Errors
 /// [`LinalgError::NotConverged`].
+///
+/// ```
+/// use canonform_linalg::{SparseSymmetric, largest_eigenpairs};
+///
+/// let diagonal = SparseSymmetric::from_entries(300, (0..300).map(|i| (i, i, 1.0 / (1.0 + i as f64))));
+/// let eigen = largest_eigenpairs(&diagonal, 2)?;
+/// assert!((eigen.values[0] - 1.0).abs() < 1e-9 && (eigen.values[1] - 0.5).abs() < 1e-9);
+/// # Ok::<(), canonform_linalg::LinalgError>(())
+/// ```
 pub fn largest_eigenpairs(operator: &dyn SymmetricOperator, k: usize) -> Result<SymmetricEigen, LinalgError> {
     let n = operator.order();
     let mut wanted = k + 4;
@@ -63,7 +71,7 @@ pub fn largest_eigenpairs(operator: &dyn SymmetricOperator, k: usize) -> Result<
 fn largest_magnitude(operator: &dyn SymmetricOperator, m: usize) -> SymmetricEigen {
     let n = operator.order();
     let wrapped = Wrapped(operator);
-    // A fixed start without symmetry, so that no eigenvector of a symmetric shape is orthogonal to it.
+    // A fixed start vector without symmetry, so that no eigenvector of a symmetric shape is orthogonal to it.
     let start: Vec<f64> = (0..n).map(|i| 1.0 + 0.5 * (i as f64 * 0.754_877_666).fract()).collect();
     let params =
         PartialEigenParams { min_dim: 2 * m, max_dim: (4 * m).max(64).min(n - 1), ..Default::default() };
@@ -85,7 +93,7 @@ fn largest_magnitude(operator: &dyn SymmetricOperator, m: usize) -> SymmetricEig
     SymmetricEigen { vectors: from_faer(vectors.as_ref().subcols(0, values.len())), values }
 }
 
-/// A lower estimate of the operator's norm by a few power steps, to make tolerances relative.
+/// A lower bound of the operator's norm by a few power iterations, for relative tolerances.
 fn operator_scale(operator: &dyn SymmetricOperator, start: &[f64]) -> f64 {
     let norm = |x: &[f64]| x.iter().map(|v| v * v).sum::<f64>().sqrt();
     let mut x = start.to_vec();
@@ -104,7 +112,7 @@ fn operator_scale(operator: &dyn SymmetricOperator, start: &[f64]) -> f64 {
     scale.max(f64::MIN_POSITIVE)
 }
 
-/// Shows a [`SymmetricOperator`] to faer.
+/// Adapts a [`SymmetricOperator`] to faer.
 #[derive(Debug)]
 struct Wrapped<'a>(&'a dyn SymmetricOperator);
 
@@ -142,7 +150,7 @@ impl LinOp<f64> for Wrapped<'_> {
 mod tests {
     use super::*;
 
-    /// A diagonal matrix seen through a Householder reflection: known spectrum, dense vectors.
+    /// A diagonal matrix conjugated by a Householder reflection: known spectrum, dense eigenvectors.
     #[derive(Debug)]
     struct Reflected {
         spectrum: Vec<f64>,
@@ -188,7 +196,7 @@ mod tests {
     }
 
     #[test]
-    fn large_operator_with_negative_pairs_of_larger_magnitude() {
+    fn finds_positive_pairs_behind_negative_ones_of_larger_magnitude() {
         let n = 1500;
         let spectrum =
             (0..n).map(|i| if i < 12 { -100.0 - i as f64 } else { 90.0 / (i - 11) as f64 }).collect();
@@ -196,12 +204,12 @@ mod tests {
     }
 
     #[test]
-    fn nearly_negative_definite_operator_falls_back_to_the_full_decomposition() {
+    fn falls_back_to_the_full_decomposition_if_few_are_positive() {
         check((0..300).map(|i| if i == 5 { 1.0 } else { -1.0 - i as f64 }).collect(), 2);
     }
 
     #[test]
-    fn small_operator_is_decomposed_whole() {
+    fn small_operators_have_fewer_pairs_than_requested() {
         check(vec![3.0, -7.0, 2.0], 5);
     }
 }

@@ -2,9 +2,20 @@
 
 use crate::{LinalgError, Matrix};
 
-/// The p x n matrix of distances from n landmarks to all p points, and which points the landmarks are.
+/// The p x n matrix of distances from n landmarks to all p points, with the points that are landmarks.
 ///
-/// **Invariant.** Finite and not negative; landmarks are different points in range.
+/// **Invariant.** Distances are finite and not negative; landmarks are distinct points in range.
+///
+/// ```
+/// use canonform_linalg::{LandmarkDistances, Matrix};
+///
+/// // Distances from the first and the last of four points on a line.
+/// let columns = Matrix::from_columns(&[vec![0.0, 1.0, 2.0, 3.0].into(), vec![3.0, 2.0, 1.0, 0.0].into()]);
+/// let distances = LandmarkDistances::new(vec![0, 3], columns)?;
+/// assert_eq!((distances.n_points(), distances.n_landmarks()), (4, 2));
+/// assert_eq!(distances.sq_block()[(0, 1)], 9.0);
+/// # Ok::<(), canonform_linalg::LinalgError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct LandmarkDistances {
     landmarks: Vec<usize>,
@@ -15,8 +26,8 @@ impl LandmarkDistances {
     /// Takes one column of distances per landmark.
     ///
     /// # Errors
-    /// [`LinalgError::BadDistance`] names the first unreached (infinite) point; [`LinalgError::Shape`];
-    /// [`LinalgError::BadLandmark`].
+    /// [`LinalgError::BadDistance`] for the first distance that is infinite (an unreachable point), NaN or negative;
+    /// [`LinalgError::Shape`]; [`LinalgError::BadLandmark`].
     pub fn new(landmarks: Vec<usize>, columns: Matrix) -> Result<Self, LinalgError> {
         let (p, n) = columns.shape();
         if landmarks.len() != n {
@@ -52,7 +63,7 @@ impl LandmarkDistances {
         self.landmarks.len()
     }
 
-    /// The point of every landmark, in sampling order.
+    /// The point of each landmark, in sampling order.
     #[must_use]
     pub fn landmarks(&self) -> &[usize] {
         &self.landmarks
@@ -71,20 +82,14 @@ impl LandmarkDistances {
         &self.columns.as_slice()[landmark * p..(landmark + 1) * p]
     }
 
-    /// The largest distance; zero without points.
+    /// The largest distance; zero if there are no points.
     #[must_use]
     pub fn max(&self) -> f64 {
         self.columns.as_slice().iter().copied().fold(0.0, f64::max)
     }
 
-    /// The largest distance of any point to its nearest landmark.
-    #[must_use]
-    pub fn covering_radius(&self) -> f64 {
-        (0..self.n_points()).map(|i| self.columns.row(i).min()).fold(0.0, f64::max)
-    }
-
-    /// The n x n squared distances between the landmarks, each averaged with its mirror image:
-    /// marched distances are not exactly symmetric. (`S` in the paper.)
+    /// The n x n squared distances between the landmarks (`S` in the paper). Averages the two directions of each pair,
+    /// because computed distances are not exactly symmetric.
     #[must_use]
     pub fn sq_block(&self) -> Matrix {
         let square = |i: usize, j: usize| self.columns[(self.landmarks[i], j)].powi(2);
@@ -103,17 +108,16 @@ mod tests {
     }
 
     #[test]
-    fn block_is_symmetric_and_covering_radius_is_the_gap() {
+    fn the_block_is_symmetric() {
         let d = line();
         let s = d.sq_block();
         assert_eq!(s[(0, 1)], s[(1, 0)]);
         assert!((s[(0, 1)] - 0.5 * (4.0 + 2.2 * 2.2)).abs() < 1e-15);
-        assert_eq!(d.covering_radius(), 1.0);
         assert_eq!(d.column(1), &[2.2, 1.0, 0.0]);
     }
 
     #[test]
-    fn unreached_points_and_bad_landmarks_are_refused() {
+    fn unreachable_points_and_bad_landmarks_are_rejected() {
         let columns = Matrix::from_columns(&[vec![0.0, f64::INFINITY].into()]);
         assert_eq!(
             LandmarkDistances::new(vec![0], columns),

@@ -1,11 +1,11 @@
-//! Matrices of distances and the decompositions behind every embedding.
+//! Distance matrices, and the decompositions behind every embedding.
 //!
 //! `geodesics` -> **[`LandmarkDistances`], [`DistanceMatrix`]** -> `nmds`, `retrieval`
 //!
-//! The only crate that names a linear-algebra backend: public types are nalgebra's, the
-//! decompositions of large matrices are faer's, run sequentially so that no result depends on
-//! the number of threads. Sparse positive definite systems have a factor of their own,
-//! [`SparseCholesky`], made once for many right-hand sides. Knows nothing of meshes.
+//! The only crate that names a linear-algebra backend. Public types are nalgebra's. Decompositions of large matrices
+//! are faer's, run sequentially so that results do not depend on the number of threads. [`SparseCholesky`] solves
+//! sparse positive definite systems for many right-hand sides; [`smallest_eigenpairs`] and [`largest_eigenpairs`] find
+//! a few eigenpairs of large matrices. Knows nothing of meshes.
 
 mod cholesky;
 mod decomposition;
@@ -18,7 +18,7 @@ mod panels;
 mod sparse;
 
 pub use cholesky::{EliminationOrder, SparseCholesky};
-pub use decomposition::{SymmetricEigen, pseudo_inverse, symmetric_eigen, thin_qr};
+pub use decomposition::{SymmetricEigen, leading_sign, pseudo_inverse, symmetric_eigen, thin_qr};
 pub use distance_matrix::DistanceMatrix;
 pub use error::LinalgError;
 pub use generalized::{GeneralizedEigen, smallest_eigenpairs};

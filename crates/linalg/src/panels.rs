@@ -1,22 +1,21 @@
-//! Solving with a triangular factor stored as dense panels of columns with a common pattern.
+//! Solving with a triangular factor stored as dense panels of columns with a common pattern (supernodes).
 //!
-//! The factor is faer's. Its own solver is made for many right-hand sides and takes 1.7 times as long
-//! for one, four times as long for four (a surface of 43,000 vertices), and goes through all panels
-//! for a right-hand side of a single entry.
+//! The factor is faer's. Its own solver is made for many right-hand sides: it takes 1.7 times as long for one and
+//! four times as long for four (a surface of 43,000 vertices), and it visits all panels for a right-hand side with
+//! a single nonzero entry.
 
 use std::ops::Range;
 
-/// Right-hand sides side by side, a row's numbers next to each other: the factor is read once for
-/// all of them.
+/// Right-hand sides side by side, the numbers of a row next to each other: the factor is read once for all of them.
 pub(crate) type Lanes<const K: usize> = [f64; K];
 
 /// The pattern of a factor: panels of consecutive columns that share the rows below them.
 #[derive(Debug)]
 pub(crate) struct Panels {
     panels: Vec<Panel>,
-    /// Rows below the panels, one panel after the other, ascending in each.
+    /// Rows below the panels, panel by panel, ascending in each.
     rows: Vec<u32>,
-    /// Most rows below a panel.
+    /// Largest number of rows below a panel.
     tallest: usize,
 }
 
@@ -25,13 +24,20 @@ struct Panel {
     columns: Range<usize>,
     /// Its part of `rows`.
     rows: Range<usize>,
-    /// Its part of the values: `columns.len() + rows.len()` numbers a column, the triangle above
-    /// the diagonal unused.
+    /// Its part of the values: `columns.len() + rows.len()` numbers per column. The triangle above the diagonal is
+    /// unused.
     values: Range<usize>,
 }
 
+/// A panel with its rows and values.
+struct View<'a> {
+    columns: Range<usize>,
+    rows: &'a [u32],
+    values: &'a [f64],
+}
+
 impl Panels {
-    /// The panels with the given column ranges, rows below and ranges of values.
+    /// The panels with the given column ranges, rows below, and ranges of values.
     pub(crate) fn new<'a>(panels: impl Iterator<Item = (Range<usize>, &'a [usize], Range<usize>)>) -> Self {
         let mut result = Self { panels: Vec::new(), rows: Vec::new(), tallest: 0 };
         for (columns, below, values) in panels {
@@ -43,31 +49,44 @@ impl Panels {
         result
     }
 
-    /// The diagonal of a factor stored in this pattern, in elimination order.
-    pub(crate) fn diagonal(&self, factor: &[f64]) -> Vec<f64> {
-        let of = |panel: &Panel| {
-            let height = panel.columns.len() + panel.rows.len();
-            let values = &factor[panel.values.clone()];
-            (0..panel.columns.len()).map(move |j| values[j * height + j]).collect::<Vec<_>>()
-        };
-        self.panels.iter().flat_map(of).collect()
+    /// The panels with the values of a factor.
+    fn views<'a>(&'a self, factor: &'a [f64]) -> impl DoubleEndedIterator<Item = View<'a>> {
+        self.panels.iter().map(|panel| View {
+            columns: panel.columns.clone(),
+            rows: &self.rows[panel.rows.clone()],
+            values: &factor[panel.values.clone()],
+        })
     }
 
-    /// Overwrites `x` with the solution `y` of `L L' y = x`, all in elimination order.
+    /// The diagonal of a factor stored in this pattern, in elimination order.
+    pub(crate) fn diagonal(&self, factor: &[f64]) -> Vec<f64> {
+        let of = |panel: View<'_>| {
+            (0..panel.columns.len()).map(move |j| panel.values[j * panel.height() + j]).collect::<Vec<_>>()
+        };
+        self.views(factor).flat_map(of).collect()
+    }
+
+    /// Overwrites `x` with the solution `y` of `L L' y = x`, in elimination order.
     pub(crate) fn solve<const K: usize>(&self, factor: &[f64], x: &mut [Lanes<K>]) {
         let mut below = vec![[0.0; K]; self.tallest];
-        for panel in &self.panels {
-            let rows = &self.rows[panel.rows.clone()];
-            panel.forward(&factor[panel.values.clone()], rows, x, &mut below[..rows.len()]);
+        for panel in self.views(factor) {
+            panel.forward(x, &mut below[..panel.rows.len()]);
         }
-        for panel in self.panels.iter().rev() {
-            let rows = &self.rows[panel.rows.clone()];
-            panel.backward(&factor[panel.values.clone()], rows, x, &mut below[..rows.len()]);
+        for panel in self.views(factor).rev() {
+            panel.backward(x, &mut below[..panel.rows.len()]);
         }
     }
 }
 
-/// `y - a x`, lane by lane.
+/// `y += a x`, lane by lane.
+#[inline(always)]
+fn add<const K: usize>(y: &mut Lanes<K>, a: f64, x: &Lanes<K>) {
+    for (y, x) in y.iter_mut().zip(x) {
+        *y += a * x;
+    }
+}
+
+/// `y -= a x`, lane by lane.
 #[inline(always)]
 fn subtract<const K: usize>(y: &mut Lanes<K>, a: f64, x: &Lanes<K>) {
     for (y, x) in y.iter_mut().zip(x) {
@@ -75,24 +94,22 @@ fn subtract<const K: usize>(y: &mut Lanes<K>, a: f64, x: &Lanes<K>) {
     }
 }
 
-impl Panel {
-    /// Eliminates the panel's columns from `x`.
-    fn forward<const K: usize>(
-        &self,
-        values: &[f64],
-        rows: &[u32],
-        x: &mut [Lanes<K>],
-        below: &mut [Lanes<K>],
-    ) {
-        let width = self.columns.len();
+impl View<'_> {
+    /// Numbers per column.
+    fn height(&self) -> usize {
+        self.columns.len() + self.rows.len()
+    }
+
+    /// Eliminates the panel's columns from `x`. `below` is scratch memory for its rows.
+    fn forward<const K: usize>(&self, x: &mut [Lanes<K>], below: &mut [Lanes<K>]) {
+        let (width, height) = (self.columns.len(), self.height());
         let top = &mut x[self.columns.clone()];
-        // A source is one entry: it reaches only the panels on its way to the root.
+        // A right-hand side with one nonzero entry reaches only the panels on the path to the root.
         if top.iter().flatten().all(|v| *v == 0.0) {
             return;
         }
-        let height = width + rows.len();
         for j in 0..width {
-            let column = &values[j * height..][..width];
+            let column = &self.values[j * height..][..width];
             let inverse = 1.0 / column[j];
             let solved = top[j].map(|v| v * inverse);
             top[j] = solved;
@@ -100,11 +117,11 @@ impl Panel {
                 subtract(y, *a, &solved);
             }
         }
-        if rows.is_empty() {
+        if self.rows.is_empty() {
             return;
         }
         below.fill([0.0; K]);
-        let mut columns = values.chunks_exact(height).map(|column| &column[width..]);
+        let mut columns = self.values.chunks_exact(height).map(|column| &column[width..]);
         let mut solved = top.chunks_exact(4);
         for four in &mut solved {
             let (Some(a), Some(b), Some(c), Some(d)) =
@@ -120,37 +137,26 @@ impl Panel {
         }
         for (one, column) in solved.remainder().iter().zip(columns) {
             for (y, a) in below.iter_mut().zip(column) {
-                for (y, x) in y.iter_mut().zip(one) {
-                    *y += a * x;
-                }
+                add(y, *a, one);
             }
         }
-        for (row, y) in rows.iter().zip(below) {
+        for (row, y) in self.rows.iter().zip(below) {
             subtract(&mut x[*row as usize], 1.0, y);
         }
     }
 
-    /// Solves for the panel's rows of `x`, those below being solved.
-    fn backward<const K: usize>(
-        &self,
-        values: &[f64],
-        rows: &[u32],
-        x: &mut [Lanes<K>],
-        below: &mut [Lanes<K>],
-    ) {
-        let width = self.columns.len();
-        let height = width + rows.len();
-        for (row, y) in rows.iter().zip(below.iter_mut()) {
+    /// Solves for the panel's rows of `x`; those below are already solved.
+    fn backward<const K: usize>(&self, x: &mut [Lanes<K>], below: &mut [Lanes<K>]) {
+        let (width, height) = (self.columns.len(), self.height());
+        for (row, y) in self.rows.iter().zip(below.iter_mut()) {
             *y = x[*row as usize];
         }
         let top = &mut x[self.columns.clone()];
         for j in (0..width).rev() {
-            let (here, under) = values[j * height..][..height].split_at(width);
+            let (here, under) = self.values[j * height..][..height].split_at(width);
             let mut sum = dot(under, below);
             for (a, y) in here[j + 1..].iter().zip(&top[j + 1..]) {
-                for (sum, y) in sum.iter_mut().zip(y) {
-                    *sum += a * y;
-                }
+                add(&mut sum, *a, y);
             }
             let inverse = 1.0 / here[j];
             for (y, sum) in top[j].iter_mut().zip(sum) {
@@ -160,23 +166,19 @@ impl Panel {
     }
 }
 
-/// The product of a row vector with the lanes; four partial sums, whatever the number of lanes, so
-/// that a lane's result does not depend on its company.
+/// The product of a row vector with the lanes, as four partial sums for any number of lanes, so that a lane's result
+/// does not depend on the others.
 #[inline(always)]
 fn dot<const K: usize>(a: &[f64], x: &[Lanes<K>]) -> Lanes<K> {
     let mut sums = [[0.0; K]; 4];
     let (mut a, mut x) = (a.chunks_exact(4), x.chunks_exact(4));
     for (a, x) in (&mut a).zip(&mut x) {
         for ((sum, a), x) in sums.iter_mut().zip(a).zip(x) {
-            for (sum, x) in sum.iter_mut().zip(x) {
-                *sum += a * x;
-            }
+            add(sum, *a, x);
         }
     }
     for ((sum, a), x) in sums.iter_mut().zip(a.remainder()).zip(x.remainder()) {
-        for (sum, x) in sum.iter_mut().zip(x) {
-            *sum += a * x;
-        }
+        add(sum, *a, x);
     }
     std::array::from_fn(|k| (sums[0][k] + sums[1][k]) + (sums[2][k] + sums[3][k]))
 }

@@ -1,12 +1,12 @@
-//! Large symmetric matrices most of whose entries are zero.
+//! Sparse symmetric matrices.
 
 use crate::SymmetricOperator;
 
-/// A symmetric n x n matrix of which only the lower triangle is stored, column by column.
+/// A symmetric n x n matrix of which the lower triangle is stored, column by column.
 ///
-/// **Invariants.** The rows of a column ascend and start with the diagonal, which is always stored;
-/// no entry is stored twice. The pattern is that of the entries given, zero or not, so two matrices
-/// from the same places share one [`EliminationOrder`](crate::EliminationOrder).
+/// **Invariants.** The rows of a column ascend and start with the diagonal, which is always stored; no entry is stored
+/// twice. The pattern contains all given entries, even zeros, so matrices with entries at the same places share an
+/// [`EliminationOrder`](crate::EliminationOrder).
 #[derive(Debug, Clone, PartialEq)]
 pub struct SparseSymmetric {
     column_starts: Vec<usize>,
@@ -15,18 +15,18 @@ pub struct SparseSymmetric {
 }
 
 impl SparseSymmetric {
-    /// The matrix with the given `(row, column, value)` entries, each standing for itself and for
-    /// its mirror image; entries of the same place are summed, those not given are zero.
+    /// The matrix with the given `(row, column, value)` entries. Each also stands for its mirror image; entries at the
+    /// same place are summed.
     ///
-    /// Linear in the entries, for columns of bounded length.
+    /// Cost: linear in the number of entries, for columns of bounded length.
     ///
     /// # Panics
-    /// When a row or column is not below `order`.
+    /// If a row or column is not below `order`.
     #[must_use]
     pub fn from_entries(order: usize, entries: impl IntoIterator<Item = (usize, usize, f64)>) -> Self {
         let diagonal = (0..order).map(|i| (i, i, 0.0));
         let entries: Vec<(usize, usize, f64)> = diagonal.chain(entries).collect();
-        // Counted and dropped into the buckets of their columns, in the order in which they came.
+        // Counting sort by column; the entries of a column keep their order.
         let mut next = vec![0; order + 1];
         for &(i, j, _) in &entries {
             assert!(i.max(j) < order, "entry ({i}, {j}) is outside of a matrix of order {order}");
@@ -43,10 +43,10 @@ impl SparseSymmetric {
         }
         let mut matrix = Self { column_starts: vec![0], rows: Vec::new(), values: Vec::new() };
         let mut start = 0;
-        // Each bucket now ends where its next entry would go.
+        // `next[j]` is now the end of bucket j.
         for end in next.into_iter().take(order) {
             let bucket = &mut buckets[start..end];
-            // Stable, so that sums are taken in the order of the entries.
+            // A stable sort, so that sums are taken in the order of the entries.
             bucket.sort_by_key(|(row, _)| *row);
             for run in bucket.chunk_by(|a, b| a.0 == b.0) {
                 matrix.rows.push(run[0].0);
@@ -70,7 +70,7 @@ impl SparseSymmetric {
         self.values.len()
     }
 
-    /// The stored entries as `(row, column, value)` with `row >= column`.
+    /// The stored entries `(row, column, value)`, with `row >= column`.
     pub fn entries(&self) -> impl Iterator<Item = (usize, usize, f64)> {
         (0..self.order()).flat_map(move |j| self.column(j).map(move |(i, value)| (i, j, value)))
     }
@@ -81,11 +81,11 @@ impl SparseSymmetric {
         (0..self.order()).map(|j| self.values[self.column_starts[j]]).collect()
     }
 
-    /// The block of every row: rows are in one block when entries off the diagonal, zero or not, lead from
-    /// one to the other. Blocks are numbered in the order of their first rows.
+    /// The block of each row: the connected components of the graph of off-diagonal entries, zero or not. Blocks are
+    /// numbered in the order of their first rows.
     #[must_use]
     pub fn blocks(&self) -> Vec<usize> {
-        // A forest in which the root of every tree is its first row.
+        // Union-find with path halving; the root of a tree is its first row.
         let mut parent: Vec<usize> = (0..self.order()).collect();
         let root = |parent: &mut Vec<usize>, mut row: usize| {
             while parent[row] != row {
@@ -112,10 +112,10 @@ impl SparseSymmetric {
         blocks
     }
 
-    /// Adds one number to each entry of the diagonal.
+    /// Adds one number to each diagonal entry.
     ///
     /// # Panics
-    /// When there is not one number for each.
+    /// If the number of numbers differs from the order.
     pub fn add_to_diagonal(&mut self, numbers: impl ExactSizeIterator<Item = f64>) {
         assert_eq!(numbers.len(), self.order(), "one number for each diagonal entry");
         for (start, number) in self.column_starts.iter().zip(numbers) {
@@ -126,6 +126,16 @@ impl SparseSymmetric {
     fn column(&self, j: usize) -> impl Iterator<Item = (usize, f64)> {
         let range = self.column_starts[j]..self.column_starts[j + 1];
         self.rows[range.clone()].iter().copied().zip(self.values[range].iter().copied())
+    }
+
+    #[cfg(test)]
+    pub(crate) fn dense(&self) -> crate::Matrix {
+        let mut dense = crate::Matrix::zeros(self.order(), self.order());
+        for (i, j, value) in self.entries() {
+            dense[(i, j)] = value;
+            dense[(j, i)] = value;
+        }
+        dense
     }
 
     pub(crate) fn column_starts(&self) -> &[usize] {
@@ -166,7 +176,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn entries_are_summed_mirrored_and_sorted_and_the_diagonal_is_always_there() {
+    fn entries_are_summed_mirrored_and_sorted_and_the_diagonal_is_stored() {
         let a = SparseSymmetric::from_entries(3, [(2, 0, 1.5), (0, 2, 0.5), (1, 1, 4.0), (1, 0, -1.0)]);
         let entries: Vec<_> = a.entries().collect();
         assert_eq!(entries, [(0, 0, 0.0), (1, 0, -1.0), (2, 0, 2.0), (1, 1, 4.0), (2, 2, 0.0)]);
@@ -174,7 +184,7 @@ mod tests {
     }
 
     #[test]
-    fn the_product_is_that_of_the_whole_symmetric_matrix() {
+    fn the_product_uses_both_triangles() {
         let mut a = SparseSymmetric::from_entries(3, [(2, 0, 2.0), (1, 1, 4.0), (1, 0, -1.0)]);
         a.add_to_diagonal([1.0, 2.0, 3.0].into_iter());
         let mut y = [f64::NAN; 3];
@@ -183,7 +193,7 @@ mod tests {
     }
 
     #[test]
-    fn blocks_are_the_connected_rows() {
+    fn blocks_are_connected_components() {
         let a = SparseSymmetric::from_entries(6, [(5, 1, 2.0), (3, 2, 0.0), (1, 3, -1.0)]);
         assert_eq!(a.blocks(), [0, 1, 1, 1, 2, 1]);
     }
@@ -196,7 +206,7 @@ mod tests {
 
     #[test]
     #[should_panic(expected = "outside of a matrix of order 2")]
-    fn entries_outside_are_refused() {
+    fn entries_outside_the_matrix_panic() {
         let _ = SparseSymmetric::from_entries(2, [(0, 2, 1.0)]);
     }
 }

@@ -6,25 +6,39 @@ use linalg::{
 };
 use rayon::prelude::*;
 
+use crate::squares::{check_dim, check_extent};
 use crate::{Embedding, NmdsError};
 
-/// Classical multidimensional scaling: the `dim` largest eigenpairs of `B = -1/2 J E J`, with
-/// `E_ij = d_ij^2` and `J = I - 11'/p`, give the coordinates `Z = U √L`.
+/// Classical multidimensional scaling: the coordinates `Z = U √L` from the `dim` largest eigenpairs of
+/// `B = -1/2 J E J`, with `E_ij = d_ij^2` and `J = I - 11'/p`.
 ///
-/// * The best embedding in the sense of strain `‖Z Z' - B‖`; exact for Euclidean distances.
-/// * `eigenvalues` holds `dim` values only, so `negative_mass` says nothing of the rest; see
-///   [`classical_full`].
-/// * Cost `O(p^2)` memory (given) and `O(p^2)` per step of a Krylov iteration.
+/// * Minimises the strain `‖Z Z' - B‖`; exact for Euclidean distances.
+/// * `eigenvalues` holds only `dim` values, so `negative_mass` does not cover the rest; see [`classical_full`].
+/// * Cost: `O(p^2)` per step of a Krylov iteration; `O(p)` memory besides the distances.
 ///
 /// # Errors
 /// [`NmdsError::BadDimension`], [`NmdsError::NoExtent`], [`NmdsError::Linalg`].
+///
+/// ```
+/// # extern crate linalg as canonform_linalg;
+/// use canonform_linalg::DistanceMatrix;
+///
+/// // The corners of a 3 x 4 rectangle.
+/// let corners = [[0.0_f64, 0.0], [3.0, 0.0], [3.0, 4.0], [0.0, 4.0]];
+/// let distances = DistanceMatrix::from_pairs(4, |i, j| {
+///     (corners[i][0] - corners[j][0]).hypot(corners[i][1] - corners[j][1])
+/// })?;
+/// let coords = canonform_nmds::classical(&distances, 2)?.coords;
+/// assert!(((coords.row(0) - coords.row(2)).norm() - 5.0).abs() < 1e-9);
+/// # Ok::<(), canonform_nmds::NmdsError>(())
+/// ```
 pub fn classical(distances: &DistanceMatrix, dim: usize) -> Result<Embedding, NmdsError> {
     embed(distances, dim, |operator| largest_eigenpairs(operator, dim))
 }
 
-/// [`classical`] by the full decomposition: all eigenvalues and so the true negative mass.
+/// [`classical`] by the full decomposition, with all eigenvalues and thus the true negative mass.
 ///
-/// Cost `O(p^3)` time, `O(p^2)` memory; the reference for small p.
+/// Cost: `O(p^3)` time, `O(p^2)` memory.
 ///
 /// # Errors
 /// As [`classical`].
@@ -38,22 +52,15 @@ fn embed(
     decompose: impl FnOnce(&CentredSquares<'_>) -> Result<SymmetricEigen, LinalgError>,
 ) -> Result<Embedding, NmdsError> {
     let p = distances.n_points();
-    if dim == 0 || dim > p {
-        return Err(NmdsError::BadDimension { dim, limit: p });
-    }
-    let unit = distances.max();
-    if unit <= 0.0 {
-        return Err(NmdsError::NoExtent { n_points: p });
-    }
+    check_dim(dim, p)?;
+    let unit = check_extent(distances.max(), p)?;
     let eigen = decompose(&CentredSquares { distances, unit })?;
-    let mut columns = Matrix::zeros(p, dim);
-    let found = dim.min(eigen.vectors.ncols());
-    columns.columns_mut(0, found).copy_from(&eigen.vectors.columns(0, found));
+    let columns = eigen.vectors.resize_horizontally(dim, 0.0);
     let rank = eigen.values.len();
     Ok(Embedding::from_orthonormal(columns, eigen.values, unit, rank))
 }
 
-/// The matrix `-1/2 J E J` of distances measured in `unit`, without forming it.
+/// The matrix `-1/2 J E J` of distances in units of `unit`, as an operator.
 #[derive(Debug)]
 struct CentredSquares<'a> {
     distances: &'a DistanceMatrix,
@@ -81,7 +88,7 @@ impl SymmetricOperator for CentredSquares<'_> {
         let centred: Vec<f64> = x.iter().map(|v| v - mean).collect();
         let factor = -0.5 / (self.unit * self.unit);
         y.par_iter_mut().enumerate().for_each(|(i, out)| {
-            // Four sums, so that the loop is not one chain of additions.
+            // Four independent chains of additions.
             let mut sums = [0.0; 4];
             let (row, x) = (self.distances.row(i).chunks_exact(4), centred.chunks_exact(4));
             let tail: f64 = row.remainder().iter().zip(x.remainder()).map(|(d, x)| d * d * x).sum();
@@ -102,13 +109,13 @@ mod tests {
     use super::*;
     use crate::testing::{Cloud, procrustes_free_gap};
 
-    /// Distances of points on a circle along its arc: far from Euclidean.
+    /// Distances between points on a circle along its arc: far from Euclidean.
     fn circle(p: usize) -> DistanceMatrix {
         DistanceMatrix::from_pairs(p, |i, j| (j - i).min(p - (j - i)) as f64).unwrap()
     }
 
     #[test]
-    fn euclidean_points_come_back_exactly() {
+    fn euclidean_distances_are_exact_below_and_above_the_size_of_the_krylov_iteration() {
         for p in [40, 700] {
             let cloud = Cloud::new(p, 3, 5);
             let distances = DistanceMatrix::from_pairs(p, |i, j| cloud.distance(i, j)).unwrap();
@@ -125,14 +132,5 @@ mod tests {
             assert!((few.eigenvalues[j] - all.eigenvalues[j]).abs() < 1e-8 * all.eigenvalues[0]);
         }
         assert!(all.negative_mass > 0.05 && all.eigenvalues.len() == 601);
-    }
-
-    #[test]
-    fn impossible_requests_are_refused() {
-        let distances = circle(5);
-        assert_eq!(classical(&distances, 6), Err(NmdsError::BadDimension { dim: 6, limit: 5 }));
-        assert_eq!(classical(&distances, 0), Err(NmdsError::BadDimension { dim: 0, limit: 5 }));
-        let nothing = DistanceMatrix::from_pairs(3, |_, _| 0.0).unwrap();
-        assert_eq!(classical(&nothing, 2), Err(NmdsError::NoExtent { n_points: 3 }));
     }
 }

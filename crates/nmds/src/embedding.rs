@@ -1,21 +1,22 @@
 //! The result of every method.
 
-use linalg::{Matrix, symmetric_eigen, thin_qr};
+use linalg::{Matrix, leading_sign, symmetric_eigen, thin_qr};
 
 use crate::NmdsError;
+use crate::squares::center_columns;
 
-/// Coordinates of p points in k dimensions, and what is known of their quality.
+/// Coordinates of p points in k dimensions, and their quality.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Embedding {
-    /// p x k coordinates in the unit of the distances, centred; columns by descending eigenvalue, the
-    /// largest entry of each column positive. A column is zero where no positive eigenvalue was left.
+    /// p x k coordinates in the unit of the distances, centred. Columns are in descending order of their eigenvalues;
+    /// the largest entry of each is positive. Columns without a positive eigenvalue are zero.
     pub coords: Matrix,
-    /// All eigenvalues the method computed, descending; the first k made the columns of `coords`.
+    /// All eigenvalues that the method computed, descending; the first k belong to the columns of `coords`.
     pub eigenvalues: Vec<f64>,
-    /// Sum of the magnitudes of negative eigenvalues over the sum of all magnitudes, in 0..=1: how
-    /// far the distances are from Euclidean ones, among the eigenvalues computed.
+    /// Sum of the magnitudes of negative eigenvalues over the sum of all magnitudes, in 0..=1, among the eigenvalues
+    /// computed: measures how far the distances are from Euclidean.
     pub negative_mass: f64,
-    /// Number of eigenpairs of the sample matrix (or of eigenvalues, without samples) that were used.
+    /// Number of eigenpairs of the sample matrix that were used (of eigenvalues, if the method uses no samples).
     pub rank: usize,
 }
 
@@ -38,7 +39,21 @@ impl Embedding {
         self.eigenvalues.iter().take(self.dim()).filter(|value| **value > 0.0).count()
     }
 
-    /// Scales orthonormal columns by the roots of their eigenvalues and fixes their signs.
+    /// `Z = Q U √L` with the `dim` largest eigenpairs `U L U'` of `inner` and orthonormal columns `q`, in units of
+    /// `unit`.
+    pub(crate) fn from_factors(
+        q: Matrix,
+        inner: &Matrix,
+        dim: usize,
+        unit: f64,
+        rank: usize,
+    ) -> Result<Self, NmdsError> {
+        let inner = symmetric_eigen(inner)?;
+        let columns = q * inner.vectors.columns(0, dim.min(inner.values.len()));
+        Ok(Self::from_orthonormal(columns.resize_horizontally(dim, 0.0), inner.values, unit, rank))
+    }
+
+    /// Scales orthonormal columns by the roots of their eigenvalues and normalises their signs.
     pub(crate) fn from_orthonormal(
         mut columns: Matrix,
         eigenvalues: Vec<f64>,
@@ -46,19 +61,15 @@ impl Embedding {
         rank: usize,
     ) -> Self {
         for (mut column, value) in columns.column_iter_mut().zip(&eigenvalues) {
-            let scale = value.max(0.0).sqrt() * unit;
-            // The first of several entries of the same size decides, so that rounding cannot.
-            let largest = column.iter().copied().fold(0.0f64, |a, x| a.max(x.abs()));
-            let lead = column.iter().copied().find(|x| x.abs() >= 0.999 * largest).unwrap_or(0.0);
-            column *= if lead < 0.0 { -scale } else { scale };
+            column *= leading_sign(column.as_slice()) * (value.max(0.0).sqrt() * unit);
         }
         let eigenvalues: Vec<f64> = eigenvalues.iter().map(|value| value * unit * unit).collect();
         let negative_mass = negative_mass(&eigenvalues);
         Self { coords: columns, eigenvalues, negative_mass, rank }
     }
 
-    /// Centres coordinates in units of `unit` and turns them to their principal axes; `eigenvalues` become
-    /// those of `Z' Z`. Straight lines between points stay as they are.
+    /// Centres coordinates in units of `unit` and rotates them to their principal axes; `eigenvalues` become those of
+    /// `Z' Z`. Distances between points do not change.
     pub(crate) fn along_principal_axes(
         mut coords: Matrix,
         unit: f64,
@@ -72,18 +83,9 @@ impl Embedding {
     }
 }
 
-/// Share of negative eigenvalues in the sum of magnitudes; zero when all are zero.
+/// Share of negative eigenvalues in the sum of magnitudes; zero if all are zero.
 pub(crate) fn negative_mass(eigenvalues: &[f64]) -> f64 {
     let total: f64 = eigenvalues.iter().map(|value| value.abs()).sum();
     let negative: f64 = eigenvalues.iter().map(|value| (-value).max(0.0)).sum();
     if total > 0.0 { negative / total } else { 0.0 }
-}
-
-/// Subtracts its mean from every column: the product with `J = I - 11'/p` from the left.
-pub(crate) fn center_columns(columns: &mut Matrix) {
-    let p = columns.nrows().max(1) as f64;
-    for mut column in columns.column_iter_mut() {
-        let mean = column.sum() / p;
-        column.add_scalar_mut(-mean);
-    }
 }

@@ -1,42 +1,42 @@
-//! What an embedding cannot be made from.
+//! Errors of this crate.
 
 /// Errors of this crate.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum NmdsError {
-    /// More eigenpairs asked for than there are samples, or none.
+    /// The rank is zero or exceeds the number of samples.
     #[error("rank {rank} is impossible with {n_landmarks} samples; choose 1 to {n_landmarks}")]
     BadRank {
-        /// The rank asked for.
+        /// The requested rank.
         rank: usize,
         /// Number of samples.
         n_landmarks: usize,
     },
-    /// An embedding in no dimension, or in more than the rank allows.
-    #[error("cannot embed in {dim} dimensions; choose 1 to {limit}, which grows with the number of samples")]
+    /// The dimension is zero or larger than the rank allows.
+    #[error("cannot embed in {dim} dimensions; choose 1 to {limit} (more samples allow more)")]
     BadDimension {
-        /// The dimension asked for.
+        /// The requested dimension.
         dim: usize,
-        /// The largest possible.
+        /// The largest possible dimension.
         limit: usize,
     },
-    /// A regularisation parameter that is not a positive number.
-    #[error("the regularisation alpha = {alpha} sigma1^4 needs a positive number; 1e-10 is a good one")]
+    /// The regularisation parameter is not a positive number.
+    #[error("the c of alpha = c sigma1^4 must be a positive number, not {alpha}; 1e-10 is a good choice")]
     BadAlpha {
-        /// The number given.
+        /// The given c.
         alpha: f64,
     },
-    /// Distances, or a start, of another number of points.
-    #[error("{given} points were given where the distances are of {n_points}")]
+    /// Two arguments have different numbers of points.
+    #[error("{given} points were given, but the distances are between {n_points}")]
     PointMismatch {
-        /// Points given.
+        /// Number of points given.
         given: usize,
-        /// Points of the distances.
+        /// Number of points of the distances.
         n_points: usize,
     },
-    /// A convergence tolerance without meaning.
-    #[error("the tolerance {tolerance} must be a number from 0 on; 1e-6 stops in time")]
+    /// The convergence tolerance is negative or not a number.
+    #[error("the tolerance must be a number of at least 0, not {tolerance}; 1e-6 is a good choice")]
     BadTolerance {
-        /// The tolerance given.
+        /// The given tolerance.
         tolerance: f64,
     },
     /// All distances are zero.
@@ -45,22 +45,22 @@ pub enum NmdsError {
         /// Number of points.
         n_points: usize,
     },
-    /// A kernel width that is not a positive number.
-    #[error("kernel width {sigma} must be a positive number, in the unit of the distances")]
+    /// The kernel width is not a positive number.
+    #[error("the kernel width must be a positive number in the unit of the distances, not {sigma}")]
     BadBandwidth {
-        /// The width given.
+        /// The given width.
         sigma: f64,
     },
-    /// A weight of distances that is not a positive number.
-    #[error("the weight mu = {mu} of known distances must be positive; it may be infinite")]
+    /// The weight of the known distances is not positive.
+    #[error("the weight mu of known distances must be positive (it may be infinite), not {mu}")]
     BadSmoothness {
-        /// The weight given.
+        /// The given weight.
         mu: f64,
     },
-    /// The samples say nothing of a part of the surface.
+    /// The samples do not determine a function on part of the surface.
     #[error(
-        "{n_landmarks} samples do not determine a function on the surface; take one in each of its components, or \
-         keep its largest one only"
+        "{n_landmarks} samples do not determine a function on the surface; take a sample in each of its components, \
+         or keep the largest component only"
     )]
     NotDetermined {
         /// Number of samples.

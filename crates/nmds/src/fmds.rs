@@ -1,33 +1,33 @@
 //! Fast multidimensional scaling.
 
-use linalg::{LandmarkDistances, Matrix, SparseCholesky, SparseSymmetric, symmetric_eigen, thin_qr};
+use linalg::{LandmarkDistances, Matrix, SparseCholesky, SparseSymmetric, thin_qr};
 
-use crate::embedding::center_columns;
+use crate::squares::{Squares, center_columns, check_dim, solve_saddle_point, symmetrized};
 use crate::{Embedding, NmdsError};
 
-/// Fast multidimensional scaling (FMDS): embeds p points from n columns of distances and the smoothest
-/// functions on the surface that have given values at the samples.
+/// Fast multidimensional scaling (FMDS): embeds p points from n columns of distances, interpolated by the smoothest
+/// functions on the surface.
 ///
 /// | paper | here | shape | meaning |
 /// |---|---|---|---|
 /// | `W`, `A` | `stiffness`, `masses` | p x p, p | Laplacian: `A^-1 W`, `A` diagonal |
 /// | `R` | | p x n | squared distances to the samples |
-/// | `M` | | p x n | column j: least `x' W A^-1 W x` among functions one at sample j, zero at the others |
-/// | `Ê` | `(M R' + R M') / 2` | p x p | squared distances, smooth where they are not known |
+/// | `M` | | p x n | column j minimises `x' W A^-1 W x` among functions that are one at sample j, zero at the others |
+/// | `Ê` | `(M R' + R M') / 2` | p x p | interpolated squared distances |
 ///
 /// `Z = Q U √L` with the `k` algebraically largest eigenpairs `U L U'` of `-1/4 T P T'`, `Q T = J [M R]` and
 /// `P = [0 I; I 0]` (Shamai, Aflalo, Zibulevsky and Kimmel 2015, `shamai2015b` in `REFERENCES.bib`).
 ///
-/// * Exact at the samples: their columns of `Ê` are the measured ones where the distances are symmetric.
-/// * Distances are relative to their maximum and `M` has no unit, so no unit matters.
-/// * Cost one sparse factorisation of `W` and `2 n` solutions, `O(p n^2)` time and `O(p n)` memory beside it.
+/// * Exact at the samples: their columns of `Ê` are the given ones if the distances are symmetric.
+/// * Independent of the unit of length.
+/// * Cost: one sparse factorisation of `W` and `2 n` solutions; in addition `O(p n^2)` time and `O(p n)` memory.
 ///
-/// **Deviation**: constraints are hard, `M` is one and zero at the samples, so there is no weight to choose. And
-/// `M` comes from splines, `M = H C + 1 d'` with `H = W^+ A W^+` at the samples and `1' C = 0`, which equals
-/// `-(L_ff)^-1 L_fs` with `L = W A^-1 W` but never squares the condition of `W`.
+/// **Deviation**: the values at the samples are hard constraints, so there is no weight to choose. `M` is computed by
+/// splines, `M = H C + 1 d'` with `H = W^+ A W^+` at the samples and `1' C = 0`. This equals `-(L_ff)^-1 L_fs` with
+/// `L = W A^-1 W` but does not square the condition number of `W`.
 ///
 /// # Errors
-/// [`NmdsError::PointMismatch`], [`NmdsError::NotDetermined`] when a component of the surface is without a sample,
+/// [`NmdsError::PointMismatch`], [`NmdsError::NotDetermined`] if a component of the surface has no sample,
 /// [`NmdsError::BadDimension`], [`NmdsError::NoExtent`], [`NmdsError::Linalg`].
 pub fn fmds(
     distances: &LandmarkDistances,
@@ -41,26 +41,19 @@ pub fn fmds(
             return Err(NmdsError::PointMismatch { given, n_points: p });
         }
     }
-    if dim == 0 || dim > n {
-        return Err(NmdsError::BadDimension { dim, limit: n });
-    }
-    let unit = distances.max();
-    if unit <= 0.0 {
-        return Err(NmdsError::NoExtent { n_points: p });
-    }
+    check_dim(dim, n)?;
+    let Squares { unit, columns, .. } = Squares::new(distances)?;
     let interpolant = interpolant(distances.landmarks(), stiffness, masses)?;
     let mut both = Matrix::zeros(p, 2 * n);
     both.columns_mut(0, n).copy_from(&interpolant);
-    both.columns_mut(n, n).copy_from(&distances.matrix().map(|d| (d / unit).powi(2)));
+    both.columns_mut(n, n).copy_from(&columns);
     center_columns(&mut both);
     let (q, t) = thin_qr(&both);
-    let cross = t.columns(0, n) * t.columns(n, n).transpose();
-    let inner = symmetric_eigen(&((&cross + cross.transpose()) * -0.25))?;
-    let columns = q * inner.vectors.columns(0, dim);
-    Ok(Embedding::from_orthonormal(columns, inner.values, unit, n))
+    let inner = symmetrized(t.columns(0, n) * t.columns(n, n).transpose() * -0.5);
+    Embedding::from_factors(q, &inner, dim, unit, n)
 }
 
-/// `M`, by splines.
+/// Computes `M` by splines.
 fn interpolant(samples: &[usize], stiffness: &SparseSymmetric, masses: &[f64]) -> Result<Matrix, NmdsError> {
     let (p, n) = (masses.len(), samples.len());
     let blocks = Blocks::new(stiffness, masses);
@@ -73,7 +66,7 @@ fn interpolant(samples: &[usize], stiffness: &SparseSymmetric, masses: &[f64]) -
     let mut unit = Matrix::zeros(p, n);
     for (j, &sample) in samples.iter().enumerate() {
         unit[(sample, j)] = 1.0;
-        // The right-hand side of a solvable system sums to zero.
+        // The system is solvable if its right-hand side sums to zero in each block.
         let block = blocks.of[sample];
         let share = if blocks.mass[block] > 0.0 { 1.0 / blocks.mass[block] } else { 0.0 };
         (0..p).filter(|&i| blocks.of[i] == block).for_each(|i| unit[(i, j)] -= share * masses[i]);
@@ -87,19 +80,12 @@ fn interpolant(samples: &[usize], stiffness: &SparseSymmetric, masses: &[f64]) -
         Matrix::from_fn(rows.len(), count, |i, k| if blocks.of[rows[i]] == k { 1.0 } else { 0.0 })
     };
     let at_samples = splines.select_rows(samples);
-    // Constants of the size of the splines, for pivots to be compared.
+    // Scales the constants to the size of the splines, so that pivots are comparable.
     let size = at_samples.amax().max(f64::MIN_POSITIVE);
-    let null = constants(samples) * size;
-    let mut system = Matrix::zeros(n + count, n + count);
-    system.view_mut((0, 0), (n, n)).copy_from(&((&at_samples + at_samples.transpose()) * 0.5));
-    system.view_mut((0, n), (n, count)).copy_from(&null);
-    system.view_mut((n, 0), (count, n)).copy_from(&null.transpose());
-    let solution = system.lu().solve(&Matrix::identity(n + count, n));
-    let solution = solution
-        .filter(|x| x.iter().all(|v| v.is_finite()))
-        .ok_or(NmdsError::NotDetermined { n_landmarks: n })?;
+    let solution = solve_saddle_point(&symmetrized(at_samples), &(constants(samples) * size));
+    let [weights, shifts] = solution.ok_or(NmdsError::NotDetermined { n_landmarks: n })?;
     let everywhere: Vec<usize> = (0..p).collect();
-    let mut m = splines * solution.rows(0, n) + constants(&everywhere) * solution.rows(n, count) * size;
+    let mut m = splines * weights + constants(&everywhere) * shifts * size;
     for (j, &sample) in samples.iter().enumerate() {
         m.row_mut(sample).fill(0.0);
         m[(sample, j)] = 1.0;
@@ -107,12 +93,12 @@ fn interpolant(samples: &[usize], stiffness: &SparseSymmetric, masses: &[f64]) -
     Ok(m)
 }
 
-/// The connected blocks of a stiffness matrix: it maps a function to zero exactly when that is constant on each.
+/// The connected blocks of a stiffness matrix, whose kernel are the functions that are constant on each.
 #[derive(Debug)]
 struct Blocks<'a> {
-    /// The block of every row.
+    /// The block of each row.
     of: Vec<usize>,
-    /// The mass of every block.
+    /// The mass of each block.
     mass: Vec<f64>,
     masses: &'a [f64],
 }
@@ -125,8 +111,8 @@ impl<'a> Blocks<'a> {
         Self { of, mass, masses }
     }
 
-    /// The matrix with the first diagonal entry of each block doubled: definite, and with the same solutions up
-    /// to constants where there are any.
+    /// The matrix with the first diagonal entry of each block doubled: positive definite, with the same solutions up to
+    /// a constant per block.
     fn grounded(&self, stiffness: &SparseSymmetric) -> SparseSymmetric {
         let mut ground = vec![0.0; self.of.len()];
         let mut next = 0;
@@ -142,7 +128,7 @@ impl<'a> Blocks<'a> {
         matrix
     }
 
-    /// Subtracts from each column its mean, by mass, over each block.
+    /// Subtracts from each column its mass-weighted mean over each block.
     fn subtract_means(&self, columns: &mut Matrix) {
         for mut column in columns.column_iter_mut() {
             let mut sums = vec![0.0; self.mass.len()];
@@ -158,13 +144,10 @@ impl<'a> Blocks<'a> {
 
 #[cfg(test)]
 mod tests {
-    use linalg::DistanceMatrix;
-
     use super::*;
-    use crate::classical_full;
 
-    /// Points at irregular places around a circle: springs as stiff as they are short, masses as long as the
-    /// arcs, and distances along the circle of length `2 pi`.
+    /// Irregular points on the unit circle: the stiffness of a spring is the inverse of its length, masses are arc
+    /// lengths, and distances are measured along the circle.
     struct Ring {
         angles: Vec<f64>,
     }
@@ -176,8 +159,8 @@ mod tests {
         }
 
         fn arc(&self, i: usize, j: usize) -> f64 {
-            let way = (self.angles[i] - self.angles[j]).abs();
-            way.min(std::f64::consts::TAU - way)
+            let arc = (self.angles[i] - self.angles[j]).abs();
+            arc.min(std::f64::consts::TAU - arc)
         }
 
         fn laplacian(&self, scale: f64) -> (SparseSymmetric, Vec<f64>) {
@@ -203,23 +186,8 @@ mod tests {
         }
     }
 
-    fn gap(a: &Matrix, b: &Matrix) -> f64 {
-        let distance = |z: &Matrix, i: usize, j: usize| (z.row(i) - z.row(j)).norm();
-        let pairs = (0..a.nrows()).flat_map(|i| (0..i).map(move |j| (i, j)));
-        pairs.map(|(i, j)| (distance(a, i, j) - distance(b, i, j)).abs()).fold(0.0, f64::max)
-    }
-
     #[test]
-    fn with_all_samples_it_is_classical_scaling() {
-        let ring = Ring::new(25);
-        let (w, a) = ring.laplacian(1.0);
-        let found = fmds(&ring.columns(1, |d| d), &w, &a, 2).unwrap();
-        let all = DistanceMatrix::from_pairs(25, |i, j| ring.arc(i, j)).unwrap();
-        assert!(gap(&found.coords, &classical_full(&all, 2).unwrap().coords) < 1e-9);
-    }
-
-    #[test]
-    fn the_interpolant_solves_its_definition() {
+    fn the_interpolant_satisfies_its_definition() {
         let ring = Ring::new(40);
         let (w, a) = ring.laplacian(1.0);
         let samples = [0, 7, 13, 22, 31];
@@ -240,7 +208,7 @@ mod tests {
     }
 
     #[test]
-    fn constants_are_kept_on_every_component() {
+    fn interpolation_preserves_constants_on_each_component() {
         let ring = Ring::new(30);
         let (w, a) = ring.laplacian(1.0);
         let twice = w.entries().chain(w.entries().map(|(i, j, v)| (i + 30, j + 30, v)));
@@ -258,7 +226,7 @@ mod tests {
     }
 
     #[test]
-    fn chords_of_a_circle_come_back_from_a_few_samples() {
+    fn a_circle_is_recovered_from_chords_with_fourth_order() {
         let ring = Ring::new(160);
         let (w, a) = ring.laplacian(1.0);
         let chord = |arc: f64| 2.0 * (0.5 * arc).sin();
@@ -270,34 +238,16 @@ mod tests {
             };
             pairs.map(error).fold(0.0, f64::max)
         };
-        // Splines of fourth order.
+        // Splines converge with fourth order.
         assert!(worst(20) < 0.01 && worst(10) < worst(20) / 8.0, "{} {}", worst(20), worst(10));
     }
 
     #[test]
-    fn no_unit_matters() {
-        let ring = Ring::new(90);
-        let (w, a) = ring.laplacian(1.0);
-        let base = fmds(&ring.columns(9, |d| d), &w, &a, 2).unwrap();
-        for scale in [1e-3, 1e3] {
-            let (w, a) = ring.laplacian(scale);
-            let found = fmds(&ring.columns(9, |d| scale * d), &w, &a, 2).unwrap();
-            assert!(gap(&(found.coords / scale), &base.coords) < 1e-9);
-        }
-    }
-
-    #[test]
-    fn impossible_requests_are_refused() {
+    fn other_numbers_of_points_are_rejected() {
         let ring = Ring::new(12);
         let (w, a) = ring.laplacian(1.0);
         let distances = ring.columns(3, |d| d);
-        for dim in [0, 5] {
-            let refused = fmds(&distances, &w, &a, dim);
-            assert_eq!(refused, Err(NmdsError::BadDimension { dim, limit: 4 }));
-        }
-        let refused = fmds(&distances, &w, &a[1..], 2);
-        assert_eq!(refused, Err(NmdsError::PointMismatch { given: 11, n_points: 12 }));
-        let nothing = LandmarkDistances::new(vec![0, 1, 2], Matrix::zeros(12, 3)).unwrap();
-        assert_eq!(fmds(&nothing, &w, &a, 2), Err(NmdsError::NoExtent { n_points: 12 }));
+        let result = fmds(&distances, &w, &a[1..], 2);
+        assert_eq!(result, Err(NmdsError::PointMismatch { given: 11, n_points: 12 }));
     }
 }

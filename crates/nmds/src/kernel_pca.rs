@@ -1,19 +1,19 @@
-//! Kernel PCA with the Nystrom method: the paper's baseline.
+//! Kernel PCA with the Nystrom method, the baseline of the NMDS paper.
 
-use linalg::{LandmarkDistances, Matrix, symmetric_eigen, thin_qr};
+use linalg::{LandmarkDistances, symmetric_eigen, thin_qr};
 
-use crate::embedding::center_columns;
+use crate::squares::{center_columns, check_extent};
 use crate::{Embedding, NmdsError, NystromOptions, Regularization};
 
-/// The width sigma of the Gaussian kernel `exp(-d^2 / (2 sigma^2))`.
+/// The width `sigma` of the Gaussian kernel `exp(-d^2 / (2 sigma^2))`.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum Bandwidth {
-    /// The mean distance between landmarks and points, as Liu, Jain and Zhang do.
+    /// The mean distance between landmarks and points, as in Liu, Jain and Zhang.
     #[default]
     Mean,
     /// The median of these distances.
     Median,
-    /// Their maximum: the kernel is then nearly linear in the squared distance.
+    /// The maximum of these distances: the kernel is then nearly linear in the squared distance.
     Max,
     /// This width, in the unit of the distances.
     Value(f64),
@@ -41,9 +41,9 @@ impl Bandwidth {
 pub struct KernelPcaOptions {
     /// Width of the kernel. Default: [`Bandwidth::Mean`].
     pub bandwidth: Bandwidth,
-    /// Eigenpairs of the sample kernel to keep. Default: half of n, at least `dim + 4`, as in NMDS.
+    /// Number of eigenpairs of the sample kernel to keep. Default: half of n, at least `dim + 4`, as in NMDS.
     pub rank: Option<usize>,
-    /// Dimensions of the embedding. Default: 3.
+    /// Dimension of the embedding. Default: 3.
     pub dim: usize,
 }
 
@@ -61,9 +61,9 @@ impl Default for KernelPcaOptions {
 /// | `U L U'` | `kept` | n x n1 | leading eigenpairs of its rows at the landmarks |
 /// | `Phi` | result | p x k | principal components of the centred kernel `K U L^-1 U' K'` |
 ///
-/// * The kernel is centred over all p points, so the constant leading vector is gone, and the
-///   components are scaled by the roots of their eigenvalues. They have no unit.
-/// * Cost `O(p n n1)` time, `O(p n)` memory.
+/// * The kernel is centred over all p points, which removes the constant leading vector. Components are scaled by the
+///   roots of their eigenvalues and have no unit.
+/// * Cost: `O(p n n1)` time, `O(p n)` memory.
 ///
 /// After Liu, Jain and Zhang 2006 (`liu2006` in `REFERENCES.bib`).
 ///
@@ -74,16 +74,14 @@ pub fn kernel_pca(distances: &LandmarkDistances, options: &KernelPcaOptions) -> 
     let regularization = Regularization::LowRank { rank: options.rank };
     let shape = NystromOptions { regularization, dim: options.dim };
     let rank = shape.validate(distances.n_landmarks())?;
-    if distances.max() <= 0.0 {
-        return Err(NmdsError::NoExtent { n_points: distances.n_points() });
-    }
+    check_extent(distances.max(), distances.n_points())?;
     let sigma = options.bandwidth.sigma(distances)?;
     let gauss = |sq: f64| (-0.5 * sq / (sigma * sigma)).exp();
     let kernel = distances.matrix().map(|d| gauss(d * d));
     let block = distances.sq_block().map(gauss);
 
     let eigen = symmetric_eigen(&block)?;
-    // A geodesic Gaussian need not be positive definite: keep what is above rounding.
+    // A Gaussian of geodesic distances may be indefinite: keep the positive eigenvalues above rounding error.
     let floor = block.nrows() as f64 * f64::EPSILON * eigen.values[0];
     let leading: Vec<usize> = (0..rank).filter(|&i| eigen.values[i] > floor).collect();
     let kept = eigen.select(&leading);
@@ -93,20 +91,17 @@ pub fn kernel_pca(distances: &LandmarkDistances, options: &KernelPcaOptions) -> 
     }
     center_columns(&mut columns);
     let (q, w) = thin_qr(&columns);
-    let inner = symmetric_eigen(&(&w * w.transpose()))?;
-    let dim = options.dim.min(leading.len());
-    let mut coords = Matrix::zeros(distances.n_points(), options.dim);
-    coords.columns_mut(0, dim).copy_from(&(q * inner.vectors.columns(0, dim)));
-    Ok(Embedding::from_orthonormal(coords, inner.values, 1.0, leading.len()))
+    Embedding::from_factors(q, &(&w * w.transpose()), options.dim, 1.0, leading.len())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::testing::{Cloud, landmark_distances};
+    use crate::testing::{Cloud, landmark_distances, procrustes_free_gap, scaled};
+    use linalg::Matrix;
 
     #[test]
-    fn with_all_samples_it_is_the_principal_components_of_the_centred_kernel() {
+    fn with_all_samples_equals_the_principal_components_of_the_centred_kernel() {
         let p = 40;
         let cloud = Cloud::new(p, 3, 11);
         let distances = landmark_distances(&cloud, p);
@@ -125,10 +120,9 @@ mod tests {
     }
 
     #[test]
-    fn the_unit_of_length_does_not_matter_when_the_width_is_relative() {
+    fn relative_widths_do_not_depend_on_the_unit_of_length() {
         let distances = landmark_distances(&Cloud::new(100, 3, 12), 10);
-        let scaled =
-            LandmarkDistances::new(distances.landmarks().to_vec(), distances.matrix() * 1e3).unwrap();
+        let scaled = scaled(&distances, 1e3);
         for bandwidth in [Bandwidth::Mean, Bandwidth::Median, Bandwidth::Max] {
             let options = KernelPcaOptions { bandwidth, ..Default::default() };
             let (a, b) = (kernel_pca(&distances, &options).unwrap(), kernel_pca(&scaled, &options).unwrap());
@@ -137,7 +131,7 @@ mod tests {
     }
 
     #[test]
-    fn relative_widths_are_statistics_of_the_measured_distances() {
+    fn relative_widths_are_statistics_of_the_distances() {
         let distances = landmark_distances(&Cloud::new(101, 3, 14), 9);
         let mut sorted = distances.matrix().as_slice().to_vec();
         sorted.sort_by(f64::total_cmp);
@@ -155,19 +149,19 @@ mod tests {
     }
 
     #[test]
-    fn a_wide_kernel_is_scaling_of_the_distances() {
-        // exp(-x) is nearly 1 - x: the centred kernel is then that of classical scaling over sigma^2.
+    fn a_wide_kernel_equals_classical_scaling() {
+        // exp(-x) is nearly 1 - x, so the centred kernel is that of classical scaling divided by sigma^2.
         let cloud = Cloud::new(60, 3, 15);
         let distances = landmark_distances(&cloud, 60);
         let sigma = 1e3 * distances.max();
         let options = KernelPcaOptions { bandwidth: Bandwidth::Value(sigma), rank: Some(60), dim: 3 };
         let mut embedding = kernel_pca(&distances, &options).unwrap();
         embedding.coords *= sigma;
-        assert!(crate::testing::procrustes_free_gap(&cloud, &embedding) < 1e-4);
+        assert!(procrustes_free_gap(&cloud, &embedding) < 1e-4);
     }
 
     #[test]
-    fn a_width_must_be_positive() {
+    fn the_width_must_be_positive() {
         let distances = landmark_distances(&Cloud::new(30, 3, 13), 6);
         for sigma in [0.0, -1.0, f64::INFINITY] {
             let options = KernelPcaOptions { bandwidth: Bandwidth::Value(sigma), ..Default::default() };

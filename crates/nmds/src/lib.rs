@@ -1,9 +1,19 @@
-//! Embeddings of points from distances: straight lines in the result equal given distances.
+//! Multidimensional scaling: coordinates of points whose Euclidean distances approximate given distances.
 //!
-//! `linalg::LandmarkDistances` -> **nmds** -> [`Embedding`] -> `descriptors`
+//! `linalg::LandmarkDistances` -> **[`nystrom`]** and others -> [`Embedding`] -> `descriptors`
 //!
-//! NMDS is Nystrom multidimensional scaling throughout, never the nonmetric kind. Knows nothing of
-//! meshes or of where distances come from.
+//! NMDS stands for Nystrom (not nonmetric) multidimensional scaling. Knows nothing of meshes or of how distances were
+//! measured.
+//!
+//! | function | embeds from | reference |
+//! |---|---|---|
+//! | [`nystrom`] | distances from n samples to all p points | Shamai, Aflalo, Zibulevsky and Kimmel 2015 |
+//! | [`landmark_mds`] | the same | de Silva and Tenenbaum 2002 |
+//! | [`kernel_pca`] | the same | Liu, Jain and Zhang 2006 |
+//! | [`fmds`] | the same, and a Laplacian | Shamai et al. 2015 |
+//! | [`spectral`] | distances between n samples, and eigenpairs of a Laplacian | Aflalo and Kimmel 2013 |
+//! | [`classical`], [`classical_full`] | all p x p distances | Torgerson 1952 |
+//! | [`smacof`] | all p x p distances, and a start | de Leeuw 1977 |
 
 mod classical;
 mod embedding;
@@ -16,9 +26,12 @@ mod reconstruction;
 mod regularization;
 mod smacof;
 mod spectral;
+mod squares;
 mod stress;
 #[cfg(test)]
 mod testing;
+#[cfg(test)]
+mod tests;
 
 pub use classical::{classical, classical_full};
 pub use embedding::Embedding;

@@ -1,44 +1,42 @@
-//! How well few columns of squared distances say all of them.
+//! How well a few columns of squared distances reconstruct all of them.
 
 use linalg::{LandmarkDistances, Matrix, thin_qr};
 use rayon::prelude::*;
 
 use crate::regularization::by_magnitude;
+use crate::squares::Squares;
 use crate::{DistanceRows, NmdsError, Regularization};
 
-/// How far an approximation `Ê` is from the matrix `E` of all squared distances.
+/// The error of an approximation `Ê` of the matrix `E` of all squared distances.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ReconstructionError {
-    /// `‖Ê - E‖_F / ‖E‖_F`, without a unit.
+    /// `‖Ê - E‖_F / ‖E‖_F`, which has no unit.
     pub relative: f64,
-    /// `‖Ê - E‖_F² / p²`, in the fourth power of a length: what the paper's Fig. 5 and 6 show.
+    /// `‖Ê - E‖_F² / p²`, in the fourth power of the unit of length, as in Fig. 5 and 6 of the paper.
     pub mean_square: f64,
 }
 
-/// The errors of all approximations `Ê = R X R'` of a matrix `E` of squared distances by n of its columns
-/// `R`: those of every [`Regularization`], and the best there is.
+/// Errors of approximations `Ê = R X R'` of a matrix `E` of squared distances by n of its columns `R`: that of each
+/// [`Regularization`], and the smallest possible.
 ///
 /// | paper | here | shape | meaning |
 /// |---|---|---|---|
 /// | `E` | squares of `rows` | p x p | all squared distances; symmetric |
 /// | `R` | squares of `distances` | p x n | the samples' columns |
-/// | `Q` | of the QR decomposition of `R` | p x n | orthonormal basis of what `Ê` can reach |
-/// | `RR⁺E` | `Q Q' E` | p x p | projection of `E`, the best that columns in the span of `R` can do (eq. 5) |
+/// | `Q` | of the QR decomposition of `R` | p x n | orthonormal basis of the columns of `Ê` |
+/// | `RR⁺E` | `Q Q' E` | p x p | projection of `E`, the best approximation with columns in the span of `R` (eq. 5) |
 ///
-/// With `A = Q' E Q` and `Ê = Q Â Q'` the error is a sum of squares that are never subtracted from each other,
-/// `‖E - Ê‖² = ‖E - QQ'E‖² + ‖Q'E - A Q'‖² + ‖A - Â‖²`: the first term is the error of the best projection, the
-/// first two that of the best symmetric choice of `X`, and only the last depends on the regularisation. So
-/// two passes over the rows of `E` are enough for any number of regularisations of the same samples.
+/// With `A = Q' E Q` and `Ê = Q Â Q'`, the error is a sum of squares without cancellation:
+/// `‖E - Ê‖² = ‖E - QQ'E‖² + ‖Q'E - A Q'‖² + ‖A - Â‖²`. The first term is the error of the best projection, the first two
+/// that of the best symmetric `X`, and only the last depends on the regularisation. So two passes over the rows of `E`
+/// suffice for any number of regularisations of the same samples.
 ///
-/// * Cost of [`Self::new`] `O(p^2 n)` time, in blocks of rows, and `O(p n)` memory; of an error `O(n^3)`.
-/// * The number of threads changes nothing.
-/// * `rows` and `distances` may come from different solvers: an approximation by hops of marched distances.
+/// * Cost: [`Self::new`] takes `O(p^2 n)` time, in blocks of rows, and `O(p n)` memory; each error `O(n^3)` time.
+/// * Does not depend on the number of threads.
+/// * `rows` and `distances` may come from different solvers, for example an approximation from hop counts.
 #[derive(Debug)]
 pub struct Reconstruction {
-    /// Samples' columns and block in units of `unit²`.
-    sq_columns: Matrix,
-    sq_block: Matrix,
-    unit: f64,
+    squares: Squares,
     q: Matrix,
     /// `A`, n x n.
     projected: Matrix,
@@ -48,11 +46,11 @@ pub struct Reconstruction {
     beside_sq: f64,
 }
 
-/// Rows in a block: fixes the order of summation.
+/// Rows in a block; fixes the order of summation.
 const BLOCK: usize = 64;
 
 impl Reconstruction {
-    /// Takes the samples' columns and the rows of all distances, each of which is asked for twice.
+    /// Takes the samples' columns and the rows of all distances. Reads each row twice.
     ///
     /// # Errors
     /// [`NmdsError::PointMismatch`], [`NmdsError::NoExtent`].
@@ -61,13 +59,9 @@ impl Reconstruction {
         if p != distances.n_points() {
             return Err(NmdsError::PointMismatch { given: distances.n_points(), n_points: p });
         }
-        let unit = distances.max();
-        if unit <= 0.0 {
-            return Err(NmdsError::NoExtent { n_points: p });
-        }
-        let sq_columns = distances.matrix().map(|d| (d / unit).powi(2));
-        let sq_block = distances.sq_block() / (unit * unit);
-        let (q, _) = thin_qr(&sq_columns);
+        let squares = Squares::new(distances)?;
+        let unit = squares.unit;
+        let (q, _) = thin_qr(&squares.columns);
         // Row i of E Q, which is column i of Q' E.
         let blocks = by_blocks(rows, unit, |_, block| (block.norm_squared(), block * &q));
         let mut image = Matrix::zeros(p, q.ncols());
@@ -84,37 +78,38 @@ impl Reconstruction {
             (block - within).norm_squared()
         });
         let outside_sq = outside.iter().sum();
-        Ok(Self { sq_columns, sq_block, unit, projected, norm_sq, outside_sq, beside_sq, q })
+        Ok(Self { squares, projected, norm_sq, outside_sq, beside_sq, q })
     }
 
-    /// The error of `RR⁺E` (eq. 5), for which all of `E` must be known: the reference of Fig. 6.
+    /// The error of `RR⁺E` (eq. 5), which requires all of `E`: the reference in Fig. 6.
     #[must_use]
     pub fn best_projection(&self) -> ReconstructionError {
         self.error_of(self.outside_sq)
     }
 
-    /// The error of the Nystrom approximation with this regularisation, by eq. 4, 3 or 9. Where
-    /// the rank is left to the default it is half of n, at least 7.
+    /// The error of the Nystrom approximation with this regularisation, by eq. 4, 3 or 9. The default rank is that for three
+    /// dimensions.
     ///
     /// # Errors
     /// [`NmdsError::BadRank`], [`NmdsError::BadAlpha`], [`NmdsError::Linalg`].
     pub fn error(&self, regularization: Regularization) -> Result<ReconstructionError, NmdsError> {
-        let rank = regularization.rank(self.sq_block.nrows(), 3)?;
-        let inverse = regularization.pseudo_inverse(&self.sq_block, self.unit, rank)?;
-        let reached = self.q.tr_mul(&inverse.apply(self.sq_columns.clone()));
-        let approximated = &reached * &inverse.core * reached.transpose();
+        let Squares { unit, columns, block } = &self.squares;
+        let rank = regularization.rank(block.nrows(), 3)?;
+        let inverse = regularization.pseudo_inverse(block, *unit, rank)?;
+        let projected = self.q.tr_mul(&inverse.apply(columns.clone()));
+        let approximated = &projected * &inverse.core * projected.transpose();
         let inside_sq = (&self.projected - approximated).norm_squared();
         Ok(self.error_of(self.outside_sq + self.beside_sq + inside_sq))
     }
 
     fn error_of(&self, sum_sq: f64) -> ReconstructionError {
-        let p = self.sq_columns.nrows() as f64;
+        let p = self.squares.columns.nrows() as f64;
         let relative = if self.norm_sq > 0.0 { (sum_sq / self.norm_sq).sqrt() } else { 0.0 };
-        ReconstructionError { relative, mean_square: sum_sq * self.unit.powi(4) / (p * p) }
+        ReconstructionError { relative, mean_square: sum_sq * self.squares.unit.powi(4) / (p * p) }
     }
 }
 
-/// Evaluates `work(start, block)` for all blocks of rows of squared distances, in units of `unit²`.
+/// Evaluates `work(start, block)` for all blocks of rows of squared distances in units of `unit²`.
 fn by_blocks<T: Send>(
     rows: &dyn DistanceRows,
     unit: f64,
@@ -137,9 +132,8 @@ fn by_blocks<T: Send>(
     starts.par_iter().map(|&start| block(start)).collect()
 }
 
-/// The eigenvalues of the squared distances between samples (`S`), largest magnitude first, in squared units
-/// of the distances; those that are rounding errors are left out. The first one is the `σ1` of
-/// [`RpiAlpha`](crate::RpiAlpha).
+/// The eigenvalues of the squared distances between samples (`S`), largest magnitude first, in the squared unit of the
+/// distances, without those at rounding error. The first is the `σ1` of [`RpiAlpha`](crate::RpiAlpha).
 ///
 /// # Errors
 /// [`NmdsError::Linalg`].
@@ -175,24 +169,24 @@ mod tests {
     }
 
     #[test]
-    fn a_matrix_of_rank_five_is_reconstructed_from_rank_five() {
+    fn rank_five_reconstructs_a_matrix_of_rank_five() {
         let (all, columns) = problem(150, 9, 1.0);
-        let affinity = Reconstruction::new(&columns, &all).unwrap();
-        assert!(affinity.best_projection().relative < 1e-13);
+        let reconstruction = Reconstruction::new(&columns, &all).unwrap();
+        assert!(reconstruction.best_projection().relative < 1e-13);
         for exact in [low_rank(5), cur(5), Regularization::None, cur(9)] {
-            assert!(affinity.error(exact).unwrap().relative < 1e-11, "{exact:?}");
+            assert!(reconstruction.error(exact).unwrap().relative < 1e-11, "{exact:?}");
         }
         for short in [low_rank(4), cur(4)] {
-            assert!(affinity.error(short).unwrap().relative > 1e-4, "{short:?}");
+            assert!(reconstruction.error(short).unwrap().relative > 1e-4, "{short:?}");
         }
-        assert!(affinity.error(RPI).unwrap().relative < 1e-3);
+        assert!(reconstruction.error(RPI).unwrap().relative < 1e-3);
     }
 
     #[test]
-    fn errors_are_those_of_the_definition() {
+    fn errors_match_their_definition() {
         let (p, n) = (90, 8);
         let (all, columns) = problem(p, n, 0.7);
-        let affinity = Reconstruction::new(&columns, &all).unwrap();
+        let reconstruction = Reconstruction::new(&columns, &all).unwrap();
         let squares = Matrix::from_fn(p, p, |i, j| all.get(i, j).powi(2));
         let r = squares.columns(0, n).into_owned();
         let s = squares.view((0, 0), (n, n)).into_owned();
@@ -202,40 +196,43 @@ mod tests {
             assert!((error.mean_square / (gap.norm_squared() / (p * p) as f64) - 1.0).abs() < 1e-9);
         };
         let inverse = pseudo_inverse(&s).unwrap();
-        check(&r * &inverse * r.transpose(), affinity.error(Regularization::None).unwrap());
+        check(&r * &inverse * r.transpose(), reconstruction.error(Regularization::None).unwrap());
         let kept = by_magnitude(&s, 5).unwrap();
         let diagonal = |f: &dyn Fn(f64) -> f64, values: &[f64]| {
             Matrix::from_diagonal(&values.iter().map(|v| f(*v)).collect::<Vec<_>>().into())
         };
         let c = &r * &kept.vectors;
-        check(&c * diagonal(&f64::recip, &kept.values) * c.transpose(), affinity.error(low_rank(5)).unwrap());
+        check(
+            &c * diagonal(&f64::recip, &kept.values) * c.transpose(),
+            reconstruction.error(low_rank(5)).unwrap(),
+        );
         let u = pseudo_inverse(&s.columns(0, 5).into_owned()).unwrap();
-        check(r.columns(0, 5) * u * r.transpose(), affinity.error(cur(5)).unwrap());
+        check(r.columns(0, 5) * u * r.transpose(), reconstruction.error(cur(5)).unwrap());
         let whole = by_magnitude(&s, n).unwrap();
         let c = &r * &whole.vectors;
         let alpha = 1e-10 * whole.values[0].powi(4);
         let rpi = diagonal(&|v| v.signum() * v.abs() / (v * v + alpha / (v * v)), &whole.values);
-        check(&c * rpi * c.transpose(), affinity.error(RPI).unwrap());
-        check(&r * pseudo_inverse(&r).unwrap() * &squares, affinity.best_projection());
+        check(&c * rpi * c.transpose(), reconstruction.error(RPI).unwrap());
+        check(&r * pseudo_inverse(&r).unwrap() * &squares, reconstruction.best_projection());
     }
 
     #[test]
-    fn nothing_is_better_than_the_projection_and_more_samples_bring_it_closer() {
+    fn the_projection_is_the_smallest_error_and_falls_with_more_samples() {
         let mut last = f64::INFINITY;
         for n in [6, 12, 24, 48] {
             let (all, columns) = problem(100, n, 0.7);
-            let affinity = Reconstruction::new(&columns, &all).unwrap();
-            let best = affinity.best_projection().relative;
+            let reconstruction = Reconstruction::new(&columns, &all).unwrap();
+            let best = reconstruction.best_projection().relative;
             assert!(best < last);
             last = best;
             for other in [Regularization::default(), RPI, Regularization::None, cur(5)] {
-                assert!(affinity.error(other).unwrap().relative >= best, "{other:?}");
+                assert!(reconstruction.error(other).unwrap().relative >= best, "{other:?}");
             }
         }
         let (all, columns) = problem(40, 40, 0.7);
-        let affinity = Reconstruction::new(&columns, &all).unwrap();
-        assert!(affinity.best_projection().relative < 1e-13);
-        assert!(affinity.error(Regularization::None).unwrap().relative < 1e-11);
+        let reconstruction = Reconstruction::new(&columns, &all).unwrap();
+        assert!(reconstruction.best_projection().relative < 1e-13);
+        assert!(reconstruction.error(Regularization::None).unwrap().relative < 1e-11);
     }
 
     #[test]
@@ -246,7 +243,8 @@ mod tests {
             let scaled_all = DistanceMatrix::from_pairs(130, |i, j| scale * all.get(i, j)).unwrap();
             let other = Reconstruction::new(&scaled(&columns, scale), &scaled_all).unwrap();
             for regularization in [low_rank(6), RPI, Regularization::None, cur(6)] {
-                let [a, b] = [&base, &other].map(|affinity| affinity.error(regularization).unwrap());
+                let [a, b] =
+                    [&base, &other].map(|reconstruction| reconstruction.error(regularization).unwrap());
                 assert!((a.relative / b.relative - 1.0).abs() < 1e-9, "{regularization:?}");
                 assert!((b.mean_square / scale.powi(4) / a.mean_square - 1.0).abs() < 1e-9);
             }
@@ -259,18 +257,18 @@ mod tests {
     }
 
     #[test]
-    fn what_does_not_fit_is_refused() {
+    fn mismatched_arguments_are_rejected() {
         let (all, columns) = problem(20, 5, 1.0);
         let (other, _) = problem(21, 5, 1.0);
         let mismatch = NmdsError::PointMismatch { given: 20, n_points: 21 };
         assert_eq!(Reconstruction::new(&columns, &other).unwrap_err(), mismatch);
         let nothing = LandmarkDistances::new(vec![0, 1], Matrix::zeros(20, 2)).unwrap();
         assert_eq!(Reconstruction::new(&nothing, &all).unwrap_err(), NmdsError::NoExtent { n_points: 20 });
-        let affinity = Reconstruction::new(&columns, &all).unwrap();
+        let reconstruction = Reconstruction::new(&columns, &all).unwrap();
         let bad = Err(NmdsError::BadRank { rank: 6, n_landmarks: 5 });
-        assert_eq!(affinity.error(low_rank(6)), bad);
-        assert_eq!(affinity.error(cur(6)), bad);
+        assert_eq!(reconstruction.error(low_rank(6)), bad);
+        assert_eq!(reconstruction.error(cur(6)), bad);
         let alpha = Regularization::Rpi { alpha: RpiAlpha::Relative(-1.0) };
-        assert_eq!(affinity.error(alpha), Err(NmdsError::BadAlpha { alpha: -1.0 }));
+        assert_eq!(reconstruction.error(alpha), Err(NmdsError::BadAlpha { alpha: -1.0 }));
     }
 }

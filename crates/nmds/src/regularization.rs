@@ -1,34 +1,32 @@
-//! What takes the place of the inverse of the sample matrix.
+//! Regularised inverses of the sample matrix.
 
 use linalg::{Matrix, SymmetricEigen, pseudo_inverse, symmetric_eigen};
 
 use crate::NmdsError;
 
-/// How the pseudo-inverse `S⁺` in the Nystrom approximation `Ê = R S⁺ R'` is kept from blowing up: the
-/// small eigenvalues of `S` are mostly noise, and their reciprocals are large.
+/// How the pseudo-inverse `S⁺` in the Nystrom approximation `Ê = R S⁺ R'` is regularised: small eigenvalues of `S` are
+/// mostly noise, and their reciprocals are large.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Regularization {
-    /// The reciprocals of the `rank` eigenvalues of largest magnitude, zero for the rest (eq. 4): the
-    /// paper's own, and the fastest.
+    /// Inverts the `rank` eigenvalues of largest magnitude and drops the rest (eq. 4): the method of the paper, and the
+    /// fastest.
     LowRank {
-        /// Eigenpairs to keep (`n1`), 1 to the number of samples n. Default: half of n, at least
-        /// `dim + 4`: the least rank that is exact for Euclidean distances, `dim + 2`, is too little for some
-        /// first samples, and all n eigenpairs are too much for most.
+        /// Number of eigenpairs to keep (`n1`), from 1 to the number of samples n. Default: half of n, at least
+        /// `dim + 4`. The smallest rank that is exact for Euclidean distances, `dim + 2`, is too small for some first
+        /// samples, and n is too large for most.
         rank: Option<usize>,
     },
-    /// The regularised pseudo-inverse: `σ / (σ² + α / σ²)` for every reciprocal `1 / σ` (eq. 3), with the
-    /// sign of the eigenvalue.
+    /// Replaces each reciprocal `1 / σ` by `σ / (σ² + α / σ²)`, with the sign of the eigenvalue (eq. 3).
     Rpi {
-        /// How much small eigenvalues are held back.
+        /// How strongly small eigenvalues are damped.
         alpha: RpiAlpha,
     },
-    /// All reciprocals, but for eigenvalues that are rounding errors: the plain Nystrom method.
+    /// Inverts all eigenvalues above rounding error: the plain Nystrom method.
     None,
-    /// The CUR decomposition `Ê = C U R'` with `C` the columns of the first `rank` samples and `U` the
-    /// pseudo-inverse of their rows at the samples (eq. 9). It is not symmetric; an embedding uses the mean
-    /// of it and its transpose.
+    /// The CUR decomposition `Ê = C U R'`, with `C` the columns of the first `rank` samples and `U` the pseudo-inverse of
+    /// their rows at the samples (eq. 9). It is not symmetric, so an embedding uses the mean of it and its transpose.
     Cur {
-        /// Columns in `C` (`n1`), as `rank` of [`Regularization::LowRank`].
+        /// Number of columns in `C` (`n1`), as `rank` of [`Regularization::LowRank`].
         rank: Option<usize>,
     },
 }
@@ -42,15 +40,14 @@ impl Default for Regularization {
 /// The `α` of [`Regularization::Rpi`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum RpiAlpha {
-    /// `α = c σ1⁴` for this c, with `σ1` the largest eigenvalue in magnitude. It has no unit. 1e-10 is safe
-    /// from few samples to many; with accurate distances and 100 samples 1e-12 to 1e-14 reconstructs better,
-    /// below 20 samples 1e-8 often embeds better.
+    /// `α = c σ1⁴` for this c, which has no unit; `σ1` is the largest magnitude of the eigenvalues. 1e-10 is safe for few
+    /// and many samples. With accurate distances and 100 samples, 1e-12 to 1e-14 reconstructs better; below 20 samples,
+    /// 1e-8 often embeds better.
     Relative(f64),
     /// `α = σ1³`, the paper's choice after Civril et al. (`civril2007` in `REFERENCES.bib`).
     ///
-    /// **The one thing that depends on the unit of length**: `α` is compared with `σ⁴`, so
-    /// `c = 1 / σ1` with `σ1` a squared distance in the unit of the caller. It is taken in that unit
-    /// because only then it is the paper's; in metres it regularises a million times as much as in
+    /// **The only choice that depends on the unit of length**: `α` is compared with `σ⁴`, so `c = 1 / σ1` with `σ1` in the
+    /// squared unit of the distances. With distances in metres it regularises a million times as strongly as in
     /// millimetres.
     Paper,
 }
@@ -62,8 +59,8 @@ impl Default for RpiAlpha {
 }
 
 impl RpiAlpha {
-    /// `α / σ1⁴`, without a unit, where `sigma_1` is the largest eigenvalue of `S` in magnitude in the unit
-    /// of a squared distance of the caller.
+    /// `α / σ1⁴`, which has no unit. `sigma_1` is the largest magnitude of the eigenvalues of `S`, in the squared unit of the
+    /// distances.
     #[must_use]
     pub fn relative(self, sigma_1: f64) -> f64 {
         match self {
@@ -74,7 +71,7 @@ impl RpiAlpha {
 }
 
 impl Regularization {
-    /// The name used on the command line and in records.
+    /// Its name in options and records.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -85,8 +82,8 @@ impl Regularization {
         }
     }
 
-    /// The number of eigenpairs (of columns, for CUR) used with `n_landmarks` samples to embed in `dim`
-    /// dimensions: n1, or n where all are used.
+    /// The number of eigenpairs (for CUR, of columns) used with `n_landmarks` samples to embed in `dim` dimensions: n1, or
+    /// n for regularisations that use all.
     ///
     /// # Errors
     /// [`NmdsError::BadRank`], [`NmdsError::BadAlpha`].
@@ -107,8 +104,8 @@ impl Regularization {
         Ok(rank)
     }
 
-    /// The pseudo-inverse of `sq_block`, the squared distances between samples in units of `unit²`, with
-    /// `rank` as [`Self::rank`] says.
+    /// The pseudo-inverse of `sq_block`, the squared distances between samples in units of `unit²`, with the `rank` from
+    /// [`Self::rank`].
     pub(crate) fn pseudo_inverse(
         self,
         sq_block: &Matrix,
@@ -124,7 +121,7 @@ impl Regularization {
         let kept = by_magnitude(sq_block, rank)?;
         let sigma_1 = kept.values[0].abs();
         let reciprocal = |value: f64| match self {
-            // Samples that coincide, or a single one.
+            // Samples coincide, or there is only one.
             _ if value == 0.0 => 0.0,
             Self::Rpi { alpha } => {
                 let ratio = value / sigma_1;
@@ -142,14 +139,14 @@ impl Regularization {
     }
 }
 
-/// `S⁺ = T M T'`, which makes `Ê = (R T) M (R T)'`.
+/// `S⁺ = T M T'`, so that `Ê = (R T) M (R T)'`.
 #[derive(Debug)]
 pub(crate) struct PseudoInverse {
-    /// `T`, n x m; the identity when there is none.
+    /// `T`, n x m; `None` stands for the identity.
     basis: Option<Matrix>,
-    /// `M`, m x m; symmetric but for CUR.
+    /// `M`, m x m; symmetric except for CUR.
     pub(crate) core: Matrix,
-    /// Eigenpairs or columns that were used.
+    /// Number of eigenpairs or columns used.
     pub(crate) rank: usize,
 }
 
@@ -163,7 +160,7 @@ impl PseudoInverse {
     }
 }
 
-/// Up to `rank` eigenpairs of largest magnitude that are more than rounding errors; at least one.
+/// The `rank` eigenpairs of largest magnitude, without those at rounding error; at least one.
 pub(crate) fn by_magnitude(sq_block: &Matrix, rank: usize) -> Result<SymmetricEigen, NmdsError> {
     let eigen = symmetric_eigen(sq_block)?;
     let mut order: Vec<usize> = (0..eigen.values.len()).collect();

@@ -1,16 +1,17 @@
-//! SMACOF: the metric stress made smaller step by step.
+//! SMACOF: iterative minimisation of the metric stress.
 
 use linalg::{DistanceMatrix, Matrix, pseudo_inverse};
 use rayon::prelude::*;
 
+use crate::squares::{check_dim, check_extent};
 use crate::{Embedding, NmdsError};
 
 /// Options of [`smacof`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SmacofOptions {
-    /// Steps at most. Default: 300.
+    /// Maximum number of steps. Default: 300.
     pub max_iterations: usize,
-    /// Ends when a step lowers the raw stress by less than this share of it. Default: 1e-6.
+    /// Stops when a step lowers the raw stress by less than this share of it. Default: 1e-6.
     pub tolerance: f64,
 }
 
@@ -20,13 +21,12 @@ impl Default for SmacofOptions {
     }
 }
 
-/// Facts about a run of [`smacof`].
+/// What happened in a run of [`smacof`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct SmacofReport {
-    /// Kruskal's stress `sqrt(sum (d_ij - |x_i - x_j|)^2 / sum d_ij^2)` of the start and after every step:
-    /// never ascending.
+    /// Kruskal's stress `sqrt(sum (d_ij - |x_i - x_j|)^2 / sum d_ij^2)` of the start and after each step; never increases.
     pub normalized_stress: Vec<f64>,
-    /// Why it ended.
+    /// Why it stopped.
     pub stop: SmacofStop,
 }
 
@@ -38,36 +38,48 @@ impl SmacofReport {
     }
 }
 
-/// Why [`smacof`] ended.
+/// Why [`smacof`] stopped.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SmacofStop {
-    /// The stress hardly fell any more.
+    /// The stress fell by less than the tolerance.
     Converged,
-    /// All the steps allowed were tried.
+    /// The maximum number of steps was reached.
     IterationLimit,
 }
 
-/// SMACOF with equal weights: moves the points of `start` (p x k) until straight lines between them fit
-/// the distances best, by `sum (d_ij - |x_i - x_j|)^2` (the raw stress).
+/// SMACOF with equal weights: starts from the coordinates `start` (p x k) and minimises the raw stress
+/// `sum (d_ij - |x_i - x_j|)^2`.
 ///
-/// Each step is the Guttman transform `X <- B(X) X / p` with `B_ij = -d_ij / |x_i - x_j|` (zero where points
-/// coincide) and rows that sum to zero: the minimum of a quadratic function that touches the stress from
-/// above, so the stress never rises. Every eighth step extrapolates from those before it instead (reduced
-/// rank extrapolation) and is taken back if the stress is not lower for it: a fourth of the steps of the plain
-/// iteration on real shapes.
+/// Each step is the Guttman transform `X <- B(X) X / p`, where `B_ij = -d_ij / |x_i - x_j|` (zero for coinciding points)
+/// and the rows of `B` sum to zero. It minimises a quadratic majorant of the stress, so the stress never increases.
+/// Every eighth step extrapolates from the previous ones instead (reduced rank extrapolation) and is rejected if it does
+/// not lower the stress. On real shapes this takes a quarter of the steps.
 ///
-/// * A local minimum: which one depends on the start. Classical or Nystrom scaling is a good one. A
-///   dimension that is zero in the start stays zero.
-/// * Fits distances where classical scaling fits their squares, so the paper's stress of the result is
-///   larger than that of classical scaling, and [`normalized_stress`](crate::normalized_stress) smaller.
-/// * The result is centred and turned to its principal axes; `eigenvalues` are the k of `X' X`.
-/// * Cost `O(p^2 k)` a step; `O(p k)` memory besides the distances. The number of threads changes nothing.
+/// * Finds a local minimum that depends on the start. Classical and Nystrom scaling are good starts. A dimension that is
+///   zero in the start stays zero.
+/// * Fits distances, whereas classical scaling fits their squares: the paper's stress of the result is larger than that of
+///   classical scaling, and [`normalized_stress`](crate::normalized_stress) is smaller.
+/// * The result is centred and rotated to its principal axes; `eigenvalues` are the k of `X' X`.
+/// * Cost: `O(p^2 k)` per step; `O(p k)` memory besides the distances. Does not depend on the number of threads.
 ///
 /// After de Leeuw 1977 and Rosman et al. 2008 (`deleeuw1977`, `rosman2008` in `REFERENCES.bib`).
 ///
 /// # Errors
 /// [`NmdsError::PointMismatch`], [`NmdsError::BadDimension`], [`NmdsError::BadTolerance`],
-/// [`NmdsError::NoExtent`], [`NmdsError::Linalg`] when a coordinate is not finite.
+/// [`NmdsError::NoExtent`]; [`NmdsError::Linalg`] if a coordinate is not finite.
+///
+/// ```
+/// # extern crate linalg as canonform_linalg;
+/// use canonform_linalg::DistanceMatrix;
+/// use canonform_nmds::{SmacofOptions, classical, smacof};
+///
+/// // Distances along the arcs of a circle do not fit into the plane.
+/// let distances = DistanceMatrix::from_pairs(12, |i, j| (j - i).min(12 - (j - i)) as f64)?;
+/// let start = classical(&distances, 2)?.coords;
+/// let (_, report) = smacof(&start, &distances, &SmacofOptions::default())?;
+/// assert!(report.normalized_stress[report.iterations()] <= report.normalized_stress[0]);
+/// # Ok::<(), canonform_nmds::NmdsError>(())
+/// ```
 pub fn smacof(
     start: &Matrix,
     distances: &DistanceMatrix,
@@ -77,16 +89,12 @@ pub fn smacof(
     if p != distances.n_points() {
         return Err(NmdsError::PointMismatch { given: p, n_points: distances.n_points() });
     }
-    if dim == 0 || dim > p {
-        return Err(NmdsError::BadDimension { dim, limit: p });
-    }
+    check_dim(dim, p)?;
     let tolerance = options.tolerance;
     if !(tolerance >= 0.0 && tolerance.is_finite()) {
         return Err(NmdsError::BadTolerance { tolerance });
     }
-    if distances.max() <= 0.0 {
-        return Err(NmdsError::NoExtent { n_points: p });
-    }
+    check_extent(distances.max(), p)?;
     let total: f64 = distances.as_slice().iter().map(|d| d * d).sum();
 
     let (stress, next) = guttman(start, distances);
@@ -108,7 +116,7 @@ pub fn smacof(
         let (lower, after) = guttman(&state.next, distances);
         let gain = state.stress - lower;
         let settled = gain <= tolerance * state.stress;
-        // Only rounding can make it rise.
+        // Rounding may increase it slightly.
         if gain > 0.0 {
             normalized_stress.push((lower / total).sqrt());
             state = State { x: state.next, stress: lower, next: after };
@@ -123,7 +131,7 @@ pub fn smacof(
     Ok((Embedding::along_principal_axes(state.x, 1.0, dim)?, report))
 }
 
-/// Coordinates, their raw stress (every pair counted twice) and their Guttman transform.
+/// Coordinates, their raw stress (each pair counted twice) and their Guttman transform.
 struct State {
     x: Matrix,
     stress: f64,
@@ -137,11 +145,11 @@ impl State {
     }
 }
 
-/// Iterates that are extrapolated from: the more, the better the extrapolation, and the rarer.
+/// Number of iterates to extrapolate from. More make extrapolations better but rarer.
 const CYCLE: usize = 8;
 
-/// Reduced rank extrapolation: the average of the iterates, with weights that sum to one, whose steps would
-/// cancel best.
+/// Reduced rank extrapolation: the weighted average of the iterates, with weights that sum to one, for which the
+/// weighted sum of their steps is smallest.
 fn extrapolate(iterates: &[Matrix]) -> Result<Matrix, NmdsError> {
     let steps: Vec<Matrix> = iterates.windows(2).map(|pair| &pair[1] - &pair[0]).collect();
     let gram = Matrix::from_fn(steps.len(), steps.len(), |i, j| steps[i].dot(&steps[j]));
@@ -154,10 +162,10 @@ fn extrapolate(iterates: &[Matrix]) -> Result<Matrix, NmdsError> {
     Ok(average)
 }
 
-/// Partial sums of a row: one chain of additions would be all that the loops wait for.
+/// Partial sums of a row, so that the loops are not one chain of additions.
 const LANES: usize = 4;
 
-/// The raw stress of `x`, every pair counted twice, and its Guttman transform.
+/// The raw stress of `x` (each pair counted twice) and its Guttman transform.
 fn guttman(x: &Matrix, distances: &DistanceMatrix) -> (f64, Matrix) {
     let (p, dim) = x.shape();
     let mut moved = vec![0.0; p * dim];
@@ -178,8 +186,8 @@ fn guttman(x: &Matrix, distances: &DistanceMatrix) -> (f64, Matrix) {
     (stresses.iter().sum(), Matrix::from_row_slice(p, dim, &moved))
 }
 
-/// Writes `d_ij / |x_i - x_j|` (zero where points coincide) for all `j`, and sums the squares of what
-/// the two differ.
+/// Writes `d_ij / |x_i - x_j|` (zero for coinciding points) for all `j`. Returns the sum of the squared differences
+/// `d_ij - |x_i - x_j|`.
 fn ratios_of_row(x: &Matrix, row: &[f64], i: usize, ratios: &mut [f64]) -> f64 {
     ratios.fill(0.0);
     for column in x.column_iter() {
@@ -230,7 +238,7 @@ mod tests {
     }
 
     #[test]
-    fn the_stress_never_rises_and_is_that_of_the_coordinates() {
+    fn the_stress_never_increases_and_is_that_of_the_coordinates() {
         let (distances, start) = problem(120, 0.7);
         for tolerance in [0.0, 1e-5] {
             let options = SmacofOptions { tolerance, ..Default::default() };
@@ -245,17 +253,16 @@ mod tests {
     }
 
     #[test]
-    fn points_in_space_stay_where_they_are() {
+    fn an_exact_start_stays_and_a_perturbed_one_returns() {
         let cloud = Cloud::new(90, 3, 52);
         let distances = DistanceMatrix::from_pairs(90, |i, j| cloud.distance(i, j)).unwrap();
         let start = classical(&distances, 3).unwrap();
         let (embedding, report) = smacof(&start.coords, &distances, &SmacofOptions::default()).unwrap();
         assert!(procrustes_free_gap(&cloud, &embedding) < 1e-9);
         assert_eq!(report.stop, SmacofStop::Converged);
-        // A shaken start comes back.
-        let shaken = start.coords.map_with_location(|i, j, x| x + 0.5 * ((7 * i + 3 * j) as f64).sin());
+        let perturbed = start.coords.map_with_location(|i, j, x| x + 0.5 * ((7 * i + 3 * j) as f64).sin());
         let options = SmacofOptions { tolerance: 0.0, max_iterations: 2000 };
-        let (embedding, _) = smacof(&shaken, &distances, &options).unwrap();
+        let (embedding, _) = smacof(&perturbed, &distances, &options).unwrap();
         assert!(procrustes_free_gap(&cloud, &embedding) < 1e-6);
     }
 
@@ -277,7 +284,7 @@ mod tests {
     }
 
     #[test]
-    fn it_ends_where_it_is_told_to() {
+    fn the_iteration_limit_and_the_tolerance_stop_it() {
         let (distances, start) = problem(80, 0.7);
         let run = |max_iterations, tolerance| {
             smacof(&start, &distances, &SmacofOptions { max_iterations, tolerance }).unwrap().1
@@ -292,7 +299,7 @@ mod tests {
     }
 
     #[test]
-    fn neither_the_unit_of_length_nor_threads_matter() {
+    fn the_number_of_steps_does_not_depend_on_the_unit_of_length() {
         let (distances, start) = problem(100, 0.7);
         let options = SmacofOptions { max_iterations: 40, tolerance: 0.0 };
         let (base, _) = smacof(&start, &distances, &options).unwrap();
@@ -302,15 +309,10 @@ mod tests {
             assert!((scaled.coords / scale - &base.coords).amax() < 1e-9 * base.coords.amax());
             assert_eq!(report.iterations(), 40);
         }
-        let with = |threads: usize| {
-            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-            pool.install(|| smacof(&start, &distances, &options).unwrap())
-        };
-        assert_eq!(with(1), with(4));
     }
 
     #[test]
-    fn coinciding_points_and_empty_dimensions_give_no_nan() {
+    fn coinciding_points_and_empty_dimensions_give_finite_coordinates() {
         let (distances, mut start) = problem(40, 0.7);
         let row = start.row(0).into_owned();
         start.row_mut(1).copy_from(&row);
@@ -321,18 +323,15 @@ mod tests {
     }
 
     #[test]
-    fn what_does_not_fit_is_refused() {
+    fn mismatched_arguments_are_rejected() {
         let (distances, start) = problem(20, 1.0);
-        let ask = |start: &Matrix, tolerance| {
+        let error = |start: &Matrix, tolerance| {
             smacof(start, &distances, &SmacofOptions { tolerance, ..Default::default() }).unwrap_err()
         };
         let short = start.rows(0, 19).into_owned();
-        assert_eq!(ask(&short, 1e-5), NmdsError::PointMismatch { given: 19, n_points: 20 });
+        assert_eq!(error(&short, 1e-5), NmdsError::PointMismatch { given: 19, n_points: 20 });
         let flat = Matrix::zeros(20, 0);
-        assert_eq!(ask(&flat, 1e-5), NmdsError::BadDimension { dim: 0, limit: 20 });
-        assert_eq!(ask(&start, -1.0), NmdsError::BadTolerance { tolerance: -1.0 });
-        let nothing = DistanceMatrix::from_pairs(3, |_, _| 0.0).unwrap();
-        let fault = smacof(&Matrix::zeros(3, 2), &nothing, &SmacofOptions::default()).unwrap_err();
-        assert_eq!(fault, NmdsError::NoExtent { n_points: 3 });
+        assert_eq!(error(&flat, 1e-5), NmdsError::BadDimension { dim: 0, limit: 20 });
+        assert_eq!(error(&start, -1.0), NmdsError::BadTolerance { tolerance: -1.0 });
     }
 }

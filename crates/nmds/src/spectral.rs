@@ -1,8 +1,8 @@
 //! Spectral multidimensional scaling.
 
-use linalg::{LandmarkDistances, Matrix, symmetric_eigen, thin_qr};
+use linalg::{LandmarkDistances, Matrix, thin_qr};
 
-use crate::embedding::center_columns;
+use crate::squares::{center_columns, check_dim, check_extent, solve_saddle_point, symmetrized};
 use crate::{Embedding, NmdsError};
 
 /// The smallest eigenpairs of a Laplacian, `W Φ = A Φ Λ`.
@@ -12,22 +12,21 @@ pub struct SpectralBasis<'a> {
     pub values: &'a [f64],
     /// The eigenvectors as columns, p x m, with `Φ' A Φ = I`.
     pub vectors: &'a Matrix,
-    /// The diagonal of `A`: the area around each of the p points.
+    /// The diagonal of `A`: the area of each of the p points.
     pub masses: &'a [f64],
 }
 
 /// Options of [`spectral`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct SpectralOptions {
-    /// Weight of the known distances against smoothness, positive, for a surface of unit area. Infinite to
-    /// fit them first, exactly if there are as many eigenvectors as samples, and let smoothness decide what
-    /// that leaves open.
+    /// Weight of the known distances against smoothness for a surface of unit area; positive. If infinite, the distances
+    /// are fitted first (exactly if there are at least as many eigenvectors as samples), and smoothness decides the rest.
     ///
-    /// Default: 1000. At 10 to 200 samples and 300 eigenvectors the stress is within 0.2 % of that of the
-    /// best weight, an infinite one; with nearly as many samples as eigenvectors that fits noise, this
-    /// one stays within 3 % of the optimum there.
+    /// Default: 1000. With 10 to 200 samples and 300 eigenvectors, the stress is within 0.2 % of that of the best weight,
+    /// which is infinite. With nearly as many samples as eigenvectors an infinite weight fits noise, while this one stays
+    /// within 3 % of the optimum.
     pub mu: f64,
-    /// Dimensions of the embedding. Default: 3.
+    /// Dimension of the embedding. Default: 3.
     pub dim: usize,
 }
 
@@ -37,7 +36,7 @@ impl Default for SpectralOptions {
     }
 }
 
-/// An eigenvalue at most this, for a surface of unit area, is zero.
+/// Eigenvalues up to this count as zero, for a surface of unit area.
 const KERNEL: f64 = 1e-10;
 
 /// Spectral multidimensional scaling (SMDS): embeds p points from the distances between n of them,
@@ -49,24 +48,24 @@ const KERNEL: f64 = 1e-10;
 /// | `D` | `S` | n x n | squared distances between the samples |
 /// | `M` | | m x n | `(Λ + mu Φ_s' Φ_s)^-1 mu Φ_s'`, `Φ_s` the rows of `Φ` at the samples |
 /// | `α` | `M S M'` | m x m | squared distances in the basis |
-/// | | `P = Φ M` | p x n | what a function given at the samples is elsewhere |
+/// | | `P = Φ M` | p x n | interpolates a function given at the samples |
 ///
 /// `Z = Q U √L` with the `k` algebraically largest eigenpairs `U L U'` of `-1/2 W S W'`, `Q W = J P`: classical
 /// scaling of `P S P' = Φ α Φ'` (Aflalo and Kimmel 2013, [`aflalo2013`] in `REFERENCES.bib`; the separable
 /// solution of their published code).
 ///
-/// * Uses distances between samples alone; those to other points are not looked at.
-/// * Areas are relative to that of the surface and distances to their maximum, so no unit matters.
-/// * `M` comes from an n x n system that is as good for an infinite `mu` as for any:
-///   `M = Λ^-1 Φ_s' C` off the kernel, where `(Φ_s Λ^-1 Φ_s' + I / mu) C = I` up to functions in the kernel.
-/// * Cost `O(p n (m + n))` time beside the basis, `O(p n)` memory.
+/// * Uses the distances between samples only.
+/// * Independent of the unit of length.
+/// * `M` is computed from an n x n system that is well conditioned for any `mu`, even infinite: off the kernel
+///   `M = Λ^-1 Φ_s' C`, where `(Φ_s Λ^-1 Φ_s' + I / mu) C = I` up to functions in the kernel.
+/// * Cost: `O(p n (m + n))` time besides the basis, `O(p n)` memory.
 ///
 /// # Errors
 /// [`NmdsError::PointMismatch`], [`NmdsError::BadSmoothness`], [`NmdsError::NotDetermined`],
 /// [`NmdsError::BadDimension`], [`NmdsError::NoExtent`], [`NmdsError::Linalg`].
 ///
 /// # Panics
-/// When there is not one eigenvalue for each eigenvector.
+/// If the numbers of eigenvalues and eigenvectors differ.
 ///
 /// [`aflalo2013`]: https://doi.org/10.1073/pnas.1308708110
 pub fn spectral(
@@ -75,38 +74,30 @@ pub fn spectral(
     options: &SpectralOptions,
 ) -> Result<Embedding, NmdsError> {
     let (p, m) = basis.vectors.shape();
-    assert_eq!(basis.values.len(), m, "one eigenvalue for each eigenvector");
+    assert_eq!(basis.values.len(), m, "one eigenvalue per eigenvector");
     for given in [p, basis.masses.len()] {
         if given != distances.n_points() {
             return Err(NmdsError::PointMismatch { given, n_points: distances.n_points() });
         }
     }
     // The constant function spans no dimension.
-    let limit = distances.n_landmarks().min(m.saturating_sub(1));
-    if options.dim == 0 || options.dim > limit {
-        return Err(NmdsError::BadDimension { dim: options.dim, limit });
-    }
+    check_dim(options.dim, distances.n_landmarks().min(m.saturating_sub(1)))?;
     if options.mu.is_nan() || options.mu <= 0.0 {
         return Err(NmdsError::BadSmoothness { mu: options.mu });
     }
-    let unit = distances.max();
-    if unit <= 0.0 {
-        return Err(NmdsError::NoExtent { n_points: distances.n_points() });
-    }
+    let unit = check_extent(distances.max(), distances.n_points())?;
     let mut interpolant = interpolant(distances.landmarks(), basis, options.mu)?;
     center_columns(&mut interpolant);
     let (q, w) = thin_qr(&interpolant);
-    let middle = &w * (distances.sq_block() / (-2.0 * unit * unit)) * w.transpose();
-    let inner = symmetric_eigen(&((&middle + middle.transpose()) * 0.5))?;
-    let columns = q * inner.vectors.columns(0, options.dim);
-    Ok(Embedding::from_orthonormal(columns, inner.values, unit, distances.n_landmarks()))
+    let inner = symmetrized(&w * (distances.sq_block() / (-2.0 * unit * unit)) * w.transpose());
+    Embedding::from_factors(q, &inner, options.dim, unit, distances.n_landmarks())
 }
 
-/// `P = Φ M`: column j is the smoothest function that is one at sample j and zero at the others, or as near
-/// to that as `mu` demands and the basis allows.
+/// `P = Φ M`: column j is the smoothest function that is one at sample j and zero at the others, as closely as `mu`
+/// demands and the basis allows.
 fn interpolant(samples: &[usize], basis: &SpectralBasis<'_>, mu: f64) -> Result<Matrix, NmdsError> {
     let area: f64 = basis.masses.iter().sum();
-    // For unit area eigenvalues are multiplied by the area and eigenvectors by its root.
+    // Normalises to unit area: eigenvalues times the area, eigenvectors times its root.
     let values: Vec<f64> = basis.values.iter().map(|value| value * area).collect();
     let at_samples = basis.vectors.select_rows(samples) * area.sqrt();
     let coefficients = match mu.is_infinite() && samples.len() >= values.len() {
@@ -118,8 +109,8 @@ fn interpolant(samples: &[usize], basis: &SpectralBasis<'_>, mu: f64) -> Result<
     Ok(basis.vectors * coefficients * area.sqrt())
 }
 
-/// `M` of a finite `mu`, or its limit when there are more eigenvectors than samples. None when a function in the
-/// kernel is zero at all samples.
+/// `M` for a finite `mu`, or its limit if there are more eigenvectors than samples. `None` if a function in the kernel is
+/// zero at all samples.
 fn smoothest(at_samples: &Matrix, values: &[f64], mu: f64) -> Option<Matrix> {
     let (n, m) = at_samples.shape();
     let kernel = values.iter().take_while(|value| **value <= KERNEL).count();
@@ -128,22 +119,19 @@ fn smoothest(at_samples: &Matrix, values: &[f64], mu: f64) -> Option<Matrix> {
     for (mut row, value) in filtered.row_iter_mut().zip(&values[kernel..]) {
         row /= *value;
     }
-    let mut system = Matrix::zeros(n + kernel, n + kernel);
-    system.view_mut((0, 0), (n, n)).copy_from(&(curved * &filtered));
+    let mut system = curved * &filtered;
     for i in 0..n {
         system[(i, i)] += 1.0 / mu;
     }
-    system.view_mut((0, n), (n, kernel)).copy_from(&null);
-    system.view_mut((n, 0), (kernel, n)).copy_from(&null.transpose());
-    let solution = system.lu().solve(&Matrix::identity(n + kernel, n))?;
+    let [weights, constants] = solve_saddle_point(&system, &null.into_owned())?;
     let mut coefficients = Matrix::zeros(m, n);
-    coefficients.rows_mut(0, kernel).copy_from(&solution.rows(n, kernel));
-    coefficients.rows_mut(kernel, m - kernel).copy_from(&(filtered * solution.rows(0, n)));
+    coefficients.rows_mut(0, kernel).copy_from(&constants);
+    coefficients.rows_mut(kernel, m - kernel).copy_from(&(filtered * weights));
     Some(coefficients)
 }
 
-/// `M` of an infinite `mu` when there are no more eigenvectors than samples. None when the samples do not tell
-/// them apart.
+/// `M` for an infinite `mu` if there are at most as many eigenvectors as samples. `None` if the samples do not distinguish
+/// them.
 fn least_squares(at_samples: &Matrix) -> Option<Matrix> {
     let (q, r) = thin_qr(at_samples);
     r.solve_upper_triangular(&q.transpose())
@@ -153,12 +141,9 @@ fn least_squares(at_samples: &Matrix) -> Option<Matrix> {
 mod tests {
     use std::f64::consts::PI;
 
-    use linalg::DistanceMatrix;
-
     use super::*;
-    use crate::classical_full;
 
-    /// A ring of `p` points a unit apart: the smallest `m` eigenpairs of its springs, orthonormal.
+    /// The `m` smallest eigenpairs of a ring of `p` points with unit springs.
     struct Ring {
         values: Vec<f64>,
         vectors: Matrix,
@@ -189,7 +174,7 @@ mod tests {
 
     const EXACT: SpectralOptions = SpectralOptions { mu: f64::INFINITY, dim: 3 };
 
-    /// Distances from every `step`th of `p` points in a ring.
+    /// Distances from every `step`-th of `p` points on a ring.
     fn columns(p: usize, step: usize, distance: impl Fn(usize, usize) -> f64) -> LandmarkDistances {
         let samples: Vec<usize> = (0..p).step_by(step).collect();
         let columns = Matrix::from_fn(p, samples.len(), |i, j| distance(i, samples[j]));
@@ -201,19 +186,7 @@ mod tests {
     }
 
     #[test]
-    fn with_all_samples_and_the_whole_basis_it_is_classical_scaling() {
-        let p = 31;
-        let found = spectral(&columns(p, 1, arc(p)), &Ring::new(p, p).basis(), &EXACT).unwrap();
-        let mds = classical_full(&DistanceMatrix::from_pairs(p, arc(p)).unwrap(), 3).unwrap();
-        for (a, b) in found.eigenvalues.iter().zip(&mds.eigenvalues) {
-            assert!((a - b).abs() < 1e-9 * mds.eigenvalues[0], "{a} {b}");
-        }
-        let gram = |z: &Matrix| z.columns(0, 2) * z.columns(0, 2).transpose();
-        assert!((gram(&found.coords) - gram(&mds.coords)).amax() < 1e-9 * mds.eigenvalues[0]);
-    }
-
-    #[test]
-    fn squared_distances_that_the_basis_can_hold_come_back_from_as_many_samples() {
+    fn squared_distances_in_the_span_of_the_basis_are_exact() {
         // Chords of a circle: 2 - 2 cos(s - t) is of frequency one.
         let p = 90;
         let chord = |i: usize, j: usize| 2.0 * (PI * i.abs_diff(j) as f64 / p as f64).sin();
@@ -228,7 +201,7 @@ mod tests {
     }
 
     #[test]
-    fn coefficients_are_those_of_the_definition() {
+    fn the_interpolant_satisfies_its_definition() {
         let (p, m) = (60, 25);
         let ring = Ring::new(p, m);
         let area = p as f64;
@@ -245,7 +218,7 @@ mod tests {
     }
 
     #[test]
-    fn infinite_mu_passes_through_the_samples_and_large_ones_tend_to_it() {
+    fn infinite_mu_interpolates_and_is_the_limit_of_large_mu() {
         let (p, step) = (60, 6);
         let ring = Ring::new(p, 25);
         let samples: Vec<usize> = (0..p).step_by(step).collect();
@@ -253,7 +226,7 @@ mod tests {
         assert!((limit.select_rows(&samples) - Matrix::identity(10, 10)).amax() < 1e-10);
         let near = interpolant(&samples, &ring.basis(), 1e9).unwrap();
         assert!((near - limit).amax() < 1e-6);
-        // More samples than eigenvectors: as near as they come.
+        // More samples than eigenvectors: least squares.
         for m in [7, 9, 10] {
             let ring = Ring::new(p, m);
             let limit = interpolant(&samples, &ring.basis(), f64::INFINITY).unwrap();
@@ -263,68 +236,34 @@ mod tests {
     }
 
     #[test]
-    fn no_unit_matters() {
-        let p = 80;
-        let ring = Ring::new(p, 40);
-        let distances = columns(p, 8, arc(p));
-        for mu in [10.0, f64::INFINITY] {
-            let options = SpectralOptions { mu, dim: 2 };
-            let base = spectral(&distances, &ring.basis(), &options).unwrap();
-            for scale in [1e-3, 1e3] {
-                // Lengths times `scale`: the stiffness stays, areas are multiplied by its square.
-                let scaled = Ring {
-                    values: ring.values.iter().map(|v| v / (scale * scale)).collect(),
-                    vectors: &ring.vectors / scale,
-                    masses: ring.masses.iter().map(|m| m * scale * scale).collect(),
-                };
-                let longer =
-                    LandmarkDistances::new(distances.landmarks().to_vec(), distances.matrix() * scale)
-                        .unwrap();
-                let found = spectral(&longer, &scaled.basis(), &options).unwrap();
-                // A circle has no axes: distances are compared.
-                let gap = (0..p).map(|i| {
-                    let d = |z: &Matrix| (z.row(0) - z.row(i)).norm();
-                    (d(&found.coords) / scale - d(&base.coords)).abs()
-                });
-                assert!(gap.fold(0.0, f64::max) < 1e-9 * base.coords.amax());
-            }
-        }
-    }
-
-    #[test]
-    fn impossible_requests_are_refused() {
+    fn impossible_options_are_rejected() {
         let p = 20;
         let distances = columns(p, 2, arc(p));
-        let ask =
+        let embed =
             |m: usize, options: SpectralOptions| spectral(&distances, &Ring::new(p, m).basis(), &options);
         let with = |mu| SpectralOptions { mu, dim: 3 };
         for mu in [0.0, -1.0] {
-            assert_eq!(ask(15, with(mu)), Err(NmdsError::BadSmoothness { mu }));
+            assert_eq!(embed(15, with(mu)), Err(NmdsError::BadSmoothness { mu }));
         }
-        assert!(matches!(ask(15, with(f64::NAN)), Err(NmdsError::BadSmoothness { .. })));
+        assert!(matches!(embed(15, with(f64::NAN)), Err(NmdsError::BadSmoothness { .. })));
         assert_eq!(
-            ask(15, SpectralOptions { dim: 11, ..Default::default() }),
+            embed(15, SpectralOptions { dim: 11, ..Default::default() }),
             Err(NmdsError::BadDimension { dim: 11, limit: 10 })
         );
-        assert_eq!(ask(3, with(1.0)), Err(NmdsError::BadDimension { dim: 3, limit: 2 }));
+        assert_eq!(embed(3, with(1.0)), Err(NmdsError::BadDimension { dim: 3, limit: 2 }));
         let other = Ring::new(19, 15);
         assert_eq!(
             spectral(&distances, &other.basis(), &Default::default()),
             Err(NmdsError::PointMismatch { given: 19, n_points: 20 })
         );
-        // A second function in the kernel that vanishes at all samples.
+        // A second function in the kernel is zero at all samples.
         let ring = Ring::new(p, 15);
         let mut vectors = ring.vectors.clone();
-        vectors.set_column(1, &nalgebra::DVector::from_fn(p, |i, _| (i % 2) as f64 * 0.3));
+        vectors.column_mut(1).copy_from(&Matrix::from_fn(p, 1, |i, _| (i % 2) as f64 * 0.3));
         let mut values = ring.values.clone();
         values[1] = 0.0;
         let basis = SpectralBasis { values: &values, vectors: &vectors, masses: &ring.masses };
         let undetermined = spectral(&distances, &basis, &Default::default());
         assert_eq!(undetermined, Err(NmdsError::NotDetermined { n_landmarks: 10 }));
-        let nothing = LandmarkDistances::new(vec![0, 1, 2], Matrix::zeros(p, 3)).unwrap();
-        assert_eq!(
-            spectral(&nothing, &ring.basis(), &Default::default()),
-            Err(NmdsError::NoExtent { n_points: 20 })
-        );
     }
 }

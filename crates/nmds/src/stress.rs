@@ -1,11 +1,11 @@
-//! How far an embedding is from the distances it was made from.
+//! Stress: the difference between an embedding and the distances it was made from.
 
 use linalg::{DistanceMatrix, Matrix};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 use rayon::prelude::*;
 
-/// The rows of a p x p matrix of distances, in memory or computed when asked for.
+/// The rows of a p x p matrix of distances, stored or computed on demand.
 pub trait DistanceRows: Sync {
     /// Number of points p.
     fn n_points(&self) -> usize;
@@ -24,24 +24,23 @@ impl DistanceRows for DistanceMatrix {
     }
 }
 
-/// Rows a block of the exact stress holds: its size fixes the order of summation, so that the
-/// result does not depend on the number of threads.
+/// Rows in a block of the exact stress. The fixed size fixes the order of summation, so the result does not depend on the
+/// number of threads.
 const BLOCK: usize = 64;
 
-/// The paper's stress `‖Z Z' + 1/2 J E J‖_F / p`, exact, in blocks of rows.
+/// The stress of the paper, `‖Z Z' + 1/2 J E J‖_F / p`, in the unit of a squared distance.
 ///
 /// | paper | here | shape | meaning |
 /// |---|---|---|---|
 /// | `Z` | `coords` | p x k | centred coordinates |
 /// | `E` | squares of `rows` | p x p | squared distances |
 ///
-/// With `D_ij = d_ij^2 - |z_i - z_j|^2` the matrix in the norm is `1/2 J D J`, whose norm follows from
-/// the sums of squares, of rows and of columns of `D` in one pass over the rows. The unit is that of
-/// a squared distance.
+/// With `D_ij = d_ij^2 - |z_i - z_j|^2` the matrix in the norm is `1/2 J D J`, whose norm follows from the sums of squares,
+/// of rows and of columns of `D`, in one pass over the rows.
 ///
-/// **Deviation**: eq. 17 prints `1/p^2`; the figures of the paper come out with `1/p`.
+/// **Deviation**: eq. 17 prints `1/p^2`; the figures of the paper use `1/p`.
 ///
-/// Cost: every row once, `O(p k)` work each; `O(p)` memory per block.
+/// Cost: each row once, `O(p k)` time each; `O(p)` memory per block.
 #[must_use]
 pub fn paper_stress(coords: &Matrix, rows: &dyn DistanceRows) -> f64 {
     let p = rows.n_points();
@@ -89,8 +88,9 @@ fn residuals(coords: &Matrix, rows: &dyn DistanceRows, i: usize, out: &mut [f64]
     }
 }
 
-/// `sqrt(sum (d_ij - |z_i - z_j|)^2 / sum d_ij^2)` over all pairs: Kruskal's stress of the coordinates
-/// as they are, 0 for an embedding without distortion. For small p, as that of a map.
+/// Kruskal's stress `sqrt(sum (d_ij - |z_i - z_j|)^2 / sum d_ij^2)` over all pairs; 0 for an embedding without distortion.
+///
+/// Cost: `O(p^2 k)` time on one thread, for small p.
 #[must_use]
 pub fn normalized_stress(coords: &Matrix, distances: &DistanceMatrix) -> f64 {
     let p = distances.n_points();
@@ -110,24 +110,24 @@ pub fn normalized_stress(coords: &Matrix, distances: &DistanceMatrix) -> f64 {
 pub struct StressEstimate {
     /// The estimate, in the unit of a squared distance.
     pub value: f64,
-    /// A 95 % confidence interval by the jackknife.
+    /// 95 % confidence interval by the jackknife.
     pub interval: [f64; 2],
     /// Number of rows used.
     pub n_rows: usize,
 }
 
-/// Estimates [`paper_stress`] from the rows `sample`, when all p are too many; they should be different
-/// and drawn evenly, as [`sample_rows`] does.
+/// Estimates [`paper_stress`] from the rows `sample`, which should be distinct and drawn uniformly, as by
+/// [`sample_rows`].
 ///
-/// The three sums of the exact formula are means over rows, so a sample of rows estimates each of
-/// them without bias (rows and columns have the same sums, `E` being symmetric).
+/// The three sums of the exact formula are means over rows, so a sample of rows estimates each without bias (rows and
+/// columns have the same sums because `E` is symmetric).
 ///
-/// Cost: every row of the sample once, `O(p k)` work each.
+/// Cost: each sampled row once, `O(p k)` time each.
 #[must_use]
 pub fn estimate_paper_stress(coords: &Matrix, rows: &dyn DistanceRows, sample: &[usize]) -> StressEstimate {
     let p = rows.n_points();
     let n = p as f64;
-    // Per row: mean square and mean of the residuals.
+    // For each row, the mean square and the mean of the residuals.
     let moments: Vec<[f64; 2]> = sample
         .par_iter()
         .map(|&i| {
@@ -152,14 +152,13 @@ pub fn estimate_paper_stress(coords: &Matrix, rows: &dyn DistanceRows, sample: &
             .collect();
         let centre = left_out.iter().sum::<f64>() / m;
         let variance = left_out.iter().map(|v| (v - centre).powi(2)).sum::<f64>() * (m - 1.0) / m;
-        // Rows are drawn without replacement: nothing is uncertain when all are used.
+        // Finite population correction: rows are drawn without replacement.
         1.96 * (variance * (1.0 - m / n)).sqrt()
     };
     StressEstimate { value, interval: [(value - half).max(0.0), value + half], n_rows: moments.len() }
 }
 
-/// `m` different numbers below `p` (all of them when there are fewer), ascending, drawn with `seed` by
-/// Floyd's algorithm.
+/// `m` distinct numbers below `p` (at most `p`), ascending, drawn with `seed` by Floyd's algorithm.
 #[must_use]
 pub fn sample_rows(p: usize, m: usize, seed: u64) -> Vec<usize> {
     let m = m.min(p);
@@ -183,7 +182,7 @@ mod tests {
         DistanceMatrix::from_pairs(p, |i, j| (j - i).min(p - (j - i)) as f64).unwrap()
     }
 
-    /// The definition, term by term.
+    /// The stress by its definition.
     fn by_definition(coords: &Matrix, distances: &DistanceMatrix) -> f64 {
         let p = distances.n_points();
         let squares = Matrix::from_fn(p, p, |i, j| distances.get(i, j).powi(2));
@@ -192,7 +191,7 @@ mod tests {
     }
 
     #[test]
-    fn equals_its_definition_and_the_eigenvalues_left_out() {
+    fn equals_its_definition_and_the_norm_of_the_omitted_eigenvalues() {
         let distances = circle(151);
         let embedding = classical(&distances, 3).unwrap();
         let stress = paper_stress(&embedding.coords, &distances);
@@ -203,7 +202,7 @@ mod tests {
     }
 
     #[test]
-    fn normalized_stress_is_zero_for_points_of_the_plane_and_relative_otherwise() {
+    fn normalized_stress_is_zero_for_exact_distances_and_relative_otherwise() {
         let coords = Matrix::from_fn(20, 2, |i, j| ((3 * i + 7 * j) as f64).sin());
         let distance = |i: usize, j: usize| (coords.row(i) - coords.row(j)).norm();
         let exact = DistanceMatrix::from_pairs(20, distance).unwrap();
@@ -227,7 +226,7 @@ mod tests {
     }
 
     #[test]
-    fn the_estimate_covers_the_exact_value_and_equals_it_with_all_rows() {
+    fn the_estimate_covers_the_exact_value_and_equals_it_for_all_rows() {
         let cloud = crate::testing::Cloud::new(400, 3, 21);
         let distances = DistanceMatrix::from_pairs(400, |i, j| cloud.distance(i, j).powf(0.7)).unwrap();
         let coords = classical(&distances, 2).unwrap().coords;
@@ -239,7 +238,7 @@ mod tests {
                 (lo..=hi).contains(&exact)
             })
             .count();
-        assert!(covered >= 34, "only {covered} of 40 intervals hold the exact value");
+        assert!(covered >= 34, "only {covered} of 40 intervals contain the exact value");
         let whole = estimate_paper_stress(&coords, &distances, &sample_rows(400, 1000, 0));
         assert!((whole.value / exact - 1.0).abs() < 1e-12 && whole.n_rows == 400);
         assert!(whole.interval[1] - whole.interval[0] < 1e-9 * exact);

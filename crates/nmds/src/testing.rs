@@ -1,4 +1,4 @@
-//! Points with known coordinates for the tests of this crate.
+//! Points with known coordinates, for the tests of this crate.
 
 use linalg::{LandmarkDistances, Matrix};
 use rand_chacha::ChaCha8Rng;
@@ -6,7 +6,7 @@ use rand_chacha::rand_core::{Rng, SeedableRng};
 
 use crate::Embedding;
 
-/// Points drawn evenly from a box whose sides shrink, so that no two axes are equal.
+/// Points drawn uniformly from a box with sides of different lengths, so that no two axes are equal.
 pub(crate) struct Cloud {
     points: Vec<Vec<f64>>,
 }
@@ -34,8 +34,7 @@ pub(crate) fn landmark_distances(cloud: &Cloud, n: usize) -> LandmarkDistances {
     LandmarkDistances::new((0..n).collect(), columns).unwrap()
 }
 
-/// Largest difference between a distance in the cloud and in the embedding: zero exactly when the
-/// two are congruent.
+/// The largest difference between a distance in the cloud and in the embedding; zero if and only if they are congruent.
 pub(crate) fn procrustes_free_gap(cloud: &Cloud, embedding: &Embedding) -> f64 {
     let mut gap = 0.0f64;
     for i in 0..cloud.len() {

@@ -1,6 +1,6 @@
 //! Small made-up records and meshes for the tests.
 
-use retrieval::{Evaluation, MeanScores};
+use retrieval::{Evaluation, Scores};
 use serde_json::json;
 
 use crate::results::{
@@ -28,12 +28,7 @@ pub(crate) fn evaluation() -> Evaluation {
     Evaluation {
         n: 5,
         classes: vec!["cat".into(), "dog".into()],
-        nn: 1.0,
-        ft: 0.91,
-        st: 0.92,
-        e: 0.5,
-        dcg: 0.93,
-        map: 0.94,
+        mean: Scores { nn: 1.0, ft: 0.91, st: 0.92, e: 0.5, dcg: 0.93, map: 0.94 },
         knn_accuracy: 0.95,
         knn_k: 3,
         confusion: vec![vec![3, 0], vec![0, 2]],
@@ -137,7 +132,7 @@ pub(crate) fn figure9_record() -> Figure9Record {
 
 /// One signature at both scales, two classes.
 pub(crate) fn retrieval_record() -> RetrievalRecord {
-    let scores = MeanScores { nn: 1.0, ft: 0.75, st: 0.9, e: 0.5, dcg: 0.95, map: 0.875 };
+    let scores = Scores { nn: 1.0, ft: 0.75, st: 0.9, e: 0.5, dcg: 0.95, map: 0.875 };
     let row = |scale| RetrievalRow {
         method: "wave-kernel".into(),
         scale,

@@ -14,7 +14,7 @@ pub(crate) const HEADINGS: [&str; 8] = ["NN", "FT", "ST", "E", "DCG", "mAP", "k-
 
 /// The scores of one matrix, in the order of [`HEADINGS`].
 pub(crate) fn values(s: &Evaluation) -> [f64; 8] {
-    [s.nn, s.ft, s.st, s.e, s.dcg, s.map, s.knn_accuracy, s.silhouette]
+    [s.mean.nn, s.mean.ft, s.mean.st, s.mean.e, s.mean.dcg, s.mean.map, s.knn_accuracy, s.silhouette]
 }
 
 /// A score for the terminal, with a minus sign that other programs read.

@@ -1,11 +1,10 @@
-//! Classification by the votes of neighbours.
+//! Classification by k nearest neighbours.
 
 use linalg::DistanceMatrix;
 
-use crate::{Labels, RetrievalError, rank};
+use crate::{Labels, RetrievalError, rank, vote};
 
-/// The class that most of the `k` nearest other shapes belong to; the nearest neighbour's among
-/// equally popular ones.
+/// The most frequent class among the `k` nearest other shapes; ties go to the class of the nearest of them.
 ///
 /// # Errors
 /// [`RetrievalError::BadNeighborCount`].
@@ -16,19 +15,12 @@ pub fn knn_predict(
     k: usize,
 ) -> Result<usize, RetrievalError> {
     let available = distances.n_points() - 1;
-    if k == 0 || available == 0 {
-        return Err(RetrievalError::BadNeighborCount { k, available });
-    }
-    let neighbours = rank(distances, query).order;
-    let mut votes = vec![0usize; labels.classes().len()];
-    neighbours.iter().take(k).for_each(|&i| votes[labels.class(i)] += 1);
-    let most = votes.iter().copied().max().unwrap_or(0);
-    let winner = neighbours.iter().map(|&i| labels.class(i)).find(|&class| votes[class] == most);
-    Ok(winner.unwrap_or(0))
+    let winner = vote(&rank(distances, query), |i| labels.class(i), k, None).class;
+    winner.ok_or(RetrievalError::BadNeighborCount { k, available })
 }
 
-/// `matrix[true class][predicted class]`: every shape of a class with more than two members is
-/// classified by the `k` nearest of all others.
+/// `matrix[true class][predicted class]`: classifies each shape whose class has more than two members by the `k`
+/// nearest of all others.
 ///
 /// # Errors
 /// [`RetrievalError::BadNeighborCount`].
@@ -50,12 +42,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_majority_wins_and_the_nearest_breaks_a_draw() {
-        let places = [0.0f64, 1.0, 2.0, 3.0];
-        let distances = DistanceMatrix::from_pairs(4, |i, j| (places[i] - places[j]).abs()).unwrap();
+    fn the_majority_wins_and_the_nearest_breaks_a_tie() {
+        let positions = [0.0f64, 1.0, 2.0, 3.0];
+        let distances = DistanceMatrix::from_pairs(4, |i, j| (positions[i] - positions[j]).abs()).unwrap();
         let labels = Labels::new(&["a", "a", "b", "b"]);
         assert_eq!(knn_predict(&distances, &labels, 0, 1), Ok(0));
-        assert_eq!(knn_predict(&distances, &labels, 0, 2), Ok(0), "one vote each, a is nearer");
+        assert_eq!(knn_predict(&distances, &labels, 0, 2), Ok(0), "one vote each, and a is nearer");
         assert_eq!(knn_predict(&distances, &labels, 0, 3), Ok(1));
         assert_eq!(
             knn_predict(&distances, &labels, 0, 0),

@@ -1,12 +1,13 @@
-//! How compact and separate the classes are.
+//! Compactness and separation of classes.
 
 use linalg::DistanceMatrix;
 
 use crate::Labels;
 
-/// Mean silhouette `(b - a) / max(a, b)` of all shapes, in -1..=1: `a` is the mean distance to the own
-/// class, `b` the least mean distance to another class. Shapes alone in their class count 0, as in
-/// Rousseeuw 1987; with a single class the result is 0.
+/// Mean silhouette `(b - a) / max(a, b)` of all shapes, in -1..=1, where `a` is the mean distance to the other
+/// members of the class and `b` the smallest mean distance to another class (Rousseeuw 1987).
+///
+/// A shape that is alone in its class counts as 0. Returns 0 for fewer than two classes.
 #[must_use]
 pub fn silhouette(distances: &DistanceMatrix, labels: &Labels) -> f64 {
     let n = labels.n_points();
@@ -41,12 +42,12 @@ pub fn silhouette(distances: &DistanceMatrix, labels: &Labels) -> f64 {
 mod tests {
     use super::*;
 
-    fn line(places: &[f64]) -> DistanceMatrix {
-        DistanceMatrix::from_pairs(places.len(), |i, j| (places[i] - places[j]).abs()).unwrap()
+    fn line(positions: &[f64]) -> DistanceMatrix {
+        DistanceMatrix::from_pairs(positions.len(), |i, j| (positions[i] - positions[j]).abs()).unwrap()
     }
 
     #[test]
-    fn follows_its_definition() {
+    fn matches_its_definition() {
         let labels = Labels::new(&["a", "a", "b", "b"]);
         let value = silhouette(&line(&[0.0, 1.0, 10.0, 12.0]), &labels);
         let term = |a: f64, b: f64| (b - a) / a.max(b);

@@ -1,20 +1,20 @@
-//! What cannot be scored.
+//! Errors of this crate.
 
 /// Errors of this crate.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum RetrievalError {
-    /// One label per row of the matrix.
-    #[error("{n_labels} labels for a matrix of {n_points} shapes; give one label per shape")]
+    /// The number of labels differs from the number of shapes.
+    #[error("{n_labels} labels for {n_points} shapes; give one label per shape")]
     LabelCount {
-        /// Labels given.
+        /// Number of labels.
         n_labels: usize,
-        /// Rows of the matrix.
+        /// Number of shapes.
         n_points: usize,
     },
-    /// No class with more than two members.
+    /// No class has more than two members.
     #[error(
         "nothing to score: no class has more than 2 shapes ({n_points} shapes in {n_classes} classes); \
-         check the labels or give them with --labels FILE.csv"
+         check the labels"
     )]
     NothingToScore {
         /// Number of shapes.
@@ -22,15 +22,15 @@ pub enum RetrievalError {
         /// Number of classes.
         n_classes: usize,
     },
-    /// A vote of nobody.
-    #[error("k-NN needs at least 1 neighbour and has {available} others to ask, got k = {k}")]
+    /// A k-nearest-neighbour vote without neighbours.
+    #[error("k-NN needs k of at least 1 and at least 1 other shape; k is {k}, other shapes: {available}")]
     BadNeighborCount {
-        /// The k asked for.
+        /// The requested k.
         k: usize,
         /// Number of other shapes.
         available: usize,
     },
-    /// A distance is not a number.
+    /// A distance is NaN, infinite or negative.
     #[error(transparent)]
     Linalg(#[from] linalg::LinalgError),
 }

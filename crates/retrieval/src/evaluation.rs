@@ -1,79 +1,66 @@
-//! The record of how well a distance matrix separates labelled shapes.
+//! Retrieval, classification and clustering scores of a labelled distance matrix.
 
 use linalg::DistanceMatrix;
 use serde::{Deserialize, Serialize};
 
-use crate::{Labels, QueryScores, RetrievalError, confusion_matrix, rank, silhouette};
+use crate::{Averaging, Labels, RetrievalError, Scores, confusion_matrix, mean_scores, silhouette};
 
-/// Retrieval, classification and clustering scores of one labelled distance matrix.
-///
-/// All scores lie in 0..=1 (the silhouette in -1..=1) and are means over the queries whose class
-/// has more than two members. Conventions: [`evaluate`](crate::evaluate).
+/// How well the distances of a matrix separate labelled shapes; see [`evaluate`].
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Evaluation {
     /// Number of shapes.
     pub n: usize,
     /// Class names, sorted; rows and columns of `confusion`.
     pub classes: Vec<String>,
-    /// Share of queries whose nearest neighbour is of their class.
-    pub nn: f64,
-    /// First tier.
-    pub ft: f64,
-    /// Second tier.
-    pub st: f64,
-    /// E-measure at rank min(32, n - 1).
-    pub e: f64,
-    /// Normalised discounted cumulative gain.
-    pub dcg: f64,
-    /// Mean average precision.
-    pub map: f64,
-    /// Leave-one-out k-nearest-neighbour accuracy.
+    /// Mean retrieval scores over the queries; in JSON keys of this object.
+    #[serde(flatten)]
+    pub mean: Scores,
+    /// Leave-one-out k-nearest-neighbour accuracy, in 0..=1.
     pub knn_accuracy: f64,
     /// The k of `knn_accuracy` and `confusion`.
     pub knn_k: usize,
-    /// `confusion[true class][predicted class]`, counts of the leave-one-out k-NN vote.
+    /// `confusion[true class][predicted class]`: counts of the leave-one-out k-NN vote.
     pub confusion: Vec<Vec<usize>>,
-    /// Mean silhouette of the classes.
+    /// Mean silhouette of the classes, in -1..=1.
     pub silhouette: f64,
 }
 
 /// Scores a labelled distance matrix.
 ///
-/// Every shape is a query against all others, itself excluded, ties by index; classes of one or two
-/// shapes are ranked but not queried. Scores are means over queries (micro averages).
+/// Every shape is a query against all others, ties by index. Shapes in classes of one or two are ranked but not
+/// used as queries. Scores are means over queries (micro averages).
 ///
 /// # Errors
-/// [`RetrievalError::LabelCount`], [`RetrievalError::NothingToScore`],
-/// [`RetrievalError::BadNeighborCount`].
+/// [`RetrievalError::LabelCount`], [`RetrievalError::NothingToScore`], [`RetrievalError::BadNeighborCount`].
+///
+/// ```
+/// # extern crate linalg as canonform_linalg;
+/// use canonform_linalg::DistanceMatrix;
+/// use canonform_retrieval::{Labels, evaluate};
+///
+/// // The third cat is nearer to the dogs.
+/// let positions = [0.0_f64, 1.0, 9.0, 10.0, 11.0, 12.0];
+/// let distances = DistanceMatrix::from_pairs(6, |i, j| (positions[i] - positions[j]).abs())?;
+/// let labels = Labels::new(&["cat", "cat", "cat", "dog", "dog", "dog"]);
+/// let evaluation = evaluate(&distances, &labels, 1)?;
+/// assert_eq!(evaluation.confusion, [[2, 1], [1, 2]]);
+/// assert!((evaluation.mean.nn - 4.0 / 6.0).abs() < 1e-12);
+/// # Ok::<(), canonform_retrieval::RetrievalError>(())
+/// ```
 pub fn evaluate(
     distances: &DistanceMatrix,
     labels: &Labels,
     knn_k: usize,
 ) -> Result<Evaluation, RetrievalError> {
-    let n = distances.n_points();
-    if labels.n_points() != n {
-        return Err(RetrievalError::LabelCount { n_labels: labels.n_points(), n_points: n });
-    }
-    let scores: Vec<QueryScores> = (0..n)
-        .filter(|&query| labels.is_query(query))
-        .filter_map(|query| QueryScores::new(&rank(distances, query), query, labels))
-        .collect();
-    if scores.is_empty() {
-        return Err(RetrievalError::NothingToScore { n_points: n, n_classes: labels.classes().len() });
-    }
-    let mean = |score: fn(&QueryScores) -> f64| scores.iter().map(score).sum::<f64>() / scores.len() as f64;
+    let mean = mean_scores(distances, labels, Averaging::Micro)?;
     let confusion = confusion_matrix(distances, labels, knn_k)?;
-    let right: usize = confusion.iter().enumerate().map(|(class, row)| row[class]).sum();
+    let correct: usize = confusion.iter().enumerate().map(|(class, row)| row[class]).sum();
+    let n_queries: usize = confusion.iter().flatten().sum();
     Ok(Evaluation {
-        n,
+        n: distances.n_points(),
         classes: labels.classes().to_vec(),
-        nn: mean(|s| s.nearest_neighbor),
-        ft: mean(|s| s.first_tier),
-        st: mean(|s| s.second_tier),
-        e: mean(|s| s.e_measure),
-        dcg: mean(|s| s.dcg),
-        map: mean(|s| s.average_precision),
-        knn_accuracy: right as f64 / scores.len() as f64,
+        mean,
+        knn_accuracy: correct as f64 / n_queries as f64,
         knn_k,
         confusion,
         silhouette: silhouette(distances, labels),
@@ -85,8 +72,8 @@ mod tests {
     use super::*;
 
     fn two_clusters(gap: f64) -> (DistanceMatrix, Labels) {
-        let place = |i: usize| if i < 4 { i as f64 } else { gap + i as f64 };
-        let matrix = DistanceMatrix::from_pairs(9, |i, j| (place(i) - place(j)).abs()).unwrap();
+        let position = |i: usize| if i < 4 { i as f64 } else { gap + i as f64 };
+        let matrix = DistanceMatrix::from_pairs(9, |i, j| (position(i) - position(j)).abs()).unwrap();
         let names: Vec<&str> = (0..9).map(|i| ["a", "b"][usize::from(i >= 4)]).collect();
         (matrix, Labels::new(&names))
     }
@@ -95,13 +82,14 @@ mod tests {
     fn separate_clusters_score_one() {
         let (matrix, labels) = two_clusters(100.0);
         let scores = evaluate(&matrix, &labels, 3).unwrap();
-        assert_eq!([scores.nn, scores.ft, scores.st, scores.map, scores.knn_accuracy], [1.0; 5]);
-        assert!((scores.dcg - 1.0).abs() < 1e-15 && scores.silhouette > 0.95);
+        let mean = scores.mean;
+        assert_eq!([mean.nn, mean.ft, mean.st, mean.map, scores.knn_accuracy], [1.0; 5]);
+        assert!((mean.dcg - 1.0).abs() < 1e-15 && scores.silhouette > 0.95);
         assert_eq!(scores.confusion, [[4, 0], [0, 5]]);
     }
 
     #[test]
-    fn scaling_the_distances_changes_nothing() {
+    fn scale_changes_no_score() {
         let (matrix, labels) = two_clusters(0.5);
         let scaled = DistanceMatrix::from_pairs(9, |i, j| 7.0 * matrix.get(i, j)).unwrap();
         let (a, b) = (evaluate(&matrix, &labels, 1).unwrap(), evaluate(&scaled, &labels, 1).unwrap());
@@ -110,7 +98,7 @@ mod tests {
     }
 
     #[test]
-    fn classes_of_two_are_not_queried() {
+    fn shapes_in_classes_of_two_are_not_queries() {
         let matrix = DistanceMatrix::from_pairs(5, |i, j| (j - i) as f64).unwrap();
         let scores = evaluate(&matrix, &Labels::new(&["a", "a", "a", "b", "b"]), 1).unwrap();
         assert_eq!(scores.confusion, [[3, 0], [0, 0]]);
@@ -122,5 +110,14 @@ mod tests {
             evaluate(&matrix, &Labels::new(&["a"]), 1),
             Err(RetrievalError::LabelCount { n_labels: 1, n_points: 5 })
         );
+    }
+
+    #[test]
+    fn json_is_one_flat_object() {
+        let (matrix, labels) = two_clusters(100.0);
+        let evaluation = evaluate(&matrix, &labels, 3).unwrap();
+        let json = serde_json::to_string(&evaluation).unwrap();
+        assert!(json.starts_with(r#"{"n":9,"classes":["a","b"],"nn":1.0,"ft":1.0,"st":1.0,"e":"#), "{json}");
+        assert_eq!(serde_json::from_str::<Evaluation>(&json).unwrap(), evaluation);
     }
 }

@@ -1,6 +1,6 @@
-//! Which class every shape belongs to.
+//! Class labels.
 
-/// Class names and the class of every shape.
+/// Class names and the class of each shape.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Labels {
     classes: Vec<String>,
@@ -9,7 +9,7 @@ pub struct Labels {
 }
 
 impl Labels {
-    /// Numbers the different names in alphabetical order.
+    /// Takes the class name of each shape. Classes are numbered in alphabetical order.
     #[must_use]
     pub fn new<S: AsRef<str>>(names: &[S]) -> Self {
         let mut classes: Vec<String> = names.iter().map(|name| name.as_ref().to_owned()).collect();
@@ -48,8 +48,8 @@ impl Labels {
         self.sizes[class]
     }
 
-    /// Whether shape `i` is scored as a query: its class has more than two members, the convention of
-    /// the Princeton shape benchmark.
+    /// Whether shape `i` is scored as a query: its class has more than two members (the convention of the
+    /// Princeton shape benchmark).
     #[must_use]
     pub fn is_query(&self, i: usize) -> bool {
         self.size(self.of[i]) > 2
@@ -61,7 +61,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn classes_are_sorted_and_small_ones_are_no_queries() {
+    fn classes_are_sorted_and_small_ones_have_no_queries() {
         let labels = Labels::new(&["wolf", "cat", "cat", "shark", "cat", "wolf"]);
         assert_eq!(labels.classes(), ["cat", "shark", "wolf"]);
         assert_eq!((0..6).map(|i| labels.class(i)).collect::<Vec<_>>(), [2, 0, 0, 1, 0, 2]);

@@ -1,28 +1,41 @@
-//! Rankings, scores and votes: how well distances bring together what belongs together.
+//! Retrieval from distances: rankings, scores, votes, and search with an expensive distance.
 //!
-//! `linalg::DistanceMatrix` -> **[`evaluate`]** -> scores
+//! `linalg::DistanceMatrix` -> [`rank`] -> **[`evaluate`]** -> [`Evaluation`]
 //!
-//! Works on matrices, distances and labels alone: knows nothing of meshes, of how a distance was measured or of
-//! files.
+//! Works on distances and labels alone; it knows nothing of meshes, files, or how distances were measured.
+//!
+//! ```
+//! # extern crate linalg as canonform_linalg;
+//! use canonform_linalg::DistanceMatrix;
+//! use canonform_retrieval::{Labels, evaluate};
+//!
+//! let positions = [0.0_f64, 1.0, 2.0, 10.0, 11.0, 12.0];
+//! let distances = DistanceMatrix::from_pairs(6, |i, j| (positions[i] - positions[j]).abs())?;
+//! let labels = Labels::new(&["cat", "cat", "cat", "dog", "dog", "dog"]);
+//! let evaluation = evaluate(&distances, &labels, 1)?;
+//! assert_eq!(evaluation.mean.map, 1.0);
+//! assert_eq!(evaluation.confusion, [[3, 0], [0, 3]]);
+//! # Ok::<(), canonform_retrieval::RetrievalError>(())
+//! ```
 
 mod classification;
 mod clustering;
-mod curves;
 mod error;
 mod evaluation;
 mod labels;
 mod pairwise;
 mod ranking;
 mod refinement;
+mod scores;
 mod vote;
 
 pub use classification::{confusion_matrix, knn_predict};
 pub use clustering::silhouette;
-pub use curves::{Averaging, MeanScores, mean_scores, precision_recall};
 pub use error::RetrievalError;
 pub use evaluation::{Evaluation, evaluate};
 pub use labels::Labels;
 pub use pairwise::pairwise_distances;
-pub use ranking::{QueryScores, Ranking, rank};
-pub use refinement::{Candidate, Neighbor, Refinement, refine_nearest};
+pub use ranking::{Neighbor, rank};
+pub use refinement::{Candidate, Refinement, refine_nearest};
+pub use scores::{Averaging, Scores, mean_scores, precision_recall};
 pub use vote::{UnknownThreshold, Vote, vote};

@@ -1,18 +1,18 @@
-//! The distances of all pairs, in parallel.
+//! Distances of all pairs, in parallel.
 
 use linalg::DistanceMatrix;
 use rayon::prelude::*;
 
 use crate::RetrievalError;
 
-/// Evaluates `distance(i, j)` for all pairs `i < j` of `n` shapes in parallel and calls `done` after
-/// each, from any thread.
+/// Evaluates `distance(i, j)` for all pairs `i < j` of `n` shapes in parallel, and calls `done` after each pair,
+/// from any thread.
 ///
 /// The result does not depend on the number of threads.
 ///
 /// # Errors
-/// Whatever `distance` returns, the first in order of the pairs; [`RetrievalError::Linalg`] for a
-/// distance that is NaN, infinite or negative.
+/// The first error of `distance` in the order of the pairs; [`RetrievalError::Linalg`] if a distance is NaN,
+/// infinite or negative.
 pub fn pairwise_distances<E: From<RetrievalError> + Send>(
     n: usize,
     distance: impl Fn(usize, usize) -> Result<f64, E> + Sync,
@@ -30,7 +30,7 @@ pub fn pairwise_distances<E: From<RetrievalError> + Send>(
     let values = values.into_iter().collect::<Result<Vec<f64>, E>>()?;
     let mut next = values.into_iter();
     DistanceMatrix::from_pairs(n, |_, _| next.next().unwrap_or(f64::NAN))
-        .map_err(|fault| E::from(RetrievalError::from(fault)))
+        .map_err(|error| E::from(RetrievalError::from(error)))
 }
 
 #[cfg(test)]
@@ -40,25 +40,25 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_pair_is_asked_once_and_lands_in_its_place() {
-        let asked = AtomicUsize::new(0);
+    fn each_pair_is_evaluated_once() {
+        let calls = AtomicUsize::new(0);
         let matrix = pairwise_distances::<RetrievalError>(
             7,
             |i, j| Ok((10 * i + j) as f64),
             || {
-                asked.fetch_add(1, Ordering::Relaxed);
+                calls.fetch_add(1, Ordering::Relaxed);
             },
         )
         .unwrap();
-        assert_eq!(asked.into_inner(), 21);
+        assert_eq!(calls.into_inner(), 21);
         assert_eq!((matrix.get(2, 5), matrix.get(5, 2), matrix.get(3, 3)), (25.0, 25.0, 0.0));
     }
 
     #[test]
-    fn the_first_fault_is_returned() {
-        let fault = |i, j| RetrievalError::BadNeighborCount { k: i, available: j };
-        let result = pairwise_distances(5, |i, j| if i > 0 { Err(fault(i, j)) } else { Ok(1.0) }, || ());
-        assert_eq!(result, Err(fault(1, 2)));
+    fn the_first_error_is_returned() {
+        let error = |i, j| RetrievalError::BadNeighborCount { k: i, available: j };
+        let result = pairwise_distances(5, |i, j| if i > 0 { Err(error(i, j)) } else { Ok(1.0) }, || ());
+        assert_eq!(result, Err(error(1, 2)));
         let nan = pairwise_distances::<RetrievalError>(2, |_, _| Ok(f64::NAN), || ());
         assert!(matches!(nan, Err(RetrievalError::Linalg(_))));
     }

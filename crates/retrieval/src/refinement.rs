@@ -1,52 +1,45 @@
-//! The nearest by a distance that is expensive, found through one that is cheap.
+//! Nearest neighbours by an expensive distance with a cheap lower bound.
 
 use rayon::prelude::*;
 
-/// A shape that may be among the nearest.
+use crate::Neighbor;
+
+/// A shape that may be among the nearest, with a lower bound of its distance.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Candidate {
-    /// Which shape.
+    /// Index of the shape.
     pub index: usize,
-    /// What its distance is at least.
+    /// A lower bound of its distance.
     pub bound: f64,
 }
 
-/// A shape with its distance.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Neighbor {
-    /// Which shape.
-    pub index: usize,
-    /// How far it is.
-    pub distance: f64,
-}
-
-/// The nearest shapes, and what it took to find them.
+/// The nearest shapes, and the work done to find them.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Refinement {
-    /// Up to k of them, nearest first; ties by index.
+    /// At most k shapes, nearest first; ties by index.
     pub nearest: Vec<Neighbor>,
-    /// Candidates whose distance was asked for.
+    /// Number of candidates whose distance was evaluated.
     pub asked: usize,
-    /// Those among them that were given up as farther than the k nearest known then.
+    /// Number of evaluations that were abandoned because the candidate was farther than the k nearest so far.
     pub abandoned: usize,
 }
 
-/// Candidates that are asked for at once.
+/// Candidates evaluated in parallel.
 const BATCH: usize = 8;
 
-/// The `k` candidates of least distance, asking for as few distances as bounds allow (Seidl and Kriegel 1998,
-/// `seidl1998` in `REFERENCES.bib`).
+/// The `k` candidates of smallest distance, evaluating as few distances as the bounds allow (Seidl and Kriegel
+/// 1998, `seidl1998` in `REFERENCES.bib`).
 ///
-/// Candidates come in ascending order of their bounds. Once the bound of the next one is larger than the k-th
-/// distance known, none that follows can be among the nearest, and the search ends. `distance(index, limit)`
-/// gives the distance of a candidate, or `None` if that is larger than `limit`.
+/// `candidates` are in ascending order of their bounds. The search ends at the first candidate whose bound exceeds
+/// the k-th smallest distance so far. `distance(candidate, limit)` returns the distance, or `None` if it exceeds
+/// `limit`.
 ///
-/// * Exact if bounds and `None` are true: the result is then that of asking for all distances.
-/// * Candidates are asked for in parallel, in batches of fixed size: what is asked for does not depend on the
-///   number of threads.
+/// * Exact if the bounds are true lower bounds and `None` is only returned above the limit.
+/// * Evaluates candidates in parallel batches of fixed size, so the evaluated set does not depend on the number of
+///   threads.
 ///
 /// # Errors
-/// Whatever `distance` returns, the first in the order of the candidates.
+/// The first error of `distance` in the order of the candidates.
 pub fn refine_nearest<E: Send>(
     candidates: impl IntoIterator<Item = Candidate>,
     k: usize,
@@ -80,7 +73,7 @@ pub fn refine_nearest<E: Send>(
                 None => found.abandoned += 1,
             }
         }
-        found.nearest.sort_by(|a, b| a.distance.total_cmp(&b.distance).then(a.index.cmp(&b.index)));
+        found.nearest.sort_by(Neighbor::cmp);
         found.nearest.truncate(k);
     }
     Ok(found)
@@ -90,7 +83,7 @@ pub fn refine_nearest<E: Send>(
 mod tests {
     use super::*;
 
-    /// Points of a plane; the first coordinate bounds the distance from the origin.
+    /// Points in the plane; the first coordinate is a lower bound of the distance from the origin.
     fn points() -> Vec<[f64; 2]> {
         (0..200).map(f64::from).map(|i| [(i * 0.618).fract() * 9.0, (i * 0.414).fract() * 4.0]).collect()
     }
@@ -103,12 +96,12 @@ mod tests {
     }
 
     #[test]
-    fn it_finds_what_asking_for_all_finds_and_asks_for_fewer() {
+    fn finds_what_evaluating_all_finds_with_fewer_evaluations() {
         let points = points();
         let true_distance = |i: usize| points[i][0].hypot(points[i][1]);
         let mut all: Vec<_> =
             (0..points.len()).map(|index| Neighbor { index, distance: true_distance(index) }).collect();
-        all.sort_by(|a, b| a.distance.total_cmp(&b.distance).then(a.index.cmp(&b.index)));
+        all.sort_by(Neighbor::cmp);
         for k in [1, 3, 10, 200, 500] {
             let whole = refine_nearest::<()>(candidates(&points), k, |c, _| Ok(Some(true_distance(c.index))));
             let abandoning = refine_nearest::<()>(candidates(&points), k, |c, limit| {
@@ -123,7 +116,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_is_asked_for_nothing_and_faults_come_through() {
+    fn zero_neighbours_need_no_evaluation_and_errors_are_returned() {
         let none = refine_nearest::<()>(candidates(&points()), 0, |_, _| Ok(None)).unwrap();
         assert_eq!(none, Refinement::default());
         assert_eq!(refine_nearest(candidates(&points()), 3, |c, _| Err(c.bound)).unwrap_err(), {

@@ -1,29 +1,27 @@
-//! The class of a shape by the votes of its neighbours, or none.
+//! Classification by votes of neighbours, with a threshold for unknown classes.
 
 use linalg::DistanceMatrix;
 use serde::{Deserialize, Serialize};
 
 use crate::{Labels, Neighbor, rank};
 
-/// How far a shape may be from all others and still be of one of their classes.
+/// The distance beyond which a shape is considered to belong to none of the known classes.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct UnknownThreshold {
-    /// A shape whose nearest neighbour is farther is unknown.
+    /// A shape whose nearest neighbour is farther than this is unknown.
     pub distance: f64,
-    /// Share of the shapes that would be called unknown although their class is there.
+    /// Share of the labelled shapes that would be called unknown although their class is present.
     pub missed: f64,
-    /// Share of the shapes that would be given a class if their own were not there.
+    /// Share of the labelled shapes that would be assigned a class if their own were absent.
     pub mistaken: f64,
 }
 
 impl UnknownThreshold {
-    /// The threshold that the labelled shapes themselves suggest, each asked about as if it was new: `own` holds the
-    /// distances from shapes to the nearest other one of their class, `foreign` those to the nearest of any
-    /// other class, which would be nearest if the own was missing.
+    /// The threshold that separates labelled shapes best: `own` holds distances from shapes to the nearest other
+    /// shape of their class, `foreign` distances to the nearest shape of any other class.
     ///
-    /// It makes the sum of the two error rates least; of a range of such thresholds it is the middle. Without
-    /// foreign distances it is twice the largest own one. `None` without own ones: nothing is known then
-    /// of how far a shape of a class may be.
+    /// Minimises the sum of the two error rates; if a range of thresholds does, returns its middle. Without foreign
+    /// distances, returns twice the largest own distance. Returns `None` without own distances.
     #[must_use]
     pub fn of(own: &[f64], foreign: &[f64]) -> Option<Self> {
         let sorted = |distances: &[f64]| {
@@ -41,7 +39,7 @@ impl UnknownThreshold {
         let mut steps: Vec<f64> = own.iter().chain(&foreign).copied().collect();
         steps.sort_by(f64::total_cmp);
         steps.dedup();
-        // Between two steps nothing changes.
+        // Error rates are constant between two steps.
         let cost = |step: &f64| missed(*step) + mistaken(*step);
         let (mut best, mut least) = (0, f64::INFINITY);
         for (i, step) in steps.iter().enumerate() {
@@ -54,16 +52,16 @@ impl UnknownThreshold {
         Some(Self { distance, missed: missed(distance), mistaken: mistaken(distance) })
     }
 
-    /// The threshold suggested by all shapes of a matrix of distances, see [`of`](Self::of). Shapes alone in
-    /// their class have no own distance.
+    /// The threshold from the distances between all shapes; see [`of`](Self::of). A shape that is alone in its class
+    /// has no own distance.
     #[must_use]
     pub fn leave_one_out(distances: &DistanceMatrix, labels: &Labels) -> Option<Self> {
         let (mut own, mut foreign) = (Vec::new(), Vec::new());
         for i in 0..distances.n_points() {
             let ranking = rank(distances, i);
             let nearest = |same: bool| {
-                let is = |j: &usize| (labels.class(*j) == labels.class(i)) == same;
-                ranking.order.iter().position(is).map(|at| ranking.distances[at])
+                let found = ranking.iter().find(|n| (labels.class(n.index) == labels.class(i)) == same);
+                found.map(|neighbor| neighbor.distance)
             };
             own.extend(nearest(true));
             foreign.extend(nearest(false));
@@ -72,25 +70,25 @@ impl UnknownThreshold {
     }
 }
 
-/// What the neighbours of a shape say of its class.
+/// The outcome of a vote on the class of a shape.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Vote {
-    /// The class of most votes; `None` when nothing is near.
+    /// The winning class; `None` if no neighbour is near enough.
     pub class: Option<usize>,
-    /// Share of the votes that it has, each weighted by how near the neighbour is, 0 to 1.
+    /// Weighted share of the votes for that class, in 0..=1.
     pub confidence: f64,
-    /// Neighbours of that class among those who voted.
+    /// Number of votes for that class.
     pub votes: usize,
-    /// Neighbours who voted.
+    /// Number of neighbours that voted.
     pub voters: usize,
 }
 
-/// The class that the `k` nearest vote for.
+/// Lets the `k` nearest neighbours vote on a class.
 ///
-/// A neighbour at distance `d` has the weight `(1 - (d / t)²)²` with `t` the threshold, so none beyond it has a vote;
-/// without a threshold all weigh the same. The nearest neighbour's class wins a draw.
+/// A neighbour at distance `d` has the weight `(1 - (d / t)²)²` with `t` the threshold; neighbours beyond it have
+/// no vote. Without a threshold all votes weigh the same. Ties go to the class of the nearest neighbour.
 ///
-/// `neighbors` are in ascending order of distance; `class_of` gives the class of a shape by its index.
+/// `neighbors` are in ascending order of distance; `class_of` maps the index of a shape to its class.
 #[must_use]
 pub fn vote(
     neighbors: &[Neighbor],
@@ -119,7 +117,7 @@ pub fn vote(
         } else {
             of(class).count() as f64 / voters.len() as f64
         };
-        // The first of equals is the nearest; sums in another order may differ in the last bit.
+        // The first of equals is the nearest; the tolerance absorbs rounding of sums taken in another order.
         if winner.class.is_none() || share > winner.confidence + 1e-12 {
             winner = Vote { class: Some(class), confidence: share, votes: of(class).count(), ..winner };
         }
@@ -140,10 +138,10 @@ mod tests {
     }
 
     #[test]
-    fn the_threshold_parts_own_from_foreign_distances() {
+    fn the_threshold_separates_own_from_foreign_distances() {
         let found = UnknownThreshold::of(&[1.0, 2.0, 1.5], &[4.0, 6.0]).unwrap();
         assert_eq!(found, UnknownThreshold { distance: 3.0, missed: 0.0, mistaken: 0.0 });
-        // Overlapping: giving up the outlier costs less than taking the foreigners for friends.
+        // Overlapping: missing the outlier costs less than accepting the foreign shapes.
         let found = UnknownThreshold::of(&[1.0, 1.0, 1.0, 9.0], &[5.0, 6.0]).unwrap();
         assert_eq!((found.distance, found.missed, found.mistaken), (3.0, 0.25, 0.0));
         assert_eq!(UnknownThreshold::of(&[], &[1.0]), None);
@@ -151,9 +149,9 @@ mod tests {
     }
 
     #[test]
-    fn leave_one_out_asks_every_shape() {
-        let places = [0.0f64, 1.0, 2.5, 10.0, 11.0, 30.0];
-        let distances = DistanceMatrix::from_pairs(6, |i, j| (places[i] - places[j]).abs()).unwrap();
+    fn leave_one_out_uses_every_shape() {
+        let positions = [0.0f64, 1.0, 2.5, 10.0, 11.0, 30.0];
+        let distances = DistanceMatrix::from_pairs(6, |i, j| (positions[i] - positions[j]).abs()).unwrap();
         let labels = Labels::new(&["a", "a", "a", "b", "b", "c"]);
         let found = UnknownThreshold::leave_one_out(&distances, &labels).unwrap();
         // Own: 1, 1, 1.5, 1, 1; foreign: 10, 9, 7.5, 7.5, 8.5, 19.
@@ -173,7 +171,7 @@ mod tests {
     }
 
     #[test]
-    fn nothing_near_is_unknown_and_the_nearest_wins_a_draw() {
+    fn distant_neighbours_have_no_vote_and_the_nearest_breaks_a_tie() {
         let far = vote(&neighbors(&[2.0, 3.0]), |i| i, 2, threshold(1.0));
         assert_eq!(far, Vote { class: None, confidence: 0.0, votes: 0, voters: 0 });
         assert_eq!(vote(&neighbors(&[2.0, 3.0]), |i| 7 - i, 2, None).class, Some(7));

@@ -1,5 +1,4 @@
-//! What the programs share towards the person at the terminal: progress, threads, memory, interruption,
-//! exit codes.
+//! What the programs share: progress bars, threads, memory, interruption, exit codes.
 //!
 //! Knows nothing of arguments or results.
 
@@ -14,26 +13,25 @@ use anyhow::{Context, Result};
 pub use memory::PeakMemory;
 pub use progress::Bars;
 
-/// What to do when the program is interrupted for the first time, instead of ending at once.
-static INSTEAD: Mutex<Option<Box<dyn FnOnce() + Send>>> = Mutex::new(None);
+/// Called on the first interruption instead of exiting.
+static ON_INTERRUPTION: Mutex<Option<Box<dyn FnOnce() + Send>>> = Mutex::new(None);
 
-/// Has `stop` called when the program is interrupted or terminated, so that it can end by itself; the second time it ends
-/// at once.
+/// Calls `stop` when the program is interrupted or terminated for the first time, so that it can end in an orderly way. The
+/// second time it exits at once.
 pub fn on_interruption(stop: impl FnOnce() + Send + 'static) {
-    *INSTEAD.lock().unwrap_or_else(PoisonError::into_inner) = Some(Box::new(stop));
+    *ON_INTERRUPTION.lock().unwrap_or_else(PoisonError::into_inner) = Some(Box::new(stop));
 }
 
-/// Exit code of a program that was interrupted, as shells know it: 128 and the number of the signal.
+/// Exit code after an interruption, by the convention of shells: 128 plus the number of the signal.
 const INTERRUPTED: i32 = 130;
 
-/// Runs a program on `threads` worker threads (0 for all cores) and turns its result into an exit code:
-/// its own, or 2 with the error on standard error. That nobody reads the output any more is no error.
+/// Runs a program on `threads` worker threads (0 for all cores) and returns its exit code, or prints its error to standard
+/// error and returns 2. A closed output pipe is not an error.
 ///
-/// When it is interrupted (Ctrl-C) or terminated, nothing half-written is left behind; see also
-/// [`on_interruption`].
+/// Leaves no unfinished files behind when interrupted (Ctrl-C) or terminated; see also [`on_interruption`].
 pub fn run(threads: usize, program: impl FnOnce() -> Result<ExitCode>) -> ExitCode {
     let interruption = ctrlc::set_handler(|| {
-        if let Some(stop) = INSTEAD.lock().unwrap_or_else(PoisonError::into_inner).take() {
+        if let Some(stop) = ON_INTERRUPTION.lock().unwrap_or_else(PoisonError::into_inner).take() {
             return stop();
         }
         files::abandon_unfinished();
@@ -42,7 +40,7 @@ pub fn run(threads: usize, program: impl FnOnce() -> Result<ExitCode>) -> ExitCo
     });
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
     let ready = interruption
-        .context("cannot prepare for interruption")
+        .context("cannot install the signal handler")
         .and_then(|()| pool.context("cannot start the worker threads"));
     match ready.and_then(|()| program()) {
         Ok(code) => code,
@@ -54,7 +52,7 @@ pub fn run(threads: usize, program: impl FnOnce() -> Result<ExitCode>) -> ExitCo
     }
 }
 
-/// An error and its causes, without those that an error before them has quoted already.
+/// An error and its causes, without causes whose text is already quoted.
 #[must_use]
 pub fn message(error: &anyhow::Error) -> String {
     let mut text = String::new();
@@ -81,7 +79,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_cause_that_was_quoted_is_not_said_again() {
+    fn a_quoted_cause_is_not_repeated() {
         let cause = std::io::Error::other("no such file");
         let error = anyhow::Error::from(cause).context("cannot read a.off: no such file; check the path");
         assert_eq!(message(&error), "cannot read a.off: no such file; check the path");
@@ -90,7 +88,7 @@ mod tests {
     }
 
     #[test]
-    fn a_closed_pipe_is_recognised_beneath_its_context() {
+    fn a_closed_pipe_is_recognised_below_its_context() {
         let pipe = std::io::Error::from(std::io::ErrorKind::BrokenPipe);
         assert!(is_closed_pipe(&anyhow::Error::from(pipe).context("writing")));
         assert!(!is_closed_pipe(&anyhow::anyhow!("something else")));

@@ -1,4 +1,4 @@
-//! Progress on standard error, for people only.
+//! Progress bars on standard error.
 
 use std::io::IsTerminal;
 use std::sync::{Mutex, PoisonError};
@@ -6,7 +6,7 @@ use std::sync::{Mutex, PoisonError};
 use canonform::Observer;
 use indicatif::{ProgressBar, ProgressStyle};
 
-/// A bar per stage while a person watches; nothing otherwise.
+/// One progress bar per stage, shown only on a terminal.
 #[derive(Debug)]
 pub struct Bars {
     visible: bool,
@@ -14,13 +14,13 @@ pub struct Bars {
 }
 
 impl Bars {
-    /// Bars that are seen unless `quiet`, or standard error is no terminal.
+    /// Bars that are hidden if `quiet`, or if standard error is not a terminal.
     #[must_use]
     pub fn new(quiet: bool) -> Self {
         Self { visible: !quiet && std::io::stderr().is_terminal(), current: Mutex::new(None) }
     }
 
-    /// A bar over the steps of one stage, to be advanced by the caller.
+    /// A bar over the steps of a stage, which the caller advances.
     #[must_use]
     pub fn bar(&self, stage: &str, total: usize) -> ProgressBar {
         if !self.visible {
@@ -32,7 +32,7 @@ impl Bars {
         bar
     }
 
-    /// Clears the line.
+    /// Clears the current bar.
     pub fn finish(&self) {
         if let Some(bar) = self.current.lock().unwrap_or_else(PoisonError::into_inner).take() {
             bar.finish_and_clear();

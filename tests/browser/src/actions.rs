@@ -1,4 +1,4 @@
-//! What a person does with a page: points, clicks, drags, types, gives files, looks.
+//! User actions: pointing, clicking, dragging, typing, choosing files; and screenshots.
 
 use std::fs;
 use std::path::Path;
@@ -9,17 +9,17 @@ use serde_json::{Value, json};
 
 use crate::{Browser, BrowserError};
 
-/// The key under which WebDriver hands out an element.
+/// The key under which WebDriver returns the handle of an element.
 const ELEMENT: &str = "element-6066-11e4-a52e-4f735466cecf";
 
-/// Steps in which the pointer moves: a page that follows a drag wants to see it on its way.
+/// Pointer moves in one drag, so that the page can follow it.
 const STEPS: i32 = 12;
 
 impl Browser {
-    /// Clicks the middle of the first element that a CSS selector finds, once it is there.
+    /// Waits for the first element that matches a CSS selector and clicks its centre.
     ///
     /// # Errors
-    /// [`BrowserError::Never`] when there is none, [`BrowserError::Refused`] when another covers it.
+    /// [`BrowserError::Never`] if there is none, [`BrowserError::Refused`] if another element covers it.
     pub fn click(&self, css: &str) -> Result<(), BrowserError> {
         let element = self.element(css)?;
         self.session.post(&format!("element/{element}/click"), &json!({})).map(drop)
@@ -34,18 +34,18 @@ impl Browser {
         self.session.post(&format!("element/{element}/value"), &json!({ "text": text })).map(drop)
     }
 
-    /// Gives files to an `input` of type `file`, as if chosen in its dialog.
+    /// Chooses files in an `input` of type `file`.
     ///
     /// # Errors
-    /// [`BrowserError::Start`] for a path that does not exist; else as [`Browser::click`].
+    /// [`BrowserError::Start`] if a path does not exist; otherwise as [`Browser::click`].
     pub fn upload(&self, css: &str, paths: &[&Path]) -> Result<(), BrowserError> {
         let paths: Result<Vec<String>, _> =
             paths.iter().map(|path| Ok(path.canonicalize()?.display().to_string())).collect();
         self.type_into(css, &paths.map_err(BrowserError::Start)?.join("\n"))
     }
 
-    /// Drops a file with this content on an element, as from a file manager: the browser's own events of a drag
-    /// cannot be made from outside, those a page listens for can.
+    /// Drops a file with this content on an element, as from a file manager. Dispatches the events that a page listens for,
+    /// because WebDriver cannot start a native drag.
     ///
     /// # Errors
     /// As [`Browser::click`] and [`Browser::eval`].
@@ -63,30 +63,30 @@ impl Browser {
         .map(drop)
     }
 
-    /// Moves the pointer onto the middle of an element, scrolling it into view.
+    /// Scrolls an element into view and moves the pointer to its centre.
     ///
     /// # Errors
     /// As [`Browser::click`].
     pub fn hover(&self, css: &str) -> Result<(), BrowserError> {
-        let at = self.middle(css)?;
+        let at = self.center(css)?;
         self.hover_at(at)
     }
 
     /// Moves the pointer to a point of the window, in CSS pixels.
     ///
     /// # Errors
-    /// [`BrowserError::Refused`] outside of the window.
+    /// [`BrowserError::Refused`] if the point is outside the window.
     pub fn hover_at(&self, [x, y]: [i32; 2]) -> Result<(), BrowserError> {
-        // A page told of one move may take it for the pointer having been there all along.
+        // Two moves, because a page may ignore the first one.
         self.pointer(vec![moved([x - 3, y - 3]), moved([x, y])])
     }
 
-    /// Presses on the middle of an element, moves by so many CSS pixels and lets go.
+    /// Drags from the centre of an element by this many CSS pixels.
     ///
     /// # Errors
-    /// As [`Browser::click`]; [`BrowserError::Refused`] outside of the window.
+    /// As [`Browser::click`]; [`BrowserError::Refused`] if the drag leaves the window.
     pub fn drag(&self, css: &str, [dx, dy]: [i32; 2]) -> Result<(), BrowserError> {
-        let [x, y] = self.middle(css)?;
+        let [x, y] = self.center(css)?;
         let mut actions = vec![moved([x, y]), json!({ "type": "pointerDown", "button": 0 })];
         actions.extend((1..=STEPS).map(|i| moved([x + dx * i / STEPS, y + dy * i / STEPS])));
         actions.push(json!({ "type": "pointerUp", "button": 0 }));
@@ -96,13 +96,13 @@ impl Browser {
     /// Clicks a point of the window, in CSS pixels.
     ///
     /// # Errors
-    /// [`BrowserError::Refused`] outside of the window.
+    /// [`BrowserError::Refused`] if the point is outside the window.
     pub fn click_at(&self, at: [i32; 2]) -> Result<(), BrowserError> {
         let [down, up] = ["pointerDown", "pointerUp"].map(|kind| json!({ "type": kind, "button": 0 }));
         self.pointer(vec![moved(at), down, up])
     }
 
-    /// Writes what is seen of the page to a PNG file, making its folder.
+    /// Writes the visible part of the page to a PNG file, and creates its folder.
     ///
     /// # Errors
     /// [`BrowserError::Picture`] and those of the driver.
@@ -111,7 +111,7 @@ impl Browser {
         save(path, &picture)
     }
 
-    /// Writes the whole page, as long as it is, to a PNG file.
+    /// Writes the whole page to a PNG file.
     ///
     /// # Errors
     /// As [`Browser::screenshot`].
@@ -131,8 +131,8 @@ impl Browser {
         }
     }
 
-    /// The middle of an element in the window, once scrolled into view.
-    fn middle(&self, css: &str) -> Result<[i32; 2], BrowserError> {
+    /// Scrolls an element into view and returns its centre in the window.
+    fn center(&self, css: &str) -> Result<[i32; 2], BrowserError> {
         self.element(css)?;
         let at = self.eval(&format!(
             "const element = document.querySelector({});
@@ -158,12 +158,12 @@ fn moved([x, y]: [i32; 2]) -> Value {
 }
 
 fn save(path: &Path, picture: &Value) -> Result<(), BrowserError> {
-    let fault = |fault: String| BrowserError::Picture(format!("{}: {fault}", path.display()));
-    let bytes = STANDARD.decode(picture.as_str().unwrap_or_default()).map_err(|e| fault(e.to_string()))?;
+    let error = |reason: String| BrowserError::Picture(format!("{}: {reason}", path.display()));
+    let bytes = STANDARD.decode(picture.as_str().unwrap_or_default()).map_err(|e| error(e.to_string()))?;
     if let Some(folder) = path.parent() {
-        fs::create_dir_all(folder).map_err(|e| fault(e.to_string()))?;
+        fs::create_dir_all(folder).map_err(|e| error(e.to_string()))?;
     }
-    fs::write(path, bytes).map_err(|e| fault(e.to_string()))
+    fs::write(path, bytes).map_err(|e| error(e.to_string()))
 }
 
 #[cfg(test)]
@@ -171,14 +171,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_picture_that_is_none_or_has_no_place_is_an_error() {
+    fn invalid_picture_data_and_unwritable_paths_are_errors() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("new/x.png");
         save(&path, &json!("AAEC")).unwrap();
         assert_eq!(fs::read(&path).unwrap(), [0, 1, 2]);
         for (path, picture) in [(path.clone(), json!("?")), (path.join("below"), json!("AAEC"))] {
-            let fault = save(&path, &picture).unwrap_err();
-            assert!(matches!(fault, BrowserError::Picture(_)), "{fault}");
+            let error = save(&path, &picture).unwrap_err();
+            assert!(matches!(error, BrowserError::Picture(_)), "{error}");
         }
     }
 }

@@ -9,7 +9,7 @@ use std::time::Duration;
 
 use crate::BrowserError;
 
-/// How long anything may take that should take a second.
+/// Time limit for things that should take a second.
 pub(crate) const PATIENCE: Duration = Duration::from_secs(30);
 
 /// A running chromedriver, stopped when dropped.
@@ -19,7 +19,7 @@ pub(crate) struct Driver {
 }
 
 impl Driver {
-    /// Starts it on a free port. Its temporary files, and those of its browsers, go to `folder`.
+    /// Starts it on a free port. It and its browsers put their temporary files into `folder`.
     pub(crate) fn start(program: &Path, folder: &Path) -> Result<Self, BrowserError> {
         let mut process = Command::new(program)
             .arg("--port=0")
@@ -32,7 +32,7 @@ impl Driver {
         let output = process.stdout.take();
         let mut driver = Self { process, port: 0 };
         let (sender, receiver) = mpsc::channel();
-        // Reads on to the end: a driver whose words nobody takes stops in the middle of one.
+        // Reads to the end, because the driver blocks when its output is not read.
         thread::spawn(move || {
             for line in output.into_iter().flat_map(|output| BufReader::new(output).lines()) {
                 let Ok(line) = line else { break };
@@ -73,13 +73,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_port_is_read_from_its_words() {
+    fn the_port_is_parsed_from_the_output() {
         assert_eq!(port("ChromeDriver was started successfully on port 34567."), Some(34567));
         assert_eq!(port("Only local connections are allowed."), None);
     }
 
     #[test]
-    fn a_program_that_is_no_driver_is_an_error() {
+    fn other_programs_are_errors() {
         let folder = tempfile::tempdir().unwrap();
         let absent = Driver::start(&folder.path().join("absent"), folder.path()).err().unwrap();
         assert!(matches!(absent, BrowserError::Start(_)), "{absent}");

@@ -1,48 +1,47 @@
-//! What can go wrong between a test and a page.
+//! Errors between a test and a page.
 
-/// Errors of starting and of driving a browser.
+/// Errors of starting and driving a browser.
 #[derive(Debug, thiserror::Error)]
 pub enum BrowserError {
     /// A program is not installed.
     #[error(
-        "{program} is not installed; install it (on Debian: apt-get install chromium chromium-driver) for the tests \
-         in a browser"
+        "{program} is not installed; the browser tests need it (on Debian: apt-get install chromium chromium-driver)"
     )]
     Missing {
-        /// Which.
+        /// The program.
         program: &'static str,
     },
-    /// A program or a file that cannot be opened.
+    /// A program cannot be started, or a file cannot be opened.
     #[error("cannot start: {0}")]
     Start(std::io::Error),
-    /// chromedriver did not say where it listens.
-    #[error("chromedriver did not start: it said `{said}`; try it on a command line")]
+    /// chromedriver did not print its port.
+    #[error("chromedriver did not start; it printed `{said}`: try it on a command line")]
     Silent {
-        /// Its words.
+        /// Its output.
         said: String,
     },
-    /// The driver cannot be reached, or answers what is no answer.
-    #[error("chromedriver does not answer: {0}")]
+    /// The driver cannot be reached, or its response is invalid.
+    #[error("chromedriver does not respond: {0}")]
     Connection(String),
-    /// The driver or the page says no.
+    /// The driver or the page reports an error.
     #[error("{command}: {kind}: {message}")]
     Refused {
-        /// What was asked.
+        /// The command.
         command: String,
         /// Name of the error, such as `no such element`.
         kind: String,
-        /// Its words.
+        /// Its text.
         message: String,
     },
-    /// Something did not become true.
-    #[error("waited in vain for `{expression}`; it was {last}")]
+    /// An expression did not become true in time.
+    #[error("`{expression}` did not become true; its last value was {last}")]
     Never {
         /// The expression.
         expression: String,
         /// Its last value.
         last: String,
     },
-    /// A picture that cannot be read or written.
+    /// A picture cannot be decoded or written.
     #[error("screenshot: {0}")]
     Picture(String),
 }

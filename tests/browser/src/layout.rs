@@ -1,10 +1,10 @@
-//! Whether a page stays where it is.
+//! Layout shifts of a page.
 
 use serde_json::{Value, json};
 
 use crate::{Browser, BrowserError};
 
-/// Counts, before anything is laid out, every shift that nobody asked for.
+/// Installed before the first layout; counts all shifts that are not caused by user input.
 const WATCH: &str = "window.shifts = 0; window.moved = []; new PerformanceObserver(list => {
     for (const shift of list.getEntries()) if (!shift.hadRecentInput) {
         window.shifts += shift.value;
@@ -14,7 +14,7 @@ const WATCH: &str = "window.shifts = 0; window.moved = []; new PerformanceObserv
 }).observe({ type: 'layout-shift', buffered: true });";
 
 impl Browser {
-    /// Watches the layout of every page that is opened from now on.
+    /// Watches the layout of all pages opened from now on.
     ///
     /// # Errors
     /// As [`Browser::resize`].
@@ -22,10 +22,10 @@ impl Browser {
         self.devtools("Page.addScriptToEvaluateOnNewDocument", &json!({ "source": WATCH })).map(drop)
     }
 
-    /// The sum of all layout shifts of the page, as browsers score them, and what has moved.
+    /// The sum of all layout shift scores of the page, and the elements that moved.
     ///
     /// # Errors
-    /// As [`Browser::eval`], also when the layout is not watched.
+    /// As [`Browser::eval`]; also if the layout is not watched.
     pub fn shifts(&self) -> Result<(f64, Value), BrowserError> {
         let found = self.eval("return [window.shifts.valueOf(), window.moved]")?;
         Ok((found[0].as_f64().unwrap_or(f64::NAN), found[1].clone()))

@@ -2,8 +2,8 @@
 //!
 //! test -> **browser** -> chromedriver -> Chromium -> the page
 //!
-//! A browser starts with an empty profile in a temporary folder, notes every message of its console and
-//! every address it asks for, and is gone with its value. Knows nothing of what the pages are about.
+//! A [`Browser`] starts with an empty profile in a temporary folder, records all console messages and requested
+//! addresses, and closes when it is dropped. Knows nothing of the content of the pages.
 
 mod actions;
 mod driver;
@@ -27,15 +27,14 @@ use logs::Logs;
 use program::Programs;
 use session::Session;
 
-/// Name of the variable that turns skipping into failing, when it is `required`.
+/// Environment variable: if it is `required`, tests fail instead of being skipped when there is no browser.
 pub const VARIABLE: &str = "CANONFORM_BROWSER";
 
 /// A running browser with one page.
 ///
-/// One at a time in a process: software rendering fills the machine, and several would only wait for
-/// each other.
+/// Only one runs at a time in a process: software rendering uses all cores, so several would slow each other down.
 pub struct Browser {
-    // In the order in which they have to go: the page, its driver, the profile.
+    // Dropped in this order: the page, its driver, the profile.
     session: Session,
     _driver: Driver,
     _profile: TempDir,
@@ -46,23 +45,23 @@ pub struct Browser {
 static TURN: Mutex<()> = Mutex::new(());
 
 impl Browser {
-    /// A browser with an empty page, 1280 x 800 pixels.
+    /// Starts a browser with an empty page of 1280 x 800 pixels.
     ///
-    /// `None`, and a line that says so, where Chromium or chromedriver are not installed.
+    /// Prints a line and returns `None` if Chromium or chromedriver is not installed.
     ///
     /// # Panics
-    /// When they are not and [`VARIABLE`] is `required`, and when they are and do not start.
+    /// If a program is not installed and [`VARIABLE`] is `required`, or if an installed program does not start.
     #[must_use]
     pub fn start() -> Option<Self> {
         let is_required = std::env::var(VARIABLE).is_ok_and(|value| value == "required");
         match Programs::find() {
             Ok(programs) => match Self::launch(&programs) {
                 Ok(browser) => Some(browser),
-                Err(fault) => panic!("{fault}"),
+                Err(error) => panic!("{error}"),
             },
-            Err(fault) if is_required => panic!("{fault}, or unset {VARIABLE}"),
-            Err(fault) => {
-                println!("skipped: {fault}");
+            Err(error) if is_required => panic!("{error}, or unset {VARIABLE}"),
+            Err(error) => {
+                println!("skipped: {error}");
                 None
             }
         }
@@ -76,7 +75,7 @@ impl Browser {
         let logs = Mutex::new(Logs::default());
         let browser = Self { session, _driver: driver, _profile: profile, logs, _turn: turn };
         browser.resize(1280, 800)?;
-        // What the page of a new tab has asked for is nobody's business.
+        // Discards the requests of the new-tab page.
         browser.open("about:blank")?;
         browser.requests()?;
         *browser.logs() = Logs::default();
@@ -86,7 +85,7 @@ impl Browser {
     /// Opens an address and waits until the page is loaded.
     ///
     /// # Errors
-    /// [`BrowserError::Refused`] when there is nothing, [`BrowserError::Connection`].
+    /// [`BrowserError::Refused`] if there is nothing at the address, [`BrowserError::Connection`].
     pub fn open(&self, address: &str) -> Result<(), BrowserError> {
         self.session.post("url", &json!({ "url": address }))?;
         Ok(())
@@ -95,17 +94,17 @@ impl Browser {
     /// Opens a file.
     ///
     /// # Errors
-    /// [`BrowserError::Start`] for a path that does not exist; else as [`Browser::open`].
+    /// [`BrowserError::Start`] if the path does not exist; otherwise as [`Browser::open`].
     pub fn open_file(&self, path: &Path) -> Result<(), BrowserError> {
         let path = path.canonicalize().map_err(BrowserError::Start)?;
         self.open(&format!("file://{}", path.display()))
     }
 
-    /// Makes the page see a window of this size, in CSS pixels of one device pixel each. Narrow ones are
-    /// those of a telephone: with a viewport that obeys `meta viewport`, and touched instead of pointed at.
+    /// Emulates a window of this size in CSS pixels, with one device pixel each. Below a width of 600 it emulates a phone:
+    /// `meta viewport` has effect, and input is touch.
     ///
     /// # Errors
-    /// [`BrowserError::Refused`] and [`BrowserError::Connection`].
+    /// [`BrowserError::Refused`], [`BrowserError::Connection`].
     pub fn resize(&self, width: u32, height: u32) -> Result<(), BrowserError> {
         let is_phone = width < 600;
         let metrics = json!({ "width": width, "height": height, "deviceScaleFactor": 1, "mobile": is_phone });
@@ -114,7 +113,7 @@ impl Browser {
         Ok(())
     }
 
-    /// Makes the page see a preference of the system, such as `prefers-color-scheme` being `dark`.
+    /// Emulates a system preference, such as `prefers-color-scheme` with the value `dark`.
     ///
     /// # Errors
     /// As [`Browser::resize`].
@@ -123,7 +122,7 @@ impl Browser {
         self.devtools("Emulation.setEmulatedMedia", &features).map(drop)
     }
 
-    /// Lays the page out as for `print`, or for `screen` again.
+    /// Emulates the medium `print`, or `screen` again.
     ///
     /// # Errors
     /// As [`Browser::resize`].
@@ -131,7 +130,7 @@ impl Browser {
         self.devtools("Emulation.setEmulatedMedia", &json!({ "media": media })).map(drop)
     }
 
-    /// Sends a command of the Chrome DevTools Protocol and returns its answer.
+    /// Sends a command of the Chrome DevTools Protocol and returns the response.
     ///
     /// # Errors
     /// As [`Browser::resize`].
@@ -139,27 +138,26 @@ impl Browser {
         self.session.post("goog/cdp/execute", &json!({ "cmd": command, "params": parameters }))
     }
 
-    /// Runs the body of a function in the page and returns what it returns; a promise is waited for.
+    /// Runs the body of a function in the page and returns its result. Waits for promises.
     ///
     /// # Errors
-    /// [`BrowserError::Refused`] with what the page threw; [`BrowserError::Connection`].
+    /// [`BrowserError::Refused`] with the exception that the page threw; [`BrowserError::Connection`].
     pub fn eval(&self, body: &str) -> Result<Value, BrowserError> {
         self.session.post("execute/sync", &json!({ "script": body, "args": [] }))
     }
 
-    /// Waits until an expression is true in the page.
+    /// Waits until an expression is true in the page. Exceptions count as false.
     ///
     /// # Errors
-    /// [`BrowserError::Never`] after half a minute, with what the expression was last; what the page
-    /// throws meanwhile counts as false.
+    /// [`BrowserError::Never`] after 30 seconds, with the last value of the expression.
     pub fn wait_for(&self, expression: &str) -> Result<(), BrowserError> {
         let start = std::time::Instant::now();
         loop {
             let last = match self.eval(&format!("return ({expression})")) {
                 Ok(Value::Bool(true)) => return Ok(()),
                 Ok(value) => value.to_string(),
-                Err(fault @ BrowserError::Connection(_)) => return Err(fault),
-                Err(fault) => fault.to_string(),
+                Err(error @ BrowserError::Connection(_)) => return Err(error),
+                Err(error) => error.to_string(),
             };
             if start.elapsed() > driver::PATIENCE {
                 return Err(BrowserError::Never { expression: expression.to_owned(), last });
@@ -168,22 +166,22 @@ impl Browser {
         }
     }
 
-    /// All messages of the console since the start, oldest first; the browser's own complaints, such as
-    /// what a content-security policy has refused, are among them, but not that WebGL is slow in software.
+    /// All console messages since the start, oldest first, including those of the browser itself, such as violations of the
+    /// content-security policy, but without its warnings about slow WebGL in software.
     ///
     /// # Errors
-    /// [`BrowserError::Refused`] and [`BrowserError::Connection`].
+    /// [`BrowserError::Refused`], [`BrowserError::Connection`].
     pub fn console(&self) -> Result<Vec<Message>, BrowserError> {
         let mut logs = self.logs();
         logs.read_console(&self.session.post("se/log", &json!({ "type": "browser" }))?);
         Ok(logs.console.clone())
     }
 
-    /// All addresses asked for since the start, in order, those that were not found or not allowed too.
-    /// Nothing but the own machine is ever reached: names of others are not looked up.
+    /// All addresses requested since the start, in order, including those not found or blocked. The browser reaches this
+    /// machine only: other names are not resolved.
     ///
     /// # Errors
-    /// [`BrowserError::Refused`] and [`BrowserError::Connection`].
+    /// [`BrowserError::Refused`], [`BrowserError::Connection`].
     pub fn requests(&self) -> Result<Vec<String>, BrowserError> {
         let mut logs = self.logs();
         logs.read_events(&self.session.post("se/log", &json!({ "type": "performance" }))?);

@@ -1,21 +1,21 @@
-//! What a page has said and asked for.
+//! Console messages and network requests of a page.
 
 use serde_json::Value;
 
-/// One message of the console.
+/// A console message.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Message {
     /// `SEVERE`, `WARNING`, `INFO` or `DEBUG`.
     pub level: String,
-    /// Where and what.
+    /// Source and text.
     pub text: String,
 }
 
-/// What the browser says of itself where there is no graphics card: it reads every WebGL picture back to show it,
-/// whatever the page does, which is slow. A test holds it to that.
+/// Warning of the browser without a graphics card, where it reads back every WebGL frame to show it, whatever the page
+/// does.
 const SOFTWARE: [&str; 2] = ["GL Driver Message (OpenGL, Performance", "GPU stall due to ReadPixels"];
 
-/// Everything since the start; the driver hands out each entry once.
+/// All entries since the start. The driver returns each entry only once.
 #[derive(Debug, Default)]
 pub(crate) struct Logs {
     pub(crate) console: Vec<Message>,
@@ -25,14 +25,14 @@ pub(crate) struct Logs {
 impl Logs {
     pub(crate) fn read_console(&mut self, entries: &Value) {
         let text = |entry: &Value, key: &str| entry[key].as_str().unwrap_or_default().to_owned();
-        let is_ours = |entry: &&Value| {
+        let is_relevant = |entry: &&Value| {
             !entry["message"].as_str().is_some_and(|text| SOFTWARE.iter().all(|part| text.contains(part)))
         };
-        let entries = entries.as_array().into_iter().flatten().filter(is_ours);
+        let entries = entries.as_array().into_iter().flatten().filter(is_relevant);
         self.console.extend(entries.map(|e| Message { level: text(e, "level"), text: text(e, "message") }));
     }
 
-    /// Reads the addresses from events of the network.
+    /// Reads the addresses from network events.
     pub(crate) fn read_events(&mut self, entries: &Value) {
         for entry in entries.as_array().into_iter().flatten() {
             let event: Value = entry["message"]
@@ -58,7 +58,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn entries_are_kept_in_order_and_others_passed_over() {
+    fn entries_are_kept_in_order_and_others_ignored() {
         let mut logs = Logs::default();
         logs.read_console(
             &json!([{ "level": "SEVERE", "message": "a" }, { "level": "INFO", "message": "b" }]),

@@ -1,18 +1,18 @@
-//! Where the programs are.
+//! Locations of the programs.
 
 use std::env;
 use std::path::PathBuf;
 
 use crate::BrowserError;
 
-/// The browser and its driver.
+/// Paths of the browser and its driver.
 pub(crate) struct Programs {
     pub(crate) browser: PathBuf,
     pub(crate) driver: PathBuf,
 }
 
 impl Programs {
-    /// Looks for them in `PATH`.
+    /// Searches `PATH`.
     pub(crate) fn find() -> Result<Self, BrowserError> {
         let folders: Vec<PathBuf> = env::var_os("PATH").iter().flat_map(env::split_paths).collect();
         Self::find_in(&folders)
@@ -35,13 +35,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn what_is_not_installed_is_named_with_the_remedy() {
+    fn missing_programs_are_named_with_the_remedy() {
         let folder = tempfile::tempdir().unwrap();
         let find = || Programs::find_in(&[folder.path().join("absent"), folder.path().to_owned()]);
         for name in ["chromium", "chromedriver"] {
-            let fault = find().err().unwrap();
-            assert!(matches!(fault, BrowserError::Missing { program } if program == name), "{fault}");
-            assert!(fault.to_string().contains("apt-get install"));
+            let error = find().err().unwrap();
+            assert!(matches!(error, BrowserError::Missing { program } if program == name), "{error}");
+            assert!(error.to_string().contains("apt-get install"));
             std::fs::write(folder.path().join(name), "").unwrap();
         }
         let found = find().unwrap();

@@ -8,14 +8,14 @@ use ureq::{Agent, Body, http::Response};
 
 use crate::BrowserError;
 
-/// One window of one browser, closed when dropped.
+/// A browser window, closed when dropped.
 pub(crate) struct Session {
     agent: Agent,
     address: String,
 }
 
-/// Headless, without a sandbox (containers have none to give), with WebGL in software, and silent: nothing
-/// of its own goes to the network, and no name but that of this machine is looked up.
+/// Headless, without a sandbox (containers do not provide one), with WebGL in software, and without network access of its
+/// own: only names of this machine are resolved.
 const ARGUMENTS: [&str; 13] = [
     "--headless=new",
     "--no-sandbox",
@@ -60,7 +60,7 @@ impl Session {
         Ok(session)
     }
 
-    /// Sends a command and returns the `value` of the answer.
+    /// Sends a command and returns the `value` of the response.
     pub(crate) fn post(&self, command: &str, body: &Value) -> Result<Value, BrowserError> {
         self.send(&format!("/{command}"), body)
     }
@@ -85,11 +85,11 @@ impl Drop for Session {
 }
 
 fn value(command: &str, answer: Result<Response<Body>, ureq::Error>) -> Result<Value, BrowserError> {
-    let lost = |fault: ureq::Error| BrowserError::Connection(format!("{command}: {fault}"));
+    let lost = |error: ureq::Error| BrowserError::Connection(format!("{command}: {error}"));
     let mut answer = answer.map_err(lost)?;
     let text = answer.body_mut().with_config().limit(1 << 30).read_to_string().map_err(lost)?;
     let mut json: Value = serde_json::from_str(&text)
-        .map_err(|fault| BrowserError::Connection(format!("{command}: {fault} in {text}")))?;
+        .map_err(|error| BrowserError::Connection(format!("{command}: {error} in {text}")))?;
     let value = json["value"].take();
     match value["error"].as_str() {
         Some(kind) if !answer.status().is_success() => Err(BrowserError::Refused {
@@ -106,10 +106,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn nobody_at_the_other_end_is_an_error() {
-        // Bound and let go at once: nothing listens there.
+    fn a_closed_port_is_an_error() {
+        // Bound and closed at once, so nothing listens there.
         let port = std::net::TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
-        let fault = Session::new(port, Path::new("x"), Path::new("y")).err().unwrap();
-        assert!(matches!(fault, BrowserError::Connection(_)), "{fault}");
+        let error = Session::new(port, Path::new("x"), Path::new("y")).err().unwrap();
+        assert!(matches!(error, BrowserError::Connection(_)), "{error}");
     }
 }

@@ -1,4 +1,4 @@
-//! The harness on a page of its own: what it is trusted to see, it must see.
+//! Tests of the harness on pages of its own.
 
 use std::fs;
 use std::path::Path;
@@ -14,13 +14,13 @@ const PAGE: &str = r#"<!doctype html><meta charset="utf-8"><meta name="viewport"
 const seen = window.seen = [];
 const pad = document.querySelector('#pad');
 for (const kind of ['pointerdown', 'pointermove', 'pointerup']) pad.addEventListener(kind, e => seen.push([kind, e.clientX, e.clientY]));
-pad.addEventListener('drop', e => { e.preventDefault(); e.dataTransfer.files[0].text().then(t => { window.dropped = e.dataTransfer.files[0].name + ':' + t; }); });
+pad.addEventListener('drop', e => { e.preventDeerror(); e.dataTransfer.files[0].text().then(t => { window.dropped = e.dataTransfer.files[0].name + ':' + t; }); });
 document.querySelector('#b').addEventListener('click', () => console.warn('pressed'));
 document.querySelector('#file').addEventListener('change', e => e.target.files[0].text().then(t => { window.given = t; }));
 </script>"#;
 
 #[test]
-fn a_page_is_driven_and_watched() {
+fn actions_reach_the_page_and_its_messages_are_recorded() {
     let Some(browser) = Browser::start() else { return };
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("page.html");
@@ -60,7 +60,7 @@ fn a_page_is_driven_and_watched() {
     let console = browser.console().unwrap();
     assert_eq!((console.len(), console[0].level.as_str()), (1, "WARNING"), "{console:?}");
     assert!(console[0].text.contains("pressed"));
-    assert_eq!(browser.console().unwrap(), console, "nothing is forgotten");
+    assert_eq!(browser.console().unwrap(), console, "messages are kept");
 
     let picture = folder.path().join("picture.png");
     for take in [Browser::screenshot, Browser::screenshot_all] {
@@ -70,7 +70,7 @@ fn a_page_is_driven_and_watched() {
 }
 
 #[test]
-fn requests_and_refusals_are_seen_and_other_machines_not_reached() {
+fn requests_and_errors_are_recorded_and_other_machines_are_unreachable() {
     let Some(browser) = Browser::start() else { return };
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("page.html");
@@ -88,13 +88,13 @@ fn requests_and_refusals_are_seen_and_other_machines_not_reached() {
     assert!(console.iter().any(|m| m.text.contains("ERR_NAME_NOT_RESOLVED")), "{console:?}");
     assert!(console.iter().any(|m| m.text.contains("Content Security Policy")), "{console:?}");
 
-    let fault = browser.eval("throw new Error('of the page')").unwrap_err();
+    let error = browser.eval("throw new Error('of the page')").unwrap_err();
     assert!(
-        matches!(&fault, BrowserError::Refused { .. }) && fault.to_string().contains("of the page"),
-        "{fault}"
+        matches!(&error, BrowserError::Refused { .. }) && error.to_string().contains("of the page"),
+        "{error}"
     );
-    let fault = browser.upload("body", &[Path::new("/no/such/file")]).unwrap_err();
-    assert!(matches!(fault, BrowserError::Start(_)), "{fault}");
+    let error = browser.upload("body", &[Path::new("/no/such/file")]).unwrap_err();
+    assert!(matches!(error, BrowserError::Start(_)), "{error}");
     browser.eval("throw 1").unwrap_err();
 }
 
@@ -102,7 +102,7 @@ fn requests_and_refusals_are_seen_and_other_machines_not_reached() {
 fn meshes_are_drawn_without_a_graphics_card() {
     let Some(browser) = Browser::start() else { return };
     browser.open("about:blank").unwrap();
-    // Some frames of a scene that is seen and that the page never reads back.
+    // Several frames that the page never reads back.
     let drawn = "const canvas = document.body.appendChild(document.createElement('canvas'));
         const gl = canvas.getContext('webgl');
         if (!gl) return false;

@@ -1,4 +1,4 @@
-//! What the embedding of distances must be, whatever they were measured on.
+//! Laws of embeddings, on distances of meshes and through the whole pipeline.
 
 use canonform::{
     Bandwidth, EmbedMethod, EmbedOptions, RpiAlpha, Samples, Sampling, SmacofOptions, StressChoice,
@@ -27,7 +27,7 @@ fn straight_distances(points: &[nalgebra::Point3<f64>]) -> DistanceMatrix {
 }
 
 #[test]
-fn points_in_space_come_back_from_a_few_columns_at_rank_five() {
+fn points_in_space_are_exact_from_a_few_columns_at_rank_five() {
     let points = shapes::torus(20, 13, 2.0, 0.7).positions;
     let distances = straight_distances(&points);
     for n in [5, 10, 40] {
@@ -52,7 +52,7 @@ fn a_rank_too_small_for_space_is_not_exact() {
 }
 
 #[test]
-fn all_points_as_samples_is_classical_scaling() {
+fn all_points_as_samples_equal_classical_scaling() {
     let mesh = shapes::torus(14, 9, 2.0, 0.7);
     let solver = marching().prepare(&mesh.intrinsic()).unwrap();
     let distances = solver.distance_matrix().unwrap();
@@ -68,7 +68,7 @@ fn all_points_as_samples_is_classical_scaling() {
 }
 
 #[test]
-fn more_samples_come_closer_to_the_optimum_and_never_below_it() {
+fn more_samples_approach_the_optimal_stress_from_above() {
     let mesh = body(Family::Cat);
     let solver = marching().prepare(&mesh.intrinsic()).unwrap();
     let distances = solver.distance_matrix().unwrap();
@@ -84,7 +84,7 @@ fn more_samples_come_closer_to_the_optimum_and_never_below_it() {
 }
 
 #[test]
-fn the_estimated_stress_brackets_the_exact_one() {
+fn the_interval_of_the_estimated_stress_contains_the_exact_one() {
     let mesh = body(Family::Cat);
     let stress = |choice| {
         let options = EmbedOptions { stress: choice, ..EmbedOptions::default() };
@@ -100,7 +100,7 @@ fn the_estimated_stress_brackets_the_exact_one() {
 }
 
 #[test]
-fn methods_of_the_pipeline_agree_on_a_flat_sheet() {
+fn exact_methods_reproduce_a_flat_sheet() {
     let sheet = shapes::grid(17, 12, 0.5);
     let flat = straight_distances(&sheet.positions);
     let descent = SmacofOptions::default();
@@ -121,7 +121,7 @@ fn methods_of_the_pipeline_agree_on_a_flat_sheet() {
     }
 }
 
-/// Every method, with every choice that does not depend on the unit of length.
+/// All methods, with all options that do not depend on the unit of length.
 fn methods() -> Vec<EmbedMethod> {
     let regularizations = [
         Regularization::LowRank { rank: None },
@@ -140,7 +140,7 @@ fn methods() -> Vec<EmbedMethod> {
 }
 
 #[test]
-fn the_unit_of_length_changes_no_method() {
+fn no_method_depends_on_the_unit_of_length() {
     let mesh = body(Family::Cat);
     let embed = |mesh: &_, method: &EmbedMethod, sampling| {
         let (stress, samples) = (StressChoice::Estimate, Samples::Count(100));
@@ -170,7 +170,7 @@ fn the_unit_of_length_changes_no_method() {
 }
 
 #[test]
-fn no_method_is_below_classical_scaling_and_straight_lines_of_smacof_fit_best() {
+fn classical_scaling_has_the_lowest_stress_and_smacof_the_lowest_normalized_stress() {
     let mesh = body(Family::Cat);
     let solver = marching().prepare(&mesh.intrinsic()).unwrap();
     let distances = solver.distance_matrix().unwrap();
@@ -189,22 +189,22 @@ fn no_method_is_below_classical_scaling_and_straight_lines_of_smacof_fit_best() 
     }
 }
 
-/// What the paper's Fig. 5 shows: noise of marched distances makes the small eigenvalues harmful.
+/// Fig. 5 of the paper: with errors in the distances, small eigenvalues are harmful.
 #[test]
-fn the_best_rank_lies_inside_and_beats_both_cur_and_all_eigenpairs() {
+fn the_best_rank_is_between_the_extremes_and_beats_cur() {
     let mesh = body(Family::Cat);
     let solver = marching().prepare(&mesh.intrinsic()).unwrap();
     let distances = solver.distance_matrix().unwrap();
     let samples = farthest_point_sampling(solver.as_ref(), 60, FirstSample::default()).unwrap();
-    let affinity = Reconstruction::new(&samples, &distances).unwrap();
-    let error = |regularization| affinity.error(regularization).unwrap().relative;
+    let reconstruction = Reconstruction::new(&samples, &distances).unwrap();
+    let error = |regularization| reconstruction.error(regularization).unwrap().relative;
     let ranks = [5, 10, 20, 30, 40, 50, 60];
     let low_rank = ranks.map(|n1| error(Regularization::LowRank { rank: Some(n1) }));
     let cur = ranks.map(|n1| error(Regularization::Cur { rank: Some(n1) }));
     let lowest = |errors: [f64; 7]| errors.into_iter().fold(f64::INFINITY, f64::min);
-    println!("low-rank {low_rank:?}, CUR {cur:?}, best {:.1e}", affinity.best_projection().relative);
+    println!("low-rank {low_rank:?}, CUR {cur:?}, best {:.1e}", reconstruction.best_projection().relative);
     assert!(lowest(low_rank) < low_rank[0].min(low_rank[6]) / 2.0);
     assert!(lowest(low_rank) < lowest(cur));
-    assert!((low_rank[6] / cur[6] - 1.0).abs() < 1e-6, "both are the inverse of the whole sample matrix");
-    assert!(affinity.best_projection().relative < lowest(low_rank));
+    assert!((low_rank[6] / cur[6] - 1.0).abs() < 1e-6, "both invert the whole sample matrix");
+    assert!(reconstruction.best_projection().relative < lowest(low_rank));
 }

@@ -1,4 +1,4 @@
-//! What must change nothing: folding, moving, renumbering and, up to the unit, scaling.
+//! Invariance to folding, motions and renumbering, and up to the unit, to scaling.
 
 use canonform::{
     EmbedMethod, EmbedOptions, FirstSample, GeodesicMethod, MatchOptions, Normalization, PreparedForms,
@@ -18,7 +18,7 @@ fn few_samples() -> EmbedOptions {
     EmbedOptions { samples: Samples::Count(30), method: EmbedMethod::low_rank(8), ..EmbedOptions::default() }
 }
 
-/// A sheet of uneven triangles whose column 7 of vertices is straight, so that it can be folded.
+/// A sheet of irregular triangles with a straight column of vertices along which it can be folded.
 fn creased_sheet() -> (TriMesh, f64) {
     let (nx, ny, step, column) = (19, 14, 0.3, 7);
     let mut sheet = shapes::jittered_grid(nx, ny, step, 0.2, 5);
@@ -50,7 +50,7 @@ fn folding_along_a_mesh_line_changes_no_distance_and_no_embedding() {
 }
 
 #[test]
-fn a_regular_sheet_folds_as_well() {
+fn folding_a_regular_sheet_changes_no_distance() {
     let [flat, folded] = [0.0, 2.2].map(|angle| shapes::folded_sheet(15, 9, 0.7, 6, angle));
     for method in [marching(), GeodesicMethod::Dijkstra] {
         let [a, b] = [&folded, &flat].map(|mesh| columns(mesh, method, &all_vertices(mesh)));
@@ -69,14 +69,13 @@ fn a_rigid_motion_changes_no_form() {
         let form = form_pairs(&mesh, &options);
         for other in [turned, mirrored] {
             let gap = gap(form_pairs(&other, &options).as_slice(), form.as_slice());
-            println!("{}: forms of the moved and the resting mesh differ by {gap:.1e}", family.name());
+            println!("{}: forms of the moved and the original mesh differ by {gap:.1e}", family.name());
             assert!(gap < 1e-9, "{}: {gap:e}", family.name());
         }
     }
 }
 
-/// The mesh with its vertices renumbered and its faces in another order and rotation; vertex `v`
-/// becomes `number[v]`.
+/// The mesh with vertex `v` renumbered to `number[v]` and its faces in another order and rotation.
 fn renumbered(mesh: &TriMesh) -> (TriMesh, Vec<usize>) {
     let number = permutation(mesh.n_vertices());
     let mut positions = mesh.positions.clone();
@@ -92,7 +91,7 @@ fn renumbered(mesh: &TriMesh) -> (TriMesh, Vec<usize>) {
 }
 
 #[test]
-fn renumbering_renumbers_distances_and_form() {
+fn renumbering_permutes_distances_and_form() {
     for family in [Family::Cat, Family::David] {
         let mesh = body(family);
         let (other, number) = renumbered(&mesh);
@@ -124,7 +123,7 @@ fn scaled_pairs(pairs: &DistanceMatrix, factor: f64) -> Vec<f64> {
 }
 
 #[test]
-fn a_change_of_unit_changes_the_unit_alone() {
+fn scale_changes_only_the_unit() {
     let mesh = body(Family::Centaur);
     let solver = marching().prepare(&mesh.intrinsic()).unwrap();
     let distances = solver.distances(VertexId(5));
@@ -151,7 +150,7 @@ fn a_change_of_unit_changes_the_unit_alone() {
 }
 
 #[test]
-fn normalised_distances_between_forms_know_no_size() {
+fn normalised_form_distances_do_not_depend_on_size() {
     let meshes = [body(Family::Cat), body(Family::David)];
     let distances = |factor: f64| {
         let forms = meshes.iter().map(|mesh| {

@@ -1,6 +1,6 @@
-//! Whether everything that is built in may be: the licences of all packages against `deny.toml`.
+//! Checks the licences of all dependencies against `deny.toml`.
 //!
-//! `make deny` asks cargo-deny for the same and more; this needs no other program.
+//! `make deny` checks the same and more with cargo-deny; this test needs no other program.
 
 use std::fs;
 use std::process::Command;
@@ -9,7 +9,7 @@ use cargo_metadata::{Metadata, MetadataCommand};
 
 use crate::support::workspace_root;
 
-/// All packages that are built on this platform, without asking the registry.
+/// All packages that are built on this platform, without access to the registry.
 fn metadata() -> Metadata {
     let version = Command::new("rustc").arg("-vV").output().unwrap();
     let version = String::from_utf8(version.stdout).unwrap();
@@ -29,7 +29,7 @@ fn allowed() -> Vec<String> {
     list.iter().map(|licence| licence.as_str().unwrap().to_owned()).collect()
 }
 
-/// Whether an SPDX expression can be met: every part joined by AND has an allowed alternative.
+/// Whether an SPDX expression is satisfied: each part joined by AND has an allowed alternative.
 fn permits(expression: &str, allowed: &[String]) -> bool {
     let expression = expression.replace('/', " OR ");
     expression.split(" AND ").all(|part| {
@@ -39,7 +39,7 @@ fn permits(expression: &str, allowed: &[String]) -> bool {
 }
 
 #[test]
-fn expressions_are_read_as_they_are_meant() {
+fn licence_expressions_are_evaluated() {
     let allowed = ["MIT", "Unicode-3.0"].map(str::to_owned);
     for (expression, expected) in [
         ("MIT", true),

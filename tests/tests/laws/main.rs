@@ -1,9 +1,17 @@
-//! Laws that hold across crates, and what real meshes must come out as.
+//! Laws that hold across crates, and expected results on real meshes. One binary, so that everything is linked once.
 //!
-//! One binary, so that everything is linked once. The modules, from the house to its contents:
-//! `architecture` (which crate may know which), `licences` (what may come in), `marching` (distances), `embedding` (coordinates),
-//! `isometry` (what must change nothing), `threads` (the same bytes for any number of them),
-//! `signatures` (what tells bodies apart), `builtin` (the built-in dataset) and `real_meshes`, which is skipped without the meshes.
+//! | module | subject |
+//! |---|---|
+//! | `architecture` | which crate may depend on which |
+//! | `packaging` | whether all packages can be published |
+//! | `licences` | licences of dependencies |
+//! | `marching` | distances by fast marching |
+//! | `embedding` | embeddings through the whole pipeline |
+//! | `isometry` | invariance to folding, motions, renumbering and units |
+//! | `threads` | independence of the number of threads |
+//! | `signatures` | signatures of bodies |
+//! | `builtin` | the built-in dataset |
+//! | `real_meshes` | scans and TOSCA; skipped without the meshes |
 
 #[cfg(test)]
 mod architecture;
@@ -17,6 +25,8 @@ mod isometry;
 mod licences;
 #[cfg(test)]
 mod marching;
+#[cfg(test)]
+mod packaging;
 #[cfg(test)]
 mod real_meshes;
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! What fast marching must come out as on surfaces whose distances are known.
+//! Fast marching on surfaces with known distances.
 
 use canonform::GeodesicMethod;
 use datasets::Family;
@@ -11,7 +11,7 @@ use surface::{IntrinsicMesh, VertexId};
 
 use crate::support::{all_vertices, body, columns, marching};
 
-/// The largest error against straight lines, as a share of the size of a flat sheet.
+/// The largest error on a flat sheet, relative to the largest distance.
 fn error_on_plane(sheet: &TriMesh, source: usize, obtuse: ObtuseTreatment) -> f64 {
     let options = FastMarchingOptions { obtuse, ..FastMarchingOptions::default() };
     let solver = FastMarching::new(&sheet.intrinsic(), options);
@@ -20,15 +20,15 @@ fn error_on_plane(sheet: &TriMesh, source: usize, obtuse: ObtuseTreatment) -> f6
     crate::support::gap(&found, &straight)
 }
 
-/// Corners, a side, the middle and somewhere between.
+/// Three corners, the middle of a side, the centre, and one more vertex.
 fn sources(nx: usize, ny: usize) -> [usize; 6] {
     [0, nx - 1, nx * ny - 1, nx / 2, nx * (ny / 2) + nx / 2, 5 * nx + 3]
 }
 
 #[test]
-fn regular_sheets_are_exact_from_everywhere_whatever_their_angles() {
+fn regular_sheets_are_exact_for_any_angles_and_sources() {
     let (nx, ny) = (21, 17);
-    // From nearly equilateral triangles over right ones to obtuse ones of up to 150 degrees.
+    // Nearly equilateral, right and obtuse triangles, with angles up to 150 degrees.
     for shear in [-1.0, -0.5, -0.3, 0.0, 0.5, 1.0, 1.7] {
         let sheet = shapes::sheared_grid(nx, ny, 0.3, shear);
         for source in sources(nx, ny) {
@@ -41,7 +41,7 @@ fn regular_sheets_are_exact_from_everywhere_whatever_their_angles() {
 }
 
 #[test]
-fn left_alone_obtuse_sheets_are_nearly_exact() {
+fn sheets_with_untreated_obtuse_angles_are_nearly_exact() {
     let (nx, ny) = (21, 17);
     for (shear, limit) in [(0.0, 1e-12), (-0.5, 1e-12), (0.5, 3e-6), (1.0, 3e-6), (1.7, 3e-6)] {
         let sheet = shapes::sheared_grid(nx, ny, 0.3, shear);
@@ -52,9 +52,9 @@ fn left_alone_obtuse_sheets_are_nearly_exact() {
     }
 }
 
-/// In uneven triangles a corner may be passed before its base, and is corrected afterwards.
+/// In irregular triangles a vertex may be finalized before the opposite edge, and is corrected afterwards.
 #[test]
-fn uneven_sheets_are_exact_as_well() {
+fn irregular_sheets_are_exact() {
     let (nx, ny) = (21, 17);
     for (jitter, seed) in [(0.1, 1), (0.1, 2), (0.2, 1), (0.2, 2), (0.24, 1), (0.24, 3)] {
         let sheet = shapes::jittered_grid(nx, ny, 0.3, jitter, seed);
@@ -70,10 +70,9 @@ fn uneven_sheets_are_exact_as_well() {
     }
 }
 
-/// From one corner to the other triangles become ten thousand times larger: no width of the bands in which a
-/// front goes on suits all of them.
+/// Triangle sizes vary by a factor of ten thousand across the sheet, so no single bucket width suits all of them.
 #[test]
-fn graded_sheets_are_exact_whatever_the_size_of_their_triangles() {
+fn graded_sheets_are_exact_for_all_triangle_sizes() {
     let (nx, ny) = (51, 51);
     for jitter in [0.0, 0.2] {
         let mut sheet = shapes::jittered_grid(nx, ny, 1.0, jitter, 4);
@@ -88,7 +87,7 @@ fn graded_sheets_are_exact_whatever_the_size_of_their_triangles() {
 }
 
 #[test]
-fn errors_halve_with_the_edges_of_a_sphere() {
+fn errors_on_spheres_fall_with_edge_length() {
     let errors: Vec<f64> = (2..=5)
         .map(|level| {
             let sphere = shapes::icosphere(level);
@@ -100,32 +99,32 @@ fn errors_halve_with_the_edges_of_a_sphere() {
             (0..found.len()).map(|v| (found[v] - arc(v)).abs()).sum::<f64>() / found.len() as f64
         })
         .collect();
-    println!("mean errors on spheres of halving edges: {errors:?}");
+    println!("mean errors on spheres with halved edges: {errors:?}");
     for pair in errors.windows(2) {
         assert!(pair[1] < 0.6 * pair[0], "{errors:?}");
     }
 }
 
 #[test]
-fn distances_grow_no_faster_than_edges_and_stay_below_paths_along_them() {
+fn distances_are_1_lipschitz_along_edges_and_at_most_those_of_dijkstra() {
     for mesh in [body(datasets::Family::Cat), shapes::icosphere(4), shapes::sheared_grid(20, 15, 1.0, 1.7)] {
         let sources: Vec<VertexId> = (0..10).map(|i| VertexId::from(i * mesh.n_vertices() / 10)).collect();
         let surface = mesh.intrinsic();
         let marched = columns(&mesh, marching(), &sources);
-        let walked = columns(&mesh, GeodesicMethod::Dijkstra, &sources);
-        let slack = 1e-12 * walked.max();
+        let along_edges = columns(&mesh, GeodesicMethod::Dijkstra, &sources);
+        let slack = 1e-12 * along_edges.max();
         for s in 0..sources.len() {
             for (edge, ends) in surface.topology().edges().iter().enumerate() {
                 let [a, b] = ends.map(|v| marched[(v.index(), s)]);
                 assert!((a - b).abs() <= surface.edge_lengths()[edge] + slack);
             }
         }
-        assert!(marched.iter().zip(walked.iter()).all(|(m, w)| m.is_finite() && *m <= w + slack));
+        assert!(marched.iter().zip(along_edges.iter()).all(|(m, w)| m.is_finite() && *m <= w + slack));
     }
 }
 
 #[test]
-fn other_pieces_are_infinitely_far_and_nothing_else_is() {
+fn exactly_the_other_components_are_at_infinite_distance() {
     let parts = [shapes::icosphere(2), shapes::grid(6, 5, 1.0), shapes::torus(8, 6, 2.0, 0.5)];
     let whole = shapes::disjoint(&parts);
     let mut start = 0;
@@ -144,7 +143,7 @@ fn other_pieces_are_infinitely_far_and_nothing_else_is() {
 }
 
 #[test]
-fn there_is_nearly_as_far_as_back() {
+fn distances_are_nearly_symmetric() {
     let mesh = body(Family::David);
     let d = columns(&mesh, marching(), &all_vertices(&mesh));
     let (longest, n_pairs) = (d.max(), (d.nrows() * (d.nrows() - 1)) as f64);
@@ -154,11 +153,13 @@ fn there_is_nearly_as_far_as_back() {
         total += 2.0 * (d[(i, j)] - d[(j, i)]).abs() / d[(i, j)].max(d[(j, i)]);
     }
     let mean = total / n_pairs;
-    println!("there and back differ by {mean:.1e} on average, by {worst:.1e} of the longest way at most");
+    println!(
+        "the two directions differ by {mean:.1e} on average, at most by {worst:.1e} of the largest distance"
+    );
     assert!(mean < 0.006 && worst < 0.03, "{mean} {worst}");
 }
 
-/// A solver that has to find all distances from each sample, as Procedure 1 of the paper says.
+/// A solver without pruning, which computes all distances from each sample as in Procedure 1 of the paper.
 #[derive(Debug)]
 struct Unpruned<'a>(&'a dyn DistanceSolver);
 
@@ -200,7 +201,7 @@ impl PrunedSolver for Careless<'_> {
     }
 }
 
-/// Asserts that pruned fronts, and careless ones, choose the samples of Procedure 1, with the same distances.
+/// Asserts that pruned fronts, even careless ones, choose the samples of Procedure 1 with the same distances.
 pub(crate) fn pruning_changes_nothing(name: &str, surface: &IntrinsicMesh, n: usize) {
     let solver = FastMarching::new(surface, FastMarchingOptions::default());
     let threads = rayon::ThreadPoolBuilder::new().num_threads(2).build().unwrap();
@@ -215,7 +216,7 @@ pub(crate) fn pruning_changes_nothing(name: &str, surface: &IntrinsicMesh, n: us
 }
 
 #[test]
-fn pruned_fronts_choose_the_samples_of_full_ones() {
+fn pruned_fronts_choose_the_same_samples_as_full_fronts() {
     for family in [Family::Cat, Family::Centaur, Family::David] {
         pruning_changes_nothing(family.name(), &body(family).intrinsic(), 200);
     }

@@ -1,7 +1,7 @@
-//! What real meshes must come out as: scans and the animals of TOSCA.
+//! Expected results on real meshes: scans and TOSCA.
 //!
-//! They are not part of the repository. Their folder is named by `CANONFORM_DATA`, else it is
-//! `../shared/data` beside the workspace; without it these tests say that they are skipped.
+//! The meshes are not part of the repository. Their folder is `CANONFORM_DATA`, or `../shared/data` next to the workspace.
+//! Without it the tests are skipped and print so.
 
 use std::path::{Path, PathBuf};
 
@@ -18,14 +18,14 @@ use surface::{IntrinsicMesh, VertexId};
 
 use crate::support::{marching, workspace_root};
 
-/// The folder of real meshes, or a line that says that the test is skipped.
+/// The folder of real meshes. Prints that the test is skipped if it does not exist.
 pub(crate) fn data(test: &str) -> Option<PathBuf> {
     let folder = std::env::var_os("CANONFORM_DATA")
         .map_or_else(|| workspace_root().join("../shared/data"), PathBuf::from);
     if folder.is_dir() {
         return Some(folder);
     }
-    println!("skipped {test}: no folder {}; name one in CANONFORM_DATA", folder.display());
+    println!("skipped {test}: no folder {}; set CANONFORM_DATA", folder.display());
     None
 }
 
@@ -43,8 +43,8 @@ fn read_npy<T: npyz::Deserialize>(path: &Path) -> Vec<T> {
     npyz::NpyFile::new(std::fs::File::open(path).unwrap()).unwrap().into_vec().unwrap()
 }
 
-/// Mean error of fast marching as a share of the exact distance, over all vertices but the source,
-/// and the largest beyond the ring around the source.
+/// Mean relative error of fast marching over all vertices except the source, and the largest outside the one-ring of the
+/// source.
 fn errors(data: &Path, name: &str, surface: &IntrinsicMesh) -> (f64, f64) {
     let exact = |what| data.join("exact").join(format!("{name}-{what}.npy"));
     let sources: Vec<u32> = read_npy(&exact("sources"));
@@ -69,23 +69,31 @@ fn errors(data: &Path, name: &str, surface: &IntrinsicMesh) -> (f64, f64) {
 }
 
 #[test]
-fn marching_is_close_to_exact_distances() {
-    let Some(data) = data("marching against exact distances") else { return };
+fn fast_marching_is_close_to_exact_distances() {
+    let Some(data) = data("fast marching against exact distances") else { return };
     for (name, limit) in [("armadillo", 0.0025), ("spot", 0.005)] {
         let surface = read(&data.join("single").join(format!("{name}.obj")));
         let (mean, worst) = errors(&data, name, &surface.intrinsic);
-        println!("{name}: mean error {:.3} %, worst beyond the ring {:.2} %", 100.0 * mean, 100.0 * worst);
+        println!(
+            "{name}: mean error {:.3} %, worst outside the one-ring {:.2} %",
+            100.0 * mean,
+            100.0 * worst
+        );
         assert!(mean <= limit, "{name}: {mean}");
     }
     for name in ["cat0", "cat1", "centaur1", "horse0", "wolf0"] {
         let surface = tosca(&data, name);
         let (mean, worst) = errors(&data, name, &surface.intrinsic);
-        println!("{name}: mean error {:.3} %, worst beyond the ring {:.2} %", 100.0 * mean, 100.0 * worst);
+        println!(
+            "{name}: mean error {:.3} %, worst outside the one-ring {:.2} %",
+            100.0 * mean,
+            100.0 * worst
+        );
         assert!(mean <= 0.004 && worst <= 0.1, "{name}: {mean} {worst}");
     }
 }
 
-/// Shares by which the stress of NMDS may exceed that of classical scaling.
+/// The allowed relative excess of the stress of NMDS over that of classical scaling.
 struct Excess {
     ten_samples: f64,
     hundred_samples: f64,
@@ -111,17 +119,17 @@ fn near_optimal_stress(name: &str, allowed: &Excess) {
 }
 
 #[test]
-fn few_samples_of_a_man_come_close_to_classical_scaling() {
+fn stress_of_david_is_near_the_optimum() {
     near_optimal_stress("david0", &Excess { ten_samples: 0.02, hundred_samples: 0.002 });
 }
 
 #[test]
-fn few_samples_of_a_cat_come_close_to_classical_scaling() {
+fn stress_of_a_cat_is_near_the_optimum() {
     near_optimal_stress("cat0", &Excess { ten_samples: 0.2, hundred_samples: 0.002 });
 }
 
 #[test]
-fn a_mesh_whose_faces_were_lost_is_named() {
+fn a_mesh_without_faces_is_an_error_that_names_the_file() {
     let Some(data) = data("the damaged mesh") else { return };
     let path = data.join("tosca-lowres/victoria14.vert");
     let message = Surface::read(&path, &RepairOptions::default()).unwrap_err().to_string();
@@ -130,7 +138,7 @@ fn a_mesh_whose_faces_were_lost_is_named() {
 }
 
 #[test]
-fn animals_find_their_kind() {
+fn canonical_forms_of_animals_retrieve_their_class() {
     let Some(data) = data("three classes of TOSCA") else { return };
     let names = ["cat0", "cat1", "cat2", "centaur0", "centaur1", "centaur2", "david0", "david1", "david10"];
     let options = EmbedOptions { stress: StressChoice::Skip, ..EmbedOptions::default() };
@@ -146,25 +154,24 @@ fn animals_find_their_kind() {
         let prepared = PreparedForms::new(&forms, normalization).unwrap();
         let distances = form_distances(&prepared, &MatchOptions::default(), &()).unwrap();
         let scores = evaluate(&distances, &labels, 1).unwrap();
-        println!("{normalization:?}: NN {}, mAP {:.4}", scores.nn, scores.map);
-        assert_eq!(scores.nn, 1.0, "{normalization:?}");
+        println!("{normalization:?}: NN {}, mAP {:.4}", scores.mean.nn, scores.mean.map);
+        assert_eq!(scores.mean.nn, 1.0, "{normalization:?}");
     }
 }
 
 #[test]
-fn pruned_fronts_choose_the_samples_of_full_ones_on_real_meshes() {
+fn pruned_fronts_choose_the_same_samples_on_real_meshes() {
     let Some(data) = data("pruned farthest point sampling") else { return };
     for name in ["cat0", "david0", "centaur3", "horse5", "wolf1", "michael2"] {
         crate::marching::pruning_changes_nothing(name, &tosca(&data, name).intrinsic, 100);
     }
 }
 
-/// Pairs of cats, centaurs, davids and dogs: how far two poses of one are apart, and two animals.
 #[test]
-fn two_poses_of_an_animal_are_one_shape_and_two_animals_are_not() {
-    let Some(data) = data("two_poses_of_an_animal_are_one_shape_and_two_animals_are_not") else { return };
+fn verdicts_distinguish_poses_from_animals() {
+    let Some(data) = data("verdicts on poses and animals") else { return };
     let shapes = list_shapes(&data.join("tosca-lowres"), None).unwrap();
-    // Every other pose: all of them give the same answer in four times as long.
+    // Every other pose; all poses give the same result but take four times as long.
     let classes = ["cat", "centaur", "david", "dog"];
     let shapes: Vec<_> =
         shapes.into_iter().filter(|s| classes.contains(&s.label.as_str())).step_by(2).collect();
@@ -180,7 +187,10 @@ fn two_poses_of_an_animal_are_one_shape_and_two_animals_are_not() {
     let distances: Vec<_> = pairs.par_iter().map(distance).collect();
     let of = |same| distances.iter().filter(move |d| d.0 == same).map(|d| d.1.combined);
     let (farthest, nearest) = (of(true).fold(0.0, f64::max), of(false).fold(f64::INFINITY, f64::min));
-    println!("{} pairs: one animal up to {farthest:.2} apart, two from {nearest:.2}", pairs.len());
+    println!(
+        "{} pairs: poses of one animal differ by up to {farthest:.2}, animals by at least {nearest:.2}",
+        pairs.len()
+    );
     assert!(distances.iter().all(|(same, distance)| distance.is_same() == *same));
     assert!(nearest > 2.0 * farthest, "{farthest} {nearest}");
 }

@@ -1,4 +1,4 @@
-//! Signatures: blind to poses and triangulations, sharp on bodies, fit for any mesh.
+//! Signatures depend little on pose and triangulation, distinguish bodies, and exist for any mesh.
 
 use canonform::{
     DescribeOptions, ShapeDescription, SignatureKind, Surface, describe, describe_surface, rerank,
@@ -15,7 +15,7 @@ fn fused_distance(a: &ShapeDescription, b: &ShapeDescription) -> f64 {
     a.fused.iter().zip(&b.fused).map(sq).sum::<f64>().sqrt()
 }
 
-/// Three poses of each family, each triangulated on its own and at another resolution, class by class.
+/// Three poses of each family, class by class, each with its own triangulation and resolution.
 fn described() -> Vec<ShapeDescription> {
     let shape = |i: usize| {
         let (family, pose) = (Family::all()[i / 3], i % 3);
@@ -27,7 +27,7 @@ fn described() -> Vec<ShapeDescription> {
 }
 
 #[test]
-fn poses_and_triangulations_are_nearer_than_other_bodies_by_every_signature() {
+fn every_signature_separates_bodies_more_than_poses_and_triangulations() {
     let shapes = described();
     for kind in SignatureKind::ALL {
         let of = |i: usize| shapes[i].signature(kind).unwrap();
@@ -42,7 +42,7 @@ fn poses_and_triangulations_are_nearer_than_other_bodies_by_every_signature() {
 }
 
 #[test]
-fn the_first_answers_are_of_the_same_body() {
+fn the_nearest_shapes_are_poses_of_the_same_body() {
     let shapes = described();
     let forms: Vec<_> = shapes.iter().map(|shape| shape.prepare().unwrap()).collect();
     for query in 0..9 {
@@ -69,16 +69,16 @@ fn a_description_does_not_depend_on_threads() {
 }
 
 #[test]
-fn dirty_real_meshes_are_described() {
-    let Some(folder) = data("dirty_real_meshes_are_described") else { return };
-    // Components, boundaries, edges of three faces, obtuse triangles.
+fn real_meshes_with_defects_have_signatures() {
+    let Some(folder) = data("signatures of meshes with defects") else { return };
+    // Several components, boundaries, edges with three faces, obtuse triangles.
     for name in ["gorilla0", "seahorse0", "lioness0", "shark0", "david0"] {
         let surface =
             Surface::read(&folder.join("tosca-lowres").join(format!("{name}.vert")), &Default::default())
                 .unwrap();
         let found = describe_surface(&surface, &DescribeOptions::default()).unwrap();
         assert!(found.fused.iter().all(|x| x.is_finite()), "{name}");
-        // By Weyl's law all values of ShapeDNA are near one.
+        // By Weyl's law the values of ShapeDNA are near one.
         let dna = &found.signature(SignatureKind::ShapeDna).unwrap().values;
         assert!(dna.iter().all(|x| (0.01..3.0).contains(x)), "{name}: {dna:?}");
     }

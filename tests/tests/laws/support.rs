@@ -1,4 +1,4 @@
-//! What several modules need.
+//! Helpers of several modules.
 
 use std::path::PathBuf;
 
@@ -9,18 +9,18 @@ use mesh::{RepairOptions, TriMesh};
 use nalgebra::Point3;
 use surface::VertexId;
 
-/// The folder of the workspace's manifest.
+/// The folder of the workspace.
 pub(crate) fn workspace_root() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("..")
 }
 
-/// A body with limbs: a shape of the built-in dataset with 1,000 vertices, no two distances alike.
+/// A shape of the built-in dataset with 1,000 vertices: a body with limbs, without symmetries.
 pub(crate) fn body(family: Family) -> TriMesh {
     let options = ArticulatedOptions { n_vertices: 1000, ..ArticulatedOptions::default() };
     articulated_shape(family, 1, &options).unwrap().mesh
 }
 
-/// A clean mesh as a surface.
+/// The surface of a clean mesh.
 pub(crate) fn surface(mesh: &TriMesh) -> Surface {
     Surface::new(mesh, &RepairOptions::default()).unwrap()
 }
@@ -29,17 +29,17 @@ pub(crate) fn embedded(mesh: &TriMesh, options: &EmbedOptions) -> Embedded {
     embed(&surface(mesh), options, &()).unwrap()
 }
 
-/// All distances between the points of the embedding of a mesh.
+/// All distances between the embedded points of a mesh.
 pub(crate) fn form_pairs(mesh: &TriMesh, options: &EmbedOptions) -> DistanceMatrix {
     embedded_distances(&embedded(mesh, options).embedding.coords).unwrap()
 }
 
-/// Fast marching as it is by default.
+/// Fast marching with default options.
 pub(crate) fn marching() -> GeodesicMethod {
     GeodesicMethod::default()
 }
 
-/// Distances from some vertices of a mesh, a column each.
+/// Distances from some vertices of a mesh, one column each.
 pub(crate) fn columns(mesh: &TriMesh, method: GeodesicMethod, sources: &[VertexId]) -> Matrix {
     method.prepare(&mesh.intrinsic()).unwrap().distance_columns(sources)
 }
@@ -48,7 +48,7 @@ pub(crate) fn all_vertices(mesh: &TriMesh) -> Vec<VertexId> {
     (0..mesh.n_vertices()).map(VertexId::from).collect()
 }
 
-/// The largest difference between two lists, as a share of the largest value of the second.
+/// The largest difference between two lists, relative to the largest magnitude in the second.
 pub(crate) fn gap(a: &[f64], b: &[f64]) -> f64 {
     assert_eq!(a.len(), b.len());
     let largest = b.iter().fold(0.0f64, |most, x| most.max(x.abs()));
@@ -60,7 +60,7 @@ pub(crate) fn moved(mesh: &TriMesh, motion: impl Fn(&Point3<f64>) -> Point3<f64>
     TriMesh { positions: mesh.positions.iter().map(motion).collect(), faces: mesh.faces.clone() }
 }
 
-/// A shuffle of `0..n`, always the same.
+/// A fixed random permutation of `0..n`.
 pub(crate) fn permutation(n: usize) -> Vec<usize> {
     let mut order: Vec<usize> = (0..n).collect();
     let mut state = 12345u64;

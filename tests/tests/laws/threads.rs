@@ -1,4 +1,4 @@
-//! The same bits for any number of threads.
+//! Results are bitwise equal for any number of threads.
 
 use canonform::{
     EmbedMethod, EmbedOptions, Embedded, MatchOptions, Normalization, PreparedForms, Samples, StressChoice,
@@ -17,7 +17,7 @@ fn bits(values: &[f64]) -> Vec<u64> {
     values.iter().map(|x| x.to_bits()).collect()
 }
 
-/// Everything of an embedding but the time it took.
+/// All results of an embedding except its timings.
 fn facts(result: &Embedded) -> (Vec<u64>, Vec<u64>, Vec<u32>, Option<[u64; 3]>) {
     let stress = result.report.stress.as_ref();
     (

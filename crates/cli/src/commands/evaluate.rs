@@ -31,12 +31,12 @@ pub(crate) fn evaluate(args: &EvaluateArgs, common: &Common) -> Result<ExitCode>
 
 fn table(scores: &Evaluation) -> String {
     let rows = [
-        ("nearest neighbour", scores.nn),
-        ("first tier", scores.ft),
-        ("second tier", scores.st),
-        ("E-measure", scores.e),
-        ("DCG", scores.dcg),
-        ("mAP", scores.map),
+        ("nearest neighbour", scores.mean.nn),
+        ("first tier", scores.mean.ft),
+        ("second tier", scores.mean.st),
+        ("E-measure", scores.mean.e),
+        ("DCG", scores.mean.dcg),
+        ("mAP", scores.mean.map),
         ("silhouette", scores.silhouette),
     ];
     let mut rows: Vec<_> = rows.into_iter().map(|(name, score)| (name, format!("{score:.4}"))).collect();

@@ -2,8 +2,8 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
-use assert_cmd::Command;
 use mesh::{TriMesh, io, shapes};
 use serde_json::Value;
 use tempfile::TempDir;

@@ -1,23 +1,90 @@
-//! Nearest vectors, of a hundred or of millions.
-//!
-//! Up to [`EXACT_LIMIT`](plan::EXACT_LIMIT) vectors all of them are measured. More are cut into about
-//! `2 √n` cells around centres (k-means; an inverted file), and a search looks into the cells nearest to
-//! the query. How many is found by trial when the index is finished: searches for some of its vectors
-//! must find 99.6 % of their ten nearest. Inside a cell everything is measured, in whole numbers: nothing
-//! is quantised.
-//!
-//! **Invariant.** What is found depends on the vectors alone: not on threads, on the order in which
-//! shapes came in, or on what the index held before.
+//! Search for the nearest vectors, in the file or in memory.
 
-mod kernels;
-mod kmeans;
-mod nearest;
-mod plan;
+mod on_file;
 mod searcher;
-mod stored;
-#[cfg(test)]
-mod testing;
-mod threshold;
 
-pub use searcher::{Found, NearShape, SearchMode, Searcher};
-pub(crate) use stored::{check, write};
+use crate::IndexError;
+use crate::vectors::{CellsHeader, padded};
+use retrieval::UnknownThreshold;
+
+pub use searcher::Searcher;
+
+/// How thoroughly to search.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum SearchMode {
+    /// Exactly in small indexes; in large ones, in as many cells as are needed to find nearly all neighbours.
+    #[default]
+    Auto,
+    /// Among all shapes.
+    Exact,
+}
+
+impl SearchMode {
+    /// Number of cells to scan.
+    fn probes(self, header: &CellsHeader) -> usize {
+        match self {
+            Self::Auto => header.probes,
+            Self::Exact => header.sizes.len(),
+        }
+    }
+}
+
+/// A shape found by a search.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NearShape {
+    /// Its name.
+    pub id: String,
+    /// Euclidean distance of its vector from the query.
+    pub distance: f64,
+}
+
+/// The result of a search.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Found {
+    /// Nearest first; ties by name.
+    pub shapes: Vec<NearShape>,
+    /// Number of shapes that were measured.
+    pub n_measured: usize,
+    /// Number of shapes in the index.
+    pub n_shapes: usize,
+    /// Expected share of the ten nearest that such a search finds, calibrated when the index was finished; 1 for an
+    /// exact search.
+    pub recall: f64,
+    /// A query whose nearest shape is farther belongs to no class of the index; `None` if the classes are too small to
+    /// tell.
+    pub threshold: Option<UnknownThreshold>,
+}
+
+impl Found {
+    fn new(mut shapes: Vec<NearShape>, n_measured: usize, header: &CellsHeader, mode: SearchMode) -> Self {
+        // Selected in single precision, sorted in double.
+        shapes.sort_by(|a, b| a.distance.total_cmp(&b.distance).then_with(|| a.id.cmp(&b.id)));
+        let is_exact = mode == SearchMode::Exact || header.is_exact();
+        Self {
+            shapes,
+            n_measured,
+            n_shapes: header.n,
+            recall: if is_exact { 1.0 } else { header.recall },
+            threshold: header.threshold,
+        }
+    }
+}
+
+/// Euclidean distance, summed in double precision in the order of the numbers.
+fn distance(a: &[f32], b: &[f32]) -> f64 {
+    a.iter().zip(b).map(|(x, y)| (f64::from(*x) - f64::from(*y)).powi(2)).sum::<f64>().sqrt()
+}
+
+/// Checks a query and pads it.
+fn padded_query(query: &[f32], header: &CellsHeader) -> Result<Vec<f32>, IndexError> {
+    if header.n > 0 && query.len() != header.dim {
+        let (found, expected) = (query.len(), header.dim);
+        return Err(IndexError::OtherLength { id: "the query".to_owned(), found, expected });
+    }
+    if !query.iter().all(|x| x.is_finite()) {
+        return Err(IndexError::BadVector { id: "the query".to_owned() });
+    }
+    let mut row = query.to_vec();
+    row.resize(padded(header.dim), 0.0);
+    Ok(row)
+}

@@ -1,14 +1,13 @@
-//! Bytes that changed are never believed.
+//! Changed bytes never become a result.
 
 use std::fs;
 use std::path::Path;
 
-use super::super::{Index, IndexError, IndexWriter, Job, Shape, verify};
 use super::{Folder, OPTIONS, export, shape};
-use crate::{SearchMode, Searcher};
+use crate::{Found, Index, IndexError, IndexWriter, Job, SearchMode, Searcher, Shape, verify};
 
-/// Everything that can be read of an index; an error, or what is true.
-fn read_all(path: &Path) -> Result<(Vec<Shape>, crate::Found, crate::Found), IndexError> {
+/// Reads everything that an index holds.
+fn read_all(path: &Path) -> Result<(Vec<Shape>, Found, Found), IndexError> {
     let index = Index::open(path)?;
     let mut shapes = Vec::new();
     index.each(|shape| {
@@ -22,75 +21,75 @@ fn read_all(path: &Path) -> Result<(Vec<Shape>, crate::Found, crate::Found), Ind
 }
 
 #[test]
-fn a_changed_byte_is_found_and_never_returned() {
+fn a_changed_byte_is_detected_and_never_returned() {
     let folder = Folder::new();
     let path = folder.index("a", 6);
     let bytes = fs::read(&path).unwrap();
     let truth = read_all(&path).unwrap();
     assert_eq!(verify(&path, || ()).unwrap().faults, Vec::<String>::new());
-    // All of the end, where every byte has a meaning of its own, and a sample of the rest.
+    // The start and the end completely, and a sample of the rest.
     let tail = bytes.len().saturating_sub(100)..bytes.len();
-    let places = (0..512).chain((0..bytes.len()).step_by(997)).chain(tail);
+    let positions = (0..512).chain((0..bytes.len()).step_by(997)).chain(tail);
     let copy = folder.path("b");
-    for place in places {
+    for at in positions {
         let mut changed = bytes.clone();
-        changed[place] ^= 1 << (place % 8);
+        changed[at] ^= 1 << (at % 8);
         fs::write(&copy, &changed).unwrap();
         match verify(&copy, || ()) {
-            Ok(found) => assert!(!found.faults.is_empty(), "byte {place} of {}", bytes.len()),
+            Ok(found) => assert!(!found.faults.is_empty(), "byte {at} of {}", bytes.len()),
             Err(IndexError::Damaged { .. } | IndexError::Foreign { .. }) => {}
-            Err(fault) => panic!("byte {place}: {fault}"),
+            Err(error) => panic!("byte {at}: {error}"),
         }
         match read_all(&copy) {
-            Ok(found) => assert_eq!(found, truth, "byte {place}"),
+            Ok(found) => assert_eq!(found, truth, "byte {at}"),
             Err(IndexError::Damaged { path, .. } | IndexError::Foreign { path }) => assert_eq!(path, copy),
-            Err(fault) => panic!("byte {place}: {fault}"),
+            Err(error) => panic!("byte {at}: {error}"),
         }
     }
 }
 
 #[test]
-fn a_file_that_is_cut_off_or_goes_on_is_damaged() {
+fn a_truncated_or_extended_file_is_damaged() {
     let folder = Folder::new();
     let bytes = fs::read(folder.index("a", 6)).unwrap();
     let copy = folder.path("b");
     for length in [bytes.len() - 1, bytes.len() - 40, bytes.len() / 2, 4096, 50, 4] {
         fs::write(&copy, &bytes[..length]).unwrap();
-        let fault = Index::open(&copy).unwrap_err();
-        assert!(matches!(fault, IndexError::Damaged { .. }), "{length}: {fault}");
+        let error = Index::open(&copy).unwrap_err();
+        assert!(matches!(error, IndexError::Damaged { .. }), "{length}: {error}");
     }
     fs::write(&copy, [bytes.as_slice(), b"\n"].concat()).unwrap();
     assert!(matches!(Index::open(&copy), Err(IndexError::Damaged { .. })));
-    // Bytes lost from the middle.
+    // Bytes missing from the middle.
     fs::write(&copy, [&bytes[..4096], &bytes[8192..]].concat()).unwrap();
     assert!(matches!(Index::open(&copy), Err(IndexError::Damaged { .. })));
 }
 
 #[test]
-fn what_is_no_index_is_never_overwritten() {
+fn other_files_are_never_overwritten() {
     let folder = Folder::new();
     for (name, content) in [("notes.txt", &b"dear diary"[..]), ("empty", b""), ("long", &[b'x'; 9000])] {
         let path = folder.path(name);
         fs::write(&path, content).unwrap();
-        for fault in [
+        for error in [
             Index::open(&path).unwrap_err(),
             verify(&path, || ()).unwrap_err(),
             IndexWriter::open(&path, Job::Build, Some(OPTIONS)).unwrap_err(),
         ] {
             assert!(
-                matches!(fault, IndexError::Foreign { .. }) && fault.to_string().contains(name),
-                "{fault}"
+                matches!(error, IndexError::Foreign { .. }) && error.to_string().contains(name),
+                "{error}"
             );
         }
         assert_eq!(fs::read(&path).unwrap(), content);
     }
-    let fault = Index::open(&folder.path(".")).unwrap_err();
-    assert!(matches!(fault, IndexError::Foreign { .. } | IndexError::Io { .. }));
+    let error = Index::open(&folder.path(".")).unwrap_err();
+    assert!(matches!(error, IndexError::Foreign { .. } | IndexError::Io { .. }));
     assert_eq!(folder.names(), ["empty", "long", "notes.txt"]);
 }
 
 #[test]
-fn a_version_to_come_is_named() {
+fn a_newer_format_is_reported() {
     let folder = Folder::new();
     let path = folder.index("a", 3);
     let mut bytes = fs::read(&path).unwrap();
@@ -101,17 +100,17 @@ fn a_version_to_come_is_named() {
     sum.update(&bytes[end - 16..]);
     bytes[end - 20..end - 16].copy_from_slice(&sum.finalize().to_le_bytes());
     fs::write(&path, &bytes).unwrap();
-    for fault in
+    for error in
         [Index::open(&path).unwrap_err(), IndexWriter::open(&path, Job::Build, Some(OPTIONS)).unwrap_err()]
     {
-        assert!(matches!(fault, IndexError::FutureVersion { found: 7, .. }), "{fault}");
-        assert!(fault.to_string().contains("format 7") && fault.to_string().contains("newer"), "{fault}");
+        assert!(matches!(error, IndexError::FutureVersion { found: 7, .. }), "{error}");
+        assert!(error.to_string().contains("format 7") && error.to_string().contains("newer"), "{error}");
     }
     assert_eq!(fs::read(&path).unwrap(), bytes);
 }
 
 #[test]
-fn a_damaged_index_is_not_built_upon() {
+fn a_damaged_index_cannot_be_extended() {
     let folder = Folder::new();
     let path = folder.index("a", 200);
     let whole = export(&path);

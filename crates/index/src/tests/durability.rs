@@ -2,8 +2,8 @@
 
 use std::fs;
 
-use super::super::{Index, IndexError, IndexWriter, Job, work_path};
 use super::{Folder, OPTIONS, export, shape};
+use crate::{Index, IndexError, IndexWriter, Job, work_path};
 
 #[test]
 fn readers_see_the_old_index_until_the_new_one_is_finished() {
@@ -15,22 +15,22 @@ fn readers_see_the_old_index_until_the_new_one_is_finished() {
     let meanwhile = Index::open(&path).unwrap();
     let index = writer.finish().unwrap();
     assert_eq!((early.len(), meanwhile.len(), index.len()), (5, 5, 6));
-    // Those who had it open still read what they had.
+    // Earlier readers still see the old state.
     assert!(early.entry(&shape(5).id).is_err());
     assert_eq!(early.vectors(&shape(4).id).unwrap(), shape(4).vectors);
     assert_eq!(Index::open(&path).unwrap().vectors(&shape(5).id).unwrap(), shape(5).vectors);
 }
 
 #[test]
-fn there_is_one_writer() {
+fn an_index_has_one_writer_at_a_time() {
     let folder = Folder::new();
     let path = folder.index("a", 5);
     let before = fs::read(&path).unwrap();
     let first = IndexWriter::open(&path, Job::Add, None).unwrap();
-    let fault = IndexWriter::open(&path, Job::Add, None).unwrap_err();
+    let error = IndexWriter::open(&path, Job::Add, None).unwrap_err();
     assert!(
-        matches!(&fault, IndexError::Busy { .. }) && fault.to_string().contains("another program"),
-        "{fault}"
+        matches!(&error, IndexError::Busy { .. }) && error.to_string().contains("another program"),
+        "{error}"
     );
     assert_eq!(fs::read(&path).unwrap(), before);
     drop(first);
@@ -38,26 +38,26 @@ fn there_is_one_writer() {
 }
 
 #[test]
-fn work_of_another_kind_or_with_other_options_is_not_mixed() {
+fn other_jobs_and_other_options_are_not_mixed() {
     let folder = Folder::new();
     let path = folder.path("a");
     let mut writer = IndexWriter::open(&path, Job::Build, Some(OPTIONS)).unwrap();
     writer.put(&[shape(0)]).unwrap();
     drop(writer);
-    let fault = IndexWriter::open(&path, Job::Build, Some("n=50")).unwrap_err().to_string();
-    assert!(fault.contains("a.work") && fault.contains("n=50") && fault.contains(OPTIONS), "{fault}");
-    let fault = IndexWriter::open(&path, Job::Add, Some(OPTIONS)).unwrap_err().to_string();
-    assert!(fault.contains("`build`") && fault.contains("a.work") && fault.contains("delete"), "{fault}");
+    let error = IndexWriter::open(&path, Job::Build, Some("n=50")).unwrap_err().to_string();
+    assert!(error.contains("a.work") && error.contains("n=50") && error.contains(OPTIONS), "{error}");
+    let error = IndexWriter::open(&path, Job::Add, Some(OPTIONS)).unwrap_err().to_string();
+    assert!(error.contains("`build`") && error.contains("a.work") && error.contains("delete"), "{error}");
     IndexWriter::open(&path, Job::Build, Some(OPTIONS)).unwrap().finish().unwrap();
-    let fault = IndexWriter::open(&path, Job::Build, Some("n=50")).unwrap_err().to_string();
-    assert!(fault.contains("other options") && fault.contains("n=50"), "{fault}");
-    let fault = IndexWriter::open(&folder.path("none"), Job::Add, None).unwrap_err().to_string();
-    assert!(fault.contains("none") && fault.contains("check the path"), "{fault}");
+    let error = IndexWriter::open(&path, Job::Build, Some("n=50")).unwrap_err().to_string();
+    assert!(error.contains("other options") && error.contains("n=50"), "{error}");
+    let error = IndexWriter::open(&folder.path("none"), Job::Add, None).unwrap_err().to_string();
+    assert!(error.contains("none") && error.contains("check the path"), "{error}");
     assert_eq!(folder.names(), ["a"]);
 }
 
 #[test]
-fn short_work_starts_over() {
+fn an_interrupted_removal_starts_over() {
     let folder = Folder::new();
     let path = folder.index("a", 5);
     let mut writer = IndexWriter::open(&path, Job::Remove, None).unwrap();
@@ -68,7 +68,7 @@ fn short_work_starts_over() {
 }
 
 #[test]
-fn additions_to_an_index_that_changed_meanwhile_start_over() {
+fn additions_start_over_if_the_index_changed() {
     let folder = Folder::new();
     let path = folder.index("a", 5);
     let mut writer = IndexWriter::open(&path, Job::Add, None).unwrap();
@@ -80,13 +80,13 @@ fn additions_to_an_index_that_changed_meanwhile_start_over() {
 }
 
 #[test]
-fn an_interruption_anywhere_between_two_files_is_survived() {
+fn a_writer_survives_an_interruption_at_any_byte() {
     let folder = Folder::new();
     let path = folder.index("a", 30);
     let whole = export(&path);
     let finished = fs::read(&path).unwrap();
     let work = work_path(&path);
-    // While the index is copied: the first block is not there yet.
+    // During the copy, when the first block is still missing.
     for length in [0, 100, 4096, finished.len() / 2] {
         let mut cut = finished[..length].to_vec();
         let head = cut.len().min(4096);
@@ -120,21 +120,21 @@ fn an_interruption_anywhere_between_two_files_is_survived() {
 }
 
 #[test]
-fn a_folder_that_cannot_be_written_to_is_named() {
+fn an_unwritable_folder_is_reported() {
     let folder = Folder::new();
     let before = fs::read(folder.index("a", 3)).unwrap();
     let path = folder.path("nowhere/a");
-    let fault = IndexWriter::open(&path, Job::Build, Some(OPTIONS)).unwrap_err().to_string();
-    assert!(fault.contains("nowhere") && fault.contains("cannot write"), "{fault}");
-    // In the place of the work file is a folder: nobody can write there.
+    let error = IndexWriter::open(&path, Job::Build, Some(OPTIONS)).unwrap_err().to_string();
+    assert!(error.contains("nowhere") && error.contains("cannot write"), "{error}");
+    // A folder has the name of the work file.
     fs::create_dir(folder.path("a.work")).unwrap();
-    let fault = IndexWriter::open(&folder.path("a"), Job::Add, None).unwrap_err().to_string();
-    assert!(fault.contains("cannot write") && fault.contains("a.work"), "{fault}");
+    let error = IndexWriter::open(&folder.path("a"), Job::Add, None).unwrap_err().to_string();
+    assert!(error.contains("cannot write") && error.contains("a.work"), "{error}");
     assert_eq!(fs::read(folder.path("a")).unwrap(), before);
 }
 
 #[test]
-fn vectors_that_cannot_be_compared_are_refused() {
+fn vectors_that_cannot_be_compared_are_rejected() {
     let folder = Folder::new();
     let path = folder.path("a");
     let mut writer = IndexWriter::open(&path, Job::Build, Some(OPTIONS)).unwrap();
@@ -146,8 +146,8 @@ fn vectors_that_cannot_be_compared_are_refused() {
     };
     assert!(matches!(writer.put(&with(vec![])), Err(IndexError::BadVector { .. })));
     assert!(matches!(writer.put(&with(vec![1.0, f32::NAN, 1.0])), Err(IndexError::BadVector { .. })));
-    let fault = writer.put(&with(vec![1.0; 4])).unwrap_err();
-    assert!(matches!(fault, IndexError::OtherLength { found: 4, expected: 3, .. }));
+    let error = writer.put(&with(vec![1.0; 4])).unwrap_err();
+    assert!(matches!(error, IndexError::OtherLength { found: 4, expected: 3, .. }));
     let mut large = shape(1);
     large.vectors.form = vec![[0.0; 4]; 5 << 20];
     assert!(matches!(writer.put(&[large]), Err(IndexError::Codec { .. })));

@@ -1,7 +1,7 @@
-//! The same shapes give the same export, whatever way they came in.
+//! The export depends on the shapes only.
 
-use super::super::{Index, IndexError, IndexWriter, Job, verify};
 use super::{Folder, OPTIONS, export, shape};
+use crate::{Index, IndexError, IndexWriter, Job, verify};
 
 #[test]
 fn order_batches_and_history_do_not_matter() {
@@ -18,7 +18,7 @@ fn order_batches_and_history_do_not_matter() {
     writer.remove(&[shape(41).id, shape(40).id]).unwrap();
     writer.finish().unwrap();
     assert_eq!(export(&path), whole);
-    // Every line is an object, the first on the whole.
+    // Each line is a JSON object; the first describes the index.
     let lines: Vec<serde_json::Value> = whole
         .split(|b| *b == b'\n')
         .filter(|l| !l.is_empty())
@@ -31,7 +31,7 @@ fn order_batches_and_history_do_not_matter() {
 }
 
 #[test]
-fn an_interrupted_writer_is_taken_up_where_it_was() {
+fn an_interrupted_writer_is_resumed() {
     let folder = Folder::new();
     let whole = export(&folder.index("whole", 30));
     let path = folder.path("cut");
@@ -42,7 +42,7 @@ fn an_interrupted_writer_is_taken_up_where_it_was() {
             assert_eq!(writer.entry(&shape(i).id).unwrap(), None);
             writer.put(&[shape(i)]).unwrap();
         }
-        // It is dropped, as by an error, and never finished.
+        // Dropped without `finish`, as after an error.
     }
     assert_eq!(folder.names(), ["cut.work", "whole"]);
     let writer = IndexWriter::open(&path, Job::Build, Some(OPTIONS)).unwrap();
@@ -53,7 +53,7 @@ fn an_interrupted_writer_is_taken_up_where_it_was() {
 }
 
 #[test]
-fn labels_change_without_vectors() {
+fn entries_change_without_vectors() {
     let folder = Folder::new();
     let path = folder.index("a", 4);
     let mut writer = IndexWriter::open(&path, Job::Add, None).unwrap();
@@ -69,12 +69,12 @@ fn labels_change_without_vectors() {
 }
 
 #[test]
-fn taking_away_what_is_not_there_takes_nothing() {
+fn removing_a_missing_shape_removes_nothing() {
     let folder = Folder::new();
     let path = folder.index("a", 4);
     let mut writer = IndexWriter::open(&path, Job::Remove, None).unwrap();
-    let fault = writer.remove(&[shape(1).id, "cat9".to_owned()]).unwrap_err();
-    assert!(fault.to_string().contains("`cat9`"), "{fault}");
+    let error = writer.remove(&[shape(1).id, "cat9".to_owned()]).unwrap_err();
+    assert!(error.to_string().contains("`cat9`"), "{error}");
     assert_eq!(writer.len().unwrap(), 4);
     writer.discard().unwrap();
     assert_eq!(folder.names(), ["a"]);

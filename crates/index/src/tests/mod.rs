@@ -1,4 +1,4 @@
-//! What an index promises: nothing lost, nothing wrong, the same whatever way it came about.
+//! Laws of an index: nothing lost, nothing wrong, no dependence on its history.
 
 mod damage;
 mod durability;
@@ -8,12 +8,13 @@ use std::path::{Path, PathBuf};
 
 use tempfile::TempDir;
 
-use super::{ContentHash, Index, IndexWriter, Job, Shape, ShapeEntry, ShapeVectors};
-use crate::SearchMode;
+use crate::{
+    ContentHash, Index, IndexWriter, Job, SearchMode, Searcher, Shape, ShapeEntry, ShapeVectors, verify,
+};
 
 pub(super) const OPTIONS: &str = "n=100";
 
-/// A folder of its own for each test; gone with it.
+/// A temporary folder for one test.
 pub(super) struct Folder(TempDir);
 
 impl Folder {
@@ -43,7 +44,7 @@ impl Folder {
     }
 }
 
-/// The shape of this number: another number, another everything.
+/// A shape all of whose properties depend on its number.
 pub(super) fn shape(i: usize) -> Shape {
     let x = i as f32;
     Shape {
@@ -69,7 +70,7 @@ pub(super) fn export(path: &Path) -> Vec<u8> {
 }
 
 #[test]
-fn shapes_come_back_as_they_were() {
+fn shapes_round_trip() {
     let folder = Folder::new();
     let index = Index::open(&folder.index("a", 20)).unwrap();
     assert_eq!((index.len(), index.options()), (20, OPTIONS));
@@ -85,10 +86,10 @@ fn shapes_come_back_as_they_were() {
 }
 
 #[test]
-fn the_nearest_are_found_in_the_file_and_in_memory() {
+fn search_in_the_file_and_in_memory_finds_the_nearest() {
     let folder = Folder::new();
     let index = Index::open(&folder.index("a", 50)).unwrap();
-    let searcher = crate::Searcher::load(&index).unwrap();
+    let searcher = Searcher::load(&index).unwrap();
     for mode in [SearchMode::Auto, SearchMode::Exact] {
         for query in [shape(7).vectors.fused, vec![3.2, 0.0, 0.0]] {
             let found = index.nearest(&query, 5, mode).unwrap();
@@ -117,6 +118,6 @@ fn an_empty_index_finds_nothing() {
     let folder = Folder::new();
     let path = folder.index("empty", 0);
     let index = Index::open(&path).unwrap();
-    assert!(index.is_empty() && super::verify(&path, || ()).unwrap().faults.is_empty());
+    assert!(index.is_empty() && verify(&path, || ()).unwrap().faults.is_empty());
     assert!(index.nearest(&[1.0, 2.0], 5, SearchMode::Auto).unwrap().shapes.is_empty());
 }

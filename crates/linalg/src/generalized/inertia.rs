@@ -1,4 +1,4 @@
-//! How many eigenvalues of a sparse symmetric matrix are negative.
+//! The number of negative eigenvalues of a sparse symmetric matrix.
 
 use faer::Par;
 use faer::dyn_stack::{MemBuffer, MemStack};
@@ -6,16 +6,16 @@ use faer::dyn_stack::{MemBuffer, MemStack};
 use crate::cholesky::view;
 use crate::{EliminationOrder, LinalgError, SparseSymmetric};
 
-/// The number of negative eigenvalues of a matrix whose pattern has been analysed: by Sylvester's law
-/// that of the block diagonal `B` in `A = L B L'` (Bunch and Kaufman, pivoting inside of panels).
+/// The number of negative eigenvalues of a matrix whose pattern has been analysed. By Sylvester's law of inertia it
+/// equals that of the block diagonal `B` in `A = L B L'` (Bunch and Kaufman, pivoting inside panels).
 ///
-/// With `A = W - sigma M`, `M` positive semidefinite, it is the number of eigenvalues of
-/// `W x = lambda M x` below `sigma`.
+/// For `A = W - sigma M` with `M` positive semidefinite, it is the number of eigenvalues of `W x = lambda M x` below
+/// `sigma`.
 ///
-/// None when a pivot is zero to rounding: the matrix has an eigenvalue there, or a panel by itself does.
+/// Returns `None` if a pivot is numerically zero: then the matrix, or a panel of it, has an eigenvalue at zero.
 ///
 /// # Errors
-/// [`LinalgError::NotFactorised`] when memory runs out.
+/// [`LinalgError::NotFactorised`] if memory runs out.
 pub(super) fn n_negative(
     order: &EliminationOrder,
     matrix: &SparseSymmetric,
@@ -63,11 +63,11 @@ pub(super) fn n_negative(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Matrix, symmetric_eigen};
+    use crate::symmetric_eigen;
 
     #[test]
-    fn the_count_is_that_of_the_dense_eigenvalues() {
-        // A ring with chords, the diagonal small beside them and of both signs: 2 x 2 pivots are needed.
+    fn the_count_equals_that_of_the_dense_eigenvalues() {
+        // A ring with chords and a smaller diagonal of both signs, which needs 2 x 2 pivots.
         let n = 90;
         let entries = || {
             (0..n).flat_map(move |i| {
@@ -78,12 +78,7 @@ mod tests {
         for shift in [-4.0, -1.3, -0.2, 0.0, 0.1, 0.7, 2.0, 9.0] {
             let mut a = SparseSymmetric::from_entries(n, entries());
             a.add_to_diagonal((0..n).map(|_| -shift));
-            let mut dense = Matrix::zeros(n, n);
-            for (i, j, value) in a.entries() {
-                dense[(i, j)] = value;
-                dense[(j, i)] = value;
-            }
-            let expected = symmetric_eigen(&dense).unwrap().values.iter().filter(|v| **v < 0.0).count();
+            let expected = symmetric_eigen(&a.dense()).unwrap().values.iter().filter(|v| **v < 0.0).count();
             assert_eq!(n_negative(&EliminationOrder::new(&a).unwrap(), &a), Ok(Some(expected)), "{shift}");
         }
     }

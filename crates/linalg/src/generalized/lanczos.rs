@@ -4,35 +4,35 @@ use super::operator::ShiftInverse;
 use super::strips::Strips;
 use crate::{LinalgError, Matrix, SymmetricEigen, symmetric_eigen};
 
-/// Vectors the process starts with: as many copies of a multiple eigenvalue are found at once. More make
-/// products faster and need a larger basis.
+/// Vectors in the first block. A block of this size finds as many copies of a multiple eigenvalue at once. Larger blocks
+/// make products faster but need a larger basis.
 const BLOCK: usize = 4;
 
-/// A vector of which orthogonalisation leaves less than this share is rounding.
+/// A vector that orthogonalisation reduces below this share of its length is rounding error.
 const ROUNDING: f64 = 1e-13;
 
-/// A vector of which orthogonalisation leaves less than this share is orthogonalised again.
+/// A vector that orthogonalisation reduces below this share of its length is orthogonalised again.
 const CANCELLED: f64 = 0.1;
 
-/// A block Lanczos process for the largest eigenvalues of an operator `C`, symmetric in the inner
-/// product of its masses `x' M y`.
+/// A block Lanczos process for the largest eigenvalues of an operator `C` that is symmetric in the inner product
+/// `x' M y` of its masses.
 ///
 /// | symbol | here | meaning |
 /// |---|---|---|
 /// | `V` | `basis` | M-orthonormal vectors: the blocks `X_1 .. X_k` |
 /// | `T` | [`projected`](Self::projected) | `V' M C V`, block tridiagonal |
-/// | `X` | `next` | the next block, orthonormal too |
+/// | `X` | `next` | the next block, M-orthonormal too |
 /// | `B` | last coupling | the coefficients of `X` in `C X_k` |
 ///
-/// **Invariant.** `C V = V T + X B E'` with `E'` the last rows of the identity, to rounding.
+/// **Invariant.** `C V = V T + X B E'` up to rounding, with `E'` the last rows of the identity.
 ///
-/// Blocks may grow: a vector of `X` that is not in `C X_k` has a zero row in `B`. They shrink where
-/// nothing new is found, down to nothing once the basis spans all there is.
+/// Blocks may grow: a vector of `X` that is not in `C X_k` has a zero row in `B`. They shrink when directions are
+/// exhausted, and are empty once the basis spans the whole space.
 #[derive(Debug)]
 pub(super) struct Lanczos<'a> {
     operator: &'a ShiftInverse,
     basis: Strips,
-    /// For every block `X_k` of the basis `X_k' M C X_k`, and its coupling `B` to the next.
+    /// For each block `X_k` of the basis, `X_k' M C X_k` and its coupling `B` to the next block.
     blocks: Vec<[Matrix; 2]>,
     /// The last block of the basis.
     last: Matrix,
@@ -41,7 +41,7 @@ pub(super) struct Lanczos<'a> {
 }
 
 impl<'a> Lanczos<'a> {
-    /// A process that starts from random vectors, always the same.
+    /// A process that starts from a fixed set of random vectors.
     pub(super) fn new(operator: &'a ShiftInverse) -> Self {
         let n = operator.n_rows();
         let none = || Matrix::zeros(n, 0);
@@ -57,7 +57,7 @@ impl<'a> Lanczos<'a> {
         self.basis.n_columns()
     }
 
-    /// Whether the basis spans all there is.
+    /// Whether the basis spans the whole space.
     pub(super) fn is_exhausted(&self) -> bool {
         self.next.ncols() == 0
     }
@@ -68,7 +68,7 @@ impl<'a> Lanczos<'a> {
         self.basis.append(&block);
         let mut image = self.operator.apply(&block);
         let lengths = self.lengths(&image);
-        // What is there in exact arithmetic first, then what rounding left.
+        // First subtracts the components that exist in exact arithmetic, then those due to rounding.
         if let Some([_, coupling]) = self.blocks.last() {
             image -= &self.last * coupling.transpose();
         }
@@ -84,8 +84,8 @@ impl<'a> Lanczos<'a> {
         }
     }
 
-    /// Lets up to `count` random vectors into the next block, fewer when there are no more directions: to
-    /// find what is orthogonal to all that was started from.
+    /// Adds up to `count` random vectors to the next block (fewer if there are no more directions), to find eigenvectors
+    /// that are orthogonal to the start.
     pub(super) fn add_random(&mut self, count: usize) {
         let n = self.operator.n_rows();
         let random = Matrix::from_fn(n, count, |_, _| self.random.next());
@@ -101,13 +101,13 @@ impl<'a> Lanczos<'a> {
         }
     }
 
-    /// Makes the columns of `w` orthonormal and orthogonal to the basis and the next block, and drops those
-    /// that are rounding beside their original `lengths`. With `w` the result and `h` some matrix, the
-    /// columns were `V h + w R`; returns `R`.
+    /// Makes the columns of `w` orthonormal, and orthogonal to the basis and the next block. Drops columns that are
+    /// rounding error compared with their original `lengths`. Returns `R` such that the columns were `V h + w R`, with
+    /// `w` the result and some `h`.
     fn orthonormalise(&self, w: &mut Matrix, lengths: &[f64]) -> Matrix {
         let mut r = Matrix::identity(w.ncols(), w.ncols());
         let mut lengths = lengths.to_vec();
-        // Once is enough unless most of a vector cancels; after three times it never does.
+        // Once is enough unless most of a vector cancels; three times are always enough.
         for _ in 0..3 {
             let before = self.lengths(w);
             let weighted = self.operator.weighted(w);
@@ -124,8 +124,8 @@ impl<'a> Lanczos<'a> {
         r
     }
 
-    /// Makes the columns of `w` orthonormal among themselves, dropping those that are rounding. Returns `R`
-    /// with the old columns `w R`, and the length that each column had in the end.
+    /// Makes the columns of `w` orthonormal among themselves, and drops those that are rounding error. Returns `R` such
+    /// that the old columns are `w R`, and the length of each column before normalisation.
     fn gram_schmidt(&self, w: &mut Matrix, lengths: &[f64]) -> (Matrix, Vec<f64>) {
         let (n, m) = w.shape();
         let mut r = Matrix::zeros(m, m);
@@ -154,12 +154,12 @@ impl<'a> Lanczos<'a> {
         (r.rows(0, kept).into_owned(), left)
     }
 
-    /// The length of each column.
+    /// The M-norm of each column.
     fn lengths(&self, w: &Matrix) -> Vec<f64> {
         w.column_iter().map(|x| self.operator.inner(x.as_slice(), x.as_slice()).sqrt()).collect()
     }
 
-    /// `T`.
+    /// The matrix `T`.
     fn projected(&self) -> Matrix {
         let dim = self.dim();
         let mut t = Matrix::zeros(dim, dim);
@@ -194,8 +194,8 @@ impl<'a> Lanczos<'a> {
         Ok(Ritz { eigen, outside })
     }
 
-    /// The vectors `C V y / theta` of the first `m` pairs of `T`, M-orthonormal: one step of inverse iteration
-    /// on `V y` that costs nothing, as `C V y = theta V y + X B E' y`.
+    /// The M-orthonormal vectors `C V y / theta` of the first `m` pairs of `T`: a step of inverse iteration on `V y`
+    /// without extra cost, since `C V y = theta V y + X B E' y`.
     pub(super) fn vectors(&self, ritz: &Ritz, m: usize) -> Matrix {
         let mut result = self.basis.combine(&ritz.eigen.vectors.columns(0, m).into_owned());
         for (j, mut vector) in result.column_iter_mut().enumerate() {
@@ -211,7 +211,7 @@ impl<'a> Lanczos<'a> {
 #[derive(Debug)]
 pub(super) struct Ritz {
     eigen: SymmetricEigen,
-    /// `B E' y` for every eigenvector `y` of `T`.
+    /// `B E' y` for each eigenvector `y` of `T`.
     outside: Matrix,
 }
 
@@ -221,19 +221,19 @@ impl Ritz {
         &self.eigen.values
     }
 
-    /// `|C x - theta x| / theta` of a pair, `x = V y`.
+    /// `|C x - theta x| / theta` of pair `j`, with `x = V y`.
     pub(super) fn residual(&self, j: usize) -> f64 {
         let theta = self.eigen.values[j];
         if theta > 0.0 { self.outside.column(j).norm() / theta } else { f64::INFINITY }
     }
 }
 
-/// Pseudo-random numbers (Steele, Lea and Flood 2014).
+/// Pseudo-random numbers (SplitMix64; Steele, Lea and Flood 2014).
 #[derive(Debug)]
 struct SplitMix(u64);
 
 impl SplitMix {
-    /// Even in [-1, 1).
+    /// Uniform in [-1, 1).
     fn next(&mut self) -> f64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = self.0;

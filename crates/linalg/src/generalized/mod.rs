@@ -1,4 +1,4 @@
-//! The smallest eigenpairs of a sparse matrix beside a diagonal one.
+//! The smallest eigenpairs of a pencil of a sparse and a diagonal matrix.
 
 mod inertia;
 mod lanczos;
@@ -8,21 +8,21 @@ mod strips;
 use self::inertia::n_negative;
 use self::lanczos::{Lanczos, Ritz};
 use self::operator::{ShiftInverse, shifted};
-use crate::{EliminationOrder, LinalgError, Matrix, SparseSymmetric};
+use crate::{EliminationOrder, LinalgError, Matrix, SparseSymmetric, leading_sign};
 
-/// Largest residual `|C x - theta x| / theta` of a pair that counts as found.
+/// Residual `|C x - theta x| / theta` up to which a pair counts as found.
 const TOLERANCE: f64 = 1e-9;
 
-/// Pairs that are found beyond those asked for, so that the count can be checked in a gap behind them.
+/// Additional pairs to find, so that the count can be checked in a gap above the requested ones.
 const SPARE: usize = 6;
 
-/// Eigenvalues closer than this share are one cluster.
+/// Eigenvalues with a relative gap below this belong to one cluster.
 const CLUSTER: f64 = 1e-6;
 
-/// Where in a gap eigenvalues below are counted; the next if a pivot happens to be zero there.
+/// Positions in a gap at which eigenvalues are counted; the next one is tried if a pivot happens to be zero.
 const CUTS: [f64; 4] = [0.5, 0.45, 0.6, 0.37];
 
-/// How often the search is widened when eigenvalues were missed.
+/// How often the search is extended after eigenvalues were missed.
 const MAX_ROUNDS: usize = 8;
 
 /// Eigenvalues in ascending order and eigenvectors of `W x = lambda M x`, one column each.
@@ -34,27 +34,36 @@ pub struct GeneralizedEigen {
     pub vectors: Matrix,
 }
 
-/// The `m` smallest eigenpairs of `W x = lambda M x`, `W` sparse and positive semidefinite, `M` diagonal
-/// with entries that are not negative (`masses`); fewer when there are no more.
+/// The `m` smallest eigenpairs of `W x = lambda M x` (fewer if there are no more), with `W` sparse and positive
+/// semidefinite (`stiffness`) and `M` diagonal with entries that are not negative (`masses`).
 ///
-/// A block Lanczos process on `(W + s M)^-1 M` with full orthogonalisation, from a fixed start
-/// (Grimes, Lewis and Simon 1994).
+/// A block Lanczos process on `(W + s M)^-1 M` with full orthogonalisation, from a fixed start (Grimes, Lewis and Simon
+/// 1994).
 ///
-/// * Residuals `|W x - lambda M x|` are at most `1e-9 (lambda + s)` in the norm of `M^-1`, beside rounding;
-///   `s` is about a third of the mean distance between eigenvalues.
-/// * Complete: a factorisation counts the eigenvalues below a gap behind those found (Sylvester's law of
-///   inertia), and while some are missing, as in clusters larger than the block, the search goes on.
-/// * Zero eigenvalues come out as zeros. Rows without mass belong to no pair; their entries follow from the
-///   others.
-/// * Runs on all threads and does not depend on their number.
+/// * Residuals `|W x - lambda M x|` are at most `1e-9 (lambda + s)` in the norm of `M^-1`, up to rounding; `s` is about a
+///   third of the mean gap between eigenvalues.
+/// * Complete: a factorisation counts the eigenvalues below a gap above those found (Sylvester's law of inertia), and
+///   the search continues while some are missing, as in clusters larger than the block.
+/// * Zero eigenvalues are returned as zeros. Rows without mass contribute no pair; their entries follow from the others.
+/// * Parallel; the result does not depend on the number of threads.
 ///
-/// Cost a sparse factorisation, about `2.5 m` solutions and `25 n m^2` operations; `O(n m)` memory.
+/// Cost: a sparse factorisation, about `2.5 m` solutions and `25 n m^2` operations; `O(n m)` memory.
 ///
 /// # Errors
-/// [`LinalgError::NotFactorised`]; [`LinalgError::NotConverged`]; [`LinalgError::MissedEigenvalues`].
+/// [`LinalgError::NotFactorised`], [`LinalgError::NotConverged`], [`LinalgError::MissedEigenvalues`].
 ///
 /// # Panics
-/// When there is not one mass for each row.
+/// If the number of masses differs from the order of `stiffness`.
+///
+/// ```
+/// use canonform_linalg::{SparseSymmetric, smallest_eigenpairs};
+///
+/// // Three unit masses in a row, joined by two unit springs: eigenvalues 0, 1 and 3.
+/// let springs = [(0, 0, 1.0), (1, 1, 2.0), (2, 2, 1.0), (0, 1, -1.0), (1, 2, -1.0)];
+/// let eigen = smallest_eigenpairs(&SparseSymmetric::from_entries(3, springs), &[1.0; 3], 2)?;
+/// assert!(eigen.values[0].abs() < 1e-12 && (eigen.values[1] - 1.0).abs() < 1e-9);
+/// # Ok::<(), canonform_linalg::LinalgError>(())
+/// ```
 pub fn smallest_eigenpairs(
     stiffness: &SparseSymmetric,
     masses: &[f64],
@@ -95,13 +104,13 @@ pub fn smallest_eigenpairs(
     }
 }
 
-/// When to look at the pairs again.
+/// Decides when to compute the pairs of the projected matrix.
 #[derive(Debug)]
 struct Schedule {
     wanted: usize,
-    /// Dimension of the basis at which to look next.
+    /// Dimension of the basis at which to compute them next.
     next: usize,
-    /// Dimension and largest residual when last looked.
+    /// Dimension and largest residual of the last time.
     last: Option<(usize, f64)>,
 }
 
@@ -110,8 +119,8 @@ impl Schedule {
         Self { wanted, next: 2 * wanted + 20, last: None }
     }
 
-    /// Whether all wanted pairs are found; when not, sets when to look next: residuals fall exponentially with
-    /// the dimension.
+    /// Whether all wanted pairs are found. If not, schedules the next check, assuming that residuals fall exponentially
+    /// with the dimension.
     fn is_done(&mut self, dim: usize, ritz: &Ritz) -> bool {
         let worst = (0..self.wanted).map(|j| ritz.residual(j)).fold(0.0, f64::max);
         if worst <= TOLERANCE {
@@ -128,15 +137,15 @@ impl Schedule {
         false
     }
 
-    /// Looks again after the search was widened at dimension `dim`.
+    /// Schedules a check after the search was extended at dimension `dim`.
     fn restart(&mut self, dim: usize) {
         self.next = dim + dim / 8 + 1;
         self.last = None;
     }
 }
 
-/// An interval without eigenvalues, and how many of the ascending `values` are below it: behind the `m`
-/// smallest if there is a gap, else before the cluster that number `m` is in.
+/// An interval without eigenvalues, and the number of ascending `values` below it: above the `m` smallest if there is a
+/// gap, otherwise below the cluster of number `m`.
 fn gap(values: &[f64], m: usize, shift: f64) -> (usize, [f64; 2]) {
     let wide = |i: usize| values[i] - values[i - 1] > CLUSTER * (values[i] + shift);
     match (m..values.len()).find(|&i| wide(i)) {
@@ -148,7 +157,7 @@ fn gap(values: &[f64], m: usize, shift: f64) -> (usize, [f64; 2]) {
     }
 }
 
-/// How many eigenvalues were missed of those below an interval without any, where `found` were found.
+/// The number of eigenvalues below an empty interval that are missing from the `found` ones.
 fn n_missing(
     stiffness: &SparseSymmetric,
     masses: &[f64],
@@ -164,7 +173,7 @@ fn n_missing(
     Err(LinalgError::NotConverged { n: stiffness.order() })
 }
 
-/// The `m` smallest pairs of what the process found, rows in the order of the matrix.
+/// The `m` smallest pairs that the process found, with rows in the order of the matrix.
 fn pairs(operator: &ShiftInverse, process: &Lanczos<'_>, ritz: &Ritz, m: usize) -> GeneralizedEigen {
     let m = m.min(ritz.values().len());
     let values = ritz.values()[..m].iter().map(|theta| operator.unshifted(*theta).max(0.0)).collect();
@@ -172,14 +181,11 @@ fn pairs(operator: &ShiftInverse, process: &Lanczos<'_>, ritz: &Ritz, m: usize) 
     let ordered = process.vectors(ritz, m) * operator.shift().sqrt();
     let mut vectors = Matrix::zeros(ordered.nrows(), m);
     for (from, mut to) in ordered.column_iter().zip(vectors.column_iter_mut()) {
-        // The first of several entries of the same size decides, so that rounding cannot.
         for (value, &row) in from.iter().zip(operator.order().rows()) {
             to[row] = *value;
         }
-        let largest = to.amax();
-        if to.iter().find(|x| x.abs() >= 0.999 * largest).is_some_and(|lead| *lead < 0.0) {
-            to.neg_mut();
-        }
+        let sign = leading_sign(to.as_slice());
+        to *= sign;
     }
     GeneralizedEigen { values, vectors }
 }

@@ -1,25 +1,25 @@
-//! The shifted and inverted operator whose largest eigenvalues are the smallest of the pencil.
+//! The shift-and-invert operator, whose largest eigenvalues belong to the smallest of the pencil.
 
 use crate::{EliminationOrder, LinalgError, Matrix, SparseCholesky, SparseSymmetric};
 
-/// `C = (W + s M)^-1 s M` with diagonal `M`, on vectors whose rows are in the order of elimination.
+/// `C = (W + s M)^-1 s M` with diagonal `M`, for vectors with rows in elimination order.
 ///
-/// `C` is symmetric in the inner product `x' s M y`, and `W x = lambda M x` exactly when
+/// `C` is symmetric in the inner product `x' s M y`, and `W x = lambda M x` if and only if
 /// `C x = s / (lambda + s) x`.
 #[derive(Debug)]
 pub(super) struct ShiftInverse {
     factor: SparseCholesky,
-    /// The diagonal of `s M`, in the order of elimination.
+    /// The diagonal of `s M`, in elimination order.
     masses: Vec<f64>,
     shift: f64,
 }
 
 impl ShiftInverse {
-    /// Factorises `W + s M`, `s` being a median diagonal entry of `M^-1 W` over the order: on a surface
-    /// this is about a third of the mean distance between eigenvalues, enough for an accurate inverse
-    /// and too little to draw eigenvalues together.
+    /// Factorises `W + s M`. `s` is the median diagonal entry of `M^-1 W` divided by the order: on a surface about a
+    /// third of the mean gap between eigenvalues, large enough for an accurate inverse and too small to cluster
+    /// eigenvalues of `C`.
     ///
-    /// A row without mass and without weight is an equation of its own.
+    /// An empty row without mass gets one on the diagonal.
     pub(super) fn new(stiffness: &SparseSymmetric, masses: &[f64]) -> Result<Self, LinalgError> {
         let diagonal = stiffness.diagonal();
         let mut quotients: Vec<f64> =
@@ -43,7 +43,7 @@ impl ShiftInverse {
         self.shift
     }
 
-    /// The eigenvalue `lambda` that belongs to one of `C`.
+    /// The eigenvalue `lambda` for an eigenvalue of `C`.
     pub(super) fn unshifted(&self, theta: f64) -> f64 {
         self.shift * (1.0 / theta - 1.0)
     }
@@ -63,7 +63,7 @@ impl ShiftInverse {
 
     /// `x' s M y`.
     pub(super) fn inner(&self, x: &[f64], y: &[f64]) -> f64 {
-        // Eight sums, so that the loop is not one chain of additions.
+        // Eight independent chains of additions.
         let mut sums = [0.0; 8];
         let chunks =
             x.as_chunks::<8>().0.iter().zip(y.as_chunks::<8>().0).zip(self.masses.as_chunks::<8>().0);
@@ -77,7 +77,7 @@ impl ShiftInverse {
         sums.iter().sum::<f64>() + tail.sum::<f64>()
     }
 
-    /// The operator on each column.
+    /// Applies the operator to each column.
     pub(super) fn apply(&self, columns: &Matrix) -> Matrix {
         let mut result = self.weighted(columns);
         self.factor.solve_ordered_columns(result.as_mut_slice());
@@ -85,7 +85,7 @@ impl ShiftInverse {
     }
 }
 
-/// `W + s M`, and one on the diagonal where a row would be empty.
+/// `W + s M`, with one on the diagonal of rows that would be empty.
 pub(super) fn shifted(stiffness: &SparseSymmetric, masses: &[f64], shift: f64) -> SparseSymmetric {
     let mut matrix = stiffness.clone();
     matrix.add_to_diagonal(masses.iter().map(|m| shift * m));

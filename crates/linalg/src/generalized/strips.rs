@@ -1,4 +1,4 @@
-//! A growing set of long vectors.
+//! A growing set of long vectors, processed in strips of rows.
 
 use faer::linalg::matmul::matmul;
 use faer::{Accum, MatMut, MatRef, Par};
@@ -7,12 +7,12 @@ use rayon::prelude::*;
 use crate::Matrix;
 use crate::decomposition::view;
 
-/// Rows that are worked on at a time: a few vectors of so many rows stay in the nearest cache, and the
-/// order of summation is fixed, so that the number of threads changes nothing.
+/// Rows in a strip. A few vectors of this length fit into the first-level cache, and the fixed size fixes the order of
+/// summation, so that results do not depend on the number of threads.
 const ROWS: usize = 512;
 
-/// Vectors of n rows cut into strips of [`ROWS`] rows, each stored column by column, so that vectors
-/// can be appended in place and strips worked on in parallel.
+/// Vectors of n rows, divided into strips of [`ROWS`] rows that are stored column by column: vectors can be appended in
+/// place, and strips processed in parallel.
 #[derive(Debug)]
 pub(super) struct Strips {
     n_rows: usize,
@@ -21,7 +21,7 @@ pub(super) struct Strips {
 }
 
 impl Strips {
-    /// No vectors of `n_rows` rows.
+    /// An empty set of vectors of `n_rows` rows.
     pub(super) fn new(n_rows: usize) -> Self {
         Self { n_rows, n_columns: 0, strips: vec![Vec::new(); n_rows.div_ceil(ROWS)] }
     }
@@ -31,7 +31,7 @@ impl Strips {
         self.n_columns
     }
 
-    /// Appends vectors, the columns of a matrix.
+    /// Appends the columns of a matrix.
     pub(super) fn append(&mut self, columns: &Matrix) {
         for column in columns.as_slice().chunks_exact(self.n_rows) {
             self.strips.iter_mut().zip(column.chunks(ROWS)).for_each(|(strip, rows)| strip.extend(rows));
@@ -39,7 +39,7 @@ impl Strips {
         self.n_columns += columns.ncols();
     }
 
-    /// The products `V' W` of all vectors with the columns of a matrix.
+    /// The products `V' W` with the columns of a matrix.
     pub(super) fn products(&self, w: &Matrix) -> Matrix {
         let (n, m) = (self.n_columns, w.ncols());
         let parts: Vec<Matrix> = (0..self.strips.len())
@@ -81,7 +81,7 @@ impl Strips {
         });
     }
 
-    /// Rows of a strip.
+    /// Number of rows of a strip.
     fn height(&self, s: usize) -> usize {
         self.n_rows.min((s + 1) * ROWS) - s * ROWS
     }
@@ -96,7 +96,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn products_and_combinations_are_those_of_the_matrix() {
+    fn products_and_combinations_equal_those_of_the_whole_matrix() {
         for n in [1, 511, 512, 1300] {
             let v = Matrix::from_fn(n, 7, |i, j| ((i * 5 + j * 31) as f64).sin());
             let w = Matrix::from_fn(n, 3, |i, j| ((i * 3 + j) as f64).cos());

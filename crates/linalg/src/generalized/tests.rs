@@ -3,13 +3,13 @@ use std::f64::consts::PI;
 use super::*;
 use crate::SymmetricOperator;
 
-/// Springs of the given weights between pairs of `n` points.
+/// The stiffness matrix of `n` points joined by springs of the given weights.
 fn springs(n: usize, pairs: impl IntoIterator<Item = (usize, usize, f64)>) -> SparseSymmetric {
     let entries = pairs.into_iter().flat_map(|(i, j, w)| [(i, i, w), (j, j, w), (i, j, -w)]);
     SparseSymmetric::from_entries(n, entries)
 }
 
-/// A grid that is closed in both directions, of `k` x `l` points and unit springs.
+/// A `k` x `l` grid of unit springs, periodic in both directions.
 fn torus(k: usize, l: usize) -> SparseSymmetric {
     let at = |i: usize, j: usize| (i % k) * l + j % l;
     springs(
@@ -20,7 +20,7 @@ fn torus(k: usize, l: usize) -> SparseSymmetric {
     )
 }
 
-/// Its eigenvalues, `4 sin^2(pi a / k) + 4 sin^2(pi b / l)`, the smallest `m`.
+/// The `m` smallest eigenvalues of a torus, `4 sin^2(pi a / k) + 4 sin^2(pi b / l)`.
 fn torus_spectrum(k: usize, l: usize, m: usize) -> Vec<f64> {
     let sine = |a: usize, k: usize| 4.0 * (PI * a as f64 / k as f64).sin().powi(2);
     let mut all: Vec<f64> = (0..k).flat_map(|a| (0..l).map(move |b| sine(a, k) + sine(b, l))).collect();
@@ -29,7 +29,7 @@ fn torus_spectrum(k: usize, l: usize, m: usize) -> Vec<f64> {
     all
 }
 
-/// Largest `|W x - lambda M x|` in units of the largest eigenvalue found, and largest entry of `X' M X - I`.
+/// The largest `|W x - lambda M x|` relative to the largest eigenvalue found, and the largest entry of `X' M X - I`.
 fn faults(w: &SparseSymmetric, masses: &[f64], found: &GeneralizedEigen) -> [f64; 2] {
     let n = w.order();
     let scale = found.values.last().copied().unwrap_or(1.0);
@@ -49,8 +49,8 @@ fn faults(w: &SparseSymmetric, masses: &[f64], found: &GeneralizedEigen) -> [f64
 }
 
 #[test]
-fn a_torus_has_the_eigenvalues_of_its_closed_form_with_all_multiplicities() {
-    // Fourfold and eightfold on the square one.
+fn a_torus_has_its_closed_form_eigenvalues_with_multiplicities() {
+    // The square torus has multiplicities four and eight.
     for (k, l, m) in [(40, 40, 90), (37, 23, 60), (9, 8, 72), (100, 3, 13)] {
         let w = torus(k, l);
         let masses = vec![1.0; k * l];
@@ -66,7 +66,7 @@ fn a_torus_has_the_eigenvalues_of_its_closed_form_with_all_multiplicities() {
 }
 
 #[test]
-fn masses_scale_as_they_should() {
+fn eigenvalues_scale_inversely_with_masses() {
     let w = torus(30, 20);
     let masses: Vec<f64> = (0..600).map(|i| 1.0 + 0.9 * (i as f64).sin()).collect();
     let found = smallest_eigenpairs(&w, &masses, 40).unwrap();
@@ -83,8 +83,8 @@ fn masses_scale_as_they_should() {
 }
 
 #[test]
-fn the_kernel_has_a_dimension_for_each_component() {
-    // Thirty rings of 24 points: every eigenvalue but the first is at least 60-fold.
+fn the_kernel_has_one_dimension_per_component() {
+    // Thirty rings of 24 points: zero is 30-fold, the next eigenvalue 60-fold.
     let rings = 30;
     let w = springs(24 * rings, (0..24 * rings).map(|v| (v, v / 24 * 24 + (v + 1) % 24, 1.0)));
     let masses = vec![1.0; 24 * rings];
@@ -99,18 +99,18 @@ fn the_kernel_has_a_dimension_for_each_component() {
 }
 
 #[test]
-fn rows_without_mass_follow_the_others_and_loose_ones_are_zero() {
-    // A path on which every second point has no mass is one of half as many, its springs half as stiff.
+fn rows_without_mass_follow_the_others_and_isolated_ones_are_zero() {
+    // A path with mass on every second point equals one of half as many points with springs half as stiff.
     let n = 81;
     let path = springs(n + 1, (1..n).map(|i| (i - 1, i, 1.0)));
     let masses: Vec<f64> = (0..=n).map(|i| if i < n && i % 2 == 0 { 1.0 } else { 0.0 }).collect();
     let found = smallest_eigenpairs(&path, &masses, 100).unwrap();
-    assert_eq!(found.values.len(), 41, "one pair for each mass");
+    assert_eq!(found.values.len(), 41, "one pair per mass");
     for (j, value) in found.values.iter().enumerate() {
         let expected = 2.0 * (PI * j as f64 / 82.0).sin().powi(2);
         assert!((value - expected).abs() < 1e-10, "{j}: {value} against {expected}");
     }
-    // Those of the largest eigenvalues are rougher.
+    // Vectors of the largest eigenvalues are less accurate.
     for x in found.vectors.column_iter().take(20) {
         let fault = |i: usize| (x[i] - 0.5 * (x[i - 1] + x[i + 1])).abs();
         let worst = (1..n - 1).step_by(2).map(fault).fold(0.0, f64::max);
@@ -120,7 +120,7 @@ fn rows_without_mass_follow_the_others_and_loose_ones_are_zero() {
 }
 
 #[test]
-fn the_number_of_threads_changes_nothing() {
+fn results_do_not_depend_on_threads() {
     let w = torus(45, 31);
     let masses: Vec<f64> = (0..45 * 31).map(|i| 1.0 + 0.3 * (i as f64).cos()).collect();
     let on = |threads| {
@@ -128,7 +128,7 @@ fn the_number_of_threads_changes_nothing() {
         pool.install(|| smallest_eigenpairs(&w, &masses, 30).unwrap())
     };
     let one = on(1);
-    // Bit for bit, whatever memory the vectors happen to lie in.
+    // Bit for bit, at any alignment of the vectors in memory.
     assert_eq!(one, on(1));
     let padding = vec![0u8; 24];
     assert_eq!(one, on(2));
@@ -143,14 +143,14 @@ fn small_and_empty_matrices_have_all_their_pairs() {
     assert!((one.vectors[(0, 0)] - 0.5f64.sqrt()).abs() < 1e-15);
     let none = smallest_eigenpairs(&SparseSymmetric::from_entries(0, []), &[], 5).unwrap();
     assert_eq!((none.values.len(), none.vectors.shape()), (0, (0, 0)));
-    let unasked = smallest_eigenpairs(&torus(4, 4), &[1.0; 16], 0).unwrap();
-    assert_eq!((unasked.values.len(), unasked.vectors.shape()), (0, (16, 0)));
+    let none_wanted = smallest_eigenpairs(&torus(4, 4), &[1.0; 16], 0).unwrap();
+    assert_eq!((none_wanted.values.len(), none_wanted.vectors.shape()), (0, (16, 0)));
     let massless = smallest_eigenpairs(&torus(4, 4), &[0.0; 16], 3);
     assert_eq!(massless.map(|found| found.values.len()), Ok(0));
 }
 
 #[test]
-fn what_cannot_be_factorised_is_an_error() {
+fn matrices_without_a_factor_are_errors() {
     let negative = torus(5, 5).entries().map(|(i, j, v)| (i, j, -v)).collect::<Vec<_>>();
     let w = SparseSymmetric::from_entries(25, negative);
     assert!(matches!(smallest_eigenpairs(&w, &[1.0; 25], 3), Err(LinalgError::NotFactorised { n: 25, .. })));

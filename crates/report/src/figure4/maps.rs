@@ -173,11 +173,11 @@ fn scores<DB: DrawingBackend>(
     let s = &panel.scores;
     let number = |v: f64| signed(v, 3);
     let columns = [
-        ("NN", number(s.nn)),
-        ("FT", number(s.ft)),
-        ("ST", number(s.st)),
-        ("DCG", number(s.dcg)),
-        ("mAP", number(s.map)),
+        ("NN", number(s.mean.nn)),
+        ("FT", number(s.mean.ft)),
+        ("ST", number(s.mean.st)),
+        ("DCG", number(s.mean.dcg)),
+        ("mAP", number(s.mean.map)),
         ("silhouette", number(s.silhouette)),
         ("map silh.", number(panel.map_silhouette)),
         ("map stress", number(panel.map_stress)),

@@ -1,6 +1,6 @@
 //! The record of how well signatures and forms bring together what belongs together.
 
-use ::retrieval::MeanScores;
+use ::retrieval::Scores;
 use serde::{Deserialize, Serialize};
 
 use super::{Expectation, Provenance, Scale};
@@ -33,9 +33,9 @@ pub struct RetrievalRow {
     /// Whether size counts.
     pub scale: Scale,
     /// Means over queries.
-    pub micro: MeanScores,
+    pub micro: Scores,
     /// Means over classes.
-    pub macro_average: MeanScores,
+    pub macro_average: Scores,
     /// Leave-one-out accuracy of the vote of the nearest.
     pub knn_accuracy: f64,
     /// The least mean average precision when one class is left out of the collection.

@@ -1,35 +1,34 @@
-//! The one place where values become bytes and bytes become values.
+//! Encoding of values: the only module that names bincode.
 //!
-//! A value is a CRC-32 of its encoding (4 bytes, little-endian), then the encoding by bincode. Before
-//! anything is decoded, size and checksum are held against what is allowed, so that forged lengths
-//! reserve no memory; and all bytes must be used up.
+//! A value is the CRC-32 of its encoding (4 bytes, little-endian), followed by the encoding. Size and checksum are
+//! checked before decoding, so forged lengths reserve no memory, and decoding must consume all bytes.
 
 use serde::de::{DeserializeOwned, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-/// Most bytes of one value: 64 MiB.
+/// The largest size of one value: 64 MiB.
 pub(crate) const LIMIT: usize = 64 << 20;
 
 const SUM: usize = 4;
 
-/// What is wrong with the bytes of a value.
+/// Errors of encoding or decoding a value.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum CodecError {
-    /// More bytes than any value may have.
-    #[error("a value of {size} bytes exceeds the {limit} that are allowed")]
+    /// The value is too large.
+    #[error("a value of {size} bytes exceeds the limit of {limit}")]
     TooLarge {
         /// Its size.
         size: usize,
         /// The limit.
         limit: usize,
     },
-    /// The bytes are not those that were written.
+    /// The bytes differ from those that were written.
     #[error("a value of {size} bytes does not match its checksum")]
     Checksum {
         /// Its size.
         size: usize,
     },
-    /// The bytes are as they were written, but make no value.
+    /// The bytes have the right checksum but encode no value of the expected type.
     #[error("a value cannot be decoded: {reason}")]
     Malformed {
         /// What is wrong.
@@ -46,7 +45,7 @@ fn config() -> impl bincode::config::Config {
 pub(crate) fn encode<T: Serialize>(value: &T) -> Result<Vec<u8>, CodecError> {
     let mut bytes = vec![0; SUM];
     let used = bincode::serde::encode_into_std_write(value, &mut bytes, config())
-        .map_err(|fault| CodecError::Malformed { reason: fault.to_string() })?;
+        .map_err(|error| CodecError::Malformed { reason: error.to_string() })?;
     if used > LIMIT {
         return Err(CodecError::TooLarge { size: used, limit: LIMIT });
     }
@@ -67,7 +66,7 @@ pub(crate) fn decode<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, CodecError>
         return Err(CodecError::Checksum { size });
     }
     let (value, used) = bincode::serde::decode_from_slice(content, config())
-        .map_err(|fault| CodecError::Malformed { reason: fault.to_string() })?;
+        .map_err(|error| CodecError::Malformed { reason: error.to_string() })?;
     match used == content.len() {
         true => Ok(value),
         false => {
@@ -76,7 +75,7 @@ pub(crate) fn decode<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, CodecError>
     }
 }
 
-/// Numbers that are stored as they lie in memory (little-endian), not one by one.
+/// Numbers stored as one block of little-endian bytes.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct Floats(pub(crate) Vec<f32>);
 
@@ -94,7 +93,7 @@ impl<'de> Deserialize<'de> for Floats {
             type Value = Floats;
 
             fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-                f.write_str("four bytes a number")
+                f.write_str("four bytes per number")
             }
 
             fn visit_bytes<E: serde::de::Error>(self, bytes: &[u8]) -> Result<Floats, E> {
@@ -114,7 +113,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn values_come_back_bit_for_bit() {
+    fn values_round_trip_bit_for_bit() {
         let value = (
             "cat".to_owned(),
             Floats(vec![0.1, -0.0, f32::MIN_POSITIVE, 3e38]),
@@ -126,21 +125,21 @@ mod tests {
     }
 
     #[test]
-    fn any_changed_or_missing_byte_is_seen() {
+    fn any_changed_or_missing_byte_is_detected() {
         let bytes = encode(&("cat".to_owned(), Floats(vec![1.0; 5]))).unwrap();
-        for place in 0..bytes.len() {
+        for at in 0..bytes.len() {
             for bit in 0..8 {
                 let mut changed = bytes.clone();
-                changed[place] ^= 1 << bit;
-                let fault = decode::<(String, Floats)>(&changed).unwrap_err();
-                assert_eq!(fault, CodecError::Checksum { size: bytes.len() });
+                changed[at] ^= 1 << bit;
+                let error = decode::<(String, Floats)>(&changed).unwrap_err();
+                assert_eq!(error, CodecError::Checksum { size: bytes.len() });
             }
-            assert!(decode::<(String, Floats)>(&bytes[..place]).is_err());
+            assert!(decode::<(String, Floats)>(&bytes[..at]).is_err());
         }
     }
 
     #[test]
-    fn a_forged_length_with_a_true_checksum_reserves_nothing() {
+    fn a_forged_length_with_a_valid_checksum_reserves_no_memory() {
         // bincode writes lengths beyond 250 as a marker and eight bytes.
         let mut bytes = vec![0; SUM];
         bytes.push(253);
@@ -153,14 +152,14 @@ mod tests {
     }
 
     #[test]
-    fn what_is_too_large_or_left_over_is_refused() {
-        let fault = encode(&Floats(vec![0.0; LIMIT / 4 + 1])).unwrap_err();
-        assert!(matches!(fault, CodecError::TooLarge { .. } | CodecError::Malformed { .. }), "{fault}");
-        let fault = decode::<u8>(&vec![0; LIMIT + SUM + 1]).unwrap_err();
-        assert!(matches!(fault, CodecError::TooLarge { limit: LIMIT, .. }));
-        let fault = decode::<u8>(&encode(&(1u8, 2u8)).unwrap()).unwrap_err();
-        assert!(fault.to_string().contains("1 of 2 bytes"), "{fault}");
-        let fault = decode::<Floats>(&encode(&"abc").unwrap()).unwrap_err();
-        assert!(matches!(fault, CodecError::Malformed { .. }));
+    fn oversized_values_and_trailing_bytes_are_rejected() {
+        let error = encode(&Floats(vec![0.0; LIMIT / 4 + 1])).unwrap_err();
+        assert!(matches!(error, CodecError::TooLarge { .. } | CodecError::Malformed { .. }), "{error}");
+        let error = decode::<u8>(&vec![0; LIMIT + SUM + 1]).unwrap_err();
+        assert!(matches!(error, CodecError::TooLarge { limit: LIMIT, .. }));
+        let error = decode::<u8>(&encode(&(1u8, 2u8)).unwrap()).unwrap_err();
+        assert!(error.to_string().contains("1 of 2 bytes"), "{error}");
+        let error = decode::<Floats>(&encode(&"abc").unwrap()).unwrap_err();
+        assert!(matches!(error, CodecError::Malformed { .. }));
     }
 }

@@ -1,25 +1,25 @@
-//! The inner loops, in the widest vector instructions of the machine.
+//! Inner loops in the widest vector instructions of the machine.
 //!
-//! Rows are padded with zeros to a multiple of [`LANES`] numbers. Sums are made in an order that depends
-//! on the machine: what is shown to people is measured again in double precision.
+//! Rows are padded with zeros to a multiple of [`LANES`] numbers. The order of summation depends on the machine, so
+//! distances that users see are computed again in double precision.
 
 use pulp::{Arch, Simd, WithSimd};
 
-/// Rows are as long as a multiple of this.
+/// The length of a row is a multiple of this.
 pub(crate) const LANES: usize = 16;
 
-/// Rows measured at a time, so that one sum need not wait for another.
+/// Rows measured together, so that their sums are independent chains of additions.
 const ROWS: usize = 4;
 
-/// Points compared with a group of centres at a time.
+/// Points compared with a group of centres together.
 const POINTS: usize = 8;
 
-/// Length of a row of `dim` numbers once padded.
+/// Padded length of a row of `dim` numbers.
 pub(crate) fn padded(dim: usize) -> usize {
     dim.next_multiple_of(LANES)
 }
 
-/// Squared distances from `query` to every one of `rows`; all are `query.len()` long.
+/// Squared distances from `query` to each of `rows`, all of length `query.len()`.
 pub(crate) fn sq_distances_into(query: &[f32], rows: &[f32], out: &mut [f32]) {
     Arch::new().dispatch(SqDistances { query, rows, out });
 }
@@ -64,20 +64,20 @@ impl WithSimd for SqDistances<'_> {
     }
 }
 
-/// Centres side by side, so that a vector register holds one number of each of several: sums then need not
-/// be collected across a register.
+/// Centres interleaved so that a vector register holds the same coordinate of several centres, which avoids sums
+/// across a register.
 #[derive(Debug, Clone, PartialEq)]
-pub(crate) struct SideBySide {
-    /// Groups of [`LANES`] centres: the first number of each, then the second of each, ...
+pub(crate) struct Interleaved {
+    /// Groups of [`LANES`] centres: the first coordinate of each, then the second of each, ...
     numbers: Vec<f32>,
-    /// Half their squared lengths; infinite where a group is not full.
+    /// Half the squared norm of each centre; infinite for unused places of the last group.
     half_squares: Vec<f32>,
-    /// Numbers of a centre.
+    /// Length of a centre.
     n: usize,
 }
 
-impl SideBySide {
-    /// Of centres of `n` numbers one behind the other.
+impl Interleaved {
+    /// Takes centres of length `n`, one after the other.
     pub(crate) fn new(centroids: &[f32], n: usize) -> Self {
         let n_groups = (centroids.len() / n).div_ceil(LANES);
         let mut numbers = vec![0.0; n_groups * LANES * n];
@@ -90,7 +90,7 @@ impl SideBySide {
         Self { numbers, half_squares, n }
     }
 
-    /// The nearest centre of each of `points`, the first among equally near ones.
+    /// The nearest centre of each of `points`; ties go to the first.
     pub(crate) fn nearest(&self, points: &[f32]) -> Vec<u32> {
         let mut best = vec![(f32::INFINITY, 0); points.len() / self.n];
         Arch::new().dispatch(Closest { centres: self, points, best: &mut best });
@@ -99,7 +99,7 @@ impl SideBySide {
 }
 
 struct Closest<'a> {
-    centres: &'a SideBySide,
+    centres: &'a Interleaved,
     points: &'a [f32],
     best: &'a mut [(f32, u32)],
 }
@@ -113,10 +113,10 @@ impl WithSimd for Closest<'_> {
         let n = centres.n;
         let mut scores = [0.0; LANES];
         let groups = centres.numbers.chunks_exact(LANES * n).zip(centres.half_squares.chunks_exact(LANES));
-        // A group stays in the nearest cache while the points pass.
+        // A group of centres stays in the first-level cache while all points pass.
         for (first, (numbers, halves)) in (0u32..).step_by(LANES).zip(groups) {
             for (points, best) in points.chunks(POINTS * n).zip(best.chunks_mut(POINTS)) {
-                // The last few are joined by copies of the last.
+                // Pads the last block with copies of the last point.
                 let rows: [&[f32]; POINTS] =
                     std::array::from_fn(|r| &points[r.min(best.len() - 1) * n..][..n]);
                 for part in 0..LANES / S::F32_LANES {
@@ -149,7 +149,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn distances_are_those_of_the_plain_sum() {
+    fn distances_equal_the_plain_sum() {
         for (dim, n) in [(16, 1), (32, 7), (160, 13), (128, 64)] {
             let (query, rows) = (noise(1, dim, 3), noise(n, dim, 4));
             let mut found = vec![0.0; n];
@@ -160,25 +160,25 @@ mod tests {
             }
             let mut own = vec![1.0; n];
             sq_distances_into(&rows[..dim], &rows, &mut own);
-            assert_eq!(own[0], 0.0, "a row is at no distance from itself");
+            assert_eq!(own[0], 0.0, "the distance of a row from itself is zero");
         }
     }
 
     #[test]
-    fn the_nearest_centroid_is_the_nearest_and_the_first_of_equals() {
+    fn the_nearest_centroid_is_found_and_ties_go_to_the_first() {
         let dim = 32;
         for (n, k) in [(1, 1), (5, 3), (103, 70), (64, 301)] {
             let (points, mut centroids) = (noise(n, dim, 5), noise(k, dim, 6));
             if k > 3 {
                 centroids.copy_within(0..dim, 2 * dim);
             }
-            let found = SideBySide::new(&centroids, dim).nearest(&points);
+            let found = Interleaved::new(&centroids, dim).nearest(&points);
             for (point, found) in points.chunks(dim).zip(found) {
                 let mut gaps = vec![0.0; k];
                 sq_distances_into(point, &centroids, &mut gaps);
                 let least = gaps.iter().copied().fold(f32::INFINITY, f32::min);
                 assert!(gaps[found as usize] <= least * (1.0 + 1e-4));
-                assert_ne!(found, if k > 3 { 2 } else { u32::MAX }, "its twin comes first");
+                assert_ne!(found, if k > 3 { 2 } else { u32::MAX }, "an equal centroid comes first");
             }
         }
     }

@@ -1,13 +1,13 @@
-//! Centres of cells.
+//! Cell centres by k-means.
 
 use rayon::prelude::*;
 
-use super::kernels::SideBySide;
+use super::kernels::Interleaved;
 
-/// Points assigned by one thread at a time.
+/// Points in one parallel task.
 const BLOCK: usize = 256;
 
-/// Rounds of Lloyd's algorithm: more gain nothing in recall.
+/// Iterations of Lloyd's algorithm. More do not improve recall.
 const ROUNDS: usize = 8;
 
 /// Cell centres.
@@ -25,12 +25,12 @@ impl Centroids {
 
     /// The nearest centre of each point, in parallel.
     pub(crate) fn assign(&self, points: &[f32]) -> Vec<u32> {
-        let centres = SideBySide::new(&self.rows, self.n);
+        let centres = Interleaved::new(&self.rows, self.n);
         points.par_chunks(BLOCK * self.n).flat_map_iter(|part| centres.nearest(part)).collect()
     }
 
-    /// `k` centres of the `n`-long `points` by Lloyd's algorithm, from points at even steps of their order.
-    /// An empty cell takes a point of the largest one.
+    /// `k` centres of `points` of length `n` by Lloyd's algorithm, started at every `n_points / k`-th point. An
+    /// empty cell takes a point from the largest one.
     ///
     /// The result does not depend on the number of threads.
     pub(crate) fn of(points: &[f32], k: usize, n: usize) -> Self {
@@ -45,14 +45,14 @@ impl Centroids {
     }
 }
 
-/// The mean of the points of every cell; sums are in double precision, in the order of the points.
+/// The mean of the points of each cell, summed in double precision in the order of the points.
 fn means(points: &[f32], cells: &[u32], old: &[f32], n: usize) -> Vec<f32> {
     let k = old.len() / n;
     let mut members = vec![Vec::new(); k];
     for (i, cell) in cells.iter().enumerate() {
         members[*cell as usize].push(i);
     }
-    // The cells with most points give one each to those that have none.
+    // Each empty cell takes one point from the largest cell.
     let empty: Vec<usize> = (0..k).filter(|cell| members[*cell].is_empty()).collect();
     for cell in empty {
         let largest = (0..k).max_by_key(|other| (members[*other].len(), k - other)).unwrap_or(cell);
@@ -84,15 +84,15 @@ mod tests {
     fn separate_clusters_are_found() {
         let (points, of) = clustered(400, 8, 16, 0.01);
         let cells = Centroids::of(&points, 8, 16).assign(&points);
-        // Lloyd's algorithm may merge two, but never splits a tight cluster over merged ones.
+        // Lloyd's algorithm may merge clusters, but does not scatter a tight one over many cells.
         let mut pairs: Vec<_> = of.iter().zip(&cells).collect();
         pairs.sort_unstable();
         pairs.dedup();
-        assert!(pairs.len() <= 12, "{} pairs of cluster and cell", pairs.len());
+        assert!(pairs.len() <= 12, "{} pairs of a cluster and a cell", pairs.len());
     }
 
     #[test]
-    fn no_cell_is_empty_and_threads_change_nothing() {
+    fn no_cell_is_empty_and_results_do_not_depend_on_threads() {
         let points = noise(1000, 16, 1);
         let on = |threads| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
@@ -100,7 +100,7 @@ mod tests {
         };
         let centroids = on(1);
         assert_eq!(centroids, on(3));
-        // Copies of one point cannot fill two cells, and need not.
+        // Copies of one point all belong to the same cell.
         let same = Centroids::of(&[1.0; 16 * 10], 3, 16);
         assert_eq!(same.assign(&[1.0; 16]), [0]);
         let filled: std::collections::BTreeSet<u32> = centroids.assign(&points).into_iter().collect();

@@ -1,4 +1,4 @@
-//! Finished index files: a database, then checksums of its blocks, then a footer.
+//! Finished index files: a database, checksums of its blocks, and a footer.
 //!
 //! | part | bytes | content |
 //! |---|---|---|
@@ -7,36 +7,33 @@
 //! | checksums | `4 b` | CRC-32 of each of the `b` blocks of 4096 bytes of the database, the last perhaps shorter |
 //! | footer | 40 | `n`: u64; CRC-32 of the checksums: u32; block size: u32; format version: u32; CRC-32 of the footer without this field: u32; magic: 16 |
 //!
-//! All numbers are little-endian. Every byte of the file is covered, and every block is checked when it
-//! is read: no changed byte becomes a result. A finished file is never written again.
+//! All numbers are little-endian. Checksums cover every byte of the file, and each block is checked when it is read,
+//! so a changed byte never becomes a result. A finished file is never written again.
 
 use std::fs::File;
 use std::io::{self, BufReader, BufWriter, Read, Seek, SeekFrom, Write};
 use std::path::Path;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use redb::StorageBackend;
-
 use super::IndexError;
-use super::overlay::Overlay;
 
 /// Version of the file format.
 pub const FORMAT_VERSION: u32 = 1;
 
-/// Bytes under one checksum: redb's page, so that reading a page checks no more than it.
-pub(super) const BLOCK: usize = 4096;
+/// Bytes under one checksum: the size of redb's pages, so that reading a page checks exactly that page.
+pub(crate) const BLOCK: usize = 4096;
 
 const MAGIC: [u8; 16] = *b"canonform index\n";
 const FOOTER: u64 = 40;
-/// Where a database ends that was about to be finished.
+/// Marks the end of the database; lets an interrupted [`seal`] be undone.
 const MARK_MAGIC: [u8; 12] = *b"canonform ->";
 const MARK: u64 = 24;
-/// How redb's files begin.
-pub(super) const DATABASE_MAGIC: [u8; 4] = *b"redb";
+/// The first bytes of a redb file.
+pub(crate) const DATABASE_MAGIC: [u8; 4] = *b"redb";
 
 /// The last bytes of a finished file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Footer {
+pub(crate) struct Footer {
     database: u64,
     table_sum: u32,
 }
@@ -52,33 +49,33 @@ impl Footer {
         bytes
     }
 
-    /// The footer of a file, if it has one.
+    /// Reads the footer of a file; `None` if it has none.
     fn read(file: &mut File, path: &Path) -> Result<Option<Self>, IndexError> {
-        let cannot_read = |source| IndexError::Io { action: "read", path: path.to_owned(), source };
+        let cannot_read = IndexError::io("read", path);
         let length = file.seek(SeekFrom::End(0)).map_err(cannot_read)?;
         let Some(start) = length.checked_sub(FOOTER) else { return Ok(None) };
         let mut bytes = [0; FOOTER as usize];
         file.seek(SeekFrom::Start(start)).and_then(|_| file.read_exact(&mut bytes)).map_err(cannot_read)?;
         let number = |at: usize| u32::from_le_bytes([bytes[at], bytes[at + 1], bytes[at + 2], bytes[at + 3]]);
-        let damaged = |what: &str| IndexError::Damaged { path: path.to_owned(), what: what.to_owned() };
         if bytes[24..] != MAGIC {
             return Ok(None);
         }
         let version = number(16);
-        let is_true = footer_sum(&bytes[..20]) == number(20);
-        if version > FORMAT_VERSION && is_true {
-            return Err(IndexError::FutureVersion { path: path.to_owned(), found: version });
+        let is_intact = footer_sum(&bytes[..20]) == number(20);
+        if version > FORMAT_VERSION && is_intact {
+            let (path, supported) = (path.to_owned(), FORMAT_VERSION);
+            return Err(IndexError::FutureVersion { path, found: version, supported });
         }
         let database = u64::from(number(0)) | u64::from(number(4)) << 32;
         let table = 4 * database.div_ceil(BLOCK as u64);
-        if !is_true || database > length || database + MARK + table + FOOTER != length {
-            return Err(damaged("its footer is not what was written, or bytes were lost before it"));
+        if !is_intact || database > length || database + MARK + table + FOOTER != length {
+            return Err(IndexError::damaged(path, "its footer changed, or bytes before it are missing"));
         }
         Ok(Some(Self { database, table_sum: number(8) }))
     }
 
     /// A number that changes with the content of the file.
-    pub(super) fn fingerprint(self) -> u64 {
+    pub(crate) fn fingerprint(self) -> u64 {
         self.database << 32 ^ u64::from(self.table_sum)
     }
 }
@@ -90,8 +87,8 @@ fn footer_sum(bytes: &[u8]) -> u32 {
     sum.finalize()
 }
 
-/// Appends checksums and footer to a database that nobody has open, and hands all to the disk.
-pub(super) fn seal(file: &mut File) -> io::Result<()> {
+/// Appends checksums and footer to a database that is not open, and flushes the file to disk.
+pub(crate) fn seal(file: &mut File) -> io::Result<()> {
     let database = file.seek(SeekFrom::End(0))?;
     if !database.is_multiple_of(BLOCK as u64) {
         return Err(io::Error::other(format!("a database of {database} bytes does not end with a page")));
@@ -126,11 +123,11 @@ fn mark(database: u64) -> Vec<u8> {
     bytes
 }
 
-/// Takes away again what [`seal`] appended, be it all of it or, after an interruption, a part.
-pub(super) fn unseal(file: &mut File) -> io::Result<()> {
+/// Removes what [`seal`] appended, all of it or, after an interruption, a part.
+pub(crate) fn unseal(file: &mut File) -> io::Result<()> {
     let length = file.seek(SeekFrom::End(0))?;
     let block = BLOCK as u64;
-    // A database ends with a block: what comes after the last whole one does not belong to it.
+    // A database is a whole number of blocks, so bytes after the last whole block do not belong to it.
     let mut end = length - length % block;
     let least = end.saturating_sub(4 * length.div_ceil(block) + MARK + FOOTER);
     let mut found = [0; MARK as usize];
@@ -149,9 +146,9 @@ pub(super) fn unseal(file: &mut File) -> io::Result<()> {
     if end < length { file.set_len(end) } else { Ok(()) }
 }
 
-/// The database of a finished file, every block of which is checked as it is read.
+/// The database of a finished file. Checks each block as it is read.
 #[derive(Debug)]
-pub(super) struct Sealed {
+pub(crate) struct Sealed {
     file: Mutex<File>,
     footer: Footer,
     sums: Vec<u8>,
@@ -161,9 +158,8 @@ impl Sealed {
     /// # Errors
     /// [`IndexError::Foreign`], [`IndexError::FutureVersion`], [`IndexError::Damaged`],
     /// [`IndexError::Io`].
-    pub(super) fn open(path: &Path) -> Result<Self, IndexError> {
-        let cannot_read = |source| IndexError::Io { action: "read", path: path.to_owned(), source };
-        let damaged = |what: &str| IndexError::Damaged { path: path.to_owned(), what: what.to_owned() };
+    pub(crate) fn open(path: &Path) -> Result<Self, IndexError> {
+        let cannot_read = IndexError::io("read", path);
         let mut file = File::open(path).map_err(cannot_read)?;
         if !file.metadata().map_err(cannot_read)?.is_file() {
             return Err(IndexError::Foreign { path: path.to_owned() });
@@ -173,7 +169,7 @@ impl Sealed {
             file.seek(SeekFrom::Start(0)).map_err(cannot_read)?;
             Read::by_ref(&mut file).take(4).read_to_end(&mut head).map_err(cannot_read)?;
             return Err(match head == DATABASE_MAGIC {
-                true => damaged("it does not end as an index does"),
+                true => IndexError::damaged(path, "its footer is missing"),
                 false => IndexError::Foreign { path: path.to_owned() },
             });
         };
@@ -183,25 +179,25 @@ impl Sealed {
         file.read_exact(&mut head).map_err(cannot_read)?;
         file.read_exact(&mut sums).map_err(cannot_read)?;
         if crc32fast::hash(&sums) != footer.table_sum || head[..] != mark(footer.database) {
-            return Err(damaged("its checksums are not what was written"));
+            return Err(IndexError::damaged(path, "its checksums changed"));
         }
         Ok(Self { file: Mutex::new(file), footer, sums })
     }
 
-    pub(super) fn footer(&self) -> Footer {
+    pub(crate) fn footer(&self) -> Footer {
         self.footer
     }
 
-    /// Bytes of the database.
-    pub(super) fn len(&self) -> u64 {
+    /// Size of the database in bytes.
+    pub(crate) fn len(&self) -> u64 {
         self.footer.database
     }
 
-    /// Checks every block; calls `done` after each mebibyte.
+    /// Checks all blocks. Calls `done` after each mebibyte.
     ///
     /// # Errors
-    /// The number of the first block that changed, as an [`io::Error`].
-    pub(super) fn check(&self, mut done: impl FnMut()) -> io::Result<()> {
+    /// An [`io::Error`] that names the first block that changed.
+    pub(crate) fn check(&self, mut done: impl FnMut()) -> io::Result<()> {
         let mut buffer = vec![0; 1 << 20];
         let mut at = 0;
         while at < self.len() {
@@ -213,8 +209,8 @@ impl Sealed {
         Ok(())
     }
 
-    /// Reads bytes that begin and end with a block.
-    pub(super) fn read(&self, offset: u64, out: &mut [u8]) -> io::Result<()> {
+    /// Reads whole blocks.
+    pub(crate) fn read(&self, offset: u64, out: &mut [u8]) -> io::Result<()> {
         {
             let mut file = lock(&self.file);
             file.seek(SeekFrom::Start(offset))?;
@@ -224,44 +220,15 @@ impl Sealed {
         for (i, block) in out.chunks(BLOCK).enumerate() {
             let known = self.sums.get(4 * (first + i)..4 * (first + i) + 4);
             if known != Some(crc32fast::hash(block).to_le_bytes().as_slice()) {
-                return Err(io::Error::new(
-                    io::ErrorKind::InvalidData,
-                    format!(
-                        "bytes {} to {} are not what was written",
-                        (first + i) * BLOCK,
-                        (first + i + 1) * BLOCK - 1
-                    ),
-                ));
+                let (start, end) = ((first + i) * BLOCK, (first + i + 1) * BLOCK - 1);
+                let what = format!("bytes {start} to {end} changed");
+                return Err(io::Error::new(io::ErrorKind::InvalidData, what));
             }
         }
         Ok(())
     }
 }
 
-pub(super) fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+pub(crate) fn lock<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
-/// redb wants to write a little even when it only reads: that stays in memory.
-impl StorageBackend for Overlay<Sealed> {
-    fn len(&self) -> io::Result<u64> {
-        Ok(self.length())
-    }
-
-    fn read(&self, offset: u64, out: &mut [u8]) -> io::Result<()> {
-        self.read_through(offset, out)
-    }
-
-    fn set_len(&self, len: u64) -> io::Result<()> {
-        self.resize(len);
-        Ok(())
-    }
-
-    fn sync_data(&self) -> io::Result<()> {
-        Ok(())
-    }
-
-    fn write(&self, offset: u64, data: &[u8]) -> io::Result<()> {
-        self.write_over(offset, data)
-    }
 }

@@ -1,4 +1,4 @@
-//! How vectors are cut into cells, and how many of them a search looks into.
+//! Division of vectors into cells, and the calibrated number of cells that a search scans.
 
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -8,61 +8,60 @@ use super::kmeans::Centroids;
 use super::nearest::{Hit, Nearest};
 use retrieval::UnknownThreshold;
 
-/// Up to this many vectors all of them are measured: that takes less than two milliseconds, and is
-/// exact.
+/// Up to this many vectors a search measures all of them, which is exact and takes less than two milliseconds.
 pub(crate) const EXACT_LIMIT: usize = 50_000;
 
-/// Points of the sample that cells are made from, for each cell.
+/// Sampled points per cell for k-means.
 const SAMPLE: usize = 48;
 
-/// Vectors that are searched for to find how many cells it takes.
+/// Vectors used as queries to calibrate the number of cells to scan.
 const TRIALS: usize = 256;
 
-/// Neighbours that are looked for in a trial.
+/// Neighbours searched for in a trial.
 const NEIGHBORS: usize = 10;
 
-/// Share of them that must be found: more than is promised, as trials are few.
+/// Share of them that must be found: higher than what is promised, because there are few trials.
 const RECALL: f64 = 0.996;
 
-/// Rows measured at a time.
+/// Rows measured together.
 pub(crate) const CHUNK: usize = 256;
 
-/// What is true of all that is searched.
+/// Summary of [`Cells`], stored with them.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(crate) struct About {
+pub(crate) struct CellsHeader {
     /// Length of a vector.
     pub(crate) dim: usize,
     /// Number of vectors.
     pub(crate) n: usize,
-    /// Number of vectors in every cell.
+    /// Number of vectors in each cell.
     pub(crate) sizes: Vec<u32>,
-    /// Cells that a search looks into.
+    /// Number of cells that a search scans.
     pub(crate) probes: usize,
-    /// Share of the ten nearest that are found so, by trial; 1 when all cells are looked into.
+    /// Measured share of the ten nearest that such a search finds; 1 if it scans all cells.
     pub(crate) recall: f64,
-    /// Beyond this distance nothing is near, by the classes of the shapes.
+    /// Distance beyond which a query belongs to no class of the index.
     pub(crate) threshold: Option<UnknownThreshold>,
 }
 
-impl About {
-    /// Whether a search looks into all cells.
+impl CellsHeader {
+    /// Whether a search scans all cells.
     pub(crate) fn is_exact(&self) -> bool {
         self.probes >= self.sizes.len()
     }
 }
 
-/// Vectors cut into cells.
+/// Vectors divided into cells.
 #[derive(Debug, PartialEq)]
-pub(crate) struct Plan {
-    pub(crate) about: About,
+pub(crate) struct Cells {
+    pub(crate) header: CellsHeader,
     pub(crate) centroids: Centroids,
-    /// The vectors of every cell one after another, ascending in each.
+    /// The numbers of the vectors, cell by cell, ascending in each cell.
     pub(crate) slots: Vec<u32>,
 }
 
-impl Plan {
-    /// Cuts `rows`, vectors of `dim` numbers padded to `n`, into cells. The result does not depend on the
-    /// number of threads.
+impl Cells {
+    /// Divides `rows`, vectors of `dim` numbers padded to `n`, into cells. The result does not depend on the number
+    /// of threads.
     pub(crate) fn of(rows: &[f32], dim: usize, n: usize) -> Self {
         let n_rows = rows.len() / n;
         match n_rows {
@@ -74,10 +73,10 @@ impl Plan {
     pub(crate) fn with_cells(rows: &[f32], dim: usize, n: usize, n_cells: usize) -> Self {
         let n_rows = rows.len() / n;
         if n_cells < 2 || n_rows < n_cells {
-            let about =
-                About { dim, n: n_rows, sizes: vec![n_rows as u32], probes: 1, recall: 1.0, threshold: None };
+            let sizes = vec![n_rows as u32];
+            let header = CellsHeader { dim, n: n_rows, sizes, probes: 1, recall: 1.0, threshold: None };
             let centroids = Centroids::new(vec![0.0; n], n);
-            return Self { about, centroids, slots: (0..n_rows as u32).collect() };
+            return Self { header, centroids, slots: (0..n_rows as u32).collect() };
         }
         let n_sampled = (SAMPLE * n_cells).min(n_rows);
         let sample: Vec<f32> =
@@ -90,11 +89,12 @@ impl Plan {
         let mut slots: Vec<u32> = (0..n_rows as u32).collect();
         slots.sort_by_key(|slot| cells[*slot as usize]);
         let (probes, recall) = calibrated(rows, n, &cells, &centroids);
-        Self { about: About { dim, n: n_rows, sizes, probes, recall, threshold: None }, centroids, slots }
+        let header = CellsHeader { dim, n: n_rows, sizes, probes, recall, threshold: None };
+        Self { header, centroids, slots }
     }
 }
 
-/// The cells in order of distance from `query`; the nearest `probes` of them.
+/// The `probes` cells nearest to `query`, nearest first.
 pub(crate) fn nearest_cells(query: &[f32], centroids: &Centroids, probes: usize) -> Vec<u32> {
     let mut gaps = vec![0.0; centroids.rows.len() / query.len()];
     sq_distances_into(query, &centroids.rows, &mut gaps);
@@ -108,7 +108,7 @@ pub(crate) fn nearest_cells(query: &[f32], centroids: &Centroids, probes: usize)
     order.into_iter().map(|hit| hit.slot).collect()
 }
 
-/// Offers rows to `nearest`; `slots` are their numbers.
+/// Offers `rows`, whose numbers are `slots`, to `nearest`.
 pub(crate) fn scan(query: &[f32], slots: &[u32], rows: &[f32], nearest: &mut Nearest) {
     let mut sqs = [0.0; CHUNK];
     for (slots, rows) in slots.chunks(CHUNK).zip(rows.chunks(CHUNK * query.len())) {
@@ -118,15 +118,15 @@ pub(crate) fn scan(query: &[f32], slots: &[u32], rows: &[f32], nearest: &mut Nea
     }
 }
 
-/// How many cells must be looked into to find as many neighbours as is wanted, and how many are found
-/// then, from searches for some of the vectors among all others.
+/// The number of cells that must be scanned to reach [`RECALL`], and the recall reached, measured by searching for
+/// some of the vectors among all others.
 fn calibrated(rows: &[f32], n: usize, cells: &[u32], centroids: &Centroids) -> (usize, f64) {
     let n_rows = rows.len() / n;
     let n_cells = centroids.rows.len() / n;
     let trials: Vec<usize> =
         (0..TRIALS.min(n_rows)).map(|i| (2 * i + 1) * n_rows / (2 * TRIALS.min(n_rows))).collect();
     let found = exact(rows, n, &trials);
-    // From how many cells on the neighbours of each trial are found.
+    // For each neighbour of each trial, the number of cells that must be scanned to find it.
     let mut found_from: Vec<usize> = trials
         .par_iter()
         .zip(&found)
@@ -145,7 +145,7 @@ fn calibrated(rows: &[f32], n: usize, cells: &[u32], centroids: &Centroids) -> (
     (probes, within as f64 / found_from.len().max(1) as f64)
 }
 
-/// The nearest rows of some rows, themselves among them.
+/// The nearest rows of each query row, itself included.
 fn exact(rows: &[f32], n: usize, queries: &[usize]) -> Vec<Vec<Hit>> {
     let start = || vec![Nearest::new(NEIGHBORS + 1); queries.len()];
     let block = 16 * CHUNK;
@@ -172,51 +172,51 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_vector_is_in_one_cell() {
+    fn each_vector_is_in_exactly_one_cell() {
         let rows = noise(3000, 16, 2);
-        let plan = Plan::with_cells(&rows, 12, 16, 50);
-        let mut slots = plan.slots.clone();
+        let cells = Cells::with_cells(&rows, 12, 16, 50);
+        let mut slots = cells.slots.clone();
         slots.sort_unstable();
         assert!(slots.iter().copied().eq(0..3000));
-        assert_eq!(plan.about.sizes.iter().sum::<u32>(), 3000);
-        assert_eq!((plan.about.dim, plan.about.n), (12, 3000));
+        assert_eq!(cells.header.sizes.iter().sum::<u32>(), 3000);
+        assert_eq!((cells.header.dim, cells.header.n), (12, 3000));
     }
 
     #[test]
-    fn few_vectors_are_one_cell() {
+    fn few_vectors_form_one_cell() {
         for rows in [Vec::new(), noise(7, 16, 2)] {
-            let plan = Plan::of(&rows, 16, 16);
-            assert_eq!(plan.about.sizes, [rows.len() as u32 / 16]);
-            assert!(plan.about.is_exact());
+            let cells = Cells::of(&rows, 16, 16);
+            assert_eq!(cells.header.sizes, [rows.len() as u32 / 16]);
+            assert!(cells.header.is_exact());
         }
     }
 
     #[test]
-    fn the_promised_recall_is_held_on_vectors_that_were_not_tried() {
+    fn the_recall_holds_for_vectors_that_are_not_in_the_index() {
         let (all, _) = clustered(6200, 300, 16, 0.3);
         let (rows, queries) = all.split_at(6000 * 16);
-        let plan = Plan::with_cells(rows, 16, 16, 80);
-        assert!(plan.about.recall >= RECALL && plan.about.probes < 40, "{:?}", plan.about.probes);
-        let cells = plan.centroids.assign(rows);
-        let (mut found, mut asked) = (0, 0);
+        let cells = Cells::with_cells(rows, 16, 16, 80);
+        assert!(cells.header.recall >= RECALL && cells.header.probes < 40, "{:?}", cells.header.probes);
+        let of_row = cells.centroids.assign(rows);
+        let (mut found, mut wanted) = (0, 0);
         for query in queries.chunks(16) {
             let mut nearest = Nearest::new(10);
             scan(query, &(0..6000).collect::<Vec<_>>(), rows, &mut nearest);
-            let probed = nearest_cells(query, &plan.centroids, plan.about.probes);
+            let probed = nearest_cells(query, &cells.centroids, cells.header.probes);
             for hit in nearest.into_sorted() {
-                asked += 1;
-                found += usize::from(probed.contains(&cells[hit.slot as usize]));
+                wanted += 1;
+                found += usize::from(probed.contains(&of_row[hit.slot as usize]));
             }
         }
-        assert!(found as f64 >= 0.99 * f64::from(asked), "{found} of {asked}");
+        assert!(found as f64 >= 0.99 * f64::from(wanted), "{found} of {wanted}");
     }
 
     #[test]
-    fn threads_change_nothing() {
+    fn cells_do_not_depend_on_threads() {
         let rows = noise(2000, 16, 9);
         let on = |threads| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-            pool.install(|| Plan::with_cells(&rows, 16, 16, 30))
+            pool.install(|| Cells::with_cells(&rows, 16, 16, 30))
         };
         assert_eq!(on(1), on(4));
     }

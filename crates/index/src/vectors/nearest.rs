@@ -1,9 +1,9 @@
-//! The best few of many.
+//! The k nearest of many rows.
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
-/// A row and how far it is.
+/// A row and its squared distance from the query.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Hit {
     /// Squared distance.
@@ -26,11 +26,11 @@ impl PartialOrd for Hit {
     }
 }
 
-/// The `k` nearest rows seen so far; which are kept does not depend on the order they come in.
+/// The `k` nearest rows offered so far, independent of the order of offers.
 #[derive(Debug, Clone)]
 pub(crate) struct Nearest {
     k: usize,
-    /// The farthest of them on top.
+    /// The farthest is on top.
     heap: BinaryHeap<Hit>,
 }
 
@@ -39,7 +39,7 @@ impl Nearest {
         Self { k, heap: BinaryHeap::with_capacity(k.min(1 << 16) + 1) }
     }
 
-    /// Beyond this squared distance nothing is kept any more.
+    /// Rows beyond this squared distance are dropped.
     pub(crate) fn bound(&self) -> f32 {
         match self.heap.peek() {
             Some(last) if self.heap.len() >= self.k => last.sq,
@@ -85,7 +85,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn keeps_the_least_in_order_whatever_the_order_of_arrival() {
+    fn keeps_the_nearest_sorted_for_any_order_of_offers() {
         let sqs = [5.0, 1.0, 3.0, 1.0, 9.0, 0.5, 3.0];
         let expected = [(0.5, 5), (1.0, 1), (1.0, 3), (3.0, 2)];
         for turn in 0..sqs.len() {

@@ -1,28 +1,28 @@
-//! How far a shape may be from all others and still be of one of their classes.
+//! The threshold of unknown classes, from labelled vectors.
 
 use rayon::prelude::*;
 
+use super::cells::CHUNK;
 use super::kernels::sq_distances_into;
-use super::plan::CHUNK;
 use retrieval::UnknownThreshold;
 
-/// Shapes that are asked about, each as if it was new.
-const ASKED: usize = 512;
+/// Number of shapes used as queries.
+const QUERIES: usize = 512;
 
-/// The threshold that labelled vectors suggest, see [`UnknownThreshold::of`]; `rows` are `n` long, one for
-/// each of `classes`.
-pub(super) fn threshold(rows: &[f32], n: usize, classes: &[u32]) -> Option<UnknownThreshold> {
-    let asked = ASKED.min(classes.len());
-    let asked: Vec<usize> = (0..asked).map(|i| (2 * i + 1) * classes.len() / (2 * asked)).collect();
-    let start = || vec![[f32::INFINITY; 2]; asked.len()];
+/// The threshold from labelled vectors, see [`UnknownThreshold::of`]. `rows` have length `n`; `classes` holds the class
+/// of each.
+pub(crate) fn threshold(rows: &[f32], n: usize, classes: &[u32]) -> Option<UnknownThreshold> {
+    let n_queries = QUERIES.min(classes.len());
+    let queries: Vec<usize> = (0..n_queries).map(|i| (2 * i + 1) * classes.len() / (2 * n_queries)).collect();
+    let start = || vec![[f32::INFINITY; 2]; n_queries];
     let least = |a: [f32; 2], b: [f32; 2]| [a[0].min(b[0]), a[1].min(b[1])];
-    // All that are asked about meet a few rows before the next ones are read.
+    // All queries meet one chunk of rows before the next chunk is read.
     let nearest = rows
         .par_chunks(CHUNK * n)
         .zip(classes.par_chunks(CHUNK))
         .enumerate()
         .fold(start, |mut nearest, (i, (part, of))| {
-            for (nearest, &query) in nearest.iter_mut().zip(&asked) {
+            for (nearest, &query) in nearest.iter_mut().zip(&queries) {
                 let found = own_and_foreign(
                     &rows[query * n..][..n],
                     part,
@@ -42,8 +42,8 @@ pub(super) fn threshold(rows: &[f32], n: usize, classes: &[u32]) -> Option<Unkno
     UnknownThreshold::of(&own, &foreign)
 }
 
-/// Squared distances from `query`, of the class `own`, to the nearest of `rows` of that class and of any other;
-/// row `itself` is not counted.
+/// Squared distances from `query`, which is in class `own`, to the nearest of `rows` in that class and in any other.
+/// Row `itself` does not count.
 fn own_and_foreign(
     query: &[f32],
     rows: &[f32],
@@ -69,9 +69,9 @@ mod tests {
     use super::*;
 
     #[test]
-    fn it_is_that_of_all_pairs() {
-        let places = [0.0f32, 1.0, 2.5, 10.0, 11.0, 30.0];
-        let rows: Vec<f32> = places.iter().flat_map(|x| [&[*x][..], &[0.0; 15]].concat()).collect();
+    fn matches_the_threshold_from_all_pairs() {
+        let positions = [0.0f32, 1.0, 2.5, 10.0, 11.0, 30.0];
+        let rows: Vec<f32> = positions.iter().flat_map(|x| [&[*x][..], &[0.0; 15]].concat()).collect();
         let found = threshold(&rows, 16, &[0, 0, 0, 1, 1, 2]).unwrap();
         // Own: 1, 1, 1.5, 1, 1; foreign: 10, 9, 7.5, 7.5, 8.5, 19.
         assert_eq!(found, UnknownThreshold { distance: 4.5, missed: 0.0, mistaken: 0.0 });

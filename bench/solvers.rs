@@ -2,7 +2,7 @@
 //!
 //! Comparisons with other programs stand in `bench/peers.py`.
 
-use canonform_geodesics::{FirstSample, HeatOptions, Method, farthest_point_sampling};
+use geodesics::{FirstSample, HeatOptions, Method, farthest_point_sampling};
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use mesh::shapes;
 use surface::{IntrinsicMesh, VertexId};

@@ -1,0 +1,1 @@
+//! Benchmarks of the distance solvers: `make bench` runs `solvers.rs`.

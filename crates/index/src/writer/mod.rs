@@ -1,0 +1,268 @@
+//! Building and changing an index.
+
+mod work;
+
+use std::fs::{self, File};
+use std::io;
+use std::path::{Path, PathBuf};
+
+use redb::Database;
+
+use self::work::{Begun, copy_database, database, is_database, open_exclusively, sync_folder};
+use crate::format::{ENTRIES, Store, database_error, seal, unseal, write_cells};
+use crate::{Index, IndexError, Shape, ShapeEntry};
+
+pub use self::work::work_path;
+
+/// The job of a writer. An interrupted job can be resumed by the same kind of job.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Job {
+    /// Index a whole collection.
+    Build,
+    /// Add shapes to an index.
+    Add,
+    /// Remove shapes from an index.
+    Remove,
+    /// Join several indexes.
+    Merge,
+}
+
+impl Job {
+    /// Its name in files and messages.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Build => "build",
+            Self::Add => "add",
+            Self::Remove => "remove",
+            Self::Merge => "merge",
+        }
+    }
+
+    /// Whether the work of an interrupted job of this name is worth keeping.
+    fn resumes(name: &str) -> bool {
+        [Self::Build, Self::Add].iter().any(|job| job.name() == name)
+    }
+}
+
+/// The only writer of an index.
+///
+/// It works in a file next to the index, `NAME.work`, which replaces the index when the job is finished. Until then
+/// readers see the old state. Shapes are on disk when [`put`](Self::put) returns. An interrupted writer leaves its
+/// work file, and the next writer resumes it.
+///
+/// ```
+/// use canonform_index::{IndexWriter, Job};
+///
+/// # let folder = tempfile::tempdir().unwrap();
+/// # let path = folder.path().join("index");
+/// drop(IndexWriter::open(&path, Job::Build, Some("options"))?); // interrupted
+///
+/// let writer = IndexWriter::open(&path, Job::Build, Some("options"))?;
+/// assert!(writer.is_resumed());
+/// assert!(writer.finish()?.is_empty());
+/// # Ok::<(), canonform_index::IndexError>(())
+/// ```
+#[derive(Debug)]
+pub struct IndexWriter {
+    path: PathBuf,
+    work: PathBuf,
+    /// Locked as long as it is open.
+    file: File,
+    database: Database,
+    /// Length of the vectors, once there is one.
+    length: Option<usize>,
+    resumed: bool,
+}
+
+impl IndexWriter {
+    /// Starts to write an index, or resumes an interrupted job.
+    ///
+    /// `options` are the options that its shapes are described with; `None` takes them from the existing index.
+    ///
+    /// # Errors
+    /// [`IndexError::Busy`], [`IndexError::Unfinished`], [`IndexError::OtherOptions`] and those of [`Index::open`].
+    pub fn open(path: &Path, job: Job, options: Option<&str>) -> Result<Self, IndexError> {
+        let work = work_path(path);
+        let base = if path.exists() { Some(Index::open(path)?) } else { None };
+        let options = match (options, &base) {
+            (Some(asked), Some(base)) => base.expect_options(asked).map(|()| asked.to_owned())?,
+            (Some(asked), None) => asked.to_owned(),
+            (None, Some(base)) => base.options().to_owned(),
+            (None, None) => return Err(IndexError::io("read", path)(io::ErrorKind::NotFound.into())),
+        };
+        let cannot_write = IndexError::io("write", &work);
+        let mut file = open_exclusively(path, &work)?;
+        unseal(&mut file).map_err(cannot_write)?;
+        let begun =
+            Begun { job: job.name().to_owned(), options, base: base.as_ref().map_or(0, Index::fingerprint) };
+        if is_database(&mut file).map_err(cannot_write)? {
+            let database = database(&file, &work)?;
+            let store = Store { database: &database, path: &work, action: "write" };
+            if let Some(known) = Begun::read(&store)?
+                && Job::resumes(&known.job)
+            {
+                if known.job != begun.job {
+                    return Err(IndexError::Unfinished { job: known.job, work });
+                }
+                if known.options != begun.options {
+                    let (found, asked) = (known.options, begun.options);
+                    return Err(IndexError::OtherOptions { path: work, found, asked });
+                }
+                // An addition only resumes on the index that it began with; a build determines the whole content.
+                if job == Job::Build || known.base == begun.base {
+                    let length = store.read()?.about("length")?;
+                    let path = path.to_owned();
+                    return Ok(Self { path, work, file, database, length, resumed: true });
+                }
+            }
+        }
+        // A merge starts empty.
+        let base = base.filter(|_| job != Job::Merge);
+        copy_database(&mut file, base.as_ref()).map_err(|error| match error.kind() {
+            io::ErrorKind::InvalidData => IndexError::damaged(path, error.to_string()),
+            _ => cannot_write(error),
+        })?;
+        let database = database(&file, &work)?;
+        let store = Store { database: &database, path: &work, action: "write" };
+        begun.write(&store)?;
+        let length = store.read()?.about("length")?;
+        Ok(Self { path: path.to_owned(), work, file, database, length, resumed: false })
+    }
+
+    fn store(&self) -> Store<'_> {
+        Store { database: &self.database, path: &self.work, action: "write" }
+    }
+
+    /// Whether it resumes an interrupted job.
+    #[must_use]
+    pub fn is_resumed(&self) -> bool {
+        self.resumed
+    }
+
+    /// Number of shapes so far.
+    ///
+    /// # Errors
+    /// [`IndexError::Io`], [`IndexError::Damaged`].
+    pub fn len(&self) -> Result<usize, IndexError> {
+        self.store().read()?.len()
+    }
+
+    /// Whether there are no shapes so far.
+    ///
+    /// # Errors
+    /// As [`len`](Self::len).
+    pub fn is_empty(&self) -> Result<bool, IndexError> {
+        Ok(self.len()? == 0)
+    }
+
+    /// The entry of a shape, if it is there.
+    ///
+    /// # Errors
+    /// As [`len`](Self::len).
+    pub fn entry(&self, id: &str) -> Result<Option<ShapeEntry>, IndexError> {
+        self.store().read()?.entry(id)
+    }
+
+    /// The names of all shapes so far, in ascending order.
+    ///
+    /// # Errors
+    /// As [`len`](Self::len).
+    pub fn ids(&self) -> Result<Vec<String>, IndexError> {
+        self.store().read()?.keys(ENTRIES)
+    }
+
+    /// Stores shapes, replacing those of the same names. Either all of them are on disk when it returns, or none.
+    ///
+    /// # Errors
+    /// [`IndexError::BadVector`], [`IndexError::OtherLength`], [`IndexError::Codec`], [`IndexError::Io`].
+    pub fn put(&mut self, shapes: &[Shape]) -> Result<(), IndexError> {
+        let mut length = self.length;
+        for shape in shapes {
+            let fused = &shape.vectors.fused;
+            if fused.is_empty() || !fused.iter().all(|x| x.is_finite()) {
+                return Err(IndexError::BadVector { id: shape.id.clone() });
+            }
+            let expected = *length.get_or_insert(fused.len());
+            if fused.len() != expected {
+                return Err(IndexError::OtherLength { id: shape.id.clone(), found: fused.len(), expected });
+            }
+        }
+        let store = self.store();
+        store.write(|transaction| {
+            if let Some(length) = length {
+                store.set(transaction, "length", &length)?;
+            }
+            shapes.iter().try_for_each(|shape| store.put(transaction, shape))
+        })?;
+        self.length = length;
+        Ok(())
+    }
+
+    /// Replaces entries of shapes and keeps their vectors.
+    ///
+    /// # Errors
+    /// [`IndexError::NoSuchShape`], [`IndexError::Io`].
+    pub fn set_entries(&mut self, entries: &[(String, ShapeEntry)]) -> Result<(), IndexError> {
+        let store = self.store();
+        let known = store.read()?;
+        for (id, _) in entries {
+            if known.entry(id)?.is_none() {
+                return Err(IndexError::NoSuchShape { path: self.path.clone(), id: id.clone() });
+            }
+        }
+        drop(known);
+        store.write(|transaction| {
+            entries.iter().try_for_each(|(id, entry)| store.put_entry(transaction, id, entry))
+        })
+    }
+
+    /// Removes shapes.
+    ///
+    /// # Errors
+    /// [`IndexError::NoSuchShape`], [`IndexError::Io`]; then no shape is removed.
+    pub fn remove(&mut self, ids: &[String]) -> Result<(), IndexError> {
+        let store = self.store();
+        store.write(|transaction| {
+            ids.iter().try_for_each(|id| match store.remove(transaction, id)? {
+                true => Ok(()),
+                false => Err(IndexError::NoSuchShape { path: self.path.clone(), id: id.clone() }),
+            })
+        })
+    }
+
+    /// Finishes the index and replaces the previous one.
+    ///
+    /// # Errors
+    /// [`IndexError::Io`]; then the index is unchanged, and the work is kept.
+    pub fn finish(self) -> Result<Index, IndexError> {
+        let Self { path, work, mut file, mut database, .. } = self;
+        let store = Store { database: &database, path: &work, action: "write" };
+        write_cells(&store)?;
+        let n_shapes = store.read()?.len()?;
+        database.compact().map_err(|error| database_error(&work, "write", error))?;
+        drop(database);
+        // If this fails half-way, `unseal` removes the rest when the job is resumed.
+        seal(&mut file).map_err(IndexError::io("write", &work))?;
+        // redb does not report whether its last bytes were written, so check.
+        let written = Index::open(&work)?;
+        if written.len() != n_shapes {
+            let what = format!("{} of {n_shapes} shapes were written", written.len());
+            return Err(IndexError::damaged(&work, what));
+        }
+        fs::rename(&work, &path).map_err(IndexError::io("write", &path))?;
+        sync_folder(&path).map_err(IndexError::io("write", &path))?;
+        drop(file);
+        Index::open(&path)
+    }
+
+    /// Discards the work. The index stays unchanged.
+    ///
+    /// # Errors
+    /// [`IndexError::Io`].
+    pub fn discard(self) -> Result<(), IndexError> {
+        let Self { work, database, .. } = self;
+        drop(database);
+        fs::remove_file(&work).map_err(IndexError::io("remove", &work))
+    }
+}

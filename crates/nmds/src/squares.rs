@@ -1,0 +1,67 @@
+//! What the embeddings from squared distances have in common.
+
+use linalg::{LandmarkDistances, Matrix};
+
+use crate::NmdsError;
+
+/// Squared distances relative to the square of the largest distance, so that results do not depend on the unit of
+/// length.
+#[derive(Debug)]
+pub(crate) struct Squares {
+    /// The largest distance.
+    pub(crate) unit: f64,
+    /// From the landmarks to all points, p x n.
+    pub(crate) columns: Matrix,
+    /// Between the landmarks, n x n, symmetric.
+    pub(crate) block: Matrix,
+}
+
+impl Squares {
+    /// # Errors
+    /// [`NmdsError::NoExtent`].
+    pub(crate) fn new(distances: &LandmarkDistances) -> Result<Self, NmdsError> {
+        let unit = check_extent(distances.max(), distances.n_points())?;
+        let columns = distances.matrix().map(|d| (d / unit).powi(2));
+        Ok(Self { unit, columns, block: distances.sq_block() / (unit * unit) })
+    }
+}
+
+/// Returns the largest distance if it is positive.
+///
+/// # Errors
+/// [`NmdsError::NoExtent`].
+pub(crate) fn check_extent(largest: f64, n_points: usize) -> Result<f64, NmdsError> {
+    if largest > 0.0 { Ok(largest) } else { Err(NmdsError::NoExtent { n_points }) }
+}
+
+/// # Errors
+/// [`NmdsError::BadDimension`] unless `dim` is in 1..=limit.
+pub(crate) fn check_dim(dim: usize, limit: usize) -> Result<(), NmdsError> {
+    if (1..=limit).contains(&dim) { Ok(()) } else { Err(NmdsError::BadDimension { dim, limit }) }
+}
+
+/// `(A + A') / 2`.
+pub(crate) fn symmetrized(a: Matrix) -> Matrix {
+    (&a + a.transpose()) * 0.5
+}
+
+/// Subtracts its mean from each column: the product with `J = I - 11'/p` from the left.
+pub(crate) fn center_columns(columns: &mut Matrix) {
+    let p = columns.nrows().max(1) as f64;
+    for mut column in columns.column_iter_mut() {
+        let mean = column.sum() / p;
+        column.add_scalar_mut(-mean);
+    }
+}
+
+/// The blocks `X` and `Y` of the solution of `[A N; N' 0] [X; Y] = [I; 0]`; `None` if the system is singular.
+pub(crate) fn solve_saddle_point(a: &Matrix, null: &Matrix) -> Option<[Matrix; 2]> {
+    let (n, m) = null.shape();
+    let mut system = Matrix::zeros(n + m, n + m);
+    system.view_mut((0, 0), (n, n)).copy_from(a);
+    system.view_mut((0, n), (n, m)).copy_from(null);
+    system.view_mut((n, 0), (m, n)).copy_from(&null.transpose());
+    let solution = system.lu().solve(&Matrix::identity(n + m, n))?;
+    let is_finite = solution.iter().all(|x| x.is_finite());
+    is_finite.then(|| [solution.rows(0, n).into_owned(), solution.rows(n, m).into_owned()])
+}

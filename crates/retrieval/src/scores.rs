@@ -1,0 +1,226 @@
+//! Retrieval scores of one query, their means, and precision-recall curves.
+
+use linalg::DistanceMatrix;
+use serde::{Deserialize, Serialize};
+
+use crate::{Labels, Neighbor, RetrievalError, rank};
+
+/// Retrieval scores in 0..=1, of one query or averaged over queries, in the conventions of the Princeton shape
+/// benchmark's `psbTable`.
+///
+/// `C` is the number of relevant shapes: the size of the query's class minus the query itself.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Scores {
+    /// Nearest neighbour: 1 if the nearest shape is relevant, else 0.
+    pub nn: f64,
+    /// First tier: share of the relevant shapes among the first `C`.
+    pub ft: f64,
+    /// Second tier: share of the relevant shapes among the first `2 C`.
+    pub st: f64,
+    /// E-measure: harmonic mean of precision and recall at rank `min(32, n - 1)`. Cannot reach 1 if `C` is
+    /// smaller than that rank.
+    pub e: f64,
+    /// Normalised discounted cumulative gain: `g_1 + sum_{r >= 2} g_r / log2 r` over its best possible value.
+    pub dcg: f64,
+    /// Average precision: mean of the precision at the rank of each relevant shape.
+    pub map: f64,
+}
+
+impl Scores {
+    /// The scores of the shape `query`, given its ranking of all other shapes. Returns `None` if no other shape
+    /// is in its class.
+    #[must_use]
+    pub fn of_query(ranking: &[Neighbor], query: usize, labels: &Labels) -> Option<Self> {
+        let class = labels.class(query);
+        let relevant = labels.size(class) - 1;
+        if relevant == 0 {
+            return None;
+        }
+        let hits: Vec<bool> = ranking.iter().map(|other| labels.class(other.index) == class).collect();
+        let count = |rank: usize| hits.iter().take(rank).filter(|hit| **hit).count() as f64;
+        let c = relevant as f64;
+        let page = hits.len().min(32);
+        let (precision, recall) = (count(page) / page as f64, count(page) / c);
+        let discount = |rank: usize| if rank == 1 { 1.0 } else { 1.0 / (rank as f64).log2() };
+        let (mut gain, mut found, mut precisions) = (0.0, 0.0, 0.0);
+        for (i, _) in hits.iter().enumerate().filter(|(_, hit)| **hit) {
+            found += 1.0;
+            gain += discount(i + 1);
+            precisions += found / (i + 1) as f64;
+        }
+        let both = precision + recall;
+        Some(Self {
+            nn: count(1),
+            ft: count(relevant) / c,
+            st: count(2 * relevant) / c,
+            e: if both > 0.0 { 2.0 * precision * recall / both } else { 0.0 },
+            dcg: gain / (1..=relevant).map(discount).sum::<f64>(),
+            map: precisions / c,
+        })
+    }
+}
+
+/// How scores of queries are averaged.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Averaging {
+    /// Over queries: large classes count more.
+    Micro,
+    /// Over the means of the classes: all classes count the same.
+    Macro,
+}
+
+/// The mean scores of a labelled distance matrix, in the conventions of [`evaluate`](crate::evaluate).
+///
+/// # Errors
+/// [`RetrievalError::LabelCount`], [`RetrievalError::NothingToScore`].
+pub fn mean_scores(
+    distances: &DistanceMatrix,
+    labels: &Labels,
+    averaging: Averaging,
+) -> Result<Scores, RetrievalError> {
+    let query = |i: usize| {
+        Scores::of_query(&rank(distances, i), i, labels).map(|s| vec![s.nn, s.ft, s.st, s.e, s.dcg, s.map])
+    };
+    let mean = mean_of_queries(distances, labels, averaging, 6, query)?;
+    Ok(Scores { nn: mean[0], ft: mean[1], st: mean[2], e: mean[3], dcg: mean[4], map: mean[5] })
+}
+
+/// Mean interpolated precision at `n` recalls spread evenly from 0 to 1: the precision of a query at a recall is
+/// its largest precision at that or any higher recall.
+///
+/// # Errors
+/// [`RetrievalError::LabelCount`], [`RetrievalError::NothingToScore`].
+pub fn precision_recall(
+    distances: &DistanceMatrix,
+    labels: &Labels,
+    averaging: Averaging,
+    n: usize,
+) -> Result<Vec<f64>, RetrievalError> {
+    let query = |i: usize| {
+        let class = labels.class(i);
+        let relevant = labels.size(class) - 1;
+        let mut precisions = Vec::with_capacity(relevant);
+        for (at, other) in rank(distances, i).iter().enumerate() {
+            if labels.class(other.index) == class {
+                precisions.push((precisions.len() + 1) as f64 / (at + 1) as f64);
+            }
+        }
+        let mut best = 0.0f64;
+        for precision in precisions.iter_mut().rev() {
+            best = best.max(*precision);
+            *precision = best;
+        }
+        // The smallest number of hits that reaches the recall.
+        let hits = |step: usize| (step * relevant).div_ceil(n.max(2) - 1).max(1);
+        Some((0..n).map(|step| precisions[hits(step) - 1]).collect())
+    };
+    mean_of_queries(distances, labels, averaging, n, query)
+}
+
+/// Averages the values that `query` returns for each shape that is scored as a query.
+fn mean_of_queries(
+    distances: &DistanceMatrix,
+    labels: &Labels,
+    averaging: Averaging,
+    length: usize,
+    query: impl Fn(usize) -> Option<Vec<f64>>,
+) -> Result<Vec<f64>, RetrievalError> {
+    let n_points = distances.n_points();
+    if labels.n_points() != n_points {
+        return Err(RetrievalError::LabelCount { n_labels: labels.n_points(), n_points });
+    }
+    let (mut sum, mut total) = (vec![0.0; length], 0.0);
+    for i in (0..n_points).filter(|&i| labels.is_query(i)) {
+        let weight = match averaging {
+            Averaging::Micro => 1.0,
+            Averaging::Macro => 1.0 / labels.size(labels.class(i)) as f64,
+        };
+        if let Some(values) = query(i) {
+            sum.iter_mut().zip(values).for_each(|(sum, value)| *sum += weight * value);
+            total += weight;
+        }
+    }
+    match total > 0.0 {
+        true => Ok(sum.into_iter().map(|sum| sum / total).collect()),
+        false => Err(RetrievalError::NothingToScore { n_points, n_classes: labels.classes().len() }),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn line(positions: &[f64]) -> DistanceMatrix {
+        DistanceMatrix::from_pairs(positions.len(), |i, j| (positions[i] - positions[j]).abs()).unwrap()
+    }
+
+    /// Class `a` of four on the left; class `b` of three on the right, one of them among `a`.
+    fn example() -> (DistanceMatrix, Labels) {
+        let positions = [0.0, 1.0, 2.0, 3.5, 1.4, 50.0, 51.5];
+        (line(&positions), Labels::new(&["a", "a", "a", "a", "b", "b", "b"]))
+    }
+
+    fn of_first(positions: &[f64], names: &[&str]) -> Option<Scores> {
+        Scores::of_query(&rank(&line(positions), 0), 0, &Labels::new(names))
+    }
+
+    #[test]
+    fn scores_follow_their_definitions_on_a_worked_example() {
+        // From shape 0 the order is b a a b a: relevant at ranks 2, 3 and 5 of 5.
+        let positions = [0.0, 1.0, 2.0, 3.0, 4.0, 5.0];
+        let scores = of_first(&positions, &["a", "b", "a", "a", "b", "a"]).unwrap();
+        assert_eq!(scores.nn, 0.0);
+        assert!((scores.ft - 2.0 / 3.0).abs() < 1e-15);
+        assert_eq!(scores.st, 1.0);
+        assert!((scores.map - (1.0 / 2.0 + 2.0 / 3.0 + 3.0 / 5.0) / 3.0).abs() < 1e-15);
+        let gain = 1.0 + 1.0 / 3f64.log2() + 1.0 / 5f64.log2();
+        let ideal = 1.0 + 1.0 + 1.0 / 3f64.log2();
+        assert!((scores.dcg - gain / ideal).abs() < 1e-15);
+        // At rank 5: precision 3/5, recall 1.
+        assert!((scores.e - 0.75).abs() < 1e-15);
+    }
+
+    #[test]
+    fn e_measure_of_a_perfect_ranking_is_limited_by_the_page() {
+        // 30 shapes, one class of 15: 14 relevant among the 29 on the page.
+        let positions: Vec<f64> = (0..30).map(f64::from).collect();
+        let names: Vec<&str> = (0..30).map(|i| if i < 15 { "a" } else { "b" }).collect();
+        let scores = of_first(&positions, &names).unwrap();
+        assert_eq!(scores.ft, 1.0);
+        assert!((scores.e - 0.651).abs() < 1e-3);
+    }
+
+    #[test]
+    fn a_class_of_one_has_no_scores() {
+        assert_eq!(of_first(&[0.0, 1.0], &["a", "b"]), None);
+    }
+
+    #[test]
+    fn micro_means_weigh_queries_alike_and_macro_means_classes() {
+        let (distances, labels) = example();
+        let nn = |averaging| mean_scores(&distances, &labels, averaging).unwrap().nn;
+        // Correct nearest neighbours: the first and last of a, the two distant ones of b.
+        assert!((nn(Averaging::Micro) - 4.0 / 7.0).abs() < 1e-15);
+        assert!((nn(Averaging::Macro) - (0.5 + 2.0 / 3.0) / 2.0).abs() < 1e-15);
+    }
+
+    #[test]
+    fn precision_falls_with_recall_and_is_one_for_perfect_rankings() {
+        let (distances, labels) = example();
+        let curve = precision_recall(&distances, &labels, Averaging::Micro, 11).unwrap();
+        assert!(curve.windows(2).all(|w| w[0] >= w[1]) && curve[0] < 1.0 && curve[10] > 0.0);
+        let separate = DistanceMatrix::from_pairs(6, |i, j| if i / 3 == j / 3 { 1.0 } else { 9.0 }).unwrap();
+        let labels = Labels::new(&["a", "a", "a", "b", "b", "b"]);
+        assert_eq!(precision_recall(&separate, &labels, Averaging::Macro, 5), Ok(vec![1.0; 5]));
+    }
+
+    #[test]
+    fn scores_need_a_large_class_and_a_label_per_shape() {
+        let distances = DistanceMatrix::from_pairs(2, |_, _| 1.0).unwrap();
+        let error = mean_scores(&distances, &Labels::new(&["a", "a"]), Averaging::Micro).unwrap_err();
+        assert_eq!(error, RetrievalError::NothingToScore { n_points: 2, n_classes: 1 });
+        let error = precision_recall(&distances, &Labels::new(&["a"]), Averaging::Micro, 11).unwrap_err();
+        assert_eq!(error, RetrievalError::LabelCount { n_labels: 1, n_points: 2 });
+    }
+}
