@@ -1,8 +1,6 @@
 //! The edges of a surface as a graph.
 
-use surface::IntrinsicMesh;
-
-use crate::rows::Rows;
+use surface::{IntrinsicMesh, Rows};
 
 /// Neighbours of every vertex along edges and links.
 #[derive(Debug, Clone)]
@@ -13,8 +11,9 @@ impl EdgeGraph {
     pub(crate) fn new(mesh: &IntrinsicMesh) -> Self {
         let edges = mesh.topology().edges().iter().zip(mesh.edge_lengths()).map(|(ends, l)| (*ends, *l));
         let links = mesh.links().iter().map(|link| (link.ends, link.length));
-        let both =
-            edges.chain(links).flat_map(|([a, b], length)| [(a.0, (b.0, length)), (b.0, (a.0, length))]);
+        let both = edges
+            .chain(links)
+            .flat_map(|([a, b], length)| [(a.index(), (b.0, length)), (b.index(), (a.0, length))]);
         Self(Rows::collect(mesh.n_vertices(), both))
     }
 
@@ -24,7 +23,7 @@ impl EdgeGraph {
 
     #[inline]
     pub(crate) fn neighbours(&self, vertex: u32) -> &[(u32, f64)] {
-        self.0.of(vertex)
+        self.0.row(vertex as usize)
     }
 
     /// Vertices in breadth-first order, one component after the other: neighbours on the surface

@@ -17,7 +17,6 @@ mod heat;
 mod method;
 mod path;
 mod prefetch;
-mod rows;
 mod samplers;
 mod sampling;
 mod solver;

@@ -97,9 +97,7 @@ impl Source {
                 let vertices = topology.faces()[face.index()];
                 // In the plane of the face: the squared distance from a point with barycentric
                 // coordinates b to corner i is -sum_{j<k} e_j e_k |v_j v_k|^2 with e = b - unit_i.
-                let sides = [0, 1, 2].map(|slot| {
-                    mesh.length(topology.opposite_edge(surface::CornerId(3 * face.0 + slot))).powi(2)
-                });
+                let sides = face.corners().map(|corner| mesh.opposite_length(corner).powi(2));
                 let reach = [0, 1, 2].map(|i| {
                     let mut e = barycentric;
                     e[i] -= 1.0;

@@ -1,7 +1,7 @@
 //! Which way round the faces run.
 
 use crate::TriMesh;
-use surface::{CornerId, Topology, VertexId};
+use surface::{CornerId, FaceId, Topology, VertexId};
 
 /// The faces of a mesh split into patches joined by manifold edges, and which faces of each patch
 /// run against the others.
@@ -25,8 +25,7 @@ pub(crate) fn runs_against(topology: &Topology, corner: CornerId, twin: CornerId
 
 /// The vertex from which a face runs along the edge opposite one of its corners.
 fn start_of_opposite_edge(topology: &Topology, corner: CornerId) -> VertexId {
-    let next = CornerId(corner.face().0 * 3 + (corner.slot() as u32 + 1) % 3);
-    topology.corner_vertex(next)
+    topology.corner_vertex(corner.next())
 }
 
 impl Orientation {
@@ -50,8 +49,8 @@ impl Orientation {
             let mut at = 0;
             while let Some(&face) = members.get(at) {
                 at += 1;
-                let corners = [0, 1, 2].map(|slot| CornerId((3 * face + slot) as u32));
-                let mut across = corners.map(|corner| topology.across(corner).map(|twin| (twin, corner)));
+                let corners = FaceId::from(face).corners();
+                let mut across = corners.map(|corner| topology.opposite(corner).map(|twin| (twin, corner)));
                 // In an order that turning faces over does not change, so that a second run finds
                 // nothing to do even where no orientation is right.
                 across.sort_unstable_by_key(|pair| {

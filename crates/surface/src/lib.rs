@@ -13,12 +13,14 @@ mod disjoint_sets;
 mod ids;
 mod intrinsic;
 pub mod laplacian;
+mod rows;
 #[cfg(test)]
 mod testing;
 mod topology;
 
-pub use components::{Components, components, components_of_faces};
+pub use components::{Components, components, components_of_faces, components_with_links};
 pub use disjoint_sets::DisjointSets;
 pub use ids::{CornerId, EdgeId, FaceId, VertexId};
 pub use intrinsic::{IntrinsicMesh, Link};
+pub use rows::Rows;
 pub use topology::Topology;

@@ -1,6 +1,6 @@
 //! The surface as windows travel over it: one cache line a face.
 
-use surface::{CornerId, IntrinsicMesh, Topology};
+use surface::{CornerId, FaceId, IntrinsicMesh, Topology};
 
 /// The faces of a surface and who is next to whom.
 #[derive(Debug)]
@@ -70,8 +70,8 @@ impl Surface {
         let faces = (0u32..)
             .zip(topology.faces())
             .map(|(f, vertices)| {
-                let corners = [0, 1, 2].map(|slot| CornerId(3 * f + slot));
-                let lengths = corners.map(|c| mesh.length(topology.opposite_edge(c)) / unit);
+                let corners = FaceId(f).corners();
+                let lengths = corners.map(|c| mesh.opposite_length(c) / unit);
                 let (lengths, double_area) = triangle(lengths);
                 let beyond = corners.map(|c| beyond(topology, c, &mut fans));
                 Face { lengths, double_area, vertices: vertices.map(|v| v.0), beyond }
@@ -175,7 +175,7 @@ fn triangle(mut lengths: [f64; 3]) -> ([f64; 3], f64) {
 }
 
 fn beyond(topology: &Topology, corner: CornerId, fans: &mut Vec<Vec<Facing>>) -> Beyond {
-    let start = |c: CornerId| topology.faces()[c.face().index()][next(c.slot())];
+    let start = |c: CornerId| topology.corner_vertex(c.next());
     let facing = |other: CornerId| {
         let along = if start(other) == start(corner) { Along::Same } else { Along::Opposite };
         Facing { corner: other.0, along }

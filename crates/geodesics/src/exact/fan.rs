@@ -120,12 +120,9 @@ fn walk(topology: &Topology, surface: &Surface, vertex: VertexId, fan: &mut Vec<
     let corners = topology.vertex_corners(vertex);
     let first = fan.len();
     // A side of a corner lies opposite the face's third corner, which this is for the first side.
-    let third = |corner: CornerId, winding: Winding, side: Side| {
-        let step = match (winding, side) {
-            (Winding::Forward, Side::First) | (Winding::Backward, Side::Last) => 2,
-            (Winding::Forward, Side::Last) | (Winding::Backward, Side::First) => 1,
-        };
-        CornerId(3 * corner.face().0 + (corner.slot() as u32 + step) % 3)
+    let third = |corner: CornerId, winding: Winding, side: Side| match (winding, side) {
+        (Winding::Forward, Side::First) | (Winding::Backward, Side::Last) => corner.prev(),
+        (Winding::Forward, Side::Last) | (Winding::Backward, Side::First) => corner.next(),
     };
     let faces_on = |corner| topology.edge_corners(topology.opposite_edge(corner)).len();
     let sides = corners.iter().flat_map(|c| [(*c, Winding::Forward), (*c, Winding::Backward)]);
@@ -142,11 +139,10 @@ fn walk(topology: &Topology, surface: &Surface, vertex: VertexId, fan: &mut Vec<
         angle += surface.face(corner.0).angle(corner.slot());
         fan.push(FanCorner { corner: corner.0, winding, start, end: angle });
         let across = third(corner, winding, Side::Last);
-        step = topology.across(across).map(|far| {
+        step = topology.opposite(across).map(|far| {
             // The vertex is in one of the two other corners of the far face; the side between it and
             // the corner `far` is not the one shared.
-            let at = [1, 2]
-                .map(|step| CornerId(3 * far.face().0 + (far.slot() as u32 + step) % 3))
+            let at = [far.next(), far.prev()]
                 .into_iter()
                 .find(|c| topology.corner_vertex(*c) == vertex)
                 .unwrap_or(far);

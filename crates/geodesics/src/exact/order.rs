@@ -1,6 +1,6 @@
 //! Neighbours on the surface become neighbours in memory.
 
-use surface::{CornerId, IntrinsicMesh, Link, Topology, VertexId};
+use surface::{FaceId, IntrinsicMesh, Link, Topology, VertexId};
 
 /// A surface renumbered breadth first, and what became of the vertices and faces.
 pub(super) struct Renumbered {
@@ -43,9 +43,8 @@ pub(super) fn renumbered(mesh: &IntrinsicMesh) -> Renumbered {
     );
     let mut lengths = vec![0.0; renumbered.n_edges()];
     for (now, before) in (0u32..).zip(&kept) {
-        for slot in 0..3 {
-            let old = topology.opposite_edge(CornerId(3 * before + slot));
-            lengths[renumbered.opposite_edge(CornerId(3 * now + slot)).index()] = mesh.length(old);
+        for (old, new) in FaceId(*before).corners().into_iter().zip(FaceId(now).corners()) {
+            lengths[renumbered.opposite_edge(new).index()] = mesh.opposite_length(old);
         }
     }
     let link = |link: &Link| Link { ends: link.ends.map(|v| VertexId(vertices[v.index()])), ..*link };

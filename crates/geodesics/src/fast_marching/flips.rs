@@ -5,7 +5,7 @@
 //! where no such edge is left (the intrinsic Delaunay triangulation; Bobenko and Springborn 2007),
 //! few angles are obtuse.
 
-use surface::{CornerId, EdgeId, IntrinsicMesh};
+use surface::{EdgeId, FaceId, IntrinsicMesh};
 
 use super::triangulation::Triangulation;
 use crate::corner::Corner;
@@ -48,14 +48,15 @@ fn from_side(face: &[u32; 3], edges: &[u32; 3], edge: u32, first: Option<u32>) -
 impl Flips {
     fn new(mesh: &IntrinsicMesh, triangulation: Triangulation) -> Self {
         let topology = mesh.topology();
-        let opposite = |corner: u32| topology.opposite_edge(CornerId(corner)).0;
         let side_of = |e: usize| match topology.edge_corners(EdgeId::from(e)) {
             [a, b] => Some([a.face().0, b.face().0]),
             _ => None,
         };
         Self {
             triangulation,
-            edges: (0..topology.n_faces() as u32).map(|f| [0, 1, 2].map(|k| opposite(3 * f + k))).collect(),
+            edges: (0..topology.n_faces())
+                .map(|f| FaceId::from(f).corners().map(|corner| topology.opposite_edge(corner).0))
+                .collect(),
             sides: (0..topology.n_edges()).map(side_of).collect(),
             is_new: vec![false; topology.n_edges()],
             flips: 0,

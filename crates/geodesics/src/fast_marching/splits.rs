@@ -3,7 +3,7 @@
 use surface::{CornerId, IntrinsicMesh, VertexId};
 
 use super::chains::{Arm, Part, Reaches};
-use super::unfold::{Split, Unfolding, base, sides, unfold};
+use super::unfold::{Split, Unfolding, unfold};
 
 /// Lengths that differ by less than this share are one length but for rounding.
 const SAME_LENGTH: f64 = 1e-12;
@@ -26,8 +26,10 @@ pub(super) fn splits(mesh: &IntrinsicMesh) -> (Vec<(u32, Part)>, usize) {
 fn add_halves(mesh: &IntrinsicMesh, corner: CornerId, split: &Split, parts: &mut Vec<(u32, Part)>) {
     let topology = mesh.topology();
     let (apex, middle) = (topology.corner_vertex(corner).0, split.vertex.0);
-    let [_, from_a, from_b] = sides(mesh, corner);
-    for ((end, base), from_end) in base(topology, corner).into_iter().zip(split.bases).zip([from_a, from_b]) {
+    let [_, from_a, from_b] = mesh.sides(corner);
+    for ((end, base), from_end) in
+        topology.edge_ends(corner).into_iter().zip(split.bases).zip([from_a, from_b])
+    {
         // Where the base of the half is an edge, it belongs to other triangles of its ends, too.
         let edge = topology.edge_between(end, split.vertex).map(|edge| mesh.length(edge));
         let edge = edge.filter(|length| (length - base).abs() <= SAME_LENGTH * base);

@@ -3,11 +3,11 @@
 use std::f64::consts::{PI, TAU};
 
 use rayon::prelude::*;
+use surface::Rows;
 
 use super::chains::{Chains, Part, Strung, is_cut, total_angle};
 use super::triangulation::Triangulation;
 use super::update::Sector;
-use crate::rows::Rows;
 
 /// A straight way from a vertex to another, and the triangle between it and the spoke before.
 ///
@@ -185,7 +185,8 @@ impl Spokes {
         }
         let corners = triangulation.corners();
         let segments = triangulation.segments.iter().flat_map(|(ends, length)| Part::segment(*ends, *length));
-        let extras = Rows::collect(order.len(), extras.iter().copied().chain(segments));
+        let extras = extras.iter().copied().chain(segments).map(|(v, part)| (v as usize, part));
+        let extras = Rows::collect(order.len(), extras);
         let blocks: Vec<Block> = order
             .par_chunks(BLOCK)
             .map(|vertices| {
@@ -193,9 +194,11 @@ impl Spokes {
                 let (mut parts, mut chains) = (Vec::new(), Chains::default());
                 for v in vertices {
                     parts.clear();
-                    parts.extend(corners.of(*v).iter().map(|(face, slot)| triangulation.part(*face, *slot)));
+                    parts.extend(
+                        corners.row(*v as usize).iter().map(|(face, slot)| triangulation.part(*face, *slot)),
+                    );
                     let own = parts.len();
-                    parts.extend_from_slice(extras.of(*v));
+                    parts.extend_from_slice(extras.row(*v as usize));
                     let first = block.spokes.len();
                     let strung = chains.append(&parts, &mut block.spokes);
                     if let Some(mut before) = block.spokes[first..].last().copied() {

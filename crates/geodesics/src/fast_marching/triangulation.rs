@@ -1,9 +1,8 @@
 //! The triangles that a front runs over.
 
-use surface::{CornerId, IntrinsicMesh};
+use surface::{FaceId, IntrinsicMesh, Rows};
 
 use super::chains::{Arm, Part, Reaches};
-use crate::rows::Rows;
 
 /// Triangles by their vertices and sides, and straight ways that are no side of any.
 #[derive(Debug, Clone, PartialEq)]
@@ -20,11 +19,12 @@ pub(super) struct Triangulation {
 impl Triangulation {
     pub(super) fn new(mesh: &IntrinsicMesh) -> Self {
         let topology = mesh.topology();
-        let side = |corner: u32| mesh.length(topology.opposite_edge(CornerId(corner)));
         Self {
             n_vertices: mesh.n_vertices(),
             faces: topology.faces().iter().map(|face| face.map(|v| v.0)).collect(),
-            lengths: (0..topology.n_faces() as u32).map(|f| [0, 1, 2].map(|k| side(3 * f + k))).collect(),
+            lengths: (0..topology.n_faces())
+                .map(|f| FaceId::from(f).corners().map(|corner| mesh.opposite_length(corner)))
+                .collect(),
             segments: mesh.links().iter().map(|link| (link.ends.map(|v| v.0), link.length)).collect(),
         }
     }
@@ -40,7 +40,7 @@ impl Triangulation {
     pub(super) fn corners(&self) -> Rows<(u32, u8)> {
         let of_face = |(f, face): (usize, &[u32; 3])| {
             let face = *face;
-            [0, 1, 2].map(|k| (face[k], (f as u32, k as u8)))
+            [0, 1, 2].map(|k| (face[k] as usize, (f as u32, k as u8)))
         };
         Rows::collect(self.n_vertices, self.faces.iter().enumerate().flat_map(of_face))
     }

@@ -5,7 +5,7 @@
 //! vertex `D` falls into the cone of directions that make an acute angle with both `CA` and `CB`;
 //! the segment `CD` then lies inside the unfolded strip and splits the corner into two acute ones.
 
-use surface::{CornerId, IntrinsicMesh, Topology, VertexId};
+use surface::{CornerId, IntrinsicMesh, VertexId};
 
 use crate::corner::Corner;
 
@@ -48,23 +48,9 @@ fn norm(a: Point) -> f64 {
     dot(a, a).sqrt()
 }
 
-/// Lengths of the sides of the face of `corner`: the base opposite it, then from the base's first
-/// and second end (the next and the next but one corner of the face) to the corner.
-pub(super) fn sides(mesh: &IntrinsicMesh, corner: CornerId) -> [f64; 3] {
-    let (face, slot) = (corner.face().0, corner.slot() as u32);
-    let opposite = |slot: u32| mesh.length(mesh.topology().opposite_edge(CornerId(3 * face + slot % 3)));
-    [opposite(slot), opposite(slot + 2), opposite(slot + 1)]
-}
-
-/// The ends of the base of `corner`: the next and the next but one corner of its face.
-pub(super) fn base(topology: &Topology, corner: CornerId) -> [VertexId; 2] {
-    let face = topology.faces()[corner.face().index()];
-    [face[(corner.slot() + 1) % 3], face[(corner.slot() + 2) % 3]]
-}
-
 /// Unfolds the surface behind `corner` if it is obtuse.
 pub(super) fn unfold(mesh: &IntrinsicMesh, corner: CornerId) -> Unfolding {
-    let [c, b, a] = sides(mesh, corner);
+    let [c, b, a] = mesh.sides(corner);
     if a * a + b * b >= c * c {
         return Unfolding::Acute;
     }
@@ -76,13 +62,13 @@ pub(super) fn unfold(mesh: &IntrinsicMesh, corner: CornerId) -> Unfolding {
 
     // The strip's last edge, from the side of A to the side of B, and the corner facing it.
     let mut facing = corner;
-    let [mut left, mut right] = base(topology, corner);
+    let [mut left, mut right] = topology.edge_ends(corner);
     let (mut at_left, mut at_right) = (at_a, at_b);
     for _ in 0..MAX_STEPS {
-        let Some(next) = topology.across(facing) else { return Unfolding::Stopped };
+        let Some(next) = topology.opposite(facing) else { return Unfolding::Stopped };
         let vertex = topology.corner_vertex(next);
-        let [edge, from_first, from_second] = sides(mesh, next);
-        let starts_left = base(topology, next)[0] == left;
+        let [edge, from_first, from_second] = mesh.sides(next);
+        let starts_left = topology.edge_ends(next)[0] == left;
         let (from_left, from_right) =
             if starts_left { (from_first, from_second) } else { (from_second, from_first) };
         let beyond = Corner::from_lengths(edge, from_left, from_right);
@@ -106,14 +92,8 @@ pub(super) fn unfold(mesh: &IntrinsicMesh, corner: CornerId) -> Unfolding {
             });
         }
         // The cone passes through the edge on the other side of the new vertex.
-        let slot = next.slot();
-        let first_end = (slot + 1) % 3;
-        let corner_at = |slot: usize| CornerId(next.face().0 * 3 + slot as u32);
-        let (corner_at_left, corner_at_right) = if starts_left {
-            (corner_at(first_end), corner_at((slot + 2) % 3))
-        } else {
-            (corner_at((slot + 2) % 3), corner_at(first_end))
-        };
+        let (corner_at_left, corner_at_right) =
+            if starts_left { (next.next(), next.prev()) } else { (next.prev(), next.next()) };
         if acute_to_a {
             // Too far on the side of A: go on across the edge from the new vertex to the right end,
             // which faces the left one.

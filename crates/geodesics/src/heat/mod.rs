@@ -1,18 +1,14 @@
 //! Distances from the flow of heat.
 
-mod components;
 mod flow;
-mod ring;
 mod system;
 
 use linalg::Matrix;
 use rayon::prelude::*;
 use surface::laplacian::{Element, Laplacian, Metric};
-use surface::{IntrinsicMesh, Link, VertexId};
+use surface::{Components, IntrinsicMesh, Link, Rows, VertexId, components_with_links};
 
-use self::components::Components;
 use self::flow::{Bar, LONGEST_BAR};
-use self::ring::Ring;
 use self::system::System;
 use crate::solver::{Pool, within};
 use crate::{Dijkstra, DistanceSolver, GeodesicError, Source, SurfacePoint};
@@ -108,7 +104,8 @@ pub struct HeatMethod {
     /// Heat time, in squared units.
     time: f64,
     components: Components,
-    ring: Ring,
+    /// For each vertex the other corners of its triangles, and the lengths of the sides to them, in units.
+    neighbours: Rows<(u32, f64)>,
     /// The step that eliminates each vertex: where its numbers are.
     step: Vec<u32>,
     /// The triangles and links; their vertices are steps.
@@ -132,14 +129,15 @@ impl HeatMethod {
         options.validate()?;
         let laplacian = Laplacian::new(mesh);
         let metric = laplacian.metric();
-        let components = Components::new(mesh);
+        let components = components_with_links(mesh);
+        let grounded = components.lowest_vertices();
         let (side, area) = laplacian.mean_side_and_area();
         let time = options.time * side * side.max(FINE * area.sqrt());
         let time = time.max((extent(mesh, metric, &components) / RANGE).powi(2));
         let links = metric.links.iter().filter(|link| link.ends[0] != link.ends[1]);
         let mut bars: Vec<Bar> = links.map(|link| Bar::new(link, time.sqrt())).collect();
-        let system = System::new(&laplacian, &bars, time, &components.first)?;
-        let ring = Ring::new(mesh.n_vertices(), laplacian.elements());
+        let system = System::new(&laplacian, &bars, time, &grounded)?;
+        let neighbours = neighbours(mesh.n_vertices(), laplacian.elements());
         let mut step = vec![0; mesh.n_vertices()];
         for (i, row) in system.heat.order().rows().iter().enumerate() {
             step[*row] = i as u32;
@@ -154,7 +152,7 @@ impl HeatMethod {
             unit: metric.unit,
             time,
             components,
-            ring,
+            neighbours,
             step,
             elements,
             bars,
@@ -204,7 +202,7 @@ impl HeatMethod {
         out.fill(f64::INFINITY);
         for source in sources {
             let around: &[_] = match source.point() {
-                SurfacePoint::Vertex(vertex) => self.ring.of(vertex),
+                SurfacePoint::Vertex(vertex) => self.neighbours.row(vertex.index()),
                 _ => &[],
             };
             let reach = source.reach().iter().map(|(v, straight)| (v.index(), in_units(*straight)));
@@ -212,12 +210,12 @@ impl HeatMethod {
                 out[v] = out[v].min(straight);
             }
         }
-        let mut shifts = vec![Shift::default(); self.components.first.len()];
+        let mut shifts = vec![Shift::default(); self.components.count];
         for (v, straight) in out.iter().enumerate().filter(|(_, straight)| straight.is_finite()) {
-            shifts[self.components.of[v] as usize].add(potential(v), *straight);
+            shifts[self.components.of(VertexId::from(v))].add(potential(v), *straight);
         }
         for (v, distance) in out.iter_mut().enumerate() {
-            if let Some(shift) = shifts[self.components.of[v] as usize].mean() {
+            if let Some(shift) = shifts[self.components.of(VertexId::from(v))].mean() {
                 *distance = self.unit * distance.min((potential(v) - shift).max(0.0));
             }
         }
@@ -293,6 +291,20 @@ fn shares(source: &Source) -> impl Iterator<Item = (VertexId, f64)> {
     source.reach().iter().zip(shares).map(|((vertex, _), share)| (*vertex, share))
 }
 
+/// The vertices joined to each vertex by a side of a triangle, and the length of the shortest such side.
+fn neighbours(n_vertices: usize, elements: &[Element]) -> Rows<(u32, f64)> {
+    let sides = elements.iter().flat_map(|element| {
+        let [a, b, c] = element.vertices;
+        let [ab, bc, ca] = element.triangle.sides();
+        [(a, b, ab), (b, c, bc), (c, a, ca)].into_iter().filter(|(v, w, _)| v != w)
+    });
+    let mut sides: Vec<(u32, u32, f64)> =
+        sides.flat_map(|(v, w, length)| [(v, w, length), (w, v, length)]).collect();
+    sides.sort_by(|a, b| (a.0, a.1).cmp(&(b.0, b.1)).then(a.2.total_cmp(&b.2)));
+    sides.dedup_by_key(|(v, w, _)| (*v, *w));
+    Rows::collect(n_vertices, sides.iter().map(|(v, w, length)| (*v as usize, (*w, *length))))
+}
+
 /// How far across the widest component is along edges, in units: the distance to the vertex
 /// farthest from the vertex farthest from its first.
 fn extent(mesh: &IntrinsicMesh, metric: &Metric, components: &Components) -> f64 {
@@ -300,18 +312,18 @@ fn extent(mesh: &IntrinsicMesh, metric: &Metric, components: &Components) -> f64
     let scaled = IntrinsicMesh::new(mesh.topology().clone(), metric.edges.clone());
     let graph = Dijkstra::new(&scaled.with_links(links.collect()));
     let mut distances = vec![0.0; mesh.n_vertices()];
-    let mut farthest = components.first.clone();
+    let mut farthest = components.lowest_vertices();
     for _ in 0..2 {
-        let sources: Vec<Source> = farthest.iter().map(|&v| Source::vertex(VertexId::from(v))).collect();
+        let sources: Vec<Source> = farthest.iter().map(|v| Source::vertex(*v)).collect();
         graph.solve_into(&sources, f64::INFINITY, &mut distances);
-        for (v, &component) in components.of.iter().enumerate() {
-            let best = &mut farthest[component as usize];
-            if distances[v] > distances[*best] {
+        for v in (0..distances.len()).map(VertexId::from) {
+            let best = &mut farthest[components.of(v)];
+            if distances[v.index()] > distances[best.index()] {
                 *best = v;
             }
         }
     }
-    farthest.iter().map(|&v| distances[v]).fold(0.0, f64::max)
+    farthest.iter().map(|v| distances[v.index()]).fold(0.0, f64::max)
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! The two matrices and their factors.
 
 use linalg::{EliminationOrder, LinalgError, SparseCholesky, SparseSymmetric};
+use surface::VertexId;
 use surface::laplacian::{Element, Laplacian};
 
 use super::flow::Bar;
@@ -28,7 +29,7 @@ impl System {
         laplacian: &Laplacian,
         bars: &[Bar],
         time: f64,
-        grounded: &[usize],
+        grounded: &[VertexId],
     ) -> Result<Self, GeodesicError> {
         let (n, elements) = (laplacian.n_vertices(), laplacian.elements());
         let mut heat = stiffness(n, elements, time, bars.iter().map(|bar| (bar.ends, bar.heat())));
@@ -42,7 +43,7 @@ impl System {
         let mut poisson =
             stiffness(n, elements, 1.0, bars.iter().map(|bar| (bar.ends, [bar.weight(), -bar.weight()])));
         let mut ground = vec![0.0; n];
-        grounded.iter().for_each(|&v| ground[v] = 1.0);
+        grounded.iter().for_each(|v| ground[v.index()] = 1.0);
         poisson.add_to_diagonal(ground.into_iter());
         Ok(Self { heat, poisson: factorise(&order, poisson)? })
     }

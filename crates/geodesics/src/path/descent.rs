@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use surface::{CornerId, EdgeId, FaceId, VertexId};
+use surface::{EdgeId, FaceId, VertexId};
 
 use super::PathTracer;
 use super::edges::faces_around;
@@ -126,8 +126,7 @@ impl Walker<'_> {
         }
         let flat = Flat::new(mesh, face, 0);
         let place = flat.point(mesh, here);
-        for slot in 0..3 {
-            let corner = CornerId(3 * face.0 + slot);
+        for corner in face.corners() {
             let vertex = mesh.topology().corner_vertex(corner);
             if !self.vertices.contains(&vertex) {
                 let step = segment(mesh, face, here, SurfacePoint::Vertex(vertex));

@@ -109,12 +109,8 @@ pub(super) fn faces_around(mesh: &IntrinsicMesh, point: SurfacePoint) -> Vec<Fac
 fn edges_at(mesh: &IntrinsicMesh, vertex: VertexId) -> impl Iterator<Item = (VertexId, f64, FaceId)> {
     let topology = mesh.topology();
     topology.vertex_corners(vertex).iter().flat_map(move |corner| {
-        [1, 2].map(|step| {
-            let face = corner.face();
-            let slot = |step: u32| (corner.slot() as u32 + step) % 3;
-            let edge = topology.opposite_edge(CornerId(3 * face.0 + slot(step)));
-            (topology.faces()[face.index()][slot(3 - step) as usize], mesh.length(edge), face)
-        })
+        [(corner.next(), corner.prev()), (corner.prev(), corner.next())]
+            .map(|(third, end)| (topology.corner_vertex(end), mesh.opposite_length(third), corner.face()))
     })
 }
 

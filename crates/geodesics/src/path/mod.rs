@@ -207,7 +207,7 @@ fn on_the_least(mesh: &IntrinsicMesh, point: SurfacePoint) -> SurfacePoint {
         }
         SurfacePoint::Face { face, barycentric } => {
             let Some(slot) = barycentric.iter().position(|weight| *weight <= 0.0) else { return point };
-            let edge = mesh.topology().opposite_edge(CornerId(3 * face.0 + slot as u32));
+            let edge = mesh.topology().opposite_edge(CornerId::new(face, slot));
             let higher = mesh.topology().edges()[edge.index()][1];
             let vertices = mesh.topology().faces()[face.index()];
             let t = vertices.iter().zip(barycentric).find(|(v, _)| **v == higher).map_or(0.0, |(_, t)| t);

@@ -64,12 +64,10 @@ pub(super) struct Flat {
 impl Flat {
     /// A face with the corner in `slot` in the origin.
     pub(super) fn new(mesh: &IntrinsicMesh, face: FaceId, slot: usize) -> Self {
-        let vertices = mesh.topology().faces()[face.index()];
-        let slots = [slot, (slot + 1) % 3, (slot + 2) % 3];
-        let opposite =
-            slots.map(|slot| mesh.length(mesh.topology().opposite_edge(CornerId(3 * face.0 + slot as u32))));
-        let at = [[0.0, 0.0], [opposite[2], 0.0], apex(opposite[2], opposite[1], opposite[0])];
-        Self { vertices: slots.map(|slot| vertices[slot]), at }
+        let last = CornerId::new(face, slot).prev();
+        let [base, from_start, from_end] = mesh.sides(last);
+        let vertices = [last.next(), last.prev(), last].map(|corner| mesh.topology().corner_vertex(corner));
+        Self { vertices, at: [[0.0, 0.0], [base, 0.0], apex(base, from_start, from_end)] }
     }
 
     /// Any triangle.
@@ -113,8 +111,8 @@ pub(super) fn segment(mesh: &IntrinsicMesh, face: FaceId, p: SurfacePoint, q: Su
         SurfacePoint::Face { .. } => None,
     };
     // On one edge nothing needs to be laid out, and nothing gets lost in flat faces.
-    for slot in 0..3 {
-        let edge = mesh.topology().opposite_edge(CornerId(3 * face.0 + slot));
+    for corner in face.corners() {
+        let edge = mesh.topology().opposite_edge(corner);
         if let (Some(s), Some(t)) = (along(edge, p), along(edge, q)) {
             return (s - t).abs() * mesh.length(edge);
         }

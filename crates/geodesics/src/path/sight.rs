@@ -3,7 +3,7 @@
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-use surface::{CornerId, EdgeId, FaceId, VertexId};
+use surface::{EdgeId, FaceId, VertexId};
 
 use super::PathTracer;
 use super::edges::faces_around;
@@ -100,11 +100,11 @@ impl Search<'_> {
                 self.offer(distance(at(v), [0.0; 2]) + self.tracer.distances[v.index()], v, face, None);
             }
             self.look_for_sources(face, &flat, origin, None);
-            for slot in 0..3 {
+            for corner in face.corners() {
                 // Counter-clockwise, so that the first end is on the right seen from inside.
-                let [right, left] = [1, 2].map(|step| vertices[(slot + step) % 3]).map(|v| (v, at(v)));
+                let [right, left] = topology.edge_ends(corner).map(|v| (v, at(v)));
                 if cross(right.1, left.1) > 0.0 {
-                    let edge = topology.opposite_edge(CornerId(3 * face.0 + slot as u32));
+                    let edge = topology.opposite_edge(corner);
                     let gate = Gate { left, right };
                     self.send(Rays { before: None, face, edge, gate, left: left.1, right: right.1 });
                 }
@@ -121,8 +121,7 @@ impl Search<'_> {
         for facing in topology.edge_corners(rays.edge).iter().filter(|c| c.face() != rays.face) {
             let face = facing.face();
             let third = topology.corner_vertex(*facing);
-            let edges = [1, 2]
-                .map(|step| topology.opposite_edge(CornerId(3 * face.0 + (facing.slot() as u32 + step) % 3)));
+            let edges = topology.corner_edges(*facing);
             let [to_left, to_right] =
                 if topology.edges()[edges[0].index()].contains(&left) { edges } else { [edges[1], edges[0]] };
             let lengths = [rays.edge, to_left, to_right].map(|edge| mesh.length(edge));

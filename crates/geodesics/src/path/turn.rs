@@ -47,8 +47,8 @@ pub(super) fn direction(
     };
     let towards = portal.map_or(other, |portal: &Portal| portal.point());
     let topology = mesh.topology();
-    let corner = corner_at(mesh, *face, vertex)?;
-    let spokes = spokes(mesh, corner);
+    let corner = topology.corner_at(*face, vertex)?;
+    let spokes = topology.corner_edges(corner);
     let on = |spoke: &&EdgeId| match towards {
         SurfacePoint::Vertex(v) => topology.edges()[spoke.index()].contains(&v),
         SurfacePoint::Edge { edge, .. } => edge == **spoke,
@@ -121,9 +121,9 @@ pub(super) fn inner_side(
             best = (here + rest, Some(spoke));
         }
         for facing in topology.edge_corners(spoke) {
-            let Some(corner) = corner_at(mesh, facing.face(), vertex) else { continue };
+            let Some(corner) = topology.corner_at(facing.face(), vertex) else { continue };
             let there = here + angle(mesh, corner);
-            for next in spokes(mesh, corner).into_iter().filter(|next| *next != spoke) {
+            for next in topology.corner_edges(corner).into_iter().filter(|next| *next != spoke) {
                 if there < STRAIGHT && reached.get(&next).is_none_or(|known| there < known.0) {
                     reached.insert(next, (there, Some(spoke), Some(facing.face())));
                     queue.push(Reverse((there.to_bits(), next)));
@@ -156,20 +156,6 @@ pub(super) fn inner_side(
         faces.push(topology.edge_corners(best.1?).first()?.face());
     }
     Some((faces, spokes))
-}
-
-/// The corner of a face in which a vertex is.
-fn corner_at(mesh: &IntrinsicMesh, face: FaceId, vertex: VertexId) -> Option<CornerId> {
-    let slot = mesh.topology().faces()[face.index()].iter().position(|v| *v == vertex)?;
-    Some(CornerId(3 * face.0 + slot as u32))
-}
-
-/// The two edges of a face at a corner: to the next corner, and to the one after that.
-fn spokes(mesh: &IntrinsicMesh, corner: CornerId) -> [EdgeId; 2] {
-    [2, 1].map(|step| {
-        let slot = (corner.slot() as u32 + step) % 3;
-        mesh.topology().opposite_edge(CornerId(3 * corner.face().0 + slot))
-    })
 }
 
 fn angle(mesh: &IntrinsicMesh, corner: CornerId) -> f64 {

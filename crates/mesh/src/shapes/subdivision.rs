@@ -1,7 +1,7 @@
 //! Midpoint subdivision.
 
 use crate::TriMesh;
-use surface::{CornerId, Topology};
+use surface::{FaceId, Topology};
 
 /// Cuts every face into four through the midpoints of its edges; the surface stays where it is.
 ///
@@ -20,10 +20,9 @@ pub fn subdivide(mesh: &TriMesh) -> TriMesh {
     let mut positions = mesh.positions.clone();
     positions.extend(topology.edges().iter().map(|&edge| midpoint(edge)));
     let faces = mesh.faces.iter().enumerate().flat_map(|(f, &[a, b, c])| {
-        let [bc, ca, ab] = [0, 1, 2].map(|slot| {
-            let edge = topology.opposite_edge(CornerId((3 * f + slot) as u32));
-            surface::VertexId::from(n_old + edge.index())
-        });
+        let [bc, ca, ab] = FaceId::from(f)
+            .corners()
+            .map(|corner| surface::VertexId::from(n_old + topology.opposite_edge(corner).index()));
         [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]
     });
     TriMesh { faces: faces.collect(), positions }
