@@ -13,6 +13,7 @@ mod disjoint_sets;
 mod ids;
 mod intrinsic;
 pub mod laplacian;
+mod one_ring;
 mod rows;
 #[cfg(test)]
 mod testing;
@@ -22,5 +23,6 @@ pub use components::{Components, components, components_of_faces, components_wit
 pub use disjoint_sets::DisjointSets;
 pub use ids::{CornerId, EdgeId, FaceId, VertexId};
 pub use intrinsic::{IntrinsicMesh, Link};
+pub use one_ring::{CornerTable, Fan, FanCorner, OneRing, VertexKind, Winding, total_angle};
 pub use rows::Rows;
 pub use topology::Topology;

@@ -15,6 +15,12 @@ pub struct Rows<T> {
     items: Vec<T>,
 }
 
+impl<T> Default for Rows<T> {
+    fn default() -> Self {
+        Self { offsets: vec![0], items: Vec::new() }
+    }
+}
+
 impl<T: Copy> Rows<T> {
     /// Sorts `(row, item)` pairs by row; items of a row keep their order. Linear time.
     ///
@@ -36,6 +42,16 @@ impl<T: Copy> Rows<T> {
             next[row] += 1;
         }
         Self { offsets, items }
+    }
+
+    /// Appends a row.
+    ///
+    /// # Panics
+    /// If the number of all items does not fit into 32 bits.
+    pub fn push_row(&mut self, items: impl IntoIterator<Item = T>) {
+        self.items.extend(items);
+        assert!(u32::try_from(self.items.len()).is_ok(), "more items than fit into 32 bits");
+        self.offsets.push(self.items.len() as u32);
     }
 
     /// Number of rows.
@@ -81,5 +97,8 @@ mod tests {
             assert_eq!(&rows.items()[rows.range(row)], items);
         }
         assert_eq!(Rows::<u8>::collect(1, std::iter::empty()).row(0), &[]);
+        let mut pushed = Rows::default();
+        expected.into_iter().for_each(|items| pushed.push_row(items.iter().copied()));
+        assert_eq!(pushed, rows);
     }
 }

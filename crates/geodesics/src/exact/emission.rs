@@ -1,9 +1,9 @@
 //! New windows: from vertices where paths bend, and from sources.
 
-use surface::VertexId;
+use surface::{VertexId, Winding};
 
 use super::faces::{Along, next};
-use super::fan::{FanCorner, Winding};
+use super::fan::Sector;
 use super::frame::Frame;
 use super::front::Arrival;
 use super::wave::Wave;
@@ -50,7 +50,7 @@ impl Wave<'_> {
     fn leave_edge(&mut self, ends: [u32; 2], shares: [f64; 2]) {
         let exact = self.exact;
         for corner in exact.fans.around(ends[0]) {
-            let face = corner.corner / 3;
+            let face = corner.corner.corner.face().0;
             let vertices = exact.surface.faces[face as usize].vertices;
             if vertices.contains(&ends[1]) {
                 let share = |v| {
@@ -99,19 +99,19 @@ impl Wave<'_> {
         let fan = exact.fans.around(vertex);
         let Some(open) = exact.fans.open_angles(vertex, arrival) else {
             for corner in fan {
-                self.leave_corner(corner.corner, distance, [0.0, f64::INFINITY]);
+                self.leave_corner(corner.corner.corner.0, distance, [0.0, f64::INFINITY]);
             }
             return;
         };
-        for FanCorner { corner, winding, start, end } in fan {
+        for Sector { corner, start, end } in fan {
             for [low, high] in open {
                 if high > low && high > *start && low < *end {
-                    let [low, high] = match winding {
+                    let [low, high] = match corner.winding {
                         Winding::Forward => [low - start, high - start],
                         Winding::Backward => [end - high, end - low],
                     };
                     let high = if high < end - start { high } else { f64::INFINITY };
-                    self.leave_corner(*corner, distance, [low, high]);
+                    self.leave_corner(corner.corner.0, distance, [low, high]);
                 }
             }
         }

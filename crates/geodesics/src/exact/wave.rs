@@ -1,10 +1,11 @@
 //! How the front advances.
 
+use surface::VertexKind;
+
 use super::Exact;
 use super::apex::{Apex, Passes};
 use super::envelope::trim;
 use super::faces::{Along, Facing, next};
-use super::fan::Bend;
 use super::frame::{Frame, Until};
 use super::front::{Arrival, Front};
 use super::window::Window;
@@ -67,7 +68,7 @@ impl Wave<'_> {
                 break;
             }
             let arrival = self.front.arrival(vertex);
-            if arrival == Arrival::Anywhere || self.exact.fans.bend(vertex) != Bend::Never {
+            if arrival == Arrival::Anywhere || self.exact.fans.kind(vertex) != VertexKind::Ordinary {
                 self.leave_vertex(vertex, distance, arrival);
             }
             self.front.release(vertex);
