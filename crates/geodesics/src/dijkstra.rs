@@ -4,7 +4,7 @@ use surface::IntrinsicMesh;
 
 use crate::Source;
 use crate::graph::EdgeGraph;
-use crate::heap::Front;
+use crate::heap::VertexHeap;
 use crate::solver::{DistanceSolver, Pool, within};
 
 /// Lengths of shortest paths along edges: an upper bound of the geodesic distance that does not
@@ -14,7 +14,7 @@ use crate::solver::{DistanceSolver, Pool, within};
 #[derive(Debug)]
 pub struct Dijkstra {
     graph: EdgeGraph,
-    scratch: Pool<Front>,
+    scratch: Pool<VertexHeap>,
 }
 
 impl Dijkstra {
@@ -32,21 +32,21 @@ impl DistanceSolver for Dijkstra {
 
     fn solve_into(&self, sources: &[Source], max_distance: f64, out: &mut [f64]) {
         assert_eq!(out.len(), self.n_vertices(), "one distance per vertex");
-        self.scratch.with(|front| {
-            front.reset(out.len());
+        self.scratch.with(|heap| {
+            heap.reset(out.len());
             for (vertex, distance) in sources.iter().flat_map(Source::reach) {
-                front.relax(vertex.0, *distance);
+                heap.relax(vertex.0, *distance);
             }
-            while let Some((distance, vertex)) = front.pop() {
+            while let Some((distance, vertex)) = heap.pop() {
                 if distance > max_distance {
                     break;
                 }
                 for &(target, length) in self.graph.neighbours(vertex) {
-                    front.relax(target, distance + length);
+                    heap.relax(target, distance + length);
                 }
             }
             for (v, distance) in out.iter_mut().enumerate() {
-                *distance = within(front.distance(v as u32), max_distance);
+                *distance = within(heap.distance(v as u32), max_distance);
             }
         });
     }

@@ -3,8 +3,9 @@
 use std::collections::VecDeque;
 
 use super::window::Window;
+use crate::heap::VertexHeap;
 
-/// No corner, no position, no list.
+/// No corner, no list.
 const NONE: u32 = u32::MAX;
 
 /// From where the shortest path known so far comes to a vertex.
@@ -23,10 +24,10 @@ pub(super) enum Arrival {
 /// waits for the end of its base that was nearer when the first window came.
 #[derive(Debug, Default)]
 pub(super) struct Front {
-    nodes: Vec<Node>,
+    heap: VertexHeap,
     arrivals: Vec<Arrival>,
-    /// A 4-ary min-heap of vertices by distance.
-    heap: Vec<(f64, u32)>,
+    /// The first queue that waits for each vertex.
+    waiting: Vec<u32>,
     /// The queue of windows at the base of every corner.
     gates: Vec<u32>,
     queues: Vec<Queue>,
@@ -34,14 +35,6 @@ pub(super) struct Front {
     free: Vec<u32>,
     /// Queues whose vertex has left the heap already.
     ready: VecDeque<u32>,
-}
-
-#[derive(Debug, Clone, Copy)]
-struct Node {
-    distance: f64,
-    position: u32,
-    /// The first queue that waits for this vertex.
-    waiting: u32,
 }
 
 /// Windows that wait at the base of a corner.
@@ -56,12 +49,12 @@ struct Queue {
 impl Front {
     /// Forgets everything. Allocates only to grow.
     pub(super) fn reset(&mut self, n_vertices: usize, n_corners: usize) {
-        self.nodes.clear();
-        self.nodes.resize(n_vertices, Node { distance: f64::INFINITY, position: NONE, waiting: NONE });
+        self.heap.reset(n_vertices);
         self.arrivals.resize(n_vertices, Arrival::Anywhere);
         self.gates.clear();
         self.gates.resize(n_corners, NONE);
-        self.heap.clear();
+        self.waiting.clear();
+        self.waiting.resize(n_vertices, NONE);
         self.ready.clear();
         self.free.clear();
         self.free.extend(0..self.queues.len() as u32);
@@ -70,7 +63,7 @@ impl Front {
 
     #[inline]
     pub(super) fn distance(&self, vertex: u32) -> f64 {
-        self.nodes[vertex as usize].distance
+        self.heap.distance(vertex)
     }
 
     #[inline]
@@ -81,30 +74,15 @@ impl Front {
     /// Lowers the label of a vertex to `distance` if that is an improvement, and (re-)queues it.
     #[inline]
     pub(super) fn reach(&mut self, vertex: u32, distance: f64, arrival: Arrival) {
-        let node = &mut self.nodes[vertex as usize];
-        if distance < node.distance {
-            node.distance = distance;
+        if self.heap.relax(vertex, distance) {
             self.arrivals[vertex as usize] = arrival;
-            let mut position = node.position as usize;
-            if node.position == NONE {
-                position = self.heap.len();
-                self.heap.push((distance, vertex));
-            }
-            self.sift_up(position, (distance, vertex));
         }
     }
 
     /// The nearest vertex of the queue, which it leaves.
     #[inline]
     pub(super) fn pop(&mut self) -> Option<(f64, u32)> {
-        let top = *self.heap.first()?;
-        self.nodes[top.1 as usize].position = NONE;
-        if let Some(last) = self.heap.pop()
-            && !self.heap.is_empty()
-        {
-            self.sift_down(last);
-        }
-        Some(top)
+        self.heap.pop()
     }
 
     /// Adds windows to those at the base of `corner`, whose ends these are.
@@ -143,12 +121,11 @@ impl Front {
             (self.queues.len() - 1) as u32
         });
         let end = if self.distance(b) < self.distance(a) { b } else { a };
-        let node = &mut self.nodes[end as usize];
-        let next = if node.position == NONE {
+        let next = if self.heap.contains(end) {
+            std::mem::replace(&mut self.waiting[end as usize], queue)
+        } else {
             self.ready.push_back(queue);
             NONE
-        } else {
-            std::mem::replace(&mut node.waiting, queue)
         };
         let opened = &mut self.queues[queue as usize];
         opened.corner = corner;
@@ -159,7 +136,7 @@ impl Front {
 
     /// Lets the corners go that wait for a vertex.
     pub(super) fn release(&mut self, vertex: u32) {
-        let mut queue = std::mem::replace(&mut self.nodes[vertex as usize].waiting, NONE);
+        let mut queue = std::mem::replace(&mut self.waiting[vertex as usize], NONE);
         while queue != NONE {
             self.ready.push_back(queue);
             queue = self.queues[queue as usize].next;
@@ -175,48 +152,5 @@ impl Front {
         self.gates[queue.corner as usize] = NONE;
         self.free.push(index);
         Some(queue.corner)
-    }
-
-    #[inline]
-    fn sift_up(&mut self, mut hole: usize, item: (f64, u32)) {
-        while hole > 0 {
-            let parent = (hole - 1) / 4;
-            if item.0 >= self.heap[parent].0 {
-                break;
-            }
-            self.place(hole, self.heap[parent]);
-            hole = parent;
-        }
-        self.place(hole, item);
-    }
-
-    #[inline]
-    fn sift_down(&mut self, item: (f64, u32)) {
-        let nearer = |p: (usize, f64), q: (usize, f64)| if q.1 < p.1 { q } else { p };
-        let mut hole = 0;
-        loop {
-            let first = 4 * hole + 1;
-            let (child, nearest) = match self.heap.get(first..) {
-                // All four without a branch, which would be mispredicted.
-                Some([p, q, r, s, ..]) => nearer(nearer((0, p.0), (1, q.0)), nearer((2, r.0), (3, s.0))),
-                Some(few) => {
-                    let distances = few.iter().map(|child| child.0).enumerate();
-                    distances.reduce(nearer).unwrap_or((0, f64::INFINITY))
-                }
-                None => break,
-            };
-            if nearest >= item.0 {
-                break;
-            }
-            self.place(hole, self.heap[first + child]);
-            hole = first + child;
-        }
-        self.place(hole, item);
-    }
-
-    #[inline]
-    fn place(&mut self, hole: usize, item: (f64, u32)) {
-        self.heap[hole] = item;
-        self.nodes[item.1 as usize].position = hole as u32;
     }
 }

@@ -1,12 +1,10 @@
 //! Ways along edges, where nothing better is known.
 
-use std::cmp::Reverse;
-use std::collections::BinaryHeap;
-
 use surface::{CornerId, FaceId, IntrinsicMesh, VertexId};
 
 use super::strip::{Section, Strip, Way};
 use super::{PathTracer, on_the_least};
+use crate::heap::VertexHeap;
 use crate::{Source, SurfacePoint};
 
 /// The shortest ways along edges from the sources to all vertices.
@@ -28,41 +26,31 @@ impl EdgeTree {
     /// Cost: `O(p log p)`.
     pub(super) fn new(tracer: &PathTracer) -> Self {
         let n = tracer.mesh.n_vertices();
-        let mut tree = Self { distances: vec![f64::INFINITY; n], before: vec![None; n] };
-        // Distances are not negative, so that their bits are in their order.
-        let mut queue = BinaryHeap::new();
+        let mut heap = VertexHeap::default();
+        heap.reset(n);
+        let mut before = vec![None; n];
         for source in tracer.sources {
             let point = on_the_least(tracer.mesh, source.point());
             for (vertex, distance) in source.reach() {
                 if let Some(section) = within_face(tracer.mesh, point, *vertex)
-                    && *distance < tree.distances[vertex.index()]
+                    && heap.relax(vertex.0, *distance)
                 {
-                    tree.distances[vertex.index()] = *distance;
-                    tree.before[vertex.index()] = Some((Before::Source(point), section));
-                    queue.push(Reverse((distance.to_bits(), *vertex)));
+                    before[vertex.index()] = Some((Before::Source(point), section));
                 }
             }
         }
-        while let Some(Reverse((bits, vertex))) = queue.pop() {
-            let distance = f64::from_bits(bits);
-            if distance > tree.distances[vertex.index()] {
-                continue;
-            }
-            let mut reach = |next: VertexId, length: f64, section: Section| {
-                if distance + length < tree.distances[next.index()] {
-                    tree.distances[next.index()] = distance + length;
-                    tree.before[next.index()] = Some((Before::Vertex(vertex), section));
-                    queue.push(Reverse(((distance + length).to_bits(), next)));
+        while let Some((distance, vertex)) = heap.pop() {
+            let vertex = VertexId(vertex);
+            let edges = edges_at(tracer.mesh, vertex)
+                .map(|(next, length, face)| (next, length, Section::Strip(Strip::within(face))));
+            let links = tracer.links(vertex).map(|(next, length)| (next, length, Section::Link(length)));
+            for (next, length, section) in edges.chain(links) {
+                if heap.relax(next.0, distance + length) {
+                    before[next.index()] = Some((Before::Vertex(vertex), section));
                 }
-            };
-            for (next, length, face) in edges_at(tracer.mesh, vertex) {
-                reach(next, length, Section::Strip(Strip::within(face)));
-            }
-            for (next, length) in tracer.links(vertex) {
-                reach(next, length, Section::Link(length));
             }
         }
-        tree
+        Self { distances: (0..n as u32).map(|v| heap.distance(v)).collect(), before }
     }
 
     /// The shortest way along edges from `target` to a source; `None` if there is none.
