@@ -6,7 +6,6 @@
 //! isometry of the surface cannot change their output.
 
 mod breadth_first;
-mod corner;
 mod dijkstra;
 mod error;
 mod exact;
@@ -28,7 +27,7 @@ pub use breadth_first::BreadthFirst;
 pub use dijkstra::Dijkstra;
 pub use error::GeodesicError;
 pub use exact::Exact;
-pub use fast_marching::{CornerReport, FastMarching, FastMarchingOptions, ObtuseTreatment, Update};
+pub use fast_marching::{FastMarching, FastMarchingOptions, ObtuseTreatment, Update};
 pub use heat::{HeatMethod, HeatOptions};
 pub use method::Method;
 pub use path::{GeodesicPath, PathTracer};

@@ -1,9 +1,8 @@
 //! Where distances start.
 
-use surface::{EdgeId, FaceId, IntrinsicMesh, VertexId};
+use surface::{EdgeId, FaceId, IntrinsicMesh, Triangle, VertexId};
 
 use crate::GeodesicError;
-use crate::corner::Corner;
 
 /// A point of a surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -76,10 +75,13 @@ impl Source {
                 let [a, b] = topology.edges()[edge.index()];
                 let mut reach = vec![(a, t * length), (b, (1.0 - t) * length)];
                 for corner in topology.edge_corners(edge) {
+                    let mut sides = mesh.sides(*corner);
+                    if topology.corner_vertex(corner.next()) != a {
+                        sides.swap(1, 2);
+                    }
+                    let triangle = Triangle::from_sides(sides);
                     let apex = topology.corner_vertex(*corner);
-                    let to = |end| topology.edge_between(end, apex).map_or(f64::INFINITY, |e| mesh.length(e));
-                    let corner = Corner::from_lengths(length, to(a), to(b));
-                    reach.push((apex, (corner.x - t * length).hypot(corner.y)));
+                    reach.push((apex, (triangle.x - t * length).hypot(triangle.y)));
                 }
                 Ok(Self { point, reach })
             }

@@ -18,6 +18,8 @@ mod rows;
 #[cfg(test)]
 mod testing;
 mod topology;
+mod triangle;
+mod triangulation;
 
 pub use components::{Components, components, components_of_faces, components_with_links};
 pub use disjoint_sets::DisjointSets;
@@ -26,3 +28,5 @@ pub use intrinsic::{IntrinsicMesh, Link};
 pub use one_ring::{CornerTable, Fan, FanCorner, OneRing, VertexKind, Winding, total_angle};
 pub use rows::Rows;
 pub use topology::Topology;
+pub use triangle::{Triangle, double_area, scalar_product};
+pub use triangulation::{Loops, Triangulation};

@@ -187,6 +187,12 @@ impl OneRing {
         })
     }
 
+    /// Whether there is a single fan and it is closed.
+    #[must_use]
+    pub fn is_closed(&self) -> bool {
+        matches!(self.fans[..], [(_, true)])
+    }
+
     /// Classifies the vertex by its total angle, which must exceed the limit by more than `excess` for paths to
     /// bend; both in radians.
     #[must_use]

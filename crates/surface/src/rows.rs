@@ -54,6 +54,25 @@ impl<T: Copy> Rows<T> {
         self.offsets.push(self.items.len() as u32);
     }
 
+    /// The rows of several lists, one after the other.
+    ///
+    /// # Panics
+    /// If the number of all items does not fit into 32 bits.
+    pub fn concat<'a>(parts: impl Iterator<Item = &'a Self> + Clone) -> Self
+    where
+        T: 'a,
+    {
+        let n_items = parts.clone().map(|part| part.items.len()).sum();
+        assert!(u32::try_from(n_items).is_ok(), "more items than fit into 32 bits");
+        let mut all = Self { offsets: vec![0], items: Vec::with_capacity(n_items) };
+        for part in parts {
+            let start = all.items.len() as u32;
+            all.offsets.extend(part.offsets[1..].iter().map(|offset| start + offset));
+            all.items.extend_from_slice(&part.items);
+        }
+        all
+    }
+
     /// Number of rows.
     #[must_use]
     pub fn n_rows(&self) -> usize {
@@ -100,5 +119,7 @@ mod tests {
         let mut pushed = Rows::default();
         expected.into_iter().for_each(|items| pushed.push_row(items.iter().copied()));
         assert_eq!(pushed, rows);
+        let both = Rows::concat([&rows, &rows].into_iter());
+        assert_eq!((both.n_rows(), both.row(4), both.row(6)), (8, expected[0], expected[2]));
     }
 }

@@ -1,6 +1,6 @@
 //! The surface as windows travel over it: one cache line a face.
 
-use surface::{CornerId, FaceId, IntrinsicMesh, Topology};
+use surface::{CornerId, FaceId, IntrinsicMesh, Topology, double_area, scalar_product};
 
 /// The faces of a surface and who is next to whom.
 #[derive(Debug)]
@@ -123,7 +123,7 @@ impl Face {
     /// Scalar product of the two sides at a corner.
     pub(super) fn cosine(&self, slot: usize) -> f64 {
         let [base, p, q] = [slot, next(slot), next(next(slot))].map(|i| self.lengths[i]);
-        0.5 * (q * q + (p - base) * (p + base))
+        scalar_product(base, p, q)
     }
 
     /// Angle at a corner.
@@ -154,7 +154,6 @@ fn power_of_two_near(length: f64) -> f64 {
 /// The longest is no longer than the others together; of two that differ by rounding alone, beside
 /// a third that is lost in it, both are equal. Where rounding hides whether there is an area, there
 /// is as good as none: one unit in the last place of a length may stand for a height of `1e-8`.
-/// Otherwise it is Kahan's stable form of Heron's.
 fn triangle(mut lengths: [f64; 3]) -> ([f64; 3], f64) {
     let mut order = [0, 1, 2];
     order.sort_unstable_by(|i, j| lengths[*j].total_cmp(&lengths[*i]));
@@ -170,8 +169,7 @@ fn triangle(mut lengths: [f64; 3]) -> ([f64; 3], f64) {
     if excess <= ROUNDING * a && !is_needle {
         return (lengths, least);
     }
-    let product = (a + (b + c)) * excess * (c + (a - b)) * (a + (b - c));
-    (lengths, (0.5 * product.max(0.0).sqrt()).max(least))
+    (lengths, double_area([a, b, c]).max(least))
 }
 
 fn beyond(topology: &Topology, corner: CornerId, fans: &mut Vec<Vec<Facing>>) -> Beyond {

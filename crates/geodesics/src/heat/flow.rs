@@ -1,7 +1,7 @@
 //! How triangles and links carry heat.
 
-use surface::Link;
-use surface::laplacian::{Element, Triangle};
+use surface::laplacian::Element;
+use surface::{Link, Triangle};
 
 /// A link longer than this, in units, transports heat as if it were this long: behind a bridge the
 /// amount of heat is of no importance, but there has to be some.

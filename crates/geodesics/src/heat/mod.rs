@@ -295,7 +295,7 @@ fn shares(source: &Source) -> impl Iterator<Item = (VertexId, f64)> {
 fn neighbours(n_vertices: usize, elements: &[Element]) -> Rows<(u32, f64)> {
     let sides = elements.iter().flat_map(|element| {
         let [a, b, c] = element.vertices;
-        let [ab, bc, ca] = element.triangle.sides();
+        let [ab, ca, bc] = element.triangle.sides();
         [(a, b, ab), (b, c, bc), (c, a, ca)].into_iter().filter(|(v, w, _)| v != w)
     });
     let mut sides: Vec<(u32, u32, f64)> =

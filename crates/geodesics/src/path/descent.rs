@@ -2,15 +2,14 @@
 
 use std::collections::BTreeSet;
 
-use surface::{EdgeId, FaceId, VertexId};
+use surface::{EdgeId, FaceId, Triangle, VertexId};
 
 use super::PathTracer;
 use super::edges::faces_around;
 use super::plane::{Flat, Point, between, distance, segment};
 use super::strip::{Portal, Section, Strip, Way};
 use crate::SurfacePoint;
-use crate::corner::Corner;
-use crate::fast_marching::Sector;
+use crate::fast_marching::Stencil;
 
 /// The next stop on the way.
 #[derive(Debug, Clone, Copy)]
@@ -154,17 +153,16 @@ impl Walker<'_> {
 fn seen_through(here: Point, base: [Point; 2], [at_a, at_b]: [f64; 2]) -> Option<(f64, f64)> {
     let [a, b] = base;
     let (length, side) = (distance(a, b), distance(a, here));
-    let corner = Corner::from_lengths(length, side, distance(b, here));
-    let sector = Sector { base: length, side, dot: corner.x * length, cross: corner.y * length };
-    let total = sector.point_source(at_a, at_b);
+    let above = Triangle::from_sides([length, side, distance(b, here)]);
+    let stencil = Stencil { base: length, side, dot: above.x * length, cross: above.y * length };
+    let total = stencil.point_source(at_a, at_b);
     if !total.is_finite() {
         return None;
     }
     // The crossing divides the line as the heights of its ends above the base do.
-    let x = 0.5 * (length + (at_a - at_b) * (at_a + at_b) / length);
-    let depth = ((at_a - x) * (at_a + x)).max(0.0).sqrt();
-    let height = depth + corner.y;
-    let t = if height > 0.0 { (x * corner.y + corner.x * depth) / (height * length) } else { 0.5 };
+    let below = Triangle::from_sides([length, at_a, at_b]);
+    let height = above.y + below.y;
+    let t = if height > 0.0 { (below.x * above.y + above.x * below.y) / (height * length) } else { 0.5 };
     let crossing = between(a, b, t.clamp(0.0, 1.0));
     // Lengths of no triangle, or rounding in a flat one, may claim a source nearer than the base.
     (total >= distance(here, crossing)).then_some((total, t.clamp(0.0, 1.0)))

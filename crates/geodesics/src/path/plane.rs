@@ -1,9 +1,8 @@
 //! Faces laid out in the plane.
 
-use surface::{CornerId, EdgeId, FaceId, IntrinsicMesh, VertexId};
+use surface::{CornerId, EdgeId, FaceId, IntrinsicMesh, Triangle, VertexId};
 
 use crate::SurfacePoint;
-use crate::corner::Corner;
 
 /// A point in the plane.
 pub(super) type Point = [f64; 2];
@@ -26,15 +25,12 @@ pub(super) fn distance(a: Point, b: Point) -> f64 {
     x.hypot(y)
 }
 
-/// The third corner of a triangle whose base goes from the origin along the x-axis; above it.
-pub(super) fn apex(base: f64, from_start: f64, from_end: f64) -> Point {
-    if base > 0.0 {
-        let corner = Corner::from_lengths(base, from_start, from_end);
-        // Lengths that belong to no triangle may put it anywhere on the line.
-        [corner.x.clamp(-from_start, from_start), corner.y]
-    } else {
-        [0.0, from_start]
-    }
+/// The apex of a triangle whose base runs from the origin along the x-axis, from the lengths of the base and of
+/// the sides from its start and its end.
+pub(super) fn apex(sides: [f64; 3]) -> Point {
+    let Triangle { x, y, .. } = Triangle::from_sides(sides);
+    // Lengths of no triangle may put it anywhere on the line.
+    [x.clamp(-sides[1], sides[1]), y]
 }
 
 /// Which side of a gate, for someone who passes it with its left end on the left.
@@ -47,9 +43,9 @@ pub(super) enum Side {
 /// The third corner of a face on one side of a gate with these ends on the left and on the right, from
 /// the lengths of the gate and of the sides from its left and its right end.
 pub(super) fn beyond([left, right]: [Point; 2], lengths: [f64; 3], side: Side) -> Point {
-    let [base, from_left, from_right] = lengths;
+    let base = lengths[0];
     let [x, y] = if base > 0.0 { sub(right, left).map(|x| x / base) } else { [1.0, 0.0] };
-    let [along, away] = apex(base, from_left, from_right);
+    let [along, away] = apex(lengths);
     let ahead = if side == Side::Ahead { away } else { -away };
     [left[0] + along * x - ahead * y, left[1] + along * y + ahead * x]
 }
@@ -65,9 +61,9 @@ impl Flat {
     /// A face with the corner in `slot` in the origin.
     pub(super) fn new(mesh: &IntrinsicMesh, face: FaceId, slot: usize) -> Self {
         let last = CornerId::new(face, slot).prev();
-        let [base, from_start, from_end] = mesh.sides(last);
+        let sides = mesh.sides(last);
         let vertices = [last.next(), last.prev(), last].map(|corner| mesh.topology().corner_vertex(corner));
-        Self { vertices, at: [[0.0, 0.0], [base, 0.0], apex(base, from_start, from_end)] }
+        Self { vertices, at: [[0.0, 0.0], [sides[0], 0.0], apex(sides)] }
     }
 
     /// Any triangle.
