@@ -1,8 +1,8 @@
-//! The edges of a surface as a graph.
+//! The graph of edges and links.
 
 use surface::{IntrinsicMesh, Rows};
 
-/// Neighbours of every vertex along edges and links.
+/// The neighbours of every vertex along edges and links, and how far they are.
 #[derive(Debug, Clone)]
 pub(crate) struct EdgeGraph(Rows<(u32, f64)>);
 

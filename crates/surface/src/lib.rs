@@ -29,4 +29,4 @@ pub use one_ring::{CornerTable, Fan, FanCorner, OneRing, VertexKind, Winding, to
 pub use rows::Rows;
 pub use topology::Topology;
 pub use triangle::{Triangle, double_area, scalar_product};
-pub use triangulation::{Loops, Triangulation};
+pub use triangulation::{GluedTriangle, Loops, Triangulation};

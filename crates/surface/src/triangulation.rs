@@ -33,13 +33,22 @@ const NONE: u32 = u32::MAX;
 /// let removed = triangulation.flip_to_delaunay(Loops::Forbidden);
 /// assert_eq!((removed.len(), removed[0].length), (1, 1.8));
 /// let short = 2.0 * (1.0f64 - 0.9 * 0.9).sqrt();
-/// assert!(triangulation.lengths().iter().all(|sides| sides.iter().any(|l| (l - short).abs() < 1e-15)));
+/// assert!(triangulation.triangles().iter().all(|t| t.lengths.iter().any(|l| (l - short).abs() < 1e-15)));
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Triangulation {
-    vertices: Vec<[VertexId; 3]>,
-    lengths: Vec<[f64; 3]>,
-    opposite: Vec<u32>,
+    triangles: Vec<GluedTriangle>,
+}
+
+/// A triangle of a [`Triangulation`]. Each of its sides is in the place of the corner opposite.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct GluedTriangle {
+    /// The vertices; other triangles may have the same ones.
+    pub vertices: [VertexId; 3],
+    /// The lengths of the sides.
+    pub lengths: [f64; 3],
+    /// The corners opposite the same sides in the neighbouring triangles.
+    opposite: [u32; 3],
 }
 
 /// Whether a flip may join a vertex to itself.
@@ -56,57 +65,58 @@ impl Triangulation {
     #[must_use]
     pub fn new(mesh: &IntrinsicMesh) -> Self {
         let topology = mesh.topology();
-        let faces = (0..topology.n_faces()).map(FaceId::from);
-        Self {
-            vertices: topology.faces().to_vec(),
-            lengths: faces.clone().map(|f| f.corners().map(|c| mesh.opposite_length(c))).collect(),
-            opposite: faces
-                .flat_map(FaceId::corners)
-                .map(|corner| topology.opposite(corner).map_or(NONE, |far| far.0))
-                .collect(),
-        }
+        let far = |corner| topology.opposite(corner).map_or(NONE, |far| far.0);
+        let triangle = |(f, vertices): (usize, &[VertexId; 3])| {
+            let corners = FaceId::from(f).corners();
+            let lengths = corners.map(|corner| mesh.opposite_length(corner));
+            GluedTriangle { vertices: *vertices, lengths, opposite: corners.map(far) }
+        };
+        Self { triangles: topology.faces().iter().enumerate().map(triangle).collect() }
     }
 
     /// Triangles given by their vertices, with sides that have neither a length nor a neighbour yet.
-    pub(crate) fn loose(vertices: Vec<[VertexId; 3]>) -> Self {
-        let (lengths, opposite) = (vec![[0.0; 3]; vertices.len()], vec![NONE; 3 * vertices.len()]);
-        Self { vertices, lengths, opposite }
+    pub(crate) fn loose(vertices: impl Iterator<Item = [VertexId; 3]>) -> Self {
+        let triangle = |vertices| GluedTriangle { vertices, lengths: [0.0; 3], opposite: [NONE; 3] };
+        Self { triangles: vertices.map(triangle).collect() }
     }
 
     /// Sets the length of a side.
     pub(crate) fn set_length(&mut self, corner: CornerId, length: f64) {
-        self.lengths[corner.face().index()][corner.slot()] = length;
+        self.triangles[corner.face().index()].lengths[corner.slot()] = length;
     }
 
     /// Glues two sides together.
     pub(crate) fn glue(&mut self, a: CornerId, b: CornerId) {
-        self.opposite[a.index()] = b.0;
-        self.opposite[b.index()] = a.0;
+        self.triangles[a.face().index()].opposite[a.slot()] = b.0;
+        self.triangles[b.face().index()].opposite[b.slot()] = a.0;
     }
 
-    /// Number of triangles.
-    #[must_use]
-    pub fn n_triangles(&self) -> usize {
-        self.vertices.len()
+    /// Glues a side to the one with the given number, if there is one.
+    fn set_neighbour(&mut self, side: CornerId, neighbour: u32) {
+        if neighbour == NONE {
+            self.triangles[side.face().index()].opposite[side.slot()] = NONE;
+        } else {
+            self.glue(side, CornerId(neighbour));
+        }
     }
 
-    /// The vertices of every triangle. Two triangles may have the same vertices.
-    #[must_use]
-    pub fn vertices(&self) -> &[[VertexId; 3]] {
-        &self.vertices
+    /// The number of the corner opposite the same side as another, or [`NONE`].
+    #[inline]
+    fn neighbour(&self, side: CornerId) -> u32 {
+        self.triangles[side.face().index()].opposite[side.slot()]
     }
 
-    /// The lengths of the sides opposite the corners of every triangle.
+    /// The triangles.
     #[must_use]
-    pub fn lengths(&self) -> &[[f64; 3]] {
-        &self.lengths
+    pub fn triangles(&self) -> &[GluedTriangle] {
+        &self.triangles
     }
 
     /// The lengths of the three sides of a corner's triangle, as in [`IntrinsicMesh::sides`].
     #[inline]
     #[must_use]
     pub fn sides(&self, corner: CornerId) -> [f64; 3] {
-        let lengths = &self.lengths[corner.face().index()];
+        let lengths = &self.triangles[corner.face().index()].lengths;
         [corner, corner.prev(), corner.next()].map(|c| lengths[c.slot()])
     }
 
@@ -116,28 +126,26 @@ impl Triangulation {
     /// Free sides stay. Bounded: on a surface so degenerate that the flips run out, some sides are left as they
     /// are. The triangles are numbered as before, but have other vertices.
     pub fn flip_to_delaunay(&mut self, loops: Loops) -> Vec<Link> {
-        let n_sides = self.opposite.len();
+        let corners = (0..self.triangles.len()).flat_map(|t| FaceId::from(t).corners());
+        let n_sides = 3 * self.triangles.len();
         let mut removed = Vec::new();
         let mut is_new = vec![false; n_sides];
         // Either corner may stand for a side; the lower one does.
-        let mut waiting: Vec<u32> = (0u32..)
-            .zip(&self.opposite)
-            .filter(|(c, far)| c < far && **far != NONE)
-            .map(|(c, _)| c)
-            .collect();
+        let is_lower = |c: &CornerId| self.opposite(*c).is_some_and(|far| *c < far);
+        let mut waiting: Vec<CornerId> = corners.filter(is_lower).collect();
         let mut is_queued = vec![false; n_sides];
-        waiting.iter().for_each(|&corner| is_queued[corner as usize] = true);
+        waiting.iter().for_each(|corner| is_queued[corner.index()] = true);
         let mut budget = FLIPS_PER_SIDE * n_sides;
         while let Some(corner) = waiting.pop() {
-            is_queued[corner as usize] = false;
-            let Some(triangles) = self.flip(CornerId(corner), loops, &mut is_new, &mut removed) else {
+            is_queued[corner.index()] = false;
+            let Some(triangles) = self.flip(corner, loops, &mut is_new, &mut removed) else {
                 continue;
             };
             // The sides around the two triangles have new numbers now and are queued under these.
             for outer in triangles.into_iter().flat_map(|t| [1, 2].map(|slot| CornerId::new(t, slot))) {
-                let far = self.opposite[outer.index()];
-                let side = outer.0.min(far);
-                if far != NONE && !std::mem::replace(&mut is_queued[side as usize], true) {
+                let Some(far) = self.opposite(outer) else { continue };
+                let side = outer.min(far);
+                if !std::mem::replace(&mut is_queued[side.index()], true) {
                     waiting.push(side);
                 }
             }
@@ -200,17 +208,13 @@ impl Triangulation {
         let outer = [far.prev(), corner.next(), corner.prev(), far.next()];
         let moved = [(f, 1), (f, 2), (g, 1), (g, 2)].map(|(triangle, slot)| CornerId::new(triangle, slot));
         let new_number = |side: u32| outer.iter().position(|old| old.0 == side).map_or(side, |i| moved[i].0);
-        let neighbours = outer.map(|old| new_number(self.opposite[old.index()]));
+        let neighbours = outer.map(|old| new_number(self.neighbour(old)));
         let were_new = outer.map(|old| is_new[old.index()]);
-        self.vertices[f.index()] = [b, c, d];
-        self.vertices[g.index()] = [a, d, c];
-        self.lengths[f.index()] = [diagonal, db, bc];
-        self.lengths[g.index()] = [diagonal, ca, ad];
+        let triangle = |vertices, lengths| GluedTriangle { vertices, lengths, opposite: [NONE; 3] };
+        self.triangles[f.index()] = triangle([b, c, d], [diagonal, db, bc]);
+        self.triangles[g.index()] = triangle([a, d, c], [diagonal, ca, ad]);
         for ((side, neighbour), was_new) in moved.into_iter().zip(neighbours).zip(were_new) {
-            self.opposite[side.index()] = neighbour;
-            if neighbour != NONE {
-                self.opposite[neighbour as usize] = side.0;
-            }
+            self.set_neighbour(side, neighbour);
             is_new[side.index()] = was_new;
         }
         let diagonals = [f, g].map(|triangle| CornerId::new(triangle, 0));
@@ -228,40 +232,32 @@ impl Triangulation {
 
     /// Reverses the orientation of a triangle, leaving the given corner where it is.
     fn turn_over(&mut self, corner: CornerId, is_new: &mut [bool]) {
-        let triangle = corner.face().index();
         let [p, q] = [corner.next(), corner.prev()];
-        self.vertices[triangle].swap(p.slot(), q.slot());
-        self.lengths[triangle].swap(p.slot(), q.slot());
+        let [at_p, at_q] = [p, q].map(|side| self.neighbour(side));
+        let triangle = &mut self.triangles[corner.face().index()];
+        triangle.vertices.swap(p.slot(), q.slot());
+        triangle.lengths.swap(p.slot(), q.slot());
         is_new.swap(p.index(), q.index());
-        let [at_p, at_q] = [p, q].map(|side| self.opposite[side.index()]);
         // The two sides may be glued to each other.
-        let renamed = |side: u32| {
-            if side == p.0 {
-                q.0
-            } else if side == q.0 {
-                p.0
-            } else {
-                side
-            }
+        let renamed = |side: u32| match CornerId(side) {
+            side if side == p => q.0,
+            side if side == q => p.0,
+            side => side.0,
         };
-        for (side, neighbour) in [(p, renamed(at_q)), (q, renamed(at_p))] {
-            self.opposite[side.index()] = neighbour;
-            if neighbour != NONE {
-                self.opposite[neighbour as usize] = side.0;
-            }
-        }
+        self.set_neighbour(p, renamed(at_q));
+        self.set_neighbour(q, renamed(at_p));
     }
 }
 
 impl CornerTable for Triangulation {
     #[inline]
     fn corner_vertex(&self, corner: CornerId) -> VertexId {
-        self.vertices[corner.face().index()][corner.slot()]
+        self.triangles[corner.face().index()].vertices[corner.slot()]
     }
 
     #[inline]
     fn opposite(&self, corner: CornerId) -> Option<CornerId> {
-        let far = self.opposite[corner.index()];
+        let far = self.neighbour(corner);
         (far != NONE).then_some(CornerId(far))
     }
 }
@@ -281,12 +277,12 @@ pub(crate) mod tests {
     }
 
     pub(crate) fn area(triangulation: &Triangulation) -> f64 {
-        triangulation.lengths.iter().map(|sides| 0.5 * double_area(*sides)).sum()
+        triangulation.triangles.iter().map(|t| 0.5 * double_area(t.lengths)).sum()
     }
 
     /// Glued sides fit together, and none can be flipped.
     pub(crate) fn assert_delaunay(triangulation: &Triangulation) {
-        for corner in (0..3 * triangulation.n_triangles()).map(CornerId::from) {
+        for corner in (0..3 * triangulation.triangles.len()).map(CornerId::from) {
             let Some(far) = triangulation.opposite(corner) else { continue };
             assert!(far != corner && triangulation.opposite(far) == Some(corner));
             let ends = |c: CornerId| {
@@ -314,7 +310,7 @@ pub(crate) mod tests {
             let surface = intrinsic(&mesh);
             let (triangulation, removed) = flipped(&surface);
             assert_delaunay(&triangulation);
-            assert!(!removed.is_empty());
+            assert!(!removed.is_empty(), "{} faces", mesh.n_faces());
             assert!((area(&triangulation) / area(&Triangulation::new(&surface)) - 1.0).abs() < 1e-12);
         }
     }
@@ -325,16 +321,17 @@ pub(crate) mod tests {
         let (triangulation, removed) = flipped(&intrinsic(&sheet));
         let distance =
             |a: VertexId, b: VertexId| (sheet.positions[a.index()] - sheet.positions[b.index()]).norm();
-        for (vertices, sides) in triangulation.vertices.iter().zip(&triangulation.lengths) {
-            for k in 0..3 {
-                assert!((sides[k] - distance(vertices[(k + 1) % 3], vertices[(k + 2) % 3])).abs() < 1e-12);
+        for GluedTriangle { vertices: [a, b, c], lengths, .. } in triangulation.triangles() {
+            for (length, ends) in lengths.iter().zip([[b, c], [c, a], [a, b]]) {
+                assert!((length - distance(*ends[0], *ends[1])).abs() < 1e-12);
             }
         }
         for Link { ends: [a, b], length } in &removed {
             assert!((length - distance(*a, *b)).abs() < 1e-12);
         }
         // Every edge of the mesh is still there or was returned.
-        let sides = triangulation.vertices.iter().flat_map(|[a, b, c]| [[*a, *b], [*b, *c], [*c, *a]]);
+        let sides = triangulation.triangles.iter().map(|t| t.vertices);
+        let sides = sides.flat_map(|[a, b, c]| [[a, b], [b, c], [c, a]]);
         let known = sides.chain(removed.iter().map(|link| link.ends)).map(|[a, b]| [a.min(b), a.max(b)]);
         let known: std::collections::BTreeSet<_> = known.collect();
         let topology = Topology::new(sheet.n_vertices(), intrinsic(&sheet).topology().faces().to_vec());
@@ -396,6 +393,6 @@ pub(crate) mod tests {
         let mut triangulation = Triangulation::new(&mesh);
         assert_eq!(triangulation.flip_to_delaunay(Loops::Allowed).len(), 1);
         assert_delaunay(&triangulation);
-        assert!(triangulation.vertices.iter().all(|v| v.iter().filter(|v| v.0 == 2).count() == 2));
+        assert!(triangulation.triangles.iter().all(|t| t.vertices.iter().filter(|v| v.0 == 2).count() == 2));
     }
 }

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use surface::{FanCorner, IntrinsicMesh, OneRing, Rows, VertexId, VertexKind, Winding};
 
-use super::faces::Surface;
+use super::faces::Faces;
 use super::front::Arrival;
 
 /// Excess of a total angle, in radians, below which paths do not bend at a vertex; far below what any distance
@@ -28,17 +28,19 @@ pub(super) struct Fans {
 }
 
 impl Fans {
-    pub(super) fn new(mesh: &IntrinsicMesh, surface: &Surface) -> Self {
+    pub(super) fn new(mesh: &IntrinsicMesh, faces: &Faces) -> Self {
         let topology = mesh.topology();
-        let mut fans = Self { sectors: Rows::default(), kinds: Vec::with_capacity(topology.n_vertices()) };
+        let n_vertices = topology.n_vertices();
+        let sectors = Rows::with_capacity(n_vertices, 3 * topology.n_faces());
+        let mut fans = Self { sectors, kinds: Vec::with_capacity(n_vertices) };
         let mut ring = OneRing::default();
-        for vertex in (0..topology.n_vertices()).map(VertexId::from) {
+        for vertex in (0..n_vertices).map(VertexId::from) {
             let corners = topology.vertex_corners(vertex);
             ring.collect(topology, corners);
             let mut angle = 0.0;
             let sector = |corner: &FanCorner| {
                 let start = angle;
-                angle += surface.face(corner.corner.0).angle(corner.corner.slot());
+                angle += faces.of(corner.corner.face()).angle(corner.corner.slot());
                 Sector { corner: *corner, start, end: angle }
             };
             fans.sectors.push_row(ring.fans().flat_map(|fan| fan.corners).map(sector));
@@ -47,8 +49,8 @@ impl Fans {
         for link_end in mesh.links().iter().flat_map(|link| link.ends) {
             fans.kinds[link_end.index()] = VertexKind::Irregular;
         }
-        // Neither does an edge without length have a direction.
-        for face in &surface.faces {
+        // An edge without length has no direction.
+        for face in &faces.all {
             for slot in (0..3).filter(|slot| face.is_point_like(*slot)) {
                 for end in [1, 2].map(|step| face.vertices[(slot + step) % 3]) {
                     fans.kinds[end as usize] = VertexKind::Irregular;
@@ -83,7 +85,7 @@ impl Fans {
         };
         let fan = self.around(vertex);
         let Sector { corner: FanCorner { winding, .. }, start, end } =
-            *fan.iter().find(|sector| sector.corner.corner.0 == corner)?;
+            *fan.iter().find(|sector| sector.corner.corner == corner)?;
         let angle = fan.last()?.end;
         let within = sin.atan2(cos);
         let at = match winding {

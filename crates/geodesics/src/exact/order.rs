@@ -1,22 +1,22 @@
-//! Neighbours on the surface become neighbours in memory.
+//! Renumbering: neighbours on the surface become neighbours in memory.
 
 use surface::{FaceId, IntrinsicMesh, Link, Topology, VertexId};
 
 use crate::graph::breadth_first_order;
 
-/// A surface renumbered breadth first, and what became of the vertices and faces.
+/// A renumbered surface.
 pub(super) struct Renumbered {
     pub(super) mesh: IntrinsicMesh,
-    /// New number of every vertex.
+    /// The new number of every vertex.
     pub(super) vertices: Vec<u32>,
-    /// New number of every face. The order of its corners stays, or is that of the face it repeats.
+    /// The new number of every face. The order of its corners stays, or is that of the face it repeats.
     pub(super) faces: Vec<u32>,
 }
 
 /// Numbers vertices breadth first, one component after the other, and faces by their vertices.
 ///
-/// Of faces with the same vertices the first is kept: whatever path runs through another of them
-/// can run through this one. Light would find a new way in every copy at every face.
+/// Of faces with the same vertices the first is kept: any path through another of them can run through this one.
+/// With all of them, windows would multiply at every face.
 pub(super) fn renumbered(mesh: &IntrinsicMesh) -> Renumbered {
     let topology = mesh.topology();
     let around = |v: u32| topology.vertex_corners(VertexId(v)).iter().map(|corner| corner.face().index());

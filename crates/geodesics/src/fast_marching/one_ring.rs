@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use rayon::prelude::*;
 use surface::{
-    CornerId, CornerTable, FaceId, FanCorner, Link, OneRing, Rows, Triangulation, VertexId, VertexKind,
+    CornerId, CornerTable, FaceId, FanCorner, Link, OneRing, Rows, Triangulation, VertexKind,
     Winding, double_area, scalar_product, total_angle,
 };
 
@@ -159,11 +159,8 @@ impl OneRings {
         mean_edge_length: f64,
     ) -> Self {
         let n = order.len();
-        let of_triangle = |(t, vertices): (usize, &[VertexId; 3])| {
-            let (corners, vertices) = (FaceId::from(t).corners(), *vertices);
-            [0, 1, 2].map(|k| (vertices[k].index(), corners[k]))
-        };
-        let corners = Rows::collect(n, triangulation.vertices().iter().enumerate().flat_map(of_triangle));
+        let corners = (0..triangulation.triangles().len()).flat_map(|t| FaceId::from(t).corners());
+        let corners = Rows::collect(n, corners.map(|c| (triangulation.corner_vertex(c).index(), c)));
         let mut rank = vec![0; n];
         for (internal, v) in order.iter().enumerate() {
             rank[*v as usize] = internal as u32;

@@ -14,7 +14,7 @@ pub(super) fn tufted_cover(mesh: &IntrinsicMesh, edge_lengths: &[f64]) -> Triang
     let topology = mesh.topology();
     let fronts = topology.faces().iter().map(|[a, b, c]| [*c, *a, *b]);
     let backs = topology.faces().iter().map(|[a, b, c]| [*b, *a, *c]);
-    let mut cover = Triangulation::loose(fronts.chain(backs).collect());
+    let mut cover = Triangulation::loose(fronts.chain(backs));
     // The corners of front and back opposite the edge that a corner of the mesh is opposite to: first the one
     // whose side starts at `lower`.
     let sides_at = |corner: CornerId, lower: VertexId| {
@@ -52,7 +52,7 @@ mod tests {
         let mut flipped = cover.clone();
         flipped.flip_to_delaunay(Loops::Allowed);
         assert_delaunay(&flipped);
-        for corner in (0..3 * cover.n_triangles()).map(CornerId::from) {
+        for corner in (0..3 * cover.triangles().len()).map(CornerId::from) {
             for cover in [&cover, &flipped] {
                 let far = cover.opposite(corner).unwrap();
                 assert_eq!(cover.corner_vertex(corner.next()), cover.corner_vertex(far.prev()));
@@ -94,9 +94,9 @@ mod tests {
         let mesh = IntrinsicMesh::new(Topology::new(4, faces.to_vec()), vec![1.0, 1.0, 1.8, 1.0, 1.0]);
         let short = 2.0 * (1.0f64 - 0.81).sqrt();
         let [_, flipped] = covers(&mesh);
-        for (vertices, lengths) in flipped.vertices().iter().zip(flipped.lengths()) {
-            let across = vertices.iter().position(|v| [1, 2].contains(&v.0)).unwrap();
-            assert!((lengths[across] - short).abs() < 1e-15, "{vertices:?} {lengths:?}");
+        for triangle in flipped.triangles() {
+            let across = triangle.vertices.iter().position(|v| [1, 2].contains(&v.0)).unwrap();
+            assert!((triangle.lengths[across] - short).abs() < 1e-15, "{triangle:?}");
         }
     }
 

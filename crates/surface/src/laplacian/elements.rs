@@ -1,8 +1,7 @@
 //! The triangles that functions on the surface are linear on.
 
-use crate::ids::VertexId;
 use crate::triangle::Triangle;
-use crate::triangulation::Triangulation;
+use crate::triangulation::{GluedTriangle, Triangulation};
 
 /// Two triangles on the same vertices are one when their sides differ by no more than this share.
 const SAME: f64 = 1e-9;
@@ -25,14 +24,13 @@ pub struct Element {
 /// again wherever both were flipped alike, which is everywhere but next to boundaries and
 /// non-manifold edges.
 pub(super) fn elements(cover: &Triangulation) -> Vec<Element> {
-    let sorted = |([a, b, c], [bc, ca, ab]): (&[VertexId; 3], &[f64; 3])| {
-        let mut opposite = [(a.0, *bc), (b.0, *ca), (c.0, *ab)];
+    let sorted = |triangle: &GluedTriangle| {
+        let mut opposite = [0, 1, 2].map(|k| (triangle.vertices[k].0, triangle.lengths[k]));
         opposite.sort_by(|(v, l), (w, m)| v.cmp(w).then(l.total_cmp(m)));
         let [(a, bc), (b, ca), (c, ab)] = opposite;
         ([a, b, c], [ab, bc, ca])
     };
-    let mut sorted: Vec<([u32; 3], [f64; 3])> =
-        cover.vertices().iter().zip(cover.lengths()).map(sorted).collect();
+    let mut sorted: Vec<([u32; 3], [f64; 3])> = cover.triangles().iter().map(sorted).collect();
     let by_length = |a: &[f64; 3], b: &[f64; 3]| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1]));
     sorted.sort_by(|(v, a), (w, b)| v.cmp(w).then(by_length(a, b)));
     let mut elements: Vec<Element> = Vec::with_capacity(sorted.len() / 2 + 1);
