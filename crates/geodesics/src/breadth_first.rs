@@ -4,15 +4,24 @@ use std::collections::VecDeque;
 
 use surface::IntrinsicMesh;
 
-use crate::Source;
 use crate::graph::EdgeGraph;
 use crate::solver::{DistanceSolver, Pool, within};
+use crate::source::Source;
 
-/// Number of edges between vertices times the mean edge length: the baseline of Civril et al. that
-/// the paper calls BFS.
+/// The least number of edges and links between vertices, times the mean edge length: the baseline of Civril et al.
+/// 2007 (`civril2007`), which the paper calls BFS.
 ///
-/// The scale makes it comparable with the other solvers; hop counts alone have no unit. Links count
-/// as one hop. Cost `O(p)` per source.
+/// The scale makes it comparable with the other solvers; hops alone have no unit. Cost: `O(p)` per source.
+///
+/// ```
+/// use canonform_geodesics::{BreadthFirst, DistanceSolver};
+/// use mesh::shapes;
+/// use surface::VertexId;
+///
+/// let mesh = shapes::tetrahedron(0).intrinsic();
+/// let hop = mesh.mean_edge_length();
+/// assert_eq!(BreadthFirst::new(&mesh).distances(VertexId(0)), [0.0, hop, hop, hop]);
+/// ```
 #[derive(Debug)]
 pub struct BreadthFirst {
     graph: EdgeGraph,
@@ -21,7 +30,7 @@ pub struct BreadthFirst {
 }
 
 impl BreadthFirst {
-    /// Prepares the edge graph of a surface.
+    /// Prepares a surface.
     #[must_use]
     pub fn new(mesh: &IntrinsicMesh) -> Self {
         Self { graph: EdgeGraph::new(mesh), hop: mesh.mean_edge_length(), scratch: Pool::default() }
@@ -38,7 +47,7 @@ impl DistanceSolver for BreadthFirst {
         out.fill(f64::INFINITY);
         self.scratch.with(|queue| {
             queue.clear();
-            // A point on an edge or a face is at its nearest vertex, no hops away.
+            // A point on an edge or a face counts as its nearest vertex.
             for source in sources {
                 let nearest = source.reach().iter().min_by(|a, b| a.1.total_cmp(&b.1));
                 if let Some((vertex, _)) = nearest {

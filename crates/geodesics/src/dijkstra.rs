@@ -2,23 +2,33 @@
 
 use surface::IntrinsicMesh;
 
-use crate::Source;
 use crate::graph::EdgeGraph;
-use crate::heap::Front;
+use crate::heap::VertexHeap;
 use crate::solver::{DistanceSolver, Pool, within};
+use crate::source::Source;
 
-/// Lengths of shortest paths along edges: an upper bound of the geodesic distance that does not
-/// converge to it under refinement.
+/// Lengths of shortest paths along edges and links (Dijkstra 1959): an upper bound of the geodesic distance that does
+/// not converge to it under refinement.
 ///
-/// Cost `O(p log p)` per source.
+/// Cost: `O(p log p)` per source.
+///
+/// ```
+/// use canonform_geodesics::{Dijkstra, DistanceSolver};
+/// use mesh::shapes;
+/// use surface::VertexId;
+///
+/// // On a unit cube whose sides have one diagonal each, two corners are at most two edges apart.
+/// let along_edges = Dijkstra::new(&shapes::cube(0).intrinsic()).distances(VertexId(0));
+/// assert!(along_edges.iter().all(|d| *d <= 1.0 + 2f64.sqrt()));
+/// ```
 #[derive(Debug)]
 pub struct Dijkstra {
     graph: EdgeGraph,
-    scratch: Pool<Front>,
+    scratch: Pool<VertexHeap>,
 }
 
 impl Dijkstra {
-    /// Prepares the edge graph of a surface.
+    /// Prepares a surface.
     #[must_use]
     pub fn new(mesh: &IntrinsicMesh) -> Self {
         Self { graph: EdgeGraph::new(mesh), scratch: Pool::default() }
@@ -32,21 +42,21 @@ impl DistanceSolver for Dijkstra {
 
     fn solve_into(&self, sources: &[Source], max_distance: f64, out: &mut [f64]) {
         assert_eq!(out.len(), self.n_vertices(), "one distance per vertex");
-        self.scratch.with(|front| {
-            front.reset(out.len());
+        self.scratch.with(|heap| {
+            heap.reset(out.len());
             for (vertex, distance) in sources.iter().flat_map(Source::reach) {
-                front.relax(vertex.0, *distance);
+                heap.relax(vertex.0, *distance);
             }
-            while let Some((distance, vertex)) = front.pop() {
+            while let Some((distance, vertex)) = heap.pop() {
                 if distance > max_distance {
                     break;
                 }
                 for &(target, length) in self.graph.neighbours(vertex) {
-                    front.relax(target, distance + length);
+                    heap.relax(target, distance + length);
                 }
             }
-            for (v, distance) in out.iter_mut().enumerate() {
-                *distance = within(front.distance(v as u32), max_distance);
+            for (v, distance) in (0..).zip(out) {
+                *distance = within(heap.distance(v), max_distance);
             }
         });
     }

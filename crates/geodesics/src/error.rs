@@ -1,16 +1,16 @@
-//! What can go wrong when distances are asked for.
+//! Errors.
 
 use surface::VertexId;
 
-use crate::SurfacePoint;
+use crate::point::SurfacePoint;
 
 /// Errors of this crate.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum GeodesicError {
-    /// The surface falls into pieces.
+    /// The surface has several components.
     #[error(
         "mesh is disconnected: {unreached} of {n_vertices} vertices not reached from vertex {source_vertex}; \
-         keep the largest component or pass --components bridge"
+         keep the largest component or bridge the gaps"
     )]
     Disconnected {
         /// Number of vertices without a finite distance.
@@ -23,7 +23,7 @@ pub enum GeodesicError {
     /// A source or first sample that does not exist.
     #[error("vertex {vertex} does not exist; the mesh has {n_vertices} vertices, counted from 0")]
     NoSuchVertex {
-        /// The vertex asked for.
+        /// The vertex.
         vertex: VertexId,
         /// Number of vertices.
         n_vertices: usize,
@@ -34,10 +34,10 @@ pub enum GeodesicError {
         /// What is wrong with it.
         reason: String,
     },
-    /// A path to where no distance is known.
+    /// A path to a point without a distance.
     #[error(
-        "no way is known from a source to {point}: it lies on another component or beyond the limit of the \
-         distances; choose another target or raise --max-distance"
+        "no path is known from a source to {point}: it is on another component or beyond the limit of the \
+         distances; choose another target or raise the limit"
     )]
     NoWay {
         /// The end of the path.
@@ -46,19 +46,18 @@ pub enum GeodesicError {
     /// A sampling without samples.
     #[error("at least 1 sample is needed, got 0")]
     NoSamples,
-    /// A heat time without meaning.
+    /// A heat time that is not positive and finite.
     #[error(
-        "the heat time {time} (in squared mean edge lengths) is not positive and finite; the usual \
-         time is 0.85"
+        "the heat time {time} (in squared mean edge lengths) is not positive and finite; the usual time is 0.85"
     )]
     BadHeatTime {
-        /// The time asked for.
+        /// The time.
         time: f64,
     },
-    /// The matrices of the heat method have no factors.
-    #[error("the heat method cannot be set up: {reason}; take --method fast-marching")]
+    /// The matrices of the heat method cannot be factorised.
+    #[error("the heat method cannot be set up: {reason}; use fast marching")]
     NotFactorised {
-        /// What was in the way.
+        /// Why not.
         reason: String,
     },
 }

@@ -1,10 +1,8 @@
-//! The edges of a surface as a graph.
+//! The graph of edges and links.
 
-use surface::IntrinsicMesh;
+use surface::{IntrinsicMesh, Rows};
 
-use crate::rows::Rows;
-
-/// Neighbours of every vertex along edges and links.
+/// The neighbours of every vertex along edges and links, and how far they are.
 #[derive(Debug, Clone)]
 pub(crate) struct EdgeGraph(Rows<(u32, f64)>);
 
@@ -13,8 +11,9 @@ impl EdgeGraph {
     pub(crate) fn new(mesh: &IntrinsicMesh) -> Self {
         let edges = mesh.topology().edges().iter().zip(mesh.edge_lengths()).map(|(ends, l)| (*ends, *l));
         let links = mesh.links().iter().map(|link| (link.ends, link.length));
-        let both =
-            edges.chain(links).flat_map(|([a, b], length)| [(a.0, (b.0, length)), (b.0, (a.0, length))]);
+        let both = edges
+            .chain(links)
+            .flat_map(|([a, b], length)| [(a.index(), (b.0, length)), (b.index(), (a.0, length))]);
         Self(Rows::collect(mesh.n_vertices(), both))
     }
 
@@ -24,31 +23,37 @@ impl EdgeGraph {
 
     #[inline]
     pub(crate) fn neighbours(&self, vertex: u32) -> &[(u32, f64)] {
-        self.0.of(vertex)
+        self.0.row(vertex as usize)
     }
 
-    /// Vertices in breadth-first order, one component after the other: neighbours on the surface
-    /// become neighbours in memory.
+    /// The vertices in [breadth-first order](breadth_first_order).
     pub(crate) fn breadth_first_order(&self) -> Vec<u32> {
-        let n = self.n_vertices();
-        let mut seen = vec![false; n];
-        let mut order = Vec::with_capacity(n);
-        for root in 0..n as u32 {
-            if std::mem::replace(&mut seen[root as usize], true) {
-                continue;
-            }
-            let mut head = order.len();
-            order.push(root);
-            while head < order.len() {
-                let v = order[head];
-                head += 1;
-                for &(u, _) in self.neighbours(v) {
-                    if !std::mem::replace(&mut seen[u as usize], true) {
-                        order.push(u);
-                    }
+        breadth_first_order(self.n_vertices(), |v| self.neighbours(v).iter().map(|(u, _)| *u))
+    }
+}
+
+/// Vertices in breadth-first order, one component after the other: neighbours on the surface become neighbours
+/// in memory.
+pub(crate) fn breadth_first_order<I: Iterator<Item = u32>>(
+    n: usize,
+    neighbours: impl Fn(u32) -> I,
+) -> Vec<u32> {
+    let mut is_visited = vec![false; n];
+    let mut order = Vec::with_capacity(n);
+    for root in 0..n as u32 {
+        if std::mem::replace(&mut is_visited[root as usize], true) {
+            continue;
+        }
+        let mut head = order.len();
+        order.push(root);
+        while let Some(&v) = order.get(head) {
+            head += 1;
+            for u in neighbours(v) {
+                if !std::mem::replace(&mut is_visited[u as usize], true) {
+                    order.push(u);
                 }
             }
         }
-        order
     }
+    order
 }

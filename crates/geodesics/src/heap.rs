@@ -1,46 +1,52 @@
-//! The front of Dijkstra's method: a min-heap of tentative distances with decrease-key.
+//! An indexed min-heap: vertices by tentative distance, with decrease-key.
 
-/// A vertex in no heap yet.
-const FAR: u32 = u32::MAX;
+/// Marks a vertex that is not in the heap.
+const NONE: u32 = u32::MAX;
 
-/// Tentative distances of all vertices and a 4-ary heap over those in the front.
+/// Tentative distances of all vertices, and a 4-ary min-heap of those to be visited.
 ///
-/// Four children share a cache line, which halves the depth of a binary heap for the same line
-/// count, and the least of them is found without branches, which would be mispredicted.
+/// Four children share a cache line, which halves the depth of a binary heap at the same number of lines. The
+/// least of them is found without branches, which would be mispredicted.
 #[derive(Debug, Default)]
-pub(crate) struct Front {
+pub(crate) struct VertexHeap {
     distances: Vec<f64>,
-    /// Where a vertex stands in the heap.
-    places: Vec<u32>,
+    /// Position of every vertex in the heap.
+    positions: Vec<u32>,
     heap: Vec<(f64, u32)>,
 }
 
-impl Front {
-    /// Forgets everything: `n` vertices at infinity, none in the front. Allocates only to grow.
+impl VertexHeap {
+    /// Empties the heap and sets the distances of `n` vertices to infinity. Allocates only to grow.
     pub(crate) fn reset(&mut self, n: usize) {
         self.distances.clear();
         self.distances.resize(n, f64::INFINITY);
-        self.places.clear();
-        self.places.resize(n, FAR);
+        self.positions.clear();
+        self.positions.resize(n, NONE);
         self.heap.clear();
     }
 
-    /// The best distance known so far; infinite where the front has not been.
+    /// The tentative distance of a vertex; infinite until it is relaxed.
     #[inline]
     pub(crate) fn distance(&self, vertex: u32) -> f64 {
         self.distances[vertex as usize]
     }
 
-    /// Lowers the distance of `vertex` to `distance` if that is an improvement, putting it (back)
-    /// into the front; whether it was.
+    /// Whether a vertex is in the heap.
+    #[inline]
+    pub(crate) fn contains(&self, vertex: u32) -> bool {
+        self.positions[vertex as usize] != NONE
+    }
+
+    /// Lowers the distance of a vertex and puts it (back) into the heap, if `distance` is less than the known
+    /// one; returns whether it was.
     #[inline]
     pub(crate) fn relax(&mut self, vertex: u32, distance: f64) -> bool {
         let known = &mut self.distances[vertex as usize];
         let improves = distance < *known;
         if improves {
             *known = distance;
-            let mut position = self.places[vertex as usize];
-            if position == FAR {
+            let mut position = self.positions[vertex as usize];
+            if position == NONE {
                 position = self.heap.len() as u32;
                 self.heap.push((distance, vertex));
             }
@@ -49,11 +55,11 @@ impl Front {
         improves
     }
 
-    /// Removes the nearest vertex of the front.
+    /// Removes the vertex with the least distance.
     #[inline]
     pub(crate) fn pop(&mut self) -> Option<(f64, u32)> {
         let top = *self.heap.first()?;
-        self.places[top.1 as usize] = FAR;
+        self.positions[top.1 as usize] = NONE;
         if let Some(last) = self.heap.pop()
             && !self.heap.is_empty()
         {
@@ -75,8 +81,8 @@ impl Front {
         self.place(hole, item);
     }
 
-    /// Lets the hole sink to the bottom along the nearest children and the item rise from there: it came
-    /// from the bottom and nearly always belongs there, so comparing it on the way down is no use.
+    /// Moves the hole at the top down to the bottom along the least children and lets the item rise from there:
+    /// it came from the bottom and nearly always belongs there, so comparisons on the way down are wasted.
     #[inline]
     fn sift_down(&mut self, item: (f64, u32)) {
         let mut hole = 0;
@@ -104,7 +110,7 @@ impl Front {
     #[inline]
     fn place(&mut self, hole: usize, item: (f64, u32)) {
         self.heap[hole] = item;
-        self.places[item.1 as usize] = hole as u32;
+        self.positions[item.1 as usize] = hole as u32;
     }
 }
 
@@ -113,19 +119,19 @@ mod tests {
     use super::*;
 
     #[test]
-    fn pops_in_order_of_distance_whatever_was_relaxed_when() {
+    fn vertices_are_popped_in_order_of_distance() {
         let n = 500u32;
-        let mut front = Front::default();
-        front.reset(n as usize);
+        let mut heap = VertexHeap::default();
+        heap.reset(n as usize);
         let key = |v: u32| f64::from((v * 7919) % 101);
         for v in 0..n {
-            assert!(front.relax(v, key(v) + 50.0));
+            assert!(heap.relax(v, key(v) + 50.0));
         }
         for v in (0..n).rev() {
-            assert!(front.relax(v, key(v)));
-            assert!(!front.relax(v, key(v) + 1.0));
+            assert!(heap.relax(v, key(v)));
+            assert!(!heap.relax(v, key(v) + 1.0));
         }
-        let popped: Vec<_> = std::iter::from_fn(|| front.pop()).collect();
+        let popped: Vec<_> = std::iter::from_fn(|| heap.pop()).collect();
         assert!(popped.is_sorted_by_key(|(distance, _)| *distance));
         let mut vertices: Vec<u32> = popped.iter().map(|(_, v)| *v).collect();
         vertices.sort_unstable();
@@ -134,15 +140,16 @@ mod tests {
     }
 
     #[test]
-    fn a_popped_vertex_returns_when_it_improves() {
-        let mut front = Front::default();
-        front.reset(2);
-        front.relax(0, 2.0);
-        assert_eq!(front.pop(), Some((2.0, 0)));
-        front.relax(0, 3.0);
-        assert_eq!(front.pop(), None);
-        front.relax(0, 1.0);
-        assert_eq!(front.pop(), Some((1.0, 0)));
-        assert_eq!(front.distance(1), f64::INFINITY);
+    fn a_popped_vertex_returns_when_its_distance_is_lowered() {
+        let mut heap = VertexHeap::default();
+        heap.reset(2);
+        heap.relax(0, 2.0);
+        assert!(heap.contains(0));
+        assert_eq!(heap.pop(), Some((2.0, 0)));
+        heap.relax(0, 3.0);
+        assert_eq!(heap.pop(), None);
+        heap.relax(0, 1.0);
+        assert_eq!(heap.pop(), Some((1.0, 0)));
+        assert_eq!(heap.distance(1), f64::INFINITY);
     }
 }

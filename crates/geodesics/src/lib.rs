@@ -1,12 +1,38 @@
-//! Geodesic distances on triangle meshes.
+//! Geodesic distances, shortest paths and landmark sampling on triangle meshes.
 //!
 //! `surface::IntrinsicMesh` -> **geodesics** -> `linalg::LandmarkDistances` -> `nmds`
 //!
-//! **Invariant.** Nothing here reads vertex coordinates: solvers see edge lengths only, so an
-//! isometry of the surface cannot change their output.
+//! * A [`Method`] names a solver; [`Method::prepare`] makes a [`DistanceSolver`] for one surface. The solvers are
+//!   [`FastMarching`] (the default), [`Exact`], [`HeatMethod`], [`Dijkstra`] and [`BreadthFirst`].
+//! * A [`Source`] is a vertex, or any [`SurfacePoint`].
+//! * A [`PathTracer`] finds shortest paths with the distances of any solver.
+//! * A [`Sampling`] names a choice of landmarks; [`Sampling::start`] makes a [`Sampler`].
+//!
+//! **Invariant.** This crate knows edge lengths only and cannot depend on vertex coordinates, so an isometry of the
+//! surface changes no result.
+//!
+//! ```
+//! use canonform_geodesics::{FirstSample, Method, PathTracer, Sampling, Source, SurfacePoint};
+//! use mesh::shapes;
+//! use surface::VertexId;
+//!
+//! let surface = shapes::torus(40, 16, 2.0, 0.7).intrinsic();
+//! let solver = Method::default().prepare(&surface)?;
+//!
+//! // Distances from one vertex to all, and the shortest path to one of them.
+//! let distances = solver.distances(VertexId(0));
+//! let sources = [Source::vertex(VertexId(0))];
+//! let path = PathTracer::new(&surface, &sources, &distances).path_to(SurfacePoint::Vertex(VertexId(330)))?;
+//! assert!((path.length / distances[330] - 1.0).abs() < 0.05);
+//!
+//! // Ten landmarks spread over the surface, with their distances to all vertices.
+//! let mut sampler = Sampling::Farthest.start(solver.as_ref(), FirstSample::Farthest, 0)?;
+//! sampler.extend_to(10)?;
+//! assert_eq!(sampler.distances(10)?.n_landmarks(), 10);
+//! # Ok::<(), canonform_geodesics::GeodesicError>(())
+//! ```
 
 mod breadth_first;
-mod corner;
 mod dijkstra;
 mod error;
 mod exact;
@@ -16,9 +42,8 @@ mod heap;
 mod heat;
 mod method;
 mod path;
+mod point;
 mod prefetch;
-mod rows;
-mod samplers;
 mod sampling;
 mod solver;
 mod source;
@@ -29,11 +54,14 @@ pub use breadth_first::BreadthFirst;
 pub use dijkstra::Dijkstra;
 pub use error::GeodesicError;
 pub use exact::Exact;
-pub use fast_marching::{CornerReport, FastMarching, FastMarchingOptions, ObtuseTreatment, Update};
+pub use fast_marching::{FastMarching, FastMarchingOptions, ObtuseTreatment, Update};
 pub use heat::{HeatMethod, HeatOptions};
 pub use method::Method;
 pub use path::{GeodesicPath, PathTracer};
-pub use samplers::{RandomSampler, Sampler, Sampling, Variance, VarianceSampler};
-pub use sampling::{FarthestPointSampler, FirstSample, farthest_point_sampling};
+pub use point::SurfacePoint;
+pub use sampling::{
+    FarthestPointSampler, FirstSample, RandomSampler, Sampler, Sampling, Variance, VarianceSampler,
+    farthest_point_sampling,
+};
 pub use solver::{DistanceSolver, PrunedSolver};
-pub use source::{Source, SurfacePoint};
+pub use source::Source;

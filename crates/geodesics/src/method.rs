@@ -1,13 +1,31 @@
-//! The choice between solvers.
+//! The choice of a solver.
 
 use surface::IntrinsicMesh;
 
-use crate::{
-    BreadthFirst, Dijkstra, DistanceSolver, Exact, FastMarching, FastMarchingOptions, GeodesicError,
-    HeatMethod, HeatOptions,
-};
+use crate::breadth_first::BreadthFirst;
+use crate::dijkstra::Dijkstra;
+use crate::error::GeodesicError;
+use crate::exact::Exact;
+use crate::fast_marching::{FastMarching, FastMarchingOptions};
+use crate::heat::{HeatMethod, HeatOptions};
+use crate::solver::DistanceSolver;
 
-/// A way of measuring distances on a surface.
+/// A solver and its options.
+///
+/// ```
+/// use canonform_geodesics::Method;
+/// use mesh::shapes;
+/// use surface::VertexId;
+///
+/// let sphere = shapes::icosphere(2).intrinsic();
+/// for method in Method::all() {
+///     let solver = method.prepare(&sphere)?;
+///     let farthest = solver.distances(VertexId(0)).into_iter().fold(0.0, f64::max);
+///     println!("{:13} {farthest:.3}  {}", method.name(), method.summary());
+/// }
+/// assert_eq!(Method::named("fast-marching"), Some(Method::default()));
+/// # Ok::<(), canonform_geodesics::GeodesicError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Method {
     /// [`FastMarching`].
@@ -29,22 +47,47 @@ impl Default for Method {
 }
 
 impl Method {
-    /// The name used on the command line and in records.
+    /// All methods with their default options; the default method comes first.
+    #[must_use]
+    pub fn all() -> [Self; 5] {
+        let heat = Self::Heat(HeatOptions::default());
+        [Self::default(), Self::Exact, heat, Self::Dijkstra, Self::BreadthFirst]
+    }
+
+    /// The method with this [name](Self::name) and default options.
+    #[must_use]
+    pub fn named(name: &str) -> Option<Self> {
+        Self::all().into_iter().find(|method| method.name() == name)
+    }
+
+    /// The name on the command line and in records.
     #[must_use]
     pub fn name(self) -> &'static str {
+        self.entry().0
+    }
+
+    /// What the method computes, in one line.
+    #[must_use]
+    pub fn summary(self) -> &'static str {
+        self.entry().1
+    }
+
+    fn entry(self) -> (&'static str, &'static str) {
         match self {
-            Self::FastMarching(_) => "fast-marching",
-            Self::Heat(_) => "heat",
-            Self::Exact => "exact",
-            Self::Dijkstra => "dijkstra",
-            Self::BreadthFirst => "bfs",
+            Self::FastMarching(_) => {
+                ("fast-marching", "a front over the triangles, of first order in the edge length")
+            }
+            Self::Heat(_) => ("heat", "from the direction of heat flow, smooth"),
+            Self::Exact => ("exact", "exact distances on the polyhedral surface"),
+            Self::Dijkstra => ("dijkstra", "along edges only, an upper bound"),
+            Self::BreadthFirst => ("bfs", "number of edges times their mean length"),
         }
     }
 
-    /// Prepares a surface for this method.
+    /// Prepares a surface.
     ///
     /// # Errors
-    /// Those of [`HeatMethod::new`]; the other methods take any surface.
+    /// Those of [`HeatMethod::new`]; the other methods accept any surface.
     pub fn prepare(self, mesh: &IntrinsicMesh) -> Result<Box<dyn DistanceSolver>, GeodesicError> {
         Ok(match self {
             Self::FastMarching(options) => Box::new(FastMarching::new(mesh, options)),
@@ -63,13 +106,18 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_method_prepares_or_says_why_not() {
-        let mesh = icosphere(1).intrinsic();
-        let heat = Method::Heat(HeatOptions::default());
-        for method in [Method::default(), heat, Method::Dijkstra, Method::BreadthFirst] {
-            assert_eq!(method.prepare(&mesh).unwrap().n_vertices(), 42, "{}", method.name());
+    fn every_method_has_its_own_name_and_is_found_by_it() {
+        for method in Method::all() {
+            assert_eq!(Method::named(method.name()), Some(method));
+            assert!(!method.summary().is_empty());
         }
+        assert_eq!(Method::named("fastest"), None);
+    }
+
+    #[test]
+    fn bad_options_are_rejected() {
         let frozen = Method::Heat(HeatOptions { time: 0.0 });
-        assert_eq!(frozen.prepare(&mesh).unwrap_err(), GeodesicError::BadHeatTime { time: 0.0 });
+        let error = frozen.prepare(&icosphere(1).intrinsic()).unwrap_err();
+        assert_eq!(error, GeodesicError::BadHeatTime { time: 0.0 });
     }
 }

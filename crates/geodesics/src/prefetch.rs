@@ -1,9 +1,9 @@
-//! Asking for memory before it is needed.
+//! Requesting memory before it is needed.
 //!
-//! A front reads what belongs to a vertex once, wherever it lies: on large meshes a quarter of the time
-//! went by waiting for it, although which vertices come next is known a round ahead. No safe function of
-//! the standard library asks for memory without reading it, hence the exception here. The instruction
-//! has no effect but on time, and none at all on other processors.
+//! A front reads the one-ring of a vertex once, wherever it lies. On large meshes, a quarter of the time went into
+//! waiting for it, although the vertices are known a round ahead. No safe function of the standard library requests
+//! memory without reading it, hence the exception here. The instruction affects nothing but time; on other
+//! processors it is left out.
 
 #![allow(unsafe_code)]
 
@@ -11,7 +11,7 @@
 #[cfg(target_arch = "x86_64")]
 const LINE: usize = 64;
 
-/// Asks for all of `items`.
+/// Requests all of `items`.
 #[inline]
 pub(crate) fn prefetch<T>(items: &[T]) {
     #[cfg(target_arch = "x86_64")]
@@ -20,8 +20,8 @@ pub(crate) fn prefetch<T>(items: &[T]) {
 
         let lines = size_of_val(items).div_ceil(LINE);
         for line in 0..lines {
-            // SAFETY: SSE is part of the architecture; a prefetch of any address, valid or not, is defined to do
-            // nothing that a program could see.
+            // SAFETY: SSE is part of the architecture; a prefetch of any address, valid or not, is defined to have no
+            // effect that a program could observe.
             unsafe { _mm_prefetch::<_MM_HINT_T0>(items.as_ptr().cast::<i8>().wrapping_add(line * LINE)) };
         }
     }

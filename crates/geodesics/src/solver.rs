@@ -1,4 +1,4 @@
-//! What every way of measuring distances has in common.
+//! The trait of all solvers.
 
 use std::sync::{Mutex, PoisonError};
 
@@ -6,48 +6,65 @@ use linalg::{DistanceMatrix, LinalgError, Matrix};
 use rayon::prelude::*;
 use surface::VertexId;
 
-use crate::Source;
+use crate::source::Source;
 
-/// Distances from a vertex to all vertices of one surface.
+/// Distances from points of one surface to all of its vertices.
 ///
-/// A solver holds what can be computed once per surface; a call may come from any thread.
+/// A solver is prepared once per surface. It may be called from several threads at once.
+///
+/// ```
+/// use canonform_geodesics::{Dijkstra, DistanceSolver};
+/// use mesh::shapes;
+/// use surface::VertexId;
+///
+/// fn farthest(solver: &dyn DistanceSolver, source: VertexId) -> f64 {
+///     solver.distances(source).into_iter().fold(0.0, f64::max)
+/// }
+/// // Along the edges of a sheet of 4 x 3 vertices, with the diagonals of its cells.
+/// let sheet = shapes::grid(4, 3, 1.0).intrinsic();
+/// let diameter = farthest(&Dijkstra::new(&sheet), VertexId(0));
+/// assert!((diameter - (1.0 + 2.0 * 2f64.sqrt())).abs() < 1e-12);
+/// ```
 pub trait DistanceSolver: Sync + std::fmt::Debug {
     /// Number of vertices of the surface.
     fn n_vertices(&self) -> usize;
 
-    /// Writes the distance from the nearest of `sources` to every vertex, in mesh units; infinite
-    /// where there is no way and beyond `max_distance`.
+    /// Writes the distance from the nearest of `sources` to every vertex, in mesh units; infinite if no edge or link
+    /// leads there, and beyond `max_distance`.
     ///
     /// # Panics
-    /// When `out` does not have one entry per vertex or a source belongs to another surface.
+    /// If `out` does not have one entry per vertex, or a source belongs to another surface.
     fn solve_into(&self, sources: &[Source], max_distance: f64, out: &mut [f64]);
 
-    /// Writes the distance from the vertex `source` to every vertex, in mesh units; infinite where
-    /// there is no way.
+    /// Writes the distance from the vertex `source` to every vertex, in mesh units; infinite if no edge or link leads
+    /// there.
     ///
     /// # Panics
-    /// When `out` does not have one entry per vertex or `source` is out of range.
+    /// If `out` does not have one entry per vertex, or `source` is out of range.
     fn distances_into(&self, source: VertexId, out: &mut [f64]) {
         self.solve_into(&[Source::vertex(source)], f64::INFINITY, out);
     }
 
-    /// The distance from `source` to every vertex, in mesh units; infinite where there is no way.
+    /// The distance from `source` to every vertex, in mesh units; infinite if no edge or link leads there.
     ///
     /// # Panics
-    /// When `source` is out of range.
+    /// If `source` is out of range.
     fn distances(&self, source: VertexId) -> Vec<f64> {
         let mut out = vec![f64::INFINITY; self.n_vertices()];
         self.distances_into(source, &mut out);
         out
     }
 
-    /// The solver that stops where another source is nearer, if there is one.
+    /// The same solver with pruning, if it can prune.
     fn pruned(&self) -> Option<&dyn PrunedSolver> {
         None
     }
 
-    /// One column of distances per source, computed in parallel; the result does not depend on the
-    /// number of threads.
+    /// The distances from several vertices, `n_vertices` x `sources.len()`, computed in parallel; the result does not
+    /// depend on the number of threads.
+    ///
+    /// # Panics
+    /// If a source is out of range.
     fn distance_columns(&self, sources: &[VertexId]) -> Matrix {
         let p = self.n_vertices();
         let mut columns = Matrix::zeros(p, sources.len());
@@ -61,39 +78,39 @@ pub trait DistanceSolver: Sync + std::fmt::Debug {
         columns
     }
 
-    /// The distances between all pairs of vertices, each the mean of there and back, `n_vertices^2` numbers.
+    /// The distances between all pairs of vertices, `n_vertices` x `n_vertices`, each the mean of both directions.
     ///
     /// # Errors
-    /// When a vertex cannot be reached from another one.
+    /// If some vertex cannot be reached from another.
     fn distance_matrix(&self) -> Result<DistanceMatrix, LinalgError> {
         let all: Vec<VertexId> = (0..self.n_vertices()).map(VertexId::from).collect();
         DistanceMatrix::from_rows(all.len(), self.distance_columns(&all).data.into())
     }
 }
 
-/// A solver whose fronts can stop where another source is nearer: the cost is that of the part of the
+/// A solver whose front can stop where another source is nearer, so that it costs only as much as the part of the
 /// surface that is nearest to the new source.
 pub trait PrunedSolver: Sync + std::fmt::Debug {
-    /// Lowers `nearest`, the distance from every vertex to the nearest of some sources, to the distance
-    /// from `source` wherever that is smaller.
+    /// Lowers `nearest`, the distance from every vertex to the nearest of some sources, to the distance from `source`
+    /// where that is smaller.
     ///
     /// # Panics
-    /// When `nearest` does not have one entry per vertex or `source` is out of range.
+    /// If `nearest` does not have one entry per vertex, or `source` is out of range.
     fn lower(&self, source: VertexId, nearest: &mut [f64]);
 }
 
-/// The distance, or infinity beyond the limit: the front leaves tentative values behind it.
+/// The distance, or infinity beyond the limit: fronts leave tentative distances there.
 #[inline]
 pub(crate) fn within(distance: f64, max_distance: f64) -> f64 {
     if distance <= max_distance { distance } else { f64::INFINITY }
 }
 
-/// Scratch memory that calls borrow and give back, so that none is allocated after the first calls.
+/// Scratch memory that calls borrow and return, so that nothing is allocated after the first calls.
 #[derive(Debug, Default)]
 pub(crate) struct Pool<T>(Mutex<Vec<T>>);
 
 impl<T: Default> Pool<T> {
-    /// Runs `work` on a piece of scratch memory in whatever state the previous user left it.
+    /// Runs `work` on scratch memory in the state in which its last user left it.
     pub(crate) fn with<R>(&self, work: impl FnOnce(&mut T) -> R) -> R {
         let lock = || self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let mut scratch = lock().pop().unwrap_or_default();

@@ -1,49 +1,30 @@
-//! Where distances start.
+//! Sources: the points that distances are measured from.
 
-use surface::{EdgeId, FaceId, IntrinsicMesh, VertexId};
+use surface::{IntrinsicMesh, Triangle, VertexId};
 
-use crate::GeodesicError;
-use crate::corner::Corner;
+use crate::error::GeodesicError;
+use crate::point::SurfacePoint;
 
-/// A point of a surface.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum SurfacePoint {
-    /// A vertex.
-    Vertex(VertexId),
-    /// The point `(1 - t) a + t b` on the edge with ends `a < b`; `t` in 0..=1.
-    Edge {
-        /// The edge.
-        edge: EdgeId,
-        /// Share of the way from the lower to the higher vertex.
-        t: f64,
-    },
-    /// A point of a face.
-    Face {
-        /// The face.
-        face: FaceId,
-        /// Its barycentric coordinates: not negative, summing to one.
-        barycentric: [f64; 3],
-    },
-}
-
-impl std::fmt::Display for SurfacePoint {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::Vertex(vertex) => write!(f, "vertex {vertex}"),
-            Self::Edge { edge, t } => write!(f, "edge {edge} at {t}"),
-            Self::Face { face, barycentric: [a, b, c] } => write!(f, "face {face} at {a}, {b}, {c}"),
-        }
-    }
-}
-
-/// A point from which distances are measured, and the vertices it sees within its own faces.
+/// A point that distances are measured from, with its straight distances to the vertices of its own faces.
+///
+/// ```
+/// use canonform_geodesics::{Source, SurfacePoint};
+/// use mesh::shapes;
+/// use surface::FaceId;
+///
+/// let mesh = shapes::icosphere(2).intrinsic();
+/// let centre = SurfacePoint::Face { face: FaceId(7), barycentric: [1.0 / 3.0; 3] };
+/// let source = Source::new(&mesh, centre)?;
+/// assert_eq!(source.reach().len(), 3);
+/// # Ok::<(), canonform_geodesics::GeodesicError>(())
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Source {
     point: SurfacePoint,
     reach: Vec<(VertexId, f64)>,
 }
 
-/// How far barycentric coordinates may be from summing to one, for the rounding of their writer.
+/// How far the sum of barycentric coordinates may be from one, for rounding.
 const BARYCENTRIC_SLACK: f64 = 1e-9;
 
 impl Source {
@@ -70,16 +51,19 @@ impl Source {
                     return Err(bad(format!("edge {edge} of {}", topology.n_edges())));
                 }
                 if !(0.0..=1.0).contains(&t) {
-                    return Err(bad(format!("the share {t} of an edge is not in 0..=1")));
+                    return Err(bad(format!("the position {t} along an edge is not in 0..=1")));
                 }
                 let length = mesh.length(edge);
                 let [a, b] = topology.edges()[edge.index()];
                 let mut reach = vec![(a, t * length), (b, (1.0 - t) * length)];
                 for corner in topology.edge_corners(edge) {
+                    let mut sides = mesh.sides(*corner);
+                    if topology.corner_vertex(corner.next()) != a {
+                        sides.swap(1, 2);
+                    }
+                    let triangle = Triangle::from_sides(sides);
                     let apex = topology.corner_vertex(*corner);
-                    let to = |end| topology.edge_between(end, apex).map_or(f64::INFINITY, |e| mesh.length(e));
-                    let corner = Corner::from_lengths(length, to(a), to(b));
-                    reach.push((apex, (corner.x - t * length).hypot(corner.y)));
+                    reach.push((apex, (triangle.x - t * length).hypot(triangle.y)));
                 }
                 Ok(Self { point, reach })
             }
@@ -95,11 +79,9 @@ impl Source {
                     )));
                 }
                 let vertices = topology.faces()[face.index()];
-                // In the plane of the face: the squared distance from a point with barycentric
-                // coordinates b to corner i is -sum_{j<k} e_j e_k |v_j v_k|^2 with e = b - unit_i.
-                let sides = [0, 1, 2].map(|slot| {
-                    mesh.length(topology.opposite_edge(surface::CornerId(3 * face.0 + slot))).powi(2)
-                });
+                // The squared distance in the plane of the face from a point with barycentric coordinates b to
+                // corner i is -sum_{j<k} e_j e_k |v_j v_k|^2 with e = b - unit_i.
+                let sides = face.corners().map(|corner| mesh.opposite_length(corner).powi(2));
                 let reach = [0, 1, 2].map(|i| {
                     let mut e = barycentric;
                     e[i] -= 1.0;
@@ -117,8 +99,8 @@ impl Source {
         self.point
     }
 
-    /// The vertices of the faces that hold the point and their distances from it inside these
-    /// faces, in mesh units; for a vertex only itself.
+    /// The vertices of the faces that hold the point, and their distances from it inside these faces, in mesh units;
+    /// for a vertex only itself.
     #[must_use]
     pub fn reach(&self) -> &[(VertexId, f64)] {
         &self.reach
@@ -128,7 +110,7 @@ impl Source {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use surface::Topology;
+    use surface::{EdgeId, FaceId, Topology};
 
     /// Two right triangles over the unit square.
     fn square() -> IntrinsicMesh {
@@ -144,7 +126,7 @@ mod tests {
     }
 
     #[test]
-    fn reach_is_the_planar_distance() {
+    fn the_reach_has_planar_distances() {
         let mesh = square();
         let face = SurfacePoint::Face { face: FaceId(0), barycentric: [0.2, 0.5, 0.3] };
         // The point is (0.8, 0.3).
@@ -164,7 +146,7 @@ mod tests {
     }
 
     #[test]
-    fn points_off_the_surface_are_refused() {
+    fn points_off_the_surface_are_rejected() {
         let mesh = square();
         for point in [
             SurfacePoint::Edge { edge: EdgeId(9), t: 0.5 },

@@ -1,6 +1,6 @@
 //! The orientation of faces.
 
-use surface::{CornerId, Topology, VertexId};
+use surface::{CornerId, FaceId, Topology, VertexId};
 
 use crate::face_set::is_degenerate;
 use crate::tri_mesh::TriMesh;
@@ -27,8 +27,7 @@ pub(crate) fn runs_against(topology: &Topology, corner: CornerId, twin: CornerId
 
 /// The vertex at which a face starts to traverse the edge opposite one of its corners.
 fn start_of_opposite_edge(topology: &Topology, corner: CornerId) -> VertexId {
-    let next = CornerId(corner.face().0 * 3 + (corner.slot() as u32 + 1) % 3);
-    topology.corner_vertex(next)
+    topology.corner_vertex(corner.next())
 }
 
 impl Orientation {
@@ -52,8 +51,8 @@ impl Orientation {
             let mut at = 0;
             while let Some(&face) = members.get(at) {
                 at += 1;
-                let corners = [0, 1, 2].map(|slot| CornerId((3 * face + slot) as u32));
-                let mut across = corners.map(|corner| topology.across(corner).map(|twin| (twin, corner)));
+                let corners = FaceId::from(face).corners();
+                let mut across = corners.map(|corner| topology.opposite(corner).map(|twin| (twin, corner)));
                 // An order that does not depend on the orientation of faces, so that a second run changes
                 // nothing, even on a patch that is not orientable.
                 across.sort_unstable_by_key(|pair| {

@@ -1,75 +1,118 @@
-//! Connected pieces of a mesh.
+//! Connected components.
 
 use crate::disjoint_sets::DisjointSets;
-use crate::{Topology, VertexId};
+use crate::ids::VertexId;
+use crate::intrinsic::IntrinsicMesh;
+use crate::topology::Topology;
 
-/// The connected components of a mesh: faces are connected when they share a vertex.
+/// The connected components of a mesh.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Components {
     /// Number of components.
     pub count: usize,
-    /// The component of every vertex, numbered in the order of their lowest vertices; `None` for a
-    /// vertex that no face names.
+    /// The component of every vertex, numbered in the order of their lowest vertices; `None` for a vertex in no
+    /// component.
     pub labels: Vec<Option<u32>>,
 }
 
-/// The connected components of a mesh, in time linear in its faces.
+/// The components of the faces, in linear time; vertices without faces are in none.
 ///
-/// Two faces that touch in one vertex only are connected: a walk along edges passes through it.
+/// Two faces that share only a vertex are connected: a path along edges can pass through it.
 #[must_use]
 pub fn components(topology: &Topology) -> Components {
     components_of_faces(topology.n_vertices(), topology.faces())
 }
 
 /// The same for any list of faces, degenerate ones included.
+#[must_use]
 pub fn components_of_faces(n_vertices: usize, faces: &[[VertexId; 3]]) -> Components {
     let mut sets = DisjointSets::new(n_vertices);
-    let mut named = vec![false; n_vertices];
+    let mut has_face = vec![false; n_vertices];
     for [a, b, c] in faces {
         sets.union(a.0, b.0);
         sets.union(b.0, c.0);
         for v in [a, b, c] {
-            named[v.index()] = true;
+            has_face[v.index()] = true;
         }
     }
-    let mut count = 0;
-    let mut labels: Vec<Option<u32>> = vec![None; n_vertices];
-    for v in (0..n_vertices).filter(|&v| named[v]) {
-        let root = sets.find(v as u32) as usize;
-        // The root is the lowest member of its set, so it gets its number first.
-        if root == v {
-            labels[v] = Some(count);
-            count += 1;
-        } else {
-            labels[v] = labels[root];
-        }
+    Components::of_sets(sets, |v| has_face[v])
+}
+
+/// The components along edges and links; a vertex without either is a component of its own.
+#[must_use]
+pub fn components_with_links(mesh: &IntrinsicMesh) -> Components {
+    let mut sets = DisjointSets::new(mesh.n_vertices());
+    let links = mesh.links().iter().map(|link| &link.ends);
+    for [a, b] in mesh.topology().edges().iter().chain(links) {
+        sets.union(a.0, b.0);
     }
-    Components { count: count as usize, labels }
+    Components::of_sets(sets, |_| true)
 }
 
 impl Components {
-    /// The component of a vertex that a face names.
+    /// Numbers the sets whose vertices are members.
+    fn of_sets(mut sets: DisjointSets, is_member: impl Fn(usize) -> bool) -> Self {
+        let mut count = 0;
+        let mut labels: Vec<Option<u32>> = vec![None; sets.len()];
+        for v in (0..sets.len()).filter(|v| is_member(*v)) {
+            // The root is the lowest member of its set, so it is numbered first.
+            let root = sets.find(v as u32) as usize;
+            if root == v {
+                labels[v] = Some(count);
+                count += 1;
+            } else {
+                labels[v] = labels[root];
+            }
+        }
+        Self { count: count as usize, labels }
+    }
+
+    /// The component of a vertex that is in one.
+    #[must_use]
     pub fn of(&self, vertex: VertexId) -> usize {
         self.labels[vertex.index()].map_or(0, |label| label as usize)
+    }
+
+    /// The lowest vertex of every component.
+    #[must_use]
+    pub fn lowest_vertices(&self) -> Vec<VertexId> {
+        let mut lowest = Vec::with_capacity(self.count);
+        for (v, label) in self.labels.iter().enumerate() {
+            if *label == Some(lowest.len() as u32) {
+                lowest.push(VertexId::from(v));
+            }
+        }
+        lowest
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::intrinsic::Link;
 
-    #[test]
-    fn pieces_are_numbered_by_their_lowest_vertex_and_loose_vertices_have_none() {
-        let faces = [[6, 5, 4], [1, 2, 3], [3, 8, 9]].map(|f| f.map(VertexId));
-        let c = components(&Topology::new(10, faces.to_vec()));
-        assert_eq!(c.count, 2);
-        let labels: Vec<i64> = c.labels.iter().map(|l| l.map_or(-1, i64::from)).collect();
-        assert_eq!(labels, [-1, 0, 0, 0, 1, 1, 1, -1, 0, 0]);
+    fn labels(components: &Components) -> Vec<i64> {
+        components.labels.iter().map(|label| label.map_or(-1, i64::from)).collect()
     }
 
     #[test]
-    fn without_faces_there_is_no_component() {
-        let c = components(&Topology::new(3, Vec::new()));
-        assert_eq!((c.count, c.labels), (0, vec![None; 3]));
+    fn components_are_numbered_by_their_lowest_vertices() {
+        let faces = [[6, 5, 4], [1, 2, 3], [3, 8, 9]].map(|f| f.map(VertexId));
+        let topology = Topology::new(10, faces.to_vec());
+        let found = components(&topology);
+        assert_eq!((found.count, labels(&found)), (2, vec![-1, 0, 0, 0, 1, 1, 1, -1, 0, 0]));
+        assert_eq!(found.lowest_vertices(), [1, 4].map(VertexId));
+
+        let lengths = vec![1.0; topology.n_edges()];
+        let link = Link { ends: [0, 6].map(VertexId), length: 1.0 };
+        let found = components_with_links(&IntrinsicMesh::new(topology, lengths).with_links(vec![link]));
+        assert_eq!((found.count, labels(&found)), (3, vec![0, 1, 1, 1, 0, 0, 0, 2, 1, 1]));
+        assert_eq!(found.lowest_vertices(), [0, 1, 7].map(VertexId));
+    }
+
+    #[test]
+    fn a_mesh_without_faces_has_no_component() {
+        let found = components(&Topology::new(3, Vec::new()));
+        assert_eq!((found.count, found.labels), (0, vec![None; 3]));
     }
 }

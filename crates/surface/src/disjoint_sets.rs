@@ -1,6 +1,7 @@
-//! Disjoint sets over `0..n`, the representative of a set being its lowest member.
+//! Union-find.
 
-/// A union-find forest whose answers do not depend on the order of the unions.
+/// Disjoint sets over `0..n`, each represented by its lowest member, so that answers do not depend on the order
+/// of the unions.
 #[derive(Debug, Clone)]
 pub struct DisjointSets {
     parent: Vec<u32>,
@@ -8,11 +9,12 @@ pub struct DisjointSets {
 
 impl DisjointSets {
     /// `n` sets of one member each; `n` fits into 32 bits.
+    #[must_use]
     pub fn new(n: usize) -> Self {
         Self { parent: (0..n as u32).collect() }
     }
 
-    /// The lowest member of the set of `item`.
+    /// The lowest member of the set that holds `item`.
     pub fn find(&mut self, item: u32) -> u32 {
         let mut item = item;
         while self.parent[item as usize] != item {
@@ -23,7 +25,7 @@ impl DisjointSets {
         item
     }
 
-    /// Joins two sets; false when they were one already.
+    /// Joins the sets of two members; returns whether they were different sets.
     pub fn union(&mut self, a: u32, b: u32) -> bool {
         let (a, b) = (self.find(a), self.find(b));
         self.parent[a.max(b) as usize] = a.min(b);
@@ -31,6 +33,8 @@ impl DisjointSets {
     }
 
     /// Number of members.
+    #[must_use]
+    #[expect(clippy::len_without_is_empty, reason = "the number of members is fixed")]
     pub fn len(&self) -> usize {
         self.parent.len()
     }

@@ -1,4 +1,4 @@
-//! Index newtypes: a vertex can never be used where a face is meant.
+//! Index newtypes, so that a vertex can never be used as a face.
 
 use serde::Serialize;
 
@@ -17,8 +17,10 @@ pub struct FaceId(pub u32);
 #[repr(transparent)]
 pub struct EdgeId(pub u32);
 
-/// A corner of a face: corner `i` of face `f` is `3 f + i`. It names the vertex in that corner and,
-/// equally, the edge of the face that lies opposite.
+/// A corner of a face: corner `i` of face `f` has the index `3 f + i`.
+///
+/// A corner stands for the vertex in it and for the side of the face opposite it. The side runs from the
+/// [next](Self::next) corner to the [previous](Self::prev) one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
 #[repr(transparent)]
 pub struct CornerId(pub u32);
@@ -36,7 +38,7 @@ macro_rules! index_newtype {
 
         impl From<usize> for $name {
             /// # Panics
-            /// When `index` does not fit into 32 bits; readers reject such meshes before.
+            /// If `index` does not fit into 32 bits; readers reject such meshes.
             #[inline]
             fn from(index: usize) -> Self {
                 assert!(u32::try_from(index).is_ok(), "index {index} does not fit into 32 bits");
@@ -57,18 +59,65 @@ index_newtype!(FaceId);
 index_newtype!(EdgeId);
 index_newtype!(CornerId);
 
+impl FaceId {
+    /// The three corners, in the order of the face's vertices.
+    #[inline]
+    #[must_use]
+    pub fn corners(self) -> [CornerId; 3] {
+        [0, 1, 2].map(|slot| CornerId(3 * self.0 + slot))
+    }
+}
+
 impl CornerId {
-    /// The face this corner belongs to.
+    /// The corner in the given slot (0, 1 or 2) of a face.
+    #[inline]
+    #[must_use]
+    pub fn new(face: FaceId, slot: usize) -> Self {
+        Self(3 * face.0 + slot as u32)
+    }
+
+    /// The face of this corner.
     #[inline]
     #[must_use]
     pub fn face(self) -> FaceId {
         FaceId(self.0 / 3)
     }
 
-    /// Which of the three corners of its face this is: 0, 1 or 2.
+    /// Which corner of its face this is: 0, 1 or 2.
     #[inline]
     #[must_use]
     pub fn slot(self) -> usize {
         (self.0 % 3) as usize
+    }
+
+    /// The corner after this one in its face.
+    #[inline]
+    #[must_use]
+    pub fn next(self) -> Self {
+        // Tables here and below: a branch would be mispredicted every third time.
+        Self::new(self.face(), [1, 2, 0][self.slot()])
+    }
+
+    /// The corner before this one in its face.
+    #[inline]
+    #[must_use]
+    pub fn prev(self) -> Self {
+        Self::new(self.face(), [2, 0, 1][self.slot()])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn next_and_prev_go_around_the_face() {
+        for corner in FaceId(7).corners() {
+            assert_eq!(corner, CornerId::new(FaceId(7), corner.slot()));
+            assert_eq!(corner.next().prev(), corner);
+            assert_eq!(corner.next().next(), corner.prev());
+            assert_eq!([corner.next().face(), corner.prev().face()], [FaceId(7); 2]);
+        }
+        assert_eq!(CornerId(21).next(), CornerId(22));
     }
 }

@@ -1,13 +1,25 @@
-//! A surface as its inhabitants know it: connectivity and edge lengths, no coordinates.
+//! Intrinsic geometry: connectivity and edge lengths, no coordinates.
 
 use serde::Serialize;
 
-use crate::{EdgeId, Topology, VertexId};
+use crate::ids::{CornerId, EdgeId, VertexId};
+use crate::topology::Topology;
 
-/// A triangle mesh reduced to its intrinsic geometry.
+/// A triangle mesh reduced to its intrinsic geometry: connectivity and edge lengths.
 ///
-/// Everything measured on it is invariant to isometries by construction: two meshes that differ
-/// by a rigid motion or by folding along edges give the same `IntrinsicMesh` up to rounding.
+/// Whatever is computed from it is invariant to isometries by construction: two meshes that differ by a rigid
+/// motion, or by folding along edges, have the same `IntrinsicMesh` up to rounding.
+///
+/// ```
+/// use canonform_surface::{CornerId, IntrinsicMesh, Topology, VertexId};
+///
+/// // A right triangle; edges are sorted by their ends: 0-1, 0-2, 1-2.
+/// let topology = Topology::new(3, vec![[0, 1, 2].map(VertexId)]);
+/// let mesh = IntrinsicMesh::new(topology, vec![3.0, 4.0, 5.0]);
+/// assert_eq!(mesh.mean_edge_length(), 4.0);
+/// // The side opposite vertex 0, and those from vertices 1 and 2 to vertex 0.
+/// assert_eq!(mesh.sides(CornerId(0)), [5.0, 3.0, 4.0]);
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct IntrinsicMesh {
     topology: Topology,
@@ -15,23 +27,20 @@ pub struct IntrinsicMesh {
     links: Vec<Link>,
 }
 
-/// A straight connection between two vertices that belongs to no face, for example the bridge
-/// between two components.
+/// A straight connection between two vertices that belongs to no face, such as a bridge between two components.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Link {
-    /// The two vertices it joins.
+    /// The two vertices that it joins.
     pub ends: [VertexId; 2],
     /// Its length, in mesh units.
     pub length: f64,
 }
 
 impl IntrinsicMesh {
-    /// A surface given by connectivity and one length per edge, in the order of
-    /// [`Topology::edges`].
+    /// A surface given by its connectivity and one length per edge, in the order of [`Topology::edges`].
     ///
     /// # Panics
-    /// When the number of lengths differs from the number of edges, or one is negative or not
-    /// finite.
+    /// If the number of lengths differs from the number of edges, or a length is negative or not finite.
     #[must_use]
     pub fn new(topology: Topology, edge_lengths: Vec<f64>) -> Self {
         assert_eq!(topology.n_edges(), edge_lengths.len(), "one length per edge");
@@ -42,7 +51,7 @@ impl IntrinsicMesh {
         Self { topology, edge_lengths, links: Vec::new() }
     }
 
-    /// The same surface with extra straight connections, such as bridges between components.
+    /// The same surface with the given links instead of its own.
     #[must_use]
     pub fn with_links(mut self, links: Vec<Link>) -> Self {
         self.links = links;
@@ -67,11 +76,26 @@ impl IntrinsicMesh {
         &self.edge_lengths
     }
 
-    /// The length of one edge, in mesh units.
+    /// The length of an edge, in mesh units.
     #[inline]
     #[must_use]
     pub fn length(&self, edge: EdgeId) -> f64 {
         self.edge_lengths[edge.index()]
+    }
+
+    /// The length of the side opposite a corner, in mesh units.
+    #[inline]
+    #[must_use]
+    pub fn opposite_length(&self, corner: CornerId) -> f64 {
+        self.length(self.topology.opposite_edge(corner))
+    }
+
+    /// The lengths of the three sides of a corner's face, in mesh units: the side opposite the corner, then
+    /// those from the vertices in the next and in the previous corner to the corner's own.
+    #[inline]
+    #[must_use]
+    pub fn sides(&self, corner: CornerId) -> [f64; 3] {
+        [corner, corner.prev(), corner.next()].map(|c| self.opposite_length(c))
     }
 
     /// Connections that belong to no face.

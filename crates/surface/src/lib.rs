@@ -13,12 +13,20 @@ mod disjoint_sets;
 mod ids;
 mod intrinsic;
 pub mod laplacian;
+mod one_ring;
+mod rows;
 #[cfg(test)]
 mod testing;
 mod topology;
+mod triangle;
+mod triangulation;
 
-pub use components::{Components, components, components_of_faces};
+pub use components::{Components, components, components_of_faces, components_with_links};
 pub use disjoint_sets::DisjointSets;
 pub use ids::{CornerId, EdgeId, FaceId, VertexId};
 pub use intrinsic::{IntrinsicMesh, Link};
+pub use one_ring::{CornerTable, Fan, FanCorner, OneRing, VertexKind, Winding, total_angle};
+pub use rows::Rows;
 pub use topology::Topology;
+pub use triangle::{Triangle, double_area, scalar_product};
+pub use triangulation::{GluedTriangle, Loops, Triangulation};

@@ -1,15 +1,32 @@
-//! Who is next to whom: edges, the faces around them, the corners around a vertex.
+//! Connectivity: edges, the faces on each edge, the corners at each vertex.
 
-use crate::{CornerId, EdgeId, VertexId};
+use crate::ids::{CornerId, EdgeId, FaceId, VertexId};
+use crate::rows::Rows;
 
-/// Connectivity of a triangle mesh whose edges may carry any number of faces.
+/// Connectivity of a triangle mesh, as a corner table whose edges may have any number of faces.
 ///
-/// There are no half-edges, so an edge with three faces or with two faces of opposite orientation
-/// is nothing special: an edge simply lists the corners that face it.
+/// There are no half-edges: an edge lists the corners opposite it. Edges with three faces, and two faces of
+/// opposite orientation, need no special treatment.
 ///
-/// **Invariants.** Every face has three different vertices below `n_vertices`. Edge ends are sorted
-/// (`ends[0] < ends[1]`); edges are in ascending order of their ends; the corners of a vertex and
-/// of an edge are in ascending order.
+/// **Invariants.** Every face has three different vertices below `n_vertices`. The ends of an edge are sorted
+/// (`ends[0] < ends[1]`), and edges are in ascending order of their ends. The corners of a vertex and of an
+/// edge are in ascending order.
+///
+/// ```
+/// use canonform_surface::{CornerId, Topology, VertexId};
+///
+/// // Two triangles that share the edge between vertices 1 and 2.
+/// let faces = vec![[0, 1, 2].map(VertexId), [3, 2, 1].map(VertexId)];
+/// let topology = Topology::new(4, faces);
+/// assert_eq!(topology.n_edges(), 5);
+///
+/// let corner = CornerId(0);
+/// assert_eq!(topology.edge_ends(corner), [VertexId(1), VertexId(2)]);
+/// let opposite = topology.opposite(corner).unwrap();
+/// assert_eq!(topology.corner_vertex(opposite), VertexId(3));
+/// // The other two edges of that face are on the boundary.
+/// assert_eq!(topology.opposite(corner.next()), None);
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Topology {
     n_vertices: usize,
@@ -21,44 +38,12 @@ pub struct Topology {
     edge_corners: Rows<CornerId>,
 }
 
-/// Rows of unequal length stored back to back.
-#[derive(Debug, Clone, PartialEq)]
-struct Rows<T> {
-    offsets: Vec<u32>,
-    items: Vec<T>,
-}
-
-impl<T: Copy> Rows<T> {
-    /// Counting sort of `(row, item)` pairs; items keep their order inside a row.
-    fn collect(n_rows: usize, filler: T, pairs: impl Iterator<Item = (usize, T)> + Clone) -> Self {
-        let mut offsets = vec![0u32; n_rows + 1];
-        for (row, _) in pairs.clone() {
-            offsets[row + 1] += 1;
-        }
-        for row in 0..n_rows {
-            offsets[row + 1] += offsets[row];
-        }
-        let mut next = offsets.clone();
-        let mut items = vec![filler; offsets[n_rows] as usize];
-        for (row, item) in pairs {
-            items[next[row] as usize] = item;
-            next[row] += 1;
-        }
-        Self { offsets, items }
-    }
-
-    #[inline]
-    fn row(&self, row: usize) -> &[T] {
-        &self.items[self.offsets[row] as usize..self.offsets[row + 1] as usize]
-    }
-}
-
 impl Topology {
     /// Builds the connectivity of `faces` over `n_vertices` vertices, in linear time.
     ///
     /// # Panics
-    /// When a face names a vertex twice or one out of range; [`repair`](mesh::repair()) removes the
-    /// former, every reader rejects the latter.
+    /// If a face names a vertex twice (`mesh::repair` removes such faces) or a vertex out of range (readers
+    /// reject such files).
     #[must_use]
     pub fn new(n_vertices: usize, faces: Vec<[VertexId; 3]>) -> Self {
         for [a, b, c] in &faces {
@@ -68,17 +53,14 @@ impl Topology {
         let corners = (0..3 * faces.len()).map(|c| CornerId(c as u32));
         let vertex_corners = Rows::collect(
             n_vertices,
-            CornerId(0),
             corners.clone().map(|c| (faces[c.face().index()][c.slot()].index(), c)),
         );
         let ends = |c: CornerId| {
-            let face = faces[c.face().index()];
-            let (a, b) = (face[(c.slot() + 1) % 3], face[(c.slot() + 2) % 3]);
+            let [a, b] = [c.next(), c.prev()].map(|end| faces[end.face().index()][end.slot()]);
             [a.min(b), a.max(b)]
         };
         // Bucket the corners by the lower end of their edge, then sort each small bucket by the upper.
-        let by_lower =
-            Rows::collect(n_vertices, CornerId(0), corners.clone().map(|c| (ends(c)[0].index(), c)));
+        let by_lower = Rows::collect(n_vertices, corners.clone().map(|c| (ends(c)[0].index(), c)));
         let mut edges = Vec::with_capacity(faces.len() * 3 / 2 + 1);
         let mut corner_edge = vec![EdgeId(0); 3 * faces.len()];
         let mut bucket = Vec::new();
@@ -93,8 +75,7 @@ impl Topology {
                 corner_edge[corner.index()] = EdgeId::from(edges.len() - 1);
             }
         }
-        let edge_corners =
-            Rows::collect(edges.len(), CornerId(0), corners.map(|c| (corner_edge[c.index()].index(), c)));
+        let edge_corners = Rows::collect(edges.len(), corners.map(|c| (corner_edge[c.index()].index(), c)));
         Self { n_vertices, faces, edges, corner_edge, vertex_corners, edge_corners }
     }
 
@@ -135,11 +116,32 @@ impl Topology {
         self.faces[corner.face().index()][corner.slot()]
     }
 
-    /// The edge opposite a corner in its face.
+    /// The edge opposite a corner.
     #[inline]
     #[must_use]
     pub fn opposite_edge(&self, corner: CornerId) -> EdgeId {
         self.corner_edge[corner.index()]
+    }
+
+    /// The vertices at the ends of the edge opposite a corner: in the next and in the previous corner.
+    #[inline]
+    #[must_use]
+    pub fn edge_ends(&self, corner: CornerId) -> [VertexId; 2] {
+        [corner.next(), corner.prev()].map(|end| self.corner_vertex(end))
+    }
+
+    /// The two edges of a face that meet in a corner: to the vertex in the next corner, and to the one in the
+    /// previous corner.
+    #[inline]
+    #[must_use]
+    pub fn corner_edges(&self, corner: CornerId) -> [EdgeId; 2] {
+        [corner.prev(), corner.next()].map(|third| self.opposite_edge(third))
+    }
+
+    /// The corner of a face that a vertex is in, if it is one of the face's vertices.
+    #[must_use]
+    pub fn corner_at(&self, face: FaceId, vertex: VertexId) -> Option<CornerId> {
+        face.corners().into_iter().find(|corner| self.corner_vertex(*corner) == vertex)
     }
 
     /// The corners at a vertex, one for each face around it.
@@ -149,19 +151,19 @@ impl Topology {
         self.vertex_corners.row(vertex.index())
     }
 
-    /// The corners that face an edge, one for each face on it: one on a boundary, two on a
-    /// manifold edge, more on a non-manifold one.
+    /// The corners opposite an edge, one for each face on it: one on the boundary, two on a manifold edge, more
+    /// on a non-manifold edge.
     #[inline]
     #[must_use]
     pub fn edge_corners(&self, edge: EdgeId) -> &[CornerId] {
         self.edge_corners.row(edge.index())
     }
 
-    /// The corner on the other side of the edge that `corner` faces; `None` at a boundary and at a
-    /// non-manifold edge, where "the other side" has no meaning.
+    /// The corner opposite the same edge in the neighbouring face; `None` if the edge does not have exactly two
+    /// faces.
     #[inline]
     #[must_use]
-    pub fn across(&self, corner: CornerId) -> Option<CornerId> {
+    pub fn opposite(&self, corner: CornerId) -> Option<CornerId> {
         match *self.edge_corners(self.opposite_edge(corner)) {
             [a, b] => Some(if a == corner { b } else { a }),
             _ => None,
@@ -184,15 +186,15 @@ mod tests {
     }
 
     #[test]
-    fn tetrahedron_has_six_edges_with_two_faces_each() {
+    fn a_tetrahedron_has_six_edges_with_two_faces_each() {
         let t = Topology::new(4, faces(&[[0, 1, 2], [0, 3, 1], [1, 3, 2], [2, 3, 0]]));
         assert_eq!(t.n_edges(), 6);
         for e in 0..6 {
             assert_eq!(t.edge_corners(EdgeId(e)).len(), 2);
         }
         for c in (0..12).map(CornerId) {
-            let twin = t.across(c).unwrap();
-            assert_eq!(t.across(twin), Some(c));
+            let twin = t.opposite(c).unwrap();
+            assert_eq!(t.opposite(twin), Some(c));
             assert_eq!(t.opposite_edge(twin), t.opposite_edge(c));
             assert_ne!(t.corner_vertex(twin), t.corner_vertex(c));
         }
@@ -200,11 +202,11 @@ mod tests {
     }
 
     #[test]
-    fn an_edge_with_three_faces_has_no_other_side() {
+    fn an_edge_with_three_faces_has_no_opposite_corners() {
         let t = Topology::new(5, faces(&[[0, 1, 2], [0, 1, 3], [1, 0, 4]]));
         let shared = t.edge_between(VertexId(0), VertexId(1)).unwrap();
         assert_eq!(t.edge_corners(shared).len(), 3);
-        assert_eq!(t.across(CornerId(2)), None);
+        assert_eq!(t.opposite(CornerId(2)), None);
         assert_eq!(t.vertex_corners(VertexId(1)).len(), 3);
     }
 }

@@ -1,25 +1,25 @@
-//! What the apex of a face sees through its base.
+//! Paths through the windows at the base of a face to its apex.
 
 use super::frame::Frame;
 use super::window::Window;
 
-/// A ray that misses the apex by no more than this, in lengths of the base where it crosses it,
-/// bends there to meet it. Rounding opens such gaps between windows that share a ray, and opening
-/// angles make them wider; the bent path is a path as well, too long by the square of the gap.
+/// A ray that misses the apex by no more than this, in lengths of the base where it crosses it, bends there to meet
+/// it. Rounding opens such gaps between windows that share a ray, and diverging rays widen them. The bent path is a
+/// path as well, too long by the square of the gap.
 const NEAR_MISS: f64 = 1e-6;
 
-/// On which side of the apex the light of a window passes.
+/// The sides of the apex on which the rays of a window pass.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Passes {
-    /// Onto the side at the base's start.
+    /// All on the side at the base's start.
     Left,
-    /// On both sides.
+    /// Both.
     Both,
-    /// Onto the side at the base's end.
+    /// All on the side at the base's end.
     Right,
 }
 
-/// The shortest of the paths to the apex seen so far.
+/// The shortest of the paths to the apex so far.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Apex {
     at: [f64; 2],
@@ -29,7 +29,7 @@ pub(super) struct Apex {
     pub(super) distance: f64,
     /// Where it crosses the base.
     pub(super) entry: f64,
-    /// Where its last straight stretch comes from.
+    /// Where its last straight stretch begins.
     from: [f64; 2],
 }
 
@@ -46,15 +46,15 @@ impl Apex {
         }
     }
 
-    /// Where the ray from the window's source to the apex crosses the base, times the height of the
-    /// apex over the source, which spares a division.
+    /// Where the ray from the window's pseudo-source to the apex crosses the base, times the height of the apex
+    /// over the pseudo-source, which saves a division.
     #[inline]
     fn scaled_crossing(&self, window: &Window) -> [f64; 2] {
         let [x, y] = self.at;
         [window.x * y + x * window.depth, window.depth + y]
     }
 
-    /// Where the ray from the window's source to the apex crosses the base.
+    /// Where the ray from the window's pseudo-source to the apex crosses the base.
     #[inline]
     pub(super) fn crossing(&self, window: &Window) -> f64 {
         let [scaled, height] = self.scaled_crossing(window);
@@ -75,7 +75,7 @@ impl Apex {
 
     /// Considers the path through a window, straight or with a bend at the end of the window.
     #[inline]
-    pub(super) fn look_at(&mut self, index: usize, window: &Window) {
+    pub(super) fn consider(&mut self, index: usize, window: &Window) {
         let [scaled, height] = self.scaled_crossing(window);
         if scaled < (window.start - self.slack) * height || scaled > (window.end + self.slack) * height {
             return;
@@ -95,8 +95,8 @@ impl Apex {
         }
     }
 
-    /// Sine and cosine, times the same factor, of the angle at the apex between the side to the
-    /// base's start and the path.
+    /// Sine and cosine, times the same factor, of the angle at the apex between the side to the base's start and the
+    /// path.
     pub(super) fn direction(&self) -> [f64; 2] {
         let [x, y] = self.at;
         let [dx, dy] = [self.from[0] - x, self.from[1] - y];

@@ -1,30 +1,29 @@
-//! The lower envelope of the windows at one edge that come from one side.
+//! The lower envelope of the windows on one side of an edge.
 //!
-//! Where two windows overlap, the one whose light comes from further left gains on the other as one
-//! goes right: the derivative of a distance along the edge is the cosine of the angle at which the
-//! light falls. Which of the two comes from further left changes at most once along the edge, where
-//! the line through both sources meets it. On the part before and after, the distances are equal at
-//! one point at most.
+//! Where two windows overlap, the one whose paths come from further left gains on the other to the right: the
+//! derivative of a distance along the edge is the cosine of the angle at which the path arrives. Which of the two
+//! comes from further left changes at most once along the edge, where the line through both pseudo-sources meets
+//! it. On either part, the distances are equal at one point at most.
 
 use super::window::{Cut, Window, crossing, order};
 
-/// From how many windows on sorting by insertion is not the fastest any more.
+/// Up to this many windows, insertion sort is fastest.
 const FEW: usize = 40;
 
-/// Two sources nearer to each other than this share of their distance from the edge are one: the
-/// same source, seen past both sides of a vertex without curvature. On flat parts of a surface this
-/// leaves one window instead of one for every vertex passed.
+/// Two pseudo-sources nearer to each other than this share of their distance from the edge are one, with paths on
+/// both sides of a vertex without curvature. On flat parts of a surface this leaves one window, not one for every
+/// vertex passed.
 const SAME_SOURCE: f64 = 1e-12;
 
-/// Two windows with the same source are joined over a gap of this many lengths of the edge.
+/// Two windows with the same pseudo-source are joined over a gap of this many lengths of the edge.
 const GAP: f64 = 1e-12;
 
-/// Share of the narrower of two windows up to which an overlap stays: cutting costs more than
-/// carrying it on until it is wider.
+/// Share of the narrower of two windows up to which an overlap stays: cutting it costs more than propagating it
+/// until it is wider.
 const OVERLAP: f64 = 0.5;
 
-/// Leaves of `windows` at an edge of the given length only what may be a shortest path, in order
-/// along the edge; `ends` are the labels of the edge's ends.
+/// Reduces the windows at an edge of the given length to what may carry a shortest path, in order along the edge;
+/// `ends` are the labels of the edge's ends.
 pub(super) fn trim(windows: &mut Vec<Window>, length: f64, ends: [f64; 2]) {
     cut_ends(windows, length, ends);
     sort(windows);
@@ -54,7 +53,7 @@ pub(super) fn trim(windows: &mut Vec<Window>, length: f64, ends: [f64; 2]) {
     windows.truncate(kept);
 }
 
-/// Insertion keeps few windows, and those that come in order from either side, cheap.
+/// Insertion sort is cheap for few windows, and for those that come in order from either side.
 fn sort(windows: &mut [Window]) {
     if windows.len() > FEW {
         windows.sort_unstable_by(|p, q| p.start.total_cmp(&q.start));
@@ -90,7 +89,7 @@ fn cut_ends(windows: &mut Vec<Window>, length: f64, ends: [f64; 2]) {
     }
 }
 
-/// What is left of two windows that meet.
+/// Which of two windows that meet are left.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Fate {
     BothStay,
@@ -98,7 +97,7 @@ enum Fate {
     RightStays,
 }
 
-/// Whether two windows see the same source at the same place.
+/// Whether two windows have the same pseudo-source at the same place.
 #[inline]
 fn have_same_source(left: &Window, right: &Window) -> bool {
     let same = SAME_SOURCE * (left.depth + left.x.abs());
@@ -119,7 +118,7 @@ fn meet(left: &mut Window, right: &mut Window) -> Fate {
     if low < left.start || high - low <= OVERLAP * (left.end - left.start).min(right.end - right.start) {
         return Fate::BothStay;
     }
-    // By how much `right` is nearer.
+    // By how much `right` is nearer at either end.
     let at_low = left.distance(low) - right.distance(low);
     let at_high = left.distance(high) - right.distance(high);
     let is_nested = right.end < left.end;

@@ -1,24 +1,27 @@
 //! Exact distances on polyhedral surfaces.
 //!
-//! | module | what it does |
+//! | module | what is in it |
 //! |---|---|
-//! | `order` | leaves out faces that repeat another, and makes neighbours neighbours in memory |
+//! | `order` | the surface renumbered for locality, without repeated faces |
 //! | `faces`, `fan` | the faces, and the corners around every vertex with their angles |
-//! | `window` | what an edge sees of a source through one strip of unfolded faces |
-//! | `envelope` | leaves of the windows at an edge what may be shortest |
-//! | `frame`, `apex` | a face laid out, windows falling through it, and what its apex sees of them |
-//! | `front` | labels of vertices, their order, windows that wait |
-//! | `wave`, `emission` | how the front advances, and where new windows come from |
+//! | `prepared` | all that is prepared once per surface |
+//! | `window` | an interval of an edge and the unfolded source of its paths |
+//! | `envelope` | the windows at one edge reduced to those that may carry a shortest path |
+//! | `frame`, `apex` | a face laid out, windows propagated across it, and the paths to its apex |
+//! | `front` | labels of vertices, their order, and waiting windows |
+//! | `propagation` | the main loop |
+//! | `pseudo_sources` | new windows, from sources and from vertices where paths bend |
 
 mod apex;
-mod emission;
 mod envelope;
 mod faces;
 mod fan;
 mod frame;
 mod front;
 mod order;
-mod wave;
+mod prepared;
+mod propagation;
+mod pseudo_sources;
 mod window;
 
 #[cfg(test)]
@@ -26,65 +29,64 @@ mod tests;
 
 use surface::IntrinsicMesh;
 
-use crate::Source;
 use crate::solver::{DistanceSolver, Pool, within};
-use faces::Surface;
-use fan::Fans;
-use order::{Renumbered, renumbered};
-use wave::Scratch;
+use crate::source::Source;
+use prepared::Prepared;
+use propagation::Scratch;
 
-/// Exact distances on the surface: no other error than rounding.
+/// Exact distances on the surface: rounding is the only error.
 ///
-/// A shortest path runs straight through the faces it crosses, laid out in the plane, and bends only
-/// at vertices with a total angle above `2 pi`, or above `pi` on the boundary. A **window** is the
-/// part of an edge from which one such vertex, or the source, is seen through one strip of faces;
-/// windows are passed on from edge to edge, like light, and where several fall on a point the
-/// nearest counts.
+/// A shortest path is straight through the faces it crosses, laid out in the plane, and bends only at saddle
+/// vertices (more than 360 degrees) and at boundary vertices with more than 180 degrees. A **window** is an
+/// interval of an edge to whose points straight paths lead from one such vertex, the pseudo-source, or from the
+/// source, through one sequence of faces. Windows are propagated across face after face. Where several overlap,
+/// the nearest counts.
 ///
 /// | paper | here | meaning |
 /// |---|---|---|
 /// | `(b0, b1)` | `start..end` | the interval of the edge, which lies on the x-axis |
-/// | `(d0, d1)` | `(x, -depth)` | the source laid out in the plane of the edge, instead of two distances |
-/// | `sigma` | `offset` | distance of the vertex where the path bends |
+/// | `(d0, d1)` | `(x, -depth)` | the pseudo-source laid out in the plane of the edge, instead of two distances |
+/// | `sigma` | `offset` | distance of the pseudo-source from the source |
 /// | `d(v)` | label | shortest known path to a vertex |
 ///
 /// The distance at the point `t` of the edge is `offset + sqrt((t - x)^2 + depth^2)`.
 ///
-/// * **Order.** Windows wait at an edge until the nearer of its ends is the nearest vertex of the
-///   front, and are then taken through the next face together; most edges are crossed once. Any
-///   order gives the same distances, but not as fast.
-/// * **Pruning.** Of the windows that wait at an edge on one side only the lower envelope goes on,
-///   cut where a path through an end of the edge is shorter; of several that the apex of the next
-///   face sees, only the nearest goes on to both sides of it. A vertex where paths bend sends
-///   windows only into directions at least half a turn away from where it was reached. Windows of
-///   the same source that meet again behind a vertex without curvature are joined.
-/// * **Any mesh.** At an edge with more than two faces windows go into all the others; where faces
-///   do not form one fan around a vertex, at the ends of links and of edges without length, paths
-///   bend in any direction. Orientation does not matter. Of faces with the same vertices one is
-///   enough. A face without area is blown up to `1e-12` of its longest edge. Of faces with a side of
-///   no length, which repair drops, several in a row may hide a way through them.
-/// * **Guarantees.** Every distance is the length of a path, up to rounding; symmetric, and never
-///   longer than along edges. Infinite where nothing leads. It always ends: the number of windows
-///   is bounded, by a limit that no known surface comes near.
-/// * **Cost.** `O(p^2)` at worst in the number of vertices, near `O(p^1.2)` in practice, linear on
-///   flat parts; about 400 bytes a vertex.
+/// * **Order.** Windows wait at an edge until the nearer of its ends is the nearest vertex of the front, and are
+///   then propagated across the next face together; most edges are crossed once. Any order gives the same
+///   distances, but not as fast.
+/// * **Pruning.** Of the windows that wait on one side of an edge, only the lower envelope is propagated, cut where
+///   a path through an end of the edge is shorter. Of several windows with a path to the apex of the next face,
+///   only the nearest continues on both sides of it. A pseudo-source sends windows only into directions at least
+///   180 degrees away from where its own path comes from. Windows of one source that meet again behind a vertex
+///   without curvature are joined.
+/// * **Any mesh.** At an edge with more than two faces, windows enter all the others. Paths may bend in any
+///   direction where faces do not form a single fan around a vertex, at the ends of links and of edges without
+///   length. Orientation does not matter. Of faces with the same vertices only one is used. A face without area
+///   is inflated to `1e-12` of its longest edge. Several faces in a row that each have a side without length may
+///   hide a path; repair drops such faces.
+/// * **Guarantees.** Every distance is the length of a path, up to rounding; symmetric, and at most that along
+///   edges. Infinite exactly where no edge or link leads. The number of windows is bounded, by a limit that no
+///   known surface comes near.
+/// * **Cost.** At worst `O(p^2)` in the number of vertices, in practice near `O(p^1.2)`, linear on flat parts;
+///   about 400 bytes per vertex.
 ///
-/// After Mitchell, Mount and Papadimitriou 1987; the splitting of windows at one apex only is Xin
-/// and Wang's 2009, the order by vertices that of Qin et al. 2016 (`mitchell1987`, `xin2009`, `qin2016` in
-/// `REFERENCES.bib`). **Deviation:** sources are kept unfolded, so that no roots are
-/// needed but where two windows are compared; windows are compared with their neighbours on the
-/// same side of an edge only.
+/// Mitchell, Mount and Papadimitriou 1987 (`mitchell1987`). Splitting windows at one apex only is from Xin and Wang
+/// 2009 (`xin2009`), the order by vertices from Qin et al. 2016 (`qin2016`). **Deviations:** sources are kept
+/// unfolded, so that roots are needed only where two windows are compared; windows are compared with their
+/// neighbours on the same side of an edge only.
+///
+/// ```
+/// use canonform_geodesics::{DistanceSolver, Exact};
+/// use mesh::shapes;
+/// use surface::VertexId;
+///
+/// // From a corner of a unit cube to the opposite one, straight across two unfolded sides.
+/// let solver = Exact::new(&shapes::cube(0).intrinsic());
+/// assert!((solver.distances(VertexId(0))[7] - 5f64.sqrt()).abs() < 1e-12);
+/// ```
 #[derive(Debug)]
 pub struct Exact {
-    surface: Surface,
-    fans: Fans,
-    /// Both directions of every link: from, to, length; sorted.
-    links: Vec<(u32, u32, f64)>,
-    /// How many faces light may cross in a row around one vertex.
-    max_turn: i32,
-    /// The numbers inside of vertices and faces.
-    vertices: Vec<u32>,
-    faces: Vec<u32>,
+    surface: Prepared,
     scratch: Pool<Scratch>,
 }
 
@@ -92,35 +94,22 @@ impl Exact {
     /// Prepares a surface.
     #[must_use]
     pub fn new(mesh: &IntrinsicMesh) -> Self {
-        let Renumbered { mesh, vertices, faces } = renumbered(mesh);
-        let surface = Surface::new(&mesh);
-        let fans = Fans::new(&mesh, &surface);
-        let mut links: Vec<(u32, u32, f64)> = Vec::with_capacity(2 * mesh.links().len());
-        for link in mesh.links() {
-            let ([a, b], length) = (link.ends.map(|v| v.0), link.length / surface.unit);
-            links.extend([(a, b, length), (b, a, length)]);
-        }
-        links.sort_unstable_by(|p, q| (p.0, p.1).cmp(&(q.0, q.1)).then(p.2.total_cmp(&q.2)));
-        let max_turn = i32::try_from(fans.max_valence()).unwrap_or(i32::MAX);
-        Self { surface, fans, links, max_turn, vertices, faces, scratch: Pool::default() }
+        Self { surface: Prepared::new(mesh), scratch: Pool::default() }
     }
 }
 
 impl DistanceSolver for Exact {
     fn n_vertices(&self) -> usize {
-        self.vertices.len()
+        self.surface.n_vertices()
     }
 
     fn solve_into(&self, sources: &[Source], max_distance: f64, out: &mut [f64]) {
         assert_eq!(out.len(), self.n_vertices(), "one distance per vertex");
-        let unit = self.surface.unit;
+        let unit = self.surface.faces.unit;
         self.scratch.with(|scratch| {
-            scratch.front.reset(out.len(), 3 * self.surface.faces.len());
-            wave::run(self, scratch, max_distance / unit, |wave| {
-                sources.iter().for_each(|source| wave.leave_source(source));
-            });
-            for (distance, vertex) in out.iter_mut().zip(&self.vertices) {
-                *distance = within(scratch.front.distance(*vertex) * unit, max_distance);
+            let front = propagation::run(&self.surface, scratch, max_distance / unit, sources);
+            for (distance, vertex) in out.iter_mut().zip(&self.surface.new_vertices) {
+                *distance = within(front.distance(*vertex) * unit, max_distance);
             }
         });
     }

@@ -1,23 +1,30 @@
-//! Neighbours on the surface become neighbours in memory.
+//! Renumbering: neighbours on the surface become neighbours in memory.
 
-use surface::{CornerId, IntrinsicMesh, Link, Topology, VertexId};
+use surface::{FaceId, IntrinsicMesh, Link, Topology, VertexId};
 
-/// A surface renumbered breadth first, and what became of the vertices and faces.
+use crate::graph::breadth_first_order;
+
+/// A renumbered surface.
 pub(super) struct Renumbered {
     pub(super) mesh: IntrinsicMesh,
-    /// New number of every vertex.
+    /// The new number of every vertex.
     pub(super) vertices: Vec<u32>,
-    /// New number of every face. The order of its corners stays, or is that of the face it repeats.
+    /// The new number of every face. The order of its corners stays, or is that of the face it repeats.
     pub(super) faces: Vec<u32>,
 }
 
 /// Numbers vertices breadth first, one component after the other, and faces by their vertices.
 ///
-/// Of faces with the same vertices the first is kept: whatever path runs through another of them
-/// can run through this one. Light would find a new way in every copy at every face.
+/// Of faces with the same vertices the first is kept: any path through another of them can run through this one.
+/// With all of them, windows would multiply at every face.
 pub(super) fn renumbered(mesh: &IntrinsicMesh) -> Renumbered {
     let topology = mesh.topology();
-    let vertices = breadth_first(topology);
+    let around = |v: u32| topology.vertex_corners(VertexId(v)).iter().map(|corner| corner.face().index());
+    let neighbours = |v: u32| around(v).flat_map(|face| topology.faces()[face]).map(|neighbour| neighbour.0);
+    let mut vertices = vec![0; topology.n_vertices()];
+    for (new, old) in (0..).zip(breadth_first_order(topology.n_vertices(), neighbours)) {
+        vertices[old as usize] = new;
+    }
     let new = |face: &[VertexId; 3]| face.map(|v| VertexId(vertices[v.index()]));
     let mut sorted: Vec<([VertexId; 3], u32)> = (0u32..)
         .zip(topology.faces())
@@ -43,39 +50,11 @@ pub(super) fn renumbered(mesh: &IntrinsicMesh) -> Renumbered {
     );
     let mut lengths = vec![0.0; renumbered.n_edges()];
     for (now, before) in (0u32..).zip(&kept) {
-        for slot in 0..3 {
-            let old = topology.opposite_edge(CornerId(3 * before + slot));
-            lengths[renumbered.opposite_edge(CornerId(3 * now + slot)).index()] = mesh.length(old);
+        for (old, new) in FaceId(*before).corners().into_iter().zip(FaceId(now).corners()) {
+            lengths[renumbered.opposite_edge(new).index()] = mesh.opposite_length(old);
         }
     }
     let link = |link: &Link| Link { ends: link.ends.map(|v| VertexId(vertices[v.index()])), ..*link };
     let links = mesh.links().iter().map(link).collect();
     Renumbered { mesh: IntrinsicMesh::new(renumbered, lengths).with_links(links), vertices, faces }
-}
-
-/// The position of every vertex in breadth-first order.
-fn breadth_first(topology: &Topology) -> Vec<u32> {
-    const UNSEEN: u32 = u32::MAX;
-    let mut position = vec![UNSEEN; topology.n_vertices()];
-    let mut order = Vec::with_capacity(topology.n_vertices());
-    for root in (0..topology.n_vertices()).map(VertexId::from) {
-        if position[root.index()] != UNSEEN {
-            continue;
-        }
-        let mut head = order.len();
-        position[root.index()] = head as u32;
-        order.push(root);
-        while let Some(&vertex) = order.get(head) {
-            head += 1;
-            for corner in topology.vertex_corners(vertex) {
-                for neighbour in topology.faces()[corner.face().index()] {
-                    if position[neighbour.index()] == UNSEEN {
-                        position[neighbour.index()] = order.len() as u32;
-                        order.push(neighbour);
-                    }
-                }
-            }
-        }
-    }
-    position
 }

@@ -1,22 +1,21 @@
-//! Windows: what an edge sees of a source.
+//! Windows: intervals of edges that straight paths from one pseudo-source reach.
 
-/// The part of an edge that a source lights through one strip of unfolded faces.
+/// An interval of an edge that straight paths from one pseudo-source reach through one sequence of faces.
 ///
-/// The edge lies on the x-axis from zero to its length, with the face about to be entered above it
-/// and the strip below. A point `t` of the window is `offset + |(t, 0) - (x, -depth)|` from where
-/// distances start.
+/// The edge lies on the x-axis from zero to its length, with the face to be entered above it and the unfolded
+/// sequence below. The distance at a point `t` of the window is `offset + |(t, 0) - (x, -depth)|`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Window {
     pub(super) start: f64,
     pub(super) end: f64,
-    /// Position of the unfolded source along the edge.
+    /// Position of the unfolded pseudo-source along the edge.
     pub(super) x: f64,
-    /// How far the unfolded source lies below the edge; not negative.
+    /// Depth of the unfolded pseudo-source below the edge; not negative.
     pub(super) depth: f64,
-    /// Distance of the source itself, where paths bend on their way to it.
+    /// Distance of the pseudo-source from the source.
     pub(super) offset: f64,
-    /// How many faces in a row were crossed around the same vertex: positive around the edge's
-    /// start, negative around its end.
+    /// How many faces in a row were crossed around the same vertex: positive around the edge's start, negative
+    /// around its end.
     pub(super) turn: i32,
 }
 
@@ -34,7 +33,7 @@ impl Window {
         self.distance(self.x.max(self.start).min(self.end))
     }
 
-    /// The window seen with the two ends of its edge, of the given length, exchanged.
+    /// The same window with the two ends of its edge, of the given length, exchanged.
     #[inline]
     pub(super) fn mirrored(&self, length: f64) -> Self {
         Self {
@@ -46,10 +45,10 @@ impl Window {
         }
     }
 
-    /// Cuts away the part that is nearer through the edge's start, a vertex at `distance`.
+    /// Cuts off the part that is nearer through the edge's start, a vertex at `distance`.
     ///
-    /// Along the edge, the window's distance never grows faster than that from the vertex, so the part is
-    /// an interval from the start; its end solves a linear equation.
+    /// Along the edge, the window's distance never grows faster than that from the vertex, so the part is an
+    /// interval from the start; its end solves a linear equation.
     #[inline]
     pub(super) fn cut_start(&mut self, distance: f64) -> Cut {
         let start = nearer_until(self.x, self.depth, distance - self.offset).max(self.start);
@@ -82,31 +81,30 @@ pub(super) enum Cut {
     All,
 }
 
-/// Up to which point the origin is nearer than the source at `(x, -depth)` when it is further by
-/// `lead` to begin with: not positive when nowhere, infinite when everywhere.
+/// Up to which point the origin, with a lead of `lead`, is nearer than the pseudo-source at `(x, -depth)`: not
+/// positive if nowhere, infinite if everywhere.
 #[inline]
 fn nearer_until(x: f64, depth: f64, lead: f64) -> f64 {
     let slope = lead + x;
     if slope > 0.0 { 0.5 * (x - lead + depth * depth / slope) } else { f64::INFINITY }
 }
 
-/// Positive where the light of `left` comes from further left than that of `right`, which then gains
-/// on it as one goes right; linear in the position.
+/// Positive where the paths of `left` come from further left than those of `right`, which then gains on it to the
+/// right; linear in the position.
 #[inline]
 pub(super) fn order(left: &Window, right: &Window, t: f64) -> f64 {
     (t - left.x) * right.depth - (t - right.x) * left.depth
 }
 
-/// How far from equal two distances may be, in units of them, for a crossing to be one.
+/// How far from equal two distances may be at a crossing, as a share of them.
 const EQUAL: f64 = 1e-12;
 
-/// Where in `low..high` the nearer of two windows changes from `left` to `right`; `None` when
-/// rounding hides it.
+/// Where in `low..high` the nearer of two windows changes from `left` to `right`; `None` if rounding hides it.
 ///
-/// With `r`, `s` the distances to the unfolded sources and `d` the difference of their offsets,
-/// `r = s + d` squared is linear in the position but for `2 d s`; squared again it is quadratic. One
-/// of its roots may belong to `-d`, and where the two sources lie in a line with a nearly double
-/// root, rounding leaves little of either: a root is only believed if the distances agree there.
+/// With `r` and `s` the distances to the unfolded pseudo-sources and `d` the difference of their offsets,
+/// `r = s + d` squared is linear in the position but for `2 d s`; squared again it is quadratic. One of its roots
+/// may belong to `-d`. If the two pseudo-sources are in line with a nearly double root, rounding leaves little of
+/// either. So a root only counts if the distances agree there.
 pub(super) fn crossing(left: &Window, right: &Window, [low, high]: [f64; 2]) -> Option<f64> {
     let (p, q) = (left.x - low, right.x - low);
     let (rr, ss) = (p * p + left.depth * left.depth, q * q + right.depth * right.depth);
@@ -147,7 +145,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_cut_off_is_nearer_through_the_vertex() {
+    fn the_part_cut_off_is_nearer_through_the_vertex() {
         for distance in [0.9, 1.5, 2.0, 2.6] {
             let mut window = NEAR;
             assert_eq!(window.cut_start(distance), Cut::Part);
@@ -163,7 +161,7 @@ mod tests {
     }
 
     #[test]
-    fn at_a_crossing_distances_are_equal_and_the_right_window_gains() {
+    fn distances_are_equal_at_a_crossing_and_the_right_window_gains() {
         for (x, depth, offset) in [(3.0, 2.0, 0.5), (4.0, 1.0, 0.7), (2.5, 0.1, 1.0), (9.0, 0.5, -4.9)] {
             let right = Window { x, depth, offset, ..NEAR };
             let at = crossing(&NEAR, &right, [0.0, 4.0]).unwrap();
@@ -171,7 +169,7 @@ mod tests {
             assert!(NEAR.distance(at - 0.1) < right.distance(at - 0.1), "{x}");
             assert!(NEAR.distance(at + 0.1) > right.distance(at + 0.1), "{x}");
         }
-        // One source behind the other: equal along one ray only, and never the other way round.
+        // One pseudo-source behind the other: equal along one ray only, and never the other way round.
         let behind = Window { x: 1.5, depth: 3.0, offset: 0.5 - 1.25f64.sqrt(), ..NEAR };
         if let Some(at) = crossing(&NEAR, &behind, [0.0, 4.0]) {
             assert!((NEAR.distance(at) - behind.distance(at)).abs() < 1e-12);

@@ -1,37 +1,62 @@
-//! Splitting of obtuse corners by unfolding the surface across their base.
+//! Obtuse corners split by unfolding the surface behind them (Kimmel and Sethian 1998, `kimmel1998`).
 //!
-//! A front can reach an obtuse corner `C` before it has passed both ends of the base `AB`. Following
-//! Kimmel and Sethian 1998, the triangles behind the base are laid out in the plane of `ABC` until a
-//! vertex `D` falls into the cone of directions that make an acute angle with both `CA` and `CB`;
-//! the segment `CD` then lies inside the unfolded strip and splits the corner into two acute ones.
+//! A front may reach an obtuse corner `C` before both ends of the base `AB` are finalized. The triangles behind
+//! the base are laid out in the plane of `ABC` until a vertex `D` lies in the cone of directions that make acute
+//! angles with both `CA` and `CB`. The segment `CD` is inside the unfolded strip and splits the corner in two.
 
-use surface::{CornerId, IntrinsicMesh, Topology, VertexId};
+use surface::{CornerId, FaceId, IntrinsicMesh, Link, Triangle, VertexId};
 
-use crate::corner::Corner;
+use super::one_ring::HalfCorner;
 
-/// More steps than any reasonable strip of triangles needs; a strip of slivers may go on for ever.
+/// More triangles than any reasonable strip has; a strip of slivers may go on forever.
 const MAX_STEPS: usize = 12;
 
-/// How an obtuse corner was treated.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Unfolding {
-    /// The corner is not obtuse.
-    Acute,
-    /// A vertex of the unfolded strip splits it.
-    Split(Split),
-    /// A boundary, a non-manifold edge or too long a strip: only the edges carry the front.
-    Stopped,
+/// What takes the place of obtuse corners.
+#[derive(Debug, Default)]
+pub(super) struct Splits {
+    /// The segments that split them.
+    pub(super) segments: Vec<Link>,
+    /// Their halves, each at both ends of its base.
+    pub(super) halves: Vec<(u32, HalfCorner)>,
 }
 
-/// The two acute corners at `C` that replace an obtuse one.
+impl Splits {
+    /// Splits all obtuse corners of a mesh where unfolding finds a vertex.
+    pub(super) fn new(mesh: &IntrinsicMesh) -> Self {
+        let mut splits = Self::default();
+        for corner in (0..mesh.topology().n_faces()).flat_map(|f| FaceId::from(f).corners()) {
+            if let Some(split) = split(mesh, corner) {
+                splits.add(mesh, corner, &split);
+            }
+        }
+        splits
+    }
+
+    fn add(&mut self, mesh: &IntrinsicMesh, corner: CornerId, split: &Split) {
+        let topology = mesh.topology();
+        let (apex, middle) = (topology.corner_vertex(corner), split.vertex);
+        let [_, from_a, from_b] = mesh.sides(corner);
+        let ends = topology.edge_ends(corner);
+        for ((end, base), side) in ends.into_iter().zip(split.bases).zip([from_a, from_b]) {
+            let (at_end, at_middle) = ((apex.0, side), (apex.0, split.length));
+            let half = HalfCorner { base: (middle.0, base), apex: at_end, third: split.length };
+            self.halves.push((end.0, half));
+            let half = HalfCorner { base: (end.0, base), apex: at_middle, third: side };
+            self.halves.push((middle.0, half));
+        }
+        self.segments.push(Link { ends: [apex, middle], length: split.length });
+    }
+}
+
+/// How an obtuse corner at `C` is split into two acute ones.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Split {
-    /// The vertex that splits the corner.
-    pub(super) vertex: VertexId,
-    /// Its straight distance to the corner's vertex inside the strip.
-    pub(super) length: f64,
-    /// Its straight distances to `A` and `B` in the plane of the strip.
-    pub(super) bases: [f64; 2],
+struct Split {
+    /// The vertex `D`.
+    vertex: VertexId,
+    /// `|CD|`
+    length: f64,
+    /// `|AD|` and `|BD|`
+    bases: [f64; 2],
 }
 
 type Point = [f64; 2];
@@ -48,84 +73,55 @@ fn norm(a: Point) -> f64 {
     dot(a, a).sqrt()
 }
 
-/// Lengths of the sides of the face of `corner`: the base opposite it, then from the base's first
-/// and second end (the next and the next but one corner of the face) to the corner.
-pub(super) fn sides(mesh: &IntrinsicMesh, corner: CornerId) -> [f64; 3] {
-    let (face, slot) = (corner.face().0, corner.slot() as u32);
-    let opposite = |slot: u32| mesh.length(mesh.topology().opposite_edge(CornerId(3 * face + slot % 3)));
-    [opposite(slot), opposite(slot + 2), opposite(slot + 1)]
-}
-
-/// The ends of the base of `corner`: the next and the next but one corner of its face.
-pub(super) fn base(topology: &Topology, corner: CornerId) -> [VertexId; 2] {
-    let face = topology.faces()[corner.face().index()];
-    [face[(corner.slot() + 1) % 3], face[(corner.slot() + 2) % 3]]
-}
-
-/// Unfolds the surface behind `corner` if it is obtuse.
-pub(super) fn unfold(mesh: &IntrinsicMesh, corner: CornerId) -> Unfolding {
-    let [c, b, a] = sides(mesh, corner);
+/// Unfolds the surface behind a corner. Returns `None` if the corner is not obtuse, and if the strip comes to the
+/// boundary or a non-manifold edge, or gets too long.
+fn split(mesh: &IntrinsicMesh, corner: CornerId) -> Option<Split> {
+    let [c, b, a] = mesh.sides(corner);
     if a * a + b * b >= c * c {
-        return Unfolding::Acute;
+        return None;
     }
-    let flat = Corner::from_lengths(c, b, a);
+    let flat = Triangle::from_sides([c, b, a]);
     let apex = [flat.x, flat.y];
     let (at_a, at_b) = ([0.0, 0.0], [c, 0.0]);
     let (to_a, to_b) = (sub(at_a, apex), sub(at_b, apex));
     let topology = mesh.topology();
 
-    // The strip's last edge, from the side of A to the side of B, and the corner facing it.
+    // The last edge of the strip, from the side of A to the side of B, and the corner opposite it.
     let mut facing = corner;
-    let [mut left, mut right] = base(topology, corner);
+    let [mut left, mut right] = topology.edge_ends(corner);
     let (mut at_left, mut at_right) = (at_a, at_b);
     for _ in 0..MAX_STEPS {
-        let Some(next) = topology.across(facing) else { return Unfolding::Stopped };
+        let next = topology.opposite(facing)?;
         let vertex = topology.corner_vertex(next);
-        let [edge, from_first, from_second] = sides(mesh, next);
-        let starts_left = base(topology, next)[0] == left;
-        let (from_left, from_right) =
-            if starts_left { (from_first, from_second) } else { (from_second, from_first) };
-        let beyond = Corner::from_lengths(edge, from_left, from_right);
-        if !beyond.y.is_finite() {
-            return Unfolding::Stopped;
+        let [edge, mut from_left, mut from_right] = mesh.sides(next);
+        let (mut opposite_left, mut opposite_right) = (next.next(), next.prev());
+        if topology.corner_vertex(opposite_left) != left {
+            std::mem::swap(&mut from_left, &mut from_right);
+            std::mem::swap(&mut opposite_left, &mut opposite_right);
         }
-        // The new vertex, on the other side of the edge than the apex.
+        if edge <= 0.0 {
+            return None;
+        }
+        // The new vertex is on the other side of the edge than the apex.
+        let beyond = Triangle::from_sides([edge, from_left, from_right]);
         let along = sub(at_right, at_left).map(|x| x / edge);
         let away = [along[1], -along[0]];
-        let at = [
-            at_left[0] + beyond.x * along[0] + beyond.y * away[0],
-            at_left[1] + beyond.x * along[1] + beyond.y * away[1],
-        ];
+        let at = [0, 1].map(|i| at_left[i] + beyond.x * along[i] + beyond.y * away[i]);
         let ray = sub(at, apex);
-        let (acute_to_a, acute_to_b) = (dot(ray, to_a) > 0.0, dot(ray, to_b) > 0.0);
-        if acute_to_a && acute_to_b {
-            return Unfolding::Split(Split {
-                vertex,
-                length: norm(ray),
-                bases: [norm(sub(at, at_a)), norm(sub(at_b, at))],
-            });
-        }
-        // The cone passes through the edge on the other side of the new vertex.
-        let slot = next.slot();
-        let first_end = (slot + 1) % 3;
-        let corner_at = |slot: usize| CornerId(next.face().0 * 3 + slot as u32);
-        let (corner_at_left, corner_at_right) = if starts_left {
-            (corner_at(first_end), corner_at((slot + 2) % 3))
-        } else {
-            (corner_at((slot + 2) % 3), corner_at(first_end))
-        };
-        if acute_to_a {
-            // Too far on the side of A: go on across the edge from the new vertex to the right end,
-            // which faces the left one.
-            (left, at_left, facing) = (vertex, at, corner_at_left);
-        } else {
-            (right, at_right, facing) = (vertex, at, corner_at_right);
+        match (dot(ray, to_a) > 0.0, dot(ray, to_b) > 0.0) {
+            (true, true) => {
+                let bases = [at_a, at_b].map(|end| norm(sub(at, end)));
+                return Some(Split { vertex, length: norm(ray), bases });
+            }
+            // Too far on the side of A: the cone leaves through the edge from the new vertex to the right end.
+            (true, false) => (left, at_left, facing) = (vertex, at, opposite_left),
+            _ => (right, at_right, facing) = (vertex, at, opposite_right),
         }
         if left == right {
-            return Unfolding::Stopped;
+            return None;
         }
     }
-    Unfolding::Stopped
+    None
 }
 
 #[cfg(test)]
@@ -134,7 +130,7 @@ mod tests {
 
     use super::*;
 
-    /// Vertices in the plane and faces over them.
+    /// Vertices in the plane, and faces between them.
     fn flat(points: &[Point], faces: &[[u32; 3]]) -> IntrinsicMesh {
         let faces = faces.iter().map(|f| f.map(VertexId)).collect();
         let topology = Topology::new(points.len(), faces);
@@ -144,25 +140,29 @@ mod tests {
     }
 
     #[test]
-    fn splits_by_the_vertex_opposite() {
+    fn an_obtuse_corner_is_split_by_the_vertex_opposite() {
         let points = [[0.0, 0.4], [-2.0, 0.0], [2.0, 0.0], [0.2, -1.0]];
         let mesh = flat(&points, &[[0, 1, 2], [2, 1, 3]]);
-        let Unfolding::Split(split) = unfold(&mesh, CornerId(0)) else { panic!("not split") };
-        assert_eq!(split.vertex, VertexId(3));
-        assert!((split.length - 0.2f64.hypot(1.4)).abs() < 1e-14);
-        assert!((split.bases[0] - 2.2f64.hypot(1.0)).abs() < 1e-14);
-        assert!((split.bases[1] - 1.8f64.hypot(1.0)).abs() < 1e-14);
-        assert_eq!(unfold(&mesh, CornerId(1)), Unfolding::Acute);
+        let found = split(&mesh, CornerId(0)).unwrap();
+        assert_eq!(found.vertex, VertexId(3));
+        assert!((found.length - 0.2f64.hypot(1.4)).abs() < 1e-14);
+        assert!((found.bases[0] - 2.2f64.hypot(1.0)).abs() < 1e-14);
+        assert!((found.bases[1] - 1.8f64.hypot(1.0)).abs() < 1e-14);
+        assert_eq!(split(&mesh, CornerId(1)), None, "acute");
+        // The corner of vertex 3 is obtuse as well, and split by vertex 0.
+        let splits = Splits::new(&mesh);
+        assert_eq!(splits.segments[0], Link { ends: [0, 3].map(VertexId), length: found.length });
+        assert_eq!((splits.segments.len(), splits.halves.len()), (2, 8));
     }
 
     #[test]
-    fn walks_on_where_the_first_vertex_is_outside_the_cone_whatever_the_orientation() {
-        // Vertex 3 lies far on A's side; vertex 4 behind it is inside the cone.
+    fn unfolding_goes_on_if_the_first_vertex_is_outside_the_cone() {
+        // Vertex 3 lies far on the side of A; vertex 4 behind it is inside the cone.
         let points = [[0.0, 0.4], [-2.0, 0.0], [2.0, 0.0], [-3.0, -0.5], [0.1, -2.0]];
         for second in [[2, 1, 3], [1, 2, 3], [3, 2, 1]] {
             for third in [[2, 3, 4], [4, 3, 2]] {
                 let mesh = flat(&points, &[[0, 1, 2], second, third]);
-                let Unfolding::Split(split) = unfold(&mesh, CornerId(0)) else { panic!("not split") };
+                let split = split(&mesh, CornerId(0)).unwrap();
                 assert_eq!(split.vertex, VertexId(4));
                 assert!((split.length - 0.1f64.hypot(2.4)).abs() < 1e-13);
             }
@@ -170,10 +170,10 @@ mod tests {
     }
 
     #[test]
-    fn stops_at_a_boundary_and_at_a_non_manifold_edge() {
+    fn unfolding_stops_at_the_boundary_and_at_non_manifold_edges() {
         let points = [[0.0, 0.4], [-2.0, 0.0], [2.0, 0.0], [0.3, -1.0], [0.2, -3.0]];
-        assert_eq!(unfold(&flat(&points, &[[0, 1, 2]]), CornerId(0)), Unfolding::Stopped);
+        assert_eq!(split(&flat(&points, &[[0, 1, 2]]), CornerId(0)), None);
         let fan = flat(&points, &[[0, 1, 2], [2, 1, 3], [1, 2, 4]]);
-        assert_eq!(unfold(&fan, CornerId(0)), Unfolding::Stopped);
+        assert_eq!(split(&fan, CornerId(0)), None);
     }
 }

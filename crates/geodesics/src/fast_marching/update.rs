@@ -1,30 +1,29 @@
-//! The two local solvers: the distance at one vertex of a triangle from those at the two others.
+//! The local solvers: the distance at one vertex of a triangle from those at the other two.
 //!
-//! They have no branches, so that several triangles can be solved by the same instructions. What is not a
-//! number fails every comparison.
+//! They have no branches, so that the same instructions solve several triangles. Comparisons with NaN fail.
 
-/// A triangle `ABC` that the front crosses from the side `AB` to the vertex `C`, seen from `A`.
+/// A triangle `ABC` over which the distance at `C` is updated from those at `A` and `B`.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Sector {
-    /// `|AB|`.
+pub(crate) struct Stencil {
+    /// `|AB|`
     pub(crate) base: f64,
-    /// `|AC|`.
+    /// `|AC|`
     pub(crate) side: f64,
-    /// `AB . AC`.
+    /// `AB . AC`
     pub(crate) dot: f64,
-    /// `|AB x AC|`.
+    /// `|AB x AC|`
     pub(crate) cross: f64,
 }
 
-/// A point source whose squared height above the line through the base is below this share of its
-/// squared distance lies on that line but for rounding. The edges then carry the front just as well, and
-/// which of the two ways wins would depend on rounding.
+/// If the squared height of the point source above the line through the base is below this share of its squared
+/// distance, it lies on that line but for rounding. Edges then carry the front just as well, and rounding would
+/// decide between the two.
 const COLLINEAR: f64 = 1e-12;
 
-/// See [`Sector::may_complete_late_from_afar`]: far fronts get late into corners wider than 86 degrees alone.
+/// See [`Stencil::may_complete_late_from_afar`]: a distant front is late only in corners wider than 86 degrees.
 pub(super) const FAR: f64 = 8.0;
 
-impl Sector {
+impl Stencil {
     /// Whether a front that enters through the base can reach `C` before `A`.
     ///
     /// If it does, the angle at `C` exceeds the angle at `A`, so the base is longer than `BC`.
@@ -32,21 +31,21 @@ impl Sector {
         2.0 * self.dot > self.side * self.side
     }
 
-    /// The same for a front whose source is farther than [`FAR`] times the side `|AC|` away.
+    /// The same for a front whose source is farther away than [`FAR`] times the side `|AC|`.
     ///
-    /// The source, `C` and `A` form a triangle whose angle at `C` is no wider than the sector's, and in which
-    /// the source is farther from `A`: `|AC| > 2 T cos C`, where `T` is the distance at `C`.
+    /// In the triangle of the source, `C` and `A`, the angle at `C` is no wider than that of the stencil, and the
+    /// source is farther from `A` than from `C`: `|AC| > 2 T cos C`, where `T` is the distance at `C`.
     pub(super) fn may_complete_late_from_afar(self) -> bool {
         let Self { base, side, dot, .. } = self;
         let third = || (base * base + side * side - 2.0 * dot).max(0.0).sqrt();
         self.may_complete_late() && 2.0 * FAR * (side * side - dot) <= side * third()
     }
 
-    /// Distance at `C` if the front comes from a single point beyond the base, given the distances at
-    /// `A` and `B`; infinite when the straight line from that point to `C` misses the base or no such
-    /// point exists (the edges then carry the front).
+    /// Distance at `C` of a front that comes from a single point beyond the base, from the distances at `A` and
+    /// `B`; infinite if the straight line from that point to `C` misses the base or there is no such point. The
+    /// edges then carry the front.
     ///
-    /// Exact in the plane. Novotni and Klein 2002, in coordinates that are multiples of `|AB|`.
+    /// Exact in the plane. Novotni and Klein 2002 (`novotni2002`), in coordinates that are multiples of `|AB|`.
     #[inline]
     pub(crate) fn point_source(self, at_a: f64, at_b: f64) -> f64 {
         let Self { base, side, dot, cross } = self;
@@ -56,7 +55,7 @@ impl Sector {
         let reach = base * at_a;
         let sq_height = (reach - along) * (reach + along);
         let height = sq_height.sqrt();
-        // Where the line crosses the base, as a share of it, times its positive denominator.
+        // Where the line crosses the base, as a share of the base, times its positive denominator.
         let crossing = along * cross + dot * height;
         let distance = (side * side + at_a * at_a + 2.0 * (cross * height - dot * along) / sq_base).sqrt();
         let is_hit = (sq_height >= COLLINEAR * reach * reach)
@@ -65,11 +64,11 @@ impl Sector {
         if is_hit { distance } else { f64::INFINITY }
     }
 
-    /// Distance at `C` if the front is a straight line, given the distances at `A` and `B`; infinite
-    /// when the characteristic through `C` misses the base.
+    /// Distance at `C` of a front that is a straight line, from the distances at `A` and `B`; infinite if the
+    /// characteristic through `C` misses the base.
     ///
-    /// Kimmel and Sethian 1998: the larger root of their quadratic, here as the unit gradient whose
-    /// component along the base is `(at_b - at_a) / |AB|`.
+    /// Kimmel and Sethian 1998 (`kimmel1998`): the larger root of their quadratic, here by the unit gradient
+    /// whose component along the base is `(at_b - at_a) / |AB|`.
     #[inline]
     pub(super) fn planar(self, at_a: f64, at_b: f64) -> f64 {
         let Self { base, dot, cross, .. } = self;
@@ -87,13 +86,13 @@ impl Sector {
 mod tests {
     use super::*;
 
-    fn sector(base: f64, [x, y]: [f64; 2]) -> Sector {
-        Sector { base, side: x.hypot(y), dot: base * x, cross: base * y }
+    fn stencil(base: f64, [x, y]: [f64; 2]) -> Stencil {
+        Stencil { base, side: x.hypot(y), dot: base * x, cross: base * y }
     }
 
     #[test]
-    fn point_source_is_exact_in_the_plane_and_silent_when_the_line_misses_the_base() {
-        let triangle = sector(2.0, [0.7, 1.5]);
+    fn a_point_source_is_exact_in_the_plane_and_infinite_if_the_line_misses_the_base() {
+        let triangle = stencil(2.0, [0.7, 1.5]);
         for sx in [-3.0f64, -0.5, 0.1, 1.0, 1.9, 4.0] {
             for sy in [1e-9, 0.3, 2.0, 50.0] {
                 let at_a = sx.hypot(sy);
@@ -101,7 +100,7 @@ mod tests {
                 let exact = (sx - 0.7).hypot(sy + 1.5);
                 let crossing = sx + (0.7 - sx) * sy / (sy + 1.5);
                 let t = triangle.point_source(at_a, at_b);
-                // A source within rounding of the base's line has no height that could be recovered.
+                // The height of a source within rounding of the base's line cannot be recovered.
                 let tolerance = if sy < 1e-6 { 1e-7 } else { 1e-12 };
                 if (0.01..=1.99).contains(&crossing) && (sy > 1e-6 || t.is_finite()) {
                     assert!((t - exact).abs() < tolerance * exact.max(1.0), "{t} against {exact}");
@@ -113,8 +112,8 @@ mod tests {
     }
 
     #[test]
-    fn planar_is_exact_for_a_straight_front() {
-        let triangle = sector(2.0, [0.7, 1.5]);
+    fn a_planar_update_is_exact_for_a_straight_front() {
+        let triangle = stencil(2.0, [0.7, 1.5]);
         for angle in [-0.35f64, -0.1, 0.0, 0.2, 0.4] {
             let (gx, gy) = angle.sin_cos();
             let front = |p: [f64; 2]| 5.0 + gx * p[0] + gy * p[1];
@@ -127,7 +126,8 @@ mod tests {
 
     #[test]
     fn a_base_without_length_never_updates() {
-        for void in [sector(0.0, [1.0, 0.0]), Sector { base: 0.0, side: 1.0, dot: f64::NAN, cross: f64::NAN }]
+        for void in
+            [stencil(0.0, [1.0, 0.0]), Stencil { base: 0.0, side: 1.0, dot: f64::NAN, cross: f64::NAN }]
         {
             for update in [void.point_source(1.0, 1.0), void.planar(1.0, 1.0)] {
                 assert_eq!(f64::min(7.0, update), 7.0);

@@ -1,20 +1,20 @@
-//! How triangles and links carry heat.
+//! Heat flow through triangles and links.
 
-use surface::Link;
-use surface::laplacian::{Element, Triangle};
+use surface::laplacian::Element;
+use surface::{Link, Triangle};
 
-/// A link longer than this, in units, transports heat as if it were this long: behind a bridge the
-/// amount of heat is of no importance, but there has to be some.
+/// A link longer than this, in units, transports heat as if it were this long: the amount of heat behind a bridge does
+/// not matter, but there has to be some.
 pub(super) const LONGEST_BAR: f64 = 400.0;
 
-/// The same in heat lengths, for short times: `exp(-DEEPEST)` is still a number.
+/// The same in heat lengths, for short times: `exp(-DEEPEST)` does not underflow.
 const DEEPEST: f64 = 600.0;
 
-/// Adds to `b` the integral over the triangle of `X . grad` of the hat function of each corner,
-/// `X = -grad u / |grad u|`, lane by lane: its part of `-div X`.
+/// Adds to `b` the integral over the triangle of `X . grad` of the hat function of each corner, `X = -grad u / |grad u|`,
+/// lane by lane: its part of `-div X`.
 ///
-/// The gradient is found up to a positive factor, which is all its direction needs, from
-/// differences relative to the largest, so that no `u`, huge or tiny, over- or underflows.
+/// Only the direction of the gradient is needed. It is found from differences relative to the largest, so that neither a
+/// huge `u` overflows nor a tiny one underflows.
 #[inline]
 pub(super) fn add_divergence<const K: usize>(element: &Element, u: &[[f64; K]], b: &mut [[f64; K]]) {
     let Triangle { base, x, y } = element.triangle;
@@ -40,17 +40,17 @@ pub(super) fn add_divergence<const K: usize>(element: &Element, u: &[[f64; K]], 
     }
 }
 
-/// A link as a thin bar whose ends are two vertices, a heat length wide.
+/// A link as a bar between two vertices, one heat length wide.
 ///
-/// In the heat equation it is exact for one dimension: heat on it is a sum of `exp(x)` and `exp(-x)`,
-/// `x` in heat lengths, and falls along it as it does along the surface.
+/// Exact for the heat equation in one dimension: heat on it is a sum of `exp(x)` and `exp(-x)`, `x` in heat lengths, and
+/// falls along the bar as it does along the surface.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Bar {
     pub(super) ends: [u32; 2],
     length: f64,
     /// `sqrt(t)`.
     heat_length: f64,
-    /// The length that heat sees, in heat lengths.
+    /// The effective length, in heat lengths.
     depth: f64,
 }
 
@@ -60,7 +60,7 @@ impl Bar {
         Self { ends: link.ends.map(|v| v.0), length: link.length, heat_length, depth }
     }
 
-    /// What it adds to `M + t L`: to the diagonal at both ends, and between them.
+    /// Its entries in `M + t L`: on the diagonal at both ends, and between them.
     pub(super) fn heat(&self) -> [f64; 2] {
         let t = self.heat_length * self.heat_length;
         [t / self.depth.tanh(), -t / self.depth.sinh()]
@@ -71,13 +71,13 @@ impl Bar {
         self.heat_length / self.length
     }
 
-    /// Adds to `b` the bar's part of `-div X`, lane by lane: its weight times how much farther one end
-    /// is than the other, the integral of `-sign u'`.
+    /// Adds to `b` the bar's part of `-div X`, lane by lane: its weight times the difference of the distances of its ends,
+    /// the integral of `-sign u'`.
     pub(super) fn add_divergence<const K: usize>(&self, u: &[[f64; K]], b: &mut [[f64; K]]) {
         let [i, j] = self.ends.map(|v| v as usize);
         let lost = (-self.depth).exp();
         for lane in 0..K {
-            // Heat is least where the parts that came in at either end are equal.
+            // Heat is least where the parts that entered at either end are equal.
             let (at_i, at_j) = (u[i][lane], u[j][lane]);
             let (from_i, from_j) = ((at_i - lost * at_j).max(0.0), (at_j - lost * at_i).max(0.0));
             if from_i == from_j {
@@ -95,7 +95,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_linear_function_has_the_divergence_of_its_direction() {
+    fn the_divergence_of_a_linear_function_is_that_of_its_direction() {
         // u = 3 x + 4 y on the triangle (0, 0), (2, 0), (1, 1): X = -(0.6, 0.8).
         let triangle = Triangle { base: 2.0, x: 1.0, y: 1.0 };
         let element = Element { vertices: [0, 1, 2], triangle, share: 1.0 };
@@ -112,7 +112,7 @@ mod tests {
     }
 
     #[test]
-    fn a_bar_rises_by_its_length_or_to_where_heat_from_both_ends_meets() {
+    fn a_bar_rises_by_its_length_or_up_to_where_heat_from_both_ends_meets() {
         let link = Link { ends: [0, 1].map(surface::VertexId), length: 3.0 };
         let bar = Bar::new(&link, 0.5);
         let rise = |u: [f64; 2]| {
@@ -125,7 +125,7 @@ mod tests {
         for (heat, expected) in [
             ([1.0, 0.0], 3.0),
             ([0.0, 1.0], -3.0),
-            // Nothing leaves the far end.
+            // No heat leaves at the far end.
             ([at(3.0), 1.0], 3.0),
             // Least heat after 2 of 3.
             ([at(2.0), at(1.0)], 1.0),

@@ -1,32 +1,31 @@
-//! Distances from the flow of heat.
+//! The heat method.
 
-mod components;
 mod flow;
-mod ring;
 mod system;
 
 use linalg::Matrix;
 use rayon::prelude::*;
 use surface::laplacian::{Element, Laplacian, Metric};
-use surface::{IntrinsicMesh, Link, VertexId};
+use surface::{Components, IntrinsicMesh, Link, Rows, VertexId, components_with_links};
 
-use self::components::Components;
-use self::flow::{Bar, LONGEST_BAR};
-use self::ring::Ring;
-use self::system::System;
-use crate::solver::{Pool, within};
-use crate::{Dijkstra, DistanceSolver, GeodesicError, Source, SurfacePoint};
+use crate::dijkstra::Dijkstra;
+use crate::error::GeodesicError;
+use crate::point::SurfacePoint;
+use crate::solver::{DistanceSolver, Pool, within};
+use crate::source::Source;
+use flow::{Bar, LONGEST_BAR};
+use system::System;
 
 /// Options of [`HeatMethod`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct HeatOptions {
-    /// For how long heat flows, positive; longer is smoother, shorter is rougher. In units of `h^2`,
-    /// `h` being the mean side of the Delaunay triangles, and on fine meshes of `h l`, `l` being a
-    /// 200th of the square root of the area.
+    /// How long heat flows, positive; longer is smoother, shorter is rougher. In units of `h^2`, where `h` is the mean
+    /// side of the Delaunay triangles; on fine meshes in units of `h l`, where `l` is a 200th of the square root of the
+    /// area.
     ///
-    /// Default: 0.85, a compromise over ten meshes of 3,000 to 43,000 vertices with known exact
-    /// distances, each of which is best between 0.5 and 1.3. A surface without features as small as
-    /// its edges is best between `2 h l` and `5 h l`.
+    /// Default: 0.85, a compromise over ten meshes of 3,000 to 43,000 vertices with known exact distances, whose best
+    /// values are between 0.5 and 1.3. For a surface without features as small as its edges, the best value is between
+    /// `2 h l` and `5 h l`.
     pub time: f64,
 }
 
@@ -50,22 +49,21 @@ impl HeatOptions {
     }
 }
 
-/// Heat put into a source. With the smallest number above zero it leaves room for heat to fall by
-/// `exp(-1390)`.
+/// Heat put into a source. Above the smallest positive number, this leaves room for heat to fall by `exp(-1390)`.
 const AMPLITUDE: f64 = 1e280;
 
-/// The mean side, as a share of the square root of the area, below which heat flows for longer than
-/// the square of the side, so that the error falls with the side to zero and not to a constant.
+/// The mean side, as a share of the square root of the area, below which heat flows for longer than the square of the
+/// side, so that the error falls to zero with the side and not to a constant.
 const FINE: f64 = 1.0 / 200.0;
 
-/// How far heat may have to travel, in heat lengths, before less of it arrives than a number can hold.
+/// How far heat can travel, in heat lengths, before it underflows.
 const RANGE: f64 = 1300.0;
 
-/// Sources that [`HeatMethod`] solves for at once when it is asked for many.
+/// Number of sources solved for at once, if there are many.
 const LANES: usize = 4;
 
-/// Approximate geodesic distances from the direction in which heat flows (Crane, Weischedel and
-/// Wardetzky 2013), on an intrinsic Delaunay triangulation.
+/// Approximate geodesic distances from the direction of heat flow (Crane, Weischedel and Wardetzky 2013, [`crane2013`]),
+/// on an intrinsic Delaunay triangulation.
 ///
 /// | paper | here | shape | meaning |
 /// |---|---|---|---|
@@ -73,31 +71,41 @@ const LANES: usize = 4;
 /// | `-L_C` | `L` | p x p | cotangent stiffness, positive semidefinite |
 /// | `t` | `time` | | heat time, see [`HeatOptions::time`] |
 /// | `u` | `u` | p | heat at that time: `(M + t L) u = delta` |
-/// | `X` | | one a triangle | `-grad u / abs(grad u)` |
+/// | `X` | | one per triangle | `-grad u / abs(grad u)` |
 /// | `phi` | `phi` | p | `L phi = -div X`, shifted |
 ///
-/// * Triangles are flipped on edge lengths alone until they are Delaunay, on a cover of the surface
-///   that makes boundaries and non-manifold edges nothing special (Sharp and Crane 2020). Heat is
-///   then positive everywhere; the surface and its vertices stay the same.
-/// * Both factorisations are done once, in one order of elimination; a source then costs three
-///   passes over a factor. Many sources are solved [four at a time](Self::distance_columns) and
-///   agree bit for bit with one at a time.
-/// * A smooth approximation: it is **not** 1-Lipschitz along edges, can be below or above the
-///   distance, and rounds off creases where fronts meet. Beside exact distances the mean error is 1
-///   to 3 % on meshes of thousands of vertices, and ten times that at single vertices near the source. Never NaN, never negative, zero at a vertex that is a source.
-/// * Within the triangles around a source, distances are at most the straight ones.
-/// * At a boundary heat is kept in (Neumann), so level lines meet it at right angles.
-/// * A link is a bar a heat length wide: distances across a bridge are those of its ends plus its
-///   length. Infinite exactly where no edge or link leads.
+/// * Triangles are flipped until they are Delaunay, on the tufted cover of the surface, where boundaries and
+///   non-manifold edges need no special treatment (Sharp and Crane 2020, [`sharp2020`]). Heat is then positive
+///   everywhere. The surface and its vertices stay the same.
+/// * Both factorisations are done once, in one order of elimination; a source then costs three passes over a factor.
+///   Many sources are solved [four at a time](DistanceSolver::distance_columns), with the same bits as one at a time.
+/// * A smooth approximation: it is **not** 1-Lipschitz along edges, can be below or above the distance, and rounds off
+///   creases where fronts meet. Compared with exact distances, the mean error is 1 to 3 % on meshes of thousands of
+///   vertices, and ten times that at single vertices near the source. Never NaN, never negative, zero at a vertex that
+///   is a source.
+/// * In the triangles around a source, distances are at most the straight ones.
+/// * No heat leaves through the boundary (Neumann), so level lines meet it at right angles.
+/// * A link is a bar one heat length wide: distances across a bridge are those of its ends plus its length. Infinite
+///   exactly where no edge or link leads.
 ///
-/// On a surface `O(p^1.5)` to set up, `O(p log p)` memory and time a source.
+/// Cost on a surface: `O(p^1.5)` to set up; `O(p log p)` memory, and time per source.
 ///
-/// **Deviations.** The potential is shifted to be right around the source and not at it, where the
-/// direction of flow has no meaning: that halves the largest errors. On fine meshes heat flows for
-/// longer than the square of the mean side (see [`HeatOptions::time`]), without which the error would
-/// not vanish under refinement; and for so long that it reaches the far end in double precision.
+/// **Deviations.** The potential is shifted to fit around the source and not at it, where the direction of flow is
+/// undefined: this halves the largest errors. On fine meshes, heat flows for longer than the square of the mean side
+/// (see [`HeatOptions::time`]), or the error would not vanish under refinement; and for so long that it reaches the far
+/// end in double precision.
 ///
-/// [`crane2013`], [`sharp2020`] in `REFERENCES.bib`.
+/// ```
+/// use canonform_geodesics::{DistanceSolver, HeatMethod, HeatOptions};
+/// use mesh::shapes;
+/// use surface::VertexId;
+///
+/// // From one pole of a unit sphere to the other.
+/// let method = HeatMethod::new(&shapes::icosphere(4).intrinsic(), HeatOptions::default())?;
+/// let farthest = method.distances(VertexId(0)).into_iter().fold(0.0, f64::max);
+/// assert!((farthest / std::f64::consts::PI - 1.0).abs() < 0.02);
+/// # Ok::<(), canonform_geodesics::GeodesicError>(())
+/// ```
 ///
 /// [`crane2013`]: https://doi.org/10.1145/2516971.2516977
 /// [`sharp2020`]: https://doi.org/10.1111/cgf.14069
@@ -107,11 +115,14 @@ pub struct HeatMethod {
     unit: f64,
     /// Heat time, in squared units.
     time: f64,
-    components: Components,
-    ring: Ring,
-    /// The step that eliminates each vertex: where its numbers are.
+    /// The component of every vertex.
+    component: Vec<u32>,
+    n_components: usize,
+    /// For every vertex, the vertices joined to it by a side of a triangle and how far they are, in units.
+    neighbours: Rows<(u32, f64)>,
+    /// The step that eliminates each vertex, which is its place in all vectors.
     step: Vec<u32>,
-    /// The triangles and links; their vertices are steps.
+    /// The triangles and links; their vertices are given by their steps.
     elements: Vec<Element>,
     bars: Vec<Bar>,
     system: System,
@@ -121,25 +132,24 @@ pub struct HeatMethod {
 impl HeatMethod {
     /// Flips the surface to Delaunay and factorises its matrices.
     ///
-    /// Lengths that make no triangle are mended: cut to the way around it, or all increased by a
-    /// millionth of their mean. A matrix that is not positive definite to rounding is tried again with
-    /// 1e-12, 1e-9 and 1e-6 of its diagonal added.
+    /// Lengths of no triangle are corrected, see [`Metric`]. A matrix that is not positive definite, by rounding, is
+    /// tried again with 1e-12, 1e-9 and 1e-6 of its diagonal added.
     ///
     /// # Errors
-    /// [`GeodesicError::BadHeatTime`]; [`GeodesicError::NotFactorised`] when nothing of that helped
-    /// or memory ran out.
+    /// [`GeodesicError::BadHeatTime`]; [`GeodesicError::NotFactorised`] if that did not help, or memory ran out.
     pub fn new(mesh: &IntrinsicMesh, options: HeatOptions) -> Result<Self, GeodesicError> {
         options.validate()?;
         let laplacian = Laplacian::new(mesh);
         let metric = laplacian.metric();
-        let components = Components::new(mesh);
+        let components = components_with_links(mesh);
+        let grounded = components.lowest_vertices();
         let (side, area) = laplacian.mean_side_and_area();
         let time = options.time * side * side.max(FINE * area.sqrt());
         let time = time.max((extent(mesh, metric, &components) / RANGE).powi(2));
         let links = metric.links.iter().filter(|link| link.ends[0] != link.ends[1]);
         let mut bars: Vec<Bar> = links.map(|link| Bar::new(link, time.sqrt())).collect();
-        let system = System::new(&laplacian, &bars, time, &components.first)?;
-        let ring = Ring::new(mesh.n_vertices(), laplacian.elements());
+        let system = System::new(&laplacian, &bars, time, &grounded)?;
+        let neighbours = neighbours(mesh.n_vertices(), laplacian.elements());
         let mut step = vec![0; mesh.n_vertices()];
         for (i, row) in system.heat.order().rows().iter().enumerate() {
             step[*row] = i as u32;
@@ -153,8 +163,9 @@ impl HeatMethod {
         Ok(Self {
             unit: metric.unit,
             time,
-            components,
-            ring,
+            component: components.labels.iter().map(|label| label.unwrap_or(0)).collect(),
+            n_components: components.count,
+            neighbours,
             step,
             elements,
             bars,
@@ -163,7 +174,7 @@ impl HeatMethod {
         })
     }
 
-    /// For how long heat flows, in squared mesh units.
+    /// How long heat flows, in squared mesh units.
     #[must_use]
     pub fn time(&self) -> f64 {
         self.time * self.unit * self.unit
@@ -195,16 +206,15 @@ impl HeatMethod {
 
     /// Distances from the potential.
     ///
-    /// At a source the direction of flow has no meaning and the potential is off by a good part of an
-    /// edge, so it is shifted to agree, on average over relative errors, with the straight distances to
-    /// the vertices around.
+    /// At a source, the direction of flow is undefined and the potential is wrong by a good part of an edge. So it is
+    /// shifted to agree, on average over relative errors, with the straight distances to the vertices around.
     fn read_lane<const K: usize>(&self, lane: usize, sources: &[Source], phi: &[[f64; K]], out: &mut [f64]) {
         let potential = |v: usize| phi[self.step[v] as usize][lane];
         let in_units = |length: f64| if self.unit > 0.0 { length / self.unit } else { 0.0 };
         out.fill(f64::INFINITY);
         for source in sources {
             let around: &[_] = match source.point() {
-                SurfacePoint::Vertex(vertex) => self.ring.of(vertex),
+                SurfacePoint::Vertex(vertex) => self.neighbours.row(vertex.index()),
                 _ => &[],
             };
             let reach = source.reach().iter().map(|(v, straight)| (v.index(), in_units(*straight)));
@@ -212,27 +222,27 @@ impl HeatMethod {
                 out[v] = out[v].min(straight);
             }
         }
-        let mut shifts = vec![Shift::default(); self.components.first.len()];
+        let mut shifts = vec![Shift::default(); self.n_components];
         for (v, straight) in out.iter().enumerate().filter(|(_, straight)| straight.is_finite()) {
-            shifts[self.components.of[v] as usize].add(potential(v), *straight);
+            shifts[self.component[v] as usize].add(potential(v), *straight);
         }
         for (v, distance) in out.iter_mut().enumerate() {
-            if let Some(shift) = shifts[self.components.of[v] as usize].mean() {
+            if let Some(shift) = shifts[self.component[v] as usize].mean() {
                 *distance = self.unit * distance.min((potential(v) - shift).max(0.0));
             }
         }
     }
 }
 
-/// A vertex this close to a source, in units, is at the source: nothing can be learned from its error.
+/// A vertex this close to a source, in units, is at the source: its error says nothing.
 const AT_SOURCE: f64 = 1e-6;
 
-/// What the potential of a component exceeds distances by, where they are known.
+/// By how much the potential of a component exceeds known distances.
 #[derive(Debug, Clone, Copy, Default)]
 struct Shift {
     /// Sum and weights around sources.
     around: [f64; 2],
-    /// Sum and number at sources, for one that has nothing around it.
+    /// Sum and number at sources, in case there is nothing around them.
     at: [f64; 2],
 }
 
@@ -244,7 +254,7 @@ impl Shift {
         sum[1] += weight;
     }
 
-    /// The mean excess; none in a component without a source.
+    /// The mean excess; `None` for a component without a source.
     fn mean(&self) -> Option<f64> {
         [self.around, self.at].into_iter().find(|[_, weight]| *weight > 0.0).map(|[sum, weight]| sum / weight)
     }
@@ -262,8 +272,8 @@ impl DistanceSolver for HeatMethod {
         }
     }
 
-    /// One column of distances per source, solved four at a time and in parallel; the result does
-    /// not depend on the number of threads, nor on which sources are solved together.
+    /// Solves for four sources at a time, in parallel; the result depends neither on the number of threads nor on which
+    /// sources are solved together.
     fn distance_columns(&self, sources: &[VertexId]) -> Matrix {
         let p = self.n_vertices();
         let mut columns = Matrix::zeros(p, sources.len());
@@ -282,36 +292,50 @@ impl DistanceSolver for HeatMethod {
     }
 }
 
-/// The vertices that stand for a source in the finite elements, each with its barycentric share.
+/// The vertices that represent a source in the finite elements, each with its barycentric share.
 fn shares(source: &Source) -> impl Iterator<Item = (VertexId, f64)> {
     let shares = match source.point() {
         SurfacePoint::Vertex(_) => [1.0, 0.0, 0.0],
         SurfacePoint::Edge { t, .. } => [1.0 - t, t, 0.0],
         SurfacePoint::Face { barycentric, .. } => barycentric,
     };
-    // The reach of a source starts with the corners of the smallest piece that holds it.
+    // The reach of a source begins with the vertices of its edge or face.
     source.reach().iter().zip(shares).map(|((vertex, _), share)| (*vertex, share))
 }
 
-/// How far across the widest component is along edges, in units: the distance to the vertex
-/// farthest from the vertex farthest from its first.
+/// The vertices joined to each vertex by a side of a triangle, and the length of the shortest such side.
+fn neighbours(n_vertices: usize, elements: &[Element]) -> Rows<(u32, f64)> {
+    let sides = elements.iter().flat_map(|element| {
+        let [a, b, c] = element.vertices;
+        let [ab, ca, bc] = element.triangle.sides();
+        [(a, b, ab), (b, c, bc), (c, a, ca)].into_iter().filter(|(v, w, _)| v != w)
+    });
+    let mut sides: Vec<(u32, u32, f64)> =
+        sides.flat_map(|(v, w, length)| [(v, w, length), (w, v, length)]).collect();
+    sides.sort_by(|a, b| (a.0, a.1).cmp(&(b.0, b.1)).then(a.2.total_cmp(&b.2)));
+    sides.dedup_by_key(|(v, w, _)| (*v, *w));
+    Rows::collect(n_vertices, sides.iter().map(|(v, w, length)| (*v as usize, (*w, *length))))
+}
+
+/// The width of the widest component along edges, in units: the distance from the vertex farthest from the first one to
+/// the vertex farthest from that.
 fn extent(mesh: &IntrinsicMesh, metric: &Metric, components: &Components) -> f64 {
     let links = metric.links.iter().map(|link| Link { length: link.length.min(LONGEST_BAR), ..*link });
     let scaled = IntrinsicMesh::new(mesh.topology().clone(), metric.edges.clone());
     let graph = Dijkstra::new(&scaled.with_links(links.collect()));
     let mut distances = vec![0.0; mesh.n_vertices()];
-    let mut farthest = components.first.clone();
+    let mut farthest = components.lowest_vertices();
     for _ in 0..2 {
-        let sources: Vec<Source> = farthest.iter().map(|&v| Source::vertex(VertexId::from(v))).collect();
+        let sources: Vec<Source> = farthest.iter().map(|v| Source::vertex(*v)).collect();
         graph.solve_into(&sources, f64::INFINITY, &mut distances);
-        for (v, &component) in components.of.iter().enumerate() {
-            let best = &mut farthest[component as usize];
-            if distances[v] > distances[*best] {
+        for v in (0..distances.len()).map(VertexId::from) {
+            let best = &mut farthest[components.of(v)];
+            if distances[v.index()] > distances[best.index()] {
                 *best = v;
             }
         }
     }
-    farthest.iter().map(|&v| distances[v]).fold(0.0, f64::max)
+    farthest.iter().map(|v| distances[v.index()]).fold(0.0, f64::max)
 }
 
 #[cfg(test)]

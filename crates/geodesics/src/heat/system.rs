@@ -1,12 +1,13 @@
 //! The two matrices and their factors.
 
 use linalg::{EliminationOrder, LinalgError, SparseCholesky, SparseSymmetric};
+use surface::VertexId;
 use surface::laplacian::{Element, Laplacian};
 
 use super::flow::Bar;
-use crate::GeodesicError;
+use crate::error::GeodesicError;
 
-/// Shares of its diagonal that are added, one after the other, to a matrix which cannot be factorised.
+/// Shares of its diagonal added, one after the other, to a matrix that cannot be factorised.
 const SHIFTS: [f64; 4] = [0.0, 1e-12, 1e-9, 1e-6];
 
 /// The factors of `M + t L` and of `L`, in the same order of elimination.
@@ -21,19 +22,19 @@ pub(super) struct System {
 impl System {
     /// Assembles and factorises; `grounded` has one vertex of each component.
     ///
-    /// The cotangent stiffness `L` maps constants to zero. One added to its diagonal at one vertex of
-    /// each component makes it definite, and as right-hand sides sum to zero over a component, sets
-    /// the solution to zero there and changes nothing else.
+    /// The cotangent stiffness `L` maps constants to zero. Adding one to its diagonal at one vertex of each component makes
+    /// it definite. As right-hand sides sum to zero over a component, this sets the solution to zero there and changes
+    /// nothing else.
     pub(super) fn new(
         laplacian: &Laplacian,
         bars: &[Bar],
         time: f64,
-        grounded: &[usize],
+        grounded: &[VertexId],
     ) -> Result<Self, GeodesicError> {
         let (n, elements) = (laplacian.n_vertices(), laplacian.elements());
         let mut heat = stiffness(n, elements, time, bars.iter().map(|bar| (bar.ends, bar.heat())));
         heat.add_to_diagonal(laplacian.masses().into_iter());
-        // A vertex with nothing around it is an equation of its own.
+        // A vertex without triangles and links has an equation of its own.
         let missing: Vec<f64> = heat.diagonal().iter().map(|d| if *d == 0.0 { 1.0 } else { 0.0 }).collect();
         heat.add_to_diagonal(missing.into_iter());
         let order = EliminationOrder::new(&heat).map_err(failed)?;
@@ -42,7 +43,7 @@ impl System {
         let mut poisson =
             stiffness(n, elements, 1.0, bars.iter().map(|bar| (bar.ends, [bar.weight(), -bar.weight()])));
         let mut ground = vec![0.0; n];
-        grounded.iter().for_each(|&v| ground[v] = 1.0);
+        grounded.iter().for_each(|v| ground[v.index()] = 1.0);
         poisson.add_to_diagonal(ground.into_iter());
         Ok(Self { heat, poisson: factorise(&order, poisson)? })
     }
@@ -93,10 +94,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_semidefinite_matrix_is_shifted_and_an_indefinite_one_refused() {
+    fn a_semidefinite_matrix_is_shifted_and_an_indefinite_one_rejected() {
         let matrix = |at| SparseSymmetric::from_entries(2, [(0, 0, at), (1, 1, at), (0, 1, -1.0)]);
         let order = EliminationOrder::new(&matrix(1.0)).unwrap();
-        // Constants have no image; the shift makes the solution large and keeps its difference.
+        // Constants are mapped to zero; the shift makes the solution large and keeps its difference.
         let mut x = [1.0, -1.0];
         factorise(&order, matrix(1.0)).unwrap().solve(&mut x);
         assert!((x[0] - x[1] - 1.0).abs() < 1e-3, "{x:?}");

@@ -1,18 +1,16 @@
-//! A first way to the source, down the field of distances.
+//! A first path to the source, down the field of distances.
 
 use std::collections::BTreeSet;
 
-use surface::{CornerId, EdgeId, FaceId, VertexId};
+use surface::{EdgeId, FaceId, Triangle, VertexId};
 
-use super::PathTracer;
-use super::edges::faces_around;
-use super::plane::{Flat, Point, between, distance, segment};
-use super::strip::{Portal, Section, Strip, Way};
-use crate::SurfacePoint;
-use crate::corner::Corner;
-use crate::fast_marching::Sector;
+use super::field::Field;
+use super::plane::{Flat, Point, between, distance, faces_around, segment};
+use super::strip::{Path, Portal, Section, Strip};
+use crate::fast_marching::Stencil;
+use crate::point::SurfacePoint;
 
-/// The next stop on the way.
+/// The next stop on the path.
 #[derive(Debug, Clone, Copy)]
 enum Stop {
     Source(SurfacePoint),
@@ -20,14 +18,14 @@ enum Stop {
     Portal(Portal),
 }
 
-/// How to get there.
+/// What leads there.
 #[derive(Debug, Clone, Copy)]
 enum Over {
     Face(FaceId),
     Link(f64),
 }
 
-/// A step that may be taken, and how far the source then is in all.
+/// A possible step, and the distance to the source over it.
 #[derive(Debug, Clone, Copy)]
 struct Step {
     total: f64,
@@ -35,33 +33,33 @@ struct Step {
     over: Over,
 }
 
-/// Walks from `target` to a source, always into the direction in which the source seems nearest: the
-/// distances at the ends of an edge say where in the plane of a face the source would lie. Passes no
-/// vertex and crosses no edge twice; `None` when it is stuck.
+/// Goes from `target` to a source, always in the direction in which the source seems nearest: the distances at the ends of
+/// an edge say where the source would lie in the plane of a face. Passes no vertex and crosses no edge twice; returns `None`
+/// if it gets stuck.
 ///
-/// Near a ridge of the field, and wherever the field is not that of distances, the way may be bad.
-pub(super) fn descend(tracer: &PathTracer, target: SurfacePoint) -> Option<Way> {
-    let topology = tracer.mesh.topology();
-    let mut walker = Walker { tracer, vertices: BTreeSet::new(), edges: BTreeSet::new() };
-    let mut way = Way { nodes: vec![target], sections: Vec::new() };
+/// The path may be bad near a ridge of the field, and if the field does not contain distances.
+pub(super) fn descend(field: &Field, target: SurfacePoint) -> Option<Path> {
+    let topology = field.mesh.topology();
+    let mut descent = Descent { field, vertices: BTreeSet::new(), edges: BTreeSet::new() };
+    let mut path = Path { nodes: vec![target], sections: Vec::new() };
     let mut strip = Strip { faces: Vec::new(), portals: Vec::new() };
     let mut here = target;
-    let mut faces = faces_around(tracer.mesh, target);
+    let mut faces = faces_around(field.mesh, target);
     loop {
         if let SurfacePoint::Vertex(vertex) = here {
-            if tracer.is_source(vertex) {
-                return Some(way);
+            if field.is_source(vertex) {
+                return Some(path);
             }
-            walker.vertices.insert(vertex);
+            descent.vertices.insert(vertex);
         }
-        let step = walker.best(here, &faces)?;
+        let step = descent.best(here, &faces)?;
         match step.over {
             Over::Face(face) => strip.faces.push(face),
-            Over::Link(length) => way.sections.push(Section::Link(length)),
+            Over::Link(length) => path.sections.push(Section::Link(length)),
         }
         match step.stop {
             Stop::Portal(portal) => {
-                walker.edges.insert(portal.edge);
+                descent.edges.insert(portal.edge);
                 strip.portals.push(portal);
                 here = portal.point();
                 let last = strip.faces.last().copied();
@@ -72,32 +70,32 @@ pub(super) fn descend(tracer: &PathTracer, target: SurfacePoint) -> Option<Way> 
                 if !strip.faces.is_empty() {
                     let strip =
                         std::mem::replace(&mut strip, Strip { faces: Vec::new(), portals: Vec::new() });
-                    way.sections.push(Section::Strip(strip));
+                    path.sections.push(Section::Strip(strip));
                 }
                 here = match step.stop {
                     Stop::Vertex(vertex) => SurfacePoint::Vertex(vertex),
                     Stop::Source(point) => point,
                     Stop::Portal(portal) => portal.point(),
                 };
-                way.nodes.push(here);
+                path.nodes.push(here);
                 if matches!(step.stop, Stop::Source(_)) {
-                    return Some(way);
+                    return Some(path);
                 }
-                faces = faces_around(tracer.mesh, here);
+                faces = faces_around(field.mesh, here);
             }
         }
     }
 }
 
-struct Walker<'a> {
-    tracer: &'a PathTracer<'a>,
-    /// What has been passed.
+struct Descent<'a> {
+    field: &'a Field<'a>,
+    /// The vertices passed and the edges crossed.
     vertices: BTreeSet<VertexId>,
     edges: BTreeSet<EdgeId>,
 }
 
-impl Walker<'_> {
-    /// The step after which the source is nearest.
+impl Descent<'_> {
+    /// The step over which the source is nearest.
     fn best(&self, here: SurfacePoint, faces: &[FaceId]) -> Option<Step> {
         let mut best: Option<Step> = None;
         let mut offer = |total: f64, stop, over| {
@@ -109,10 +107,10 @@ impl Walker<'_> {
             self.steps_within(*face, here, &mut |total, stop| offer(total, stop, Over::Face(*face)));
         }
         if let SurfacePoint::Vertex(vertex) = here {
-            for (other, length) in self.tracer.links(vertex) {
-                if !self.vertices.contains(&other) {
-                    let total = length + self.tracer.distances[other.index()];
-                    offer(total, Stop::Vertex(other), Over::Link(length));
+            for (other, length) in self.field.links(vertex) {
+                if !self.vertices.contains(other) {
+                    let total = length + self.field.distances[other.index()];
+                    offer(total, Stop::Vertex(*other), Over::Link(*length));
                 }
             }
         }
@@ -120,14 +118,13 @@ impl Walker<'_> {
     }
 
     fn steps_within(&self, face: FaceId, here: SurfacePoint, offer: &mut impl FnMut(f64, Stop)) {
-        let (mesh, at) = (self.tracer.mesh, |v: VertexId| self.tracer.distances[v.index()]);
-        for source in self.tracer.sources_within(face) {
+        let (mesh, at) = (self.field.mesh, |v: VertexId| self.field.distances[v.index()]);
+        for source in self.field.sources_within(face) {
             offer(segment(mesh, face, here, *source), Stop::Source(*source));
         }
-        let flat = Flat::new(mesh, face, 0);
+        let flat = Flat::of_face(mesh, face);
         let place = flat.point(mesh, here);
-        for slot in 0..3 {
-            let corner = CornerId(3 * face.0 + slot);
+        for corner in face.corners() {
             let vertex = mesh.topology().corner_vertex(corner);
             if !self.vertices.contains(&vertex) {
                 let step = segment(mesh, face, here, SurfacePoint::Vertex(vertex));
@@ -142,7 +139,7 @@ impl Walker<'_> {
             };
             if !is_on && !self.edges.contains(&edge) {
                 let base = ends.map(|v| flat.vertex(v));
-                if let Some((total, t)) = seen_through(place, base, ends.map(at)) {
+                if let Some((total, t)) = distance_through(place, base, ends.map(at)) {
                     offer(total, Stop::Portal(Portal { edge, t }));
                 }
             }
@@ -150,23 +147,22 @@ impl Walker<'_> {
     }
 }
 
-/// The distance at `here` if the front comes from a single point beyond the base, and where it crosses
-/// the base; `None` if the straight line misses it.
-fn seen_through(here: Point, base: [Point; 2], [at_a, at_b]: [f64; 2]) -> Option<(f64, f64)> {
+/// The distance at `here` of a front that comes from a single point beyond the base, and where the straight line crosses the
+/// base; `None` if it misses the base.
+fn distance_through(here: Point, base: [Point; 2], [at_a, at_b]: [f64; 2]) -> Option<(f64, f64)> {
     let [a, b] = base;
     let (length, side) = (distance(a, b), distance(a, here));
-    let corner = Corner::from_lengths(length, side, distance(b, here));
-    let sector = Sector { base: length, side, dot: corner.x * length, cross: corner.y * length };
-    let total = sector.point_source(at_a, at_b);
+    let above = Triangle::from_sides([length, side, distance(b, here)]);
+    let stencil = Stencil { base: length, side, dot: above.x * length, cross: above.y * length };
+    let total = stencil.point_source(at_a, at_b);
     if !total.is_finite() {
         return None;
     }
-    // The crossing divides the line as the heights of its ends above the base do.
-    let x = 0.5 * (length + (at_a - at_b) * (at_a + at_b) / length);
-    let depth = ((at_a - x) * (at_a + x)).max(0.0).sqrt();
-    let height = depth + corner.y;
-    let t = if height > 0.0 { (x * corner.y + corner.x * depth) / (height * length) } else { 0.5 };
+    // The crossing divides the line as the heights of its ends above and below the base do.
+    let below = Triangle::from_sides([length, at_a, at_b]);
+    let height = above.y + below.y;
+    let t = if height > 0.0 { (below.x * above.y + above.x * below.y) / (height * length) } else { 0.5 };
     let crossing = between(a, b, t.clamp(0.0, 1.0));
-    // Lengths of no triangle, or rounding in a flat one, may claim a source nearer than the base.
+    // With lengths of no triangle, or by rounding in a flat one, the source may seem nearer than the base.
     (total >= distance(here, crossing)).then_some((total, t.clamp(0.0, 1.0)))
 }

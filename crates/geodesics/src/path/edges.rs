@@ -1,107 +1,77 @@
-//! Ways along edges, where nothing better is known.
+//! Paths along edges, as a fallback.
 
-use std::cmp::Reverse;
-use std::collections::BinaryHeap;
+use surface::{FaceId, IntrinsicMesh, VertexId};
 
-use surface::{CornerId, FaceId, IntrinsicMesh, VertexId};
+use super::field::Field;
+use super::plane::faces_around;
+use super::strip::{Path, Section, Strip};
+use crate::heap::VertexHeap;
+use crate::point::SurfacePoint;
+use crate::source::Source;
 
-use super::strip::{Section, Strip, Way};
-use super::{PathTracer, on_the_least};
-use crate::{Source, SurfacePoint};
-
-/// The shortest ways along edges from the sources to all vertices.
+/// The shortest paths along edges from the sources to all vertices.
 #[derive(Debug)]
 pub(super) struct EdgeTree {
-    /// How far every vertex is.
+    /// The length of every path.
     pub(super) distances: Vec<f64>,
-    /// What comes before every vertex on the way from the source.
-    before: Vec<Option<(Before, Section)>>,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum Before {
-    Vertex(VertexId),
-    Source(SurfacePoint),
+    /// What comes before every vertex on its path from the source.
+    before: Vec<Option<(SurfacePoint, Section)>>,
 }
 
 impl EdgeTree {
     /// Cost: `O(p log p)`.
-    pub(super) fn new(tracer: &PathTracer) -> Self {
-        let n = tracer.mesh.n_vertices();
-        let mut tree = Self { distances: vec![f64::INFINITY; n], before: vec![None; n] };
-        // Distances are not negative, so that their bits are in their order.
-        let mut queue = BinaryHeap::new();
-        for source in tracer.sources {
-            let point = on_the_least(tracer.mesh, source.point());
+    pub(super) fn new(field: &Field) -> Self {
+        let n = field.mesh.n_vertices();
+        let mut heap = VertexHeap::default();
+        heap.reset(n);
+        let mut before = vec![None; n];
+        for source in field.sources {
+            let point = source.point().simplified(field.mesh);
             for (vertex, distance) in source.reach() {
-                if let Some(section) = within_face(tracer.mesh, point, *vertex)
-                    && *distance < tree.distances[vertex.index()]
+                if let Some(section) = within_face(field.mesh, point, *vertex)
+                    && heap.relax(vertex.0, *distance)
                 {
-                    tree.distances[vertex.index()] = *distance;
-                    tree.before[vertex.index()] = Some((Before::Source(point), section));
-                    queue.push(Reverse((distance.to_bits(), *vertex)));
+                    before[vertex.index()] = Some((point, section));
                 }
             }
         }
-        while let Some(Reverse((bits, vertex))) = queue.pop() {
-            let distance = f64::from_bits(bits);
-            if distance > tree.distances[vertex.index()] {
-                continue;
-            }
-            let mut reach = |next: VertexId, length: f64, section: Section| {
-                if distance + length < tree.distances[next.index()] {
-                    tree.distances[next.index()] = distance + length;
-                    tree.before[next.index()] = Some((Before::Vertex(vertex), section));
-                    queue.push(Reverse(((distance + length).to_bits(), next)));
+        while let Some((distance, vertex)) = heap.pop() {
+            let vertex = VertexId(vertex);
+            let edges = edges_at(field.mesh, vertex)
+                .map(|(next, length, face)| (next, length, Section::Strip(Strip::within(face))));
+            let links =
+                field.links(vertex).iter().map(|(next, length)| (*next, *length, Section::Link(*length)));
+            for (next, length, section) in edges.chain(links) {
+                if heap.relax(next.0, distance + length) {
+                    before[next.index()] = Some((SurfacePoint::Vertex(vertex), section));
                 }
-            };
-            for (next, length, face) in edges_at(tracer.mesh, vertex) {
-                reach(next, length, Section::Strip(Strip::within(face)));
-            }
-            for (next, length) in tracer.links(vertex) {
-                reach(next, length, Section::Link(length));
             }
         }
-        tree
+        Self { distances: (0..n as u32).map(|v| heap.distance(v)).collect(), before }
     }
 
-    /// The shortest way along edges from `target` to a source; `None` if there is none.
-    pub(super) fn way_from(&self, mesh: &IntrinsicMesh, target: SurfacePoint) -> Option<Way> {
+    /// The shortest path along edges from `target` to a source, if there is one.
+    pub(super) fn path_from(&self, mesh: &IntrinsicMesh, target: SurfacePoint) -> Option<Path> {
         let around = Source::new(mesh, target).ok()?;
         let total = |(vertex, distance): &(VertexId, f64)| distance + self.distances[vertex.index()];
         let mut here = around.reach().iter().min_by(|a, b| total(a).total_cmp(&total(b)))?.0;
-        let mut way = Way { nodes: vec![target], sections: Vec::new() };
+        let mut path = Path { nodes: vec![target], sections: Vec::new() };
         if target != SurfacePoint::Vertex(here) {
-            way.sections.push(within_face(mesh, target, here)?);
-            way.nodes.push(SurfacePoint::Vertex(here));
+            path.sections.push(within_face(mesh, target, here)?);
+            path.nodes.push(SurfacePoint::Vertex(here));
         }
         loop {
             let (before, section) = self.before[here.index()].clone()?;
-            if before == Before::Source(SurfacePoint::Vertex(here)) {
-                return Some(way);
+            if before == SurfacePoint::Vertex(here) {
+                return Some(path);
             }
-            way.sections.push(section);
+            path.sections.push(section);
+            path.nodes.push(before);
             match before {
-                Before::Vertex(vertex) => {
-                    way.nodes.push(SurfacePoint::Vertex(vertex));
-                    here = vertex;
-                }
-                Before::Source(point) => {
-                    way.nodes.push(point);
-                    return Some(way);
-                }
+                SurfacePoint::Vertex(vertex) => here = vertex,
+                _ => return Some(path),
             }
         }
-    }
-}
-
-/// The faces that hold a point.
-pub(super) fn faces_around(mesh: &IntrinsicMesh, point: SurfacePoint) -> Vec<FaceId> {
-    let faces = |corners: &[CornerId]| corners.iter().map(|corner| corner.face()).collect();
-    match point {
-        SurfacePoint::Vertex(vertex) => faces(mesh.topology().vertex_corners(vertex)),
-        SurfacePoint::Edge { edge, .. } => faces(mesh.topology().edge_corners(edge)),
-        SurfacePoint::Face { face, .. } => vec![face],
     }
 }
 
@@ -109,20 +79,15 @@ pub(super) fn faces_around(mesh: &IntrinsicMesh, point: SurfacePoint) -> Vec<Fac
 fn edges_at(mesh: &IntrinsicMesh, vertex: VertexId) -> impl Iterator<Item = (VertexId, f64, FaceId)> {
     let topology = mesh.topology();
     topology.vertex_corners(vertex).iter().flat_map(move |corner| {
-        [1, 2].map(|step| {
-            let face = corner.face();
-            let slot = |step: u32| (corner.slot() as u32 + step) % 3;
-            let edge = topology.opposite_edge(CornerId(3 * face.0 + slot(step)));
-            (topology.faces()[face.index()][slot(3 - step) as usize], mesh.length(edge), face)
-        })
+        [(corner.next(), corner.prev()), (corner.prev(), corner.next())]
+            .map(|(third, end)| (topology.corner_vertex(end), mesh.opposite_length(third), corner.face()))
     })
 }
 
-/// The way within a face from a point to a vertex of a face that holds it.
+/// The section within a face from a point to a vertex of a face that holds it.
 fn within_face(mesh: &IntrinsicMesh, point: SurfacePoint, vertex: VertexId) -> Option<Section> {
-    let holds = |face: &FaceId| mesh.topology().faces()[face.index()].contains(&vertex);
-    let face = faces_around(mesh, point).into_iter().find(holds);
-    match face {
+    let has_vertex = |face: &FaceId| mesh.topology().corner_at(*face, vertex).is_some();
+    match faces_around(mesh, point).into_iter().find(has_vertex) {
         Some(face) => Some(Section::Strip(Strip::within(face))),
         // A vertex without faces.
         None => (point == SurfacePoint::Vertex(vertex)).then_some(Section::Link(0.0)),

@@ -1,4 +1,4 @@
-//! The shortest way through a strip.
+//! The shortest path through a strip of faces.
 
 use std::collections::VecDeque;
 
@@ -6,12 +6,12 @@ use surface::{IntrinsicMesh, VertexId};
 
 use super::plane::{Point, cross, sub};
 use super::strip::{Gate, Laid, Portal, Section, Strip};
-use crate::SurfacePoint;
+use crate::point::SurfacePoint;
 
-/// A way that crosses an edge within this share of its length from a vertex goes through the vertex.
+/// A path that crosses an edge within this share of its length from a vertex goes through the vertex.
 const SNAP: f64 = 1e-10;
 
-/// A vertex on the side of a strip that the shortest way touches.
+/// A vertex on the side of a strip that the shortest path touches.
 #[derive(Debug, Clone, Copy)]
 struct Touch {
     vertex: VertexId,
@@ -21,8 +21,7 @@ struct Touch {
     last: usize,
 }
 
-/// The shortest way between two points through a strip: the nodes on it, and the sections before,
-/// between and after them.
+/// The shortest path between two points through a strip: its inner nodes, and the sections between all nodes.
 pub(super) fn shortest_through(
     mesh: &IntrinsicMesh,
     strip: Strip,
@@ -69,7 +68,7 @@ fn share(gate: &Gate, from: Point, to: Point) -> f64 {
     if share.is_nan() { 0.0 } else { share.clamp(0.0, 1.0) }
 }
 
-/// All vertices that the shortest way touches, whether it bends there or only passes.
+/// All vertices that the shortest path touches, whether it bends there or not.
 fn touches(laid: &Laid) -> Vec<Touch> {
     let mut all: Vec<Touch> = Vec::new();
     let (mut here, mut next) = (laid.start, 0);
@@ -124,7 +123,7 @@ fn touch(gates: &[Gate], gate: usize, end: End) -> Touch {
     }
 }
 
-/// A point that the funnel has come to, and the one before it on the shortest way there.
+/// A point that the funnel has reached, and the one before it on the shortest path.
 #[derive(Debug, Clone, Copy)]
 struct Reached {
     at: Point,
@@ -133,18 +132,18 @@ struct Reached {
     end: End,
 }
 
-/// The vertices where the shortest way bends, in order (Lee and Preparata 1984, `lee1984`).
+/// The vertices where the shortest path bends, in order (Lee and Preparata 1984, `lee1984`).
 ///
-/// The shortest ways from the start to the two ends of a gate run together up to the apex, then apart
-/// along two chains that bend outwards: the funnel. The next gate has a new point on one side; it
-/// straightens the chain of that side, or, when that is used up, moves the apex along the other.
+/// The shortest paths from the start to the two ends of a gate run together up to the apex, then apart along two chains that bend
+/// outwards: the funnel. The next gate has a new point on one side. It straightens the chain of that side or, when that is used
+/// up, moves the apex along the other.
 fn bends(laid: &Laid) -> Vec<Touch> {
     let mut reached = vec![Reached { at: laid.start, before: 0, gate: 0, end: End::Left }];
     let mut apex = 0;
     let mut chains = [VecDeque::new(), VecDeque::new()];
     let mut extend = |at: Point, gate: usize, end: End| {
         let [left, right] = &mut chains;
-        // Everything is said of the left side; on the right, left and right change places.
+        // For the left side; on the right, left and right are exchanged.
         let (own, other, sign) = match end {
             End::Left => (left, right, 1.0),
             End::Right => (right, left, -1.0),
@@ -212,7 +211,7 @@ mod tests {
     }
 
     #[test]
-    fn the_way_bends_where_the_corridor_does() {
+    fn the_path_bends_where_the_corridor_does() {
         assert_eq!(vertices(&bends(&corridor([5.0, 0.5]))), [1, 4]);
         assert_eq!(vertices(&bends(&corridor([6.0, 4.0]))), [1]);
         let straight = Laid { gates: corridor([0.0; 2]).gates[..2].to_vec(), ..corridor([0.5, 2.5]) };
@@ -224,13 +223,13 @@ mod tests {
 
     #[test]
     fn a_vertex_on_the_straight_line_is_touched_once() {
-        // From the origin over vertex 1 at (1, 1) straight to (3.5, 3.5), which also touches vertex 3.
+        // Straight from the origin over vertex 1 at (1, 1) to (3.5, 3.5); the line also touches vertex 3.
         let laid = corridor([3.5, 3.5]);
         assert_eq!(vertices(&touches(&laid)), [1, 3]);
     }
 
     #[test]
-    fn gates_without_length_do_no_harm() {
+    fn gates_without_length_are_handled() {
         let point = [1.0, 1.0];
         let gates = vec![gate((0, point), (1, point)), gate((2, point), (1, point))];
         let laid = Laid { start: [0.0, 0.0], gates, end: [2.0, 2.0] };

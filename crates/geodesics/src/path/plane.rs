@@ -1,9 +1,8 @@
 //! Faces laid out in the plane.
 
-use surface::{CornerId, EdgeId, FaceId, IntrinsicMesh, VertexId};
+use surface::{CornerId, EdgeId, FaceId, IntrinsicMesh, Triangle, VertexId};
 
-use crate::SurfacePoint;
-use crate::corner::Corner;
+use crate::point::SurfacePoint;
 
 /// A point in the plane.
 pub(super) type Point = [f64; 2];
@@ -12,7 +11,7 @@ pub(super) fn sub(a: Point, b: Point) -> Point {
     [a[0] - b[0], a[1] - b[1]]
 }
 
-/// Twice the area of the triangle from the origin over `a` and `b`; positive if `b` lies to the left.
+/// Twice the area of the triangle between the origin, `a` and `b`; positive if `b` lies to the left of `a`.
 pub(super) fn cross(a: Point, b: Point) -> f64 {
     a[0] * b[1] - a[1] * b[0]
 }
@@ -26,30 +25,27 @@ pub(super) fn distance(a: Point, b: Point) -> f64 {
     x.hypot(y)
 }
 
-/// The third corner of a triangle whose base goes from the origin along the x-axis; above it.
-pub(super) fn apex(base: f64, from_start: f64, from_end: f64) -> Point {
-    if base > 0.0 {
-        let corner = Corner::from_lengths(base, from_start, from_end);
-        // Lengths that belong to no triangle may put it anywhere on the line.
-        [corner.x.clamp(-from_start, from_start), corner.y]
-    } else {
-        [0.0, from_start]
-    }
+/// The apex of a triangle whose base runs from the origin along the x-axis, from the lengths of the base and of the sides
+/// from its start and its end.
+fn apex(sides: [f64; 3]) -> Point {
+    let Triangle { x, y, .. } = Triangle::from_sides(sides);
+    // Lengths of no triangle may put it anywhere on the line.
+    [x.clamp(-sides[1], sides[1]), y]
 }
 
-/// Which side of a gate, for someone who passes it with its left end on the left.
+/// The side of a gate, for someone who passes it with its left end on the left.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Side {
     Behind,
     Ahead,
 }
 
-/// The third corner of a face on one side of a gate with these ends on the left and on the right, from
-/// the lengths of the gate and of the sides from its left and its right end.
+/// The third corner of a face on one side of a gate with the given left and right ends, from the lengths of the gate and
+/// of the sides from its left and its right end.
 pub(super) fn beyond([left, right]: [Point; 2], lengths: [f64; 3], side: Side) -> Point {
-    let [base, from_left, from_right] = lengths;
+    let base = lengths[0];
     let [x, y] = if base > 0.0 { sub(right, left).map(|x| x / base) } else { [1.0, 0.0] };
-    let [along, away] = apex(base, from_left, from_right);
+    let [along, away] = apex(lengths);
     let ahead = if side == Side::Ahead { away } else { -away };
     [left[0] + along * x - ahead * y, left[1] + along * y + ahead * x]
 }
@@ -62,14 +58,17 @@ pub(super) struct Flat {
 }
 
 impl Flat {
-    /// A face with the corner in `slot` in the origin.
-    pub(super) fn new(mesh: &IntrinsicMesh, face: FaceId, slot: usize) -> Self {
-        let vertices = mesh.topology().faces()[face.index()];
-        let slots = [slot, (slot + 1) % 3, (slot + 2) % 3];
-        let opposite =
-            slots.map(|slot| mesh.length(mesh.topology().opposite_edge(CornerId(3 * face.0 + slot as u32))));
-        let at = [[0.0, 0.0], [opposite[2], 0.0], apex(opposite[2], opposite[1], opposite[0])];
-        Self { vertices: slots.map(|slot| vertices[slot]), at }
+    /// The face of a corner, with that corner in the origin.
+    pub(super) fn new(mesh: &IntrinsicMesh, corner: CornerId) -> Self {
+        let corners = [corner, corner.next(), corner.prev()];
+        let sides = mesh.sides(corner.prev());
+        let vertices = corners.map(|corner| mesh.topology().corner_vertex(corner));
+        Self { vertices, at: [[0.0, 0.0], [sides[0], 0.0], apex(sides)] }
+    }
+
+    /// A face with its first corner in the origin.
+    pub(super) fn of_face(mesh: &IntrinsicMesh, face: FaceId) -> Self {
+        Self::new(mesh, CornerId::new(face, 0))
     }
 
     /// Any triangle.
@@ -77,17 +76,17 @@ impl Flat {
         Self { vertices, at }
     }
 
-    /// Where a vertex of the face is.
+    /// The position of a vertex of the face.
     pub(super) fn vertex(&self, vertex: VertexId) -> Point {
         self.at[self.vertices.iter().position(|v| *v == vertex).unwrap_or_default()]
     }
 
-    /// Where the corner is that is neither in the origin nor on the x-axis.
+    /// The position of the corner that is neither in the origin nor on the x-axis.
     pub(super) fn last(&self) -> Point {
         self.at[2]
     }
 
-    /// Where a point of the face is.
+    /// The position of a point of the face.
     pub(super) fn point(&self, mesh: &IntrinsicMesh, point: SurfacePoint) -> Point {
         match point {
             SurfacePoint::Vertex(vertex) => self.vertex(vertex),
@@ -103,6 +102,16 @@ impl Flat {
     }
 }
 
+/// The faces that hold a point.
+pub(super) fn faces_around(mesh: &IntrinsicMesh, point: SurfacePoint) -> Vec<FaceId> {
+    let faces = |corners: &[CornerId]| corners.iter().map(|corner| corner.face()).collect();
+    match point {
+        SurfacePoint::Vertex(vertex) => faces(mesh.topology().vertex_corners(vertex)),
+        SurfacePoint::Edge { edge, .. } => faces(mesh.topology().edge_corners(edge)),
+        SurfacePoint::Face { face, .. } => vec![face],
+    }
+}
+
 /// The length of the straight line between two points of a face.
 pub(super) fn segment(mesh: &IntrinsicMesh, face: FaceId, p: SurfacePoint, q: SurfacePoint) -> f64 {
     let along = |edge: EdgeId, point| match point {
@@ -112,13 +121,13 @@ pub(super) fn segment(mesh: &IntrinsicMesh, face: FaceId, p: SurfacePoint, q: Su
         SurfacePoint::Edge { edge: other, t } => (other == edge).then_some(t),
         SurfacePoint::Face { .. } => None,
     };
-    // On one edge nothing needs to be laid out, and nothing gets lost in flat faces.
-    for slot in 0..3 {
-        let edge = mesh.topology().opposite_edge(CornerId(3 * face.0 + slot));
+    // Nothing needs to be laid out for two points on one edge, which also loses nothing in flat faces.
+    for corner in face.corners() {
+        let edge = mesh.topology().opposite_edge(corner);
         if let (Some(s), Some(t)) = (along(edge, p), along(edge, q)) {
             return (s - t).abs() * mesh.length(edge);
         }
     }
-    let flat = Flat::new(mesh, face, 0);
+    let flat = Flat::of_face(mesh, face);
     distance(flat.point(mesh, p), flat.point(mesh, q))
 }

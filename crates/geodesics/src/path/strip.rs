@@ -1,19 +1,19 @@
-//! Ways over faces that are crossed one after the other.
+//! Paths as nodes and the faces crossed between them.
 
 use surface::{EdgeId, FaceId, IntrinsicMesh, VertexId};
 
 use super::plane::{Flat, Point, Side, beyond, segment};
-use crate::SurfacePoint;
+use crate::point::SurfacePoint;
 
-/// A way along the surface: nodes, and how it goes straight from each to the next.
+/// A path along the surface: nodes, and how it goes from each to the next.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Way {
+pub(super) struct Path {
     pub(super) nodes: Vec<SurfacePoint>,
     /// One fewer than nodes.
     pub(super) sections: Vec<Section>,
 }
 
-/// The part of a way between two nodes.
+/// The part of a path between two nodes.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Section {
     /// Over a link of this length.
@@ -22,7 +22,7 @@ pub(super) enum Section {
     Strip(Strip),
 }
 
-/// Faces crossed one after the other.
+/// A sequence of faces crossed one after the other.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Strip {
     /// One more than portals: portal `i` leads from face `i` to face `i + 1`.
@@ -34,7 +34,7 @@ pub(super) struct Strip {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Portal {
     pub(super) edge: EdgeId,
-    /// Where, as a share of the way from its lower to its higher vertex.
+    /// Where it is crossed, from 0 at its lower vertex to 1 at its higher one.
     pub(super) t: f64,
 }
 
@@ -44,7 +44,7 @@ impl Portal {
     }
 }
 
-impl Way {
+impl Path {
     pub(super) fn length(&self, mesh: &IntrinsicMesh) -> f64 {
         let ends = self.nodes.iter().zip(self.nodes.iter().skip(1));
         self.sections.iter().zip(ends).map(|(section, (a, b))| section.length(mesh, *a, *b)).sum()
@@ -67,7 +67,7 @@ impl Section {
     }
 }
 
-/// A portal laid out in the plane, seen by someone on the way.
+/// A portal laid out in the plane, with its ends on the left and on the right of the path.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Gate {
     pub(super) left: (VertexId, Point),
@@ -88,8 +88,8 @@ impl Strip {
         Self { faces: vec![face], portals: Vec::new() }
     }
 
-    /// Takes out what leads nowhere: faces that are left by the edge they were entered by, and edges
-    /// at either end that the end itself lies on.
+    /// Removes detours: faces that are left by the edge they were entered by, and edges at either end that the end itself
+    /// lies on.
     pub(super) fn simplified(self, mesh: &IntrinsicMesh, start: SurfacePoint, end: SurfacePoint) -> Self {
         let mut faces = self.faces.into_iter();
         let mut simple = Self { faces: faces.next().into_iter().collect(), portals: Vec::new() };
@@ -123,7 +123,7 @@ impl Strip {
         let topology = mesh.topology();
         let length = |a, b| topology.edge_between(a, b).map_or(0.0, |edge| mesh.length(edge));
         let Some(first) = self.portals.first() else {
-            let flat = Flat::new(mesh, self.faces[0], 0);
+            let flat = Flat::of_face(mesh, self.faces[0]);
             return Laid { start: flat.point(mesh, start), gates: Vec::new(), end: flat.point(mesh, end) };
         };
         let triangle = |face: FaceId, gate: &Gate, side: Side| {

@@ -1,6 +1,6 @@
 //! Midpoint subdivision.
 
-use surface::{CornerId, Topology, VertexId};
+use surface::{FaceId, Topology, VertexId};
 
 use crate::tri_mesh::TriMesh;
 
@@ -20,10 +20,9 @@ pub fn subdivide(mesh: &TriMesh) -> TriMesh {
     let mut positions = mesh.positions.clone();
     positions.extend(topology.edges().iter().map(|&edge| midpoint(edge)));
     let faces = mesh.faces.iter().enumerate().flat_map(|(f, &[a, b, c])| {
-        let [bc, ca, ab] = [0, 1, 2].map(|slot| {
-            let edge = topology.opposite_edge(CornerId((3 * f + slot) as u32));
-            VertexId::from(n_old + edge.index())
-        });
+        let [bc, ca, ab] = FaceId::from(f)
+            .corners()
+            .map(|corner| VertexId::from(n_old + topology.opposite_edge(corner).index()));
         [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]
     });
     TriMesh { faces: faces.collect(), positions }

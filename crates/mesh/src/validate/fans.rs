@@ -1,11 +1,10 @@
-//! How the faces around each vertex hang together.
+//! Non-manifold vertices and boundary loops, from the fans of faces around the vertices.
 
-use surface::DisjointSets;
-use surface::{CornerId, EdgeId, Topology, VertexId};
+use surface::{DisjointSets, EdgeId, OneRing, Topology, VertexId};
 
-/// What the fans of faces around the vertices tell of a mesh.
+/// What the fans of faces around the vertices say about a mesh.
 pub(super) struct Fans {
-    /// Vertices whose faces form more than one fan.
+    /// Vertices whose faces are not all connected through edges at the vertex.
     pub(super) non_manifold_vertices: usize,
     /// Chains of boundary edges.
     pub(super) boundary_loops: usize,
@@ -14,52 +13,36 @@ pub(super) struct Fans {
 impl Fans {
     /// Walks around every vertex; linear time for bounded valence.
     pub(super) fn of(topology: &Topology) -> Self {
+        let is_boundary = |edge: EdgeId| topology.edge_corners(edge).len() == 1;
         let mut non_manifold_vertices = 0;
-        // Two boundary edges follow each other when they end the same fan of faces around a vertex.
+        // Two boundary edges follow each other if they are the two ends of one fan.
         let mut boundary = DisjointSets::new(topology.n_edges());
-        let mut spokes: Vec<(EdgeId, u32)> = Vec::new();
+        let mut ring = OneRing::default();
+        // The edges at the ends of open fans, and the numbers of these fans.
+        let mut ends: Vec<(EdgeId, u32)> = Vec::new();
         for vertex in (0..topology.n_vertices()).map(VertexId::from) {
-            let corners = topology.vertex_corners(vertex);
-            spokes.clear();
-            for (i, &corner) in (0u32..).zip(corners) {
-                spokes.extend(spokes_of(topology, corner).map(|edge| (edge, i)));
-            }
-            spokes.sort_unstable();
-            let mut fans = DisjointSets::new(corners.len());
-            let mut fan_count = corners.len();
-            let mut sheets = DisjointSets::new(corners.len());
-            for group in spokes.chunk_by(|a, b| a.0 == b.0) {
-                for pair in group.windows(2) {
-                    fan_count -= usize::from(fans.union(pair[0].1, pair[1].1));
+            ring.collect(topology, topology.vertex_corners(vertex));
+            ends.clear();
+            for (i, fan) in (0..).zip(ring.fans()).filter(|(_, fan)| !fan.is_closed) {
+                let edges = fan.ends().map(|corner| topology.opposite_edge(corner));
+                if edges.into_iter().all(is_boundary) {
+                    boundary.union(edges[0].0, edges[1].0);
                 }
-                if let [a, b] = group {
-                    sheets.union(a.1, b.1);
-                }
+                ends.extend(edges.map(|edge| (edge, i)));
             }
-            non_manifold_vertices += usize::from(fan_count > 1);
-            // At most two boundary edges end the same sheet.
-            let mut ends: Vec<(u32, EdgeId)> = spokes
-                .chunk_by(|a, b| a.0 == b.0)
-                .filter_map(|group| match group {
-                    [(edge, i)] => Some((sheets.find(*i), *edge)),
-                    _ => None,
-                })
-                .collect();
+            // Fans are connected through edges of more than two faces.
             ends.sort_unstable();
+            let mut n_connected = ring.fans().count();
+            let mut fans = DisjointSets::new(n_connected);
             for pair in ends.windows(2).filter(|pair| pair[0].0 == pair[1].0) {
-                boundary.union(pair[0].1.0, pair[1].1.0);
+                n_connected -= usize::from(fans.union(pair[0].1, pair[1].1));
             }
+            non_manifold_vertices += usize::from(n_connected > 1);
         }
-        let is_boundary = |edge: u32| topology.edge_corners(EdgeId(edge)).len() == 1;
-        let boundary_loops =
-            (0..boundary.len() as u32).filter(|&e| is_boundary(e) && boundary.find(e) == e).count();
+        let boundary_loops = (0..topology.n_edges())
+            .map(EdgeId::from)
+            .filter(|edge| is_boundary(*edge) && boundary.find(edge.0) == edge.0)
+            .count();
         Self { non_manifold_vertices, boundary_loops }
     }
-}
-
-/// The two edges of a face that meet in one of its corners.
-fn spokes_of(topology: &Topology, corner: CornerId) -> impl Iterator<Item = EdgeId> {
-    let first = corner.face().0 * 3;
-    let slot = corner.slot() as u32;
-    [1, 2].map(|step| topology.opposite_edge(CornerId(first + (slot + step) % 3))).into_iter()
 }

@@ -1,7 +1,7 @@
 //! The triangles that functions on the surface are linear on.
 
-use super::delaunay::Cover;
-use super::triangle::Triangle;
+use crate::triangle::Triangle;
+use crate::triangulation::{GluedTriangle, Triangulation};
 
 /// Two triangles on the same vertices are one when their sides differ by no more than this share.
 const SAME: f64 = 1e-9;
@@ -14,7 +14,7 @@ const STEEPEST: f64 = 1e9;
 pub struct Element {
     /// The three vertices; one may occur twice.
     pub vertices: [u32; 3],
-    /// Its sides run from the first vertex to the second, the third and back, in units of the metric.
+    /// Its base runs from the first vertex to the second, in units of the metric.
     pub triangle: Triangle,
     /// One for a face of the mesh, a half where front and back of the cover went different ways.
     pub share: f64,
@@ -23,16 +23,14 @@ pub struct Element {
 /// The triangles of a cover of which each counts half; a front and its back are merged into one
 /// again wherever both were flipped alike, which is everywhere but next to boundaries and
 /// non-manifold edges.
-pub(super) fn elements(cover: &Cover) -> Vec<Element> {
-    let mut sorted: Vec<([u32; 3], [f64; 3])> = cover
-        .triangles()
-        .map(|([a, b, c], [ab, bc, ca])| {
-            let mut opposite = [(a, bc), (b, ca), (c, ab)];
-            opposite.sort_by(|(v, l), (w, m)| v.cmp(w).then(l.total_cmp(m)));
-            let [(a, bc), (b, ca), (c, ab)] = opposite;
-            ([a, b, c], [ab, bc, ca])
-        })
-        .collect();
+pub(super) fn elements(cover: &Triangulation) -> Vec<Element> {
+    let sorted = |triangle: &GluedTriangle| {
+        let mut opposite = [0, 1, 2].map(|k| (triangle.vertices[k].0, triangle.lengths[k]));
+        opposite.sort_by(|(v, l), (w, m)| v.cmp(w).then(l.total_cmp(m)));
+        let [(a, bc), (b, ca), (c, ab)] = opposite;
+        ([a, b, c], [ab, bc, ca])
+    };
+    let mut sorted: Vec<([u32; 3], [f64; 3])> = cover.triangles().iter().map(sorted).collect();
     let by_length = |a: &[f64; 3], b: &[f64; 3]| a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1]));
     sorted.sort_by(|(v, a), (w, b)| v.cmp(w).then(by_length(a, b)));
     let mut elements: Vec<Element> = Vec::with_capacity(sorted.len() / 2 + 1);
@@ -41,7 +39,10 @@ pub(super) fn elements(cover: &Cover) -> Vec<Element> {
         let same = sides.iter().zip(previous).all(|(a, b)| (a - b).abs() <= SAME * a);
         match elements.last_mut() {
             Some(last) if last.vertices == vertices && same => last.share += 0.5,
-            _ => elements.push(Element { vertices, triangle: Triangle::from_sides(sides), share: 0.5 }),
+            _ => {
+                let [ab, bc, ca] = sides;
+                elements.push(Element { vertices, triangle: Triangle::from_sides([ab, ca, bc]), share: 0.5 });
+            }
         }
         previous = sides;
     }
@@ -53,7 +54,8 @@ pub(super) fn mean_side_and_area(elements: &[Element]) -> (f64, f64) {
     let [mut shares, mut perimeter, mut area] = [0.0; 3];
     for Element { triangle, share, .. } in elements {
         shares += share;
-        perimeter += share * triangle.sides().iter().sum::<f64>();
+        let [base, left, right] = triangle.sides();
+        perimeter += share * (base + right + left);
         area += share * triangle.area();
     }
     if shares > 0.0 { (perimeter / (3.0 * shares), area) } else { (0.0, 0.0) }
@@ -77,12 +79,14 @@ mod tests {
     use super::*;
     use mesh::{TriMesh, shapes};
 
+    use crate::laplacian::cover::tufted_cover;
     use crate::testing::intrinsic;
+    use crate::triangulation::Loops;
 
     fn of(mesh: &TriMesh) -> Vec<Element> {
         let mesh = intrinsic(mesh);
-        let mut cover = Cover::new(&mesh, mesh.edge_lengths());
-        cover.flip_to_delaunay();
+        let mut cover = tufted_cover(&mesh, mesh.edge_lengths());
+        cover.flip_to_delaunay(Loops::Allowed);
         elements(&cover)
     }
 

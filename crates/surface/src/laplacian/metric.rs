@@ -1,6 +1,7 @@
 //! Edge lengths made safe for cotangents.
 
-use crate::{CornerId, IntrinsicMesh, Link};
+use crate::ids::FaceId;
+use crate::intrinsic::{IntrinsicMesh, Link};
 
 /// Smallest excess of two sides of a triangle over the third, in mean edge lengths. The height of
 /// the flattest triangle is then about a thousandth of its base, and no cotangent exceeds a million.
@@ -52,8 +53,8 @@ impl Metric {
 /// The three edges of every face.
 fn sides(mesh: &IntrinsicMesh) -> impl Iterator<Item = [usize; 3]> {
     let topology = mesh.topology();
-    (0..topology.n_faces() as u32)
-        .map(|f| [0, 1, 2].map(|slot| topology.opposite_edge(CornerId(3 * f + slot)).index()))
+    (0..topology.n_faces())
+        .map(|f| FaceId::from(f).corners().map(|corner| topology.opposite_edge(corner).index()))
 }
 
 /// By how much the shorter two sides exceed the longest.

@@ -10,17 +10,15 @@
 //!
 //! [`sharp2020`]: https://doi.org/10.1111/cgf.14069
 
-mod delaunay;
+mod cover;
 mod elements;
 mod metric;
-mod triangle;
 
 pub use elements::Element;
 pub use metric::Metric;
-pub use triangle::Triangle;
 
-use crate::IntrinsicMesh;
-use delaunay::Cover;
+use crate::intrinsic::IntrinsicMesh;
+use crate::triangulation::Loops;
 
 /// Linear finite elements on an intrinsic Delaunay triangulation of a surface.
 ///
@@ -50,8 +48,8 @@ impl Laplacian {
     #[must_use]
     pub fn new(mesh: &IntrinsicMesh) -> Self {
         let metric = Metric::new(mesh);
-        let mut cover = Cover::new(mesh, &metric.edges);
-        cover.flip_to_delaunay();
+        let mut cover = cover::tufted_cover(mesh, &metric.edges);
+        cover.flip_to_delaunay(Loops::Allowed);
         Self { n_vertices: mesh.n_vertices(), elements: elements::elements(&cover), metric }
     }
 

@@ -7,8 +7,7 @@ mod reference;
 
 use surface::{FaceId, IntrinsicMesh, VertexId};
 
-use super::edges::faces_around;
-use super::plane::segment;
+use super::plane::{faces_around, segment};
 use super::{GeodesicPath, PathTracer};
 use crate::{DistanceSolver, Exact, Source, SurfacePoint};
 

@@ -1,33 +1,31 @@
-//! The vertex in sight over which the source is nearest.
+//! The visible vertex over which the source is nearest.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-use surface::{CornerId, EdgeId, FaceId, VertexId};
+use surface::{EdgeId, FaceId, VertexId};
 
-use super::PathTracer;
-use super::edges::faces_around;
-use super::plane::{Flat, Point, Side, between, beyond, cross, distance, sub};
+use super::field::Field;
+use super::plane::{Flat, Point, Side, between, beyond, cross, distance, faces_around, sub};
 use super::strip::{Gate, Portal, Strip};
-use crate::SurfacePoint;
+use crate::point::SurfacePoint;
 
 /// Share of a length within which two are the same.
 const SAME: f64 = 1e-12;
 
-/// Where a straight line leads, and over which faces.
+/// A straight line to a vertex or source, and the faces it crosses.
 #[derive(Debug, Clone)]
-pub(super) struct Aim {
+pub(super) struct Sight {
     pub(super) end: SurfacePoint,
     pub(super) strip: Strip,
 }
 
-/// The rays from a point that cross one edge after the same faces, in the plane with that point in the
-/// origin.
+/// The rays from a point that cross one edge after the same faces, in the plane with that point in the origin.
 #[derive(Debug, Clone, Copy)]
 struct Rays {
-    /// Those that they come from.
+    /// The bundle that they are part of.
     before: Option<usize>,
-    /// The face that they come through, and the edge they cross.
+    /// The face that they cross, and the edge they leave it by.
     face: FaceId,
     edge: EdgeId,
     gate: Gate,
@@ -36,34 +34,32 @@ struct Rays {
     right: Point,
 }
 
-/// What is known of the search.
 struct Search<'a> {
-    tracer: &'a PathTracer<'a>,
+    field: &'a Field<'a>,
     rays: Vec<Rays>,
-    /// How many may be sent.
+    /// The largest number of bundles allowed.
     most: usize,
-    /// By the least length of a path along them.
+    /// Bundles by the least length of a path along them.
     queue: BinaryHeap<Reverse<(u64, usize)>>,
     /// Length of the best path, its end, the face of its end, and the rays that lead there.
     best: (f64, Option<(SurfacePoint, FaceId, Option<usize>)>),
 }
 
-/// Looks from a point in all directions for the vertex or source over which the way to a source is
-/// shortest, if it is shorter than `known`. Stops at the first that is no longer than `enough`, and when
-/// there are no more rays to send.
+/// Looks from a point in all directions for the vertex or source over which the path to a source is shortest, if it is shorter
+/// than `known`. Stops at the first that is no longer than `enough`, and when `n_rays` bundles of rays are used up.
 ///
-/// Rays are followed over the faces as long as they may lead to something: from an edge with ends `A`
-/// and `B`, the source is no nearer to a point `P` than `T(A) - |AP|` and `T(B) - |BP|`. This leaves a
-/// lens around the shortest path. When `T` is exact, so is the result.
-pub(super) fn look(
-    tracer: &PathTracer,
+/// Rays are followed across faces as long as they may lead to something: from an edge with ends `A` and `B`, the source is no
+/// nearer to a point `P` than `T(A) - |AP|` and `T(B) - |BP|`. This leaves a lens around the shortest path. If `T` is exact, so
+/// is the result.
+pub(super) fn nearest_visible(
+    field: &Field,
     from: SurfacePoint,
     known: f64,
     enough: f64,
     n_rays: &mut usize,
-) -> Option<Aim> {
+) -> Option<Sight> {
     let best = (known * (1.0 - SAME), None);
-    let mut search = Search { tracer, rays: Vec::new(), most: *n_rays, queue: BinaryHeap::new(), best };
+    let mut search = Search { field, rays: Vec::new(), most: *n_rays, queue: BinaryHeap::new(), best };
     search.start(from);
     while let Some(Reverse((bits, at))) = search.queue.pop() {
         let best = search.best.0;
@@ -83,28 +79,28 @@ pub(super) fn look(
     }
     strip.faces.reverse();
     strip.portals.reverse();
-    Some(Aim { end, strip })
+    Some(Sight { end, strip })
 }
 
 impl Search<'_> {
     /// Sends rays over all edges around a point that it does not lie on.
     fn start(&mut self, from: SurfacePoint) {
-        let mesh = self.tracer.mesh;
+        let mesh = self.field.mesh;
         let topology = mesh.topology();
         for face in faces_around(mesh, from) {
-            let flat = Flat::new(mesh, face, 0);
+            let flat = Flat::of_face(mesh, face);
             let origin = flat.point(mesh, from);
             let at = |v: VertexId| sub(flat.vertex(v), origin);
             let vertices = topology.faces()[face.index()];
             for v in vertices.into_iter().filter(|v| SurfacePoint::Vertex(*v) != from) {
-                self.offer(distance(at(v), [0.0; 2]) + self.tracer.distances[v.index()], v, face, None);
+                self.offer(distance(at(v), [0.0; 2]) + self.field.distances[v.index()], v, face, None);
             }
-            self.look_for_sources(face, &flat, origin, None);
-            for slot in 0..3 {
-                // Counter-clockwise, so that the first end is on the right seen from inside.
-                let [right, left] = [1, 2].map(|step| vertices[(slot + step) % 3]).map(|v| (v, at(v)));
+            self.offer_sources(face, &flat, origin, None);
+            for corner in face.corners() {
+                // Counter-clockwise, so that the first end is on the right from inside.
+                let [right, left] = topology.edge_ends(corner).map(|v| (v, at(v)));
                 if cross(right.1, left.1) > 0.0 {
-                    let edge = topology.opposite_edge(CornerId(3 * face.0 + slot as u32));
+                    let edge = topology.opposite_edge(corner);
                     let gate = Gate { left, right };
                     self.send(Rays { before: None, face, edge, gate, left: left.1, right: right.1 });
                 }
@@ -114,60 +110,57 @@ impl Search<'_> {
 
     /// Follows rays into the faces beyond their edge.
     fn follow(&mut self, index: usize) {
-        let mesh = self.tracer.mesh;
+        let mesh = self.field.mesh;
         let topology = mesh.topology();
         let rays = self.rays[index];
         let ((left, at_left), (right, at_right)) = (rays.gate.left, rays.gate.right);
         for facing in topology.edge_corners(rays.edge).iter().filter(|c| c.face() != rays.face) {
             let face = facing.face();
             let third = topology.corner_vertex(*facing);
-            let edges = [1, 2]
-                .map(|step| topology.opposite_edge(CornerId(3 * face.0 + (facing.slot() as u32 + step) % 3)));
+            let edges = topology.corner_edges(*facing);
             let [to_left, to_right] =
                 if topology.edges()[edges[0].index()].contains(&left) { edges } else { [edges[1], edges[0]] };
             let lengths = [rays.edge, to_left, to_right].map(|edge| mesh.length(edge));
             let at = beyond([at_left, at_right], lengths, Side::Ahead);
-            self.look_for_sources(
-                face,
-                &Flat::of([left, right, third], [at_left, at_right, at]),
-                [0.0; 2],
-                Some(index),
-            );
+            let flat = Flat::of([left, right, third], [at_left, at_right, at]);
+            self.offer_sources(face, &flat, [0.0; 2], Some(index));
             let before = Some(index);
             let [from_left, from_right] = [cross(at, rays.left), cross(rays.right, at)];
-            let is_seen = from_left >= 0.0 && from_right >= 0.0;
-            if is_seen {
-                let total = distance(at, [0.0; 2]) + self.tracer.distances[third.index()];
+            let is_visible = from_left >= 0.0 && from_right >= 0.0;
+            if is_visible {
+                let total = distance(at, [0.0; 2]) + self.field.distances[third.index()];
                 self.offer(total, third, face, before);
             }
             if from_right > 0.0 {
                 // Some rays pass on the right of the vertex.
-                let (gate, left) =
-                    (Gate { left: (third, at), ..rays.gate }, if is_seen { at } else { rays.left });
+                let gate = Gate { left: (third, at), ..rays.gate };
+                let left = if is_visible { at } else { rays.left };
                 self.send(Rays { before, face, edge: to_right, gate, left, right: rays.right });
             }
             if from_left > 0.0 {
-                let (gate, right) =
-                    (Gate { right: (third, at), ..rays.gate }, if is_seen { at } else { rays.right });
+                let gate = Gate { right: (third, at), ..rays.gate };
+                let right = if is_visible { at } else { rays.right };
                 self.send(Rays { before, face, edge: to_left, gate, left: rays.left, right });
             }
         }
     }
 
-    fn look_for_sources(&mut self, face: FaceId, flat: &Flat, origin: Point, before: Option<usize>) {
-        for source in self.tracer.sources_within(face) {
-            let at = sub(flat.point(self.tracer.mesh, *source), origin);
-            let is_seen = before.is_none_or(|i| {
+    /// Considers the sources in a face as ends.
+    fn offer_sources(&mut self, face: FaceId, flat: &Flat, origin: Point, before: Option<usize>) {
+        for source in self.field.sources_within(face) {
+            let at = sub(flat.point(self.field.mesh, *source), origin);
+            let is_visible = before.is_none_or(|i| {
                 let rays = &self.rays[i];
                 cross(at, rays.left) >= 0.0 && cross(rays.right, at) >= 0.0
             });
             let total = distance(at, [0.0; 2]);
-            if is_seen && total < self.best.0 {
+            if is_visible && total < self.best.0 {
                 self.best = (total, Some((*source, face, before)));
             }
         }
     }
 
+    /// Considers a vertex as the end.
     fn offer(&mut self, total: f64, vertex: VertexId, face: FaceId, before: Option<usize>) {
         if total < self.best.0 {
             self.best = (total, Some((SurfacePoint::Vertex(vertex), face, before)));
@@ -183,9 +176,9 @@ impl Search<'_> {
             let share = a / (a - b);
             between(left.1, right.1, if share.is_nan() { 0.5 } else { share.clamp(0.0, 1.0) })
         });
-        // The length of a path over the edge falls towards the end that is farther.
+        // The length of a path over the edge decreases towards the farther end.
         let over = |(vertex, at): (VertexId, Point), far: Point| {
-            self.tracer.distances[vertex.index()] + distance(far, [0.0; 2]) - distance(far, at)
+            self.field.distances[vertex.index()] + distance(far, [0.0; 2]) - distance(far, at)
         };
         let least = over(left, q).max(over(right, p)).max(0.0);
         if least < self.best.0 && self.rays.len() < self.most {

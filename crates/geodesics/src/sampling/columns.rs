@@ -1,19 +1,21 @@
-//! The landmarks taken so far and their columns.
+//! The landmarks taken so far and the distances from them.
 
 use linalg::{LandmarkDistances, Matrix};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::Rng;
 use surface::VertexId;
 
-use crate::{DistanceSolver, FirstSample, GeodesicError};
+use super::sampler::FirstSample;
+use crate::error::GeodesicError;
+use crate::solver::DistanceSolver;
 
 /// Landmarks with the distances from them, all finite.
 #[derive(Debug)]
 pub(super) struct Columns<'a> {
-    solver: &'a dyn DistanceSolver,
-    landmarks: Vec<usize>,
+    pub(super) solver: &'a dyn DistanceSolver,
+    pub(super) landmarks: Vec<usize>,
     /// One column after the other.
-    values: Vec<f64>,
+    pub(super) values: Vec<f64>,
 }
 
 impl<'a> Columns<'a> {
@@ -29,7 +31,7 @@ impl<'a> Columns<'a> {
         self.solver.n_vertices()
     }
 
-    /// Measures the distances from more landmarks, in parallel.
+    /// Adds landmarks and finds the distances from them, in parallel.
     pub(super) fn add(&mut self, landmarks: &[usize]) -> Result<(), GeodesicError> {
         let sources: Vec<VertexId> = landmarks.iter().map(|&landmark| VertexId::from(landmark)).collect();
         let columns = self.solver.distance_columns(&sources);
@@ -45,11 +47,12 @@ impl<'a> Columns<'a> {
         Ok(())
     }
 
-    /// The column of the last landmark.
+    /// The distances from the last landmark.
     pub(super) fn last(&self) -> &[f64] {
         &self.values[self.values.len() - self.n_vertices()..]
     }
 
+    /// The distances from the first `n` landmarks, or from all if there are fewer.
     pub(super) fn distances(&self, n: usize) -> Result<LandmarkDistances, GeodesicError> {
         let (p, n) = (self.n_vertices(), n.min(self.len()));
         if n == 0 {
@@ -61,7 +64,7 @@ impl<'a> Columns<'a> {
     }
 }
 
-/// The first of `n_vertices` vertices: the one chosen, or one drawn.
+/// The first of `n_vertices` vertices: the given one, or a random one.
 pub(super) fn first_vertex(
     first: FirstSample,
     n_vertices: usize,
@@ -77,7 +80,7 @@ pub(super) fn first_vertex(
     }
 }
 
-/// A number below `limit`, which must be positive; each with the same chance, to one in 2^64.
+/// A random number below `limit`, which must be positive; uniform to one in 2^64.
 pub(super) fn below(limit: usize, rng: &mut ChaCha8Rng) -> usize {
     (rng.next_u64() % limit as u64) as usize
 }

@@ -1,49 +1,60 @@
-//! Landmarks chosen by how much their squared distances to each other vary.
+//! Landmarks chosen by the variance of their squared distances.
 
 use linalg::LandmarkDistances;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 
-use super::Sampler;
 use super::columns::{Columns, below, first_vertex};
-use crate::{DistanceSolver, FirstSample, GeodesicError};
+use super::sampler::{FirstSample, Sampler};
+use crate::error::GeodesicError;
+use crate::solver::DistanceSolver;
 
-/// Which vertex [`VarianceSampler`] takes next.
+/// The rule by which [`VarianceSampler`] takes the next vertex.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Variance {
-    /// The one whose squared distances to the landmarks vary least, as Yu et al. do.
+    /// The vertex whose squared distances to the landmarks vary least, as in Yu et al.
     #[default]
     Least,
-    /// The one whose squared distances vary most: the opposite rule, to hold the first against.
+    /// The vertex whose squared distances vary most: the opposite rule, for comparison.
     Greatest,
 }
 
-/// Incremental sampling by variance ("Min-Var"): two landmarks are drawn, then each is the vertex `j` with the
-/// least (or greatest) variance of `E_ij` over the landmarks `i` so far, `E` being squared distances.
+/// Incremental sampling by variance ("Min-Var"; Yu, Zhao, Zhang and Yang 2012, `yu2012`): two landmarks are drawn at
+/// random, then each is the vertex `j` with the least (or greatest) variance of the squared distances `E_ij` over the
+/// landmarks `i` so far.
 ///
-/// * Equal squared distances to all landmarks mean a central vertex, so the least variance leaves out the tips of
-///   a surface, and neighbours of a landmark soon follow it: the samples are close together, and the stress
-///   is far above that of farthest point sampling.
-/// * Ties go to the lowest vertex. The seed decides what is drawn, whatever the number of threads.
+/// * Equal squared distances to all landmarks mean a central vertex. So the least variance leaves out the tips of a
+///   surface, and neighbours of a landmark soon follow it: the samples are close together, and the stress is far above
+///   that of farthest point sampling.
+/// * Ties go to the lowest vertex. The seed determines what is drawn, whatever the number of threads.
 ///
-/// Cost: one run of the solver per landmark, and `O(p)`: means and variances are updated, not recomputed
-/// (Welford 1962).
+/// Cost: one run of the solver per landmark, and `O(p)`: means and variances are updated, not recomputed (Welford
+/// 1962).
 ///
-/// After Yu, Zhao, Zhang and Yang 2012 (`yu2012` in `REFERENCES.bib`).
+/// ```
+/// use canonform_geodesics::{Dijkstra, FirstSample, Sampler, Variance, VarianceSampler};
+/// use mesh::shapes;
+///
+/// let solver = Dijkstra::new(&shapes::icosphere(2).intrinsic());
+/// let mut sampler = VarianceSampler::new(&solver, FirstSample::default(), 7, Variance::Least)?;
+/// sampler.extend_to(20)?;
+/// assert_eq!(sampler.distances(20)?.n_landmarks(), 20);
+/// # Ok::<(), canonform_geodesics::GeodesicError>(())
+/// ```
 #[derive(Debug)]
 pub struct VarianceSampler<'a> {
     columns: Columns<'a>,
     variance: Variance,
     /// The second landmark.
     second: Option<usize>,
-    /// Of every vertex: the mean of its squared distances to the landmarks, and the sum of the squares
-    /// of what they differ from it.
+    /// For every vertex: the mean of its squared distances to the landmarks, and the sum of their squared deviations
+    /// from it.
     moments: Vec<[f64; 2]>,
     is_landmark: Vec<bool>,
 }
 
 impl<'a> VarianceSampler<'a> {
-    /// Draws the first two landmarks; the first may be chosen.
+    /// Starts with the landmark `first` and draws a second one.
     ///
     /// # Errors
     /// [`GeodesicError::NoSuchVertex`], [`GeodesicError::NoSamples`] on an empty surface,
@@ -57,7 +68,7 @@ impl<'a> VarianceSampler<'a> {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
         let p = solver.n_vertices();
         let first = first_vertex(first, p, &mut rng)?;
-        // One of the others: those from the first on move up by one.
+        // Any other vertex: those from the first on move up by one.
         let second = (p > 1).then(|| below(p - 1, &mut rng)).map(|v| if v < first { v } else { v + 1 });
         let mut sampler = Self {
             columns: Columns::new(solver),
@@ -83,7 +94,7 @@ impl<'a> VarianceSampler<'a> {
         Ok(())
     }
 
-    /// The vertex to take next; none when all are landmarks.
+    /// The next landmark; `None` if all vertices are landmarks.
     fn next(&self) -> Option<usize> {
         if self.columns.len() == 1 {
             return self.second;
@@ -117,10 +128,10 @@ mod tests {
     use surface::VertexId;
 
     use super::*;
-    use crate::Dijkstra;
+    use crate::dijkstra::Dijkstra;
 
     #[test]
-    fn every_landmark_has_the_extreme_variance_of_the_definition() {
+    fn every_landmark_has_the_least_or_greatest_variance() {
         let solver = Dijkstra::new(&icosphere(2).intrinsic());
         for (variance, sign) in [(Variance::Least, 1.0), (Variance::Greatest, -1.0)] {
             let mut sampler = VarianceSampler::new(&solver, FirstSample::default(), 5, variance).unwrap();
@@ -141,8 +152,8 @@ mod tests {
     }
 
     #[test]
-    fn the_least_variance_is_central_and_the_greatest_is_not() {
-        // A long strip: what is equally far from both ends lies in the middle.
+    fn the_least_variance_is_in_the_middle_of_a_strip() {
+        // The middle of a long strip is equally far from both ends.
         let strip = grid(41, 2, 1.0);
         let middle = |v: usize| (strip.positions[v].x - 20.0).abs() < 1.1;
         let solver = Dijkstra::new(&strip.intrinsic());

@@ -1,28 +1,39 @@
-//! Landmarks drawn by chance.
+//! Random landmarks.
 
 use linalg::LandmarkDistances;
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 
-use super::Sampler;
 use super::columns::{Columns, below, first_vertex};
-use crate::{DistanceSolver, FirstSample, GeodesicError};
+use super::sampler::{FirstSample, Sampler};
+use crate::error::GeodesicError;
+use crate::solver::DistanceSolver;
 
-/// Random sampling: every set of n vertices has the same chance.
+/// Random sampling, the baseline that other samplings must beat: every set of n vertices is equally likely.
 ///
-/// * The seed decides, whatever the number of threads.
-/// * The baseline that other samplings must beat.
+/// The seed determines the result, whatever the number of threads.
 ///
-/// Cost: one run of the solver per landmark, in parallel; `O(p)` to begin.
+/// Cost: one run of the solver per landmark, in parallel; `O(p)` to start.
+///
+/// ```
+/// use canonform_geodesics::{Dijkstra, FirstSample, RandomSampler, Sampler};
+/// use mesh::shapes;
+///
+/// let solver = Dijkstra::new(&shapes::icosphere(2).intrinsic());
+/// let mut sampler = RandomSampler::new(&solver, FirstSample::default(), 7)?;
+/// sampler.extend_to(20)?;
+/// assert_eq!(sampler.distances(20)?.n_landmarks(), 20);
+/// # Ok::<(), canonform_geodesics::GeodesicError>(())
+/// ```
 #[derive(Debug)]
 pub struct RandomSampler<'a> {
     columns: Columns<'a>,
-    /// All vertices, in the order in which they are taken.
+    /// All vertices, in random order.
     order: Vec<usize>,
 }
 
 impl<'a> RandomSampler<'a> {
-    /// Draws an order of all vertices that begins with `first`, or with any vertex.
+    /// Draws an order of all vertices, beginning with `first`.
     ///
     /// # Errors
     /// [`GeodesicError::NoSuchVertex`], [`GeodesicError::NoSamples`] on an empty surface,
@@ -56,14 +67,13 @@ impl Sampler for RandomSampler<'_> {
 
 #[cfg(test)]
 mod tests {
-
     use mesh::shapes::grid;
 
     use super::*;
-    use crate::BreadthFirst;
+    use crate::breadth_first::BreadthFirst;
 
     #[test]
-    fn every_vertex_is_as_likely_as_any_other() {
+    fn all_vertices_are_equally_likely() {
         let solver = BreadthFirst::new(&grid(4, 3, 1.0).intrinsic());
         let p = solver.n_vertices();
         let (runs, n) = (3000, 4);
@@ -75,7 +85,7 @@ mod tests {
                 taken[*landmark] += 1;
             }
         }
-        // Each count is binomial; five deviations are never reached by chance.
+        // Each count is binomial; a deviation of five sigmas never happens.
         let share = n as f64 / p as f64;
         let (mean, deviation) = (runs as f64 * share, (runs as f64 * share * (1.0 - share)).sqrt());
         assert!(taken.iter().all(|count| (*count as f64 - mean).abs() < 5.0 * deviation), "{taken:?}");

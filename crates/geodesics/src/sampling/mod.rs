@@ -1,56 +1,32 @@
-//! The choice between ways to take landmarks.
+//! Choice of landmarks.
 
 mod columns;
+mod farthest;
 mod random;
+mod sampler;
 mod variance;
 
-use linalg::LandmarkDistances;
-
+use crate::error::GeodesicError;
+use crate::solver::DistanceSolver;
+pub use farthest::{FarthestPointSampler, farthest_point_sampling};
 pub use random::RandomSampler;
+pub use sampler::{FirstSample, Sampler};
 pub use variance::{Variance, VarianceSampler};
 
-use crate::{DistanceSolver, FarthestPointSampler, FirstSample, GeodesicError};
-
-/// Takes landmarks on one surface, in an order that does not depend on how many will be taken: the first
-/// n of 2n landmarks are the n landmarks.
-pub trait Sampler: std::fmt::Debug {
-    /// Goes on until there are `n` landmarks, or as many as the surface has.
-    ///
-    /// # Errors
-    /// [`GeodesicError::Disconnected`] when a vertex cannot be reached.
-    fn extend_to(&mut self, n: usize) -> Result<(), GeodesicError>;
-
-    /// The distances from the first `n` landmarks, or from all when there are fewer.
-    ///
-    /// # Errors
-    /// [`GeodesicError::NoSamples`] when `n` is zero.
-    fn distances(&self, n: usize) -> Result<LandmarkDistances, GeodesicError>;
-}
-
-impl Sampler for FarthestPointSampler<'_> {
-    fn extend_to(&mut self, n: usize) -> Result<(), GeodesicError> {
-        self.extend_to(n)
-    }
-
-    fn distances(&self, n: usize) -> Result<LandmarkDistances, GeodesicError> {
-        self.distances(n)
-    }
-}
-
-/// A way to take landmarks.
+/// A way to choose landmarks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Sampling {
     /// [`FarthestPointSampler`]: each the farthest from those before it.
     #[default]
     Farthest,
-    /// [`RandomSampler`]: all vertices with the same chance.
+    /// [`RandomSampler`]: all vertices are equally likely.
     Random,
-    /// [`VarianceSampler`]: each the vertex whose squared distances to those before vary least, or most.
+    /// [`VarianceSampler`]: each the vertex whose squared distances to those before it vary least, or most.
     Incremental(Variance),
 }
 
 impl Sampling {
-    /// The name used on the command line and in records.
+    /// The name on the command line and in records.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -61,8 +37,7 @@ impl Sampling {
         }
     }
 
-    /// Begins to sample. `first` is the first landmark; where it is left to the sampling, farthest point
-    /// sampling takes the vertex farthest from vertex 0, the others draw one with `seed`.
+    /// Starts with the landmark `first`; `seed` determines what is drawn at random.
     ///
     /// # Errors
     /// [`GeodesicError::NoSuchVertex`], [`GeodesicError::NoSamples`] on an empty surface,
@@ -83,12 +58,13 @@ impl Sampling {
 
 #[cfg(test)]
 mod tests {
+    use linalg::LandmarkDistances;
     use mesh::TriMesh;
     use mesh::shapes::{disjoint, grid, icosphere};
     use surface::VertexId;
 
     use super::*;
-    use crate::{Dijkstra, farthest_point_sampling};
+    use crate::dijkstra::Dijkstra;
 
     const ALL: [Sampling; 4] = [
         Sampling::Farthest,
@@ -109,7 +85,7 @@ mod tests {
     }
 
     #[test]
-    fn the_first_of_more_landmarks_are_the_landmarks_and_columns_are_theirs() {
+    fn more_landmarks_begin_with_the_same_ones_and_columns_are_their_distances() {
         let solver = solver(&icosphere(2));
         for sampling in ALL {
             let few = sample(sampling, FirstSample::default(), 3, 7);
@@ -127,7 +103,7 @@ mod tests {
     }
 
     #[test]
-    fn the_first_landmark_may_be_chosen() {
+    fn the_first_landmark_can_be_given() {
         for sampling in ALL {
             let chosen = sample(sampling, FirstSample::Vertex(VertexId(17)), 3, 5);
             assert_eq!(chosen.landmarks()[0], 17, "{sampling:?}");
@@ -135,7 +111,7 @@ mod tests {
     }
 
     #[test]
-    fn the_seed_decides_where_something_is_drawn() {
+    fn the_seed_determines_random_choices() {
         for sampling in ALL {
             let [a, b, c] = [3, 3, 4].map(|seed| sample(sampling, FirstSample::default(), seed, 6));
             assert_eq!(a, b, "{sampling:?}");
@@ -144,7 +120,7 @@ mod tests {
     }
 
     #[test]
-    fn the_farthest_are_those_of_farthest_point_sampling() {
+    fn the_function_gives_the_same_landmarks_as_the_sampler() {
         let solver = solver(&icosphere(2));
         let direct = farthest_point_sampling(&solver, 9, FirstSample::default()).unwrap();
         assert_eq!(sample(Sampling::Farthest, FirstSample::default(), 0, 9), direct);
@@ -161,7 +137,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_sampled_is_refused() {
+    fn errors_name_what_cannot_be_sampled() {
         let parts = solver(&disjoint(&[grid(3, 3, 1.0), grid(3, 3, 1.0)]));
         let empty = solver(&TriMesh { positions: vec![], faces: vec![] });
         let whole = solver(&icosphere(1));

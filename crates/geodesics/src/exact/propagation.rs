@@ -1,0 +1,239 @@
+//! The main loop: windows are propagated in the order of the vertices that they wait for.
+
+use surface::{CornerId, VertexKind};
+
+use super::apex::{Apex, Passes};
+use super::envelope::trim;
+use super::faces::{Along, Facing, next};
+use super::frame::{Frame, Until};
+use super::front::{Arrival, Front};
+use super::prepared::Prepared;
+use super::pseudo_sources::Emission;
+use super::window::Window;
+use crate::source::Source;
+
+/// Memory that runs share.
+#[derive(Debug, Default)]
+pub(super) struct Scratch {
+    front: Front,
+    /// Windows on the base of a face.
+    arrived: Vec<Window>,
+    /// Windows on its sides, left and right of its apex.
+    left: Vec<Window>,
+    right: Vec<Window>,
+}
+
+/// Windows per face, on average, that may be propagated before a run gives up; real surfaces of a million vertices
+/// need less than a hundred. It takes needles with angles below 1e-6 around one vertex to come near.
+const BUDGET_PER_FACE: usize = 10_000;
+
+/// Share of the limit by which windows beyond it are propagated, for rounding.
+const LIMIT_SLACK: f64 = 1e-9;
+
+/// Share of a distance by which it may be longer than one along an edge, for rounding.
+const EDGE_SLACK: f64 = 1e-13;
+
+/// Finds the distances of all vertices within `max_distance` of the nearest source.
+pub(super) fn run<'a>(
+    surface: &Prepared,
+    scratch: &'a mut Scratch,
+    max_distance: f64,
+    sources: &[Source],
+) -> &'a Front {
+    let Scratch { front, arrived, left, right } = scratch;
+    front.reset(surface.n_vertices(), 3 * surface.faces.all.len());
+    let budget = BUDGET_PER_FACE.saturating_mul(surface.faces.all.len());
+    let mut emission = Emission { surface, front, budget };
+    sources.iter().for_each(|source| emission.start_at(source));
+    let max_distance = max_distance * (1.0 + LIMIT_SLACK);
+    let mut propagation = Propagation { emission, left, right, max_distance };
+    loop {
+        propagation.advance(arrived);
+        if !propagation.relax_edges() {
+            break;
+        }
+    }
+    front
+}
+
+/// One run over a surface.
+struct Propagation<'a> {
+    emission: Emission<'a>,
+    left: &'a mut Vec<Window>,
+    right: &'a mut Vec<Window>,
+    /// Windows beyond this need not be propagated.
+    max_distance: f64,
+}
+
+impl Propagation<'_> {
+    fn advance(&mut self, arrived: &mut Vec<Window>) {
+        // The path to a vertex within the limit may cross an edge between two vertices beyond it.
+        let last = self.max_distance + self.emission.surface.faces.longest_edge;
+        while let Some((distance, vertex)) = self.emission.front.pop() {
+            if distance > last {
+                break;
+            }
+            let arrival = self.emission.front.arrival(vertex);
+            let kind = self.emission.surface.fans.kind(vertex);
+            if arrival == Arrival::Anywhere || kind != VertexKind::Ordinary {
+                self.emission.emit_from(vertex, distance, arrival);
+            }
+            self.emission.front.release(vertex);
+            while let Some(corner) = self.emission.front.next_ready(arrived) {
+                self.enter_face(corner, arrived);
+            }
+        }
+    }
+
+    /// Relaxes all edges; returns whether a label was lowered. Windows do not get through faces whose lengths belong
+    /// to no triangle.
+    fn relax_edges(&mut self) -> bool {
+        let mut is_any = false;
+        let front = &mut *self.emission.front;
+        for face in &self.emission.surface.faces.all {
+            for slot in 0..3 {
+                let ends = [next(slot), next(next(slot))].map(|end| face.vertices[end]);
+                let [p, q] = ends.map(|v| front.distance(v));
+                let (near, far, vertex) = if p < q { (p, q, ends[1]) } else { (q, p, ends[0]) };
+                let along = near + face.lengths[slot];
+                if along < far - EDGE_SLACK * far.min(f64::MAX) && along <= self.max_distance {
+                    front.reach(vertex, along, Arrival::Anywhere);
+                    is_any = true;
+                }
+            }
+        }
+        is_any
+    }
+
+    /// Propagates the windows at the base of a corner across its face.
+    fn enter_face(&mut self, corner: CornerId, windows: &mut Vec<Window>) {
+        let Emission { surface, front, budget } = &mut self.emission;
+        let frame = Frame::new(&surface.faces, corner);
+        let [a, b, c] = frame.vertices;
+        let ends = [front.distance(a), front.distance(b)];
+        if self.max_distance < f64::INFINITY {
+            windows.retain(|window| window.least_distance() <= self.max_distance);
+        }
+        trim(windows, frame.base, ends);
+        if windows.len() > *budget {
+            return;
+        }
+        *budget -= windows.len();
+
+        let through = |[sin, cos]: [f64; 2]| Arrival::Through { corner, sin, cos };
+        front.reach(c, ends[0] + frame.sides[0], through([0.0, 1.0]));
+        if ends[1] + frame.sides[1] < front.distance(c) {
+            let face = surface.face(corner);
+            let angle = [face.double_area, face.cosine(corner.slot())];
+            front.reach(c, ends[1] + frame.sides[1], through(angle));
+        }
+        let apex = self.propagate(&frame, windows);
+        let front = &mut *self.emission.front;
+        if apex.distance < front.distance(c) {
+            front.reach(c, apex.distance, through(apex.direction()));
+        }
+        self.deliver(&frame);
+    }
+
+    /// Propagates windows, in order along the base, to the two sides of a face.
+    fn propagate(&mut self, frame: &Frame, windows: &[Window]) -> Apex {
+        let mut apex = Apex::new(frame);
+        self.left.clear();
+        self.right.clear();
+        // First come those that reach `ac` alone, ...
+        let mut first = 0;
+        while first < windows.len() && apex.passes(&windows[first]) == Passes::Left {
+            self.push_left(frame, &windows[first], windows[first].end, Until::Ray);
+            first += 1;
+        }
+        // ... then those with a path to `c`, of which the nearest must be known before any is split, ...
+        if first > 0 {
+            apex.consider(first - 1, &windows[first - 1]);
+        }
+        let mut rest = first;
+        while rest < windows.len() {
+            apex.consider(rest, &windows[rest]);
+            if apex.passes(&windows[rest]) == Passes::Right {
+                break;
+            }
+            rest += 1;
+        }
+        for (i, window) in windows.iter().enumerate().take(rest).skip(first) {
+            self.split(frame, &apex, i, window);
+        }
+        // ... then those that reach `bc` alone, except where windows overlap.
+        for (i, window) in windows.iter().enumerate().skip(rest) {
+            if apex.passes(window) == Passes::Right {
+                self.push_right(frame, window, window.start, Until::Ray);
+            } else {
+                apex.consider(i, window);
+                self.split(frame, &apex, i, window);
+            }
+        }
+        apex
+    }
+
+    /// Propagates a window to whichever sides it reaches.
+    fn split(&mut self, frame: &Frame, apex: &Apex, index: usize, window: &Window) {
+        match apex.passes(window) {
+            Passes::Left => self.push_left(frame, window, window.end, Until::Ray),
+            Passes::Right => self.push_right(frame, window, window.start, Until::Ray),
+            Passes::Both => {
+                let at = apex.crossing(window);
+                // A path that crosses a shorter one to `c` is not the shortest.
+                let nearest = apex.nearest.is_none_or(|nearest| nearest == index);
+                let entry = if nearest { at } else { apex.entry };
+                if entry < at {
+                    self.push_left(frame, window, entry, Until::Ray);
+                } else {
+                    self.push_left(frame, window, at, Until::Apex);
+                }
+                if entry > at {
+                    self.push_right(frame, window, entry, Until::Ray);
+                } else {
+                    self.push_right(frame, window, at, Until::Apex);
+                }
+            }
+        }
+    }
+
+    /// A shortest path crosses no face twice, so it turns around no vertex for more faces than the vertex has:
+    /// `max_turn` bounds how often windows go round a needle.
+    #[inline]
+    fn push_left(&mut self, frame: &Frame, window: &Window, end: f64, until: Until) {
+        if end > window.start && window.turn < self.emission.surface.max_turn {
+            frame.project_on_ac(window, [window.start, end], until, self.left);
+        }
+    }
+
+    #[inline]
+    fn push_right(&mut self, frame: &Frame, window: &Window, start: f64, until: Until) {
+        if start < window.end && -window.turn < self.emission.surface.max_turn {
+            frame.project_on_cb(window, [start, window.end], until, self.right);
+        }
+    }
+
+    /// Delivers the windows on the sides of a face to the faces beyond.
+    fn deliver(&mut self, frame: &Frame) {
+        let [a, b, c] = frame.vertices;
+        let Emission { surface, front, .. } = &mut self.emission;
+        let sides = [(&mut *self.left, [a, c]), (&mut *self.right, [b, c])];
+        for (side, (windows, ends)) in sides.into_iter().enumerate() {
+            if windows.is_empty() {
+                continue;
+            }
+            let (faces, beyond) = (&surface.faces, frame.beyond[side]);
+            if let Some(Facing { corner, along: Along::Opposite }) = faces.only_facing(beyond) {
+                front.deliver_all(corner, ends, windows);
+                continue;
+            }
+            faces.for_each_facing(beyond, |facing| match facing.along {
+                Along::Opposite => front.deliver(facing.corner, ends, windows.iter().copied()),
+                Along::Same => {
+                    let mirrored = windows.iter().rev().map(|w| w.mirrored(frame.sides[side]));
+                    front.deliver(facing.corner, ends, mirrored);
+                }
+            });
+        }
+    }
+}

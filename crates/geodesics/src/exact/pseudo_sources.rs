@@ -1,0 +1,171 @@
+//! New windows, from sources and from vertices where paths bend.
+
+use surface::{CornerId, FaceId, VertexId, Winding};
+
+use super::faces::{Along, next};
+use super::fan::Sector;
+use super::frame::Frame;
+use super::front::{Arrival, Front};
+use super::prepared::Prepared;
+use super::window::Window;
+use crate::point::SurfacePoint;
+use crate::source::Source;
+
+/// Barycentric coordinates below this are zero: the point lies on the edge.
+const ON_EDGE: f64 = 1e-12;
+
+/// Emits windows into a front.
+#[derive(Debug)]
+pub(super) struct Emission<'a> {
+    pub(super) surface: &'a Prepared,
+    pub(super) front: &'a mut Front,
+    /// How many windows may still be emitted or propagated.
+    pub(super) budget: usize,
+}
+
+impl Emission<'_> {
+    /// Starts at a source.
+    pub(super) fn start_at(&mut self, source: &Source) {
+        let surface = self.surface;
+        let new = |vertex: VertexId| surface.new_vertices[vertex.index()];
+        for (vertex, distance) in source.reach() {
+            self.front.reach(new(*vertex), distance / surface.faces.unit, Arrival::Anywhere);
+        }
+        match source.point() {
+            SurfacePoint::Vertex(_) => {}
+            SurfacePoint::Edge { t, .. } => {
+                if let [(a, _), (b, _), ..] = source.reach() {
+                    self.start_on_edge([new(*a), new(*b)], [1.0 - t, t]);
+                }
+            }
+            SurfacePoint::Face { face, barycentric } => {
+                let face = FaceId(surface.new_faces[face.index()]);
+                let vertices = surface.vertices(face);
+                // A face that repeats another may have its corners in another order.
+                let slot_of = |v: u32| source.reach().iter().position(|(w, _)| new(*w) == v);
+                let shares = vertices.map(|v| slot_of(v).map_or(0.0, |slot| barycentric[slot]));
+                match shares.iter().position(|share| *share < ON_EDGE) {
+                    None => self.start_in_face(face, shares),
+                    Some(slot) => {
+                        let [a, b] = [next(slot), next(next(slot))];
+                        self.start_on_edge([vertices[a], vertices[b]], [shares[a], shares[b]]);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Starts at a point between two vertices, in all faces on their edge.
+    fn start_on_edge(&mut self, ends: [u32; 2], shares: [f64; 2]) {
+        let surface = self.surface;
+        for sector in surface.fans.around(ends[0]) {
+            let face = sector.corner.corner.face();
+            let vertices = surface.vertices(face);
+            if vertices.contains(&ends[1]) {
+                let share = |v| ends.iter().position(|end| *end == v).map_or(0.0, |i| shares[i]);
+                self.start_in_face(face, vertices.map(share));
+            }
+        }
+    }
+
+    /// Starts at a point of a face: reaches its vertices, and emits windows over the sides that the point is not on.
+    fn start_in_face(&mut self, face: FaceId, barycentric: [f64; 3]) {
+        for corner in face.corners() {
+            let slot = corner.slot();
+            if self.surface.face(corner).lengths[slot] == 0.0 {
+                continue;
+            }
+            let frame = Frame::new(&self.surface.faces, corner);
+            let ([x, height], at) = (frame.apex, barycentric[slot]);
+            let source = [at * x + barycentric[next(next(slot))] * frame.base, at * height];
+            let distance = (x - source[0]).hypot(height - source[1]);
+            self.front.reach(frame.vertices[2], distance, Arrival::Anywhere);
+            if at >= ON_EDGE {
+                let [x, depth] = source;
+                let window = Window { start: 0.0, end: frame.base, x, depth, offset: 0.0, turn: 0 };
+                self.emit_over_base(corner, &frame, window);
+            }
+        }
+    }
+
+    /// Emits windows from a vertex over the edges opposite it, as far as a path with this arrival may continue
+    /// there, and over links.
+    pub(super) fn emit_from(&mut self, vertex: u32, distance: f64, arrival: Arrival) {
+        let surface = self.surface;
+        for (end, length) in surface.links.row(vertex as usize) {
+            self.front.reach(*end, distance + length, Arrival::Anywhere);
+        }
+        let fan = surface.fans.around(vertex);
+        let Some(open) = surface.fans.open_angles(vertex, arrival) else {
+            for sector in fan {
+                self.emit_from_corner(sector.corner.corner, distance, [0.0, f64::INFINITY]);
+            }
+            return;
+        };
+        for Sector { corner, start, end } in fan {
+            for [low, high] in open {
+                if high > low && high > *start && low < *end {
+                    let [low, high] = match corner.winding {
+                        Winding::Forward => [low - start, high - start],
+                        Winding::Backward => [end - high, end - low],
+                    };
+                    let high = if high < end - start { high } else { f64::INFINITY };
+                    self.emit_from_corner(corner.corner, distance, [low, high]);
+                }
+            }
+        }
+    }
+
+    /// Emits a window from a corner onto its base, between two angles from the side to the base's start; without
+    /// bound for zero and for infinity.
+    fn emit_from_corner(&mut self, corner: CornerId, distance: f64, [low, high]: [f64; 2]) {
+        let face = self.surface.face(corner);
+        let slot = corner.slot();
+        let (a, b) = (next(slot), next(next(slot)));
+        let through = |at: usize, [sin, cos]: [f64; 2]| Arrival::Through {
+            corner: CornerId::new(corner.face(), at),
+            sin,
+            cos,
+        };
+        // The vertex is at the end of the base of the corner at `a`, and at the start of that at `b`.
+        let from_end = [face.double_area, face.cosine(a)];
+        self.front.reach(face.vertices[a], distance + face.lengths[b], through(a, from_end));
+        self.front.reach(face.vertices[b], distance + face.lengths[a], through(b, [0.0, 1.0]));
+        if face.lengths[slot] == 0.0 {
+            return;
+        }
+        let frame = Frame::new(&self.surface.faces, corner);
+        let [x, height] = frame.apex;
+        let meet_base = |angle: f64| {
+            let (sin, cos) = angle.sin_cos();
+            let (along, down) = (height * sin - x * cos, x * sin + height * cos);
+            // A ray that does not come down, by rounding, goes past the end that it is nearer to.
+            let at = if down > 0.0 { x + height * along / down } else { along * f64::INFINITY };
+            at.max(0.0).min(frame.base)
+        };
+        let start = if low > 0.0 { meet_base(low) } else { 0.0 };
+        let end = if high < f64::INFINITY { meet_base(high) } else { frame.base };
+        self.emit_over_base(
+            corner,
+            &frame,
+            Window { start, end, x, depth: height, offset: distance, turn: 0 },
+        );
+    }
+
+    /// Delivers a window on the base of a corner, given from inside its face, to the faces beyond.
+    fn emit_over_base(&mut self, corner: CornerId, frame: &Frame, window: Window) {
+        if window.end <= window.start || self.budget == 0 {
+            return;
+        }
+        self.budget -= 1;
+        let [a, b, _] = frame.vertices;
+        let beyond = self.surface.face(corner).beyond[corner.slot()];
+        self.surface.faces.for_each_facing(beyond, |facing| {
+            let window = match facing.along {
+                Along::Same => window,
+                Along::Opposite => window.mirrored(frame.base),
+            };
+            self.front.deliver(facing.corner, [a, b], std::iter::once(window));
+        });
+    }
+}

@@ -1,0 +1,302 @@
+//! The one-rings of all vertices, laid out in the order in which relaxations read them.
+
+use std::f64::consts::PI;
+
+use rayon::prelude::*;
+use surface::{
+    CornerId, CornerTable, FaceId, FanCorner, Link, OneRing, Rows, Triangulation, VertexKind,
+    Winding, double_area, scalar_product, total_angle,
+};
+
+use super::update::Stencil;
+
+/// A neighbour of a vertex: the edge to it, and the triangle between this neighbour and the one before it.
+///
+/// 32 bytes. The neighbours of a vertex follow its fans. An interior vertex has a single closed fan: then each
+/// triangle lies between two neighbours, the first and the last one included, and is visited once. Any other fan
+/// begins with a neighbour that has no triangle.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Neighbour {
+    pub(super) vertex: u32,
+    pub(super) allowed: Allowed,
+    /// Length of the edge.
+    pub(super) length: f64,
+    /// Scalar product of this edge and the one before, laid out in the plane of their triangle.
+    pub(super) dot: f64,
+    /// Twice the area of that triangle.
+    pub(super) cross: f64,
+}
+
+impl Neighbour {
+    /// A neighbour without a triangle.
+    fn without_triangle(vertex: u32, allowed: Allowed, length: f64) -> Self {
+        Self { vertex, allowed, length, dot: 0.0, cross: 0.0 }
+    }
+
+    /// The triangle for an update from the neighbour before to this one.
+    fn forward(&self, before: &Self) -> Stencil {
+        Stencil { base: before.length, side: self.length, dot: self.dot, cross: self.cross }
+    }
+
+    /// The triangle for an update from this neighbour to the one before.
+    fn backward(&self, before: &Self) -> Stencil {
+        Stencil { base: self.length, side: before.length, dot: self.dot, cross: self.cross }
+    }
+
+    /// Finds out which updates through the triangle may come late.
+    fn set_late_updates(&mut self, before: &Self) {
+        for (stencil, shift) in [(self.backward(before), 0), (self.forward(before), 1)] {
+            if stencil.may_complete_late() {
+                self.allowed.0 |= Allowed::LATE_NEARBY.0 << shift;
+            }
+            if stencil.may_complete_late_from_afar() {
+                self.allowed.0 |= Allowed::LATE.0 << shift;
+            }
+        }
+    }
+}
+
+/// The relaxations allowed at a neighbour: a set of flags.
+///
+/// A flag for a backward update is followed by the same flag for the forward update.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Allowed(u32);
+
+impl Allowed {
+    const NONE: Self = Self(0);
+    /// Update the neighbour before through the triangle, from this edge.
+    const BACKWARD: Self = Self(1);
+    /// Update this neighbour through the triangle, from the edge before.
+    const FORWARD: Self = Self(2);
+    /// Update even if the neighbour was finalized before the vertex, at any distance from the source.
+    const LATE: Self = Self(4);
+    /// The same, but only close to the source.
+    const LATE_NEARBY: Self = Self(16);
+    /// Relax the edge.
+    pub(super) const EDGE: Self = Self(64);
+
+    /// What a front may do, depending on whether it corrects finalized vertices and is close to its source.
+    pub(super) fn by_front(corrects: bool, is_nearby: bool) -> Self {
+        let both_ways = |flag: Self| flag.and(Self(flag.0 << 1));
+        let all = both_ways(Self::BACKWARD).and(Self::EDGE);
+        match (corrects, is_nearby) {
+            (false, _) => all,
+            (true, false) => all.and(both_ways(Self::LATE)),
+            (true, true) => all.and(both_ways(Self::LATE)).and(both_ways(Self::LATE_NEARBY)),
+        }
+    }
+
+    #[inline]
+    pub(super) fn has(self, flag: Self) -> bool {
+        self.0 & flag.0 != 0
+    }
+
+    fn and(self, other: Self) -> Self {
+        Self(self.0 | other.0)
+    }
+
+    #[inline]
+    pub(super) fn only(self, others: Self) -> Self {
+        Self(self.0 & others.0)
+    }
+
+    /// Whether a forward or backward update is allowed, to a vertex that is ahead of the front or not.
+    #[inline]
+    pub(super) fn has_update(self, is_forward: bool, is_ahead: bool) -> bool {
+        let flags = self.0 >> u32::from(is_forward);
+        flags & (u32::from(is_ahead) | flags >> 2 | flags >> 4) & 1 != 0
+    }
+}
+
+/// Half of an obtuse corner that unfolding has split, at one end of its base: a triangle that is used in one
+/// direction only, from the base to the apex.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct HalfCorner {
+    /// The other end of the base, and its distance.
+    pub(super) base: (u32, f64),
+    /// The vertex in the obtuse corner, and its distance.
+    pub(super) apex: (u32, f64),
+    /// The length of the third side.
+    pub(super) third: f64,
+}
+
+/// The one-rings of all vertices, which are renumbered for locality.
+#[derive(Debug)]
+pub(super) struct OneRings {
+    neighbours: Rows<Neighbour>,
+    /// Whether shortest paths may bend at a vertex.
+    may_bend: Vec<bool>,
+    /// Mesh vertex of every internal number.
+    pub(super) order: Vec<u32>,
+    /// Internal number of every mesh vertex.
+    pub(super) rank: Vec<u32>,
+    /// The length of the longest edge.
+    pub(super) longest: f64,
+    /// The width of the buckets to begin with.
+    pub(super) bucket_width: f64,
+}
+
+/// Width of the buckets, as a share of the mean edge length. In wider buckets more vertices have to be corrected,
+/// in narrower ones too few are handled together.
+const BUCKET_WIDTH: f64 = 0.05;
+
+/// Number of vertices whose one-rings one thread lays out at a time.
+const BLOCK: usize = 1024;
+
+/// Excess of a total angle, in radians, below which it is rounding.
+const EXCESS: f64 = 5e-9;
+
+impl OneRings {
+    /// The one-rings of a triangulation whose vertices are renumbered in the given order, with straight
+    /// connections and halves of obtuse corners (by the vertex that they are at) in addition.
+    ///
+    /// The mean edge length is that of the mesh: after flips, it may depend on the numbering of the vertices.
+    pub(super) fn new(
+        order: Vec<u32>,
+        triangulation: &Triangulation,
+        links: &[Link],
+        halves: &[(u32, HalfCorner)],
+        mean_edge_length: f64,
+    ) -> Self {
+        let n = order.len();
+        let corners = (0..triangulation.triangles().len()).flat_map(|t| FaceId::from(t).corners());
+        let corners = Rows::collect(n, corners.map(|c| (triangulation.corner_vertex(c).index(), c)));
+        let mut rank = vec![0; n];
+        for (internal, v) in order.iter().enumerate() {
+            rank[*v as usize] = internal as u32;
+        }
+        let ends = |link: &Link| {
+            let ([a, b], length) = (link.ends, link.length);
+            [(a.index(), (b.0, length)), (b.index(), (a.0, length))]
+        };
+        let links = Rows::collect(n, links.iter().flat_map(ends));
+        let halves = Rows::collect(n, halves.iter().map(|(v, half)| (*v as usize, *half)));
+        let blocks: Vec<(Rows<Neighbour>, Vec<bool>)> = order
+            .par_chunks(BLOCK)
+            .map(|vertices| {
+                let mut layout = Layout { triangulation, ring: OneRing::default(), neighbours: Vec::new() };
+                let (mut rows, mut may_bend) = (Rows::default(), Vec::with_capacity(vertices.len()));
+                for v in vertices.iter().map(|v| *v as usize) {
+                    may_bend.push(layout.lay_out(corners.row(v), links.row(v), halves.row(v)));
+                    let renamed = |n: Neighbour| Neighbour { vertex: rank[n.vertex as usize], ..n };
+                    rows.push_row(layout.neighbours.drain(..).map(renamed));
+                }
+                (rows, may_bend)
+            })
+            .collect();
+        let neighbours = Rows::concat(blocks.iter().map(|(rows, _)| rows));
+        let may_bend = blocks.iter().flat_map(|(_, may_bend)| may_bend).copied().collect();
+        let longest = neighbours.items().iter().map(|n: &Neighbour| n.length).fold(0.0, f64::max);
+        Self { neighbours, may_bend, order, rank, longest, bucket_width: BUCKET_WIDTH * mean_edge_length }
+    }
+
+    /// The neighbours of a vertex.
+    #[inline]
+    pub(super) fn of(&self, vertex: u32) -> &[Neighbour] {
+        self.neighbours.row(vertex as usize)
+    }
+
+    /// The numbers of the neighbours of a vertex among [all](Self::at): the first, and the one after the last.
+    #[inline]
+    pub(super) fn range_of(&self, vertex: u32) -> [u32; 2] {
+        let range = self.neighbours.range(vertex as usize);
+        [range.start as u32, range.end as u32]
+    }
+
+    /// The neighbour with this number.
+    #[inline]
+    pub(super) fn at(&self, neighbour: u32) -> &Neighbour {
+        &self.neighbours.items()[neighbour as usize]
+    }
+
+    /// The length of the longest edge at a vertex.
+    pub(super) fn longest_at(&self, vertex: u32) -> f64 {
+        self.of(vertex).iter().map(|neighbour| neighbour.length).fold(0.0, f64::max)
+    }
+
+    /// Whether shortest paths may bend at a vertex, because it is a saddle vertex, a boundary vertex with more
+    /// than 180 degrees, or irregular.
+    #[inline]
+    pub(super) fn may_bend(&self, vertex: u32) -> bool {
+        self.may_bend[vertex as usize]
+    }
+}
+
+/// Lays out one one-ring after the other.
+struct Layout<'a> {
+    triangulation: &'a Triangulation,
+    ring: OneRing,
+    neighbours: Vec<Neighbour>,
+}
+
+impl Layout<'_> {
+    /// Appends the neighbours of a vertex; returns whether shortest paths may bend there.
+    fn lay_out(&mut self, corners: &[CornerId], links: &[(u32, f64)], halves: &[HalfCorner]) -> bool {
+        let Self { triangulation, ring, neighbours } = self;
+        ring.collect(*triangulation, corners);
+        for fan in ring.fans() {
+            for (i, corner) in fan.corners.iter().enumerate() {
+                let [first, last] = neighbours_at(triangulation, *corner);
+                if i == 0 {
+                    neighbours.push(first);
+                }
+                neighbours.push(last);
+            }
+        }
+        let n_fans = neighbours.len();
+        let angle = total_angle(neighbours.iter().map(|n| [n.cross, n.dot]));
+        for HalfCorner { base, apex, third } in halves {
+            neighbours.push(Neighbour::without_triangle(base.0, Allowed::NONE, base.1));
+            neighbours.push(Neighbour {
+                vertex: apex.0,
+                allowed: Allowed::FORWARD,
+                length: apex.1,
+                dot: scalar_product(*third, apex.1, base.1),
+                cross: double_area([*third, apex.1, base.1]),
+            });
+        }
+        for (end, length) in links {
+            let is_shorter =
+                |n: &Neighbour| n.vertex == *end && n.allowed.has(Allowed::EDGE) && n.length <= *length;
+            if !neighbours.iter().any(is_shorter) {
+                neighbours.push(Neighbour::without_triangle(*end, Allowed::EDGE, *length));
+            }
+        }
+        if ring.is_closed() && neighbours.len() == n_fans {
+            // The neighbour that closes the fan takes the place of its copy at the beginning.
+            neighbours.swap_remove(0);
+        }
+        if let Some(mut before) = neighbours.last().copied() {
+            for neighbour in neighbours {
+                neighbour.set_late_updates(&before);
+                before = *neighbour;
+            }
+        }
+        match ring.kind(angle, EXCESS) {
+            VertexKind::Ordinary => false,
+            VertexKind::Saddle | VertexKind::Boundary => true,
+            VertexKind::Irregular => angle > PI + EXCESS,
+        }
+    }
+}
+
+/// The neighbours at the first side of a corner, as if without a triangle, and at its last.
+fn neighbours_at(triangulation: &Triangulation, corner: FanCorner) -> [Neighbour; 2] {
+    let [third, to_next, to_prev] = triangulation.sides(corner.corner);
+    let [first, last] = match corner.winding {
+        Winding::Forward => [to_next, to_prev],
+        Winding::Backward => [to_prev, to_next],
+    };
+    let vertex = |corner| triangulation.corner_vertex(corner).0;
+    let through = Allowed::FORWARD.and(Allowed::BACKWARD);
+    [
+        Neighbour::without_triangle(vertex(corner.opposite_last()), Allowed::EDGE, first),
+        Neighbour {
+            vertex: vertex(corner.opposite_first()),
+            allowed: through.and(Allowed::EDGE),
+            length: last,
+            dot: scalar_product(third, first, last),
+            cross: double_area([third, first, last]),
+        },
+    ]
+}

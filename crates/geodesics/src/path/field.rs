@@ -1,0 +1,58 @@
+//! A field of distances and its sources.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use surface::{FaceId, IntrinsicMesh, Link, Rows, VertexId};
+
+use super::plane::faces_around;
+use crate::point::SurfacePoint;
+use crate::source::Source;
+
+/// Distances from sources, which paths lead to.
+#[derive(Debug)]
+pub(super) struct Field<'a> {
+    pub(super) mesh: &'a IntrinsicMesh,
+    pub(super) sources: &'a [Source],
+    pub(super) distances: &'a [f64],
+    /// The other end and the length of every link at a vertex.
+    links: Rows<(VertexId, f64)>,
+    /// The sources that are vertices, and the others by the faces that hold them.
+    at_vertices: BTreeSet<VertexId>,
+    in_faces: BTreeMap<FaceId, Vec<SurfacePoint>>,
+}
+
+impl<'a> Field<'a> {
+    pub(super) fn new(mesh: &'a IntrinsicMesh, sources: &'a [Source], distances: &'a [f64]) -> Self {
+        let both_ways = |link: &Link| {
+            let ([a, b], length) = (link.ends, link.length);
+            [(a.index(), (b, length)), (b.index(), (a, length))]
+        };
+        let links = Rows::collect(mesh.n_vertices(), mesh.links().iter().flat_map(both_ways));
+        let mut at_vertices = BTreeSet::new();
+        let mut in_faces: BTreeMap<FaceId, Vec<SurfacePoint>> = BTreeMap::new();
+        for point in sources.iter().map(|source| source.point().simplified(mesh)) {
+            if let SurfacePoint::Vertex(vertex) = point {
+                at_vertices.insert(vertex);
+                continue;
+            }
+            for face in faces_around(mesh, point) {
+                in_faces.entry(face).or_default().push(point);
+            }
+        }
+        Self { mesh, sources, distances, links, at_vertices, in_faces }
+    }
+
+    pub(super) fn is_source(&self, vertex: VertexId) -> bool {
+        self.at_vertices.contains(&vertex)
+    }
+
+    /// The sources in a face that are not vertices.
+    pub(super) fn sources_within(&self, face: FaceId) -> &[SurfacePoint] {
+        self.in_faces.get(&face).map_or(&[], Vec::as_slice)
+    }
+
+    /// The vertices linked to a vertex, and how far they are.
+    pub(super) fn links(&self, vertex: VertexId) -> &[(VertexId, f64)] {
+        self.links.row(vertex.index())
+    }
+}

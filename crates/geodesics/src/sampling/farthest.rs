@@ -1,0 +1,162 @@
+//! Farthest point sampling.
+
+use linalg::LandmarkDistances;
+use surface::VertexId;
+
+use super::columns::Columns;
+use super::sampler::{FirstSample, Sampler};
+use crate::error::GeodesicError;
+use crate::solver::{DistanceSolver, PrunedSolver};
+
+/// Farthest point sampling: each landmark is the vertex farthest from those before it (Procedure 1 of the paper).
+///
+/// | paper | here | shape | meaning |
+/// |---|---|---|---|
+/// | `r_i` | `landmarks()` of the result | n | the samples |
+/// | `F` | `matrix()` of the result | p x n | distances |
+///
+/// * Ties go to the lowest vertex, so the result depends on the first sample alone.
+/// * It covers the surface at most twice as coarsely as the best choice of `n` vertices (Hochbaum and Shmoys 1985,
+///   `hochbaum1985`).
+/// * It ends early, with fewer landmarks than requested, if every vertex coincides with one.
+///
+/// Cost: one run of the solver per landmark. On several threads, the runs are parallel if the solver can prune; about
+/// `1/2 + ... + 1/n` further runs choose the landmarks ahead. The result is the same.
+///
+/// ```
+/// use canonform_geodesics::{Dijkstra, FarthestPointSampler, FirstSample, Sampler};
+/// use mesh::shapes;
+///
+/// // A strip: first its ends, then its middle.
+/// let solver = Dijkstra::new(&shapes::grid(9, 2, 1.0).intrinsic());
+/// let mut sampler = FarthestPointSampler::new(&solver, FirstSample::Farthest)?;
+/// sampler.extend_to(3)?;
+/// let columns = sampler.distances(3)?;
+/// assert!(columns.landmarks()[2] % 9 == 4);
+/// # Ok::<(), canonform_geodesics::GeodesicError>(())
+/// ```
+#[derive(Debug)]
+pub struct FarthestPointSampler<'a> {
+    columns: Columns<'a>,
+    /// Distance of every vertex to its nearest landmark.
+    nearest: Vec<f64>,
+}
+
+impl<'a> FarthestPointSampler<'a> {
+    /// Takes the first sample.
+    ///
+    /// # Errors
+    /// [`GeodesicError::Disconnected`] if a vertex cannot be reached, so that no infinite distance gets into a
+    /// matrix; [`GeodesicError::NoSuchVertex`].
+    pub fn new(solver: &'a dyn DistanceSolver, first: FirstSample) -> Result<Self, GeodesicError> {
+        let n_vertices = solver.n_vertices();
+        let start = match first {
+            FirstSample::Vertex(vertex) => vertex,
+            FirstSample::Farthest => VertexId(0),
+        };
+        if start.index() >= n_vertices {
+            return Err(GeodesicError::NoSuchVertex { vertex: start, n_vertices });
+        }
+        let mut columns = Columns::new(solver);
+        columns.add(&[start.index()])?;
+        if first == FirstSample::Farthest {
+            let landmark = farthest(columns.last());
+            columns = Columns::new(solver);
+            columns.add(&[landmark])?;
+        }
+        Ok(Self { nearest: columns.last().to_vec(), columns })
+    }
+
+    /// Takes each landmark from the distances of those before.
+    fn extend_fully(&mut self, n: usize) -> Result<(), GeodesicError> {
+        while self.columns.len() < n {
+            let next = farthest(&self.nearest);
+            if self.nearest[next] == 0.0 {
+                break;
+            }
+            self.columns.add(&[next])?;
+            lower(&mut self.nearest, self.columns.last());
+        }
+        Ok(())
+    }
+
+    /// Chooses landmarks with pruned fronts, which stop half-way to the landmarks before, while other threads find
+    /// the distances from those that are chosen. Every vertex was reached from the first landmark, so all are.
+    ///
+    /// Where a pruned front stopped, its distances may be too long. So once all distances are known, the landmarks are
+    /// checked and kept as far as they are the farthest ones.
+    fn extend_pruned(&mut self, pruned: &dyn PrunedSolver, n: usize) {
+        let Columns { solver, landmarks, values } = &mut self.columns;
+        let (p, solver, before) = (self.nearest.len(), *solver, landmarks.len());
+        let mut nearest = self.nearest.clone();
+        let mut guesses = Vec::new();
+        values.resize(p * n.max(before), 0.0);
+        rayon::scope(|scope| {
+            let mut unknown = values[p * before..].chunks_mut(p.max(1)).peekable();
+            while let Some(column) = unknown.next() {
+                let next = farthest(&nearest);
+                if nearest[next] == 0.0 {
+                    break;
+                }
+                guesses.push(next);
+                scope.spawn(move |_| solver.distances_into(VertexId::from(next), column));
+                if unknown.peek().is_some() {
+                    pruned.lower(VertexId::from(next), &mut nearest);
+                }
+            }
+        });
+        for (guess, column) in guesses.into_iter().zip(values[p * before..].chunks(p.max(1))) {
+            if guess != farthest(&self.nearest) {
+                break;
+            }
+            landmarks.push(guess);
+            lower(&mut self.nearest, column);
+        }
+        values.truncate(p * landmarks.len());
+    }
+}
+
+impl Sampler for FarthestPointSampler<'_> {
+    fn extend_to(&mut self, n: usize) -> Result<(), GeodesicError> {
+        let n = n.min(self.nearest.len());
+        if rayon::current_num_threads() > 1
+            && let Some(pruned) = self.columns.solver.pruned()
+        {
+            self.extend_pruned(pruned, n);
+        }
+        self.extend_fully(n)
+    }
+
+    fn distances(&self, n: usize) -> Result<LandmarkDistances, GeodesicError> {
+        self.columns.distances(n)
+    }
+}
+
+/// The distances from `n` landmarks chosen by [`FarthestPointSampler`].
+///
+/// # Errors
+/// [`GeodesicError::Disconnected`], [`GeodesicError::NoSuchVertex`], [`GeodesicError::NoSamples`].
+pub fn farthest_point_sampling(
+    solver: &dyn DistanceSolver,
+    n: usize,
+    first: FirstSample,
+) -> Result<LandmarkDistances, GeodesicError> {
+    let mut sampler = FarthestPointSampler::new(solver, first)?;
+    sampler.extend_to(n)?;
+    sampler.distances(n)
+}
+
+fn lower(nearest: &mut [f64], column: &[f64]) {
+    nearest.iter_mut().zip(column).for_each(|(near, d)| *near = near.min(*d));
+}
+
+/// The lowest index of the largest value.
+fn farthest(values: &[f64]) -> usize {
+    let mut best = 0;
+    for (i, value) in values.iter().enumerate() {
+        if *value > values[best] {
+            best = i;
+        }
+    }
+    best
+}

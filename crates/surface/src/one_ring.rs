@@ -1,0 +1,295 @@
+//! The faces around a vertex, in order.
+
+use std::f64::consts::{PI, TAU};
+
+use crate::ids::{CornerId, VertexId};
+use crate::topology::Topology;
+
+/// Connectivity as a corner table: what a walk around a vertex needs to know.
+pub trait CornerTable {
+    /// The vertex in a corner.
+    fn corner_vertex(&self, corner: CornerId) -> VertexId;
+
+    /// The corner opposite the same side in the neighbouring face; `None` where the walk has to stop.
+    fn opposite(&self, corner: CornerId) -> Option<CornerId>;
+}
+
+impl CornerTable for Topology {
+    #[inline]
+    fn corner_vertex(&self, corner: CornerId) -> VertexId {
+        self.corner_vertex(corner)
+    }
+
+    #[inline]
+    fn opposite(&self, corner: CornerId) -> Option<CornerId> {
+        self.opposite(corner)
+    }
+}
+
+/// Which of the two sides of a face at a vertex comes first in a fan.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Winding {
+    /// The side to the vertex in the next corner.
+    Forward,
+    /// The side to the vertex in the previous corner.
+    Backward,
+}
+
+/// A corner in a fan. Faces may be oriented either way, so each has its own winding.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct FanCorner {
+    /// The corner; all corners of a fan are at the same vertex.
+    pub corner: CornerId,
+    /// Which of its sides comes first.
+    pub winding: Winding,
+}
+
+impl FanCorner {
+    /// The corner of the same face opposite the first side. The last side ends at the vertex in it.
+    #[inline]
+    #[must_use]
+    pub fn opposite_first(self) -> CornerId {
+        match self.winding {
+            Winding::Forward => self.corner.prev(),
+            Winding::Backward => self.corner.next(),
+        }
+    }
+
+    /// The corner of the same face opposite the last side. The first side ends at the vertex in it.
+    #[inline]
+    #[must_use]
+    pub fn opposite_last(self) -> CornerId {
+        match self.winding {
+            Winding::Forward => self.corner.next(),
+            Winding::Backward => self.corner.prev(),
+        }
+    }
+}
+
+/// Faces around a vertex, each sharing with the next an edge that only these two have.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Fan<'a> {
+    /// The corners at the vertex, in order.
+    pub corners: &'a [FanCorner],
+    /// Whether the last side is also the first.
+    pub is_closed: bool,
+}
+
+impl Fan<'_> {
+    /// The corners opposite the first and the last side; these sides are the same in a closed fan.
+    ///
+    /// # Panics
+    /// If the fan is empty, which no fan of a [`OneRing`] is.
+    #[must_use]
+    pub fn ends(self) -> [CornerId; 2] {
+        [self.corners[0].opposite_first(), self.corners[self.corners.len() - 1].opposite_last()]
+    }
+}
+
+/// What shortest paths may do at a vertex (Mitchell, Mount and Papadimitriou 1987, `mitchell1987`).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum VertexKind {
+    /// They pass straight through, if at all: the total angle is at most 360 degrees, or 180 on the boundary.
+    Ordinary,
+    /// They may bend: an interior vertex with more than 360 degrees. At least 180 are on either side of a path.
+    Saddle,
+    /// They may bend: a boundary vertex with more than 180 degrees.
+    Boundary,
+    /// They may bend anywhere: the faces do not form a single fan.
+    Irregular,
+}
+
+/// The faces around one vertex, as fans.
+///
+/// A vertex inside a surface has one closed fan, a vertex on the boundary an open one. There are several where
+/// parts of a surface touch in a vertex only, and at the ends of non-manifold edges.
+///
+/// ```
+/// use canonform_surface::{OneRing, Topology, VertexId};
+///
+/// // Three faces around vertex 0, one of them turned over.
+/// let faces = [[0, 1, 2], [0, 3, 2], [0, 3, 1]].map(|face| face.map(VertexId));
+/// let topology = Topology::new(4, faces.to_vec());
+/// let mut ring = OneRing::default();
+///
+/// ring.collect(&topology, topology.vertex_corners(VertexId(0)));
+/// let fan = ring.fans().next().unwrap();
+/// let neighbours = fan.corners.iter().map(|c| topology.corner_vertex(c.opposite_last()));
+/// assert_eq!(neighbours.collect::<Vec<_>>(), [1, 2, 3].map(VertexId));
+/// assert!(fan.is_closed);
+///
+/// ring.collect(&topology, topology.vertex_corners(VertexId(1)));
+/// let fan = ring.fans().next().unwrap();
+/// assert_eq!((fan.corners.len(), fan.is_closed), (2, false));
+/// ```
+#[derive(Debug, Clone, Default)]
+pub struct OneRing {
+    corners: Vec<FanCorner>,
+    /// Where each fan ends, and whether it is closed.
+    fans: Vec<(usize, bool)>,
+}
+
+impl OneRing {
+    /// Replaces the fans by those of the vertex that has the given corners, in linear time at ordinary vertices.
+    ///
+    /// The first open fan begins in the first corner that a fan can begin in; a closed one begins with a forward
+    /// corner. Allocates only to grow.
+    pub fn collect(&mut self, table: &impl CornerTable, corners: &[CornerId]) {
+        self.corners.clear();
+        self.fans.clear();
+        let at = |winding| move |corner: &CornerId| FanCorner { corner: *corner, winding };
+        let Some(first) = corners.first().map(at(Winding::Forward)) else { return };
+        if self.walk(table, first) && self.corners.len() == corners.len() {
+            self.fans.push((corners.len(), true));
+            return;
+        }
+        self.corners.clear();
+        let sides = corners.iter().flat_map(|c| [Winding::Forward, Winding::Backward].map(|w| at(w)(c)));
+        let begins_fan = |side: &FanCorner| table.opposite(side.opposite_first()).is_none();
+        // All that is left after the open fans is closed.
+        for start in sides.filter(begins_fan).chain(corners.iter().map(at(Winding::Forward))) {
+            if self.corners.len() == corners.len() {
+                break;
+            }
+            if !self.corners.iter().any(|known| known.corner == start.corner) {
+                let is_closed = self.walk(table, start);
+                self.fans.push((self.corners.len(), is_closed));
+            }
+        }
+    }
+
+    /// Appends the fan that begins with `start`; returns whether it is closed.
+    #[inline]
+    fn walk(&mut self, table: &impl CornerTable, start: FanCorner) -> bool {
+        let vertex = table.corner_vertex(start.corner);
+        let mut here = start;
+        loop {
+            self.corners.push(here);
+            let Some(far) = table.opposite(here.opposite_last()) else { return false };
+            here = if table.corner_vertex(far.next()) == vertex {
+                FanCorner { corner: far.next(), winding: Winding::Forward }
+            } else {
+                FanCorner { corner: far.prev(), winding: Winding::Backward }
+            };
+            if here.corner == start.corner {
+                return true;
+            }
+        }
+    }
+
+    /// The fans.
+    pub fn fans(&self) -> impl Iterator<Item = Fan<'_>> {
+        let mut start = 0;
+        self.fans.iter().map(move |&(end, is_closed)| {
+            let corners = &self.corners[start..end];
+            start = end;
+            Fan { corners, is_closed }
+        })
+    }
+
+    /// Whether there is a single fan and it is closed.
+    #[must_use]
+    pub fn is_closed(&self) -> bool {
+        matches!(self.fans[..], [(_, true)])
+    }
+
+    /// Classifies the vertex by its total angle, which must exceed the limit by more than `excess` for paths to
+    /// bend; both in radians.
+    #[must_use]
+    pub fn kind(&self, total_angle: f64, excess: f64) -> VertexKind {
+        match self.fans[..] {
+            [(_, true)] if total_angle > TAU + excess => VertexKind::Saddle,
+            [(_, false)] if total_angle > PI + excess => VertexKind::Boundary,
+            [] | [_] => VertexKind::Ordinary,
+            _ => VertexKind::Irregular,
+        }
+    }
+}
+
+/// The sum of angles, in radians, each given by its sine and cosine times any positive factor; a pair of zeros
+/// is no angle.
+///
+/// Rotates a direction by one angle after the other and counts half turns, so that one arc tangent is enough.
+pub fn total_angle(angles: impl Iterator<Item = [f64; 2]>) -> f64 {
+    let (mut x, mut y, mut half_turns) = (1.0, 0.0, 0.0);
+    for [sin, cos] in angles {
+        if sin == 0.0 && cos == 0.0 {
+            continue;
+        }
+        (x, y) = (x * cos - y * sin, x * sin + y * cos);
+        let size = f64::max(x.abs(), y.abs());
+        (x, y) = (x / size, y / size);
+        if y < 0.0 || (y == 0.0 && x < 0.0) {
+            (x, y, half_turns) = (-x, -y, half_turns + 1.0);
+        }
+    }
+    half_turns * PI + y.atan2(x)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
+
+    use super::*;
+
+    /// The fans around vertex 0: the vertices at the ends of the sides, in order.
+    fn fans(faces: &[[u32; 3]]) -> (OneRing, Vec<Vec<u32>>) {
+        let topology = Topology::new(9, faces.iter().map(|f| f.map(VertexId)).collect());
+        let mut ring = OneRing::default();
+        ring.collect(&topology, topology.vertex_corners(VertexId(0)));
+        let vertex = |corner| topology.corner_vertex(corner).0;
+        let ends = |fan: Fan| {
+            let firsts = fan.corners.iter().map(|c| vertex(c.opposite_last()));
+            firsts.chain(fan.corners.last().map(|c| vertex(c.opposite_first()))).collect()
+        };
+        let all = ring.fans().map(ends).collect();
+        (ring, all)
+    }
+
+    #[test]
+    fn a_fan_is_followed_through_faces_of_either_orientation() {
+        let (ring, ends) = fans(&[[0, 1, 2], [4, 3, 0], [0, 2, 3], [1, 0, 4]]);
+        assert_eq!(ends, [[1, 2, 3, 4, 1]]);
+        assert_eq!(
+            [6.0, 6.3].map(|angle| ring.kind(angle, 1e-9)),
+            [VertexKind::Ordinary, VertexKind::Saddle]
+        );
+    }
+
+    #[test]
+    fn an_open_fan_goes_from_boundary_to_boundary() {
+        let (ring, ends) = fans(&[[2, 3, 0], [0, 1, 2], [0, 4, 3]]);
+        assert_eq!(ends, [[1, 2, 3, 4]]);
+        assert_eq!(
+            [3.1, 3.2].map(|angle| ring.kind(angle, 1e-9)),
+            [VertexKind::Ordinary, VertexKind::Boundary]
+        );
+    }
+
+    #[test]
+    fn fans_end_at_edges_of_three_faces_and_a_vertex_may_have_several() {
+        let (ring, mut ends) = fans(&[[0, 1, 2], [0, 1, 3], [0, 1, 4], [0, 4, 5]]);
+        ends.iter_mut().for_each(|fan| fan.sort_unstable());
+        assert_eq!(ends, [vec![1, 2], vec![1, 3], vec![1, 4, 5]]);
+        assert_eq!(ring.kind(0.1, 1e-9), VertexKind::Irregular);
+        let (ring, ends) = fans(&[[0, 1, 2], [0, 2, 3], [0, 3, 1], [0, 4, 5], [0, 5, 6], [0, 6, 4]]);
+        assert_eq!(ends, [[1, 2, 3, 1], [4, 5, 6, 4]]);
+        assert!(ring.fans().all(|fan| fan.is_closed));
+        let (ring, ends) = fans(&[[1, 2, 3]]);
+        assert_eq!((ring.kind(0.0, 0.0), ends.len()), (VertexKind::Ordinary, 0));
+    }
+
+    #[test]
+    fn angles_add_up_beyond_any_number_of_turns() {
+        for angle in [0.0, 1e-9, 1.0, FRAC_PI_2, 2.5, 3.0, PI] {
+            for n in [1, 2, 3, 4, 7, 40] {
+                // The product of these factors overflows.
+                let sizes = (0..n).map(|i| [1e200, 1e-200][i % 2]);
+                let found = total_angle(sizes.map(|size: f64| [size * angle.sin(), size * angle.cos()]));
+                let expected = n as f64 * angle;
+                assert!((found - expected).abs() < 1e-13 * (1.0 + expected), "{n} times {angle}: {found}");
+            }
+        }
+        assert_eq!(total_angle([[0.0, 0.0], [1.0, 1.0], [0.0, 0.0]].into_iter()), FRAC_PI_4);
+    }
+}

@@ -1,0 +1,133 @@
+//! Rows of unequal length, stored back to back.
+
+/// A list of `T` for each of a number of rows.
+///
+/// ```
+/// use canonform_surface::Rows;
+///
+/// let rows = Rows::collect(3, [(2, 'a'), (0, 'b'), (2, 'c')].into_iter());
+/// assert_eq!(rows.row(2), ['a', 'c']);
+/// assert!(rows.row(1).is_empty());
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct Rows<T> {
+    offsets: Vec<u32>,
+    items: Vec<T>,
+}
+
+impl<T> Default for Rows<T> {
+    fn default() -> Self {
+        Self { offsets: vec![0], items: Vec::new() }
+    }
+}
+
+impl<T: Copy> Rows<T> {
+    /// Sorts `(row, item)` pairs by row; items of a row keep their order. Linear time.
+    ///
+    /// # Panics
+    /// If a row is not below `n_rows`.
+    pub fn collect(n_rows: usize, pairs: impl Iterator<Item = (usize, T)> + Clone) -> Self {
+        let mut offsets = vec![0u32; n_rows + 1];
+        for (row, _) in pairs.clone() {
+            offsets[row + 1] += 1;
+        }
+        for row in 0..n_rows {
+            offsets[row + 1] += offsets[row];
+        }
+        let mut next = offsets.clone();
+        let filler = pairs.clone().next().map(|(_, item)| item);
+        let mut items: Vec<T> = filler.map_or_else(Vec::new, |item| vec![item; offsets[n_rows] as usize]);
+        for (row, item) in pairs {
+            items[next[row] as usize] = item;
+            next[row] += 1;
+        }
+        Self { offsets, items }
+    }
+
+    /// No rows, with room for this many rows and items.
+    #[must_use]
+    pub fn with_capacity(n_rows: usize, n_items: usize) -> Self {
+        let mut offsets = Vec::with_capacity(n_rows + 1);
+        offsets.push(0);
+        Self { offsets, items: Vec::with_capacity(n_items) }
+    }
+
+    /// Appends a row.
+    ///
+    /// # Panics
+    /// If the number of all items does not fit into 32 bits.
+    pub fn push_row(&mut self, items: impl IntoIterator<Item = T>) {
+        self.items.extend(items);
+        assert!(u32::try_from(self.items.len()).is_ok(), "more items than fit into 32 bits");
+        self.offsets.push(self.items.len() as u32);
+    }
+
+    /// The rows of several lists, one after the other.
+    ///
+    /// # Panics
+    /// If the number of all items does not fit into 32 bits.
+    pub fn concat<'a>(parts: impl Iterator<Item = &'a Self> + Clone) -> Self
+    where
+        T: 'a,
+    {
+        let n_items = parts.clone().map(|part| part.items.len()).sum();
+        assert!(u32::try_from(n_items).is_ok(), "more items than fit into 32 bits");
+        let mut all = Self { offsets: vec![0], items: Vec::with_capacity(n_items) };
+        for part in parts {
+            let start = all.items.len() as u32;
+            all.offsets.extend(part.offsets[1..].iter().map(|offset| start + offset));
+            all.items.extend_from_slice(&part.items);
+        }
+        all
+    }
+
+    /// Number of rows.
+    #[must_use]
+    pub fn n_rows(&self) -> usize {
+        self.offsets.len() - 1
+    }
+
+    /// The items of a row.
+    #[inline]
+    #[must_use]
+    pub fn row(&self, row: usize) -> &[T] {
+        &self.items[self.range(row)]
+    }
+
+    /// Where the items of a row are among [all items](Self::items).
+    #[inline]
+    #[must_use]
+    pub fn range(&self, row: usize) -> std::ops::Range<usize> {
+        self.offsets[row] as usize..self.offsets[row + 1] as usize
+    }
+
+    /// The items of all rows, one row after the other.
+    #[inline]
+    #[must_use]
+    pub fn items(&self) -> &[T] {
+        &self.items
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn items_keep_their_order_within_a_row() {
+        let pairs = [(2, 'a'), (0, 'b'), (2, 'c'), (0, 'd'), (2, 'e')];
+        let rows = Rows::collect(4, pairs.into_iter());
+        assert_eq!(rows.n_rows(), 4);
+        let expected: [&[char]; 4] = [&['b', 'd'], &[], &['a', 'c', 'e'], &[]];
+        for (row, items) in expected.into_iter().enumerate() {
+            assert_eq!(rows.row(row), items);
+            assert_eq!(&rows.items()[rows.range(row)], items);
+        }
+        assert_eq!(Rows::<u8>::collect(1, std::iter::empty()).row(0), &[]);
+        let mut pushed = Rows::default();
+        expected.into_iter().for_each(|items| pushed.push_row(items.iter().copied()));
+        assert_eq!(pushed, rows);
+        let both = Rows::concat([&rows, &rows].into_iter());
+        assert_eq!((both.n_rows(), both.row(4), both.row(6)), (8, expected[0], expected[2]));
+    }
+}

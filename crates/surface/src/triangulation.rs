@@ -1,0 +1,398 @@
+//! Intrinsic triangulations and their edge flips.
+
+use crate::ids::{CornerId, FaceId, VertexId};
+use crate::intrinsic::{IntrinsicMesh, Link};
+use crate::one_ring::CornerTable;
+use crate::triangle::{Triangle, double_area};
+
+/// Flips are bounded by this many per side; meshes in practice need less than one.
+const FLIPS_PER_SIDE: usize = 32;
+
+/// A negative sum of two cotangents within this share of one and their sizes is rounding.
+const SLACK: f64 = 1e-10;
+
+/// Marks a side without a neighbour.
+const NONE: u32 = u32::MAX;
+
+/// Triangles known by the lengths of their sides alone and glued side to side, as a corner table.
+///
+/// A side may be free, as at the boundary, and glued triangles may be of opposite orientation. Sides can be
+/// flipped, which changes neither the surface nor its distances.
+///
+/// **Invariant.** [`opposite`](CornerTable::opposite) joins sides of equal length between the same two vertices,
+/// and is its own inverse.
+///
+/// ```
+/// use canonform_surface::{IntrinsicMesh, Loops, Topology, Triangulation, VertexId};
+///
+/// // A rhombus with sides of length 1, cut along its long diagonal.
+/// let faces = vec![[0, 1, 2].map(VertexId), [2, 1, 3].map(VertexId)];
+/// let mesh = IntrinsicMesh::new(Topology::new(4, faces), vec![1.0, 1.0, 1.8, 1.0, 1.0]);
+/// let mut triangulation = Triangulation::new(&mesh);
+///
+/// let removed = triangulation.flip_to_delaunay(Loops::Forbidden);
+/// assert_eq!((removed.len(), removed[0].length), (1, 1.8));
+/// let short = 2.0 * (1.0f64 - 0.9 * 0.9).sqrt();
+/// assert!(triangulation.triangles().iter().all(|t| t.lengths.iter().any(|l| (l - short).abs() < 1e-15)));
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct Triangulation {
+    triangles: Vec<GluedTriangle>,
+}
+
+/// A triangle of a [`Triangulation`]. Each of its sides is in the place of the corner opposite.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct GluedTriangle {
+    /// The vertices; other triangles may have the same ones.
+    pub vertices: [VertexId; 3],
+    /// The lengths of the sides.
+    pub lengths: [f64; 3],
+    /// The corners opposite the same sides in the neighbouring triangles.
+    opposite: [u32; 3],
+}
+
+/// Whether a flip may join a vertex to itself.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Loops {
+    /// It may.
+    Allowed,
+    /// Such sides stay as they are.
+    Forbidden,
+}
+
+impl Triangulation {
+    /// The faces of a mesh, glued at edges of exactly two faces.
+    #[must_use]
+    pub fn new(mesh: &IntrinsicMesh) -> Self {
+        let topology = mesh.topology();
+        let far = |corner| topology.opposite(corner).map_or(NONE, |far| far.0);
+        let triangle = |(f, vertices): (usize, &[VertexId; 3])| {
+            let corners = FaceId::from(f).corners();
+            let lengths = corners.map(|corner| mesh.opposite_length(corner));
+            GluedTriangle { vertices: *vertices, lengths, opposite: corners.map(far) }
+        };
+        Self { triangles: topology.faces().iter().enumerate().map(triangle).collect() }
+    }
+
+    /// Triangles given by their vertices, with sides that have neither a length nor a neighbour yet.
+    pub(crate) fn loose(vertices: impl Iterator<Item = [VertexId; 3]>) -> Self {
+        let triangle = |vertices| GluedTriangle { vertices, lengths: [0.0; 3], opposite: [NONE; 3] };
+        Self { triangles: vertices.map(triangle).collect() }
+    }
+
+    /// Sets the length of a side.
+    pub(crate) fn set_length(&mut self, corner: CornerId, length: f64) {
+        self.triangles[corner.face().index()].lengths[corner.slot()] = length;
+    }
+
+    /// Glues two sides together.
+    pub(crate) fn glue(&mut self, a: CornerId, b: CornerId) {
+        self.triangles[a.face().index()].opposite[a.slot()] = b.0;
+        self.triangles[b.face().index()].opposite[b.slot()] = a.0;
+    }
+
+    /// Glues a side to the one with the given number, if there is one.
+    fn set_neighbour(&mut self, side: CornerId, neighbour: u32) {
+        if neighbour == NONE {
+            self.triangles[side.face().index()].opposite[side.slot()] = NONE;
+        } else {
+            self.glue(side, CornerId(neighbour));
+        }
+    }
+
+    /// The number of the corner opposite the same side as another, or [`NONE`].
+    #[inline]
+    fn neighbour(&self, side: CornerId) -> u32 {
+        self.triangles[side.face().index()].opposite[side.slot()]
+    }
+
+    /// The triangles.
+    #[must_use]
+    pub fn triangles(&self) -> &[GluedTriangle] {
+        &self.triangles
+    }
+
+    /// The lengths of the three sides of a corner's triangle, as in [`IntrinsicMesh::sides`].
+    #[inline]
+    #[must_use]
+    pub fn sides(&self, corner: CornerId) -> [f64; 3] {
+        let lengths = &self.triangles[corner.face().index()].lengths;
+        [corner, corner.prev(), corner.next()].map(|c| lengths[c.slot()])
+    }
+
+    /// Flips sides until the two angles opposite each sum to at most 180 degrees, and returns the original sides
+    /// that are gone (the intrinsic Delaunay triangulation; Bobenko and Springborn 2007, `bobenko2007`).
+    ///
+    /// Free sides stay. Bounded: on a surface so degenerate that the flips run out, some sides are left as they
+    /// are. The triangles are numbered as before, but have other vertices.
+    pub fn flip_to_delaunay(&mut self, loops: Loops) -> Vec<Link> {
+        let corners = (0..self.triangles.len()).flat_map(|t| FaceId::from(t).corners());
+        let n_sides = 3 * self.triangles.len();
+        let mut removed = Vec::new();
+        let mut is_new = vec![false; n_sides];
+        // Either corner may stand for a side; the lower one does.
+        let is_lower = |c: &CornerId| self.opposite(*c).is_some_and(|far| *c < far);
+        let mut waiting: Vec<CornerId> = corners.filter(is_lower).collect();
+        let mut is_queued = vec![false; n_sides];
+        waiting.iter().for_each(|corner| is_queued[corner.index()] = true);
+        let mut budget = FLIPS_PER_SIDE * n_sides;
+        while let Some(corner) = waiting.pop() {
+            is_queued[corner.index()] = false;
+            let Some(triangles) = self.flip(corner, loops, &mut is_new, &mut removed) else {
+                continue;
+            };
+            // The sides around the two triangles have new numbers now and are queued under these.
+            for outer in triangles.into_iter().flat_map(|t| [1, 2].map(|slot| CornerId::new(t, slot))) {
+                let Some(far) = self.opposite(outer) else { continue };
+                let side = outer.min(far);
+                if !std::mem::replace(&mut is_queued[side.index()], true) {
+                    waiting.push(side);
+                }
+            }
+            budget -= 1;
+            if budget == 0 {
+                break;
+            }
+        }
+        removed
+    }
+
+    /// Replaces a side that is not Delaunay by the other diagonal of its two triangles, which becomes the side
+    /// opposite slot 0 of both.
+    fn flip(
+        &mut self,
+        corner: CornerId,
+        loops: Loops,
+        is_new: &mut [bool],
+        removed: &mut Vec<Link>,
+    ) -> Option<[FaceId; 2]> {
+        let far = self.opposite(corner)?;
+        let [f, g] = [corner.face(), far.face()];
+        if f == g {
+            return None;
+        }
+        // The triangles a b c, above the side from a to b, and b a d below it.
+        let is_reversed = self.runs_along(corner, far);
+        let above = self.sides(corner);
+        let mut below = self.sides(far);
+        if is_reversed {
+            below.swap(1, 2);
+        }
+        // Nearly all sides face two acute angles, and stay.
+        let is_acute = |[base, p, q]: [f64; 3]| base * base <= p * p + q * q;
+        if is_acute(above) && is_acute(below) {
+            return None;
+        }
+        let [upper, lower] = [above, below].map(Triangle::from_sides);
+        let (at_c, at_d) = (upper.apex_cotangent(), lower.apex_cotangent());
+        // False if lengths of no triangle make it NaN.
+        let exceeds_180_degrees = at_c + at_d < -SLACK * (1.0 + at_c.abs() + at_d.abs());
+        let [base, ca, bc] = above;
+        let [_, db, ad] = below;
+        let diagonal = upper.apex_to_apex(lower);
+        let has_area = |sides| double_area(sides) > 0.0;
+        if !exceeds_180_degrees || !has_area([diagonal, db, bc]) || !has_area([diagonal, ca, ad]) {
+            return None;
+        }
+        let [c, d] = [corner, far].map(|apex| self.corner_vertex(apex));
+        if loops == Loops::Forbidden && c == d {
+            return None;
+        }
+        if is_reversed {
+            self.turn_over(far, is_new);
+        }
+        let [a, b] = [corner.next(), corner.prev()].map(|end| self.corner_vertex(end));
+        if !is_new[corner.index()] {
+            removed.push(Link { ends: [a, b], length: base });
+        }
+        let outer = [far.prev(), corner.next(), corner.prev(), far.next()];
+        let moved = [(f, 1), (f, 2), (g, 1), (g, 2)].map(|(triangle, slot)| CornerId::new(triangle, slot));
+        let new_number = |side: u32| outer.iter().position(|old| old.0 == side).map_or(side, |i| moved[i].0);
+        let neighbours = outer.map(|old| new_number(self.neighbour(old)));
+        let were_new = outer.map(|old| is_new[old.index()]);
+        let triangle = |vertices, lengths| GluedTriangle { vertices, lengths, opposite: [NONE; 3] };
+        self.triangles[f.index()] = triangle([b, c, d], [diagonal, db, bc]);
+        self.triangles[g.index()] = triangle([a, d, c], [diagonal, ca, ad]);
+        for ((side, neighbour), was_new) in moved.into_iter().zip(neighbours).zip(were_new) {
+            self.set_neighbour(side, neighbour);
+            is_new[side.index()] = was_new;
+        }
+        let diagonals = [f, g].map(|triangle| CornerId::new(triangle, 0));
+        self.glue(diagonals[0], diagonals[1]);
+        diagonals.iter().for_each(|side| is_new[side.index()] = true);
+        Some([f, g])
+    }
+
+    /// Whether two glued sides run the same way, so that their triangles are of opposite orientation.
+    fn runs_along(&self, corner: CornerId, far: CornerId) -> bool {
+        let [start, end] = [corner.next(), corner.prev()].map(|c| self.corner_vertex(c));
+        // A loop is glued as on an oriented surface.
+        start != end && start == self.corner_vertex(far.next())
+    }
+
+    /// Reverses the orientation of a triangle, leaving the given corner where it is.
+    fn turn_over(&mut self, corner: CornerId, is_new: &mut [bool]) {
+        let [p, q] = [corner.next(), corner.prev()];
+        let [at_p, at_q] = [p, q].map(|side| self.neighbour(side));
+        let triangle = &mut self.triangles[corner.face().index()];
+        triangle.vertices.swap(p.slot(), q.slot());
+        triangle.lengths.swap(p.slot(), q.slot());
+        is_new.swap(p.index(), q.index());
+        // The two sides may be glued to each other.
+        let renamed = |side: u32| match CornerId(side) {
+            side if side == p => q.0,
+            side if side == q => p.0,
+            side => side.0,
+        };
+        self.set_neighbour(p, renamed(at_q));
+        self.set_neighbour(q, renamed(at_p));
+    }
+}
+
+impl CornerTable for Triangulation {
+    #[inline]
+    fn corner_vertex(&self, corner: CornerId) -> VertexId {
+        self.triangles[corner.face().index()].vertices[corner.slot()]
+    }
+
+    #[inline]
+    fn opposite(&self, corner: CornerId) -> Option<CornerId> {
+        let far = self.neighbour(corner);
+        (far != NONE).then_some(CornerId(far))
+    }
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use mesh::shapes;
+
+    use super::*;
+    use crate::testing::intrinsic;
+    use crate::topology::Topology;
+
+    fn flipped(mesh: &IntrinsicMesh) -> (Triangulation, Vec<Link>) {
+        let mut triangulation = Triangulation::new(mesh);
+        let removed = triangulation.flip_to_delaunay(Loops::Forbidden);
+        (triangulation, removed)
+    }
+
+    pub(crate) fn area(triangulation: &Triangulation) -> f64 {
+        triangulation.triangles.iter().map(|t| 0.5 * double_area(t.lengths)).sum()
+    }
+
+    /// Glued sides fit together, and none can be flipped.
+    pub(crate) fn assert_delaunay(triangulation: &Triangulation) {
+        for corner in (0..3 * triangulation.triangles.len()).map(CornerId::from) {
+            let Some(far) = triangulation.opposite(corner) else { continue };
+            assert!(far != corner && triangulation.opposite(far) == Some(corner));
+            let ends = |c: CornerId| {
+                let mut ends = [c.next(), c.prev()].map(|end| triangulation.corner_vertex(end));
+                ends.sort_unstable();
+                ends
+            };
+            assert_eq!(ends(corner), ends(far));
+            let [near, beyond] = [corner, far].map(|c| triangulation.sides(c));
+            assert_eq!(near[0], beyond[0]);
+            let [p, q] = [near, beyond].map(|sides| Triangle::from_sides(sides).apex_cotangent());
+            assert!(corner.face() == far.face() || p + q >= -1e-9 * (1.0 + p.abs() + q.abs()), "{p} {q}");
+        }
+    }
+
+    #[test]
+    fn flips_give_a_delaunay_triangulation_of_the_same_area() {
+        for mesh in [
+            shapes::sheared_grid(12, 9, 1.0, 1.0),
+            shapes::sheared_grid(12, 9, 1.0, 4.3),
+            shapes::jittered_grid(14, 14, 1.0, 0.24, 5),
+            shapes::torus(30, 4, 2.0, 0.5),
+            shapes::cylinder(5, 40, 1.0, 2.0),
+        ] {
+            let surface = intrinsic(&mesh);
+            let (triangulation, removed) = flipped(&surface);
+            assert_delaunay(&triangulation);
+            assert!(!removed.is_empty(), "{} faces", mesh.n_faces());
+            assert!((area(&triangulation) / area(&Triangulation::new(&surface)) - 1.0).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn lengths_in_a_plane_are_the_distances_between_vertices() {
+        let sheet = shapes::jittered_grid(12, 9, 1.0, 0.3, 5);
+        let (triangulation, removed) = flipped(&intrinsic(&sheet));
+        let distance =
+            |a: VertexId, b: VertexId| (sheet.positions[a.index()] - sheet.positions[b.index()]).norm();
+        for GluedTriangle { vertices: [a, b, c], lengths, .. } in triangulation.triangles() {
+            for (length, ends) in lengths.iter().zip([[b, c], [c, a], [a, b]]) {
+                assert!((length - distance(*ends[0], *ends[1])).abs() < 1e-12);
+            }
+        }
+        for Link { ends: [a, b], length } in &removed {
+            assert!((length - distance(*a, *b)).abs() < 1e-12);
+        }
+        // Every edge of the mesh is still there or was returned.
+        let sides = triangulation.triangles.iter().map(|t| t.vertices);
+        let sides = sides.flat_map(|[a, b, c]| [[a, b], [b, c], [c, a]]);
+        let known = sides.chain(removed.iter().map(|link| link.ends)).map(|[a, b]| [a.min(b), a.max(b)]);
+        let known: std::collections::BTreeSet<_> = known.collect();
+        let topology = Topology::new(sheet.n_vertices(), intrinsic(&sheet).topology().faces().to_vec());
+        assert!(topology.edges().iter().all(|ends| known.contains(ends)));
+    }
+
+    #[test]
+    fn the_orientation_of_faces_does_not_matter() {
+        for mesh in [shapes::sheared_grid(12, 9, 1.0, 2.3), shapes::jittered_grid(9, 9, 1.0, 0.24, 3)] {
+            let surface = intrinsic(&mesh);
+            let turned = (0..).zip(surface.topology().faces());
+            let turned = turned.map(|(f, [a, b, c])| if f % 3 == 0 { [*b, *a, *c] } else { [*a, *b, *c] });
+            let topology = Topology::new(surface.n_vertices(), turned.collect());
+            let turned = IntrinsicMesh::new(topology, surface.edge_lengths().to_vec());
+            let [one, other] = [&surface, &turned].map(|mesh| {
+                let (triangulation, removed) = flipped(mesh);
+                assert_delaunay(&triangulation);
+                let mut ends: Vec<_> = removed.iter().map(|link| [0, 1].map(|i| link.ends[i].0)).collect();
+                ends.iter_mut().for_each(|ends| ends.sort_unstable());
+                ends.sort_unstable();
+                ends
+            });
+            assert_eq!(one, other);
+        }
+        // A Moebius strip has no orientation.
+        let faces = [[0, 1, 2], [1, 2, 3], [2, 3, 4], [3, 4, 0], [4, 0, 1]].map(|f| f.map(VertexId));
+        let topology = Topology::new(5, faces.to_vec());
+        for wide in 0..topology.n_edges() {
+            let lengths = (0..topology.n_edges()).map(|e| if e == wide { 1.8 } else { 1.0 }).collect();
+            assert_delaunay(&flipped(&IntrinsicMesh::new(topology.clone(), lengths)).0);
+        }
+    }
+
+    #[test]
+    fn a_delaunay_triangulation_stays_as_it_is() {
+        // Right angles on both sides of an edge are a tie.
+        for mesh in [shapes::icosphere(2), shapes::grid(7, 5, 0.3)] {
+            let surface = intrinsic(&mesh);
+            assert_eq!(flipped(&surface), (Triangulation::new(&surface), Vec::new()));
+        }
+    }
+
+    #[test]
+    fn edges_of_one_or_three_faces_stay() {
+        let faces = [[0, 1, 2], [1, 0, 3], [0, 1, 4]].map(|f| f.map(VertexId));
+        let topology = Topology::new(5, faces.to_vec());
+        // The angles opposite the edge between vertices 0 and 1 are wide.
+        let lengths = topology.edges().iter().map(|ends| if ends[1].0 == 1 { 1.9 } else { 1.0 }).collect();
+        let surface = IntrinsicMesh::new(topology, lengths);
+        assert_eq!(flipped(&surface), (Triangulation::new(&surface), Vec::new()));
+    }
+
+    #[test]
+    fn loops_are_only_made_where_they_are_allowed() {
+        // Two faces with all vertices in common, glued at two of their edges after another is split.
+        let faces = [[0, 1, 2], [1, 0, 2]].map(|f| f.map(VertexId));
+        let mesh = IntrinsicMesh::new(Topology::new(3, faces.to_vec()), vec![1.9, 1.0, 1.0]);
+        assert_eq!(flipped(&mesh).1, Vec::new());
+        let mut triangulation = Triangulation::new(&mesh);
+        assert_eq!(triangulation.flip_to_delaunay(Loops::Allowed).len(), 1);
+        assert_delaunay(&triangulation);
+        assert!(triangulation.triangles.iter().all(|t| t.vertices.iter().filter(|v| v.0 == 2).count() == 2));
+    }
+}
