@@ -5,7 +5,7 @@ OUT ?= out
 # A folder of meshes with the paper's classes, for `make reproduce`; the built-in dataset without it.
 DATASET ?=
 
-.PHONY: help setup build run test lint bench bench-peers bench-nmds bench-search bench-eigsh fmt doc reproduce report deny ci clean
+.PHONY: help setup build run test lint bench bench-peers bench-nmds bench-search bench-eigsh fmt doc reproduce report plotly deny ci clean
 
 help: ## List these commands
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "  make %-12s %s\n", $$1, $$2}'
@@ -67,6 +67,9 @@ comma := ,
 
 report: ## Make the interactive page OUT/report.html again from the results in OUT, without running anything
 	$(CARGO) run --release --locked -p experiments -- report --output $(OUT)
+
+plotly: ## Build the bundle of plotly.js that the pages embed (needs Node 20 and npm)
+	node crates/view/assets/plotly/build.mjs
 
 deny: ## Check licences, sources and duplicate versions with cargo-deny (installs it if missing)
 	@command -v cargo-deny >/dev/null || $(CARGO) install --locked cargo-deny
