@@ -14,9 +14,9 @@ use nmds::classical_full;
 use report::results::{Figure9Measured, Figure9Record, Figure9Row, write};
 use report::tables::figure9_table;
 use surface::VertexId;
-use terminal::PeakMemory;
 
 use crate::collection::Shape;
+use crate::memory::with_peak_bytes;
 use crate::run::Context;
 use crate::specimen::{DIM, Distances};
 use crate::sweep::Measured;
@@ -105,13 +105,13 @@ fn timed(context: &Context<'_>, shape: &Shape, method: EmbedMethod) -> Result<Fi
     };
     let mut best: Option<Figure9Measured> = None;
     for _ in 0..runs {
-        let memory = PeakMemory::begin();
-        let seconds = embed(&shape.surface, &options, &())?.report.seconds;
+        let (embedded, peak_bytes) = with_peak_bytes(|| embed(&shape.surface, &options, &()));
+        let seconds = embedded?.report.seconds;
         let run = Figure9Measured {
             geodesics: seconds.geodesics,
             embedding: seconds.embedding,
             runs,
-            peak_bytes: memory.bytes(),
+            peak_bytes,
         };
         best = Some(best.filter(|best| best.total() <= run.total()).unwrap_or(run));
     }
@@ -120,13 +120,16 @@ fn timed(context: &Context<'_>, shape: &Shape, method: EmbedMethod) -> Result<Fi
 
 /// Classical scaling by all eigenpairs.
 fn full(shape: &Shape) -> Result<Figure9Measured> {
-    let memory = PeakMemory::begin();
-    let start = Instant::now();
-    let all = Distances::default().method.prepare(&shape.surface.intrinsic)?.distance_matrix()?;
-    let geodesics = start.elapsed().as_secs_f64();
-    classical_full(&all, DIM)?;
-    let embedding = start.elapsed().as_secs_f64() - geodesics;
-    Ok(Figure9Measured { geodesics, embedding, runs: 1, peak_bytes: memory.bytes() })
+    let run = || -> Result<[f64; 2]> {
+        let start = Instant::now();
+        let all = Distances::default().method.prepare(&shape.surface.intrinsic)?.distance_matrix()?;
+        let geodesics = start.elapsed().as_secs_f64();
+        classical_full(&all, DIM)?;
+        Ok([geodesics, start.elapsed().as_secs_f64() - geodesics])
+    };
+    let (seconds, peak_bytes) = with_peak_bytes(run);
+    let [geodesics, embedding] = seconds?;
+    Ok(Figure9Measured { geodesics, embedding, runs: 1, peak_bytes })
 }
 
 /// How long all pairs would take, from some of the sources.

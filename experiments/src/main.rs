@@ -17,6 +17,7 @@ mod figure6;
 mod figure7;
 mod figure8;
 mod figure9;
+mod memory;
 mod retrieve;
 mod run;
 mod scaling;

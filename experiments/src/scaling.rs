@@ -11,9 +11,9 @@ use datasets::{ArticulatedOptions, Family, articulated_shape};
 use mesh::RepairOptions;
 use report::results::{AxisScale, CurvesPanel, Series};
 use surface::VertexId;
-use terminal::PeakMemory;
 
 use crate::figure5::finish;
+use crate::memory::with_peak_bytes;
 use crate::run::Context;
 use crate::specimen::Distances;
 use crate::sweep::{Measured, axis, places, series};
@@ -96,10 +96,10 @@ fn of_form(context: &Context<'_>, surface: &Surface) -> Result<Cost> {
         stress: StressChoice::Skip,
         ..EmbedOptions::default()
     };
-    let memory = PeakMemory::begin();
     let start = Instant::now();
-    embed(surface, &options, &())?;
-    Ok(Cost { seconds: start.elapsed().as_secs_f64(), mib: memory.bytes() as f64 / MIB })
+    let (embedded, peak_bytes) = with_peak_bytes(|| embed(surface, &options, &()));
+    embedded?;
+    Ok(Cost { seconds: start.elapsed().as_secs_f64(), mib: peak_bytes as f64 / MIB })
 }
 
 /// The exponent of a curve's least values in its places: the slope of the straight line that fits their logarithms

@@ -1,9 +1,7 @@
-//! What the programs share towards the person at the terminal: progress, threads, memory, interruption,
-//! exit codes.
+//! What the programs share towards the person at the terminal: progress, threads, interruption, exit codes.
 //!
 //! Knows nothing of arguments or results.
 
-mod memory;
 mod progress;
 
 use std::process::ExitCode;
@@ -11,7 +9,6 @@ use std::sync::{Mutex, PoisonError};
 
 use anyhow::{Context, Result};
 
-pub use memory::PeakMemory;
 pub use progress::Bars;
 
 /// What to do when the program is interrupted for the first time, instead of ending at once.
