@@ -65,8 +65,8 @@ fn table(report: &MethodsReport) -> String {
                 row.extend([
                     f.n_samples.to_string(),
                     value + star(stress(f), best[0]),
-                    report::tables::seconds_digits(f.seconds) + star(seconds(f), best[1]),
-                    report::tables::bytes_digits(f.peak_bytes) + star(memory(f), best[2]),
+                    view::numbers::seconds(f.seconds) + star(seconds(f), best[1]),
+                    view::numbers::bytes(f.peak_bytes) + star(memory(f), best[2]),
                     format!("{:.4}", f.negative_mass),
                 ]);
             }
