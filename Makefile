@@ -5,7 +5,7 @@ OUT ?= out
 # For `make reproduce`: a folder of meshes with the classes of the paper. Default: the built-in dataset.
 DATASET ?=
 
-.PHONY: help setup build run test lint bench bench-peers bench-nmds bench-search bench-eigsh fmt doc reproduce report deny package ci clean
+.PHONY: help setup build run test lint bench bench-peers bench-nmds bench-search bench-eigsh fmt doc reproduce report plotly deny package ci clean
 
 help: ## List these commands
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "  make %-12s %s\n", $$1, $$2}'
@@ -67,6 +67,9 @@ comma := ,
 
 report: ## Write OUT/report.html from the results in OUT without running experiments
 	$(CARGO) run --release --locked -p experiments -- report --output $(OUT)
+
+plotly: ## Build the bundle of plotly.js that the pages embed (needs Node 20 and npm)
+	node crates/view/assets/plotly/build.mjs
 
 deny: ## Check licences and sources of dependencies with cargo-deny (installs it if missing)
 	@command -v cargo-deny >/dev/null || $(CARGO) install --locked cargo-deny

@@ -34,7 +34,7 @@ impl CornerTable {
         let topology = Topology::new(n_vertices, faces.to_vec());
         let vertex: Vec<u32> = faces.iter().flatten().map(|v| v.0).collect();
         let n_corners = vertex.len() as u32;
-        let twin = |c: u32| topology.across(CornerId(c)).map(|twin| twin.0);
+        let twin = |c: u32| topology.opposite(CornerId(c)).map(|twin| twin.0);
         let twin = (0..n_corners).map(twin).collect::<Option<Vec<u32>>>()?;
         // The two faces at an edge traverse it in opposite directions.
         if (0..n_corners).any(|c| vertex[next(c) as usize] == vertex[next(twin[c as usize]) as usize]) {

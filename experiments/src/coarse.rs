@@ -1,33 +1,33 @@
-//! Coarser meshes for viewing.
+//! Simplified meshes for viewing.
 
 use std::collections::{BTreeMap, BTreeSet};
 
 use mesh::TriMesh;
 use nalgebra::{Point3, Vector3};
 
-/// Cells along the longest side of a mesh, at most.
+/// The greatest number of cells along the longest side of a mesh.
 const FINEST: usize = 2048;
 
 /// Some vertices of a mesh and the faces over them.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Coarse {
-    /// The vertices that stay, ascending.
+    /// The vertices that remain, ascending.
     pub(crate) vertices: Vec<usize>,
-    /// Faces, as places in `vertices`.
+    /// Faces, as indices into `vertices`.
     pub(crate) faces: Vec<[u32; 3]>,
 }
 
-/// At most `limit` vertices of a mesh, for looking at it and nothing else; all of them where they are not more.
+/// Simplifies a mesh to at most `limit` vertices by vertex clustering (Rossignac and Borrel 1993), for viewing only.
 ///
-/// Of the vertices in each cell of the finest cubic grid with few enough occupied cells, the one nearest to their
-/// mean stays (Rossignac and Borrel 1993); faces that lose a corner to another one go. Since vertices stay where they are, forms
-/// and values are thinned alike.
+/// In each cell of the finest cubic grid that has at most `limit` occupied cells, the vertex nearest to the mean remains.
+/// Faces with two corners in one cell are dropped. Vertices keep their positions, so canonical forms and values can be
+/// simplified in the same way.
 pub(crate) fn coarse(mesh: &TriMesh, limit: usize) -> Coarse {
     if mesh.n_vertices() <= limit {
         let faces = mesh.faces.iter().map(|face| face.map(|v| v.0)).collect();
         return Coarse { vertices: (0..mesh.n_vertices()).collect(), faces };
     }
-    // More cells along a side hardly ever occupy fewer of them.
+    // The number of occupied cells grows almost monotonically with the number along a side.
     let (mut fits, mut too_fine) = (1, FINEST);
     while fits + 1 < too_fine {
         let middle = usize::midpoint(fits, too_fine);
@@ -37,7 +37,7 @@ pub(crate) fn coarse(mesh: &TriMesh, limit: usize) -> Coarse {
     thinned(mesh, &cells(mesh, fits))
 }
 
-/// The cell of every vertex, `n` of them along the longest side.
+/// The cell of every vertex in a grid with `n` cells along the longest side.
 fn cells(mesh: &TriMesh, n: usize) -> Vec<[usize; 3]> {
     let [low, high] = mesh.bounds().unwrap_or_default();
     let side = (high - low).max() / n as f64;
@@ -76,7 +76,7 @@ mod tests {
     use mesh::shapes::icosphere;
 
     #[test]
-    fn few_vertices_all_stay() {
+    fn meshes_below_the_limit_are_unchanged() {
         let ball = icosphere(1);
         let all = coarse(&ball, ball.n_vertices());
         assert_eq!(all.vertices.len(), ball.n_vertices());
@@ -84,7 +84,7 @@ mod tests {
     }
 
     #[test]
-    fn a_coarse_ball_is_still_a_ball() {
+    fn a_simplified_ball_keeps_its_area() {
         let ball = icosphere(5);
         for limit in [100, 1000] {
             let thin = coarse(&ball, limit);
@@ -99,7 +99,7 @@ mod tests {
     }
 
     #[test]
-    fn a_mesh_without_extent_does_no_harm() {
+    fn a_mesh_without_extent_becomes_a_point() {
         let flat =
             TriMesh { positions: vec![Point3::origin(); 9], faces: vec![[0, 1, 2].map(surface::VertexId)] };
         let point = coarse(&flat, 4);

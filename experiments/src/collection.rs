@@ -1,12 +1,13 @@
 //! The shapes of a run.
 
+use std::path::PathBuf;
+
 use anyhow::{Context, Result, bail};
 use canonform::{LabelFile, Observer, Surface, list_shapes};
+use clap::Args;
 use datasets::{ArticulatedOptions, articulated};
 use mesh::RepairOptions;
 use rayon::prelude::*;
-
-use crate::args::RunArgs;
 
 /// Name of the built-in dataset in records.
 pub(crate) const BUILT_IN: &str = "built-in articulated families";
@@ -14,18 +15,65 @@ pub(crate) const BUILT_IN: &str = "built-in articulated families";
 /// The classes of the paper's Figure 4.
 pub(crate) const PAPER_CLASSES: [&str; 3] = ["cat", "centaur", "david"];
 
-/// What asks for every class of a folder.
+/// Stands for all classes on the command line.
 const ALL_CLASSES: &str = "all";
 
-/// The classes of TOSCA, by which it is known.
+/// The classes of TOSCA, which identify it.
 const TOSCA_CLASSES: [&str; 12] = [
     "cat", "centaur", "david", "dog", "gorilla", "horse", "lioness", "michael", "seahorse", "shark",
     "victoria", "wolf",
 ];
 
-/// Labelled surfaces, class by class.
+/// The number of vertices of the built-in shapes.
+const VERTICES: usize = 3400;
+
+/// Where the shapes come from, on the command line.
+#[derive(Debug, Args)]
+pub(crate) struct Source {
+    /// A folder of meshes; classes come from sub-folders or from the leading letters of file names
+    /// [default: the built-in articulated families]
+    #[arg(long, value_name = "DIR")]
+    dataset: Option<PathBuf>,
+    /// A file of lines `name,label` with the classes of the shapes in the folder
+    #[arg(long, value_name = "FILE", requires = "dataset")]
+    labels: Option<PathBuf>,
+    /// Classes to use, in this order, or `all` [default: cat, centaur and david, as in the paper, if the
+    /// folder has them; else all]
+    #[arg(long, value_delimiter = ',', value_name = "CLASS,...")]
+    classes: Vec<String>,
+    /// Vertices of the built-in shapes, 1,000 to 1,000,000
+    #[arg(long, default_value_t = VERTICES, value_name = "P", conflicts_with = "dataset")]
+    vertices: usize,
+    /// Seed of all random numbers
+    #[arg(long, default_value_t = 0, value_name = "S")]
+    pub(crate) seed: u64,
+}
+
+impl Source {
+    /// The options that differ from their defaults, each after a space.
+    pub(crate) fn arguments(&self) -> String {
+        let mut arguments = String::new();
+        if let Some(folder) = &self.dataset {
+            arguments += &format!(" --dataset {}", folder.display());
+        } else if self.vertices != VERTICES {
+            arguments += &format!(" --vertices {}", self.vertices);
+        }
+        if let Some(labels) = &self.labels {
+            arguments += &format!(" --labels {}", labels.display());
+        }
+        if !self.classes.is_empty() {
+            arguments += &format!(" --classes {}", self.classes.join(","));
+        }
+        if self.seed != 0 {
+            arguments += &format!(" --seed {}", self.seed);
+        }
+        arguments
+    }
+}
+
+/// Labelled surfaces, sorted by class.
 pub(crate) struct Collection {
-    /// Where they come from.
+    /// The folder, or the name of the built-in dataset.
     pub(crate) dataset: String,
     /// The classes, in the order of the shapes.
     pub(crate) classes: Vec<String>,
@@ -40,9 +88,8 @@ pub(crate) struct Shape {
 }
 
 impl Collection {
-    /// Generates or reads the shapes that `args` ask for. A file that cannot be read is named on standard
-    /// error and left out.
-    pub(crate) fn load(args: &RunArgs, observer: &dyn Observer) -> Result<Self> {
+    /// Generates or reads the shapes. Files that cannot be read are reported on standard error and left out.
+    pub(crate) fn load(args: &Source, observer: &dyn Observer) -> Result<Self> {
         let repair = RepairOptions::default();
         let takes_all = args.classes == [ALL_CLASSES];
         let mut wanted = if takes_all { Vec::new() } else { args.classes.clone() };
@@ -83,7 +130,7 @@ impl Collection {
         Self::in_class_order(dataset, shapes, &wanted)
     }
 
-    /// Sorts shapes by class, in the order asked for or of first appearance.
+    /// Sorts shapes by class, in the order of `wanted`, or of first appearance if it is empty.
     fn in_class_order(dataset: String, mut shapes: Vec<Shape>, wanted: &[String]) -> Result<Self> {
         let mut classes = wanted.to_vec();
         if classes.is_empty() {
@@ -112,7 +159,7 @@ impl Collection {
         self.shapes.iter().map(|shape| shape.label.clone()).collect()
     }
 
-    /// Which of the configured expectations apply.
+    /// The kind of the collection.
     pub(crate) fn setting(&self) -> Setting {
         if self.dataset == BUILT_IN {
             Setting::BuiltIn
@@ -146,7 +193,7 @@ impl Collection {
     }
 }
 
-/// Calls `work` on shapes in parallel, a step of `stage` each.
+/// Calls `work` on all shapes in parallel. Every shape is a step of `stage`.
 pub(crate) fn map<T: Send>(
     shapes: &[&Shape],
     stage: &str,
@@ -162,7 +209,7 @@ pub(crate) fn map<T: Send>(
     shapes.par_iter().map(one).collect()
 }
 
-/// What kind of collection a run has, for what can be expected of it.
+/// The kind of a collection, which decides the expectations that apply.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum Setting {
@@ -172,6 +219,6 @@ pub(crate) enum Setting {
     Paper,
     /// All classes of TOSCA from a folder.
     Tosca,
-    /// Anything else, of which nothing is known.
+    /// Any other collection; no expectation applies.
     Other,
 }

@@ -1,4 +1,4 @@
-//! What an experiment does, is expected to show, and means: `configs/*.toml`.
+//! The configuration of an experiment, `configs/*.toml`: options, expectations and analysis.
 
 use anyhow::{Context, Result};
 use canonform::{
@@ -14,39 +14,37 @@ use crate::collection::Setting;
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Config {
-    /// One line for `list`.
-    pub(crate) title: String,
-    /// Samples of the Nystrom methods; 0 where the experiment varies them.
+    /// Samples of the Nyström methods; 0 if the experiment varies them.
     #[serde(default)]
     pub(crate) samples: usize,
-    /// Eigenpairs they keep; 0 where the experiment varies them.
+    /// Eigenpairs that they keep; 0 if the experiment varies them.
     #[serde(default)]
     pub(crate) rank: usize,
-    /// How distances are marched around wide corners; the default of the solver when absent.
+    /// Treatment of obtuse triangles in fast marching; by default that of the solver.
     #[serde(default)]
     pub(crate) obtuse: Option<Obtuse>,
-    /// Runs that differ in the first sample, or repeat a measurement of time.
+    /// Number of runs, which differ in the first sample or repeat a measurement of time.
     #[serde(default = "one")]
     pub(crate) runs: usize,
     /// Eigenfunctions of spectral scaling.
     #[serde(default)]
     pub(crate) eigenvectors: usize,
-    /// What varies along the horizontal axis: samples, or ranks.
+    /// The values on the horizontal axis: numbers of samples, ranks or numbers of vertices.
     #[serde(default)]
     pub(crate) counts: Vec<usize>,
-    /// What varies along the horizontal axis, as exponents of ten.
+    /// The values on the horizontal axis, as exponents of ten.
     #[serde(default)]
     pub(crate) exponents: Vec<f64>,
-    /// Numbers that the paper prints.
+    /// Numbers printed in the paper.
     #[serde(default)]
-    pub(crate) printed: Vec<Printed>,
-    /// Neighbours that vote.
+    printed: Vec<Printed>,
+    /// Number of nearest neighbours that vote.
     #[serde(default = "one")]
     pub(crate) knn: usize,
-    /// What is expected.
+    /// The expectations.
     #[serde(default)]
     pub(crate) expect: Vec<Bound>,
-    /// What the figure shows, in paragraphs.
+    /// What the results show, in paragraphs separated by empty lines.
     pub(crate) analysis: String,
 }
 
@@ -54,7 +52,7 @@ fn one() -> usize {
     1
 }
 
-/// The treatments of wide corners by their names on the command line.
+/// The treatments of obtuse triangles by their names on the command line.
 #[derive(Debug, Clone, Copy, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub(crate) enum Obtuse {
@@ -73,7 +71,7 @@ impl From<Obtuse> for ObtuseTreatment {
     }
 }
 
-/// A number of the paper.
+/// A number printed in the paper.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Printed {
@@ -88,25 +86,25 @@ pub(crate) struct Printed {
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Bound {
-    /// Which number; every experiment documents its names.
+    /// Name of the number; the module of the experiment lists them.
     pub(crate) value: String,
     pub(crate) at_least: Option<f64>,
     pub(crate) at_most: Option<f64>,
-    /// Whether the bound is open.
+    /// Whether the bounds themselves are excluded.
     #[serde(default)]
     pub(crate) strictly: bool,
-    /// Where it applies; everywhere when empty.
+    /// The collections to which it applies; all known ones if empty.
     #[serde(default)]
     pub(crate) on: Vec<Setting>,
 }
 
 impl Config {
-    /// Reads an embedded configuration.
+    /// Parses the configuration of an experiment.
     pub(crate) fn parse(name: &str, text: &str) -> Result<Self> {
         toml::from_str(text).with_context(|| format!("experiments/configs/{name}.toml"))
     }
 
-    /// Options of the paper's method.
+    /// The options of the paper's method.
     pub(crate) fn nmds(&self, seed: u64) -> EmbedOptions {
         let marching = FastMarchingOptions::default();
         let obtuse = self.obtuse.map_or(marching.obtuse, Into::into);
@@ -120,13 +118,18 @@ impl Config {
         }
     }
 
-    /// Options of the baseline.
+    /// The options of the baseline, kernel PCA.
     pub(crate) fn kernel_pca(&self, seed: u64) -> EmbedOptions {
         let method = EmbedMethod::KernelPca { rank: Some(self.rank), bandwidth: Bandwidth::Mean };
         EmbedOptions { method, ..self.nmds(seed) }
     }
 
-    /// Holds the bounds that apply against what was measured.
+    /// A number printed in the paper.
+    pub(crate) fn printed(&self, row: &str, method: &str) -> Option<f64> {
+        self.printed.iter().find(|p| p.row == row && p.method == method).map(|p| p.value)
+    }
+
+    /// Compares the expectations that apply with what was measured.
     pub(crate) fn check(
         &self,
         setting: Setting,
@@ -160,7 +163,7 @@ impl Bound {
     }
 }
 
-/// A number with at least four digits.
+/// A number with at least four significant digits.
 fn digits(value: f64) -> String {
     if value != 0.0 && (value.abs() < 0.01 || value.abs() >= 1e6) {
         format!("{value:.3e}")
@@ -174,7 +177,6 @@ mod tests {
     use super::*;
 
     const TEXT: &str = r#"
-        title = "t"
         samples = 10
         rank = 5
         analysis = "a"
@@ -189,7 +191,7 @@ mod tests {
     "#;
 
     #[test]
-    fn bounds_apply_where_they_say_and_may_be_open() {
+    fn bounds_apply_to_their_collections_and_may_be_strict() {
         let config = Config::parse("test", TEXT).unwrap();
         let held = |setting, x: f64| {
             let found = config.check(setting, |name| (name == "x").then_some(x)).unwrap();
@@ -203,7 +205,7 @@ mod tests {
     }
 
     #[test]
-    fn unknown_keys_are_refused_by_name() {
+    fn unknown_keys_are_errors_that_name_the_key() {
         let fault = Config::parse("test", &format!("typo = 1\n{TEXT}")).unwrap_err();
         assert!(format!("{fault:#}").contains("typo"));
     }

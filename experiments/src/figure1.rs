@@ -1,25 +1,21 @@
 //! Figure 1: shapes beside their canonical forms.
 //!
-//! Measures `largest stress ratio`: the largest stress over the squared spread of a form, which is
-//! free of units.
-
-use std::time::Instant;
+//! Measures `largest stress ratio`: the largest ratio of the stress to the squared spread of a form, which has no unit.
 
 use anyhow::Result;
 use canonform::{EmbedOptions, MATCHED_POINTS, StressChoice, embed};
 use descriptors::{CanonicalForm, MatchOptions, PreparedForm, match_forms};
 use mesh::{TriMesh, orient_consistently};
 use report::figure1::{Figure1Pair, PAIRS, figure1};
-use report::results::{Figure1Record, Figure1Shape, write};
+use report::results::{Figure1Record, Figure1Shape};
 use view::render::View;
 
 use crate::collection::{Shape, map};
-use crate::run::{Context, described};
+use crate::context::{Context, described};
 
-/// Runs the experiment and writes `figure1.json` and its pictures.
+/// Runs the experiment.
 pub(crate) fn run(context: &Context<'_>) -> Result<()> {
-    let start = Instant::now();
-    let options = EmbedOptions { stress: StressChoice::Estimate, ..context.config.nmds(context.args.seed) };
+    let options = EmbedOptions { stress: StressChoice::Estimate, ..context.config.nmds(context.seed) };
     let shown = context.collection.first_of_each_class(PAIRS);
     let embedded = map(&shown, "figure 1", context.observer, |shape| {
         let embedded = embed(&shape.surface, &options, &())?;
@@ -44,8 +40,8 @@ pub(crate) fn run(context: &Context<'_>) -> Result<()> {
     let worst = embedded.iter().map(|(form, stress)| stress / form.spread().powi(2)).fold(0.0, f64::max);
     let record = Figure1Record {
         expectations: context.check(|name| (name == "largest stress ratio").then_some(worst))?,
-        analysis: context.config.analysis.trim().to_owned(),
-        provenance: context.provenance(described(&[("embedding", &options)]), start.elapsed()),
+        analysis: context.analysis(),
+        provenance: context.provenance(described(&[("embedding", &options)])),
         shapes: facts.clone(),
     };
 
@@ -55,9 +51,8 @@ pub(crate) fn run(context: &Context<'_>) -> Result<()> {
         .zip(shapes.iter().zip(&forms))
         .map(|(facts, (shape, form))| Figure1Pair { facts, shape, form })
         .collect();
-    figure1(&pairs, &View::default(), context.output("figure1"))?;
-    write(&record, context.output("figure1.json"))?;
-    Ok(())
+    figure1(&pairs, &View::default())?.save(context.folder.join(context.name))?;
+    context.publish(&record)
 }
 
 fn oriented(mut mesh: TriMesh) -> TriMesh {
@@ -65,7 +60,7 @@ fn oriented(mut mesh: TriMesh) -> TriMesh {
     mesh
 }
 
-/// The forms as surfaces, each turned to match the first one of its class.
+/// The forms as meshes, each aligned with the first one of its class.
 fn aligned<'a>(shapes: &[&Shape], forms: impl Iterator<Item = &'a CanonicalForm>) -> Result<Vec<TriMesh>> {
     let mut first: Option<(&str, PreparedForm)> = None;
     let mut surfaces = Vec::new();

@@ -1,12 +1,10 @@
-//! Figure 3: the forms of two shapes by several methods, and their stress.
+//! Figure 3: canonical forms of two shapes by several methods, and their stress.
 //!
-//! Measures, for `DISTANCES` in `default`, `planar`, `point-source` (the last two ignore obtuse corners),
-//! `SHAPE` a class and `METHOD` in `MDS`, `NMDS`, `SMDS`, `Min-Var`, `BFS`: `DISTANCES SHAPE METHOD`, the
-//! median stress over that of MDS by the same distances (1 for MDS itself); `DISTANCES SHAPE METHOD off paper`,
-//! how far the median stress is from the printed one, as a share; `DISTANCES SHAPE A below B`, the stress of `B`
-//! over that of `A`.
-
-use std::time::Instant;
+//! Measures, for `DISTANCES` in `default`, `planar`, `point-source` (the last two ignore obtuse triangles), a class
+//! `SHAPE` and `METHOD` in `MDS`, `NMDS`, `SMDS`, `Min-Var`, `BFS`:
+//! * `DISTANCES SHAPE METHOD`: the ratio of the median stress to that of MDS with the same distances (1 for MDS);
+//! * `DISTANCES SHAPE METHOD off paper`: the relative difference of the median stress from that printed in the paper;
+//! * `DISTANCES SHAPE A below B`: the ratio of the median stress of `B` to that of `A`.
 
 use anyhow::Result;
 use canonform::{FastMarchingOptions, GeodesicMethod, MATCHED_POINTS, ObtuseTreatment, Update};
@@ -19,22 +17,21 @@ use nmds::{
     spectral,
 };
 use report::figure3::{Figure3Surfaces, figure3};
-use report::results::{Figure3Form, Figure3Record, Figure3Shape, Figure3Stress, write};
-use report::tables::figure3_table;
+use report::results::{Figure3Form, Figure3Record, Figure3Shape, Figure3Stress};
 use surface::VertexId;
 use view::render::View;
 
-use crate::run::Context;
+use crate::context::Context;
 use crate::specimen::{DIM, Distances, Specimen};
 use crate::sweep::{Measured, median, point};
 
-/// The columns, as the paper has them.
+/// The methods in the order of the paper.
 const METHODS: [&str; 5] = ["MDS", "NMDS", "SMDS", "Min-Var", "BFS"];
 
-/// One method on one shape: an embedding and its stress for each run.
+/// The embedding and the stress of every run of one method on one shape.
 type Runs = Vec<(Embedding, f64)>;
 
-/// The default, and what plain fast marching on the triangles as they are could have been.
+/// Our default, and two variants of fast marching that leave obtuse triangles as they are.
 fn settings() -> [Distances; 3] {
     let plain = |name, update| {
         let options = FastMarchingOptions { update, obtuse: ObtuseTreatment::Ignore };
@@ -43,14 +40,13 @@ fn settings() -> [Distances; 3] {
     [Distances::default(), plain("planar", Update::Planar), plain("point-source", Update::PointSource)]
 }
 
-/// Runs the experiment, writes `figure3.json` and its pictures and prints the stresses.
-pub(crate) fn run(context: &Context<'_>) -> Result<()> {
-    let start = Instant::now();
+/// Runs the experiment.
+pub(crate) fn run(context: &Context<'_>, specimens: &[Specimen<'_>]) -> Result<()> {
     let settings = settings();
-    context.observer.begin("figure 3", settings.len() * context.specimens.len());
+    context.observer.begin("figure 3", settings.len() * specimens.len());
     let (mut stresses, mut measured, mut shown) = (Vec::new(), Measured::new(), Vec::new());
     for distances in &settings {
-        for specimen in context.specimens {
+        for specimen in specimens {
             let methods = embeddings(context, specimen, distances)?;
             note(context, specimen, distances, &methods, &mut stresses, &mut measured);
             if distances.name == Distances::default().name {
@@ -61,8 +57,8 @@ pub(crate) fn run(context: &Context<'_>) -> Result<()> {
     }
     let record = Figure3Record {
         expectations: context.check(|name| measured.get(name).copied())?,
-        analysis: context.config.analysis.trim().to_owned(),
-        provenance: context.provenance(context.setup(), start.elapsed()),
+        analysis: context.analysis(),
+        provenance: context.provenance(context.setup(specimens)),
         shapes: shown.iter().map(|row| row.facts.clone()).collect(),
         stresses,
     };
@@ -70,9 +66,8 @@ pub(crate) fn run(context: &Context<'_>) -> Result<()> {
         .iter()
         .map(|row| Figure3Surfaces { facts: &row.facts, shape: &row.shape, forms: &row.forms })
         .collect();
-    figure3(&rows, &View::default(), context.output("figure3"))?;
-    write(&record, context.output("figure3.json"))?;
-    context.say(&figure3_table(&record))
+    figure3(&rows, &View::default())?.save(context.folder.join(context.name))?;
+    context.publish(&record)
 }
 
 /// All runs of all methods, in the order of [`METHODS`].
@@ -93,7 +88,7 @@ fn embeddings(context: &Context<'_>, specimen: &Specimen<'_>, distances: &Distan
     let spectrum = specimen.spectrum(config.eigenvectors)?;
     let basis =
         SpectralBasis { values: &spectrum.values, vectors: &spectrum.vectors, masses: &spectrum.masses };
-    for first in specimen.first_samples(config.runs, context.args.seed) {
+    for first in specimen.first_samples(config.runs, context.seed) {
         let sampled = |distances: &Distances, sampling, first: VertexId| -> Result<LandmarkDistances> {
             Ok(specimen.nested(distances, sampling, first, &[config.samples])?.remove(0))
         };
@@ -108,7 +103,7 @@ fn embeddings(context: &Context<'_>, specimen: &Specimen<'_>, distances: &Distan
     Ok(methods)
 }
 
-/// Writes down what one way of measuring gave on one shape.
+/// Records the stresses of one shape for one kind of distances.
 fn note(
     context: &Context<'_>,
     specimen: &Specimen<'_>,
@@ -146,14 +141,14 @@ fn values(runs: &Runs) -> Vec<f64> {
     runs.iter().map(|(_, stress)| *stress).collect()
 }
 
-/// A row of the picture.
+/// A row of the figure.
 struct Shown {
     facts: Figure3Shape,
     shape: TriMesh,
     forms: Vec<TriMesh>,
 }
 
-/// The run of median stress of each method, its form turned to match that of MDS.
+/// The form of each method from the run of median stress, aligned with that of MDS.
 fn pictured(context: &Context<'_>, specimen: &Specimen<'_>, methods: &[Runs]) -> Result<Shown> {
     let mesh = specimen.shape.surface.mesh();
     let mut first: Option<PreparedForm> = None;

@@ -1,10 +1,8 @@
-//! Figure 4: distances between the forms of 30 shapes, and their maps.
+//! Figure 4: distances between the canonical forms of 30 shapes, and their maps.
 //!
 //! Measures, for `METHOD` in `NMDS`, `KPCA-Nystrom` and `SCALE` in `raw`, `normalized`:
-//! `METHOD SCALE nn|ft|st|e|dcg|map|knn|silhouette|map silhouette`, and `SCALE SCORE gap`, the score of
-//! NMDS less that of KPCA-Nystrom.
-
-use std::time::Instant;
+//! `METHOD SCALE nn|ft|st|e|dcg|map|knn|silhouette|map silhouette`, and `SCALE SCORE gap`, the score of NMDS minus
+//! that of KPCA-Nystrom.
 
 use anyhow::{Context as _, Result};
 use canonform::{
@@ -15,14 +13,12 @@ use descriptors::CanonicalForm;
 use linalg::DistanceMatrix;
 use nmds::normalized_stress;
 use rayon::prelude::*;
-use report::figure4::figure4;
 use report::results::{Figure4Panel, Figure4Record, Motions, SHAPES_FILE, Scale, ShapesRecord, write};
-use report::tables::figure4_table;
 use retrieval::{Labels, evaluate, silhouette};
 
 use crate::collection::map;
-use crate::run::{Context, described};
-use crate::seen::{Formed, motions, seen, vertex_limit};
+use crate::context::{Context, described};
+use crate::surfaces::{Formed, motions, shown, vertex_limit};
 
 /// Name of the paper's method in the record.
 const NMDS: &str = "NMDS";
@@ -30,10 +26,9 @@ const NMDS: &str = "NMDS";
 /// Name of the baseline.
 const BASELINE: &str = "KPCA-Nystrom";
 
-/// Runs the experiment, writes `figure4.json`, `figure4-shapes.json` and its pictures and prints the scores.
+/// Runs the experiment, which also writes `figure4-shapes.json`.
 pub(crate) fn run(context: &Context<'_>) -> Result<()> {
-    let start = Instant::now();
-    let (seed, config) = (context.args.seed, &context.config);
+    let (seed, config) = (context.seed, &context.config);
     let methods = [(NMDS, config.nmds(seed)), (BASELINE, config.kernel_pca(seed))];
     let labels = context.collection.labels();
     let classes = Labels::new(&labels);
@@ -52,17 +47,14 @@ pub(crate) fn run(context: &Context<'_>) -> Result<()> {
     let options: Vec<_> = methods.iter().map(|(name, options)| (*name, options)).collect();
     let record = Figure4Record {
         expectations: context.check(|name| measured(&panels, name))?,
-        analysis: config.analysis.trim().to_owned(),
-        provenance: context.provenance(described(&options), start.elapsed()),
+        analysis: context.analysis(),
+        provenance: context.provenance(described(&options)),
         names: context.collection.names(),
         labels,
         panels,
     };
-    figure4(&record, context.output("figure4"))?;
-    write(&record, context.output("figure4.json"))?;
-    write(&shapes(context, &methods, &formed, moved)?, context.output(SHAPES_FILE))?;
-    context.say(&figure4_table(&record))?;
-    Ok(())
+    write(&shapes(context, &methods, &formed, moved)?, context.folder.join(SHAPES_FILE))?;
+    context.publish(&record)
 }
 
 fn formed_by(context: &Context<'_>, options: &EmbedOptions) -> Result<Vec<Formed>> {
@@ -71,7 +63,7 @@ fn formed_by(context: &Context<'_>, options: &EmbedOptions) -> Result<Vec<Formed
     })
 }
 
-/// What the page shows when shapes are turned.
+/// The surfaces for the 3D views of the page.
 fn shapes(
     context: &Context<'_>,
     methods: &[(&str, EmbedOptions)],
@@ -81,12 +73,12 @@ fn shapes(
     let all = context.collection.all();
     let limit = vertex_limit(all.len());
     let (_, options) = &methods[0];
-    context.observer.begin("shapes to turn", all.len());
+    context.observer.begin("surfaces", all.len());
     let one = |i: usize| {
         let forms: Vec<&Formed> = formed.iter().map(|of_method| &of_method[i]).collect();
-        let shown = seen(all[i], &forms, options, limit).with_context(|| all[i].name.clone());
+        let shape = shown(all[i], &forms, options, limit).with_context(|| all[i].name.clone());
         context.observer.step();
-        shown
+        shape
     };
     Ok(ShapesRecord {
         methods: methods.iter().map(|(name, _)| (*name).to_owned()).collect(),
@@ -128,7 +120,7 @@ fn rows(distances: &DistanceMatrix) -> Vec<Vec<f64>> {
     (0..distances.n_points()).map(|i| distances.row(i).to_vec()).collect()
 }
 
-/// Looks up a number by the name that configurations use.
+/// A number by its name in the configuration.
 fn measured(panels: &[Figure4Panel], name: &str) -> Option<f64> {
     let (head, rest) = name.split_once(' ')?;
     let score = |method: &str, scale: &str, score: &str| {

@@ -1,32 +1,25 @@
-//! Figures 5a and 5b: how well 100 columns reconstruct all squared distances, against the rank kept and
-//! against the alpha of the regularised pseudo-inverse.
+//! Figures 5a and 5b: the error of reconstructing all squared distances from 100 columns, against the rank and against
+//! the alpha of the regularised pseudo-inverse.
 //!
-//! 5a measures, for `SHAPE` a class: `SHAPE best rank`, the rank of least error of low rank; `SHAPE best rank over
-//! n`; `SHAPE rise`, the error at rank n over the least; `SHAPE CUR over low-rank`, the least error of CUR over that of
-//! low rank; `SHAPE low-rank below CUR`, the share of ranks at which low rank is no worse.
+//! 5a measures, for a class `SHAPE`:
+//! * `SHAPE best rank`, the rank at which the error of the low-rank regularisation is least, and `SHAPE best rank over n`;
+//! * `SHAPE rise`, the ratio of its error at rank n to the least;
+//! * `SHAPE CUR over low-rank`, the ratio of the least error of CUR to that of low rank;
+//! * `SHAPE low-rank below CUR`, the share of ranks at which the error of low rank is at most that of CUR.
 //!
-//! 5b measures `SHAPE paper over best` and `SHAPE default over best`, the error at the paper's and at our alpha over the
-//! least of the curve; `SHAPE none over best`; `SHAPE RPI over low-rank`, the least error over that of half rank.
-
-use std::time::Instant;
+//! 5b measures `SHAPE paper over best`, `SHAPE default over best` and `SHAPE none over best`, the ratios of the error at
+//! the paper's alpha, at our default and without regularisation to the least of the curve, and `SHAPE RPI over low-rank`,
+//! the ratio of the least of the curve to the error of low rank at half of n.
 
 use anyhow::Result;
 use nmds::{Reconstruction, Regularization, RpiAlpha, sample_eigenvalues};
-use report::curves::curves;
-use report::results::{AxisScale, CurvesPanel, CurvesRecord, Mark, Series, write};
-use report::tables::curves_table;
+use report::results::{CurvesPanel, Mark, Series};
 
 use geodesics::Sampling;
 
-use crate::run::Context;
+use crate::context::Context;
 use crate::specimen::{Distances, Specimen};
-use crate::sweep::{Measured, axis, median, medians, places, series, share_lowest};
-
-/// What the vertical axis shows.
-pub(crate) const ERROR: &str = "reconstruction error";
-
-/// The paper's error, in the fourth power of the mesh unit.
-pub(crate) const ERROR_UNIT: &str = "mesh units⁴";
+use crate::sweep::{Measured, error_axis, linear, log, median, medians, panel, places, series, share_lowest};
 
 /// The error of each run at each of `regularizations`.
 fn errors(
@@ -37,38 +30,16 @@ fn errors(
     let of = |known: &Reconstruction| -> Result<Vec<f64>> {
         regularizations.iter().map(|r| Ok(known.error(*r)?.mean_square)).collect()
     };
-    let firsts = specimen.first_samples(context.config.runs, context.args.seed);
+    let firsts = specimen.first_samples(context.config.runs, context.seed);
     firsts.into_iter().map(|first| of(&*specimen.reconstruction(context.config.samples, first)?)).collect()
 }
 
-/// Writes the record and its picture and prints the medians.
-pub(crate) fn finish(
-    context: &Context<'_>,
-    name: &str,
-    start: Instant,
-    caption: &str,
-    panels: Vec<CurvesPanel>,
-    measured: &Measured,
-) -> Result<()> {
-    let record = CurvesRecord {
-        expectations: context.check(|name| measured.get(name).copied())?,
-        analysis: context.config.analysis.trim().to_owned(),
-        provenance: context.provenance(context.setup(), start.elapsed()),
-        caption: caption.to_owned(),
-        panels,
-    };
-    curves(&record, context.output(name))?;
-    write(&record, context.output(&format!("{name}.json")))?;
-    context.say(&curves_table(&record))
-}
-
 /// Runs Figure 5a.
-pub(crate) fn rank(context: &Context<'_>) -> Result<()> {
-    let start = Instant::now();
+pub(crate) fn rank(context: &Context<'_>, specimens: &[Specimen<'_>]) -> Result<()> {
     let (ranks, n) = (&context.config.counts, context.config.samples);
     let (mut panels, mut measured) = (Vec::new(), Measured::new());
-    context.observer.begin("figure 5a", context.specimens.len());
-    for specimen in context.specimens {
+    context.observer.begin("figure 5a", specimens.len());
+    for specimen in specimens {
         let curve = |name: &str, regularization: fn(Option<usize>) -> Regularization| -> Result<Series> {
             let all: Vec<_> = ranks.iter().map(|&rank| regularization(Some(rank))).collect();
             Ok(series(name, &places(ranks), &errors(context, specimen, &all)?))
@@ -87,31 +58,30 @@ pub(crate) fn rank(context: &Context<'_>) -> Result<()> {
         ] {
             measured.insert(format!("{} {name}", specimen.label()), value);
         }
-        panels.push(CurvesPanel {
-            title: specimen.name().to_owned(),
-            x: axis(&format!("rank n₁ of n = {n} samples"), "", AxisScale::Linear),
-            y: axis(ERROR, ERROR_UNIT, AxisScale::Log),
-            series: vec![low_rank, cur],
-            marks: Vec::new(),
-        });
+        panels.push(panel(
+            specimen.name(),
+            linear(&format!("rank n₁ of n = {n} samples")),
+            error_axis(),
+            vec![low_rank, cur],
+        ));
         context.observer.step();
     }
     let caption = format!(
-        "Mean squared error of the reconstructed squared distances from {n} farthest samples, by how many eigenpairs \
-         (low rank) or columns (CUR) are kept. Lines: medians of {} runs that differ in the first sample; bands: all runs.",
+        "Mean squared error of all squared distances reconstructed from {n} farthest samples, against the number of \
+         eigenpairs (low rank) or columns (CUR) that are kept. Lines: medians of {} runs that differ in the first sample; \
+         bands: range of the runs.",
         context.config.runs
     );
-    finish(context, "figure5a", start, &caption, panels, &measured)
+    context.publish_curves(specimens, caption, panels, &measured)
 }
 
 /// Runs Figure 5b.
-pub(crate) fn alpha(context: &Context<'_>) -> Result<()> {
-    let start = Instant::now();
+pub(crate) fn alpha(context: &Context<'_>, specimens: &[Specimen<'_>]) -> Result<()> {
     let n = context.config.samples;
     let alphas: Vec<f64> = context.config.exponents.iter().map(|e| 10f64.powf(*e)).collect();
     let (mut panels, mut measured) = (Vec::new(), Measured::new());
-    context.observer.begin("figure 5b", context.specimens.len());
-    for specimen in context.specimens {
+    context.observer.begin("figure 5b", specimens.len());
+    for specimen in specimens {
         let relative = |c: &f64| Regularization::Rpi { alpha: RpiAlpha::Relative(*c) };
         let swept: Vec<_> = alphas.iter().map(relative).collect();
         let rpi = series("RPI (eq. 3)", &alphas, &errors(context, specimen, &swept)?);
@@ -140,31 +110,27 @@ pub(crate) fn alpha(context: &Context<'_>) -> Result<()> {
             Mark { x: recommended(context, specimen)?, name: "α = σ₁³ (paper)".to_owned() },
             Mark { x: RpiAlpha::default().relative(1.0), name: "10⁻¹⁰ (default)".to_owned() },
         ];
-        panels.push(CurvesPanel {
-            title: specimen.name().to_owned(),
-            x: axis("α / σ₁⁴", "", AxisScale::Log),
-            y: axis(ERROR, ERROR_UNIT, AxisScale::Log),
-            series: vec![rpi, none, low_rank],
-            marks,
-        });
+        let plain = panel(specimen.name(), log("α / σ₁⁴", ""), error_axis(), vec![rpi, none, low_rank]);
+        panels.push(CurvesPanel { marks, ..plain });
         context.observer.step();
     }
     let caption = format!(
-        "Mean squared error of the reconstructed squared distances from {n} farthest samples, by the α of the regularised \
-         pseudo-inverse, over the fourth power of the largest eigenvalue. Lines: medians of {} runs; bands: all runs.",
+        "Mean squared error of all squared distances reconstructed from {n} farthest samples, against the α of the \
+         regularised pseudo-inverse divided by the fourth power of the largest eigenvalue. Lines: medians of {} runs; bands: \
+         range of the runs.",
         context.config.runs
     );
-    finish(context, "figure5b", start, &caption, panels, &measured)
+    context.publish_curves(specimens, caption, panels, &measured)
 }
 
-/// The paper's alpha without its unit, `1 / σ1`; the median over the runs.
+/// The paper's alpha as a multiple of the fourth power of the largest eigenvalue, the median of the runs.
 fn recommended(context: &Context<'_>, specimen: &Specimen<'_>) -> Result<f64> {
     let one = |first| -> Result<f64> {
         let counts = [context.config.samples];
         let samples = specimen.nested(&Distances::default(), Sampling::Farthest, first, &counts)?;
         Ok(RpiAlpha::Paper.relative(sample_eigenvalues(&samples[0])?[0].abs()))
     };
-    let firsts = specimen.first_samples(context.config.runs, context.args.seed);
+    let firsts = specimen.first_samples(context.config.runs, context.seed);
     let values: Vec<f64> = firsts.into_iter().map(one).collect::<Result<_>>()?;
     Ok(median(&values).1)
 }

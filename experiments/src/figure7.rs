@@ -1,11 +1,10 @@
-//! Figure 7: the stress of the form above that of classical scaling of all pairs, against n.
+//! Figure 7: the excess of the stress over that of classical scaling of all pairs, against the number n of samples.
 //!
-//! Measures, for `SHAPE` a class and `METHOD` in `NMDS`, `no regularisation`, `Landmark MDS`, `SMDS`, `Min-Var`, `BFS`:
-//! `SHAPE METHOD first` and `SHAPE METHOD last`, the stress above the optimum at the least and the greatest n, as a share
-//! of the optimum; `SHAPE NMDS lowest`, the share of n at which no other method is better; `SHAPE plateau`, the excess of
-//! Landmark MDS at the greatest n over that at half of it; `SHAPE Landmark MDS over NMDS`, both at the greatest n.
-
-use std::time::Instant;
+//! Measures, for a class `SHAPE` and `METHOD` in `NMDS`, `no regularisation`, `Landmark MDS`, `SMDS`, `Min-Var`, `BFS`:
+//! * `SHAPE METHOD first` and `SHAPE METHOD last`: the excess at the least and the greatest n, as a share of the optimum;
+//! * `SHAPE NMDS lowest`: the share of n at which no other method is better;
+//! * `SHAPE plateau`: the ratio of the excess of Landmark MDS at the greatest n to that at half of it;
+//! * `SHAPE Landmark MDS over NMDS`: the ratio of their excesses at the greatest n.
 
 use anyhow::Result;
 use geodesics::{Sampling, Variance};
@@ -14,47 +13,36 @@ use nmds::{
     Embedding, NmdsError, NystromOptions, Regularization, SpectralBasis, SpectralOptions, landmark_mds,
     nystrom, paper_stress, spectral,
 };
-use report::results::{AxisScale, CurvesPanel, Series};
+use report::results::Series;
 use surface::VertexId;
 
-use crate::figure5::finish;
-use crate::run::Context;
+use crate::context::Context;
 use crate::specimen::{DIM, Distances, Specimen};
-use crate::sweep::{Measured, axis, medians, places, series, share_lowest};
+use crate::sweep::{Measured, linear, log, medians, panel, share_lowest};
 
 /// The curves.
 const METHODS: [&str; 6] = ["NMDS", "no regularisation", "Landmark MDS", "SMDS", "BFS", "Min-Var"];
 
 /// Runs the experiment.
-pub(crate) fn run(context: &Context<'_>) -> Result<()> {
-    let start = Instant::now();
-    let counts = &context.config.counts;
+pub(crate) fn run(context: &Context<'_>, specimens: &[Specimen<'_>]) -> Result<()> {
     let (mut panels, mut measured) = (Vec::new(), Measured::new());
-    context.observer.begin("figure 7", context.specimens.len() * context.config.runs);
-    for specimen in context.specimens {
-        let mut runs: Vec<Vec<Vec<f64>>> = vec![Vec::new(); METHODS.len()];
-        for first in specimen.first_samples(context.config.runs, context.args.seed) {
-            let excess = excesses(context, specimen, first)?;
-            runs.iter_mut().zip(excess).for_each(|(all, one)| all.push(one));
-            context.observer.step();
-        }
-        let curve = |(name, runs): (&str, &Vec<Vec<f64>>)| series(name, &places(counts), runs);
-        let curves: Vec<Series> = METHODS.into_iter().zip(&runs).map(curve).collect();
+    context.observer.begin("figure 7", specimens.len() * context.config.runs);
+    for specimen in specimens {
+        let curves = context.sweep(specimen, &METHODS, |first| excesses(context, specimen, first))?;
         note(specimen, &curves, &mut measured)?;
-        panels.push(CurvesPanel {
-            title: specimen.name().to_owned(),
-            x: axis("samples n", "", AxisScale::Linear),
-            y: axis("stress above classical MDS", "mesh units²", AxisScale::Log),
-            series: curves,
-            marks: Vec::new(),
-        });
+        panels.push(panel(
+            specimen.name(),
+            linear("samples n"),
+            log("stress above classical MDS", "mesh units²"),
+            curves,
+        ));
     }
     let caption = format!(
-        "Stress of the form less that of classical scaling of all pairs, against the number of samples. Lines: medians of {} \
-         runs that differ in the first sample; bands: all runs.",
+        "Stress minus that of classical scaling of all pairs, against the number of samples. Lines: medians of {} runs that \
+         differ in the first sample; bands: range of the runs.",
         context.config.runs
     );
-    finish(context, "figure7", start, &caption, panels, &measured)
+    context.publish_curves(specimens, caption, panels, &measured)
 }
 
 fn note(specimen: &Specimen<'_>, curves: &[Series], measured: &mut Measured) -> Result<()> {
@@ -79,7 +67,7 @@ fn note(specimen: &Specimen<'_>, curves: &[Series], measured: &mut Measured) -> 
     Ok(())
 }
 
-/// The stresses of one run above the optimum, `[method][n]`.
+/// The excesses of the stress over the optimum in one run, as `[method][n]`.
 fn excesses(context: &Context<'_>, specimen: &Specimen<'_>, first: VertexId) -> Result<Vec<Vec<f64>>> {
     let counts = &context.config.counts;
     let all = specimen.all_pairs(&Distances::default())?;

@@ -1,7 +1,7 @@
-//! Figure 8: seconds from sampled distances to coordinates, against n.
+//! Figure 8: seconds from sampled distances to coordinates, against the number n of samples.
 //!
-//! Measures, all at the greatest n: `RPI over low-rank`, `none over low-rank` and `SMDS over low-rank`, ratios of
-//! the times of methods that ran in turn.
+//! Measures, at the greatest n: `RPI over low-rank`, `none over low-rank` and `SMDS over low-rank`, ratios of the times of
+//! methods that take turns.
 
 use std::time::Instant;
 
@@ -9,30 +9,27 @@ use anyhow::{Context as _, Result};
 use geodesics::Sampling;
 use linalg::LandmarkDistances;
 use nmds::{NystromOptions, Regularization, RpiAlpha, SpectralBasis, SpectralOptions, nystrom, spectral};
-use report::results::{AxisScale, CurvesPanel};
 
 use descriptors::LaplaceSpectrum;
 
-use crate::figure5::finish;
-use crate::run::Context;
-use crate::specimen::{DIM, Distances};
-use crate::sweep::{Measured, axis, medians, places, series};
+use crate::context::Context;
+use crate::specimen::{DIM, Distances, Specimen};
+use crate::sweep::{Measured, linear, log, medians, panel, places, series};
 
 /// The curves.
 const METHODS: [&str; 5] =
     ["NMDS, low rank", "NMDS, no regularisation", "NMDS, RPI", "SMDS", "SMDS, eigenfunctions given"];
 
-/// The eigenfunctions are found only this often: they take a hundred times as long as anything else.
+/// Runs that compute the eigenfunctions, which take a hundred times as long as anything else.
 const BASES: usize = 2;
 
 /// Runs the experiment.
-pub(crate) fn run(context: &Context<'_>) -> Result<()> {
-    let start = Instant::now();
+pub(crate) fn run(context: &Context<'_>, specimens: &[Specimen<'_>]) -> Result<()> {
     let config = &context.config;
-    let specimen = context.specimens.first().context("there is no shape to measure")?;
+    let specimen = specimens.first().context("there is no shape to measure")?;
     let surface = &specimen.shape.surface.intrinsic;
     context.observer.begin("figure 8", config.runs);
-    let first = specimen.first_samples(1, context.args.seed)[0];
+    let first = specimen.first_samples(1, context.seed)[0];
     let sampled = specimen.nested(&Distances::default(), Sampling::Farthest, first, &config.counts)?;
     let spectrum = specimen.spectrum(config.eigenvectors)?;
     let basis =
@@ -75,17 +72,16 @@ pub(crate) fn run(context: &Context<'_>) -> Result<()> {
         .into_iter()
         .map(|(name, i)| (format!("{name} over low-rank"), last(i) / last(0)))
         .collect();
-    let panels = vec![CurvesPanel {
-        title: format!("{}, {} vertices", specimen.name(), specimen.n_vertices()),
-        x: axis("samples n", "", AxisScale::Linear),
-        y: axis("time without distances", "seconds", AxisScale::Log),
-        series: curves,
-        marks: Vec::new(),
-    }];
+    let panels = vec![panel(
+        format!("{}, {} vertices", specimen.name(), specimen.n_vertices()),
+        linear("samples n"),
+        log("time without distances", "seconds"),
+        curves,
+    )];
     let caption = format!(
-        "Wall-clock seconds from the distances of the samples to the coordinates. SMDS takes {} eigenfunctions of the surface. Lines: medians of {} runs, the methods in turn; \
-         bands: all runs.",
+        "Wall-clock seconds from the distances of the samples to the coordinates. SMDS uses {} eigenfunctions of the surface. \
+         Lines: medians of {} runs, in which the methods take turns; bands: range of the runs.",
         config.eigenvectors, config.runs
     );
-    finish(context, "figure8", start, &caption, panels, &measured)
+    context.publish_curves(specimens, caption, panels, &measured)
 }

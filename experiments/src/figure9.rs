@@ -1,8 +1,8 @@
-//! Figure 9: seconds and memory from a surface to its form, distances included.
+//! Figure 9: time and memory from a surface to its canonical form, distances included.
 //!
-//! Measures, at the smaller number of vertices, `full MDS over NMDS`, `MDS over NMDS` (the faster decomposition) and `SMDS
-//! over NMDS`; at the larger `large SMDS over NMDS` and `algebra share`, that of linear algebra in NMDS; and `growth`,
-//! the exponent of the time of NMDS in the number of vertices.
+//! Measures ratios of times at the smaller number of vertices, `full MDS over NMDS`, `MDS over NMDS` (with the faster
+//! decomposition) and `SMDS over NMDS`; at the larger one, `large SMDS over NMDS` and `algebra share`, the share of linear
+//! algebra in the time of NMDS; and `growth`, the exponent of the time of NMDS in the number of vertices.
 
 use std::time::Instant;
 
@@ -11,29 +11,27 @@ use canonform::{EmbedMethod, EmbedOptions, Samples, StressChoice, Surface, embed
 use datasets::{ArticulatedOptions, Family, articulated_shape};
 use mesh::RepairOptions;
 use nmds::classical_full;
-use report::results::{Figure9Measured, Figure9Record, Figure9Row, write};
-use report::tables::figure9_table;
+use report::results::{Figure9Measured, Figure9Record, Figure9Row};
 use surface::VertexId;
-use terminal::PeakMemory;
 
 use crate::collection::Shape;
-use crate::run::Context;
-use crate::specimen::{DIM, Distances};
+use crate::context::Context;
+use crate::memory::with_peak_bytes;
+use crate::specimen::{DIM, Distances, Specimen};
 use crate::sweep::Measured;
 
-/// Vertices of the larger shape, for each of the smaller: the paper's 28,000 for 3,400.
+/// The ratio of the numbers of vertices of both shapes: 28,000 and 3,400 in the paper.
 const LARGER: f64 = 28_000.0 / 3_400.0;
 
-/// Sources that the time of all pairs is extrapolated from.
+/// The number of sources from which the time of all pairs is extrapolated.
 const TIMED_SOURCES: usize = 64;
 
-/// Runs the experiment, writes `figure9.json` and prints the table.
-pub(crate) fn run(context: &Context<'_>) -> Result<()> {
-    let start = Instant::now();
-    let small = context.specimens.first().context("there is no shape to measure")?.shape;
+/// Runs the experiment.
+pub(crate) fn run(context: &Context<'_>, specimens: &[Specimen<'_>]) -> Result<()> {
+    let small = specimens.first().context("there is no shape to measure")?.shape;
     let p = small.surface.mesh().n_vertices();
     let options = ArticulatedOptions {
-        seed: context.args.seed,
+        seed: context.seed,
         n_vertices: (p as f64 * LARGER / 1000.0).round() as usize * 1000,
     };
     let made = articulated_shape(Family::David, 0, &options)?;
@@ -48,13 +46,12 @@ pub(crate) fn run(context: &Context<'_>) -> Result<()> {
         let mut add = |method: &str, measured: Result<Figure9Measured, String>| {
             context.observer.step();
             let name = method.split(',').next().unwrap_or(method);
-            let printed = context.config.printed.iter().find(|p| p.row == vertices && p.method == name);
             rows.push(Figure9Row {
                 shape: shape.name.clone(),
                 n_vertices: shape.surface.mesh().n_vertices(),
                 method: method.to_owned(),
                 measured: measured.as_ref().ok().copied(),
-                paper_seconds: printed.map(|p| p.value),
+                paper_seconds: context.config.printed(vertices, name),
                 note: measured.err().unwrap_or_default(),
             });
         };
@@ -68,7 +65,7 @@ pub(crate) fn run(context: &Context<'_>) -> Result<()> {
             add(
                 "MDS",
                 Err(format!(
-                    "all pairs need {:.1} GiB, the limit is {:.0}; to measure them alone would take {seconds:.0} s",
+                    "all pairs need {:.1} GiB, above the limit of {:.0}; measuring them would take {seconds:.0} s",
                     gib(needed),
                     gib(limit)
                 )),
@@ -81,18 +78,17 @@ pub(crate) fn run(context: &Context<'_>) -> Result<()> {
     let measured = ratios(&rows);
     let record = Figure9Record {
         expectations: context.check(|name| measured.get(name).copied())?,
-        analysis: context.config.analysis.trim().to_owned(),
-        provenance: context.provenance(context.setup(), start.elapsed()),
+        analysis: context.analysis(),
+        provenance: context.provenance(context.setup(specimens)),
         threads: rayon::current_num_threads(),
         rows,
     };
-    write(&record, context.output("figure9.json"))?;
-    context.say(&figure9_table(&record))
+    context.publish(&record)
 }
 
-/// The fastest of a few runs.
+/// The fastest of several runs.
 fn timed(context: &Context<'_>, shape: &Shape, method: EmbedMethod) -> Result<Figure9Measured> {
-    // What takes long is hardly disturbed.
+    // Long runs are hardly disturbed by others.
     let runs = match method {
         EmbedMethod::Nystrom { .. } => context.config.runs,
         _ => 2,
@@ -105,31 +101,30 @@ fn timed(context: &Context<'_>, shape: &Shape, method: EmbedMethod) -> Result<Fi
     };
     let mut best: Option<Figure9Measured> = None;
     for _ in 0..runs {
-        let memory = PeakMemory::begin();
-        let seconds = embed(&shape.surface, &options, &())?.report.seconds;
-        let run = Figure9Measured {
-            geodesics: seconds.geodesics,
-            embedding: seconds.embedding,
-            runs,
-            peak_bytes: memory.bytes(),
-        };
+        let (embedded, peak_bytes) = with_peak_bytes(|| embed(&shape.surface, &options, &()));
+        let seconds = embedded?.report.seconds;
+        let run =
+            Figure9Measured { geodesics: seconds.geodesics, embedding: seconds.embedding, runs, peak_bytes };
         best = Some(best.filter(|best| best.total() <= run.total()).unwrap_or(run));
     }
     best.context("figure 9 needs at least one run")
 }
 
-/// Classical scaling by all eigenpairs.
+/// Classical scaling with all eigenpairs.
 fn full(shape: &Shape) -> Result<Figure9Measured> {
-    let memory = PeakMemory::begin();
-    let start = Instant::now();
-    let all = Distances::default().method.prepare(&shape.surface.intrinsic)?.distance_matrix()?;
-    let geodesics = start.elapsed().as_secs_f64();
-    classical_full(&all, DIM)?;
-    let embedding = start.elapsed().as_secs_f64() - geodesics;
-    Ok(Figure9Measured { geodesics, embedding, runs: 1, peak_bytes: memory.bytes() })
+    let run = || -> Result<[f64; 2]> {
+        let start = Instant::now();
+        let all = Distances::default().method.prepare(&shape.surface.intrinsic)?.distance_matrix()?;
+        let geodesics = start.elapsed().as_secs_f64();
+        classical_full(&all, DIM)?;
+        Ok([geodesics, start.elapsed().as_secs_f64() - geodesics])
+    };
+    let (seconds, peak_bytes) = with_peak_bytes(run);
+    let [geodesics, embedding] = seconds?;
+    Ok(Figure9Measured { geodesics, embedding, runs: 1, peak_bytes })
 }
 
-/// How long all pairs would take, from some of the sources.
+/// The seconds that all pairs would take, extrapolated from some of the sources.
 fn all_pairs_seconds(shape: &Shape) -> Result<f64> {
     let p = shape.surface.mesh().n_vertices();
     let solver = Distances::default().method.prepare(&shape.surface.intrinsic)?;

@@ -1,14 +1,15 @@
-//! The experiment runner: every figure of the paper from one command.
+//! The experiment runner: reproduces every figure of the paper with one command.
 //!
-//! `datasets` or a folder -> **experiments** -> `report::results` (JSON) -> pictures and one page
+//! `datasets` or a folder -> **experiments** -> `report::results` (JSON) -> figures and one page
 //!
-//! An experiment is a configuration (`configs/*.toml`: options, what is expected, what it shows) and a
-//! module that runs it; results are data, pictures are made from them.
+//! An experiment is a configuration (`configs/*.toml`: options, expectations, analysis), a module that runs it, and a
+//! line in [`table::EXPERIMENTS`]. Its results are data, of which `report` makes figures, tables and the page.
 
 mod args;
 mod coarse;
 mod collection;
 mod config;
+mod context;
 mod figure1;
 mod figure3;
 mod figure4;
@@ -17,12 +18,14 @@ mod figure6;
 mod figure7;
 mod figure8;
 mod figure9;
+mod memory;
 mod retrieve;
 mod run;
 mod scaling;
-mod seen;
 mod specimen;
+mod surfaces;
 mod sweep;
+mod table;
 mod units;
 
 use std::process::ExitCode;

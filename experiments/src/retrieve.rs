@@ -1,11 +1,10 @@
-//! How well signatures and forms bring together what belongs together.
+//! Retrieval and classification by signatures and canonical forms.
 //!
-//! Measures, for `METHOD` a signature, `aligned forms`, `fused`, `fused and forms` and `SCALE` in `raw`, where size
-//! counts, and `normalized`: `METHOD SCALE nn|ft|st|e|dcg|map|macro nn|macro map|knn|least map`; at scale `raw` also
-//! `forms in mesh units`; and `missed`, `mistaken`.
+//! Measures `METHOD SCALE nn|ft|st|e|dcg|map|macro nn|macro map|knn|least map` for `METHOD` a signature, `aligned forms`,
+//! `fused`, `fused and forms`, with `SCALE` either `raw` (size counts) or `normalized`; at scale `raw` also for `forms in
+//! mesh units`; and `missed`, `mistaken`.
 
 use std::collections::BTreeMap;
-use std::time::Instant;
 
 use anyhow::Result;
 use canonform::{
@@ -14,30 +13,27 @@ use canonform::{
 };
 use descriptors::{CanonicalForm, fuse, size_coordinate};
 use linalg::DistanceMatrix;
-use report::results::{Classification, RetrievalRecord, RetrievalRow, Scale, write};
-use report::retrieval::retrieval;
-use report::tables::retrieval_table;
+use report::results::{Classification, RetrievalRecord, RetrievalRow, Scale};
 use retrieval::{
-    Averaging, Labels, UnknownThreshold, confusion_matrix, mean_scores, precision_recall, rank, vote,
+    Averaging, Labels, UnknownThreshold, evaluate, mean_scores, precision_recall, rank, vote,
 };
 
 use crate::collection::map;
-use crate::run::Context;
+use crate::context::Context;
 
-/// Recalls at which precision is measured.
+/// The number of recalls at which precision is measured.
 const RECALLS: usize = 21;
 
-/// The way to compare that classifies.
+/// The method that classifies.
 const CLASSIFIER: &str = "fused and forms";
 
-/// Runs the experiment, writes `retrieval.json` and its pictures and prints the scores.
+/// Runs the experiment.
 pub(crate) fn run(context: &Context<'_>) -> Result<()> {
-    let start = Instant::now();
     let options = DescribeOptions::default();
     let shapes = map(&context.collection.all(), "describing", context.observer, |shape| {
         Ok(describe_surface(&shape.surface, &options)?)
     })?;
-    let described = start.elapsed();
+    let described = context.start.elapsed();
     let names = context.collection.labels();
     let labels = Labels::new(&names);
     let mut rows = Vec::new();
@@ -45,30 +41,27 @@ pub(crate) fn run(context: &Context<'_>) -> Result<()> {
     for (method, scale, distances) in distances(context, &shapes)? {
         rows.push(row(&method, scale, &distances, &labels, context.config.knn)?);
         if method == CLASSIFIER && scale == Scale::Normalized {
-            classification = classified(&method, &distances, &labels, &names, context.config.knn)?;
+            classification = classified(&method, &distances, &labels, context.config.knn)?;
         }
     }
     let mut provenance = context.provenance(
         serde_json::json!({ "description": options.text(), "matching": format!("{:?}", MatchOptions::default()) }),
-        start.elapsed(),
     );
     provenance.seconds.insert("describing".to_owned(), described.as_secs_f64());
     let measured = measured(&rows, &classification);
     let record = RetrievalRecord {
         expectations: context.check(|name| measured.get(name).copied())?,
-        analysis: context.config.analysis.trim().to_owned(),
+        analysis: context.analysis(),
         provenance,
         names: context.collection.names(),
         labels: names,
         rows,
         classification,
     };
-    retrieval(&record, context.output("retrieval"))?;
-    write(&record, context.output("retrieval.json"))?;
-    context.say(&retrieval_table(&record))
+    context.publish(&record)
 }
 
-/// Every way to compare, with its distances between all pairs.
+/// Every method with its distances between all pairs.
 fn distances(
     context: &Context<'_>,
     shapes: &[ShapeDescription],
@@ -125,15 +118,9 @@ fn row(
     knn: usize,
 ) -> Result<RetrievalRow> {
     let micro = mean_scores(distances, labels, Averaging::Micro)?;
-    let votes = confusion_matrix(distances, labels, knn)?;
-    let (mut right, mut total) = (0, 0);
-    for (class, row) in votes.iter().enumerate() {
-        right += row[class];
-        total += row.iter().sum::<usize>();
-    }
     let mut held_out_map = micro.map;
     for class in 0..labels.classes().len() {
-        // A collection of two classes has nothing to tell apart without one.
+        // Without one of two classes there is nothing to distinguish.
         let (rest, rest_labels) = without(distances, labels, class)?;
         if rest_labels.classes().len() > 1
             && let Ok(scores) = mean_scores(&rest, &rest_labels, Averaging::Micro)
@@ -146,13 +133,13 @@ fn row(
         scale,
         micro,
         macro_average: mean_scores(distances, labels, Averaging::Macro)?,
-        knn_accuracy: right as f64 / total.max(1) as f64,
+        knn_accuracy: evaluate(distances, labels, knn)?.knn_accuracy,
         held_out_map,
         precision: precision_recall(distances, labels, Averaging::Micro, RECALLS)?,
     })
 }
 
-/// The collection less one class.
+/// The collection without one class.
 fn without(distances: &DistanceMatrix, labels: &Labels, class: usize) -> Result<(DistanceMatrix, Labels)> {
     let kept: Vec<usize> = (0..labels.n_points()).filter(|&i| labels.class(i) != class).collect();
     let names: Vec<&str> = kept.iter().map(|&i| labels.classes()[labels.class(i)].as_str()).collect();
@@ -160,18 +147,17 @@ fn without(distances: &DistanceMatrix, labels: &Labels, class: usize) -> Result<
     Ok((rest, Labels::new(&names)))
 }
 
-/// Every shape classified by the others, and the unknown: how many are called so in error, and how many are not.
+/// The classification of every shape by the others, and the error rates for unknown shapes.
 fn classified(
     method: &str,
     distances: &DistanceMatrix,
     labels: &Labels,
-    names: &[String],
     voters: usize,
 ) -> Result<Classification> {
     let classes = labels.classes();
     let threshold = UnknownThreshold::leave_one_out(distances, labels);
     let mut confusion = vec![vec![0; classes.len() + 1]; classes.len()];
-    for i in 0..names.len() {
+    for i in 0..labels.n_points() {
         let found = vote(&rank(distances, i), |i| labels.class(i), voters, threshold).class;
         confusion[labels.class(i)][found.unwrap_or(classes.len())] += 1;
     }
@@ -179,7 +165,7 @@ fn classified(
     for class in 0..classes.len() {
         let (rest, rest_labels) = without(distances, labels, class)?;
         let Some(threshold) = UnknownThreshold::leave_one_out(&rest, &rest_labels) else { continue };
-        for i in (0..names.len()).filter(|&i| labels.class(i) == class) {
+        for i in (0..labels.n_points()).filter(|&i| labels.class(i) == class) {
             let ranking = rank(distances, i);
             for (same, [errors, all]) in [(true, &mut missed), (false, &mut mistaken)] {
                 let nearest = ranking.iter().find(|n| (labels.class(n.index) == class) == same);
@@ -202,7 +188,7 @@ fn classified(
     })
 }
 
-/// Numbers by the names that configurations use.
+/// Numbers by their names in the configuration.
 fn measured(rows: &[RetrievalRow], classification: &Classification) -> BTreeMap<String, f64> {
     let mut found = BTreeMap::new();
     for row in rows {

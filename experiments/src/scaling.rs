@@ -1,7 +1,7 @@
-//! How time and memory grow with the number of vertices, on one generated body.
+//! Growth of time and memory with the number of vertices, on a generated body.
 //!
-//! Measures `map growth`, `preparation growth`, `NMDS growth` and `memory growth`, exponents in the number of
-//! vertices, and `NMDS seconds`, the time of a whole form at the greatest number.
+//! Measures `map growth`, `preparation growth`, `NMDS growth` and `memory growth`, exponents in the number of vertices, and
+//! `NMDS seconds`, the time of a whole form at the greatest number.
 
 use std::time::Instant;
 
@@ -9,30 +9,28 @@ use anyhow::Result;
 use canonform::{EmbedMethod, EmbedOptions, Samples, StressChoice, Surface, embed};
 use datasets::{ArticulatedOptions, Family, articulated_shape};
 use mesh::RepairOptions;
-use report::results::{AxisScale, CurvesPanel, Series};
+use report::results::Series;
 use surface::VertexId;
-use terminal::PeakMemory;
 
-use crate::figure5::finish;
-use crate::run::Context;
+use crate::context::Context;
+use crate::memory::with_peak_bytes;
 use crate::specimen::Distances;
-use crate::sweep::{Measured, axis, places, series};
+use crate::sweep::{Measured, log, panel, places, series};
 
 /// The curves of time.
 const STEPS: [&str; 3] = ["preparation", "map", "NMDS"];
 
-/// Bytes in the unit of the second panel.
+/// Bytes per unit of the second panel.
 const MIB: f64 = (1u64 << 20) as f64;
 
 /// Runs the experiment.
 pub(crate) fn run(context: &Context<'_>) -> Result<()> {
-    let start = Instant::now();
     let config = &context.config;
     let mut seconds = vec![vec![Vec::new(); config.runs]; STEPS.len()];
     let mut memory = vec![Vec::new(); config.runs];
     context.observer.begin("scaling", config.counts.len() * (config.runs + 1));
     for &n_vertices in &config.counts {
-        let options = ArticulatedOptions { seed: context.args.seed, n_vertices };
+        let options = ArticulatedOptions { seed: context.seed, n_vertices };
         let body = articulated_shape(Family::David, 0, &options)?;
         let surface = Surface::new(&body.mesh, &RepairOptions::default())?;
         drop(body);
@@ -53,26 +51,22 @@ pub(crate) fn run(context: &Context<'_>) -> Result<()> {
         times.iter().map(|curve| (format!("{} growth", curve.name), growth(curve))).collect();
     measured.insert("memory growth".to_owned(), growth(&memory));
     measured.insert("NMDS seconds".to_owned(), times[2].points.last().map_or(f64::NAN, |p| p.low));
-    let panel = |title: &str, unit: &str, series| CurvesPanel {
-        title: title.to_owned(),
-        x: axis("vertices", "", AxisScale::Log),
-        y: axis(&title.to_lowercase(), unit, AxisScale::Log),
-        series,
-        marks: Vec::new(),
+    let panel = |title: &str, unit: &str, series| {
+        panel(title, log("vertices", ""), log(&title.to_lowercase(), unit), series)
     };
     let panels = vec![panel("Time", "seconds", times), panel("Memory", "MiB", vec![memory])];
     let caption = format!(
-        "A generated human body in ever finer triangles. Preparation and map: fast marching, prepared for the surface, \
-         and the distances from one vertex on one thread. NMDS: both and {} samples with their form, on {} threads; memory is \
-         what that takes beside the mesh. Lines: medians of {} runs; bands: all runs.",
+        "A generated human body in increasingly fine triangulations. Preparation: fast marching is prepared for the surface. \
+         Map: the distances from one vertex, on one thread. NMDS: the whole form with {} samples, preparation included, on {} \
+         threads; memory is that in addition to the mesh. Lines: medians of {} runs; bands: range of the runs.",
         config.samples,
         rayon::current_num_threads(),
         config.runs
     );
-    finish(context, "scaling", start, &caption, panels, &measured)
+    context.publish_curves(&[], caption, panels, &measured)
 }
 
-/// Seconds to prepare a surface, and of one map from a vertex once the solver is warm.
+/// Seconds for preparing a surface, and for the distances from one vertex in a second run.
 fn of_one_map(surface: &Surface) -> Result<[f64; 2]> {
     let start = Instant::now();
     let solver = Distances::default().method.prepare(&surface.intrinsic)?;
@@ -83,7 +77,7 @@ fn of_one_map(surface: &Surface) -> Result<[f64; 2]> {
     Ok([preparation, start.elapsed().as_secs_f64()])
 }
 
-/// What a form takes.
+/// Time and memory of a canonical form.
 struct Cost {
     seconds: f64,
     mib: f64,
@@ -96,14 +90,13 @@ fn of_form(context: &Context<'_>, surface: &Surface) -> Result<Cost> {
         stress: StressChoice::Skip,
         ..EmbedOptions::default()
     };
-    let memory = PeakMemory::begin();
     let start = Instant::now();
-    embed(surface, &options, &())?;
-    Ok(Cost { seconds: start.elapsed().as_secs_f64(), mib: memory.bytes() as f64 / MIB })
+    let (embedded, peak_bytes) = with_peak_bytes(|| embed(surface, &options, &()));
+    embedded?;
+    Ok(Cost { seconds: start.elapsed().as_secs_f64(), mib: peak_bytes as f64 / MIB })
 }
 
-/// The exponent of a curve's least values in its places: the slope of the straight line that fits their logarithms
-/// best.
+/// The exponent of the least values of a curve: the slope of the line that fits their logarithms best.
 fn growth(curve: &Series) -> f64 {
     let logs: Vec<[f64; 2]> = curve.points.iter().map(|p| [p.x.ln(), p.low.ln()]).collect();
     let mean = |i: usize| logs.iter().map(|log| log[i]).sum::<f64>() / logs.len() as f64;
@@ -117,7 +110,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_power_grows_by_its_exponent() {
+    fn the_growth_of_a_power_is_its_exponent() {
         let at = [1e3, 4e3, 5e4, 1e6];
         let power = at.map(|p: f64| 3.0 * p.powf(1.1)).to_vec();
         let slower = power.iter().map(|y| 2.0 * y).collect();

@@ -1,4 +1,4 @@
-//! The shapes that figures look at closely, and what is worth measuring only once on each.
+//! The shapes that several experiments examine closely, with cached measurements.
 
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -12,19 +12,19 @@ use surface::VertexId;
 
 use crate::collection::{Collection, Shape};
 
-/// The classes that the paper's Figures 3 and 5 to 9 look at, in its order.
+/// The classes of Figures 3 and 5 to 9 of the paper, in its order.
 const PAPER: [&str; 2] = ["david", "cat"];
 
-/// Most memory for all pairs of a shape, in bytes.
+/// The limit on the memory for all pairs of a shape, in bytes.
 const ALL_PAIRS_LIMIT: usize = 4 << 30;
 
 /// Dimensions of canonical forms.
 pub(crate) const DIM: usize = 3;
 
-/// A value that is made once and then shared.
+/// Values that are computed once and then shared.
 type Once<K, T> = Mutex<Vec<(K, Arc<T>)>>;
 
-/// One shape, and what has been measured on it.
+/// A shape, and what has been measured on it.
 pub(crate) struct Specimen<'a> {
     pub(crate) shape: &'a Shape,
     all_pairs: Once<&'static str, DistanceMatrix>,
@@ -39,7 +39,7 @@ pub(crate) struct Optimum {
     pub(crate) stress: f64,
 }
 
-/// The first david and the first cat; of other collections the first shapes of two classes.
+/// The first david and the first cat; in other collections, the first shapes of two classes.
 pub(crate) fn specimens(collection: &Collection) -> Vec<Specimen<'_>> {
     let first = |class: &str| collection.shapes.iter().find(|shape| shape.label == class);
     let mut chosen: Vec<&Shape> = PAPER.into_iter().filter_map(first).collect();
@@ -78,8 +78,8 @@ impl<'a> Specimen<'a> {
             let p = self.n_vertices();
             if p.saturating_mul(p) > ALL_PAIRS_LIMIT / size_of::<f64>() {
                 bail!(
-                    "{}: this experiment measures all pairs, and those of {p} vertices need {} GiB; take shapes \
-                     of at most 23,000 vertices",
+                    "{}: this experiment needs the distances of all pairs, {} GiB for {p} vertices; use shapes of at \
+                     most 23,000 vertices",
                     self.name(),
                     (p * p * size_of::<f64>()) >> 30
                 );
@@ -88,7 +88,7 @@ impl<'a> Specimen<'a> {
         })
     }
 
-    /// The form of least strain, by classical scaling of all pairs.
+    /// Classical scaling of all pairs, the optimum of strain.
     pub(crate) fn optimum(&self, distances: &Distances) -> Result<Arc<Optimum>> {
         once(&self.optimum, distances.name, || {
             let all = self.all_pairs(distances)?;
@@ -105,7 +105,7 @@ impl<'a> Specimen<'a> {
         })
     }
 
-    /// The errors of approximations by `n` farthest samples, by the default distances.
+    /// The reconstruction of all squared distances from `n` farthest samples, for the default distances.
     pub(crate) fn reconstruction(&self, n: usize, first: VertexId) -> Result<Arc<Reconstruction>> {
         once(&self.reconstruction, (n, first), || {
             let samples = self.nested(&Distances::default(), Sampling::Farthest, first, &[n])?;
@@ -114,12 +114,12 @@ impl<'a> Specimen<'a> {
         })
     }
 
-    /// Different first samples, drawn with `seed`: what repeated runs differ in.
+    /// Distinct first samples of repeated runs, drawn with `seed`.
     pub(crate) fn first_samples(&self, runs: usize, seed: u64) -> Vec<VertexId> {
         sample_rows(self.n_vertices(), runs, seed).into_iter().map(VertexId::from).collect()
     }
 
-    /// The distances from the first n of the samples that begin with `first`, for each n of `counts`.
+    /// For each n of `counts`, the distances from the first n samples of the sequence that begins with `first`.
     pub(crate) fn nested(
         &self,
         distances: &Distances,
@@ -135,7 +135,7 @@ impl<'a> Specimen<'a> {
     }
 }
 
-/// A way to measure distances, by the name that records and expectations use.
+/// A kind of distances, with its name in records and expectations.
 #[derive(Debug, Clone)]
 pub(crate) struct Distances {
     pub(crate) name: &'static str,
@@ -155,13 +155,13 @@ impl Distances {
     }
 }
 
-/// Looks a value up, or makes it.
+/// Looks up a value, or computes it.
 fn once<K: PartialEq, T>(known: &Once<K, T>, key: K, make: impl FnOnce() -> Result<T>) -> Result<Arc<T>> {
     let lock = || known.lock().unwrap_or_else(PoisonError::into_inner);
     if let Some((_, value)) = lock().iter().find(|(k, _)| *k == key) {
         return Ok(Arc::clone(value));
     }
-    let value = Arc::new(make().context("measuring a shape")?);
+    let value = Arc::new(make().context("cannot measure a shape")?);
     lock().push((key, Arc::clone(&value)));
     Ok(value)
 }

@@ -1,20 +1,20 @@
-//! Repeated runs as points of curves, and numbers by the names that expectations use.
+//! Curves of repeated runs, and numbers by the names that expectations use.
 
 use std::collections::BTreeMap;
 
-use report::results::{Axis, AxisScale, Series, SeriesPoint};
+use report::results::{Axis, AxisScale, CurvesPanel, Series, SeriesPoint};
 
 /// Numbers by name.
 pub(crate) type Measured = BTreeMap<String, f64>;
 
-/// The median of some values, the lower of two in the middle, and where it is among them.
+/// The index and the value of the median; of two in the middle, the lower one.
 pub(crate) fn median(values: &[f64]) -> (usize, f64) {
     let mut order: Vec<usize> = (0..values.len()).collect();
     order.sort_by(|&i, &j| values[i].total_cmp(&values[j]));
     order.get(values.len().saturating_sub(1) / 2).map_or((0, f64::NAN), |&i| (i, values[i]))
 }
 
-/// Median and range of the runs at one place.
+/// Median and range of the runs at one value of `x`.
 pub(crate) fn point(x: f64, runs: &[f64]) -> SeriesPoint {
     SeriesPoint {
         x,
@@ -25,7 +25,7 @@ pub(crate) fn point(x: f64, runs: &[f64]) -> SeriesPoint {
     }
 }
 
-/// A curve of what the runs gave at each place: `runs[run][place]`.
+/// The curve of `runs[run][place]` over the places.
 pub(crate) fn series(name: &str, places: &[f64], runs: &[Vec<f64>]) -> Series {
     let at = |place: usize| runs.iter().map(|run| run[place]).collect::<Vec<_>>();
     let points = places.iter().enumerate().map(|(i, &x)| point(x, &at(i))).collect();
@@ -37,18 +37,33 @@ pub(crate) fn medians(series: &Series) -> Vec<f64> {
     series.points.iter().map(|p| p.median).collect()
 }
 
-/// The share of places at which the median of `a` is at most that of every other curve.
+/// The share of places where the median of `a` is at most that of every other curve.
 pub(crate) fn share_lowest(a: &Series, others: &[&Series]) -> f64 {
     let lowest = |i: &usize| others.iter().all(|other| a.points[*i].median <= other.points[*i].median);
     (0..a.points.len()).filter(lowest).count() as f64 / a.points.len().max(1) as f64
 }
 
-/// An axis.
-pub(crate) fn axis(name: &str, unit: &str, scale: AxisScale) -> Axis {
-    Axis { name: name.to_owned(), unit: unit.to_owned(), scale }
+/// A panel of curves without marks.
+pub(crate) fn panel(title: impl Into<String>, x: Axis, y: Axis, series: Vec<Series>) -> CurvesPanel {
+    CurvesPanel { title: title.into(), x, y, series, marks: Vec::new() }
 }
 
-/// Whole numbers as places on an axis.
+/// A linear axis for a pure number.
+pub(crate) fn linear(name: &str) -> Axis {
+    Axis { name: name.to_owned(), unit: String::new(), scale: AxisScale::Linear }
+}
+
+/// A logarithmic axis.
+pub(crate) fn log(name: &str, unit: &str) -> Axis {
+    Axis { name: name.to_owned(), unit: unit.to_owned(), scale: AxisScale::Log }
+}
+
+/// The vertical axis of reconstruction errors, in the paper's unit: the fourth power of the mesh unit.
+pub(crate) fn error_axis() -> Axis {
+    log("reconstruction error", "mesh units⁴")
+}
+
+/// Whole numbers as values on an axis.
 pub(crate) fn places(counts: &[usize]) -> Vec<f64> {
     counts.iter().map(|&n| n as f64).collect()
 }

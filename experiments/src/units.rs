@@ -1,4 +1,4 @@
-//! What poses and triangulations do to signatures: the units that distances are measured in.
+//! The units of distances between signatures: the variation that poses and triangulations cause.
 
 use std::io::Write;
 use std::process::ExitCode;
@@ -23,12 +23,12 @@ struct Described {
     form: PreparedForm,
 }
 
-/// Vertices of the shapes of each seed in turn: collections mix resolutions.
+/// Vertices of the shapes of each seed, in turn, since collections mix resolutions.
 const VERTICES: [usize; 5] = [3400, 1500, 8000, 2500, 5000];
 
-/// `experiments units`: for every signature and for aligned forms, the root mean square distance between two shapes of a
-/// built-in family, each posed and triangulated on its own, and the mean squared distance between families over its
-/// square; beside the numbers in use.
+/// `experiments units`: for every signature and for aligned forms, the root mean square distance between two shapes of
+/// one built-in family with poses and triangulations of their own, and the ratio of the mean squared distance between
+/// families to its square, beside the numbers in use.
 pub(crate) fn units(args: &UnitsArgs) -> Result<ExitCode> {
     let bars = Bars::new(args.quiet);
     let mut shapes = Vec::new();
@@ -83,7 +83,7 @@ pub(crate) fn units(args: &UnitsArgs) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// What was measured of one part of a fused signature, and what is in use.
+/// The measured and the current unit and weight of a part of the fused signature.
 struct Part {
     name: &'static str,
     unit: f64,
@@ -102,7 +102,7 @@ impl Part {
     }
 }
 
-/// `tr(C)² / tr(C²)` with `C` the covariance of a signature within families.
+/// The effective number of components, `tr(C)² / tr(C²)`, of the covariance `C` of a signature within families.
 fn components(shapes: &[Described], kind: SignatureKind) -> f64 {
     let n_values = kind.n_values();
     let mut covariance = Matrix::zeros(n_values, n_values);

@@ -5,6 +5,7 @@
 mod args;
 mod commands;
 mod field;
+mod memory;
 mod output;
 
 use std::process::ExitCode;

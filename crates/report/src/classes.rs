@@ -1,6 +1,6 @@
-//! The classes of a list of labels, and the numbers that colours and markers go by.
+//! The distinct labels of a list, numbered for colours and markers.
 
-/// Different labels in the order of their first appearance.
+/// Distinct labels in the order of their first appearance.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) struct Classes<'a>(Vec<&'a str>);
 
@@ -15,15 +15,11 @@ impl<'a> Classes<'a> {
         Self(names)
     }
 
-    pub(crate) fn len(&self) -> usize {
-        self.0.len()
+    pub(crate) fn names(&self) -> &[&'a str] {
+        &self.0
     }
 
-    pub(crate) fn name(&self, class: usize) -> &'a str {
-        self.0[class]
-    }
-
-    /// The number of a label's class; that of a label never seen is one past the last.
+    /// The number of a label's class. An unknown label has the number after the last.
     pub(crate) fn index(&self, label: &str) -> usize {
         self.0.iter().position(|name| *name == label).unwrap_or(self.0.len())
     }

@@ -1,54 +1,75 @@
-//! What can go wrong between a record and a picture.
+//! Errors of reading records and of drawing and writing figures.
 
 use std::path::PathBuf;
 
 /// Errors of reading records and of drawing and writing figures.
 #[derive(Debug, thiserror::Error)]
 pub enum ReportError {
-    /// A file could not be read or written; nothing of it is left behind.
+    /// A file could not be read or written. A file that was not written completely does not remain.
     #[error(transparent)]
     File(#[from] files::FileError),
-    /// A picture could not be drawn or written.
+    /// A figure could not be drawn or written.
     #[error(transparent)]
     View(#[from] view::ViewError),
-    /// A file is not the record it should be.
-    #[error("{}: is not a record this version reads: {source}; run the experiment again", path.display())]
+    /// A file does not hold the expected record.
+    #[error("{}: not a record that this version reads: {source}; run the experiment again", path.display())]
     Parse {
         /// The file.
         path: PathBuf,
-        /// Where and why reading stopped.
+        /// Where and why parsing stopped.
         source: serde_json::Error,
     },
-    /// A record contradicts itself.
-    #[error(
-        "{what} has {found} entries where {expected} are needed, one for each {unit}; run the experiment again"
-    )]
+    /// Two lists of a record do not belong together.
+    #[error("{what} has {found} entries instead of {expected}, one per {unit}; run the experiment again")]
     Shape {
-        /// Which part of the record.
+        /// The part of the record.
         what: String,
-        /// Entries it has.
+        /// Its number of entries.
         found: usize,
-        /// Entries it needs.
+        /// The number of entries it needs.
         expected: usize,
         /// What each entry belongs to.
         unit: &'static str,
     },
-    /// A record holds a number that JSON cannot hold and a picture cannot show.
+    /// A number of a record is not finite.
     #[error(
         "{what} is {value}, not a finite number; look for a failed embedding and run the experiment again"
     )]
     NotFinite {
-        /// Which number of the record.
+        /// Which number.
         what: String,
-        /// The number.
+        /// Its value.
         value: f64,
     },
-    /// A figure was asked for without anything to draw.
-    #[error("{figure} has nothing to draw: give it at least one {unit}")]
+    /// A figure has no content.
+    #[error("{figure} has nothing to draw: provide at least one {unit}")]
     Empty {
         /// Which figure.
         figure: &'static str,
         /// What it draws.
         unit: &'static str,
     },
+}
+
+impl ReportError {
+    /// An error unless a part of a record has the `expected` number of entries.
+    pub(crate) fn check_length(
+        what: impl Into<String>,
+        found: usize,
+        expected: usize,
+        unit: &'static str,
+    ) -> Result<(), Self> {
+        match found == expected {
+            true => Ok(()),
+            false => Err(Self::Shape { what: what.into(), found, expected, unit }),
+        }
+    }
+
+    /// An error unless a number of a record is finite. `what` is only called for the error.
+    pub(crate) fn check_finite(value: f64, what: impl FnOnce() -> String) -> Result<(), Self> {
+        match value.is_finite() {
+            true => Ok(()),
+            false => Err(Self::NotFinite { what: what(), value }),
+        }
+    }
 }

@@ -1,153 +1,111 @@
-//! Figure 3: the forms of a few shapes by several methods, shaded, the stress under each.
-
-use std::path::{Path, PathBuf};
+//! Figure 3: canonical forms of a few shapes by several methods, with their stress.
 
 use mesh::TriMesh;
-use plotters::prelude::DrawingBackend;
 
-use crate::figure1::stress_digits;
-use crate::results::Figure3Shape;
-use view::RgbaImage;
-use view::canvas::{Anchor, Canvas, DrawError, Drawing, GRID, RASTER, SMALL, TEXT, TITLE, Type, save};
-use view::color::class_clay;
-use view::render::{RenderOptions, Surface, View, aspect, render};
+use crate::classes::Classes;
+use crate::figure::{Content, Figure, Group, Layout, Plot, Point, Tile, Tiles, grouped};
+use crate::results::{Axis, AxisScale, Expectation, Figure3Record, Figure3Shape, Figure3Stress, Provenance};
+use crate::table::stress;
+use crate::{Cell, Record, ReportError, Table};
+use view::render::View;
 
-use crate::ReportError;
-
-/// What is appended to the stem of Figure 3's files, before `.png` and `.svg`.
-pub const PART: &str = "-forms";
+const PART: &str = "-forms";
 
 /// One row of the figure.
 #[derive(Debug, Clone)]
 pub struct Figure3Surfaces<'a> {
-    /// Names and stresses, which are written under the pictures.
+    /// Names and stresses.
     pub facts: &'a Figure3Shape,
     /// The shape.
     pub shape: &'a TriMesh,
-    /// Its forms in the order of `facts.forms`, turned to match each other.
+    /// Its forms in the order of `facts.forms`, rotated or reflected to match each other.
     pub forms: &'a [TriMesh],
 }
 
-/// Draws a row for each shape, the shape first and then its forms, and returns the paths of
-/// `STEM-forms.png` and `STEM-forms.svg`. The forms of a row are all seen from one side, on which the
-/// principal axes of the first lie in the picture; each fills its tile, whatever its size.
+/// One row per shape: the shape, seen from `view`, then its forms. Each fills its tile.
 ///
 /// # Errors
-/// [`ReportError::Empty`] without a row, [`ReportError::Shape`] when forms and facts do not pair up,
-/// [`ReportError::View`].
-pub fn figure3(
-    rows: &[Figure3Surfaces<'_>],
-    view: &View,
-    stem: impl AsRef<Path>,
-) -> Result<Vec<PathBuf>, ReportError> {
+/// [`ReportError::Empty`] without a form, [`ReportError::Shape`] if the forms of a row and their facts differ in
+/// number.
+pub fn figure3<'a>(rows: &[Figure3Surfaces<'a>], view: &View) -> Result<Tiles<'a>, ReportError> {
     if rows.iter().all(|row| row.forms.is_empty()) {
         return Err(ReportError::Empty { figure: "figure 3", unit: "shape with a form" });
     }
-    for row in rows {
-        let (found, expected) = (row.forms.len(), row.facts.forms.len());
-        if found != expected {
-            let what = format!("forms of {}", row.facts.name);
-            return Err(ReportError::Shape { what, found, expected, unit: "stress" });
-        }
+    for Figure3Surfaces { facts, forms, .. } in rows {
+        ReportError::check_length(
+            format!("forms of {}", facts.name),
+            forms.len(),
+            facts.forms.len(),
+            "stress",
+        )?;
     }
-    let mut stem = stem.as_ref().as_os_str().to_owned();
-    stem.push(PART);
-    Ok(save(&Grid::new(rows, view), Path::new(&stem))?)
+    let longest = rows.iter().max_by_key(|row| row.forms.len());
+    let methods = longest.into_iter().flat_map(|row| row.facts.forms.iter().map(|f| f.method.clone()));
+    let heads: Vec<String> = std::iter::once("shape".to_owned()).chain(methods).collect();
+    let row = |Figure3Surfaces { facts, shape, forms }: &Figure3Surfaces<'a>| {
+        let vertices = (format!("{} vertices", facts.n_vertices), Layout::NUMBER);
+        let forms = forms.iter().zip(&facts.forms).map(|(mesh, facts)| {
+            let stress = (format!("stress {}", stress(facts.stress)), Layout::NUMBER);
+            let paper = facts.paper.map(|paper| (format!("paper {paper}"), Layout::NOTE));
+            Tile::Form(mesh, std::iter::once(stress).chain(paper).collect())
+        });
+        (facts.name.clone(), std::iter::once(Tile::Shape(shape, vec![vertices])).chain(forms).collect())
+    };
+    let rows = rows.iter().map(row).collect();
+    Ok(Tiles { part: PART, layout: &Layout::LINE, view: *view, heads, rows })
 }
 
-const WIDTH: f64 = 1000.0;
-const MARGIN: f64 = 10.0;
-/// Above all: the names of the columns. Above a row: the name of its shape. Under it: two lines.
-const COLUMN_HEAD: f64 = 28.0;
-const HEAD: f64 = 34.0;
-const FOOT: f64 = 48.0;
-
-struct Grid {
-    heads: Vec<String>,
-    rows: Vec<Row>,
-    tile: f64,
+/// The stress of every method on one shape, for every kind of distances.
+fn plot(shape: &str, stresses: &[Figure3Stress]) -> Plot {
+    let own: Vec<&Figure3Stress> = stresses.iter().filter(|s| s.shape == shape).collect();
+    let kinds: Vec<String> = own.iter().map(|s| format!("{} distances", s.distances)).collect();
+    let groups = own.iter().zip(&kinds).map(|(s, kind)| Group {
+        category: &s.method,
+        series: kind,
+        own: Some(Point { x: 0.0, y: s.median, low: s.low, high: s.high, note: format!("{} runs", s.runs) }),
+        // The paper has one number for all kinds of distances.
+        paper: s.paper.filter(|_| *kind == kinds[0]),
+    });
+    let groups: Vec<Group<'_>> = groups.collect();
+    let (name, unit) = ("stress".to_owned(), "squared mesh units".to_owned());
+    grouped(shape, &Axis { name, unit, scale: AxisScale::Log }, &groups, |_| "paper".to_owned())
 }
 
-struct Row {
-    title: String,
-    height: f64,
-    images: Vec<RgbaImage>,
-    /// Two lines for each image.
-    captions: Vec<[String; 2]>,
-}
-
-impl Grid {
-    fn new(rows: &[Figure3Surfaces<'_>], view: &View) -> Self {
-        let columns = rows.iter().map(|row| row.forms.len() + 1).max().unwrap_or(1);
-        let tile = ((WIDTH - 2.0 * MARGIN) / columns as f64).floor().min(240.0);
-        let longest = rows.iter().max_by_key(|row| row.forms.len());
-        let methods = longest.into_iter().flat_map(|row| row.facts.forms.iter().map(|f| f.method.clone()));
-        Self {
-            heads: std::iter::once("shape".to_owned()).chain(methods).collect(),
-            rows: rows.iter().enumerate().map(|(i, row)| Row::new(row, i, view, tile)).collect(),
-            tile,
-        }
+impl Record for Figure3Record {
+    fn about(&self) -> (&Provenance, &[Expectation], &str) {
+        (&self.provenance, &self.expectations, &self.analysis)
     }
 
-    fn middle(&self, column: usize) -> f64 {
-        MARGIN + (column as f64 + 0.5) * self.tile
+    fn figures(&self) -> Vec<Figure> {
+        let forms = "Shapes (left) and their canonical forms by each method. Every form fills its tile and is rotated to \
+                     match the first of its row. Under it: its stress in squared mesh units, from the run of median \
+                     stress, and the number printed in the paper.";
+        let stress = "Median and range of the stress over runs that differ in the first sample, for three kinds of \
+                      distances, and the numbers printed in the paper.";
+        let shapes = Classes::of(self.stresses.iter().map(|s| s.shape.as_str()));
+        let plots: Vec<Plot> = shapes.names().iter().map(|shape| plot(shape, &self.stresses)).collect();
+        let forms = Figure { part: PART, caption: forms.into(), content: Content::Surfaces };
+        let stress = Figure { part: "-stress", caption: stress.into(), content: Content::Plots(plots) };
+        vec![forms, stress]
     }
-}
 
-impl Row {
-    fn new(row: &Figure3Surfaces<'_>, class: usize, view: &View, tile: f64) -> Self {
-        let height = (tile / aspect(row.shape, view).clamp(0.6, 1.2)).round();
-        let fixed = row.forms.first().map_or(*view, |form| View::Principal.fixed(form, tile > height));
-        let [width, high] = [tile, height].map(|side| side as u32 * RASTER);
-        let picture = |mesh, view| {
-            let surface = Surface::Plain(class_clay(class));
-            render(mesh, &RenderOptions { width, height: high, view, surface, ..RenderOptions::default() })
+    fn tables(&self) -> Vec<Table> {
+        let row = |s: &Figure3Stress| {
+            let mut row = [&s.shape, &s.distances, &s.method].map(Cell::text).to_vec();
+            row.extend([s.median, s.low, s.high].map(|value| Cell::number(stress(value))));
+            row.extend([Cell::number(s.runs), Cell::optional(s.paper)]);
+            row
         };
-        let mut images = vec![picture(row.shape, *view)];
-        images.extend(row.forms.iter().map(|form| picture(form, fixed)));
-        let mut captions = vec![[format!("{} vertices", row.facts.n_vertices), String::new()]];
-        captions.extend(row.facts.forms.iter().map(|form| {
-            let paper = form.paper.map_or_else(String::new, |paper| format!("paper {paper}"));
-            [format!("stress {}", stress_digits(form.stress)), paper]
-        }));
-        Self { title: row.facts.name.clone(), height, images, captions }
-    }
-
-    fn full_height(&self) -> f64 {
-        HEAD + self.height + FOOT
-    }
-}
-
-impl Drawing for Grid {
-    fn size(&self) -> (u32, u32) {
-        let height: f64 = self.rows.iter().map(Row::full_height).sum();
-        (WIDTH as u32, (COLUMN_HEAD + height + MARGIN) as u32)
-    }
-
-    fn draw<DB: DrawingBackend>(&self, canvas: &Canvas<DB>) -> Result<(), DrawError> {
-        for (column, head) in self.heads.iter().enumerate() {
-            canvas.text(head, (self.middle(column), 15.0), Type::new(TEXT, Anchor::Center).bold())?;
-        }
-        let mut top = COLUMN_HEAD;
-        for row in &self.rows {
-            canvas.line((MARGIN, top + 1.0), (WIDTH - MARGIN, top + 1.0), 1.0, GRID)?;
-            canvas.text(&row.title, (MARGIN, top + 20.0), Type::new(TITLE, Anchor::Left).bold())?;
-            for (column, (image, caption)) in row.images.iter().zip(&row.captions).enumerate() {
-                let (middle, under) = (self.middle(column), top + HEAD + row.height);
-                canvas.image(image, (middle - self.tile / 2.0, top + HEAD))?;
-                canvas.text(&caption[0], (middle, under + 12.0), Type::new(SMALL, Anchor::Center))?;
-                let pale = Type::new(SMALL, Anchor::Center).pale();
-                canvas.text(&caption[1], (middle, under + 32.0), pale)?;
-            }
-            top += row.full_height();
-        }
-        Ok(())
+        let caption = "Stress in squared mesh units over runs that differ in the first sample.";
+        let headings = ["shape", "distances", "method", "median", "least", "greatest", "runs", "paper"];
+        vec![Table::new(caption, headings, self.stresses.iter().map(row).collect())]
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::figure::Shape;
     use mesh::shapes::icosphere;
 
     use crate::fixtures::{assert_balanced, figure3_record};
@@ -163,7 +121,7 @@ mod tests {
             .map(|facts| Figure3Surfaces { facts, shape: &ball, forms: &forms })
             .collect();
         let folder = tempfile::tempdir().unwrap();
-        let files = figure3(&rows, &View::default(), folder.path().join("figure3")).unwrap();
+        let files = figure3(&rows, &View::default()).unwrap().save(folder.path().join("figure3")).unwrap();
         let svg = std::fs::read_to_string(&files[1]).unwrap();
         assert_balanced(&svg);
         for text in ["david&lt;0&gt;", "MDS", "NMDS", "stress 262.1", "paper 394.41", "3400 vertices"] {
@@ -173,15 +131,25 @@ mod tests {
     }
 
     #[test]
-    fn rows_that_do_not_pair_up_are_errors() {
-        let folder = tempfile::tempdir().unwrap();
-        let stem = folder.path().join("x");
-        let empty = figure3(&[], &View::default(), &stem).unwrap_err();
+    fn forms_without_facts_are_an_error() {
+        let empty = figure3(&[], &View::default()).unwrap_err();
         assert!(matches!(empty, ReportError::Empty { .. }), "{empty}");
         let record = figure3_record();
         let ball = icosphere(2);
         let row = Figure3Surfaces { facts: &record.shapes[0], shape: &ball, forms: &[icosphere(2)] };
-        let short = figure3(&[row], &View::default(), &stem).unwrap_err();
-        assert!(short.to_string().starts_with("forms of david<0> has 1 entries where 2"), "{short}");
+        let short = figure3(&[row], &View::default()).unwrap_err();
+        assert!(short.to_string().starts_with("forms of david<0> has 1 entries instead of 2"), "{short}");
+    }
+
+    #[test]
+    fn the_plot_of_stress_has_ranges_and_the_number_of_the_paper() {
+        let record = figure3_record();
+        let figures = record.figures();
+        let Content::Plots(plots) = &figures[1].content else { panic!("{figures:?}") };
+        let [plot] = &plots[..] else { panic!("{plots:?}") };
+        assert_eq!(plot.x.ticks[0].1, "MDS");
+        let [default, paper] = &plot.series[..] else { panic!("{:?}", plot.series) };
+        assert_eq!((default.points[0].low, default.points[0].high), (386.0, 387.0));
+        assert_eq!((paper.shape, paper.points[0].y), (Shape::Hollow, 394.41));
     }
 }

@@ -1,4 +1,4 @@
-//! Small made-up records and meshes for the tests.
+//! Small invented records and meshes for the tests.
 
 use retrieval::{Evaluation, Scores};
 use serde_json::json;
@@ -6,8 +6,8 @@ use serde_json::json;
 use crate::results::{
     Axis, AxisScale, Classification, CurvesPanel, CurvesRecord, Expectation, Figure1Record, Figure1Shape,
     Figure3Form, Figure3Record, Figure3Shape, Figure3Stress, Figure4Panel, Figure4Record, Figure9Measured,
-    Figure9Record, Figure9Row, Mark, Motions, Provenance, RetrievalRecord, RetrievalRow, Scale, SeenForm,
-    SeenShape, Series, SeriesPoint, ShapesRecord,
+    Figure9Record, Figure9Row, Mark, Motions, Provenance, RetrievalRecord, RetrievalRow, Scale, Series,
+    SeriesPoint, ShapesRecord, ShownForm, ShownShape,
 };
 use view::interactive::Geometry;
 
@@ -53,7 +53,7 @@ pub(crate) fn figure1_record() -> Figure1Record {
     }
 }
 
-/// Two shapes with two forms each.
+/// Two shapes with two forms each, and one stress.
 pub(crate) fn figure3_record() -> Figure3Record {
     let form = |method: &str, stress, paper| Figure3Form { method: method.into(), stress, paper };
     let shape = |name: &str, label: &str| Figure3Shape {
@@ -81,7 +81,7 @@ pub(crate) fn figure3_record() -> Figure3Record {
     }
 }
 
-/// Two panels of two curves, logarithmic upwards.
+/// Two panels of two curves with a logarithmic vertical axis.
 pub(crate) fn curves_record() -> CurvesRecord {
     let axis = |name: &str, unit: &str, scale| Axis { name: name.into(), unit: unit.into(), scale };
     let points = |factor: f64| -> Vec<SeriesPoint> {
@@ -108,7 +108,7 @@ pub(crate) fn curves_record() -> CurvesRecord {
     }
 }
 
-/// A method that ran and one that did not.
+/// A method that was run and one that was not.
 pub(crate) fn figure9_record() -> Figure9Record {
     let measured = Figure9Measured { geodesics: 0.02, embedding: 0.005, runs: 3, peak_bytes: 3 << 20 };
     let row = Figure9Row {
@@ -130,7 +130,7 @@ pub(crate) fn figure9_record() -> Figure9Record {
     }
 }
 
-/// One signature at both scales, two classes.
+/// One signature at both scales, for two classes.
 pub(crate) fn retrieval_record() -> RetrievalRecord {
     let scores = Scores { nn: 1.0, ft: 0.75, st: 0.9, e: 0.5, dcg: 0.95, map: 0.875 };
     let row = |scale| RetrievalRow {
@@ -161,7 +161,7 @@ pub(crate) fn retrieval_record() -> RetrievalRecord {
     }
 }
 
-/// The shapes of [`figure4_record`]: balls that grow.
+/// The shapes of [`figure4_record`]: balls of growing size.
 pub(crate) fn shapes_record(classes: &[(&str, usize)]) -> ShapesRecord {
     let figure = figure4_record(classes);
     let shape = |(i, (name, label)): (usize, (&String, &String))| {
@@ -170,12 +170,12 @@ pub(crate) fn shapes_record(classes: &[(&str, usize)]) -> ShapesRecord {
         let heights: Vec<f64> = ball.positions.iter().map(|p| p.z).collect();
         let surface = Geometry::new(&ball).with_values("distance", &heights);
         let residual = heights.iter().map(|z| z.abs() as f32).collect();
-        let form = SeenForm { positions: surface.positions.clone(), size: 2.0, residual: Some(residual) };
-        let other = SeenForm { residual: None, ..form.clone() };
+        let form = ShownForm { positions: surface.positions.clone(), size: 2.0, residual: Some(residual) };
+        let other = ShownForm { residual: None, ..form.clone() };
         let (name, label, n_vertices) = (name.clone(), label.clone(), ball.n_vertices());
-        SeenShape { name, label, n_vertices, surface, forms: vec![form, other] }
+        ShownShape { name, label, n_vertices, surface, forms: vec![form, other] }
     };
-    let shapes: Vec<SeenShape> = figure.names.iter().zip(&figure.labels).enumerate().map(shape).collect();
+    let shapes: Vec<ShownShape> = figure.names.iter().zip(&figure.labels).enumerate().map(shape).collect();
     let still = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [0.0, 0.0, 0.0]];
     let motions = still.repeat(shapes.len() * shapes.len().saturating_sub(1) / 2);
     let panel = |panel: &Figure4Panel| Motions {
@@ -189,7 +189,7 @@ pub(crate) fn shapes_record(classes: &[(&str, usize)]) -> ShapesRecord {
     ShapesRecord { methods, motions: figure.panels.iter().map(panel).collect(), shapes }
 }
 
-/// Points in clusters on a line, one cluster a class, at both scales and for two methods.
+/// Points in one cluster per class, at both scales and for two methods.
 pub(crate) fn figure4_record(classes: &[(&str, usize)]) -> Figure4Record {
     let labels: Vec<String> =
         classes.iter().flat_map(|(name, n)| std::iter::repeat_n(name.to_string(), *n)).collect();
@@ -236,7 +236,7 @@ pub(crate) fn figure4_record(classes: &[(&str, usize)]) -> Figure4Record {
     }
 }
 
-/// A page without what stands inside its scripts and islands of data.
+/// A page without the contents of its scripts and islands of data.
 pub(crate) fn without_scripts(html: &str) -> String {
     let mut parts = html.split("<script");
     let mut kept = parts.next().unwrap_or_default().to_owned();
@@ -247,7 +247,7 @@ pub(crate) fn without_scripts(html: &str) -> String {
     kept
 }
 
-/// Panics unless every element of an XML or HTML text is closed in order.
+/// Panics unless all elements of an XML or HTML text are closed in order.
 pub(crate) fn assert_balanced(markup: &str) {
     let mut open: Vec<&str> = Vec::new();
     let plain = without_scripts(markup);

@@ -1,22 +1,27 @@
-//! Pictures, tables and the page made of result records.
+//! Figures, tables and the report page of experiments.
 //!
 //! `experiments` -> [`results`] (JSON) -> **report** -> SVG / PNG / text / one HTML page
 //!
-//! Knows nothing of how a number came about: every value drawn or printed here stands in a record.
-//! The one thing it works out itself is where to put ink, such as a camera, a tick or a tile.
+//! A [`Record`] says which figures and tables show it. [`figure`] describes figures as data, which the static files
+//! and the page draw; [`Table`] is written as text and as HTML. Nothing here computes results: every value that is
+//! drawn or printed stands in a record.
 
 mod classes;
-pub mod curves;
+mod curves;
 mod error;
+pub mod figure;
 pub mod figure1;
 pub mod figure3;
-pub mod figure4;
+mod figure4;
+mod figure9;
 #[cfg(test)]
 mod fixtures;
-mod markers;
 pub mod page;
+mod record;
 pub mod results;
-pub mod retrieval;
-pub mod tables;
+mod retrieval;
+mod table;
 
 pub use error::ReportError;
+pub use record::{Record, save};
+pub use table::{Cell, Table};

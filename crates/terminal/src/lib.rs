@@ -1,8 +1,7 @@
-//! What the programs share: progress bars, threads, memory, interruption, exit codes.
+//! What the programs share: progress bars, threads, interruption, exit codes.
 //!
 //! Knows nothing of arguments or results.
 
-mod memory;
 mod progress;
 
 use std::process::ExitCode;
@@ -10,7 +9,6 @@ use std::sync::{Mutex, PoisonError};
 
 use anyhow::{Context, Result};
 
-pub use memory::PeakMemory;
 pub use progress::Bars;
 
 /// Called on the first interruption instead of exiting.

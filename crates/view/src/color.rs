@@ -1,12 +1,12 @@
-//! Colours: the sRGB curve, one colour for each class, one map for numbers.
+//! Colours: the sRGB curve, a palette for classes, a colour map for numbers.
 
 use plotters::prelude::ViridisRGB;
 
 /// 8-bit sRGB.
 pub type Rgb = [u8; 3];
 
-/// The eight colours of Okabe and Ito, told apart with every common colour blindness; the strongest
-/// on white first, yellow last.
+/// The palette of Okabe and Ito (2008), which people with any common colour blindness can tell apart. The colours
+/// that are strongest on white come first.
 const OKABE_ITO: [Rgb; 8] = [
     [0, 114, 178],
     [213, 94, 0],
@@ -18,25 +18,39 @@ const OKABE_ITO: [Rgb; 8] = [
     [240, 228, 66],
 ];
 
-/// The colour of class number `class`. From the ninth class on colours repeat, shifted by one each
-/// time round so that colour and marker shape together stay unique.
+/// Stands for the darkest colour of the palette on dark pages.
+const PALE_GREY: Rgb = [201, 204, 209];
+
+/// The colour of class number `class`. Colours repeat from the ninth class on.
+#[must_use]
 pub fn class_color(class: usize) -> Rgb {
     OKABE_ITO[class % OKABE_ITO.len()]
 }
 
-/// The surface colour of class number `class`: its colour thinned to a pale clay that shading shows
-/// on, recognisably the same.
+/// The colour of class number `class` on a dark page.
+#[must_use]
+pub fn class_color_on_dark(class: usize) -> Rgb {
+    match class % OKABE_ITO.len() {
+        6 => PALE_GREY,
+        _ => class_color(class),
+    }
+}
+
+/// The colour of the surfaces of class number `class`: its colour mixed with a pale clay, so that shading shows.
+#[must_use]
 pub fn class_clay(class: usize) -> Rgb {
     mix(class_color(class), [226, 224, 220], 0.55)
 }
 
-/// `a` and `b` mixed, `share` of it being `b`.
+/// A mixture of `a` and `b` in which the share of `b` is `share`.
+#[must_use]
 pub fn mix(a: Rgb, b: Rgb, share: f64) -> Rgb {
     std::array::from_fn(|i| (f64::from(a[i]) * (1.0 - share) + f64::from(b[i]) * share).round() as u8)
 }
 
-/// Viridis: dark for 0, light for 1, equal steps look equal. Values outside 0..=1 are clamped, NaN
-/// is grey.
+/// The colour map viridis: dark for 0, light for 1, and equal steps look equal. Values outside 0..=1 are clamped;
+/// NaN is grey.
+#[must_use]
 pub fn perceptual(t: f64) -> Rgb {
     if t.is_nan() {
         return [160, 160, 160];
@@ -58,13 +72,27 @@ pub fn color_scale(values: &[f64]) -> impl Fn(f64) -> Rgb + use<> {
     }
 }
 
+/// The colours between which [`perceptual`] interpolates linearly, at equal steps from 0 to 1.
+#[must_use]
+pub fn perceptual_stops() -> [Rgb; 8] {
+    std::array::from_fn(|i| perceptual(i as f64 / 7.0))
+}
+
+/// 8-bit sRGB as `#rrggbb`.
+#[must_use]
+pub fn hex([red, green, blue]: Rgb) -> String {
+    format!("#{red:02x}{green:02x}{blue:02x}")
+}
+
 /// The linear light of an 8-bit sRGB channel, in 0..=1.
+#[must_use]
 pub fn to_linear(channel: u8) -> f32 {
     let c = f32::from(channel) / 255.0;
     if c <= 0.040_45 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) }
 }
 
-/// The 8-bit sRGB channel of a linear light; clamped to 0..=1.
+/// The 8-bit sRGB channel of a linear light, clamped to 0..=1.
+#[must_use]
 pub fn from_linear(light: f32) -> u8 {
     let l = light.clamp(0.0, 1.0);
     let c = if l <= 0.003_130_8 { 12.92 * l } else { 1.055 * l.powf(1.0 / 2.4) - 0.055 };
@@ -76,14 +104,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_srgb_curve_and_its_inverse_agree_on_every_byte() {
+    fn srgb_to_linear_and_back_is_the_identity_on_every_byte() {
         for c in 0..=255 {
             assert_eq!(from_linear(to_linear(c)), c);
         }
     }
 
     #[test]
-    fn the_map_grows_lighter_and_survives_any_number() {
+    fn the_color_map_grows_lighter_and_accepts_any_number() {
         let luminance = |t: f64| {
             let [r, g, b] = perceptual(t).map(to_linear);
             0.2126 * r + 0.7152 * g + 0.0722 * b
@@ -92,6 +120,8 @@ mod tests {
         assert_eq!(perceptual(-5.0), perceptual(0.0));
         assert_eq!(perceptual(f64::INFINITY), perceptual(1.0));
         assert_eq!(perceptual(f64::NAN), [160, 160, 160]);
+        let [stops, middle] = [perceptual_stops(), [perceptual(1.5 / 7.0); 8]];
+        assert_eq!(middle[0], mix(stops[1], stops[2], 0.5));
     }
 
     #[test]

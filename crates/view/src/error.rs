@@ -1,17 +1,24 @@
-//! What can go wrong while a picture is drawn or written.
+//! Errors of drawing and writing images.
 
-/// Errors of drawing and writing pictures.
+/// Errors of drawing and writing images.
 #[derive(Debug, thiserror::Error)]
 pub enum ViewError {
-    /// A file could not be written; nothing of it is left behind.
+    /// A file could not be written. No part of it remains.
     #[error(transparent)]
     File(#[from] files::FileError),
     /// The drawing backend failed.
-    #[error("{figure} could not be drawn: {reason}; this is a fault of the program, please report it")]
+    #[error("cannot draw {figure}: {reason}; this is a bug, please report it")]
     Draw {
-        /// Which figure.
+        /// What was drawn.
         figure: String,
-        /// What the backend said.
+        /// The message of the backend.
         reason: String,
     },
+}
+
+impl ViewError {
+    /// The backend failed to draw `figure` for `reason`.
+    pub fn draw(figure: impl ToString, reason: impl ToString) -> Self {
+        Self::Draw { figure: figure.to_string(), reason: reason.to_string() }
+    }
 }

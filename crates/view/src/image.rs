@@ -1,11 +1,11 @@
-//! Raster pictures and their PNG encoding.
+//! Raster images and their PNG encoding.
 
 use std::io;
 use std::path::Path;
 
 use files::{FileError, write_bytes};
 
-/// A picture of 8-bit sRGB pixels with straight (not premultiplied) alpha.
+/// An image of 8-bit sRGB pixels with straight (not premultiplied) alpha.
 ///
 /// **Invariant.** `pixels.len() == width * height`, row by row from the top left.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -16,19 +16,19 @@ pub struct RgbaImage {
 }
 
 impl RgbaImage {
-    /// A picture of one colour.
+    /// An image of one colour.
     #[must_use]
     pub fn new(width: u32, height: u32, color: [u8; 4]) -> Self {
         Self { width, height, pixels: vec![color; width as usize * height as usize] }
     }
 
-    /// Columns of pixels.
+    /// Width in pixels.
     #[must_use]
     pub fn width(&self) -> u32 {
         self.width
     }
 
-    /// Rows of pixels.
+    /// Height in pixels.
     #[must_use]
     pub fn height(&self) -> u32 {
         self.height
@@ -40,23 +40,13 @@ impl RgbaImage {
         &self.pixels
     }
 
-    /// The same, to paint on.
+    /// All pixels, to change them.
     #[must_use]
     pub fn pixels_mut(&mut self) -> &mut [[u8; 4]] {
         &mut self.pixels
     }
 
-    /// The pixel in column `x` and row `y`, counted from the top left.
-    ///
-    /// # Panics
-    /// When the pixel is outside.
-    #[must_use]
-    pub fn pixel(&self, x: u32, y: u32) -> [u8; 4] {
-        assert!(x < self.width && y < self.height, "pixel {x}, {y} outside {} x {}", self.width, self.height);
-        self.pixels[y as usize * self.width as usize + x as usize]
-    }
-
-    /// Red, green and blue bytes without the alpha, every pixel drawn as a square of `zoom` x `zoom`.
+    /// Red, green and blue bytes without alpha, with every pixel repeated in a square of `zoom` x `zoom`.
     pub(crate) fn rgb_bytes(&self, zoom: u32) -> Vec<u8> {
         let zoom = zoom as usize;
         let mut bytes = Vec::with_capacity(self.pixels.len() * 3 * zoom * zoom);
@@ -68,27 +58,27 @@ impl RgbaImage {
         bytes
     }
 
-    /// Writes the picture as a PNG file, whole or not at all.
+    /// Writes the image as a PNG file, completely or not at all.
     ///
     /// # Errors
-    /// When the file cannot be written or the picture has no pixels.
+    /// If the file cannot be written or the image has no pixels.
     pub fn write_png(&self, path: impl AsRef<Path>) -> Result<(), FileError> {
         let path = path.as_ref();
         let encoded = self.to_png().map_err(|source| FileError::write(path, source))?;
         write_bytes(path, &encoded)
     }
 
-    /// The picture as the bytes of a PNG file.
+    /// The image as the bytes of a PNG file.
     ///
     /// # Errors
-    /// When the picture has no pixels.
+    /// If the image has no pixels.
     pub fn to_png(&self) -> io::Result<Vec<u8>> {
         let bytes = self.pixels.as_flattened();
         Ok(encode_png(self.width, self.height, png::ColorType::Rgba, bytes)?)
     }
 }
 
-/// A PNG file of 8-bit sRGB samples; `bytes` holds the channels of `color`, row by row.
+/// The bytes of a PNG file of 8-bit sRGB; `bytes` holds the channels of `color`, row by row.
 pub(crate) fn encode_png(
     width: u32,
     height: u32,
@@ -113,7 +103,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_png_reads_back_as_it_was_written() {
+    fn a_png_reads_back_unchanged() {
         let mut image = RgbaImage::new(3, 2, [10, 20, 30, 255]);
         image.pixels_mut()[4] = [1, 2, 3, 4];
         let folder = tempfile::tempdir().unwrap();
@@ -124,18 +114,18 @@ mod tests {
         let info = reader.next_frame(&mut bytes).unwrap();
         assert_eq!((info.width, info.height), (3, 2));
         assert_eq!(bytes, image.pixels().as_flattened());
-        assert_eq!(image.pixel(1, 1), [1, 2, 3, 4]);
+        assert_eq!(image.pixels()[4], [1, 2, 3, 4]);
     }
 
     #[test]
-    fn a_picture_without_pixels_is_an_error() {
+    fn an_image_without_pixels_cannot_be_written() {
         let folder = tempfile::tempdir().unwrap();
         let error = RgbaImage::new(0, 5, [0; 4]).write_png(folder.path().join("x.png")).unwrap_err();
         assert!(error.to_string().contains("x.png"), "{error}");
     }
 
     #[test]
-    fn zooming_repeats_pixels_and_rows() {
+    fn zooming_repeats_columns_and_rows() {
         let mut image = RgbaImage::new(2, 1, [1, 1, 1, 255]);
         image.pixels_mut()[1] = [2, 2, 2, 255];
         let line = [1, 1, 1, 1, 1, 1, 2, 2, 2, 2, 2, 2];

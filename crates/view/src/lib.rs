@@ -1,10 +1,10 @@
-//! Shaded pictures of surfaces, colour maps, a drawing canvas, and the 3D viewer of pages.
+//! Shaded images of surfaces, colour maps, a canvas for figures, and the 3D viewer of the web pages.
 //!
 //! `mesh::TriMesh` -> [`render`] -> [`RgbaImage`] -> PNG
 //!
 //! `mesh::TriMesh` -> [`interactive::Geometry`] (JSON) -> a scene in the browser
 //!
-//! Knows nothing of how a number was computed: it places ink, such as a camera, a colour or a tick.
+//! Nothing here computes results: the crate only decides where ink goes.
 
 pub mod canvas;
 pub mod color;

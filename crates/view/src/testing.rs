@@ -1,8 +1,17 @@
-//! Small surfaces for the tests.
+//! Small meshes for the tests.
 
+use crate::RgbaImage;
 use mesh::TriMesh;
 use nalgebra::Point3;
 use surface::VertexId;
+
+impl RgbaImage {
+    /// The pixel in column `x` and row `y`, from the top left.
+    pub(crate) fn pixel(&self, x: u32, y: u32) -> [u8; 4] {
+        assert!(x < self.width() && y < self.height(), "pixel {x}, {y} is outside");
+        self.pixels()[y as usize * self.width() as usize + x as usize]
+    }
+}
 
 pub(crate) fn mesh(positions: &[[f64; 3]], faces: &[[u32; 3]]) -> TriMesh {
     TriMesh {
@@ -11,7 +20,7 @@ pub(crate) fn mesh(positions: &[[f64; 3]], faces: &[[u32; 3]]) -> TriMesh {
     }
 }
 
-/// A unit sphere of `2 n` times `n` patches around the z axis.
+/// A unit sphere around the z axis, `2 n` by `n` quadrilaterals.
 pub(crate) fn sphere(n: usize) -> TriMesh {
     let mut positions = Vec::new();
     for ring in 0..=n {

@@ -64,3 +64,15 @@ fn every_package_has_an_allowed_licence() {
         .collect();
     assert!(faults.is_empty(), "not allowed by deny.toml:\n{}", faults.join("\n"));
 }
+
+#[test]
+fn every_package_in_the_bundle_of_plotly_has_an_allowed_licence() {
+    let allowed = allowed();
+    let text = fs::read_to_string(workspace_root().join("crates/view/assets/plotly/LICENSES")).unwrap();
+    let headings: Vec<&str> = text.lines().filter_map(|line| line.strip_prefix("== ")).collect();
+    assert!(headings.iter().any(|heading| heading.starts_with("plotly.js ")), "{headings:?}");
+    for heading in headings {
+        let (_, licence) = heading.split_once(": ").unwrap();
+        assert!(permits(licence, &allowed), "not allowed by deny.toml: {heading}");
+    }
+}

@@ -4,10 +4,11 @@ use std::process::ExitCode;
 
 use anyhow::Result;
 use canonform::{EmbedOptions, MethodFacts, MethodsReport, compare_methods};
-use terminal::{Bars, PeakMemory};
+use terminal::Bars;
 
 use super::{named, read_surface};
 use crate::args::{Common, MethodsArgs};
+use crate::memory::with_peak_bytes;
 use crate::output::{print, print_json};
 
 /// Embeds a mesh by every method and sets them side by side.
@@ -23,13 +24,8 @@ pub(crate) fn methods(args: &MethodsArgs, common: &Common) -> Result<ExitCode> {
     };
     let surface = read_surface(&args.mesh, &args.repair)?;
     let bars = Bars::new(common.quiet);
-    let watch = |work: &mut dyn FnMut()| {
-        let memory = PeakMemory::begin();
-        work();
-        memory.bytes()
-    };
-    let report =
-        compare_methods(&surface, &options, &bars, &watch).map_err(|fault| named(&args.mesh, fault))?;
+    let report = compare_methods(&surface, &options, &bars, &|work| with_peak_bytes(work).1)
+        .map_err(|fault| named(&args.mesh, fault))?;
     bars.finish();
     if common.json {
         print_json(&report)?;
@@ -69,8 +65,8 @@ fn table(report: &MethodsReport) -> String {
                 row.extend([
                     f.n_samples.to_string(),
                     value + star(stress(f), best[0]),
-                    report::tables::seconds_digits(f.seconds) + star(seconds(f), best[1]),
-                    report::tables::bytes_digits(f.peak_bytes) + star(memory(f), best[2]),
+                    view::numbers::seconds(f.seconds) + star(seconds(f), best[1]),
+                    view::numbers::bytes(f.peak_bytes) + star(memory(f), best[2]),
                     format!("{:.4}", f.negative_mass),
                 ]);
             }

@@ -1,52 +1,71 @@
-//! Figures that are plots where scripts run, and pictures elsewhere and on paper.
+//! Figures on the page: plots where scripts run, images elsewhere and in print.
 
 use std::fmt::Write;
+use std::fs;
+use std::path::Path;
 
-use serde_json::Value;
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
 
 use super::html::escape;
 use super::scripts::island;
+use crate::ReportError;
+use crate::figure::{Content, Figure};
+use files::FileError;
 
-/// One plot of a figure.
-pub(super) struct Plot {
-    /// Which of the scripts' kinds of plots it is.
-    pub(super) kind: &'static str,
-    /// Its number among those of the same kind.
-    pub(super) panel: usize,
-    /// What it shows, for those who cannot see it.
-    pub(super) label: String,
-}
-
-impl Plot {
-    pub(super) fn new(kind: &'static str, panel: usize, label: impl Into<String>) -> Self {
-        Self { kind, panel, label: label.into() }
-    }
-}
-
-/// The plots of an experiment over one island of data with a caption, and its static figure, which may be empty.
-pub(super) fn chart(name: &str, plots: &[Plot], caption: &str, data: &Value, still: &str) -> String {
+/// The figure of an experiment, with the static files in the folder.
+pub(super) fn chart(folder: &Path, name: &str, figure: &Figure) -> Result<String, ReportError> {
+    let still = picture(folder, name, figure)?;
+    let id = format!("{name}{}", figure.part);
+    let (kind, labels): (&str, Vec<(&str, bool)>) = match &figure.content {
+        Content::Plots(plots) => {
+            ("plot", plots.iter().map(|plot| (plot.label.as_str(), plot.series.len() > 5)).collect())
+        }
+        Content::Heats(heats) => ("heat", heats.iter().map(|heat| (heat.label.as_str(), false)).collect()),
+        Content::Surfaces => return Ok(still),
+    };
     let mut boxes = String::new();
-    for Plot { kind, panel, label } in plots {
+    for (panel, (label, is_tall)) in labels.into_iter().enumerate() {
+        let tall = if is_tall { " tall" } else { "" };
         let _ = writeln!(
             boxes,
-            "<div class=\"plot\" id=\"{name}-{kind}-{panel}\" data-plot=\"{kind}\" data-panel=\"{panel}\" \
-             data-source=\"{name}-data\" role=\"img\" aria-label=\"{}\"></div>",
+            "<div class=\"plot{tall}\" id=\"{id}-{panel}\" data-plot=\"{kind}\" data-panel=\"{panel}\" \
+             data-source=\"{id}-data\" role=\"img\" aria-label=\"{}\"></div>",
             escape(label)
         );
     }
-    let caption = escape(caption);
-    let plots = format!("<div class=\"plots\">\n{boxes}</div>\n<p class=\"pale\">{caption}</p>\n");
-    format!("{}{}", framed(name, &plots, still), island(&format!("{name}-data"), data))
+    let caption = escape(&figure.caption);
+    let live = format!("<div class=\"plots\">\n{boxes}</div>\n<p class=\"pale\">{caption}</p>\n");
+    Ok(framed(&id, &live, &still) + &island(&format!("{id}-data"), &serde_json::json!(figure)))
 }
 
-/// What scripts fill, what stands in its place, and the button between them.
-pub(super) fn framed(name: &str, live: &str, still: &str) -> String {
-    let toggle = match still.is_empty() {
-        true => String::new(),
-        false => "<button type=\"button\" class=\"toggle\" aria-pressed=\"false\">Static figure</button>\n"
-            .to_owned(),
-    };
+/// An element that scripts fill, the static figure in its place, and the button that switches between them.
+pub(super) fn framed(id: &str, live: &str, still: &str) -> String {
     format!(
-        "<div class=\"chart\" id=\"{name}-chart\">\n<div class=\"live\">\n{live}</div>\n{toggle}<div class=\"still\">\n{still}</div>\n</div>\n"
+        "<div class=\"chart\" id=\"{id}-chart\">\n<div class=\"live\">\n{live}</div>\n\
+         <button type=\"button\" class=\"toggle\" aria-pressed=\"false\">Static figure</button>\n\
+         <div class=\"still\">\n{still}</div>\n</div>\n"
     )
+}
+
+/// The PNG of a figure, as part of the page and linked to its SVG.
+pub(super) fn picture(folder: &Path, name: &str, figure: &Figure) -> Result<String, ReportError> {
+    let (png, svg) = (format!("{name}{}.png", figure.part), format!("{name}{}.svg", figure.part));
+    let path = folder.join(&png);
+    if !path.exists() {
+        return Ok(format!(
+            "<div class=\"missing\"><p>The file <code>{png}</code> is missing. Run {name} again to create it.</p></div>\n"
+        ));
+    }
+    let bytes = fs::read(&path).map_err(|source| FileError::read(&path, source))?;
+    // Width and height, big-endian in the header of a PNG, keep the layout from shifting while the page loads.
+    let word =
+        |at: usize| bytes.get(at..at + 4).and_then(|w| w.try_into().ok()).map_or(0, u32::from_be_bytes);
+    let (width, height) = (word(16), word(20));
+    Ok(format!(
+        "<figure>\n<a href=\"{svg}\"><img src=\"data:image/png;base64,{}\" width=\"{width}\" height=\"{height}\" \
+         alt=\"{alt}\"></a>\n<figcaption>{alt} <a href=\"{png}\">PNG</a> <a href=\"{svg}\">SVG</a></figcaption>\n</figure>\n",
+        STANDARD.encode(&bytes),
+        alt = escape(&figure.caption),
+    ))
 }

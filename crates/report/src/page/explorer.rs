@@ -1,6 +1,5 @@
-//! Figure 4 to turn and to ask.
+//! Figure 4 for exploration: map, matrix, and the surfaces and canonical forms of two shapes in 3D.
 
-use std::fmt::Write;
 use std::path::Path;
 
 use base64::Engine;
@@ -11,42 +10,20 @@ use serde_json::{Value, json};
 use surface::VertexId;
 
 use super::chart::framed;
-use super::html::escape;
+use super::html::{escape, fill};
 use super::scripts::island;
-use view::ViewError;
-
 use crate::ReportError;
 use crate::classes::Classes;
-use crate::results::{Figure1Record, Figure4Record, SHAPES_FILE, Scale, SeenShape, ShapesRecord, read};
-use view::color::class_clay;
-use view::interactive::base64::encode;
-use view::interactive::hex;
+use crate::figure4::shown;
+use crate::results::{Figure1Record, Figure4Record, SHAPES_FILE, Scale, ShapesRecord, ShownShape, read};
+use view::ViewError;
+use view::color::{class_clay, hex};
 use view::render::{Background, RenderOptions, Surface, render};
 
-/// Width and height of a thumbnail, in pixels: twice what the card shows.
+/// Width and height of a thumbnail in pixels, twice those on the card.
 const THUMBNAIL: [u32; 2] = [224, 192];
 
-/// The map and the matrix, and the shapes and forms behind them where the folder has them; `still` in their place.
-pub(super) fn explorer(
-    record: &Figure4Record,
-    shapes: Option<&ShapesRecord>,
-    still: &str,
-) -> Result<String, ReportError> {
-    if record.names.is_empty() || record.panels.is_empty() {
-        return Ok(still.to_owned());
-    }
-    let live = live(record, shapes);
-    let mut html = framed("figure4", &live, still);
-    html.push_str(&island("figure4-data", &data(record, shapes)?));
-    for (i, shape) in shapes.iter().flat_map(|shapes| &shapes.shapes).enumerate() {
-        let SeenShape { n_vertices, surface, forms, .. } = shape;
-        let shape = json!({"n_vertices": n_vertices, "surface": surface, "forms": forms});
-        html.push_str(&island(&format!("figure4-shape-{i}"), &shape));
-    }
-    Ok(html)
-}
-
-/// The record of the shapes of Figure 4, where the folder has both and they belong together.
+/// The record of the surfaces of Figure 4, if the folder has it and it belongs to the record of Figure 4.
 pub(super) fn shapes(folder: &Path) -> Result<Option<ShapesRecord>, ReportError> {
     let (figure, shapes) = (folder.join("figure4.json"), folder.join(SHAPES_FILE));
     if !(figure.exists() && shapes.exists()) {
@@ -58,60 +35,62 @@ pub(super) fn shapes(folder: &Path) -> Result<Option<ShapesRecord>, ReportError>
     Ok(Some(shapes).filter(|shapes| shapes.belongs_to(&figure)))
 }
 
-/// The shapes of Figure 1 to turn, those that Figure 4 has; empty when it has none.
+/// Map and matrix, with surfaces and forms if the folder has them, and `still` as the static figure.
+pub(super) fn explorer(
+    record: &Figure4Record,
+    shapes: Option<&ShapesRecord>,
+    still: &str,
+) -> Result<String, ReportError> {
+    let mut html = framed("figure4", &live(record, shapes), still);
+    html.push_str(&island("figure4-data", &data(record, shapes)?));
+    for (i, shape) in shapes.iter().flat_map(|shapes| &shapes.shapes).enumerate() {
+        let ShownShape { n_vertices, surface, forms, .. } = shape;
+        let shape = json!({"n_vertices": n_vertices, "surface": surface, "forms": forms});
+        html.push_str(&island(&format!("figure4-shape-{i}"), &shape));
+    }
+    Ok(html)
+}
+
+/// The shapes of Figure 1 that Figure 4 has, in 3D; empty if there are none.
 pub(super) fn gallery(record: &Figure1Record, shapes: Option<&ShapesRecord>) -> String {
     let Some(shapes) = shapes else { return String::new() };
     let place = |name: &String| shapes.shapes.iter().position(|shape| shape.name == *name);
-    let options: Vec<_> = record
-        .shapes
-        .iter()
-        .filter_map(|s| Some((place(&s.name)?.to_string(), s.name.clone(), false)))
-        .collect();
+    let options: Vec<(String, &str)> =
+        record.shapes.iter().filter_map(|s| Some((place(&s.name)?.to_string(), s.name.as_str()))).collect();
     let Some(method) = shapes.methods.first().filter(|_| !options.is_empty()) else { return String::new() };
-    let controls = select("figure1-shape", "Shape", options.into_iter()) + &color_select("figure1-color");
-    let scenes =
-        ["shape", "form"].map(|name| format!("<div class=\"view\" id=\"figure1-view-{name}\"></div>\n"));
-    format!(
-        "<div class=\"live\" id=\"figure1-explorer\" data-method=\"{}\">\n<form class=\"controls\" autocomplete=\"off\">\n{controls}</form>\n\
-         <div class=\"views two\">\n{}</div>\n<p class=\"pale\">Drag to turn both; the colours are explained at \
-         <a href=\"#figure4-explorer\">Figure 4</a>, which has all shapes.</p>\n</div>\n",
-        escape(method),
-        scenes.concat()
-    )
-}
-
-fn color_select(id: &str) -> String {
-    let colors =
-        [("class", "class"), ("distance", "distance from a sample"), ("residual", "residual of the form")];
-    select(id, "Colours", colors.into_iter().map(|(value, text)| (value.to_owned(), text.to_owned(), false)))
+    let controls = select("figure1-shape", "Shape", &options, 0) + &color_select("figure1-color");
+    fill(include_str!("gallery.html"), &[("method", &escape(method)), ("controls", &controls)])
 }
 
 fn data(record: &Figure4Record, shapes: Option<&ShapesRecord>) -> Result<Value, ReportError> {
     let classes = Classes::of(record.labels.iter().map(String::as_str));
-    let panels: Vec<Value> = record
-        .panels
-        .iter()
-        .map(|panel| {
-            let matrix = encode(panel.matrix.iter().flatten().map(|&distance| distance as f32));
-            let unit = panel.scale.unit();
-            json!({"method": panel.method, "scale": panel.scale, "unit": unit, "map": panel.map, "matrix": matrix})
+    let panels = record.panels.iter().map(|panel| {
+        let shown = shown(record, panel);
+        json!({
+            "method": panel.method,
+            "scale": panel.scale,
+            "unit": panel.scale.unit(),
+            "map": shown.map,
+            "matrix": shown.matrix,
+            "order": shown.order,
         })
-        .collect();
+    });
     let thumbnails = shapes.map_or(Ok(Vec::new()), |shapes| thumbnails(shapes, &classes))?;
+    let clay = (0..classes.names().len()).map(|class| hex(class_clay(class)));
     Ok(json!({
         "names": record.names,
         "labels": record.labels,
-        "clay": (0..classes.len()).map(|class| hex(class_clay(class))).collect::<Vec<_>>(),
-        "panels": panels,
+        "clay": clay.collect::<Vec<_>>(),
+        "panels": panels.collect::<Vec<_>>(),
         "methods": shapes.map_or(&[][..], |shapes| &shapes.methods),
         "motions": shapes.map_or(&[][..], |shapes| &shapes.motions),
         "thumbnails": thumbnails,
     }))
 }
 
-/// Pictures of all shapes and their forms, as addresses of data.
+/// Images of all shapes and their forms, as data URLs.
 fn thumbnails(record: &ShapesRecord, classes: &Classes<'_>) -> Result<Vec<Value>, ReportError> {
-    let picture = |shape: &SeenShape, positions: &[[f32; 3]]| -> Result<String, ReportError> {
+    let image = |shape: &ShownShape, positions: &[[f32; 3]]| -> Result<String, ReportError> {
         let mesh = TriMesh {
             positions: positions.iter().map(|p| Point3::from(p.map(f64::from))).collect(),
             faces: shape.surface.faces.iter().map(|face| face.map(VertexId)).collect(),
@@ -120,83 +99,63 @@ fn thumbnails(record: &ShapesRecord, classes: &Classes<'_>) -> Result<Vec<Value>
         let [width, height] = THUMBNAIL;
         let background = Background::Transparent;
         let options = RenderOptions { width, height, surface, background, ..RenderOptions::default() };
-        let png = render(&mesh, &options)
-            .to_png()
-            .map_err(|e| ViewError::Draw { figure: "a picture".into(), reason: e.to_string() })?;
+        let png = render(&mesh, &options).to_png().map_err(|e| ViewError::draw("a thumbnail", e))?;
         Ok(format!("data:image/png;base64,{}", STANDARD.encode(png)))
     };
-    let of_shape = |shape: &SeenShape| {
+    let of_shape = |shape: &ShownShape| {
         let forms: Result<Vec<String>, ReportError> =
-            shape.forms.iter().map(|form| picture(shape, &form.positions)).collect();
-        Ok(json!({"shape": picture(shape, &shape.surface.positions)?, "forms": forms?}))
+            shape.forms.iter().map(|form| image(shape, &form.positions)).collect();
+        Ok(json!({"shape": image(shape, &shape.surface.positions)?, "forms": forms?}))
     };
     record.shapes.iter().map(of_shape).collect()
 }
 
 /// Controls, plots and views.
 fn live(record: &Figure4Record, shapes: Option<&ShapesRecord>) -> String {
-    let numbered = |chosen: usize| -> Vec<(String, String, bool)> {
-        let option = |(i, name): (usize, &String)| (i.to_string(), name.clone(), i == chosen);
-        record.names.iter().enumerate().map(option).collect()
-    };
-    let mut methods: Vec<&str> = record.panels.iter().map(|panel| panel.method.as_str()).collect();
-    methods.sort_by_key(|method| record.panels.iter().position(|panel| panel.method == *method));
-    methods.dedup();
+    let names: Vec<(String, &str)> =
+        record.names.iter().enumerate().map(|(i, name)| (i.to_string(), name.as_str())).collect();
+    let methods = Classes::of(record.panels.iter().map(|panel| panel.method.as_str()));
+    let methods: Vec<(&str, &str)> = methods.names().iter().map(|method| (*method, *method)).collect();
+    let has = |scale: Scale| record.panels.iter().any(|panel| panel.scale == scale);
     let scales = [(Scale::Raw, "original"), (Scale::Normalized, "ignored")];
-    let scales = scales.into_iter().filter(|(scale, _)| record.panels_at(*scale).next().is_some());
-    let plain = |value: &str, text: &str| (value.to_owned(), text.to_owned(), false);
-    let mut controls = select("figure4-method", "Method", methods.iter().map(|m| plain(m, m)));
-    controls += &select("figure4-scale", "Size", scales.map(|(scale, text)| plain(scale.name(), text)));
-    controls += &select("figure4-first", "Shape 1", numbered(0).into_iter());
-    controls += &select("figure4-second", "Shape 2", numbered(1.min(record.names.len() - 1)).into_iter());
+    let scales: Vec<(&str, &str)> = scales
+        .into_iter()
+        .filter(|(scale, _)| has(*scale))
+        .map(|(scale, text)| (scale.name(), text))
+        .collect();
+    let mut controls = select("figure4-method", "Method", &methods, 0)
+        + &select("figure4-scale", "Size", &scales, 0)
+        + &select("figure4-first", "Shape 1", &names, 0)
+        + &select("figure4-second", "Shape 2", &names, 1);
     if shapes.is_some() {
         controls += &color_select("figure4-color");
     }
-    let mut html = format!(
-        "<div id=\"figure4-explorer\">\n<form class=\"controls\" autocomplete=\"off\">\n{controls}</form>\n<div class=\"plots\">\n\
-         <div class=\"anchor\"><div class=\"plot square\" id=\"figure4-map\" data-plot=\"map\" role=\"img\" \
-         aria-label=\"Map of the shapes; choose a shape above or by a click\"></div>\n\
-         <div class=\"card\" id=\"figure4-card\" hidden><div><img class=\"shape\" alt=\"\" width=\"112\" height=\"96\">\
-         <img class=\"form\" alt=\"\" width=\"112\" height=\"96\"></div><p><b class=\"name\"></b> <span class=\"class\"></span></p></div></div>\n\
-         <div class=\"plot square\" id=\"figure4-matrix\" data-plot=\"matrix\" role=\"img\" \
-         aria-label=\"Distances of all pairs; choose a pair above or by a click\"></div>\n</div>\n\
-         <p class=\"pale\">Left: the shapes as points of the plane, by multidimensional scaling of the distances between their forms; near points \
-         are similar forms. Right: these distances, grouped by class; dark is near. A click on a point chooses shape 1, on a cell a pair.</p>\n\
-         <p id=\"figure4-facts\" role=\"status\"></p>\n"
-    );
-    html.push_str(&match shapes {
-        Some(_) => views(),
+    let views = match shapes {
+        Some(_) => include_str!("views.html").to_owned(),
         None => format!(
-            "<div class=\"missing\"><p>Shapes and forms to turn are not in this folder (<code>{SHAPES_FILE}</code> of this \
-             very run): <code>{}</code> adds them.</p></div>\n",
+            "<div class=\"missing\"><p>The surfaces are missing: this folder has no <code>{SHAPES_FILE}</code> from the same \
+             run. To create it, run <code>{}</code>.</p></div>\n",
             escape(&record.provenance.command)
         ),
-    });
-    html.push_str("</div>\n");
-    html
+    };
+    fill(include_str!("explorer.html"), &[("controls", &controls), ("views", &views)])
 }
 
-fn select(id: &str, label: &str, options: impl Iterator<Item = (String, String, bool)>) -> String {
-    let mut html = format!("<label>{label} <select id=\"{id}\">");
-    for (value, text, chosen) in options {
-        let chosen = if chosen { " selected" } else { "" };
-        let _ = write!(html, "<option value=\"{}\"{chosen}>{}</option>", escape(&value), escape(&text));
-    }
-    html.push_str("</select></label>\n");
-    html
+fn color_select(id: &str) -> String {
+    let colors = [
+        ("class", "class"),
+        ("distance", "geodesic distance from a sample"),
+        ("residual", "residual of the form"),
+    ];
+    select(id, "Colours", &colors, 0)
 }
 
-/// The scenes, and what their colours mean.
-fn views() -> String {
-    let names = ["first-shape", "first-form", "second-shape", "second-form", "overlay"];
-    let scenes =
-        names.map(|name| format!("<div class=\"view {name}\" id=\"figure4-{name}\"></div>\n")).concat();
-    format!(
-        "<div class=\"views\">\n{scenes}</div>\n<p class=\"pale\">Drag to turn: all pictures turn together. A click makes the wheel \
-         zoom. Forms are turned, and where needed mirrored, so that vertices lie as near as they can to where they are on the shape. \
-         Distance: over the surface from the first sample, in mesh units, the same colours on shape and form. \
-         Residual: for each vertex the root mean square, over the samples, of straight line in the form less distance over the surface. \
-         In the picture of both forms the first is coloured by the distance of its vertices to the nearest vertex of the second, which is \
-         pale; these distances are worked out by the page from the aligned forms, at the chosen size.</p>\n"
-    )
+/// A labelled choice between values and their texts.
+fn select<S: AsRef<str>>(id: &str, label: &str, options: &[(S, &str)], chosen: usize) -> String {
+    let option = |(i, (value, text)): (usize, &(S, &str))| {
+        let selected = if i == chosen { " selected" } else { "" };
+        format!("<option value=\"{}\"{selected}>{}</option>", escape(value.as_ref()), escape(text))
+    };
+    let options: String = options.iter().enumerate().map(option).collect();
+    format!("<label>{label} <select id=\"{id}\">{options}</select></label>\n")
 }

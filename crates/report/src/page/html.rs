@@ -1,8 +1,10 @@
-//! The few pieces of HTML the page is made of. Every text passes through [`escape`].
+//! HTML elements. All text passes through [`escape`].
 
 use std::fmt::Write;
 
-/// Text with the characters that mean something in HTML replaced; safe in attributes too.
+use crate::{Cell, Table};
+
+/// Text with the special characters of HTML escaped, for elements and attributes.
 pub(super) fn escape(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
     for c in text.chars() {
@@ -18,6 +20,17 @@ pub(super) fn escape(text: &str) -> String {
     escaped
 }
 
+/// A template with every `{{name}}` replaced by its value, which is inserted as it is.
+pub(super) fn fill(template: &str, values: &[(&str, &str)]) -> String {
+    let mut parts = template.split("{{");
+    let mut filled = parts.next().unwrap_or_default().to_owned();
+    for (name, rest) in parts.filter_map(|part| part.split_once("}}")) {
+        filled.extend(values.iter().filter(|(key, _)| *key == name).map(|(_, value)| *value));
+        filled.push_str(rest);
+    }
+    filled
+}
+
 /// A paragraph for each stretch of text between empty lines.
 pub(super) fn paragraphs(text: &str) -> String {
     text.split("\n\n")
@@ -27,32 +40,22 @@ pub(super) fn paragraphs(text: &str) -> String {
         .collect()
 }
 
-/// One cell of a [`table`].
-pub(super) enum Cell {
-    /// Read from the left.
-    Text(String),
-    /// Compared by the right edge.
-    Number(String),
-    /// The outcome of an expectation.
-    Verdict(bool),
-}
-
-/// A table with a line of explanation above it and a heading row; the columns are aligned like the cells of the first row.
-pub(super) fn table(caption: &str, headings: &[&str], rows: &[Vec<Cell>]) -> String {
+/// A table with its caption above it, folded if it says so.
+pub(super) fn table(table: &Table) -> String {
     let mut html =
-        format!("<p class=\"pale\">{}</p>\n<div class=\"wide\"><table>\n<thead><tr>", escape(caption));
-    for (i, heading) in headings.iter().enumerate() {
-        let number = rows.first().and_then(|row| row.get(i)).is_some_and(|c| matches!(c, Cell::Number(_)));
-        let class = if number { " class=\"number\"" } else { "" };
+        format!("<p class=\"pale\">{}</p>\n<div class=\"wide\"><table>\n<thead><tr>", escape(&table.caption));
+    for (i, heading) in table.headings.iter().enumerate() {
+        let class = if table.is_numeric(i) { " class=\"number\"" } else { "" };
         let _ = write!(html, "<th scope=\"col\"{class}>{}</th>", escape(heading));
     }
     html.push_str("</tr></thead>\n<tbody>\n");
-    for row in rows {
+    for row in &table.rows {
         html.push_str("<tr>");
         for cell in row {
             html.push_str(&match cell {
                 Cell::Text(text) => format!("<td>{}</td>", escape(text)),
                 Cell::Number(text) => format!("<td class=\"number\">{}</td>", escape(text)),
+                Cell::Missing => "<td class=\"number\">–</td>".to_string(),
                 Cell::Verdict(true) => "<td class=\"held\">✓ held</td>".to_string(),
                 Cell::Verdict(false) => "<td class=\"failed\">✗ failed</td>".to_string(),
             });
@@ -60,7 +63,15 @@ pub(super) fn table(caption: &str, headings: &[&str], rows: &[Vec<Cell>]) -> Str
         html.push_str("</tr>\n");
     }
     html.push_str("</tbody></table></div>\n");
-    html
+    match &table.folded {
+        Some(line) => folded(line, &html),
+        None => html,
+    }
+}
+
+/// Content that opens on a click.
+pub(super) fn folded(summary: &str, content: &str) -> String {
+    format!("<details>\n<summary>{}</summary>\n{content}</details>\n", escape(summary))
 }
 
 #[cfg(test)]
@@ -68,14 +79,19 @@ mod tests {
     use super::*;
 
     #[test]
-    fn nothing_a_text_holds_becomes_markup() {
+    fn values_are_not_templates() {
+        assert_eq!(fill("a {{x}} b {{y}}{{x}}", &[("x", "{{y}}"), ("y", "2")]), "a {{y}} b 2{{y}}");
+    }
+
+    #[test]
+    fn text_never_becomes_markup() {
         assert_eq!(escape("<a href=\"x\" id='y'>&"), "&lt;a href=&quot;x&quot; id=&#39;y&#39;&gt;&amp;");
         assert_eq!(
             paragraphs("one\n\n\n\n<two>\nstill two\n"),
             "<p>one</p>\n<p>&lt;two&gt;\nstill two</p>\n"
         );
-        let html =
-            table("<c>", &["<h>"], &[vec![Cell::Text("<t>".into())], vec![Cell::Number("<n>".into())]]);
-        assert!(["<c>", "<h>", "<t>", "<n>"].iter().all(|raw| !html.contains(raw)), "{html}");
+        let cells = vec![vec![Cell::text("<t>")], vec![Cell::number("<n>")]];
+        let html = table(&Table::new("<c>", ["<h>"], cells).folded("<f>"));
+        assert!(["<c>", "<h>", "<t>", "<n>", "<f>"].iter().all(|raw| !html.contains(raw)), "{html}");
     }
 }

@@ -1,20 +1,20 @@
-//! The scripts of the page, and the policy that lets these run and no other.
+//! The scripts of the page, and the policy that allows no others.
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use serde_json::Value;
 use sha2::{Digest, Sha256};
 
-use view::interactive::{VIEWER_JS, plotly_js};
+use view::interactive::{plotly_js, viewer_js};
 
-/// Before anything is seen: what only scripts can fill may be shown, what stands in for it not.
+/// Runs before anything is drawn, so that what scripts fill is shown instead of the static figures.
 const FIRST: &str = "document.documentElement.classList.add('js');";
 
-/// All scripts but the first, in the order they run.
+/// All scripts but the first, in the order in which they run.
 fn scripts() -> [&'static str; 8] {
     [
         plotly_js(),
-        VIEWER_JS,
+        viewer_js(),
         include_str!("scripts/plots.js"),
         include_str!("scripts/charts.js"),
         include_str!("scripts/surfaces.js"),
@@ -26,8 +26,8 @@ fn scripts() -> [&'static str; 8] {
 
 /// For the head of the page: the content-security policy and the first script.
 ///
-/// Scripts are named by their hashes, so nothing else on the page can become one, and no address may be asked for
-/// anything. plotly inserts style rules and makes pictures of its plots.
+/// The policy allows scripts by their hashes, so nothing else on the page can run, and forbids all requests. plotly
+/// inserts style rules and makes images of its plots.
 pub(super) fn head() -> String {
     let hash = |script: &str| format!(" 'sha256-{}'", STANDARD.encode(Sha256::digest(script)));
     let hashes: String = std::iter::once(FIRST).chain(scripts()).map(hash).collect();
@@ -42,8 +42,7 @@ pub(super) fn tail() -> String {
     scripts().map(|script| format!("<script>{script}</script>\n")).concat()
 }
 
-/// Data for the scripts, which nothing in it can leave: every character that means something in HTML is written as an
-/// escape of JSON.
+/// Data for the scripts. The special characters of HTML are escaped as JSON does, so no text can end the element.
 pub(super) fn island(id: &str, data: &Value) -> String {
     let json = data.to_string().replace('&', "\\u0026").replace('<', "\\u003c").replace('>', "\\u003e");
     format!("<script type=\"application/json\" id=\"{id}\">{json}</script>\n")
@@ -64,7 +63,7 @@ mod tests {
     }
 
     #[test]
-    fn no_script_ends_early_or_needs_what_the_policy_forbids() {
+    fn scripts_do_not_end_their_element_or_need_what_the_policy_forbids() {
         for script in scripts() {
             assert!(!script.to_ascii_lowercase().contains("</script") && !script.contains("<!--"));
         }

@@ -1,15 +1,34 @@
 use std::collections::BTreeMap;
+use std::fs;
 
 use super::*;
-use crate::curves::curves;
 use crate::fixtures::{
     assert_balanced, curves_record, figure1_record, figure3_record, figure4_record, figure9_record,
     retrieval_record, shapes_record, without_scripts,
 };
-use crate::results::{SHAPES_FILE, ShapesRecord, write};
+use crate::results::{Figure4Record, SHAPES_FILE, ShapesRecord, write};
+use crate::{Record, save};
+
+const SECTIONS: [Section; 11] = [
+    section("figure1", Kind::Figure1),
+    section("figure3", Kind::Figure3),
+    section("figure4", Kind::Figure4),
+    section("figure5a", Kind::Curves),
+    section("figure5b", Kind::Curves),
+    section("figure6", Kind::Curves),
+    section("figure7", Kind::Curves),
+    section("figure8", Kind::Curves),
+    section("figure9", Kind::Figure9),
+    section("retrieval", Kind::Retrieval),
+    section("scaling", Kind::Curves),
+];
+
+const fn section(name: &'static str, kind: Kind) -> Section {
+    Section { name, title: name, kind }
+}
 
 fn page_of(folder: &Path) -> String {
-    let path = write_report(folder).unwrap();
+    let path = write_report(folder, &SECTIONS).unwrap();
     assert_eq!(path, folder.join(FILE));
     let html = fs::read_to_string(path).unwrap();
     assert_balanced(&html);
@@ -17,37 +36,24 @@ fn page_of(folder: &Path) -> String {
 }
 
 #[test]
-fn what_was_not_run_is_said_with_the_command_that_runs_it() {
+fn missing_experiments_are_named_with_the_command_that_runs_them() {
     let folder = tempfile::tempdir().unwrap();
     let html = page_of(folder.path());
-    for name in [
-        "figure1",
-        "figure3",
-        "figure4",
-        "figure5a",
-        "figure5b",
-        "figure6",
-        "figure7",
-        "figure8",
-        "figure9",
-        "retrieval",
-        "scaling",
-    ] {
-        assert!(html.contains(&format!("{name}.json</code> is not in this folder")));
+    for Section { name, .. } in SECTIONS {
+        assert!(html.contains(&format!("there is no <code>{name}.json</code> in this folder")));
         assert!(html.contains(&format!("run {name}</code>")));
     }
     assert!(!without_scripts(&html).contains("expectations"));
 }
 
 #[test]
-fn figures_numbers_options_and_expectations_are_all_there() {
+fn a_section_has_figures_numbers_options_and_expectations() {
     let folder = tempfile::tempdir().unwrap();
     let record = figure4_record(&[("cat", 3), ("dog", 2)]);
-    write(&record, folder.path().join("figure4.json")).unwrap();
-    figure4::figure4(&record, folder.path().join("figure4")).unwrap();
+    save(&record, folder.path(), "figure4").unwrap();
     let html = page_of(folder.path());
     assert_eq!(without_scripts(&html).matches("data:image/png;base64,").count(), 4);
-    for (part, _, _) in figure4::PARTS {
+    for part in record.figures().iter().map(|figure| figure.part) {
         assert!(html.contains(&format!("href=\"figure4{part}.svg\"")), "{part}");
     }
     for text in [
@@ -71,12 +77,11 @@ fn figures_numbers_options_and_expectations_are_all_there() {
 fn retrieval_has_its_scores_curves_and_confusion() {
     let folder = tempfile::tempdir().unwrap();
     let record = retrieval_record();
-    write(&record, folder.path().join("retrieval.json")).unwrap();
-    crate::retrieval::retrieval(&record, folder.path().join("retrieval")).unwrap();
+    save(&record, folder.path(), "retrieval").unwrap();
     let html = page_of(folder.path());
     assert_eq!(without_scripts(&html).matches("data:image/png;base64,").count(), 2);
     for text in
-        ["wave-kernel", "ignored", "counts", "0.875", "0.625", "Near is alike.", "3 nearest by wave-kernel"]
+        ["wave-kernel", "ignored", "counts", "0.875", "0.625", "Near is alike.", "3 nearest neighbours"]
     {
         assert!(html.contains(text), "{text}");
     }
@@ -109,10 +114,10 @@ fn names_from_files_never_become_markup() {
 }
 
 #[test]
-fn a_broken_record_is_an_error_that_names_the_file() {
+fn an_unreadable_record_is_an_error_that_names_the_file() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("figure4.json"), "{\"names\": 3").unwrap();
-    let error = write_report(folder.path()).unwrap_err();
+    let error = write_report(folder.path(), &SECTIONS).unwrap_err();
     assert!(
         matches!(error, ReportError::Parse { .. }) && error.to_string().contains("figure4.json"),
         "{error}"
@@ -121,12 +126,11 @@ fn a_broken_record_is_an_error_that_names_the_file() {
 }
 
 #[test]
-fn figures_that_compare_methods_show_medians_ranges_and_the_papers_numbers() {
+fn figures_of_several_methods_have_medians_ranges_and_the_numbers_of_the_paper() {
     let folder = tempfile::tempdir().unwrap();
     let place = |name: &str| folder.path().join(name);
     write(&figure3_record(), place("figure3.json")).unwrap();
-    write(&curves_record(), place("figure6.json")).unwrap();
-    curves(&curves_record(), place("figure6")).unwrap();
+    save(&curves_record(), folder.path(), "figure6").unwrap();
     write(&figure9_record(), place("figure9.json")).unwrap();
     let html = page_of(folder.path());
     assert!(
@@ -140,7 +144,7 @@ fn figures_that_compare_methods_show_medians_ranges_and_the_papers_numbers() {
     }
 }
 
-/// Everything that can be shown, in one folder.
+/// A folder with all records.
 fn full_folder(figure4: &Figure4Record, shapes: Option<&ShapesRecord>) -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     let place = |name: &str| folder.path().join(name);
@@ -148,7 +152,7 @@ fn full_folder(figure4: &Figure4Record, shapes: Option<&ShapesRecord>) -> tempfi
     write(&figure3_record(), place("figure3.json")).unwrap();
     write(figure4, place("figure4.json")).unwrap();
     shapes.iter().for_each(|shapes| write(shapes, place(SHAPES_FILE)).unwrap());
-    for (name, _) in reproduced::CURVES.into_iter().chain([reproduced::SCALING]) {
+    for Section { name, .. } in SECTIONS.iter().filter(|section| section.kind == Kind::Curves) {
         write(&curves_record(), place(&format!("{name}.json"))).unwrap();
     }
     write(&figure9_record(), place("figure9.json")).unwrap();
@@ -170,36 +174,38 @@ fn islands(html: &str) -> BTreeMap<String, serde_json::Value> {
 const CLASSES: [(&str, usize); 2] = [("cat", 3), ("dog", 2)];
 
 #[test]
-fn every_experiment_has_one_section_its_plots_and_their_data() {
+fn every_section_has_its_plots_and_their_data_once() {
     let folder = full_folder(&figure4_record(&CLASSES), Some(&shapes_record(&CLASSES)));
     let html = page_of(folder.path());
     assert_eq!(html.matches("* plotly.js v").count(), 1, "plotly is there once");
     assert_eq!(html.matches("const canonform = ").count(), 1);
-    let names = ["figure1", "figure3", "figure4", "figure5a", "figure5b", "figure6", "figure7", "figure8"];
-    for name in names.into_iter().chain(["figure9", "retrieval", "scaling"]) {
+    for Section { name, .. } in SECTIONS {
         assert_eq!(html.matches(&format!("<section id=\"{name}\">")).count(), 1, "{name}");
     }
     let islands = islands(&html);
-    for name in &names[1..] {
-        assert_eq!(html.matches(&format!("id=\"{name}-chart\"")).count(), 1, "{name}");
-        assert!(islands.contains_key(&format!("{name}-data")), "{name}");
+    for chart in ["figure3-stress", "figure4", "figure7-curves", "figure9-times", "retrieval-confusion"] {
+        assert_eq!(html.matches(&format!("id=\"{chart}-chart\"")).count(), 1, "{chart}");
+        assert!(islands.contains_key(&format!("{chart}-data")), "{chart}");
     }
     let plain = without_scripts(&html);
     for source in plain.split("data-source=\"").skip(1) {
         let (source, _) = source.split_once('"').unwrap();
         assert!(islands.contains_key(source), "{source}");
     }
-    assert_eq!(plain.matches("data-plot=\"curves\"").count(), 12);
+    // Six records of two panels each, the precision at two scales, the stress on one shape, and the times.
+    assert_eq!(plain.matches("data-plot=\"plot\"").count(), 16);
+    assert_eq!(islands["figure7-curves-data"]["plots"][0]["y"]["name"], "error (m⁴)");
     assert_eq!(islands["figure4-data"]["names"].as_array().map(Vec::len), Some(5));
     assert_eq!(islands["figure4-data"]["thumbnails"][4]["forms"].as_array().map(Vec::len), Some(2));
     assert_eq!(islands["figure4-shape-4"]["forms"][0]["size"], 2.0);
-    assert!(plain.contains("id=\"figure1-explorer\"") && plain.contains("<option value=\"0\">cat0</option>"));
+    assert!(plain.contains("id=\"figure1-explorer\""));
+    assert!(plain.contains("<option value=\"0\" selected>cat0</option>"));
     let ids: Vec<&str> = html.split(" id=\"").skip(1).filter_map(|part| part.split('"').next()).collect();
     assert_eq!(ids.iter().collect::<std::collections::BTreeSet<_>>().len(), ids.len(), "no id twice");
 }
 
 #[test]
-fn nothing_is_fetched() {
+fn the_page_fetches_nothing() {
     let folder = full_folder(&figure4_record(&CLASSES), Some(&shapes_record(&CLASSES)));
     let html = page_of(folder.path());
     assert!(html.contains("default-src 'none'"));
@@ -216,23 +222,23 @@ fn nothing_is_fetched() {
 }
 
 #[test]
-fn names_are_inert_in_plots_and_data_too() {
+fn names_never_become_markup_in_plots_and_data() {
     let evil = "</script><img src=x onerror=alert(1)>";
     let classes = [(evil, 2), ("\" onclick=\"x", 1)];
     let folder = full_folder(&figure4_record(&classes), Some(&shapes_record(&classes)));
     let html = page_of(folder.path());
     assert!(!html.contains("<img src=x") && !without_scripts(&html).contains("\" onclick=\""));
-    assert_eq!(islands(&html)["figure4-data"]["labels"][0], evil, "and yet they are there");
+    assert_eq!(islands(&html)["figure4-data"]["labels"][0], evil, "kept as data");
 }
 
 #[test]
-fn older_folders_have_their_maps_and_say_what_adds_the_shapes() {
+fn folders_without_surfaces_have_their_map_and_name_the_command_that_adds_them() {
     let figure4 = figure4_record(&CLASSES);
     let others = shapes_record(&[("cat", 2)]);
     for shapes in [None, Some(&others)] {
         let html = page_of(full_folder(&figure4, shapes).path());
         assert!(html.contains("id=\"figure4-map\"") && !html.contains("id=\"figure4-overlay\""));
-        assert!(html.contains("<code>experiments run all --dataset &#39;a &amp; b&#39;</code> adds them"));
+        assert!(html.contains("run <code>experiments run all --dataset &#39;a &amp; b&#39;</code>"));
         assert!(!html.contains("id=\"figure4-shape-0\"") && !html.contains("id=\"figure1-explorer\""));
     }
 }

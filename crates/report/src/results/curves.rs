@@ -1,16 +1,15 @@
-//! The record of a figure made of curves.
+//! The record of a figure of curves.
 
 use serde::{Deserialize, Serialize};
 
-use super::{Expectation, Provenance};
-use crate::ReportError;
+use super::common::{Expectation, Provenance};
 
 /// Curves over one quantity, in one or more panels: Figures 5 to 8 of the paper.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct CurvesRecord {
-    /// What made it.
+    /// How it was made.
     pub provenance: Provenance,
-    /// One sentence on what is drawn, under the picture.
+    /// What the figure shows, in one or two sentences.
     pub caption: String,
     /// The panels, in reading order.
     pub panels: Vec<CurvesPanel>,
@@ -23,22 +22,22 @@ pub struct CurvesRecord {
 /// One plot.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct CurvesPanel {
-    /// What stands above it, for example the name of the shape.
+    /// The heading, for example the name of the shape.
     pub title: String,
-    /// The quantity across.
+    /// The quantity on the horizontal axis.
     pub x: Axis,
-    /// The quantity upwards.
+    /// The quantity on the vertical axis.
     pub y: Axis,
     /// The curves; those of one name look alike in all panels.
     pub series: Vec<Series>,
-    /// Places on the horizontal axis that have a name.
+    /// Named values of the horizontal axis.
     pub marks: Vec<Mark>,
 }
 
 /// One axis of a plot.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Axis {
-    /// What is measured.
+    /// The quantity.
     pub name: String,
     /// Its unit; empty for a pure number.
     pub unit: String,
@@ -54,23 +53,25 @@ pub enum AxisScale {
     Linear,
     /// Equal ratios; values that are not positive cannot be shown.
     Log,
+    /// Categories at 0, 1, 2 and so on.
+    Category,
 }
 
 /// One curve and the band around it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Series {
-    /// What the legend calls it.
+    /// The name in the legend.
     pub name: String,
     /// Its points, by ascending `x`.
     pub points: Vec<SeriesPoint>,
 }
 
-/// One point of a curve: what repeated runs gave at one place.
+/// One point of a curve: the results of repeated runs at one value of `x`.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct SeriesPoint {
-    /// Place on the horizontal axis.
+    /// The value on the horizontal axis.
     pub x: f64,
-    /// The median of the runs, where the line goes.
+    /// The median of the runs, on the line.
     pub median: f64,
     /// The least of the runs, the lower end of the band.
     pub low: f64,
@@ -80,44 +81,11 @@ pub struct SeriesPoint {
     pub runs: usize,
 }
 
-/// A named place on the horizontal axis.
+/// A named value of the horizontal axis.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Mark {
-    /// Where.
+    /// The value.
     pub x: f64,
-    /// What is there.
+    /// Its name.
     pub name: String,
-}
-
-impl CurvesRecord {
-    /// Checks that there is something to draw and that every number is finite.
-    ///
-    /// # Errors
-    /// [`ReportError::Empty`] or [`ReportError::NotFinite`], naming the part of the record.
-    pub fn validate(&self) -> Result<(), ReportError> {
-        let points = |panel: &CurvesPanel| panel.series.iter().map(|s| s.points.len()).sum::<usize>();
-        if self.panels.is_empty() || self.panels.iter().any(|panel| points(panel) == 0) {
-            return Err(ReportError::Empty { figure: "a figure of curves", unit: "point in each panel" });
-        }
-        for panel in &self.panels {
-            for series in &panel.series {
-                for point in &series.points {
-                    for value in [point.x, point.median, point.low, point.high] {
-                        if !value.is_finite() {
-                            let what =
-                                format!("a point of {} in {} at {}", series.name, panel.title, point.x);
-                            return Err(ReportError::NotFinite { what, value });
-                        }
-                    }
-                }
-            }
-            for mark in &panel.marks {
-                if !mark.x.is_finite() {
-                    let what = format!("the mark {} in {}", mark.name, panel.title);
-                    return Err(ReportError::NotFinite { what, value: mark.x });
-                }
-            }
-        }
-        Ok(())
-    }
 }

@@ -2,16 +2,16 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Expectation, Provenance};
+use super::common::{Expectation, Provenance};
 
-/// The forms of a few shapes by several methods, and their stress.
+/// Canonical forms of a few shapes by several methods, and their stress.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Figure3Record {
-    /// What made it.
+    /// How it was made.
     pub provenance: Provenance,
-    /// One row of the picture each.
+    /// The rows of the figure.
     pub shapes: Vec<Figure3Shape>,
-    /// The stress of every shape and method over repeated runs, for each way of measuring distances.
+    /// The stress of every shape and method over repeated runs, for each kind of distances.
     pub stresses: Vec<Figure3Stress>,
     /// What was expected.
     pub expectations: Vec<Expectation>,
@@ -19,27 +19,27 @@ pub struct Figure3Record {
     pub analysis: String,
 }
 
-/// One row of the picture: a shape and its forms.
+/// One row of the figure: a shape and its canonical forms.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Figure3Shape {
     /// Its name, for example `david0`.
     pub name: String,
     /// Its class, for example `david`.
     pub label: String,
-    /// Vertices that were embedded.
+    /// Vertices of the embedded surface.
     pub n_vertices: usize,
-    /// The forms that are drawn, in the order of the columns.
+    /// The forms in the order of the columns.
     pub forms: Vec<Figure3Form>,
 }
 
-/// One form of the picture: of the repeated runs the one of median stress.
+/// One form of the figure, from the run of median stress.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Figure3Form {
-    /// How it was made.
+    /// Name of the method.
     pub method: String,
     /// Its stress, in squared mesh units.
     pub stress: f64,
-    /// The stress that the paper prints, where this is the paper's shape.
+    /// The stress printed in the paper, if this is the paper's shape.
     pub paper: Option<f64>,
 }
 
@@ -48,18 +48,18 @@ pub struct Figure3Form {
 pub struct Figure3Stress {
     /// Name of the shape.
     pub shape: String,
-    /// How the distances were measured that were embedded and that the stress is measured against.
+    /// The kind of the distances that were embedded and that the stress compares with.
     pub distances: String,
-    /// How the form was made.
+    /// Name of the method.
     pub method: String,
-    /// The median over the runs, in squared mesh units.
+    /// The median of the runs, in squared mesh units.
     pub median: f64,
-    /// The least.
+    /// The least of the runs.
     pub low: f64,
-    /// The greatest.
+    /// The greatest of the runs.
     pub high: f64,
     /// Number of runs, which differ in the first sample.
     pub runs: usize,
-    /// The stress that the paper prints, where this is the paper's shape.
+    /// The stress printed in the paper, if this is the paper's shape.
     pub paper: Option<f64>,
 }

@@ -2,16 +2,16 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::{Expectation, Provenance};
+use super::common::{Expectation, Provenance};
 
 /// Times and memory of whole embeddings, distances included.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Figure9Record {
-    /// What made it.
+    /// How it was made.
     pub provenance: Provenance,
     /// Worker threads of every run.
     pub threads: usize,
-    /// One row for each number of vertices and method.
+    /// One row per number of vertices and method.
     pub rows: Vec<Figure9Row>,
     /// What was expected.
     pub expectations: Vec<Expectation>,
@@ -26,17 +26,17 @@ pub struct Figure9Row {
     pub shape: String,
     /// Its vertices.
     pub n_vertices: usize,
-    /// How it was embedded.
+    /// Name of the method.
     pub method: String,
-    /// What was measured; nothing when the method was not run.
+    /// What was measured, if the method was run.
     pub measured: Option<Figure9Measured>,
-    /// The seconds that the paper prints for this number of vertices.
+    /// The seconds printed in the paper for this number of vertices.
     pub paper_seconds: Option<f64>,
     /// Why the method was not run, or a remark; may be empty.
     pub note: String,
 }
 
-/// What one method took.
+/// Time and memory of one method.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Figure9Measured {
     /// Wall-clock seconds for distances, in the fastest run.
@@ -45,7 +45,7 @@ pub struct Figure9Measured {
     pub embedding: f64,
     /// Number of runs.
     pub runs: usize,
-    /// Most memory in use at once, in bytes, beyond what was in use before.
+    /// Peak memory in bytes, in addition to that in use before.
     pub peak_bytes: usize,
 }
 

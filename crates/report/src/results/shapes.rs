@@ -1,65 +1,66 @@
-//! The record of the shapes behind Figure 4, for looking at them in a browser.
+//! The record of the surfaces of Figure 4, which the page shows in 3D.
 
 use serde::{Deserialize, Serialize};
 
-use super::{Figure4Record, Scale};
+use super::common::Scale;
+use super::figure4::Figure4Record;
 use crate::ReportError;
 use view::interactive::Geometry;
 use view::interactive::base64::{optional_list, triples};
 
-/// Name of the record in a folder of results.
+/// Name of the file in a folder of results.
 pub const SHAPES_FILE: &str = "figure4-shapes.json";
 
-/// The shapes of Figure 4 and their forms, as they are shown.
+/// The shapes of Figure 4 and their canonical forms, for the 3D views of the page.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct ShapesRecord {
-    /// The methods that made forms, in the order of [`SeenShape::forms`].
+    /// The methods, in the order of [`ShownShape::forms`].
     pub methods: Vec<String>,
     /// The shapes, in the order of Figure 4.
-    pub shapes: Vec<SeenShape>,
-    /// How forms are laid over each other, for each method and scale.
+    pub shapes: Vec<ShownShape>,
+    /// The rigid motions that align forms, for each method and scale.
     pub motions: Vec<Motions>,
 }
 
-/// A shape and its forms, all over the same faces.
+/// A shape and its forms, which share their faces.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-pub struct SeenShape {
+pub struct ShownShape {
     /// Its name, for example `cat0`.
     pub name: String,
     /// Its class, for example `cat`.
     pub label: String,
-    /// Vertices that were embedded; the surface below may be a coarser one, for viewing only.
+    /// Vertices of the embedded surface; that below may be coarser.
     pub n_vertices: usize,
-    /// The shape, in mesh units, with the distances over the surface from the first sample.
+    /// The shape, in mesh units, with the geodesic distances from the first sample.
     pub surface: Geometry,
     /// Its form by each method.
-    pub forms: Vec<SeenForm>,
+    pub forms: Vec<ShownForm>,
 }
 
 /// A canonical form over the faces of its shape.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-pub struct SeenForm {
-    /// Positions in units of the form around its centroid, turned (and where needed mirrored) so that vertices lie as
-    /// near as they can to where they are on the shape.
+pub struct ShownForm {
+    /// Positions in units of the form around its centroid, rotated or reflected such that vertices are as close as
+    /// possible to those of the shape.
     #[serde(with = "triples")]
     pub positions: Vec<[f32; 3]>,
-    /// What positions are divided by where size does not count.
+    /// The length by which positions are divided if size is ignored.
     pub size: f64,
-    /// Root mean square over the samples, for each vertex, of straight line in the form less distance over the
-    /// surface, in mesh units; nothing where forms have no unit of length.
+    /// For each vertex, the root mean square over the samples of the Euclidean distance in the form minus the geodesic
+    /// distance, in mesh units; `None` if forms have no unit of length.
     #[serde(with = "optional_list", default, skip_serializing_if = "Option::is_none")]
     pub residual: Option<Vec<f32>>,
 }
 
-/// The motions between the forms of one method at one scale.
+/// The rigid motions between the forms of one method at one scale.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Motions {
     /// Name of the method.
     pub method: String,
-    /// Whether forms kept their size; the positions that move are those of [`SeenForm`], over the size if not.
+    /// Whether forms keep their size; if not, motions apply to the positions of [`ShownForm`] divided by the size.
     pub scale: Scale,
-    /// For each pair `i < j` of shapes, row by row, four triples: the rows of a rotation (or reflection) and a
-    /// translation, which take form `i` onto form `j`.
+    /// Four triples for each pair `i < j` of shapes, row by row: the rows of a rotation or reflection and a
+    /// translation, which map form `i` onto form `j`.
     #[serde(with = "triples")]
     pub motions: Vec<[f32; 3]>,
 }
@@ -72,15 +73,12 @@ impl ShapesRecord {
         own.eq(figure4.names.iter().zip(&figure4.labels))
     }
 
-    /// Checks that every list has the length that the others ask for.
+    /// Checks that lists agree in length.
     ///
     /// # Errors
     /// [`ReportError::Shape`], naming the part of the record.
     pub fn validate(&self) -> Result<(), ReportError> {
-        let length = |what: String, found: usize, expected: usize, unit| match found == expected {
-            true => Ok(()),
-            false => Err(ReportError::Shape { what, found, expected, unit }),
-        };
+        let length = ReportError::check_length;
         for shape in &self.shapes {
             let n = shape.surface.positions.len();
             length(format!("the forms of {}", shape.name), shape.forms.len(), self.methods.len(), "method")?;
@@ -122,17 +120,19 @@ mod tests {
     }
 
     #[test]
-    fn a_record_that_contradicts_itself_is_told_so() {
+    fn inconsistent_records_are_errors_that_name_the_part() {
         let good = shapes_record(&[("cat", 2), ("dog", 1)]);
         let broken = |change: &dyn Fn(&mut ShapesRecord)| {
             let mut record = good.clone();
             change(&mut record);
             record.validate().unwrap_err().to_string()
         };
-        assert!(broken(&|r| r.methods.truncate(1)).starts_with("the forms of cat0 has 2 entries where 1"));
+        assert!(
+            broken(&|r| r.methods.truncate(1)).starts_with("the forms of cat0 has 2 entries instead of 1")
+        );
         assert!(broken(&|r| r.shapes[1].forms[0].positions.truncate(2)).contains("a form of cat1"));
         assert!(broken(&|r| r.shapes[1].forms[0].residual = Some(vec![])).contains("a residual of cat1"));
         assert!(broken(&|r| r.shapes[2].surface.values = Some(vec![])).contains("the distances on dog2"));
-        assert!(broken(&|r| r.motions[1].motions.truncate(3)).contains("where 12 are needed"));
+        assert!(broken(&|r| r.motions[1].motions.truncate(3)).contains("instead of 12"));
     }
 }

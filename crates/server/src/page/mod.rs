@@ -25,7 +25,7 @@ pub(crate) fn router() -> Router<Arc<App>> {
         ("/assets/ask.js", JS, include_str!("ask.js")),
         ("/assets/shapes.js", JS, include_str!("shapes.js")),
         ("/assets/answer.js", JS, include_str!("answer.js")),
-        ("/assets/viewer.js", JS, view::interactive::VIEWER_JS),
+        ("/assets/viewer.js", JS, view::interactive::viewer_js()),
         ("/assets/plotly.js", JS, view::interactive::plotly_js()),
     ];
     let page = ("/", HTML, Bytes::from(filled_in(include_str!("index.html"))));

@@ -1,4 +1,4 @@
-//! Arrays of numbers as base64 of their little-endian bytes: a quarter of the size of decimal text, and no digit lost.
+//! Arrays of numbers as base64 of their little-endian bytes: a quarter of the size of decimal text, and exact.
 
 use ::base64::Engine;
 use ::base64::engine::general_purpose::STANDARD;
@@ -7,44 +7,37 @@ use serde::ser::Serializer;
 
 /// A number of four bytes.
 pub trait Word: Copy {
-    /// Its bytes, least significant first.
+    /// Its bytes, little-endian.
     fn to_bytes(self) -> [u8; 4];
-    /// The number of these bytes.
+    /// The number with these bytes.
     fn from_bytes(bytes: [u8; 4]) -> Self;
 }
 
-impl Word for f32 {
-    /// Its bytes, least significant first.
-    fn to_bytes(self) -> [u8; 4] {
-        self.to_le_bytes()
-    }
-    /// The number of these bytes.
-    fn from_bytes(bytes: [u8; 4]) -> Self {
-        Self::from_le_bytes(bytes)
-    }
+macro_rules! word {
+    ($($number:ty)*) => {
+        $(impl Word for $number {
+            fn to_bytes(self) -> [u8; 4] {
+                self.to_le_bytes()
+            }
+            fn from_bytes(bytes: [u8; 4]) -> Self {
+                Self::from_le_bytes(bytes)
+            }
+        })*
+    };
 }
 
-impl Word for u32 {
-    /// Its bytes, least significant first.
-    fn to_bytes(self) -> [u8; 4] {
-        self.to_le_bytes()
-    }
-    /// The number of these bytes.
-    fn from_bytes(bytes: [u8; 4]) -> Self {
-        Self::from_le_bytes(bytes)
-    }
-}
+word!(f32 u32);
 
-/// The text of a list of numbers.
+/// Encodes a list of numbers.
 pub fn encode<T: Word>(numbers: impl Iterator<Item = T>) -> String {
     STANDARD.encode(numbers.flat_map(Word::to_bytes).collect::<Vec<u8>>())
 }
 
-/// The numbers of a text, `width` of them to a group.
+/// Decodes a list of numbers whose length is a multiple of `width`.
 fn decode<T: Word>(text: &str, width: usize) -> Result<Vec<T>, String> {
     let bytes = STANDARD.decode(text).map_err(|fault| format!("not base64: {fault}"))?;
     if bytes.len() % (4 * width) != 0 {
-        return Err(format!("{} bytes are no whole number of groups of {width} numbers", bytes.len()));
+        return Err(format!("{} bytes are not a whole number of groups of {width} numbers", bytes.len()));
     }
     Ok(bytes.as_chunks::<4>().0.iter().map(|word| T::from_bytes(*word)).collect())
 }
@@ -53,7 +46,7 @@ fn decode<T: Word>(text: &str, width: usize) -> Result<Vec<T>, String> {
 pub mod triples {
     use super::{Deserialize, Deserializer, Error, Serializer, Word, decode, encode};
 
-    /// Writes the list as one text.
+    /// Writes the list as one string.
     ///
     /// # Errors
     /// Those of the serializer.
@@ -61,10 +54,10 @@ pub mod triples {
         to.serialize_str(&encode(list.as_flattened().iter().copied()))
     }
 
-    /// Reads such a text.
+    /// Reads such a string.
     ///
     /// # Errors
-    /// When the text is not base64, or not a whole number of triples.
+    /// If the string is not base64 or not a whole number of triples.
     pub fn deserialize<'de, T: Word, D: Deserializer<'de>>(from: D) -> Result<Vec<[T; 3]>, D::Error> {
         let text = <std::borrow::Cow<'de, str>>::deserialize(from)?;
         let flat = decode(&text, 3).map_err(D::Error::custom)?;
@@ -72,11 +65,11 @@ pub mod triples {
     }
 }
 
-/// For `#[serde(with = ...)]` on a list of numbers that may be absent.
+/// For `#[serde(with = ...)]` on an optional list of numbers.
 pub mod optional_list {
     use super::{Deserialize, Deserializer, Error, Serializer, Word, decode, encode};
 
-    /// Writes the numbers as one text, or nothing.
+    /// Writes the numbers as one string, or nothing.
     ///
     /// # Errors
     /// Those of the serializer.
@@ -87,10 +80,10 @@ pub mod optional_list {
         }
     }
 
-    /// Reads such a text, if there is one.
+    /// Reads such a string if there is one.
     ///
     /// # Errors
-    /// When the text is not base64, or not a whole number of numbers.
+    /// If the string is not base64 or not a whole number of words.
     pub fn deserialize<'de, T: Word, D: Deserializer<'de>>(from: D) -> Result<Option<Vec<T>>, D::Error> {
         let text = Option::<std::borrow::Cow<'de, str>>::deserialize(from)?;
         text.map(|text| decode(&text, 1).map_err(D::Error::custom)).transpose()

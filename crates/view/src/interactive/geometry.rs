@@ -1,4 +1,4 @@
-//! One surface on its way to the browser.
+//! A surface as the viewer in the browser takes it.
 
 use mesh::TriMesh;
 use nalgebra::{Point3, Vector3};
@@ -6,10 +6,10 @@ use serde::{Deserialize, Serialize};
 
 use super::base64::{optional_list, triples};
 
-/// A surface as the viewer takes it: single precision, arrays as base64 in JSON.
+/// A surface in single precision. In JSON, arrays are base64 of their little-endian bytes.
 ///
 /// `{"positions": f32 x, y, z of every vertex, "faces": u32 a, b, c of every face, "values": f32 of every vertex,
-/// "values_name", "color": "#rrggbb"}`, little-endian; the last three are left out where there is nothing to say.
+/// "values_name": string}`; the last two are optional.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Geometry {
     /// Vertex positions, in mesh units.
@@ -18,21 +18,18 @@ pub struct Geometry {
     /// The vertices of every face.
     #[serde(with = "triples")]
     pub faces: Vec<[u32; 3]>,
-    /// A number for each vertex, which colours it; NaN where there is none.
+    /// A number per vertex, for its colour; NaN if the vertex has none.
     #[serde(with = "optional_list", default, skip_serializing_if = "Option::is_none")]
     pub values: Option<Vec<f32>>,
-    /// What the values are, for the colour bar.
+    /// The name and unit of the values, for the colour bar.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub values_name: Option<String>,
-    /// The colour of the surface where it has no values, `#rrggbb`.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub color: Option<String>,
 }
 
 impl Geometry {
-    /// A surface around the origin: the middle of its bounding box is moved there. Its size stays.
+    /// A surface whose bounding box is centred at the origin.
     ///
-    /// Faces that name a vertex that does not exist, or one that is not finite, are left out.
+    /// Faces with a corner that does not exist or is not finite are left out.
     #[must_use]
     pub fn new(mesh: &TriMesh) -> Self {
         let middle =
@@ -40,14 +37,14 @@ impl Geometry {
         Self::around(mesh, middle)
     }
 
-    /// The same without moving it: for surfaces that are aligned and drawn over each other.
+    /// A surface where it is, for several surfaces in one scene.
     #[must_use]
     pub fn in_place(mesh: &TriMesh) -> Self {
         Self::around(mesh, Vector3::zeros())
     }
 
     fn around(mesh: &TriMesh, middle: Vector3<f64>) -> Self {
-        // A middle that is not finite would take every vertex with it.
+        // A middle that is not finite would make every vertex so.
         let middle = if middle.iter().all(|c| c.is_finite()) { middle } else { Vector3::zeros() };
         let single = |p: &Point3<f64>| (p - middle).coords.map(|c| c as f32).into();
         let positions: Vec<[f32; 3]> = mesh.positions.iter().map(single).collect();
@@ -57,25 +54,13 @@ impl Geometry {
         Self { positions, faces, ..Self::default() }
     }
 
-    /// With a number for each vertex: what the numbers are called with their unit, and the numbers in the order of the
-    /// vertices. Missing ones count as NaN, further ones are dropped.
+    /// The surface with a number per vertex. Missing numbers are NaN, excess ones are dropped.
     #[must_use]
     pub fn with_values(self, name: impl Into<String>, values: &[f64]) -> Self {
         let value = |v: usize| values.get(v).map_or(f32::NAN, |value| *value as f32);
         let values = (0..self.positions.len()).map(value).collect();
         Self { values: Some(values), values_name: Some(name.into()), ..self }
     }
-
-    /// With a plain colour, 8-bit sRGB.
-    #[must_use]
-    pub fn with_color(self, color: [u8; 3]) -> Self {
-        Self { color: Some(hex(color)), ..self }
-    }
-}
-
-/// 8-bit sRGB as `#rrggbb`.
-pub fn hex([red, green, blue]: [u8; 3]) -> String {
-    format!("#{red:02x}{green:02x}{blue:02x}")
 }
 
 #[cfg(test)]
@@ -89,23 +74,23 @@ mod tests {
     }
 
     #[test]
-    fn arrays_survive_the_way_to_the_browser_and_back() {
+    fn arrays_read_back_from_json_to_the_bit() {
         let one = Geometry::new(&triangle()).with_values("distance", &[0.0, f64::NAN, 1.0 / 3.0]);
-        let json = serde_json::to_string(&one.clone().with_color([0, 114, 255])).unwrap();
+        let json = serde_json::to_string(&one).unwrap();
         let back: Geometry = serde_json::from_str(&json).unwrap();
         assert_eq!((&back.positions, &back.faces), (&one.positions, &one.faces));
         let bits = |g: &Geometry| g.values.iter().flatten().map(|v| v.to_bits()).collect::<Vec<_>>();
         assert_eq!(bits(&back), bits(&one), "NaN included");
-        assert_eq!((back.values_name.as_deref(), back.color.as_deref()), (Some("distance"), Some("#0072ff")));
+        assert_eq!(back.values_name.as_deref(), Some("distance"));
         let bare = serde_json::to_value(Geometry::new(&triangle())).unwrap();
-        assert_eq!(bare.as_object().unwrap().len(), 2, "nothing is said of what there is not: {bare}");
-        // -1 is 0xbf800000, -3 0xc0400000, -2 0xc0000000: the bytes of the first vertex, least first.
+        assert_eq!(bare.as_object().unwrap().len(), 2, "absent fields are left out: {bare}");
+        // The first vertex, little-endian: -1 is 0xbf800000, -3 is 0xc0400000, -2 is 0xc0000000.
         assert!(bare["positions"].as_str().unwrap().starts_with("AACAvwAAQMAAAADA"), "{bare}");
         assert_eq!(bare["faces"], "AAAAAAEAAAACAAAA");
     }
 
     #[test]
-    fn surfaces_are_centred_without_changing_their_size() {
+    fn surfaces_are_centred_without_being_scaled() {
         assert_eq!(
             Geometry::new(&triangle()).positions,
             [[-1.0, -3.0, -2.0], [1.0, -3.0, -2.0], [-1.0, 3.0, 2.0]]
@@ -115,7 +100,7 @@ mod tests {
     }
 
     #[test]
-    fn faces_without_three_corners_in_space_and_wrong_numbers_of_values_do_no_harm() {
+    fn unusable_faces_are_left_out_and_missing_values_are_nan() {
         let mut mesh = triangle();
         mesh.positions.push(Point3::new(f64::NAN, 0.0, 0.0));
         mesh.faces.extend([[0, 1, 3], [0, 1, 9]].map(|f: [u32; 3]| f.map(VertexId)));
@@ -126,13 +111,13 @@ mod tests {
     }
 
     #[test]
-    fn texts_that_are_no_arrays_are_refused() {
+    fn strings_that_are_not_arrays_are_refused() {
         let parse = |positions: &str| {
             let json = serde_json::json!({"positions": positions, "faces": ""});
             serde_json::from_value::<Geometry>(json).map_err(|fault| fault.to_string())
         };
         assert!(parse("AAAAAAEAAAACAAAA").is_ok());
-        assert!(parse("AAAA").unwrap_err().contains("3 bytes are no whole number of groups of 3"));
+        assert!(parse("AAAA").unwrap_err().contains("3 bytes are not a whole number of groups of 3"));
         assert!(parse("?").unwrap_err().contains("not base64"));
     }
 }

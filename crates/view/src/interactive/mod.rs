@@ -1,21 +1,30 @@
-//! Surfaces and plots that a browser shows and lets turn.
+//! Surfaces and plots in the browser.
 //!
-//! Meshes and numbers of a record -> [`Geometry`] (JSON) -> [`VIEWER_JS`] on top of [`plotly_js`] -> a scene in the page
+//! meshes and numbers -> [`Geometry`] (JSON) -> [`viewer_js`] on top of [`plotly_js`] -> a scene in the page
 //!
-//! The viewer works under a content-security policy without `unsafe-eval`. It needs
-//! `script-src` for its own text and plotly's, `style-src 'unsafe-inline'` for the rules that plotly inserts, and
-//! `img-src data: blob:` for plotly's downloads of pictures; nothing else, and no address.
+//! The scripts run under a content-security policy without `unsafe-eval` and request no address. They need
+//! `script-src` for their own text, `style-src 'unsafe-inline'` for the rules that plotly inserts, and
+//! `img-src data: blob:` for the images that plotly offers as downloads.
 
 pub mod base64;
 mod geometry;
 mod plotly;
 
+use std::sync::LazyLock;
+
+use crate::color::{hex, perceptual_stops};
+
 pub use geometry::Geometry;
-pub use geometry::hex;
 pub use plotly::plotly_js;
 
-/// The viewer: a plain script that defines the global `canonform` and expects `Plotly` before its first view.
+/// The viewer: a script that defines the global `canonform` and uses `Plotly` from its first view on.
 ///
 /// `canonform.view(element, geometry | [geometry, ...], options)` draws surfaces into one scene; the head of the
-/// script describes it all.
-pub const VIEWER_JS: &str = include_str!("viewer.js");
+/// script describes its interface.
+#[must_use]
+pub fn viewer_js() -> &'static str {
+    static SCRIPT: LazyLock<String> = LazyLock::new(|| {
+        include_str!("viewer.js").replace("COLOR_STOPS", &perceptual_stops().map(hex).join(" "))
+    });
+    &SCRIPT
+}

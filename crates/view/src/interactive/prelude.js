@@ -1,7 +1,7 @@
-// Before plotly's script, which reads canvases back: the letters it sets, and after every frame of a scene what might
-// lie under the pointer. Browsers warn of both. So the first is announced, and the second, which no view here asks
-// for, is left out. (Chromium without a graphics card reads every WebGL picture back itself and says "GPU stall due to
-// ReadPixels" on any page; that is not ours to mend.)
+// Runs before plotly, which reads canvases back: the text it measures, and after every frame of a scene the pixels
+// under the pointer. Browsers warn about both. The first is announced here; the second, which no view uses, is left
+// out. (Chromium without a graphics card reads every WebGL frame back itself and reports "GPU stall due to ReadPixels"
+// on any page.)
 (() => {
   'use strict';
   const getContext = HTMLCanvasElement.prototype.getContext;

@@ -1,27 +1,25 @@
-// Surfaces in the browser, on top of plotly's mesh3d. Defines one global, `canonform`; expects `Plotly`.
+// Draws surfaces with plotly's mesh3d. Defines one global, `canonform`; uses `Plotly`.
 //
 //   handle = canonform.view(element, geometry | [geometry, ...], options)
-//   handle.update(geometry | [geometry, ...], options)   other surfaces in the same scene; the camera stays
-//   handle.link(handle | [handle, ...])                  their cameras move together from now on
-//   handle.reset()                                       the camera as at the start
+//   handle.update(geometry | [geometry, ...], options)   shows other surfaces in the same scene; the camera stays
+//   handle.link(handle | [handle, ...])                  lets the cameras move together from now on
+//   handle.reset()                                       puts the camera back to its first position
 //   handle.element
 //
-// geometry: { positions, faces, values?, values_name?, color? }, arrays as base64 of little-endian f32 / u32 or as
-//   typed arrays. Several geometries lie over each other in one scene, where they are.
-// options: { title, linkedWith, opacity: [one for each geometry], names: [legend], range: [low, high] of the values }
+// geometry: { positions, faces, values?, values_name?, color? }; arrays are base64 of little-endian f32 / u32, or typed
+//   arrays. Several geometries share one scene and keep their positions.
+// options: { title, linkedWith, opacity: [one per geometry], names: [legend], range: [low, high] of the values }
 //
-// The element keeps the height that it has (20rem if none). Within it: p.canonform-title, div.canonform-scene
-// (plotly's), p.canonform-fallback instead of the scene where there is no WebGL. data-state of the element is
-// `drawing`, `ready` or `failed`.
+// The element keeps its height (20rem if it has none). It contains p.canonform-title and div.canonform-scene (plotly's),
+// or p.canonform-fallback instead of the scene if WebGL is missing. Its data-state is `drawing`, `ready` or `failed`.
 'use strict';
 
 const canonform = (() => {
-  // Viridis: equal steps look equal, in grey and to the colour-blind too.
-  const VIRIDIS = ['#440154', '#482878', '#3e4989', '#31688e', '#26828e', '#1f9e89', '#35b779', '#6ece58',
-    '#b5de2b', '#fde725'].map((color, i) => [i / 9, color]);
+  // The colour map of the static images, whose equally spaced colours `viewer_js` inserts.
+  const VIRIDIS = 'COLOR_STOPS'.split(' ').map((color, i, { length }) => [i / (length - 1), color]);
   const CLAY = '#b9b4aa';
   const NO_VALUE = '#9a9a9a';
-  // From the right front and slightly above, z up: the view of the static pictures.
+  // From the right front and slightly above, z up: the view of the static images.
   const CAMERA = { eye: { x: 0.75, y: -1.3, z: 0.32 }, up: { x: 0, y: 0, z: 1 }, center: { x: 0, y: 0, z: 0 } };
   const CONFIG = { displaylogo: false, displayModeBar: false, responsive: false, typesetMath: false };
   const LIGHT = { ambient: 0.45, diffuse: 0.6, specular: 0.04, roughness: 0.9, fresnel: 0.02 };
@@ -29,10 +27,10 @@ const canonform = (() => {
   const darkScheme = matchMedia('(prefers-color-scheme: dark)');
   const handles = new Set();
 
-  // plotly reads a little HTML in every text; names are to be shown as they are.
+  // plotly interprets some HTML in every text; names must appear as they are.
   const plain = (text) => String(text).replaceAll('&', '&amp;').replaceAll('<', '&lt;').replaceAll('>', '&gt;');
 
-  // Colours of the page, where it names them.
+  // Colours and font of the page.
   function theme() {
     const style = getComputedStyle(document.documentElement);
     const color = (name, light, dark) => style.getPropertyValue(name).trim() || (darkScheme.matches ? dark : light);
@@ -66,7 +64,7 @@ const canonform = (() => {
     const values = geometry.values ? decode(geometry.values, Float32Array) : null;
     const base = {
       type: 'mesh3d', x: strided(positions, 0), y: strided(positions, 1), z: strided(positions, 2),
-      // plotly takes small triangles for degenerate ones otherwise, and leaves them black.
+      // With the default, plotly considers small triangles degenerate and leaves them black.
       facenormalsepsilon: 0, vertexnormalsepsilon: 0,
       lighting: LIGHT, lightposition: { x: 2000, y: -4000, z: 6000 }, opacity, hoverinfo: 'skip',
       name: name === undefined ? '' : plain(name), showlegend: name !== undefined,
@@ -75,7 +73,7 @@ const canonform = (() => {
       ...base, i: strided(indices, 0), j: strided(indices, 1), k: strided(indices, 2), ...more,
     });
     if (!values) return [drawn(faces, { color: geometry.color || CLAY })];
-    // A face with a corner without value is grey.
+    // A face is grey if one of its corners has no value.
     const [known, unknown] = [[], []];
     for (let f = 0; f < faces.length; f += 3) {
       const face = faces.subarray(f, f + 3);
@@ -105,7 +103,7 @@ const canonform = (() => {
     return [low, high];
   }
 
-  // Ranges of the axes, and their lengths as shares of the diagonal: surfaces fill the scene whatever their size.
+  // Ranges of the axes, and their lengths as shares of the diagonal: surfaces of any size fill the scene.
   function bounds(data) {
     const ranges = ['x', 'y', 'z'].map((axis) => extent(data.flatMap((trace) => extent(trace[axis]))));
     const sides = ranges.map(([low, high]) => high - low);
@@ -117,15 +115,15 @@ const canonform = (() => {
     });
   }
 
-  // A colour bar takes its width from the scene.
+  // Width of a colour bar, in pixels, which the scene leaves free.
   const BAR = 64;
 
   function layout(data, [width, height], colors, hasLegend) {
     const sides = bounds(data);
     const share = data.some((trace) => trace.colorbar) ? Math.max(1 - BAR / width, 0.6) : 1;
-    // The field of view is that of the height: a narrow scene would cut off what it is turned to show.
+    // The field of view follows the height, so a narrow scene must show the surface smaller.
     const zoom = Math.min(1.4, (1.45 * share * width) / height);
-    // Without titles and ticks plotly does not set any text in 3D.
+    // Without titles and ticks plotly sets no text in 3D.
     const axis = (i) => ({
       visible: false, showspikes: false, title: { text: '' }, tickmode: 'array', tickvals: [], showticklabels: false,
       range: sides[i].range,
@@ -147,7 +145,7 @@ const canonform = (() => {
   function hasWebGL() {
     const canvas = document.createElement('canvas');
     const context = canvas.getContext('webgl2') || canvas.getContext('webgl');
-    // Browsers hold only a few contexts: this one is given back.
+    // Browsers allow only a few contexts: release this one.
     context?.getExtension('WEBGL_lose_context')?.loseContext();
     return context !== null;
   }
@@ -169,7 +167,7 @@ const canonform = (() => {
         this.listen();
         this.update(geometries, options);
       } else {
-        this.fail('This picture needs WebGL, which the browser does not offer.', geometries, options);
+        this.fail('This view needs WebGL, which the browser does not offer.', geometries, options);
       }
     }
 
@@ -195,13 +193,13 @@ const canonform = (() => {
       if (!this.observer) this.watch();
     }
 
-    // The scene takes what the title leaves of the element.
+    // The scene takes the height that the title leaves.
     fit() {
       const height = this.element.clientHeight - this.heading.offsetHeight;
       this.scene.style.height = `${Math.max(height, 40)}px`;
     }
 
-    // From the first drawing on.
+    // Starts after the first drawing.
     watch() {
       this.observer = new ResizeObserver(() => {
         if (this.scene.clientWidth === 0) return;
@@ -227,7 +225,7 @@ const canonform = (() => {
       }
     }
 
-    // Passes a movement on. Views that follow are deaf to the events of their own following, or they would pass it back.
+    // Passes a movement on. A view that follows ignores the events this causes, or it would pass them back.
     lead(camera) {
       if (!this.following) for (const other of this.linked) other.follow(camera);
     }
@@ -254,7 +252,7 @@ const canonform = (() => {
     }
 
     listen() {
-      // A wheel over a picture scrolls the page until the picture was clicked: pages stay scrollable.
+      // Until the scene is clicked, the wheel scrolls the page.
       this.scene.addEventListener('wheel', (event) => {
         if (!this.scene.contains(document.activeElement)) event.stopPropagation();
       }, { capture: true });
@@ -292,7 +290,7 @@ const canonform = (() => {
   const cross = (a, b) => ({ x: a.y * b.z - a.z * b.y, y: a.z * b.x - a.x * b.z, z: a.x * b.y - a.y * b.x });
   const unit = (a) => scaled(a, 1 / (Math.hypot(a.x, a.y, a.z) || 1));
 
-  // The camera walked by angles to its right and upwards around what it looks at.
+  // The camera moved around its target by an angle to the right or upwards.
   function turned(camera, right, up) {
     const across = unit(cross(camera.up, camera.eye));
     const above = unit(cross(camera.eye, across));

@@ -1,49 +1,45 @@
-//! The scale beside a picture of numbers: the colour map with ticks, written in pixels.
+//! A colour bar with ticks beside an image. One unit of the canvas is one pixel here.
 
 use mesh::TriMesh;
-use plotters::coord::ranged1d::Ranged;
-use plotters::coord::types::RangedCoordf64;
-use plotters::prelude::{BLACK, DrawingBackend};
 
-use super::{Background, ISOLINE_LIGHT, RenderOptions, Surface, render, value_range};
-use crate::canvas::{Anchor, Canvas, DrawError, Drawing, Type, ink, text_width};
+use super::draw::render;
+use super::options::{Background, RenderOptions};
+use super::surface::{ISOLINE_LIGHT, Surface, value_range};
+use crate::canvas::{Anchor, Canvas, TextStyle, text_width};
 use crate::color::{Rgb, from_linear, mix, perceptual, to_linear};
-use crate::numbers::Numbers;
+use crate::numbers::{Numbers, ticks};
 use crate::{RgbaImage, ViewError};
 
-/// Draws like [`render`] and sets a colour bar with numbers and its `name` to the right of the mesh, in a
-/// picture of the same size.
+/// Draws like [`render`], with a colour bar, its ticks and its `name` to the right of the mesh, in an image of the
+/// same size.
 ///
-/// There is no bar where there is nothing to tell: a surface without numbers, or without a finite one, or
-/// a picture that the bar would take more than half of.
+/// There is no bar if the surface has no finite numbers, or if the bar would take more than half of the image.
 ///
 /// # Errors
-/// [`ViewError::Draw`] when text cannot be written.
+/// [`ViewError::Draw`] if text cannot be written.
 pub fn render_with_bar(mesh: &TriMesh, options: &RenderOptions, name: &str) -> Result<RgbaImage, ViewError> {
     let Some(bar) = Bar::new(options, name) else { return Ok(render(mesh, options)) };
     let room = RenderOptions { width: bar.size.0 - bar.width(), ..options.clone() };
     let mut image = bar.beside(&render(mesh, &room), options.background);
     bar.paint(&mut image);
-    let failed = |e: DrawError| ViewError::Draw { figure: "colour bar".into(), reason: e.reason() };
     let pen = pen(options.background);
-    let covers = ink(&bar).map_err(failed)?;
-    for (pixel, cover) in image.pixels_mut().iter_mut().zip(covers) {
+    for (pixel, cover) in image.pixels_mut().iter_mut().zip(bar.labels().coverage()?) {
         *pixel = over(*pixel, pen, f64::from(cover) / 255.0);
     }
     Ok(image)
 }
 
-/// Where everything is, in pixels.
+/// The bar and its labels, in pixels.
 struct Bar {
-    /// Of the whole picture.
+    /// Size of the whole image.
     size: (u32, u32),
-    /// Of the type.
+    /// Type size.
     em: f64,
-    /// The values at the lower and the upper end.
+    /// Values at the lower and the upper end.
     range: [f64; 2],
     /// Steps between isolines, 0 for none.
     steps: u32,
-    /// Values with their texts.
+    /// Values with their labels.
     ticks: Vec<(f64, String)>,
     name: String,
 }
@@ -52,7 +48,7 @@ impl Bar {
     fn new(options: &RenderOptions, name: &str) -> Option<Self> {
         let Surface::Scalars { values, range, isolines } = &options.surface else { return None };
         let [low, high] = range.or_else(|| value_range(values))?;
-        // What the surface is painted with where there is one value only.
+        // The range of the surface's colours if there is only one value.
         let high = if high > low { high } else { low + 1.0 };
         if !(high - low).is_finite() {
             return None;
@@ -63,7 +59,7 @@ impl Bar {
             Self { size, em, range: [low, high], steps: *isolines, ticks: Vec::new(), name: name.to_owned() };
         let ticks = bar.tick_values();
         let numbers = Numbers::for_ticks(&ticks);
-        bar.name = match numbers.unit("").trim_end_matches(", ") {
+        bar.name = match numbers.unit("").as_str() {
             "" => bar.name,
             power => format!("{} ({power})", bar.name),
         };
@@ -78,12 +74,12 @@ impl Bar {
             return vec![low, high];
         }
         let most = (self.height() / (2.5 * self.em)).clamp(2.0, 8.0) as usize;
-        let values = RangedCoordf64::from(low..high).key_points(most);
+        let values = ticks(self.range, most);
         if values.len() < 2 { vec![low, high] } else { values }
     }
 
-    fn text(&self) -> Type {
-        Type { color: BLACK, ..Type::new(self.em as u32, Anchor::Left) }
+    fn style(&self, anchor: Anchor) -> TextStyle {
+        TextStyle::new(self.em as u32, anchor).colored([0; 3])
     }
 
     fn height(&self) -> f64 {
@@ -94,14 +90,11 @@ impl Bar {
         ((f64::from(self.size.1) - self.height()) / 2.0).round()
     }
 
-    /// Width of all numbers.
-    fn numbers(&self) -> f64 {
-        self.ticks.iter().map(|(_, text)| text_width(text, self.text())).fold(0.0, f64::max).ceil()
-    }
-
-    /// From the bar's left side to the right side of the picture: the bar, ticks, numbers, the name.
+    /// From the left side of the bar to the right side of the image: the bar, ticks, numbers and name.
     fn extent(&self) -> f64 {
-        self.em * (1.0 + 0.8) + self.numbers() + self.em * 2.1
+        let width = |(_, text): &(f64, String)| text_width(text, self.style(Anchor::Left));
+        let numbers = self.ticks.iter().map(width).fold(0.0, f64::max).ceil();
+        self.em * (1.0 + 0.8) + numbers + self.em * 2.1
     }
 
     fn left(&self) -> f64 {
@@ -113,13 +106,13 @@ impl Bar {
         (self.extent() + 0.3 * self.em) as u32
     }
 
-    /// Row at which a value is.
+    /// The row of a value.
     fn row(&self, value: f64) -> f64 {
         let [low, high] = self.range;
         self.top() + self.height() * (1.0 - (value - low) / (high - low))
     }
 
-    /// The picture of the mesh on the left of an empty one.
+    /// The image of the mesh at the left of an empty one.
     fn beside(&self, mesh: &RgbaImage, background: Background) -> RgbaImage {
         let empty = match background {
             Background::White => [255; 4],
@@ -134,6 +127,22 @@ impl Bar {
         image
     }
 
+    /// Ticks, numbers and name, in black.
+    fn labels(&self) -> Canvas {
+        let mut canvas = Canvas::new(self.size.0, self.size.1);
+        let right = self.left() + self.em;
+        for (value, text) in &self.ticks {
+            let row = self.row(*value);
+            canvas.line((right, row), (right + 0.4 * self.em, row), (self.em / 14.0).max(1.0), [0; 3]);
+            canvas.text(text, (right + 0.8 * self.em, row), self.style(Anchor::Left));
+        }
+        let middle = self.top() + self.height() / 2.0;
+        let place = (f64::from(self.size.0) - 1.1 * self.em, middle);
+        canvas.text(&self.name, place, self.style(Anchor::Center).up());
+        canvas
+    }
+
+    /// Fills the bar with the colour map and its isolines.
     fn paint(&self, image: &mut RgbaImage) {
         let (left, right) = (self.left() as usize, (self.left() + self.em) as usize);
         let (top, height) = (self.top() as usize, self.height() as usize);
@@ -152,28 +161,10 @@ impl Bar {
     }
 }
 
-impl Drawing for Bar {
-    fn size(&self) -> (u32, u32) {
-        self.size
-    }
-
-    fn draw<DB: DrawingBackend>(&self, canvas: &Canvas<DB>) -> Result<(), DrawError> {
-        let right = self.left() + self.em;
-        for (value, text) in &self.ticks {
-            let row = self.row(*value);
-            canvas.line((right, row), (right + 0.4 * self.em, row), (self.em / 14.0).max(1.0), BLACK)?;
-            canvas.text(text, (right + 0.8 * self.em, row), self.text())?;
-        }
-        let middle = self.top() + self.height() / 2.0;
-        let name = Type { anchor: Anchor::Center, ..self.text().up() };
-        canvas.text(&self.name, (f64::from(self.size.0) - 1.1 * self.em, middle), name)
-    }
-}
-
-/// The colour that is read best on a background: dark, unless that is dark itself.
+/// A text colour that contrasts with the background.
 fn pen(background: Background) -> Rgb {
     let light = match background {
-        // Whatever is behind: as far from white as from black.
+        // As far from white as from black.
         Background::Transparent => return [118; 3],
         Background::White => 1.0,
         Background::Color(color) => {
@@ -184,7 +175,7 @@ fn pen(background: Background) -> Rgb {
     if light > 0.18 { [34; 3] } else { [235; 3] }
 }
 
-/// A pixel with `share` of it covered by an opaque colour.
+/// A pixel of which an opaque colour covers `share`.
 fn over([r, g, b, alpha]: [u8; 4], color: Rgb, share: f64) -> [u8; 4] {
     if share <= 0.0 {
         return [r, g, b, alpha];
@@ -210,7 +201,7 @@ mod tests {
     }
 
     #[test]
-    fn a_bar_stands_beside_the_mesh_in_a_picture_of_the_same_size() {
+    fn the_bar_shares_the_image_with_the_mesh() {
         let options = options(heights());
         let (plain, with_bar) =
             (render(&sphere(12), &options), render_with_bar(&sphere(12), &options, "z").unwrap());
@@ -229,18 +220,18 @@ mod tests {
     }
 
     #[test]
-    fn ticks_are_round_numbers_inside_the_range() {
+    fn ticks_are_round_and_inside_the_range() {
         let bar = |values| Bar::new(&options(values), "field").unwrap();
         let written = |bar: Bar| bar.ticks.into_iter().map(|(_, text)| text).collect::<Vec<_>>();
         assert_eq!(written(bar(vec![0.0, 20.0])), ["0", "5", "10", "15", "20"]);
         assert_eq!(bar(vec![0.0, 20_000.0]).name, "field (×10³)");
-        // One value, and values that floating-point numbers hardly tell apart.
+        // A single value, and two neighbouring floating-point numbers.
         assert_eq!(bar(vec![3.0, 3.0]).range, [3.0, 4.0]);
         assert_eq!(bar(vec![1e17, 1e17 + 16.0]).ticks.len(), 2);
     }
 
     #[test]
-    fn what_has_nothing_to_tell_has_no_bar() {
+    fn surfaces_without_finite_numbers_and_small_images_have_no_bar() {
         let has_bar = |options: &RenderOptions| Bar::new(options, "").is_some();
         assert!(has_bar(&options(heights())));
         assert!(!has_bar(&options(vec![f64::NAN])) && !has_bar(&options(vec![])));
@@ -251,7 +242,7 @@ mod tests {
     }
 
     #[test]
-    fn ink_is_seen_on_every_background() {
+    fn labels_contrast_with_every_background() {
         let on = |background| {
             let options = RenderOptions { background, ..options(heights()) };
             let image = render_with_bar(&sphere(12), &options, "z").unwrap();
@@ -274,7 +265,7 @@ mod tests {
     }
 
     #[test]
-    fn covering_keeps_what_is_below_visible() {
+    fn a_partly_covered_pixel_mixes_both_colours() {
         assert_eq!(over([10, 20, 30, 40], [0; 3], 0.0), [10, 20, 30, 40]);
         assert_eq!(over([10, 20, 30, 40], [1, 2, 3], 1.0), [1, 2, 3, 255]);
         assert_eq!(over([200, 200, 200, 255], [0; 3], 0.5), [100, 100, 100, 255]);

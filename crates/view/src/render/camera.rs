@@ -1,37 +1,35 @@
-//! Where the viewer stands, and the scale at which the mesh fills the picture.
+//! The direction of the view, and the scale at which the mesh fills the image.
 
 use mesh::TriMesh;
 use nalgebra::{Matrix3, Point3, SymmetricEigen, Vector3};
 
-/// Direction of an orthographic view: parallel rays, no vanishing point.
+/// Direction of an orthographic view.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum View {
-    /// For shapes that stand: `up` points up in the picture.
+    /// For shapes that stand upright: `up` points up in the image.
     ///
-    /// At azimuth and elevation 0 the x axis points right (the y axis when `up` is along x).
+    /// At azimuth and elevation 0 the x axis points right (the y axis if `up` is along x).
     Upright {
-        /// Angle by which the viewer walks counter-clockwise (seen from above) around the shape, in
-        /// degrees.
+        /// Angle in degrees by which the viewer moves around the shape, counter-clockwise seen from above.
         azimuth: f64,
-        /// Angle by which the viewer looks down, in degrees.
+        /// Angle in degrees by which the viewer looks down.
         elevation: f64,
-        /// Direction that is up, of any length; z when zero or not finite.
+        /// Up direction, of any length; z if zero or not finite.
         up: Vector3<f64>,
     },
-    /// From anywhere.
+    /// From any direction.
     Along {
-        /// Direction from the shape to the viewer, of any length; -y when zero or not finite.
+        /// Direction from the shape to the viewer, of any length; -y if zero or not finite.
         towards: Vector3<f64>,
-        /// Direction that is up in the picture, as far as it is across `towards`; z, then x, when there
-        /// is nothing of it across.
+        /// Up direction in the image after projection along `towards`; z, then x, if nothing remains of it.
         up: Vector3<f64>,
     },
-    /// For canonical forms, which have no up: the longest principal axis of the surface runs along the
-    /// longer side of the picture (upright in a square one), the second along the other side.
+    /// For canonical forms, which have no up: the longest principal axis of the surface runs along the longer side
+    /// of the image (vertically in a square one), the second one along the other side.
     ///
-    /// Each axis points so that the surface's longer tail lies left or below, which gives two forms of one shape the same
-    /// picture although their axes may come with opposite signs. A mirror image is seen from its other
-    /// side: the outline is the same.
+    /// Axes are oriented such that the longer tail of the surface is left or below, so two forms of one shape give
+    /// the same image whatever the signs of their axes. A mirror image is seen from its other side, with the same
+    /// outline.
     Principal,
 }
 
@@ -42,22 +40,22 @@ impl Default for View {
     }
 }
 
-/// An orthographic camera whose picture plane is measured in samples.
+/// An orthographic camera whose image plane is measured in samples.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Camera {
     /// Rows: right, up, towards the viewer; orthonormal.
     pub(super) axes: Matrix3<f64>,
     /// Samples per mesh unit.
     scale: f64,
-    /// Turned coordinates of the picture's centre, and the depth counted as zero.
+    /// Rotated coordinates of the centre of the image, at depth zero.
     center: Vector3<f64>,
-    /// Half the picture, in samples.
+    /// Half the size of the image, in samples.
     half: [f64; 2],
 }
 
 impl Camera {
-    /// The camera that sees all `faces` in a picture of `size` samples with an empty `margin`, a share
-    /// of the shorter side.
+    /// The camera that sees all `faces` in an image of `size` samples with an empty `margin`, a share of the shorter
+    /// side.
     pub(super) fn fit(
         mesh: &TriMesh,
         faces: &[[usize; 3]],
@@ -71,7 +69,7 @@ impl Camera {
         let border = 2.0 * margin * half[0].min(half[1]);
         let room = |i: usize| (2.0 * (half[i] - border) / (high[i] - low[i])).max(0.0);
         let scale = room(0).min(room(1));
-        // No faces at all, or all in one point: any scale does.
+        // Without faces, or with all in one point, any scale will do.
         let scale = if scale.is_finite() { scale } else { 1.0 };
         let center = if faces.is_empty() { Vector3::zeros() } else { low + (high - low) / 2.0 };
         Self { axes, scale, center, half }
@@ -84,7 +82,7 @@ impl Camera {
     }
 }
 
-/// Lower and upper corner of the faces' bounding box, turned by `axes`.
+/// Lower and upper corner of the bounding box of the faces, rotated by `axes`.
 fn bounds(mesh: &TriMesh, faces: &[[usize; 3]], axes: &Matrix3<f64>) -> [Vector3<f64>; 2] {
     let nothing = [Vector3::repeat(f64::INFINITY), Vector3::repeat(f64::NEG_INFINITY)];
     faces.iter().flatten().fold(nothing, |[low, high], &v| {
@@ -93,17 +91,18 @@ fn bounds(mesh: &TriMesh, faces: &[[usize; 3]], axes: &Matrix3<f64>) -> [Vector3
     })
 }
 
-/// Width and height of the faces as seen in an upright picture, in mesh units.
+/// Width and height of the faces in an upright image, in mesh units.
 pub(super) fn extent(mesh: &TriMesh, faces: &[[usize; 3]], view: &View) -> [f64; 2] {
     let [low, high] = bounds(mesh, faces, &view.axes(mesh, faces, false));
     [high.x - low.x, high.y - low.y]
 }
 
 impl View {
-    /// The same view of `mesh` in a picture that is wider than high (`landscape`) or not, held fast: it
-    /// shows other meshes from there too.
+    /// The direction in which this view shows `mesh`, independent of the mesh, for images that are wider than high
+    /// (`landscape`) or not. Use it to show other meshes from the same direction.
+    #[must_use]
     pub fn fixed(&self, mesh: &TriMesh, landscape: bool) -> Self {
-        let axes = self.axes(mesh, &super::drawable_faces(mesh), landscape);
+        let axes = self.axes(mesh, &drawable_faces(mesh), landscape);
         Self::Along { towards: axes.row(2).transpose(), up: axes.row(1).transpose() }
     }
 
@@ -121,11 +120,17 @@ impl View {
     }
 }
 
+/// The faces whose three corners exist and are finite, as plain indices.
+pub(super) fn drawable_faces(mesh: &TriMesh) -> Vec<[usize; 3]> {
+    let usable = |v: &usize| mesh.positions.get(*v).is_some_and(|p| p.iter().all(|c| c.is_finite()));
+    mesh.faces.iter().map(|f| f.map(|v| v.index())).filter(|f| f.iter().all(usable)).collect()
+}
+
 fn rows(right: Vector3<f64>, up: Vector3<f64>) -> Matrix3<f64> {
     Matrix3::from_rows(&[right.transpose(), up.transpose(), right.cross(&up).transpose()])
 }
 
-/// The vector at length one; `None` when it has no direction.
+/// The unit vector in this direction; `None` for a vector without direction.
 fn direction(vector: Vector3<f64>) -> Option<Vector3<f64>> {
     vector.try_normalize(0.0).filter(|unit| unit.iter().all(|c| c.is_finite()))
 }
@@ -151,10 +156,10 @@ fn upright(azimuth: f64, elevation: f64, up: Vector3<f64>) -> Matrix3<f64> {
     rows(right_turned, up * elevation.cos() - towards_turned * elevation.sin())
 }
 
-/// The two longest principal axes of the surface, orthonormal; x and y when it has no extent.
+/// The two longest principal axes of the surface, orthonormal; x and y if it has no extent.
 fn principal_axes(mesh: &TriMesh, faces: &[[usize; 3]]) -> [Vector3<f64>; 2] {
-    // Four weighted points a face, its corners and its centroid, have exactly the first and second
-    // moments of the face: the axes are those of the surface however it is cut into triangles.
+    // Four weighted points, the corners and the centroid, have exactly the first and second moments of a face, so
+    // the axes do not depend on the triangulation.
     let points: Vec<(f64, Vector3<f64>)> = faces
         .iter()
         .flat_map(|f| {
@@ -186,7 +191,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_view_from_anywhere_is_orthonormal_and_looks_where_it_should() {
+    fn views_from_any_direction_are_orthonormal() {
         let nan = Vector3::repeat(f64::NAN);
         for towards in [
             Vector3::x(),
@@ -206,11 +211,11 @@ mod tests {
     }
 
     #[test]
-    fn upright_views_put_the_axes_where_they_say() {
+    fn upright_views_follow_azimuth_and_elevation() {
         let front = upright(0.0, 0.0, Vector3::z());
         assert!((front - rows(Vector3::x(), Vector3::z())).norm() < 1e-15);
         assert!((front * -Vector3::y() - Vector3::z()).norm() < 1e-15, "the viewer stands at -y");
-        // A quarter walk counter-clockwise from -y leads to +x.
+        // A quarter turn counter-clockwise from -y leads to +x.
         let side = upright(90.0, 0.0, Vector3::z());
         assert!((side * Vector3::x() - Vector3::z()).norm() < 1e-12);
         // From straight above, z points at the viewer.

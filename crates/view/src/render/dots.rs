@@ -1,10 +1,10 @@
-//! Points as something that can be drawn.
+//! Point clouds as meshes.
 
 use mesh::TriMesh;
 use nalgebra::{Point3, Vector3};
 use surface::VertexId;
 
-/// A small octahedron around every point: six vertices a point, in their order.
+/// A small octahedron around every point: six vertices per point, in the order of the points.
 #[must_use]
 pub fn dots(points: &[Point3<f64>], radius: f64) -> TriMesh {
     const FACES: [[u32; 3]; 8] =
@@ -23,7 +23,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn dots_are_closed_bodies_around_their_points() {
+    fn dots_are_outward_oriented_octahedra_around_their_points() {
         let points = [Point3::new(1.0, 2.0, 3.0), Point3::origin()];
         let mesh = dots(&points, 0.5);
         assert_eq!((mesh.n_vertices(), mesh.n_faces()), (12, 16));
@@ -32,7 +32,7 @@ mod tests {
             assert!(own.iter().all(|p| ((p - point).norm() - 0.5).abs() < 1e-15));
             for face in 8 * dot..8 * dot + 8 {
                 let [a, ..] = mesh.triangle(face);
-                assert!(mesh.area_vector(face).dot(&(a - point)) > 0.0, "outside is outside");
+                assert!(mesh.area_vector(face).dot(&(a - point)) > 0.0, "outward");
             }
         }
         assert_eq!(dots(&[], 1.0), TriMesh::default());

@@ -1,16 +1,15 @@
-//! Normals for smooth shading that need no consistent orientation.
+//! Normals for smooth shading of faces without consistent orientation.
 
 use mesh::TriMesh;
 use nalgebra::Vector3;
 
 use super::camera::Camera;
 
-/// One unit normal for each corner of each face, in the camera's axes (right, up, towards the viewer),
-/// on the side of the face that the viewer sees.
+/// One unit normal per corner of every face, in camera axes (right, up, towards the viewer), on the visible side.
 ///
-/// A corner's normal sums the area vectors of the faces around its vertex that bend by less than
-/// `crease` degrees against the corner's own face, each first turned to that face's side: the outcome
-/// does not depend on how faces are oriented, and the two sides of a thin sheet do not cancel.
+/// The normal of a corner sums the area vectors of the faces at its vertex whose angle to the corner's own face is
+/// below `crease` degrees, each first turned to the side of that face. So the result does not depend on the
+/// orientation of faces, and the two sides of a thin sheet do not cancel.
 pub(super) fn corner_normals(
     mesh: &TriMesh,
     faces: &[[usize; 3]],
@@ -44,7 +43,7 @@ pub(super) fn corner_normals(
     faces.iter().enumerate().map(|(f, face)| face.map(|v| normal(f, v))).collect()
 }
 
-/// The faces at each vertex, back to back.
+/// The faces at each vertex, in compressed rows.
 struct FacesAround {
     offsets: Vec<usize>,
     faces: Vec<u32>,

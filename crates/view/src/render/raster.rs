@@ -1,16 +1,16 @@
-//! Which face is seen at each sample, and how near it is.
+//! The visible face and its depth at each sample.
 
 use mesh::TriMesh;
 use nalgebra::Vector3;
 
 use super::camera::Camera;
 
-/// A face on the picture plane.
+/// A face projected onto the image plane.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Projected {
     /// The three vertices.
     pub(super) vertices: [usize; 3],
-    /// Barycentric coordinates at the picture's origin.
+    /// Barycentric coordinates at the origin of the image.
     origin: Vector3<f64>,
     /// Their change per sample to the right and down.
     pub(super) slopes: [Vector3<f64>; 2],
@@ -19,7 +19,7 @@ pub(super) struct Projected {
 }
 
 impl Projected {
-    /// `None` for a face seen edge-on, which covers nothing.
+    /// `None` for a face seen edge-on.
     fn new(vertices: [usize; 3], corners: [[f64; 3]; 3]) -> Option<Self> {
         let [a, b, c] = corners;
         let double_area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
@@ -28,7 +28,7 @@ impl Projected {
         if double_area.abs() <= rounding || !double_area.is_finite() {
             return None;
         }
-        // The coordinate of a corner is the area of the triangle that the opposite edge spans.
+        // The coordinate of a corner is the relative area of the triangle over the opposite edge.
         let edge = |p: [f64; 3], q: [f64; 3]| {
             let (right, down) = ((p[1] - q[1]) / double_area, (q[0] - p[0]) / double_area);
             [-(right * p[0] + down * p[1]), right, down]
@@ -43,7 +43,7 @@ impl Projected {
         })
     }
 
-    /// Barycentric coordinates at the centre of a sample; all in 0..=1 inside.
+    /// Barycentric coordinates at the centre of a sample; all in 0..=1 inside the face.
     pub(super) fn at(&self, column: usize, row: usize) -> Vector3<f64> {
         self.origin + self.slopes[0] * (column as f64 + 0.5) + self.slopes[1] * (row as f64 + 0.5)
     }
@@ -53,25 +53,25 @@ impl Projected {
 pub(super) struct DepthBuffer {
     /// Columns and rows of samples.
     pub(super) size: [usize; 2],
-    /// Depth in samples, larger is nearer; minus infinity where nothing is seen.
+    /// Depth in samples, larger is nearer; minus infinity for the background.
     pub(super) depth: Vec<f32>,
-    /// Index into `projected`; [`DepthBuffer::NOTHING`] where nothing is seen.
+    /// Index into `projected`; [`DepthBuffer::BACKGROUND`] for the background.
     pub(super) face: Vec<u32>,
-    /// Every drawable face, in order; `None` when edge-on.
+    /// All drawable faces in order; `None` for those seen edge-on.
     pub(super) projected: Vec<Option<Projected>>,
 }
 
 impl DepthBuffer {
-    pub(super) const NOTHING: u32 = u32::MAX;
+    pub(super) const BACKGROUND: u32 = u32::MAX;
 
-    /// Draws all faces. Of two faces equally near the first stays.
+    /// Draws all faces. Of two faces at the same depth the first stays.
     pub(super) fn draw(mesh: &TriMesh, faces: &[[usize; 3]], camera: &Camera, size: [u32; 2]) -> Self {
         let size = size.map(|s| s as usize);
         let points: Vec<[f64; 3]> = mesh.positions.iter().map(|p| camera.project(p)).collect();
         let mut buffer = Self {
             size,
             depth: vec![f32::NEG_INFINITY; size[0] * size[1]],
-            face: vec![Self::NOTHING; size[0] * size[1]],
+            face: vec![Self::BACKGROUND; size[0] * size[1]],
             projected: Vec::with_capacity(faces.len()),
         };
         for (f, &face) in faces.iter().enumerate() {
@@ -97,7 +97,7 @@ impl DepthBuffer {
         for row in rows {
             for column in columns.clone() {
                 let at = face.at(column, row);
-                // A hair of slack closes the seams between neighbours.
+                // A little slack closes the seams between neighbours.
                 if at.min() < -1e-9 {
                     continue;
                 }

@@ -1,13 +1,14 @@
-//! Light on the visible samples, and their average in each pixel.
+//! Lighting of the visible samples and their average per pixel.
 
 use nalgebra::Vector3;
 
+use super::options::Background;
 use super::raster::DepthBuffer;
-use super::{Background, Paint};
+use super::surface::Paint;
 use crate::RgbaImage;
 use crate::color::{from_linear, to_linear};
 
-/// A light far away, in the camera's axes.
+/// Directions towards distant lights, in camera axes.
 struct Lights {
     key: Vector3<f32>,
     fill: Vector3<f32>,
@@ -25,15 +26,15 @@ impl Lights {
         }
     }
 
-    /// Light that a surface of linear colour `base` sends to the viewer. `open` is the share of the
-    /// surroundings that reaches the point.
+    /// The light that a surface of linear colour `base` reflects to the viewer. `open` is the share of ambient
+    /// light that reaches the point.
     fn reflect(&self, base: Vector3<f32>, normal: Vector3<f32>, open: f32) -> Vector3<f32> {
         let facing = normal.z.clamp(0.0, 1.0);
         let height = 0.5 + 0.5 * normal.y;
         let sky = Vector3::new(0.33, 0.35, 0.39);
         let ground = Vector3::new(0.16, 0.145, 0.135);
         let ambient = (ground + (sky - ground) * height) * open;
-        // Light bends a little around the form, as in a wide studio lamp: no hard terminator.
+        // Light wraps around the surface a little, as from a wide studio lamp, so there is no hard terminator.
         let wrapped = |light: &Vector3<f32>| ((normal.dot(light) + 0.10) / 1.10).max(0.0);
         let key = Vector3::new(0.80, 0.775, 0.73) * (wrapped(&self.key) * (0.35 + 0.65 * open));
         let fill = Vector3::new(0.12, 0.135, 0.16) * (wrapped(&self.fill) * open);
@@ -44,11 +45,11 @@ impl Lights {
     }
 }
 
-/// How much nearby surface hides the surroundings of a point, from the depth buffer alone.
+/// Ambient occlusion in screen space, from the depth buffer alone.
 struct Openness<'a> {
     buffer: &'a DepthBuffer,
-    /// Sample offsets, one list for each place of a sample inside its pixel: together they cover a disc
-    /// evenly, so that the average over a pixel has no noise.
+    /// Offsets to probe, one list for each position of a sample in its pixel. Together they cover a disc evenly,
+    /// so the average over a pixel has no noise.
     offsets: Vec<Vec<[isize; 2]>>,
     /// Radius of the disc, in samples.
     radius: f32,
@@ -62,7 +63,7 @@ impl<'a> Openness<'a> {
         let radius = (0.07 * buffer.size[0].min(buffer.size[1]) as f32).max(2.0);
         let places = samples * samples;
         let total = places * Self::PROBES;
-        // A spiral of equal areas; the golden angle spreads neighbours in number all around.
+        // A spiral of equal areas by the golden angle.
         let golden = std::f32::consts::PI * (3.0 - 5.0_f32.sqrt());
         let spiral = |i: usize| {
             let (r, angle) = (radius * ((i as f32 + 0.5) / total as f32).sqrt(), golden * i as f32);
@@ -74,7 +75,7 @@ impl<'a> Openness<'a> {
         Self { buffer, offsets, radius, samples }
     }
 
-    /// 1 in the open, towards 0 in a deep fold.
+    /// 1 for a point in the open, towards 0 in a deep fold.
     fn at(&self, column: usize, row: usize, normal: Vector3<f32>) -> f32 {
         let [width, height] = self.buffer.size;
         let here = self.buffer.depth[row * width + column];
@@ -91,8 +92,8 @@ impl<'a> Openness<'a> {
             }
             let towards = Vector3::new(*dx as f32, -*dy as f32, depth - here);
             let distance = towards.norm().max(1.0);
-            // Ten degrees of slack keep a flat surface from shading itself by rounding; far blockers
-            // count less, or a leg would darken the body metres behind it.
+            // Ten degrees of slack keep a flat surface from occluding itself by rounding. Distant blockers count
+            // less, or a leg would darken the body far behind it.
             let blocked = (normal.dot(&towards) / distance - 0.17).max(0.0);
             hidden += blocked / (1.0 + (distance / self.radius).powi(2));
         }
@@ -100,7 +101,7 @@ impl<'a> Openness<'a> {
     }
 }
 
-/// Lights every visible sample and averages `samples` x `samples` of them to a pixel.
+/// Lights every visible sample and averages `samples` x `samples` of them per pixel.
 pub(super) fn shade(
     buffer: &DepthBuffer,
     normals: &[[Vector3<f32>; 3]],

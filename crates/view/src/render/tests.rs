@@ -2,6 +2,7 @@ use mesh::TriMesh;
 use nalgebra::{Point3, Rotation3, Vector3};
 
 use super::*;
+use crate::RgbaImage;
 use crate::testing::{mesh, sphere};
 
 const FRONT: View = View::Upright { azimuth: 0.0, elevation: 0.0, up: Vector3::new(0.0, 0.0, 1.0) };
@@ -24,13 +25,13 @@ fn light(pixel: [u8; 4]) -> f64 {
     f64::from(pixel[0]) + f64::from(pixel[1]) + f64::from(pixel[2])
 }
 
-/// Mean absolute difference of the channels of two pictures.
+/// Mean absolute difference of the channels of two images.
 fn difference(a: &RgbaImage, b: &RgbaImage) -> f64 {
     let (a, b) = (a.pixels().as_flattened(), b.pixels().as_flattened());
     a.iter().zip(b).map(|(x, y)| f64::from(x.abs_diff(*y))).sum::<f64>() / a.len() as f64
 }
 
-/// A closed, lopsided body: no two principal axes alike, none symmetric.
+/// A closed body with three different principal axes and no symmetry along them.
 fn pear() -> TriMesh {
     let mut pear = sphere(24);
     for p in &mut pear.positions {
@@ -41,7 +42,7 @@ fn pear() -> TriMesh {
 }
 
 #[test]
-fn a_sphere_is_a_disc_of_the_radius_the_margin_leaves() {
+fn a_sphere_is_a_disc_that_fills_the_image_up_to_the_margin() {
     let options = RenderOptions { margin: 0.1, ..small(FRONT) };
     let image = render(&sphere(60), &options);
     let radius = (covered(&image) / std::f64::consts::PI).sqrt();
@@ -57,19 +58,19 @@ fn a_sphere_is_a_disc_of_the_radius_the_margin_leaves() {
 }
 
 #[test]
-fn a_sphere_looks_the_same_from_everywhere_and_is_lit_from_the_upper_left() {
+fn a_sphere_looks_the_same_from_all_sides_and_is_lit_from_the_upper_left() {
     let ball = sphere(40);
     let front = render(&ball, &small(FRONT));
     let other = render(&ball, &small(View::Upright { azimuth: 77.0, elevation: 50.0, up: Vector3::y() }));
     assert!(difference(&front, &other) < 0.5, "{}", difference(&front, &other));
     let [upper_left, lower_right] = [front.pixel(45, 40), front.pixel(75, 80)].map(light);
     assert!(upper_left > 1.3 * lower_right, "{upper_left} {lower_right}");
-    // The light stands off the diagonal, yet no two points of a sphere lit alike differ.
+    // Neighbouring points have almost the same shade.
     assert!((light(front.pixel(59, 20)) - light(front.pixel(60, 20))).abs() < 12.0);
 }
 
 #[test]
-fn orientation_of_faces_does_not_matter() {
+fn the_orientation_of_faces_does_not_matter() {
     let mut flipped = pear();
     let expected = render(&flipped, &small(View::default()));
     for (i, face) in flipped.faces.iter_mut().enumerate() {
@@ -82,7 +83,7 @@ fn orientation_of_faces_does_not_matter() {
 
 #[test]
 fn the_near_face_hides_the_far_one() {
-    // Seen from -y: red at y = -1 before blue at y = 1, in either order of the list.
+    // Seen from -y, yellow at y = -1 is before violet at y = 1, in either order of the list.
     let positions = [
         [-1.0, 1.0, -1.0],
         [1.0, 1.0, -1.0],
@@ -91,15 +92,16 @@ fn the_near_face_hides_the_far_one() {
         [1.0, -1.0, -1.0],
         [0.0, -1.0, 1.0],
     ];
-    let colors = [[[0, 0, 255]; 3], [[255, 0, 0]; 3]].concat();
+    let values = [[0.0; 3], [1.0; 3]].concat();
     for faces in [[[0, 1, 2], [3, 4, 5]], [[3, 4, 5], [0, 1, 2]]] {
-        let options = RenderOptions { surface: Surface::Colors(colors.clone()), ..small(FRONT) };
-        let [r, _, b, a] = render(&mesh(&positions, &faces), &options).pixel(60, 70);
-        assert!(a == 255 && r > 150 && b < 90, "{r} {b}");
+        let surface = Surface::Scalars { values: values.clone(), range: None, isolines: 0 };
+        let options = RenderOptions { surface, ..small(FRONT) };
+        let [r, g, b, a] = render(&mesh(&positions, &faces), &options).pixel(60, 70);
+        assert!(a == 255 && r > 150 && g > 150 && b < 90, "{r} {g} {b}");
         let back = View::Upright { azimuth: 180.0, elevation: 0.0, up: Vector3::z() };
-        let [r, _, b, _] =
+        let [r, g, b, _] =
             render(&mesh(&positions, &faces), &RenderOptions { view: back, ..options }).pixel(60, 70);
-        assert!(b > 150 && r < 90, "{r} {b}");
+        assert!(b > r && r > g, "{r} {g} {b}");
     }
 }
 
@@ -111,7 +113,7 @@ fn principal_axes_undo_a_motion_and_follow_the_aspect() {
     moved.positions.iter_mut().for_each(|p| *p = motion * (*p * 3.5) + Vector3::new(5.0, -7.0, 11.0));
     let expected = render(&still, &small(View::Principal));
     assert!(difference(&expected, &render(&moved, &small(View::Principal))) < 0.05);
-    // A mirror image is seen from its other side: shaded differently, the same outline.
+    // A mirror image is seen from its other side: other shading, same outline.
     let mut mirrored = still.clone();
     mirrored.positions.iter_mut().for_each(|p| p.y = -p.y);
     let mirrored = render(&mirrored, &small(View::Principal));
@@ -124,13 +126,13 @@ fn principal_axes_undo_a_motion_and_follow_the_aspect() {
         (columns, rows)
     };
     let (wide, high) = extent(&expected);
-    assert!(high > wide, "upright in a square picture");
+    assert!(high > wide, "vertical in a square image");
     let (wide, high) = extent(&render(&still, &RenderOptions { width: 200, ..small(View::Principal) }));
-    assert!(wide > high, "lying in a wide one");
+    assert!(wide > high, "horizontal in a wide one");
 }
 
 #[test]
-fn nothing_to_draw_gives_an_empty_picture_and_no_panic() {
+fn meshes_without_drawable_faces_give_empty_images() {
     let triangle = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]];
     let mut far = triangle;
     far[1][0] = 1e308;
@@ -159,7 +161,7 @@ fn nothing_to_draw_gives_an_empty_picture_and_no_panic() {
 }
 
 #[test]
-fn scalars_run_through_the_map_with_lines_at_equal_steps() {
+fn scalars_follow_the_color_map_with_isolines_at_equal_steps() {
     let square = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 0.0, 1.0], [0.0, 0.0, 1.0]];
     let flat = mesh(&square, &[[0, 1, 2], [0, 2, 3]]);
     let surface = |isolines| Surface::Scalars { values: vec![0.0, 1.0, 1.0, 0.0], range: None, isolines };
@@ -173,7 +175,7 @@ fn scalars_run_through_the_map_with_lines_at_equal_steps() {
 }
 
 #[test]
-fn a_field_that_stands_still_has_no_lines() {
+fn constant_fields_have_no_isolines() {
     let square = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 0.0, 1.0], [0.0, 0.0, 1.0]];
     let flat = mesh(&square, &[[0, 1, 2], [0, 2, 3]]);
     let image = |level, isolines| {
@@ -195,7 +197,7 @@ fn coloured_backgrounds_are_opaque() {
 }
 
 #[test]
-fn white_backgrounds_are_opaque_and_pictures_repeat() {
+fn white_backgrounds_are_opaque_and_images_are_deterministic() {
     let options = RenderOptions { background: Background::White, ..small(View::default()) };
     let image = render(&pear(), &options);
     assert_eq!(image.pixel(0, 0), [255; 4]);
@@ -204,8 +206,8 @@ fn white_backgrounds_are_opaque_and_pictures_repeat() {
 }
 
 #[test]
-fn sharp_edges_stay_sharp_below_the_crease_angle() {
-    // A roof seen from the front left and right: two slopes that meet at a right angle.
+fn edges_sharper_than_the_crease_angle_are_not_smoothed() {
+    // A roof seen from above: two slopes that meet at a right angle.
     let roof = [
         [-1.0, -1.0, 0.0],
         [-1.0, 1.0, 0.0],

@@ -1,7 +1,7 @@
-// Figure 1 to turn: one shape and its form.
+// Figure 1 in 3D: one shape and its canonical form.
 //
-// For those who drive the page: #figure1-shape and #figure1-color are selects, #figure1-view-shape and
-// #figure1-view-form views in 3D.
+// For programs that drive the page: #figure1-shape and #figure1-color are selects, #figure1-view-shape and
+// #figure1-view-form are 3D views.
 'use strict';
 
 (() => {

@@ -1,20 +1,15 @@
-// Plots of the page: drawn when they come near the window, drawn again when the scheme of colours changes.
+// Plots of the page, drawn when they come near the window and again when the colour scheme changes.
 //
-// For those who drive the page:
+// For programs that drive the page:
 //   html.js                      scripts run
 //   [data-plot=KIND]             a plot; data-state is `waiting`, `drawing` or `ready`; data-source names its island
-//   script[type="application/json"][id=NAME-data]      the numbers of an experiment
+//   script[type="application/json"][id=FIGURE-data]    the description of a figure
 //   .chart > .toggle             the button that shows the static figure instead
 //   #NAME                        the section of an experiment (figure1, ..., retrieval)
-// Figure 1 is described in gallery.js, Figure 4 in explorer.js.
+// gallery.js describes Figure 1, explorer.js Figure 4.
 'use strict';
 
 const plots = (() => {
-  // Okabe and Ito: told apart with every common colour blindness. In the dark the darkest turns pale.
-  const COLORS = ['#0072b2', '#d55e00', '#009e73', '#cc79a7', '#e69f00', '#56b4e9', '#3c3c3c', '#f0e442'];
-  // In the order of the static figures.
-  const SYMBOLS = ['circle', 'triangle-up', 'square', 'diamond', 'cross', 'triangle-down', 'star', 'hexagon', 'x', 'triangle-left',
-    'pentagon', 'triangle-right'];
   const NEAR = '400px';
 
   const { plain, theme } = canonform;
@@ -24,13 +19,9 @@ const plots = (() => {
   const drawn = new Set();
   const islands = new Map();
 
-  const color = (i) => {
-    const found = COLORS[i % COLORS.length];
-    return darkScheme.matches && found === '#3c3c3c' ? '#c9ccd1' : found;
-  };
-  const symbol = (i) => SYMBOLS[i % SYMBOLS.length];
+  const colorOf = ({ color, dark }) => (darkScheme.matches ? dark : color);
 
-  // The data of an island, parsed when first asked for.
+  // The data of an island, parsed at first use.
   function island(id) {
     if (!islands.has(id)) islands.set(id, JSON.parse(document.getElementById(id).textContent));
     return islands.get(id);
@@ -47,11 +38,10 @@ const plots = (() => {
       margin: { l: 56, r: 12, t: 28, b: 44 },
       paper_bgcolor: 'rgba(0,0,0,0)', plot_bgcolor: 'rgba(0,0,0,0)',
       font: { color: ink, family: font, size: 12 },
-      colorway: COLORS.map((_, i) => color(i)),
       hoverlabel: { bgcolor: page, bordercolor: pale, font: { color: ink, family: font }, align: 'left' },
       modebar: { bgcolor: 'rgba(0,0,0,0)', color: pale, activecolor: ink },
       hovermode: 'closest', dragmode: canHover.matches ? 'zoom' : false,
-      legend: { orientation: 'h', x: 0, yref: 'container', y: 0, yanchor: 'bottom', bgcolor: 'rgba(0,0,0,0)' },
+      legend: { orientation: 'h', x: 0, yref: 'container', y: 0, yanchor: 'bottom', bgcolor: 'rgba(0,0,0,0)', traceorder: 'reversed' },
       xaxis: { ...axis, ...xaxis }, yaxis: { ...axis, ...yaxis },
       ...more,
     };
@@ -72,9 +62,25 @@ const plots = (() => {
     if (!drawn.has(element)) {
       drawn.add(element);
       resizing.observe(element);
+      element.on('plotly_relayout', () => refineTicks(element));
       element.dispatchEvent(new CustomEvent('plotted'));
     }
     element.dataset.state = 'ready';
+  }
+
+  // The described ticks suit the described range. A reader who zooms in until fewer than two are left gets plotly's.
+  function refineTicks(element) {
+    const changes = {};
+    for (const name of ['xaxis', 'yaxis']) {
+      const { type, range, tickvals, tickmode } = element._fullLayout[name];
+      if (!element.layout[name]?.tickvals) continue;
+      const [low, high] = [Math.min(...range), Math.max(...range)];
+      const place = (value) => (type === 'log' ? Math.log10(value) : value);
+      const ticks = element.layout[name].tickvals.map(place).filter((at) => at >= low && at <= high);
+      const wanted = ticks.length < 2 ? 'auto' : 'array';
+      if (wanted !== (tickmode ?? (tickvals ? 'array' : 'auto'))) changes[`${name}.tickmode`] = wanted;
+    }
+    if (Object.keys(changes).length > 0) Plotly.relayout(element, changes);
   }
 
   const resizing = new ResizeObserver((entries) => {
@@ -108,7 +114,7 @@ const plots = (() => {
   darkScheme.addEventListener('change', () => drawn.forEach(redraw));
 
   return {
-    color, symbol, island, layout, heading, whenNear, redraw, start,
+    colorOf, island, layout, heading, whenNear, redraw, start,
     // Registers what draws plots of a kind: a function from the element to { data, layout }.
     kind: (name, make) => kinds.set(name, make),
   };

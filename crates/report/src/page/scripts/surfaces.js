@@ -1,4 +1,4 @@
-// The shapes of Figure 4 and their forms as surfaces to show. Defines `surfaces`.
+// The shapes of Figure 4 and their canonical forms for 3D views. Defines `surfaces`.
 'use strict';
 
 const surfaces = (() => {
@@ -14,7 +14,7 @@ const surfaces = (() => {
     return colors[[...new Set(labels)].indexOf(labels[i])];
   }
 
-  // What a shape and its form are coloured by.
+  // The colours of a shape and its form.
   function painted(i, method, color) {
     const { surface, forms } = shapeOf(i);
     const { residual } = forms[rank(method)];
@@ -23,7 +23,7 @@ const surfaces = (() => {
     return { color: clay(i) };
   }
 
-  // A shape and its form, coloured alike.
+  // A shape and its form in the same colours.
   function pair(i, method, color) {
     const { surface: { positions, faces }, forms } = shapeOf(i);
     const paint = painted(i, method, color);
@@ -43,7 +43,7 @@ const surfaces = (() => {
     return to;
   }
 
-  // The record has motions from the earlier shape onto the later one; the way back is the inverse.
+  // The record has motions from the earlier shape onto the later one; the others are their inverses.
   function motion(i, j, { method, scale }) {
     if (i === j) return (x, y, z) => [x, y, z];
     const { names: { length: n }, motions } = figure();
@@ -59,7 +59,8 @@ const surfaces = (() => {
     };
   }
 
-  // The distance from each of some points to the nearest of others: outwards from the same place along x, until x alone is farther.
+  // The distance from every point to the nearest of `others`, which are searched outwards from the same x until the
+  // difference in x alone is larger.
   function nearest(points, others) {
     const order = Array.from({ length: others.length / 3 }, (_, v) => 3 * v).sort((a, b) => others[a] - others[b]);
     const along = Float32Array.from(order, (v) => others[v]);
@@ -86,11 +87,11 @@ const surfaces = (() => {
     return found;
   }
 
-  // The form of shape `i` laid over that of shape `j`, coloured by its distance to it.
+  // The form of shape `i` aligned with that of shape `j`, coloured by its distance from it.
   function overlay(i, j, panel) {
     const [own, other] = [formAt(i, j, panel), formAt(j, j, panel)];
     return [
-      { positions: own, faces: shapeOf(i).surface.faces, values: nearest(own, other), values_name: `to form 2 (${panel.unit})` },
+      { positions: own, faces: shapeOf(i).surface.faces, values: nearest(own, other), values_name: `distance to form 2 (${panel.unit})` },
       { positions: other, faces: shapeOf(j).surface.faces, color: clay(j) },
     ];
   }
@@ -100,7 +101,7 @@ const surfaces = (() => {
   return {
     pair, overlay,
     hasResidual: (i, method) => Boolean(shapeOf(i).forms[rank(method)].residual),
-    // How many vertices of how many are shown.
+    // The numbers of vertices shown and computed.
     vertices: (i) => [shown(i), shapeOf(i).n_vertices],
   };
 })();

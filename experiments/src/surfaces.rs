@@ -1,4 +1,4 @@
-//! What the page shows of shapes and forms when they are turned: `figure4-shapes.json`.
+//! Surfaces and canonical forms for the 3D views of the page: `figure4-shapes.json`.
 
 use anyhow::{Result, bail};
 use canonform::{EmbedOptions, Embedded, Normalization};
@@ -7,25 +7,25 @@ use geodesics::DistanceSolver;
 use linalg::Matrix;
 use mesh::{TriMesh, orient_consistently};
 use nalgebra::Point3;
-use report::results::{Motions, Scale, SeenForm, SeenShape};
+use report::results::{Motions, Scale, ShownForm, ShownShape};
 use surface::VertexId;
 use view::interactive::Geometry;
 
 use crate::coarse::coarse;
 use crate::collection::Shape;
 
-/// Vertices of all shapes together, at most: a page of about 20 MB.
+/// The greatest number of vertices of all shapes together, for a page of about 20 MB.
 const ALL_VERTICES: usize = 200_000;
 
-/// Vertices of one shape, at most: more than a picture has room for.
+/// The greatest number of vertices of one shape.
 const SHAPE_VERTICES: usize = 20_000;
 
-/// Vertices that a shape is shown with, at most, when there are `n_shapes`.
+/// The greatest number of vertices of each of `n_shapes`.
 pub(crate) fn vertex_limit(n_shapes: usize) -> usize {
     (ALL_VERTICES / n_shapes.max(1)).clamp(100, SHAPE_VERTICES)
 }
 
-/// A form, what it was made of, and how it is turned to be shown.
+/// A canonical form, its samples, and the motion that turns it towards its shape.
 pub(crate) struct Formed {
     pub(crate) form: CanonicalForm,
     /// Vertices of the repaired mesh.
@@ -44,8 +44,8 @@ impl Formed {
         Ok(Self { form, samples, turn })
     }
 
-    /// The form as it is shown, at the vertices that are.
-    fn seen(&self, vertices: &[usize], from_samples: &Matrix) -> SeenForm {
+    /// The form at the vertices that are shown.
+    fn shown(&self, vertices: &[usize], from_samples: &Matrix) -> ShownForm {
         let points = self.form.points();
         let single = |&v: &usize| self.turn.apply(&points[v]).coords.map(|c| c as f32).into();
         let off = |v: usize| {
@@ -56,7 +56,7 @@ impl Formed {
             let sum: f64 = self.samples.iter().enumerate().map(sample).sum();
             (sum / self.samples.len() as f64).sqrt() as f32
         };
-        SeenForm {
+        ShownForm {
             positions: vertices.iter().map(single).collect(),
             size: self.form.spread() / self.form.normalized(Normalization::UnitArea).spread(),
             residual: self.form.area().map(|_| vertices.iter().map(|&v| off(v)).collect()),
@@ -64,7 +64,7 @@ impl Formed {
     }
 }
 
-/// The rotation or reflection about the origin that brings points closest to where they were on the shape.
+/// The rotation or reflection about the origin that brings points closest to those of the shape.
 fn turned_like(points: &[Point3<f64>], shape: &[Point3<f64>]) -> Alignment {
     let pairs: Vec<_> = points.iter().copied().zip(shape.iter().copied()).collect();
     let off =
@@ -75,16 +75,16 @@ fn turned_like(points: &[Point3<f64>], shape: &[Point3<f64>]) -> Alignment {
 }
 
 /// A shape with its forms by several methods, at no more than `limit` vertices.
-pub(crate) fn seen(
+pub(crate) fn shown(
     shape: &Shape,
     forms: &[&Formed],
     options: &EmbedOptions,
     limit: usize,
-) -> Result<SeenShape> {
+) -> Result<ShownShape> {
     let mut mesh: TriMesh = shape.surface.mesh().clone();
     orient_consistently(&mut mesh);
     let solver: Box<dyn DistanceSolver> = options.geodesic.prepare(&shape.surface.intrinsic)?;
-    let Some(first) = forms.first() else { bail!("no method made a form") };
+    let Some(first) = forms.first() else { bail!("there is no canonical form") };
     let thin = coarse(&mesh, limit);
     let kept = TriMesh {
         positions: thin.vertices.iter().map(|&v| mesh.positions[v]).collect(),
@@ -92,20 +92,20 @@ pub(crate) fn seen(
     };
     let distances = solver.distance_columns(&first.samples[..1.min(first.samples.len())]);
     let distance: Vec<f64> = thin.vertices.iter().map(|&v| distances[(v, 0)]).collect();
-    let seen = |formed: &&Formed| {
+    let form = |formed: &&Formed| {
         let from_samples = solver.distance_columns(&formed.samples);
-        formed.seen(&thin.vertices, &from_samples)
+        formed.shown(&thin.vertices, &from_samples)
     };
-    Ok(SeenShape {
+    Ok(ShownShape {
         name: shape.name.clone(),
         label: shape.label.clone(),
         n_vertices: mesh.n_vertices(),
         surface: Geometry::new(&kept).with_values("distance (mesh units)", &distance),
-        forms: forms.iter().map(seen).collect(),
+        forms: forms.iter().map(form).collect(),
     })
 }
 
-/// The motions between forms, for forms as they are shown.
+/// The motions between forms, for forms turned as they are shown.
 pub(crate) fn motions(method: &str, scale: Scale, forms: &[Formed], alignments: &[Alignment]) -> Motions {
     let pairs = (0..forms.len()).flat_map(|i| (i + 1..forms.len()).map(move |j| (i, j)));
     let shown = pairs.zip(alignments).flat_map(|((i, j), alignment)| {

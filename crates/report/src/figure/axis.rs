@@ -1,0 +1,168 @@
+//! Axes: their range, their ticks and how these are written.
+
+use serde::Serialize;
+
+use crate::results::{self, AxisScale};
+use view::numbers::{Numbers, superscript, ticks};
+
+/// The most ticks of an axis, about.
+const TICKS: usize = 7;
+/// Room at each end, as a share of the range.
+const ROOM: f64 = 0.04;
+
+/// One axis of a plot or matrix.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Axis {
+    /// The quantity and its unit.
+    pub name: String,
+    /// How values are spaced.
+    pub scale: AxisScale,
+    /// Values at the left or lower end and at the other one; their decimal logarithms on a logarithmic axis.
+    pub range: [f64; 2],
+    /// Values of ticks in ascending order, with their labels.
+    pub ticks: Vec<(f64, String)>,
+}
+
+impl Axis {
+    /// An axis for a quantity whose range holds all of `values` that can be shown, with a little room at both ends.
+    pub fn holding(quantity: &results::Axis, values: impl Iterator<Item = f64>) -> Self {
+        let results::Axis { name, unit, scale } = quantity;
+        let range = range(values.filter_map(|value| place(value, *scale)));
+        match scale {
+            AxisScale::Log => {
+                Self { name: with_unit(name, unit), scale: *scale, range, ticks: log_ticks(range) }
+            }
+            AxisScale::Linear | AxisScale::Category => Self::linear(name, unit, range, TICKS),
+        }
+    }
+
+    /// A linear axis over a range, with at most about `most` ticks.
+    #[must_use]
+    pub fn linear(name: &str, unit: &str, range: [f64; 2], most: usize) -> Self {
+        let values = ticks(range, most);
+        let numbers = Numbers::for_ticks(&values);
+        let ticks = values.into_iter().map(|value| (value, numbers.write(value)));
+        let name = with_unit(name, &numbers.unit(unit));
+        Self { name, scale: AxisScale::Linear, range, ticks: ticks.collect() }
+    }
+
+    /// An axis of categories.
+    pub fn categories(name: &str, labels: impl IntoIterator<Item = String>) -> Self {
+        let ticks: Vec<_> = labels.into_iter().enumerate().map(|(i, label)| (i as f64, label)).collect();
+        let range = [-0.5, ticks.len() as f64 - 0.5];
+        Self { name: name.to_owned(), scale: AxisScale::Category, range, ticks }
+    }
+
+    /// An axis over `n` cells of a matrix, with ticks of their own.
+    #[must_use]
+    pub fn cells(n: usize, ticks: Vec<(f64, String)>) -> Self {
+        Self { ticks, range: [-0.5, n as f64 - 0.5], ..Self::categories("", []) }
+    }
+
+    /// The place of a value between the ends of the range, clamped to 0..=1; `None` if it cannot be shown.
+    pub(super) fn share(&self, value: f64) -> Option<f64> {
+        let [low, high] = self.range;
+        place(value, self.scale).map(|place| ((place - low) / (high - low)).clamp(0.0, 1.0))
+    }
+
+    /// The ticks with their places.
+    pub(super) fn placed_ticks(&self) -> impl Iterator<Item = (f64, &str)> {
+        self.ticks.iter().filter_map(|(value, label)| Some((self.share(*value)?, label.as_str())))
+    }
+}
+
+/// The coordinate of a value along an axis, if it has one.
+fn place(value: f64, scale: AxisScale) -> Option<f64> {
+    let place = if scale == AxisScale::Log { value.log10() } else { value };
+    place.is_finite().then_some(place)
+}
+
+fn with_unit(name: &str, unit: &str) -> String {
+    if unit.is_empty() { name.to_owned() } else { format!("{name} ({unit})") }
+}
+
+/// The range of coordinates with room at both ends.
+fn range(places: impl Iterator<Item = f64>) -> [f64; 2] {
+    let (low, high) =
+        places.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)));
+    let (low, high) = if low <= high { (low, high) } else { (0.0, 1.0) };
+    // A single value, or none: any range around it.
+    let span = if high - low > 1e-9 * high.abs().max(low.abs()) { high - low } else { low.abs().max(1.0) };
+    [low - ROOM * span, high + ROOM * span]
+}
+
+/// Powers of ten, every few of them in a long range; in a short range multiples of them too.
+fn log_ticks([low, high]: [f64; 2]) -> Vec<(f64, String)> {
+    let decades = high - low;
+    let inside = |t: &f64| (low..=high).contains(&t.log10());
+    let (first, last) = (low.floor() as i32, high.ceil() as i32);
+    let values: Vec<f64> = if decades < 2.0 {
+        let factors: &[f64] =
+            if decades < 0.7 { &[1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0] } else { &[1.0, 2.0, 5.0] };
+        (first..=last).flat_map(|e| factors.iter().map(move |f| f * 10f64.powi(e))).collect()
+    } else {
+        let step = (decades / TICKS as f64).ceil().max(1.0) as i32;
+        (first..=last).filter(|e| e.rem_euclid(step) == 0).map(|e| 10f64.powi(e)).collect()
+    };
+    values.into_iter().filter(inside).map(|value| (value, log_label(value))).collect()
+}
+
+/// The label of a tick of a logarithmic axis: a plain number near one, else with a power of ten.
+fn log_label(tick: f64) -> String {
+    let exponent = (tick.log10() + 1e-9).floor() as i32;
+    if (-2..4).contains(&exponent) {
+        return format!("{}", (tick * 1e6).round() / 1e6);
+    }
+    let factor = tick / 10f64.powi(exponent);
+    let power = format!("10{}", superscript(exponent));
+    if (factor - 1.0).abs() < 1e-9 { power } else { format!("{}·{power}", (factor * 10.0).round() / 10.0) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn axis(values: &[f64], scale: AxisScale) -> Axis {
+        let quantity = results::Axis { name: "length".into(), unit: "m".into(), scale };
+        Axis::holding(&quantity, values.iter().copied())
+    }
+
+    fn log(low: f64, high: f64) -> Vec<String> {
+        axis(&[low, high], AxisScale::Log).ticks.into_iter().map(|(_, label)| label).collect()
+    }
+
+    #[test]
+    fn logarithmic_ticks_are_powers_of_ten_unless_the_range_is_short() {
+        assert_eq!(log(1e-3, 1e2), ["10⁻³", "0.01", "0.1", "1", "10", "100"]);
+        assert_eq!(log(1e-20, 1.0), ["10⁻²⁰", "10⁻¹⁶", "10⁻¹²", "10⁻⁸", "10⁻⁴", "1"]);
+        assert_eq!(log(3.0, 30.0), ["5", "10", "20"]);
+        assert_eq!(log(2e4, 6e4), ["2·10⁴", "3·10⁴", "4·10⁴", "5·10⁴", "6·10⁴"]);
+    }
+
+    #[test]
+    fn ranges_hold_all_values_that_can_be_shown() {
+        let axis_of = axis;
+        let axis = axis_of(&[1.0, 100.0], AxisScale::Log);
+        assert!((axis.share(10.0).unwrap() - 0.5).abs() < 1e-12);
+        assert!(axis.share(1.0).unwrap() > 0.0 && axis.share(1e9) == Some(1.0) && axis.share(0.0).is_none());
+        for values in [&[][..], &[5.0], &[0.0, 0.0], &[-1.0]] {
+            for scale in [AxisScale::Linear, AxisScale::Log] {
+                let [low, high] = axis_of(values, scale).range;
+                assert!(low < high, "{values:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn linear_axes_state_the_unit_and_the_power_of_ten_of_their_ticks() {
+        assert_eq!(axis(&[0.0, 5.0], AxisScale::Linear).name, "length (m)");
+        assert_eq!(axis(&[0.0, 5e6], AxisScale::Linear).name, "length (×10⁶, m)");
+    }
+
+    #[test]
+    fn categories_are_one_unit_apart() {
+        let axis = Axis::categories("kind", ["a", "b"].map(String::from));
+        assert_eq!(axis.range, [-0.5, 1.5]);
+        assert_eq!(axis.placed_ticks().collect::<Vec<_>>(), [(0.25, "a"), (0.75, "b")]);
+    }
+}

@@ -1,0 +1,345 @@
+//! Figure 4: how well distances between canonical forms separate classes.
+//!
+//! For each scale, one figure of the two-dimensional maps with their scores and one of the distance matrices.
+
+use crate::classes::Classes;
+use crate::figure::{Axis, Content, Figure, Heat, MAP_SIZE, Plot, Point, Series};
+use crate::figure::{Shape, Style};
+use crate::results::{Expectation, Figure4Panel, Figure4Record, Provenance, Scale};
+use crate::{Cell, Record, ReportError, Table};
+use ::retrieval::Evaluation;
+use view::numbers::signed;
+
+/// What each scale is called in titles, in captions and in file names.
+const SCALES: [(Scale, &str, &str, [&str; 2]); 2] = [
+    (
+        Scale::Raw,
+        "original size",
+        "forms of original size (in mesh units; those of kernel PCA have their own units)",
+        ["-maps-raw", "-matrices-raw"],
+    ),
+    (
+        Scale::Normalized,
+        "normalised size",
+        "forms scaled to the same size",
+        ["-maps-normalized", "-matrices-normalized"],
+    ),
+];
+
+/// The figures of one panel: the map, and the matrix with its rows grouped by class.
+pub(crate) struct Shown {
+    pub(crate) map: Plot,
+    pub(crate) matrix: Heat,
+    /// The shape of every row of the matrix.
+    pub(crate) order: Vec<usize>,
+}
+
+/// A panel of the record as figures.
+pub(crate) fn shown(record: &Figure4Record, panel: &Figure4Panel) -> Shown {
+    let classes = Classes::of(record.labels.iter().map(String::as_str));
+    let size = SCALES.iter().find(|(scale, ..)| *scale == panel.scale).map_or("", |(_, name, ..)| name);
+    let title = format!("{}, {size}", panel.method);
+    let class = |shape: usize| classes.index(&record.labels[shape]);
+    let mut order: Vec<usize> = (0..record.names.len()).collect();
+    order.sort_by_key(|&shape| class(shape));
+    let map = map(record, panel, &classes, &title);
+    let matrix = matrix(record, panel, &classes, &title, &order);
+    Shown { map, matrix, order }
+}
+
+fn map(record: &Figure4Record, panel: &Figure4Panel, classes: &Classes<'_>, title: &str) -> Plot {
+    let series = |(class, name): (usize, &&str)| {
+        let members = (0..record.names.len()).filter(|&shape| record.labels[shape] == **name);
+        let point = |shape: usize| {
+            let [x, y] = panel.map[shape];
+            Point::new(x, y, &record.names[shape])
+        };
+        let points = members.map(point).collect();
+        Series { name: (*name).to_owned(), style: Style(class), shape: Shape::Filled, points }
+    };
+    let (unit, [across, up]) = (panel.scale.unit(), equal_ranges(&panel.map));
+    let s = &panel.scores;
+    let scores = [
+        ("NN", s.mean.nn),
+        ("FT", s.mean.ft),
+        ("ST", s.mean.st),
+        ("DCG", s.mean.dcg),
+        ("mAP", s.mean.map),
+        ("silhouette", s.silhouette),
+        ("map silh.", panel.map_silhouette),
+        ("map stress", panel.map_stress),
+    ];
+    Plot {
+        title: title.to_owned(),
+        label: format!("Map of the shapes ({title})"),
+        x: Axis::linear("MDS axis 1", unit, across, 7),
+        y: Axis::linear("MDS axis 2", unit, up, 6),
+        is_map: true,
+        series: classes.names().iter().enumerate().map(series).collect(),
+        marks: vec![],
+        scores: scores.map(|(name, value)| (name, signed(value, 3))).to_vec(),
+    }
+}
+
+/// Ranges of both axes that show all points at one scale in a map.
+fn equal_ranges(points: &[[f64; 2]]) -> [[f64; 2]; 2] {
+    let low: [f64; 2] = std::array::from_fn(|i| points.iter().map(|p| p[i]).fold(f64::INFINITY, f64::min));
+    let high: [f64; 2] =
+        std::array::from_fn(|i| points.iter().map(|p| p[i]).fold(f64::NEG_INFINITY, f64::max));
+    let per_unit = ((high[0] - low[0]) / MAP_SIZE[0]).max((high[1] - low[1]) / MAP_SIZE[1]) * 1.14;
+    // All points in one place: any scale at which the ends of the range differ.
+    let smallest = 1e-6 * low.iter().chain(&high).fold(0.0_f64, |m, v| m.max(v.abs()));
+    let per_unit = if per_unit > smallest { per_unit } else { smallest.max(1.0 / MAP_SIZE[0]) };
+    std::array::from_fn(|i| {
+        let (middle, half) = (low[i] + (high[i] - low[i]) / 2.0, per_unit * MAP_SIZE[i] / 2.0);
+        [middle - half, middle + half]
+    })
+}
+
+fn matrix(
+    record: &Figure4Record,
+    panel: &Figure4Panel,
+    classes: &Classes<'_>,
+    title: &str,
+    order: &[usize],
+) -> Heat {
+    let label = |row: usize| record.labels[order[row]].as_str();
+    let n = order.len();
+    let borders: Vec<usize> = (1..n).filter(|&row| label(row) != label(row - 1)).collect();
+    let edges: Vec<usize> = [0].into_iter().chain(borders.iter().copied()).chain([n]).collect();
+    let middle = |edges: &[usize]| (edges[0] + edges[1]) as f64 / 2.0 - 0.5;
+    let ticks =
+        edges.windows(2).zip(classes.names()).map(|(edges, name)| (middle(edges), (*name).to_owned()));
+    let x = Axis::cells(n, ticks.collect());
+    let y = Axis { range: [x.range[1], x.range[0]], ..x.clone() };
+    // The diagonal is zero, and so is the first colour: equal colours are equal distances in all panels.
+    let max = panel.matrix.iter().flatten().fold(0.0_f64, |m, &v| m.max(v));
+    let range = [0.0, if max > 0.0 { max } else { 1.0 }];
+    let names: Vec<String> = order.iter().map(|&shape| record.names[shape].clone()).collect();
+    Heat {
+        title: title.to_owned(),
+        label: format!("Distances of all pairs ({title})"),
+        x,
+        y,
+        values: order.iter().map(|&i| order.iter().map(|&j| panel.matrix[i][j]).collect()).collect(),
+        max,
+        tint: None,
+        bar: Some(Axis::linear("distance", panel.scale.unit(), range, 7)),
+        borders,
+        counts: None,
+        columns: names.clone(),
+        rows: names,
+        hover: "{row} and {column}\ndistance {value}",
+    }
+}
+
+/// The names of the scores in tables, as in the paper.
+const HEADINGS: [&str; 8] = ["NN", "FT", "ST", "E", "DCG", "mAP", "k-NN", "silhouette"];
+
+/// The scores of one matrix, in the order of [`HEADINGS`].
+fn scores(s: &Evaluation) -> [f64; 8] {
+    [s.mean.nn, s.mean.ft, s.mean.st, s.mean.e, s.mean.dcg, s.mean.map, s.knn_accuracy, s.silhouette]
+}
+
+impl Record for Figure4Record {
+    fn about(&self) -> (&Provenance, &[Expectation], &str) {
+        (&self.provenance, &self.expectations, &self.analysis)
+    }
+
+    fn validate(&self) -> Result<(), ReportError> {
+        let n = self.names.len();
+        let length = |what: String, found: usize| ReportError::check_length(what, found, n, "shape");
+        if n == 0 {
+            return Err(ReportError::Empty { figure: "figure 4", unit: "shape" });
+        }
+        if self.panels.is_empty() {
+            return Err(ReportError::Empty { figure: "figure 4", unit: "panel" });
+        }
+        length("labels".into(), self.labels.len())?;
+        for panel in &self.panels {
+            let of = |part: &str| format!("{part} of {} ({})", panel.method, panel.scale.name());
+            length(of("matrix"), panel.matrix.len())?;
+            length(of("map"), panel.map.len())?;
+            for (row, values) in panel.matrix.iter().enumerate() {
+                length(of(&format!("matrix row {row}")), values.len())?;
+                for (column, &value) in values.iter().enumerate() {
+                    ReportError::check_finite(value, || of(&format!("matrix entry {row}, {column}")))?;
+                }
+            }
+            for (point, &[x, y]) in panel.map.iter().enumerate() {
+                ReportError::check_finite(x + y, || of(&format!("map point {point}")))?;
+            }
+            let own = [panel.map_stress, panel.negative_mass, panel.map_silhouette];
+            let names = ["map_stress", "negative_mass", "map_silhouette"].into_iter().chain(HEADINGS);
+            for (name, value) in names.zip(own.into_iter().chain(scores(&panel.scores))) {
+                ReportError::check_finite(value, || of(name))?;
+            }
+        }
+        Ok(())
+    }
+
+    fn figures(&self) -> Vec<Figure> {
+        let n = self.names.len();
+        let mut figures = Vec::new();
+        for (scale, _, size, [maps, matrices]) in SCALES {
+            let panels = self.panels.iter().filter(|panel| panel.scale == scale);
+            let (plots, heats): (Vec<Plot>, Vec<Heat>) =
+                panels.map(|panel| shown(self, panel)).map(|shown| (shown.map, shown.matrix)).unzip();
+            if plots.is_empty() {
+                continue;
+            }
+            let caption = format!(
+                "Multidimensional scaling of the distances between the canonical forms of {n} shapes, {size}. Both axes of \
+                 a map have the same scale, so nearby points are similar forms. Under each map: its scores."
+            );
+            figures.push(Figure { part: maps, caption, content: Content::Plots(plots) });
+            let caption = format!(
+                "The {n} × {n} distances between {size}, grouped by class. Dark colours are small distances."
+            );
+            figures.push(Figure { part: matrices, caption, content: Content::Heats(heats) });
+        }
+        figures
+    }
+
+    fn tables(&self) -> Vec<Table> {
+        let row = |panel: &Figure4Panel| {
+            let map = [panel.map_silhouette, panel.map_stress, panel.negative_mass];
+            let mut row = vec![Cell::text(&panel.method), Cell::text(panel.scale.name())];
+            row.extend(scores(&panel.scores).into_iter().chain(map).map(Cell::score));
+            row
+        };
+        let caption = "NN: nearest neighbour; FT and ST: first and second tier; E: E-measure; DCG: discounted cumulative \
+                       gain; mAP: mean average precision; k-NN: leave-one-out accuracy. 1 is the best value of all. Neg. \
+                       mass: the share of the spectrum that no Euclidean space can represent.";
+        let headings = ["method", "scale"].into_iter().chain(HEADINGS);
+        let headings = headings.chain(["map silh.", "map stress", "neg. mass"]);
+        vec![Table::new(caption, headings, self.panels.iter().map(row).collect())]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fixtures::{assert_balanced, figure4_record};
+    use crate::save;
+
+    /// The SVG texts and PNG bytes of the figures of a record.
+    fn drawn(record: &Figure4Record) -> (Vec<String>, Vec<Vec<u8>>) {
+        let folder = tempfile::tempdir().unwrap();
+        save(record, folder.path(), "figure4").unwrap();
+        let read = |part: &str, extension: &str| {
+            std::fs::read(folder.path().join(format!("figure4{part}.{extension}"))).unwrap()
+        };
+        let parts = SCALES.iter().flat_map(|(.., parts)| parts);
+        parts.map(|part| (String::from_utf8(read(part, "svg")).unwrap(), read(part, "png"))).unzip()
+    }
+
+    #[test]
+    fn files_are_well_formed_deterministic_and_fully_labelled() {
+        let record = figure4_record(&[("cat", 4), ("a & <b>", 5), ("david", 7)]);
+        let (svg, png) = drawn(&record);
+        for text in &svg {
+            assert_balanced(text);
+            for label in ["cat", "a &amp; &lt;b&gt;", "david", "NMDS", "KPCA-Nyström"] {
+                assert!(text.contains(label), "{label}");
+            }
+        }
+        for text in
+            ["MDS axis 1 (form units)", "MDS axis 2 (form units)", "0.910", "0.875", "map silh.", "0.052"]
+        {
+            assert!(svg[0].contains(text), "{text}");
+        }
+        assert!(svg[1].contains("distance (form units)") && svg[1].contains("data:image/png;base64,"));
+        assert!(svg[2].contains("form size = 1") && svg[3].contains("form size = 1"));
+        assert_eq!((svg, png), drawn(&record));
+    }
+
+    #[test]
+    fn many_classes_and_single_shapes_fit() {
+        let names: Vec<String> = (0..14).map(|i| format!("class number {i}")).collect();
+        let classes: Vec<(&str, usize)> =
+            names.iter().enumerate().map(|(i, n)| (n.as_str(), 1 + 3 * i % 20)).collect();
+        let (svg, _) = drawn(&figure4_record(&classes));
+        assert!(names.iter().all(|name| svg[0].contains(name.as_str())), "the legend names every class");
+        drawn(&figure4_record(&[("only", 1)]));
+        drawn(&figure4_record(&[("alike", 3)]));
+    }
+
+    #[test]
+    fn rows_of_the_matrix_are_grouped_by_class() {
+        let mut record = figure4_record(&[("cat", 2), ("dog", 2)]);
+        record.labels.swap(1, 2);
+        let Shown { map, matrix, order } = shown(&record, &record.panels[0]);
+        assert_eq!((order, matrix.borders.as_slice()), (vec![0, 2, 1, 3], &[2][..]));
+        assert_eq!(matrix.rows, ["cat0", "dog2", "cat1", "dog3"]);
+        assert_eq!(matrix.values[0][1], record.panels[0].matrix[0][2]);
+        assert_eq!(matrix.x.ticks[1], (2.5, "dog".to_owned()));
+        assert_eq!(map.series[1].points[0].note, "cat1");
+    }
+
+    #[test]
+    fn records_without_content_are_errors_and_leave_no_file() {
+        let folder = tempfile::tempdir().unwrap();
+        let fault = |record: &Figure4Record| save(record, folder.path(), "figure4").unwrap_err();
+        let mut record = figure4_record(&[("cat", 2)]);
+        record.panels.clear();
+        assert!(matches!(fault(&record), ReportError::Empty { unit: "panel", .. }));
+        assert!(matches!(fault(&Figure4Record::default()), ReportError::Empty { unit: "shape", .. }));
+        record = figure4_record(&[("cat", 2)]);
+        record.panels[0].map[0][0] = f64::NAN;
+        assert!(matches!(fault(&record), ReportError::NotFinite { .. }));
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
+    }
+
+    #[test]
+    fn inconsistent_records_are_errors_that_name_the_part() {
+        let good = figure4_record(&[("cat", 3), ("dog", 2)]);
+        good.validate().unwrap();
+        let broken = |change: &dyn Fn(&mut Figure4Record)| {
+            let mut record = good.clone();
+            change(&mut record);
+            record.validate().unwrap_err().to_string()
+        };
+        assert!(broken(&|r| r.labels.truncate(4)).starts_with("labels has 4 entries instead of 5"));
+        assert!(broken(&|r| r.panels[1].map.truncate(2)).contains("map of KPCA-Nyström (raw) has 2"));
+        assert!(
+            broken(&|r| r.panels[2].matrix[3].truncate(1))
+                .contains("matrix row 3 of NMDS (normalized) has 1")
+        );
+        assert!(
+            broken(&|r| r.panels[0].matrix[1][2] = f64::NAN)
+                .contains("matrix entry 1, 2 of NMDS (raw) is NaN")
+        );
+        assert!(broken(&|r| r.panels[0].map[4][0] = f64::INFINITY).contains("map point 4"));
+        assert!(broken(&|r| r.panels[0].scores.silhouette = f64::NAN).contains("silhouette of NMDS"));
+    }
+
+    #[test]
+    fn both_axes_of_a_map_have_one_scale_and_hold_all_points() {
+        for points in [
+            vec![[0.0, 0.0], [10.0, 1.0]],
+            vec![[5.0, -3.0], [5.0, 40.0]],
+            vec![[7.0, 7.0]],
+            vec![[1e9, 1e9]],
+        ] {
+            let ranges = equal_ranges(&points);
+            let scales: [f64; 2] = std::array::from_fn(|i| (ranges[i][1] - ranges[i][0]) / MAP_SIZE[i]);
+            assert!(scales[0] > 0.0 && (scales[0] / scales[1] - 1.0).abs() < 1e-9, "{scales:?}");
+            let inside = |p: &[f64; 2], i: usize| ranges[i][0] <= p[i] && p[i] <= ranges[i][1];
+            assert!(points.iter().all(|p| inside(p, 0) && inside(p, 1)));
+        }
+    }
+
+    #[test]
+    fn the_table_has_a_row_per_method_and_scale() {
+        let record = figure4_record(&[("cat", 3), ("dog", 2)]);
+        let text = record.summary().unwrap().to_text();
+        assert_eq!(text.lines().count(), 1 + record.panels.len());
+        assert!(text.contains("normalized") && text.contains("map stress"), "{text}");
+        let lines: Vec<&str> = text.lines().collect();
+        for (heading, value) in HEADINGS.iter().zip(scores(&record.panels[0].scores)) {
+            let end = lines[0].find(heading).map(|at| at + heading.len()).unwrap();
+            assert!(lines[1][..end].ends_with(&format!("{value:.3}")), "{heading} {value}\n{text}");
+        }
+    }
+}

@@ -1,0 +1,69 @@
+//! Parts of every record.
+
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
+
+/// How a record was made.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct Provenance {
+    /// Name of the program.
+    pub program: String,
+    /// Its version.
+    pub version: String,
+    /// The command line that repeats the run.
+    pub command: String,
+    /// The source of the shapes: a folder, or the name of a built-in dataset.
+    pub dataset: String,
+    /// The classes in use, in the order of the command line.
+    pub classes: Vec<String>,
+    /// The seed of all random numbers.
+    pub seed: u64,
+    /// Every option of every stage.
+    pub options: serde_json::Value,
+    /// Wall-clock seconds by stage.
+    pub seconds: BTreeMap<String, f64>,
+}
+
+/// An expected and a measured number.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Expectation {
+    /// What was measured, for example `NMDS, raw: first tier`.
+    pub what: String,
+    /// The expected range, for example `at least 0.99`.
+    pub expected: String,
+    /// The measured value, for example `0.994`.
+    pub measured: String,
+    /// Whether the measured value is in the expected range.
+    pub held: bool,
+}
+
+/// Whether shapes keep their size when they are compared.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Scale {
+    /// Original size.
+    Raw,
+    /// All scaled to the same size.
+    Normalized,
+}
+
+impl Scale {
+    /// The name in file names and in JSON.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Raw => "raw",
+            Self::Normalized => "normalized",
+        }
+    }
+
+    /// The unit of distances between canonical forms.
+    #[must_use]
+    pub fn unit(self) -> &'static str {
+        match self {
+            Self::Raw => "form units",
+            Self::Normalized => "form size = 1",
+        }
+    }
+}

@@ -1,0 +1,192 @@
+//! Retrieval: precision over recall, and the confusion of classes.
+
+use crate::classes::Classes;
+use crate::figure::{Axis, Content, Figure, Heat, Plot, Point, Series, Shape, Style};
+use crate::results::{
+    self, AxisScale, Classification, Expectation, Provenance, RetrievalRecord, RetrievalRow, Scale,
+};
+use crate::{Cell, Record, ReportError, Table};
+
+/// The scales in the order of the panels, with their titles and their names in tables.
+const SCALES: [(Scale, &str, &str); 2] =
+    [(Scale::Normalized, "size ignored", "ignored"), (Scale::Raw, "size counts", "counts")];
+
+/// The colour of a full cell of the confusion matrix.
+const FULL: [u8; 3] = [31, 80, 154];
+
+/// The curves of precision over recall, one plot for each scale.
+fn precision(rows: &[RetrievalRow]) -> Vec<Plot> {
+    let [x, y] = ["recall", "precision"].map(|name| results::Axis {
+        name: name.to_owned(),
+        unit: String::new(),
+        scale: AxisScale::Linear,
+    });
+    let of = |scale: Scale| rows.iter().filter(move |row| row.scale == scale);
+    let methods =
+        Classes::of(SCALES.iter().flat_map(|(scale, ..)| of(*scale)).map(|row| row.method.as_str()));
+    let series = |row: &RetrievalRow| {
+        let last = row.precision.len().saturating_sub(1).max(1) as f64;
+        let note = format!("mAP {:.3}", row.micro.map);
+        let point = |(i, &p): (usize, &f64)| Point::new(i as f64 / last, p, &note);
+        Series {
+            name: row.method.clone(),
+            style: Style(methods.index(&row.method)),
+            shape: Shape::Curve,
+            points: row.precision.iter().enumerate().map(point).collect(),
+        }
+    };
+    let plot = |(scale, title, _): &(Scale, &str, &str)| {
+        let mut series: Vec<Series> = of(*scale).map(series).collect();
+        series.sort_by_key(|series| series.style.0);
+        let label = format!("Precision over recall of all methods, {title}");
+        (!series.is_empty()).then(|| Plot::new(title, label, &x, &y, series, vec![]))
+    };
+    SCALES.iter().filter_map(plot).collect()
+}
+
+/// True classes down, predicted classes across.
+fn confusion(Classification { classes, confusion, .. }: &Classification) -> Heat {
+    let columns: Vec<String> = classes.iter().cloned().chain(["unknown".to_owned()]).collect();
+    let rows = Axis::categories("true class", classes.iter().cloned());
+    let shares = |row: &Vec<usize>| {
+        let total = row.iter().sum::<usize>().max(1) as f64;
+        row.iter().map(|&count| count as f64 / total).collect()
+    };
+    Heat {
+        title: String::new(),
+        label: "True classes against predicted ones".into(),
+        x: Axis::categories("predicted class", columns.iter().cloned()),
+        y: Axis { range: [rows.range[1], rows.range[0]], ..rows },
+        values: confusion.iter().map(shares).collect(),
+        max: 1.0,
+        tint: Some(FULL),
+        bar: None,
+        borders: vec![],
+        counts: Some(confusion.clone()),
+        rows: classes.clone(),
+        columns,
+        hover: "{row} classified as {column}\n{count} shapes, {percent} of the class",
+    }
+}
+
+impl Record for RetrievalRecord {
+    fn about(&self) -> (&Provenance, &[Expectation], &str) {
+        (&self.provenance, &self.expectations, &self.analysis)
+    }
+
+    fn validate(&self) -> Result<(), ReportError> {
+        let Classification { classes, confusion, .. } = &self.classification;
+        if self.rows.iter().all(|row| row.precision.is_empty()) || classes.is_empty() {
+            return Err(ReportError::Empty { figure: "the figure of retrieval", unit: "class and curve" });
+        }
+        for row in &self.rows {
+            for &value in &row.precision {
+                ReportError::check_finite(value, || {
+                    format!("the precision of {} ({})", row.method, row.scale.name())
+                })?;
+            }
+        }
+        ReportError::check_length("the confusion matrix", confusion.len(), classes.len(), "class")?;
+        confusion.iter().try_for_each(|row| {
+            ReportError::check_length("a row of the confusion matrix", row.len(), classes.len() + 1, "class")
+        })
+    }
+
+    fn figures(&self) -> Vec<Figure> {
+        let c = &self.classification;
+        let curves = format!(
+            "Precision over recall, averaged over queries among {} shapes. Further right and up is better.",
+            self.names.len()
+        );
+        let counts = format!(
+            "Classification of every shape by the vote of its {} nearest neighbours among the others, by {}. A shape is \
+             unknown if its nearest neighbour is farther than {:.3}. The colour is the share of the class.",
+            c.voters, c.method, c.threshold
+        );
+        let precision = Content::Plots(precision(&self.rows));
+        vec![
+            Figure { part: "-curves", caption: curves, content: precision },
+            Figure { part: "-confusion", caption: counts, content: Content::Heats(vec![confusion(c)]) },
+        ]
+    }
+
+    fn tables(&self) -> Vec<Table> {
+        let row = |row: &RetrievalRow| {
+            let size = SCALES.iter().find(|(scale, ..)| *scale == row.scale).map_or("", |(.., name)| name);
+            let (s, m) = (&row.micro, &row.macro_average);
+            let scores =
+                [s.nn, s.ft, s.st, s.e, s.dcg, s.map, m.nn, m.map, row.knn_accuracy, row.held_out_map];
+            let mut cells = vec![Cell::text(&row.method), Cell::text(size)];
+            cells.extend(scores.map(Cell::score));
+            cells
+        };
+        let caption = "NN: nearest neighbour; FT and ST: first and second tier; E: E-measure; DCG: discounted cumulative \
+                       gain; mAP: mean average precision. 1 is the best value of all. Scores are averaged over queries; \
+                       macro scores over classes. Least mAP: the lowest mAP when one class is left out of the collection.";
+        let headings = [
+            "method",
+            "size",
+            "NN",
+            "FT",
+            "ST",
+            "E",
+            "DCG",
+            "mAP",
+            "macro NN",
+            "macro mAP",
+            "k-NN",
+            "least mAP",
+        ];
+        let scores = Table::new(caption, headings, self.rows.iter().map(row).collect());
+        let c = &self.classification;
+        let caption = "Missed: the share of shapes classified as unknown although others of their class are in the \
+                       collection. Mistaken: the share of shapes assigned to a class although no other of their own is. \
+                       The thresholds are found without the class they are tested on.";
+        let values = [c.missed, c.mistaken, c.threshold].map(Cell::score).to_vec();
+        let unknown = Table::new(caption, ["missed", "mistaken", "threshold"], vec![values]);
+        vec![scores, unknown.folded("Unknown shapes")]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fixtures::{assert_balanced, retrieval_record};
+    use crate::save;
+
+    #[test]
+    fn files_are_well_formed_deterministic_and_labelled() {
+        let record = retrieval_record();
+        let folder = tempfile::tempdir().unwrap();
+        let draw = |name: &str| -> [String; 2] {
+            save(&record, folder.path(), name).unwrap();
+            ["curves", "confusion"].map(|part| {
+                std::fs::read_to_string(folder.path().join(format!("{name}-{part}.svg"))).unwrap()
+            })
+        };
+        let svg = draw("a");
+        assert_eq!(svg, draw("b"));
+        svg.iter().for_each(|text| assert_balanced(text));
+        for text in ["precision", "recall", "wave-kernel", "size ignored", "size counts"] {
+            assert!(svg[0].contains(text), "{text}");
+        }
+        for text in ["cat", "a &amp; b", "unknown", "true class"] {
+            assert!(svg[1].contains(text), "{text}");
+        }
+    }
+
+    #[test]
+    fn inconsistent_records_are_errors_that_name_the_part() {
+        let fault = |change: &dyn Fn(&mut RetrievalRecord)| {
+            let mut record = retrieval_record();
+            change(&mut record);
+            record.validate().unwrap_err().to_string()
+        };
+        assert!(fault(&|r| r.rows.clear()).contains("class and curve"));
+        assert!(fault(&|r| r.rows[0].precision[1] = f64::NAN).contains("precision of wave-kernel"));
+        assert!(
+            fault(&|r| r.classification.confusion[0].truncate(1)).contains("row of the confusion matrix")
+        );
+        assert!(fault(&|r| r.classification.confusion.truncate(1)).contains("the confusion matrix"));
+    }
+}

@@ -1,0 +1,37 @@
+//! From a mesh to an image.
+
+use mesh::TriMesh;
+
+use super::camera::{Camera, View, drawable_faces, extent};
+use super::normals::corner_normals;
+use super::options::RenderOptions;
+use super::raster::DepthBuffer;
+use super::shade::shade;
+use super::surface::Paint;
+use crate::RgbaImage;
+
+/// Draws a mesh as a shaded orthographic image in which it fits.
+///
+/// * Faces are lit on both sides, so neither their orientation nor holes matter.
+/// * Faces that are degenerate, or have a corner that does not exist or is not finite, are left out. Without any
+///   other face the image is empty.
+/// * Cost: linear in faces and pixels. 28 k vertices at 600 x 600 take about 0.1 s.
+#[must_use]
+pub fn render(mesh: &TriMesh, options: &RenderOptions) -> RgbaImage {
+    let faces = drawable_faces(mesh);
+    let samples = options.supersampling.clamp(1, 4);
+    let size = [options.width, options.height].map(|side| side.clamp(1, 8192) * samples);
+    let camera = Camera::fit(mesh, &faces, &options.view, size, options.margin.clamp(0.0, 0.45));
+    let buffer = DepthBuffer::draw(mesh, &faces, &camera, size);
+    let normals = corner_normals(mesh, &faces, &camera, options.crease.clamp(0.0, 90.0));
+    let paint = Paint::new(mesh.n_vertices(), &options.surface, samples);
+    shade(&buffer, &normals, &paint, samples, options.background)
+}
+
+/// Width over height of a mesh in a view; 1 if the mesh has no extent.
+#[must_use]
+pub fn aspect(mesh: &TriMesh, view: &View) -> f64 {
+    let [width, height] = extent(mesh, &drawable_faces(mesh), view);
+    let aspect = width / height;
+    if aspect.is_finite() && aspect > 0.0 { aspect } else { 1.0 }
+}

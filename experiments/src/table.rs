@@ -1,0 +1,89 @@
+//! The table of experiments.
+
+use anyhow::Result;
+use report::page::{Kind, Section};
+
+use crate::context::Context;
+use crate::specimen::Specimen;
+use crate::{figure1, figure3, figure4, figure5, figure6, figure7, figure8, figure9, retrieve, scaling};
+
+/// One experiment.
+pub(crate) struct Experiment {
+    /// Its name, its title, and what the page shows of its record.
+    pub(crate) section: Section,
+    /// The text of its configuration.
+    pub(crate) config: &'static str,
+    /// What it needs and does.
+    pub(crate) run: Run,
+}
+
+/// What an experiment needs.
+pub(crate) enum Run {
+    /// The shapes of the collection, or shapes that it generates.
+    Collection(fn(&Context<'_>) -> Result<()>),
+    /// A few shapes with values that several experiments share, such as the distances of all pairs of vertices.
+    Specimens(fn(&Context<'_>, &[Specimen<'_>]) -> Result<()>),
+}
+
+macro_rules! experiment {
+    ($name:literal, $title:literal, $kind:ident, $run:expr) => {
+        Experiment {
+            section: Section { name: $name, title: $title, kind: Kind::$kind },
+            config: include_str!(concat!("../configs/", $name, ".toml")),
+            run: $run,
+        }
+    };
+}
+
+use Run::{Collection, Specimens};
+
+/// All experiments, in the order in which they run and appear on the page.
+#[rustfmt::skip]
+pub(crate) const EXPERIMENTS: [Experiment; 11] = [
+    experiment!("figure1", "Figure 1. Shapes and their canonical forms", Figure1, Collection(figure1::run)),
+    experiment!("figure3", "Figure 3. Canonical forms by several methods", Figure3, Specimens(figure3::run)),
+    experiment!("figure4", "Figure 4. Classification of shapes by their canonical forms", Figure4, Collection(figure4::run)),
+    experiment!("figure5a", "Figure 5a. Reconstruction error against the rank", Curves, Specimens(figure5::rank)),
+    experiment!("figure5b", "Figure 5b. Reconstruction error against alpha", Curves, Specimens(figure5::alpha)),
+    experiment!("figure6", "Figure 6. Reconstruction error against the number of samples", Curves, Specimens(figure6::run)),
+    experiment!("figure7", "Figure 7. Stress above the optimum against the number of samples", Curves, Specimens(figure7::run)),
+    experiment!("figure8", "Figure 8. Time against the number of samples", Curves, Specimens(figure8::run)),
+    experiment!("figure9", "Figure 9. Time and memory of whole embeddings", Figure9, Specimens(figure9::run)),
+    experiment!("retrieval", "Retrieval and classification by signatures and canonical forms", Retrieval, Collection(retrieve::run)),
+    experiment!("scaling", "Scaling. Time and memory up to a million vertices", Curves, Collection(scaling::run)),
+];
+
+/// Stands for all experiments on the command line.
+pub(crate) const ALL: &str = "all";
+
+/// Accepts the name of an experiment, or [`ALL`].
+pub(crate) fn parse_name(name: &str) -> Result<String, String> {
+    let names: Vec<&str> = [ALL].into_iter().chain(EXPERIMENTS.iter().map(|e| e.section.name)).collect();
+    match names.contains(&name) {
+        true => Ok(name.to_owned()),
+        false => Err(format!("there is no experiment `{name}`; choose from {}", names.join(", "))),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::config::Config;
+
+    #[test]
+    fn every_configuration_is_valid() {
+        for Experiment { section, config, .. } in &EXPERIMENTS {
+            Config::parse(section.name, config).unwrap();
+        }
+    }
+
+    #[test]
+    fn names_are_unique_and_unknown_ones_are_refused() {
+        for (i, experiment) in EXPERIMENTS.iter().enumerate() {
+            let name = experiment.section.name;
+            assert_eq!(parse_name(name).as_deref(), Ok(name));
+            assert!(EXPERIMENTS[..i].iter().all(|other| other.section.name != name));
+        }
+        assert!(parse_name("figure2").unwrap_err().contains("figure1, figure3"));
+    }
+}
