@@ -1,10 +1,9 @@
 //! What an experiment does, is expected to show, and means: `configs/*.toml`.
 
 use anyhow::{Context, Result};
-use canonform::{
-    Bandwidth, EmbedMethod, EmbedOptions, FastMarchingOptions, GeodesicMethod, ObtuseTreatment, Samples,
-    StressChoice,
-};
+use canonform::{EmbedMethod, FormOptions, Samples};
+use geodesics::{FastMarchingOptions, Method, ObtuseTreatment};
+use nmds::Bandwidth;
 use report::results::Expectation;
 use serde::Deserialize;
 
@@ -107,23 +106,22 @@ impl Config {
     }
 
     /// Options of the paper's method.
-    pub(crate) fn nmds(&self, seed: u64) -> EmbedOptions {
+    pub(crate) fn nmds(&self, seed: u64) -> FormOptions {
         let marching = FastMarchingOptions::default();
         let obtuse = self.obtuse.map_or(marching.obtuse, Into::into);
-        EmbedOptions {
-            geodesic: GeodesicMethod::FastMarching(FastMarchingOptions { obtuse, ..marching }),
+        FormOptions {
+            geodesic: Method::FastMarching(FastMarchingOptions { obtuse, ..marching }),
             samples: Samples::Count(self.samples),
             method: EmbedMethod::low_rank(self.rank),
-            stress: StressChoice::Skip,
             seed,
-            ..EmbedOptions::default()
+            ..FormOptions::default()
         }
     }
 
     /// Options of the baseline.
-    pub(crate) fn kernel_pca(&self, seed: u64) -> EmbedOptions {
+    pub(crate) fn kernel_pca(&self, seed: u64) -> FormOptions {
         let method = EmbedMethod::KernelPca { rank: Some(self.rank), bandwidth: Bandwidth::Mean };
-        EmbedOptions { method, ..self.nmds(seed) }
+        FormOptions { method, ..self.nmds(seed) }
     }
 
     /// Holds the bounds that apply against what was measured.

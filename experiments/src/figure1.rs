@@ -6,7 +6,7 @@
 use std::time::Instant;
 
 use anyhow::Result;
-use canonform::{EmbedOptions, MATCHED_POINTS, StressChoice, embed};
+use canonform::{MATCHED_POINTS, StressChoice, StressOptions, embed_and_measure};
 use descriptors::{CanonicalForm, MatchOptions, PreparedForm, match_forms};
 use mesh::{TriMesh, orient_consistently};
 use report::figure1::{Figure1Pair, PAIRS, figure1};
@@ -19,10 +19,12 @@ use crate::run::{Context, described};
 /// Runs the experiment and writes `figure1.json` and its pictures.
 pub(crate) fn run(context: &Context<'_>) -> Result<()> {
     let start = Instant::now();
-    let options = EmbedOptions { stress: StressChoice::Estimate, ..context.config.nmds(context.args.seed) };
+    let seed = context.args.seed;
+    let options = context.config.nmds(seed);
+    let stress = StressOptions { choice: StressChoice::Estimate, against: None, seed };
     let shown = context.collection.first_of_each_class(PAIRS);
     let embedded = map(&shown, "figure 1", context.observer, |shape| {
-        let embedded = embed(&shape.surface, &options, &())?;
+        let embedded = embed_and_measure(&shape.surface, &options, &stress, &())?;
         let form = embedded.form(&shape.surface)?;
         let stress = embedded.report.stress.map_or(f64::NAN, |stress| stress.value);
         Ok((form, stress))
@@ -45,7 +47,7 @@ pub(crate) fn run(context: &Context<'_>) -> Result<()> {
     let record = Figure1Record {
         expectations: context.check(|name| (name == "largest stress ratio").then_some(worst))?,
         analysis: context.config.analysis.trim().to_owned(),
-        provenance: context.provenance(described(&[("embedding", &options)]), start.elapsed()),
+        provenance: context.provenance(described(&[("embedding", &options)], stress.choice), start.elapsed()),
         shapes: facts.clone(),
     };
 

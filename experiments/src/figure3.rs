@@ -9,9 +9,9 @@
 use std::time::Instant;
 
 use anyhow::Result;
-use canonform::{FastMarchingOptions, GeodesicMethod, MATCHED_POINTS, ObtuseTreatment, Update};
+use canonform::MATCHED_POINTS;
 use descriptors::{CanonicalForm, MatchOptions, PreparedForm, match_forms};
-use geodesics::{Sampling, Variance};
+use geodesics::{FastMarchingOptions, Method, ObtuseTreatment, Sampling, Update, Variance};
 use linalg::LandmarkDistances;
 use mesh::{TriMesh, orient_consistently};
 use nmds::{
@@ -38,7 +38,7 @@ type Runs = Vec<(Embedding, f64)>;
 fn settings() -> [Distances; 3] {
     let plain = |name, update| {
         let options = FastMarchingOptions { update, obtuse: ObtuseTreatment::Ignore };
-        Distances { name, method: GeodesicMethod::FastMarching(options) }
+        Distances { name, method: Method::FastMarching(options) }
     };
     [Distances::default(), plain("planar", Update::Planar), plain("point-source", Update::PointSource)]
 }

@@ -8,10 +8,9 @@ use std::time::Instant;
 
 use anyhow::{Context as _, Result};
 use canonform::{
-    EmbedOptions, FormMatches, MatchOptions, Normalization, PreparedForms, embed, embedded_distances,
-    form_matches, map_of,
+    FormMatches, FormOptions, PreparedForms, StressChoice, embed, embedded_distances, form_matches, map_of,
 };
-use descriptors::CanonicalForm;
+use descriptors::{CanonicalForm, MatchOptions, Normalization};
 use linalg::DistanceMatrix;
 use nmds::normalized_stress;
 use rayon::prelude::*;
@@ -53,7 +52,7 @@ pub(crate) fn run(context: &Context<'_>) -> Result<()> {
     let record = Figure4Record {
         expectations: context.check(|name| measured(&panels, name))?,
         analysis: config.analysis.trim().to_owned(),
-        provenance: context.provenance(described(&options), start.elapsed()),
+        provenance: context.provenance(described(&options, StressChoice::Skip), start.elapsed()),
         names: context.collection.names(),
         labels,
         panels,
@@ -65,7 +64,7 @@ pub(crate) fn run(context: &Context<'_>) -> Result<()> {
     Ok(())
 }
 
-fn formed_by(context: &Context<'_>, options: &EmbedOptions) -> Result<Vec<Formed>> {
+fn formed_by(context: &Context<'_>, options: &FormOptions) -> Result<Vec<Formed>> {
     map(&context.collection.all(), options.method.name(), context.observer, |shape| {
         Formed::new(shape, &embed(&shape.surface, options, &())?)
     })
@@ -74,7 +73,7 @@ fn formed_by(context: &Context<'_>, options: &EmbedOptions) -> Result<Vec<Formed
 /// What the page shows when shapes are turned.
 fn shapes(
     context: &Context<'_>,
-    methods: &[(&str, EmbedOptions)],
+    methods: &[(&str, FormOptions)],
     formed: &[Vec<Formed>],
     motions: Vec<Motions>,
 ) -> Result<ShapesRecord> {

@@ -9,10 +9,9 @@ use std::time::Instant;
 
 use anyhow::Result;
 use canonform::{
-    DescribeOptions, FORM_UNIT, MatchOptions, Normalization, PreparedForms, ShapeDescription, SignatureKind,
-    combined_distance, describe_surface, form_distances,
+    DescribeOptions, FORM_UNIT, PreparedForms, ShapeDescription, combined_distance, describe, form_distances,
 };
-use descriptors::{CanonicalForm, fuse, size_coordinate};
+use descriptors::{CanonicalForm, MatchOptions, Normalization, SignatureKind, fuse, size_coordinate};
 use linalg::DistanceMatrix;
 use report::results::{Classification, RetrievalRecord, RetrievalRow, Scale, write};
 use report::retrieval::retrieval;
@@ -36,7 +35,7 @@ pub(crate) fn run(context: &Context<'_>) -> Result<()> {
     let start = Instant::now();
     let options = DescribeOptions::default();
     let shapes = map(&context.collection.all(), "describing", context.observer, |shape| {
-        Ok(describe_surface(&shape.surface, &options)?)
+        Ok(describe(&shape.surface, &options)?)
     })?;
     let described = start.elapsed();
     let names = context.collection.labels();

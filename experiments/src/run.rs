@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use std::time::Duration;
 
 use anyhow::{Result, bail};
-use canonform::{EmbedOptions, Observer};
+use canonform::{FormOptions, Observer, StressChoice};
 use report::page::write_report;
 use report::results::{Expectation, Provenance};
 use terminal::Bars;
@@ -184,19 +184,19 @@ impl Context<'_> {
 }
 
 /// The options of embeddings as a record shows them.
-pub(crate) fn described(options: &[(&str, &EmbedOptions)]) -> serde_json::Value {
-    let options = options.iter().map(|(name, options)| ((*name).to_owned(), of_embedding(options)));
+pub(crate) fn described(options: &[(&str, &FormOptions)], stress: StressChoice) -> serde_json::Value {
+    let options = options.iter().map(|(name, options)| ((*name).to_owned(), of_embedding(options, stress)));
     serde_json::Value::Object(options.collect())
 }
 
-fn of_embedding(options: &EmbedOptions) -> serde_json::Value {
+fn of_embedding(options: &FormOptions, stress: StressChoice) -> serde_json::Value {
     serde_json::json!({
         "method": format!("{:?}", options.method),
         "geodesic": format!("{:?}", options.geodesic),
         "samples": format!("{:?}", options.samples),
         "first_sample": format!("{:?}", options.first_sample),
         "dim": options.dim,
-        "stress": format!("{:?}", options.stress),
+        "stress": format!("{stress:?}"),
     })
 }
 

@@ -5,11 +5,10 @@ use std::process::ExitCode;
 
 use anyhow::Result;
 use canonform::{
-    DescribeOptions, FORM_UNIT, FORM_WEIGHT, MatchOptions, Observer, PreparedForm, ShapeDescription,
-    SignatureKind, describe,
+    DescribeOptions, FORM_UNIT, FORM_WEIGHT, Observer, ShapeDescription, Surface, describe, prepare_form,
 };
 use datasets::{ArticulatedOptions, Family, articulated};
-use descriptors::match_forms;
+use descriptors::{MatchOptions, PreparedForm, SignatureKind, match_forms};
 use linalg::Matrix;
 use rayon::prelude::*;
 use terminal::Bars;
@@ -37,8 +36,9 @@ pub(crate) fn units(args: &UnitsArgs) -> Result<ExitCode> {
         let options =
             ArticulatedOptions { seed: seed as u64, n_vertices: VERTICES[(seed - 1) % VERTICES.len()] };
         let one = |shape: &datasets::LabeledShape| {
-            let description = describe(&shape.mesh, &DescribeOptions::default())?;
-            let form = description.prepare()?;
+            let options = DescribeOptions::default();
+            let description = describe(&Surface::new(&shape.mesh, &options.form.repair)?, &options)?;
+            let form = prepare_form(&description.form)?;
             Ok(Described { label: shape.label.clone(), seed, description, form })
         };
         shapes.extend(articulated(&options)?.par_iter().map(one).collect::<Result<Vec<_>>>()?);

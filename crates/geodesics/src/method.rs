@@ -1,5 +1,7 @@
 //! The choice between solvers.
 
+use std::str::FromStr;
+
 use surface::IntrinsicMesh;
 
 use crate::{
@@ -8,7 +10,8 @@ use crate::{
 };
 
 /// A way of measuring distances on a surface.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Method {
     /// [`FastMarching`].
     FastMarching(FastMarchingOptions),
@@ -19,6 +22,7 @@ pub enum Method {
     /// [`Dijkstra`].
     Dijkstra,
     /// [`BreadthFirst`].
+    #[serde(rename = "bfs")]
     BreadthFirst,
 }
 
@@ -29,6 +33,25 @@ impl Default for Method {
 }
 
 impl Method {
+    /// Every method, each with its default options.
+    #[must_use]
+    pub fn all() -> [Self; 5] {
+        let marching = Self::FastMarching(FastMarchingOptions::default());
+        [marching, Self::Exact, Self::Heat(HeatOptions::default()), Self::Dijkstra, Self::BreadthFirst]
+    }
+
+    /// One line for help texts.
+    #[must_use]
+    pub fn summary(self) -> &'static str {
+        match self {
+            Self::FastMarching(_) => "Fast marching on triangles",
+            Self::Heat(_) => "From the flow of heat: smooth, fast for many sources",
+            Self::Exact => "Exact on the polyhedral surface",
+            Self::Dijkstra => "Shortest paths along edges",
+            Self::BreadthFirst => "Number of edges times the mean edge length",
+        }
+    }
+
     /// The name used on the command line and in records.
     #[must_use]
     pub fn name(self) -> &'static str {
@@ -56,11 +79,31 @@ impl Method {
     }
 }
 
+impl FromStr for Method {
+    type Err = GeodesicError;
+
+    /// The method of this [name](Method::name), with its default options.
+    fn from_str(name: &str) -> Result<Self, GeodesicError> {
+        let known = || Self::all().map(Self::name).join(", ");
+        let found = Self::all().into_iter().find(|method| method.name() == name);
+        found.ok_or_else(|| GeodesicError::UnknownName { name: name.to_owned(), known: known() })
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use mesh::shapes::icosphere;
 
     use super::*;
+
+    #[test]
+    fn methods_are_read_by_their_names() {
+        for method in Method::all() {
+            assert_eq!(method.name().parse(), Ok(method));
+        }
+        let error = "walking".parse::<Method>().unwrap_err().to_string();
+        assert!(error.contains("`walking`") && error.contains("fast-marching, exact"), "{error}");
+    }
 
     #[test]
     fn every_method_prepares_or_says_why_not() {

@@ -6,7 +6,8 @@ use surface::VertexId;
 use crate::{DistanceSolver, GeodesicError, PrunedSolver};
 
 /// The first sample of [`farthest_point_sampling`].
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum FirstSample {
     /// The vertex farthest from vertex 0: a tip of the surface, the same in every run.
     #[default]

@@ -6,7 +6,8 @@ use crate::NmdsError;
 
 /// How the pseudo-inverse `S⁺` in the Nystrom approximation `Ê = R S⁺ R'` is kept from blowing up: the
 /// small eigenvalues of `S` are mostly noise, and their reciprocals are large.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Regularization {
     /// The reciprocals of the `rank` eigenvalues of largest magnitude, zero for the rest (eq. 4): the
     /// paper's own, and the fastest.
@@ -40,7 +41,8 @@ impl Default for Regularization {
 }
 
 /// The `α` of [`Regularization::Rpi`].
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum RpiAlpha {
     /// `α = c σ1⁴` for this c, with `σ1` the largest eigenvalue in magnitude. It has no unit. 1e-10 is safe
     /// from few samples to many; with accurate distances and 100 samples 1e-12 to 1e-14 reconstructs better,
@@ -74,6 +76,28 @@ impl RpiAlpha {
 }
 
 impl Regularization {
+    /// Every kind, each with its default options.
+    #[must_use]
+    pub fn all() -> [Self; 4] {
+        [
+            Self::LowRank { rank: None },
+            Self::Rpi { alpha: RpiAlpha::default() },
+            Self::None,
+            Self::Cur { rank: None },
+        ]
+    }
+
+    /// One line for help texts.
+    #[must_use]
+    pub fn summary(self) -> &'static str {
+        match self {
+            Self::LowRank { .. } => "Keep the eigenvalues of largest magnitude",
+            Self::Rpi { .. } => "Keep all, and hold the small ones back (regularised pseudo-inverse)",
+            Self::None => "Keep all that are not rounding errors",
+            Self::Cur { .. } => "CUR decomposition: keep the columns of the first samples",
+        }
+    }
+
     /// The name used on the command line and in records.
     #[must_use]
     pub fn name(self) -> &'static str {

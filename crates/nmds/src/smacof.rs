@@ -6,7 +6,8 @@ use rayon::prelude::*;
 use crate::{Embedding, NmdsError};
 
 /// Options of [`smacof`].
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub struct SmacofOptions {
     /// Steps at most. Default: 300.
     pub max_iterations: usize,

@@ -1,10 +1,10 @@
 //! What the built-in dataset must come out as.
 
 use canonform::{
-    DescribeOptions, EmbedOptions, MatchOptions, Normalization, PreparedForms, ShapeDistance, StressChoice,
-    describe, embed, form_distances,
+    DescribeOptions, FormOptions, PreparedForms, ShapeDistance, describe, embed, form_distances,
 };
 use datasets::{ArticulatedOptions, articulated};
+use descriptors::{MatchOptions, Normalization};
 use rayon::prelude::*;
 use retrieval::{Labels, evaluate};
 
@@ -15,12 +15,11 @@ fn forms_of_the_built_in_shapes_find_their_families() {
     let options = ArticulatedOptions { n_vertices: 1000, ..ArticulatedOptions::default() };
     let shapes = articulated(&options).unwrap();
     let labels = Labels::new(&shapes.iter().map(|shape| shape.label.as_str()).collect::<Vec<_>>());
-    let embedding = EmbedOptions { stress: StressChoice::Skip, ..EmbedOptions::default() };
     let forms: Vec<_> = shapes
         .par_iter()
         .map(|shape| {
             let surface = surface(&shape.mesh);
-            embed(&surface, &embedding, &()).unwrap().form(&surface).unwrap()
+            embed(&surface, &FormOptions::default(), &()).unwrap().form(&surface).unwrap()
         })
         .collect();
     let prepared = PreparedForms::new(&forms, Normalization::Raw).unwrap();
@@ -35,8 +34,10 @@ fn forms_of_the_built_in_shapes_find_their_families() {
 fn two_poses_are_one_shape_and_two_families_are_not() {
     let options = ArticulatedOptions { n_vertices: 1000, ..ArticulatedOptions::default() };
     let shapes = articulated(&options).unwrap();
-    let described: Vec<_> =
-        shapes.par_iter().map(|shape| describe(&shape.mesh, &DescribeOptions::default()).unwrap()).collect();
+    let described: Vec<_> = shapes
+        .par_iter()
+        .map(|shape| describe(&surface(&shape.mesh), &DescribeOptions::default()).unwrap())
+        .collect();
     let pairs: Vec<(usize, usize)> =
         (0..shapes.len()).flat_map(|i| (i + 1..shapes.len()).map(move |j| (i, j))).collect();
     pairs.par_iter().for_each(|&(i, j)| {

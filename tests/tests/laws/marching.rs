@@ -1,10 +1,9 @@
 //! What fast marching must come out as on surfaces whose distances are known.
 
-use canonform::GeodesicMethod;
 use datasets::Family;
 use geodesics::{
-    DistanceSolver, FastMarching, FastMarchingOptions, FirstSample, ObtuseTreatment, PrunedSolver, Source,
-    farthest_point_sampling,
+    DistanceSolver, FastMarching, FastMarchingOptions, FirstSample, Method, ObtuseTreatment, PrunedSolver,
+    Source, farthest_point_sampling,
 };
 use mesh::{TriMesh, shapes};
 use surface::{IntrinsicMesh, VertexId};
@@ -112,7 +111,7 @@ fn distances_grow_no_faster_than_edges_and_stay_below_paths_along_them() {
         let sources: Vec<VertexId> = (0..10).map(|i| VertexId::from(i * mesh.n_vertices() / 10)).collect();
         let surface = mesh.intrinsic();
         let marched = columns(&mesh, marching(), &sources);
-        let walked = columns(&mesh, GeodesicMethod::Dijkstra, &sources);
+        let walked = columns(&mesh, Method::Dijkstra, &sources);
         let slack = 1e-12 * walked.max();
         for s in 0..sources.len() {
             for (edge, ends) in surface.topology().edges().iter().enumerate() {
@@ -131,7 +130,7 @@ fn other_pieces_are_infinitely_far_and_nothing_else_is() {
     let mut start = 0;
     for part in &parts {
         let end = start + part.n_vertices();
-        for method in [marching(), GeodesicMethod::Dijkstra, GeodesicMethod::BreadthFirst] {
+        for method in [marching(), Method::Dijkstra, Method::BreadthFirst] {
             let surface = whole.intrinsic();
             let found = method.prepare(&surface).unwrap().distances(VertexId::from(start + 1));
             for (v, d) in found.iter().enumerate() {

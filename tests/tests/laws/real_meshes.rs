@@ -6,9 +6,10 @@
 use std::path::{Path, PathBuf};
 
 use canonform::{
-    DescribeOptions, EmbedOptions, MatchOptions, Normalization, PreparedForms, ShapeDistance, StressChoice,
-    Surface, describe_surface, embed, form_distances, label_of, list_shapes,
+    DescribeOptions, FormOptions, PreparedForms, ShapeDistance, Surface, describe, embed, form_distances,
+    label_of, list_shapes,
 };
+use descriptors::{MatchOptions, Normalization};
 use geodesics::{FirstSample, farthest_point_sampling};
 use mesh::RepairOptions;
 use nmds::{NystromOptions, Regularization, classical, nystrom, paper_stress};
@@ -133,7 +134,7 @@ fn a_mesh_whose_faces_were_lost_is_named() {
 fn animals_find_their_kind() {
     let Some(data) = data("three classes of TOSCA") else { return };
     let names = ["cat0", "cat1", "cat2", "centaur0", "centaur1", "centaur2", "david0", "david1", "david10"];
-    let options = EmbedOptions { stress: StressChoice::Skip, ..EmbedOptions::default() };
+    let options = FormOptions::default();
     let forms: Vec<_> = names
         .iter()
         .map(|name| {
@@ -168,10 +169,8 @@ fn two_poses_of_an_animal_are_one_shape_and_two_animals_are_not() {
     let classes = ["cat", "centaur", "david", "dog"];
     let shapes: Vec<_> =
         shapes.into_iter().filter(|s| classes.contains(&s.label.as_str())).step_by(2).collect();
-    let described: Vec<_> = shapes
-        .par_iter()
-        .map(|s| describe_surface(&read(&s.path), &DescribeOptions::default()).unwrap())
-        .collect();
+    let described: Vec<_> =
+        shapes.par_iter().map(|s| describe(&read(&s.path), &DescribeOptions::default()).unwrap()).collect();
     let pairs: Vec<(usize, usize)> =
         (0..shapes.len()).flat_map(|i| (i + 1..shapes.len()).map(move |j| (i, j))).collect();
     let distance = |&(i, j): &(usize, usize)| {

@@ -1,14 +1,13 @@
 //! Signatures: blind to poses and triangulations, sharp on bodies, fit for any mesh.
 
-use canonform::{
-    DescribeOptions, ShapeDescription, SignatureKind, Surface, describe, describe_surface, rerank,
-};
+use canonform::{DescribeOptions, ShapeDescription, Surface, describe, prepare_form, rerank};
 use datasets::{ArticulatedOptions, Family, articulated_shape};
+use descriptors::SignatureKind;
 use rayon::prelude::*;
 use retrieval::Candidate;
 
 use crate::real_meshes::data;
-use crate::support::body;
+use crate::support::{body, surface};
 
 fn fused_distance(a: &ShapeDescription, b: &ShapeDescription) -> f64 {
     let sq = |(x, y): (&f32, &f32)| f64::from(x - y).powi(2);
@@ -21,7 +20,7 @@ fn described() -> Vec<ShapeDescription> {
         let (family, pose) = (Family::all()[i / 3], i % 3);
         let options = ArticulatedOptions { seed: 11 + pose as u64, n_vertices: 1000 + 500 * pose };
         let mesh = articulated_shape(family, pose + 1, &options).unwrap().mesh;
-        describe(&mesh, &DescribeOptions::default()).unwrap()
+        describe(&surface(&mesh), &DescribeOptions::default()).unwrap()
     };
     (0..9).into_par_iter().map(shape).collect()
 }
@@ -44,7 +43,7 @@ fn poses_and_triangulations_are_nearer_than_other_bodies_by_every_signature() {
 #[test]
 fn the_first_answers_are_of_the_same_body() {
     let shapes = described();
-    let forms: Vec<_> = shapes.iter().map(|shape| shape.prepare().unwrap()).collect();
+    let forms: Vec<_> = shapes.iter().map(|shape| prepare_form(&shape.form).unwrap()).collect();
     for query in 0..9 {
         let mut candidates: Vec<_> = (0..9)
             .filter(|&i| i != query)
@@ -62,7 +61,7 @@ fn a_description_does_not_depend_on_threads() {
     let mesh = body(Family::Cat);
     let on = |n: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(n).build().unwrap();
-        pool.install(|| describe(&mesh, &DescribeOptions::default()).unwrap())
+        pool.install(|| describe(&surface(&mesh), &DescribeOptions::default()).unwrap())
     };
     let (one, three) = (on(1), on(3));
     assert_eq!(one, three);
@@ -76,7 +75,7 @@ fn dirty_real_meshes_are_described() {
         let surface =
             Surface::read(&folder.join("tosca-lowres").join(format!("{name}.vert")), &Default::default())
                 .unwrap();
-        let found = describe_surface(&surface, &DescribeOptions::default()).unwrap();
+        let found = describe(&surface, &DescribeOptions::default()).unwrap();
         assert!(found.fused.iter().all(|x| x.is_finite()), "{name}");
         // By Weyl's law all values of ShapeDNA are near one.
         let dna = &found.signature(SignatureKind::ShapeDna).unwrap().values;

@@ -3,9 +3,10 @@
 use std::path::PathBuf;
 
 use canonform::InputPoint;
+use canonform::geodesics::Method;
 use clap::Args;
 
-use super::{GeodesicName, MarchingArgs, RepairArgs};
+use super::{MarchingArgs, RepairArgs, distance_method};
 
 /// What a point of a mesh looks like.
 const POINTS: &str = "\
@@ -58,8 +59,8 @@ pub(crate) struct GeodesicArgs {
     #[arg(long, value_name = "BYTES", value_parser = parse_bytes, conflicts_with = "source")]
     pub(crate) memory: Option<usize>,
     /// How distances are measured
-    #[arg(long, value_enum, default_value_t = GeodesicName::FastMarching)]
-    pub(crate) method: GeodesicName,
+    #[arg(long, value_parser = distance_method(), default_value = Method::default().name())]
+    pub(crate) method: Method,
     #[command(flatten)]
     pub(crate) marching: MarchingArgs,
     #[command(flatten)]

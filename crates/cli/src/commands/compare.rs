@@ -5,9 +5,9 @@ use std::process::ExitCode;
 
 use anyhow::{Result, bail};
 use canonform::{
-    Comparison, DescribeOptions, FormDistance, Handedness, MatchKind, MatchOptions, SAME_BELOW,
-    ShapeDistance, StressChoice, Surface, SurfaceComparison, Triangulation, compare_surfaces,
-    describe_surface, embed,
+    Comparison, DescribeOptions, FormDistance, FormOptions, Handedness, MatchKind, MatchOptions, SAME_BELOW,
+    ShapeDescription, ShapeDistance, Surface, SurfaceComparison, Triangulation, compare_surfaces, describe,
+    embed,
 };
 use serde::Serialize;
 
@@ -50,10 +50,8 @@ impl ResidualJson {
 
 /// Embeds, aligns and compares two meshes.
 pub(crate) fn compare(args: &CompareArgs, common: &Common) -> Result<ExitCode> {
-    if args.embedding.dim != 3 {
-        bail!("forms are compared in 3 dimensions; leave out --dim {}", args.embedding.dim);
-    }
-    let options = args.embedding.options(common, StressChoice::Skip)?;
+    let options = args.embedding.options(common)?;
+    options.validate()?;
     if let Some(path) = &args.residual_mesh {
         if extension(path) != "ply" {
             bail!("residuals are written as a coloured .ply; {} is none", path.display());
@@ -62,14 +60,19 @@ pub(crate) fn compare(args: &CompareArgs, common: &Common) -> Result<ExitCode> {
     }
     let bars = Bars::new(common.quiet);
     // The kind of match must not depend on how forms are made for a closer look.
-    let describing =
-        DescribeOptions { repair: args.embedding.repair.options(), ..DescribeOptions::default() };
+    let usual = FormOptions { repair: options.repair, ..FormOptions::default() };
+    let describing = DescribeOptions { form: usual, ..DescribeOptions::default() };
     let form = |path: &Path| {
         let surface = read_surface(path, &args.embedding.repair)?;
         let embedded = embed(&surface, &options, &bars).map_err(|fault| named(path, fault))?;
         bars.finish();
         let form = embedded.form(&surface).map_err(|fault| named(path, fault))?;
-        let description = describe_surface(&surface, &describing).map_err(|fault| named(path, fault))?;
+        let description = if embedded.options == describing.form {
+            ShapeDescription::new(&surface, &embedded, &describing)
+        } else {
+            describe(&surface, &describing)
+        };
+        let description = description.map_err(|fault| named(path, fault))?;
         anyhow::Ok((surface, form, description))
     };
     let matching = MatchOptions {

@@ -57,7 +57,7 @@ pub(crate) fn search(args: &SearchArgs, common: &Common) -> Result<ExitCode> {
             }
             Err(fault) if args.queries.len() == 1 => return Err(fault),
             Err(fault) => {
-                let error = terminal::message(&fault);
+                let error = crate::remedy::message(&fault);
                 eprintln!("error: {error}");
                 failed.push(Failure { query: query.to_path_buf(), error });
             }

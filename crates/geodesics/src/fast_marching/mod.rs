@@ -36,7 +36,8 @@ use triangulation::Triangulation;
 pub(crate) use update::Sector;
 
 /// The local solver of a marching front.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Update {
     /// The front in a triangle comes from one point: exact in the plane, first order elsewhere with a
     /// small constant. Novotni and Klein 2002.
@@ -48,7 +49,8 @@ pub enum Update {
 
 /// How a fast-marching solver treats corners wider than 90 degrees, at which a front may arrive before
 /// it has passed both ends of their base.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum ObtuseTreatment {
     /// Flip edges inside the surface until few are left (the intrinsic Delaunay triangulation), and
     /// correct vertices behind the front.
@@ -61,7 +63,8 @@ pub enum ObtuseTreatment {
 }
 
 /// Options of [`FastMarching`].
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub struct FastMarchingOptions {
     /// The local solver. Default: [`Update::PointSource`].
     pub update: Update,

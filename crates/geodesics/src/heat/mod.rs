@@ -18,7 +18,8 @@ use crate::solver::{Pool, within};
 use crate::{Dijkstra, DistanceSolver, GeodesicError, Source, SurfacePoint};
 
 /// Options of [`HeatMethod`].
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub struct HeatOptions {
     /// For how long heat flows, positive; longer is smoother, shorter is rougher. In units of `h^2`,
     /// `h` being the mean side of the Delaunay triangles, and on fine meshes of `h l`, `l` being a

@@ -4,6 +4,8 @@ mod columns;
 mod random;
 mod variance;
 
+use std::str::FromStr;
+
 use linalg::LandmarkDistances;
 
 pub use random::RandomSampler;
@@ -50,6 +52,35 @@ pub enum Sampling {
 }
 
 impl Sampling {
+    /// Every way to take landmarks.
+    pub const ALL: [Self; 4] = [
+        Self::Farthest,
+        Self::Random,
+        Self::Incremental(Variance::Least),
+        Self::Incremental(Variance::Greatest),
+    ];
+
+    /// One line for help texts.
+    #[must_use]
+    pub fn summary(self) -> &'static str {
+        match self {
+            Self::Farthest => "Each the farthest from those before it",
+            Self::Random => "All vertices with the same chance",
+            Self::Incremental(Variance::Least) => {
+                "Each the one whose squared distances to those before it vary least"
+            }
+            Self::Incremental(Variance::Greatest) => {
+                "Each the one whose squared distances to those before it vary most"
+            }
+        }
+    }
+
+    /// Whether the seed decides on the samples.
+    #[must_use]
+    pub fn is_random(self) -> bool {
+        self != Self::Farthest
+    }
+
     /// The name used on the command line and in records.
     #[must_use]
     pub fn name(self) -> &'static str {
@@ -81,6 +112,17 @@ impl Sampling {
     }
 }
 
+impl FromStr for Sampling {
+    type Err = GeodesicError;
+
+    /// The way of this [name](Sampling::name).
+    fn from_str(name: &str) -> Result<Self, GeodesicError> {
+        let known = || Self::ALL.map(Self::name).join(", ");
+        let found = Self::ALL.into_iter().find(|sampling| sampling.name() == name);
+        found.ok_or_else(|| GeodesicError::UnknownName { name: name.to_owned(), known: known() })
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use mesh::TriMesh;
@@ -90,12 +132,7 @@ mod tests {
     use super::*;
     use crate::{Dijkstra, farthest_point_sampling};
 
-    const ALL: [Sampling; 4] = [
-        Sampling::Farthest,
-        Sampling::Random,
-        Sampling::Incremental(Variance::Least),
-        Sampling::Incremental(Variance::Greatest),
-    ];
+    const ALL: [Sampling; 4] = Sampling::ALL;
 
     fn solver(mesh: &TriMesh) -> Dijkstra {
         Dijkstra::new(&mesh.intrinsic())

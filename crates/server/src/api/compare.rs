@@ -4,9 +4,10 @@ use std::sync::Arc;
 
 use axum::extract::State;
 use axum::http::StatusCode;
+use canonform::descriptors::{CanonicalForm, MatchOptions};
 use canonform::{
-    CanonicalForm, Comparison, MatchOptions, Overlay, PipelineError, ShapeDistance, SurfaceComparison,
-    Triangulation, compare_surfaces, overlay_forms,
+    Comparison, Error, Overlay, ShapeDistance, SurfaceComparison, Triangulation, compare_surfaces,
+    overlay_forms,
 };
 use serde::{Deserialize, Serialize};
 use view::interactive::Geometry;
@@ -76,7 +77,7 @@ impl Side {
         Self { description: query.description.clone(), shown: Shown::Query(query) }
     }
 
-    fn of_shape(app: &App, id: &str) -> Result<Self, PipelineError> {
+    fn of_shape(app: &App, id: &str) -> Result<Self, Error> {
         let shown = match app.indexed(id) {
             Ok(measured) => Shown::Shape(measured),
             Err(fault) if is_missing(&fault) => Shown::Points,
@@ -98,7 +99,7 @@ impl Side {
     }
 
     fn form(&self) -> &CanonicalForm {
-        self.measured().map_or(&self.description.1, |measured| &measured.form.form)
+        self.measured().map_or(&self.description.1, |measured| &measured.form)
     }
 }
 

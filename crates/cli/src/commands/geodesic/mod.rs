@@ -29,7 +29,7 @@ pub(crate) fn geodesic(args: &GeodesicArgs, common: &Common) -> Result<ExitCode>
     check_folder(&args.output)?;
     let surface = read_surface(&args.mesh, &args.repair)?;
     let start = Instant::now();
-    let method = args.method.method(args.marching);
+    let method = args.marching.of(args.method);
     let solver = method.prepare(&surface.intrinsic).map_err(|fault| named(&args.mesh, fault.into()))?;
     let setup = surface.repair_seconds + start.elapsed().as_secs_f64();
     let task = Task { args, common, format: &format, surface: &surface, solver: solver.as_ref(), setup };

@@ -71,7 +71,7 @@ pub(super) fn write(task: &Task) -> Result<()> {
     let path_seconds = start.elapsed().as_secs_f64();
     write_paths(task, &paths, &facts)?;
     let json = PathsJson {
-        method: args.method.method(args.marching).name(),
+        method: args.method.name(),
         n_vertices: surface.n_input_vertices(),
         sources: args.source.clone(),
         targets: args.path_to.clone(),

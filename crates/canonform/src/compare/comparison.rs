@@ -6,9 +6,11 @@ use descriptors::{
 use nalgebra::Point3;
 use serde::Serialize;
 
-use crate::forms::MATCHED_POINTS;
-use crate::handedness::{Handedness, OutwardForm, handedness};
-use crate::{PipelineError, ShapeDistance, Surface};
+use super::distance::ShapeDistance;
+use super::forms::MATCHED_POINTS;
+use super::handedness::{Handedness, OutwardForm, handedness};
+use crate::Error;
+use crate::input::Surface;
 
 /// Forms of unit area closer than this fit: they may be those of one shape, which takes a [`ShapeDistance`] to say, and
 /// their surfaces can be held against each other. Between poses of the cats, centaurs and davids of TOSCA the
@@ -96,12 +98,12 @@ impl Comparison {
 /// [`compare_surfaces`].
 ///
 /// # Errors
-/// [`PipelineError::Descriptor`].
+/// [`Error::Descriptor`].
 pub fn compare_forms(
     a: &CanonicalForm,
     b: &CanonicalForm,
     options: &MatchOptions,
-) -> Result<Comparison, PipelineError> {
+) -> Result<Comparison, Error> {
     Ok(Compared::new([a, b], options)?.comparison)
 }
 
@@ -117,7 +119,7 @@ struct Compared {
 }
 
 impl Compared {
-    fn new([a, b]: [&CanonicalForm; 2], options: &MatchOptions) -> Result<Self, PipelineError> {
+    fn new([a, b]: [&CanonicalForm; 2], options: &MatchOptions) -> Result<Self, Error> {
         let raw = match_forms(
             &PreparedForm::new(a, MATCHED_POINTS)?,
             &PreparedForm::new(b, MATCHED_POINTS)?,
@@ -201,11 +203,11 @@ pub struct Overlay {
 /// Compares two forms as [`compare_forms`] does, and lays them over each other.
 ///
 /// # Errors
-/// [`PipelineError::Descriptor`].
+/// [`Error::Descriptor`].
 pub fn overlay_forms(
     [a, b]: [&CanonicalForm; 2],
     options: &MatchOptions,
-) -> Result<(Comparison, Overlay), PipelineError> {
+) -> Result<(Comparison, Overlay), Error> {
     let compared = Compared::new([a, b], options)?;
     let overlay = compared.overlay(&compared.best.alignment, size_of(a));
     Ok((compared.comparison, overlay))
@@ -225,12 +227,12 @@ fn size_of(form: &CanonicalForm) -> f64 {
 /// their right.
 ///
 /// # Errors
-/// [`PipelineError::Descriptor`].
+/// [`Error::Descriptor`].
 pub fn compare_surfaces(
     [a, b]: [&Surface; 2],
     [form_a, form_b]: [&CanonicalForm; 2],
     options: &MatchOptions,
-) -> Result<SurfaceComparison, PipelineError> {
+) -> Result<SurfaceComparison, Error> {
     let compared = Compared::new([form_a, form_b], options)?;
     let [from, onto] = &compared.prepared;
     let reflecting = MatchOptions { reflections: Reflections::Require, ..options.clone() };
@@ -257,7 +259,7 @@ mod tests {
     use mesh::{RepairOptions, TriMesh, shapes};
 
     use super::*;
-    use crate::{DescribeOptions, EmbedOptions, StressChoice, describe, embed};
+    use crate::{DescribeOptions, FormOptions, describe, embed};
 
     #[test]
     fn kinds_follow_distance_size_and_handedness() {
@@ -286,7 +288,7 @@ mod tests {
     }
 
     fn compared(a: &TriMesh, b: &TriMesh) -> SurfaceComparison {
-        let options = EmbedOptions { stress: StressChoice::Skip, ..Default::default() };
+        let options = FormOptions::default();
         let [a, b] = [a, b].map(|mesh| {
             let surface = Surface::new(mesh, &RepairOptions::default()).unwrap();
             let form = embed(&surface, &options, &()).unwrap().form(&surface).unwrap();
@@ -328,7 +330,10 @@ mod tests {
         let mut large = hand.clone();
         large.positions.iter_mut().for_each(|p| p.coords *= 2.0);
         for (other, kind) in [(&large, MatchKind::Scaled), (&ball, MatchKind::Different)] {
-            let [a, b] = [&hand, other].map(|mesh| describe(mesh, &DescribeOptions::default()).unwrap());
+            let [a, b] = [&hand, other].map(|mesh| {
+                let surface = Surface::new(mesh, &RepairOptions::default()).unwrap();
+                describe(&surface, &DescribeOptions::default()).unwrap()
+            });
             let distance = ShapeDistance::between(&a, &b).unwrap();
             let by_forms = compare_forms(&a.form, &b.form, &MatchOptions::default()).unwrap();
             let found = by_forms.clone().decided_by(distance);
@@ -345,7 +350,7 @@ mod tests {
         let (hand, changed) = (four_arms([1.0, 1.7, 2.6, 3.5]), four_arms([1.0, 1.4, 2.6, 3.1]));
         let mut large = changed.clone();
         large.positions.iter_mut().for_each(|p| p.coords *= 5.0);
-        let options = EmbedOptions { stress: StressChoice::Skip, ..Default::default() };
+        let options = FormOptions::default();
         let [a, b] = [&hand, &large].map(|mesh| {
             let surface = Surface::new(mesh, &RepairOptions::default()).unwrap();
             embed(&surface, &options, &()).unwrap().form(&surface).unwrap()

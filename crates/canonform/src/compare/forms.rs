@@ -7,7 +7,7 @@ use linalg::{DistanceMatrix, Matrix};
 use nmds::{Embedding, classical_full};
 use rayon::prelude::*;
 
-use crate::{Observer, PipelineError};
+use crate::{Error, Observer};
 
 /// Points of every form that are matched with another one.
 pub const MATCHED_POINTS: usize = 400;
@@ -20,8 +20,8 @@ impl PreparedForms {
     /// Prepares forms in parallel.
     ///
     /// # Errors
-    /// [`PipelineError::Descriptor`].
-    pub fn new(forms: &[CanonicalForm], normalization: Normalization) -> Result<Self, PipelineError> {
+    /// [`Error::Descriptor`].
+    pub fn new(forms: &[CanonicalForm], normalization: Normalization) -> Result<Self, Error> {
         let prepare =
             |form: &CanonicalForm| PreparedForm::new(&form.normalized(normalization), MATCHED_POINTS);
         Ok(Self(forms.par_iter().map(prepare).collect::<Result<_, _>>()?))
@@ -52,12 +52,12 @@ pub struct FormMatches {
 /// Aligns all pairs of forms, in parallel; every pair is a step that `observer` hears of.
 ///
 /// # Errors
-/// [`PipelineError::Descriptor`], the first in order of the pairs, and [`PipelineError::Linalg`].
+/// [`Error::Descriptor`], the first in order of the pairs, and [`Error::Linalg`].
 pub fn form_matches(
     forms: &PreparedForms,
     options: &MatchOptions,
     observer: &dyn Observer,
-) -> Result<FormMatches, PipelineError> {
+) -> Result<FormMatches, Error> {
     let n = forms.len();
     let pairs: Vec<(usize, usize)> = (0..n).flat_map(|i| (i + 1..n).map(move |j| (i, j))).collect();
     observer.begin("alignment", pairs.len());
@@ -82,23 +82,32 @@ pub fn form_distances(
     forms: &PreparedForms,
     options: &MatchOptions,
     observer: &dyn Observer,
-) -> Result<DistanceMatrix, PipelineError> {
+) -> Result<DistanceMatrix, Error> {
     Ok(form_matches(forms, options, observer)?.distances)
 }
 
 /// The two-dimensional map of a matrix of distances by classical scaling, with all its eigenvalues.
 ///
 /// # Errors
-/// [`PipelineError::Nmds`].
-pub fn map_of(distances: &DistanceMatrix) -> Result<Embedding, PipelineError> {
+/// [`Error::Nmds`].
+pub fn map_of(distances: &DistanceMatrix) -> Result<Embedding, Error> {
     Ok(classical_full(distances, 2)?)
 }
 
 /// Straight-line distances between the points of an embedding.
 ///
 /// # Errors
-/// [`PipelineError::Linalg`] when a coordinate is not finite.
-pub fn embedded_distances(coords: &Matrix) -> Result<DistanceMatrix, PipelineError> {
+/// [`Error::Linalg`] when a coordinate is not finite.
+pub fn embedded_distances(coords: &Matrix) -> Result<DistanceMatrix, Error> {
     let distance = |i: usize, j: usize| (coords.row(i) - coords.row(j)).norm();
     Ok(DistanceMatrix::from_pairs(coords.nrows(), distance)?)
+}
+
+/// The form of a description, at unit area, made ready to be matched. Where size counts it does so as a number of
+/// its own, see [`fuse`](descriptors::fuse), so that a body and its likeness in another size still have forms that match.
+///
+/// # Errors
+/// [`Error::Descriptor`].
+pub fn prepare_form(form: &CanonicalForm) -> Result<PreparedForm, Error> {
+    Ok(PreparedForm::new(&form.normalized(Normalization::UnitArea), MATCHED_POINTS)?)
 }

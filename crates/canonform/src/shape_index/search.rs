@@ -1,4 +1,4 @@
-//! Asking an index what a mesh is.
+//! Searching an index for the shapes nearest to a mesh.
 
 use std::path::Path;
 use std::time::Instant;
@@ -12,10 +12,10 @@ use serde::Serialize;
 
 use super::record::{form, options_of};
 use super::source::read_unchanged;
-use crate::{
-    Comparison, DescribeOptions, PipelineError, ShapeDescription, ShapeDistance, compare_forms, describe,
-    prepare_form, rerank,
-};
+use crate::Error;
+use crate::compare::{Comparison, ShapeDistance, compare_forms, prepare_form, rerank};
+use crate::form::{DescribeOptions, ShapeDescription, describe};
+use crate::input::Surface;
 
 /// Neighbours that vote on the class of a query.
 const VOTERS: usize = 5;
@@ -126,8 +126,8 @@ pub struct ShapeSearch {
 
 impl ShapeSearch {
     /// # Errors
-    /// [`PipelineError::Index`], [`PipelineError::UnknownOptions`].
-    pub fn open(path: &Path) -> Result<Self, PipelineError> {
+    /// [`Error::Index`], [`Error::UnknownOptions`].
+    pub fn open(path: &Path) -> Result<Self, Error> {
         let index = Index::open(path)?;
         let describe = options_of(&index)?;
         Ok(Self { index, describe })
@@ -142,55 +142,55 @@ impl ShapeSearch {
     /// All names with what is known of them, ascending.
     ///
     /// # Errors
-    /// [`PipelineError::Index`].
-    pub fn entries(&self) -> Result<Vec<(String, ShapeEntry)>, PipelineError> {
+    /// [`Error::Index`].
+    pub fn entries(&self) -> Result<Vec<(String, ShapeEntry)>, Error> {
         Ok(self.index.entries()?)
     }
 
     /// What is known of a shape.
     ///
     /// # Errors
-    /// [`PipelineError::Index`].
-    pub fn entry(&self, id: &str) -> Result<ShapeEntry, PipelineError> {
+    /// [`Error::Index`].
+    pub fn entry(&self, id: &str) -> Result<ShapeEntry, Error> {
         Ok(self.index.entry(id)?)
     }
 
     /// The form of a shape as the index keeps it, at some points.
     ///
     /// # Errors
-    /// [`PipelineError::Index`].
-    pub fn form(&self, id: &str) -> Result<CanonicalForm, PipelineError> {
+    /// [`Error::Index`].
+    pub fn form(&self, id: &str) -> Result<CanonicalForm, Error> {
         let (entry, vectors) = self.shape(id)?;
-        form(&entry, &vectors)
+        form(&entry, &vectors, &self.describe)
     }
 
     /// The fused signature and the form of a shape: what tells it from others, see
     /// [`ShapeDistance::of`].
     ///
     /// # Errors
-    /// [`PipelineError::Index`].
-    pub fn description(&self, id: &str) -> Result<(Vec<f32>, CanonicalForm), PipelineError> {
+    /// [`Error::Index`].
+    pub fn description(&self, id: &str) -> Result<(Vec<f32>, CanonicalForm), Error> {
         let (entry, vectors) = self.shape(id)?;
-        let form = form(&entry, &vectors)?;
+        let form = form(&entry, &vectors, &self.describe)?;
         Ok((vectors.fused, form))
     }
 
     /// The mesh of a shape, read again from where it was when it was indexed.
     ///
     /// # Errors
-    /// [`PipelineError::MeshGone`] and [`PipelineError::MeshChanged`] unless it is still the same;
-    /// [`PipelineError::Index`], [`PipelineError::Mesh`].
-    pub fn mesh(&self, id: &str) -> Result<TriMesh, PipelineError> {
+    /// [`Error::MeshGone`] and [`Error::MeshChanged`] unless it is still the same;
+    /// [`Error::Index`], [`Error::Mesh`].
+    pub fn mesh(&self, id: &str) -> Result<TriMesh, Error> {
         read_unchanged(id, &self.index.entry(id)?)
     }
 
     /// The shapes of the index that are nearest to a mesh: by fused signatures, then by aligned forms.
     ///
     /// # Errors
-    /// [`PipelineError::Index`], and those of describing the mesh.
-    pub fn search(&self, mesh: &TriMesh, options: &SearchOptions) -> Result<SearchReport, PipelineError> {
+    /// [`Error::Index`], and those of describing the mesh.
+    pub fn search(&self, mesh: &TriMesh, options: &SearchOptions) -> Result<SearchReport, Error> {
         let start = Instant::now();
-        let query = describe(mesh, &self.describe)?;
+        let query = describe(&Surface::new(mesh, &self.describe.form.repair)?, &self.describe)?;
         let describe = start.elapsed().as_secs_f64();
         let report = self.search_described(&query, options)?;
         Ok(SearchReport { seconds: SearchSeconds { describe, ..report.seconds }, ..report })
@@ -200,22 +200,22 @@ impl ShapeSearch {
     /// [`describe_options`](Self::describe_options).
     ///
     /// # Errors
-    /// [`PipelineError::Index`].
+    /// [`Error::Index`].
     pub fn search_described(
         &self,
         query: &ShapeDescription,
         options: &SearchOptions,
-    ) -> Result<SearchReport, PipelineError> {
+    ) -> Result<SearchReport, Error> {
         self.nearest(&query.fused, &query.form, options)
     }
 
     /// As [`search`](Self::search), with a shape of the index; its mesh is not needed. It finds itself.
     ///
     /// # Errors
-    /// [`PipelineError::Index`].
-    pub fn search_shape(&self, id: &str, options: &SearchOptions) -> Result<SearchReport, PipelineError> {
+    /// [`Error::Index`].
+    pub fn search_shape(&self, id: &str, options: &SearchOptions) -> Result<SearchReport, Error> {
         let (entry, vectors) = self.shape(id)?;
-        self.nearest(&vectors.fused, &form(&entry, &vectors)?, options)
+        self.nearest(&vectors.fused, &form(&entry, &vectors, &self.describe)?, options)
     }
 
     fn nearest(
@@ -223,7 +223,7 @@ impl ShapeSearch {
         fused: &[f32],
         query: &CanonicalForm,
         options: &SearchOptions,
-    ) -> Result<SearchReport, PipelineError> {
+    ) -> Result<SearchReport, Error> {
         let start = Instant::now();
         let wanted = options.k.max(VOTERS);
         let asked = (CANDIDATES * wanted).max(LEAST_CANDIDATES);
@@ -233,7 +233,7 @@ impl ShapeSearch {
             near.iter().enumerate().map(|(index, near)| Candidate { index, bound: near.distance });
         let form_of = |i: usize| {
             let (entry, vectors) = self.shape(&near[i].id)?;
-            prepare_form(&form(&entry, &vectors)?)
+            prepare_form(&form(&entry, &vectors, &self.describe)?)
         };
         let refined = rerank(&prepare_form(query)?, candidates, wanted, &options.matching, form_of)?;
 
@@ -256,10 +256,11 @@ impl ShapeSearch {
         if options.explain == Explain::Kind {
             results.par_iter_mut().try_for_each(|result| {
                 let (entry, vectors) = self.shape(&result.id)?;
-                let comparison = compare_forms(query, &form(&entry, &vectors)?, &options.matching)?;
+                let comparison =
+                    compare_forms(query, &form(&entry, &vectors, &self.describe)?, &options.matching)?;
                 let distance = ShapeDistance::new([fused, &vectors.fused], comparison.normalized_distance);
                 result.comparison = Some(comparison.decided_by(distance));
-                Ok::<_, PipelineError>(())
+                Ok::<_, Error>(())
             })?;
         }
         Ok(SearchReport {
@@ -273,7 +274,7 @@ impl ShapeSearch {
         })
     }
 
-    fn shape(&self, id: &str) -> Result<(ShapeEntry, ShapeVectors), PipelineError> {
+    fn shape(&self, id: &str) -> Result<(ShapeEntry, ShapeVectors), Error> {
         Ok((self.index.entry(id)?, self.index.vectors(id)?))
     }
 }
@@ -308,7 +309,7 @@ mod tests {
     use tempfile::TempDir;
 
     use super::*;
-    use crate::{BuildOptions, build_index, describe_with_form};
+    use crate::{BuildOptions, Remedy, Surface, build_index, describe};
 
     /// An index of a few bodies.
     fn indexed() -> (TempDir, ShapeSearch) {
@@ -336,8 +337,8 @@ mod tests {
         let mesh = search.mesh("ring0").unwrap();
         let by_mesh = search.search(&mesh, &options).unwrap();
         let by_name = search.search_shape("ring0", &options).unwrap();
-        let surface = crate::Surface::new(&mesh, &search.describe_options().repair).unwrap();
-        let (described, form) = describe_with_form(&surface, search.describe_options()).unwrap();
+        let surface = Surface::new(&mesh, &search.describe_options().form.repair).unwrap();
+        let described = describe(&surface, search.describe_options()).unwrap();
         let by_description = search.search_described(&described, &options).unwrap();
         let found = |report: &SearchReport| -> Vec<_> {
             report.results.iter().map(|r| (r.id.clone(), (r.distance * 1e4).round())).collect()
@@ -345,8 +346,8 @@ mod tests {
         assert_eq!(found(&by_mesh)[0], ("ring0".to_owned(), 0.0));
         assert_eq!(found(&by_mesh), found(&by_name));
         assert_eq!(found(&by_mesh), found(&by_description));
-        assert_eq!(search.form("ring0").unwrap().points().len(), form.form.points().len());
-        assert!(matches!(search.search_shape("none", &options), Err(PipelineError::Index(_))));
+        assert_eq!(search.form("ring0").unwrap().points().len(), described.form.points().len());
+        assert!(matches!(search.search_shape("none", &options), Err(Error::Index(_))));
         let names: Vec<String> = search.entries().unwrap().into_iter().map(|(id, _)| id).collect();
         assert_eq!(names, ["ball0", "box0", "ring0", "ring1"]);
         assert_eq!(search.entry("box0").unwrap().label, "box");
@@ -359,10 +360,10 @@ mod tests {
         fs::copy(folder.path().join("ring1.off"), folder.path().join("ring0.off")).unwrap();
         fs::remove_file(folder.path().join("box0.tri")).unwrap();
         let changed = search.mesh("ring0").unwrap_err();
-        assert!(matches!(&changed, PipelineError::MeshChanged { id, .. } if id == "ring0"));
-        assert!(changed.to_string().contains("build the index again"), "{changed}");
+        assert!(matches!(&changed, Error::MeshChanged { id, .. } if id == "ring0"));
+        assert_eq!(changed.remedy(), Some(Remedy::RestoreMesh));
         let gone = search.mesh("box0").unwrap_err();
-        assert!(matches!(&gone, PipelineError::MeshGone { id, .. } if id == "box0"));
+        assert!(matches!(&gone, Error::MeshGone { id, .. } if id == "box0"));
         assert!(gone.to_string().contains("box0.vert"), "{gone}");
         search.form("box0").unwrap();
     }

@@ -5,7 +5,7 @@ use std::borrow::Borrow;
 use descriptors::{MatchOptions, PreparedForm, match_forms_within};
 use retrieval::{Candidate, Refinement, refine_nearest};
 
-use crate::PipelineError;
+use crate::Error;
 
 /// Root mean square of the distances between aligned forms of two poses of one body, at unit area: see
 /// [`SignatureKind::unit`](descriptors::SignatureKind::unit).
@@ -39,14 +39,14 @@ pub(crate) fn form_limit(fused: f64, limit: f64) -> f64 {
 /// aligning all candidates. `form` gives the [prepared](crate::ShapeDescription::prepare) form of a candidate.
 ///
 /// # Errors
-/// [`PipelineError::Descriptor`], and whatever `form` returns.
+/// [`Error::Descriptor`], and whatever `form` returns.
 pub fn rerank<F: Borrow<PreparedForm>>(
     query: &PreparedForm,
     candidates: impl IntoIterator<Item = Candidate>,
     k: usize,
     options: &MatchOptions,
-    form: impl Fn(usize) -> Result<F, PipelineError> + Sync,
-) -> Result<Refinement, PipelineError> {
+    form: impl Fn(usize) -> Result<F, Error> + Sync,
+) -> Result<Refinement, Error> {
     refine_nearest(candidates, k, |candidate, limit| {
         let left = form_limit(candidate.bound, limit);
         let found = match_forms_within(query, form(candidate.index)?.borrow(), options, left)?;

@@ -1,4 +1,4 @@
-//! Collections of meshes as an index: the order of the stages of making, changing and asking it.
+//! Collections of meshes as an index: building, changing, searching and scoring it.
 //!
 //! ```text
 //! files -> content hash -> unchanged? -> describe -> index::IndexWriter -> index::Index

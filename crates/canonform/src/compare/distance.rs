@@ -3,8 +3,10 @@
 use descriptors::{CanonicalForm, FUSED_SIZE, MatchOptions, match_forms};
 use serde::Serialize;
 
-use crate::rerank::form_limit;
-use crate::{PipelineError, ShapeDescription, combined_distance, prepare_form};
+use super::forms::prepare_form;
+use super::rerank::{combined_distance, form_limit};
+use crate::Error;
+use crate::form::ShapeDescription;
 
 /// Shapes nearer than this by [`combined_distance`], size left out, are called one shape in two poses.
 ///
@@ -29,16 +31,16 @@ impl ShapeDistance {
     /// Measures signatures and aligns forms.
     ///
     /// # Errors
-    /// [`PipelineError::Descriptor`].
-    pub fn between(a: &ShapeDescription, b: &ShapeDescription) -> Result<Self, PipelineError> {
+    /// [`Error::Descriptor`].
+    pub fn between(a: &ShapeDescription, b: &ShapeDescription) -> Result<Self, Error> {
         Self::of([(&a.fused, &a.form), (&b.fused, &b.form)])
     }
 
     /// Aligns forms, and measures fused signatures, as indexes keep them.
     ///
     /// # Errors
-    /// [`PipelineError::Descriptor`].
-    pub fn of([a, b]: [(&[f32], &CanonicalForm); 2]) -> Result<Self, PipelineError> {
+    /// [`Error::Descriptor`].
+    pub fn of([a, b]: [(&[f32], &CanonicalForm); 2]) -> Result<Self, Error> {
         let form = match_forms(&prepare_form(a.1)?, &prepare_form(b.1)?, &MatchOptions::default())?.distance;
         Ok(Self::new([a.0, b.0], form))
     }
@@ -70,7 +72,7 @@ mod tests {
     use mesh::shapes;
 
     use super::*;
-    use crate::{DescribeOptions, describe};
+    use crate::{DescribeOptions, Surface, describe};
 
     #[test]
     fn size_does_not_count_whether_or_not_it_is_in_the_vectors() {
@@ -80,7 +82,10 @@ mod tests {
         large.positions.iter_mut().for_each(|p| p.coords *= 4.0);
         for size in [Normalization::UnitArea, Normalization::Raw] {
             let options = DescribeOptions { size, ..DescribeOptions::default() };
-            let [a, b] = [&small, &large].map(|mesh| describe(mesh, &options).unwrap());
+            let [a, b] = [&small, &large].map(|mesh| {
+                let surface = Surface::new(mesh, &options.form.repair).unwrap();
+                describe(&surface, &options).unwrap()
+            });
             let distance = ShapeDistance::between(&a, &b).unwrap();
             assert!(distance.combined < 0.01 && distance.is_same(), "{distance:?}");
         }

@@ -1,0 +1,196 @@
+//! Every embedding method on one surface.
+
+use geodesics::{Method, Sampling, Variance};
+use linalg::{DistanceMatrix, LandmarkDistances, Matrix};
+use mesh::RepairReport;
+use nmds::{Regularization, RpiAlpha};
+use serde::Serialize;
+use surface::VertexId;
+
+use super::distances::check_memory;
+use super::embed::embed;
+use super::method::EmbedMethod;
+use super::options::FormOptions;
+use super::stress::{KnownRows, StressOptions, StressReport};
+use crate::input::Surface;
+use crate::{Error, Observer};
+
+/// The results of every method on one surface, as `canonform methods --json` prints them.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct MethodsReport {
+    /// Vertices of the input.
+    pub n_vertices: usize,
+    /// Vertices that were embedded, after the repair.
+    pub n_embedded: usize,
+    /// Dimensions of the embeddings.
+    pub dim: usize,
+    /// Name of the method that measured the distances, unless an entry says otherwise; the stress of all
+    /// entries is measured against it.
+    pub geodesic: &'static str,
+    /// One entry for each method.
+    pub methods: Vec<MethodReport>,
+    /// Index of the entry of least stress.
+    pub best: Option<usize>,
+    /// What was repaired.
+    pub repair: RepairReport,
+}
+
+/// One method.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct MethodReport {
+    /// Its name.
+    pub method: &'static str,
+    /// Its other options, as `canonform embed` takes them; may be empty.
+    pub options: &'static str,
+    /// The result; `None` when the method failed.
+    #[serde(flatten)]
+    pub facts: Option<MethodFacts>,
+    /// Why it failed.
+    pub error: Option<String>,
+}
+
+/// The result of a method and its cost.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct MethodFacts {
+    /// The stress, unless the coordinates have no unit.
+    pub stress: Option<StressReport>,
+    /// Share of negative eigenvalues among those computed.
+    pub negative_mass: f64,
+    /// Number of samples; all vertices for a method without samples.
+    pub n_samples: usize,
+    /// Seconds for distances.
+    pub geodesics_seconds: f64,
+    /// Seconds for linear algebra.
+    pub embedding_seconds: f64,
+    /// Seconds from the repaired mesh to the coordinates.
+    pub seconds: f64,
+    /// Most bytes in use at once, as measured by the caller's `watch`.
+    pub peak_bytes: usize,
+}
+
+/// Embeds a surface by every method in turn. `options` holds what the methods share; its method, sampling and
+/// regularisation are ignored. `watch` runs a piece of work and returns the most bytes that were in use.
+///
+/// A method that cannot embed this surface reports its error and does not stop the others. The stress of all
+/// methods is measured on the same rows of distances and does not count as their time.
+///
+/// # Errors
+/// Those of preparing the surface; when every method fails, the error of the first.
+pub fn compare_methods(
+    surface: &Surface,
+    options: &FormOptions,
+    stress: &StressOptions,
+    observer: &dyn Observer,
+    watch: &dyn Fn(&mut dyn FnMut()) -> usize,
+) -> Result<MethodsReport, Error> {
+    let reference = Reference::new(surface, options.geodesic, stress, observer)?;
+    let (mut methods, mut first_error) = (Vec::new(), None);
+    for (name, changed) in variants(options) {
+        let mut result = None;
+        let peak_bytes = watch(&mut || result = Some(embed(surface, &changed, observer)));
+        let (facts, error) = match result {
+            Some(Ok(embedded)) => {
+                let report = &embedded.report;
+                let facts = MethodFacts {
+                    stress: changed.method.has_unit().then(|| reference.stress(&embedded.embedding.coords)),
+                    negative_mass: report.negative_mass,
+                    n_samples: report.n_samples,
+                    geodesics_seconds: report.seconds.geodesics,
+                    embedding_seconds: report.seconds.embedding,
+                    seconds: report.seconds.geodesics + report.seconds.embedding,
+                    peak_bytes,
+                };
+                (Some(facts), None)
+            }
+            Some(Err(fault)) => {
+                let text = fault.to_string();
+                first_error.get_or_insert(fault);
+                (None, Some(text))
+            }
+            None => (None, Some("`watch` did not run the method".to_owned())),
+        };
+        methods.push(MethodReport { method: changed.method.name(), options: name, facts, error });
+    }
+    if let Some(fault) = first_error.filter(|_| methods.iter().all(|m| m.facts.is_none())) {
+        return Err(fault);
+    }
+    let stress = |m: &MethodReport| m.facts.as_ref().and_then(|f| f.stress.as_ref()).map(|s| s.value);
+    let stresses = methods.iter().enumerate().filter_map(|(i, m)| stress(m).map(|s| (i, s)));
+    let best = stresses.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(i, _)| i);
+    Ok(MethodsReport {
+        n_vertices: surface.n_input_vertices(),
+        n_embedded: surface.mesh().n_vertices(),
+        dim: options.dim,
+        geodesic: options.geodesic.name(),
+        methods,
+        best,
+        repair: surface.repaired.report.clone(),
+    })
+}
+
+/// Every method, and the variants of the first one by the options that select them.
+fn variants(shared: &FormOptions) -> Vec<(&'static str, FormOptions)> {
+    let of = |method| FormOptions { method, sampling: Sampling::default(), ..shared.clone() };
+    let nmds = |regularization| of(EmbedMethod::Nystrom { regularization });
+    let default = || of(EmbedMethod::default());
+    let mut all = vec![
+        ("", default()),
+        ("--regularization rpi", nmds(Regularization::Rpi { alpha: RpiAlpha::default() })),
+        ("--regularization rpi --alpha paper", nmds(Regularization::Rpi { alpha: RpiAlpha::Paper })),
+        ("--regularization none", nmds(Regularization::None)),
+        ("--regularization cur", nmds(Regularization::Cur { rank: None })),
+        ("--sampling random", FormOptions { sampling: Sampling::Random, ..default() }),
+        (
+            "--sampling min-variance",
+            FormOptions { sampling: Sampling::Incremental(Variance::Least), ..default() },
+        ),
+        ("--geodesic bfs", FormOptions { geodesic: Method::BreadthFirst, ..default() }),
+    ];
+    let others = EmbedMethod::all().into_iter().filter(|method| *method != EmbedMethod::default());
+    all.extend(others.map(|method| ("", of(method))));
+    all
+}
+
+/// The distances that the stress of all embeddings is measured against.
+struct Reference {
+    method: Method,
+    distances: ReferenceDistances,
+}
+
+enum ReferenceDistances {
+    All(DistanceMatrix),
+    Some(LandmarkDistances),
+}
+
+impl Reference {
+    fn new(
+        surface: &Surface,
+        method: Method,
+        stress: &StressOptions,
+        observer: &dyn Observer,
+    ) -> Result<Self, Error> {
+        let p = surface.mesh().n_vertices();
+        let rows = stress.choice.rows(p, stress.seed);
+        check_memory(p, rows.as_ref().map_or(p, Vec::len))?;
+        observer.begin("stress", 1);
+        let solver = method.prepare(&surface.intrinsic)?;
+        let distances = match rows {
+            None => ReferenceDistances::All(solver.distance_matrix()?),
+            Some(rows) => {
+                let sources: Vec<VertexId> = rows.iter().copied().map(VertexId::from).collect();
+                let columns = solver.distance_columns(&sources);
+                ReferenceDistances::Some(LandmarkDistances::new(rows, columns)?)
+            }
+        };
+        Ok(Self { method, distances })
+    }
+
+    fn stress(&self, coords: &Matrix) -> StressReport {
+        match &self.distances {
+            ReferenceDistances::All(all) => StressReport::new(coords, all, None, self.method),
+            ReferenceDistances::Some(rows) => {
+                StressReport::new(coords, &KnownRows(rows), Some(rows.landmarks()), self.method)
+            }
+        }
+    }
+}
