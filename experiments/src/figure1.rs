@@ -6,8 +6,8 @@
 use std::time::Instant;
 
 use anyhow::Result;
-use canonform::{MATCHED_POINTS, StressChoice, StressOptions, embed_and_measure};
-use descriptors::{CanonicalForm, MatchOptions, PreparedForm, match_forms};
+use canonform::{StressChoice, StressOptions, embed_and_measure};
+use descriptors::{CanonicalForm, MatchOptions, PreparedForm, ShapeMetric, match_forms};
 use mesh::{TriMesh, orient_consistently};
 use report::figure1::{Figure1Pair, PAIRS, figure1};
 use report::results::{Figure1Record, Figure1Shape, write};
@@ -72,7 +72,7 @@ fn aligned<'a>(shapes: &[&Shape], forms: impl Iterator<Item = &'a CanonicalForm>
     let mut first: Option<(&str, PreparedForm)> = None;
     let mut surfaces = Vec::new();
     for (shape, form) in shapes.iter().zip(forms) {
-        let prepared = PreparedForm::new(form, MATCHED_POINTS)?;
+        let prepared = PreparedForm::new(form, ShapeMetric::MATCHED_POINTS)?;
         let mut surface = form.to_mesh(shape.surface.mesh());
         match &first {
             Some((label, target)) if *label == shape.label => {

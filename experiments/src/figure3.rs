@@ -9,8 +9,7 @@
 use std::time::Instant;
 
 use anyhow::Result;
-use canonform::MATCHED_POINTS;
-use descriptors::{CanonicalForm, MatchOptions, PreparedForm, match_forms};
+use descriptors::{CanonicalForm, MatchOptions, PreparedForm, ShapeMetric, match_forms};
 use geodesics::{FastMarchingOptions, Method, ObtuseTreatment, Sampling, Update, Variance};
 use linalg::LandmarkDistances;
 use mesh::{TriMesh, orient_consistently};
@@ -161,7 +160,7 @@ fn pictured(context: &Context<'_>, specimen: &Specimen<'_>, methods: &[Runs]) ->
     for (method, runs) in METHODS.into_iter().zip(methods) {
         let (embedding, stress) = &runs[median(&values(runs)).0];
         let form = CanonicalForm::new(embedding, mesh)?;
-        let prepared = PreparedForm::new(&form, MATCHED_POINTS)?;
+        let prepared = PreparedForm::new(&form, ShapeMetric::MATCHED_POINTS)?;
         let mut surface = form.to_mesh(mesh);
         if let Some(target) = &first {
             let motion = match_forms(&prepared, target, &MatchOptions::default())?.alignment;

@@ -8,10 +8,8 @@ use std::collections::BTreeMap;
 use std::time::Instant;
 
 use anyhow::Result;
-use canonform::{
-    DescribeOptions, FORM_UNIT, PreparedForms, ShapeDescription, combined_distance, describe, form_distances,
-};
-use descriptors::{CanonicalForm, MatchOptions, Normalization, SignatureKind, fuse, size_coordinate};
+use canonform::{DescribeOptions, PreparedForms, ShapeDescription, describe, form_distances};
+use descriptors::{CanonicalForm, FormDistance, MatchOptions, Normalization, ShapeMetric, SignatureKind};
 use linalg::DistanceMatrix;
 use report::results::{Classification, RetrievalRecord, RetrievalRow, Scale, write};
 use report::retrieval::retrieval;
@@ -81,29 +79,29 @@ fn distances(
         form_distances(&prepared, &MatchOptions::default(), context.observer)
     };
     let form = aligned(Normalization::UnitArea)?;
-    let size = |i: usize, j: usize| size_coordinate(shapes[i].area) - size_coordinate(shapes[j].area);
+    let size_of = |i: usize| ShapeMetric::size_coordinate(shapes[i].area);
+    let size = |i: usize, j: usize| size_of(i) - size_of(j);
+    let unit = ShapeMetric::form_unit(FormDistance::NearestNeighborRms);
     let mut found = Vec::new();
     for scale in [Scale::Normalized, Scale::Raw] {
         let area = |shape: &ShapeDescription| Some(shape.area).filter(|_| scale == Scale::Raw);
         let mut add = |method: &str, distances| found.push((method.to_owned(), scale, distances));
-        let vectors: Vec<_> = shapes.iter().map(|shape| fuse(&shape.signatures, area(shape))).collect();
-        let fused = all(&|i, j| {
-            let sq = |(x, y): (&f32, &f32)| f64::from(x - y).powi(2);
-            vectors[i].iter().zip(&vectors[j]).map(sq).sum::<f64>().sqrt()
-        })?;
-        add(CLASSIFIER, all(&|i, j| combined_distance(fused.get(i, j), form.get(i, j)))?);
+        let vectors: Vec<_> =
+            shapes.iter().map(|shape| ShapeMetric::fuse(&shape.signatures, area(shape))).collect();
+        let fused = all(&|i, j| ShapeMetric::fused(&vectors[i], &vectors[j]))?;
+        add(CLASSIFIER, all(&|i, j| ShapeMetric::combined(fused.get(i, j), form.get(i, j)))?);
         add("fused", fused);
         match scale {
             Scale::Normalized => add("aligned forms", form.clone()),
             Scale::Raw => {
-                add("aligned forms", all(&|i, j| (form.get(i, j) / FORM_UNIT).hypot(size(i, j)))?);
+                add("aligned forms", all(&|i, j| (form.get(i, j) / unit).hypot(size(i, j)))?);
             }
         }
         for kind in SignatureKind::ALL {
             let signature = |shape: &ShapeDescription| {
                 let signature = shape.signature(kind)?.clone();
                 Some(match area(shape) {
-                    Some(area) => signature.with_size(area),
+                    Some(area) => ShapeMetric::with_size(signature, area),
                     None => signature,
                 })
             };

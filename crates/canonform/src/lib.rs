@@ -8,10 +8,8 @@ mod observer;
 mod shape_index;
 
 pub use compare::{
-    Comparison, FORM_UNIT, FORM_WEIGHT, FormMatches, Handedness, MATCHED_POINTS, MatchKind, Overlay,
-    PreparedForms, SAME_BELOW, ShapeDistance, SurfaceComparison, Triangulation, combined_distance,
-    compare_forms, compare_surfaces, embedded_distances, form_distances, form_matches, map_of, overlay_forms,
-    prepare_form, rerank,
+    Comparison, FormMatches, Overlay, PreparedForms, SurfaceComparison, Triangulation, compare,
+    compare_surfaces, embedded_distances, form_distances, form_matches, map_of,
 };
 pub use error::{Error, Remedy};
 pub use form::{
@@ -25,20 +23,9 @@ pub use input::{
 };
 pub use observer::Observer;
 pub use shape_index::{
-    BuildOptions, BuildReport, Explain, Failure, Inputs, Measure, MergeReport, Prediction, SearchOptions,
-    SearchReport, SearchResult, SearchSeconds, ShapeSearch, Shard, add_to_index, build_index, evaluate_index,
-    evaluate_matrix, merge_indexes, remove_from_index,
+    BuildOptions, BuildReport, Explain, Failure, Inputs, Measure, MergeReport, Prediction, Ranked, Reranked,
+    SearchOptions, SearchReport, SearchResult, SearchSeconds, ShapeSearch, Shard, add_to_index, build_index,
+    evaluate_index, evaluate_matrix, merge_indexes, remove_from_index, rerank,
 };
 
-pub use descriptors::{
-    CanonicalForm, DescriptorError, FormDistance, MatchOptions, Normalization, PreparedForm, Reflections,
-    Signature, SignatureKind,
-};
-pub use geodesics::{
-    DistanceSolver, FastMarchingOptions, FirstSample, HeatOptions, Method as GeodesicMethod, ObtuseTreatment,
-    PathTracer, Sampling, Source, SurfacePoint, Update, Variance,
-};
-pub use index::{ContentHash, IndexError, SearchMode, ShapeEntry};
-pub use nmds::{Bandwidth, Regularization, RpiAlpha, SmacofOptions};
-pub use retrieval::Evaluation;
 pub use {descriptors, geodesics, index, linalg, mesh, nmds, retrieval, surface};

@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use axum::body::Bytes;
-use canonform::descriptors::CanonicalForm;
+use canonform::descriptors::PreparedShape;
 use canonform::{Error, ShapeSearch};
 use serde::Serialize;
 
@@ -43,8 +43,7 @@ pub(crate) struct ShapeSummary {
 pub(crate) struct Query {
     pub(crate) name: String,
     pub(crate) measured: Measured,
-    /// Its fused signature and form, as an index keeps them.
-    pub(crate) description: (Vec<f32>, CanonicalForm),
+    pub(crate) shape: PreparedShape,
 }
 
 impl App {

@@ -1,10 +1,8 @@
 //! What the built-in dataset must come out as.
 
-use canonform::{
-    DescribeOptions, FormOptions, PreparedForms, ShapeDistance, describe, embed, form_distances,
-};
+use canonform::{DescribeOptions, FormOptions, PreparedForms, describe, embed, form_distances};
 use datasets::{ArticulatedOptions, articulated};
-use descriptors::{MatchOptions, Normalization};
+use descriptors::{MatchOptions, Normalization, ShapeMetric, ShapePair};
 use rayon::prelude::*;
 use retrieval::{Labels, evaluate};
 
@@ -36,13 +34,23 @@ fn two_poses_are_one_shape_and_two_families_are_not() {
     let shapes = articulated(&options).unwrap();
     let described: Vec<_> = shapes
         .par_iter()
-        .map(|shape| describe(&surface(&shape.mesh), &DescribeOptions::default()).unwrap())
+        .map(|shape| {
+            let description = describe(&surface(&shape.mesh), &DescribeOptions::default());
+            description.and_then(|description| description.prepare()).unwrap()
+        })
         .collect();
     let pairs: Vec<(usize, usize)> =
         (0..shapes.len()).flat_map(|i| (i + 1..shapes.len()).map(move |j| (i, j))).collect();
     pairs.par_iter().for_each(|&(i, j)| {
-        let distance = ShapeDistance::between(&described[i], &described[j]).unwrap();
+        let pair = [&described[i], &described[j]];
+        let distance = ShapePair::new(&ShapeMetric::default(), pair).distance().unwrap();
         let is_family = shapes[i].label == shapes[j].label;
-        assert_eq!(distance.is_same(), is_family, "{} {} {distance:?}", shapes[i].name, shapes[j].name);
+        assert_eq!(
+            ShapeMetric::is_same(distance),
+            is_family,
+            "{} {} {distance:?}",
+            shapes[i].name,
+            shapes[j].name
+        );
     });
 }

@@ -6,10 +6,10 @@
 use std::path::{Path, PathBuf};
 
 use canonform::{
-    DescribeOptions, FormOptions, PreparedForms, ShapeDistance, Surface, describe, embed, form_distances,
-    label_of, list_shapes,
+    DescribeOptions, FormOptions, PreparedForms, Surface, describe, embed, form_distances, label_of,
+    list_shapes,
 };
-use descriptors::{MatchOptions, Normalization};
+use descriptors::{MatchOptions, Normalization, ShapeMetric, ShapePair};
 use geodesics::{FirstSample, farthest_point_sampling};
 use mesh::RepairOptions;
 use nmds::{NystromOptions, Regularization, classical, nystrom, paper_stress};
@@ -169,17 +169,21 @@ fn two_poses_of_an_animal_are_one_shape_and_two_animals_are_not() {
     let classes = ["cat", "centaur", "david", "dog"];
     let shapes: Vec<_> =
         shapes.into_iter().filter(|s| classes.contains(&s.label.as_str())).step_by(2).collect();
-    let described: Vec<_> =
-        shapes.par_iter().map(|s| describe(&read(&s.path), &DescribeOptions::default()).unwrap()).collect();
+    let described: Vec<_> = shapes
+        .par_iter()
+        .map(|s| describe(&read(&s.path), &DescribeOptions::default()).unwrap().prepare().unwrap())
+        .collect();
     let pairs: Vec<(usize, usize)> =
         (0..shapes.len()).flat_map(|i| (i + 1..shapes.len()).map(move |j| (i, j))).collect();
     let distance = |&(i, j): &(usize, usize)| {
-        (shapes[i].label == shapes[j].label, ShapeDistance::between(&described[i], &described[j]).unwrap())
+        let pair = [&described[i], &described[j]];
+        let distance = ShapePair::new(&ShapeMetric::default(), pair).distance().unwrap();
+        (shapes[i].label == shapes[j].label, distance)
     };
     let distances: Vec<_> = pairs.par_iter().map(distance).collect();
     let of = |same| distances.iter().filter(move |d| d.0 == same).map(|d| d.1.combined);
     let (farthest, nearest) = (of(true).fold(0.0, f64::max), of(false).fold(f64::INFINITY, f64::min));
     println!("{} pairs: one animal up to {farthest:.2} apart, two from {nearest:.2}", pairs.len());
-    assert!(distances.iter().all(|(same, distance)| distance.is_same() == *same));
+    assert!(distances.iter().all(|(same, distance)| ShapeMetric::is_same(*distance) == *same));
     assert!(nearest > 2.0 * farthest, "{farthest} {nearest}");
 }

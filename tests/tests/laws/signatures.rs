@@ -1,18 +1,13 @@
 //! Signatures: blind to poses and triangulations, sharp on bodies, fit for any mesh.
 
-use canonform::{DescribeOptions, ShapeDescription, Surface, describe, prepare_form, rerank};
+use canonform::{DescribeOptions, ShapeDescription, Surface, describe, rerank};
 use datasets::{ArticulatedOptions, Family, articulated_shape};
-use descriptors::SignatureKind;
+use descriptors::{ShapeMetric, SignatureKind};
 use rayon::prelude::*;
 use retrieval::Candidate;
 
 use crate::real_meshes::data;
 use crate::support::{body, surface};
-
-fn fused_distance(a: &ShapeDescription, b: &ShapeDescription) -> f64 {
-    let sq = |(x, y): (&f32, &f32)| f64::from(x - y).powi(2);
-    a.fused.iter().zip(&b.fused).map(sq).sum::<f64>().sqrt()
-}
 
 /// Three poses of each family, each triangulated on its own and at another resolution, class by class.
 fn described() -> Vec<ShapeDescription> {
@@ -43,15 +38,19 @@ fn poses_and_triangulations_are_nearer_than_other_bodies_by_every_signature() {
 #[test]
 fn the_first_answers_are_of_the_same_body() {
     let shapes = described();
-    let forms: Vec<_> = shapes.iter().map(|shape| prepare_form(&shape.form).unwrap()).collect();
+    let prepared: Vec<_> = shapes.iter().map(|shape| shape.prepare().unwrap()).collect();
+    let metric = ShapeMetric::default();
     for query in 0..9 {
         let mut candidates: Vec<_> = (0..9)
             .filter(|&i| i != query)
-            .map(|index| Candidate { index, bound: fused_distance(&shapes[query], &shapes[index]) })
+            .map(|index| Candidate {
+                index,
+                bound: ShapeMetric::fused(&shapes[query].fused, &shapes[index].fused),
+            })
             .collect();
         candidates.sort_by(|a, b| a.bound.total_cmp(&b.bound));
         assert!(candidates[..2].iter().all(|c| c.index / 3 == query / 3), "{query}: {candidates:?}");
-        let found = rerank(&forms[query], candidates, 2, &Default::default(), |i| Ok(&forms[i])).unwrap();
+        let found = rerank(&metric, &prepared[query], candidates, 2, |i| Ok(&prepared[i])).unwrap();
         assert!(found.nearest.iter().all(|n| n.index / 3 == query / 3), "{query}: {found:?}");
     }
 }

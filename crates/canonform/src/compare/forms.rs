@@ -1,7 +1,7 @@
-//! Comparing the forms of many shapes.
+//! Distances between the forms of a collection.
 
 use descriptors::{
-    Alignment, CanonicalForm, FormMatch, MatchOptions, Normalization, PreparedForm, match_forms,
+    Alignment, CanonicalForm, FormMatch, MatchOptions, Normalization, PreparedForm, ShapeMetric, match_forms,
 };
 use linalg::{DistanceMatrix, Matrix};
 use nmds::{Embedding, classical_full};
@@ -9,10 +9,7 @@ use rayon::prelude::*;
 
 use crate::{Error, Observer};
 
-/// Points of every form that are matched with another one.
-pub const MATCHED_POINTS: usize = 400;
-
-/// Forms made ready to be matched with each other.
+/// Forms prepared to be matched with each other.
 #[derive(Debug)]
 pub struct PreparedForms(Vec<PreparedForm>);
 
@@ -22,43 +19,47 @@ impl PreparedForms {
     /// # Errors
     /// [`Error::Descriptor`].
     pub fn new(forms: &[CanonicalForm], normalization: Normalization) -> Result<Self, Error> {
-        let prepare =
-            |form: &CanonicalForm| PreparedForm::new(&form.normalized(normalization), MATCHED_POINTS);
+        let prepare = |form: &CanonicalForm| {
+            PreparedForm::new(&form.normalized(normalization), ShapeMetric::MATCHED_POINTS)
+        };
         Ok(Self(forms.par_iter().map(prepare).collect::<Result<_, _>>()?))
-    }
-
-    /// Number of forms.
-    #[must_use]
-    pub fn len(&self) -> usize {
-        self.0.len()
-    }
-
-    /// Whether there is none.
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
-        self.0.is_empty()
     }
 }
 
-/// How all pairs of forms match.
+/// The alignments of all pairs of forms.
 #[derive(Debug, Clone)]
 pub struct FormMatches {
-    /// Their distances once aligned.
+    /// Distances between the aligned forms.
     pub distances: DistanceMatrix,
     /// For every pair `i < j`, row by row, the motion that takes form `i` onto form `j`, both as they were prepared.
     pub alignments: Vec<Alignment>,
 }
 
-/// Aligns all pairs of forms, in parallel; every pair is a step that `observer` hears of.
+/// Aligns all pairs of forms, in parallel. `observer` counts every pair as a step.
+///
+/// ```
+/// use canonform::descriptors::{MatchOptions, Normalization};
+/// use canonform::{FormOptions, PreparedForms, Surface, embed, form_matches, mesh::shapes};
+///
+/// let sheet = shapes::grid(21, 17, 0.1);
+/// let forms = [&sheet, &shapes::fold(&sheet, 0.8, 1.2), &shapes::icosphere(3)].map(|mesh| {
+///     let surface = Surface::new(mesh, &Default::default()).unwrap();
+///     embed(&surface, &FormOptions::default(), &()).unwrap().form(&surface).unwrap()
+/// });
+/// let prepared = PreparedForms::new(&forms, Normalization::UnitArea)?;
+/// let found = form_matches(&prepared, &MatchOptions::default(), &())?;
+/// assert!(found.distances.get(0, 1) < 0.1 * found.distances.get(0, 2), "folding does not change the form");
+/// # Ok::<(), canonform::Error>(())
+/// ```
 ///
 /// # Errors
-/// [`Error::Descriptor`], the first in order of the pairs, and [`Error::Linalg`].
+/// [`Error::Descriptor`], for the first pair that fails, and [`Error::Linalg`].
 pub fn form_matches(
     forms: &PreparedForms,
     options: &MatchOptions,
     observer: &dyn Observer,
 ) -> Result<FormMatches, Error> {
-    let n = forms.len();
+    let n = forms.0.len();
     let pairs: Vec<(usize, usize)> = (0..n).flat_map(|i| (i + 1..n).map(move |j| (i, j))).collect();
     observer.begin("alignment", pairs.len());
     let one = |&(i, j): &(usize, usize)| {
@@ -73,11 +74,10 @@ pub fn form_matches(
     Ok(FormMatches { distances, alignments: found.iter().map(|m| m.alignment).collect() })
 }
 
-/// The distances of all pairs of forms once aligned, in parallel; every pair is a step that
-/// `observer` hears of.
+/// The distances between all pairs of aligned forms. As [`form_matches`].
 ///
 /// # Errors
-/// Those of [`form_matches`].
+/// As [`form_matches`].
 pub fn form_distances(
     forms: &PreparedForms,
     options: &MatchOptions,
@@ -86,7 +86,7 @@ pub fn form_distances(
     Ok(form_matches(forms, options, observer)?.distances)
 }
 
-/// The two-dimensional map of a matrix of distances by classical scaling, with all its eigenvalues.
+/// The two-dimensional map of a matrix of distances by classical scaling, with all eigenvalues.
 ///
 /// # Errors
 /// [`Error::Nmds`].
@@ -97,17 +97,8 @@ pub fn map_of(distances: &DistanceMatrix) -> Result<Embedding, Error> {
 /// Straight-line distances between the points of an embedding.
 ///
 /// # Errors
-/// [`Error::Linalg`] when a coordinate is not finite.
+/// [`Error::Linalg`] if a coordinate is not finite.
 pub fn embedded_distances(coords: &Matrix) -> Result<DistanceMatrix, Error> {
     let distance = |i: usize, j: usize| (coords.row(i) - coords.row(j)).norm();
     Ok(DistanceMatrix::from_pairs(coords.nrows(), distance)?)
-}
-
-/// The form of a description, at unit area, made ready to be matched. Where size counts it does so as a number of
-/// its own, see [`fuse`](descriptors::fuse), so that a body and its likeness in another size still have forms that match.
-///
-/// # Errors
-/// [`Error::Descriptor`].
-pub fn prepare_form(form: &CanonicalForm) -> Result<PreparedForm, Error> {
-    Ok(PreparedForm::new(&form.normalized(Normalization::UnitArea), MATCHED_POINTS)?)
 }

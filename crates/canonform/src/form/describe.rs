@@ -1,8 +1,9 @@
 //! A shape without its mesh: form, signatures and facts.
 
 use descriptors::{
-    CanonicalForm, LaplaceSpectrum, Normalization, Signature, SignatureKind, d2_histogram, fuse,
-    geodesic_spectrum, heat_kernel_signature, moment_signature, shape_dna, wave_kernel_signature,
+    CanonicalForm, LaplaceSpectrum, Normalization, PreparedShape, ShapeMetric, Signature, SignatureKind,
+    d2_histogram, geodesic_spectrum, heat_kernel_signature, moment_signature, shape_dna,
+    wave_kernel_signature,
 };
 use mesh::RepairReport;
 
@@ -67,7 +68,7 @@ impl ShapeDescription {
             Normalization::UnitArea => None,
         };
         Ok(Self {
-            fused: fuse(&signatures, area),
+            fused: ShapeMetric::fuse(&signatures, area),
             options,
             form: reduced,
             signatures,
@@ -75,6 +76,14 @@ impl ShapeDescription {
             diameter: embedded.distances.max(),
             repair: surface.repaired.report.clone(),
         })
+    }
+
+    /// The shape, ready to be compared; exactly as an index would store it.
+    ///
+    /// # Errors
+    /// [`Error::Descriptor`].
+    pub fn prepare(&self) -> Result<PreparedShape, Error> {
+        Ok(PreparedShape::new(self.fused.clone(), &self.form, Some(self.area))?)
     }
 
     /// The signature of one kind.
@@ -104,12 +113,11 @@ mod tests {
     /// Largest distance between two signatures of one kind, in units of the change by poses.
     fn gap(a: &ShapeDescription, b: &ShapeDescription) -> f64 {
         let parts = a.signatures.iter().zip(&b.signatures);
-        parts.map(|(a, b)| a.distance(b) / a.kind.unit()).fold(0.0, f64::max)
+        parts.map(|(a, b)| a.distance(b) / ShapeMetric::unit(a.kind)).fold(0.0, f64::max)
     }
 
     fn fused_distance(a: &ShapeDescription, b: &ShapeDescription) -> f64 {
-        let sq = |(x, y): (&f32, &f32)| f64::from(x - y).powi(2);
-        a.fused.iter().zip(&b.fused).map(sq).sum::<f64>().sqrt()
+        ShapeMetric::fused(&a.fused, &b.fused)
     }
 
     /// A torus with a bump: no symmetry.
@@ -152,13 +160,12 @@ mod tests {
     #[test]
     fn the_fused_distance_is_the_weighted_sum_of_the_parts() {
         let (a, b) = (described(&lopsided()), described(&shapes::icosphere(3)));
-        let total: f64 = SignatureKind::ALL.iter().map(|kind| kind.weight()).sum();
-        assert!((total - 1.0).abs() < 1e-9);
-        let part =
-            |(a, b): (&Signature, &Signature)| a.kind.weight() * (a.distance(b) / a.kind.unit()).powi(2);
+        let part = |(a, b): (&Signature, &Signature)| {
+            ShapeMetric::weight(a.kind) * (a.distance(b) / ShapeMetric::unit(a.kind)).powi(2)
+        };
         let expected = a.signatures.iter().zip(&b.signatures).map(part).sum::<f64>().sqrt();
         assert!((fused_distance(&a, &b) / expected - 1.0).abs() < 1e-5);
-        assert_eq!(a.fused.len(), descriptors::FUSED_SIZE);
+        assert_eq!(a.fused.len(), ShapeMetric::FUSED_LENGTH);
         assert!(a.signatures.iter().all(|s| s.values.len() == s.kind.n_values()));
     }
 
@@ -171,9 +178,10 @@ mod tests {
         let [a, b] = [&small, &large].map(|mesh| described_by(mesh, &options));
         assert!((fused_distance(&a, &b) - 1.0).abs() < 1e-3, "5 % are a unit");
         assert!(fused_distance(&described(&small), &described(&large)) < 1e-3);
-        let dna =
-            |d: &ShapeDescription| d.signature(SignatureKind::ShapeDna).unwrap().clone().with_size(d.area);
-        assert!((dna(&a).distance(&dna(&b)) / SignatureKind::ShapeDna.unit() - 1.0).abs() < 1e-6);
+        let dna = |d: &ShapeDescription| {
+            ShapeMetric::with_size(d.signature(SignatureKind::ShapeDna).unwrap().clone(), d.area)
+        };
+        assert!((dna(&a).distance(&dna(&b)) / ShapeMetric::unit(SignatureKind::ShapeDna) - 1.0).abs() < 1e-6);
     }
 
     #[test]
@@ -190,8 +198,8 @@ mod tests {
         {
             let found = described(&mesh);
             assert!(found.fused.iter().all(|x| x.is_finite()), "{:?}", found.signatures);
-            assert_eq!(found.fused.len(), descriptors::FUSED_SIZE);
-            crate::compare::prepare_form(&found.form).unwrap();
+            assert_eq!(found.fused.len(), ShapeMetric::FUSED_LENGTH);
+            found.prepare().unwrap();
         }
     }
 

@@ -1,6 +1,6 @@
 //! The options tree: everything that decides what a mesh is turned into.
 
-use descriptors::{DescriptorError, Normalization};
+use descriptors::{DescriptorError, Normalization, ShapeMetric};
 use geodesics::{FirstSample, Method, Sampling};
 use mesh::RepairOptions;
 use serde::{Deserialize, Serialize};
@@ -76,10 +76,6 @@ impl FormOptions {
     }
 }
 
-/// Counts every change of what the same mesh and options are turned into: descriptions of different versions
-/// must not be compared.
-const DESCRIPTION_VERSION: u32 = 1;
-
 /// Everything that decides the description of a mesh.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(default, rename_all = "kebab-case")]
@@ -124,12 +120,12 @@ impl DescribeOptions {
         Ok(())
     }
 
-    /// The options and the version of the description as one line of JSON, equal for equal options. An index
+    /// The options and the [version](ShapeMetric::VERSION) of the description as one line of JSON, equal for equal options. An index
     /// stores it.
     #[must_use]
     pub fn text(&self) -> String {
         let options = Self { form: self.form.clone().normalized(), ..*self };
-        let provenance = Provenance { description: DESCRIPTION_VERSION, options };
+        let provenance = Provenance { description: ShapeMetric::VERSION, options };
         serde_json::to_string(&provenance).unwrap_or_else(|fault| unreachable!("plain data: {fault}"))
     }
 

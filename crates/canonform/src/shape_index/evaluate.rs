@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use descriptors::SignatureKind;
+use descriptors::{ShapeMetric, SignatureKind};
 use index::Index;
 use linalg::DistanceMatrix;
 use retrieval::{Evaluation, Labels, evaluate, pairwise_distances};
@@ -59,10 +59,7 @@ pub fn evaluate_index(
         Ok::<(), Error>(())
     })?;
     observer.begin("distances", n * n.saturating_sub(1) / 2);
-    let distance = |i: usize, j: usize| -> Result<f64, Error> {
-        let gaps = rows[i].iter().zip(&rows[j]).map(|(x, y)| (f64::from(*x) - f64::from(*y)).powi(2));
-        Ok(gaps.sum::<f64>().sqrt())
-    };
+    let distance = |i: usize, j: usize| Ok::<_, Error>(ShapeMetric::fused(&rows[i], &rows[j]));
     let distances = pairwise_distances(n, distance, || observer.step())?;
     Ok(evaluate(&distances, &Labels::new(&names), knn_k)?)
 }

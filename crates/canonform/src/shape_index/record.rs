@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use descriptors::CanonicalForm;
+use descriptors::{CanonicalForm, PreparedShape};
 use index::{ContentHash, Index, Shape, ShapeEntry, ShapeVectors};
 use nalgebra::Point3;
 
@@ -76,4 +76,17 @@ pub(super) fn form(
     let weights = vectors.form.iter().map(|[.., w]| f64::from(*w)).collect();
     let area = entry.fact(AREA).filter(|_| options.form.method.has_unit());
     Ok(CanonicalForm::from_parts(points.collect(), weights, area)?)
+}
+
+/// An indexed shape, ready to be compared.
+///
+/// # Errors
+/// [`Error::Descriptor`] if the stored numbers are not a form.
+pub(super) fn prepared(
+    entry: &ShapeEntry,
+    vectors: ShapeVectors,
+    options: &DescribeOptions,
+) -> Result<PreparedShape, Error> {
+    let form = form(entry, &vectors, options)?;
+    Ok(PreparedShape::new(vectors.fused, &form, entry.fact(AREA))?)
 }

@@ -3,72 +3,78 @@
 use std::path::Path;
 use std::time::Instant;
 
-use descriptors::{CanonicalForm, MatchOptions};
-use index::{Index, SearchMode, ShapeEntry, ShapeVectors};
+use descriptors::{CanonicalForm, PreparedShape, ShapeMetric, ShapePair};
+use index::{Index, SearchMode, ShapeEntry};
 use mesh::TriMesh;
 use rayon::prelude::*;
 use retrieval::{Candidate, vote};
 use serde::Serialize;
 
-use super::record::{form, options_of};
+use super::record::{form, options_of, prepared};
+use super::rerank::rerank;
 use super::source::read_unchanged;
 use crate::Error;
-use crate::compare::{Comparison, ShapeDistance, compare_forms, prepare_form, rerank};
+use crate::compare::{Comparison, compare};
 use crate::form::{DescribeOptions, ShapeDescription, describe};
 use crate::input::Surface;
 
 /// Neighbours that vote on the class of a query.
 const VOTERS: usize = 5;
 
-/// Shapes whose forms may be aligned, for every one that is wanted, and at least.
+/// Shapes whose forms may be aligned, per result, ...
 const CANDIDATES: usize = 4;
+
+/// ... and at least.
 const LEAST_CANDIDATES: usize = 40;
 
-/// How an index is asked.
+/// The index measures fused distances with other rounding than the metric: this factor makes them lower bounds.
+const LOWER_BOUND: f64 = 1.0 - 1e-6;
+
+/// How an index is searched.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SearchOptions {
-    /// Shapes wanted. Default: 10.
+    /// Number of results. Default: 10.
     pub k: usize,
-    /// How carefully signatures are searched. Default: [`SearchMode::Auto`].
+    /// How signatures are searched. Default: [`SearchMode::Auto`].
     pub mode: SearchMode,
-    /// Whether every shape found is told apart from the query: resized, mirrored, different. Default: no.
+    /// Whether every result is compared with the query in detail. Default: no.
     pub explain: Explain,
-    /// How forms are aligned.
-    pub matching: MatchOptions,
+    /// The distance between shapes.
+    pub metric: ShapeMetric,
 }
 
-/// Whether matches are explained.
+/// Whether results are compared with the query in detail.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Explain {
     /// No.
     #[default]
     No,
-    /// What kind of match each is.
+    /// With a [`Comparison`] for each result.
     Kind,
 }
 
 impl Default for SearchOptions {
     fn default() -> Self {
-        Self { k: 10, mode: SearchMode::Auto, explain: Explain::No, matching: MatchOptions::default() }
+        Self { k: 10, mode: SearchMode::Auto, explain: Explain::No, metric: ShapeMetric::default() }
     }
 }
 
 /// A shape that was found.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SearchResult {
-    /// From 1 on.
+    /// Counted from 1.
     pub rank: usize,
-    /// Its name.
+    /// Name of the shape.
     pub id: String,
     /// Its class.
     pub label: String,
-    /// Where it came from.
+    /// Path of its mesh.
     pub path: String,
-    /// How far it is, by signatures and aligned forms; the order of the results.
+    /// Combined distance, by signatures and aligned forms; results are ordered by it.
     pub distance: f64,
-    /// How far it is by fused signatures alone.
+    /// Fused distance, by signatures alone.
     pub fused: f64,
-    /// What kind of match it is, when asked for.
+    /// The comparison with the query, if results are explained.
     #[serde(rename = "match", skip_serializing_if = "Option::is_none")]
     pub comparison: Option<Comparison>,
 }
@@ -76,48 +82,48 @@ pub struct SearchResult {
 /// The class that the nearest shapes suggest.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Prediction {
-    /// The class; `None` when nothing is near.
+    /// The class; `None` if no shape is near enough.
     pub label: Option<String>,
     /// Neighbours of that class.
     pub votes: usize,
     /// Neighbours that are near enough to vote.
     pub voters: usize,
-    /// Share of the votes that the class has, nearer neighbours counting more, 0 to 1.
+    /// Share of the votes for the class, from 0 to 1; nearer neighbours count more.
     pub confidence: f64,
-    /// Distance of fused signatures beyond which nothing is near; `None` when the classes of the index are
-    /// too small to tell.
+    /// Fused distance beyond which no shape is near enough; `None` if the classes of the index are too small to
+    /// estimate it.
     pub threshold: Option<f64>,
 }
 
-/// What an index says to a mesh.
+/// The answer to a search.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SearchReport {
     /// Nearest first.
     pub results: Vec<SearchResult>,
     /// The class.
     pub predicted: Prediction,
-    /// Shapes of the index.
+    /// Shapes in the index.
     pub n_shapes: usize,
-    /// Shapes whose signatures were measured.
+    /// Shapes whose signatures were compared.
     pub measured: usize,
-    /// Shapes whose forms were aligned, or begun to be.
+    /// Shapes whose alignment was begun.
     pub aligned: usize,
-    /// Share of the ten nearest signatures that searches in this index find: 1 when it is exact.
+    /// Share of the ten nearest signatures that searches in this index find: 1 if the search is exact.
     pub recall: f64,
     /// Wall-clock seconds.
     pub seconds: SearchSeconds,
 }
 
-/// Where the time of a search went.
+/// Wall-clock seconds of a search.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 pub struct SearchSeconds {
     /// Repair, distances, form and signatures of the query.
     pub describe: f64,
-    /// Finding, aligning and voting.
+    /// Searching, aligning and voting.
     pub search: f64,
 }
 
-/// An index that is asked.
+/// An index that is open for searches.
 #[derive(Debug)]
 pub struct ShapeSearch {
     index: Index,
@@ -125,6 +131,8 @@ pub struct ShapeSearch {
 }
 
 impl ShapeSearch {
+    /// Opens an index.
+    ///
     /// # Errors
     /// [`Error::Index`], [`Error::UnknownOptions`].
     pub fn open(path: &Path) -> Result<Self, Error> {
@@ -133,13 +141,13 @@ impl ShapeSearch {
         Ok(Self { index, describe })
     }
 
-    /// How its shapes were described, and queries are.
+    /// How the shapes of the index were described; queries are described in the same way.
     #[must_use]
     pub fn describe_options(&self) -> &DescribeOptions {
         &self.describe
     }
 
-    /// All names with what is known of them, ascending.
+    /// All shapes with their entries, by ascending name.
     ///
     /// # Errors
     /// [`Error::Index`].
@@ -147,7 +155,7 @@ impl ShapeSearch {
         Ok(self.index.entries()?)
     }
 
-    /// What is known of a shape.
+    /// The entry of a shape.
     ///
     /// # Errors
     /// [`Error::Index`].
@@ -155,36 +163,49 @@ impl ShapeSearch {
         Ok(self.index.entry(id)?)
     }
 
-    /// The form of a shape as the index keeps it, at some points.
+    /// The form of a shape, at the points that the index stores.
     ///
     /// # Errors
     /// [`Error::Index`].
     pub fn form(&self, id: &str) -> Result<CanonicalForm, Error> {
-        let (entry, vectors) = self.shape(id)?;
-        form(&entry, &vectors, &self.describe)
+        form(&self.index.entry(id)?, &self.index.vectors(id)?, &self.describe)
     }
 
-    /// The fused signature and the form of a shape: what tells it from others, see
-    /// [`ShapeDistance::of`].
+    /// A shape, ready to be compared.
     ///
     /// # Errors
     /// [`Error::Index`].
-    pub fn description(&self, id: &str) -> Result<(Vec<f32>, CanonicalForm), Error> {
-        let (entry, vectors) = self.shape(id)?;
-        let form = form(&entry, &vectors, &self.describe)?;
-        Ok((vectors.fused, form))
+    pub fn prepared(&self, id: &str) -> Result<PreparedShape, Error> {
+        prepared(&self.index.entry(id)?, self.index.vectors(id)?, &self.describe)
     }
 
-    /// The mesh of a shape, read again from where it was when it was indexed.
+    /// Reads the mesh of a shape again.
     ///
     /// # Errors
-    /// [`Error::MeshGone`] and [`Error::MeshChanged`] unless it is still the same;
+    /// [`Error::MeshGone`] and [`Error::MeshChanged`] unless the file still has the content that was indexed;
     /// [`Error::Index`], [`Error::Mesh`].
     pub fn mesh(&self, id: &str) -> Result<TriMesh, Error> {
         read_unchanged(id, &self.index.entry(id)?)
     }
 
-    /// The shapes of the index that are nearest to a mesh: by fused signatures, then by aligned forms.
+    /// Finds the shapes nearest to a mesh: candidates by fused signatures, ordered by aligned forms.
+    ///
+    /// ```
+    /// use canonform::{BuildOptions, DescribeOptions, SearchOptions, ShapeSearch, build_index, mesh};
+    ///
+    /// let folder = tempfile::tempdir()?;
+    /// mesh::io::write(&folder.path().join("ball1.off"), &mesh::shapes::icosphere(2))?;
+    /// mesh::io::write(&folder.path().join("ring1.off"), &mesh::shapes::torus(24, 12, 2.0, 0.7))?;
+    /// let index = folder.path().join("shapes.canonform");
+    /// let describe = DescribeOptions::default();
+    /// let options = BuildOptions { describe: &describe, labels: None, shard: None };
+    /// build_index(folder.path(), &index, &options, &())?;
+    ///
+    /// let query = mesh::shapes::torus(22, 13, 1.0, 0.35);
+    /// let report = ShapeSearch::open(&index)?.search(&query, &SearchOptions::default())?;
+    /// assert_eq!((report.results[0].id.as_str(), report.results.len()), ("ring1", 2));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     ///
     /// # Errors
     /// [`Error::Index`], and those of describing the mesh.
@@ -196,70 +217,65 @@ impl ShapeSearch {
         Ok(SearchReport { seconds: SearchSeconds { describe, ..report.seconds }, ..report })
     }
 
-    /// As [`search`](Self::search), with a mesh that was described with
-    /// [`describe_options`](Self::describe_options).
+    /// Searches with a mesh that was described with the [options of the index](Self::describe_options).
     ///
     /// # Errors
-    /// [`Error::Index`].
+    /// [`Error::OtherOptions`] if it was described with other options; [`Error::Index`].
     pub fn search_described(
         &self,
         query: &ShapeDescription,
         options: &SearchOptions,
     ) -> Result<SearchReport, Error> {
-        self.nearest(&query.fused, &query.form, options)
+        let [query_text, index] = [&query.options, &self.describe].map(DescribeOptions::text);
+        if query_text != index {
+            return Err(Error::OtherOptions { query: query_text, index });
+        }
+        self.nearest(&query.prepare()?, options)
     }
 
-    /// As [`search`](Self::search), with a shape of the index; its mesh is not needed. It finds itself.
+    /// Searches with a shape of the index, which finds itself. Its mesh is not needed.
     ///
     /// # Errors
     /// [`Error::Index`].
     pub fn search_shape(&self, id: &str, options: &SearchOptions) -> Result<SearchReport, Error> {
-        let (entry, vectors) = self.shape(id)?;
-        self.nearest(&vectors.fused, &form(&entry, &vectors, &self.describe)?, options)
+        self.nearest(&self.prepared(id)?, options)
     }
 
-    fn nearest(
-        &self,
-        fused: &[f32],
-        query: &CanonicalForm,
-        options: &SearchOptions,
-    ) -> Result<SearchReport, Error> {
+    fn nearest(&self, query: &PreparedShape, options: &SearchOptions) -> Result<SearchReport, Error> {
         let start = Instant::now();
         let wanted = options.k.max(VOTERS);
-        let asked = (CANDIDATES * wanted).max(LEAST_CANDIDATES);
-        let found = self.index.nearest(fused, asked, options.mode)?;
+        let found =
+            self.index.nearest(query.fused(), (CANDIDATES * wanted).max(LEAST_CANDIDATES), options.mode)?;
         let near = &found.shapes;
-        let candidates =
-            near.iter().enumerate().map(|(index, near)| Candidate { index, bound: near.distance });
-        let form_of = |i: usize| {
-            let (entry, vectors) = self.shape(&near[i].id)?;
-            prepare_form(&form(&entry, &vectors, &self.describe)?)
-        };
-        let refined = rerank(&prepare_form(query)?, candidates, wanted, &options.matching, form_of)?;
+        let candidates = near
+            .iter()
+            .enumerate()
+            .map(|(index, near)| Candidate { index, bound: near.distance * LOWER_BOUND });
+        let shape = |i: usize| self.prepared(&near[i].id);
+        let ranked = rerank(&options.metric, query, candidates, wanted, shape)?;
 
         let mut results = Vec::with_capacity(wanted);
-        for (place, neighbor) in refined.nearest.iter().enumerate() {
-            let near = &near[neighbor.index];
-            let entry = self.index.entry(&near.id)?;
+        for (place, ranked) in ranked.nearest.iter().enumerate() {
+            let id = &near[ranked.index].id;
+            let ShapeEntry { label, path, .. } = self.index.entry(id)?;
+            let (distance, fused) = (ranked.distance, ranked.fused);
             results.push(SearchResult {
                 rank: place + 1,
-                id: near.id.clone(),
-                label: entry.label,
-                path: entry.path,
-                distance: neighbor.distance,
-                fused: near.distance,
+                id: id.clone(),
+                label,
+                path,
+                distance,
+                fused,
                 comparison: None,
             });
         }
         let predicted = predicted(&results, found.threshold);
         results.truncate(options.k);
         if options.explain == Explain::Kind {
-            results.par_iter_mut().try_for_each(|result| {
-                let (entry, vectors) = self.shape(&result.id)?;
-                let comparison =
-                    compare_forms(query, &form(&entry, &vectors, &self.describe)?, &options.matching)?;
-                let distance = ShapeDistance::new([fused, &vectors.fused], comparison.normalized_distance);
-                result.comparison = Some(comparison.decided_by(distance));
+            results.par_iter_mut().zip(&ranked.nearest).try_for_each(|(result, ranked)| {
+                let shape = self.prepared(&result.id)?;
+                let pair = ShapePair::new(&options.metric, [query, &shape]).with_best(ranked.alignment);
+                result.comparison = Some(compare(&pair)?);
                 Ok::<_, Error>(())
             })?;
         }
@@ -268,19 +284,14 @@ impl ShapeSearch {
             predicted,
             n_shapes: found.n_shapes,
             measured: found.n_measured,
-            aligned: refined.asked,
+            aligned: ranked.aligned,
             recall: found.recall,
             seconds: SearchSeconds { describe: 0.0, search: start.elapsed().as_secs_f64() },
         })
     }
-
-    fn shape(&self, id: &str) -> Result<(ShapeEntry, ShapeVectors), Error> {
-        Ok((self.index.entry(id)?, self.index.vectors(id)?))
-    }
 }
 
-/// The vote of the first results. Who comes first was decided by forms as well; how near is near enough is
-/// known for fused signatures.
+/// The vote of the first results. Their order takes forms into account; the threshold is one of fused distances.
 fn predicted(results: &[SearchResult], threshold: Option<retrieval::UnknownThreshold>) -> Prediction {
     let mut classes: Vec<&str> = results.iter().map(|result| result.label.as_str()).collect();
     classes.sort_unstable();
@@ -309,10 +320,12 @@ mod tests {
     use tempfile::TempDir;
 
     use super::*;
-    use crate::{BuildOptions, Remedy, Surface, build_index, describe};
+    use crate::Remedy;
+    use crate::form::{EmbedMethod, FormOptions};
+    use crate::shape_index::{BuildOptions, build_index};
 
     /// An index of a few bodies.
-    fn indexed() -> (TempDir, ShapeSearch) {
+    fn indexed(describe: &DescribeOptions) -> (TempDir, ShapeSearch) {
         let folder = tempfile::tempdir().unwrap();
         let bodies = [
             ("ball0.off", shapes::icosphere(3)),
@@ -324,29 +337,56 @@ mod tests {
             mesh::io::write(&folder.path().join(name), &mesh).unwrap();
         }
         let path = folder.path().join("all.canonform");
-        let options = BuildOptions { describe: &DescribeOptions::default(), labels: None, shard: None };
-        build_index(folder.path(), &path, &options, &()).unwrap();
+        build_index(folder.path(), &path, &BuildOptions { describe, labels: None, shard: None }, &())
+            .unwrap();
         let search = ShapeSearch::open(&path).unwrap();
         (folder, search)
     }
 
     #[test]
-    fn a_shape_finds_what_its_mesh_finds() {
-        let (_folder, search) = indexed();
-        let options = SearchOptions { explain: Explain::Kind, ..SearchOptions::default() };
-        let mesh = search.mesh("ring0").unwrap();
-        let by_mesh = search.search(&mesh, &options).unwrap();
-        let by_name = search.search_shape("ring0", &options).unwrap();
-        let surface = Surface::new(&mesh, &search.describe_options().form.repair).unwrap();
-        let described = describe(&surface, search.describe_options()).unwrap();
-        let by_description = search.search_described(&described, &options).unwrap();
-        let found = |report: &SearchReport| -> Vec<_> {
-            report.results.iter().map(|r| (r.id.clone(), (r.distance * 1e4).round())).collect()
-        };
-        assert_eq!(found(&by_mesh)[0], ("ring0".to_owned(), 0.0));
-        assert_eq!(found(&by_mesh), found(&by_name));
-        assert_eq!(found(&by_mesh), found(&by_description));
-        assert_eq!(search.form("ring0").unwrap().points().len(), described.form.points().len());
+    fn a_mesh_a_description_and_a_stored_shape_find_exactly_the_same() {
+        let method = EmbedMethod::KernelPca { rank: None, bandwidth: Default::default() };
+        let form = FormOptions { method, ..FormOptions::default() };
+        let kernel = DescribeOptions { form, ..DescribeOptions::default() };
+        for describe_options in [DescribeOptions::default(), kernel] {
+            let (_folder, search) = indexed(&describe_options);
+            assert_eq!(*search.describe_options(), describe_options);
+            let options = SearchOptions { explain: Explain::Kind, ..SearchOptions::default() };
+            let mesh = search.mesh("ring0").unwrap();
+            let by_mesh = search.search(&mesh, &options).unwrap();
+            let by_name = search.search_shape("ring0", &options).unwrap();
+            let surface = Surface::new(&mesh, &describe_options.form.repair).unwrap();
+            let described = describe(&surface, &describe_options).unwrap();
+            let by_description = search.search_described(&described, &options).unwrap();
+            assert!(by_mesh.results[0].id == "ring0" && by_mesh.results[0].distance < 1e-6);
+            assert_eq!(by_mesh.results, by_name.results);
+            assert_eq!(by_mesh.results, by_description.results);
+            // The comparison of the two shapes says the same.
+            for result in &by_mesh.results {
+                let other = search.prepared(&result.id).unwrap();
+                let query = described.prepare().unwrap();
+                let direct = compare(&ShapePair::new(&options.metric, [&query, &other])).unwrap();
+                assert_eq!(result.comparison.as_ref(), Some(&direct));
+                assert_eq!(result.distance, direct.shape_distance.combined);
+            }
+        }
+    }
+
+    #[test]
+    fn a_query_described_with_other_options_is_refused() {
+        let (_folder, search) = indexed(&DescribeOptions::default());
+        let options = DescribeOptions { points: 500, ..DescribeOptions::default() };
+        let surface = Surface::new(&shapes::icosphere(2), &Default::default()).unwrap();
+        let query = describe(&surface, &options).unwrap();
+        let fault = search.search_described(&query, &SearchOptions::default()).unwrap_err();
+        assert_eq!(fault.remedy(), Some(Remedy::UseOptionsOfIndex));
+        assert!(fault.to_string().contains("\"points\":500"), "{fault}");
+    }
+
+    #[test]
+    fn shapes_are_known_by_name() {
+        let (_folder, search) = indexed(&DescribeOptions::default());
+        let options = SearchOptions::default();
         assert!(matches!(search.search_shape("none", &options), Err(Error::Index(_))));
         let names: Vec<String> = search.entries().unwrap().into_iter().map(|(id, _)| id).collect();
         assert_eq!(names, ["ball0", "box0", "ring0", "ring1"]);
@@ -354,8 +394,8 @@ mod tests {
     }
 
     #[test]
-    fn a_mesh_that_is_gone_or_another_is_told_from_the_one_that_was_indexed() {
-        let (folder, search) = indexed();
+    fn missing_and_changed_meshes_are_different_errors() {
+        let (folder, search) = indexed(&DescribeOptions::default());
         assert_eq!(search.mesh("box0").unwrap(), shapes::cube(3));
         fs::copy(folder.path().join("ring1.off"), folder.path().join("ring0.off")).unwrap();
         fs::remove_file(folder.path().join("box0.tri")).unwrap();

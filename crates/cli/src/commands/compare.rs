@@ -4,10 +4,12 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::{Result, bail};
+use canonform::descriptors::{
+    CanonicalForm, FormDistance, Handedness, MatchKind, MatchOptions, PreparedShape, ShapeMetric, ShapePair,
+};
 use canonform::{
-    Comparison, DescribeOptions, FormDistance, FormOptions, Handedness, MatchKind, MatchOptions, SAME_BELOW,
-    ShapeDescription, ShapeDistance, Surface, SurfaceComparison, Triangulation, compare_surfaces, describe,
-    embed,
+    Comparison, DescribeOptions, FormOptions, ShapeDescription, Surface, SurfaceComparison, Triangulation,
+    compare_surfaces, describe, embed,
 };
 use serde::Serialize;
 
@@ -48,44 +50,72 @@ impl ResidualJson {
     }
 }
 
+/// One of the two meshes.
+struct Side {
+    surface: Surface,
+    /// The form of all vertices, made as the options say.
+    form: CanonicalForm,
+    /// The shape with this form.
+    shown: PreparedShape,
+    /// The shape as the metric is calibrated for, if the form was made in another way.
+    usual: Option<PreparedShape>,
+}
+
+impl Side {
+    fn new(path: &Path, args: &CompareArgs, options: &FormOptions, bars: &Bars) -> Result<Self> {
+        let surface = read_surface(path, &args.embedding.repair)?;
+        let in_file = |fault| named(path, fault);
+        let embedded = embed(&surface, options, bars).map_err(in_file)?;
+        bars.finish();
+        let form = embedded.form(&surface).map_err(in_file)?;
+        let usual = FormOptions { repair: options.repair, ..FormOptions::default() };
+        let usual = DescribeOptions { form: usual, ..DescribeOptions::default() };
+        let is_usual = embedded.options == usual.form;
+        let description = match is_usual {
+            true => ShapeDescription::new(&surface, &embedded, &usual),
+            false => describe(&surface, &usual),
+        };
+        let description = description.map_err(in_file)?;
+        let prepared = description.prepare().map_err(in_file)?;
+        let (shown, usual) = match is_usual {
+            true => (prepared, None),
+            false => {
+                let (fused, form) = (description.fused, form.reduced(usual.points));
+                let shown = PreparedShape::new(fused, &form, Some(description.area));
+                (shown.map_err(|fault| in_file(fault.into()))?, Some(prepared))
+            }
+        };
+        Ok(Self { surface, form, shown, usual })
+    }
+}
+
 /// Embeds, aligns and compares two meshes.
 pub(crate) fn compare(args: &CompareArgs, common: &Common) -> Result<ExitCode> {
     let options = args.embedding.options(common)?;
     options.validate()?;
     if let Some(path) = &args.residual_mesh {
         if extension(path) != "ply" {
-            bail!("residuals are written as a coloured .ply; {} is none", path.display());
+            bail!("{}: residuals are written as a coloured mesh; end the name in .ply", path.display());
         }
         check_folder(path)?;
     }
+    let distance = match args.distance {
+        DistanceName::NnRms => FormDistance::NearestNeighborRms,
+        DistanceName::Hausdorff95 => FormDistance::Hausdorff95,
+    };
+    let metric = ShapeMetric { matching: MatchOptions { distance, ..MatchOptions::default() } };
     let bars = Bars::new(common.quiet);
-    // The kind of match must not depend on how forms are made for a closer look.
-    let usual = FormOptions { repair: options.repair, ..FormOptions::default() };
-    let describing = DescribeOptions { form: usual, ..DescribeOptions::default() };
-    let form = |path: &Path| {
-        let surface = read_surface(path, &args.embedding.repair)?;
-        let embedded = embed(&surface, &options, &bars).map_err(|fault| named(path, fault))?;
-        bars.finish();
-        let form = embedded.form(&surface).map_err(|fault| named(path, fault))?;
-        let description = if embedded.options == describing.form {
-            ShapeDescription::new(&surface, &embedded, &describing)
-        } else {
-            describe(&surface, &describing)
-        };
-        let description = description.map_err(|fault| named(path, fault))?;
-        anyhow::Ok((surface, form, description))
+    let side = |path: &Path| Side::new(path, args, &options, &bars);
+    let (a, b) = (side(&args.a)?, side(&args.b)?);
+    let pair = ShapePair::new(&metric, [&a.shown, &b.shown]);
+    // The kind of match does not depend on how forms are made.
+    let distance = match (&a.usual, &b.usual) {
+        (Some(a), Some(b)) => ShapePair::new(&metric, [a, b]).distance()?,
+        _ => pair.distance()?,
     };
-    let matching = MatchOptions {
-        distance: match args.distance {
-            DistanceName::NnRms => FormDistance::NearestNeighborRms,
-            DistanceName::Hausdorff95 => FormDistance::Hausdorff95,
-        },
-        ..MatchOptions::default()
-    };
-    let ((a, form_a, described_a), (b, form_b, described_b)) = (form(&args.a)?, form(&args.b)?);
     let SurfaceComparison { comparison, triangulation, overlay } =
-        compare_surfaces([&a, &b], [&form_a, &form_b], &matching)?;
-    let comparison = comparison.decided_by(ShapeDistance::between(&described_a, &described_b)?);
+        compare_surfaces(&pair, distance, [(&a.surface, &a.form), (&b.surface, &b.form)])?;
+    let a = a.surface;
     let [residuals, _] = &overlay.residuals;
     if let Some(path) = &args.residual_mesh {
         mesh::io::write_scalar_field(path, a.mesh(), residuals, "residual")?;
@@ -117,18 +147,17 @@ fn table(json: &CompareJson) -> String {
         MatchKind::MirroredAndScaled => format!("mirror images up to pose, scaled by {:.3}", c.scale),
         MatchKind::Different => "different shapes".to_owned(),
     };
-    let apart = c.shape_distance.map_or(String::new(), |d| {
-        format!("{:.3} by signatures and forms (the same shape below {SAME_BELOW})", d.combined)
-    });
+    let (apart, limit) = (c.shape_distance.combined, ShapeMetric::SAME_BELOW);
+    let apart = format!("{apart:.3} by signatures and forms (the same shape below {limit})");
     let handedness = match c.handedness {
         Handedness::Same => "no",
         Handedness::Mirrored => "yes",
         Handedness::Either => "both fit: left and right are alike",
-        Handedness::Unknown => "not known: no inside, or no match",
+        Handedness::Unknown => "unknown: a mesh encloses no volume, or the forms do not fit",
     };
     let triangulation = match json.triangulation {
         Triangulation::Same => "the same faces",
-        Triangulation::Other => "other faces: meshed anew",
+        Triangulation::Other => "different faces",
     };
     let r = &json.residual;
     let residual =

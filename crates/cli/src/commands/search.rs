@@ -4,7 +4,9 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::Result;
-use canonform::{Explain, MatchKind, SearchMode, SearchOptions, SearchReport, SearchResult, ShapeSearch};
+use canonform::descriptors::MatchKind;
+use canonform::index::SearchMode;
+use canonform::{Explain, SearchOptions, SearchReport, SearchResult, ShapeSearch};
 use serde::Serialize;
 
 use super::named;

@@ -1,19 +1,14 @@
-//! Signatures: a surface as a short list of numbers that Euclidean distance compares.
+//! Signatures: short lists of numbers that describe a surface and are compared by Euclidean distance.
 //!
-//! [`CanonicalForm`](crate::CanonicalForm), `linalg::LandmarkDistances`,
-//! [`LaplaceSpectrum`](crate::LaplaceSpectrum) -> **[`Signature`]** -> [`fuse`] -> `retrieval`
+//! All of them
 //!
-//! What all of them have in common:
-//!
-//! * They belong to the surface scaled to unit area, so scale does not count;
-//!   [`Signature::with_size`] makes it count.
-//! * They see distances on the surface alone: bending, rigid motions and mirror images change nothing but
-//!   rounding, and an order of vertices there is not.
-//! * Points count by the area around them, so another triangulation changes them as little as it changes
-//!   the surface.
-//! * They are always of the same length and never hold a NaN.
+//! * describe the surface scaled to unit area, so scale does not count;
+//! * depend on distances along the surface only, so bending, rigid motions, mirror images and the order of vertices
+//!   change nothing but rounding;
+//! * weight points by the area around them, so another triangulation changes them as little as it changes the
+//!   surface;
+//! * have a fixed length and no NaN.
 
-mod fusion;
 mod geodesic_spectrum;
 mod kernels;
 mod moments;
@@ -23,7 +18,6 @@ mod shape_dna;
 
 use std::str::FromStr;
 
-pub use fusion::{FUSED_SIZE, fuse, size_coordinate};
 pub use geodesic_spectrum::geodesic_spectrum;
 pub use kernels::{heat_kernel_signature, wave_kernel_signature};
 pub use moments::moment_signature;
@@ -53,7 +47,7 @@ pub enum SignatureKind {
 }
 
 impl SignatureKind {
-    /// All kinds, in the order of a fused signature.
+    /// All kinds, in the order of a fused vector.
     pub const ALL: [Self; 6] =
         [Self::Moments, Self::D2, Self::GeodesicSpectrum, Self::ShapeDna, Self::HeatKernel, Self::WaveKernel];
 
@@ -70,7 +64,7 @@ impl SignatureKind {
         }
     }
 
-    /// Number of values, without that of the size.
+    /// Number of values, without the size.
     #[must_use]
     pub const fn n_values(self) -> usize {
         match self {
@@ -82,60 +76,32 @@ impl SignatureKind {
             Self::WaveKernel => kernels::WAVE_LENGTH,
         }
     }
-
-    /// Root mean square of the distances between two poses of one body, triangulated each on its own: what
-    /// a distance has to be measured against.
-    ///
-    /// Found on the built-in articulated families, in meshes of 1,500 to 8,000 vertices;
-    /// `cargo run --release -p experiments -- units` measures it again.
-    #[must_use]
-    pub fn unit(self) -> f64 {
-        fusion::unit(self)
-    }
-
-    /// How much the kind counts beside the others, all weights summing to one: the product of its separation and the
-    /// number of its components, over the sum of all products.
-    ///
-    /// The separation is the mean squared distance between two of the built-in families over that between two poses of
-    /// one, as in Fisher's discriminant. The components are `tr(C)² / tr(C²)` with `C` the covariance of
-    /// the values within families: in so many independent ways poses move a signature, and were they whitened,
-    /// squared distances would grow with them. Found as the [unit](Self::unit).
-    #[must_use]
-    pub fn weight(self) -> f64 {
-        fusion::weight(self)
-    }
 }
 
 impl FromStr for SignatureKind {
     type Err = DescriptorError;
 
     fn from_str(name: &str) -> Result<Self, Self::Err> {
-        Self::ALL
-            .into_iter()
-            .find(|kind| kind.name() == name)
-            .ok_or_else(|| DescriptorError::UnknownSignature { name: name.to_owned() })
+        Self::ALL.into_iter().find(|kind| kind.name() == name).ok_or_else(|| {
+            DescriptorError::UnknownSignature {
+                name: name.to_owned(),
+                known: Self::ALL.map(Self::name).join(", "),
+            }
+        })
     }
 }
 
-/// A surface as a list of numbers; the distance of two is Euclidean.
+/// A list of numbers that describes a surface; the distance between two of a kind is Euclidean.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Signature {
-    /// What the numbers are.
+    /// The kind of signature.
     pub kind: SignatureKind,
-    /// The numbers, [`SignatureKind::n_values`] of them and one more with the size.
+    /// [`SignatureKind::n_values`] numbers, and one more with the size.
     pub values: Vec<f64>,
 }
 
 impl Signature {
-    /// The same with the size of the surface, one value more: its [coordinate](size_coordinate) times the kind's
-    /// [unit](SignatureKind::unit), so that sizes that differ by 5 % are as far apart as two poses of one body.
-    #[must_use]
-    pub fn with_size(mut self, area: f64) -> Self {
-        self.values.push(self.kind.unit() * size_coordinate(area));
-        self
-    }
-
-    /// Euclidean distance to a signature of the same kind and length; infinite when it is none.
+    /// Euclidean distance to another signature; infinite unless both are of one kind and length.
     #[must_use]
     pub fn distance(&self, other: &Self) -> f64 {
         if self.kind != other.kind || self.values.len() != other.values.len() {

@@ -162,7 +162,7 @@ fn measure(app: &App, upload: Upload, options: &SearchOptions) -> Result<(Query,
     let described = start.elapsed().as_secs_f64();
     let report = app.search.search_described(&description, options)?;
     let seconds = SearchSeconds { describe: described, ..report.seconds };
-    let description = (description.fused, description.form);
-    let query = Query { name, measured: Measured::of(surface, &embedded)?, description };
+    let shape = description.prepare()?;
+    let query = Query { name, measured: Measured::of(surface, &embedded)?, shape };
     Ok((query, SearchReport { seconds, ..report }))
 }

@@ -10,7 +10,8 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use anyhow::{Result, bail};
-use canonform::{DistanceSolver, InputPoint, Source, Surface};
+use canonform::geodesics::{DistanceSolver, Source};
+use canonform::{InputPoint, Surface};
 use serde::Serialize;
 
 use super::{named, read_surface};

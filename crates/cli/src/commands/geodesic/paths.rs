@@ -5,7 +5,8 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use anyhow::Result;
-use canonform::{InputPoint, PathTracer, Source, Surface, SurfacePath};
+use canonform::geodesics::{PathTracer, Source};
+use canonform::{InputPoint, Surface, SurfacePath};
 use mesh::RepairReport;
 use serde::Serialize;
 
