@@ -200,6 +200,8 @@ fn hypotheses(a: &PreparedForm, b: &PreparedForm, options: &MatchOptions) -> Vec
         let near = |spread: [f64; 3]| spread[i.min(j)] <= options.near_equal_axes * spread[i.max(j)];
         near(a.axis_spread()) && near(b.axis_spread())
     };
+    // Principal axes may be left-handed: then a motion between them reflects if the motion in space does not.
+    let flipped = a.to_principal().reflected != b.to_principal().reflected;
     let mut motions = Vec::new();
     for permutation in PERMUTATIONS {
         let allowed = (0..3).all(|i| {
@@ -220,8 +222,8 @@ fn hypotheses(a: &PreparedForm, b: &PreparedForm, options: &MatchOptions) -> Vec
             let motion = Alignment::about_origin(matrix);
             let allowed = match options.reflections {
                 Reflections::Allow => true,
-                Reflections::Forbid => !motion.reflected,
-                Reflections::Require => motion.reflected,
+                Reflections::Forbid => motion.reflected == flipped,
+                Reflections::Require => motion.reflected != flipped,
             };
             if allowed {
                 motions.push(motion);
@@ -362,12 +364,23 @@ mod tests {
     #[test]
     fn a_mirror_image_differs_if_reflections_are_forbidden() {
         let points = figure(600, 1.0);
-        let options = MatchOptions { reflections: Reflections::Forbid, ..Default::default() };
-        let found = match_forms(&prepared(&points), &prepared(&turned(&points, -1.0)), &options).unwrap();
-        assert!(found.distance > 0.05 && !found.alignment.reflected);
-        let options = MatchOptions { reflections: Reflections::Require, ..Default::default() };
-        let same = match_forms(&prepared(&points), &prepared(&points), &options).unwrap();
-        assert!(same.distance > 0.05 && same.alignment.reflected);
+        let by = |reflections, other: &PreparedForm| {
+            let options = MatchOptions { reflections, ..Default::default() };
+            match_forms(&prepared(&points), other, &options).unwrap()
+        };
+        // Whatever the handedness of the principal axes.
+        for axis in 0..3 {
+            let mut signs = Vector3::repeat(1.0);
+            signs[axis] = -1.0;
+            let mirrored: Vec<_> =
+                points.iter().map(|p| Point3::from(p.coords.component_mul(&signs))).collect();
+            let found = by(Reflections::Forbid, &prepared(&mirrored));
+            assert!(found.rms > 0.05 && !found.alignment.reflected, "{axis}");
+            let found = by(Reflections::Require, &prepared(&mirrored));
+            assert!(found.rms < 1e-9 && found.alignment.reflected, "{axis}");
+        }
+        let same = by(Reflections::Require, &prepared(&points));
+        assert!(same.rms > 0.05 && same.alignment.reflected);
     }
 
     #[test]
