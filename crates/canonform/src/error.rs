@@ -181,7 +181,7 @@ pub enum Error {
         ends: [VertexId; 2],
     },
     /// A path to a point without a known distance.
-    #[error("there is no path to {target}: it lies beyond the distance limit; choose another target")]
+    #[error("there is no path to {target}: it lies beyond the distance limit")]
     NoPath {
         /// The end of the path.
         target: String,

@@ -12,7 +12,7 @@ pub(crate) fn words(remedy: Remedy) -> &'static str {
         Remedy::UseFastMarching => "use fast-marching",
         Remedy::UseNystrom => "use --method nmds, which needs a few columns only",
         Remedy::RaiseMemory => "raise --memory",
-        Remedy::RaiseMaxDistance => "raise --max-distance",
+        Remedy::RaiseMaxDistance => "choose another target, or raise --max-distance",
         Remedy::GiveLabels => "give classes with --labels FILE.csv",
         Remedy::ReplaceShape => "rename the new one, remove the old one, or pass --replace",
         Remedy::RestoreMesh => {

@@ -33,6 +33,16 @@ pub struct ShapeDescription {
 
 /// Describes a surface: one embedding, one Laplacian, all signatures.
 ///
+/// ```
+/// use canonform::{DescribeOptions, Surface, describe, mesh::shapes};
+///
+/// let surface = Surface::new(&shapes::torus(24, 12, 2.0, 0.7), &Default::default())?;
+/// let description = describe(&surface, &DescribeOptions::default())?;
+/// assert_eq!(description.signatures.len(), 6);
+/// assert!(description.diameter > 6.0 && description.area > 50.0);
+/// # Ok::<(), canonform::Error>(())
+/// ```
+///
 /// A surface that was repaired in another way than the options say keeps its repair, and the
 /// [options of the result](ShapeDescription::options) tell.
 ///

@@ -95,7 +95,7 @@ pub(crate) fn compare(args: &CompareArgs, common: &Common) -> Result<ExitCode> {
     options.validate()?;
     if let Some(path) = &args.residual_mesh {
         if extension(path) != "ply" {
-            bail!("{}: residuals are written as a coloured mesh; end the name in .ply", path.display());
+            bail!("{}: unsupported format for residuals; end the name in .ply", path.display());
         }
         check_folder(path)?;
     }
