@@ -7,12 +7,10 @@
 use std::time::Instant;
 
 use anyhow::{Context as _, Result};
-use canonform::{
-    FormMatches, FormOptions, PreparedForms, StressChoice, embed, embedded_distances, form_matches, map_of,
-};
+use canonform::{FormMatches, FormOptions, StressChoice, embed, embedded_distances, form_matches};
 use descriptors::{CanonicalForm, MatchOptions, Normalization};
 use linalg::DistanceMatrix;
-use nmds::normalized_stress;
+use nmds::{classical_full, normalized_stress};
 use rayon::prelude::*;
 use report::figure4::figure4;
 use report::results::{Figure4Panel, Figure4Record, Motions, SHAPES_FILE, Scale, ShapesRecord, write};
@@ -99,8 +97,7 @@ fn matches(context: &Context<'_>, scale: Scale, forms: &[CanonicalForm]) -> Resu
         Scale::Raw => Normalization::Raw,
         Scale::Normalized => Normalization::UnitArea,
     };
-    let prepared = PreparedForms::new(forms, normalization)?;
-    Ok(form_matches(&prepared, &MatchOptions::default(), context.observer)?)
+    Ok(form_matches(forms, normalization, &MatchOptions::default(), context.observer)?)
 }
 
 fn panel(
@@ -110,7 +107,7 @@ fn panel(
     distances: &DistanceMatrix,
     labels: &Labels,
 ) -> Result<Figure4Panel> {
-    let plane = map_of(distances)?;
+    let plane = classical_full(distances, 2)?;
     Ok(Figure4Panel {
         method: method.to_owned(),
         scale,

@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use std::time::Instant;
 
 use anyhow::Result;
-use canonform::{DescribeOptions, PreparedForms, ShapeDescription, describe, form_distances};
+use canonform::{DescribeOptions, ShapeDescription, describe, form_matches};
 use descriptors::{CanonicalForm, FormDistance, MatchOptions, Normalization, ShapeMetric, SignatureKind};
 use linalg::DistanceMatrix;
 use report::results::{Classification, RetrievalRecord, RetrievalRow, Scale, write};
@@ -75,8 +75,8 @@ fn distances(
     let all = |distance: &dyn Fn(usize, usize) -> f64| DistanceMatrix::from_pairs(n, distance);
     let forms: Vec<CanonicalForm> = shapes.iter().map(|shape| shape.form.clone()).collect();
     let aligned = |normalization| {
-        let prepared = PreparedForms::new(&forms, normalization)?;
-        form_distances(&prepared, &MatchOptions::default(), context.observer)
+        let found = form_matches(&forms, normalization, &MatchOptions::default(), context.observer);
+        found.map(|found| found.distances)
     };
     let form = aligned(Normalization::UnitArea)?;
     let size_of = |i: usize| ShapeMetric::size_coordinate(shapes[i].area);

@@ -34,14 +34,6 @@ pub enum Error {
     /// The index.
     #[error(transparent)]
     Index(#[from] IndexError),
-    /// A name that stands for nothing.
-    #[error("`{name}` is unknown; choose from {known}")]
-    UnknownName {
-        /// The name given.
-        name: String,
-        /// The known names, separated by commas.
-        known: String,
-    },
     /// An index whose options this version cannot read.
     #[error(
         "the shapes of {path} were described with options that this version does not know: {options}",
@@ -52,24 +44,6 @@ pub enum Error {
         path: PathBuf,
         /// The options as the index states them.
         options: String,
-    },
-    /// An indexed shape without one of the signatures.
-    #[error("the index {path} has no {kind} signature for `{id}`", path = path.display())]
-    NoSignature {
-        /// The index.
-        path: PathBuf,
-        /// Name of the shape.
-        id: String,
-        /// Name of the signature.
-        kind: &'static str,
-    },
-    /// A query that was described with other options than the shapes of the index.
-    #[error("the query was described with {query}, the shapes of the index with {index}")]
-    OtherOptions {
-        /// Options of the query.
-        query: String,
-        /// Options of the index.
-        index: String,
     },
     /// A shape whose name another shape of the index has.
     #[error("the index already has another shape `{id}`, from {path}", path = path.display())]
@@ -285,8 +259,6 @@ pub enum Remedy {
     RestoreMesh,
     /// Build the index again.
     BuildIndexAgain,
-    /// Describe the query with the options of the index.
-    UseOptionsOfIndex,
     /// Evaluate a part of the collection, such as one shard.
     EvaluateShard,
 }
@@ -309,8 +281,7 @@ impl Error {
             }
             Self::AlreadyThere { .. } => Remedy::ReplaceShape,
             Self::MeshGone { .. } | Self::MeshChanged { .. } => Remedy::RestoreMesh,
-            Self::UnknownOptions { .. } | Self::NoSignature { .. } => Remedy::BuildIndexAgain,
-            Self::OtherOptions { .. } => Remedy::UseOptionsOfIndex,
+            Self::UnknownOptions { .. } => Remedy::BuildIndexAgain,
             Self::TooManyShapes { .. } => Remedy::EvaluateShard,
             _ => return None,
         })

@@ -90,8 +90,8 @@ mod observer;
 mod shape_index;
 
 pub use compare::{
-    Comparison, FormMatches, Overlay, PreparedForms, SurfaceComparison, Triangulation, compare,
-    compare_surfaces, embedded_distances, form_distances, form_matches, map_of,
+    Comparison, FormMatches, Overlay, SurfaceComparison, Triangulation, compare, compare_surfaces,
+    embedded_distances, form_matches,
 };
 pub use error::{Error, Remedy};
 pub use form::{

@@ -19,7 +19,6 @@ pub(crate) fn words(remedy: Remedy) -> &'static str {
             "put the file back, start in the folder that the index was built in, or build the index again"
         }
         Remedy::BuildIndexAgain => "build the index again with `canonform index build`",
-        Remedy::UseOptionsOfIndex => "describe the query with the options of the index",
         Remedy::EvaluateShard => "evaluate one shard at a time",
         _ => "see `canonform --help`",
     }

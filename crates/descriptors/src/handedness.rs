@@ -5,7 +5,7 @@ use nalgebra::{Point3, Vector3};
 
 use crate::metric::Handedness;
 use crate::nearest::NearestPoints;
-use crate::{Alignment, CanonicalForm, DescriptorError, ShapeMetric, ShapePair};
+use crate::{Alignment, CanonicalForm, DescriptorError, Reflections, ShapeMetric, ShapePair};
 
 /// One of two maps fits and the other does not if its distance is larger by this factor, ...
 const DECISIVE: f64 = 1.25;
@@ -103,13 +103,14 @@ pub fn handedness(
     }
     let [a, b] = [0, 1].map(|i| {
         let (form, mesh) = surfaces[i];
-        OutwardForm::new(pair.shapes()[i].at_unit_area(form), form.weights(), mesh)
+        OutwardForm::new(pair.shapes[i].at_unit_area(form), form.weights(), mesh)
     });
     let (Some(a), Some(b)) = (a, b) else { return Ok(Handedness::Unknown) };
     let nearest = NearestPoints::new(b.points.clone())?;
     // The least distance of a map that preserves, and of one that reverses orientation.
     let (mut preserving, mut reversing) = (f64::INFINITY, f64::INFINITY);
-    for found in [pair.proper()?, pair.reflected()?] {
+    for reflections in [Reflections::Forbid, Reflections::Require] {
+        let found = pair.best_with(reflections)?;
         let agreement = agreement(&a, &b, &nearest, &found.alignment);
         if agreement > AGREEMENT {
             preserving = preserving.min(found.rms);
@@ -118,7 +119,7 @@ pub fn handedness(
         }
     }
     // A point of a surface of unit area is about half of √(1 / n) from the nearest of n vertices.
-    let least = EXCESS.powi(2) + 0.25 / pair.shapes()[1].form().points().len() as f64;
+    let least = EXCESS.powi(2) + 0.25 / pair.shapes[1].form().points().len() as f64;
     let decided =
         |better: f64, worse: f64| worse > DECISIVE * better && worse.powi(2) - better.powi(2) > least;
     Ok(match (preserving.is_finite(), reversing.is_finite()) {

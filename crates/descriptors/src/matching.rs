@@ -146,7 +146,7 @@ pub fn match_forms(
     options: &MatchOptions,
 ) -> Result<FormMatch, DescriptorError> {
     let found = match_forms_within(a, b, options, f64::INFINITY)?;
-    found.ok_or(DescriptorError::NoExtent { n_points: a.points().len() })
+    found.ok_or(DescriptorError::NoExtent { n_points: a.samples().len() })
 }
 
 /// Aligns two forms as [`match_forms`] does, or returns `None` once the root mean square distance turns out to be
@@ -189,7 +189,7 @@ pub fn match_forms_within(
         FormDistance::NearestNeighborRms => rms,
         FormDistance::Hausdorff95 => hausdorff95(sides),
     };
-    let alignment = b.to_principal().inverse().after(&motion).after(a.to_principal());
+    let alignment = b.to_principal.inverse().after(&motion).after(&a.to_principal);
     Ok(Some(FormMatch { alignment, rms, distance }).filter(|found| found.rms <= limit))
 }
 
@@ -198,10 +198,10 @@ fn hypotheses(a: &PreparedForm, b: &PreparedForm, options: &MatchOptions) -> Vec
     const PERMUTATIONS: [[usize; 3]; 6] = [[0, 1, 2], [1, 0, 2], [0, 2, 1], [2, 1, 0], [1, 2, 0], [2, 0, 1]];
     let exchangeable = |i: usize, j: usize| {
         let near = |spread: [f64; 3]| spread[i.min(j)] <= options.near_equal_axes * spread[i.max(j)];
-        near(a.axis_spread()) && near(b.axis_spread())
+        near(a.axis_spread) && near(b.axis_spread)
     };
     // Principal axes may be left-handed: then a motion between them reflects if the motion in space does not.
-    let flipped = a.to_principal().reflected != b.to_principal().reflected;
+    let flipped = a.to_principal.reflected != b.to_principal.reflected;
     let mut motions = Vec::new();
     for permutation in PERMUTATIONS {
         let allowed = (0..3).all(|i| {

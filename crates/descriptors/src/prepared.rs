@@ -16,8 +16,10 @@ pub struct PreparedForm {
     points: NearestPoints,
     samples: NearestPoints,
     extent: Extent,
-    axis_spread: [f64; 3],
-    to_principal: Alignment,
+    /// Standard deviation along each principal axis, descending.
+    pub(crate) axis_spread: [f64; 3],
+    /// The motion from the form's own coordinates to its principal axes.
+    pub(crate) to_principal: Alignment,
 }
 
 /// The points of a form that are searched for the nearest one.
@@ -57,28 +59,9 @@ impl PreparedForm {
         })
     }
 
-    /// All points, in the principal axes.
-    #[must_use]
-    pub fn points(&self) -> &[Point3<f64>] {
-        self.points.points()
-    }
-
     /// Evenly spread points, farthest first: any leading part of them is evenly spread too.
-    #[must_use]
-    pub fn samples(&self) -> &[Point3<f64>] {
+    pub(crate) fn samples(&self) -> &[Point3<f64>] {
         self.samples.points()
-    }
-
-    /// Standard deviation along each principal axis, descending.
-    #[must_use]
-    pub fn axis_spread(&self) -> [f64; 3] {
-        self.axis_spread
-    }
-
-    /// The motion from the form's own coordinates to its principal axes.
-    #[must_use]
-    pub fn to_principal(&self) -> &Alignment {
-        &self.to_principal
     }
 
     /// A lower bound of the root mean square distance to another form, over all alignments.

@@ -70,8 +70,10 @@ impl PreparedShape {
 /// and only when it is needed.
 #[derive(Debug)]
 pub struct ShapePair<'a> {
-    metric: &'a ShapeMetric,
-    shapes: [&'a PreparedShape; 2],
+    /// The metric that compares the shapes.
+    pub metric: &'a ShapeMetric,
+    /// The two shapes.
+    pub shapes: [&'a PreparedShape; 2],
     best: OnceCell<FormMatch>,
     other_handed: OnceCell<FormMatch>,
     raw: OnceCell<FormMatch>,
@@ -91,18 +93,6 @@ impl<'a> ShapePair<'a> {
         Self { best: OnceCell::from(best), ..self }
     }
 
-    /// The metric that compares the shapes.
-    #[must_use]
-    pub fn metric(&self) -> &ShapeMetric {
-        self.metric
-    }
-
-    /// The two shapes.
-    #[must_use]
-    pub fn shapes(&self) -> [&PreparedShape; 2] {
-        self.shapes
-    }
-
     /// The size of the second surface over that of the first, from their areas; 1 if one is unknown.
     #[must_use]
     pub fn scale(&self) -> f64 {
@@ -118,20 +108,17 @@ impl<'a> ShapePair<'a> {
         once(&self.best, || self.aligned(Reflections::Allow))
     }
 
-    /// The best alignment at unit area without a reflection.
+    /// The best alignment at unit area under a restriction on reflections.
     ///
     /// # Errors
     /// [`DescriptorError::BadOption`].
-    pub fn proper(&self) -> Result<FormMatch, DescriptorError> {
-        self.handed(false)
-    }
-
-    /// The best alignment at unit area with a reflection.
-    ///
-    /// # Errors
-    /// [`DescriptorError::BadOption`].
-    pub fn reflected(&self) -> Result<FormMatch, DescriptorError> {
-        self.handed(true)
+    pub fn best_with(&self, reflections: Reflections) -> Result<FormMatch, DescriptorError> {
+        let best = self.best()?;
+        let excluded = if best.alignment.reflected { Reflections::Forbid } else { Reflections::Require };
+        match reflections == excluded {
+            true => once(&self.other_handed, || self.aligned(reflections)),
+            false => Ok(best),
+        }
     }
 
     /// The best alignment of the forms in mesh units.
@@ -157,15 +144,6 @@ impl<'a> ShapePair<'a> {
         let [a, b] = self.shapes.map(|shape| ShapeMetric::without_size(&shape.fused));
         let fused = ShapeMetric::fused(a, b);
         Ok(ShapeDistance { fused, combined: ShapeMetric::combined(fused, self.best()?.rms) })
-    }
-
-    fn handed(&self, reflected: bool) -> Result<FormMatch, DescriptorError> {
-        let best = self.best()?;
-        if best.alignment.reflected == reflected {
-            return Ok(best);
-        }
-        let reflections = if reflected { Reflections::Require } else { Reflections::Forbid };
-        once(&self.other_handed, || self.aligned(reflections))
     }
 
     fn aligned(&self, reflections: Reflections) -> Result<FormMatch, DescriptorError> {
@@ -213,8 +191,8 @@ mod tests {
         let pair = ShapePair::new(&metric, [&left, &right]);
         let best = pair.best().unwrap();
         assert!(best.rms < 1e-6 && best.alignment.reflected && (pair.scale() - 3.0).abs() < 1e-12);
-        assert_eq!(pair.reflected(), Ok(best));
-        let proper = pair.proper().unwrap();
+        assert_eq!(pair.best_with(Reflections::Require), Ok(best));
+        let proper = pair.best_with(Reflections::Forbid).unwrap();
         assert!(proper.rms > 100.0 * best.rms && !proper.alignment.reflected);
         assert!(pair.raw().unwrap().rms > 0.1, "of different size");
         assert_eq!(pair.distance().unwrap().fused, 0.0);

@@ -9,7 +9,8 @@ use crate::SurfacePoint;
 pub enum GeodesicError {
     /// The surface falls into pieces.
     #[error(
-        "mesh is disconnected: {unreached} of {n_vertices} vertices not reached from vertex {source_vertex}"
+        "mesh is disconnected: {unreached} of {n_vertices} vertices not reached from vertex {source_vertex}; \
+         keep the largest component or pass --components bridge"
     )]
     Disconnected {
         /// Number of vertices without a finite distance.
@@ -35,19 +36,12 @@ pub enum GeodesicError {
     },
     /// A path to where no distance is known.
     #[error(
-        "there is no path from a source to {point}: it lies on another component or beyond the distance limit"
+        "no way is known from a source to {point}: it lies on another component or beyond the limit of the \
+         distances; choose another target or raise --max-distance"
     )]
     NoWay {
         /// The end of the path.
         point: SurfacePoint,
-    },
-    /// The name of no method, or of no way to take samples.
-    #[error("`{name}` is unknown; choose from {known}")]
-    UnknownName {
-        /// The name given.
-        name: String,
-        /// The known names, separated by commas.
-        known: String,
     },
     /// A sampling without samples.
     #[error("at least 1 sample is needed, got 0")]
@@ -62,7 +56,7 @@ pub enum GeodesicError {
         time: f64,
     },
     /// The matrices of the heat method have no factors.
-    #[error("the heat method cannot be set up: {reason}")]
+    #[error("the heat method cannot be set up: {reason}; take --method fast-marching")]
     NotFactorised {
         /// What was in the way.
         reason: String,

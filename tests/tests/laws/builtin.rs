@@ -1,6 +1,6 @@
 //! What the built-in dataset must come out as.
 
-use canonform::{DescribeOptions, FormOptions, PreparedForms, describe, embed, form_distances};
+use canonform::{DescribeOptions, FormOptions, describe, embed, form_matches};
 use datasets::{ArticulatedOptions, articulated};
 use descriptors::{MatchOptions, Normalization, ShapeMetric, ShapePair};
 use rayon::prelude::*;
@@ -20,8 +20,8 @@ fn forms_of_the_built_in_shapes_find_their_families() {
             embed(&surface, &FormOptions::default(), &()).unwrap().form(&surface).unwrap()
         })
         .collect();
-    let prepared = PreparedForms::new(&forms, Normalization::Raw).unwrap();
-    let distances = form_distances(&prepared, &MatchOptions::default(), &()).unwrap();
+    let distances =
+        form_matches(&forms, Normalization::Raw, &MatchOptions::default(), &()).unwrap().distances;
     let scores = evaluate(&distances, &labels, 1).unwrap();
     println!("{} shapes: NN {}, mAP {:.4}", scores.n, scores.nn, scores.map);
     assert_eq!((scores.n, scores.nn), (30, 1.0));

@@ -1,6 +1,6 @@
 //! What must change nothing: folding, moving, renumbering and, up to the unit, scaling.
 
-use canonform::{EmbedMethod, FormOptions, PreparedForms, Samples, StressChoice, form_distances};
+use canonform::{EmbedMethod, FormOptions, Samples, StressChoice, form_matches};
 use datasets::Family;
 use descriptors::{MatchOptions, Normalization};
 use geodesics::{FirstSample, Method};
@@ -161,8 +161,8 @@ fn normalised_distances_between_forms_know_no_size() {
             canonform::embed(&surface, &few_samples(), &()).unwrap().form(&surface).unwrap()
         });
         let forms: Vec<_> = forms.collect();
-        let prepared = PreparedForms::new(&forms, Normalization::UnitArea).unwrap();
-        form_distances(&prepared, &MatchOptions::default(), &()).unwrap().get(0, 1)
+        let found = form_matches(&forms, Normalization::UnitArea, &MatchOptions::default(), &()).unwrap();
+        found.distances.get(0, 1)
     };
     let one = distances(1.0);
     for factor in [1e-3, 1e3] {

@@ -6,8 +6,7 @@
 use std::path::{Path, PathBuf};
 
 use canonform::{
-    DescribeOptions, FormOptions, PreparedForms, Surface, describe, embed, form_distances, label_of,
-    list_shapes,
+    DescribeOptions, FormOptions, Surface, describe, embed, form_matches, label_of, list_shapes,
 };
 use descriptors::{MatchOptions, Normalization, ShapeMetric, ShapePair};
 use geodesics::{FirstSample, farthest_point_sampling};
@@ -144,8 +143,7 @@ fn animals_find_their_kind() {
         .collect();
     let labels = Labels::new(&names.map(label_of));
     for normalization in [Normalization::Raw, Normalization::UnitArea] {
-        let prepared = PreparedForms::new(&forms, normalization).unwrap();
-        let distances = form_distances(&prepared, &MatchOptions::default(), &()).unwrap();
+        let distances = form_matches(&forms, normalization, &MatchOptions::default(), &()).unwrap().distances;
         let scores = evaluate(&distances, &labels, 1).unwrap();
         println!("{normalization:?}: NN {}, mAP {:.4}", scores.nn, scores.map);
         assert_eq!(scores.nn, 1.0, "{normalization:?}");

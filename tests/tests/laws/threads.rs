@@ -1,6 +1,6 @@
 //! The same bits for any number of threads.
 
-use canonform::{EmbedMethod, Embedded, FormOptions, PreparedForms, Samples, StressChoice, form_distances};
+use canonform::{EmbedMethod, Embedded, FormOptions, Samples, StressChoice, form_matches};
 use datasets::Family;
 use descriptors::{MatchOptions, Normalization};
 
@@ -54,8 +54,8 @@ fn distances_between_forms_do_not_depend_on_threads() {
         .collect();
     for normalization in [Normalization::Raw, Normalization::UnitArea] {
         let [one, two, five] = on_each_pool(|| {
-            let prepared = PreparedForms::new(&forms, normalization).unwrap();
-            bits(form_distances(&prepared, &MatchOptions::default(), &()).unwrap().as_slice())
+            let found = form_matches(&forms, normalization, &MatchOptions::default(), &()).unwrap();
+            bits(found.distances.as_slice())
         });
         assert!(one == two && one == five, "{normalization:?}");
     }

@@ -1,8 +1,8 @@
 //! Two shapes side by side.
 
 use descriptors::{
-    Alignment, CanonicalForm, Handedness, MatchKind, NearestPoints, ShapeDistance, ShapeMetric, ShapePair,
-    handedness,
+    Alignment, CanonicalForm, Handedness, MatchKind, NearestPoints, Reflections, ShapeDistance, ShapeMetric,
+    ShapePair, handedness,
 };
 use nalgebra::Point3;
 use serde::Serialize;
@@ -47,14 +47,14 @@ impl Comparison {
         distance: ShapeDistance,
         handedness: Handedness,
     ) -> Result<Self, Error> {
-        let (best, proper, raw) = (pair.best()?, pair.proper()?, pair.raw()?);
+        let (best, proper, raw) = (pair.best()?, pair.best_with(Reflections::Forbid)?, pair.raw()?);
         let Alignment { rotation, translation, reflected } = raw.alignment;
         let scale = pair.scale();
         Ok(Self {
             kind: ShapeMetric::kind(distance, handedness, scale),
             distance: raw.distance,
             normalized_distance: best.distance,
-            same_below: pair.metric().same_below(distance.fused),
+            same_below: pair.metric.same_below(distance.fused),
             shape_distance: distance,
             scale,
             reflected,
@@ -126,7 +126,7 @@ impl Overlay {
     /// # Errors
     /// [`Error::Descriptor`].
     pub fn new(pair: &ShapePair<'_>, forms: [&CanonicalForm; 2]) -> Result<Self, Error> {
-        let (motion, [a, b]) = (pair.best()?.alignment, pair.shapes());
+        let (motion, [a, b]) = (pair.best()?.alignment, pair.shapes);
         let size = a.size();
         let moved = a.at_unit_area(forms[0]).iter().map(|p| motion.apply(p)).collect();
         let (a, b) = (NearestPoints::new(moved)?, NearestPoints::new(b.at_unit_area(forms[1]))?);

@@ -4,4 +4,4 @@ mod comparison;
 mod forms;
 
 pub use comparison::{Comparison, Overlay, SurfaceComparison, Triangulation, compare, compare_surfaces};
-pub use forms::{FormMatches, PreparedForms, embedded_distances, form_distances, form_matches, map_of};
+pub use forms::{FormMatches, embedded_distances, form_matches};

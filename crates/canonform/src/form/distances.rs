@@ -7,7 +7,6 @@ use std::time::Instant;
 use geodesics::{DistanceSolver, FirstSample, Sampler, Sampling, Source};
 use linalg::{DistanceMatrix, LandmarkDistances};
 use nmds::{Embedding, NmdsError, estimate_paper_stress};
-use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use super::stress::KnownRows;
 use crate::{Error, Observer};
@@ -27,7 +26,7 @@ const AUTO_LAST: usize = 640;
 /// [`Samples::Auto`] stops when doubling the samples reduces the stress by less than this share.
 const AUTO_GAIN: f64 = 0.01;
 
-/// How many samples are taken. Written as a number or as `auto`.
+/// How many samples are taken; written as a number or as `auto`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Samples {
     /// This many.
@@ -59,30 +58,6 @@ impl FromStr for Samples {
             _ if text == "auto" => Ok(Self::Auto),
             Ok(0) | Err(_) => Err(format!("`{text}` is neither a positive number nor `auto`")),
             Ok(n) => Ok(Self::Count(n)),
-        }
-    }
-}
-
-impl Serialize for Samples {
-    fn serialize<S: Serializer>(&self, out: S) -> Result<S::Ok, S::Error> {
-        match self {
-            Self::Count(n) => n.serialize(out),
-            Self::Auto => out.collect_str(self),
-        }
-    }
-}
-
-impl<'de> Deserialize<'de> for Samples {
-    fn deserialize<D: Deserializer<'de>>(input: D) -> Result<Self, D::Error> {
-        #[derive(Deserialize)]
-        #[serde(untagged)]
-        enum Written {
-            Count(usize),
-            Name(String),
-        }
-        match Written::deserialize(input)? {
-            Written::Count(n) => Ok(Self::Count(n)),
-            Written::Name(name) => name.parse().map_err(serde::de::Error::custom),
         }
     }
 }

@@ -1,7 +1,5 @@
 //! Embedding methods: one entry here makes a method available to every program.
 
-use std::str::FromStr;
-
 use descriptors::LaplaceSpectrum;
 use linalg::{LandmarkDistances, SparseSymmetric};
 use nmds::{
@@ -12,6 +10,7 @@ use serde::{Deserialize, Serialize};
 use surface::IntrinsicMesh;
 use surface::laplacian::Laplacian;
 
+use super::as_text;
 use super::distances::Measurement;
 use crate::Error;
 
@@ -32,7 +31,7 @@ pub enum EmbedMethod {
         /// Number of eigenfunctions of the Laplace-Beltrami operator. The paper's comparisons take 300.
         eigenvectors: usize,
         /// Weight of the distances against smoothness on a surface of unit area: positive, may be infinite.
-        #[serde(with = "maybe_infinite")]
+        #[serde(with = "as_text")]
         mu: f64,
     },
     /// Fast multidimensional scaling: columns of distances, smooth on the surface beyond the samples.
@@ -79,33 +78,37 @@ impl EmbedMethod {
         ]
     }
 
-    /// The name used on the command line and in records.
+    /// The method with this [name](Self::name) and default options.
     #[must_use]
-    pub fn name(&self) -> &'static str {
-        match self {
-            Self::Nystrom { .. } => "nmds",
-            Self::Landmark => "landmark",
-            Self::Spectral { .. } => "spectral",
-            Self::Fmds => "fmds",
-            Self::KernelPca { .. } => "kpca",
-            Self::Classical => "mds",
-            Self::Smacof { .. } => "smacof",
-        }
+    pub fn named(name: &str) -> Option<Self> {
+        Self::all().into_iter().find(|method| method.name() == name)
     }
 
-    /// One line for help texts.
+    /// The name on the command line and in records.
+    #[must_use]
+    pub fn name(&self) -> &'static str {
+        self.entry().0
+    }
+
+    /// What the method computes, in one line.
     #[must_use]
     pub fn summary(&self) -> &'static str {
+        self.entry().1
+    }
+
+    fn entry(&self) -> (&'static str, &'static str) {
         match self {
-            Self::Nystrom { .. } => "Nystrom multidimensional scaling",
-            Self::Landmark => "Landmark MDS: embed the samples, place the rest by their distances to them",
-            Self::Spectral { .. } => {
-                "Spectral scaling: distances between samples, in eigenfunctions of the surface"
+            Self::Nystrom { .. } => ("nmds", "Nystrom multidimensional scaling"),
+            Self::Landmark => {
+                ("landmark", "Landmark MDS: embed the samples, place the rest by their distances to them")
             }
-            Self::Fmds => "Fast MDS: distances from samples, smooth on the surface in between",
-            Self::KernelPca { .. } => "Kernel PCA with the Nystrom method",
-            Self::Classical => "Classical multidimensional scaling of all pairs",
-            Self::Smacof { .. } => "SMACOF on all pairs, started from the result of nmds",
+            Self::Spectral { .. } => {
+                ("spectral", "Spectral scaling: distances between samples, in eigenfunctions of the surface")
+            }
+            Self::Fmds => ("fmds", "Fast MDS: distances from samples, smooth on the surface in between"),
+            Self::KernelPca { .. } => ("kpca", "Kernel PCA with the Nystrom method"),
+            Self::Classical => ("mds", "Classical multidimensional scaling of all pairs"),
+            Self::Smacof { .. } => ("smacof", "SMACOF on all pairs, started from the result of nmds"),
         }
     }
 
@@ -187,17 +190,6 @@ impl EmbedMethod {
     }
 }
 
-impl FromStr for EmbedMethod {
-    type Err = Error;
-
-    /// The method of this [name](EmbedMethod::name), with its default options.
-    fn from_str(name: &str) -> Result<Self, Error> {
-        let known = || Self::all().map(|method| method.name()).join(", ");
-        let found = Self::all().into_iter().find(|method| method.name() == name);
-        found.ok_or_else(|| Error::UnknownName { name: name.to_owned(), known: known() })
-    }
-}
-
 /// The result of a method.
 pub(super) struct Outcome {
     pub(super) embedding: Embedding,
@@ -206,40 +198,17 @@ pub(super) struct Outcome {
     pub(super) descent: Option<SmacofReport>,
 }
 
-/// JSON has no infinity: it is written as text.
-mod maybe_infinite {
-    use serde::{Deserialize, Deserializer, Serializer};
-
-    #[derive(Deserialize)]
-    #[serde(untagged)]
-    enum Number {
-        Finite(f64),
-        Text(String),
-    }
-
-    pub(super) fn serialize<S: Serializer>(value: &f64, out: S) -> Result<S::Ok, S::Error> {
-        if value.is_finite() { out.serialize_f64(*value) } else { out.collect_str(value) }
-    }
-
-    pub(super) fn deserialize<'de, D: Deserializer<'de>>(input: D) -> Result<f64, D::Error> {
-        match Number::deserialize(input)? {
-            Number::Finite(value) => Ok(value),
-            Number::Text(text) => text.parse().map_err(serde::de::Error::custom),
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
-    fn methods_are_read_by_their_names() {
+    fn methods_are_known_by_their_names_in_options_too() {
         for method in EmbedMethod::all() {
-            assert_eq!(method.name().parse::<EmbedMethod>().unwrap(), method);
+            assert_eq!(EmbedMethod::named(method.name()).as_ref(), Some(&method));
             let text = serde_json::to_string(&method).unwrap();
             assert!(text.contains(&format!("\"{}\"", method.name())), "{text}");
         }
-        assert!("umap".parse::<EmbedMethod>().unwrap_err().to_string().contains("nmds, landmark"));
+        assert_eq!(EmbedMethod::named("umap"), None);
     }
 }

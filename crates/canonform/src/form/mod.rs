@@ -4,6 +4,7 @@
 //! Surface -> Measurement (distances) -> EmbedMethod -> Embedded -> CanonicalForm, ShapeDescription
 //! ```
 
+mod as_text;
 mod describe;
 mod distances;
 mod embed;

@@ -5,6 +5,7 @@ use geodesics::{FirstSample, Method, Sampling};
 use mesh::RepairOptions;
 use serde::{Deserialize, Serialize};
 
+use super::as_text;
 use super::distances::Samples;
 use super::method::EmbedMethod;
 use crate::Error;
@@ -20,9 +21,10 @@ pub struct FormOptions {
     #[serde(skip_serializing_if = "is_default")]
     pub geodesic: Method,
     /// Number of samples. Default: 100, as in the paper's Figure 4.
+    #[serde(with = "as_text")]
     pub samples: Samples,
     /// How samples are taken. Default: farthest point sampling, as in the paper.
-    #[serde(skip_serializing_if = "is_default", with = "by_name")]
+    #[serde(skip_serializing_if = "is_default")]
     pub sampling: Sampling,
     /// The first sample, a vertex of the input. By default, farthest point sampling takes the vertex farthest
     /// from vertex 0; the other samplings draw one.
@@ -58,7 +60,7 @@ impl FormOptions {
     /// The same options without a seed that decides nothing.
     #[must_use]
     pub fn normalized(mut self) -> Self {
-        if !self.sampling.is_random() {
+        if self.sampling == Sampling::Farthest {
             self.seed = 0;
         }
         self
@@ -144,20 +146,6 @@ fn is_default<T: Default + PartialEq>(value: &T) -> bool {
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes references")]
 fn is_three(dim: &usize) -> bool {
     *dim == 3
-}
-
-/// A sampling is written by its name.
-mod by_name {
-    use geodesics::Sampling;
-    use serde::{Deserialize, Deserializer, Serializer};
-
-    pub(super) fn serialize<S: Serializer>(sampling: &Sampling, out: S) -> Result<S::Ok, S::Error> {
-        out.serialize_str(sampling.name())
-    }
-
-    pub(super) fn deserialize<'de, D: Deserializer<'de>>(input: D) -> Result<Sampling, D::Error> {
-        String::deserialize(input)?.parse().map_err(serde::de::Error::custom)
-    }
 }
 
 #[cfg(test)]

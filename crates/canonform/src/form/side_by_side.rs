@@ -92,7 +92,10 @@ pub fn compare_methods(
             Some(Ok(embedded)) => {
                 let report = &embedded.report;
                 let facts = MethodFacts {
-                    stress: changed.method.has_unit().then(|| reference.stress(&embedded.embedding.coords)),
+                    stress: changed
+                        .method
+                        .has_unit()
+                        .then(|| reference.stress(&embedded.embedding.coords, options.geodesic)),
                     negative_mass: report.negative_mass,
                     n_samples: report.n_samples,
                     geodesics_seconds: report.seconds.geodesics,
@@ -152,12 +155,7 @@ fn variants(shared: &FormOptions) -> Vec<(&'static str, FormOptions)> {
 }
 
 /// The distances that the stress of all embeddings is measured against.
-struct Reference {
-    method: Method,
-    distances: ReferenceDistances,
-}
-
-enum ReferenceDistances {
+enum Reference {
     All(DistanceMatrix),
     Some(LandmarkDistances),
 }
@@ -174,23 +172,16 @@ impl Reference {
         check_memory(p, rows.as_ref().map_or(p, Vec::len))?;
         observer.begin("stress", 1);
         let solver = method.prepare(&surface.intrinsic)?;
-        let distances = match rows {
-            None => ReferenceDistances::All(solver.distance_matrix()?),
-            Some(rows) => {
-                let sources: Vec<VertexId> = rows.iter().copied().map(VertexId::from).collect();
-                let columns = solver.distance_columns(&sources);
-                ReferenceDistances::Some(LandmarkDistances::new(rows, columns)?)
-            }
-        };
-        Ok(Self { method, distances })
+        let Some(rows) = rows else { return Ok(Self::All(solver.distance_matrix()?)) };
+        let sources: Vec<VertexId> = rows.iter().copied().map(VertexId::from).collect();
+        let columns = solver.distance_columns(&sources);
+        Ok(Self::Some(LandmarkDistances::new(rows, columns)?))
     }
 
-    fn stress(&self, coords: &Matrix) -> StressReport {
-        match &self.distances {
-            ReferenceDistances::All(all) => StressReport::new(coords, all, None, self.method),
-            ReferenceDistances::Some(rows) => {
-                StressReport::new(coords, &KnownRows(rows), Some(rows.landmarks()), self.method)
-            }
+    fn stress(&self, coords: &Matrix, method: Method) -> StressReport {
+        match self {
+            Self::All(all) => StressReport::new(coords, all, None, method),
+            Self::Some(rows) => StressReport::new(coords, &KnownRows(rows), Some(rows.landmarks()), method),
         }
     }
 }

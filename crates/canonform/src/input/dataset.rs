@@ -95,6 +95,14 @@ pub fn label_of(name: &str) -> String {
     }
 }
 
+/// The class of a shape in a label file, or by its name if there is none.
+///
+/// # Errors
+/// [`Error::NoLabel`].
+pub(crate) fn label_in(labels: Option<&LabelFile>, name: &str) -> Result<String, Error> {
+    labels.map_or_else(|| Ok(label_of(name)), |file| file.label(name))
+}
+
 /// The meshes in a folder and its sub-folders, in natural order of their names (`cat2` before
 /// `cat10`).
 ///
@@ -111,8 +119,7 @@ pub fn list_shapes(folder: &Path, labels: Option<&LabelFile>) -> Result<Vec<Shap
                 folders.push(path);
             } else if is_mesh_path(&path) {
                 let name = stem(path.strip_prefix(folder).unwrap_or(&path));
-                let label = labels.map_or_else(|| Ok(label_of(&name)), |file| file.label(&name))?;
-                shapes.push(ShapeFile { name, label, path });
+                shapes.push(ShapeFile { label: label_in(labels, &name)?, name, path });
             }
         }
     }

@@ -8,6 +8,7 @@ mod point;
 mod repaired;
 
 pub use all_pairs::{AllPairs, Asymmetry};
+pub(crate) use dataset::label_in;
 pub use dataset::{LabelFile, ShapeFile, label_of, list_shapes};
 pub use path::{PathPoint, SurfacePath};
 pub use point::{BadPoint, InputPoint};

@@ -3,11 +3,11 @@
 use std::path::Path;
 
 use descriptors::{ShapeMetric, SignatureKind};
-use index::Index;
+use index::{Index, IndexError};
 use linalg::DistanceMatrix;
 use retrieval::{Evaluation, Labels, evaluate, pairwise_distances};
 
-use crate::input::{LabelFile, label_of};
+use crate::input::{LabelFile, label_in};
 use crate::{Error, Observer};
 
 /// Most shapes evaluated at once: their matrix takes 800 MB.
@@ -51,8 +51,10 @@ pub fn evaluate_index(
             Measure::Signature(kind) => {
                 let mut signatures = shape.vectors.signatures.into_iter();
                 let found = signatures.find(|(name, _)| name == kind.name());
-                let missing =
-                    || Error::NoSignature { path: path.to_owned(), id: shape.id, kind: kind.name() };
+                let missing = || IndexError::Damaged {
+                    path: path.to_owned(),
+                    what: format!("`{}` has no {} signature", shape.id, kind.name()),
+                };
                 found.ok_or_else(missing)?.1
             }
         });
@@ -89,9 +91,8 @@ pub fn evaluate_matrix(path: &Path, labels: Option<&LabelFile>, knn_k: usize) ->
     let Matrix { names, rows } = Matrix::parse(&text, path)?;
     let n = rows.len();
     let classes = match (labels, names) {
-        (Some(file), Some(names)) => names.iter().map(|name| file.label(name)).collect::<Result<_, _>>()?,
+        (_, Some(names)) => names.iter().map(|name| label_in(labels, name)).collect::<Result<_, _>>()?,
         (Some(file), None) => file.in_order().to_vec(),
-        (None, Some(names)) => names.iter().map(|name| label_of(name)).collect(),
         (None, None) => return Err(Error::NoNames { path: path.to_owned() }),
     };
     let distances = DistanceMatrix::from_pairs(n, |i, j| 0.5 * (rows[i][j] + rows[j][i]))?;

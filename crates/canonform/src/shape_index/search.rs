@@ -220,16 +220,13 @@ impl ShapeSearch {
     /// Searches with a mesh that was described with the [options of the index](Self::describe_options).
     ///
     /// # Errors
-    /// [`Error::OtherOptions`] if it was described with other options; [`Error::Index`].
+    /// [`Error::Index`], also if the mesh was described with other options.
     pub fn search_described(
         &self,
         query: &ShapeDescription,
         options: &SearchOptions,
     ) -> Result<SearchReport, Error> {
-        let [query_text, index] = [&query.options, &self.describe].map(DescribeOptions::text);
-        if query_text != index {
-            return Err(Error::OtherOptions { query: query_text, index });
-        }
+        self.index.expect_options(&query.options.text())?;
         self.nearest(&query.prepare()?, options)
     }
 
@@ -316,6 +313,7 @@ fn predicted(results: &[SearchResult], threshold: Option<retrieval::UnknownThres
 mod tests {
     use std::fs;
 
+    use index::IndexError;
     use mesh::shapes;
     use tempfile::TempDir;
 
@@ -379,7 +377,7 @@ mod tests {
         let surface = Surface::new(&shapes::icosphere(2), &Default::default()).unwrap();
         let query = describe(&surface, &options).unwrap();
         let fault = search.search_described(&query, &SearchOptions::default()).unwrap_err();
-        assert_eq!(fault.remedy(), Some(Remedy::UseOptionsOfIndex));
+        assert!(matches!(fault, Error::Index(IndexError::OtherOptions { .. })));
         assert!(fault.to_string().contains("\"points\":500"), "{fault}");
     }
 

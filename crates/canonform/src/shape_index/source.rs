@@ -10,7 +10,7 @@ use mesh::io::{MemoryFile, ReadLimits};
 use mesh::{MeshError, TriMesh};
 use rayon::prelude::*;
 
-use crate::input::{LabelFile, ShapeFile, label_of, list_shapes};
+use crate::input::{LabelFile, ShapeFile, label_in, list_shapes};
 use crate::{Error, Observer};
 
 /// One of several equal parts of a collection.
@@ -68,11 +68,7 @@ impl Inputs<'_> {
                 shapes.extend(list_shapes(path, self.labels)?);
             } else {
                 let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-                let label = match self.labels {
-                    Some(file) => file.label(&name)?,
-                    None => label_of(&name),
-                };
-                shapes.push(ShapeFile { name, label, path: path.clone() });
+                shapes.push(ShapeFile { label: label_in(self.labels, &name)?, name, path: path.clone() });
             }
         }
         if let Some(label) = self.label {

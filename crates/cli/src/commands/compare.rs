@@ -50,43 +50,28 @@ impl ResidualJson {
     }
 }
 
-/// One of the two meshes.
-struct Side {
-    surface: Surface,
-    /// The form of all vertices, made as the options say.
-    form: CanonicalForm,
-    /// The shape with this form.
-    shown: PreparedShape,
-    /// The shape as the metric is calibrated for, if the form was made in another way.
-    usual: Option<PreparedShape>,
-}
+/// One of the two meshes: its surface and the form of all vertices, the shape with this form, and the shape as the
+/// metric is calibrated for, if the form was made with other options.
+type Side = (Surface, CanonicalForm, PreparedShape, Option<PreparedShape>);
 
-impl Side {
-    fn new(path: &Path, args: &CompareArgs, options: &FormOptions, bars: &Bars) -> Result<Self> {
-        let surface = read_surface(path, &args.embedding.repair)?;
-        let in_file = |fault| named(path, fault);
-        let embedded = embed(&surface, options, bars).map_err(in_file)?;
-        bars.finish();
-        let form = embedded.form(&surface).map_err(in_file)?;
-        let usual = FormOptions { repair: options.repair, ..FormOptions::default() };
-        let usual = DescribeOptions { form: usual, ..DescribeOptions::default() };
-        let is_usual = embedded.options == usual.form;
-        let description = match is_usual {
-            true => ShapeDescription::new(&surface, &embedded, &usual),
-            false => describe(&surface, &usual),
-        };
-        let description = description.map_err(in_file)?;
-        let prepared = description.prepare().map_err(in_file)?;
-        let (shown, usual) = match is_usual {
-            true => (prepared, None),
-            false => {
-                let (fused, form) = (description.fused, form.reduced(usual.points));
-                let shown = PreparedShape::new(fused, &form, Some(description.area));
-                (shown.map_err(|fault| in_file(fault.into()))?, Some(prepared))
-            }
-        };
-        Ok(Self { surface, form, shown, usual })
-    }
+fn side(path: &Path, args: &CompareArgs, options: &FormOptions, bars: &Bars) -> Result<Side> {
+    let surface = read_surface(path, &args.embedding.repair)?;
+    let usual = FormOptions { repair: options.repair, ..FormOptions::default() };
+    let usual = DescribeOptions { form: usual, ..DescribeOptions::default() };
+    let measure = || {
+        let embedded = embed(&surface, options, bars)?;
+        let form = embedded.form(&surface)?;
+        if embedded.options == usual.form {
+            return Ok((form, ShapeDescription::new(&surface, &embedded, &usual)?.prepare()?, None));
+        }
+        let description = describe(&surface, &usual)?;
+        let (fused, area) = (description.fused.clone(), Some(description.area));
+        let shape = PreparedShape::new(fused, &form.reduced(usual.points), area)?;
+        Ok((form, shape, Some(description.prepare()?)))
+    };
+    let (form, shape, usual) = measure().map_err(|fault| named(path, fault))?;
+    bars.finish();
+    Ok((surface, form, shape, usual))
 }
 
 /// Embeds, aligns and compares two meshes.
@@ -105,17 +90,16 @@ pub(crate) fn compare(args: &CompareArgs, common: &Common) -> Result<ExitCode> {
     };
     let metric = ShapeMetric { matching: MatchOptions { distance, ..MatchOptions::default() } };
     let bars = Bars::new(common.quiet);
-    let side = |path: &Path| Side::new(path, args, &options, &bars);
-    let (a, b) = (side(&args.a)?, side(&args.b)?);
-    let pair = ShapePair::new(&metric, [&a.shown, &b.shown]);
+    let (a, form_a, shape_a, usual_a) = side(&args.a, args, &options, &bars)?;
+    let (b, form_b, shape_b, usual_b) = side(&args.b, args, &options, &bars)?;
+    let pair = ShapePair::new(&metric, [&shape_a, &shape_b]);
     // The kind of match does not depend on how forms are made.
-    let distance = match (&a.usual, &b.usual) {
+    let distance = match (&usual_a, &usual_b) {
         (Some(a), Some(b)) => ShapePair::new(&metric, [a, b]).distance()?,
         _ => pair.distance()?,
     };
     let SurfaceComparison { comparison, triangulation, overlay } =
-        compare_surfaces(&pair, distance, [(&a.surface, &a.form), (&b.surface, &b.form)])?;
-    let a = a.surface;
+        compare_surfaces(&pair, distance, [(&a, &form_a), (&b, &form_b)])?;
     let [residuals, _] = &overlay.residuals;
     if let Some(path) = &args.residual_mesh {
         mesh::io::write_scalar_field(path, a.mesh(), residuals, "residual")?;

@@ -4,8 +4,6 @@ mod columns;
 mod random;
 mod variance;
 
-use std::str::FromStr;
-
 use linalg::LandmarkDistances;
 
 pub use random::RandomSampler;
@@ -40,7 +38,8 @@ impl Sampler for FarthestPointSampler<'_> {
 }
 
 /// A way to take landmarks.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Sampling {
     /// [`FarthestPointSampler`]: each the farthest from those before it.
     #[default]
@@ -48,6 +47,7 @@ pub enum Sampling {
     /// [`RandomSampler`]: all vertices with the same chance.
     Random,
     /// [`VarianceSampler`]: each the vertex whose squared distances to those before vary least, or most.
+    #[serde(untagged)]
     Incremental(Variance),
 }
 
@@ -60,35 +60,28 @@ impl Sampling {
         Self::Incremental(Variance::Greatest),
     ];
 
-    /// One line for help texts.
-    #[must_use]
-    pub fn summary(self) -> &'static str {
-        match self {
-            Self::Farthest => "Each the farthest from those before it",
-            Self::Random => "All vertices with the same chance",
-            Self::Incremental(Variance::Least) => {
-                "Each the one whose squared distances to those before it vary least"
-            }
-            Self::Incremental(Variance::Greatest) => {
-                "Each the one whose squared distances to those before it vary most"
-            }
-        }
-    }
-
-    /// Whether the seed decides on the samples.
-    #[must_use]
-    pub fn is_random(self) -> bool {
-        self != Self::Farthest
-    }
-
     /// The name used on the command line and in records.
     #[must_use]
     pub fn name(self) -> &'static str {
+        self.entry().0
+    }
+
+    /// How landmarks are chosen, in one line.
+    #[must_use]
+    pub fn summary(self) -> &'static str {
+        self.entry().1
+    }
+
+    fn entry(self) -> (&'static str, &'static str) {
         match self {
-            Self::Farthest => "farthest",
-            Self::Random => "random",
-            Self::Incremental(Variance::Least) => "min-variance",
-            Self::Incremental(Variance::Greatest) => "max-variance",
+            Self::Farthest => ("farthest", "Each the farthest from those before it"),
+            Self::Random => ("random", "All vertices with the same chance"),
+            Self::Incremental(Variance::Least) => {
+                ("min-variance", "Each the one whose squared distances to those before it vary least")
+            }
+            Self::Incremental(Variance::Greatest) => {
+                ("max-variance", "Each the one whose squared distances to those before it vary most")
+            }
         }
     }
 
@@ -109,17 +102,6 @@ impl Sampling {
             Self::Random => Box::new(RandomSampler::new(solver, first, seed)?),
             Self::Incremental(variance) => Box::new(VarianceSampler::new(solver, first, seed, variance)?),
         })
-    }
-}
-
-impl FromStr for Sampling {
-    type Err = GeodesicError;
-
-    /// The way of this [name](Sampling::name).
-    fn from_str(name: &str) -> Result<Self, GeodesicError> {
-        let known = || Self::ALL.map(Self::name).join(", ");
-        let found = Self::ALL.into_iter().find(|sampling| sampling.name() == name);
-        found.ok_or_else(|| GeodesicError::UnknownName { name: name.to_owned(), known: known() })
     }
 }
 

@@ -9,12 +9,14 @@ use super::columns::{Columns, below, first_vertex};
 use crate::{DistanceSolver, FirstSample, GeodesicError};
 
 /// Which vertex [`VarianceSampler`] takes next.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
 pub enum Variance {
     /// The one whose squared distances to the landmarks vary least, as Yu et al. do.
     #[default]
+    #[serde(rename = "min-variance")]
     Least,
     /// The one whose squared distances vary most: the opposite rule, to hold the first against.
+    #[serde(rename = "max-variance")]
     Greatest,
 }
 
