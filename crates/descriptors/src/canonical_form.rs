@@ -5,7 +5,7 @@ use nalgebra::{Matrix3, Point3, Vector3};
 use nmds::Embedding;
 use serde::{Deserialize, Serialize};
 
-use crate::DescriptorError;
+use crate::error::DescriptorError;
 use crate::spread::spread as spread_evenly;
 
 /// How forms of different size are compared.

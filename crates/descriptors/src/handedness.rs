@@ -3,9 +3,14 @@
 use mesh::{TriMesh, orient_consistently};
 use nalgebra::{Point3, Vector3};
 
+use crate::alignment::Alignment;
+use crate::canonical_form::CanonicalForm;
+use crate::error::DescriptorError;
+use crate::matching::Reflections;
 use crate::metric::Handedness;
+use crate::metric::ShapeMetric;
 use crate::nearest::NearestPoints;
-use crate::{Alignment, CanonicalForm, DescriptorError, Reflections, ShapeMetric, ShapePair};
+use crate::shape_pair::ShapePair;
 
 /// One of two maps fits and the other does not if its distance is larger by this factor, ...
 const DECISIVE: f64 = 1.25;

@@ -2,8 +2,10 @@
 
 use nalgebra::{Matrix3, Point3};
 
+use crate::alignment::Alignment;
+use crate::error::DescriptorError;
 use crate::prepared::Detail;
-use crate::{Alignment, DescriptorError, PreparedForm};
+use crate::prepared::PreparedForm;
 
 /// A distance between two aligned forms.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -309,7 +311,7 @@ fn hausdorff95((from_a, from_b): (&[Pair], &[Pair])) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::CanonicalForm;
+    use crate::canonical_form::CanonicalForm;
     use nalgebra::{Rotation3, Vector3};
 
     /// A figure of three arms without symmetry.

@@ -2,7 +2,8 @@
 
 use serde::Serialize;
 
-use crate::{FormDistance, MatchOptions, Signature, SignatureKind};
+use crate::matching::{FormDistance, MatchOptions};
+use crate::signature::{Signature, SignatureKind};
 
 /// Unit and weight of every signature.
 ///

@@ -3,7 +3,7 @@
 use kiddo::{ImmutableKdTree, SquaredEuclidean};
 use nalgebra::Point3;
 
-use crate::DescriptorError;
+use crate::error::DescriptorError;
 
 /// Points with a search tree.
 pub struct NearestPoints {

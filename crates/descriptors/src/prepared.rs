@@ -2,10 +2,12 @@
 
 use nalgebra::Point3;
 
+use crate::alignment::Alignment;
 use crate::bound::Extent;
+use crate::canonical_form::CanonicalForm;
+use crate::error::DescriptorError;
 use crate::nearest::NearestPoints;
 use crate::spread::spread;
-use crate::{Alignment, CanonicalForm, DescriptorError};
 
 /// The fewest samples that determine an alignment.
 const MIN_SAMPLES: usize = 4;

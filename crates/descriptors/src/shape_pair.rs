@@ -4,10 +4,11 @@ use std::cell::OnceCell;
 
 use nalgebra::Point3;
 
-use crate::{
-    CanonicalForm, DescriptorError, FormMatch, MatchOptions, Normalization, PreparedForm, Reflections,
-    ShapeDistance, ShapeMetric, match_forms,
-};
+use crate::canonical_form::{CanonicalForm, Normalization};
+use crate::error::DescriptorError;
+use crate::matching::{FormMatch, MatchOptions, Reflections, match_forms};
+use crate::metric::{ShapeDistance, ShapeMetric};
+use crate::prepared::PreparedForm;
 
 /// A shape as it is compared: its fused vector, and its form rounded to the 32 bits that an index stores, so that a
 /// shape compares in the same way before and after it is stored.

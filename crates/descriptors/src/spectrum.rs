@@ -4,7 +4,7 @@ use linalg::{GeneralizedEigen, Matrix, SparseSymmetric, smallest_eigenpairs};
 use surface::IntrinsicMesh;
 use surface::laplacian::Laplacian;
 
-use crate::DescriptorError;
+use crate::error::DescriptorError;
 
 /// The smallest eigenpairs of the Laplace-Beltrami operator of a surface scaled to unit area, `W Φ = A Φ Λ`.
 ///

@@ -7,7 +7,7 @@ use descriptors::{
 use nalgebra::Point3;
 use serde::Serialize;
 
-use crate::Error;
+use crate::error::Error;
 use crate::input::Surface;
 
 /// How two shapes resemble each other, and how far apart they are.

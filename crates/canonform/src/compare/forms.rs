@@ -6,7 +6,8 @@ use descriptors::{
 use linalg::{DistanceMatrix, Matrix};
 use rayon::prelude::*;
 
-use crate::{Error, Observer};
+use crate::error::Error;
+use crate::observer::Observer;
 
 /// The alignments of all pairs of forms.
 #[derive(Debug, Clone)]

@@ -9,7 +9,7 @@ use mesh::RepairReport;
 
 use super::embed::{Embedded, embed};
 use super::options::DescribeOptions;
-use crate::Error;
+use crate::error::Error;
 use crate::input::Surface;
 
 /// Everything that an index keeps of a shape.

@@ -9,7 +9,8 @@ use linalg::{DistanceMatrix, LandmarkDistances};
 use nmds::{Embedding, NmdsError, estimate_paper_stress};
 
 use super::stress::KnownRows;
-use crate::{Error, Observer};
+use crate::error::Error;
+use crate::observer::Observer;
 
 /// Most memory for distances that are held at once, in bytes.
 pub const DISTANCES_LIMIT: usize = 4 << 30;

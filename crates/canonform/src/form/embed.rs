@@ -13,9 +13,10 @@ use super::method::Outcome;
 use super::options::FormOptions;
 use super::report::{EmbedReport, SecondsReport};
 use super::stress::{StressChoice, StressOptions, measure};
+use crate::error::Error;
 use crate::input::Surface;
 use crate::observer::Observed;
-use crate::{Error, Observer};
+use crate::observer::Observer;
 
 /// An embedded surface.
 #[derive(Debug, Clone)]

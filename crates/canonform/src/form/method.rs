@@ -12,7 +12,7 @@ use surface::laplacian::Laplacian;
 
 use super::as_text;
 use super::distances::Measurement;
-use crate::Error;
+use crate::error::Error;
 
 /// How distances become coordinates.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::as_text;
 use super::distances::Samples;
 use super::method::EmbedMethod;
-use crate::Error;
+use crate::error::Error;
 
 /// Everything that decides the form of a mesh. It is stored with whatever is made of the form, as JSON without
 /// the options that have their default value, so that forms made in different ways are never compared.

@@ -12,8 +12,9 @@ use super::embed::embed;
 use super::method::EmbedMethod;
 use super::options::FormOptions;
 use super::stress::{KnownRows, StressOptions, StressReport};
+use crate::error::Error;
 use crate::input::Surface;
-use crate::{Error, Observer};
+use crate::observer::Observer;
 
 /// The results of every method on one surface, as `canonform methods --json` prints them.
 #[derive(Debug, Clone, PartialEq, Serialize)]

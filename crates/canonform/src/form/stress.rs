@@ -6,7 +6,7 @@ use nmds::{DistanceRows, StressEstimate, estimate_paper_stress, paper_stress, sa
 use serde::Serialize;
 use surface::VertexId;
 
-use crate::Observer;
+use crate::observer::Observer;
 
 /// [`StressChoice::Auto`] is exact up to this many vertices.
 const EXACT_LIMIT: usize = 5000;

@@ -8,7 +8,8 @@ use serde::Serialize;
 use surface::VertexId;
 
 use super::repaired::Surface;
-use crate::{Error, Observer};
+use crate::error::Error;
+use crate::observer::Observer;
 
 /// How much the two directions of a pair differ before they are averaged.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
@@ -188,7 +189,7 @@ mod tests {
     use mesh::{RepairOptions, TriMesh, shapes};
 
     use super::*;
-    use crate::Remedy;
+    use crate::error::Remedy;
 
     fn surface(mesh: &TriMesh) -> Surface {
         Surface::new(mesh, &RepairOptions::default()).unwrap()

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use mesh::io::is_mesh_path;
 
-use crate::Error;
+use crate::error::Error;
 
 /// A mesh file of a dataset.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -6,7 +6,7 @@ use surface::{EdgeId, FaceId, VertexId};
 
 use super::point::InputPoint;
 use super::repaired::Surface;
-use crate::Error;
+use crate::error::Error;
 
 impl Surface {
     /// The point of the repaired surface that a point of the input became.

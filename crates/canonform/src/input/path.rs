@@ -5,7 +5,7 @@ use nalgebra::Point3;
 
 use super::point::InputPoint;
 use super::repaired::Surface;
-use crate::Error;
+use crate::error::Error;
 
 /// A shortest path along a surface.
 #[derive(Debug, Clone, PartialEq)]

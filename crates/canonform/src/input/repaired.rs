@@ -8,7 +8,7 @@ use nalgebra::Point3;
 use mesh::{RepairOptions, Repaired, TriMesh, io, repair};
 use surface::{IntrinsicMesh, VertexId};
 
-use crate::Error;
+use crate::error::Error;
 
 /// A repaired mesh, its intrinsic geometry, and the map back to the vertices of the input.
 #[derive(Debug, Clone)]

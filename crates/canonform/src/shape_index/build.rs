@@ -11,9 +11,10 @@ use serde::Serialize;
 
 use super::record::{path_text, same_source, shape};
 use super::source::{Hashed, Shard, hash_all, name_apart, share};
+use crate::error::{Error, Remedy};
 use crate::form::{DescribeOptions, describe};
 use crate::input::{LabelFile, ShapeFile, Surface, list_shapes};
-use crate::{Error, Observer, Remedy};
+use crate::observer::Observer;
 
 /// Most shapes written to disk in one transaction.
 const BATCH: usize = 64;

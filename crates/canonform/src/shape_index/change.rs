@@ -9,7 +9,8 @@ use serde::Serialize;
 use super::build::{BuildReport, fill};
 use super::record::options_of;
 use super::source::{Inputs, hash_all};
-use crate::{Error, Observer};
+use crate::error::Error;
+use crate::observer::Observer;
 
 /// Shapes copied in one transaction.
 const BATCH: usize = 256;

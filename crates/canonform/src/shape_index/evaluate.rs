@@ -7,8 +7,9 @@ use index::{Index, IndexError};
 use linalg::DistanceMatrix;
 use retrieval::{Evaluation, Labels, evaluate, pairwise_distances};
 
+use crate::error::Error;
 use crate::input::{LabelFile, label_in};
-use crate::{Error, Observer};
+use crate::observer::Observer;
 
 /// Most shapes evaluated at once: their matrix takes 800 MB.
 const MOST: usize = 10_000;

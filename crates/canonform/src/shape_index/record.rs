@@ -6,7 +6,7 @@ use descriptors::{CanonicalForm, PreparedShape};
 use index::{ContentHash, Index, Shape, ShapeEntry, ShapeVectors};
 use nalgebra::Point3;
 
-use crate::Error;
+use crate::error::Error;
 use crate::form::{DescribeOptions, ShapeDescription};
 use crate::input::ShapeFile;
 

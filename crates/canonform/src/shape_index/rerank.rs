@@ -7,7 +7,7 @@ use std::sync::{Mutex, PoisonError};
 use descriptors::{FormDistance, FormMatch, PreparedShape, ShapeMetric, match_forms_within};
 use retrieval::{Candidate, refine_nearest};
 
-use crate::Error;
+use crate::error::Error;
 
 /// A shape that was found.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -13,8 +13,8 @@ use serde::Serialize;
 use super::record::{form, options_of, prepared};
 use super::rerank::rerank;
 use super::source::read_unchanged;
-use crate::Error;
 use crate::compare::{Comparison, compare};
+use crate::error::Error;
 use crate::form::{DescribeOptions, ShapeDescription, describe};
 use crate::input::Surface;
 
@@ -318,7 +318,7 @@ mod tests {
     use tempfile::TempDir;
 
     use super::*;
-    use crate::Remedy;
+    use crate::error::Remedy;
     use crate::form::{EmbedMethod, FormOptions};
     use crate::shape_index::{BuildOptions, build_index};
 

@@ -10,8 +10,9 @@ use mesh::io::{MemoryFile, ReadLimits};
 use mesh::{MeshError, TriMesh};
 use rayon::prelude::*;
 
+use crate::error::Error;
 use crate::input::{LabelFile, ShapeFile, label_in, list_shapes};
-use crate::{Error, Observer};
+use crate::observer::Observer;
 
 /// One of several equal parts of a collection.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -2,17 +2,14 @@
 
 use linalg::{LandmarkDistances, Matrix, symmetric_eigen, thin_qr};
 
-use super::{Signature, SignatureKind};
-use crate::DescriptorError;
+use super::kind::{Signature, SignatureKind};
+use crate::error::DescriptorError;
 
 /// Number of largest eigenvalues used: the dimensions of the best Euclidean embedding.
-const POSITIVE: usize = 8;
+const POSITIVE: usize = SignatureKind::GeodesicSpectrum.n_values() - NEGATIVE;
 
 /// Number of most negative eigenvalues used: they tell how far the distances are from Euclidean ones.
 const NEGATIVE: usize = 4;
-
-/// Number of values of [`geodesic_spectrum`].
-pub(super) const LENGTH: usize = POSITIVE + NEGATIVE;
 
 /// The spectrum of the matrix that classical scaling decomposes, `-1/2 J E J` with `E` the squared distances on the
 /// surface, every point weighted by the area around it.

@@ -4,30 +4,24 @@ use std::f64::consts::{LN_10, PI};
 
 use linalg::Matrix;
 
+use super::kind::{Signature, SignatureKind};
 use super::quantiles::quantiles;
-use super::{Signature, SignatureKind};
-use crate::LaplaceSpectrum;
+use crate::spectrum::LaplaceSpectrum;
 
 /// Number of times at which heat is sampled.
 const TIMES: usize = 8;
 
 /// Number of bins of the distribution of heat at one time.
-const HEAT_BINS: usize = 4;
+const HEAT_BINS: usize = SignatureKind::HeatKernel.n_values() / TIMES;
 
 /// Number of energies at which waves are sampled.
 const ENERGIES: usize = 12;
 
 /// Number of bins of the distribution of waves at one energy.
-const WAVE_BINS: usize = 8;
-
-/// Number of values of [`heat_kernel_signature`].
-pub(super) const HEAT_LENGTH: usize = TIMES * HEAT_BINS;
-
-/// Number of values of [`wave_kernel_signature`].
-pub(super) const WAVE_LENGTH: usize = ENERGIES * WAVE_BINS;
+const WAVE_BINS: usize = SignatureKind::WaveKernel.n_values() / ENERGIES;
 
 /// Number of eigenpairs used, including the constant function.
-pub(super) const EIGENPAIRS: usize = LaplaceSpectrum::DESCRIBING;
+const EIGENPAIRS: usize = LaplaceSpectrum::DESCRIBING;
 
 /// Weyl's estimate of eigenvalue number `i` of a surface of unit area. It makes times and energies depend on the number
 /// of eigenpairs, not on the surface.

@@ -2,8 +2,8 @@
 
 use nalgebra::Point3;
 
-use super::{Signature, SignatureKind};
-use crate::CanonicalForm;
+use super::kind::{Signature, SignatureKind};
+use crate::canonical_form::CanonicalForm;
 
 /// Exponents `(p, q, r)` of the moments: second order along the axes, and all of third order.
 const EXPONENTS: [[i32; 3]; LENGTH] = [
@@ -23,7 +23,7 @@ const EXPONENTS: [[i32; 3]; LENGTH] = [
 ];
 
 /// Number of values of [`moment_signature`].
-pub(super) const LENGTH: usize = 13;
+const LENGTH: usize = SignatureKind::Moments.n_values();
 
 /// Moments of the canonical form in its principal axes (Elad and Kimmel 2003, `elad2003` in `REFERENCES.bib`).
 ///

@@ -1,11 +1,11 @@
 //! The distribution of distances within a form.
 
+use super::kind::{Signature, SignatureKind};
 use super::quantiles::quantiles;
-use super::{Signature, SignatureKind};
-use crate::CanonicalForm;
+use crate::canonical_form::CanonicalForm;
 
 /// Number of bins of the histogram.
-pub(super) const BINS: usize = 8;
+const BINS: usize = SignatureKind::D2.n_values();
 
 /// The distribution of the distances between two points of the canonical form: the shape distribution D2 of Osada et
 /// al. 2002 (`osada2002` in `REFERENCES.bib`), applied to the form so that straight lines stand for surface distances.

@@ -2,11 +2,11 @@
 
 use std::f64::consts::PI;
 
-use super::{Signature, SignatureKind};
-use crate::LaplaceSpectrum;
+use super::kind::{Signature, SignatureKind};
+use crate::spectrum::LaplaceSpectrum;
 
 /// Number of eigenvalues used.
-pub(super) const LENGTH: usize = 20;
+const LENGTH: usize = SignatureKind::ShapeDna.n_values();
 
 /// ShapeDNA: the eigenvalues of the Laplace-Beltrami operator (Reuter, Wolter and Peinecke 2006,
 /// `reuter2006` in `REFERENCES.bib`).
