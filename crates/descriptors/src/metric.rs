@@ -137,12 +137,13 @@ impl ShapeMetric {
     }
 
     /// Root mean square, over pairs of poses of one body, of the distance between their aligned forms of unit area.
-    /// Measured as the units of signatures.
+    /// Measured as the units of signatures; the separation of families is 14.5 by the root mean square and 14.9 by the
+    /// Hausdorff distance.
     #[must_use]
     pub fn form_unit(distance: FormDistance) -> f64 {
         match distance {
             FormDistance::NearestNeighborRms => 0.0271,
-            FormDistance::Hausdorff95 => 0.0623,
+            FormDistance::Hausdorff95 => 0.0553,
         }
     }
 
