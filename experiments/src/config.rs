@@ -1,10 +1,9 @@
 //! The configuration of an experiment, `configs/*.toml`: options, expectations and analysis.
 
 use anyhow::{Context, Result};
-use canonform::{
-    Bandwidth, EmbedMethod, EmbedOptions, FastMarchingOptions, GeodesicMethod, ObtuseTreatment, Samples,
-    StressChoice,
-};
+use canonform::{EmbedMethod, FormOptions, Samples};
+use geodesics::{FastMarchingOptions, Method, ObtuseTreatment};
+use nmds::Bandwidth;
 use report::results::Expectation;
 use serde::Deserialize;
 
@@ -105,23 +104,22 @@ impl Config {
     }
 
     /// The options of the paper's method.
-    pub(crate) fn nmds(&self, seed: u64) -> EmbedOptions {
+    pub(crate) fn nmds(&self, seed: u64) -> FormOptions {
         let marching = FastMarchingOptions::default();
         let obtuse = self.obtuse.map_or(marching.obtuse, Into::into);
-        EmbedOptions {
-            geodesic: GeodesicMethod::FastMarching(FastMarchingOptions { obtuse, ..marching }),
+        FormOptions {
+            geodesic: Method::FastMarching(FastMarchingOptions { obtuse, ..marching }),
             samples: Samples::Count(self.samples),
             method: EmbedMethod::low_rank(self.rank),
-            stress: StressChoice::Skip,
             seed,
-            ..EmbedOptions::default()
+            ..FormOptions::default()
         }
     }
 
     /// The options of the baseline, kernel PCA.
-    pub(crate) fn kernel_pca(&self, seed: u64) -> EmbedOptions {
+    pub(crate) fn kernel_pca(&self, seed: u64) -> FormOptions {
         let method = EmbedMethod::KernelPca { rank: Some(self.rank), bandwidth: Bandwidth::Mean };
-        EmbedOptions { method, ..self.nmds(seed) }
+        FormOptions { method, ..self.nmds(seed) }
     }
 
     /// A number printed in the paper.

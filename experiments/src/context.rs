@@ -5,7 +5,7 @@ use std::path::Path;
 use std::time::Instant;
 
 use anyhow::Result;
-use canonform::{EmbedOptions, Observer};
+use canonform::{FormOptions, Observer, StressChoice};
 use report::results::{CurvesPanel, CurvesRecord, Expectation, Provenance, Series};
 use report::{Record, save};
 use surface::VertexId;
@@ -128,15 +128,15 @@ impl Context<'_> {
 }
 
 /// The options of embeddings by name, as a record states them.
-pub(crate) fn described(options: &[(&str, &EmbedOptions)]) -> serde_json::Value {
-    let of_embedding = |options: &EmbedOptions| {
+pub(crate) fn described(options: &[(&str, &FormOptions)], stress: StressChoice) -> serde_json::Value {
+    let of_embedding = |options: &FormOptions| {
         serde_json::json!({
             "method": format!("{:?}", options.method),
             "geodesic": format!("{:?}", options.geodesic),
             "samples": format!("{:?}", options.samples),
             "first_sample": format!("{:?}", options.first_sample),
             "dim": options.dim,
-            "stress": format!("{:?}", options.stress),
+            "stress": format!("{stress:?}"),
         })
     };
     options.iter().map(|(name, options)| ((*name).to_owned(), of_embedding(options))).collect()

@@ -3,8 +3,8 @@
 //! Measures `largest stress ratio`: the largest ratio of the stress to the squared spread of a form, which has no unit.
 
 use anyhow::Result;
-use canonform::{EmbedOptions, MATCHED_POINTS, StressChoice, embed};
-use descriptors::{CanonicalForm, MatchOptions, PreparedForm, match_forms};
+use canonform::{StressChoice, StressOptions, embed_and_measure};
+use descriptors::{CanonicalForm, MatchOptions, PreparedForm, ShapeMetric, match_forms};
 use mesh::{TriMesh, orient_consistently};
 use report::figure1::{Figure1Pair, PAIRS, figure1};
 use report::results::{Figure1Record, Figure1Shape};
@@ -15,10 +15,11 @@ use crate::context::{Context, described};
 
 /// Runs the experiment.
 pub(crate) fn run(context: &Context<'_>) -> Result<()> {
-    let options = EmbedOptions { stress: StressChoice::Estimate, ..context.config.nmds(context.seed) };
+    let options = context.config.nmds(context.seed);
+    let stress = StressOptions { choice: StressChoice::Estimate, against: None, seed: context.seed };
     let shown = context.collection.first_of_each_class(PAIRS);
     let embedded = map(&shown, "figure 1", context.observer, |shape| {
-        let embedded = embed(&shape.surface, &options, &())?;
+        let embedded = embed_and_measure(&shape.surface, &options, &stress, &())?;
         let form = embedded.form(&shape.surface)?;
         let stress = embedded.report.stress.map_or(f64::NAN, |stress| stress.value);
         Ok((form, stress))
@@ -41,7 +42,7 @@ pub(crate) fn run(context: &Context<'_>) -> Result<()> {
     let record = Figure1Record {
         expectations: context.check(|name| (name == "largest stress ratio").then_some(worst))?,
         analysis: context.analysis(),
-        provenance: context.provenance(described(&[("embedding", &options)])),
+        provenance: context.provenance(described(&[("embedding", &options)], stress.choice)),
         shapes: facts.clone(),
     };
 
@@ -65,7 +66,7 @@ fn aligned<'a>(shapes: &[&Shape], forms: impl Iterator<Item = &'a CanonicalForm>
     let mut first: Option<(&str, PreparedForm)> = None;
     let mut surfaces = Vec::new();
     for (shape, form) in shapes.iter().zip(forms) {
-        let prepared = PreparedForm::new(form, MATCHED_POINTS)?;
+        let prepared = PreparedForm::new(form, ShapeMetric::MATCHED_POINTS)?;
         let mut surface = form.to_mesh(shape.surface.mesh());
         match &first {
             Some((label, target)) if *label == shape.label => {

@@ -7,9 +7,8 @@
 //! * `DISTANCES SHAPE A below B`: the ratio of the median stress of `B` to that of `A`.
 
 use anyhow::Result;
-use canonform::{FastMarchingOptions, GeodesicMethod, MATCHED_POINTS, ObtuseTreatment, Update};
-use descriptors::{CanonicalForm, MatchOptions, PreparedForm, match_forms};
-use geodesics::{Sampling, Variance};
+use descriptors::{CanonicalForm, MatchOptions, PreparedForm, ShapeMetric, match_forms};
+use geodesics::{FastMarchingOptions, Method, ObtuseTreatment, Sampling, Update, Variance};
 use linalg::LandmarkDistances;
 use mesh::{TriMesh, orient_consistently};
 use nmds::{
@@ -35,7 +34,7 @@ type Runs = Vec<(Embedding, f64)>;
 fn settings() -> [Distances; 3] {
     let plain = |name, update| {
         let options = FastMarchingOptions { update, obtuse: ObtuseTreatment::Ignore };
-        Distances { name, method: GeodesicMethod::FastMarching(options) }
+        Distances { name, method: Method::FastMarching(options) }
     };
     [Distances::default(), plain("planar", Update::Planar), plain("point-source", Update::PointSource)]
 }
@@ -156,7 +155,7 @@ fn pictured(context: &Context<'_>, specimen: &Specimen<'_>, methods: &[Runs]) ->
     for (method, runs) in METHODS.into_iter().zip(methods) {
         let (embedding, stress) = &runs[median(&values(runs)).0];
         let form = CanonicalForm::new(embedding, mesh)?;
-        let prepared = PreparedForm::new(&form, MATCHED_POINTS)?;
+        let prepared = PreparedForm::new(&form, ShapeMetric::MATCHED_POINTS)?;
         let mut surface = form.to_mesh(mesh);
         if let Some(target) = &first {
             let motion = match_forms(&prepared, target, &MatchOptions::default())?.alignment;

@@ -5,13 +5,10 @@
 //! that of KPCA-Nystrom.
 
 use anyhow::{Context as _, Result};
-use canonform::{
-    EmbedOptions, FormMatches, MatchOptions, Normalization, PreparedForms, embed, embedded_distances,
-    form_matches, map_of,
-};
-use descriptors::CanonicalForm;
+use canonform::{FormMatches, FormOptions, StressChoice, embed, embedded_distances, form_matches};
+use descriptors::{CanonicalForm, MatchOptions, Normalization};
 use linalg::DistanceMatrix;
-use nmds::normalized_stress;
+use nmds::{classical_full, normalized_stress};
 use rayon::prelude::*;
 use report::results::{Figure4Panel, Figure4Record, Motions, SHAPES_FILE, Scale, ShapesRecord, write};
 use retrieval::{Labels, evaluate, silhouette};
@@ -48,7 +45,7 @@ pub(crate) fn run(context: &Context<'_>) -> Result<()> {
     let record = Figure4Record {
         expectations: context.check(|name| measured(&panels, name))?,
         analysis: context.analysis(),
-        provenance: context.provenance(described(&options)),
+        provenance: context.provenance(described(&options, StressChoice::Skip)),
         names: context.collection.names(),
         labels,
         panels,
@@ -57,7 +54,7 @@ pub(crate) fn run(context: &Context<'_>) -> Result<()> {
     context.publish(&record)
 }
 
-fn formed_by(context: &Context<'_>, options: &EmbedOptions) -> Result<Vec<Formed>> {
+fn formed_by(context: &Context<'_>, options: &FormOptions) -> Result<Vec<Formed>> {
     map(&context.collection.all(), options.method.name(), context.observer, |shape| {
         Formed::new(shape, &embed(&shape.surface, options, &())?)
     })
@@ -66,7 +63,7 @@ fn formed_by(context: &Context<'_>, options: &EmbedOptions) -> Result<Vec<Formed
 /// The surfaces for the 3D views of the page.
 fn shapes(
     context: &Context<'_>,
-    methods: &[(&str, EmbedOptions)],
+    methods: &[(&str, FormOptions)],
     formed: &[Vec<Formed>],
     motions: Vec<Motions>,
 ) -> Result<ShapesRecord> {
@@ -92,8 +89,7 @@ fn matches(context: &Context<'_>, scale: Scale, forms: &[CanonicalForm]) -> Resu
         Scale::Raw => Normalization::Raw,
         Scale::Normalized => Normalization::UnitArea,
     };
-    let prepared = PreparedForms::new(forms, normalization)?;
-    Ok(form_matches(&prepared, &MatchOptions::default(), context.observer)?)
+    Ok(form_matches(forms, normalization, &MatchOptions::default(), context.observer)?)
 }
 
 fn panel(
@@ -103,7 +99,7 @@ fn panel(
     distances: &DistanceMatrix,
     labels: &Labels,
 ) -> Result<Figure4Panel> {
-    let plane = map_of(distances)?;
+    let plane = classical_full(distances, 2)?;
     Ok(Figure4Panel {
         method: method.to_owned(),
         scale,

@@ -7,7 +7,7 @@
 use std::time::Instant;
 
 use anyhow::{Context as _, Result};
-use canonform::{EmbedMethod, EmbedOptions, Samples, StressChoice, Surface, embed};
+use canonform::{EmbedMethod, FormOptions, Samples, Surface, embed};
 use datasets::{ArticulatedOptions, Family, articulated_shape};
 use mesh::RepairOptions;
 use nmds::classical_full;
@@ -57,7 +57,7 @@ pub(crate) fn run(context: &Context<'_>, specimens: &[Specimen<'_>]) -> Result<(
         };
         add("NMDS", Ok(timed(context, shape, EmbedMethod::low_rank(context.config.rank))?));
         add("SMDS", Ok(timed(context, shape, EmbedMethod::spectral())?));
-        let limit = EmbedOptions::default().all_pairs_limit;
+        let limit = canonform::DISTANCES_LIMIT;
         let needed = shape.surface.mesh().n_vertices().pow(2) * size_of::<f64>();
         if needed > limit {
             let gib = |bytes: usize| bytes as f64 / f64::from(1 << 30);
@@ -93,12 +93,8 @@ fn timed(context: &Context<'_>, shape: &Shape, method: EmbedMethod) -> Result<Fi
         EmbedMethod::Nystrom { .. } => context.config.runs,
         _ => 2,
     };
-    let options = EmbedOptions {
-        samples: Samples::Count(context.config.samples),
-        method,
-        stress: StressChoice::Skip,
-        ..EmbedOptions::default()
-    };
+    let options =
+        FormOptions { samples: Samples::Count(context.config.samples), method, ..FormOptions::default() };
     let mut best: Option<Figure9Measured> = None;
     for _ in 0..runs {
         let (embedded, peak_bytes) = with_peak_bytes(|| embed(&shape.surface, &options, &()));

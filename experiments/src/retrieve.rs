@@ -7,11 +7,8 @@
 use std::collections::BTreeMap;
 
 use anyhow::Result;
-use canonform::{
-    DescribeOptions, FORM_UNIT, MatchOptions, Normalization, PreparedForms, ShapeDescription, SignatureKind,
-    combined_distance, describe_surface, form_distances,
-};
-use descriptors::{CanonicalForm, fuse, size_coordinate};
+use canonform::{DescribeOptions, ShapeDescription, describe, form_matches};
+use descriptors::{CanonicalForm, FormDistance, MatchOptions, Normalization, ShapeMetric, SignatureKind};
 use linalg::DistanceMatrix;
 use report::results::{Classification, RetrievalRecord, RetrievalRow, Scale};
 use retrieval::{
@@ -31,7 +28,7 @@ const CLASSIFIER: &str = "fused and forms";
 pub(crate) fn run(context: &Context<'_>) -> Result<()> {
     let options = DescribeOptions::default();
     let shapes = map(&context.collection.all(), "describing", context.observer, |shape| {
-        Ok(describe_surface(&shape.surface, &options)?)
+        Ok(describe(&shape.surface, &options)?)
     })?;
     let described = context.start.elapsed();
     let names = context.collection.labels();
@@ -70,33 +67,33 @@ fn distances(
     let all = |distance: &dyn Fn(usize, usize) -> f64| DistanceMatrix::from_pairs(n, distance);
     let forms: Vec<CanonicalForm> = shapes.iter().map(|shape| shape.form.clone()).collect();
     let aligned = |normalization| {
-        let prepared = PreparedForms::new(&forms, normalization)?;
-        form_distances(&prepared, &MatchOptions::default(), context.observer)
+        let found = form_matches(&forms, normalization, &MatchOptions::default(), context.observer);
+        found.map(|found| found.distances)
     };
     let form = aligned(Normalization::UnitArea)?;
-    let size = |i: usize, j: usize| size_coordinate(shapes[i].area) - size_coordinate(shapes[j].area);
+    let size_of = |i: usize| ShapeMetric::size_coordinate(shapes[i].area);
+    let size = |i: usize, j: usize| size_of(i) - size_of(j);
+    let unit = ShapeMetric::form_unit(FormDistance::NearestNeighborRms);
     let mut found = Vec::new();
     for scale in [Scale::Normalized, Scale::Raw] {
         let area = |shape: &ShapeDescription| Some(shape.area).filter(|_| scale == Scale::Raw);
         let mut add = |method: &str, distances| found.push((method.to_owned(), scale, distances));
-        let vectors: Vec<_> = shapes.iter().map(|shape| fuse(&shape.signatures, area(shape))).collect();
-        let fused = all(&|i, j| {
-            let sq = |(x, y): (&f32, &f32)| f64::from(x - y).powi(2);
-            vectors[i].iter().zip(&vectors[j]).map(sq).sum::<f64>().sqrt()
-        })?;
-        add(CLASSIFIER, all(&|i, j| combined_distance(fused.get(i, j), form.get(i, j)))?);
+        let vectors: Vec<_> =
+            shapes.iter().map(|shape| ShapeMetric::fuse(&shape.signatures, area(shape))).collect();
+        let fused = all(&|i, j| ShapeMetric::fused(&vectors[i], &vectors[j]))?;
+        add(CLASSIFIER, all(&|i, j| ShapeMetric::combined(fused.get(i, j), form.get(i, j)))?);
         add("fused", fused);
         match scale {
             Scale::Normalized => add("aligned forms", form.clone()),
             Scale::Raw => {
-                add("aligned forms", all(&|i, j| (form.get(i, j) / FORM_UNIT).hypot(size(i, j)))?);
+                add("aligned forms", all(&|i, j| (form.get(i, j) / unit).hypot(size(i, j)))?);
             }
         }
         for kind in SignatureKind::ALL {
             let signature = |shape: &ShapeDescription| {
                 let signature = shape.signature(kind)?.clone();
                 Some(match area(shape) {
-                    Some(area) => signature.with_size(area),
+                    Some(area) => ShapeMetric::with_size(signature, area),
                     None => signature,
                 })
             };

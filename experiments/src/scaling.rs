@@ -6,7 +6,7 @@
 use std::time::Instant;
 
 use anyhow::Result;
-use canonform::{EmbedMethod, EmbedOptions, Samples, StressChoice, Surface, embed};
+use canonform::{EmbedMethod, FormOptions, Samples, Surface, embed};
 use datasets::{ArticulatedOptions, Family, articulated_shape};
 use mesh::RepairOptions;
 use report::results::Series;
@@ -84,11 +84,10 @@ struct Cost {
 }
 
 fn of_form(context: &Context<'_>, surface: &Surface) -> Result<Cost> {
-    let options = EmbedOptions {
+    let options = FormOptions {
         samples: Samples::Count(context.config.samples),
         method: EmbedMethod::low_rank(context.config.rank),
-        stress: StressChoice::Skip,
-        ..EmbedOptions::default()
+        ..FormOptions::default()
     };
     let start = Instant::now();
     let (embedded, peak_bytes) = with_peak_bytes(|| embed(surface, &options, &()));

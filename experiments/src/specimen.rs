@@ -3,9 +3,8 @@
 use std::sync::{Arc, Mutex, PoisonError};
 
 use anyhow::{Context, Result, bail};
-use canonform::GeodesicMethod;
 use descriptors::LaplaceSpectrum;
-use geodesics::{DistanceSolver, FirstSample, Sampling};
+use geodesics::{DistanceSolver, FirstSample, Method, Sampling};
 use linalg::{DistanceMatrix, LandmarkDistances};
 use nmds::{Embedding, Reconstruction, classical, paper_stress, sample_rows};
 use surface::VertexId;
@@ -139,19 +138,19 @@ impl<'a> Specimen<'a> {
 #[derive(Debug, Clone)]
 pub(crate) struct Distances {
     pub(crate) name: &'static str,
-    pub(crate) method: GeodesicMethod,
+    pub(crate) method: Method,
 }
 
 impl Default for Distances {
     fn default() -> Self {
-        Self { name: "default", method: GeodesicMethod::default() }
+        Self { name: "default", method: Method::default() }
     }
 }
 
 impl Distances {
     /// Hops times the mean edge length.
     pub(crate) fn hops() -> Self {
-        Self { name: "hops", method: GeodesicMethod::BreadthFirst }
+        Self { name: "hops", method: Method::BreadthFirst }
     }
 }
 

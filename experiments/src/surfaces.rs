@@ -1,8 +1,8 @@
 //! Surfaces and canonical forms for the 3D views of the page: `figure4-shapes.json`.
 
 use anyhow::{Result, bail};
-use canonform::{EmbedOptions, Embedded, Normalization};
-use descriptors::{Alignment, CanonicalForm};
+use canonform::{Embedded, FormOptions};
+use descriptors::{Alignment, CanonicalForm, Normalization};
 use geodesics::DistanceSolver;
 use linalg::Matrix;
 use mesh::{TriMesh, orient_consistently};
@@ -78,7 +78,7 @@ fn turned_like(points: &[Point3<f64>], shape: &[Point3<f64>]) -> Alignment {
 pub(crate) fn shown(
     shape: &Shape,
     forms: &[&Formed],
-    options: &EmbedOptions,
+    options: &FormOptions,
     limit: usize,
 ) -> Result<ShownShape> {
     let mut mesh: TriMesh = shape.surface.mesh().clone();

@@ -4,12 +4,9 @@ use std::io::Write;
 use std::process::ExitCode;
 
 use anyhow::Result;
-use canonform::{
-    DescribeOptions, FORM_UNIT, FORM_WEIGHT, MatchOptions, Observer, PreparedForm, ShapeDescription,
-    SignatureKind, describe,
-};
+use canonform::{DescribeOptions, Observer, ShapeDescription, Surface, describe};
 use datasets::{ArticulatedOptions, Family, articulated};
-use descriptors::match_forms;
+use descriptors::{FormDistance, MatchOptions, PreparedShape, ShapeMetric, ShapePair, SignatureKind};
 use linalg::Matrix;
 use rayon::prelude::*;
 use terminal::Bars;
@@ -20,7 +17,7 @@ struct Described {
     label: String,
     seed: usize,
     description: ShapeDescription,
-    form: PreparedForm,
+    shape: PreparedShape,
 }
 
 /// Vertices of the shapes of each seed, in turn, since collections mix resolutions.
@@ -37,9 +34,10 @@ pub(crate) fn units(args: &UnitsArgs) -> Result<ExitCode> {
         let options =
             ArticulatedOptions { seed: seed as u64, n_vertices: VERTICES[(seed - 1) % VERTICES.len()] };
         let one = |shape: &datasets::LabeledShape| {
-            let description = describe(&shape.mesh, &DescribeOptions::default())?;
-            let form = description.prepare()?;
-            Ok(Described { label: shape.label.clone(), seed, description, form })
+            let options = DescribeOptions::default();
+            let description = describe(&Surface::new(&shape.mesh, &options.form.repair)?, &options)?;
+            let prepared = description.prepare()?;
+            Ok(Described { label: shape.label.clone(), seed, description, shape: prepared })
         };
         shapes.extend(articulated(&options)?.par_iter().map(one).collect::<Result<Vec<_>>>()?);
     }
@@ -56,20 +54,30 @@ pub(crate) fn units(args: &UnitsArgs) -> Result<ExitCode> {
             of(a).zip(of(b)).map_or(f64::NAN, |(a, b)| a.distance(&b))
         };
         let means = [&within, &between].map(|pairs| mean_square(pairs.iter().map(distance)));
-        parts.push(Part::new(kind.name(), means, components(&shapes, kind), [kind.unit(), kind.weight()]));
+        parts.push(Part::new(
+            kind.name(),
+            means,
+            components(&shapes, kind),
+            [ShapeMetric::unit(kind), ShapeMetric::weight(kind)],
+        ));
     }
     let total: f64 = parts.iter().map(Part::importance).sum();
-    let mut means = [0.0; 2];
-    for (mean, pairs) in means.iter_mut().zip([&within, &between]) {
-        // Alignment takes long.
-        let close: Vec<_> = pairs.iter().filter(|(a, b)| a.seed == 1 && b.seed == 1).collect();
-        let distances: Vec<f64> = close
-            .par_iter()
-            .map(|(a, b)| Ok(match_forms(&a.form, &b.form, &MatchOptions::default())?.distance))
-            .collect::<Result<_>>()?;
-        *mean = mean_square(distances.into_iter());
+    for (name, distance) in
+        [("aligned forms", FormDistance::NearestNeighborRms), ("hausdorff95", FormDistance::Hausdorff95)]
+    {
+        let metric = ShapeMetric { matching: MatchOptions { distance, ..MatchOptions::default() } };
+        let mut means = [0.0; 2];
+        for (mean, pairs) in means.iter_mut().zip([&within, &between]) {
+            // Alignment takes long.
+            let close: Vec<_> = pairs.iter().filter(|(a, b)| a.seed == 1 && b.seed == 1).collect();
+            let distances: Vec<f64> = close
+                .par_iter()
+                .map(|(a, b)| Ok(ShapePair::new(&metric, [&a.shape, &b.shape]).best()?.distance))
+                .collect::<Result<_>>()?;
+            *mean = mean_square(distances.into_iter());
+        }
+        parts.push(Part::new(name, means, 1.0, [ShapeMetric::form_unit(distance), ShapeMetric::FORM_WEIGHT]));
     }
-    parts.push(Part::new("aligned forms", means, 1.0, [FORM_UNIT, FORM_WEIGHT]));
     let mut out = std::io::stdout().lock();
     writeln!(out, "{:<18}    unit  separation  components  weight   in use: unit  weight", "")?;
     for part in parts {

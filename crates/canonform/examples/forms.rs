@@ -1,24 +1,22 @@
-//! Embeds a mesh several times in one process, as a program that embeds many does, and says how long each
-//! run took from vertices and faces in memory to the form: repair, connectivity, preparation, distances and
+//! Embeds a mesh several times in one process, as a program that embeds many meshes does, and prints how long
+//! each run took from vertices and faces in memory to the form: repair, connectivity, preparation, distances and
 //! embedding (`bench/nmds.py`).
 //!
 //! ```text
 //! cargo run --release -p canonform --example forms -- MESH SAMPLES RANK FORM
 //! ```
 //!
-//! Every line on standard input is answered by one run and a line of JSON, all seconds. `FORM` then holds the
-//! coordinates, three little-endian float64 a vertex.
+//! Each line on standard input starts one run, which answers with a line of JSON: all values are seconds. `FORM`
+//! then holds the coordinates, three little-endian float64 per vertex.
 
 use std::error::Error;
 use std::io::Write;
 use std::path::Path;
 use std::time::Instant;
 
-use canonform::{
-    EmbedMethod, EmbedOptions, FirstSample, Regularization, Samples, StressChoice, Surface, embed,
-};
-use mesh::RepairOptions;
-use surface::VertexId;
+use canonform::geodesics::FirstSample;
+use canonform::surface::VertexId;
+use canonform::{EmbedMethod, FormOptions, Samples, Surface, embed, mesh};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().collect();
@@ -26,19 +24,16 @@ fn main() -> Result<(), Box<dyn Error>> {
         return Err("usage: forms MESH SAMPLES RANK FORM".into());
     };
     let mesh = mesh::io::read(Path::new(path))?;
-    let options = EmbedOptions {
+    let options = FormOptions {
         samples: Samples::Count(samples.parse()?),
         first_sample: FirstSample::Vertex(VertexId(0)),
-        method: EmbedMethod::Nystrom {
-            regularization: Regularization::LowRank { rank: Some(rank.parse()?) },
-        },
-        stress: StressChoice::Skip,
-        ..EmbedOptions::default()
+        method: EmbedMethod::low_rank(rank.parse()?),
+        ..FormOptions::default()
     };
     for line in std::io::stdin().lines() {
         line?;
         let start = Instant::now();
-        let surface = Surface::new(&mesh, &RepairOptions::default())?;
+        let surface = Surface::new(&mesh, &options.repair)?;
         let embedded = embed(&surface, &options, &())?;
         let total = start.elapsed().as_secs_f64();
         let rows = embedded.embedding.coords.transpose();

@@ -1,104 +1,93 @@
-//! Whatever can go wrong on the way from a file to a score.
+//! Errors of the library, and typed remedies that programs put into their own words.
 
 use std::path::PathBuf;
 
+use descriptors::DescriptorError;
+use geodesics::GeodesicError;
+use index::IndexError;
+use mesh::MeshError;
+use retrieval::RetrievalError;
 use surface::{FaceId, VertexId};
 
-use crate::InputPoint;
-
-/// Errors of this crate and of every stage beneath it.
+/// Errors of this crate and of the crates beneath it. [`remedy`](Error::remedy) tells what would help.
 #[derive(Debug, thiserror::Error)]
-pub enum PipelineError {
+#[non_exhaustive]
+pub enum Error {
     /// Reading, writing, validation or repair.
     #[error(transparent)]
-    Mesh(#[from] mesh::MeshError),
+    Mesh(#[from] MeshError),
     /// Distances on the surface.
     #[error(transparent)]
-    Geodesic(#[from] geodesics::GeodesicError),
+    Geodesic(#[from] GeodesicError),
     /// Matrices.
     #[error(transparent)]
     Linalg(#[from] linalg::LinalgError),
     /// The embedding.
     #[error(transparent)]
     Nmds(#[from] nmds::NmdsError),
-    /// The form and its alignment.
+    /// The form, its alignment or its signatures.
     #[error(transparent)]
-    Descriptor(#[from] descriptors::DescriptorError),
+    Descriptor(#[from] DescriptorError),
     /// The scores.
     #[error(transparent)]
-    Retrieval(#[from] retrieval::RetrievalError),
+    Retrieval(#[from] RetrievalError),
     /// The index.
     #[error(transparent)]
-    Index(#[from] index::IndexError),
-    /// The text of an index.
-    #[error(transparent)]
-    Export(#[from] index::ExportError),
-    /// An index whose options this program cannot read.
+    Index(#[from] IndexError),
+    /// An index whose options this version cannot read.
     #[error(
-        "{path} describes its shapes in a way that this program does not know ({options}); build it again",
+        "the shapes of {path} were described with options that this version does not know: {options}",
         path = path.display()
     )]
     UnknownOptions {
         /// The index.
         path: PathBuf,
-        /// What it says.
+        /// The options as the index states them.
         options: String,
     },
-    /// A shape that would take the place of another.
-    #[error(
-        "`{id}` is in the index already, from {path}; remove it first, rename the new one, or pass --replace",
-        path = path.display()
-    )]
+    /// A shape whose name another shape of the index has.
+    #[error("the index already has another shape `{id}`, from {path}", path = path.display())]
     AlreadyThere {
         /// The name.
         id: String,
-        /// Where the known one came from.
+        /// Mesh of the shape in the index.
         path: PathBuf,
     },
-    /// The mesh of an indexed shape is where it was no longer.
-    #[error(
-        "the mesh of `{id}` cannot be read from {path} ({source}); put it back, start in the folder that the \
-         index was built in, or build the index again",
-        path = path.display()
-    )]
+    /// The mesh of an indexed shape cannot be read any more.
+    #[error("cannot read the mesh of `{id}` from {path}: {source}", path = path.display())]
     MeshGone {
         /// Name of the shape.
         id: String,
-        /// Where its mesh was.
+        /// Path of its mesh when it was indexed.
         path: PathBuf,
-        /// What the operating system said.
+        /// The error of the operating system.
         source: std::io::Error,
     },
-    /// The mesh of an indexed shape is another one now.
-    #[error(
-        "the mesh of `{id}` in {path} has changed since it was indexed; restore it, or build the index again",
-        path = path.display()
-    )]
+    /// The mesh of an indexed shape is not the one that was indexed.
+    #[error("the mesh of `{id}` in {path} has changed since it was indexed", path = path.display())]
     MeshChanged {
         /// Name of the shape.
         id: String,
-        /// Where its mesh was.
+        /// Path of its mesh.
         path: PathBuf,
     },
-    /// A share of a collection that is none.
-    #[error("shard {shard} of {n_shards} does not exist; count shards from 1 to {n_shards}, or from 0")]
+    /// A shard that does not exist.
+    #[error("shard {shard} of {n_shards} does not exist; shards are numbered 1 to {n_shards}, or from 0")]
     NoSuchShard {
         /// The shard.
         shard: usize,
-        /// How many there are.
+        /// Number of shards.
         n_shards: usize,
     },
     /// Too many shapes for a matrix.
-    #[error(
-        "distances between all pairs of {n_shapes} shapes are too many; evaluate up to {limit} at once, for example          one shard"
-    )]
+    #[error("{n_shapes} shapes are too many for the distances between all pairs; the limit is {limit}")]
     TooManyShapes {
         /// Shapes of the index.
         n_shapes: usize,
-        /// Largest number.
+        /// The most that are evaluated at once.
         limit: usize,
     },
-    /// A file of distances that is no matrix.
+    /// A file of distances that is not a square matrix.
     #[error("{path}, line {line}: {what}", path = path.display())]
     BadMatrix {
         /// The file.
@@ -108,50 +97,56 @@ pub enum PipelineError {
         /// What is wrong and what is expected.
         what: String,
     },
-    /// A vertex of the input that is not there.
+    /// A matrix of distances whose rows have no class.
+    #[error("{path}: the first line has no names, so the classes of the rows are unknown", path = path.display())]
+    NoNames {
+        /// The file.
+        path: PathBuf,
+    },
+    /// A vertex that the input does not have.
     #[error("vertex {vertex} does not exist; the mesh has {n_vertices} vertices, counted from 0")]
     NoSuchVertex {
-        /// The vertex asked for.
+        /// The vertex.
         vertex: VertexId,
         /// Vertices of the input.
         n_vertices: usize,
     },
-    /// A vertex of the input that the repair left out.
+    /// A vertex of the input that the repair dropped.
     #[error(
-        "vertex {vertex} was left out by the repair (unreferenced, or not in the largest component); \
-         choose another one, or pass --components bridge"
+        "vertex {vertex} was left out by the repair: it has no face, or is not in the largest component; choose \
+         another vertex"
     )]
     DroppedVertex {
-        /// The vertex asked for.
+        /// The vertex.
         vertex: VertexId,
     },
-    /// A face of the input that is not there.
+    /// A face that the input does not have.
     #[error("face {face} does not exist; the mesh has {n_faces} faces, counted from 0")]
     NoSuchFace {
-        /// The face asked for.
+        /// The face.
         face: FaceId,
         /// Faces of the input.
         n_faces: usize,
     },
-    /// A face of the input that the repair left out.
+    /// A face of the input that the repair dropped.
     #[error(
-        "face {face} was left out by the repair (degenerate, or not in the largest component); choose another \
-         one, or pass --components bridge"
+        "face {face} was left out by the repair: it is degenerate, or not in the largest component; choose \
+         another face"
     )]
     DroppedFace {
-        /// The face asked for.
+        /// The face.
         face: FaceId,
     },
     /// Two vertices of the input without an edge between them.
-    #[error("there is no edge between vertices {a} and {b}; take two vertices of one face", a = ends[0], b = ends[1])]
+    #[error("there is no edge between vertices {a} and {b}; choose two vertices of one face", a = ends[0], b = ends[1])]
     NoSuchEdge {
         /// The vertices.
         ends: [VertexId; 2],
     },
-    /// An edge of the input that the repair left out.
+    /// An edge of the input that the repair dropped.
     #[error(
-        "the edge between vertices {a} and {b} was left out by the repair (it has no length); \
-         take one of its vertices",
+        "the edge between vertices {a} and {b} was left out by the repair because it has no length; choose one of \
+         its vertices",
         a = ends[0],
         b = ends[1]
     )]
@@ -159,23 +154,11 @@ pub enum PipelineError {
         /// Its vertices.
         ends: [VertexId; 2],
     },
-    /// Text that is no point of a mesh.
-    #[error(
-        "`{text}` is no point of a mesh; write 17 for a vertex, 17-42@0.3 for a point of an edge (here 0.3 of \
-         the way from 17 to 42), or f8@2:1:1 for a point of a face with these weights of its corners"
-    )]
-    BadPoint {
-        /// The text.
-        text: String,
-    },
-    /// A path to where no distance is known.
-    #[error(
-        "no way is known from a source to {target}: it lies beyond the limit of the distances; choose another \
-         target or raise --max-distance"
-    )]
-    NoWay {
+    /// A path to a point without a known distance.
+    #[error("there is no path to {target}: it lies beyond the distance limit")]
+    NoPath {
         /// The end of the path.
-        target: InputPoint,
+        target: String,
     },
     /// An option of a description that is too small.
     #[error("a description needs at least {least} {option}, got {value}")]
@@ -184,13 +167,13 @@ pub enum PipelineError {
         option: &'static str,
         /// The value given.
         value: usize,
-        /// The least it can be.
+        /// The least value allowed.
         least: usize,
     },
-    /// Too little memory for distances between all pairs.
+    /// Too little memory for distances between all pairs, a block at a time.
     #[error(
-        "distances between all pairs of {n_vertices} vertices need at least {needed} bytes of memory at once, \
-         more than the {limit} allowed; raise --memory"
+        "distances between all pairs of {n_vertices} vertices need at least {needed} bytes of memory at once, more \
+         than the {limit} allowed"
     )]
     MemoryTooSmall {
         /// Vertices of the input.
@@ -200,10 +183,9 @@ pub enum PipelineError {
         /// The limit, in bytes.
         limit: usize,
     },
-    /// All pairs of distances would not fit.
+    /// Distances that would not fit into memory.
     #[error(
-        "all distances between {n_vertices} vertices need {needed_mib} MiB, more than the {limit_mib} MiB \
-         allowed; use --method nmds, which needs a few columns only"
+        "the distances between {n_vertices} vertices need {needed_mib} MiB, more than the {limit_mib} MiB allowed"
     )]
     AllPairsTooLarge {
         /// Vertices of the surface.
@@ -213,12 +195,12 @@ pub enum PipelineError {
         /// The limit.
         limit_mib: usize,
     },
-    /// A folder that cannot be listed, or a label file that cannot be read.
+    /// A folder or a text file that cannot be read.
     #[error("cannot read {path}: {source}", path = path.display())]
     Io {
         /// The folder or file.
         path: PathBuf,
-        /// What the operating system said.
+        /// The error of the operating system.
         source: std::io::Error,
     },
     /// A folder without meshes.
@@ -232,22 +214,77 @@ pub enum PipelineError {
         /// The folder.
         path: PathBuf,
     },
-    /// A line of a label file.
+    /// A line of a label file that cannot be read.
     #[error("{path}, line {line}: expected `name,label`, found `{found}`", path = path.display())]
     BadLabelLine {
         /// The file.
         path: PathBuf,
         /// The line, counted from one.
         line: usize,
-        /// What is there.
+        /// The text of the line.
         found: String,
     },
-    /// A shape without a line in the label file.
+    /// A shape that the label file does not name.
     #[error("{path}: no label for `{name}`; add a line `{name},LABEL`", path = path.display())]
     NoLabel {
         /// The label file.
         path: PathBuf,
-        /// The shape's name.
+        /// Name of the shape.
         name: String,
     },
+}
+
+/// What a user can do about an [`Error`]. A program words it in terms of its own interface.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Remedy {
+    /// Keep the largest component of the mesh, or bridge its components.
+    KeepLargestOrBridge,
+    /// Bridge the components of the mesh, so that none is dropped.
+    BridgeComponents,
+    /// Embed in three dimensions.
+    UseThreeDimensions,
+    /// Measure distances by fast marching, which takes every surface.
+    UseFastMarching,
+    /// Embed by NMDS, which needs a few columns of distances only.
+    UseNystrom,
+    /// Allow more memory.
+    RaiseMemory,
+    /// Allow larger distances.
+    RaiseMaxDistance,
+    /// Name the classes in a label file.
+    GiveLabels,
+    /// Remove or replace the shape in the index, or rename the new one.
+    ReplaceShape,
+    /// Put the mesh file back, start in the folder that the index was built in, or build the index again.
+    RestoreMesh,
+    /// Build the index again.
+    BuildIndexAgain,
+    /// Evaluate a part of the collection, such as one shard.
+    EvaluateShard,
+}
+
+impl Error {
+    /// What would help, if it depends on the interface of the program; other advice is part of the message.
+    #[must_use]
+    pub fn remedy(&self) -> Option<Remedy> {
+        Some(match self {
+            Self::Mesh(MeshError::Disconnected { .. })
+            | Self::Geodesic(GeodesicError::Disconnected { .. }) => Remedy::KeepLargestOrBridge,
+            Self::DroppedVertex { .. } | Self::DroppedFace { .. } => Remedy::BridgeComponents,
+            Self::Descriptor(DescriptorError::NotThreeDimensional { .. }) => Remedy::UseThreeDimensions,
+            Self::Geodesic(GeodesicError::NotFactorised { .. }) => Remedy::UseFastMarching,
+            Self::Geodesic(GeodesicError::NoWay { .. }) | Self::NoPath { .. } => Remedy::RaiseMaxDistance,
+            Self::AllPairsTooLarge { .. } => Remedy::UseNystrom,
+            Self::MemoryTooSmall { .. } => Remedy::RaiseMemory,
+            Self::NoNames { .. } | Self::Retrieval(RetrievalError::NothingToScore { .. }) => {
+                Remedy::GiveLabels
+            }
+            Self::AlreadyThere { .. } => Remedy::ReplaceShape,
+            Self::MeshGone { .. } | Self::MeshChanged { .. } => Remedy::RestoreMesh,
+            Self::UnknownOptions { .. } => Remedy::BuildIndexAgain,
+            Self::TooManyShapes { .. } => Remedy::EvaluateShard,
+            _ => return None,
+        })
+    }
 }

@@ -1,73 +1,112 @@
-//! The facade: which stage follows which, and with what options.
+//! Nonrigid 3D shapes: surface distances, canonical forms, comparison and retrieval.
 //!
-//! file -> [`Surface`] -> [`embed`] -> `descriptors::CanonicalForm` -> [`form_distances`] -> scores
+//! A cat that sits and a cat that leaps are one shape: bending changes positions, but not distances along the surface.
+//! This crate embeds a surface so that straight-line distances equal its surface distances. The result, its *canonical
+//! form*, does not depend on the pose, and rigid alignment compares it with other forms.
 //!
-//! file -> [`Surface`] -> [`describe`] -> [`ShapeDescription`] -> an index
+//! ```
+//! use canonform::descriptors::{MatchKind, ShapeMetric, ShapePair};
+//! use canonform::{DescribeOptions, Surface, compare, describe, mesh::shapes};
 //!
-//! Everything a program needs to go from a mesh or a folder of meshes to forms, distances and scores.
-//! Knows nothing of terminals or plots; long work reports its progress to a callback.
+//! // A flat sheet and the same sheet, folded.
+//! let flat = shapes::grid(21, 17, 0.1);
+//! let folded = shapes::fold(&flat, 0.8, 1.2);
+//!
+//! let options = DescribeOptions::default();
+//! let mut shapes = Vec::new();
+//! for mesh in [&flat, &folded] {
+//!     let surface = Surface::new(mesh, &options.form.repair)?;
+//!     shapes.push(describe(&surface, &options)?.prepare()?);
+//! }
+//! let metric = ShapeMetric::default();
+//! let comparison = compare(&ShapePair::new(&metric, [&shapes[0], &shapes[1]]))?;
+//! assert_eq!(comparison.kind, MatchKind::Same);
+//! # Ok::<(), canonform::Error>(())
+//! ```
+//!
+//! # From a file to a verdict
+//!
+//! Data flows one way. Each step is a noun, made from the one before it:
+//!
+//! 1. [`mesh::TriMesh`]: vertices and faces, read by [`mesh::io::read`] from `.off`, `.obj`, `.ply`, `.stl`, `.vert` or
+//!    `.mat` files.
+//! 2. [`Surface`]: the repaired mesh, with its connectivity and edge lengths. Defects that would break distance
+//!    computation are repaired and reported; vertices keep their order. [`InputPoint`] and [`SurfacePath`] name points
+//!    and shortest paths in the numbers of the input.
+//! 3. Distances along the surface, by any [`geodesics::Method`], from samples or between [`AllPairs`] of vertices.
+//! 4. [`Embedded`]: coordinates by any [`EmbedMethod`], made by [`embed`] as [`FormOptions`] say. The options travel with
+//!    everything that is made from here on. [`embed_and_measure`] adds the stress.
+//! 5. [`descriptors::CanonicalForm`]: the embedded surface, weighted by area, in three dimensions.
+//! 6. [`ShapeDescription`]: form, signatures and facts, made by [`describe`]: all that an index stores of a shape.
+//! 7. [`descriptors::ShapePair`]: two descriptions and the alignments of their forms, each found once.
+//!    [`compare`] and [`compare_surfaces`] turn it into a [`Comparison`]. All units, weights and thresholds of the
+//!    comparison belong to [`descriptors::ShapeMetric`].
+//!
+//! # Collections
+//!
+//! [`list_shapes`] finds the labelled meshes of a folder. [`build_index`] describes them into a durable file;
+//! [`add_to_index`], [`remove_from_index`] and [`merge_indexes`] change it; [`ShapeSearch`] finds the shapes nearest to a
+//! mesh; [`evaluate_index`] scores how well an index separates classes, [`evaluate_matrix`] does the same for any matrix of
+//! distances. [`form_matches`] aligns all pairs of forms without an index.
+//!
+//! # Distances and samples
+//!
+//! The building blocks are crates of their own, re-exported here as modules: one dependency is enough.
+//!
+//! ```
+//! use canonform::geodesics::{FirstSample, Method, Sampling};
+//! use canonform::nmds::{NystromOptions, nystrom};
+//! use canonform::surface::VertexId;
+//! use canonform::{Surface, mesh::shapes};
+//!
+//! let surface = Surface::new(&shapes::icosphere(3), &Default::default())?;
+//! // Distances from vertex 0 by fast marching, at most half of the circumference of the unit sphere.
+//! let solver = Method::default().prepare(&surface.intrinsic)?;
+//! let distances = solver.distances(VertexId(0));
+//! let farthest = distances.iter().copied().fold(0.0, f64::max);
+//! assert!((3.0..3.15).contains(&farthest));
+//!
+//! // Twenty samples, each the farthest from those before it, and an embedding from their distances.
+//! let mut sampler = Sampling::Farthest.start(solver.as_ref(), FirstSample::default(), 0)?;
+//! sampler.extend_to(20)?;
+//! let samples = sampler.distances(20)?;
+//! let embedding = nystrom(&samples, &NystromOptions::default())?;
+//! assert_eq!((samples.n_landmarks(), embedding.dim()), (20, 3));
+//! # Ok::<(), canonform::Error>(())
+//! ```
+//!
+//! # Conventions
+//!
+//! * The same input, options and seed give the same bits for any number of threads.
+//! * Long work reports its progress to an [`Observer`]; `&()` ignores it.
+//! * [`Error::remedy`] tells what would help against an error, as a [`Remedy`] that a program puts into its own words.
+//! * Nothing here knows terminals, plots or HTTP.
 
-mod all_pairs;
 mod compare;
-mod dataset;
-mod describe;
-mod distance;
-mod embed;
 mod error;
-mod forms;
-mod handedness;
-mod indexing;
-mod methods;
+mod form;
+mod input;
 mod observer;
-mod options;
-mod paths;
-mod points;
-mod report;
-mod rerank;
-mod run;
-mod stress;
-mod surface;
+mod shape_index;
 
-pub use all_pairs::{AllPairs, Asymmetry};
 pub use compare::{
-    Comparison, MatchKind, Overlay, SurfaceComparison, Triangulation, compare_forms, compare_surfaces,
-    overlay_forms,
+    Comparison, FormMatches, Overlay, SurfaceComparison, Triangulation, compare, compare_surfaces,
+    embedded_distances, form_matches,
 };
-pub use dataset::{LabelFile, ShapeFile, label_of, list_shapes};
-pub use describe::{
-    DESCRIPTION_VERSION, DescribeOptions, ShapeDescription, SurfaceForm, describe, describe_surface,
-    describe_with_form, prepare_form,
+pub use error::{Error, Remedy};
+pub use form::{
+    DISTANCES_LIMIT, DescentReport, DescribeOptions, EmbedMethod, EmbedReport, Embedded, FormOptions,
+    MethodFacts, MethodReport, MethodsReport, Samples, SecondsReport, ShapeDescription, StressChoice,
+    StressKind, StressOptions, StressReport, compare_methods, describe, embed, embed_and_measure,
 };
-pub use distance::{SAME_BELOW, ShapeDistance};
-pub use embed::{Embedded, embed};
-pub use error::PipelineError;
-pub use forms::{
-    FormMatches, MATCHED_POINTS, PreparedForms, embedded_distances, form_distances, form_matches, map_of,
+pub use input::{
+    AllPairs, Asymmetry, BadPoint, InputPoint, LabelFile, PathPoint, ShapeFile, Surface, SurfacePath,
+    label_of, list_shapes,
 };
-pub use handedness::Handedness;
-pub use indexing::{
-    BuildOptions, BuildReport, Explain, Failure, Inputs, Measure, MergeReport, Prediction, SearchOptions,
-    SearchReport, SearchResult, SearchSeconds, ShapeSearch, Shard, add_to_index, build_index, evaluate_index,
-    evaluate_matrix, merge_indexes, remove_from_index,
-};
-pub use methods::{MethodFacts, MethodReport, MethodsReport, compare_methods};
 pub use observer::Observer;
-pub use options::{EmbedMethod, EmbedOptions, Samples, StressChoice};
-pub use paths::{PathPoint, SurfacePath};
-pub use points::InputPoint;
-pub use report::{DescentReport, EmbedReport, SecondsReport};
-pub use rerank::{FORM_UNIT, FORM_WEIGHT, combined_distance, rerank};
-pub use stress::{StressKind, StressReport};
-pub use surface::Surface;
-
-pub use descriptors::{
-    CanonicalForm, DescriptorError, FormDistance, MatchOptions, Normalization, PreparedForm, Reflections,
-    Signature, SignatureKind,
+pub use shape_index::{
+    BuildOptions, BuildReport, Explain, Failure, Inputs, Measure, MergeReport, Prediction, Ranked, Reranked,
+    SearchOptions, SearchReport, SearchResult, SearchSeconds, ShapeSearch, Shard, add_to_index, build_index,
+    evaluate_index, evaluate_matrix, merge_indexes, remove_from_index, rerank,
 };
-pub use geodesics::{
-    DistanceSolver, FastMarchingOptions, FirstSample, HeatOptions, Method as GeodesicMethod, ObtuseTreatment,
-    PathTracer, Sampling, Source, SurfacePoint, Update, Variance,
-};
-pub use index::{ContentHash, IndexError, SearchMode, ShapeEntry};
-pub use nmds::{Bandwidth, Regularization, RpiAlpha, SmacofOptions};
-pub use retrieval::Evaluation;
+pub use {descriptors, geodesics, index, linalg, mesh, nmds, retrieval, surface};

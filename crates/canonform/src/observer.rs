@@ -1,10 +1,10 @@
-//! How long work tells of its progress.
+//! Progress of long work.
 
 use geodesics::{DistanceSolver, PrunedSolver, Source};
 use linalg::Matrix;
 use surface::VertexId;
 
-/// Hears of the progress of long work, from any thread.
+/// Is told about the progress of long work, from any thread.
 pub trait Observer: Sync {
     /// A stage of `total` steps begins; the previous one has ended.
     fn begin(&self, stage: &str, total: usize);
@@ -13,7 +13,7 @@ pub trait Observer: Sync {
     fn step(&self);
 }
 
-/// Nobody listens.
+/// Ignores progress.
 impl Observer for () {
     fn begin(&self, _: &str, _: usize) {}
 
@@ -23,7 +23,7 @@ impl Observer for () {
 /// Sources solved between two reports of progress.
 const BATCH: usize = 64;
 
-/// A solver whose every solve is a step.
+/// A solver that reports every solve as a step.
 pub(crate) struct Observed<'a> {
     pub(crate) solver: &'a dyn DistanceSolver,
     pub(crate) observer: &'a dyn Observer,
@@ -49,7 +49,7 @@ impl DistanceSolver for Observed<'_> {
         let p = self.n_vertices();
         let mut columns = Matrix::zeros(p, sources.len());
         for (i, batch) in sources.chunks(BATCH).enumerate() {
-            // Solvers may have a faster way to solve many at once than one by one.
+            // Some solvers solve many sources at once faster than one by one.
             let solved = self.solver.distance_columns(batch);
             columns.columns_mut(i * BATCH, batch.len()).copy_from(&solved);
             batch.iter().for_each(|_| self.observer.step());

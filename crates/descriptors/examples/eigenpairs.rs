@@ -1,5 +1,5 @@
-//! The smallest eigenpairs of a mesh's Laplacian and how long they took; all matrices are written too, for
-//! other programs to solve the same problem (`bench/eigsh.py`).
+//! Computes the smallest eigenpairs of the Laplacian of a mesh, prints the time it took, and writes all matrices, so
+//! that other programs can solve the same problem (`bench/eigsh.py`).
 //!
 //! ```text
 //! cargo run --release -p canonform-descriptors --example eigenpairs -- MESH PAIRS FOLDER
@@ -39,7 +39,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// Numbers as little-endian float64, one after the other.
+/// Writes numbers as little-endian float64.
 fn write(path: &Path, numbers: impl Iterator<Item = f64>) -> Result<(), Box<dyn Error>> {
     let bytes: Vec<u8> = numbers.flat_map(f64::to_le_bytes).collect();
     Ok(std::fs::write(path, bytes)?)

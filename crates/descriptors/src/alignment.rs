@@ -9,25 +9,25 @@ pub struct Alignment {
     pub rotation: Matrix3<f64>,
     /// In the unit of the points.
     pub translation: Vector3<f64>,
-    /// Whether the motion turns a left hand into a right one.
+    /// Whether the motion includes a reflection.
     pub reflected: bool,
 }
 
 impl Alignment {
-    /// The motion by an orthogonal matrix about the origin.
+    /// The motion that applies an orthogonal matrix about the origin.
     #[must_use]
     pub fn about_origin(rotation: Matrix3<f64>) -> Self {
         Self { rotation, translation: Vector3::zeros(), reflected: rotation.determinant() < 0.0 }
     }
 
-    /// Where the motion takes a point.
+    /// Applies the motion to a point.
     #[inline]
     #[must_use]
     pub fn apply(&self, point: &Point3<f64>) -> Point3<f64> {
         Point3::from(self.rotation * point.coords + self.translation)
     }
 
-    /// The motion back.
+    /// The inverse motion.
     #[must_use]
     pub fn inverse(&self) -> Self {
         let rotation = self.rotation.transpose();
@@ -44,9 +44,9 @@ impl Alignment {
         }
     }
 
-    /// The motion that brings the first points of `pairs` closest to the second ones in the mean
-    /// square, with a reflection exactly when `reflected` (Kabsch 1976, by the SVD of the 3 x 3
-    /// cross-covariance); `None` when there are no pairs.
+    /// The motion that minimises the mean squared distance between the moved first points and the second points of
+    /// `pairs`, with a reflection if and only if `reflected` (Kabsch 1976, by the SVD of the 3 x 3 cross-covariance).
+    /// `None` without pairs.
     #[must_use]
     pub fn fit(pairs: &[(Point3<f64>, Point3<f64>)], reflected: bool) -> Option<Self> {
         if pairs.is_empty() {
@@ -64,7 +64,7 @@ impl Alignment {
         let svd = covariance.svd(true, true);
         let (u, v_t) = (svd.u?, svd.v_t?);
         let mut signs = Vector3::repeat(1.0);
-        // nalgebra sorts singular values in descending order: the sign goes to the least one.
+        // nalgebra sorts singular values in descending order: the sign goes to the smallest one.
         let wanted = if reflected { -1.0 } else { 1.0 };
         signs[2] = wanted * (u.determinant() * v_t.determinant()).signum();
         let rotation = v_t.transpose() * Matrix3::from_diagonal(&signs) * u.transpose();
@@ -78,7 +78,7 @@ mod tests {
     use nalgebra::Rotation3;
 
     #[test]
-    fn fit_recovers_a_motion_and_composition_undoes_it() {
+    fn fit_recovers_a_motion_and_its_inverse_undoes_it() {
         let turn = Rotation3::from_euler_angles(0.3, -1.1, 2.0).into_inner();
         let mirror = Matrix3::from_diagonal(&Vector3::new(1.0, 1.0, -1.0));
         for rotation in [turn, turn * mirror] {

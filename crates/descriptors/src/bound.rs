@@ -1,19 +1,19 @@
-//! How far apart two forms are at least, however they are aligned.
+//! A lower bound of the distance between two forms over all alignments.
 
 use nalgebra::Point3;
 
-/// What a form says of its distance to others before any alignment.
+/// The extent of a form, which bounds its distance to other forms.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Extent {
-    /// No two points of the form are farther apart than this.
+    /// No two points of the form are farther apart.
     diameter: f64,
-    /// Lengths between samples paired off far from each other, descending.
+    /// Distances between disjoint pairs of samples far from each other, descending.
     spans: Vec<f64>,
     n_samples: usize,
 }
 
 impl Extent {
-    /// Of samples that no point of the form is farther from than `covering`.
+    /// The extent from samples; no point of the form is farther than `covering` from the nearest one.
     pub(crate) fn new(samples: &[Point3<f64>], covering: f64) -> Self {
         let n_samples = samples.len();
         let mut diameter = 0.0f64;
@@ -38,11 +38,11 @@ impl Extent {
         Self { diameter: diameter + 2.0 * covering, spans, n_samples }
     }
 
-    /// A lower bound of the root mean square distance between the nearest points of two forms, over all motions.
+    /// A lower bound of the root mean square distance between nearest points of two forms, over all motions.
     ///
     /// Let samples `x, x'` of one form have the nearest points `y, y'` of the other, at distances `e, e'`. Then
-    /// `e + e' >= |x - x'| - |y - y'| >= |x - x'| - diameter`, so `e² + e'² >= (|x - x'| - diameter)² / 2` where that
-    /// is positive. Sums over disjoint pairs of samples hold for the sum of all squares.
+    /// `e + e' >= |x - x'| - |y - y'| >= |x - x'| - diameter`, so `e² + e'² >= (|x - x'| - diameter)² / 2` if the
+    /// difference is positive. Summing over disjoint pairs of samples bounds the sum of all squares.
     pub(crate) fn least_distance(&self, other: &Self) -> f64 {
         (0.5 * (self.beyond(other.diameter) + other.beyond(self.diameter))).sqrt()
     }

@@ -1,30 +1,30 @@
-//! The embedded surface.
+//! Canonical forms.
 
 use mesh::TriMesh;
 use nalgebra::{Matrix3, Point3, Vector3};
 use nmds::Embedding;
 use serde::{Deserialize, Serialize};
 
-use crate::DescriptorError;
+use crate::error::DescriptorError;
 use crate::spread::spread as spread_evenly;
 
-/// What is divided out of a form before it is compared.
+/// How forms of different size are compared.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Normalization {
-    /// Nothing: a small cat and a large cat differ.
+    /// Size counts: a small cat and a large cat differ.
     #[default]
     Raw,
-    /// The root of the surface's area, which bending does not change: size does not count. Forms without
-    /// a unit of length stay as they are.
+    /// Size does not count: forms are scaled to unit area of the surface, which bending does not change. Forms
+    /// without a unit of length are not scaled.
     UnitArea,
 }
 
-/// A surface embedded so that straight lines equal surface distances: its pose-free shape.
+/// A surface embedded so that straight-line distances equal its surface distances: its shape regardless of pose.
 ///
-/// Centred at its area-weighted centroid. Invariant to bending of the surface; with
-/// [`Normalization::UnitArea`] to scale as well. Defined up to a rigid motion *and reflection*:
-/// distances cannot tell a left hand from a right one.
+/// It is centred at its area-weighted centroid. It is invariant to bending of the surface and, with
+/// [`Normalization::UnitArea`], to scale. It is defined up to a rigid motion *and a reflection*: distances do not
+/// distinguish a left hand from a right one.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CanonicalForm {
     points: Vec<Point3<f64>>,
@@ -33,8 +33,7 @@ pub struct CanonicalForm {
 }
 
 impl CanonicalForm {
-    /// The form of `mesh` from an embedding of its vertices; the areas around the vertices of
-    /// `mesh` become the weights of the points.
+    /// The form of `mesh` from an embedding of its vertices, weighted by the areas around the vertices.
     ///
     /// # Errors
     /// [`DescriptorError::NotThreeDimensional`], [`DescriptorError::SizeMismatch`],
@@ -54,15 +53,15 @@ impl CanonicalForm {
         Ok(Self { area: Some(mesh.area()).filter(|area| *area > 0.0), ..form })
     }
 
-    /// The same form when its coordinates have no unit of length, as those of a kernel: its size is then
-    /// not that of the surface.
+    /// The form without a unit of length, for coordinates such as those of a kernel: its size is then not that of the
+    /// surface.
     #[must_use]
     pub fn without_unit(self) -> Self {
         Self { area: None, ..self }
     }
 
-    /// A form of bare points, without a unit of length, with weights that are not negative; with equal weights when they sum to
-    /// zero.
+    /// A form of bare points without a unit of length. Weights are nonnegative; if they sum to zero, all points have the
+    /// same weight.
     ///
     /// # Errors
     /// [`DescriptorError::NoExtent`].
@@ -80,11 +79,11 @@ impl CanonicalForm {
         Ok(Self { points, weights, area: None })
     }
 
-    /// A form as another one was taken apart, to the last bit: nothing is centred or normalised.
+    /// A form from exactly these points, weights and area: nothing is centred or normalised.
     ///
     /// # Errors
-    /// [`DescriptorError::SizeMismatch`] when there is not one weight for each point, [`DescriptorError::NoExtent`]
-    /// when a number is not finite, a weight negative, the area not positive, or all points coincide.
+    /// [`DescriptorError::SizeMismatch`] unless there is one weight per point; [`DescriptorError::NoExtent`] if a
+    /// number is not finite, a weight is negative, the area is not positive, or all points coincide.
     pub fn from_parts(
         points: Vec<Point3<f64>>,
         weights: Vec<f64>,
@@ -103,9 +102,8 @@ impl CanonicalForm {
         }
     }
 
-    /// The form at up to `n` of its points, spread evenly, each with the weight of all points nearest to it.
-    ///
-    /// The first of them are spread evenly too. Centroid and axes stay about where they were. Cost `O(p n)`.
+    /// The form at up to `n` evenly spread points, each with the weight of all points nearest to it. It keeps its
+    /// coordinates; any leading part of the points is evenly spread too. Cost `O(p n)`.
     #[must_use]
     pub fn reduced(&self, n: usize) -> Self {
         let spread = spread_evenly(&self.points, n);
@@ -121,27 +119,27 @@ impl CanonicalForm {
         &self.points
     }
 
-    /// The share of the surface around each point; they sum to one.
+    /// The share of the surface around each point; the shares sum to one.
     #[must_use]
     pub fn weights(&self) -> &[f64] {
         &self.weights
     }
 
-    /// The area of the surface in squared units of the form; `None` when these are no lengths.
+    /// The area of the surface in squared units of the form; `None` if coordinates are not lengths.
     #[must_use]
     pub fn area(&self) -> Option<f64> {
         self.area
     }
 
-    /// Root of the mean squared distance from the centroid.
+    /// Root mean square distance from the centroid.
     #[must_use]
     pub fn spread(&self) -> f64 {
         spread(&self.points, &self.weights)
     }
 
-    /// The turn into principal axes: by rows, the directions in which the form is widest, second widest and
-    /// narrowest, and the spread along each, a length. The signs of axes, and the order of those with equal
-    /// spreads, are left to chance.
+    /// The rotation into principal axes, with the directions of largest, second largest and smallest spread as rows,
+    /// and the spread along each, a length. The signs of axes, and the order of axes with equal spreads, are
+    /// arbitrary.
     pub(crate) fn principal_axes(&self) -> (Matrix3<f64>, [f64; 3]) {
         let mut covariance = Matrix3::zeros();
         for (p, w) in self.points.iter().zip(&self.weights) {
@@ -154,7 +152,7 @@ impl CanonicalForm {
         (axes.transpose(), order.map(|i| eigen.eigenvalues[i].max(0.0).sqrt()))
     }
 
-    /// The form with what `normalization` names divided out.
+    /// The form, scaled as `normalization` says.
     #[must_use]
     pub fn normalized(&self, normalization: Normalization) -> Self {
         match (normalization, self.area) {
@@ -167,7 +165,7 @@ impl CanonicalForm {
         }
     }
 
-    /// The form as a surface: its points with the faces of the mesh it was made from.
+    /// The form as a mesh: its points with the faces of the mesh it was made from.
     #[must_use]
     pub fn to_mesh(&self, mesh: &TriMesh) -> TriMesh {
         TriMesh { positions: self.points.clone(), faces: mesh.faces.clone() }
@@ -196,7 +194,7 @@ mod tests {
     }
 
     #[test]
-    fn is_centred_by_area_and_spread_scales() {
+    fn the_form_is_centred_by_area_and_its_spread_scales() {
         let mesh = square();
         let coords = Matrix::from_fn(4, 3, |i, j| mesh.positions[i][j] + 7.0);
         let form = CanonicalForm::new(&embedding(coords.clone()), &mesh).unwrap();
@@ -217,7 +215,7 @@ mod tests {
     }
 
     #[test]
-    fn impossible_forms_are_refused() {
+    fn invalid_forms_are_refused() {
         let mesh = square();
         let new = |coords| CanonicalForm::new(&embedding(coords), &mesh);
         assert_eq!(new(Matrix::zeros(4, 2)), Err(DescriptorError::NotThreeDimensional { dim: 2 }));

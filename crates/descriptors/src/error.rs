@@ -1,15 +1,15 @@
-//! What a form cannot be made from.
+//! Errors of this crate.
 
 /// Errors of this crate.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum DescriptorError {
-    /// A form lives in three dimensions.
-    #[error("a canonical form has 3 dimensions, the embedding has {dim}; embed with --dim 3")]
+    /// An embedding in another number of dimensions.
+    #[error("a canonical form has 3 dimensions, the embedding has {dim}")]
     NotThreeDimensional {
         /// Dimensions of the embedding.
         dim: usize,
     },
-    /// The embedding was made from another mesh.
+    /// An embedding of another mesh.
     #[error("the embedding has {n_points} points but the mesh has {n_vertices} vertices")]
     SizeMismatch {
         /// Points of the embedding.
@@ -30,17 +30,16 @@ pub enum DescriptorError {
         option: &'static str,
         /// The value given.
         value: f64,
-        /// What is allowed.
+        /// The values allowed.
         range: &'static str,
     },
-    /// A signature that does not exist.
-    #[error(
-        "there is no signature `{name}`; choose from moments, d2, geodesic-spectrum, shape-dna, heat-kernel, \
-         wave-kernel"
-    )]
+    /// The name of no signature.
+    #[error("there is no signature `{name}`; choose from {known}")]
     UnknownSignature {
         /// The name given.
         name: String,
+        /// The known names, separated by commas.
+        known: String,
     },
     /// A decomposition failed.
     #[error(transparent)]

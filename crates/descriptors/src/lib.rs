@@ -1,10 +1,10 @@
-//! Canonical forms, their rigid alignment, and distances between aligned forms.
+//! Canonical forms, their alignment, signatures, and the distance between two shapes.
 //!
-//! `nmds::Embedding` -> **[`CanonicalForm`] -> [`PreparedForm`] -> [`match_forms`]** -> `retrieval`
-//!
-//! `surface::IntrinsicMesh` -> **[`LaplaceSpectrum`]** -> `nmds` (spectral embeddings)
-//!
-//! forms, distances, spectra -> **[`Signature`] -> [`fuse`]** -> `retrieval`
+//! ```text
+//! nmds::Embedding -> CanonicalForm -> PreparedForm -> match_forms -> FormMatch
+//! CanonicalForm, linalg::LandmarkDistances, LaplaceSpectrum -> Signature -> ShapeMetric::fuse
+//! fused vector, form -> PreparedShape -> ShapePair (alignments, each found once) -> ShapeMetric (distance, verdict)
+//! ```
 //!
 //! Knows nothing of files or indexes.
 
@@ -12,8 +12,12 @@ mod alignment;
 mod bound;
 mod canonical_form;
 mod error;
+mod handedness;
 mod matching;
+mod metric;
+mod nearest;
 mod prepared;
+mod shape_pair;
 mod signature;
 mod spectrum;
 mod spread;
@@ -21,10 +25,14 @@ mod spread;
 pub use alignment::Alignment;
 pub use canonical_form::{CanonicalForm, Normalization};
 pub use error::DescriptorError;
+pub use handedness::handedness;
 pub use matching::{FormDistance, FormMatch, MatchOptions, Reflections, match_forms, match_forms_within};
+pub use metric::{Handedness, MatchKind, ShapeDistance, ShapeMetric};
+pub use nearest::NearestPoints;
 pub use prepared::PreparedForm;
+pub use shape_pair::{PreparedShape, ShapePair};
 pub use signature::{
-    FUSED_SIZE, Signature, SignatureKind, d2_histogram, fuse, geodesic_spectrum, heat_kernel_signature,
-    moment_signature, shape_dna, size_coordinate, wave_kernel_signature,
+    Signature, SignatureKind, d2_histogram, geodesic_spectrum, heat_kernel_signature, moment_signature,
+    shape_dna, wave_kernel_signature,
 };
 pub use spectrum::LaplaceSpectrum;

@@ -1,48 +1,49 @@
-//! Rigid alignment of two forms and their distance once aligned.
+//! Rigid alignment of two forms, and the distance between aligned forms.
 
 use nalgebra::{Matrix3, Point3};
 
+use crate::alignment::Alignment;
+use crate::error::DescriptorError;
 use crate::prepared::Detail;
-use crate::{Alignment, DescriptorError, PreparedForm};
+use crate::prepared::PreparedForm;
 
-/// How far apart two aligned forms are.
+/// A distance between two aligned forms.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum FormDistance {
-    /// Root of the mean squared distance from each sample of either form to the nearest point of the
-    /// other.
+    /// Root mean square distance from the samples of either form to the nearest points of the other.
     #[default]
     NearestNeighborRms,
-    /// The distance that 95 % of the samples of either form do not exceed (the larger of the two
-    /// directions): a Hausdorff distance that forgives a few outliers.
+    /// The distance that 95 % of the samples of either form do not exceed, the larger of the two directions: a
+    /// Hausdorff distance that tolerates a few outliers.
     Hausdorff95,
 }
 
-/// Whether a mirror image counts as the same shape.
+/// Whether an alignment may reflect.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Reflections {
-    /// Yes: distances determine an embedding only up to reflection.
+    /// It may: distances determine a form only up to reflection.
     #[default]
     Allow,
-    /// Only proper motions.
+    /// It must not.
     Forbid,
-    /// Only motions that reflect.
+    /// It must.
     Require,
 }
 
 /// Options of [`match_forms`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct MatchOptions {
-    /// The distance. Default: [`FormDistance::NearestNeighborRms`].
+    /// The distance that is reported. Default: [`FormDistance::NearestNeighborRms`], which every alignment minimises.
     pub distance: FormDistance,
     /// Default: [`Reflections::Allow`].
     pub reflections: Reflections,
-    /// Axes whose spreads differ by less than this factor in both forms may be exchanged: their order
-    /// is then a matter of chance. Default: 1.15.
+    /// Axes whose spreads differ by less than this factor in both forms may be exchanged, since their order is then
+    /// arbitrary. Default: 1.15.
     pub near_equal_axes: f64,
-    /// Share of the closest pairs that a step of the alignment believes, in (0, 1]. Default: 1, so that
-    /// the alignment minimises the very distance that is measured.
+    /// Share of the closest pairs that a step of the alignment uses, in (0, 1]. Default: 1, so that the alignment
+    /// minimises the root mean square distance.
     pub trim: f64,
-    /// Hypotheses that are refined until they settle, after a few steps of all of them. Default: 8.
+    /// Number of hypotheses that are refined until they converge, after a few steps of all of them. Default: 8.
     pub refined: usize,
 }
 
@@ -60,7 +61,7 @@ impl Default for MatchOptions {
 
 impl MatchOptions {
     /// # Errors
-    /// [`DescriptorError::BadOption`] names the option, its value and what is allowed.
+    /// [`DescriptorError::BadOption`] names the option, its value and its range.
     pub fn validate(&self) -> Result<(), DescriptorError> {
         let bad = |option, value, range| Err(DescriptorError::BadOption { option, value, range });
         if self.near_equal_axes.is_nan() || self.near_equal_axes < 1.0 {
@@ -81,48 +82,63 @@ impl MatchOptions {
 pub struct FormMatch {
     /// Takes the first form, in its own coordinates, onto the second.
     pub alignment: Alignment,
-    /// Their distance once aligned, in the unit of the forms.
+    /// Root mean square distance of the aligned forms, in the unit of the forms.
+    pub rms: f64,
+    /// The distance that [`MatchOptions::distance`] names, in the same unit.
     pub distance: f64,
 }
 
-/// How carefully a stage of the alignment looks.
+/// The effort of a stage of the alignment.
 #[derive(Debug, Clone, Copy)]
 struct Stage {
-    /// Samples of either form that ask for their nearest point.
+    /// Samples of either form that are matched.
     n_samples: usize,
-    /// Points that are asked.
+    /// Points of the other form that are searched.
     among: Detail,
-    /// Largest number of steps.
+    /// Most steps.
     steps: usize,
 }
 
-/// All hypotheses, far enough to tell them apart: their order before the first steps is a poor guess of
-/// their order in the end.
+/// For all hypotheses: enough steps to rank them, since their order before the first step says little about the order
+/// at the end.
 const SKETCH: Stage = Stage { n_samples: 50, among: Detail::Samples, steps: 4 };
 
-/// The best hypotheses.
+/// For the best hypotheses.
 const ROUGH: Stage = Stage { n_samples: 100, among: Detail::Samples, steps: 20 };
 
-/// The best of these.
+/// For the very best.
 const FINE: Stage = Stage { n_samples: usize::MAX, among: Detail::Points, steps: 30 };
 
-/// An error on the coarse sample this many times the limit will not come below it.
+/// An error on the coarse sample beyond this multiple of the limit will not come below the limit.
 const HOPELESS: f64 = 2.0;
 
-/// A step that gains less than this share of the error ends the alignment.
+/// A step that reduces the error by less than this share is the last.
 const LEAST_GAIN: f64 = 1e-3;
 
-/// Aligns two canonical forms rigidly and measures how far apart they are.
+/// Aligns two canonical forms rigidly and measures the distance between them.
 ///
-/// * The principal axes of both are matched under all signs, and with near-equal axes exchanged: 8 to
-///   48 hypotheses (half of them without reflections), told apart by a few steps on a coarse sample.
-/// * The best of them are refined on a coarse sample by iterative closest points, trimmed if asked for,
-///   and the best of them on all samples. Pairs are taken in both directions, so that neither form is
-///   favoured; samples are spread evenly over the form and count the same, so that the triangulation
-///   does not matter; each step solves Kabsch's problem and keeps the chirality of
-///   its hypothesis.
-/// * Reflections are allowed by default: distances cannot see them.
-/// * The distance is symmetric up to the local minimum the refinement ends in.
+/// * The principal axes of both are matched under all signs, and with near-equal axes exchanged: 8 to 48 hypotheses,
+///   half of them without reflections, ranked by a few steps on a coarse sample.
+/// * The best hypotheses are refined on a coarse sample by (trimmed) iterative closest points, and the best of these
+///   on all samples. Pairs are taken in both directions, so neither form is favoured; samples are spread evenly and
+///   count the same, so the triangulation does not matter; each step solves Kabsch's problem and keeps the
+///   handedness of its hypothesis.
+/// * Reflections are allowed by default: distances on a surface do not determine them.
+/// * The distance is symmetric up to the local minimum in which the refinement ends.
+///
+/// ```
+/// use canonform_descriptors::{CanonicalForm, MatchOptions, PreparedForm, match_forms};
+/// use nalgebra::Point3;
+///
+/// let spiral = |turn: f64| {
+///     let at = |i: i32| Point3::new(f64::from(i), (turn + 0.1 * f64::from(i)).sin(), (turn + 0.1 * f64::from(i)).cos());
+///     let form = CanonicalForm::from_points((0..100).map(at).collect(), vec![1.0; 100])?;
+///     PreparedForm::new(&form, 50)
+/// };
+/// let found = match_forms(&spiral(0.0)?, &spiral(2.0)?, &MatchOptions::default())?;
+/// assert!(found.rms < 0.1, "one is the other, turned about its axis");
+/// # Ok::<(), canonform_descriptors::DescriptorError>(())
+/// ```
 ///
 /// # Errors
 /// [`DescriptorError::BadOption`].
@@ -131,17 +147,16 @@ pub fn match_forms(
     b: &PreparedForm,
     options: &MatchOptions,
 ) -> Result<FormMatch, DescriptorError> {
-    // Nothing is farther than infinitely far.
     let found = match_forms_within(a, b, options, f64::INFINITY)?;
-    found.ok_or(DescriptorError::NoExtent { n_points: a.points().len() })
+    found.ok_or(DescriptorError::NoExtent { n_points: a.samples().len() })
 }
 
-/// A match as [`match_forms`] finds it, or `None` once it is clear that its distance is larger than `limit`.
+/// Aligns two forms as [`match_forms`] does, or returns `None` once the root mean square distance turns out to be
+/// larger than `limit`.
 ///
-/// * Nothing is aligned when the [least distance](PreparedForm::least_distance) is larger; that is certain.
-/// * The alignment is given up when after its second stage the error on a coarse sample is more than twice
-///   the limit. That is not certain, but the last stage hardly moves a form any more; on the built-in
-///   dataset no neighbour is lost. With an infinite limit nothing is given up.
+/// * Nothing is aligned if the [lower bound](PreparedForm::least_distance) of the distance is larger.
+/// * The alignment stops if after its second stage the error on a coarse sample is more than twice the limit. This
+///   is a heuristic: the last stage hardly moves a form any more, and on the built-in dataset no neighbour is lost.
 ///
 /// # Errors
 /// [`DescriptorError::BadOption`].
@@ -152,8 +167,7 @@ pub fn match_forms_within(
     limit: f64,
 ) -> Result<Option<FormMatch>, DescriptorError> {
     options.validate()?;
-    let bounded = options.distance == FormDistance::NearestNeighborRms;
-    if bounded && a.least_distance(b) > limit {
+    if a.least_distance(b) > limit {
         return Ok(None);
     }
     let refine_all = |stage, starts: Vec<Alignment>| {
@@ -166,13 +180,19 @@ pub fn match_forms_within(
     let sketched = refine_all(SKETCH, hypotheses(a, b, options));
     let rough = refine_all(ROUGH, motions(sketched).take(options.refined).collect());
     let (error, start) = rough[0];
-    if bounded && error > HOPELESS * limit {
+    if error > HOPELESS * limit {
         return Ok(None);
     }
     let (_, motion) = refine(a, b, start, FINE, options.trim);
-    let distance = distance(a, b, &motion, options.distance);
-    let alignment = b.to_principal().inverse().after(&motion).after(a.to_principal());
-    Ok(Some(FormMatch { alignment, distance }).filter(|found| found.distance <= limit))
+    let found = pairs(a, b, &motion, FINE);
+    let sides = found.split_at(a.samples().len());
+    let rms = rms(sides);
+    let distance = match options.distance {
+        FormDistance::NearestNeighborRms => rms,
+        FormDistance::Hausdorff95 => hausdorff95(sides),
+    };
+    let alignment = b.to_principal.inverse().after(&motion).after(&a.to_principal);
+    Ok(Some(FormMatch { alignment, rms, distance }).filter(|found| found.rms <= limit))
 }
 
 /// Signed permutations of the principal axes that may bring `a` onto `b`.
@@ -180,13 +200,15 @@ fn hypotheses(a: &PreparedForm, b: &PreparedForm, options: &MatchOptions) -> Vec
     const PERMUTATIONS: [[usize; 3]; 6] = [[0, 1, 2], [1, 0, 2], [0, 2, 1], [2, 1, 0], [1, 2, 0], [2, 0, 1]];
     let exchangeable = |i: usize, j: usize| {
         let near = |spread: [f64; 3]| spread[i.min(j)] <= options.near_equal_axes * spread[i.max(j)];
-        near(a.axis_spread()) && near(b.axis_spread())
+        near(a.axis_spread) && near(b.axis_spread)
     };
+    // Principal axes may be left-handed: then a motion between them reflects if the motion in space does not.
+    let flipped = a.to_principal.reflected != b.to_principal.reflected;
     let mut motions = Vec::new();
     for permutation in PERMUTATIONS {
         let allowed = (0..3).all(|i| {
             let j = permutation[i];
-            // Axes 0 and 2 are exchangeable only when both are close to the axis between them.
+            // Axes 0 and 2 are exchangeable only if both are close to axis 1.
             i == j
                 || (i.abs_diff(j) == 1 && exchangeable(i, j))
                 || (i.abs_diff(j) == 2 && exchangeable(0, 1) && exchangeable(1, 2))
@@ -202,8 +224,8 @@ fn hypotheses(a: &PreparedForm, b: &PreparedForm, options: &MatchOptions) -> Vec
             let motion = Alignment::about_origin(matrix);
             let allowed = match options.reflections {
                 Reflections::Allow => true,
-                Reflections::Forbid => !motion.reflected,
-                Reflections::Require => motion.reflected,
+                Reflections::Forbid => motion.reflected == flipped,
+                Reflections::Require => motion.reflected != flipped,
             };
             if allowed {
                 motions.push(motion);
@@ -215,8 +237,7 @@ fn hypotheses(a: &PreparedForm, b: &PreparedForm, options: &MatchOptions) -> Vec
 
 type Pair = (Point3<f64>, Point3<f64>, f64);
 
-/// Closest pairs in both directions: a point of `a`, its partner in `b`, their squared distance under
-/// `motion`.
+/// Closest pairs in both directions: a point of `a`, its partner in `b`, and their squared distance under `motion`.
 fn pairs(a: &PreparedForm, b: &PreparedForm, motion: &Alignment, stage: Stage) -> Vec<Pair> {
     let back = motion.inverse();
     let from_a = a.samples().iter().take(stage.n_samples).map(|p| {
@@ -232,7 +253,7 @@ fn pairs(a: &PreparedForm, b: &PreparedForm, motion: &Alignment, stage: Stage) -
 
 /// Root mean square of the closest share `trim` of the pairs.
 fn error(pairs: &[Pair], trim: f64) -> f64 {
-    let kept = believed(pairs.len(), trim);
+    let kept = share_of(pairs.len(), trim);
     let mut squares: Vec<f64> = pairs.iter().map(|pair| pair.2).collect();
     if kept < squares.len() {
         squares.select_nth_unstable_by(kept, f64::total_cmp);
@@ -240,11 +261,11 @@ fn error(pairs: &[Pair], trim: f64) -> f64 {
     (squares[..kept].iter().sum::<f64>() / kept.max(1) as f64).sqrt()
 }
 
-fn believed(n: usize, trim: f64) -> usize {
+fn share_of(n: usize, trim: f64) -> usize {
     ((n as f64 * trim).ceil() as usize).min(n)
 }
 
-/// Trimmed iterative closest points from `start`; the best motion and its error.
+/// Trimmed iterative closest points from `start`. Returns the best motion and its error.
 fn refine(a: &PreparedForm, b: &PreparedForm, start: Alignment, stage: Stage, trim: f64) -> (f64, Alignment) {
     let mut motion = start;
     let mut best = (f64::INFINITY, start);
@@ -258,7 +279,7 @@ fn refine(a: &PreparedForm, b: &PreparedForm, start: Alignment, stage: Stage, tr
         if settled {
             break;
         }
-        let kept = believed(found.len(), trim);
+        let kept = share_of(found.len(), trim);
         if kept < found.len() {
             found.select_nth_unstable_by(kept, |x, y| x.2.total_cmp(&y.2));
         }
@@ -271,32 +292,29 @@ fn refine(a: &PreparedForm, b: &PreparedForm, start: Alignment, stage: Stage, tr
     best
 }
 
-fn distance(a: &PreparedForm, b: &PreparedForm, motion: &Alignment, kind: FormDistance) -> f64 {
-    let found = pairs(a, b, motion, FINE);
-    let (from_a, from_b) = found.split_at(a.samples().len());
-    match kind {
-        FormDistance::NearestNeighborRms => {
-            let mean = |side: &[Pair]| side.iter().map(|pair| pair.2).sum::<f64>() / side.len().max(1) as f64;
-            (0.5 * (mean(from_a) + mean(from_b))).sqrt()
-        }
-        FormDistance::Hausdorff95 => {
-            let quantile = |side: &[Pair]| {
-                let mut squares: Vec<f64> = side.iter().map(|pair| pair.2).collect();
-                let rank = believed(squares.len(), 0.95).saturating_sub(1);
-                *squares.select_nth_unstable_by(rank, f64::total_cmp).1
-            };
-            quantile(from_a).max(quantile(from_b)).sqrt()
-        }
-    }
+/// See [`FormDistance::NearestNeighborRms`].
+fn rms((from_a, from_b): (&[Pair], &[Pair])) -> f64 {
+    let mean = |side: &[Pair]| side.iter().map(|pair| pair.2).sum::<f64>() / side.len().max(1) as f64;
+    (0.5 * (mean(from_a) + mean(from_b))).sqrt()
+}
+
+/// See [`FormDistance::Hausdorff95`].
+fn hausdorff95((from_a, from_b): (&[Pair], &[Pair])) -> f64 {
+    let quantile = |side: &[Pair]| {
+        let mut squares: Vec<f64> = side.iter().map(|pair| pair.2).collect();
+        let rank = share_of(squares.len(), 0.95).saturating_sub(1);
+        *squares.select_nth_unstable_by(rank, f64::total_cmp).1
+    };
+    quantile(from_a).max(quantile(from_b)).sqrt()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::CanonicalForm;
+    use crate::canonical_form::CanonicalForm;
     use nalgebra::{Rotation3, Vector3};
 
-    /// A lopsided three-armed figure without symmetry.
+    /// A figure of three arms without symmetry.
     fn figure(n: usize, bend: f64) -> Vec<Point3<f64>> {
         (0..n)
             .map(|i| {
@@ -325,7 +343,7 @@ mod tests {
     }
 
     #[test]
-    fn a_moved_form_is_at_distance_zero_and_the_motion_is_found() {
+    fn a_moved_form_has_distance_zero_and_its_motion_is_found() {
         let points = figure(600, 1.0);
         for mirror in [1.0, -1.0] {
             let found = match_forms(
@@ -346,18 +364,29 @@ mod tests {
     }
 
     #[test]
-    fn a_mirror_image_is_not_the_same_when_reflections_are_forbidden() {
+    fn a_mirror_image_differs_if_reflections_are_forbidden() {
         let points = figure(600, 1.0);
-        let options = MatchOptions { reflections: Reflections::Forbid, ..Default::default() };
-        let found = match_forms(&prepared(&points), &prepared(&turned(&points, -1.0)), &options).unwrap();
-        assert!(found.distance > 0.05 && !found.alignment.reflected);
-        let options = MatchOptions { reflections: Reflections::Require, ..Default::default() };
-        let same = match_forms(&prepared(&points), &prepared(&points), &options).unwrap();
-        assert!(same.distance > 0.05 && same.alignment.reflected);
+        let by = |reflections, other: &PreparedForm| {
+            let options = MatchOptions { reflections, ..Default::default() };
+            match_forms(&prepared(&points), other, &options).unwrap()
+        };
+        // Whatever the handedness of the principal axes.
+        for axis in 0..3 {
+            let mut signs = Vector3::repeat(1.0);
+            signs[axis] = -1.0;
+            let mirrored: Vec<_> =
+                points.iter().map(|p| Point3::from(p.coords.component_mul(&signs))).collect();
+            let found = by(Reflections::Forbid, &prepared(&mirrored));
+            assert!(found.rms > 0.05 && !found.alignment.reflected, "{axis}");
+            let found = by(Reflections::Require, &prepared(&mirrored));
+            assert!(found.rms < 1e-9 && found.alignment.reflected, "{axis}");
+        }
+        let same = by(Reflections::Require, &prepared(&points));
+        assert!(same.rms > 0.05 && same.alignment.reflected);
     }
 
     #[test]
-    fn distance_is_symmetric_and_grows_with_the_difference() {
+    fn the_distance_is_symmetric_and_grows_with_the_difference() {
         let options = MatchOptions::default();
         let base = prepared(&figure(600, 1.0));
         let mut last = 0.0;
@@ -376,7 +405,7 @@ mod tests {
     }
 
     #[test]
-    fn the_least_distance_is_never_above_the_distance_and_far_pairs_are_given_up() {
+    fn the_lower_bound_holds_and_far_pairs_are_abandoned() {
         let forms: Vec<_> = [0.2, 1.0, 2.5, 4.0, 9.0].map(|bend| prepared(&figure(500, bend))).into();
         let options = MatchOptions::default();
         let mut bounded = 0;
@@ -388,16 +417,16 @@ mod tests {
             bounded += usize::from(least > 0.1 * whole.distance);
             let within = |limit| match_forms_within(a, b, &options, limit).unwrap();
             assert_eq!(within(f64::INFINITY), Some(whole));
-            assert_eq!(within(whole.distance), Some(whole), "nothing is given up at its own distance");
+            assert_eq!(within(whole.distance), Some(whole), "at the limit");
             assert_eq!(within(0.9 * whole.distance - 1e-9), None);
         }
-        assert!(bounded > 0, "the bound says something");
+        assert!(bounded > 0, "the bound is not trivial");
     }
 
     #[test]
     fn near_equal_axes_are_exchanged() {
-        // Two crosses whose long arms differ by 2 %, the other way round: without an exchange the
-        // heads at the ends of the arms could not meet.
+        // Two crosses whose longer arm is not the same one: the heads at the ends of the arms only meet if axes
+        // are exchanged.
         let cross = |along: f64, across: f64| -> Vec<Point3<f64>> {
             (0..300)
                 .flat_map(|i| {

@@ -4,35 +4,34 @@ use linalg::{GeneralizedEigen, Matrix, SparseSymmetric, smallest_eigenpairs};
 use surface::IntrinsicMesh;
 use surface::laplacian::Laplacian;
 
-use crate::DescriptorError;
+use crate::error::DescriptorError;
 
-/// The smallest eigenpairs of the Laplace-Beltrami operator of a surface scaled to unit area,
-/// `W Φ = A Φ Λ`.
+/// The smallest eigenpairs of the Laplace-Beltrami operator of a surface scaled to unit area, `W Φ = A Φ Λ`.
 ///
-/// Invariant to isometries, so to bending, and to scale; hardly changes with the triangulation.
+/// Invariant to scale and to isometries such as bending; hardly changes with the triangulation.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LaplaceSpectrum {
-    /// Eigenvalues, ascending from zero: that of the surface itself times its area.
+    /// Eigenvalues, ascending from zero: those of the surface in its own unit, times its area.
     pub values: Vec<f64>,
     /// Eigenfunctions at the vertices as columns: `Φ' A Φ = I`.
     pub vectors: Matrix,
-    /// The diagonal of `A`: the share of the area around every vertex.
+    /// The diagonal of `A`: the share of the area around each vertex.
     pub masses: Vec<f64>,
     /// The area of the surface, in squared mesh units.
     pub area: f64,
 }
 
 impl LaplaceSpectrum {
-    /// Eigenpairs that the signatures of a surface are made from.
+    /// Number of eigenpairs that the signatures of a surface use.
     pub const DESCRIBING: usize = 60;
 
-    /// The `m` smallest eigenpairs, the constant function among them; fewer on a surface of fewer vertices.
+    /// The `m` smallest eigenpairs, including the constant function; fewer on a surface with fewer vertices.
     ///
     /// Cotangent stiffness on an intrinsic Delaunay triangulation, lumped masses: see
-    /// [`Laplacian`] and [`smallest_eigenpairs`].
+    /// [`Laplacian`] and [`smallest_eigenpairs`]. Cost: one sparse factorisation.
     ///
     /// # Errors
-    /// [`DescriptorError::NoExtent`] without faces; [`DescriptorError::Linalg`].
+    /// [`DescriptorError::NoExtent`] for a surface without area; [`DescriptorError::Linalg`].
     pub fn new(mesh: &IntrinsicMesh, m: usize) -> Result<Self, DescriptorError> {
         let laplacian = Laplacian::new(mesh);
         let mut masses = laplacian.masses();
@@ -59,7 +58,7 @@ mod tests {
     }
 
     #[test]
-    fn a_sphere_has_eigenvalues_l_times_l_plus_1_with_2_l_plus_1_copies() {
+    fn the_eigenvalues_of_a_sphere_are_l_times_l_plus_1_with_multiplicity_2_l_plus_1() {
         let mut previous = f64::INFINITY;
         for level in [3, 4] {
             let found = spectrum(&shapes::icosphere(level), 49);
@@ -73,7 +72,7 @@ mod tests {
     }
 
     #[test]
-    fn a_rectangle_has_those_of_standing_waves() {
+    fn the_eigenvalues_of_a_rectangle_are_those_of_standing_waves() {
         // With free ends: pi^2 (a^2 / w^2 + b^2 / h^2), times the area w h.
         let (w, h) = (60, 40);
         let found = spectrum(&shapes::grid(w + 1, h + 1, 0.1), 30);
@@ -88,7 +87,7 @@ mod tests {
     }
 
     #[test]
-    fn bending_and_scale_change_nothing() {
+    fn bending_and_scale_do_not_change_the_spectrum() {
         let sheet = shapes::grid(21, 17, 0.1);
         let mut large = shapes::fold(&sheet, 0.8, 1.9);
         large.positions.iter_mut().for_each(|p| p.coords *= 1e3);
@@ -100,7 +99,7 @@ mod tests {
     }
 
     #[test]
-    fn every_component_has_a_constant_function() {
+    fn every_component_adds_a_constant_function() {
         let parts = [shapes::icosphere(2), shapes::grid(9, 9, 0.2), shapes::torus(20, 9, 1.0, 0.3)];
         let found = spectrum(&shapes::disjoint(&parts), 12);
         assert!(found.values[2] < 1e-9 && found.values[3] > 0.1, "{:?}", found.values);

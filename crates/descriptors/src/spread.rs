@@ -6,13 +6,13 @@ use nalgebra::Point3;
 pub(crate) struct Spread {
     /// The samples, farthest first: any leading part of them is evenly spread too.
     pub(crate) samples: Vec<usize>,
-    /// For every point the position in `samples` of the nearest one; of the first among equals.
+    /// For every point, the position in `samples` of the nearest one, the first in case of a tie.
     pub(crate) nearest: Vec<usize>,
-    /// No point is farther than this from the nearest sample.
+    /// No point is farther from the nearest sample.
     pub(crate) covering: f64,
 }
 
-/// Up to `n` of the points, the one farthest from the origin first; fewer where points coincide.
+/// Chooses up to `n` of the points, the one farthest from the origin first; fewer if points coincide.
 ///
 /// Cost `O(p n)`.
 pub(crate) fn spread(points: &[Point3<f64>], n: usize) -> Spread {

@@ -26,7 +26,8 @@ use crate::solver::DistanceSolver;
 /// assert_eq!(Method::named("fast-marching"), Some(Method::default()));
 /// # Ok::<(), canonform_geodesics::GeodesicError>(())
 /// ```
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Method {
     /// [`FastMarching`].
     FastMarching(FastMarchingOptions),
@@ -37,6 +38,7 @@ pub enum Method {
     /// [`Dijkstra`].
     Dijkstra,
     /// [`BreadthFirst`].
+    #[serde(rename = "bfs")]
     BreadthFirst,
 }
 
@@ -74,13 +76,11 @@ impl Method {
 
     fn entry(self) -> (&'static str, &'static str) {
         match self {
-            Self::FastMarching(_) => {
-                ("fast-marching", "a front over the triangles, of first order in the edge length")
-            }
-            Self::Heat(_) => ("heat", "from the direction of heat flow, smooth"),
-            Self::Exact => ("exact", "exact distances on the polyhedral surface"),
-            Self::Dijkstra => ("dijkstra", "along edges only, an upper bound"),
-            Self::BreadthFirst => ("bfs", "number of edges times their mean length"),
+            Self::FastMarching(_) => ("fast-marching", "Fast marching on triangles"),
+            Self::Heat(_) => ("heat", "From the flow of heat: smooth, fast for many sources"),
+            Self::Exact => ("exact", "Exact on the polyhedral surface"),
+            Self::Dijkstra => ("dijkstra", "Shortest paths along edges"),
+            Self::BreadthFirst => ("bfs", "Number of edges times the mean edge length"),
         }
     }
 

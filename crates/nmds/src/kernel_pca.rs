@@ -6,7 +6,8 @@ use crate::squares::{center_columns, check_extent};
 use crate::{Embedding, NmdsError, NystromOptions, Regularization};
 
 /// The width `sigma` of the Gaussian kernel `exp(-d^2 / (2 sigma^2))`.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Bandwidth {
     /// The mean distance between landmarks and points, as in Liu, Jain and Zhang.
     #[default]

@@ -6,7 +6,8 @@ use crate::NmdsError;
 
 /// How the pseudo-inverse `S⁺` in the Nystrom approximation `Ê = R S⁺ R'` is regularised: small eigenvalues of `S` are
 /// mostly noise, and their reciprocals are large.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Regularization {
     /// Inverts the `rank` eigenvalues of largest magnitude and drops the rest (eq. 4): the method of the paper, and the
     /// fastest.
@@ -38,7 +39,8 @@ impl Default for Regularization {
 }
 
 /// The `α` of [`Regularization::Rpi`].
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum RpiAlpha {
     /// `α = c σ1⁴` for this c, which has no unit; `σ1` is the largest magnitude of the eigenvalues. 1e-10 is safe for few
     /// and many samples. With accurate distances and 100 samples, 1e-12 to 1e-14 reconstructs better; below 20 samples,
@@ -71,7 +73,29 @@ impl RpiAlpha {
 }
 
 impl Regularization {
-    /// Its name in options and records.
+    /// All kinds, with their default options.
+    #[must_use]
+    pub fn all() -> [Self; 4] {
+        [
+            Self::LowRank { rank: None },
+            Self::Rpi { alpha: RpiAlpha::default() },
+            Self::None,
+            Self::Cur { rank: None },
+        ]
+    }
+
+    /// One line for help texts.
+    #[must_use]
+    pub fn summary(self) -> &'static str {
+        match self {
+            Self::LowRank { .. } => "Keep the eigenvalues of largest magnitude",
+            Self::Rpi { .. } => "Keep all eigenvalues and damp the small ones (regularised pseudo-inverse)",
+            Self::None => "Keep all eigenvalues above rounding error",
+            Self::Cur { .. } => "CUR decomposition: keep the columns of the first samples",
+        }
+    }
+
+    /// The name used on the command line and in records.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {

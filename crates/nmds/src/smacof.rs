@@ -7,7 +7,8 @@ use crate::squares::{check_dim, check_extent};
 use crate::{Embedding, NmdsError};
 
 /// Options of [`smacof`].
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub struct SmacofOptions {
     /// Maximum number of steps. Default: 300.
     pub max_iterations: usize,

@@ -4,7 +4,8 @@ use std::path::Path;
 use std::sync::Arc;
 
 use axum::body::Bytes;
-use canonform::{CanonicalForm, PipelineError, ShapeSearch};
+use canonform::descriptors::PreparedShape;
+use canonform::{Error, ShapeSearch};
 use serde::Serialize;
 
 use crate::ServeOptions;
@@ -42,12 +43,11 @@ pub(crate) struct ShapeSummary {
 pub(crate) struct Query {
     pub(crate) name: String,
     pub(crate) measured: Measured,
-    /// Its fused signature and form, as an index keeps them.
-    pub(crate) description: (Vec<f32>, CanonicalForm),
+    pub(crate) shape: PreparedShape,
 }
 
 impl App {
-    pub(crate) fn open(index: &Path, options: ServeOptions) -> Result<Self, PipelineError> {
+    pub(crate) fn open(index: &Path, options: ServeOptions) -> Result<Self, Error> {
         let search = ShapeSearch::open(index)?;
         let shapes = search.entries()?.into_iter().map(|(id, entry)| {
             let count = |name| entry.fact(name).map(|count| count as u64);
@@ -73,12 +73,12 @@ impl App {
     }
 
     /// A shape of the index with the form of all its vertices, measured now or before.
-    pub(crate) fn indexed(&self, id: &str) -> Result<Arc<Measured>, PipelineError> {
+    pub(crate) fn indexed(&self, id: &str) -> Result<Arc<Measured>, Error> {
         if let Some(known) = self.measured.get(id) {
             return Ok(known);
         }
         let mesh = self.search.mesh(id)?;
-        let measured = Arc::new(Measured::new(&mesh, self.search.describe_options())?);
+        let measured = Arc::new(Measured::new(&mesh, &self.search.describe_options().form)?);
         self.measured.put(id.to_owned(), measured.clone(), measured.bytes());
         Ok(measured)
     }

@@ -7,7 +7,8 @@ use std::time::Duration;
 use axum::Json;
 use axum::http::{HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
-use canonform::{IndexError, PipelineError};
+use canonform::index::IndexError;
+use canonform::{Error, Remedy};
 use mesh::{Fault, MeshError};
 use serde::Serialize;
 
@@ -16,9 +17,9 @@ use serde::Serialize;
 pub enum ServerError {
     /// The index.
     #[error(transparent)]
-    Pipeline(#[from] PipelineError),
+    Pipeline(#[from] Error),
     /// The address.
-    #[error("cannot listen on {address}: {source}; {remedy}", remedy = remedy(source))]
+    #[error("cannot listen on {address}: {source}; {remedy}", remedy = listen_remedy(source))]
     Listen {
         /// The address.
         address: SocketAddr,
@@ -30,7 +31,7 @@ pub enum ServerError {
     Runtime(std::io::Error),
 }
 
-fn remedy(source: &std::io::Error) -> &'static str {
+fn listen_remedy(source: &std::io::Error) -> &'static str {
     match source.kind() {
         std::io::ErrorKind::AddrInUse => {
             "another program has it: end that one, or pass --listen with another port (0 takes a free one)"
@@ -107,16 +108,14 @@ impl ApiError {
 
     /// What is wrong with a mesh that was sent, in the words of the command line: with its name in front unless the
     /// fault has it.
-    pub(crate) fn of_upload(name: &Path, fault: &PipelineError) -> Self {
+    pub(crate) fn of_upload(name: &Path, fault: &Error) -> Self {
         let status = match fault {
-            PipelineError::Mesh(MeshError::UnknownFormat { .. }) => StatusCode::UNSUPPORTED_MEDIA_TYPE,
-            PipelineError::Mesh(MeshError::File { fault: Fault::OverLimit { .. }, .. }) => {
+            Error::Mesh(MeshError::UnknownFormat { .. }) => StatusCode::UNSUPPORTED_MEDIA_TYPE,
+            Error::Mesh(MeshError::File { fault: Fault::OverLimit { .. }, .. }) => {
                 StatusCode::PAYLOAD_TOO_LARGE
             }
-            PipelineError::Mesh(MeshError::File { .. } | MeshError::StrayFile { .. }) => {
-                StatusCode::BAD_REQUEST
-            }
-            PipelineError::Index(_) => return fault.into(),
+            Error::Mesh(MeshError::File { .. } | MeshError::StrayFile { .. }) => StatusCode::BAD_REQUEST,
+            Error::Index(_) => return fault.into(),
             _ => StatusCode::UNPROCESSABLE_ENTITY,
         };
         let text = fault.to_string();
@@ -125,7 +124,11 @@ impl ApiError {
         let is_named = names.iter().any(|name| text.contains(&name.display().to_string()));
         let too_large = status == StatusCode::PAYLOAD_TOO_LARGE;
         let error = Self::new(status, if is_named { text } else { format!("{}: {text}", name.display()) });
-        if too_large { error.with_remedy("start the server with a larger --max-vertices") } else { error }
+        match remedy(fault) {
+            _ if too_large => error.with_remedy("start the server with a larger --max-vertices"),
+            Some(remedy) => error.with_remedy(remedy),
+            None => error,
+        }
     }
 
     #[cfg(test)]
@@ -135,21 +138,39 @@ impl ApiError {
 }
 
 /// Faults of indexed shapes.
-impl From<&PipelineError> for ApiError {
-    fn from(fault: &PipelineError) -> Self {
+impl From<&Error> for ApiError {
+    fn from(fault: &Error) -> Self {
         let status = match fault {
-            PipelineError::Index(IndexError::NoSuchShape { .. }) | PipelineError::MeshGone { .. } => {
-                StatusCode::NOT_FOUND
-            }
-            PipelineError::MeshChanged { .. } => StatusCode::GONE,
+            Error::Index(IndexError::NoSuchShape { .. }) | Error::MeshGone { .. } => StatusCode::NOT_FOUND,
+            Error::MeshChanged { .. } => StatusCode::GONE,
             _ => StatusCode::INTERNAL_SERVER_ERROR,
         };
-        Self::new(status, fault.to_string())
+        let error = Self::new(status, fault.to_string());
+        match remedy(fault) {
+            Some(remedy) => error.with_remedy(remedy),
+            None => error,
+        }
     }
 }
 
-impl From<PipelineError> for ApiError {
-    fn from(fault: PipelineError) -> Self {
+/// What to do about an error, in words that do not depend on a program.
+pub(crate) fn remedy(fault: &Error) -> Option<&'static str> {
+    Some(match fault.remedy()? {
+        Remedy::KeepLargestOrBridge | Remedy::BridgeComponents => {
+            "join the components of the mesh, or keep the largest one only"
+        }
+        Remedy::RestoreMesh => {
+            "put the mesh file back, start the server in the folder that the index was built in, or build the index \
+             again"
+        }
+        Remedy::BuildIndexAgain => "build the index again",
+        Remedy::UseNystrom => "simplify the mesh, or build the index with NMDS, which needs less memory",
+        _ => return None,
+    })
+}
+
+impl From<Error> for ApiError {
+    fn from(fault: Error) -> Self {
         Self::from(&fault)
     }
 }

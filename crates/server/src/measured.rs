@@ -1,6 +1,7 @@
 //! A mesh with its form, as they are shown.
 
-use canonform::{CanonicalForm, DescribeOptions, Overlay, PipelineError, Surface, SurfaceForm};
+use canonform::descriptors::CanonicalForm;
+use canonform::{Embedded, Error, FormOptions, Overlay, Surface, embed};
 use mesh::TriMesh;
 use view::interactive::Geometry;
 
@@ -18,15 +19,23 @@ const DOT: f64 = 0.025;
 /// A repaired surface and the form of all its vertices.
 pub(crate) struct Measured {
     pub(crate) surface: Surface,
-    pub(crate) form: SurfaceForm,
+    pub(crate) form: CanonicalForm,
+    /// How far every vertex is from the first sample along the surface, in mesh units.
+    distances: Vec<f64>,
 }
 
 impl Measured {
     /// Measures a mesh as the shapes of an index are.
-    pub(crate) fn new(mesh: &TriMesh, options: &DescribeOptions) -> Result<Self, PipelineError> {
+    pub(crate) fn new(mesh: &TriMesh, options: &FormOptions) -> Result<Self, Error> {
         let surface = Surface::new(mesh, &options.repair)?;
-        let form = SurfaceForm::new(&surface, options)?;
-        Ok(Self { surface, form })
+        let embedded = embed(&surface, options, &())?;
+        Self::of(surface, &embedded)
+    }
+
+    /// What is shown of a surface that was embedded.
+    pub(crate) fn of(surface: Surface, embedded: &Embedded) -> Result<Self, Error> {
+        let form = embedded.form(&surface)?;
+        Ok(Self { surface, form, distances: embedded.distances.column(0).to_vec() })
     }
 
     /// About as many bytes as it takes.
@@ -37,13 +46,13 @@ impl Measured {
 
     /// The repaired mesh, coloured by how far every vertex is from the first sample.
     pub(crate) fn mesh(&self) -> Geometry {
-        Geometry::new(self.surface.mesh()).with_values(DISTANCE, &self.form.distances)
+        Geometry::new(self.surface.mesh()).with_values(DISTANCE, &self.distances)
     }
 
     /// The form over the faces of the mesh, in the same colours.
     pub(crate) fn form(&self) -> Geometry {
-        let form = self.form.form.to_mesh(self.surface.mesh());
-        Geometry::new(&form).with_values(DISTANCE, &self.form.distances)
+        let form = self.form.to_mesh(self.surface.mesh());
+        Geometry::new(&form).with_values(DISTANCE, &self.distances)
     }
 }
 

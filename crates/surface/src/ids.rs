@@ -1,9 +1,9 @@
 //! Index newtypes, so that a vertex can never be used as a face.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Index of a vertex of a mesh, counted from zero.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[repr(transparent)]
 pub struct VertexId(pub u32);
 

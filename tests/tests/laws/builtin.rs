@@ -1,10 +1,8 @@
 //! Expected results on the built-in dataset.
 
-use canonform::{
-    DescribeOptions, EmbedOptions, MatchOptions, Normalization, PreparedForms, ShapeDistance, StressChoice,
-    describe, embed, form_distances,
-};
+use canonform::{DescribeOptions, FormOptions, describe, embed, form_matches};
 use datasets::{ArticulatedOptions, articulated};
+use descriptors::{MatchOptions, Normalization, ShapeMetric, ShapePair};
 use rayon::prelude::*;
 use retrieval::{Labels, evaluate};
 
@@ -15,16 +13,15 @@ fn canonical_forms_retrieve_their_families() {
     let options = ArticulatedOptions { n_vertices: 1000, ..ArticulatedOptions::default() };
     let shapes = articulated(&options).unwrap();
     let labels = Labels::new(&shapes.iter().map(|shape| shape.label.as_str()).collect::<Vec<_>>());
-    let embedding = EmbedOptions { stress: StressChoice::Skip, ..EmbedOptions::default() };
     let forms: Vec<_> = shapes
         .par_iter()
         .map(|shape| {
             let surface = surface(&shape.mesh);
-            embed(&surface, &embedding, &()).unwrap().form(&surface).unwrap()
+            embed(&surface, &FormOptions::default(), &()).unwrap().form(&surface).unwrap()
         })
         .collect();
-    let prepared = PreparedForms::new(&forms, Normalization::Raw).unwrap();
-    let distances = form_distances(&prepared, &MatchOptions::default(), &()).unwrap();
+    let distances =
+        form_matches(&forms, Normalization::Raw, &MatchOptions::default(), &()).unwrap().distances;
     let scores = evaluate(&distances, &labels, 1).unwrap();
     println!("{} shapes: NN {}, mAP {:.4}", scores.n, scores.mean.nn, scores.mean.map);
     assert_eq!((scores.n, scores.mean.nn), (30, 1.0));
@@ -35,13 +32,25 @@ fn canonical_forms_retrieve_their_families() {
 fn verdicts_distinguish_poses_from_families() {
     let options = ArticulatedOptions { n_vertices: 1000, ..ArticulatedOptions::default() };
     let shapes = articulated(&options).unwrap();
-    let described: Vec<_> =
-        shapes.par_iter().map(|shape| describe(&shape.mesh, &DescribeOptions::default()).unwrap()).collect();
+    let described: Vec<_> = shapes
+        .par_iter()
+        .map(|shape| {
+            let description = describe(&surface(&shape.mesh), &DescribeOptions::default());
+            description.and_then(|description| description.prepare()).unwrap()
+        })
+        .collect();
     let pairs: Vec<(usize, usize)> =
         (0..shapes.len()).flat_map(|i| (i + 1..shapes.len()).map(move |j| (i, j))).collect();
     pairs.par_iter().for_each(|&(i, j)| {
-        let distance = ShapeDistance::between(&described[i], &described[j]).unwrap();
+        let pair = [&described[i], &described[j]];
+        let distance = ShapePair::new(&ShapeMetric::default(), pair).distance().unwrap();
         let is_family = shapes[i].label == shapes[j].label;
-        assert_eq!(distance.is_same(), is_family, "{} {} {distance:?}", shapes[i].name, shapes[j].name);
+        assert_eq!(
+            ShapeMetric::is_same(distance),
+            is_family,
+            "{} {} {distance:?}",
+            shapes[i].name,
+            shapes[j].name
+        );
     });
 }

@@ -1,19 +1,16 @@
 //! Laws of embeddings, on distances of meshes and through the whole pipeline.
 
-use canonform::{
-    Bandwidth, EmbedMethod, EmbedOptions, RpiAlpha, Samples, Sampling, SmacofOptions, StressChoice,
-    StressKind, Variance, embedded_distances,
-};
+use canonform::{EmbedMethod, FormOptions, Samples, StressChoice, StressKind, embedded_distances};
 use datasets::Family;
-use geodesics::{FirstSample, farthest_point_sampling};
+use geodesics::{FirstSample, Sampling, Variance, farthest_point_sampling};
 use linalg::{DistanceMatrix, LandmarkDistances, Matrix};
 use mesh::shapes;
 use nmds::{
-    NystromOptions, Reconstruction, Regularization, SpectralOptions, classical, classical_full,
-    normalized_stress, nystrom, paper_stress,
+    Bandwidth, NystromOptions, Reconstruction, Regularization, RpiAlpha, SmacofOptions, SpectralOptions,
+    classical, classical_full, normalized_stress, nystrom, paper_stress,
 };
 
-use crate::support::{body, embedded, gap, marching, moved};
+use crate::support::{body, embedded, gap, marching, measured, moved};
 
 /// The columns of some points of a matrix of distances.
 fn landmark_columns(distances: &DistanceMatrix, landmarks: Vec<usize>) -> LandmarkDistances {
@@ -86,10 +83,7 @@ fn more_samples_approach_the_optimal_stress_from_above() {
 #[test]
 fn the_interval_of_the_estimated_stress_contains_the_exact_one() {
     let mesh = body(Family::Cat);
-    let stress = |choice| {
-        let options = EmbedOptions { stress: choice, ..EmbedOptions::default() };
-        embedded(&mesh, &options).report.stress.unwrap()
-    };
+    let stress = |choice| measured(&mesh, &FormOptions::default(), choice).report.stress.unwrap();
     let exact = stress(StressChoice::Exact);
     let estimate = stress(StressChoice::Estimate);
     assert_eq!((exact.kind, estimate.kind), (StressKind::Exact, StressKind::Estimated));
@@ -112,7 +106,7 @@ fn exact_methods_reproduce_a_flat_sheet() {
         EmbedMethod::Landmark,
         EmbedMethod::Smacof { regularization: rank, descent },
     ] {
-        let options = EmbedOptions { method, dim: 2, ..EmbedOptions::default() };
+        let options = FormOptions { method, dim: 2, ..FormOptions::default() };
         let result = embedded(&sheet, &options);
         let found = embedded_distances(&result.embedding.coords).unwrap();
         let gap = gap(found.as_slice(), flat.as_slice());
@@ -143,11 +137,9 @@ fn methods() -> Vec<EmbedMethod> {
 fn no_method_depends_on_the_unit_of_length() {
     let mesh = body(Family::Cat);
     let embed = |mesh: &_, method: &EmbedMethod, sampling| {
-        let (stress, samples) = (StressChoice::Estimate, Samples::Count(100));
-        embedded(
-            mesh,
-            &EmbedOptions { method: method.clone(), sampling, stress, samples, ..EmbedOptions::default() },
-        )
+        let samples = Samples::Count(100);
+        let options = FormOptions { method: method.clone(), sampling, samples, ..FormOptions::default() };
+        measured(mesh, &options, StressChoice::Estimate)
     };
     let samplings = [Sampling::Farthest, Sampling::Random, Sampling::Incremental(Variance::Least)];
     let defaults = samplings.map(|sampling| (EmbedMethod::default(), sampling));
@@ -175,7 +167,7 @@ fn classical_scaling_has_the_lowest_stress_and_smacof_the_lowest_normalized_stre
     let solver = marching().prepare(&mesh.intrinsic()).unwrap();
     let distances = solver.distance_matrix().unwrap();
     let coords = |method: EmbedMethod| {
-        let options = EmbedOptions { method, stress: StressChoice::Skip, ..EmbedOptions::default() };
+        let options = FormOptions { method, ..FormOptions::default() };
         embedded(&mesh, &options).embedding.coords
     };
     let optimum = paper_stress(&coords(EmbedMethod::Classical), &distances);

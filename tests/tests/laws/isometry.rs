@@ -1,21 +1,24 @@
 //! Invariance to folding, motions and renumbering, and up to the unit, to scaling.
 
-use canonform::{
-    EmbedMethod, EmbedOptions, FirstSample, GeodesicMethod, MatchOptions, Normalization, PreparedForms,
-    Samples, form_distances,
-};
+use canonform::{EmbedMethod, FormOptions, Samples, StressChoice, form_matches};
 use datasets::Family;
+use descriptors::{MatchOptions, Normalization};
+use geodesics::{FirstSample, Method};
 use linalg::DistanceMatrix;
 use mesh::{TriMesh, shapes};
 use nalgebra::{Isometry3, Point3, Vector3};
 use surface::VertexId;
 
 use crate::support::{
-    all_vertices, body, columns, embedded, form_pairs, gap, marching, moved, permutation, surface,
+    all_vertices, body, columns, form_pairs, gap, marching, measured, moved, permutation, surface,
 };
 
-fn few_samples() -> EmbedOptions {
-    EmbedOptions { samples: Samples::Count(30), method: EmbedMethod::low_rank(8), ..EmbedOptions::default() }
+fn few_samples() -> FormOptions {
+    FormOptions { samples: Samples::Count(30), method: EmbedMethod::low_rank(8), ..FormOptions::default() }
+}
+
+fn stress_of(mesh: &TriMesh, options: &FormOptions) -> f64 {
+    measured(mesh, options, StressChoice::Auto).report.stress.unwrap().value
 }
 
 /// A sheet of irregular triangles with a straight column of vertices along which it can be folded.
@@ -36,7 +39,7 @@ fn folding_along_a_mesh_line_changes_no_distance_and_no_embedding() {
     let flat_form = form_pairs(&sheet, &few_samples());
     for angle in [0.4, 1.6, 2.9] {
         let folded = shapes::fold(&sheet, crease, angle);
-        for method in [marching(), GeodesicMethod::Dijkstra] {
+        for method in [marching(), Method::Dijkstra] {
             let [a, b] = [&folded, &sheet].map(|mesh| columns(mesh, method, &sources));
             let gap = gap(a.as_slice(), b.as_slice());
             println!("folded by {angle}: {} distances differ by {gap:.1e}", method.name());
@@ -52,7 +55,7 @@ fn folding_along_a_mesh_line_changes_no_distance_and_no_embedding() {
 #[test]
 fn folding_a_regular_sheet_changes_no_distance() {
     let [flat, folded] = [0.0, 2.2].map(|angle| shapes::folded_sheet(15, 9, 0.7, 6, angle));
-    for method in [marching(), GeodesicMethod::Dijkstra] {
+    for method in [marching(), Method::Dijkstra] {
         let [a, b] = [&folded, &flat].map(|mesh| columns(mesh, method, &all_vertices(mesh)));
         assert!(gap(a.as_slice(), b.as_slice()) < 1e-12);
     }
@@ -65,7 +68,7 @@ fn a_rigid_motion_changes_no_form() {
         let motion = Isometry3::new(Vector3::new(300.0, -40.0, 7.0), Vector3::new(0.3, -1.1, 2.0));
         let turned = moved(&mesh, |p| motion * p);
         let mirrored = moved(&mesh, |p| Point3::new(-p.x, p.y, p.z));
-        let options = EmbedOptions::default();
+        let options = FormOptions::default();
         let form = form_pairs(&mesh, &options);
         for other in [turned, mirrored] {
             let gap = gap(form_pairs(&other, &options).as_slice(), form.as_slice());
@@ -97,7 +100,7 @@ fn renumbering_permutes_distances_and_form() {
         let (other, number) = renumbered(&mesh);
         let sources: Vec<VertexId> = (0..20).map(|i| VertexId(i * 49)).collect();
         let targets: Vec<VertexId> = sources.iter().map(|v| VertexId::from(number[v.index()])).collect();
-        for method in [marching(), GeodesicMethod::Dijkstra, GeodesicMethod::BreadthFirst] {
+        for method in [marching(), Method::Dijkstra, Method::BreadthFirst] {
             let here = columns(&mesh, method, &sources);
             let there = columns(&other, method, &targets);
             let back = linalg::Matrix::from_fn(here.nrows(), here.ncols(), |v, s| there[(number[v], s)]);
@@ -107,9 +110,9 @@ fn renumbering_permutes_distances_and_form() {
         }
 
         let first =
-            |vertex| EmbedOptions { first_sample: FirstSample::Vertex(vertex), ..EmbedOptions::default() };
-        let [here, there] =
-            [embedded(&mesh, &first(VertexId(0))), embedded(&other, &first(VertexId::from(number[0])))];
+            |vertex| FormOptions { first_sample: FirstSample::Vertex(vertex), ..FormOptions::default() };
+        let [here, there] = [(&mesh, 0), (&other, number[0])]
+            .map(|(mesh, vertex)| measured(mesh, &first(VertexId::from(vertex)), StressChoice::Auto));
         let samples: Vec<u32> = here.report.samples.iter().map(|&v| number[v as usize] as u32).collect();
         assert_eq!(samples, there.report.samples);
         let [a, b] = [here, there].map(|e| e.report.stress.unwrap().value);
@@ -134,13 +137,12 @@ fn scale_changes_only_the_unit() {
         assert!(gap(&found, &expected) < 1e-12);
     }
     for method in [EmbedMethod::default(), EmbedMethod::spectral(), EmbedMethod::Fmds] {
-        let options = EmbedOptions { method, ..EmbedOptions::default() };
-        let (form, stress) =
-            (form_pairs(&mesh, &options), embedded(&mesh, &options).report.stress.unwrap().value);
+        let options = FormOptions { method, ..FormOptions::default() };
+        let (form, stress) = (form_pairs(&mesh, &options), stress_of(&mesh, &options));
         for factor in [1e-3, 1e3] {
             let scaled = moved(&mesh, |p| p * factor);
             let form_gap = gap(form_pairs(&scaled, &options).as_slice(), &scaled_pairs(&form, factor));
-            let scaled_stress = embedded(&scaled, &options).report.stress.unwrap().value;
+            let scaled_stress = stress_of(&scaled, &options);
             let stress_gap = (scaled_stress / (stress * factor * factor) - 1.0).abs();
             let name = options.method.name();
             println!("{name} times {factor}: forms differ by {form_gap:.1e}, stresses by {stress_gap:.1e}");
@@ -158,8 +160,8 @@ fn normalised_form_distances_do_not_depend_on_size() {
             canonform::embed(&surface, &few_samples(), &()).unwrap().form(&surface).unwrap()
         });
         let forms: Vec<_> = forms.collect();
-        let prepared = PreparedForms::new(&forms, Normalization::UnitArea).unwrap();
-        form_distances(&prepared, &MatchOptions::default(), &()).unwrap().get(0, 1)
+        let found = form_matches(&forms, Normalization::UnitArea, &MatchOptions::default(), &()).unwrap();
+        found.distances.get(0, 1)
     };
     let one = distances(1.0);
     for factor in [1e-3, 1e3] {

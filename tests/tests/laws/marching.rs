@@ -1,10 +1,9 @@
 //! Fast marching on surfaces with known distances.
 
-use canonform::GeodesicMethod;
 use datasets::Family;
 use geodesics::{
-    DistanceSolver, FastMarching, FastMarchingOptions, FirstSample, ObtuseTreatment, PrunedSolver, Source,
-    farthest_point_sampling,
+    DistanceSolver, FastMarching, FastMarchingOptions, FirstSample, Method, ObtuseTreatment, PrunedSolver,
+    Source, farthest_point_sampling,
 };
 use mesh::{TriMesh, shapes};
 use surface::{IntrinsicMesh, VertexId};
@@ -111,7 +110,7 @@ fn distances_are_1_lipschitz_along_edges_and_at_most_those_of_dijkstra() {
         let sources: Vec<VertexId> = (0..10).map(|i| VertexId::from(i * mesh.n_vertices() / 10)).collect();
         let surface = mesh.intrinsic();
         let marched = columns(&mesh, marching(), &sources);
-        let along_edges = columns(&mesh, GeodesicMethod::Dijkstra, &sources);
+        let along_edges = columns(&mesh, Method::Dijkstra, &sources);
         let slack = 1e-12 * along_edges.max();
         for s in 0..sources.len() {
             for (edge, ends) in surface.topology().edges().iter().enumerate() {
@@ -130,7 +129,7 @@ fn exactly_the_other_components_are_at_infinite_distance() {
     let mut start = 0;
     for part in &parts {
         let end = start + part.n_vertices();
-        for method in [marching(), GeodesicMethod::Dijkstra, GeodesicMethod::BreadthFirst] {
+        for method in [marching(), Method::Dijkstra, Method::BreadthFirst] {
             let surface = whole.intrinsic();
             let found = method.prepare(&surface).unwrap().distances(VertexId::from(start + 1));
             for (v, d) in found.iter().enumerate() {

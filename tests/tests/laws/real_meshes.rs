@@ -6,9 +6,9 @@
 use std::path::{Path, PathBuf};
 
 use canonform::{
-    DescribeOptions, EmbedOptions, MatchOptions, Normalization, PreparedForms, ShapeDistance, StressChoice,
-    Surface, describe_surface, embed, form_distances, label_of, list_shapes,
+    DescribeOptions, FormOptions, Surface, describe, embed, form_matches, label_of, list_shapes,
 };
+use descriptors::{MatchOptions, Normalization, ShapeMetric, ShapePair};
 use geodesics::{FirstSample, farthest_point_sampling};
 use mesh::RepairOptions;
 use nmds::{NystromOptions, Regularization, classical, nystrom, paper_stress};
@@ -141,7 +141,7 @@ fn a_mesh_without_faces_is_an_error_that_names_the_file() {
 fn canonical_forms_of_animals_retrieve_their_class() {
     let Some(data) = data("three classes of TOSCA") else { return };
     let names = ["cat0", "cat1", "cat2", "centaur0", "centaur1", "centaur2", "david0", "david1", "david10"];
-    let options = EmbedOptions { stress: StressChoice::Skip, ..EmbedOptions::default() };
+    let options = FormOptions::default();
     let forms: Vec<_> = names
         .iter()
         .map(|name| {
@@ -151,8 +151,7 @@ fn canonical_forms_of_animals_retrieve_their_class() {
         .collect();
     let labels = Labels::new(&names.map(label_of));
     for normalization in [Normalization::Raw, Normalization::UnitArea] {
-        let prepared = PreparedForms::new(&forms, normalization).unwrap();
-        let distances = form_distances(&prepared, &MatchOptions::default(), &()).unwrap();
+        let distances = form_matches(&forms, normalization, &MatchOptions::default(), &()).unwrap().distances;
         let scores = evaluate(&distances, &labels, 1).unwrap();
         println!("{normalization:?}: NN {}, mAP {:.4}", scores.mean.nn, scores.mean.map);
         assert_eq!(scores.mean.nn, 1.0, "{normalization:?}");
@@ -177,12 +176,14 @@ fn verdicts_distinguish_poses_from_animals() {
         shapes.into_iter().filter(|s| classes.contains(&s.label.as_str())).step_by(2).collect();
     let described: Vec<_> = shapes
         .par_iter()
-        .map(|s| describe_surface(&read(&s.path), &DescribeOptions::default()).unwrap())
+        .map(|s| describe(&read(&s.path), &DescribeOptions::default()).unwrap().prepare().unwrap())
         .collect();
     let pairs: Vec<(usize, usize)> =
         (0..shapes.len()).flat_map(|i| (i + 1..shapes.len()).map(move |j| (i, j))).collect();
     let distance = |&(i, j): &(usize, usize)| {
-        (shapes[i].label == shapes[j].label, ShapeDistance::between(&described[i], &described[j]).unwrap())
+        let pair = [&described[i], &described[j]];
+        let distance = ShapePair::new(&ShapeMetric::default(), pair).distance().unwrap();
+        (shapes[i].label == shapes[j].label, distance)
     };
     let distances: Vec<_> = pairs.par_iter().map(distance).collect();
     let of = |same| distances.iter().filter(move |d| d.0 == same).map(|d| d.1.combined);
@@ -191,6 +192,6 @@ fn verdicts_distinguish_poses_from_animals() {
         "{} pairs: poses of one animal differ by up to {farthest:.2}, animals by at least {nearest:.2}",
         pairs.len()
     );
-    assert!(distances.iter().all(|(same, distance)| distance.is_same() == *same));
+    assert!(distances.iter().all(|(same, distance)| ShapeMetric::is_same(*distance) == *same));
     assert!(nearest > 2.0 * farthest, "{farthest} {nearest}");
 }

@@ -1,19 +1,13 @@
 //! Signatures depend little on pose and triangulation, distinguish bodies, and exist for any mesh.
 
-use canonform::{
-    DescribeOptions, ShapeDescription, SignatureKind, Surface, describe, describe_surface, rerank,
-};
+use canonform::{DescribeOptions, ShapeDescription, Surface, describe, rerank};
 use datasets::{ArticulatedOptions, Family, articulated_shape};
+use descriptors::{ShapeMetric, SignatureKind};
 use rayon::prelude::*;
 use retrieval::Candidate;
 
 use crate::real_meshes::data;
-use crate::support::body;
-
-fn fused_distance(a: &ShapeDescription, b: &ShapeDescription) -> f64 {
-    let sq = |(x, y): (&f32, &f32)| f64::from(x - y).powi(2);
-    a.fused.iter().zip(&b.fused).map(sq).sum::<f64>().sqrt()
-}
+use crate::support::{body, surface};
 
 /// Three poses of each family, class by class, each with its own triangulation and resolution.
 fn described() -> Vec<ShapeDescription> {
@@ -21,7 +15,7 @@ fn described() -> Vec<ShapeDescription> {
         let (family, pose) = (Family::all()[i / 3], i % 3);
         let options = ArticulatedOptions { seed: 11 + pose as u64, n_vertices: 1000 + 500 * pose };
         let mesh = articulated_shape(family, pose + 1, &options).unwrap().mesh;
-        describe(&mesh, &DescribeOptions::default()).unwrap()
+        describe(&surface(&mesh), &DescribeOptions::default()).unwrap()
     };
     (0..9).into_par_iter().map(shape).collect()
 }
@@ -44,15 +38,19 @@ fn every_signature_separates_bodies_more_than_poses_and_triangulations() {
 #[test]
 fn the_nearest_shapes_are_poses_of_the_same_body() {
     let shapes = described();
-    let forms: Vec<_> = shapes.iter().map(|shape| shape.prepare().unwrap()).collect();
+    let prepared: Vec<_> = shapes.iter().map(|shape| shape.prepare().unwrap()).collect();
+    let metric = ShapeMetric::default();
     for query in 0..9 {
         let mut candidates: Vec<_> = (0..9)
             .filter(|&i| i != query)
-            .map(|index| Candidate { index, bound: fused_distance(&shapes[query], &shapes[index]) })
+            .map(|index| Candidate {
+                index,
+                bound: ShapeMetric::fused(&shapes[query].fused, &shapes[index].fused),
+            })
             .collect();
         candidates.sort_by(|a, b| a.bound.total_cmp(&b.bound));
         assert!(candidates[..2].iter().all(|c| c.index / 3 == query / 3), "{query}: {candidates:?}");
-        let found = rerank(&forms[query], candidates, 2, &Default::default(), |i| Ok(&forms[i])).unwrap();
+        let found = rerank(&metric, &prepared[query], candidates, 2, |i| Ok(&prepared[i])).unwrap();
         assert!(found.nearest.iter().all(|n| n.index / 3 == query / 3), "{query}: {found:?}");
     }
 }
@@ -62,7 +60,7 @@ fn a_description_does_not_depend_on_threads() {
     let mesh = body(Family::Cat);
     let on = |n: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(n).build().unwrap();
-        pool.install(|| describe(&mesh, &DescribeOptions::default()).unwrap())
+        pool.install(|| describe(&surface(&mesh), &DescribeOptions::default()).unwrap())
     };
     let (one, three) = (on(1), on(3));
     assert_eq!(one, three);
@@ -76,7 +74,7 @@ fn real_meshes_with_defects_have_signatures() {
         let surface =
             Surface::read(&folder.join("tosca-lowres").join(format!("{name}.vert")), &Default::default())
                 .unwrap();
-        let found = describe_surface(&surface, &DescribeOptions::default()).unwrap();
+        let found = describe(&surface, &DescribeOptions::default()).unwrap();
         assert!(found.fused.iter().all(|x| x.is_finite()), "{name}");
         // By Weyl's law the values of ShapeDNA are near one.
         let dna = &found.signature(SignatureKind::ShapeDna).unwrap().values;

@@ -2,8 +2,11 @@
 
 use std::path::PathBuf;
 
-use canonform::{EmbedOptions, Embedded, GeodesicMethod, Surface, embed, embedded_distances};
+use canonform::{
+    Embedded, FormOptions, StressChoice, StressOptions, Surface, embed, embed_and_measure, embedded_distances,
+};
 use datasets::{ArticulatedOptions, Family, articulated_shape};
+use geodesics::Method;
 use linalg::{DistanceMatrix, Matrix};
 use mesh::{RepairOptions, TriMesh};
 use nalgebra::Point3;
@@ -25,22 +28,27 @@ pub(crate) fn surface(mesh: &TriMesh) -> Surface {
     Surface::new(mesh, &RepairOptions::default()).unwrap()
 }
 
-pub(crate) fn embedded(mesh: &TriMesh, options: &EmbedOptions) -> Embedded {
+pub(crate) fn embedded(mesh: &TriMesh, options: &FormOptions) -> Embedded {
     embed(&surface(mesh), options, &()).unwrap()
 }
 
+pub(crate) fn measured(mesh: &TriMesh, options: &FormOptions, choice: StressChoice) -> Embedded {
+    let stress = StressOptions { choice, ..StressOptions::default() };
+    embed_and_measure(&surface(mesh), options, &stress, &()).unwrap()
+}
+
 /// All distances between the embedded points of a mesh.
-pub(crate) fn form_pairs(mesh: &TriMesh, options: &EmbedOptions) -> DistanceMatrix {
+pub(crate) fn form_pairs(mesh: &TriMesh, options: &FormOptions) -> DistanceMatrix {
     embedded_distances(&embedded(mesh, options).embedding.coords).unwrap()
 }
 
 /// Fast marching with default options.
-pub(crate) fn marching() -> GeodesicMethod {
-    GeodesicMethod::default()
+pub(crate) fn marching() -> Method {
+    Method::default()
 }
 
 /// Distances from some vertices of a mesh, one column each.
-pub(crate) fn columns(mesh: &TriMesh, method: GeodesicMethod, sources: &[VertexId]) -> Matrix {
+pub(crate) fn columns(mesh: &TriMesh, method: Method, sources: &[VertexId]) -> Matrix {
     method.prepare(&mesh.intrinsic()).unwrap().distance_columns(sources)
 }
 

@@ -1,12 +1,10 @@
 //! Results are bitwise equal for any number of threads.
 
-use canonform::{
-    EmbedMethod, EmbedOptions, Embedded, MatchOptions, Normalization, PreparedForms, Samples, StressChoice,
-    form_distances,
-};
+use canonform::{EmbedMethod, Embedded, FormOptions, Samples, StressChoice, form_matches};
 use datasets::Family;
+use descriptors::{MatchOptions, Normalization};
 
-use crate::support::{body, embedded, surface};
+use crate::support::{body, measured, surface};
 
 /// Runs work on pools of 1, 2 and 5 threads.
 fn on_each_pool<T: Send>(work: impl Fn() -> T + Sync) -> [T; 3] {
@@ -38,8 +36,8 @@ fn an_embedding_does_not_depend_on_threads() {
         (EmbedMethod::spectral(), Samples::Auto, StressChoice::Estimate),
         (EmbedMethod::Fmds, Samples::Count(20), StressChoice::Estimate),
     ] {
-        let options = EmbedOptions { method, samples, stress, ..EmbedOptions::default() };
-        let [one, two, five] = on_each_pool(|| facts(&embedded(&mesh, &options)));
+        let options = FormOptions { method, samples, ..FormOptions::default() };
+        let [one, two, five] = on_each_pool(|| facts(&measured(&mesh, &options, stress)));
         assert!(one.3.is_some());
         assert!(one == two && one == five, "{options:?}");
     }
@@ -51,14 +49,13 @@ fn distances_between_forms_do_not_depend_on_threads() {
         .into_iter()
         .map(|family| {
             let surface = surface(&body(family));
-            let options = EmbedOptions { stress: StressChoice::Skip, ..EmbedOptions::default() };
-            canonform::embed(&surface, &options, &()).unwrap().form(&surface).unwrap()
+            canonform::embed(&surface, &FormOptions::default(), &()).unwrap().form(&surface).unwrap()
         })
         .collect();
     for normalization in [Normalization::Raw, Normalization::UnitArea] {
         let [one, two, five] = on_each_pool(|| {
-            let prepared = PreparedForms::new(&forms, normalization).unwrap();
-            bits(form_distances(&prepared, &MatchOptions::default(), &()).unwrap().as_slice())
+            let found = form_matches(&forms, normalization, &MatchOptions::default(), &()).unwrap();
+            bits(found.distances.as_slice())
         });
         assert!(one == two && one == five, "{normalization:?}");
     }

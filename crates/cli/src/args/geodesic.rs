@@ -3,10 +3,11 @@
 use std::path::PathBuf;
 
 use canonform::InputPoint;
+use canonform::geodesics::Method;
 use clap::Args;
 use mesh::io::{Content, or_list, writable};
 
-use super::{GeodesicName, MarchingArgs, RepairArgs};
+use super::{MarchingArgs, RepairArgs, distance_method};
 
 /// What a point of a mesh looks like.
 const POINTS: &str = "\
@@ -57,8 +58,8 @@ pub(crate) struct GeodesicArgs {
     #[arg(long, value_name = "BYTES", value_parser = parse_bytes, conflicts_with = "source")]
     pub(crate) memory: Option<usize>,
     /// How distances are measured
-    #[arg(long, value_enum, default_value_t = GeodesicName::FastMarching)]
-    pub(crate) method: GeodesicName,
+    #[arg(long, value_parser = distance_method(), default_value = Method::default().name())]
+    pub(crate) method: Method,
     #[command(flatten)]
     pub(crate) marching: MarchingArgs,
     #[command(flatten)]

@@ -2,10 +2,12 @@
 
 use std::path::PathBuf;
 
-use canonform::{DescribeOptions, Measure, Normalization, Shard};
+use anyhow::Result;
+use canonform::descriptors::{DescriptorError, Normalization};
+use canonform::{DescribeOptions, Measure, Shard};
 use clap::{Args, Subcommand};
 
-use super::RepairArgs;
+use super::{Common, EmbeddingArgs};
 
 #[derive(Debug, Args)]
 pub(crate) struct IndexArgs {
@@ -56,28 +58,23 @@ pub(crate) struct BuildArgs {
 /// How shapes are described.
 #[derive(Debug, Clone, Args)]
 pub(crate) struct DescribeArgs {
-    /// Samples that distances are measured from [default: 100]
-    #[arg(short = 'n', long)]
-    pub(crate) samples: Option<usize>,
-    /// Points of a form that are kept for alignment [default: 1000]
+    /// Number of points of a form to keep for alignment [default: 1000]
     #[arg(long)]
     pub(crate) points: Option<usize>,
     /// Let size count: all meshes have the same unit of length
     #[arg(long)]
     pub(crate) size: bool,
     #[command(flatten)]
-    pub(crate) repair: RepairArgs,
+    pub(crate) embedding: EmbeddingArgs,
 }
 
 impl DescribeArgs {
-    pub(crate) fn options(&self) -> DescribeOptions {
-        let usual = DescribeOptions::default();
-        DescribeOptions {
-            repair: self.repair.options(),
-            samples: self.samples.unwrap_or(usual.samples),
-            points: self.points.unwrap_or(usual.points),
+    pub(crate) fn options(&self, common: &Common) -> Result<DescribeOptions> {
+        Ok(DescribeOptions {
+            form: self.embedding.options(common)?,
+            points: self.points.unwrap_or(DescribeOptions::default().points),
             size: if self.size { Normalization::Raw } else { Normalization::UnitArea },
-        }
+        })
     }
 }
 
@@ -173,9 +170,6 @@ pub(crate) struct EvaluateArgs {
 fn parse_measure(text: &str) -> Result<Measure, String> {
     match text {
         "fused" => Ok(Measure::Fused),
-        kind => kind
-            .parse()
-            .map(Measure::Signature)
-            .map_err(|fault: canonform::DescriptorError| fault.to_string()),
+        kind => kind.parse().map(Measure::Signature).map_err(|fault: DescriptorError| fault.to_string()),
     }
 }

@@ -8,9 +8,9 @@ mod serve;
 
 use std::path::PathBuf;
 
-use canonform::{
-    FastMarchingOptions, GeodesicMethod, HeatOptions, ObtuseTreatment, Samples, StressChoice, Update,
-};
+use canonform::geodesics::{FastMarchingOptions, Method, ObtuseTreatment, Update};
+use canonform::{Samples, StressChoice};
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use mesh::io::{Content, mesh_files, or_list, writable};
 use mesh::{ComponentPolicy, Orient, RepairOptions, Weld};
@@ -108,8 +108,8 @@ pub(crate) struct EmbedArgs {
     #[arg(long, value_enum, default_value_t = StressName::Auto)]
     pub(crate) stress: StressName,
     /// How the distances are measured that the stress holds the form against [default: as --geodesic]
-    #[arg(long, value_enum, value_name = "METHOD")]
-    pub(crate) stress_against: Option<GeodesicName>,
+    #[arg(long, value_parser = distance_method(), value_name = "METHOD")]
+    pub(crate) stress_against: Option<Method>,
 }
 
 #[derive(Debug, Args)]
@@ -117,14 +117,14 @@ pub(crate) struct MethodsArgs {
     /// Mesh file
     pub(crate) mesh: PathBuf,
     /// Number of samples, or `auto` to take as many as each method needs [default: 100]
-    #[arg(short = 'n', long, value_name = "SAMPLES|auto", value_parser = embedding::parse_samples)]
+    #[arg(short = 'n', long, value_name = "SAMPLES|auto")]
     pub(crate) samples: Option<Samples>,
     /// Dimensions of the embeddings
     #[arg(long, default_value_t = 3, value_name = "K")]
     pub(crate) dim: usize,
     /// How distances are measured
-    #[arg(long, value_enum, default_value_t = GeodesicName::FastMarching, value_name = "METHOD")]
-    pub(crate) geodesic: GeodesicName,
+    #[arg(long, value_parser = distance_method(), default_value = Method::default().name(), value_name = "METHOD")]
+    pub(crate) geodesic: Method,
     #[command(flatten)]
     pub(crate) marching: MarchingArgs,
     /// How the stress is found
@@ -214,39 +214,39 @@ pub(crate) struct MarchingArgs {
     pub(crate) obtuse: ObtuseName,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum GeodesicName {
-    /// Fast marching on triangles
-    FastMarching,
-    /// Exact on the polyhedral surface
-    Exact,
-    /// From the flow of heat: smooth, fast for many sources
-    Heat,
-    /// Shortest paths along edges
-    Dijkstra,
-    /// Number of edges times the mean edge length
-    Bfs,
-}
-
-impl GeodesicName {
-    pub(crate) fn method(self, marching: MarchingArgs) -> GeodesicMethod {
-        let update = match marching.update {
+impl MarchingArgs {
+    /// A method with these options, if it is fast marching.
+    pub(crate) fn of(self, method: Method) -> Method {
+        let update = match self.update {
             UpdateName::PointSource => Update::PointSource,
             UpdateName::Planar => Update::Planar,
         };
-        let obtuse = match marching.obtuse {
+        let obtuse = match self.obtuse {
             ObtuseName::Flip => ObtuseTreatment::Flip,
             ObtuseName::Unfold => ObtuseTreatment::Unfold,
             ObtuseName::Ignore => ObtuseTreatment::Ignore,
         };
-        match self {
-            Self::FastMarching => GeodesicMethod::FastMarching(FastMarchingOptions { update, obtuse }),
-            Self::Exact => GeodesicMethod::Exact,
-            Self::Heat => GeodesicMethod::Heat(HeatOptions::default()),
-            Self::Dijkstra => GeodesicMethod::Dijkstra,
-            Self::Bfs => GeodesicMethod::BreadthFirst,
+        match method {
+            Method::FastMarching(_) => Method::FastMarching(FastMarchingOptions { update, obtuse }),
+            other => other,
         }
     }
+}
+
+/// Reads values by the names that the library gives them, each with a line of help.
+fn one_of<T: Clone + Send + Sync + 'static, const N: usize>(
+    values: [(&'static str, &'static str, T); N],
+) -> impl TypedValueParser<Value = T> {
+    let possible = values.each_ref().map(|(name, help, _)| PossibleValue::new(*name).help(*help));
+    PossibleValuesParser::new(possible).try_map(move |chosen| {
+        let found = values.iter().find(|(name, ..)| *name == chosen);
+        found.map(|(.., value)| value.clone()).ok_or_else(|| format!("`{chosen}` is unknown"))
+    })
+}
+
+/// Reads a distance method by its name.
+fn distance_method() -> impl TypedValueParser<Value = Method> {
+    one_of(Method::all().map(|m| (m.name(), m.summary(), m)))
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]

@@ -4,10 +4,12 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::{Result, bail};
+use canonform::descriptors::{
+    CanonicalForm, FormDistance, Handedness, MatchKind, MatchOptions, PreparedShape, ShapeMetric, ShapePair,
+};
 use canonform::{
-    Comparison, DescribeOptions, FormDistance, Handedness, MatchKind, MatchOptions, SAME_BELOW,
-    ShapeDistance, StressChoice, Surface, SurfaceComparison, Triangulation, compare_surfaces,
-    describe_surface, embed,
+    Comparison, DescribeOptions, FormOptions, ShapeDescription, Surface, SurfaceComparison, Triangulation,
+    compare_surfaces, describe, embed,
 };
 use mesh::io::{Content, or_list, writable};
 use serde::Serialize;
@@ -49,12 +51,34 @@ impl ResidualJson {
     }
 }
 
+/// One of the two meshes: its surface and the form of all vertices, the shape with this form, and the shape as the
+/// metric is calibrated for, if the form was made with other options.
+type Side = (Surface, CanonicalForm, PreparedShape, Option<PreparedShape>);
+
+fn side(path: &Path, args: &CompareArgs, options: &FormOptions, bars: &Bars) -> Result<Side> {
+    let surface = read_surface(path, &args.embedding.repair)?;
+    let usual = FormOptions { repair: options.repair, ..FormOptions::default() };
+    let usual = DescribeOptions { form: usual, ..DescribeOptions::default() };
+    let measure = || {
+        let embedded = embed(&surface, options, bars)?;
+        let form = embedded.form(&surface)?;
+        if embedded.options == usual.form {
+            return Ok((form, ShapeDescription::new(&surface, &embedded, &usual)?.prepare()?, None));
+        }
+        let description = describe(&surface, &usual)?;
+        let (fused, area) = (description.fused.clone(), Some(description.area));
+        let shape = PreparedShape::new(fused, &form.reduced(usual.points), area)?;
+        Ok((form, shape, Some(description.prepare()?)))
+    };
+    let (form, shape, usual) = measure().map_err(|fault| named(path, fault))?;
+    bars.finish();
+    Ok((surface, form, shape, usual))
+}
+
 /// Embeds, aligns and compares two meshes.
 pub(crate) fn compare(args: &CompareArgs, common: &Common) -> Result<ExitCode> {
-    if args.embedding.dim != 3 {
-        bail!("forms are compared in 3 dimensions; leave out --dim {}", args.embedding.dim);
-    }
-    let options = args.embedding.options(common, StressChoice::Skip)?;
+    let options = args.embedding.options(common)?;
+    options.validate()?;
     if let Some(path) = &args.residual_mesh {
         let formats: Vec<_> = writable(Content::Field).collect();
         if !formats.contains(&extension(path).as_str()) {
@@ -62,29 +86,22 @@ pub(crate) fn compare(args: &CompareArgs, common: &Common) -> Result<ExitCode> {
         }
         check_folder(path)?;
     }
+    let distance = match args.distance {
+        DistanceName::NnRms => FormDistance::NearestNeighborRms,
+        DistanceName::Hausdorff95 => FormDistance::Hausdorff95,
+    };
+    let metric = ShapeMetric { matching: MatchOptions { distance, ..MatchOptions::default() } };
     let bars = Bars::new(common.quiet);
-    // The kind of match must not depend on how forms are made for a closer look.
-    let describing =
-        DescribeOptions { repair: args.embedding.repair.options(), ..DescribeOptions::default() };
-    let form = |path: &Path| {
-        let surface = read_surface(path, &args.embedding.repair)?;
-        let embedded = embed(&surface, &options, &bars).map_err(|fault| named(path, fault))?;
-        bars.finish();
-        let form = embedded.form(&surface).map_err(|fault| named(path, fault))?;
-        let description = describe_surface(&surface, &describing).map_err(|fault| named(path, fault))?;
-        anyhow::Ok((surface, form, description))
+    let (a, form_a, shape_a, usual_a) = side(&args.a, args, &options, &bars)?;
+    let (b, form_b, shape_b, usual_b) = side(&args.b, args, &options, &bars)?;
+    let pair = ShapePair::new(&metric, [&shape_a, &shape_b]);
+    // The kind of match does not depend on how forms are made.
+    let distance = match (&usual_a, &usual_b) {
+        (Some(a), Some(b)) => ShapePair::new(&metric, [a, b]).distance()?,
+        _ => pair.distance()?,
     };
-    let matching = MatchOptions {
-        distance: match args.distance {
-            DistanceName::NnRms => FormDistance::NearestNeighborRms,
-            DistanceName::Hausdorff95 => FormDistance::Hausdorff95,
-        },
-        ..MatchOptions::default()
-    };
-    let ((a, form_a, described_a), (b, form_b, described_b)) = (form(&args.a)?, form(&args.b)?);
     let SurfaceComparison { comparison, triangulation, overlay } =
-        compare_surfaces([&a, &b], [&form_a, &form_b], &matching)?;
-    let comparison = comparison.decided_by(ShapeDistance::between(&described_a, &described_b)?);
+        compare_surfaces(&pair, distance, [(&a, &form_a), (&b, &form_b)])?;
     let [residuals, _] = &overlay.residuals;
     if let Some(path) = &args.residual_mesh {
         write_colored(path, a.mesh(), "residual", residuals)?;
@@ -116,18 +133,17 @@ fn table(json: &CompareJson) -> String {
         MatchKind::MirroredAndScaled => format!("mirror images up to pose, scaled by {:.3}", c.scale),
         MatchKind::Different => "different shapes".to_owned(),
     };
-    let apart = c.shape_distance.map_or(String::new(), |d| {
-        format!("{:.3} by signatures and forms (the same shape below {SAME_BELOW})", d.combined)
-    });
+    let (apart, limit) = (c.shape_distance.combined, ShapeMetric::SAME_BELOW);
+    let apart = format!("{apart:.3} by signatures and forms (the same shape below {limit})");
     let handedness = match c.handedness {
         Handedness::Same => "no",
         Handedness::Mirrored => "yes",
         Handedness::Either => "both fit: left and right are alike",
-        Handedness::Unknown => "not known: no inside, or no match",
+        Handedness::Unknown => "unknown: a mesh encloses no volume, or the forms do not fit",
     };
     let triangulation = match json.triangulation {
         Triangulation::Same => "the same faces",
-        Triangulation::Other => "other faces: meshed anew",
+        Triangulation::Other => "different faces",
     };
     let r = &json.residual;
     let residual =

@@ -4,7 +4,10 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::{Context, Result, bail};
-use canonform::{EmbedMethod, EmbedOptions, EmbedReport, Embedded, ShapeFile, Surface, list_shapes};
+use canonform::{
+    EmbedMethod, EmbedReport, Embedded, FormOptions, ShapeFile, StressOptions, Surface, embed_and_measure,
+    list_shapes,
+};
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -44,21 +47,21 @@ struct Failure {
 
 /// Embeds a mesh, or every mesh in a folder.
 pub(crate) fn embed(args: &EmbedArgs, common: &Common) -> Result<ExitCode> {
-    let options = EmbedOptions {
-        stress_against: args.stress_against.map(|name| name.method(args.embedding.marching)),
-        ..args.embedding.options(common, args.stress.into())?
-    };
+    let options = args.embedding.options(common)?;
+    let against = args.stress_against.map(|method| args.embedding.marching.of(method));
+    let stress = StressOptions { choice: args.stress.into(), against, seed: common.seed };
     if args.embedding.samples.is_some() && options.method == EmbedMethod::Classical {
         eprintln!("note: --method mds measures all pairs of vertices; -n has no effect on it");
     }
     if args.mesh.is_dir() {
-        return batch(args, &options, common);
+        return batch(args, &options, &stress, common);
     }
     check_format(&args.output, args.embedding.dim)?;
     check_folder(&args.output)?;
     let surface = read_surface(&args.mesh, &args.embedding.repair)?;
     let bars = Bars::new(common.quiet);
-    let embedded = canonform::embed(&surface, &options, &bars).map_err(|fault| named(&args.mesh, fault))?;
+    let embedded =
+        embed_and_measure(&surface, &options, &stress, &bars).map_err(|fault| named(&args.mesh, fault))?;
     bars.finish();
     warn(&args.mesh.display().to_string(), &embedded.report);
     write(&args.output, &surface, &embedded)?;
@@ -72,7 +75,12 @@ pub(crate) fn embed(args: &EmbedArgs, common: &Common) -> Result<ExitCode> {
 }
 
 /// Embeds a folder in parallel; what cannot be read is named at the end and does not stop the rest.
-fn batch(args: &EmbedArgs, options: &EmbedOptions, common: &Common) -> Result<ExitCode> {
+fn batch(
+    args: &EmbedArgs,
+    options: &FormOptions,
+    stress: &StressOptions,
+    common: &Common,
+) -> Result<ExitCode> {
     let extension = args.format.extension();
     check_format(&PathBuf::from(format!("form.{extension}")), args.embedding.dim)?;
     let shapes = list_shapes(&args.mesh, None)?;
@@ -84,10 +92,10 @@ fn batch(args: &EmbedArgs, options: &EmbedOptions, common: &Common) -> Result<Ex
         .map(|shape| {
             let output = args.output.join(format!("{}.{extension}", shape.name));
             let one = || {
-                let surface = Surface::read(&shape.path, &args.embedding.repair.options())
+                let surface =
+                    Surface::read(&shape.path, &options.repair).map_err(|fault| named(&shape.path, fault))?;
+                let embedded = embed_and_measure(&surface, options, stress, &())
                     .map_err(|fault| named(&shape.path, fault))?;
-                let embedded =
-                    canonform::embed(&surface, options, &()).map_err(|fault| named(&shape.path, fault))?;
                 if let Some(folder) = output.parent() {
                     std::fs::create_dir_all(folder)
                         .with_context(|| format!("cannot make the folder {}", folder.display()))?;
@@ -112,7 +120,7 @@ fn batch(args: &EmbedArgs, options: &EmbedOptions, common: &Common) -> Result<Ex
                 json.shapes.push(ShapeJson { name, label: shape.label, path, result });
             }
             Err(fault) => {
-                json.failed.push(Failure { name, path, error: terminal::message(&fault) });
+                json.failed.push(Failure { name, path, error: crate::remedy::message(&fault) });
             }
         }
     }

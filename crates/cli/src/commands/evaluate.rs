@@ -3,7 +3,8 @@
 use std::process::ExitCode;
 
 use anyhow::Result;
-use canonform::{Evaluation, LabelFile, evaluate_index, evaluate_matrix};
+use canonform::retrieval::Evaluation;
+use canonform::{LabelFile, evaluate_index, evaluate_matrix};
 use terminal::Bars;
 
 use super::named;

@@ -3,7 +3,7 @@
 use std::process::ExitCode;
 
 use anyhow::Result;
-use canonform::{EmbedOptions, MethodFacts, MethodsReport, compare_methods};
+use canonform::{FormOptions, MethodFacts, MethodsReport, StressOptions, compare_methods};
 use terminal::Bars;
 
 use super::{named, read_surface};
@@ -13,18 +13,17 @@ use crate::output::{print, print_json};
 
 /// Embeds a mesh by every method and sets them side by side.
 pub(crate) fn methods(args: &MethodsArgs, common: &Common) -> Result<ExitCode> {
-    let usual = EmbedOptions::default();
-    let options = EmbedOptions {
-        geodesic: args.geodesic.method(args.marching),
-        samples: args.samples.unwrap_or(usual.samples),
+    let options = FormOptions {
+        geodesic: args.marching.of(args.geodesic),
+        samples: args.samples.unwrap_or_default(),
         dim: args.dim,
-        stress: args.stress.into(),
         seed: common.seed,
-        ..usual
+        ..FormOptions::default()
     };
+    let stress = StressOptions { choice: args.stress.into(), against: None, seed: common.seed };
     let surface = read_surface(&args.mesh, &args.repair)?;
     let bars = Bars::new(common.quiet);
-    let report = compare_methods(&surface, &options, &bars, &|work| with_peak_bytes(work).1)
+    let report = compare_methods(&surface, &options, &stress, &bars, &|work| with_peak_bytes(work).1)
         .map_err(|fault| named(&args.mesh, fault))?;
     bars.finish();
     if common.json {

@@ -47,7 +47,7 @@ fn read_surface(path: &std::path::Path, repair: &crate::args::RepairArgs) -> any
 }
 
 /// An error that names the file once, whether or not it does so itself.
-fn named(path: &std::path::Path, fault: canonform::PipelineError) -> anyhow::Error {
+fn named(path: &std::path::Path, fault: canonform::Error) -> anyhow::Error {
     let is_named = is_named(path, &fault.to_string());
     let error = anyhow::Error::from(fault);
     if is_named { error } else { error.context(path.display().to_string()) }

@@ -5,7 +5,8 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use anyhow::{Result, bail};
-use canonform::{EmbedOptions, GeodesicMethod, Source, StressChoice, Surface, embed};
+use canonform::geodesics::{Method, Source};
+use canonform::{FormOptions, Surface, embed};
 use mesh::{RepairReport, TriMesh};
 use serde::Serialize;
 use terminal::Bars;
@@ -134,10 +135,10 @@ fn field(args: &RenderArgs, mesh: &TriMesh, surface: Option<&Surface>) -> Result
     }
 }
 
-fn distances(args: &RenderArgs, surface: &Surface) -> Result<Vec<f64>, canonform::PipelineError> {
+fn distances(args: &RenderArgs, surface: &Surface) -> Result<Vec<f64>, canonform::Error> {
     let source = |point| Ok(Source::new(&surface.intrinsic, surface.locate(point)?)?);
-    let sources: Result<Vec<_>, canonform::PipelineError> = args.distance_from.iter().map(source).collect();
-    let solver = GeodesicMethod::default().prepare(&surface.intrinsic)?;
+    let sources: Result<Vec<_>, canonform::Error> = args.distance_from.iter().map(source).collect();
+    let solver = Method::default().prepare(&surface.intrinsic)?;
     let mut distances = vec![0.0; solver.n_vertices()];
     solver.solve_into(&sources?, f64::INFINITY, &mut distances);
     Ok(surface.in_input_order(&distances, f64::INFINITY))
@@ -145,7 +146,7 @@ fn distances(args: &RenderArgs, surface: &Surface) -> Result<Vec<f64>, canonform
 
 /// The canonical form over the input's vertices; those that the repair left out are nowhere.
 fn form(args: &RenderArgs, surface: &Surface, common: &Common) -> Result<TriMesh> {
-    let options = EmbedOptions { stress: StressChoice::Skip, seed: common.seed, ..EmbedOptions::default() };
+    let options = FormOptions { seed: common.seed, ..FormOptions::default() };
     let bars = Bars::new(common.quiet);
     let embedded = embed(surface, &options, &bars).map_err(|fault| named(&args.mesh, fault))?;
     bars.finish();

@@ -4,7 +4,9 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::Result;
-use canonform::{Explain, MatchKind, SearchMode, SearchOptions, SearchReport, SearchResult, ShapeSearch};
+use canonform::descriptors::MatchKind;
+use canonform::index::SearchMode;
+use canonform::{Explain, SearchOptions, SearchReport, SearchResult, ShapeSearch};
 use serde::Serialize;
 
 use super::named;
@@ -57,7 +59,7 @@ pub(crate) fn search(args: &SearchArgs, common: &Common) -> Result<ExitCode> {
             }
             Err(fault) if args.queries.len() == 1 => return Err(fault),
             Err(fault) => {
-                let error = terminal::message(&fault);
+                let error = crate::remedy::message(&fault);
                 eprintln!("error: {error}");
                 failed.push(Failure { query: query.to_path_buf(), error });
             }

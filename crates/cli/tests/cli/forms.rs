@@ -146,6 +146,6 @@ fn comparisons_say_where_shapes_differ() {
     assert_eq!(io::read(&place.path("r.ply")).unwrap(), ring());
     place.refused(
         &["compare", "ring.off", "bumpy.off", "--residual-mesh", "r.obj"],
-        &["coloured .ply", "r.obj"],
+        &["unsupported format", ".ply", "r.obj"],
     );
 }

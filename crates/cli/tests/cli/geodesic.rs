@@ -152,7 +152,7 @@ fn points_that_are_not_there_are_named() {
     }
     place.refused(
         &["geodesic", "a.off", "--source", "0", "--path-to", "80", "--max-distance", "0.1", "-o", "p.obj"],
-        &["a.off: no way", "to 80", "--max-distance"],
+        &["a.off: there is no path", "to 80", "--max-distance"],
     );
     place.refused(&["geodesic", "a.off", "--all-pairs", "-o", "d.csv"], &["d.csv", "written as .npy"]);
     assert_eq!(place.names(), before);

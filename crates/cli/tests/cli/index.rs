@@ -230,6 +230,64 @@ fn a_matrix_of_distances_is_scored() {
 }
 
 #[test]
+fn an_index_takes_the_options_of_embed_and_describes_queries_with_them() {
+    let place = collection();
+    place.done(&BUILD);
+    for (options, text) in [
+        ("--geodesic dijkstra", "\"geodesic\":\"dijkstra\""),
+        (
+            "--method landmark --sampling random --seed 3",
+            "\"sampling\":\"random\",\"method\":\"landmark\",\"seed\":3",
+        ),
+        ("--method mds", "\"method\":\"mds\""),
+        ("--method kpca", "\"kpca\":{"),
+        ("--rank 9", "\"rank\":9"),
+    ] {
+        let options: Vec<&str> = options.split(' ').collect();
+        let build = [&["index", "build", "meshes", "-n", "20", "-o", "other"], &options[..]].concat();
+        place.done(&build);
+        assert!(export(&place, "other").contains(&text.replace('"', "\\\"")), "{text}");
+        place.refused(&["index", "merge", "all.canonform", "other", "-o", "x"], &["other options"]);
+        place.refused(&["index", "build", "meshes", "-n", "20", "-o", "other"], &["other options"]);
+        let found = place.json(&["search", "other", "meshes/box1.off", "-k", "3", "--explain"]);
+        let results = found["results"].as_array().unwrap();
+        assert_eq!((&results[0]["id"], &results[0]["match"]["kind"]), (&"box1".into(), &"same".into()));
+        assert!(results.iter().all(|result| result["label"] == "box"), "{options:?}: {found}");
+        place.add("more/box9.off", &body(2, 9));
+        assert_eq!(place.json(&["index", "add", "other", "more"])["described"], 1);
+        fs::remove_file(place.path("other")).unwrap();
+    }
+    // A seed that decides nothing is no other option.
+    let again = place.json(&[&BUILD[..], &["--seed", "5"]].concat());
+    assert_eq!(again["unchanged"], 9);
+    place.refused(&["index", "build", "meshes", "--dim", "2", "-o", "x"], &["3 dimensions", "2", "--dim"]);
+    place.refused(
+        &["index", "build", "meshes", "--sigma", "1", "-o", "x"],
+        &["--sigma has no effect", "kpca"],
+    );
+}
+
+#[test]
+fn a_pair_has_the_same_numbers_in_a_comparison_and_in_a_search() {
+    let place = collection();
+    place.done(&["index", "build", "meshes", "-o", "usual"]);
+    for k in ["1", "2"] {
+        let query = format!("meshes/box{k}.off");
+        let found = place.json(&["search", "usual", &query, "--explain"]);
+        for result in found["results"].as_array().unwrap() {
+            let mut compared = place.json(&["compare", &query, result["path"].as_str().unwrap()]);
+            assert_eq!(result["distance"], compared["combined_distance"]);
+            // A search does not look at surfaces.
+            compared["handedness"] = "unknown".into();
+            let keys = result["match"].as_object().unwrap();
+            assert!(keys.len() > 10);
+            keys.iter()
+                .for_each(|(key, value)| assert_eq!(*value, compared[key], "{key} of {}", result["id"]));
+        }
+    }
+}
+
+#[test]
 fn what_is_no_index_or_cannot_be_written_is_named() {
     let place = collection();
     place.done(&BUILD);

@@ -2,20 +2,17 @@
 
 use linalg::{LandmarkDistances, Matrix, symmetric_eigen, thin_qr};
 
-use super::{Signature, SignatureKind};
-use crate::DescriptorError;
+use super::kind::{Signature, SignatureKind};
+use crate::error::DescriptorError;
 
-/// Largest eigenvalues used: dimensions of the best flat space.
-const POSITIVE: usize = 8;
+/// Number of largest eigenvalues used: the dimensions of the best Euclidean embedding.
+const POSITIVE: usize = SignatureKind::GeodesicSpectrum.n_values() - NEGATIVE;
 
-/// Most negative eigenvalues used: how far the distances are from those of flat space.
+/// Number of most negative eigenvalues used: they tell how far the distances are from Euclidean ones.
 const NEGATIVE: usize = 4;
 
-/// Values of [`geodesic_spectrum`].
-pub(super) const LENGTH: usize = POSITIVE + NEGATIVE;
-
 /// The spectrum of the matrix that classical scaling decomposes, `-1/2 J E J` with `E` the squared distances on the
-/// surface, every point counted by the area around it.
+/// surface, every point weighted by the area around it.
 ///
 /// | symbol | here | shape | meaning |
 /// |---|---|---|---|
@@ -23,19 +20,19 @@ pub(super) const LENGTH: usize = POSITIVE + NEGATIVE;
 /// | `a` | `masses` | p | shares of the area; `1' a = 1` |
 /// | `V Λ V'` | `eigen` | n x n1 | half of the eigenpairs of the rows of `R` at the samples, by magnitude |
 ///
-/// `E` is approximated by `R V Λ⁻¹ V' R'` as in NMDS (`shamai2015` in `REFERENCES.bib`); with `Q W` the QR decomposition of
-/// `√a (I - 1 a') R V` the eigenvalues are those of `-1/2 W Λ⁻¹ W'`. The values are the roots of the 8 largest and of
-/// the magnitudes of the 4 most negative, over the root of the area; the first three are the spreads of the
-/// canonical form along its axes. Smeets et al. 2012 (`smeets2012`) compare shapes by this spectrum
-/// without areas.
+/// `E` is approximated by `R V Λ⁻¹ V' R'` as in NMDS (`shamai2015` in `REFERENCES.bib`). With `Q W` the QR decomposition
+/// of `√a (I - 1 a') R V`, the eigenvalues are those of `-1/2 W Λ⁻¹ W'`. The values are the square roots of the 8
+/// largest and of the magnitudes of the 4 most negative eigenvalues, divided by the square root of the area; the
+/// first three are the spreads of the canonical form along its axes. Smeets et al. 2012 (`smeets2012`) compare shapes
+/// by this spectrum without areas.
 ///
 /// * Invariant to isometries (bending, rigid motions, mirror images), scale and the order of vertices. The
 ///   triangulation and the choice of samples change it by the error of distances and of the approximation.
-/// * Changes when parts come to touch: shortcuts change distances.
+/// * Changes if parts touch, because shortcuts change distances.
 /// * Cost `O(p n²)`.
 ///
 /// # Errors
-/// [`DescriptorError::SizeMismatch`] when there is not one mass for each point, [`DescriptorError::NoExtent`],
+/// [`DescriptorError::SizeMismatch`] unless there is one mass per point, [`DescriptorError::NoExtent`],
 /// [`DescriptorError::Linalg`].
 pub fn geodesic_spectrum(
     distances: &LandmarkDistances,
@@ -74,14 +71,14 @@ pub fn geodesic_spectrum(
     Ok(Signature { kind: SignatureKind::GeodesicSpectrum, values: positive.chain(negative).collect() })
 }
 
-/// The half of the eigenvalues of largest magnitude, but none that is a rounding error.
+/// The half of the eigenvalues of largest magnitude, without those that are rounding errors.
 fn strongest(values: &[f64]) -> Vec<usize> {
     let n = values.len();
     let largest = values.iter().fold(0.0, |a: f64, x| a.max(x.abs()));
     let floor = n as f64 * f64::EPSILON * largest;
     let mut order: Vec<usize> = (0..n).filter(|&i| values[i].abs() > floor).collect();
     order.sort_by(|&i, &j| values[j].abs().total_cmp(&values[i].abs()));
-    // As many as embed flat space exactly, see NMDS.
+    // The least number that is exact for Euclidean distances, see NMDS.
     order.truncate((n / 2).max(7));
     order
 }

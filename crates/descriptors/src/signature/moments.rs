@@ -2,10 +2,10 @@
 
 use nalgebra::Point3;
 
-use super::{Signature, SignatureKind};
-use crate::CanonicalForm;
+use super::kind::{Signature, SignatureKind};
+use crate::canonical_form::CanonicalForm;
 
-/// Exponents `(p, q, r)` of the moments: the second ones along the axes, and all third ones.
+/// Exponents `(p, q, r)` of the moments: second order along the axes, and all of third order.
 const EXPONENTS: [[i32; 3]; LENGTH] = [
     [2, 0, 0],
     [0, 2, 0],
@@ -22,18 +22,18 @@ const EXPONENTS: [[i32; 3]; LENGTH] = [
     [1, 1, 1],
 ];
 
-/// Values of [`moment_signature`].
-pub(super) const LENGTH: usize = 13;
+/// Number of values of [`moment_signature`].
+const LENGTH: usize = SignatureKind::Moments.n_values();
 
 /// Moments of the canonical form in its principal axes (Elad and Kimmel 2003, `elad2003` in `REFERENCES.bib`).
 ///
-/// `μ_pqr = Σ_i a_i x_i^p y_i^q z_i^r` with `a` the shares of the area and lengths over the root of the area; the values are
-/// `|μ_pqr|^(1 / (p + q + r))`, all of the unit of a length, of the second order along the axes and of all
-/// of the third. The magnitude makes them blind to the signs of the axes, which are left to chance.
+/// `μ_pqr = Σ_i a_i x_i^p y_i^q z_i^r`, with `a` the shares of the area and lengths divided by the square root of the
+/// area. The values are `|μ_pqr|^(1 / (p + q + r))`, which scale like a length: second order along the axes, and all of
+/// third order. The magnitude removes the arbitrary signs of the axes.
 ///
-/// * Invariant to bending, rigid motions, mirror images, scale (when the form knows its area) and the order of
-///   vertices; changes with the triangulation as the form does.
-/// * **Not continuous** where two axes have the same spread: their order is then left to chance.
+/// * Invariant to bending, rigid motions, mirror images, the order of vertices and, if the form knows its area, scale;
+///   changes with the triangulation as the form does.
+/// * **Not continuous** where two axes have the same spread, because their order is then arbitrary.
 #[must_use]
 pub fn moment_signature(form: &CanonicalForm) -> Signature {
     let unit = form.area().map_or_else(|| form.spread(), f64::sqrt);

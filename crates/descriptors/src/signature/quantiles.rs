@@ -1,11 +1,10 @@
 //! Distributions as vectors.
 
-/// The values below which the shares `(i + 1/2) / n` of the mass lie, ascending; zeros when there is no mass.
+/// The quantiles of weighted samples at the shares `(i + 1/2) / n` of the mass, ascending; zeros without mass.
 ///
-/// These are the centres of a histogram whose `n` bins hold the same mass. The Euclidean distance of two such
-/// vectors is `√n` times the 2-Wasserstein distance of the distributions, as far as `n` bins show it: what moves
-/// by a little changes it by a little, which no histogram of fixed bins can say. Between samples the
-/// distribution is taken as linear.
+/// These are the centres of a histogram whose `n` bins hold the same mass. The Euclidean distance of two such vectors
+/// is `√n` times the 2-Wasserstein distance of the distributions, at the resolution of `n` bins, so that small shifts
+/// make small changes; with fixed bins they would not. The distribution is linear between samples.
 pub(super) fn quantiles(mut samples: Vec<(f64, f64)>, n: usize) -> Vec<f64> {
     samples.retain(|(value, mass)| value.is_finite() && *mass > 0.0);
     samples.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -14,7 +13,7 @@ pub(super) fn quantiles(mut samples: Vec<(f64, f64)>, n: usize) -> Vec<f64> {
         return vec![0.0; n];
     };
     let (mut below, mut i) = (0.0, 0);
-    // Half of a sample's mass lies below its value.
+    // Half of the mass of a sample lies below its value.
     let mut before = (0.0, first.0);
     (0..n)
         .map(|bin| {
@@ -50,7 +49,7 @@ mod tests {
     }
 
     #[test]
-    fn mass_counts_and_its_scale_does_not() {
+    fn quantiles_depend_on_relative_mass_only() {
         let heavy: Vec<(f64, f64)> = vec![(3.0, 1e-3), (1.0, 3e-3), (f64::NAN, 1.0), (7.0, 0.0)];
         let repeated = vec![(3.0, 1.0), (1.0, 1.0), (1.0, 1.0), (1.0, 1.0)];
         let (a, b) = (quantiles(heavy, 2), quantiles(repeated, 2));

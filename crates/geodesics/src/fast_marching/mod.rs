@@ -57,7 +57,8 @@ use unfold::Splits;
 pub(crate) use update::Stencil;
 
 /// The local solver of fast marching.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Update {
     /// The front in a triangle comes from one point: exact in the plane, elsewhere of first order with a small
     /// constant. Novotni and Klein 2002 (`novotni2002`).
@@ -69,7 +70,8 @@ pub enum Update {
 
 /// What fast marching does about corners wider than 90 degrees, which a front may reach before both ends of their
 /// base.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum ObtuseTreatment {
     /// Flip edges inside the surface until few such corners are left (the intrinsic Delaunay triangulation), and
     /// correct finalized vertices.
@@ -82,7 +84,8 @@ pub enum ObtuseTreatment {
 }
 
 /// Options of [`FastMarching`].
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub struct FastMarchingOptions {
     /// The local solver. Default: [`Update::PointSource`].
     pub update: Update,

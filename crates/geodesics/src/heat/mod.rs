@@ -17,7 +17,8 @@ use flow::{Bar, LONGEST_BAR};
 use system::System;
 
 /// Options of [`HeatMethod`].
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub struct HeatOptions {
     /// How long heat flows, positive; longer is smoother, shorter is rougher. In units of `h^2`, where `h` is the mean
     /// side of the Delaunay triangles; on fine meshes in units of `h l`, where `l` is a 200th of the square root of the

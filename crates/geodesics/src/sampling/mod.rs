@@ -14,7 +14,8 @@ pub use sampler::{FirstSample, Sampler};
 pub use variance::{Variance, VarianceSampler};
 
 /// A way to choose landmarks.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Sampling {
     /// [`FarthestPointSampler`]: each the farthest from those before it.
     #[default]
@@ -22,18 +23,41 @@ pub enum Sampling {
     /// [`RandomSampler`]: all vertices are equally likely.
     Random,
     /// [`VarianceSampler`]: each the vertex whose squared distances to those before it vary least, or most.
+    #[serde(untagged)]
     Incremental(Variance),
 }
 
 impl Sampling {
+    /// All ways to choose landmarks.
+    pub const ALL: [Self; 4] = [
+        Self::Farthest,
+        Self::Random,
+        Self::Incremental(Variance::Least),
+        Self::Incremental(Variance::Greatest),
+    ];
+
     /// The name on the command line and in records.
     #[must_use]
     pub fn name(self) -> &'static str {
+        self.entry().0
+    }
+
+    /// How landmarks are chosen, in one line.
+    #[must_use]
+    pub fn summary(self) -> &'static str {
+        self.entry().1
+    }
+
+    fn entry(self) -> (&'static str, &'static str) {
         match self {
-            Self::Farthest => "farthest",
-            Self::Random => "random",
-            Self::Incremental(Variance::Least) => "min-variance",
-            Self::Incremental(Variance::Greatest) => "max-variance",
+            Self::Farthest => ("farthest", "Each the farthest from those before it"),
+            Self::Random => ("random", "All vertices with the same chance"),
+            Self::Incremental(Variance::Least) => {
+                ("min-variance", "Each the one whose squared distances to those before it vary least")
+            }
+            Self::Incremental(Variance::Greatest) => {
+                ("max-variance", "Each the one whose squared distances to those before it vary most")
+            }
         }
     }
 
@@ -66,12 +90,7 @@ mod tests {
     use super::*;
     use crate::dijkstra::Dijkstra;
 
-    const ALL: [Sampling; 4] = [
-        Sampling::Farthest,
-        Sampling::Random,
-        Sampling::Incremental(Variance::Least),
-        Sampling::Incremental(Variance::Greatest),
-    ];
+    const ALL: [Sampling; 4] = Sampling::ALL;
 
     fn solver(mesh: &TriMesh) -> Dijkstra {
         Dijkstra::new(&mesh.intrinsic())

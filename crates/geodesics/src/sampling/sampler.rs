@@ -23,7 +23,8 @@ pub trait Sampler: std::fmt::Debug {
 }
 
 /// The first landmark.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum FirstSample {
     /// Left to the sampling: the vertex farthest from vertex 0 (a tip of the surface, the same in every run) for
     /// [`FarthestPointSampler`](crate::FarthestPointSampler), a random one for the others.

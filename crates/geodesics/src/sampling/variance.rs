@@ -10,12 +10,14 @@ use crate::error::GeodesicError;
 use crate::solver::DistanceSolver;
 
 /// The rule by which [`VarianceSampler`] takes the next vertex.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
 pub enum Variance {
     /// The vertex whose squared distances to the landmarks vary least, as in Yu et al.
     #[default]
+    #[serde(rename = "min-variance")]
     Least,
     /// The vertex whose squared distances vary most: the opposite rule, for comparison.
+    #[serde(rename = "max-variance")]
     Greatest,
 }
 

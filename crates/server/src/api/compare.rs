@@ -4,10 +4,8 @@ use std::sync::Arc;
 
 use axum::extract::State;
 use axum::http::StatusCode;
-use canonform::{
-    CanonicalForm, Comparison, MatchOptions, Overlay, PipelineError, ShapeDistance, SurfaceComparison,
-    Triangulation, compare_surfaces, overlay_forms,
-};
+use canonform::descriptors::{CanonicalForm, PreparedShape, ShapeMetric, ShapePair};
+use canonform::{Comparison, Error, Overlay, SurfaceComparison, Triangulation, compare_surfaces};
 use serde::{Deserialize, Serialize};
 use view::interactive::Geometry;
 
@@ -58,47 +56,41 @@ impl Residual {
     }
 }
 
-/// One of the two: what decides on the kind of match, and what is shown.
-struct Side {
-    description: (Vec<f32>, CanonicalForm),
-    shown: Shown,
-}
-
-enum Shown {
+/// One of the two: what is compared, and what is shown.
+enum Side {
     Query(Arc<Query>),
-    Shape(Arc<Measured>),
+    Shape(PreparedShape, Arc<Measured>),
     /// The mesh of the shape is gone.
-    Points,
+    Points(PreparedShape),
 }
 
 impl Side {
-    fn of_query(query: Arc<Query>) -> Self {
-        Self { description: query.description.clone(), shown: Shown::Query(query) }
+    fn of_shape(app: &App, id: &str) -> Result<Self, Error> {
+        let shape = app.search.prepared(id)?;
+        match app.indexed(id) {
+            Ok(measured) => Ok(Self::Shape(shape, measured)),
+            Err(fault) if is_missing(&fault) => Ok(Self::Points(shape)),
+            Err(fault) => Err(fault),
+        }
     }
 
-    fn of_shape(app: &App, id: &str) -> Result<Self, PipelineError> {
-        let shown = match app.indexed(id) {
-            Ok(measured) => Shown::Shape(measured),
-            Err(fault) if is_missing(&fault) => Shown::Points,
-            Err(fault) => return Err(fault),
-        };
-        Ok(Self { description: app.search.description(id)?, shown })
-    }
-
-    fn described(&self) -> (&[f32], &CanonicalForm) {
-        (&self.description.0, &self.description.1)
+    fn shape(&self) -> &PreparedShape {
+        match self {
+            Self::Query(query) => &query.shape,
+            Self::Shape(shape, _) | Self::Points(shape) => shape,
+        }
     }
 
     fn measured(&self) -> Option<&Measured> {
-        match &self.shown {
-            Shown::Query(query) => Some(&query.measured),
-            Shown::Shape(measured) => Some(measured),
-            Shown::Points => None,
+        match self {
+            Self::Query(query) => Some(&query.measured),
+            Self::Shape(_, measured) => Some(measured),
+            Self::Points(_) => None,
         }
     }
 
     fn form(&self) -> &CanonicalForm {
-        self.measured().map_or(&self.description.1, |measured| &measured.form.form)
+        self.measured().map_or(self.shape().form(), |measured| &measured.form)
     }
 }
 
@@ -114,7 +106,7 @@ fn answer(app: &App, params: CompareParams) -> Result<Answer, ApiError> {
     let (name, a) = match (params.query, params.a) {
         (Some(query), None) => {
             let query = app.queries.get(&query).ok_or_else(forgotten)?;
-            (query.name.clone(), Side::of_query(query))
+            (query.name.clone(), Side::Query(query))
         }
         (None, Some(id)) => {
             let side = Side::of_shape(app, &id)?;
@@ -123,19 +115,18 @@ fn answer(app: &App, params: CompareParams) -> Result<Answer, ApiError> {
         _ => return Err(ApiError::bad_request("name either an upload with `query` or a shape with `a`")),
     };
     let b = Side::of_shape(app, &params.b)?;
-    let (forms, options) = ([a.form(), b.form()], MatchOptions::default());
+    let metric = ShapeMetric::default();
+    let pair = ShapePair::new(&metric, [a.shape(), b.shape()]);
     let (comparison, triangulation, overlay) = match (a.measured(), b.measured()) {
         (Some(a), Some(b)) => {
+            let surfaces = [(&a.surface, &a.form), (&b.surface, &b.form)];
+            let distance = pair.distance().map_err(Error::from)?;
             let SurfaceComparison { comparison, triangulation, overlay } =
-                compare_surfaces([&a.surface, &b.surface], forms, &options)?;
+                compare_surfaces(&pair, distance, surfaces)?;
             (comparison, Some(triangulation), overlay)
         }
-        _ => {
-            let (comparison, overlay): (_, Overlay) = overlay_forms(forms, &options)?;
-            (comparison, None, overlay)
-        }
+        _ => (canonform::compare(&pair)?, None, Overlay::new(&pair, [a.form(), b.form()])?),
     };
-    let comparison = comparison.decided_by(ShapeDistance::of([a.described(), b.described()])?);
     let dot = a.form().spread();
     Ok(Answer {
         a: name,

@@ -6,7 +6,7 @@ use std::time::Instant;
 
 use axum::extract::{Request, State};
 use canonform::{
-    Explain, PipelineError, SearchOptions, SearchReport, SearchSeconds, Surface, describe_with_form,
+    Error, Explain, SearchOptions, SearchReport, SearchSeconds, ShapeDescription, Surface, embed,
 };
 use mesh::RepairReport;
 use mesh::io::{MemoryFile, ReadLimits, mesh_files, read_memory};
@@ -149,11 +149,7 @@ fn with_upload(app: &App, upload: Upload, options: &SearchOptions) -> Result<Ans
     })
 }
 
-fn measure(
-    app: &App,
-    upload: Upload,
-    options: &SearchOptions,
-) -> Result<(Query, SearchReport), PipelineError> {
+fn measure(app: &App, upload: Upload, options: &SearchOptions) -> Result<(Query, SearchReport), Error> {
     let start = Instant::now();
     let files: Vec<MemoryFile<'_>> =
         upload.files.iter().map(|(name, bytes)| MemoryFile { name: Path::new(name), bytes }).collect();
@@ -161,12 +157,13 @@ fn measure(
     let mesh = read_memory(&files, &ReadLimits::of_vertices(app.options.max_vertices))?;
     drop(upload);
     let describe = app.search.describe_options();
-    let surface = Surface::new(&mesh, &describe.repair)?;
-    let (description, form) = describe_with_form(&surface, describe)?;
+    let surface = Surface::new(&mesh, &describe.form.repair)?;
+    let embedded = embed(&surface, &describe.form, &())?;
+    let description = ShapeDescription::new(&surface, &embedded, describe)?;
     let described = start.elapsed().as_secs_f64();
     let report = app.search.search_described(&description, options)?;
     let seconds = SearchSeconds { describe: described, ..report.seconds };
-    let description = (description.fused, description.form);
-    let query = Query { name, measured: Measured { surface, form }, description };
+    let shape = description.prepare()?;
+    let query = Query { name, measured: Measured::of(surface, &embedded)?, shape };
     Ok((query, SearchReport { seconds, ..report }))
 }

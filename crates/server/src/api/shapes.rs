@@ -6,7 +6,7 @@ use axum::body::Bytes;
 use axum::extract::State;
 use axum::http::HeaderMap;
 use axum::response::Response;
-use canonform::PipelineError;
+use canonform::Error;
 use mesh::TriMesh;
 use serde::{Deserialize, Serialize};
 use view::interactive::Geometry;
@@ -86,7 +86,7 @@ pub(super) async fn form(State(app): State<Arc<App>>, Id(id): Id) -> Result<Writ
     app.work.run(None, move || Written::new(&form_of(&shared, &id)?)).await
 }
 
-pub(super) fn form_of(app: &App, id: &str) -> Result<Geometry, PipelineError> {
+pub(super) fn form_of(app: &App, id: &str) -> Result<Geometry, Error> {
     match app.indexed(id) {
         Ok(measured) => Ok(measured.form()),
         Err(fault) if is_missing(&fault) => Ok(Geometry::new(&dots(&app.search.form(id)?))),
@@ -95,8 +95,8 @@ pub(super) fn form_of(app: &App, id: &str) -> Result<Geometry, PipelineError> {
 }
 
 /// Whether a shape is known but its mesh is not what it was.
-pub(super) fn is_missing(fault: &PipelineError) -> bool {
-    matches!(fault, PipelineError::MeshGone { .. } | PipelineError::MeshChanged { .. })
+pub(super) fn is_missing(fault: &Error) -> bool {
+    matches!(fault, Error::MeshGone { .. } | Error::MeshChanged { .. })
 }
 
 /// A picture of a shape: of its mesh, or of the points of its form where that is gone.

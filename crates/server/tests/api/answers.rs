@@ -168,7 +168,7 @@ fn a_mesh_that_is_gone_leaves_the_points_of_its_form() {
     fs::remove_file(server.mesh("ring0")).unwrap();
     fs::copy(server.mesh("box0"), server.mesh("box1")).unwrap();
     for (id, status, words) in
-        [("ring0", 404, "put it back"), ("box1", 410, "has changed since it was indexed")]
+        [("ring0", 404, "cannot read the mesh"), ("box1", 410, "has changed since it was indexed")]
     {
         let mesh = get(&server, &format!("/api/shapes/{id}/mesh"));
         assert_eq!(mesh.status, status);

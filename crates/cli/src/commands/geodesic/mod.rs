@@ -10,7 +10,8 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use anyhow::{Result, bail};
-use canonform::{DistanceSolver, InputPoint, Source, Surface};
+use canonform::geodesics::{DistanceSolver, Source};
+use canonform::{InputPoint, Surface};
 use mesh::io::{Content, or_list, writable};
 use serde::Serialize;
 
@@ -30,7 +31,7 @@ pub(crate) fn geodesic(args: &GeodesicArgs, common: &Common) -> Result<ExitCode>
     check_folder(&args.output)?;
     let surface = read_surface(&args.mesh, &args.repair)?;
     let start = Instant::now();
-    let method = args.method.method(args.marching);
+    let method = args.marching.of(args.method);
     let solver = method.prepare(&surface.intrinsic).map_err(|fault| named(&args.mesh, fault.into()))?;
     let setup = surface.repair_seconds + start.elapsed().as_secs_f64();
     let task = Task { args, common, format: &format, surface: &surface, solver: solver.as_ref(), setup };

@@ -52,7 +52,7 @@ pub(super) fn write(task: &Task) -> Result<()> {
     })?;
     bars.finish();
     let json = PairsJson {
-        method: args.method.method(args.marching).name(),
+        method: args.method.name(),
         n_vertices: pairs.n_vertices(),
         output: args.output.clone(),
         asymmetry,

@@ -5,7 +5,8 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use anyhow::Result;
-use canonform::{InputPoint, PathTracer, Source, Surface, SurfacePath};
+use canonform::geodesics::{PathTracer, Source};
+use canonform::{InputPoint, Surface, SurfacePath};
 use mesh::RepairReport;
 use serde::Serialize;
 
@@ -71,7 +72,7 @@ pub(super) fn write(task: &Task) -> Result<()> {
     let path_seconds = start.elapsed().as_secs_f64();
     write_paths(task, &paths, &facts)?;
     let json = PathsJson {
-        method: args.method.method(args.marching).name(),
+        method: args.method.name(),
         n_vertices: surface.n_input_vertices(),
         sources: args.source.clone(),
         targets: args.path_to.clone(),

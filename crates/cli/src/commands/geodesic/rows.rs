@@ -45,7 +45,7 @@ pub(super) fn write(task: &Task) -> Result<()> {
     let finite = |row: &Vec<f64>| row.iter().copied().filter(|d| d.is_finite()).fold(0.0, f64::max);
     let dropped = surface.repaired.report.dropped_vertices.len();
     let json = RowsJson {
-        method: args.method.method(args.marching).name(),
+        method: args.method.name(),
         n_vertices: surface.n_input_vertices(),
         sources: args.source.clone(),
         outputs,

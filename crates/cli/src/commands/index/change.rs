@@ -14,6 +14,7 @@ use terminal::Bars;
 use super::super::is_named;
 use crate::args::{AddArgs, BuildArgs, Common, MergeArgs, RemoveArgs};
 use crate::output::{check_folder, facts, print, print_json};
+use crate::remedy::with_remedy;
 
 #[derive(Serialize)]
 struct Json<T: Serialize> {
@@ -29,7 +30,7 @@ fn labels(path: Option<&PathBuf>) -> Result<Option<LabelFile>> {
 pub(super) fn build(args: &BuildArgs, common: &Common) -> Result<ExitCode> {
     check_folder(&args.output)?;
     let labels = labels(args.labels.as_ref())?;
-    let describe = args.describe.options();
+    let describe = args.describe.options(common)?;
     let options = BuildOptions { describe: &describe, labels: labels.as_ref(), shard: args.shard };
     let bars = Bars::new(common.quiet);
     let report = build_index(&args.folder, &args.output, &options, &bars);
@@ -55,9 +56,10 @@ fn tell(index: &Path, report: BuildReport, common: &Common) -> Result<ExitCode> 
         print(&table(index, &report))?;
     }
     for failure in &report.failed {
+        let message = with_remedy(&failure.error, failure.remedy);
         match is_named(&failure.path, &failure.error) {
-            true => eprintln!("error: {}", failure.error),
-            false => eprintln!("error: {}: {}", failure.path.display(), failure.error),
+            true => eprintln!("error: {message}"),
+            false => eprintln!("error: {}: {message}", failure.path.display()),
         }
     }
     Ok(code)

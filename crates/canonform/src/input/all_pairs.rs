@@ -1,4 +1,4 @@
-//! Distances between all pairs of vertices, more than fit into memory.
+//! Distances between all pairs of vertices, written to a file that does not fit into memory.
 
 use std::io::{self, Read, Seek, SeekFrom, Write};
 
@@ -7,14 +7,16 @@ use linalg::Matrix;
 use serde::Serialize;
 use surface::VertexId;
 
-use crate::{Observer, PipelineError, Surface};
+use super::repaired::Surface;
+use crate::error::Error;
+use crate::observer::Observer;
 
-/// How much the two directions of a pair differ, which the average of both hides.
+/// How much the two directions of a pair differ before they are averaged.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 pub struct Asymmetry {
-    /// Mean of `|d(a, b) - d(b, a)|` as a share of the larger one, over all pairs of different places.
+    /// Mean of `|d(a, b) - d(b, a)|` relative to the larger of the two, over all pairs of distinct points.
     pub mean: f64,
-    /// The largest.
+    /// The maximum of the same.
     pub largest: f64,
 }
 
@@ -23,54 +25,50 @@ pub struct Asymmetry {
 pub struct AllPairs<'a> {
     surface: &'a Surface,
     solver: &'a dyn DistanceSolver,
-    /// Rows in a block, and sources solved at a time.
+    /// Rows of a block.
     block: usize,
+    /// Sources solved at a time.
     batch: usize,
 }
 
-/// Sources that are solved at a time, at most.
+/// Most sources solved at a time.
 const BATCH: usize = 64;
 
-/// Columns of a block that are averaged at a time: some cache lines of each row.
+/// Columns of a block averaged at a time: a few cache lines of each row.
 const STRIPE: usize = 64;
 
 const BYTES: usize = size_of::<f64>();
 
 impl<'a> AllPairs<'a> {
-    /// Plans the work so that no more than `memory` bytes of distances are held at once. A solver
-    /// needs some more for itself.
+    /// Plans the work so that at most `memory` bytes of distances are held at once, besides what the solver
+    /// itself needs.
     ///
     /// # Errors
-    /// [`PipelineError::MemoryTooSmall`] for less than two rows.
-    pub fn new(
-        surface: &'a Surface,
-        solver: &'a dyn DistanceSolver,
-        memory: usize,
-    ) -> Result<Self, PipelineError> {
+    /// [`Error::MemoryTooSmall`] if two rows do not fit.
+    pub fn new(surface: &'a Surface, solver: &'a dyn DistanceSolver, memory: usize) -> Result<Self, Error> {
         let n_vertices = surface.n_input_vertices();
         let rows = memory / (BYTES * n_vertices.max(1));
         if rows < 2 {
             let needed = 2 * BYTES * n_vertices;
-            return Err(PipelineError::MemoryTooSmall { n_vertices, needed, limit: memory });
+            return Err(Error::MemoryTooSmall { n_vertices, needed, limit: memory });
         }
         let batch = (rows / 4).clamp(1, BATCH);
         Ok(Self { surface, solver, block: (rows - batch).min(n_vertices), batch })
     }
 
-    /// Number of input vertices, and so of rows and of columns.
+    /// Number of input vertices: the rows and columns of the matrix.
     #[must_use]
     pub fn n_vertices(&self) -> usize {
         self.surface.n_input_vertices()
     }
 
-    /// Writes the matrix to `out` from where it stands, row by row as little-endian float64; infinite
-    /// for vertices that the repair left out.
+    /// Writes the matrix at the current position of `out`, row by row as little-endian float64; infinite for
+    /// vertices that the repair dropped.
     ///
-    /// An entry is the average of both directions, which are solved far apart: a block of rows is
-    /// written as it was solved, and when a later block has the other direction, that part is read back
-    /// and both halves are written. So every distance is solved once, a quarter of the file is read,
-    /// and half of it is written twice. The result depends neither on `memory` nor on the number of
-    /// threads.
+    /// An entry is the average of both directions, which are solved at different times: a block of rows is
+    /// written as it was solved, and when a later block has the other direction, that part is read back and
+    /// both halves are written. So every distance is solved once, a quarter of the file is read, and half of
+    /// it is written twice. The result depends neither on `memory` nor on the number of threads.
     ///
     /// # Errors
     /// Those of `out`.
@@ -90,7 +88,7 @@ impl<'a> AllPairs<'a> {
             let n = self.block.min(p - first);
             let rows = &mut block[..n * p];
             self.solve(first, rows, observer);
-            // The stripes before the block were written by earlier ones.
+            // Earlier blocks wrote the stripes left of this one.
             for left in (0..first).step_by(STRIPE) {
                 let width = STRIPE.min(first - left);
                 let stripe = &mut bytes[..width * n * BYTES];
@@ -128,7 +126,7 @@ impl<'a> AllPairs<'a> {
         Ok(tally.asymmetry())
     }
 
-    /// Solves the rows of input vertices from `first` on.
+    /// Solves the rows of the input vertices from `first` on.
     fn solve(&self, first: usize, rows: &mut [f64], observer: &dyn Observer) {
         let p = self.n_vertices();
         let to_repaired = &self.surface.repaired.input_to_repaired;
@@ -158,7 +156,7 @@ fn copied(bytes: &[u8]) -> [u8; BYTES] {
     std::array::from_fn(|i| bytes[i])
 }
 
-/// What is known of the asymmetry so far.
+/// The asymmetry of the pairs seen so far.
 #[derive(Debug, Default)]
 struct Tally {
     sum: f64,
@@ -191,12 +189,13 @@ mod tests {
     use mesh::{RepairOptions, TriMesh, shapes};
 
     use super::*;
+    use crate::error::Remedy;
 
     fn surface(mesh: &TriMesh) -> Surface {
         Surface::new(mesh, &RepairOptions::default()).unwrap()
     }
 
-    /// The matrix written with so many rows of memory, after some bytes of a header.
+    /// The matrix, written behind a header with memory for this many rows.
     fn written(surface: &Surface, rows: usize) -> (Vec<f64>, Asymmetry) {
         let solver = Method::default().prepare(&surface.intrinsic).unwrap();
         let memory = rows * surface.n_input_vertices() * BYTES;
@@ -210,7 +209,7 @@ mod tests {
     }
 
     #[test]
-    fn the_matrix_is_the_average_of_both_directions_whatever_the_memory() {
+    fn the_matrix_averages_both_directions_and_does_not_depend_on_memory() {
         let surface = surface(&shapes::jittered_grid(13, 11, 1.0, 0.2, 4));
         let p = surface.n_input_vertices();
         let solver = Method::default().prepare(&surface.intrinsic).unwrap();
@@ -226,9 +225,9 @@ mod tests {
     }
 
     #[test]
-    fn merged_vertices_are_in_one_place_and_dropped_ones_are_nowhere() {
+    fn merged_vertices_have_equal_rows_and_dropped_ones_infinite_rows() {
         let mut mesh = shapes::disjoint(&[shapes::icosphere(2), shapes::cube(0)]);
-        // A crack: a vertex of the sphere is doubled, in some of its faces.
+        // A crack: some faces of a vertex get a copy of it.
         let twin = VertexId::from(mesh.n_vertices());
         mesh.positions.push(mesh.positions[0]);
         let faces = mesh.faces.iter_mut().filter(|f| f.contains(&VertexId(0)));
@@ -245,11 +244,11 @@ mod tests {
     }
 
     #[test]
-    fn less_than_two_rows_are_refused() {
+    fn memory_for_less_than_two_rows_is_refused() {
         let surface = surface(&shapes::grid(4, 4, 1.0));
         let solver = Method::default().prepare(&surface.intrinsic).unwrap();
         let error = AllPairs::new(&surface, solver.as_ref(), 2 * 16 * BYTES - 1).unwrap_err();
-        assert!(matches!(error, PipelineError::MemoryTooSmall { needed: 256, limit: 255, .. }));
-        assert!(error.to_string().contains("--memory"));
+        assert!(matches!(error, Error::MemoryTooSmall { needed: 256, limit: 255, .. }));
+        assert_eq!(error.remedy(), Some(Remedy::RaiseMemory));
     }
 }

@@ -1,4 +1,4 @@
-//! Collections of meshes as an index: the order of the stages of making, changing and asking it.
+//! Collections of meshes as an index: building, changing, searching and scoring it.
 //!
 //! ```text
 //! files -> content hash -> unchanged? -> describe -> index::IndexWriter -> index::Index
@@ -9,12 +9,14 @@ mod build;
 mod change;
 mod evaluate;
 mod record;
+mod rerank;
 mod search;
 mod source;
 
 pub use build::{BuildOptions, BuildReport, Failure, build_index};
 pub use change::{MergeReport, add_to_index, merge_indexes, remove_from_index};
 pub use evaluate::{Measure, evaluate_index, evaluate_matrix};
+pub use rerank::{Ranked, Reranked, rerank};
 pub use search::{
     Explain, Prediction, SearchOptions, SearchReport, SearchResult, SearchSeconds, ShapeSearch,
 };

@@ -1,4 +1,4 @@
-//! A mesh that distances can be measured on.
+//! A repaired mesh, ready for distances.
 
 use std::path::Path;
 use std::time::Instant;
@@ -8,42 +8,65 @@ use nalgebra::Point3;
 use mesh::{RepairOptions, Repaired, TriMesh, io, repair};
 use surface::{IntrinsicMesh, VertexId};
 
-use crate::PipelineError;
+use crate::error::Error;
 
-/// A repaired mesh, its intrinsic geometry, and the way back to the vertices of the input.
+/// A repaired mesh, its intrinsic geometry, and the map back to the vertices of the input.
 #[derive(Debug, Clone)]
 pub struct Surface {
-    /// The repaired mesh, the report on it, and where each input vertex went.
+    /// How the mesh was repaired.
+    pub repair: RepairOptions,
+    /// The repaired mesh, the report on the repair, and the repaired vertex of each input vertex.
     pub repaired: Repaired,
-    /// Connectivity and edge lengths of the repaired mesh, with its bridges.
+    /// Connectivity and edge lengths of the repaired mesh, including bridges.
     pub intrinsic: IntrinsicMesh,
-    /// The faces of the input, over the vertices of the input.
+    /// The faces of the input, in the vertex numbers of the input.
     pub input_faces: Vec<[VertexId; 3]>,
-    /// For every vertex of the repaired mesh the first input vertex that became it.
+    /// For every vertex of the repaired mesh, the first input vertex that was mapped to it.
     input_vertex: Vec<VertexId>,
     /// Seconds to read the file; zero for a mesh in memory.
     pub load_seconds: f64,
-    /// Seconds to repair it and to build the connectivity.
+    /// Seconds to repair the mesh and to build the connectivity.
     pub repair_seconds: f64,
 }
 
 impl Surface {
     /// Reads and repairs a mesh file.
     ///
+    /// ```
+    /// use canonform::{Surface, mesh};
+    ///
+    /// let folder = tempfile::tempdir()?;
+    /// let path = folder.path().join("ball.off");
+    /// mesh::io::write(&path, &mesh::shapes::icosphere(2))?;
+    /// let surface = Surface::read(&path, &Default::default())?;
+    /// assert_eq!(surface.mesh().n_vertices(), 162);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
     /// # Errors
-    /// [`PipelineError::Mesh`].
-    pub fn read(path: &Path, options: &RepairOptions) -> Result<Self, PipelineError> {
+    /// [`Error::Mesh`].
+    pub fn read(path: &Path, options: &RepairOptions) -> Result<Self, Error> {
         let start = Instant::now();
         let mesh = io::read(path)?;
         let load_seconds = start.elapsed().as_secs_f64();
         Ok(Self { load_seconds, ..Self::new(&mesh, options)? })
     }
 
-    /// Repairs a mesh in memory.
+    /// Repairs a mesh in memory. Vertices keep their order; the report lists every change.
+    ///
+    /// ```
+    /// use canonform::{Surface, mesh::shapes};
+    ///
+    /// let pieces = shapes::disjoint(&[shapes::icosphere(2), shapes::cube(0)]);
+    /// let surface = Surface::new(&pieces, &Default::default())?;
+    /// assert_eq!(surface.mesh().n_vertices(), 162, "only the largest component is kept");
+    /// assert!(surface.repaired.report.dropped_area_share > 0.0);
+    /// # Ok::<(), canonform::Error>(())
+    /// ```
     ///
     /// # Errors
-    /// [`PipelineError::Mesh`].
-    pub fn new(mesh: &TriMesh, options: &RepairOptions) -> Result<Self, PipelineError> {
+    /// [`Error::Mesh`].
+    pub fn new(mesh: &TriMesh, options: &RepairOptions) -> Result<Self, Error> {
         let start = Instant::now();
         let repaired = repair(mesh, options)?;
         let intrinsic = repaired.intrinsic();
@@ -54,6 +77,7 @@ impl Surface {
             }
         }
         Ok(Self {
+            repair: *options,
             repaired,
             intrinsic,
             input_faces: mesh.faces.clone(),
@@ -75,26 +99,26 @@ impl Surface {
         self.repaired.input_to_repaired.len()
     }
 
-    /// Where an input vertex is in the repaired mesh.
+    /// The vertex of the repaired mesh that an input vertex became.
     ///
     /// # Errors
-    /// [`PipelineError::NoSuchVertex`] and [`PipelineError::DroppedVertex`].
-    pub fn repaired_vertex(&self, input: VertexId) -> Result<VertexId, PipelineError> {
+    /// [`Error::NoSuchVertex`] and [`Error::DroppedVertex`].
+    pub fn repaired_vertex(&self, input: VertexId) -> Result<VertexId, Error> {
         let n_vertices = self.n_input_vertices();
         let found = self.repaired.input_to_repaired.get(input.index());
         found
-            .ok_or(PipelineError::NoSuchVertex { vertex: input, n_vertices })?
-            .ok_or(PipelineError::DroppedVertex { vertex: input })
+            .ok_or(Error::NoSuchVertex { vertex: input, n_vertices })?
+            .ok_or(Error::DroppedVertex { vertex: input })
     }
 
-    /// The first input vertex that became this vertex of the repaired mesh.
+    /// The first input vertex that was mapped to this vertex of the repaired mesh.
     #[must_use]
     pub fn input_vertex(&self, vertex: VertexId) -> VertexId {
         self.input_vertex[vertex.index()]
     }
 
-    /// The input's faces over new positions of its vertices. Vertices that the repair left out have no
-    /// position: they are left out here too, with the faces that name them.
+    /// The faces of the input with new positions, given for the vertices of the repaired mesh. Vertices that the
+    /// repair dropped have no position; they are left out, and so are their faces.
     #[must_use]
     pub fn with_positions(&self, positions: &[Point3<f64>]) -> TriMesh {
         let to_repaired = &self.repaired.input_to_repaired;
@@ -113,7 +137,7 @@ impl Surface {
         TriMesh { positions: kept, faces: self.input_faces.iter().filter_map(renumbered).collect() }
     }
 
-    /// Values of the repaired vertices, in the order of the input; `missing` where a vertex was left out.
+    /// Puts values of the repaired vertices into the order of the input, with `missing` for dropped vertices.
     #[must_use]
     pub fn in_input_order<T: Copy>(&self, values: &[T], missing: T) -> Vec<T> {
         let value = |vertex: &Option<VertexId>| vertex.map_or(missing, |v| values[v.index()]);

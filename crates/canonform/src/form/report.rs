@@ -4,18 +4,18 @@ use mesh::RepairReport;
 use nmds::{SmacofReport, SmacofStop};
 use serde::Serialize;
 
-use crate::StressReport;
+use super::stress::StressReport;
 
-/// Facts about an embedding; what `canonform embed --json` prints.
+/// Facts about an embedding; `canonform embed --json` prints them.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct EmbedReport {
     /// Name of the method.
     pub method: &'static str,
-    /// Name of the way distances were measured.
+    /// Name of the method that measured the distances.
     pub geodesic: &'static str,
-    /// Name of the way samples were taken; none for classical scaling.
+    /// How samples were taken; `None` for classical scaling.
     pub sampling: Option<&'static str>,
-    /// Name of the regularisation, of methods that have one.
+    /// Name of the regularisation, for methods that have one.
     pub regularization: Option<&'static str>,
     /// Vertices of the input.
     pub n_vertices: usize,
@@ -29,17 +29,17 @@ pub struct EmbedReport {
     pub rank: usize,
     /// Dimensions of the embedding.
     pub dim: usize,
-    /// The samples, as vertices of the input; empty for classical scaling, where all are.
+    /// The samples, as vertices of the input; empty for classical scaling.
     pub samples: Vec<u32>,
     /// Eigenvalues of the embedding, descending, in squared mesh units.
     pub eigenvalues: Vec<f64>,
     /// Share of negative eigenvalues among those computed.
     pub negative_mass: f64,
-    /// Dimensions that found no positive eigenvalue and are zero.
+    /// Dimensions without a positive eigenvalue; their coordinates are zero.
     pub empty_dimensions: usize,
-    /// The stress, unless it was not asked for or the method's coordinates have no unit.
+    /// The stress, unless it was not measured or the coordinates have no unit.
     pub stress: Option<StressReport>,
-    /// How the stress was made smaller, by SMACOF.
+    /// How SMACOF reduced the stress.
     pub descent: Option<DescentReport>,
     /// Wall-clock seconds.
     pub seconds: SecondsReport,
@@ -50,11 +50,11 @@ pub struct EmbedReport {
 /// Facts about a run of SMACOF.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct DescentReport {
-    /// Steps that were taken.
+    /// Number of steps.
     pub iterations: usize,
     /// `converged` or `iteration-limit`.
     pub stop: &'static str,
-    /// Kruskal's stress of the start and after every step: never ascending.
+    /// Kruskal's stress at the start and after every step; it never increases.
     pub normalized_stress: Vec<f64>,
 }
 
@@ -75,7 +75,7 @@ pub struct SecondsReport {
     pub load: f64,
     /// Repair and connectivity.
     pub repair: f64,
-    /// Preparation of the surface, sampling and distances.
+    /// Preparing the solver, sampling and distances.
     pub geodesics: f64,
     /// Linear algebra.
     pub embedding: f64,

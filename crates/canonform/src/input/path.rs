@@ -1,14 +1,16 @@
-//! Shortest paths in space, in the numbers of the input.
+//! Shortest paths, in the numbers of the input.
 
 use geodesics::{GeodesicError, PathTracer, SurfacePoint};
 use nalgebra::Point3;
 
-use crate::{InputPoint, PipelineError, Surface};
+use super::point::InputPoint;
+use super::repaired::Surface;
+use crate::error::Error;
 
 /// A shortest path along a surface.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SurfacePath {
-    /// Its points from the source to the target, straight in between.
+    /// Its points from the source to the target, joined by straight lines.
     pub points: Vec<PathPoint>,
     /// Its length, in mesh units.
     pub length: f64,
@@ -17,23 +19,22 @@ pub struct SurfacePath {
 /// A point of a path.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PathPoint {
-    /// Where it is on the input.
+    /// The point of the input.
     pub at: InputPoint,
-    /// Where it is in space.
+    /// Its position.
     pub position: Point3<f64>,
-    /// How far it is from the source along the path, in mesh units.
+    /// Distance from the source along the path, in mesh units.
     pub distance: f64,
 }
 
 impl Surface {
-    /// The shortest path from the nearest source of `tracer`, which must be one of this surface, to a
-    /// point.
+    /// The shortest path from the nearest source of `tracer` to a point. The tracer must belong to this surface.
     ///
     /// # Errors
-    /// [`PipelineError::NoWay`], and [`PipelineError::Geodesic`] when the point is on another surface.
-    pub fn path(&self, tracer: &PathTracer, target: SurfacePoint) -> Result<SurfacePath, PipelineError> {
+    /// [`Error::NoPath`], and [`Error::Geodesic`] if the point belongs to another surface.
+    pub fn path(&self, tracer: &PathTracer, target: SurfacePoint) -> Result<SurfacePath, Error> {
         let path = tracer.path_to(target).map_err(|fault| match fault {
-            GeodesicError::NoWay { point } => PipelineError::NoWay { target: self.input_point(point) },
+            GeodesicError::NoWay { point } => Error::NoPath { target: self.input_point(point).to_string() },
             fault => fault.into(),
         })?;
         let mut points: Vec<PathPoint> = Vec::with_capacity(path.points.len());

@@ -1,4 +1,4 @@
-//! Making the index of a folder.
+//! Building the index of a folder.
 
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
@@ -9,54 +9,58 @@ use index::{Index, IndexError, IndexWriter, Job, Shape, ShapeEntry, work_path};
 use rayon::prelude::*;
 use serde::Serialize;
 
-use super::record::{options_text, path_text, same_source, shape};
+use super::record::{path_text, same_source, shape};
 use super::source::{Hashed, Shard, hash_all, name_apart, share};
-use crate::{
-    DescribeOptions, LabelFile, Observer, PipelineError, ShapeFile, Surface, describe_surface, list_shapes,
-};
+use crate::error::{Error, Remedy};
+use crate::form::{DescribeOptions, describe};
+use crate::input::{LabelFile, ShapeFile, Surface, list_shapes};
+use crate::observer::Observer;
 
-/// Shapes put on the disk together at most, when several are waiting.
+/// Most shapes written to disk in one transaction.
 const BATCH: usize = 64;
 
-/// Described shapes that may wait for the disk.
+/// Most described shapes that wait to be written.
 const WAITING: usize = 64;
 
-/// How the index of a folder is made.
+/// How the index of a folder is built.
 #[derive(Debug, Clone, Copy)]
 pub struct BuildOptions<'a> {
     /// How shapes are described.
     pub describe: &'a DescribeOptions,
-    /// Classes by name; without, they follow from names.
+    /// Classes by name. Default: from the names of folders and files.
     pub labels: Option<&'a LabelFile>,
-    /// The share of the folder that is indexed. Default: all of it.
+    /// The part of the folder to index. Default: all of it.
     pub shard: Option<Shard>,
 }
 
-/// A mesh that is not in the index, and why.
+/// A mesh that could not be described.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Failure {
-    /// Its name.
+    /// Name of the shape.
     pub id: String,
-    /// Where it is.
+    /// Path of the mesh.
     pub path: PathBuf,
-    /// What is wrong.
+    /// The error.
     pub error: String,
+    /// What would help against it.
+    #[serde(skip)]
+    pub remedy: Option<Remedy>,
 }
 
-/// What became of the meshes.
+/// The outcome of building or extending an index.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct BuildReport {
-    /// Shapes of the index now.
+    /// Shapes in the index now.
     pub n_shapes: usize,
     /// Shapes that were described.
     pub described: usize,
-    /// Shapes that were there already, of the same content: in the index, or from before an interruption.
+    /// Shapes with unchanged content, from the index or from an interrupted run.
     pub unchanged: usize,
-    /// Shapes whose file or class is named otherwise now.
+    /// Shapes whose path or class changed.
     pub renamed: usize,
-    /// Shapes that were taken out: their files are gone, or cannot be read any more.
+    /// Shapes removed because their files are gone or cannot be read any more.
     pub removed: usize,
-    /// Whether an interrupted run was taken up.
+    /// Whether an interrupted run was resumed.
     pub resumed: bool,
     /// Meshes that could not be described, in order.
     pub failed: Vec<Failure>,
@@ -65,34 +69,47 @@ pub struct BuildReport {
 }
 
 impl BuildReport {
-    fn fail(&mut self, file: &ShapeFile, fault: &PipelineError) {
+    fn fail(&mut self, file: &ShapeFile, fault: &Error) {
         let (id, path) = (file.name.clone(), file.path.clone());
-        self.failed.push(Failure { id, path, error: fault.to_string() });
+        self.failed.push(Failure { id, path, error: fault.to_string(), remedy: fault.remedy() });
     }
 }
 
-/// Makes `path` the index of the meshes in `folder`: describes what is new or has changed, takes out what is
-/// gone, and leaves the rest as it is.
+/// Makes `path` the index of the meshes in `folder`: describes new and changed meshes, removes shapes whose files
+/// are gone, and keeps the rest.
 ///
-/// Every described shape is on the disk before `observer` hears of it. A run that is interrupted is taken up
-/// by the next one. Meshes that cannot be described are reported and stay out; when there is nothing but
-/// those, no index is written.
+/// Every described shape is on disk before `observer` counts it, and the next run resumes an interrupted one.
+/// Meshes that cannot be described are reported and left out; if there are no others, no index is written.
+///
+/// ```
+/// use canonform::{BuildOptions, DescribeOptions, build_index, mesh};
+///
+/// let folder = tempfile::tempdir()?;
+/// mesh::io::write(&folder.path().join("ball1.off"), &mesh::shapes::icosphere(2))?;
+/// mesh::io::write(&folder.path().join("ring1.off"), &mesh::shapes::torus(24, 12, 2.0, 0.7))?;
+/// let index = folder.path().join("shapes.canonform");
+/// let describe = DescribeOptions::default();
+/// let options = BuildOptions { describe: &describe, labels: None, shard: None };
+/// let report = build_index(folder.path(), &index, &options, &())?;
+/// assert_eq!((report.n_shapes, report.failed.len()), (2, 0));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 ///
 /// # Errors
-/// [`PipelineError::NoShapes`], [`PipelineError::Index`] and others that concern the whole run.
+/// [`Error::NoShapes`], [`Error::Index`], and those of [invalid options](DescribeOptions::validate).
 pub fn build_index(
     folder: &Path,
     path: &Path,
     options: &BuildOptions<'_>,
     observer: &dyn Observer,
-) -> Result<BuildReport, PipelineError> {
+) -> Result<BuildReport, Error> {
     let start = Instant::now();
     options.describe.validate()?;
     let mut files = list_shapes(folder, options.labels)?;
     name_apart(&mut files);
     let files = share(files, options.shard);
-    let text = options_text(options.describe);
-    // What cannot work is refused before anything is read.
+    let text = options.describe.text();
+    // Refuse other options before any mesh is read.
     if path.exists() {
         Index::open(path)?.expect_options(&text)?;
     }
@@ -122,7 +139,7 @@ pub fn build_index(
     Ok(report)
 }
 
-/// Whether an index is what these files would make it.
+/// Whether an index already holds exactly these files.
 fn is_current(index: &Index, files: &[Hashed]) -> Result<bool, IndexError> {
     if index.len() != files.len() {
         return Ok(false);
@@ -140,14 +157,14 @@ fn is_current(index: &Index, files: &[Hashed]) -> Result<bool, IndexError> {
     Ok(true)
 }
 
-/// Puts all files into the index that are not there as they are; the names of those that are there now.
+/// Puts new and changed files into the index. Returns the names of all files that are in it afterwards.
 pub(super) fn fill(
     writer: &mut IndexWriter,
     files: Vec<Hashed>,
     options: &DescribeOptions,
     report: &mut BuildReport,
     observer: &dyn Observer,
-) -> Result<HashSet<String>, PipelineError> {
+) -> Result<HashSet<String>, Error> {
     let mut kept = HashSet::new();
     let mut renamed: Vec<(String, ShapeEntry)> = Vec::new();
     let mut wanted = Vec::new();
@@ -179,11 +196,11 @@ pub(super) fn fill(
     let (send, receive) = sync_channel(WAITING);
     let described = std::thread::scope(|scope| {
         scope.spawn(|| {
-            // Nobody receives any more: the writer has failed, and there is no use in going on.
+            // Sending fails only if the writer has failed; then there is no use in going on.
             let _ =
                 wanted.par_iter().enumerate().try_for_each_with(send, |send, (place, (file, content))| {
-                    let described = Surface::read(&file.path, &options.repair)
-                        .and_then(|surface| describe_surface(&surface, options))
+                    let described = Surface::read(&file.path, &options.form.repair)
+                        .and_then(|surface| describe(&surface, options))
                         .map(|described| shape(file, *content, described));
                     send.send((place, described)).map_err(drop)
                 });
@@ -198,19 +215,19 @@ pub(super) fn fill(
     Ok(kept)
 }
 
-/// What came out of describing.
+/// Shapes that were described, and meshes that failed.
 #[derive(Default)]
 struct Described {
     stored: Vec<String>,
-    failed: Vec<(usize, PipelineError)>,
+    failed: Vec<(usize, Error)>,
 }
 
-/// Puts shapes on the disk as they come, all that are waiting at once.
+/// Writes shapes as they arrive, all that are waiting in one transaction.
 fn store(
     writer: &mut IndexWriter,
-    receive: Receiver<(usize, Result<Shape, PipelineError>)>,
+    receive: Receiver<(usize, Result<Shape, Error>)>,
     observer: &dyn Observer,
-) -> Result<Described, PipelineError> {
+) -> Result<Described, Error> {
     let mut described = Described::default();
     while let Ok(first) = receive.recv() {
         let mut shapes = Vec::new();

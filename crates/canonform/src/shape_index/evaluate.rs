@@ -1,42 +1,45 @@
-//! How well an index, or any matrix of distances, separates classes.
+//! How well an index, or a matrix of distances, separates classes.
 
 use std::path::Path;
 
-use index::Index;
+use descriptors::{ShapeMetric, SignatureKind};
+use index::{Index, IndexError};
 use linalg::DistanceMatrix;
 use retrieval::{Evaluation, Labels, evaluate, pairwise_distances};
 
-use crate::{LabelFile, Observer, PipelineError, SignatureKind, label_of};
+use crate::error::Error;
+use crate::input::{LabelFile, label_in};
+use crate::observer::Observer;
 
-/// Most shapes between which all distances are measured: 800 MB.
+/// Most shapes evaluated at once: their matrix takes 800 MB.
 const MOST: usize = 10_000;
 
-/// What distances are measured between.
+/// The vectors that distances are measured between.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Measure {
-    /// Fused signatures, what an index is searched by.
+    /// Fused signatures, by which an index is searched.
     #[default]
     Fused,
     /// Signatures of one kind.
     Signature(SignatureKind),
 }
 
-/// Scores an index by the distances between all pairs of its shapes. Classes are those of the index, or of
+/// Scores an index by the distances between all pairs of its shapes. Classes come from the index, or from
 /// `labels`.
 ///
 /// # Errors
-/// [`PipelineError::TooManyShapes`], [`PipelineError::Index`], [`PipelineError::Retrieval`].
+/// [`Error::TooManyShapes`], [`Error::Index`], [`Error::Retrieval`].
 pub fn evaluate_index(
     path: &Path,
     measure: Measure,
     labels: Option<&LabelFile>,
     knn_k: usize,
     observer: &dyn Observer,
-) -> Result<Evaluation, PipelineError> {
+) -> Result<Evaluation, Error> {
     let index = Index::open(path)?;
     let n = index.len();
     if n > MOST {
-        return Err(PipelineError::TooManyShapes { n_shapes: n, limit: MOST });
+        return Err(Error::TooManyShapes { n_shapes: n, limit: MOST });
     }
     let (mut names, mut rows) = (Vec::with_capacity(n), Vec::with_capacity(n));
     index.each(|shape| {
@@ -49,63 +52,63 @@ pub fn evaluate_index(
             Measure::Signature(kind) => {
                 let mut signatures = shape.vectors.signatures.into_iter();
                 let found = signatures.find(|(name, _)| name == kind.name());
-                let missing = || PipelineError::UnknownOptions {
+                let missing = || IndexError::Damaged {
                     path: path.to_owned(),
-                    options: format!("`{}` has no signature {}", shape.id, kind.name()),
+                    what: format!("`{}` has no {} signature", shape.id, kind.name()),
                 };
                 found.ok_or_else(missing)?.1
             }
         });
-        Ok::<(), PipelineError>(())
+        Ok::<(), Error>(())
     })?;
     observer.begin("distances", n * n.saturating_sub(1) / 2);
-    let distance = |i: usize, j: usize| -> Result<f64, PipelineError> {
-        let gaps = rows[i].iter().zip(&rows[j]).map(|(x, y)| (f64::from(*x) - f64::from(*y)).powi(2));
-        Ok(gaps.sum::<f64>().sqrt())
-    };
+    let distance = |i: usize, j: usize| Ok::<_, Error>(ShapeMetric::fused(&rows[i], &rows[j]));
     let distances = pairwise_distances(n, distance, || observer.step())?;
     Ok(evaluate(&distances, &Labels::new(&names), knn_k)?)
 }
 
-/// Scores a matrix of distances: lines of numbers separated by commas, perhaps with a first line of names.
+/// Scores a matrix of distances: lines of numbers separated by commas, optionally below a line of names.
 ///
-/// Classes are those of `labels`, by name; or by the order of its lines when the matrix has no names; or
-/// they follow from the names. The matrix is made symmetric by the mean of both directions.
+/// Classes come from `labels`, by name or, if the matrix has no names, by the order of its lines; without labels
+/// they come from the names. Both directions of a pair are averaged.
+///
+/// ```
+/// use canonform::evaluate_matrix;
+///
+/// let folder = tempfile::tempdir()?;
+/// let path = folder.path().join("distances.csv");
+/// let rows = ["cat1,cat2,cat3,dog1,dog2,dog3", "0,1,2,9,9,9", "1,0,1,9,9,9", "2,1,0,9,9,9", "9,9,9,0,1,2",
+///     "9,9,9,1,0,1", "9,9,9,2,1,0"];
+/// std::fs::write(&path, rows.join("\n"))?;
+/// let scores = evaluate_matrix(&path, None, 1)?;
+/// assert_eq!((scores.classes, scores.nn, scores.map), (vec!["cat".to_owned(), "dog".to_owned()], 1.0, 1.0));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 ///
 /// # Errors
-/// [`PipelineError::BadMatrix`], [`PipelineError::Retrieval`].
-pub fn evaluate_matrix(
-    path: &Path,
-    labels: Option<&LabelFile>,
-    knn_k: usize,
-) -> Result<Evaluation, PipelineError> {
-    let text = std::fs::read_to_string(path)
-        .map_err(|source| PipelineError::Io { path: path.to_owned(), source })?;
+/// [`Error::BadMatrix`], [`Error::NoNames`], [`Error::Retrieval`].
+pub fn evaluate_matrix(path: &Path, labels: Option<&LabelFile>, knn_k: usize) -> Result<Evaluation, Error> {
+    let text = std::fs::read_to_string(path).map_err(|source| Error::Io { path: path.to_owned(), source })?;
     let Matrix { names, rows } = Matrix::parse(&text, path)?;
     let n = rows.len();
     let classes = match (labels, names) {
-        (Some(file), Some(names)) => names.iter().map(|name| file.label(name)).collect::<Result<_, _>>()?,
+        (_, Some(names)) => names.iter().map(|name| label_in(labels, name)).collect::<Result<_, _>>()?,
         (Some(file), None) => file.in_order().to_vec(),
-        (None, Some(names)) => names.iter().map(|name| label_of(name)).collect(),
-        (None, None) => {
-            let what =
-                "no names in the first line; give classes with --labels FILE.csv, one line a row".to_owned();
-            return Err(PipelineError::BadMatrix { path: path.to_owned(), line: 1, what });
-        }
+        (None, None) => return Err(Error::NoNames { path: path.to_owned() }),
     };
     let distances = DistanceMatrix::from_pairs(n, |i, j| 0.5 * (rows[i][j] + rows[j][i]))?;
     Ok(evaluate(&distances, &Labels::new(&classes), knn_k)?)
 }
 
-/// A square of numbers and what its rows are called.
+/// A square matrix and the names of its rows.
 struct Matrix {
     names: Option<Vec<String>>,
     rows: Vec<Vec<f64>>,
 }
 
 impl Matrix {
-    fn parse(text: &str, path: &Path) -> Result<Self, PipelineError> {
-        let bad = |line: usize, what: String| PipelineError::BadMatrix { path: path.to_owned(), line, what };
+    fn parse(text: &str, path: &Path) -> Result<Self, Error> {
+        let bad = |line: usize, what: String| Error::BadMatrix { path: path.to_owned(), line, what };
         let lines = text.lines().enumerate().map(|(i, line)| (i + 1, line.trim()));
         let mut lines = lines.filter(|(_, line)| !line.is_empty() && !line.starts_with('#')).peekable();
         let fields =
@@ -124,20 +127,20 @@ impl Matrix {
             }
             let row = fields.iter().map(|field| match field.parse::<f64>() {
                 Ok(distance) if distance.is_finite() && distance >= 0.0 => Ok(distance),
-                _ => Err(bad(number, format!("`{field}` is no distance; write a number, not negative"))),
+                _ => Err(bad(number, format!("`{field}` is not a distance; write a nonnegative number"))),
             });
             rows.push(row.collect::<Result<_, _>>()?);
         }
         let n = rows.len();
         if n == 0 {
-            return Err(bad(last, "no numbers; write one line of distances for each shape".to_owned()));
+            return Err(bad(last, "no numbers; write one line of distances per shape".to_owned()));
         }
         if let Some(i) = rows.iter().position(|row| row.len() != n) {
             let what = format!("row {} of {n} has {} distances, not {n}", i + 1, rows[i].len());
             return Err(bad(last, what));
         }
         let names = match (head, firsts.len()) {
-            // The corner above the names of the rows.
+            // Row names have a corner field above them.
             (Some(mut head), _) if head.len() == n + 1 => Some(head.split_off(1)),
             (Some(head), _) if head.len() == n => Some(head),
             (Some(head), _) => {
@@ -175,7 +178,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_no_matrix_is_named() {
+    fn malformed_matrices_are_refused() {
         for (text, words) in [
             ("", "no numbers"),
             ("0,1\n1,0,2\n", "row 2 of 2 has 3"),

@@ -1,52 +1,30 @@
-//! A description as an index keeps it.
+//! A description as an index stores it.
 
 use std::path::Path;
 
-use descriptors::CanonicalForm;
+use descriptors::{CanonicalForm, PreparedShape};
 use index::{ContentHash, Index, Shape, ShapeEntry, ShapeVectors};
 use nalgebra::Point3;
-use serde::{Deserialize, Serialize};
 
-use crate::describe::DESCRIPTION_VERSION;
-use crate::{DescribeOptions, PipelineError, ShapeDescription, ShapeFile};
+use crate::error::Error;
+use crate::form::{DescribeOptions, ShapeDescription};
+use crate::input::ShapeFile;
 
-/// The fact that gives a form its unit of length.
+/// The area of the surface, in squared mesh units.
 const AREA: &str = "area";
-
-/// How the shapes of an index were described, as the index says it.
-#[derive(Serialize, Deserialize)]
-struct Provenance {
-    description: u32,
-    #[serde(flatten)]
-    options: DescribeOptions,
-}
-
-/// The text by which an index says how its shapes were described.
-pub(super) fn options_text(options: &DescribeOptions) -> String {
-    let provenance = Provenance { description: DESCRIPTION_VERSION, options: options.clone() };
-    // Nothing in it can fail to become text.
-    serde_json::to_string(&provenance).unwrap_or_else(|_| options.text())
-}
 
 /// How the shapes of an index were described.
 ///
 /// # Errors
-/// [`PipelineError::UnknownOptions`].
-pub(super) fn options_of(index: &Index) -> Result<DescribeOptions, PipelineError> {
-    let unknown = || PipelineError::UnknownOptions {
+/// [`Error::UnknownOptions`].
+pub(super) fn options_of(index: &Index) -> Result<DescribeOptions, Error> {
+    DescribeOptions::from_text(index.options()).ok_or_else(|| Error::UnknownOptions {
         path: index.path().to_owned(),
         options: index.options().to_owned(),
-    };
-    let mut fields: serde_json::Map<String, serde_json::Value> =
-        serde_json::from_str(index.options()).map_err(|_| unknown())?;
-    let version = fields.remove("description");
-    if version != Some(DESCRIPTION_VERSION.into()) {
-        return Err(unknown());
-    }
-    serde_json::from_value(fields.into()).map_err(|_| unknown())
+    })
 }
 
-/// What the index is told of a file without a look at its mesh.
+/// Whether an entry has the class and the path of a file.
 pub(super) fn same_source(entry: &ShapeEntry, file: &ShapeFile) -> bool {
     entry.label == file.label && entry.path == path_text(&file.path)
 }
@@ -55,7 +33,7 @@ pub(super) fn path_text(path: &Path) -> String {
     path.to_string_lossy().into_owned()
 }
 
-/// The shape that a file became.
+/// The shape of a mesh file, as an index stores it.
 pub(super) fn shape(file: &ShapeFile, content: ContentHash, described: ShapeDescription) -> Shape {
     let repair = &described.repair;
     let facts = [
@@ -85,12 +63,30 @@ pub(super) fn shape(file: &ShapeFile, content: ContentHash, described: ShapeDesc
     }
 }
 
-/// The form of an indexed shape.
+/// The form of an indexed shape, which was described with `options`.
 ///
 /// # Errors
-/// [`PipelineError::Descriptor`] when it has none.
-pub(super) fn form(entry: &ShapeEntry, vectors: &ShapeVectors) -> Result<CanonicalForm, PipelineError> {
+/// [`Error::Descriptor`] if the stored numbers are not a form.
+pub(super) fn form(
+    entry: &ShapeEntry,
+    vectors: &ShapeVectors,
+    options: &DescribeOptions,
+) -> Result<CanonicalForm, Error> {
     let points = vectors.form.iter().map(|[x, y, z, _]| Point3::new(*x, *y, *z).cast());
     let weights = vectors.form.iter().map(|[.., w]| f64::from(*w)).collect();
-    Ok(CanonicalForm::from_parts(points.collect(), weights, entry.fact(AREA))?)
+    let area = entry.fact(AREA).filter(|_| options.form.method.has_unit());
+    Ok(CanonicalForm::from_parts(points.collect(), weights, area)?)
+}
+
+/// An indexed shape, ready to be compared.
+///
+/// # Errors
+/// [`Error::Descriptor`] if the stored numbers are not a form.
+pub(super) fn prepared(
+    entry: &ShapeEntry,
+    vectors: ShapeVectors,
+    options: &DescribeOptions,
+) -> Result<PreparedShape, Error> {
+    let form = form(entry, &vectors, options)?;
+    Ok(PreparedShape::new(vectors.fused, &form, entry.fact(AREA))?)
 }

@@ -1,107 +1,20 @@
-//! Points of a surface as people write them, in the numbers of the input.
-
-use std::fmt;
-use std::str::FromStr;
+//! Points of the input on the repaired surface, and back.
 
 use geodesics::SurfacePoint;
 use nalgebra::Point3;
-use serde::{Serialize, Serializer};
 use surface::{EdgeId, FaceId, VertexId};
 
-use crate::{PipelineError, Surface};
-
-/// A point of the input: `17`, a vertex; `17-42@0.3`, the point 0.3 of the way from vertex 17 to vertex
-/// 42 along their edge; `f8@2:1:1`, the point of face 8 with these weights of its corners, in the order
-/// of the file. Without `@` the middle of the edge or of the face is meant. Vertices and faces are
-/// counted from 0.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum InputPoint {
-    /// A vertex.
-    Vertex(VertexId),
-    /// A point of an edge.
-    Edge {
-        /// Where the edge starts and ends.
-        ends: [VertexId; 2],
-        /// Share of the way, in 0..=1.
-        t: f64,
-    },
-    /// A point of a face.
-    Face {
-        /// The face.
-        face: FaceId,
-        /// Weights of its corners, not negative and with a positive sum.
-        weights: [f64; 3],
-    },
-}
-
-impl FromStr for InputPoint {
-    type Err = PipelineError;
-
-    fn from_str(text: &str) -> Result<Self, PipelineError> {
-        parse(text.trim()).ok_or_else(|| PipelineError::BadPoint { text: text.to_owned() })
-    }
-}
-
-fn parse(text: &str) -> Option<InputPoint> {
-    let (element, place) = match text.split_once('@') {
-        Some((element, place)) => (element, Some(place)),
-        None => (text, None),
-    };
-    if let Some(face) = element.strip_prefix('f') {
-        let mut weights = [1.0; 3];
-        if let Some(place) = place {
-            let mut parts = place.split(':');
-            for weight in &mut weights {
-                *weight = parts.next()?.parse().ok()?;
-            }
-            if parts.next().is_some() {
-                return None;
-            }
-        }
-        let sum: f64 = weights.iter().sum();
-        let is_inside = weights.iter().all(|w| *w >= 0.0) && sum > 0.0 && sum.is_finite();
-        let face = FaceId(face.parse().ok()?);
-        return is_inside.then_some(InputPoint::Face { face, weights });
-    }
-    if let Some((start, end)) = element.split_once('-') {
-        let t = place.map_or(Some(0.5), |place| place.parse().ok())?;
-        let ends = [VertexId(start.parse().ok()?), VertexId(end.parse().ok()?)];
-        return ((0.0..=1.0).contains(&t) && ends[0] != ends[1]).then_some(InputPoint::Edge { ends, t });
-    }
-    match place {
-        None => Some(InputPoint::Vertex(VertexId(element.parse().ok()?))),
-        Some(_) => None,
-    }
-}
-
-impl fmt::Display for InputPoint {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Vertex(vertex) => vertex.fmt(f),
-            Self::Edge { ends: [start, end], t } => write!(f, "{start}-{end}@{t}"),
-            Self::Face { face, weights: [u, v, w] } => write!(f, "f{face}@{u}:{v}:{w}"),
-        }
-    }
-}
-
-impl Serialize for InputPoint {
-    /// A vertex as a number, anything else as text.
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        match self {
-            Self::Vertex(vertex) => vertex.serialize(serializer),
-            _ => serializer.collect_str(self),
-        }
-    }
-}
+use super::point::InputPoint;
+use super::repaired::Surface;
+use crate::error::Error;
 
 impl Surface {
-    /// Where a point of the input is on the repaired surface.
+    /// The point of the repaired surface that a point of the input became.
     ///
     /// # Errors
-    /// [`PipelineError::NoSuchVertex`], [`PipelineError::NoSuchEdge`] and [`PipelineError::NoSuchFace`] for
-    /// what the input does not have; [`PipelineError::DroppedVertex`], [`PipelineError::DroppedEdge`] and
-    /// [`PipelineError::DroppedFace`] for what the repair has left out.
-    pub fn locate(&self, point: &InputPoint) -> Result<SurfacePoint, PipelineError> {
+    /// [`Error::NoSuchVertex`], [`Error::NoSuchEdge`] and [`Error::NoSuchFace`] if the input has no such element;
+    /// [`Error::DroppedVertex`], [`Error::DroppedEdge`] and [`Error::DroppedFace`] if the repair dropped it.
+    pub fn locate(&self, point: &InputPoint) -> Result<SurfacePoint, Error> {
         match *point {
             InputPoint::Vertex(vertex) => Ok(SurfacePoint::Vertex(self.repaired_vertex(vertex)?)),
             InputPoint::Edge { ends, t } => {
@@ -109,22 +22,20 @@ impl Surface {
                 let [start, end] = [self.repaired_vertex(ends[0])?, self.repaired_vertex(ends[1])?];
                 match self.intrinsic.topology().edge_between(start, end) {
                     Some(edge) => Ok(SurfacePoint::Edge { edge, t: if start < end { t } else { 1.0 - t } }),
-                    None if self.input_faces.iter().any(|f| is_edge(&f)) => {
-                        Err(PipelineError::DroppedEdge { ends })
-                    }
-                    None => Err(PipelineError::NoSuchEdge { ends }),
+                    None if self.input_faces.iter().any(|f| is_edge(&f)) => Err(Error::DroppedEdge { ends }),
+                    None => Err(Error::NoSuchEdge { ends }),
                 }
             }
             InputPoint::Face { face, weights } => {
                 let n_faces = self.input_faces.len();
                 let vertices = self.input_faces.get(face.index());
-                let vertices = vertices.ok_or(PipelineError::NoSuchFace { face, n_faces })?;
-                self.in_face(*vertices, weights).ok_or(PipelineError::DroppedFace { face })
+                let vertices = vertices.ok_or(Error::NoSuchFace { face, n_faces })?;
+                self.in_face(*vertices, weights).ok_or(Error::DroppedFace { face })
             }
         }
     }
 
-    /// A point of the face between three input vertices, if the repair has left it.
+    /// A point of the face between three input vertices, unless the repair dropped the face.
     fn in_face(&self, vertices: [VertexId; 3], weights: [f64; 3]) -> Option<SurfacePoint> {
         let topology = self.intrinsic.topology();
         let corners = vertices.map(|v| self.repaired_vertex(v).ok());
@@ -136,13 +47,13 @@ impl Surface {
         let weight = |vertex: VertexId| {
             corners.iter().zip(weights).find(|(v, _)| **v == Some(vertex)).map_or(0.0, |(_, w)| w / sum)
         };
-        // Repair may have welded two corners into one, or turned the face over.
+        // The repair may have welded two corners, or reversed the face.
         let face = topology.faces()[corner.face().index()];
         let is_whole = face.iter().all(|v| corners.contains(&Some(*v)));
         is_whole.then(|| SurfacePoint::Face { face: corner.face(), barycentric: face.map(weight) })
     }
 
-    /// A point of the repaired surface in the numbers of the input.
+    /// A point of the repaired surface, in the numbers of the input.
     #[must_use]
     pub fn input_point(&self, point: SurfacePoint) -> InputPoint {
         let ends =
@@ -161,13 +72,13 @@ impl Surface {
                         face: FaceId::from(i),
                         weights: slots.map(|slot| barycentric[slot]),
                     },
-                    None => unreachable!("repair makes no faces"),
+                    None => unreachable!("the repair adds no faces"),
                 }
             }
         }
     }
 
-    /// Where in space a point of the repaired surface is.
+    /// The position of a point of the repaired surface.
     #[must_use]
     pub fn position(&self, point: SurfacePoint) -> Point3<f64> {
         let at = |v: VertexId| self.mesh().positions[v.index()].coords;
@@ -196,23 +107,7 @@ mod tests {
         text.parse().unwrap()
     }
 
-    #[test]
-    fn points_are_written_as_they_are_read() {
-        for text in ["17", "17-42@0.3", "0-1@1", "f8@2:1:1", "f0@0:0.125:7"] {
-            assert_eq!(point(text).to_string(), text);
-        }
-        assert_eq!(point(" 4-7 "), point("4-7@0.5"));
-        assert_eq!(point("f9"), point("f9@1:1:1"));
-        for text in
-            ["", "x", "1.5", "1-", "-1", "1-2@2", "1-1", "1@0", "f", "f1@1", "f1@1:1:inf", "f1@nan:1:1"]
-        {
-            let error = text.parse::<InputPoint>().unwrap_err();
-            assert!(error.to_string().contains(&format!("`{text}`")), "{text}");
-        }
-    }
-
-    /// A face apart and one that names a vertex twice, then a torus with a crack and every second face
-    /// turned over.
+    /// A separate face and a degenerate one, then a torus with a crack and every second face reversed.
     fn broken() -> TriMesh {
         let mut mesh = shapes::disjoint(&[shapes::grid(2, 2, 0.01), shapes::torus(9, 7, 2.0, 0.5)]);
         mesh.faces[0] = [0, 1, 1].map(VertexId);
@@ -227,7 +122,7 @@ mod tests {
     }
 
     #[test]
-    fn points_are_found_where_they_are_whatever_was_repaired() {
+    fn points_keep_their_positions_through_every_repair() {
         let mesh = broken();
         let options = RepairOptions { orient: Orient::Consistent, ..RepairOptions::default() };
         let surface = Surface::new(&mesh, &options).unwrap();
@@ -241,7 +136,7 @@ mod tests {
             ] {
                 let found = surface.locate(&point(&text)).unwrap();
                 assert!((surface.position(found).coords - expected).norm() < 1e-14, "{text}");
-                // There and back, but for the twins.
+                // Welded twins have one name, so compare positions.
                 let again = surface.locate(&surface.input_point(found)).unwrap();
                 assert!((surface.position(again).coords - expected).norm() < 1e-14, "{text}");
             }
@@ -249,21 +144,21 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_there_or_was_left_out_is_told_apart() {
+    fn missing_and_dropped_elements_are_different_errors() {
         let mut mesh = broken();
-        // Two corners of this one are in one place.
+        // Two corners of this face coincide.
         let n = mesh.n_faces();
         let [kept, twin] = [VertexId(10), VertexId::from(mesh.n_vertices() - 1)];
         mesh.faces.push([kept, twin, VertexId(11)]);
         let surface = Surface::new(&mesh, &RepairOptions::default()).unwrap();
         let fault = |text: &str| surface.locate(&point(text)).unwrap_err();
-        assert!(matches!(fault("999"), PipelineError::NoSuchVertex { .. }));
-        assert!(matches!(fault("3"), PipelineError::DroppedVertex { .. }));
-        assert!(matches!(fault("f999"), PipelineError::NoSuchFace { .. }));
+        assert!(matches!(fault("999"), Error::NoSuchVertex { .. }));
+        assert!(matches!(fault("3"), Error::DroppedVertex { .. }));
+        assert!(matches!(fault("f999"), Error::NoSuchFace { .. }));
         for dropped in ["f0", "f1", &format!("f{n}")] {
-            assert!(matches!(fault(dropped), PipelineError::DroppedFace { .. }), "{dropped}");
+            assert!(matches!(fault(dropped), Error::DroppedFace { .. }), "{dropped}");
         }
-        assert!(matches!(fault("4-40"), PipelineError::NoSuchEdge { .. }));
-        assert!(matches!(fault(&format!("{kept}-{twin}")), PipelineError::DroppedEdge { .. }));
+        assert!(matches!(fault("4-40"), Error::NoSuchEdge { .. }));
+        assert!(matches!(fault(&format!("{kept}-{twin}")), Error::DroppedEdge { .. }));
     }
 }

@@ -1,21 +1,22 @@
-//! Every method on one surface.
+//! Every embedding method on one surface.
 
 use geodesics::{Method, Sampling, Variance};
 use linalg::{DistanceMatrix, LandmarkDistances, Matrix};
 use mesh::RepairReport;
-use nmds::{
-    Bandwidth, Regularization, RpiAlpha, SmacofOptions, estimate_paper_stress, paper_stress, sample_rows,
-};
+use nmds::{Regularization, RpiAlpha};
 use serde::Serialize;
 use surface::VertexId;
 
-use crate::stress::{ESTIMATE_ROWS, EXACT_LIMIT, KnownRows};
-use crate::{
-    EmbedMethod, EmbedOptions, Observer, PipelineError, StressChoice, StressKind, StressReport, Surface,
-    embed,
-};
+use super::distances::check_memory;
+use super::embed::embed;
+use super::method::EmbedMethod;
+use super::options::FormOptions;
+use super::stress::{KnownRows, StressOptions, StressReport};
+use crate::error::Error;
+use crate::input::Surface;
+use crate::observer::Observer;
 
-/// What every method makes of one surface, as `canonform methods --json` prints it.
+/// The results of every method on one surface, as `canonform methods --json` prints them.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct MethodsReport {
     /// Vertices of the input.
@@ -24,12 +25,12 @@ pub struct MethodsReport {
     pub n_embedded: usize,
     /// Dimensions of the embeddings.
     pub dim: usize,
-    /// Name of the way distances were measured, where a method does not say otherwise, and of those that
-    /// the stress is measured against.
+    /// Name of the method that measured the distances, unless an entry says otherwise; the stress of all
+    /// entries is measured against it.
     pub geodesic: &'static str,
     /// One entry for each method.
     pub methods: Vec<MethodReport>,
-    /// Where in `methods` the least stress is.
+    /// Index of the entry of least stress.
     pub best: Option<usize>,
     /// What was repaired.
     pub repair: RepairReport,
@@ -38,25 +39,25 @@ pub struct MethodsReport {
 /// One method.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct MethodReport {
-    /// Its name, as `--method` takes it.
+    /// Its name.
     pub method: &'static str,
-    /// What else sets it apart, as options of `canonform embed`; may be empty.
+    /// Its other options, as `canonform embed` takes them; may be empty.
     pub options: &'static str,
-    /// What it made; nothing when it failed.
+    /// The result; `None` when the method failed.
     #[serde(flatten)]
     pub facts: Option<MethodFacts>,
     /// Why it failed.
     pub error: Option<String>,
 }
 
-/// What a method made and what it took.
+/// The result of a method and its cost.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct MethodFacts {
     /// The stress, unless the coordinates have no unit.
     pub stress: Option<StressReport>,
     /// Share of negative eigenvalues among those computed.
     pub negative_mass: f64,
-    /// Samples that were taken; all vertices where none are.
+    /// Number of samples; all vertices for a method without samples.
     pub n_samples: usize,
     /// Seconds for distances.
     pub geodesics_seconds: f64,
@@ -64,25 +65,26 @@ pub struct MethodFacts {
     pub embedding_seconds: f64,
     /// Seconds from the repaired mesh to the coordinates.
     pub seconds: f64,
-    /// Most bytes in use at once, as the caller's `watch` says.
+    /// Most bytes in use at once, as measured by the caller's `watch`.
     pub peak_bytes: usize,
 }
 
-/// Embeds a surface by every method in turn; `options` gives what they share, its method, sampling and
-/// regularisation are not looked at. `watch` runs a piece of work and says how many bytes it had in use at most.
+/// Embeds a surface by every method in turn. `options` holds what the methods share; its method, sampling and
+/// regularisation are ignored. `watch` runs a piece of work and returns the most bytes that were in use.
 ///
-/// A method that cannot embed this surface has its error in the report and does not stop the others. The stress is
-/// measured on the same rows of distances for all of them, and is no part of their time.
+/// A method that cannot embed this surface reports its error and does not stop the others. The stress of all
+/// methods is measured on the same rows of distances and does not count as their time.
 ///
 /// # Errors
 /// Those of preparing the surface; when every method fails, the error of the first.
 pub fn compare_methods(
     surface: &Surface,
-    options: &EmbedOptions,
+    options: &FormOptions,
+    stress: &StressOptions,
     observer: &dyn Observer,
     watch: &dyn Fn(&mut dyn FnMut()) -> usize,
-) -> Result<MethodsReport, PipelineError> {
-    let reference = Reference::new(surface, options, observer)?;
+) -> Result<MethodsReport, Error> {
+    let reference = Reference::new(surface, options.geodesic, stress, observer)?;
     let (mut methods, mut first_error) = (Vec::new(), None);
     for (name, changed) in variants(options) {
         let mut result = None;
@@ -90,9 +92,11 @@ pub fn compare_methods(
         let (facts, error) = match result {
             Some(Ok(embedded)) => {
                 let report = &embedded.report;
-                let coords = &embedded.embedding.coords;
                 let facts = MethodFacts {
-                    stress: changed.method.has_unit().then(|| reference.stress(coords, options)),
+                    stress: changed
+                        .method
+                        .has_unit()
+                        .then(|| reference.stress(&embedded.embedding.coords, options.geodesic)),
                     negative_mass: report.negative_mass,
                     n_samples: report.n_samples,
                     geodesics_seconds: report.seconds.geodesics,
@@ -107,7 +111,7 @@ pub fn compare_methods(
                 first_error.get_or_insert(fault);
                 (None, Some(text))
             }
-            None => (None, Some("the watch did not run it".to_owned())),
+            None => (None, Some("`watch` did not run the method".to_owned())),
         };
         methods.push(MethodReport { method: changed.method.name(), options: name, facts, error });
     }
@@ -128,35 +132,30 @@ pub fn compare_methods(
     })
 }
 
-/// Every method, with its options by the names of the command line.
-fn variants(shared: &EmbedOptions) -> Vec<(&'static str, EmbedOptions)> {
-    let of = |method: EmbedMethod| EmbedOptions { method, stress: StressChoice::Skip, ..shared.clone() };
+/// Every method, and the variants of the first one by the options that select them.
+fn variants(shared: &FormOptions) -> Vec<(&'static str, FormOptions)> {
+    let of = |method| FormOptions { method, sampling: Sampling::default(), ..shared.clone() };
     let nmds = |regularization| of(EmbedMethod::Nystrom { regularization });
-    let default = || nmds(Regularization::default());
-    let smacof =
-        EmbedMethod::Smacof { regularization: Regularization::default(), descent: SmacofOptions::default() };
-    vec![
+    let default = || of(EmbedMethod::default());
+    let mut all = vec![
         ("", default()),
         ("--regularization rpi", nmds(Regularization::Rpi { alpha: RpiAlpha::default() })),
         ("--regularization rpi --alpha paper", nmds(Regularization::Rpi { alpha: RpiAlpha::Paper })),
         ("--regularization none", nmds(Regularization::None)),
         ("--regularization cur", nmds(Regularization::Cur { rank: None })),
-        ("--sampling random", EmbedOptions { sampling: Sampling::Random, ..default() }),
+        ("--sampling random", FormOptions { sampling: Sampling::Random, ..default() }),
         (
             "--sampling min-variance",
-            EmbedOptions { sampling: Sampling::Incremental(Variance::Least), ..default() },
+            FormOptions { sampling: Sampling::Incremental(Variance::Least), ..default() },
         ),
-        ("--geodesic bfs", EmbedOptions { geodesic: Method::BreadthFirst, ..default() }),
-        ("", of(EmbedMethod::Landmark)),
-        ("", of(EmbedMethod::spectral())),
-        ("", of(EmbedMethod::Fmds)),
-        ("", of(EmbedMethod::KernelPca { rank: None, bandwidth: Bandwidth::default() })),
-        ("", of(EmbedMethod::Classical)),
-        ("", of(smacof)),
-    ]
+        ("--geodesic bfs", FormOptions { geodesic: Method::BreadthFirst, ..default() }),
+    ];
+    let others = EmbedMethod::all().into_iter().filter(|method| *method != EmbedMethod::default());
+    all.extend(others.map(|method| ("", of(method))));
+    all
 }
 
-/// The distances that all forms are held against.
+/// The distances that the stress of all embeddings is measured against.
 enum Reference {
     All(DistanceMatrix),
     Some(LandmarkDistances),
@@ -165,41 +164,25 @@ enum Reference {
 impl Reference {
     fn new(
         surface: &Surface,
-        options: &EmbedOptions,
+        method: Method,
+        stress: &StressOptions,
         observer: &dyn Observer,
-    ) -> Result<Self, PipelineError> {
+    ) -> Result<Self, Error> {
         let p = surface.mesh().n_vertices();
-        let is_exact = match options.stress {
-            StressChoice::Exact => true,
-            StressChoice::Estimate | StressChoice::Skip => false,
-            StressChoice::Auto => p <= EXACT_LIMIT,
-        };
-        options.check_memory(p, if is_exact { p } else { ESTIMATE_ROWS.min(p) })?;
+        let rows = stress.choice.rows(p, stress.seed);
+        check_memory(p, rows.as_ref().map_or(p, Vec::len))?;
         observer.begin("stress", 1);
-        let solver = options.geodesic.prepare(&surface.intrinsic)?;
-        if is_exact {
-            return Ok(Self::All(solver.distance_matrix()?));
-        }
-        let rows = sample_rows(p, ESTIMATE_ROWS, options.seed);
+        let solver = method.prepare(&surface.intrinsic)?;
+        let Some(rows) = rows else { return Ok(Self::All(solver.distance_matrix()?)) };
         let sources: Vec<VertexId> = rows.iter().copied().map(VertexId::from).collect();
         let columns = solver.distance_columns(&sources);
         Ok(Self::Some(LandmarkDistances::new(rows, columns)?))
     }
 
-    fn stress(&self, coords: &Matrix, options: &EmbedOptions) -> StressReport {
-        let geodesic = options.geodesic.name();
+    fn stress(&self, coords: &Matrix, method: Method) -> StressReport {
         match self {
-            Self::All(all) => {
-                let value = paper_stress(coords, all);
-                let (kind, interval) = (StressKind::Exact, [value; 2]);
-                StressReport { measure: "paper_stress", geodesic, value, kind, interval }
-            }
-            Self::Some(rows) => {
-                let estimate = estimate_paper_stress(coords, &KnownRows(rows), rows.landmarks());
-                let (value, interval) = (estimate.value, estimate.interval);
-                let kind = StressKind::Estimated;
-                StressReport { measure: "paper_stress", geodesic, value, kind, interval }
-            }
+            Self::All(all) => StressReport::new(coords, all, None, method),
+            Self::Some(rows) => StressReport::new(coords, &KnownRows(rows), Some(rows.landmarks()), method),
         }
     }
 }

@@ -1,4 +1,4 @@
-//! Which files become which shapes.
+//! The mesh files that become shapes of an index.
 
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
@@ -10,9 +10,11 @@ use mesh::io::{MemoryFile, ReadLimits};
 use mesh::{MeshError, TriMesh};
 use rayon::prelude::*;
 
-use crate::{LabelFile, Observer, PipelineError, ShapeFile, label_of, list_shapes};
+use crate::error::Error;
+use crate::input::{LabelFile, ShapeFile, label_in, list_shapes};
+use crate::observer::Observer;
 
-/// One of several even shares of a collection.
+/// One of several equal parts of a collection.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Shard {
     index: usize,
@@ -20,19 +22,18 @@ pub struct Shard {
 }
 
 impl Shard {
-    /// Share `index` of `count`, counted from 1; 0 is another name of the last, so that counting from 0 does
-    /// as well.
+    /// Shard `index` of `count`, numbered from 1. 0 is another name of the last, so numbering from 0 works too.
     ///
     /// # Errors
-    /// [`PipelineError::NoSuchShard`].
-    pub fn new(index: usize, count: usize) -> Result<Self, PipelineError> {
+    /// [`Error::NoSuchShard`].
+    pub fn new(index: usize, count: usize) -> Result<Self, Error> {
         match count > 0 && index <= count {
             true => Ok(Self { index: index % count, count }),
-            false => Err(PipelineError::NoSuchShard { shard: index, n_shards: count }),
+            false => Err(Error::NoSuchShard { shard: index, n_shards: count }),
         }
     }
 
-    /// Whether the item at this place of the collection, counted from 1, is in the share.
+    /// Whether the shard holds the item at this place of the collection, counted from 1.
     fn holds(self, place: usize) -> bool {
         place % self.count == self.index
     }
@@ -43,36 +44,32 @@ impl FromStr for Shard {
 
     fn from_str(text: &str) -> Result<Self, String> {
         let numbers = text.split_once('/').and_then(|(i, n)| Some((i.parse().ok()?, n.parse().ok()?)));
-        let (index, count) = numbers.ok_or_else(|| format!("`{text}` is not like 2/8"))?;
+        let (index, count) = numbers.ok_or_else(|| format!("`{text}` is not of the form 2/8"))?;
         Self::new(index, count).map_err(|fault| fault.to_string())
     }
 }
 
-/// Meshes that are to be indexed.
+/// Meshes to add to an index.
 #[derive(Debug, Clone, Copy)]
 pub struct Inputs<'a> {
     /// Mesh files, and folders of them.
     pub paths: &'a [PathBuf],
-    /// Classes by name; without, they follow from names.
+    /// Classes by name. Default: from the names of folders and files.
     pub labels: Option<&'a LabelFile>,
-    /// The class of all of them, whatever their names.
+    /// One class for all of them, regardless of their names.
     pub label: Option<&'a str>,
 }
 
 impl Inputs<'_> {
-    /// The meshes, each with a name of its own.
-    pub(super) fn list(&self) -> Result<Vec<ShapeFile>, PipelineError> {
+    /// The meshes, each with a unique name if extensions can make it so.
+    pub(super) fn list(&self) -> Result<Vec<ShapeFile>, Error> {
         let mut shapes = Vec::new();
         for path in self.paths {
             if path.is_dir() {
                 shapes.extend(list_shapes(path, self.labels)?);
             } else {
                 let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-                let label = match self.labels {
-                    Some(file) => file.label(&name)?,
-                    None => label_of(&name),
-                };
-                shapes.push(ShapeFile { name, label, path: path.clone() });
+                shapes.push(ShapeFile { label: label_in(self.labels, &name)?, name, path: path.clone() });
             }
         }
         if let Some(label) = self.label {
@@ -83,7 +80,7 @@ impl Inputs<'_> {
     }
 }
 
-/// Gives files that differ in nothing but their extension names with extension.
+/// Adds the extension to the names of files that differ in nothing else.
 pub(super) fn name_apart(shapes: &mut [ShapeFile]) {
     let mut counts: HashMap<String, usize> = HashMap::new();
     shapes.iter().for_each(|shape| *counts.entry(shape.name.clone()).or_default() += 1);
@@ -96,17 +93,17 @@ pub(super) fn name_apart(shapes: &mut [ShapeFile]) {
     }
 }
 
-/// The shapes of a share.
+/// The shapes of a shard.
 pub(super) fn share(shapes: Vec<ShapeFile>, shard: Option<Shard>) -> Vec<ShapeFile> {
     let Some(shard) = shard else { return shapes };
     let in_share = |(i, shape): (usize, ShapeFile)| shard.holds(i + 1).then_some(shape);
     shapes.into_iter().enumerate().filter_map(in_share).collect()
 }
 
-/// A mesh file and the hash of what it holds, or why it cannot be read.
-pub(super) type Hashed = (ShapeFile, Result<ContentHash, PipelineError>);
+/// A mesh file and the hash of its content, or the error of reading it.
+pub(super) type Hashed = (ShapeFile, Result<ContentHash, Error>);
 
-/// Reads all files, in parallel.
+/// Hashes all files, in parallel.
 pub(super) fn hash_all(shapes: Vec<ShapeFile>, observer: &dyn Observer) -> Vec<Hashed> {
     observer.begin("reading", shapes.len());
     shapes
@@ -119,22 +116,25 @@ pub(super) fn hash_all(shapes: Vec<ShapeFile>, observer: &dyn Observer) -> Vec<H
         .collect()
 }
 
-/// The mesh of an indexed shape, if it is still what it was.
-pub(super) fn read_unchanged(id: &str, entry: &ShapeEntry) -> Result<TriMesh, PipelineError> {
+/// Reads the mesh of an indexed shape.
+///
+/// # Errors
+/// [`Error::MeshGone`] and [`Error::MeshChanged`] unless the file still has the content that was indexed.
+pub(super) fn read_unchanged(id: &str, entry: &ShapeEntry) -> Result<TriMesh, Error> {
     let path = PathBuf::from(&entry.path);
     let files = mesh::io::files_of(&path);
     let pieces = files.iter().map(std::fs::read).collect::<Result<Vec<_>, _>>();
     let pieces =
-        pieces.map_err(|source| PipelineError::MeshGone { id: id.to_owned(), path: path.clone(), source })?;
+        pieces.map_err(|source| Error::MeshGone { id: id.to_owned(), path: path.clone(), source })?;
     if ContentHash::of(&pieces) != entry.content {
-        return Err(PipelineError::MeshChanged { id: id.to_owned(), path });
+        return Err(Error::MeshChanged { id: id.to_owned(), path });
     }
-    // Read from memory: between two looks at the disk the file might be exchanged.
+    // Parse the bytes that were hashed: the file might change in between.
     let files = files.iter().zip(&pieces).map(|(name, bytes)| MemoryFile { name, bytes });
     Ok(mesh::io::read_memory(&files.collect::<Vec<_>>(), &ReadLimits::default())?)
 }
 
-fn content(path: &Path) -> Result<ContentHash, PipelineError> {
+fn content(path: &Path) -> Result<ContentHash, Error> {
     let read =
         |path: &PathBuf| std::fs::read(path).map_err(|source| MeshError::from(FileError::read(path, source)));
     let pieces = mesh::io::files_of(path).iter().map(read).collect::<Result<Vec<_>, _>>()?;
@@ -150,7 +150,7 @@ mod tests {
     }
 
     #[test]
-    fn shares_are_a_partition_counted_from_one_or_from_zero() {
+    fn shards_are_a_partition_numbered_from_one_or_from_zero() {
         let all: Vec<ShapeFile> = (0..10).map(|i| shape(&i.to_string(), "a")).collect();
         for first in [0, 1] {
             let parts: Vec<_> =
@@ -164,11 +164,11 @@ mod tests {
         for bad in ["", "3", "a/b", "4/3", "0/0", "-1/3"] {
             assert!(bad.parse::<Shard>().is_err(), "{bad}");
         }
-        assert!(matches!(Shard::new(4, 3), Err(PipelineError::NoSuchShard { shard: 4, n_shards: 3 })));
+        assert!(matches!(Shard::new(4, 3), Err(Error::NoSuchShard { shard: 4, n_shards: 3 })));
     }
 
     #[test]
-    fn names_that_meet_get_their_extensions() {
+    fn equal_names_get_their_extensions() {
         let mut shapes = [shape("cat", "cat.off"), shape("cat", "cat.ply"), shape("dog", "dog.off")];
         name_apart(&mut shapes);
         assert_eq!(shapes.map(|s| s.name), ["cat.off", "cat.ply", "dog"]);

@@ -5,16 +5,16 @@ use std::path::{Path, PathBuf};
 
 use mesh::io::is_mesh_path;
 
-use crate::PipelineError;
+use crate::error::Error;
 
 /// A mesh file of a dataset.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ShapeFile {
-    /// Its file name without extension, after its sub-folder if it is in one: `cats/sitting`.
+    /// Its path below the folder, without extension: `cats/sitting`.
     pub name: String,
     /// Its class.
     pub label: String,
-    /// Where it is.
+    /// Path of the file.
     pub path: PathBuf,
 }
 
@@ -27,15 +27,15 @@ pub struct LabelFile {
 }
 
 impl LabelFile {
-    /// Reads a label file. Names are those of [`ShapeFile`], with or without extension; empty lines,
-    /// lines that begin with `#` and a header `name,label` are skipped. A file of labels alone says which
-    /// are those of the first, the second, ... row of a matrix.
+    /// Reads a label file. Names are those of [`ShapeFile`], with or without extension; empty lines, lines that
+    /// begin with `#` and a header `name,label` are skipped. A file of labels without names labels the rows of a
+    /// matrix in their order.
     ///
     /// # Errors
-    /// [`PipelineError::Io`] and [`PipelineError::BadLabelLine`].
-    pub fn read(path: &Path) -> Result<Self, PipelineError> {
-        let text = std::fs::read_to_string(path)
-            .map_err(|source| PipelineError::Io { path: path.to_owned(), source })?;
+    /// [`Error::Io`] and [`Error::BadLabelLine`].
+    pub fn read(path: &Path) -> Result<Self, Error> {
+        let text =
+            std::fs::read_to_string(path).map_err(|source| Error::Io { path: path.to_owned(), source })?;
         let (mut labels, mut in_order) = (HashMap::new(), Vec::new());
         let has_names = text.contains(',');
         for (number, line) in text.lines().enumerate() {
@@ -50,7 +50,7 @@ impl LabelFile {
                 }
                 [label] if !has_names => in_order.push(label.to_owned()),
                 _ => {
-                    return Err(PipelineError::BadLabelLine {
+                    return Err(Error::BadLabelLine {
                         path: path.to_owned(),
                         line: number + 1,
                         found: line.to_owned(),
@@ -66,15 +66,15 @@ impl LabelFile {
         &self.in_order
     }
 
-    pub(crate) fn label(&self, name: &str) -> Result<String, PipelineError> {
+    pub(crate) fn label(&self, name: &str) -> Result<String, Error> {
         self.labels
             .get(name)
             .cloned()
-            .ok_or_else(|| PipelineError::NoLabel { path: self.path.clone(), name: name.to_owned() })
+            .ok_or_else(|| Error::NoLabel { path: self.path.clone(), name: name.to_owned() })
     }
 }
 
-/// Path without extension, with `/` between its parts.
+/// The path without extension, separated by `/`.
 fn stem(path: &Path) -> String {
     let parts: Vec<_> =
         path.with_extension("").iter().map(|part| part.to_string_lossy().into_owned()).collect();
@@ -95,29 +95,36 @@ pub fn label_of(name: &str) -> String {
     }
 }
 
+/// The class of a shape in a label file, or by its name if there is none.
+///
+/// # Errors
+/// [`Error::NoLabel`].
+pub(crate) fn label_in(labels: Option<&LabelFile>, name: &str) -> Result<String, Error> {
+    labels.map_or_else(|| Ok(label_of(name)), |file| file.label(name))
+}
+
 /// The meshes in a folder and its sub-folders, in natural order of their names (`cat2` before
 /// `cat10`).
 ///
 /// # Errors
-/// [`PipelineError::Io`], [`PipelineError::NoShapes`], [`PipelineError::NoLabel`].
-pub fn list_shapes(folder: &Path, labels: Option<&LabelFile>) -> Result<Vec<ShapeFile>, PipelineError> {
+/// [`Error::Io`], [`Error::NoShapes`], [`Error::NoLabel`].
+pub fn list_shapes(folder: &Path, labels: Option<&LabelFile>) -> Result<Vec<ShapeFile>, Error> {
     let mut shapes = Vec::new();
     let mut folders = vec![folder.to_owned()];
     while let Some(current) = folders.pop() {
-        let fault = |source| PipelineError::Io { path: current.clone(), source };
+        let fault = |source| Error::Io { path: current.clone(), source };
         for entry in std::fs::read_dir(&current).map_err(fault)? {
             let path = entry.map_err(fault)?.path();
             if path.is_dir() {
                 folders.push(path);
             } else if is_mesh_path(&path) {
                 let name = stem(path.strip_prefix(folder).unwrap_or(&path));
-                let label = labels.map_or_else(|| Ok(label_of(&name)), |file| file.label(&name))?;
-                shapes.push(ShapeFile { name, label, path });
+                shapes.push(ShapeFile { label: label_in(labels, &name)?, name, path });
             }
         }
     }
     if shapes.is_empty() {
-        return Err(PipelineError::NoShapes { path: folder.to_owned() });
+        return Err(Error::NoShapes { path: folder.to_owned() });
     }
     shapes.sort_by(|a, b| natural_key(&a.name).cmp(&natural_key(&b.name)).then_with(|| a.path.cmp(&b.path)));
     Ok(shapes)

@@ -1,4 +1,4 @@
-//! Changing an index, and joining several.
+//! Changing an index, and merging several.
 
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -9,23 +9,24 @@ use serde::Serialize;
 use super::build::{BuildReport, fill};
 use super::record::options_of;
 use super::source::{Inputs, hash_all};
-use crate::{Observer, PipelineError};
+use crate::error::Error;
+use crate::observer::Observer;
 
-/// Shapes copied together.
+/// Shapes copied in one transaction.
 const BATCH: usize = 256;
 
-/// Adds meshes to an index, described as those that are there. Those of the same name and content are left as
-/// they are; an interrupted run is taken up by the next one.
+/// Adds meshes to an index, described with its options. Shapes with the same name and content are kept. The next
+/// run resumes an interrupted one.
 ///
 /// # Errors
-/// [`PipelineError::AlreadyThere`] for another shape of the same name unless `replace`; nothing is added then.
-/// [`PipelineError::Index`], [`PipelineError::NoShapes`].
+/// [`Error::AlreadyThere`] if another shape has one of the names, unless `replace` is set; nothing is added then.
+/// [`Error::Index`], [`Error::NoShapes`].
 pub fn add_to_index(
     path: &Path,
     inputs: &Inputs<'_>,
     replace: bool,
     observer: &dyn Observer,
-) -> Result<BuildReport, PipelineError> {
+) -> Result<BuildReport, Error> {
     let start = Instant::now();
     let index = Index::open(path)?;
     let options = options_of(&index)?;
@@ -36,10 +37,7 @@ pub fn add_to_index(
             if index.contains(&file.name)? {
                 let entry = index.entry(&file.name)?;
                 if entry.content != *hash {
-                    return Err(PipelineError::AlreadyThere {
-                        id: file.name.clone(),
-                        path: entry.path.into(),
-                    });
+                    return Err(Error::AlreadyThere { id: file.name.clone(), path: entry.path.into() });
                 }
             }
         }
@@ -58,11 +56,11 @@ pub fn add_to_index(
     Ok(report)
 }
 
-/// Takes shapes out of an index by name; the number of those that are left.
+/// Removes shapes from an index by name. Returns how many are left.
 ///
 /// # Errors
-/// [`PipelineError::Index`] when one of them is not there: then all stay.
-pub fn remove_from_index(path: &Path, ids: &[String]) -> Result<usize, PipelineError> {
+/// [`Error::Index`] if one of the names is unknown; nothing is removed then.
+pub fn remove_from_index(path: &Path, ids: &[String]) -> Result<usize, Error> {
     let index = Index::open(path)?;
     for id in ids {
         if !index.contains(id)? {
@@ -77,25 +75,21 @@ pub fn remove_from_index(path: &Path, ids: &[String]) -> Result<usize, PipelineE
     Ok(writer.finish()?.len())
 }
 
-/// What became of indexes that were joined.
+/// The outcome of a merge.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct MergeReport {
-    /// Shapes of the result.
+    /// Shapes in the result.
     pub n_shapes: usize,
-    /// Shapes that were in more than one.
+    /// Shapes that several indexes had.
     pub repeated: usize,
 }
 
-/// Writes the shapes of several indexes into one, over what was there. A shape that several have with the same
-/// content is taken from the first of them.
+/// Merges indexes into the file `path`, which is replaced. A shape that several of them have with the same content
+/// is taken from the first.
 ///
 /// # Errors
-/// [`PipelineError::Index`] when they describe shapes in different ways, or give one name to different shapes.
-pub fn merge_indexes(
-    inputs: &[PathBuf],
-    path: &Path,
-    observer: &dyn Observer,
-) -> Result<MergeReport, PipelineError> {
+/// [`Error::Index`] if their shapes were described with different options, or if different shapes have one name.
+pub fn merge_indexes(inputs: &[PathBuf], path: &Path, observer: &dyn Observer) -> Result<MergeReport, Error> {
     let indexes = inputs.iter().map(|input| Index::open(input)).collect::<Result<Vec<_>, _>>()?;
     let Some(first) = indexes.first() else { return Ok(MergeReport { n_shapes: 0, repeated: 0 }) };
     for index in &indexes {

@@ -1,0 +1,7 @@
+//! Comparing two shapes, and all pairs of a collection.
+
+mod comparison;
+mod forms;
+
+pub use comparison::{Comparison, Overlay, SurfaceComparison, Triangulation, compare, compare_surfaces};
+pub use forms::{FormMatches, embedded_distances, form_matches};

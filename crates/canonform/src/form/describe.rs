@@ -1,0 +1,254 @@
+//! A shape without its mesh: form, signatures and facts.
+
+use descriptors::{
+    CanonicalForm, LaplaceSpectrum, Normalization, PreparedShape, ShapeMetric, Signature, SignatureKind,
+    d2_histogram, geodesic_spectrum, heat_kernel_signature, moment_signature, shape_dna,
+    wave_kernel_signature,
+};
+use mesh::RepairReport;
+
+use super::embed::{Embedded, embed};
+use super::options::DescribeOptions;
+use crate::error::Error;
+use crate::input::Surface;
+
+/// Everything that an index keeps of a shape.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ShapeDescription {
+    /// How it was made.
+    pub options: DescribeOptions,
+    /// The canonical form at evenly spread points, in mesh units, with the area of the surface.
+    pub form: CanonicalForm,
+    /// One signature of every kind, in the order of [`SignatureKind::ALL`], without size.
+    pub signatures: Vec<Signature>,
+    /// All signatures as one vector, with the size if it counts. An index searches by it.
+    pub fused: Vec<f32>,
+    /// Area of the surface, in squared mesh units.
+    pub area: f64,
+    /// The largest distance on the surface from one of the samples, in mesh units.
+    pub diameter: f64,
+    /// What was repaired, with the numbers of vertices and faces.
+    pub repair: RepairReport,
+}
+
+/// Describes a surface: one embedding, one Laplacian, all signatures.
+///
+/// ```
+/// use canonform::{DescribeOptions, Surface, describe, mesh::shapes};
+///
+/// let surface = Surface::new(&shapes::torus(24, 12, 2.0, 0.7), &Default::default())?;
+/// let description = describe(&surface, &DescribeOptions::default())?;
+/// assert_eq!(description.signatures.len(), 6);
+/// assert!(description.diameter > 6.0 && description.area > 50.0);
+/// # Ok::<(), canonform::Error>(())
+/// ```
+///
+/// A surface that was repaired in another way than the options say keeps its repair, and the
+/// [options of the result](ShapeDescription::options) tell.
+///
+/// # Errors
+/// [`Error::BadDescription`] and those of the stages: a mesh without area or without extent has no description.
+pub fn describe(surface: &Surface, options: &DescribeOptions) -> Result<ShapeDescription, Error> {
+    options.validate()?;
+    ShapeDescription::new(surface, &embed(surface, &options.form, &())?, options)
+}
+
+impl ShapeDescription {
+    /// Describes a surface that has been embedded. The form options are those of the embedding; `options` says
+    /// how many points are kept and whether size counts.
+    ///
+    /// # Errors
+    /// As [`describe`].
+    pub fn new(surface: &Surface, embedded: &Embedded, options: &DescribeOptions) -> Result<Self, Error> {
+        let options = DescribeOptions { form: embedded.options.clone(), ..*options };
+        options.validate()?;
+        let form = embedded.form(surface)?;
+        let reduced = form.reduced(options.points);
+        let spectrum = LaplaceSpectrum::new(&surface.intrinsic, LaplaceSpectrum::DESCRIBING)?;
+        let signatures = vec![
+            moment_signature(&form),
+            d2_histogram(&reduced),
+            geodesic_spectrum(&embedded.distances, &spectrum.masses, spectrum.area)?,
+            shape_dna(&spectrum),
+            heat_kernel_signature(&spectrum),
+            wave_kernel_signature(&spectrum),
+        ];
+        let area = match options.size {
+            Normalization::Raw => Some(spectrum.area),
+            Normalization::UnitArea => None,
+        };
+        Ok(Self {
+            fused: ShapeMetric::fuse(&signatures, area),
+            options,
+            form: reduced,
+            signatures,
+            area: spectrum.area,
+            diameter: embedded.distances.max(),
+            repair: surface.repaired.report.clone(),
+        })
+    }
+
+    /// The shape, ready to be compared; exactly as an index would store it.
+    ///
+    /// # Errors
+    /// [`Error::Descriptor`].
+    pub fn prepare(&self) -> Result<PreparedShape, Error> {
+        Ok(PreparedShape::new(self.fused.clone(), &self.form, Some(self.area))?)
+    }
+
+    /// The signature of one kind.
+    #[must_use]
+    pub fn signature(&self, kind: SignatureKind) -> Option<&Signature> {
+        self.signatures.iter().find(|signature| signature.kind == kind)
+    }
+}
+#[cfg(test)]
+mod tests {
+    use geodesics::Method;
+    use mesh::{RepairOptions, TriMesh, Weld, shapes};
+    use nalgebra::{Point3, Rotation3};
+    use surface::VertexId;
+
+    use super::*;
+    use crate::form::{EmbedMethod, FormOptions, Samples};
+
+    fn described_by(mesh: &TriMesh, options: &DescribeOptions) -> ShapeDescription {
+        describe(&Surface::new(mesh, &options.form.repair).unwrap(), options).unwrap()
+    }
+
+    fn described(mesh: &TriMesh) -> ShapeDescription {
+        described_by(mesh, &DescribeOptions::default())
+    }
+
+    /// Largest distance between two signatures of one kind, in units of the change by poses.
+    fn gap(a: &ShapeDescription, b: &ShapeDescription) -> f64 {
+        let parts = a.signatures.iter().zip(&b.signatures);
+        parts.map(|(a, b)| a.distance(b) / ShapeMetric::unit(a.kind)).fold(0.0, f64::max)
+    }
+
+    fn fused_distance(a: &ShapeDescription, b: &ShapeDescription) -> f64 {
+        ShapeMetric::fused(&a.fused, &b.fused)
+    }
+
+    /// A torus with a bump: no symmetry.
+    fn lopsided() -> TriMesh {
+        let mut mesh = shapes::torus(40, 20, 2.0, 0.7);
+        for p in &mut mesh.positions {
+            let bump = (-(*p - Point3::new(2.4, 0.5, 0.3)).norm_squared()).exp();
+            p.coords *= 1.0 + 0.5 * bump + 0.1 * p.y;
+        }
+        mesh
+    }
+
+    #[test]
+    fn motions_reflections_scale_and_vertex_order_change_nothing() {
+        let mesh = lopsided();
+        let base = described(&mesh);
+        let turn = Rotation3::from_euler_angles(0.3, 2.0, -1.0);
+        let mut moved = mesh.clone();
+        moved
+            .positions
+            .iter_mut()
+            .for_each(|p| *p = turn * Point3::new(-p.x, p.y, p.z) * 7.0 + Point3::new(1.0, 2.0, 3.0).coords);
+        let same = described(&moved);
+        assert!(gap(&base, &same) < 1e-3, "{}", gap(&base, &same));
+        assert!(
+            (same.area / base.area / 49.0 - 1.0).abs() < 1e-9
+                && (same.diameter / base.diameter / 7.0 - 1.0).abs() < 1e-9
+        );
+        let n = mesh.n_vertices();
+        let renumbered = TriMesh {
+            positions: (0..n).map(|i| mesh.positions[n - 1 - i]).collect(),
+            faces: mesh.faces.iter().rev().map(|f| f.map(|v| VertexId::from(n - 1 - v.index()))).collect(),
+        };
+        // Another first sample changes distances and approximation slightly.
+        assert!(gap(&base, &described(&renumbered)) < 0.5, "{}", gap(&base, &described(&renumbered)));
+        let other = described(&shapes::torus(40, 20, 2.0, 0.7));
+        assert!(gap(&base, &other) > 3.0, "{}", gap(&base, &other));
+    }
+
+    #[test]
+    fn the_fused_distance_is_the_weighted_sum_of_the_parts() {
+        let (a, b) = (described(&lopsided()), described(&shapes::icosphere(3)));
+        let part = |(a, b): (&Signature, &Signature)| {
+            ShapeMetric::weight(a.kind) * (a.distance(b) / ShapeMetric::unit(a.kind)).powi(2)
+        };
+        let expected = a.signatures.iter().zip(&b.signatures).map(part).sum::<f64>().sqrt();
+        assert!((fused_distance(&a, &b) / expected - 1.0).abs() < 1e-5);
+        assert_eq!(a.fused.len(), ShapeMetric::FUSED_LENGTH);
+        assert!(a.signatures.iter().all(|s| s.values.len() == s.kind.n_values()));
+    }
+
+    #[test]
+    fn size_counts_if_chosen() {
+        let small = lopsided();
+        let mut large = small.clone();
+        large.positions.iter_mut().for_each(|p| p.coords *= 1.05);
+        let options = DescribeOptions { size: Normalization::Raw, ..Default::default() };
+        let [a, b] = [&small, &large].map(|mesh| described_by(mesh, &options));
+        assert!((fused_distance(&a, &b) - 1.0).abs() < 1e-3, "5 % are a unit");
+        assert!(fused_distance(&described(&small), &described(&large)) < 1e-3);
+        let dna = |d: &ShapeDescription| {
+            ShapeMetric::with_size(d.signature(SignatureKind::ShapeDna).unwrap().clone(), d.area)
+        };
+        assert!((dna(&a).distance(&dna(&b)) / ShapeMetric::unit(SignatureKind::ShapeDna) - 1.0).abs() < 1e-6);
+    }
+
+    #[test]
+    fn small_flat_and_broken_meshes_are_described() {
+        let mut fans = shapes::disjoint(&[shapes::grid(6, 6, 0.3), shapes::tetrahedron(0), shapes::cube(1)]);
+        // An edge with three faces, a duplicate face, a reversed face.
+        let first = fans.faces[0];
+        fans.positions.push(Point3::new(0.1, 0.1, 1.0));
+        fans.faces.push([first[0], first[1], VertexId::from(fans.positions.len() - 1)]);
+        fans.faces.push(first);
+        fans.faces[3].swap(0, 1);
+        for mesh in
+            [shapes::tetrahedron(0), shapes::tetrahedron(1), shapes::grid(4, 4, 1.0), shapes::cube(1), fans]
+        {
+            let found = described(&mesh);
+            assert!(found.fused.iter().all(|x| x.is_finite()), "{:?}", found.signatures);
+            assert_eq!(found.fused.len(), ShapeMetric::FUSED_LENGTH);
+            found.prepare().unwrap();
+        }
+    }
+
+    #[test]
+    fn every_method_is_described_and_the_form_is_a_part_of_the_embedded_one() {
+        let mesh = lopsided();
+        let surface = Surface::new(&mesh, &Default::default()).unwrap();
+        for method in EmbedMethod::all() {
+            let form = FormOptions { method, samples: Samples::Count(60), ..FormOptions::default() };
+            let options = DescribeOptions { form, ..DescribeOptions::default() };
+            let description = describe(&surface, &options).unwrap();
+            let embedded = embed(&surface, &options.form, &()).unwrap();
+            assert_eq!(description, ShapeDescription::new(&surface, &embedded, &options).unwrap());
+            let whole = embedded.form(&surface).unwrap();
+            assert_eq!(whole.reduced(options.points), description.form);
+            assert_eq!(description.form.area().is_some(), options.form.method.has_unit());
+            assert_eq!(embedded.distances.n_landmarks(), 60, "{}", options.form.method.name());
+            assert!(description.fused.iter().all(|x| x.is_finite()));
+        }
+    }
+
+    #[test]
+    fn classical_scaling_and_nmds_measure_the_same_samples() {
+        let surface = Surface::new(&lopsided(), &Default::default()).unwrap();
+        let samples = |method| {
+            // Its distances do not depend on the direction.
+            let geodesic = Method::Dijkstra;
+            let samples = Samples::Count(20);
+            let options = FormOptions { method, geodesic, samples, ..FormOptions::default() };
+            embed(&surface, &options, &()).unwrap().distances.landmarks().to_vec()
+        };
+        assert_eq!(samples(EmbedMethod::Classical), samples(EmbedMethod::default()));
+    }
+
+    #[test]
+    fn the_repair_of_the_surface_is_part_of_the_options() {
+        let repair = RepairOptions { weld: Weld::All, ..RepairOptions::default() };
+        let surface = Surface::new(&lopsided(), &repair).unwrap();
+        let description = describe(&surface, &DescribeOptions::default()).unwrap();
+        assert_eq!(description.options.form.repair, repair);
+    }
+}

@@ -1,0 +1,214 @@
+//! Embedding methods: one entry here makes a method available to every program.
+
+use descriptors::LaplaceSpectrum;
+use linalg::{LandmarkDistances, SparseSymmetric};
+use nmds::{
+    Bandwidth, Embedding, KernelPcaOptions, NystromOptions, Regularization, SmacofOptions, SmacofReport,
+    SpectralBasis, SpectralOptions, classical, fmds, kernel_pca, landmark_mds, nystrom, smacof, spectral,
+};
+use serde::{Deserialize, Serialize};
+use surface::IntrinsicMesh;
+use surface::laplacian::Laplacian;
+
+use super::as_text;
+use super::distances::Measurement;
+use crate::error::Error;
+
+/// How distances become coordinates.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum EmbedMethod {
+    /// Nystrom multidimensional scaling, the paper's method.
+    #[serde(rename = "nmds")]
+    Nystrom {
+        /// How the inverse of the sample matrix is regularised. Default: low rank, half the samples.
+        regularization: Regularization,
+    },
+    /// Landmark MDS: classical scaling of the samples; the other vertices are placed by their distances to them.
+    Landmark,
+    /// Spectral multidimensional scaling: distances between samples, smooth in eigenfunctions of the surface.
+    Spectral {
+        /// Number of eigenfunctions of the Laplace-Beltrami operator. The paper's comparisons take 300.
+        eigenvectors: usize,
+        /// Weight of the distances against smoothness on a surface of unit area: positive, may be infinite.
+        #[serde(with = "as_text")]
+        mu: f64,
+    },
+    /// Fast multidimensional scaling: columns of distances, smooth on the surface beyond the samples.
+    Fmds,
+    /// Kernel PCA with the Nystrom method, the paper's baseline.
+    #[serde(rename = "kpca")]
+    KernelPca {
+        /// Eigenpairs of the sample kernel to keep. Default: half the samples.
+        rank: Option<usize>,
+        /// Width of the kernel.
+        bandwidth: Bandwidth,
+    },
+    /// Classical multidimensional scaling of all pairs: the optimum, at quadratic cost.
+    #[serde(rename = "mds")]
+    Classical,
+    /// SMACOF on all pairs, started from the result of NMDS: fits distances instead of squared distances.
+    Smacof {
+        /// Regularisation of the NMDS it starts from.
+        regularization: Regularization,
+        /// When it stops.
+        descent: SmacofOptions,
+    },
+}
+
+impl Default for EmbedMethod {
+    fn default() -> Self {
+        Self::Nystrom { regularization: Regularization::default() }
+    }
+}
+
+impl EmbedMethod {
+    /// Every method, each with its default options.
+    #[must_use]
+    pub fn all() -> [Self; 7] {
+        let regularization = Regularization::default();
+        [
+            Self::Nystrom { regularization },
+            Self::Landmark,
+            Self::spectral(),
+            Self::Fmds,
+            Self::KernelPca { rank: None, bandwidth: Bandwidth::default() },
+            Self::Classical,
+            Self::Smacof { regularization, descent: SmacofOptions::default() },
+        ]
+    }
+
+    /// The method with this [name](Self::name) and default options.
+    #[must_use]
+    pub fn named(name: &str) -> Option<Self> {
+        Self::all().into_iter().find(|method| method.name() == name)
+    }
+
+    /// The name on the command line and in records.
+    #[must_use]
+    pub fn name(&self) -> &'static str {
+        self.entry().0
+    }
+
+    /// What the method computes, in one line.
+    #[must_use]
+    pub fn summary(&self) -> &'static str {
+        self.entry().1
+    }
+
+    fn entry(&self) -> (&'static str, &'static str) {
+        match self {
+            Self::Nystrom { .. } => ("nmds", "Nystrom multidimensional scaling"),
+            Self::Landmark => {
+                ("landmark", "Landmark MDS: embed the samples, place the rest by their distances to them")
+            }
+            Self::Spectral { .. } => {
+                ("spectral", "Spectral scaling: distances between samples, in eigenfunctions of the surface")
+            }
+            Self::Fmds => ("fmds", "Fast MDS: distances from samples, smooth on the surface in between"),
+            Self::KernelPca { .. } => ("kpca", "Kernel PCA with the Nystrom method"),
+            Self::Classical => ("mds", "Classical multidimensional scaling of all pairs"),
+            Self::Smacof { .. } => ("smacof", "SMACOF on all pairs, started from the result of nmds"),
+        }
+    }
+
+    /// NMDS with the low-rank regularisation of this rank.
+    #[must_use]
+    pub fn low_rank(rank: usize) -> Self {
+        Self::Nystrom { regularization: Regularization::LowRank { rank: Some(rank) } }
+    }
+
+    /// Spectral scaling in 300 eigenfunctions, as in the paper, with the default weight of the distances.
+    #[must_use]
+    pub fn spectral() -> Self {
+        Self::Spectral { eigenvectors: 300, mu: SpectralOptions::default().mu }
+    }
+
+    /// The regularisation of the sample matrix, for methods that have one.
+    #[must_use]
+    pub fn regularization(&self) -> Option<Regularization> {
+        match self {
+            Self::Nystrom { regularization } | Self::Smacof { regularization, .. } => Some(*regularization),
+            _ => None,
+        }
+    }
+
+    /// Whether coordinates are lengths. The components of a kernel are not, so distances cannot be compared
+    /// with them.
+    #[must_use]
+    pub fn has_unit(&self) -> bool {
+        !matches!(self, Self::KernelPca { .. })
+    }
+
+    /// Whether the method works on distances from samples, rather than between all pairs of vertices.
+    #[must_use]
+    pub fn is_sampled(&self) -> bool {
+        !matches!(self, Self::Classical)
+    }
+
+    /// Measures the distances that the method needs and embeds in `dim` dimensions.
+    pub(super) fn run(
+        &self,
+        surface: &IntrinsicMesh,
+        dim: usize,
+        measurement: &mut Measurement<'_>,
+    ) -> Result<Outcome, Error> {
+        let sampled = |(embedding, distances)| Outcome { embedding, distances, descent: None };
+        Ok(match *self {
+            Self::Nystrom { regularization } => {
+                sampled(measurement.sampled(|d| nystrom(d, &NystromOptions { regularization, dim }))?)
+            }
+            Self::Landmark => sampled(measurement.sampled(|d| landmark_mds(d, dim))?),
+            Self::Spectral { eigenvectors, mu } => {
+                let LaplaceSpectrum { values, vectors, masses, .. } =
+                    LaplaceSpectrum::new(surface, eigenvectors)?;
+                let basis = SpectralBasis { values: &values, vectors: &vectors, masses: &masses };
+                sampled(measurement.sampled(|d| spectral(d, &basis, &SpectralOptions { mu, dim }))?)
+            }
+            Self::Fmds => {
+                let laplacian = Laplacian::new(surface);
+                let (p, masses) = (laplacian.n_vertices(), laplacian.masses());
+                let stiffness = SparseSymmetric::from_entries(p, laplacian.stiffness_entries());
+                sampled(measurement.sampled(|d| fmds(d, &stiffness, &masses, dim))?)
+            }
+            Self::KernelPca { rank, bandwidth } => {
+                sampled(measurement.sampled(|d| kernel_pca(d, &KernelPcaOptions { bandwidth, rank, dim }))?)
+            }
+            Self::Classical => {
+                let all = measurement.all_pairs()?;
+                let embedding = classical(&all, dim)?;
+                Outcome { embedding, distances: measurement.columns_of(&all)?, descent: None }
+            }
+            Self::Smacof { regularization, descent } => {
+                let (start, distances) =
+                    measurement.sampled(|d| nystrom(d, &NystromOptions { regularization, dim }))?;
+                let (embedding, report) = smacof(&start.coords, &measurement.all_pairs()?, &descent)?;
+                let embedding = Embedding { rank: start.rank, ..embedding };
+                Outcome { embedding, distances, descent: Some(report) }
+            }
+        })
+    }
+}
+
+/// The result of a method.
+pub(super) struct Outcome {
+    pub(super) embedding: Embedding,
+    /// Distances from the samples to all vertices; from as many of them for a method without samples.
+    pub(super) distances: LandmarkDistances,
+    pub(super) descent: Option<SmacofReport>,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn methods_are_known_by_their_names_in_options_too() {
+        for method in EmbedMethod::all() {
+            assert_eq!(EmbedMethod::named(method.name()).as_ref(), Some(&method));
+            let text = serde_json::to_string(&method).unwrap();
+            assert!(text.contains(&format!("\"{}\"", method.name())), "{text}");
+        }
+        assert_eq!(EmbedMethod::named("umap"), None);
+    }
+}

@@ -1,0 +1,24 @@
+//! The one road from a surface to its form and its description.
+//!
+//! ```text
+//! Surface -> Measurement (distances) -> EmbedMethod -> Embedded -> CanonicalForm, ShapeDescription
+//! ```
+
+mod as_text;
+mod describe;
+mod distances;
+mod embed;
+mod method;
+mod options;
+mod report;
+mod side_by_side;
+mod stress;
+
+pub use describe::{ShapeDescription, describe};
+pub use distances::{DISTANCES_LIMIT, Samples};
+pub use embed::{Embedded, embed, embed_and_measure};
+pub use method::EmbedMethod;
+pub use options::{DescribeOptions, FormOptions};
+pub use report::{DescentReport, EmbedReport, SecondsReport};
+pub use side_by_side::{MethodFacts, MethodReport, MethodsReport, compare_methods};
+pub use stress::{StressChoice, StressKind, StressOptions, StressReport};

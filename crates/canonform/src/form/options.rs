@@ -1,0 +1,227 @@
+//! The options tree: everything that decides what a mesh is turned into.
+
+use descriptors::{DescriptorError, Normalization, ShapeMetric};
+use geodesics::{FirstSample, Method, Sampling};
+use mesh::RepairOptions;
+use serde::{Deserialize, Serialize};
+
+use super::as_text;
+use super::distances::Samples;
+use super::method::EmbedMethod;
+use crate::error::Error;
+
+/// Everything that decides the form of a mesh. It is stored with whatever is made of the form, as JSON without
+/// the options that have their default value, so that forms made in different ways are never compared.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, rename_all = "kebab-case")]
+pub struct FormOptions {
+    /// How the mesh is repaired. Default: keep the largest component, close cracks.
+    pub repair: RepairOptions,
+    /// How distances are measured. Default: fast marching with the point-source update.
+    #[serde(skip_serializing_if = "is_default")]
+    pub geodesic: Method,
+    /// Number of samples. Default: 100, as in the paper's Figure 4.
+    #[serde(with = "as_text")]
+    pub samples: Samples,
+    /// How samples are taken. Default: farthest point sampling, as in the paper.
+    #[serde(skip_serializing_if = "is_default")]
+    pub sampling: Sampling,
+    /// The first sample, a vertex of the input. By default, farthest point sampling takes the vertex farthest
+    /// from vertex 0; the other samplings draw one.
+    #[serde(skip_serializing_if = "is_default")]
+    pub first_sample: FirstSample,
+    /// How distances become coordinates. Default: NMDS.
+    #[serde(skip_serializing_if = "is_default")]
+    pub method: EmbedMethod,
+    /// Dimensions of the embedding. Default: 3, the only one that makes a form.
+    #[serde(skip_serializing_if = "is_three")]
+    pub dim: usize,
+    /// Seed of the samples, where they are drawn. Default: 0.
+    #[serde(skip_serializing_if = "is_default")]
+    pub seed: u64,
+}
+
+impl Default for FormOptions {
+    fn default() -> Self {
+        Self {
+            repair: RepairOptions::default(),
+            geodesic: Method::default(),
+            samples: Samples::default(),
+            sampling: Sampling::default(),
+            first_sample: FirstSample::default(),
+            method: EmbedMethod::default(),
+            dim: 3,
+            seed: 0,
+        }
+    }
+}
+
+impl FormOptions {
+    /// The same options without a seed that decides nothing.
+    #[must_use]
+    pub fn normalized(mut self) -> Self {
+        if self.sampling == Sampling::Farthest {
+            self.seed = 0;
+        }
+        self
+    }
+
+    /// Refuses options that make embeddings but no forms.
+    ///
+    /// # Errors
+    /// [`DescriptorError::NotThreeDimensional`].
+    pub fn validate(&self) -> Result<(), Error> {
+        match self.dim {
+            3 => Ok(()),
+            dim => Err(DescriptorError::NotThreeDimensional { dim }.into()),
+        }
+    }
+}
+
+/// Everything that decides the description of a mesh.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(default, rename_all = "kebab-case")]
+pub struct DescribeOptions {
+    /// How the form is made, from at least 8 samples.
+    #[serde(flatten)]
+    pub form: FormOptions,
+    /// Number of points of the form to keep, at least 4. Default: 1000.
+    pub points: usize,
+    /// Whether size counts. Default: [`Normalization::UnitArea`], it does not.
+    pub size: Normalization,
+}
+
+impl Default for DescribeOptions {
+    fn default() -> Self {
+        Self { form: FormOptions::default(), points: 1000, size: Normalization::UnitArea }
+    }
+}
+
+/// [`DescribeOptions`] as they are stored.
+#[derive(Serialize, Deserialize)]
+struct Provenance {
+    description: u32,
+    #[serde(flatten)]
+    options: DescribeOptions,
+}
+
+impl DescribeOptions {
+    /// # Errors
+    /// [`DescriptorError::NotThreeDimensional`]; [`Error::BadDescription`] names an option that is too small.
+    pub fn validate(&self) -> Result<(), Error> {
+        self.form.validate()?;
+        let samples = match self.form.samples {
+            Samples::Count(n) => n,
+            Samples::Auto => usize::MAX,
+        };
+        for (option, value, least) in [("samples", samples, 8), ("points", self.points, 4)] {
+            if value < least {
+                return Err(Error::BadDescription { option, value, least });
+            }
+        }
+        Ok(())
+    }
+
+    /// The options and the [version](ShapeMetric::VERSION) of the description as one line of JSON, equal for equal options. An index
+    /// stores it.
+    #[must_use]
+    pub fn text(&self) -> String {
+        let options = Self { form: self.form.clone().normalized(), ..*self };
+        let provenance = Provenance { description: ShapeMetric::VERSION, options };
+        serde_json::to_string(&provenance).unwrap_or_else(|fault| unreachable!("plain data: {fault}"))
+    }
+
+    /// Reads what [`text`](Self::text) wrote; `None` if this version does not know all of it.
+    #[must_use]
+    pub fn from_text(text: &str) -> Option<Self> {
+        let Provenance { options, .. } = serde_json::from_str(text).ok()?;
+        Some(options).filter(|options: &Self| options.text() == text)
+    }
+}
+
+fn is_default<T: Default + PartialEq>(value: &T) -> bool {
+    *value == T::default()
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes references")]
+fn is_three(dim: &usize) -> bool {
+    *dim == 3
+}
+
+#[cfg(test)]
+mod tests {
+    use geodesics::{HeatOptions, Variance};
+    use nmds::{Bandwidth, Regularization, RpiAlpha, SmacofOptions};
+    use surface::VertexId;
+
+    use super::*;
+
+    #[test]
+    fn default_options_have_the_text_of_the_first_version() {
+        let text = r#"{"description":1,"repair":{"components":"largest","weld":"seams","orient":"keep"},"samples":100,"points":1000,"size":"unit-area"}"#;
+        assert_eq!(DescribeOptions::default().text(), text);
+        assert_eq!(DescribeOptions::from_text(text), Some(DescribeOptions::default()));
+        for other in [
+            text.replace("\"description\":1", "\"description\":2"),
+            text.replace("\"points\"", "\"colour\":3,\"points\""),
+            text.replace("seams", "glue"),
+            text.replace('}', ""),
+            String::new(),
+        ] {
+            assert_eq!(DescribeOptions::from_text(&other), None, "{other}");
+        }
+    }
+
+    #[test]
+    fn all_options_are_stored_and_read_back() {
+        let usual = FormOptions::default();
+        let methods = EmbedMethod::all().map(|method| FormOptions { method, ..usual.clone() });
+        let solvers = Method::all().map(|geodesic| FormOptions { geodesic, ..usual.clone() });
+        let samplings = Sampling::ALL.map(|sampling| FormOptions { sampling, seed: 7, ..usual.clone() });
+        let of = |method| FormOptions { method, ..usual.clone() };
+        let others = [
+            FormOptions { geodesic: Method::Heat(HeatOptions { time: 0.3 }), ..usual.clone() },
+            FormOptions { samples: Samples::Auto, ..usual.clone() },
+            FormOptions { first_sample: FirstSample::Vertex(VertexId(17)), ..usual.clone() },
+            FormOptions { sampling: Sampling::Incremental(Variance::Least), seed: 3, ..usual.clone() },
+            of(EmbedMethod::low_rank(30)),
+            of(EmbedMethod::Nystrom { regularization: Regularization::Rpi { alpha: RpiAlpha::Paper } }),
+            of(EmbedMethod::Spectral { eigenvectors: 60, mu: f64::INFINITY }),
+            of(EmbedMethod::KernelPca { rank: Some(9), bandwidth: Bandwidth::Value(0.7) }),
+            of(EmbedMethod::Smacof {
+                regularization: Regularization::None,
+                descent: SmacofOptions { max_iterations: 4, tolerance: 0.1 },
+            }),
+        ];
+        let mut texts = Vec::new();
+        for form in methods.into_iter().chain(solvers).chain(samplings).chain(others) {
+            let options = DescribeOptions { form, ..DescribeOptions::default() };
+            let text = options.text();
+            let read = DescribeOptions::from_text(&text).unwrap();
+            assert_eq!(read.text(), text);
+            if options.form.sampling != Sampling::Farthest {
+                assert_eq!(read, options, "{text}");
+            }
+            texts.push(text);
+        }
+        texts.sort();
+        texts.dedup();
+        // Three times the default: as a method, as a solver and as a sampling without a seed.
+        assert_eq!(texts.len(), 7 + 5 + 4 + 9 - 2);
+    }
+
+    #[test]
+    fn options_that_make_no_form_are_refused() {
+        let of = |form| DescribeOptions { form, ..DescribeOptions::default() };
+        let flat = of(FormOptions { dim: 2, ..FormOptions::default() });
+        let fault = flat.validate().unwrap_err();
+        assert!(matches!(fault, Error::Descriptor(DescriptorError::NotThreeDimensional { dim: 2 })));
+        for (options, name) in [
+            (of(FormOptions { samples: Samples::Count(7), ..FormOptions::default() }), "samples"),
+            (DescribeOptions { points: 3, ..DescribeOptions::default() }, "points"),
+        ] {
+            let fault = options.validate().unwrap_err();
+            assert!(matches!(fault, Error::BadDescription { option, .. } if option == name));
+        }
+    }
+}

@@ -1,0 +1,140 @@
+//! The stress of an embedding of a surface.
+
+use geodesics::{DistanceSolver, Method};
+use linalg::{LandmarkDistances, Matrix};
+use nmds::{DistanceRows, StressEstimate, estimate_paper_stress, paper_stress, sample_rows};
+use serde::Serialize;
+use surface::VertexId;
+
+use crate::observer::Observer;
+
+/// [`StressChoice::Auto`] is exact up to this many vertices.
+const EXACT_LIMIT: usize = 5000;
+
+/// Number of rows an estimate is made from.
+const ESTIMATE_ROWS: usize = 100;
+
+/// How the stress of an embedding is measured.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct StressOptions {
+    /// From which distances. Default: [`StressChoice::Auto`].
+    pub choice: StressChoice,
+    /// How these distances are measured. Default: as those that the embedding was made from. With better ones,
+    /// poor distances cannot hide behind their own stress.
+    pub against: Option<Method>,
+    /// Seed of the rows that an estimate is made from. Default: 0.
+    pub seed: u64,
+}
+
+/// From which distances a stress is measured.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum StressChoice {
+    /// From all pairs up to 5,000 vertices, estimated beyond.
+    #[default]
+    Auto,
+    /// From the distances between all pairs of vertices.
+    Exact,
+    /// From the distances of 100 vertices to all others.
+    Estimate,
+    /// Not measured.
+    Skip,
+}
+
+impl StressChoice {
+    /// The vertices whose distances to all others are needed, of `n_vertices`; `None` for all of them.
+    pub(super) fn rows(self, n_vertices: usize, seed: u64) -> Option<Vec<usize>> {
+        let is_exact = match self {
+            Self::Auto => n_vertices <= EXACT_LIMIT,
+            Self::Exact => true,
+            Self::Estimate | Self::Skip => false,
+        };
+        (!is_exact).then(|| sample_rows(n_vertices, ESTIMATE_ROWS, seed))
+    }
+}
+
+/// The paper's stress of an embedding and how it was measured.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct StressReport {
+    /// Always `paper_stress`: `‖Z Z' + 1/2 J E J‖_F / p`, in squared mesh units.
+    pub measure: &'static str,
+    /// Name of the method that measured the distances.
+    pub geodesic: &'static str,
+    /// Its value.
+    pub value: f64,
+    /// Exact or estimated.
+    pub kind: StressKind,
+    /// A 95 % confidence interval; the value twice when it is exact.
+    pub interval: [f64; 2],
+}
+
+/// Where a stress comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum StressKind {
+    /// All pairs of vertices.
+    Exact,
+    /// A sample of rows.
+    Estimated,
+}
+
+impl StressReport {
+    /// The stress of `coords` against distances by `method`: of the given rows, or of all.
+    pub(super) fn new(
+        coords: &Matrix,
+        distances: &dyn DistanceRows,
+        rows: Option<&[usize]>,
+        method: Method,
+    ) -> Self {
+        let (value, kind, interval) = match rows {
+            None => {
+                let value = paper_stress(coords, distances);
+                (value, StressKind::Exact, [value; 2])
+            }
+            Some(rows) => {
+                let StressEstimate { value, interval, .. } = estimate_paper_stress(coords, distances, rows);
+                (value, StressKind::Estimated, interval)
+            }
+        };
+        Self { measure: "paper_stress", geodesic: method.name(), value, kind, interval }
+    }
+}
+
+/// Rows that are solved when they are needed.
+struct SolvedRows<'a>(&'a dyn DistanceSolver);
+
+impl DistanceRows for SolvedRows<'_> {
+    fn n_points(&self) -> usize {
+        self.0.n_vertices()
+    }
+
+    fn row_into(&self, i: usize, out: &mut [f64]) {
+        self.0.distances_into(VertexId::from(i), out);
+    }
+}
+
+/// The rows of landmarks, looked up.
+pub(super) struct KnownRows<'a>(pub(super) &'a LandmarkDistances);
+
+impl DistanceRows for KnownRows<'_> {
+    fn n_points(&self) -> usize {
+        self.0.n_points()
+    }
+
+    fn row_into(&self, i: usize, out: &mut [f64]) {
+        let landmark = self.0.landmarks().iter().position(|&l| l == i);
+        out.copy_from_slice(self.0.column(landmark.unwrap_or_else(|| unreachable!("row {i} is not known"))));
+    }
+}
+
+/// Measures the stress of `coords` against the distances of `solver`, which belongs to `method`.
+pub(super) fn measure(
+    coords: &Matrix,
+    solver: &dyn DistanceSolver,
+    method: Method,
+    options: &StressOptions,
+    observer: &dyn Observer,
+) -> StressReport {
+    let rows = options.choice.rows(solver.n_vertices(), options.seed);
+    observer.begin("stress", rows.as_ref().map_or(solver.n_vertices(), Vec::len));
+    StressReport::new(coords, &SolvedRows(solver), rows.as_deref(), method)
+}

@@ -1,0 +1,120 @@
+//! Nearest shapes in two stages: by fused signatures, then by aligned forms.
+
+use std::borrow::Borrow;
+use std::collections::HashMap;
+use std::sync::{Mutex, PoisonError};
+
+use descriptors::{FormDistance, FormMatch, PreparedShape, ShapeMetric, match_forms_within};
+use retrieval::{Candidate, refine_nearest};
+
+use crate::error::Error;
+
+/// A shape that was found.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Ranked {
+    /// The candidate.
+    pub index: usize,
+    /// Combined distance from the query.
+    pub distance: f64,
+    /// Fused distance from the query.
+    pub fused: f64,
+    /// How the form of the query, at unit area, aligns with that of the shape.
+    pub alignment: FormMatch,
+}
+
+/// The shapes nearest to a query.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Reranked {
+    /// Nearest first, ties by index.
+    pub nearest: Vec<Ranked>,
+    /// Candidates whose alignment was begun.
+    pub aligned: usize,
+    /// Candidates among them that turned out to be too far away before their alignment was finished.
+    pub abandoned: usize,
+}
+
+/// The `k` candidates nearest to a query by [combined](ShapeMetric::combined) distance. Candidates come in ascending
+/// order of their bounds, which are lower bounds of the fused distance. `shape` gives the shape of a candidate.
+///
+/// Forms are aligned only until the fused distance alone rules out the remaining candidates, and an alignment is
+/// abandoned when it cannot come near enough, see [`match_forms_within`]. Apart from that heuristic the result is that
+/// of aligning all candidates. Alignments run in parallel; the result does not depend on the number of threads.
+///
+/// # Errors
+/// [`Error::Descriptor`], and the errors of `shape`.
+pub fn rerank<S: Borrow<PreparedShape>>(
+    metric: &ShapeMetric,
+    query: &PreparedShape,
+    candidates: impl IntoIterator<Item = Candidate>,
+    k: usize,
+    shape: impl Fn(usize) -> Result<S, Error> + Sync,
+) -> Result<Reranked, Error> {
+    let found = Mutex::new(HashMap::new());
+    let refined = refine_nearest(candidates, k, |candidate, limit| {
+        let shape = shape(candidate.index)?;
+        let shape: &PreparedShape = shape.borrow();
+        let fused = ShapeMetric::fused(query.fused(), shape.fused());
+        let left = ShapeMetric::form_limit(fused, limit, FormDistance::NearestNeighborRms);
+        let (a, b) = (query.prepared_form(), shape.prepared_form());
+        let Some(alignment) = match_forms_within(a, b, &metric.matching, left)? else { return Ok(None) };
+        found.lock().unwrap_or_else(PoisonError::into_inner).insert(candidate.index, (fused, alignment));
+        Ok::<_, Error>(Some(ShapeMetric::combined(fused, alignment.rms)))
+    })?;
+    let found = found.into_inner().unwrap_or_else(PoisonError::into_inner);
+    let ranked = refined.nearest.iter().filter_map(|near| {
+        let (fused, alignment) = *found.get(&near.index)?;
+        Some(Ranked { index: near.index, distance: near.distance, fused, alignment })
+    });
+    Ok(Reranked { nearest: ranked.collect(), aligned: refined.asked, abandoned: refined.abandoned })
+}
+
+#[cfg(test)]
+mod tests {
+    use descriptors::{CanonicalForm, ShapePair};
+    use nalgebra::Point3;
+
+    use super::*;
+
+    /// A spiral with this fused vector.
+    fn spiral(turns: f64, fused: f64) -> PreparedShape {
+        let points: Vec<_> = (0..400)
+            .map(|i| f64::from(i) / 400.0)
+            .map(|s| Point3::new(3.0 * s, s * (turns * s).cos(), 0.7 * s * (turns * s).sin()))
+            .collect();
+        let form = CanonicalForm::from_points(points, vec![1.0; 400]).unwrap();
+        PreparedShape::new(vec![fused as f32], &form, None).unwrap()
+    }
+
+    #[test]
+    fn reranking_finds_what_aligning_all_finds() {
+        let metric = ShapeMetric::default();
+        let turns = |i: usize| 1.0 + 0.2 * i as f64;
+        for query in [0, 13] {
+            // Signatures that tell something, and such that tell nothing.
+            for usefulness in [1.0, 0.0] {
+                let fused = |i: usize| usefulness * 0.05 * (i.abs_diff(query) as f64 + 2.0 * (i % 3) as f64);
+                let shapes: Vec<_> = (0..30).map(|i| spiral(turns(i), fused(i))).collect();
+                let asked = spiral(turns(query), 0.0);
+                let fused = |i: usize| ShapeMetric::fused(asked.fused(), shapes[i].fused());
+                let mut candidates: Vec<_> =
+                    (0..30).map(|index| Candidate { index, bound: fused(index) }).collect();
+                candidates.sort_by(|a, b| a.bound.total_cmp(&b.bound));
+                let mut all: Vec<_> = (0..30)
+                    .map(|index| {
+                        let pair = ShapePair::new(&metric, [&asked, &shapes[index]]);
+                        let (fused, alignment) = (fused(index), pair.best().unwrap());
+                        let distance = ShapeMetric::combined(fused, alignment.rms);
+                        Ranked { index, distance, fused, alignment }
+                    })
+                    .collect();
+                all.sort_by(|a, b| a.distance.total_cmp(&b.distance).then(a.index.cmp(&b.index)));
+                for k in [1, 5, 30] {
+                    let found = rerank(&metric, &asked, candidates.clone(), k, |i| Ok(&shapes[i])).unwrap();
+                    assert_eq!(found.nearest, all[..k], "{query}, {k}");
+                    assert!(k < 30 || found.abandoned == 0, "all are wanted");
+                    assert!(k == 30 || found.aligned - found.abandoned < 30);
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,408 @@
+//! Searching an index for the shapes nearest to a mesh.
+
+use std::path::Path;
+use std::time::Instant;
+
+use descriptors::{CanonicalForm, PreparedShape, ShapeMetric, ShapePair};
+use index::{Index, SearchMode, ShapeEntry};
+use mesh::TriMesh;
+use rayon::prelude::*;
+use retrieval::{Candidate, vote};
+use serde::Serialize;
+
+use super::record::{form, options_of, prepared};
+use super::rerank::rerank;
+use super::source::read_unchanged;
+use crate::compare::{Comparison, compare};
+use crate::error::Error;
+use crate::form::{DescribeOptions, ShapeDescription, describe};
+use crate::input::Surface;
+
+/// Neighbours that vote on the class of a query.
+const VOTERS: usize = 5;
+
+/// Shapes whose forms may be aligned, per result, ...
+const CANDIDATES: usize = 4;
+
+/// ... and at least.
+const LEAST_CANDIDATES: usize = 40;
+
+/// The index measures fused distances with other rounding than the metric: this factor makes them lower bounds.
+const LOWER_BOUND: f64 = 1.0 - 1e-6;
+
+/// How an index is searched.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SearchOptions {
+    /// Number of results. Default: 10.
+    pub k: usize,
+    /// How signatures are searched. Default: [`SearchMode::Auto`].
+    pub mode: SearchMode,
+    /// Whether every result is compared with the query in detail. Default: no.
+    pub explain: Explain,
+    /// The distance between shapes.
+    pub metric: ShapeMetric,
+}
+
+/// Whether results are compared with the query in detail.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Explain {
+    /// No.
+    #[default]
+    No,
+    /// With a [`Comparison`] for each result.
+    Kind,
+}
+
+impl Default for SearchOptions {
+    fn default() -> Self {
+        Self { k: 10, mode: SearchMode::Auto, explain: Explain::No, metric: ShapeMetric::default() }
+    }
+}
+
+/// A shape that was found.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SearchResult {
+    /// Counted from 1.
+    pub rank: usize,
+    /// Name of the shape.
+    pub id: String,
+    /// Its class.
+    pub label: String,
+    /// Path of its mesh.
+    pub path: String,
+    /// Combined distance, by signatures and aligned forms; results are ordered by it.
+    pub distance: f64,
+    /// Fused distance, by signatures alone.
+    pub fused: f64,
+    /// The comparison with the query, if results are explained.
+    #[serde(rename = "match", skip_serializing_if = "Option::is_none")]
+    pub comparison: Option<Comparison>,
+}
+
+/// The class that the nearest shapes suggest.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Prediction {
+    /// The class; `None` if no shape is near enough.
+    pub label: Option<String>,
+    /// Neighbours of that class.
+    pub votes: usize,
+    /// Neighbours that are near enough to vote.
+    pub voters: usize,
+    /// Share of the votes for the class, from 0 to 1; nearer neighbours count more.
+    pub confidence: f64,
+    /// Fused distance beyond which no shape is near enough; `None` if the classes of the index are too small to
+    /// estimate it.
+    pub threshold: Option<f64>,
+}
+
+/// The answer to a search.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SearchReport {
+    /// Nearest first.
+    pub results: Vec<SearchResult>,
+    /// The class.
+    pub predicted: Prediction,
+    /// Shapes in the index.
+    pub n_shapes: usize,
+    /// Shapes whose signatures were compared.
+    pub measured: usize,
+    /// Shapes whose alignment was begun.
+    pub aligned: usize,
+    /// Share of the ten nearest signatures that searches in this index find: 1 if the search is exact.
+    pub recall: f64,
+    /// Wall-clock seconds.
+    pub seconds: SearchSeconds,
+}
+
+/// Wall-clock seconds of a search.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
+pub struct SearchSeconds {
+    /// Repair, distances, form and signatures of the query.
+    pub describe: f64,
+    /// Searching, aligning and voting.
+    pub search: f64,
+}
+
+/// An index that is open for searches.
+#[derive(Debug)]
+pub struct ShapeSearch {
+    index: Index,
+    describe: DescribeOptions,
+}
+
+impl ShapeSearch {
+    /// Opens an index.
+    ///
+    /// # Errors
+    /// [`Error::Index`], [`Error::UnknownOptions`].
+    pub fn open(path: &Path) -> Result<Self, Error> {
+        let index = Index::open(path)?;
+        let describe = options_of(&index)?;
+        Ok(Self { index, describe })
+    }
+
+    /// How the shapes of the index were described; queries are described in the same way.
+    #[must_use]
+    pub fn describe_options(&self) -> &DescribeOptions {
+        &self.describe
+    }
+
+    /// All shapes with their entries, by ascending name.
+    ///
+    /// # Errors
+    /// [`Error::Index`].
+    pub fn entries(&self) -> Result<Vec<(String, ShapeEntry)>, Error> {
+        Ok(self.index.entries()?)
+    }
+
+    /// The entry of a shape.
+    ///
+    /// # Errors
+    /// [`Error::Index`].
+    pub fn entry(&self, id: &str) -> Result<ShapeEntry, Error> {
+        Ok(self.index.entry(id)?)
+    }
+
+    /// The form of a shape, at the points that the index stores.
+    ///
+    /// # Errors
+    /// [`Error::Index`].
+    pub fn form(&self, id: &str) -> Result<CanonicalForm, Error> {
+        form(&self.index.entry(id)?, &self.index.vectors(id)?, &self.describe)
+    }
+
+    /// A shape, ready to be compared.
+    ///
+    /// # Errors
+    /// [`Error::Index`].
+    pub fn prepared(&self, id: &str) -> Result<PreparedShape, Error> {
+        prepared(&self.index.entry(id)?, self.index.vectors(id)?, &self.describe)
+    }
+
+    /// Reads the mesh of a shape again.
+    ///
+    /// # Errors
+    /// [`Error::MeshGone`] and [`Error::MeshChanged`] unless the file still has the content that was indexed;
+    /// [`Error::Index`], [`Error::Mesh`].
+    pub fn mesh(&self, id: &str) -> Result<TriMesh, Error> {
+        read_unchanged(id, &self.index.entry(id)?)
+    }
+
+    /// Finds the shapes nearest to a mesh: candidates by fused signatures, ordered by aligned forms.
+    ///
+    /// ```
+    /// use canonform::{BuildOptions, DescribeOptions, SearchOptions, ShapeSearch, build_index, mesh};
+    ///
+    /// let folder = tempfile::tempdir()?;
+    /// mesh::io::write(&folder.path().join("ball1.off"), &mesh::shapes::icosphere(2))?;
+    /// mesh::io::write(&folder.path().join("ring1.off"), &mesh::shapes::torus(24, 12, 2.0, 0.7))?;
+    /// let index = folder.path().join("shapes.canonform");
+    /// let describe = DescribeOptions::default();
+    /// let options = BuildOptions { describe: &describe, labels: None, shard: None };
+    /// build_index(folder.path(), &index, &options, &())?;
+    ///
+    /// let query = mesh::shapes::torus(22, 13, 1.0, 0.35);
+    /// let report = ShapeSearch::open(&index)?.search(&query, &SearchOptions::default())?;
+    /// assert_eq!((report.results[0].id.as_str(), report.results.len()), ("ring1", 2));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`Error::Index`], and those of describing the mesh.
+    pub fn search(&self, mesh: &TriMesh, options: &SearchOptions) -> Result<SearchReport, Error> {
+        let start = Instant::now();
+        let query = describe(&Surface::new(mesh, &self.describe.form.repair)?, &self.describe)?;
+        let describe = start.elapsed().as_secs_f64();
+        let report = self.search_described(&query, options)?;
+        Ok(SearchReport { seconds: SearchSeconds { describe, ..report.seconds }, ..report })
+    }
+
+    /// Searches with a mesh that was described with the [options of the index](Self::describe_options).
+    ///
+    /// # Errors
+    /// [`Error::Index`], also if the mesh was described with other options.
+    pub fn search_described(
+        &self,
+        query: &ShapeDescription,
+        options: &SearchOptions,
+    ) -> Result<SearchReport, Error> {
+        self.index.expect_options(&query.options.text())?;
+        self.nearest(&query.prepare()?, options)
+    }
+
+    /// Searches with a shape of the index, which finds itself. Its mesh is not needed.
+    ///
+    /// # Errors
+    /// [`Error::Index`].
+    pub fn search_shape(&self, id: &str, options: &SearchOptions) -> Result<SearchReport, Error> {
+        self.nearest(&self.prepared(id)?, options)
+    }
+
+    fn nearest(&self, query: &PreparedShape, options: &SearchOptions) -> Result<SearchReport, Error> {
+        let start = Instant::now();
+        let wanted = options.k.max(VOTERS);
+        let found =
+            self.index.nearest(query.fused(), (CANDIDATES * wanted).max(LEAST_CANDIDATES), options.mode)?;
+        let near = &found.shapes;
+        let candidates = near
+            .iter()
+            .enumerate()
+            .map(|(index, near)| Candidate { index, bound: near.distance * LOWER_BOUND });
+        let shape = |i: usize| self.prepared(&near[i].id);
+        let ranked = rerank(&options.metric, query, candidates, wanted, shape)?;
+
+        let mut results = Vec::with_capacity(wanted);
+        for (place, ranked) in ranked.nearest.iter().enumerate() {
+            let id = &near[ranked.index].id;
+            let ShapeEntry { label, path, .. } = self.index.entry(id)?;
+            let (distance, fused) = (ranked.distance, ranked.fused);
+            results.push(SearchResult {
+                rank: place + 1,
+                id: id.clone(),
+                label,
+                path,
+                distance,
+                fused,
+                comparison: None,
+            });
+        }
+        let predicted = predicted(&results, found.threshold);
+        results.truncate(options.k);
+        if options.explain == Explain::Kind {
+            results.par_iter_mut().zip(&ranked.nearest).try_for_each(|(result, ranked)| {
+                let shape = self.prepared(&result.id)?;
+                let pair = ShapePair::new(&options.metric, [query, &shape]).with_best(ranked.alignment);
+                result.comparison = Some(compare(&pair)?);
+                Ok::<_, Error>(())
+            })?;
+        }
+        Ok(SearchReport {
+            results,
+            predicted,
+            n_shapes: found.n_shapes,
+            measured: found.n_measured,
+            aligned: ranked.aligned,
+            recall: found.recall,
+            seconds: SearchSeconds { describe: 0.0, search: start.elapsed().as_secs_f64() },
+        })
+    }
+}
+
+/// The vote of the first results. Their order takes forms into account; the threshold is one of fused distances.
+fn predicted(results: &[SearchResult], threshold: Option<retrieval::UnknownThreshold>) -> Prediction {
+    let mut classes: Vec<&str> = results.iter().map(|result| result.label.as_str()).collect();
+    classes.sort_unstable();
+    classes.dedup();
+    let class_of = |i: usize| classes.partition_point(|class| *class < results[i].label.as_str());
+    let neighbors: Vec<_> = results
+        .iter()
+        .enumerate()
+        .map(|(index, result)| retrieval::Neighbor { index, distance: result.fused })
+        .collect();
+    let vote = vote(&neighbors, class_of, VOTERS, threshold);
+    Prediction {
+        label: vote.class.map(|class| classes[class].to_owned()),
+        votes: vote.votes,
+        voters: vote.voters,
+        confidence: vote.confidence,
+        threshold: threshold.map(|threshold| threshold.distance),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::fs;
+
+    use index::IndexError;
+    use mesh::shapes;
+    use tempfile::TempDir;
+
+    use super::*;
+    use crate::error::Remedy;
+    use crate::form::{EmbedMethod, FormOptions};
+    use crate::shape_index::{BuildOptions, build_index};
+
+    /// An index of a few bodies.
+    fn indexed(describe: &DescribeOptions) -> (TempDir, ShapeSearch) {
+        let folder = tempfile::tempdir().unwrap();
+        let bodies = [
+            ("ball0.off", shapes::icosphere(3)),
+            ("ring0.off", shapes::torus(24, 12, 2.0, 0.6)),
+            ("ring1.off", shapes::torus(24, 12, 2.0, 0.9)),
+            ("box0.vert", shapes::cube(3)),
+        ];
+        for (name, mesh) in bodies {
+            mesh::io::write(&folder.path().join(name), &mesh).unwrap();
+        }
+        let path = folder.path().join("all.canonform");
+        build_index(folder.path(), &path, &BuildOptions { describe, labels: None, shard: None }, &())
+            .unwrap();
+        let search = ShapeSearch::open(&path).unwrap();
+        (folder, search)
+    }
+
+    #[test]
+    fn a_mesh_a_description_and_a_stored_shape_find_exactly_the_same() {
+        let method = EmbedMethod::KernelPca { rank: None, bandwidth: Default::default() };
+        let form = FormOptions { method, ..FormOptions::default() };
+        let kernel = DescribeOptions { form, ..DescribeOptions::default() };
+        for describe_options in [DescribeOptions::default(), kernel] {
+            let (_folder, search) = indexed(&describe_options);
+            assert_eq!(*search.describe_options(), describe_options);
+            let options = SearchOptions { explain: Explain::Kind, ..SearchOptions::default() };
+            let mesh = search.mesh("ring0").unwrap();
+            let by_mesh = search.search(&mesh, &options).unwrap();
+            let by_name = search.search_shape("ring0", &options).unwrap();
+            let surface = Surface::new(&mesh, &describe_options.form.repair).unwrap();
+            let described = describe(&surface, &describe_options).unwrap();
+            let by_description = search.search_described(&described, &options).unwrap();
+            assert!(by_mesh.results[0].id == "ring0" && by_mesh.results[0].distance < 1e-6);
+            assert_eq!(by_mesh.results, by_name.results);
+            assert_eq!(by_mesh.results, by_description.results);
+            // The comparison of the two shapes says the same.
+            for result in &by_mesh.results {
+                let other = search.prepared(&result.id).unwrap();
+                let query = described.prepare().unwrap();
+                let direct = compare(&ShapePair::new(&options.metric, [&query, &other])).unwrap();
+                assert_eq!(result.comparison.as_ref(), Some(&direct));
+                assert_eq!(result.distance, direct.shape_distance.combined);
+            }
+        }
+    }
+
+    #[test]
+    fn a_query_described_with_other_options_is_refused() {
+        let (_folder, search) = indexed(&DescribeOptions::default());
+        let options = DescribeOptions { points: 500, ..DescribeOptions::default() };
+        let surface = Surface::new(&shapes::icosphere(2), &Default::default()).unwrap();
+        let query = describe(&surface, &options).unwrap();
+        let fault = search.search_described(&query, &SearchOptions::default()).unwrap_err();
+        assert!(matches!(fault, Error::Index(IndexError::OtherOptions { .. })));
+        assert!(fault.to_string().contains("\"points\":500"), "{fault}");
+    }
+
+    #[test]
+    fn shapes_are_known_by_name() {
+        let (_folder, search) = indexed(&DescribeOptions::default());
+        let options = SearchOptions::default();
+        assert!(matches!(search.search_shape("none", &options), Err(Error::Index(_))));
+        let names: Vec<String> = search.entries().unwrap().into_iter().map(|(id, _)| id).collect();
+        assert_eq!(names, ["ball0", "box0", "ring0", "ring1"]);
+        assert_eq!(search.entry("box0").unwrap().label, "box");
+    }
+
+    #[test]
+    fn missing_and_changed_meshes_are_different_errors() {
+        let (folder, search) = indexed(&DescribeOptions::default());
+        assert_eq!(search.mesh("box0").unwrap(), shapes::cube(3));
+        fs::copy(folder.path().join("ring1.off"), folder.path().join("ring0.off")).unwrap();
+        fs::remove_file(folder.path().join("box0.tri")).unwrap();
+        let changed = search.mesh("ring0").unwrap_err();
+        assert!(matches!(&changed, Error::MeshChanged { id, .. } if id == "ring0"));
+        assert_eq!(changed.remedy(), Some(Remedy::RestoreMesh));
+        let gone = search.mesh("box0").unwrap_err();
+        assert!(matches!(&gone, Error::MeshGone { id, .. } if id == "box0"));
+        assert!(gone.to_string().contains("box0.vert"), "{gone}");
+        search.form("box0").unwrap();
+    }
+}

@@ -1,0 +1,44 @@
+//! Nearest points.
+
+use kiddo::{ImmutableKdTree, SquaredEuclidean};
+use nalgebra::Point3;
+
+use crate::error::DescriptorError;
+
+/// Points with a search tree.
+pub struct NearestPoints {
+    points: Vec<Point3<f64>>,
+    tree: ImmutableKdTree<f64, 3>,
+}
+
+impl std::fmt::Debug for NearestPoints {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("NearestPoints").field("n_points", &self.points.len()).finish_non_exhaustive()
+    }
+}
+
+impl NearestPoints {
+    /// # Errors
+    /// [`DescriptorError::NoExtent`] if there are no points or a coordinate is not finite.
+    pub fn new(points: Vec<Point3<f64>>) -> Result<Self, DescriptorError> {
+        let coordinates: Vec<[f64; 3]> = points.iter().map(|p| p.coords.into()).collect();
+        let tree = ImmutableKdTree::new_from_slice(&coordinates)
+            .map_err(|_| DescriptorError::NoExtent { n_points: points.len() })?;
+        Ok(Self { points, tree })
+    }
+
+    /// All points.
+    #[must_use]
+    pub fn points(&self) -> &[Point3<f64>] {
+        &self.points
+    }
+
+    /// The index of the point nearest to `query`, and its squared distance.
+    #[inline]
+    #[must_use]
+    pub fn nearest(&self, query: &Point3<f64>) -> (usize, f64) {
+        let query: [f64; 3] = query.coords.into();
+        let hit = self.tree.query(&query).nearest_one::<SquaredEuclidean<f64>>().execute();
+        (hit.item as usize, hit.distance)
+    }
+}

@@ -1,0 +1,90 @@
+//! Kinds of signatures, and their values.
+
+use std::str::FromStr;
+
+use serde::{Deserialize, Serialize};
+
+use crate::error::DescriptorError;
+
+/// The kinds of signatures.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum SignatureKind {
+    /// [`moment_signature`](crate::moment_signature).
+    Moments,
+    /// [`d2_histogram`](crate::d2_histogram).
+    D2,
+    /// [`geodesic_spectrum`](crate::geodesic_spectrum).
+    GeodesicSpectrum,
+    /// [`shape_dna`](crate::shape_dna).
+    ShapeDna,
+    /// [`heat_kernel_signature`](crate::heat_kernel_signature).
+    HeatKernel,
+    /// [`wave_kernel_signature`](crate::wave_kernel_signature).
+    WaveKernel,
+}
+
+impl SignatureKind {
+    /// All kinds, in the order of a fused vector.
+    pub const ALL: [Self; 6] =
+        [Self::Moments, Self::D2, Self::GeodesicSpectrum, Self::ShapeDna, Self::HeatKernel, Self::WaveKernel];
+
+    /// The name used on the command line and in records.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Moments => "moments",
+            Self::D2 => "d2",
+            Self::GeodesicSpectrum => "geodesic-spectrum",
+            Self::ShapeDna => "shape-dna",
+            Self::HeatKernel => "heat-kernel",
+            Self::WaveKernel => "wave-kernel",
+        }
+    }
+
+    /// Number of values, without the size.
+    #[must_use]
+    pub const fn n_values(self) -> usize {
+        match self {
+            Self::Moments => 13,
+            Self::D2 => 8,
+            Self::GeodesicSpectrum => 12,
+            Self::ShapeDna => 20,
+            Self::HeatKernel => 32,
+            Self::WaveKernel => 96,
+        }
+    }
+}
+
+impl FromStr for SignatureKind {
+    type Err = DescriptorError;
+
+    fn from_str(name: &str) -> Result<Self, Self::Err> {
+        Self::ALL.into_iter().find(|kind| kind.name() == name).ok_or_else(|| {
+            DescriptorError::UnknownSignature {
+                name: name.to_owned(),
+                known: Self::ALL.map(Self::name).join(", "),
+            }
+        })
+    }
+}
+
+/// A list of numbers that describes a surface; the distance between two of a kind is Euclidean.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Signature {
+    /// The kind of signature.
+    pub kind: SignatureKind,
+    /// [`SignatureKind::n_values`] numbers, and one more with the size.
+    pub values: Vec<f64>,
+}
+
+impl Signature {
+    /// Euclidean distance to another signature; infinite unless both are of one kind and length.
+    #[must_use]
+    pub fn distance(&self, other: &Self) -> f64 {
+        if self.kind != other.kind || self.values.len() != other.values.len() {
+            return f64::INFINITY;
+        }
+        self.values.iter().zip(&other.values).map(|(x, y)| (x - y).powi(2)).sum::<f64>().sqrt()
+    }
+}
