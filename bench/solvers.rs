@@ -2,8 +2,8 @@
 //!
 //! Comparisons with other programs stand in `bench/peers.py`.
 
-use geodesics::{FirstSample, HeatOptions, Method, farthest_point_sampling};
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
+use geodesics::{FirstSample, HeatOptions, Method, farthest_point_sampling};
 use mesh::shapes;
 use surface::{IntrinsicMesh, VertexId};
 

@@ -11,9 +11,7 @@ use canonform::{DescribeOptions, ShapeDescription, describe, form_matches};
 use descriptors::{CanonicalForm, FormDistance, MatchOptions, Normalization, ShapeMetric, SignatureKind};
 use linalg::DistanceMatrix;
 use report::results::{Classification, RetrievalRecord, RetrievalRow, Scale};
-use retrieval::{
-    Averaging, Labels, UnknownThreshold, evaluate, mean_scores, precision_recall, rank, vote,
-};
+use retrieval::{Averaging, Labels, UnknownThreshold, evaluate, mean_scores, precision_recall, rank, vote};
 
 use crate::collection::map;
 use crate::context::Context;

@@ -294,9 +294,7 @@ fn a_scalar_field_has_a_value_and_a_colour_per_vertex() {
     let start = bytes.windows(end.len()).position(|w| w == end).unwrap() + end.len();
     let row = |v: usize| &bytes[start + 35 * v..start + 35 * (v + 1)];
     assert_eq!(row(5)[24..32], 5f64.to_le_bytes());
-    for v in 0..8 {
-        assert_eq!(row(v)[32..], colors[v]);
-    }
+    colors.iter().enumerate().for_each(|(v, color)| assert_eq!(row(v)[32..], color[..]));
 
     let wrong = |path: &Path, field: VertexField| write_scalar_field(path, &cube, &field).unwrap_err();
     let off = wrong(&folder.path().join("field.off"), field);

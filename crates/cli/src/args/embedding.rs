@@ -130,7 +130,8 @@ impl EmbeddingArgs {
 
     /// Refuses options that would have no effect.
     fn check(&self) -> Result<()> {
-        let of_method: [(&str, bool, fn(&EmbedMethod) -> bool); 9] = [
+        type AppliesTo = fn(&EmbedMethod) -> bool;
+        let of_method: [(&str, bool, AppliesTo); 9] = [
             ("--rank", self.rank.is_some(), |m| {
                 m.regularization().is_some() || matches!(m, EmbedMethod::KernelPca { .. })
             }),

@@ -22,7 +22,7 @@ pub(crate) enum IndexCommand {
     /// An interrupted run keeps what is done in INDEX.work; the same command goes on with it. Readers see the
     /// old index until the new one is finished. Meshes that cannot be read are listed at the end, and the exit
     /// code is then 2.
-    Build(BuildArgs),
+    Build(Box<BuildArgs>),
     /// Add meshes, or folders of them
     Add(AddArgs),
     /// Take shapes out

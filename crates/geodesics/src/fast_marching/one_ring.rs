@@ -4,8 +4,8 @@ use std::f64::consts::PI;
 
 use rayon::prelude::*;
 use surface::{
-    CornerId, CornerTable, FaceId, FanCorner, Link, OneRing, Rows, Triangulation, VertexKind,
-    Winding, double_area, scalar_product, total_angle,
+    CornerId, CornerTable, FaceId, FanCorner, Link, OneRing, Rows, Triangulation, VertexKind, Winding,
+    double_area, scalar_product, total_angle,
 };
 
 use super::update::Stencil;

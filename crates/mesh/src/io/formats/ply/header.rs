@@ -37,7 +37,7 @@ impl Header {
     pub(super) fn parse(lines: &mut Lines<'_>) -> Result<Self, Located> {
         let mut encoding = None;
         let mut elements: Vec<Element> = Vec::new();
-        while let Some(line) = lines.next() {
+        for line in lines.by_ref() {
             let unexpected = || line.expected("a line of a PLY header");
             let words: Vec<&str> = line.tokens().map(|word| str::from_utf8(word).unwrap_or("")).collect();
             match words[..] {
