@@ -38,7 +38,7 @@ pub trait Record: Serialize + DeserializeOwned {
 /// Writes the static figures of a record and `NAME.json` into a folder.
 ///
 /// # Errors
-/// Those of [`Record::validate`] and [`write`], [`ReportError::View`].
+/// Those of [`Record::validate`] and [`write`](crate::results::write), [`ReportError::View`].
 pub fn save(record: &impl Record, folder: &Path, name: &str) -> Result<(), ReportError> {
     record.validate()?;
     for figure in record.figures() {
