@@ -24,9 +24,13 @@ pub(super) fn parse(bytes: &[u8], limits: &ReadLimits) -> Result<TriMesh, Locate
         return Err(Fault::Empty.whole());
     }
     let Statements { n_vertices, n_faces, text } = Statements::of(bytes, limits)?;
-    let all_vertices: String = (1..=n_vertices).map(|v| format!(" {v}")).collect();
-    let all_vertices = format!("f{all_vertices}\n");
-    let mut reader = all_vertices.as_bytes().chain(text.as_slice());
+    let mut all_vertices = b"f".to_vec();
+    for vertex in 1..=n_vertices {
+        // Writing to memory cannot fail.
+        let _ = write!(all_vertices, " {vertex}");
+    }
+    all_vertices.push(b'\n');
+    let mut reader = all_vertices.as_slice().chain(text.as_slice());
     let no_materials = |_: &Path| Err(tobj::LoadError::OpenFileFailed);
     let loaded = tobj::load_obj_buf(&mut reader, &tobj::LoadOptions::default(), no_materials);
     let (models, _) = loaded.map_err(|error| {
