@@ -36,28 +36,24 @@ impl Family {
     /// The class label: `cat`, `centaur` or `david`.
     #[must_use]
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Cat => "cat",
-            Self::Centaur => "centaur",
-            Self::David => "david",
-        }
+        self.entry().0
     }
 
     /// Number of shapes of the family in the dataset.
     #[must_use]
     pub fn n_shapes(self) -> usize {
-        match self {
-            Self::Cat => 9,
-            Self::Centaur => 6,
-            Self::David => 15,
-        }
+        self.entry().1
     }
 
     pub(crate) fn model(self) -> Model {
+        self.entry().2()
+    }
+
+    fn entry(self) -> (&'static str, usize, fn() -> Model) {
         match self {
-            Self::Cat => cat::model(),
-            Self::Centaur => centaur::model(),
-            Self::David => david::model(),
+            Self::Cat => ("cat", 9, cat::model),
+            Self::Centaur => ("centaur", 6, centaur::model),
+            Self::David => ("david", 15, david::model),
         }
     }
 }
@@ -86,16 +82,13 @@ impl ArticulatedOptions {
     /// Checks the ranges.
     ///
     /// # Errors
-    /// [`DatasetError::TooFewVertices`] and [`DatasetError::TooManyVertices`].
+    /// [`DatasetError::VertexCount`].
     pub fn validate(&self) -> Result<(), DatasetError> {
-        let n_vertices = self.n_vertices;
-        if n_vertices < Self::MIN_VERTICES {
-            return Err(DatasetError::TooFewVertices { n_vertices, least: Self::MIN_VERTICES });
+        let (n_vertices, least, most) = (self.n_vertices, Self::MIN_VERTICES, Self::MAX_VERTICES);
+        match (least..=most).contains(&n_vertices) {
+            true => Ok(()),
+            false => Err(DatasetError::VertexCount { n_vertices, least, most }),
         }
-        if n_vertices > Self::MAX_VERTICES {
-            return Err(DatasetError::TooManyVertices { n_vertices, most: Self::MAX_VERTICES });
-        }
-        Ok(())
     }
 }
 
@@ -132,13 +125,12 @@ pub struct LabeledShape {
 /// ```
 pub fn articulated(options: &ArticulatedOptions) -> Result<Vec<LabeledShape>, DatasetError> {
     options.validate()?;
-    let models = Family::all().map(Family::model);
-    let shapes: Vec<(usize, usize)> = Family::all()
+    let models = Family::all().map(|family| (family, family.model()));
+    let shapes: Vec<_> = models
         .iter()
-        .enumerate()
-        .flat_map(|(f, family)| (0..family.n_shapes()).map(move |pose| (f, pose)))
+        .flat_map(|(family, model)| (0..family.n_shapes()).map(move |pose| (*family, model, pose)))
         .collect();
-    shapes.into_par_iter().map(|(f, pose)| shape(Family::all()[f], &models[f], pose, options)).collect()
+    shapes.into_par_iter().map(|(family, model, pose)| shape(family, model, pose, options)).collect()
 }
 
 /// Generates one shape of the dataset, the same as in [`articulated()`].
@@ -212,6 +204,7 @@ mod tests {
     use std::collections::BinaryHeap;
 
     use nalgebra::Point3;
+    use surface::VertexId;
 
     use super::*;
     use crate::implicit::{Blob, Body, Part};
@@ -227,7 +220,7 @@ mod tests {
             if length > lengths[v as usize] {
                 continue;
             }
-            for x in surface.table.neighbors(v) {
+            for x in surface.table.neighbors(VertexId(v)).map(|x| x.0) {
                 let longer = length + (positions[x as usize] - positions[v as usize]).norm();
                 if longer < lengths[x as usize] {
                     lengths[x as usize] = longer;
@@ -295,8 +288,8 @@ mod tests {
     fn a_body_with_two_components_is_an_error() {
         let mut model = Family::Cat.model();
         model.body = Body::new(vec![
-            Part::added(0.0, vec![Blob::ball([0.0, 0.0, 0.0], 10.0)]),
-            Part::added(0.0, vec![Blob::ball([0.0, 50.0, 0.0], 10.0)]),
+            Part::added(vec![Blob::ball([0.0, 0.0, 0.0], 10.0)]),
+            Part::added(vec![Blob::ball([0.0, 50.0, 0.0], 10.0)]),
         ]);
         let error = shape(Family::Cat, &model, 3, &ArticulatedOptions::default()).unwrap_err();
         let expected = DatasetError::NoSurface { shape: "cat3".to_owned(), n_vertices: 3400, seed: 1 };

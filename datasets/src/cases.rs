@@ -1,9 +1,8 @@
 //! The surface in one cube of the lattice, for each of the 256 sign patterns.
 //!
-//! The cases are computed, not tabulated. On every face of the cube, directed segments separate the inside
-//! corners from the others, and the segments form loops around the cube. Two cubes that share a face have the
-//! same signs and hence the same segments on it, so that the loops of all cubes form one closed oriented
-//! surface.
+//! The cases are computed, not tabulated. On every face of the cube, directed segments separate the inside corners
+//! from the others, and the segments form loops around the cube. Two cubes that share a face have the same signs and
+//! hence the same segments on it, so that the loops of all cubes form one closed oriented surface.
 
 /// Corner `c` of a cube: `(c & 1, c >> 1 & 1, c >> 2 & 1)`.
 pub(crate) const fn corner(c: usize) -> [usize; 3] {
@@ -11,19 +10,11 @@ pub(crate) const fn corner(c: usize) -> [usize; 3] {
 }
 
 /// Lower corner and direction of the twelve edges.
+#[rustfmt::skip]
 pub(crate) const EDGES: [(usize, usize); 12] = [
-    (0, 0),
-    (2, 0),
-    (4, 0),
-    (6, 0), // along x
-    (0, 1),
-    (1, 1),
-    (4, 1),
-    (5, 1), // along y
-    (0, 2),
-    (1, 2),
-    (2, 2),
-    (3, 2), // along z
+    (0, 0), (2, 0), (4, 0), (6, 0), // along x
+    (0, 1), (1, 1), (4, 1), (5, 1), // along y
+    (0, 2), (1, 2), (2, 2), (3, 2), // along z
 ];
 
 /// The corners of each face, counter-clockwise as seen from outside.

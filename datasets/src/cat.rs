@@ -31,91 +31,78 @@ const HEAD_OFFSET: [f64; 3] = [0.0, -48.0 * (1.0 - HEAD_SCALE), 75.0 * (1.0 - HE
 
 fn trunk() -> Part {
     let sideways = [1.0, 0.0, 0.0];
-    Part::added(
-        0.0,
-        vec![
-            Blob::cone([0.0, -24.0, 53.0], 19.6, [0.0, 4.0, 53.0], 20.0).flat(sideways, 0.84),
-            Blob::cone([0.0, 4.0, 53.0], 20.0, [0.0, 26.0, 55.0], 17.6).flat(sideways, 0.84).blend(1.0),
-            // Rump and chest.
-            Blob::cone([0.0, 26.0, 56.0], 16.8, [0.0, 34.0, 58.0], 14.0).flat(sideways, 0.88).blend(2.0),
-            Blob::ball([0.0, -33.0, 54.0], 16.0).flat(sideways, 0.9).blend(4.0),
-        ],
-    )
+    Part::added(vec![
+        Blob::cone([0.0, -24.0, 53.0], 19.6, [0.0, 4.0, 53.0], 20.0).flat(sideways, 0.84),
+        Blob::cone([0.0, 4.0, 53.0], 20.0, [0.0, 26.0, 55.0], 17.6).flat(sideways, 0.84).blend(1.0),
+        // Rump and chest.
+        Blob::cone([0.0, 26.0, 56.0], 16.8, [0.0, 34.0, 58.0], 14.0).flat(sideways, 0.88).blend(2.0),
+        Blob::ball([0.0, -33.0, 54.0], 16.0).flat(sideways, 0.9).blend(4.0),
+    ])
 }
 
 fn neck() -> Part {
-    Part::added(6.0, vec![Blob::cone([0.0, -31.0, 62.0], 12.0, [0.0, -48.0, 75.0], 10.2)])
+    Part::added(vec![Blob::cone([0.0, -31.0, 62.0], 12.0, [0.0, -48.0, 75.0], 10.2)]).blend(6.0)
 }
 
 fn head() -> Part {
-    Part::added(
-        4.0,
-        vec![
-            Blob::ball([0.0, -54.0, 80.0], 13.4).flat([0.0, 0.0, 1.0], 0.92),
-            // Cheeks, muzzle, chin.
-            Blob::ball([6.4, -56.0, 76.0], 7.8).blend(4.0),
-            Blob::cone([0.0, -61.0, 75.5], 7.4, [0.0, -66.6, 74.0], 5.4).blend(4.0),
-            Blob::ball([2.9, -67.8, 73.2], 4.0).blend(1.6),
-            Blob::ball([0.0, -66.2, 69.9], 3.4).blend(1.6),
-        ],
-    )
+    Part::added(vec![
+        Blob::ball([0.0, -54.0, 80.0], 13.4).flat([0.0, 0.0, 1.0], 0.92),
+        // Cheeks, muzzle, chin.
+        Blob::ball([6.4, -56.0, 76.0], 7.8).blend(4.0),
+        Blob::cone([0.0, -61.0, 75.5], 7.4, [0.0, -66.6, 74.0], 5.4).blend(4.0),
+        Blob::ball([2.9, -67.8, 73.2], 4.0).blend(1.6),
+        Blob::ball([0.0, -66.2, 69.9], 3.4).blend(1.6),
+    ])
+    .blend(4.0)
 }
 
 fn face() -> Vec<Part> {
     vec![
-        Part::carved(2.0, vec![Blob::ball([5.8, -68.4, 82.0], 3.9)]),
-        Part::added(1.0, vec![Blob::ball([5.5, -63.6, 81.8], 2.9)]),
+        Part::carved(vec![Blob::ball([5.8, -68.4, 82.0], 3.9)]).blend(2.0),
+        Part::added(vec![Blob::ball([5.5, -63.6, 81.8], 2.9)]).blend(1.0),
         // Bridge and tip of the nose.
-        Part::added(
-            2.0,
-            vec![
-                Blob::cone([0.0, -64.0, 81.0], 2.4, [0.0, -70.2, 76.4], 1.8),
-                Blob::ball([0.0, -71.0, 76.0], 1.8).blend(0.8),
-            ],
-        ),
+        Part::added(vec![
+            Blob::cone([0.0, -64.0, 81.0], 2.4, [0.0, -70.2, 76.4], 1.8),
+            Blob::ball([0.0, -71.0, 76.0], 1.8).blend(0.8),
+        ])
+        .blend(2.0),
     ]
 }
 
 fn ear() -> Part {
-    Part::added(
-        3.0,
-        vec![Blob::cone([7.4, -51.5, 88.0], 7.4, [11.4, -49.8, 101.5], 2.6).flat([0.28, 1.0, -0.1], 0.52)],
-    )
+    Part::added(vec![
+        Blob::cone([7.4, -51.5, 88.0], 7.4, [11.4, -49.8, 101.5], 2.6).flat([0.28, 1.0, -0.1], 0.52),
+    ])
+    .blend(3.0)
 }
 
 fn ear_hollow() -> Part {
-    Part::carved(
-        1.2,
-        vec![Blob::cone([8.6, -57.0, 92.0], 3.9, [10.6, -55.4, 98.5], 1.6).flat([0.28, 1.0, -0.1], 0.6)],
-    )
+    Part::carved(vec![
+        Blob::cone([8.6, -57.0, 92.0], 3.9, [10.6, -55.4, 98.5], 1.6).flat([0.28, 1.0, -0.1], 0.6),
+    ])
+    .blend(1.2)
 }
 
 fn foreleg() -> Part {
-    Part::added(
-        5.0,
-        vec![
-            // Shoulder blade and upper arm, close to the chest.
-            Blob::cone([8.6, -22.0, 64.0], 7.0, [9.4, -32.0, 52.0], 8.2),
-            Blob::cone([9.4, -32.0, 52.0], 8.0, [10.2, -25.0, 37.0], 5.5).blend(1.0),
-            Blob::cone([10.2, -25.0, 37.0], 5.5, [10.4, -28.5, 13.0], 4.0),
-            Blob::cone([10.4, -28.5, 13.0], 4.0, [10.4, -29.5, 5.5], 4.3),
-            Blob::cone([10.4, -30.5, 4.0], 5.0, [10.4, -34.0, 3.8], 4.9)
-                .flat([0.0, 0.0, 1.0], 0.76)
-                .blend(1.5),
-        ],
-    )
+    Part::added(vec![
+        // Shoulder blade and upper arm, close to the chest.
+        Blob::cone([8.6, -22.0, 64.0], 7.0, [9.4, -32.0, 52.0], 8.2),
+        Blob::cone([9.4, -32.0, 52.0], 8.0, [10.2, -25.0, 37.0], 5.5).blend(1.0),
+        Blob::cone([10.2, -25.0, 37.0], 5.5, [10.4, -28.5, 13.0], 4.0),
+        Blob::cone([10.4, -28.5, 13.0], 4.0, [10.4, -29.5, 5.5], 4.3),
+        Blob::cone([10.4, -30.5, 4.0], 5.0, [10.4, -34.0, 3.8], 4.9).flat([0.0, 0.0, 1.0], 0.76).blend(1.5),
+    ])
+    .blend(5.0)
 }
 
 fn hindleg() -> Part {
-    Part::added(
-        6.0,
-        vec![
-            Blob::cone([8.6, 29.0, 58.0], 12.4, [11.0, 23.0, 42.0], 8.0),
-            Blob::cone([11.0, 24.0, 42.0], 7.4, [11.4, 38.0, 21.5], 4.0).blend(4.0),
-            Blob::cone([11.4, 38.0, 21.5], 4.0, [11.4, 34.0, 6.5], 3.8),
-            Blob::cone([11.4, 32.0, 4.2], 4.6, [11.4, 27.0, 3.8], 5.0).flat([0.0, 0.0, 1.0], 0.76).blend(1.5),
-        ],
-    )
+    Part::added(vec![
+        Blob::cone([8.6, 29.0, 58.0], 12.4, [11.0, 23.0, 42.0], 8.0),
+        Blob::cone([11.0, 24.0, 42.0], 7.4, [11.4, 38.0, 21.5], 4.0).blend(4.0),
+        Blob::cone([11.4, 38.0, 21.5], 4.0, [11.4, 34.0, 6.5], 3.8),
+        Blob::cone([11.4, 32.0, 4.2], 4.6, [11.4, 27.0, 3.8], 5.0).flat([0.0, 0.0, 1.0], 0.76).blend(1.5),
+    ])
+    .blend(6.0)
 }
 
 /// The axis of the tail at rest.
@@ -129,7 +116,7 @@ const TAIL: [[f64; 3]; 6] = [
 ];
 
 fn tail() -> Part {
-    Part::added(4.0, Blob::tube(([0.0, 34.0, 64.0], 7.0), TAIL, [4.4, 3.6, 3.3, 3.1, 2.9, 2.5]))
+    Part::added(Blob::tube(([0.0, 34.0, 64.0], 7.0), TAIL, [4.4, 3.6, 3.3, 3.1, 2.9, 2.5])).blend(4.0)
 }
 
 struct Joints {

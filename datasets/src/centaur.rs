@@ -31,55 +31,48 @@ fn body() -> Body {
 
 fn barrel() -> Part {
     let sideways = [1.0, 0.0, 0.0];
-    Part::added(
-        0.0,
-        vec![
-            Blob::cone([0.0, -34.0, 93.0], 23.0, [0.0, 6.0, 92.0], 24.0).flat(sideways, 0.84),
-            Blob::cone([0.0, 6.0, 92.0], 24.0, [0.0, 40.0, 95.0], 21.5).flat(sideways, 0.84).blend(1.0),
-            // Croup and breast.
-            Blob::cone([0.0, 40.0, 96.0], 21.5, [0.0, 52.0, 97.0], 18.0).flat(sideways, 0.9).blend(3.0),
-            Blob::cone([0.0, -44.0, 92.0], 18.5, [0.0, -46.0, 112.0], 13.5).flat(sideways, 0.95).blend(5.0),
-        ],
-    )
+    Part::added(vec![
+        Blob::cone([0.0, -34.0, 93.0], 23.0, [0.0, 6.0, 92.0], 24.0).flat(sideways, 0.84),
+        Blob::cone([0.0, 6.0, 92.0], 24.0, [0.0, 40.0, 95.0], 21.5).flat(sideways, 0.84).blend(1.0),
+        // Croup and breast.
+        Blob::cone([0.0, 40.0, 96.0], 21.5, [0.0, 52.0, 97.0], 18.0).flat(sideways, 0.9).blend(3.0),
+        Blob::cone([0.0, -44.0, 92.0], 18.5, [0.0, -46.0, 112.0], 13.5).flat(sideways, 0.95).blend(5.0),
+    ])
 }
 
 fn foreleg() -> Part {
-    Part::added(
-        6.0,
-        vec![
-            Blob::cone([10.0, -38.0, 98.0], 11.5, [11.5, -46.0, 82.0], 11.5),
-            Blob::cone([11.5, -46.0, 82.0], 11.0, [12.0, -41.0, 64.0], 8.0).blend(2.0),
-            Blob::cone([12.0, -41.0, 64.0], 7.8, [12.5, -43.0, 40.0], 4.8).blend(1.5),
-            Blob::ball([12.5, -43.6, 39.0], 5.0).blend(1.5),
-            Blob::cone([12.5, -43.0, 38.0], 4.2, [12.5, -42.0, 14.0], 3.6).blend(1.0),
-            Blob::ball([12.5, -41.6, 13.0], 4.2).blend(1.5),
-            Blob::cone([12.5, -42.0, 13.0], 3.6, [12.5, -46.0, 6.0], 3.8).blend(1.0),
-        ],
-    )
+    Part::added(vec![
+        Blob::cone([10.0, -38.0, 98.0], 11.5, [11.5, -46.0, 82.0], 11.5),
+        Blob::cone([11.5, -46.0, 82.0], 11.0, [12.0, -41.0, 64.0], 8.0).blend(2.0),
+        Blob::cone([12.0, -41.0, 64.0], 7.8, [12.5, -43.0, 40.0], 4.8).blend(1.5),
+        Blob::ball([12.5, -43.6, 39.0], 5.0).blend(1.5),
+        Blob::cone([12.5, -43.0, 38.0], 4.2, [12.5, -42.0, 14.0], 3.6).blend(1.0),
+        Blob::ball([12.5, -41.6, 13.0], 4.2).blend(1.5),
+        Blob::cone([12.5, -42.0, 13.0], 3.6, [12.5, -46.0, 6.0], 3.8).blend(1.0),
+    ])
+    .blend(6.0)
 }
 
 fn hindleg() -> Part {
-    Part::added(
-        7.0,
-        vec![
-            Blob::cone([10.5, 44.0, 92.0], 17.0, [13.0, 38.0, 70.0], 11.5),
-            Blob::cone([13.0, 38.0, 69.0], 10.5, [13.0, 56.0, 45.0], 5.0).blend(2.5),
-            Blob::ball([13.0, 56.6, 44.5], 5.0).blend(1.5),
-            Blob::cone([13.0, 56.0, 44.0], 4.6, [13.0, 53.0, 14.0], 3.8).blend(1.0),
-            Blob::ball([13.0, 53.4, 13.0], 4.3).blend(1.5),
-            Blob::cone([13.0, 53.0, 13.0], 3.8, [12.8, 49.0, 6.0], 3.9).blend(1.0),
-        ],
-    )
+    Part::added(vec![
+        Blob::cone([10.5, 44.0, 92.0], 17.0, [13.0, 38.0, 70.0], 11.5),
+        Blob::cone([13.0, 38.0, 69.0], 10.5, [13.0, 56.0, 45.0], 5.0).blend(2.5),
+        Blob::ball([13.0, 56.6, 44.5], 5.0).blend(1.5),
+        Blob::cone([13.0, 56.0, 44.0], 4.6, [13.0, 53.0, 14.0], 3.8).blend(1.0),
+        Blob::ball([13.0, 53.4, 13.0], 4.3).blend(1.5),
+        Blob::cone([13.0, 53.0, 13.0], 3.8, [12.8, 49.0, 6.0], 3.9).blend(1.0),
+    ])
+    .blend(7.0)
 }
 
 fn hoof(y: f64) -> Part {
-    Part::added(1.0, vec![Blob::cone([12.7, y + 1.0, 7.5], 3.9, [12.7, y - 1.2, 1.0], 5.6)])
+    Part::added(vec![Blob::cone([12.7, y + 1.0, 7.5], 3.9, [12.7, y - 1.2, 1.0], 5.6)]).blend(1.0)
 }
 
 /// The hooves are flat below: the top of a very large ball is the ground.
 fn ground() -> Part {
     const RADIUS: f64 = 2000.0;
-    Part::carved(0.8, vec![Blob::ball([0.0, 0.0, 0.4 - RADIUS], RADIUS)])
+    Part::carved(vec![Blob::ball([0.0, 0.0, 0.4 - RADIUS], RADIUS)]).blend(0.8)
 }
 
 /// The axis of the tail at rest.
@@ -87,7 +80,7 @@ const TAIL: [[f64; 3]; 5] =
     [[0.0, 68.0, 103.0], [0.0, 78.0, 98.0], [0.0, 85.0, 84.0], [0.0, 89.0, 66.0], [0.0, 91.0, 46.0]];
 
 fn tail() -> Part {
-    Part::added(4.0, Blob::tube(([0.0, 56.0, 103.0], 6.0), TAIL, [4.4, 5.6, 6.8, 6.4, 2.6]))
+    Part::added(Blob::tube(([0.0, 56.0, 103.0], 6.0), TAIL, [4.4, 5.6, 6.8, 6.4, 2.6])).blend(4.0)
 }
 
 struct Joints {

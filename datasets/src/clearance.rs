@@ -23,12 +23,10 @@ struct Ball {
     posed: Point3<f64>,
 }
 
-/// The largest depth to which two limbs intersect, as a share of their thickness there; zero or less if none
-/// do.
+/// The largest depth to which two limbs intersect, as a share of their thickness there; zero or less if none do.
 ///
-/// Limbs are approximated by balls along the bones. A pair of balls counts if the balls are separate in the
-/// rest pose and do not belong to the same bend. The cost is quadratic in the number of balls, well under a
-/// millisecond.
+/// Limbs are approximated by balls along the bones. A pair of balls counts if the balls are separate in the rest pose
+/// and do not belong to the same bend. The cost is quadratic in the number of balls, well under a millisecond.
 pub(crate) fn entanglement(posed: &PosedSkeleton<'_>) -> f64 {
     let skeleton = posed.skeleton();
     let balls: Vec<Ball> = (0..skeleton.chains.len()).flat_map(|chain| balls(posed, chain)).collect();

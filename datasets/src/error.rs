@@ -4,19 +4,13 @@
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum DatasetError {
-    /// Fewer vertices than a recognisable body needs.
-    #[error("{n_vertices} vertices are too few for an articulated shape; use at least {least}")]
-    TooFewVertices {
+    /// Too few vertices for a recognisable body, or more than the generator supports.
+    #[error("{n_vertices} vertices are out of range for an articulated shape; use {least} to {most}")]
+    VertexCount {
         /// Requested number of vertices.
         n_vertices: usize,
         /// Smallest number.
         least: usize,
-    },
-    /// More vertices than the generator supports.
-    #[error("{n_vertices} vertices are too many for an articulated shape; use at most {most}")]
-    TooManyVertices {
-        /// Requested number of vertices.
-        n_vertices: usize,
         /// Largest number.
         most: usize,
     },

@@ -38,6 +38,7 @@ struct Leaf {
     cells: Vec<(u16, u8)>,
     /// Crossings of the edges that this block owns, then centres of loops with more than four corners.
     positions: Vec<Point3<f64>>,
+    n_crossings: usize,
     /// Vertex on edge `3 * sample + axis`, counted within the block.
     on_edge: Vec<u32>,
 }
@@ -111,6 +112,17 @@ fn sample_index(at: [usize; 3]) -> usize {
     (at[2] * SAMPLES + at[1]) * SAMPLES + at[0]
 }
 
+fn add(a: [usize; 3], b: [usize; 3]) -> [usize; 3] {
+    [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
+}
+
+/// The lattice point after `at` along an axis.
+fn step(mut at: [usize; 3], axis: usize) -> [usize; 3] {
+    at[axis] += 1;
+    at
+}
+
+/// All points of a cube of `n` lattice points per side.
 fn each(n: usize) -> impl Iterator<Item = [usize; 3]> {
     (0..n * n * n).map(move |i| [i % n, i / n % n, i / (n * n)])
 }
@@ -129,16 +141,13 @@ fn samples(body: &Body, spacing: f64, point: &impl Fn([f64; 3]) -> Point3<f64>) 
         if value.abs() <= reach {
             crossed.push(low);
         } else {
-            for step in each(3) {
-                values[sample_index([0, 1, 2].map(|i| low[i] + step[i]))] = value;
-            }
+            each(3).for_each(|offset| values[sample_index(add(low, offset))] = value);
         }
     }
     // In a second pass, so that true values replace those of centres at shared corners.
     let mut is_true = [false; SAMPLES * SAMPLES * SAMPLES];
     for low in crossed {
-        for step in each(3) {
-            let at = [0, 1, 2].map(|i| low[i] + step[i]);
+        for at in each(3).map(|offset| add(low, offset)) {
             if !std::mem::replace(&mut is_true[sample_index(at)], true) {
                 values[sample_index(at)] = body.value(point(at.map(|x| x as f64)));
             }
@@ -152,8 +161,7 @@ fn leaf(body: &Body, lattice: Lattice, center: Point3<f64>, origin: [i64; 3], lo
     let values = samples(body, lattice.spacing, &point);
     let inside = |at: [usize; 3]| values[sample_index(at)] < 0.0;
     let crossing = |at: [usize; 3], axis: usize| {
-        let mut to = at;
-        to[axis] += 1;
+        let to = step(at, axis);
         let (a, b) = (values[sample_index(at)], values[sample_index(to)]);
         // Not at the ends, where vertices of several edges would coincide.
         let t = (a / (a - b)).clamp(0.02, 0.98);
@@ -164,21 +172,16 @@ fn leaf(body: &Body, lattice: Lattice, center: Point3<f64>, origin: [i64; 3], lo
     let mut on_edge = vec![NONE; 3 * SAMPLES * SAMPLES * SAMPLES];
     for at in each(BLOCK) {
         for axis in 0..3 {
-            let mut to = at;
-            to[axis] += 1;
-            if inside(at) != inside(to) {
+            if inside(at) != inside(step(at, axis)) {
                 on_edge[3 * sample_index(at) + axis] = positions.len() as u32;
                 positions.push(crossing(at, axis));
             }
         }
     }
+    let n_crossings = positions.len();
     let mut cells = Vec::new();
     for (place, at) in each(BLOCK).enumerate() {
-        let shifted = |c: usize| {
-            let step = corner(c);
-            [0, 1, 2].map(|i| at[i] + step[i])
-        };
-        let pattern = (0..8).fold(0, |bits, c| bits | usize::from(inside(shifted(c))) << c);
+        let pattern = (0..8).fold(0, |bits, c| bits | usize::from(inside(add(at, corner(c)))) << c);
         if pattern == 0 || pattern == 255 {
             continue;
         }
@@ -186,12 +189,12 @@ fn leaf(body: &Body, lattice: Lattice, center: Point3<f64>, origin: [i64; 3], lo
         for polygon in loops[pattern].iter().filter(|l| l.len() > 4) {
             let sum = polygon.iter().fold(Vector3::zeros(), |sum, &e| {
                 let (low, axis) = EDGES[usize::from(e)];
-                sum + crossing(shifted(low), axis).coords
+                sum + crossing(add(at, corner(low)), axis).coords
             });
             positions.push(Point3::from(sum / polygon.len() as f64));
         }
     }
-    Leaf { origin, cells, positions, on_edge }
+    Leaf { origin, cells, positions, n_crossings, on_edge }
 }
 
 /// The triangles of block `i`; vertices on its upper faces belong to its neighbours.
@@ -215,9 +218,7 @@ fn triangles(
         VertexId(offsets[owner] + place)
     };
     let mut faces = Vec::new();
-    let n_long: usize =
-        leaf.cells.iter().map(|&(_, p)| loops[usize::from(p)].iter().filter(|l| l.len() > 4).count()).sum();
-    let mut middle = offsets[i] + (leaf.positions.len() - n_long) as u32;
+    let mut middle = offsets[i] + leaf.n_crossings as u32;
     for &(place, pattern) in &leaf.cells {
         let place = usize::from(place);
         let at = [place % BLOCK, place / BLOCK % BLOCK, place / (BLOCK * BLOCK)];
@@ -226,8 +227,7 @@ fn triangles(
                 .iter()
                 .map(|&e| {
                     let (low, axis) = EDGES[usize::from(e)];
-                    let step = corner(low);
-                    vertex([0, 1, 2].map(|k| at[k] + step[k]), axis)
+                    vertex(add(at, corner(low)), axis)
                 })
                 .collect();
             match corners[..] {
@@ -257,7 +257,7 @@ mod tests {
 
     #[test]
     fn a_ball_has_its_area_and_volume() {
-        let body = Body::new(vec![Part::added(0.0, vec![Blob::ball([0.0, 2.0, 1.0], 5.0)])]);
+        let body = Body::new(vec![Part::added(vec![Blob::ball([0.0, 2.0, 1.0], 5.0)])]);
         let raw = extract(&body, lattice(0.3));
         let (mut area, mut volume) = (0.0, 0.0);
         for face in &raw.faces {
@@ -282,7 +282,7 @@ mod tests {
             };
             blobs.push(Blob::ball([next(), next(), next()], 0.7));
         }
-        let raw = extract(&Body::new(vec![Part::added(0.0, blobs)]), lattice(0.6));
+        let raw = extract(&Body::new(vec![Part::added(blobs)]), lattice(0.6));
         assert!(raw.faces.len() > 1000);
         let table = CornerTable::new(raw.positions.len(), &raw.faces);
         assert!(table.is_some(), "an edge does not have two faces, or a vertex has two fans");

@@ -16,8 +16,7 @@ const WRIST: f64 = 54.5;
 const KNUCKLES: f64 = 63.5;
 const FINGERTIPS: f64 = 72.5;
 
-/// A point of the left arm, given by its distances from the shoulder, to the front and to the back of the
-/// hand.
+/// A point of the left arm, given by its distances from the shoulder, to the front and to the back of the hand.
 fn arm(along: f64, front: f64, dorsal: f64) -> [f64; 3] {
     [0, 1, 2].map(|i| SHOULDER[i] + along * ALONG[i] + dorsal * DORSAL[i] - if i == 1 { front } else { 0.0 })
 }
@@ -32,90 +31,74 @@ pub(crate) fn parts() -> Vec<Part> {
 }
 
 fn trunk() -> Part {
-    Part::added(
-        5.0,
-        vec![
-            Blob::cone([4.2, -0.2, 104.0], 8.9, [4.4, 0.0, 111.0], 8.8),
-            Blob::cone([4.4, 0.0, 112.0], 8.8, [7.6, 0.6, 130.0], 9.7).blend(2.0),
-            Blob::cone([0.0, 0.4, 120.0], 9.2, [0.0, 0.6, 134.0], 9.4).blend(3.0),
-            Blob::ball([6.5, 1.2, 135.5], 8.4).blend(3.0),
-            // Chest muscles, and the broad muscles of the back.
-            Blob::cone([5.6, -6.6, 131.5], 6.4, [9.4, -5.8, 132.0], 6.4)
-                .flat([0.25, 1.0, 0.05], 0.5)
-                .blend(1.8),
-            Blob::cone([9.5, 5.0, 131.0], 6.0, [6.0, 4.6, 119.0], 4.6).blend(3.0),
-        ],
-    )
+    Part::added(vec![
+        Blob::cone([4.2, -0.2, 104.0], 8.9, [4.4, 0.0, 111.0], 8.8),
+        Blob::cone([4.4, 0.0, 112.0], 8.8, [7.6, 0.6, 130.0], 9.7).blend(2.0),
+        Blob::cone([0.0, 0.4, 120.0], 9.2, [0.0, 0.6, 134.0], 9.4).blend(3.0),
+        Blob::ball([6.5, 1.2, 135.5], 8.4).blend(3.0),
+        // Chest muscles, and the broad muscles of the back.
+        Blob::cone([5.6, -6.6, 131.5], 6.4, [9.4, -5.8, 132.0], 6.4).flat([0.25, 1.0, 0.05], 0.5).blend(1.8),
+        Blob::cone([9.5, 5.0, 131.0], 6.0, [6.0, 4.6, 119.0], 4.6).blend(3.0),
+    ])
+    .blend(5.0)
 }
 
 fn shoulders() -> Part {
-    Part::added(
-        5.0,
-        vec![
-            Blob::cone([0.0, 2.2, 140.0], 6.6, [0.0, 1.0, 153.0], 5.6),
-            Blob::cone([2.5, 2.8, 147.0], 4.4, [13.5, 1.8, 142.0], 4.8).blend(4.0),
-            Blob::cone([11.0, 1.5, 138.5], 6.2, [18.5, 0.8, 139.0], 5.8).blend(3.0),
-        ],
-    )
+    Part::added(vec![
+        Blob::cone([0.0, 2.2, 140.0], 6.6, [0.0, 1.0, 153.0], 5.6),
+        Blob::cone([2.5, 2.8, 147.0], 4.4, [13.5, 1.8, 142.0], 4.8).blend(4.0),
+        Blob::cone([11.0, 1.5, 138.5], 6.2, [18.5, 0.8, 139.0], 5.8).blend(3.0),
+    ])
+    .blend(5.0)
 }
 
 fn head() -> Part {
-    Part::added(
-        3.0,
-        vec![
-            Blob::ball([0.0, 1.4, 165.2], 9.8).flat([1.0, 0.0, 0.0], 0.80),
-            Blob::cone([0.0, -2.2, 162.5], 7.2, [0.0, -4.0, 157.5], 5.0)
-                .flat([1.0, 0.0, 0.0], 0.88)
-                .blend(3.0),
-            // Jaw: from the ear to the chin.
-            Blob::cone([4.4, -0.4, 157.6], 1.7, [0.8, -6.6, 153.2], 1.9).blend(3.0),
-            Blob::ball([0.0, -7.5, 153.6], 1.9).blend(1.5),
-        ],
-    )
+    Part::added(vec![
+        Blob::ball([0.0, 1.4, 165.2], 9.8).flat([1.0, 0.0, 0.0], 0.80),
+        Blob::cone([0.0, -2.2, 162.5], 7.2, [0.0, -4.0, 157.5], 5.0).flat([1.0, 0.0, 0.0], 0.88).blend(3.0),
+        // Jaw: from the ear to the chin.
+        Blob::cone([4.4, -0.4, 157.6], 1.7, [0.8, -6.6, 153.2], 1.9).blend(3.0),
+        Blob::ball([0.0, -7.5, 153.6], 1.9).blend(1.5),
+    ])
+    .blend(3.0)
 }
 
 fn face() -> Vec<Part> {
     vec![
         // Eye sockets, eyes.
-        Part::carved(1.8, vec![Blob::cone([2.6, -11.0, 162.4], 2.0, [4.6, -9.6, 162.2], 1.6)]),
-        Part::added(0.9, vec![Blob::ball([3.2, -7.6, 162.2], 1.5)]),
+        Part::carved(vec![Blob::cone([2.6, -11.0, 162.4], 2.0, [4.6, -9.6, 162.2], 1.6)]).blend(1.8),
+        Part::added(vec![Blob::ball([3.2, -7.6, 162.2], 1.5)]).blend(0.9),
         // Brow, nose, lips.
-        Part::added(1.2, vec![Blob::cone([0.8, -8.9, 164.3], 1.0, [4.4, -7.4, 164.5], 0.9)]),
-        Part::added(
-            1.4,
-            vec![
-                Blob::cone([0.0, -8.9, 163.2], 0.9, [0.0, -11.4, 159.2], 1.3),
-                Blob::ball([1.1, -10.1, 158.7], 0.95).blend(0.8),
-            ],
-        ),
-        Part::added(
-            0.8,
-            vec![
-                Blob::cone([0.0, -8.7, 156.6], 0.9, [1.9, -7.8, 156.4], 0.5),
-                Blob::cone([0.0, -8.6, 155.5], 0.9, [1.7, -7.7, 155.7], 0.5).blend(0.3),
-            ],
-        ),
+        Part::added(vec![Blob::cone([0.8, -8.9, 164.3], 1.0, [4.4, -7.4, 164.5], 0.9)]).blend(1.2),
+        Part::added(vec![
+            Blob::cone([0.0, -8.9, 163.2], 0.9, [0.0, -11.4, 159.2], 1.3),
+            Blob::ball([1.1, -10.1, 158.7], 0.95).blend(0.8),
+        ])
+        .blend(1.4),
+        Part::added(vec![
+            Blob::cone([0.0, -8.7, 156.6], 0.9, [1.9, -7.8, 156.4], 0.5),
+            Blob::cone([0.0, -8.6, 155.5], 0.9, [1.7, -7.7, 155.7], 0.5).blend(0.3),
+        ])
+        .blend(0.8),
         // Ears.
-        Part::added(
-            0.8,
-            vec![Blob::cone([7.4, 1.2, 159.4], 1.4, [8.1, 2.4, 163.0], 2.3).flat([1.0, -0.45, 0.0], 0.42)],
-        ),
+        Part::added(vec![
+            Blob::cone([7.4, 1.2, 159.4], 1.4, [8.1, 2.4, 163.0], 2.3).flat([1.0, -0.45, 0.0], 0.42),
+        ])
+        .blend(0.8),
     ]
 }
 
 fn arm_part() -> Part {
-    Part::added(
-        4.0,
-        vec![
-            Blob::cone(arm(0.0, 0.0, 0.4), 6.4, arm(10.0, 0.0, 0.0), 4.8),
-            Blob::cone(arm(8.0, 0.0, 0.0), 4.7, arm(ELBOW, 0.0, 0.0), 3.7).blend(1.0),
-            // Biceps (in front, since the palms are down) and triceps.
-            Blob::cone(arm(11.0, 1.4, 0.0), 4.4, arm(19.0, 1.4, 0.0), 4.0).blend(1.5),
-            Blob::cone(arm(9.0, -1.6, 0.0), 4.4, arm(18.0, -1.4, 0.0), 3.8).blend(1.5),
-            Blob::cone(arm(ELBOW, 0.0, 0.0), 3.7, arm(ELBOW + 7.0, 0.4, 0.0), 4.2).blend(0.6),
-            Blob::cone(arm(ELBOW + 7.0, 0.4, 0.0), 4.2, arm(WRIST, 0.0, 0.0), 2.7).blend(0.6),
-        ],
-    )
+    Part::added(vec![
+        Blob::cone(arm(0.0, 0.0, 0.4), 6.4, arm(10.0, 0.0, 0.0), 4.8),
+        Blob::cone(arm(8.0, 0.0, 0.0), 4.7, arm(ELBOW, 0.0, 0.0), 3.7).blend(1.0),
+        // Biceps (in front, since the palms are down) and triceps.
+        Blob::cone(arm(11.0, 1.4, 0.0), 4.4, arm(19.0, 1.4, 0.0), 4.0).blend(1.5),
+        Blob::cone(arm(9.0, -1.6, 0.0), 4.4, arm(18.0, -1.4, 0.0), 3.8).blend(1.5),
+        Blob::cone(arm(ELBOW, 0.0, 0.0), 3.7, arm(ELBOW + 7.0, 0.4, 0.0), 4.2).blend(0.6),
+        Blob::cone(arm(ELBOW + 7.0, 0.4, 0.0), 4.2, arm(WRIST, 0.0, 0.0), 2.7).blend(0.6),
+    ])
+    .blend(4.0)
 }
 
 fn hand() -> Part {
@@ -135,7 +118,7 @@ fn hand() -> Part {
                 .blend(0.5),
         );
     }
-    Part::added(1.5, blobs)
+    Part::added(blobs).blend(1.5)
 }
 
 /// Spine of the trunk and head; the lower body is attached to the first node.

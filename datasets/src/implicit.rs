@@ -169,17 +169,22 @@ pub(crate) struct Part {
 }
 
 impl Part {
-    /// A part that is added to the body by a smooth union with blending radius `blend`.
-    pub(crate) fn added(blend: f64, blobs: Vec<Blob>) -> Self {
-        Self::new(Effect::Add, blend, blobs)
+    /// A part that is added to the body.
+    pub(crate) fn added(blobs: Vec<Blob>) -> Self {
+        Self::new(Effect::Add, blobs)
     }
 
     /// A part that is subtracted from the body so far.
-    pub(crate) fn carved(blend: f64, blobs: Vec<Blob>) -> Self {
-        Self::new(Effect::Carve, blend, blobs)
+    pub(crate) fn carved(blobs: Vec<Blob>) -> Self {
+        Self::new(Effect::Carve, blobs)
     }
 
-    fn new(effect: Effect, blend: f64, blobs: Vec<Blob>) -> Self {
+    /// Sets the blending radius of the union with the parts before it.
+    pub(crate) fn blend(self, reach: f64) -> Self {
+        Self { blend: reach, ..self }
+    }
+
+    fn new(effect: Effect, blobs: Vec<Blob>) -> Self {
         let ends = || blobs.iter().flat_map(|b| b.ends);
         let n = (2 * blobs.len()).max(1) as f64;
         let center = Point3::from(ends().fold(Vector3::zeros(), |sum, p| sum + p.coords) / n);
@@ -187,13 +192,13 @@ impl Part {
         let radius = blobs.iter().map(reach).fold(0.0, f64::max);
         let scale = blobs.iter().map(|b| b.axis.scale).fold(1.0, f64::min);
         let slack = blobs.iter().map(|b| 0.25 * b.blend).sum();
-        Self { blobs, effect, blend, center, radius, scale, slack }
+        Self { blobs, effect, blend: 0.0, center, radius, scale, slack }
     }
 
     /// The part scaled about the origin, then shifted.
     pub(crate) fn moved(&self, scale: f64, offset: [f64; 3]) -> Self {
         let blobs = self.blobs.iter().map(|b| b.moved(scale, offset.into())).collect();
-        Self::new(self.effect, self.blend * scale, blobs)
+        Self::new(self.effect, blobs).blend(self.blend * scale)
     }
 
     #[inline]
@@ -214,7 +219,7 @@ impl Part {
     /// Whether the part can change the value `so_far` at `p`. Skipping it otherwise is exact: beyond its
     /// blending radius a smooth union returns the smaller operand.
     #[inline]
-    fn matters(&self, p: Point3<f64>, so_far: f64) -> bool {
+    fn may_change(&self, p: Point3<f64>, so_far: f64) -> bool {
         let operand = match self.effect {
             Effect::Add => so_far,
             Effect::Carve => -so_far,
@@ -271,7 +276,7 @@ impl Body {
         let folded = Point3::new(p.x.abs(), p.y, p.z);
         let mut sum = (f64::INFINITY, Vector3::zeros());
         for part in &self.parts {
-            if part.matters(folded, sum.0) {
+            if part.may_change(folded, sum.0) {
                 sum = match part.effect {
                     Effect::Add => smooth_min(sum, part.sample(folded), part.blend),
                     Effect::Carve => negated(smooth_min(negated(sum), part.sample(folded), part.blend)),
@@ -289,7 +294,7 @@ impl Body {
         let folded = Point3::new(p.x.abs(), p.y, p.z);
         let mut sum = f64::INFINITY;
         for part in &self.parts {
-            if part.matters(folded, sum) {
+            if part.may_change(folded, sum) {
                 let value = part.value(folded);
                 sum = match part.effect {
                     Effect::Add => sum.min(value) - dip(sum, value, part.blend),
@@ -331,15 +336,13 @@ mod tests {
 
     fn body() -> Body {
         Body::new(vec![
-            Part::added(0.0, vec![Blob::cone([0.0, 0.0, 0.0], 3.0, [0.0, 1.0, 9.0], 1.5)]),
-            Part::added(
-                1.0,
-                vec![
-                    Blob::ball([4.0, 0.0, 0.0], 2.0).flat([0.0, 1.0, 1.0], 0.4),
-                    Blob::cone([5.0, 0.0, 0.0], 1.0, [9.0, 0.0, 1.0], 0.5).blend(0.7),
-                ],
-            ),
-            Part::carved(0.5, vec![Blob::ball([0.0, -3.0, 3.0], 1.5)]),
+            Part::added(vec![Blob::cone([0.0, 0.0, 0.0], 3.0, [0.0, 1.0, 9.0], 1.5)]),
+            Part::added(vec![
+                Blob::ball([4.0, 0.0, 0.0], 2.0).flat([0.0, 1.0, 1.0], 0.4),
+                Blob::cone([5.0, 0.0, 0.0], 1.0, [9.0, 0.0, 1.0], 0.5).blend(0.7),
+            ])
+            .blend(1.0),
+            Part::carved(vec![Blob::ball([0.0, -3.0, 3.0], 1.5)]).blend(0.5),
         ])
     }
 
@@ -409,7 +412,8 @@ mod tests {
 
     #[test]
     fn moving_a_part_moves_its_values() {
-        let part = Part::added(1.0, vec![Blob::cone([1.0, 2.0, 3.0], 1.0, [2.0, 2.0, 5.0], 0.5).blend(0.3)]);
+        let part =
+            Part::added(vec![Blob::cone([1.0, 2.0, 3.0], 1.0, [2.0, 2.0, 5.0], 0.5).blend(0.3)]).blend(1.0);
         let moved = part.moved(2.0, [1.0, -1.0, 0.5]);
         let p = Point3::new(0.3, 0.1, 2.0);
         let q = Point3::from(p.coords * 2.0 + Vector3::new(1.0, -1.0, 0.5));

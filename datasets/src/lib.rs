@@ -3,7 +3,7 @@
 //! `ArticulatedOptions` -> **datasets** -> `LabeledShape` (`mesh::TriMesh`, name, class) -> `experiments`
 //!
 //! [`articulated()`] generates thirty closed surfaces of three families, cats, centaurs and men, in different
-//! poses. They stand in for scanned datasets and need no download. A shape is made in steps, one module each:
+//! poses. They need no download, unlike scanned datasets. A shape is made in steps, one module each:
 //!
 //! ```text
 //! cat | centaur | david   a body (implicit), a skeleton, typical poses

@@ -190,9 +190,8 @@ fn interpolate(motions: &[Motion], fraction: f64) -> Motion {
 
 /// Motions along a chain whose start moves by `base`.
 ///
-/// The rotation at arc length `s` is that of the base, followed by the turn of every joint times the share of
-/// the joint's interval before `s`. The axis is the integral of the rotated rest axis, which keeps its length
-/// exactly.
+/// The rotation at arc length `s` is that of the base, followed by the turn of every joint times the share of the
+/// joint's interval before `s`. The axis is the integral of the rotated rest axis, which keeps its length exactly.
 fn bend(chain: &Chain, turns: &[Turn], base: Motion) -> Vec<Motion> {
     let mirror = match chain.side {
         Side::Left => 1.0,

@@ -2,8 +2,8 @@
 
 use nalgebra::{Point3, Vector3};
 use rayon::prelude::*;
+use surface::{CornerId, VertexId};
 
-use crate::corner_table::{DEAD, next, prev};
 use crate::implicit::Body;
 use crate::simplify::Surface;
 
@@ -12,7 +12,8 @@ const CHUNK: usize = 1024;
 /// Smallest cosine of a dihedral angle, before and after a flip; beyond it, a flip would cut off a ridge.
 const RIDGE_COSINE: f64 = 0.7;
 
-/// Alternates flips and smoothing for `n_rounds` rounds; vertices end on the surface of the body.
+/// Alternates flips and smoothing for `n_rounds` rounds; vertices end on the surface of the body. `surface` has
+/// no removed vertices.
 pub(crate) fn relax(surface: &mut Surface, body: &Body, n_rounds: usize) {
     flip_to_delaunay(surface);
     for _ in 0..n_rounds {
@@ -26,8 +27,8 @@ fn flip_to_delaunay(surface: &mut Surface) {
     const N_SWEEPS: usize = 3;
     for _ in 0..N_SWEEPS {
         let mut n_flips = 0usize;
-        for c in 0..surface.table.n_corners() {
-            if surface.table.vertex(c) != DEAD && surface.wants_flip(c) && surface.table.can_flip(c) {
+        for c in (0..surface.table.n_corners()).map(CornerId::from) {
+            if surface.wants_flip(c) && surface.table.can_flip(c) {
                 surface.table.flip(c);
                 n_flips += 1;
             }
@@ -39,21 +40,21 @@ fn flip_to_delaunay(surface: &mut Surface) {
 }
 
 impl Surface {
-    fn wants_flip(&self, c: u32) -> bool {
+    fn wants_flip(&self, c: CornerId) -> bool {
         let o = self.table.twin(c);
         if o < c {
             return false;
         }
-        let at = |corner: u32| self.positions[self.table.vertex(corner) as usize];
-        let (p, q, u, w) = (at(c), at(o), at(next(c)), at(prev(c)));
+        let at = |corner: CornerId| self.positions[self.table.vertex(corner).index()];
+        let (p, q, u, w) = (at(c), at(o), at(c.next()), at(c.prev()));
         let cotangents = cotangent(p, u, w) + cotangent(q, u, w);
         if cotangents >= -1e-9 {
             return false;
         }
-        let (before, beside) = ((u - p).cross(&(w - p)), (w - q).cross(&(u - q)));
-        let (after, behind) = ((u - p).cross(&(q - p)), (w - q).cross(&(p - q)));
-        let cosine = |a: &Vector3<f64>, b: &Vector3<f64>| a.dot(b) / (a.norm() * b.norm());
-        cosine(&before, &beside) > RIDGE_COSINE && cosine(&after, &behind) > RIDGE_COSINE
+        let cosine = |[a, b]: [Vector3<f64>; 2]| a.dot(&b) / (a.norm() * b.norm());
+        let before = [(u - p).cross(&(w - p)), (w - q).cross(&(u - q))];
+        let after = [(u - p).cross(&(q - p)), (w - q).cross(&(p - q))];
+        cosine(before) > RIDGE_COSINE && cosine(after) > RIDGE_COSINE
     }
 }
 
@@ -63,17 +64,15 @@ fn cotangent(apex: Point3<f64>, a: Point3<f64>, b: Point3<f64>) -> f64 {
     x.dot(&y) / x.cross(&y).norm().max(1e-300)
 }
 
-/// Moves each vertex in its tangent plane towards the weighted centre of its neighbours, then back onto the
-/// surface. The weights are proportional to the length of an edge over its grain, so that edges approach
-/// lengths proportional to the grain. All vertices move at once, so the result does not depend on their order
-/// or on the number of threads.
+/// Moves each vertex in its tangent plane towards the weighted centre of its neighbours, then back onto the surface.
+/// The weights are proportional to the length of an edge over its grain, so that edges approach lengths proportional
+/// to the grain. All vertices move at once, so the result does not depend on their order or on the number of threads.
 fn smooth(surface: &mut Surface, body: &Body) {
     let (table, old, grain) = (&surface.table, &surface.positions, &surface.grain);
     let target = |v: usize| {
         let mut pull = Vector3::zeros();
         let (mut total, mut shortest) = (0.0, f64::INFINITY);
-        for x in table.neighbors(v as u32) {
-            let x = x as usize;
+        for x in table.neighbors(VertexId::from(v)).map(VertexId::index) {
             let edge = old[x] - old[v];
             let length = edge.norm();
             let weight = length / (grain[x] + grain[v]);
@@ -92,10 +91,7 @@ fn smooth(surface: &mut Surface, body: &Body) {
     let mut moved = old.clone();
     moved.par_chunks_mut(CHUNK).enumerate().for_each(|(chunk, positions)| {
         for (i, p) in positions.iter_mut().enumerate() {
-            let v = chunk * CHUNK + i;
-            if table.is_alive(v as u32) {
-                *p = target(v);
-            }
+            *p = target(chunk * CHUNK + i);
         }
     });
     surface.positions = moved;
@@ -113,7 +109,7 @@ mod tests {
 
     #[test]
     fn triangles_become_well_shaped_and_stay_on_the_surface() {
-        let body = Body::new(vec![Part::added(0.0, vec![Blob::cone([0.0; 3], 3.0, [0.0, 0.0, 8.0], 1.5)])]);
+        let body = Body::new(vec![Part::added(vec![Blob::cone([0.0; 3], 3.0, [0.0, 0.0, 8.0], 1.5)])]);
         let lattice = Lattice { rotation: Matrix3::identity(), shift: Vector3::repeat(0.37), spacing: 0.25 };
         let raw = extract(&body, lattice);
         let table = CornerTable::new(raw.positions.len(), &raw.faces).unwrap();
@@ -124,7 +120,7 @@ mod tests {
         relax(&mut surface, &body, 6);
         let mut angles = Vec::new();
         for face in surface.table.faces() {
-            let [a, b, c] = face.map(|v| surface.positions[v as usize]);
+            let [a, b, c] = face.map(|v| surface.positions[v.index()]);
             let least = [(a, b, c), (b, c, a), (c, a, b)].map(|(p, q, r)| (q - p).angle(&(r - p)));
             angles.push(least.into_iter().fold(f64::INFINITY, f64::min).to_degrees());
             let outwards = body.sample(nalgebra::center(&a, &b)).1;

@@ -80,7 +80,7 @@ pub(crate) fn shuffled(surface: &Surface, positions: &[Point3<f64>], stream: &mu
         mesh.positions[to as usize] = p;
     }
     let renumbered: Vec<[VertexId; 3]> =
-        surface.table.faces().map(|f| f.map(|v| VertexId(order[v as usize]))).collect();
+        surface.table.faces().map(|f| f.map(|v| VertexId(order[v.index()]))).collect();
     mesh.faces = vec![[VertexId(0); 3]; renumbered.len()];
     let order = stream.permutation(renumbered.len());
     for (mut face, to) in renumbered.into_iter().zip(order) {

@@ -4,8 +4,9 @@ use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 use nalgebra::Point3;
+use surface::VertexId;
 
-use crate::corner_table::{CornerTable, next, prev};
+use crate::corner_table::CornerTable;
 
 /// A closed surface under construction.
 #[derive(Debug, Clone)]
@@ -24,13 +25,12 @@ const MOST_NEIGHBORS: usize = 12;
 
 /// Collapses edges, the shortest relative to their grain first, until `n_vertices` vertices are left.
 ///
-/// A vertex is merged into its neighbour without moving it, so that all vertices stay on the surface. An edge
-/// stays if its collapse would break the manifold or invert a triangle. Edges far shorter than those of the
-/// result are collapsed in a few sweeps, `O(m)` for the bulk, the others in the order of a queue, `O(k log
-/// k)` for the rest. Returns the number of vertices left, which exceeds `n_vertices` only if no other edge
-/// can be collapsed.
+/// A vertex is merged into its neighbour without moving it, so that all vertices stay on the surface. An edge stays
+/// if its collapse would break the manifold or invert a triangle. Edges far shorter than those of the result are
+/// collapsed in a few sweeps, `O(m)` for the bulk, the others in the order of a queue, `O(k log k)` for the rest.
+/// Returns the number of vertices left, which exceeds `n_vertices` only if no other edge can be collapsed.
 pub(crate) fn simplify(surface: &mut Surface, n_vertices: usize) -> usize {
-    let mut n_left = (0..surface.positions.len() as u32).filter(|&v| surface.table.is_alive(v)).count();
+    let mut n_left = surface.table.vertices().count();
     // The cost c of the final edges: equilateral triangles cover 2 sqrt(3) c grains^2 per vertex.
     let final_cost = surface.area_in_grains() / (12f64.sqrt() * n_vertices as f64);
     for share in [1.0 / 64.0, 1.0 / 24.0, 1.0 / 10.0, 0.2] {
@@ -54,11 +54,11 @@ pub(crate) fn simplify(surface: &mut Surface, n_vertices: usize) -> usize {
 fn sweep(surface: &mut Surface, limit: f64, mut n_left: usize, n_vertices: usize) -> usize {
     let mut neighbors = Vec::new();
     let mut stays = vec![false; surface.positions.len()];
-    for v in 0..surface.positions.len() as u32 {
+    for v in (0..surface.positions.len()).map(VertexId::from) {
         if n_left <= n_vertices {
             break;
         }
-        if stays[v as usize] || !surface.table.is_alive(v) {
+        if stays[v.index()] || !surface.table.is_alive(v) {
             continue;
         }
         neighbors.clear();
@@ -66,7 +66,7 @@ fn sweep(surface: &mut Surface, limit: f64, mut n_left: usize, n_vertices: usize
         neighbors.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
         for &(_, x) in neighbors.iter().take_while(|(cost, _)| *cost < limit) {
             if surface.collapse(v, x) {
-                stays[x as usize] = true;
+                stays[x.index()] = true;
                 n_left -= 1;
                 break;
             }
@@ -77,7 +77,7 @@ fn sweep(surface: &mut Surface, limit: f64, mut n_left: usize, n_vertices: usize
 
 fn collapse_by_queue(surface: &mut Surface, mut n_left: usize, n_vertices: usize) -> usize {
     let mut entries = Vec::new();
-    for v in (0..surface.positions.len() as u32).filter(|&v| surface.table.is_alive(v)) {
+    for v in surface.table.vertices() {
         entries.extend(surface.table.neighbors(v).filter(|&x| v < x).map(|x| Reverse(surface.entry(v, x))));
     }
     let mut queue = BinaryHeap::from(entries);
@@ -104,38 +104,36 @@ fn collapse_by_queue(surface: &mut Surface, mut n_left: usize, n_vertices: usize
 impl Surface {
     /// Renumbers vertices and faces without the removed ones.
     pub(crate) fn compact(&mut self) {
-        let alive: Vec<usize> =
-            (0..self.positions.len()).filter(|&v| self.table.is_alive(v as u32)).collect();
-        self.positions = alive.iter().map(|&v| self.positions[v]).collect();
-        self.grain = alive.iter().map(|&v| self.grain[v]).collect();
+        self.positions = self.table.vertices().map(|v| self.positions[v.index()]).collect();
+        self.grain = self.table.vertices().map(|v| self.grain[v.index()]).collect();
         self.table = self.table.compacted();
     }
 
     /// Area of the surface in squared grains.
     fn area_in_grains(&self) -> f64 {
-        let at = |v: u32| self.positions[v as usize];
-        let area = |[a, b, c]: [u32; 3]| {
-            let grain = [a, b, c].map(|v| self.grain[v as usize]).iter().sum::<f64>() / 3.0;
+        let at = |v: VertexId| self.positions[v.index()];
+        let area = |[a, b, c]: [VertexId; 3]| {
+            let grain = [a, b, c].map(|v| self.grain[v.index()]).iter().sum::<f64>() / 3.0;
             0.5 * (at(b) - at(a)).cross(&(at(c) - at(a))).norm() / (grain * grain)
         };
         self.table.faces().map(area).sum()
     }
 
     /// Squared length of an edge over the squared sum of the grains of its ends.
-    fn cost(&self, u: u32, w: u32) -> f64 {
-        let (a, b) = (u as usize, w as usize);
+    fn cost(&self, u: VertexId, w: VertexId) -> f64 {
+        let (a, b) = (u.index(), w.index());
         let grain = self.grain[a] + self.grain[b];
         (self.positions[a] - self.positions[b]).norm_squared() / (grain * grain)
     }
 
     /// Queue entry of an edge: the bits of its cost, which order like the numbers since they are not
     /// negative, then its ends.
-    fn entry(&self, u: u32, w: u32) -> (u64, u32, u32) {
+    fn entry(&self, u: VertexId, w: VertexId) -> (u64, VertexId, VertexId) {
         (self.cost(u, w).to_bits(), u, w)
     }
 
     /// Merges `gone` into `kept` if possible; returns whether it was.
-    fn collapse(&mut self, gone: u32, kept: u32) -> bool {
+    fn collapse(&mut self, gone: VertexId, kept: VertexId) -> bool {
         let Some(c) = self.table.facing(gone, kept) else { return false };
         let n_neighbors = self.table.neighbors(gone).count() + self.table.neighbors(kept).count() - 4;
         let possible =
@@ -147,10 +145,10 @@ impl Surface {
     }
 
     /// Whether no triangle around `gone` is inverted when it moves to `kept`.
-    fn stays_unfolded(&self, gone: u32, kept: u32) -> bool {
-        let at = |v: u32| self.positions[v as usize];
+    fn stays_unfolded(&self, gone: VertexId, kept: VertexId) -> bool {
+        let at = |v: VertexId| self.positions[v.index()];
         self.table.around(gone).all(|c| {
-            let (b, d) = (self.table.vertex(next(c)), self.table.vertex(prev(c)));
+            let (b, d) = (self.table.vertex(c.next()), self.table.vertex(c.prev()));
             if b == kept || d == kept {
                 return true;
             }
@@ -163,8 +161,6 @@ impl Surface {
 
 #[cfg(test)]
 mod tests {
-    use surface::VertexId;
-
     use super::*;
 
     /// A sphere as a grid of latitudes and longitudes, dense at the poles.
@@ -200,7 +196,7 @@ mod tests {
             assert_eq!(simplify(&mut surface, n_vertices), n_vertices);
             surface.compact();
             assert_eq!(surface.positions.len(), n_vertices);
-            let faces: Vec<_> = surface.table.faces().map(|f| f.map(VertexId)).collect();
+            let faces: Vec<_> = surface.table.faces().collect();
             assert_eq!(faces.len(), 2 * n_vertices - 4);
             assert!(CornerTable::new(n_vertices, &faces).is_some());
         }
@@ -220,7 +216,7 @@ mod tests {
     }
 
     #[test]
-    fn a_larger_number_than_there_are_changes_nothing() {
+    fn requesting_more_vertices_than_there_are_changes_nothing() {
         let mut surface = globe(10);
         let n = surface.positions.len();
         assert_eq!(simplify(&mut surface, n + 5), n);

@@ -66,8 +66,7 @@ pub(crate) fn joint_pairs<const N: usize>(pair: [usize; 2]) -> [JointPair; N] {
 /// A sequence of bones, such as an arm or a spine.
 #[derive(Debug, Clone)]
 pub(crate) struct Chain {
-    /// The chain to which this one is attached, and the length along it; parents come earlier in the
-    /// skeleton.
+    /// The chain to which this one is attached, and the length along it; parents come earlier in the skeleton.
     pub(crate) parent: Option<(usize, f64)>,
     pub(crate) nodes: Vec<Node>,
     /// Length of the axis from the first node to each node.
@@ -149,9 +148,8 @@ impl Skeleton {
         [left, left + 1]
     }
 
-    /// Adds a tail attached to node `parent.1` of chain `parent.0`: from the node `root` along the points
-    /// `axis` with the given `grains`, with a joint at each of the first nodes of `axis` that has the given
-    /// play.
+    /// Adds a tail attached to node `parent.1` of chain `parent.0`: from the node `root` along the points `axis` with
+    /// the given `grains`, with a joint at each of the first nodes of `axis` that has the given play.
     pub(crate) fn tail<const N: usize>(
         &mut self,
         parent: (usize, usize),
@@ -169,9 +167,8 @@ impl Skeleton {
 
     /// The membership of `p` in each chain.
     ///
-    /// The weight of a segment is the eighth power of `radius / distance`. The weights of the segments of a
-    /// chain add up and average their arc lengths, so that everything is continuous where limbs or segments
-    /// meet.
+    /// The weight of a segment is the eighth power of `radius / distance`. The weights of the segments of a chain add
+    /// up and average their arc lengths, so that everything is continuous where limbs or segments meet.
     pub(crate) fn memberships(&self, p: Point3<f64>) -> impl Iterator<Item = Membership> + '_ {
         self.chains.iter().map(move |chain| {
             let mut sum = Membership { arc: 0.0, weight: 0.0, grain: 0.0 };

@@ -5,8 +5,7 @@ use std::path::{Path, PathBuf};
 
 use surface::VertexId;
 
-/// Why a mesh could not be read, written or repaired. The message names the file, the place, the fault and a
-/// remedy.
+/// Why a mesh could not be read, written or repaired. The message names the file, the place, the fault and a remedy.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum MeshError {
@@ -139,8 +138,7 @@ pub enum MeshError {
         degenerate: usize,
     },
 
-    /// The mesh has several components and the policy is
-    /// [`ComponentPolicy::Error`](crate::ComponentPolicy::Error).
+    /// The mesh has several components and the policy is [`ComponentPolicy::Error`](crate::ComponentPolicy::Error).
     #[error(
         "the mesh is disconnected: {unreached} of {n_vertices} vertices lie outside the largest component; \
          keep only the largest component or bridge the components"
@@ -234,7 +232,7 @@ pub enum Fault {
          it is truncated or its header is wrong: copy or export it again"
     )]
     Truncated {
-        /// Of what.
+        /// What is counted, such as `vertices`.
         items: String,
         /// Number in the header.
         promised: u64,
@@ -252,7 +250,7 @@ pub enum Fault {
     /// More in the file than its header promises.
     #[error("the file continues after the {promised} {items} that its header promises; correct the header")]
     Leftover {
-        /// Of what.
+        /// What is counted, such as `vertices`.
         items: &'static str,
         /// Number in the header.
         promised: u64,
@@ -307,7 +305,7 @@ pub enum Fault {
     /// More vertices or faces than 32-bit indices can count.
     #[error("{count} {items} exceed the {limit} that 32-bit indices can count; simplify the mesh")]
     TooLarge {
-        /// Of what.
+        /// What is counted, such as `vertices`.
         items: &'static str,
         /// Number in the file.
         count: u64,
@@ -318,7 +316,7 @@ pub enum Fault {
     /// More vertices or faces than [`ReadLimits`](crate::io::ReadLimits) allow.
     #[error("the mesh has more than {limit} {items}, the limit here; simplify it or raise the limit")]
     OverLimit {
-        /// Of what.
+        /// What is counted, such as `vertices`.
         items: &'static str,
         /// The limit.
         limit: u64,

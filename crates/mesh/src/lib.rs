@@ -5,8 +5,7 @@
 //! * [`io`] reads and writes mesh files. A file that is not a mesh is a [`MeshError`] that names file, place,
 //!   fault and remedy.
 //! * [`validate`] reports the properties and defects of a mesh.
-//! * [`repair()`] removes defects that algorithms cannot handle, as [`RepairOptions`] say, and reports every
-//!   change.
+//! * [`repair()`] removes defects that algorithms cannot handle, as [`RepairOptions`] say, and reports every change.
 //! * [`shapes`] has small analytic surfaces for tests, benches and documentation.
 //!
 //! **Invariant.** Vertices keep the order of the file: repair drops and merges vertices but never reorders

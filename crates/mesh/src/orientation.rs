@@ -5,8 +5,7 @@ use surface::{CornerId, FaceId, Topology, VertexId};
 use crate::face_set::is_degenerate;
 use crate::tri_mesh::TriMesh;
 
-/// The faces of a mesh grouped into patches, which manifold edges hold together, and the orientation of each
-/// patch.
+/// The faces of a mesh grouped into patches, which manifold edges hold together, and the orientation of each patch.
 #[derive(Debug, Clone)]
 pub(crate) struct Orientation {
     /// The patch of every face.
@@ -44,7 +43,7 @@ impl Orientation {
                 continue;
             }
             let number = orientable.len() as u32;
-            let (mut one_way, mut sealed) = (true, true);
+            let (mut is_orientable, mut is_closed) = (true, true);
             patch[seed] = number;
             members.clear();
             members.push(seed);
@@ -60,7 +59,7 @@ impl Orientation {
                 });
                 for pair in across {
                     let Some((twin, corner)) = pair else {
-                        sealed = false;
+                        is_closed = false;
                         continue;
                     };
                     let neighbor = twin.face().index();
@@ -70,15 +69,15 @@ impl Orientation {
                         turned[neighbor] = turn;
                         members.push(neighbor);
                     } else if turned[neighbor] != turn {
-                        one_way = false;
+                        is_orientable = false;
                     }
                 }
             }
             if 2 * members.iter().filter(|&&f| turned[f]).count() > members.len() {
                 members.iter().for_each(|&f| turned[f] = !turned[f]);
             }
-            orientable.push(one_way);
-            closed.push(sealed);
+            orientable.push(is_orientable);
+            closed.push(is_closed);
         }
         Self { patch, turned, orientable, closed }
     }

@@ -38,8 +38,7 @@ impl Scalar {
         !matches!(self, Self::F32 | Self::F64)
     }
 
-    /// The number at the start of `bytes`, where 64-bit integers are rounded; `None` if there are too few
-    /// bytes.
+    /// The number at the start of `bytes`, where 64-bit integers are rounded; `None` if there are too few bytes.
     #[inline]
     pub(super) fn decode(self, order: ByteOrder, bytes: &[u8]) -> Option<f64> {
         macro_rules! decode {

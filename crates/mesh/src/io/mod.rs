@@ -1,11 +1,10 @@
 //! Mesh files: OFF, OBJ, PLY, STL, TOSCA's `.vert`/`.tri` pairs and MATLAB `.mat`.
 //!
-//! The extension determines the format, in upper or lower case; [`FORMATS`] is the table of them. Vertices
-//! keep the order of the file, whether a face uses them or not. Polygons are triangulated: quadrilaterals
-//! along the better diagonal, larger ones as fans, so split concave polygons of five or more corners
-//! beforehand. Other content is ignored. A file that cannot be read faithfully is a [`MeshError`] that names
-//! the file, the place, the fault and a remedy. Readers never panic and reserve no more memory than the size
-//! of the file justifies.
+//! The extension determines the format, in upper or lower case; [`FORMATS`] is the table of them. Vertices keep the
+//! order of the file, whether a face uses them or not. Polygons are triangulated: quadrilaterals along the better
+//! diagonal, larger ones as fans, so split concave polygons of five or more corners beforehand. Other content is
+//! ignored. A file that cannot be read faithfully is a [`MeshError`] that names the file, the place, the fault and a
+//! remedy. Readers never panic and reserve no more memory than the size of the file justifies.
 
 mod binary;
 mod field;
@@ -51,9 +50,8 @@ pub fn files_of(path: &Path) -> Vec<PathBuf> {
 /// Reads a mesh; a `.vert`/`.tri` pair by either name.
 ///
 /// # Errors
-/// [`MeshError::Io`] if a file cannot be opened, [`MeshError::File`] if it is not a mesh with at least one
-/// face ([`Fault`] lists what can be wrong with it), [`MeshError::UnknownFormat`] if the extension is
-/// unknown.
+/// [`MeshError::Io`] if a file cannot be opened, [`MeshError::File`] if it is not a mesh with at least one face
+/// ([`Fault`] lists what can be wrong with it), [`MeshError::UnknownFormat`] if the extension is unknown.
 ///
 /// ```
 /// use canonform_mesh::{io, shapes};
@@ -69,8 +67,7 @@ pub fn read(path: &Path) -> Result<TriMesh, MeshError> {
     read_from(path, &Disk, &ReadLimits::default())
 }
 
-/// Reads a mesh from files in memory: one file, or a `.vert`/`.tri` pair in either order. Looks for no other
-/// file.
+/// Reads a mesh from files in memory: one file, or a `.vert`/`.tri` pair in either order. Looks for no other file.
 ///
 /// # Errors
 /// As [`read()`], with the same messages; [`Fault::OverLimit`] beyond `limits`, [`MeshError::StrayFile`] if
@@ -108,7 +105,7 @@ fn read_from(path: &Path, source: &dyn Source, limits: &ReadLimits) -> Result<Tr
     };
     let contents = paths.iter().map(load).collect::<Result<Vec<_>, _>>()?;
     let contents: Vec<&[u8]> = contents.iter().map(AsRef::as_ref).collect();
-    format.parse(&contents, limits).map_err(|fault| {
+    (format.parse)(&contents, limits).map_err(|fault| {
         let file = &paths[fault.file];
         fault.in_file(file)
     })
@@ -122,8 +119,7 @@ fn read_from(path: &Path, source: &dyn Source, limits: &ReadLimits) -> Result<Tr
 /// # Errors
 /// [`MeshError::Io`] if the file cannot be written, [`MeshError::UnknownFormat`] and
 /// [`MeshError::UnsupportedContent`] for the wrong extension, [`MeshError::NonFinitePosition`],
-/// [`MeshError::FaceOutOfRange`] and [`MeshError::CoordinateOverflow`] for a mesh that the file could not
-/// hold.
+/// [`MeshError::FaceOutOfRange`] and [`MeshError::CoordinateOverflow`] for a mesh that the file could not hold.
 pub fn write(path: &Path, mesh: &TriMesh) -> Result<(), MeshError> {
     let format = Format::of(path)?;
     if !format.can_write(Content::Mesh) {

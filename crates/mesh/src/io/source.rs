@@ -7,7 +7,7 @@ use std::path::Path;
 
 use files::FileError;
 
-use crate::error::{Fault, MeshError};
+use crate::error::MeshError;
 
 /// A file in memory.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -23,7 +23,7 @@ pub(super) trait Source {
     /// Whether there is a file with this name.
     fn holds(&self, path: &Path) -> bool;
 
-    /// Reads a file that is not empty.
+    /// Reads a file.
     fn load(&self, path: &Path) -> Result<Cow<'_, [u8]>, MeshError>;
 }
 
@@ -40,8 +40,7 @@ impl Source for Disk {
         if !fs::metadata(path).map_err(cannot_read)?.is_file() {
             return Err(cannot_read(io::Error::new(io::ErrorKind::InvalidInput, "not a regular file")));
         }
-        let bytes = fs::read(path).map_err(cannot_read)?;
-        not_empty(path, bytes.into())
+        Ok(fs::read(path).map_err(cannot_read)?.into())
     }
 }
 
@@ -56,13 +55,6 @@ impl Source for Memory<'_> {
     fn load(&self, path: &Path) -> Result<Cow<'_, [u8]>, MeshError> {
         let missing = || FileError::read(path, io::ErrorKind::NotFound.into());
         let file = self.0.iter().find(|file| file.name == path).ok_or_else(missing)?;
-        not_empty(path, file.bytes.into())
-    }
-}
-
-fn not_empty<'a>(path: &Path, bytes: Cow<'a, [u8]>) -> Result<Cow<'a, [u8]>, MeshError> {
-    match bytes.is_empty() {
-        true => Err(Fault::Empty.whole().in_file(path)),
-        false => Ok(bytes),
+        Ok(file.bytes.into())
     }
 }

@@ -15,9 +15,8 @@ const LEAF: usize = 8;
 /// The group of a node with points of several groups.
 const MIXED: u32 = u32::MAX;
 
-/// The links of least total length that join the components of a set of points, ordered by their ends.
-/// `labels` are the components, numbered from zero. Of equally long links, the one with the lowest vertices
-/// is used.
+/// The links of least total length that join the components of a set of points, ordered by their ends. `labels` are
+/// the components, numbered from zero. Of equally long links, the one with the lowest vertices is used.
 pub(super) fn shortest_links(positions: &[Point3<f64>], labels: &[u32]) -> Vec<Link> {
     let mut tree = BoxTree::build(positions, labels);
     let n_components = labels.iter().max().map_or(0, |&most| most as usize + 1);
@@ -55,8 +54,7 @@ struct Candidate {
 impl Candidate {
     const NONE: Self = Self { sq_length: f64::INFINITY, ends: [u32::MAX; 2] };
 
-    /// Shorter links first, then those with lower ends. In a total order, equal lengths cannot create a
-    /// cycle.
+    /// Shorter links first, then those with lower ends. In a total order, equal lengths cannot create a cycle.
     fn order(&self, other: &Self) -> std::cmp::Ordering {
         self.sq_length.total_cmp(&other.sq_length).then(self.ends.cmp(&other.ends))
     }

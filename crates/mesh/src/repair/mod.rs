@@ -8,6 +8,7 @@ mod weld;
 pub use options::{ComponentPolicy, Orient, RepairOptions, Weld};
 pub use report::RepairReport;
 
+use nalgebra::Point3;
 use surface::{Components, DisjointSets, IntrinsicMesh, Link, VertexId, components_of_faces};
 
 use crate::error::MeshError;
@@ -141,7 +142,7 @@ fn disconnected(components: &Components) -> MeshError {
 
 /// Removes all components but the one with the largest area, the first in case of a tie; returns its number.
 fn keep_largest(
-    positions: &[nalgebra::Point3<f64>],
+    positions: &[Point3<f64>],
     faces: &mut Vec<[VertexId; 3]>,
     components: &Components,
     report: &mut RepairReport,
@@ -163,7 +164,7 @@ fn keep_largest(
 
 /// The remaining vertices, renumbered in the order of the input.
 struct Compact {
-    positions: Vec<nalgebra::Point3<f64>>,
+    positions: Vec<Point3<f64>>,
     /// The component of each.
     labels: Vec<u32>,
     /// The input vertex of each.

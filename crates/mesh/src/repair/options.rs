@@ -44,7 +44,7 @@ pub enum Weld {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Orient {
-    /// Keep all faces as they are. Intrinsic geometry does not depend on orientation.
+    /// Flip nothing. Intrinsic geometry does not depend on orientation.
     #[default]
     Keep,
     /// Flip faces, see [`orient_consistently`](crate::orient_consistently).

@@ -52,12 +52,6 @@ pub struct RepairReport {
 }
 
 impl RepairReport {
-    /// Whether nothing was changed.
-    #[must_use]
-    pub fn is_clean(&self) -> bool {
-        self.summary().is_empty()
-    }
-
     /// One short line per kind of change; empty if nothing was changed.
     #[must_use]
     pub fn summary(&self) -> Vec<String> {

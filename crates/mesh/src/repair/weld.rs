@@ -35,8 +35,7 @@ fn boundary_vertices(n_vertices: usize, faces: &[[VertexId; 3]]) -> Vec<u32> {
 
 /// Merges the ends of every edge of length zero; returns how many vertices were merged into another.
 ///
-/// The faces at such an edge become degenerate and are removed. If its ends stayed apart, that would leave a
-/// slit.
+/// The faces at such an edge become degenerate and are removed. If its ends stayed apart, that would leave a slit.
 pub(super) fn collapse_zero_edges(
     positions: &[Point3<f64>],
     faces: &[[VertexId; 3]],

@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use nalgebra::Point3;
 use surface::VertexId;
 
-use super::lattice::triangles;
+use super::flat::triangles;
 use super::subdivision::subdivide;
 use crate::tri_mesh::TriMesh;
 

@@ -1,8 +1,8 @@
 //! Flat sheets, and sheets folded along a mesh line.
 
 use nalgebra::Point3;
+use surface::VertexId;
 
-use super::lattice::triangles;
 use crate::tri_mesh::TriMesh;
 
 /// A flat sheet of `nx` x `ny` vertices with spacing `step` in the plane z = 0. The first vertex is the
@@ -47,6 +47,15 @@ pub fn jittered_grid(nx: usize, ny: usize, step: f64, jitter: f64, seed: u64) ->
         p.y += step * jitter * uniform(&mut state);
     }
     mesh
+}
+
+/// Two triangles for each of `nx` x `ny` quads, row by row; `vertex(i, j)` is the vertex at a lattice point.
+pub(super) fn triangles(nx: usize, ny: usize, vertex: impl Fn(usize, usize) -> usize) -> Vec<[VertexId; 3]> {
+    let quad = |q: usize| {
+        let (i, j) = (q % nx, q / nx);
+        [vertex(i, j), vertex(i + 1, j), vertex(i + 1, j + 1), vertex(i, j + 1)].map(VertexId::from)
+    };
+    (0..nx * ny).map(quad).flat_map(|[a, b, c, d]| [[a, b, c], [a, c, d]]).collect()
 }
 
 /// The next number in [-1, 1) of a splitmix64 stream.

@@ -16,7 +16,6 @@
 
 mod closed;
 mod flat;
-mod lattice;
 mod subdivision;
 
 pub use closed::{cube, cylinder, icosphere, tetrahedron, torus};
@@ -27,7 +26,7 @@ use surface::VertexId;
 
 use crate::tri_mesh::TriMesh;
 
-/// One mesh with copies of all the given ones, in order, that share no vertices.
+/// Joins copies of all meshes, in order, into one mesh of several components.
 #[must_use]
 pub fn disjoint(parts: &[TriMesh]) -> TriMesh {
     let mut whole = TriMesh::default();

@@ -2,19 +2,12 @@
 
 use surface::{DisjointSets, EdgeId, OneRing, Topology, VertexId};
 
-/// What the fans of faces around the vertices say about a mesh.
-pub(super) struct Fans {
-    /// Vertices whose faces are not all connected through edges at the vertex.
-    pub(super) non_manifold_vertices: usize,
-    /// Chains of boundary edges.
-    pub(super) boundary_loops: usize,
-}
+use super::MeshReport;
 
-impl Fans {
-    /// Walks around every vertex; linear time for bounded valence.
-    pub(super) fn of(topology: &Topology) -> Self {
+impl MeshReport {
+    /// Adds the counts of non-manifold vertices and boundary loops; linear time for bounded valence.
+    pub(super) fn add_fans(&mut self, topology: &Topology) {
         let is_boundary = |edge: EdgeId| topology.edge_corners(edge).len() == 1;
-        let mut non_manifold_vertices = 0;
         // Two boundary edges follow each other if they are the two ends of one fan.
         let mut boundary = DisjointSets::new(topology.n_edges());
         let mut ring = OneRing::default();
@@ -37,12 +30,11 @@ impl Fans {
             for pair in ends.windows(2).filter(|pair| pair[0].0 == pair[1].0) {
                 n_connected -= usize::from(fans.union(pair[0].1, pair[1].1));
             }
-            non_manifold_vertices += usize::from(n_connected > 1);
+            self.non_manifold_vertices += usize::from(n_connected > 1);
         }
-        let boundary_loops = (0..topology.n_edges())
+        self.n_boundary_loops = (0..topology.n_edges())
             .map(EdgeId::from)
             .filter(|edge| is_boundary(*edge) && boundary.find(edge.0) == edge.0)
             .count();
-        Self { non_manifold_vertices, boundary_loops }
     }
 }

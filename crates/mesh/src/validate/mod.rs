@@ -1,7 +1,8 @@
-//! Facts about a mesh and its defects.
+//! The properties and defects of a mesh.
 
 mod fans;
 
+use nalgebra::Point3;
 use serde::Serialize;
 use surface::{EdgeId, Topology, VertexId, components_of_faces};
 
@@ -9,13 +10,12 @@ use crate::coincidence::coincident_pairs;
 use crate::face_set::{remove_degenerate, remove_duplicates};
 use crate::orientation::{Orientation, runs_against};
 use crate::tri_mesh::TriMesh;
-use fans::Fans;
 
-/// Facts about a mesh, as [`validate`] finds them.
+/// The properties and defects of a mesh, from [`validate`].
 ///
-/// Facts about connectivity (from `n_edges` to `genus`) leave out degenerate and duplicate faces:
+/// Connectivity (from `n_edges` to `genus`) leaves out degenerate and duplicate faces:
 /// [`repair()`](crate::repair()) always removes them, and they would count again as non-manifold edges.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct MeshReport {
     /// Vertices in the file, used by a face or not.
     pub n_vertices: usize,
@@ -73,8 +73,7 @@ pub struct MeshReport {
 }
 
 impl MeshReport {
-    /// Whether the mesh is a connected, consistently oriented manifold, with or without boundary, without
-    /// defects.
+    /// Whether the mesh is a connected, consistently oriented manifold, with or without boundary, without defects.
     #[must_use]
     pub fn is_clean(&self) -> bool {
         self.n_components == 1
@@ -113,117 +112,75 @@ pub fn validate(mesh: &TriMesh) -> MeshReport {
     let mut faces = mesh.faces.clone();
     let degenerate_faces = remove_degenerate(&mut faces);
     let duplicate_faces = remove_duplicates(n_vertices, &mut faces);
-
     let mut referenced = vec![false; n_vertices];
     mesh.faces.iter().flatten().for_each(|v| referenced[v.index()] = true);
     let components = components_of_faces(n_vertices, &faces);
     let mut component_faces = vec![0; components.count];
     faces.iter().for_each(|f| component_faces[components.of(f[0])] += 1);
-    let n_used = components.labels.iter().flatten().count();
 
     let n_faces = faces.len();
-    let shape = FaceShapes::of(&mesh.positions, &faces);
     let topology = Topology::new(n_vertices, faces);
-    let edges = EdgeCounts::of(&topology);
-    let fans = Fans::of(&topology);
     let orientation = Orientation::of(&topology);
-    let orientable = orientation.orientable.iter().all(|&o| o);
-    let euler_characteristic = n_used as i64 - topology.n_edges() as i64 + n_faces as i64;
-    let is_closed_manifold = components.count == 1
-        && orientable
-        && edges.boundary + edges.non_manifold + fans.non_manifold_vertices == 0;
-    let lengths = Lengths::of(mesh, &topology);
-
-    MeshReport {
+    let n_used = components.labels.iter().flatten().count();
+    let mut report = MeshReport {
         n_vertices,
         n_faces: mesh.n_faces(),
         degenerate_faces,
         duplicate_faces,
-        zero_area_faces: shape.zero_area,
         unreferenced_vertices: referenced.iter().filter(|&&r| !r).count(),
         duplicate_vertices: coincident_pairs(&mesh.positions, 0..n_vertices as u32).len(),
         n_edges: topology.n_edges(),
         n_components: components.count,
         component_faces,
-        n_boundary_edges: edges.boundary,
-        n_boundary_loops: fans.boundary_loops,
-        non_manifold_edges: edges.non_manifold,
-        non_manifold_vertices: fans.non_manifold_vertices,
-        inconsistent_edges: edges.inconsistent,
         flipped_faces: orientation.turned.iter().filter(|&&t| t).count(),
-        orientable,
-        euler_characteristic,
-        genus: is_closed_manifold.then_some((2 - euler_characteristic).unsigned_abs() / 2),
-        obtuse_share: if n_faces == 0 { 0.0 } else { shape.obtuse as f64 / n_faces as f64 },
-        min_edge_length: lengths.min,
-        mean_edge_length: lengths.mean,
-        max_edge_length: lengths.max,
-        area: shape.area,
+        orientable: orientation.orientable.iter().all(|&o| o),
+        euler_characteristic: n_used as i64 - topology.n_edges() as i64 + n_faces as i64,
         bounding_box_diagonal: mesh.bounds().map_or(0.0, |[lo, hi]| (hi - lo).norm()),
-    }
+        ..MeshReport::default()
+    };
+    report.add_faces(&mesh.positions, topology.faces());
+    report.add_edges(&mesh.positions, &topology);
+    report.add_fans(&topology);
+    let n_defects = report.n_boundary_edges + report.non_manifold_edges + report.non_manifold_vertices;
+    let is_closed_manifold = report.n_components == 1 && report.orientable && n_defects == 0;
+    report.genus = is_closed_manifold.then_some((2 - report.euler_characteristic).unsigned_abs() / 2);
+    report
 }
 
-struct EdgeCounts {
-    boundary: usize,
-    non_manifold: usize,
-    inconsistent: usize,
-}
-
-impl EdgeCounts {
-    fn of(topology: &Topology) -> Self {
-        let mut counts = Self { boundary: 0, non_manifold: 0, inconsistent: 0 };
-        for edge in (0..topology.n_edges()).map(EdgeId::from) {
-            match *topology.edge_corners(edge) {
-                [_] => counts.boundary += 1,
-                [a, b] => counts.inconsistent += usize::from(runs_against(topology, a, b)),
-                _ => counts.non_manifold += 1,
-            }
-        }
-        counts
-    }
-}
-
-struct FaceShapes {
-    obtuse: usize,
-    zero_area: usize,
-    area: f64,
-}
-
-impl FaceShapes {
-    fn of(positions: &[nalgebra::Point3<f64>], faces: &[[VertexId; 3]]) -> Self {
+impl MeshReport {
+    fn add_faces(&mut self, positions: &[Point3<f64>], faces: &[[VertexId; 3]]) {
         /// Ratio of height to longest side below which a face has no area: some thousand rounding errors.
         const FLAT: f64 = 1e-12;
-        let mut shapes = Self { obtuse: 0, zero_area: 0, area: 0.0 };
+        let mut n_obtuse = 0;
         for face in faces {
             let [a, b, c] = face.map(|v| positions[v.index()]);
             let sides = [b - a, c - b, a - c];
             let twice_area = sides[0].cross(&sides[1]).norm();
             let longest = sides.iter().fold(0.0, |longest, s| f64::max(longest, s.norm_squared()));
             // The sides form a cycle, so two that meet in an obtuse corner have a positive product.
-            shapes.obtuse += usize::from((0..3).any(|i| sides[i].dot(&sides[(i + 1) % 3]) > 0.0));
-            shapes.zero_area += usize::from(twice_area <= FLAT * longest);
-            shapes.area += 0.5 * twice_area;
+            n_obtuse += usize::from((0..3).any(|i| sides[i].dot(&sides[(i + 1) % 3]) > 0.0));
+            self.zero_area_faces += usize::from(twice_area <= FLAT * longest);
+            self.area += 0.5 * twice_area;
         }
-        shapes
+        self.obtuse_share = n_obtuse as f64 / faces.len().max(1) as f64;
     }
-}
 
-struct Lengths {
-    min: f64,
-    mean: f64,
-    max: f64,
-}
-
-impl Lengths {
-    fn of(mesh: &TriMesh, topology: &Topology) -> Self {
-        let (mut min, mut max, mut sum) = (f64::INFINITY, 0.0, 0.0);
-        for [a, b] in topology.edges() {
-            let length = (mesh.positions[a.index()] - mesh.positions[b.index()]).norm();
-            (min, max, sum) = (length.min(min), length.max(max), sum + length);
+    fn add_edges(&mut self, positions: &[Point3<f64>], topology: &Topology) {
+        let (mut shortest, mut sum) = (f64::INFINITY, 0.0);
+        for (e, [a, b]) in topology.edges().iter().enumerate() {
+            match *topology.edge_corners(EdgeId::from(e)) {
+                [_] => self.n_boundary_edges += 1,
+                [a, b] => self.inconsistent_edges += usize::from(runs_against(topology, a, b)),
+                _ => self.non_manifold_edges += 1,
+            }
+            let length = (positions[a.index()] - positions[b.index()]).norm();
+            shortest = length.min(shortest);
+            self.max_edge_length = length.max(self.max_edge_length);
+            sum += length;
         }
-        match topology.n_edges() {
-            0 => Self { min: 0.0, mean: 0.0, max: 0.0 },
-            n => Self { min, mean: sum / n as f64, max },
+        if topology.n_edges() > 0 {
+            self.min_edge_length = shortest;
+            self.mean_edge_length = sum / topology.n_edges() as f64;
         }
     }
 }

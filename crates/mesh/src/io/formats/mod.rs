@@ -34,8 +34,8 @@ pub struct Format {
     /// two, the first one stands for the pair.
     pub extensions: &'static [&'static str],
     pub(super) precision: Precision,
-    /// Parses the files, given in the order of `extensions`.
-    parse: Parse,
+    /// Parses the contents of [`files`](Self::files).
+    pub(super) parse: Parse,
     /// Writers of the files, in the order of `extensions`; empty if the format is read-only.
     pub(super) write: &'static [WriteMesh],
     pub(super) write_field: Option<WriteField>,
@@ -134,11 +134,6 @@ impl Format {
             false => companion(extension),
         };
         self.extensions.iter().map(file).collect()
-    }
-
-    /// Parses the contents of [`files`](Self::files).
-    pub(super) fn parse(&self, files: &[&[u8]], limits: &ReadLimits) -> Result<TriMesh, Located> {
-        (self.parse)(files, limits)
     }
 }
 

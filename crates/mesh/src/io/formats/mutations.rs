@@ -3,7 +3,7 @@
 
 use proptest::prelude::*;
 
-use super::mat::sample::{PLAIN, Style};
+use super::mat::fixtures::{PLAIN, Style};
 use super::{FORMATS, Format};
 use crate::error::{Content, Fault};
 use crate::io::limits::ReadLimits;
@@ -73,7 +73,7 @@ impl Sample {
     fn parse(&self, bytes: &[u8], limits: &ReadLimits) -> Result<TriMesh, Fault> {
         let mut files: Vec<&[u8]> = self.files.iter().map(Vec::as_slice).collect();
         files[self.damaged] = bytes;
-        self.format.parse(&files, limits).map_err(|located| located.fault)
+        (self.format.parse)(&files, limits).map_err(|located| located.fault)
     }
 }
 

@@ -24,9 +24,13 @@ pub(super) fn parse(bytes: &[u8], limits: &ReadLimits) -> Result<TriMesh, Locate
         return Err(Fault::Empty.whole());
     }
     let Statements { n_vertices, n_faces, text } = Statements::of(bytes, limits)?;
-    let all_vertices: String = (1..=n_vertices).map(|v| format!(" {v}")).collect();
-    let all_vertices = format!("f{all_vertices}\n");
-    let mut reader = all_vertices.as_bytes().chain(text.as_slice());
+    let mut all_vertices = b"f".to_vec();
+    for vertex in 1..=n_vertices {
+        // Writing to memory cannot fail.
+        let _ = write!(all_vertices, " {vertex}");
+    }
+    all_vertices.push(b'\n');
+    let mut reader = all_vertices.as_slice().chain(text.as_slice());
     let no_materials = |_: &Path| Err(tobj::LoadError::OpenFileFailed);
     let loaded = tobj::load_obj_buf(&mut reader, &tobj::LoadOptions::default(), no_materials);
     let (models, _) = loaded.map_err(|error| {
@@ -71,12 +75,17 @@ impl Statements {
     fn of(bytes: &[u8], limits: &ReadLimits) -> Result<Self, Located> {
         let mut all = Self { n_vertices: 0, n_faces: 0, text: Vec::with_capacity(bytes.len()) };
         for (is_vertex, line) in statements(bytes) {
+            let (mut n_words, mut is_foreign, mut previous) = (0, false, b' ');
+            for &byte in line.text {
+                n_words += usize::from(previous <= b' ' && byte > b' ');
+                is_foreign |= !matches!(byte, b'\t' | b' '..=b'~');
+                previous = byte;
+            }
             // `tobj` takes some other characters for spaces.
-            if line.text.iter().fold(false, |other, b| other | !matches!(b, b'\t' | b' '..=b'~')) {
+            if is_foreign {
                 return Err(line.expected(EXPECTED[usize::from(is_vertex)]));
             }
-            let starts_value = |pair: &&[u8]| pair[0].is_ascii_whitespace() & !pair[1].is_ascii_whitespace();
-            let n_values = line.text.windows(2).filter(starts_value).count();
+            let n_values = n_words - 1;
             if is_vertex {
                 all.n_vertices += 1;
             } else if n_values < 3 {
@@ -100,10 +109,13 @@ impl Statements {
 
 /// The `v` and `f` lines, and whether each is a `v` line.
 fn statements(bytes: &[u8]) -> impl Iterator<Item = (bool, Line<'_>)> {
-    Lines::new(bytes).filter_map(|line| match line.tokens().next() {
-        Some(b"v") => Some((true, line)),
-        Some(b"f") => Some((false, line)),
-        _ => None,
+    Lines::new(bytes).filter_map(|line| {
+        let is_keyword = line.text.get(1).is_none_or(u8::is_ascii_whitespace);
+        match line.text[0] {
+            b'v' if is_keyword => Some((true, line)),
+            b'f' if is_keyword => Some((false, line)),
+            _ => None,
+        }
     })
 }
 

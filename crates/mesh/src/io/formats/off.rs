@@ -20,7 +20,9 @@ pub(super) fn parse(bytes: &[u8], limits: &ReadLimits) -> Result<TriMesh, Locate
     let mut lines = Lines::new(bytes);
     let header = lines.next().ok_or_else(|| Fault::Empty.whole())?;
     let counts = match after_keyword(header)? {
-        [] => lines.next().ok_or_else(|| cut_short(&lines, "the counts of vertices and faces"))?,
+        [] => lines.next().ok_or_else(|| {
+            Fault::CutShort { expected: "the counts of vertices and faces".into() }.in_line(lines.number())
+        })?,
         rest => Line { text: rest, ..header },
     };
     let (n_vertices, n_faces) = parse_counts(counts)?;
@@ -42,10 +44,6 @@ pub(super) fn parse(bytes: &[u8], limits: &ReadLimits) -> Result<TriMesh, Locate
         return Err(Fault::Leftover { items: "faces", promised: n_faces }.in_line(line.number));
     }
     finish(positions, faces, limits)
-}
-
-fn cut_short(lines: &Lines<'_>, expected: &str) -> Located {
-    Fault::CutShort { expected: expected.into() }.in_line(lines.number())
 }
 
 fn truncated(lines: &Lines<'_>, items: &str, promised: u64, found: u64) -> Located {

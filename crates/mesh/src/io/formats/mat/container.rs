@@ -1,7 +1,7 @@
 //! The MAT-file level 5 container: a 128-byte header, then tagged elements, compressed or not.
 //!
-//! Everything is read as a stream with a budget, so a wrong length costs no memory and data that inflates
-//! without end is cut off.
+//! Everything is read as a stream with a budget, so that a wrong length costs no memory and a
+//! decompression bomb is cut off.
 
 use std::io::{self, Read};
 

@@ -2,7 +2,7 @@
 
 mod container;
 #[cfg(test)]
-pub(super) mod sample;
+pub(super) mod fixtures;
 mod surface;
 
 pub(super) use surface::parse;

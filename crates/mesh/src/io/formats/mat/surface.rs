@@ -218,7 +218,7 @@ impl Surface {
 mod tests {
     use std::io::Write;
 
-    use super::super::sample::{PLAIN, Style};
+    use super::super::fixtures::{PLAIN, Style};
     use super::*;
     use crate::error::Place;
     use crate::shapes;

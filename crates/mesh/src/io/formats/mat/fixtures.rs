@@ -1,4 +1,4 @@
-//! A writer of MATLAB files, for tests.
+//! A writer of MATLAB files.
 
 use std::io::Write;
 
