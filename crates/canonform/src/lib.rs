@@ -18,8 +18,7 @@
 //!     let surface = Surface::new(mesh, &options.form.repair)?;
 //!     shapes.push(describe(&surface, &options)?.prepare()?);
 //! }
-//! let metric = ShapeMetric::default();
-//! let comparison = compare(&ShapePair::new(&metric, [&shapes[0], &shapes[1]]))?;
+//! let comparison = compare(&ShapePair::new(ShapeMetric::default(), [&shapes[0], &shapes[1]]))?;
 //! assert_eq!(comparison.kind, MatchKind::Same);
 //! # Ok::<(), canonform::Error>(())
 //! ```

@@ -14,9 +14,6 @@ use crate::input::ShapeFile;
 const AREA: &str = "area";
 
 /// How the shapes of an index were described.
-///
-/// # Errors
-/// [`Error::UnknownOptions`].
 pub(super) fn options_of(index: &Index) -> Result<DescribeOptions, Error> {
     DescribeOptions::from_text(index.options()).ok_or_else(|| Error::UnknownOptions {
         path: index.path().to_owned(),
@@ -64,9 +61,6 @@ pub(super) fn shape(file: &ShapeFile, content: ContentHash, described: ShapeDesc
 }
 
 /// The form of an indexed shape, which was described with `options`.
-///
-/// # Errors
-/// [`Error::Descriptor`] if the stored numbers are not a form.
 pub(super) fn form(
     entry: &ShapeEntry,
     vectors: &ShapeVectors,
@@ -79,9 +73,6 @@ pub(super) fn form(
 }
 
 /// An indexed shape, ready to be compared.
-///
-/// # Errors
-/// [`Error::Descriptor`] if the stored numbers are not a form.
 pub(super) fn prepared(
     entry: &ShapeEntry,
     vectors: ShapeVectors,

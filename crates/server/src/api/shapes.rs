@@ -108,7 +108,8 @@ pub(super) async fn thumbnail(
     const PNG: &str = "image/png";
     let shared = app.clone();
     let drawing = move || {
-        let tag = tag(&format!("{}-{DRAWING}", shared.search.entry(&id)?.content));
+        let tag =
+            tag(&format!("{}-{DRAWING}", shared.search.index().entry(&id).map_err(Error::from)?.content));
         if is_known(&headers, &tag) {
             return Ok(tagged(tag, PNG, None));
         }
