@@ -25,7 +25,7 @@ const VERTICES: [usize; 5] = [3400, 1500, 8000, 2500, 5000];
 
 /// `experiments units`: for every signature and for aligned forms, the root mean square distance between two shapes of
 /// one built-in family with poses and triangulations of their own, and the ratio of the mean squared distance between
-/// families to its square, beside the numbers in use.
+/// families to its square, next to the values in use.
 pub(crate) fn units(args: &UnitsArgs) -> Result<ExitCode> {
     let bars = Bars::new(args.quiet);
     let mut shapes = Vec::new();

@@ -11,7 +11,7 @@ use retrieval::RetrievalError;
 
 use crate::input::point::InputPoint;
 
-/// Errors of this crate and of the crates beneath it. [`remedy`](Error::remedy) tells what would help.
+/// Errors of this crate and of the crates it builds on; [`remedy`](Error::remedy) says what would help.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {

@@ -78,7 +78,7 @@
 //!
 //! * The same input, options and seed give the same bits for any number of threads.
 //! * Long work reports its progress to an [`Observer`]; `&()` ignores it.
-//! * [`Error::remedy`] tells what would help against an error, as a [`Remedy`] that a program puts into its own words.
+//! * [`Error::remedy`] says what would help, as a [`Remedy`] that a program words in terms of its own interface.
 //! * Nothing here knows terminals, plots or HTTP.
 
 mod compare;

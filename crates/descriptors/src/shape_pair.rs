@@ -10,7 +10,7 @@ use crate::matching::{FormMatch, Reflections, match_forms};
 use crate::metric::{ShapeDistance, ShapeMetric};
 use crate::prepared::PreparedForm;
 
-/// A shape as it is compared: its fused vector, and its form rounded to the 32 bits that an index stores, so that a
+/// A shape prepared for comparison: its fused vector, and its form rounded to the 32 bits that an index stores, so that a
 /// shape compares in the same way before and after it is stored.
 #[derive(Debug)]
 pub struct PreparedShape {
@@ -120,7 +120,7 @@ impl<'a> ShapePair<'a> {
         Ok(match_forms(&PreparedForm::new(a)?, &PreparedForm::new(b)?, Reflections::Allow))
     }
 
-    /// How far apart the shapes are, without their sizes.
+    /// How far apart the shapes are, regardless of size.
     pub fn distance(&self) -> ShapeDistance {
         let [a, b] =
             self.shapes.map(|shape| shape.fused.chunks(ShapeMetric::FUSED_LENGTH).next().unwrap_or_default());

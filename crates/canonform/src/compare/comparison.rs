@@ -111,7 +111,7 @@ pub struct SurfaceComparison {
     pub overlay: Overlay,
 }
 
-/// Two forms laid over each other, at the size of the first, in units of the first mesh, in the place of the second.
+/// Two aligned forms at the size of the first, in units of its mesh, at the position of the second.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Overlay {
     /// The points of either form.
@@ -121,7 +121,7 @@ pub struct Overlay {
 }
 
 impl Overlay {
-    /// Lays two forms over each other by the best alignment of a pair. The forms may have more points than those that
+    /// Aligns two forms by the best alignment of a pair. The forms may have more points than those that
     /// were aligned.
     ///
     /// # Errors
@@ -300,7 +300,7 @@ mod tests {
     }
 
     #[test]
-    fn residuals_are_distances_to_the_other_form_as_it_is_laid_over() {
+    fn residuals_are_distances_to_the_other_aligned_form() {
         let (hand, changed) = (four_arms([1.0, 1.7, 2.6, 3.5]), four_arms([1.0, 1.4, 2.6, 3.1]));
         let overlay = compared(&hand, &scaled(&changed, 5.0)).overlay;
         for (mine, other) in [(0, 1), (1, 0)] {

@@ -88,7 +88,7 @@ mod tests {
     fn reranking_finds_what_aligning_all_finds() {
         let turns = |i: usize| 1.0 + 0.2 * i as f64;
         for query in [0, 13] {
-            // Signatures that tell something, and such that tell nothing.
+            // Informative signatures, and useless ones.
             for usefulness in [1.0, 0.0] {
                 let fused = |i: usize| usefulness * 0.05 * (i.abs_diff(query) as f64 + 2.0 * (i % 3) as f64);
                 let shapes: Vec<_> = (0..30).map(|i| spiral(turns(i), fused(i))).collect();

@@ -361,7 +361,7 @@ mod tests {
     }
 
     #[test]
-    fn shapes_are_known_by_name() {
+    fn shapes_are_found_by_name() {
         let (_folder, search) = indexed(&DescribeOptions::default());
         let options = SearchOptions::default();
         assert!(matches!(search.search_shape("none", &options), Err(Error::Index(_))));

@@ -61,7 +61,7 @@ pub struct Inputs<'a> {
 }
 
 impl Inputs<'_> {
-    /// The meshes, each with a unique name if extensions can make it so.
+    /// The meshes; files that differ only in their extensions have them in their names.
     pub(super) fn list(&self) -> Result<Vec<ShapeFile>, Error> {
         let mut shapes = Vec::new();
         for path in self.paths {
