@@ -119,8 +119,8 @@ impl DescribeOptions {
         Ok(())
     }
 
-    /// The options and the [version](ShapeMetric::VERSION) of the description as one line of JSON, equal for equal options. An index
-    /// stores it.
+    /// The options and the [version](ShapeMetric::VERSION) of the description as one line of JSON, equal for equal
+    /// options. An index stores it.
     pub fn text(&self) -> String {
         let options = Self { form: self.form.clone().normalized(), ..*self };
         let provenance = Provenance { description: ShapeMetric::VERSION, options };

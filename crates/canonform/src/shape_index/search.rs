@@ -3,14 +3,14 @@
 use std::path::Path;
 use std::time::Instant;
 
-use descriptors::{CanonicalForm, PreparedShape, ShapeMetric, ShapePair};
+use descriptors::{PreparedShape, ShapeMetric, ShapePair};
 use index::{Index, SearchMode, ShapeEntry};
 use mesh::TriMesh;
 use rayon::prelude::*;
 use retrieval::{Candidate, vote};
 use serde::Serialize;
 
-use super::record::{form, options_of, prepared};
+use super::record::{options_of, prepared};
 use super::rerank::{Ranked, rerank};
 use super::source::read_unchanged;
 use crate::compare::{Comparison, compare};
@@ -149,15 +149,7 @@ impl ShapeSearch {
         &self.index
     }
 
-    /// The form of a shape, at the points that the index stores.
-    ///
-    /// # Errors
-    /// [`Error::Index`].
-    pub fn form(&self, id: &str) -> Result<CanonicalForm, Error> {
-        form(&self.index.entry(id)?, &self.index.vectors(id)?, &self.describe)
-    }
-
-    /// A shape, ready to be compared.
+    /// A shape with its form at the points that the index stores, ready to be compared.
     ///
     /// # Errors
     /// [`Error::Index`].
@@ -382,6 +374,6 @@ mod tests {
         let gone = search.mesh("box0").unwrap_err();
         assert!(matches!(&gone, Error::MeshGone { id, .. } if id == "box0"));
         assert!(gone.to_string().contains("box0.vert"), "{gone}");
-        search.form("box0").unwrap();
+        search.prepared("box0").unwrap();
     }
 }

@@ -89,7 +89,7 @@ pub(super) async fn form(State(app): State<Arc<App>>, Id(id): Id) -> Result<Writ
 pub(super) fn form_of(app: &App, id: &str) -> Result<Geometry, Error> {
     match app.indexed(id) {
         Ok(measured) => Ok(measured.form()),
-        Err(fault) if is_missing(&fault) => Ok(Geometry::new(&dots(&app.search.form(id)?))),
+        Err(fault) if is_missing(&fault) => Ok(Geometry::new(&dots(app.search.prepared(id)?.form()))),
         Err(fault) => Err(fault),
     }
 }
@@ -124,7 +124,7 @@ pub(super) async fn thumbnail(
             }
             // Under another tag, and not kept: the mesh may come back.
             Err(fault) if is_missing(&fault) => {
-                let picture = draw(&dots(&shared.search.form(&id)?), View::Principal)?;
+                let picture = draw(&dots(shared.search.prepared(&id)?.form()), View::Principal)?;
                 Ok(tagged(super::answer::tag("points"), PNG, Some(picture)))
             }
             Err(fault) => Err(fault.into()),
