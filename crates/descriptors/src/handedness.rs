@@ -104,17 +104,16 @@ pub fn handedness(
     });
     let (Some(a), Some(b)) = (a, b) else { return Ok(Handedness::Unknown) };
     let nearest = NearestPoints::new(b.points.clone())?;
-    // The least distance of a map that preserves, of one that reverses orientation, and of an unclear one.
-    let [mut preserving, mut reversing, mut unclear] = [f64::INFINITY; 3];
+    // The least distance of a map that preserves, and of one that reverses orientation.
+    let (mut preserving, mut reversing) = (f64::INFINITY, f64::INFINITY);
     for reflections in [Reflections::Forbid, Reflections::Require] {
         let found = pair.best_with(reflections);
         let agreement = agreement(&a, &b, &nearest, &found.alignment);
-        let least = match agreement {
-            a if a > AGREEMENT => &mut preserving,
-            a if a < -AGREEMENT => &mut reversing,
-            _ => &mut unclear,
-        };
-        *least = least.min(found.rms);
+        if agreement > AGREEMENT {
+            preserving = preserving.min(found.rms);
+        } else if agreement < -AGREEMENT {
+            reversing = reversing.min(found.rms);
+        }
     }
-    Ok(ShapeMetric::handedness([preserving, reversing, unclear], pair.shapes[1].form().points().len()))
+    Ok(ShapeMetric::handedness([preserving, reversing], pair.shapes[1].form().points().len()))
 }

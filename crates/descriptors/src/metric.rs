@@ -220,19 +220,15 @@ impl ShapeMetric {
         form_rms < FITTING
     }
 
-    /// The handedness, from the root mean square distances of the best maps that preserve orientation, that reverse it,
-    /// and that do neither clearly, infinite if there is none. The second surface has unit area and `n_points` points.
-    ///
-    /// An unclear map that fits as well as a reversing one leaves the handedness unknown: the forms of poses whose limbs
-    /// shift may fit best under a motion that matches left with right.
-    pub fn handedness([preserving, reversing, unclear]: [f64; 3], n_points: usize) -> Handedness {
+    /// The handedness, from the root mean square distances of the best maps that preserve and that reverse orientation,
+    /// infinite if there is none. The second surface has unit area and `n_points` points.
+    pub fn handedness([preserving, reversing]: [f64; 2], n_points: usize) -> Handedness {
         // A point is about half of √(1 / n) from the nearest of n others.
         let least = EXCESS.powi(2) + 0.25 / n_points as f64;
         let decided =
             |better: f64, worse: f64| worse > DECISIVE * better && worse.powi(2) - better.powi(2) > least;
-        match (preserving.is_finite(), reversing.is_finite()) {
-            (false, false) => Handedness::Unknown,
-            (false, true) if !decided(reversing, unclear) => Handedness::Unknown,
+        match preserving.is_finite() || reversing.is_finite() {
+            false => Handedness::Unknown,
             _ if decided(preserving, reversing) => Handedness::Same,
             _ if decided(reversing, preserving) => Handedness::Mirrored,
             _ => Handedness::Either,
@@ -281,16 +277,15 @@ mod tests {
     }
 
     #[test]
-    fn only_a_clear_and_better_reversing_map_mirrors() {
+    fn the_handedness_follows_the_decisively_better_map() {
         let of = |distances| ShapeMetric::handedness(distances, 1000);
         let none = f64::INFINITY;
-        assert_eq!(of([none, 0.02, none]), Handedness::Mirrored);
-        assert_eq!(of([0.06, 0.02, none]), Handedness::Mirrored);
-        assert_eq!(of([none, 0.02, 0.06]), Handedness::Mirrored);
-        assert_eq!(of([none, 0.02, 0.03]), Handedness::Unknown);
-        assert_eq!(of([0.02, none, 0.02]), Handedness::Same);
-        assert_eq!(of([0.02, 0.021, none]), Handedness::Either);
-        assert_eq!(of([none, none, 0.01]), Handedness::Unknown);
+        for worse in [0.06, none] {
+            assert_eq!(of([0.02, worse]), Handedness::Same);
+            assert_eq!(of([worse, 0.02]), Handedness::Mirrored);
+        }
+        assert_eq!(of([0.021, 0.02]), Handedness::Either);
+        assert_eq!(of([none, none]), Handedness::Unknown);
     }
 
     #[test]
