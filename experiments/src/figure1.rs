@@ -4,7 +4,7 @@
 
 use anyhow::Result;
 use canonform::{StressChoice, StressOptions, embed_and_measure};
-use descriptors::{CanonicalForm, MatchOptions, PreparedForm, ShapeMetric, match_forms};
+use descriptors::{CanonicalForm, PreparedForm, Reflections, match_forms};
 use mesh::{TriMesh, orient_consistently};
 use report::figure1::{Figure1Pair, PAIRS, figure1};
 use report::results::{Figure1Record, Figure1Shape};
@@ -66,11 +66,11 @@ fn aligned<'a>(shapes: &[&Shape], forms: impl Iterator<Item = &'a CanonicalForm>
     let mut first: Option<(&str, PreparedForm)> = None;
     let mut surfaces = Vec::new();
     for (shape, form) in shapes.iter().zip(forms) {
-        let prepared = PreparedForm::new(form, ShapeMetric::MATCHED_POINTS)?;
+        let prepared = PreparedForm::new(form)?;
         let mut surface = form.to_mesh(shape.surface.mesh());
         match &first {
             Some((label, target)) if *label == shape.label => {
-                let motion = match_forms(&prepared, target, &MatchOptions::default())?.alignment;
+                let motion = match_forms(&prepared, target, Reflections::Allow).alignment;
                 surface.positions.iter_mut().for_each(|p| *p = motion.apply(p));
             }
             _ => first = Some((&shape.label, prepared)),

@@ -7,7 +7,7 @@
 //! * `DISTANCES SHAPE A below B`: the ratio of the median stress of `B` to that of `A`.
 
 use anyhow::Result;
-use descriptors::{CanonicalForm, MatchOptions, PreparedForm, ShapeMetric, match_forms};
+use descriptors::{CanonicalForm, PreparedForm, Reflections, match_forms};
 use geodesics::{FastMarchingOptions, Method, ObtuseTreatment, Sampling, Update, Variance};
 use linalg::LandmarkDistances;
 use mesh::{TriMesh, orient_consistently};
@@ -155,10 +155,10 @@ fn pictured(context: &Context<'_>, specimen: &Specimen<'_>, methods: &[Runs]) ->
     for (method, runs) in METHODS.into_iter().zip(methods) {
         let (embedding, stress) = &runs[median(&values(runs)).0];
         let form = CanonicalForm::new(embedding, mesh)?;
-        let prepared = PreparedForm::new(&form, ShapeMetric::MATCHED_POINTS)?;
+        let prepared = PreparedForm::new(&form)?;
         let mut surface = form.to_mesh(mesh);
         if let Some(target) = &first {
-            let motion = match_forms(&prepared, target, &MatchOptions::default())?.alignment;
+            let motion = match_forms(&prepared, target, Reflections::Allow).alignment;
             surface.positions.iter_mut().for_each(|p| *p = motion.apply(p));
         }
         first.get_or_insert(prepared);

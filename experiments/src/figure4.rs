@@ -6,7 +6,7 @@
 
 use anyhow::{Context as _, Result};
 use canonform::{FormMatches, FormOptions, StressChoice, embed, embedded_distances, form_matches};
-use descriptors::{CanonicalForm, MatchOptions, Normalization};
+use descriptors::{CanonicalForm, Normalization};
 use linalg::DistanceMatrix;
 use nmds::{classical_full, normalized_stress};
 use rayon::prelude::*;
@@ -89,7 +89,7 @@ fn matches(context: &Context<'_>, scale: Scale, forms: &[CanonicalForm]) -> Resu
         Scale::Raw => Normalization::Raw,
         Scale::Normalized => Normalization::UnitArea,
     };
-    Ok(form_matches(forms, normalization, &MatchOptions::default(), context.observer)?)
+    Ok(form_matches(forms, normalization, context.observer)?)
 }
 
 fn panel(

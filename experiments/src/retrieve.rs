@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 
 use anyhow::Result;
 use canonform::{DescribeOptions, ShapeDescription, describe, form_matches};
-use descriptors::{CanonicalForm, FormDistance, MatchOptions, Normalization, ShapeMetric, SignatureKind};
+use descriptors::{CanonicalForm, FormDistance, Normalization, ShapeMetric, SignatureKind};
 use linalg::DistanceMatrix;
 use report::results::{Classification, RetrievalRecord, RetrievalRow, Scale};
 use retrieval::{Averaging, Labels, UnknownThreshold, evaluate, mean_scores, precision_recall, rank, vote};
@@ -39,9 +39,7 @@ pub(crate) fn run(context: &Context<'_>) -> Result<()> {
             classification = classified(&method, &distances, &labels, context.config.knn)?;
         }
     }
-    let mut provenance = context.provenance(
-        serde_json::json!({ "description": options.text(), "matching": format!("{:?}", MatchOptions::default()) }),
-    );
+    let mut provenance = context.provenance(serde_json::json!({ "description": options.text() }));
     provenance.seconds.insert("describing".to_owned(), described.as_secs_f64());
     let measured = measured(&rows, &classification);
     let record = RetrievalRecord {
@@ -65,7 +63,7 @@ fn distances(
     let all = |distance: &dyn Fn(usize, usize) -> f64| DistanceMatrix::from_pairs(n, distance);
     let forms: Vec<CanonicalForm> = shapes.iter().map(|shape| shape.form.clone()).collect();
     let aligned = |normalization| {
-        let found = form_matches(&forms, normalization, &MatchOptions::default(), context.observer);
+        let found = form_matches(&forms, normalization, context.observer);
         found.map(|found| found.distances)
     };
     let form = aligned(Normalization::UnitArea)?;

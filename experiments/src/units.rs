@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use anyhow::Result;
 use canonform::{DescribeOptions, Observer, ShapeDescription, Surface, describe};
 use datasets::{ArticulatedOptions, Family, articulated};
-use descriptors::{FormDistance, MatchOptions, PreparedShape, ShapeMetric, ShapePair, SignatureKind};
+use descriptors::{FormDistance, PreparedShape, ShapeMetric, ShapePair, SignatureKind};
 use linalg::Matrix;
 use rayon::prelude::*;
 use terminal::Bars;
@@ -25,7 +25,7 @@ const VERTICES: [usize; 5] = [3400, 1500, 8000, 2500, 5000];
 
 /// `experiments units`: for every signature and for aligned forms, the root mean square distance between two shapes of
 /// one built-in family with poses and triangulations of their own, and the ratio of the mean squared distance between
-/// families to its square, beside the numbers in use.
+/// families to its square, next to the values in use.
 pub(crate) fn units(args: &UnitsArgs) -> Result<ExitCode> {
     let bars = Bars::new(args.quiet);
     let mut shapes = Vec::new();
@@ -65,15 +65,16 @@ pub(crate) fn units(args: &UnitsArgs) -> Result<ExitCode> {
     for (name, distance) in
         [("aligned forms", FormDistance::NearestNeighborRms), ("hausdorff95", FormDistance::Hausdorff95)]
     {
-        let metric = ShapeMetric { matching: MatchOptions { distance, ..MatchOptions::default() } };
         let mut means = [0.0; 2];
         for (mean, pairs) in means.iter_mut().zip([&within, &between]) {
             // Alignment takes long.
             let close: Vec<_> = pairs.iter().filter(|(a, b)| a.seed == 1 && b.seed == 1).collect();
             let distances: Vec<f64> = close
                 .par_iter()
-                .map(|(a, b)| Ok(ShapePair::new(&metric, [&a.shape, &b.shape]).best()?.distance))
-                .collect::<Result<_>>()?;
+                .map(|(a, b)| {
+                    ShapePair::new(ShapeMetric { distance }, [&a.shape, &b.shape]).best().distance(distance)
+                })
+                .collect();
             *mean = mean_square(distances.into_iter());
         }
         parts.push(Part::new(name, means, 1.0, [ShapeMetric::form_unit(distance), ShapeMetric::FORM_WEIGHT]));

@@ -3,13 +3,15 @@
 use std::path::PathBuf;
 
 use descriptors::DescriptorError;
+use files::FileError;
 use geodesics::GeodesicError;
 use index::IndexError;
 use mesh::MeshError;
 use retrieval::RetrievalError;
-use surface::{FaceId, VertexId};
 
-/// Errors of this crate and of the crates beneath it. [`remedy`](Error::remedy) tells what would help.
+use crate::input::point::InputPoint;
+
+/// Errors of this crate and of the crates it builds on; [`remedy`](Error::remedy) says what would help.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
@@ -87,9 +89,9 @@ pub enum Error {
         /// The most that are evaluated at once.
         limit: usize,
     },
-    /// A file of distances that is not a square matrix.
+    /// A line of a file of labels or distances.
     #[error("{path}, line {line}: {what}", path = path.display())]
-    BadMatrix {
+    BadLine {
         /// The file.
         path: PathBuf,
         /// The line, counted from one.
@@ -103,56 +105,28 @@ pub enum Error {
         /// The file.
         path: PathBuf,
     },
-    /// A vertex that the input does not have.
-    #[error("vertex {vertex} does not exist; the mesh has {n_vertices} vertices, counted from 0")]
-    NoSuchVertex {
-        /// The vertex.
-        vertex: VertexId,
+    /// A point of a vertex, edge or face that the input does not have.
+    #[error(
+        "{element} does not exist; the mesh has {n_faces} faces and {n_vertices} vertices, counted from 0",
+        element = point.element()
+    )]
+    NoSuchPoint {
+        /// The point.
+        point: InputPoint,
         /// Vertices of the input.
         n_vertices: usize,
-    },
-    /// A vertex of the input that the repair dropped.
-    #[error(
-        "vertex {vertex} was left out by the repair: it has no face, or is not in the largest component; choose \
-         another vertex"
-    )]
-    DroppedVertex {
-        /// The vertex.
-        vertex: VertexId,
-    },
-    /// A face that the input does not have.
-    #[error("face {face} does not exist; the mesh has {n_faces} faces, counted from 0")]
-    NoSuchFace {
-        /// The face.
-        face: FaceId,
         /// Faces of the input.
         n_faces: usize,
     },
-    /// A face of the input that the repair dropped.
+    /// A point of a vertex, edge or face of the input that the repair dropped.
     #[error(
-        "face {face} was left out by the repair: it is degenerate, or not in the largest component; choose \
-         another face"
+        "{element} was left out by the repair: it is degenerate, without a face, or not in the largest component; \
+         choose another point",
+        element = point.element()
     )]
-    DroppedFace {
-        /// The face.
-        face: FaceId,
-    },
-    /// Two vertices of the input without an edge between them.
-    #[error("there is no edge between vertices {a} and {b}; choose two vertices of one face", a = ends[0], b = ends[1])]
-    NoSuchEdge {
-        /// The vertices.
-        ends: [VertexId; 2],
-    },
-    /// An edge of the input that the repair dropped.
-    #[error(
-        "the edge between vertices {a} and {b} was left out by the repair because it has no length; choose one of \
-         its vertices",
-        a = ends[0],
-        b = ends[1]
-    )]
-    DroppedEdge {
-        /// Its vertices.
-        ends: [VertexId; 2],
+    DroppedPoint {
+        /// The point.
+        point: InputPoint,
     },
     /// A path to a point without a known distance.
     #[error("there is no path to {target}: it lies beyond the distance limit")]
@@ -196,13 +170,8 @@ pub enum Error {
         limit_mib: usize,
     },
     /// A folder or a text file that cannot be read.
-    #[error("cannot read {path}: {source}", path = path.display())]
-    Io {
-        /// The folder or file.
-        path: PathBuf,
-        /// The error of the operating system.
-        source: std::io::Error,
-    },
+    #[error(transparent)]
+    File(#[from] FileError),
     /// A folder without meshes.
     #[error(
         "{path}: no mesh found in this folder or its sub-folders; \
@@ -213,16 +182,6 @@ pub enum Error {
     NoShapes {
         /// The folder.
         path: PathBuf,
-    },
-    /// A line of a label file that cannot be read.
-    #[error("{path}, line {line}: expected `name,label`, found `{found}`", path = path.display())]
-    BadLabelLine {
-        /// The file.
-        path: PathBuf,
-        /// The line, counted from one.
-        line: usize,
-        /// The text of the line.
-        found: String,
     },
     /// A shape that the label file does not name.
     #[error("{path}: no label for `{name}`; add a line `{name},LABEL`", path = path.display())]
@@ -266,12 +225,13 @@ pub enum Remedy {
 
 impl Error {
     /// What would help, if it depends on the interface of the program; other advice is part of the message.
-    #[must_use]
     pub fn remedy(&self) -> Option<Remedy> {
         Some(match self {
             Self::Mesh(MeshError::Disconnected { .. })
             | Self::Geodesic(GeodesicError::Disconnected { .. }) => Remedy::KeepLargestOrBridge,
-            Self::DroppedVertex { .. } | Self::DroppedFace { .. } => Remedy::BridgeComponents,
+            Self::DroppedPoint { point: InputPoint::Vertex(_) | InputPoint::Face { .. } } => {
+                Remedy::BridgeComponents
+            }
             Self::Descriptor(DescriptorError::NotThreeDimensional { .. }) => Remedy::UseThreeDimensions,
             Self::Geodesic(GeodesicError::NotFactorised { .. }) => Remedy::UseFastMarching,
             Self::Geodesic(GeodesicError::NoWay { .. }) | Self::NoPath { .. } => Remedy::RaiseMaxDistance,

@@ -18,8 +18,7 @@
 //!     let surface = Surface::new(mesh, &options.form.repair)?;
 //!     shapes.push(describe(&surface, &options)?.prepare()?);
 //! }
-//! let metric = ShapeMetric::default();
-//! let comparison = compare(&ShapePair::new(&metric, [&shapes[0], &shapes[1]]))?;
+//! let comparison = compare(&ShapePair::new(ShapeMetric::default(), [&shapes[0], &shapes[1]]))?;
 //! assert_eq!(comparison.kind, MatchKind::Same);
 //! # Ok::<(), canonform::Error>(())
 //! ```
@@ -79,7 +78,7 @@
 //!
 //! * The same input, options and seed give the same bits for any number of threads.
 //! * Long work reports its progress to an [`Observer`]; `&()` ignores it.
-//! * [`Error::remedy`] tells what would help against an error, as a [`Remedy`] that a program puts into its own words.
+//! * [`Error::remedy`] says what would help, as a [`Remedy`] that a program words in terms of its own interface.
 //! * Nothing here knows terminals, plots or HTTP.
 
 mod compare;

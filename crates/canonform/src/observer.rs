@@ -4,7 +4,7 @@ use geodesics::{DistanceSolver, PrunedSolver, Source};
 use linalg::Matrix;
 use surface::VertexId;
 
-/// Is told about the progress of long work, from any thread.
+/// Receives the progress of long work, from any thread.
 pub trait Observer: Sync {
     /// A stage of `total` steps begins; the previous one has ended.
     fn begin(&self, stage: &str, total: usize);

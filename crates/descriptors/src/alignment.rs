@@ -15,7 +15,6 @@ pub struct Alignment {
 
 impl Alignment {
     /// The motion that applies an orthogonal matrix about the origin.
-    #[must_use]
     pub fn about_origin(rotation: Matrix3<f64>) -> Self {
         Self { rotation, translation: Vector3::zeros(), reflected: rotation.determinant() < 0.0 }
     }
@@ -47,7 +46,6 @@ impl Alignment {
     /// The motion that minimises the mean squared distance between the moved first points and the second points of
     /// `pairs`, with a reflection if and only if `reflected` (Kabsch 1976, by the SVD of the 3 x 3 cross-covariance).
     /// `None` without pairs.
-    #[must_use]
     pub fn fit(pairs: &[(Point3<f64>, Point3<f64>)], reflected: bool) -> Option<Self> {
         if pairs.is_empty() {
             return None;

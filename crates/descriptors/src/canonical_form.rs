@@ -36,8 +36,7 @@ impl CanonicalForm {
     /// The form of `mesh` from an embedding of its vertices, weighted by the areas around the vertices.
     ///
     /// # Errors
-    /// [`DescriptorError::NotThreeDimensional`], [`DescriptorError::SizeMismatch`],
-    /// [`DescriptorError::NoExtent`].
+    /// [`DescriptorError::NotThreeDimensional`], [`DescriptorError::SizeMismatch`], [`DescriptorError::NoExtent`].
     pub fn new(embedding: &Embedding, mesh: &TriMesh) -> Result<Self, DescriptorError> {
         if embedding.dim() != 3 {
             return Err(DescriptorError::NotThreeDimensional { dim: embedding.dim() });
@@ -114,25 +113,21 @@ impl CanonicalForm {
     }
 
     /// The centred points, one per vertex, in the unit of the distances.
-    #[must_use]
     pub fn points(&self) -> &[Point3<f64>] {
         &self.points
     }
 
     /// The share of the surface around each point; the shares sum to one.
-    #[must_use]
     pub fn weights(&self) -> &[f64] {
         &self.weights
     }
 
     /// The area of the surface in squared units of the form; `None` if coordinates are not lengths.
-    #[must_use]
     pub fn area(&self) -> Option<f64> {
         self.area
     }
 
     /// Root mean square distance from the centroid.
-    #[must_use]
     pub fn spread(&self) -> f64 {
         spread(&self.points, &self.weights)
     }
@@ -166,7 +161,6 @@ impl CanonicalForm {
     }
 
     /// The form as a mesh: its points with the faces of the mesh it was made from.
-    #[must_use]
     pub fn to_mesh(&self, mesh: &TriMesh) -> TriMesh {
         TriMesh { positions: self.points.clone(), faces: mesh.faces.clone() }
     }

@@ -23,16 +23,6 @@ pub enum DescriptorError {
         /// Number of points.
         n_points: usize,
     },
-    /// An option out of its range.
-    #[error("{option} is {value}; it must be {range}")]
-    BadOption {
-        /// Name of the option.
-        option: &'static str,
-        /// The value given.
-        value: f64,
-        /// The values allowed.
-        range: &'static str,
-    },
     /// The name of no signature.
     #[error("there is no signature `{name}`; choose from {known}")]
     UnknownSignature {

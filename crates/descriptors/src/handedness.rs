@@ -7,17 +7,9 @@ use crate::alignment::Alignment;
 use crate::canonical_form::CanonicalForm;
 use crate::error::DescriptorError;
 use crate::matching::Reflections;
-use crate::metric::Handedness;
-use crate::metric::ShapeMetric;
+use crate::metric::{Handedness, ShapeMetric};
 use crate::nearest::NearestPoints;
 use crate::shape_pair::ShapePair;
-
-/// One of two maps fits and the other does not if its distance is larger by this factor, ...
-const DECISIVE: f64 = 1.25;
-
-/// ... and larger by this much in the mean square at unit area, beyond the distance between samples of one surface. Two
-/// poses of one body are about 0.03 apart.
-const EXCESS: f64 = 0.02;
 
 /// Normals agree, or disagree, if their mean agreement is beyond this.
 const AGREEMENT: f64 = 0.2;
@@ -98,12 +90,12 @@ fn agreement(a: &OutwardForm, b: &OutwardForm, nearest: &NearestPoints, motion: 
 /// bodies whose left differs from their right.
 ///
 /// # Errors
-/// [`DescriptorError::BadOption`], [`DescriptorError::NoExtent`].
+/// [`DescriptorError::NoExtent`].
 pub fn handedness(
     pair: &ShapePair<'_>,
     surfaces: [(&CanonicalForm, &TriMesh); 2],
 ) -> Result<Handedness, DescriptorError> {
-    if !ShapeMetric::fits(pair.best()?.rms) {
+    if !ShapeMetric::fits(pair.best().rms) {
         return Ok(Handedness::Unknown);
     }
     let [a, b] = [0, 1].map(|i| {
@@ -115,7 +107,7 @@ pub fn handedness(
     // The least distance of a map that preserves, and of one that reverses orientation.
     let (mut preserving, mut reversing) = (f64::INFINITY, f64::INFINITY);
     for reflections in [Reflections::Forbid, Reflections::Require] {
-        let found = pair.best_with(reflections)?;
+        let found = pair.best_with(reflections);
         let agreement = agreement(&a, &b, &nearest, &found.alignment);
         if agreement > AGREEMENT {
             preserving = preserving.min(found.rms);
@@ -123,14 +115,5 @@ pub fn handedness(
             reversing = reversing.min(found.rms);
         }
     }
-    // A point of a surface of unit area is about half of √(1 / n) from the nearest of n vertices.
-    let least = EXCESS.powi(2) + 0.25 / pair.shapes[1].form().points().len() as f64;
-    let decided =
-        |better: f64, worse: f64| worse > DECISIVE * better && worse.powi(2) - better.powi(2) > least;
-    Ok(match (preserving.is_finite(), reversing.is_finite()) {
-        (false, false) => Handedness::Unknown,
-        _ if decided(preserving, reversing) => Handedness::Same,
-        _ if decided(reversing, preserving) => Handedness::Mirrored,
-        _ => Handedness::Either,
-    })
+    Ok(ShapeMetric::handedness([preserving, reversing], pair.shapes[1].form().points().len()))
 }

@@ -9,7 +9,6 @@
 //! Knows nothing of files or indexes.
 
 mod alignment;
-mod bound;
 mod canonical_form;
 mod error;
 mod handedness;
@@ -26,8 +25,8 @@ pub use alignment::Alignment;
 pub use canonical_form::{CanonicalForm, Normalization};
 pub use error::DescriptorError;
 pub use handedness::handedness;
-pub use matching::{FormDistance, FormMatch, MatchOptions, Reflections, match_forms, match_forms_within};
-pub use metric::{Handedness, MatchKind, ShapeDistance, ShapeMetric};
+pub use matching::{FormMatch, Reflections, match_forms, match_forms_within};
+pub use metric::{FormDistance, Handedness, MatchKind, ShapeDistance, ShapeMetric};
 pub use nearest::NearestPoints;
 pub use prepared::PreparedForm;
 pub use shape_pair::{PreparedShape, ShapePair};

@@ -3,26 +3,13 @@
 use nalgebra::{Matrix3, Point3};
 
 use crate::alignment::Alignment;
-use crate::error::DescriptorError;
-use crate::prepared::Detail;
-use crate::prepared::PreparedForm;
-
-/// A distance between two aligned forms.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum FormDistance {
-    /// Root mean square distance from the samples of either form to the nearest points of the other.
-    #[default]
-    NearestNeighborRms,
-    /// The distance that 95 % of the samples of either form do not exceed, the larger of the two directions: a
-    /// Hausdorff distance that tolerates a few outliers.
-    Hausdorff95,
-}
+use crate::metric::FormDistance;
+use crate::prepared::{Detail, PreparedForm};
 
 /// Whether an alignment may reflect.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Reflections {
     /// It may: distances determine a form only up to reflection.
-    #[default]
     Allow,
     /// It must not.
     Forbid,
@@ -30,63 +17,32 @@ pub enum Reflections {
     Require,
 }
 
-/// Options of [`match_forms`].
-#[derive(Debug, Clone, PartialEq)]
-pub struct MatchOptions {
-    /// The distance that is reported. Default: [`FormDistance::NearestNeighborRms`], which every alignment minimises.
-    pub distance: FormDistance,
-    /// Default: [`Reflections::Allow`].
-    pub reflections: Reflections,
-    /// Axes whose spreads differ by less than this factor in both forms may be exchanged, since their order is then
-    /// arbitrary. Default: 1.15.
-    pub near_equal_axes: f64,
-    /// Share of the closest pairs that a step of the alignment uses, in (0, 1]. Default: 1, so that the alignment
-    /// minimises the root mean square distance.
-    pub trim: f64,
-    /// Number of hypotheses that are refined until they converge, after a few steps of all of them. Default: 8.
-    pub refined: usize,
-}
-
-impl Default for MatchOptions {
-    fn default() -> Self {
-        Self {
-            distance: FormDistance::default(),
-            reflections: Reflections::default(),
-            near_equal_axes: 1.15,
-            trim: 1.0,
-            refined: 8,
-        }
-    }
-}
-
-impl MatchOptions {
-    /// # Errors
-    /// [`DescriptorError::BadOption`] names the option, its value and its range.
-    pub fn validate(&self) -> Result<(), DescriptorError> {
-        let bad = |option, value, range| Err(DescriptorError::BadOption { option, value, range });
-        if self.near_equal_axes.is_nan() || self.near_equal_axes < 1.0 {
-            return bad("near_equal_axes", self.near_equal_axes, "at least 1");
-        }
-        if !(self.trim > 0.0 && self.trim <= 1.0) {
-            return bad("trim", self.trim, "above 0 and at most 1");
-        }
-        if self.refined == 0 {
-            return bad("refined", 0.0, "at least 1");
-        }
-        Ok(())
-    }
-}
-
 /// The best rigid match of two forms.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FormMatch {
     /// Takes the first form, in its own coordinates, onto the second.
     pub alignment: Alignment,
-    /// Root mean square distance of the aligned forms, in the unit of the forms.
+    /// [`FormDistance::NearestNeighborRms`] of the aligned forms, in their unit. The alignment minimises it.
     pub rms: f64,
-    /// The distance that [`MatchOptions::distance`] names, in the same unit.
-    pub distance: f64,
+    /// [`FormDistance::Hausdorff95`] of the aligned forms, in their unit.
+    pub hausdorff95: f64,
 }
+
+impl FormMatch {
+    /// One of the distances between the aligned forms.
+    pub fn distance(&self, kind: FormDistance) -> f64 {
+        match kind {
+            FormDistance::NearestNeighborRms => self.rms,
+            FormDistance::Hausdorff95 => self.hausdorff95,
+        }
+    }
+}
+
+/// Axes whose spreads differ by less than this factor in both forms may be exchanged, since their order is arbitrary.
+const NEAR_EQUAL_AXES: f64 = 1.15;
+
+/// Number of hypotheses that are refined until they converge, after a few steps of all of them.
+const REFINED: usize = 8;
 
 /// The effort of a stage of the alignment.
 #[derive(Debug, Clone, Copy)]
@@ -119,87 +75,72 @@ const LEAST_GAIN: f64 = 1e-3;
 ///
 /// * The principal axes of both are matched under all signs, and with near-equal axes exchanged: 8 to 48 hypotheses,
 ///   half of them without reflections, ranked by a few steps on a coarse sample.
-/// * The best hypotheses are refined on a coarse sample by (trimmed) iterative closest points, and the best of these
-///   on all samples. Pairs are taken in both directions, so neither form is favoured; samples are spread evenly and
-///   count the same, so the triangulation does not matter; each step solves Kabsch's problem and keeps the
-///   handedness of its hypothesis.
-/// * Reflections are allowed by default: distances on a surface do not determine them.
+/// * The best hypotheses are refined on a coarse sample by iterative closest points, and the best of these on all
+///   samples. Pairs are taken in both directions, so neither form is favoured; samples are spread evenly and count the
+///   same, so the triangulation does not matter; each step solves Kabsch's problem and keeps the handedness of its
+///   hypothesis.
 /// * The distance is symmetric up to the local minimum in which the refinement ends.
 ///
 /// ```
-/// use canonform_descriptors::{CanonicalForm, MatchOptions, PreparedForm, match_forms};
+/// use canonform_descriptors::{CanonicalForm, PreparedForm, Reflections, match_forms};
 /// use nalgebra::Point3;
 ///
 /// let spiral = |turn: f64| {
 ///     let at = |i: i32| Point3::new(f64::from(i), (turn + 0.1 * f64::from(i)).sin(), (turn + 0.1 * f64::from(i)).cos());
-///     let form = CanonicalForm::from_points((0..100).map(at).collect(), vec![1.0; 100])?;
-///     PreparedForm::new(&form, 50)
+///     PreparedForm::new(&CanonicalForm::from_points((0..100).map(at).collect(), vec![1.0; 100])?)
 /// };
-/// let found = match_forms(&spiral(0.0)?, &spiral(2.0)?, &MatchOptions::default())?;
+/// let found = match_forms(&spiral(0.0)?, &spiral(2.0)?, Reflections::Allow);
 /// assert!(found.rms < 0.1, "one is the other, turned about its axis");
 /// # Ok::<(), canonform_descriptors::DescriptorError>(())
 /// ```
-///
-/// # Errors
-/// [`DescriptorError::BadOption`].
-pub fn match_forms(
-    a: &PreparedForm,
-    b: &PreparedForm,
-    options: &MatchOptions,
-) -> Result<FormMatch, DescriptorError> {
-    let found = match_forms_within(a, b, options, f64::INFINITY)?;
-    found.ok_or(DescriptorError::NoExtent { n_points: a.samples().len() })
+#[must_use]
+pub fn match_forms(a: &PreparedForm, b: &PreparedForm, reflections: Reflections) -> FormMatch {
+    refined_fully(a, b, refined_roughly(a, b, reflections).1)
 }
 
-/// Aligns two forms as [`match_forms`] does, or returns `None` once the root mean square distance turns out to be
-/// larger than `limit`.
+/// Aligns two forms as [`match_forms`] does, with or without a reflection, or returns `None` once the root mean square
+/// distance turns out to be larger than `limit`.
 ///
 /// * Nothing is aligned if the [lower bound](PreparedForm::least_distance) of the distance is larger.
 /// * The alignment stops if after its second stage the error on a coarse sample is more than twice the limit. This
 ///   is a heuristic: the last stage hardly moves a form any more, and on the built-in dataset no neighbour is lost.
-///
-/// # Errors
-/// [`DescriptorError::BadOption`].
-pub fn match_forms_within(
-    a: &PreparedForm,
-    b: &PreparedForm,
-    options: &MatchOptions,
-    limit: f64,
-) -> Result<Option<FormMatch>, DescriptorError> {
-    options.validate()?;
+#[must_use]
+pub fn match_forms_within(a: &PreparedForm, b: &PreparedForm, limit: f64) -> Option<FormMatch> {
     if a.least_distance(b) > limit {
-        return Ok(None);
+        return None;
     }
+    let (error, start) = refined_roughly(a, b, Reflections::Allow);
+    let found = (error <= HOPELESS * limit).then(|| refined_fully(a, b, start));
+    found.filter(|found| found.rms <= limit)
+}
+
+/// The best hypothesis after all stages but the last, and its error.
+fn refined_roughly(a: &PreparedForm, b: &PreparedForm, reflections: Reflections) -> (f64, Alignment) {
     let refine_all = |stage, starts: Vec<Alignment>| {
-        let refined = starts.into_iter().map(|start| refine(a, b, start, stage, options.trim));
-        let mut found: Vec<(f64, Alignment)> = refined.collect();
+        let mut found: Vec<_> = starts.into_iter().map(|start| refine(a, b, start, stage)).collect();
         found.sort_by(|x, y| x.0.total_cmp(&y.0));
         found
     };
-    let motions = |found: Vec<(f64, Alignment)>| found.into_iter().map(|(_, motion)| motion);
-    let sketched = refine_all(SKETCH, hypotheses(a, b, options));
-    let rough = refine_all(ROUGH, motions(sketched).take(options.refined).collect());
-    let (error, start) = rough[0];
-    if error > HOPELESS * limit {
-        return Ok(None);
-    }
-    let (_, motion) = refine(a, b, start, FINE, options.trim);
+    let sketched = refine_all(SKETCH, hypotheses(a, b, reflections));
+    refine_all(ROUGH, sketched.into_iter().map(|(_, motion)| motion).take(REFINED).collect())[0]
+}
+
+fn refined_fully(a: &PreparedForm, b: &PreparedForm, start: Alignment) -> FormMatch {
+    let (_, motion) = refine(a, b, start, FINE);
     let found = pairs(a, b, &motion, FINE);
-    let sides = found.split_at(a.samples().len());
-    let rms = rms(sides);
-    let distance = match options.distance {
-        FormDistance::NearestNeighborRms => rms,
-        FormDistance::Hausdorff95 => hausdorff95(sides),
-    };
-    let alignment = b.to_principal.inverse().after(&motion).after(&a.to_principal);
-    Ok(Some(FormMatch { alignment, rms, distance }).filter(|found| found.rms <= limit))
+    let (from_a, from_b) = found.split_at(a.samples().len());
+    FormMatch {
+        alignment: b.to_principal.inverse().after(&motion).after(&a.to_principal),
+        rms: (0.5 * (mean_square(from_a) + mean_square(from_b))).sqrt(),
+        hausdorff95: sq_quantile95(from_a).max(sq_quantile95(from_b)).sqrt(),
+    }
 }
 
 /// Signed permutations of the principal axes that may bring `a` onto `b`.
-fn hypotheses(a: &PreparedForm, b: &PreparedForm, options: &MatchOptions) -> Vec<Alignment> {
+fn hypotheses(a: &PreparedForm, b: &PreparedForm, reflections: Reflections) -> Vec<Alignment> {
     const PERMUTATIONS: [[usize; 3]; 6] = [[0, 1, 2], [1, 0, 2], [0, 2, 1], [2, 1, 0], [1, 2, 0], [2, 0, 1]];
     let exchangeable = |i: usize, j: usize| {
-        let near = |spread: [f64; 3]| spread[i.min(j)] <= options.near_equal_axes * spread[i.max(j)];
+        let near = |spread: [f64; 3]| spread[i.min(j)] <= NEAR_EQUAL_AXES * spread[i.max(j)];
         near(a.axis_spread) && near(b.axis_spread)
     };
     // Principal axes may be left-handed: then a motion between them reflects if the motion in space does not.
@@ -222,7 +163,7 @@ fn hypotheses(a: &PreparedForm, b: &PreparedForm, options: &MatchOptions) -> Vec
                 matrix[(i, j)] = if signs >> i & 1 == 0 { 1.0 } else { -1.0 };
             }
             let motion = Alignment::about_origin(matrix);
-            let allowed = match options.reflections {
+            let allowed = match reflections {
                 Reflections::Allow => true,
                 Reflections::Forbid => motion.reflected == flipped,
                 Reflections::Require => motion.reflected != flipped,
@@ -251,27 +192,13 @@ fn pairs(a: &PreparedForm, b: &PreparedForm, motion: &Alignment, stage: Stage) -
     from_a.chain(from_b).collect()
 }
 
-/// Root mean square of the closest share `trim` of the pairs.
-fn error(pairs: &[Pair], trim: f64) -> f64 {
-    let kept = share_of(pairs.len(), trim);
-    let mut squares: Vec<f64> = pairs.iter().map(|pair| pair.2).collect();
-    if kept < squares.len() {
-        squares.select_nth_unstable_by(kept, f64::total_cmp);
-    }
-    (squares[..kept].iter().sum::<f64>() / kept.max(1) as f64).sqrt()
-}
-
-fn share_of(n: usize, trim: f64) -> usize {
-    ((n as f64 * trim).ceil() as usize).min(n)
-}
-
-/// Trimmed iterative closest points from `start`. Returns the best motion and its error.
-fn refine(a: &PreparedForm, b: &PreparedForm, start: Alignment, stage: Stage, trim: f64) -> (f64, Alignment) {
+/// Iterative closest points from `start`. Returns the least root mean square distance and its motion.
+fn refine(a: &PreparedForm, b: &PreparedForm, start: Alignment, stage: Stage) -> (f64, Alignment) {
     let mut motion = start;
     let mut best = (f64::INFINITY, start);
     for _ in 0..=stage.steps {
-        let mut found = pairs(a, b, &motion, stage);
-        let error = error(&found, trim);
+        let found = pairs(a, b, &motion, stage);
+        let error = mean_square(&found).sqrt();
         let settled = error > best.0 * (1.0 - LEAST_GAIN);
         if error < best.0 {
             best = (error, motion);
@@ -279,11 +206,7 @@ fn refine(a: &PreparedForm, b: &PreparedForm, start: Alignment, stage: Stage, tr
         if settled {
             break;
         }
-        let kept = share_of(found.len(), trim);
-        if kept < found.len() {
-            found.select_nth_unstable_by(kept, |x, y| x.2.total_cmp(&y.2));
-        }
-        let close: Vec<_> = found[..kept].iter().map(|(x, y, _)| (*x, *y)).collect();
+        let close: Vec<_> = found.iter().map(|(x, y, _)| (*x, *y)).collect();
         match Alignment::fit(&close, start.reflected) {
             Some(next) => motion = next,
             None => break,
@@ -292,20 +215,15 @@ fn refine(a: &PreparedForm, b: &PreparedForm, start: Alignment, stage: Stage, tr
     best
 }
 
-/// See [`FormDistance::NearestNeighborRms`].
-fn rms((from_a, from_b): (&[Pair], &[Pair])) -> f64 {
-    let mean = |side: &[Pair]| side.iter().map(|pair| pair.2).sum::<f64>() / side.len().max(1) as f64;
-    (0.5 * (mean(from_a) + mean(from_b))).sqrt()
+fn mean_square(pairs: &[Pair]) -> f64 {
+    pairs.iter().map(|pair| pair.2).sum::<f64>() / pairs.len().max(1) as f64
 }
 
-/// See [`FormDistance::Hausdorff95`].
-fn hausdorff95((from_a, from_b): (&[Pair], &[Pair])) -> f64 {
-    let quantile = |side: &[Pair]| {
-        let mut squares: Vec<f64> = side.iter().map(|pair| pair.2).collect();
-        let rank = share_of(squares.len(), 0.95).saturating_sub(1);
-        *squares.select_nth_unstable_by(rank, f64::total_cmp).1
-    };
-    quantile(from_a).max(quantile(from_b)).sqrt()
+/// The squared distance that 95 % of the pairs do not exceed.
+fn sq_quantile95(pairs: &[Pair]) -> f64 {
+    let mut squares: Vec<f64> = pairs.iter().map(|pair| pair.2).collect();
+    let rank = (squares.len() as f64 * 0.95).ceil() as usize - 1;
+    *squares.select_nth_unstable_by(rank, f64::total_cmp).1
 }
 
 #[cfg(test)]
@@ -331,7 +249,7 @@ mod tests {
 
     fn prepared(points: &[Point3<f64>]) -> PreparedForm {
         let form = CanonicalForm::from_points(points.to_vec(), vec![1.0; points.len()]).unwrap();
-        PreparedForm::new(&form, 400).unwrap()
+        PreparedForm::new(&form).unwrap()
     }
 
     fn turned(points: &[Point3<f64>], mirror: f64) -> Vec<Point3<f64>> {
@@ -346,13 +264,9 @@ mod tests {
     fn a_moved_form_has_distance_zero_and_its_motion_is_found() {
         let points = figure(600, 1.0);
         for mirror in [1.0, -1.0] {
-            let found = match_forms(
-                &prepared(&points),
-                &prepared(&turned(&points, mirror)),
-                &MatchOptions::default(),
-            )
-            .unwrap();
-            assert!(found.distance < 1e-10, "{}", found.distance);
+            let found =
+                match_forms(&prepared(&points), &prepared(&turned(&points, mirror)), Reflections::Allow);
+            assert!(found.hausdorff95 < 1e-10, "{}", found.hausdorff95);
             assert_eq!(found.alignment.reflected, mirror < 0.0);
             let (a, b) = (
                 CanonicalForm::from_points(points.clone(), vec![1.0; 600]).unwrap(),
@@ -366,10 +280,7 @@ mod tests {
     #[test]
     fn a_mirror_image_differs_if_reflections_are_forbidden() {
         let points = figure(600, 1.0);
-        let by = |reflections, other: &PreparedForm| {
-            let options = MatchOptions { reflections, ..Default::default() };
-            match_forms(&prepared(&points), other, &options).unwrap()
-        };
+        let by = |reflections, other: &PreparedForm| match_forms(&prepared(&points), other, reflections);
         // Whatever the handedness of the principal axes.
         for axis in 0..3 {
             let mut signs = Vector3::repeat(1.0);
@@ -387,38 +298,35 @@ mod tests {
 
     #[test]
     fn the_distance_is_symmetric_and_grows_with_the_difference() {
-        let options = MatchOptions::default();
         let base = prepared(&figure(600, 1.0));
         let mut last = 0.0;
         for bend in [1.5, 2.5, 4.0] {
             let other = prepared(&figure(500, bend));
+            let there = match_forms(&base, &other, Reflections::Allow);
+            let back = match_forms(&other, &base, Reflections::Allow);
             for kind in [FormDistance::NearestNeighborRms, FormDistance::Hausdorff95] {
-                let options = MatchOptions { distance: kind, ..options.clone() };
-                let there = match_forms(&base, &other, &options).unwrap().distance;
-                let back = match_forms(&other, &base, &options).unwrap().distance;
+                let (there, back) = (there.distance(kind), back.distance(kind));
                 assert!((there - back).abs() < 0.02 * there, "{there} {back}");
             }
-            let distance = match_forms(&base, &other, &options).unwrap().distance;
-            assert!(distance > last);
-            last = distance;
+            assert!(there.rms > last);
+            last = there.rms;
         }
     }
 
     #[test]
     fn the_lower_bound_holds_and_far_pairs_are_abandoned() {
         let forms: Vec<_> = [0.2, 1.0, 2.5, 4.0, 9.0].map(|bend| prepared(&figure(500, bend))).into();
-        let options = MatchOptions::default();
         let mut bounded = 0;
         for (a, b) in forms.iter().flat_map(|a| forms.iter().map(move |b| (a, b))) {
-            let whole = match_forms(a, b, &options).unwrap();
+            let whole = match_forms(a, b, Reflections::Allow);
             let least = a.least_distance(b);
-            assert!(least <= whole.distance + 1e-12, "{least} {}", whole.distance);
+            assert!(least <= whole.rms + 1e-12, "{least} {}", whole.rms);
             assert_eq!(least, b.least_distance(a));
-            bounded += usize::from(least > 0.1 * whole.distance);
-            let within = |limit| match_forms_within(a, b, &options, limit).unwrap();
+            bounded += usize::from(least > 0.1 * whole.rms);
+            let within = |limit| match_forms_within(a, b, limit);
             assert_eq!(within(f64::INFINITY), Some(whole));
-            assert_eq!(within(whole.distance), Some(whole), "at the limit");
-            assert_eq!(within(0.9 * whole.distance - 1e-9), None);
+            assert_eq!(within(whole.rms), Some(whole), "at the limit");
+            assert_eq!(within(0.9 * whole.rms - 1e-9), None);
         }
         assert!(bounded > 0, "the bound is not trivial");
     }
@@ -436,24 +344,10 @@ mod tests {
                 })
                 .collect()
         };
-        let (a, b) = (prepared(&cross(4.0, 4.4)), prepared(&cross(4.4, 4.0)));
-        let exchanged = match_forms(&a, &b, &MatchOptions::default()).unwrap().distance;
-        let fixed = MatchOptions { near_equal_axes: 1.0, ..Default::default() };
-        assert!(exchanged < match_forms(&a, &b, &fixed).unwrap().distance);
-    }
-
-    #[test]
-    fn options_out_of_range_are_named() {
-        let form = prepared(&figure(50, 1.0));
-        for (options, name) in [
-            (MatchOptions { near_equal_axes: 0.5, ..Default::default() }, "near_equal_axes"),
-            (MatchOptions { trim: 0.0, ..Default::default() }, "trim"),
-            (MatchOptions { refined: 0, ..Default::default() }, "refined"),
-        ] {
-            let fault = match_forms(&form, &form, &options).unwrap_err();
-            assert!(matches!(fault, DescriptorError::BadOption { option, .. } if option == name));
-        }
-        let form = CanonicalForm::from_points(figure(50, 1.0), vec![1.0; 50]).unwrap();
-        assert!(matches!(PreparedForm::new(&form, 3), Err(DescriptorError::BadOption { .. })));
+        let distance = |across: f64| {
+            match_forms(&prepared(&cross(4.0, across)), &prepared(&cross(across, 4.0)), Reflections::Allow)
+                .rms
+        };
+        assert!(distance(4.4) < 0.7 * distance(5.0), "spreads that differ by 10 % and by 25 %");
     }
 }

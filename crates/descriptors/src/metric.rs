@@ -2,8 +2,18 @@
 
 use serde::Serialize;
 
-use crate::matching::{FormDistance, MatchOptions};
 use crate::signature::{Signature, SignatureKind};
+
+/// A distance between two aligned forms.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum FormDistance {
+    /// Root mean square distance from the samples of either form to the nearest points of the other.
+    #[default]
+    NearestNeighborRms,
+    /// The distance that 95 % of the samples of either form do not exceed, the larger of the two directions: a
+    /// Hausdorff distance that tolerates a few outliers.
+    Hausdorff95,
+}
 
 /// Unit and weight of every signature.
 ///
@@ -35,6 +45,13 @@ const FITTING: f64 = 0.08;
 /// scans of one body may well differ by 5 %.
 const SAME_SIZE: f64 = 1.05;
 
+/// One of two maps fits and the other does not if its distance is larger by this factor, ...
+const DECISIVE: f64 = 1.25;
+
+/// ... and larger by this much in the mean square at unit area, beyond the distance between samples of one surface. Two
+/// poses of one body are about 0.03 apart.
+const EXCESS: f64 = 0.02;
+
 /// The distance between two shapes, and the verdict whether they are one shape.
 ///
 /// | symbol | meaning |
@@ -45,14 +62,13 @@ const SAME_SIZE: f64 = 1.05;
 ///
 /// The *fused* distance is `√(Σ_k w_k (d_k / u_k)² + s²)`, the Euclidean distance of two [fused](Self::fuse) vectors.
 /// The *combined* distance is `√(fused² + w_f (f / u_f)²)`. Two poses of one body are about one apart by either.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct ShapeMetric {
-    /// How forms are aligned, and which distance between aligned forms is reported. The combined distance always
-    /// takes the root mean square.
-    pub matching: MatchOptions,
+    /// The distance between aligned forms that is reported. The combined distance always takes the root mean square.
+    pub distance: FormDistance,
 }
 
-/// How far apart two shapes are, without their sizes.
+/// How far apart two shapes are, regardless of size.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct ShapeDistance {
     /// By signatures alone.
@@ -125,13 +141,11 @@ impl ShapeMetric {
     pub const FORM_WEIGHT: f64 = 0.0097;
 
     /// Root mean square distance between two poses of one body by this signature: see the table in the source.
-    #[must_use]
     pub fn unit(kind: SignatureKind) -> f64 {
         CALIBRATION[kind as usize].1
     }
 
     /// The weight of this signature; all weights sum to one.
-    #[must_use]
     pub fn weight(kind: SignatureKind) -> f64 {
         CALIBRATION[kind as usize].2
     }
@@ -139,7 +153,6 @@ impl ShapeMetric {
     /// Root mean square, over pairs of poses of one body, of the distance between their aligned forms of unit area.
     /// Measured as the units of signatures; the separation of families is 14.5 by the root mean square and 14.9 by the
     /// Hausdorff distance.
-    #[must_use]
     pub fn form_unit(distance: FormDistance) -> f64 {
         match distance {
             FormDistance::NearestNeighborRms => 0.0271,
@@ -149,14 +162,12 @@ impl ShapeMetric {
 
     /// The size of a surface as a coordinate whose differences are distances: `ln √area` in units of 5 %. The areas of two
     /// surfaces must be in the same unit of length.
-    #[must_use]
     pub fn size_coordinate(area: f64) -> f64 {
         0.5 * area.max(f64::MIN_POSITIVE).ln() / SAME_SIZE.ln()
     }
 
     /// All signatures, in their order, as one vector whose Euclidean distance is the fused distance. With an `area` size
     /// counts too. Values are rounded to 32 bits: half the memory to scan, and an error far below the noise.
-    #[must_use]
     pub fn fuse(signatures: &[Signature], area: Option<f64>) -> Vec<f32> {
         let parts = signatures.iter().flat_map(|signature| {
             let factor = Self::weight(signature.kind).sqrt() / Self::unit(signature.kind);
@@ -174,19 +185,11 @@ impl ShapeMetric {
     }
 
     /// The Euclidean distance between two fused vectors, or between two signatures rounded to 32 bits.
-    #[must_use]
     pub fn fused(a: &[f32], b: &[f32]) -> f64 {
         a.iter().zip(b).map(|(a, b)| f64::from(a - b).powi(2)).sum::<f64>().sqrt()
     }
 
-    /// A fused vector without the size, if it has one.
-    #[must_use]
-    pub fn without_size(fused: &[f32]) -> &[f32] {
-        &fused[..fused.len().min(Self::FUSED_LENGTH)]
-    }
-
     /// The combined distance, from a fused distance and the root mean square distance of the aligned forms of unit area.
-    #[must_use]
     pub fn combined(fused: f64, form_rms: f64) -> f64 {
         let unit = Self::form_unit(FormDistance::NearestNeighborRms);
         fused.hypot(form_rms / unit * Self::FORM_WEIGHT.sqrt())
@@ -194,7 +197,6 @@ impl ShapeMetric {
 
     /// The distance between aligned forms at which the combined distance reaches `limit`; 0 if the fused distance alone
     /// is larger. For a distance other than the root mean square it is the one as many units large.
-    #[must_use]
     pub fn form_limit(fused: f64, limit: f64, distance: FormDistance) -> f64 {
         // Rounding must not exclude a shape exactly at the limit.
         const SLACK: f64 = 1.0 + 1e-9;
@@ -202,27 +204,38 @@ impl ShapeMetric {
         left * Self::form_unit(distance) / Self::FORM_WEIGHT.sqrt() * SLACK
     }
 
-    /// The [distance](MatchOptions::distance) between aligned forms below which shapes with this fused distance are one
-    /// shape; 0 if their signatures alone are too far apart.
-    #[must_use]
+    /// The reported distance between aligned forms below which shapes with this fused distance are one shape; 0 if their
+    /// signatures alone are too far apart.
     pub fn same_below(&self, fused: f64) -> f64 {
-        Self::form_limit(fused, Self::SAME_BELOW, self.matching.distance)
+        Self::form_limit(fused, Self::SAME_BELOW, self.distance)
     }
 
     /// Whether two shapes are one shape in two poses.
-    #[must_use]
     pub fn is_same(distance: ShapeDistance) -> bool {
         distance.combined < Self::SAME_BELOW
     }
 
     /// Whether aligned forms of unit area fit well enough to compare normals at nearest points.
-    #[must_use]
     pub fn fits(form_rms: f64) -> bool {
         form_rms < FITTING
     }
 
+    /// The handedness, from the root mean square distances of the best maps that preserve and that reverse orientation,
+    /// infinite if there is none. The second surface has unit area and `n_points` points.
+    pub fn handedness([preserving, reversing]: [f64; 2], n_points: usize) -> Handedness {
+        // A point is about half of √(1 / n) from the nearest of n others.
+        let least = EXCESS.powi(2) + 0.25 / n_points as f64;
+        let decided =
+            |better: f64, worse: f64| worse > DECISIVE * better && worse.powi(2) - better.powi(2) > least;
+        match preserving.is_finite() || reversing.is_finite() {
+            false => Handedness::Unknown,
+            _ if decided(preserving, reversing) => Handedness::Same,
+            _ if decided(reversing, preserving) => Handedness::Mirrored,
+            _ => Handedness::Either,
+        }
+    }
+
     /// The verdict on two shapes; `scale` is the size of the second over that of the first.
-    #[must_use]
     pub fn kind(distance: ShapeDistance, handedness: Handedness, scale: f64) -> MatchKind {
         let mirrored = handedness == Handedness::Mirrored;
         let resized = scale.max(1.0 / scale) > SAME_SIZE;
@@ -264,17 +277,28 @@ mod tests {
     }
 
     #[test]
+    fn the_handedness_follows_the_decisively_better_map() {
+        let of = |distances| ShapeMetric::handedness(distances, 1000);
+        let none = f64::INFINITY;
+        for worse in [0.06, none] {
+            assert_eq!(of([0.02, worse]), Handedness::Same);
+            assert_eq!(of([worse, 0.02]), Handedness::Mirrored);
+        }
+        assert_eq!(of([0.021, 0.02]), Handedness::Either);
+        assert_eq!(of([none, none]), Handedness::Unknown);
+    }
+
+    #[test]
     fn a_form_at_the_limit_has_the_distance_at_which_shapes_stop_being_the_same() {
         let metric = ShapeMetric::default();
         for fused in [0.0, 1.0, 3.0] {
             let limit = metric.same_below(fused);
-            let with = |form| ShapeDistance { fused, combined: ShapeMetric::combined(fused, form) };
-            assert!(!ShapeMetric::is_same(with(limit * 1.001)));
-            assert!(ShapeMetric::is_same(with(limit * 0.999)));
+            assert!(ShapeMetric::combined(fused, limit * 1.001) > ShapeMetric::SAME_BELOW);
+            assert!(ShapeMetric::combined(fused, limit * 0.999) < ShapeMetric::SAME_BELOW);
         }
         assert_eq!(metric.same_below(4.0), 0.0);
-        let matching = MatchOptions { distance: FormDistance::Hausdorff95, ..MatchOptions::default() };
-        let ratio = ShapeMetric { matching }.same_below(1.0) / metric.same_below(1.0);
+        let ratio =
+            ShapeMetric { distance: FormDistance::Hausdorff95 }.same_below(1.0) / metric.same_below(1.0);
         let units = [FormDistance::Hausdorff95, FormDistance::NearestNeighborRms].map(ShapeMetric::form_unit);
         assert!((ratio - units[0] / units[1]).abs() < 1e-12);
     }

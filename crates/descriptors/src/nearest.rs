@@ -28,14 +28,12 @@ impl NearestPoints {
     }
 
     /// All points.
-    #[must_use]
     pub fn points(&self) -> &[Point3<f64>] {
         &self.points
     }
 
     /// The index of the point nearest to `query`, and its squared distance.
     #[inline]
-    #[must_use]
     pub fn nearest(&self, query: &Point3<f64>) -> (usize, f64) {
         let query: [f64; 3] = query.coords.into();
         let hit = self.tree.query(&query).nearest_one::<SquaredEuclidean<f64>>().execute();

@@ -3,14 +3,11 @@
 use nalgebra::Point3;
 
 use crate::alignment::Alignment;
-use crate::bound::Extent;
 use crate::canonical_form::CanonicalForm;
 use crate::error::DescriptorError;
+use crate::metric::ShapeMetric;
 use crate::nearest::NearestPoints;
 use crate::spread::spread;
-
-/// The fewest samples that determine an alignment.
-const MIN_SAMPLES: usize = 4;
 
 /// A canonical form in its principal axes, with evenly spread samples and search trees.
 #[derive(Debug)]
@@ -34,23 +31,16 @@ pub(crate) enum Detail {
 }
 
 impl PreparedForm {
-    /// Turns a form into its area-weighted principal axes, which do not depend on the triangulation, and spreads up to
-    /// `n_samples` of its points evenly by farthest point sampling. Cost `O(p n_samples)`.
+    /// Turns a form into its area-weighted principal axes, which do not depend on the triangulation, and spreads
+    /// [`ShapeMetric::MATCHED_POINTS`] of its points evenly by farthest point sampling; fewer if it has no more.
     ///
     /// # Errors
-    /// [`DescriptorError::BadOption`] for fewer than 4 samples, [`DescriptorError::NoExtent`].
-    pub fn new(form: &CanonicalForm, n_samples: usize) -> Result<Self, DescriptorError> {
-        if n_samples < MIN_SAMPLES {
-            return Err(DescriptorError::BadOption {
-                option: "the number of matched points",
-                value: n_samples as f64,
-                range: "at least 4",
-            });
-        }
+    /// [`DescriptorError::NoExtent`].
+    pub fn new(form: &CanonicalForm) -> Result<Self, DescriptorError> {
         let (axes, axis_spread) = form.principal_axes();
         let to_principal = Alignment::about_origin(axes);
         let points: Vec<_> = form.points().iter().map(|p| to_principal.apply(p)).collect();
-        let spread = spread(&points, n_samples);
+        let spread = spread(&points, ShapeMetric::MATCHED_POINTS);
         let samples: Vec<_> = spread.samples.iter().map(|&i| points[i]).collect();
         Ok(Self {
             extent: Extent::new(&samples, spread.covering),
@@ -67,7 +57,6 @@ impl PreparedForm {
     }
 
     /// A lower bound of the root mean square distance to another form, over all alignments.
-    #[must_use]
     pub fn least_distance(&self, other: &Self) -> f64 {
         self.extent.least_distance(&other.extent)
     }
@@ -81,5 +70,56 @@ impl PreparedForm {
         };
         let (i, sq) = among.nearest(query);
         (among.points()[i], sq)
+    }
+}
+
+/// The extent of a form, which bounds its distance to other forms.
+#[derive(Debug, Clone, PartialEq)]
+struct Extent {
+    /// No two points of the form are farther apart.
+    diameter: f64,
+    /// Distances between disjoint pairs of samples far from each other, descending.
+    spans: Vec<f64>,
+    n_samples: usize,
+}
+
+impl Extent {
+    /// The extent from samples; no point of the form is farther than `covering` from the nearest one.
+    fn new(samples: &[Point3<f64>], covering: f64) -> Self {
+        let n_samples = samples.len();
+        let mut diameter = 0.0f64;
+        let mut spans = Vec::with_capacity(n_samples / 2);
+        let mut free = vec![true; n_samples];
+        for i in 0..n_samples {
+            let mut farthest = (0.0, i);
+            for j in 0..n_samples {
+                let length = (samples[i] - samples[j]).norm();
+                diameter = diameter.max(length);
+                if free[j] && length > farthest.0 {
+                    farthest = (length, j);
+                }
+            }
+            if free[i] && farthest.1 != i {
+                free[i] = false;
+                free[farthest.1] = false;
+                spans.push(farthest.0);
+            }
+        }
+        spans.sort_by(|a, b| b.total_cmp(a));
+        Self { diameter: diameter + 2.0 * covering, spans, n_samples }
+    }
+
+    /// A lower bound of the root mean square distance between nearest points of two forms, over all motions.
+    ///
+    /// Let samples `x, x'` of one form have the nearest points `y, y'` of the other, at distances `e, e'`. Then
+    /// `e + e' >= |x - x'| - |y - y'| >= |x - x'| - diameter`, so `e² + e'² >= (|x - x'| - diameter)² / 2` if the
+    /// difference is positive. Summing over disjoint pairs of samples bounds the sum of all squares.
+    fn least_distance(&self, other: &Self) -> f64 {
+        (0.5 * (self.beyond(other.diameter) + other.beyond(self.diameter))).sqrt()
+    }
+
+    fn beyond(&self, diameter: f64) -> f64 {
+        let sq = self.spans.iter().take_while(|span| **span > diameter).map(|span| (span - diameter).powi(2));
+        0.5 * sq.sum::<f64>() / self.n_samples.max(1) as f64
     }
 }

@@ -6,11 +6,11 @@ use nalgebra::Point3;
 
 use crate::canonical_form::{CanonicalForm, Normalization};
 use crate::error::DescriptorError;
-use crate::matching::{FormMatch, MatchOptions, Reflections, match_forms};
+use crate::matching::{FormMatch, Reflections, match_forms};
 use crate::metric::{ShapeDistance, ShapeMetric};
 use crate::prepared::PreparedForm;
 
-/// A shape as it is compared: its fused vector, and its form rounded to the 32 bits that an index stores, so that a
+/// A shape prepared for comparison: its fused vector, and its form rounded to the 32 bits that an index stores, so that a
 /// shape compares in the same way before and after it is stored.
 #[derive(Debug)]
 pub struct PreparedShape {
@@ -32,60 +32,53 @@ impl PreparedShape {
         let weights = form.weights().iter().map(|w| rounded(*w)).collect();
         let form = CanonicalForm::from_parts(points, weights, form.area().and(area))?;
         let unit = form.normalized(Normalization::UnitArea);
-        Ok(Self { fused, unit: PreparedForm::new(&unit, ShapeMetric::MATCHED_POINTS)?, form, area })
+        Ok(Self { fused, unit: PreparedForm::new(&unit)?, form, area })
     }
 
     /// All signatures as one vector.
-    #[must_use]
     pub fn fused(&self) -> &[f32] {
         &self.fused
     }
 
     /// The form, in mesh units.
-    #[must_use]
     pub fn form(&self) -> &CanonicalForm {
         &self.form
     }
 
     /// The unit of length that gives the surface unit area; 1 if the form has no unit of length.
-    #[must_use]
     pub fn size(&self) -> f64 {
         self.form.area().map_or(1.0, f64::sqrt)
     }
 
     /// Points of the form of this shape at unit area; `form` may have more points than the one that was prepared.
-    #[must_use]
     pub fn at_unit_area(&self, form: &CanonicalForm) -> Vec<Point3<f64>> {
         let size = self.size();
         form.points().iter().map(|p| p / size).collect()
     }
 
     /// The form at unit area, ready to be matched.
-    #[must_use]
     pub fn prepared_form(&self) -> &PreparedForm {
         &self.unit
     }
 }
 
-/// Two shapes and the ways the form of the first aligns with that of the second. Each alignment is found at most once,
-/// and only when it is needed.
+/// Two shapes and the ways the form of the first aligns with that of the second. Each alignment at unit area is found at
+/// most once, and only when it is needed.
 #[derive(Debug)]
 pub struct ShapePair<'a> {
     /// The metric that compares the shapes.
-    pub metric: &'a ShapeMetric,
+    pub metric: ShapeMetric,
     /// The two shapes.
     pub shapes: [&'a PreparedShape; 2],
     best: OnceCell<FormMatch>,
     other_handed: OnceCell<FormMatch>,
-    raw: OnceCell<FormMatch>,
 }
 
 impl<'a> ShapePair<'a> {
     /// Two shapes, not yet aligned.
-    #[must_use]
-    pub fn new(metric: &'a ShapeMetric, shapes: [&'a PreparedShape; 2]) -> Self {
-        let [best, other_handed, raw] = Default::default();
-        Self { metric, shapes, best, other_handed, raw }
+    pub fn new(metric: ShapeMetric, shapes: [&'a PreparedShape; 2]) -> Self {
+        let [best, other_handed] = Default::default();
+        Self { metric, shapes, best, other_handed }
     }
 
     /// The pair with a [best](Self::best) alignment that is known already.
@@ -95,74 +88,48 @@ impl<'a> ShapePair<'a> {
     }
 
     /// The size of the second surface over that of the first, from their areas; 1 if one is unknown.
-    #[must_use]
     pub fn scale(&self) -> f64 {
         let [a, b] = self.shapes.map(|shape| shape.area);
         a.zip(b).map_or(1.0, |(a, b)| (b / a).sqrt())
     }
 
     /// The best alignment of the forms at unit area, with or without a reflection.
-    ///
-    /// # Errors
-    /// [`DescriptorError::BadOption`].
-    pub fn best(&self) -> Result<FormMatch, DescriptorError> {
-        once(&self.best, || self.aligned(Reflections::Allow))
+    pub fn best(&self) -> FormMatch {
+        *self.best.get_or_init(|| self.aligned(Reflections::Allow))
     }
 
     /// The best alignment at unit area under a restriction on reflections.
-    ///
-    /// # Errors
-    /// [`DescriptorError::BadOption`].
-    pub fn best_with(&self, reflections: Reflections) -> Result<FormMatch, DescriptorError> {
-        let best = self.best()?;
+    pub fn best_with(&self, reflections: Reflections) -> FormMatch {
+        let best = self.best();
         let excluded = if best.alignment.reflected { Reflections::Forbid } else { Reflections::Require };
         match reflections == excluded {
-            true => once(&self.other_handed, || self.aligned(reflections)),
-            false => Ok(best),
+            true => *self.other_handed.get_or_init(|| self.aligned(reflections)),
+            false => best,
         }
     }
 
-    /// The best alignment of the forms in mesh units.
+    /// Aligns the forms in mesh units. Without a unit of length that is the [best](Self::best) alignment.
     ///
     /// # Errors
-    /// [`DescriptorError::BadOption`].
-    pub fn raw(&self) -> Result<FormMatch, DescriptorError> {
-        if self.shapes.iter().all(|shape| shape.form.area().is_none()) {
-            return self.best();
+    /// [`DescriptorError::NoExtent`].
+    pub fn align_raw(&self) -> Result<FormMatch, DescriptorError> {
+        let [a, b] = self.shapes.map(PreparedShape::form);
+        if a.area().or(b.area()).is_none() {
+            return Ok(self.best());
         }
-        once(&self.raw, || {
-            let prepared =
-                |shape: &PreparedShape| PreparedForm::new(&shape.form, ShapeMetric::MATCHED_POINTS);
-            match_forms(&prepared(self.shapes[0])?, &prepared(self.shapes[1])?, &self.metric.matching)
-        })
+        Ok(match_forms(&PreparedForm::new(a)?, &PreparedForm::new(b)?, Reflections::Allow))
     }
 
-    /// How far apart the shapes are, without their sizes.
-    ///
-    /// # Errors
-    /// [`DescriptorError::BadOption`].
-    pub fn distance(&self) -> Result<ShapeDistance, DescriptorError> {
-        let [a, b] = self.shapes.map(|shape| ShapeMetric::without_size(&shape.fused));
+    /// How far apart the shapes are, regardless of size.
+    pub fn distance(&self) -> ShapeDistance {
+        let [a, b] =
+            self.shapes.map(|shape| shape.fused.chunks(ShapeMetric::FUSED_LENGTH).next().unwrap_or_default());
         let fused = ShapeMetric::fused(a, b);
-        Ok(ShapeDistance { fused, combined: ShapeMetric::combined(fused, self.best()?.rms) })
+        ShapeDistance { fused, combined: ShapeMetric::combined(fused, self.best().rms) }
     }
 
-    fn aligned(&self, reflections: Reflections) -> Result<FormMatch, DescriptorError> {
-        let options = MatchOptions { reflections, ..self.metric.matching.clone() };
-        match_forms(&self.shapes[0].unit, &self.shapes[1].unit, &options)
-    }
-}
-
-fn once(
-    known: &OnceCell<FormMatch>,
-    find: impl FnOnce() -> Result<FormMatch, DescriptorError>,
-) -> Result<FormMatch, DescriptorError> {
-    match known.get() {
-        Some(found) => Ok(*found),
-        None => {
-            let found = find()?;
-            Ok(*known.get_or_init(|| found))
-        }
+    fn aligned(&self, reflections: Reflections) -> FormMatch {
+        match_forms(&self.shapes[0].unit, &self.shapes[1].unit, reflections)
     }
 }
 
@@ -189,24 +156,24 @@ mod tests {
     fn the_better_handed_alignment_is_the_best_one() {
         let metric = ShapeMetric::default();
         let (left, right) = (spiral(4.0, 1.0, 1.0), spiral(4.0, -1.0, 3.0));
-        let pair = ShapePair::new(&metric, [&left, &right]);
-        let best = pair.best().unwrap();
+        let pair = ShapePair::new(metric, [&left, &right]);
+        let best = pair.best();
         assert!(best.rms < 1e-6 && best.alignment.reflected && (pair.scale() - 3.0).abs() < 1e-12);
-        assert_eq!(pair.best_with(Reflections::Require), Ok(best));
-        let proper = pair.best_with(Reflections::Forbid).unwrap();
+        assert_eq!(pair.best_with(Reflections::Require), best);
+        let proper = pair.best_with(Reflections::Forbid);
         assert!(proper.rms > 100.0 * best.rms && !proper.alignment.reflected);
-        assert!(pair.raw().unwrap().rms > 0.1, "of different size");
-        assert_eq!(pair.distance().unwrap().fused, 0.0);
+        assert!(pair.align_raw().unwrap().rms > 0.1, "of different size");
+        assert_eq!(pair.distance().fused, 0.0);
     }
 
     #[test]
     fn a_known_alignment_is_not_searched_again() {
         let metric = ShapeMetric::default();
         let (a, b) = (spiral(4.0, 1.0, 1.0), spiral(5.0, 1.0, 1.0));
-        let known = FormMatch { rms: 0.5, ..ShapePair::new(&metric, [&a, &b]).best().unwrap() };
-        let pair = ShapePair::new(&metric, [&a, &b]).with_best(known);
-        assert_eq!(pair.best(), Ok(known));
-        assert_eq!(pair.distance().unwrap().combined, ShapeMetric::combined(1.0, 0.5));
+        let known = FormMatch { rms: 0.5, ..ShapePair::new(metric, [&a, &b]).best() };
+        let pair = ShapePair::new(metric, [&a, &b]).with_best(known);
+        assert_eq!(pair.best(), known);
+        assert_eq!(pair.distance().combined, ShapeMetric::combined(1.0, 0.5));
     }
 
     #[test]
@@ -214,7 +181,7 @@ mod tests {
         let metric = ShapeMetric::default();
         let (a, b) = (spiral(4.0, 1.0, 1.0), spiral(5.0, 1.0, 2.0));
         let stored = PreparedShape::new(b.fused.clone(), &b.form, b.area).unwrap();
-        let best = |b| ShapePair::new(&metric, [&a, b]).best().unwrap();
+        let best = |b| ShapePair::new(metric, [&a, b]).best();
         assert_eq!(best(&b), best(&stored));
     }
 }

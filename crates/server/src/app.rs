@@ -49,7 +49,7 @@ pub(crate) struct Query {
 impl App {
     pub(crate) fn open(index: &Path, options: ServeOptions) -> Result<Self, Error> {
         let search = ShapeSearch::open(index)?;
-        let shapes = search.entries()?.into_iter().map(|(id, entry)| {
+        let shapes = search.index().entries()?.into_iter().map(|(id, entry)| {
             let count = |name| entry.fact(name).map(|count| count as u64);
             ShapeSummary {
                 vertices: count("vertices"),

@@ -2,7 +2,7 @@
 
 use canonform::{DescribeOptions, FormOptions, describe, embed, form_matches};
 use datasets::{ArticulatedOptions, articulated};
-use descriptors::{MatchOptions, Normalization, ShapeMetric, ShapePair};
+use descriptors::{Normalization, ShapeMetric, ShapePair};
 use rayon::prelude::*;
 use retrieval::{Labels, evaluate};
 
@@ -20,8 +20,7 @@ fn canonical_forms_retrieve_their_families() {
             embed(&surface, &FormOptions::default(), &()).unwrap().form(&surface).unwrap()
         })
         .collect();
-    let distances =
-        form_matches(&forms, Normalization::Raw, &MatchOptions::default(), &()).unwrap().distances;
+    let distances = form_matches(&forms, Normalization::Raw, &()).unwrap().distances;
     let scores = evaluate(&distances, &labels, 1).unwrap();
     println!("{} shapes: NN {}, mAP {:.4}", scores.n, scores.mean.nn, scores.mean.map);
     assert_eq!((scores.n, scores.mean.nn), (30, 1.0));
@@ -43,7 +42,7 @@ fn verdicts_distinguish_poses_from_families() {
         (0..shapes.len()).flat_map(|i| (i + 1..shapes.len()).map(move |j| (i, j))).collect();
     pairs.par_iter().for_each(|&(i, j)| {
         let pair = [&described[i], &described[j]];
-        let distance = ShapePair::new(&ShapeMetric::default(), pair).distance().unwrap();
+        let distance = ShapePair::new(ShapeMetric::default(), pair).distance();
         let is_family = shapes[i].label == shapes[j].label;
         assert_eq!(
             ShapeMetric::is_same(distance),

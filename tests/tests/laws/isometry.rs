@@ -2,7 +2,7 @@
 
 use canonform::{EmbedMethod, FormOptions, Samples, StressChoice, form_matches};
 use datasets::Family;
-use descriptors::{MatchOptions, Normalization};
+use descriptors::Normalization;
 use geodesics::{FirstSample, Method};
 use linalg::DistanceMatrix;
 use mesh::{TriMesh, shapes};
@@ -160,7 +160,7 @@ fn normalised_form_distances_do_not_depend_on_size() {
             canonform::embed(&surface, &few_samples(), &()).unwrap().form(&surface).unwrap()
         });
         let forms: Vec<_> = forms.collect();
-        let found = form_matches(&forms, Normalization::UnitArea, &MatchOptions::default(), &()).unwrap();
+        let found = form_matches(&forms, Normalization::UnitArea, &()).unwrap();
         found.distances.get(0, 1)
     };
     let one = distances(1.0);

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use canonform::{
     DescribeOptions, FormOptions, Surface, describe, embed, form_matches, label_of, list_shapes,
 };
-use descriptors::{MatchOptions, Normalization, ShapeMetric, ShapePair};
+use descriptors::{Normalization, ShapeMetric, ShapePair};
 use geodesics::{FirstSample, farthest_point_sampling};
 use mesh::RepairOptions;
 use nmds::{NystromOptions, Regularization, classical, nystrom, paper_stress};
@@ -151,7 +151,7 @@ fn canonical_forms_of_animals_retrieve_their_class() {
         .collect();
     let labels = Labels::new(&names.map(label_of));
     for normalization in [Normalization::Raw, Normalization::UnitArea] {
-        let distances = form_matches(&forms, normalization, &MatchOptions::default(), &()).unwrap().distances;
+        let distances = form_matches(&forms, normalization, &()).unwrap().distances;
         let scores = evaluate(&distances, &labels, 1).unwrap();
         println!("{normalization:?}: NN {}, mAP {:.4}", scores.mean.nn, scores.mean.map);
         assert_eq!(scores.mean.nn, 1.0, "{normalization:?}");
@@ -182,7 +182,7 @@ fn verdicts_distinguish_poses_from_animals() {
         (0..shapes.len()).flat_map(|i| (i + 1..shapes.len()).map(move |j| (i, j))).collect();
     let distance = |&(i, j): &(usize, usize)| {
         let pair = [&described[i], &described[j]];
-        let distance = ShapePair::new(&ShapeMetric::default(), pair).distance().unwrap();
+        let distance = ShapePair::new(ShapeMetric::default(), pair).distance();
         (shapes[i].label == shapes[j].label, distance)
     };
     let distances: Vec<_> = pairs.par_iter().map(distance).collect();

@@ -39,7 +39,6 @@ fn every_signature_separates_bodies_more_than_poses_and_triangulations() {
 fn the_nearest_shapes_are_poses_of_the_same_body() {
     let shapes = described();
     let prepared: Vec<_> = shapes.iter().map(|shape| shape.prepare().unwrap()).collect();
-    let metric = ShapeMetric::default();
     for query in 0..9 {
         let mut candidates: Vec<_> = (0..9)
             .filter(|&i| i != query)
@@ -50,7 +49,7 @@ fn the_nearest_shapes_are_poses_of_the_same_body() {
             .collect();
         candidates.sort_by(|a, b| a.bound.total_cmp(&b.bound));
         assert!(candidates[..2].iter().all(|c| c.index / 3 == query / 3), "{query}: {candidates:?}");
-        let found = rerank(&metric, &prepared[query], candidates, 2, |i| Ok(&prepared[i])).unwrap();
+        let found = rerank(&prepared[query], candidates, 2, |i| Ok(&prepared[i])).unwrap();
         assert!(found.nearest.iter().all(|n| n.index / 3 == query / 3), "{query}: {found:?}");
     }
 }

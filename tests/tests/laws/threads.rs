@@ -2,7 +2,7 @@
 
 use canonform::{EmbedMethod, Embedded, FormOptions, Samples, StressChoice, form_matches};
 use datasets::Family;
-use descriptors::{MatchOptions, Normalization};
+use descriptors::Normalization;
 
 use crate::support::{body, measured, surface};
 
@@ -54,7 +54,7 @@ fn distances_between_forms_do_not_depend_on_threads() {
         .collect();
     for normalization in [Normalization::Raw, Normalization::UnitArea] {
         let [one, two, five] = on_each_pool(|| {
-            let found = form_matches(&forms, normalization, &MatchOptions::default(), &()).unwrap();
+            let found = form_matches(&forms, normalization, &()).unwrap();
             bits(found.distances.as_slice())
         });
         assert!(one == two && one == five, "{normalization:?}");

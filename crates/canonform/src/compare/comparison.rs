@@ -1,8 +1,8 @@
 //! Two shapes side by side.
 
 use descriptors::{
-    Alignment, CanonicalForm, Handedness, MatchKind, NearestPoints, Reflections, ShapeDistance, ShapeMetric,
-    ShapePair, handedness,
+    Alignment, CanonicalForm, FormMatch, Handedness, MatchKind, NearestPoints, Reflections, ShapeDistance,
+    ShapeMetric, ShapePair, handedness,
 };
 use nalgebra::Point3;
 use serde::Serialize;
@@ -47,18 +47,19 @@ impl Comparison {
         distance: ShapeDistance,
         handedness: Handedness,
     ) -> Result<Self, Error> {
-        let (best, proper, raw) = (pair.best()?, pair.best_with(Reflections::Forbid)?, pair.raw()?);
+        let (best, proper, raw) = (pair.best(), pair.best_with(Reflections::Forbid), pair.align_raw()?);
+        let shown = |found: FormMatch| found.distance(pair.metric.distance);
         let Alignment { rotation, translation, reflected } = raw.alignment;
         let scale = pair.scale();
         Ok(Self {
             kind: ShapeMetric::kind(distance, handedness, scale),
-            distance: raw.distance,
-            normalized_distance: best.distance,
+            distance: shown(raw),
+            normalized_distance: shown(best),
             same_below: pair.metric.same_below(distance.fused),
             shape_distance: distance,
             scale,
             reflected,
-            unreflected_distance: proper.distance.max(best.distance),
+            unreflected_distance: shown(proper).max(shown(best)),
             handedness,
             rotation: [0, 1, 2].map(|i| [0, 1, 2].map(|j| rotation[(i, j)])),
             translation: translation.into(),
@@ -78,15 +79,15 @@ impl Comparison {
 ///     describe(&surface, &DescribeOptions::default())?.prepare()
 /// });
 /// let (metric, flat) = (ShapeMetric::default(), flat?);
-/// assert_eq!(compare(&ShapePair::new(&metric, [&flat, &folded?]))?.kind, MatchKind::Same);
-/// assert_eq!(compare(&ShapePair::new(&metric, [&flat, &ball?]))?.kind, MatchKind::Different);
+/// assert_eq!(compare(&ShapePair::new(metric, [&flat, &folded?]))?.kind, MatchKind::Same);
+/// assert_eq!(compare(&ShapePair::new(metric, [&flat, &ball?]))?.kind, MatchKind::Different);
 /// # Ok::<(), canonform::Error>(())
 /// ```
 ///
 /// # Errors
-/// [`Error::Descriptor`] for options out of range.
+/// [`Error::Descriptor`].
 pub fn compare(pair: &ShapePair<'_>) -> Result<Comparison, Error> {
-    Comparison::new(pair, pair.distance()?, Handedness::Unknown)
+    Comparison::new(pair, pair.distance(), Handedness::Unknown)
 }
 
 /// Whether two meshes have the same triangles.
@@ -110,7 +111,7 @@ pub struct SurfaceComparison {
     pub overlay: Overlay,
 }
 
-/// Two forms laid over each other, at the size of the first, in units of the first mesh, in the place of the second.
+/// Two aligned forms at the size of the first, in units of its mesh, at the position of the second.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Overlay {
     /// The points of either form.
@@ -120,13 +121,13 @@ pub struct Overlay {
 }
 
 impl Overlay {
-    /// Lays two forms over each other by the best alignment of a pair. The forms may have more points than those that
+    /// Aligns two forms by the best alignment of a pair. The forms may have more points than those that
     /// were aligned.
     ///
     /// # Errors
     /// [`Error::Descriptor`].
     pub fn new(pair: &ShapePair<'_>, forms: [&CanonicalForm; 2]) -> Result<Self, Error> {
-        let (motion, [a, b]) = (pair.best()?.alignment, pair.shapes);
+        let (motion, [a, b]) = (pair.best().alignment, pair.shapes);
         let size = a.size();
         let moved = a.at_unit_area(forms[0]).iter().map(|p| motion.apply(p)).collect();
         let (a, b) = (NearestPoints::new(moved)?, NearestPoints::new(b.at_unit_area(forms[1]))?);
@@ -160,7 +161,7 @@ pub fn compare_surfaces(
 
 #[cfg(test)]
 mod tests {
-    use descriptors::{FormDistance, MatchOptions, Normalization, PreparedShape};
+    use descriptors::{FormDistance, Normalization, PreparedShape};
     use mesh::{TriMesh, shapes};
 
     use super::*;
@@ -195,14 +196,14 @@ mod tests {
     }
 
     fn compared_by(
-        metric: &ShapeMetric,
+        metric: ShapeMetric,
         options: &DescribeOptions,
         meshes: [&TriMesh; 2],
     ) -> SurfaceComparison {
         let [a, b] = meshes.map(|mesh| described(mesh, options));
         let pair = ShapePair::new(metric, [&a.shape, &b.shape]);
         let surfaces = [(&a.surface, &a.form), (&b.surface, &b.form)];
-        let found = compare_surfaces(&pair, pair.distance().unwrap(), surfaces).unwrap();
+        let found = compare_surfaces(&pair, pair.distance(), surfaces).unwrap();
         // The same numbers without the surfaces.
         let shapes = compare(&ShapePair::new(metric, [&a.shape, &b.shape])).unwrap();
         let Comparison { kind, handedness, .. } = found.comparison;
@@ -211,7 +212,7 @@ mod tests {
     }
 
     fn compared(a: &TriMesh, b: &TriMesh) -> SurfaceComparison {
-        compared_by(&ShapeMetric::default(), &DescribeOptions::default(), [a, b])
+        compared_by(ShapeMetric::default(), &DescribeOptions::default(), [a, b])
     }
 
     fn scaled(mesh: &TriMesh, factor: f64) -> TriMesh {
@@ -254,8 +255,7 @@ mod tests {
             assert_eq!(found.normalized_distance < found.same_below, kind != MatchKind::Different);
             // Forms that fit do not make one shape if signatures are far apart.
             let [a, b] = [&hand, other].map(|mesh| described(mesh, &DescribeOptions::default()));
-            let metric = ShapeMetric::default();
-            let pair = ShapePair::new(&metric, [&a.shape, &b.shape]);
+            let pair = ShapePair::new(ShapeMetric::default(), [&a.shape, &b.shape]);
             let apart = ShapeDistance { fused: 9.0, combined: 9.0 };
             let judged = Comparison::new(&pair, apart, Handedness::Unknown).unwrap();
             assert_eq!((judged.kind, judged.same_below), (MatchKind::Different, 0.0));
@@ -265,10 +265,10 @@ mod tests {
     #[test]
     fn the_distance_shown_does_not_change_the_verdict_and_has_its_own_threshold() {
         let (a, b) = (four_arms([1.0, 1.7, 2.6, 3.5]), four_arms([1.0, 1.6, 2.6, 3.4]));
-        let matching = MatchOptions { distance: FormDistance::Hausdorff95, ..MatchOptions::default() };
-        let [rms, hausdorff] = [MatchOptions::default(), matching].map(|matching| {
-            compared_by(&ShapeMetric { matching }, &DescribeOptions::default(), [&a, &b]).comparison
-        });
+        let [rms, hausdorff] =
+            [FormDistance::NearestNeighborRms, FormDistance::Hausdorff95].map(|distance| {
+                compared_by(ShapeMetric { distance }, &DescribeOptions::default(), [&a, &b]).comparison
+            });
         assert_eq!((rms.kind, rms.shape_distance), (hausdorff.kind, hausdorff.shape_distance));
         assert_eq!(rms.rotation, hausdorff.rotation);
         assert!(hausdorff.normalized_distance > rms.normalized_distance);
@@ -282,7 +282,7 @@ mod tests {
         let large = scaled(&small, 4.0);
         for size in [Normalization::UnitArea, Normalization::Raw] {
             let options = DescribeOptions { size, ..DescribeOptions::default() };
-            let found = compared_by(&ShapeMetric::default(), &options, [&small, &large]).comparison;
+            let found = compared_by(ShapeMetric::default(), &options, [&small, &large]).comparison;
             assert!(found.shape_distance.combined < 0.01 && found.kind == MatchKind::Scaled, "{found:?}");
         }
     }
@@ -293,14 +293,14 @@ mod tests {
         let form = FormOptions { method, ..FormOptions::default() };
         let options = DescribeOptions { form, ..DescribeOptions::default() };
         let hand = four_arms([1.0, 1.7, 2.6, 3.5]);
-        let found = compared_by(&ShapeMetric::default(), &options, [&hand, &scaled(&hand, 2.0)]).comparison;
+        let found = compared_by(ShapeMetric::default(), &options, [&hand, &scaled(&hand, 2.0)]).comparison;
         assert_eq!(found.kind, MatchKind::Scaled);
         assert_eq!(found.distance, found.normalized_distance);
         assert!((found.scale - 2.0).abs() < 1e-9);
     }
 
     #[test]
-    fn residuals_are_distances_to_the_other_form_as_it_is_laid_over() {
+    fn residuals_are_distances_to_the_other_aligned_form() {
         let (hand, changed) = (four_arms([1.0, 1.7, 2.6, 3.5]), four_arms([1.0, 1.4, 2.6, 3.1]));
         let overlay = compared(&hand, &scaled(&changed, 5.0)).overlay;
         for (mine, other) in [(0, 1), (1, 0)] {

@@ -1,8 +1,6 @@
 //! Distances between the forms of a collection.
 
-use descriptors::{
-    Alignment, CanonicalForm, FormMatch, MatchOptions, Normalization, PreparedForm, ShapeMetric, match_forms,
-};
+use descriptors::{Alignment, CanonicalForm, Normalization, PreparedForm, Reflections, match_forms};
 use linalg::{DistanceMatrix, Matrix};
 use rayon::prelude::*;
 
@@ -12,7 +10,7 @@ use crate::observer::Observer;
 /// The alignments of all pairs of forms.
 #[derive(Debug, Clone)]
 pub struct FormMatches {
-    /// Distances between the aligned forms.
+    /// Root mean square distances between the aligned forms.
     pub distances: DistanceMatrix,
     /// For every pair `i < j`, row by row, the motion that takes form `i` onto form `j`, both scaled as was chosen.
     pub alignments: Vec<Alignment>,
@@ -21,7 +19,7 @@ pub struct FormMatches {
 /// Aligns all pairs of forms, in parallel. `observer` counts every pair as a step.
 ///
 /// ```
-/// use canonform::descriptors::{MatchOptions, Normalization};
+/// use canonform::descriptors::Normalization;
 /// use canonform::{FormOptions, Surface, embed, form_matches, mesh::shapes};
 ///
 /// let sheet = shapes::grid(21, 17, 0.1);
@@ -29,35 +27,31 @@ pub struct FormMatches {
 ///     let surface = Surface::new(mesh, &Default::default()).unwrap();
 ///     embed(&surface, &FormOptions::default(), &()).unwrap().form(&surface).unwrap()
 /// });
-/// let found = form_matches(&forms, Normalization::UnitArea, &MatchOptions::default(), &())?;
+/// let found = form_matches(&forms, Normalization::UnitArea, &())?;
 /// assert!(found.distances.get(0, 1) < 0.1 * found.distances.get(0, 2), "folding does not change the form");
 /// # Ok::<(), canonform::Error>(())
 /// ```
 ///
 /// # Errors
-/// [`Error::Descriptor`], for the first pair that fails, and [`Error::Linalg`].
+/// [`Error::Descriptor`].
 pub fn form_matches(
     forms: &[CanonicalForm],
     normalization: Normalization,
-    options: &MatchOptions,
     observer: &dyn Observer,
 ) -> Result<FormMatches, Error> {
-    let prepare = |form: &CanonicalForm| {
-        PreparedForm::new(&form.normalized(normalization), ShapeMetric::MATCHED_POINTS)
-    };
+    let prepare = |form: &CanonicalForm| PreparedForm::new(&form.normalized(normalization));
     let forms: Vec<_> = forms.par_iter().map(prepare).collect::<Result<_, _>>()?;
     let n = forms.len();
     let pairs: Vec<(usize, usize)> = (0..n).flat_map(|i| (i + 1..n).map(move |j| (i, j))).collect();
     observer.begin("alignment", pairs.len());
     let one = |&(i, j): &(usize, usize)| {
-        let found = match_forms(&forms[i], &forms[j], options);
+        let found = match_forms(&forms[i], &forms[j], Reflections::Allow);
         observer.step();
         found
     };
     let found: Vec<_> = pairs.par_iter().map(one).collect();
-    let found: Vec<FormMatch> = found.into_iter().collect::<Result<_, _>>()?;
     let mut next = found.iter();
-    let distances = DistanceMatrix::from_pairs(n, |_, _| next.next().map_or(f64::NAN, |m| m.distance))?;
+    let distances = DistanceMatrix::from_pairs(n, |_, _| next.next().map_or(f64::NAN, |m| m.rms))?;
     Ok(FormMatches { distances, alignments: found.iter().map(|m| m.alignment).collect() })
 }
 

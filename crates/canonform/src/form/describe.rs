@@ -97,7 +97,6 @@ impl ShapeDescription {
     }
 
     /// The signature of one kind.
-    #[must_use]
     pub fn signature(&self, kind: SignatureKind) -> Option<&Signature> {
         self.signatures.iter().find(|signature| signature.kind == kind)
     }

@@ -36,6 +36,16 @@ pub enum Samples {
     Auto,
 }
 
+impl Samples {
+    /// The number, or `auto` if it is not fixed.
+    pub(super) fn count_or(self, auto: usize) -> usize {
+        match self {
+            Self::Count(n) => n,
+            Self::Auto => auto,
+        }
+    }
+}
+
 impl Default for Samples {
     fn default() -> Self {
         Self::Count(DEFAULT_COUNT)
@@ -64,9 +74,6 @@ impl FromStr for Samples {
 }
 
 /// Refuses to hold `n_columns` columns of distances to `n_vertices` vertices beyond [`DISTANCES_LIMIT`].
-///
-/// # Errors
-/// [`Error::AllPairsTooLarge`].
 pub(super) fn check_memory(n_vertices: usize, n_columns: usize) -> Result<(), Error> {
     let needed = n_vertices.saturating_mul(n_columns).saturating_mul(size_of::<f64>());
     if needed <= DISTANCES_LIMIT {
@@ -95,12 +102,8 @@ impl Measurement<'_> {
         &mut self,
         embed: impl Fn(&LandmarkDistances) -> Result<Embedding, NmdsError>,
     ) -> Result<(Embedding, LandmarkDistances), Error> {
-        let expected = match self.samples {
-            Samples::Count(n) => n,
-            Samples::Auto => AUTO_LAST,
-        };
-        self.observer.begin("distances", expected);
         let (solver, sampling) = (self.solver, self.sampling);
+        self.observer.begin("distances", self.samples.count_or(AUTO_LAST));
         let mut sampler = self.timed(|m| sampling.start(solver, m.first, m.seed))?;
         match self.samples {
             Samples::Count(n) => {
@@ -150,13 +153,9 @@ impl Measurement<'_> {
 
     /// The columns of `all` that belong to samples, as a method with samples would take them.
     pub(super) fn columns_of(&mut self, all: &DistanceMatrix) -> Result<LandmarkDistances, Error> {
-        let n = match self.samples {
-            Samples::Count(n) => n,
-            Samples::Auto => DEFAULT_COUNT,
-        };
         let known = KnownDistances(all);
         let mut sampler = self.sampling.start(&known, self.first, self.seed)?;
-        self.take(sampler.as_mut(), n)
+        self.take(sampler.as_mut(), self.samples.count_or(DEFAULT_COUNT))
     }
 
     /// Counts the time of `work` as time spent on distances.

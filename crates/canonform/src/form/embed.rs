@@ -15,8 +15,7 @@ use super::report::{EmbedReport, SecondsReport};
 use super::stress::{StressChoice, StressOptions, measure};
 use crate::error::Error;
 use crate::input::Surface;
-use crate::observer::Observed;
-use crate::observer::Observer;
+use crate::observer::{Observed, Observer};
 
 /// An embedded surface.
 #[derive(Debug, Clone)]
@@ -25,8 +24,7 @@ pub struct Embedded {
     pub options: FormOptions,
     /// Coordinates of the vertices of the repaired mesh.
     pub embedding: Embedding,
-    /// Distances from the samples to all vertices, in mesh units. For a method without samples, the columns
-    /// that would have been sampled.
+    /// Distances from the samples to all vertices, in mesh units. A method without samples keeps the columns of as many.
     pub distances: LandmarkDistances,
     /// Facts about the run.
     pub report: EmbedReport,
@@ -62,8 +60,8 @@ impl Embedded {
 /// ```
 ///
 /// # Errors
-/// [`Error::AllPairsTooLarge`], [`Error::NoSuchVertex`] and [`Error::DroppedVertex`] for the first sample, and
-/// the errors of the stages.
+/// [`Error::AllPairsTooLarge`], [`Error::NoSuchPoint`] and [`Error::DroppedPoint`] for the first sample, and the errors of
+/// the stages.
 pub fn embed(surface: &Surface, options: &FormOptions, observer: &dyn Observer) -> Result<Embedded, Error> {
     let skip = StressOptions { choice: StressChoice::Skip, ..StressOptions::default() };
     embed_and_measure(surface, options, &skip, observer)

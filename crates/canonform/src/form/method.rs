@@ -64,7 +64,6 @@ impl Default for EmbedMethod {
 
 impl EmbedMethod {
     /// Every method, each with its default options.
-    #[must_use]
     pub fn all() -> [Self; 7] {
         let regularization = Regularization::default();
         [
@@ -79,19 +78,16 @@ impl EmbedMethod {
     }
 
     /// The method with this [name](Self::name) and default options.
-    #[must_use]
     pub fn named(name: &str) -> Option<Self> {
         Self::all().into_iter().find(|method| method.name() == name)
     }
 
     /// The name on the command line and in records.
-    #[must_use]
     pub fn name(&self) -> &'static str {
         self.entry().0
     }
 
     /// What the method computes, in one line.
-    #[must_use]
     pub fn summary(&self) -> &'static str {
         self.entry().1
     }
@@ -113,19 +109,16 @@ impl EmbedMethod {
     }
 
     /// NMDS with the low-rank regularisation of this rank.
-    #[must_use]
     pub fn low_rank(rank: usize) -> Self {
         Self::Nystrom { regularization: Regularization::LowRank { rank: Some(rank) } }
     }
 
     /// Spectral scaling in 300 eigenfunctions, as in the paper, with the default weight of the distances.
-    #[must_use]
     pub fn spectral() -> Self {
         Self::Spectral { eigenvectors: 300, mu: SpectralOptions::default().mu }
     }
 
     /// The regularisation of the sample matrix, for methods that have one.
-    #[must_use]
     pub fn regularization(&self) -> Option<Regularization> {
         match self {
             Self::Nystrom { regularization } | Self::Smacof { regularization, .. } => Some(*regularization),
@@ -135,13 +128,11 @@ impl EmbedMethod {
 
     /// Whether coordinates are lengths. The components of a kernel are not, so distances cannot be compared
     /// with them.
-    #[must_use]
     pub fn has_unit(&self) -> bool {
         !matches!(self, Self::KernelPca { .. })
     }
 
     /// Whether the method works on distances from samples, rather than between all pairs of vertices.
-    #[must_use]
     pub fn is_sampled(&self) -> bool {
         !matches!(self, Self::Classical)
     }

@@ -110,10 +110,7 @@ impl DescribeOptions {
     /// [`DescriptorError::NotThreeDimensional`]; [`Error::BadDescription`] names an option that is too small.
     pub fn validate(&self) -> Result<(), Error> {
         self.form.validate()?;
-        let samples = match self.form.samples {
-            Samples::Count(n) => n,
-            Samples::Auto => usize::MAX,
-        };
+        let samples = self.form.samples.count_or(usize::MAX);
         for (option, value, least) in [("samples", samples, 8), ("points", self.points, 4)] {
             if value < least {
                 return Err(Error::BadDescription { option, value, least });
@@ -122,9 +119,8 @@ impl DescribeOptions {
         Ok(())
     }
 
-    /// The options and the [version](ShapeMetric::VERSION) of the description as one line of JSON, equal for equal options. An index
-    /// stores it.
-    #[must_use]
+    /// The options and the [version](ShapeMetric::VERSION) of the description as one line of JSON, equal for equal
+    /// options. An index stores it.
     pub fn text(&self) -> String {
         let options = Self { form: self.form.clone().normalized(), ..*self };
         let provenance = Provenance { description: ShapeMetric::VERSION, options };
@@ -132,7 +128,6 @@ impl DescribeOptions {
     }
 
     /// Reads what [`text`](Self::text) wrote; `None` if this version does not know all of it.
-    #[must_use]
     pub fn from_text(text: &str) -> Option<Self> {
         let Provenance { options, .. } = serde_json::from_str(text).ok()?;
         Some(options).filter(|options: &Self| options.text() == text)

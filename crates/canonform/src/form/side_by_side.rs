@@ -1,15 +1,14 @@
-//! Every embedding method on one surface.
+//! Several embeddings of one surface, side by side.
 
-use geodesics::{Method, Sampling, Variance};
-use linalg::{DistanceMatrix, LandmarkDistances, Matrix};
+use geodesics::Method;
+use linalg::LandmarkDistances;
 use mesh::RepairReport;
-use nmds::{Regularization, RpiAlpha};
+use nmds::DistanceRows;
 use serde::Serialize;
 use surface::VertexId;
 
 use super::distances::check_memory;
 use super::embed::embed;
-use super::method::EmbedMethod;
 use super::options::FormOptions;
 use super::stress::{KnownRows, StressOptions, StressReport};
 use crate::error::Error;
@@ -41,7 +40,7 @@ pub struct MethodsReport {
 pub struct MethodReport {
     /// Its name.
     pub method: &'static str,
-    /// Its other options, as `canonform embed` takes them; may be empty.
+    /// The name of the variant; may be empty.
     pub options: &'static str,
     /// The result; `None` when the method failed.
     #[serde(flatten)]
@@ -69,8 +68,8 @@ pub struct MethodFacts {
     pub peak_bytes: usize,
 }
 
-/// Embeds a surface by every method in turn. `options` holds what the methods share; its method, sampling and
-/// regularisation are ignored. `watch` runs a piece of work and returns the most bytes that were in use.
+/// Embeds a surface with the options of each variant in turn; the name of a variant tells in what it differs from the
+/// shared `options`. `watch` runs a piece of work and returns the most bytes that were in use.
 ///
 /// A method that cannot embed this surface reports its error and does not stop the others. The stress of all
 /// methods is measured on the same rows of distances and does not count as their time.
@@ -80,23 +79,25 @@ pub struct MethodFacts {
 pub fn compare_methods(
     surface: &Surface,
     options: &FormOptions,
+    variants: &[(&'static str, FormOptions)],
     stress: &StressOptions,
     observer: &dyn Observer,
     watch: &dyn Fn(&mut dyn FnMut()) -> usize,
 ) -> Result<MethodsReport, Error> {
-    let reference = Reference::new(surface, options.geodesic, stress, observer)?;
+    let (reference, rows) = reference(surface, options.geodesic, stress, observer)?;
     let (mut methods, mut first_error) = (Vec::new(), None);
-    for (name, changed) in variants(options) {
+    for (name, changed) in variants {
         let mut result = None;
-        let peak_bytes = watch(&mut || result = Some(embed(surface, &changed, observer)));
+        let peak_bytes = watch(&mut || result = Some(embed(surface, changed, observer)));
         let (facts, error) = match result {
             Some(Ok(embedded)) => {
                 let report = &embedded.report;
+                let stress = || {
+                    let coords = &embedded.embedding.coords;
+                    StressReport::new(coords, reference.as_ref(), rows.as_deref(), options.geodesic)
+                };
                 let facts = MethodFacts {
-                    stress: changed
-                        .method
-                        .has_unit()
-                        .then(|| reference.stress(&embedded.embedding.coords, options.geodesic)),
+                    stress: changed.method.has_unit().then(stress),
                     negative_mass: report.negative_mass,
                     n_samples: report.n_samples,
                     geodesics_seconds: report.seconds.geodesics,
@@ -132,57 +133,22 @@ pub fn compare_methods(
     })
 }
 
-/// Every method, and the variants of the first one by the options that select them.
-fn variants(shared: &FormOptions) -> Vec<(&'static str, FormOptions)> {
-    let of = |method| FormOptions { method, sampling: Sampling::default(), ..shared.clone() };
-    let nmds = |regularization| of(EmbedMethod::Nystrom { regularization });
-    let default = || of(EmbedMethod::default());
-    let mut all = vec![
-        ("", default()),
-        ("--regularization rpi", nmds(Regularization::Rpi { alpha: RpiAlpha::default() })),
-        ("--regularization rpi --alpha paper", nmds(Regularization::Rpi { alpha: RpiAlpha::Paper })),
-        ("--regularization none", nmds(Regularization::None)),
-        ("--regularization cur", nmds(Regularization::Cur { rank: None })),
-        ("--sampling random", FormOptions { sampling: Sampling::Random, ..default() }),
-        (
-            "--sampling min-variance",
-            FormOptions { sampling: Sampling::Incremental(Variance::Least), ..default() },
-        ),
-        ("--geodesic bfs", FormOptions { geodesic: Method::BreadthFirst, ..default() }),
-    ];
-    let others = EmbedMethod::all().into_iter().filter(|method| *method != EmbedMethod::default());
-    all.extend(others.map(|method| ("", of(method))));
-    all
-}
+/// The distances that the stress of all embeddings is measured against, and their rows unless they are all.
+type Reference = (Box<dyn DistanceRows>, Option<Vec<usize>>);
 
-/// The distances that the stress of all embeddings is measured against.
-enum Reference {
-    All(DistanceMatrix),
-    Some(LandmarkDistances),
-}
-
-impl Reference {
-    fn new(
-        surface: &Surface,
-        method: Method,
-        stress: &StressOptions,
-        observer: &dyn Observer,
-    ) -> Result<Self, Error> {
-        let p = surface.mesh().n_vertices();
-        let rows = stress.choice.rows(p, stress.seed);
-        check_memory(p, rows.as_ref().map_or(p, Vec::len))?;
-        observer.begin("stress", 1);
-        let solver = method.prepare(&surface.intrinsic)?;
-        let Some(rows) = rows else { return Ok(Self::All(solver.distance_matrix()?)) };
-        let sources: Vec<VertexId> = rows.iter().copied().map(VertexId::from).collect();
-        let columns = solver.distance_columns(&sources);
-        Ok(Self::Some(LandmarkDistances::new(rows, columns)?))
-    }
-
-    fn stress(&self, coords: &Matrix, method: Method) -> StressReport {
-        match self {
-            Self::All(all) => StressReport::new(coords, all, None, method),
-            Self::Some(rows) => StressReport::new(coords, &KnownRows(rows), Some(rows.landmarks()), method),
-        }
-    }
+fn reference(
+    surface: &Surface,
+    method: Method,
+    stress: &StressOptions,
+    observer: &dyn Observer,
+) -> Result<Reference, Error> {
+    let p = surface.mesh().n_vertices();
+    let rows = stress.choice.rows(p, stress.seed);
+    check_memory(p, rows.as_ref().map_or(p, Vec::len))?;
+    observer.begin("stress", 1);
+    let solver = method.prepare(&surface.intrinsic)?;
+    let Some(rows) = rows else { return Ok((Box::new(solver.distance_matrix()?), None)) };
+    let sources: Vec<VertexId> = rows.iter().copied().map(VertexId::from).collect();
+    let known = LandmarkDistances::new(rows.clone(), solver.distance_columns(&sources))?;
+    Ok((Box::new(KnownRows(known)), Some(rows)))
 }

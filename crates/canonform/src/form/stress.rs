@@ -1,5 +1,7 @@
 //! The stress of an embedding of a surface.
 
+use std::borrow::Borrow;
+
 use geodesics::{DistanceSolver, Method};
 use linalg::{LandmarkDistances, Matrix};
 use nmds::{DistanceRows, StressEstimate, estimate_paper_stress, paper_stress, sample_rows};
@@ -113,16 +115,17 @@ impl DistanceRows for SolvedRows<'_> {
 }
 
 /// The rows of landmarks, looked up.
-pub(super) struct KnownRows<'a>(pub(super) &'a LandmarkDistances);
+pub(super) struct KnownRows<T>(pub(super) T);
 
-impl DistanceRows for KnownRows<'_> {
+impl<T: Borrow<LandmarkDistances> + Sync> DistanceRows for KnownRows<T> {
     fn n_points(&self) -> usize {
-        self.0.n_points()
+        self.0.borrow().n_points()
     }
 
     fn row_into(&self, i: usize, out: &mut [f64]) {
-        let landmark = self.0.landmarks().iter().position(|&l| l == i);
-        out.copy_from_slice(self.0.column(landmark.unwrap_or_else(|| unreachable!("row {i} is not known"))));
+        let known = self.0.borrow();
+        let landmark = known.landmarks().iter().position(|&l| l == i);
+        out.copy_from_slice(known.column(landmark.unwrap_or_else(|| unreachable!("row {i} is not known"))));
     }
 }
 

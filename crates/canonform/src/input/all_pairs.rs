@@ -57,7 +57,6 @@ impl<'a> AllPairs<'a> {
     }
 
     /// Number of input vertices: the rows and columns of the matrix.
-    #[must_use]
     pub fn n_vertices(&self) -> usize {
         self.surface.n_input_vertices()
     }

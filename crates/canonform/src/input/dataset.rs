@@ -3,6 +3,7 @@
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
+use files::FileError;
 use mesh::io::is_mesh_path;
 
 use crate::error::Error;
@@ -32,10 +33,9 @@ impl LabelFile {
     /// matrix in their order.
     ///
     /// # Errors
-    /// [`Error::Io`] and [`Error::BadLabelLine`].
+    /// [`Error::File`] and [`Error::BadLine`].
     pub fn read(path: &Path) -> Result<Self, Error> {
-        let text =
-            std::fs::read_to_string(path).map_err(|source| Error::Io { path: path.to_owned(), source })?;
+        let text = std::fs::read_to_string(path).map_err(|source| FileError::read(path, source))?;
         let (mut labels, mut in_order) = (HashMap::new(), Vec::new());
         let has_names = text.contains(',');
         for (number, line) in text.lines().enumerate() {
@@ -50,11 +50,8 @@ impl LabelFile {
                 }
                 [label] if !has_names => in_order.push(label.to_owned()),
                 _ => {
-                    return Err(Error::BadLabelLine {
-                        path: path.to_owned(),
-                        line: number + 1,
-                        found: line.to_owned(),
-                    });
+                    let what = format!("expected `name,label`, found `{line}`");
+                    return Err(Error::BadLine { path: path.to_owned(), line: number + 1, what });
                 }
             }
         }
@@ -83,7 +80,6 @@ fn stem(path: &Path) -> String {
 
 /// The class of a shape by its name: its sub-folder, else the leading letters of its file name
 /// (`cat0` is a `cat`), else the whole name.
-#[must_use]
 pub fn label_of(name: &str) -> String {
     if let Some((folder, _)) = name.rsplit_once('/') {
         return folder.to_owned();
@@ -96,23 +92,19 @@ pub fn label_of(name: &str) -> String {
 }
 
 /// The class of a shape in a label file, or by its name if there is none.
-///
-/// # Errors
-/// [`Error::NoLabel`].
 pub(crate) fn label_in(labels: Option<&LabelFile>, name: &str) -> Result<String, Error> {
     labels.map_or_else(|| Ok(label_of(name)), |file| file.label(name))
 }
 
-/// The meshes in a folder and its sub-folders, in natural order of their names (`cat2` before
-/// `cat10`).
+/// The meshes in a folder and its sub-folders, in natural order of their names (`cat2` before `cat10`).
 ///
 /// # Errors
-/// [`Error::Io`], [`Error::NoShapes`], [`Error::NoLabel`].
+/// [`Error::File`], [`Error::NoShapes`], [`Error::NoLabel`].
 pub fn list_shapes(folder: &Path, labels: Option<&LabelFile>) -> Result<Vec<ShapeFile>, Error> {
     let mut shapes = Vec::new();
     let mut folders = vec![folder.to_owned()];
     while let Some(current) = folders.pop() {
-        let fault = |source| Error::Io { path: current.clone(), source };
+        let fault = |source| FileError::read(&current, source);
         for entry in std::fs::read_dir(&current).map_err(fault)? {
             let path = entry.map_err(fault)?.path();
             if path.is_dir() {
@@ -130,25 +122,16 @@ pub fn list_shapes(folder: &Path, labels: Option<&LabelFile>) -> Result<Vec<Shap
     Ok(shapes)
 }
 
-/// Splits a name into text and numbers, so that numbers sort by value.
+/// Splits a name into texts and numbers, so that numbers sort by value.
 fn natural_key(name: &str) -> Vec<(String, u64)> {
-    let mut key: Vec<(String, u64)> = vec![(String::new(), 0)];
-    let mut in_number = false;
-    for c in name.chars() {
-        if c.is_ascii_digit() {
-            in_number = true;
-        } else if in_number {
-            key.push((String::new(), 0));
-            in_number = false;
-        }
-        if let Some((text, number)) = key.last_mut() {
-            match c.to_digit(10) {
-                Some(digit) => *number = number.saturating_mul(10).saturating_add(u64::from(digit)),
-                None => text.push(c),
-            }
-        }
-    }
-    key
+    let chars: Vec<char> = name.chars().collect();
+    let parts = chars.chunk_by(|a, b| a.is_ascii_digit() == b.is_ascii_digit());
+    parts
+        .map(|part| match (part[0].is_ascii_digit(), part.iter().collect::<String>()) {
+            (true, digits) => (String::new(), digits.parse().unwrap_or(u64::MAX)),
+            (false, text) => (text, 0),
+        })
+        .collect()
 }
 
 #[cfg(test)]

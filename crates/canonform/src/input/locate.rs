@@ -12,9 +12,10 @@ impl Surface {
     /// The point of the repaired surface that a point of the input became.
     ///
     /// # Errors
-    /// [`Error::NoSuchVertex`], [`Error::NoSuchEdge`] and [`Error::NoSuchFace`] if the input has no such element;
-    /// [`Error::DroppedVertex`], [`Error::DroppedEdge`] and [`Error::DroppedFace`] if the repair dropped it.
+    /// [`Error::NoSuchPoint`] if the input has no such vertex, edge or face; [`Error::DroppedPoint`] if the repair
+    /// dropped it.
     pub fn locate(&self, point: &InputPoint) -> Result<SurfacePoint, Error> {
+        let dropped = Error::DroppedPoint { point: *point };
         match *point {
             InputPoint::Vertex(vertex) => Ok(SurfacePoint::Vertex(self.repaired_vertex(vertex)?)),
             InputPoint::Edge { ends, t } => {
@@ -22,15 +23,13 @@ impl Surface {
                 let [start, end] = [self.repaired_vertex(ends[0])?, self.repaired_vertex(ends[1])?];
                 match self.intrinsic.topology().edge_between(start, end) {
                     Some(edge) => Ok(SurfacePoint::Edge { edge, t: if start < end { t } else { 1.0 - t } }),
-                    None if self.input_faces.iter().any(|f| is_edge(&f)) => Err(Error::DroppedEdge { ends }),
-                    None => Err(Error::NoSuchEdge { ends }),
+                    None if self.input_faces.iter().any(|f| is_edge(&f)) => Err(dropped),
+                    None => Err(self.no_such(*point)),
                 }
             }
             InputPoint::Face { face, weights } => {
-                let n_faces = self.input_faces.len();
-                let vertices = self.input_faces.get(face.index());
-                let vertices = vertices.ok_or(Error::NoSuchFace { face, n_faces })?;
-                self.in_face(*vertices, weights).ok_or(Error::DroppedFace { face })
+                let vertices = self.input_faces.get(face.index()).ok_or_else(|| self.no_such(*point))?;
+                self.in_face(*vertices, weights).ok_or(dropped)
             }
         }
     }
@@ -54,7 +53,6 @@ impl Surface {
     }
 
     /// A point of the repaired surface, in the numbers of the input.
-    #[must_use]
     pub fn input_point(&self, point: SurfacePoint) -> InputPoint {
         let ends =
             |edge: EdgeId| self.intrinsic.topology().edges()[edge.index()].map(|v| self.input_vertex(v));
@@ -79,7 +77,6 @@ impl Surface {
     }
 
     /// The position of a point of the repaired surface.
-    #[must_use]
     pub fn position(&self, point: SurfacePoint) -> Point3<f64> {
         let at = |v: VertexId| self.mesh().positions[v.index()].coords;
         let topology = self.intrinsic.topology();
@@ -152,13 +149,13 @@ mod tests {
         mesh.faces.push([kept, twin, VertexId(11)]);
         let surface = Surface::new(&mesh, &RepairOptions::default()).unwrap();
         let fault = |text: &str| surface.locate(&point(text)).unwrap_err();
-        assert!(matches!(fault("999"), Error::NoSuchVertex { .. }));
-        assert!(matches!(fault("3"), Error::DroppedVertex { .. }));
-        assert!(matches!(fault("f999"), Error::NoSuchFace { .. }));
+        assert!(matches!(fault("999"), Error::NoSuchPoint { .. }));
+        assert!(matches!(fault("3"), Error::DroppedPoint { .. }));
+        assert!(matches!(fault("f999"), Error::NoSuchPoint { .. }));
         for dropped in ["f0", "f1", &format!("f{n}")] {
-            assert!(matches!(fault(dropped), Error::DroppedFace { .. }), "{dropped}");
+            assert!(matches!(fault(dropped), Error::DroppedPoint { .. }), "{dropped}");
         }
-        assert!(matches!(fault("4-40"), Error::NoSuchEdge { .. }));
-        assert!(matches!(fault(&format!("{kept}-{twin}")), Error::DroppedEdge { .. }));
+        assert!(matches!(fault("4-40"), Error::NoSuchPoint { .. }));
+        assert!(matches!(fault(&format!("{kept}-{twin}")), Error::DroppedPoint { .. }));
     }
 }

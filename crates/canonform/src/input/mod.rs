@@ -4,7 +4,7 @@ mod all_pairs;
 mod dataset;
 mod locate;
 mod path;
-mod point;
+pub(crate) mod point;
 mod repaired;
 
 pub use all_pairs::{AllPairs, Asymmetry};

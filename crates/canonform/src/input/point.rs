@@ -52,6 +52,17 @@ impl FromStr for InputPoint {
     }
 }
 
+impl InputPoint {
+    /// Its vertex, edge or face, in words.
+    pub(crate) fn element(&self) -> String {
+        match self {
+            Self::Vertex(vertex) => format!("vertex {vertex}"),
+            Self::Edge { ends: [start, end], .. } => format!("edge {start}-{end}"),
+            Self::Face { face, .. } => format!("face {face}"),
+        }
+    }
+}
+
 fn parse(text: &str) -> Option<InputPoint> {
     let (element, place) = match text.split_once('@') {
         Some((element, place)) => (element, Some(place)),

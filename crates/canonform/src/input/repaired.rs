@@ -8,6 +8,7 @@ use nalgebra::Point3;
 use mesh::{RepairOptions, Repaired, TriMesh, io, repair};
 use surface::{IntrinsicMesh, VertexId};
 
+use super::point::InputPoint;
 use crate::error::Error;
 
 /// A repaired mesh, its intrinsic geometry, and the map back to the vertices of the input.
@@ -88,13 +89,11 @@ impl Surface {
     }
 
     /// The repaired mesh.
-    #[must_use]
     pub fn mesh(&self) -> &TriMesh {
         &self.repaired.mesh
     }
 
     /// Number of vertices of the input.
-    #[must_use]
     pub fn n_input_vertices(&self) -> usize {
         self.repaired.input_to_repaired.len()
     }
@@ -102,24 +101,25 @@ impl Surface {
     /// The vertex of the repaired mesh that an input vertex became.
     ///
     /// # Errors
-    /// [`Error::NoSuchVertex`] and [`Error::DroppedVertex`].
+    /// [`Error::NoSuchPoint`] and [`Error::DroppedPoint`].
     pub fn repaired_vertex(&self, input: VertexId) -> Result<VertexId, Error> {
-        let n_vertices = self.n_input_vertices();
+        let point = InputPoint::Vertex(input);
         let found = self.repaired.input_to_repaired.get(input.index());
-        found
-            .ok_or(Error::NoSuchVertex { vertex: input, n_vertices })?
-            .ok_or(Error::DroppedVertex { vertex: input })
+        found.ok_or_else(|| self.no_such(point))?.ok_or(Error::DroppedPoint { point })
+    }
+
+    /// The error that the input has no such point.
+    pub(super) fn no_such(&self, point: InputPoint) -> Error {
+        Error::NoSuchPoint { point, n_vertices: self.n_input_vertices(), n_faces: self.input_faces.len() }
     }
 
     /// The first input vertex that was mapped to this vertex of the repaired mesh.
-    #[must_use]
     pub fn input_vertex(&self, vertex: VertexId) -> VertexId {
         self.input_vertex[vertex.index()]
     }
 
     /// The faces of the input with new positions, given for the vertices of the repaired mesh. Vertices that the
     /// repair dropped have no position; they are left out, and so are their faces.
-    #[must_use]
     pub fn with_positions(&self, positions: &[Point3<f64>]) -> TriMesh {
         let to_repaired = &self.repaired.input_to_repaired;
         let mut number = vec![None; to_repaired.len()];
@@ -138,7 +138,6 @@ impl Surface {
     }
 
     /// Puts values of the repaired vertices into the order of the input, with `missing` for dropped vertices.
-    #[must_use]
     pub fn in_input_order<T: Copy>(&self, values: &[T], missing: T) -> Vec<T> {
         let value = |vertex: &Option<VertexId>| vertex.map_or(missing, |v| values[v.index()]);
         self.repaired.input_to_repaired.iter().map(value).collect()

@@ -196,7 +196,7 @@ pub(super) fn fill(
     let (send, receive) = sync_channel(WAITING);
     let described = std::thread::scope(|scope| {
         scope.spawn(|| {
-            // Sending fails only if the writer has failed; then there is no use in going on.
+            // Sending fails only if the writer has failed; the error stops the loop.
             let _ =
                 wanted.par_iter().enumerate().try_for_each_with(send, |send, (place, (file, content))| {
                     let described = Surface::read(&file.path, &options.form.repair)

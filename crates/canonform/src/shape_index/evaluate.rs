@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use descriptors::{ShapeMetric, SignatureKind};
+use files::FileError;
 use index::{Index, IndexError};
 use linalg::DistanceMatrix;
 use retrieval::{Evaluation, Labels, evaluate, pairwise_distances};
@@ -24,8 +25,7 @@ pub enum Measure {
     Signature(SignatureKind),
 }
 
-/// Scores an index by the distances between all pairs of its shapes. Classes come from the index, or from
-/// `labels`.
+/// Scores an index by the distances between all pairs of its shapes. Classes come from the index, or from `labels`.
 ///
 /// # Errors
 /// [`Error::TooManyShapes`], [`Error::Index`], [`Error::Retrieval`].
@@ -86,9 +86,9 @@ pub fn evaluate_index(
 /// ```
 ///
 /// # Errors
-/// [`Error::BadMatrix`], [`Error::NoNames`], [`Error::Retrieval`].
+/// [`Error::BadLine`], [`Error::NoNames`], [`Error::Retrieval`].
 pub fn evaluate_matrix(path: &Path, labels: Option<&LabelFile>, knn_k: usize) -> Result<Evaluation, Error> {
-    let text = std::fs::read_to_string(path).map_err(|source| Error::Io { path: path.to_owned(), source })?;
+    let text = std::fs::read_to_string(path).map_err(|source| FileError::read(path, source))?;
     let Matrix { names, rows } = Matrix::parse(&text, path)?;
     let n = rows.len();
     let classes = match (labels, names) {
@@ -108,7 +108,7 @@ struct Matrix {
 
 impl Matrix {
     fn parse(text: &str, path: &Path) -> Result<Self, Error> {
-        let bad = |line: usize, what: String| Error::BadMatrix { path: path.to_owned(), line, what };
+        let bad = |line: usize, what: String| Error::BadLine { path: path.to_owned(), line, what };
         let lines = text.lines().enumerate().map(|(i, line)| (i + 1, line.trim()));
         let mut lines = lines.filter(|(_, line)| !line.is_empty() && !line.starts_with('#')).peekable();
         let fields =

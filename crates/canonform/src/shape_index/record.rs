@@ -14,9 +14,6 @@ use crate::input::ShapeFile;
 const AREA: &str = "area";
 
 /// How the shapes of an index were described.
-///
-/// # Errors
-/// [`Error::UnknownOptions`].
 pub(super) fn options_of(index: &Index) -> Result<DescribeOptions, Error> {
     DescribeOptions::from_text(index.options()).ok_or_else(|| Error::UnknownOptions {
         path: index.path().to_owned(),
@@ -63,30 +60,16 @@ pub(super) fn shape(file: &ShapeFile, content: ContentHash, described: ShapeDesc
     }
 }
 
-/// The form of an indexed shape, which was described with `options`.
-///
-/// # Errors
-/// [`Error::Descriptor`] if the stored numbers are not a form.
-pub(super) fn form(
-    entry: &ShapeEntry,
-    vectors: &ShapeVectors,
-    options: &DescribeOptions,
-) -> Result<CanonicalForm, Error> {
-    let points = vectors.form.iter().map(|[x, y, z, _]| Point3::new(*x, *y, *z).cast());
-    let weights = vectors.form.iter().map(|[.., w]| f64::from(*w)).collect();
-    let area = entry.fact(AREA).filter(|_| options.form.method.has_unit());
-    Ok(CanonicalForm::from_parts(points.collect(), weights, area)?)
-}
-
-/// An indexed shape, ready to be compared.
-///
-/// # Errors
-/// [`Error::Descriptor`] if the stored numbers are not a form.
+/// An indexed shape, which was described with `options`, ready to be compared.
 pub(super) fn prepared(
     entry: &ShapeEntry,
     vectors: ShapeVectors,
     options: &DescribeOptions,
 ) -> Result<PreparedShape, Error> {
-    let form = form(entry, &vectors, options)?;
-    Ok(PreparedShape::new(vectors.fused, &form, entry.fact(AREA))?)
+    let points = vectors.form.iter().map(|[x, y, z, _]| Point3::new(*x, *y, *z).cast());
+    let weights = vectors.form.iter().map(|[.., w]| f64::from(*w)).collect();
+    let area = entry.fact(AREA);
+    let form_area = area.filter(|_| options.form.method.has_unit());
+    let form = CanonicalForm::from_parts(points.collect(), weights, form_area)?;
+    Ok(PreparedShape::new(vectors.fused, &form, area)?)
 }

@@ -41,9 +41,8 @@ pub struct Reranked {
 /// of aligning all candidates. Alignments run in parallel; the result does not depend on the number of threads.
 ///
 /// # Errors
-/// [`Error::Descriptor`], and the errors of `shape`.
+/// Those of `shape`.
 pub fn rerank<S: Borrow<PreparedShape>>(
-    metric: &ShapeMetric,
     query: &PreparedShape,
     candidates: impl IntoIterator<Item = Candidate>,
     k: usize,
@@ -56,7 +55,7 @@ pub fn rerank<S: Borrow<PreparedShape>>(
         let fused = ShapeMetric::fused(query.fused(), shape.fused());
         let left = ShapeMetric::form_limit(fused, limit, FormDistance::NearestNeighborRms);
         let (a, b) = (query.prepared_form(), shape.prepared_form());
-        let Some(alignment) = match_forms_within(a, b, &metric.matching, left)? else { return Ok(None) };
+        let Some(alignment) = match_forms_within(a, b, left) else { return Ok(None) };
         found.lock().unwrap_or_else(PoisonError::into_inner).insert(candidate.index, (fused, alignment));
         Ok::<_, Error>(Some(ShapeMetric::combined(fused, alignment.rms)))
     })?;
@@ -87,10 +86,9 @@ mod tests {
 
     #[test]
     fn reranking_finds_what_aligning_all_finds() {
-        let metric = ShapeMetric::default();
         let turns = |i: usize| 1.0 + 0.2 * i as f64;
         for query in [0, 13] {
-            // Signatures that tell something, and such that tell nothing.
+            // Informative signatures, and useless ones.
             for usefulness in [1.0, 0.0] {
                 let fused = |i: usize| usefulness * 0.05 * (i.abs_diff(query) as f64 + 2.0 * (i % 3) as f64);
                 let shapes: Vec<_> = (0..30).map(|i| spiral(turns(i), fused(i))).collect();
@@ -101,15 +99,15 @@ mod tests {
                 candidates.sort_by(|a, b| a.bound.total_cmp(&b.bound));
                 let mut all: Vec<_> = (0..30)
                     .map(|index| {
-                        let pair = ShapePair::new(&metric, [&asked, &shapes[index]]);
-                        let (fused, alignment) = (fused(index), pair.best().unwrap());
+                        let pair = ShapePair::new(ShapeMetric::default(), [&asked, &shapes[index]]);
+                        let (fused, alignment) = (fused(index), pair.best());
                         let distance = ShapeMetric::combined(fused, alignment.rms);
                         Ranked { index, distance, fused, alignment }
                     })
                     .collect();
                 all.sort_by(|a, b| a.distance.total_cmp(&b.distance).then(a.index.cmp(&b.index)));
                 for k in [1, 5, 30] {
-                    let found = rerank(&metric, &asked, candidates.clone(), k, |i| Ok(&shapes[i])).unwrap();
+                    let found = rerank(&asked, candidates.clone(), k, |i| Ok(&shapes[i])).unwrap();
                     assert_eq!(found.nearest, all[..k], "{query}, {k}");
                     assert!(k < 30 || found.abandoned == 0, "all are wanted");
                     assert!(k == 30 || found.aligned - found.abandoned < 30);

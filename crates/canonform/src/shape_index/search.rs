@@ -3,15 +3,15 @@
 use std::path::Path;
 use std::time::Instant;
 
-use descriptors::{CanonicalForm, PreparedShape, ShapeMetric, ShapePair};
+use descriptors::{PreparedShape, ShapeMetric, ShapePair};
 use index::{Index, SearchMode, ShapeEntry};
 use mesh::TriMesh;
 use rayon::prelude::*;
 use retrieval::{Candidate, vote};
 use serde::Serialize;
 
-use super::record::{form, options_of, prepared};
-use super::rerank::rerank;
+use super::record::{options_of, prepared};
+use super::rerank::{Ranked, rerank};
 use super::source::read_unchanged;
 use crate::compare::{Comparison, compare};
 use crate::error::Error;
@@ -39,8 +39,6 @@ pub struct SearchOptions {
     pub mode: SearchMode,
     /// Whether every result is compared with the query in detail. Default: no.
     pub explain: Explain,
-    /// The distance between shapes.
-    pub metric: ShapeMetric,
 }
 
 /// Whether results are compared with the query in detail.
@@ -55,7 +53,7 @@ pub enum Explain {
 
 impl Default for SearchOptions {
     fn default() -> Self {
-        Self { k: 10, mode: SearchMode::Auto, explain: Explain::No, metric: ShapeMetric::default() }
+        Self { k: 10, mode: SearchMode::Auto, explain: Explain::No }
     }
 }
 
@@ -142,36 +140,16 @@ impl ShapeSearch {
     }
 
     /// How the shapes of the index were described; queries are described in the same way.
-    #[must_use]
     pub fn describe_options(&self) -> &DescribeOptions {
         &self.describe
     }
 
-    /// All shapes with their entries, by ascending name.
-    ///
-    /// # Errors
-    /// [`Error::Index`].
-    pub fn entries(&self) -> Result<Vec<(String, ShapeEntry)>, Error> {
-        Ok(self.index.entries()?)
+    /// The index.
+    pub fn index(&self) -> &Index {
+        &self.index
     }
 
-    /// The entry of a shape.
-    ///
-    /// # Errors
-    /// [`Error::Index`].
-    pub fn entry(&self, id: &str) -> Result<ShapeEntry, Error> {
-        Ok(self.index.entry(id)?)
-    }
-
-    /// The form of a shape, at the points that the index stores.
-    ///
-    /// # Errors
-    /// [`Error::Index`].
-    pub fn form(&self, id: &str) -> Result<CanonicalForm, Error> {
-        form(&self.index.entry(id)?, &self.index.vectors(id)?, &self.describe)
-    }
-
-    /// A shape, ready to be compared.
+    /// A shape with its form at the points that the index stores, ready to be compared.
     ///
     /// # Errors
     /// [`Error::Index`].
@@ -249,29 +227,22 @@ impl ShapeSearch {
             .enumerate()
             .map(|(index, near)| Candidate { index, bound: near.distance * LOWER_BOUND });
         let shape = |i: usize| self.prepared(&near[i].id);
-        let ranked = rerank(&options.metric, query, candidates, wanted, shape)?;
+        let ranked = rerank(query, candidates, wanted, shape)?;
 
-        let mut results = Vec::with_capacity(wanted);
-        for (place, ranked) in ranked.nearest.iter().enumerate() {
-            let id = &near[ranked.index].id;
-            let ShapeEntry { label, path, .. } = self.index.entry(id)?;
+        let result = |(place, ranked): (usize, &Ranked)| {
+            let id = near[ranked.index].id.clone();
+            let ShapeEntry { label, path, .. } = self.index.entry(&id)?;
             let (distance, fused) = (ranked.distance, ranked.fused);
-            results.push(SearchResult {
-                rank: place + 1,
-                id: id.clone(),
-                label,
-                path,
-                distance,
-                fused,
-                comparison: None,
-            });
-        }
+            Ok(SearchResult { rank: place + 1, id, label, path, distance, fused, comparison: None })
+        };
+        let mut results = ranked.nearest.iter().enumerate().map(result).collect::<Result<Vec<_>, Error>>()?;
         let predicted = predicted(&results, found.threshold);
         results.truncate(options.k);
         if options.explain == Explain::Kind {
             results.par_iter_mut().zip(&ranked.nearest).try_for_each(|(result, ranked)| {
                 let shape = self.prepared(&result.id)?;
-                let pair = ShapePair::new(&options.metric, [query, &shape]).with_best(ranked.alignment);
+                let pair =
+                    ShapePair::new(ShapeMetric::default(), [query, &shape]).with_best(ranked.alignment);
                 result.comparison = Some(compare(&pair)?);
                 Ok::<_, Error>(())
             })?;
@@ -363,7 +334,7 @@ mod tests {
             for result in &by_mesh.results {
                 let other = search.prepared(&result.id).unwrap();
                 let query = described.prepare().unwrap();
-                let direct = compare(&ShapePair::new(&options.metric, [&query, &other])).unwrap();
+                let direct = compare(&ShapePair::new(ShapeMetric::default(), [&query, &other])).unwrap();
                 assert_eq!(result.comparison.as_ref(), Some(&direct));
                 assert_eq!(result.distance, direct.shape_distance.combined);
             }
@@ -382,13 +353,13 @@ mod tests {
     }
 
     #[test]
-    fn shapes_are_known_by_name() {
+    fn shapes_are_found_by_name() {
         let (_folder, search) = indexed(&DescribeOptions::default());
         let options = SearchOptions::default();
         assert!(matches!(search.search_shape("none", &options), Err(Error::Index(_))));
-        let names: Vec<String> = search.entries().unwrap().into_iter().map(|(id, _)| id).collect();
+        let names: Vec<String> = search.index().entries().unwrap().into_iter().map(|(id, _)| id).collect();
         assert_eq!(names, ["ball0", "box0", "ring0", "ring1"]);
-        assert_eq!(search.entry("box0").unwrap().label, "box");
+        assert_eq!(search.index().entry("box0").unwrap().label, "box");
     }
 
     #[test]
@@ -403,6 +374,6 @@ mod tests {
         let gone = search.mesh("box0").unwrap_err();
         assert!(matches!(&gone, Error::MeshGone { id, .. } if id == "box0"));
         assert!(gone.to_string().contains("box0.vert"), "{gone}");
-        search.form("box0").unwrap();
+        search.prepared("box0").unwrap();
     }
 }

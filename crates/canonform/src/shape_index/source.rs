@@ -6,8 +6,8 @@ use std::str::FromStr;
 
 use files::FileError;
 use index::{ContentHash, ShapeEntry};
+use mesh::TriMesh;
 use mesh::io::{MemoryFile, ReadLimits};
-use mesh::{MeshError, TriMesh};
 use rayon::prelude::*;
 
 use crate::error::Error;
@@ -61,7 +61,7 @@ pub struct Inputs<'a> {
 }
 
 impl Inputs<'_> {
-    /// The meshes, each with a unique name if extensions can make it so.
+    /// The meshes; files that differ only in their extensions have them in their names.
     pub(super) fn list(&self) -> Result<Vec<ShapeFile>, Error> {
         let mut shapes = Vec::new();
         for path in self.paths {
@@ -116,10 +116,7 @@ pub(super) fn hash_all(shapes: Vec<ShapeFile>, observer: &dyn Observer) -> Vec<H
         .collect()
 }
 
-/// Reads the mesh of an indexed shape.
-///
-/// # Errors
-/// [`Error::MeshGone`] and [`Error::MeshChanged`] unless the file still has the content that was indexed.
+/// Reads the mesh of an indexed shape, if the file still has the content that was indexed.
 pub(super) fn read_unchanged(id: &str, entry: &ShapeEntry) -> Result<TriMesh, Error> {
     let path = PathBuf::from(&entry.path);
     let files = mesh::io::files_of(&path);
@@ -135,8 +132,7 @@ pub(super) fn read_unchanged(id: &str, entry: &ShapeEntry) -> Result<TriMesh, Er
 }
 
 fn content(path: &Path) -> Result<ContentHash, Error> {
-    let read =
-        |path: &PathBuf| std::fs::read(path).map_err(|source| MeshError::from(FileError::read(path, source)));
+    let read = |path: &PathBuf| std::fs::read(path).map_err(|source| FileError::read(path, source));
     let pieces = mesh::io::files_of(path).iter().map(read).collect::<Result<Vec<_>, _>>()?;
     Ok(ContentHash::of(&pieces))
 }

@@ -5,7 +5,7 @@ use std::process::ExitCode;
 
 use anyhow::{Result, bail};
 use canonform::descriptors::{
-    CanonicalForm, FormDistance, Handedness, MatchKind, MatchOptions, PreparedShape, ShapeMetric, ShapePair,
+    CanonicalForm, FormDistance, Handedness, MatchKind, PreparedShape, ShapeMetric, ShapePair,
 };
 use canonform::{
     Comparison, DescribeOptions, FormOptions, ShapeDescription, Surface, SurfaceComparison, Triangulation,
@@ -82,7 +82,7 @@ pub(crate) fn compare(args: &CompareArgs, common: &Common) -> Result<ExitCode> {
     if let Some(path) = &args.residual_mesh {
         let formats: Vec<_> = writable(Content::Field).collect();
         if !formats.contains(&extension(path).as_str()) {
-            bail!("{}: residuals are written as a coloured {}", path.display(), or_list(formats));
+            bail!("{}: unsupported format for residuals; use {}", path.display(), or_list(formats));
         }
         check_folder(path)?;
     }
@@ -90,15 +90,15 @@ pub(crate) fn compare(args: &CompareArgs, common: &Common) -> Result<ExitCode> {
         DistanceName::NnRms => FormDistance::NearestNeighborRms,
         DistanceName::Hausdorff95 => FormDistance::Hausdorff95,
     };
-    let metric = ShapeMetric { matching: MatchOptions { distance, ..MatchOptions::default() } };
+    let metric = ShapeMetric { distance };
     let bars = Bars::new(common.quiet);
     let (a, form_a, shape_a, usual_a) = side(&args.a, args, &options, &bars)?;
     let (b, form_b, shape_b, usual_b) = side(&args.b, args, &options, &bars)?;
-    let pair = ShapePair::new(&metric, [&shape_a, &shape_b]);
+    let pair = ShapePair::new(metric, [&shape_a, &shape_b]);
     // The kind of match does not depend on how forms are made.
     let distance = match (&usual_a, &usual_b) {
-        (Some(a), Some(b)) => ShapePair::new(&metric, [a, b]).distance()?,
-        _ => pair.distance()?,
+        (Some(a), Some(b)) => ShapePair::new(metric, [a, b]).distance(),
+        _ => pair.distance(),
     };
     let SurfaceComparison { comparison, triangulation, overlay } =
         compare_surfaces(&pair, distance, [(&a, &form_a), (&b, &form_b)])?;

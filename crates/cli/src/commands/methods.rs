@@ -3,7 +3,9 @@
 use std::process::ExitCode;
 
 use anyhow::Result;
-use canonform::{FormOptions, MethodFacts, MethodsReport, StressOptions, compare_methods};
+use canonform::geodesics::{Method, Sampling, Variance};
+use canonform::nmds::{Regularization, RpiAlpha};
+use canonform::{EmbedMethod, FormOptions, MethodFacts, MethodsReport, StressOptions, compare_methods};
 use terminal::Bars;
 
 use super::{named, read_surface};
@@ -23,8 +25,10 @@ pub(crate) fn methods(args: &MethodsArgs, common: &Common) -> Result<ExitCode> {
     let stress = StressOptions { choice: args.stress.into(), against: None, seed: common.seed };
     let surface = read_surface(&args.mesh, &args.repair)?;
     let bars = Bars::new(common.quiet);
-    let report = compare_methods(&surface, &options, &stress, &bars, &|work| with_peak_bytes(work).1)
-        .map_err(|fault| named(&args.mesh, fault))?;
+    let variants = variants(&options);
+    let report =
+        compare_methods(&surface, &options, &variants, &stress, &bars, &|work| with_peak_bytes(work).1)
+            .map_err(|fault| named(&args.mesh, fault))?;
     bars.finish();
     if common.json {
         print_json(&report)?;
@@ -32,6 +36,26 @@ pub(crate) fn methods(args: &MethodsArgs, common: &Common) -> Result<ExitCode> {
         print(&table(&report))?;
     }
     Ok(ExitCode::SUCCESS)
+}
+
+/// Every method, and the variants of the first one by the options that select them.
+fn variants(shared: &FormOptions) -> Vec<(&'static str, FormOptions)> {
+    let of = |method| FormOptions { method, ..shared.clone() };
+    let nmds = |regularization| of(EmbedMethod::Nystrom { regularization });
+    let sampled = |sampling| FormOptions { sampling, ..shared.clone() };
+    let mut all = vec![
+        ("", shared.clone()),
+        ("--regularization rpi", nmds(Regularization::Rpi { alpha: RpiAlpha::default() })),
+        ("--regularization rpi --alpha paper", nmds(Regularization::Rpi { alpha: RpiAlpha::Paper })),
+        ("--regularization none", nmds(Regularization::None)),
+        ("--regularization cur", nmds(Regularization::Cur { rank: None })),
+        ("--sampling random", sampled(Sampling::Random)),
+        ("--sampling min-variance", sampled(Sampling::Incremental(Variance::Least))),
+        ("--geodesic bfs", FormOptions { geodesic: Method::BreadthFirst, ..shared.clone() }),
+    ];
+    let others = EmbedMethod::all().into_iter().filter(|method| *method != EmbedMethod::default());
+    all.extend(others.map(|method| ("", of(method))));
+    all
 }
 
 /// One row a method; the least of a column is starred.

@@ -42,7 +42,6 @@ pub(crate) fn search(args: &SearchArgs, common: &Common) -> Result<ExitCode> {
         k: args.k,
         mode: if args.exact { SearchMode::Exact } else { SearchMode::Auto },
         explain: if args.explain { Explain::Kind } else { Explain::No },
-        ..SearchOptions::default()
     };
     let (mut answers, mut failed) = (Vec::new(), Vec::new());
     for query in &args.queries {

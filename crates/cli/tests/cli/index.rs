@@ -70,6 +70,25 @@ fn a_folder_becomes_an_index_that_finds_its_shapes() {
 }
 
 #[test]
+fn an_explained_result_has_the_numbers_of_the_comparison() {
+    let place = collection();
+    place.done(&["index", "build", "meshes", "-o", "all.canonform"]);
+    place.add("query.ply", &body(0, 7));
+    let found = place.json(&["search", "all.canonform", "query.ply", "-k", "9", "--explain"]);
+    for result in found["results"].as_array().unwrap().iter().step_by(4) {
+        let (explained, path) = (result["match"].as_object().unwrap(), result["path"].as_str().unwrap());
+        let compared = place.json(&["compare", "query.ply", path]);
+        // The handedness needs the surfaces.
+        for (key, value) in
+            explained.iter().filter(|(key, _)| !["kind", "handedness"].contains(&key.as_str()))
+        {
+            assert_eq!(*value, compared[key], "{path}: {key}");
+        }
+        assert_eq!(result["distance"], compared["combined_distance"]);
+    }
+}
+
+#[test]
 fn only_what_changed_is_described_again() {
     let place = collection();
     place.done(&BUILD);

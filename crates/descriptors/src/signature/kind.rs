@@ -24,35 +24,29 @@ pub enum SignatureKind {
     WaveKernel,
 }
 
+/// Name and number of values of every kind.
+const TABLE: [(&str, usize); SignatureKind::ALL.len()] = [
+    ("moments", 13),
+    ("d2", 8),
+    ("geodesic-spectrum", 12),
+    ("shape-dna", 20),
+    ("heat-kernel", 32),
+    ("wave-kernel", 96),
+];
+
 impl SignatureKind {
     /// All kinds, in the order of a fused vector.
     pub const ALL: [Self; 6] =
         [Self::Moments, Self::D2, Self::GeodesicSpectrum, Self::ShapeDna, Self::HeatKernel, Self::WaveKernel];
 
     /// The name used on the command line and in records.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Moments => "moments",
-            Self::D2 => "d2",
-            Self::GeodesicSpectrum => "geodesic-spectrum",
-            Self::ShapeDna => "shape-dna",
-            Self::HeatKernel => "heat-kernel",
-            Self::WaveKernel => "wave-kernel",
-        }
+    pub const fn name(self) -> &'static str {
+        TABLE[self as usize].0
     }
 
     /// Number of values, without the size.
-    #[must_use]
     pub const fn n_values(self) -> usize {
-        match self {
-            Self::Moments => 13,
-            Self::D2 => 8,
-            Self::GeodesicSpectrum => 12,
-            Self::ShapeDna => 20,
-            Self::HeatKernel => 32,
-            Self::WaveKernel => 96,
-        }
+        TABLE[self as usize].1
     }
 }
 
@@ -80,7 +74,6 @@ pub struct Signature {
 
 impl Signature {
     /// Euclidean distance to another signature; infinite unless both are of one kind and length.
-    #[must_use]
     pub fn distance(&self, other: &Self) -> f64 {
         if self.kind != other.kind || self.values.len() != other.values.len() {
             return f64::INFINITY;

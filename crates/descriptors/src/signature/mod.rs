@@ -10,16 +10,12 @@
 //! * have a fixed length and no NaN.
 
 mod geodesic_spectrum;
-mod kernels;
 mod kind;
-mod moments;
+mod of_form;
 mod quantiles;
-mod shape_distribution;
-mod shape_dna;
+mod spectral;
 
 pub use geodesic_spectrum::geodesic_spectrum;
-pub use kernels::{heat_kernel_signature, wave_kernel_signature};
 pub use kind::{Signature, SignatureKind};
-pub use moments::moment_signature;
-pub use shape_distribution::d2_histogram;
-pub use shape_dna::shape_dna;
+pub use of_form::{d2_histogram, moment_signature};
+pub use spectral::{heat_kernel_signature, shape_dna, wave_kernel_signature};

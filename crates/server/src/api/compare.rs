@@ -115,14 +115,12 @@ fn answer(app: &App, params: CompareParams) -> Result<Answer, ApiError> {
         _ => return Err(ApiError::bad_request("name either an upload with `query` or a shape with `a`")),
     };
     let b = Side::of_shape(app, &params.b)?;
-    let metric = ShapeMetric::default();
-    let pair = ShapePair::new(&metric, [a.shape(), b.shape()]);
+    let pair = ShapePair::new(ShapeMetric::default(), [a.shape(), b.shape()]);
     let (comparison, triangulation, overlay) = match (a.measured(), b.measured()) {
         (Some(a), Some(b)) => {
             let surfaces = [(&a.surface, &a.form), (&b.surface, &b.form)];
-            let distance = pair.distance().map_err(Error::from)?;
             let SurfaceComparison { comparison, triangulation, overlay } =
-                compare_surfaces(&pair, distance, surfaces)?;
+                compare_surfaces(&pair, pair.distance(), surfaces)?;
             (comparison, Some(triangulation), overlay)
         }
         _ => (canonform::compare(&pair)?, None, Overlay::new(&pair, [a.form(), b.form()])?),

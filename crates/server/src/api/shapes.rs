@@ -89,7 +89,7 @@ pub(super) async fn form(State(app): State<Arc<App>>, Id(id): Id) -> Result<Writ
 pub(super) fn form_of(app: &App, id: &str) -> Result<Geometry, Error> {
     match app.indexed(id) {
         Ok(measured) => Ok(measured.form()),
-        Err(fault) if is_missing(&fault) => Ok(Geometry::new(&dots(&app.search.form(id)?))),
+        Err(fault) if is_missing(&fault) => Ok(Geometry::new(&dots(app.search.prepared(id)?.form()))),
         Err(fault) => Err(fault),
     }
 }
@@ -108,7 +108,8 @@ pub(super) async fn thumbnail(
     const PNG: &str = "image/png";
     let shared = app.clone();
     let drawing = move || {
-        let tag = tag(&format!("{}-{DRAWING}", shared.search.entry(&id)?.content));
+        let tag =
+            tag(&format!("{}-{DRAWING}", shared.search.index().entry(&id).map_err(Error::from)?.content));
         if is_known(&headers, &tag) {
             return Ok(tagged(tag, PNG, None));
         }
@@ -123,7 +124,7 @@ pub(super) async fn thumbnail(
             }
             // Under another tag, and not kept: the mesh may come back.
             Err(fault) if is_missing(&fault) => {
-                let picture = draw(&dots(&shared.search.form(&id)?), View::Principal)?;
+                let picture = draw(&dots(shared.search.prepared(&id)?.form()), View::Principal)?;
                 Ok(tagged(super::answer::tag("points"), PNG, Some(picture)))
             }
             Err(fault) => Err(fault.into()),

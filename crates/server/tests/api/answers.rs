@@ -193,7 +193,8 @@ fn an_upload_is_laid_over_what_it_found() {
     let description = description(&server);
     let mut mesh = shapes::torus(24, 12, 2.0, 0.8);
     mesh.positions.iter_mut().for_each(|p| p.coords *= 3.0);
-    let found = upload(server.address, &[("q.off", &written("q.off", &mesh))], &[]).unwrap().json();
+    let found = upload(server.address, &[("q.off", &written("q.off", &mesh))], &[("explain", "true")]);
+    let found = found.unwrap().json();
     let query = found["query_id"].as_str().unwrap();
     assert!(query.len() == 32 && query.bytes().all(|c| c.is_ascii_hexdigit()));
     let answer = get(&server, &format!("/api/compare?query={query}&b=ring1"));
@@ -203,6 +204,11 @@ fn an_upload_is_laid_over_what_it_found() {
     assert_eq!((json["a"].as_str(), json["b"].as_str()), (Some("q.off"), Some("ring1")));
     assert_eq!((json["kind"].as_str(), json["triangulation"].as_str()), (Some("scaled"), Some("same")));
     assert!((json["scale"].as_f64().unwrap() * 3.0 - 1.0).abs() < 1e-6);
+    let mut results = found["results"].as_array().unwrap().iter();
+    let explained = &results.find(|result| result["id"] == "ring1").unwrap()["match"];
+    for (key, value) in explained.as_object().unwrap().iter().filter(|(key, _)| *key != "handedness") {
+        assert_eq!(*value, json[key], "{key}");
+    }
     let forms = [0, 1].map(|i| geometry(&json["forms"][i]));
     for (i, form) in forms.iter().enumerate() {
         let largest = form.values.as_ref().unwrap().iter().copied().fold(0.0, f32::max);

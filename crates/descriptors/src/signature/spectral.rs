@@ -1,4 +1,4 @@
-//! The heat and wave kernel signatures, as distributions over the surface.
+//! Signatures from the Laplace-Beltrami spectrum: ShapeDNA, and the heat and wave kernel signatures.
 
 use std::f64::consts::{LN_10, PI};
 
@@ -7,6 +7,23 @@ use linalg::Matrix;
 use super::kind::{Signature, SignatureKind};
 use super::quantiles::quantiles;
 use crate::spectrum::LaplaceSpectrum;
+
+/// Number of eigenvalues used.
+const EIGENVALUES: usize = SignatureKind::ShapeDna.n_values();
+
+/// ShapeDNA: the eigenvalues of the Laplace-Beltrami operator (Reuter, Wolter and Peinecke 2006,
+/// `reuter2006` in `REFERENCES.bib`).
+///
+/// The values are `λ_i A / (4 π i)` for the first 20 eigenvalues after zero, with `A` the area. By Weyl's law `λ_i A` grows
+/// like `4 π i`, so all values are near one and none dominates.
+///
+/// * Invariant to isometries (bending, rigid motions, mirror images) and scale. The triangulation changes them by the
+///   error of linear finite elements.
+/// * If a mesh has fewer eigenvalues, the remaining values are one.
+pub fn shape_dna(spectrum: &LaplaceSpectrum) -> Signature {
+    let value = |i: usize| spectrum.values.get(i).map_or(1.0, |value| value / (4.0 * PI * i as f64));
+    Signature { kind: SignatureKind::ShapeDna, values: (1..=EIGENVALUES).map(value).collect() }
+}
 
 /// Number of times at which heat is sampled.
 const TIMES: usize = 8;
@@ -40,7 +57,6 @@ fn weyl(i: f64) -> f64 {
 /// * Invariant to isometries (bending, rigid motions, mirror images), scale and the order of vertices; changes with the
 ///   triangulation as the spectrum does.
 /// * On a mesh without a second eigenvalue all values are zero.
-#[must_use]
 pub fn heat_kernel_signature(spectrum: &LaplaceSpectrum) -> Signature {
     let ends = [weyl(EIGENPAIRS as f64), weyl(1.0)].map(|value| (4.0 * LN_10 / value).ln());
     let times: Vec<f64> = spaced(ends, TIMES).map(f64::exp).collect();
@@ -60,7 +76,6 @@ pub fn heat_kernel_signature(spectrum: &LaplaceSpectrum) -> Signature {
 /// * Invariant to isometries (bending, rigid motions, mirror images), scale and the order of vertices; changes with the
 ///   triangulation as the spectrum does.
 /// * On a mesh without a second eigenvalue all values are zero.
-#[must_use]
 pub fn wave_kernel_signature(spectrum: &LaplaceSpectrum) -> Signature {
     let ends = [weyl(1.0), weyl(0.7 * EIGENPAIRS as f64)].map(f64::ln);
     let energies: Vec<f64> = spaced(ends, ENERGIES).collect();
