@@ -1,11 +1,6 @@
-//! Wavefront OBJ, parsed by `tobj`.
-//!
-//! `tobj` numbers vertices in the order in which faces first use them, drops the others, and starts a new
-//! mesh at each object, group and material. The numbers of the file survive because it is given the `v` and
-//! `f` lines only, after one face over all vertices: that face uses them in the order of the file.
+//! Wavefront OBJ.
 
-use std::io::{self, Read, Write};
-use std::path::Path;
+use std::io::{self, Write};
 
 use nalgebra::Point3;
 use surface::VertexId;
@@ -13,7 +8,7 @@ use surface::VertexId;
 use crate::error::{Fault, Located};
 use crate::io::limits::ReadLimits;
 use crate::io::polygons::{finish, push_polygon};
-use crate::io::text::{Line, Lines, excerpt, parse_integer, write_position};
+use crate::io::text::{Line, Lines, excerpt, parse_number, parse_position, write_position};
 use crate::tri_mesh::TriMesh;
 
 /// Reads all objects and groups of an OBJ file as one mesh: vertices in the order of the `v` lines, faces in
@@ -23,88 +18,25 @@ pub(super) fn parse(bytes: &[u8], limits: &ReadLimits) -> Result<TriMesh, Locate
     if Lines::new(bytes).next().is_none() {
         return Err(Fault::Empty.whole());
     }
-    let Statements { n_vertices, n_faces, text } = Statements::of(bytes, limits)?;
-    let mut all_vertices = b"f".to_vec();
-    for vertex in 1..=n_vertices {
-        // Writing to memory cannot fail.
-        let _ = write!(all_vertices, " {vertex}");
+    let mut positions = Vec::new();
+    for (_, line) in statements(bytes).filter(|(is_vertex, _)| *is_vertex) {
+        positions.push(parse_vertex(line, positions.len() + 1)?);
+        limits.check(positions.len() as u64, 0).map_err(|fault| fault.in_line(line.number))?;
     }
-    all_vertices.push(b'\n');
-    let mut reader = all_vertices.as_slice().chain(text.as_slice());
-    let no_materials = |_: &Path| Err(tobj::LoadError::OpenFileFailed);
-    let loaded = tobj::load_obj_buf(&mut reader, &tobj::LoadOptions::default(), no_materials);
-    let (models, _) = loaded.map_err(|error| {
-        let n_read = text.len() - reader.into_inner().1.len();
-        diagnose(error, bytes, &text[..n_read], n_vertices)
-    })?;
-
-    let (mut positions, mut faces) = (Vec::with_capacity(n_vertices), Vec::with_capacity(n_faces));
-    for mesh in models.into_iter().map(|model| model.mesh) {
-        positions.extend(mesh.positions.as_chunks().0.iter().map(|&p| Point3::from(p)));
-        // Without arities all faces are triangles.
-        let mut arities = mesh.face_arities.iter().skip(1);
-        let (mut rest, mut corners) = (&mesh.indices[n_vertices..], Vec::new());
-        while !rest.is_empty() {
-            let (face, others) = rest.split_at(arities.next().map_or(3, |&arity| arity as usize));
+    // A face may precede its vertices.
+    let (mut faces, mut corners, mut n_before) = (Vec::new(), Vec::new(), 0);
+    for (is_vertex, line) in statements(bytes) {
+        n_before += i64::from(is_vertex);
+        if !is_vertex {
             corners.clear();
-            corners.extend(face.iter().copied().map(VertexId));
-            push_polygon(&positions, &corners, &mut faces, limits).map_err(Fault::whole)?;
-            rest = others;
+            for token in line.tokens().skip(1) {
+                corners.push(parse_corner(line, token, n_before, positions.len())?);
+            }
+            let pushed = push_polygon(&positions, &corners, &mut faces, limits);
+            pushed.map_err(|fault| fault.in_line(line.number))?;
         }
     }
-    check_finite(&positions, bytes)?;
     finish(positions, faces, limits)
-}
-
-/// What `f` and `v` lines hold.
-const EXPECTED: [&str; 2] = [
-    "a face such as `f 1 2 3` or `f 1/1/1 2/2/2 3/3/3`",
-    "three coordinates, optionally followed by a weight other than zero",
-];
-
-/// The `v` and `f` lines of a file.
-struct Statements {
-    n_vertices: usize,
-    /// Triangles after triangulation.
-    n_faces: usize,
-    /// The lines without colours, which `tobj` rejects unless all vertices have one.
-    text: Vec<u8>,
-}
-
-impl Statements {
-    fn of(bytes: &[u8], limits: &ReadLimits) -> Result<Self, Located> {
-        let mut all = Self { n_vertices: 0, n_faces: 0, text: Vec::with_capacity(bytes.len()) };
-        for (is_vertex, line) in statements(bytes) {
-            let (mut n_words, mut is_foreign, mut previous) = (0, false, b' ');
-            for &byte in line.text {
-                n_words += usize::from(previous <= b' ' && byte > b' ');
-                is_foreign |= !matches!(byte, b'\t' | b' '..=b'~');
-                previous = byte;
-            }
-            // `tobj` takes some other characters for spaces.
-            if is_foreign {
-                return Err(line.expected(EXPECTED[usize::from(is_vertex)]));
-            }
-            let n_values = n_words - 1;
-            if is_vertex {
-                all.n_vertices += 1;
-            } else if n_values < 3 {
-                return Err(Fault::TooFewCorners { corners: n_values }.in_line(line.number));
-            } else {
-                all.n_faces += n_values - 2;
-            }
-            let checked = limits.check(all.n_vertices as u64, all.n_faces as u64);
-            checked.map_err(|fault| fault.in_line(line.number))?;
-            // A fourth value is a weight; more are a colour.
-            if is_vertex && n_values > 4 {
-                all.text.extend(line.tokens().take(4).collect::<Vec<_>>().join(&b' '));
-            } else {
-                all.text.extend_from_slice(line.text);
-            }
-            all.text.push(b'\n');
-        }
-        Ok(all)
-    }
 }
 
 /// The `v` and `f` lines, and whether each is a `v` line.
@@ -119,44 +51,38 @@ fn statements(bytes: &[u8]) -> impl Iterator<Item = (bool, Line<'_>)> {
     })
 }
 
-/// Locates an error of `tobj` after it has read the statements `read`.
-fn diagnose(error: tobj::LoadError, bytes: &[u8], read: &[u8], n_vertices: usize) -> Located {
-    if error == tobj::LoadError::FaceVertexOutOfBounds {
-        return first_index_out_of_range(bytes, n_vertices);
-    }
-    let n_read = read.iter().filter(|&&b| b == b'\n').count();
-    match statements(bytes).take(n_read).last() {
-        Some((is_vertex, line)) => line.expected(EXPECTED[usize::from(is_vertex)]),
-        None => Fault::Syntax { expected: EXPECTED[0], found: error.to_string() }.whole(),
+/// Reads three coordinates. A fourth value is a weight, which divides them; more values are a colour.
+fn parse_vertex(line: Line<'_>, number: usize) -> Result<Point3<f64>, Located> {
+    let mut tokens = line.tokens().skip(1);
+    let position = parse_position(line, &mut tokens, number)?;
+    let (Some(weight), None) = (tokens.next(), tokens.next()) else { return Ok(position) };
+    let weight = parse_number(weight).filter(|weight: &f64| *weight != 0.0);
+    let position = position / weight.ok_or_else(|| line.expected("a weight other than zero"))?;
+    match position.iter().find(|x| !x.is_finite()) {
+        Some(&value) => Err(Fault::NonFinite { vertex: number as u64, value }.in_line(line.number)),
+        None => Ok(position),
     }
 }
 
-/// `tobj` checks indices after it has read the whole file.
-fn first_index_out_of_range(bytes: &[u8], n_vertices: usize) -> Located {
-    let last = n_vertices as u64;
-    let mut n_before = 0;
-    for (is_vertex, line) in statements(bytes) {
-        n_before += i64::from(is_vertex);
-        let in_range = |token: &&[u8]| {
-            let index = token.split(|&b| b == b'/').next().and_then(parse_integer);
-            index.is_some_and(|i| (1..=n_vertices as i64).contains(&if i < 0 { n_before + 1 + i } else { i }))
-        };
-        if !is_vertex && let Some(token) = line.tokens().skip(1).find(|token| !in_range(token)) {
-            return Fault::IndexOutOfRange { index: excerpt(token), first: 1, last }.in_line(line.number);
-        }
+/// Reads the vertex of a corner, `VERTEX[/[TEXTURE][/NORMAL]]`, in a file of `n_vertices`, `n_before` of which
+/// precede the line.
+fn parse_corner(
+    line: Line<'_>,
+    token: &[u8],
+    n_before: i64,
+    n_vertices: usize,
+) -> Result<VertexId, Located> {
+    let mut parts = token.split(|&b| b == b'/');
+    let index = parts.next().and_then(parse_number::<i64>);
+    let index = index.filter(|_| parts.all(|part| part.is_empty() || parse_number::<i64>(part).is_some()));
+    let index =
+        index.ok_or_else(|| line.expected("a face such as `f 1 2 3` or `f 1/1/1 2/2/2 3/3/3`"))?;
+    let vertex = if index < 0 { n_before.saturating_add(index) } else { index - 1 };
+    if !(0..n_vertices as i64).contains(&vertex) {
+        let fault = Fault::IndexOutOfRange { index: excerpt(token), first: 1, last: n_vertices as u64 };
+        return Err(fault.in_line(line.number));
     }
-    Fault::IndexOutOfRange { index: "beyond the last".into(), first: 1, last }.whole()
-}
-
-fn check_finite(positions: &[Point3<f64>], bytes: &[u8]) -> Result<(), Located> {
-    for (v, p) in positions.iter().enumerate() {
-        if let Some(&value) = p.iter().find(|x| !x.is_finite()) {
-            let fault = Fault::NonFinite { vertex: v as u64 + 1, value };
-            let line = statements(bytes).filter(|(is_vertex, _)| *is_vertex).nth(v);
-            return Err(line.map_or(fault.clone().whole(), |(_, line)| fault.in_line(line.number)));
-        }
-    }
-    Ok(())
+    Ok(VertexId(vertex as u32))
 }
 
 /// Writes OBJ; coordinates read back bit for bit.
