@@ -1,4 +1,4 @@
-# All commands that people and CI run. `make help` lists them.
+# All commands for developers and CI. `make help` lists them.
 
 CARGO ?= cargo
 OUT ?= out

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Compares the way from a mesh to its canonical form with the same pipeline on potpourri3d and NumPy.
+"""Compares our pipeline from mesh to canonical form with the same pipeline on potpourri3d and NumPy.
 
     make bench-nmds             builds the program, sets up the environment, writes docs/nmds.md
 

@@ -1,13 +1,13 @@
 //! Time per source of every solver and of farthest point sampling, over sizes: `make bench`.
 //!
-//! Comparisons with other programs stand in `bench/peers.py`.
+//! `bench/peers.py` compares them with other programs.
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use geodesics::{FirstSample, HeatOptions, Method, farthest_point_sampling};
 use mesh::shapes;
 use surface::{IntrinsicMesh, VertexId};
 
-/// A torus with triangles of all shapes, of about so many vertices.
+/// A torus of about `n_vertices` vertices, with triangles of many shapes.
 fn torus(n_vertices: usize) -> IntrinsicMesh {
     let around = ((n_vertices / 3) as f64).sqrt().round() as usize;
     shapes::torus(n_vertices / around, around, 3.0, 1.0).intrinsic()
@@ -37,14 +37,14 @@ fn solvers(criterion: &mut Criterion) {
     }
 }
 
-/// Ten samples with their distances beside one full map, on one thread and on two.
+/// Ten samples with their distances, compared with one full map, on one thread and on two.
 fn sampling(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("sampling");
     group.sample_size(10);
     let surface = torus(28_000);
     let Ok(solver) = Method::default().prepare(&surface) else { return };
     let mut out = vec![0.0; surface.n_vertices()];
-    // From another source each time, as samples are: a processor learns the branches of a single front by heart.
+    // From another source each time, like samples: the branch predictor learns a single front.
     let mut sources = (0..surface.n_vertices() as u32).step_by(37).map(VertexId).cycle();
     group.bench_function("one full map", |bencher| {
         bencher.iter(|| {

@@ -9,14 +9,16 @@ use crate::{IndexError, Shape, ShapeEntry, ShapeVectors};
 
 /// A finished index, open for reading.
 ///
-/// It keeps the state it had when it was opened, whatever writers do. Every byte is checked before it is used.
+/// It keeps the state it had when it was opened, whatever writers do. Every byte is checked before it is used: all
+/// methods that read may return [`IndexError::Io`] and [`IndexError::Damaged`].
 #[derive(Debug)]
 pub struct Index {
     path: PathBuf,
     database: Database,
     options: String,
     n_shapes: usize,
-    fingerprint: u64,
+    /// A number that changes with the content of the file.
+    pub(crate) fingerprint: u64,
     size: u64,
 }
 
@@ -27,7 +29,7 @@ impl Index {
     /// [`IndexError::Foreign`], [`IndexError::FutureVersion`], [`IndexError::Damaged`], [`IndexError::Io`].
     pub fn open(path: &Path) -> Result<Self, IndexError> {
         let sealed = Sealed::open(path)?;
-        let (fingerprint, size) = (sealed.footer().fingerprint(), sealed.len());
+        let (fingerprint, size) = (sealed.footer.fingerprint(), sealed.len());
         let database = Database::builder()
             .set_cache_size(CACHE)
             .create_with_backend(Overlay::new(sealed))
@@ -57,17 +59,17 @@ impl Index {
         &self.options
     }
 
-    /// Checks that its shapes were described with the options `asked`.
+    /// Checks that its shapes were described with the options `requested`.
     ///
     /// # Errors
     /// [`IndexError::OtherOptions`].
-    pub fn expect_options(&self, asked: &str) -> Result<(), IndexError> {
-        match self.options == asked {
+    pub fn expect_options(&self, requested: &str) -> Result<(), IndexError> {
+        match self.options == requested {
             true => Ok(()),
             false => Err(IndexError::OtherOptions {
                 path: self.path.clone(),
                 found: self.options.clone(),
-                asked: asked.to_owned(),
+                requested: requested.to_owned(),
             }),
         }
     }
@@ -90,11 +92,6 @@ impl Index {
         self.size
     }
 
-    /// A number that changes with the content of the file.
-    pub(crate) fn fingerprint(&self) -> u64 {
-        self.fingerprint
-    }
-
     fn with<T>(
         &self,
         read: impl FnOnce(&Snapshot<'_>) -> Result<Option<T>, IndexError>,
@@ -106,33 +103,22 @@ impl Index {
     }
 
     /// Whether there is a shape of this name.
-    ///
-    /// # Errors
-    /// [`IndexError::Io`], [`IndexError::Damaged`].
     pub fn contains(&self, id: &str) -> Result<bool, IndexError> {
         Ok(self.store().read()?.entry(id)?.is_some())
     }
 
-    /// The entry of a shape.
-    ///
-    /// # Errors
-    /// [`IndexError::NoSuchShape`], [`IndexError::Io`], [`IndexError::Damaged`].
+    /// The entry of a shape, or [`IndexError::NoSuchShape`].
     pub fn entry(&self, id: &str) -> Result<ShapeEntry, IndexError> {
         self.with(|snapshot| snapshot.entry(id), id)
     }
 
-    /// The vectors of a shape.
-    ///
-    /// # Errors
-    /// As [`entry`](Self::entry).
+    /// The vectors of a shape, or [`IndexError::NoSuchShape`].
     pub fn vectors(&self, id: &str) -> Result<ShapeVectors, IndexError> {
         self.with(|snapshot| snapshot.vectors(id), id)
     }
 
-    /// Calls `visit` with each shape in ascending order of names. Holds one shape in memory at a time.
-    ///
-    /// # Errors
-    /// Any error of `visit`; [`IndexError::Io`], [`IndexError::Damaged`].
+    /// Calls `visit` with each shape in ascending order of names, up to its first error. Holds one shape in memory at a
+    /// time.
     pub fn each<E: From<IndexError>>(&self, mut visit: impl FnMut(Shape) -> Result<(), E>) -> Result<(), E> {
         let store = self.store();
         let snapshot = store.read()?;
@@ -144,9 +130,6 @@ impl Index {
     }
 
     /// All names and entries, in ascending order of names.
-    ///
-    /// # Errors
-    /// [`IndexError::Io`], [`IndexError::Damaged`].
     pub fn entries(&self) -> Result<Vec<(String, ShapeEntry)>, IndexError> {
         let mut entries = Vec::with_capacity(self.n_shapes);
         self.store().read()?.each(ENTRIES, |id, entry| {

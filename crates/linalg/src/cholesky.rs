@@ -8,7 +8,6 @@ use faer::sparse::linalg::cholesky::{
     CholeskySymbolicParams, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering,
     factorize_symbolic_cholesky,
 };
-use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Par, Side};
 use rayon::prelude::*;
 
@@ -20,12 +19,12 @@ use crate::{LinalgError, Matrix, SparseSymmetric};
 ///
 /// The order is approximate minimum degree. Cheap to clone, so matrices with the same pattern share it.
 #[derive(Debug, Clone)]
-pub struct EliminationOrder(Arc<Analysis>);
+pub struct EliminationOrder(pub(crate) Arc<Analysis>);
 
 #[derive(Debug)]
-struct Analysis {
-    symbolic: SymbolicCholesky<usize>,
-    panels: Panels,
+pub(crate) struct Analysis {
+    pub(crate) symbolic: SymbolicCholesky<usize>,
+    pub(crate) panels: Panels,
     /// The row that each step eliminates.
     rows: Vec<usize>,
     /// Number of stored entries of the matrix.
@@ -44,7 +43,7 @@ impl EliminationOrder {
             supernodal_flop_ratio_threshold: SupernodalThreshold::FORCE_SUPERNODAL,
             ..Default::default()
         };
-        let pattern = view(matrix).symbolic();
+        let pattern = matrix.view().symbolic();
         let symbolic = factorize_symbolic_cholesky(pattern, Side::Lower, SymmetricOrdering::Amd, params)
             .map_err(|e| LinalgError::NotFactorised { n, reason: format!("{e:?}") })?;
         let rows = match symbolic.perm() {
@@ -75,14 +74,6 @@ impl EliminationOrder {
     #[must_use]
     pub fn rows(&self) -> &[usize] {
         &self.0.rows
-    }
-
-    pub(crate) fn symbolic(&self) -> &SymbolicCholesky<usize> {
-        &self.0.symbolic
-    }
-
-    pub(crate) fn panels(&self) -> &Panels {
-        &self.0.panels
     }
 }
 
@@ -137,7 +128,7 @@ impl SparseCholesky {
         symbolic
             .factorize_numeric_llt(
                 &mut values,
-                view(matrix),
+                matrix.view(),
                 Side::Lower,
                 Default::default(),
                 Par::Seq,
@@ -218,13 +209,6 @@ impl SparseCholesky {
         assert_eq!(x.len(), self.order.rows().len(), "one right-hand side entry for each row");
         self.order.0.panels.solve(&self.values, x);
     }
-}
-
-/// A view of the lower triangle for faer, without a copy.
-pub(crate) fn view(matrix: &SparseSymmetric) -> SparseColMatRef<'_, usize, f64> {
-    let n = matrix.order();
-    let pattern = SymbolicSparseColMatRef::new_checked(n, n, matrix.column_starts(), None, matrix.rows());
-    SparseColMatRef::new(pattern, matrix.values())
 }
 
 #[cfg(test)]

@@ -62,9 +62,9 @@ pub(crate) fn from_faer(a: MatRef<'_, f64>) -> Matrix {
 pub fn symmetric_eigen(a: &Matrix) -> Result<SymmetricEigen, LinalgError> {
     let n = a.nrows();
     if a.iter().any(|x| !x.is_finite()) {
-        return Err(LinalgError::NotConverged { n });
+        return Err(LinalgError::NotConverged(n));
     }
-    let eigen = view(a).self_adjoint_eigen(Side::Lower).map_err(|_| LinalgError::NotConverged { n })?;
+    let eigen = view(a).self_adjoint_eigen(Side::Lower).map_err(|_| LinalgError::NotConverged(n))?;
     // faer sorts ascending.
     let (s, u) = (eigen.S(), eigen.U());
     Ok(SymmetricEigen {
@@ -96,9 +96,9 @@ pub fn pseudo_inverse(a: &Matrix) -> Result<Matrix, LinalgError> {
         return Ok(a.transpose());
     }
     if a.iter().any(|x| !x.is_finite()) {
-        return Err(LinalgError::NotConverged { n });
+        return Err(LinalgError::NotConverged(n));
     }
-    let svd = view(a).thin_svd().map_err(|_| LinalgError::NotConverged { n })?;
+    let svd = view(a).thin_svd().map_err(|_| LinalgError::NotConverged(n))?;
     let (u, mut v) = (from_faer(svd.U()), from_faer(svd.V()));
     let values = svd.S();
     let floor = n as f64 * f64::EPSILON * values[0];
@@ -131,7 +131,7 @@ mod tests {
     #[test]
     fn nan_is_an_error() {
         let a = Matrix::from_element(3, 3, f64::NAN);
-        assert_eq!(symmetric_eigen(&a), Err(LinalgError::NotConverged { n: 3 }));
+        assert_eq!(symmetric_eigen(&a), Err(LinalgError::NotConverged(3)));
     }
 
     #[test]
@@ -161,6 +161,6 @@ mod tests {
         }
         assert_eq!(pseudo_inverse(&Matrix::zeros(3, 0)).unwrap().shape(), (0, 3));
         let nan = Matrix::from_element(3, 2, f64::NAN);
-        assert_eq!(pseudo_inverse(&nan), Err(LinalgError::NotConverged { n: 3 }));
+        assert_eq!(pseudo_inverse(&nan), Err(LinalgError::NotConverged(3)));
     }
 }

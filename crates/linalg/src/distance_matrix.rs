@@ -28,14 +28,9 @@ impl DistanceMatrix {
     /// [`LinalgError::Shape`], [`LinalgError::BadDistance`].
     pub fn from_rows(n: usize, mut values: Vec<f64>) -> Result<Self, LinalgError> {
         if values.len() != n * n {
-            return Err(LinalgError::Shape {
-                n_rows: n,
-                n_columns: n,
-                expected: n * n,
-                actual: values.len(),
-            });
+            return Err(LinalgError::Shape { n_rows: n, n_columns: n, actual: values.len() });
         }
-        if let Some(bad) = values.iter().position(|d| !(d.is_finite() && *d >= 0.0)) {
+        if let Some(bad) = first_invalid(&values) {
             return Err(LinalgError::BadDistance { row: bad / n, column: bad % n, value: values[bad] });
         }
         for i in 0..n {
@@ -96,6 +91,11 @@ impl DistanceMatrix {
     pub fn max(&self) -> f64 {
         self.values.iter().copied().fold(0.0, f64::max)
     }
+}
+
+/// The position of the first value that is not a distance.
+pub(crate) fn first_invalid(values: &[f64]) -> Option<usize> {
+    values.iter().position(|d| !(d.is_finite() && *d >= 0.0))
 }
 
 #[cfg(test)]

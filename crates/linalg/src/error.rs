@@ -17,14 +17,12 @@ pub enum LinalgError {
         value: f64,
     },
     /// The number of values does not match the shape.
-    #[error("expected {expected} values for a {n_rows} x {n_columns} matrix, got {actual}")]
+    #[error("expected {} values for a {n_rows} x {n_columns} matrix, got {actual}", n_rows * n_columns)]
     Shape {
         /// Rows of the matrix.
         n_rows: usize,
         /// Columns of the matrix.
         n_columns: usize,
-        /// Their product.
-        expected: usize,
         /// Number of values given.
         actual: usize,
     },
@@ -36,12 +34,9 @@ pub enum LinalgError {
         /// Number of points.
         n_points: usize,
     },
-    /// An iterative decomposition did not converge.
-    #[error("the eigenvalue decomposition of a {n} x {n} matrix did not converge; check its entries for NaN")]
-    NotConverged {
-        /// Order of the matrix.
-        n: usize,
-    },
+    /// The iterative decomposition of a matrix of this order did not converge.
+    #[error("the eigenvalue decomposition of a {0} x {0} matrix did not converge; check its entries for NaN")]
+    NotConverged(usize),
     /// Some eigenvalues exist but were not found.
     #[error(
         "{missing} eigenvalues of a sparse {n} x {n} matrix were not found, {found} were; they are multiple or the \

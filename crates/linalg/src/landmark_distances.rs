@@ -1,5 +1,6 @@
 //! Distances from a few landmarks to all points.
 
+use crate::distance_matrix::first_invalid;
 use crate::{LinalgError, Matrix};
 
 /// The p x n matrix of distances from n landmarks to all p points, with the points that are landmarks.
@@ -31,12 +32,7 @@ impl LandmarkDistances {
     pub fn new(landmarks: Vec<usize>, columns: Matrix) -> Result<Self, LinalgError> {
         let (p, n) = columns.shape();
         if landmarks.len() != n {
-            return Err(LinalgError::Shape {
-                n_rows: p,
-                n_columns: landmarks.len(),
-                expected: p * landmarks.len(),
-                actual: p * n,
-            });
+            return Err(LinalgError::Shape { n_rows: p, n_columns: landmarks.len(), actual: p * n });
         }
         let mut taken = vec![false; p];
         for &landmark in &landmarks {
@@ -44,7 +40,7 @@ impl LandmarkDistances {
                 return Err(LinalgError::BadLandmark { landmark, n_points: p });
             }
         }
-        if let Some(bad) = columns.as_slice().iter().position(|d| !(d.is_finite() && *d >= 0.0)) {
+        if let Some(bad) = first_invalid(columns.as_slice()) {
             let (row, column) = (bad % p, landmarks[bad / p]);
             return Err(LinalgError::BadDistance { row, column, value: columns.as_slice()[bad] });
         }

@@ -1,5 +1,7 @@
 //! Sparse symmetric matrices.
 
+use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
+
 use crate::SymmetricOperator;
 
 /// A symmetric n x n matrix of which the lower triangle is stored, column by column.
@@ -138,16 +140,11 @@ impl SparseSymmetric {
         dense
     }
 
-    pub(crate) fn column_starts(&self) -> &[usize] {
-        &self.column_starts
-    }
-
-    pub(crate) fn rows(&self) -> &[usize] {
-        &self.rows
-    }
-
-    pub(crate) fn values(&self) -> &[f64] {
-        &self.values
+    /// A view of the lower triangle for faer, without a copy.
+    pub(crate) fn view(&self) -> SparseColMatRef<'_, usize, f64> {
+        let n = self.order();
+        let pattern = SymbolicSparseColMatRef::new_checked(n, n, &self.column_starts, None, &self.rows);
+        SparseColMatRef::new(pattern, &self.values)
     }
 }
 

@@ -20,11 +20,8 @@ pub enum NmdsError {
         limit: usize,
     },
     /// The regularisation parameter is not a positive number.
-    #[error("the c of alpha = c sigma1^4 must be a positive number, not {alpha}; 1e-10 is a good choice")]
-    BadAlpha {
-        /// The given c.
-        alpha: f64,
-    },
+    #[error("the c of alpha = c sigma1^4 must be a positive number, not {0}; 1e-10 is a good choice")]
+    BadAlpha(f64),
     /// Two arguments have different numbers of points.
     #[error("{given} points were given, but the distances are between {n_points}")]
     PointMismatch {
@@ -34,38 +31,23 @@ pub enum NmdsError {
         n_points: usize,
     },
     /// The convergence tolerance is negative or not a number.
-    #[error("the tolerance must be a number of at least 0, not {tolerance}; 1e-6 is a good choice")]
-    BadTolerance {
-        /// The given tolerance.
-        tolerance: f64,
-    },
-    /// All distances are zero.
-    #[error("all distances are zero: {n_points} points coincide and have no shape")]
-    NoExtent {
-        /// Number of points.
-        n_points: usize,
-    },
+    #[error("the tolerance must be a number of at least 0, not {0}; 1e-6 is a good choice")]
+    BadTolerance(f64),
+    /// All distances between this number of points are zero.
+    #[error("all distances are zero: {0} points coincide and have no shape")]
+    NoExtent(usize),
     /// The kernel width is not a positive number.
-    #[error("the kernel width must be a positive number in the unit of the distances, not {sigma}")]
-    BadBandwidth {
-        /// The given width.
-        sigma: f64,
-    },
+    #[error("the kernel width must be a positive number in the unit of the distances, not {0}")]
+    BadBandwidth(f64),
     /// The weight of the known distances is not positive.
-    #[error("the weight mu of known distances must be positive (it may be infinite), not {mu}")]
-    BadSmoothness {
-        /// The given weight.
-        mu: f64,
-    },
-    /// The samples do not determine a function on part of the surface.
+    #[error("the weight mu of known distances must be positive (it may be infinite), not {0}")]
+    BadSmoothness(f64),
+    /// This number of samples does not determine a function on part of the surface.
     #[error(
-        "{n_landmarks} samples do not determine a function on the surface; take a sample in each of its components, \
+        "{0} samples do not determine a function on the surface; take a sample in each of its components, \
          or keep the largest component only"
     )]
-    NotDetermined {
-        /// Number of samples.
-        n_landmarks: usize,
-    },
+    NotDetermined(usize),
     /// A decomposition failed.
     #[error(transparent)]
     Linalg(#[from] linalg::LinalgError),

@@ -2,7 +2,7 @@
 
 use linalg::{LandmarkDistances, Matrix, SparseCholesky, SparseSymmetric, thin_qr};
 
-use crate::squares::{Squares, center_columns, check_dim, solve_saddle_point, symmetrized};
+use crate::squares::{Squares, center_columns, check_dim, check_points, solve_saddle_point, symmetrized};
 use crate::{Embedding, NmdsError};
 
 /// Fast multidimensional scaling (FMDS): embeds p points from n columns of distances, interpolated by the smoothest
@@ -36,11 +36,8 @@ pub fn fmds(
     dim: usize,
 ) -> Result<Embedding, NmdsError> {
     let (p, n) = distances.matrix().shape();
-    for given in [stiffness.order(), masses.len()] {
-        if given != p {
-            return Err(NmdsError::PointMismatch { given, n_points: p });
-        }
-    }
+    check_points(stiffness.order(), p)?;
+    check_points(masses.len(), p)?;
     check_dim(dim, n)?;
     let Squares { unit, columns, .. } = Squares::new(distances)?;
     let interpolant = interpolant(distances.landmarks(), stiffness, masses)?;
@@ -83,7 +80,7 @@ fn interpolant(samples: &[usize], stiffness: &SparseSymmetric, masses: &[f64]) -
     // Scales the constants to the size of the splines, so that pivots are comparable.
     let size = at_samples.amax().max(f64::MIN_POSITIVE);
     let solution = solve_saddle_point(&symmetrized(at_samples), &(constants(samples) * size));
-    let [weights, shifts] = solution.ok_or(NmdsError::NotDetermined { n_landmarks: n })?;
+    let [weights, shifts] = solution.ok_or(NmdsError::NotDetermined(n))?;
     let everywhere: Vec<usize> = (0..p).collect();
     let mut m = splines * weights + constants(&everywhere) * shifts * size;
     for (j, &sample) in samples.iter().enumerate() {
@@ -219,10 +216,7 @@ mod tests {
             let own = if i < 30 { found[(i, 0)] + found[(i, 1)] } else { found[(i, 2)] };
             assert!((own - 1.0).abs() < 1e-10 && (found.row(i).sum() - 1.0).abs() < 1e-10);
         }
-        assert_eq!(
-            interpolant(&[3, 20], &w, &a).map(|_| ()),
-            Err(NmdsError::NotDetermined { n_landmarks: 2 })
-        );
+        assert_eq!(interpolant(&[3, 20], &w, &a).map(|_| ()), Err(NmdsError::NotDetermined(2)));
     }
 
     #[test]

@@ -33,7 +33,7 @@ impl Bandwidth {
             Self::Max => distances.max(),
             Self::Value(sigma) => sigma,
         };
-        if sigma > 0.0 && sigma.is_finite() { Ok(sigma) } else { Err(NmdsError::BadBandwidth { sigma }) }
+        if sigma > 0.0 && sigma.is_finite() { Ok(sigma) } else { Err(NmdsError::BadBandwidth(sigma)) }
     }
 }
 
@@ -166,7 +166,7 @@ mod tests {
         let distances = landmark_distances(&Cloud::new(30, 3, 13), 6);
         for sigma in [0.0, -1.0, f64::INFINITY] {
             let options = KernelPcaOptions { bandwidth: Bandwidth::Value(sigma), ..Default::default() };
-            assert_eq!(kernel_pca(&distances, &options), Err(NmdsError::BadBandwidth { sigma }));
+            assert_eq!(kernel_pca(&distances, &options), Err(NmdsError::BadBandwidth(sigma)));
         }
     }
 }

@@ -195,7 +195,7 @@ mod tests {
         assert_eq!(embed(Regularization::None, 7), Err(NmdsError::BadDimension { dim: 7, limit: 6 }));
         for alpha in [0.0, -1.0, f64::INFINITY] {
             let rpi = Regularization::Rpi { alpha: RpiAlpha::Relative(alpha) };
-            assert_eq!(embed(rpi, 3), Err(NmdsError::BadAlpha { alpha }));
+            assert_eq!(embed(rpi, 3), Err(NmdsError::BadAlpha(alpha)));
         }
     }
 

@@ -4,7 +4,7 @@ use linalg::{LandmarkDistances, Matrix, thin_qr};
 use rayon::prelude::*;
 
 use crate::regularization::by_magnitude;
-use crate::squares::Squares;
+use crate::squares::{Squares, check_points};
 use crate::{DistanceRows, NmdsError, Regularization};
 
 /// The error of an approximation `Ê` of the matrix `E` of all squared distances.
@@ -43,7 +43,7 @@ pub struct Reconstruction {
     /// `‖E‖²`, `‖E - QQ'E‖²` and `‖Q'E - A Q'‖²`.
     norm_sq: f64,
     outside_sq: f64,
-    beside_sq: f64,
+    mixed_sq: f64,
 }
 
 /// Rows in a block; fixes the order of summation.
@@ -56,9 +56,7 @@ impl Reconstruction {
     /// [`NmdsError::PointMismatch`], [`NmdsError::NoExtent`].
     pub fn new(distances: &LandmarkDistances, rows: &dyn DistanceRows) -> Result<Self, NmdsError> {
         let p = rows.n_points();
-        if p != distances.n_points() {
-            return Err(NmdsError::PointMismatch { given: distances.n_points(), n_points: p });
-        }
+        check_points(distances.n_points(), p)?;
         let squares = Squares::new(distances)?;
         let unit = squares.unit;
         let (q, _) = thin_qr(&squares.columns);
@@ -71,14 +69,14 @@ impl Reconstruction {
             image.rows_mut(i * BLOCK, rows.nrows()).copy_from(&rows);
         }
         let projected = q.tr_mul(&image);
-        let beside_sq = (&image - &q * projected.transpose()).norm_squared();
+        let mixed_sq = (&image - &q * projected.transpose()).norm_squared();
         let (across, image) = (&q, image.transpose());
         let outside = by_blocks(rows, unit, |start, block| {
             let within = across.rows(start, block.nrows()) * &image;
             (block - within).norm_squared()
         });
         let outside_sq = outside.iter().sum();
-        Ok(Self { squares, projected, norm_sq, outside_sq, beside_sq, q })
+        Ok(Self { squares, projected, norm_sq, outside_sq, mixed_sq, q })
     }
 
     /// The error of `RR⁺E` (eq. 5), which requires all of `E`: the reference in Fig. 6.
@@ -99,7 +97,7 @@ impl Reconstruction {
         let projected = self.q.tr_mul(&inverse.apply(columns.clone()));
         let approximated = &projected * &inverse.core * projected.transpose();
         let inside_sq = (&self.projected - approximated).norm_squared();
-        Ok(self.error_of(self.outside_sq + self.beside_sq + inside_sq))
+        Ok(self.error_of(self.outside_sq + self.mixed_sq + inside_sq))
     }
 
     fn error_of(&self, sum_sq: f64) -> ReconstructionError {
@@ -263,12 +261,12 @@ mod tests {
         let mismatch = NmdsError::PointMismatch { given: 20, n_points: 21 };
         assert_eq!(Reconstruction::new(&columns, &other).unwrap_err(), mismatch);
         let nothing = LandmarkDistances::new(vec![0, 1], Matrix::zeros(20, 2)).unwrap();
-        assert_eq!(Reconstruction::new(&nothing, &all).unwrap_err(), NmdsError::NoExtent { n_points: 20 });
+        assert_eq!(Reconstruction::new(&nothing, &all).unwrap_err(), NmdsError::NoExtent(20));
         let reconstruction = Reconstruction::new(&columns, &all).unwrap();
         let bad = Err(NmdsError::BadRank { rank: 6, n_landmarks: 5 });
         assert_eq!(reconstruction.error(low_rank(6)), bad);
         assert_eq!(reconstruction.error(cur(6)), bad);
         let alpha = Regularization::Rpi { alpha: RpiAlpha::Relative(-1.0) };
-        assert_eq!(reconstruction.error(alpha), Err(NmdsError::BadAlpha { alpha: -1.0 }));
+        assert_eq!(reconstruction.error(alpha), Err(NmdsError::BadAlpha(-1.0)));
     }
 }

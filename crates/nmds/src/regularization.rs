@@ -118,7 +118,7 @@ impl Regularization {
             }
             Self::None => n_landmarks,
             Self::Rpi { alpha: RpiAlpha::Relative(alpha) } if !(alpha > 0.0 && alpha.is_finite()) => {
-                return Err(NmdsError::BadAlpha { alpha });
+                return Err(NmdsError::BadAlpha(alpha));
             }
             Self::Rpi { .. } => n_landmarks,
         };

@@ -3,7 +3,7 @@
 use linalg::{DistanceMatrix, Matrix, pseudo_inverse};
 use rayon::prelude::*;
 
-use crate::squares::{check_dim, check_extent};
+use crate::squares::{check_dim, check_extent, check_points};
 use crate::{Embedding, NmdsError};
 
 /// Options of [`smacof`].
@@ -87,13 +87,11 @@ pub fn smacof(
     options: &SmacofOptions,
 ) -> Result<(Embedding, SmacofReport), NmdsError> {
     let (p, dim) = start.shape();
-    if p != distances.n_points() {
-        return Err(NmdsError::PointMismatch { given: p, n_points: distances.n_points() });
-    }
+    check_points(p, distances.n_points())?;
     check_dim(dim, p)?;
     let tolerance = options.tolerance;
     if !(tolerance >= 0.0 && tolerance.is_finite()) {
-        return Err(NmdsError::BadTolerance { tolerance });
+        return Err(NmdsError::BadTolerance(tolerance));
     }
     check_extent(distances.max(), p)?;
     let total: f64 = distances.as_slice().iter().map(|d| d * d).sum();
@@ -333,6 +331,6 @@ mod tests {
         assert_eq!(error(&short, 1e-5), NmdsError::PointMismatch { given: 19, n_points: 20 });
         let flat = Matrix::zeros(20, 0);
         assert_eq!(error(&flat, 1e-5), NmdsError::BadDimension { dim: 0, limit: 20 });
-        assert_eq!(error(&start, -1.0), NmdsError::BadTolerance { tolerance: -1.0 });
+        assert_eq!(error(&start, -1.0), NmdsError::BadTolerance(-1.0));
     }
 }

@@ -2,7 +2,9 @@
 
 use linalg::{LandmarkDistances, Matrix, thin_qr};
 
-use crate::squares::{center_columns, check_dim, check_extent, solve_saddle_point, symmetrized};
+use crate::squares::{
+    center_columns, check_dim, check_extent, check_points, solve_saddle_point, symmetrized,
+};
 use crate::{Embedding, NmdsError};
 
 /// The smallest eigenpairs of a Laplacian, `W Φ = A Φ Λ`.
@@ -75,15 +77,12 @@ pub fn spectral(
 ) -> Result<Embedding, NmdsError> {
     let (p, m) = basis.vectors.shape();
     assert_eq!(basis.values.len(), m, "one eigenvalue per eigenvector");
-    for given in [p, basis.masses.len()] {
-        if given != distances.n_points() {
-            return Err(NmdsError::PointMismatch { given, n_points: distances.n_points() });
-        }
-    }
+    check_points(p, distances.n_points())?;
+    check_points(basis.masses.len(), distances.n_points())?;
     // The constant function spans no dimension.
     check_dim(options.dim, distances.n_landmarks().min(m.saturating_sub(1)))?;
     if options.mu.is_nan() || options.mu <= 0.0 {
-        return Err(NmdsError::BadSmoothness { mu: options.mu });
+        return Err(NmdsError::BadSmoothness(options.mu));
     }
     let unit = check_extent(distances.max(), distances.n_points())?;
     let mut interpolant = interpolant(distances.landmarks(), basis, options.mu)?;
@@ -105,7 +104,7 @@ fn interpolant(samples: &[usize], basis: &SpectralBasis<'_>, mu: f64) -> Result<
         false => smoothest(&at_samples, &values, mu),
     };
     let found = coefficients.filter(|m| m.iter().all(|x| x.is_finite()));
-    let coefficients = found.ok_or(NmdsError::NotDetermined { n_landmarks: samples.len() })?;
+    let coefficients = found.ok_or(NmdsError::NotDetermined(samples.len()))?;
     Ok(basis.vectors * coefficients * area.sqrt())
 }
 
@@ -243,7 +242,7 @@ mod tests {
             |m: usize, options: SpectralOptions| spectral(&distances, &Ring::new(p, m).basis(), &options);
         let with = |mu| SpectralOptions { mu, dim: 3 };
         for mu in [0.0, -1.0] {
-            assert_eq!(embed(15, with(mu)), Err(NmdsError::BadSmoothness { mu }));
+            assert_eq!(embed(15, with(mu)), Err(NmdsError::BadSmoothness(mu)));
         }
         assert!(matches!(embed(15, with(f64::NAN)), Err(NmdsError::BadSmoothness { .. })));
         assert_eq!(
@@ -264,6 +263,6 @@ mod tests {
         values[1] = 0.0;
         let basis = SpectralBasis { values: &values, vectors: &vectors, masses: &ring.masses };
         let undetermined = spectral(&distances, &basis, &Default::default());
-        assert_eq!(undetermined, Err(NmdsError::NotDetermined { n_landmarks: 10 }));
+        assert_eq!(undetermined, Err(NmdsError::NotDetermined(10)));
     }
 }

@@ -31,7 +31,13 @@ impl Squares {
 /// # Errors
 /// [`NmdsError::NoExtent`].
 pub(crate) fn check_extent(largest: f64, n_points: usize) -> Result<f64, NmdsError> {
-    if largest > 0.0 { Ok(largest) } else { Err(NmdsError::NoExtent { n_points }) }
+    if largest > 0.0 { Ok(largest) } else { Err(NmdsError::NoExtent(n_points)) }
+}
+
+/// # Errors
+/// [`NmdsError::PointMismatch`] unless `given` is the number of points of the distances.
+pub(crate) fn check_points(given: usize, n_points: usize) -> Result<(), NmdsError> {
+    if given == n_points { Ok(()) } else { Err(NmdsError::PointMismatch { given, n_points }) }
 }
 
 /// # Errors

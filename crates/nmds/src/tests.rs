@@ -250,7 +250,7 @@ fn impossible_dimensions_and_points_without_extent_are_rejected() {
                 other => panic!("{name}: {other:?}"),
             }
         }
-        assert_eq!(embed(&coinciding, 2), Err(NmdsError::NoExtent { n_points: 6 }), "{name}");
+        assert_eq!(embed(&coinciding, 2), Err(NmdsError::NoExtent(6)), "{name}");
     }
 }
 

@@ -18,7 +18,6 @@
 //! # Ok::<(), canonform_retrieval::RetrievalError>(())
 //! ```
 
-mod classification;
 mod clustering;
 mod error;
 mod evaluation;
@@ -29,7 +28,6 @@ mod refinement;
 mod scores;
 mod vote;
 
-pub use classification::{confusion_matrix, knn_predict};
 pub use clustering::silhouette;
 pub use error::RetrievalError;
 pub use evaluation::{Evaluation, evaluate};

@@ -19,7 +19,7 @@ pub struct Refinement {
     /// At most k shapes, nearest first; ties by index.
     pub nearest: Vec<Neighbor>,
     /// Number of candidates whose distance was evaluated.
-    pub asked: usize,
+    pub evaluated: usize,
     /// Number of evaluations that were abandoned because the candidate was farther than the k nearest so far.
     pub abandoned: usize,
 }
@@ -66,7 +66,7 @@ pub fn refine_nearest<E: Send>(
         }
         let distances: Vec<_> =
             batch.par_iter().map(|candidate| distance(*candidate, limit)).collect::<Result<_, E>>()?;
-        found.asked += batch.len();
+        found.evaluated += batch.len();
         for (candidate, distance) in batch.iter().zip(distances) {
             match distance {
                 Some(distance) => found.nearest.push(Neighbor { index: candidate.index, distance }),
@@ -110,8 +110,8 @@ mod tests {
             let (whole, abandoning) = (whole.unwrap(), abandoning.unwrap());
             assert_eq!(whole.nearest, all[..k.min(all.len())]);
             assert_eq!(abandoning.nearest, whole.nearest);
-            assert_eq!((whole.abandoned, abandoning.asked), (0, whole.asked));
-            assert!(k >= 200 || whole.asked < 200, "{k}: {}", whole.asked);
+            assert_eq!((whole.abandoned, abandoning.evaluated), (0, whole.evaluated));
+            assert!(k >= 200 || whole.evaluated < 200, "{k}: {}", whole.evaluated);
         }
     }
 

@@ -17,27 +17,18 @@ const STEPS: i32 = 12;
 
 impl Browser {
     /// Waits for the first element that matches a CSS selector and clicks its centre.
-    ///
-    /// # Errors
-    /// [`BrowserError::Never`] if there is none, [`BrowserError::Refused`] if another element covers it.
     pub fn click(&self, css: &str) -> Result<(), BrowserError> {
         let element = self.element(css)?;
         self.session.post(&format!("element/{element}/click"), &json!({})).map(drop)
     }
 
     /// Types into an element.
-    ///
-    /// # Errors
-    /// As [`Browser::click`].
     pub fn type_into(&self, css: &str, text: &str) -> Result<(), BrowserError> {
         let element = self.element(css)?;
         self.session.post(&format!("element/{element}/value"), &json!({ "text": text })).map(drop)
     }
 
     /// Chooses files in an `input` of type `file`.
-    ///
-    /// # Errors
-    /// [`BrowserError::Start`] if a path does not exist; otherwise as [`Browser::click`].
     pub fn upload(&self, css: &str, paths: &[&Path]) -> Result<(), BrowserError> {
         let paths: Result<Vec<String>, _> =
             paths.iter().map(|path| Ok(path.canonicalize()?.display().to_string())).collect();
@@ -46,9 +37,6 @@ impl Browser {
 
     /// Drops a file with this content on an element, as from a file manager. Dispatches the events that a page listens for,
     /// because WebDriver cannot start a native drag.
-    ///
-    /// # Errors
-    /// As [`Browser::click`] and [`Browser::eval`].
     pub fn drop_file(&self, css: &str, name: &str, content: &[u8]) -> Result<(), BrowserError> {
         self.element(css)?;
         let [css, name, content] = [json!(css), json!(name), json!(STANDARD.encode(content))];
@@ -64,27 +52,18 @@ impl Browser {
     }
 
     /// Scrolls an element into view and moves the pointer to its centre.
-    ///
-    /// # Errors
-    /// As [`Browser::click`].
     pub fn hover(&self, css: &str) -> Result<(), BrowserError> {
         let at = self.center(css)?;
         self.hover_at(at)
     }
 
     /// Moves the pointer to a point of the window, in CSS pixels.
-    ///
-    /// # Errors
-    /// [`BrowserError::Refused`] if the point is outside the window.
     pub fn hover_at(&self, [x, y]: [i32; 2]) -> Result<(), BrowserError> {
         // Two moves, because a page may ignore the first one.
         self.pointer(vec![moved([x - 3, y - 3]), moved([x, y])])
     }
 
     /// Drags from the centre of an element by this many CSS pixels.
-    ///
-    /// # Errors
-    /// As [`Browser::click`]; [`BrowserError::Refused`] if the drag leaves the window.
     pub fn drag(&self, css: &str, [dx, dy]: [i32; 2]) -> Result<(), BrowserError> {
         let [x, y] = self.center(css)?;
         let mut actions = vec![moved([x, y]), json!({ "type": "pointerDown", "button": 0 })];
@@ -94,27 +73,18 @@ impl Browser {
     }
 
     /// Clicks a point of the window, in CSS pixels.
-    ///
-    /// # Errors
-    /// [`BrowserError::Refused`] if the point is outside the window.
     pub fn click_at(&self, at: [i32; 2]) -> Result<(), BrowserError> {
         let [down, up] = ["pointerDown", "pointerUp"].map(|kind| json!({ "type": kind, "button": 0 }));
         self.pointer(vec![moved(at), down, up])
     }
 
     /// Writes the visible part of the page to a PNG file, and creates its folder.
-    ///
-    /// # Errors
-    /// [`BrowserError::Picture`] and those of the driver.
     pub fn screenshot(&self, path: &Path) -> Result<(), BrowserError> {
         let picture = self.session.get("screenshot")?;
         save(path, &picture)
     }
 
     /// Writes the whole page to a PNG file.
-    ///
-    /// # Errors
-    /// As [`Browser::screenshot`].
     pub fn screenshot_all(&self, path: &Path) -> Result<(), BrowserError> {
         let parameters = json!({ "format": "png", "captureBeyondViewport": true });
         let picture = self.devtools("Page.captureScreenshot", &parameters)?;

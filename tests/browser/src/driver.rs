@@ -15,7 +15,7 @@ pub(crate) const PATIENCE: Duration = Duration::from_secs(30);
 /// A running chromedriver, stopped when dropped.
 pub(crate) struct Driver {
     process: Child,
-    port: u16,
+    pub(crate) port: u16,
 }
 
 impl Driver {
@@ -29,29 +29,25 @@ impl Driver {
             .stderr(Stdio::null())
             .spawn()
             .map_err(BrowserError::Start)?;
-        let output = process.stdout.take();
+        let stdout = process.stdout.take();
         let mut driver = Self { process, port: 0 };
         let (sender, receiver) = mpsc::channel();
         // Reads to the end, because the driver blocks when its output is not read.
         thread::spawn(move || {
-            for line in output.into_iter().flat_map(|output| BufReader::new(output).lines()) {
+            for line in stdout.into_iter().flat_map(|stdout| BufReader::new(stdout).lines()) {
                 let Ok(line) = line else { break };
                 let _ = sender.send(line);
             }
         });
-        let mut said = String::new();
+        let mut output = String::new();
         while let Ok(line) = receiver.recv_timeout(PATIENCE) {
             if let Some(port) = port(&line) {
                 driver.port = port;
                 return Ok(driver);
             }
-            said.push_str(&line);
+            output.push_str(&line);
         }
-        Err(BrowserError::Silent { said })
-    }
-
-    pub(crate) fn port(&self) -> u16 {
-        self.port
+        Err(BrowserError::Silent(output))
     }
 }
 
@@ -84,6 +80,6 @@ mod tests {
         let absent = Driver::start(&folder.path().join("absent"), folder.path()).err().unwrap();
         assert!(matches!(absent, BrowserError::Start(_)), "{absent}");
         let silent = Driver::start(Path::new("/bin/echo"), folder.path()).err().unwrap();
-        assert!(matches!(&silent, BrowserError::Silent { said } if said == "--port=0"), "{silent}");
+        assert!(matches!(&silent, BrowserError::Silent(output) if output == "--port=0"), "{silent}");
     }
 }

@@ -5,21 +5,15 @@
 pub enum BrowserError {
     /// A program is not installed.
     #[error(
-        "{program} is not installed; the browser tests need it (on Debian: apt-get install chromium chromium-driver)"
+        "{0} is not installed; the browser tests need it (on Debian: apt-get install chromium chromium-driver)"
     )]
-    Missing {
-        /// The program.
-        program: &'static str,
-    },
+    Missing(&'static str),
     /// A program cannot be started, or a file cannot be opened.
     #[error("cannot start: {0}")]
     Start(std::io::Error),
-    /// chromedriver did not print its port.
-    #[error("chromedriver did not start; it printed `{said}`: try it on a command line")]
-    Silent {
-        /// Its output.
-        said: String,
-    },
+    /// chromedriver did not print its port, but this.
+    #[error("chromedriver did not start; it printed `{0}`: run it on a command line")]
+    Silent(String),
     /// The driver cannot be reached, or its response is invalid.
     #[error("chromedriver does not respond: {0}")]
     Connection(String),

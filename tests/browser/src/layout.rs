@@ -15,17 +15,11 @@ const WATCH: &str = "window.shifts = 0; window.moved = []; new PerformanceObserv
 
 impl Browser {
     /// Watches the layout of all pages opened from now on.
-    ///
-    /// # Errors
-    /// As [`Browser::resize`].
     pub fn watch_layout(&self) -> Result<(), BrowserError> {
         self.devtools("Page.addScriptToEvaluateOnNewDocument", &json!({ "source": WATCH })).map(drop)
     }
 
     /// The sum of all layout shift scores of the page, and the elements that moved.
-    ///
-    /// # Errors
-    /// As [`Browser::eval`]; also if the layout is not watched.
     pub fn shifts(&self) -> Result<(f64, Value), BrowserError> {
         let found = self.eval("return [window.shifts.valueOf(), window.moved]")?;
         Ok((found[0].as_f64().unwrap_or(f64::NAN), found[1].clone()))

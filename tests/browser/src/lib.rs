@@ -33,6 +33,11 @@ pub const VARIABLE: &str = "CANONFORM_BROWSER";
 /// A running browser with one page.
 ///
 /// Only one runs at a time in a process: software rendering uses all cores, so several would slow each other down.
+///
+/// # Errors
+/// Every method returns [`BrowserError::Refused`] if the driver or the page reports an error,
+/// [`BrowserError::Connection`] if the driver does not respond, [`BrowserError::Never`] if an element or a condition
+/// does not appear within 30 seconds, and [`BrowserError::Start`] if a file does not exist.
 pub struct Browser {
     // Dropped in this order: the page, its driver, the profile.
     session: Session,
@@ -71,7 +76,7 @@ impl Browser {
         let turn = TURN.lock().unwrap_or_else(PoisonError::into_inner);
         let profile = TempDir::new().map_err(BrowserError::Start)?;
         let driver = Driver::start(&programs.driver, profile.path())?;
-        let session = Session::new(driver.port(), &programs.browser, profile.path())?;
+        let session = Session::new(driver.port, &programs.browser, profile.path())?;
         let logs = Mutex::new(Logs::default());
         let browser = Self { session, _driver: driver, _profile: profile, logs, _turn: turn };
         browser.resize(1280, 800)?;
@@ -83,18 +88,12 @@ impl Browser {
     }
 
     /// Opens an address and waits until the page is loaded.
-    ///
-    /// # Errors
-    /// [`BrowserError::Refused`] if there is nothing at the address, [`BrowserError::Connection`].
     pub fn open(&self, address: &str) -> Result<(), BrowserError> {
         self.session.post("url", &json!({ "url": address }))?;
         Ok(())
     }
 
     /// Opens a file.
-    ///
-    /// # Errors
-    /// [`BrowserError::Start`] if the path does not exist; otherwise as [`Browser::open`].
     pub fn open_file(&self, path: &Path) -> Result<(), BrowserError> {
         let path = path.canonicalize().map_err(BrowserError::Start)?;
         self.open(&format!("file://{}", path.display()))
@@ -102,9 +101,6 @@ impl Browser {
 
     /// Emulates a window of this size in CSS pixels, with one device pixel each. Below a width of 600 it emulates a phone:
     /// `meta viewport` has effect, and input is touch.
-    ///
-    /// # Errors
-    /// [`BrowserError::Refused`], [`BrowserError::Connection`].
     pub fn resize(&self, width: u32, height: u32) -> Result<(), BrowserError> {
         let is_phone = width < 600;
         let metrics = json!({ "width": width, "height": height, "deviceScaleFactor": 1, "mobile": is_phone });
@@ -114,42 +110,27 @@ impl Browser {
     }
 
     /// Emulates a system preference, such as `prefers-color-scheme` with the value `dark`.
-    ///
-    /// # Errors
-    /// As [`Browser::resize`].
     pub fn prefer(&self, feature: &str, value: &str) -> Result<(), BrowserError> {
         let features = json!({ "features": [{ "name": feature, "value": value }] });
         self.devtools("Emulation.setEmulatedMedia", &features).map(drop)
     }
 
     /// Emulates the medium `print`, or `screen` again.
-    ///
-    /// # Errors
-    /// As [`Browser::resize`].
     pub fn media(&self, media: &str) -> Result<(), BrowserError> {
         self.devtools("Emulation.setEmulatedMedia", &json!({ "media": media })).map(drop)
     }
 
     /// Sends a command of the Chrome DevTools Protocol and returns the response.
-    ///
-    /// # Errors
-    /// As [`Browser::resize`].
     pub fn devtools(&self, command: &str, parameters: &Value) -> Result<Value, BrowserError> {
         self.session.post("goog/cdp/execute", &json!({ "cmd": command, "params": parameters }))
     }
 
     /// Runs the body of a function in the page and returns its result. Waits for promises.
-    ///
-    /// # Errors
-    /// [`BrowserError::Refused`] with the exception that the page threw; [`BrowserError::Connection`].
     pub fn eval(&self, body: &str) -> Result<Value, BrowserError> {
         self.session.post("execute/sync", &json!({ "script": body, "args": [] }))
     }
 
     /// Waits until an expression is true in the page. Exceptions count as false.
-    ///
-    /// # Errors
-    /// [`BrowserError::Never`] after 30 seconds, with the last value of the expression.
     pub fn wait_for(&self, expression: &str) -> Result<(), BrowserError> {
         let start = std::time::Instant::now();
         loop {
@@ -168,9 +149,6 @@ impl Browser {
 
     /// All console messages since the start, oldest first, including those of the browser itself, such as violations of the
     /// content-security policy, but without its warnings about slow WebGL in software.
-    ///
-    /// # Errors
-    /// [`BrowserError::Refused`], [`BrowserError::Connection`].
     pub fn console(&self) -> Result<Vec<Message>, BrowserError> {
         let mut logs = self.logs();
         logs.read_console(&self.session.post("se/log", &json!({ "type": "browser" }))?);
@@ -179,9 +157,6 @@ impl Browser {
 
     /// All addresses requested since the start, in order, including those not found or blocked. The browser reaches this
     /// machine only: other names are not resolved.
-    ///
-    /// # Errors
-    /// [`BrowserError::Refused`], [`BrowserError::Connection`].
     pub fn requests(&self) -> Result<Vec<String>, BrowserError> {
         let mut logs = self.logs();
         logs.read_events(&self.session.post("se/log", &json!({ "type": "performance" }))?);

@@ -21,7 +21,7 @@ impl Programs {
     fn find_in(folders: &[PathBuf]) -> Result<Self, BrowserError> {
         let find = |names: &[&'static str]| {
             let paths = names.iter().flat_map(|name| folders.iter().map(move |folder| folder.join(name)));
-            paths.into_iter().find(|path| path.is_file()).ok_or(BrowserError::Missing { program: names[0] })
+            paths.into_iter().find(|path| path.is_file()).ok_or(BrowserError::Missing(names[0]))
         };
         Ok(Self {
             browser: find(&["chromium", "chromium-browser", "google-chrome"])?,
@@ -40,7 +40,7 @@ mod tests {
         let find = || Programs::find_in(&[folder.path().join("absent"), folder.path().to_owned()]);
         for name in ["chromium", "chromedriver"] {
             let error = find().err().unwrap();
-            assert!(matches!(error, BrowserError::Missing { program } if program == name), "{error}");
+            assert!(matches!(error, BrowserError::Missing(program) if program == name), "{error}");
             assert!(error.to_string().contains("apt-get install"));
             std::fs::write(folder.path().join(name), "").unwrap();
         }

@@ -6,8 +6,8 @@ use geodesics::{FirstSample, Sampling, Variance, farthest_point_sampling};
 use linalg::{DistanceMatrix, LandmarkDistances, Matrix};
 use mesh::shapes;
 use nmds::{
-    Bandwidth, NystromOptions, Reconstruction, Regularization, RpiAlpha, SmacofOptions, SpectralOptions,
-    classical, classical_full, normalized_stress, nystrom, paper_stress,
+    Bandwidth, NystromOptions, Reconstruction, Regularization, SmacofOptions, SpectralOptions, classical,
+    classical_full, normalized_stress, nystrom, paper_stress,
 };
 
 use crate::support::{body, embedded, gap, marching, measured, moved};
@@ -117,13 +117,7 @@ fn exact_methods_reproduce_a_flat_sheet() {
 
 /// All methods, with all options that do not depend on the unit of length.
 fn methods() -> Vec<EmbedMethod> {
-    let regularizations = [
-        Regularization::LowRank { rank: None },
-        Regularization::Rpi { alpha: RpiAlpha::default() },
-        Regularization::None,
-        Regularization::Cur { rank: None },
-    ];
-    let nystrom = regularizations.map(|regularization| EmbedMethod::Nystrom { regularization });
+    let nystrom = Regularization::all().map(|regularization| EmbedMethod::Nystrom { regularization });
     let descent = SmacofOptions { max_iterations: 10, ..SmacofOptions::default() };
     let smacof = EmbedMethod::Smacof { regularization: Regularization::default(), descent };
     let kernel = [Bandwidth::Mean, Bandwidth::Median, Bandwidth::Max]

@@ -3,6 +3,7 @@
 //! | module | subject |
 //! |---|---|
 //! | `architecture` | which crate may depend on which |
+//! | `cycles` | imports between the modules of a crate |
 //! | `packaging` | whether all packages can be published |
 //! | `licences` | licences of dependencies |
 //! | `marching` | distances by fast marching |
@@ -17,6 +18,8 @@
 mod architecture;
 #[cfg(test)]
 mod builtin;
+#[cfg(test)]
+mod cycles;
 #[cfg(test)]
 mod embedding;
 #[cfg(test)]

@@ -6,9 +6,9 @@ use std::path::{Path, PathBuf};
 use crate::architecture::metadata;
 
 /// All Rust files below a folder.
-fn sources(folder: &Path) -> Vec<PathBuf> {
+pub(crate) fn rust_files(folder: &Path) -> Vec<PathBuf> {
     let entries = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
-    let files = entries.flat_map(|path| if path.is_dir() { sources(&path) } else { vec![path] });
+    let files = entries.flat_map(|path| if path.is_dir() { rust_files(&path) } else { vec![path] });
     files.filter(|path| path.extension().is_some_and(|extension| extension == "rs")).collect()
 }
 
@@ -31,7 +31,7 @@ fn published_packages_describe_themselves_and_contain_what_they_include() {
             assert!(folder.join(licence).is_file(), "{name} has no {licence}: link to that of the workspace");
         }
         let folder = folder.canonicalize().unwrap();
-        for source in sources(&folder) {
+        for source in rust_files(&folder) {
             for path in included(&fs::read_to_string(&source).unwrap()) {
                 let path = source.with_file_name(path);
                 let target =

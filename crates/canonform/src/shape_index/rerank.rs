@@ -64,7 +64,7 @@ pub fn rerank<S: Borrow<PreparedShape>>(
         let (fused, alignment) = *found.get(&near.index)?;
         Some(Ranked { index: near.index, distance: near.distance, fused, alignment })
     });
-    Ok(Reranked { nearest: ranked.collect(), aligned: refined.asked, abandoned: refined.abandoned })
+    Ok(Reranked { nearest: ranked.collect(), aligned: refined.evaluated, abandoned: refined.abandoned })
 }
 
 #[cfg(test)]

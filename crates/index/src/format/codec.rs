@@ -22,18 +22,12 @@ pub enum CodecError {
         /// The limit.
         limit: usize,
     },
-    /// The bytes differ from those that were written.
-    #[error("a value of {size} bytes does not match its checksum")]
-    Checksum {
-        /// Its size.
-        size: usize,
-    },
+    /// The bytes, this number of them, differ from those that were written.
+    #[error("a value of {0} bytes does not match its checksum")]
+    Checksum(usize),
     /// The bytes have the right checksum but encode no value of the expected type.
-    #[error("a value cannot be decoded: {reason}")]
-    Malformed {
-        /// What is wrong.
-        reason: String,
-    },
+    #[error("a value cannot be decoded: {0}")]
+    Malformed(String),
 }
 
 fn config() -> impl bincode::config::Config {
@@ -45,7 +39,7 @@ fn config() -> impl bincode::config::Config {
 pub(crate) fn encode<T: Serialize>(value: &T) -> Result<Vec<u8>, CodecError> {
     let mut bytes = vec![0; SUM];
     let used = bincode::serde::encode_into_std_write(value, &mut bytes, config())
-        .map_err(|error| CodecError::Malformed { reason: error.to_string() })?;
+        .map_err(|error| CodecError::Malformed(error.to_string()))?;
     if used > LIMIT {
         return Err(CodecError::TooLarge { size: used, limit: LIMIT });
     }
@@ -61,17 +55,15 @@ pub(crate) fn decode<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, CodecError>
     if size > LIMIT + SUM {
         return Err(CodecError::TooLarge { size, limit: LIMIT });
     }
-    let (sum, content) = bytes.split_first_chunk::<SUM>().ok_or(CodecError::Checksum { size })?;
+    let (sum, content) = bytes.split_first_chunk::<SUM>().ok_or(CodecError::Checksum(size))?;
     if crc32fast::hash(content) != u32::from_le_bytes(*sum) {
-        return Err(CodecError::Checksum { size });
+        return Err(CodecError::Checksum(size));
     }
     let (value, used) = bincode::serde::decode_from_slice(content, config())
-        .map_err(|error| CodecError::Malformed { reason: error.to_string() })?;
+        .map_err(|error| CodecError::Malformed(error.to_string()))?;
     match used == content.len() {
         true => Ok(value),
-        false => {
-            Err(CodecError::Malformed { reason: format!("{used} of {} bytes were used", content.len()) })
-        }
+        false => Err(CodecError::Malformed(format!("{used} of {} bytes were used", content.len()))),
     }
 }
 
@@ -132,7 +124,7 @@ mod tests {
                 let mut changed = bytes.clone();
                 changed[at] ^= 1 << bit;
                 let error = decode::<(String, Floats)>(&changed).unwrap_err();
-                assert_eq!(error, CodecError::Checksum { size: bytes.len() });
+                assert_eq!(error, CodecError::Checksum(bytes.len()));
             }
             assert!(decode::<(String, Floats)>(&bytes[..at]).is_err());
         }
@@ -146,20 +138,20 @@ mod tests {
         bytes.extend((1u64 << 60).to_le_bytes());
         let sum = crc32fast::hash(&bytes[SUM..]);
         bytes[..SUM].copy_from_slice(&sum.to_le_bytes());
-        assert!(matches!(decode::<String>(&bytes), Err(CodecError::Malformed { .. })));
-        assert!(matches!(decode::<Floats>(&bytes), Err(CodecError::Malformed { .. })));
-        assert!(matches!(decode::<Vec<u64>>(&bytes), Err(CodecError::Malformed { .. })));
+        assert!(matches!(decode::<String>(&bytes), Err(CodecError::Malformed(_))));
+        assert!(matches!(decode::<Floats>(&bytes), Err(CodecError::Malformed(_))));
+        assert!(matches!(decode::<Vec<u64>>(&bytes), Err(CodecError::Malformed(_))));
     }
 
     #[test]
     fn oversized_values_and_trailing_bytes_are_rejected() {
         let error = encode(&Floats(vec![0.0; LIMIT / 4 + 1])).unwrap_err();
-        assert!(matches!(error, CodecError::TooLarge { .. } | CodecError::Malformed { .. }), "{error}");
+        assert!(matches!(error, CodecError::TooLarge { .. } | CodecError::Malformed(_)), "{error}");
         let error = decode::<u8>(&vec![0; LIMIT + SUM + 1]).unwrap_err();
         assert!(matches!(error, CodecError::TooLarge { limit: LIMIT, .. }));
         let error = decode::<u8>(&encode(&(1u8, 2u8)).unwrap()).unwrap_err();
         assert!(error.to_string().contains("1 of 2 bytes"), "{error}");
         let error = decode::<Floats>(&encode(&"abc").unwrap()).unwrap_err();
-        assert!(matches!(error, CodecError::Malformed { .. }));
+        assert!(matches!(error, CodecError::Malformed(_)));
     }
 }

@@ -19,11 +19,8 @@ pub enum IndexError {
         source: io::Error,
     },
     /// The file is not an index.
-    #[error("{path} is not a shape index", path = path.display())]
-    Foreign {
-        /// The file.
-        path: PathBuf,
-    },
+    #[error("{path} is not a shape index", path = .0.display())]
+    Foreign(PathBuf),
     /// A newer version of the program wrote the file.
     #[error(
         "{path} is an index of format {found}; this program reads formats up to {supported}: use a newer version",
@@ -46,11 +43,8 @@ pub enum IndexError {
         what: String,
     },
     /// Another program is writing the index.
-    #[error("another program is writing {path}; wait until it ends, or choose another file", path = path.display())]
-    Busy {
-        /// The index.
-        path: PathBuf,
-    },
+    #[error("another program is writing {path}; wait until it ends, or choose another file", path = .0.display())]
+    Busy(PathBuf),
     /// A different job was interrupted and can be resumed.
     #[error(
         "an interrupted `{job}` is waiting in {work}: run it again to finish it, or delete that file to discard it",
@@ -64,7 +58,7 @@ pub enum IndexError {
     },
     /// The index was made with other options, so its shapes cannot be compared with others.
     #[error(
-        "{path} was made with other options ({found}) than these ({asked}); use the same, or another file",
+        "{path} was made with other options ({found}) than these ({requested}); use the same, or another file",
         path = path.display()
     )]
     OtherOptions {
@@ -73,7 +67,7 @@ pub enum IndexError {
         /// The options it was made with.
         found: String,
         /// The requested options.
-        asked: String,
+        requested: String,
     },
     /// A vector has another length than those in the index.
     #[error("shape `{id}` has a vector of {found} numbers, the index holds vectors of {expected}")]
@@ -85,12 +79,9 @@ pub enum IndexError {
         /// Length of the vectors in the index.
         expected: usize,
     },
-    /// A vector is empty or has a component that is NaN or infinite.
-    #[error("shape `{id}` has a vector that is empty or not finite; describe it again")]
-    BadVector {
-        /// The shape.
-        id: String,
-    },
+    /// The vector of this shape is empty or has a component that is NaN or infinite.
+    #[error("shape `{0}` has a vector that is empty or not finite; describe it again")]
+    BadVector(String),
     /// Two different shapes have the same name.
     #[error(
         "`{id}` names different shapes in {path} and in an index before it; rename one, or remove it from one of them",

@@ -150,19 +150,18 @@ pub(crate) fn unseal(file: &mut File) -> io::Result<()> {
 #[derive(Debug)]
 pub(crate) struct Sealed {
     file: Mutex<File>,
-    footer: Footer,
+    pub(crate) footer: Footer,
     sums: Vec<u8>,
 }
 
 impl Sealed {
     /// # Errors
-    /// [`IndexError::Foreign`], [`IndexError::FutureVersion`], [`IndexError::Damaged`],
-    /// [`IndexError::Io`].
+    /// [`IndexError::Foreign`], [`IndexError::FutureVersion`], [`IndexError::Damaged`], [`IndexError::Io`].
     pub(crate) fn open(path: &Path) -> Result<Self, IndexError> {
         let cannot_read = IndexError::io("read", path);
         let mut file = File::open(path).map_err(cannot_read)?;
         if !file.metadata().map_err(cannot_read)?.is_file() {
-            return Err(IndexError::Foreign { path: path.to_owned() });
+            return Err(IndexError::Foreign(path.to_owned()));
         }
         let Some(footer) = Footer::read(&mut file, path)? else {
             let mut head = Vec::new();
@@ -170,7 +169,7 @@ impl Sealed {
             Read::by_ref(&mut file).take(4).read_to_end(&mut head).map_err(cannot_read)?;
             return Err(match head == DATABASE_MAGIC {
                 true => IndexError::damaged(path, "its footer is missing"),
-                false => IndexError::Foreign { path: path.to_owned() },
+                false => IndexError::Foreign(path.to_owned()),
             });
         };
         let mut sums = vec![0; 4 * footer.database.div_ceil(BLOCK as u64) as usize];
@@ -182,10 +181,6 @@ impl Sealed {
             return Err(IndexError::damaged(path, "its checksums changed"));
         }
         Ok(Self { file: Mutex::new(file), footer, sums })
-    }
-
-    pub(crate) fn footer(&self) -> Footer {
-        self.footer
     }
 
     /// Size of the database in bytes.

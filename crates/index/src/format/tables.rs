@@ -225,7 +225,7 @@ pub(crate) fn database_error(path: &Path, action: &'static str, error: impl Into
             IndexError::damaged(path, source.to_string())
         }
         redb::Error::Io(source) => IndexError::Io { action, path: path.to_owned(), source },
-        redb::Error::DatabaseAlreadyOpen => IndexError::Busy { path: path.to_owned() },
+        redb::Error::DatabaseAlreadyOpen => IndexError::Busy(path.to_owned()),
         other => IndexError::damaged(path, other.to_string()),
     }
 }

@@ -1,10 +1,10 @@
 //! Search for the nearest vectors, in the file or in memory.
 
-mod on_file;
 mod searcher;
 
-use crate::IndexError;
-use crate::vectors::{CellsHeader, padded};
+use crate::format::StoredCells;
+use crate::vectors::{CellsHeader, Hit, Nearest, nearest_cells, padded, scan};
+use crate::{Index, IndexError};
 use retrieval::UnknownThreshold;
 
 pub use searcher::Searcher;
@@ -70,6 +70,32 @@ impl Found {
     }
 }
 
+impl Index {
+    /// The `k` shapes whose vectors are nearest to `query`. Reads the cells it needs from the file.
+    ///
+    /// # Errors
+    /// [`IndexError::OtherLength`], [`IndexError::BadVector`], [`IndexError::Io`], [`IndexError::Damaged`].
+    pub fn nearest(&self, query: &[f32], k: usize, mode: SearchMode) -> Result<Found, IndexError> {
+        let store = self.store();
+        let stored = StoredCells::open(&store)?;
+        let row = padded_query(query, &stored.header)?;
+        let (mut nearest, mut n_measured) = (Nearest::new(k), 0);
+        for cell in nearest_cells(&row, &stored.centroids, mode.probes(&stored.header)) {
+            stored.each_part(cell, |part| {
+                n_measured += part.slots.len();
+                scan(&row, &part.slots, part.rows(), &mut nearest);
+                Ok(())
+            })?;
+        }
+        let mut shapes = Vec::with_capacity(k.min(self.len()));
+        for Hit { slot, .. } in nearest.into_sorted() {
+            let id = stored.name(slot)?;
+            shapes.push(NearShape { distance: distance(query, &stored.vector(&id)?), id });
+        }
+        Ok(Found::new(shapes, n_measured, &stored.header, mode))
+    }
+}
+
 /// Euclidean distance, summed in double precision in the order of the numbers.
 fn distance(a: &[f32], b: &[f32]) -> f64 {
     a.iter().zip(b).map(|(x, y)| (f64::from(*x) - f64::from(*y)).powi(2)).sum::<f64>().sqrt()
@@ -82,7 +108,7 @@ fn padded_query(query: &[f32], header: &CellsHeader) -> Result<Vec<f32>, IndexEr
         return Err(IndexError::OtherLength { id: "the query".to_owned(), found, expected });
     }
     if !query.iter().all(|x| x.is_finite()) {
-        return Err(IndexError::BadVector { id: "the query".to_owned() });
+        return Err(IndexError::BadVector("the query".to_owned()));
     }
     let mut row = query.to_vec();
     row.resize(padded(header.dim), 0.0);

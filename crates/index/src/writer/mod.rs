@@ -49,7 +49,7 @@ impl Job {
 ///
 /// It works in a file next to the index, `NAME.work`, which replaces the index when the job is finished. Until then
 /// readers see the old state. Shapes are on disk when [`put`](Self::put) returns. An interrupted writer leaves its
-/// work file, and the next writer resumes it.
+/// work file, and the next writer resumes it. All methods may return [`IndexError::Io`] and [`IndexError::Damaged`].
 ///
 /// ```
 /// use canonform_index::{IndexWriter, Job};
@@ -86,16 +86,19 @@ impl IndexWriter {
         let work = work_path(path);
         let base = if path.exists() { Some(Index::open(path)?) } else { None };
         let options = match (options, &base) {
-            (Some(asked), Some(base)) => base.expect_options(asked).map(|()| asked.to_owned())?,
-            (Some(asked), None) => asked.to_owned(),
+            (Some(requested), Some(base)) => base.expect_options(requested).map(|()| requested.to_owned())?,
+            (Some(requested), None) => requested.to_owned(),
             (None, Some(base)) => base.options().to_owned(),
             (None, None) => return Err(IndexError::io("read", path)(io::ErrorKind::NotFound.into())),
         };
         let cannot_write = IndexError::io("write", &work);
         let mut file = open_exclusively(path, &work)?;
         unseal(&mut file).map_err(cannot_write)?;
-        let begun =
-            Begun { job: job.name().to_owned(), options, base: base.as_ref().map_or(0, Index::fingerprint) };
+        let begun = Begun {
+            job: job.name().to_owned(),
+            options,
+            base: base.as_ref().map_or(0, |index| index.fingerprint),
+        };
         if is_database(&mut file).map_err(cannot_write)? {
             let database = database(&file, &work)?;
             let store = Store { database: &database, path: &work, action: "write" };
@@ -106,8 +109,8 @@ impl IndexWriter {
                     return Err(IndexError::Unfinished { job: known.job, work });
                 }
                 if known.options != begun.options {
-                    let (found, asked) = (known.options, begun.options);
-                    return Err(IndexError::OtherOptions { path: work, found, asked });
+                    let (found, requested) = (known.options, begun.options);
+                    return Err(IndexError::OtherOptions { path: work, found, requested });
                 }
                 // An addition only resumes on the index that it began with; a build determines the whole content.
                 if job == Job::Build || known.base == begun.base {
@@ -141,33 +144,21 @@ impl IndexWriter {
     }
 
     /// Number of shapes so far.
-    ///
-    /// # Errors
-    /// [`IndexError::Io`], [`IndexError::Damaged`].
     pub fn len(&self) -> Result<usize, IndexError> {
         self.store().read()?.len()
     }
 
     /// Whether there are no shapes so far.
-    ///
-    /// # Errors
-    /// As [`len`](Self::len).
     pub fn is_empty(&self) -> Result<bool, IndexError> {
         Ok(self.len()? == 0)
     }
 
     /// The entry of a shape, if it is there.
-    ///
-    /// # Errors
-    /// As [`len`](Self::len).
     pub fn entry(&self, id: &str) -> Result<Option<ShapeEntry>, IndexError> {
         self.store().read()?.entry(id)
     }
 
     /// The names of all shapes so far, in ascending order.
-    ///
-    /// # Errors
-    /// As [`len`](Self::len).
     pub fn ids(&self) -> Result<Vec<String>, IndexError> {
         self.store().read()?.keys(ENTRIES)
     }
@@ -175,13 +166,13 @@ impl IndexWriter {
     /// Stores shapes, replacing those of the same names. Either all of them are on disk when it returns, or none.
     ///
     /// # Errors
-    /// [`IndexError::BadVector`], [`IndexError::OtherLength`], [`IndexError::Codec`], [`IndexError::Io`].
+    /// [`IndexError::BadVector`], [`IndexError::OtherLength`], [`IndexError::Codec`].
     pub fn put(&mut self, shapes: &[Shape]) -> Result<(), IndexError> {
         let mut length = self.length;
         for shape in shapes {
             let fused = &shape.vectors.fused;
             if fused.is_empty() || !fused.iter().all(|x| x.is_finite()) {
-                return Err(IndexError::BadVector { id: shape.id.clone() });
+                return Err(IndexError::BadVector(shape.id.clone()));
             }
             let expected = *length.get_or_insert(fused.len());
             if fused.len() != expected {
@@ -202,7 +193,7 @@ impl IndexWriter {
     /// Replaces entries of shapes and keeps their vectors.
     ///
     /// # Errors
-    /// [`IndexError::NoSuchShape`], [`IndexError::Io`].
+    /// [`IndexError::NoSuchShape`].
     pub fn set_entries(&mut self, entries: &[(String, ShapeEntry)]) -> Result<(), IndexError> {
         let store = self.store();
         let known = store.read()?;
@@ -220,7 +211,7 @@ impl IndexWriter {
     /// Removes shapes.
     ///
     /// # Errors
-    /// [`IndexError::NoSuchShape`], [`IndexError::Io`]; then no shape is removed.
+    /// [`IndexError::NoSuchShape`]; then no shape is removed.
     pub fn remove(&mut self, ids: &[String]) -> Result<(), IndexError> {
         let store = self.store();
         store.write(|transaction| {
@@ -257,9 +248,6 @@ impl IndexWriter {
     }
 
     /// Discards the work. The index stays unchanged.
-    ///
-    /// # Errors
-    /// [`IndexError::Io`].
     pub fn discard(self) -> Result<(), IndexError> {
         let Self { work, database, .. } = self;
         drop(database);

@@ -55,7 +55,7 @@ pub(super) fn open_exclusively(path: &Path, work: &Path) -> Result<File, IndexEr
             options.read(true).write(true).create(true).truncate(false).open(work).map_err(cannot_write)?;
         match file.try_lock() {
             Ok(()) => {}
-            Err(TryLockError::WouldBlock) => return Err(IndexError::Busy { path: path.to_owned() }),
+            Err(TryLockError::WouldBlock) => return Err(IndexError::Busy(path.to_owned())),
             Err(TryLockError::Error(source)) => return Err(cannot_write(source)),
         }
         // Another writer may have renamed the file before it was locked.

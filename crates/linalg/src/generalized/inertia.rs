@@ -3,7 +3,6 @@
 use faer::Par;
 use faer::dyn_stack::{MemBuffer, MemStack};
 
-use crate::cholesky::view;
 use crate::{EliminationOrder, LinalgError, SparseSymmetric};
 
 /// The number of negative eigenvalues of a matrix whose pattern has been analysed. By Sylvester's law of inertia it
@@ -21,29 +20,29 @@ pub(super) fn n_negative(
     matrix: &SparseSymmetric,
 ) -> Result<Option<usize>, LinalgError> {
     let n = matrix.order();
-    let symbolic = order.symbolic();
+    let symbolic = &order.0.symbolic;
     let mut values = vec![0.0; symbolic.len_val()];
-    let mut beside = vec![0.0; n];
+    let mut off_diagonal = vec![0.0; n];
     let [mut forward, mut inverse] = [vec![0; n], vec![0; n]];
     let scratch = symbolic.factorize_numeric_intranode_lblt_scratch::<f64>(Par::Seq, Default::default());
     let mut memory = MemBuffer::try_new(scratch)
         .map_err(|e| LinalgError::NotFactorised { n, reason: format!("{e:?}") })?;
     symbolic.factorize_numeric_intranode_lblt(
         &mut values,
-        &mut beside,
+        &mut off_diagonal,
         &mut forward,
         &mut inverse,
-        view(matrix),
+        matrix.view(),
         faer::Side::Lower,
         Par::Seq,
         MemStack::new(&mut memory),
         Default::default(),
     );
-    let diagonal = order.panels().diagonal(&values);
+    let diagonal = order.0.panels.diagonal(&values);
     let mut negative = 0;
     let mut i = 0;
     while i < n {
-        let (pivot, count, width) = match beside[i] {
+        let (pivot, count, width) = match off_diagonal[i] {
             0.0 => (diagonal[i], usize::from(diagonal[i] < 0.0), 1),
             off => {
                 let [a, b] = [diagonal[i], diagonal[i + 1]];

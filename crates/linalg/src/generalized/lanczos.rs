@@ -111,7 +111,7 @@ impl<'a> Lanczos<'a> {
         for _ in 0..3 {
             let before = self.lengths(w);
             let weighted = self.operator.weighted(w);
-            self.basis.subtract_from(w, &self.basis.products(&weighted));
+            self.basis.add_combinations(w, &self.basis.products(&weighted), -1.0);
             *w -= &self.next * (self.next.transpose() * weighted);
             let (factor, left) = self.gram_schmidt(w, &lengths);
             r = factor * r;
@@ -207,20 +207,15 @@ impl<'a> Lanczos<'a> {
     }
 }
 
-/// Approximate eigenpairs.
+/// The eigenpairs of `T`, largest first.
 #[derive(Debug)]
 pub(super) struct Ritz {
-    eigen: SymmetricEigen,
+    pub(super) eigen: SymmetricEigen,
     /// `B E' y` for each eigenvector `y` of `T`.
     outside: Matrix,
 }
 
 impl Ritz {
-    /// The eigenvalues of `T`, largest first.
-    pub(super) fn values(&self) -> &[f64] {
-        &self.eigen.values
-    }
-
     /// `|C x - theta x| / theta` of pair `j`, with `x = V y`.
     pub(super) fn residual(&self, j: usize) -> f64 {
         let theta = self.eigen.values[j];

@@ -89,9 +89,10 @@ pub fn smallest_eigenpairs(
         if !schedule.is_done(process.dim(), &ritz) {
             continue;
         }
-        let values: Vec<f64> = ritz.values()[..m + SPARE].iter().map(|t| operator.unshifted(*t)).collect();
-        let gap = gap(&values, m, operator.shift());
-        let missing = n_missing(stiffness, masses, operator.order(), gap)?;
+        let values: Vec<f64> =
+            ritz.eigen.values[..m + SPARE].iter().map(|t| operator.unshifted(*t)).collect();
+        let gap = gap(&values, m, operator.shift);
+        let missing = n_missing(stiffness, masses, operator.factor.order(), gap)?;
         if missing == 0 {
             return Ok(pairs(&operator, &process, &ritz, m));
         }
@@ -170,18 +171,18 @@ fn n_missing(
             return Ok(below.saturating_sub(found));
         }
     }
-    Err(LinalgError::NotConverged { n: stiffness.order() })
+    Err(LinalgError::NotConverged(stiffness.order()))
 }
 
 /// The `m` smallest pairs that the process found, with rows in the order of the matrix.
 fn pairs(operator: &ShiftInverse, process: &Lanczos<'_>, ritz: &Ritz, m: usize) -> GeneralizedEigen {
-    let m = m.min(ritz.values().len());
-    let values = ritz.values()[..m].iter().map(|theta| operator.unshifted(*theta).max(0.0)).collect();
+    let m = m.min(ritz.eigen.values.len());
+    let values = ritz.eigen.values[..m].iter().map(|theta| operator.unshifted(*theta).max(0.0)).collect();
     // Orthonormal in `s M`.
-    let ordered = process.vectors(ritz, m) * operator.shift().sqrt();
+    let ordered = process.vectors(ritz, m) * operator.shift.sqrt();
     let mut vectors = Matrix::zeros(ordered.nrows(), m);
     for (from, mut to) in ordered.column_iter().zip(vectors.column_iter_mut()) {
-        for (value, &row) in from.iter().zip(operator.order().rows()) {
+        for (value, &row) in from.iter().zip(operator.factor.order().rows()) {
             to[row] = *value;
         }
         let sign = leading_sign(to.as_slice());

@@ -1,6 +1,6 @@
 //! The shift-and-invert operator, whose largest eigenvalues belong to the smallest of the pencil.
 
-use crate::{EliminationOrder, LinalgError, Matrix, SparseCholesky, SparseSymmetric};
+use crate::{LinalgError, Matrix, SparseCholesky, SparseSymmetric};
 
 /// `C = (W + s M)^-1 s M` with diagonal `M`, for vectors with rows in elimination order.
 ///
@@ -8,10 +8,10 @@ use crate::{EliminationOrder, LinalgError, Matrix, SparseCholesky, SparseSymmetr
 /// `C x = s / (lambda + s) x`.
 #[derive(Debug)]
 pub(super) struct ShiftInverse {
-    factor: SparseCholesky,
+    pub(super) factor: SparseCholesky,
     /// The diagonal of `s M`, in elimination order.
     masses: Vec<f64>,
-    shift: f64,
+    pub(super) shift: f64,
 }
 
 impl ShiftInverse {
@@ -33,14 +33,6 @@ impl ShiftInverse {
         let factor = SparseCholesky::new(&shifted(stiffness, masses, shift))?;
         let masses = factor.order().rows().iter().map(|&row| shift * masses[row]).collect();
         Ok(Self { factor, masses, shift })
-    }
-
-    pub(super) fn order(&self) -> &EliminationOrder {
-        self.factor.order()
-    }
-
-    pub(super) fn shift(&self) -> f64 {
-        self.shift
     }
 
     /// The eigenvalue `lambda` for an eigenvalue of `C`.

@@ -55,11 +55,6 @@ impl Strips {
         parts.iter().fold(Matrix::zeros(n, m), |sum, part| sum + part)
     }
 
-    /// Subtracts the combinations `V H` from the columns of a matrix.
-    pub(super) fn subtract_from(&self, w: &mut Matrix, h: &Matrix) {
-        self.add_combinations(w, h, -1.0);
-    }
-
     /// The combinations `V H`.
     pub(super) fn combine(&self, h: &Matrix) -> Matrix {
         let mut w = Matrix::zeros(self.n_rows, h.ncols());
@@ -67,7 +62,8 @@ impl Strips {
         w
     }
 
-    fn add_combinations(&self, w: &mut Matrix, h: &Matrix, factor: f64) {
+    /// Adds `factor` times the combinations `V H` to the columns of a matrix.
+    pub(super) fn add_combinations(&self, w: &mut Matrix, h: &Matrix, factor: f64) {
         let m = w.ncols();
         let mut rest = MatMut::from_column_major_slice_mut(w.as_mut_slice(), self.n_rows, m);
         let mut outs = Vec::with_capacity(self.strips.len());
@@ -107,7 +103,7 @@ mod tests {
             assert_eq!(strips.n_columns(), 7);
             assert!((&h - v.transpose() * &w).amax() < 1e-12 * n as f64);
             let mut rest = w.clone();
-            strips.subtract_from(&mut rest, &h);
+            strips.add_combinations(&mut rest, &h, -1.0);
             assert!((rest + &v * &h - w).amax() < 1e-11 * n as f64);
             assert!((strips.combine(&h) - &v * &h).amax() < 1e-11 * n as f64);
         }
