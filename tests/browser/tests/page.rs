@@ -14,7 +14,7 @@ const PAGE: &str = r#"<!doctype html><meta charset="utf-8"><meta name="viewport"
 const seen = window.seen = [];
 const pad = document.querySelector('#pad');
 for (const kind of ['pointerdown', 'pointermove', 'pointerup']) pad.addEventListener(kind, e => seen.push([kind, e.clientX, e.clientY]));
-pad.addEventListener('drop', e => { e.preventDeerror(); e.dataTransfer.files[0].text().then(t => { window.dropped = e.dataTransfer.files[0].name + ':' + t; }); });
+pad.addEventListener('drop', e => { e.preventDefault(); e.dataTransfer.files[0].text().then(t => { window.dropped = e.dataTransfer.files[0].name + ':' + t; }); });
 document.querySelector('#b').addEventListener('click', () => console.warn('pressed'));
 document.querySelector('#file').addEventListener('change', e => e.target.files[0].text().then(t => { window.given = t; }));
 </script>"#;
