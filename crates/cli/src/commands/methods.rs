@@ -4,11 +4,10 @@ use std::process::ExitCode;
 
 use anyhow::Result;
 use canonform::{FormOptions, MethodFacts, MethodsReport, StressOptions, compare_methods};
-use terminal::Bars;
+use terminal::{Bars, with_peak_bytes};
 
 use super::{named, read_surface};
 use crate::args::{Common, MethodsArgs};
-use crate::memory::with_peak_bytes;
 use crate::output::{print, print_json};
 
 /// Embeds a mesh by every method and sets them side by side.
