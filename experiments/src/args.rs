@@ -22,9 +22,20 @@ pub(crate) enum Command {
     /// List the experiments
     List,
     /// Write the report page again from the results in a folder
-    Report(ReportArgs),
+    Report {
+        /// Folder with the results
+        #[arg(short, long, default_value = "out", value_name = "OUT")]
+        output: PathBuf,
+    },
     /// Measure how poses and triangulations of the built-in shapes change every signature
-    Units(UnitsArgs),
+    Units {
+        /// Number of seeds of the built-in dataset, from 1 on; 30 shapes each
+        #[arg(long, default_value_t = 5, value_name = "N")]
+        seeds: usize,
+        /// Show no progress bars
+        #[arg(long, short)]
+        quiet: bool,
+    },
 }
 
 #[derive(Debug, Args)]
@@ -54,21 +65,4 @@ impl RunArgs {
             self.source.arguments()
         )
     }
-}
-
-#[derive(Debug, Args)]
-pub(crate) struct ReportArgs {
-    /// Folder with the results
-    #[arg(short, long, default_value = "out", value_name = "OUT")]
-    pub(crate) output: PathBuf,
-}
-
-#[derive(Debug, Args)]
-pub(crate) struct UnitsArgs {
-    /// Number of seeds of the built-in dataset, from 1 on; 30 shapes each
-    #[arg(long, default_value_t = 5, value_name = "N")]
-    pub(crate) seeds: usize,
-    /// Show no progress bars
-    #[arg(long, short)]
-    pub(crate) quiet: bool,
 }

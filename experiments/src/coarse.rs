@@ -4,28 +4,19 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use mesh::TriMesh;
 use nalgebra::{Point3, Vector3};
+use surface::VertexId;
 
 /// The greatest number of cells along the longest side of a mesh.
 const FINEST: usize = 2048;
 
-/// Some vertices of a mesh and the faces over them.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub(crate) struct Coarse {
-    /// The vertices that remain, ascending.
-    pub(crate) vertices: Vec<usize>,
-    /// Faces, as indices into `vertices`.
-    pub(crate) faces: Vec<[u32; 3]>,
-}
-
 /// Simplifies a mesh to at most `limit` vertices by vertex clustering (Rossignac and Borrel 1993), for viewing only.
 ///
 /// In each cell of the finest cubic grid that has at most `limit` occupied cells, the vertex nearest to the mean remains.
-/// Faces with two corners in one cell are dropped. Vertices keep their positions, so canonical forms and values can be
-/// simplified in the same way.
-pub(crate) fn coarse(mesh: &TriMesh, limit: usize) -> Coarse {
+/// Faces with two corners in one cell are dropped. Returns the vertices that remain, ascending, and the mesh over them.
+/// They keep their positions, so canonical forms and values can be simplified in the same way.
+pub(crate) fn coarse(mesh: &TriMesh, limit: usize) -> (Vec<usize>, TriMesh) {
     if mesh.n_vertices() <= limit {
-        let faces = mesh.faces.iter().map(|face| face.map(|v| v.0)).collect();
-        return Coarse { vertices: (0..mesh.n_vertices()).collect(), faces };
+        return ((0..mesh.n_vertices()).collect(), mesh.clone());
     }
     // The number of occupied cells grows almost monotonically with the number along a side.
     let (mut fits, mut too_fine) = (1, FINEST);
@@ -45,7 +36,7 @@ fn cells(mesh: &TriMesh, n: usize) -> Vec<[usize; 3]> {
     mesh.positions.iter().map(cell).collect()
 }
 
-fn thinned(mesh: &TriMesh, cells: &[[usize; 3]]) -> Coarse {
+fn thinned(mesh: &TriMesh, cells: &[[usize; 3]]) -> (Vec<usize>, TriMesh) {
     let mut members: BTreeMap<[usize; 3], Vec<usize>> = BTreeMap::new();
     cells.iter().enumerate().for_each(|(v, cell)| members.entry(*cell).or_default().push(v));
     let mut stays = vec![0; cells.len()];
@@ -57,17 +48,18 @@ fn thinned(mesh: &TriMesh, cells: &[[usize; 3]]) -> Coarse {
         vertices.iter().for_each(|&v| stays[v] = nearest.unwrap_or(v));
     }
     let vertices: Vec<usize> = (0..stays.len()).filter(|&v| stays[v] == v).collect();
-    let mut place = vec![0_u32; stays.len()];
-    vertices.iter().zip(0..).for_each(|(&v, at)| place[v] = at);
+    let mut place = vec![VertexId(0); stays.len()];
+    vertices.iter().zip(0..).for_each(|(&v, at)| place[v] = VertexId(at));
     let mut seen = BTreeSet::new();
-    let mut kept = |face: &[u32; 3]| {
+    let mut kept = |face: &[VertexId; 3]| {
         let mut corners = *face;
         corners.sort_unstable();
         corners[0] != corners[1] && corners[1] != corners[2] && seen.insert(corners)
     };
     let faces = mesh.faces.iter().map(|face| face.map(|v| place[stays[v.index()]]));
     let faces = faces.filter(|face| kept(face)).collect();
-    Coarse { vertices, faces }
+    let positions = vertices.iter().map(|&v| mesh.positions[v]).collect();
+    (vertices, TriMesh { positions, faces })
 }
 
 #[cfg(test)]
@@ -78,31 +70,29 @@ mod tests {
     #[test]
     fn meshes_below_the_limit_are_unchanged() {
         let ball = icosphere(1);
-        let all = coarse(&ball, ball.n_vertices());
-        assert_eq!(all.vertices.len(), ball.n_vertices());
-        assert_eq!(all.faces.len(), ball.n_faces());
+        let (vertices, same) = coarse(&ball, ball.n_vertices());
+        assert!(vertices.into_iter().eq(0..ball.n_vertices()));
+        assert_eq!(same, ball);
     }
 
     #[test]
     fn a_simplified_ball_keeps_its_area() {
         let ball = icosphere(5);
         for limit in [100, 1000] {
-            let thin = coarse(&ball, limit);
-            let n = thin.vertices.len();
+            let (vertices, thin) = coarse(&ball, limit);
+            let n = vertices.len();
             assert!(n <= limit && n > limit / 3, "{n} of {limit}");
-            assert!(thin.faces.iter().flatten().all(|&v| (v as usize) < n));
-            let positions = thin.vertices.iter().map(|&v| ball.positions[v]).collect();
-            let faces = thin.faces.iter().map(|face| face.map(surface::VertexId)).collect();
-            let area = TriMesh { positions, faces }.area() / ball.area();
+            assert!(thin.faces.iter().flatten().all(|v| v.index() < n));
+            assert!(vertices.iter().zip(&thin.positions).all(|(&v, at)| ball.positions[v] == *at));
+            let area = thin.area() / ball.area();
             assert!((0.8..1.05).contains(&area), "{area}");
         }
     }
 
     #[test]
     fn a_mesh_without_extent_becomes_a_point() {
-        let flat =
-            TriMesh { positions: vec![Point3::origin(); 9], faces: vec![[0, 1, 2].map(surface::VertexId)] };
-        let point = coarse(&flat, 4);
-        assert!(point.vertices.len() == 1 && point.faces.is_empty());
+        let flat = TriMesh { positions: vec![Point3::origin(); 9], faces: vec![[0, 1, 2].map(VertexId)] };
+        let (vertices, point) = coarse(&flat, 4);
+        assert!(vertices.len() == 1 && point.faces.is_empty());
     }
 }

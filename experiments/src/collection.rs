@@ -1,5 +1,6 @@
 //! The shapes of a run.
 
+use std::collections::BTreeSet;
 use std::path::PathBuf;
 
 use anyhow::{Context, Result, bail};
@@ -18,13 +19,12 @@ pub(crate) const PAPER_CLASSES: [&str; 3] = ["cat", "centaur", "david"];
 /// Stands for all classes on the command line.
 const ALL_CLASSES: &str = "all";
 
-/// The classes of TOSCA, which identify it.
+/// The classes of TOSCA, sorted, which identify it.
 const TOSCA_CLASSES: [&str; 12] = [
     "cat", "centaur", "david", "dog", "gorilla", "horse", "lioness", "michael", "seahorse", "shark",
     "victoria", "wolf",
 ];
 
-/// The number of vertices of the built-in shapes.
 const VERTICES: usize = 3400;
 
 /// Where the shapes come from, on the command line.
@@ -80,7 +80,6 @@ pub(crate) struct Collection {
     pub(crate) shapes: Vec<Shape>,
 }
 
-/// One shape of a collection.
 pub(crate) struct Shape {
     pub(crate) name: String,
     pub(crate) label: String,
@@ -149,36 +148,26 @@ impl Collection {
         Ok(Self { dataset, classes, shapes })
     }
 
-    /// Names of the shapes.
     pub(crate) fn names(&self) -> Vec<String> {
         self.shapes.iter().map(|shape| shape.name.clone()).collect()
     }
 
-    /// Classes of the shapes.
     pub(crate) fn labels(&self) -> Vec<String> {
         self.shapes.iter().map(|shape| shape.label.clone()).collect()
     }
 
-    /// The kind of the collection.
     pub(crate) fn setting(&self) -> Setting {
         if self.dataset == BUILT_IN {
             Setting::BuiltIn
         } else if self.classes == PAPER_CLASSES {
             Setting::Paper
-        } else if self.is_tosca() {
+        } else if BTreeSet::from_iter(&self.classes).into_iter().eq(TOSCA_CLASSES) {
             Setting::Tosca
         } else {
             Setting::Other
         }
     }
 
-    fn is_tosca(&self) -> bool {
-        let mut classes: Vec<&str> = self.classes.iter().map(String::as_str).collect();
-        classes.sort_unstable();
-        classes == TOSCA_CLASSES
-    }
-
-    /// All shapes.
     pub(crate) fn all(&self) -> Vec<&Shape> {
         self.shapes.iter().collect()
     }
@@ -213,7 +202,6 @@ pub(crate) fn map<T: Send>(
 #[derive(Debug, Clone, Copy, PartialEq, Eq, serde::Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum Setting {
-    /// The built-in dataset.
     BuiltIn,
     /// The paper's classes from a folder.
     Paper,

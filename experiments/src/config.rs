@@ -8,8 +8,8 @@ use report::results::Expectation;
 use serde::Deserialize;
 
 use crate::collection::Setting;
+use crate::sweep::Measured;
 
-/// The configuration of an experiment.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Config {
@@ -21,11 +21,10 @@ pub(crate) struct Config {
     pub(crate) rank: usize,
     /// Treatment of obtuse triangles in fast marching; by default that of the solver.
     #[serde(default)]
-    pub(crate) obtuse: Option<Obtuse>,
+    pub(crate) obtuse: ObtuseTreatment,
     /// Number of runs, which differ in the first sample or repeat a measurement of time.
     #[serde(default = "one")]
     pub(crate) runs: usize,
-    /// Eigenfunctions of spectral scaling.
     #[serde(default)]
     pub(crate) eigenvectors: usize,
     /// The values on the horizontal axis: numbers of samples, ranks or numbers of vertices.
@@ -34,13 +33,11 @@ pub(crate) struct Config {
     /// The values on the horizontal axis, as exponents of ten.
     #[serde(default)]
     pub(crate) exponents: Vec<f64>,
-    /// Numbers printed in the paper.
     #[serde(default)]
     printed: Vec<Printed>,
     /// Number of nearest neighbours that vote.
     #[serde(default = "one")]
     pub(crate) knn: usize,
-    /// The expectations.
     #[serde(default)]
     pub(crate) expect: Vec<Bound>,
     /// What the results show, in paragraphs separated by empty lines.
@@ -51,26 +48,6 @@ fn one() -> usize {
     1
 }
 
-/// The treatments of obtuse triangles by their names on the command line.
-#[derive(Debug, Clone, Copy, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub(crate) enum Obtuse {
-    Flip,
-    Unfold,
-    Ignore,
-}
-
-impl From<Obtuse> for ObtuseTreatment {
-    fn from(obtuse: Obtuse) -> Self {
-        match obtuse {
-            Obtuse::Flip => Self::Flip,
-            Obtuse::Unfold => Self::Unfold,
-            Obtuse::Ignore => Self::Ignore,
-        }
-    }
-}
-
-/// A number printed in the paper.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Printed {
@@ -98,17 +75,15 @@ pub(crate) struct Bound {
 }
 
 impl Config {
-    /// Parses the configuration of an experiment.
     pub(crate) fn parse(name: &str, text: &str) -> Result<Self> {
         toml::from_str(text).with_context(|| format!("experiments/configs/{name}.toml"))
     }
 
     /// The options of the paper's method.
     pub(crate) fn nmds(&self, seed: u64) -> FormOptions {
-        let marching = FastMarchingOptions::default();
-        let obtuse = self.obtuse.map_or(marching.obtuse, Into::into);
+        let marching = FastMarchingOptions { obtuse: self.obtuse, ..FastMarchingOptions::default() };
         FormOptions {
-            geodesic: Method::FastMarching(FastMarchingOptions { obtuse, ..marching }),
+            geodesic: Method::FastMarching(marching),
             samples: Samples::Count(self.samples),
             method: EmbedMethod::low_rank(self.rank),
             seed,
@@ -128,22 +103,19 @@ impl Config {
     }
 
     /// Compares the expectations that apply with what was measured.
-    pub(crate) fn check(
-        &self,
-        setting: Setting,
-        measured: impl Fn(&str) -> Option<f64>,
-    ) -> Result<Vec<Expectation>> {
+    pub(crate) fn check(&self, setting: Setting, measured: &Measured) -> Result<Vec<Expectation>> {
         let applies = |bound: &&Bound| match setting {
             Setting::Other => false,
             _ => bound.on.is_empty() || bound.on.contains(&setting),
         };
-        self.expect.iter().filter(applies).map(|bound| bound.check(&measured)).collect()
+        self.expect.iter().filter(applies).map(|bound| bound.check(measured)).collect()
     }
 }
 
 impl Bound {
-    fn check(&self, measured: impl Fn(&str) -> Option<f64>) -> Result<Expectation> {
-        let value = measured(&self.value).with_context(|| format!("nothing measures `{}`", self.value))?;
+    fn check(&self, measured: &Measured) -> Result<Expectation> {
+        let value =
+            *measured.get(&self.value).with_context(|| format!("nothing measures `{}`", self.value))?;
         let strict = if self.strictly { " (strictly)" } else { "" };
         let low = self.at_least.map(|limit| {
             (format!("at least {limit}{strict}"), if self.strictly { value > limit } else { value >= limit })
@@ -192,14 +164,14 @@ mod tests {
     fn bounds_apply_to_their_collections_and_may_be_strict() {
         let config = Config::parse("test", TEXT).unwrap();
         let held = |setting, x: f64| {
-            let found = config.check(setting, |name| (name == "x").then_some(x)).unwrap();
+            let found = config.check(setting, &[("x".to_owned(), x)].into()).unwrap();
             found.iter().map(|e| e.held).collect::<Vec<_>>()
         };
         assert_eq!(held(Setting::BuiltIn, 1.0), [true]);
         assert_eq!(held(Setting::Paper, 1.0), [true, false]);
         assert_eq!(held(Setting::Paper, 0.5), [false, false]);
         assert!(held(Setting::Other, 0.0).is_empty());
-        assert!(config.check(Setting::Paper, |_| None).is_err());
+        assert!(config.check(Setting::Paper, &Measured::new()).is_err());
     }
 
     #[test]

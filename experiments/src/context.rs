@@ -6,15 +6,16 @@ use std::time::Instant;
 
 use anyhow::Result;
 use canonform::{FormOptions, Observer, StressChoice};
-use report::results::{CurvesPanel, CurvesRecord, Expectation, Provenance, Series};
-use report::{Record, save};
-use surface::VertexId;
+use geodesics::{Sampling, Variance};
+use linalg::LandmarkDistances;
+use report::results::{CurvesPanel, CurvesResults, Provenance, Record, Series};
+use report::{Results, save};
 use terminal::Bars;
 
 use crate::collection::{Collection, Setting};
 use crate::config::Config;
 use crate::specimen::{Distances, Specimen};
-use crate::sweep::{Measured, places, series};
+use crate::sweep::{Measured, curves, places};
 
 /// What every experiment gets.
 pub(crate) struct Context<'a> {
@@ -22,8 +23,9 @@ pub(crate) struct Context<'a> {
     pub(crate) name: &'static str,
     pub(crate) config: Config,
     pub(crate) collection: &'a Collection,
+    /// A few of its shapes, with values that several experiments share, such as the distances of all pairs of vertices.
+    pub(crate) specimens: &'a [Specimen<'a>],
     pub(crate) seed: u64,
-    /// The folder for results.
     pub(crate) folder: &'a Path,
     /// The command line that repeats the run.
     pub(crate) command: String,
@@ -33,16 +35,6 @@ pub(crate) struct Context<'a> {
 }
 
 impl Context<'_> {
-    /// Compares the configured expectations with what was measured, and prints those that failed.
-    pub(crate) fn check(&self, measured: impl Fn(&str) -> Option<f64>) -> Result<Vec<Expectation>> {
-        let checked = self.config.check(self.collection.setting(), measured)?;
-        self.bars.finish();
-        for failed in checked.iter().filter(|expectation| !expectation.held) {
-            eprintln!("not as expected: {} is {}, {}", failed.what, failed.measured, failed.expected);
-        }
-        Ok(checked)
-    }
-
     /// How a record was made, up to now.
     pub(crate) fn provenance(&self, options: serde_json::Value) -> Provenance {
         Provenance {
@@ -72,58 +64,70 @@ impl Context<'_> {
         })
     }
 
-    /// What the results show, as the configuration says.
-    pub(crate) fn analysis(&self) -> String {
-        self.config.analysis.trim().to_owned()
-    }
-
     /// A number printed in the paper, if the collection is that of the paper.
     pub(crate) fn printed(&self, row: &str, method: &str) -> Option<f64> {
         self.config.printed(row, method).filter(|_| self.collection.setting() == Setting::Paper)
     }
 
-    /// Writes a record and its figures, and prints its summary.
-    pub(crate) fn publish(&self, record: &impl Record) -> Result<()> {
-        save(record, self.folder, self.name)?;
+    /// Compares the results with the configured expectations, writes their record and figures, and prints the
+    /// expectations that failed and the summary.
+    pub(crate) fn publish(
+        &self,
+        results: impl Results,
+        provenance: Provenance,
+        measured: &Measured,
+    ) -> Result<()> {
+        let expectations = self.config.check(self.collection.setting(), measured)?;
         self.bars.finish();
-        if let Some(summary) = record.summary() {
+        for failed in expectations.iter().filter(|expectation| !expectation.held) {
+            eprintln!("not as expected: {} is {}, {}", failed.what, failed.measured, failed.expected);
+        }
+        let record =
+            Record { provenance, results, expectations, analysis: self.config.analysis.trim().to_owned() };
+        save(&record, self.folder, self.name)?;
+        if let Some(summary) = record.results.summary() {
             writeln!(std::io::stdout().lock(), "{}", summary.to_text())?;
         }
         Ok(())
     }
 
-    /// The curves of all methods over the configured counts, from runs that differ in the first sample. `run` returns
-    /// the values of one run as `[method][count]`.
+    /// The curves of all methods over the configured counts n, from runs that differ in the first sample.
+    ///
+    /// `farthest` returns the values of all methods but the last two for n farthest samples. These are `half` of the
+    /// columns of hop counts, and of samples of least variance.
     pub(crate) fn sweep(
         &self,
         specimen: &Specimen<'_>,
         methods: &[&str],
-        run: impl Fn(VertexId) -> Result<Vec<Vec<f64>>>,
+        farthest: impl Fn(&LandmarkDistances) -> Result<Vec<f64>>,
+        half: impl Fn(&LandmarkDistances) -> Result<f64>,
     ) -> Result<Vec<Series>> {
+        let counts = &self.config.counts;
         let mut runs: Vec<Vec<Vec<f64>>> = vec![Vec::new(); methods.len()];
         for first in specimen.first_samples(self.config.runs, self.seed) {
-            runs.iter_mut().zip(run(first)?).for_each(|(all, one)| all.push(one));
+            let nested = |distances, sampling| specimen.nested(&distances, sampling, first, counts);
+            let samples = nested(Distances::default(), Sampling::Farthest)?;
+            let hops = nested(Distances::hops(), Sampling::Farthest)?;
+            let least = nested(Distances::default(), Sampling::Incremental(Variance::Least))?;
+            runs.iter_mut().for_each(|runs| runs.push(Vec::new()));
+            for ((samples, hops), least) in samples.iter().zip(&hops).zip(&least) {
+                let values = farthest(samples)?.into_iter().chain([half(hops)?, half(least)?]);
+                let run = runs.iter_mut().filter_map(|runs| runs.last_mut());
+                run.zip(values).for_each(|(run, value)| run.push(value));
+            }
             self.observer.step();
         }
-        let places = places(&self.config.counts);
-        Ok(methods.iter().zip(&runs).map(|(name, runs)| series(name, &places, runs)).collect())
+        Ok(curves(methods, &places(counts), &runs))
     }
 
-    /// Publishes a record of curves.
     pub(crate) fn publish_curves(
         &self,
-        specimens: &[Specimen<'_>],
         caption: String,
         panels: Vec<CurvesPanel>,
         measured: &Measured,
     ) -> Result<()> {
-        self.publish(&CurvesRecord {
-            expectations: self.check(|name| measured.get(name).copied())?,
-            analysis: self.analysis(),
-            provenance: self.provenance(self.setup(specimens)),
-            caption,
-            panels,
-        })
+        let provenance = self.provenance(self.setup(self.specimens));
+        self.publish(CurvesResults { caption, panels }, provenance, measured)
     }
 }
 

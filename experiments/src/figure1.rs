@@ -4,27 +4,25 @@
 
 use anyhow::Result;
 use canonform::{StressChoice, StressOptions, embed_and_measure};
-use descriptors::{CanonicalForm, PreparedForm, Reflections, match_forms};
-use mesh::{TriMesh, orient_consistently};
-use report::figure1::{Figure1Pair, PAIRS, figure1};
-use report::results::{Figure1Record, Figure1Shape};
-use view::render::View;
+use descriptors::CanonicalForm;
+use mesh::TriMesh;
+use report::results::{Figure1Results, Figure1Shape};
 
 use crate::collection::{Shape, map};
 use crate::context::{Context, described};
+use crate::surfaces::{aligned, oriented};
 
-/// Runs the experiment.
 pub(crate) fn run(context: &Context<'_>) -> Result<()> {
     let options = context.config.nmds(context.seed);
     let stress = StressOptions { choice: StressChoice::Estimate, against: None, seed: context.seed };
-    let shown = context.collection.first_of_each_class(PAIRS);
+    let shown = context.collection.first_of_each_class(Figure1Results::PAIRS);
     let embedded = map(&shown, "figure 1", context.observer, |shape| {
         let embedded = embed_and_measure(&shape.surface, &options, &stress, &())?;
         let form = embedded.form(&shape.surface)?;
         let stress = embedded.report.stress.map_or(f64::NAN, |stress| stress.value);
         Ok((form, stress))
     })?;
-    let forms = aligned(&shown, embedded.iter().map(|(form, _)| form))?;
+    let forms = pictured(&shown, embedded.iter().map(|(form, _)| form))?;
 
     let facts: Vec<Figure1Shape> = shown
         .iter()
@@ -39,43 +37,24 @@ pub(crate) fn run(context: &Context<'_>) -> Result<()> {
         })
         .collect();
     let worst = embedded.iter().map(|(form, stress)| stress / form.spread().powi(2)).fold(0.0, f64::max);
-    let record = Figure1Record {
-        expectations: context.check(|name| (name == "largest stress ratio").then_some(worst))?,
-        analysis: context.analysis(),
-        provenance: context.provenance(described(&[("embedding", &options)], stress.choice)),
-        shapes: facts.clone(),
-    };
+    let provenance = context.provenance(described(&[("embedding", &options)], stress.choice));
 
-    let shapes: Vec<TriMesh> = shown.iter().map(|shape| oriented(shape.surface.mesh().clone())).collect();
-    let pairs: Vec<Figure1Pair<'_>> = facts
-        .iter()
-        .zip(shapes.iter().zip(&forms))
-        .map(|(facts, (shape, form))| Figure1Pair { facts, shape, form })
-        .collect();
-    figure1(&pairs, &View::default())?.save(context.folder.join(context.name))?;
-    context.publish(&record)
-}
-
-fn oriented(mut mesh: TriMesh) -> TriMesh {
-    orient_consistently(&mut mesh);
-    mesh
+    let shapes: Vec<TriMesh> = shown.iter().map(|shape| oriented(shape.surface.mesh())).collect();
+    let results = Figure1Results { shapes: facts };
+    results.tiles(&shapes, &forms)?.save(context.folder.join(context.name))?;
+    let measured = [("largest stress ratio".to_owned(), worst)].into();
+    context.publish(results, provenance, &measured)
 }
 
 /// The forms as meshes, each aligned with the first one of its class.
-fn aligned<'a>(shapes: &[&Shape], forms: impl Iterator<Item = &'a CanonicalForm>) -> Result<Vec<TriMesh>> {
-    let mut first: Option<(&str, PreparedForm)> = None;
+fn pictured<'a>(shapes: &[&Shape], forms: impl Iterator<Item = &'a CanonicalForm>) -> Result<Vec<TriMesh>> {
+    let (mut class, mut first) = ("", None);
     let mut surfaces = Vec::new();
     for (shape, form) in shapes.iter().zip(forms) {
-        let prepared = PreparedForm::new(form)?;
-        let mut surface = form.to_mesh(shape.surface.mesh());
-        match &first {
-            Some((label, target)) if *label == shape.label => {
-                let motion = match_forms(&prepared, target, Reflections::Allow).alignment;
-                surface.positions.iter_mut().for_each(|p| *p = motion.apply(p));
-            }
-            _ => first = Some((&shape.label, prepared)),
+        if class != shape.label {
+            (class, first) = (shape.label.as_str(), None);
         }
-        surfaces.push(oriented(surface));
+        surfaces.push(aligned(form, shape.surface.mesh(), &mut first)?);
     }
     Ok(surfaces)
 }

@@ -7,21 +7,20 @@
 //! * `DISTANCES SHAPE A below B`: the ratio of the median stress of `B` to that of `A`.
 
 use anyhow::Result;
-use descriptors::{CanonicalForm, PreparedForm, Reflections, match_forms};
+use descriptors::CanonicalForm;
 use geodesics::{FastMarchingOptions, Method, ObtuseTreatment, Sampling, Update, Variance};
 use linalg::LandmarkDistances;
-use mesh::{TriMesh, orient_consistently};
+use mesh::TriMesh;
 use nmds::{
     Embedding, NystromOptions, Regularization, SpectralBasis, SpectralOptions, nystrom, paper_stress,
     spectral,
 };
-use report::figure3::{Figure3Surfaces, figure3};
-use report::results::{Figure3Form, Figure3Record, Figure3Shape, Figure3Stress};
+use report::results::{Figure3Form, Figure3Results, Figure3Shape, Figure3Stress};
 use surface::VertexId;
-use view::render::View;
 
 use crate::context::Context;
 use crate::specimen::{DIM, Distances, Specimen};
+use crate::surfaces::{aligned, oriented};
 use crate::sweep::{Measured, median, point};
 
 /// The methods in the order of the paper.
@@ -39,34 +38,27 @@ fn settings() -> [Distances; 3] {
     [Distances::default(), plain("planar", Update::Planar), plain("point-source", Update::PointSource)]
 }
 
-/// Runs the experiment.
-pub(crate) fn run(context: &Context<'_>, specimens: &[Specimen<'_>]) -> Result<()> {
+pub(crate) fn run(context: &Context<'_>) -> Result<()> {
     let settings = settings();
-    context.observer.begin("figure 3", settings.len() * specimens.len());
-    let (mut stresses, mut measured, mut shown) = (Vec::new(), Measured::new(), Vec::new());
+    context.observer.begin("figure 3", settings.len() * context.specimens.len());
+    let (mut stresses, mut measured) = (Vec::new(), Measured::new());
+    let (mut shapes, mut surfaces) = (Vec::new(), Vec::new());
     for distances in &settings {
-        for specimen in specimens {
+        for specimen in context.specimens {
             let methods = embeddings(context, specimen, distances)?;
             note(context, specimen, distances, &methods, &mut stresses, &mut measured);
             if distances.name == Distances::default().name {
-                shown.push(pictured(context, specimen, &methods)?);
+                let (facts, surface) = pictured(context, specimen, &methods)?;
+                shapes.push(facts);
+                surfaces.push(surface);
             }
             context.observer.step();
         }
     }
-    let record = Figure3Record {
-        expectations: context.check(|name| measured.get(name).copied())?,
-        analysis: context.analysis(),
-        provenance: context.provenance(context.setup(specimens)),
-        shapes: shown.iter().map(|row| row.facts.clone()).collect(),
-        stresses,
-    };
-    let rows: Vec<_> = shown
-        .iter()
-        .map(|row| Figure3Surfaces { facts: &row.facts, shape: &row.shape, forms: &row.forms })
-        .collect();
-    figure3(&rows, &View::default())?.save(context.folder.join(context.name))?;
-    context.publish(&record)
+    let provenance = context.provenance(context.setup(context.specimens));
+    let results = Figure3Results { shapes, stresses };
+    results.tiles(&surfaces)?.save(context.folder.join(context.name))?;
+    context.publish(results, provenance, &measured)
 }
 
 /// All runs of all methods, in the order of [`METHODS`].
@@ -140,40 +132,26 @@ fn values(runs: &Runs) -> Vec<f64> {
     runs.iter().map(|(_, stress)| *stress).collect()
 }
 
-/// A row of the figure.
-struct Shown {
-    facts: Figure3Shape,
-    shape: TriMesh,
-    forms: Vec<TriMesh>,
-}
-
-/// The form of each method from the run of median stress, aligned with that of MDS.
-fn pictured(context: &Context<'_>, specimen: &Specimen<'_>, methods: &[Runs]) -> Result<Shown> {
+/// A shape, and the form of each method from the run of median stress, aligned with that of MDS.
+fn pictured(
+    context: &Context<'_>,
+    specimen: &Specimen<'_>,
+    methods: &[Runs],
+) -> Result<(Figure3Shape, (TriMesh, Vec<TriMesh>))> {
     let mesh = specimen.shape.surface.mesh();
-    let mut first: Option<PreparedForm> = None;
+    let mut first = None;
     let (mut forms, mut facts) = (Vec::new(), Vec::new());
     for (method, runs) in METHODS.into_iter().zip(methods) {
         let (embedding, stress) = &runs[median(&values(runs)).0];
-        let form = CanonicalForm::new(embedding, mesh)?;
-        let prepared = PreparedForm::new(&form)?;
-        let mut surface = form.to_mesh(mesh);
-        if let Some(target) = &first {
-            let motion = match_forms(&prepared, target, Reflections::Allow).alignment;
-            surface.positions.iter_mut().for_each(|p| *p = motion.apply(p));
-        }
-        first.get_or_insert(prepared);
-        orient_consistently(&mut surface);
-        forms.push(surface);
+        forms.push(aligned(&CanonicalForm::new(embedding, mesh)?, mesh, &mut first)?);
         let paper = context.printed(specimen.label(), method);
         facts.push(Figure3Form { method: method.to_owned(), stress: *stress, paper });
     }
-    let mut shape = mesh.clone();
-    orient_consistently(&mut shape);
     let facts = Figure3Shape {
         name: specimen.name().to_owned(),
         label: specimen.label().to_owned(),
         n_vertices: mesh.n_vertices(),
         forms: facts,
     };
-    Ok(Shown { facts, shape, forms })
+    Ok((facts, (oriented(mesh), forms)))
 }

@@ -5,22 +5,22 @@
 //! that of KPCA-Nystrom.
 
 use anyhow::{Context as _, Result};
-use canonform::{FormMatches, FormOptions, StressChoice, embed, embedded_distances, form_matches};
+use canonform::{FormOptions, StressChoice, embed, embedded_distances, form_matches};
 use descriptors::{CanonicalForm, Normalization};
 use linalg::DistanceMatrix;
 use nmds::{classical_full, normalized_stress};
 use rayon::prelude::*;
-use report::results::{Figure4Panel, Figure4Record, Motions, SHAPES_FILE, Scale, ShapesRecord, write};
+use report::results::{Figure4Panel, Figure4Results, Motions, SHAPES_FILE, Scale, ShapesRecord, write};
 use retrieval::{Labels, evaluate, silhouette};
 
 use crate::collection::map;
 use crate::context::{Context, described};
 use crate::surfaces::{Formed, motions, shown, vertex_limit};
+use crate::sweep::{Measured, named};
 
 /// Name of the paper's method in the record.
 const NMDS: &str = "NMDS";
 
-/// Name of the baseline.
 const BASELINE: &str = "KPCA-Nystrom";
 
 /// Runs the experiment, which also writes `figure4-shapes.json`.
@@ -31,10 +31,13 @@ pub(crate) fn run(context: &Context<'_>) -> Result<()> {
     let classes = Labels::new(&labels);
     let (mut panels, mut formed, mut moved) = (Vec::new(), Vec::new(), Vec::new());
     for (method, options) in &methods {
-        let made = formed_by(context, options)?;
+        let made = map(&context.collection.all(), options.method.name(), context.observer, |shape| {
+            Formed::new(shape, &embed(&shape.surface, options, &())?)
+        })?;
         let forms: Vec<CanonicalForm> = made.iter().map(|made| made.form.clone()).collect();
-        for scale in [Scale::Raw, Scale::Normalized] {
-            let matches = matches(context, scale, &forms)?;
+        let scales = [(Scale::Raw, Normalization::Raw), (Scale::Normalized, Normalization::UnitArea)];
+        for (scale, normalization) in scales {
+            let matches = form_matches(&forms, normalization, &MatchOptions::default(), context.observer)?;
             panels.push(panel(context, method, scale, &matches.distances, &classes)?);
             moved.push(motions(method, scale, &made, &matches.alignments));
         }
@@ -42,22 +45,11 @@ pub(crate) fn run(context: &Context<'_>) -> Result<()> {
     }
     panels.sort_by_key(|panel| panel.scale);
     let options: Vec<_> = methods.iter().map(|(name, options)| (*name, options)).collect();
-    let record = Figure4Record {
-        expectations: context.check(|name| measured(&panels, name))?,
-        analysis: context.analysis(),
-        provenance: context.provenance(described(&options, StressChoice::Skip)),
-        names: context.collection.names(),
-        labels,
-        panels,
-    };
+    let provenance = context.provenance(described(&options, StressChoice::Skip));
     write(&shapes(context, &methods, &formed, moved)?, context.folder.join(SHAPES_FILE))?;
-    context.publish(&record)
-}
-
-fn formed_by(context: &Context<'_>, options: &FormOptions) -> Result<Vec<Formed>> {
-    map(&context.collection.all(), options.method.name(), context.observer, |shape| {
-        Formed::new(shape, &embed(&shape.surface, options, &())?)
-    })
+    let measured = measured(&panels);
+    let results = Figure4Results { names: context.collection.names(), labels, panels };
+    context.publish(results, provenance, &measured)
 }
 
 /// The surfaces for the 3D views of the page.
@@ -84,14 +76,6 @@ fn shapes(
     })
 }
 
-fn matches(context: &Context<'_>, scale: Scale, forms: &[CanonicalForm]) -> Result<FormMatches> {
-    let normalization = match scale {
-        Scale::Raw => Normalization::Raw,
-        Scale::Normalized => Normalization::UnitArea,
-    };
-    Ok(form_matches(forms, normalization, context.observer)?)
-}
-
 fn panel(
     context: &Context<'_>,
     method: &str,
@@ -103,7 +87,7 @@ fn panel(
     Ok(Figure4Panel {
         method: method.to_owned(),
         scale,
-        matrix: rows(distances),
+        matrix: (0..distances.n_points()).map(|i| distances.row(i).to_vec()).collect(),
         map: plane.coords.row_iter().map(|row| [row[0], row[1]]).collect(),
         map_stress: normalized_stress(&plane.coords, distances),
         negative_mass: plane.negative_mass,
@@ -112,30 +96,20 @@ fn panel(
     })
 }
 
-fn rows(distances: &DistanceMatrix) -> Vec<Vec<f64>> {
-    (0..distances.n_points()).map(|i| distances.row(i).to_vec()).collect()
-}
-
-/// A number by its name in the configuration.
-fn measured(panels: &[Figure4Panel], name: &str) -> Option<f64> {
-    let (head, rest) = name.split_once(' ')?;
-    let score = |method: &str, scale: &str, score: &str| {
-        let panel = panels.iter().find(|p| p.method == method && p.scale.name() == scale)?;
-        Some(match score {
-            "nn" => panel.scores.mean.nn,
-            "ft" => panel.scores.mean.ft,
-            "st" => panel.scores.mean.st,
-            "e" => panel.scores.mean.e,
-            "dcg" => panel.scores.mean.dcg,
-            "map" => panel.scores.mean.map,
-            "knn" => panel.scores.knn_accuracy,
-            "silhouette" => panel.scores.silhouette,
-            "map silhouette" => panel.map_silhouette,
-            _ => return None,
-        })
-    };
-    match rest.strip_suffix(" gap") {
-        Some(name) => Some(score(NMDS, head, name)? - score(BASELINE, head, name)?),
-        None => rest.split_once(' ').and_then(|(scale, name)| score(head, scale, name)),
+/// Numbers by their names in the configuration.
+fn measured(panels: &[Figure4Panel]) -> Measured {
+    let mut found = Measured::new();
+    for panel in panels {
+        let own = [
+            ("knn", panel.scores.knn_accuracy),
+            ("silhouette", panel.scores.silhouette),
+            ("map silhouette", panel.map_silhouette),
+        ];
+        let (scale, sign) = (panel.scale.name(), if panel.method == NMDS { 1.0 } else { -1.0 });
+        for (score, value) in named(&panel.scores.mean).into_iter().chain(own) {
+            found.insert(format!("{} {scale} {score}", panel.method), value);
+            *found.entry(format!("{scale} {score} gap")).or_default() += sign * value;
+        }
     }
+    found
 }

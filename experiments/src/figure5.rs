@@ -19,7 +19,9 @@ use geodesics::Sampling;
 
 use crate::context::Context;
 use crate::specimen::{Distances, Specimen};
-use crate::sweep::{Measured, error_axis, linear, log, median, medians, panel, places, series, share_lowest};
+use crate::sweep::{
+    Measured, error_axis, half, linear, log, median, medians, panel, places, series, share_lowest,
+};
 
 /// The error of each run at each of `regularizations`.
 fn errors(
@@ -34,12 +36,11 @@ fn errors(
     firsts.into_iter().map(|first| of(&*specimen.reconstruction(context.config.samples, first)?)).collect()
 }
 
-/// Runs Figure 5a.
-pub(crate) fn rank(context: &Context<'_>, specimens: &[Specimen<'_>]) -> Result<()> {
+pub(crate) fn rank(context: &Context<'_>) -> Result<()> {
     let (ranks, n) = (&context.config.counts, context.config.samples);
     let (mut panels, mut measured) = (Vec::new(), Measured::new());
-    context.observer.begin("figure 5a", specimens.len());
-    for specimen in specimens {
+    context.observer.begin("figure 5a", context.specimens.len());
+    for specimen in context.specimens {
         let curve = |name: &str, regularization: fn(Option<usize>) -> Regularization| -> Result<Series> {
             let all: Vec<_> = ranks.iter().map(|&rank| regularization(Some(rank))).collect();
             Ok(series(name, &places(ranks), &errors(context, specimen, &all)?))
@@ -72,16 +73,15 @@ pub(crate) fn rank(context: &Context<'_>, specimens: &[Specimen<'_>]) -> Result<
          bands: range of the runs.",
         context.config.runs
     );
-    context.publish_curves(specimens, caption, panels, &measured)
+    context.publish_curves(caption, panels, &measured)
 }
 
-/// Runs Figure 5b.
-pub(crate) fn alpha(context: &Context<'_>, specimens: &[Specimen<'_>]) -> Result<()> {
+pub(crate) fn alpha(context: &Context<'_>) -> Result<()> {
     let n = context.config.samples;
     let alphas: Vec<f64> = context.config.exponents.iter().map(|e| 10f64.powf(*e)).collect();
     let (mut panels, mut measured) = (Vec::new(), Measured::new());
-    context.observer.begin("figure 5b", specimens.len());
-    for specimen in specimens {
+    context.observer.begin("figure 5b", context.specimens.len());
+    for specimen in context.specimens {
         let relative = |c: &f64| Regularization::Rpi { alpha: RpiAlpha::Relative(*c) };
         let swept: Vec<_> = alphas.iter().map(relative).collect();
         let rpi = series("RPI (eq. 3)", &alphas, &errors(context, specimen, &swept)?);
@@ -92,8 +92,7 @@ pub(crate) fn alpha(context: &Context<'_>, specimens: &[Specimen<'_>]) -> Result
             Ok(series(name, &ends, &runs.iter().map(level).collect::<Vec<_>>()))
         };
         let none = fixed("no regularisation (α = 0)", Regularization::None)?;
-        let half = Regularization::LowRank { rank: Some(n.div_ceil(2)) };
-        let low_rank = fixed("low rank, n₁ = n / 2", half)?;
+        let low_rank = fixed("low rank, n₁ = n / 2", half(n))?;
         let paper = fixed("paper", Regularization::Rpi { alpha: RpiAlpha::Paper })?;
         let ours = fixed("default", Regularization::Rpi { alpha: RpiAlpha::default() })?;
         let level = |s: &Series| s.points[0].median;
@@ -120,7 +119,7 @@ pub(crate) fn alpha(context: &Context<'_>, specimens: &[Specimen<'_>]) -> Result
          range of the runs.",
         context.config.runs
     );
-    context.publish_curves(specimens, caption, panels, &measured)
+    context.publish_curves(caption, panels, &measured)
 }
 
 /// The paper's alpha as a multiple of the fourth power of the largest eigenvalue, the median of the runs.

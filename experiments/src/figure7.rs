@@ -7,28 +7,24 @@
 //! * `SHAPE Landmark MDS over NMDS`: the ratio of their excesses at the greatest n.
 
 use anyhow::Result;
-use geodesics::{Sampling, Variance};
 use linalg::LandmarkDistances;
 use nmds::{
     Embedding, NmdsError, NystromOptions, Regularization, SpectralBasis, SpectralOptions, landmark_mds,
     nystrom, paper_stress, spectral,
 };
 use report::results::Series;
-use surface::VertexId;
 
 use crate::context::Context;
 use crate::specimen::{DIM, Distances, Specimen};
-use crate::sweep::{Measured, linear, log, medians, panel, share_lowest};
+use crate::sweep::{Measured, half, last, linear, log, panel, share_lowest};
 
-/// The curves.
 const METHODS: [&str; 6] = ["NMDS", "no regularisation", "Landmark MDS", "SMDS", "BFS", "Min-Var"];
 
-/// Runs the experiment.
-pub(crate) fn run(context: &Context<'_>, specimens: &[Specimen<'_>]) -> Result<()> {
+pub(crate) fn run(context: &Context<'_>) -> Result<()> {
     let (mut panels, mut measured) = (Vec::new(), Measured::new());
-    context.observer.begin("figure 7", specimens.len() * context.config.runs);
-    for specimen in specimens {
-        let curves = context.sweep(specimen, &METHODS, |first| excesses(context, specimen, first))?;
+    context.observer.begin("figure 7", context.specimens.len() * context.config.runs);
+    for specimen in context.specimens {
+        let curves = excesses(context, specimen)?;
         note(specimen, &curves, &mut measured)?;
         panels.push(panel(
             specimen.name(),
@@ -42,61 +38,49 @@ pub(crate) fn run(context: &Context<'_>, specimens: &[Specimen<'_>]) -> Result<(
          differ in the first sample; bands: range of the runs.",
         context.config.runs
     );
-    context.publish_curves(specimens, caption, panels, &measured)
+    context.publish_curves(caption, panels, &measured)
 }
 
 fn note(specimen: &Specimen<'_>, curves: &[Series], measured: &mut Measured) -> Result<()> {
     let label = specimen.label();
     let optimum = specimen.optimum(&Distances::default())?.stress;
     for curve in curves {
-        let values = medians(curve);
-        let ends = [("first", values.first()), ("last", values.last())];
-        for (end, value) in ends {
-            let share = value.copied().unwrap_or(f64::NAN) / optimum;
-            measured.insert(format!("{label} {} {end}", curve.name), share);
+        let first = curve.points.first().map_or(f64::NAN, |p| p.median);
+        for (end, value) in [("first", first), ("last", last(curve))] {
+            measured.insert(format!("{label} {} {end}", curve.name), value / optimum);
         }
     }
     let others: Vec<&Series> = curves[1..].iter().collect();
     measured.insert(format!("{label} NMDS lowest"), share_lowest(&curves[0], &others));
-    let landmark = &curves[2].points;
-    let last = landmark.last().map_or((f64::NAN, f64::NAN), |p| (p.x, p.median));
-    let half = landmark.iter().rfind(|p| p.x <= last.0 / 2.0).map_or(f64::NAN, |p| p.median);
-    measured.insert(format!("{label} plateau"), last.1 / half);
-    let nmds = medians(&curves[0]).last().copied().unwrap_or(f64::NAN);
-    measured.insert(format!("{label} Landmark MDS over NMDS"), last.1 / nmds);
+    let (landmark, points) = (last(&curves[2]), &curves[2].points);
+    let most = points.last().map_or(f64::NAN, |p| p.x);
+    let half = points.iter().rfind(|p| p.x <= most / 2.0).map_or(f64::NAN, |p| p.median);
+    measured.insert(format!("{label} plateau"), landmark / half);
+    measured.insert(format!("{label} Landmark MDS over NMDS"), landmark / last(&curves[0]));
     Ok(())
 }
 
-/// The excesses of the stress over the optimum in one run, as `[method][n]`.
-fn excesses(context: &Context<'_>, specimen: &Specimen<'_>, first: VertexId) -> Result<Vec<Vec<f64>>> {
-    let counts = &context.config.counts;
+/// The excess of the stress over the optimum, as a curve for each method.
+fn excesses(context: &Context<'_>, specimen: &Specimen<'_>) -> Result<Vec<Series>> {
     let all = specimen.all_pairs(&Distances::default())?;
     let optimum = specimen.optimum(&Distances::default())?.stress;
     let spectrum = specimen.spectrum(context.config.eigenvectors)?;
     let basis =
         SpectralBasis { values: &spectrum.values, vectors: &spectrum.vectors, masses: &spectrum.masses };
-    let nested = |distances: &Distances, sampling| specimen.nested(distances, sampling, first, counts);
     let excess = |embedding: Result<Embedding, NmdsError>| -> Result<f64> {
         Ok(paper_stress(&embedding?.coords, all.as_ref()) - optimum)
     };
     let nmds = |samples: &LandmarkDistances, regularization| {
-        nystrom(samples, &NystromOptions { regularization, dim: DIM })
+        excess(nystrom(samples, &NystromOptions { regularization, dim: DIM }))
     };
-    let half = |samples: &LandmarkDistances| {
-        nmds(samples, Regularization::LowRank { rank: Some(samples.n_landmarks().div_ceil(2)) })
+    let low_rank = |samples: &LandmarkDistances| nmds(samples, half(samples.n_landmarks()));
+    let farthest = |samples: &LandmarkDistances| {
+        Ok(vec![
+            low_rank(samples)?,
+            nmds(samples, Regularization::None)?,
+            excess(landmark_mds(samples, DIM))?,
+            excess(spectral(samples, &basis, &SpectralOptions::default()))?,
+        ])
     };
-    let mut found: Vec<Vec<f64>> = vec![Vec::new(); METHODS.len()];
-    for samples in nested(&Distances::default(), Sampling::Farthest)? {
-        found[0].push(excess(half(&samples))?);
-        found[1].push(excess(nmds(&samples, Regularization::None))?);
-        found[2].push(excess(landmark_mds(&samples, DIM))?);
-        found[3].push(excess(spectral(&samples, &basis, &SpectralOptions::default()))?);
-    }
-    for samples in nested(&Distances::hops(), Sampling::Farthest)? {
-        found[4].push(excess(half(&samples))?);
-    }
-    for samples in nested(&Distances::default(), Sampling::Incremental(Variance::Least))? {
-        found[5].push(excess(half(&samples))?);
-    }
-    Ok(found)
+    context.sweep(specimen, &METHODS, farthest, low_rank)
 }

@@ -13,20 +13,18 @@ use nmds::{NystromOptions, Regularization, RpiAlpha, SpectralBasis, SpectralOpti
 use descriptors::LaplaceSpectrum;
 
 use crate::context::Context;
-use crate::specimen::{DIM, Distances, Specimen};
-use crate::sweep::{Measured, linear, log, medians, panel, places, series};
+use crate::specimen::{DIM, Distances};
+use crate::sweep::{Measured, curves, half, last, linear, log, panel, places};
 
-/// The curves.
 const METHODS: [&str; 5] =
     ["NMDS, low rank", "NMDS, no regularisation", "NMDS, RPI", "SMDS", "SMDS, eigenfunctions given"];
 
 /// Runs that compute the eigenfunctions, which take a hundred times as long as anything else.
 const BASES: usize = 2;
 
-/// Runs the experiment.
-pub(crate) fn run(context: &Context<'_>, specimens: &[Specimen<'_>]) -> Result<()> {
+pub(crate) fn run(context: &Context<'_>) -> Result<()> {
     let config = &context.config;
-    let specimen = specimens.first().context("there is no shape to measure")?;
+    let specimen = context.specimens.first().context("there is no shape to measure")?;
     let surface = &specimen.shape.surface.intrinsic;
     context.observer.begin("figure 8", config.runs);
     let first = specimen.first_samples(1, context.seed)[0];
@@ -49,8 +47,7 @@ pub(crate) fn run(context: &Context<'_>, specimens: &[Specimen<'_>]) -> Result<(
     for _ in 0..config.runs {
         let mut times: Vec<Vec<f64>> = vec![Vec::new(); METHODS.len()];
         for samples in &sampled {
-            let half = Regularization::LowRank { rank: Some(samples.n_landmarks().div_ceil(2)) };
-            times[0].push(nmds(samples, half)?);
+            times[0].push(nmds(samples, half(samples.n_landmarks()))?);
             times[1].push(nmds(samples, Regularization::None)?);
             times[2].push(nmds(samples, Regularization::Rpi { alpha: RpiAlpha::default() })?);
             let begun = Instant::now();
@@ -62,15 +59,10 @@ pub(crate) fn run(context: &Context<'_>, specimens: &[Specimen<'_>]) -> Result<(
         runs.iter_mut().zip(times).for_each(|(all, one)| all.push(one));
         context.observer.step();
     }
-    let curves: Vec<_> = METHODS
-        .into_iter()
-        .zip(&runs)
-        .map(|(name, runs)| series(name, &places(&config.counts), runs))
-        .collect();
-    let last = |i: usize| medians(&curves[i]).last().copied().unwrap_or(f64::NAN);
+    let curves = curves(&METHODS, &places(&config.counts), &runs);
     let measured: Measured = [("none", 1), ("RPI", 2), ("SMDS", 3)]
         .into_iter()
-        .map(|(name, i)| (format!("{name} over low-rank"), last(i) / last(0)))
+        .map(|(name, i)| (format!("{name} over low-rank"), last(&curves[i]) / last(&curves[0])))
         .collect();
     let panels = vec![panel(
         format!("{}, {} vertices", specimen.name(), specimen.n_vertices()),
@@ -83,5 +75,5 @@ pub(crate) fn run(context: &Context<'_>, specimens: &[Specimen<'_>]) -> Result<(
          Lines: medians of {} runs, in which the methods take turns; bands: range of the runs.",
         config.eigenvectors, config.runs
     );
-    context.publish_curves(specimens, caption, panels, &measured)
+    context.publish_curves(caption, panels, &measured)
 }

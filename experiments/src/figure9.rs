@@ -11,13 +11,13 @@ use canonform::{EmbedMethod, FormOptions, Samples, Surface, embed};
 use datasets::{ArticulatedOptions, Family, articulated_shape};
 use mesh::RepairOptions;
 use nmds::classical_full;
-use report::results::{Figure9Measured, Figure9Record, Figure9Row};
+use report::results::{Figure9Measured, Figure9Results, Figure9Row};
 use surface::VertexId;
+use terminal::with_peak_bytes;
 
 use crate::collection::Shape;
 use crate::context::Context;
-use crate::memory::with_peak_bytes;
-use crate::specimen::{DIM, Distances, Specimen};
+use crate::specimen::{DIM, Distances};
 use crate::sweep::Measured;
 
 /// The ratio of the numbers of vertices of both shapes: 28,000 and 3,400 in the paper.
@@ -26,9 +26,8 @@ const LARGER: f64 = 28_000.0 / 3_400.0;
 /// The number of sources from which the time of all pairs is extrapolated.
 const TIMED_SOURCES: usize = 64;
 
-/// Runs the experiment.
-pub(crate) fn run(context: &Context<'_>, specimens: &[Specimen<'_>]) -> Result<()> {
-    let small = specimens.first().context("there is no shape to measure")?.shape;
+pub(crate) fn run(context: &Context<'_>) -> Result<()> {
+    let small = context.specimens.first().context("there is no shape to measure")?.shape;
     let p = small.surface.mesh().n_vertices();
     let options = ArticulatedOptions {
         seed: context.seed,
@@ -76,14 +75,8 @@ pub(crate) fn run(context: &Context<'_>, specimens: &[Specimen<'_>]) -> Result<(
         }
     }
     let measured = ratios(&rows);
-    let record = Figure9Record {
-        expectations: context.check(|name| measured.get(name).copied())?,
-        analysis: context.analysis(),
-        provenance: context.provenance(context.setup(specimens)),
-        threads: rayon::current_num_threads(),
-        rows,
-    };
-    context.publish(&record)
+    let results = Figure9Results { threads: rayon::current_num_threads(), rows };
+    context.publish(results, context.provenance(context.setup(context.specimens)), &measured)
 }
 
 /// The fastest of several runs.

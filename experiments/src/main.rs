@@ -18,7 +18,6 @@ mod figure6;
 mod figure7;
 mod figure8;
 mod figure9;
-mod memory;
 mod retrieve;
 mod run;
 mod scaling;
@@ -31,19 +30,24 @@ mod units;
 use std::process::ExitCode;
 
 use clap::Parser;
+use peak_alloc::PeakAlloc;
 
 use crate::args::{Arguments, Command};
+
+/// Counts the heap for the experiments that measure memory.
+#[global_allocator]
+static ALLOCATOR: PeakAlloc = PeakAlloc;
 
 fn main() -> ExitCode {
     let arguments = Arguments::parse();
     let threads = match &arguments.command {
         Command::Run(args) => args.threads,
-        Command::List | Command::Report(_) | Command::Units(_) => 0,
+        _ => 0,
     };
     terminal::run(threads, || match &arguments.command {
         Command::Run(args) => run::run(args),
         Command::List => run::list(),
-        Command::Report(args) => run::report(args),
-        Command::Units(args) => units::units(args),
+        Command::Report { output } => run::report(output),
+        Command::Units { seeds, quiet } => units::units(*seeds, *quiet),
     })
 }

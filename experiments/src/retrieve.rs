@@ -4,17 +4,16 @@
 //! `fused`, `fused and forms`, with `SCALE` either `raw` (size counts) or `normalized`; at scale `raw` also for `forms in
 //! mesh units`; and `missed`, `mistaken`.
 
-use std::collections::BTreeMap;
-
 use anyhow::Result;
 use canonform::{DescribeOptions, ShapeDescription, describe, form_matches};
 use descriptors::{CanonicalForm, FormDistance, Normalization, ShapeMetric, SignatureKind};
 use linalg::DistanceMatrix;
-use report::results::{Classification, RetrievalRecord, RetrievalRow, Scale};
+use report::results::{Classification, RetrievalResults, RetrievalRow, Scale};
 use retrieval::{Averaging, Labels, UnknownThreshold, evaluate, mean_scores, precision_recall, rank, vote};
 
 use crate::collection::map;
 use crate::context::Context;
+use crate::sweep::{Measured, named};
 
 /// The number of recalls at which precision is measured.
 const RECALLS: usize = 21;
@@ -22,7 +21,6 @@ const RECALLS: usize = 21;
 /// The method that classifies.
 const CLASSIFIER: &str = "fused and forms";
 
-/// Runs the experiment.
 pub(crate) fn run(context: &Context<'_>) -> Result<()> {
     let options = DescribeOptions::default();
     let shapes = map(&context.collection.all(), "describing", context.observer, |shape| {
@@ -42,16 +40,8 @@ pub(crate) fn run(context: &Context<'_>) -> Result<()> {
     let mut provenance = context.provenance(serde_json::json!({ "description": options.text() }));
     provenance.seconds.insert("describing".to_owned(), described.as_secs_f64());
     let measured = measured(&rows, &classification);
-    let record = RetrievalRecord {
-        expectations: context.check(|name| measured.get(name).copied())?,
-        analysis: context.analysis(),
-        provenance,
-        names: context.collection.names(),
-        labels: names,
-        rows,
-        classification,
-    };
-    context.publish(&record)
+    let results = RetrievalResults { names: context.collection.names(), labels: names, rows, classification };
+    context.publish(results, provenance, &measured)
 }
 
 /// Every method with its distances between all pairs.
@@ -79,19 +69,12 @@ fn distances(
         let fused = all(&|i, j| ShapeMetric::fused(&vectors[i], &vectors[j]))?;
         add(CLASSIFIER, all(&|i, j| ShapeMetric::combined(fused.get(i, j), form.get(i, j)))?);
         add("fused", fused);
-        match scale {
-            Scale::Normalized => add("aligned forms", form.clone()),
-            Scale::Raw => {
-                add("aligned forms", all(&|i, j| (form.get(i, j) / unit).hypot(size(i, j)))?);
-            }
-        }
+        let sized = all(&|i, j| (form.get(i, j) / unit).hypot(size(i, j)))?;
+        add("aligned forms", if scale == Scale::Raw { sized } else { form.clone() });
         for kind in SignatureKind::ALL {
             let signature = |shape: &ShapeDescription| {
-                let signature = shape.signature(kind)?.clone();
-                Some(match area(shape) {
-                    Some(area) => ShapeMetric::with_size(signature, area),
-                    None => signature,
-                })
+                let own = shape.signature(kind)?.clone();
+                Some(if scale == Scale::Raw { ShapeMetric::with_size(own, shape.area) } else { own })
             };
             let signatures: Vec<_> = shapes.iter().filter_map(signature).collect();
             add(kind.name(), all(&|i, j| signatures[i].distance(&signatures[j]))?);
@@ -182,23 +165,16 @@ fn classified(
 }
 
 /// Numbers by their names in the configuration.
-fn measured(rows: &[RetrievalRow], classification: &Classification) -> BTreeMap<String, f64> {
-    let mut found = BTreeMap::new();
+fn measured(rows: &[RetrievalRow], classification: &Classification) -> Measured {
+    let mut found = Measured::new();
     for row in rows {
-        let (s, m) = (&row.micro, &row.macro_average);
-        let scores = [
-            ("nn", s.nn),
-            ("ft", s.ft),
-            ("st", s.st),
-            ("e", s.e),
-            ("dcg", s.dcg),
-            ("map", s.map),
-            ("macro nn", m.nn),
-            ("macro map", m.map),
+        let own = [
+            ("macro nn", row.macro_average.nn),
+            ("macro map", row.macro_average.map),
             ("knn", row.knn_accuracy),
             ("least map", row.held_out_map),
         ];
-        for (score, value) in scores {
+        for (score, value) in named(&row.micro).into_iter().chain(own) {
             found.insert(format!("{} {} {score}", row.method, row.scale.name()), value);
         }
     }

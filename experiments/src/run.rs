@@ -9,12 +9,12 @@ use anyhow::Result;
 use report::page::write_report;
 use terminal::Bars;
 
-use crate::args::{ReportArgs, RunArgs};
+use crate::args::RunArgs;
 use crate::collection::Collection;
 use crate::config::Config;
 use crate::context::Context;
 use crate::specimen::specimens;
-use crate::table::{ALL, EXPERIMENTS, Experiment, Run};
+use crate::table::{ALL, EXPERIMENTS, Experiment};
 
 /// `experiments run`.
 pub(crate) fn run(args: &RunArgs) -> Result<ExitCode> {
@@ -29,6 +29,7 @@ pub(crate) fn run(args: &RunArgs) -> Result<ExitCode> {
             name: section.name,
             config: Config::parse(section.name, config)?,
             collection: &collection,
+            specimens: &specimens,
             seed: args.source.seed,
             folder: &args.output,
             command: args.command(),
@@ -36,13 +37,9 @@ pub(crate) fn run(args: &RunArgs) -> Result<ExitCode> {
             bars: &bars,
             start: Instant::now(),
         };
-        match run {
-            Run::Collection(run) => run(&context)?,
-            Run::Specimens(run) => run(&context, &specimens)?,
-        }
-        bars.finish();
+        run(&context)?;
     }
-    page(&args.output)
+    report(&args.output)
 }
 
 /// `experiments list`.
@@ -54,13 +51,8 @@ pub(crate) fn list() -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// `experiments report`.
-pub(crate) fn report(args: &ReportArgs) -> Result<ExitCode> {
-    page(&args.output)
-}
-
-/// Writes the page and prints its path.
-fn page(folder: &Path) -> Result<ExitCode> {
+/// `experiments report`: writes the page and prints its path.
+pub(crate) fn report(folder: &Path) -> Result<ExitCode> {
     let page = write_report(folder, &EXPERIMENTS.map(|experiment| experiment.section))?;
     writeln!(std::io::stdout().lock(), "report: {}", page.display())?;
     Ok(ExitCode::SUCCESS)

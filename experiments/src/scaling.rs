@@ -9,21 +9,19 @@ use anyhow::Result;
 use canonform::{EmbedMethod, FormOptions, Samples, Surface, embed};
 use datasets::{ArticulatedOptions, Family, articulated_shape};
 use mesh::RepairOptions;
-use report::results::Series;
+use report::results::{CurvesResults, Series};
 use surface::VertexId;
+use terminal::with_peak_bytes;
 
 use crate::context::Context;
-use crate::memory::with_peak_bytes;
 use crate::specimen::Distances;
-use crate::sweep::{Measured, log, panel, places, series};
+use crate::sweep::{Measured, curves, log, panel, places, series};
 
 /// The curves of time.
 const STEPS: [&str; 3] = ["preparation", "map", "NMDS"];
 
-/// Bytes per unit of the second panel.
 const MIB: f64 = (1u64 << 20) as f64;
 
-/// Runs the experiment.
 pub(crate) fn run(context: &Context<'_>) -> Result<()> {
     let config = &context.config;
     let mut seconds = vec![vec![Vec::new(); config.runs]; STEPS.len()];
@@ -36,16 +34,16 @@ pub(crate) fn run(context: &Context<'_>) -> Result<()> {
         drop(body);
         context.observer.step();
         for run in 0..config.runs {
-            let ([preparation, map], whole) = (of_one_map(&surface)?, of_form(context, &surface)?);
-            for (curve, spent) in seconds.iter_mut().zip([preparation, map, whole.seconds]) {
+            let ([preparation, map], [whole, mib]) = (of_one_map(&surface)?, of_form(context, &surface)?);
+            for (curve, spent) in seconds.iter_mut().zip([preparation, map, whole]) {
                 curve[run].push(spent);
             }
-            memory[run].push(whole.mib);
+            memory[run].push(mib);
             context.observer.step();
         }
     }
     let at = places(&config.counts);
-    let times: Vec<Series> = STEPS.iter().zip(&seconds).map(|(name, runs)| series(name, &at, runs)).collect();
+    let times = curves(&STEPS, &at, &seconds);
     let memory = series("NMDS", &at, &memory);
     let mut measured: Measured =
         times.iter().map(|curve| (format!("{} growth", curve.name), growth(curve))).collect();
@@ -63,7 +61,8 @@ pub(crate) fn run(context: &Context<'_>) -> Result<()> {
         rayon::current_num_threads(),
         config.runs
     );
-    context.publish_curves(&[], caption, panels, &measured)
+    let provenance = context.provenance(context.setup(&[]));
+    context.publish(CurvesResults { caption, panels }, provenance, &measured)
 }
 
 /// Seconds for preparing a surface, and for the distances from one vertex in a second run.
@@ -77,13 +76,8 @@ fn of_one_map(surface: &Surface) -> Result<[f64; 2]> {
     Ok([preparation, start.elapsed().as_secs_f64()])
 }
 
-/// Time and memory of a canonical form.
-struct Cost {
-    seconds: f64,
-    mib: f64,
-}
-
-fn of_form(context: &Context<'_>, surface: &Surface) -> Result<Cost> {
+/// Seconds and MiB for a canonical form.
+fn of_form(context: &Context<'_>, surface: &Surface) -> Result<[f64; 2]> {
     let options = FormOptions {
         samples: Samples::Count(context.config.samples),
         method: EmbedMethod::low_rank(context.config.rank),
@@ -92,7 +86,7 @@ fn of_form(context: &Context<'_>, surface: &Surface) -> Result<Cost> {
     let start = Instant::now();
     let (embedded, peak_bytes) = with_peak_bytes(|| embed(surface, &options, &()));
     embedded?;
-    Ok(Cost { seconds: start.elapsed().as_secs_f64(), mib: peak_bytes as f64 / MIB })
+    Ok([start.elapsed().as_secs_f64(), peak_bytes as f64 / MIB])
 }
 
 /// The exponent of the least values of a curve: the slope of the line that fits their logarithms best.

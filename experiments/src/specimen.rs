@@ -14,9 +14,6 @@ use crate::collection::{Collection, Shape};
 /// The classes of Figures 3 and 5 to 9 of the paper, in its order.
 const PAPER: [&str; 2] = ["david", "cat"];
 
-/// The limit on the memory for all pairs of a shape, in bytes.
-const ALL_PAIRS_LIMIT: usize = 4 << 30;
-
 /// Dimensions of canonical forms.
 pub(crate) const DIM: usize = 3;
 
@@ -67,7 +64,7 @@ impl<'a> Specimen<'a> {
         self.shape.surface.mesh().n_vertices()
     }
 
-    pub(crate) fn solver(&self, distances: &Distances) -> Result<Box<dyn DistanceSolver>> {
+    fn solver(&self, distances: &Distances) -> Result<Box<dyn DistanceSolver>> {
         Ok(distances.method.prepare(&self.shape.surface.intrinsic)?)
     }
 
@@ -75,7 +72,7 @@ impl<'a> Specimen<'a> {
     pub(crate) fn all_pairs(&self, distances: &Distances) -> Result<Arc<DistanceMatrix>> {
         once(&self.all_pairs, distances.name, || {
             let p = self.n_vertices();
-            if p.saturating_mul(p) > ALL_PAIRS_LIMIT / size_of::<f64>() {
+            if p.saturating_mul(p) > canonform::DISTANCES_LIMIT / size_of::<f64>() {
                 bail!(
                     "{}: this experiment needs the distances of all pairs, {} GiB for {p} vertices; use shapes of at \
                      most 23,000 vertices",

@@ -1,8 +1,10 @@
-//! Surfaces and canonical forms for the 3D views of the page: `figure4-shapes.json`.
+//! Surfaces and canonical forms for figures, and for the 3D views of the page (`figure4-shapes.json`).
 
 use anyhow::{Result, bail};
 use canonform::{Embedded, FormOptions};
-use descriptors::{Alignment, CanonicalForm, Normalization};
+use descriptors::{
+    Alignment, CanonicalForm, MatchOptions, Normalization, PreparedForm, ShapeMetric, match_forms,
+};
 use geodesics::DistanceSolver;
 use linalg::Matrix;
 use mesh::{TriMesh, orient_consistently};
@@ -19,6 +21,30 @@ const ALL_VERTICES: usize = 200_000;
 
 /// The greatest number of vertices of one shape.
 const SHAPE_VERTICES: usize = 20_000;
+
+/// A mesh with consistently oriented faces.
+pub(crate) fn oriented(mesh: &TriMesh) -> TriMesh {
+    let mut mesh = mesh.clone();
+    orient_consistently(&mut mesh);
+    mesh
+}
+
+/// A form over the faces of its shape, aligned with `first`; without a first one, it becomes the first.
+pub(crate) fn aligned(
+    form: &CanonicalForm,
+    shape: &TriMesh,
+    first: &mut Option<PreparedForm>,
+) -> Result<TriMesh> {
+    let mut surface = form.to_mesh(shape);
+    let prepared = PreparedForm::new(form, ShapeMetric::MATCHED_POINTS)?;
+    if let Some(target) = first {
+        let motion = match_forms(&prepared, target, &MatchOptions::default())?.alignment;
+        surface.positions.iter_mut().for_each(|p| *p = motion.apply(p));
+    } else {
+        *first = Some(prepared);
+    }
+    Ok(oriented(&surface))
+}
 
 /// The greatest number of vertices of each of `n_shapes`.
 pub(crate) fn vertex_limit(n_shapes: usize) -> usize {
@@ -81,26 +107,21 @@ pub(crate) fn shown(
     options: &FormOptions,
     limit: usize,
 ) -> Result<ShownShape> {
-    let mut mesh: TriMesh = shape.surface.mesh().clone();
-    orient_consistently(&mut mesh);
+    let mesh = oriented(shape.surface.mesh());
     let solver: Box<dyn DistanceSolver> = options.geodesic.prepare(&shape.surface.intrinsic)?;
     let Some(first) = forms.first() else { bail!("there is no canonical form") };
-    let thin = coarse(&mesh, limit);
-    let kept = TriMesh {
-        positions: thin.vertices.iter().map(|&v| mesh.positions[v]).collect(),
-        faces: thin.faces.iter().map(|face| face.map(VertexId)).collect(),
-    };
+    let (vertices, thin) = coarse(&mesh, limit);
     let distances = solver.distance_columns(&first.samples[..1.min(first.samples.len())]);
-    let distance: Vec<f64> = thin.vertices.iter().map(|&v| distances[(v, 0)]).collect();
+    let distance: Vec<f64> = vertices.iter().map(|&v| distances[(v, 0)]).collect();
     let form = |formed: &&Formed| {
         let from_samples = solver.distance_columns(&formed.samples);
-        formed.shown(&thin.vertices, &from_samples)
+        formed.shown(&vertices, &from_samples)
     };
     Ok(ShownShape {
         name: shape.name.clone(),
         label: shape.label.clone(),
         n_vertices: mesh.n_vertices(),
-        surface: Geometry::new(&kept).with_values("distance (mesh units)", &distance),
+        surface: Geometry::new(&thin).with_values("distance (mesh units)", &distance),
         forms: forms.iter().map(form).collect(),
     })
 }

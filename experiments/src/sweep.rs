@@ -2,10 +2,21 @@
 
 use std::collections::BTreeMap;
 
+use nmds::Regularization;
 use report::results::{Axis, AxisScale, CurvesPanel, Series, SeriesPoint};
+use retrieval::Scores;
 
-/// Numbers by name.
 pub(crate) type Measured = BTreeMap<String, f64>;
+
+/// Retrieval scores by the names that expectations use.
+pub(crate) fn named(s: &Scores) -> [(&'static str, f64); 6] {
+    [("nn", s.nn), ("ft", s.ft), ("st", s.st), ("e", s.e), ("dcg", s.dcg), ("map", s.map)]
+}
+
+/// The low-rank regularisation that keeps half of `n` eigenpairs.
+pub(crate) fn half(n: usize) -> Regularization {
+    Regularization::LowRank { rank: Some(n.div_ceil(2)) }
+}
 
 /// The index and the value of the median; of two in the middle, the lower one.
 pub(crate) fn median(values: &[f64]) -> (usize, f64) {
@@ -30,6 +41,16 @@ pub(crate) fn series(name: &str, places: &[f64], runs: &[Vec<f64>]) -> Series {
     let at = |place: usize| runs.iter().map(|run| run[place]).collect::<Vec<_>>();
     let points = places.iter().enumerate().map(|(i, &x)| point(x, &at(i))).collect();
     Series { name: name.to_owned(), points }
+}
+
+/// A curve for each name over the places, from `runs[name][run][place]`.
+pub(crate) fn curves(names: &[&str], places: &[f64], runs: &[Vec<Vec<f64>>]) -> Vec<Series> {
+    names.iter().zip(runs).map(|(name, runs)| series(name, places, runs)).collect()
+}
+
+/// The last median of a curve.
+pub(crate) fn last(series: &Series) -> f64 {
+    series.points.last().map_or(f64::NAN, |p| p.median)
 }
 
 /// The medians of a curve.

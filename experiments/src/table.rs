@@ -1,10 +1,10 @@
 //! The table of experiments.
 
 use anyhow::Result;
-use report::page::{Kind, Section};
+use report::page::{Section, charts, explorer, gallery};
+use report::results::{CurvesResults, Figure3Results, Figure9Results, RetrievalResults};
 
 use crate::context::Context;
-use crate::specimen::Specimen;
 use crate::{figure1, figure3, figure4, figure5, figure6, figure7, figure8, figure9, retrieve, scaling};
 
 /// One experiment.
@@ -13,44 +13,33 @@ pub(crate) struct Experiment {
     pub(crate) section: Section,
     /// The text of its configuration.
     pub(crate) config: &'static str,
-    /// What it needs and does.
-    pub(crate) run: Run,
-}
-
-/// What an experiment needs.
-pub(crate) enum Run {
-    /// The shapes of the collection, or shapes that it generates.
-    Collection(fn(&Context<'_>) -> Result<()>),
-    /// A few shapes with values that several experiments share, such as the distances of all pairs of vertices.
-    Specimens(fn(&Context<'_>, &[Specimen<'_>]) -> Result<()>),
+    pub(crate) run: fn(&Context<'_>) -> Result<()>,
 }
 
 macro_rules! experiment {
-    ($name:literal, $title:literal, $kind:ident, $run:expr) => {
+    ($name:literal, $title:literal, $show:expr, $run:expr) => {
         Experiment {
-            section: Section { name: $name, title: $title, kind: Kind::$kind },
+            section: Section { name: $name, title: $title, show: $show },
             config: include_str!(concat!("../configs/", $name, ".toml")),
             run: $run,
         }
     };
 }
 
-use Run::{Collection, Specimens};
-
 /// All experiments, in the order in which they run and appear on the page.
 #[rustfmt::skip]
 pub(crate) const EXPERIMENTS: [Experiment; 11] = [
-    experiment!("figure1", "Figure 1. Shapes and their canonical forms", Figure1, Collection(figure1::run)),
-    experiment!("figure3", "Figure 3. Canonical forms by several methods", Figure3, Specimens(figure3::run)),
-    experiment!("figure4", "Figure 4. Classification of shapes by their canonical forms", Figure4, Collection(figure4::run)),
-    experiment!("figure5a", "Figure 5a. Reconstruction error against the rank", Curves, Specimens(figure5::rank)),
-    experiment!("figure5b", "Figure 5b. Reconstruction error against alpha", Curves, Specimens(figure5::alpha)),
-    experiment!("figure6", "Figure 6. Reconstruction error against the number of samples", Curves, Specimens(figure6::run)),
-    experiment!("figure7", "Figure 7. Stress above the optimum against the number of samples", Curves, Specimens(figure7::run)),
-    experiment!("figure8", "Figure 8. Time against the number of samples", Curves, Specimens(figure8::run)),
-    experiment!("figure9", "Figure 9. Time and memory of whole embeddings", Figure9, Specimens(figure9::run)),
-    experiment!("retrieval", "Retrieval and classification by signatures and canonical forms", Retrieval, Collection(retrieve::run)),
-    experiment!("scaling", "Scaling. Time and memory up to a million vertices", Curves, Collection(scaling::run)),
+    experiment!("figure1", "Figure 1. Shapes and their canonical forms", gallery, figure1::run),
+    experiment!("figure3", "Figure 3. Canonical forms by several methods", charts::<Figure3Results>, figure3::run),
+    experiment!("figure4", "Figure 4. Classification of shapes by their canonical forms", explorer, figure4::run),
+    experiment!("figure5a", "Figure 5a. Reconstruction error against the rank", charts::<CurvesResults>, figure5::rank),
+    experiment!("figure5b", "Figure 5b. Reconstruction error against alpha", charts::<CurvesResults>, figure5::alpha),
+    experiment!("figure6", "Figure 6. Reconstruction error against the number of samples", charts::<CurvesResults>, figure6::run),
+    experiment!("figure7", "Figure 7. Stress above the optimum against the number of samples", charts::<CurvesResults>, figure7::run),
+    experiment!("figure8", "Figure 8. Time against the number of samples", charts::<CurvesResults>, figure8::run),
+    experiment!("figure9", "Figure 9. Time and memory of whole embeddings", charts::<Figure9Results>, figure9::run),
+    experiment!("retrieval", "Retrieval and classification by signatures and canonical forms", charts::<RetrievalResults>, retrieve::run),
+    experiment!("scaling", "Scaling. Time and memory up to a million vertices", charts::<CurvesResults>, scaling::run),
 ];
 
 /// Stands for all experiments on the command line.

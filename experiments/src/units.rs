@@ -11,8 +11,6 @@ use linalg::Matrix;
 use rayon::prelude::*;
 use terminal::Bars;
 
-use crate::args::UnitsArgs;
-
 struct Described {
     label: String,
     seed: usize,
@@ -26,11 +24,11 @@ const VERTICES: [usize; 5] = [3400, 1500, 8000, 2500, 5000];
 /// `experiments units`: for every signature and for aligned forms, the root mean square distance between two shapes of
 /// one built-in family with poses and triangulations of their own, and the ratio of the mean squared distance between
 /// families to its square, next to the values in use.
-pub(crate) fn units(args: &UnitsArgs) -> Result<ExitCode> {
-    let bars = Bars::new(args.quiet);
+pub(crate) fn units(seeds: usize, quiet: bool) -> Result<ExitCode> {
+    let bars = Bars::new(quiet);
     let mut shapes = Vec::new();
     bars.begin("describing", 0);
-    for seed in 1..=args.seeds {
+    for seed in 1..=seeds {
         let options =
             ArticulatedOptions { seed: seed as u64, n_vertices: VERTICES[(seed - 1) % VERTICES.len()] };
         let one = |shape: &datasets::LabeledShape| {
@@ -54,14 +52,11 @@ pub(crate) fn units(args: &UnitsArgs) -> Result<ExitCode> {
             of(a).zip(of(b)).map_or(f64::NAN, |(a, b)| a.distance(&b))
         };
         let means = [&within, &between].map(|pairs| mean_square(pairs.iter().map(distance)));
-        parts.push(Part::new(
-            kind.name(),
-            means,
-            components(&shapes, kind),
-            [ShapeMetric::unit(kind), ShapeMetric::weight(kind)],
-        ));
+        let in_use = [ShapeMetric::unit(kind), ShapeMetric::weight(kind)];
+        parts.push((kind.name(), means, components(&shapes, kind), in_use));
     }
-    let total: f64 = parts.iter().map(Part::importance).sum();
+    let separation = |[within, between]: [f64; 2]| between / within;
+    let total: f64 = parts.iter().map(|(_, means, components, _)| separation(*means) * components).sum();
     for (name, distance) in
         [("aligned forms", FormDistance::NearestNeighborRms), ("hausdorff95", FormDistance::Hausdorff95)]
     {
@@ -77,12 +72,12 @@ pub(crate) fn units(args: &UnitsArgs) -> Result<ExitCode> {
                 .collect();
             *mean = mean_square(distances.into_iter());
         }
-        parts.push(Part::new(name, means, 1.0, [ShapeMetric::form_unit(distance), ShapeMetric::FORM_WEIGHT]));
+        parts.push((name, means, 1.0, [ShapeMetric::form_unit(distance), ShapeMetric::FORM_WEIGHT]));
     }
     let mut out = std::io::stdout().lock();
     writeln!(out, "{:<18}    unit  separation  components  weight   in use: unit  weight", "")?;
-    for part in parts {
-        let Part { name, unit, separation, components, in_use: [used_unit, used_weight] } = part;
+    for (name, means, components, [used_unit, used_weight]) in parts {
+        let (unit, separation) = (means[0].sqrt(), separation(means));
         let weight = separation * components / total;
         writeln!(
             out,
@@ -90,25 +85,6 @@ pub(crate) fn units(args: &UnitsArgs) -> Result<ExitCode> {
         )?;
     }
     Ok(ExitCode::SUCCESS)
-}
-
-/// The measured and the current unit and weight of a part of the fused signature.
-struct Part {
-    name: &'static str,
-    unit: f64,
-    separation: f64,
-    components: f64,
-    in_use: [f64; 2],
-}
-
-impl Part {
-    fn new(name: &'static str, [within, between]: [f64; 2], components: f64, in_use: [f64; 2]) -> Self {
-        Self { name, unit: within.sqrt(), separation: between / within, components, in_use }
-    }
-
-    fn importance(&self) -> f64 {
-        self.separation * self.components
-    }
 }
 
 /// The effective number of components, `tr(C)² / tr(C²)`, of the covariance `C` of a signature within families.

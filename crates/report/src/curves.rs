@@ -1,21 +1,18 @@
 //! Figures of curves: medians of repeated runs as lines, the range of the runs as bands.
 
 use crate::classes::Classes;
+use crate::error::ReportError;
 use crate::figure::{Content, Figure, Plot, Point, Series, Shape, Style};
-use crate::results::{self, CurvesPanel, CurvesRecord, Expectation, Provenance};
-use crate::table::significant;
-use crate::{Cell, Record, ReportError, Table};
+use crate::record::Results;
+use crate::results::{self, CurvesPanel, CurvesResults};
+use crate::table::{Cell, Table, significant};
 
 /// The distinct names of the series of all panels.
 fn series_names(panels: &[CurvesPanel]) -> Classes<'_> {
     Classes::of(panels.iter().flat_map(|panel| panel.series.iter().map(|series| series.name.as_str())))
 }
 
-impl Record for CurvesRecord {
-    fn about(&self) -> (&Provenance, &[Expectation], &str) {
-        (&self.provenance, &self.expectations, &self.analysis)
-    }
-
+impl Results for CurvesResults {
     fn validate(&self) -> Result<(), ReportError> {
         let is_empty = |panel: &CurvesPanel| panel.series.iter().all(|series| series.points.is_empty());
         if self.panels.is_empty() || self.panels.iter().any(is_empty) {
@@ -114,7 +111,8 @@ impl Record for CurvesRecord {
 mod tests {
     use super::*;
     use crate::fixtures::{assert_balanced, curves_record};
-    use crate::save;
+    use crate::record::save;
+    use crate::results::Record;
 
     #[test]
     fn files_are_well_formed_deterministic_and_labelled() {
@@ -137,22 +135,23 @@ mod tests {
     #[test]
     fn single_panels_and_values_that_are_not_positive_can_be_drawn() {
         let mut record = curves_record();
-        record.panels.truncate(1);
-        record.panels[0].series[0].points[0].low = 0.0;
-        record.panels[0].series[0].points[1].median = -1.0;
+        record.results.panels.truncate(1);
+        record.results.panels[0].series[0].points[0].low = 0.0;
+        record.results.panels[0].series[0].points[1].median = -1.0;
         save(&record, tempfile::tempdir().unwrap().path(), "x").unwrap();
     }
 
     #[test]
     fn records_without_a_point_or_with_a_point_that_is_not_finite_are_errors() {
         let folder = tempfile::tempdir().unwrap();
-        let fault = |record: &CurvesRecord| save(record, folder.path(), "x").unwrap_err().to_string();
-        assert!(fault(&CurvesRecord::default()).contains("nothing to draw"));
+        let fault =
+            |record: &Record<CurvesResults>| save(record, folder.path(), "x").unwrap_err().to_string();
+        assert!(fault(&Record::<CurvesResults>::default()).contains("nothing to draw"));
         let mut record = curves_record();
-        record.panels[1].series[0].points[0].high = f64::NAN;
+        record.results.panels[1].series[0].points[0].high = f64::NAN;
         assert!(fault(&record).contains("NMDS in cat0"));
         record = curves_record();
-        record.panels[0].marks[0].x = f64::INFINITY;
+        record.results.panels[0].marks[0].x = f64::INFINITY;
         assert!(fault(&record).contains("the mark recommended"));
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
     }
@@ -160,8 +159,8 @@ mod tests {
     #[test]
     fn the_summary_sets_medians_side_by_side_with_dashes_for_gaps() {
         let mut record = curves_record();
-        record.panels[1].series[1].points.remove(0);
-        let text = record.summary().unwrap().to_text();
+        record.results.panels[1].series[1].points.remove(0);
+        let text = record.results.summary().unwrap().to_text();
         assert_eq!(text.lines().count(), 1 + 6, "{text}");
         assert!(text.contains("samples n") && text.contains("1.0e4"), "{text}");
         assert!(text.lines().nth(4).is_some_and(|line| line.ends_with('-')), "{text}");

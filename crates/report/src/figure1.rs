@@ -3,60 +3,57 @@
 use mesh::TriMesh;
 
 use crate::classes::Classes;
+use crate::error::ReportError;
 use crate::figure::{Content, Figure, Layout, Tile, Tiles};
-use crate::results::{Expectation, Figure1Record, Figure1Shape, Provenance};
-use crate::table::stress;
-use crate::{Cell, Record, ReportError, Table};
-use view::render::View;
+use crate::record::Results;
+use crate::results::{Figure1Results, Figure1Shape};
+use crate::table::{Cell, Table, stress};
+use view::canvas::TextStyle;
 
 const PART: &str = "-forms";
 
-/// The greatest number of pairs in a row.
-pub const PAIRS: usize = 3;
+impl Figure1Results {
+    /// The greatest number of pairs in a row.
+    pub const PAIRS: usize = 3;
 
-/// A shape and its canonical form.
-#[derive(Debug, Clone, Copy)]
-pub struct Figure1Pair<'a> {
-    /// Name, class and stress.
-    pub facts: &'a Figure1Shape,
-    /// The shape.
-    pub shape: &'a TriMesh,
-    /// Its canonical form: the same faces in the first three dimensions of the embedding, rotated or reflected to
-    /// match the first form of its class.
-    pub form: &'a TriMesh,
+    /// The static figure: the first [`PAIRS`](Self::PAIRS) shapes of every class, each with its form.
+    ///
+    /// `shapes` and `forms` follow the order of `self.shapes`. The forms have the same faces in the first three
+    /// dimensions of the embedding, rotated or reflected to match the first form of their class.
+    ///
+    /// # Errors
+    /// [`ReportError::Empty`] without a shape, [`ReportError::Shape`] if the lists differ in length.
+    pub fn tiles<'a>(&self, shapes: &'a [TriMesh], forms: &'a [TriMesh]) -> Result<Tiles<'a>, ReportError> {
+        if self.shapes.is_empty() {
+            return Err(ReportError::Empty { figure: "figure 1", unit: "pair of a shape and its form" });
+        }
+        for (what, found) in
+            [("the surfaces of figure 1", shapes.len()), ("the forms of figure 1", forms.len())]
+        {
+            ReportError::check_length(what, found, self.shapes.len(), "shape")?;
+        }
+        let classes = Classes::of(self.shapes.iter().map(|shape| shape.label.as_str()));
+        let row = |class: &&str| {
+            let members = self.shapes.iter().zip(shapes.iter().zip(forms));
+            let members = members.filter(|(facts, _)| facts.label == **class).take(Self::PAIRS);
+            let tiles = members.flat_map(|(facts, (shape, form))| {
+                let stress = format!("stress {}", stress(facts.stress));
+                [
+                    Tile::Shape(shape, vec![(facts.name.clone(), TextStyle::NAME)]),
+                    Tile::Form(form, vec![(stress, Layout::NOTE)]),
+                ]
+            });
+            ((*class).to_owned(), tiles.collect())
+        };
+        let rows: Vec<(String, Vec<Tile<'_>>)> = classes.names().iter().map(row).collect();
+        let columns = rows.iter().map(|(_, tiles)| tiles.len()).max().unwrap_or(0);
+        let heads =
+            ["shape", "canonical form"].map(str::to_owned).into_iter().cycle().take(columns).collect();
+        Ok(Tiles { part: PART, layout: &Layout::PAIRS, heads, rows })
+    }
 }
 
-/// The first [`PAIRS`] pairs of every class, with the shapes seen from `view`.
-///
-/// # Errors
-/// [`ReportError::Empty`] without a pair.
-pub fn figure1<'a>(pairs: &[Figure1Pair<'a>], view: &View) -> Result<Tiles<'a>, ReportError> {
-    if pairs.is_empty() {
-        return Err(ReportError::Empty { figure: "figure 1", unit: "pair of a shape and its form" });
-    }
-    let classes = Classes::of(pairs.iter().map(|p| p.facts.label.as_str()));
-    let row = |class: &&str| {
-        let members = pairs.iter().filter(|p| p.facts.label == **class).take(PAIRS);
-        let tiles = members.flat_map(|pair| {
-            let stress = format!("stress {}", stress(pair.facts.stress));
-            [
-                Tile::Shape(pair.shape, vec![(pair.facts.name.clone(), Layout::NAME)]),
-                Tile::Form(pair.form, vec![(stress, Layout::NOTE)]),
-            ]
-        });
-        ((*class).to_owned(), tiles.collect())
-    };
-    let rows: Vec<(String, Vec<Tile<'_>>)> = classes.names().iter().map(row).collect();
-    let columns = rows.iter().map(|(_, tiles)| tiles.len()).max().unwrap_or(0);
-    let heads = ["shape", "canonical form"].map(str::to_owned).into_iter().cycle().take(columns).collect();
-    Ok(Tiles { part: PART, layout: &Layout::PAIRS, view: *view, heads, rows })
-}
-
-impl Record for Figure1Record {
-    fn about(&self) -> (&Provenance, &[Expectation], &str) {
-        (&self.provenance, &self.expectations, &self.analysis)
-    }
-
+impl Results for Figure1Results {
     fn figures(&self) -> Vec<Figure> {
         let caption = "Up to three shapes of each class (left), each with its canonical form (right). All forms of a \
                        class are seen from the same side; the number under each is its stress in squared mesh units. \
@@ -97,15 +94,13 @@ mod tests {
 
     #[test]
     fn every_shape_is_named_and_the_files_are_deterministic() {
-        let mut shapes = figure1_record().shapes;
-        let first = shapes[0].clone();
-        shapes.extend((1..6).map(|i| Figure1Shape { name: format!("cat{i}"), ..first.clone() }));
-        let ball = icosphere(2);
-        let pairs: Vec<Figure1Pair> =
-            shapes.iter().map(|facts| Figure1Pair { facts, shape: &ball, form: &ball }).collect();
+        let mut results = figure1_record().results;
+        let first = results.shapes[0].clone();
+        results.shapes.extend((1..6).map(|i| Figure1Shape { name: format!("cat{i}"), ..first.clone() }));
+        let balls = vec![icosphere(2); results.shapes.len()];
         let folder = tempfile::tempdir().unwrap();
         let draw = |stem: &str| -> Vec<Vec<u8>> {
-            let files = figure1(&pairs, &View::default()).unwrap().save(folder.path().join(stem)).unwrap();
+            let files = results.tiles(&balls, &balls).unwrap().save(folder.path().join(stem)).unwrap();
             assert_eq!(files[0], folder.path().join(format!("{stem}-forms.png")));
             files.iter().map(|f| std::fs::read(f).unwrap()).collect()
         };
@@ -123,8 +118,11 @@ mod tests {
     }
 
     #[test]
-    fn a_figure_without_a_pair_is_an_error() {
-        let error = figure1(&[], &View::default()).unwrap_err();
+    fn a_figure_without_a_pair_or_with_a_missing_form_is_an_error() {
+        let error = Figure1Results::default().tiles(&[], &[]).unwrap_err();
         assert!(matches!(error, ReportError::Empty { .. }), "{error}");
+        let balls = vec![icosphere(1); 2];
+        let error = figure1_record().results.tiles(&balls, &balls[..1]).unwrap_err();
+        assert!(error.to_string().starts_with("the forms of figure 1 has 1 entries instead of 2"), "{error}");
     }
 }

@@ -3,56 +3,47 @@
 use mesh::TriMesh;
 
 use crate::classes::Classes;
+use crate::error::ReportError;
 use crate::figure::{Content, Figure, Group, Layout, Plot, Point, Tile, Tiles, grouped};
-use crate::results::{Axis, AxisScale, Expectation, Figure3Record, Figure3Shape, Figure3Stress, Provenance};
-use crate::table::stress;
-use crate::{Cell, Record, ReportError, Table};
-use view::render::View;
+use crate::record::Results;
+use crate::results::{Axis, AxisScale, Figure3Results, Figure3Shape, Figure3Stress};
+use crate::table::{Cell, Table, stress};
+use view::canvas::TextStyle;
 
 const PART: &str = "-forms";
 
-/// One row of the figure.
-#[derive(Debug, Clone)]
-pub struct Figure3Surfaces<'a> {
-    /// Names and stresses.
-    pub facts: &'a Figure3Shape,
-    /// The shape.
-    pub shape: &'a TriMesh,
-    /// Its forms in the order of `facts.forms`, rotated or reflected to match each other.
-    pub forms: &'a [TriMesh],
-}
-
-/// One row per shape: the shape, seen from `view`, then its forms. Each fills its tile.
-///
-/// # Errors
-/// [`ReportError::Empty`] without a form, [`ReportError::Shape`] if the forms of a row and their facts differ in
-/// number.
-pub fn figure3<'a>(rows: &[Figure3Surfaces<'a>], view: &View) -> Result<Tiles<'a>, ReportError> {
-    if rows.iter().all(|row| row.forms.is_empty()) {
-        return Err(ReportError::Empty { figure: "figure 3", unit: "shape with a form" });
+impl Figure3Results {
+    /// The static figure: a row per shape, with the shape and its forms. Each fills its tile.
+    ///
+    /// `surfaces` are the shapes with their forms, in the order of `self.shapes`. The forms of a shape are rotated or
+    /// reflected to match each other.
+    ///
+    /// # Errors
+    /// [`ReportError::Empty`] without a form, [`ReportError::Shape`] if there is not one form per stress.
+    pub fn tiles<'a>(&self, surfaces: &'a [(TriMesh, Vec<TriMesh>)]) -> Result<Tiles<'a>, ReportError> {
+        if surfaces.iter().all(|(_, forms)| forms.is_empty()) {
+            return Err(ReportError::Empty { figure: "figure 3", unit: "shape with a form" });
+        }
+        for (facts, (_, forms)) in self.shapes.iter().zip(surfaces) {
+            let what = format!("forms of {}", facts.name);
+            ReportError::check_length(what, forms.len(), facts.forms.len(), "stress")?;
+        }
+        let longest = self.shapes.iter().max_by_key(|facts| facts.forms.len());
+        let methods = longest.into_iter().flat_map(|facts| facts.forms.iter().map(|f| f.method.clone()));
+        let heads = std::iter::once("shape".to_owned()).chain(methods).collect();
+        let row = |(facts, (shape, forms)): (&Figure3Shape, &'a (TriMesh, Vec<TriMesh>))| {
+            let vertices = (format!("{} vertices", facts.n_vertices), TextStyle::LABEL);
+            let forms = forms.iter().zip(&facts.forms).map(|(mesh, facts)| {
+                let stress = (format!("stress {}", stress(facts.stress)), TextStyle::LABEL);
+                let paper = facts.paper.map(|paper| (format!("paper {paper}"), Layout::NOTE));
+                Tile::Form(mesh, std::iter::once(stress).chain(paper).collect())
+            });
+            let tiles = std::iter::once(Tile::Shape(shape, vec![vertices])).chain(forms);
+            (facts.name.clone(), tiles.collect())
+        };
+        let rows = self.shapes.iter().zip(surfaces).map(row).collect();
+        Ok(Tiles { part: PART, layout: &Layout::LINE, heads, rows })
     }
-    for Figure3Surfaces { facts, forms, .. } in rows {
-        ReportError::check_length(
-            format!("forms of {}", facts.name),
-            forms.len(),
-            facts.forms.len(),
-            "stress",
-        )?;
-    }
-    let longest = rows.iter().max_by_key(|row| row.forms.len());
-    let methods = longest.into_iter().flat_map(|row| row.facts.forms.iter().map(|f| f.method.clone()));
-    let heads: Vec<String> = std::iter::once("shape".to_owned()).chain(methods).collect();
-    let row = |Figure3Surfaces { facts, shape, forms }: &Figure3Surfaces<'a>| {
-        let vertices = (format!("{} vertices", facts.n_vertices), Layout::NUMBER);
-        let forms = forms.iter().zip(&facts.forms).map(|(mesh, facts)| {
-            let stress = (format!("stress {}", stress(facts.stress)), Layout::NUMBER);
-            let paper = facts.paper.map(|paper| (format!("paper {paper}"), Layout::NOTE));
-            Tile::Form(mesh, std::iter::once(stress).chain(paper).collect())
-        });
-        (facts.name.clone(), std::iter::once(Tile::Shape(shape, vec![vertices])).chain(forms).collect())
-    };
-    let rows = rows.iter().map(row).collect();
-    Ok(Tiles { part: PART, layout: &Layout::LINE, view: *view, heads, rows })
 }
 
 /// The stress of every method on one shape, for every kind of distances.
@@ -71,11 +62,7 @@ fn plot(shape: &str, stresses: &[Figure3Stress]) -> Plot {
     grouped(shape, &Axis { name, unit, scale: AxisScale::Log }, &groups, |_| "paper".to_owned())
 }
 
-impl Record for Figure3Record {
-    fn about(&self) -> (&Provenance, &[Expectation], &str) {
-        (&self.provenance, &self.expectations, &self.analysis)
-    }
-
+impl Results for Figure3Results {
     fn figures(&self) -> Vec<Figure> {
         let forms = "Shapes (left) and their canonical forms by each method. Every form fills its tile and is rotated to \
                      match the first of its row. Under it: its stress in squared mesh units, from the run of median \
@@ -114,14 +101,9 @@ mod tests {
     fn every_form_has_its_stress_and_that_of_the_paper() {
         let record = figure3_record();
         let ball = icosphere(2);
-        let forms = vec![ball.clone(); record.shapes[0].forms.len()];
-        let rows: Vec<_> = record
-            .shapes
-            .iter()
-            .map(|facts| Figure3Surfaces { facts, shape: &ball, forms: &forms })
-            .collect();
+        let surfaces = vec![(ball.clone(), vec![ball; 2]); 2];
         let folder = tempfile::tempdir().unwrap();
-        let files = figure3(&rows, &View::default()).unwrap().save(folder.path().join("figure3")).unwrap();
+        let files = record.results.tiles(&surfaces).unwrap().save(folder.path().join("figure3")).unwrap();
         let svg = std::fs::read_to_string(&files[1]).unwrap();
         assert_balanced(&svg);
         for text in ["david&lt;0&gt;", "MDS", "NMDS", "stress 262.1", "paper 394.41", "3400 vertices"] {
@@ -132,19 +114,18 @@ mod tests {
 
     #[test]
     fn forms_without_facts_are_an_error() {
-        let empty = figure3(&[], &View::default()).unwrap_err();
-        assert!(matches!(empty, ReportError::Empty { .. }), "{empty}");
         let record = figure3_record();
+        let empty = record.results.tiles(&[]).unwrap_err();
+        assert!(matches!(empty, ReportError::Empty { .. }), "{empty}");
         let ball = icosphere(2);
-        let row = Figure3Surfaces { facts: &record.shapes[0], shape: &ball, forms: &[icosphere(2)] };
-        let short = figure3(&[row], &View::default()).unwrap_err();
+        let short = record.results.tiles(&[(ball.clone(), vec![ball])]).unwrap_err();
         assert!(short.to_string().starts_with("forms of david<0> has 1 entries instead of 2"), "{short}");
     }
 
     #[test]
     fn the_plot_of_stress_has_ranges_and_the_number_of_the_paper() {
         let record = figure3_record();
-        let figures = record.figures();
+        let figures = record.results.figures();
         let Content::Plots(plots) = &figures[1].content else { panic!("{figures:?}") };
         let [plot] = &plots[..] else { panic!("{plots:?}") };
         assert_eq!(plot.x.ticks[0].1, "MDS");

@@ -3,11 +3,12 @@
 //! For each scale, one figure of the two-dimensional maps with their scores and one of the distance matrices.
 
 use crate::classes::Classes;
+use crate::error::ReportError;
 use crate::figure::{Axis, Content, Figure, Heat, MAP_SIZE, Plot, Point, Series};
 use crate::figure::{Shape, Style};
-use crate::results::{Expectation, Figure4Panel, Figure4Record, Provenance, Scale};
-use crate::{Cell, Record, ReportError, Table};
-use ::retrieval::Evaluation;
+use crate::record::Results;
+use crate::results::{Figure4Panel, Figure4Results, Scale};
+use crate::table::{Cell, SCORES, SCORES_CAPTION, Table, scores};
 use view::numbers::signed;
 
 /// What each scale is called in titles, in captions and in file names.
@@ -35,7 +36,7 @@ pub(crate) struct Shown {
 }
 
 /// A panel of the record as figures.
-pub(crate) fn shown(record: &Figure4Record, panel: &Figure4Panel) -> Shown {
+pub(crate) fn shown(record: &Figure4Results, panel: &Figure4Panel) -> Shown {
     let classes = Classes::of(record.labels.iter().map(String::as_str));
     let size = SCALES.iter().find(|(scale, ..)| *scale == panel.scale).map_or("", |(_, name, ..)| name);
     let title = format!("{}, {size}", panel.method);
@@ -47,7 +48,7 @@ pub(crate) fn shown(record: &Figure4Record, panel: &Figure4Panel) -> Shown {
     Shown { map, matrix, order }
 }
 
-fn map(record: &Figure4Record, panel: &Figure4Panel, classes: &Classes<'_>, title: &str) -> Plot {
+fn map(record: &Figure4Results, panel: &Figure4Panel, classes: &Classes<'_>, title: &str) -> Plot {
     let series = |(class, name): (usize, &&str)| {
         let members = (0..record.names.len()).filter(|&shape| record.labels[shape] == **name);
         let point = |shape: usize| {
@@ -97,7 +98,7 @@ fn equal_ranges(points: &[[f64; 2]]) -> [[f64; 2]; 2] {
 }
 
 fn matrix(
-    record: &Figure4Record,
+    record: &Figure4Results,
     panel: &Figure4Panel,
     classes: &Classes<'_>,
     title: &str,
@@ -133,19 +134,7 @@ fn matrix(
     }
 }
 
-/// The names of the scores in tables, as in the paper.
-const HEADINGS: [&str; 8] = ["NN", "FT", "ST", "E", "DCG", "mAP", "k-NN", "silhouette"];
-
-/// The scores of one matrix, in the order of [`HEADINGS`].
-fn scores(s: &Evaluation) -> [f64; 8] {
-    [s.mean.nn, s.mean.ft, s.mean.st, s.mean.e, s.mean.dcg, s.mean.map, s.knn_accuracy, s.silhouette]
-}
-
-impl Record for Figure4Record {
-    fn about(&self) -> (&Provenance, &[Expectation], &str) {
-        (&self.provenance, &self.expectations, &self.analysis)
-    }
-
+impl Results for Figure4Results {
     fn validate(&self) -> Result<(), ReportError> {
         let n = self.names.len();
         let length = |what: String, found: usize| ReportError::check_length(what, found, n, "shape");
@@ -169,9 +158,14 @@ impl Record for Figure4Record {
             for (point, &[x, y]) in panel.map.iter().enumerate() {
                 ReportError::check_finite(x + y, || of(&format!("map point {point}")))?;
             }
-            let own = [panel.map_stress, panel.negative_mass, panel.map_silhouette];
-            let names = ["map_stress", "negative_mass", "map_silhouette"].into_iter().chain(HEADINGS);
-            for (name, value) in names.zip(own.into_iter().chain(scores(&panel.scores))) {
+            let own = [
+                ("map_stress", panel.map_stress),
+                ("negative_mass", panel.negative_mass),
+                ("map_silhouette", panel.map_silhouette),
+                ("k-NN", panel.scores.knn_accuracy),
+                ("silhouette", panel.scores.silhouette),
+            ];
+            for (name, value) in own.into_iter().chain(SCORES.into_iter().zip(scores(&panel.scores.mean))) {
                 ReportError::check_finite(value, || of(name))?;
             }
         }
@@ -203,16 +197,18 @@ impl Record for Figure4Record {
 
     fn tables(&self) -> Vec<Table> {
         let row = |panel: &Figure4Panel| {
-            let map = [panel.map_silhouette, panel.map_stress, panel.negative_mass];
+            let Figure4Panel { scores: s, map_silhouette, map_stress, negative_mass, .. } = panel;
+            let own = [s.knn_accuracy, s.silhouette, *map_silhouette, *map_stress, *negative_mass];
             let mut row = vec![Cell::text(&panel.method), Cell::text(panel.scale.name())];
-            row.extend(scores(&panel.scores).into_iter().chain(map).map(Cell::score));
+            row.extend(scores(&s.mean).into_iter().chain(own).map(Cell::score));
             row
         };
-        let caption = "NN: nearest neighbour; FT and ST: first and second tier; E: E-measure; DCG: discounted cumulative \
-                       gain; mAP: mean average precision; k-NN: leave-one-out accuracy. 1 is the best value of all. Neg. \
-                       mass: the share of the spectrum that no Euclidean space can represent.";
-        let headings = ["method", "scale"].into_iter().chain(HEADINGS);
-        let headings = headings.chain(["map silh.", "map stress", "neg. mass"]);
+        let caption = format!(
+            "{SCORES_CAPTION} k-NN: leave-one-out accuracy. Neg. mass: the share of the spectrum that no Euclidean space can \
+             represent."
+        );
+        let own = ["k-NN", "silhouette", "map silh.", "map stress", "neg. mass"];
+        let headings = ["method", "scale"].into_iter().chain(SCORES).chain(own);
         vec![Table::new(caption, headings, self.panels.iter().map(row).collect())]
     }
 }
@@ -221,10 +217,11 @@ impl Record for Figure4Record {
 mod tests {
     use super::*;
     use crate::fixtures::{assert_balanced, figure4_record};
-    use crate::save;
+    use crate::record::save;
+    use crate::results::Record;
 
     /// The SVG texts and PNG bytes of the figures of a record.
-    fn drawn(record: &Figure4Record) -> (Vec<String>, Vec<Vec<u8>>) {
+    fn drawn(record: &Record<Figure4Results>) -> (Vec<String>, Vec<Vec<u8>>) {
         let folder = tempfile::tempdir().unwrap();
         save(record, folder.path(), "figure4").unwrap();
         let read = |part: &str, extension: &str| {
@@ -268,11 +265,11 @@ mod tests {
     #[test]
     fn rows_of_the_matrix_are_grouped_by_class() {
         let mut record = figure4_record(&[("cat", 2), ("dog", 2)]);
-        record.labels.swap(1, 2);
-        let Shown { map, matrix, order } = shown(&record, &record.panels[0]);
+        record.results.labels.swap(1, 2);
+        let Shown { map, matrix, order } = shown(&record.results, &record.results.panels[0]);
         assert_eq!((order, matrix.borders.as_slice()), (vec![0, 2, 1, 3], &[2][..]));
         assert_eq!(matrix.rows, ["cat0", "dog2", "cat1", "dog3"]);
-        assert_eq!(matrix.values[0][1], record.panels[0].matrix[0][2]);
+        assert_eq!(matrix.values[0][1], record.results.panels[0].matrix[0][2]);
         assert_eq!(matrix.x.ticks[1], (2.5, "dog".to_owned()));
         assert_eq!(map.series[1].points[0].note, "cat1");
     }
@@ -280,13 +277,16 @@ mod tests {
     #[test]
     fn records_without_content_are_errors_and_leave_no_file() {
         let folder = tempfile::tempdir().unwrap();
-        let fault = |record: &Figure4Record| save(record, folder.path(), "figure4").unwrap_err();
+        let fault = |record: &Record<Figure4Results>| save(record, folder.path(), "figure4").unwrap_err();
         let mut record = figure4_record(&[("cat", 2)]);
-        record.panels.clear();
+        record.results.panels.clear();
         assert!(matches!(fault(&record), ReportError::Empty { unit: "panel", .. }));
-        assert!(matches!(fault(&Figure4Record::default()), ReportError::Empty { unit: "shape", .. }));
+        assert!(matches!(
+            fault(&Record::<Figure4Results>::default()),
+            ReportError::Empty { unit: "shape", .. }
+        ));
         record = figure4_record(&[("cat", 2)]);
-        record.panels[0].map[0][0] = f64::NAN;
+        record.results.panels[0].map[0][0] = f64::NAN;
         assert!(matches!(fault(&record), ReportError::NotFinite { .. }));
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
     }
@@ -294,24 +294,24 @@ mod tests {
     #[test]
     fn inconsistent_records_are_errors_that_name_the_part() {
         let good = figure4_record(&[("cat", 3), ("dog", 2)]);
-        good.validate().unwrap();
-        let broken = |change: &dyn Fn(&mut Figure4Record)| {
+        good.results.validate().unwrap();
+        let broken = |change: &dyn Fn(&mut Record<Figure4Results>)| {
             let mut record = good.clone();
             change(&mut record);
-            record.validate().unwrap_err().to_string()
+            record.results.validate().unwrap_err().to_string()
         };
-        assert!(broken(&|r| r.labels.truncate(4)).starts_with("labels has 4 entries instead of 5"));
-        assert!(broken(&|r| r.panels[1].map.truncate(2)).contains("map of KPCA-Nyström (raw) has 2"));
+        assert!(broken(&|r| r.results.labels.truncate(4)).starts_with("labels has 4 entries instead of 5"));
+        assert!(broken(&|r| r.results.panels[1].map.truncate(2)).contains("map of KPCA-Nyström (raw) has 2"));
         assert!(
-            broken(&|r| r.panels[2].matrix[3].truncate(1))
+            broken(&|r| r.results.panels[2].matrix[3].truncate(1))
                 .contains("matrix row 3 of NMDS (normalized) has 1")
         );
         assert!(
-            broken(&|r| r.panels[0].matrix[1][2] = f64::NAN)
+            broken(&|r| r.results.panels[0].matrix[1][2] = f64::NAN)
                 .contains("matrix entry 1, 2 of NMDS (raw) is NaN")
         );
-        assert!(broken(&|r| r.panels[0].map[4][0] = f64::INFINITY).contains("map point 4"));
-        assert!(broken(&|r| r.panels[0].scores.silhouette = f64::NAN).contains("silhouette of NMDS"));
+        assert!(broken(&|r| r.results.panels[0].map[4][0] = f64::INFINITY).contains("map point 4"));
+        assert!(broken(&|r| r.results.panels[0].scores.silhouette = f64::NAN).contains("silhouette of NMDS"));
     }
 
     #[test]
@@ -333,11 +333,11 @@ mod tests {
     #[test]
     fn the_table_has_a_row_per_method_and_scale() {
         let record = figure4_record(&[("cat", 3), ("dog", 2)]);
-        let text = record.summary().unwrap().to_text();
-        assert_eq!(text.lines().count(), 1 + record.panels.len());
+        let text = record.results.summary().unwrap().to_text();
+        assert_eq!(text.lines().count(), 1 + record.results.panels.len());
         assert!(text.contains("normalized") && text.contains("map stress"), "{text}");
         let lines: Vec<&str> = text.lines().collect();
-        for (heading, value) in HEADINGS.iter().zip(scores(&record.panels[0].scores)) {
+        for (heading, value) in SCORES.iter().zip(scores(&record.results.panels[0].scores.mean)) {
             let end = lines[0].find(heading).map(|at| at + heading.len()).unwrap();
             assert!(lines[1][..end].ends_with(&format!("{value:.3}")), "{heading} {value}\n{text}");
         }

@@ -1,8 +1,9 @@
 //! Figure 9: times and memory of whole embeddings.
 
 use crate::figure::{Content, Figure, Group, Plot, Point, grouped};
-use crate::results::{Axis, AxisScale, Expectation, Figure9Record, Figure9Row, Provenance};
-use crate::{Cell, Record, Table};
+use crate::record::Results;
+use crate::results::{Axis, AxisScale, Figure9Results, Figure9Row};
+use crate::table::{Cell, Table};
 use view::numbers::{bytes, seconds};
 
 /// The times of all methods on every shape.
@@ -22,11 +23,7 @@ fn plot(rows: &[Figure9Row]) -> Plot {
     grouped("From the repaired mesh to coordinates", &time, &groups, |method| format!("{method}, paper"))
 }
 
-impl Record for Figure9Record {
-    fn about(&self) -> (&Provenance, &[Expectation], &str) {
-        (&self.provenance, &self.expectations, &self.analysis)
-    }
-
+impl Results for Figure9Results {
     fn figures(&self) -> Vec<Figure> {
         let caption = "Filled: this program. Hollow: the paper, on a laptop of 2015.";
         vec![Figure {
@@ -57,18 +54,7 @@ impl Record for Figure9Record {
              times of the paper are those of a laptop of 2015.",
             self.threads
         );
-        let headings = [
-            "shape",
-            "vertices",
-            "method",
-            "distances",
-            "algebra",
-            "total",
-            "memory",
-            "runs",
-            "paper",
-            "remark",
-        ];
+        let headings = "shape vertices method distances algebra total memory runs paper remark".split(' ');
         vec![Table::new(caption, headings, self.rows.iter().map(row).collect())]
     }
 }
@@ -78,15 +64,15 @@ mod tests {
     use super::*;
     use crate::figure::Shape;
     use crate::fixtures::figure9_record;
-    use crate::save;
+    use crate::record::save;
 
     #[test]
     fn methods_that_were_not_run_have_dashes_and_no_points() {
         let record = figure9_record();
-        let text = record.summary().unwrap().to_text();
+        let text = record.results.summary().unwrap().to_text();
         assert!(text.contains("0.025") && text.contains("3.0 MiB") && text.contains("0.24"), "{text}");
         assert!(text.lines().nth(2).is_some_and(|line| line.matches(" - ").count() >= 4), "{text}");
-        let plot = plot(&record.rows);
+        let plot = plot(&record.results.rows);
         let drawn: Vec<(&str, Shape)> = plot.series.iter().map(|s| (s.name.as_str(), s.shape)).collect();
         assert_eq!(drawn, [("NMDS", Shape::Filled), ("NMDS, paper", Shape::Hollow)]);
         assert_eq!(plot.x.ticks[0].1, "david0, 3400 vertices");

@@ -4,14 +4,14 @@ use retrieval::{Evaluation, Scores};
 use serde_json::json;
 
 use crate::results::{
-    Axis, AxisScale, Classification, CurvesPanel, CurvesRecord, Expectation, Figure1Record, Figure1Shape,
-    Figure3Form, Figure3Record, Figure3Shape, Figure3Stress, Figure4Panel, Figure4Record, Figure9Measured,
-    Figure9Record, Figure9Row, Mark, Motions, Provenance, RetrievalRecord, RetrievalRow, Scale, Series,
-    SeriesPoint, ShapesRecord, ShownForm, ShownShape,
+    Axis, AxisScale, Classification, CurvesPanel, CurvesResults, Expectation, Figure1Results, Figure1Shape,
+    Figure3Form, Figure3Results, Figure3Shape, Figure3Stress, Figure4Panel, Figure4Results, Figure9Measured,
+    Figure9Results, Figure9Row, Mark, Motions, Provenance, Record, RetrievalResults, RetrievalRow, Scale,
+    Series, SeriesPoint, ShapesRecord, ShownForm, ShownShape,
 };
 use view::interactive::Geometry;
 
-pub(crate) fn provenance() -> Provenance {
+fn provenance() -> Provenance {
     Provenance {
         program: "experiments".into(),
         version: "0.1.0".into(),
@@ -22,6 +22,11 @@ pub(crate) fn provenance() -> Provenance {
         options: json!({"embedding": {"rank": 5, "note": "<b>"}}),
         seconds: [("embedding".to_string(), 0.25)].into(),
     }
+}
+
+/// A record without expectations.
+fn recorded<T>(results: T, analysis: &str) -> Record<T> {
+    Record { provenance: provenance(), results, expectations: vec![], analysis: analysis.into() }
 }
 
 pub(crate) fn evaluation() -> Evaluation {
@@ -36,7 +41,7 @@ pub(crate) fn evaluation() -> Evaluation {
     }
 }
 
-pub(crate) fn figure1_record() -> Figure1Record {
+pub(crate) fn figure1_record() -> Record<Figure1Results> {
     let shape = |name: &str, label: &str| Figure1Shape {
         name: name.into(),
         label: label.into(),
@@ -45,16 +50,12 @@ pub(crate) fn figure1_record() -> Figure1Record {
         stress: 262.05,
         repair: vec!["2 duplicate faces removed".into()],
     };
-    Figure1Record {
-        provenance: provenance(),
-        shapes: vec![shape("cat0", "cat"), shape("dog<3>", "dog")],
-        expectations: vec![],
-        analysis: "Forms of one class agree.\n\nSecond paragraph.".into(),
-    }
+    let results = Figure1Results { shapes: vec![shape("cat0", "cat"), shape("dog<3>", "dog")] };
+    recorded(results, "Forms of one class agree.\n\nSecond paragraph.")
 }
 
 /// Two shapes with two forms each, and one stress.
-pub(crate) fn figure3_record() -> Figure3Record {
+pub(crate) fn figure3_record() -> Record<Figure3Results> {
     let form = |method: &str, stress, paper| Figure3Form { method: method.into(), stress, paper };
     let shape = |name: &str, label: &str| Figure3Shape {
         name: name.into(),
@@ -72,17 +73,15 @@ pub(crate) fn figure3_record() -> Figure3Record {
         runs: 3,
         paper: Some(394.41),
     };
-    Figure3Record {
-        provenance: provenance(),
+    let results = Figure3Results {
         shapes: vec![shape("david<0>", "david"), shape("cat0", "cat")],
         stresses: vec![stress],
-        expectations: vec![],
-        analysis: "Order as printed.".into(),
-    }
+    };
+    recorded(results, "Order as printed.")
 }
 
 /// Two panels of two curves with a logarithmic vertical axis.
-pub(crate) fn curves_record() -> CurvesRecord {
+pub(crate) fn curves_record() -> Record<CurvesResults> {
     let axis = |name: &str, unit: &str, scale| Axis { name: name.into(), unit: unit.into(), scale };
     let points = |factor: f64| -> Vec<SeriesPoint> {
         let at = |x: f64| factor * 1e5 / x;
@@ -99,17 +98,12 @@ pub(crate) fn curves_record() -> CurvesRecord {
         ],
         marks: vec![Mark { x: 70.0, name: "recommended".into() }],
     };
-    CurvesRecord {
-        provenance: provenance(),
-        caption: "Errors.".into(),
-        panels: vec![panel("david0"), panel("cat0")],
-        expectations: vec![],
-        analysis: "Falls.".into(),
-    }
+    let results = CurvesResults { caption: "Errors.".into(), panels: vec![panel("david0"), panel("cat0")] };
+    recorded(results, "Falls.")
 }
 
 /// A method that was run and one that was not.
-pub(crate) fn figure9_record() -> Figure9Record {
+pub(crate) fn figure9_record() -> Record<Figure9Results> {
     let measured = Figure9Measured { geodesics: 0.02, embedding: 0.005, runs: 3, peak_bytes: 3 << 20 };
     let row = Figure9Row {
         shape: "david0".into(),
@@ -122,16 +116,12 @@ pub(crate) fn figure9_record() -> Figure9Record {
     let note = "all pairs need <5.8> GiB".to_string();
     let absent =
         Figure9Row { method: "MDS".into(), measured: None, paper_seconds: None, note, ..row.clone() };
-    Figure9Record {
-        provenance: provenance(),
-        threads: 2,
-        rows: vec![row, absent],
-        ..Figure9Record::default()
-    }
+    let results = Figure9Results { threads: 2, rows: vec![row, absent] };
+    recorded(results, "")
 }
 
 /// One signature at both scales, for two classes.
-pub(crate) fn retrieval_record() -> RetrievalRecord {
+pub(crate) fn retrieval_record() -> Record<RetrievalResults> {
     let scores = Scores { nn: 1.0, ft: 0.75, st: 0.9, e: 0.5, dcg: 0.95, map: 0.875 };
     let row = |scale| RetrievalRow {
         method: "wave-kernel".into(),
@@ -142,8 +132,7 @@ pub(crate) fn retrieval_record() -> RetrievalRecord {
         held_out_map: 0.625,
         precision: vec![1.0, 0.9, 0.6],
     };
-    RetrievalRecord {
-        provenance: provenance(),
+    let results = RetrievalResults {
         names: ["cat0", "cat1", "a0", "a1"].map(String::from).into(),
         labels: ["cat", "cat", "a & b", "a & b"].map(String::from).into(),
         rows: vec![row(Scale::Normalized), row(Scale::Raw)],
@@ -156,14 +145,13 @@ pub(crate) fn retrieval_record() -> RetrievalRecord {
             missed: 0.25,
             mistaken: 0.0,
         },
-        expectations: vec![],
-        analysis: "Near is alike.".into(),
-    }
+    };
+    recorded(results, "Near is alike.")
 }
 
 /// The shapes of [`figure4_record`]: balls of growing size.
 pub(crate) fn shapes_record(classes: &[(&str, usize)]) -> ShapesRecord {
-    let figure = figure4_record(classes);
+    let figure = figure4_record(classes).results;
     let shape = |(i, (name, label)): (usize, (&String, &String))| {
         let mut ball = mesh::shapes::icosphere(2);
         ball.positions.iter_mut().for_each(|p| *p *= 1.0 + i as f64);
@@ -190,7 +178,7 @@ pub(crate) fn shapes_record(classes: &[(&str, usize)]) -> ShapesRecord {
 }
 
 /// Points in one cluster per class, at both scales and for two methods.
-pub(crate) fn figure4_record(classes: &[(&str, usize)]) -> Figure4Record {
+pub(crate) fn figure4_record(classes: &[(&str, usize)]) -> Record<Figure4Results> {
     let labels: Vec<String> =
         classes.iter().flat_map(|(name, n)| std::iter::repeat_n(name.to_string(), *n)).collect();
     let place = |shape: usize| {
@@ -210,30 +198,29 @@ pub(crate) fn figure4_record(classes: &[(&str, usize)]) -> Figure4Record {
         scores: evaluation(),
         map_silhouette: 0.875,
     };
-    Figure4Record {
-        provenance: provenance(),
+    let results = Figure4Results {
         names: (0..labels.len()).map(|i| format!("{}{i}", labels[i])).collect(),
         panels: [Scale::Raw, Scale::Normalized]
             .into_iter()
             .flat_map(|scale| [panel("NMDS", scale), panel("KPCA-Nyström", scale)])
             .collect(),
         labels,
-        expectations: vec![
-            Expectation {
-                what: "NMDS, raw: first tier".into(),
-                expected: "at least 0.9".into(),
-                measured: "0.910".into(),
-                held: true,
-            },
-            Expectation {
-                what: "NMDS, raw: silhouette".into(),
-                expected: "at least 0.9".into(),
-                measured: "-0.125".into(),
-                held: false,
-            },
-        ],
-        analysis: "Two clusters.".into(),
-    }
+    };
+    let expectations = vec![
+        Expectation {
+            what: "NMDS, raw: first tier".into(),
+            expected: "at least 0.9".into(),
+            measured: "0.910".into(),
+            held: true,
+        },
+        Expectation {
+            what: "NMDS, raw: silhouette".into(),
+            expected: "at least 0.9".into(),
+            measured: "-0.125".into(),
+            held: false,
+        },
+    ];
+    Record { expectations, ..recorded(results, "Two clusters.") }
 }
 
 /// A page without the contents of its scripts and islands of data.

@@ -2,16 +2,16 @@
 //!
 //! `experiments` -> [`results`] (JSON) -> **report** -> SVG / PNG / text / one HTML page
 //!
-//! A [`Record`] says which figures and tables show it. [`figure`] describes figures as data, which the static files
+//! [`Results`] say which figures and tables show them. [`figure`] describes figures as data, which the static files
 //! and the page draw; [`Table`] is written as text and as HTML. Nothing here computes results: every value that is
-//! drawn or printed stands in a record.
+//! drawn or printed comes from a record.
 
 mod classes;
 mod curves;
 mod error;
 pub mod figure;
-pub mod figure1;
-pub mod figure3;
+mod figure1;
+mod figure3;
 mod figure4;
 mod figure9;
 #[cfg(test)]
@@ -23,5 +23,5 @@ mod retrieval;
 mod table;
 
 pub use error::ReportError;
-pub use record::{Record, save};
+pub use record::{Results, save};
 pub use table::{Cell, Table};

@@ -1,20 +1,17 @@
-//! What all records have in common, and the files made of them.
+//! What the results of all experiments have in common, and the files made of them.
 
 use std::path::Path;
 
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
+use crate::error::ReportError;
 use crate::figure::Figure;
-use crate::results::{Expectation, Provenance, write};
-use crate::{ReportError, Table};
+use crate::results::{Record, write};
+use crate::table::Table;
 
-/// The result of one experiment, with the figures and tables that show it.
-pub trait Record: Serialize + DeserializeOwned {
-    /// How the record was made, what was expected of it, and what it shows, in paragraphs of plain text separated by
-    /// empty lines.
-    fn about(&self) -> (&Provenance, &[Expectation], &str);
-
+/// The results of one experiment, with the figures and tables that show them.
+pub trait Results: Serialize + DeserializeOwned {
     /// Checks that there is something to draw, that lists agree in length and that numbers are finite.
     ///
     /// # Errors
@@ -23,10 +20,10 @@ pub trait Record: Serialize + DeserializeOwned {
         Ok(())
     }
 
-    /// The figures of a valid record.
+    /// The figures of valid results.
     fn figures(&self) -> Vec<Figure>;
 
-    /// The tables of a valid record.
+    /// The tables of valid results.
     fn tables(&self) -> Vec<Table>;
 
     /// The table that a run prints.
@@ -38,10 +35,10 @@ pub trait Record: Serialize + DeserializeOwned {
 /// Writes the static figures of a record and `NAME.json` into a folder.
 ///
 /// # Errors
-/// Those of [`Record::validate`] and [`write`](crate::results::write), [`ReportError::View`].
-pub fn save(record: &impl Record, folder: &Path, name: &str) -> Result<(), ReportError> {
-    record.validate()?;
-    for figure in record.figures() {
+/// Those of [`Results::validate`] and [`write`](crate::results::write), [`ReportError::View`].
+pub fn save(record: &Record<impl Results>, folder: &Path, name: &str) -> Result<(), ReportError> {
+    record.results.validate()?;
+    for figure in record.results.figures() {
         figure.save(&folder.join(name))?;
     }
     write(record, folder.join(format!("{name}.json")))

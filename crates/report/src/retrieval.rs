@@ -1,11 +1,11 @@
 //! Retrieval: precision over recall, and the confusion of classes.
 
 use crate::classes::Classes;
+use crate::error::ReportError;
 use crate::figure::{Axis, Content, Figure, Heat, Plot, Point, Series, Shape, Style};
-use crate::results::{
-    self, AxisScale, Classification, Expectation, Provenance, RetrievalRecord, RetrievalRow, Scale,
-};
-use crate::{Cell, Record, ReportError, Table};
+use crate::record::Results;
+use crate::results::{self, AxisScale, Classification, RetrievalResults, RetrievalRow, Scale};
+use crate::table::{Cell, SCORES, SCORES_CAPTION, Table, scores};
 
 /// The scales in the order of the panels, with their titles and their names in tables.
 const SCALES: [(Scale, &str, &str); 2] =
@@ -69,11 +69,7 @@ fn confusion(Classification { classes, confusion, .. }: &Classification) -> Heat
     }
 }
 
-impl Record for RetrievalRecord {
-    fn about(&self) -> (&Provenance, &[Expectation], &str) {
-        (&self.provenance, &self.expectations, &self.analysis)
-    }
-
+impl Results for RetrievalResults {
     fn validate(&self) -> Result<(), ReportError> {
         let Classification { classes, confusion, .. } = &self.classification;
         if self.rows.iter().all(|row| row.precision.is_empty()) || classes.is_empty() {
@@ -113,38 +109,25 @@ impl Record for RetrievalRecord {
     fn tables(&self) -> Vec<Table> {
         let row = |row: &RetrievalRow| {
             let size = SCALES.iter().find(|(scale, ..)| *scale == row.scale).map_or("", |(.., name)| name);
-            let (s, m) = (&row.micro, &row.macro_average);
-            let scores =
-                [s.nn, s.ft, s.st, s.e, s.dcg, s.map, m.nn, m.map, row.knn_accuracy, row.held_out_map];
+            let own = [row.macro_average.nn, row.macro_average.map, row.knn_accuracy, row.held_out_map];
             let mut cells = vec![Cell::text(&row.method), Cell::text(size)];
-            cells.extend(scores.map(Cell::score));
+            cells.extend(scores(&row.micro).into_iter().chain(own).map(Cell::score));
             cells
         };
-        let caption = "NN: nearest neighbour; FT and ST: first and second tier; E: E-measure; DCG: discounted cumulative \
-                       gain; mAP: mean average precision. 1 is the best value of all. Scores are averaged over queries; \
-                       macro scores over classes. Least mAP: the lowest mAP when one class is left out of the collection.";
-        let headings = [
-            "method",
-            "size",
-            "NN",
-            "FT",
-            "ST",
-            "E",
-            "DCG",
-            "mAP",
-            "macro NN",
-            "macro mAP",
-            "k-NN",
-            "least mAP",
-        ];
-        let scores = Table::new(caption, headings, self.rows.iter().map(row).collect());
+        let caption = format!(
+            "{SCORES_CAPTION} Scores are averaged over queries, macro scores over classes. Least mAP: the lowest mAP when one \
+             class is left out of the collection."
+        );
+        let own = ["macro NN", "macro mAP", "k-NN", "least mAP"];
+        let headings = ["method", "size"].into_iter().chain(SCORES).chain(own);
+        let all = Table::new(caption, headings, self.rows.iter().map(row).collect());
         let c = &self.classification;
         let caption = "Missed: the share of shapes classified as unknown although others of their class are in the \
                        collection. Mistaken: the share of shapes assigned to a class although no other of their own is. \
                        The thresholds are found without the class they are tested on.";
         let values = [c.missed, c.mistaken, c.threshold].map(Cell::score).to_vec();
         let unknown = Table::new(caption, ["missed", "mistaken", "threshold"], vec![values]);
-        vec![scores, unknown.folded("Unknown shapes")]
+        vec![all, unknown.folded("Unknown shapes")]
     }
 }
 
@@ -152,7 +135,8 @@ impl Record for RetrievalRecord {
 mod tests {
     use super::*;
     use crate::fixtures::{assert_balanced, retrieval_record};
-    use crate::save;
+    use crate::record::save;
+    use crate::results::Record;
 
     #[test]
     fn files_are_well_formed_deterministic_and_labelled() {
@@ -177,16 +161,17 @@ mod tests {
 
     #[test]
     fn inconsistent_records_are_errors_that_name_the_part() {
-        let fault = |change: &dyn Fn(&mut RetrievalRecord)| {
+        let fault = |change: &dyn Fn(&mut Record<RetrievalResults>)| {
             let mut record = retrieval_record();
             change(&mut record);
-            record.validate().unwrap_err().to_string()
+            record.results.validate().unwrap_err().to_string()
         };
-        assert!(fault(&|r| r.rows.clear()).contains("class and curve"));
-        assert!(fault(&|r| r.rows[0].precision[1] = f64::NAN).contains("precision of wave-kernel"));
+        assert!(fault(&|r| r.results.rows.clear()).contains("class and curve"));
+        assert!(fault(&|r| r.results.rows[0].precision[1] = f64::NAN).contains("precision of wave-kernel"));
         assert!(
-            fault(&|r| r.classification.confusion[0].truncate(1)).contains("row of the confusion matrix")
+            fault(&|r| r.results.classification.confusion[0].truncate(1))
+                .contains("row of the confusion matrix")
         );
-        assert!(fault(&|r| r.classification.confusion.truncate(1)).contains("the confusion matrix"));
+        assert!(fault(&|r| r.results.classification.confusion.truncate(1)).contains("the confusion matrix"));
     }
 }

@@ -1,5 +1,6 @@
 //! Tables as data, and their text for terminals.
 
+use ::retrieval::Scores;
 use comfy_table::{CellAlignment, presets};
 use view::numbers::signed;
 
@@ -35,7 +36,7 @@ impl Cell {
         Self::Text(text.to_string())
     }
 
-    /// A number as it is written.
+    /// A formatted number.
     pub fn number(text: impl ToString) -> Self {
         Self::Number(text.to_string())
     }
@@ -98,6 +99,18 @@ impl Table {
         }
         table.trim_fmt()
     }
+}
+
+/// The headings of [`scores`] in tables, as in the paper.
+pub(crate) const SCORES: [&str; 6] = ["NN", "FT", "ST", "E", "DCG", "mAP"];
+
+/// The meaning of [`SCORES`], as the beginning of a caption.
+pub(crate) const SCORES_CAPTION: &str = "NN: nearest neighbour; FT and ST: first and second tier; E: E-measure; DCG: \
+    discounted cumulative gain; mAP: mean average precision. 1 is the best value of all.";
+
+/// The scores under [`SCORES`].
+pub(crate) fn scores(s: &Scores) -> [f64; 6] {
+    [s.nn, s.ft, s.st, s.e, s.dcg, s.map]
 }
 
 /// A number with three significant digits, as short as possible.

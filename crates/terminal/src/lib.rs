@@ -2,6 +2,7 @@
 //!
 //! Knows nothing of arguments or results.
 
+mod memory;
 mod progress;
 
 use std::process::ExitCode;
@@ -9,6 +10,7 @@ use std::sync::{Mutex, PoisonError};
 
 use anyhow::{Context, Result};
 
+pub use memory::with_peak_bytes;
 pub use progress::Bars;
 
 /// Called on the first interruption instead of exiting.

@@ -1,7 +1,7 @@
 //! A drawing as a list of elements, which becomes a PNG and an SVG of the same content.
 //!
-//! Drawings are measured in **units**: 1000 of them are as wide as the text of a printed page (7 inches), so a type
-//! size of 16 units prints at 8 points. Both files have a whole number of pixels per unit.
+//! Drawings are measured in **units**: [`PAGE_WIDTH`] of them are as wide as the text of a printed page (7 inches), so
+//! a type size of 16 units prints at 8 points. Both files have a whole number of pixels per unit.
 
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
@@ -14,8 +14,8 @@ use plotters::style::{FontStyle, FontTransform, TextStyle as PlottersStyle, regi
 use files::write_bytes;
 
 use crate::color::Rgb;
-use crate::image::encode_png;
-use crate::{RgbaImage, ViewError};
+use crate::error::ViewError;
+use crate::image::{RgbaImage, encode_png};
 
 /// Pixels per unit in both files and in every raster inside them: 286 dots per inch in print.
 pub const PIXELS_PER_UNIT: u32 = 2;
@@ -31,12 +31,8 @@ const SVG_TEXT_DROP: f64 = 0.06;
 /// The name of the embedded DejaVu Sans. The SVG asks its viewer for it, so it lists fonts of similar width.
 const FONT: &str = "DejaVu Sans, Bitstream Vera Sans, Verdana, sans-serif";
 
-/// Type size of plain text and names of axes.
-pub const TEXT: u32 = 16;
-/// Type size of notes and tick labels.
-pub const SMALL: u32 = 14;
-/// Type size of the titles of panels.
-pub const TITLE: u32 = 19;
+/// Width of a figure that fills the text of a page, in units.
+pub const PAGE_WIDTH: f64 = 1000.0;
 
 /// Colour of text and lines.
 pub const INK: Rgb = [34; 3];
@@ -70,10 +66,23 @@ pub struct TextStyle {
 }
 
 impl TextStyle {
-    /// Plain text of a type size in units, from left to right in ink.
+    /// Plain text and names of axes.
+    pub const NAME: Self = Self::new(16, Anchor::Center);
+    /// Notes and tick labels.
+    pub const LABEL: Self = Self::new(14, Anchor::Center);
+    /// Titles of panels.
+    pub const TITLE: Self = Self::new(19, Anchor::Center).bold();
+
+    /// Text of a type size in units, from left to right in ink.
     #[must_use]
     pub const fn new(size: u32, anchor: Anchor) -> Self {
         Self { size, bold: false, color: INK, anchor, upwards: false }
+    }
+
+    /// The same style with another anchor.
+    #[must_use]
+    pub const fn at(self, anchor: Anchor) -> Self {
+        Self { anchor, ..self }
     }
 
     /// The same style in bold.
@@ -322,11 +331,11 @@ mod tests {
 
     #[test]
     fn text_width_grows_with_the_text_and_its_weight() {
-        let style = TextStyle::new(TEXT, Anchor::Left);
+        let style = TextStyle::NAME.at(Anchor::Left);
         assert_eq!(text_width("", style), 0.0);
         let digit = text_width("0", style);
         assert!(
-            (digit / f64::from(TEXT) - 0.636).abs() < 0.02,
+            (digit / f64::from(style.size) - 0.636).abs() < 0.02,
             "a digit of DejaVu Sans is 0.636 em wide: {digit}"
         );
         assert!((text_width("0000", style) - 4.0 * digit).abs() < 0.5);
@@ -336,7 +345,7 @@ mod tests {
     /// A drawing with one word on it.
     fn word(width: u32, height: u32) -> Canvas {
         let mut canvas = Canvas::new(width, height);
-        canvas.text("word", (5.0, 15.0), TextStyle::new(TEXT, Anchor::Left));
+        canvas.text("word", (5.0, 15.0), TextStyle::NAME.at(Anchor::Left));
         canvas
     }
 

@@ -59,11 +59,18 @@ pub fn perceptual(t: f64) -> Rgb {
     [color.0, color.1, color.2]
 }
 
+/// The least and the greatest of the finite numbers.
+#[must_use]
+pub fn value_range(values: &[f64]) -> Option<[f64; 2]> {
+    let finite = || values.iter().copied().filter(|v| v.is_finite());
+    let low = finite().reduce(f64::min)?;
+    Some([low, finite().fold(low, f64::max)])
+}
+
 /// The colours of values in [`perceptual`], from the least finite value (dark) to the greatest (bright);
 /// other values are grey.
 pub fn color_scale(values: &[f64]) -> impl Fn(f64) -> Rgb + use<> {
-    let finite = values.iter().copied().filter(|x| x.is_finite());
-    let (least, most) = finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), x| (lo.min(x), hi.max(x)));
+    let [least, most] = value_range(values).unwrap_or_default();
     // Halved first: the range of finite values may overflow.
     let range = most / 2.0 - least / 2.0;
     move |value| {

@@ -4,7 +4,7 @@
 //!
 //! `mesh::TriMesh` -> [`interactive::Geometry`] (JSON) -> a scene in the browser
 //!
-//! Nothing here computes results: the crate only decides where ink goes.
+//! Nothing here computes results; the crate only draws them.
 
 pub mod canvas;
 pub mod color;

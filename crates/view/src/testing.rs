@@ -1,6 +1,6 @@
 //! Small meshes for the tests.
 
-use crate::RgbaImage;
+use crate::image::RgbaImage;
 use mesh::TriMesh;
 use nalgebra::Point3;
 use surface::VertexId;

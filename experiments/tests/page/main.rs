@@ -1,6 +1,6 @@
-//! The report as people meet it: opened as a file in a browser, looked at, pointed at, turned, printed.
+//! Tests of the report page in a browser: hovering, clicking, rotating, narrow screens, dark mode, print.
 //!
-//! Pictures of it are left in `target/browser`.
+//! Screenshots are written to `target/browser`.
 
 #[cfg(test)]
 mod report;

@@ -5,7 +5,7 @@ use std::sync::OnceLock;
 use browser::Browser;
 use serde_json::{Value, json};
 
-/// Figures 1 and 4 of the built-in shapes, as small as these can be made; made once.
+/// The report on Figures 1 and 4 of the smallest built-in shapes, made once.
 fn report() -> PathBuf {
     static FOLDER: OnceLock<PathBuf> = OnceLock::new();
     let folder = FOLDER.get_or_init(|| {
@@ -21,7 +21,7 @@ fn report() -> PathBuf {
     folder.join("report.html")
 }
 
-/// The page, opened in a browser of this size and drawn as far as it is seen.
+/// The page in a browser window of this size.
 fn opened(size: [u32; 2]) -> Option<Browser> {
     let browser = Browser::start()?;
     browser.resize(size[0], size[1]).unwrap();
@@ -37,7 +37,7 @@ fn shown(browser: &Browser, css: &str) {
     browser.wait_for(&format!("{found}.dataset.state === 'ready'")).unwrap();
 }
 
-/// Goes through the page from top to bottom as a reader does.
+/// Scrolls from top to bottom and waits until all plots are drawn.
 fn scrolled_through(browser: &Browser) {
     let step = "scrollBy({ top: innerHeight * 0.7, behavior: 'instant' });
         return new Promise(done => setTimeout(() => done(scrollY + innerHeight >= document.documentElement.scrollHeight - 2), 150))";
@@ -53,15 +53,15 @@ fn scrolled_through(browser: &Browser) {
         .unwrap();
 }
 
-/// Nothing was said, and nothing asked for but the file and what is written in it.
+/// Asserts that the console is empty and that the page requested nothing but itself.
 fn assert_silent(browser: &Browser) {
     assert_eq!(browser.console().unwrap(), []);
     let outside = |address: &String| {
         let is_page = address.starts_with("file://") && address.ends_with("/report.html");
         !is_page && !["data:", "blob:"].iter().any(|inside| address.starts_with(inside))
     };
-    let asked: Vec<String> = browser.requests().unwrap().into_iter().filter(outside).collect();
-    assert!(asked.is_empty(), "{asked:?}");
+    let requested: Vec<String> = browser.requests().unwrap().into_iter().filter(outside).collect();
+    assert!(requested.is_empty(), "{requested:?}");
 }
 
 fn picture(name: &str) -> PathBuf {
@@ -72,7 +72,7 @@ fn number(value: &Value) -> f64 {
     value.as_f64().unwrap()
 }
 
-/// Where the eye of a view stands.
+/// The position of the camera of a view.
 fn eye(browser: &Browser, css: &str) -> [f64; 3] {
     let scene = format!("document.querySelector('{css} .canonform-scene')");
     let eye = browser
@@ -81,7 +81,7 @@ fn eye(browser: &Browser, css: &str) -> [f64; 3] {
     [0, 1, 2].map(|i| number(&eye[i]))
 }
 
-/// The point of the window where the map has a shape.
+/// The position of a shape of the map, in window coordinates.
 fn point_on_map(browser: &Browser, shape: usize) -> [i32; 2] {
     let at = browser
         .eval(&format!(
@@ -96,7 +96,7 @@ fn point_on_map(browser: &Browser, shape: usize) -> [i32; 2] {
     [0, 1].map(|i| number(&at[i]).round() as i32)
 }
 
-/// In the dark, text stays readable.
+/// Asserts that text is light on dark if the reader prefers dark pages.
 fn assert_readable_in_the_dark(browser: &Browser) {
     browser.prefer("prefers-color-scheme", "dark").unwrap();
     let light = "const light = color => { const [r, g, b] = color.match(/[\\d.]+/g).map(Number); return (r + g + b) / 765; };
@@ -110,7 +110,7 @@ fn assert_readable_in_the_dark(browser: &Browser) {
     browser.screenshot_all(&picture("report-dark-1280")).unwrap();
 }
 
-/// On paper there are the static figures, and nothing that only a screen can show.
+/// Asserts that print shows the static figures instead of the interactive ones.
 fn assert_printable(browser: &Browser) {
     let seen = |css: &str| {
         browser
@@ -130,7 +130,7 @@ fn assert_printable(browser: &Browser) {
 }
 
 #[test]
-fn a_point_shows_its_shape_and_a_click_brings_it_into_the_scene() {
+fn hovering_shows_a_card_and_clicking_chooses_shapes() {
     let Some(browser) = opened([1280, 900]) else { return };
     shown(&browser, "#figure4-map");
     let facts = |key: &str| {
@@ -158,7 +158,7 @@ fn a_point_shows_its_shape_and_a_click_brings_it_into_the_scene() {
         .unwrap();
     assert_eq!(title, name);
 
-    // A cell of the matrix names its two shapes, and a click takes both.
+    // A cell of the matrix names its two shapes; a click chooses both.
     shown(&browser, "#figure4-matrix");
     let cell = browser
         .eval(
@@ -185,7 +185,7 @@ fn a_point_shows_its_shape_and_a_click_brings_it_into_the_scene() {
 }
 
 #[test]
-fn pictures_are_turned_together_by_hand_and_by_keys() {
+fn views_rotate_together_by_mouse_and_keyboard() {
     let Some(browser) = opened([1280, 900]) else { return };
     shown(&browser, "#figure4-map");
     let views = ["#figure4-first-shape", "#figure4-second-form", "#figure4-overlay"];
@@ -205,7 +205,7 @@ fn pictures_are_turned_together_by_hand_and_by_keys() {
     };
     assert!(settled(), "{:?}", views.map(|view| eye(&browser, view)));
     browser.screenshot(&picture("report-turned-1280")).unwrap();
-    // The scene has the keyboard since it was pressed on.
+    // The drag moved the keyboard focus to the scene.
     let turned = eye(&browser, views[2]);
     browser.eval("document.activeElement.dispatchEvent(new KeyboardEvent('keydown', { key: 'ArrowLeft', bubbles: true }))").unwrap();
     for _ in 0..50 {
@@ -232,7 +232,7 @@ fn pictures_are_turned_together_by_hand_and_by_keys() {
 }
 
 #[test]
-fn the_page_holds_still_and_fits_on_a_laptop_and_a_telephone_in_the_dark_and_on_paper() {
+fn the_layout_is_stable_and_fits_wide_and_narrow_screens_dark_mode_and_print() {
     for (name, size) in [("1280", [1280, 900]), ("390", [390, 844])] {
         let Some(browser) = opened(size) else { return };
         scrolled_through(&browser);

@@ -6,11 +6,10 @@ use anyhow::Result;
 use canonform::geodesics::{Method, Sampling, Variance};
 use canonform::nmds::{Regularization, RpiAlpha};
 use canonform::{EmbedMethod, FormOptions, MethodFacts, MethodsReport, StressOptions, compare_methods};
-use terminal::Bars;
+use terminal::{Bars, with_peak_bytes};
 
 use super::{named, read_surface};
 use crate::args::{Common, MethodsArgs};
-use crate::memory::with_peak_bytes;
 use crate::output::{print, print_json};
 
 /// Embeds a mesh by every method and sets them side by side.

@@ -1,4 +1,4 @@
-//! Plots of several series beside each other at every category.
+//! Plots with several series side by side in every category.
 
 use super::axis::Axis;
 use super::model::{Plot, Point, Series, Shape};

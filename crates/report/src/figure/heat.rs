@@ -4,15 +4,12 @@ use super::axis::Axis;
 use super::model::Heat;
 use view::RgbaImage;
 use view::canvas::{
-    Anchor, Canvas, GRID, INK, PALE_INK, PIXELS_PER_UNIT, Point as Place, SMALL, TEXT, TITLE, TextStyle,
-    text_width,
+    Anchor, Canvas, GRID, INK, PAGE_WIDTH, PALE_INK, PIXELS_PER_UNIT, Point as Place, TextStyle, text_width,
 };
 use view::color::{Rgb, mix, perceptual};
 
-const WIDTH: f64 = 1000.0;
-const COLUMN: f64 = WIDTH / 2.0;
+const COLUMN: f64 = PAGE_WIDTH / 2.0;
 const WHITE: Rgb = [255; 3];
-const NAMES: TextStyle = TextStyle::new(SMALL, Anchor::Center);
 /// Height of a line of names.
 const LINE: f64 = 16.0;
 /// Around a grid of counts.
@@ -40,18 +37,18 @@ pub(super) fn draw(heats: &[Heat]) -> Canvas {
 /// A matrix with counts and grid lines, in the middle of the figure.
 fn counts(heat: &Heat) -> Canvas {
     let (n_rows, n_columns) = (heat.rows.len() as f64, heat.columns.len() as f64);
-    let names = heat.columns.iter().map(|name| text_width(name, NAMES)).fold(0.0, f64::max) + 14.0;
-    let room = WIDTH - 2.0 * MARGIN - names - 30.0;
+    let names = heat.columns.iter().map(|name| text_width(name, TextStyle::LABEL)).fold(0.0, f64::max) + 14.0;
+    let room = PAGE_WIDTH - 2.0 * MARGIN - names - 30.0;
     let cell = CELL.min((room / n_columns).floor()).max(2.0);
     let (wide, high) = (cell * n_columns, cell * n_rows);
-    let mut canvas = Canvas::new(WIDTH as u32, (high + names + 3.0 * MARGIN + 30.0) as u32);
-    let grid = Grid { heat, left: (WIDTH - wide + names + 30.0) / 2.0, top: MARGIN, wide, high };
+    let mut canvas = Canvas::new(PAGE_WIDTH as u32, (high + names + 3.0 * MARGIN + 30.0) as u32);
+    let grid = Grid { heat, left: (PAGE_WIDTH - wide + names + 30.0) / 2.0, top: MARGIN, wide, high };
     canvas.image(grid.raster(), (grid.left, grid.top));
     for (row, own) in heat.counts.iter().flatten().enumerate().filter(|_| cell >= LEGIBLE) {
         for (column, count) in own.iter().enumerate().filter(|(_, count)| **count > 0) {
             let is_dark = grid.share(heat.values[row][column]) > 0.5;
             let [x, y] = [column, row].map(|at| (at as f64 + 0.5) * cell);
-            let style = NAMES.colored(if is_dark { WHITE } else { INK });
+            let style = TextStyle::LABEL.colored(if is_dark { WHITE } else { INK });
             canvas.text(count.to_string(), (grid.left + x, grid.top + y), style);
         }
     }
@@ -64,9 +61,8 @@ fn counts(heat: &Heat) -> Canvas {
         canvas.line((at, grid.top), (at, grid.top + high), 1.0, GRID);
     }
     grid.names(&mut canvas, str::to_owned);
-    let style = TextStyle::new(TEXT, Anchor::Center);
-    canvas.text(&heat.y.name, (grid.left - names - 16.0, grid.top + high / 2.0), style.up());
-    canvas.text(&heat.x.name, (grid.left + wide / 2.0, grid.top + high + names + MARGIN), style);
+    canvas.text(&heat.y.name, (grid.left - names - 16.0, grid.top + high / 2.0), TextStyle::NAME.up());
+    canvas.text(&heat.x.name, (grid.left + wide / 2.0, grid.top + high + names + MARGIN), TextStyle::NAME);
     canvas
 }
 
@@ -74,17 +70,16 @@ fn counts(heat: &Heat) -> Canvas {
 fn pairs(heats: &[Heat]) -> Canvas {
     let foot = |heat: &Heat| {
         let grid = Grid { heat, left: 0.0, top: 0.0, wide: SIDE, high: SIDE };
-        let longest = heat.x.ticks.iter().map(|(_, label)| text_width(&shortened(label), NAMES));
+        let longest = heat.x.ticks.iter().map(|(_, label)| text_width(&shortened(label), TextStyle::LABEL));
         if grid.has_level_names(shortened) { 34.0 } else { 24.0 + longest.fold(0.0, f64::max) }
     };
     let panel = TITLE_HEIGHT + SIDE + heats.iter().map(foot).fold(0.0, f64::max);
     let rows = heats.len().div_ceil(2) as f64;
-    let mut canvas = Canvas::new(WIDTH as u32, (rows * panel + 4.0) as u32);
+    let mut canvas = Canvas::new(PAGE_WIDTH as u32, (rows * panel + 4.0) as u32);
     for (i, heat) in heats.iter().enumerate() {
         let (edge, top) = ((i % 2) as f64 * COLUMN, 4.0 + (i / 2) as f64 * panel);
         let grid = Grid { heat, left: edge + LEFT, top: top + TITLE_HEIGHT, wide: SIDE, high: SIDE };
-        let title = TextStyle::new(TITLE, Anchor::Center).bold();
-        canvas.text(&heat.title, (grid.left + SIDE / 2.0, top + TITLE_HEIGHT / 2.0), title);
+        canvas.text(&heat.title, (grid.left + SIDE / 2.0, top + TITLE_HEIGHT / 2.0), TextStyle::TITLE);
         canvas.image(grid.raster(), (grid.left, grid.top));
         for &border in &heat.borders {
             let at = SIDE * border as f64 / heat.rows.len() as f64;
@@ -135,7 +130,7 @@ impl Grid<'_> {
     /// Whether the names fit side by side under the matrix.
     fn has_level_names(&self, written: impl Fn(&str) -> String) -> bool {
         let middle = |tick: &(f64, String)| Self::middle(self.wide, tick, self.heat.columns.len());
-        let half = |tick: &(f64, String)| text_width(&written(&tick.1), NAMES) / 2.0 + 4.0;
+        let half = |tick: &(f64, String)| text_width(&written(&tick.1), TextStyle::LABEL) / 2.0 + 4.0;
         self.heat.x.ticks.windows(2).all(|t| middle(&t[1]) - middle(&t[0]) > half(&t[0]) + half(&t[1]))
     }
 
@@ -143,8 +138,8 @@ impl Grid<'_> {
     fn names(&self, canvas: &mut Canvas, written: impl Fn(&str) -> String) {
         let Heat { x, y, rows, columns, .. } = self.heat;
         let (gap, below) = match self.has_level_names(&written) {
-            true => (16.0, NAMES),
-            false => (8.0, TextStyle::new(SMALL, Anchor::Right).up()),
+            true => (16.0, TextStyle::LABEL),
+            false => (8.0, TextStyle::LABEL.at(Anchor::Right).up()),
         };
         let mut free = [f64::NEG_INFINITY; 2];
         for i in 0..x.ticks.len().max(y.ticks.len()) {
@@ -153,7 +148,7 @@ impl Grid<'_> {
                 if middle >= free[0] {
                     free[0] = middle + LINE;
                     let place = (self.left - 8.0, self.top + middle);
-                    canvas.text(written(&tick.1), place, TextStyle::new(SMALL, Anchor::Right));
+                    canvas.text(written(&tick.1), place, TextStyle::LABEL.at(Anchor::Right));
                 }
             }
             if let Some(tick) = x.ticks.get(i) {
@@ -189,7 +184,7 @@ fn color_bar(canvas: &mut Canvas, (left, top): Place, axis: &Axis, tint: Option<
         *pixel = [r, g, b, 255];
     }
     canvas.image(image, (left, top));
-    let style = TextStyle::new(SMALL, Anchor::Left);
+    let style = TextStyle::LABEL.at(Anchor::Left);
     let mut widest = 0.0_f64;
     for (share, label) in axis.placed_ticks() {
         let y = top + SIDE * (1.0 - share);
@@ -198,7 +193,7 @@ fn color_bar(canvas: &mut Canvas, (left, top): Place, axis: &Axis, tint: Option<
         canvas.text(label, (left + BAR + 7.0, y), style);
     }
     let right = (left + BAR + 7.0 + widest + 18.0).min(limit);
-    canvas.text(&axis.name, (right, top + SIDE / 2.0), TextStyle::new(TEXT, Anchor::Center).up());
+    canvas.text(&axis.name, (right, top + SIDE / 2.0), TextStyle::NAME.up());
 }
 
 #[cfg(test)]

@@ -21,7 +21,7 @@ pub use tiles::{Layout, Tile, Tiles};
 
 use std::path::{Path, PathBuf};
 
-use crate::ReportError;
+use crate::error::ReportError;
 
 impl Figure {
     /// Draws the figure and returns the paths of its PNG and its SVG: the stem, the part and the extension. On logarithmic

@@ -3,12 +3,9 @@
 use super::model::{Plot, Point, Series, Shape};
 use super::style::grown;
 use crate::results::AxisScale;
-use view::canvas::{
-    Anchor, Canvas, GRID, INK, PALE_INK, Point as Place, SMALL, TEXT, TITLE, TextStyle, text_width,
-};
+use view::canvas::{Anchor, Canvas, GRID, INK, PAGE_WIDTH, PALE_INK, Point as Place, TextStyle, text_width};
 use view::color::mix;
 
-const WIDTH: f64 = 1000.0;
 /// The area inside the axes, and the distances around it.
 const HEIGHT: f64 = 340.0;
 const TITLE_HEIGHT: f64 = 36.0;
@@ -17,9 +14,8 @@ const RIGHT: f64 = 14.0;
 const UNDER: f64 = 62.0;
 /// Height of the scores under a plot.
 const SCORES: f64 = 66.0;
-const LEGEND: TextStyle = TextStyle::new(TEXT, Anchor::Left);
+const LEGEND: TextStyle = TextStyle::NAME.at(Anchor::Left);
 const LEGEND_LINE: f64 = 28.0;
-const LABEL: TextStyle = TextStyle::new(SMALL, Anchor::Center);
 /// Width of curves.
 const STROKE: f64 = 2.0;
 /// Opacity of bands.
@@ -29,7 +25,7 @@ const RADIUS: f64 = 5.8;
 const RIM: f64 = 1.1;
 
 /// Width and height of the area inside the axes where two plots share a row, for ranges that fill it.
-pub const MAP_SIZE: [f64; 2] = [WIDTH / 2.0 - LEFT - RIGHT, HEIGHT];
+pub const MAP_SIZE: [f64; 2] = [PAGE_WIDTH / 2.0 - LEFT - RIGHT, HEIGHT];
 
 pub(super) fn draw(plots: &[Plot]) -> Canvas {
     let columns = plots.len().clamp(1, 2);
@@ -38,9 +34,9 @@ pub(super) fn draw(plots: &[Plot]) -> Canvas {
     let legend = legend_lines(plots);
     let rows = plots.len().div_ceil(columns) as f64;
     let height = legend.len() as f64 * LEGEND_LINE + rows * panel + 16.0;
-    let mut canvas = Canvas::new(WIDTH as u32, height as u32);
+    let mut canvas = Canvas::new(PAGE_WIDTH as u32, height as u32);
     let top = draw_legend(&mut canvas, &legend);
-    let column = WIDTH / columns as f64;
+    let column = PAGE_WIDTH / columns as f64;
     for (i, plot) in plots.iter().enumerate() {
         let edge = (i % columns) as f64 * column;
         let top = top + (i / columns) as f64 * panel + TITLE_HEIGHT;
@@ -66,7 +62,7 @@ fn legend_lines(plots: &[Plot]) -> Vec<Vec<(&Series, f64)>> {
             continue;
         }
         let width = key_width(series) + 30.0 + text_width(&series.name, LEGEND);
-        if used + width > WIDTH - 40.0 {
+        if used + width > PAGE_WIDTH - 40.0 {
             lines.push(Vec::new());
             used = 0.0;
         }
@@ -81,7 +77,7 @@ fn draw_legend(canvas: &mut Canvas, lines: &[Vec<(&Series, f64)>]) -> f64 {
     let mut top = 6.0;
     for line in lines {
         let width: f64 = line.iter().map(|(_, width)| width).sum();
-        let mut left = (WIDTH - width) / 2.0 + 12.0;
+        let mut left = (PAGE_WIDTH - width) / 2.0 + 12.0;
         for (series, width) in line {
             let middle = top + LEGEND_LINE / 2.0;
             if series.shape == Shape::Curve {
@@ -113,8 +109,7 @@ impl Frame<'_> {
 
     fn draw(&self, canvas: &mut Canvas) {
         let middle = self.left + self.width / 2.0;
-        let title = TextStyle::new(TITLE, Anchor::Center).bold();
-        canvas.text(&self.plot.title, (middle, self.top - TITLE_HEIGHT / 2.0), title);
+        canvas.text(&self.plot.title, (middle, self.top - TITLE_HEIGHT / 2.0), TextStyle::TITLE);
         self.axes(canvas);
         for series in self.plot.series.iter().rev().filter(|series| series.shape == Shape::Curve) {
             self.band(canvas, series);
@@ -133,24 +128,23 @@ impl Frame<'_> {
             if x.scale != AxisScale::Category {
                 canvas.line((at, top), (at, bottom), 1.0, GRID);
             }
-            canvas.text(label, (at, bottom + 15.0), LABEL);
+            canvas.text(label, (at, bottom + 15.0), TextStyle::LABEL);
         }
         for (share, label) in y.placed_ticks() {
             let at = bottom - HEIGHT * share;
             canvas.line((left, at), (right, at), 1.0, GRID);
-            canvas.text(label, (left - 8.0, at), TextStyle::new(SMALL, Anchor::Right));
+            canvas.text(label, (left - 8.0, at), TextStyle::LABEL.at(Anchor::Right));
         }
         canvas.line((left, top), (left, bottom), 1.0, PALE_INK);
         canvas.line((left, bottom), (right, bottom), 1.0, PALE_INK);
-        let name = TextStyle::new(TEXT, Anchor::Center);
-        canvas.text(&x.name, ((left + right) / 2.0, bottom + 40.0), name);
-        canvas.text(&y.name, (left - LEFT + 14.0, (top + bottom) / 2.0), name.up());
+        canvas.text(&x.name, ((left + right) / 2.0, bottom + 40.0), TextStyle::NAME);
+        canvas.text(&y.name, (left - LEFT + 14.0, (top + bottom) / 2.0), TextStyle::NAME.up());
         for mark in marks {
             let Some(share) = x.share(mark.x) else { continue };
             let at = left + width * share;
             canvas.line((at, top), (at, bottom), 1.5, INK);
-            let middle = top + 8.0 + text_width(&mark.name, LABEL) / 2.0;
-            canvas.text(&mark.name, (at - 10.0, middle), LABEL.up());
+            let middle = top + 8.0 + text_width(&mark.name, TextStyle::LABEL) / 2.0;
+            canvas.text(&mark.name, (at - 10.0, middle), TextStyle::LABEL.up());
         }
     }
 
@@ -188,15 +182,17 @@ fn draw_scores(canvas: &mut Canvas, scores: &[(&str, String)], (left, top): Plac
     if scores.is_empty() {
         return;
     }
-    let width = |(name, value): &(&str, String)| text_width(name, LABEL).max(text_width(value, LABEL));
+    let width = |(name, value): &(&str, String)| {
+        text_width(name, TextStyle::LABEL).max(text_width(value, TextStyle::LABEL))
+    };
     let widths: Vec<f64> = scores.iter().map(width).collect();
     let room = column - 16.0;
     let gap = (room - widths.iter().sum::<f64>()) / widths.len() as f64;
     let mut at = left + (column - room) / 2.0;
     for ((name, value), width) in scores.iter().zip(widths) {
         let middle = at + (width + gap) / 2.0;
-        canvas.text(*name, (middle, top + 20.0), LABEL.colored(PALE_INK));
-        canvas.text(value, (middle, top + 42.0), LABEL);
+        canvas.text(*name, (middle, top + 20.0), TextStyle::LABEL.colored(PALE_INK));
+        canvas.text(value, (middle, top + 42.0), TextStyle::LABEL);
         at += width + gap;
     }
     for (y, color) in [(8.0, INK), (31.0, GRID), (54.0, INK)] {

@@ -4,24 +4,23 @@ use std::path::{Path, PathBuf};
 
 use mesh::TriMesh;
 
-use crate::ReportError;
-use view::canvas::{Anchor, Canvas, GRID, PALE_INK, PIXELS_PER_UNIT, SMALL, TEXT, TITLE, TextStyle};
+use crate::error::ReportError;
+use view::canvas::{Anchor, Canvas, GRID, PAGE_WIDTH, PALE_INK, PIXELS_PER_UNIT, TextStyle};
 use view::color::class_clay;
 use view::render::{RenderOptions, Surface, View, aspect, render};
 
-const WIDTH: f64 = 1000.0;
 const MARGIN: f64 = 10.0;
 const TILE: f64 = 240.0;
 
 /// Rows of surfaces. Those of row number `n` have the colour of class number `n`.
+///
+/// Shapes have the default view; all forms of a row share the view of the principal axes of the first one.
 #[derive(Debug, Clone)]
 pub struct Tiles<'a> {
     /// What follows the name of the experiment in the names of the files.
     pub part: &'static str,
     /// The arrangement.
     pub layout: &'static Layout,
-    /// The view of shapes. All forms of a row share the view of the principal axes of the first one.
-    pub view: View,
     /// Headings of the columns.
     pub heads: Vec<String>,
     /// The rows, with their headings.
@@ -37,7 +36,7 @@ pub enum Tile<'a> {
     Form(&'a TriMesh, Vec<(String, TextStyle)>),
 }
 
-/// An arrangement of tiles: distances in units, from the top of the figure or row if not said otherwise.
+/// An arrangement of tiles: distances in units, from the top of the figure or row unless stated otherwise.
 #[derive(Debug)]
 pub struct Layout {
     /// Space after every second tile.
@@ -73,7 +72,7 @@ impl Layout {
     pub const LINE: Self = Self {
         gutter: 0.0,
         widest: 1.2,
-        heads: Self::NAME.bold(),
+        heads: TextStyle::NAME.bold(),
         first_row: 28.0,
         rule: 1.0,
         title: 20.0,
@@ -82,12 +81,8 @@ impl Layout {
         captions: [12.0, 32.0],
     };
 
-    /// The style of names.
-    pub const NAME: TextStyle = TextStyle::new(TEXT, Anchor::Center);
-    /// The style of numbers.
-    pub const NUMBER: TextStyle = TextStyle::new(SMALL, Anchor::Center);
     /// The style of notes.
-    pub const NOTE: TextStyle = Self::NUMBER.colored(PALE_INK);
+    pub const NOTE: TextStyle = TextStyle::LABEL.colored(PALE_INK);
 }
 
 impl Tiles<'_> {
@@ -99,26 +94,26 @@ impl Tiles<'_> {
         let layout = self.layout;
         let columns = self.heads.len();
         let gutters = layout.gutter * (columns.div_ceil(2) as f64 - 1.0);
-        let width = ((WIDTH - 2.0 * MARGIN - gutters) / columns as f64).floor().min(TILE);
+        let width = ((PAGE_WIDTH - 2.0 * MARGIN - gutters) / columns as f64).floor().min(TILE);
         let left = |column: usize| MARGIN + column as f64 * width + (column / 2) as f64 * layout.gutter;
         let heights: Vec<f64> = self.rows.iter().map(|(_, tiles)| self.height(tiles, width)).collect();
         let row = |height: f64| layout.tiles + height + layout.foot;
         let high = layout.first_row + heights.iter().copied().map(row).sum::<f64>() + MARGIN;
-        let mut canvas = Canvas::new(WIDTH as u32, high as u32);
+        let mut canvas = Canvas::new(PAGE_WIDTH as u32, high as u32);
         for (column, head) in self.heads.iter().enumerate() {
             canvas.text(head, (left(column) + width / 2.0, 15.0), layout.heads);
         }
         let mut top = layout.first_row;
         for (class, ((title, tiles), height)) in self.rows.iter().zip(heights).enumerate() {
-            canvas.text(title, (MARGIN, top + layout.title), TextStyle::new(TITLE, Anchor::Left).bold());
+            canvas.text(title, (MARGIN, top + layout.title), TextStyle::TITLE.at(Anchor::Left));
             let rule = top + layout.rule;
-            canvas.line((MARGIN, rule), (WIDTH - MARGIN, rule), 1.0, GRID);
+            canvas.line((MARGIN, rule), (PAGE_WIDTH - MARGIN, rule), 1.0, GRID);
             let form =
                 tiles.iter().find_map(|tile| if let Tile::Form(mesh, _) = tile { Some(mesh) } else { None });
-            let form_view = form.map_or(self.view, |form| View::Principal.fixed(form, width > height));
+            let form_view = form.map_or(View::default(), |form| View::Principal.fixed(form, width > height));
             for (column, tile) in tiles.iter().enumerate() {
                 let (mesh, view, captions) = match tile {
-                    Tile::Shape(mesh, captions) => (mesh, self.view, captions),
+                    Tile::Shape(mesh, captions) => (mesh, View::default(), captions),
                     Tile::Form(mesh, captions) => (mesh, form_view, captions),
                 };
                 let options = RenderOptions {
@@ -142,7 +137,7 @@ impl Tiles<'_> {
     /// The height of the tiles of a row, from the mean proportions of its shapes.
     fn height(&self, tiles: &[Tile<'_>], width: f64) -> f64 {
         let shape = |tile: &Tile<'_>| {
-            if let Tile::Shape(mesh, _) = tile { Some(aspect(mesh, &self.view)) } else { None }
+            if let Tile::Shape(mesh, _) = tile { Some(aspect(mesh, &View::default())) } else { None }
         };
         let aspects: Vec<f64> = tiles.iter().filter_map(shape).collect();
         let mean = aspects.iter().sum::<f64>() / aspects.len() as f64;

@@ -9,7 +9,7 @@ use base64::engine::general_purpose::STANDARD;
 
 use super::html::escape;
 use super::scripts::island;
-use crate::ReportError;
+use crate::error::ReportError;
 use crate::figure::{Content, Figure};
 use files::FileError;
 

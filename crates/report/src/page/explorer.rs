@@ -12,10 +12,12 @@ use surface::VertexId;
 use super::chart::framed;
 use super::html::{escape, fill};
 use super::scripts::island;
-use crate::ReportError;
 use crate::classes::Classes;
+use crate::error::ReportError;
 use crate::figure4::shown;
-use crate::results::{Figure1Record, Figure4Record, SHAPES_FILE, Scale, ShapesRecord, ShownShape, read};
+use crate::results::{
+    Figure1Results, Figure4Results, Record, SHAPES_FILE, Scale, ShapesRecord, ShownShape, read,
+};
 use view::ViewError;
 use view::color::{class_clay, hex};
 use view::render::{Background, RenderOptions, Surface, render};
@@ -29,20 +31,20 @@ pub(super) fn shapes(folder: &Path) -> Result<Option<ShapesRecord>, ReportError>
     if !(figure.exists() && shapes.exists()) {
         return Ok(None);
     }
-    let figure: Figure4Record = read(figure)?;
+    let figure: Record<Figure4Results> = read(figure)?;
     let shapes: ShapesRecord = read(shapes)?;
     shapes.validate()?;
-    Ok(Some(shapes).filter(|shapes| shapes.belongs_to(&figure)))
+    Ok(Some(shapes).filter(|shapes| shapes.belongs_to(&figure.results)))
 }
 
 /// Map and matrix, with surfaces and forms if the folder has them, and `still` as the static figure.
 pub(super) fn explorer(
-    record: &Figure4Record,
+    record: &Record<Figure4Results>,
     shapes: Option<&ShapesRecord>,
     still: &str,
 ) -> Result<String, ReportError> {
     let mut html = framed("figure4", &live(record, shapes), still);
-    html.push_str(&island("figure4-data", &data(record, shapes)?));
+    html.push_str(&island("figure4-data", &data(&record.results, shapes)?));
     for (i, shape) in shapes.iter().flat_map(|shapes| &shapes.shapes).enumerate() {
         let ShownShape { n_vertices, surface, forms, .. } = shape;
         let shape = json!({"n_vertices": n_vertices, "surface": surface, "forms": forms});
@@ -52,7 +54,7 @@ pub(super) fn explorer(
 }
 
 /// The shapes of Figure 1 that Figure 4 has, in 3D; empty if there are none.
-pub(super) fn gallery(record: &Figure1Record, shapes: Option<&ShapesRecord>) -> String {
+pub(super) fn gallery(record: &Figure1Results, shapes: Option<&ShapesRecord>) -> String {
     let Some(shapes) = shapes else { return String::new() };
     let place = |name: &String| shapes.shapes.iter().position(|shape| shape.name == *name);
     let options: Vec<(String, &str)> =
@@ -62,7 +64,7 @@ pub(super) fn gallery(record: &Figure1Record, shapes: Option<&ShapesRecord>) -> 
     fill(include_str!("gallery.html"), &[("method", &escape(method)), ("controls", &controls)])
 }
 
-fn data(record: &Figure4Record, shapes: Option<&ShapesRecord>) -> Result<Value, ReportError> {
+fn data(record: &Figure4Results, shapes: Option<&ShapesRecord>) -> Result<Value, ReportError> {
     let classes = Classes::of(record.labels.iter().map(String::as_str));
     let panels = record.panels.iter().map(|panel| {
         let shown = shown(record, panel);
@@ -111,18 +113,16 @@ fn thumbnails(record: &ShapesRecord, classes: &Classes<'_>) -> Result<Vec<Value>
 }
 
 /// Controls, plots and views.
-fn live(record: &Figure4Record, shapes: Option<&ShapesRecord>) -> String {
+fn live(record: &Record<Figure4Results>, shapes: Option<&ShapesRecord>) -> String {
+    let Record { provenance, results: record, .. } = record;
     let names: Vec<(String, &str)> =
         record.names.iter().enumerate().map(|(i, name)| (i.to_string(), name.as_str())).collect();
     let methods = Classes::of(record.panels.iter().map(|panel| panel.method.as_str()));
     let methods: Vec<(&str, &str)> = methods.names().iter().map(|method| (*method, *method)).collect();
     let has = |scale: Scale| record.panels.iter().any(|panel| panel.scale == scale);
-    let scales = [(Scale::Raw, "original"), (Scale::Normalized, "ignored")];
-    let scales: Vec<(&str, &str)> = scales
-        .into_iter()
-        .filter(|(scale, _)| has(*scale))
-        .map(|(scale, text)| (scale.name(), text))
-        .collect();
+    let mut scales = vec![(Scale::Raw, "original"), (Scale::Normalized, "ignored")];
+    scales.retain(|(scale, _)| has(*scale));
+    let scales: Vec<_> = scales.into_iter().map(|(scale, text)| (scale.name(), text)).collect();
     let mut controls = select("figure4-method", "Method", &methods, 0)
         + &select("figure4-scale", "Size", &scales, 0)
         + &select("figure4-first", "Shape 1", &names, 0)
@@ -135,19 +135,14 @@ fn live(record: &Figure4Record, shapes: Option<&ShapesRecord>) -> String {
         None => format!(
             "<div class=\"missing\"><p>The surfaces are missing: this folder has no <code>{SHAPES_FILE}</code> from the same \
              run. To create it, run <code>{}</code>.</p></div>\n",
-            escape(&record.provenance.command)
+            escape(&provenance.command)
         ),
     };
     fill(include_str!("explorer.html"), &[("controls", &controls), ("views", &views)])
 }
 
 fn color_select(id: &str) -> String {
-    let colors = [
-        ("class", "class"),
-        ("distance", "geodesic distance from a sample"),
-        ("residual", "residual of the form"),
-    ];
-    select(id, "Colours", &colors, 0)
+    fill(include_str!("colors.html"), &[("id", id)])
 }
 
 /// A labelled choice between values and their texts.

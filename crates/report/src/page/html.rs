@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use crate::{Cell, Table};
+use crate::table::{Cell, Table};
 
 /// Text with the special characters of HTML escaped, for elements and attributes.
 pub(super) fn escape(text: &str) -> String {
@@ -20,7 +20,7 @@ pub(super) fn escape(text: &str) -> String {
     escaped
 }
 
-/// A template with every `{{name}}` replaced by its value, which is inserted as it is.
+/// A template with every `{{name}}` replaced by its value, without escaping.
 pub(super) fn fill(template: &str, values: &[(&str, &str)]) -> String {
     let mut parts = template.split("{{");
     let mut filled = parts.next().unwrap_or_default().to_owned();

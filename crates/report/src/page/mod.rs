@@ -11,11 +11,9 @@ mod section;
 
 use std::path::{Path, PathBuf};
 
-use crate::ReportError;
+use crate::error::ReportError;
 use files::write_bytes;
-use section::shown;
-
-pub use section::{Kind, Section};
+pub use section::{Content, Section, charts, explorer, gallery};
 
 /// Name of the page in the folder of results.
 pub const FILE: &str = "report.html";
@@ -27,18 +25,18 @@ pub const FILE: &str = "report.html";
 ///
 /// # Errors
 /// [`ReportError::File`] and [`ReportError::Parse`] if a record exists but cannot be read, the errors of
-/// [`Record::validate`](crate::Record::validate), [`ReportError::File`] if the page cannot be written.
+/// [`Results::validate`](crate::Results::validate), [`ReportError::File`] if the page cannot be written.
 pub fn write_report(folder: impl AsRef<Path>, sections: &[Section]) -> Result<PathBuf, ReportError> {
     let folder = folder.as_ref();
     let shapes = explorer::shapes(folder)?;
-    let contents: Vec<(String, Vec<bool>)> =
-        sections.iter().map(|section| shown(folder, section, shapes.as_ref())).collect::<Result<_, _>>()?;
+    let content = |section: &Section| (section.show)(folder, section.name, shapes.as_ref());
+    let contents: Vec<Content> = sections.iter().map(content).collect::<Result<_, _>>()?;
     let path = folder.join(FILE);
     write_bytes(&path, page(sections, &contents).as_bytes())?;
     Ok(path)
 }
 
-fn page(sections: &[Section], contents: &[(String, Vec<bool>)]) -> String {
+fn page(sections: &[Section], contents: &[Content]) -> String {
     let outcomes: Vec<bool> = contents.iter().flat_map(|(_, held)| held).copied().collect();
     let verdict = match (outcomes.len(), outcomes.iter().filter(|held| !**held).count()) {
         (0, _) => String::new(),
@@ -48,6 +46,9 @@ fn page(sections: &[Section], contents: &[(String, Vec<bool>)]) -> String {
         }
     };
     let link = |Section { name, title, .. }: &Section| format!("<li><a href=\"#{name}\">{title}</a></li>");
+    let section = |(Section { name, title, .. }, (html, _)): (&Section, &Content)| {
+        format!("<section id=\"{name}\">\n<h2>{title}</h2>\n{html}</section>\n")
+    };
     format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
@@ -57,7 +58,7 @@ fn page(sections: &[Section], contents: &[(String, Vec<bool>)]) -> String {
         head = scripts::head(),
         style = include_str!("style.css"),
         links = sections.iter().map(link).collect::<String>(),
-        main = contents.iter().map(|(html, _)| html.as_str()).collect::<String>(),
+        main = sections.iter().zip(contents).map(section).collect::<String>(),
         tail = scripts::tail(),
     )
 }

@@ -3,97 +3,89 @@
 use std::path::Path;
 
 use super::chart::{chart, picture};
-use super::explorer::{explorer, gallery};
+use super::explorer::{self};
 use super::html::{escape, folded, paragraphs, table};
+use crate::error::ReportError;
 use crate::figure::Figure;
-use crate::results::{
-    CurvesRecord, Expectation, Figure1Record, Figure3Record, Figure4Record, Figure9Record, Provenance,
-    RetrievalRecord, ShapesRecord, read,
-};
-use crate::{Cell, Record, ReportError, Table};
+use crate::record::Results;
+use crate::results::{Expectation, Figure1Results, Figure4Results, Provenance, Record, ShapesRecord, read};
+use crate::table::{Cell, Table};
 
-/// An experiment whose record the page shows.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+/// An experiment on the page.
+#[derive(Debug, Clone, Copy)]
 pub struct Section {
     /// Name of the experiment, of its record `NAME.json`, and of the anchor on the page.
     pub name: &'static str,
     /// The heading.
     pub title: &'static str,
-    /// What the record holds.
-    pub kind: Kind,
+    /// Makes its content: [`charts`], [`gallery`] or [`explorer()`].
+    pub show: fn(&Path, &str, Option<&ShapesRecord>) -> Result<Content, ReportError>,
 }
 
-/// The kinds of records, each with its own way to be shown.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
-    /// A [`CurvesRecord`].
-    Curves,
-    /// A [`Figure1Record`].
-    Figure1,
-    /// A [`Figure3Record`].
-    Figure3,
-    /// A [`Figure4Record`].
-    Figure4,
-    /// A [`Figure9Record`].
-    Figure9,
-    /// A [`RetrievalRecord`].
-    Retrieval,
-}
+/// A section as HTML, and whether each expectation held.
+pub type Content = (String, Vec<bool>);
 
-/// The section of an experiment as HTML, or a note that it has not run, and whether its expectations held.
-pub(super) fn shown(
+/// All figures of an experiment as charts, or a note that it has not run.
+///
+/// # Errors
+/// Those of [`write_report`](super::write_report).
+pub fn charts<T: Results>(
     folder: &Path,
-    section: &Section,
-    shapes: Option<&ShapesRecord>,
-) -> Result<(String, Vec<bool>), ReportError> {
-    let name = section.name;
-    let charts = |figures: &[Figure]| -> Result<String, ReportError> {
+    name: &str,
+    _: Option<&ShapesRecord>,
+) -> Result<Content, ReportError> {
+    content(folder, name, |_: &Record<T>, figures| {
         figures.iter().map(|figure| chart(folder, name, figure)).collect()
-    };
-    match section.kind {
-        Kind::Curves => record(folder, section, |_: &CurvesRecord, figures| charts(figures)),
-        Kind::Figure1 => record(folder, section, |record: &Figure1Record, figures| {
-            Ok(charts(figures)? + &gallery(record, shapes))
-        }),
-        Kind::Figure3 => record(folder, section, |_: &Figure3Record, figures| charts(figures)),
-        Kind::Figure4 => record(folder, section, |record: &Figure4Record, figures| {
-            let still: Result<String, ReportError> =
-                figures.iter().map(|figure| picture(folder, name, figure)).collect();
-            explorer(record, shapes, &still?)
-        }),
-        Kind::Figure9 => record(folder, section, |_: &Figure9Record, figures| charts(figures)),
-        Kind::Retrieval => record(folder, section, |_: &RetrievalRecord, figures| charts(figures)),
-    }
+    })
 }
 
-/// A section around what `body` makes of the record and its figures.
-fn record<R: Record>(
+/// [`charts`] of Figure 1, and its shapes in 3D.
+///
+/// # Errors
+/// Those of [`write_report`](super::write_report).
+pub fn gallery(folder: &Path, name: &str, shapes: Option<&ShapesRecord>) -> Result<Content, ReportError> {
+    content(folder, name, |record: &Record<Figure1Results>, figures| {
+        let charts = figures.iter().map(|figure| chart(folder, name, figure));
+        Ok(charts.collect::<Result<String, _>>()? + &explorer::gallery(&record.results, shapes))
+    })
+}
+
+/// Figure 4 for exploration, with its static figures in place of charts.
+///
+/// # Errors
+/// Those of [`write_report`](super::write_report).
+pub fn explorer(folder: &Path, name: &str, shapes: Option<&ShapesRecord>) -> Result<Content, ReportError> {
+    content(folder, name, |record: &Record<Figure4Results>, figures| {
+        let still = figures.iter().map(|figure| picture(folder, name, figure));
+        explorer::explorer(record, shapes, &still.collect::<Result<String, _>>()?)
+    })
+}
+
+/// What `body` makes of the record and its figures, between the analysis and the numbers.
+fn content<T: Results>(
     folder: &Path,
-    Section { name, title, .. }: &Section,
-    body: impl FnOnce(&R, &[Figure]) -> Result<String, ReportError>,
-) -> Result<(String, Vec<bool>), ReportError> {
+    name: &str,
+    body: impl FnOnce(&Record<T>, &[Figure]) -> Result<String, ReportError>,
+) -> Result<Content, ReportError> {
     let path = folder.join(format!("{name}.json"));
-    let (content, held) = if path.exists() {
-        let record: R = read(path)?;
-        record.validate()?;
-        let (origin, outcomes, analysis) = record.about();
-        let html = [
-            paragraphs(analysis),
-            body(&record, &record.figures())?,
-            expectations(outcomes),
-            "<h3>Numbers</h3>\n".to_owned(),
-            record.tables().iter().map(table).collect(),
-            provenance(origin),
-        ];
-        (html.concat(), outcomes.iter().map(|outcome| outcome.held).collect())
-    } else {
+    if !path.exists() {
         let note = format!(
             "<div class=\"missing\"><p>Not run yet: there is no <code>{name}.json</code> in this folder. To create it, \
              run <code>cargo run --release -p experiments -- run {name}</code>.</p></div>\n"
         );
-        (note, vec![])
-    };
-    Ok((format!("<section id=\"{name}\">\n<h2>{title}</h2>\n{content}</section>\n"), held))
+        return Ok((note, vec![]));
+    }
+    let record: Record<T> = read(path)?;
+    record.results.validate()?;
+    let html = [
+        paragraphs(&record.analysis),
+        body(&record, &record.results.figures())?,
+        expectations(&record.expectations),
+        "<h3>Numbers</h3>\n".to_owned(),
+        record.results.tables().iter().map(table).collect(),
+        provenance(&record.provenance),
+    ];
+    Ok((html.concat(), record.expectations.iter().map(|outcome| outcome.held).collect()))
 }
 
 fn expectations(list: &[Expectation]) -> String {

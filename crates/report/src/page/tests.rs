@@ -6,29 +6,29 @@ use crate::fixtures::{
     assert_balanced, curves_record, figure1_record, figure3_record, figure4_record, figure9_record,
     retrieval_record, shapes_record, without_scripts,
 };
-use crate::results::{Figure4Record, SHAPES_FILE, ShapesRecord, write};
-use crate::{Record, save};
+use crate::record::{Results, save};
+use crate::results::{
+    CurvesResults, Figure3Results, Figure4Results, Figure9Results, Record, RetrievalResults, SHAPES_FILE,
+    ShapesRecord, write,
+};
 
-const SECTIONS: [Section; 11] = [
-    section("figure1", Kind::Figure1),
-    section("figure3", Kind::Figure3),
-    section("figure4", Kind::Figure4),
-    section("figure5a", Kind::Curves),
-    section("figure5b", Kind::Curves),
-    section("figure6", Kind::Curves),
-    section("figure7", Kind::Curves),
-    section("figure8", Kind::Curves),
-    section("figure9", Kind::Figure9),
-    section("retrieval", Kind::Retrieval),
-    section("scaling", Kind::Curves),
-];
+/// The experiments that have curves.
+const CURVES: [&str; 6] = ["figure5a", "figure5b", "figure6", "figure7", "figure8", "scaling"];
 
-const fn section(name: &'static str, kind: Kind) -> Section {
-    Section { name, title: name, kind }
+fn sections() -> Vec<Section> {
+    let mut sections = vec![
+        Section { name: "figure1", title: "Shapes", show: gallery },
+        Section { name: "figure3", title: "Forms", show: charts::<Figure3Results> },
+        Section { name: "figure4", title: "Classes", show: explorer },
+        Section { name: "figure9", title: "Times", show: charts::<Figure9Results> },
+        Section { name: "retrieval", title: "Scores", show: charts::<RetrievalResults> },
+    ];
+    sections.extend(CURVES.map(|name| Section { name, title: name, show: charts::<CurvesResults> }));
+    sections
 }
 
 fn page_of(folder: &Path) -> String {
-    let path = write_report(folder, &SECTIONS).unwrap();
+    let path = write_report(folder, &sections()).unwrap();
     assert_eq!(path, folder.join(FILE));
     let html = fs::read_to_string(path).unwrap();
     assert_balanced(&html);
@@ -39,7 +39,7 @@ fn page_of(folder: &Path) -> String {
 fn missing_experiments_are_named_with_the_command_that_runs_them() {
     let folder = tempfile::tempdir().unwrap();
     let html = page_of(folder.path());
-    for Section { name, .. } in SECTIONS {
+    for Section { name, .. } in sections() {
         assert!(html.contains(&format!("there is no <code>{name}.json</code> in this folder")));
         assert!(html.contains(&format!("run {name}</code>")));
     }
@@ -53,7 +53,7 @@ fn a_section_has_figures_numbers_options_and_expectations() {
     save(&record, folder.path(), "figure4").unwrap();
     let html = page_of(folder.path());
     assert_eq!(without_scripts(&html).matches("data:image/png;base64,").count(), 4);
-    for part in record.figures().iter().map(|figure| figure.part) {
+    for part in record.results.figures().iter().map(|figure| figure.part) {
         assert!(html.contains(&format!("href=\"figure4{part}.svg\"")), "{part}");
     }
     for text in [
@@ -91,8 +91,8 @@ fn retrieval_has_its_scores_curves_and_confusion() {
 fn names_from_files_never_become_markup() {
     let folder = tempfile::tempdir().unwrap();
     let mut record = figure1_record();
-    record.shapes[0].name = "<script>alert(1)</script>".into();
-    record.shapes[0].repair = vec!["<i>".into()];
+    record.results.shapes[0].name = "<script>alert(1)</script>".into();
+    record.results.shapes[0].repair = vec!["<i>".into()];
     record.analysis = "a < b & c".into();
     record.provenance.command = "run '<u>'".into();
     write(&record, folder.path().join("figure1.json")).unwrap();
@@ -109,7 +109,7 @@ fn names_from_files_never_become_markup() {
     assert!(html.contains("figure1-forms.png</code> is missing"));
     assert!(
         html.contains("262.1")
-            && html.contains("nothing") == record.shapes.iter().any(|s| s.repair.is_empty())
+            && html.contains("nothing") == record.results.shapes.iter().any(|s| s.repair.is_empty())
     );
 }
 
@@ -117,7 +117,7 @@ fn names_from_files_never_become_markup() {
 fn an_unreadable_record_is_an_error_that_names_the_file() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("figure4.json"), "{\"names\": 3").unwrap();
-    let error = write_report(folder.path(), &SECTIONS).unwrap_err();
+    let error = write_report(folder.path(), &sections()).unwrap_err();
     assert!(
         matches!(error, ReportError::Parse { .. }) && error.to_string().contains("figure4.json"),
         "{error}"
@@ -145,14 +145,14 @@ fn figures_of_several_methods_have_medians_ranges_and_the_numbers_of_the_paper()
 }
 
 /// A folder with all records.
-fn full_folder(figure4: &Figure4Record, shapes: Option<&ShapesRecord>) -> tempfile::TempDir {
+fn full_folder(figure4: &Record<Figure4Results>, shapes: Option<&ShapesRecord>) -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     let place = |name: &str| folder.path().join(name);
     write(&figure1_record(), place("figure1.json")).unwrap();
     write(&figure3_record(), place("figure3.json")).unwrap();
     write(figure4, place("figure4.json")).unwrap();
     shapes.iter().for_each(|shapes| write(shapes, place(SHAPES_FILE)).unwrap());
-    for Section { name, .. } in SECTIONS.iter().filter(|section| section.kind == Kind::Curves) {
+    for name in CURVES {
         write(&curves_record(), place(&format!("{name}.json"))).unwrap();
     }
     write(&figure9_record(), place("figure9.json")).unwrap();
@@ -179,7 +179,7 @@ fn every_section_has_its_plots_and_their_data_once() {
     let html = page_of(folder.path());
     assert_eq!(html.matches("* plotly.js v").count(), 1, "plotly is there once");
     assert_eq!(html.matches("const canonform = ").count(), 1);
-    for Section { name, .. } in SECTIONS {
+    for Section { name, .. } in sections() {
         assert_eq!(html.matches(&format!("<section id=\"{name}\">")).count(), 1, "{name}");
     }
     let islands = islands(&html);

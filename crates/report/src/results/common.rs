@@ -4,6 +4,20 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+/// The results of an experiment with their context, as `NAME.json` holds them.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct Record<T> {
+    /// How they were made.
+    pub provenance: Provenance,
+    /// What was measured; its fields are fields of the record in JSON.
+    #[serde(flatten)]
+    pub results: T,
+    /// What was expected.
+    pub expectations: Vec<Expectation>,
+    /// What the results show, in paragraphs of plain text separated by empty lines.
+    pub analysis: String,
+}
+
 /// How a record was made.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Provenance {

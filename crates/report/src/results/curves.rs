@@ -2,21 +2,13 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::common::{Expectation, Provenance};
-
 /// Curves over one quantity, in one or more panels: Figures 5 to 8 of the paper.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-pub struct CurvesRecord {
-    /// How it was made.
-    pub provenance: Provenance,
+pub struct CurvesResults {
     /// What the figure shows, in one or two sentences.
     pub caption: String,
     /// The panels, in reading order.
     pub panels: Vec<CurvesPanel>,
-    /// What was expected.
-    pub expectations: Vec<Expectation>,
-    /// What the figure shows, in paragraphs of plain text separated by empty lines.
-    pub analysis: String,
 }
 
 /// One plot.

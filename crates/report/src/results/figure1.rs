@@ -2,19 +2,11 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::common::{Expectation, Provenance};
-
 /// Shapes and their canonical forms.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-pub struct Figure1Record {
-    /// How it was made.
-    pub provenance: Provenance,
+pub struct Figure1Results {
     /// One entry per embedded shape.
     pub shapes: Vec<Figure1Shape>,
-    /// What was expected.
-    pub expectations: Vec<Expectation>,
-    /// What the figure shows, in paragraphs of plain text separated by empty lines.
-    pub analysis: String,
 }
 
 /// One shape of Figure 1.

@@ -2,21 +2,13 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::common::{Expectation, Provenance};
-
 /// Canonical forms of a few shapes by several methods, and their stress.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-pub struct Figure3Record {
-    /// How it was made.
-    pub provenance: Provenance,
+pub struct Figure3Results {
     /// The rows of the figure.
     pub shapes: Vec<Figure3Shape>,
     /// The stress of every shape and method over repeated runs, for each kind of distances.
     pub stresses: Vec<Figure3Stress>,
-    /// What was expected.
-    pub expectations: Vec<Expectation>,
-    /// What the figure shows, in paragraphs of plain text separated by empty lines.
-    pub analysis: String,
 }
 
 /// One row of the figure: a shape and its canonical forms.

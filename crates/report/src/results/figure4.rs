@@ -3,23 +3,17 @@
 use ::retrieval::Evaluation;
 use serde::{Deserialize, Serialize};
 
-use super::common::{Expectation, Provenance, Scale};
+use super::common::Scale;
 
 /// Distances between canonical forms, and their maps.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-pub struct Figure4Record {
-    /// How it was made.
-    pub provenance: Provenance,
+pub struct Figure4Results {
     /// Names of the `n` shapes, in the order of all rows below.
     pub names: Vec<String>,
     /// Their classes.
     pub labels: Vec<String>,
     /// One entry per method and scale.
     pub panels: Vec<Figure4Panel>,
-    /// What was expected.
-    pub expectations: Vec<Expectation>,
-    /// What the figure shows, in paragraphs of plain text separated by empty lines.
-    pub analysis: String,
 }
 
 /// One method at one scale.

@@ -2,21 +2,13 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::common::{Expectation, Provenance};
-
 /// Times and memory of whole embeddings, distances included.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-pub struct Figure9Record {
-    /// How it was made.
-    pub provenance: Provenance,
+pub struct Figure9Results {
     /// Worker threads of every run.
     pub threads: usize,
     /// One row per number of vertices and method.
     pub rows: Vec<Figure9Row>,
-    /// What was expected.
-    pub expectations: Vec<Expectation>,
-    /// What the figure shows, in paragraphs of plain text separated by empty lines.
-    pub analysis: String,
 }
 
 /// One method on one shape.

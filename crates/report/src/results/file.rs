@@ -5,7 +5,7 @@ use std::path::Path;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-use crate::ReportError;
+use crate::error::ReportError;
 use files::{FileError, write_bytes};
 
 /// Writes a record as indented JSON, completely or not at all.
@@ -33,7 +33,7 @@ pub fn read<T: DeserializeOwned>(path: impl AsRef<Path>) -> Result<T, ReportErro
 mod tests {
     use super::*;
     use crate::fixtures::{figure1_record, figure4_record};
-    use crate::results::{Figure1Record, Figure4Record};
+    use crate::results::{Figure1Results, Figure4Results, Record};
 
     #[test]
     fn records_read_back_to_the_bit() {
@@ -41,12 +41,12 @@ mod tests {
         let path = folder.path().join("record.json");
         let one = figure1_record();
         write(&one, &path).unwrap();
-        assert_eq!(read::<Figure1Record>(&path).unwrap(), one);
+        assert_eq!(read::<Record<Figure1Results>>(&path).unwrap(), one);
         let mut four = figure4_record(&[("cat", 3), ("dog", 2)]);
-        four.panels[0].matrix[0][1] = 0.1 + 0.2;
-        four.panels[0].map[0] = [f64::MIN_POSITIVE, -1.0 / 3.0];
+        four.results.panels[0].matrix[0][1] = 0.1 + 0.2;
+        four.results.panels[0].map[0] = [f64::MIN_POSITIVE, -1.0 / 3.0];
         write(&four, &path).unwrap();
-        assert_eq!(read::<Figure4Record>(&path).unwrap(), four);
+        assert_eq!(read::<Record<Figure4Results>>(&path).unwrap(), four);
         let json: serde_json::Value = read(&path).unwrap();
         assert_eq!(json["panels"][0]["scale"], "raw");
         assert_eq!(json["panels"][2]["scale"], "normalized");
@@ -58,9 +58,9 @@ mod tests {
     fn errors_of_reading_name_the_file() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("absent.json");
-        let error = read::<Figure1Record>(&path).unwrap_err();
+        let error = read::<Record<Figure1Results>>(&path).unwrap_err();
         assert!(matches!(error, ReportError::File(_)) && error.to_string().contains("absent.json"));
         std::fs::write(&path, "[1, 2]").unwrap();
-        assert!(matches!(read::<Figure1Record>(&path), Err(ReportError::Parse { .. })));
+        assert!(matches!(read::<Record<Figure1Results>>(&path), Err(ReportError::Parse { .. })));
     }
 }

@@ -3,13 +3,11 @@
 use ::retrieval::Scores;
 use serde::{Deserialize, Serialize};
 
-use super::common::{Expectation, Provenance, Scale};
+use super::common::Scale;
 
 /// Scores of several methods to compare the shapes of a collection.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-pub struct RetrievalRecord {
-    /// How it was made.
-    pub provenance: Provenance,
+pub struct RetrievalResults {
     /// Names of the shapes.
     pub names: Vec<String>,
     /// Their classes.
@@ -18,10 +16,6 @@ pub struct RetrievalRecord {
     pub rows: Vec<RetrievalRow>,
     /// The classification of every shape by one of the methods.
     pub classification: Classification,
-    /// What was expected.
-    pub expectations: Vec<Expectation>,
-    /// What the figure shows, in paragraphs of plain text separated by empty lines.
-    pub analysis: String,
 }
 
 /// One method at one scale.

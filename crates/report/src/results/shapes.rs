@@ -3,8 +3,8 @@
 use serde::{Deserialize, Serialize};
 
 use super::common::Scale;
-use super::figure4::Figure4Record;
-use crate::ReportError;
+use super::figure4::Figure4Results;
+use crate::error::ReportError;
 use view::interactive::Geometry;
 use view::interactive::base64::{optional_list, triples};
 
@@ -68,7 +68,7 @@ pub struct Motions {
 impl ShapesRecord {
     /// Whether these are the shapes of `figure4`, in its order.
     #[must_use]
-    pub fn belongs_to(&self, figure4: &Figure4Record) -> bool {
+    pub fn belongs_to(&self, figure4: &Figure4Results) -> bool {
         let own = self.shapes.iter().map(|shape| (&shape.name, &shape.label));
         own.eq(figure4.names.iter().zip(&figure4.labels))
     }
@@ -114,9 +114,9 @@ mod tests {
         let path = folder.path().join("shapes.json");
         write(&record, &path).unwrap();
         assert_eq!(read::<ShapesRecord>(&path).unwrap(), record);
-        assert!(record.belongs_to(&figure4_record(&[("cat", 2), ("dog", 1)])));
-        assert!(!record.belongs_to(&figure4_record(&[("cat", 1), ("dog", 2)])));
-        assert!(!record.belongs_to(&figure4_record(&[("cat", 2)])));
+        assert!(record.belongs_to(&figure4_record(&[("cat", 2), ("dog", 1)]).results));
+        assert!(!record.belongs_to(&figure4_record(&[("cat", 1), ("dog", 2)]).results));
+        assert!(!record.belongs_to(&figure4_record(&[("cat", 2)]).results));
     }
 
     #[test]

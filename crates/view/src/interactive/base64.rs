@@ -47,9 +47,6 @@ pub mod triples {
     use super::{Deserialize, Deserializer, Error, Serializer, Word, decode, encode};
 
     /// Writes the list as one string.
-    ///
-    /// # Errors
-    /// Those of the serializer.
     pub fn serialize<T: Word, S: Serializer>(list: &[[T; 3]], to: S) -> Result<S::Ok, S::Error> {
         to.serialize_str(&encode(list.as_flattened().iter().copied()))
     }
@@ -70,9 +67,6 @@ pub mod optional_list {
     use super::{Deserialize, Deserializer, Error, Serializer, Word, decode, encode};
 
     /// Writes the numbers as one string, or nothing.
-    ///
-    /// # Errors
-    /// Those of the serializer.
     pub fn serialize<T: Word, S: Serializer>(numbers: &Option<Vec<T>>, to: S) -> Result<S::Ok, S::Error> {
         match numbers {
             Some(numbers) => to.serialize_str(&encode(numbers.iter().copied())),

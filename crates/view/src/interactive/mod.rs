@@ -8,14 +8,15 @@
 
 pub mod base64;
 mod geometry;
-mod plotly;
 
+use std::io::Read;
 use std::sync::LazyLock;
+
+use flate2::read::GzDecoder;
 
 use crate::color::{hex, perceptual_stops};
 
 pub use geometry::Geometry;
-pub use plotly::plotly_js;
 
 /// The viewer: a script that defines the global `canonform` and uses `Plotly` from its first view on.
 ///
@@ -27,4 +28,43 @@ pub fn viewer_js() -> &'static str {
         include_str!("viewer.js").replace("COLOR_STOPS", &perceptual_stops().map(hex).join(" "))
     });
     &SCRIPT
+}
+
+/// The text of plotly.js for one `<script>` element: 1.6 MB, MIT licensed.
+///
+/// It contains the traces `scatter`, `heatmap` and `mesh3d`, requests no address, evaluates no text as code and
+/// contains no `</script`. A prelude keeps browsers from warning about how plotly reads canvases.
+#[must_use]
+pub fn plotly_js() -> &'static str {
+    static SCRIPT: LazyLock<String> = LazyLock::new(|| {
+        let mut script = include_str!("prelude.js").to_owned();
+        // The tests unpack the bundle, so it is known to be readable.
+        let _ = GzDecoder::new(BUNDLE).read_to_string(&mut script);
+        script
+    });
+    &SCRIPT
+}
+
+const BUNDLE: &[u8] = include_bytes!("../../assets/plotly/plotly.js.gz");
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use sha2::{Digest, Sha256};
+
+    #[test]
+    fn the_bundle_is_one_whole_script_with_its_licence() {
+        let script = plotly_js();
+        assert!((1_000_000..2_000_000).contains(&script.len()), "{} bytes", script.len());
+        assert!(script.contains("\n/**\n* plotly.js v3.0.1\n"));
+        assert!(!script.to_ascii_lowercase().contains("</script") && !script.contains("<!--"));
+        assert!(script.contains("Copyright") && script.contains("MIT license"));
+        assert!(script.trim_end().ends_with("*/"), "the licences of the packages in the bundle end it");
+    }
+
+    #[test]
+    fn the_readme_states_the_checksum_of_the_bundle() {
+        let sum: String = Sha256::digest(BUNDLE).iter().map(|byte| format!("{byte:02x}")).collect();
+        assert!(include_str!("../../assets/plotly/README.md").contains(&sum), "{sum}");
+    }
 }

@@ -1,14 +1,15 @@
-//! A colour bar with ticks beside an image. One unit of the canvas is one pixel here.
+//! A colour bar with ticks next to an image. One unit of the canvas is one pixel here.
 
 use mesh::TriMesh;
 
 use super::draw::render;
 use super::options::{Background, RenderOptions};
-use super::surface::{ISOLINE_LIGHT, Surface, value_range};
+use super::surface::{ISOLINE_LIGHT, Surface};
 use crate::canvas::{Anchor, Canvas, TextStyle, text_width};
-use crate::color::{Rgb, from_linear, mix, perceptual, to_linear};
+use crate::color::{Rgb, from_linear, mix, perceptual, to_linear, value_range};
+use crate::error::ViewError;
+use crate::image::RgbaImage;
 use crate::numbers::{Numbers, ticks};
-use crate::{RgbaImage, ViewError};
 
 /// Draws like [`render`], with a colour bar, its ticks and its `name` to the right of the mesh, in an image of the
 /// same size.
@@ -20,7 +21,7 @@ use crate::{RgbaImage, ViewError};
 pub fn render_with_bar(mesh: &TriMesh, options: &RenderOptions, name: &str) -> Result<RgbaImage, ViewError> {
     let Some(bar) = Bar::new(options, name) else { return Ok(render(mesh, options)) };
     let room = RenderOptions { width: bar.size.0 - bar.width(), ..options.clone() };
-    let mut image = bar.beside(&render(mesh, &room), options.background);
+    let mut image = bar.with_room(&render(mesh, &room), options.background);
     bar.paint(&mut image);
     let pen = pen(options.background);
     for (pixel, cover) in image.pixels_mut().iter_mut().zip(bar.labels().coverage()?) {
@@ -112,8 +113,8 @@ impl Bar {
         self.top() + self.height() * (1.0 - (value - low) / (high - low))
     }
 
-    /// The image of the mesh at the left of an empty one.
-    fn beside(&self, mesh: &RgbaImage, background: Background) -> RgbaImage {
+    /// The image of the mesh, extended to the right by empty space for the bar.
+    fn with_room(&self, mesh: &RgbaImage, background: Background) -> RgbaImage {
         let empty = match background {
             Background::White => [255; 4],
             Background::Color([r, g, b]) => [r, g, b, 255],

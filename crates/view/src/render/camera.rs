@@ -91,10 +91,13 @@ fn bounds(mesh: &TriMesh, faces: &[[usize; 3]], axes: &Matrix3<f64>) -> [Vector3
     })
 }
 
-/// Width and height of the faces in an upright image, in mesh units.
-pub(super) fn extent(mesh: &TriMesh, faces: &[[usize; 3]], view: &View) -> [f64; 2] {
-    let [low, high] = bounds(mesh, faces, &view.axes(mesh, faces, false));
-    [high.x - low.x, high.y - low.y]
+/// Width over height of a mesh in a view; 1 if the mesh has no extent.
+#[must_use]
+pub fn aspect(mesh: &TriMesh, view: &View) -> f64 {
+    let faces = drawable_faces(mesh);
+    let [low, high] = bounds(mesh, &faces, &view.axes(mesh, &faces, false));
+    let aspect = (high.x - low.x) / (high.y - low.y);
+    if aspect.is_finite() && aspect > 0.0 { aspect } else { 1.0 }
 }
 
 impl View {

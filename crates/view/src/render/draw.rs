@@ -2,13 +2,13 @@
 
 use mesh::TriMesh;
 
-use super::camera::{Camera, View, drawable_faces, extent};
+use super::camera::{Camera, drawable_faces};
 use super::normals::corner_normals;
 use super::options::RenderOptions;
 use super::raster::DepthBuffer;
 use super::shade::shade;
 use super::surface::Paint;
-use crate::RgbaImage;
+use crate::image::RgbaImage;
 
 /// Draws a mesh as a shaded orthographic image in which it fits.
 ///
@@ -26,12 +26,4 @@ pub fn render(mesh: &TriMesh, options: &RenderOptions) -> RgbaImage {
     let normals = corner_normals(mesh, &faces, &camera, options.crease.clamp(0.0, 90.0));
     let paint = Paint::new(mesh.n_vertices(), &options.surface, samples);
     shade(&buffer, &normals, &paint, samples, options.background)
-}
-
-/// Width over height of a mesh in a view; 1 if the mesh has no extent.
-#[must_use]
-pub fn aspect(mesh: &TriMesh, view: &View) -> f64 {
-    let [width, height] = extent(mesh, &drawable_faces(mesh), view);
-    let aspect = width / height;
-    if aspect.is_finite() && aspect > 0.0 { aspect } else { 1.0 }
 }

@@ -15,11 +15,13 @@ mod shade;
 mod surface;
 
 pub use bar::render_with_bar;
-pub use camera::View;
+pub use camera::{View, aspect};
 pub use dots::dots;
-pub use draw::{aspect, render};
+pub use draw::render;
 pub use options::{Background, RenderOptions};
-pub use surface::{Surface, value_range};
+pub use surface::Surface;
+
+pub use crate::color::value_range;
 
 #[cfg(test)]
 mod tests;

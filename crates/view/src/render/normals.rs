@@ -2,6 +2,7 @@
 
 use mesh::TriMesh;
 use nalgebra::Vector3;
+use surface::Rows;
 
 use super::camera::Camera;
 
@@ -26,12 +27,13 @@ pub(super) fn corner_normals(
         .collect();
     let units: Vec<Vector3<f64>> =
         areas.iter().map(|a| a.try_normalize(0.0).unwrap_or_else(Vector3::z)).collect();
-    let around = FacesAround::new(mesh.n_vertices(), faces);
+    let at_vertices = faces.iter().enumerate().flat_map(|(f, face)| face.map(|v| (v, f as u32)));
+    let around = Rows::collect(mesh.n_vertices(), at_vertices);
     let limit = crease.to_radians().cos() - 1e-9;
     let normal = |face: usize, vertex: usize| {
         let own = units[face];
         let sum: Vector3<f64> = around
-            .of(vertex)
+            .row(vertex)
             .iter()
             .map(|&g| {
                 let bend = units[g as usize].dot(&own);
@@ -41,35 +43,4 @@ pub(super) fn corner_normals(
         sum.try_normalize(0.0).unwrap_or(own).cast::<f32>()
     };
     faces.iter().enumerate().map(|(f, face)| face.map(|v| normal(f, v))).collect()
-}
-
-/// The faces at each vertex, in compressed rows.
-struct FacesAround {
-    offsets: Vec<usize>,
-    faces: Vec<u32>,
-}
-
-impl FacesAround {
-    fn new(n_vertices: usize, faces: &[[usize; 3]]) -> Self {
-        let mut offsets = vec![0; n_vertices + 1];
-        for &v in faces.iter().flatten() {
-            offsets[v + 1] += 1;
-        }
-        for v in 0..n_vertices {
-            offsets[v + 1] += offsets[v];
-        }
-        let mut next = offsets.clone();
-        let mut list = vec![0; faces.len() * 3];
-        for (f, face) in faces.iter().enumerate() {
-            for &v in face {
-                list[next[v]] = f as u32;
-                next[v] += 1;
-            }
-        }
-        Self { offsets, faces: list }
-    }
-
-    fn of(&self, vertex: usize) -> &[u32] {
-        &self.faces[self.offsets[vertex]..self.offsets[vertex + 1]]
-    }
 }

@@ -5,8 +5,8 @@ use nalgebra::Vector3;
 use super::options::Background;
 use super::raster::DepthBuffer;
 use super::surface::Paint;
-use crate::RgbaImage;
 use crate::color::{from_linear, to_linear};
+use crate::image::RgbaImage;
 
 /// Directions towards distant lights, in camera axes.
 struct Lights {

@@ -2,7 +2,7 @@
 
 use nalgebra::Vector3;
 
-use crate::color::{perceptual, to_linear};
+use crate::color::{perceptual, to_linear, value_range};
 
 /// Colours of a surface.
 #[derive(Debug, Clone, PartialEq)]
@@ -19,14 +19,6 @@ pub enum Surface {
         /// ends of the range, and none on faces where the value is constant.
         isolines: u32,
     },
-}
-
-/// The least and the greatest of the finite numbers.
-#[must_use]
-pub fn value_range(values: &[f64]) -> Option<[f64; 2]> {
-    let finite = || values.iter().copied().filter(|v| v.is_finite());
-    let low = finite().reduce(f64::min)?;
-    Some([low, finite().fold(low, f64::max)])
 }
 
 /// The share of light that an isoline leaves of its surface.

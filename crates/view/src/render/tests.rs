@@ -2,7 +2,7 @@ use mesh::TriMesh;
 use nalgebra::{Point3, Rotation3, Vector3};
 
 use super::*;
-use crate::RgbaImage;
+use crate::image::RgbaImage;
 use crate::testing::{mesh, sphere};
 
 const FRONT: View = View::Upright { azimuth: 0.0, elevation: 0.0, up: Vector3::new(0.0, 0.0, 1.0) };
