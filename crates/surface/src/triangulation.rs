@@ -300,17 +300,18 @@ pub(crate) mod tests {
 
     #[test]
     fn flips_give_a_delaunay_triangulation_of_the_same_area() {
-        for mesh in [
-            shapes::sheared_grid(12, 9, 1.0, 1.0),
-            shapes::sheared_grid(12, 9, 1.0, 4.3),
-            shapes::jittered_grid(14, 14, 1.0, 0.24, 5),
-            shapes::torus(30, 4, 2.0, 0.5),
-            shapes::cylinder(5, 40, 1.0, 2.0),
+        // The corners of a quad on the last two shapes lie on a circle: either diagonal is Delaunay.
+        for (mesh, is_delaunay) in [
+            (shapes::sheared_grid(12, 9, 1.0, 1.0), false),
+            (shapes::sheared_grid(12, 9, 1.0, 4.3), false),
+            (shapes::jittered_grid(14, 14, 1.0, 0.24, 5), false),
+            (shapes::torus(30, 4, 2.0, 0.5), true),
+            (shapes::cylinder(5, 40, 1.0, 2.0), true),
         ] {
             let surface = intrinsic(&mesh);
             let (triangulation, removed) = flipped(&surface);
             assert_delaunay(&triangulation);
-            assert!(!removed.is_empty(), "{} faces", mesh.n_faces());
+            assert_eq!(removed.is_empty(), is_delaunay, "{} faces", mesh.n_faces());
             assert!((area(&triangulation) / area(&Triangulation::new(&surface)) - 1.0).abs() < 1e-12);
         }
     }

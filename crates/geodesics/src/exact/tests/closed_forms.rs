@@ -290,3 +290,17 @@ fn points_on_edges_and_in_faces_see_euclidean_distances() {
         }
     }
 }
+
+#[test]
+fn refining_a_surface_does_not_change_it() {
+    let sphere = shapes::icosphere(1);
+    let coarse = all_pairs(&sphere.intrinsic());
+    let fine = shapes::subdivide(&shapes::subdivide(&sphere));
+    let solver = Exact::new(&fine.intrinsic());
+    for (v, row) in coarse.iter().enumerate() {
+        let refined = solver.distances(VertexId::from(v));
+        for (found, expected) in refined.iter().zip(row) {
+            assert_close(*found, *expected, 1e-12);
+        }
+    }
+}
