@@ -24,7 +24,7 @@ pub struct Source {
     reach: Vec<(VertexId, f64)>,
 }
 
-/// How far the sum of barycentric coordinates may be from one, for rounding.
+/// Rounding allowed in the sum of barycentric coordinates.
 const BARYCENTRIC_SLACK: f64 = 1e-9;
 
 impl Source {
@@ -99,8 +99,8 @@ impl Source {
         self.point
     }
 
-    /// The vertices of the faces that hold the point, and their distances from it inside these faces, in mesh units;
-    /// for a vertex only itself.
+    /// The vertices of the faces that contain the point, with their distances from it inside these faces, in mesh units;
+    /// of a vertex only itself.
     #[must_use]
     pub fn reach(&self) -> &[(VertexId, f64)] {
         &self.reach

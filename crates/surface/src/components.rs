@@ -10,14 +10,12 @@ use crate::topology::Topology;
 pub struct Components {
     /// Number of components.
     pub count: usize,
-    /// The component of every vertex, numbered in the order of their lowest vertices; `None` for a vertex in no
-    /// component.
+    /// The component of every vertex, in the order of their lowest vertices; `None` for a vertex in no component.
     pub labels: Vec<Option<u32>>,
 }
 
-/// The components of the faces, in linear time; vertices without faces are in none.
-///
-/// Two faces that share only a vertex are connected: a path along edges can pass through it.
+/// The components of the faces, in linear time; vertices without faces are in none. Faces that share only a vertex are
+/// connected, as paths along edges can pass through it.
 #[must_use]
 pub fn components(topology: &Topology) -> Components {
     components_of_faces(topology.n_vertices(), topology.faces())
@@ -50,7 +48,7 @@ pub fn components_with_links(mesh: &IntrinsicMesh) -> Components {
 }
 
 impl Components {
-    /// Numbers the sets whose vertices are members.
+    /// Numbers the sets of the vertices that are members.
     fn of_sets(mut sets: DisjointSets, is_member: impl Fn(usize) -> bool) -> Self {
         let mut count = 0;
         let mut labels: Vec<Option<u32>> = vec![None; sets.len()];

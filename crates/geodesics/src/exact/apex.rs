@@ -3,19 +3,16 @@
 use super::frame::Frame;
 use super::window::Window;
 
-/// A ray that misses the apex by no more than this, in lengths of the base where it crosses it, bends there to meet
-/// it. Rounding opens such gaps between windows that share a ray, and diverging rays widen them. The bent path is a
-/// path as well, too long by the square of the gap.
+/// A ray that misses the apex by no more than this, in lengths of the base where it crosses it, bends there to meet it.
+/// Rounding opens such gaps between windows that share a ray, and diverging rays widen them. The bent path is too long by
+/// the square of the gap.
 const NEAR_MISS: f64 = 1e-6;
 
-/// The sides of the apex on which the rays of a window pass.
+/// The side of the apex on which the rays of a window pass: that of the base's start, that of its end, or both.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Passes {
-    /// All on the side at the base's start.
     Left,
-    /// Both.
     Both,
-    /// All on the side at the base's end.
     Right,
 }
 

@@ -14,11 +14,11 @@ const TOO_HIGH: u32 = 1 << 31;
 
 /// Buckets become this much narrower or wider at a time.
 const FACTOR: f64 = 4.0;
-/// They become narrower after this many vertices, and a share of those in the ring, came late into one.
+/// They become narrower after this many vertices, plus a share of those in the ring, entered one late.
 const LATE: usize = 64;
-/// Whether they should become wider is decided after this many buckets, and a share of the vertices in the ring.
+/// Whether they should become wider is decided after this many buckets, plus a share of the vertices in the ring.
 const PERIOD: usize = 256;
-/// Divisor for that share: sorting the vertices again must cost no more than what made it necessary.
+/// Divisor for that share: sorting again must cost no more than the work since the last time.
 const SHARE: usize = 8;
 /// Buckets with less than one vertex in this many should be wider.
 const SPARSE: usize = 8;
@@ -29,8 +29,8 @@ const SPARSE: usize = 8;
 /// A heap would return vertices in strict order, but the processor can predict hardly any of its comparisons. A
 /// vertex that moves to an earlier bucket leaves an entry behind, which is skipped later.
 ///
-/// The width adapts to the mesh. Where a bucket fills again and again while it is emptied, its vertices should
-/// have been told apart; where buckets are empty, they need not have been.
+/// The width adapts to the mesh: it decreases if a bucket fills again and again while it is emptied, and increases if most
+/// buckets are empty.
 #[derive(Debug, Default)]
 pub(super) struct Buckets {
     width: f64,
@@ -86,23 +86,19 @@ impl Buckets {
         }
     }
 
-    /// Where the current bucket begins.
     fn start(&self) -> f64 {
         f64::from(self.current) * self.width
     }
 
-    /// Where it ends.
     fn end(&self) -> f64 {
         f64::from(self.current + 1) * self.width
     }
 
-    /// The place of a bucket in the ring.
     #[inline]
     fn place(&self, bucket: u32) -> usize {
         bucket as usize & (self.ring.len() - 1)
     }
 
-    /// The bucket of a distance.
     #[inline]
     fn bucket(&self, distance: f64) -> u32 {
         ((distance * self.per_length) as u32).min(LAST)

@@ -33,19 +33,12 @@ impl Neighbour {
         Self { vertex, allowed, length, dot: 0.0, cross: 0.0 }
     }
 
-    /// The triangle for an update from the neighbour before to this one.
-    fn forward(&self, before: &Self) -> Stencil {
-        Stencil { base: before.length, side: self.length, dot: self.dot, cross: self.cross }
-    }
-
-    /// The triangle for an update from this neighbour to the one before.
-    fn backward(&self, before: &Self) -> Stencil {
-        Stencil { base: self.length, side: before.length, dot: self.dot, cross: self.cross }
-    }
-
-    /// Finds out which updates through the triangle may come late.
+    /// Sets the flags of the updates through the triangle that may be late.
     fn set_late_updates(&mut self, before: &Self) {
-        for (stencil, shift) in [(self.backward(before), 0), (self.forward(before), 1)] {
+        let Self { length, dot, cross, .. } = *self;
+        let backward = Stencil { base: length, side: before.length, dot, cross };
+        let forward = Stencil { base: before.length, side: length, dot, cross };
+        for (stencil, shift) in [(backward, 0), (forward, 1)] {
             if stencil.may_complete_late() {
                 self.allowed.0 |= Allowed::LATE_NEARBY.0 << shift;
             }
@@ -165,11 +158,7 @@ impl OneRings {
         for (internal, v) in order.iter().enumerate() {
             rank[*v as usize] = internal as u32;
         }
-        let ends = |link: &Link| {
-            let ([a, b], length) = (link.ends, link.length);
-            [(a.index(), (b.0, length)), (b.index(), (a.0, length))]
-        };
-        let links = Rows::collect(n, links.iter().flat_map(ends));
+        let links = Link::by_vertex(n, links.iter().copied());
         let halves = Rows::collect(n, halves.iter().map(|(v, half)| (*v as usize, *half)));
         let blocks: Vec<(Rows<Neighbour>, Vec<bool>)> = order
             .par_chunks(BLOCK)
@@ -190,7 +179,6 @@ impl OneRings {
         Self { neighbours, may_bend, order, rank, longest, bucket_width: BUCKET_WIDTH * mean_edge_length }
     }
 
-    /// The neighbours of a vertex.
     #[inline]
     pub(super) fn of(&self, vertex: u32) -> &[Neighbour] {
         self.neighbours.row(vertex as usize)
@@ -203,13 +191,11 @@ impl OneRings {
         [range.start as u32, range.end as u32]
     }
 
-    /// The neighbour with this number.
     #[inline]
     pub(super) fn at(&self, neighbour: u32) -> &Neighbour {
         &self.neighbours.items()[neighbour as usize]
     }
 
-    /// The length of the longest edge at a vertex.
     pub(super) fn longest_at(&self, vertex: u32) -> f64 {
         self.of(vertex).iter().map(|neighbour| neighbour.length).fold(0.0, f64::max)
     }

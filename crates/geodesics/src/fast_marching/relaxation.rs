@@ -4,8 +4,8 @@ use super::one_ring::{Allowed, OneRings};
 use super::update::{FAR, Stencil};
 use crate::prefetch::prefetch;
 
-/// Distances that differ by less than this share are equal but for rounding: a smaller improvement is not worth
-/// another visit, and of two equal ones the smaller pseudo-source distance counts, whatever their order.
+/// Distances that differ by less than this share are equal up to rounding: a smaller improvement causes no visit, and of two
+/// equal distances the smaller pseudo-source distance counts, in any order.
 pub(super) const ROUNDING: f64 = 1e-13;
 
 /// If shortest paths to the two ends of a base have different pseudo-sources, this share of the difference is
@@ -13,7 +13,7 @@ pub(super) const ROUNDING: f64 = 1e-13;
 /// 0.4, where errors of either sign balance.
 const LATER_PSEUDO_SOURCE: f64 = 0.35;
 
-/// What is known about a vertex.
+/// The tentative result at a vertex.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Label {
     /// Tentative distance from the source.

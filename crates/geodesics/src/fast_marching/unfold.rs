@@ -8,44 +8,25 @@ use surface::{CornerId, FaceId, IntrinsicMesh, Link, Triangle, VertexId};
 
 use super::one_ring::HalfCorner;
 
-/// More triangles than any reasonable strip has; a strip of slivers may go on forever.
+/// Limit of the triangles in a strip; strips of slivers may have no end.
 const MAX_STEPS: usize = 12;
 
-/// What takes the place of obtuse corners.
-#[derive(Debug, Default)]
-pub(super) struct Splits {
-    /// The segments that split them.
-    pub(super) segments: Vec<Link>,
-    /// Their halves, each at both ends of its base.
-    pub(super) halves: Vec<(u32, HalfCorner)>,
-}
-
-impl Splits {
-    /// Splits all obtuse corners of a mesh where unfolding finds a vertex.
-    pub(super) fn new(mesh: &IntrinsicMesh) -> Self {
-        let mut splits = Self::default();
-        for corner in (0..mesh.topology().n_faces()).flat_map(|f| FaceId::from(f).corners()) {
-            if let Some(split) = split(mesh, corner) {
-                splits.add(mesh, corner, &split);
-            }
-        }
-        splits
-    }
-
-    fn add(&mut self, mesh: &IntrinsicMesh, corner: CornerId, split: &Split) {
-        let topology = mesh.topology();
-        let (apex, middle) = (topology.corner_vertex(corner), split.vertex);
+/// Splits all obtuse corners of a mesh where unfolding finds a vertex. Returns the segments that split them, and their
+/// halves with the vertices at both ends of each base.
+pub(super) fn split_obtuse_corners(mesh: &IntrinsicMesh) -> (Vec<Link>, Vec<(u32, HalfCorner)>) {
+    let (topology, mut segments, mut halves) = (mesh.topology(), Vec::new(), Vec::new());
+    for corner in (0..topology.n_faces()).flat_map(|f| FaceId::from(f).corners()) {
+        let Some(Split { vertex: middle, length, bases }) = split(mesh, corner) else { continue };
+        let apex = topology.corner_vertex(corner);
         let [_, from_a, from_b] = mesh.sides(corner);
-        let ends = topology.edge_ends(corner);
-        for ((end, base), side) in ends.into_iter().zip(split.bases).zip([from_a, from_b]) {
-            let (at_end, at_middle) = ((apex.0, side), (apex.0, split.length));
-            let half = HalfCorner { base: (middle.0, base), apex: at_end, third: split.length };
-            self.halves.push((end.0, half));
-            let half = HalfCorner { base: (end.0, base), apex: at_middle, third: side };
-            self.halves.push((middle.0, half));
+        for ((end, base), side) in topology.edge_ends(corner).into_iter().zip(bases).zip([from_a, from_b]) {
+            let at_end = HalfCorner { base: (middle.0, base), apex: (apex.0, side), third: length };
+            let at_middle = HalfCorner { base: (end.0, base), apex: (apex.0, length), third: side };
+            halves.extend([(end.0, at_end), (middle.0, at_middle)]);
         }
-        self.segments.push(Link { ends: [apex, middle], length: split.length });
+        segments.push(Link { ends: [apex, middle], length });
     }
+    (segments, halves)
 }
 
 /// How an obtuse corner at `C` is split into two acute ones.
@@ -73,8 +54,8 @@ fn norm(a: Point) -> f64 {
     dot(a, a).sqrt()
 }
 
-/// Unfolds the surface behind a corner. Returns `None` if the corner is not obtuse, and if the strip comes to the
-/// boundary or a non-manifold edge, or gets too long.
+/// Unfolds the surface behind a corner. Returns `None` if the corner is not obtuse, or if the strip reaches the boundary or
+/// a non-manifold edge, or gets too long.
 fn split(mesh: &IntrinsicMesh, corner: CornerId) -> Option<Split> {
     let [c, b, a] = mesh.sides(corner);
     if a * a + b * b >= c * c {
@@ -150,9 +131,9 @@ mod tests {
         assert!((found.bases[1] - 1.8f64.hypot(1.0)).abs() < 1e-14);
         assert_eq!(split(&mesh, CornerId(1)), None, "acute");
         // The corner of vertex 3 is obtuse as well, and split by vertex 0.
-        let splits = Splits::new(&mesh);
-        assert_eq!(splits.segments[0], Link { ends: [0, 3].map(VertexId), length: found.length });
-        assert_eq!((splits.segments.len(), splits.halves.len()), (2, 8));
+        let (segments, halves) = split_obtuse_corners(&mesh);
+        assert_eq!(segments[0], Link { ends: [0, 3].map(VertexId), length: found.length });
+        assert_eq!((segments.len(), halves.len()), (2, 8));
     }
 
     #[test]

@@ -3,8 +3,7 @@
 use surface::laplacian::Element;
 use surface::{Link, Triangle};
 
-/// A link longer than this, in units, transports heat as if it were this long: the amount of heat behind a bridge does
-/// not matter, but there has to be some.
+/// A longer link, in units, transports heat as if it had this length, so that some heat arrives; how much does not matter.
 pub(super) const LONGEST_BAR: f64 = 400.0;
 
 /// The same in heat lengths, for short times: `exp(-DEEPEST)` does not underflow.
@@ -13,8 +12,7 @@ const DEEPEST: f64 = 600.0;
 /// Adds to `b` the integral over the triangle of `X . grad` of the hat function of each corner, `X = -grad u / |grad u|`,
 /// lane by lane: its part of `-div X`.
 ///
-/// Only the direction of the gradient is needed. It is found from differences relative to the largest, so that neither a
-/// huge `u` overflows nor a tiny one underflows.
+/// Only the direction of the gradient is needed, so differences are relative to the largest: nothing overflows or underflows.
 #[inline]
 pub(super) fn add_divergence<const K: usize>(element: &Element, u: &[[f64; K]], b: &mut [[f64; K]]) {
     let Triangle { base, x, y } = element.triangle;

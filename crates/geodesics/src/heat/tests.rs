@@ -69,7 +69,7 @@ fn a_time_of_first_order_makes_the_error_vanish() {
 }
 
 #[test]
-fn obtuse_triangles_do_no_harm() {
+fn obtuse_triangles_do_not_increase_the_error() {
     // All triangles obtuse, up to 176 degrees; the sheet stays convex, so distances are straight.
     for shear in [1.0, 3.0, 15.0] {
         let mesh = sheared_grid(31, 31, 1.0, shear);
@@ -102,7 +102,7 @@ fn several_sources_measure_to_the_nearest() {
     assert!(sources.iter().all(|s| found[s.index()] == 0.0));
     // Fronts that meet are rounded off.
     assert!(mean_error(&found, nearest) < 0.04);
-    // The same source twice is one, and no source is none.
+    // The same source twice counts once.
     let mut twice = vec![0.0; mesh.n_vertices()];
     method.solve_into(&[0, 0].map(|v| Source::vertex(VertexId(v))), f64::INFINITY, &mut twice);
     assert_close(&twice, &method.distances(VertexId(0)), 1e-9);
@@ -138,7 +138,7 @@ fn sources_may_lie_in_faces_and_on_edges() {
 }
 
 #[test]
-fn distances_end_with_the_component_and_with_the_limit() {
+fn components_are_independent_and_limits_hide_larger_distances() {
     let mesh = surface(&disjoint(&[icosphere(2), grid(5, 5, 0.1), icosphere(1)]));
     let method = heat(&mesh);
     let (sphere, sheet) = (162, 25);
@@ -146,7 +146,7 @@ fn distances_end_with_the_component_and_with_the_limit() {
     for (v, d) in found.iter().enumerate() {
         assert_eq!(d.is_finite(), (sphere..sphere + sheet).contains(&v), "{v}");
     }
-    // A component does not know of the others beyond the time that heat flows, which is common.
+    // Components affect each other only through the time of heat flow, which is the same for all.
     let mut both = vec![0.0; mesh.n_vertices()];
     let sources = [5, 163].map(|v| Source::vertex(VertexId(v)));
     method.solve_into(&sources, f64::INFINITY, &mut both);
@@ -202,7 +202,7 @@ fn a_link_between_vertices_of_one_component_is_taken_when_it_is_short() {
 }
 
 #[test]
-fn loose_vertices_are_reached_over_links_alone() {
+fn loose_vertices_are_reached_only_over_links() {
     let mut mesh = grid(3, 3, 1.0);
     mesh.positions.extend([0, 1].map(|v| 9.0 * mesh.positions[v]));
     let links = vec![
@@ -278,13 +278,13 @@ fn degenerate_surfaces_give_no_nan() {
 }
 
 #[test]
-fn times_without_meaning_are_refused() {
+fn invalid_times_are_rejected() {
     let mesh = surface(&icosphere(0));
     for time in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         let error = HeatMethod::new(&mesh, HeatOptions { time }).unwrap_err();
         assert!(matches!(error, GeodesicError::BadHeatTime { .. }), "{error}");
     }
-    // Beyond the range of numbers there is no matrix.
+    // The entries of the matrix overflow.
     let error = HeatMethod::new(&mesh, HeatOptions { time: f64::MAX }).unwrap_err();
     assert!(matches!(error, GeodesicError::NotFactorised { .. }), "{error}");
     // A long time is still a direction.

@@ -8,7 +8,7 @@ use super::{all_pairs, assert_close, faces, points, spatial};
 use crate::{DistanceSolver, Source, SurfacePoint};
 
 #[test]
-fn on_flat_sheets_distances_are_euclidean_whatever_the_triangles() {
+fn distances_on_flat_sheets_are_euclidean_for_any_triangles() {
     for (sheet, tolerance) in [
         (shapes::grid(15, 12, 0.7), 1e-14),
         (shapes::sheared_grid(14, 15, 1.0, 2.3), 1e-13),
@@ -256,7 +256,7 @@ fn links_join_what_is_apart() {
 }
 
 #[test]
-fn points_on_edges_and_in_faces_see_euclidean_distances() {
+fn distances_from_points_on_edges_and_in_faces_are_euclidean() {
     let sheet = shapes::jittered_grid(9, 9, 1.0, 0.2, 8);
     let mesh = sheet.intrinsic();
     let solver = Exact::new(&mesh);

@@ -1,4 +1,4 @@
-//! Surfaces that are hardly any.
+//! Degenerate surfaces.
 
 use mesh::shapes;
 use proptest::prelude::*;

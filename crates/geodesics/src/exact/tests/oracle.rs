@@ -1,4 +1,4 @@
-//! Beside a slow way that shares nothing with the windows: the straight lines between all pairs of
+//! Comparison with a slow algorithm that shares no code with the windows: the straight lines between all pairs of
 //! vertices through all strips of faces, and shortest paths in their graph.
 
 use proptest::prelude::*;

@@ -1,4 +1,4 @@
-//! Beside the distances of other implementations on real meshes.
+//! Comparison with other implementations on real meshes.
 
 use std::path::PathBuf;
 

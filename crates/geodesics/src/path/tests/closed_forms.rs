@@ -10,7 +10,7 @@ use crate::testing::{assert_close, spatial};
 use crate::{DistanceSolver, Exact, FastMarching, GeodesicError, PathTracer, Source, SurfacePoint};
 
 #[test]
-fn paths_in_the_plane_are_straight_whatever_the_triangles() {
+fn paths_in_the_plane_are_straight_for_any_triangles() {
     for sheet in [
         shapes::grid(9, 7, 0.5),
         shapes::sheared_grid(9, 7, 0.5, 1.7),

@@ -1,4 +1,4 @@
-//! Beside exact distances on real meshes.
+//! Comparison with exact distances on real meshes.
 
 use mesh::{RepairOptions, io, repair};
 use rayon::prelude::*;
