@@ -8,8 +8,8 @@ use crate::graph::EdgeGraph;
 use crate::solver::{DistanceSolver, Pool, within};
 use crate::source::Source;
 
-/// The least number of edges and links between vertices, times the mean edge length: the baseline of Civril et al. 2007
-/// (`civril2007`), called BFS in the paper. Cost: `O(p)` per source.
+/// The least number of edges and links between vertices, times the mean edge length: the baseline of Civril et al.
+/// 2007 (`civril2007`), called BFS in the paper. Cost: `O(p)` per source.
 ///
 /// ```
 /// use canonform_geodesics::{BreadthFirst, DistanceSolver};

@@ -27,7 +27,7 @@ impl EdgeGraph {
     }
 }
 
-/// Vertices in breadth-first order, one component after the other, so that neighbours on the surface are close in memory.
+/// Vertices in breadth-first order, one component after the other, so that neighbours are close in memory.
 pub(crate) fn breadth_first_order<I: Iterator<Item = u32>>(
     n: usize,
     neighbours: impl Fn(u32) -> I,

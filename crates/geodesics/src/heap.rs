@@ -36,7 +36,8 @@ impl VertexHeap {
         self.positions[vertex as usize] != NONE
     }
 
-    /// If `distance` is less than that of the vertex, lowers it and puts the vertex (back) into the heap; returns whether it was.
+    /// If `distance` is less than that of the vertex, lowers it and puts the vertex into the heap; returns whether it
+    /// was.
     #[inline]
     pub(crate) fn relax(&mut self, vertex: u32, distance: f64) -> bool {
         let known = &mut self.distances[vertex as usize];
@@ -78,8 +79,8 @@ impl VertexHeap {
         self.place(hole, item);
     }
 
-    /// Moves the hole at the top down to the bottom along the least children and lets the item rise from there: it came
-    /// from the bottom and nearly always returns there, so comparing it at every level would be wasteful.
+    /// Moves the hole at the top down to the bottom along the least children and lets the item rise from there: it
+    /// came from the bottom and nearly always returns there, so comparing it at every level would be wasteful.
     #[inline]
     fn sift_down(&mut self, item: (f64, u32)) {
         let mut hole = 0;

@@ -1,8 +1,8 @@
 //! Requesting memory before it is needed.
 //!
-//! A front reads each one-ring once, in an order that the processor cannot predict: on large meshes, a quarter of the time
-//! was spent waiting. No safe function of the standard library requests memory without reading it, hence the `unsafe`. The
-//! instruction affects only time; other processors do without.
+//! A front reads each one-ring once, in an order that the processor cannot predict: on large meshes, a quarter of the
+//! time was spent waiting. No safe function of the standard library requests memory without reading it, hence the
+//! `unsafe`. The instruction affects only time; other processors do without.
 
 #![allow(unsafe_code)]
 

@@ -29,8 +29,8 @@ pub trait DistanceSolver: Sync + std::fmt::Debug {
     /// Number of vertices of the surface.
     fn n_vertices(&self) -> usize;
 
-    /// Writes the distance from the nearest of `sources` to every vertex, in mesh units; infinite where no edge or link
-    /// leads and beyond `max_distance`.
+    /// Writes the distance from the nearest of `sources` to every vertex, in mesh units; infinite where no edge or
+    /// link leads and beyond `max_distance`.
     ///
     /// # Panics
     /// If `out` does not have one entry per vertex, or a source belongs to another surface.
@@ -84,10 +84,10 @@ pub trait DistanceSolver: Sync + std::fmt::Debug {
     }
 }
 
-/// A solver whose front can stop where another source is nearer, so that only the part of the surface nearest to the new
-/// source is visited.
+/// A solver whose front can stop where another source is nearer, so that it only visits the part nearest to the new
+/// source.
 pub trait PrunedSolver: Sync + std::fmt::Debug {
-    /// Lowers `nearest`, the distances to the nearest of some sources, to the distance from `source` where that is less.
+    /// Lowers `nearest`, distances to the nearest of some sources, to the distance from `source` where it is less.
     ///
     /// # Panics
     /// If `nearest` does not have one entry per vertex, or `source` is out of range.

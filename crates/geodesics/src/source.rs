@@ -79,8 +79,8 @@ impl Source {
                     )));
                 }
                 let vertices = topology.faces()[face.index()];
-                // The squared distance in the plane of the face from a point with barycentric coordinates b to
-                // corner i is -sum_{j<k} e_j e_k |v_j v_k|^2 with e = b - unit_i.
+                // The squared distance in the plane of the face from a point with barycentric coordinates b to corner
+                // i is -sum_{j<k} e_j e_k |v_j v_k|^2 with e = b - unit_i.
                 let sides = face.corners().map(|corner| mesh.opposite_length(corner).powi(2));
                 let reach = [0, 1, 2].map(|i| {
                     let mut e = barycentric;
@@ -99,8 +99,8 @@ impl Source {
         self.point
     }
 
-    /// The vertices of the faces that contain the point, with their distances from it inside these faces, in mesh units;
-    /// of a vertex only itself.
+    /// The vertices of the faces that contain the point, with their distances from it inside these faces, in mesh
+    /// units; of a vertex only itself.
     #[must_use]
     pub fn reach(&self) -> &[(VertexId, f64)] {
         &self.reach

@@ -1,7 +1,7 @@
 //! Surfaces and references for the tests of several modules.
 //!
-//! The real meshes are not part of the project. `CANONFORM_DATA` is their folder; without it, the tests that need them
-//! print a note and pass.
+//! The real meshes are not part of the project. `CANONFORM_DATA` is their folder; without it, the tests that need
+//! them print a note and pass.
 
 use std::path::{Path, PathBuf};
 

@@ -101,8 +101,8 @@ impl IntrinsicMesh {
         self.length(self.topology.opposite_edge(corner))
     }
 
-    /// The lengths of the three sides of a corner's face, in mesh units: the side opposite the corner, then
-    /// those from the vertices in the next and in the previous corner to the corner's own.
+    /// The lengths of the three sides of a corner's face, in mesh units: the side opposite the corner, then those
+    /// from the vertices in the next and in the previous corner to the corner's own.
     #[inline]
     #[must_use]
     pub fn sides(&self, corner: CornerId) -> [f64; 3] {

@@ -101,8 +101,8 @@ pub enum VertexKind {
 
 /// The faces around one vertex, as fans.
 ///
-/// An interior vertex has one closed fan, a boundary vertex one open fan. A vertex has several if parts of the surface
-/// touch only there, and at the end of a non-manifold edge.
+/// An interior vertex has one closed fan, a boundary vertex one open fan. A vertex has several if parts of the
+/// surface touch only there, and at the end of a non-manifold edge.
 ///
 /// ```
 /// use canonform_surface::{OneRing, Topology, VertexId};
@@ -132,7 +132,7 @@ pub struct OneRing {
 impl OneRing {
     /// Replaces the fans by those of the vertex with the given corners, in linear time for a single closed fan.
     ///
-    /// The first open fan starts at the first corner that can start one; a closed fan starts with a forward corner.
+    /// The first open fan starts at the first corner that can start one; a closed one with a forward corner.
     /// Allocates only to grow.
     pub fn collect(&mut self, table: &impl CornerTable, corners: &[CornerId]) {
         self.corners.clear();
@@ -193,7 +193,7 @@ impl OneRing {
         matches!(self.fans[..], [(_, true)])
     }
 
-    /// Classifies the vertex. Paths may bend if its total angle exceeds the limit by more than `excess`, both in radians.
+    /// Classifies the vertex. Paths may bend if its total angle exceeds the limit by over `excess`, both in radians.
     #[must_use]
     pub fn kind(&self, total_angle: f64, excess: f64) -> VertexKind {
         match self.fans[..] {

@@ -5,7 +5,7 @@ use crate::rows::Rows;
 
 /// Connectivity of a triangle mesh, as a corner table whose edges may have any number of faces.
 ///
-/// An edge lists the corners opposite it, so edges with three faces, and two faces of opposite orientation, need no
+/// An edge lists the corners opposite it, so three faces on an edge, or faces of opposite orientation, need no
 /// special treatment.
 ///
 /// **Invariants.** Every face has three different vertices below `n_vertices`. The ends of an edge are sorted
@@ -148,7 +148,7 @@ impl Topology {
         self.vertex_corners.row(vertex.index())
     }
 
-    /// The corners opposite an edge, one for each face on it: one at the boundary, more than two if it is non-manifold.
+    /// The corners opposite an edge, one per face: one at the boundary, over two if it is non-manifold.
     #[inline]
     #[must_use]
     pub fn edge_corners(&self, edge: EdgeId) -> &[CornerId] {

@@ -39,8 +39,8 @@ pub fn double_area([p, q, r]: [f64; 3]) -> f64 {
     }
 }
 
-/// Scalar product of the two sides of a triangle that meet in a corner, from their lengths `p` and `q` and the
-/// length of the side opposite.
+/// Scalar product of two sides of a triangle from their common corner, from their lengths `p` and `q` and that of the
+/// side opposite.
 #[inline]
 #[must_use]
 pub fn scalar_product(opposite: f64, p: f64, q: f64) -> f64 {
@@ -50,8 +50,8 @@ pub fn scalar_product(opposite: f64, p: f64, q: f64) -> f64 {
 impl Triangle {
     /// The triangle with the given lengths of the base and of the sides from its start and its end to the apex.
     ///
-    /// The height is zero if they violate the triangle inequality. Over a base of length zero, the apex is straight
-    /// above its start.
+    /// The height is zero if they violate the triangle inequality. Over a base without length, the apex is above its
+    /// start.
     #[inline]
     #[must_use]
     pub fn from_sides([base, left, right]: [f64; 3]) -> Self {
@@ -87,8 +87,8 @@ impl Triangle {
         (x * (x - base) + y * y) / (base * y)
     }
 
-    /// The distance between the apex of this triangle and that of `other`, which lies on the other side of the
-    /// same base and is given with the base reversed.
+    /// The distance between the apex of this triangle and that of `other`, which lies on the other side of the same
+    /// base and is given with the base reversed.
     pub(crate) fn apex_to_apex(self, other: Self) -> f64 {
         (self.x - (self.base - other.x)).hypot(self.y + other.y)
     }

@@ -16,10 +16,10 @@ const NONE: u32 = u32::MAX;
 
 /// Triangles given by their side lengths and glued side to side, as a corner table.
 ///
-/// A side may be free, as at the boundary, and glued triangles may have opposite orientations. Flipping a side changes
-/// neither the surface nor its distances.
+/// A side may be free, as at the boundary, and glued triangles may have opposite orientations. Flipping a side
+/// changes neither the surface nor its distances.
 ///
-/// **Invariant.** [`opposite`](CornerTable::opposite) joins sides of equal length between the same two vertices, and is
+/// **Invariant.** [`opposite`](CornerTable::opposite) joins sides of equal length between the same vertices, and is
 /// its own inverse.
 ///
 /// ```
@@ -121,7 +121,7 @@ impl Triangulation {
     /// Flips sides until the two angles opposite each sum to at most 180 degrees, and returns the original sides that
     /// were removed (the intrinsic Delaunay triangulation; Bobenko and Springborn 2007, `bobenko2007`).
     ///
-    /// Free sides stay. The number of flips is limited, so some sides of a very degenerate surface may not be Delaunay.
+    /// Free sides stay. The number of flips is limited, so a very degenerate surface may not become Delaunay.
     pub fn flip_to_delaunay(&mut self, loops: Loops) -> Vec<Link> {
         let corners = (0..self.triangles.len()).flat_map(|t| FaceId::from(t).corners());
         let n_sides = 3 * self.triangles.len();
@@ -154,8 +154,7 @@ impl Triangulation {
         removed
     }
 
-    /// Replaces a side that is not Delaunay by the other diagonal, which becomes the side opposite slot 0 of both
-    /// triangles.
+    /// Replaces a side that is not Delaunay by the other diagonal, the side opposite slot 0 of both triangles.
     fn flip(
         &mut self,
         corner: CornerId,

@@ -1,17 +1,18 @@
 //! The lower envelope of the windows on one side of an edge.
 //!
-//! Where two windows overlap, the distance of the one whose paths come from further left increases faster: the derivative of
-//! a distance along the edge is the cosine of the angle at which the path arrives. Which of the two comes from further left
-//! changes at most once, where the line through both pseudo-sources meets the edge. On either part, the distances are equal
-//! at one point at most.
+//! Where two windows overlap, the distance of the one whose paths come from further left increases faster: the
+//! derivative of a distance along the edge is the cosine of the angle at which the path arrives. Which of the two
+//! comes from further left changes at most once, where the line through both pseudo-sources meets the edge. On either
+//! part, the distances are equal at one point at most.
 
 use super::window::{Window, crossing, order};
 
 /// Up to this many windows, insertion sort is fastest.
 const FEW: usize = 40;
 
-/// Two pseudo-sources nearer to each other than this share of their distance from the edge are the same, with paths on both
-/// sides of a vertex without curvature. On flat parts of a surface this leaves one window, not one for every vertex passed.
+/// Two pseudo-sources nearer to each other than this share of their distance from the edge are the same, with paths
+/// on both sides of a vertex without curvature. On flat parts this leaves one window, not one for every vertex
+/// passed.
 const SAME_SOURCE: f64 = 1e-12;
 
 /// Two windows with the same pseudo-source are joined over a gap of this many lengths of the edge.

@@ -23,7 +23,7 @@ pub(super) struct Face {
     pub(super) beyond: [Beyond; 3],
 }
 
-/// What lies beyond a side of a face, packed: nothing, the corner opposite in another face, or a list of such corners.
+/// What lies beyond a side of a face: nothing, the corner opposite in another face, or a list of such corners.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Beyond(u32);
 
@@ -34,8 +34,8 @@ pub(super) struct Facing {
     pub(super) along: Along,
 }
 
-/// The direction of the base of a corner, from the next corner of its face to the previous one, compared with that
-/// of the same edge in the face on this side.
+/// The direction of the base of a corner, from the next corner of its face to the previous one, compared with that of
+/// the same edge in the face on this side.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Along {
     /// The same direction.
@@ -44,14 +44,14 @@ pub(super) enum Along {
     Opposite,
 }
 
-/// Least height of a face over its longest edge, in lengths of that edge: faces without area are inflated, so that windows
-/// can pass a vertex that lies on the edge.
+/// Least height of a face over its longest edge, in lengths of that edge: faces without area are inflated, so that
+/// windows can pass a vertex that lies on the edge.
 const LEAST_HEIGHT: f64 = 1e-12;
 
 /// The same in lengths of the shortest edge, whose direction must not change.
 const LEAST_SLOPE: f64 = 1e-3;
 
-/// Share of the longest edge of a face below which the direction of its shortest edge is lost to rounding of the others.
+/// Share of the longest edge of a face below which rounding hides the direction of its shortest edge.
 const LEAST_EDGE: f64 = 1e-13;
 
 /// Share of the longest edge of a face by which rounding may reduce it below the sum of the other two.
@@ -147,9 +147,9 @@ fn power_of_two_near(length: f64) -> f64 {
 
 /// The sides of a triangle and twice its area, from lengths that may violate the triangle inequality by rounding.
 ///
-/// The longest side is cut to the sum of the other two. If the third side is lost in the rounding of the other two, these
-/// become equal. If rounding hides whether the area is positive, it is the least allowed: one unit in the last place of a
-/// length may amount to a height of `1e-8`.
+/// The longest side is cut to the sum of the other two. If the third side is lost in the rounding of the other two,
+/// these become equal. If rounding hides whether the area is positive, it is the least allowed: one unit in the last
+/// place of a length may amount to a height of `1e-8`.
 fn triangle(mut lengths: [f64; 3]) -> ([f64; 3], f64) {
     let mut order = [0, 1, 2];
     order.sort_unstable_by(|i, j| lengths[*j].total_cmp(&lengths[*i]));

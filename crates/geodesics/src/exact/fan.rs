@@ -70,7 +70,7 @@ impl Fans {
         (0..self.kinds.len()).map(|v| self.sectors.row(v).len()).max().unwrap_or(0)
     }
 
-    /// The ranges of angles, from the fan's first side, in which a shortest path with this arrival may continue; `None` if any.
+    /// The angles, from the fan's first side, between which a path with this arrival may continue; `None` for all.
     pub(super) fn open_angles(&self, vertex: u32, arrival: Arrival) -> Option<[[f64; 2]; 2]> {
         let kind = self.kind(vertex);
         let (VertexKind::Saddle | VertexKind::Boundary, Arrival::Through { corner, sin, cos }) =

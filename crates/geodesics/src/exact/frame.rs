@@ -5,8 +5,8 @@ use surface::CornerId;
 use super::faces::{Beyond, Faces, next};
 use super::window::Window;
 
-/// The face of a corner, laid out with its base `ab`, the side opposite the corner, on the x-axis from zero on and
-/// the corner `c` above.
+/// The face of a corner, laid out with its base `ab`, the side opposite the corner, on the x-axis from zero, and the
+/// corner `c` above.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Frame {
     /// Length of `ab`.
@@ -79,7 +79,7 @@ impl Frame {
         }
     }
 
-    /// As [`project_on_ac`](Self::project_on_ac), for `bc`, measured from `c`: the apex is at the start of the interval.
+    /// As [`project_on_ac`](Self::project_on_ac), for `bc`, measured from `c`: the apex is at its start.
     #[inline]
     pub(super) fn project_on_cb(
         &self,

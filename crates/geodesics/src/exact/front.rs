@@ -15,15 +15,15 @@ const NONE: u32 = u32::MAX;
 pub(super) enum Arrival {
     /// From a source or over a link: it may continue in any direction.
     Anywhere,
-    /// Through the face of a corner at the vertex. The angle from the side to the start of the corner's base has this sine
-    /// and cosine, times any factor.
+    /// Through the face of a corner at the vertex. The angle from the side to the start of the corner's base has this
+    /// sine and cosine, times any factor.
     Through { corner: CornerId, sin: f64, cos: f64 },
 }
 
 /// Labels, the queue of vertices, and the windows to be propagated.
 ///
-/// A window waits at the corner whose base it is about to cross, in no particular order. The corner waits for the
-/// end of its base that was nearer when the first window came.
+/// A window waits at the corner whose base it is about to cross, in no particular order. The corner waits for the end
+/// of its base that was nearer when the first window came.
 #[derive(Debug, Default)]
 pub(super) struct Front {
     heap: VertexHeap,

@@ -14,8 +14,8 @@ pub(super) struct Renumbered {
 
 /// Numbers vertices breadth first, one component after the other, and faces by their vertices.
 ///
-/// Of faces with the same vertices, only the first is kept: any path through another can run through it, and windows would
-/// multiply at every face.
+/// Of faces with the same vertices, only the first is kept: any path through another can run through it, and windows
+/// would multiply at every face.
 pub(super) fn renumbered(mesh: &IntrinsicMesh) -> Renumbered {
     let topology = mesh.topology();
     let around = |v: u32| topology.vertex_corners(VertexId(v)).iter().map(|corner| corner.face().index());

@@ -23,8 +23,8 @@ pub(super) struct Scratch {
     right: Vec<Window>,
 }
 
-/// Limit of the mean number of windows propagated per face. Real surfaces of a million vertices need less than a hundred;
-/// only needles with angles below 1e-6 around one vertex come near the limit.
+/// Limit of the mean number of windows propagated per face. Real surfaces of a million vertices need less than a
+/// hundred; only needles with angles below 1e-6 around one vertex come near the limit.
 const BUDGET_PER_FACE: usize = 10_000;
 
 /// Share of the limit by which windows beyond it are propagated, for rounding.
@@ -85,8 +85,8 @@ impl Propagation<'_> {
         }
     }
 
-    /// Relaxes all edges; returns whether a label was lowered. Needed for faces that violate the triangle inequality, through
-    /// which no window passes.
+    /// Relaxes all edges; returns whether a label was lowered. Needed for faces that violate the triangle inequality,
+    /// through which no window passes.
     fn relax_edges(&mut self) -> bool {
         let mut is_any = false;
         let front = &mut *self.emission.front;
@@ -197,8 +197,8 @@ impl Propagation<'_> {
         }
     }
 
-    /// A shortest path crosses no face twice, so it crosses at most all faces of a vertex in a row: `max_turn` bounds how often
-    /// windows circle around the tip of a needle.
+    /// A shortest path crosses no face twice, so it crosses at most all faces of a vertex in a row: `max_turn` bounds
+    /// how often windows circle around the tip of a needle.
     #[inline]
     fn push_left(&mut self, frame: &Frame, window: &Window, end: f64, until: Until) {
         if end > window.start && window.turn < self.emission.surface.max_turn {

@@ -88,7 +88,7 @@ impl Emission<'_> {
         }
     }
 
-    /// Emits windows from a vertex over links and over the edges opposite it, where a path with this arrival may continue.
+    /// Emits windows from a vertex over links and the edges opposite it, where a path with this arrival may continue.
     pub(super) fn emit_from(&mut self, vertex: u32, distance: f64, arrival: Arrival) {
         let surface = self.surface;
         for (end, length) in surface.links.row(vertex as usize) {
@@ -115,8 +115,8 @@ impl Emission<'_> {
         }
     }
 
-    /// Emits a window from a corner onto its base, between two angles from the side to the base's start; zero and infinity
-    /// mean no bound.
+    /// Emits a window from a corner onto its base, between angles from the side to the base's start; zero and
+    /// infinity mean no bound.
     fn emit_from_corner(&mut self, corner: CornerId, distance: f64, [low, high]: [f64; 2]) {
         let face = self.surface.face(corner);
         let slot = corner.slot();

@@ -14,8 +14,7 @@ pub(super) struct Window {
     pub(super) depth: f64,
     /// Distance of the pseudo-source from the source.
     pub(super) offset: f64,
-    /// How many faces in a row were crossed around the same vertex: positive around the edge's start, negative
-    /// around its end.
+    /// How many faces in a row were crossed around one vertex: positive for the edge's start, negative for its end.
     pub(super) turn: i32,
 }
 
@@ -45,10 +44,11 @@ impl Window {
         }
     }
 
-    /// Cuts off the part that is nearer through the edge's start, a vertex at `distance`; returns whether anything is left.
+    /// Cuts off the part that is nearer through the edge's start, a vertex at `distance`; returns whether any is
+    /// left.
     ///
-    /// Along the edge, the window's distance never grows faster than that from the vertex, so the part is an interval from
-    /// the start, whose end solves a linear equation.
+    /// Along the edge, the window's distance never grows faster than that from the vertex, so the part is an interval
+    /// from the start, whose end solves a linear equation.
     #[inline]
     pub(super) fn cut_start(&mut self, distance: f64) -> bool {
         self.start = nearer_until(self.x, self.depth, distance - self.offset).max(self.start);
@@ -63,16 +63,16 @@ impl Window {
     }
 }
 
-/// Up to which position the origin, at distance `lead`, is nearer than the pseudo-source at `(x, -depth)`: not positive if
-/// nowhere, infinite if everywhere.
+/// Up to which position the origin, at distance `lead`, is nearer than the pseudo-source at `(x, -depth)`: not
+/// positive if nowhere, infinite if everywhere.
 #[inline]
 fn nearer_until(x: f64, depth: f64, lead: f64) -> f64 {
     let slope = lead + x;
     if slope > 0.0 { 0.5 * (x - lead + depth * depth / slope) } else { f64::INFINITY }
 }
 
-/// Positive where the paths of `left` come from further left than those of `right`, whose distance then decreases relative to
-/// `left` with increasing `t`; linear in `t`.
+/// Positive where the paths of `left` come from further left than those of `right`, whose distance then decreases
+/// relative to `left` with increasing `t`; linear in `t`.
 #[inline]
 pub(super) fn order(left: &Window, right: &Window, t: f64) -> f64 {
     (t - left.x) * right.depth - (t - right.x) * left.depth
@@ -83,10 +83,10 @@ const EQUAL: f64 = 1e-12;
 
 /// Where in `low..high` the nearer of two windows changes from `left` to `right`; `None` if rounding hides it.
 ///
-/// With `r` and `s` the distances to the unfolded pseudo-sources and `d` the difference of their offsets,
-/// `r = s + d` squared is linear in the position but for `2 d s`; squared again it is quadratic. One of its roots
-/// may belong to `-d`. If the two pseudo-sources are in line with a nearly double root, rounding leaves little of
-/// either. So a root only counts if the distances agree there.
+/// With `r` and `s` the distances to the unfolded pseudo-sources and `d` the difference of their offsets, `r = s + d`
+/// squared is linear in the position but for `2 d s`; squared again it is quadratic. One of its roots may belong to
+/// `-d`. If the two pseudo-sources are in line with a nearly double root, rounding leaves little of either. So a root
+/// only counts if the distances agree there.
 pub(super) fn crossing(left: &Window, right: &Window, [low, high]: [f64; 2]) -> Option<f64> {
     let (p, q) = (left.x - low, right.x - low);
     let (rr, ss) = (p * p + left.depth * left.depth, q * q + right.depth * right.depth);
@@ -152,7 +152,7 @@ mod tests {
             assert!(NEAR.distance(at - 0.1) < right.distance(at - 0.1), "{x}");
             assert!(NEAR.distance(at + 0.1) > right.distance(at + 0.1), "{x}");
         }
-        // One pseudo-source behind the other: equal along one ray only, and never the other way round.
+        // One pseudo-source behind the other: equal along one ray only, and `right` is never nearer elsewhere.
         let behind = Window { x: 1.5, depth: 3.0, offset: 0.5 - 1.25f64.sqrt(), ..NEAR };
         if let Some(at) = crossing(&NEAR, &behind, [0.0, 4.0]) {
             assert!((NEAR.distance(at) - behind.distance(at)).abs() < 1e-12);

@@ -29,7 +29,7 @@ const SPARSE: usize = 8;
 /// A heap would return vertices in strict order, but the processor can predict hardly any of its comparisons. A
 /// vertex that moves to an earlier bucket leaves an entry behind, which is skipped later.
 ///
-/// The width adapts to the mesh: it decreases if a bucket fills again and again while it is emptied, and increases if most
+/// The width adapts to the mesh: it decreases if a bucket fills repeatedly while it is emptied, and increases if most
 /// buckets are empty.
 #[derive(Debug, Default)]
 pub(super) struct Buckets {
@@ -63,8 +63,8 @@ pub(super) struct Buckets {
 }
 
 impl Buckets {
-    /// Empties the queue: `n` vertices in no bucket. Buckets are `width` wide at first, and vertices seldom more
-    /// than `reach` ahead of the front. Allocates only to grow.
+    /// Empties the queue: `n` vertices in no bucket. Buckets are `width` wide at first, and vertices seldom more than
+    /// `reach` ahead of the front. Allocates only to grow.
     pub(super) fn reset(&mut self, n: usize, width: f64, reach: f64) {
         self.ring.iter_mut().for_each(Vec::clear);
         self.beyond.clear();
@@ -132,8 +132,8 @@ impl Buckets {
     /// Moves all vertices of the first bucket that has any into `round`. Returns the distance below which all
     /// vertices are finalized, or `None` if no vertex is left.
     ///
-    /// A vertex that comes into the current bucket after it was emptied is taken in another round. What lies
-    /// before the bucket is finalized in its first round, the whole bucket in the others.
+    /// A vertex that comes into the current bucket after it was emptied is taken in another round. What lies before
+    /// the bucket is finalized in its first round, the whole bucket in the others.
     #[inline(never)]
     pub(super) fn next_round(&mut self, round: &mut Vec<u32>, distance: impl Fn(u32) -> f64) -> Option<f64> {
         round.clear();

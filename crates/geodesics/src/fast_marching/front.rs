@@ -1,16 +1,16 @@
 //! The front: labels, buckets, and the loop over rounds.
 //!
-//! The steps of a round are functions that are not inlined: side by side in one function they leave each other
-//! too few registers, which takes a tenth more time.
+//! The steps of a round are functions that are not inlined: side by side in one function they leave each other too
+//! few registers, which takes a tenth more time.
 
 use super::buckets::Buckets;
 use super::one_ring::OneRings;
 use super::relaxation::{EdgeRelaxation, Label, ROUNDING, Relaxations, Round, TriangleSolver};
 use super::update::Stencil;
 
-/// Limit of the mean number of visits per vertex, after which finalized vertices are no longer corrected. Real surfaces need
-/// 1.1 with flipped edges, sheared sheets without flips up to a hundred. Where rounding decides, in triangles without height
-/// or with unfolded corners, a few vertices might otherwise lower each other almost forever.
+/// Limit of the mean number of visits per vertex, after which finalized vertices are no longer corrected. Real
+/// surfaces need 1.1 with flipped edges, sheared sheets without flips up to a hundred. Where rounding decides, in
+/// triangles without height or with unfolded corners, a few vertices might otherwise lower each other almost forever.
 const VISITS_PER_VERTEX: usize = 256;
 
 /// A front that advances bucket by bucket, each in one round or a few.

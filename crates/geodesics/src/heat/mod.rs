@@ -20,12 +20,13 @@ use system::System;
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub struct HeatOptions {
-    /// How long heat flows, positive; longer times give smoother distances. In units of `h^2`, where `h` is the mean side of
-    /// the Delaunay triangles; on fine meshes in units of `h l`, where `l` is a 200th of the square root of the area.
+    /// How long heat flows, positive; longer times give smoother distances. In units of `h^2`, where `h` is the mean
+    /// side of the Delaunay triangles; on fine meshes in units of `h l`, `l` being a 200th of the square root of the
+    /// area.
     ///
     /// Default: 0.85, a compromise over ten meshes of 3,000 to 43,000 vertices with known exact distances, whose best
-    /// values are between 0.5 and 1.3. For a surface without features as small as its edges, the best value is between
-    /// `2 h l` and `5 h l`.
+    /// values are between 0.5 and 1.3. For a surface without features as small as its edges, the best value is
+    /// between `2 h l` and `5 h l`.
     pub time: f64,
 }
 
@@ -48,8 +49,8 @@ const RANGE: f64 = 1300.0;
 /// Number of sources solved for at once, if there are many.
 const LANES: usize = 4;
 
-/// Approximate geodesic distances from the direction of heat flow (Crane, Weischedel and Wardetzky 2013, [`crane2013`]),
-/// on an intrinsic Delaunay triangulation.
+/// Approximate geodesic distances from the direction of heat flow (Crane, Weischedel and Wardetzky 2013,
+/// [`crane2013`]), on an intrinsic Delaunay triangulation.
 ///
 /// | paper | here | shape | meaning |
 /// |---|---|---|---|
@@ -65,20 +66,20 @@ const LANES: usize = 4;
 ///   everywhere. The surface and its vertices stay the same.
 /// * Both factorisations are done once, in one order of elimination; a source then costs three passes over a factor.
 ///   Many sources are solved [four at a time](DistanceSolver::distance_columns), with the same bits as one at a time.
-/// * A smooth approximation: it is **not** 1-Lipschitz along edges, can be below or above the distance, and rounds off
-///   creases where fronts meet. Compared with exact distances, the mean error is 1 to 3 % on meshes of thousands of
-///   vertices, and ten times that at single vertices near the source. Never NaN, never negative, zero at a vertex that
-///   is a source.
+/// * A smooth approximation: it is **not** 1-Lipschitz along edges, can be below or above the distance, and rounds
+///   off creases where fronts meet. Compared with exact distances, the mean error is 1 to 3 % on meshes of thousands
+///   of vertices, and ten times that at single vertices near the source. Never NaN or negative, zero at a source
+///   vertex.
 /// * In the triangles around a source, distances are at most the straight ones.
 /// * No heat leaves through the boundary (Neumann), so level lines are perpendicular to it.
-/// * A link is a bar one heat length wide: it adds its length. Distances are infinite exactly where no edge or link leads.
+/// * A link is a bar one heat length wide: it adds its length. Infinite exactly where no edge or link leads.
 ///
 /// Cost on a surface: `O(p^1.5)` to set up; `O(p log p)` memory, and time per source.
 ///
-/// **Deviations.** The potential is shifted to fit around the source, not at it, where the direction of flow is undefined:
-/// this halves the largest errors. On fine meshes, heat flows for longer than the square of the mean side (see
-/// [`HeatOptions::time`]), so that the error vanishes under refinement, and long enough to reach the far end in double
-/// precision.
+/// **Deviations.** The potential is shifted to fit around the source, not at it, where the direction of flow is
+/// undefined: this halves the largest errors. On fine meshes, heat flows for longer than the square of the mean side
+/// (see
+/// [`HeatOptions::time`]), so that the error vanishes under refinement, and long enough to reach the far end.
 ///
 /// ```
 /// use canonform_geodesics::{DistanceSolver, HeatMethod, HeatOptions};
@@ -115,8 +116,8 @@ pub struct HeatMethod {
 impl HeatMethod {
     /// Flips the surface to Delaunay and factorises its matrices.
     ///
-    /// Lengths that violate the triangle inequality are corrected, see [`Metric`]. If rounding makes a matrix indefinite,
-    /// 1e-12, 1e-9 or 1e-6 of its diagonal is added.
+    /// Lengths that violate the triangle inequality are corrected, see [`Metric`]. If rounding makes a matrix
+    /// indefinite, 1e-12, 1e-9 or 1e-6 of its diagonal is added.
     ///
     /// # Errors
     /// [`GeodesicError::BadHeatTime`]; [`GeodesicError::NotFactorised`] if that does not help, or memory runs out.
@@ -301,8 +302,8 @@ fn neighbours(n_vertices: usize, elements: &[Element]) -> Rows<(u32, f64)> {
     Rows::collect(n_vertices, sides.iter().map(|(v, w, length)| (*v as usize, (*w, *length))))
 }
 
-/// The width of the widest component along edges, in units: the distance to the vertex farthest from the vertex farthest from
-/// the first one.
+/// The width of the widest component along edges, in units: the distance to the vertex farthest from the vertex
+/// farthest from the first one.
 fn extent(mesh: &IntrinsicMesh, metric: &Metric, components: &Components) -> f64 {
     let links = metric.links.iter().map(|link| Link { length: link.length.min(LONGEST_BAR), ..*link });
     let scaled = IntrinsicMesh::new(mesh.topology().clone(), metric.edges.clone());

@@ -37,7 +37,7 @@ fn assert_close(found: &[f64], expected: &[f64], tolerance: f64) {
 }
 
 #[test]
-fn error_falls_with_the_edges_on_a_plane_and_on_a_sphere() {
+fn errors_on_a_plane_and_on_a_sphere_fall_with_edge_length() {
     let mut previous = f64::INFINITY;
     for n in [11, 21, 41, 81] {
         let mesh = jittered_grid(n, n, 1.0 / (n - 1) as f64, 0.24, 7);
@@ -81,7 +81,7 @@ fn obtuse_triangles_do_not_increase_the_error() {
 }
 
 #[test]
-fn folding_and_moving_change_nothing() {
+fn folding_changes_no_distance() {
     let sheet = jittered_grid(17, 17, 0.1, 0.2, 3);
     let crease = fold(&grid(17, 17, 0.1), 0.8, 1.9);
     for (a, b) in [(grid(17, 17, 0.1), crease), (sheet.clone(), fold(&sheet, -1.0, 0.7))] {
@@ -185,7 +185,7 @@ fn a_bridge_adds_its_length() {
 }
 
 #[test]
-fn a_link_between_vertices_of_one_component_is_taken_when_it_is_short() {
+fn a_link_within_a_component_is_used_only_if_it_is_short() {
     // From one end of a long strip to the other.
     let strip = surface(&grid(101, 6, 0.1));
     let (left, right) = (VertexId(303), VertexId(403));

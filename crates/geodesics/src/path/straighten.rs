@@ -13,11 +13,12 @@ const GAIN: f64 = 1e-13;
 /// Limit of detours per node of the first path. Each makes the path shorter; real surfaces need fewer than two.
 const DETOURS_PER_NODE: usize = 100;
 
-/// Makes a path locally shortest: straight through the faces it crosses, bending only at vertices with at least 180 degrees on
-/// either side (Xin and Wang 2007, `xin2007`).
+/// Makes a path locally shortest: straight through the faces it crosses, bending only at vertices with at least 180
+/// degrees on either side (Xin and Wang 2007, `xin2007`).
 ///
-/// Replaces every section by the shortest path through its faces. Where the path then bends at a vertex with less than 180
-/// degrees on one side, leads it through the faces on that side and shortens that part again. The path never gets longer.
+/// Replaces every section by the shortest path through its faces. Where the path then bends at a vertex with less
+/// than 180 degrees on one side, leads it through the faces on that side and shortens it again. The path never gets
+/// longer.
 pub(super) fn straighten(mesh: &IntrinsicMesh, path: Path) -> Path {
     let mut path = tightened(mesh, path);
     let mut budget = DETOURS_PER_NODE * path.nodes.len();

@@ -24,7 +24,7 @@ pub(super) enum Direction {
     },
 }
 
-/// The direction from `vertex` into a face, towards a portal of this face or, without a portal, the point `end` in it.
+/// The direction from `vertex` into a face, towards a portal or, without one, the point `end` in it.
 pub(super) fn direction(
     mesh: &IntrinsicMesh,
     vertex: VertexId,
@@ -51,11 +51,11 @@ pub(super) fn direction(
     Some(Direction::Into { face, edges, angles: [first, rest] })
 }
 
-/// The faces between two directions at a vertex, and the edges between these faces, on a side where the directions are less than
-/// 180 degrees apart; `None` if both sides have more. A path between the directions is shorter past the vertex on that side.
+/// The faces between two directions at a vertex, and the edges between these faces, on a side where the directions
+/// are less than 180 degrees apart; `None` if both sides have more. A path is shorter past the vertex on that side.
 ///
-/// Finds the shortest path in a graph whose nodes are the edges at the vertex and whose arcs are the angles of faces. So edges
-/// may have any number of faces of any orientation, and the fan may be open.
+/// Finds the shortest path in a graph whose nodes are the edges at the vertex and whose arcs are the angles of faces.
+/// So edges may have any number of faces of any orientation, and the fan may be open.
 ///
 /// Cost: `O(k log k)` for the `k` faces within 180 degrees.
 pub(super) fn inner_side(

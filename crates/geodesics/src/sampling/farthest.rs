@@ -16,7 +16,7 @@ use crate::solver::{DistanceSolver, PrunedSolver};
 /// | `F` | `matrix()` of the result | p x n | distances |
 ///
 /// * Ties go to the lowest vertex, so the result depends only on the first sample.
-/// * It covers the surface at most twice as coarsely as the best choice of `n` vertices (Hochbaum and Shmoys 1985,
+/// * It covers the surface at most twice as coarsely as the best `n` vertices (Hochbaum and Shmoys 1985,
 ///   `hochbaum1985`).
 /// * It ends early, with fewer landmarks than requested, if every vertex coincides with one.
 ///
@@ -79,11 +79,11 @@ impl<'a> FarthestPointSampler<'a> {
         Ok(())
     }
 
-    /// Chooses landmarks with pruned fronts, which stop half-way to earlier landmarks, while other threads compute the
-    /// distances from those chosen. The first landmark reaches every vertex, so all do.
+    /// Chooses landmarks with pruned fronts, which stop half-way to earlier landmarks, while other threads compute
+    /// the distances from those chosen. The first landmark reaches every vertex, so all do.
     ///
-    /// Distances may be too long where a pruned front stopped. So the choices are checked once all distances are known, and
-    /// kept up to the first that is not the farthest vertex.
+    /// Distances may be too long where a pruned front stopped. So the choices are checked once all distances are
+    /// known, and kept up to the first that is not the farthest vertex.
     fn extend_pruned(&mut self, pruned: &dyn PrunedSolver, n: usize) {
         let Columns { solver, landmarks, values } = &mut self.columns;
         let (p, solver, before) = (self.nearest.len(), *solver, landmarks.len());

@@ -9,8 +9,8 @@ use super::sampler::{FirstSample, Sampler};
 use crate::error::GeodesicError;
 use crate::solver::DistanceSolver;
 
-/// Random sampling, the baseline: every set of n vertices is equally likely. The seed determines the result for any number
-/// of threads.
+/// Random sampling, the baseline: every set of n vertices is equally likely. The seed determines it for any number of
+/// threads.
 ///
 /// Cost: one run of the solver per landmark, in parallel; `O(p)` to start.
 ///

@@ -24,8 +24,8 @@ pub trait Sampler: std::fmt::Debug {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum FirstSample {
-    /// The vertex farthest from vertex 0, a tip of the surface, for [`FarthestPointSampler`](crate::FarthestPointSampler);
-    /// a random one for the other samplers.
+    /// The vertex farthest from vertex 0, a tip of the surface, for
+    /// [`FarthestPointSampler`](crate::FarthestPointSampler); a random one for the other samplers.
     #[default]
     Farthest,
     /// This vertex.

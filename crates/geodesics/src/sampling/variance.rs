@@ -22,12 +22,12 @@ pub enum Variance {
 }
 
 /// Incremental sampling by variance ("Min-Var"; Yu, Zhao, Zhang and Yang 2012, `yu2012`): two landmarks are drawn at
-/// random, then each is the vertex `j` with the least (or greatest) variance of the squared distances `E_ij` over the
+/// random, then each is the vertex `j` with the least (or greatest) variance of the squared distances `E_ij` to the
 /// landmarks `i` so far.
 ///
-/// * A vertex with equal squared distances to all landmarks is central. So the least variance avoids the tips of a surface and
-///   soon takes neighbours of landmarks: the samples are close together, and the stress is far above that of farthest point
-///   sampling.
+/// * A vertex with equal squared distances to all landmarks is central. So the least variance avoids the tips of a
+///   surface and soon takes neighbours of landmarks: the samples are close together, and the stress is far above that
+///   of farthest point sampling.
 /// * Ties go to the lowest vertex. The seed determines the result for any number of threads.
 ///
 /// Cost: one run of the solver and `O(p)` per landmark, as means and variances are updated (Welford 1962).

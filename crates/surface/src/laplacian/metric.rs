@@ -3,8 +3,8 @@
 use crate::ids::FaceId;
 use crate::intrinsic::{IntrinsicMesh, Link};
 
-/// Smallest excess of two sides of a triangle over the third, in mean edge lengths. The height of the flattest triangle
-/// is then about a thousandth of its base, and no cotangent exceeds a million.
+/// Smallest excess of two sides of a triangle over the third, in mean edge lengths. The height of the flattest
+/// triangle is then about a thousandth of its base, and no cotangent exceeds a million.
 const SLACK: f64 = 1e-6;
 
 /// Rounds of shortening. Lengths of a surface in space need none.

@@ -4,8 +4,8 @@
 //! `geodesics` (heat), `descriptors` (spectra), `canonform` (spectral embeddings)
 //!
 //! Robust where the textbook formula is not (Sharp and Crane 2020, [`sharp2020`]): any lengths become triangles
-//! ([`Metric`]); boundaries, non-manifold edges and faces of opposite orientation need no special treatment; edges are
-//! flipped until no weight is negative. Matrices are returned as lists of entries.
+//! ([`Metric`]); boundaries, non-manifold edges and faces of opposite orientation need no special treatment; edges
+//! are flipped until no weight is negative. Matrices are returned as lists of entries.
 //!
 //! [`sharp2020`]: https://doi.org/10.1111/cgf.14069
 
@@ -91,8 +91,8 @@ impl Laplacian {
         masses
     }
 
-    /// The stiffness as `(row, column, value)`. Values of the same place add up; those off the diagonal stand for their
-    /// mirror images too.
+    /// The stiffness as `(row, column, value)`. Values add up; those off the diagonal stand for their mirror images
+    /// too.
     pub fn stiffness_entries(&self) -> impl Iterator<Item = (usize, usize, f64)> {
         let links = self.metric.links.iter().filter(|link| link.ends[0] != link.ends[1]);
         let bars = links.map(|link| (link.ends.map(|v| v.0), 1.0 / link.length));
