@@ -22,7 +22,7 @@ mod topology;
 mod triangle;
 mod triangulation;
 
-pub use components::{Components, components, components_of_faces, components_with_links};
+pub use components::{Components, components_of_faces, components_with_links};
 pub use disjoint_sets::DisjointSets;
 pub use ids::{CornerId, EdgeId, FaceId, VertexId};
 pub use intrinsic::{IntrinsicMesh, Link};

@@ -1,18 +1,19 @@
 //! Obtuse corners split by unfolding the surface behind them (Kimmel and Sethian 1998, `kimmel1998`).
 //!
-//! A front may reach an obtuse corner `C` before both ends of the base `AB` are finalized. The triangles behind
-//! the base are laid out in the plane of `ABC` until a vertex `D` lies in the cone of directions that make acute
-//! angles with both `CA` and `CB`. The segment `CD` is inside the unfolded strip and splits the corner in two.
+//! A front may reach an obtuse corner `C` before both ends of the base `AB` are finalized. The triangles behind the
+//! base are laid out in the plane of `ABC` until a vertex `D` lies in the cone of directions that make acute angles
+//! with both `CA` and `CB`. The segment `CD` is inside the unfolded strip and splits the corner in two.
 
-use surface::{CornerId, FaceId, IntrinsicMesh, Link, Triangle, VertexId};
+use surface::{CornerId, FaceId, IntrinsicMesh, Link, VertexId};
 
 use super::one_ring::HalfCorner;
+use crate::plane::{Point, Side, apex, beyond, sub};
 
 /// Limit of the triangles in a strip; strips of slivers may have no end.
 const MAX_STEPS: usize = 12;
 
-/// Splits all obtuse corners of a mesh where unfolding finds a vertex. Returns the segments that split them, and their
-/// halves with the vertices at both ends of each base.
+/// Splits all obtuse corners of a mesh where unfolding finds a vertex. Returns the segments that split them, and
+/// their halves with the vertices at both ends of each base.
 pub(super) fn split_obtuse_corners(mesh: &IntrinsicMesh) -> (Vec<Link>, Vec<(u32, HalfCorner)>) {
     let (topology, mut segments, mut halves) = (mesh.topology(), Vec::new(), Vec::new());
     for corner in (0..topology.n_faces()).flat_map(|f| FaceId::from(f).corners()) {
@@ -40,12 +41,6 @@ struct Split {
     bases: [f64; 2],
 }
 
-type Point = [f64; 2];
-
-fn sub(a: Point, b: Point) -> Point {
-    [a[0] - b[0], a[1] - b[1]]
-}
-
 fn dot(a: Point, b: Point) -> f64 {
     a[0] * b[0] + a[1] * b[1]
 }
@@ -54,15 +49,14 @@ fn norm(a: Point) -> f64 {
     dot(a, a).sqrt()
 }
 
-/// Unfolds the surface behind a corner. Returns `None` if the corner is not obtuse, or if the strip reaches the boundary or
-/// a non-manifold edge, or gets too long.
+/// Unfolds the surface behind a corner. Returns `None` if the corner is not obtuse, or if the strip reaches the
+/// boundary or a non-manifold edge, or gets too long.
 fn split(mesh: &IntrinsicMesh, corner: CornerId) -> Option<Split> {
     let [c, b, a] = mesh.sides(corner);
     if a * a + b * b >= c * c {
         return None;
     }
-    let flat = Triangle::from_sides([c, b, a]);
-    let apex = [flat.x, flat.y];
+    let apex = apex([c, b, a]);
     let (at_a, at_b) = ([0.0, 0.0], [c, 0.0]);
     let (to_a, to_b) = (sub(at_a, apex), sub(at_b, apex));
     let topology = mesh.topology();
@@ -84,10 +78,7 @@ fn split(mesh: &IntrinsicMesh, corner: CornerId) -> Option<Split> {
             return None;
         }
         // The new vertex is on the other side of the edge than the apex.
-        let beyond = Triangle::from_sides([edge, from_left, from_right]);
-        let along = sub(at_right, at_left).map(|x| x / edge);
-        let away = [along[1], -along[0]];
-        let at = [0, 1].map(|i| at_left[i] + beyond.x * along[i] + beyond.y * away[i]);
+        let at = beyond([at_left, at_right], [edge, from_left, from_right], Side::Behind);
         let ray = sub(at, apex);
         match (dot(ray, to_a) > 0.0, dot(ray, to_b) > 0.0) {
             (true, true) => {

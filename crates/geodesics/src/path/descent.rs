@@ -5,9 +5,10 @@ use std::collections::BTreeSet;
 use surface::{EdgeId, FaceId, Triangle, VertexId};
 
 use super::field::Field;
-use super::plane::{Flat, Point, between, distance, faces_around, segment};
+use super::plane::{Flat, faces_around, segment};
 use super::strip::{Path, Portal, Section, Strip};
 use crate::fast_marching::Stencil;
+use crate::plane::{Point, between, distance};
 use crate::point::SurfacePoint;
 
 /// Where a step ends.
@@ -25,17 +26,9 @@ enum Over {
     Link(f64),
 }
 
-/// A possible step, and the distance to the source over it.
-#[derive(Debug, Clone, Copy)]
-struct Step {
-    total: f64,
-    stop: Stop,
-    over: Over,
-}
-
-/// Descends from `target` to a source, always in the direction in which the source appears nearest: the distances at the ends of
-/// an edge determine where the source would lie in the plane of a face. Passes no vertex and crosses no edge twice; returns
-/// `None` if that blocks every step.
+/// Descends from `target` to a source, always in the direction in which the source appears nearest: the distances at
+/// the ends of an edge determine where the source would lie in the plane of a face. Passes no vertex and crosses no
+/// edge twice; returns `None` if that blocks every step.
 ///
 /// The path may be far from shortest near a ridge of the field, and if the values of the field are not distances.
 pub(super) fn descend(field: &Field, target: SurfacePoint) -> Option<Path> {
@@ -52,12 +45,12 @@ pub(super) fn descend(field: &Field, target: SurfacePoint) -> Option<Path> {
             }
             descent.vertices.insert(vertex);
         }
-        let step = descent.best(here, &faces)?;
-        match step.over {
+        let (stop, over) = descent.best(here, &faces)?;
+        match over {
             Over::Face(face) => strip.faces.push(face),
             Over::Link(length) => path.sections.push(Section::Link(length)),
         }
-        match step.stop {
+        match stop {
             Stop::Portal(portal) => {
                 descent.edges.insert(portal.edge);
                 strip.portals.push(portal);
@@ -90,11 +83,11 @@ struct Descent<'a> {
 
 impl Descent<'_> {
     /// The step over which the source is nearest.
-    fn best(&self, here: SurfacePoint, faces: &[FaceId]) -> Option<Step> {
-        let mut best: Option<Step> = None;
+    fn best(&self, here: SurfacePoint, faces: &[FaceId]) -> Option<(Stop, Over)> {
+        let (mut least, mut best) = (f64::INFINITY, None);
         let mut offer = |total: f64, stop, over| {
-            if total < best.map_or(f64::INFINITY, |step| step.total) {
-                best = Some(Step { total, stop, over });
+            if total < least {
+                (least, best) = (total, Some((stop, over)));
             }
         };
         for face in faces {
@@ -141,8 +134,8 @@ impl Descent<'_> {
     }
 }
 
-/// The distance at `here` of a front from a single point beyond the base, and where the straight line crosses the base; `None` if
-/// it misses the base.
+/// The distance at `here` of a front from a single point beyond the base, and where the straight line crosses the
+/// base; `None` if it misses the base.
 fn distance_through(here: Point, base: [Point; 2], [at_a, at_b]: [f64; 2]) -> Option<(f64, f64)> {
     let [a, b] = base;
     let (length, side) = (distance(a, b), distance(a, here));

@@ -2,7 +2,8 @@
 
 use surface::{EdgeId, FaceId, IntrinsicMesh, VertexId};
 
-use super::plane::{Flat, Point, Side, beyond, segment};
+use super::plane::{Flat, segment};
+use crate::plane::{Point, Side, beyond};
 use crate::point::SurfacePoint;
 
 /// A path along the surface: nodes and the sections between them.
@@ -84,7 +85,7 @@ impl Strip {
         Self { faces: vec![face], portals: Vec::new() }
     }
 
-    /// Removes detours: faces left through the edge they were entered by, and edges that contain the start or the end.
+    /// Removes detours: faces left through the edge they were entered by, and edges containing the start or end.
     pub(super) fn simplified(self, mesh: &IntrinsicMesh, start: SurfacePoint, end: SurfacePoint) -> Self {
         let mut faces = self.faces.into_iter();
         let mut simple = Self { faces: faces.next().into_iter().collect(), portals: Vec::new() };

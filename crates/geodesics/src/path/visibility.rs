@@ -6,8 +6,9 @@ use std::collections::BinaryHeap;
 use surface::{EdgeId, FaceId, VertexId};
 
 use super::field::Field;
-use super::plane::{Flat, Point, Side, between, beyond, cross, distance, faces_around, sub};
+use super::plane::{Flat, faces_around};
 use super::strip::{Gate, Portal, Strip};
+use crate::plane::{Point, Side, between, beyond, cross, distance, sub};
 use crate::point::SurfacePoint;
 
 /// Share of a length within which two are the same.
@@ -45,11 +46,12 @@ struct Search<'a> {
     best: (f64, Option<(SurfacePoint, FaceId, Option<usize>)>),
 }
 
-/// Searches in all directions for the visible vertex or source over which the path to a source is shortest, if it is shorter than
-/// `known`. Stops at the first that is no longer than `enough`, and after `n_rays` bundles of rays.
+/// Searches in all directions for the visible vertex or source over which the path to a source is shortest, if it is
+/// shorter than `known`. Stops at the first that is no longer than `enough`, and after `n_rays` bundles of rays.
 ///
-/// Rays are followed only while they may improve the result: the distance at a point `P` of an edge with ends `A` and `B` is at
-/// least `T(A) - |AP|` and `T(B) - |BP|`, which leaves a lens around the shortest path. If `T` is exact, so is the result.
+/// Rays are followed only while they may improve the result: the distance at a point `P` of an edge with ends `A` and
+/// `B` is at least `T(A) - |AP|` and `T(B) - |BP|`, which leaves a lens around the path. If `T` is exact, so is the
+/// result.
 pub(super) fn nearest_visible(
     field: &Field,
     from: SurfacePoint,
