@@ -37,7 +37,7 @@ pub(crate) fn run(context: &Context<'_>) -> Result<()> {
         let forms: Vec<CanonicalForm> = made.iter().map(|made| made.form.clone()).collect();
         let scales = [(Scale::Raw, Normalization::Raw), (Scale::Normalized, Normalization::UnitArea)];
         for (scale, normalization) in scales {
-            let matches = form_matches(&forms, normalization, &MatchOptions::default(), context.observer)?;
+            let matches = form_matches(&forms, normalization, context.observer)?;
             panels.push(panel(context, method, scale, &matches.distances, &classes)?);
             moved.push(motions(method, scale, &made, &matches.alignments));
         }

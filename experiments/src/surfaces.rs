@@ -2,9 +2,7 @@
 
 use anyhow::{Result, bail};
 use canonform::{Embedded, FormOptions};
-use descriptors::{
-    Alignment, CanonicalForm, MatchOptions, Normalization, PreparedForm, ShapeMetric, match_forms,
-};
+use descriptors::{Alignment, CanonicalForm, Normalization, PreparedForm, Reflections, match_forms};
 use geodesics::DistanceSolver;
 use linalg::Matrix;
 use mesh::{TriMesh, orient_consistently};
@@ -36,9 +34,9 @@ pub(crate) fn aligned(
     first: &mut Option<PreparedForm>,
 ) -> Result<TriMesh> {
     let mut surface = form.to_mesh(shape);
-    let prepared = PreparedForm::new(form, ShapeMetric::MATCHED_POINTS)?;
+    let prepared = PreparedForm::new(form)?;
     if let Some(target) = first {
-        let motion = match_forms(&prepared, target, &MatchOptions::default())?.alignment;
+        let motion = match_forms(&prepared, target, Reflections::Allow).alignment;
         surface.positions.iter_mut().for_each(|p| *p = motion.apply(p));
     } else {
         *first = Some(prepared);

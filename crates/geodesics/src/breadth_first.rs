@@ -9,9 +9,7 @@ use crate::solver::{DistanceSolver, Pool, within};
 use crate::source::Source;
 
 /// The least number of edges and links between vertices, times the mean edge length: the baseline of Civril et al.
-/// 2007 (`civril2007`), which the paper calls BFS.
-///
-/// The scale makes it comparable with the other solvers; hops alone have no unit. Cost: `O(p)` per source.
+/// 2007 (`civril2007`), called BFS in the paper. Cost: `O(p)` per source.
 ///
 /// ```
 /// use canonform_geodesics::{BreadthFirst, DistanceSolver};
@@ -49,8 +47,7 @@ impl DistanceSolver for BreadthFirst {
             queue.clear();
             // A point on an edge or a face counts as its nearest vertex.
             for source in sources {
-                let nearest = source.reach().iter().min_by(|a, b| a.1.total_cmp(&b.1));
-                if let Some((vertex, _)) = nearest {
+                if let Some((vertex, _)) = source.reach().iter().min_by(|a, b| a.1.total_cmp(&b.1)) {
                     out[vertex.index()] = 0.0;
                     queue.push_back(vertex.0);
                 }

@@ -8,9 +8,7 @@ use crate::solver::{DistanceSolver, Pool, within};
 use crate::source::Source;
 
 /// Lengths of shortest paths along edges and links (Dijkstra 1959): an upper bound of the geodesic distance that does
-/// not converge to it under refinement.
-///
-/// Cost: `O(p log p)` per source.
+/// not converge to it under refinement. Cost: `O(p log p)` per source.
 ///
 /// ```
 /// use canonform_geodesics::{Dijkstra, DistanceSolver};

@@ -9,7 +9,7 @@ use crate::point::SurfacePoint;
 pub enum GeodesicError {
     /// The surface has several components.
     #[error(
-        "mesh is disconnected: {unreached} of {n_vertices} vertices not reached from vertex {source_vertex}; \
+        "the mesh is disconnected: {unreached} of {n_vertices} vertices cannot be reached from vertex {source_vertex}; \
          keep the largest component or bridge the gaps"
     )]
     Disconnected {
@@ -36,8 +36,8 @@ pub enum GeodesicError {
     },
     /// A path to a point without a distance.
     #[error(
-        "no path is known from a source to {point}: it is on another component or beyond the limit of the \
-         distances; choose another target or raise the limit"
+        "no path to {point}: it is on another component or beyond the distance limit; choose another target or raise \
+         the limit"
     )]
     NoWay {
         /// The end of the path.
@@ -47,15 +47,13 @@ pub enum GeodesicError {
     #[error("at least 1 sample is needed, got 0")]
     NoSamples,
     /// A heat time that is not positive and finite.
-    #[error(
-        "the heat time {time} (in squared mean edge lengths) is not positive and finite; the usual time is 0.85"
-    )]
+    #[error("heat time {time} is not positive and finite; the default is 0.85, in squared mean edge lengths")]
     BadHeatTime {
         /// The time.
         time: f64,
     },
     /// The matrices of the heat method cannot be factorised.
-    #[error("the heat method cannot be set up: {reason}; use fast marching")]
+    #[error("cannot set up the heat method: {reason}; use fast marching")]
     NotFactorised {
         /// Why not.
         reason: String,

@@ -1,20 +1,16 @@
 //! The graph of edges and links.
 
-use surface::{IntrinsicMesh, Rows};
+use surface::{IntrinsicMesh, Link, Rows};
 
-/// The neighbours of every vertex along edges and links, and how far they are.
+/// The neighbours of every vertex along edges and links, and their distances.
 #[derive(Debug, Clone)]
 pub(crate) struct EdgeGraph(Rows<(u32, f64)>);
 
 impl EdgeGraph {
-    /// The edges and links of `mesh`, in both directions.
     pub(crate) fn new(mesh: &IntrinsicMesh) -> Self {
-        let edges = mesh.topology().edges().iter().zip(mesh.edge_lengths()).map(|(ends, l)| (*ends, *l));
-        let links = mesh.links().iter().map(|link| (link.ends, link.length));
-        let both = edges
-            .chain(links)
-            .flat_map(|([a, b], length)| [(a.index(), (b.0, length)), (b.index(), (a.0, length))]);
-        Self(Rows::collect(mesh.n_vertices(), both))
+        let edges = mesh.topology().edges().iter().zip(mesh.edge_lengths());
+        let edges = edges.map(|(ends, length)| Link { ends: *ends, length: *length });
+        Self(Link::by_vertex(mesh.n_vertices(), edges.chain(mesh.links().iter().copied())))
     }
 
     pub(crate) fn n_vertices(&self) -> usize {
@@ -26,14 +22,12 @@ impl EdgeGraph {
         self.0.row(vertex as usize)
     }
 
-    /// The vertices in [breadth-first order](breadth_first_order).
     pub(crate) fn breadth_first_order(&self) -> Vec<u32> {
         breadth_first_order(self.n_vertices(), |v| self.neighbours(v).iter().map(|(u, _)| *u))
     }
 }
 
-/// Vertices in breadth-first order, one component after the other: neighbours on the surface become neighbours
-/// in memory.
+/// Vertices in breadth-first order, one component after the other, so that neighbours are close in memory.
 pub(crate) fn breadth_first_order<I: Iterator<Item = u32>>(
     n: usize,
     neighbours: impl Fn(u32) -> I,

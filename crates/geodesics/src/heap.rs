@@ -5,8 +5,8 @@ const NONE: u32 = u32::MAX;
 
 /// Tentative distances of all vertices, and a 4-ary min-heap of those to be visited.
 ///
-/// Four children share a cache line, which halves the depth of a binary heap at the same number of lines. The
-/// least of them is found without branches, which would be mispredicted.
+/// Four children share a cache line, so the heap is half as deep as a binary one. The least of them is found without
+/// branches, which would be mispredicted.
 #[derive(Debug, Default)]
 pub(crate) struct VertexHeap {
     distances: Vec<f64>,
@@ -31,14 +31,13 @@ impl VertexHeap {
         self.distances[vertex as usize]
     }
 
-    /// Whether a vertex is in the heap.
     #[inline]
     pub(crate) fn contains(&self, vertex: u32) -> bool {
         self.positions[vertex as usize] != NONE
     }
 
-    /// Lowers the distance of a vertex and puts it (back) into the heap, if `distance` is less than the known
-    /// one; returns whether it was.
+    /// If `distance` is less than that of the vertex, lowers it and puts the vertex into the heap; returns whether it
+    /// was.
     #[inline]
     pub(crate) fn relax(&mut self, vertex: u32, distance: f64) -> bool {
         let known = &mut self.distances[vertex as usize];
@@ -55,7 +54,6 @@ impl VertexHeap {
         improves
     }
 
-    /// Removes the vertex with the least distance.
     #[inline]
     pub(crate) fn pop(&mut self) -> Option<(f64, u32)> {
         let top = *self.heap.first()?;
@@ -81,8 +79,8 @@ impl VertexHeap {
         self.place(hole, item);
     }
 
-    /// Moves the hole at the top down to the bottom along the least children and lets the item rise from there:
-    /// it came from the bottom and nearly always belongs there, so comparisons on the way down are wasted.
+    /// Moves the hole at the top down to the bottom along the least children and lets the item rise from there: it
+    /// came from the bottom and nearly always returns there, so comparing it at every level would be wasteful.
     #[inline]
     fn sift_down(&mut self, item: (f64, u32)) {
         let mut hole = 0;

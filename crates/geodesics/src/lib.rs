@@ -42,6 +42,7 @@ mod heap;
 mod heat;
 mod method;
 mod path;
+mod plane;
 mod point;
 mod prefetch;
 mod sampling;

@@ -1,9 +1,8 @@
 //! Requesting memory before it is needed.
 //!
-//! A front reads the one-ring of a vertex once, wherever it lies. On large meshes, a quarter of the time went into
-//! waiting for it, although the vertices are known a round ahead. No safe function of the standard library requests
-//! memory without reading it, hence the exception here. The instruction affects nothing but time; on other
-//! processors it is left out.
+//! A front reads each one-ring once, in an order that the processor cannot predict: on large meshes, a quarter of the
+//! time was spent waiting. No safe function of the standard library requests memory without reading it, hence the
+//! `unsafe`. The instruction affects only time; other processors do without.
 
 #![allow(unsafe_code)]
 

@@ -29,15 +29,14 @@ pub trait DistanceSolver: Sync + std::fmt::Debug {
     /// Number of vertices of the surface.
     fn n_vertices(&self) -> usize;
 
-    /// Writes the distance from the nearest of `sources` to every vertex, in mesh units; infinite if no edge or link
-    /// leads there, and beyond `max_distance`.
+    /// Writes the distance from the nearest of `sources` to every vertex, in mesh units; infinite where no edge or
+    /// link leads and beyond `max_distance`.
     ///
     /// # Panics
     /// If `out` does not have one entry per vertex, or a source belongs to another surface.
     fn solve_into(&self, sources: &[Source], max_distance: f64, out: &mut [f64]);
 
-    /// Writes the distance from the vertex `source` to every vertex, in mesh units; infinite if no edge or link leads
-    /// there.
+    /// Writes the distance from the vertex `source` to every vertex, as [`distances`](Self::distances) does.
     ///
     /// # Panics
     /// If `out` does not have one entry per vertex, or `source` is out of range.
@@ -45,7 +44,7 @@ pub trait DistanceSolver: Sync + std::fmt::Debug {
         self.solve_into(&[Source::vertex(source)], f64::INFINITY, out);
     }
 
-    /// The distance from `source` to every vertex, in mesh units; infinite if no edge or link leads there.
+    /// The distance from `source` to every vertex, in mesh units; infinite where no edge or link leads.
     ///
     /// # Panics
     /// If `source` is out of range.
@@ -69,11 +68,8 @@ pub trait DistanceSolver: Sync + std::fmt::Debug {
         let p = self.n_vertices();
         let mut columns = Matrix::zeros(p, sources.len());
         if p > 0 {
-            columns
-                .as_mut_slice()
-                .par_chunks_mut(p)
-                .zip(sources)
-                .for_each(|(column, source)| self.distances_into(*source, column));
+            let columns = columns.as_mut_slice().par_chunks_mut(p).zip(sources);
+            columns.for_each(|(column, source)| self.distances_into(*source, column));
         }
         columns
     }
@@ -88,24 +84,23 @@ pub trait DistanceSolver: Sync + std::fmt::Debug {
     }
 }
 
-/// A solver whose front can stop where another source is nearer, so that it costs only as much as the part of the
-/// surface that is nearest to the new source.
+/// A solver whose front can stop where another source is nearer, so that it only visits the part nearest to the new
+/// source.
 pub trait PrunedSolver: Sync + std::fmt::Debug {
-    /// Lowers `nearest`, the distance from every vertex to the nearest of some sources, to the distance from `source`
-    /// where that is smaller.
+    /// Lowers `nearest`, distances to the nearest of some sources, to the distance from `source` where it is less.
     ///
     /// # Panics
     /// If `nearest` does not have one entry per vertex, or `source` is out of range.
     fn lower(&self, source: VertexId, nearest: &mut [f64]);
 }
 
-/// The distance, or infinity beyond the limit: fronts leave tentative distances there.
+/// The distance, or infinity beyond the limit, where fronts leave tentative distances.
 #[inline]
 pub(crate) fn within(distance: f64, max_distance: f64) -> f64 {
     if distance <= max_distance { distance } else { f64::INFINITY }
 }
 
-/// Scratch memory that calls borrow and return, so that nothing is allocated after the first calls.
+/// Scratch memory that calls borrow and return, so that only the first calls allocate.
 #[derive(Debug, Default)]
 pub(crate) struct Pool<T>(Mutex<Vec<T>>);
 

@@ -24,7 +24,7 @@ pub struct Source {
     reach: Vec<(VertexId, f64)>,
 }
 
-/// How far the sum of barycentric coordinates may be from one, for rounding.
+/// Rounding allowed in the sum of barycentric coordinates.
 const BARYCENTRIC_SLACK: f64 = 1e-9;
 
 impl Source {
@@ -79,8 +79,8 @@ impl Source {
                     )));
                 }
                 let vertices = topology.faces()[face.index()];
-                // The squared distance in the plane of the face from a point with barycentric coordinates b to
-                // corner i is -sum_{j<k} e_j e_k |v_j v_k|^2 with e = b - unit_i.
+                // The squared distance in the plane of the face from a point with barycentric coordinates b to corner
+                // i is -sum_{j<k} e_j e_k |v_j v_k|^2 with e = b - unit_i.
                 let sides = face.corners().map(|corner| mesh.opposite_length(corner).powi(2));
                 let reach = [0, 1, 2].map(|i| {
                     let mut e = barycentric;
@@ -99,8 +99,8 @@ impl Source {
         self.point
     }
 
-    /// The vertices of the faces that hold the point, and their distances from it inside these faces, in mesh units;
-    /// for a vertex only itself.
+    /// The vertices of the faces that contain the point, with their distances from it inside these faces, in mesh
+    /// units; of a vertex only itself.
     #[must_use]
     pub fn reach(&self) -> &[(VertexId, f64)] {
         &self.reach

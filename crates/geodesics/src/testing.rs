@@ -1,7 +1,7 @@
-//! What the tests of several modules share: surfaces, and references on real meshes.
+//! Surfaces and references for the tests of several modules.
 //!
-//! The real meshes are not part of the project. `CANONFORM_DATA` says where they are; without them the
-//! tests that need them say so and pass.
+//! The real meshes are not part of the project. `CANONFORM_DATA` is their folder; without it, the tests that need
+//! them print a note and pass.
 
 use std::path::{Path, PathBuf};
 
@@ -39,7 +39,7 @@ pub(crate) fn bumpy(n: usize, height: f64, seed: u64) -> IntrinsicMesh {
     spatial(&at, &faces(&sheet))
 }
 
-/// Lengths that belong to no triangles.
+/// Lengths that violate the triangle inequality as a rule.
 pub(crate) fn lengths_of_nothing() -> impl proptest::strategy::Strategy<Value = f64> {
     use proptest::prelude::*;
     prop_oneof![
@@ -77,7 +77,7 @@ pub(crate) fn data() -> Option<PathBuf> {
 
 /// Exact distances on a real mesh, by the algorithm of Mitchell, Mount and Papadimitriou.
 pub(crate) struct Reference {
-    /// As it was read: so were the references made.
+    /// The mesh without repairs, as for the references.
     pub(crate) mesh: TriMesh,
     /// Sources, and the distances from each to all vertices.
     pub(crate) rows: Vec<(VertexId, Vec<f64>)>,

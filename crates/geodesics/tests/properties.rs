@@ -1,11 +1,11 @@
-//! What distances promise on any mesh: random and degenerate, with edges of many faces, boundaries,
-//! repeated and flipped faces, slivers, and several components.
+//! Laws on random and degenerate meshes: non-manifold edges, boundaries, repeated and flipped faces, slivers, and
+//! several components.
 
 // Helper functions are test code too, which clippy cannot see.
 #![allow(clippy::unwrap_used)]
 
 use canonform_geodesics::{
-    Dijkstra, DistanceSolver, Exact, FastMarching, HeatOptions, Method, PathTracer, Source, SurfacePoint,
+    Dijkstra, DistanceSolver, Exact, FastMarching, Method, PathTracer, Source, SurfacePoint,
 };
 use mesh::{TriMesh, shapes};
 use nalgebra::Point3;
@@ -15,8 +15,8 @@ use surface::{IntrinsicMesh, VertexId};
 /// Share of a distance that rounding may take or add.
 const ROUNDING: f64 = 1e-11;
 
-/// How far lengths of edges leave open where a vertex is, in mesh units: their rounding hides the height of
-/// flat triangles, and the angles at edges that are much shorter than others.
+/// How far edge lengths leave the position of a vertex undetermined, in mesh units: rounding hides the height of flat
+/// triangles, and the angles at edges much shorter than others.
 fn left_open(surface: &IntrinsicMesh) -> f64 {
     let lengths = surface.edge_lengths().iter().copied().filter(|length| *length > 0.0);
     let shortest = lengths.fold(f64::INFINITY, f64::min);
@@ -28,8 +28,7 @@ fn longest_edge(surface: &IntrinsicMesh) -> f64 {
     surface.edge_lengths().iter().copied().fold(0.0, f64::max)
 }
 
-/// Triangles between any of some points, which may lie anywhere, in hardly different places of a
-/// lattice, or nearly in a plane.
+/// Triangles between points anywhere, slightly off the points of a lattice, or nearly in a plane.
 fn soup() -> impl Strategy<Value = TriMesh> {
     let point = prop::array::uniform3(-1.0..1.0f64);
     let spread = prop_oneof![
@@ -52,8 +51,8 @@ fn soup() -> impl Strategy<Value = TriMesh> {
     })
 }
 
-/// A hilly sheet, or a dented ball, with faces turned over, repeated and taken out, fins on edges that
-/// have two faces already, and perhaps a second one apart.
+/// A hilly sheet or a dented ball with faces reversed, repeated and removed, fins on edges that already have two
+/// faces, and perhaps a second component.
 fn tame() -> impl Strategy<Value = TriMesh> {
     let base = prop_oneof![
         (4..8usize, 4..8usize, 0u64..1000)
@@ -99,7 +98,7 @@ fn euclid(mesh: &TriMesh, a: VertexId, b: usize) -> f64 {
     (mesh.positions[a.index()] - mesh.positions[b]).norm()
 }
 
-/// The solvers that must all give some distance, prepared for one surface.
+/// Three solvers prepared for one surface.
 struct Solvers {
     exact: Exact,
     marching: FastMarching,
@@ -128,7 +127,7 @@ impl Solvers {
     }
 }
 
-/// No distance grows faster than along an edge.
+/// Asserts that no distance grows faster than along an edge.
 fn assert_lipschitz(surface: &IntrinsicMesh, distances: &[f64], name: &str) {
     for (ends, length) in surface.topology().edges().iter().zip(surface.edge_lengths()) {
         let [a, b] = ends.map(|v| distances[v.index()]);
@@ -137,7 +136,7 @@ fn assert_lipschitz(surface: &IntrinsicMesh, distances: &[f64], name: &str) {
     }
 }
 
-/// What holds whatever the triangles.
+/// Asserts what holds for any triangles.
 fn assert_laws(mesh: &TriMesh) {
     let surface = mesh.intrinsic();
     let (longest, open) = (longest_edge(&surface), left_open(&surface));
@@ -166,21 +165,20 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 96, failure_persistence: None, ..Default::default() })]
 
     #[test]
-    fn on_any_triangles(mesh in soup()) {
+    fn laws_hold_on_any_triangles(mesh in soup()) {
         assert_laws(&mesh);
     }
 
     #[test]
-    fn on_surfaces_with_faults(mesh in tame()) {
+    fn laws_hold_on_surfaces_with_defects(mesh in tame()) {
         assert_laws(&mesh);
     }
 
     #[test]
-    fn every_method_reaches_what_can_be_reached_and_nothing_is_nan(mesh in prop_oneof![soup(), tame()]) {
+    fn every_method_reaches_what_dijkstra_reaches(mesh in prop_oneof![soup(), tame()]) {
         let surface = mesh.intrinsic();
-        let heat = Method::Heat(HeatOptions::default());
         let dijkstra = Dijkstra::new(&surface);
-        for method in [Method::default(), Method::Exact, Method::Dijkstra, Method::BreadthFirst, heat] {
+        for method in Method::all() {
             let solver = method.prepare(&surface).unwrap();
             for source in sources(&mesh) {
                 for (found, known) in solver.distances(source).iter().zip(dijkstra.distances(source)) {
@@ -192,7 +190,7 @@ proptest! {
     }
 
     #[test]
-    fn there_is_as_far_as_back(mesh in prop_oneof![soup(), tame()]) {
+    fn exact_distances_are_symmetric(mesh in prop_oneof![soup(), tame()]) {
         let surface = mesh.intrinsic();
         let (exact, open) = (Exact::new(&surface), left_open(&surface));
         let all = from_everywhere(&exact);
@@ -205,7 +203,7 @@ proptest! {
     }
 
     #[test]
-    fn marching_stays_close_on_surfaces(mesh in tame()) {
+    fn fast_marching_is_within_an_edge_of_exact_distances(mesh in tame()) {
         let surface = mesh.intrinsic();
         let (marching, exact) = (FastMarching::new(&surface, Default::default()), Exact::new(&surface));
         let all = from_everywhere(&marching);
@@ -224,7 +222,7 @@ proptest! {
     #[test]
     fn paths_are_between_the_exact_distance_and_that_along_edges(mesh in prop_oneof![soup(), tame()]) {
         let surface = mesh.intrinsic();
-        // Exact distances may miss ways through faces with a side of no length, which repair drops.
+        // Exact distances may miss paths through faces with a side of length zero, which repair drops.
         prop_assume!(surface.edge_lengths().iter().all(|length| *length > 0.0));
         let (open, solvers) = (left_open(&surface), Solvers::new(&surface));
         for source in sources(&mesh) {

@@ -3,27 +3,18 @@
 use crate::disjoint_sets::DisjointSets;
 use crate::ids::VertexId;
 use crate::intrinsic::IntrinsicMesh;
-use crate::topology::Topology;
 
 /// The connected components of a mesh.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Components {
     /// Number of components.
     pub count: usize,
-    /// The component of every vertex, numbered in the order of their lowest vertices; `None` for a vertex in no
-    /// component.
+    /// The component of every vertex, in the order of their lowest vertices; `None` for a vertex in no component.
     pub labels: Vec<Option<u32>>,
 }
 
-/// The components of the faces, in linear time; vertices without faces are in none.
-///
-/// Two faces that share only a vertex are connected: a path along edges can pass through it.
-#[must_use]
-pub fn components(topology: &Topology) -> Components {
-    components_of_faces(topology.n_vertices(), topology.faces())
-}
-
-/// The same for any list of faces, degenerate ones included.
+/// The components of any faces, degenerate ones included, in linear time; vertices without faces are in none. Faces
+/// that share only a vertex are connected, as paths along edges can pass through it.
 #[must_use]
 pub fn components_of_faces(n_vertices: usize, faces: &[[VertexId; 3]]) -> Components {
     let mut sets = DisjointSets::new(n_vertices);
@@ -50,7 +41,7 @@ pub fn components_with_links(mesh: &IntrinsicMesh) -> Components {
 }
 
 impl Components {
-    /// Numbers the sets whose vertices are members.
+    /// Numbers the sets of the vertices that are members.
     fn of_sets(mut sets: DisjointSets, is_member: impl Fn(usize) -> bool) -> Self {
         let mut count = 0;
         let mut labels: Vec<Option<u32>> = vec![None; sets.len()];
@@ -90,6 +81,7 @@ impl Components {
 mod tests {
     use super::*;
     use crate::intrinsic::Link;
+    use crate::topology::Topology;
 
     fn labels(components: &Components) -> Vec<i64> {
         components.labels.iter().map(|label| label.map_or(-1, i64::from)).collect()
@@ -99,7 +91,7 @@ mod tests {
     fn components_are_numbered_by_their_lowest_vertices() {
         let faces = [[6, 5, 4], [1, 2, 3], [3, 8, 9]].map(|f| f.map(VertexId));
         let topology = Topology::new(10, faces.to_vec());
-        let found = components(&topology);
+        let found = components_of_faces(10, topology.faces());
         assert_eq!((found.count, labels(&found)), (2, vec![-1, 0, 0, 0, 1, 1, 1, -1, 0, 0]));
         assert_eq!(found.lowest_vertices(), [1, 4].map(VertexId));
 
@@ -112,7 +104,7 @@ mod tests {
 
     #[test]
     fn a_mesh_without_faces_has_no_component() {
-        let found = components(&Topology::new(3, Vec::new()));
+        let found = components_of_faces(3, &[]);
         assert_eq!((found.count, found.labels), (0, vec![None; 3]));
     }
 }

@@ -1,7 +1,6 @@
 //! Union-find.
 
-/// Disjoint sets over `0..n`, each represented by its lowest member, so that answers do not depend on the order
-/// of the unions.
+/// Disjoint sets over `0..n`, each represented by its lowest member.
 #[derive(Debug, Clone)]
 pub struct DisjointSets {
     parent: Vec<u32>,
@@ -15,8 +14,7 @@ impl DisjointSets {
     }
 
     /// The lowest member of the set that holds `item`.
-    pub fn find(&mut self, item: u32) -> u32 {
-        let mut item = item;
+    pub fn find(&mut self, mut item: u32) -> u32 {
         while self.parent[item as usize] != item {
             let grandparent = self.parent[self.parent[item as usize] as usize];
             self.parent[item as usize] = grandparent;

@@ -60,7 +60,7 @@ index_newtype!(EdgeId);
 index_newtype!(CornerId);
 
 impl FaceId {
-    /// The three corners, in the order of the face's vertices.
+    /// The corners, in the order of the face's vertices.
     #[inline]
     #[must_use]
     pub fn corners(self) -> [CornerId; 3] {

@@ -3,12 +3,13 @@
 use serde::Serialize;
 
 use crate::ids::{CornerId, EdgeId, VertexId};
+use crate::rows::Rows;
 use crate::topology::Topology;
 
 /// A triangle mesh reduced to its intrinsic geometry: connectivity and edge lengths.
 ///
-/// Whatever is computed from it is invariant to isometries by construction: two meshes that differ by a rigid
-/// motion, or by folding along edges, have the same `IntrinsicMesh` up to rounding.
+/// All that is computed from it is invariant to isometries: two meshes that differ by a rigid motion, or by folding
+/// along edges, have the same `IntrinsicMesh` up to rounding.
 ///
 /// ```
 /// use canonform_surface::{CornerId, IntrinsicMesh, Topology, VertexId};
@@ -27,13 +28,23 @@ pub struct IntrinsicMesh {
     links: Vec<Link>,
 }
 
-/// A straight connection between two vertices that belongs to no face, such as a bridge between two components.
+/// A straight connection of two vertices outside all faces, such as a bridge between two components.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Link {
     /// The two vertices that it joins.
     pub ends: [VertexId; 2],
     /// Its length, in mesh units.
     pub length: f64,
+}
+
+impl Link {
+    /// The links at each of `n_vertices` vertices: the other end and the length.
+    #[must_use]
+    pub fn by_vertex(n_vertices: usize, links: impl Iterator<Item = Self> + Clone) -> Rows<(u32, f64)> {
+        let both =
+            |Self { ends: [a, b], length }: Self| [(a.index(), (b.0, length)), (b.index(), (a.0, length))];
+        Rows::collect(n_vertices, links.flat_map(both))
+    }
 }
 
 impl IntrinsicMesh {
@@ -90,15 +101,15 @@ impl IntrinsicMesh {
         self.length(self.topology.opposite_edge(corner))
     }
 
-    /// The lengths of the three sides of a corner's face, in mesh units: the side opposite the corner, then
-    /// those from the vertices in the next and in the previous corner to the corner's own.
+    /// The lengths of the three sides of a corner's face, in mesh units: the side opposite the corner, then those
+    /// from the vertices in the next and in the previous corner to the corner's own.
     #[inline]
     #[must_use]
     pub fn sides(&self, corner: CornerId) -> [f64; 3] {
         [corner, corner.prev(), corner.next()].map(|c| self.opposite_length(c))
     }
 
-    /// Connections that belong to no face.
+    /// Connections outside all faces.
     #[must_use]
     pub fn links(&self) -> &[Link] {
         &self.links

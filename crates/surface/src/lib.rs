@@ -1,12 +1,13 @@
-//! A surface as its inhabitants know it: connectivity and edge lengths, no coordinates.
+//! Intrinsic geometry of triangle meshes: connectivity and edge lengths, no coordinates.
 //!
 //! `mesh::TriMesh` -> [`IntrinsicMesh`] -> `geodesics`, `descriptors`
 //!
-//! * [`Topology`] is the connectivity of triangles, whatever is wrong with them: an edge lists the corners
-//!   that face it, so edges with three faces and faces of opposite orientation are ordinary.
-//! * [`IntrinsicMesh`] adds one length an edge. Whatever is computed from it cannot change under bending.
-//! * [`laplacian`] has the stiffness and masses of functions on a surface of any kind.
-//! * [`Components`] and [`DisjointSets`] tell its pieces.
+//! * [`Topology`] is a corner table whose edges may have any number of faces of any orientation.
+//! * [`IntrinsicMesh`] adds one length per edge. No result computed from it changes when the surface is bent.
+//! * [`OneRing`] has the faces around a vertex in order, and tells whether shortest paths may bend there.
+//! * [`Triangulation`] flips edges inside the surface until it is Delaunay.
+//! * [`laplacian`] has the stiffness and mass matrices of any surface.
+//! * [`Components`] are the connected components, found with [`DisjointSets`].
 
 mod components;
 mod disjoint_sets;
@@ -21,7 +22,7 @@ mod topology;
 mod triangle;
 mod triangulation;
 
-pub use components::{Components, components, components_of_faces, components_with_links};
+pub use components::{Components, components_of_faces, components_with_links};
 pub use disjoint_sets::DisjointSets;
 pub use ids::{CornerId, EdgeId, FaceId, VertexId};
 pub use intrinsic::{IntrinsicMesh, Link};

@@ -5,12 +5,12 @@ use std::f64::consts::{PI, TAU};
 use crate::ids::{CornerId, VertexId};
 use crate::topology::Topology;
 
-/// Connectivity as a corner table: what a walk around a vertex needs to know.
+/// The part of a corner table that walks around vertices need.
 pub trait CornerTable {
     /// The vertex in a corner.
     fn corner_vertex(&self, corner: CornerId) -> VertexId;
 
-    /// The corner opposite the same side in the neighbouring face; `None` where the walk has to stop.
+    /// The corner opposite the same side in the neighbouring face; `None` if a fan ends there.
     fn opposite(&self, corner: CornerId) -> Option<CornerId>;
 }
 
@@ -35,7 +35,7 @@ pub enum Winding {
     Backward,
 }
 
-/// A corner in a fan. Faces may be oriented either way, so each has its own winding.
+/// A corner in a fan. Faces may have opposite orientations, so each has its own winding.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct FanCorner {
     /// The corner; all corners of a fan are at the same vertex.
@@ -76,7 +76,7 @@ pub struct Fan<'a> {
 }
 
 impl Fan<'_> {
-    /// The corners opposite the first and the last side; these sides are the same in a closed fan.
+    /// The corners opposite the first and the last side, which are the same side in a closed fan.
     ///
     /// # Panics
     /// If the fan is empty, which no fan of a [`OneRing`] is.
@@ -101,8 +101,8 @@ pub enum VertexKind {
 
 /// The faces around one vertex, as fans.
 ///
-/// A vertex inside a surface has one closed fan, a vertex on the boundary an open one. There are several where
-/// parts of a surface touch in a vertex only, and at the ends of non-manifold edges.
+/// An interior vertex has one closed fan, a boundary vertex one open fan. A vertex has several if parts of the
+/// surface touch only there, and at the end of a non-manifold edge.
 ///
 /// ```
 /// use canonform_surface::{OneRing, Topology, VertexId};
@@ -130,10 +130,10 @@ pub struct OneRing {
 }
 
 impl OneRing {
-    /// Replaces the fans by those of the vertex that has the given corners, in linear time at ordinary vertices.
+    /// Replaces the fans by those of the vertex with the given corners, in linear time for a single closed fan.
     ///
-    /// The first open fan begins in the first corner that a fan can begin in; a closed one begins with a forward
-    /// corner. Allocates only to grow.
+    /// The first open fan starts at the first corner that can start one; a closed one with a forward corner.
+    /// Allocates only to grow.
     pub fn collect(&mut self, table: &impl CornerTable, corners: &[CornerId]) {
         self.corners.clear();
         self.fans.clear();
@@ -193,8 +193,7 @@ impl OneRing {
         matches!(self.fans[..], [(_, true)])
     }
 
-    /// Classifies the vertex by its total angle, which must exceed the limit by more than `excess` for paths to
-    /// bend; both in radians.
+    /// Classifies the vertex. Paths may bend if its total angle exceeds the limit by over `excess`, both in radians.
     #[must_use]
     pub fn kind(&self, total_angle: f64, excess: f64) -> VertexKind {
         match self.fans[..] {
@@ -206,8 +205,7 @@ impl OneRing {
     }
 }
 
-/// The sum of angles, in radians, each given by its sine and cosine times any positive factor; a pair of zeros
-/// is no angle.
+/// The sum of angles in radians, each given by its sine and cosine times any positive factor; skips pairs of zeros.
 ///
 /// Rotates a direction by one angle after the other and counts half turns, so that one arc tangent is enough.
 pub fn total_angle(angles: impl Iterator<Item = [f64; 2]>) -> f64 {

@@ -44,14 +44,6 @@ impl<T: Copy> Rows<T> {
         Self { offsets, items }
     }
 
-    /// No rows, with room for this many rows and items.
-    #[must_use]
-    pub fn with_capacity(n_rows: usize, n_items: usize) -> Self {
-        let mut offsets = Vec::with_capacity(n_rows + 1);
-        offsets.push(0);
-        Self { offsets, items: Vec::with_capacity(n_items) }
-    }
-
     /// Appends a row.
     ///
     /// # Panics

@@ -4,8 +4,8 @@ use mesh::TriMesh;
 
 use crate::{IntrinsicMesh, Topology, VertexId};
 
-/// The intrinsic geometry of a mesh. The types of `mesh` belong to this crate as it is built without its tests,
-/// so numbers have to be carried over.
+/// The intrinsic geometry of a mesh. `mesh` uses this crate as built without tests, so its types differ from these
+/// and numbers are copied.
 pub(crate) fn intrinsic(mesh: &TriMesh) -> IntrinsicMesh {
     let faces = mesh.faces.iter().map(|face| face.map(|v| VertexId(v.0))).collect();
     let topology = Topology::new(mesh.n_vertices(), faces);

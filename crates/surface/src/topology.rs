@@ -5,12 +5,11 @@ use crate::rows::Rows;
 
 /// Connectivity of a triangle mesh, as a corner table whose edges may have any number of faces.
 ///
-/// There are no half-edges: an edge lists the corners opposite it. Edges with three faces, and two faces of
-/// opposite orientation, need no special treatment.
+/// An edge lists the corners opposite it, so three faces on an edge, or faces of opposite orientation, need no
+/// special treatment.
 ///
 /// **Invariants.** Every face has three different vertices below `n_vertices`. The ends of an edge are sorted
-/// (`ends[0] < ends[1]`), and edges are in ascending order of their ends. The corners of a vertex and of an
-/// edge are in ascending order.
+/// (`ends[0] < ends[1]`), edges by their ends, and the corners of a vertex and of an edge by their numbers.
 ///
 /// ```
 /// use canonform_surface::{CornerId, Topology, VertexId};
@@ -42,8 +41,7 @@ impl Topology {
     /// Builds the connectivity of `faces` over `n_vertices` vertices, in linear time.
     ///
     /// # Panics
-    /// If a face names a vertex twice (`mesh::repair` removes such faces) or a vertex out of range (readers
-    /// reject such files).
+    /// If a face has a vertex twice (`mesh::repair` removes such faces) or out of range (readers reject such files).
     #[must_use]
     pub fn new(n_vertices: usize, faces: Vec<[VertexId; 3]>) -> Self {
         for [a, b, c] in &faces {
@@ -130,15 +128,14 @@ impl Topology {
         [corner.next(), corner.prev()].map(|end| self.corner_vertex(end))
     }
 
-    /// The two edges of a face that meet in a corner: to the vertex in the next corner, and to the one in the
-    /// previous corner.
+    /// The edges from a corner to the vertices in the next and in the previous corner of its face.
     #[inline]
     #[must_use]
     pub fn corner_edges(&self, corner: CornerId) -> [EdgeId; 2] {
         [corner.prev(), corner.next()].map(|third| self.opposite_edge(third))
     }
 
-    /// The corner of a face that a vertex is in, if it is one of the face's vertices.
+    /// The corner of a face at one of its vertices; `None` for other vertices.
     #[must_use]
     pub fn corner_at(&self, face: FaceId, vertex: VertexId) -> Option<CornerId> {
         face.corners().into_iter().find(|corner| self.corner_vertex(*corner) == vertex)
@@ -151,16 +148,14 @@ impl Topology {
         self.vertex_corners.row(vertex.index())
     }
 
-    /// The corners opposite an edge, one for each face on it: one on the boundary, two on a manifold edge, more
-    /// on a non-manifold edge.
+    /// The corners opposite an edge, one per face: one at the boundary, over two if it is non-manifold.
     #[inline]
     #[must_use]
     pub fn edge_corners(&self, edge: EdgeId) -> &[CornerId] {
         self.edge_corners.row(edge.index())
     }
 
-    /// The corner opposite the same edge in the neighbouring face; `None` if the edge does not have exactly two
-    /// faces.
+    /// The corner opposite the same edge in the other face; `None` if the edge does not have exactly two faces.
     #[inline]
     #[must_use]
     pub fn opposite(&self, corner: CornerId) -> Option<CornerId> {

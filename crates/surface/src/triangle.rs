@@ -19,7 +19,7 @@ pub struct Triangle {
     pub y: f64,
 }
 
-/// Twice the area of the triangle with these sides, in any order; zero if there is no such triangle.
+/// Twice the area of the triangle with these sides, in any order; zero if they violate the triangle inequality.
 ///
 /// Heron's formula in Kahan's form, which is accurate for needles.
 #[inline]
@@ -39,8 +39,8 @@ pub fn double_area([p, q, r]: [f64; 3]) -> f64 {
     }
 }
 
-/// Scalar product of the two sides of a triangle that meet in a corner, from their lengths `p` and `q` and the
-/// length of the side opposite.
+/// Scalar product of two sides of a triangle from their common corner, from their lengths `p` and `q` and that of the
+/// side opposite.
 #[inline]
 #[must_use]
 pub fn scalar_product(opposite: f64, p: f64, q: f64) -> f64 {
@@ -50,8 +50,8 @@ pub fn scalar_product(opposite: f64, p: f64, q: f64) -> f64 {
 impl Triangle {
     /// The triangle with the given lengths of the base and of the sides from its start and its end to the apex.
     ///
-    /// If there is no such triangle, the height is zero. If the base has no length, the apex is straight above
-    /// its start.
+    /// The height is zero if they violate the triangle inequality. Over a base without length, the apex is above its
+    /// start.
     #[inline]
     #[must_use]
     pub fn from_sides([base, left, right]: [f64; 3]) -> Self {
@@ -75,22 +75,20 @@ impl Triangle {
         0.5 * self.base * self.y
     }
 
-    /// The cotangents of the angles at the start of the base, at its end and at the apex; infinite or NaN if
-    /// the triangle is flat.
+    /// The cotangents at the start of the base, at its end and at the apex; infinite or NaN in a flat triangle.
     #[must_use]
     pub fn cotangents(self) -> [f64; 3] {
         let Self { base, x, y } = self;
         [x / y, (base - x) / y, self.apex_cotangent()]
     }
 
-    /// The cotangent of the angle at the apex.
     pub(crate) fn apex_cotangent(self) -> f64 {
         let Self { base, x, y } = self;
         (x * (x - base) + y * y) / (base * y)
     }
 
-    /// The distance between the apex of this triangle and that of `other`, which lies on the other side of the
-    /// same base and is given with the base reversed.
+    /// The distance between the apex of this triangle and that of `other`, which lies on the other side of the same
+    /// base and is given with the base reversed.
     pub(crate) fn apex_to_apex(self, other: Self) -> f64 {
         (self.x - (self.base - other.x)).hypot(self.y + other.y)
     }

@@ -4,18 +4,15 @@ use super::frame::Frame;
 use super::window::Window;
 
 /// A ray that misses the apex by no more than this, in lengths of the base where it crosses it, bends there to meet
-/// it. Rounding opens such gaps between windows that share a ray, and diverging rays widen them. The bent path is a
-/// path as well, too long by the square of the gap.
+/// it. Rounding opens such gaps between windows that share a ray, and diverging rays widen them. The bent path is too
+/// long by the square of the gap.
 const NEAR_MISS: f64 = 1e-6;
 
-/// The sides of the apex on which the rays of a window pass.
+/// The side of the apex on which the rays of a window pass: that of the base's start, that of its end, or both.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Passes {
-    /// All on the side at the base's start.
     Left,
-    /// Both.
     Both,
-    /// All on the side at the base's end.
     Right,
 }
 
@@ -46,8 +43,8 @@ impl Apex {
         }
     }
 
-    /// Where the ray from the window's pseudo-source to the apex crosses the base, times the height of the apex
-    /// over the pseudo-source, which saves a division.
+    /// Where the ray from the window's pseudo-source to the apex crosses the base, times the height of the apex over
+    /// the pseudo-source, which saves a division.
     #[inline]
     fn scaled_crossing(&self, window: &Window) -> [f64; 2] {
         let [x, y] = self.at;
@@ -95,7 +92,7 @@ impl Apex {
         }
     }
 
-    /// Sine and cosine, times the same factor, of the angle at the apex between the side to the base's start and the
+    /// Sine and cosine, up to a common factor, of the angle at the apex between the side to the base's start and the
     /// path.
     pub(super) fn direction(&self) -> [f64; 2] {
         let [x, y] = self.at;

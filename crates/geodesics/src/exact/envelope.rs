@@ -1,25 +1,24 @@
 //! The lower envelope of the windows on one side of an edge.
 //!
-//! Where two windows overlap, the one whose paths come from further left gains on the other to the right: the
+//! Where two windows overlap, the distance of the one whose paths come from further left increases faster: the
 //! derivative of a distance along the edge is the cosine of the angle at which the path arrives. Which of the two
-//! comes from further left changes at most once along the edge, where the line through both pseudo-sources meets
-//! it. On either part, the distances are equal at one point at most.
+//! comes from further left changes at most once, where the line through both pseudo-sources meets the edge. On either
+//! part, the distances are equal at one point at most.
 
-use super::window::{Cut, Window, crossing, order};
+use super::window::{Window, crossing, order};
 
 /// Up to this many windows, insertion sort is fastest.
 const FEW: usize = 40;
 
-/// Two pseudo-sources nearer to each other than this share of their distance from the edge are one, with paths on
-/// both sides of a vertex without curvature. On flat parts of a surface this leaves one window, not one for every
-/// vertex passed.
+/// Two pseudo-sources nearer to each other than this share of their distance from the edge are the same, with paths
+/// on both sides of a vertex without curvature. On flat parts this leaves one window, not one for every vertex
+/// passed.
 const SAME_SOURCE: f64 = 1e-12;
 
 /// Two windows with the same pseudo-source are joined over a gap of this many lengths of the edge.
 const GAP: f64 = 1e-12;
 
-/// Share of the narrower of two windows up to which an overlap stays: cutting it costs more than propagating it
-/// until it is wider.
+/// Share of the narrower of two windows up to which an overlap stays, as cutting it costs more than propagating it.
 const OVERLAP: f64 = 0.5;
 
 /// Reduces the windows at an edge of the given length to what may carry a shortest path, in order along the edge;
@@ -74,14 +73,11 @@ fn sort(windows: &mut [Window]) {
 
 /// Cuts the outermost windows where paths through the ends of the edge are shorter.
 fn cut_ends(windows: &mut Vec<Window>, length: f64, ends: [f64; 2]) {
-    while let Some(last) = windows.last_mut() {
-        if last.cut_end(length, ends[1]) != Cut::All {
-            break;
-        }
+    while windows.last_mut().is_some_and(|last| !last.cut_end(length, ends[1])) {
         windows.pop();
     }
     let mut gone = 0;
-    while gone < windows.len() && windows[gone].cut_start(ends[0]) == Cut::All {
+    while gone < windows.len() && !windows[gone].cut_start(ends[0]) {
         gone += 1;
     }
     if gone > 0 {

@@ -8,13 +8,12 @@ pub(super) struct Faces {
     pub(super) all: Vec<Face>,
     /// For each side of a non-manifold edge, the other corners opposite that edge.
     non_manifold: Vec<Vec<Facing>>,
-    /// Mesh units in one unit of length in here; a power of two, so that scaling is exact.
+    /// The unit of all lengths here, in mesh units; a power of two, so that scaling is exact.
     pub(super) unit: f64,
-    /// Length of the longest edge.
     pub(super) longest_edge: f64,
 }
 
-/// A face; each of its sides is in the place of the corner opposite.
+/// A face; its sides are listed by the corner opposite.
 #[derive(Debug, Clone, Copy)]
 #[repr(align(64))]
 pub(super) struct Face {
@@ -24,7 +23,7 @@ pub(super) struct Face {
     pub(super) beyond: [Beyond; 3],
 }
 
-/// What lies beyond a side of a face, packed: nothing, a corner of one other face, or a list of such corners.
+/// What lies beyond a side of a face: nothing, the corner opposite in another face, or a list of such corners.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Beyond(u32);
 
@@ -35,8 +34,8 @@ pub(super) struct Facing {
     pub(super) along: Along,
 }
 
-/// The direction of the base of a corner, from the next corner of its face to the previous one, compared with that
-/// of the same edge in the face on this side.
+/// The direction of the base of a corner, from the next corner of its face to the previous one, compared with that of
+/// the same edge in the face on this side.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Along {
     /// The same direction.
@@ -45,18 +44,17 @@ pub(super) enum Along {
     Opposite,
 }
 
-/// Least height of a face over its longest edge, in lengths of that edge. Faces without area are inflated this
-/// much, so that windows of a vertex that lies on the edge have room to pass.
+/// Least height of a face over its longest edge, in lengths of that edge: faces without area are inflated, so that
+/// windows can pass a vertex that lies on the edge.
 const LEAST_HEIGHT: f64 = 1e-12;
 
 /// The same in lengths of the shortest edge, whose direction must not change.
 const LEAST_SLOPE: f64 = 1e-3;
 
-/// Share of the longest edge of a face below which the direction of its shortest edge is lost in the rounding of
-/// the other two.
+/// Share of the longest edge of a face below which rounding hides the direction of its shortest edge.
 const LEAST_EDGE: f64 = 1e-13;
 
-/// Share of the longest edge of a face by which rounding may make it shorter than the other two together.
+/// Share of the longest edge of a face by which rounding may reduce it below the sum of the other two.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 impl Faces {
@@ -125,7 +123,6 @@ impl Face {
         scalar_product(base, p, q)
     }
 
-    /// Angle at a corner.
     pub(super) fn angle(&self, slot: usize) -> f64 {
         self.double_area.atan2(self.cosine(slot))
     }
@@ -148,11 +145,11 @@ fn power_of_two_near(length: f64) -> f64 {
     if length > 0.0 { 2f64.powi(length.log2().floor().clamp(-1020.0, 1020.0) as i32) } else { 1.0 }
 }
 
-/// The sides of a triangle and twice its area, from lengths that rounding may have made impossible.
+/// The sides of a triangle and twice its area, from lengths that may violate the triangle inequality by rounding.
 ///
-/// The longest side becomes no longer than the other two together. Two sides that differ only by rounding, beside
-/// a third that is lost in it, become equal. Where rounding hides whether there is an area, the area is the least
-/// allowed: one unit in the last place of a length may stand for a height of `1e-8`.
+/// The longest side is cut to the sum of the other two. If the third side is lost in the rounding of the other two,
+/// these become equal. If rounding hides whether the area is positive, it is the least allowed: one unit in the last
+/// place of a length may amount to a height of `1e-8`.
 fn triangle(mut lengths: [f64; 3]) -> ([f64; 3], f64) {
     let mut order = [0, 1, 2];
     order.sort_unstable_by(|i, j| lengths[*j].total_cmp(&lengths[*i]));

@@ -7,8 +7,7 @@ use surface::{FanCorner, IntrinsicMesh, OneRing, Rows, VertexId, VertexKind, Win
 use super::faces::Faces;
 use super::front::Arrival;
 
-/// Excess of a total angle, in radians, below which paths do not bend at a vertex; far below what any distance
-/// shows.
+/// Excess of a total angle, in radians, below which paths do not bend at a vertex; it affects no distance measurably.
 const LEAST_EXCESS: f64 = 1e-12;
 
 /// A corner in the fan of a vertex, with angles.
@@ -20,7 +19,7 @@ pub(super) struct Sector {
     pub(super) end: f64,
 }
 
-/// The corners around every vertex, in order of angle where they form a single fan.
+/// The corners around every vertex, fan by fan.
 #[derive(Debug)]
 pub(super) struct Fans {
     sectors: Rows<Sector>,
@@ -31,8 +30,7 @@ impl Fans {
     pub(super) fn new(mesh: &IntrinsicMesh, faces: &Faces) -> Self {
         let topology = mesh.topology();
         let n_vertices = topology.n_vertices();
-        let sectors = Rows::with_capacity(n_vertices, 3 * topology.n_faces());
-        let mut fans = Self { sectors, kinds: Vec::with_capacity(n_vertices) };
+        let mut fans = Self { sectors: Rows::default(), kinds: Vec::with_capacity(n_vertices) };
         let mut ring = OneRing::default();
         for vertex in (0..n_vertices).map(VertexId::from) {
             let corners = topology.vertex_corners(vertex);
@@ -64,18 +62,15 @@ impl Fans {
         self.kinds[vertex as usize]
     }
 
-    /// The corners at a vertex.
     pub(super) fn around(&self, vertex: u32) -> &[Sector] {
         self.sectors.row(vertex as usize)
     }
 
-    /// The largest number of faces around a vertex.
     pub(super) fn max_valence(&self) -> usize {
         (0..self.kinds.len()).map(|v| self.sectors.row(v).len()).max().unwrap_or(0)
     }
 
-    /// The angles from the fan's first side between which a shortest path with this arrival may continue;
-    /// `None` for all of them.
+    /// The angles, from the fan's first side, between which a path with this arrival may continue; `None` for all.
     pub(super) fn open_angles(&self, vertex: u32, arrival: Arrival) -> Option<[[f64; 2]; 2]> {
         let kind = self.kind(vertex);
         let (VertexKind::Saddle | VertexKind::Boundary, Arrival::Through { corner, sin, cos }) =

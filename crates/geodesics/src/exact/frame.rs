@@ -5,8 +5,8 @@ use surface::CornerId;
 use super::faces::{Beyond, Faces, next};
 use super::window::Window;
 
-/// The face of a corner, laid out with its base `ab`, the side opposite the corner, on the x-axis from zero on and
-/// the corner `c` above.
+/// The face of a corner, laid out with its base `ab`, the side opposite the corner, on the x-axis from zero, and the
+/// corner `c` above.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Frame {
     /// Length of `ab`.
@@ -37,7 +37,7 @@ pub(super) enum Until {
 impl Frame {
     /// The face of a corner whose base has a length.
     ///
-    /// Not [`surface::Triangle`]: the area is known, so one division replaces a square root in the innermost loop.
+    /// Does not use [`surface::Triangle`]: the area is known, which saves a square root in the innermost loop.
     #[inline]
     pub(super) fn new(faces: &Faces, corner: CornerId) -> Self {
         let (face, slot) = (faces.of(corner.face()), corner.slot());
@@ -79,7 +79,7 @@ impl Frame {
         }
     }
 
-    /// The same for `bc`, measured from `c`; here the apex is at the start of the interval.
+    /// As [`project_on_ac`](Self::project_on_ac), for `bc`, measured from `c`: the apex is at its start.
     #[inline]
     pub(super) fn project_on_cb(
         &self,
@@ -113,7 +113,7 @@ fn project(
     let below = x * sin + depth * cos;
     let meet = |t: f64| t * depth / (below - t * sin);
     let far = meet(end);
-    // By rounding, a ray along the side may meet it beyond its end, before its start or nowhere.
+    // Rounding may let a ray along the side meet it beyond its end, before its start or nowhere.
     let far = if until == Until::Ray && far >= 0.0 { far.min(side) } else { side };
     ([x * cos - depth * sin, below.max(0.0)], [meet(start).max(0.0), far])
 }

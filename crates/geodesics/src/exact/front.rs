@@ -10,20 +10,20 @@ use crate::heap::VertexHeap;
 /// No list of windows.
 const NONE: u32 = u32::MAX;
 
-/// From where the shortest known path comes to a vertex.
+/// How the shortest known path arrives at a vertex.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Arrival {
-    /// A source or a link: it may continue in any direction.
+    /// From a source or over a link: it may continue in any direction.
     Anywhere,
-    /// Through the face of a corner at the vertex, at an angle from the side to the start of the corner's base that
-    /// has this sine and cosine, times any factor.
+    /// Through the face of a corner at the vertex. The angle from the side to the start of the corner's base has this
+    /// sine and cosine, times any factor.
     Through { corner: CornerId, sin: f64, cos: f64 },
 }
 
 /// Labels, the queue of vertices, and the windows to be propagated.
 ///
-/// A window waits at the corner whose base it is about to cross, in no particular order. The corner waits for the
-/// end of its base that was nearer when the first window came.
+/// A window waits at the corner whose base it is about to cross, in no particular order. The corner waits for the end
+/// of its base that was nearer when the first window came.
 #[derive(Debug, Default)]
 pub(super) struct Front {
     heap: VertexHeap,
@@ -35,11 +35,10 @@ pub(super) struct Front {
     lists: Vec<List>,
     /// Lists at no corner.
     free: Vec<u32>,
-    /// Lists whose vertex has left the heap already.
+    /// Lists whose vertex has left the heap.
     ready: VecDeque<u32>,
 }
 
-/// Windows that wait at the base of a corner.
 #[derive(Debug)]
 struct List {
     windows: Vec<Window>,
@@ -81,7 +80,6 @@ impl Front {
         }
     }
 
-    /// Removes the nearest vertex from the queue.
     #[inline]
     pub(super) fn pop(&mut self) -> Option<(f64, u32)> {
         self.heap.pop()
@@ -101,7 +99,7 @@ impl Front {
         self.lists[list as usize].windows.extend(windows);
     }
 
-    /// The same, leaving `windows` with other memory if that saves copying.
+    /// As [`deliver`](Self::deliver), but may exchange the memory of `windows` instead of copying it.
     #[inline]
     pub(super) fn deliver_all(&mut self, corner: CornerId, ends: [u32; 2], windows: &mut Vec<Window>) {
         match self.list_at[corner.index()] {
@@ -141,7 +139,7 @@ impl Front {
         list
     }
 
-    /// Makes the corners ready that wait for a vertex.
+    /// Makes the corners that wait for a vertex ready.
     pub(super) fn release(&mut self, vertex: u32) {
         let mut list = std::mem::replace(&mut self.waiting[vertex as usize], NONE);
         while list != NONE {

@@ -36,11 +36,10 @@ use propagation::Scratch;
 
 /// Exact distances on the surface: rounding is the only error.
 ///
-/// A shortest path is straight through the faces it crosses, laid out in the plane, and bends only at saddle
-/// vertices (more than 360 degrees) and at boundary vertices with more than 180 degrees. A **window** is an
-/// interval of an edge to whose points straight paths lead from one such vertex, the pseudo-source, or from the
-/// source, through one sequence of faces. Windows are propagated across face after face. Where several overlap,
-/// the nearest counts.
+/// A shortest path is straight through the faces it crosses, laid out in the plane, and bends only at saddle vertices
+/// (more than 360 degrees) and at boundary vertices with more than 180 degrees. A **window** is an interval of an
+/// edge to whose points straight paths lead from one such vertex, the pseudo-source, or from the source, through one
+/// sequence of faces. Windows are propagated across face after face. Where several overlap, the nearest counts.
 ///
 /// | paper | here | meaning |
 /// |---|---|---|
@@ -51,29 +50,26 @@ use propagation::Scratch;
 ///
 /// The distance at the point `t` of the edge is `offset + sqrt((t - x)^2 + depth^2)`.
 ///
-/// * **Order.** Windows wait at an edge until the nearer of its ends is the nearest vertex of the front, and are
-///   then propagated across the next face together; most edges are crossed once. Any order gives the same
-///   distances, but not as fast.
-/// * **Pruning.** Of the windows that wait on one side of an edge, only the lower envelope is propagated, cut where
-///   a path through an end of the edge is shorter. Of several windows with a path to the apex of the next face,
-///   only the nearest continues on both sides of it. A pseudo-source sends windows only into directions at least
-///   180 degrees away from where its own path comes from. Windows of one source that meet again behind a vertex
-///   without curvature are joined.
-/// * **Any mesh.** At an edge with more than two faces, windows enter all the others. Paths may bend in any
-///   direction where faces do not form a single fan around a vertex, at the ends of links and of edges without
-///   length. Orientation does not matter. Of faces with the same vertices only one is used. A face without area
-///   is inflated to `1e-12` of its longest edge. Several faces in a row that each have a side without length may
-///   hide a path; repair drops such faces.
-/// * **Guarantees.** Every distance is the length of a path, up to rounding; symmetric, and at most that along
-///   edges. Infinite exactly where no edge or link leads. The number of windows is bounded, by a limit that no
-///   known surface comes near.
-/// * **Cost.** At worst `O(p^2)` in the number of vertices, in practice near `O(p^1.2)`, linear on flat parts;
-///   about 400 bytes per vertex.
+/// * **Order.** Windows wait at an edge until the nearer of its ends is the nearest vertex of the front, and are then
+///   propagated across the next face together; most edges are crossed once. Any other order is correct, but slower.
+/// * **Pruning.** Of the windows that wait on one side of an edge, only the lower envelope is propagated, cut where a
+///   path through an end of the edge is shorter. Of several windows with a path to the apex of the next face, only
+///   the nearest continues on both sides of it. A pseudo-source sends windows only into directions at least 180
+///   degrees away from where its own path comes from. Windows of one source that meet behind a vertex without
+///   curvature are joined.
+/// * **Any mesh.** At an edge with more than two faces, windows enter all the others. Paths may bend in any direction
+///   where faces do not form a single fan around a vertex, at the ends of links and of edges without length.
+///   Orientation does not matter. Of faces with the same vertices only one is used. A face without area is inflated
+///   to `1e-12` of its longest edge. Successive faces that have a side without length may hide a path; repair drops
+///   such faces.
+/// * **Guarantees.** Every distance is the length of a path, up to rounding; symmetric, and at most that along edges.
+///   Infinite exactly where no edge or link leads. The number of windows is limited; no known surface comes near.
+/// * **Cost.** At worst `O(p^2)`, in practice near `O(p^1.2)`, linear on flat parts; about 400 bytes per vertex.
 ///
 /// Mitchell, Mount and Papadimitriou 1987 (`mitchell1987`). Splitting windows at one apex only is from Xin and Wang
 /// 2009 (`xin2009`), the order by vertices from Qin et al. 2016 (`qin2016`). **Deviations:** sources are kept
-/// unfolded, so that roots are needed only where two windows are compared; windows are compared with their
-/// neighbours on the same side of an edge only.
+/// unfolded, so that roots are needed only where two windows are compared; windows are compared with their neighbours
+/// on the same side of an edge only.
 ///
 /// ```
 /// use canonform_geodesics::{DistanceSolver, Exact};

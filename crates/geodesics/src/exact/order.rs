@@ -4,7 +4,6 @@ use surface::{FaceId, IntrinsicMesh, Link, Topology, VertexId};
 
 use crate::graph::breadth_first_order;
 
-/// A renumbered surface.
 pub(super) struct Renumbered {
     pub(super) mesh: IntrinsicMesh,
     /// The new number of every vertex.
@@ -15,8 +14,8 @@ pub(super) struct Renumbered {
 
 /// Numbers vertices breadth first, one component after the other, and faces by their vertices.
 ///
-/// Of faces with the same vertices the first is kept: any path through another of them can run through this one.
-/// With all of them, windows would multiply at every face.
+/// Of faces with the same vertices, only the first is kept: any path through another can run through it, and windows
+/// would multiply at every face.
 pub(super) fn renumbered(mesh: &IntrinsicMesh) -> Renumbered {
     let topology = mesh.topology();
     let around = |v: u32| topology.vertex_corners(VertexId(v)).iter().map(|corner| corner.face().index());

@@ -11,7 +11,7 @@ use super::order::{Renumbered, renumbered};
 pub(super) struct Prepared {
     pub(super) faces: Faces,
     pub(super) fans: Fans,
-    /// The other end and the length of every link at a vertex.
+    /// The other end and the length, in mesh units, of every link at a vertex.
     pub(super) links: Rows<(u32, f64)>,
     /// How many faces a window may cross in a row around one vertex.
     pub(super) max_turn: i32,
@@ -25,11 +25,7 @@ impl Prepared {
         let Renumbered { mesh, vertices, faces: new_faces } = renumbered(mesh);
         let faces = Faces::new(&mesh);
         let fans = Fans::new(&mesh, &faces);
-        let both_ways = |link: &Link| {
-            let ([a, b], length) = (link.ends, link.length / faces.unit);
-            [(a.index(), (b.0, length)), (b.index(), (a.0, length))]
-        };
-        let links = Rows::collect(mesh.n_vertices(), mesh.links().iter().flat_map(both_ways));
+        let links = Link::by_vertex(mesh.n_vertices(), mesh.links().iter().copied());
         // A shortest path crosses no face twice.
         let max_turn = i32::try_from(fans.max_valence()).unwrap_or(i32::MAX);
         Self { faces, fans, links, max_turn, new_vertices: vertices, new_faces }

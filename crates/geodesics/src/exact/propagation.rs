@@ -23,8 +23,8 @@ pub(super) struct Scratch {
     right: Vec<Window>,
 }
 
-/// Windows per face, on average, that may be propagated before a run gives up; real surfaces of a million vertices
-/// need less than a hundred. It takes needles with angles below 1e-6 around one vertex to come near.
+/// Limit of the mean number of windows propagated per face. Real surfaces of a million vertices need less than a
+/// hundred; only needles with angles below 1e-6 around one vertex come near the limit.
 const BUDGET_PER_FACE: usize = 10_000;
 
 /// Share of the limit by which windows beyond it are propagated, for rounding.
@@ -85,8 +85,8 @@ impl Propagation<'_> {
         }
     }
 
-    /// Relaxes all edges; returns whether a label was lowered. Windows do not get through faces whose lengths belong
-    /// to no triangle.
+    /// Relaxes all edges; returns whether a label was lowered. Needed for faces that violate the triangle inequality,
+    /// through which no window passes.
     fn relax_edges(&mut self) -> bool {
         let mut is_any = false;
         let front = &mut *self.emission.front;
@@ -140,7 +140,7 @@ impl Propagation<'_> {
         let mut apex = Apex::new(frame);
         self.left.clear();
         self.right.clear();
-        // First come those that reach `ac` alone, ...
+        // First the windows that reach only `ac`, ...
         let mut first = 0;
         while first < windows.len() && apex.passes(&windows[first]) == Passes::Left {
             self.push_left(frame, &windows[first], windows[first].end, Until::Ray);
@@ -161,7 +161,7 @@ impl Propagation<'_> {
         for (i, window) in windows.iter().enumerate().take(rest).skip(first) {
             self.split(frame, &apex, i, window);
         }
-        // ... then those that reach `bc` alone, except where windows overlap.
+        // ... then those that reach only `bc`, except where windows overlap.
         for (i, window) in windows.iter().enumerate().skip(rest) {
             if apex.passes(window) == Passes::Right {
                 self.push_right(frame, window, window.start, Until::Ray);
@@ -197,8 +197,8 @@ impl Propagation<'_> {
         }
     }
 
-    /// A shortest path crosses no face twice, so it turns around no vertex for more faces than the vertex has:
-    /// `max_turn` bounds how often windows go round a needle.
+    /// A shortest path crosses no face twice, so it crosses at most all faces of a vertex in a row: `max_turn` bounds
+    /// how often windows circle around the tip of a needle.
     #[inline]
     fn push_left(&mut self, frame: &Frame, window: &Window, end: f64, until: Until) {
         if end > window.start && window.turn < self.emission.surface.max_turn {

@@ -88,12 +88,11 @@ impl Emission<'_> {
         }
     }
 
-    /// Emits windows from a vertex over the edges opposite it, as far as a path with this arrival may continue
-    /// there, and over links.
+    /// Emits windows from a vertex over links and the edges opposite it, where a path with this arrival may continue.
     pub(super) fn emit_from(&mut self, vertex: u32, distance: f64, arrival: Arrival) {
         let surface = self.surface;
         for (end, length) in surface.links.row(vertex as usize) {
-            self.front.reach(*end, distance + length, Arrival::Anywhere);
+            self.front.reach(*end, distance + length / surface.faces.unit, Arrival::Anywhere);
         }
         let fan = surface.fans.around(vertex);
         let Some(open) = surface.fans.open_angles(vertex, arrival) else {
@@ -116,8 +115,8 @@ impl Emission<'_> {
         }
     }
 
-    /// Emits a window from a corner onto its base, between two angles from the side to the base's start; without
-    /// bound for zero and for infinity.
+    /// Emits a window from a corner onto its base, between angles from the side to the base's start; zero and
+    /// infinity mean no bound.
     fn emit_from_corner(&mut self, corner: CornerId, distance: f64, [low, high]: [f64; 2]) {
         let face = self.surface.face(corner);
         let slot = corner.slot();
@@ -139,7 +138,7 @@ impl Emission<'_> {
         let meet_base = |angle: f64| {
             let (sin, cos) = angle.sin_cos();
             let (along, down) = (height * sin - x * cos, x * sin + height * cos);
-            // A ray that does not come down, by rounding, goes past the end that it is nearer to.
+            // A ray that rounding keeps from descending passes the nearer end.
             let at = if down > 0.0 { x + height * along / down } else { along * f64::INFINITY };
             at.max(0.0).min(frame.base)
         };

@@ -14,8 +14,7 @@ pub(super) struct Window {
     pub(super) depth: f64,
     /// Distance of the pseudo-source from the source.
     pub(super) offset: f64,
-    /// How many faces in a row were crossed around the same vertex: positive around the edge's start, negative
-    /// around its end.
+    /// How many faces in a row were crossed around one vertex: positive for the edge's start, negative for its end.
     pub(super) turn: i32,
 }
 
@@ -45,43 +44,26 @@ impl Window {
         }
     }
 
-    /// Cuts off the part that is nearer through the edge's start, a vertex at `distance`.
+    /// Cuts off the part that is nearer through the edge's start, a vertex at `distance`; returns whether any is
+    /// left.
     ///
-    /// Along the edge, the window's distance never grows faster than that from the vertex, so the part is an
-    /// interval from the start; its end solves a linear equation.
+    /// Along the edge, the window's distance never grows faster than that from the vertex, so the part is an interval
+    /// from the start, whose end solves a linear equation.
     #[inline]
-    pub(super) fn cut_start(&mut self, distance: f64) -> Cut {
-        let start = nearer_until(self.x, self.depth, distance - self.offset).max(self.start);
-        if start >= self.end {
-            return Cut::All;
-        }
-        let cut = if start > self.start { Cut::Part } else { Cut::Nothing };
-        self.start = start;
-        cut
+    pub(super) fn cut_start(&mut self, distance: f64) -> bool {
+        self.start = nearer_until(self.x, self.depth, distance - self.offset).max(self.start);
+        self.start < self.end
     }
 
-    /// The same from the other end of the edge, which has the given length.
+    /// As [`cut_start`](Self::cut_start), for the end of the edge, which has the given length.
     #[inline]
-    pub(super) fn cut_end(&mut self, length: f64, distance: f64) -> Cut {
-        let end = (length - nearer_until(length - self.x, self.depth, distance - self.offset)).min(self.end);
-        if end <= self.start {
-            return Cut::All;
-        }
-        let cut = if end < self.end { Cut::Part } else { Cut::Nothing };
-        self.end = end;
-        cut
+    pub(super) fn cut_end(&mut self, length: f64, distance: f64) -> bool {
+        self.end = (length - nearer_until(length - self.x, self.depth, distance - self.offset)).min(self.end);
+        self.end > self.start
     }
 }
 
-/// What was cut off a window.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Cut {
-    Nothing,
-    Part,
-    All,
-}
-
-/// Up to which point the origin, with a lead of `lead`, is nearer than the pseudo-source at `(x, -depth)`: not
+/// Up to which position the origin, at distance `lead`, is nearer than the pseudo-source at `(x, -depth)`: not
 /// positive if nowhere, infinite if everywhere.
 #[inline]
 fn nearer_until(x: f64, depth: f64, lead: f64) -> f64 {
@@ -89,8 +71,8 @@ fn nearer_until(x: f64, depth: f64, lead: f64) -> f64 {
     if slope > 0.0 { 0.5 * (x - lead + depth * depth / slope) } else { f64::INFINITY }
 }
 
-/// Positive where the paths of `left` come from further left than those of `right`, which then gains on it to the
-/// right; linear in the position.
+/// Positive where the paths of `left` come from further left than those of `right`, whose distance then decreases
+/// relative to `left` with increasing `t`; linear in `t`.
 #[inline]
 pub(super) fn order(left: &Window, right: &Window, t: f64) -> f64 {
     (t - left.x) * right.depth - (t - right.x) * left.depth
@@ -101,10 +83,10 @@ const EQUAL: f64 = 1e-12;
 
 /// Where in `low..high` the nearer of two windows changes from `left` to `right`; `None` if rounding hides it.
 ///
-/// With `r` and `s` the distances to the unfolded pseudo-sources and `d` the difference of their offsets,
-/// `r = s + d` squared is linear in the position but for `2 d s`; squared again it is quadratic. One of its roots
-/// may belong to `-d`. If the two pseudo-sources are in line with a nearly double root, rounding leaves little of
-/// either. So a root only counts if the distances agree there.
+/// With `r` and `s` the distances to the unfolded pseudo-sources and `d` the difference of their offsets, `r = s + d`
+/// squared is linear in the position but for `2 d s`; squared again it is quadratic. One of its roots may belong to
+/// `-d`. If the two pseudo-sources are in line with a nearly double root, rounding leaves little of either. So a root
+/// only counts if the distances agree there.
 pub(super) fn crossing(left: &Window, right: &Window, [low, high]: [f64; 2]) -> Option<f64> {
     let (p, q) = (left.x - low, right.x - low);
     let (rr, ss) = (p * p + left.depth * left.depth, q * q + right.depth * right.depth);
@@ -148,16 +130,17 @@ mod tests {
     fn the_part_cut_off_is_nearer_through_the_vertex() {
         for distance in [0.9, 1.5, 2.0, 2.6] {
             let mut window = NEAR;
-            assert_eq!(window.cut_start(distance), Cut::Part);
+            assert!(window.cut_start(distance) && window.start > 0.0);
             assert!((window.distance(window.start) - (distance + window.start)).abs() < 1e-14);
             let mut mirrored = NEAR.mirrored(5.0);
-            assert_eq!(mirrored.cut_end(5.0, distance), Cut::Part);
+            assert!(mirrored.cut_end(5.0, distance));
             assert!((mirrored.end - (5.0 - window.start)).abs() < 1e-14);
         }
-        assert_eq!({ NEAR }.cut_start(NEAR.distance(0.0) + 0.1), Cut::Nothing);
-        assert_eq!({ NEAR }.cut_start(f64::INFINITY), Cut::Nothing);
-        assert_eq!({ NEAR }.cut_start(-0.6), Cut::All);
-        assert_eq!({ NEAR }.cut_start(NEAR.distance(4.0) - 4.1), Cut::All);
+        for distance in [NEAR.distance(0.0) + 0.1, f64::INFINITY] {
+            let mut window = NEAR;
+            assert!(window.cut_start(distance) && window == NEAR);
+        }
+        assert!(!{ NEAR }.cut_start(-0.6) && !{ NEAR }.cut_start(NEAR.distance(4.0) - 4.1));
     }
 
     #[test]
@@ -169,7 +152,7 @@ mod tests {
             assert!(NEAR.distance(at - 0.1) < right.distance(at - 0.1), "{x}");
             assert!(NEAR.distance(at + 0.1) > right.distance(at + 0.1), "{x}");
         }
-        // One pseudo-source behind the other: equal along one ray only, and never the other way round.
+        // One pseudo-source behind the other: equal along one ray only, and `right` is never nearer elsewhere.
         let behind = Window { x: 1.5, depth: 3.0, offset: 0.5 - 1.25f64.sqrt(), ..NEAR };
         if let Some(at) = crossing(&NEAR, &behind, [0.0, 4.0]) {
             assert!((NEAR.distance(at) - behind.distance(at)).abs() < 1e-12);

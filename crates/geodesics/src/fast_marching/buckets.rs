@@ -14,11 +14,11 @@ const TOO_HIGH: u32 = 1 << 31;
 
 /// Buckets become this much narrower or wider at a time.
 const FACTOR: f64 = 4.0;
-/// They become narrower after this many vertices, and a share of those in the ring, came late into one.
+/// They become narrower after this many vertices, plus a share of those in the ring, entered one late.
 const LATE: usize = 64;
-/// Whether they should become wider is decided after this many buckets, and a share of the vertices in the ring.
+/// Whether they should become wider is decided after this many buckets, plus a share of the vertices in the ring.
 const PERIOD: usize = 256;
-/// Divisor for that share: sorting the vertices again must cost no more than what made it necessary.
+/// Divisor for that share: sorting again must cost no more than the work since the last time.
 const SHARE: usize = 8;
 /// Buckets with less than one vertex in this many should be wider.
 const SPARSE: usize = 8;
@@ -29,8 +29,8 @@ const SPARSE: usize = 8;
 /// A heap would return vertices in strict order, but the processor can predict hardly any of its comparisons. A
 /// vertex that moves to an earlier bucket leaves an entry behind, which is skipped later.
 ///
-/// The width adapts to the mesh. Where a bucket fills again and again while it is emptied, its vertices should
-/// have been told apart; where buckets are empty, they need not have been.
+/// The width adapts to the mesh: it decreases if a bucket fills repeatedly while it is emptied, and increases if most
+/// buckets are empty.
 #[derive(Debug, Default)]
 pub(super) struct Buckets {
     width: f64,
@@ -63,8 +63,8 @@ pub(super) struct Buckets {
 }
 
 impl Buckets {
-    /// Empties the queue: `n` vertices in no bucket. Buckets are `width` wide at first, and vertices seldom more
-    /// than `reach` ahead of the front. Allocates only to grow.
+    /// Empties the queue: `n` vertices in no bucket. Buckets are `width` wide at first, and vertices seldom more than
+    /// `reach` ahead of the front. Allocates only to grow.
     pub(super) fn reset(&mut self, n: usize, width: f64, reach: f64) {
         self.ring.iter_mut().for_each(Vec::clear);
         self.beyond.clear();
@@ -86,23 +86,19 @@ impl Buckets {
         }
     }
 
-    /// Where the current bucket begins.
     fn start(&self) -> f64 {
         f64::from(self.current) * self.width
     }
 
-    /// Where it ends.
     fn end(&self) -> f64 {
         f64::from(self.current + 1) * self.width
     }
 
-    /// The place of a bucket in the ring.
     #[inline]
     fn place(&self, bucket: u32) -> usize {
         bucket as usize & (self.ring.len() - 1)
     }
 
-    /// The bucket of a distance.
     #[inline]
     fn bucket(&self, distance: f64) -> u32 {
         ((distance * self.per_length) as u32).min(LAST)
@@ -136,8 +132,8 @@ impl Buckets {
     /// Moves all vertices of the first bucket that has any into `round`. Returns the distance below which all
     /// vertices are finalized, or `None` if no vertex is left.
     ///
-    /// A vertex that comes into the current bucket after it was emptied is taken in another round. What lies
-    /// before the bucket is finalized in its first round, the whole bucket in the others.
+    /// A vertex that comes into the current bucket after it was emptied is taken in another round. What lies before
+    /// the bucket is finalized in its first round, the whole bucket in the others.
     #[inline(never)]
     pub(super) fn next_round(&mut self, round: &mut Vec<u32>, distance: impl Fn(u32) -> f64) -> Option<f64> {
         round.clear();

@@ -1,16 +1,16 @@
 //! The front: labels, buckets, and the loop over rounds.
 //!
-//! The steps of a round are functions that are not inlined: side by side in one function they leave each other
-//! too few registers, which takes a tenth more time.
+//! The steps of a round are functions that are not inlined: side by side in one function they leave each other too
+//! few registers, which takes a tenth more time.
 
 use super::buckets::Buckets;
 use super::one_ring::OneRings;
 use super::relaxation::{EdgeRelaxation, Label, ROUNDING, Relaxations, Round, TriangleSolver};
 use super::update::Stencil;
 
-/// Visits per vertex, on average, after which finalized vertices are no longer corrected. Real surfaces need 1.1
-/// over flipped edges. In triangles without height, where rounding decides, or with unfolded corners, a few
-/// vertices may otherwise lower each other almost forever. Sheared sheets left unflipped need up to a hundred.
+/// Limit of the mean number of visits per vertex, after which finalized vertices are no longer corrected. Real
+/// surfaces need 1.1 with flipped edges, sheared sheets without flips up to a hundred. Where rounding decides, in
+/// triangles without height or with unfolded corners, a few vertices might otherwise lower each other almost forever.
 const VISITS_PER_VERTEX: usize = 256;
 
 /// A front that advances bucket by bucket, each in one round or a few.
@@ -43,7 +43,7 @@ impl Front {
         self.labels[vertex as usize].distance
     }
 
-    /// Runs until no vertex is left, without going on from vertices where it `stops` at their distance.
+    /// Runs until no vertex is left, without continuing from vertices where it `stops` at their distance.
     pub(super) fn run(
         &mut self,
         rings: &OneRings,

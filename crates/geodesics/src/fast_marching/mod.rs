@@ -12,32 +12,31 @@
 //! # One round, step by step
 //!
 //! Every vertex has a label: its tentative distance, and the distance of its *pseudo-source*, the vertex where the
-//! path to it last bent (zero if the path is straight). A vertex with more than 360 degrees around it, a *saddle
-//! vertex*, can bend paths; so can a boundary vertex with more than 180 degrees.
+//! path to it last bent (zero if the path is straight). Paths can bend at a *saddle vertex*, with more than 360
+//! degrees around it, and at a boundary vertex with more than 180 degrees.
 //!
-//! 1. **Pop.** The queue holds vertices in buckets, each a twentieth of a mean edge wide. A round takes all
-//!    vertices out of the first bucket that has any. Every vertex before that bucket is *finalized*; the others
-//!    are the *frontier*. Within the bucket, order is unknown.
-//! 2. **List.** For each vertex `A` of the round, its one-ring is read once, front to back. Each neighbour `B`
-//!    gives an *edge relaxation*, `T(A) + |AB|`. Each triangle `ABC` gives a *triangle update* of the farther of
-//!    `B` and `C` from the two others, if the nearer is finalized. An item is listed only if it may lower a label.
-//!    Whether it may is computed without branches, and the lists are filled by stream compaction: the item is
-//!    always written, and the length grows by zero or one. A processor would mispredict such branches again and
-//!    again, each time at the end of a chain of square roots.
-//! 3. **Solve.** The triangles listed are solved four at a time, in lanes, by the same instructions. The distances
-//!    at both ends of the base are taken relative to their pseudo-source (in between, if they have different
-//!    ones), and the local solver finds the distance at the third vertex as if that were a point in the plane.
-//! 4. **Apply.** Only now are labels lowered. All items of the round have seen the same labels, so neither the
-//!    order of the vertices nor that of the items changes the result. A lowered vertex enters the bucket of its
-//!    new distance. If that is the current bucket, there is another round for it.
-//! 5. **Correct.** A finalized vertex may be lowered again. This happens if it was in the same bucket as a vertex
-//!    before it, or if a triangle *completes late*: in an acute triangle, the far end of the base may be reached
-//!    after the apex. Far from the pseudo-source, only nearly right and obtuse corners can complete late; flags in
-//!    the one-ring say which. A corrected vertex is visited again, so its neighbours are corrected in turn: one
-//!    vertex in fifty to one in ten.
+//! 1. **Pop.** The queue holds vertices in buckets, each a twentieth of a mean edge wide. A round takes all vertices
+//!    out of the first bucket that has any. Vertices at distances below this bucket are *finalized*; the others are
+//!    the *frontier*. Vertices within the bucket are not sorted.
+//! 2. **List.** For each vertex `A` of the round, its one-ring is read once, front to back. Each neighbour `B` gives
+//!    an *edge relaxation*, `T(A) + |AB|`. Each triangle `ABC` gives a *triangle update* of the farther of `B` and
+//!    `C` from the two others, if the nearer is finalized. An item is listed only if it may lower a label. Whether it
+//!    may is computed without branches, and the lists are filled by stream compaction: the item is always written,
+//!    and the length grows by zero or one. A processor would mispredict such branches again and again, each time at
+//!    the end of a chain of square roots.
+//! 3. **Solve.** The triangles listed are solved four at a time, in lanes, by the same instructions. The distances at
+//!    both ends of the base are taken relative to their pseudo-source (or to a distance between two different ones),
+//!    and the local solver finds the distance at the third vertex as if that were a point in the plane.
+//! 4. **Apply.** Only now are labels lowered. All items of the round were computed from the same labels, so neither
+//!    the order of the vertices nor that of the items changes the result. A lowered vertex enters the bucket of its
+//!    new distance. If that is the current bucket, another round follows.
+//! 5. **Correct.** A finalized vertex may be lowered again. This happens if it was in the same bucket as the vertex
+//!    that lowers it, or if a triangle *completes late*: even in an acute triangle, the front may reach the apex
+//!    before the far end of the base. Far from the pseudo-source, only nearly right and obtuse corners can complete
+//!    late; flags in the one-ring tell which. A corrected vertex is visited again, so its neighbours are corrected in
+//!    turn. Between one vertex in fifty and one in ten is corrected.
 //!
-//! The result depends on the width of the buckets only through which corrections are worth a visit. The width
-//! adapts, as meshes may have triangles of very different sizes.
+//! Meshes may have triangles of very different sizes, so the width of the buckets adapts.
 
 mod buckets;
 mod front;
@@ -53,7 +52,7 @@ use crate::solver::{DistanceSolver, Pool, PrunedSolver, within};
 use crate::source::Source;
 use front::Front;
 use one_ring::OneRings;
-use unfold::Splits;
+use unfold::split_obtuse_corners;
 pub(crate) use update::Stencil;
 
 /// The local solver of fast marching.
@@ -68,13 +67,11 @@ pub enum Update {
     Planar,
 }
 
-/// What fast marching does about corners wider than 90 degrees, which a front may reach before both ends of their
-/// base.
+/// The treatment of corners wider than 90 degrees, which a front may reach before both ends of their base.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ObtuseTreatment {
-    /// Flip edges inside the surface until few such corners are left (the intrinsic Delaunay triangulation), and
-    /// correct finalized vertices.
+    /// Flip edges inside the surface until few such corners are left (the intrinsic Delaunay triangulation).
     #[default]
     Flip,
     /// Unfold the surface behind the corner and split it, as Kimmel and Sethian do.
@@ -95,28 +92,25 @@ pub struct FastMarchingOptions {
 
 /// Approximate geodesic distances by a front that visits every vertex about once (Kimmel and Sethian 1998).
 ///
-/// The front advances bucket by bucket: all vertices within a twentieth of a mean edge length are handled together,
-/// and the triangles that they update are solved in lanes.
-///
-/// * A vertex `C` gets the smallest of `T(A) + |AC|` over its edges, and of the solution of the local solver over
-///   its triangles `ABC` whose side `AB` is finalized.
-/// * Distances are 1-Lipschitz along edges, at most those along edges ([`Dijkstra`](crate::Dijkstra)), never NaN,
-///   and infinite exactly where no edge or link leads.
-/// * Exact in the plane to rounding. Elsewhere the error is of first order in the edge length: 0.3 % on average,
-///   beside exact distances on meshes of thousands of vertices.
+/// * A vertex `C` gets the smallest of `T(A) + |AC|` over its edges, and of the solution of the local solver over its
+///   triangles `ABC` whose side `AB` is finalized.
+/// * Distances are 1-Lipschitz along edges, at most those along edges ([`Dijkstra`](crate::Dijkstra)), never NaN, and
+///   infinite exactly where no edge or link leads.
+/// * Exact in the plane to rounding. Elsewhere the error is of first order in the edge length: 0.3 % on average on
+///   meshes of thousands of vertices.
+/// * With a limit, distances just below it may be too long: triangles with a vertex beyond the limit are not solved.
 /// * Triangles are independent of each other, so edges may have any number of faces of any orientation. Flips and
 ///   unfolding stop at such edges.
 ///
 /// Cost: `O(p)` to set up; per source `O(p)` if neighbouring edges are of similar length.
 ///
 /// **Deviations** from Kimmel and Sethian:
-/// * Edges are flipped inside the surface instead of unfolding obtuse corners. Edges that were flipped away are
-///   still relaxed.
-/// * The queue is a bucket queue ([`dial1969`], [`meyer2003`]) whose buckets are emptied at once ([`kim2001`]).
-///   Vertices in one bucket have no order, and finalized vertices are corrected if they get a smaller distance.
-/// * Each vertex remembers its pseudo-source: the distance at which the path to it last bent, at a saddle or
-///   boundary vertex, as exact algorithms do. The front in a triangle is a circle around that vertex, not around
-///   the source, which would make distances too long.
+/// * Edges are flipped inside the surface instead of unfolding obtuse corners. Removed edges are still relaxed.
+/// * The queue is a bucket queue ([`dial1969`], [`meyer2003`]): all vertices within a twentieth of a mean edge length
+///   are handled at once ([`kim2001`]), without order. Finalized vertices are corrected if their distance falls.
+/// * As in exact algorithms, each vertex stores the distance of its pseudo-source, where the path to it last bent at
+///   a saddle or boundary vertex. The front in a triangle is a circle around the pseudo-source; one around the source
+///   would make distances too long.
 ///
 /// The keys are those of `REFERENCES.bib`, as are [`kimmel1998`] and [`novotni2002`].
 ///
@@ -151,18 +145,12 @@ impl FastMarching {
         let (prepared, order) = rayon::join(
             || {
                 let mut triangulation = Triangulation::new(mesh);
-                let mut links = mesh.links().to_vec();
-                let mut halves = Vec::new();
-                match options.obtuse {
-                    ObtuseTreatment::Flip => links.extend(triangulation.flip_to_delaunay(Loops::Forbidden)),
-                    ObtuseTreatment::Unfold => {
-                        let splits = Splits::new(mesh);
-                        links.extend(splits.segments);
-                        halves = splits.halves;
-                    }
-                    ObtuseTreatment::Ignore => {}
-                }
-                (triangulation, links, halves)
+                let (segments, halves) = match options.obtuse {
+                    ObtuseTreatment::Flip => (triangulation.flip_to_delaunay(Loops::Forbidden), Vec::new()),
+                    ObtuseTreatment::Unfold => split_obtuse_corners(mesh),
+                    ObtuseTreatment::Ignore => Default::default(),
+                };
+                (triangulation, [mesh.links(), &segments].concat(), halves)
             },
             || EdgeGraph::new(mesh).breadth_first_order(),
         );
@@ -183,8 +171,8 @@ impl FastMarching {
     }
 }
 
-/// A pruned front goes on for this many times the longest edge at a vertex beyond those that the new source is
-/// nearest to: distances near the border come out as without pruning.
+/// A pruned front stops this many times the longest edge at a vertex beyond the vertices nearest to the new source,
+/// so that distances near the border are the same as without pruning.
 const BORDER: f64 = 2.0;
 
 impl DistanceSolver for FastMarching {

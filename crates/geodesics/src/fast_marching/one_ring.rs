@@ -4,8 +4,8 @@ use std::f64::consts::PI;
 
 use rayon::prelude::*;
 use surface::{
-    CornerId, CornerTable, FaceId, FanCorner, Link, OneRing, Rows, Triangulation, VertexKind, Winding,
-    double_area, scalar_product, total_angle,
+    CornerTable, FaceId, FanCorner, Link, OneRing, Rows, Triangulation, VertexKind, Winding, double_area,
+    scalar_product, total_angle,
 };
 
 use super::update::Stencil;
@@ -33,19 +33,12 @@ impl Neighbour {
         Self { vertex, allowed, length, dot: 0.0, cross: 0.0 }
     }
 
-    /// The triangle for an update from the neighbour before to this one.
-    fn forward(&self, before: &Self) -> Stencil {
-        Stencil { base: before.length, side: self.length, dot: self.dot, cross: self.cross }
-    }
-
-    /// The triangle for an update from this neighbour to the one before.
-    fn backward(&self, before: &Self) -> Stencil {
-        Stencil { base: self.length, side: before.length, dot: self.dot, cross: self.cross }
-    }
-
-    /// Finds out which updates through the triangle may come late.
+    /// Sets the flags of the updates through the triangle that may be late.
     fn set_late_updates(&mut self, before: &Self) {
-        for (stencil, shift) in [(self.backward(before), 0), (self.forward(before), 1)] {
+        let Self { length, dot, cross, .. } = *self;
+        let backward = Stencil { base: length, side: before.length, dot, cross };
+        let forward = Stencil { base: before.length, side: length, dot, cross };
+        for (stencil, shift) in [(backward, 0), (forward, 1)] {
             if stencil.may_complete_late() {
                 self.allowed.0 |= Allowed::LATE_NEARBY.0 << shift;
             }
@@ -136,8 +129,8 @@ pub(super) struct OneRings {
     pub(super) bucket_width: f64,
 }
 
-/// Width of the buckets, as a share of the mean edge length. In wider buckets more vertices have to be corrected,
-/// in narrower ones too few are handled together.
+/// Width of the buckets, as a share of the mean edge length. In wider buckets more vertices have to be corrected, in
+/// narrower ones too few are handled together.
 const BUCKET_WIDTH: f64 = 0.05;
 
 /// Number of vertices whose one-rings one thread lays out at a time.
@@ -147,8 +140,8 @@ const BLOCK: usize = 1024;
 const EXCESS: f64 = 5e-9;
 
 impl OneRings {
-    /// The one-rings of a triangulation whose vertices are renumbered in the given order, with straight
-    /// connections and halves of obtuse corners (by the vertex that they are at) in addition.
+    /// The one-rings of a triangulation whose vertices are renumbered in the given order, with straight connections
+    /// and halves of obtuse corners (by the vertex that they are at) in addition.
     ///
     /// The mean edge length is that of the mesh: after flips, it may depend on the numbering of the vertices.
     pub(super) fn new(
@@ -165,21 +158,24 @@ impl OneRings {
         for (internal, v) in order.iter().enumerate() {
             rank[*v as usize] = internal as u32;
         }
-        let ends = |link: &Link| {
-            let ([a, b], length) = (link.ends, link.length);
-            [(a.index(), (b.0, length)), (b.index(), (a.0, length))]
-        };
-        let links = Rows::collect(n, links.iter().flat_map(ends));
+        let links = Link::by_vertex(n, links.iter().copied());
         let halves = Rows::collect(n, halves.iter().map(|(v, half)| (*v as usize, *half)));
         let blocks: Vec<(Rows<Neighbour>, Vec<bool>)> = order
             .par_chunks(BLOCK)
             .map(|vertices| {
-                let mut layout = Layout { triangulation, ring: OneRing::default(), neighbours: Vec::new() };
+                let (mut ring, mut neighbours) = (OneRing::default(), Vec::new());
                 let (mut rows, mut may_bend) = (Rows::default(), Vec::with_capacity(vertices.len()));
                 for v in vertices.iter().map(|v| *v as usize) {
-                    may_bend.push(layout.lay_out(corners.row(v), links.row(v), halves.row(v)));
+                    ring.collect(triangulation, corners.row(v));
+                    may_bend.push(lay_out(
+                        triangulation,
+                        &ring,
+                        links.row(v),
+                        halves.row(v),
+                        &mut neighbours,
+                    ));
                     let renamed = |n: Neighbour| Neighbour { vertex: rank[n.vertex as usize], ..n };
-                    rows.push_row(layout.neighbours.drain(..).map(renamed));
+                    rows.push_row(neighbours.drain(..).map(renamed));
                 }
                 (rows, may_bend)
             })
@@ -190,7 +186,6 @@ impl OneRings {
         Self { neighbours, may_bend, order, rank, longest, bucket_width: BUCKET_WIDTH * mean_edge_length }
     }
 
-    /// The neighbours of a vertex.
     #[inline]
     pub(super) fn of(&self, vertex: u32) -> &[Neighbour] {
         self.neighbours.row(vertex as usize)
@@ -203,80 +198,73 @@ impl OneRings {
         [range.start as u32, range.end as u32]
     }
 
-    /// The neighbour with this number.
     #[inline]
     pub(super) fn at(&self, neighbour: u32) -> &Neighbour {
         &self.neighbours.items()[neighbour as usize]
     }
 
-    /// The length of the longest edge at a vertex.
     pub(super) fn longest_at(&self, vertex: u32) -> f64 {
         self.of(vertex).iter().map(|neighbour| neighbour.length).fold(0.0, f64::max)
     }
 
-    /// Whether shortest paths may bend at a vertex, because it is a saddle vertex, a boundary vertex with more
-    /// than 180 degrees, or irregular.
+    /// Whether shortest paths may bend at a vertex, because it is a saddle vertex, a boundary vertex with more than
+    /// 180 degrees, or irregular.
     #[inline]
     pub(super) fn may_bend(&self, vertex: u32) -> bool {
         self.may_bend[vertex as usize]
     }
 }
 
-/// Lays out one one-ring after the other.
-struct Layout<'a> {
-    triangulation: &'a Triangulation,
-    ring: OneRing,
-    neighbours: Vec<Neighbour>,
-}
-
-impl Layout<'_> {
-    /// Appends the neighbours of a vertex; returns whether shortest paths may bend there.
-    fn lay_out(&mut self, corners: &[CornerId], links: &[(u32, f64)], halves: &[HalfCorner]) -> bool {
-        let Self { triangulation, ring, neighbours } = self;
-        ring.collect(*triangulation, corners);
-        for fan in ring.fans() {
-            for (i, corner) in fan.corners.iter().enumerate() {
-                let [first, last] = neighbours_at(triangulation, *corner);
-                if i == 0 {
-                    neighbours.push(first);
-                }
-                neighbours.push(last);
+/// Appends the neighbours of the vertex of a one-ring; returns whether shortest paths may bend there.
+fn lay_out(
+    triangulation: &Triangulation,
+    ring: &OneRing,
+    links: &[(u32, f64)],
+    halves: &[HalfCorner],
+    neighbours: &mut Vec<Neighbour>,
+) -> bool {
+    for fan in ring.fans() {
+        for (i, corner) in fan.corners.iter().enumerate() {
+            let [first, last] = neighbours_at(triangulation, *corner);
+            if i == 0 {
+                neighbours.push(first);
             }
+            neighbours.push(last);
         }
-        let n_fans = neighbours.len();
-        let angle = total_angle(neighbours.iter().map(|n| [n.cross, n.dot]));
-        for HalfCorner { base, apex, third } in halves {
-            neighbours.push(Neighbour::without_triangle(base.0, Allowed::NONE, base.1));
-            neighbours.push(Neighbour {
-                vertex: apex.0,
-                allowed: Allowed::FORWARD,
-                length: apex.1,
-                dot: scalar_product(*third, apex.1, base.1),
-                cross: double_area([*third, apex.1, base.1]),
-            });
+    }
+    let n_fans = neighbours.len();
+    let angle = total_angle(neighbours.iter().map(|n| [n.cross, n.dot]));
+    for HalfCorner { base, apex, third } in halves {
+        neighbours.push(Neighbour::without_triangle(base.0, Allowed::NONE, base.1));
+        neighbours.push(Neighbour {
+            vertex: apex.0,
+            allowed: Allowed::FORWARD,
+            length: apex.1,
+            dot: scalar_product(*third, apex.1, base.1),
+            cross: double_area([*third, apex.1, base.1]),
+        });
+    }
+    for (end, length) in links {
+        let is_shorter =
+            |n: &Neighbour| n.vertex == *end && n.allowed.has(Allowed::EDGE) && n.length <= *length;
+        if !neighbours.iter().any(is_shorter) {
+            neighbours.push(Neighbour::without_triangle(*end, Allowed::EDGE, *length));
         }
-        for (end, length) in links {
-            let is_shorter =
-                |n: &Neighbour| n.vertex == *end && n.allowed.has(Allowed::EDGE) && n.length <= *length;
-            if !neighbours.iter().any(is_shorter) {
-                neighbours.push(Neighbour::without_triangle(*end, Allowed::EDGE, *length));
-            }
+    }
+    if ring.is_closed() && neighbours.len() == n_fans {
+        // The neighbour that closes the fan takes the place of its copy at the beginning.
+        neighbours.swap_remove(0);
+    }
+    if let Some(mut before) = neighbours.last().copied() {
+        for neighbour in neighbours {
+            neighbour.set_late_updates(&before);
+            before = *neighbour;
         }
-        if ring.is_closed() && neighbours.len() == n_fans {
-            // The neighbour that closes the fan takes the place of its copy at the beginning.
-            neighbours.swap_remove(0);
-        }
-        if let Some(mut before) = neighbours.last().copied() {
-            for neighbour in neighbours {
-                neighbour.set_late_updates(&before);
-                before = *neighbour;
-            }
-        }
-        match ring.kind(angle, EXCESS) {
-            VertexKind::Ordinary => false,
-            VertexKind::Saddle | VertexKind::Boundary => true,
-            VertexKind::Irregular => angle > PI + EXCESS,
-        }
+    }
+    match ring.kind(angle, EXCESS) {
+        VertexKind::Ordinary => false,
+        VertexKind::Saddle | VertexKind::Boundary => true,
+        VertexKind::Irregular => angle > PI + EXCESS,
     }
 }
 

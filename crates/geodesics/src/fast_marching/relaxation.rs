@@ -4,16 +4,16 @@ use super::one_ring::{Allowed, OneRings};
 use super::update::{FAR, Stencil};
 use crate::prefetch::prefetch;
 
-/// Distances that differ by less than this share are equal but for rounding: a smaller improvement is not worth
-/// another visit, and of two equal ones the smaller pseudo-source distance counts, whatever their order.
+/// Distances that differ by less than this share are equal up to rounding: a smaller improvement causes no visit, and
+/// of two equal distances the smaller pseudo-source distance counts, in any order.
 pub(super) const ROUNDING: f64 = 1e-13;
 
-/// If shortest paths to the two ends of a base have different pseudo-sources, this share of the difference is
-/// added to the smaller pseudo-source distance. The mean error over the reference meshes is least between 0.3 and
-/// 0.4, where errors of either sign balance.
+/// If shortest paths to the two ends of a base have different pseudo-sources, this share of the difference is added
+/// to the smaller pseudo-source distance. The mean error over the reference meshes is least between 0.3 and 0.4,
+/// where errors of either sign balance.
 const LATER_PSEUDO_SOURCE: f64 = 0.35;
 
-/// What is known about a vertex.
+/// The tentative result at a vertex.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Label {
     /// Tentative distance from the source.
@@ -56,7 +56,7 @@ pub(super) struct TriangleUpdate {
     neighbour: u32,
     /// The number of the neighbour before.
     before: u32,
-    /// 1 if `neighbour` is updated from `before`, 0 if it is the other way.
+    /// 1 if `neighbour` is updated from `before`, 0 for the reverse.
     is_forward: u32,
 }
 
@@ -101,8 +101,8 @@ pub(super) struct Relaxations {
 impl Relaxations {
     /// The edges and triangles that may lower a vertex, from all vertices of a round except where it `stops`.
     ///
-    /// Of a triangle the farthest vertex is updated, if the other two are finalized. It may be finalized itself:
-    /// then only if it can be reached before the vertex of the round.
+    /// Of a triangle the farthest vertex is updated, if the other two are finalized. It may be finalized itself: then
+    /// only if it can be reached before the vertex of the round.
     #[inline(never)]
     pub(super) fn find(
         &mut self,
@@ -159,8 +159,8 @@ impl Relaxations {
 }
 
 impl Round<'_> {
-    /// Adds the updates of the nearer of the two other vertices, for triangles at a vertex that was corrected:
-    /// if both are finalized but farther away than the vertex.
+    /// Adds the updates of the nearer of the two other vertices, for triangles at a vertex that was corrected: if
+    /// both are finalized but farther away than the vertex.
     #[inline(never)]
     fn update_both_ways(&self, vertex: u32, finalized: f64, triangles: &mut Compaction<'_, TriangleUpdate>) {
         let distance = self.labels[vertex as usize].distance;

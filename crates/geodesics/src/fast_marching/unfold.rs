@@ -1,51 +1,33 @@
 //! Obtuse corners split by unfolding the surface behind them (Kimmel and Sethian 1998, `kimmel1998`).
 //!
-//! A front may reach an obtuse corner `C` before both ends of the base `AB` are finalized. The triangles behind
-//! the base are laid out in the plane of `ABC` until a vertex `D` lies in the cone of directions that make acute
-//! angles with both `CA` and `CB`. The segment `CD` is inside the unfolded strip and splits the corner in two.
+//! A front may reach an obtuse corner `C` before both ends of the base `AB` are finalized. The triangles behind the
+//! base are laid out in the plane of `ABC` until a vertex `D` lies in the cone of directions that make acute angles
+//! with both `CA` and `CB`. The segment `CD` is inside the unfolded strip and splits the corner in two.
 
-use surface::{CornerId, FaceId, IntrinsicMesh, Link, Triangle, VertexId};
+use surface::{CornerId, FaceId, IntrinsicMesh, Link, VertexId};
 
 use super::one_ring::HalfCorner;
+use crate::plane::{Point, Side, apex, beyond, sub};
 
-/// More triangles than any reasonable strip has; a strip of slivers may go on forever.
+/// Limit of the triangles in a strip; strips of slivers may have no end.
 const MAX_STEPS: usize = 12;
 
-/// What takes the place of obtuse corners.
-#[derive(Debug, Default)]
-pub(super) struct Splits {
-    /// The segments that split them.
-    pub(super) segments: Vec<Link>,
-    /// Their halves, each at both ends of its base.
-    pub(super) halves: Vec<(u32, HalfCorner)>,
-}
-
-impl Splits {
-    /// Splits all obtuse corners of a mesh where unfolding finds a vertex.
-    pub(super) fn new(mesh: &IntrinsicMesh) -> Self {
-        let mut splits = Self::default();
-        for corner in (0..mesh.topology().n_faces()).flat_map(|f| FaceId::from(f).corners()) {
-            if let Some(split) = split(mesh, corner) {
-                splits.add(mesh, corner, &split);
-            }
-        }
-        splits
-    }
-
-    fn add(&mut self, mesh: &IntrinsicMesh, corner: CornerId, split: &Split) {
-        let topology = mesh.topology();
-        let (apex, middle) = (topology.corner_vertex(corner), split.vertex);
+/// Splits all obtuse corners of a mesh where unfolding finds a vertex. Returns the segments that split them, and
+/// their halves with the vertices at both ends of each base.
+pub(super) fn split_obtuse_corners(mesh: &IntrinsicMesh) -> (Vec<Link>, Vec<(u32, HalfCorner)>) {
+    let (topology, mut segments, mut halves) = (mesh.topology(), Vec::new(), Vec::new());
+    for corner in (0..topology.n_faces()).flat_map(|f| FaceId::from(f).corners()) {
+        let Some(Split { vertex: middle, length, bases }) = split(mesh, corner) else { continue };
+        let apex = topology.corner_vertex(corner);
         let [_, from_a, from_b] = mesh.sides(corner);
-        let ends = topology.edge_ends(corner);
-        for ((end, base), side) in ends.into_iter().zip(split.bases).zip([from_a, from_b]) {
-            let (at_end, at_middle) = ((apex.0, side), (apex.0, split.length));
-            let half = HalfCorner { base: (middle.0, base), apex: at_end, third: split.length };
-            self.halves.push((end.0, half));
-            let half = HalfCorner { base: (end.0, base), apex: at_middle, third: side };
-            self.halves.push((middle.0, half));
+        for ((end, base), side) in topology.edge_ends(corner).into_iter().zip(bases).zip([from_a, from_b]) {
+            let at_end = HalfCorner { base: (middle.0, base), apex: (apex.0, side), third: length };
+            let at_middle = HalfCorner { base: (end.0, base), apex: (apex.0, length), third: side };
+            halves.extend([(end.0, at_end), (middle.0, at_middle)]);
         }
-        self.segments.push(Link { ends: [apex, middle], length: split.length });
+        segments.push(Link { ends: [apex, middle], length });
     }
+    (segments, halves)
 }
 
 /// How an obtuse corner at `C` is split into two acute ones.
@@ -59,12 +41,6 @@ struct Split {
     bases: [f64; 2],
 }
 
-type Point = [f64; 2];
-
-fn sub(a: Point, b: Point) -> Point {
-    [a[0] - b[0], a[1] - b[1]]
-}
-
 fn dot(a: Point, b: Point) -> f64 {
     a[0] * b[0] + a[1] * b[1]
 }
@@ -73,15 +49,14 @@ fn norm(a: Point) -> f64 {
     dot(a, a).sqrt()
 }
 
-/// Unfolds the surface behind a corner. Returns `None` if the corner is not obtuse, and if the strip comes to the
+/// Unfolds the surface behind a corner. Returns `None` if the corner is not obtuse, or if the strip reaches the
 /// boundary or a non-manifold edge, or gets too long.
 fn split(mesh: &IntrinsicMesh, corner: CornerId) -> Option<Split> {
     let [c, b, a] = mesh.sides(corner);
     if a * a + b * b >= c * c {
         return None;
     }
-    let flat = Triangle::from_sides([c, b, a]);
-    let apex = [flat.x, flat.y];
+    let apex = apex([c, b, a]);
     let (at_a, at_b) = ([0.0, 0.0], [c, 0.0]);
     let (to_a, to_b) = (sub(at_a, apex), sub(at_b, apex));
     let topology = mesh.topology();
@@ -103,10 +78,7 @@ fn split(mesh: &IntrinsicMesh, corner: CornerId) -> Option<Split> {
             return None;
         }
         // The new vertex is on the other side of the edge than the apex.
-        let beyond = Triangle::from_sides([edge, from_left, from_right]);
-        let along = sub(at_right, at_left).map(|x| x / edge);
-        let away = [along[1], -along[0]];
-        let at = [0, 1].map(|i| at_left[i] + beyond.x * along[i] + beyond.y * away[i]);
+        let at = beyond([at_left, at_right], [edge, from_left, from_right], Side::Behind);
         let ray = sub(at, apex);
         match (dot(ray, to_a) > 0.0, dot(ray, to_b) > 0.0) {
             (true, true) => {
@@ -150,9 +122,9 @@ mod tests {
         assert!((found.bases[1] - 1.8f64.hypot(1.0)).abs() < 1e-14);
         assert_eq!(split(&mesh, CornerId(1)), None, "acute");
         // The corner of vertex 3 is obtuse as well, and split by vertex 0.
-        let splits = Splits::new(&mesh);
-        assert_eq!(splits.segments[0], Link { ends: [0, 3].map(VertexId), length: found.length });
-        assert_eq!((splits.segments.len(), splits.halves.len()), (2, 8));
+        let (segments, halves) = split_obtuse_corners(&mesh);
+        assert_eq!(segments[0], Link { ends: [0, 3].map(VertexId), length: found.length });
+        assert_eq!((segments.len(), halves.len()), (2, 8));
     }
 
     #[test]

@@ -16,8 +16,8 @@ pub(crate) struct Stencil {
 }
 
 /// If the squared height of the point source above the line through the base is below this share of its squared
-/// distance, it lies on that line but for rounding. Edges then carry the front just as well, and rounding would
-/// decide between the two.
+/// distance, it lies on that line up to rounding. Edges carry the front as well, and rounding would decide between
+/// the two.
 const COLLINEAR: f64 = 1e-12;
 
 /// See [`Stencil::may_complete_late_from_afar`]: a distant front is late only in corners wider than 86 degrees.
@@ -41,9 +41,9 @@ impl Stencil {
         self.may_complete_late() && 2.0 * FAR * (side * side - dot) <= side * third()
     }
 
-    /// Distance at `C` of a front that comes from a single point beyond the base, from the distances at `A` and
-    /// `B`; infinite if the straight line from that point to `C` misses the base or there is no such point. The
-    /// edges then carry the front.
+    /// Distance at `C` of a front that comes from a single point beyond the base, from the distances at `A` and `B`;
+    /// infinite if the straight line from that point to `C` misses the base, or without such a point. Edges carry the
+    /// front.
     ///
     /// Exact in the plane. Novotni and Klein 2002 (`novotni2002`), in coordinates that are multiples of `|AB|`.
     #[inline]
@@ -67,8 +67,8 @@ impl Stencil {
     /// Distance at `C` of a front that is a straight line, from the distances at `A` and `B`; infinite if the
     /// characteristic through `C` misses the base.
     ///
-    /// Kimmel and Sethian 1998 (`kimmel1998`): the larger root of their quadratic, here by the unit gradient
-    /// whose component along the base is `(at_b - at_a) / |AB|`.
+    /// Kimmel and Sethian 1998 (`kimmel1998`): the larger root of their quadratic, here by the unit gradient whose
+    /// component along the base is `(at_b - at_a) / |AB|`.
     #[inline]
     pub(super) fn planar(self, at_a: f64, at_b: f64) -> f64 {
         let Self { base, dot, cross, .. } = self;

@@ -3,18 +3,16 @@
 use surface::laplacian::Element;
 use surface::{Link, Triangle};
 
-/// A link longer than this, in units, transports heat as if it were this long: the amount of heat behind a bridge does
-/// not matter, but there has to be some.
+/// A longer link, in units, transports heat as if it had this length, so that some heat arrives.
 pub(super) const LONGEST_BAR: f64 = 400.0;
 
 /// The same in heat lengths, for short times: `exp(-DEEPEST)` does not underflow.
 const DEEPEST: f64 = 600.0;
 
-/// Adds to `b` the integral over the triangle of `X . grad` of the hat function of each corner, `X = -grad u / |grad u|`,
-/// lane by lane: its part of `-div X`.
+/// Adds to `b` the integral over the triangle of `X . grad` of the hat function of each corner, `X = -grad u / |grad
+/// u|`, lane by lane: its part of `-div X`.
 ///
-/// Only the direction of the gradient is needed. It is found from differences relative to the largest, so that neither a
-/// huge `u` overflows nor a tiny one underflows.
+/// Only the direction of the gradient is needed, relative to the largest difference: nothing overflows or underflows.
 #[inline]
 pub(super) fn add_divergence<const K: usize>(element: &Element, u: &[[f64; K]], b: &mut [[f64; K]]) {
     let Triangle { base, x, y } = element.triangle;
@@ -42,8 +40,8 @@ pub(super) fn add_divergence<const K: usize>(element: &Element, u: &[[f64; K]], 
 
 /// A link as a bar between two vertices, one heat length wide.
 ///
-/// Exact for the heat equation in one dimension: heat on it is a sum of `exp(x)` and `exp(-x)`, `x` in heat lengths, and
-/// falls along the bar as it does along the surface.
+/// Exact for the heat equation in one dimension: heat on it is a sum of `exp(x)` and `exp(-x)`, `x` in heat lengths,
+/// and falls along the bar as it does along the surface.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Bar {
     pub(super) ends: [u32; 2],
@@ -71,8 +69,8 @@ impl Bar {
         self.heat_length / self.length
     }
 
-    /// Adds to `b` the bar's part of `-div X`, lane by lane: its weight times the difference of the distances of its ends,
-    /// the integral of `-sign u'`.
+    /// Adds to `b` the bar's part of `-div X`, lane by lane: its weight times the difference of the distances of its
+    /// ends, the integral of `-sign u'`.
     pub(super) fn add_divergence<const K: usize>(&self, u: &[[f64; K]], b: &mut [[f64; K]]) {
         let [i, j] = self.ends.map(|v| v as usize);
         let lost = (-self.depth).exp();

@@ -20,13 +20,13 @@ use system::System;
 #[derive(Debug, Clone, Copy, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub struct HeatOptions {
-    /// How long heat flows, positive; longer is smoother, shorter is rougher. In units of `h^2`, where `h` is the mean
-    /// side of the Delaunay triangles; on fine meshes in units of `h l`, where `l` is a 200th of the square root of the
+    /// How long heat flows, positive; longer times give smoother distances. In units of `h^2`, where `h` is the mean
+    /// side of the Delaunay triangles; on fine meshes in units of `h l`, `l` being a 200th of the square root of the
     /// area.
     ///
     /// Default: 0.85, a compromise over ten meshes of 3,000 to 43,000 vertices with known exact distances, whose best
-    /// values are between 0.5 and 1.3. For a surface without features as small as its edges, the best value is between
-    /// `2 h l` and `5 h l`.
+    /// values are between 0.5 and 1.3. For a surface without features as small as its edges, the best value is
+    /// between `2 h l` and `5 h l`.
     pub time: f64,
 }
 
@@ -36,25 +36,11 @@ impl Default for HeatOptions {
     }
 }
 
-impl HeatOptions {
-    /// Checks every field.
-    ///
-    /// # Errors
-    /// [`GeodesicError::BadHeatTime`].
-    pub fn validate(&self) -> Result<(), GeodesicError> {
-        if self.time > 0.0 && self.time.is_finite() {
-            Ok(())
-        } else {
-            Err(GeodesicError::BadHeatTime { time: self.time })
-        }
-    }
-}
-
-/// Heat put into a source. Above the smallest positive number, this leaves room for heat to fall by `exp(-1390)`.
+/// Heat put into a source; it can fall by `exp(-1390)` before it underflows.
 const AMPLITUDE: f64 = 1e280;
 
 /// The mean side, as a share of the square root of the area, below which heat flows for longer than the square of the
-/// side, so that the error falls to zero with the side and not to a constant.
+/// side, so that the error vanishes under refinement.
 const FINE: f64 = 1.0 / 200.0;
 
 /// How far heat can travel, in heat lengths, before it underflows.
@@ -63,8 +49,8 @@ const RANGE: f64 = 1300.0;
 /// Number of sources solved for at once, if there are many.
 const LANES: usize = 4;
 
-/// Approximate geodesic distances from the direction of heat flow (Crane, Weischedel and Wardetzky 2013, [`crane2013`]),
-/// on an intrinsic Delaunay triangulation.
+/// Approximate geodesic distances from the direction of heat flow (Crane, Weischedel and Wardetzky 2013,
+/// [`crane2013`]), on an intrinsic Delaunay triangulation.
 ///
 /// | paper | here | shape | meaning |
 /// |---|---|---|---|
@@ -80,21 +66,20 @@ const LANES: usize = 4;
 ///   everywhere. The surface and its vertices stay the same.
 /// * Both factorisations are done once, in one order of elimination; a source then costs three passes over a factor.
 ///   Many sources are solved [four at a time](DistanceSolver::distance_columns), with the same bits as one at a time.
-/// * A smooth approximation: it is **not** 1-Lipschitz along edges, can be below or above the distance, and rounds off
-///   creases where fronts meet. Compared with exact distances, the mean error is 1 to 3 % on meshes of thousands of
-///   vertices, and ten times that at single vertices near the source. Never NaN, never negative, zero at a vertex that
-///   is a source.
+/// * A smooth approximation: it is **not** 1-Lipschitz along edges, can be below or above the distance, and rounds
+///   off creases where fronts meet. Compared with exact distances, the mean error is 1 to 3 % on meshes of thousands
+///   of vertices, and ten times that at single vertices near the source. Never NaN or negative, zero at a source
+///   vertex.
 /// * In the triangles around a source, distances are at most the straight ones.
-/// * No heat leaves through the boundary (Neumann), so level lines meet it at right angles.
-/// * A link is a bar one heat length wide: distances across a bridge are those of its ends plus its length. Infinite
-///   exactly where no edge or link leads.
+/// * No heat leaves through the boundary (Neumann), so level lines are perpendicular to it.
+/// * A link is a bar one heat length wide: it adds its length. Infinite exactly where no edge or link leads.
 ///
 /// Cost on a surface: `O(p^1.5)` to set up; `O(p log p)` memory, and time per source.
 ///
-/// **Deviations.** The potential is shifted to fit around the source and not at it, where the direction of flow is
+/// **Deviations.** The potential is shifted to fit around the source, not at it, where the direction of flow is
 /// undefined: this halves the largest errors. On fine meshes, heat flows for longer than the square of the mean side
-/// (see [`HeatOptions::time`]), or the error would not vanish under refinement; and for so long that it reaches the far
-/// end in double precision.
+/// (see
+/// [`HeatOptions::time`]), so that the error vanishes under refinement, and long enough to reach the far end.
 ///
 /// ```
 /// use canonform_geodesics::{DistanceSolver, HeatMethod, HeatOptions};
@@ -116,10 +101,8 @@ pub struct HeatMethod {
     unit: f64,
     /// Heat time, in squared units.
     time: f64,
-    /// The component of every vertex.
-    component: Vec<u32>,
-    n_components: usize,
-    /// For every vertex, the vertices joined to it by a side of a triangle and how far they are, in units.
+    components: Components,
+    /// The vertices joined to each vertex by a side of a triangle, and their distances in units.
     neighbours: Rows<(u32, f64)>,
     /// The step that eliminates each vertex, which is its place in all vectors.
     step: Vec<u32>,
@@ -133,13 +116,15 @@ pub struct HeatMethod {
 impl HeatMethod {
     /// Flips the surface to Delaunay and factorises its matrices.
     ///
-    /// Lengths of no triangle are corrected, see [`Metric`]. A matrix that is not positive definite, by rounding, is
-    /// tried again with 1e-12, 1e-9 and 1e-6 of its diagonal added.
+    /// Lengths that violate the triangle inequality are corrected, see [`Metric`]. If rounding makes a matrix
+    /// indefinite, 1e-12, 1e-9 or 1e-6 of its diagonal is added.
     ///
     /// # Errors
-    /// [`GeodesicError::BadHeatTime`]; [`GeodesicError::NotFactorised`] if that did not help, or memory ran out.
+    /// [`GeodesicError::BadHeatTime`]; [`GeodesicError::NotFactorised`] if that does not help, or memory runs out.
     pub fn new(mesh: &IntrinsicMesh, options: HeatOptions) -> Result<Self, GeodesicError> {
-        options.validate()?;
+        if !(options.time > 0.0 && options.time.is_finite()) {
+            return Err(GeodesicError::BadHeatTime { time: options.time });
+        }
         let laplacian = Laplacian::new(mesh);
         let metric = laplacian.metric();
         let components = components_with_links(mesh);
@@ -164,8 +149,7 @@ impl HeatMethod {
         Ok(Self {
             unit: metric.unit,
             time,
-            component: components.labels.iter().map(|label| label.unwrap_or(0)).collect(),
-            n_components: components.count,
+            components,
             neighbours,
             step,
             elements,
@@ -208,7 +192,7 @@ impl HeatMethod {
     /// Distances from the potential.
     ///
     /// At a source, the direction of flow is undefined and the potential is wrong by a good part of an edge. So it is
-    /// shifted to agree, on average over relative errors, with the straight distances to the vertices around.
+    /// shifted to agree, in the mean of relative errors, with the straight distances to the vertices around.
     fn read_lane<const K: usize>(&self, lane: usize, sources: &[Source], phi: &[[f64; K]], out: &mut [f64]) {
         let potential = |v: usize| phi[self.step[v] as usize][lane];
         let in_units = |length: f64| if self.unit > 0.0 { length / self.unit } else { 0.0 };
@@ -223,19 +207,20 @@ impl HeatMethod {
                 out[v] = out[v].min(straight);
             }
         }
-        let mut shifts = vec![Shift::default(); self.n_components];
+        let component = |v| self.components.of(VertexId::from(v));
+        let mut shifts = vec![Shift::default(); self.components.count];
         for (v, straight) in out.iter().enumerate().filter(|(_, straight)| straight.is_finite()) {
-            shifts[self.component[v] as usize].add(potential(v), *straight);
+            shifts[component(v)].add(potential(v), *straight);
         }
         for (v, distance) in out.iter_mut().enumerate() {
-            if let Some(shift) = shifts[self.component[v] as usize].mean() {
+            if let Some(shift) = shifts[component(v)].mean() {
                 *distance = self.unit * distance.min((potential(v) - shift).max(0.0));
             }
         }
     }
 }
 
-/// A vertex this close to a source, in units, is at the source: its error says nothing.
+/// A vertex this close to a source, in units, is at the source.
 const AT_SOURCE: f64 = 1e-6;
 
 /// By how much the potential of a component exceeds known distances.
@@ -243,7 +228,7 @@ const AT_SOURCE: f64 = 1e-6;
 struct Shift {
     /// Sum and weights around sources.
     around: [f64; 2],
-    /// Sum and number at sources, in case there is nothing around them.
+    /// Sum and number at sources, for sources without neighbours.
     at: [f64; 2],
 }
 
@@ -273,8 +258,7 @@ impl DistanceSolver for HeatMethod {
         }
     }
 
-    /// Solves for four sources at a time, in parallel; the result depends neither on the number of threads nor on which
-    /// sources are solved together.
+    /// Solves for four sources at a time, in parallel. The result depends neither on the threads nor on the grouping.
     fn distance_columns(&self, sources: &[VertexId]) -> Matrix {
         let p = self.n_vertices();
         let mut columns = Matrix::zeros(p, sources.len());
@@ -318,8 +302,8 @@ fn neighbours(n_vertices: usize, elements: &[Element]) -> Rows<(u32, f64)> {
     Rows::collect(n_vertices, sides.iter().map(|(v, w, length)| (*v as usize, (*w, *length))))
 }
 
-/// The width of the widest component along edges, in units: the distance from the vertex farthest from the first one to
-/// the vertex farthest from that.
+/// The width of the widest component along edges, in units: the distance to the vertex farthest from the vertex
+/// farthest from the first one.
 fn extent(mesh: &IntrinsicMesh, metric: &Metric, components: &Components) -> f64 {
     let links = metric.links.iter().map(|link| Link { length: link.length.min(LONGEST_BAR), ..*link });
     let scaled = IntrinsicMesh::new(mesh.topology().clone(), metric.edges.clone());

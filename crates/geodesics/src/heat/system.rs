@@ -22,9 +22,8 @@ pub(super) struct System {
 impl System {
     /// Assembles and factorises; `grounded` has one vertex of each component.
     ///
-    /// The cotangent stiffness `L` maps constants to zero. Adding one to its diagonal at one vertex of each component makes
-    /// it definite. As right-hand sides sum to zero over a component, this sets the solution to zero there and changes
-    /// nothing else.
+    /// The cotangent stiffness `L` maps constants to zero. Adding one to its diagonal at one vertex of each component
+    /// makes it definite. As right-hand sides sum to zero over a component, this only makes the solution zero there.
     pub(super) fn new(
         laplacian: &Laplacian,
         bars: &[Bar],

@@ -5,44 +5,37 @@ use std::collections::BTreeSet;
 use surface::{EdgeId, FaceId, Triangle, VertexId};
 
 use super::field::Field;
-use super::plane::{Flat, Point, between, distance, faces_around, segment};
+use super::plane::{Flat, faces_around, segment};
 use super::strip::{Path, Portal, Section, Strip};
 use crate::fast_marching::Stencil;
+use crate::plane::{Point, between, distance};
 use crate::point::SurfacePoint;
 
-/// The next stop on the path.
+/// Where a step ends.
 #[derive(Debug, Clone, Copy)]
 enum Stop {
-    Source(SurfacePoint),
-    Vertex(VertexId),
+    /// At a source or a vertex.
+    Node(SurfacePoint),
     Portal(Portal),
 }
 
-/// What leads there.
+/// What a step crosses.
 #[derive(Debug, Clone, Copy)]
 enum Over {
     Face(FaceId),
     Link(f64),
 }
 
-/// A possible step, and the distance to the source over it.
-#[derive(Debug, Clone, Copy)]
-struct Step {
-    total: f64,
-    stop: Stop,
-    over: Over,
-}
-
-/// Goes from `target` to a source, always in the direction in which the source seems nearest: the distances at the ends of
-/// an edge say where the source would lie in the plane of a face. Passes no vertex and crosses no edge twice; returns `None`
-/// if it gets stuck.
+/// Descends from `target` to a source, always in the direction in which the source appears nearest: the distances at
+/// the ends of an edge determine where the source would lie in the plane of a face. Passes no vertex and crosses no
+/// edge twice; returns `None` if that blocks every step.
 ///
-/// The path may be bad near a ridge of the field, and if the field does not contain distances.
+/// The path may be far from shortest near a ridge of the field, and if the values of the field are not distances.
 pub(super) fn descend(field: &Field, target: SurfacePoint) -> Option<Path> {
     let topology = field.mesh.topology();
     let mut descent = Descent { field, vertices: BTreeSet::new(), edges: BTreeSet::new() };
     let mut path = Path { nodes: vec![target], sections: Vec::new() };
-    let mut strip = Strip { faces: Vec::new(), portals: Vec::new() };
+    let mut strip = Strip::default();
     let mut here = target;
     let mut faces = faces_around(field.mesh, target);
     loop {
@@ -52,12 +45,12 @@ pub(super) fn descend(field: &Field, target: SurfacePoint) -> Option<Path> {
             }
             descent.vertices.insert(vertex);
         }
-        let step = descent.best(here, &faces)?;
-        match step.over {
+        let (stop, over) = descent.best(here, &faces)?;
+        match over {
             Over::Face(face) => strip.faces.push(face),
             Over::Link(length) => path.sections.push(Section::Link(length)),
         }
-        match step.stop {
+        match stop {
             Stop::Portal(portal) => {
                 descent.edges.insert(portal.edge);
                 strip.portals.push(portal);
@@ -66,19 +59,13 @@ pub(super) fn descend(field: &Field, target: SurfacePoint) -> Option<Path> {
                 faces = topology.edge_corners(portal.edge).iter().map(|corner| corner.face()).collect();
                 faces.retain(|face| Some(*face) != last);
             }
-            Stop::Vertex(_) | Stop::Source(_) => {
+            Stop::Node(node) => {
                 if !strip.faces.is_empty() {
-                    let strip =
-                        std::mem::replace(&mut strip, Strip { faces: Vec::new(), portals: Vec::new() });
-                    path.sections.push(Section::Strip(strip));
+                    path.sections.push(Section::Strip(std::mem::take(&mut strip)));
                 }
-                here = match step.stop {
-                    Stop::Vertex(vertex) => SurfacePoint::Vertex(vertex),
-                    Stop::Source(point) => point,
-                    Stop::Portal(portal) => portal.point(),
-                };
+                here = node;
                 path.nodes.push(here);
-                if matches!(step.stop, Stop::Source(_)) {
+                if !matches!(here, SurfacePoint::Vertex(_)) {
                     return Some(path);
                 }
                 faces = faces_around(field.mesh, here);
@@ -96,11 +83,11 @@ struct Descent<'a> {
 
 impl Descent<'_> {
     /// The step over which the source is nearest.
-    fn best(&self, here: SurfacePoint, faces: &[FaceId]) -> Option<Step> {
-        let mut best: Option<Step> = None;
+    fn best(&self, here: SurfacePoint, faces: &[FaceId]) -> Option<(Stop, Over)> {
+        let (mut least, mut best) = (f64::INFINITY, None);
         let mut offer = |total: f64, stop, over| {
-            if total < best.map_or(f64::INFINITY, |step| step.total) {
-                best = Some(Step { total, stop, over });
+            if total < least {
+                (least, best) = (total, Some((stop, over)));
             }
         };
         for face in faces {
@@ -108,9 +95,9 @@ impl Descent<'_> {
         }
         if let SurfacePoint::Vertex(vertex) = here {
             for (other, length) in self.field.links(vertex) {
-                if !self.vertices.contains(other) {
+                if !self.vertices.contains(&other) {
                     let total = length + self.field.distances[other.index()];
-                    offer(total, Stop::Vertex(*other), Over::Link(*length));
+                    offer(total, Stop::Node(SurfacePoint::Vertex(other)), Over::Link(length));
                 }
             }
         }
@@ -120,15 +107,15 @@ impl Descent<'_> {
     fn steps_within(&self, face: FaceId, here: SurfacePoint, offer: &mut impl FnMut(f64, Stop)) {
         let (mesh, at) = (self.field.mesh, |v: VertexId| self.field.distances[v.index()]);
         for source in self.field.sources_within(face) {
-            offer(segment(mesh, face, here, *source), Stop::Source(*source));
+            offer(segment(mesh, face, here, *source), Stop::Node(*source));
         }
         let flat = Flat::of_face(mesh, face);
         let place = flat.point(mesh, here);
         for corner in face.corners() {
             let vertex = mesh.topology().corner_vertex(corner);
             if !self.vertices.contains(&vertex) {
-                let step = segment(mesh, face, here, SurfacePoint::Vertex(vertex));
-                offer(step + at(vertex), Stop::Vertex(vertex));
+                let node = SurfacePoint::Vertex(vertex);
+                offer(segment(mesh, face, here, node) + at(vertex), Stop::Node(node));
             }
             let edge = mesh.topology().opposite_edge(corner);
             let ends = mesh.topology().edges()[edge.index()];
@@ -147,7 +134,7 @@ impl Descent<'_> {
     }
 }
 
-/// The distance at `here` of a front that comes from a single point beyond the base, and where the straight line crosses the
+/// The distance at `here` of a front from a single point beyond the base, and where the straight line crosses the
 /// base; `None` if it misses the base.
 fn distance_through(here: Point, base: [Point; 2], [at_a, at_b]: [f64; 2]) -> Option<(f64, f64)> {
     let [a, b] = base;
@@ -163,6 +150,6 @@ fn distance_through(here: Point, base: [Point; 2], [at_a, at_b]: [f64; 2]) -> Op
     let height = above.y + below.y;
     let t = if height > 0.0 { (below.x * above.y + above.x * below.y) / (height * length) } else { 0.5 };
     let crossing = between(a, b, t.clamp(0.0, 1.0));
-    // With lengths of no triangle, or by rounding in a flat one, the source may seem nearer than the base.
+    // In flat or impossible triangles, the source may appear nearer than the base.
     (total >= distance(here, crossing)).then_some((total, t.clamp(0.0, 1.0)))
 }

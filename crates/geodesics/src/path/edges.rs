@@ -12,9 +12,8 @@ use crate::source::Source;
 /// The shortest paths along edges from the sources to all vertices.
 #[derive(Debug)]
 pub(super) struct EdgeTree {
-    /// The length of every path.
     pub(super) distances: Vec<f64>,
-    /// What comes before every vertex on its path from the source.
+    /// The node and the section before every vertex on its path from the source.
     before: Vec<Option<(SurfacePoint, Section)>>,
 }
 
@@ -39,8 +38,7 @@ impl EdgeTree {
             let vertex = VertexId(vertex);
             let edges = edges_at(field.mesh, vertex)
                 .map(|(next, length, face)| (next, length, Section::Strip(Strip::within(face))));
-            let links =
-                field.links(vertex).iter().map(|(next, length)| (*next, *length, Section::Link(*length)));
+            let links = field.links(vertex).map(|(next, length)| (next, length, Section::Link(length)));
             for (next, length, section) in edges.chain(links) {
                 if heap.relax(next.0, distance + length) {
                     before[next.index()] = Some((SurfacePoint::Vertex(vertex), section));

@@ -15,7 +15,7 @@ pub(super) struct Field<'a> {
     pub(super) sources: &'a [Source],
     pub(super) distances: &'a [f64],
     /// The other end and the length of every link at a vertex.
-    links: Rows<(VertexId, f64)>,
+    links: Rows<(u32, f64)>,
     /// The sources that are vertices, and the others by the faces that hold them.
     at_vertices: BTreeSet<VertexId>,
     in_faces: BTreeMap<FaceId, Vec<SurfacePoint>>,
@@ -23,11 +23,7 @@ pub(super) struct Field<'a> {
 
 impl<'a> Field<'a> {
     pub(super) fn new(mesh: &'a IntrinsicMesh, sources: &'a [Source], distances: &'a [f64]) -> Self {
-        let both_ways = |link: &Link| {
-            let ([a, b], length) = (link.ends, link.length);
-            [(a.index(), (b, length)), (b.index(), (a, length))]
-        };
-        let links = Rows::collect(mesh.n_vertices(), mesh.links().iter().flat_map(both_ways));
+        let links = Link::by_vertex(mesh.n_vertices(), mesh.links().iter().copied());
         let mut at_vertices = BTreeSet::new();
         let mut in_faces: BTreeMap<FaceId, Vec<SurfacePoint>> = BTreeMap::new();
         for point in sources.iter().map(|source| source.point().simplified(mesh)) {
@@ -51,8 +47,8 @@ impl<'a> Field<'a> {
         self.in_faces.get(&face).map_or(&[], Vec::as_slice)
     }
 
-    /// The vertices linked to a vertex, and how far they are.
-    pub(super) fn links(&self, vertex: VertexId) -> &[(VertexId, f64)] {
-        self.links.row(vertex.index())
+    /// The vertices linked to a vertex, and the lengths of the links.
+    pub(super) fn links(&self, vertex: VertexId) -> impl Iterator<Item = (VertexId, f64)> {
+        self.links.row(vertex.index()).iter().map(|(end, length)| (VertexId(*end), *length))
     }
 }

@@ -4,8 +4,8 @@ use std::collections::VecDeque;
 
 use surface::{IntrinsicMesh, VertexId};
 
-use super::plane::{Point, cross, sub};
 use super::strip::{Gate, Laid, Portal, Section, Strip};
+use crate::plane::{Point, cross, sub};
 use crate::point::SurfacePoint;
 
 /// A path that crosses an edge within this share of its length from a vertex goes through the vertex.
@@ -95,7 +95,6 @@ fn touches(laid: &Laid) -> Vec<Touch> {
     all
 }
 
-/// An end of a gate.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum End {
     Left,
@@ -134,9 +133,9 @@ struct Reached {
 
 /// The vertices where the shortest path bends, in order (Lee and Preparata 1984, `lee1984`).
 ///
-/// The shortest paths from the start to the two ends of a gate run together up to the apex, then apart along two chains that bend
-/// outwards: the funnel. The next gate has a new point on one side. It straightens the chain of that side or, when that is used
-/// up, moves the apex along the other.
+/// The shortest paths from the start to the two ends of a gate coincide up to the apex, then separate into two chains
+/// that bend outwards: the funnel. The next gate has a new point on one side, which straightens the chain of that
+/// side or, if no vertex of it is left, moves the apex along the other.
 fn bends(laid: &Laid) -> Vec<Touch> {
     let mut reached = vec![Reached { at: laid.start, before: 0, gate: 0, end: End::Left }];
     let mut apex = 0;

@@ -42,37 +42,37 @@ use visibility::nearest_visible;
 /// A path along the surface, straight in every face it crosses.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GeodesicPath {
-    /// Its points from the source to the target, where it crosses edges and passes vertices. Two in a row are in one
-    /// face, on one edge, or at the ends of a link.
+    /// Its points from the source to the target, where it crosses edges and passes vertices. Consecutive points are
+    /// in one face, on one edge, or at the ends of a link.
     pub points: Vec<SurfacePoint>,
     /// Its length, in mesh units.
     pub length: f64,
 }
 
-/// Vertices that a path may be led over one after the other; two or three if the field is good.
+/// Limit of the vertices that a path is led over one after the other; two or three if the field is accurate.
 const MAX_LEGS: usize = 64;
 
-/// Bundles of rays that may be followed for one path; some hundreds if the field is good.
+/// Limit of the bundles of rays followed for one path; some hundreds if the field is accurate.
 const MAX_RAYS: usize = 50_000;
 
-/// Share by which rounding may make a path longer than the field says.
+/// Share by which rounding may make a path longer than its distance in the field.
 const ROUNDING: f64 = 1e-11;
 
 /// Finds shortest paths to the sources of a field of distances.
 ///
-/// A first path descends the field from the target to the nearest source. It is then made locally shortest (Xin and Wang
-/// 2007, `xin2007`): straight through faces, bending only at vertices with at least 180 degrees on either side. So the
-/// field only decides between paths on different sides of an obstacle, and its error does not enter the path.
+/// A first path descends the field from the target to the nearest source. It is then made locally shortest (Xin and
+/// Wang 2007, `xin2007`): straight through faces, bending only at vertices with at least 180 degrees on either side.
+/// So the field only decides between paths on different sides of an obstacle, and its error does not enter the path.
 ///
-/// * A path starts exactly at the source and ends exactly at the target. Its length is that of its points in order, so it
-///   is at least the exact distance, and at most the distance along edges.
+/// * A path starts exactly at the source and ends exactly at the target. Its length is that of its points in order,
+///   so it is at least the exact distance, and at most the distance along edges.
 /// * With exact distances it is the shortest path, except for rare targets near a ridge of the field.
-/// * Any surface: edges with any number of faces, any orientation, boundaries, links, faces without area. It always ends: a
-///   path passes no vertex and crosses no edge twice, and every step of straightening makes it shorter. If the field leads
-///   nowhere, the path along edges is straightened.
+/// * Any surface: edges with any number of faces, any orientation, boundaries, links, faces without area. It always
+///   terminates: a path passes no vertex and crosses no edge twice, and every step of straightening makes it shorter.
+///   If the descent is stuck, the path along edges is straightened.
 ///
-/// Cost: in practice `O(k log k)` for a path that crosses `k` faces. If a path is longer than the field says, paths along
-/// edges are computed, once per tracer.
+/// Cost: in practice `O(k log k)` for a path that crosses `k` faces. If a path is longer than its distance in the
+/// field, paths along edges are computed, once per tracer.
 ///
 /// ```
 /// use canonform_geodesics::{DistanceSolver, Exact, PathTracer, Source, SurfacePoint};
@@ -95,8 +95,7 @@ pub struct PathTracer<'a> {
 }
 
 impl<'a> PathTracer<'a> {
-    /// Prepares paths to `sources`; `distances` are those from the sources on `mesh` by any solver, one per vertex, in mesh
-    /// units.
+    /// Prepares paths to `sources`; `distances` are those of any solver on `mesh`, one per vertex, in mesh units.
     ///
     /// # Panics
     /// If there is not one distance per vertex.
@@ -125,7 +124,7 @@ impl<'a> PathTracer<'a> {
         if known == f64::INFINITY {
             return Err(GeodesicError::NoWay { point: target });
         }
-        // Between vertices the field gives only an upper bound, which is not good enough.
+        // Between vertices the field gives only an upper bound.
         let enough = if matches!(target, SurfacePoint::Vertex(_)) { known } else { 0.0 };
         let mut rays = MAX_RAYS;
         let mut best = self.path_from(target, enough, MAX_LEGS, &mut rays);
@@ -139,11 +138,11 @@ impl<'a> PathTracer<'a> {
         best.map(|path| self.points_of(&path)).ok_or(GeodesicError::NoWay { point: target })
     }
 
-    /// The shortest path found from `target` to a source. Stops at one of length `enough`, and uses at most the given
-    /// numbers of legs and rays.
+    /// The shortest path found from `target` to a source. Stops at length `enough`, and uses at most these numbers of
+    /// legs and rays.
     ///
-    /// First down the field; if that is too long, straight to the visible vertex over which the source is nearest, and from
-    /// there in the same manner.
+    /// Descends the field first; if that is too long, goes straight to the visible vertex over which the source is
+    /// nearest, and continues from there.
     fn path_from(&self, target: SurfacePoint, enough: f64, legs: usize, rays: &mut usize) -> Option<Path> {
         let mesh = self.field.mesh;
         let best = descend(&self.field, target).map(|path| straighten(mesh, path));

@@ -1,64 +1,19 @@
 //! Faces laid out in the plane.
 
-use surface::{CornerId, EdgeId, FaceId, IntrinsicMesh, Triangle, VertexId};
+use surface::{CornerId, EdgeId, FaceId, IntrinsicMesh, VertexId};
 
+use crate::plane::{Point, apex, between, distance};
 use crate::point::SurfacePoint;
 
-/// A point in the plane.
-pub(super) type Point = [f64; 2];
-
-pub(super) fn sub(a: Point, b: Point) -> Point {
-    [a[0] - b[0], a[1] - b[1]]
-}
-
-/// Twice the area of the triangle between the origin, `a` and `b`; positive if `b` lies to the left of `a`.
-pub(super) fn cross(a: Point, b: Point) -> f64 {
-    a[0] * b[1] - a[1] * b[0]
-}
-
-pub(super) fn between(a: Point, b: Point, t: f64) -> Point {
-    [a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1])]
-}
-
-pub(super) fn distance(a: Point, b: Point) -> f64 {
-    let [x, y] = sub(a, b);
-    x.hypot(y)
-}
-
-/// The apex of a triangle whose base runs from the origin along the x-axis, from the lengths of the base and of the sides
-/// from its start and its end.
-fn apex(sides: [f64; 3]) -> Point {
-    let Triangle { x, y, .. } = Triangle::from_sides(sides);
-    // Lengths of no triangle may put it anywhere on the line.
-    [x.clamp(-sides[1], sides[1]), y]
-}
-
-/// The side of a gate, for someone who passes it with its left end on the left.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Side {
-    Behind,
-    Ahead,
-}
-
-/// The third corner of a face on one side of a gate with the given left and right ends, from the lengths of the gate and
-/// of the sides from its left and its right end.
-pub(super) fn beyond([left, right]: [Point; 2], lengths: [f64; 3], side: Side) -> Point {
-    let base = lengths[0];
-    let [x, y] = if base > 0.0 { sub(right, left).map(|x| x / base) } else { [1.0, 0.0] };
-    let [along, away] = apex(lengths);
-    let ahead = if side == Side::Ahead { away } else { -away };
-    [left[0] + along * x - ahead * y, left[1] + along * y + ahead * x]
-}
-
-/// A face laid out in the plane: one corner in the origin, the next on the x-axis.
+/// A face laid out in the plane.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Flat {
-    vertices: [VertexId; 3],
-    at: [Point; 3],
+    pub(super) vertices: [VertexId; 3],
+    pub(super) at: [Point; 3],
 }
 
 impl Flat {
-    /// The face of a corner, with that corner in the origin.
+    /// The face of a corner, with that corner in the origin and the next one on the x-axis.
     pub(super) fn new(mesh: &IntrinsicMesh, corner: CornerId) -> Self {
         let corners = [corner, corner.next(), corner.prev()];
         let sides = mesh.sides(corner.prev());
@@ -71,22 +26,10 @@ impl Flat {
         Self::new(mesh, CornerId::new(face, 0))
     }
 
-    /// Any triangle.
-    pub(super) fn of(vertices: [VertexId; 3], at: [Point; 3]) -> Self {
-        Self { vertices, at }
-    }
-
-    /// The position of a vertex of the face.
     pub(super) fn vertex(&self, vertex: VertexId) -> Point {
         self.at[self.vertices.iter().position(|v| *v == vertex).unwrap_or_default()]
     }
 
-    /// The position of the corner that is neither in the origin nor on the x-axis.
-    pub(super) fn last(&self) -> Point {
-        self.at[2]
-    }
-
-    /// The position of a point of the face.
     pub(super) fn point(&self, mesh: &IntrinsicMesh, point: SurfacePoint) -> Point {
         match point {
             SurfacePoint::Vertex(vertex) => self.vertex(vertex),
@@ -102,7 +45,7 @@ impl Flat {
     }
 }
 
-/// The faces that hold a point.
+/// The faces that contain a point.
 pub(super) fn faces_around(mesh: &IntrinsicMesh, point: SurfacePoint) -> Vec<FaceId> {
     let faces = |corners: &[CornerId]| corners.iter().map(|corner| corner.face()).collect();
     match point {
@@ -121,7 +64,7 @@ pub(super) fn segment(mesh: &IntrinsicMesh, face: FaceId, p: SurfacePoint, q: Su
         SurfacePoint::Edge { edge: other, t } => (other == edge).then_some(t),
         SurfacePoint::Face { .. } => None,
     };
-    // Nothing needs to be laid out for two points on one edge, which also loses nothing in flat faces.
+    // Two points on one edge need no layout, and flat faces cost no accuracy.
     for corner in face.corners() {
         let edge = mesh.topology().opposite_edge(corner);
         if let (Some(s), Some(t)) = (along(edge, p), along(edge, q)) {

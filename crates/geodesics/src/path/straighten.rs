@@ -4,21 +4,21 @@ use surface::IntrinsicMesh;
 
 use super::funnel::shortest_through;
 use super::strip::{Path, Portal, Section, Strip};
-use super::turn::{At, Direction, direction, inner_side};
+use super::turn::{Direction, direction, inner_side};
 use crate::point::SurfacePoint;
 
 /// Share of its length that a detour must save.
 const GAIN: f64 = 1e-13;
 
-/// Detours allowed per node of the first path; each makes the path shorter, and real surfaces need fewer than two.
+/// Limit of detours per node of the first path. Each makes the path shorter; real surfaces need fewer than two.
 const DETOURS_PER_NODE: usize = 100;
 
-/// Makes a path locally shortest: straight through the faces it crosses, bending only at vertices with at least 180 degrees on
-/// either side (Xin and Wang 2007, `xin2007`).
+/// Makes a path locally shortest: straight through the faces it crosses, bending only at vertices with at least 180
+/// degrees on either side (Xin and Wang 2007, `xin2007`).
 ///
-/// Every section becomes the shortest path through its own faces. Where the path then bends at a vertex with less than 180
-/// degrees on one side, it is led through the faces on that side instead, and that part is made shortest again. The path never
-/// gets longer.
+/// Replaces every section by the shortest path through its faces. Where the path then bends at a vertex with less
+/// than 180 degrees on one side, leads it through the faces on that side and shortens it again. The path never gets
+/// longer.
 pub(super) fn straighten(mesh: &IntrinsicMesh, path: Path) -> Path {
     let mut path = tightened(mesh, path);
     let mut budget = DETOURS_PER_NODE * path.nodes.len();
@@ -62,8 +62,8 @@ fn detour(mesh: &IntrinsicMesh, path: &Path, at: usize) -> Option<(Vec<SurfacePo
     let [before, after] = [&path.sections[at - 1], &path.sections[at]];
     let SurfacePoint::Vertex(vertex) = node else { return None };
     let (Section::Strip(first), Section::Strip(second)) = (before, after) else { return None };
-    let from = direction(mesh, vertex, first, At::End, start)?;
-    let to = direction(mesh, vertex, second, At::Start, end)?;
+    let from = direction(mesh, vertex, *first.faces.last()?, first.portals.last(), start)?;
+    let to = direction(mesh, vertex, *second.faces.first()?, second.portals.first(), end)?;
     let (faces, edges) = inner_side(mesh, vertex, from, to)?;
     // Along an edge no face is crossed; otherwise the face is the first or the last on the inner side.
     let upto = |strip: &Strip, direction| match direction {

@@ -2,10 +2,11 @@
 
 use surface::{EdgeId, FaceId, IntrinsicMesh, VertexId};
 
-use super::plane::{Flat, Point, Side, beyond, segment};
+use super::plane::{Flat, segment};
+use crate::plane::{Point, Side, beyond};
 use crate::point::SurfacePoint;
 
-/// A path along the surface: nodes, and how it goes from each to the next.
+/// A path along the surface: nodes and the sections between them.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Path {
     pub(super) nodes: Vec<SurfacePoint>,
@@ -13,24 +14,21 @@ pub(super) struct Path {
     pub(super) sections: Vec<Section>,
 }
 
-/// The part of a path between two nodes.
+/// The part of a path between two nodes: a link of the given length, or straight lines through faces.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Section {
-    /// Over a link of this length.
     Link(f64),
-    /// Over faces.
     Strip(Strip),
 }
 
 /// A sequence of faces crossed one after the other.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Strip {
     /// One more than portals: portal `i` leads from face `i` to face `i + 1`.
     pub(super) faces: Vec<FaceId>,
     pub(super) portals: Vec<Portal>,
 }
 
-/// An edge that is crossed.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Portal {
     pub(super) edge: EdgeId,
@@ -83,13 +81,11 @@ pub(super) struct Laid {
 }
 
 impl Strip {
-    /// A single face.
     pub(super) fn within(face: FaceId) -> Self {
         Self { faces: vec![face], portals: Vec::new() }
     }
 
-    /// Removes detours: faces that are left by the edge they were entered by, and edges at either end that the end itself
-    /// lies on.
+    /// Removes detours: faces left through the edge they were entered by, and edges containing the start or end.
     pub(super) fn simplified(self, mesh: &IntrinsicMesh, start: SurfacePoint, end: SurfacePoint) -> Self {
         let mut faces = self.faces.into_iter();
         let mut simple = Self { faces: faces.next().into_iter().collect(), portals: Vec::new() };
@@ -132,7 +128,7 @@ impl Strip {
             let third = vertices.into_iter().find(|v| *v != left && *v != right).unwrap_or(left);
             let lengths = [length(left, right), length(left, third), length(right, third)];
             let at = beyond([at_left, at_right], lengths, side);
-            (third, at, Flat::of([left, right, third], [at_left, at_right, at]))
+            (third, at, Flat { vertices: [left, right, third], at: [at_left, at_right, at] })
         };
         let [left, right] = topology.edges()[first.edge.index()];
         let mut gate = Gate { left: (left, [0.0, 0.0]), right: (right, [mesh.length(first.edge), 0.0]) };

@@ -7,43 +7,34 @@ use std::f64::consts::PI;
 use surface::{CornerId, EdgeId, FaceId, IntrinsicMesh, VertexId};
 
 use super::plane::Flat;
-use super::strip::{Portal, Strip};
+use super::strip::Portal;
 use crate::point::SurfacePoint;
 
-/// A path bends if the angle on one side is less than this: what it would gain from less is lost in rounding.
+/// A path bends if the angle on one side is less than this: smaller bends are rounding.
 const STRAIGHT: f64 = PI - 1e-8;
 
-/// A direction at a vertex.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Direction {
-    /// Along an edge.
     Along(EdgeId),
     /// Into a face, at these angles from its two edges at the vertex.
-    Into { face: FaceId, edges: [EdgeId; 2], angles: [f64; 2] },
+    Into {
+        face: FaceId,
+        edges: [EdgeId; 2],
+        angles: [f64; 2],
+    },
 }
 
-/// An end of a strip.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum At {
-    Start,
-    End,
-}
-
-/// The direction in which a strip leaves `vertex`, which is one of its ends; `other` is the other end.
+/// The direction from `vertex` into a face, towards a portal or, without one, the point `end` in it.
 pub(super) fn direction(
     mesh: &IntrinsicMesh,
     vertex: VertexId,
-    strip: &Strip,
-    at: At,
-    other: SurfacePoint,
+    face: FaceId,
+    portal: Option<&Portal>,
+    end: SurfacePoint,
 ) -> Option<Direction> {
-    let (face, portal) = match at {
-        At::Start => (strip.faces.first()?, strip.portals.first()),
-        At::End => (strip.faces.last()?, strip.portals.last()),
-    };
-    let towards = portal.map_or(other, |portal: &Portal| portal.point());
+    let towards = portal.map_or(end, |portal| portal.point());
     let topology = mesh.topology();
-    let corner = topology.corner_at(*face, vertex)?;
+    let corner = topology.corner_at(face, vertex)?;
     let edges = topology.corner_edges(corner);
     let is_on = |edge: &&EdgeId| match towards {
         SurfacePoint::Vertex(v) => topology.edges()[edge.index()].contains(&v),
@@ -57,15 +48,14 @@ pub(super) fn direction(
     // Rounding may put the point outside the face, but angles must not be negative.
     let first = y.atan2(x).abs();
     let rest = (angle(mesh, corner) - first).abs();
-    Some(Direction::Into { face: *face, edges, angles: [first, rest] })
+    Some(Direction::Into { face, edges, angles: [first, rest] })
 }
 
-/// The faces between two directions at a vertex, and the edges between these faces, on the side where the directions are less
-/// than 180 degrees apart; `None` if there is no such side. A path that comes and goes there is shorter past the vertex.
+/// The faces between two directions at a vertex, and the edges between these faces, on a side where the directions
+/// are less than 180 degrees apart; `None` if both sides have more. A path is shorter past the vertex on that side.
 ///
-/// The directions at a vertex are the points of a graph whose nodes are the edges at the vertex and whose arcs are the angles of
-/// faces; this finds the shortest path in it. So edges may have any number of faces of any orientation, and the faces need not
-/// go all the way round.
+/// Finds the shortest path in a graph whose nodes are the edges at the vertex and whose arcs are the angles of faces.
+/// So edges may have any number of faces of any orientation, and the fan may be open.
 ///
 /// Cost: `O(k log k)` for the `k` faces within 180 degrees.
 pub(super) fn inner_side(
@@ -140,7 +130,7 @@ pub(super) fn inner_side(
     }
     faces.reverse();
     edges.reverse();
-    // Edges that the path comes or goes along are not crossed.
+    // Edges along which the path arrives or leaves are not crossed.
     if matches!(to, Direction::Along(_)) {
         edges.pop();
     }
@@ -154,8 +144,7 @@ pub(super) fn inner_side(
     Some((faces, edges))
 }
 
-/// The angle at a corner, in radians.
 fn angle(mesh: &IntrinsicMesh, corner: CornerId) -> f64 {
-    let [x, y] = Flat::new(mesh, corner).last();
+    let [_, _, [x, y]] = Flat::new(mesh, corner).at;
     y.atan2(x)
 }

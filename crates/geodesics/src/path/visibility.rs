@@ -6,8 +6,9 @@ use std::collections::BinaryHeap;
 use surface::{EdgeId, FaceId, VertexId};
 
 use super::field::Field;
-use super::plane::{Flat, Point, Side, between, beyond, cross, distance, faces_around, sub};
+use super::plane::{Flat, faces_around};
 use super::strip::{Gate, Portal, Strip};
+use crate::plane::{Point, Side, between, beyond, cross, distance, sub};
 use crate::point::SurfacePoint;
 
 /// Share of a length within which two are the same.
@@ -45,12 +46,12 @@ struct Search<'a> {
     best: (f64, Option<(SurfacePoint, FaceId, Option<usize>)>),
 }
 
-/// Looks from a point in all directions for the vertex or source over which the path to a source is shortest, if it is shorter
-/// than `known`. Stops at the first that is no longer than `enough`, and when `n_rays` bundles of rays are used up.
+/// Searches in all directions for the visible vertex or source over which the path to a source is shortest, if it is
+/// shorter than `known`. Stops at the first that is no longer than `enough`, and after `n_rays` bundles of rays.
 ///
-/// Rays are followed across faces as long as they may lead to something: from an edge with ends `A` and `B`, the source is no
-/// nearer to a point `P` than `T(A) - |AP|` and `T(B) - |BP|`. This leaves a lens around the shortest path. If `T` is exact, so
-/// is the result.
+/// Rays are followed only while they may improve the result: the distance at a point `P` of an edge with ends `A` and
+/// `B` is at least `T(A) - |AP|` and `T(B) - |BP|`, which leaves a lens around the path. If `T` is exact, so is the
+/// result.
 pub(super) fn nearest_visible(
     field: &Field,
     from: SurfacePoint,
@@ -122,7 +123,7 @@ impl Search<'_> {
                 if topology.edges()[edges[0].index()].contains(&left) { edges } else { [edges[1], edges[0]] };
             let lengths = [rays.edge, to_left, to_right].map(|edge| mesh.length(edge));
             let at = beyond([at_left, at_right], lengths, Side::Ahead);
-            let flat = Flat::of([left, right, third], [at_left, at_right, at]);
+            let flat = Flat { vertices: [left, right, third], at: [at_left, at_right, at] };
             self.offer_sources(face, &flat, [0.0; 2], Some(index));
             let before = Some(index);
             let [from_left, from_right] = [cross(at, rays.left), cross(rays.right, at)];
@@ -160,7 +161,6 @@ impl Search<'_> {
         }
     }
 
-    /// Considers a vertex as the end.
     fn offer(&mut self, total: f64, vertex: VertexId, face: FaceId, before: Option<usize>) {
         if total < self.best.0 {
             self.best = (total, Some((SurfacePoint::Vertex(vertex), face, before)));

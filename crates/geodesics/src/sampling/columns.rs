@@ -14,7 +14,6 @@ use crate::solver::DistanceSolver;
 pub(super) struct Columns<'a> {
     pub(super) solver: &'a dyn DistanceSolver,
     pub(super) landmarks: Vec<usize>,
-    /// One column after the other.
     pub(super) values: Vec<f64>,
 }
 
@@ -27,10 +26,6 @@ impl<'a> Columns<'a> {
         self.landmarks.len()
     }
 
-    pub(super) fn n_vertices(&self) -> usize {
-        self.solver.n_vertices()
-    }
-
     /// Adds landmarks and finds the distances from them, in parallel.
     pub(super) fn add(&mut self, landmarks: &[usize]) -> Result<(), GeodesicError> {
         let sources: Vec<VertexId> = landmarks.iter().map(|&landmark| VertexId::from(landmark)).collect();
@@ -38,7 +33,7 @@ impl<'a> Columns<'a> {
         for (source, column) in sources.iter().zip(columns.column_iter()) {
             let unreached = column.iter().filter(|d| !d.is_finite()).count();
             if unreached > 0 {
-                let n_vertices = self.n_vertices();
+                let n_vertices = self.solver.n_vertices();
                 return Err(GeodesicError::Disconnected { unreached, n_vertices, source_vertex: *source });
             }
         }
@@ -47,14 +42,13 @@ impl<'a> Columns<'a> {
         Ok(())
     }
 
-    /// The distances from the last landmark.
     pub(super) fn last(&self) -> &[f64] {
-        &self.values[self.values.len() - self.n_vertices()..]
+        &self.values[self.values.len() - self.solver.n_vertices()..]
     }
 
     /// The distances from the first `n` landmarks, or from all if there are fewer.
     pub(super) fn distances(&self, n: usize) -> Result<LandmarkDistances, GeodesicError> {
-        let (p, n) = (self.n_vertices(), n.min(self.len()));
+        let (p, n) = (self.solver.n_vertices(), n.min(self.len()));
         if n == 0 {
             return Err(GeodesicError::NoSamples);
         }

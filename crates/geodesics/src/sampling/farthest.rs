@@ -15,13 +15,13 @@ use crate::solver::{DistanceSolver, PrunedSolver};
 /// | `r_i` | `landmarks()` of the result | n | the samples |
 /// | `F` | `matrix()` of the result | p x n | distances |
 ///
-/// * Ties go to the lowest vertex, so the result depends on the first sample alone.
-/// * It covers the surface at most twice as coarsely as the best choice of `n` vertices (Hochbaum and Shmoys 1985,
+/// * Ties go to the lowest vertex, so the result depends only on the first sample.
+/// * It covers the surface at most twice as coarsely as the best `n` vertices (Hochbaum and Shmoys 1985,
 ///   `hochbaum1985`).
 /// * It ends early, with fewer landmarks than requested, if every vertex coincides with one.
 ///
-/// Cost: one run of the solver per landmark. On several threads, the runs are parallel if the solver can prune; about
-/// `1/2 + ... + 1/n` further runs choose the landmarks ahead. The result is the same.
+/// Cost: one run of the solver per landmark. On several threads, the runs are parallel if the solver can prune: about
+/// `1/2 + ... + 1/n` additional runs choose the landmarks in advance. The result is the same.
 ///
 /// ```
 /// use canonform_geodesics::{Dijkstra, FarthestPointSampler, FirstSample, Sampler};
@@ -46,8 +46,7 @@ impl<'a> FarthestPointSampler<'a> {
     /// Takes the first sample.
     ///
     /// # Errors
-    /// [`GeodesicError::Disconnected`] if a vertex cannot be reached, so that no infinite distance gets into a
-    /// matrix; [`GeodesicError::NoSuchVertex`].
+    /// [`GeodesicError::Disconnected`] if a vertex cannot be reached; [`GeodesicError::NoSuchVertex`].
     pub fn new(solver: &'a dyn DistanceSolver, first: FirstSample) -> Result<Self, GeodesicError> {
         let n_vertices = solver.n_vertices();
         let start = match first {
@@ -67,7 +66,7 @@ impl<'a> FarthestPointSampler<'a> {
         Ok(Self { nearest: columns.last().to_vec(), columns })
     }
 
-    /// Takes each landmark from the distances of those before.
+    /// Takes each landmark after the distances from those before.
     fn extend_fully(&mut self, n: usize) -> Result<(), GeodesicError> {
         while self.columns.len() < n {
             let next = farthest(&self.nearest);
@@ -80,11 +79,11 @@ impl<'a> FarthestPointSampler<'a> {
         Ok(())
     }
 
-    /// Chooses landmarks with pruned fronts, which stop half-way to the landmarks before, while other threads find
-    /// the distances from those that are chosen. Every vertex was reached from the first landmark, so all are.
+    /// Chooses landmarks with pruned fronts, which stop half-way to earlier landmarks, while other threads compute
+    /// the distances from those chosen. The first landmark reaches every vertex, so all do.
     ///
-    /// Where a pruned front stopped, its distances may be too long. So once all distances are known, the landmarks are
-    /// checked and kept as far as they are the farthest ones.
+    /// Distances may be too long where a pruned front stopped. So the choices are checked once all distances are
+    /// known, and kept up to the first that is not the farthest vertex.
     fn extend_pruned(&mut self, pruned: &dyn PrunedSolver, n: usize) {
         let Columns { solver, landmarks, values } = &mut self.columns;
         let (p, solver, before) = (self.nearest.len(), *solver, landmarks.len());

@@ -13,7 +13,7 @@ pub use random::RandomSampler;
 pub use sampler::{FirstSample, Sampler};
 pub use variance::{Variance, VarianceSampler};
 
-/// A way to choose landmarks.
+/// A rule for choosing landmarks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Sampling {
@@ -28,7 +28,7 @@ pub enum Sampling {
 }
 
 impl Sampling {
-    /// All ways to choose landmarks.
+    /// All rules.
     pub const ALL: [Self; 4] = [
         Self::Farthest,
         Self::Random,

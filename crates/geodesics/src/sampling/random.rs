@@ -9,9 +9,8 @@ use super::sampler::{FirstSample, Sampler};
 use crate::error::GeodesicError;
 use crate::solver::DistanceSolver;
 
-/// Random sampling, the baseline that other samplings must beat: every set of n vertices is equally likely.
-///
-/// The seed determines the result, whatever the number of threads.
+/// Random sampling, the baseline: every set of n vertices is equally likely. The seed determines it for any number of
+/// threads.
 ///
 /// Cost: one run of the solver per landmark, in parallel; `O(p)` to start.
 ///
@@ -28,7 +27,6 @@ use crate::solver::DistanceSolver;
 #[derive(Debug)]
 pub struct RandomSampler<'a> {
     columns: Columns<'a>,
-    /// All vertices, in random order.
     order: Vec<usize>,
 }
 

@@ -5,17 +5,15 @@ use surface::VertexId;
 
 use crate::error::GeodesicError;
 
-/// Takes landmarks on one surface, in an order that does not depend on their final number: the first n of 2n
-/// landmarks are the n landmarks.
+/// Takes landmarks on one surface, one after the other: the first n of 2n landmarks are the n landmarks.
 pub trait Sampler: std::fmt::Debug {
-    /// Goes on until there are `n` landmarks, or as many as the surface has.
+    /// Takes further landmarks until there are `n`, or as many as the surface has.
     ///
     /// # Errors
     /// [`GeodesicError::Disconnected`] if a vertex cannot be reached.
     fn extend_to(&mut self, n: usize) -> Result<(), GeodesicError>;
 
-    /// The distances from the first `n` landmarks to all vertices, in mesh units; from all landmarks if there are
-    /// fewer.
+    /// The distances from the first `n` landmarks, or all if there are fewer, to all vertices, in mesh units.
     ///
     /// # Errors
     /// [`GeodesicError::NoSamples`] if `n` is zero.
@@ -26,8 +24,8 @@ pub trait Sampler: std::fmt::Debug {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum FirstSample {
-    /// Left to the sampling: the vertex farthest from vertex 0 (a tip of the surface, the same in every run) for
-    /// [`FarthestPointSampler`](crate::FarthestPointSampler), a random one for the others.
+    /// The vertex farthest from vertex 0, a tip of the surface, for
+    /// [`FarthestPointSampler`](crate::FarthestPointSampler); a random one for the other samplers.
     #[default]
     Farthest,
     /// This vertex.

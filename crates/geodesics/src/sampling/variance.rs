@@ -22,16 +22,15 @@ pub enum Variance {
 }
 
 /// Incremental sampling by variance ("Min-Var"; Yu, Zhao, Zhang and Yang 2012, `yu2012`): two landmarks are drawn at
-/// random, then each is the vertex `j` with the least (or greatest) variance of the squared distances `E_ij` over the
+/// random, then each is the vertex `j` with the least (or greatest) variance of the squared distances `E_ij` to the
 /// landmarks `i` so far.
 ///
-/// * Equal squared distances to all landmarks mean a central vertex. So the least variance leaves out the tips of a
-///   surface, and neighbours of a landmark soon follow it: the samples are close together, and the stress is far above
-///   that of farthest point sampling.
-/// * Ties go to the lowest vertex. The seed determines what is drawn, whatever the number of threads.
+/// * A vertex with equal squared distances to all landmarks is central. So the least variance avoids the tips of a
+///   surface and soon takes neighbours of landmarks: the samples are close together, and the stress is far above that
+///   of farthest point sampling.
+/// * Ties go to the lowest vertex. The seed determines the result for any number of threads.
 ///
-/// Cost: one run of the solver per landmark, and `O(p)`: means and variances are updated, not recomputed (Welford
-/// 1962).
+/// Cost: one run of the solver and `O(p)` per landmark, as means and variances are updated (Welford 1962).
 ///
 /// ```
 /// use canonform_geodesics::{Dijkstra, FirstSample, Sampler, Variance, VarianceSampler};
@@ -47,10 +46,8 @@ pub enum Variance {
 pub struct VarianceSampler<'a> {
     columns: Columns<'a>,
     variance: Variance,
-    /// The second landmark.
     second: Option<usize>,
-    /// For every vertex: the mean of its squared distances to the landmarks, and the sum of their squared deviations
-    /// from it.
+    /// For every vertex, the mean of its squared distances to the landmarks and the sum of their squared deviations.
     moments: Vec<[f64; 2]>,
     is_landmark: Vec<bool>,
 }

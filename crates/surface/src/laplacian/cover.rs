@@ -4,19 +4,18 @@ use crate::ids::{CornerId, EdgeId, FaceId, VertexId};
 use crate::intrinsic::IntrinsicMesh;
 use crate::triangulation::Triangulation;
 
-/// The tufted cover of a mesh with the given edge lengths (Sharp and Crane 2020, `sharp2020`): a closed, oriented
+/// The tufted cover of a mesh with given edge lengths (Sharp and Crane 2020, `sharp2020`): a closed, oriented
 /// surface.
 ///
-/// Every face has a front and a back. Around an edge, the front of each face is glued to the back of the next.
-/// So all sides can be flipped, whether the edge is on the boundary, has three faces, or two of opposite
-/// orientation.
+/// Every face has a front and a back. Around an edge, the front of each face is glued to the back of the next. So all
+/// sides can be flipped, at the boundary, at non-manifold edges and between faces of opposite orientation.
 pub(super) fn tufted_cover(mesh: &IntrinsicMesh, edge_lengths: &[f64]) -> Triangulation {
     let topology = mesh.topology();
     let fronts = topology.faces().iter().map(|[a, b, c]| [*c, *a, *b]);
     let backs = topology.faces().iter().map(|[a, b, c]| [*b, *a, *c]);
     let mut cover = Triangulation::loose(fronts.chain(backs));
-    // The corners of front and back opposite the edge that a corner of the mesh is opposite to: first the one
-    // whose side starts at `lower`.
+    // The corners of front and back opposite the edge that a corner of the mesh is opposite to: first the one whose
+    // side starts at `lower`.
     let sides_at = |corner: CornerId, lower: VertexId| {
         let back = FaceId::from(topology.n_faces() + corner.face().index());
         let sides = [corner.next(), CornerId::new(back, [1, 0, 2][corner.slot()])];

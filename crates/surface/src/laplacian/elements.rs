@@ -9,20 +9,19 @@ const SAME: f64 = 1e-9;
 /// Largest cotangent that enters a matrix: beyond it there is only rounding.
 const STEEPEST: f64 = 1e9;
 
-/// A triangle with the number of sheets of the surface it stands for.
+/// A triangle and how many sheets of the surface it represents.
 #[derive(Debug, Clone, Copy)]
 pub struct Element {
     /// The three vertices; one may occur twice.
     pub vertices: [u32; 3],
     /// Its base runs from the first vertex to the second, in units of the metric.
     pub triangle: Triangle,
-    /// One for a face of the mesh, a half where front and back of the cover went different ways.
+    /// One for a face of the mesh, a half where front and back of the cover were flipped differently.
     pub share: f64,
 }
 
-/// The triangles of a cover of which each counts half; a front and its back are merged into one
-/// again wherever both were flipped alike, which is everywhere but next to boundaries and
-/// non-manifold edges.
+/// The triangles of a cover, each with a share of a half. A front and its back are merged if both were flipped alike,
+/// which holds everywhere except at boundaries and non-manifold edges.
 pub(super) fn elements(cover: &Triangulation) -> Vec<Element> {
     let sorted = |triangle: &GluedTriangle| {
         let mut opposite = [0, 1, 2].map(|k| (triangle.vertices[k].0, triangle.lengths[k]));
@@ -47,18 +46,6 @@ pub(super) fn elements(cover: &Triangulation) -> Vec<Element> {
         previous = sides;
     }
     elements
-}
-
-/// The mean length of the sides of all triangles, in units, and their area; zeros without triangles.
-pub(super) fn mean_side_and_area(elements: &[Element]) -> (f64, f64) {
-    let [mut shares, mut perimeter, mut area] = [0.0; 3];
-    for Element { triangle, share, .. } in elements {
-        shares += share;
-        let [base, left, right] = triangle.sides();
-        perimeter += share * (base + right + left);
-        area += share * triangle.area();
-    }
-    if shares > 0.0 { (perimeter / (3.0 * shares), area) } else { (0.0, 0.0) }
 }
 
 impl Element {
@@ -103,7 +90,7 @@ mod tests {
         let shares: f64 = found.iter().map(|element| element.share).sum();
         assert_eq!(shares, sheet.n_faces() as f64);
         assert!(found.iter().any(|element| element.share == 0.5) && found.len() < 2 * sheet.n_faces());
-        let (_, area) = mean_side_and_area(&found);
+        let area: f64 = found.iter().map(|element| element.share * element.triangle.area()).sum();
         assert!((area - 64.0).abs() < 1e-9);
     }
 

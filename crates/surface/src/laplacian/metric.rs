@@ -3,14 +3,14 @@
 use crate::ids::FaceId;
 use crate::intrinsic::{IntrinsicMesh, Link};
 
-/// Smallest excess of two sides of a triangle over the third, in mean edge lengths. The height of
-/// the flattest triangle is then about a thousandth of its base, and no cotangent exceeds a million.
+/// Smallest excess of two sides of a triangle over the third, in mean edge lengths. The height of the flattest
+/// triangle is then about a thousandth of its base, and no cotangent exceeds a million.
 const SLACK: f64 = 1e-6;
 
 /// Rounds of shortening. Lengths of a surface in space need none.
 const MAX_ROUNDS: usize = 16;
 
-/// The lengths of a surface in units of their mean, such that every face is a triangle with an inside.
+/// The lengths of a surface in units of their mean, corrected so that every face has an area.
 #[derive(Debug, Clone)]
 pub struct Metric {
     /// Mean length of edges and links, in mesh units; zero when all are zero.
@@ -22,12 +22,12 @@ pub struct Metric {
 }
 
 impl Metric {
-    /// Makes the lengths of a surface safe.
+    /// Corrects the lengths of a surface.
     ///
-    /// * A length beyond the way around one of its faces (no surface in space has any) is cut to it:
-    ///   that is the distance between its ends.
-    /// * When two sides of a face exceed the third by less than 1e-6, all edges grow by what it lacks
-    ///   (intrinsic mollification, Sharp and Crane 2020).
+    /// * An edge longer than the two other sides of one of its faces, which no surface in space has, is cut to their
+    ///   sum: that is the distance between its ends.
+    /// * If two sides of a face exceed the third by less than 1e-6, all edges grow by the missing amount (intrinsic
+    ///   mollification, Sharp and Crane 2020).
     #[must_use]
     pub fn new(mesh: &IntrinsicMesh) -> Self {
         let all = || mesh.edge_lengths().iter().copied().chain(mesh.links().iter().map(|link| link.length));
@@ -50,7 +50,6 @@ impl Metric {
     }
 }
 
-/// The three edges of every face.
 fn sides(mesh: &IntrinsicMesh) -> impl Iterator<Item = [usize; 3]> {
     let topology = mesh.topology();
     (0..topology.n_faces())
@@ -62,7 +61,7 @@ fn excess([a, b, c]: [f64; 3]) -> f64 {
     (b - a + c).min(c - b + a).min(a - c + b)
 }
 
-/// Cuts each length that exceeds the way around one of its faces; whether there was any.
+/// Cuts each length that exceeds the sum of the two others in a face; returns whether there was any.
 fn shorten(mesh: &IntrinsicMesh, edges: &mut [f64]) -> bool {
     let mut any = false;
     for [a, b, c] in sides(mesh) {
@@ -119,7 +118,7 @@ mod tests {
     }
 
     #[test]
-    fn a_length_beyond_the_way_around_is_cut_to_it() {
+    fn a_length_beyond_the_sum_of_the_two_others_is_cut_to_it() {
         let metric = Metric::new(&strip(vec![1.0, 1.0, 9.0, 1.0, 1.0]));
         let shared = metric.edges[2] / metric.edges[0];
         assert!((shared - 2.0).abs() < 1e-4, "{shared}");

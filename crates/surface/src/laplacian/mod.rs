@@ -3,10 +3,9 @@
 //! [`IntrinsicMesh`] -> [`Metric`] -> Delaunay [`Element`]s -> [`Laplacian`] ->
 //! `geodesics` (heat), `descriptors` (spectra), `canonform` (spectral embeddings)
 //!
-//! Robust where the textbook formula is not: any lengths become triangles ([`Metric`]), boundaries,
-//! non-manifold edges and faces of opposite orientation are nothing special, and obtuse triangles are
-//! flipped away, so that no weight is negative (Sharp and Crane 2020, [`sharp2020`] in
-//! `REFERENCES.bib`). Matrices are handed out as lists of entries: this crate knows none.
+//! Robust where the textbook formula is not (Sharp and Crane 2020, [`sharp2020`]): any lengths become triangles
+//! ([`Metric`]); boundaries, non-manifold edges and faces of opposite orientation need no special treatment; edges
+//! are flipped until no weight is negative. Matrices are returned as lists of entries.
 //!
 //! [`sharp2020`]: https://doi.org/10.1111/cgf.14069
 
@@ -28,14 +27,12 @@ use crate::triangulation::Loops;
 /// | `A` | [`masses`](Self::masses) | lumped mass: a third of the area of the triangles around each vertex |
 ///
 /// * The vertices are those of the mesh, in its order.
-/// * `W` has no unit; `A` is in squared [units](Metric::unit) of the mean edge length, in which nothing
-///   over- or underflows. `x' W x` is the Dirichlet energy of the function that is linear on every
-///   triangle, `1' A 1` the area.
-/// * A link is a bar one unit wide and without mass, so that functions on its two ends know of each
-///   other; in the limit of a fine mesh it is nothing.
+/// * `W` has no unit; `A` is in squared [units](Metric::unit) of the mean edge length, which prevents overflow and
+///   underflow. `x' W x` is the Dirichlet energy of the function that is linear on every triangle, `1' A 1` the area.
+/// * A link is a bar one unit wide and without mass, which couples functions on its two ends.
 /// * `O(p)` memory, and time on meshes whose triangles are not all slivers.
 ///
-/// **Deviation**: of triangles of front and back of the double cover that are alike one is kept.
+/// **Deviation**: equal triangles of the front and the back of the double cover are merged.
 #[derive(Debug, Clone)]
 pub struct Laplacian {
     n_vertices: usize,
@@ -44,7 +41,7 @@ pub struct Laplacian {
 }
 
 impl Laplacian {
-    /// Makes the metric safe and flips the surface to Delaunay.
+    /// Corrects the lengths and flips the surface to Delaunay.
     #[must_use]
     pub fn new(mesh: &IntrinsicMesh) -> Self {
         let metric = Metric::new(mesh);
@@ -59,7 +56,7 @@ impl Laplacian {
         self.n_vertices
     }
 
-    /// The lengths that it was made from, and their unit.
+    /// The corrected lengths and their unit.
     #[must_use]
     pub fn metric(&self) -> &Metric {
         &self.metric
@@ -71,11 +68,17 @@ impl Laplacian {
         &self.elements
     }
 
-    /// The mean length of the sides of all triangles, in units, and their area, in squared units; zeros
-    /// without triangles.
+    /// The mean length of the sides of all triangles, in units, and their area, in squared units; zeros without any.
     #[must_use]
     pub fn mean_side_and_area(&self) -> (f64, f64) {
-        elements::mean_side_and_area(&self.elements)
+        let [mut shares, mut perimeter, mut area] = [0.0; 3];
+        for Element { triangle, share, .. } in &self.elements {
+            shares += share;
+            let [base, left, right] = triangle.sides();
+            perimeter += share * (base + right + left);
+            area += share * triangle.area();
+        }
+        if shares > 0.0 { (perimeter / (3.0 * shares), area) } else { (0.0, 0.0) }
     }
 
     /// The area around every vertex, in squared units; zero at a vertex that no face names.
@@ -88,8 +91,8 @@ impl Laplacian {
         masses
     }
 
-    /// The stiffness as `(row, column, value)`: those of one place are to be summed, and one off the
-    /// diagonal stands for its mirror image too.
+    /// The stiffness as `(row, column, value)`. Values add up; those off the diagonal stand for their mirror images
+    /// too.
     pub fn stiffness_entries(&self) -> impl Iterator<Item = (usize, usize, f64)> {
         let links = self.metric.links.iter().filter(|link| link.ends[0] != link.ends[1]);
         let bars = links.map(|link| (link.ends.map(|v| v.0), 1.0 / link.length));
@@ -162,7 +165,7 @@ mod tests {
     }
 
     #[test]
-    fn scale_changes_the_unit_alone() {
+    fn scale_changes_only_the_unit() {
         let mesh = shapes::jittered_grid(8, 8, 1.0, 0.2, 3);
         let mut large = mesh.clone();
         large.positions.iter_mut().for_each(|p| p.coords *= 1024.0);

@@ -8,7 +8,7 @@ use super::{all_pairs, assert_close, faces, points, spatial};
 use crate::{DistanceSolver, Source, SurfacePoint};
 
 #[test]
-fn on_flat_sheets_distances_are_euclidean_whatever_the_triangles() {
+fn distances_on_flat_sheets_are_euclidean_for_any_triangles() {
     for (sheet, tolerance) in [
         (shapes::grid(15, 12, 0.7), 1e-14),
         (shapes::sheared_grid(14, 15, 1.0, 2.3), 1e-13),
@@ -26,7 +26,7 @@ fn on_flat_sheets_distances_are_euclidean_whatever_the_triangles() {
 }
 
 #[test]
-fn folding_changes_nothing() {
+fn folding_changes_no_distance() {
     let flat = all_pairs(&shapes::grid(9, 7, 0.3).intrinsic());
     let folded = all_pairs(&shapes::folded_sheet(9, 7, 0.3, 4, 2.9).intrinsic());
     for (found, expected) in folded.iter().flatten().zip(flat.iter().flatten()) {
@@ -34,8 +34,8 @@ fn folding_changes_nothing() {
     }
 }
 
-/// Distance on the unit cube from `(p, q)` on the bottom to `(x, y)` on the top: the shortest of the
-/// straight lines through one side or two.
+/// Distance on the unit cube from `(p, q)` on the bottom to `(x, y)` on the top: the shortest of the straight lines
+/// through one side or two.
 fn bottom_to_top([p, q]: [f64; 2], [x, y]: [f64; 2]) -> f64 {
     let mut shortest = f64::INFINITY;
     // Both mirror images, and both roles of the axes.
@@ -52,7 +52,7 @@ fn bottom_to_top([p, q]: [f64; 2], [x, y]: [f64; 2]) -> f64 {
 }
 
 #[test]
-fn on_a_cube_distances_are_those_of_the_best_unfolding() {
+fn distances_on_a_cube_are_those_of_the_best_unfolding() {
     let cube = shapes::cube(2);
     let mesh = cube.intrinsic();
     let solver = Exact::new(&mesh);
@@ -81,8 +81,8 @@ fn on_a_cube_distances_are_those_of_the_best_unfolding() {
     }
 }
 
-/// Flat rings of `n` sectors with the angle `alpha` around vertex 0, closed or open, by their
-/// lengths alone: ring `r`, sector `s` is vertex `1 + r * spokes + s`.
+/// Flat rings of `n` sectors with the angle `alpha` around vertex 0, closed or open, by their lengths alone: ring
+/// `r`, sector `s` is vertex `1 + r * spokes + s`.
 fn cone(n: usize, alpha: f64, n_rings: usize, is_closed: bool) -> IntrinsicMesh {
     let spokes = if is_closed { n } else { n + 1 };
     let at = |ring: usize, sector: usize| (1 + ring * spokes + sector % spokes) as u32;
@@ -113,7 +113,7 @@ fn apart(p: f64, q: f64, angle: f64) -> f64 {
 }
 
 #[test]
-fn around_a_cone_or_a_saddle_the_shorter_way_counts_and_paths_bend_at_the_tip() {
+fn paths_around_cones_take_the_shorter_side_and_bend_at_saddles() {
     use std::f64::consts::PI;
     for (n, total, is_closed) in [
         (12, 1.6 * PI, true),
@@ -152,7 +152,7 @@ fn grid_without(n: usize, hole: impl Fn(usize, usize) -> bool) -> (Vec<[f64; 3]>
 }
 
 #[test]
-fn around_a_hole_paths_bend_at_its_corners() {
+fn paths_bend_at_the_corners_of_a_hole() {
     // The hole is the square from (3, 3) to (6, 6).
     let n = 10;
     let (points, faces) = grid_without(n, |i, j| (3..6).contains(&i) && (3..6).contains(&j));
@@ -170,7 +170,7 @@ fn around_a_hole_paths_bend_at_its_corners() {
 }
 
 #[test]
-fn around_a_slit_paths_bend_at_its_tip() {
+fn paths_bend_at_the_tip_of_a_slit() {
     // Cut from (5, 0) to (5, 6): the vertices below (5, 6) have copies for the faces to their right.
     let n = 11;
     let sheet = shapes::grid(n, n, 1.0);
@@ -222,7 +222,7 @@ fn book(n: usize) -> (IntrinsicMesh, impl Fn(usize, usize, usize) -> usize) {
 }
 
 #[test]
-fn from_page_to_page_of_a_book_the_way_leads_straight_over_the_spine() {
+fn paths_between_pages_of_a_book_cross_the_spine_straight() {
     let n = 7;
     let (mesh, index) = book(n);
     let found = all_pairs(&mesh);
@@ -236,7 +236,7 @@ fn from_page_to_page_of_a_book_the_way_leads_straight_over_the_spine() {
 }
 
 #[test]
-fn links_join_what_is_apart() {
+fn links_join_components() {
     let sheet = shapes::grid(6, 5, 1.0);
     let two = shapes::disjoint(&[sheet.clone(), sheet.clone()]).intrinsic();
     let apart = Exact::new(&two).distances(VertexId(0));
@@ -256,7 +256,7 @@ fn links_join_what_is_apart() {
 }
 
 #[test]
-fn points_on_edges_and_in_faces_see_euclidean_distances() {
+fn distances_from_points_on_edges_and_in_faces_are_euclidean() {
     let sheet = shapes::jittered_grid(9, 9, 1.0, 0.2, 8);
     let mesh = sheet.intrinsic();
     let solver = Exact::new(&mesh);
@@ -287,6 +287,20 @@ fn points_on_edges_and_in_faces_see_euclidean_distances() {
         let [a, b] = mesh.topology().edges()[edge.index()].map(|v| sheet.positions[v.index()]);
         for t in [0.0, 0.25, 0.9, 1.0, 1e-14] {
             check(SurfacePoint::Edge { edge, t }, [a.x + t * (b.x - a.x), a.y + t * (b.y - a.y)]);
+        }
+    }
+}
+
+#[test]
+fn refining_a_surface_does_not_change_it() {
+    let sphere = shapes::icosphere(1);
+    let coarse = all_pairs(&sphere.intrinsic());
+    let fine = shapes::subdivide(&shapes::subdivide(&sphere));
+    let solver = Exact::new(&fine.intrinsic());
+    for (v, row) in coarse.iter().enumerate() {
+        let refined = solver.distances(VertexId::from(v));
+        for (found, expected) in refined.iter().zip(row) {
+            assert_close(*found, *expected, 1e-12);
         }
     }
 }

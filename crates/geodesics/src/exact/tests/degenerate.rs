@@ -1,4 +1,4 @@
-//! Surfaces that are hardly any.
+//! Degenerate surfaces.
 
 use mesh::shapes;
 use proptest::prelude::*;
@@ -32,9 +32,9 @@ fn assert_flat(points: &[[f64; 3]], faces: &[[u32; 3]], relative: f64) {
 }
 
 #[test]
-fn caps_without_area_do_not_stop_light() {
-    // Every face gets a vertex on the middle of an edge that its neighbour does not know of, and a
-    // face without area in between.
+fn paths_pass_through_caps_without_area() {
+    // Every face gets a vertex on the middle of an edge that its neighbour does not know of, and a face without area
+    // in between.
     let sheet = shapes::grid(5, 4, 1.0);
     let (mut at, mut split) = (points(&sheet), faces(&sheet));
     for f in 0..split.len() {
@@ -84,7 +84,7 @@ fn stretched_sheets_stay_euclidean() {
 }
 
 #[test]
-fn a_thin_needle_with_light_around_it_ends() {
+fn windows_around_a_thin_needle_come_to_an_end() {
     // A double cone with n needles and a total angle far below a full turn at either tip.
     for (n, width) in [(3, 1e-3), (3, 1e-5), (5, 1e-8), (40, 1e-3)] {
         let mut at = vec![[0.0, 0.0, 1.0], [0.0, 0.0, -1.0], [0.0, 0.0, 3.0]];
@@ -101,7 +101,7 @@ fn a_thin_needle_with_light_around_it_ends() {
 }
 
 #[test]
-fn repeated_faces_and_pillows_are_like_one_sheet() {
+fn repeated_faces_and_pillows_have_the_distances_of_one_sheet() {
     let sheet = bumpy(9, 0.8, 6);
     let faces = sheet.topology().faces();
     let expected = all_pairs(&sheet);
@@ -143,7 +143,7 @@ fn edges_without_length_are_points() {
 }
 
 #[test]
-fn nothing_at_all_is_no_surface_but_no_reason_to_fail() {
+fn surfaces_without_faces_or_area_do_not_fail() {
     for n in [0, 1, 5] {
         let mesh = IntrinsicMesh::new(Topology::new(n, Vec::new()), Vec::new());
         for (v, row) in all_pairs(&mesh).iter().enumerate() {

@@ -2,7 +2,6 @@
 
 mod closed_forms;
 mod degenerate;
-mod laws;
 mod oracle;
 mod random;
 mod reference;

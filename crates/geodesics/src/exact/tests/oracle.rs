@@ -1,4 +1,4 @@
-//! Beside a slow way that shares nothing with the windows: the straight lines between all pairs of
+//! Comparison with a slow algorithm that shares no code with the windows: the straight lines between all pairs of
 //! vertices through all strips of faces, and shortest paths in their graph.
 
 use proptest::prelude::*;
@@ -17,8 +17,8 @@ fn sub(a: Point, b: Point) -> Point {
     [a[0] - b[0], a[1] - b[1]]
 }
 
-/// What a vertex sees through the edge from `p` to `q`, laid out with the vertex in the origin and
-/// `q` to the left of `p`, between the directions `right` and `left`.
+/// What a vertex sees through the edge from `p` to `q`, laid out with the vertex in the origin and `q` to the left of
+/// `p`, between the directions `right` and `left`.
 struct View {
     p: (VertexId, Point),
     q: (VertexId, Point),
@@ -26,7 +26,7 @@ struct View {
     left: Point,
 }
 
-/// Narrower views, in radians, show nothing that is not seen past a vertex, and may be mere rounding.
+/// Narrower views, in radians, may be rounding; paths through them also exist past a vertex.
 const LEAST_VIEW: f64 = 1e-9;
 
 struct Oracle<'a> {
@@ -129,7 +129,7 @@ fn assert_same(mesh: &IntrinsicMesh) {
 }
 
 #[test]
-fn the_slow_way_is_right_on_a_cube() {
+fn the_oracle_is_right_on_a_cube() {
     let found = by_sight(&mesh::shapes::cube(0).intrinsic());
     // Corners by their coordinates in binary: across a face, and across the cube.
     assert_close(found[0][3], 2f64.sqrt(), 1e-14);
@@ -137,7 +137,7 @@ fn the_slow_way_is_right_on_a_cube() {
 }
 
 #[test]
-fn polyhedra_have_the_distances_of_their_lines_of_sight() {
+fn exact_distances_equal_those_of_the_oracle() {
     for shape in [mesh::shapes::tetrahedron(1), mesh::shapes::cube(0), mesh::shapes::icosphere(0)] {
         assert_same(&shape.intrinsic());
     }
@@ -145,8 +145,8 @@ fn polyhedra_have_the_distances_of_their_lines_of_sight() {
 
 #[test]
 fn paths_of_equal_length_do_not_hide_each_other() {
-    // Found among the soups below: two windows with a common point at a vertex, where one of the two
-    // points of equal distance is no change of the nearer source, and two sources in a line.
+    // Found among the soups below: two windows with a common point at a vertex, where one of the two points of equal
+    // distance is no change of the nearer source, and two sources in a line.
     let cases: [(&[[u32; 3]], &[f64]); 2] = [
         (
             &[[1, 6, 2], [3, 4, 5], [2, 1, 7], [6, 0, 1], [3, 1, 2], [4, 7, 1]],

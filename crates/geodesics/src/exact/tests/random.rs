@@ -21,9 +21,8 @@ pub(super) fn soup(n: u32, n_faces: usize) -> impl Strategy<Value = IntrinsicMes
     (points, any_faces(n, n_faces)).prop_map(|(points, faces)| spatial(&points, &faces))
 }
 
-/// The same over different points of a lattice, which are often in one plane, hardly moved: paths
-/// meet vertices, and there are several of the same length. The slow way is at a loss where a face
-/// has no area.
+/// The same over different points of a lattice, which are often in one plane, hardly moved: paths meet vertices, and
+/// several have the same length. The oracle cannot handle faces without area.
 pub(super) fn lattice_soup(n: usize, n_faces: usize) -> impl Strategy<Value = IntrinsicMesh> {
     let points = prop::sample::subsequence((0..18u32).collect::<Vec<_>>(), n).prop_shuffle();
     let moves = prop::collection::vec([-1.0..1.0, -1.0..1.0, -1.0..1.0f64], n);

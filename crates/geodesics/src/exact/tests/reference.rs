@@ -1,4 +1,4 @@
-//! Beside the distances of other implementations on real meshes.
+//! Comparison with other implementations on real meshes.
 
 use std::path::PathBuf;
 
@@ -11,7 +11,7 @@ use crate::testing::{Reference, assert_close, data, reference};
 use crate::{Dijkstra, DistanceSolver};
 
 #[test]
-fn distances_are_those_of_mitchell_mount_and_papadimitriou() {
+fn distances_equal_those_of_other_implementations() {
     let Some(data) = data() else { return };
     for mesh in [
         "tosca-lowres/cat0.vert",

@@ -98,10 +98,10 @@ proptest! {
             },
         ];
         let sources = sources.map(|point| Source::new(&mesh, point).unwrap());
-        let alone = sources.each_ref().map(|s| solve(&mesh, std::slice::from_ref(s), f64::INFINITY));
+        let single = sources.each_ref().map(|s| solve(&mesh, std::slice::from_ref(s), f64::INFINITY));
         let near = solve(&mesh, &sources, limit);
         for (v, found) in solve(&mesh, &sources, f64::INFINITY).into_iter().enumerate() {
-            assert_close(found, alone.iter().map(|row| row[v]).fold(f64::INFINITY, f64::min), 1e-9);
+            assert_close(found, single.iter().map(|row| row[v]).fold(f64::INFINITY, f64::min), 1e-9);
             if (found - limit).abs() > 1e-9 {
                 assert_close(near[v], if found <= limit { found } else { f64::INFINITY }, 1e-9);
             }

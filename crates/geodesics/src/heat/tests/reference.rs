@@ -1,4 +1,4 @@
-//! Beside exact polyhedral distances on real meshes.
+//! Comparison with exact distances on real meshes.
 
 use super::{heat, surface};
 use crate::DistanceSolver;

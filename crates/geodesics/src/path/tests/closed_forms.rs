@@ -10,7 +10,7 @@ use crate::testing::{assert_close, spatial};
 use crate::{DistanceSolver, Exact, FastMarching, GeodesicError, PathTracer, Source, SurfacePoint};
 
 #[test]
-fn paths_in_the_plane_are_straight_whatever_the_triangles() {
+fn paths_in_the_plane_are_straight_for_any_triangles() {
     for sheet in [
         shapes::grid(9, 7, 0.5),
         shapes::sheared_grid(9, 7, 0.5, 1.7),
@@ -26,7 +26,7 @@ fn paths_in_the_plane_are_straight_whatever_the_triangles() {
 }
 
 #[test]
-fn a_path_to_where_it_starts_is_a_point() {
+fn a_path_to_its_own_source_is_a_point() {
     let mesh = shapes::icosphere(1).intrinsic();
     let inside = SurfacePoint::Face { face: FaceId(7), barycentric: [0.25, 0.25, 0.5] };
     for point in [vertex(5), inside] {
@@ -42,7 +42,7 @@ fn a_path_to_where_it_starts_is_a_point() {
 }
 
 #[test]
-fn around_a_cube() {
+fn paths_around_a_cube_are_shortest() {
     // The surface of the unit cube, unfolded: from a corner to the opposite one it is sqrt(5).
     for level in [0, 1, 3] {
         let cube = shapes::cube(level);
@@ -55,7 +55,7 @@ fn around_a_cube() {
 }
 
 #[test]
-fn around_a_cylinder() {
+fn paths_around_a_cylinder_are_shortest() {
     let cylinder = shapes::cylinder(24, 9, 1.0, 3.0);
     let mesh = cylinder.intrinsic();
     let chord = 2.0 * (PI / 24.0).sin();
@@ -67,7 +67,7 @@ fn around_a_cylinder() {
 }
 
 #[test]
-fn around_the_corner_of_a_boundary() {
+fn paths_bend_at_the_corner_of_a_boundary() {
     // An L of three squares of 4 x 4 cells: the inner corner is in the way.
     let sheet = shapes::grid(9, 9, 1.0);
     let is_cut = |f: &[VertexId; 3]| f.iter().all(|v| v.0 % 9 >= 4 && v.0 / 9 >= 4);
@@ -80,7 +80,7 @@ fn around_the_corner_of_a_boundary() {
 }
 
 #[test]
-fn from_page_to_page_of_a_book() {
+fn paths_between_pages_of_a_book_cross_the_spine() {
     // Four pages on one spine, along the y-axis; unfolded, every two of them are one sheet.
     let n = 6;
     let mut at: Vec<[f64; 3]> = (0..=n).map(|j| [0.0, j as f64, 0.0]).collect();
@@ -108,7 +108,7 @@ fn from_page_to_page_of_a_book() {
 }
 
 #[test]
-fn over_links_and_not_between_components() {
+fn paths_cross_links_but_not_gaps_between_components() {
     let apart = shapes::disjoint(&[shapes::grid(5, 5, 1.0), shapes::grid(4, 4, 1.0)]);
     let mesh = apart.intrinsic();
     let ends = [24, 25].map(VertexId);
@@ -129,7 +129,7 @@ fn over_links_and_not_between_components() {
 }
 
 #[test]
-fn to_the_nearest_of_several_sources() {
+fn paths_lead_to_the_nearest_of_several_sources() {
     let sheet = shapes::jittered_grid(12, 10, 1.0, 0.2, 5);
     let mesh = sheet.intrinsic();
     let point = SurfacePoint::Face { face: FaceId(100), barycentric: [0.2, 0.5, 0.3] };

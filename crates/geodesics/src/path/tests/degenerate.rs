@@ -32,7 +32,7 @@ fn assert_sane(mesh: &IntrinsicMesh) {
 }
 
 #[test]
-fn repeated_faces_do_no_harm() {
+fn repeated_faces_change_no_path() {
     let sheet = shapes::jittered_grid(5, 4, 1.0, 0.2, 2);
     for copies in [2, 3] {
         let repeated = mesh::TriMesh { faces: sheet.faces.repeat(copies), ..sheet.clone() };
@@ -41,7 +41,7 @@ fn repeated_faces_do_no_harm() {
 }
 
 #[test]
-fn a_needle_does_no_harm() {
+fn paths_around_a_needle_are_found() {
     let mut at = vec![[0.0, 0.0, 1.0], [0.0, 0.0, -1.0], [0.0, 0.0, 3.0]];
     let mut tube = Vec::new();
     for i in 0..7u32 {
@@ -55,7 +55,7 @@ fn a_needle_does_no_harm() {
 }
 
 #[test]
-fn a_vertex_alone_reaches_itself() {
+fn an_isolated_vertex_reaches_itself() {
     let mesh = IntrinsicMesh::new(Topology::new(2, Vec::new()), Vec::new());
     assert_sane(&mesh);
     assert_sane(&mesh.with_links(vec![Link { ends: [0, 1].map(VertexId), length: 1.0 }]));

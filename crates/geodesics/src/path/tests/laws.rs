@@ -1,4 +1,4 @@
-//! What holds on every surface.
+//! Laws on any surface.
 
 use mesh::shapes;
 use surface::{EdgeId, FaceId, VertexId};
@@ -29,7 +29,7 @@ fn exact_distances_give_exactly_shortest_paths_between_all_pairs() {
 }
 
 #[test]
-fn paths_between_points_of_edges_and_faces_are_as_short_there_as_back() {
+fn paths_between_points_of_edges_and_faces_are_symmetric() {
     let mesh = bumpy(10, 1.2, 4);
     let edge = |edge: u32, t| SurfacePoint::Edge { edge: EdgeId(edge), t };
     let face = |face: u32, barycentric| SurfacePoint::Face { face: FaceId(face), barycentric };

@@ -25,8 +25,8 @@ fn holds(mesh: &IntrinsicMesh, face: FaceId, point: SurfacePoint) -> bool {
 
 /// The least and the greatest length of the step from one point of a path to the next, which must be one.
 ///
-/// They differ where several faces hold both points, and lengths that belong to no triangle leave open
-/// where in a face the points are.
+/// They differ where several faces hold both points, and lengths that belong to no triangle leave open where in a
+/// face the points are.
 fn step(mesh: &IntrinsicMesh, p: SurfacePoint, q: SurfacePoint) -> [f64; 2] {
     let over_faces = faces_around(mesh, p).into_iter().filter(|f| holds(mesh, *f, p) && holds(mesh, *f, q));
     let over_links = mesh.links().iter().filter(|link| {

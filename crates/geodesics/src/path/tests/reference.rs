@@ -1,4 +1,4 @@
-//! Beside exact distances on real meshes.
+//! Comparison with exact distances on real meshes.
 
 use mesh::{RepairOptions, io, repair};
 use rayon::prelude::*;
@@ -8,7 +8,7 @@ use crate::testing::{Reference, assert_close, data, reference};
 use crate::{Dijkstra, DistanceSolver, Exact, FastMarching, PathTracer, Source};
 
 #[test]
-fn paths_are_as_long_as_exact_distances() {
+fn lengths_of_paths_equal_exact_distances() {
     let Some(data) = data() else { return };
     for mesh in
         ["tosca-lowres/cat0.vert", "tosca-lowres/centaur1.vert", "single/spot.obj", "single/rocker-arm.obj"]
@@ -36,7 +36,7 @@ fn paths_are_as_long_as_exact_distances() {
 }
 
 #[test]
-fn every_tosca_mesh_has_its_shortest_paths() {
+fn paths_on_every_tosca_mesh_are_shortest() {
     let Some(data) = data() else { return };
     let mut paths: Vec<_> =
         std::fs::read_dir(data.join("tosca-lowres")).unwrap().map(|entry| entry.unwrap().path()).collect();
