@@ -66,17 +66,11 @@ fn parse_vertex(line: Line<'_>, number: usize) -> Result<Point3<f64>, Located> {
 
 /// Reads the vertex of a corner, `VERTEX[/[TEXTURE][/NORMAL]]`, in a file of `n_vertices`, `n_before` of which
 /// precede the line.
-fn parse_corner(
-    line: Line<'_>,
-    token: &[u8],
-    n_before: i64,
-    n_vertices: usize,
-) -> Result<VertexId, Located> {
+fn parse_corner(line: Line<'_>, token: &[u8], n_before: i64, n_vertices: usize) -> Result<VertexId, Located> {
     let mut parts = token.split(|&b| b == b'/');
     let index = parts.next().and_then(parse_number::<i64>);
     let index = index.filter(|_| parts.all(|part| part.is_empty() || parse_number::<i64>(part).is_some()));
-    let index =
-        index.ok_or_else(|| line.expected("a face such as `f 1 2 3` or `f 1/1/1 2/2/2 3/3/3`"))?;
+    let index = index.ok_or_else(|| line.expected("a face such as `f 1 2 3` or `f 1/1/1 2/2/2 3/3/3`"))?;
     let vertex = if index < 0 { n_before.saturating_add(index) } else { index - 1 };
     if !(0..n_vertices as i64).contains(&vertex) {
         let fault = Fault::IndexOutOfRange { index: excerpt(token), first: 1, last: n_vertices as u64 };
