@@ -3,38 +3,37 @@
 use std::process::ExitCode;
 
 use anyhow::Result;
-use canonform::{FormOptions, MethodFacts, MethodsReport, StressOptions, compare_methods};
+use canonform::{MethodFacts, MethodsReport, StressOptions, compare_methods};
+use peak_alloc::PeakAlloc;
 use terminal::Bars;
 
-use super::{named, read_surface};
 use crate::args::{Common, MethodsArgs};
-use crate::memory::with_peak_bytes;
-use crate::output::{print, print_json};
+use crate::input::{named, read_surface};
+use crate::output::report;
 
-/// Embeds a mesh by every method and sets them side by side.
+/// Counts the bytes on the heap.
+#[global_allocator]
+static ALLOCATOR: PeakAlloc = PeakAlloc;
+
+/// Embeds a mesh by every method and tabulates the results.
 pub(crate) fn methods(args: &MethodsArgs, common: &Common) -> Result<ExitCode> {
-    let options = FormOptions {
-        geodesic: args.marching.of(args.geodesic),
-        samples: args.samples.unwrap_or_default(),
-        dim: args.dim,
-        seed: common.seed,
-        ..FormOptions::default()
-    };
-    let stress = StressOptions { choice: args.stress.into(), against: None, seed: common.seed };
-    let surface = read_surface(&args.mesh, &args.repair)?;
+    let stress = StressOptions { choice: args.stress, against: None, seed: common.seed };
+    let surface = read_surface(&args.mesh, &args.form.repair)?;
     let bars = Bars::new(common.quiet);
-    let report = compare_methods(&surface, &options, &stress, &bars, &|work| with_peak_bytes(work).1)
+    // The bytes beyond those before the work; the whole program is counted, so methods run one at a time.
+    let peak_bytes = |work: &mut dyn FnMut()| {
+        ALLOCATOR.reset_peak_usage();
+        let before = ALLOCATOR.current_usage();
+        work();
+        ALLOCATOR.peak_usage().saturating_sub(before)
+    };
+    let methods = compare_methods(&surface, &args.form.options(common), &stress, &bars, &peak_bytes)
         .map_err(|fault| named(&args.mesh, fault))?;
     bars.finish();
-    if common.json {
-        print_json(&report)?;
-    } else {
-        print(&table(&report))?;
-    }
-    Ok(ExitCode::SUCCESS)
+    report(common, &methods, table)
 }
 
-/// One row a method; the least of a column is starred.
+/// One row per method, with a star at the lowest value of a column.
 fn table(report: &MethodsReport) -> String {
     let least = |value: &dyn Fn(&MethodFacts) -> Option<f64>| {
         let facts = report.methods.iter().filter_map(|m| m.facts.as_ref());
@@ -85,8 +84,8 @@ fn table(report: &MethodsReport) -> String {
     let kind = report.methods.iter().find_map(|m| m.facts.as_ref()?.stress.as_ref());
     let kind = kind.map_or_else(String::new, |s| format!(", {:?}", s.kind).to_lowercase());
     text + &format!(
-        "\n* least of the column. {} vertices, {} dimensions; stress against {} distances{kind}; seconds from the \
-         repaired mesh to coordinates.",
+        "\n* lowest of its column. {} vertices, {} dimensions; stress against {} distances{kind}; seconds from the \
+         repaired mesh to the embedding.",
         report.n_embedded, report.dim, report.geodesic
     )
 }

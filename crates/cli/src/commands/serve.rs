@@ -12,18 +12,17 @@ pub(crate) fn serve(args: &ServeArgs) -> Result<ExitCode> {
     let server = Server::bind(&args.index, args.options())?;
     let stop = server.stop_handle();
     terminal::on_interruption(move || {
-        eprintln!("finishing what is being worked on; interrupt again to end at once");
+        eprintln!("finishing the requests in progress; interrupt again to stop at once");
         stop.stop();
     });
     let address = server.address();
     if !address.ip().is_loopback() {
         eprintln!(
-            "warning: {address} is open to other machines; everybody who reaches it can search, and see the index \
-             with its meshes"
+            "warning: {address} is open to other machines: they can search, and see the index and its meshes"
         );
     }
     let (n_shapes, index) = (server.n_shapes(), args.index.display());
-    eprintln!("listening on http://{address} ({n_shapes} shapes of {index})");
+    eprintln!("listening on http://{address} ({n_shapes} shapes in {index})");
     server.run()?;
     Ok(ExitCode::SUCCESS)
 }

@@ -1,4 +1,4 @@
-//! `canonform serve`, as a program: its line, its words, its end.
+//! `canonform serve` as a program: its output, its errors, and how it stops.
 
 use std::io::{BufRead, BufReader, Read, Write};
 use std::net::TcpStream;
@@ -27,7 +27,7 @@ impl Serving {
         err.read_line(&mut line).unwrap();
         let address = line.strip_prefix("listening on http://").unwrap_or_else(|| panic!("{line}"));
         let (address, rest) = address.split_once(' ').unwrap();
-        assert_eq!(rest, "(1 shapes of i)\n");
+        assert_eq!(rest, "(1 shapes in i)\n");
         Self { child, address: address.to_owned(), err }
     }
 
@@ -52,7 +52,7 @@ impl Serving {
 
 impl Drop for Serving {
     fn drop(&mut self) {
-        // It may have ended as it should.
+        // The program may have stopped already.
         let _ = self.child.kill();
         let _ = self.child.wait();
     }
@@ -66,7 +66,7 @@ fn indexed() -> Workplace {
 }
 
 #[test]
-fn what_is_wrong_with_a_mesh_is_said_as_by_search() {
+fn errors_of_meshes_equal_those_of_search() {
     let place = indexed();
     let serving = Serving::start(&place);
     for (name, content) in [
@@ -93,11 +93,11 @@ fn what_is_wrong_with_a_mesh_is_said_as_by_search() {
 }
 
 #[test]
-fn a_taken_address_a_missing_index_and_bad_limits_are_said() {
+fn errors_name_a_taken_address_a_missing_index_and_bad_limits() {
     let place = indexed();
     let serving = Serving::start(&place);
     let again = ["serve", "i", "--listen", &serving.address];
-    place.refused(&again, &[&serving.address, "another program has it", "--listen with another port"]);
+    place.refused(&again, &[&serving.address, "another program uses it", "--listen with another port"]);
     place.refused(&["serve", "none"], &["none"]);
     place.refused(&["serve", "i", "--listen", "nowhere"], &["--listen"]);
     place.refused(&["serve", "i", "--max-upload", "0"], &["--max-upload"]);
@@ -105,7 +105,7 @@ fn a_taken_address_a_missing_index_and_bad_limits_are_said() {
 
 #[cfg(unix)]
 #[test]
-fn a_server_that_is_interrupted_ends_well() {
+fn an_interrupted_server_exits_with_success() {
     let place = indexed();
     let mut serving = Serving::start(&place);
     let id = serving.child.id().to_string();
@@ -113,5 +113,5 @@ fn a_server_that_is_interrupted_ends_well() {
     assert_eq!(serving.child.wait().unwrap().code(), Some(0));
     let mut rest = String::new();
     serving.err.read_to_string(&mut rest).unwrap();
-    assert!(rest.starts_with("finishing what is being worked on"), "{rest}");
+    assert!(rest.starts_with("finishing the requests in progress"), "{rest}");
 }

@@ -15,8 +15,8 @@ pub(crate) fn index(command: &IndexCommand, common: &Common) -> Result<ExitCode>
         IndexCommand::Add(args) => change::add(args, common),
         IndexCommand::Remove(args) => change::remove(args, common),
         IndexCommand::Merge(args) => change::merge(args, common),
-        IndexCommand::Verify(args) => look::verify(args, common),
-        IndexCommand::Info(args) => look::info(args, common),
-        IndexCommand::Export(args) => look::export(args, common),
+        IndexCommand::Verify { index } => look::verify(index, common),
+        IndexCommand::Info { index } => look::info(index, common),
+        IndexCommand::Export(args) => look::export(args),
     }
 }
