@@ -55,12 +55,12 @@ impl ResidualJson {
 /// options that the metric is calibrated for, if those differ.
 type Side = (Surface, CanonicalForm, PreparedShape, Option<PreparedShape>);
 
-fn side(path: &Path, args: &CompareArgs, options: &FormOptions, bars: &Bars) -> Result<Side> {
+fn side(path: &Path, args: &CompareArgs, options: &FormOptions, quiet: bool) -> Result<Side> {
     let surface = read_surface(path, &args.embedding.form.repair)?;
     let usual = FormOptions { repair: options.repair, ..FormOptions::default() };
     let usual = DescribeOptions { form: usual, ..DescribeOptions::default() };
     let measure = || {
-        let embedded = embed(&surface, options, bars)?;
+        let embedded = embed(&surface, options, &Bars::new(quiet))?;
         let form = embedded.form(&surface)?;
         if embedded.options == usual.form {
             return Ok((form, ShapeDescription::new(&surface, &embedded, &usual)?.prepare()?, None));
@@ -71,7 +71,6 @@ fn side(path: &Path, args: &CompareArgs, options: &FormOptions, bars: &Bars) -> 
         Ok((form, shape, Some(description.prepare()?)))
     };
     let (form, shape, usual) = measure().map_err(|fault| named(path, fault))?;
-    bars.finish();
     Ok((surface, form, shape, usual))
 }
 
@@ -85,9 +84,8 @@ pub(crate) fn compare(args: &CompareArgs, common: &Common) -> Result<ExitCode> {
     }
     let matching = MatchOptions { distance: args.distance, ..MatchOptions::default() };
     let metric = ShapeMetric { matching };
-    let bars = Bars::new(common.quiet);
-    let (a, form_a, shape_a, usual_a) = side(&args.a, args, &options, &bars)?;
-    let (b, form_b, shape_b, usual_b) = side(&args.b, args, &options, &bars)?;
+    let (a, form_a, shape_a, usual_a) = side(&args.a, args, &options, common.quiet)?;
+    let (b, form_b, shape_b, usual_b) = side(&args.b, args, &options, common.quiet)?;
     let pair = ShapePair::new(&metric, [&shape_a, &shape_b]);
     // The kind of match must not depend on the options.
     let distance = match (&usual_a, &usual_b) {

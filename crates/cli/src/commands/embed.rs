@@ -59,10 +59,8 @@ pub(crate) fn embed(args: &EmbedArgs, common: &Common) -> Result<ExitCode> {
     check_form(&args.output, options.dim)?;
     check_folder(&args.output)?;
     let surface = read_surface(&args.mesh, &args.embedding.form.repair)?;
-    let bars = Bars::new(common.quiet);
-    let embedded =
-        embed_and_measure(&surface, &options, &stress, &bars).map_err(|fault| named(&args.mesh, fault))?;
-    bars.finish();
+    let embedded = embed_and_measure(&surface, &options, &stress, &Bars::new(common.quiet))
+        .map_err(|fault| named(&args.mesh, fault))?;
     warn(&args.mesh.display().to_string(), &embedded.report);
     write(&args.output, &surface, &embedded)?;
     let json = EmbedJson { report: embedded.report, output: args.output.clone() };
@@ -80,8 +78,7 @@ fn batch(
     check_form(&PathBuf::from(format!("form.{extension}")), options.dim)?;
     let shapes = list_shapes(&args.mesh, None)?;
     check_names(&shapes, &args.mesh, &args.output)?;
-    let bars = Bars::new(common.quiet);
-    let bar = bars.bar("shapes", shapes.len());
+    let bar = Bars::new(common.quiet).bar("shapes", shapes.len());
     let results: Vec<Result<EmbedJson>> = shapes
         .par_iter()
         .map(|shape| {

@@ -17,10 +17,7 @@ pub(crate) fn evaluate(args: &EvaluateArgs, common: &Common) -> Result<ExitCode>
     let scores = if extension(&args.input) == "csv" {
         evaluate_matrix(&args.input, labels.as_ref(), args.k)
     } else {
-        let bars = Bars::new(common.quiet);
-        let scores = evaluate_index(&args.input, args.by, labels.as_ref(), args.k, &bars);
-        bars.finish();
-        scores
+        evaluate_index(&args.input, args.by, labels.as_ref(), args.k, &Bars::new(common.quiet))
     };
     let scores = scores.map_err(|fault| named(&args.input, fault))?;
     report(common, &scores, table)

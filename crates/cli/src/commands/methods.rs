@@ -19,7 +19,6 @@ static ALLOCATOR: PeakAlloc = PeakAlloc;
 pub(crate) fn methods(args: &MethodsArgs, common: &Common) -> Result<ExitCode> {
     let stress = StressOptions { choice: args.stress, against: None, seed: common.seed };
     let surface = read_surface(&args.mesh, &args.form.repair)?;
-    let bars = Bars::new(common.quiet);
     // The bytes beyond those before the work; the whole program is counted, so methods run one at a time.
     let peak_bytes = |work: &mut dyn FnMut()| {
         ALLOCATOR.reset_peak_usage();
@@ -27,9 +26,9 @@ pub(crate) fn methods(args: &MethodsArgs, common: &Common) -> Result<ExitCode> {
         work();
         ALLOCATOR.peak_usage().saturating_sub(before)
     };
-    let methods = compare_methods(&surface, &args.form.options(common), &stress, &bars, &peak_bytes)
-        .map_err(|fault| named(&args.mesh, fault))?;
-    bars.finish();
+    let methods =
+        compare_methods(&surface, &args.form.options(common), &stress, &Bars::new(common.quiet), &peak_bytes)
+            .map_err(|fault| named(&args.mesh, fault))?;
     report(common, &methods, table)
 }
 

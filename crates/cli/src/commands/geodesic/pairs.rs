@@ -44,14 +44,12 @@ pub(super) fn write(task: &Task) -> Result<ExitCode> {
     let Task { args, surface, .. } = task;
     let memory = args.memory.unwrap_or(DEFAULT_MEMORY);
     let pairs = AllPairs::new(surface, task.solver, memory).map_err(|fault| named(&args.mesh, fault))?;
-    let bars = Bars::new(task.common.quiet);
     let start = Instant::now();
     let mut asymmetry = Asymmetry::default();
     fill_npy(&args.output, [pairs.n_vertices(); 2], |file| {
-        asymmetry = pairs.write(file, &bars)?;
+        asymmetry = pairs.write(file, &Bars::new(task.common.quiet))?;
         Ok(())
     })?;
-    bars.finish();
     let json = PairsJson {
         method: args.method.name(),
         n_vertices: pairs.n_vertices(),

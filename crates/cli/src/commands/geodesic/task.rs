@@ -51,8 +51,7 @@ impl Task<'_> {
         let points: Result<Vec<_>, _> = args.source.iter().map(located).collect();
         let points = points.map_err(|fault| named(&args.mesh, fault))?;
         let groups = points.chunks(if args.nearest { points.len() } else { 1 });
-        let bars = Bars::new(self.common.quiet);
-        let bar = bars.bar("distances", groups.len());
+        let bar = Bars::new(self.common.quiet).bar("distances", groups.len());
         let mut rows = Vec::with_capacity(groups.len());
         let mut per_source = Vec::with_capacity(groups.len());
         for group in groups {

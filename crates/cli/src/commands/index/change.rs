@@ -32,19 +32,15 @@ pub(super) fn build(args: &BuildArgs, common: &Common) -> Result<ExitCode> {
     let labels = labels(args.labels.as_ref())?;
     let describe = args.describe.options(common)?;
     let options = BuildOptions { describe: &describe, labels: labels.as_ref(), shard: args.shard };
-    let bars = Bars::new(common.quiet);
-    let built = build_index(&args.folder, &args.output, &options, &bars);
-    bars.finish();
-    summarize(&args.output, built?, common)
+    let built = build_index(&args.folder, &args.output, &options, &Bars::new(common.quiet))?;
+    summarize(&args.output, built, common)
 }
 
 pub(super) fn add(args: &AddArgs, common: &Common) -> Result<ExitCode> {
     let labels = labels(args.labels.as_ref())?;
     let inputs = Inputs { paths: &args.meshes, labels: labels.as_ref(), label: args.label.as_deref() };
-    let bars = Bars::new(common.quiet);
-    let added = add_to_index(&args.index, &inputs, args.replace, &bars);
-    bars.finish();
-    summarize(&args.index, added?, common)
+    let added = add_to_index(&args.index, &inputs, args.replace, &Bars::new(common.quiet))?;
+    summarize(&args.index, added, common)
 }
 
 /// Prints what happened to the meshes, failures last.
@@ -96,10 +92,8 @@ pub(super) fn remove(args: &RemoveArgs, common: &Common) -> Result<ExitCode> {
 
 pub(super) fn merge(args: &MergeArgs, common: &Common) -> Result<ExitCode> {
     check_folder(&args.output)?;
-    let bars = Bars::new(common.quiet);
-    let merged = merge_indexes(&args.inputs, &args.output, &bars);
-    bars.finish();
-    report(common, &Json { index: args.output.clone(), report: merged? }, |json| {
+    let merged = merge_indexes(&args.inputs, &args.output, &Bars::new(common.quiet))?;
+    report(common, &Json { index: args.output.clone(), report: merged }, |json| {
         let MergeReport { n_shapes, repeated } = json.report;
         let twice =
             if repeated > 0 { format!(", {repeated} of them in more than one index") } else { String::new() };
