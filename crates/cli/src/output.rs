@@ -1,7 +1,7 @@
 //! Output: JSON, tables, files and exit codes.
 
 use std::fs::File;
-use std::io::{self, Write};
+use std::io::{self, BufWriter, Write};
 use std::path::Path;
 use std::process::ExitCode;
 
@@ -58,14 +58,11 @@ pub(crate) fn write_npy<'a>(
     n_columns: usize,
     rows: impl ExactSizeIterator<Item = &'a [f64]>,
 ) -> Result<()> {
-    let shape = [rows.len() as u64, n_columns as u64];
-    Ok(files::write_atomically(path, |out| {
-        let mut array = npyz::WriteOptions::new().default_dtype().shape(&shape).writer(out).begin_nd()?;
-        for row in rows {
-            array.extend(row)?;
-        }
-        array.finish()
-    })?)
+    fill_npy(path, [rows.len(), n_columns], |file| {
+        let mut out = BufWriter::with_capacity(1 << 16, file);
+        rows.flatten().try_for_each(|x| out.write_all(&x.to_le_bytes()))?;
+        out.flush()
+    })
 }
 
 /// Writes a little-endian float64 NumPy array of this shape; `content` writes its numbers after the header, in any order.

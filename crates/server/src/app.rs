@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use axum::body::Bytes;
 use canonform::descriptors::PreparedShape;
-use canonform::{Error, ShapeSearch};
+use canonform::{Error, ShapeSearch, Surface, embed};
 use serde::Serialize;
 
 use crate::cache::Cache;
@@ -77,8 +77,10 @@ impl App {
         if let Some(known) = self.measured.get(id) {
             return Ok(known);
         }
-        let mesh = self.search.mesh(id)?;
-        let measured = Arc::new(Measured::new(&mesh, &self.search.describe_options().form)?);
+        let options = &self.search.describe_options().form;
+        let surface = Surface::new(&self.search.mesh(id)?, &options.repair)?;
+        let embedded = embed(&surface, options, &())?;
+        let measured = Arc::new(Measured::new(surface, &embedded)?);
         self.measured.put(id.to_owned(), measured.clone(), measured.bytes());
         Ok(measured)
     }

@@ -1,7 +1,7 @@
 //! A mesh with its form, as geometry for the browser.
 
 use canonform::descriptors::CanonicalForm;
-use canonform::{Embedded, Error, FormOptions, Overlay, Surface, embed};
+use canonform::{Embedded, Error, Overlay, Surface};
 use mesh::TriMesh;
 use view::interactive::Geometry;
 
@@ -25,15 +25,7 @@ pub(crate) struct Measured {
 }
 
 impl Measured {
-    /// Measures a mesh with the options of an index.
-    pub(crate) fn new(mesh: &TriMesh, options: &FormOptions) -> Result<Self, Error> {
-        let surface = Surface::new(mesh, &options.repair)?;
-        let embedded = embed(&surface, options, &())?;
-        Self::of(surface, &embedded)
-    }
-
-    /// From a surface that is already embedded.
-    pub(crate) fn of(surface: Surface, embedded: &Embedded) -> Result<Self, Error> {
+    pub(crate) fn new(surface: Surface, embedded: &Embedded) -> Result<Self, Error> {
         let form = embedded.form(&surface)?;
         Ok(Self { surface, form, distances: embedded.distances.column(0).to_vec() })
     }

@@ -21,9 +21,22 @@ pub(crate) enum IndexCommand {
     /// Add meshes, or folders of them
     Add(AddArgs),
     /// Remove shapes
-    Remove(RemoveArgs),
+    Remove {
+        /// The index
+        index: PathBuf,
+        /// Names of shapes
+        #[arg(required = true, value_name = "ID")]
+        ids: Vec<String>,
+    },
     /// Merge indexes, for example those of shards, into one
-    Merge(MergeArgs),
+    Merge {
+        /// Indexes to merge
+        #[arg(required = true, value_name = "INDEX")]
+        inputs: Vec<PathBuf>,
+        /// Output index
+        #[arg(short, long, value_name = "INDEX")]
+        output: PathBuf,
+    },
     /// Check every byte and every shape; exit with code 2 if the index is damaged
     Verify {
         /// The index
@@ -35,7 +48,13 @@ pub(crate) enum IndexCommand {
         index: PathBuf,
     },
     /// Write an index as lines of JSON, the same however the index was built
-    Export(ExportArgs),
+    Export {
+        /// The index
+        index: PathBuf,
+        /// Output file [default: standard output]
+        #[arg(short, long, value_name = "FILE.jsonl")]
+        output: Option<PathBuf>,
+    },
 }
 
 #[derive(Debug, Args)]
@@ -95,34 +114,6 @@ pub(crate) struct AddArgs {
     /// Replace shapes that have the same name
     #[arg(long)]
     pub(crate) replace: bool,
-}
-
-#[derive(Debug, Args)]
-pub(crate) struct RemoveArgs {
-    /// The index
-    pub(crate) index: PathBuf,
-    /// Names of shapes
-    #[arg(required = true, value_name = "ID")]
-    pub(crate) ids: Vec<String>,
-}
-
-#[derive(Debug, Args)]
-pub(crate) struct MergeArgs {
-    /// Indexes to merge
-    #[arg(required = true, value_name = "INDEX")]
-    pub(crate) inputs: Vec<PathBuf>,
-    /// Output index
-    #[arg(short, long, value_name = "INDEX")]
-    pub(crate) output: PathBuf,
-}
-
-#[derive(Debug, Args)]
-pub(crate) struct ExportArgs {
-    /// The index
-    pub(crate) index: PathBuf,
-    /// Output file [default: standard output]
-    #[arg(short, long, value_name = "FILE.jsonl")]
-    pub(crate) output: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]

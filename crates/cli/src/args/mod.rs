@@ -14,15 +14,14 @@ use canonform::descriptors::FormDistance;
 use canonform::geodesics::Method;
 use clap::builder::TypedValueParser;
 use clap::{Args, Parser, Subcommand};
+use clap_complete::Shell;
 use mesh::io::{Content, mesh_files, or_list, writable};
 
 use self::shared::{STRESS, distance_method, one_of};
 
 pub(crate) use embedding::EmbeddingArgs;
 pub(crate) use geodesic::GeodesicArgs;
-pub(crate) use index::{
-    AddArgs, BuildArgs, EvaluateArgs, ExportArgs, IndexCommand, MergeArgs, RemoveArgs, SearchArgs,
-};
+pub(crate) use index::{AddArgs, BuildArgs, EvaluateArgs, IndexCommand, SearchArgs};
 pub(crate) use render::{Place, RenderArgs};
 pub(crate) use serve::ServeArgs;
 pub(crate) use shared::{Common, FormArgs, RepairArgs};
@@ -64,7 +63,11 @@ pub(crate) enum Command {
     /// Serve an index to browsers: drop a mesh, see the most similar shapes
     Serve(ServeArgs),
     /// Print a completion script for a shell
-    Completions(CompletionsArgs),
+    Completions {
+        /// The shell
+        #[arg(value_enum)]
+        shell: Shell,
+    },
 }
 
 #[derive(Debug, Args)]
@@ -122,13 +125,6 @@ pub(crate) struct CompareArgs {
     pub(crate) threshold: Option<f64>,
     #[command(flatten)]
     pub(crate) embedding: EmbeddingArgs,
-}
-
-#[derive(Debug, Args)]
-pub(crate) struct CompletionsArgs {
-    /// The shell
-    #[arg(value_enum)]
-    pub(crate) shell: clap_complete::Shell,
 }
 
 /// Extensions of the files that forms are written to, each with a line of help.

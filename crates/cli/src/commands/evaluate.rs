@@ -13,7 +13,7 @@ use crate::output::{extension, facts, report};
 
 /// Scores an index or a matrix.
 pub(crate) fn evaluate(args: &EvaluateArgs, common: &Common) -> Result<ExitCode> {
-    let labels = args.labels.as_ref().map(|path| LabelFile::read(path)).transpose()?;
+    let labels = args.labels.as_deref().map(LabelFile::read).transpose()?;
     let scores = if extension(&args.input) == "csv" {
         evaluate_matrix(&args.input, labels.as_ref(), args.k)
     } else {

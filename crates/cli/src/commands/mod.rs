@@ -28,6 +28,6 @@ pub(crate) fn run(command: &Command, common: &Common) -> anyhow::Result<ExitCode
         Command::Search(args) => search::search(args, common),
         Command::Evaluate(args) => evaluate::evaluate(args, common),
         Command::Serve(args) => serve::serve(args),
-        Command::Completions(args) => completions::completions(args),
+        Command::Completions { shell } => completions::completions(*shell),
     }
 }

@@ -1,5 +1,6 @@
 //! `canonform serve`.
 
+use std::io::Write;
 use std::process::ExitCode;
 
 use anyhow::Result;
@@ -12,8 +13,12 @@ pub(crate) fn serve(args: &ServeArgs) -> Result<ExitCode> {
     let server = Server::bind(&args.index, args.options())?;
     let stop = server.stop_handle();
     terminal::on_interruption(move || {
-        eprintln!("finishing the requests in progress; interrupt again to stop at once");
         stop.stop();
+        // `eprintln` would panic if standard error is closed.
+        let _ = writeln!(
+            std::io::stderr(),
+            "finishing the requests in progress; interrupt again to stop at once"
+        );
     });
     let address = server.address();
     if !address.ip().is_loopback() {

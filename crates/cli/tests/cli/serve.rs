@@ -22,13 +22,16 @@ impl Serving {
             .stderr(Stdio::piped())
             .spawn()
             .unwrap();
-        let mut err = BufReader::new(child.stderr.take().unwrap());
+        let err = BufReader::new(child.stderr.take().unwrap());
+        // Drop ends the program if the checks below fail.
+        let mut serving = Self { child, address: String::new(), err };
         let mut line = String::new();
-        err.read_line(&mut line).unwrap();
+        serving.err.read_line(&mut line).unwrap();
         let address = line.strip_prefix("listening on http://").unwrap_or_else(|| panic!("{line}"));
         let (address, rest) = address.split_once(' ').unwrap();
         assert_eq!(rest, "(1 shapes in i)\n");
-        Self { child, address: address.to_owned(), err }
+        serving.address = address.to_owned();
+        serving
     }
 
     fn upload(&self, name: &str, content: &[u8]) -> Value {
@@ -80,8 +83,11 @@ fn errors_of_meshes_equal_those_of_search() {
         ("flat.off", b"OFF\n3 1 0\n0 0 0\n0 0 0\n0 0 0\n3 0 1 2\n"),
     ] {
         std::fs::write(place.path(name), content).unwrap();
-        let said = place.run(&["search", "i", name]).err;
-        assert_eq!(format!("error: {}\n", serving.upload(name, content)["error"].as_str().unwrap()), said);
+        let expected = place.run(&["search", "i", name]).err;
+        assert_eq!(
+            format!("error: {}\n", serving.upload(name, content)["error"].as_str().unwrap()),
+            expected
+        );
     }
     let mesh = std::fs::read(place.path("meshes/ring0.off")).unwrap();
     let mut expected = place.json(&["search", "i", "meshes/ring0.off"]);

@@ -35,7 +35,7 @@ impl<S: Send + Sync> FromRequestParts<S> for Id {
 }
 
 /// A JSON response, serialised by the job that computed it because large ones take time.
-pub(super) struct Written(Vec<u8>);
+pub(super) struct Written(pub(super) Vec<u8>);
 
 impl Written {
     pub(super) fn new(answer: &impl Serialize) -> Result<Self, ApiError> {
@@ -47,10 +47,6 @@ impl IntoResponse for Written {
     fn into_response(self) -> Response {
         ([(header::CONTENT_TYPE, "application/json")], self.0).into_response()
     }
-}
-
-pub(super) fn json_text(text: &'static str) -> Response {
-    ([(header::CONTENT_TYPE, "application/json")], text).into_response()
 }
 
 /// An entity tag: `text` in quotes.

@@ -59,33 +59,30 @@ impl Residual {
 /// One of the two shapes.
 enum Side {
     Query(Arc<Query>),
-    Shape(PreparedShape, Arc<Measured>),
-    /// A shape whose mesh is missing.
-    Points(PreparedShape),
+    /// Not measured if the mesh is missing.
+    Shape(PreparedShape, Option<Arc<Measured>>),
 }
 
 impl Side {
     fn of_shape(app: &App, id: &str) -> Result<Self, Error> {
         let shape = app.search.prepared(id)?;
         match app.indexed(id) {
-            Ok(measured) => Ok(Self::Shape(shape, measured)),
-            Err(fault) if is_missing(&fault) => Ok(Self::Points(shape)),
-            Err(fault) => Err(fault),
+            Err(fault) if !is_missing(&fault) => Err(fault),
+            measured => Ok(Self::Shape(shape, measured.ok())),
         }
     }
 
     fn shape(&self) -> &PreparedShape {
         match self {
             Self::Query(query) => &query.shape,
-            Self::Shape(shape, _) | Self::Points(shape) => shape,
+            Self::Shape(shape, _) => shape,
         }
     }
 
     fn measured(&self) -> Option<&Measured> {
         match self {
             Self::Query(query) => Some(&query.measured),
-            Self::Shape(_, measured) => Some(measured),
-            Self::Points(_) => None,
+            Self::Shape(_, measured) => measured.as_deref(),
         }
     }
 

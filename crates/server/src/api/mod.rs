@@ -9,11 +9,11 @@ use std::sync::{Arc, LazyLock};
 
 use axum::extract::State;
 use axum::http::StatusCode;
-use axum::response::Response;
 use axum::routing::{MethodRouter, get, post};
 use axum::{Json, Router};
 use serde::Serialize;
 
+use self::answer::Written;
 use crate::app::App;
 use crate::error::ApiError;
 use crate::formats::filled_in;
@@ -45,8 +45,8 @@ pub(crate) fn router() -> Router<Arc<App>> {
     all.fallback(not_found).method_not_allowed_fallback(wrong_method)
 }
 
-async fn openapi() -> Response {
-    answer::json_text(&OPENAPI)
+async fn openapi() -> Written {
+    Written(OPENAPI.clone().into_bytes())
 }
 
 async fn not_found() -> ApiError {

@@ -162,6 +162,6 @@ fn measure(app: &App, upload: Upload, options: &SearchOptions) -> Result<(Query,
     let report = app.search.search_described(&description, options)?;
     let seconds = SearchSeconds { describe: described, ..report.seconds };
     let shape = description.prepare()?;
-    let query = Query { name, measured: Measured::of(surface, &embedded)?, shape };
+    let query = Query { name, measured: Measured::new(surface, &embedded)?, shape };
     Ok((query, SearchReport { seconds, ..report }))
 }

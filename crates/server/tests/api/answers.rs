@@ -83,8 +83,8 @@ fn repairs_are_reported() {
     let server = Served::start(options());
     let two = shapes::disjoint(&[shapes::torus(24, 12, 2.0, 0.6), shapes::tetrahedron(0)]);
     let answer = upload(server.address, &[("q.ply", &written("q.ply", &two))], &[]).unwrap().json();
-    let said = answer["repaired"][0].as_str().unwrap();
-    assert!(said.starts_with("1 of 2 components dropped, 4 faces and 4 vertices"), "{said}");
+    let line = answer["repaired"][0].as_str().unwrap();
+    assert!(line.starts_with("1 of 2 components dropped, 4 faces and 4 vertices"), "{line}");
     assert_eq!(answer["repair"]["dropped_vertices"].as_array().unwrap().len(), 4);
     assert_eq!(geometry(&answer["mesh"]).positions.len(), two.n_vertices() - 4);
 }
@@ -206,10 +206,10 @@ fn an_upload_can_be_compared_with_its_results() {
     let forms = [0, 1].map(|i| geometry(&json["forms"][i]));
     for (i, form) in forms.iter().enumerate() {
         let largest = form.values.as_ref().unwrap().iter().copied().fold(0.0, f32::max);
-        let told = json["residual"][i]["max"].as_f64().unwrap();
-        assert!((f64::from(largest) - told).abs() < 1e-5, "{largest}, {told}");
+        let largest_residual = json["residual"][i]["max"].as_f64().unwrap();
+        assert!((f64::from(largest) - largest_residual).abs() < 1e-5, "{largest}, {largest_residual}");
         // A ring may be rotated about its axis by less than an edge.
-        assert!(told < 0.3, "one shape: {told}");
+        assert!(largest_residual < 0.3, "one shape: {largest_residual}");
     }
     let away = |p: &[f32; 3], q: &[f32; 3]| (0..3).map(|i| (p[i] - q[i]).powi(2)).sum::<f32>().sqrt();
     for (p, residual) in forms[0].positions.iter().zip(forms[0].values.as_ref().unwrap()) {

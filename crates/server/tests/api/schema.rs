@@ -50,7 +50,7 @@ impl Description {
             other => panic!("{place}: no type {other}"),
         };
         if !types.iter().any(is_of) {
-            faults.push(format!("{place} is no {}: {value}", types.join(" or ")));
+            faults.push(format!("{place} is not {}: {value}", types.join(" or ")));
             return;
         }
         if let Some(allowed) = schema["enum"].as_array()

@@ -11,7 +11,7 @@ use canonform::{
 use serde::Serialize;
 use terminal::Bars;
 
-use crate::args::{AddArgs, BuildArgs, Common, MergeArgs, RemoveArgs};
+use crate::args::{AddArgs, BuildArgs, Common};
 use crate::input::is_named;
 use crate::output::{check_folder, exit_code, facts, report};
 use crate::remedy::with_remedy;
@@ -23,13 +23,9 @@ struct Json<T: Serialize> {
     report: T,
 }
 
-fn labels(path: Option<&PathBuf>) -> Result<Option<LabelFile>> {
-    Ok(path.map(|path| LabelFile::read(path)).transpose()?)
-}
-
 pub(super) fn build(args: &BuildArgs, common: &Common) -> Result<ExitCode> {
     check_folder(&args.output)?;
-    let labels = labels(args.labels.as_ref())?;
+    let labels = args.labels.as_deref().map(LabelFile::read).transpose()?;
     let describe = args.describe.options(common)?;
     let options = BuildOptions { describe: &describe, labels: labels.as_ref(), shard: args.shard };
     let built = build_index(&args.folder, &args.output, &options, &Bars::new(common.quiet))?;
@@ -37,7 +33,7 @@ pub(super) fn build(args: &BuildArgs, common: &Common) -> Result<ExitCode> {
 }
 
 pub(super) fn add(args: &AddArgs, common: &Common) -> Result<ExitCode> {
-    let labels = labels(args.labels.as_ref())?;
+    let labels = args.labels.as_deref().map(LabelFile::read).transpose()?;
     let inputs = Inputs { paths: &args.meshes, labels: labels.as_ref(), label: args.label.as_deref() };
     let added = add_to_index(&args.index, &inputs, args.replace, &Bars::new(common.quiet))?;
     summarize(&args.index, added, common)
@@ -79,21 +75,21 @@ struct RemoveReport {
     removed: usize,
 }
 
-pub(super) fn remove(args: &RemoveArgs, common: &Common) -> Result<ExitCode> {
-    let n_shapes = remove_from_index(&args.index, &args.ids)?;
-    let mut ids = args.ids.clone();
+pub(super) fn remove(index: &Path, ids: &[String], common: &Common) -> Result<ExitCode> {
+    let n_shapes = remove_from_index(index, ids)?;
+    let mut ids = ids.to_vec();
     ids.sort();
     ids.dedup();
-    let json = Json { index: args.index.clone(), report: RemoveReport { n_shapes, removed: ids.len() } };
+    let json = Json { index: index.to_owned(), report: RemoveReport { n_shapes, removed: ids.len() } };
     report(common, &json, |json| {
         format!("{} removed, {n_shapes} shapes in {}", json.report.removed, json.index.display())
     })
 }
 
-pub(super) fn merge(args: &MergeArgs, common: &Common) -> Result<ExitCode> {
-    check_folder(&args.output)?;
-    let merged = merge_indexes(&args.inputs, &args.output, &Bars::new(common.quiet))?;
-    report(common, &Json { index: args.output.clone(), report: merged }, |json| {
+pub(super) fn merge(inputs: &[PathBuf], output: &Path, common: &Common) -> Result<ExitCode> {
+    check_folder(output)?;
+    let merged = merge_indexes(inputs, output, &Bars::new(common.quiet))?;
+    report(common, &Json { index: output.to_owned(), report: merged }, |json| {
         let MergeReport { n_shapes, repeated } = json.report;
         let twice =
             if repeated > 0 { format!(", {repeated} of them in more than one index") } else { String::new() };

@@ -9,7 +9,7 @@ use anyhow::Result;
 use index::{ExportError, Index, Verification, work_path};
 use serde::Serialize;
 
-use crate::args::{Common, ExportArgs};
+use crate::args::Common;
 use crate::output::{check_folder, exit_code, facts, print, print_json, report};
 
 #[derive(Serialize)]
@@ -80,9 +80,9 @@ fn table(json: &InfoJson) -> String {
     facts(&rows)
 }
 
-pub(super) fn export(args: &ExportArgs) -> Result<ExitCode> {
-    let index = Index::open(&args.index)?;
-    let Some(path) = &args.output else {
+pub(super) fn export(index: &Path, output: Option<&Path>) -> Result<ExitCode> {
+    let index = Index::open(index)?;
+    let Some(path) = output else {
         let mut out = BufWriter::with_capacity(1 << 16, std::io::stdout().lock());
         index.export(&mut out)?;
         out.flush()?;
