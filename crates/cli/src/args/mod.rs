@@ -60,7 +60,7 @@ pub(crate) enum Command {
     Search(SearchArgs),
     /// Score how well an index or a matrix of distances separates classes
     Evaluate(EvaluateArgs),
-    /// Serve an index to browsers: drop a mesh, see the most similar shapes
+    /// Serve an index to browsers: drop a mesh and see the most similar shapes
     Serve(ServeArgs),
     /// Print a completion script for a shell
     Completions {
@@ -88,25 +88,25 @@ pub(crate) struct EmbedArgs {
     /// File format of forms when embedding a folder
     #[arg(long, value_parser = one_of(FORM_FORMATS.map(|(name, help)| (name, help, name))), default_value = "ply")]
     pub(crate) format: &'static str,
-    #[command(flatten)]
-    pub(crate) embedding: EmbeddingArgs,
     /// How to find the stress
     #[arg(long, value_parser = one_of(STRESS), default_value = "auto")]
     pub(crate) stress: StressChoice,
     /// How to measure the distances that the stress compares the form with [default: as --geodesic]
     #[arg(long, value_parser = distance_method(), value_name = "METHOD")]
     pub(crate) stress_against: Option<Method>,
+    #[command(flatten)]
+    pub(crate) embedding: EmbeddingArgs,
 }
 
 #[derive(Debug, Args)]
 pub(crate) struct MethodsArgs {
     /// Mesh file
     pub(crate) mesh: PathBuf,
-    #[command(flatten)]
-    pub(crate) form: FormArgs,
     /// How to find the stress
     #[arg(long, value_parser = one_of([STRESS[0], STRESS[1], STRESS[2]]), default_value = "auto")]
     pub(crate) stress: StressChoice,
+    #[command(flatten)]
+    pub(crate) form: FormArgs,
 }
 
 #[derive(Debug, Args)]

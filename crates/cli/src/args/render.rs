@@ -54,7 +54,7 @@ pub(crate) struct RenderArgs {
     /// Row of the field, counted from 0; required if it has several
     #[arg(long, value_name = "ROW", requires = "field")]
     pub(crate) row: Option<usize>,
-    /// Colour by the distance from the nearest of these points, by fast marching; points are written as for `canonform
+    /// Colour by the distance from the nearest of these points, by fast marching; write points as for `canonform
     /// geodesic`
     #[arg(long, value_delimiter = ',', value_name = "POINT[,POINT...]", conflicts_with = "field")]
     pub(crate) distance_from: Vec<InputPoint>,

@@ -11,8 +11,8 @@ use server::ServeOptions;
 pub(crate) struct ServeArgs {
     /// The index
     pub(crate) index: PathBuf,
-    /// Address and port; port 0 takes a free port. Any address that other machines can reach lets them search, and see the
-    /// index and its meshes
+    /// Address and port; port 0 takes a free port. Machines that can reach the address can search, and see the index and its
+    /// meshes
     #[arg(long, value_name = "ADDRESS:PORT", default_value_t = ServeOptions::default().listen)]
     pub(crate) listen: SocketAddr,
     /// Largest upload, in megabytes

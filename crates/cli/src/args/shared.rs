@@ -25,13 +25,12 @@ pub(crate) struct Common {
 
 /// How meshes are repaired before anything is measured.
 #[derive(Debug, Clone, Args)]
-#[command(next_help_heading = "Repair")]
 pub(crate) struct RepairArgs {
     /// What to do with a mesh of several components
-    #[arg(long, value_parser = components(), default_value = "largest", value_name = "POLICY")]
+    #[arg(long, help_heading = "Repair", value_parser = components(), default_value = "largest", value_name = "POLICY")]
     pub(crate) components: ComponentPolicy,
     /// Which vertices at exactly the same position to merge
-    #[arg(long, value_parser = weld(), default_value = "seams")]
+    #[arg(long, help_heading = "Repair", value_parser = weld(), default_value = "seams")]
     pub(crate) weld: Weld,
 }
 
@@ -59,13 +58,12 @@ impl RepairArgs {
 
 /// Options of fast marching.
 #[derive(Debug, Clone, Copy, Args)]
-#[command(next_help_heading = "Fast marching")]
 pub(crate) struct MarchingArgs {
     /// Local solver
-    #[arg(long, value_parser = update(), default_value = "point-source")]
+    #[arg(long, help_heading = "Fast marching", value_parser = update(), default_value = "point-source")]
     pub(crate) update: Update,
     /// What to do about angles wider than 90 degrees
-    #[arg(long, value_parser = obtuse(), default_value = "flip")]
+    #[arg(long, help_heading = "Fast marching", value_parser = obtuse(), default_value = "flip")]
     pub(crate) obtuse: ObtuseTreatment,
 }
 
@@ -99,7 +97,7 @@ impl MarchingArgs {
     }
 }
 
-/// The options of every embedding.
+/// The options of every embedding. Flatten it last: its help heading applies to all options that follow.
 #[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Embedding")]
 pub(crate) struct FormArgs {
