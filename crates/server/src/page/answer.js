@@ -59,7 +59,7 @@ export class Answer {
     byId('mesh-view').hidden = !found.mesh;
     if (found.mesh) view('mesh-view', found.mesh, { title: 'Shape', linkedWith: views['form-view'] });
     const tiles = found.results.map(({ rank, id, label, distance }) => {
-      const lines = [['more', label], ['more', `distance ${distance.toFixed(3)}`]];
+      const lines = [['more', label], ['more', `${distance.toFixed(3)} away`]];
       const item = tile(id, label, lines, (hit) => this.compare(hit));
       Object.assign(item.firstChild.dataset, { distance, rank });
       return item;
