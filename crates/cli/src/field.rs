@@ -1,4 +1,4 @@
-//! Numbers of vertices, read from files.
+//! Fields: one value per vertex, read from files.
 
 use std::fs::File;
 use std::io::BufReader;
@@ -7,21 +7,17 @@ use std::path::Path;
 use anyhow::{Context, Result, bail};
 use npyz::{NpyFile, Order};
 
-use crate::output::extension;
+use crate::output::check_format;
 
-/// Reads one row of a field, one number for each of `n_vertices`. `row` counts from 0 and may be left
-/// out where there is one only.
+/// Reads one row of a field of `n_vertices` values. `row` counts from 0; it may be left out if there is only one.
 pub(crate) fn read_field(path: &Path, row: Option<usize>, n_vertices: usize) -> Result<Vec<f64>> {
-    let read = match extension(path).as_str() {
-        "npy" => read_npy(path),
-        "csv" => read_csv(path),
-        _ => bail!("{}: fields are read from .npy or .csv; end the name in one of them", path.display()),
-    };
+    let format = check_format(path, "a field", &["npy", "csv"])?;
+    let read = if format == "npy" { read_npy(path) } else { read_csv(path) };
     let rows = read.with_context(|| path.display().to_string())?;
     choose(rows, row, n_vertices).with_context(|| path.display().to_string())
 }
 
-/// Numbers in rows of equal length, row by row.
+/// Rows of equal length, one after the other.
 struct Rows {
     n_columns: usize,
     values: Vec<f64>,
@@ -29,13 +25,13 @@ struct Rows {
 
 fn choose(rows: Rows, row: Option<usize>, n_vertices: usize) -> Result<Vec<f64>> {
     let Rows { n_columns, values } = rows;
-    // A column is a row that was written downwards.
+    // One value per line is one row.
     let is_column = n_columns == 1 && values.len() == n_vertices;
     let n_columns = if is_column { values.len() } else { n_columns };
     if n_columns != n_vertices {
         bail!(
-            "the field has {n_columns} numbers a row, the mesh {n_vertices} vertices; give one number for each vertex \
-             of this mesh's file"
+            "the field has {n_columns} values per row, but the mesh has {n_vertices} vertices; give one value per vertex \
+             of the mesh file"
         );
     }
     let n_rows = values.len().checked_div(n_columns).unwrap_or(0);
@@ -43,7 +39,7 @@ fn choose(rows: Rows, row: Option<usize>, n_vertices: usize) -> Result<Vec<f64>>
         None if n_rows == 1 => Ok(values),
         None => bail!("the field has {n_rows} rows; choose one with --row, counted from 0"),
         Some(row) if row < n_rows => Ok(values[row * n_columns..][..n_columns].to_vec()),
-        Some(row) => bail!("there is no row {row}; the field has {n_rows}, counted from 0"),
+        Some(row) => bail!("row {row} does not exist; the field has {n_rows} rows, counted from 0"),
     }
 }
 
@@ -54,9 +50,9 @@ fn read_npy(path: &Path) -> Result<Rows> {
     let (shape, order, kind) = (header.shape().to_vec(), header.order(), header.dtype().descr());
     let n_columns = match shape[..] {
         [n] | [_, n] => usize::try_from(n)?,
-        _ => bail!("the array has {} dimensions; a field has one or two", shape.len()),
+        _ => bail!("the array has {} dimensions; use one or two", shape.len()),
     };
-    // npyz converts no numbers: it has to be asked for what is there.
+    // npyz does not convert numbers: try each type.
     let values = open()?
         .try_data::<f64>()
         .ok()
@@ -66,7 +62,7 @@ fn read_npy(path: &Path) -> Result<Rows> {
         .or_else(|| Some(open().ok()?.try_data::<i32>().ok()?.map(|x| x.map(f64::from)).collect()))
         .or_else(|| Some(open().ok()?.try_data::<u8>().ok()?.map(|x| x.map(f64::from)).collect()));
     let Some(values) = values else {
-        bail!("the array holds {kind}; a field holds numbers, such as '<f8' (float64)");
+        bail!("unsupported array type {kind}; use numbers such as '<f8' (float64)");
     };
     let values = values?;
     let n_rows = values.len().checked_div(n_columns).unwrap_or(0);
@@ -87,12 +83,14 @@ fn read_csv(path: &Path) -> Result<Rows> {
         let before = values.len();
         for part in line.split(',') {
             let part = part.trim();
-            values.push(part.parse().with_context(|| format!("line {}: `{part}` is no number", number + 1))?);
+            values.push(
+                part.parse().with_context(|| format!("line {}: `{part}` is not a number", number + 1))?,
+            );
         }
         let found = values.len() - before;
         let expected = *n_columns.get_or_insert(found);
         if found != expected {
-            bail!("line {} has {found} numbers, the first one {expected}", number + 1);
+            bail!("line {} has {found} values, but the first line has {expected}", number + 1);
         }
     }
     Ok(Rows { n_columns: n_columns.unwrap_or(0), values })

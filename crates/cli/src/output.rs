@@ -1,32 +1,51 @@
-//! What leaves the program: JSON, tables and files.
+//! Output: JSON, tables, files and exit codes.
 
 use std::fs::File;
-use std::io::{self, Write};
+use std::io::{self, BufWriter, Write};
 use std::path::Path;
+use std::process::ExitCode;
 
 use anyhow::{Result, bail};
-use mesh::io::VertexField;
+use mesh::io::{VertexField, or_list};
 use mesh::{MeshError, TriMesh};
 use npyz::WriterBuilder;
 use serde::Serialize;
 use view::color::{Rgb, color_scale};
 
-/// Prints one JSON object on standard output.
+use crate::args::Common;
+
+/// Prints the result of a command: one JSON object with `--json`, else a table.
+pub(crate) fn report<T: Serialize>(
+    common: &Common,
+    result: &T,
+    table: impl FnOnce(&T) -> String,
+) -> Result<ExitCode> {
+    if common.json {
+        print_json(result)?
+    } else {
+        print(&table(result))?
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Success, or 2 if some inputs failed.
+pub(crate) fn exit_code(all_done: bool) -> ExitCode {
+    if all_done { ExitCode::SUCCESS } else { ExitCode::from(2) }
+}
+
+/// Prints one JSON object to standard output.
 pub(crate) fn print_json(value: &impl Serialize) -> Result<()> {
-    let mut out = std::io::stdout().lock();
+    let mut out = io::stdout().lock();
     serde_json::to_writer(&mut out, value).map_err(std::io::Error::from)?;
-    writeln!(out)?;
-    Ok(())
+    Ok(writeln!(out)?)
 }
 
-/// Prints text on standard output.
+/// Prints text to standard output.
 pub(crate) fn print(text: &str) -> Result<()> {
-    let mut out = std::io::stdout().lock();
-    writeln!(out, "{text}")?;
-    Ok(())
+    Ok(writeln!(io::stdout().lock(), "{text}")?)
 }
 
-/// Two columns: what, and its value.
+/// A table of two columns: names and values.
 pub(crate) fn facts(rows: &[(&str, String)]) -> String {
     let width = rows.iter().map(|(name, _)| name.len()).max().unwrap_or(0);
     let line = |(name, value): &(&str, String)| format!("  {name:<width$}  {value}");
@@ -39,18 +58,14 @@ pub(crate) fn write_npy<'a>(
     n_columns: usize,
     rows: impl ExactSizeIterator<Item = &'a [f64]>,
 ) -> Result<()> {
-    let shape = [rows.len() as u64, n_columns as u64];
-    Ok(files::write_atomically(path, |out| {
-        let mut array = npyz::WriteOptions::new().default_dtype().shape(&shape).writer(out).begin_nd()?;
-        for row in rows {
-            array.extend(row)?;
-        }
-        array.finish()
-    })?)
+    fill_npy(path, [rows.len(), n_columns], |file| {
+        let mut out = BufWriter::with_capacity(1 << 16, file);
+        rows.flatten().try_for_each(|x| out.write_all(&x.to_le_bytes()))?;
+        out.flush()
+    })
 }
 
-/// Writes a little-endian float64 NumPy array of this shape whose numbers `content` writes, in any
-/// order, from where the file stands.
+/// Writes a little-endian float64 NumPy array of this shape; `content` writes its numbers after the header, in any order.
 pub(crate) fn fill_npy(
     path: &Path,
     shape: [usize; 2],
@@ -67,7 +82,7 @@ pub(crate) fn fill_npy(
     })?)
 }
 
-/// Writes rows of numbers separated by commas, in full precision.
+/// Writes rows of comma-separated numbers in full precision.
 pub(crate) fn write_csv<'a>(path: &Path, rows: impl Iterator<Item = &'a [f64]>) -> Result<()> {
     Ok(files::write_atomically(path, |out| {
         for row in rows {
@@ -78,12 +93,21 @@ pub(crate) fn write_csv<'a>(path: &Path, rows: impl Iterator<Item = &'a [f64]>) 
     })?)
 }
 
-/// Refuses a file in a folder that does not exist, before any work is done for it.
+/// The extension of a file name, which must be one of `formats`.
+pub(crate) fn check_format(path: &Path, what: &str, formats: &[&str]) -> Result<String> {
+    let format = extension(path);
+    if !formats.contains(&format.as_str()) {
+        bail!("{}: unsupported format for {what}; use {}", path.display(), or_list(formats.iter().copied()));
+    }
+    Ok(format)
+}
+
+/// Refuses an output file in a folder that does not exist, before any work is done.
 pub(crate) fn check_folder(path: &Path) -> Result<()> {
     match path.parent() {
         Some(folder) if !folder.as_os_str().is_empty() && !folder.is_dir() => {
             bail!(
-                "cannot write {}: the folder {} does not exist; make it first",
+                "cannot write {}: the folder {} does not exist; create it first",
                 path.display(),
                 folder.display()
             )
@@ -92,7 +116,7 @@ pub(crate) fn check_folder(path: &Path) -> Result<()> {
     }
 }
 
-/// Writes a mesh coloured by a value per vertex.
+/// Writes a mesh coloured by one value per vertex.
 pub(crate) fn write_colored(
     path: &Path,
     mesh: &TriMesh,

@@ -1,22 +1,23 @@
-//! What to do about an error, in terms of the command line.
+//! Error messages with advice in terms of the command line. No other place words a remedy as options.
 
-use anyhow::Error;
+use std::io::ErrorKind;
+
 use canonform::Remedy;
+use server::ServerError;
 
-/// The options and commands that a remedy means.
-pub(crate) fn words(remedy: Remedy) -> &'static str {
+fn words(remedy: Remedy) -> &'static str {
     match remedy {
         Remedy::KeepLargestOrBridge => "pass --components largest or --components bridge",
         Remedy::BridgeComponents => "to keep all components, pass --components bridge",
         Remedy::UseThreeDimensions => "leave out --dim",
         Remedy::UseFastMarching => "use fast-marching",
-        Remedy::UseNystrom => "use --method nmds, which needs a few columns only",
+        Remedy::UseNystrom => "use --method nmds, which needs only a few columns",
         Remedy::RaiseMemory => "raise --memory",
         Remedy::RaiseMaxDistance => "choose another target, or raise --max-distance",
         Remedy::GiveLabels => "give classes with --labels FILE.csv",
-        Remedy::ReplaceShape => "rename the new one, remove the old one, or pass --replace",
+        Remedy::ReplaceShape => "rename the new shape, remove the old one, or pass --replace",
         Remedy::RestoreMesh => {
-            "put the file back, start in the folder that the index was built in, or build the index again"
+            "restore the file, run in the folder where the index was built, or build the index again"
         }
         Remedy::BuildIndexAgain => "build the index again with `canonform index build`",
         Remedy::EvaluateShard => "evaluate one shard at a time",
@@ -24,19 +25,40 @@ pub(crate) fn words(remedy: Remedy) -> &'static str {
     }
 }
 
-/// A message with its remedy.
-pub(crate) fn with_remedy(message: &str, remedy: Option<Remedy>) -> String {
-    remedy.map_or_else(|| message.to_owned(), |remedy| format!("{message}; {}", words(remedy)))
+/// What to do about a cause of an error, if that depends on the command line.
+fn advice(cause: &(dyn std::error::Error + 'static)) -> Option<&'static str> {
+    if let Some(ServerError::Listen { source, .. }) = cause.downcast_ref() {
+        return Some(match source.kind() {
+            ErrorKind::AddrInUse => {
+                "another program uses it: stop that program, or pass --listen with another port (0 takes a free port)"
+            }
+            ErrorKind::PermissionDenied => "pass --listen with a port above 1023",
+            _ => "pass --listen with an address of this machine",
+        });
+    }
+    let fault = match cause.downcast_ref() {
+        Some(ServerError::Index(fault)) => Some(fault),
+        _ => cause.downcast_ref::<canonform::Error>(),
+    };
+    fault?.remedy().map(words)
 }
 
-/// The message of an error with its remedy, as people read it.
-pub(crate) fn message(error: &Error) -> String {
-    let remedy = error.chain().find_map(|cause| cause.downcast_ref::<canonform::Error>()?.remedy());
-    with_remedy(&terminal::message(error), remedy)
+/// A message with its remedy.
+pub(crate) fn with_remedy(message: String, remedy: Option<Remedy>) -> String {
+    with_advice(message, remedy.map(words))
+}
+
+/// The message of an error with its remedy.
+pub(crate) fn message(error: &anyhow::Error) -> String {
+    with_advice(terminal::message(error), error.chain().find_map(advice))
+}
+
+fn with_advice(message: String, advice: Option<&str>) -> String {
+    [Some(message.as_str()), advice].into_iter().flatten().collect::<Vec<_>>().join("; ")
 }
 
 /// The same error with its remedy in front of its causes.
-pub(crate) fn remedied(error: Error) -> Error {
+pub(crate) fn remedied(error: anyhow::Error) -> anyhow::Error {
     let message = message(&error);
     error.context(message)
 }

@@ -77,7 +77,7 @@ impl Method {
     fn entry(self) -> (&'static str, &'static str) {
         match self {
             Self::FastMarching(_) => ("fast-marching", "Fast marching on triangles"),
-            Self::Heat(_) => ("heat", "From the flow of heat: smooth, fast for many sources"),
+            Self::Heat(_) => ("heat", "Heat method: smooth, fast for many sources"),
             Self::Exact => ("exact", "Exact on the polyhedral surface"),
             Self::Dijkstra => ("dijkstra", "Shortest paths along edges"),
             Self::BreadthFirst => ("bfs", "Number of edges times the mean edge length"),

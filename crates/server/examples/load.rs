@@ -1,8 +1,8 @@
-//! Many clients search with one mesh at once.
+//! Load test: many clients search with the same mesh at once.
 //!
-//! `cargo run --release -p canonform-server --example load -- INDEX MESH [--clients 8] [--seconds 60]` serves the index in this
-//! process and prints requests, errors, the median and 99th percentile of answers, and the memory at the start, in the
-//! middle and at the end.
+//! `cargo run --release -p canonform-server --example load -- INDEX MESH [--clients 8] [--seconds 60]` serves the index
+//! in this process and prints the number of requests and errors, the median and 99th percentile of response times, and
+//! the memory at the start, in the middle and at the end.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -15,7 +15,7 @@ use canonform_server::{ServeOptions, Server};
 #[path = "../tests/api/client.rs"]
 mod client;
 
-/// Memory is taken as that after the first so many seconds, when the caches are filled.
+/// Memory at the start is measured after this time, when the caches are filled.
 const WARM: Duration = Duration::from_secs(5);
 
 struct Arguments {
@@ -39,7 +39,7 @@ fn arguments() -> Option<Arguments> {
     Some(found)
 }
 
-/// Megabytes of this process in memory, where that is told.
+/// Resident memory of this process in megabytes; NaN where the system does not tell.
 fn resident() -> f64 {
     let pages = |text: String| text.split(' ').nth(1)?.parse::<f64>().ok();
     fs::read_to_string("/proc/self/statm").ok().and_then(pages).map_or(f64::NAN, |pages| pages * 4096.0 / 1e6)

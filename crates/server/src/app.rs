@@ -1,20 +1,20 @@
-//! What all requests share.
+//! State shared by all requests.
 
 use std::path::Path;
 use std::sync::Arc;
 
 use axum::body::Bytes;
 use canonform::descriptors::PreparedShape;
-use canonform::{Error, ShapeSearch};
+use canonform::{Error, ShapeSearch, Surface, embed};
 use serde::Serialize;
 
-use crate::ServeOptions;
 use crate::cache::Cache;
 use crate::error::ApiError;
 use crate::measured::Measured;
+use crate::options::ServeOptions;
 use crate::work::Work;
 
-/// The index, what is kept of earlier answers, and the queue.
+/// The index, the caches and the queue.
 pub(crate) struct App {
     pub(crate) search: ShapeSearch,
     /// All shapes, by ascending name.
@@ -26,7 +26,7 @@ pub(crate) struct App {
     pub(crate) queries: Cache<Arc<Query>>,
 }
 
-/// A shape of the index in a list.
+/// A shape in a list.
 #[derive(Debug, Clone, Serialize)]
 pub(crate) struct ShapeSummary {
     pub(crate) id: String,
@@ -35,11 +35,11 @@ pub(crate) struct ShapeSummary {
     faces: Option<u64>,
     /// In squared mesh units.
     area: Option<f64>,
-    /// The longest distance along the surface from a sample, in mesh units.
+    /// The largest surface distance from a sample, in mesh units.
     diameter: Option<f64>,
 }
 
-/// An upload that was answered.
+/// An upload that was searched for.
 pub(crate) struct Query {
     pub(crate) name: String,
     pub(crate) measured: Measured,
@@ -63,7 +63,7 @@ impl App {
         Ok(Self {
             shapes: shapes.collect(),
             work: Work::new(&options),
-            // Pictures are small, meshes are not.
+            // Thumbnails are smaller than meshes.
             measured: Cache::new(options.cache / 4 * 3),
             thumbnails: Cache::new(options.cache / 4),
             queries: Cache::new(options.kept_queries).with_lifetime(options.query_lifetime),
@@ -72,21 +72,23 @@ impl App {
         })
     }
 
-    /// A shape of the index with the form of all its vertices, measured now or before.
+    /// A shape of the index with the form of all its vertices, from the cache or measured now.
     pub(crate) fn indexed(&self, id: &str) -> Result<Arc<Measured>, Error> {
         if let Some(known) = self.measured.get(id) {
             return Ok(known);
         }
-        let mesh = self.search.mesh(id)?;
-        let measured = Arc::new(Measured::new(&mesh, &self.search.describe_options().form)?);
+        let options = &self.search.describe_options().form;
+        let surface = Surface::new(&self.search.mesh(id)?, &options.repair)?;
+        let embedded = embed(&surface, options, &())?;
+        let measured = Arc::new(Measured::new(surface, &embedded)?);
         self.measured.put(id.to_owned(), measured.clone(), measured.bytes());
         Ok(measured)
     }
 
-    /// Keeps a query under a name that nobody can guess.
+    /// Keeps a query under an unguessable name.
     pub(crate) fn keep(&self, query: Query) -> Result<String, ApiError> {
         let mut secret = [0_u8; 16];
-        getrandom::fill(&mut secret).map_err(|_| ApiError::fault())?;
+        getrandom::fill(&mut secret).map_err(|_| ApiError::internal())?;
         let name: String = secret.iter().map(|byte| format!("{byte:02x}")).collect();
         let bytes = query.measured.bytes();
         self.queries.put(name.clone(), Arc::new(query), bytes);

@@ -1,11 +1,11 @@
-//! What is kept of earlier work, up to a number of bytes.
+//! A cache with a limit in bytes.
 
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 use lru::LruCache;
 
-/// Values by name; what was not asked for the longest is forgotten first.
+/// Values by name; the least recently used one is dropped first.
 pub(crate) struct Cache<V> {
     entries: Mutex<Entries<V>>,
     limit: usize,
@@ -24,7 +24,7 @@ struct Entry<V> {
 }
 
 impl<V: Clone> Cache<V> {
-    /// Keeps up to `limit` bytes, but the last value whatever its size.
+    /// Keeps up to `limit` bytes, and the last value whatever its size.
     pub(crate) fn new(limit: usize) -> Self {
         Self {
             entries: Mutex::new(Entries { known: LruCache::unbounded(), bytes: 0 }),
@@ -33,20 +33,20 @@ impl<V: Clone> Cache<V> {
         }
     }
 
-    /// Forgets what is older than this.
+    /// Drops values older than this.
     pub(crate) fn with_lifetime(self, lifetime: Duration) -> Self {
         Self { lifetime: Some(lifetime), ..self }
     }
 
     pub(crate) fn get(&self, name: &str) -> Option<V> {
         let mut entries = self.lock();
-        self.forget_old(&mut entries);
+        self.drop_old(&mut entries);
         entries.known.get(name).map(|entry| entry.value.clone())
     }
 
     pub(crate) fn put(&self, name: String, value: V, bytes: usize) {
         let mut entries = self.lock();
-        self.forget_old(&mut entries);
+        self.drop_old(&mut entries);
         let entry = Entry { value, bytes, since: Instant::now() };
         let replaced = entries.known.put(name, entry).map_or(0, |entry| entry.bytes);
         entries.bytes = entries.bytes + bytes - replaced;
@@ -56,7 +56,7 @@ impl<V: Clone> Cache<V> {
         }
     }
 
-    fn forget_old(&self, entries: &mut Entries<V>) {
+    fn drop_old(&self, entries: &mut Entries<V>) {
         let Some(lifetime) = self.lifetime else { return };
         let old = entries.known.iter().filter(|(_, entry)| entry.since.elapsed() >= lifetime);
         let old: Vec<String> = old.map(|(name, _)| name.clone()).collect();
@@ -65,7 +65,7 @@ impl<V: Clone> Cache<V> {
         }
     }
 
-    /// A panic elsewhere leaves the entries whole: nothing in here panics between two changes.
+    /// A poisoned lock is harmless: no method panics between two changes.
     fn lock(&self) -> MutexGuard<'_, Entries<V>> {
         self.entries.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -84,7 +84,7 @@ mod tests {
     }
 
     #[test]
-    fn what_was_not_asked_for_the_longest_goes_first() {
+    fn the_least_recently_used_value_is_dropped_first() {
         let cache = Cache::new(100);
         for name in ["a", "b", "c"] {
             cache.put(name.to_owned(), 1, 30);
@@ -101,7 +101,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_old_is_forgotten() {
+    fn old_values_are_dropped() {
         let cache = Cache::new(100).with_lifetime(Duration::ZERO);
         cache.put("a".to_owned(), 1, 30);
         assert_eq!((cache.get("a"), bytes(&cache)), (None, 0));

@@ -1,4 +1,4 @@
-//! What a server cannot do, and what it says to a request that is no good.
+//! Errors of the server, and error responses with their remedies. No other place words a remedy.
 
 use std::net::SocketAddr;
 use std::path::Path;
@@ -9,45 +9,36 @@ use axum::http::{HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use canonform::index::IndexError;
 use canonform::{Error, Remedy};
+use mesh::io::Format;
 use mesh::{Fault, MeshError};
 use serde::Serialize;
 
-/// Why a server does not start or does not go on.
+/// Why a server cannot start or continue.
 #[derive(Debug, thiserror::Error)]
 pub enum ServerError {
     /// The index.
     #[error(transparent)]
-    Pipeline(#[from] Error),
+    Index(#[from] Error),
     /// The address.
-    #[error("cannot listen on {address}: {source}; {remedy}", remedy = listen_remedy(source))]
+    #[error("cannot listen on {address}: {source}")]
     Listen {
         /// The address.
         address: SocketAddr,
-        /// What the operating system said.
+        /// The error of the operating system.
         source: std::io::Error,
     },
     /// Threads or sockets.
-    #[error("cannot serve: {0}; close other programs and start again")]
+    #[error("cannot start the server: {0}; close other programs and try again")]
     Runtime(std::io::Error),
 }
 
-fn listen_remedy(source: &std::io::Error) -> &'static str {
-    match source.kind() {
-        std::io::ErrorKind::AddrInUse => {
-            "another program has it: end that one, or pass --listen with another port (0 takes a free one)"
-        }
-        std::io::ErrorKind::PermissionDenied => "pass --listen with a port above 1023",
-        _ => "pass --listen with an address of this machine",
-    }
-}
-
-/// What a request is told that cannot be answered: `{"error", "remedy"?}`.
+/// An error response: `{"error", "remedy"?}`.
 #[derive(Debug)]
 pub(crate) struct ApiError {
     status: StatusCode,
     body: Body,
     /// In seconds.
-    ask_again: Option<u32>,
+    retry_after: Option<u32>,
 }
 
 #[derive(Debug, Serialize)]
@@ -59,7 +50,7 @@ struct Body {
 
 impl ApiError {
     pub(crate) fn new(status: StatusCode, error: impl Into<String>) -> Self {
-        Self { status, body: Body { error: error.into(), remedy: None }, ask_again: None }
+        Self { status, body: Body { error: error.into(), remedy: None }, retry_after: None }
     }
 
     pub(crate) fn with_remedy(mut self, remedy: impl Into<String>) -> Self {
@@ -71,12 +62,11 @@ impl ApiError {
         Self::new(StatusCode::BAD_REQUEST, error)
     }
 
-    /// More bytes than are taken.
+    /// The upload has too many bytes.
     pub(crate) fn upload_too_large(limit: usize) -> Self {
-        let limit = limit as f64 / 1e6;
-        let error = format!("the upload is larger than the {limit} MB that are taken");
+        let error = format!("the upload exceeds the limit of {} MB", limit as f64 / 1e6);
         Self::new(StatusCode::PAYLOAD_TOO_LARGE, error)
-            .with_remedy("simplify the mesh, or start the server with a larger --max-upload")
+            .with_remedy("simplify the mesh, or raise the upload limit of the server")
     }
 
     /// The client sends nothing, or too slowly.
@@ -85,31 +75,38 @@ impl ApiError {
             .with_remedy("check the connection and send it again")
     }
 
+    /// Too many requests; the client may retry after this many seconds.
     pub(crate) fn busy(seconds: u32) -> Self {
-        let error = "too many requests are being worked on";
-        let remedy = format!("ask again in {seconds} seconds");
-        let busy = Self::new(StatusCode::SERVICE_UNAVAILABLE, error).with_remedy(remedy);
-        Self { ask_again: Some(seconds), ..busy }
+        let busy = Self::new(StatusCode::SERVICE_UNAVAILABLE, "too many requests in progress")
+            .with_remedy(format!("try again in {seconds} seconds"));
+        Self { retry_after: Some(seconds), ..busy }
     }
 
+    /// The request took too long.
     pub(crate) fn too_slow(limit: Duration) -> Self {
-        let error = format!("the work was not done within {} seconds", limit.as_secs_f64());
+        let error = format!("the request was not finished within {} seconds", limit.as_secs_f64());
         Self::new(StatusCode::SERVICE_UNAVAILABLE, error).with_remedy(
-            "simplify the mesh, ask again when less is asked, or start the server with a larger --time-limit",
+            "simplify the mesh, try again when the server is less busy, or raise the time limit of the server",
         )
     }
 
-    /// A fault of the program.
-    pub(crate) fn fault() -> Self {
-        let error = "the server made a mistake; what it was stands in its terminal";
-        Self::new(StatusCode::INTERNAL_SERVER_ERROR, error)
-            .with_remedy("report it with the mesh that led to it")
+    /// A bug of the program.
+    pub(crate) fn internal() -> Self {
+        Self::new(StatusCode::INTERNAL_SERVER_ERROR, "internal error; see the server log")
+            .with_remedy("report it with the mesh that caused it")
     }
 
-    /// What is wrong with a mesh that was sent, in the words of the command line: with its name in front unless the
-    /// fault has it.
-    pub(crate) fn of_upload(name: &Path, fault: &Error) -> Self {
-        let status = match fault {
+    fn of_fault(status: StatusCode, error: String, fault: &Error) -> Self {
+        let remedy = match fault {
+            _ if status == StatusCode::PAYLOAD_TOO_LARGE => Some("raise the vertex limit of the server"),
+            fault => remedy(fault),
+        };
+        Self { status, body: Body { error, remedy: remedy.map(str::to_owned) }, retry_after: None }
+    }
+
+    /// An error of an uploaded mesh, worded as on the command line and with the name of the file.
+    pub(crate) fn of_upload(name: &Path, fault: Error) -> Self {
+        let status = match &fault {
             Error::Mesh(MeshError::UnknownFormat { .. }) => StatusCode::UNSUPPORTED_MEDIA_TYPE,
             Error::Mesh(MeshError::File { fault: Fault::OverLimit { .. }, .. }) => {
                 StatusCode::PAYLOAD_TOO_LARGE
@@ -119,16 +116,11 @@ impl ApiError {
             _ => StatusCode::UNPROCESSABLE_ENTITY,
         };
         let text = fault.to_string();
-        // Of a `.vert`/`.tri` pair the fault may lie in the other half.
-        let names = [name.to_owned(), name.with_extension("vert"), name.with_extension("tri")];
-        let is_named = names.iter().any(|name| text.contains(&name.display().to_string()));
-        let too_large = status == StatusCode::PAYLOAD_TOO_LARGE;
-        let error = Self::new(status, if is_named { text } else { format!("{}: {text}", name.display()) });
-        match remedy(fault) {
-            _ if too_large => error.with_remedy("start the server with a larger --max-vertices"),
-            Some(remedy) => error.with_remedy(remedy),
-            None => error,
-        }
+        // The fault may name another file of the same mesh.
+        let extensions = Format::of(name).map_or(&[][..], |format| format.extensions);
+        let mut files = extensions.iter().map(|e| name.with_extension(e)).chain([name.to_owned()]);
+        let is_named = files.any(|file| text.contains(&file.display().to_string()));
+        Self::of_fault(status, if is_named { text } else { format!("{}: {text}", name.display()) }, &fault)
     }
 
     #[cfg(test)]
@@ -137,31 +129,26 @@ impl ApiError {
     }
 }
 
-/// Faults of indexed shapes.
-impl From<&Error> for ApiError {
-    fn from(fault: &Error) -> Self {
+/// Errors of indexed shapes.
+impl From<Error> for ApiError {
+    fn from(fault: Error) -> Self {
         let status = match fault {
             Error::Index(IndexError::NoSuchShape { .. }) | Error::MeshGone { .. } => StatusCode::NOT_FOUND,
             Error::MeshChanged { .. } => StatusCode::GONE,
             _ => StatusCode::INTERNAL_SERVER_ERROR,
         };
-        let error = Self::new(status, fault.to_string());
-        match remedy(fault) {
-            Some(remedy) => error.with_remedy(remedy),
-            None => error,
-        }
+        Self::of_fault(status, fault.to_string(), &fault)
     }
 }
 
 /// What to do about an error, in words that do not depend on a program.
-pub(crate) fn remedy(fault: &Error) -> Option<&'static str> {
+fn remedy(fault: &Error) -> Option<&'static str> {
     Some(match fault.remedy()? {
         Remedy::KeepLargestOrBridge | Remedy::BridgeComponents => {
-            "join the components of the mesh, or keep the largest one only"
+            "join the components of the mesh, or keep only the largest one"
         }
         Remedy::RestoreMesh => {
-            "put the mesh file back, start the server in the folder that the index was built in, or build the index \
-             again"
+            "restore the mesh file, start the server in the folder where the index was built, or build the index again"
         }
         Remedy::BuildIndexAgain => "build the index again",
         Remedy::UseNystrom => "simplify the mesh, or build the index with NMDS, which needs less memory",
@@ -169,16 +156,10 @@ pub(crate) fn remedy(fault: &Error) -> Option<&'static str> {
     })
 }
 
-impl From<Error> for ApiError {
-    fn from(fault: Error) -> Self {
-        Self::from(&fault)
-    }
-}
-
 impl IntoResponse for ApiError {
     fn into_response(self) -> Response {
         let mut response = (self.status, Json(self.body)).into_response();
-        if let Some(seconds) = self.ask_again {
+        if let Some(seconds) = self.retry_after {
             response.headers_mut().insert(header::RETRY_AFTER, HeaderValue::from(seconds));
         }
         response

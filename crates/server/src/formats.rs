@@ -1,8 +1,8 @@
-//! Texts that list the mesh formats.
+//! Texts with lists of the mesh formats.
 
 use mesh::io::{FORMATS, mesh_files};
 
-/// Fills in `{{mesh files}}`, a phrase, and `{{mesh extensions}}`, a list of extensions separated by commas.
+/// Replaces `{{mesh files}}` by a phrase and `{{mesh extensions}}` by a comma-separated list.
 pub(crate) fn filled_in(text: &str) -> String {
     let extensions: Vec<String> = FORMATS
         .iter()

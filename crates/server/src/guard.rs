@@ -1,4 +1,4 @@
-//! What every request passes: whether it is meant for this server, headers of every answer, panics.
+//! Middleware of every request: checks of host and origin, security headers, panics.
 
 use std::net::IpAddr;
 use std::panic::AssertUnwindSafe;
@@ -13,7 +13,7 @@ use futures_util::FutureExt;
 use crate::app::App;
 use crate::error::ApiError;
 
-/// Headers of every answer. Plotly inserts rules of style and makes pictures of its own drawings.
+/// Headers of every response. Plotly inserts style rules and renders its drawings to images.
 const HEADERS: [(HeaderName, &str); 5] = [
     (
         header::CONTENT_SECURITY_POLICY,
@@ -26,12 +26,12 @@ const HEADERS: [(HeaderName, &str); 5] = [
     (HeaderName::from_static("cross-origin-resource-policy"), "same-origin"),
 ];
 
-/// Refuses what is meant for another server, turns panics into answers, and adds the headers.
+/// Rejects requests for other servers, turns panics into responses, and adds the headers.
 pub(crate) async fn guard(State(app): State<Arc<App>>, request: Request, next: Next) -> Response {
     let mut response = match check(&app, request.method(), request.headers()) {
         Ok(()) => {
             let answer = AssertUnwindSafe(next.run(request)).catch_unwind().await;
-            answer.unwrap_or_else(|_| ApiError::fault().into_response())
+            answer.unwrap_or_else(|_| ApiError::internal().into_response())
         }
         Err(refused) => refused.into_response(),
     };
@@ -39,32 +39,29 @@ pub(crate) async fn guard(State(app): State<Arc<App>>, request: Request, next: N
     for (name, value) in HEADERS {
         headers.insert(name, HeaderValue::from_static(value));
     }
-    // What was sent in or computed stays in no cache; pictures and scripts say otherwise.
+    // No cache keeps responses, except for images and scripts, which have their own header.
     headers.entry(header::CACHE_CONTROL).or_insert(HeaderValue::from_static("no-store"));
     response
 }
 
 fn check(app: &App, method: &Method, headers: &HeaderMap) -> Result<(), ApiError> {
     let text = |name| headers.get(name).and_then(|value: &HeaderValue| value.to_str().ok());
-    let host = text(header::HOST).ok_or_else(|| ApiError::bad_request("the request names no host"))?;
-    // A page elsewhere can have its name point to this machine; it cannot name it otherwise.
+    let host = text(header::HOST).ok_or_else(|| ApiError::bad_request("the request has no Host header"))?;
+    // A page elsewhere can resolve its own name to this machine (DNS rebinding), but not change the Host header.
     if app.options.listen.ip().is_loopback() && !is_loopback(host) {
         let error = format!("this server is not `{}`", host.chars().take(100).collect::<String>());
         return Err(ApiError::new(StatusCode::MISDIRECTED_REQUEST, error)
-            .with_remedy("open it as localhost, or pass --listen with the address that others use"));
+            .with_remedy("open it as localhost, or let the server listen on the address that others use"));
     }
     let origin = text(header::ORIGIN);
     let foreign = origin.is_some_and(|origin| origin.strip_prefix("http://") != Some(host));
     if foreign && method != Method::GET && method != Method::HEAD {
-        return Err(ApiError::new(
-            StatusCode::FORBIDDEN,
-            "requests from pages of other servers are not taken",
-        ));
+        return Err(ApiError::new(StatusCode::FORBIDDEN, "cross-origin requests are not allowed"));
     }
     Ok(())
 }
 
-/// Whether a host, with or without a port, is this machine to itself.
+/// Whether a host, with or without a port, is a loopback name or address.
 fn is_loopback(host: &str) -> bool {
     let is_port = |port: &str| port.bytes().all(|digit| digit.is_ascii_digit());
     let name = match host.rsplit_once(':') {
@@ -81,7 +78,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn names_of_this_machine() {
+    fn only_loopback_names_and_addresses_pass() {
         for host in
             ["localhost", "LOCALHOST:7878", "127.0.0.1", "127.0.0.1:1", "127.1.2.3:80", "[::1]:7878", "[::1]"]
         {

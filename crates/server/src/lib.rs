@@ -1,16 +1,12 @@
-//! Shape search over HTTP: a page for people, a JSON interface beneath it.
-//!
-//! index file -> `canonform::ShapeSearch` -> **server** -> JSON, `view::interactive::Geometry`, pictures, one page
+//! Shape search over HTTP: a JSON interface, and a page on top of it.
 //!
 //! ```text
-//! request -> guard (host, origin, headers) -> api / page -> work (a bounded number of jobs) -> pipeline
+//! request -> guard (host, origin, headers) -> api / page -> work (a bounded number of jobs) -> canonform::ShapeSearch
 //! ```
 //!
 //! **Invariants.** The index is only read. No text of a request becomes a path: shapes are looked up by name in the
-//! index, and their meshes are read from where the index says. Uploads stay in memory. Whatever is asked, by as many
-//! as like, memory and time have limits, see [`ServeOptions`].
-//!
-//! Knows no numerical code: what is measured, `canonform` measures.
+//! index, which knows the paths of their meshes. Uploads stay in memory. Memory and time are limited for any number of
+//! requests, see [`ServeOptions`]. All numerical work is done by `canonform`.
 
 mod api;
 mod app;

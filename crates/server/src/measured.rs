@@ -1,7 +1,7 @@
-//! A mesh with its form, as they are shown.
+//! A mesh with its form, as geometry for the browser.
 
 use canonform::descriptors::CanonicalForm;
-use canonform::{Embedded, Error, FormOptions, Overlay, Surface, embed};
+use canonform::{Embedded, Error, Overlay, Surface};
 use mesh::TriMesh;
 use view::interactive::Geometry;
 
@@ -9,47 +9,39 @@ use view::interactive::Geometry;
 const VERTEX_BYTES: usize = 250;
 const FACE_BYTES: usize = 150;
 
-/// What the values of meshes and forms are called.
+/// Names of the values on meshes and forms.
 const DISTANCE: &str = "distance along the surface";
 const RESIDUAL: &str = "distance to the other form";
 
-/// Size of the dots that stand for points, as a share of the form's spread.
+/// Size of the dots drawn at points, as a fraction of the spread of the form.
 const DOT: f64 = 0.025;
 
 /// A repaired surface and the form of all its vertices.
 pub(crate) struct Measured {
     pub(crate) surface: Surface,
     pub(crate) form: CanonicalForm,
-    /// How far every vertex is from the first sample along the surface, in mesh units.
+    /// Surface distance of every vertex from the first sample, in mesh units.
     distances: Vec<f64>,
 }
 
 impl Measured {
-    /// Measures a mesh as the shapes of an index are.
-    pub(crate) fn new(mesh: &TriMesh, options: &FormOptions) -> Result<Self, Error> {
-        let surface = Surface::new(mesh, &options.repair)?;
-        let embedded = embed(&surface, options, &())?;
-        Self::of(surface, &embedded)
-    }
-
-    /// What is shown of a surface that was embedded.
-    pub(crate) fn of(surface: Surface, embedded: &Embedded) -> Result<Self, Error> {
+    pub(crate) fn new(surface: Surface, embedded: &Embedded) -> Result<Self, Error> {
         let form = embedded.form(&surface)?;
         Ok(Self { surface, form, distances: embedded.distances.column(0).to_vec() })
     }
 
-    /// About as many bytes as it takes.
+    /// Approximate size in memory.
     pub(crate) fn bytes(&self) -> usize {
         let mesh = self.surface.mesh();
         VERTEX_BYTES * mesh.n_vertices() + FACE_BYTES * mesh.n_faces()
     }
 
-    /// The repaired mesh, coloured by how far every vertex is from the first sample.
+    /// The repaired mesh, coloured by distance from the first sample.
     pub(crate) fn mesh(&self) -> Geometry {
         Geometry::new(self.surface.mesh()).with_values(DISTANCE, &self.distances)
     }
 
-    /// The form over the faces of the mesh, in the same colours.
+    /// The form with the faces and colours of the mesh.
     pub(crate) fn form(&self) -> Geometry {
         let form = self.form.to_mesh(self.surface.mesh());
         Geometry::new(&form).with_values(DISTANCE, &self.distances)
@@ -61,7 +53,7 @@ pub(crate) fn dots(form: &CanonicalForm) -> TriMesh {
     view::render::dots(form.points(), DOT * form.spread())
 }
 
-/// A form of an overlay: with faces where there are some, else dots.
+/// One form of an overlay: with the faces of its mesh, or as dots if the mesh is missing.
 pub(crate) fn overlaid(overlay: &Overlay, place: usize, measured: Option<&Measured>, dot: f64) -> Geometry {
     let (points, residuals) = (&overlay.points[place], &overlay.residuals[place]);
     match measured {

@@ -3,40 +3,40 @@
 use std::net::{Ipv4Addr, SocketAddr};
 use std::time::Duration;
 
-/// Where a server listens, and how much it takes on.
+/// Where a server listens, and its limits.
 ///
-/// Together they bound its memory: `max_uploads` uploads of `max_upload` bytes, `jobs` meshes of `max_vertices` at
-/// work, and the caches.
+/// Together they bound its memory: `max_uploads` uploads of `max_upload` bytes, `jobs` meshes of `max_vertices` in
+/// progress, and the caches.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ServeOptions {
-    /// The address; port 0 takes a free one. Default: `127.0.0.1:7878`, which no other machine reaches.
+    /// The address; port 0 takes a free port. Default: `127.0.0.1:7878`, which other machines cannot reach.
     pub listen: SocketAddr,
-    /// Bytes that one request may send. Default: 64 MB.
+    /// Maximum number of bytes in a request. Default: 64 MB.
     pub max_upload: usize,
-    /// Vertices of a mesh; there may be four times as many faces. Default: 200,000.
+    /// Maximum number of vertices of a mesh; it may have four times as many faces. Default: 200,000.
     pub max_vertices: u64,
-    /// Uploads that are received or wait to be measured at once. Default: 16.
+    /// Maximum number of uploads being received or waiting. Default: 16.
     pub max_uploads: usize,
-    /// Requests that are worked on at once; 0 for one a core. Default: 0.
+    /// Number of requests processed at once; 0 for one per core. Default: 0.
     pub jobs: usize,
-    /// Requests that may wait for a job; the next ones are sent away. Default: 64.
+    /// Number of requests that may wait for a job; further ones are rejected. Default: 64.
     pub queue: usize,
-    /// From the beginning of the wait for a job to the answer. Default: a minute.
+    /// Maximum time from the start of the wait for a job to the response. Default: one minute.
     pub time_limit: Duration,
-    /// For all of an upload to arrive. Default: five minutes.
+    /// Maximum time for a complete upload. Default: five minutes.
     pub upload_time: Duration,
-    /// For a request's header, and for the next piece of its body. Default: 15 seconds.
+    /// Maximum time for the header of a request, and for the next piece of its body. Default: 15 seconds.
     pub idle_time: Duration,
-    /// Connections at once; others wait to be accepted. Default: 256.
+    /// Maximum number of connections; further ones wait to be accepted. Default: 256.
     pub connections: usize,
-    /// Bytes of meshes, forms and thumbnails of indexed shapes that are kept. Default: 256 MB.
+    /// Size of the cache of meshes, forms and thumbnails, in bytes. Default: 256 MB.
     pub cache: usize,
-    /// Bytes of queries that are kept, so that they can be compared with what they found; the last one is kept in any
-    /// case. Default: 128 MB.
+    /// Size of the cache of queries, in bytes; the last query is always kept. A kept query can be compared with its
+    /// results. Default: 128 MB.
     pub kept_queries: usize,
     /// How long a query is kept. Default: half an hour.
     pub query_lifetime: Duration,
-    /// What is at work when the server is stopped has this long to end. Default: 30 seconds.
+    /// How long requests in progress may take to finish after the server is stopped. Default: 30 seconds.
     pub farewell: Duration,
 }
 

@@ -1,4 +1,4 @@
-//! Connections, and the end of them.
+//! Connections and shutdown.
 
 use std::net::{SocketAddr, TcpListener};
 use std::path::Path;
@@ -16,19 +16,21 @@ use tokio::net::TcpStream;
 use tokio::sync::{Semaphore, watch};
 
 use crate::app::App;
+use crate::error::ServerError;
 use crate::guard::guard;
-use crate::{ServeOptions, ServerError, api, page};
+use crate::options::ServeOptions;
+use crate::{api, page};
 
-/// Bytes that a request's header may have, and that are read of a body at once.
+/// Maximum size of a request header, and of one read of a body, in bytes.
 const BUFFER: usize = 64 << 10;
 
-/// After a connection could not be accepted, as when there are too many open files.
-const BREATH: Duration = Duration::from_millis(100);
+/// Pause after a connection could not be accepted, for example because of too many open files.
+const RETRY_PAUSE: Duration = Duration::from_millis(100);
 
-/// Stack of the threads that measure.
+/// Stack size of the threads that measure.
 const STACK: usize = 8 << 20;
 
-/// A server that has its address and its index, and waits to be [`run`](Self::run).
+/// A server with its address and its index, ready to [`run`](Self::run).
 pub struct Server {
     listener: TcpListener,
     address: SocketAddr,
@@ -42,22 +44,22 @@ impl std::fmt::Debug for Server {
     }
 }
 
-/// Ends a server.
+/// Stops a server.
 #[derive(Debug, Clone)]
 pub struct Stop(watch::Sender<bool>);
 
 impl Stop {
-    /// No more connections are taken; what is being worked on is finished.
+    /// Accepts no more connections and finishes the requests in progress.
     pub fn stop(&self) {
         self.0.send_replace(true);
     }
 }
 
 impl Server {
-    /// Opens the index and takes the address.
+    /// Opens the index and binds the address.
     ///
     /// # Errors
-    /// [`ServerError::Pipeline`] for the index, [`ServerError::Listen`] for the address.
+    /// [`ServerError::Index`] for the index, [`ServerError::Listen`] for the address.
     pub fn bind(index: &Path, options: ServeOptions) -> Result<Self, ServerError> {
         let app = Arc::new(App::open(index, options)?);
         let asked = app.options.listen;
@@ -68,7 +70,7 @@ impl Server {
         Ok(Self { listener, address, app, stop: watch::channel(false) })
     }
 
-    /// Where it listens, with the port that was free when 0 was asked for.
+    /// The address, with the actual port if port 0 was requested.
     #[must_use]
     pub fn address(&self) -> SocketAddr {
         self.address
@@ -80,16 +82,16 @@ impl Server {
         self.app.shapes.len()
     }
 
-    /// What ends it, from anywhere.
+    /// A handle that stops the server from another thread.
     #[must_use]
     pub fn stop_handle(&self) -> Stop {
         Stop(self.stop.0.clone())
     }
 
-    /// Serves until it is stopped, and what is being worked on then is done, or its time is up.
+    /// Serves until it is stopped and the requests in progress are finished or out of time.
     ///
     /// # Errors
-    /// [`ServerError::Runtime`] when there are no threads to be had.
+    /// [`ServerError::Runtime`] if threads cannot be started.
     pub fn run(self) -> Result<(), ServerError> {
         let runtime = tokio::runtime::Builder::new_multi_thread()
             .enable_all()
@@ -116,17 +118,17 @@ impl Server {
                 let place = places.clone().acquire_owned().await;
                 (place, listener.accept().await)
             });
-            // Its sender lives in `self.stop` and cannot be gone.
+            // Never fails: the sender lives as long as `self.stop`.
             let stopped = pin!(stop.wait_for(|stopped| *stopped));
             let Either::Left(((place, accepted), _)) = select(next, stopped).await else { break };
             let Ok((stream, _)) = accepted else {
-                tokio::time::sleep(BREATH).await;
+                tokio::time::sleep(RETRY_PAUSE).await;
                 continue;
             };
             let connection = graceful.watch(connection(stream, router.clone(), app.options.idle_time));
             tokio::spawn(async move {
                 let _place = place;
-                // A connection that breaks is the client's affair.
+                // Broken connections are not errors of the server.
                 let _ = connection.await;
             });
         }
@@ -136,7 +138,7 @@ impl Server {
     }
 }
 
-/// One connection and all requests on it.
+/// One connection with all its requests.
 fn connection(
     stream: TcpStream,
     router: axum::Router,

@@ -1,4 +1,4 @@
-//! A form with a mesh, received into memory within limits.
+//! Receives a multipart form with a mesh into memory, within limits.
 
 use std::path::PathBuf;
 use std::pin::Pin;
@@ -13,27 +13,27 @@ use futures_util::{Stream, StreamExt};
 use mesh::io::mesh_files;
 use multer::{Multipart, parse_boundary};
 
-use crate::ServeOptions;
 use crate::error::ApiError;
+use crate::options::ServeOptions;
 
-/// Bytes of a form around its files: boundaries, headers, other fields.
+/// Allowance for boundaries, headers and other fields of a form, in bytes.
 const FRAME: usize = 64 << 10;
 
-/// Parts of a form, and bytes of one that is no file.
+/// Maximum number of parts of a form, and size of one that is not a file.
 const MOST_PARTS: usize = 16;
 const LONGEST_FIELD: usize = 1 << 10;
 
-/// Letters of a file's name that are kept.
+/// Number of characters of a file name to keep.
 const LONGEST_NAME: usize = 200;
 
-/// What is still read from a client that was refused, so that it comes to read why.
+/// After a rejection the server keeps reading for this long, so that the client sees the response instead of a reset.
 const REFUSED_TIME: Duration = Duration::from_secs(5);
 const REFUSED_BYTES: usize = 256 << 20;
 
-/// What was sent.
+/// The contents of a form.
 #[derive(Debug, Default)]
 pub(crate) struct Upload {
-    /// Names, without folders, and contents.
+    /// Names without folders, and contents.
     pub(crate) files: Vec<(PathBuf, Vec<u8>)>,
     /// Names and texts.
     pub(crate) fields: Vec<(String, String)>,
@@ -51,7 +51,7 @@ pub(crate) async fn receive(request: Request, options: &ServeOptions) -> Result<
             return Err(ApiError::upload_too_large(options.max_upload));
         }
         let boundary = boundary.ok_or_else(|| {
-            ApiError::new(StatusCode::UNSUPPORTED_MEDIA_TYPE, "the request is no form with a file")
+            ApiError::new(StatusCode::UNSUPPORTED_MEDIA_TYPE, "the request is not a form with a file")
                 .with_remedy(form_remedy())
         })?;
         let metered = Metered { body: body.clone(), left: options.max_upload + FRAME };
@@ -61,15 +61,15 @@ pub(crate) async fn receive(request: Request, options: &ServeOptions) -> Result<
     };
     let received = received.await;
     if received.is_err() {
-        tokio::spawn(body.pass());
+        tokio::spawn(body.drain());
     }
     received
 }
 
-/// Passes over what is sent by somebody who is refused before a look at it.
-pub(crate) fn pass(request: Request) {
+/// Reads and drops the body of a request that is rejected without reading it.
+pub(crate) fn drain(request: Request) {
     let body = Body(Arc::new(Mutex::new(request.into_body().into_data_stream())));
-    tokio::spawn(body.pass());
+    tokio::spawn(body.drain());
 }
 
 async fn read(mut form: Multipart<'static>, options: &ServeOptions) -> Result<Upload, ApiError> {
@@ -93,7 +93,7 @@ async fn read(mut form: Multipart<'static>, options: &ServeOptions) -> Result<Up
             content.extend_from_slice(&chunk);
         }
         match file {
-            // What browsers send for a field where no file was chosen.
+            // Browsers send this if no file was chosen.
             Some(name) if name.as_os_str().is_empty() && content.is_empty() => {}
             Some(name) => upload.files.push((name, content)),
             None => {
@@ -109,7 +109,7 @@ fn form_remedy() -> String {
     format!("send multipart/form-data with one mesh: {}", mesh_files())
 }
 
-/// The next piece, unless it is too long in coming.
+/// The next piece, or an error if it takes too long.
 async fn in_time<T>(
     piece: impl Future<Output = Result<T, multer::Error>>,
     options: &ServeOptions,
@@ -126,7 +126,7 @@ async fn in_time<T>(
     }
 }
 
-/// A file's name without folders and without what no terminal should print; the end of one that is too long.
+/// A file name without folders and control characters; only the end of a long one.
 fn clean_name(name: &str) -> PathBuf {
     let name = name.rsplit(['/', '\\']).next().unwrap_or_default();
     let skipped = name.chars().count().saturating_sub(LONGEST_NAME);
@@ -134,7 +134,7 @@ fn clean_name(name: &str) -> PathBuf {
     name.chars().skip(skipped).map(clean).collect::<String>().into()
 }
 
-/// The body of a request, shared by whoever reads it and whoever passes over what is left.
+/// The body of a request, shared by its reader and [`drain`](Self::drain).
 #[derive(Clone)]
 struct Body(Arc<Mutex<BodyDataStream>>);
 
@@ -147,11 +147,11 @@ impl Stream for Body {
 }
 
 impl Body {
-    /// Reads on for a while and keeps nothing: many clients read the answer only when they have sent all, or never when
-    /// the connection breaks before.
-    async fn pass(mut self) {
+    /// Reads on for a while and drops everything: many clients read the response only after they have sent everything,
+    /// and not at all if the connection breaks before.
+    async fn drain(mut self) {
         let mut left = REFUSED_BYTES;
-        let passing = async {
+        let draining = async {
             while let Some(Ok(piece)) = self.next().await {
                 left = left.saturating_sub(piece.len());
                 if left == 0 {
@@ -159,12 +159,12 @@ impl Body {
                 }
             }
         };
-        // Both ways to end are fine.
-        let _ = tokio::time::timeout(REFUSED_TIME, passing).await;
+        // Both outcomes are fine.
+        let _ = tokio::time::timeout(REFUSED_TIME, draining).await;
     }
 }
 
-/// A body that breaks off when it is too long.
+/// A body that ends with [`TooLong`] beyond a limit.
 struct Metered {
     body: Body,
     left: usize,

@@ -1,4 +1,4 @@
-//! A bounded number of jobs at once, and a bounded number that wait.
+//! A bounded number of jobs, and a bounded queue.
 
 use std::num::NonZero;
 use std::sync::Arc;
@@ -6,13 +6,13 @@ use std::time::Duration;
 
 use tokio::sync::{OwnedSemaphorePermit, Semaphore};
 
-use crate::ServeOptions;
 use crate::error::ApiError;
+use crate::options::ServeOptions;
 
-/// Seconds after which somebody who was sent away may ask again.
-const ASK_AGAIN: u32 = 2;
+/// Seconds after which a rejected client may try again.
+const RETRY_AFTER: u32 = 2;
 
-/// Where requests that take time queue up.
+/// The queue of requests that take time.
 pub(crate) struct Work {
     jobs: Arc<Semaphore>,
     waiting: Arc<Semaphore>,
@@ -20,10 +20,8 @@ pub(crate) struct Work {
     time_limit: Duration,
 }
 
-/// The right to send a mesh; given back when it is measured.
-pub(crate) struct UploadPermit {
-    _permit: OwnedSemaphorePermit,
-}
+/// The right to send a mesh; returned by dropping it once the mesh is measured.
+pub(crate) type UploadPermit = OwnedSemaphorePermit;
 
 impl Work {
     pub(crate) fn new(options: &ServeOptions) -> Self {
@@ -37,28 +35,27 @@ impl Work {
         }
     }
 
-    /// Refuses an upload before its first byte when too many are there.
+    /// Rejects an upload before its first byte if there are too many.
     pub(crate) fn upload(&self) -> Result<UploadPermit, ApiError> {
-        let permit = self.uploads.clone().try_acquire_owned();
-        permit.map(|permit| UploadPermit { _permit: permit }).map_err(|_| ApiError::busy(ASK_AGAIN))
+        self.uploads.clone().try_acquire_owned().map_err(|_| ApiError::busy(RETRY_AFTER))
     }
 
-    /// Runs `job` on a thread of its own once it is its turn. A job that takes too long is not waited for, but it counts
-    /// until it ends; `held` is dropped then.
+    /// Runs `job` on a thread of its own when its turn comes. After the time limit this returns an error, but the job
+    /// counts until it ends; `held` is dropped then.
     pub(crate) async fn run<T: Send + 'static>(
         &self,
         held: Option<UploadPermit>,
         job: impl FnOnce() -> Result<T, ApiError> + Send + 'static,
     ) -> Result<T, ApiError> {
-        let place = self.waiting.clone().try_acquire_owned().map_err(|_| ApiError::busy(ASK_AGAIN))?;
+        let place = self.waiting.clone().try_acquire_owned().map_err(|_| ApiError::busy(RETRY_AFTER))?;
         let work = async {
-            let turn = self.jobs.clone().acquire_owned().await.map_err(|_| ApiError::busy(ASK_AGAIN))?;
+            let turn = self.jobs.clone().acquire_owned().await.map_err(|_| ApiError::busy(RETRY_AFTER))?;
             let outcome = tokio::task::spawn_blocking(move || {
                 let _held = (place, turn, held);
                 job()
             });
-            // The only other way to end is a panic, which has been printed.
-            outcome.await.unwrap_or_else(|_| Err(ApiError::fault()))
+            // The only other outcome is a panic, whose message is already printed.
+            outcome.await.unwrap_or_else(|_| Err(ApiError::internal()))
         };
         let late = |_| Err(ApiError::too_slow(self.time_limit));
         tokio::time::timeout(self.time_limit, work).await.unwrap_or_else(late)
@@ -76,7 +73,7 @@ mod tests {
     }
 
     #[test]
-    fn a_job_that_is_late_still_counts_and_the_queue_has_an_end() {
+    fn a_late_job_still_counts_and_the_queue_is_bounded() {
         let options = ServeOptions {
             jobs: 1,
             queue: 1,
@@ -91,7 +88,7 @@ mod tests {
                 Ok(())
             });
             assert_eq!(late.await.unwrap_err().status(), 503);
-            // The thread is still at it: one may wait, in vain, and no second one.
+            // The thread is still busy: one request may wait, in vain, but not a second one.
             let (waiting, refused) = (work.run(None, || Ok(())), async {
                 tokio::time::sleep(Duration::from_millis(50)).await;
                 work.run(None, || Ok(())).await
@@ -127,7 +124,7 @@ mod tests {
             let permit = work.upload().unwrap();
             assert_eq!(work.upload().err().unwrap().status(), 503);
             work.run(Some(permit), || Ok(())).await.unwrap();
-            work.upload().unwrap();
+            drop(work.upload().unwrap());
         });
     }
 }

@@ -6,7 +6,7 @@ use std::sync::{Mutex, PoisonError};
 use canonform::Observer;
 use indicatif::{ProgressBar, ProgressStyle};
 
-/// One progress bar per stage, shown only on a terminal.
+/// One progress bar per stage, shown only on a terminal, and cleared on drop.
 #[derive(Debug)]
 pub struct Bars {
     visible: bool,
@@ -37,6 +37,12 @@ impl Bars {
         if let Some(bar) = self.current.lock().unwrap_or_else(PoisonError::into_inner).take() {
             bar.finish_and_clear();
         }
+    }
+}
+
+impl Drop for Bars {
+    fn drop(&mut self) {
+        self.finish();
     }
 }
 

@@ -1,69 +1,58 @@
-//! How a surface is embedded: methods, and which options belong to which.
+//! How a surface is embedded: the methods, and which options belong to which.
 
 use anyhow::{Result, bail};
-use canonform::geodesics::{FirstSample, Method, Sampling};
+use canonform::geodesics::{FirstSample, Sampling};
 use canonform::nmds::{Bandwidth, Regularization, RpiAlpha};
 use canonform::surface::VertexId;
-use canonform::{EmbedMethod, FormOptions, Samples};
+use canonform::{EmbedMethod, FormOptions};
 use clap::Args;
 use clap::builder::TypedValueParser;
 
-use super::{Common, MarchingArgs, RepairArgs, distance_method, one_of};
+use super::shared::{Common, FormArgs, one_of};
 
-/// How a surface is embedded: everything that decides its form.
+/// Everything that decides the form of a surface.
 #[derive(Debug, Clone, Args)]
+#[command(next_help_heading = "Embedding")]
 pub(crate) struct EmbeddingArgs {
-    /// How distances become coordinates
+    /// How to turn distances into coordinates
     #[arg(long, value_parser = method(), default_value = EmbedMethod::default().name())]
     pub(crate) method: EmbedMethod,
-    /// Number of samples, or `auto` to take as many as needed [default: 100]
-    #[arg(short = 'n', long, value_name = "SAMPLES|auto")]
-    pub(crate) samples: Option<Samples>,
-    /// Eigenpairs of the sample matrix to keep (columns, for cur) [default: half the samples, at least 4
-    /// more than dimensions]
+    #[command(flatten)]
+    pub(crate) form: FormArgs,
+    /// Number of eigenpairs of the sample matrix to keep (of columns for cur) [default: half the samples, at least
+    /// --dim + 4]
     #[arg(long, value_name = "N1")]
     pub(crate) rank: Option<usize>,
-    /// Dimensions of the embedding
-    #[arg(long, default_value_t = 3, value_name = "K")]
-    pub(crate) dim: usize,
-    /// How samples are taken [default: farthest]
+    /// How to choose samples [default: farthest]
     #[arg(long, value_parser = sampling())]
     pub(crate) sampling: Option<Sampling>,
-    /// First sample, a vertex of the input [default: the vertex farthest from vertex 0; drawn with --seed by
-    /// the other samplings]
+    /// First sample, a vertex of the input [default: the vertex farthest from vertex 0; for other samplings than
+    /// farthest, drawn with --seed]
     #[arg(long, value_name = "V")]
     pub(crate) first_sample: Option<u32>,
-    /// How the inverse of the sample matrix is regularised, in nmds and the start of smacof [default:
-    /// low-rank]
+    /// How nmds, and the start of smacof, regularise the inverse of the sample matrix [default: low-rank]
     #[arg(long, value_parser = regularization())]
     pub(crate) regularization: Option<Regularization>,
     /// For --regularization rpi: alpha over the fourth power of the largest eigenvalue, or `paper` for the third
     /// power of that eigenvalue, which depends on the unit of length [default: 1e-10]
     #[arg(long, value_name = "C|paper", value_parser = parse_alpha)]
     pub(crate) alpha: Option<RpiAlpha>,
-    /// Width of the kernel of kpca, in mesh units or as a statistic of the measured distances [default: mean]
+    /// Kernel width of kpca, in mesh units or as a statistic of the measured distances [default: mean]
     #[arg(long, value_name = "mean|median|max|WIDTH", value_parser = parse_bandwidth)]
     pub(crate) sigma: Option<Bandwidth>,
-    /// Number of eigenfunctions of the Laplace-Beltrami operator for spectral [default: 300]
+    /// Number of Laplace-Beltrami eigenfunctions for spectral [default: 300]
     #[arg(long, value_name = "M")]
     pub(crate) eigenvectors: Option<usize>,
     /// Weight of the distances against smoothness in spectral, for a surface of unit area; `inf` fits the
     /// distances exactly [default: 1000]
     #[arg(long, value_name = "MU")]
     pub(crate) mu: Option<f64>,
-    /// Most steps of smacof [default: 300]
+    /// Maximum number of smacof steps [default: 300]
     #[arg(long, value_name = "N")]
     pub(crate) iterations: Option<usize>,
-    /// smacof stops when a step reduces the stress by less than this share [default: 1e-6]
+    /// Stop smacof when a step reduces the stress by less than this fraction [default: 1e-6]
     #[arg(long, value_name = "T")]
     pub(crate) tolerance: Option<f64>,
-    /// How distances are measured
-    #[arg(long, value_parser = distance_method(), default_value = Method::default().name(), value_name = "METHOD")]
-    pub(crate) geodesic: Method,
-    #[command(flatten)]
-    pub(crate) marching: MarchingArgs,
-    #[command(flatten)]
-    pub(crate) repair: RepairArgs,
 }
 
 fn method() -> impl TypedValueParser<Value = EmbedMethod> {
@@ -79,10 +68,8 @@ fn regularization() -> impl TypedValueParser<Value = Regularization> {
 }
 
 impl EmbeddingArgs {
-    /// The options.
-    ///
     /// # Errors
-    /// Some of them do not apply together.
+    /// Options that do not apply together.
     pub(crate) fn options(&self, common: &Common) -> Result<FormOptions> {
         self.check()?;
         let mut method = self.method.clone();
@@ -103,19 +90,10 @@ impl EmbeddingArgs {
             }
             EmbedMethod::Classical | EmbedMethod::Landmark | EmbedMethod::Fmds => {}
         }
-        Ok(FormOptions {
-            repair: self.repair.options(),
-            geodesic: self.marching.of(self.geodesic),
-            samples: self.samples.unwrap_or_default(),
-            sampling: self.sampling.unwrap_or_default(),
-            first_sample: match self.first_sample {
-                Some(vertex) => FirstSample::Vertex(VertexId(vertex)),
-                None => FirstSample::Farthest,
-            },
-            method,
-            dim: self.dim,
-            seed: common.seed,
-        })
+        let first_sample =
+            self.first_sample.map_or(FirstSample::Farthest, |v| FirstSample::Vertex(VertexId(v)));
+        let sampling = self.sampling.unwrap_or_default();
+        Ok(FormOptions { method, sampling, first_sample, ..self.form.options(common) })
     }
 
     fn regularization(&self) -> Regularization {
@@ -149,7 +127,7 @@ impl EmbeddingArgs {
                 let methods = EmbedMethod::all();
                 let names: Vec<_> = methods.iter().filter(|m| applies(m)).map(EmbedMethod::name).collect();
                 bail!(
-                    "{option} has no effect on --method {}; leave it out, or use --method {}",
+                    "{option} has no effect with --method {}; leave it out, or use --method {}",
                     self.method.name(),
                     names.join(" or ")
                 );
@@ -158,20 +136,20 @@ impl EmbeddingArgs {
         match self.regularization {
             Some(chosen @ (Regularization::Rpi { .. } | Regularization::None)) if self.rank.is_some() => {
                 bail!(
-                    "--rank has no effect on --regularization {}, which keeps all eigenpairs; leave it out, or use \
+                    "--rank has no effect with --regularization {}, which keeps all eigenpairs; leave it out, or use \
                      --regularization low-rank or cur",
                     chosen.name()
                 )
             }
             chosen if self.alpha.is_some() && !matches!(chosen, Some(Regularization::Rpi { .. })) => {
-                bail!("--alpha belongs to --regularization rpi; add that, or leave --alpha out")
+                bail!("--alpha applies only to --regularization rpi; add that option, or leave out --alpha")
             }
             _ => Ok(()),
         }
     }
 }
 
-/// Takes a value that was given.
+/// Replaces an option by the value given, if any.
 fn set<T: Copy>(option: &mut T, given: Option<T>) {
     *option = given.unwrap_or(*option);
 }

@@ -1,4 +1,4 @@
-//! What `canonform geodesic` is asked for.
+//! Arguments of `canonform geodesic`.
 
 use std::path::PathBuf;
 
@@ -7,17 +7,17 @@ use canonform::geodesics::Method;
 use clap::Args;
 use mesh::io::{Content, or_list, writable};
 
-use super::{MarchingArgs, RepairArgs, distance_method};
+use super::shared::{MarchingArgs, RepairArgs, distance_method};
 
-/// What a point of a mesh looks like.
+/// How points are written.
 const POINTS: &str = "\
-Points are written in the numbers of the input file, counted from 0:
+Points use the vertex and face numbers of the input file, counted from 0:
   17          vertex 17
-  17-42@0.3   the point of the edge from vertex 17 to vertex 42, 0.3 of the way
-  f8@2:1:1    the point of face 8 with these weights of its corners, in the order of the file
-Without `@` the middle of the edge or of the face is meant.
+  17-42@0.3   the point at 0.3 of the way from vertex 17 to vertex 42, along their edge
+  f8@2:1:1    the point of face 8 with these weights at its corners, in the order of the file
+Without `@`, the midpoint of the edge or the centroid of the face.
 
-Distances are infinite (inf) at vertices that the repair left out and beyond --max-distance.
+Distances are infinite (inf) at vertices that the repair dropped and beyond --max-distance.
 
 Examples:
   canonform geodesic cat.off --source 0,17 -o rows.npy
@@ -26,11 +26,11 @@ Examples:
   canonform geodesic cat.off --all-pairs --memory 2G -o pairs.npy";
 
 #[derive(Debug, Args)]
-#[command(after_long_help = POINTS, after_help = "`--help` says how points are written, with examples.")]
+#[command(after_long_help = POINTS, after_help = "See `--help` for how to write points, and for examples.")]
 pub(crate) struct GeodesicArgs {
     /// Mesh file
     pub(crate) mesh: PathBuf,
-    /// Where distances start: vertices, or points of edges and faces; one row of distances each
+    /// Sources: vertices, or points on edges and faces; each gives one row of distances
     #[arg(
         long,
         required_unless_present = "all_pairs",
@@ -40,24 +40,24 @@ pub(crate) struct GeodesicArgs {
     pub(crate) source: Vec<InputPoint>,
     #[arg(short, long, value_name = "OUT", help = output_help())]
     pub(crate) output: PathBuf,
-    /// Measure to the nearest source: one row in all
+    /// Measure the distance to the nearest source: a single row
     #[arg(long)]
     pub(crate) nearest: bool,
-    /// Measure no farther than this, in mesh units; what is beyond is inf
+    /// Measure no farther than this, in mesh units; distances beyond are inf
     #[arg(long, value_name = "D", value_parser = parse_distance)]
     pub(crate) max_distance: Option<f64>,
-    /// Write the shortest paths to these points instead of distances: from every source, or from the
-    /// nearest with --nearest. They are the shortest of all with --method exact
+    /// Write shortest paths to these points instead of distances: from every source, or with --nearest from the nearest
+    /// one. Only --method exact guarantees that they are shortest
     #[arg(long, value_delimiter = ',', value_name = "POINT[,POINT...]")]
     pub(crate) path_to: Vec<InputPoint>,
-    /// Write the distances between all pairs of vertices (vertices x vertices, symmetric: the average
-    /// of both directions), a block of rows at a time
+    /// Write the distances between all pairs of vertices (vertices x vertices, symmetric: the average of both
+    /// directions), a block of rows at a time
     #[arg(long, conflicts_with_all = ["source", "nearest", "max_distance", "path_to"])]
     pub(crate) all_pairs: bool,
-    /// Memory for the distances held at once by --all-pairs, in bytes or with K, M, G or T [default: 1G]
+    /// Memory for the distances that --all-pairs holds at once, in bytes or with K, M, G or T [default: 1G]
     #[arg(long, value_name = "BYTES", value_parser = parse_bytes, conflicts_with = "source")]
     pub(crate) memory: Option<usize>,
-    /// How distances are measured
+    /// How to measure distances
     #[arg(long, value_parser = distance_method(), default_value = Method::default().name())]
     pub(crate) method: Method,
     #[command(flatten)]
@@ -68,7 +68,7 @@ pub(crate) struct GeodesicArgs {
 
 fn output_help() -> String {
     format!(
-        "Where to write. Distances: .npy (sources x vertices, float64), .csv (one row per source) or {} (one \
+        "Output file. Distances: .npy (sources x vertices, float64), .csv (one row per source) or {} (one \
          coloured mesh per source). Paths: {} (lines), .csv or .json. All pairs: .npy",
         or_list(writable(Content::Field)),
         or_list(writable(Content::Lines))
@@ -78,13 +78,13 @@ fn output_help() -> String {
 fn parse_distance(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(distance) if distance >= 0.0 => Ok(distance),
-        _ => Err(format!("`{text}` is no distance; give a number of mesh units, not negative")),
+        _ => Err(format!("`{text}` is not a distance; give a non-negative number of mesh units")),
     }
 }
 
-/// Bytes, in multiples of 1024 with a letter.
+/// A number of bytes; K, M, G and T are powers of 1024.
 fn parse_bytes(text: &str) -> Result<usize, String> {
-    let wrong = || format!("`{text}` is no amount of memory; write for example 800M or 2G");
+    let wrong = || format!("`{text}` is not a memory size; write for example 800M or 2G");
     let (number, unit) = match text.find(|c: char| !c.is_ascii_digit()) {
         Some(end) => text.split_at(end),
         None => (text, ""),
@@ -106,7 +106,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn memory_is_read_with_and_without_units() {
+    fn memory_sizes_are_read_with_and_without_units() {
         for (text, bytes) in [("0", 0), ("4096", 4096), ("3k", 3 << 10), ("2M", 2 << 20), ("1G", 1 << 30)] {
             assert_eq!(parse_bytes(text), Ok(bytes));
         }

@@ -1,4 +1,4 @@
-//! What `canonform index` is asked for.
+//! Arguments of the commands that read and write indexes.
 
 use std::path::PathBuf;
 
@@ -7,48 +7,68 @@ use canonform::descriptors::{DescriptorError, Normalization};
 use canonform::{DescribeOptions, Measure, Shard};
 use clap::{Args, Subcommand};
 
-use super::{Common, EmbeddingArgs};
-
-#[derive(Debug, Args)]
-pub(crate) struct IndexArgs {
-    #[command(subcommand)]
-    pub(crate) command: IndexCommand,
-}
+use super::embedding::EmbeddingArgs;
+use super::shared::Common;
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum IndexCommand {
-    /// Index every mesh in a folder; only what is new or has changed is described
+    /// Index every mesh in a folder; describe only new and changed ones
     ///
-    /// An interrupted run keeps what is done in INDEX.work; the same command goes on with it. Readers see the
-    /// old index until the new one is finished. Meshes that cannot be read are listed at the end, and the exit
+    /// An interrupted run keeps its finished work in INDEX.work; run the same command again to continue. Readers see
+    /// the old index until the new one is complete. Meshes that cannot be read are listed at the end, and the exit
     /// code is then 2.
     Build(Box<BuildArgs>),
     /// Add meshes, or folders of them
     Add(AddArgs),
-    /// Take shapes out
-    Remove(RemoveArgs),
-    /// Join indexes, for example those of shards, into one
-    Merge(MergeArgs),
-    /// Read every byte and every shape; exit with 2 if anything is not what was written
-    Verify(OneIndexArgs),
-    /// Say what an index holds
-    Info(OneIndexArgs),
-    /// Write an index as lines of JSON, the same however the index came about
-    Export(ExportArgs),
+    /// Remove shapes
+    Remove {
+        /// The index
+        index: PathBuf,
+        /// Names of shapes
+        #[arg(required = true, value_name = "ID")]
+        ids: Vec<String>,
+    },
+    /// Merge indexes, for example those of shards, into one
+    Merge {
+        /// Indexes to merge
+        #[arg(required = true, value_name = "INDEX")]
+        inputs: Vec<PathBuf>,
+        /// Output index
+        #[arg(short, long, value_name = "INDEX")]
+        output: PathBuf,
+    },
+    /// Check every byte and every shape; exit with code 2 if the index is damaged
+    Verify {
+        /// The index
+        index: PathBuf,
+    },
+    /// Report what an index contains
+    Info {
+        /// The index
+        index: PathBuf,
+    },
+    /// Write an index as lines of JSON, the same however the index was built
+    Export {
+        /// The index
+        index: PathBuf,
+        /// Output file [default: standard output]
+        #[arg(short, long, value_name = "FILE.jsonl")]
+        output: Option<PathBuf>,
+    },
 }
 
 #[derive(Debug, Args)]
 pub(crate) struct BuildArgs {
-    /// Folder of meshes. Classes come from sub-folders, else from the leading letters of file names
+    /// Folder of meshes. Classes are the names of sub-folders, else the leading letters of file names
     #[arg(value_name = "DIR")]
     pub(crate) folder: PathBuf,
-    /// The index
+    /// Output index
     #[arg(short, long, value_name = "INDEX")]
     pub(crate) output: PathBuf,
     /// Classes, a file of lines `name,label`
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) labels: Option<PathBuf>,
-    /// Index only the I-th of N even shares of the folder, for `merge`
+    /// Index only the I-th of N equal parts of the folder, for `merge`
     #[arg(long, value_name = "I/N")]
     pub(crate) shard: Option<Shard>,
     #[command(flatten)]
@@ -58,10 +78,10 @@ pub(crate) struct BuildArgs {
 /// How shapes are described.
 #[derive(Debug, Clone, Args)]
 pub(crate) struct DescribeArgs {
-    /// Number of points of a form to keep for alignment [default: 1000]
+    /// Number of points of each form to keep for alignment [default: 1000]
     #[arg(long)]
     pub(crate) points: Option<usize>,
-    /// Let size count: all meshes have the same unit of length
+    /// Distinguish shapes by size: all meshes have the same unit of length
     #[arg(long)]
     pub(crate) size: bool,
     #[command(flatten)]
@@ -85,84 +105,49 @@ pub(crate) struct AddArgs {
     /// Meshes, or folders of them
     #[arg(required = true, value_name = "MESH|DIR")]
     pub(crate) meshes: Vec<PathBuf>,
-    /// Class of all of them [default: from their names]
+    /// Class of all these meshes [default: from their names]
     #[arg(long, value_name = "CLASS", conflicts_with = "labels")]
     pub(crate) label: Option<String>,
     /// Classes, a file of lines `name,label`
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) labels: Option<PathBuf>,
-    /// Let them take the place of other shapes of the same names
+    /// Replace shapes that have the same name
     #[arg(long)]
     pub(crate) replace: bool,
-}
-
-#[derive(Debug, Args)]
-pub(crate) struct RemoveArgs {
-    /// The index
-    pub(crate) index: PathBuf,
-    /// Names of shapes
-    #[arg(required = true, value_name = "ID")]
-    pub(crate) ids: Vec<String>,
-}
-
-#[derive(Debug, Args)]
-pub(crate) struct MergeArgs {
-    /// The indexes
-    #[arg(required = true, value_name = "INDEX")]
-    pub(crate) inputs: Vec<PathBuf>,
-    /// The index of all their shapes
-    #[arg(short, long, value_name = "INDEX")]
-    pub(crate) output: PathBuf,
-}
-
-#[derive(Debug, Args)]
-pub(crate) struct OneIndexArgs {
-    /// The index
-    pub(crate) index: PathBuf,
-}
-
-#[derive(Debug, Args)]
-pub(crate) struct ExportArgs {
-    /// The index
-    pub(crate) index: PathBuf,
-    /// Where to write [default: standard output]
-    #[arg(short, long, value_name = "FILE.jsonl")]
-    pub(crate) output: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]
 pub(crate) struct SearchArgs {
     /// The index
     pub(crate) index: PathBuf,
-    /// Meshes to look for
+    /// Meshes to search for
     #[arg(required = true, value_name = "QUERY")]
     pub(crate) queries: Vec<PathBuf>,
-    /// Shapes wanted
+    /// Number of shapes to find
     #[arg(short, default_value_t = 10)]
     pub(crate) k: usize,
-    /// Say of every shape what kind of match it is
+    /// Report the kind of match of every shape
     #[arg(long)]
     pub(crate) explain: bool,
-    /// Measure the signatures of all shapes, however many there are
+    /// Compare the signatures of all shapes, even in a large index
     #[arg(long)]
     pub(crate) exact: bool,
 }
 
 #[derive(Debug, Args)]
 pub(crate) struct EvaluateArgs {
-    /// An index; or distances, one line of numbers separated by commas for each shape, perhaps below a line of
-    /// names
+    /// An index; or a distance matrix, one line of comma-separated numbers per shape, optionally below a line of names
     #[arg(value_name = "INDEX|MATRIX.csv")]
     pub(crate) input: PathBuf,
-    /// Classes, a file of lines `name,label`; for a matrix without names in the order of its rows, as bare
-    /// labels too [default: those of the index; from names]
+    /// Classes, a file of lines `name,label`; for a matrix without names, labels in the order of its rows [default:
+    /// those of the index; for a matrix, from the names]
     #[arg(long, value_name = "FILE")]
     pub(crate) labels: Option<PathBuf>,
-    /// What distances are measured between, in an index: `fused`, `moments`, `d2`, `geodesic-spectrum`,
+    /// Signatures of an index to measure distances between: `fused`, `moments`, `d2`, `geodesic-spectrum`,
     /// `shape-dna`, `heat-kernel` or `wave-kernel`
     #[arg(long, value_name = "SIGNATURE", default_value = "fused", value_parser = parse_measure)]
     pub(crate) by: Measure,
-    /// Neighbours that vote on the class of a shape
+    /// Number of neighbours that vote on the class of a shape
     #[arg(short, default_value_t = 1)]
     pub(crate) k: usize,
 }

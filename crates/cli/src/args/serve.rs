@@ -11,20 +11,20 @@ use server::ServeOptions;
 pub(crate) struct ServeArgs {
     /// The index
     pub(crate) index: PathBuf,
-    /// Address and port; port 0 takes a free one. With any address but those of this machine to itself, everybody who
-    /// reaches it can search, and see the index with its meshes
+    /// Address and port; port 0 takes a free port. Machines that can reach the address can search, and see the index and its
+    /// meshes
     #[arg(long, value_name = "ADDRESS:PORT", default_value_t = ServeOptions::default().listen)]
     pub(crate) listen: SocketAddr,
     /// Largest upload, in megabytes
     #[arg(long, value_name = "MB", default_value_t = 64, value_parser = clap::value_parser!(u32).range(1..=2000))]
     pub(crate) max_upload: u32,
-    /// Largest mesh that is measured, in vertices
+    /// Largest mesh to accept, in vertices
     #[arg(long, value_name = "N", default_value_t = 200_000, value_parser = clap::value_parser!(u64).range(1..))]
     pub(crate) max_vertices: u64,
-    /// Seconds that a request may take
+    /// Time limit of a request, in seconds
     #[arg(long, value_name = "S", default_value_t = 60, value_parser = clap::value_parser!(u64).range(1..=3600))]
     pub(crate) time_limit: u64,
-    /// Requests that are worked on at once [default: one a core]
+    /// Requests to process at once [default: one per core]
     #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true)]
     pub(crate) jobs: usize,
 }

@@ -3,20 +3,20 @@
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use anyhow::{Result, bail};
+use anyhow::Result;
 use canonform::descriptors::{
-    CanonicalForm, FormDistance, Handedness, MatchKind, PreparedShape, ShapeMetric, ShapePair,
+    CanonicalForm, Handedness, MatchKind, PreparedShape, ShapeMetric, ShapePair,
 };
 use canonform::{
     Comparison, DescribeOptions, FormOptions, ShapeDescription, Surface, SurfaceComparison, Triangulation,
     compare_surfaces, describe, embed,
 };
-use mesh::io::{Content, or_list, writable};
+use mesh::io::{Content, writable};
 use serde::Serialize;
 
-use super::{named, read_surface};
-use crate::args::{Common, CompareArgs, DistanceName};
-use crate::output::{check_folder, extension, facts, print, print_json, write_colored};
+use crate::args::{Common, CompareArgs};
+use crate::input::{named, read_surface};
+use crate::output::{check_folder, check_format, facts, report, write_colored};
 use terminal::Bars;
 
 #[derive(Serialize)]
@@ -30,12 +30,12 @@ struct CompareJson {
     threshold: Option<f64>,
 }
 
-/// How far the first shape is from the second, over its vertices, in units of the first mesh.
+/// Distances from the vertices of the first shape to the second shape, in units of the first mesh.
 #[derive(Serialize)]
 struct ResidualJson {
     median: f64,
     max: f64,
-    /// Vertex of the input where it is largest.
+    /// Input vertex with the largest distance.
     max_vertex: u32,
     output: Option<PathBuf>,
 }
@@ -51,16 +51,16 @@ impl ResidualJson {
     }
 }
 
-/// One of the two meshes: its surface and the form of all vertices, the shape with this form, and the shape as the
-/// metric is calibrated for, if the form was made with other options.
+/// One of the two meshes: its surface, the form of all vertices, the shape with this form, and the shape made with the
+/// options that the metric is calibrated for, if those differ.
 type Side = (Surface, CanonicalForm, PreparedShape, Option<PreparedShape>);
 
-fn side(path: &Path, args: &CompareArgs, options: &FormOptions, bars: &Bars) -> Result<Side> {
-    let surface = read_surface(path, &args.embedding.repair)?;
+fn side(path: &Path, args: &CompareArgs, options: &FormOptions, quiet: bool) -> Result<Side> {
+    let surface = read_surface(path, &args.embedding.form.repair)?;
     let usual = FormOptions { repair: options.repair, ..FormOptions::default() };
     let usual = DescribeOptions { form: usual, ..DescribeOptions::default() };
     let measure = || {
-        let embedded = embed(&surface, options, bars)?;
+        let embedded = embed(&surface, options, &Bars::new(quiet))?;
         let form = embedded.form(&surface)?;
         if embedded.options == usual.form {
             return Ok((form, ShapeDescription::new(&surface, &embedded, &usual)?.prepare()?, None));
@@ -71,7 +71,6 @@ fn side(path: &Path, args: &CompareArgs, options: &FormOptions, bars: &Bars) -> 
         Ok((form, shape, Some(description.prepare()?)))
     };
     let (form, shape, usual) = measure().map_err(|fault| named(path, fault))?;
-    bars.finish();
     Ok((surface, form, shape, usual))
 }
 
@@ -80,22 +79,14 @@ pub(crate) fn compare(args: &CompareArgs, common: &Common) -> Result<ExitCode> {
     let options = args.embedding.options(common)?;
     options.validate()?;
     if let Some(path) = &args.residual_mesh {
-        let formats: Vec<_> = writable(Content::Field).collect();
-        if !formats.contains(&extension(path).as_str()) {
-            bail!("{}: unsupported format for residuals; use {}", path.display(), or_list(formats));
-        }
+        check_format(path, "a coloured mesh", &writable(Content::Field).collect::<Vec<_>>())?;
         check_folder(path)?;
     }
-    let distance = match args.distance {
-        DistanceName::NnRms => FormDistance::NearestNeighborRms,
-        DistanceName::Hausdorff95 => FormDistance::Hausdorff95,
-    };
-    let metric = ShapeMetric { distance };
-    let bars = Bars::new(common.quiet);
-    let (a, form_a, shape_a, usual_a) = side(&args.a, args, &options, &bars)?;
-    let (b, form_b, shape_b, usual_b) = side(&args.b, args, &options, &bars)?;
+    let metric = ShapeMetric { distance: args.distance };
+    let (a, form_a, shape_a, usual_a) = side(&args.a, args, &options, common.quiet)?;
+    let (b, form_b, shape_b, usual_b) = side(&args.b, args, &options, common.quiet)?;
     let pair = ShapePair::new(metric, [&shape_a, &shape_b]);
-    // The kind of match does not depend on how forms are made.
+    // The kind of match must not depend on the options.
     let distance = match (&usual_a, &usual_b) {
         (Some(a), Some(b)) => ShapePair::new(metric, [a, b]).distance(),
         _ => pair.distance(),
@@ -116,12 +107,8 @@ pub(crate) fn compare(args: &CompareArgs, common: &Common) -> Result<ExitCode> {
         residual,
         threshold: args.threshold,
     };
-    if common.json {
-        print_json(&json)?
-    } else {
-        print(&table(&json))?
-    }
-    Ok(if too_far { ExitCode::from(1) } else { ExitCode::SUCCESS })
+    let code = report(common, &json, table)?;
+    Ok(if too_far { ExitCode::from(1) } else { code })
 }
 
 fn table(json: &CompareJson) -> String {
@@ -134,12 +121,12 @@ fn table(json: &CompareJson) -> String {
         MatchKind::Different => "different shapes".to_owned(),
     };
     let (apart, limit) = (c.shape_distance.combined, ShapeMetric::SAME_BELOW);
-    let apart = format!("{apart:.3} by signatures and forms (the same shape below {limit})");
+    let apart = format!("{apart:.3} by signatures and forms (same shape below {limit})");
     let handedness = match c.handedness {
         Handedness::Same => "no",
         Handedness::Mirrored => "yes",
-        Handedness::Either => "both fit: left and right are alike",
-        Handedness::Unknown => "unknown: a mesh encloses no volume, or the forms do not fit",
+        Handedness::Either => "either: the shape is its own mirror image",
+        Handedness::Unknown => "unknown: a mesh encloses no volume, or the forms do not match",
     };
     let triangulation = match json.triangulation {
         Triangulation::Same => "the same faces",
@@ -147,13 +134,13 @@ fn table(json: &CompareJson) -> String {
     };
     let r = &json.residual;
     let residual =
-        format!("{:.6} median, {:.6} at most (vertex {}), mesh units", r.median, r.max, r.max_vertex);
+        format!("median {:.6}, maximum {:.6} (at vertex {}), mesh units", r.median, r.max, r.max_vertex);
     let mut rows = vec![
         ("match", kind),
-        ("apart", apart),
+        ("shape distance", apart),
         ("distance", format!("{:.6} mesh units", c.distance)),
         ("at equal size", format!("{:.6}", c.normalized_distance)),
-        ("size, second over first", format!("{:.6}", c.scale)),
+        ("scale, second over first", format!("{:.6}", c.scale)),
         ("mirror image", handedness.to_owned()),
         ("triangulation", triangulation.to_owned()),
         ("residual", residual),
@@ -164,7 +151,7 @@ fn table(json: &CompareJson) -> String {
     }
     rows.push(("translation", c.translation.map(|x| format!("{x:>10.4}")).join(" ")));
     if let Some(limit) = json.threshold {
-        let held = if c.normalized_distance > limit { "exceeded" } else { "held" };
+        let held = if c.normalized_distance > limit { "exceeded" } else { "not exceeded" };
         rows.push(("threshold", format!("{limit} {held}")));
     }
     facts(&rows)

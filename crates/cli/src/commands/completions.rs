@@ -5,13 +5,14 @@ use std::process::ExitCode;
 
 use anyhow::Result;
 use clap::CommandFactory;
+use clap_complete::Shell;
 
-use crate::args::{Arguments, CompletionsArgs};
+use crate::args::Arguments;
 
 /// Prints a completion script.
-pub(crate) fn completions(args: &CompletionsArgs) -> Result<ExitCode> {
+pub(crate) fn completions(shell: Shell) -> Result<ExitCode> {
     let mut script = Vec::new();
-    clap_complete::generate(args.shell, &mut Arguments::command(), "canonform", &mut script);
+    clap_complete::generate(shell, &mut Arguments::command(), "canonform", &mut script);
     std::io::stdout().lock().write_all(&script)?;
     Ok(ExitCode::SUCCESS)
 }

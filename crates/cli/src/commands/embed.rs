@@ -11,9 +11,9 @@ use canonform::{
 use rayon::prelude::*;
 use serde::Serialize;
 
-use super::{named, read_surface, say_repair};
-use crate::args::{Common, EmbedArgs, FormFormat};
-use crate::output::{check_folder, extension, facts, print, print_json, write_npy};
+use crate::args::{Common, EmbedArgs, FORM_FORMATS};
+use crate::input::{named, print_repair, read_surface};
+use crate::output::{check_folder, check_format, exit_code, extension, facts, report, write_npy};
 use terminal::Bars;
 
 #[derive(Serialize)]
@@ -48,45 +48,37 @@ struct Failure {
 /// Embeds a mesh, or every mesh in a folder.
 pub(crate) fn embed(args: &EmbedArgs, common: &Common) -> Result<ExitCode> {
     let options = args.embedding.options(common)?;
-    let against = args.stress_against.map(|method| args.embedding.marching.of(method));
-    let stress = StressOptions { choice: args.stress.into(), against, seed: common.seed };
-    if args.embedding.samples.is_some() && options.method == EmbedMethod::Classical {
-        eprintln!("note: --method mds measures all pairs of vertices; -n has no effect on it");
+    let against = args.stress_against.map(|method| args.embedding.form.marching.of(method));
+    let stress = StressOptions { choice: args.stress, against, seed: common.seed };
+    if args.embedding.form.samples.is_some() && options.method == EmbedMethod::Classical {
+        eprintln!("note: -n has no effect with --method mds, which measures all pairs of vertices");
     }
     if args.mesh.is_dir() {
         return batch(args, &options, &stress, common);
     }
-    check_format(&args.output, args.embedding.dim)?;
+    check_form(&args.output, options.dim)?;
     check_folder(&args.output)?;
-    let surface = read_surface(&args.mesh, &args.embedding.repair)?;
-    let bars = Bars::new(common.quiet);
-    let embedded =
-        embed_and_measure(&surface, &options, &stress, &bars).map_err(|fault| named(&args.mesh, fault))?;
-    bars.finish();
+    let surface = read_surface(&args.mesh, &args.embedding.form.repair)?;
+    let embedded = embed_and_measure(&surface, &options, &stress, &Bars::new(common.quiet))
+        .map_err(|fault| named(&args.mesh, fault))?;
     warn(&args.mesh.display().to_string(), &embedded.report);
     write(&args.output, &surface, &embedded)?;
     let json = EmbedJson { report: embedded.report, output: args.output.clone() };
-    if common.json {
-        print_json(&json)?
-    } else {
-        print(&table(&json))?
-    }
-    Ok(ExitCode::SUCCESS)
+    report(common, &json, table)
 }
 
-/// Embeds a folder in parallel; what cannot be read is named at the end and does not stop the rest.
+/// Embeds the meshes of a folder in parallel. Failures are listed at the end and do not stop the rest.
 fn batch(
     args: &EmbedArgs,
     options: &FormOptions,
     stress: &StressOptions,
     common: &Common,
 ) -> Result<ExitCode> {
-    let extension = args.format.extension();
-    check_format(&PathBuf::from(format!("form.{extension}")), args.embedding.dim)?;
+    let extension = args.format;
+    check_form(&PathBuf::from(format!("form.{extension}")), options.dim)?;
     let shapes = list_shapes(&args.mesh, None)?;
     check_names(&shapes, &args.mesh, &args.output)?;
-    let bars = Bars::new(common.quiet);
-    let bar = bars.bar("shapes", shapes.len());
+    let bar = Bars::new(common.quiet).bar("shapes", shapes.len());
     let results: Vec<Result<EmbedJson>> = shapes
         .par_iter()
         .map(|shape| {
@@ -98,7 +90,7 @@ fn batch(
                     .map_err(|fault| named(&shape.path, fault))?;
                 if let Some(folder) = output.parent() {
                     std::fs::create_dir_all(folder)
-                        .with_context(|| format!("cannot make the folder {}", folder.display()))?;
+                        .with_context(|| format!("cannot create the folder {}", folder.display()))?;
                 }
                 write(&output, &surface, &embedded)?;
                 Ok(EmbedJson { report: embedded.report, output: output.clone() })
@@ -115,7 +107,7 @@ fn batch(
         let (name, path) = (shape.name, shape.path);
         match result {
             Ok(result) => {
-                say_repair(&name, &result.report.repair);
+                print_repair(&name, &result.report.repair);
                 warn(&name, &result.report);
                 json.shapes.push(ShapeJson { name, label: shape.label, path, result });
             }
@@ -127,46 +119,37 @@ fn batch(
     for failure in &json.failed {
         eprintln!("error: {}", failure.error);
     }
-    if common.json {
-        print_json(&json)?
-    } else {
-        print(&batch_table(&json, &args.output))?
-    }
-    Ok(if json.failed.is_empty() { ExitCode::SUCCESS } else { ExitCode::from(2) })
+    report(common, &json, |json| batch_table(json, &args.output))?;
+    Ok(exit_code(json.failed.is_empty()))
 }
 
-/// Refuses a folder whose forms would take the place of each other or of the meshes.
+/// Refuses a folder whose forms would overwrite each other or the meshes.
 fn check_names(shapes: &[ShapeFile], input: &Path, output: &Path) -> Result<()> {
     let place = |folder: &Path| folder.canonicalize().ok();
     if place(output).is_some_and(|output| place(input) == Some(output)) {
-        bail!("{}: forms would take the place of meshes; choose another folder with -o", output.display());
+        bail!("{}: forms would overwrite meshes; choose another folder with -o", output.display());
     }
     // Shapes are sorted by name.
     match shapes.windows(2).find(|pair| pair[0].name == pair[1].name) {
         None => Ok(()),
         Some(pair) => bail!(
-            "{} and {} would be written to one form; rename one of them",
+            "{} and {} would be written to the same form; rename one of them",
             pair[0].path.display(),
             pair[1].path.display()
         ),
     }
 }
 
-/// Refuses an output that could not be written before any work is done.
-fn check_format(output: &Path, dim: usize) -> Result<()> {
-    match extension(output).as_str() {
-        format if !FormFormat::extensions().any(|known| known == format) => bail!(
-            "{}: forms are written as {}",
-            output.display(),
-            mesh::io::or_list(FormFormat::extensions())
-        ),
-        "npy" => Ok(()),
-        _ if dim == 3 => Ok(()),
-        _ => bail!("{}: a mesh has 3 dimensions, not {dim}; write .npy or leave out --dim", output.display()),
+/// Refuses an output that cannot be written, before any work is done.
+fn check_form(output: &Path, dim: usize) -> Result<()> {
+    let format = check_format(output, "a form", &FORM_FORMATS.map(|(extension, _)| extension))?;
+    if format != "npy" && dim != 3 {
+        bail!("{}: a mesh has 3 dimensions, not {dim}; write .npy or leave out --dim", output.display());
     }
+    Ok(())
 }
 
-/// Writes the form: an array in the input's order of vertices, or a mesh with the input's faces.
+/// Writes the form: an array with one row per input vertex, or a mesh with the faces of the repaired input.
 fn write(output: &Path, surface: &Surface, embedded: &Embedded) -> Result<()> {
     let coords = &embedded.embedding.coords;
     if extension(output) == "npy" {
@@ -181,11 +164,11 @@ fn write(output: &Path, surface: &Surface, embedded: &Embedded) -> Result<()> {
     Ok(mesh::io::write(output, &surface.with_positions(&positions))?)
 }
 
-/// Says what a person should know of the result besides the repair.
+/// Warns about dimensions without a positive eigenvalue.
 fn warn(name: &str, report: &EmbedReport) {
     if report.empty_dimensions > 0 {
         eprintln!(
-            "{name}: {} of {} dimensions found no positive eigenvalue and are zero; take more samples with -n",
+            "{name}: {} of {} dimensions have no positive eigenvalue and are zero; take more samples with -n",
             report.empty_dimensions, report.dim
         );
     }
@@ -199,7 +182,7 @@ fn stress_text(report: &EmbedReport) -> String {
     }
 }
 
-/// The method with what was chosen of it.
+/// The method and its options.
 fn method_text(report: &EmbedReport) -> String {
     let regularization = report.regularization.map_or(String::new(), |name| format!(" ({name})"));
     let sampling = report.sampling.map_or(String::new(), |name| format!(", {name} samples"));

@@ -8,7 +8,7 @@ use mesh::{MeshReport, RepairReport, repair, validate};
 use serde::Serialize;
 
 use crate::args::{Common, InfoArgs};
-use crate::output::{facts, print, print_json};
+use crate::output::{exit_code, facts, print, print_json};
 
 #[derive(Serialize)]
 struct InfoJson {
@@ -20,7 +20,7 @@ struct InfoJson {
 struct MeshInfo {
     path: PathBuf,
     mesh: MeshReport,
-    /// What the commands that measure on this mesh would change first.
+    /// What a repair would change.
     repair: RepairReport,
 }
 
@@ -30,7 +30,7 @@ struct Failure {
     error: String,
 }
 
-/// Reports on meshes; unreadable ones are named and do not stop the others.
+/// Reports on meshes; unreadable ones are listed and do not stop the others.
 pub(crate) fn info(args: &InfoArgs, common: &Common) -> Result<ExitCode> {
     let mut json = InfoJson { meshes: Vec::new(), failed: Vec::new() };
     for path in paths(&args.meshes)? {
@@ -53,10 +53,10 @@ pub(crate) fn info(args: &InfoArgs, common: &Common) -> Result<ExitCode> {
     if common.json {
         print_json(&json)?;
     }
-    Ok(if json.failed.is_empty() { ExitCode::SUCCESS } else { ExitCode::from(2) })
+    Ok(exit_code(json.failed.is_empty()))
 }
 
-/// The files named, and those in the folders named.
+/// The given files, and the meshes in the given folders.
 fn paths(arguments: &[PathBuf]) -> Result<Vec<PathBuf>> {
     let mut paths = Vec::new();
     for path in arguments {
@@ -79,7 +79,7 @@ fn table(info: &MeshInfo) -> String {
     format!("{}\n{}", info.path.display(), facts(&rows))
 }
 
-/// What is always of interest, then whatever is out of order.
+/// General properties, then the defects that were found.
 fn facts_of(mesh: &MeshReport) -> Vec<(&'static str, String)> {
     let mut rows = vec![
         ("vertices, edges, faces", format!("{}, {}, {}", mesh.n_vertices, mesh.n_edges, mesh.n_faces)),

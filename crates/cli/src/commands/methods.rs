@@ -8,33 +8,25 @@ use canonform::nmds::{Regularization, RpiAlpha};
 use canonform::{EmbedMethod, FormOptions, MethodFacts, MethodsReport, StressOptions, compare_methods};
 use terminal::{Bars, with_peak_bytes};
 
-use super::{named, read_surface};
 use crate::args::{Common, MethodsArgs};
-use crate::output::{print, print_json};
+use crate::input::{named, read_surface};
+use crate::output::report;
 
-/// Embeds a mesh by every method and sets them side by side.
+/// Embeds a mesh by every method and tabulates the results.
 pub(crate) fn methods(args: &MethodsArgs, common: &Common) -> Result<ExitCode> {
-    let options = FormOptions {
-        geodesic: args.marching.of(args.geodesic),
-        samples: args.samples.unwrap_or_default(),
-        dim: args.dim,
-        seed: common.seed,
-        ..FormOptions::default()
-    };
-    let stress = StressOptions { choice: args.stress.into(), against: None, seed: common.seed };
-    let surface = read_surface(&args.mesh, &args.repair)?;
-    let bars = Bars::new(common.quiet);
-    let variants = variants(&options);
-    let report =
-        compare_methods(&surface, &options, &variants, &stress, &bars, &|work| with_peak_bytes(work).1)
-            .map_err(|fault| named(&args.mesh, fault))?;
-    bars.finish();
-    if common.json {
-        print_json(&report)?;
-    } else {
-        print(&table(&report))?;
-    }
-    Ok(ExitCode::SUCCESS)
+    let stress = StressOptions { choice: args.stress, against: None, seed: common.seed };
+    let surface = read_surface(&args.mesh, &args.form.repair)?;
+    let options = args.form.options(common);
+    let methods = compare_methods(
+        &surface,
+        &options,
+        &variants(&options),
+        &stress,
+        &Bars::new(common.quiet),
+        &|work| with_peak_bytes(work).1,
+    )
+    .map_err(|fault| named(&args.mesh, fault))?;
+    report(common, &methods, table)
 }
 
 /// Every method, and the variants of the first one by the options that select them.
@@ -57,7 +49,7 @@ fn variants(shared: &FormOptions) -> Vec<(&'static str, FormOptions)> {
     all
 }
 
-/// One row a method; the least of a column is starred.
+/// One row per method, with a star at the lowest value of a column.
 fn table(report: &MethodsReport) -> String {
     let least = |value: &dyn Fn(&MethodFacts) -> Option<f64>| {
         let facts = report.methods.iter().filter_map(|m| m.facts.as_ref());
@@ -108,8 +100,8 @@ fn table(report: &MethodsReport) -> String {
     let kind = report.methods.iter().find_map(|m| m.facts.as_ref()?.stress.as_ref());
     let kind = kind.map_or_else(String::new, |s| format!(", {:?}", s.kind).to_lowercase());
     text + &format!(
-        "\n* least of the column. {} vertices, {} dimensions; stress against {} distances{kind}; seconds from the \
-         repaired mesh to coordinates.",
+        "\n* lowest of its column. {} vertices, {} dimensions; stress against {} distances{kind}; seconds from the \
+         repaired mesh to the embedding.",
         report.n_embedded, report.dim, report.geodesic
     )
 }

@@ -1,4 +1,4 @@
-//! One file a command.
+//! One module per command.
 
 mod compare;
 mod completions;
@@ -12,50 +12,22 @@ mod render;
 mod search;
 mod serve;
 
-pub(crate) use compare::compare;
-pub(crate) use completions::completions;
-pub(crate) use embed::embed;
-pub(crate) use evaluate::evaluate;
-pub(crate) use geodesic::geodesic;
-pub(crate) use index::index;
-pub(crate) use info::info;
-pub(crate) use methods::methods;
-pub(crate) use render::picture;
-pub(crate) use search::search;
-pub(crate) use serve::serve;
+use std::process::ExitCode;
 
-use canonform::Surface;
-use mesh::RepairReport;
+use crate::args::{Command, Common};
 
-/// Says on standard error what was repaired; a repair is never silent.
-fn say_repair(name: &str, report: &RepairReport) {
-    for line in report.summary() {
-        eprintln!("{name}: {line}");
+pub(crate) fn run(command: &Command, common: &Common) -> anyhow::Result<ExitCode> {
+    match command {
+        Command::Info(args) => info::info(args, common),
+        Command::Geodesic(args) => geodesic::geodesic(args, common),
+        Command::Embed(args) => embed::embed(args, common),
+        Command::Methods(args) => methods::methods(args, common),
+        Command::Compare(args) => compare::compare(args, common),
+        Command::Render(args) => render::draw(args, common),
+        Command::Index(command) => index::index(command, common),
+        Command::Search(args) => search::search(args, common),
+        Command::Evaluate(args) => evaluate::evaluate(args, common),
+        Command::Serve(args) => serve::serve(args),
+        Command::Completions { shell } => completions::completions(*shell),
     }
-}
-
-/// How a path is named in messages.
-fn file_name(path: &std::path::Path) -> String {
-    path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
-}
-
-/// Reads and repairs a mesh and says what was repaired.
-fn read_surface(path: &std::path::Path, repair: &crate::args::RepairArgs) -> anyhow::Result<Surface> {
-    let surface = Surface::read(path, &repair.options()).map_err(|fault| named(path, fault))?;
-    say_repair(&file_name(path), &surface.repaired.report);
-    Ok(surface)
-}
-
-/// An error that names the file once, whether or not it does so itself.
-fn named(path: &std::path::Path, fault: canonform::Error) -> anyhow::Error {
-    let is_named = is_named(path, &fault.to_string());
-    let error = anyhow::Error::from(fault);
-    if is_named { error } else { error.context(path.display().to_string()) }
-}
-
-/// Whether a message names a file.
-fn is_named(path: &std::path::Path, text: &str) -> bool {
-    // Of a `.vert`/`.tri` pair the fault may lie in the other half.
-    let names = [path.to_owned(), path.with_extension("vert"), path.with_extension("tri")];
-    names.iter().any(|name| text.contains(&name.display().to_string()))
 }

@@ -1,6 +1,6 @@
 //! `canonform render`.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Instant;
 
@@ -12,10 +12,10 @@ use serde::Serialize;
 use terminal::Bars;
 use view::render::{RenderOptions, Surface as Paint, render, render_with_bar, value_range};
 
-use super::{file_name, named, say_repair};
 use crate::args::{Common, Place, RenderArgs};
 use crate::field::read_field;
-use crate::output::{check_folder, extension, facts, print, print_json};
+use crate::input::{file_name, named, print_repair};
+use crate::output::{check_folder, check_format, facts, report};
 
 #[derive(Serialize)]
 struct RenderJson {
@@ -25,50 +25,46 @@ struct RenderJson {
     height: u32,
     n_vertices: usize,
     n_faces: usize,
-    /// What it is coloured by.
+    /// The values that colour the mesh.
     field: Option<FieldJson>,
     seconds: f64,
-    /// Where distances or a form were measured.
+    /// Present if distances or a form were computed.
     repair: Option<RepairReport>,
 }
 
 #[derive(Serialize)]
 struct FieldJson {
     name: String,
-    /// Least and greatest finite value.
+    /// Smallest and largest finite value.
     values: Option<[f64; 2]>,
-    /// What is drawn darkest and lightest.
+    /// Values of the darkest and the lightest colour.
     range: Option<[f64; 2]>,
     /// Vertices without a finite value.
     missing: usize,
 }
 
-/// Numbers to colour by, one a vertex of the input.
+/// Values to colour by, one per input vertex.
 struct Field {
     name: String,
     values: Vec<f64>,
 }
 
 /// Draws a mesh, or its form, into a file.
-pub(crate) fn picture(args: &RenderArgs, common: &Common) -> Result<ExitCode> {
-    if extension(&args.output) != "png" {
-        bail!("{}: pictures are written as .png; end the name so", args.output.display());
-    }
+pub(crate) fn draw(args: &RenderArgs, common: &Common) -> Result<ExitCode> {
+    check_format(&args.output, "a picture", &["png"])?;
     check_folder(&args.output)?;
     check_options(args)?;
     let start = Instant::now();
     let mesh = mesh::io::read(&args.mesh)?;
     if mesh.n_faces() == 0 {
-        bail!("{}: there is no face to draw; give a mesh with faces", args.mesh.display());
+        bail!("{}: the mesh has no faces to draw; give a mesh with faces", args.mesh.display());
     }
-    let surface = if args.form || !args.distance_from.is_empty() {
-        let surface =
-            Surface::new(&mesh, &args.repair.options()).map_err(|fault| named(&args.mesh, fault))?;
-        say_repair(&file_name(&args.mesh), &surface.repaired.report);
-        Some(surface)
-    } else {
-        None
-    };
+    let is_measured = args.form || !args.distance_from.is_empty();
+    let surface = is_measured.then(|| Surface::new(&mesh, &args.repair.options())).transpose();
+    let surface = surface.map_err(|fault| named(&args.mesh, fault))?;
+    if let Some(surface) = &surface {
+        print_repair(&file_name(&args.mesh), &surface.repaired.report);
+    }
     let field = field(args, &mesh, surface.as_ref())?;
     let drawn = match &surface {
         Some(surface) if args.form => form(args, surface, common)?,
@@ -89,36 +85,29 @@ pub(crate) fn picture(args: &RenderArgs, common: &Common) -> Result<ExitCode> {
         n_faces: drawn.n_faces(),
         field: field.map(|field| FieldJson {
             values: value_range(&field.values),
-            range: args.range.map(|range| range.0).or_else(|| value_range(&field.values)),
+            range: args.range.or_else(|| value_range(&field.values)),
             missing: field.values.iter().filter(|value| !value.is_finite()).count(),
             name: field.name,
         }),
         seconds: start.elapsed().as_secs_f64(),
         repair: surface.map(|surface| surface.repaired.report),
     };
-    if common.json {
-        print_json(&json)?
-    } else {
-        print(&table(&json))?
-    }
-    Ok(ExitCode::SUCCESS)
+    report(common, &json, table)
 }
 
-/// Refuses what would have no effect.
+/// Refuses options that would have no effect.
 fn check_options(args: &RenderArgs) -> Result<()> {
     if args.field.is_some() || !args.distance_from.is_empty() {
         return Ok(());
     }
     let given =
         [("--isolines", args.isolines > 0), ("--range", args.range.is_some()), ("--no-bar", args.no_bar)];
-    match given.iter().find(|(_, is_given)| *is_given) {
-        Some((option, _)) => {
-            bail!(
-                "{option} has no effect without numbers to draw; add --field or --distance-from, or leave it out"
-            )
-        }
-        None => Ok(()),
+    if let Some((option, _)) = given.iter().find(|(_, is_given)| *is_given) {
+        bail!(
+            "{option} has no effect without values to draw; add --field or --distance-from, or leave it out"
+        );
     }
+    Ok(())
 }
 
 fn field(args: &RenderArgs, mesh: &TriMesh, surface: Option<&Surface>) -> Result<Option<Field>> {
@@ -144,12 +133,11 @@ fn distances(args: &RenderArgs, surface: &Surface) -> Result<Vec<f64>, canonform
     Ok(surface.in_input_order(&distances, f64::INFINITY))
 }
 
-/// The canonical form over the input's vertices; those that the repair left out are nowhere.
+/// The canonical form with the faces of the input; vertices that the repair dropped have NaN positions.
 fn form(args: &RenderArgs, surface: &Surface, common: &Common) -> Result<TriMesh> {
     let options = FormOptions { seed: common.seed, ..FormOptions::default() };
-    let bars = Bars::new(common.quiet);
-    let embedded = embed(surface, &options, &bars).map_err(|fault| named(&args.mesh, fault))?;
-    bars.finish();
+    let embedded =
+        embed(surface, &options, &Bars::new(common.quiet)).map_err(|fault| named(&args.mesh, fault))?;
     let points: Vec<_> =
         embedded.embedding.coords.row_iter().map(|row| [row[0], row[1], row[2]].into()).collect();
     let positions = surface.in_input_order(&points, [f64::NAN; 3].into());
@@ -161,16 +149,16 @@ fn options(args: &RenderArgs, field: Option<&Field>) -> RenderOptions {
     let surface = match (field, args.color) {
         (Some(field), _) => Paint::Scalars {
             values: field.values.clone(),
-            range: args.range.map(|range| range.0),
-            // Between so many lines there is one step more.
+            range: args.range,
+            // N lines separate N + 1 steps.
             isolines: args.isolines + 1,
         },
         (None, Some(color)) => Paint::Plain(color),
         (None, None) => usual.surface,
     };
     let place = args.view.unwrap_or(if args.form { Place::Principal } else { Place::Angles([30.0, 12.0]) });
-    let (width, height) = (args.size.width, args.size.height);
-    // Nine samples a pixel of the largest pictures would take gigabytes; their pixels are small enough.
+    let [width, height] = args.size;
+    // Nine samples per pixel of a large picture would take gigabytes; its pixels are small enough.
     let supersampling = if width * height > 2000 * 2000 { 2 } else { usual.supersampling };
     let view = place.view(args.up);
     RenderOptions { width, height, view, background: args.background, surface, supersampling, ..usual }
@@ -192,6 +180,6 @@ fn table(json: &RenderJson) -> String {
         }
     }
     lines.push(("picture", format!("{} x {} pixels, {:.2} s", json.width, json.height, json.seconds)));
-    lines.push(("wrote", Path::new(&json.output).display().to_string()));
+    lines.push(("wrote", json.output.display().to_string()));
     facts(&lines)
 }

@@ -9,9 +9,9 @@ use canonform::index::SearchMode;
 use canonform::{Explain, SearchOptions, SearchReport, SearchResult, ShapeSearch};
 use serde::Serialize;
 
-use super::named;
 use crate::args::{Common, SearchArgs};
-use crate::output::{print, print_json};
+use crate::input::named;
+use crate::output::{exit_code, print, print_json};
 
 #[derive(Serialize)]
 struct Answer {
@@ -20,7 +20,7 @@ struct Answer {
     report: SearchReport,
 }
 
-/// One answer as it is, several in a list.
+/// One answer as an object, several as a list in an object.
 #[derive(Serialize)]
 #[serde(untagged)]
 enum Json {
@@ -34,8 +34,8 @@ struct Failure {
     error: String,
 }
 
-/// Asks an index about meshes; what cannot be read is named and does not stop the others. Exits with 1 when
-/// nothing was found for some.
+/// Searches an index for meshes; unreadable ones are listed and do not stop the others. Exits with code 1 if nothing is
+/// found for some.
 pub(crate) fn search(args: &SearchArgs, common: &Common) -> Result<ExitCode> {
     let index = ShapeSearch::open(&args.index)?;
     let options = SearchOptions {
@@ -65,11 +65,7 @@ pub(crate) fn search(args: &SearchArgs, common: &Common) -> Result<ExitCode> {
         }
     }
     let nothing = answers.iter().any(|answer| answer.report.results.is_empty());
-    let code = match (failed.is_empty(), nothing) {
-        (false, _) => ExitCode::from(2),
-        (true, true) => ExitCode::from(1),
-        (true, false) => ExitCode::SUCCESS,
-    };
+    let code = if failed.is_empty() && nothing { ExitCode::from(1) } else { exit_code(failed.is_empty()) };
     if common.json {
         let json = match args.queries.len() {
             1 => answers.pop().map(|answer| Json::One(Box::new(answer))),
@@ -102,18 +98,18 @@ fn table(query: String, report: &SearchReport) -> String {
     }
     let predicted = &report.predicted;
     let class = match (&predicted.label, report.results.is_empty()) {
-        (_, true) => "the index holds nothing".to_owned(),
+        (_, true) => "the index is empty".to_owned(),
         (Some(label), _) => format!(
             "{label}, by {} of {} votes, confidence {:.2}",
             predicted.votes, predicted.voters, predicted.confidence
         ),
         (None, _) => format!(
-            "unknown: nothing is nearer than {:.2} by signatures",
+            "unknown: no shape is within {:.2} by signatures",
             predicted.threshold.unwrap_or(f64::INFINITY)
         ),
     };
     let exactness = if report.recall < 1.0 {
-        format!(", {:.1} % of the nearest are found", 100.0 * report.recall)
+        format!(", {:.1} % of the nearest found", 100.0 * report.recall)
     } else {
         String::new()
     };

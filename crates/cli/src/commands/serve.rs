@@ -1,5 +1,6 @@
 //! `canonform serve`.
 
+use std::io::Write;
 use std::process::ExitCode;
 
 use anyhow::Result;
@@ -12,18 +13,21 @@ pub(crate) fn serve(args: &ServeArgs) -> Result<ExitCode> {
     let server = Server::bind(&args.index, args.options())?;
     let stop = server.stop_handle();
     terminal::on_interruption(move || {
-        eprintln!("finishing what is being worked on; interrupt again to end at once");
         stop.stop();
+        // `eprintln` would panic if standard error is closed.
+        let _ = writeln!(
+            std::io::stderr(),
+            "finishing the requests in progress; interrupt again to stop at once"
+        );
     });
     let address = server.address();
     if !address.ip().is_loopback() {
         eprintln!(
-            "warning: {address} is open to other machines; everybody who reaches it can search, and see the index \
-             with its meshes"
+            "warning: {address} is open to other machines: they can search, and see the index and its meshes"
         );
     }
     let (n_shapes, index) = (server.n_shapes(), args.index.display());
-    eprintln!("listening on http://{address} ({n_shapes} shapes of {index})");
+    eprintln!("listening on http://{address} ({n_shapes} shapes in {index})");
     server.run()?;
     Ok(ExitCode::SUCCESS)
 }

@@ -1,11 +1,11 @@
-//! Every command on a sound mesh, and where its words go.
+//! Every command on an intact mesh, and where its output goes.
 
 use std::process::Stdio;
 
 use crate::support::{Workplace, assert_keys, broken_ring, one_object, program, ring};
 
 #[test]
-fn info_tells_what_is_in_a_mesh() {
+fn info_reports_what_a_mesh_contains() {
     let place = Workplace::new();
     place.add("ring.off", &ring());
     place.add("broken.ply", &broken_ring());
@@ -18,7 +18,7 @@ fn info_tells_what_is_in_a_mesh() {
     assert_eq!(meshes[0]["mesh"]["genus"], 1);
     assert_eq!(meshes[1]["mesh"]["n_components"], 2);
     assert_eq!(meshes[1]["repair"]["dropped_components"], 1);
-    // A folder stands for the meshes in it.
+    // A folder means all meshes in it.
     assert_eq!(place.json(&["info", "."])["meshes"].as_array().unwrap().len(), 2);
 }
 
@@ -38,7 +38,7 @@ fn geodesic_keeps_the_contract_of_its_json() {
 }
 
 #[test]
-fn geodesic_knows_its_methods() {
+fn geodesic_accepts_all_methods() {
     let place = Workplace::new();
     place.add("ring.off", &ring());
     let farthest = |options: &[&str]| {
@@ -88,7 +88,7 @@ fn embed_keeps_the_contract_of_its_json() {
 }
 
 #[test]
-fn embed_knows_its_options() {
+fn embed_accepts_all_options() {
     let place = Workplace::new();
     place.add("ring.off", &ring());
     let embed = |options: &[&str]| place.json(&[&["embed", "ring.off", "-o", "form.npy"], options].concat());
@@ -108,7 +108,7 @@ fn embed_knows_its_options() {
 }
 
 #[test]
-fn embed_knows_its_methods() {
+fn embed_accepts_all_methods() {
     let place = Workplace::new();
     place.add("ring.off", &ring());
     let embed = |options: &str| {
@@ -155,7 +155,7 @@ fn embed_knows_its_methods() {
 }
 
 #[test]
-fn embed_knows_its_samplings() {
+fn embed_accepts_all_samplings() {
     let place = Workplace::new();
     place.add("ring.off", &ring());
     let samples = |options: &[&str]| {
@@ -174,7 +174,7 @@ fn embed_knows_its_samplings() {
 }
 
 #[test]
-fn compare_says_what_kind_of_match_it_is_and_holds_a_threshold() {
+fn compare_reports_the_kind_of_match_and_checks_a_threshold() {
     let place = Workplace::new();
     place.add("ring.off", &ring());
     place.add("ball.off", &mesh::shapes::icosphere(3));
@@ -197,7 +197,7 @@ fn compare_says_what_kind_of_match_it_is_and_holds_a_threshold() {
     assert!(same["normalized_distance"].as_f64().unwrap() < 1e-9);
     let apart = place.json(&["compare", "ring.off", "ball.off"]);
     assert_eq!(apart["kind"], "different");
-    // However forms are made and measured, the kind is the same.
+    // The kind of match does not depend on the options.
     for options in [["-n", "20"], ["--method", "kpca"], ["--distance", "hausdorff95"], ["--geodesic", "bfs"]]
     {
         let again = place.json(&[&["compare", "ring.off", "ball.off"], &options[..]].concat());
@@ -216,7 +216,7 @@ fn compare_says_what_kind_of_match_it_is_and_holds_a_threshold() {
 }
 
 #[test]
-fn completions_are_there_for_every_shell() {
+fn completions_cover_every_shell() {
     let place = Workplace::new();
     for shell in ["bash", "zsh", "fish"] {
         let script = place.done(&["completions", shell]).out;
@@ -274,7 +274,7 @@ fn help_mentions_every_option() {
 }
 
 #[test]
-fn json_alone_is_on_standard_output_and_notes_are_on_standard_error() {
+fn only_json_goes_to_standard_output_and_notes_go_to_standard_error() {
     let place = Workplace::new();
     place.add("broken.off", &broken_ring());
     for arguments in [
@@ -290,7 +290,7 @@ fn json_alone_is_on_standard_output_and_notes_are_on_standard_error() {
 }
 
 #[test]
-fn a_closed_pipe_is_no_error() {
+fn a_closed_pipe_is_not_an_error() {
     let place = Workplace::new();
     place.add("ring.off", &ring());
     let ring = place.path("ring.off");
@@ -318,7 +318,7 @@ fn a_closed_pipe_is_no_error() {
 }
 
 #[test]
-fn methods_sets_every_method_side_by_side() {
+fn methods_compares_every_method() {
     let place = Workplace::new();
     place.add("ring.off", &ring());
     let json = place.json(&["methods", "ring.off", "-n", "20"]);
@@ -336,13 +336,13 @@ fn methods_sets_every_method_side_by_side() {
     let stress = |m: &serde_json::Value| m["stress"]["value"].as_f64();
     let best = json["best"].as_u64().unwrap() as usize;
     assert!(methods.iter().filter_map(stress).all(|s| stress(&methods[best]).unwrap() <= s));
-    // No other form has less strain than that of classical scaling.
+    // Classical scaling has the least strain of all.
     let least = stress(methods.iter().find(|m| name(m) == "mds").unwrap()).unwrap();
     assert!(methods.iter().filter_map(stress).all(|s| s >= least * (1.0 - 1e-9)));
 }
 
 #[test]
-fn methods_marks_the_best_and_a_method_that_fails_stops_no_other() {
+fn methods_marks_the_best_and_continues_after_a_failure() {
     let place = Workplace::new();
     place.add("ring.off", &ring());
     let text = place.done(&["methods", "ring.off", "-n", "3", "--stress", "estimate"]).out;

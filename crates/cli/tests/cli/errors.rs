@@ -1,11 +1,10 @@
-//! What the program refuses: an error names the file, what is wrong and what to do, and nothing is
-//! left behind.
+//! Errors: each names the file, what is wrong and what to do, and leaves nothing behind.
 
 use std::fs;
 
 use crate::support::{Workplace, broken_ring, one_object, ring};
 
-/// A sound mesh, and a broken one with the shortest of names.
+/// An intact mesh, and a broken one with a very short name.
 fn place() -> Workplace {
     let place = Workplace::new();
     place.add("ring.off", &ring());
@@ -14,7 +13,7 @@ fn place() -> Workplace {
 }
 
 #[test]
-fn files_that_are_no_meshes_are_named() {
+fn errors_name_files_that_are_not_meshes() {
     let place = place();
     fs::write(place.path("empty.off"), "").unwrap();
     fs::write(place.path("notes.txt"), "no mesh").unwrap();
@@ -23,7 +22,7 @@ fn files_that_are_no_meshes_are_named() {
     for (file, fault, remedy) in [
         ("missing.off", "No such file", "check"),
         ("empty.off", "empty", "export it again"),
-        ("notes.txt", "`.txt` is not a mesh format", "use one of .off .obj .ply"),
+        ("notes.txt", "unknown mesh format `.txt`", "use .off, .obj, .ply"),
         ("garbage.obj", "line 1", ""),
     ] {
         place.refused(&["info", file], &[file, fault, remedy]);
@@ -35,7 +34,7 @@ fn files_that_are_no_meshes_are_named() {
 }
 
 #[test]
-fn info_goes_on_after_a_file_it_cannot_read() {
+fn info_continues_after_an_unreadable_file() {
     let place = place();
     let outcome = place.run(&["info", "missing.off", "ring.off", "--json"]);
     let json = one_object(&outcome.out);
@@ -45,10 +44,10 @@ fn info_goes_on_after_a_file_it_cannot_read() {
 }
 
 #[test]
-fn vertices_that_are_not_there_are_named_with_their_file() {
+fn errors_name_missing_vertices_and_their_file() {
     let place = place();
     let before = place.names();
-    // The file is called `a.off`, and there is an `a` in every message.
+    // A short name occurs in messages by chance: the file must be named all the same.
     let geodesic = |v| ["geodesic", "a.off", "--source", v, "-o", "d.npy"];
     place.refused(&geodesic("170"), &["a.off: ", "vertex 170", "170 vertices, counted from 0"]);
     for dropped in ["160", "165"] {
@@ -58,7 +57,7 @@ fn vertices_that_are_not_there_are_named_with_their_file() {
     place.refused(&["embed", "a.off", "--first-sample", "169", "-o", "f.npy"], &["a.off: vertex 169"]);
     place.refused(
         &["embed", "a.off", "--components", "error", "-o", "f.npy"],
-        &["a.off: mesh", "9 of 169", "bridge"],
+        &["a.off: the mesh is disconnected", "9 of 169", "--components bridge"],
     );
     assert_eq!(place.names(), before);
     // The remedy works.
@@ -66,7 +65,7 @@ fn vertices_that_are_not_there_are_named_with_their_file() {
 }
 
 #[test]
-fn options_out_of_range_are_named() {
+fn errors_name_options_out_of_range() {
     let place = place();
     let before = place.names();
     let embed = |options: &[&'static str], words: &[&str]| {
@@ -92,7 +91,7 @@ fn options_out_of_range_are_named() {
 }
 
 #[test]
-fn options_that_do_not_apply_together_are_named_with_what_they_belong_to() {
+fn errors_name_options_that_do_not_apply_together() {
     let place = place();
     let before = place.names();
     for (options, words) in [
@@ -108,14 +107,17 @@ fn options_that_do_not_apply_together_are_named_with_what_they_belong_to() {
         ("--regularization rpi --rank 5", ["--rank", "--regularization rpi", "low-rank or cur"]),
         ("--alpha 1e-9", ["--alpha", "--regularization rpi", "leave"]),
         ("--alpha paper --regularization cur", ["--alpha", "--regularization rpi", "leave"]),
-        ("--alpha 0 --regularization rpi", ["ring.off", "alpha = 0", "1e-10"]),
+        ("--alpha 0 --regularization rpi", ["ring.off", "alpha", "not 0; 1e-10"]),
         ("--alpha much --regularization rpi", ["--alpha", "`much`", "`paper`"]),
         ("--sigma wide --method kpca", ["--sigma", "`wide`", "`median`"]),
-        ("--sigma=-1 --method kpca", ["ring.off", "width -1", "positive"]),
-        ("--tolerance nan --method smacof", ["ring.off", "tolerance NaN", "1e-6"]),
+        (
+            "--sigma=-1 --method kpca",
+            ["ring.off", "width", "positive number in the unit of the distances, not -1"],
+        ),
+        ("--tolerance nan --method smacof", ["ring.off", "tolerance", "not NaN; 1e-6"]),
         ("--mu 5", ["--mu has no effect", "--method nmds", "spectral"]),
         ("--eigenvectors 50 --method fmds", ["--eigenvectors has no effect", "--method fmds", "spectral"]),
-        ("--mu=-1 --method spectral", ["ring.off", "mu = -1", "positive"]),
+        ("--mu=-1 --method spectral", ["ring.off", "mu", "must be positive (it may be infinite), not -1"]),
         ("--eigenvectors 3 --method spectral", ["ring.off", "3 dimensions", "1 to 2"]),
         ("--method fmds -n 2", ["ring.off", "3 dimensions", "1 to 2"]),
         ("--method landmark -n 3", ["ring.off", "3 dimensions", "1 to 2"]),
@@ -130,9 +132,9 @@ fn options_that_do_not_apply_together_are_named_with_what_they_belong_to() {
 }
 
 #[test]
-fn what_cannot_be_written_is_named_once_and_leaves_nothing() {
+fn errors_name_unwritable_outputs_once_and_leave_nothing() {
     let place = place();
-    // A folder where the file should go: writing fails at the very end, for any user.
+    // A folder in place of the output: writing fails at the very end, for any user.
     for name in ["taken.npy", "taken.csv", "taken.ply", "taken.off"] {
         fs::create_dir(place.path(name)).unwrap();
     }
@@ -149,7 +151,7 @@ fn what_cannot_be_written_is_named_once_and_leaves_nothing() {
 }
 
 #[test]
-fn a_failure_leaves_what_was_there() {
+fn a_failure_keeps_existing_files() {
     let place = place();
     fs::write(place.path("form.npy"), "precious").unwrap();
     place.refused(&["embed", "ring.off", "--rank", "99", "-n", "20", "-o", "form.npy"], &["99"]);

@@ -1,4 +1,4 @@
-//! A folder of meshes at once.
+//! Embedding a folder of meshes.
 
 use std::fs;
 
@@ -25,13 +25,13 @@ fn every_mesh_of_a_folder_becomes_a_form() {
     assert!(json["failed"].as_array().unwrap().is_empty());
     assert_eq!(io::read(&place.path("forms/cat0.off")).unwrap().faces, ring().faces);
     assert!(io::read(&place.path("forms/dogs/rex.off")).is_ok());
-    // The same bytes as for one mesh alone.
+    // A folder gives the same bytes as a single mesh.
     place.done(&["embed", "animals/cat0.off", "-n", "20", "-o", "alone.off"]);
     assert_eq!(fs::read(place.path("alone.off")).unwrap(), fs::read(place.path("forms/cat0.off")).unwrap());
 }
 
 #[test]
-fn a_bad_file_is_named_and_does_not_stop_the_others() {
+fn a_bad_file_is_listed_and_does_not_stop_the_others() {
     let place = animals();
     fs::write(place.path("animals/cat9.off"), "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 zero\n3 0 1 2\n").unwrap();
     for options in [&[][..], &["--json"]] {
@@ -65,7 +65,7 @@ fn forms_never_overwrite_each_other_or_the_meshes() {
 }
 
 #[test]
-fn a_folder_without_meshes_is_named() {
+fn errors_name_a_folder_without_meshes() {
     let place = Workplace::new();
     fs::create_dir(place.path("void")).unwrap();
     place.refused(&["embed", "void", "-o", "forms"], &["void", "no mesh found"]);

@@ -9,7 +9,7 @@ use surface::VertexId;
 use crate::support::{Workplace, broken_ring, read_npy, ring};
 
 #[test]
-fn an_array_has_a_row_a_vertex_and_nan_where_one_was_dropped() {
+fn an_array_has_one_row_per_vertex_and_nan_for_dropped_ones() {
     let place = Workplace::new();
     place.add("broken.off", &broken_ring());
     place.add("ring.off", &ring());
@@ -23,7 +23,7 @@ fn an_array_has_a_row_a_vertex_and_nan_where_one_was_dropped() {
         let is_dropped = dropped.contains(&(v as u64));
         assert!(row.iter().all(|x| x.is_nan() == is_dropped && !x.is_infinite()), "vertex {v}: {row:?}");
     }
-    // What was dropped leaves no trace in the rest.
+    // Dropped vertices do not change the others.
     place.done(&["embed", "ring.off", "-n", "20", "-o", "whole.npy"]);
     assert_eq!(read_npy(&place.path("whole.npy")).1, rows[..480]);
     // As many columns as dimensions.
@@ -32,7 +32,7 @@ fn an_array_has_a_row_a_vertex_and_nan_where_one_was_dropped() {
 }
 
 #[test]
-fn rows_follow_the_vertices_of_the_input() {
+fn rows_follow_the_vertex_order_of_the_input() {
     let place = Workplace::new();
     let (mesh, p) = (ring(), ring().n_vertices());
     let mut reversed = mesh.clone();
@@ -55,7 +55,7 @@ fn rows_follow_the_vertices_of_the_input() {
 }
 
 #[test]
-fn distances_have_a_row_a_source_in_both_formats() {
+fn distances_have_one_row_per_source_in_both_formats() {
     let place = Workplace::new();
     place.add("broken.off", &broken_ring());
     place.done(&["geodesic", "broken.off", "--source", "4,99,0", "-o", "d.npy"]);
@@ -73,7 +73,7 @@ fn distances_have_a_row_a_source_in_both_formats() {
 }
 
 #[test]
-fn coloured_meshes_are_one_a_source() {
+fn each_source_gives_one_coloured_mesh() {
     let place = Workplace::new();
     place.add("ring.off", &ring());
     place.done(&["geodesic", "ring.off", "--source", "4", "-o", "one.ply"]);
@@ -104,7 +104,7 @@ fn meshes_of_forms_keep_the_faces_of_the_input() {
     }
 }
 
-/// What is printed, but for the time it took.
+/// The output without timings.
 fn without_seconds(mut json: Value) -> Value {
     json.as_object_mut().unwrap().remove("seconds");
     json
@@ -134,7 +134,7 @@ fn bytes_do_not_depend_on_threads() {
 }
 
 #[test]
-fn comparisons_say_where_shapes_differ() {
+fn comparisons_report_where_shapes_differ() {
     let place = Workplace::new();
     place.add("ring.off", &ring());
     let mut bumpy = ring();

@@ -1,4 +1,4 @@
-//! `geodesic`: sources anywhere, limits, paths, all pairs, and what is left when it is interrupted.
+//! `geodesic`: sources, limits, paths, all pairs, interruption.
 
 use std::fs;
 use std::time::{Duration, Instant};
@@ -9,8 +9,8 @@ use surface::VertexId;
 
 use crate::support::{Workplace, assert_keys, broken_ring, program, read_npy, ring};
 
-/// A sheet of 9 x 7 vertices after a small piece apart, which is dropped: vertex 0 of the sheet is
-/// vertex 9 of the file, face 0 face 8.
+/// A sheet of 9 x 7 vertices after a small component, which is dropped: vertex 0 of the sheet is vertex 9 of the file,
+/// face 0 is face 8.
 fn sheet() -> TriMesh {
     let mut small = shapes::grid(3, 3, 0.01);
     small.positions.iter_mut().for_each(|p| p.z += 5.0);
@@ -23,7 +23,7 @@ fn place() -> Workplace {
     place
 }
 
-/// Exact distances on the sheet are those in the plane.
+/// Distances on the flat sheet equal straight-line distances.
 fn assert_measured_from(row: &[f64], from: &Point3<f64>) {
     for (v, (distance, at)) in row.iter().zip(&sheet().positions).enumerate() {
         let expected = if v < 9 { f64::INFINITY } else { (at - from).norm() };
@@ -32,7 +32,7 @@ fn assert_measured_from(row: &[f64], from: &Point3<f64>) {
 }
 
 #[test]
-fn sources_lie_anywhere_in_the_numbers_of_the_input() {
+fn sources_use_the_numbers_of_the_input() {
     let place = place();
     let mesh = sheet();
     let at = |v: usize| mesh.positions[v].coords;
@@ -108,10 +108,10 @@ fn beyond_a_limit_distances_are_infinite_and_counted() {
 }
 
 #[test]
-fn points_that_are_not_there_are_named() {
+fn errors_name_missing_points() {
     let place = Workplace::new();
     let mut mesh = broken_ring();
-    // Face 328 names a vertex twice.
+    // Face 328 is degenerate.
     mesh.faces.push([3, 3, 4].map(VertexId));
     fs::write(place.path("a.off"), off(&mesh)).unwrap();
     let before = place.names();
@@ -154,11 +154,11 @@ fn points_that_are_not_there_are_named() {
         &["geodesic", "a.off", "--source", "0", "--path-to", "80", "--max-distance", "0.1", "-o", "p.obj"],
         &["a.off: there is no path", "to 80", "--max-distance"],
     );
-    place.refused(&["geodesic", "a.off", "--all-pairs", "-o", "d.csv"], &["d.csv", "written as .npy"]);
+    place.refused(&["geodesic", "a.off", "--all-pairs", "-o", "d.csv"], &["d.csv", "use .npy"]);
     assert_eq!(place.names(), before);
 }
 
-/// OFF text of a mesh that [`io::write`] would not write.
+/// OFF text of a mesh that [`io::write`] would reject.
 fn off(mesh: &TriMesh) -> String {
     let mut text = format!("OFF\n{} {} 0\n", mesh.n_vertices(), mesh.n_faces());
     mesh.positions.iter().for_each(|p| text += &format!("{} {} {}\n", p.x, p.y, p.z));
@@ -192,7 +192,7 @@ fn paths_are_straight_lines_in_every_format() {
         assert_eq!((&last["at"], points[0]["distance"].as_f64()), (&known["target"], Some(0.0)));
         let length = known["length"].as_f64().unwrap();
         assert!((last["distance"].as_f64().unwrap() - length).abs() < 1e-12);
-        // What is written as the place of a point may be given back as a source.
+        // The written place of a point is accepted as a source.
         let middle = points[points.len() / 2]["at"].to_string().replace('"', "");
         place.done(&["geodesic", "sheet.off", "--source", &middle, "-o", "d.npy"]);
     }
@@ -214,7 +214,7 @@ fn paths_are_straight_lines_in_every_format() {
 }
 
 #[test]
-fn all_pairs_are_the_average_of_both_directions_whatever_the_memory_and_the_threads() {
+fn all_pairs_average_both_directions_for_any_memory_and_threads() {
     let place = Workplace::new();
     place.add("broken.off", &broken_ring());
     let all: Vec<String> = (0..160).map(|v| v.to_string()).collect();
@@ -268,14 +268,14 @@ fn an_interrupted_run_leaves_nothing_behind() {
 }
 
 #[test]
-fn a_path_over_a_bridge_leads_from_piece_to_piece() {
+fn a_path_over_a_bridge_joins_two_components() {
     let place = place();
     let words = ["geodesic", "sheet.off", "--components", "bridge", "--source", "40", "--path-to", "4"];
     let json = place.json(&[&words[..], &["-o", "p.csv"]].concat());
     let [length, distance] = ["length", "distance"].map(|field| json["paths"][0][field].as_f64().unwrap());
     assert!((length / distance - 1.0).abs() < 0.01 && length.is_finite());
     assert!(io::read(&place.path("sheet.off")).is_ok());
-    // A whole mesh has nowhere without a path.
+    // A connected mesh has a path to every point.
     place.add("ring.off", &ring());
     place.done(&["geodesic", "ring.off", "--source", "0", "--path-to", "0,80", "-o", "p.obj"]);
 }

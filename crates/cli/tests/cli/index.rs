@@ -1,4 +1,4 @@
-//! An index from making it to asking it.
+//! Building, changing and searching an index.
 
 use std::fs;
 
@@ -7,7 +7,7 @@ use serde_json::Value;
 
 use crate::support::{Workplace, assert_keys, one_object};
 
-/// A closed surface of one of three kinds, each a little different from the others of its kind.
+/// A closed surface of one of three kinds; variants of a kind differ slightly.
 pub(crate) fn body(kind: usize, variant: usize) -> TriMesh {
     let mut mesh = match kind {
         0 => shapes::torus(14, 8, 2.0, 0.6),
@@ -54,12 +54,12 @@ fn a_folder_becomes_an_index_that_finds_its_shapes() {
     assert_eq!(results[0]["path"], "meshes/ring2.off");
     assert_eq!(found["predicted"]["label"], "ring");
     assert!(found["predicted"]["votes"].as_u64().unwrap() >= 3);
-    // What is in the index is at no distance from itself.
+    // An indexed shape is at distance zero from itself.
     let own = place.json(&["search", "all.canonform", "meshes/box1.off"]);
     assert_eq!(own["results"][0]["id"], "box1");
     assert!(own["results"][0]["distance"].as_f64().unwrap() < 1e-3, "{own}");
     assert_eq!(own["results"].as_array().unwrap().len(), 9);
-    // Several queries, one of them no mesh.
+    // Several queries, one of which cannot be read.
     let outcome =
         place.run(&["search", "all.canonform", "meshes/box1.off", "none.off", "meshes/ball0.off", "--json"]);
     let json = one_object(&outcome.out);
@@ -89,7 +89,7 @@ fn an_explained_result_has_the_numbers_of_the_comparison() {
 }
 
 #[test]
-fn only_what_changed_is_described_again() {
+fn only_changed_meshes_are_described_again() {
     let place = collection();
     place.done(&BUILD);
     let before = fs::read(place.path("all.canonform")).unwrap();
@@ -105,8 +105,8 @@ fn only_what_changed_is_described_again() {
     let text = export(&place, "all.canonform");
     fs::remove_file(place.path("all.canonform")).unwrap();
     place.done(&BUILD);
-    assert_eq!(export(&place, "all.canonform"), text, "as if it was built at once");
-    // Other classes need no new description.
+    assert_eq!(export(&place, "all.canonform"), text, "as if built from scratch");
+    // Changing classes needs no new descriptions.
     fs::write(place.path("labels.csv"), export_labels(&text)).unwrap();
     let labelled = place.json(&[&BUILD[..], &["--labels", "labels.csv"]].concat());
     assert_eq!((&labelled["described"], &labelled["renamed"]), (&0.into(), &9.into()));
@@ -121,7 +121,7 @@ fn export_labels(text: &str) -> String {
 }
 
 #[test]
-fn shards_merged_are_the_whole() {
+fn merged_shards_equal_the_whole_index() {
     let place = collection();
     place.done(&BUILD);
     for i in ["1", "2", "3", "4"] {
@@ -134,7 +134,7 @@ fn shards_merged_are_the_whole() {
     let merged = place.json(&[&["index", "merge", "-o", "merged"], &parts[..]].concat());
     assert_eq!((&merged["n_shapes"], &merged["repeated"]), (&9.into(), &3.into()));
     assert_eq!(export(&place, "merged"), export(&place, "all.canonform"));
-    // Merging again begins anew.
+    // Merging again starts from scratch.
     place.done(&["index", "merge", "part1", "-o", "merged"]);
     assert_eq!(export(&place, "merged"), export(&place, "part1"));
     place.refused(&["index", "build", "meshes", "--shard", "5/4", "-o", "x"], &["--shard", "5", "4"]);
@@ -172,7 +172,7 @@ fn shapes_are_added_and_removed() {
 }
 
 #[test]
-fn what_fails_is_listed_and_stays_out() {
+fn failed_meshes_are_listed_and_left_out() {
     let place = collection();
     fs::write(place.path("meshes/bad.off"), "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 zero\n3 0 1 2\n").unwrap();
     for _ in 0..2 {
@@ -182,12 +182,12 @@ fn what_fails_is_listed_and_stays_out() {
         assert_eq!(json["failed"][0]["id"], "bad");
         assert!(outcome.err.contains("meshes/bad.off") && outcome.err.contains("line 5"), "{}", outcome.err);
     }
-    // A shape whose file cannot be read any more is no shape of the folder.
+    // A shape whose file has become unreadable is removed.
     fs::write(place.path("meshes/ring1.off"), "OFF\n").unwrap();
     let outcome = place.run(&[&BUILD[..], &["--json"]].concat());
     let json = one_object(&outcome.out);
     assert_eq!((&json["n_shapes"], &json["removed"]), (&8.into(), &1.into()));
-    // Nothing but failures is no index.
+    // If every mesh fails, no index is written.
     fs::create_dir(place.path("broken")).unwrap();
     fs::write(place.path("broken/a.off"), "OFF\n").unwrap();
     let outcome = place.run(&["index", "build", "broken", "-o", "none"]);
@@ -212,10 +212,10 @@ fn an_index_is_verified_described_and_scored() {
     assert_ne!(dna["silhouette"], scores["silhouette"]);
     place.refused(&["evaluate", "all.canonform", "--by", "colour"], &["colour", "shape-dna"]);
     assert!(place.done(&["evaluate", "all.canonform"]).out.contains("nearest neighbour"));
-    // Written to a file as to standard output.
+    // A file gets the same text as standard output.
     place.done(&["index", "export", "all.canonform", "-o", "all.jsonl"]);
     assert_eq!(fs::read_to_string(place.path("all.jsonl")).unwrap(), export(&place, "all.canonform"));
-    // One byte in the middle.
+    // Damage one byte in the middle.
     let mut bytes = fs::read(place.path("all.canonform")).unwrap();
     let middle = bytes.len() / 2;
     bytes[middle] ^= 4;
@@ -249,7 +249,7 @@ fn a_matrix_of_distances_is_scored() {
 }
 
 #[test]
-fn an_index_takes_the_options_of_embed_and_describes_queries_with_them() {
+fn an_index_takes_the_options_of_embed_and_applies_them_to_queries() {
     let place = collection();
     place.done(&BUILD);
     for (options, text) in [
@@ -276,7 +276,7 @@ fn an_index_takes_the_options_of_embed_and_describes_queries_with_them() {
         assert_eq!(place.json(&["index", "add", "other", "more"])["described"], 1);
         fs::remove_file(place.path("other")).unwrap();
     }
-    // A seed that decides nothing is no other option.
+    // A seed without effect does not make options different.
     let again = place.json(&[&BUILD[..], &["--seed", "5"]].concat());
     assert_eq!(again["unchanged"], 9);
     place.refused(&["index", "build", "meshes", "--dim", "2", "-o", "x"], &["3 dimensions", "2", "--dim"]);
@@ -296,7 +296,7 @@ fn a_pair_has_the_same_numbers_in_a_comparison_and_in_a_search() {
         for result in found["results"].as_array().unwrap() {
             let mut compared = place.json(&["compare", &query, result["path"].as_str().unwrap()]);
             assert_eq!(result["distance"], compared["combined_distance"]);
-            // A search does not look at surfaces.
+            // A search does not compare surfaces.
             compared["handedness"] = "unknown".into();
             let keys = result["match"].as_object().unwrap();
             assert!(keys.len() > 10);
@@ -307,7 +307,7 @@ fn a_pair_has_the_same_numbers_in_a_comparison_and_in_a_search() {
 }
 
 #[test]
-fn what_is_no_index_or_cannot_be_written_is_named() {
+fn errors_name_files_that_are_not_indexes_or_cannot_be_written() {
     let place = collection();
     place.done(&BUILD);
     let before = fs::read(place.path("all.canonform")).unwrap();
@@ -317,7 +317,7 @@ fn what_is_no_index_or_cannot_be_written_is_named() {
     place.refused(&["evaluate", "notes.txt"], &["notes.txt", "not a shape index"]);
     place.refused(&["index", "build", "meshes", "-o", "notes.txt"], &["notes.txt", "not a shape index"]);
     place.refused(&["index", "info", "none"], &["none", "No such file"]);
-    place.refused(&["index", "build", "meshes", "-o", "nowhere/a"], &["nowhere", "make it first"]);
+    place.refused(&["index", "build", "meshes", "-o", "nowhere/a"], &["nowhere", "create it first"]);
     place.refused(&["index", "build", "nowhere", "-o", "a"], &["nowhere"]);
     place.refused(
         &["index", "build", "meshes", "-n", "30", "-o", "all.canonform"],

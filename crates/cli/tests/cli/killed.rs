@@ -1,4 +1,4 @@
-//! Builds of an index that are killed, and disks that are full.
+//! Killed builds of an index, and full disks.
 
 use std::fs;
 use std::process::{Command, Stdio};
@@ -21,13 +21,13 @@ fn build(output: &str) -> [&str; 9] {
     ["index", "build", "meshes", "-n", "20", "--threads", "1", "-o", output]
 }
 
-/// How many shapes are in the unfinished work of an index like `whole`.
+/// Number of shapes in the unfinished work of an index like `whole`.
 fn kept(place: &Workplace, index: &str) -> usize {
     let work = place.path(&format!("{index}.work"));
     if !work.exists() {
         return 0;
     }
-    // A copy, so that looking changes nothing.
+    // Works on a copy, which opening may change.
     let look = place.path("look");
     fs::copy(work, work_path(&look)).unwrap();
     let options = Index::open(&place.path("whole")).unwrap().options().to_owned();
@@ -39,7 +39,7 @@ fn kept(place: &Workplace, index: &str) -> usize {
 
 /// `CANONFORM_KILLS=50 cargo test -p canonform-cli killed` kills more often.
 #[test]
-fn a_build_killed_at_any_moment_goes_on_and_loses_nothing() {
+fn a_killed_build_continues_and_loses_nothing() {
     let kills: u32 = std::env::var("CANONFORM_KILLS").ok().and_then(|n| n.parse().ok()).unwrap_or(8);
     let place = collection();
     let start = Instant::now();
@@ -51,7 +51,7 @@ fn a_build_killed_at_any_moment_goes_on_and_loses_nothing() {
         if killed >= kills {
             break;
         }
-        // Several times in a row, each at another moment, until it is done.
+        // Kills several times in a row, at different moments, until the build is done.
         let index = format!("cut{round}");
         let mut before = 0;
         for turn in 0..4 {
@@ -79,7 +79,7 @@ fn a_build_killed_at_any_moment_goes_on_and_loses_nothing() {
     }
 }
 
-/// Runs the program where files cannot grow beyond so many blocks of 512 bytes.
+/// Runs the program with files limited to this many blocks of 512 bytes.
 #[cfg(unix)]
 fn run_limited(place: &Workplace, blocks: usize, arguments: &[&str]) -> (Option<i32>, String) {
     let script = format!("trap '' XFSZ; ulimit -f {blocks}; exec \"$@\"");
@@ -94,7 +94,7 @@ fn run_limited(place: &Workplace, blocks: usize, arguments: &[&str]) -> (Option<
 
 #[cfg(unix)]
 #[test]
-fn a_full_disk_is_named_and_the_old_index_stays() {
+fn a_full_disk_is_reported_and_the_old_index_stays() {
     let place = collection();
     place.done(&build("whole"));
     let whole = place.done(&["index", "export", "whole"]).out;
@@ -104,10 +104,13 @@ fn a_full_disk_is_named_and_the_old_index_stays() {
     for blocks in [1, size / 4, size / 2, size - 20, size] {
         let (code, err) = run_limited(&place, blocks, &build("whole"));
         assert_eq!(code, Some(2), "{blocks}: {err}");
-        assert!(err.contains("cannot write whole.work") && err.contains("make room"), "{blocks}: {err}");
+        assert!(
+            err.contains("cannot write whole.work") && err.contains("free some space"),
+            "{blocks}: {err}"
+        );
         assert_eq!(fs::read(place.path("whole")).unwrap(), old, "{blocks}");
     }
-    // With room again, the work goes on.
+    // Without the limit the build continues.
     place.done(&build("whole"));
     fs::remove_file(place.path("meshes/t1.off")).unwrap();
     place.done(&build("whole"));

@@ -1,9 +1,7 @@
 //! The program as its users see it: arguments in; files, output and exit codes out.
 //!
-//! `commands` (what each prints), `forms` (the files it writes), `errors` (what it refuses, and that
-//! nothing is left behind), `folders` (many meshes at once),
-//! `geodesic` (sources, paths, all pairs), `index` (making, changing and asking one), `killed` (interruptions,
-//! full disks), `render` (pictures).
+//! `commands` (what each prints), `forms` (files), `errors`, `folders` (many meshes), `geodesic` (sources, paths, all
+//! pairs), `index` (building, changing, searching), `killed` (interruptions, full disks), `render` (pictures), `serve`.
 
 #[cfg(test)]
 mod commands;

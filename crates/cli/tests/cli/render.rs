@@ -1,4 +1,4 @@
-//! `render`: pictures of meshes, of fields on them and of forms.
+//! `render`: pictures of meshes, fields and forms.
 
 use std::fs;
 
@@ -28,7 +28,7 @@ fn drawn(place: &Workplace, options: &[&str]) -> Vec<[u8; 4]> {
 }
 
 #[test]
-fn a_picture_has_the_size_and_the_background_asked_for() {
+fn a_picture_has_the_requested_size_and_background() {
     let place = place();
     let json = place.json(&["render", "ring.off", "--size", "90x60", "-o", "x.png"]);
     assert_keys(&json, &["mesh", "output", "width", "height", "n_vertices", "n_faces", "field", "seconds"]);
@@ -36,7 +36,7 @@ fn a_picture_has_the_size_and_the_background_asked_for() {
     assert!(json["field"].is_null());
     let (size, seen) = pixels(&place, "x.png");
     assert_eq!((size, seen[0]), ((90, 60), [255; 4]));
-    assert!(seen.iter().any(|p| p[0] < 200), "there is something to see");
+    assert!(seen.iter().any(|p| p[0] < 200), "the mesh is visible");
     let corner = |background: &str| drawn(&place, &["--background", background])[0];
     assert_eq!(corner("transparent")[3], 0);
     assert_eq!(corner("#102030"), [16, 32, 48, 255]);
@@ -52,7 +52,7 @@ fn views_show_other_sides() {
         let seen = drawn(&place, &["--background", "transparent", "--view", view]);
         seen.iter().filter(|p| p[3] > 127).count()
     };
-    // From above there is a hole in the ring, from the front none.
+    // The hole of the ring is visible from above, not from the front.
     assert!(covered("top") > 2 * covered("front"));
     assert!(covered("top").abs_diff(covered("bottom")) < 100);
     let front = drawn(&place, &["--view", "front"]);
@@ -89,14 +89,14 @@ fn distances_and_the_same_numbers_from_files_give_the_same_picture() {
 }
 
 #[test]
-fn a_row_of_several_is_chosen() {
+fn a_row_of_several_can_be_chosen() {
     let place = place();
     place.done(&["geodesic", "ring.off", "--source", "3,90", "-o", "two.npy"]);
     place.done(&["geodesic", "ring.off", "--source", "90", "-o", "one.csv"]);
     let row = |row: &str| drawn(&place, &["--field", "two.npy", "--row", row, "--no-bar"]);
     assert!(row("0") != row("1"));
     assert_eq!(row("1"), drawn(&place, &["--field", "one.csv", "--no-bar"]));
-    // One number a line is a field as well, and so is a list of whole numbers.
+    // One number per line is a field too, and integers are accepted.
     let column: Vec<String> = (0..160).map(|v| v.to_string()).collect();
     fs::write(place.path("column.csv"), column.join("\n")).unwrap();
     fs::write(place.path("row.csv"), column.join(" , ")).unwrap();
@@ -107,7 +107,7 @@ fn a_row_of_several_is_chosen() {
 }
 
 #[test]
-fn what_has_no_value_is_grey_and_counted() {
+fn vertices_without_a_value_are_grey_and_counted() {
     let place = place();
     place.add("broken.off", &broken_ring());
     let json = place.json(&["render", "broken.off", "--distance-from", "0", "-o", "x.png"]);
@@ -120,7 +120,7 @@ fn what_has_no_value_is_grey_and_counted() {
 }
 
 #[test]
-fn a_form_is_drawn_in_place_of_its_mesh() {
+fn a_form_can_be_drawn_instead_of_its_mesh() {
     let place = place();
     place.add("sheet.off", &shapes::grid(12, 9, 0.1));
     place.add("broken.off", &broken_ring());
@@ -134,7 +134,7 @@ fn a_form_is_drawn_in_place_of_its_mesh() {
 }
 
 #[test]
-fn pictures_do_not_depend_on_threads_and_meshes_with_any_fault_are_drawn() {
+fn defective_meshes_are_drawn_the_same_with_any_number_of_threads() {
     let place = place();
     let mut broken = broken_ring();
     broken.faces.push([broken.faces[0][0], broken.faces[0][1], broken.faces[9][2]]);
@@ -148,7 +148,7 @@ fn pictures_do_not_depend_on_threads_and_meshes_with_any_fault_are_drawn() {
 }
 
 #[test]
-fn what_cannot_be_drawn_is_refused_and_nothing_is_left() {
+fn errors_name_the_fault_and_leave_nothing() {
     let place = place();
     fs::write(place.path("three.csv"), "1,2,3").unwrap();
     fs::write(place.path("ragged.csv"), "1,2\n3").unwrap();
@@ -167,16 +167,16 @@ fn what_cannot_be_drawn_is_refused_and_nothing_is_left() {
     refused(&["-o", "x.png", "--view", "up"], &["`up`", "principal"]);
     refused(&["-o", "x.png", "--color", "red"], &["`red`", "#rrggbb"]);
     refused(&["-o", "x.png", "--background", "sky"], &["`sky`", "transparent"]);
-    refused(&["-o", "x.png", "--range", "2,1", "--distance-from", "0"], &["`2,1`", "least"]);
+    refused(&["-o", "x.png", "--range", "2,1", "--distance-from", "0"], &["`2,1`", "smallest"]);
     refused(&["-o", "x.png", "--isolines", "5"], &["--isolines", "--field", "--distance-from"]);
-    refused(&["-o", "x.png", "--field", "three.csv"], &["three.csv", "3 numbers", "160 vertices"]);
-    refused(&["-o", "x.png", "--field", "ragged.csv"], &["ragged.csv", "line 2", "1 numbers"]);
+    refused(&["-o", "x.png", "--field", "three.csv"], &["three.csv", "3 values", "160 vertices"]);
+    refused(&["-o", "x.png", "--field", "ragged.csv"], &["ragged.csv", "line 2", "1 values"]);
     refused(&["-o", "x.png", "--field", "words.csv"], &["words.csv", "line 1", "`two`"]);
     refused(&["-o", "x.png", "--field", "no.npy"], &["no.npy"]);
     refused(&["-o", "x.png", "--field", "no.txt"], &["no.txt", ".npy or .csv"]);
     refused(&["-o", "x.png", "--field", "gone.npy"], &["gone.npy", "No such file"]);
     refused(&["-o", "x.png", "--field", "two.npy"], &["two.npy", "2 rows", "--row"]);
-    refused(&["-o", "x.png", "--field", "two.npy", "--row", "2"], &["two.npy", "no row 2"]);
+    refused(&["-o", "x.png", "--field", "two.npy", "--row", "2"], &["two.npy", "row 2 does not exist"]);
     refused(&["-o", "x.png", "--distance-from", "160"], &["ring.off", "vertex 160"]);
     refused(&["-o", "x.png", "--distance-from", "0", "--field", "two.npy"], &["--field"]);
     place.refused(&["render", "points.off", "-o", "x.png"], &["points.off"]);

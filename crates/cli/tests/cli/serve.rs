@@ -1,4 +1,4 @@
-//! `canonform serve`, as a program: its line, its words, its end.
+//! `canonform serve` as a program: its output, its errors, and how it stops.
 
 use std::io::{BufRead, BufReader, Read, Write};
 use std::net::TcpStream;
@@ -22,13 +22,16 @@ impl Serving {
             .stderr(Stdio::piped())
             .spawn()
             .unwrap();
-        let mut err = BufReader::new(child.stderr.take().unwrap());
+        let err = BufReader::new(child.stderr.take().unwrap());
+        // Drop ends the program if the checks below fail.
+        let mut serving = Self { child, address: String::new(), err };
         let mut line = String::new();
-        err.read_line(&mut line).unwrap();
+        serving.err.read_line(&mut line).unwrap();
         let address = line.strip_prefix("listening on http://").unwrap_or_else(|| panic!("{line}"));
         let (address, rest) = address.split_once(' ').unwrap();
-        assert_eq!(rest, "(1 shapes of i)\n");
-        Self { child, address: address.to_owned(), err }
+        assert_eq!(rest, "(1 shapes in i)\n");
+        serving.address = address.to_owned();
+        serving
     }
 
     fn upload(&self, name: &str, content: &[u8]) -> Value {
@@ -52,7 +55,7 @@ impl Serving {
 
 impl Drop for Serving {
     fn drop(&mut self) {
-        // It may have ended as it should.
+        // The program may have stopped already.
         let _ = self.child.kill();
         let _ = self.child.wait();
     }
@@ -66,7 +69,7 @@ fn indexed() -> Workplace {
 }
 
 #[test]
-fn what_is_wrong_with_a_mesh_is_said_as_by_search() {
+fn errors_of_meshes_equal_those_of_search() {
     let place = indexed();
     let serving = Serving::start(&place);
     for (name, content) in [
@@ -80,8 +83,11 @@ fn what_is_wrong_with_a_mesh_is_said_as_by_search() {
         ("flat.off", b"OFF\n3 1 0\n0 0 0\n0 0 0\n0 0 0\n3 0 1 2\n"),
     ] {
         std::fs::write(place.path(name), content).unwrap();
-        let said = place.run(&["search", "i", name]).err;
-        assert_eq!(format!("error: {}\n", serving.upload(name, content)["error"].as_str().unwrap()), said);
+        let expected = place.run(&["search", "i", name]).err;
+        assert_eq!(
+            format!("error: {}\n", serving.upload(name, content)["error"].as_str().unwrap()),
+            expected
+        );
     }
     let mesh = std::fs::read(place.path("meshes/ring0.off")).unwrap();
     let mut expected = place.json(&["search", "i", "meshes/ring0.off"]);
@@ -93,11 +99,11 @@ fn what_is_wrong_with_a_mesh_is_said_as_by_search() {
 }
 
 #[test]
-fn a_taken_address_a_missing_index_and_bad_limits_are_said() {
+fn errors_name_a_taken_address_a_missing_index_and_bad_limits() {
     let place = indexed();
     let serving = Serving::start(&place);
     let again = ["serve", "i", "--listen", &serving.address];
-    place.refused(&again, &[&serving.address, "another program has it", "--listen with another port"]);
+    place.refused(&again, &[&serving.address, "another program uses it", "--listen with another port"]);
     place.refused(&["serve", "none"], &["none"]);
     place.refused(&["serve", "i", "--listen", "nowhere"], &["--listen"]);
     place.refused(&["serve", "i", "--max-upload", "0"], &["--max-upload"]);
@@ -105,7 +111,7 @@ fn a_taken_address_a_missing_index_and_bad_limits_are_said() {
 
 #[cfg(unix)]
 #[test]
-fn a_server_that_is_interrupted_ends_well() {
+fn an_interrupted_server_exits_with_success() {
     let place = indexed();
     let mut serving = Serving::start(&place);
     let id = serving.child.id().to_string();
@@ -113,5 +119,5 @@ fn a_server_that_is_interrupted_ends_well() {
     assert_eq!(serving.child.wait().unwrap().code(), Some(0));
     let mut rest = String::new();
     serving.err.read_to_string(&mut rest).unwrap();
-    assert!(rest.starts_with("finishing what is being worked on"), "{rest}");
+    assert!(rest.starts_with("finishing the requests in progress"), "{rest}");
 }

@@ -1,4 +1,4 @@
-//! A folder to work in, meshes to work on, and the program.
+//! A temporary folder, test meshes, and the program.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -8,10 +8,10 @@ use mesh::{TriMesh, io, shapes};
 use serde_json::Value;
 use tempfile::TempDir;
 
-/// A folder of its own for each test; gone with it.
+/// A temporary folder for one test.
 pub(crate) struct Workplace(TempDir);
 
-/// What the program left: exit code, standard output, standard error.
+/// Exit code, standard output and standard error of the program.
 pub(crate) struct Outcome {
     pub(crate) code: i32,
     pub(crate) out: String,
@@ -53,7 +53,7 @@ impl Workplace {
         one_object(&outcome.out)
     }
 
-    /// Runs the program, which must fail with 2 and a message that holds all of `words`.
+    /// Runs the program, which must fail with code 2 and a message that contains all of `words`.
     pub(crate) fn refused(&self, arguments: &[&str], words: &[&str]) {
         let outcome = self.run(arguments);
         assert_eq!(outcome.code, 2, "{arguments:?}: {}{}", outcome.out, outcome.err);
@@ -95,7 +95,7 @@ pub(crate) fn ring() -> TriMesh {
     shapes::torus(16, 10, 2.0, 0.6)
 }
 
-/// [`ring`], then a vertex without a face, then a small sheet apart: vertices 160 to 169 are dropped.
+/// [`ring`], then an isolated vertex, then a small separate sheet: vertices 160 to 169 are dropped.
 pub(crate) fn broken_ring() -> TriMesh {
     let mut mesh = ring();
     mesh.positions.push([9.0, 9.0, 9.0].into());

@@ -50,14 +50,16 @@ impl Sampling {
 
     fn entry(self) -> (&'static str, &'static str) {
         match self {
-            Self::Farthest => ("farthest", "Each the farthest from those before it"),
-            Self::Random => ("random", "All vertices with the same chance"),
-            Self::Incremental(Variance::Least) => {
-                ("min-variance", "Each the one whose squared distances to those before it vary least")
-            }
-            Self::Incremental(Variance::Greatest) => {
-                ("max-variance", "Each the one whose squared distances to those before it vary most")
-            }
+            Self::Farthest => ("farthest", "Each sample is the vertex farthest from the earlier ones"),
+            Self::Random => ("random", "Vertices drawn uniformly at random"),
+            Self::Incremental(Variance::Least) => (
+                "min-variance",
+                "Each sample is the vertex whose squared distances to the earlier ones vary least",
+            ),
+            Self::Incremental(Variance::Greatest) => (
+                "max-variance",
+                "Each sample is the vertex whose squared distances to the earlier ones vary most",
+            ),
         }
     }
 

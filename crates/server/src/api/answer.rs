@@ -1,4 +1,4 @@
-//! Parameters in, JSON and pictures out.
+//! Request parameters, and responses with JSON and pictures.
 
 use axum::body::{Body, Bytes};
 use axum::extract::{FromRequestParts, Path, Query};
@@ -10,7 +10,7 @@ use serde::de::DeserializeOwned;
 
 use crate::error::ApiError;
 
-/// What stands behind the `?` of an address.
+/// The query string.
 pub(super) struct Params<T>(pub(super) T);
 
 impl<T: DeserializeOwned, S: Send + Sync> FromRequestParts<S> for Params<T> {
@@ -22,7 +22,7 @@ impl<T: DeserializeOwned, S: Send + Sync> FromRequestParts<S> for Params<T> {
     }
 }
 
-/// The name in a path.
+/// The name in the path.
 pub(super) struct Id(pub(super) String);
 
 impl<S: Send + Sync> FromRequestParts<S> for Id {
@@ -34,12 +34,12 @@ impl<S: Send + Sync> FromRequestParts<S> for Id {
     }
 }
 
-/// An answer as JSON, made where it was computed: large ones take their time.
-pub(super) struct Written(Vec<u8>);
+/// A JSON response, serialised by the job that computed it because large ones take time.
+pub(super) struct Written(pub(super) Vec<u8>);
 
 impl Written {
     pub(super) fn new(answer: &impl Serialize) -> Result<Self, ApiError> {
-        serde_json::to_vec(answer).map(Self).map_err(|_| ApiError::fault())
+        serde_json::to_vec(answer).map(Self).map_err(|_| ApiError::internal())
     }
 }
 
@@ -49,24 +49,20 @@ impl IntoResponse for Written {
     }
 }
 
-pub(super) fn json_text(text: &'static str) -> Response {
-    ([(header::CONTENT_TYPE, "application/json")], text).into_response()
-}
-
-/// A quoted tag of something that is the same as long as the text is.
+/// An entity tag: `text` in quotes.
 pub(crate) fn tag(text: &str) -> HeaderValue {
-    // Made of digits and letters: always a header.
+    // Digits and letters always make a header.
     HeaderValue::from_str(&format!("\"{text}\"")).unwrap_or(HeaderValue::from_static("\"\""))
 }
 
-/// Whether the client has what the tag names.
+/// Whether the client already has the content with this tag.
 pub(crate) fn is_known(headers: &HeaderMap, tag: &HeaderValue) -> bool {
     let known = headers.get(header::IF_NONE_MATCH).and_then(|known| known.to_str().ok());
     let tag = tag.to_str().unwrap_or_default();
     known.is_some_and(|known| known.split(',').any(|known| known.trim().trim_start_matches("W/") == tag))
 }
 
-/// Something that clients may keep, if they ask every time whether it is still the same.
+/// A response that clients may keep but must revalidate every time; without content, 304.
 pub(crate) fn tagged(tag: HeaderValue, kind: &'static str, content: Option<Bytes>) -> Response {
     let status = if content.is_some() { StatusCode::OK } else { StatusCode::NOT_MODIFIED };
     let mut response = (status, Body::from(content.unwrap_or_default())).into_response();

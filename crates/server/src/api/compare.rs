@@ -1,4 +1,4 @@
-//! Two forms laid over each other.
+//! Comparison of two shapes.
 
 use std::sync::Arc;
 
@@ -15,7 +15,7 @@ use crate::app::{App, Query};
 use crate::error::ApiError;
 use crate::measured::{Measured, overlaid};
 
-/// Which two are compared: `query` or `a`, and `b`.
+/// The two shapes: `query` or `a`, and `b`.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct CompareParams {
@@ -23,7 +23,7 @@ pub(super) struct CompareParams {
     query: Option<String>,
     /// A shape of the index.
     a: Option<String>,
-    /// Another one.
+    /// A shape of the index.
     b: String,
 }
 
@@ -33,14 +33,14 @@ struct Answer {
     b: String,
     #[serde(flatten)]
     comparison: Comparison,
-    /// Whether both are the same triangles; not known where a mesh is gone.
+    /// Whether both meshes have the same triangles; unknown if a mesh is missing.
     triangulation: Option<Triangulation>,
     residual: [Residual; 2],
-    /// Both forms where they lie over each other, coloured by how far each point is from the other form.
+    /// Both forms after alignment, coloured by the distance of each point from the other form.
     forms: [Geometry; 2],
 }
 
-/// How far the points of a form are from the other one, in units of the first mesh.
+/// Distances of the points of a form from the other form, in units of the first mesh.
 #[derive(Serialize)]
 struct Residual {
     median: f64,
@@ -56,36 +56,33 @@ impl Residual {
     }
 }
 
-/// One of the two: what is compared, and what is shown.
+/// One of the two shapes.
 enum Side {
     Query(Arc<Query>),
-    Shape(PreparedShape, Arc<Measured>),
-    /// The mesh of the shape is gone.
-    Points(PreparedShape),
+    /// Not measured if the mesh is missing.
+    Shape(PreparedShape, Option<Arc<Measured>>),
 }
 
 impl Side {
     fn of_shape(app: &App, id: &str) -> Result<Self, Error> {
         let shape = app.search.prepared(id)?;
         match app.indexed(id) {
-            Ok(measured) => Ok(Self::Shape(shape, measured)),
-            Err(fault) if is_missing(&fault) => Ok(Self::Points(shape)),
-            Err(fault) => Err(fault),
+            Err(fault) if !is_missing(&fault) => Err(fault),
+            measured => Ok(Self::Shape(shape, measured.ok())),
         }
     }
 
     fn shape(&self) -> &PreparedShape {
         match self {
             Self::Query(query) => &query.shape,
-            Self::Shape(shape, _) | Self::Points(shape) => shape,
+            Self::Shape(shape, _) => shape,
         }
     }
 
     fn measured(&self) -> Option<&Measured> {
         match self {
             Self::Query(query) => Some(&query.measured),
-            Self::Shape(_, measured) => Some(measured),
-            Self::Points(_) => None,
+            Self::Shape(_, measured) => measured.as_deref(),
         }
     }
 
@@ -105,14 +102,14 @@ pub(super) async fn compare(
 fn answer(app: &App, params: CompareParams) -> Result<Answer, ApiError> {
     let (name, a) = match (params.query, params.a) {
         (Some(query), None) => {
-            let query = app.queries.get(&query).ok_or_else(forgotten)?;
+            let query = app.queries.get(&query).ok_or_else(expired)?;
             (query.name.clone(), Side::Query(query))
         }
         (None, Some(id)) => {
             let side = Side::of_shape(app, &id)?;
             (id, side)
         }
-        _ => return Err(ApiError::bad_request("name either an upload with `query` or a shape with `a`")),
+        _ => return Err(ApiError::bad_request("give either an upload with `query` or a shape with `a`")),
     };
     let b = Side::of_shape(app, &params.b)?;
     let pair = ShapePair::new(ShapeMetric::default(), [a.shape(), b.shape()]);
@@ -136,6 +133,6 @@ fn answer(app: &App, params: CompareParams) -> Result<Answer, ApiError> {
     })
 }
 
-fn forgotten() -> ApiError {
-    ApiError::new(StatusCode::GONE, "this query is not kept any more").with_remedy("send the mesh again")
+fn expired() -> ApiError {
+    ApiError::new(StatusCode::GONE, "this query has expired").with_remedy("upload the mesh again")
 }

@@ -1,4 +1,4 @@
-//! The JSON interface, as `openapi.json` describes it.
+//! The JSON interface, described by `openapi.json`.
 
 mod answer;
 mod compare;
@@ -9,11 +9,11 @@ use std::sync::{Arc, LazyLock};
 
 use axum::extract::State;
 use axum::http::StatusCode;
-use axum::response::Response;
 use axum::routing::{MethodRouter, get, post};
 use axum::{Json, Router};
 use serde::Serialize;
 
+use self::answer::Written;
 use crate::app::App;
 use crate::error::ApiError;
 use crate::formats::filled_in;
@@ -23,7 +23,7 @@ pub(crate) use answer::{is_known, tag, tagged};
 /// The description of the interface.
 static OPENAPI: LazyLock<String> = LazyLock::new(|| filled_in(include_str!("../../openapi.json")));
 
-/// A route: its method as the description names it, its path, and who answers.
+/// A route: its method as in the description, its path, and its handler.
 type Route = (&'static str, &'static str, MethodRouter<Arc<App>>);
 
 fn routes() -> Vec<Route> {
@@ -42,24 +42,24 @@ fn routes() -> Vec<Route> {
 pub(crate) fn router() -> Router<Arc<App>> {
     let all =
         routes().into_iter().fold(Router::new(), |router, (_, path, answers)| router.route(path, answers));
-    all.fallback(nothing_there).method_not_allowed_fallback(wrong_method)
+    all.fallback(not_found).method_not_allowed_fallback(wrong_method)
 }
 
-async fn openapi() -> Response {
-    answer::json_text(&OPENAPI)
+async fn openapi() -> Written {
+    Written(OPENAPI.clone().into_bytes())
 }
 
-async fn nothing_there() -> ApiError {
-    ApiError::new(StatusCode::NOT_FOUND, "there is nothing of this name")
-        .with_remedy("/api/openapi.json describes all that there is")
+async fn not_found() -> ApiError {
+    ApiError::new(StatusCode::NOT_FOUND, "not found")
+        .with_remedy("see /api/openapi.json for all paths and methods")
 }
 
 async fn wrong_method() -> ApiError {
-    ApiError::new(StatusCode::METHOD_NOT_ALLOWED, "this does not take requests of this kind")
-        .with_remedy("/api/openapi.json describes all that there is")
+    ApiError::new(StatusCode::METHOD_NOT_ALLOWED, "method not allowed")
+        .with_remedy("see /api/openapi.json for all paths and methods")
 }
 
-/// That the server is up, what it serves and what it takes.
+/// Status, size of the index, and limits.
 #[derive(Serialize)]
 struct Health {
     status: &'static str,
@@ -86,7 +86,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_route_is_described_and_every_description_is_a_route() {
+    fn the_description_lists_exactly_the_routes() {
         let description: serde_json::Value = serde_json::from_str(&OPENAPI).unwrap();
         let mut described = BTreeSet::new();
         for (path, methods) in description["paths"].as_object().unwrap() {

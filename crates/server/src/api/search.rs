@@ -1,6 +1,6 @@
-//! What is a mesh like?
+//! Search with an upload, or with a shape of the index.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -14,13 +14,13 @@ use serde::{Deserialize, Serialize};
 use view::interactive::Geometry;
 
 use super::answer::{Params, Written};
-use super::shapes::{form_of, is_missing};
+use super::shapes::{is_missing, points};
 use crate::app::{App, Query};
 use crate::error::ApiError;
 use crate::measured::Measured;
-use crate::upload::{Upload, pass, receive};
+use crate::upload::{Upload, drain, receive};
 
-/// Most shapes that are found.
+/// Maximum number of results.
 const MOST_FOUND: usize = 100;
 
 #[derive(Deserialize, Default)]
@@ -37,15 +37,13 @@ impl SearchParams {
     fn with_fields(mut self, upload: &Upload) -> Result<Self, ApiError> {
         for (name, text) in &upload.fields {
             let wrong =
-                |expected: &str| ApiError::bad_request(format!("{name} is `{text}`; it is {expected}"));
+                |expected: &str| ApiError::bad_request(format!("{name} is `{text}`; expected {expected}"));
             match name.as_str() {
                 "k" => self.k = Some(text.parse().map_err(|_| wrong("a number"))?),
                 "explain" => self.explain = Some(text.parse().map_err(|_| wrong("true or false"))?),
                 _ => {
-                    return Err(ApiError::bad_request(format!(
-                        "the form has a field `{name}` that means nothing"
-                    ))
-                    .with_remedy("send files, `k` and `explain`"));
+                    let error = format!("the form has an unknown field `{name}`");
+                    return Err(ApiError::bad_request(error).with_remedy("send files, `k` and `explain`"));
                 }
             }
         }
@@ -55,30 +53,46 @@ impl SearchParams {
     fn options(&self) -> Result<SearchOptions, ApiError> {
         let k = self.k.unwrap_or(SearchOptions::default().k);
         if !(1..=MOST_FOUND).contains(&k) {
-            return Err(ApiError::bad_request(format!("k is {k}; it goes from 1 to {MOST_FOUND}")));
+            return Err(ApiError::bad_request(format!("k is {k}; use 1 to {MOST_FOUND}")));
         }
         let explain = if self.explain == Some(true) { Explain::Kind } else { Explain::No };
         Ok(SearchOptions { k, explain, ..SearchOptions::default() })
     }
 }
 
-/// What `canonform search --json` prints, and what a page shows besides.
+/// The output of `canonform search --json`, and the geometry for the page.
 #[derive(Serialize)]
 struct Answer {
     /// Name of the file, or of the shape of the index.
     query: String,
     #[serde(flatten)]
     report: SearchReport,
-    /// Names this upload for a while, to be compared with what was found; none for a shape of the index.
+    /// Identifies this upload for later comparisons; none for a shape of the index.
     query_id: Option<String>,
-    /// What was repaired; none where the mesh of a shape of the index is gone.
+    /// None if the mesh of a shape of the index is missing.
     repair: Option<RepairReport>,
-    /// The same in words, a line for each kind of change.
+    /// The repair in words, one line per kind of change.
     repaired: Vec<String>,
     mesh: Option<Geometry>,
     /// Why there is no mesh.
     mesh_missing: Option<String>,
     form: Geometry,
+}
+
+impl Answer {
+    fn new(query: String, report: SearchReport, measured: &Measured) -> Self {
+        let repair = measured.surface.repaired.report.clone();
+        Self {
+            query,
+            report,
+            query_id: None,
+            repaired: repair.summary(),
+            repair: Some(repair),
+            mesh: Some(measured.mesh()),
+            mesh_missing: None,
+            form: measured.form(),
+        }
+    }
 }
 
 /// Searches with an upload, or with a shape of the index.
@@ -95,7 +109,7 @@ pub(super) async fn search(
     let permit = match app.work.upload() {
         Ok(permit) => permit,
         Err(busy) => {
-            pass(request);
+            drain(request);
             return Err(busy);
         }
     };
@@ -107,46 +121,30 @@ pub(super) async fn search(
 
 fn with_shape(app: &App, id: String, options: &SearchOptions) -> Result<Answer, ApiError> {
     let report = app.search.search_shape(&id, options)?;
-    let nothing = || (None, Vec::new(), None);
-    let (measured, mesh_missing) = match app.indexed(&id) {
-        Ok(measured) => (Some(measured), None),
-        Err(fault) if is_missing(&fault) => (None, Some(fault.to_string())),
-        Err(fault) => return Err(fault.into()),
-    };
-    let (repair, repaired, mesh) = measured.map_or_else(nothing, |measured| {
-        let repair = measured.surface.repaired.report.clone();
-        (Some(repair), measured.surface.repaired.report.summary(), Some(measured.mesh()))
-    });
-    let form = form_of(app, &id)?;
-    Ok(Answer { query: id, report, query_id: None, repair, repaired, mesh, mesh_missing, form })
+    match app.indexed(&id) {
+        Ok(measured) => Ok(Answer::new(id, report, &measured)),
+        Err(fault) if is_missing(&fault) => Ok(Answer {
+            form: points(app, &id)?,
+            query: id,
+            report,
+            query_id: None,
+            repair: None,
+            repaired: Vec::new(),
+            mesh: None,
+            mesh_missing: Some(fault.to_string()),
+        }),
+        Err(fault) => Err(fault.into()),
+    }
 }
 
 fn with_upload(app: &App, upload: Upload, options: &SearchOptions) -> Result<Answer, ApiError> {
-    let name: PathBuf = match upload.files.first() {
-        Some((name, _)) => name.clone(),
-        None => {
-            return Err(ApiError::bad_request("no file came with the request").with_remedy(format!(
-                "send one mesh, {}; or name a shape of the index with ?shape=",
-                mesh_files()
-            )));
-        }
+    let Some(name) = upload.files.first().map(|(name, _)| name.clone()) else {
+        let remedy = format!("send one mesh, {}; or name a shape of the index with ?shape=", mesh_files());
+        return Err(ApiError::bad_request("the request has no file").with_remedy(remedy));
     };
-    let (query, report) =
-        measure(app, upload, options).map_err(|fault| ApiError::of_upload(&name, &fault))?;
-    let (name, measured) = (query.name.clone(), &query.measured);
-    let repair = measured.surface.repaired.report.clone();
-    let (mesh, form) = (measured.mesh(), measured.form());
-    let query_id = app.keep(query)?;
-    Ok(Answer {
-        query: name,
-        report,
-        query_id: Some(query_id),
-        repaired: repair.summary(),
-        repair: Some(repair),
-        mesh: Some(mesh),
-        mesh_missing: None,
-        form,
-    })
+    let (query, report) = measure(app, upload, options).map_err(|fault| ApiError::of_upload(&name, fault))?;
+    let answer = Answer::new(query.name.clone(), report, &query.measured);
+    Ok(Answer { query_id: Some(app.keep(query)?), ..answer })
 }
 
 fn measure(app: &App, upload: Upload, options: &SearchOptions) -> Result<(Query, SearchReport), Error> {
@@ -164,6 +162,6 @@ fn measure(app: &App, upload: Upload, options: &SearchOptions) -> Result<(Query,
     let report = app.search.search_described(&description, options)?;
     let seconds = SearchSeconds { describe: described, ..report.seconds };
     let shape = description.prepare()?;
-    let query = Query { name, measured: Measured::of(surface, &embedded)?, shape };
+    let query = Query { name, measured: Measured::new(surface, &embedded)?, shape };
     Ok((query, SearchReport { seconds, ..report }))
 }

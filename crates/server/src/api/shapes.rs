@@ -1,4 +1,4 @@
-//! The shapes of the index: their list, meshes, forms and pictures.
+//! The shapes of the index: list, meshes, forms and thumbnails.
 
 use std::sync::Arc;
 
@@ -17,16 +17,16 @@ use crate::app::{App, ShapeSummary};
 use crate::error::ApiError;
 use crate::measured::dots;
 
-/// Shapes of one page of the list.
+/// Maximum number of shapes on one page of the list.
 const MOST_LISTED: usize = 500;
 
-/// Pixels of a thumbnail, either way.
+/// Width and height of a thumbnail in pixels.
 const THUMBNAIL: u32 = 176;
 
-/// Counts changes of how thumbnails are drawn.
+/// Version of the thumbnails, for their tags.
 const DRAWING: u32 = 1;
 
-/// Which shapes are listed.
+/// Which shapes to list.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct ListParams {
@@ -34,7 +34,7 @@ pub(super) struct ListParams {
     offset: usize,
     #[serde(default = "usual_limit")]
     limit: usize,
-    /// Part of a name or a label, in any case.
+    /// Part of a name or a label; case does not matter.
     #[serde(default)]
     q: String,
     label: Option<String>,
@@ -56,7 +56,7 @@ pub(super) async fn list(
     Params(params): Params<ListParams>,
 ) -> Result<Written, ApiError> {
     if !(1..=MOST_LISTED).contains(&params.limit) {
-        let error = format!("limit is {}; it goes from 1 to {MOST_LISTED}", params.limit);
+        let error = format!("limit is {}; use 1 to {MOST_LISTED}", params.limit);
         return Err(ApiError::bad_request(error));
     }
     let part = params.q.to_lowercase();
@@ -74,32 +74,34 @@ pub(super) async fn list(
     Written::new(&List { total, offset: params.offset, shapes })
 }
 
-/// The mesh of a shape, as it was repaired.
+/// The repaired mesh of a shape.
 pub(super) async fn mesh(State(app): State<Arc<App>>, Id(id): Id) -> Result<Written, ApiError> {
     let shared = app.clone();
     app.work.run(None, move || Written::new(&shared.indexed(&id)?.mesh())).await
 }
 
-/// The form of a shape: as a surface, or as the points in the index where its mesh is gone.
+/// The form of a shape: a surface, or the points stored in the index if its mesh is missing.
 pub(super) async fn form(State(app): State<Arc<App>>, Id(id): Id) -> Result<Written, ApiError> {
     let shared = app.clone();
-    app.work.run(None, move || Written::new(&form_of(&shared, &id)?)).await
+    let form = move || match shared.indexed(&id) {
+        Ok(measured) => Written::new(&measured.form()),
+        Err(fault) if is_missing(&fault) => Written::new(&points(&shared, &id)?),
+        Err(fault) => Err(fault.into()),
+    };
+    app.work.run(None, form).await
 }
 
-pub(super) fn form_of(app: &App, id: &str) -> Result<Geometry, Error> {
-    match app.indexed(id) {
-        Ok(measured) => Ok(measured.form()),
-        Err(fault) if is_missing(&fault) => Ok(Geometry::new(&dots(app.search.prepared(id)?.form()))),
-        Err(fault) => Err(fault),
-    }
+/// The points of the form in the index, as dots.
+pub(super) fn points(app: &App, id: &str) -> Result<Geometry, Error> {
+    Ok(Geometry::new(&dots(app.search.prepared(id)?.form())))
 }
 
-/// Whether a shape is known but its mesh is not what it was.
+/// Whether the mesh of a shape is missing or has changed.
 pub(super) fn is_missing(fault: &Error) -> bool {
     matches!(fault, Error::MeshGone { .. } | Error::MeshChanged { .. })
 }
 
-/// A picture of a shape: of its mesh, or of the points of its form where that is gone.
+/// A picture of a shape: its mesh, or the points of its form if the mesh is missing.
 pub(super) async fn thumbnail(
     State(app): State<Arc<App>>,
     Id(id): Id,
@@ -122,7 +124,7 @@ pub(super) async fn thumbnail(
                 shared.thumbnails.put(id, picture.clone(), picture.len());
                 Ok(tagged(tag, PNG, Some(picture)))
             }
-            // Under another tag, and not kept: the mesh may come back.
+            // Under another tag, and not cached: the mesh may come back.
             Err(fault) if is_missing(&fault) => {
                 let picture = draw(&dots(shared.search.prepared(&id)?.form()), View::Principal)?;
                 Ok(tagged(super::answer::tag("points"), PNG, Some(picture)))
@@ -141,5 +143,5 @@ fn draw(mesh: &TriMesh, view: View) -> Result<Bytes, ApiError> {
         view,
         ..RenderOptions::default()
     };
-    render(mesh, &options).to_png().map(Bytes::from).map_err(|_| ApiError::fault())
+    render(mesh, &options).to_png().map(Bytes::from).map_err(|_| ApiError::internal())
 }

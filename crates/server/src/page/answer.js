@@ -1,17 +1,17 @@
-// The answer: what was repaired, mesh and form, the class, the nearest shapes, and two forms laid over each other.
+// The results: repairs, mesh and form, class, nearest shapes, and the overlay of two forms.
 import { mark, tile } from './shapes.js';
 
 const byId = (id) => document.getElementById(id);
 const KINDS = {
   same: 'The same shape up to pose',
-  scaled: 'The same shape up to pose, of another size',
+  scaled: 'The same shape up to pose, at another size',
   mirrored: 'Mirror images up to pose',
-  'mirrored-and-scaled': 'Mirror images up to pose, of another size',
+  'mirrored-and-scaled': 'Mirror images up to pose, at another size',
   different: 'Different shapes',
 };
 const number = (value) => Number(value).toPrecision(3).replace(/\.?0+$/, '');
 
-// Views are made once and shown other things later: browsers hold only a few scenes in 3D.
+// Views are created once and then updated: browsers limit the number of WebGL scenes.
 const views = {};
 function view(id, geometries, options) {
   if (views[id]) return views[id].update(geometries, options);
@@ -40,7 +40,7 @@ export class Answer {
     this.hide();
   }
 
-  // What was found before is no answer to this question.
+  // Old results do not answer a new query.
   hide() {
     byId('found').hidden = true;
     byId('nothing').hidden = false;
@@ -55,7 +55,7 @@ export class Answer {
     byId('overlay').hidden = true;
     byId('query-name').textContent = found.query;
     this.showVerdict(found);
-    view('form-view', found.form, { title: found.mesh ? 'Canonical form' : 'Canonical form, at the points in the index' });
+    view('form-view', found.form, { title: found.mesh ? 'Canonical form' : 'Canonical form, points stored in the index' });
     byId('mesh-view').hidden = !found.mesh;
     if (found.mesh) view('mesh-view', found.mesh, { title: 'Shape', linkedWith: views['form-view'] });
     const tiles = found.results.map(({ rank, id, label, distance }) => {
@@ -68,7 +68,7 @@ export class Answer {
     this.root.dataset.query = found.query;
     this.root.dataset.state = 'ready';
     this.root.removeAttribute('aria-busy');
-    // On a narrow screen it is below what was asked with.
+    // On a narrow screen the results are below the query.
     if (this.root.getBoundingClientRect().top > 0.6 * innerHeight) this.root.scrollIntoView({ block: 'start' });
   }
 
@@ -76,9 +76,9 @@ export class Answer {
     const [label, line] = [predicted.label, byId('predicted')];
     line.dataset.label = label ?? '';
     if (results.length === 0) {
-      line.textContent = 'The index holds nothing.';
+      line.textContent = 'The index is empty.';
     } else if (label === null) {
-      line.textContent = `Class: unknown. Nothing is nearer than ${number(predicted.threshold)} by signatures.`;
+      line.textContent = `Class: unknown. No shape is within ${number(predicted.threshold)} by signatures.`;
     } else {
       const strong = document.createElement('strong');
       strong.textContent = label;
@@ -87,10 +87,10 @@ export class Answer {
     }
     const size = repair ? `${repair.input_vertices} vertices, ${repair.input_faces} faces; ` : '';
     const time = (seconds.describe + seconds.search).toFixed(2);
-    byId('facts').textContent = `${size}compared with ${known} shapes in ${time} s`;
+    byId('facts').textContent = `${size}searched ${known} shapes in ${time} s`;
     const lines = [...repaired];
     if (missing) lines.push(missing);
-    else if (lines.length === 0) lines.push('Nothing had to be repaired.');
+    else if (lines.length === 0) lines.push('No repairs needed.');
     byId('repaired').replaceChildren(...lines.map((text) => {
       const item = document.createElement('li');
       item.textContent = text;
@@ -108,7 +108,7 @@ export class Answer {
     overlay.dataset.state = 'busy';
     overlay.dataset.id = id;
     byId('overlay-title').textContent = `${query} over ${id}`;
-    byId('overlay-kind').textContent = 'Aligning ...';
+    byId('overlay-kind').textContent = 'Aligning…';
     byId('overlay-kind').dataset.kind = '';
     byId('overlay-facts').textContent = '';
     if (isNew) byId('overlay-title').focus({ preventScroll: true });
@@ -124,9 +124,9 @@ export class Answer {
     const sizes = kind.includes('scaled') ? `, ${number(scale)} times as large` : '';
     byId('overlay-kind').textContent = `${KINDS[kind]}${sizes}.`;
     byId('overlay-kind').dataset.kind = kind;
-    byId('overlay-facts').textContent = `Forms ${number(distance)} apart, ${number(normalized)} at equal size; ` +
-      `half of the first one's points are within ${number(residual[0].median)} of the second, ` +
-      `the farthest is ${number(residual[0].max)} off. Left and right: ${handedness}.`;
+    byId('overlay-facts').textContent = `Distance between the forms: ${number(distance)}, ${number(normalized)} at equal size. ` +
+      `Points of the first form are ${number(residual[0].median)} from the second (median), ` +
+      `${number(residual[0].max)} at most. Handedness: ${handedness}.`;
     byId('shown-first').textContent = answer.a;
     byId('shown-second').textContent = answer.b;
     this.overlaid = answer;
@@ -138,11 +138,11 @@ export class Answer {
     try {
       return await (await fetch(`/api/compare?${params}`)).json();
     } catch {
-      return { error: 'The server did not answer', remedy: 'check that it is running' };
+      return { error: 'The server did not respond', remedy: 'check that it is running' };
     }
   }
 
-  // Coloured by the residual; of both, the second is a pale shell around the first.
+  // Coloured by the residual; with both shown, the second is a pale shell around the first.
   drawOverlay() {
     if (!this.overlaid) return undefined;
     const { forms, residual, a, b } = this.overlaid;
@@ -154,7 +154,7 @@ export class Answer {
       first: [[forms[0]], [1]],
       second: [[forms[1]], [1]],
     }[shown];
-    const title = { both: `${a}, within ${b}`, first: a, second: b }[shown];
+    const title = { both: `${a} inside ${b}`, first: a, second: b }[shown];
     return view('overlay-view', surfaces, { title, opacity, range });
   }
 }

@@ -1,22 +1,22 @@
-// The page of `canonform serve`. Asks with a dropped mesh or with a shape of the index, shows the answer.
+// The page of `canonform serve`: searches with a dropped mesh or a shape of the index, and shows the results.
 //
-// app.js      what belongs together: asking, the answer, errors
+// app.js      connects queries and results
 // ask.js      drop zone, file button, upload with its progress
-// shapes.js   the list of the index
-// answer.js   the answer: verdict, views, nearest shapes, overlay
+// shapes.js   list of the shapes of the index
+// answer.js   results: class, views, nearest shapes, overlay
 //
-// Names that do not change, for tests and other scripts:
+// Stable names, for tests and other scripts:
 //   #file #drop              file input (the files of one mesh); drop zone, class `over` while dragged over
-//   #progress #status #error progress bar; what is going on; what went wrong, in the words of the command line
-//   #filter #shapes #more    search field, list of the index, button for more of it; #shapes-count
-//     #shapes button.tile[data-id][data-label], aria-pressed on the one that was asked with
-//   #answer                  data-state: `empty`, `busy`, `ready` or `failed`; data-query: name of what was asked with
-//     #query-name #predicted[data-label] #facts #repaired (li: a line a repair)
+//   #progress #status #error progress bar; current activity; error, worded as on the command line
+//   #filter #shapes #more    search field, list of shapes, button to show more; #shapes-count
+//     #shapes button.tile[data-id][data-label], aria-pressed on the query
+//   #answer                  data-state: `empty`, `busy`, `ready` or `failed`; data-query: name of the query
+//     #query-name #predicted[data-label] #facts #repaired (li: one line per repair)
 //     #mesh-view #form-view  viewers with linked cameras; data-state from viewer.js
-//     #results button.tile[data-id][data-label][data-distance], aria-pressed on the one that is laid over
+//     #results button.tile[data-id][data-label][data-distance], aria-pressed on the one in the overlay
 //     #overlay               data-state: `busy`, `ready` or `failed`; data-id of the shape
 //       #overlay-title #overlay-kind[data-kind] #overlay-facts #overlay-view, input[name=shown] (both, first, second)
-// All texts from outside are set as text, never as HTML.
+// Texts from outside are set as text, never as HTML.
 import { Ask } from './ask.js';
 import { Shapes } from './shapes.js';
 import { Answer } from './answer.js';
@@ -30,6 +30,6 @@ const ask = new Ask({
 });
 
 const health = await (await fetch('/healthz')).json();
-document.getElementById('index-size').textContent = `Among ${health.shapes} shapes.`;
+document.getElementById('index-size').textContent = health.shapes === 1 ? '1 shape in the index.' : `${health.shapes} shapes in the index.`;
 ask.limit(health);
 await shapes.search('');

@@ -1,9 +1,9 @@
-// Asking: with files that are dropped or chosen, or with a shape of the index.
+// Queries: files that are dropped or chosen, or a shape of the index.
 
 const byId = (id) => document.getElementById(id);
 
 export class Ask {
-  // `to` hears of the beginning, the answer and the failure of a question; the last question counts.
+  // Calls `begin`, `answer` and `failed` of `to`; only the last query counts.
   constructor(to) {
     this.to = to;
     this.maxUpload = Infinity;
@@ -11,7 +11,7 @@ export class Ask {
     const [drop, file] = [byId('drop'), byId('file')];
     file.addEventListener('change', () => {
       this.withFiles([...file.files]);
-      // The same file again is a new question.
+      // Choosing the same file again is a new query.
       file.value = '';
     });
     let depth = 0;
@@ -19,7 +19,7 @@ export class Ask {
       depth = change === 0 ? 0 : depth + change;
       drop.classList.toggle('over', depth > 0);
     };
-    // A file dropped beside the zone would take the place of the page.
+    // A file dropped outside the zone would replace the page.
     addEventListener('dragenter', (event) => { event.preventDefault(); over(1); });
     addEventListener('dragleave', () => over(-1));
     addEventListener('dragover', (event) => event.preventDefault());
@@ -44,8 +44,8 @@ export class Ask {
     const name = files.map((file) => file.name).join(' and ');
     if (size > this.maxUpload) {
       this.begin(name);
-      this.fail(`${name}: ${megabytes(size)} are more than the ${megabytes(this.maxUpload)} that are taken; ` +
-        'simplify the mesh, or start the server with a larger --max-upload');
+      this.fail(`${name}: ${megabytes(size)} exceed the upload limit of ${megabytes(this.maxUpload)}; ` +
+        'simplify the mesh, or raise the upload limit of the server');
       return;
     }
     this.send('/api/search', form, name);
@@ -65,7 +65,7 @@ export class Ask {
     return this.question;
   }
 
-  // XMLHttpRequest: fetch tells nothing of an upload on its way.
+  // XMLHttpRequest, because fetch does not report upload progress.
   send(address, body, name) {
     const question = this.begin(name);
     const current = () => question === this.question;
@@ -74,12 +74,12 @@ export class Ask {
     this.request = request;
     const measuring = () => {
       progress.removeAttribute('value');
-      status.textContent = `Measuring ${name} ...`;
+      status.textContent = `Measuring ${name}…`;
     };
     progress.hidden = false;
     progress.value = 0;
     if (body) {
-      status.textContent = `Sending ${name} ...`;
+      status.textContent = `Uploading ${name}…`;
       request.upload.addEventListener('progress', (event) => {
         if (current() && event.lengthComputable) progress.value = (100 * event.loaded) / event.total;
       });
@@ -97,7 +97,7 @@ export class Ask {
       } else if (found?.error) {
         this.fail(found.remedy ? `${found.error}; ${found.remedy}` : found.error);
       } else {
-        this.fail('The server did not answer; check that it is running and send the mesh again.');
+        this.fail('The server did not respond; check that it is running, and send the mesh again.');
       }
     });
     request.responseType = 'json';

@@ -1,4 +1,4 @@
-//! The page: files that are part of the program.
+//! The page: files embedded in the program.
 
 use std::collections::hash_map::DefaultHasher;
 use std::hash::{Hash, Hasher};

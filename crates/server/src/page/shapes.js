@@ -1,8 +1,8 @@
-// The list of the index, searched as one types.
+// The list of the shapes of the index, filtered while typing.
 
 const PAGE = 60;
 
-// A tile with a thumbnail, to be pressed; its size does not depend on the picture.
+// A button with a thumbnail, of a size that does not depend on the image.
 export function tile(id, label, lines, pressed) {
   const button = document.createElement('button');
   button.type = 'button';
@@ -29,7 +29,7 @@ export function tile(id, label, lines, pressed) {
   return item;
 }
 
-// Marks the tile of this shape, and no other.
+// Marks the tile of this shape only.
 export function mark(list, id) {
   for (const button of list.querySelectorAll('.tile')) {
     button.setAttribute('aria-pressed', String(button.dataset.id === id));
@@ -60,7 +60,7 @@ export class Shapes {
     const { text } = this;
     const params = new URLSearchParams({ offset, limit: PAGE, q: text });
     const response = await fetch(`/api/shapes?${params}`);
-    // The answer to what was typed before may come later.
+    // Responses to earlier input may arrive late.
     if (!response.ok || text !== this.text) return;
     const { total, shapes } = await response.json();
     const tiles = shapes.map(({ id, label }) => tile(id, label, [['more', label]], this.picked));

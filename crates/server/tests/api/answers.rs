@@ -1,4 +1,4 @@
-//! What is answered: the right thing, and what `openapi.json` says.
+//! Responses: their content, and that they follow `openapi.json`.
 
 use std::fs;
 
@@ -23,7 +23,7 @@ fn geometry(value: &Value) -> Geometry {
     serde_json::from_value(value.clone()).unwrap()
 }
 
-/// A name as an address has it.
+/// A percent-encoded name.
 fn escaped(id: &str) -> String {
     id.bytes().map(|byte| format!("%{byte:02x}")).collect()
 }
@@ -52,7 +52,7 @@ fn an_upload_finds_itself_in_every_format() {
             (names[0], 3)
         );
         assert_eq!(ids(&json)[0], "ring0");
-        // STL numbers vertices anew, and the distances of a ring do not say which way it is turned.
+        // STL renumbers vertices, and the rotation of a ring about its axis is arbitrary.
         let distance = json["results"][0]["distance"].as_f64().unwrap();
         assert!(distance < 0.05 || names == ["q.stl"], "{names:?}: {distance}");
         assert_eq!(json["results"][0]["match"]["kind"], "same");
@@ -65,7 +65,7 @@ fn an_upload_finds_itself_in_every_format() {
 }
 
 #[test]
-fn the_answer_is_that_of_the_command_line() {
+fn an_upload_gives_the_same_answer_as_the_library() {
     let server = Served::start(options());
     let mesh = shapes::torus(24, 12, 2.0, 0.7);
     let search = canonform::ShapeSearch::open(&server.folder.join(INDEX)).unwrap();
@@ -79,12 +79,12 @@ fn the_answer_is_that_of_the_command_line() {
 }
 
 #[test]
-fn repairs_are_told() {
+fn repairs_are_reported() {
     let server = Served::start(options());
     let two = shapes::disjoint(&[shapes::torus(24, 12, 2.0, 0.6), shapes::tetrahedron(0)]);
     let answer = upload(server.address, &[("q.ply", &written("q.ply", &two))], &[]).unwrap().json();
-    let said = answer["repaired"][0].as_str().unwrap();
-    assert!(said.starts_with("1 of 2 components dropped, 4 faces and 4 vertices"), "{said}");
+    let line = answer["repaired"][0].as_str().unwrap();
+    assert!(line.starts_with("1 of 2 components dropped, 4 faces and 4 vertices"), "{line}");
     assert_eq!(answer["repair"]["dropped_vertices"].as_array().unwrap().len(), 4);
     assert_eq!(geometry(&answer["mesh"]).positions.len(), two.n_vertices() - 4);
 }
@@ -105,7 +105,7 @@ fn a_shape_of_the_index_finds_itself() {
 }
 
 #[test]
-fn the_list_is_cut_and_filtered() {
+fn the_list_is_paged_and_filtered() {
     let server = Served::start(options());
     let description = description(&server);
     let list = |target: &str| {
@@ -131,7 +131,7 @@ fn the_list_is_cut_and_filtered() {
 }
 
 #[test]
-fn meshes_forms_and_pictures_of_shapes() {
+fn every_shape_has_a_mesh_a_form_and_a_thumbnail() {
     let server = Served::start(options());
     let description = description(&server);
     for (id, mesh) in bodies() {
@@ -162,7 +162,7 @@ fn meshes_forms_and_pictures_of_shapes() {
 }
 
 #[test]
-fn a_mesh_that_is_gone_leaves_the_points_of_its_form() {
+fn a_shape_without_its_mesh_shows_the_points_of_its_form() {
     let server = Served::start_apart(options());
     let description = description(&server);
     fs::remove_file(server.mesh("ring0")).unwrap();
@@ -188,7 +188,7 @@ fn a_mesh_that_is_gone_leaves_the_points_of_its_form() {
 }
 
 #[test]
-fn an_upload_is_laid_over_what_it_found() {
+fn an_upload_can_be_compared_with_its_results() {
     let server = Served::start(options());
     let description = description(&server);
     let mut mesh = shapes::torus(24, 12, 2.0, 0.8);
@@ -212,15 +212,18 @@ fn an_upload_is_laid_over_what_it_found() {
     let forms = [0, 1].map(|i| geometry(&json["forms"][i]));
     for (i, form) in forms.iter().enumerate() {
         let largest = form.values.as_ref().unwrap().iter().copied().fold(0.0, f32::max);
-        let told = json["residual"][i]["max"].as_f64().unwrap();
-        assert!((f64::from(largest) - told).abs() < 1e-5, "{largest}, {told}");
-        // A ring finds itself turned about its axis by less than an edge.
-        assert!(told < 0.3, "one shape: {told}");
+        let largest_residual = json["residual"][i]["max"].as_f64().unwrap();
+        assert!((f64::from(largest) - largest_residual).abs() < 1e-5, "{largest}, {largest_residual}");
+        // A ring may be rotated about its axis by less than an edge.
+        assert!(largest_residual < 0.3, "one shape: {largest_residual}");
     }
     let away = |p: &[f32; 3], q: &[f32; 3]| (0..3).map(|i| (p[i] - q[i]).powi(2)).sum::<f32>().sqrt();
     for (p, residual) in forms[0].positions.iter().zip(forms[0].values.as_ref().unwrap()) {
         let nearest = forms[1].positions.iter().map(|q| away(p, q)).fold(f32::INFINITY, f32::min);
-        assert!((nearest - residual).abs() < 1e-4, "they lie as they are laid: {nearest}, {residual}");
+        assert!(
+            (nearest - residual).abs() < 1e-4,
+            "residuals are distances between the aligned forms: {nearest}, {residual}"
+        );
     }
     let pair = get(&server, "/api/compare?a=ring0&b=box0").json();
     description.check("get", "/api/compare", 200, &pair);
@@ -240,7 +243,7 @@ fn an_upload_is_laid_over_what_it_found() {
 }
 
 #[test]
-fn the_page_its_files_and_the_health_of_the_server() {
+fn the_page_and_its_files_have_tags_and_security_headers() {
     let server = Served::start(options());
     let health = get(&server, "/healthz");
     description(&server).check("get", "/healthz", 200, &health.json());
@@ -273,7 +276,7 @@ fn the_page_its_files_and_the_health_of_the_server() {
 }
 
 #[test]
-fn what_is_not_there_is_said_in_json() {
+fn errors_of_unknown_routes_are_json() {
     let server = Served::start(options());
     for (method, target, status) in [
         ("GET", "/none", 404),

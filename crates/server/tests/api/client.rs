@@ -1,4 +1,4 @@
-//! A client that says exactly what it is told to, whether or not that is HTTP.
+//! A client that sends exactly the given bytes, valid HTTP or not.
 
 use std::io::{self, Read, Write};
 use std::net::{SocketAddr, TcpStream};

@@ -1,4 +1,4 @@
-//! Uploads that mean harm, or are broken: each is told why, and the server goes on.
+//! Malicious and broken uploads: each gets an error that says why, and the server keeps running.
 
 use std::fs;
 use std::io::{Read, Write};
@@ -30,7 +30,7 @@ fn zipped(content: &[&[u8]]) -> Vec<u8> {
     file
 }
 
-/// A struct with the fields of a surface whose first field says it has so many numbers.
+/// A MATLAB struct of a surface whose first field claims to have this many numbers.
 fn bomb(rows: u32, zeros: usize) -> Vec<u8> {
     let word = |x: u32| x.to_le_bytes();
     let element = |kind: u32, data: &[u8]| {
@@ -62,13 +62,13 @@ fn bomb(rows: u32, zeros: usize) -> Vec<u8> {
     zipped(&pieces)
 }
 
-/// More than two hundred uploads of which no good can come.
+/// More than two hundred bad uploads.
 fn hostile() -> Vec<(String, Files)> {
     let mut all: Vec<(String, Files)> = Vec::new();
     let mut add = |what: String, files: Files| all.push((what, files));
     let ball = shapes::icosphere(2);
     let written = |name: &str| written(name, &ball);
-    // Cut short. Formats without a header that counts are cut within a line of their faces.
+    // Truncated. Formats without counts in a header are cut within a line of their faces.
     for name in ["a.off", "a.ply", "a.stl"] {
         let whole = written(name);
         for share in 0..30 {
@@ -94,7 +94,7 @@ fn hostile() -> Vec<(String, Files)> {
     add("two halves of two".into(), [one("b.vert", vert.clone()), one("c.tri", written("b.tri"))].concat());
     add("a half twice".into(), [one("b.vert", vert.clone()), one("b.vert", vert)].concat());
     add("two meshes".into(), [one("a.off", written("a.off")), one("b.off", written("a.off"))].concat());
-    // Headers that promise the earth.
+    // Headers with huge counts.
     for count in ["200001", "4000000000", "4294967295", "99999999999999999999", "-1", "1e18", "nan"] {
         add(format!("OFF {count}"), one("a.off", format!("OFF\n{count} {count} 0\n0 0 0\n")));
         add(
@@ -109,7 +109,7 @@ fn hostile() -> Vec<(String, Files)> {
         };
         add(format!("PLY {count}"), one("a.ply", ply(count, "1")));
         add(format!("PLY {count} faces"), one("a.ply", ply("0", count)));
-        // Before the first vertex: -1 would be the last one.
+        // A relative index before the first vertex: -1 would be the last one.
         let count = if count == "-1" { "-4" } else { count };
         add(format!("OBJ face {count}"), one("a.obj", format!("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 {count}\n")));
         add(format!("OFF corners {count}"), one("a.off", format!("OFF\n1 1 0\n0 0 0\n{count} 0 0 0\n")));
@@ -128,7 +128,7 @@ fn hostile() -> Vec<(String, Files)> {
         ];
         add(format!("PLY list {count}"), one("a.ply", list.concat()));
     }
-    // Numbers that are none.
+    // Malformed numbers.
     for word in ["nan", "inf", "-inf", "1e999", "NaN", "x", "", "0x10", "1,5"] {
         add(format!("OFF {word}"), one("a.off", format!("OFF\n3 1 0\n0 0 {word}\n1 0 0\n0 1 0\n3 0 1 2\n")));
         add(format!("OBJ {word}"), one("a.obj", format!("v 0 0 {word}\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")));
@@ -155,7 +155,7 @@ fn hostile() -> Vec<(String, Files)> {
         add(what.into(), one("a.off", format!("OFF\n3 1 0\n{vertices}3 0 1 2\n")));
     }
     add("a corner three times".into(), one("a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 1 1 1\n"));
-    // Not what the name says, or no name at all.
+    // Wrong formats and bad names.
     for name in ["a.off", "a.obj", "a.ply", "a.stl", "a.mat", "a.vert", "a.tri"] {
         for (what, content) in [
             ("nothing", &b""[..]),
@@ -173,13 +173,13 @@ fn hostile() -> Vec<(String, Files)> {
         add(format!("named {name}"), one(name, written("a.off")));
     }
     add("a name of 5000 letters".into(), one(&"x".repeat(5000), written("a.off")));
-    // Compression without end.
+    // Compression bombs.
     add("MAT bomb within its limit".into(), one("a.mat", bomb(100_000, 64 << 20)));
     add("MAT bomb".into(), one("a.mat", bomb(u32::MAX / 8, 400 << 20)));
     add("MAT without struct".into(), one("a.mat", zipped(&[&[0; 1000]])));
     add("MAT cut".into(), one("a.mat", &bomb(1000, 1 << 20)[..200]));
     add("MATLAB 7.3".into(), one("a.mat", "MATLAB 7.3 MAT-file"));
-    // One line without end, many short ones, one polygon of everything.
+    // One endless line, many short ones, one huge polygon.
     add("a long line".into(), one("a.off", "1 ".repeat(1 << 20)));
     add("many lines".into(), one("a.obj", "v 0 0 0\n".repeat(300_000)));
     add("many faces".into(), one("a.obj", format!("v 0 0 0\n{}", "f 1 1 1\n".repeat(900_000))));
@@ -202,7 +202,7 @@ fn still_serves(server: &Served) {
 }
 
 #[test]
-fn two_hundred_bad_meshes_are_told_why() {
+fn two_hundred_bad_meshes_get_an_error() {
     let server = Served::start(options());
     let all = hostile();
     assert!(all.len() >= 200, "{}", all.len());
@@ -217,7 +217,7 @@ fn two_hundred_bad_meshes_are_told_why() {
 }
 
 #[test]
-fn forms_that_are_none_are_told_why() {
+fn bad_forms_get_an_error() {
     let server = Served::start(options());
     let mesh = fs::read(server.mesh("ring0")).unwrap();
     let (body, boundary) = form(&[("q.off", &mesh)], &[]);
@@ -294,7 +294,7 @@ fn a_gigabyte_of_zeros_is_cut_off() {
     still_serves(&server);
 }
 
-/// Bytes of this process in memory, where that is told.
+/// Resident memory of this process in bytes, where the system tells it.
 fn resident() -> Option<usize> {
     let mut text = String::new();
     fs::File::open("/proc/self/statm").ok()?.read_to_string(&mut text).ok()?;

@@ -1,12 +1,12 @@
-//! As much of JSON Schema as `openapi.json` uses.
+//! The part of JSON Schema that `openapi.json` uses.
 
 use serde_json::Value;
 
-/// The description, as the server hands it out.
+/// The description, as served.
 pub(crate) struct Description(pub(crate) Value);
 
 impl Description {
-    /// Holds an answer to what is described for this route and status.
+    /// Checks a response against the description of this route and status.
     pub(crate) fn check(&self, method: &str, path: &str, status: u16, answer: &Value) {
         let responses = &self.0["paths"][path][method]["responses"];
         let response = &responses[status.to_string()];
@@ -25,7 +25,7 @@ impl Description {
             return self.compare(named, value, place, faults);
         }
         if let Some(choices) = schema["anyOf"].as_array() {
-            // The choices are null and something else: faults of the latter are told.
+            // The choices are null and something else; faults are those of the latter.
             let is_null = |choice: &&Value| choice["type"] == "null";
             if !(value.is_null() && choices.iter().any(|choice| is_null(&choice))) {
                 for choice in choices.iter().filter(|choice| !is_null(choice)) {
@@ -50,7 +50,7 @@ impl Description {
             other => panic!("{place}: no type {other}"),
         };
         if !types.iter().any(is_of) {
-            faults.push(format!("{place} is no {}: {value}", types.join(" or ")));
+            faults.push(format!("{place} is not {}: {value}", types.join(" or ")));
             return;
         }
         if let Some(allowed) = schema["enum"].as_array()
@@ -86,7 +86,7 @@ impl Description {
 }
 
 #[test]
-fn differences_of_either_side_are_found() {
+fn differences_from_the_schema_are_found() {
     let text = r##"{"paths": {"/a": {"get": {"responses": {"200": {"content": {"application/json": {"schema":
         {"$ref": "#/components/schemas/A"}}}}}}}},
         "components": {"schemas": {"A": {"type": "object", "required": ["n"], "additionalProperties": false, "properties": {

@@ -1,4 +1,4 @@
-//! A server on an index of a few bodies, in this process.
+//! A server on a small index, in this process.
 
 use std::fs;
 use std::ops::Deref;
@@ -15,7 +15,7 @@ use crate::running::Running;
 /// Name of the index in its folder.
 pub(crate) const INDEX: &str = "all.canonform";
 
-/// The bodies; the last one goes by an awkward name.
+/// The name of the last body.
 pub(crate) const AWKWARD: &str = "<b>&'\" ü 100%#?";
 
 pub(crate) fn bodies() -> Vec<(&'static str, TriMesh)> {
@@ -62,7 +62,7 @@ fn index(folder: &Path) {
     build_index(&meshes, &folder.join(INDEX), &options, &()).unwrap();
 }
 
-/// The folder of an index that all tests share; nobody changes anything in it.
+/// The folder of an index that all tests share and none changes.
 fn shared() -> PathBuf {
     static FOLDER: OnceLock<PathBuf> = OnceLock::new();
     let make = || {
@@ -74,12 +74,12 @@ fn shared() -> PathBuf {
 }
 
 impl Served {
-    /// A server on the index that is shared.
+    /// A server on the shared index.
     pub(crate) fn start(options: ServeOptions) -> Self {
         Self::serve(shared(), None, options)
     }
 
-    /// A server on an index of its own, whose meshes may be changed.
+    /// A server on an index of its own, whose meshes the test may change.
     pub(crate) fn start_apart(options: ServeOptions) -> Self {
         let own = tempfile::tempdir().unwrap();
         index(own.path());
@@ -90,12 +90,12 @@ impl Served {
         Self { running: Running::start(&folder.join(INDEX), options), folder, _own: own }
     }
 
-    /// Where the mesh of a body lies.
+    /// Path of the mesh of a body.
     pub(crate) fn mesh(&self, id: &str) -> PathBuf {
         self.folder.join("meshes").join(format!("{id}.off"))
     }
 
-    /// Waits for the end of a server that was stopped.
+    /// Waits until a stopped server has ended.
     pub(crate) fn join(&mut self) -> Result<(), ServerError> {
         self.running.join().unwrap().unwrap()
     }

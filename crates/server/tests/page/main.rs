@@ -1,6 +1,6 @@
-//! The page as people meet it: in a browser, with meshes dropped and chosen, shapes clicked and turned.
+//! The page in a browser: dropping and choosing meshes, clicking and rotating shapes.
 //!
-//! Pictures of it are left in `target/browser`.
+//! Screenshots go to `target/browser`.
 
 #[cfg(test)]
 #[path = "../support/running.rs"]

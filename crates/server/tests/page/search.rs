@@ -1,4 +1,4 @@
-//! Asking with a mesh or with a shape of the index, and looking at the answer.
+//! Searching with a mesh or a shape of the index, and the display of results.
 
 use std::fs;
 
@@ -7,7 +7,7 @@ use serde_json::json;
 
 use crate::support::{AWKWARD, Page, body};
 
-/// Where the eye of a view stands.
+/// Position of the camera of a view.
 fn eye(page: &Page, css: &str) -> serde_json::Value {
     page.eval(&format!(
         "(({{ x, y, z }}) => [x, y, z])(document.querySelector('{css} .canonform-scene')._fullLayout.scene._scene.getCamera().eye)"
@@ -22,7 +22,7 @@ fn file(folder: &tempfile::TempDir, name: &str, family: Family) -> std::path::Pa
 }
 
 #[test]
-fn a_chosen_mesh_is_classified_and_its_nearest_are_laid_over_it() {
+fn a_chosen_mesh_is_classified_and_overlaid_with_a_result() {
     for (name, size) in [("1280", [1280, 900]), ("390", [390, 844])] {
         let Some(page) = Page::open(size[0], size[1]) else { return };
         page.picture("body", &format!("start-{name}"));
@@ -53,7 +53,7 @@ fn a_chosen_mesh_is_classified_and_its_nearest_are_laid_over_it() {
         page.wait_for(&format!("({near})({}, {})", camera("#mesh-view"), camera("#form-view")));
         assert!(before != eye(&page, "#form-view"));
 
-        // What comes later than the click allows for must have its place already.
+        // Content that arrives late must not shift the layout.
         page.browser
             .eval(
                 "const fetch = window.fetch;
@@ -74,7 +74,7 @@ fn a_chosen_mesh_is_classified_and_its_nearest_are_laid_over_it() {
 }
 
 #[test]
-fn a_dropped_mesh_and_a_picked_shape_are_asked_with() {
+fn a_dropped_mesh_and_a_picked_shape_can_be_queries() {
     let Some(page) = Page::open(1280, 900) else { return };
     let folder = tempfile::tempdir().unwrap();
     let bytes = fs::read(file(&folder, "x.off", Family::David)).unwrap();
@@ -88,7 +88,7 @@ fn a_dropped_mesh_and_a_picked_shape_are_asked_with() {
     page.browser.click("#shapes li:nth-child(2) .tile").unwrap();
     page.wait_for("document.querySelector('#predicted').dataset.label === 'centaur'");
     page.answered();
-    // Nothing is nearer to a shape than itself.
+    // A shape is its own nearest neighbour.
     assert_eq!(
         page.eval("document.querySelector('#results .tile').dataset.id"),
         page.eval("document.querySelector('#shapes .tile[aria-pressed=true]').dataset.id")
@@ -100,13 +100,13 @@ fn a_dropped_mesh_and_a_picked_shape_are_asked_with() {
 }
 
 #[test]
-fn a_bad_mesh_is_refused_in_the_words_of_the_command_line_and_the_page_goes_on() {
+fn a_bad_mesh_is_reported_as_on_the_command_line_and_the_page_still_works() {
     let Some(page) = Page::open(1280, 900) else { return };
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("bad.off");
     fs::write(&path, "OFF\n3 1 0\n0 0 0\n1 0 0\n").unwrap();
     let words = mesh::io::read(&path).unwrap_err().to_string();
-    // The command line names the file by its path, the page by its name.
+    // The command line names the path, the page only the file name.
     let words = words.replace(&path.display().to_string(), "bad.off");
     page.browser.upload("#file", &[&path]).unwrap();
     page.wait_for("document.querySelector('#answer').dataset.state === 'failed'");
@@ -116,7 +116,7 @@ fn a_bad_mesh_is_refused_in_the_words_of_the_command_line_and_the_page_goes_on()
     page.answered();
     assert_eq!(page.text("#error"), "");
     assert_eq!(page.eval("document.querySelector('#predicted').dataset.label"), "centaur");
-    // The browser says of itself that an answer was none of success.
+    // The browser itself logs the failed response.
     let console = page.browser.console().unwrap();
     assert!(
         console.iter().all(|m| m.text.contains("/api/search") && m.text.contains("status of 4")),
@@ -125,7 +125,7 @@ fn a_bad_mesh_is_refused_in_the_words_of_the_command_line_and_the_page_goes_on()
 }
 
 #[test]
-fn names_are_text_wherever_they_appear() {
+fn names_are_never_interpreted_as_html() {
     let Some(page) = Page::open(1280, 900) else { return };
     assert_eq!(page.eval("document.querySelectorAll('#shapes .tile')[0].dataset.id"), AWKWARD);
     page.browser.click("#shapes li:first-child .tile").unwrap();
@@ -141,7 +141,7 @@ fn names_are_text_wherever_they_appear() {
     page.browser.drop_file("#drop", &name, &bytes).unwrap();
     page.wait_for(&format!("document.querySelector('#query-name').textContent === {}", json!(name)));
     page.answered();
-    // Anything that had become an element would have asked for its picture and complained.
+    // An element made from a name would have requested its image and logged an error.
     assert_eq!(page.eval("document.querySelectorAll('img[src=\"x\"]').length"), 0);
     page.assert_sound();
 }

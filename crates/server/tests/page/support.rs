@@ -11,7 +11,7 @@ use serde_json::{Value, json};
 
 use crate::running::{Running, options};
 
-/// A name that is HTML, as far as a name of a file can be.
+/// A file name that contains HTML.
 pub(crate) const AWKWARD: &str = "<img src=x onerror=console.error(1)>&'\" ü";
 
 /// A body of 1,000 vertices; no two numbers give the same pose.
@@ -20,7 +20,7 @@ pub(crate) fn body(family: Family, number: usize) -> LabeledShape {
     articulated_shape(family, number, &options).unwrap()
 }
 
-/// A folder with `all.canonform`, and `meshes` of which the index was made; made once.
+/// A folder with `all.canonform` and the `meshes` it was built from; built once.
 fn collection() -> PathBuf {
     static FOLDER: OnceLock<PathBuf> = OnceLock::new();
     let make = || {
@@ -74,13 +74,13 @@ impl Page {
         text.as_str().unwrap().to_owned()
     }
 
-    /// Waits for the answer to a question, with all that is drawn of it.
+    /// Waits until results are shown.
     pub(crate) fn answered(&self) {
         self.wait_for("document.querySelector('#answer').dataset.state === 'ready'");
         self.wait_for("document.querySelector('#form-view').dataset.state === 'ready'");
     }
 
-    /// Scrolls an element to the top and leaves a picture of the window.
+    /// Scrolls an element to the top and takes a screenshot.
     pub(crate) fn picture(&self, css: &str, name: &str) {
         let scroll = format!(
             "document.querySelector({}).scrollIntoView({{ block: 'start', behavior: 'instant' }})",
@@ -90,7 +90,7 @@ impl Page {
         let seen =
             "[...document.images].every(i => i.complete || i.getBoundingClientRect().top > innerHeight)";
         self.wait_for(seen);
-        // A frame for what has just arrived.
+        // One more frame for the latest changes.
         self.browser
             .eval("return new Promise(done => requestAnimationFrame(() => setTimeout(done, 300)))")
             .unwrap();
@@ -98,7 +98,7 @@ impl Page {
         self.browser.screenshot(&folder.join(format!("server-{name}.png"))).unwrap();
     }
 
-    /// Nothing was said, everything asked for came from this server, and nothing is wider than the window.
+    /// The console is empty, all requests went to this server, and nothing is wider than the window.
     pub(crate) fn assert_sound(&self) {
         assert_eq!(self.browser.console().unwrap(), []);
         let origin = format!("http://{}/", self.server.address);

@@ -6,12 +6,12 @@ use std::thread::JoinHandle;
 
 use canonform_server::{ServeOptions, Server, ServerError, Stop};
 
-/// Options with a port that is free.
+/// Options with a free port.
 pub(crate) fn options() -> ServeOptions {
     ServeOptions { listen: "127.0.0.1:0".parse().unwrap(), ..ServeOptions::default() }
 }
 
-/// A running server; it is stopped at the end of the test.
+/// A running server, stopped on drop.
 pub(crate) struct Running {
     pub(crate) address: SocketAddr,
     pub(crate) stop: Stop,
@@ -25,7 +25,7 @@ impl Running {
         Self { address, stop, thread: Some(std::thread::spawn(move || server.run())) }
     }
 
-    /// Waits for the end of a server that was stopped, and says how it ended, once.
+    /// Waits until a stopped server has ended, and returns its result once.
     pub(crate) fn join(&mut self) -> Option<std::thread::Result<Result<(), ServerError>>> {
         self.thread.take().map(JoinHandle::join)
     }

@@ -1,6 +1,7 @@
 //! Distances between all pairs of vertices.
 
 use std::path::PathBuf;
+use std::process::ExitCode;
 use std::time::Instant;
 
 use anyhow::Result;
@@ -10,11 +11,11 @@ use serde::Serialize;
 use surface::VertexId;
 use terminal::Bars;
 
-use super::super::named;
-use super::Task;
-use crate::output::{facts, fill_npy, print, print_json};
+use super::task::Task;
+use crate::input::named;
+use crate::output::{facts, fill_npy, report};
 
-/// Memory for distances, in bytes.
+/// Default memory for distances, in bytes.
 const DEFAULT_MEMORY: usize = 1 << 30;
 
 #[derive(Serialize)]
@@ -22,10 +23,10 @@ struct PairsJson {
     method: &'static str,
     n_vertices: usize,
     output: PathBuf,
-    /// How much the directions differ that were averaged.
+    /// The difference between the two directions, which are averaged.
     asymmetry: Asymmetry,
     seconds: Seconds,
-    /// Input vertices without a way to any other.
+    /// Input vertices without a path to any other.
     unreached: Vec<VertexId>,
     repair: RepairReport,
 }
@@ -34,23 +35,21 @@ struct PairsJson {
 struct Seconds {
     load: f64,
     setup: f64,
-    /// All sources, on all threads, and the file.
+    /// All sources, on all threads, with writing the file.
     all_pairs: f64,
 }
 
-/// Measures and writes all pairs and says what they are.
-pub(super) fn write(task: &Task) -> Result<()> {
+/// Measures, writes and reports the distances between all pairs.
+pub(super) fn write(task: &Task) -> Result<ExitCode> {
     let Task { args, surface, .. } = task;
     let memory = args.memory.unwrap_or(DEFAULT_MEMORY);
     let pairs = AllPairs::new(surface, task.solver, memory).map_err(|fault| named(&args.mesh, fault))?;
-    let bars = Bars::new(task.common.quiet);
     let start = Instant::now();
     let mut asymmetry = Asymmetry::default();
     fill_npy(&args.output, [pairs.n_vertices(); 2], |file| {
-        asymmetry = pairs.write(file, &bars)?;
+        asymmetry = pairs.write(file, &Bars::new(task.common.quiet))?;
         Ok(())
     })?;
-    bars.finish();
     let json = PairsJson {
         method: args.method.name(),
         n_vertices: pairs.n_vertices(),
@@ -64,7 +63,7 @@ pub(super) fn write(task: &Task) -> Result<()> {
         unreached: surface.repaired.report.dropped_vertices.clone(),
         repair: surface.repaired.report.clone(),
     };
-    if task.common.json { print_json(&json) } else { print(&table(&json)) }
+    report(task.common, &json, table)
 }
 
 fn table(json: &PairsJson) -> String {
@@ -75,7 +74,14 @@ fn table(json: &PairsJson) -> String {
         ("vertices", json.n_vertices.to_string()),
         ("setup", format!("{:.1} ms", 1e3 * json.seconds.setup)),
         ("all pairs", format!("{:.1} s", json.seconds.all_pairs)),
-        ("asymmetry", format!("{} on average, {} at most; averaged out", percent(mean), percent(largest))),
+        (
+            "asymmetry",
+            format!(
+                "{} on average, {} at most; both directions are averaged",
+                percent(mean),
+                percent(largest)
+            ),
+        ),
     ];
     if !json.unreached.is_empty() {
         lines.push(("unreached", format!("{} vertices, written as inf", json.unreached.len())));

@@ -2,6 +2,7 @@
 
 use std::io::{self, Write};
 use std::path::PathBuf;
+use std::process::ExitCode;
 use std::time::Instant;
 
 use anyhow::Result;
@@ -10,9 +11,9 @@ use canonform::{InputPoint, Surface, SurfacePath};
 use mesh::RepairReport;
 use serde::Serialize;
 
-use super::super::named;
-use super::{Row, Seconds, Task, spelled};
-use crate::output::{facts, print, print_json};
+use super::task::{Row, Seconds, Task, spelled};
+use crate::input::named;
+use crate::output::{facts, report};
 
 #[derive(Serialize)]
 struct PathsJson {
@@ -30,20 +31,20 @@ struct PathsJson {
 
 #[derive(Serialize)]
 struct PathFacts {
-    /// Where it starts: the nearest of several sources.
+    /// The start: the nearest source.
     source: InputPoint,
     target: InputPoint,
     length: f64,
-    /// What the method says of a target that is a vertex.
+    /// The distance by the method, for a target that is a vertex.
     distance: Option<f64>,
     n_points: usize,
 }
 
-/// Finds paths, writes them and says what they are.
-pub(super) fn write(task: &Task) -> Result<()> {
+/// Finds, writes and reports paths.
+pub(super) fn write(task: &Task) -> Result<ExitCode> {
     let Task { args, surface, .. } = task;
     let fault = |fault| named(&args.mesh, fault);
-    // Before any work is done for nothing.
+    // Bad targets fail before any work is done.
     let targets: Result<Vec<_>, _> = args.path_to.iter().map(|point| surface.locate(point)).collect();
     let targets = targets.map_err(fault)?;
     let (rows, seconds) = task.solve()?;
@@ -53,7 +54,7 @@ pub(super) fn write(task: &Task) -> Result<()> {
         let tracer = PathTracer::new(&surface.intrinsic, &row.sources, &row.distances);
         for (target, at) in args.path_to.iter().zip(&targets) {
             let mut path = surface.path(&tracer, *at).map_err(fault)?;
-            // Its ends as the user wrote them.
+            // The ends as the user wrote them.
             let source = source_of(&path, row, surface).unwrap_or(*target);
             let n = path.points.len();
             path.points[0].at = source;
@@ -82,10 +83,10 @@ pub(super) fn write(task: &Task) -> Result<()> {
         path_seconds,
         repair: surface.repaired.report.clone(),
     };
-    if task.common.json { print_json(&json) } else { print(&table(&json)) }
+    report(task.common, &json, table)
 }
 
-/// Which of the sources a path comes from.
+/// The source where a path starts.
 fn source_of(path: &SurfacePath, row: &Row, surface: &Surface) -> Option<InputPoint> {
     let start = path.points.first()?.position;
     let away = |source: &Source| (surface.position(source.point()) - start).norm();
@@ -123,7 +124,7 @@ fn write_paths(task: &Task, paths: &[SurfacePath], facts: &[PathFacts]) -> Resul
     Ok(())
 }
 
-/// A line a point.
+/// One line per point.
 fn write_csv(out: &mut dyn Write, paths: &[SurfacePath]) -> io::Result<()> {
     writeln!(out, "path,x,y,z,distance,at")?;
     for (i, path) in paths.iter().enumerate() {
@@ -135,7 +136,7 @@ fn write_csv(out: &mut dyn Write, paths: &[SurfacePath]) -> io::Result<()> {
     Ok(())
 }
 
-/// One object: the facts of each path and its points.
+/// One object with the facts and the points of each path.
 fn write_json(out: &mut dyn Write, paths: &[SurfacePath], facts: &[PathFacts]) -> io::Result<()> {
     #[derive(Serialize)]
     struct Point {

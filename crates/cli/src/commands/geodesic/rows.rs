@@ -1,14 +1,15 @@
-//! Distances from sources: a row, or a coloured mesh, each.
+//! Distances from sources: one row, or one coloured mesh, per source.
 
 use std::path::{Path, PathBuf};
+use std::process::ExitCode;
 
 use anyhow::{Context, Result};
 use canonform::InputPoint;
 use mesh::RepairReport;
 use serde::Serialize;
 
-use super::{Row, Seconds, Task, spelled};
-use crate::output::{facts, print, print_json, write_colored, write_csv, write_npy};
+use super::task::{Row, Seconds, Task, spelled};
+use crate::output::{facts, report, write_colored, write_csv, write_npy};
 
 #[derive(Serialize)]
 struct RowsJson {
@@ -16,26 +17,26 @@ struct RowsJson {
     n_vertices: usize,
     sources: Vec<InputPoint>,
     outputs: Vec<PathBuf>,
-    /// Largest distance in each row, over the vertices reached.
+    /// The largest finite distance in each row.
     farthest: Vec<f64>,
     seconds: Seconds,
-    /// Input vertices without a way from the sources.
+    /// Input vertices without a path from the sources.
     unreached: Vec<u32>,
     max_distance: Option<f64>,
-    /// Vertices farther than that from each row's source.
+    /// Number of vertices beyond `max_distance`, in each row.
     beyond: Vec<usize>,
     repair: RepairReport,
 }
 
-/// Measures distances, writes them and says what they are.
-pub(super) fn write(task: &Task) -> Result<()> {
+/// Measures, writes and reports distances.
+pub(super) fn write(task: &Task) -> Result<ExitCode> {
     let Task { args, surface, .. } = task;
     let (solved, seconds) = task.solve()?;
     let rows: Vec<Vec<f64>> =
         solved.iter().map(|row| surface.in_input_order(&row.distances, f64::INFINITY)).collect();
     let outputs = write_rows(task, &solved, &rows)?;
     let is_infinite = |v: &u32| rows.iter().any(|row| !row[*v as usize].is_finite());
-    // A repaired surface is one component: with a limit, what is not reached is beyond it.
+    // A repaired surface is connected: with a limit, vertices that are not reached lie beyond it.
     let unreached = if args.max_distance.is_some() {
         surface.repaired.report.dropped_vertices.iter().map(|v| v.0).collect()
     } else {
@@ -59,7 +60,7 @@ pub(super) fn write(task: &Task) -> Result<()> {
         },
         repair: surface.repaired.report.clone(),
     };
-    if task.common.json { print_json(&json) } else { print(&table(&json, &solved)) }
+    report(task.common, &json, |json| table(json, &solved))
 }
 
 fn table(json: &RowsJson, rows: &[Row]) -> String {
@@ -84,7 +85,7 @@ fn table(json: &RowsJson, rows: &[Row]) -> String {
     facts(&lines)
 }
 
-/// Writes the distances, in the input's order of vertices, and returns the files.
+/// Writes the distances, in the vertex order of the input, and returns the files.
 fn write_rows(task: &Task, solved: &[Row], rows: &[Vec<f64>]) -> Result<Vec<PathBuf>> {
     let (output, slices) = (&task.args.output, rows.iter().map(Vec::as_slice));
     match task.format {
@@ -109,6 +110,6 @@ fn write_rows(task: &Task, solved: &[Row], rows: &[Vec<f64>]) -> Result<Vec<Path
 /// `out.ply` for source 7 of several: `out-7.ply`.
 fn numbered(output: &Path, from: &[InputPoint], extension: &str) -> PathBuf {
     let stem = output.file_stem().unwrap_or_default().to_string_lossy();
-    // Not every system takes a colon in a file's name.
+    // Some systems do not allow colons in file names.
     output.with_file_name(format!("{stem}-{}.{extension}", spelled(from).replace(':', "_")))
 }

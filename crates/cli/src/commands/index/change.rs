@@ -11,9 +11,9 @@ use canonform::{
 use serde::Serialize;
 use terminal::Bars;
 
-use super::super::is_named;
-use crate::args::{AddArgs, BuildArgs, Common, MergeArgs, RemoveArgs};
-use crate::output::{check_folder, facts, print, print_json};
+use crate::args::{AddArgs, BuildArgs, Common};
+use crate::input::is_named;
+use crate::output::{check_folder, exit_code, facts, report};
 use crate::remedy::with_remedy;
 
 #[derive(Serialize)]
@@ -23,46 +23,34 @@ struct Json<T: Serialize> {
     report: T,
 }
 
-fn labels(path: Option<&PathBuf>) -> Result<Option<LabelFile>> {
-    Ok(path.map(|path| LabelFile::read(path)).transpose()?)
-}
-
 pub(super) fn build(args: &BuildArgs, common: &Common) -> Result<ExitCode> {
     check_folder(&args.output)?;
-    let labels = labels(args.labels.as_ref())?;
+    let labels = args.labels.as_deref().map(LabelFile::read).transpose()?;
     let describe = args.describe.options(common)?;
     let options = BuildOptions { describe: &describe, labels: labels.as_ref(), shard: args.shard };
-    let bars = Bars::new(common.quiet);
-    let report = build_index(&args.folder, &args.output, &options, &bars);
-    bars.finish();
-    tell(&args.output, report?, common)
+    let built = build_index(&args.folder, &args.output, &options, &Bars::new(common.quiet))?;
+    summarize(&args.output, built, common)
 }
 
 pub(super) fn add(args: &AddArgs, common: &Common) -> Result<ExitCode> {
-    let labels = labels(args.labels.as_ref())?;
+    let labels = args.labels.as_deref().map(LabelFile::read).transpose()?;
     let inputs = Inputs { paths: &args.meshes, labels: labels.as_ref(), label: args.label.as_deref() };
-    let bars = Bars::new(common.quiet);
-    let report = add_to_index(&args.index, &inputs, args.replace, &bars);
-    bars.finish();
-    tell(&args.index, report?, common)
+    let added = add_to_index(&args.index, &inputs, args.replace, &Bars::new(common.quiet))?;
+    summarize(&args.index, added, common)
 }
 
-/// Prints what became of the meshes, those that failed last.
-fn tell(index: &Path, report: BuildReport, common: &Common) -> Result<ExitCode> {
-    let code = if report.failed.is_empty() { ExitCode::SUCCESS } else { ExitCode::from(2) };
-    if common.json {
-        print_json(&Json { index: index.to_owned(), report: &report })?;
-    } else {
-        print(&table(index, &report))?;
+/// Prints what happened to the meshes, failures last.
+fn summarize(index: &Path, built: BuildReport, common: &Common) -> Result<ExitCode> {
+    let json = Json { index: index.to_owned(), report: built };
+    report(common, &json, |json| table(index, &json.report))?;
+    for failure in &json.report.failed {
+        let message = match is_named(&failure.path, &failure.error) {
+            true => failure.error.clone(),
+            false => format!("{}: {}", failure.path.display(), failure.error),
+        };
+        eprintln!("error: {}", with_remedy(message, failure.remedy));
     }
-    for failure in &report.failed {
-        let message = with_remedy(&failure.error, failure.remedy);
-        match is_named(&failure.path, &failure.error) {
-            true => eprintln!("error: {message}"),
-            false => eprintln!("error: {}: {message}", failure.path.display()),
-        }
-    }
-    Ok(code)
+    Ok(exit_code(json.report.failed.is_empty()))
 }
 
 fn table(index: &Path, report: &BuildReport) -> String {
@@ -76,7 +64,7 @@ fn table(index: &Path, report: &BuildReport) -> String {
     rows.push(("seconds", format!("{:.2}", report.seconds)));
     rows.push(match index.exists() {
         true => ("index", format!("{}, {} shapes", index.display(), report.n_shapes)),
-        false => ("index", "none: no mesh could be described".to_owned()),
+        false => ("index", "not written: no mesh could be described".to_owned()),
     });
     facts(&rows)
 }
@@ -87,33 +75,24 @@ struct RemoveReport {
     removed: usize,
 }
 
-pub(super) fn remove(args: &RemoveArgs, common: &Common) -> Result<ExitCode> {
-    let n_shapes = remove_from_index(&args.index, &args.ids)?;
-    let mut ids = args.ids.clone();
+pub(super) fn remove(index: &Path, ids: &[String], common: &Common) -> Result<ExitCode> {
+    let n_shapes = remove_from_index(index, ids)?;
+    let mut ids = ids.to_vec();
     ids.sort();
     ids.dedup();
-    let report = RemoveReport { n_shapes, removed: ids.len() };
-    if common.json {
-        print_json(&Json { index: args.index.clone(), report })?;
-    } else {
-        print(&format!("{} removed, {n_shapes} shapes in {}", report.removed, args.index.display()))?;
-    }
-    Ok(ExitCode::SUCCESS)
+    let json = Json { index: index.to_owned(), report: RemoveReport { n_shapes, removed: ids.len() } };
+    report(common, &json, |json| {
+        format!("{} removed, {n_shapes} shapes in {}", json.report.removed, json.index.display())
+    })
 }
 
-pub(super) fn merge(args: &MergeArgs, common: &Common) -> Result<ExitCode> {
-    check_folder(&args.output)?;
-    let bars = Bars::new(common.quiet);
-    let report = merge_indexes(&args.inputs, &args.output, &bars);
-    bars.finish();
-    let report = report?;
-    if common.json {
-        print_json(&Json { index: args.output.clone(), report })?;
-    } else {
-        let MergeReport { n_shapes, repeated } = report;
+pub(super) fn merge(inputs: &[PathBuf], output: &Path, common: &Common) -> Result<ExitCode> {
+    check_folder(output)?;
+    let merged = merge_indexes(inputs, output, &Bars::new(common.quiet))?;
+    report(common, &Json { index: output.to_owned(), report: merged }, |json| {
+        let MergeReport { n_shapes, repeated } = json.report;
         let twice =
-            if repeated > 0 { format!(", {repeated} of them in more than one") } else { String::new() };
-        print(&format!("{n_shapes} shapes in {}{twice}", args.output.display()))?;
-    }
-    Ok(ExitCode::SUCCESS)
+            if repeated > 0 { format!(", {repeated} of them in more than one index") } else { String::new() };
+        format!("{n_shapes} shapes in {}{twice}", json.index.display())
+    })
 }

@@ -1,50 +1,38 @@
 //! `canonform index verify | info | export`.
 
 use std::collections::BTreeMap;
-use std::io::Write;
-use std::path::PathBuf;
+use std::io::{BufWriter, Write};
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::Result;
-use index::{ExportError, Index, work_path};
+use index::{ExportError, Index, Verification, work_path};
 use serde::Serialize;
 
-use crate::args::{Common, ExportArgs, OneIndexArgs};
-use crate::output::{check_folder, facts, print, print_json};
+use crate::args::Common;
+use crate::output::{check_folder, exit_code, facts, print, print_json, report};
 
 #[derive(Serialize)]
-struct VerifyJson {
-    index: PathBuf,
+struct VerifyJson<'a> {
+    index: &'a Path,
     sound: bool,
     n_shapes: usize,
     n_bytes: u64,
-    faults: Vec<String>,
+    faults: &'a [String],
 }
 
-pub(super) fn verify(args: &OneIndexArgs, common: &Common) -> Result<ExitCode> {
-    let found = index::verify(&args.index, || ())?;
-    let sound = found.faults.is_empty();
+pub(super) fn verify(index: &Path, common: &Common) -> Result<ExitCode> {
+    let Verification { n_shapes, n_bytes, faults } = &index::verify(index, || ())?;
+    let (sound, name) = (faults.is_empty(), index.display());
     if common.json {
-        let (n_shapes, n_bytes) = (found.n_shapes, found.n_bytes);
-        print_json(&VerifyJson {
-            index: args.index.clone(),
-            sound,
-            n_shapes,
-            n_bytes,
-            faults: found.faults.clone(),
-        })?;
+        print_json(&VerifyJson { index, sound, n_shapes: *n_shapes, n_bytes: *n_bytes, faults })?;
     } else if sound {
-        print(&format!(
-            "{}: sound, {} shapes, {} bytes",
-            args.index.display(),
-            found.n_shapes,
-            found.n_bytes
-        ))?;
+        print(&format!("{name}: intact, {n_shapes} shapes, {n_bytes} bytes"))?;
     }
-    for fault in &found.faults {
-        eprintln!("error: {} is damaged: {fault}; restore it, or build it again", args.index.display());
+    for fault in faults {
+        eprintln!("error: {name} is damaged: {fault}; restore it, or build it again");
     }
-    Ok(if sound { ExitCode::SUCCESS } else { ExitCode::from(2) })
+    Ok(exit_code(sound))
 }
 
 #[derive(Serialize)]
@@ -55,32 +43,26 @@ struct InfoJson {
     n_bytes: u64,
     options: serde_json::Value,
     classes: BTreeMap<String, usize>,
-    /// Where unfinished work lies, if there is any.
+    /// The file with unfinished work, if there is one.
     unfinished: Option<PathBuf>,
 }
 
-pub(super) fn info(args: &OneIndexArgs, common: &Common) -> Result<ExitCode> {
-    let index = Index::open(&args.index)?;
+pub(super) fn info(path: &Path, common: &Common) -> Result<ExitCode> {
+    let index = Index::open(path)?;
     let mut classes = BTreeMap::new();
     for (_, entry) in index.entries()? {
         *classes.entry(entry.label).or_insert(0) += 1;
     }
-    let unfinished = Some(work_path(&args.index)).filter(|work| work.exists());
-    let options = serde_json::from_str(index.options()).unwrap_or_else(|_| index.options().into());
     let json = InfoJson {
-        index: args.index.clone(),
+        index: path.to_owned(),
         format: index::FORMAT_VERSION,
         n_shapes: index.len(),
         n_bytes: index.n_bytes(),
-        options,
+        options: serde_json::from_str(index.options()).unwrap_or_else(|_| index.options().into()),
         classes,
-        unfinished,
+        unfinished: Some(work_path(path)).filter(|work| work.exists()),
     };
-    match common.json {
-        true => print_json(&json)?,
-        false => print(&table(&json))?,
-    }
-    Ok(ExitCode::SUCCESS)
+    report(common, &json, table)
 }
 
 fn table(json: &InfoJson) -> String {
@@ -98,32 +80,25 @@ fn table(json: &InfoJson) -> String {
     facts(&rows)
 }
 
-pub(super) fn export(args: &ExportArgs, _: &Common) -> Result<ExitCode> {
-    let index = Index::open(&args.index)?;
-    match &args.output {
-        None => {
-            let mut out = std::io::BufWriter::with_capacity(1 << 16, std::io::stdout().lock());
-            match index.export(&mut out).and_then(|()| Ok(out.flush()?)) {
-                Err(ExportError::Write(fault)) => Err(fault)?,
-                other => other?,
-            }
+pub(super) fn export(index: &Path, output: Option<&Path>) -> Result<ExitCode> {
+    let index = Index::open(index)?;
+    let Some(path) = output else {
+        let mut out = BufWriter::with_capacity(1 << 16, std::io::stdout().lock());
+        index.export(&mut out)?;
+        out.flush()?;
+        return Ok(ExitCode::SUCCESS);
+    };
+    check_folder(path)?;
+    let mut unreadable = None;
+    let written = files::write_atomically(path, |out| match index.export(out) {
+        Err(ExportError::Index(fault)) => {
+            unreadable = Some(fault);
+            Err(std::io::Error::other("the index cannot be read"))
         }
-        Some(path) => {
-            check_folder(path)?;
-            let mut stopped = None;
-            let written = files::write_atomically(path, |out| match index.export(out) {
-                Ok(()) => Ok(()),
-                Err(ExportError::Write(fault)) => Err(fault),
-                Err(ExportError::Index(fault)) => {
-                    stopped = Some(fault);
-                    Err(std::io::Error::other("the index cannot be read"))
-                }
-            });
-            match stopped {
-                Some(fault) => Err(fault)?,
-                None => written?,
-            }
-        }
-    }
+        Err(ExportError::Write(fault)) => Err(fault),
+        Ok(()) => Ok(()),
+    });
+    unreadable.map_or(Ok(()), Err)?;
+    written?;
     Ok(ExitCode::SUCCESS)
 }

@@ -13,10 +13,10 @@ pub(crate) fn index(command: &IndexCommand, common: &Common) -> Result<ExitCode>
     match command {
         IndexCommand::Build(args) => change::build(args, common),
         IndexCommand::Add(args) => change::add(args, common),
-        IndexCommand::Remove(args) => change::remove(args, common),
-        IndexCommand::Merge(args) => change::merge(args, common),
-        IndexCommand::Verify(args) => look::verify(args, common),
-        IndexCommand::Info(args) => look::info(args, common),
-        IndexCommand::Export(args) => look::export(args, common),
+        IndexCommand::Remove { index, ids } => change::remove(index, ids, common),
+        IndexCommand::Merge { inputs, output } => change::merge(inputs, output, common),
+        IndexCommand::Verify { index } => look::verify(index, common),
+        IndexCommand::Info { index } => look::info(index, common),
+        IndexCommand::Export { index, output } => look::export(index, output.as_deref()),
     }
 }
