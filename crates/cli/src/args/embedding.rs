@@ -26,8 +26,8 @@ pub(crate) struct EmbeddingArgs {
     /// How to choose samples [default: farthest]
     #[arg(long, value_parser = sampling())]
     pub(crate) sampling: Option<Sampling>,
-    /// First sample, a vertex of the input [default: the vertex farthest from vertex 0; for other samplings than
-    /// farthest, drawn with --seed]
+    /// First sample, a vertex of the input [default: the vertex farthest from vertex 0; with other samplings,
+    /// drawn with --seed]
     #[arg(long, value_name = "V")]
     pub(crate) first_sample: Option<u32>,
     /// How nmds, and the start of smacof, regularise the inverse of the sample matrix [default: low-rank]

@@ -60,12 +60,12 @@ impl Residual {
 enum Side {
     Query(Arc<Query>),
     /// Not measured if the mesh is missing.
-    Shape(PreparedShape, Option<Arc<Measured>>),
+    Shape(Box<PreparedShape>, Option<Arc<Measured>>),
 }
 
 impl Side {
     fn of_shape(app: &App, id: &str) -> Result<Self, Error> {
-        let shape = app.search.prepared(id)?;
+        let shape = Box::new(app.search.prepared(id)?);
         match app.indexed(id) {
             Err(fault) if !is_missing(&fault) => Err(fault),
             measured => Ok(Self::Shape(shape, measured.ok())),

@@ -18,9 +18,11 @@ use crate::args::{Common, GeodesicArgs};
 use crate::input::{named, read_surface};
 use crate::output::{check_folder, check_format};
 
+type Write = fn(&Task) -> Result<ExitCode>;
+
 /// Measures distances or finds paths.
 pub(crate) fn geodesic(args: &GeodesicArgs, common: &Common) -> Result<ExitCode> {
-    let (what, formats, write): (_, Vec<&str>, fn(&Task) -> Result<ExitCode>) = if args.all_pairs {
+    let (what, formats, write): (_, Vec<&str>, Write) = if args.all_pairs {
         ("all pairs", vec!["npy"], pairs::write)
     } else if args.path_to.is_empty() {
         ("distances", ["npy", "csv"].into_iter().chain(writable(Content::Field)).collect(), rows::write)
