@@ -4,9 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::Result;
-use canonform::descriptors::{
-    CanonicalForm, Handedness, MatchKind, PreparedShape, ShapeMetric, ShapePair,
-};
+use canonform::descriptors::{CanonicalForm, Handedness, MatchKind, PreparedShape, ShapeMetric, ShapePair};
 use canonform::{
     Comparison, DescribeOptions, FormOptions, ShapeDescription, Surface, SurfaceComparison, Triangulation,
     compare_surfaces, describe, embed,
