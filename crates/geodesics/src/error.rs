@@ -9,8 +9,7 @@ use crate::point::SurfacePoint;
 pub enum GeodesicError {
     /// The surface has several components.
     #[error(
-        "the mesh is disconnected: {unreached} of {n_vertices} vertices cannot be reached from vertex {source_vertex}; \
-         keep the largest component or bridge the gaps"
+        "the mesh is disconnected: {unreached} of {n_vertices} vertices cannot be reached from vertex {source_vertex}"
     )]
     Disconnected {
         /// Number of vertices without a finite distance.

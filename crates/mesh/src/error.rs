@@ -140,8 +140,7 @@ pub enum MeshError {
 
     /// The mesh has several components and the policy is [`ComponentPolicy::Error`](crate::ComponentPolicy::Error).
     #[error(
-        "the mesh is disconnected: {unreached} of {n_vertices} vertices lie outside the largest component; \
-         keep only the largest component or bridge the components"
+        "the mesh is disconnected: {unreached} of {n_vertices} vertices lie outside the largest component"
     )]
     Disconnected {
         /// Vertices outside the largest component.

@@ -103,7 +103,7 @@ fn the_components_of_gorillas_and_seahorses_are_bridged_or_dropped() {
     assert!(bridged.links.iter().all(|link| link.length < 0.1 * size));
     let strict = RepairOptions { components: ComponentPolicy::Error, ..Default::default() };
     let error = repair(&gorilla, &strict).unwrap_err().to_string();
-    assert!(error.contains("mesh is disconnected") && error.contains("bridge the components"), "{error}");
+    assert!(error.contains("mesh is disconnected"), "{error}");
     let seahorse = repair(&io::read(&folder.join("seahorse1.vert")).unwrap(), &Default::default()).unwrap();
     assert_eq!(seahorse.report.dropped_components, 2);
     assert!(seahorse.report.dropped_area_share < 0.2);

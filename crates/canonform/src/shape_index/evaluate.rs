@@ -81,7 +81,7 @@ pub fn evaluate_index(
 ///     "9,9,9,1,0,1", "9,9,9,2,1,0"];
 /// std::fs::write(&path, rows.join("\n"))?;
 /// let scores = evaluate_matrix(&path, None, 1)?;
-/// assert_eq!((scores.classes, scores.nn, scores.map), (vec!["cat".to_owned(), "dog".to_owned()], 1.0, 1.0));
+/// assert_eq!((scores.mean.nn, scores.mean.map), (1.0, 1.0));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///

@@ -121,7 +121,7 @@ fn errors_name_missing_points() {
         ("f328", &["a.off: face 328", "left out", "--components bridge"]),
         ("f321", &["a.off: face 321", "left out"]),
         ("f999", &["a.off: face 999", "329 faces"]),
-        ("0-80@0.5", &["a.off: ", "no edge between vertices 0 and 80"]),
+        ("0-80@0.5", &["a.off: edge 0-80 does not exist"]),
         ("161-162", &["vertex 161", "left out"]),
         ("seven", &["`seven`", "17-42@0.3"]),
         ("3@0.5", &["`3@0.5`"]),
