@@ -14,6 +14,7 @@ impl DisjointSets {
     }
 
     /// The lowest member of the set that holds `item`.
+    #[inline]
     pub fn find(&mut self, mut item: u32) -> u32 {
         while self.parent[item as usize] != item {
             let grandparent = self.parent[self.parent[item as usize] as usize];
@@ -24,6 +25,7 @@ impl DisjointSets {
     }
 
     /// Joins the sets of two members; returns whether they were different sets.
+    #[inline]
     pub fn union(&mut self, a: u32, b: u32) -> bool {
         let (a, b) = (self.find(a), self.find(b));
         self.parent[a.max(b) as usize] = a.min(b);

@@ -64,7 +64,8 @@ impl FaceId {
     #[inline]
     #[must_use]
     pub fn corners(self) -> [CornerId; 3] {
-        [0, 1, 2].map(|slot| CornerId(3 * self.0 + slot))
+        let first = 3 * self.0;
+        [CornerId(first), CornerId(first + 1), CornerId(first + 2)]
     }
 }
 
@@ -95,14 +96,14 @@ impl CornerId {
     #[must_use]
     pub fn next(self) -> Self {
         // Tables here and below: a branch would be mispredicted every third time.
-        Self::new(self.face(), [1, 2, 0][self.slot()])
+        Self(self.0.wrapping_add_signed([1, 1, -2][self.slot()]))
     }
 
     /// The corner before this one in its face.
     #[inline]
     #[must_use]
     pub fn prev(self) -> Self {
-        Self::new(self.face(), [2, 0, 1][self.slot()])
+        Self(self.0.wrapping_add_signed([2, -1, -1][self.slot()]))
     }
 }
 

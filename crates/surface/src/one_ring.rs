@@ -166,8 +166,9 @@ impl OneRing {
         loop {
             self.corners.push(here);
             let Some(far) = table.opposite(here.opposite_last()) else { return false };
-            here = if table.corner_vertex(far.next()) == vertex {
-                FanCorner { corner: far.next(), winding: Winding::Forward }
+            let next = far.next();
+            here = if table.corner_vertex(next) == vertex {
+                FanCorner { corner: next, winding: Winding::Forward }
             } else {
                 FanCorner { corner: far.prev(), winding: Winding::Backward }
             };

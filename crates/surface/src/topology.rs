@@ -54,7 +54,8 @@ impl Topology {
             corners.clone().map(|c| (faces[c.face().index()][c.slot()].index(), c)),
         );
         let ends = |c: CornerId| {
-            let [a, b] = [c.next(), c.prev()].map(|end| faces[end.face().index()][end.slot()]);
+            let face = faces[c.face().index()];
+            let [a, b] = [face[(c.slot() + 1) % 3], face[(c.slot() + 2) % 3]];
             [a.min(b), a.max(b)]
         };
         // Bucket the corners by the lower end of their edge, then sort each small bucket by the upper.

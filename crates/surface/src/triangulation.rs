@@ -67,9 +67,9 @@ impl Triangulation {
         let topology = mesh.topology();
         let far = |corner| topology.opposite(corner).map_or(NONE, |far| far.0);
         let triangle = |(f, vertices): (usize, &[VertexId; 3])| {
-            let corners = FaceId::from(f).corners();
-            let lengths = corners.map(|corner| mesh.opposite_length(corner));
-            GluedTriangle { vertices: *vertices, lengths, opposite: corners.map(far) }
+            let [a, b, c] = FaceId::from(f).corners();
+            let lengths = [mesh.opposite_length(a), mesh.opposite_length(b), mesh.opposite_length(c)];
+            GluedTriangle { vertices: *vertices, lengths, opposite: [far(a), far(b), far(c)] }
         };
         Self { triangles: topology.faces().iter().enumerate().map(triangle).collect() }
     }
@@ -115,7 +115,8 @@ impl Triangulation {
     #[must_use]
     pub fn sides(&self, corner: CornerId) -> [f64; 3] {
         let lengths = &self.triangles[corner.face().index()].lengths;
-        [corner, corner.prev(), corner.next()].map(|c| lengths[c.slot()])
+        let slot = corner.slot();
+        [lengths[slot], lengths[(slot + 2) % 3], lengths[(slot + 1) % 3]]
     }
 
     /// Flips sides until the two angles opposite each sum to at most 180 degrees, and returns the original sides that

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use rayon::prelude::*;
 use surface::{
-    CornerTable, FaceId, FanCorner, Link, OneRing, Rows, Triangulation, VertexKind, Winding, double_area,
+    CornerId, CornerTable, FanCorner, Link, OneRing, Rows, Triangulation, VertexKind, Winding, double_area,
     scalar_product, total_angle,
 };
 
@@ -152,7 +152,7 @@ impl OneRings {
         mean_edge_length: f64,
     ) -> Self {
         let n = order.len();
-        let corners = (0..triangulation.triangles().len()).flat_map(|t| FaceId::from(t).corners());
+        let corners = (0..3 * triangulation.triangles().len()).map(CornerId::from);
         let corners = Rows::collect(n, corners.map(|c| (triangulation.corner_vertex(c).index(), c)));
         let mut rank = vec![0; n];
         for (internal, v) in order.iter().enumerate() {
