@@ -2,7 +2,7 @@
 //!
 //! `datasets` or a folder -> **experiments** -> `report::results` (JSON) -> figures and one page
 //!
-//! An experiment is a configuration (`configs/*.toml`: options, expectations, analysis), a module that runs it, and a
+//! An experiment is a configuration (`configs/*.toml`: options, expectations, analysis), a module in `table`, and a
 //! line in [`table::EXPERIMENTS`]. Its results are data, of which `report` makes figures, tables and the page.
 
 mod args;
@@ -10,17 +10,7 @@ mod coarse;
 mod collection;
 mod config;
 mod context;
-mod figure1;
-mod figure3;
-mod figure4;
-mod figure5;
-mod figure6;
-mod figure7;
-mod figure8;
-mod figure9;
-mod retrieve;
 mod run;
-mod scaling;
 mod specimen;
 mod surfaces;
 mod sweep;

@@ -60,7 +60,7 @@ impl RepairReport {
         let counts = [
             (self.degenerate_faces, FACES, "with a repeated vertex removed"),
             (self.duplicate_faces, ["duplicate face", "duplicate faces"], "removed"),
-            (self.welded_vertices, VERTICES, "merged into one in the same position"),
+            (self.welded_vertices, VERTICES, "merged with another in the same position"),
             (self.collapsed_vertices, VERTICES, "merged across an edge of length zero"),
             (self.zero_length_faces, FACES, "with two corners in the same position removed"),
             (self.unreferenced_vertices, VERTICES, "without a face dropped"),

@@ -1,11 +1,21 @@
-//! The table of experiments.
+//! The experiments, one module each, and the table of them.
+
+mod figure1;
+mod figure3;
+mod figure4;
+mod figure5;
+mod figure6;
+mod figure7;
+mod figure8;
+mod figure9;
+mod retrieve;
+mod scaling;
 
 use anyhow::Result;
 use report::page::{Section, charts, explorer, gallery};
 use report::results::{CurvesResults, Figure3Results, Figure9Results, RetrievalResults};
 
 use crate::context::Context;
-use crate::{figure1, figure3, figure4, figure5, figure6, figure7, figure8, figure9, retrieve, scaling};
 
 /// One experiment.
 pub(crate) struct Experiment {
@@ -20,7 +30,7 @@ macro_rules! experiment {
     ($name:literal, $title:literal, $show:expr, $run:expr) => {
         Experiment {
             section: Section { name: $name, title: $title, show: $show },
-            config: include_str!(concat!("../configs/", $name, ".toml")),
+            config: include_str!(concat!("../../configs/", $name, ".toml")),
             run: $run,
         }
     };
