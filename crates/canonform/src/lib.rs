@@ -89,7 +89,7 @@ mod observer;
 mod shape_index;
 
 pub use compare::{
-    Comparison, FormMatches, Overlay, SurfaceComparison, Triangulation, compare, compare_surfaces,
+    Comparison, FormMatches, Overlay, Residual, SurfaceComparison, Triangulation, compare, compare_surfaces,
     embedded_distances, form_matches,
 };
 pub use error::{Error, Remedy};

@@ -120,6 +120,18 @@ pub struct Overlay {
     pub residuals: [Vec<f64>; 2],
 }
 
+/// The distances of the points of one form from the other, in brief.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
+pub struct Residual {
+    /// The median; of two in the middle, the upper one.
+    pub median: f64,
+    /// The largest distance.
+    pub max: f64,
+    /// The point with the largest distance; the last of equals.
+    #[serde(skip)]
+    pub max_point: usize,
+}
+
 impl Overlay {
     /// Aligns two forms by the best alignment of a pair. The forms may have more points than those that
     /// were aligned.
@@ -136,6 +148,16 @@ impl Overlay {
         };
         let points = |form: &NearestPoints| form.points().iter().map(|p| p * size).collect();
         Ok(Self { points: [points(&a), points(&b)], residuals: [residuals(&a, &b), residuals(&b, &a)] })
+    }
+
+    /// The residuals of both forms, in brief; zero for a form without points.
+    pub fn residual(&self) -> [Residual; 2] {
+        self.residuals.each_ref().map(|residuals| {
+            let mut order: Vec<usize> = (0..residuals.len()).collect();
+            order.sort_by(|&i, &j| residuals[i].total_cmp(&residuals[j]));
+            let Some(&max_point) = order.last() else { return Residual::default() };
+            Residual { median: residuals[order[order.len() / 2]], max: residuals[max_point], max_point }
+        })
     }
 }
 

@@ -3,5 +3,7 @@
 mod comparison;
 mod forms;
 
-pub use comparison::{Comparison, Overlay, SurfaceComparison, Triangulation, compare, compare_surfaces};
+pub use comparison::{
+    Comparison, Overlay, Residual, SurfaceComparison, Triangulation, compare, compare_surfaces,
+};
 pub use forms::{FormMatches, embedded_distances, form_matches};

@@ -6,8 +6,8 @@ use std::process::ExitCode;
 use anyhow::Result;
 use canonform::descriptors::{CanonicalForm, Handedness, MatchKind, PreparedShape, ShapeMetric, ShapePair};
 use canonform::{
-    Comparison, DescribeOptions, FormOptions, ShapeDescription, Surface, SurfaceComparison, Triangulation,
-    compare_surfaces, describe, embed,
+    Comparison, DescribeOptions, FormOptions, Residual, ShapeDescription, Surface, SurfaceComparison,
+    Triangulation, compare_surfaces, describe, embed,
 };
 use mesh::io::{Content, writable};
 use serde::Serialize;
@@ -31,22 +31,11 @@ struct CompareJson {
 /// Distances from the vertices of the first shape to the second shape, in units of the first mesh.
 #[derive(Serialize)]
 struct ResidualJson {
-    median: f64,
-    max: f64,
+    #[serde(flatten)]
+    residual: Residual,
     /// Input vertex with the largest distance.
     max_vertex: u32,
     output: Option<PathBuf>,
-}
-
-impl ResidualJson {
-    fn new(surface: &Surface, residuals: &[f64], output: Option<PathBuf>) -> Self {
-        let mut order: Vec<usize> = (0..residuals.len()).collect();
-        order.sort_by(|&i, &j| residuals[i].total_cmp(&residuals[j]));
-        let at =
-            |i: Option<&usize>| i.map_or((0.0, 0), |&i| (residuals[i], surface.input_vertex(i.into()).0));
-        let (max, max_vertex) = at(order.last());
-        Self { median: at(order.get(order.len() / 2)).0, max, max_vertex, output }
-    }
 }
 
 /// One of the two meshes: its surface, the form of all vertices, the shape with this form, and the shape made with the
@@ -91,11 +80,12 @@ pub(crate) fn compare(args: &CompareArgs, common: &Common) -> Result<ExitCode> {
     };
     let SurfaceComparison { comparison, triangulation, overlay } =
         compare_surfaces(&pair, distance, [(&a, &form_a), (&b, &form_b)])?;
-    let [residuals, _] = &overlay.residuals;
     if let Some(path) = &args.residual_mesh {
-        write_colored(path, a.mesh(), "residual", residuals)?;
+        write_colored(path, a.mesh(), "residual", &overlay.residuals[0])?;
     }
-    let residual = ResidualJson::new(&a, residuals, args.residual_mesh.clone());
+    let [residual, _] = overlay.residual();
+    let max_vertex = a.input_vertex(residual.max_point.into()).0;
+    let residual = ResidualJson { residual, max_vertex, output: args.residual_mesh.clone() };
     let too_far = args.threshold.is_some_and(|limit| comparison.normalized_distance > limit);
     let json = CompareJson {
         a: args.a.clone(),
@@ -130,9 +120,8 @@ fn table(json: &CompareJson) -> String {
         Triangulation::Same => "the same faces",
         Triangulation::Other => "different faces",
     };
-    let r = &json.residual;
-    let residual =
-        format!("median {:.6}, maximum {:.6} (at vertex {}), mesh units", r.median, r.max, r.max_vertex);
+    let (Residual { median, max, .. }, vertex) = (json.residual.residual, json.residual.max_vertex);
+    let residual = format!("median {median:.6}, maximum {max:.6} (at vertex {vertex}), mesh units");
     let mut rows = vec![
         ("match", kind),
         ("shape distance", apart),

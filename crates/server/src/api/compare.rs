@@ -5,7 +5,7 @@ use std::sync::Arc;
 use axum::extract::State;
 use axum::http::StatusCode;
 use canonform::descriptors::{CanonicalForm, PreparedShape, ShapeMetric, ShapePair};
-use canonform::{Comparison, Error, Overlay, SurfaceComparison, Triangulation, compare_surfaces};
+use canonform::{Comparison, Error, Overlay, Residual, SurfaceComparison, Triangulation, compare_surfaces};
 use serde::{Deserialize, Serialize};
 use view::interactive::Geometry;
 
@@ -35,25 +35,10 @@ struct Answer {
     comparison: Comparison,
     /// Whether both meshes have the same triangles; unknown if a mesh is missing.
     triangulation: Option<Triangulation>,
+    /// Of either form from the other, in units of the first mesh.
     residual: [Residual; 2],
     /// Both forms after alignment, coloured by the distance of each point from the other form.
     forms: [Geometry; 2],
-}
-
-/// Distances of the points of a form from the other form, in units of the first mesh.
-#[derive(Serialize)]
-struct Residual {
-    median: f64,
-    max: f64,
-}
-
-impl Residual {
-    fn new(residuals: &[f64]) -> Self {
-        let mut sorted = residuals.to_vec();
-        sorted.sort_by(f64::total_cmp);
-        let at = |place: Option<&f64>| place.copied().unwrap_or_default();
-        Self { median: at(sorted.get(sorted.len() / 2)), max: at(sorted.last()) }
-    }
 }
 
 /// One of the two shapes.
@@ -128,7 +113,7 @@ fn answer(app: &App, params: CompareParams) -> Result<Answer, ApiError> {
         b: params.b,
         comparison,
         triangulation,
-        residual: [0, 1].map(|i| Residual::new(&overlay.residuals[i])),
+        residual: overlay.residual(),
         forms: [overlaid(&overlay, 0, a.measured(), dot), overlaid(&overlay, 1, b.measured(), dot)],
     })
 }
