@@ -6,7 +6,7 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use anyhow::{Result, bail};
-use mesh::io::{VertexField, or_list};
+use mesh::io::{VertexField, extension, or_list};
 use mesh::{MeshError, TriMesh};
 use npyz::WriterBuilder;
 use serde::Serialize;
@@ -125,9 +125,4 @@ pub(crate) fn write_colored(
 ) -> Result<(), MeshError> {
     let colors: Vec<Rgb> = values.iter().copied().map(color_scale(values)).collect();
     mesh::io::write_scalar_field(path, mesh, &VertexField { name, values, colors: &colors })
-}
-
-/// The extension of a file name in lower case.
-pub(crate) fn extension(path: &Path) -> String {
-    path.extension().map(|e| e.to_string_lossy().to_lowercase()).unwrap_or_default()
 }

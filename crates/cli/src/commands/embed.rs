@@ -8,12 +8,13 @@ use canonform::{
     EmbedMethod, EmbedReport, Embedded, FormOptions, ShapeFile, StressOptions, Surface, embed_and_measure,
     list_shapes,
 };
+use mesh::io::extension;
 use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::args::{Common, EmbedArgs, FORM_FORMATS};
 use crate::input::{named, print_repair, read_surface};
-use crate::output::{check_folder, check_format, exit_code, extension, facts, report, write_npy};
+use crate::output::{check_folder, check_format, exit_code, facts, report, write_npy};
 use terminal::Bars;
 
 #[derive(Serialize)]

@@ -5,11 +5,12 @@ use std::process::ExitCode;
 use anyhow::Result;
 use canonform::retrieval::Evaluation;
 use canonform::{LabelFile, evaluate_index, evaluate_matrix};
+use mesh::io::extension;
 use terminal::Bars;
 
 use crate::args::{Common, EvaluateArgs};
 use crate::input::named;
-use crate::output::{extension, facts, report};
+use crate::output::{facts, report};
 
 /// Scores an index or a matrix.
 pub(crate) fn evaluate(args: &EvaluateArgs, common: &Common) -> Result<ExitCode> {

@@ -28,7 +28,7 @@ use source::{Disk, Memory, Source};
 
 pub use crate::error::Content;
 pub use field::VertexField;
-pub use formats::{FORMATS, Format, mesh_files, or_list, writable};
+pub use formats::{FORMATS, Format, extension, mesh_files, or_list, writable};
 pub use limits::ReadLimits;
 pub use source::MemoryFile;
 
@@ -38,7 +38,7 @@ pub use source::MemoryFile;
 /// counts once.
 #[must_use]
 pub fn is_mesh_path(path: &Path) -> bool {
-    Format::of(path).is_ok_and(|format| format.extensions[0] == formats::extension(path))
+    Format::of(path).is_ok_and(|format| format.extensions[0] == extension(path))
 }
 
 /// The files that [`read()`] opens for this name: two for a `.vert`/`.tri` pair, whichever half is named.

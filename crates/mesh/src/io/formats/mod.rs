@@ -138,7 +138,8 @@ impl Format {
 }
 
 /// The extension of a file name in lower case; empty if there is none.
-pub(super) fn extension(path: &Path) -> String {
+#[must_use]
+pub fn extension(path: &Path) -> String {
     path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase()
 }
 
