@@ -22,6 +22,14 @@ impl RgbaImage {
         Self { width, height, pixels: vec![color; width as usize * height as usize] }
     }
 
+    /// An image of `color(column, row)` at each pixel.
+    #[must_use]
+    pub fn from_fn(width: u32, height: u32, color: impl Fn(usize, usize) -> [u8; 4]) -> Self {
+        let color = &color;
+        let row = |row| (0..width as usize).map(move |column| color(column, row));
+        Self { width, height, pixels: (0..height as usize).flat_map(row).collect() }
+    }
+
     /// Width in pixels.
     #[must_use]
     pub fn width(&self) -> u32 {

@@ -113,13 +113,10 @@ impl Grid<'_> {
     fn raster(&self) -> RgbaImage {
         let size = [self.wide, self.high].map(|side| side as usize * PIXELS_PER_UNIT as usize);
         let Heat { rows, columns, values, tint, .. } = self.heat;
-        let mut image = RgbaImage::new(size[0] as u32, size[1] as u32, [255; 4]);
-        for (i, pixel) in image.pixels_mut().iter_mut().enumerate() {
-            let (row, column) = (i / size[0] * rows.len() / size[1], i % size[0] * columns.len() / size[0]);
-            let [r, g, b] = color(*tint, self.share(values[row][column]));
-            *pixel = [r, g, b, 255];
-        }
-        image
+        RgbaImage::from_fn(size[0] as u32, size[1] as u32, |x, y| {
+            let (row, column) = (y * rows.len() / size[1], x * columns.len() / size[0]);
+            color(*tint, self.share(values[row][column]))
+        })
     }
 
     /// The place of a tick along a side.
@@ -162,9 +159,10 @@ impl Grid<'_> {
     }
 }
 
-/// The colour of a share of the greatest value.
-fn color(tint: Option<Rgb>, share: f64) -> Rgb {
-    tint.map_or_else(|| perceptual(share), |full| mix(WHITE, full, share))
+/// The pixel for a share of the greatest value.
+fn color(tint: Option<Rgb>, share: f64) -> [u8; 4] {
+    let [r, g, b] = tint.map_or_else(|| perceptual(share), |full| mix(WHITE, full, share));
+    [r, g, b, 255]
 }
 
 /// A name that fits to the left of a matrix with a colour bar.
@@ -178,12 +176,8 @@ fn shortened(name: &str) -> String {
 /// A colour bar with its lower end at the bottom, and its ticks and name to its right, up to `limit`.
 fn color_bar(canvas: &mut Canvas, (left, top): Place, axis: &Axis, tint: Option<Rgb>, limit: f64) {
     let [width, height] = [BAR, SIDE].map(|side| side as u32 * PIXELS_PER_UNIT);
-    let mut image = RgbaImage::new(width, height, [255; 4]);
-    for (i, pixel) in image.pixels_mut().iter_mut().enumerate() {
-        let [r, g, b] = color(tint, 1.0 - (i / width as usize) as f64 / f64::from(height - 1));
-        *pixel = [r, g, b, 255];
-    }
-    canvas.image(image, (left, top));
+    let pixel = |_, row| color(tint, 1.0 - row as f64 / f64::from(height - 1));
+    canvas.image(RgbaImage::from_fn(width, height, pixel), (left, top));
     let style = TextStyle::LABEL.at(Anchor::Left);
     let mut widest = 0.0_f64;
     for (share, label) in axis.placed_ticks() {

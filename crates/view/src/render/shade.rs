@@ -122,10 +122,9 @@ pub(super) fn shade(
         Some(lights.reflect(base, normal, openness.at(column, row, normal)))
     };
     let [width, height] = buffer.size.map(|s| s / samples);
-    let mut image = RgbaImage::new(width as u32, height as u32, [0; 4]);
     let total = (samples * samples) as f32;
-    for (i, pixel) in image.pixels_mut().iter_mut().enumerate() {
-        let (left, top) = (i % width * samples, i / width * samples);
+    RgbaImage::from_fn(width as u32, height as u32, |column, row| {
+        let (left, top) = (column * samples, row * samples);
         let (mut sum, mut covered) = (Vector3::zeros(), 0.0);
         for row in top..top + samples {
             for column in left..left + samples {
@@ -143,12 +142,6 @@ pub(super) fn shade(
             Background::Transparent if covered > 0.0 => (sum / covered, covered / total),
             Background::Transparent => (Vector3::zeros(), 0.0),
         };
-        *pixel = [
-            from_linear(light.x),
-            from_linear(light.y),
-            from_linear(light.z),
-            (alpha * 255.0_f32).round() as u8,
-        ];
-    }
-    image
+        [from_linear(light.x), from_linear(light.y), from_linear(light.z), (alpha * 255.0_f32).round() as u8]
+    })
 }
