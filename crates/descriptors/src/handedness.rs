@@ -60,14 +60,13 @@ impl OutwardForm {
 }
 
 /// How far the outsides of two forms agree under a motion of the first onto the second: the mean cosine between
-/// normals at nearest points, weighted by area, from -1 to 1.
+/// normals at nearest points, weighted by area, from -1 to 1. `others` are the normals of the second.
 ///
 /// Faces move with their points, so a motion with a reflection reverses normals: this tests whether the map from
 /// surface to surface preserves orientation, not whether the motion does.
-fn agreement(a: &OutwardForm, b: &OutwardForm, nearest: &NearestPoints, motion: &Alignment) -> f64 {
+fn agreement(a: &OutwardForm, nearest: &NearestPoints, others: &[Vector3<f64>], motion: &Alignment) -> f64 {
     let moved: Vec<_> = a.points.iter().map(|p| motion.apply(p)).collect();
     let normals = a.normals(moved.clone());
-    let others = b.normals(b.points.clone());
     let points = moved.iter().zip(&a.weights).zip(&normals);
     let (sum, total) = points.fold((0.0, 0.0), |(sum, total), ((point, weight), normal)| {
         let other = others[nearest.nearest(point).0];
@@ -103,12 +102,12 @@ pub fn handedness(
         OutwardForm::new(pair.shapes[i].at_unit_area(form), form.weights(), mesh)
     });
     let (Some(a), Some(b)) = (a, b) else { return Ok(Handedness::Unknown) };
-    let nearest = NearestPoints::new(b.points.clone())?;
+    let (nearest, others) = (NearestPoints::new(b.points.clone())?, b.normals(b.points.clone()));
     // The least distance of a map that preserves, and of one that reverses orientation.
     let (mut preserving, mut reversing) = (f64::INFINITY, f64::INFINITY);
     for reflections in [Reflections::Forbid, Reflections::Require] {
         let found = pair.best_with(reflections);
-        let agreement = agreement(&a, &b, &nearest, &found.alignment);
+        let agreement = agreement(&a, &nearest, &others, &found.alignment);
         if agreement > AGREEMENT {
             preserving = preserving.min(found.rms);
         } else if agreement < -AGREEMENT {

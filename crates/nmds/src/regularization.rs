@@ -84,25 +84,26 @@ impl Regularization {
         ]
     }
 
-    /// One line for help texts.
-    #[must_use]
-    pub fn summary(self) -> &'static str {
-        match self {
-            Self::LowRank { .. } => "Keep the eigenvalues of largest magnitude",
-            Self::Rpi { .. } => "Keep all eigenvalues and damp the small ones (regularised pseudo-inverse)",
-            Self::None => "Keep all eigenvalues above rounding error",
-            Self::Cur { .. } => "CUR decomposition: keep the columns of the first samples",
-        }
-    }
-
-    /// The name used on the command line and in records.
+    /// The name on the command line and in records.
     #[must_use]
     pub fn name(self) -> &'static str {
+        self.entry().0
+    }
+
+    /// What is kept, in one line.
+    #[must_use]
+    pub fn summary(self) -> &'static str {
+        self.entry().1
+    }
+
+    fn entry(self) -> (&'static str, &'static str) {
         match self {
-            Self::LowRank { .. } => "low-rank",
-            Self::Rpi { .. } => "rpi",
-            Self::None => "none",
-            Self::Cur { .. } => "cur",
+            Self::LowRank { .. } => ("low-rank", "Keep the eigenvalues of largest magnitude"),
+            Self::Rpi { .. } => {
+                ("rpi", "Keep all eigenvalues and damp the small ones (regularised pseudo-inverse)")
+            }
+            Self::None => ("none", "Keep all eigenvalues above rounding error"),
+            Self::Cur { .. } => ("cur", "CUR decomposition: keep the columns of the first samples"),
         }
     }
 

@@ -59,14 +59,9 @@ fn map(record: &Figure4Results, panel: &Figure4Panel, classes: &Classes<'_>, tit
         Series { name: (*name).to_owned(), style: Style(class), shape: Shape::Filled, points }
     };
     let (unit, [across, up]) = (panel.scale.unit(), equal_ranges(&panel.map));
-    let s = &panel.scores;
-    let scores = [
-        ("NN", s.mean.nn),
-        ("FT", s.mean.ft),
-        ("ST", s.mean.st),
-        ("DCG", s.mean.dcg),
-        ("mAP", s.mean.map),
-        ("silhouette", s.silhouette),
+    let retrieval = SCORES.into_iter().zip(scores(&panel.scores.mean)).filter(|(name, _)| *name != "E");
+    let own = [
+        ("silhouette", panel.scores.silhouette),
         ("map silh.", panel.map_silhouette),
         ("map stress", panel.map_stress),
     ];
@@ -78,7 +73,7 @@ fn map(record: &Figure4Results, panel: &Figure4Panel, classes: &Classes<'_>, tit
         is_map: true,
         series: classes.names().iter().enumerate().map(series).collect(),
         marks: vec![],
-        scores: scores.map(|(name, value)| (name, signed(value, 3))).to_vec(),
+        scores: retrieval.chain(own).map(|(name, value)| (name, signed(value, 3))).collect(),
     }
 }
 

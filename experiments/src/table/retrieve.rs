@@ -93,23 +93,23 @@ fn row(
     labels: &Labels,
     knn: usize,
 ) -> Result<RetrievalRow> {
-    let micro = mean_scores(distances, labels, Averaging::Micro)?;
-    let mut held_out_map = micro.map;
+    let scores = evaluate(distances, labels, knn)?;
+    let mut held_out_map = scores.mean.map;
     for class in 0..labels.classes().len() {
         // Without one of two classes there is nothing to distinguish.
         let (rest, rest_labels) = without(distances, labels, class)?;
         if rest_labels.classes().len() > 1
-            && let Ok(scores) = mean_scores(&rest, &rest_labels, Averaging::Micro)
+            && let Ok(rest) = mean_scores(&rest, &rest_labels, Averaging::Micro)
         {
-            held_out_map = held_out_map.min(scores.map);
+            held_out_map = held_out_map.min(rest.map);
         }
     }
     Ok(RetrievalRow {
         method: method.to_owned(),
         scale,
-        micro,
+        micro: scores.mean,
         macro_average: mean_scores(distances, labels, Averaging::Macro)?,
-        knn_accuracy: evaluate(distances, labels, knn)?.knn_accuracy,
+        knn_accuracy: scores.knn_accuracy,
         held_out_map,
         precision: precision_recall(distances, labels, Averaging::Micro, RECALLS)?,
     })
