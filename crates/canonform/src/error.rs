@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use budget::Exceeded;
 use descriptors::DescriptorError;
 use files::FileError;
 use geodesics::GeodesicError;
@@ -27,6 +28,9 @@ pub enum Error {
     /// The embedding.
     #[error(transparent)]
     Nmds(#[from] nmds::NmdsError),
+    /// A limit on time or memory, or a cancellation.
+    #[error(transparent)]
+    Exceeded(#[from] Exceeded),
     /// The form, its alignment or its signatures.
     #[error(transparent)]
     Descriptor(#[from] DescriptorError),
@@ -209,6 +213,8 @@ pub enum Remedy {
     UseNystrom,
     /// Allow more memory.
     RaiseMemory,
+    /// Allow more time.
+    RaiseTimeLimit,
     /// Allow larger distances.
     RaiseMaxDistance,
     /// Name the classes in a label file.
@@ -236,7 +242,8 @@ impl Error {
             Self::Geodesic(GeodesicError::NotFactorised { .. }) => Remedy::UseFastMarching,
             Self::Geodesic(GeodesicError::NoWay { .. }) | Self::NoPath { .. } => Remedy::RaiseMaxDistance,
             Self::AllPairsTooLarge { .. } => Remedy::UseNystrom,
-            Self::MemoryTooSmall { .. } => Remedy::RaiseMemory,
+            Self::MemoryTooSmall { .. } | Self::Exceeded(Exceeded::Memory { .. }) => Remedy::RaiseMemory,
+            Self::Exceeded(Exceeded::Time { .. }) => Remedy::RaiseTimeLimit,
             Self::NoNames { .. } | Self::Retrieval(RetrievalError::NothingToScore { .. }) => {
                 Remedy::GiveLabels
             }

@@ -88,6 +88,7 @@ mod input;
 mod observer;
 mod shape_index;
 
+pub use budget::{Budget, Exceeded};
 pub use compare::{
     Comparison, FormMatches, Overlay, Residual, SurfaceComparison, Triangulation, compare, compare_surfaces,
     embedded_distances, form_matches,

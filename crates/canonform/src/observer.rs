@@ -1,11 +1,17 @@
-//! Progress of long work.
+//! Progress and limits of long work.
 
+use budget::Budget;
 use geodesics::{DistanceSolver, PrunedSolver, Source};
 use linalg::Matrix;
 use surface::VertexId;
 
-/// Receives the progress of long work, from any thread.
+/// Receives the progress of long work, from any thread, and limits it.
 pub trait Observer: Sync {
+    /// Limits of the work, which ends with an error when it exceeds them.
+    fn budget(&self) -> Budget {
+        Budget::unlimited()
+    }
+
     /// A stage of `total` steps begins; the previous one has ended.
     fn begin(&self, stage: &str, total: usize);
 

@@ -13,6 +13,7 @@ fn words(remedy: Remedy) -> &'static str {
         Remedy::UseFastMarching => "use fast-marching",
         Remedy::UseNystrom => "use --method nmds, which needs only a few columns",
         Remedy::RaiseMemory => "raise --memory",
+        Remedy::RaiseTimeLimit => "raise --timeout",
         Remedy::RaiseMaxDistance => "choose another target, or raise --max-distance",
         Remedy::GiveLabels => "give classes with --labels FILE.csv",
         Remedy::ReplaceShape => "rename the new shape, remove the old one, or pass --replace",
