@@ -10,7 +10,7 @@ use crate::args::RepairArgs;
 /// Reports repairs on standard error; no repair is silent.
 pub(crate) fn print_repair(name: &str, report: &RepairReport) {
     for line in report.summary() {
-        eprintln!("{name}: {line}");
+        terminal::note(&format!("{name}: {line}"));
     }
 }
 

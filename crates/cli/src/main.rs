@@ -20,5 +20,6 @@ static ALLOCATOR: PeakAlloc = PeakAlloc;
 
 fn main() -> ExitCode {
     let Arguments { common, command } = Arguments::parse();
-    terminal::run(common.threads, || commands::run(&command, &common).map_err(remedy::remedied))
+    terminal::set_quiet(common.quiet);
+    terminal::run(common.threads.into(), || commands::run(&command, &common).map_err(remedy::remedied))
 }

@@ -1,8 +1,9 @@
-//! What the programs share: progress bars, threads, interruption, exit codes.
+//! What the programs share: messages, progress, threads, interruption, exit codes.
 //!
 //! Knows nothing of arguments or results.
 
 mod memory;
+mod notes;
 mod progress;
 
 use std::process::ExitCode;
@@ -11,6 +12,7 @@ use std::sync::{Mutex, PoisonError};
 use anyhow::{Context, Result};
 
 pub use memory::with_peak_bytes;
+pub use notes::{error, is_quiet, note, set_quiet};
 pub use progress::Bars;
 
 /// Called on the first interruption instead of exiting.
@@ -35,7 +37,7 @@ pub fn run(threads: usize, program: impl FnOnce() -> Result<ExitCode>) -> ExitCo
             return stop();
         }
         files::abandon_unfinished();
-        eprintln!("interrupted");
+        notes::write_line("interrupted");
         std::process::exit(INTERRUPTED);
     });
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build_global();
@@ -46,7 +48,7 @@ pub fn run(threads: usize, program: impl FnOnce() -> Result<ExitCode>) -> ExitCo
         Ok(code) => code,
         Err(error) if is_closed_pipe(&error) => ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("error: {}", message(&error));
+            notes::error(&message(&error));
             ExitCode::from(2)
         }
     }

@@ -7,7 +7,7 @@ use canonform::geodesics::Method;
 use clap::Args;
 use mesh::io::{Content, or_list, writable};
 
-use super::shared::{MarchingArgs, RepairArgs, distance_method};
+use super::shared::{LimitArgs, MarchingArgs, RepairArgs, distance_method};
 
 /// How points are written.
 const POINTS: &str = "\
@@ -51,12 +51,9 @@ pub(crate) struct GeodesicArgs {
     #[arg(long, value_delimiter = ',', value_name = "POINT[,POINT...]")]
     pub(crate) path_to: Vec<InputPoint>,
     /// Write the distances between all pairs of vertices (vertices x vertices, symmetric: the average of both
-    /// directions), a block of rows at a time
+    /// directions), in blocks of as many rows as fit into --memory [default: 1G]
     #[arg(long, conflicts_with_all = ["source", "nearest", "max_distance", "path_to"])]
     pub(crate) all_pairs: bool,
-    /// Memory for the distances that --all-pairs holds at once, in bytes or with K, M, G or T [default: 1G]
-    #[arg(long, value_name = "BYTES", value_parser = parse_bytes, conflicts_with = "source")]
-    pub(crate) memory: Option<usize>,
     /// How to measure distances
     #[arg(long, value_parser = distance_method(), default_value = Method::default().name())]
     pub(crate) method: Method,
@@ -64,6 +61,8 @@ pub(crate) struct GeodesicArgs {
     pub(crate) marching: MarchingArgs,
     #[command(flatten)]
     pub(crate) repair: RepairArgs,
+    #[command(flatten)]
+    pub(crate) limits: LimitArgs,
 }
 
 fn output_help() -> String {
@@ -79,40 +78,5 @@ fn parse_distance(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(distance) if distance >= 0.0 => Ok(distance),
         _ => Err(format!("`{text}` is not a distance; give a non-negative number of mesh units")),
-    }
-}
-
-/// A number of bytes; K, M, G and T are powers of 1024.
-fn parse_bytes(text: &str) -> Result<usize, String> {
-    let wrong = || format!("`{text}` is not a memory size; write for example 800M or 2G");
-    let (number, unit) = match text.find(|c: char| !c.is_ascii_digit()) {
-        Some(end) => text.split_at(end),
-        None => (text, ""),
-    };
-    let power = match unit.to_ascii_uppercase().trim_end_matches("IB").trim_end_matches('B') {
-        "" => 0,
-        "K" => 1,
-        "M" => 2,
-        "G" => 3,
-        "T" => 4,
-        _ => return Err(wrong()),
-    };
-    let number: usize = number.parse().map_err(|_| wrong())?;
-    number.checked_mul(1 << (10 * power)).ok_or_else(wrong)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn memory_sizes_are_read_with_and_without_units() {
-        for (text, bytes) in [("0", 0), ("4096", 4096), ("3k", 3 << 10), ("2M", 2 << 20), ("1G", 1 << 30)] {
-            assert_eq!(parse_bytes(text), Ok(bytes));
-        }
-        assert_eq!(parse_bytes("7GB"), parse_bytes("7GiB"));
-        for text in ["", "G", "-1", "1.5G", "1X", "9999999999999999T"] {
-            assert!(parse_bytes(text).is_err(), "{text}");
-        }
     }
 }

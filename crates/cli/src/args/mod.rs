@@ -24,7 +24,7 @@ pub(crate) use geodesic::GeodesicArgs;
 pub(crate) use index::{AddArgs, BuildArgs, EvaluateArgs, IndexCommand, SearchArgs};
 pub(crate) use render::{Place, RenderArgs};
 pub(crate) use serve::ServeArgs;
-pub(crate) use shared::{Common, FormArgs, RepairArgs};
+pub(crate) use shared::{Common, FormArgs, LimitArgs, RepairArgs};
 
 /// Nonrigid 3D shapes: surface distances, canonical forms, comparison and search.
 ///
@@ -96,6 +96,8 @@ pub(crate) struct EmbedArgs {
     pub(crate) stress_against: Option<Method>,
     #[command(flatten)]
     pub(crate) embedding: EmbeddingArgs,
+    #[command(flatten)]
+    pub(crate) limits: LimitArgs,
 }
 
 #[derive(Debug, Args)]
@@ -107,6 +109,8 @@ pub(crate) struct MethodsArgs {
     pub(crate) stress: StressChoice,
     #[command(flatten)]
     pub(crate) form: FormArgs,
+    #[command(flatten)]
+    pub(crate) limits: LimitArgs,
 }
 
 #[derive(Debug, Args)]
@@ -125,6 +129,8 @@ pub(crate) struct CompareArgs {
     pub(crate) threshold: Option<f64>,
     #[command(flatten)]
     pub(crate) embedding: EmbeddingArgs,
+    #[command(flatten)]
+    pub(crate) limits: LimitArgs,
 }
 
 /// Extensions of the files that forms are written to, each with a line of help.

@@ -7,7 +7,7 @@ use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use view::render::{Background, View};
 
-use super::shared::RepairArgs;
+use super::shared::{LimitArgs, RepairArgs};
 
 /// How views and fields are written.
 const NOTES: &str = "\
@@ -72,6 +72,8 @@ pub(crate) struct RenderArgs {
     pub(crate) form: bool,
     #[command(flatten)]
     pub(crate) repair: RepairArgs,
+    #[command(flatten)]
+    pub(crate) limits: LimitArgs,
 }
 
 /// Where the viewer stands.

@@ -1,5 +1,8 @@
 //! Options that several commands share.
 
+use std::time::Duration;
+
+use budget::Budget;
 use canonform::geodesics::{FastMarchingOptions, Method, ObtuseTreatment, Update};
 use canonform::{FormOptions, Samples, StressChoice};
 use clap::Args;
@@ -13,14 +16,71 @@ pub(crate) struct Common {
     #[arg(long, global = true)]
     pub(crate) json: bool,
     /// Number of worker threads, 0 for all cores; results do not depend on it
-    #[arg(long, global = true, default_value_t = 0, value_name = "N")]
-    pub(crate) threads: usize,
+    #[arg(long, global = true, default_value_t = 0, value_name = "N", value_parser = threads())]
+    pub(crate) threads: u16,
     /// Seed for everything random
     #[arg(long, global = true, default_value_t = 0, value_name = "S")]
     pub(crate) seed: u64,
-    /// Hide progress bars
+    /// Write nothing but errors to standard error: no progress, no notes on repairs
     #[arg(long, short, global = true)]
     pub(crate) quiet: bool,
+}
+
+/// More threads than this do not help on any machine, and starting them may fail.
+const MOST_THREADS: i64 = 1024;
+
+fn threads() -> clap::builder::RangedI64ValueParser<u16> {
+    clap::value_parser!(u16).range(0..=MOST_THREADS)
+}
+
+/// Limits on what a command may use. Flatten it last.
+#[derive(Debug, Clone, Copy, Default, Args)]
+pub(crate) struct LimitArgs {
+    /// Stop with an error after this many seconds; with several meshes, this applies to each of them
+    #[arg(long, help_heading = "Limits", value_name = "SECONDS", value_parser = parse_seconds)]
+    pub(crate) timeout: Option<Duration>,
+    /// Stop with an error when more memory is needed for distances or matrices, in bytes or with K, M, G or T
+    #[arg(long, help_heading = "Limits", value_name = "BYTES", value_parser = parse_bytes)]
+    pub(crate) memory: Option<usize>,
+}
+
+impl LimitArgs {
+    /// A budget that starts now.
+    pub(crate) fn budget(&self) -> Budget {
+        let budget =
+            self.timeout.map_or_else(Budget::unlimited, |limit| Budget::unlimited().with_time(limit));
+        match self.memory {
+            Some(bytes) => budget.with_memory(bytes),
+            None => budget,
+        }
+    }
+}
+
+/// A time limit in seconds, also a fraction.
+fn parse_seconds(text: &str) -> Result<Duration, String> {
+    let seconds = text.parse().ok().filter(|seconds| *seconds > 0.0);
+    let limit = seconds.and_then(|seconds| Duration::try_from_secs_f64(seconds).ok());
+    limit
+        .ok_or_else(|| format!("`{text}` is not a time limit; give a positive number of seconds, such as 60"))
+}
+
+/// A number of bytes; K, M, G and T are powers of 1024.
+pub(super) fn parse_bytes(text: &str) -> Result<usize, String> {
+    let wrong = || format!("`{text}` is not a memory size; write for example 800M or 2G");
+    let (number, unit) = match text.find(|c: char| !c.is_ascii_digit()) {
+        Some(end) => text.split_at(end),
+        None => (text, ""),
+    };
+    let power = match unit.to_ascii_uppercase().trim_end_matches("IB").trim_end_matches('B') {
+        "" => 0,
+        "K" => 1,
+        "M" => 2,
+        "G" => 3,
+        "T" => 4,
+        _ => return Err(wrong()),
+    };
+    let number: usize = number.parse().map_err(|_| wrong())?;
+    number.checked_mul(1 << (10 * power)).ok_or_else(wrong)
 }
 
 /// How meshes are repaired before anything is measured.
@@ -152,4 +212,28 @@ pub(crate) fn one_of<T: Clone + Send + Sync + 'static, const N: usize>(
 /// Reads a distance method by its name.
 pub(crate) fn distance_method() -> impl TypedValueParser<Value = Method> {
     one_of(Method::all().map(|m| (m.name(), m.summary(), m)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn memory_sizes_are_read_with_and_without_units() {
+        for (text, bytes) in [("0", 0), ("4096", 4096), ("3k", 3 << 10), ("2M", 2 << 20), ("1G", 1 << 30)] {
+            assert_eq!(parse_bytes(text), Ok(bytes));
+        }
+        assert_eq!(parse_bytes("7GB"), parse_bytes("7GiB"));
+        for text in ["", "G", "-1", "1.5G", "1X", "9999999999999999T"] {
+            assert!(parse_bytes(text).is_err(), "{text}");
+        }
+    }
+
+    #[test]
+    fn time_limits_are_positive_seconds() {
+        assert_eq!(parse_seconds("0.5"), Ok(Duration::from_millis(500)));
+        for text in ["", "0", "-1", "nan", "inf", "1e300", "1m"] {
+            assert!(parse_seconds(text).unwrap_err().contains("positive number of seconds"), "{text}");
+        }
+    }
 }

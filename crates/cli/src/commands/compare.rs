@@ -47,7 +47,7 @@ fn side(path: &Path, args: &CompareArgs, options: &FormOptions, quiet: bool) -> 
     let usual = FormOptions { repair: options.repair, ..FormOptions::default() };
     let usual = DescribeOptions { form: usual, ..DescribeOptions::default() };
     let measure = || {
-        let embedded = embed(&surface, options, &Bars::new(quiet))?;
+        let embedded = embed(&surface, options, &Bars::with_budget(quiet, args.limits.budget()))?;
         let form = embedded.form(&surface)?;
         if embedded.options == usual.form {
             return Ok((form, ShapeDescription::new(&surface, &embedded, &usual)?.prepare()?, None));

@@ -52,7 +52,7 @@ pub(crate) fn embed(args: &EmbedArgs, common: &Common) -> Result<ExitCode> {
     let against = args.stress_against.map(|method| args.embedding.form.marching.of(method));
     let stress = StressOptions { choice: args.stress, against, seed: common.seed };
     if args.embedding.form.samples.is_some() && options.method == EmbedMethod::Classical {
-        eprintln!("note: -n has no effect with --method mds, which measures all pairs of vertices");
+        terminal::note("note: -n has no effect with --method mds, which measures all pairs of vertices");
     }
     if args.mesh.is_dir() {
         return batch(args, &options, &stress, common);
@@ -60,8 +60,13 @@ pub(crate) fn embed(args: &EmbedArgs, common: &Common) -> Result<ExitCode> {
     check_form(&args.output, options.dim)?;
     check_folder(&args.output)?;
     let surface = read_surface(&args.mesh, &args.embedding.form.repair)?;
-    let embedded = embed_and_measure(&surface, &options, &stress, &Bars::new(common.quiet))
-        .map_err(|fault| named(&args.mesh, fault))?;
+    let embedded = embed_and_measure(
+        &surface,
+        &options,
+        &stress,
+        &Bars::with_budget(common.quiet, args.limits.budget()),
+    )
+    .map_err(|fault| named(&args.mesh, fault))?;
     warn(&args.mesh.display().to_string(), &embedded.report);
     write(&args.output, &surface, &embedded)?;
     let json = EmbedJson { report: embedded.report, output: args.output.clone() };
@@ -87,8 +92,13 @@ fn batch(
             let one = || {
                 let surface =
                     Surface::read(&shape.path, &options.repair).map_err(|fault| named(&shape.path, fault))?;
-                let embedded = embed_and_measure(&surface, options, stress, &())
-                    .map_err(|fault| named(&shape.path, fault))?;
+                let embedded = embed_and_measure(
+                    &surface,
+                    options,
+                    stress,
+                    &Bars::with_budget(true, args.limits.budget()),
+                )
+                .map_err(|fault| named(&shape.path, fault))?;
                 if let Some(folder) = output.parent() {
                     std::fs::create_dir_all(folder)
                         .with_context(|| format!("cannot create the folder {}", folder.display()))?;
@@ -118,7 +128,7 @@ fn batch(
         }
     }
     for failure in &json.failed {
-        eprintln!("error: {}", failure.error);
+        terminal::error(&failure.error);
     }
     report(common, &json, |json| batch_table(json, &args.output))?;
     Ok(exit_code(json.failed.is_empty()))
@@ -168,10 +178,10 @@ fn write(output: &Path, surface: &Surface, embedded: &Embedded) -> Result<()> {
 /// Warns about dimensions without a positive eigenvalue.
 fn warn(name: &str, report: &EmbedReport) {
     if report.empty_dimensions > 0 {
-        eprintln!(
+        terminal::note(&format!(
             "{name}: {} of {} dimensions have no positive eigenvalue and are zero; take more samples with -n",
             report.empty_dimensions, report.dim
-        );
+        ));
     }
 }
 

@@ -45,7 +45,7 @@ pub(crate) fn info(args: &InfoArgs, common: &Common) -> Result<ExitCode> {
                 json.meshes.push(info);
             }
             Err(fault) => {
-                eprintln!("error: {fault}");
+                terminal::error(&fault.to_string());
                 json.failed.push(Failure { path, error: fault.to_string() });
             }
         }

@@ -22,7 +22,7 @@ pub(crate) fn methods(args: &MethodsArgs, common: &Common) -> Result<ExitCode> {
         &options,
         &variants(&options),
         &stress,
-        &Bars::new(common.quiet),
+        &Bars::with_budget(common.quiet, args.limits.budget()),
         &|work| with_peak_bytes(work).1,
     )
     .map_err(|fault| named(&args.mesh, fault))?;

@@ -136,8 +136,8 @@ fn distances(args: &RenderArgs, surface: &Surface) -> Result<Vec<f64>, canonform
 /// The canonical form with the faces of the input; vertices that the repair dropped have NaN positions.
 fn form(args: &RenderArgs, surface: &Surface, common: &Common) -> Result<TriMesh> {
     let options = FormOptions { seed: common.seed, ..FormOptions::default() };
-    let embedded =
-        embed(surface, &options, &Bars::new(common.quiet)).map_err(|fault| named(&args.mesh, fault))?;
+    let embedded = embed(surface, &options, &Bars::with_budget(common.quiet, args.limits.budget()))
+        .map_err(|fault| named(&args.mesh, fault))?;
     let points: Vec<_> =
         embedded.embedding.coords.row_iter().map(|row| [row[0], row[1], row[2]].into()).collect();
     let positions = surface.in_input_order(&points, [f64::NAN; 3].into());

@@ -1,6 +1,5 @@
 //! `canonform serve`.
 
-use std::io::Write;
 use std::process::ExitCode;
 
 use anyhow::Result;
@@ -14,20 +13,16 @@ pub(crate) fn serve(args: &ServeArgs) -> Result<ExitCode> {
     let stop = server.stop_handle();
     terminal::on_interruption(move || {
         stop.stop();
-        // `eprintln` would panic if standard error is closed.
-        let _ = writeln!(
-            std::io::stderr(),
-            "finishing the requests in progress; interrupt again to stop at once"
-        );
+        terminal::note("finishing the requests in progress; interrupt again to stop at once");
     });
     let address = server.address();
     if !address.ip().is_loopback() {
-        eprintln!(
+        terminal::note(&format!(
             "warning: {address} is open to other machines: they can search, and see the index and its meshes"
-        );
+        ));
     }
     let (n_shapes, index) = (server.n_shapes(), args.index.display());
-    eprintln!("listening on http://{address} ({n_shapes} shapes in {index})");
+    terminal::note(&format!("listening on http://{address} ({n_shapes} shapes in {index})"));
     server.run()?;
     Ok(ExitCode::SUCCESS)
 }

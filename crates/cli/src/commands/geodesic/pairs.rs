@@ -42,12 +42,12 @@ struct Seconds {
 /// Measures, writes and reports the distances between all pairs.
 pub(super) fn write(task: &Task) -> Result<ExitCode> {
     let Task { args, surface, .. } = task;
-    let memory = args.memory.unwrap_or(DEFAULT_MEMORY);
+    let memory = args.limits.memory.unwrap_or(DEFAULT_MEMORY);
     let pairs = AllPairs::new(surface, task.solver, memory).map_err(|fault| named(&args.mesh, fault))?;
     let start = Instant::now();
     let mut asymmetry = Asymmetry::default();
     fill_npy(&args.output, [pairs.n_vertices(); 2], |file| {
-        asymmetry = pairs.write(file, &Bars::new(task.common.quiet))?;
+        asymmetry = pairs.write(file, &Bars::with_budget(task.common.quiet, args.limits.budget()))?;
         Ok(())
     })?;
     let json = PairsJson {
