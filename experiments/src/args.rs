@@ -7,6 +7,18 @@ use clap::{Args, Parser, Subcommand};
 use crate::collection::Source;
 use crate::table::parse_name;
 
+/// The default folder for results.
+const OUTPUT: &str = "out";
+
+/// A word of a command line, in quotes if a shell would take it apart.
+pub(crate) fn quoted(word: &str) -> String {
+    let is_plain = |c: char| c.is_alphanumeric() || "-_./:,+=@%".contains(c);
+    match !word.is_empty() && word.chars().all(is_plain) {
+        true => word.to_owned(),
+        false => format!("'{}'", word.replace('\'', "'\\''")),
+    }
+}
+
 /// Reproduces the figures of the paper on the built-in dataset or on a folder of meshes.
 #[derive(Debug, Parser)]
 #[command(name = "experiments", version, max_term_width = 100)]
@@ -24,7 +36,7 @@ pub(crate) enum Command {
     /// Write the report page again from the results in a folder
     Report {
         /// Folder with the results
-        #[arg(short, long, default_value = "out", value_name = "OUT")]
+        #[arg(short, long, default_value = OUTPUT, value_name = "OUT")]
         output: PathBuf,
     },
     /// Measure how poses and triangulations of the built-in shapes change every signature
@@ -46,7 +58,7 @@ pub(crate) struct RunArgs {
     #[command(flatten)]
     pub(crate) source: Source,
     /// Folder for the results
-    #[arg(short, long, default_value = "out", value_name = "OUT")]
+    #[arg(short, long, default_value = OUTPUT, value_name = "OUT")]
     pub(crate) output: PathBuf,
     /// Worker threads; 0 for all cores. Results do not depend on it
     #[arg(long, default_value_t = 0, value_name = "N")]
@@ -59,10 +71,38 @@ pub(crate) struct RunArgs {
 impl RunArgs {
     /// The command line that repeats the run.
     pub(crate) fn command(&self) -> String {
-        format!(
-            "cargo run --release -p experiments -- run {}{}",
-            self.names.join(" "),
-            self.source.arguments()
-        )
+        format!("cargo run --release -p experiments -- run {}{}", self.names.join(" "), self.arguments())
+    }
+
+    /// The options that decide the results and where they are, each after a space.
+    pub(crate) fn arguments(&self) -> String {
+        let output = match self.output.as_os_str() == OUTPUT {
+            true => String::new(),
+            false => format!(" --output {}", quoted(&self.output.display().to_string())),
+        };
+        self.source.arguments() + &output
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn parsed(line: &str) -> RunArgs {
+        match Arguments::parse_from(format!("experiments run {line}").split(' ')).command {
+            Command::Run(args) => args,
+            other => panic!("{other:?}"),
+        }
+    }
+
+    #[test]
+    fn commands_repeat_what_decides_the_results() {
+        let command = |line: &str| parsed(line).command();
+        assert!(command("all").ends_with("-- run all"));
+        assert!(command("figure1 --vertices 1000 --threads 1 -q").ends_with("-- run figure1 --vertices 1000"));
+        let line = "figure3 --dataset my&data --classes cat,dog --seed 2 -o results/1";
+        let expected = "-- run figure3 --dataset 'my&data' --classes cat,dog --seed 2 --output results/1";
+        assert!(command(line).ends_with(expected), "{}", command(line));
+        assert_eq!(quoted("it's"), r"'it'\''s'");
     }
 }

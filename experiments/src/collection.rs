@@ -10,6 +10,8 @@ use datasets::{ArticulatedOptions, articulated};
 use mesh::RepairOptions;
 use rayon::prelude::*;
 
+use crate::args::quoted;
+
 /// Name of the built-in dataset in records.
 pub(crate) const BUILT_IN: &str = "built-in articulated families";
 
@@ -54,15 +56,15 @@ impl Source {
     pub(crate) fn arguments(&self) -> String {
         let mut arguments = String::new();
         if let Some(folder) = &self.dataset {
-            arguments += &format!(" --dataset {}", folder.display());
+            arguments += &format!(" --dataset {}", quoted(&folder.display().to_string()));
         } else if self.vertices != VERTICES {
             arguments += &format!(" --vertices {}", self.vertices);
         }
         if let Some(labels) = &self.labels {
-            arguments += &format!(" --labels {}", labels.display());
+            arguments += &format!(" --labels {}", quoted(&labels.display().to_string()));
         }
         if !self.classes.is_empty() {
-            arguments += &format!(" --classes {}", self.classes.join(","));
+            arguments += &format!(" --classes {}", quoted(&self.classes.join(",")));
         }
         if self.seed != 0 {
             arguments += &format!(" --seed {}", self.seed);

@@ -8,12 +8,13 @@ use anyhow::Result;
 use canonform::{FormOptions, Observer, StressChoice};
 use geodesics::{Sampling, Variance};
 use linalg::LandmarkDistances;
-use report::results::{CurvesPanel, CurvesResults, Provenance, Record, Series};
+use report::results::{CurvesPanel, CurvesResults, Expectation, Provenance, Record, Series};
 use report::{Results, save};
 use terminal::Bars;
 
 use crate::collection::{Collection, Setting};
 use crate::config::Config;
+use crate::machine;
 use crate::specimen::{Distances, Specimen};
 use crate::sweep::{Measured, curves, places};
 
@@ -29,6 +30,8 @@ pub(crate) struct Context<'a> {
     pub(crate) folder: &'a Path,
     /// The command line that repeats the run.
     pub(crate) command: String,
+    /// Its options, each after a space.
+    pub(crate) arguments: String,
     pub(crate) observer: &'a dyn Observer,
     pub(crate) bars: &'a Bars,
     pub(crate) start: Instant,
@@ -40,7 +43,11 @@ impl Context<'_> {
         Provenance {
             program: "canonform experiments".to_owned(),
             version: env!("CARGO_PKG_VERSION").to_owned(),
+            commit: env!("CANONFORM_COMMIT").to_owned(),
+            date: machine::now(),
+            machine: machine::described(),
             command: self.command.clone(),
+            arguments: self.arguments.clone(),
             dataset: self.collection.dataset.clone(),
             classes: self.collection.classes.clone(),
             seed: self.seed,
@@ -77,18 +84,40 @@ impl Context<'_> {
         provenance: Provenance,
         measured: &Measured,
     ) -> Result<()> {
-        let expectations = self.config.check(self.collection.setting(), measured)?;
+        let setting = self.collection.setting();
+        let expectations = self.config.check(setting, measured)?;
         self.bars.finish();
-        for failed in expectations.iter().filter(|expectation| !expectation.held) {
-            eprintln!("not as expected: {} is {}, {}", failed.what, failed.measured, failed.expected);
+        for Expectation { what, expected, measured, goal, .. } in expectations.iter().filter(|e| !e.held) {
+            let kind = if *goal { "goal missed" } else { "not as expected" };
+            eprintln!("{kind}: {what} is {measured}, {expected}");
         }
-        let record =
-            Record { provenance, results, expectations, analysis: self.config.analysis.trim().to_owned() };
+        let shapes: Vec<&str> = self.specimens.iter().map(Specimen::label).collect();
+        let analysis = self.config.analysis(setting, &self.known(measured), &shapes)?;
+        let measured = measured.iter().filter(|(_, value)| value.is_finite());
+        let measured = measured.map(|(name, value)| (name.clone(), *value)).collect();
+        let record = Record { provenance, results, measured, expectations, analysis };
         save(&record, self.folder, self.name)?;
         if let Some(summary) = record.results.summary() {
             writeln!(std::io::stdout().lock(), "{}", summary.to_text())?;
         }
         Ok(())
+    }
+
+    /// The numbers that texts may use: what was measured, options, the size of the collection.
+    fn known(&self, measured: &Measured) -> Measured {
+        let Config { samples, rank, runs, eigenvectors, knn, .. } = self.config;
+        let own = [
+            ("samples", samples),
+            ("rank", rank),
+            ("runs", runs),
+            ("eigenvectors", eigenvectors),
+            ("voters", knn),
+            ("shapes", self.collection.shapes.len()),
+            ("classes", self.collection.classes.len()),
+        ];
+        let mut known = measured.clone();
+        known.extend(own.map(|(name, value)| (name.to_owned(), value as f64)));
+        known
     }
 
     /// The curves of all methods over the configured counts n, from runs that differ in the first sample.

@@ -10,6 +10,8 @@ mod coarse;
 mod collection;
 mod config;
 mod context;
+mod machine;
+mod prose;
 mod run;
 mod specimen;
 mod surfaces;

@@ -33,6 +33,7 @@ pub(crate) fn run(args: &RunArgs) -> Result<ExitCode> {
             seed: args.source.seed,
             folder: &args.output,
             command: args.command(),
+            arguments: args.arguments(),
             observer: &bars,
             bars: &bars,
             start: Instant::now(),

@@ -8,7 +8,7 @@ use crate::figure::{Axis, Content, Figure, Heat, MAP_SIZE, Plot, Point, Series};
 use crate::figure::{Shape, Style};
 use crate::record::Results;
 use crate::results::{Figure4Panel, Figure4Results, Scale};
-use crate::table::{Cell, SCORES, SCORES_CAPTION, Table, scores};
+use crate::table::{Cell, SCORES, Table, scores, scores_caption};
 use view::numbers::signed;
 
 /// What each scale is called in titles, in captions and in file names.
@@ -62,12 +62,12 @@ fn map(record: &Figure4Results, panel: &Figure4Panel, classes: &Classes<'_>, tit
     let retrieval = SCORES.into_iter().zip(scores(&panel.scores.mean)).filter(|(name, _)| *name != "E");
     let own = [
         ("silhouette", panel.scores.silhouette),
-        ("map silh.", panel.map_silhouette),
-        ("map stress", panel.map_stress),
+        ("2D silhouette", panel.map_silhouette),
+        ("2D stress", panel.map_stress),
     ];
     Plot {
         title: title.to_owned(),
-        label: format!("Map of the shapes ({title})"),
+        label: format!("2D map of the shapes ({title})"),
         x: Axis::linear("MDS axis 1", unit, across, 7),
         y: Axis::linear("MDS axis 2", unit, up, 6),
         is_map: true,
@@ -179,7 +179,8 @@ impl Results for Figure4Results {
             }
             let caption = format!(
                 "Multidimensional scaling of the distances between the canonical forms of {n} shapes, {size}. Both axes of \
-                 a map have the same scale, so nearby points are similar forms. Under each map: its scores."
+                 a 2D map have the same scale, so nearby points are similar forms. Under each 2D map: the scores of the \
+                 distances (mAP: mean average precision), and the silhouette and stress of the map itself."
             );
             figures.push(Figure { part: maps, caption, content: Content::Plots(plots) });
             let caption = format!(
@@ -199,10 +200,11 @@ impl Results for Figure4Results {
             row
         };
         let caption = format!(
-            "{SCORES_CAPTION} k-NN: leave-one-out accuracy. Neg. mass: the share of the spectrum that no Euclidean space can \
-             represent."
+            "{} k-NN: leave-one-out accuracy. Neg. mass: the share of the spectrum that no Euclidean space can \
+             represent. 2D: of the map in the plane.",
+            scores_caption(self.best_e)
         );
-        let own = ["k-NN", "silhouette", "map silh.", "map stress", "neg. mass"];
+        let own = ["k-NN", "silhouette", "2D silhouette", "2D stress", "neg. mass"];
         let headings = ["method", "scale"].into_iter().chain(SCORES).chain(own);
         vec![Table::new(caption, headings, self.panels.iter().map(row).collect())]
     }
@@ -237,7 +239,7 @@ mod tests {
             }
         }
         for text in
-            ["MDS axis 1 (form units)", "MDS axis 2 (form units)", "0.910", "0.875", "map silh.", "0.052"]
+            ["MDS axis 1 (form units)", "MDS axis 2 (form units)", "0.910", "0.875", "2D silhouette", "0.052"]
         {
             assert!(svg[0].contains(text), "{text}");
         }
@@ -330,7 +332,7 @@ mod tests {
         let record = figure4_record(&[("cat", 3), ("dog", 2)]);
         let text = record.results.summary().unwrap().to_text();
         assert_eq!(text.lines().count(), 1 + record.results.panels.len());
-        assert!(text.contains("normalized") && text.contains("map stress"), "{text}");
+        assert!(text.contains("normalized") && text.contains("2D stress"), "{text}");
         let lines: Vec<&str> = text.lines().collect();
         for (heading, value) in SCORES.iter().zip(scores(&record.results.panels[0].scores.mean)) {
             let end = lines[0].find(heading).map(|at| at + heading.len()).unwrap();

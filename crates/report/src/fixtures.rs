@@ -6,7 +6,7 @@ use serde_json::json;
 use crate::results::{
     Axis, AxisScale, Classification, CurvesPanel, CurvesResults, Expectation, Figure1Results, Figure1Shape,
     Figure3Form, Figure3Results, Figure3Shape, Figure3Stress, Figure4Panel, Figure4Results, Figure9Measured,
-    Figure9Results, Figure9Row, Mark, Motions, Provenance, Record, RetrievalResults, RetrievalRow, Scale,
+    Figure9Results, Figure9Row, Mark, Misclassified, Motions, Provenance, Record, RetrievalResults, RetrievalRow, Scale,
     Series, SeriesPoint, ShapesRecord, ShownForm, ShownShape,
 };
 use view::interactive::Geometry;
@@ -15,6 +15,10 @@ fn provenance() -> Provenance {
     Provenance {
         program: "experiments".into(),
         version: "0.1.0".into(),
+        commit: "abc1234".into(),
+        date: "2026-01-31 12:00".into(),
+        machine: "a processor, 2 threads, linux".into(),
+        arguments: " --dataset 'a & b' --output results".into(),
         command: "experiments run all --dataset 'a & b'".into(),
         dataset: "a & b".into(),
         classes: vec!["cat".into(), "dog".into()],
@@ -26,7 +30,8 @@ fn provenance() -> Provenance {
 
 /// A record without expectations.
 fn recorded<T>(results: T, analysis: &str) -> Record<T> {
-    Record { provenance: provenance(), results, expectations: vec![], analysis: analysis.into() }
+    let (measured, expectations) = Default::default();
+    Record { provenance: provenance(), results, measured, expectations, analysis: analysis.into() }
 }
 
 pub(crate) fn evaluation() -> Evaluation {
@@ -136,11 +141,19 @@ pub(crate) fn retrieval_record() -> Record<RetrievalResults> {
         names: ["cat0", "cat1", "a0", "a1"].map(String::from).into(),
         labels: ["cat", "cat", "a & b", "a & b"].map(String::from).into(),
         rows: vec![row(Scale::Normalized), row(Scale::Raw)],
+        best_e: Some(0.512),
         classification: Classification {
             method: "wave-kernel".into(),
             voters: 3,
             classes: vec!["a & b".into(), "cat".into()],
             confusion: vec![vec![1, 0, 1], vec![0, 2, 0]],
+            misclassified: vec![Misclassified {
+                name: "a1".into(),
+                label: "a & b".into(),
+                predicted: None,
+                nearest: "cat0".into(),
+                distance: 0.75,
+            }],
             threshold: 0.5,
             missed: 0.25,
             mistaken: 0.0,
@@ -200,6 +213,7 @@ pub(crate) fn figure4_record(classes: &[(&str, usize)]) -> Record<Figure4Results
     };
     let results = Figure4Results {
         names: (0..labels.len()).map(|i| format!("{}{i}", labels[i])).collect(),
+        best_e: None,
         panels: [Scale::Raw, Scale::Normalized]
             .into_iter()
             .flat_map(|scale| [panel("NMDS", scale), panel("KPCA-Nyström", scale)])
@@ -212,12 +226,14 @@ pub(crate) fn figure4_record(classes: &[(&str, usize)]) -> Record<Figure4Results
             expected: "at least 0.9".into(),
             measured: "0.910".into(),
             held: true,
+            goal: false,
         },
         Expectation {
             what: "NMDS, raw: silhouette".into(),
             expected: "at least 0.9".into(),
             measured: "-0.125".into(),
             held: false,
+            goal: false,
         },
     ];
     Record { expectations, ..recorded(results, "Two clusters.") }

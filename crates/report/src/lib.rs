@@ -21,6 +21,7 @@ mod record;
 pub mod results;
 mod retrieval;
 mod table;
+mod tables;
 
 pub use error::ReportError;
 pub use record::{Results, save};

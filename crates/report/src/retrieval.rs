@@ -4,12 +4,15 @@ use crate::classes::Classes;
 use crate::error::ReportError;
 use crate::figure::{Axis, Content, Figure, Heat, Plot, Point, Series, Shape, Style};
 use crate::record::Results;
-use crate::results::{self, AxisScale, Classification, RetrievalResults, RetrievalRow, Scale};
-use crate::table::{Cell, SCORES, SCORES_CAPTION, Table, scores};
+use crate::results::{self, AxisScale, Classification, Misclassified, RetrievalResults, RetrievalRow, Scale};
+use crate::table::{Cell, SCORES, Table, scores, scores_caption};
 
 /// The scales in the order of the panels, with their titles and their names in tables.
 const SCALES: [(Scale, &str, &str); 2] =
     [(Scale::Normalized, "size ignored", "ignored"), (Scale::Raw, "size counts", "counts")];
+
+/// Stands for the class of shapes that are assigned to none.
+const UNKNOWN: &str = "unknown";
 
 /// The colour of a full cell of the confusion matrix.
 const FULL: [u8; 3] = [31, 80, 154];
@@ -46,7 +49,7 @@ fn precision(rows: &[RetrievalRow]) -> Vec<Plot> {
 
 /// True classes down, predicted classes across.
 fn confusion(Classification { classes, confusion, .. }: &Classification) -> Heat {
-    let columns: Vec<String> = classes.iter().cloned().chain(["unknown".to_owned()]).collect();
+    let columns: Vec<String> = classes.iter().cloned().chain([UNKNOWN.to_owned()]).collect();
     let rows = Axis::categories("true class", classes.iter().cloned());
     let shares = |row: &Vec<usize>| {
         let total = row.iter().sum::<usize>().max(1) as f64;
@@ -67,6 +70,26 @@ fn confusion(Classification { classes, confusion, .. }: &Classification) -> Heat
         columns,
         hover: "{row} classified as {column}\n{count} shapes, {percent} of the class",
     }
+}
+
+/// The shapes that are not in the class that was predicted.
+fn misclassified(c: &Classification) -> Table {
+    let row = |shape: &Misclassified| {
+        let predicted = shape.predicted.as_deref().unwrap_or(UNKNOWN);
+        let mut row = [shape.name.as_str(), &shape.label, predicted, &shape.nearest].map(Cell::text).to_vec();
+        row.push(Cell::score(shape.distance));
+        row
+    };
+    let caption = match c.misclassified.len() {
+        0 => "Every shape was assigned to its class.".to_owned(),
+        n => format!(
+            "The {n} shapes that were not assigned to their class. A shape is unknown if its nearest neighbour is farther \
+             than {:.3}.",
+            c.threshold
+        ),
+    };
+    let headings = ["shape", "class", "assigned to", "nearest shape", "distance"];
+    Table::new(caption, headings, c.misclassified.iter().map(row).collect())
 }
 
 impl Results for RetrievalResults {
@@ -115,8 +138,9 @@ impl Results for RetrievalResults {
             cells
         };
         let caption = format!(
-            "{SCORES_CAPTION} Scores are averaged over queries, macro scores over classes. Least mAP: the lowest mAP when one \
-             class is left out of the collection."
+            "{} Scores are averaged over queries, macro scores over classes. Least mAP: the lowest mAP when one \
+             class is left out of the collection.",
+            scores_caption(self.best_e)
         );
         let own = ["macro NN", "macro mAP", "k-NN", "least mAP"];
         let headings = ["method", "size"].into_iter().chain(SCORES).chain(own);
@@ -127,7 +151,7 @@ impl Results for RetrievalResults {
                        The thresholds are found without the class they are tested on.";
         let values = [c.missed, c.mistaken, c.threshold].map(Cell::score).to_vec();
         let unknown = Table::new(caption, ["missed", "mistaken", "threshold"], vec![values]);
-        vec![all, unknown.folded("Unknown shapes")]
+        vec![all, misclassified(c), unknown.folded("Unknown shapes")]
     }
 }
 

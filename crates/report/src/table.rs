@@ -4,6 +4,8 @@ use ::retrieval::Scores;
 use comfy_table::{CellAlignment, presets};
 use view::numbers::signed;
 
+use crate::results::Outcome;
+
 /// Rows of cells under headings.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Table {
@@ -26,8 +28,8 @@ pub enum Cell {
     Number(String),
     /// A number that does not exist.
     Missing,
-    /// Whether an expectation held.
-    Verdict(bool),
+    /// What came of an expectation.
+    Verdict(Outcome),
 }
 
 impl Cell {
@@ -86,7 +88,7 @@ impl Table {
                 Cell::Text(text) => text.clone(),
                 Cell::Number(text) => text.replace('\u{2212}', "-"),
                 Cell::Missing => "-".to_owned(),
-                Cell::Verdict(held) => if *held { "held" } else { "failed" }.to_owned(),
+                Cell::Verdict(outcome) => outcome.name().to_owned(),
             }));
         }
         for (i, column) in table.column_iter_mut().enumerate() {
@@ -104,9 +106,20 @@ impl Table {
 /// The headings of [`scores`] in tables, as in the paper.
 pub(crate) const SCORES: [&str; 6] = ["NN", "FT", "ST", "E", "DCG", "mAP"];
 
-/// The meaning of [`SCORES`], as the beginning of a caption.
-pub(crate) const SCORES_CAPTION: &str = "NN: nearest neighbour; FT and ST: first and second tier; E: E-measure; DCG: \
-    discounted cumulative gain; mAP: mean average precision. 1 is the best value of all.";
+/// The meaning of [`SCORES`], as the beginning of a caption. `best_e` is the E-measure of a ranking without error.
+pub(crate) fn scores_caption(best_e: Option<f64>) -> String {
+    let best = match best_e {
+        Some(best) if best < 0.9995 => format!(
+            "The best value is 1, but {} for E: the classes are smaller than the 32 results that E examines.",
+            signed(best, 3)
+        ),
+        _ => "The best value is 1; E, which examines 32 results, cannot reach it if classes are smaller.".to_owned(),
+    };
+    format!(
+        "NN: nearest neighbour; FT and ST: first and second tier; E: E-measure; DCG: discounted cumulative gain; mAP: \
+         mean average precision. {best}"
+    )
+}
 
 /// The scores under [`SCORES`].
 pub(crate) fn scores(s: &Scores) -> [f64; 6] {

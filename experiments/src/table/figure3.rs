@@ -3,6 +3,8 @@
 //! Measures, for `DISTANCES` in `default`, `planar`, `point-source` (the last two ignore obtuse triangles), a class
 //! `SHAPE` and `METHOD` in `MDS`, `NMDS`, `SMDS`, `Min-Var`, `BFS`:
 //! * `DISTANCES SHAPE METHOD`: the ratio of the median stress to that of MDS with the same distances (1 for MDS);
+//! * `DISTANCES SHAPE METHOD stress|low|high`: the median, the least and the greatest stress;
+//! * `DISTANCES SHAPE METHOD range`: the ratio of the greatest to the least stress;
 //! * `DISTANCES SHAPE METHOD off paper`: the relative difference of the median stress from that printed in the paper;
 //! * `DISTANCES SHAPE A below B`: the ratio of the median stress of `B` to that of `A`.
 
@@ -115,6 +117,14 @@ fn note(
             measured.insert(format!("{key} {method} below {other}"), medians[j] / medians[i]);
         }
         let range = point(0.0, &values(runs));
+        for (name, value) in [
+            ("stress", range.median),
+            ("low", range.low),
+            ("high", range.high),
+            ("range", range.high / range.low),
+        ] {
+            measured.insert(format!("{key} {method} {name}"), value);
+        }
         stresses.push(Figure3Stress {
             shape: specimen.name().to_owned(),
             distances: distances.name.to_owned(),

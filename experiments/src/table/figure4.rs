@@ -1,7 +1,7 @@
 //! Figure 4: distances between the canonical forms of 30 shapes, and their maps.
 //!
 //! Measures, for `METHOD` in `NMDS`, `KPCA-Nystrom` and `SCALE` in `raw`, `normalized`:
-//! `METHOD SCALE nn|ft|st|e|dcg|map|knn|silhouette|map silhouette`, and `SCALE SCORE gap`, the score of NMDS minus
+//! `METHOD SCALE nn|ft|st|e|dcg|mAP|knn|silhouette|2D silhouette`, and `SCALE SCORE gap`, the score of NMDS minus
 //! that of KPCA-Nystrom.
 
 use anyhow::{Context as _, Result};
@@ -16,7 +16,7 @@ use retrieval::{Labels, evaluate, silhouette};
 use crate::collection::map;
 use crate::context::{Context, described};
 use crate::surfaces::{Formed, motions, shown, vertex_limit};
-use crate::sweep::{Measured, named};
+use crate::sweep::{Measured, best_e, named};
 
 /// Name of the paper's method in the record.
 const NMDS: &str = "NMDS";
@@ -48,7 +48,8 @@ pub(crate) fn run(context: &Context<'_>) -> Result<()> {
     let provenance = context.provenance(described(&options, StressChoice::Skip));
     write(&shapes(context, &methods, &formed, moved)?, context.folder.join(SHAPES_FILE))?;
     let measured = measured(&panels);
-    let results = Figure4Results { names: context.collection.names(), labels, panels };
+    let best_e = Some(best_e(&classes)?);
+    let results = Figure4Results { names: context.collection.names(), labels, best_e, panels };
     context.publish(results, provenance, &measured)
 }
 
@@ -103,7 +104,7 @@ fn measured(panels: &[Figure4Panel]) -> Measured {
         let own = [
             ("knn", panel.scores.knn_accuracy),
             ("silhouette", panel.scores.silhouette),
-            ("map silhouette", panel.map_silhouette),
+            ("2D silhouette", panel.map_silhouette),
         ];
         let (scale, sign) = (panel.scale.name(), if panel.method == NMDS { 1.0 } else { -1.0 });
         for (score, value) in named(&panel.scores.mean).into_iter().chain(own) {

@@ -3,13 +3,15 @@
 //!
 //! 5a measures, for a class `SHAPE`:
 //! * `SHAPE best rank`, the rank at which the error of the low-rank regularisation is least, and `SHAPE best rank over n`;
+//! * `SHAPE good from` and `SHAPE good to`, the ends of the ranks at which its error is at most 1.5 times the least;
 //! * `SHAPE rise`, the ratio of its error at rank n to the least;
 //! * `SHAPE CUR over low-rank`, the ratio of the least error of CUR to that of low rank;
 //! * `SHAPE low-rank below CUR`, the share of ranks at which the error of low rank is at most that of CUR.
 //!
 //! 5b measures `SHAPE paper over best`, `SHAPE default over best` and `SHAPE none over best`, the ratios of the error at
 //! the paper's alpha, at our default and without regularisation to the least of the curve, and `SHAPE RPI over low-rank`,
-//! the ratio of the least of the curve to the error of low rank at half of n.
+//! the ratio of the least of the curve to the error of low rank at half of n, and `SHAPE best alpha`, relative to the fourth
+//! power of the largest eigenvalue.
 
 use anyhow::Result;
 use nmds::{Reconstruction, Regularization, RpiAlpha, sample_eigenvalues};
@@ -50,7 +52,10 @@ pub(crate) fn rank(context: &Context<'_>) -> Result<()> {
         let least = |s: &Series| medians(s).into_iter().fold(f64::INFINITY, f64::min);
         let best = low_rank.points.iter().find(|p| p.median == least(&low_rank)).map_or(f64::NAN, |p| p.x);
         let last = low_rank.points.last().map_or(f64::NAN, |p| p.median);
+        let good = || low_rank.points.iter().filter(|p| p.median <= 1.5 * least(&low_rank)).map(|p| p.x);
         for (name, value) in [
+            ("good from", good().next().unwrap_or(f64::NAN)),
+            ("good to", good().last().unwrap_or(f64::NAN)),
             ("best rank", best),
             ("best rank over n", best / n as f64),
             ("rise", last / least(&low_rank)),
@@ -97,7 +102,9 @@ pub(crate) fn alpha(context: &Context<'_>) -> Result<()> {
         let ours = fixed("default", Regularization::Rpi { alpha: RpiAlpha::default() })?;
         let level = |s: &Series| s.points[0].median;
         let best = medians(&rpi).into_iter().fold(f64::INFINITY, f64::min);
+        let best_alpha = rpi.points.iter().find(|p| p.median == best).map_or(f64::NAN, |p| p.x);
         for (name, value) in [
+            ("best alpha", best_alpha),
             ("paper over best", level(&paper) / best),
             ("default over best", level(&ours) / best),
             ("none over best", level(&none) / best),

@@ -2,7 +2,7 @@
 //!
 //! Measures ratios of times at the smaller number of vertices, `full MDS over NMDS`, `MDS over NMDS` (with the faster
 //! decomposition) and `SMDS over NMDS`; at the larger one, `large SMDS over NMDS` and `algebra share`, the share of linear
-//! algebra in the time of NMDS; and `growth`, the exponent of the time of NMDS in the number of vertices.
+//! algebra in the time of NMDS; `small|large METHOD seconds|bytes`, the time and memory of each method; and `growth`, the exponent of the time of NMDS in the number of vertices.
 
 use std::time::Instant;
 
@@ -142,6 +142,12 @@ fn ratios(rows: &[Figure9Row]) -> Measured {
         ("algebra share", share),
         ("growth", (total(false, "NMDS") / total(true, "NMDS")).ln() / factor.ln()),
     ]
+    .into_iter()
     .map(|(name, value)| (name.to_owned(), value))
-    .into()
+    .chain(rows.iter().flat_map(|row| {
+        let size = if row.n_vertices == small { "small" } else { "large" };
+        let values = row.measured.map(|m| [("seconds", m.total()), ("bytes", m.peak_bytes as f64)]);
+        values.into_iter().flatten().map(move |(what, value)| (format!("{size} {} {what}", row.method), value))
+    }))
+    .collect()
 }

@@ -48,7 +48,7 @@ pub(crate) const EXPERIMENTS: [Experiment; 11] = [
     experiment!("figure7", "Figure 7. Stress above the optimum against the number of samples", charts::<CurvesResults>, figure7::run),
     experiment!("figure8", "Figure 8. Time against the number of samples", charts::<CurvesResults>, figure8::run),
     experiment!("figure9", "Figure 9. Time and memory of whole embeddings", charts::<Figure9Results>, figure9::run),
-    experiment!("retrieval", "Retrieval and classification by signatures and canonical forms", charts::<RetrievalResults>, retrieve::run),
+    experiment!("retrieval", "Retrieval. Classification by signatures and canonical forms", charts::<RetrievalResults>, retrieve::run),
     experiment!("scaling", "Scaling. Time and memory up to a million vertices", charts::<CurvesResults>, scaling::run),
 ];
 

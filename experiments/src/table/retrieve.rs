@@ -1,6 +1,6 @@
 //! Retrieval and classification by signatures and canonical forms.
 //!
-//! Measures `METHOD SCALE nn|ft|st|e|dcg|map|macro nn|macro map|knn|least map` for `METHOD` a signature, `aligned forms`,
+//! Measures `METHOD SCALE nn|ft|st|e|dcg|mAP|macro nn|macro mAP|knn|least mAP` for `METHOD` a signature, `aligned forms`,
 //! `fused`, `fused and forms`, with `SCALE` either `raw` (size counts) or `normalized`; at scale `raw` also for `forms in
 //! mesh units`; and `missed`, `mistaken`.
 
@@ -8,12 +8,12 @@ use anyhow::Result;
 use canonform::{DescribeOptions, ShapeDescription, describe, form_matches};
 use descriptors::{CanonicalForm, FormDistance, Normalization, ShapeMetric, SignatureKind};
 use linalg::DistanceMatrix;
-use report::results::{Classification, RetrievalResults, RetrievalRow, Scale};
+use report::results::{Classification, Misclassified, RetrievalResults, RetrievalRow, Scale};
 use retrieval::{Averaging, Labels, UnknownThreshold, evaluate, mean_scores, precision_recall, rank, vote};
 
 use crate::collection::map;
 use crate::context::Context;
-use crate::sweep::{Measured, named};
+use crate::sweep::{Measured, best_e, named};
 
 /// The number of recalls at which precision is measured.
 const RECALLS: usize = 21;
@@ -34,13 +34,15 @@ pub(crate) fn run(context: &Context<'_>) -> Result<()> {
     for (method, scale, distances) in distances(context, &shapes)? {
         rows.push(row(&method, scale, &distances, &labels, context.config.knn)?);
         if method == CLASSIFIER && scale == Scale::Normalized {
-            classification = classified(&method, &distances, &labels, context.config.knn)?;
+            classification = classified(context, &method, &distances, &labels)?;
         }
     }
     let mut provenance = context.provenance(serde_json::json!({ "description": options.text() }));
     provenance.seconds.insert("describing".to_owned(), described.as_secs_f64());
     let measured = measured(&rows, &classification);
-    let results = RetrievalResults { names: context.collection.names(), labels: names, rows, classification };
+    let best_e = Some(best_e(&labels)?);
+    let names_of_shapes = context.collection.names();
+    let results = RetrievalResults { names: names_of_shapes, labels: names, rows, best_e, classification };
     context.publish(results, provenance, &measured)
 }
 
@@ -125,17 +127,30 @@ fn without(distances: &DistanceMatrix, labels: &Labels, class: usize) -> Result<
 
 /// The classification of every shape by the others, and the error rates for unknown shapes.
 fn classified(
+    context: &Context<'_>,
     method: &str,
     distances: &DistanceMatrix,
     labels: &Labels,
-    voters: usize,
 ) -> Result<Classification> {
+    let (voters, shapes) = (context.config.knn, &context.collection.shapes);
     let classes = labels.classes();
+    let mut misclassified = Vec::new();
     let threshold = UnknownThreshold::leave_one_out(distances, labels);
     let mut confusion = vec![vec![0; classes.len() + 1]; classes.len()];
     for i in 0..labels.n_points() {
-        let found = vote(&rank(distances, i), |i| labels.class(i), voters, threshold).class;
+        let ranking = rank(distances, i);
+        let found = vote(&ranking, |i| labels.class(i), voters, threshold).class;
         confusion[labels.class(i)][found.unwrap_or(classes.len())] += 1;
+        if found != Some(labels.class(i)) {
+            let nearest = ranking.first();
+            misclassified.push(Misclassified {
+                name: shapes[i].name.clone(),
+                label: shapes[i].label.clone(),
+                predicted: found.map(|class| classes[class].clone()),
+                nearest: nearest.map_or_else(String::new, |near| shapes[near.index].name.clone()),
+                distance: nearest.map_or(0.0, |near| near.distance),
+            });
+        }
     }
     let (mut missed, mut mistaken) = ([0usize; 2], [0usize; 2]);
     for class in 0..classes.len() {
@@ -158,6 +173,7 @@ fn classified(
         voters,
         classes: classes.to_vec(),
         confusion,
+        misclassified,
         threshold: threshold.map_or(0.0, |threshold| threshold.distance),
         missed: share(missed),
         mistaken: share(mistaken),
@@ -170,9 +186,9 @@ fn measured(rows: &[RetrievalRow], classification: &Classification) -> Measured 
     for row in rows {
         let own = [
             ("macro nn", row.macro_average.nn),
-            ("macro map", row.macro_average.map),
+            ("macro mAP", row.macro_average.map),
             ("knn", row.knn_accuracy),
-            ("least map", row.held_out_map),
+            ("least mAP", row.held_out_map),
         ];
         for (score, value) in named(&row.micro).into_iter().chain(own) {
             found.insert(format!("{} {} {score}", row.method, row.scale.name()), value);

@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use crate::results::Outcome;
 use crate::table::{Cell, Table};
 
 /// Text with the special characters of HTML escaped, for elements and attributes.
@@ -40,10 +41,22 @@ pub(super) fn paragraphs(text: &str) -> String {
         .collect()
 }
 
+/// The class and the sign of an outcome.
+pub(super) fn marked(outcome: Outcome) -> (&'static str, &'static str) {
+    match outcome {
+        Outcome::Held => ("held", "✓"),
+        Outcome::Missed => ("goal", "○"),
+        Outcome::Failed => ("failed", "✗"),
+    }
+}
+
 /// A table with its caption above it, folded if it says so.
 pub(super) fn table(table: &Table) -> String {
-    let mut html =
-        format!("<p class=\"pale\">{}</p>\n<div class=\"wide\"><table>\n<thead><tr>", escape(&table.caption));
+    let mut html = format!("<p class=\"pale\">{}</p>\n", escape(&table.caption));
+    if table.rows.is_empty() {
+        return html;
+    }
+    html.push_str("<div class=\"wide\" tabindex=\"0\"><table>\n<thead><tr>");
     for (i, heading) in table.headings.iter().enumerate() {
         let class = if table.is_numeric(i) { " class=\"number\"" } else { "" };
         let _ = write!(html, "<th scope=\"col\"{class}>{}</th>", escape(heading));
@@ -56,8 +69,10 @@ pub(super) fn table(table: &Table) -> String {
                 Cell::Text(text) => format!("<td>{}</td>", escape(text)),
                 Cell::Number(text) => format!("<td class=\"number\">{}</td>", escape(text)),
                 Cell::Missing => "<td class=\"number\">–</td>".to_string(),
-                Cell::Verdict(true) => "<td class=\"held\">✓ held</td>".to_string(),
-                Cell::Verdict(false) => "<td class=\"failed\">✗ failed</td>".to_string(),
+                Cell::Verdict(outcome) => {
+                    let (class, sign) = marked(*outcome);
+                    format!("<td class=\"{class}\">{sign} {}</td>", outcome.name())
+                }
             });
         }
         html.push_str("</tr>\n");

@@ -9,11 +9,14 @@ mod html;
 mod scripts;
 mod section;
 
+use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 use crate::error::ReportError;
+use crate::results::{Expectation, Outcome};
 use files::write_bytes;
-pub use section::{Content, Section, charts, explorer, gallery};
+use html::{escape, marked};
+pub use section::{Content, Folder, Section, charts, explorer, gallery};
 
 /// Name of the page in the folder of results.
 pub const FILE: &str = "report.html";
@@ -27,36 +30,78 @@ pub const FILE: &str = "report.html";
 /// [`ReportError::File`] and [`ReportError::Parse`] if a record exists but cannot be read, the errors of
 /// [`Results::validate`](crate::Results::validate), [`ReportError::File`] if the page cannot be written.
 pub fn write_report(folder: impl AsRef<Path>, sections: &[Section]) -> Result<PathBuf, ReportError> {
-    let folder = folder.as_ref();
-    let shapes = explorer::shapes(folder)?;
-    let content = |section: &Section| (section.show)(folder, section.name, shapes.as_ref());
+    let path = folder.as_ref().join(FILE);
+    let folder = Folder::new(folder.as_ref(), sections.iter().map(|section| section.name))?;
+    let content = |section: &Section| (section.show)(&folder, section.name);
     let contents: Vec<Content> = sections.iter().map(content).collect::<Result<_, _>>()?;
-    let path = folder.join(FILE);
     write_bytes(&path, page(sections, &contents).as_bytes())?;
     Ok(path)
 }
 
-fn page(sections: &[Section], contents: &[Content]) -> String {
-    let outcomes: Vec<bool> = contents.iter().flat_map(|(_, held)| held).copied().collect();
-    let verdict = match (outcomes.len(), outcomes.iter().filter(|held| !**held).count()) {
-        (0, _) => String::new(),
-        (all, 0) => format!("<p><span class=\"held\">✓ all {all} expectations held</span></p>\n"),
-        (all, failed) => {
-            format!("<p><span class=\"failed\">✗ {failed} of {all} expectations failed</span></p>\n")
-        }
+/// How many expectations held, and a link to each that did not.
+fn headline(sections: &[Section], contents: &[Content]) -> String {
+    let all: Vec<(&Section, &Expectation)> = sections
+        .iter()
+        .zip(contents)
+        .flat_map(|(section, content)| content.expectations.iter().map(move |e| (section, e)))
+        .collect();
+    if all.is_empty() {
+        return String::new();
+    }
+    let count = |outcome| all.iter().filter(|(_, e)| e.outcome() == outcome).count();
+    let [held, missed, failed] = [Outcome::Held, Outcome::Missed, Outcome::Failed].map(count);
+    let worst = match (failed, missed) {
+        (0, 0) => Outcome::Held,
+        (0, _) => Outcome::Missed,
+        _ => Outcome::Failed,
     };
-    let link = |Section { name, title, .. }: &Section| format!("<li><a href=\"#{name}\">{title}</a></li>");
-    let section = |(Section { name, title, .. }, (html, _)): (&Section, &Content)| {
+    let counted = |n: usize, what: &str, word: &str| match n {
+        0 => String::new(),
+        1 => format!(", 1 {what} {word}"),
+        n => format!(", {n} {what}s {word}"),
+    };
+    let (class, sign) = marked(worst);
+    let mut html = format!(
+        "<p><span class=\"{class}\">{sign} {held} of {} expectations held{}{}</span></p>\n",
+        all.len(),
+        counted(failed, "expectation", "failed"),
+        counted(missed, "goal", "missed")
+    );
+    if worst != Outcome::Held {
+        html.push_str("<ul class=\"outcomes\">\n");
+        for (section, e) in all.iter().filter(|(_, e)| e.outcome() != Outcome::Held) {
+            let (class, sign) = marked(e.outcome());
+            let _ = writeln!(
+                html,
+                "<li><span class=\"{class}\">{sign}</span> <a href=\"#{}\">{}: {}</a> is {} ({}{})</li>",
+                section::anchor(section.name),
+                section.short(),
+                escape(&e.what),
+                escape(&e.measured),
+                if e.goal { "goal: " } else { "expected: " },
+                escape(&e.expected)
+            );
+        }
+        html.push_str("</ul>\n");
+    }
+    html
+}
+
+fn page(sections: &[Section], contents: &[Content]) -> String {
+    let link =
+        |section: &Section| format!("<li><a href=\"#{}\">{}</a></li>", section.name, section.short());
+    let section = |(Section { name, title, .. }, Content { html, .. }): (&Section, &Content)| {
         format!("<section id=\"{name}\">\n<h2>{title}</h2>\n{html}</section>\n")
     };
     format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
          {head}<title>canonform: results</title>\n<style>\n{style}</style>\n</head>\n\
-         <body>\n<header>\n<h1>canonform: results</h1>\n{verdict}\
-         <nav aria-label=\"Experiments\"><ul>{links}</ul></nav>\n</header>\n<main>\n{main}</main>\n{tail}</body>\n</html>\n",
+         <body>\n<header>\n<h1>canonform: results</h1>\n{verdict}</header>\n\
+         <nav aria-label=\"Experiments\"><ul>{links}</ul></nav>\n<main>\n{main}</main>\n{tail}</body>\n</html>\n",
         head = scripts::head(),
         style = include_str!("style.css"),
+        verdict = headline(sections, contents),
         links = sections.iter().map(link).collect::<String>(),
         main = sections.iter().zip(contents).map(section).collect::<String>(),
         tail = scripts::tail(),

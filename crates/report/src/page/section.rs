@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use serde_json::Value;
+
 use super::chart::{chart, picture};
 use super::explorer::{self};
 use super::html::{escape, folded, paragraphs, table};
@@ -16,26 +18,65 @@ use crate::table::{Cell, Table};
 pub struct Section {
     /// Name of the experiment, of its record `NAME.json`, and of the anchor on the page.
     pub name: &'static str,
-    /// The heading.
+    /// The heading. Its first sentence, such as `Figure 1.`, is the link to it.
     pub title: &'static str,
     /// Makes its content: [`charts`], [`gallery`] or [`explorer()`].
-    pub show: fn(&Path, &str, Option<&ShapesRecord>) -> Result<Content, ReportError>,
+    pub show: fn(&Folder<'_>, &str) -> Result<Content, ReportError>,
 }
 
-/// A section as HTML, and whether each expectation held.
-pub type Content = (String, Vec<bool>);
+impl Section {
+    /// The text of links to the section.
+    #[must_use]
+    pub fn short(&self) -> &'static str {
+        self.title.split_once(". ").map_or(self.title, |(short, _)| short)
+    }
+}
+
+/// A folder of results.
+#[derive(Debug)]
+pub struct Folder<'a> {
+    pub(super) path: &'a Path,
+    /// The surfaces of Figure 4.
+    pub(super) shapes: Option<ShapesRecord>,
+    /// The options with which the experiments in the folder were run, each after a space.
+    pub(super) arguments: String,
+}
+
+impl<'a> Folder<'a> {
+    /// A folder with records of experiments of these names.
+    pub(super) fn new(path: &'a Path, names: impl Iterator<Item = &'a str>) -> Result<Self, ReportError> {
+        #[derive(serde::Deserialize)]
+        struct Source {
+            provenance: Provenance,
+        }
+        let records = names.map(|name| path.join(format!("{name}.json"))).filter(|record| record.exists());
+        let sources: Vec<Source> = records.map(read).collect::<Result<_, _>>()?;
+        // Records of several runs: the last one decides.
+        let last = sources.into_iter().max_by(|a, b| a.provenance.date.cmp(&b.provenance.date));
+        let arguments = last.map_or_else(String::new, |source| source.provenance.arguments);
+        Ok(Self { path, shapes: explorer::shapes(path)?, arguments })
+    }
+
+    /// The command that runs an experiment on the shapes of the others, into this folder.
+    fn command(&self, name: &str) -> String {
+        format!("cargo run --release -p experiments -- run {name}{}", self.arguments)
+    }
+}
+
+/// A section.
+#[derive(Debug, Default)]
+pub struct Content {
+    pub(super) html: String,
+    pub(super) expectations: Vec<Expectation>,
+}
 
 /// All figures of an experiment as charts, or a note that it has not run.
 ///
 /// # Errors
 /// Those of [`write_report`](super::write_report).
-pub fn charts<T: Results>(
-    folder: &Path,
-    name: &str,
-    _: Option<&ShapesRecord>,
-) -> Result<Content, ReportError> {
+pub fn charts<T: Results>(folder: &Folder<'_>, name: &str) -> Result<Content, ReportError> {
     content(folder, name, |_: &Record<T>, figures| {
-        figures.iter().map(|figure| chart(folder, name, figure)).collect()
+        figures.iter().map(|figure| chart(folder.path, name, figure)).collect()
     })
 }
 
@@ -43,10 +84,11 @@ pub fn charts<T: Results>(
 ///
 /// # Errors
 /// Those of [`write_report`](super::write_report).
-pub fn gallery(folder: &Path, name: &str, shapes: Option<&ShapesRecord>) -> Result<Content, ReportError> {
+pub fn gallery(folder: &Folder<'_>, name: &str) -> Result<Content, ReportError> {
     content(folder, name, |record: &Record<Figure1Results>, figures| {
-        let charts = figures.iter().map(|figure| chart(folder, name, figure));
-        Ok(charts.collect::<Result<String, _>>()? + &explorer::gallery(&record.results, shapes))
+        let charts = figures.iter().map(|figure| chart(folder.path, name, figure));
+        Ok(charts.collect::<Result<String, _>>()?
+            + &explorer::gallery(&record.results, folder.shapes.as_ref()))
     })
 }
 
@@ -54,57 +96,72 @@ pub fn gallery(folder: &Path, name: &str, shapes: Option<&ShapesRecord>) -> Resu
 ///
 /// # Errors
 /// Those of [`write_report`](super::write_report).
-pub fn explorer(folder: &Path, name: &str, shapes: Option<&ShapesRecord>) -> Result<Content, ReportError> {
+pub fn explorer(folder: &Folder<'_>, name: &str) -> Result<Content, ReportError> {
     content(folder, name, |record: &Record<Figure4Results>, figures| {
-        let still = figures.iter().map(|figure| picture(folder, name, figure));
-        explorer::explorer(record, shapes, &still.collect::<Result<String, _>>()?)
+        let still = figures.iter().map(|figure| picture(folder.path, name, figure));
+        explorer::explorer(record, folder.shapes.as_ref(), &still.collect::<Result<String, _>>()?)
     })
 }
 
 /// What `body` makes of the record and its figures, between the analysis and the numbers.
 fn content<T: Results>(
-    folder: &Path,
+    folder: &Folder<'_>,
     name: &str,
     body: impl FnOnce(&Record<T>, &[Figure]) -> Result<String, ReportError>,
 ) -> Result<Content, ReportError> {
-    let path = folder.join(format!("{name}.json"));
+    let path = folder.path.join(format!("{name}.json"));
     if !path.exists() {
-        let note = format!(
+        let html = format!(
             "<div class=\"missing\"><p>Not run yet: there is no <code>{name}.json</code> in this folder. To create it, \
-             run <code>cargo run --release -p experiments -- run {name}</code>.</p></div>\n"
+             run <code>{}</code>.</p></div>\n",
+            escape(&folder.command(name))
         );
-        return Ok((note, vec![]));
+        return Ok(Content { html, expectations: vec![] });
     }
     let record: Record<T> = read(path)?;
     record.results.validate()?;
     let html = [
         paragraphs(&record.analysis),
         body(&record, &record.results.figures())?,
-        expectations(&record.expectations),
+        expectations(name, &record.expectations),
         "<h3>Numbers</h3>\n".to_owned(),
         record.results.tables().iter().map(table).collect(),
         provenance(&record.provenance),
     ];
-    Ok((html.concat(), record.expectations.iter().map(|outcome| outcome.held).collect()))
+    Ok(Content { html: html.concat(), expectations: record.expectations })
 }
 
-fn expectations(list: &[Expectation]) -> String {
+/// The anchor of the expectations of an experiment.
+pub(super) fn anchor(name: &str) -> String {
+    format!("{name}-expectations")
+}
+
+fn expectations(name: &str, list: &[Expectation]) -> String {
     if list.is_empty() {
         return String::new();
     }
     let row = |e: &Expectation| {
-        vec![Cell::Verdict(e.held), Cell::text(&e.what), Cell::text(&e.expected), Cell::text(&e.measured)]
+        vec![Cell::Verdict(e.outcome()), Cell::text(&e.what), Cell::text(&e.expected), Cell::text(&e.measured)]
     };
     let headings = ["outcome", "quantity", "expected", "measured"];
     let rows = list.iter().map(row).collect();
-    let expected = Table::new("What was expected of this run, and what was measured.", headings, rows);
-    format!("<h3>Expectations</h3>\n{}", table(&expected))
+    let goals = if list.iter().any(|e| e.goal) {
+        " A goal is not expected to be reached yet; to miss it is no failure."
+    } else {
+        ""
+    };
+    let caption = format!("What was expected of this run, and what was measured.{goals}");
+    let expected = Table::new(caption, headings, rows);
+    format!("<h3 id=\"{}\">Expectations</h3>\n{}", anchor(name), table(&expected))
 }
 
 fn provenance(p: &Provenance) -> String {
     let seconds: Vec<String> = p.seconds.iter().map(|(stage, s)| format!("{stage} {s:.2} s")).collect();
+    let commit = if p.commit.is_empty() { String::new() } else { format!(", commit {}", p.commit) };
     let facts = [
-        ("program", format!("{} {}", p.program, p.version)),
+        ("program", format!("{} {}{commit}", p.program, p.version)),
+        ("machine", p.machine.clone()),
+        ("date", p.date.clone()),
         ("dataset", p.dataset.clone()),
         ("classes", p.classes.join(", ")),
         ("seed", p.seed.to_string()),
@@ -113,10 +170,38 @@ fn provenance(p: &Provenance) -> String {
     let facts = facts.iter().filter(|(_, fact)| !fact.trim().is_empty());
     let facts: String =
         facts.map(|(term, fact)| format!("<dt>{term}</dt><dd>{}</dd>\n", escape(fact))).collect();
-    let options = format!("<pre><code>{}</code></pre>\n", escape(&format!("{:#}", p.options)));
+    let options = format!("<pre><code>{}</code></pre>\n", escape(&as_toml(&p.options)));
     format!(
         "<h3>How it was made</h3>\n<pre><code>{}</code></pre>\n<dl>\n{facts}</dl>\n{}",
         escape(&p.command),
         folded("All options", &options)
     )
+}
+
+/// Options as TOML; options that have no value are left out.
+fn as_toml(options: &Value) -> String {
+    fn known(value: &Value) -> Value {
+        match value {
+            Value::Object(fields) => {
+                let fields = fields.iter().filter(|(_, value)| !value.is_null());
+                Value::Object(fields.map(|(name, value)| (name.clone(), known(value))).collect())
+            }
+            Value::Array(items) => {
+                Value::Array(items.iter().filter(|value| !value.is_null()).map(known).collect())
+            }
+            value => value.clone(),
+        }
+    }
+    toml::to_string(&known(options)).unwrap_or_else(|_| format!("{options:#}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn options_are_written_as_toml() {
+        let options = serde_json::json!({"rank": 5, "none": null, "embedding": {"samples": 10, "kinds": ["a", null]}});
+        assert_eq!(as_toml(&options), "rank = 5\n\n[embedding]\nkinds = [\"a\"]\nsamples = 10\n");
+    }
 }

@@ -12,9 +12,12 @@ pub struct Record<T> {
     /// What was measured; its fields are fields of the record in JSON.
     #[serde(flatten)]
     pub results: T,
+    /// Numbers by name, which expectations and texts use.
+    #[serde(default)]
+    pub measured: BTreeMap<String, f64>,
     /// What was expected.
     pub expectations: Vec<Expectation>,
-    /// What the results show, in paragraphs of plain text separated by empty lines.
+    /// What the results show, in paragraphs of plain text separated by empty lines. The run writes it from `measured`.
     pub analysis: String,
 }
 
@@ -25,8 +28,20 @@ pub struct Provenance {
     pub program: String,
     /// Its version.
     pub version: String,
+    /// The commit it was built from, with `+` if files had changed since; empty if unknown.
+    #[serde(default)]
+    pub commit: String,
+    /// When the run ended, in UTC, for example `2026-01-31 12:00`.
+    #[serde(default)]
+    pub date: String,
+    /// Processor, number of worker threads and operating system.
+    #[serde(default)]
+    pub machine: String,
     /// The command line that repeats the run.
     pub command: String,
+    /// The options of that command line, each after a space, with which other experiments run on the same shapes.
+    #[serde(default)]
+    pub arguments: String,
     /// The source of the shapes: a folder, or the name of a built-in dataset.
     pub dataset: String,
     /// The classes in use, in the order of the command line.
@@ -50,6 +65,44 @@ pub struct Expectation {
     pub measured: String,
     /// Whether the measured value is in the expected range.
     pub held: bool,
+    /// Whether this is a goal that is known to be missed, so that missing it is no failure.
+    #[serde(default)]
+    pub goal: bool,
+}
+
+impl Expectation {
+    /// What came of it.
+    #[must_use]
+    pub fn outcome(&self) -> Outcome {
+        match (self.held, self.goal) {
+            (true, _) => Outcome::Held,
+            (false, true) => Outcome::Missed,
+            (false, false) => Outcome::Failed,
+        }
+    }
+}
+
+/// What came of an expectation.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Outcome {
+    /// The measured value is in the expected range.
+    Held,
+    /// A goal is not reached yet.
+    Missed,
+    /// The measured value is not in the expected range.
+    Failed,
+}
+
+impl Outcome {
+    /// The word for it.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Held => "held",
+            Self::Missed => "goal missed",
+            Self::Failed => "failed",
+        }
+    }
 }
 
 /// Whether shapes keep their size when they are compared.

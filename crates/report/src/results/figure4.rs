@@ -12,6 +12,9 @@ pub struct Figure4Results {
     pub names: Vec<String>,
     /// Their classes.
     pub labels: Vec<String>,
+    /// The E-measure of a ranking without error; below 1 if classes are small.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub best_e: Option<f64>,
     /// One entry per method and scale.
     pub panels: Vec<Figure4Panel>,
 }

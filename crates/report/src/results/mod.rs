@@ -11,13 +11,15 @@ mod figure9;
 mod file;
 mod retrieval;
 mod shapes;
+mod tables;
 
-pub use common::{Expectation, Provenance, Record, Scale};
+pub use common::{Expectation, Outcome, Provenance, Record, Scale};
 pub use curves::{Axis, AxisScale, CurvesPanel, CurvesResults, Mark, Series, SeriesPoint};
 pub use figure1::{Figure1Results, Figure1Shape};
 pub use figure3::{Figure3Form, Figure3Results, Figure3Shape, Figure3Stress};
 pub use figure4::{Figure4Panel, Figure4Results};
 pub use figure9::{Figure9Measured, Figure9Results, Figure9Row};
 pub use file::{read, write};
-pub use retrieval::{Classification, RetrievalResults, RetrievalRow};
+pub use retrieval::{Classification, Misclassified, RetrievalResults, RetrievalRow};
 pub use shapes::{Motions, SHAPES_FILE, ShapesRecord, ShownForm, ShownShape};
+pub use tables::{Entry, RecordedTable, TablesResults};

@@ -14,6 +14,9 @@ pub struct RetrievalResults {
     pub labels: Vec<String>,
     /// One entry per method and scale.
     pub rows: Vec<RetrievalRow>,
+    /// The E-measure of a ranking without error; below 1 if classes are small.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub best_e: Option<f64>,
     /// The classification of every shape by one of the methods.
     pub classification: Classification,
 }
@@ -48,6 +51,9 @@ pub struct Classification {
     pub classes: Vec<String>,
     /// `confusion[true class][predicted class]`: counts. The last column counts shapes classified as unknown.
     pub confusion: Vec<Vec<usize>>,
+    /// The shapes that are not in the class that was predicted, in the order of the collection.
+    #[serde(default)]
+    pub misclassified: Vec<Misclassified>,
     /// A shape is unknown if its nearest neighbour is farther than this.
     pub threshold: f64,
     /// Share of shapes classified as unknown although others of their class are in the collection, by thresholds found
@@ -55,4 +61,19 @@ pub struct Classification {
     pub missed: f64,
     /// Share of shapes assigned to a class although no other of their own is in the collection, by such thresholds.
     pub mistaken: f64,
+}
+
+/// A shape that was assigned to a class that is not its own, or to none.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct Misclassified {
+    /// Its name.
+    pub name: String,
+    /// Its class.
+    pub label: String,
+    /// The predicted class; `None` for unknown.
+    pub predicted: Option<String>,
+    /// The nearest other shape.
+    pub nearest: String,
+    /// The distance from it.
+    pub distance: f64,
 }
