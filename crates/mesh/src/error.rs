@@ -117,13 +117,18 @@ pub enum MeshError {
         n_vertices: usize,
     },
 
-    /// Distances on the mesh would overflow.
-    #[error("the mesh is {diagonal:e} across, so large that areas overflow (limit {limit:e}); scale it down")]
-    TooWide {
-        /// Diagonal of the bounding box, in mesh units.
-        diagonal: f64,
-        /// Largest supported diagonal, in mesh units.
-        limit: f64,
+    /// A mesh so large or so small that areas cannot be represented.
+    #[error(
+        "the mesh is {size:e} units across, but sizes from {smallest:e} to {largest:e} are supported, \
+         since areas beyond overflow or vanish; scale the mesh"
+    )]
+    OutOfRange {
+        /// Largest extent along an axis, in mesh units.
+        size: f64,
+        /// Smallest supported size.
+        smallest: f64,
+        /// Largest supported size.
+        largest: f64,
     },
 
     /// Repair leaves no face.

@@ -1,7 +1,7 @@
 //! Triangle meshes in space.
 
 use nalgebra::{Point3, Vector3};
-use surface::{IntrinsicMesh, Topology, VertexId};
+use surface::{IntrinsicMesh, Topology, VertexId, power_of_two_below};
 
 /// An indexed triangle mesh: vertex positions and faces, exactly as they were read.
 ///
@@ -57,17 +57,25 @@ impl TriMesh {
     /// Sum of the areas of all faces, in squared mesh units.
     #[must_use]
     pub fn area(&self) -> f64 {
-        (0..self.n_faces()).map(|f| 0.5 * self.area_vector(f).norm()).sum()
+        self.face_areas().sum()
+    }
+
+    /// The area of every face, in squared mesh units; accurate at any scale.
+    pub fn face_areas(&self) -> impl Iterator<Item = f64> {
+        let unit = self.unit();
+        (0..self.n_faces()).map(move |f| {
+            let [a, b, c] = self.triangle(f);
+            0.5 * ((b - a) / unit).cross(&((c - a) / unit)).norm() * unit * unit
+        })
     }
 
     /// The lumped mass of each vertex, a third of the area of its faces, in squared mesh units.
     #[must_use]
     pub fn vertex_areas(&self) -> Vec<f64> {
         let mut areas = vec![0.0; self.n_vertices()];
-        for (f, face) in self.faces.iter().enumerate() {
-            let third = self.area_vector(f).norm() / 6.0;
+        for (face, area) in self.faces.iter().zip(self.face_areas()) {
             for v in face {
-                areas[v.index()] += third;
+                areas[v.index()] += area / 3.0;
             }
         }
         areas
@@ -81,9 +89,25 @@ impl TriMesh {
     #[must_use]
     pub fn intrinsic(&self) -> IntrinsicMesh {
         let topology = Topology::new(self.n_vertices(), self.faces.clone());
-        let length = |[a, b]: &[VertexId; 2]| (self.positions[a.index()] - self.positions[b.index()]).norm();
+        let unit = self.unit();
+        let length = |[a, b]: &[VertexId; 2]| {
+            ((self.positions[a.index()] - self.positions[b.index()]) / unit).norm() * unit
+        };
         let lengths = topology.edges().iter().map(length).collect();
         IntrinsicMesh::new(topology, lengths)
+    }
+
+    /// The largest extent along an axis, in mesh units; zero without vertices, infinite if it cannot be represented.
+    #[must_use]
+    pub fn size(&self) -> f64 {
+        self.bounds().map_or(0.0, |[lo, hi]| (hi - lo).max())
+    }
+
+    /// A unit of length near the size of the mesh, in mesh units: a power of two, so that dividing coordinates and
+    /// lengths by it and multiplying them with it is exact. Products of lengths in units neither overflow nor vanish.
+    #[must_use]
+    pub fn unit(&self) -> f64 {
+        power_of_two_below(self.size())
     }
 
     /// Lower and upper corner of the axis-aligned bounding box, in mesh units; `None` without vertices.

@@ -7,8 +7,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use canonform_mesh::io::{
-    Content, FORMATS, MemoryFile, ReadLimits, VertexField, is_mesh_path, read, read_memory, write,
-    write_polylines, write_scalar_field,
+    Content, FORMATS, Format, MemoryFile, ReadLimits, VertexField, is_mesh_path, read, read_from,
+    read_memory, read_within, write, write_polylines, write_scalar_field,
 };
 use canonform_mesh::{Fault, MeshError, TriMesh, shapes};
 use files::Action;
@@ -230,6 +230,82 @@ fn paths_without_a_mesh_are_errors() {
         assert!(matches!(read(&path), Err(MeshError::UnknownFormat { .. })));
         assert!(matches!(write(&path, &shapes::cube(0)), Err(MeshError::UnknownFormat { .. })));
     }
+}
+
+#[test]
+fn a_file_of_zeros_is_refused_by_its_start() {
+    let folder = folder();
+    let valid = shapes::tetrahedron(0);
+    write(&folder.path().join("half.vert"), &valid).unwrap();
+    for (name, start) in [
+        ("a.off", ""),
+        ("b.off", "OFF\n4 4 0\n"),
+        ("a.obj", ""),
+        ("b.obj", "v 0 0 0\n"),
+        ("a.ply", ""),
+        ("b.ply", "ply\n"),
+        ("a.stl", ""),
+        ("b.stl", "solid"),
+        ("a.mat", ""),
+        ("half.tri", "1 2 3\n"),
+    ] {
+        let path = folder.path().join(name);
+        fs::write(&path, start).unwrap();
+        // A hole of 64 GiB, more than the memory of most machines.
+        fs::OpenOptions::new().write(true).open(&path).unwrap().set_len(64 << 30).unwrap();
+        let error = read(&path).unwrap_err();
+        assert!(matches!(&error, MeshError::File { .. }), "{name}: {error}");
+        fs::remove_file(&path).unwrap();
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn pipes_and_devices_are_refused_by_name() {
+    let folder = folder();
+    let device = folder.path().join("zero.off");
+    std::os::unix::fs::symlink("/dev/zero", &device).unwrap();
+    let pipe = folder.path().join("pipe.off");
+    assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+    for path in [device, pipe] {
+        let error = read(&path).unwrap_err().to_string();
+        assert!(error.contains("not a regular file; pass its content through standard input"), "{error}");
+    }
+}
+
+#[test]
+fn a_stream_reads_like_a_file_within_its_limits() {
+    let sphere = shapes::icosphere(4);
+    let folder = folder();
+    let name = Path::new("standard input");
+    let from = |bytes: &[u8], extension: &str, limits: &ReadLimits| {
+        read_from(name, &mut &bytes[..], Format::named(extension).unwrap(), limits)
+    };
+    for extension in ["off", "OBJ", "ply", "stl"] {
+        let path = folder.path().join("m").with_extension(extension);
+        write(&path, &sphere).unwrap();
+        let bytes = fs::read(&path).unwrap();
+        assert_eq!(from(&bytes, extension, &ReadLimits::default()).unwrap(), read(&path).unwrap());
+        let size = bytes.len() as u64;
+        let exact = ReadLimits { max_bytes: size, ..ReadLimits::default() };
+        assert!(from(&bytes, extension, &exact).is_ok());
+        let error = from(&bytes, extension, &ReadLimits { max_bytes: size - 1, ..exact }).unwrap_err();
+        let expected = Fault::OverLimit { items: "bytes", limit: size - 1 };
+        assert!(matches!(error, MeshError::File { fault, .. } if fault == expected));
+        assert!(read_within(&path, &ReadLimits::of_vertices(2562)).is_ok());
+        assert!(read_within(&path, &ReadLimits::of_vertices(2561)).is_err());
+    }
+    // Endless streams end with an error.
+    for extension in ["off", "obj", "ply", "stl", "mat"] {
+        let mut zeros = std::io::repeat(0);
+        let format = Format::named(extension).unwrap();
+        assert!(read_from(name, &mut zeros, format, &ReadLimits::default()).is_err(), "{extension}");
+    }
+    let limits = ReadLimits { max_bytes: 1 << 20, ..ReadLimits::default() };
+    let mut blanks = std::io::repeat(b'\n');
+    assert!(read_from(name, &mut blanks, Format::named("obj").unwrap(), &limits).is_err());
+    let pair = from(b"", "vert", &limits).unwrap_err().to_string();
+    assert!(pair.starts_with("standard input: TOSCA consists of two files"), "{pair}");
 }
 
 #[test]

@@ -37,6 +37,25 @@ pub struct Link {
     pub length: f64,
 }
 
+/// The largest power of two that is not above a length, within the normal range of numbers; 1 for zero.
+///
+/// ```
+/// use canonform_surface::power_of_two_below;
+///
+/// assert_eq!([0.3, 1.0, 7.9, 0.0].map(power_of_two_below), [0.25, 1.0, 4.0, 1.0]);
+/// ```
+#[must_use]
+pub fn power_of_two_below(length: f64) -> f64 {
+    /// The bits of the exponent of a number.
+    const EXPONENT: u64 = 0x7ff << 52;
+    match length.abs() {
+        0.0 => 1.0,
+        length if length.is_nan() => 1.0,
+        // The inverse of either bound is a normal number.
+        length => f64::from_bits(length.clamp(f64::MIN_POSITIVE, 2f64.powi(1022)).to_bits() & EXPONENT),
+    }
+}
+
 impl Link {
     /// The links at each of `n_vertices` vertices: the other end and the length.
     #[must_use]

@@ -17,11 +17,13 @@ pub struct ReadLimits {
     pub max_vertices: u64,
     /// Triangles. Default: as many as have corners that 32-bit indices can count.
     pub max_faces: u64,
+    /// Bytes of a stream, whose size is not known in advance. Default: 8 GiB.
+    pub max_bytes: u64,
 }
 
 impl Default for ReadLimits {
     fn default() -> Self {
-        Self { max_vertices: MOST_VERTICES, max_faces: MOST_FACES }
+        Self { max_vertices: MOST_VERTICES, max_faces: MOST_FACES, max_bytes: 8 << 30 }
     }
 }
 
@@ -30,7 +32,8 @@ impl ReadLimits {
     #[must_use]
     pub fn of_vertices(max_vertices: u64) -> Self {
         let max_vertices = max_vertices.min(MOST_VERTICES);
-        Self { max_vertices, max_faces: max_vertices.saturating_mul(4).min(MOST_FACES) }
+        let max_faces = max_vertices.saturating_mul(4).min(MOST_FACES);
+        Self { max_vertices, max_faces, ..Self::default() }
     }
 
     /// Returns a fault if a count exceeds its limit.

@@ -14,6 +14,7 @@ mod polygons;
 mod source;
 mod text;
 
+use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use files::Pending;
@@ -23,8 +24,8 @@ use surface::VertexId;
 use crate::error::{Fault, MeshError};
 use crate::face_set::check_input;
 use crate::tri_mesh::TriMesh;
-use formats::Precision;
-use source::{Disk, Memory, Source};
+use formats::{CheckStart, Precision};
+use source::{Disk, Memory, Source, read_checked};
 
 pub use crate::error::Content;
 pub use field::VertexField;
@@ -64,7 +65,47 @@ pub fn files_of(path: &Path) -> Vec<PathBuf> {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn read(path: &Path) -> Result<TriMesh, MeshError> {
-    read_from(path, &Disk, &ReadLimits::default())
+    read_within(path, &ReadLimits::default())
+}
+
+/// Reads a mesh no larger than `limits`; otherwise as [`read()`].
+///
+/// # Errors
+/// As [`read()`]; [`Fault::OverLimit`] beyond `limits`.
+pub fn read_within(path: &Path, limits: &ReadLimits) -> Result<TriMesh, MeshError> {
+    read_source(path, &Disk, limits)
+}
+
+/// Reads a mesh from a stream, such as standard input, to its end. `name` stands for it in messages. Formats of more
+/// than one file cannot be read from a stream.
+///
+/// # Errors
+/// As [`read()`]; [`Fault::OverLimit`] beyond `limits`, which bound the bytes of the stream too, and
+/// [`Fault::Unsupported`] for a format of more than one file.
+///
+/// ```
+/// use std::path::Path;
+/// use canonform_mesh::io::{self, Format, ReadLimits};
+///
+/// let mut stream = &b"OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"[..];
+/// let format = Format::named("off").unwrap();
+/// let mesh = io::read_from(Path::new("standard input"), &mut stream, format, &ReadLimits::default())?;
+/// assert_eq!(mesh.n_faces(), 1);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn read_from(
+    name: &Path,
+    stream: &mut dyn Read,
+    format: &Format,
+    limits: &ReadLimits,
+) -> Result<TriMesh, MeshError> {
+    let [check] = format.check_start else {
+        let what = format!("{} consists of two files and cannot be read from a stream", format.name);
+        let remedy = "name one of its files, or convert it to OFF or PLY";
+        return Err(Fault::Unsupported { what, remedy }.whole().in_file(name));
+    };
+    let bytes = read_checked(name, stream, *check, None, limits.max_bytes)?;
+    (format.parse)(&[&bytes], limits).map_err(|fault| fault.in_file(name))
 }
 
 /// Reads a mesh from files in memory: one file, or a `.vert`/`.tri` pair in either order. Looks for no other file.
@@ -90,20 +131,20 @@ pub fn read_memory(files: &[MemoryFile<'_>], limits: &ReadLimits) -> Result<TriM
         let (path, extra) = (first.name.to_owned(), extra.name.to_owned());
         return Err(MeshError::StrayFile { path, extra, supported: mesh_files() });
     }
-    read_from(first.name, &Memory(files), limits)
+    read_source(first.name, &Memory(files), limits)
 }
 
-fn read_from(path: &Path, source: &dyn Source, limits: &ReadLimits) -> Result<TriMesh, MeshError> {
+fn read_source(path: &Path, source: &dyn Source, limits: &ReadLimits) -> Result<TriMesh, MeshError> {
     let format = Format::of(path)?;
     let paths = format.files(path, source);
-    let load = |file: &PathBuf| {
+    let load = |(file, check): (&PathBuf, &CheckStart)| {
         if file != path && !source.holds(file) {
             let partner = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
             return Err(Fault::NoPartner { partner }.whole().in_file(path));
         }
-        source.load(file)
+        source.load(file, *check)
     };
-    let contents = paths.iter().map(load).collect::<Result<Vec<_>, _>>()?;
+    let contents = paths.iter().zip(format.check_start).map(load).collect::<Result<Vec<_>, _>>()?;
     let contents: Vec<&[u8]> = contents.iter().map(AsRef::as_ref).collect();
     (format.parse)(&contents, limits).map_err(|fault| {
         let file = &paths[fault.file];

@@ -73,6 +73,16 @@ impl<'a> Line<'a> {
     }
 }
 
+/// Refuses the start of a text file that holds zero bytes, as binary data and files with holes do.
+pub(super) fn check_is_text(start: &[u8], expected: &'static str) -> Result<(), Located> {
+    match start.iter().position(|byte| *byte == 0) {
+        Some(at) => {
+            Err(Fault::WrongFormat { expected, found: "it is not text but has zero bytes".into() }.at_byte(at))
+        }
+        None => Ok(()),
+    }
+}
+
 /// The beginning of a text, fit for an error message.
 pub(super) fn excerpt(text: &[u8]) -> String {
     const LONGEST: usize = 40;

@@ -1,29 +1,34 @@
-//! The shortest links that join the components of a mesh: a minimum spanning tree, where the distance of two
-//! components is that of their nearest vertices.
+//! Links between the components of a mesh.
 //!
-//! This is Boruvka's algorithm. In each round, every group of joined components finds its nearest vertex
-//! outside, and all these links are added, so that the number of groups at least halves. The search visits
-//! pairs of nodes of one box tree and prunes pairs within one group and pairs farther apart than the best
-//! link so far. Nested and interwoven components therefore cost no more than separate ones. (kiddo cannot
-//! skip the points of the query's own component.)
+//! * [`shortest_links`] joins all components: a minimum spanning tree, where the distance of two components is that of
+//!   their nearest vertices. This is Boruvka's algorithm. In each round, every group of joined components finds its
+//!   nearest vertex outside, and all these links are added, so that the number of groups at least halves. The search
+//!   visits pairs of nodes of one box tree and prunes pairs within one group and pairs farther apart than the best
+//!   link so far. Nested and interwoven components therefore cost no more than separate ones.
+//! * [`near_links`] joins the boundary of every component to the others all along a narrow gap, so that distances
+//!   across it are right.
 
 use nalgebra::Point3;
-use surface::{DisjointSets, Link, VertexId};
+use surface::{DisjointSets, EdgeId, Link, Topology, VertexId};
 
-/// The most points in a leaf of the tree.
-const LEAF: usize = 8;
+use super::box_tree::{BoxTree, Node, sq_norm};
+
 /// The group of a node with points of several groups.
 const MIXED: u32 = u32::MAX;
+
+/// A boundary vertex is linked across a gap no wider than this share of the mean length of its boundary edges. Below 1,
+/// so that where the sides of a gap match, only opposite vertices are linked.
+const REACH: f64 = 0.8;
 
 /// The links of least total length that join the components of a set of points, ordered by their ends. `labels` are
 /// the components, numbered from zero. Of equally long links, the one with the lowest vertices is used.
 pub(super) fn shortest_links(positions: &[Point3<f64>], labels: &[u32]) -> Vec<Link> {
-    let mut tree = BoxTree::build(positions, labels);
+    let mut tree = GroupTree::new((0..positions.len() as u32).collect(), positions, labels);
     let n_components = labels.iter().max().map_or(0, |&most| most as usize + 1);
     let mut groups = DisjointSets::new(n_components);
     let mut links = Vec::with_capacity(n_components.saturating_sub(1));
     while links.len() + 1 < n_components {
-        tree.assign_groups(&mut groups);
+        tree.assign_groups(labels, |label| groups.find(label));
         let mut nearest = vec![Candidate::NONE; n_components];
         tree.search_all(&mut nearest);
         nearest.retain(|candidate| candidate.sq_length.is_finite());
@@ -32,8 +37,7 @@ pub(super) fn shortest_links(positions: &[Point3<f64>], labels: &[u32]) -> Vec<L
         for Candidate { ends, .. } in nearest {
             let [a, b] = ends.map(|v| labels[v as usize]);
             if groups.union(a, b) {
-                let [p, q] = ends.map(|v| positions[v as usize]);
-                links.push(Link { ends: ends.map(VertexId), length: (q - p).norm() });
+                links.push(link(positions, ends));
             }
         }
         if links.len() == before {
@@ -42,6 +46,42 @@ pub(super) fn shortest_links(positions: &[Point3<f64>], labels: &[u32]) -> Vec<L
     }
     links.sort_unstable_by_key(|link| link.ends);
     links
+}
+
+/// Links from every boundary vertex to the nearest boundary vertex of another component, if that is within [`REACH`];
+/// ordered by their ends. About `O(n log n)`.
+pub(super) fn near_links(positions: &[Point3<f64>], topology: &Topology, labels: &[u32]) -> Vec<Link> {
+    let mut edges = vec![(0.0, 0u32); positions.len()];
+    for (e, ends) in topology.edges().iter().enumerate() {
+        if topology.edge_corners(EdgeId::from(e)).len() == 1 {
+            let length = (positions[ends[1].index()] - positions[ends[0].index()]).norm();
+            for end in ends {
+                let (sum, count) = &mut edges[end.index()];
+                (*sum, *count) = (*sum + length, *count + 1);
+            }
+        }
+    }
+    let boundary: Vec<u32> = (0..positions.len() as u32).filter(|&v| edges[v as usize].1 > 0).collect();
+    let mut tree = GroupTree::new(boundary.clone(), positions, labels);
+    tree.assign_groups(labels, |label| label);
+    let mut links = Vec::new();
+    let mut found = Vec::new();
+    for &v in &boundary {
+        let (sum, count) = edges[v as usize];
+        let (own, radius) = (labels[v as usize], REACH * sum / f64::from(count));
+        let skips = |other: u32| labels[other as usize] == own;
+        let prunes = |node: usize| tree.node_groups[node] == own;
+        tree.boxes.nearest(&positions[v as usize], radius, 1, skips, prunes, &mut found);
+        links.extend(found.iter().map(|&(_, other)| link(positions, [v.min(other), v.max(other)])));
+    }
+    links.sort_unstable_by_key(|link| link.ends);
+    links.dedup_by_key(|link| link.ends);
+    links
+}
+
+fn link(positions: &[Point3<f64>], ends: [u32; 2]) -> Link {
+    let [p, q] = ends.map(|v| positions[v as usize]);
+    Link { ends: ends.map(VertexId), length: (q - p).norm() }
 }
 
 /// A possible link, its lower end first.
@@ -66,87 +106,38 @@ impl Candidate {
     }
 }
 
-/// A point in the tree.
-#[derive(Debug, Clone, Copy)]
-struct Item {
-    position: [f64; 3],
-    vertex: u32,
-    label: u32,
-    group: u32,
+/// A tree whose points belong to groups of components.
+struct GroupTree {
+    boxes: BoxTree,
+    /// The group of every point, in the order of the tree.
+    groups: Vec<u32>,
+    /// The group of all points of a node, or [`MIXED`].
+    node_groups: Vec<u32>,
 }
 
-/// A tree of bounding boxes in one array, parents before their children.
-struct BoxTree {
-    items: Vec<Item>,
-    nodes: Vec<Node>,
-}
-
-#[derive(Debug, Clone)]
-struct Node {
-    low: [f64; 3],
-    high: [f64; 3],
-    items: std::ops::Range<usize>,
-    /// The two children; `None` for a leaf.
-    children: Option<[usize; 2]>,
-    /// The group of all its points, or [`MIXED`].
-    group: u32,
-}
-
-impl BoxTree {
-    fn build(positions: &[Point3<f64>], labels: &[u32]) -> Self {
-        let items = (0u32..).zip(positions).zip(labels);
-        let items = items.map(|((vertex, p), &label)| Item {
-            position: [p.x, p.y, p.z],
-            vertex,
-            label,
-            group: label,
-        });
-        let mut tree = Self { items: items.collect(), nodes: Vec::new() };
-        tree.grow(0..positions.len());
-        tree
-    }
-
-    /// Adds the node over a range of items and all below it; returns its index.
-    fn grow(&mut self, range: std::ops::Range<usize>) -> usize {
-        let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
-        for item in &self.items[range.clone()] {
-            for axis in 0..3 {
-                low[axis] = low[axis].min(item.position[axis]);
-                high[axis] = high[axis].max(item.position[axis]);
-            }
-        }
-        let index = self.nodes.len();
-        self.nodes.push(Node { low, high, items: range.clone(), children: None, group: MIXED });
-        if range.len() > LEAF {
-            let width = |axis: &usize| high[*axis] - low[*axis];
-            let widest = (0..3).max_by(|a, b| width(a).total_cmp(&width(b))).unwrap_or(0);
-            let half = range.len() / 2;
-            self.items[range.clone()]
-                .select_nth_unstable_by(half, |a, b| a.position[widest].total_cmp(&b.position[widest]));
-            let middle = range.start + half;
-            let children = [self.grow(range.start..middle), self.grow(middle..range.end)];
-            self.nodes[index].children = Some(children);
-        }
-        index
+impl GroupTree {
+    fn new(vertices: Vec<u32>, positions: &[Point3<f64>], labels: &[u32]) -> Self {
+        let boxes = BoxTree::new(vertices.into_iter().map(|v| (positions[v as usize], v)));
+        let groups = boxes.items.iter().map(|item| labels[item.id as usize]).collect();
+        let node_groups = vec![MIXED; boxes.nodes.len()];
+        Self { boxes, groups, node_groups }
     }
 
     /// Updates the groups of points and nodes.
-    fn assign_groups(&mut self, groups: &mut DisjointSets) {
-        for item in &mut self.items {
-            item.group = groups.find(item.label);
+    fn assign_groups(&mut self, labels: &[u32], mut group_of: impl FnMut(u32) -> u32) {
+        for (group, item) in self.groups.iter_mut().zip(&self.boxes.items) {
+            *group = group_of(labels[item.id as usize]);
         }
-        for index in (0..self.nodes.len()).rev() {
-            let node = &self.nodes[index];
-            let group = match node.children {
-                Some([a, b]) if self.nodes[a].group == self.nodes[b].group => self.nodes[a].group,
+        for (index, node) in self.boxes.nodes.iter().enumerate().rev() {
+            self.node_groups[index] = match node.children {
+                Some([a, b]) if self.node_groups[a] == self.node_groups[b] => self.node_groups[a],
                 Some(_) => MIXED,
                 None => {
-                    let items = &self.items[node.items.clone()];
-                    let first = items.first().map_or(MIXED, |item| item.group);
-                    if items.iter().all(|item| item.group == first) { first } else { MIXED }
+                    let groups = &self.groups[node.items.clone()];
+                    let first = groups.first().copied().unwrap_or(MIXED);
+                    if groups.iter().all(|group| *group == first) { first } else { MIXED }
                 }
             };
-            self.nodes[index].group = group;
         }
     }
 
@@ -154,8 +145,8 @@ impl BoxTree {
     fn search_all(&self, nearest: &mut [Candidate]) {
         let mut pending = vec![0];
         while let Some(index) = pending.pop() {
-            match (&self.nodes[index], self.nodes[index].children) {
-                (Node { group: MIXED, .. }, Some(children)) => pending.extend(children),
+            match self.boxes.nodes[index].children {
+                Some(children) if self.node_groups[index] == MIXED => pending.extend(children),
                 _ => self.search(index, 0, nearest),
             }
         }
@@ -164,20 +155,20 @@ impl BoxTree {
     /// Searches the points of node `there` for neighbours of the points of node `here`, which has a single
     /// group or is a leaf.
     fn search(&self, here: usize, there: usize, nearest: &mut [Candidate]) {
-        let (h, t) = (&self.nodes[here], &self.nodes[there]);
-        let is_own = h.group != MIXED && h.group == t.group;
-        if is_own || sq_gap(h, t) > self.bound(h, nearest) {
+        let nodes = &self.boxes.nodes;
+        let (h, t) = (&nodes[here], &nodes[there]);
+        let is_own = self.node_groups[here] != MIXED && self.node_groups[here] == self.node_groups[there];
+        if is_own || h.sq_gap(t) > self.bound(here, nearest) {
             return;
         }
-        let width = |node: &Node| (0..3).map(|i| node.high[i] - node.low[i]).fold(0.0, f64::max);
         match (h.children, t.children) {
             (None, None) => self.compare(h, t, nearest),
             (Some(children), None) => children.iter().for_each(|&c| self.search(c, there, nearest)),
-            (Some(children), Some(_)) if width(h) > width(t) => {
+            (Some(children), Some(_)) if h.width() > t.width() => {
                 children.iter().for_each(|&c| self.search(c, there, nearest));
             }
             (_, Some([a, b])) => {
-                let a_first = sq_gap(h, &self.nodes[a]) <= sq_gap(h, &self.nodes[b]);
+                let a_first = h.sq_gap(&nodes[a]) <= h.sq_gap(&nodes[b]);
                 for child in if a_first { [a, b] } else { [b, a] } {
                     self.search(here, child, nearest);
                 }
@@ -185,39 +176,29 @@ impl BoxTree {
         }
     }
 
-    /// The largest squared length that can improve the link of a point of `node`, which has a single group or
+    /// The largest squared length that can improve the link of a point of a node, which has a single group or
     /// is a leaf.
-    fn bound(&self, node: &Node, nearest: &[Candidate]) -> f64 {
-        if node.group != MIXED {
-            return nearest[node.group as usize].sq_length;
+    fn bound(&self, node: usize, nearest: &[Candidate]) -> f64 {
+        if self.node_groups[node] != MIXED {
+            return nearest[self.node_groups[node] as usize].sq_length;
         }
-        let items = &self.items[node.items.clone()];
-        items.iter().map(|item| nearest[item.group as usize].sq_length).fold(0.0, f64::max)
+        let groups = &self.groups[self.boxes.nodes[node].items.clone()];
+        groups.iter().map(|group| nearest[*group as usize].sq_length).fold(0.0, f64::max)
     }
 
     /// Compares all points of two leaves.
     fn compare(&self, here: &Node, there: &Node, nearest: &mut [Candidate]) {
-        for p in &self.items[here.items.clone()] {
-            for q in self.items[there.items.clone()].iter().filter(|q| q.group != p.group) {
+        for i in here.items.clone() {
+            for j in there.items.clone().filter(|&j| self.groups[j] != self.groups[i]) {
+                let [p, q] = [i, j].map(|i| self.boxes.items[i]);
                 let gap = [0, 1, 2].map(|axis| p.position[axis] - q.position[axis]);
-                let ends = [p.vertex.min(q.vertex), p.vertex.max(q.vertex)];
-                let candidate = Candidate { sq_length: sq_norm(gap), ends };
-                nearest[p.group as usize].improve(candidate);
-                nearest[q.group as usize].improve(candidate);
+                let candidate =
+                    Candidate { sq_length: sq_norm(gap), ends: [p.id.min(q.id), p.id.max(q.id)] };
+                nearest[self.groups[i] as usize].improve(candidate);
+                nearest[self.groups[j] as usize].improve(candidate);
             }
         }
     }
-}
-
-/// Squared distance between two boxes. Never larger than that of two points in them, even with rounding,
-/// since every step is monotonic.
-fn sq_gap(a: &Node, b: &Node) -> f64 {
-    let gap = [0, 1, 2].map(|axis| (a.low[axis] - b.high[axis]).max(b.low[axis] - a.high[axis]).max(0.0));
-    sq_norm(gap)
-}
-
-fn sq_norm([x, y, z]: [f64; 3]) -> f64 {
-    x * x + y * y + z * z
 }
 
 #[cfg(test)]

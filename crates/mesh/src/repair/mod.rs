@@ -1,5 +1,6 @@
 //! Repair of defects that algorithms cannot handle.
 
+mod box_tree;
 mod bridge;
 mod options;
 mod report;
@@ -9,7 +10,7 @@ pub use options::{ComponentPolicy, Orient, RepairOptions, Weld};
 pub use report::RepairReport;
 
 use nalgebra::Point3;
-use surface::{Components, DisjointSets, IntrinsicMesh, Link, VertexId, components_of_faces};
+use surface::{Components, DisjointSets, IntrinsicMesh, Link, Topology, VertexId, components_of_faces};
 
 use crate::error::MeshError;
 use crate::face_set::{check_input, remove_degenerate, remove_duplicates};
@@ -38,8 +39,8 @@ impl Repaired {
     }
 }
 
-/// Largest supported diagonal of the bounding box, in mesh units; beyond it, areas come close to overflow.
-const MAX_DIAGONAL: f64 = 1e150;
+/// Supported sizes of a mesh, in mesh units: the squares of its edges must be neither zero nor infinite.
+const SIZES: std::ops::RangeInclusive<f64> = 1e-151..=1e152;
 
 /// Most passes of merging vertices. Merging can create duplicate faces, and removing these a new boundary
 /// with more to weld. Real meshes need two passes; a contrived one could need one per vertex.
@@ -47,16 +48,17 @@ const MAX_PASSES: usize = 16;
 
 /// Repairs defects that would break distance computation, and reports them.
 ///
-/// Always removed: degenerate and duplicate faces, edges of length zero together with their faces, and
-/// vertices without a face. [`RepairOptions`] select welding, orientation and the treatment of components.
+/// Always removed: degenerate and duplicate faces, edges of length zero (or below 1e-153 of the size of the mesh)
+/// together with their faces, and vertices without a face. [`RepairOptions`] select welding, orientation and the treatment of components.
 /// Faces without area stay if their corners are in three different positions, and so do non-manifold edges
 /// and vertices. A mesh without defects is returned unchanged.
 ///
-/// Linear time, except for sorting the vertices to weld and for bridges, about `O(n log n)` in the number of
-/// vertices for each doubling of the number of components.
+/// Measures in units of a power of two near the size of the mesh, so that scale changes nothing else. Linear time,
+/// except for sorting the vertices to weld and for bridges, about `O(n log n)` in the number of vertices for each
+/// doubling of the number of components.
 ///
 /// # Errors
-/// [`MeshError::FaceOutOfRange`], [`MeshError::NonFinitePosition`] and [`MeshError::TooWide`] for a mesh that
+/// [`MeshError::FaceOutOfRange`], [`MeshError::NonFinitePosition`] and [`MeshError::OutOfRange`] for a mesh that
 /// no algorithm can use, [`MeshError::NoUsableFace`] if no face is left, and [`MeshError::Disconnected`] if
 /// there are several components and the policy is [`ComponentPolicy::Error`].
 ///
@@ -72,10 +74,8 @@ const MAX_PASSES: usize = 16;
 /// ```
 pub fn repair(mesh: &TriMesh, options: &RepairOptions) -> Result<Repaired, MeshError> {
     check_input(mesh)?;
-    let diagonal = mesh.bounds().map_or(0.0, |[lo, hi]| (hi - lo).norm());
-    if diagonal > MAX_DIAGONAL || !diagonal.is_finite() {
-        return Err(MeshError::TooWide { diagonal, limit: MAX_DIAGONAL });
-    }
+    let unit = checked_unit(mesh)?;
+    let scaled: Vec<Point3<f64>> = mesh.positions.iter().map(|p| p / unit).collect();
     let n_input = mesh.n_vertices();
     let mut report =
         RepairReport { input_vertices: n_input, input_faces: mesh.n_faces(), ..RepairReport::default() };
@@ -84,14 +84,22 @@ pub fn repair(mesh: &TriMesh, options: &RepairOptions) -> Result<Repaired, MeshE
     report.degenerate_faces = remove_degenerate(&mut faces);
     report.duplicate_faces = remove_duplicates(n_input, &mut faces);
     let mut merged = DisjointSets::new(n_input);
+    let policy = match options.weld {
+        Weld::Within(tolerance) => Weld::Within(tolerance / unit),
+        other => other,
+    };
     for _ in 0..MAX_PASSES {
-        let welded = weld::weld(&mesh.positions, &faces, options.weld, &mut merged);
-        let collapsed = weld::collapse_zero_edges(&mesh.positions, &faces, &mut merged);
-        if welded + collapsed == 0 {
+        let welded = weld::weld(&mesh.positions, &scaled, &faces, policy, &mut merged);
+        let collapsed = weld::collapse_zero_edges(&scaled, &faces, &mut merged);
+        if welded.coincident + welded.near + collapsed == 0 {
             break;
         }
         faces.iter_mut().flatten().for_each(|v| *v = VertexId(merged.find(v.0)));
-        report.welded_vertices += welded;
+        report.welded_vertices += welded.coincident;
+        report.near_welded_vertices += welded.near;
+        if unit * welded.gap > report.weld_gap {
+            (report.weld_gap, report.weld_tolerance) = (unit * welded.gap, unit * welded.tolerance);
+        }
         report.collapsed_vertices += collapsed;
         report.zero_length_faces += remove_degenerate(&mut faces);
         report.duplicate_faces += remove_duplicates(n_input, &mut faces);
@@ -106,7 +114,7 @@ pub fn repair(mesh: &TriMesh, options: &RepairOptions) -> Result<Repaired, MeshE
     let kept = match options.components {
         ComponentPolicy::Error if components.count > 1 => return Err(disconnected(&components)),
         ComponentPolicy::Largest if components.count > 1 => {
-            Some(keep_largest(&mesh.positions, &mut faces, &components, &mut report))
+            Some(keep_largest(&scaled, &mut faces, &components, &mut report))
         }
         _ => None,
     };
@@ -118,7 +126,8 @@ pub fn repair(mesh: &TriMesh, options: &RepairOptions) -> Result<Repaired, MeshE
     compact.report_dropped(&mut merged, &components, &mut report);
     let mut links = Vec::new();
     if options.components == ComponentPolicy::Bridge && components.count > 1 {
-        links = bridge::shortest_links(&compact.positions, &compact.labels);
+        links = links_between(&scaled, &compact, &faces);
+        links.iter_mut().for_each(|link| link.length *= unit);
         let in_input = |link: &Link| Link { ends: link.ends.map(|v| compact.sources[v.index()]), ..*link };
         report.bridges = links.iter().map(in_input).collect();
         report.bridge_length = links.iter().map(|link| link.length).sum();
@@ -130,6 +139,28 @@ pub fn repair(mesh: &TriMesh, options: &RepairOptions) -> Result<Repaired, MeshE
     report.output_vertices = repaired.n_vertices();
     report.output_faces = repaired.n_faces();
     Ok(Repaired { mesh: repaired, links, input_to_repaired: compact.input_to_repaired, report })
+}
+
+/// The unit of length of a mesh whose size is in the supported range.
+fn checked_unit(mesh: &TriMesh) -> Result<f64, MeshError> {
+    let size = mesh.size();
+    match size {
+        // All positions are the same, and no face is usable.
+        0.0 => Ok(1.0),
+        _ if SIZES.contains(&size) => Ok(mesh.unit()),
+        _ => Err(MeshError::OutOfRange { size, smallest: *SIZES.start(), largest: *SIZES.end() }),
+    }
+}
+
+/// A spanning tree of the components, and links all along narrow gaps; lengths in units of `scaled`.
+fn links_between(scaled: &[Point3<f64>], compact: &Compact, faces: &[[VertexId; 3]]) -> Vec<Link> {
+    let positions: Vec<Point3<f64>> = compact.sources.iter().map(|v| scaled[v.index()]).collect();
+    let topology = Topology::new(positions.len(), faces.to_vec());
+    let mut links = bridge::shortest_links(&positions, &compact.labels);
+    links.extend(bridge::near_links(&positions, &topology, &compact.labels));
+    links.sort_unstable_by_key(|link| link.ends);
+    links.dedup_by_key(|link| link.ends);
+    links
 }
 
 fn disconnected(components: &Components) -> MeshError {

@@ -3,12 +3,12 @@
 use serde::{Deserialize, Serialize};
 
 /// Options of [`repair()`](crate::repair()).
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(default, rename_all = "kebab-case")]
 pub struct RepairOptions {
     /// What happens to a mesh with several components. Default: [`ComponentPolicy::Largest`].
     pub components: ComponentPolicy,
-    /// Which vertices in the same position are merged. Default: [`Weld::Seams`].
+    /// Which vertices in the same or nearly the same position are merged. Default: [`Weld::Seams`].
     pub weld: Weld,
     /// Whether faces are oriented. Default: [`Orient::Keep`].
     pub orient: Orient,
@@ -21,22 +21,27 @@ pub enum ComponentPolicy {
     /// Keep only the component with the largest area.
     #[default]
     Largest,
-    /// Keep all components and join them by straight links between vertices, a minimum spanning tree.
+    /// Keep all components and join them by straight links between vertices: a minimum spanning tree, and links all
+    /// along gaps that are no wider than the boundary edges beside them.
     Bridge,
     /// Fail with [`MeshError::Disconnected`](crate::MeshError::Disconnected).
     Error,
 }
 
-/// Which vertices in exactly the same position are merged.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+/// Which vertices are merged. Two vertices of one edge are merged only if its length is zero.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Weld {
     /// None, except for the two ends of an edge of length zero.
     None,
-    /// Vertices on a boundary: this closes cracks along seams and keeps sheets apart that merely touch.
+    /// Boundary vertices in exactly the same position, and the ends of boundary edges that nearly coincide: both ends
+    /// of one are within 2 % of the shortest side of the two faces from those of the other. This closes cracks along
+    /// seams, and keeps wider gaps open and sheets apart that merely touch.
     #[default]
     Seams,
-    /// All.
+    /// Boundary vertices within this distance, in mesh units.
+    Within(f64),
+    /// All vertices in exactly the same position.
     All,
 }
 

@@ -24,6 +24,12 @@ pub struct RepairReport {
     pub zero_length_faces: usize,
     /// Vertices merged by welding into an earlier one in the same position.
     pub welded_vertices: usize,
+    /// Vertices merged by welding into another nearby, the lowest of them, whose position they take.
+    pub near_welded_vertices: usize,
+    /// The widest gap that welding closed, in mesh units.
+    pub weld_gap: f64,
+    /// The tolerance that allowed it, in mesh units.
+    pub weld_tolerance: f64,
     /// Vertices merged into an earlier one at the other end of an edge of length zero.
     pub collapsed_vertices: usize,
     /// Vertices dropped because no remaining face uses them.
@@ -71,6 +77,14 @@ impl RepairReport {
             .filter(|(count, ..)| *count > 0)
             .map(|(count, noun, what)| format!("{} {what}", counted(count, noun)))
             .collect();
+        if self.near_welded_vertices > 0 {
+            lines.push(format!(
+                "{} merged with another across a gap of up to {:.3e} (tolerance {:.3e})",
+                counted(self.near_welded_vertices, VERTICES),
+                self.weld_gap,
+                self.weld_tolerance
+            ));
+        }
         if self.dropped_components > 0 {
             lines.push(format!(
                 "{} of {} components dropped, {} and {} with {:.2} % of the area; the largest is kept",

@@ -1,50 +1,178 @@
-//! Merging vertices in the same position.
+//! Merging vertices in the same or nearly the same position.
 
-use nalgebra::Point3;
+use std::collections::HashMap;
+
+use nalgebra::{Point3, center};
 use surface::{DisjointSets, EdgeId, Topology, VertexId};
 
+use super::box_tree::BoxTree;
 use super::options::Weld;
 use crate::coincidence::coincident_pairs;
 
-/// Merges vertices in the same position according to `policy`; returns how many were merged into another. No
-/// face is degenerate.
+/// Two boundary edges are the two sides of a seam if their ends are no farther apart than this share of the shortest
+/// side of their faces.
+pub(super) const SEAM_TOLERANCE: f64 = 0.02;
+
+/// The most candidates per boundary edge or vertex in a pass. Where more are close together, later passes go on.
+const CANDIDATES: usize = 8;
+
+/// What a pass of welding did.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(super) struct Welded {
+    /// Vertices merged into another in the same position.
+    pub(super) coincident: usize,
+    /// Vertices merged into another nearby.
+    pub(super) near: usize,
+    /// The widest gap closed.
+    pub(super) gap: f64,
+    /// The tolerance that allowed it.
+    pub(super) tolerance: f64,
+}
+
+/// Merges vertices according to `policy`, first those in the same position; nearby ones wait for a pass in which there
+/// are none. No face is degenerate. Lengths are in units of `scaled`, whose positions are those of `positions` times a
+/// power of two.
 pub(super) fn weld(
     positions: &[Point3<f64>],
+    scaled: &[Point3<f64>],
     faces: &[[VertexId; 3]],
     policy: Weld,
     merged: &mut DisjointSets,
-) -> usize {
+) -> Welded {
+    let n_vertices = positions.len();
+    let mut unite = |pairs: Vec<[u32; 2]>| pairs.into_iter().filter(|&[a, b]| merged.union(a, b)).count();
+    let coincident = |count| Welded { coincident: count, ..Welded::default() };
+    if policy == Weld::None {
+        return Welded::default();
+    }
+    if policy == Weld::All {
+        return coincident(unite(coincident_pairs(positions, 0..n_vertices as u32)));
+    }
+    let topology = Topology::new(n_vertices, faces.to_vec());
+    let edges: Vec<EdgeId> = (0..topology.n_edges())
+        .map(EdgeId::from)
+        .filter(|edge| topology.edge_corners(*edge).len() == 1)
+        .collect();
+    let mut boundary: Vec<u32> =
+        edges.iter().flat_map(|edge| topology.edges()[edge.index()]).map(|v| v.0).collect();
+    boundary.sort_unstable();
+    boundary.dedup();
+    let count = unite(coincident_pairs(positions, boundary.iter().copied()));
+    if count > 0 {
+        return coincident(count);
+    }
     let pairs = match policy {
-        Weld::None => return 0,
-        Weld::Seams => coincident_pairs(positions, boundary_vertices(positions.len(), faces)),
-        Weld::All => coincident_pairs(positions, 0..positions.len() as u32),
+        Weld::Within(tolerance) => vertex_pairs(scaled, &boundary, tolerance),
+        _ => seam_pairs(scaled, &topology, &edges),
     };
-    pairs.into_iter().filter(|&[a, b]| merged.union(a, b)).count()
+    merge_near(&topology, pairs, merged)
 }
 
-fn boundary_vertices(n_vertices: usize, faces: &[[VertexId; 3]]) -> Vec<u32> {
-    let topology = Topology::new(n_vertices, faces.to_vec());
-    let mut on_boundary = vec![false; n_vertices];
-    for (e, ends) in topology.edges().iter().enumerate() {
-        if topology.edge_corners(EdgeId::from(e)).len() == 1 {
-            ends.iter().for_each(|v| on_boundary[v.index()] = true);
+/// Two vertices that may be merged, the lower one first.
+#[derive(Debug, Clone, Copy)]
+struct Pair {
+    gap: f64,
+    tolerance: f64,
+    ends: [u32; 2],
+}
+
+/// The pairs of boundary vertices within a tolerance.
+fn vertex_pairs(positions: &[Point3<f64>], boundary: &[u32], tolerance: f64) -> Vec<Pair> {
+    let tree = BoxTree::new(boundary.iter().map(|&v| (positions[v as usize], v)));
+    let (mut pairs, mut found) = (Vec::new(), Vec::new());
+    for &v in boundary {
+        let at = &positions[v as usize];
+        tree.nearest(at, tolerance, CANDIDATES, |other| other == v, |_| false, &mut found);
+        pairs.extend(found.iter().map(|&(sq, other)| Pair {
+            gap: sq.sqrt(),
+            tolerance,
+            ends: [v.min(other), v.max(other)],
+        }));
+    }
+    pairs
+}
+
+/// The pairs of ends of boundary edges that are the two sides of a seam.
+fn seam_pairs(positions: &[Point3<f64>], topology: &Topology, edges: &[EdgeId]) -> Vec<Pair> {
+    let ends = |i: u32| topology.edges()[edges[i as usize].index()];
+    let at = |v: VertexId| positions[v.index()];
+    let middle = |i: u32| {
+        let [a, b] = ends(i);
+        center(&at(a), &at(b))
+    };
+    let tolerance = |edge: &EdgeId| {
+        let [a, b, c] = topology.faces()[topology.edge_corners(*edge)[0].face().index()].map(at);
+        SEAM_TOLERANCE * [b - a, c - b, a - c].map(|side| side.norm()).into_iter().fold(f64::INFINITY, f64::min)
+    };
+    let tolerances: Vec<f64> = edges.iter().map(tolerance).collect();
+    let tree = BoxTree::new((0..edges.len() as u32).map(|i| (middle(i), i)));
+    let (mut pairs, mut found) = (Vec::new(), Vec::new());
+    for i in 0..edges.len() as u32 {
+        tree.nearest(&middle(i), tolerances[i as usize], CANDIDATES, |j| j == i, |_| false, &mut found);
+        for &(_, j) in &found {
+            let tolerance = tolerances[i as usize].min(tolerances[j as usize]);
+            let ([a, b], [c, d]) = (ends(i), ends(j));
+            let gaps = |pairs: [[VertexId; 2]; 2]| pairs.map(|[p, q]| (at(q) - at(p)).norm());
+            let matches = [[[a, c], [b, d]], [[a, d], [b, c]]];
+            let widest = |m: &[[VertexId; 2]; 2]| gaps(*m).into_iter().fold(0.0, f64::max);
+            let [same, crossed] = [widest(&matches[0]), widest(&matches[1])];
+            let best = matches[usize::from(crossed < same)];
+            if same.min(crossed) <= tolerance {
+                let both = best.into_iter().zip(gaps(best)).filter(|([p, q], _)| p != q);
+                pairs.extend(both.map(|([p, q], gap)| Pair { gap, tolerance, ends: [p.min(q).0, p.max(q).0] }));
+            }
         }
     }
-    (0..n_vertices as u32).filter(|&v| on_boundary[v as usize]).collect()
+    pairs
 }
 
-/// Merges the ends of every edge of length zero; returns how many vertices were merged into another.
+/// Merges the nearest pairs first, unless that would merge two vertices of one edge.
+fn merge_near(topology: &Topology, mut pairs: Vec<Pair>, merged: &mut DisjointSets) -> Welded {
+    pairs.sort_unstable_by(|a, b| a.gap.total_cmp(&b.gap).then(a.ends.cmp(&b.ends)));
+    pairs.dedup_by_key(|pair| pair.ends);
+    let mut welded = Welded::default();
+    // The vertices of every set that was merged here, by its lowest member, and the number of their corners.
+    let mut members: HashMap<u32, (Vec<u32>, usize)> = HashMap::new();
+    let alone = |v: u32| (vec![v], topology.vertex_corners(VertexId(v)).len());
+    for Pair { gap, tolerance, ends } in pairs {
+        let sets = ends.map(|v| merged.find(v));
+        if sets[0] == sets[1] {
+            continue;
+        }
+        let [a, b] = sets.map(|set| members.remove(&set).unwrap_or_else(|| alone(set)));
+        // The set with fewer corners is searched, which bounds the cost of all searches.
+        let (small, large, [own, other]) = if a.1 < b.1 { (a, b, sets) } else { (b, a, [sets[1], sets[0]]) };
+        let corners = small.0.iter().flat_map(|v| topology.vertex_corners(VertexId(*v)));
+        let mut neighbours = corners.flat_map(|corner| topology.edge_ends(*corner));
+        if neighbours.any(|v| merged.find(v.0) == other) {
+            members.extend([(own, small), (other, large)]);
+            continue;
+        }
+        merged.union(own, other);
+        let (mut all, n_corners) = large;
+        all.extend(small.0);
+        members.insert(merged.find(own), (all, n_corners + small.1));
+        welded.near += 1;
+        if gap >= welded.gap {
+            (welded.gap, welded.tolerance) = (gap, tolerance);
+        }
+    }
+    welded
+}
+
+/// Merges the ends of every edge whose squared length, in units of the mesh, vanishes; returns how many vertices were
+/// merged into another.
 ///
 /// The faces at such an edge become degenerate and are removed. If its ends stayed apart, that would leave a slit.
 pub(super) fn collapse_zero_edges(
-    positions: &[Point3<f64>],
+    scaled: &[Point3<f64>],
     faces: &[[VertexId; 3]],
     merged: &mut DisjointSets,
 ) -> usize {
     let mut count = 0;
     for &[a, b, c] in faces {
         for [u, v] in [[a, b], [b, c], [c, a]] {
-            if positions[u.index()] == positions[v.index()] {
+            if (scaled[u.index()] - scaled[v.index()]).norm_squared() < f64::MIN_POSITIVE {
                 count += usize::from(merged.union(u.0, v.0));
             }
         }

@@ -109,6 +109,7 @@ impl MeshReport {
 #[must_use]
 pub fn validate(mesh: &TriMesh) -> MeshReport {
     let n_vertices = mesh.n_vertices();
+    let unit = mesh.unit();
     let mut faces = mesh.faces.clone();
     let degenerate_faces = remove_degenerate(&mut faces);
     let duplicate_faces = remove_duplicates(n_vertices, &mut faces);
@@ -135,11 +136,11 @@ pub fn validate(mesh: &TriMesh) -> MeshReport {
         flipped_faces: orientation.turned.iter().filter(|&&t| t).count(),
         orientable: orientation.orientable.iter().all(|&o| o),
         euler_characteristic: n_used as i64 - topology.n_edges() as i64 + n_faces as i64,
-        bounding_box_diagonal: mesh.bounds().map_or(0.0, |[lo, hi]| (hi - lo).norm()),
+        bounding_box_diagonal: mesh.bounds().map_or(0.0, |[lo, hi]| ((hi - lo) / unit).norm() * unit),
         ..MeshReport::default()
     };
-    report.add_faces(&mesh.positions, topology.faces());
-    report.add_edges(&mesh.positions, &topology);
+    report.add_faces(&mesh.positions, unit, topology.faces());
+    report.add_edges(&mesh.positions, unit, &topology);
     report.add_fans(&topology);
     let n_defects = report.n_boundary_edges + report.non_manifold_edges + report.non_manifold_vertices;
     let is_closed_manifold = report.n_components == 1 && report.orientable && n_defects == 0;
@@ -148,24 +149,24 @@ pub fn validate(mesh: &TriMesh) -> MeshReport {
 }
 
 impl MeshReport {
-    fn add_faces(&mut self, positions: &[Point3<f64>], faces: &[[VertexId; 3]]) {
+    fn add_faces(&mut self, positions: &[Point3<f64>], unit: f64, faces: &[[VertexId; 3]]) {
         /// Ratio of height to longest side below which a face has no area: some thousand rounding errors.
         const FLAT: f64 = 1e-12;
         let mut n_obtuse = 0;
         for face in faces {
-            let [a, b, c] = face.map(|v| positions[v.index()]);
+            let [a, b, c] = face.map(|v| positions[v.index()] / unit);
             let sides = [b - a, c - b, a - c];
             let twice_area = sides[0].cross(&sides[1]).norm();
             let longest = sides.iter().fold(0.0, |longest, s| f64::max(longest, s.norm_squared()));
             // The sides form a cycle, so two that meet in an obtuse corner have a positive product.
             n_obtuse += usize::from((0..3).any(|i| sides[i].dot(&sides[(i + 1) % 3]) > 0.0));
             self.zero_area_faces += usize::from(twice_area <= FLAT * longest);
-            self.area += 0.5 * twice_area;
+            self.area += 0.5 * twice_area * unit * unit;
         }
         self.obtuse_share = n_obtuse as f64 / faces.len().max(1) as f64;
     }
 
-    fn add_edges(&mut self, positions: &[Point3<f64>], topology: &Topology) {
+    fn add_edges(&mut self, positions: &[Point3<f64>], unit: f64, topology: &Topology) {
         let (mut shortest, mut sum) = (f64::INFINITY, 0.0);
         for (e, [a, b]) in topology.edges().iter().enumerate() {
             match *topology.edge_corners(EdgeId::from(e)) {
@@ -173,7 +174,7 @@ impl MeshReport {
                 [a, b] => self.inconsistent_edges += usize::from(runs_against(topology, a, b)),
                 _ => self.non_manifold_edges += 1,
             }
-            let length = (positions[a.index()] - positions[b.index()]).norm();
+            let length = ((positions[a.index()] - positions[b.index()]) / unit).norm() * unit;
             shortest = length.min(shortest);
             self.max_edge_length = length.max(self.max_edge_length);
             sum += length;

@@ -21,6 +21,8 @@ use crate::io::source::Source;
 use crate::tri_mesh::TriMesh;
 
 type Parse = fn(&[&[u8]], &ReadLimits) -> Result<TriMesh, Located>;
+/// Checks the first bytes of a file, given its size if that is known: whether the whole can be a file of the format.
+pub(super) type CheckStart = fn(&[u8], Option<u64>) -> Result<(), Located>;
 type WriteMesh = fn(&mut dyn Write, &TriMesh) -> io::Result<()>;
 type WriteField = fn(&mut dyn Write, &TriMesh, &VertexField<'_>) -> io::Result<()>;
 type WriteLines = fn(&mut dyn Write, &[Vec<Point3<f64>>]) -> io::Result<()>;
@@ -34,6 +36,8 @@ pub struct Format {
     /// two, the first one stands for the pair.
     pub extensions: &'static [&'static str],
     pub(super) precision: Precision,
+    /// Checks of the starts of the files, in the order of `extensions`.
+    pub(super) check_start: &'static [CheckStart],
     /// Parses the contents of [`files`](Self::files).
     pub(super) parse: Parse,
     /// Writers of the files, in the order of `extensions`; empty if the format is read-only.
@@ -55,35 +59,42 @@ pub(super) enum Precision {
 pub static FORMATS: [Format; 6] = [
     Format {
         write: &[off::write],
-        ..read_only("OFF", &["off"], |files, limits| off::parse(files[0], limits))
+        ..read_only("OFF", &["off"], &[off::check_start], |files, limits| off::parse(files[0], limits))
     },
     Format {
         write: &[obj::write],
         write_lines: Some(obj::write_lines),
-        ..read_only("OBJ", &["obj"], |files, limits| obj::parse(files[0], limits))
+        ..read_only("OBJ", &["obj"], &[obj::check_start], |files, limits| obj::parse(files[0], limits))
     },
     Format {
         write: &[ply::write],
         write_field: Some(ply::write_field),
         write_lines: Some(ply::write_lines),
-        ..read_only("PLY", &["ply"], |files, limits| ply::parse(files[0], limits))
+        ..read_only("PLY", &["ply"], &[ply::check_start], |files, limits| ply::parse(files[0], limits))
     },
     Format {
         precision: Precision::Single,
         write: &[stl::write],
-        ..read_only("STL", &["stl"], |files, limits| stl::parse(files[0], limits))
+        ..read_only("STL", &["stl"], &[stl::check_start], |files, limits| stl::parse(files[0], limits))
     },
-    read_only("MATLAB", &["mat"], |files, limits| mat::parse(files[0], limits)),
+    read_only("MATLAB", &["mat"], &[mat::check_start], |files, limits| mat::parse(files[0], limits)),
     Format {
         write: &[tosca::write_positions, tosca::write_faces],
-        ..read_only("TOSCA", &["vert", "tri"], |files, limits| tosca::parse(files[0], files[1], limits))
+        ..read_only("TOSCA", &["vert", "tri"], &[tosca::check_start, tosca::check_start], |files, limits| {
+            tosca::parse(files[0], files[1], limits)
+        })
     },
 ];
 
 /// A format with 64-bit coordinates that cannot be written.
-const fn read_only(name: &'static str, extensions: &'static [&'static str], parse: Parse) -> Format {
+const fn read_only(
+    name: &'static str,
+    extensions: &'static [&'static str],
+    check_start: &'static [CheckStart],
+    parse: Parse,
+) -> Format {
     let precision = Precision::Double;
-    Format { name, extensions, precision, parse, write: &[], write_field: None, write_lines: None }
+    Format { name, extensions, precision, check_start, parse, write: &[], write_field: None, write_lines: None }
 }
 
 impl Format {
@@ -93,12 +104,18 @@ impl Format {
     /// [`MeshError::UnknownFormat`].
     pub fn of(path: &Path) -> Result<&'static Self, MeshError> {
         let extension = extension(path);
-        let format = FORMATS.iter().find(|format| format.extensions.contains(&extension.as_str()));
-        format.ok_or_else(|| MeshError::UnknownFormat {
+        Self::named(&extension).ok_or_else(|| MeshError::UnknownFormat {
             path: path.to_path_buf(),
             extension,
             supported: or_list(FORMATS.iter().map(|format| format.extensions[0])),
         })
+    }
+
+    /// The format with this extension, in upper or lower case, without a dot.
+    #[must_use]
+    pub fn named(extension: &str) -> Option<&'static Self> {
+        let extension = extension.to_ascii_lowercase();
+        FORMATS.iter().find(|format| format.extensions.contains(&extension.as_str()))
     }
 
     /// Whether files of this format can be written with this content.
@@ -178,6 +195,7 @@ mod tests {
         all.sort_unstable();
         assert!(all.windows(2).all(|pair| pair[0] != pair[1]), "{all:?}");
         for format in &FORMATS {
+            assert_eq!(format.check_start.len(), format.extensions.len());
             assert!(format.write.is_empty() || format.write.len() == format.extensions.len());
             assert!(format.extensions.iter().all(|e| e.chars().all(|c| c.is_ascii_lowercase())));
         }

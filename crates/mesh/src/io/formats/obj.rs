@@ -8,8 +8,13 @@ use surface::VertexId;
 use crate::error::{Fault, Located};
 use crate::io::limits::ReadLimits;
 use crate::io::polygons::{finish, push_polygon};
-use crate::io::text::{Line, Lines, excerpt, parse_number, parse_position, write_position};
+use crate::io::text::{Line, Lines, check_is_text, excerpt, parse_number, parse_position, write_position};
 use crate::tri_mesh::TriMesh;
+
+/// Checks that the file is text; any line may come first.
+pub(super) fn check_start(start: &[u8], _: Option<u64>) -> Result<(), Located> {
+    check_is_text(start, "an OBJ file")
+}
 
 /// Reads all objects and groups of an OBJ file as one mesh: vertices in the order of the `v` lines, faces in
 /// the order of the `f` lines. Negative indices count back from the last vertex so far. Colours, normals,

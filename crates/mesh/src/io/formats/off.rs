@@ -7,12 +7,20 @@ use surface::VertexId;
 use crate::error::{Fault, Located};
 use crate::io::limits::ReadLimits;
 use crate::io::polygons::{finish, push_polygon};
-use crate::io::text::{Line, Lines, excerpt, parse_integer, parse_position, write_position};
+use crate::io::text::{Line, Lines, check_is_text, excerpt, parse_integer, parse_position, write_position};
 use crate::tri_mesh::TriMesh;
 
 /// The fewest bytes of a vertex, `0 0 0` and a line end, and of a face, `3 0 1 2` and a line end.
 const SHORTEST_VERTEX: usize = 6;
 const SHORTEST_FACE: usize = 8;
+
+/// Checks the keyword, and that text follows.
+pub(super) fn check_start(start: &[u8], _: Option<u64>) -> Result<(), Located> {
+    if let Some(header) = Lines::new(start).next() {
+        after_keyword(header)?;
+    }
+    check_is_text(start, "an OFF file")
+}
 
 /// Reads OFF, COFF, NOFF, STOFF and their combinations. Normals, colours and texture coordinates, which
 /// follow the position of a vertex, are ignored.

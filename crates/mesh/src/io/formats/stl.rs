@@ -10,7 +10,7 @@ use crate::coincidence::position_key;
 use crate::error::{Fault, Located};
 use crate::io::limits::ReadLimits;
 use crate::io::polygons::finish;
-use crate::io::text::{Line, Lines, excerpt, parse_number};
+use crate::io::text::{Line, Lines, check_is_text, excerpt, parse_number};
 use crate::tri_mesh::TriMesh;
 
 /// Bytes of a binary file: 80 of free text, the 32-bit number of triangles, then per triangle its normal, its
@@ -19,6 +19,35 @@ const HEADER: usize = 80;
 const PREFIX: usize = HEADER + 4;
 const TRIANGLE: usize = 50;
 
+/// Checks that a binary file can hold what its header promises, and that any other is text.
+pub(super) fn check_start(start: &[u8], size: Option<u64>) -> Result<(), Located> {
+    let promised = promised(start);
+    let is_solid = begins_with(start.trim_ascii_start(), "solid");
+    match (promised, size) {
+        (Some(promised), Some(size)) if is_solid && size != size_of(promised) => {
+            check_is_text(start, "a text or a binary STL file")
+        }
+        (Some(0), _) if !is_solid => Err(Fault::NoFaces { n_vertices: 0 }.whole()),
+        (Some(promised), Some(size)) if !is_solid && size < size_of(promised) => Err(truncated(promised, size)),
+        _ => Ok(()),
+    }
+}
+
+/// The number of triangles that the header of a binary file promises.
+fn promised(bytes: &[u8]) -> Option<u64> {
+    bytes.get(HEADER..).and_then(<[u8]>::first_chunk).map(|&n| u64::from(u32::from_le_bytes(n)))
+}
+
+/// Bytes of a binary file of `n` triangles.
+fn size_of(n: u64) -> u64 {
+    PREFIX as u64 + TRIANGLE as u64 * n
+}
+
+fn truncated(promised: u64, size: u64) -> Located {
+    let found = size.saturating_sub(PREFIX as u64) / TRIANGLE as u64;
+    Fault::Truncated { items: "triangles".into(), promised, found }.whole()
+}
+
 /// Reads STL. The format stores three corners per triangle; corners in the same position become one vertex,
 /// numbered in the order of first appearance.
 pub(super) fn parse(bytes: &[u8], limits: &ReadLimits) -> Result<TriMesh, Located> {
@@ -26,9 +55,8 @@ pub(super) fn parse(bytes: &[u8], limits: &ReadLimits) -> Result<TriMesh, Locate
     if text.is_empty() {
         return Err(Fault::Empty.whole());
     }
-    let promised =
-        bytes.get(HEADER..).and_then(<[u8]>::first_chunk).map(|&n| u64::from(u32::from_le_bytes(n)));
-    let size = promised.map(|n| PREFIX as u64 + TRIANGLE as u64 * n);
+    let promised = promised(bytes);
+    let size = promised.map(size_of);
     // The free text of a binary file may begin with "solid" too.
     if begins_with(text, "solid") && size != Some(bytes.len() as u64) {
         return parse_ascii(bytes, limits);
@@ -37,9 +65,8 @@ pub(super) fn parse(bytes: &[u8], limits: &ReadLimits) -> Result<TriMesh, Locate
         let found = format!("{} bytes beginning with `{}`", bytes.len(), excerpt(text));
         return Err(Fault::WrongFormat { expected: "an STL file", found }.whole());
     };
-    let found = (bytes.len() - PREFIX) as u64 / TRIANGLE as u64;
-    if promised > found {
-        return Err(Fault::Truncated { items: "triangles".into(), promised, found }.whole());
+    if size > Some(bytes.len() as u64) {
+        return Err(truncated(promised, bytes.len() as u64));
     }
     parse_binary(bytes, promised, limits)
 }

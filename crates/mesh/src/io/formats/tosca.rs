@@ -8,11 +8,16 @@ use surface::VertexId;
 use crate::error::{Fault, Located};
 use crate::io::limits::ReadLimits;
 use crate::io::polygons::finish;
-use crate::io::text::{Lines, excerpt, parse_integer, parse_position, write_position};
+use crate::io::text::{Lines, check_is_text, excerpt, parse_integer, parse_position, write_position};
 use crate::tri_mesh::TriMesh;
 
 /// The fewest bytes of a line: three digits, two separators, a line end.
 const SHORTEST_LINE: usize = 6;
+
+/// Checks that either file is text.
+pub(super) fn check_start(start: &[u8], _: Option<u64>) -> Result<(), Located> {
+    check_is_text(start, "a file of numbers")
+}
 
 /// Reads the two files of a shape.
 pub(super) fn parse(vert: &[u8], tri: &[u8], limits: &ReadLimits) -> Result<TriMesh, Located> {

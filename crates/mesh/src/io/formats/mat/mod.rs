@@ -5,4 +5,4 @@ mod container;
 pub(super) mod fixtures;
 mod surface;
 
-pub(super) use surface::parse;
+pub(super) use surface::{check_start, parse};

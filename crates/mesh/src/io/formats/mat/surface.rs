@@ -29,6 +29,11 @@ const SMALL_FILE: u64 = 16 << 20;
 /// The most variables that a message lists.
 const NAMED: usize = 8;
 
+/// Checks the header.
+pub(in crate::io::formats) fn check_start(start: &[u8], _: Option<u64>) -> Result<(), Located> {
+    parse_header(start).map(drop)
+}
+
 /// Reads the first struct in the file with the numeric fields `X`, `Y`, `Z` (one column each) and `TRIV`
 /// (three columns, one-based). Other variables and fields are ignored.
 pub(in crate::io::formats) fn parse(bytes: &[u8], limits: &ReadLimits) -> Result<TriMesh, Located> {

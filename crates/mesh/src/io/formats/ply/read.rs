@@ -8,18 +8,37 @@ use crate::error::{Fault, Located, Place};
 use crate::io::binary::{ByteOrder, Scalar};
 use crate::io::limits::ReadLimits;
 use crate::io::polygons::{finish, push_polygon};
-use crate::io::text::{Lines, excerpt, parse_integer, parse_number};
+use crate::io::text::{Lines, check_is_text, excerpt, parse_integer, parse_number};
 use crate::tri_mesh::TriMesh;
+
+const FORMAT: &str = "a PLY file";
+/// The last line of the header.
+const END: &[u8] = b"end_header";
+
+/// Checks the first line, and that the header is text.
+pub(crate) fn check_start(start: &[u8], _: Option<u64>) -> Result<(), Located> {
+    check_first_line(&mut Lines::new(start))?;
+    let end = start.windows(END.len()).position(|window| window == END).unwrap_or(start.len());
+    check_is_text(&start[..end], FORMAT)
+}
+
+/// Reads `ply`.
+fn check_first_line(lines: &mut Lines<'_>) -> Result<(), Located> {
+    match lines.next() {
+        None => Err(Fault::Empty.whole()),
+        Some(first) if first.text == b"ply" => Ok(()),
+        Some(first) => {
+            let found = format!("it begins with `{}`", excerpt(first.text));
+            Err(Fault::WrongFormat { expected: FORMAT, found }.whole())
+        }
+    }
+}
 
 /// Reads PLY: the element `vertex` with `x y z`, then `face` with a list `vertex_indices` or `vertex_index`.
 /// Other elements and properties are ignored.
 pub(crate) fn parse(bytes: &[u8], limits: &ReadLimits) -> Result<TriMesh, Located> {
     let mut lines = Lines::new(bytes);
-    let first = lines.next().ok_or_else(|| Fault::Empty.whole())?;
-    if first.text != b"ply" {
-        let found = format!("it begins with `{}`", excerpt(first.text));
-        return Err(Fault::WrongFormat { expected: "a PLY file", found }.whole());
-    }
+    check_first_line(&mut lines)?;
     let header = Header::parse(&mut lines)?;
     header.check(lines.remaining(), limits).map_err(Fault::whole)?;
     let mut body = match header.encoding {

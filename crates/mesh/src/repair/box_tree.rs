@@ -1,0 +1,160 @@
+//! A tree of bounding boxes over points.
+
+use std::ops::Range;
+
+use nalgebra::Point3;
+
+/// The most points in a leaf of the tree.
+const LEAF: usize = 8;
+
+/// A tree of bounding boxes in one array, parents before their children.
+pub(super) struct BoxTree {
+    pub(super) items: Vec<Item>,
+    pub(super) nodes: Vec<Node>,
+}
+
+/// A point in the tree and its number.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Item {
+    pub(super) position: [f64; 3],
+    pub(super) id: u32,
+}
+
+#[derive(Debug, Clone)]
+pub(super) struct Node {
+    low: [f64; 3],
+    high: [f64; 3],
+    pub(super) items: Range<usize>,
+    /// The two children; `None` for a leaf.
+    pub(super) children: Option<[usize; 2]>,
+}
+
+impl BoxTree {
+    /// The tree over points, each with a number. `O(n log n)`.
+    pub(super) fn new(points: impl Iterator<Item = (Point3<f64>, u32)>) -> Self {
+        let items: Vec<Item> = points.map(|(p, id)| Item { position: [p.x, p.y, p.z], id }).collect();
+        let all = 0..items.len();
+        let mut tree = Self { items, nodes: Vec::new() };
+        tree.grow(all);
+        tree
+    }
+
+    /// Adds the node over a range of items and all below it; returns its index.
+    fn grow(&mut self, range: Range<usize>) -> usize {
+        let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+        for item in &self.items[range.clone()] {
+            for axis in 0..3 {
+                low[axis] = low[axis].min(item.position[axis]);
+                high[axis] = high[axis].max(item.position[axis]);
+            }
+        }
+        let index = self.nodes.len();
+        self.nodes.push(Node { low, high, items: range.clone(), children: None });
+        if range.len() > LEAF {
+            let width = |axis: &usize| high[*axis] - low[*axis];
+            let widest = (0..3).max_by(|a, b| width(a).total_cmp(&width(b))).unwrap_or(0);
+            let half = range.len() / 2;
+            self.items[range.clone()]
+                .select_nth_unstable_by(half, |a, b| a.position[widest].total_cmp(&b.position[widest]));
+            let middle = range.start + half;
+            let children = [self.grow(range.start..middle), self.grow(middle..range.end)];
+            self.nodes[index].children = Some(children);
+        }
+        index
+    }
+
+    /// Replaces `found` by the `k` points nearest to a position within a radius, as squared distances and numbers in
+    /// ascending order. `skips` excludes points, `prunes` nodes by their index.
+    pub(super) fn nearest(
+        &self,
+        position: &Point3<f64>,
+        radius: f64,
+        k: usize,
+        skips: impl Fn(u32) -> bool,
+        prunes: impl Fn(usize) -> bool,
+        found: &mut Vec<(f64, u32)>,
+    ) {
+        found.clear();
+        let at = [position.x, position.y, position.z];
+        let sq_radius = radius * radius;
+        let mut pending = vec![0];
+        while let Some(index) = pending.pop() {
+            let node = &self.nodes[index];
+            let gap = node.sq_gap_to(at);
+            let is_full = found.len() == k;
+            if gap > sq_radius || is_full && gap >= found[k - 1].0 || prunes(index) {
+                continue;
+            }
+            match node.children {
+                Some([a, b]) => {
+                    let a_first = self.nodes[a].sq_gap_to(at) <= self.nodes[b].sq_gap_to(at);
+                    pending.extend(if a_first { [b, a] } else { [a, b] });
+                }
+                None => {
+                    for item in &self.items[node.items.clone()] {
+                        let sq = sq_norm([0, 1, 2].map(|axis| item.position[axis] - at[axis]));
+                        let candidate = (sq, item.id);
+                        if sq > sq_radius || skips(item.id) {
+                            continue;
+                        }
+                        let place = found.partition_point(|known| *known < candidate);
+                        if place < k {
+                            found.truncate(k - 1);
+                            found.insert(place, candidate);
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+impl Node {
+    pub(super) fn width(&self) -> f64 {
+        (0..3).map(|axis| self.high[axis] - self.low[axis]).fold(0.0, f64::max)
+    }
+
+    /// Squared distance to another box. Never larger than that of two points in them, even with rounding, since every
+    /// step is monotonic.
+    pub(super) fn sq_gap(&self, other: &Self) -> f64 {
+        sq_norm([0, 1, 2].map(|axis| {
+            (self.low[axis] - other.high[axis]).max(other.low[axis] - self.high[axis]).max(0.0)
+        }))
+    }
+
+    fn sq_gap_to(&self, point: [f64; 3]) -> f64 {
+        sq_norm([0, 1, 2].map(|axis| (self.low[axis] - point[axis]).max(point[axis] - self.high[axis]).max(0.0)))
+    }
+}
+
+pub(super) fn sq_norm([x, y, z]: [f64; 3]) -> f64 {
+    x * x + y * y + z * z
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_nearest_points_equal_those_of_all_pairs() {
+        let at = |i: u32| {
+            // Many equal distances.
+            let hash = i.wrapping_mul(2_654_435_761);
+            Point3::new(f64::from(hash >> 28), f64::from(hash >> 24 & 15), f64::from(hash >> 20 & 3))
+        };
+        let tree = BoxTree::new((0..500).map(|i| (at(i), i)));
+        let mut found = Vec::new();
+        for i in 0..500 {
+            for (k, radius) in [(1, 9.0), (5, 2.0), (600, 3.0)] {
+                tree.nearest(&at(i), radius, k, |other| other == i, |_| false, &mut found);
+                let all = (0..500).filter(|j| *j != i).map(|j| (at(j) - at(i)).norm_squared());
+                let mut all: Vec<f64> = all.filter(|sq| *sq <= radius * radius).collect();
+                all.sort_by(f64::total_cmp);
+                all.truncate(k);
+                assert_eq!(found.iter().map(|(sq, _)| *sq).collect::<Vec<_>>(), all);
+            }
+        }
+        BoxTree::new(std::iter::empty()).nearest(&at(0), 1.0, 1, |_| false, |_| false, &mut found);
+        assert!(found.is_empty());
+    }
+}
