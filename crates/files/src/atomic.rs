@@ -1,5 +1,6 @@
 //! Writing to a temporary file in the same folder and renaming it.
 
+use std::collections::HashSet;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
@@ -7,7 +8,12 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use tempfile::NamedTempFile;
 
+use crate::durable::{folder_of, sync_folder};
 use crate::error::FileError;
+use crate::identity::is_at;
+
+/// How the names of temporary files begin.
+const PREFIX: &str = ".unfinished-";
 
 /// The temporary files of this process. The lock is held while one is created, renamed or removed, so that the
 /// list is always accurate.
@@ -98,25 +104,30 @@ impl<'a> Pending<'a> {
         content: impl FnOnce(&mut File) -> io::Result<()>,
     ) -> Result<Self, FileError> {
         let written = || {
-            let folder = path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-            let mut pending = Self { file: Some(new_file_in(folder)?), path };
+            let mut pending = Self { file: Some(new_file_in(folder_of(path))?), path };
             if let Some(file) = &mut pending.file {
                 content(file.as_file_mut())?;
+                // Otherwise a power failure after the rename could leave the new name with incomplete content.
+                file.as_file().sync_all()?;
             }
             Ok(pending)
         };
         written().map_err(|source| FileError::write(path, source))
     }
 
-    /// Moves the file to its destination and replaces the previous version.
+    /// Moves the file to its destination and replaces the previous version. Both the content and the new name are on
+    /// disk when it returns.
     ///
     /// # Errors
     /// [`FileError`] with the path.
     pub fn publish(mut self) -> Result<(), FileError> {
         let Some(file) = self.file.take() else { return Ok(()) };
-        let mut paths = unfinished();
-        forget(&mut paths, file.path());
-        file.persist(self.path).map(drop).map_err(|e| FileError::write(self.path, e.error))
+        {
+            let mut paths = unfinished();
+            forget(&mut paths, file.path());
+            file.persist(self.path).map_err(|e| FileError::write(self.path, e.error))?;
+        }
+        sync_folder(self.path).map_err(|source| FileError::write(self.path, source))
     }
 }
 
@@ -134,19 +145,51 @@ fn forget(paths: &mut Vec<PathBuf>, path: &Path) {
     paths.retain(|unfinished| unfinished != path);
 }
 
-/// A temporary file with the permissions of an ordinary new file.
+/// A temporary file with the permissions of an ordinary new file, locked as long as it is open.
 fn new_file_in(folder: &Path) -> io::Result<NamedTempFile> {
     let mut builder = tempfile::Builder::new();
-    builder.prefix(".unfinished-");
+    builder.prefix(PREFIX);
     #[cfg(unix)]
     {
         use std::os::unix::fs::PermissionsExt;
         builder.permissions(std::fs::Permissions::from_mode(0o666));
     }
+    remove_leftovers(folder);
     let mut paths = unfinished();
-    let file = builder.tempfile_in(folder)?;
-    paths.push(file.path().to_owned());
-    Ok(file)
+    loop {
+        let file = builder.tempfile_in(folder)?;
+        // Where files cannot be locked, leftovers are not removed either.
+        let is_locked = file.as_file().lock().is_ok();
+        // Another program may have taken the file for a leftover before it was locked.
+        if !is_locked || is_at(file.as_file(), file.path()) {
+            paths.push(file.path().to_owned());
+            return Ok(file);
+        }
+    }
+}
+
+/// Removes what killed programs left in a folder: temporary files that no program has locked. Looks at each folder once.
+fn remove_leftovers(folder: &Path) {
+    static CLEANED: Mutex<Option<HashSet<PathBuf>>> = Mutex::new(None);
+    {
+        let mut cleaned = CLEANED.lock().unwrap_or_else(PoisonError::into_inner);
+        let place = folder.canonicalize().unwrap_or_else(|_| folder.to_owned());
+        if !cleaned.get_or_insert_default().insert(place) {
+            return;
+        }
+    }
+    let Ok(entries) = fs::read_dir(folder) else { return };
+    for entry in entries.flatten() {
+        let is_leftover = entry.file_name().to_str().is_some_and(|name| name.starts_with(PREFIX))
+            && entry.file_type().is_ok_and(|kind| kind.is_file());
+        if is_leftover
+            && let Ok(file) = File::open(entry.path())
+            && file.try_lock().is_ok()
+        {
+            // It does no harm if it stays.
+            let _ = fs::remove_file(entry.path());
+        }
+    }
 }
 
 #[cfg(test)]
@@ -161,6 +204,23 @@ mod tests {
         write_bytes(&path, b"second").unwrap();
         assert_eq!(fs::read(&path).unwrap(), b"second");
         assert_eq!(fs::read_dir(path.parent().unwrap()).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn leftovers_are_removed_unless_a_program_is_writing_them() {
+        let folder = tempfile::tempdir().unwrap();
+        let [dead, alive, other] =
+            [".unfinished-dead", ".unfinished-alive", "unfinished"].map(|name| folder.path().join(name));
+        for path in [&dead, &alive, &other] {
+            fs::write(path, "half").unwrap();
+        }
+        let open = File::open(&alive).unwrap();
+        open.lock().unwrap();
+        let path = folder.path().join("record.json");
+        let pending = Pending::write(&path, |out| out.write_all(b"x")).unwrap();
+        assert!(!dead.exists() && alive.exists() && other.exists());
+        pending.publish().unwrap();
+        assert_eq!(fs::read(&path).unwrap(), b"x");
     }
 
     #[test]

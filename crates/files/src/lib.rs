@@ -1,7 +1,8 @@
 //! Files that appear complete or not at all, even if the program is interrupted.
 //!
-//! Every file is written to a temporary file in the same folder and renamed once it is complete. A reader never
-//! sees half a file, and a failure leaves the previous version in place.
+//! Every file is written to a temporary file in the same folder, flushed to disk, and renamed once it is complete. A
+//! reader never sees half a file, and a failure, even of power, leaves the previous version in place. The temporary
+//! file of a killed program is removed when the next one writes to the same folder.
 //!
 //! ```
 //! # let folder = tempfile::tempdir().unwrap();
@@ -12,7 +13,11 @@
 //! ```
 
 mod atomic;
+mod durable;
 mod error;
+mod identity;
 
 pub use atomic::{Pending, abandon_unfinished, fill_atomically, write_atomically, write_bytes};
+pub use durable::rename_durably;
 pub use error::{Action, FileError};
+pub use identity::{FileId, is_at, is_same_file};

@@ -67,4 +67,4 @@ pub use reader::Index;
 pub use search::{Found, NearShape, SearchMode, Searcher};
 pub use shape::{ContentHash, Shape, ShapeEntry, ShapeVectors};
 pub use verify::{Verification, verify};
-pub use writer::{IndexWriter, Job, work_path};
+pub use writer::{IndexWriter, Job, damaged_path, work_path};

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use redb::Database;
 
-use crate::format::{CACHE, ENTRIES, Overlay, Sealed, Snapshot, Store, database_error};
+use crate::format::{CACHE, ENTRIES, Guarded, Overlay, Sealed, Snapshot, Store, call};
 use crate::{IndexError, Shape, ShapeEntry, ShapeVectors};
 
 /// A finished index, open for reading.
@@ -14,7 +14,7 @@ use crate::{IndexError, Shape, ShapeEntry, ShapeVectors};
 #[derive(Debug)]
 pub struct Index {
     path: PathBuf,
-    database: Database,
+    database: Guarded<Database>,
     options: String,
     n_shapes: usize,
     /// A number that changes with the content of the file.
@@ -30,11 +30,10 @@ impl Index {
     pub fn open(path: &Path) -> Result<Self, IndexError> {
         let sealed = Sealed::open(path)?;
         let (fingerprint, size) = (sealed.footer.fingerprint(), sealed.len());
-        let database = Database::builder()
-            .set_cache_size(CACHE)
-            .create_with_backend(Overlay::new(sealed))
-            .map_err(|error| database_error(path, "read", error))?;
-        let store = Store { database: &database, path, action: "read" };
+        let database = Guarded::new(call(path, "read", || {
+            Database::builder().set_cache_size(CACHE).create_with_backend(Overlay::new(sealed))
+        })?);
+        let store = Store { database: &database, path, action: "read", n_bytes: size };
         let about = store.read()?;
         let missing = || IndexError::damaged(path, "its options are missing");
         let options = about.about("options")?.ok_or_else(missing)?;
@@ -44,7 +43,7 @@ impl Index {
     }
 
     pub(crate) fn store(&self) -> Store<'_> {
-        Store { database: &self.database, path: &self.path, action: "read" }
+        Store { database: &self.database, path: &self.path, action: "read", n_bytes: self.size }
     }
 
     /// The file.

@@ -2,6 +2,7 @@
 
 mod codec;
 mod error;
+mod guard;
 mod overlay;
 mod sealed;
 mod stored_cells;
@@ -9,8 +10,11 @@ mod tables;
 
 pub use codec::CodecError;
 pub use error::IndexError;
+pub(crate) use guard::Guarded;
 pub(crate) use overlay::Overlay;
 pub use sealed::FORMAT_VERSION;
 pub(crate) use sealed::{BLOCK, DATABASE_MAGIC, Sealed, seal, unseal};
+#[cfg(test)]
+pub(crate) use stored_cells::write_header;
 pub(crate) use stored_cells::{StoredCells, vectors, write_cells};
-pub(crate) use tables::{BODIES, CACHE, ENTRIES, FUSED, Snapshot, Store, database_error};
+pub(crate) use tables::{BODIES, CACHE, ENTRIES, FUSED, Snapshot, Store, call};

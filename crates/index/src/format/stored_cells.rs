@@ -7,8 +7,9 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
 use super::IndexError;
-use super::codec::{Floats, encode};
-use super::tables::{At, ENTRIES, FUSED, Snapshot, Store};
+use super::codec::{Floats, LIMIT, encode};
+use super::guard::Guarded;
+use super::tables::{ENTRIES, FUSED, Snapshot, Store};
 use crate::ShapeEntry;
 use crate::vectors::{Cells, CellsHeader, Centroids, padded, threshold};
 
@@ -54,15 +55,27 @@ pub(crate) fn write_cells(store: &Store<'_>) -> Result<(), IndexError> {
     let (names, rows, dim) = vectors(store)?;
     let n = padded(dim);
     let mut cells = Cells::of(&rows, dim, n);
-    cells.header.threshold = threshold(&rows, n, &classes(store)?);
+    let classes = classes(store)?;
+    if classes.len() != names.len() {
+        return Err(store.damaged(format!("{} shapes have {} vectors", classes.len(), names.len())));
+    }
+    cells.header.threshold = if classes.contains(&None) {
+        // Nothing is known about shapes without a class.
+        let labelled = rows.chunks(n).zip(&classes).filter(|(_, class)| class.is_some());
+        let labelled: Vec<f32> = labelled.flat_map(|(row, _)| row).copied().collect();
+        threshold(&labelled, n, &classes.into_iter().flatten().collect::<Vec<_>>())
+    } else {
+        threshold(&rows, n, &classes.into_iter().flatten().collect::<Vec<_>>())
+    };
     store.write(|transaction| {
-        transaction.delete_table(SEARCH).at(store)?;
-        let mut table = transaction.open_table(SEARCH).at(store)?;
+        let mut table = Guarded::new(store.call(|| {
+            transaction.delete_table(SEARCH)?;
+            transaction.open_table(SEARCH)
+        })?);
         let mut put = |key: Key, bytes: Result<Vec<u8>, _>| {
             let bytes =
                 bytes.map_err(|source| IndexError::Codec { id: format!("search {key:?}"), source })?;
-            table.insert(key, bytes.as_slice()).at(store)?;
-            Ok::<(), IndexError>(())
+            store.call(|| table.insert(key, bytes.as_slice()).map(drop))
         };
         put((HEADER, 0, 0), encode(&cells.header))?;
         for (i, rows) in cells.centroids.rows.chunks(rows_in_part(n) * n).enumerate() {
@@ -86,13 +99,14 @@ pub(crate) fn write_cells(store: &Store<'_>) -> Result<(), IndexError> {
     })
 }
 
-/// The class of each shape, as a number, in the order of the shapes' names.
-fn classes(store: &Store<'_>) -> Result<Vec<u32>, IndexError> {
+/// The class of each shape as a number, if it has one, in the order of the shapes' names.
+fn classes(store: &Store<'_>) -> Result<Vec<Option<u32>>, IndexError> {
     let mut numbers: HashMap<String, u32> = HashMap::new();
     let mut classes = Vec::new();
     store.read()?.each(ENTRIES, |_, entry: ShapeEntry| {
         let next = numbers.len() as u32;
-        classes.push(*numbers.entry(entry.label).or_insert(next));
+        let is_labelled = !entry.label.is_empty();
+        classes.push(is_labelled.then(|| *numbers.entry(entry.label).or_insert(next)));
         Ok::<(), IndexError>(())
     })?;
     Ok(classes)
@@ -102,17 +116,31 @@ fn classes(store: &Store<'_>) -> Result<Vec<u32>, IndexError> {
 pub(crate) fn vectors(store: &Store<'_>) -> Result<(Vec<String>, Vec<f32>, usize), IndexError> {
     let snapshot = store.read()?;
     let dim: usize = snapshot.about("length")?.unwrap_or(1);
+    check_length(store, dim)?;
     let n = padded(dim);
     let count = snapshot.len()?;
     let mut names = Vec::with_capacity(count);
-    let mut rows = Vec::with_capacity(count * n);
+    // A database may state any numbers, but vectors without padding fit into it.
+    let mut rows = Vec::with_capacity(if (count * dim) as u64 <= store.n_bytes { count * n } else { 0 });
     snapshot.each(FUSED, |id, Floats(fused)| {
+        if fused.len() != dim {
+            let found = fused.len();
+            return Err(store.damaged(format!("the vector of `{id}` has {found} numbers, not {dim}")));
+        }
         names.push(id.to_owned());
         rows.extend(fused);
         rows.resize(names.len() * n, 0.0);
-        Ok::<(), IndexError>(())
+        Ok(())
     })?;
     Ok((names, rows, dim))
+}
+
+/// Checks the length of the vectors, as the file states it.
+fn check_length(store: &Store<'_>, dim: usize) -> Result<(), IndexError> {
+    match (1..=LIMIT / 4).contains(&dim) {
+        true => Ok(()),
+        false => Err(store.damaged(format!("its vectors cannot have {dim} numbers"))),
+    }
 }
 
 /// Cells in an index file, read on demand.
@@ -126,13 +154,21 @@ impl<'a> StoredCells<'a> {
     pub(crate) fn open(store: &'a Store<'a>) -> Result<Self, IndexError> {
         let snapshot = store.read()?;
         let header: CellsHeader = part(&snapshot, (HEADER, 0, 0))?;
+        check_header(store, &header)?;
         let n = padded(header.dim);
         let mut rows = Vec::with_capacity(header.sizes.len() * n);
         for i in 0.. {
             if rows.len() >= header.sizes.len() * n {
                 break;
             }
-            rows.extend(part::<Floats>(&snapshot, (CENTROIDS, i, 0))?.0);
+            let more = part::<Floats>(&snapshot, (CENTROIDS, i, 0))?.0;
+            if more.is_empty() {
+                return Err(missing(store, "a part"));
+            }
+            rows.extend(more);
+        }
+        if rows.len() != header.sizes.len() * n {
+            return Err(store.damaged("the number of its cells is wrong"));
         }
         Ok(Self { snapshot, header, centroids: Centroids::new(rows, n) })
     }
@@ -145,7 +181,15 @@ impl<'a> StoredCells<'a> {
     ) -> Result<(), IndexError> {
         let n = padded(self.header.dim);
         let n_parts = (self.header.sizes[cell as usize] as usize).div_ceil(rows_in_part(n));
-        (0..n_parts as u32).try_for_each(|i| visit(part(&self.snapshot, (CELLS, cell, i))?))
+        (0..n_parts as u32).try_for_each(|i| {
+            let part: Part = part(&self.snapshot, (CELLS, cell, i))?;
+            if part.rows.0.len() != part.slots.len() * n
+                || part.slots.iter().any(|slot| *slot as usize >= self.header.n)
+            {
+                return Err(self.snapshot.store.damaged(format!("part {i} of cell {cell} contradicts itself")));
+            }
+            visit(part)
+        })
     }
 
     /// The names of all vectors, in the order of their numbers.
@@ -166,16 +210,41 @@ impl<'a> StoredCells<'a> {
     }
 }
 
+/// Checks the sizes in a header: what they promise must fit into the file.
+fn check_header(store: &Store<'_>, header: &CellsHeader) -> Result<(), IndexError> {
+    check_length(store, header.dim)?;
+    let CellsHeader { n: n_rows, sizes, .. } = header;
+    let total: u64 = sizes.iter().map(|size| u64::from(*size)).sum();
+    let row = 4 * padded(header.dim) as u64;
+    let n_bytes = (sizes.len() as u64).saturating_add(total).saturating_mul(row);
+    if sizes.is_empty() || total != *n_rows as u64 || n_bytes > store.n_bytes {
+        return Err(store.damaged("the sizes of its cells are wrong"));
+    }
+    Ok(())
+}
+
 fn missing(store: &Store<'_>, what: &str) -> IndexError {
-    IndexError::damaged(store.path, format!("{what} of the search table is missing"))
+    store.damaged(format!("{what} of the search table is missing"))
 }
 
 fn part<T: DeserializeOwned>(snapshot: &Snapshot<'_>, key: Key) -> Result<T, IndexError> {
     let store = snapshot.store;
-    let lost = || missing(store, "a part");
-    let table = snapshot.table(SEARCH)?.ok_or_else(lost)?;
-    let bytes = table.get(key).at(store)?.ok_or_else(lost)?;
-    store.decoded(bytes.value(), "search table")
+    let bytes = snapshot.bytes(SEARCH, key)?.ok_or_else(|| missing(store, "a part"))?;
+    store.decoded(&bytes, "search table")
+}
+
+/// Overwrites the header with one that states these sizes.
+#[cfg(test)]
+pub(crate) fn write_header(store: &Store<'_>, dim: usize, sizes: Vec<u32>) -> Result<(), IndexError> {
+    let n = sizes.iter().map(|size| *size as usize).sum();
+    let header = CellsHeader { dim, n, sizes, probes: 1, recall: 1.0, threshold: None };
+    let Ok(bytes) = encode(&header) else { return Err(missing(store, "a part")) };
+    store.write(|transaction| {
+        store.call(|| {
+            transaction.open_table(SEARCH)?.insert((HEADER, 0, 0), bytes.as_slice())?;
+            Ok::<_, redb::Error>(())
+        })
+    })
 }
 
 #[cfg(test)]

@@ -11,6 +11,7 @@ use serde::{Deserialize, Serialize};
 
 use super::IndexError;
 use super::codec::{Floats, decode, encode};
+use super::guard::{Guarded, guarded};
 use crate::{Shape, ShapeEntry, ShapeVectors};
 
 /// A table with names as keys.
@@ -31,20 +32,41 @@ pub(crate) const CACHE: usize = 64 << 20;
 /// A database with the path and the action that errors name.
 #[derive(Debug)]
 pub(crate) struct Store<'a> {
-    pub(crate) database: &'a Database,
+    pub(crate) database: &'a Guarded<Database>,
     pub(crate) path: &'a Path,
     /// `read` or `write`, for errors.
     pub(crate) action: &'static str,
+    /// Size of the database in bytes, which limits what it can hold.
+    pub(crate) n_bytes: u64,
+}
+
+/// Calls redb. The only function that does: its panics become [`IndexError::Damaged`].
+pub(crate) fn call<T, E: Into<redb::Error>>(
+    path: &Path,
+    action: &'static str,
+    operation: impl FnOnce() -> Result<T, E>,
+) -> Result<T, IndexError> {
+    match guarded(operation) {
+        Ok(result) => result.map_err(|error| database_error(path, action, error)),
+        Err(panic) => Err(IndexError::damaged(path, format!("its database contradicts itself ({panic})"))),
+    }
 }
 
 impl Store<'_> {
-    pub(super) fn error(&self, error: impl Into<redb::Error>) -> IndexError {
-        database_error(self.path, self.action, error)
+    pub(super) fn call<T, E: Into<redb::Error>>(
+        &self,
+        operation: impl FnOnce() -> Result<T, E>,
+    ) -> Result<T, IndexError> {
+        call(self.path, self.action, operation)
+    }
+
+    pub(super) fn damaged(&self, what: impl Into<String>) -> IndexError {
+        IndexError::damaged(self.path, what)
     }
 
     pub(crate) fn read(&self) -> Result<Snapshot<'_>, IndexError> {
-        let transaction = self.database.begin_read().at(self)?;
-        Ok(Snapshot { store: self, transaction })
+        let transaction = self.call(|| self.database.begin_read())?;
+        Ok(Snapshot { store: self, transaction: Guarded::new(transaction) })
     }
 
     /// Runs `work` in one transaction, which has an effect only if `work` succeeds.
@@ -52,14 +74,16 @@ impl Store<'_> {
         &self,
         work: impl FnOnce(&WriteTransaction) -> Result<T, IndexError>,
     ) -> Result<T, IndexError> {
-        let transaction = self.database.begin_write().at(self)?;
+        let transaction = Guarded::new(self.call(|| self.database.begin_write())?);
         let result = work(&transaction)?;
-        transaction.commit().at(self)?;
+        if let Some(transaction) = transaction.into_inner() {
+            self.call(|| transaction.commit())?;
+        }
         Ok(result)
     }
 
     pub(super) fn decoded<T: DeserializeOwned>(&self, bytes: &[u8], what: &str) -> Result<T, IndexError> {
-        decode(bytes).map_err(|error| IndexError::damaged(self.path, format!("{what}: {error}")))
+        decode(bytes).map_err(|error| self.damaged(format!("{what}: {error}")))
     }
 
     /// Writes a value under a name, replacing an earlier one.
@@ -71,8 +95,10 @@ impl Store<'_> {
         value: &T,
     ) -> Result<(), IndexError> {
         let bytes = encode(value).map_err(|source| IndexError::Codec { id: name.to_owned(), source })?;
-        transaction.open_table(table).at(self)?.insert(name, bytes.as_slice()).at(self)?;
-        Ok(())
+        self.call(|| {
+            transaction.open_table(table)?.insert(name, bytes.as_slice())?;
+            Ok::<_, redb::Error>(())
+        })
     }
 
     /// Writes a property of the whole index.
@@ -105,7 +131,8 @@ impl Store<'_> {
     pub(crate) fn remove(&self, transaction: &WriteTransaction, id: &str) -> Result<bool, IndexError> {
         let mut existed = false;
         for table in [ENTRIES, FUSED, BODIES] {
-            existed |= transaction.open_table(table).at(self)?.remove(id).at(self)?.is_some();
+            existed |= self
+                .call(|| Ok::<_, redb::Error>(transaction.open_table(table)?.remove(id)?.is_some()))?;
         }
         Ok(existed)
     }
@@ -114,26 +141,35 @@ impl Store<'_> {
 /// A consistent view of the database, unaffected by later writes.
 pub(crate) struct Snapshot<'a> {
     pub(super) store: &'a Store<'a>,
-    transaction: ReadTransaction,
+    transaction: Guarded<ReadTransaction>,
 }
 
 impl Snapshot<'_> {
     /// Opens a table; `None` if it was never written to.
-    pub(super) fn table<K: redb::Key + 'static>(
+    fn table<K: redb::Key + 'static>(
         &self,
         table: TableDefinition<'static, K, &'static [u8]>,
-    ) -> Result<Option<redb::ReadOnlyTable<K, &'static [u8]>>, IndexError> {
-        match self.transaction.open_table(table) {
-            Ok(table) => Ok(Some(table)),
+    ) -> Result<Option<Guarded<Table<K>>>, IndexError> {
+        self.store.call(|| match self.transaction.open_table(table) {
+            Ok(table) => Ok(Some(Guarded::new(table))),
             Err(TableError::TableDoesNotExist(_)) => Ok(None),
-            Err(error) => Err(self.store.error(error)),
-        }
+            Err(error) => Err(error),
+        })
+    }
+
+    /// The bytes of a value.
+    pub(super) fn bytes<'k, K: redb::Key + 'static>(
+        &self,
+        table: TableDefinition<'static, K, &'static [u8]>,
+        key: impl std::borrow::Borrow<K::SelfType<'k>>,
+    ) -> Result<Option<Vec<u8>>, IndexError> {
+        let Some(table) = self.table(table)? else { return Ok(None) };
+        self.store.call(|| Ok::<_, redb::Error>(table.get(key)?.map(|bytes| bytes.value().to_vec())))
     }
 
     fn value<T: DeserializeOwned>(&self, table: Named, key: &str) -> Result<Option<T>, IndexError> {
-        let Some(table) = self.table(table)? else { return Ok(None) };
-        let found = table.get(key).at(self.store)?;
-        found.map(|bytes| self.store.decoded(bytes.value(), key)).transpose()
+        let found = self.bytes(table, key)?;
+        found.map(|bytes| self.store.decoded(&bytes, key)).transpose()
     }
 
     /// A property of the whole index.
@@ -157,14 +193,27 @@ impl Snapshot<'_> {
     /// Number of shapes.
     pub(crate) fn len(&self) -> Result<usize, IndexError> {
         let Some(table) = self.table(ENTRIES)? else { return Ok(0) };
-        Ok(table.len().at(self.store)? as usize)
+        let length = self.store.call(|| table.len())?;
+        if length > self.most_rows() {
+            let n_bytes = self.store.n_bytes;
+            return Err(self.store.damaged(format!("{length} shapes do not fit into {n_bytes} bytes")));
+        }
+        Ok(length as usize)
+    }
+
+    /// No table holds more rows: each takes several bytes.
+    fn most_rows(&self) -> u64 {
+        self.store.n_bytes / 4
     }
 
     /// The keys of a table, ascending.
     pub(crate) fn keys(&self, table: Named) -> Result<Vec<String>, IndexError> {
-        let Some(table) = self.table(table)? else { return Ok(Vec::new()) };
-        let rows = table.iter().at(self.store)?;
-        rows.map(|row| Ok(row.at(self.store)?.0.value().to_owned())).collect()
+        let mut keys = Vec::new();
+        self.each_row(table, |key, _| {
+            keys.push(key);
+            Ok::<(), IndexError>(())
+        })?;
+        Ok(keys)
     }
 
     /// Calls `visit` with each key and value of a table, in ascending order of the keys.
@@ -173,14 +222,37 @@ impl Snapshot<'_> {
         table: Named,
         mut visit: impl FnMut(&str, T) -> Result<(), E>,
     ) -> Result<(), E> {
+        self.each_row(table, |key, bytes| visit(&key, self.store.decoded(&bytes, &key)?))
+    }
+
+    fn each_row<E: From<IndexError>>(
+        &self,
+        table: Named,
+        mut visit: impl FnMut(String, Vec<u8>) -> Result<(), E>,
+    ) -> Result<(), E> {
         let Some(table) = self.table(table)? else { return Ok(()) };
-        for row in table.iter().at(self.store)? {
-            let (key, bytes) = row.at(self.store)?;
-            visit(key.value(), self.store.decoded(bytes.value(), key.value())?)?;
+        let mut rows = Guarded::new(self.store.call(|| table.iter())?);
+        let mut last: Option<String> = None;
+        for _ in 0..=self.most_rows() {
+            let row = self.store.call(|| match rows.next() {
+                None => Ok(None),
+                Some(Ok((key, bytes))) => Ok(Some((key.value().to_owned(), bytes.value().to_vec()))),
+                Some(Err(error)) => Err(error),
+            })?;
+            let Some((key, bytes)) = row else { return Ok(()) };
+            if last.is_some_and(|last| last >= key) {
+                break;
+            }
+            visit(key.clone(), bytes)?;
+            last = Some(key);
         }
-        Ok(())
+        // A tree that was forged may visit its pages again and again.
+        Err(self.store.damaged("the rows of a table are out of order").into())
     }
 }
+
+/// A table as a reader sees it.
+type Table<K> = redb::ReadOnlyTable<K, &'static [u8]>;
 
 /// Signatures and form as stored; the fused vector is stored separately.
 #[derive(Serialize, Deserialize)]
@@ -207,19 +279,8 @@ impl StoredBody {
     }
 }
 
-/// Turns results of the database into results whose errors name the file.
-pub(super) trait At<T> {
-    fn at(self, store: &Store<'_>) -> Result<T, IndexError>;
-}
-
-impl<T, E: Into<redb::Error>> At<T> for Result<T, E> {
-    fn at(self, store: &Store<'_>) -> Result<T, IndexError> {
-        self.map_err(|error| store.error(error))
-    }
-}
-
 /// Turns an error of the database into one that names the file.
-pub(crate) fn database_error(path: &Path, action: &'static str, error: impl Into<redb::Error>) -> IndexError {
+fn database_error(path: &Path, action: &'static str, error: impl Into<redb::Error>) -> IndexError {
     match error.into() {
         redb::Error::Io(source) if source.kind() == std::io::ErrorKind::InvalidData => {
             IndexError::damaged(path, source.to_string())

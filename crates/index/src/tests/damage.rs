@@ -3,8 +3,11 @@
 use std::fs;
 use std::path::Path;
 
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::{Rng, SeedableRng};
+
 use super::{Folder, OPTIONS, export, shape};
-use crate::{Found, Index, IndexError, IndexWriter, Job, SearchMode, Searcher, Shape, verify};
+use crate::{Found, Index, IndexError, IndexWriter, Job, SearchMode, Searcher, Shape, damaged_path, verify};
 
 /// Reads everything that an index holds.
 fn read_all(path: &Path) -> Result<(Vec<Shape>, Found, Found), IndexError> {
@@ -27,9 +30,11 @@ fn a_changed_byte_is_detected_and_never_returned() {
     let bytes = fs::read(&path).unwrap();
     let truth = read_all(&path).unwrap();
     assert_eq!(verify(&path, || ()).unwrap().faults, Vec::<String>::new());
-    // The start and the end completely, and a sample of the rest.
+    // The start and the end completely, and a thousand other bytes.
     let tail = bytes.len().saturating_sub(100)..bytes.len();
-    let positions = (0..512).chain((0..bytes.len()).step_by(997)).chain(tail);
+    let mut random = ChaCha8Rng::seed_from_u64(3);
+    let others = (0..1000).map(|_| (random.next_u64() % bytes.len() as u64) as usize);
+    let positions = (0..512).chain(others.collect::<Vec<_>>()).chain(tail);
     let copy = folder.path("b");
     for at in positions {
         let mut changed = bytes.clone();
@@ -124,4 +129,23 @@ fn a_damaged_index_cannot_be_extended() {
     fs::write(&path, &bytes).unwrap();
     IndexWriter::open(&path, Job::Add, None).unwrap().discard().unwrap();
     assert_eq!(export(&path), whole);
+}
+
+#[test]
+fn a_damaged_index_is_built_again_and_kept_under_another_name() {
+    let folder = Folder::new();
+    let path = folder.index("a", 5);
+    let whole = export(&path);
+    let mut bytes = fs::read(&path).unwrap();
+    bytes[5000] ^= 1;
+    fs::write(&path, &bytes).unwrap();
+    let mut writer = IndexWriter::open(&path, Job::Build, Some(OPTIONS)).unwrap();
+    assert!(writer.replaces_damaged() && writer.is_empty().unwrap());
+    writer.put(&(0..5).map(shape).collect::<Vec<_>>()).unwrap();
+    // Until it is finished, the damaged one stays.
+    assert_eq!(fs::read(&path).unwrap(), bytes);
+    writer.finish().unwrap();
+    assert_eq!(export(&path), whole);
+    assert_eq!(fs::read(damaged_path(&path)).unwrap(), bytes);
+    assert_eq!(folder.names(), ["a", "a.damaged"]);
 }

@@ -67,6 +67,20 @@ fn an_interrupted_removal_starts_over() {
     assert_eq!((writer.is_resumed(), writer.len().unwrap()), (false, 5));
 }
 
+/// As a copy looks before the job of its writer is recorded.
+#[test]
+fn a_writer_interrupted_before_it_began_blocks_nobody() {
+    let folder = Folder::new();
+    let path = folder.index("a", 5);
+    for (job, n_shapes) in [(Job::Add, 5), (Job::Remove, 5), (Job::Build, 5), (Job::Merge, 0)] {
+        fs::copy(&path, work_path(&path)).unwrap();
+        let writer = IndexWriter::open(&path, job, Some(OPTIONS)).unwrap();
+        assert_eq!(writer.len().unwrap(), n_shapes, "{job:?}");
+        drop(writer);
+        fs::remove_file(work_path(&path)).unwrap();
+    }
+}
+
 #[test]
 fn additions_start_over_if_the_index_changed() {
     let folder = Folder::new();

@@ -3,6 +3,7 @@
 mod damage;
 mod durability;
 mod equality;
+mod forged;
 
 use std::path::{Path, PathBuf};
 

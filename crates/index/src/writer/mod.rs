@@ -3,13 +3,13 @@
 mod work;
 
 use std::fs::{self, File};
-use std::io;
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use redb::Database;
 
-use self::work::{Begun, copy_database, database, is_database, open_exclusively, sync_folder};
-use crate::format::{ENTRIES, Store, database_error, seal, unseal, write_cells};
+use self::work::{Begun, copy_database, database, is_database, open_exclusively, with_suffix};
+use crate::format::{ENTRIES, Guarded, Store, call, seal, unseal, write_cells};
 use crate::{Index, IndexError, Shape, ShapeEntry};
 
 pub use self::work::work_path;
@@ -37,6 +37,11 @@ impl Job {
             Self::Remove => "remove",
             Self::Merge => "merge",
         }
+    }
+
+    /// Whether it determines the whole content, so that a damaged index does not matter.
+    fn starts_over(self) -> bool {
+        matches!(self, Self::Build | Self::Merge)
     }
 
     /// Whether the work of an interrupted job of this name is worth keeping.
@@ -69,27 +74,35 @@ pub struct IndexWriter {
     work: PathBuf,
     /// Locked as long as it is open.
     file: File,
-    database: Database,
+    database: Guarded<Database>,
     /// Length of the vectors, once there is one.
     length: Option<usize>,
     resumed: bool,
+    /// Whether the file that it will replace is damaged.
+    replaces_damaged: bool,
 }
 
 impl IndexWriter {
     /// Starts to write an index, or resumes an interrupted job.
     ///
-    /// `options` are the options that its shapes are described with; `None` takes them from the existing index.
+    /// `options` are the options that its shapes are described with; `None` takes them from the existing index. A build
+    /// or a merge starts from nothing if the existing index is damaged, and keeps that file as `NAME.damaged`.
     ///
     /// # Errors
     /// [`IndexError::Busy`], [`IndexError::Unfinished`], [`IndexError::OtherOptions`] and those of [`Index::open`].
     pub fn open(path: &Path, job: Job, options: Option<&str>) -> Result<Self, IndexError> {
         let work = work_path(path);
-        let base = if path.exists() { Some(Index::open(path)?) } else { None };
+        let (base, replaces_damaged) = match Index::open(path) {
+            Ok(base) => (Some(base), false),
+            Err(IndexError::Io { source, .. }) if source.kind() == ErrorKind::NotFound => (None, false),
+            Err(IndexError::Damaged { .. }) if job.starts_over() => (None, true),
+            Err(error) => return Err(error),
+        };
         let options = match (options, &base) {
             (Some(requested), Some(base)) => base.expect_options(requested).map(|()| requested.to_owned())?,
             (Some(requested), None) => requested.to_owned(),
             (None, Some(base)) => base.options().to_owned(),
-            (None, None) => return Err(IndexError::io("read", path)(io::ErrorKind::NotFound.into())),
+            (None, None) => return Err(IndexError::io("read", path)(ErrorKind::NotFound.into())),
         };
         let cannot_write = IndexError::io("write", &work);
         let mut file = open_exclusively(path, &work)?;
@@ -99,42 +112,38 @@ impl IndexWriter {
             options,
             base: base.as_ref().map_or(0, |index| index.fingerprint),
         };
-        if is_database(&mut file).map_err(cannot_write)? {
-            let database = database(&file, &work)?;
-            let store = Store { database: &database, path: &work, action: "write" };
-            if let Some(known) = Begun::read(&store)?
-                && Job::resumes(&known.job)
-            {
-                if known.job != begun.job {
-                    return Err(IndexError::Unfinished { job: known.job, work });
-                }
-                if known.options != begun.options {
-                    let (found, requested) = (known.options, begun.options);
-                    return Err(IndexError::OtherOptions { path: work, found, requested });
-                }
-                // An addition only resumes on the index that it began with; a build determines the whole content.
-                if job == Job::Build || known.base == begun.base {
-                    let length = store.read()?.about("length")?;
-                    let path = path.to_owned();
-                    return Ok(Self { path, work, file, database, length, resumed: true });
-                }
-            }
+        let new = |file: File, database: Guarded<Database>, length, resumed| {
+            let (path, work) = (path.to_owned(), work.clone());
+            Self { path, work, file, database, length, resumed, replaces_damaged }
+        };
+        match resume(&mut file, &work, job, &begun) {
+            Ok(Some((database, length))) => return Ok(new(file, database, length, true)),
+            // Work that cannot be read is of no use.
+            Ok(None) | Err(IndexError::Damaged { .. }) => {}
+            Err(error) => return Err(error),
         }
         // A merge starts empty.
         let base = base.filter(|_| job != Job::Merge);
         copy_database(&mut file, base.as_ref()).map_err(|error| match error.kind() {
-            io::ErrorKind::InvalidData => IndexError::damaged(path, error.to_string()),
+            ErrorKind::InvalidData => IndexError::damaged(path, error.to_string()),
             _ => cannot_write(error),
         })?;
         let database = database(&file, &work)?;
-        let store = Store { database: &database, path: &work, action: "write" };
+        let store = Store { database: &database, path: &work, action: "write", n_bytes: n_bytes(&file) };
         begun.write(&store)?;
         let length = store.read()?.about("length")?;
-        Ok(Self { path: path.to_owned(), work, file, database, length, resumed: false })
+        Ok(new(file, database, length, false))
     }
 
-    fn store(&self) -> Store<'_> {
-        Store { database: &self.database, path: &self.work, action: "write" }
+    pub(crate) fn store(&self) -> Store<'_> {
+        let n_bytes = n_bytes(&self.file);
+        Store { database: &self.database, path: &self.work, action: "write", n_bytes }
+    }
+
+    /// Whether the existing index is damaged, so that the work started from nothing.
+    #[must_use]
+    pub fn replaces_damaged(&self) -> bool {
+        self.replaces_damaged
     }
 
     /// Whether it resumes an interrupted job.
@@ -227,11 +236,11 @@ impl IndexWriter {
     /// # Errors
     /// [`IndexError::Io`]; then the index is unchanged, and the work is kept.
     pub fn finish(self) -> Result<Index, IndexError> {
-        let Self { path, work, mut file, mut database, .. } = self;
-        let store = Store { database: &database, path: &work, action: "write" };
+        let store = self.store();
         write_cells(&store)?;
         let n_shapes = store.read()?.len()?;
-        database.compact().map_err(|error| database_error(&work, "write", error))?;
+        let Self { path, work, mut file, mut database, replaces_damaged, .. } = self;
+        call(&work, "write", || database.compact())?;
         drop(database);
         // If this fails half-way, `unseal` removes the rest when the job is resumed.
         seal(&mut file).map_err(IndexError::io("write", &work))?;
@@ -241,8 +250,11 @@ impl IndexWriter {
             let what = format!("{} of {n_shapes} shapes were written", written.len());
             return Err(IndexError::damaged(&work, what));
         }
-        fs::rename(&work, &path).map_err(IndexError::io("write", &path))?;
-        sync_folder(&path).map_err(IndexError::io("write", &path))?;
+        if replaces_damaged {
+            keep_damaged(&path)?;
+        }
+        let cannot_write = |error: files::FileError| IndexError::io("write", &path)(error.source);
+        files::rename_durably(&work, &path).map_err(cannot_write)?;
         drop(file);
         Index::open(&path)
     }
@@ -253,4 +265,58 @@ impl IndexWriter {
         drop(database);
         fs::remove_file(&work).map_err(IndexError::io("remove", &work))
     }
+}
+
+/// The database of an interrupted job and the length of its vectors, if `begun` continues that job.
+fn resume(
+    file: &mut File,
+    work: &Path,
+    job: Job,
+    begun: &Begun,
+) -> Result<Option<(Guarded<Database>, Option<usize>)>, IndexError> {
+    if !is_database(file).map_err(IndexError::io("write", work))? {
+        return Ok(None);
+    }
+    let database = database(file, work)?;
+    let store = Store { database: &database, path: work, action: "write", n_bytes: n_bytes(file) };
+    let Some(known) = Begun::read(&store)? else { return Ok(None) };
+    // A work file that names another base is a copy of the index, made by a writer that was interrupted before it
+    // recorded its job, or belongs to an earlier state of the index. A build determines the whole content, so it
+    // continues all the same.
+    let is_build = job == Job::Build && known.job == job.name();
+    if !Job::resumes(&known.job) || known.base != begun.base && !is_build {
+        return Ok(None);
+    }
+    if known.job != begun.job {
+        return Err(IndexError::Unfinished { job: known.job, work: work.to_owned() });
+    }
+    if known.options != begun.options {
+        let (found, requested) = (known.options, begun.options.clone());
+        return Err(IndexError::OtherOptions { path: work.to_owned(), found, requested });
+    }
+    let length = store.read()?.about("length")?;
+    Ok(Some((database, length)))
+}
+
+/// The size of an open file; 0 if it is unknown.
+fn n_bytes(file: &File) -> u64 {
+    file.metadata().map_or(0, |about| about.len())
+}
+
+/// Gives a damaged index a second name before the first one is taken.
+fn keep_damaged(path: &Path) -> Result<(), IndexError> {
+    let kept = damaged_path(path);
+    let cannot_write = IndexError::io("write", &kept);
+    match fs::remove_file(&kept) {
+        Err(error) if error.kind() != ErrorKind::NotFound => return Err(cannot_write(error)),
+        _ => {}
+    }
+    // Not every file system has links.
+    fs::hard_link(path, &kept).or_else(|_| fs::copy(path, &kept).map(drop)).map_err(cannot_write)
+}
+
+/// The file that keeps a damaged index after it was built again.
+#[must_use]
+pub fn damaged_path(path: &Path) -> PathBuf {
+    with_suffix(path, ".damaged")
 }

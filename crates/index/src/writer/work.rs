@@ -1,20 +1,24 @@
 //! The file that a writer works in, and what it records about an interrupted job.
 
-use std::fs::{self, File, OpenOptions, TryLockError};
+use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 use redb::backends::FileBackend;
 use redb::{Database, StorageBackend};
 
-use crate::format::{BLOCK, CACHE, DATABASE_MAGIC, Sealed, Store, database_error};
+use crate::format::{BLOCK, CACHE, DATABASE_MAGIC, Guarded, Sealed, Store, call};
 use crate::{Index, IndexError};
 
 /// The file that a writer of this index works in.
 #[must_use]
 pub fn work_path(path: &Path) -> PathBuf {
+    with_suffix(path, ".work")
+}
+
+pub(super) fn with_suffix(path: &Path, suffix: &str) -> PathBuf {
     let mut name = path.file_name().unwrap_or_default().to_owned();
-    name.push(".work");
+    name.push(suffix);
     path.with_file_name(name)
 }
 
@@ -59,26 +63,10 @@ pub(super) fn open_exclusively(path: &Path, work: &Path) -> Result<File, IndexEr
             Err(TryLockError::Error(source)) => return Err(cannot_write(source)),
         }
         // Another writer may have renamed the file before it was locked.
-        if is_at(&file, work) {
+        if files::is_at(&file, work) {
             return Ok(file);
         }
     }
-}
-
-/// Whether an open file still has this name.
-#[cfg(unix)]
-fn is_at(file: &File, path: &Path) -> bool {
-    use std::os::unix::fs::MetadataExt;
-    match (file.metadata(), fs::metadata(path)) {
-        (Ok(open), Ok(named)) => open.ino() == named.ino() && open.dev() == named.dev(),
-        _ => false,
-    }
-}
-
-/// Whether an open file still has this name: here open files cannot be renamed.
-#[cfg(not(unix))]
-fn is_at(_: &File, path: &Path) -> bool {
-    path.exists()
 }
 
 /// Whether a file begins like a database.
@@ -90,11 +78,13 @@ pub(super) fn is_database(file: &mut File) -> io::Result<bool> {
 }
 
 /// Opens a work file as a database.
-pub(super) fn database(file: &File, work: &Path) -> Result<Database, IndexError> {
-    let error = |error: redb::DatabaseError| database_error(work, "write", error);
+pub(super) fn database(file: &File, work: &Path) -> Result<Guarded<Database>, IndexError> {
     let file = file.try_clone().map_err(IndexError::io("write", work))?;
-    let backend = Work(FileBackend::new(file).map_err(error)?);
-    Database::builder().set_cache_size(CACHE).create_with_backend(backend).map_err(error)
+    let database = call(work, "write", || {
+        let backend = Work(FileBackend::new(file)?);
+        Database::builder().set_cache_size(CACHE).create_with_backend(backend)
+    })?;
+    Ok(Guarded::new(database))
 }
 
 /// Makes a file a copy of the database of `base`, or empty. Writes the first block last, so that an interrupted copy
@@ -118,15 +108,6 @@ pub(super) fn copy_database(file: &mut File, base: Option<&Index>) -> io::Result
     file.seek(SeekFrom::Start(0))?;
     file.write_all(first)?;
     file.sync_data()
-}
-
-/// Flushes the folder of a file, and with it the file's new name, to disk.
-pub(super) fn sync_folder(path: &Path) -> io::Result<()> {
-    if cfg!(unix) {
-        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        File::open(folder)?.sync_all()?;
-    }
-    Ok(())
 }
 
 /// redb's file backend without its locks: the writer holds one already.

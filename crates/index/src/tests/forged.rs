@@ -1,0 +1,121 @@
+//! Files that were changed together with their checksums: an error, or an answer, but never a panic.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::{Rng, SeedableRng};
+
+use super::{Folder, shape};
+use crate::format::{BLOCK, seal, unseal};
+use crate::{Index, IndexError, IndexWriter, Job, SearchMode, Searcher, Shape, verify, work_path};
+
+/// The bytes of an index without checksums and footer.
+fn database(path: &Path) -> Vec<u8> {
+    let copy = path.with_extension("bare");
+    fs::copy(path, &copy).unwrap();
+    let mut file = fs::OpenOptions::new().read(true).write(true).open(&copy).unwrap();
+    unseal(&mut file).unwrap();
+    fs::read(copy).unwrap()
+}
+
+/// Writes a file that holds this database, with the right checksums.
+fn forge(path: &Path, database: &[u8]) {
+    fs::write(path, database).unwrap();
+    let mut file = fs::OpenOptions::new().read(true).write(true).open(path).unwrap();
+    seal(&mut file).unwrap();
+}
+
+/// Reads everything in every way.
+fn read(path: &Path) -> Result<(), IndexError> {
+    let index = Index::open(path)?;
+    let everything = [
+        index.entries().map(drop),
+        index.each(|shape: Shape| {
+            index.entry(&shape.id)?;
+            index.vectors(&shape.id).map(drop)
+        }),
+        index.contains("class1/0004").map(drop),
+        index.nearest(&shape(2).vectors.fused, 4, SearchMode::Auto).map(drop),
+        Searcher::load(&index)
+            .and_then(|searcher| searcher.nearest(&shape(2).vectors.fused, 4, SearchMode::Exact))
+            .map(drop),
+        match index.export(&mut std::io::sink()) {
+            Err(crate::ExportError::Index(error)) => Err(error),
+            _ => Ok(()),
+        },
+    ];
+    everything.into_iter().collect()
+}
+
+/// Adds a shape and removes one.
+fn change(path: &Path) -> Result<(), IndexError> {
+    let mut writer = IndexWriter::open(path, Job::Add, None)?;
+    writer.put(&[shape(1000)])?;
+    writer.remove(&[shape(3).id])?;
+    writer.ids()?;
+    writer.finish().map(drop)
+}
+
+/// What a forged file may end with.
+fn is_clean(result: &Result<(), IndexError>) -> bool {
+    use IndexError as E;
+    match result {
+        // A forged name, length or option is an ordinary one.
+        Ok(()) | Err(E::Damaged { .. } | E::NoSuchShape { .. } | E::OtherLength { .. }) => true,
+        Err(E::Foreign(_) | E::Io { .. } | E::Codec { .. }) => true,
+        Err(_) => false,
+    }
+}
+
+#[test]
+fn a_forged_file_is_an_error_or_an_index() {
+    let folder = Folder::new();
+    let whole = database(&folder.index("a", 400));
+    let n_pages = whole.len() / BLOCK;
+    let mut random = ChaCha8Rng::seed_from_u64(7);
+    let mut below = |n: usize| (random.next_u64() % n as u64) as usize;
+    let path: PathBuf = folder.path("forged");
+    let mut refused = 0;
+    for turn in 0..600 {
+        let mut bytes = whole.clone();
+        for _ in 0..1 + below(3) {
+            // The first bytes of a page say where everything else is. Every tenth time, the first page.
+            let page = if turn % 10 == 0 { 0 } else { below(n_pages) };
+            let inside = if below(2) == 0 { below(64) } else { below(BLOCK) };
+            bytes[page * BLOCK + inside] = match below(4) {
+                0 => 0,
+                1 => 255,
+                _ => below(256) as u8,
+            };
+        }
+        forge(&path, &bytes);
+        let results = [read(&path), change(&path)];
+        for result in &results {
+            assert!(is_clean(result), "turn {turn}: {result:?}");
+        }
+        refused += usize::from(results[0].is_err());
+        // Verification finds whatever keeps the rest from working.
+        forge(&path, &bytes);
+        if let Ok(found) = verify(&path, || ()) {
+            assert!(read(&path).is_ok() || !found.faults.is_empty(), "turn {turn}");
+        }
+        let _ = fs::remove_file(work_path(&path));
+    }
+    assert!(refused > 100, "{refused} of 600 files are refused");
+}
+
+#[test]
+fn a_forged_count_reserves_no_memory() {
+    use crate::format::write_header;
+    let folder = Folder::new();
+    for (dim, sizes) in [(usize::MAX - 3, vec![20]), (3, vec![u32::MAX; 3]), (0, vec![20]), (3, vec![])] {
+        let path = folder.index("a", 20);
+        let writer = IndexWriter::open(&path, Job::Build, Some(super::OPTIONS)).unwrap();
+        write_header(&writer.store(), dim, sizes).unwrap();
+        drop(writer);
+        forge(&path, &fs::read(work_path(&path)).unwrap());
+        fs::remove_file(work_path(&path)).unwrap();
+        assert!(matches!(read(&path), Err(IndexError::Damaged { .. })), "{dim}");
+    }
+}
