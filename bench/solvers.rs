@@ -37,7 +37,8 @@ fn solvers(criterion: &mut Criterion) {
             let Ok(solver) = method.prepare(&surface) else { continue };
             let (mut out, mut sources) = (vec![0.0; surface.n_vertices()], sources(&surface));
             group.bench_function(BenchmarkId::new("source", size), |bencher| {
-                bencher.iter(|| sources.by_ref().take(1).for_each(|v| solver.distances_into(v, &mut out)));
+                bencher
+                    .iter(|| sources.by_ref().take(1).try_for_each(|v| solver.distances_into(v, &mut out)));
             });
         }
     }
@@ -51,7 +52,7 @@ fn sampling(criterion: &mut Criterion) {
     let Ok(solver) = Method::default().prepare(&surface) else { return };
     let (mut out, mut sources) = (vec![0.0; surface.n_vertices()], sources(&surface));
     group.bench_function("one full map", |bencher| {
-        bencher.iter(|| sources.by_ref().take(1).for_each(|v| solver.distances_into(v, &mut out)));
+        bencher.iter(|| sources.by_ref().take(1).try_for_each(|v| solver.distances_into(v, &mut out)));
     });
     for threads in [1, 2] {
         let Ok(pool) = rayon::ThreadPoolBuilder::new().num_threads(threads).build() else { continue };

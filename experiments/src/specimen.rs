@@ -89,7 +89,7 @@ impl<'a> Specimen<'a> {
         once(&self.optimum, distances.name, || {
             let all = self.all_pairs(distances)?;
             let embedding = classical(&all, DIM)?;
-            let stress = paper_stress(&embedding.coords, all.as_ref());
+            let stress = paper_stress(&embedding.coords, all.as_ref())?;
             Ok(Optimum { embedding, stress })
         })
     }

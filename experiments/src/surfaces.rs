@@ -109,18 +109,18 @@ pub(crate) fn shown(
     let solver: Box<dyn DistanceSolver> = options.geodesic.prepare(&shape.surface.intrinsic)?;
     let Some(first) = forms.first() else { bail!("there is no canonical form") };
     let (vertices, thin) = coarse(&mesh, limit);
-    let distances = solver.distance_columns(&first.samples[..1.min(first.samples.len())]);
+    let distances = solver.distance_columns(&first.samples[..1.min(first.samples.len())])?;
     let distance: Vec<f64> = vertices.iter().map(|&v| distances[(v, 0)]).collect();
     let form = |formed: &&Formed| {
-        let from_samples = solver.distance_columns(&formed.samples);
-        formed.shown(&vertices, &from_samples)
+        let from_samples = solver.distance_columns(&formed.samples)?;
+        Ok::<_, anyhow::Error>(formed.shown(&vertices, &from_samples))
     };
     Ok(ShownShape {
         name: shape.name.clone(),
         label: shape.label.clone(),
         n_vertices: mesh.n_vertices(),
         surface: Geometry::new(&thin).with_values("distance (mesh units)", &distance),
-        forms: forms.iter().map(form).collect(),
+        forms: forms.iter().map(form).collect::<Result<_>>()?,
     })
 }
 

@@ -55,6 +55,12 @@ pub enum Exceeded {
         /// Bytes allowed.
         limit: usize,
     },
+    /// The system does not give it the memory that it needs.
+    #[error("{needed} bytes of memory are needed, and the system has no more")]
+    Allocation {
+        /// Bytes requested.
+        needed: usize,
+    },
 }
 
 impl Budget {
@@ -112,6 +118,69 @@ impl Budget {
             _ => Ok(()),
         }
     }
+
+    /// A vector of `n` default values, such as zeros, if it may hold that many and the system has the memory.
+    ///
+    /// # Errors
+    /// [`Exceeded::Memory`] and [`Exceeded::Allocation`].
+    pub fn vector<T: Clone + Default>(&self, n: usize) -> Result<Vec<T>, Exceeded> {
+        let needed = n.saturating_mul(size_of::<T>());
+        self.check_memory(needed)?;
+        let mut vector = Vec::new();
+        vector.try_reserve_exact(n).map_err(|_| Exceeded::Allocation { needed })?;
+        vector.resize(n, T::default());
+        Ok(vector)
+    }
+
+    /// Checks this budget once in a while.
+    #[must_use]
+    pub fn meter(&self) -> Meter<'_> {
+        Meter { budget: self, left: INTERVAL }
+    }
+}
+
+/// Operations between two checks by a [`Meter`]: a millisecond or less if each takes a few nanoseconds.
+const INTERVAL: usize = 1 << 16;
+
+/// Counts the operations of a loop and checks a budget once in 65,536 of them.
+///
+/// ```
+/// use canonform_budget::{Budget, Exceeded};
+///
+/// let budget = Budget::unlimited();
+/// let mut meter = budget.meter();
+/// for row in [[1, 2], [3, 4]] {
+///     meter.count(row.len())?;
+/// }
+/// # Ok::<(), Exceeded>(())
+/// ```
+#[derive(Debug)]
+pub struct Meter<'a> {
+    budget: &'a Budget,
+    left: usize,
+}
+
+impl Meter<'_> {
+    /// Counts operations; checks the budget if it is time.
+    ///
+    /// # Errors
+    /// As [`Budget::check`].
+    #[inline]
+    pub fn count(&mut self, operations: usize) -> Result<(), Exceeded> {
+        match self.left.checked_sub(operations) {
+            Some(left) => {
+                self.left = left;
+                Ok(())
+            }
+            None => self.renew(),
+        }
+    }
+
+    #[cold]
+    fn renew(&mut self) -> Result<(), Exceeded> {
+        self.left = INTERVAL;
+        self.budget.check()
+    }
 }
 
 #[cfg(test)]
@@ -137,5 +206,24 @@ mod tests {
         assert_eq!(small.check_memory(10), Ok(()));
         assert_eq!(small.check_memory(11), Err(Exceeded::Memory { needed: 11, limit: 10 }));
         assert_eq!(Budget::unlimited().check_memory(usize::MAX), Ok(()));
+    }
+
+    #[test]
+    fn a_vector_is_refused_by_the_limit_and_by_the_system() {
+        assert_eq!(Budget::unlimited().vector::<u8>(3), Ok(vec![0; 3]));
+        let small = Budget::unlimited().with_memory(10);
+        assert_eq!(small.vector::<f64>(2), Err(Exceeded::Memory { needed: 16, limit: 10 }));
+        let needed = usize::MAX;
+        assert_eq!(Budget::unlimited().vector::<f64>(needed), Err(Exceeded::Allocation { needed }));
+    }
+
+    #[test]
+    fn a_meter_sees_a_cancellation_within_its_interval() {
+        let budget = Budget::unlimited();
+        let mut meter = budget.meter();
+        budget.cancel();
+        let seen = (0..=INTERVAL).find(|_| meter.count(1).is_err());
+        assert_eq!(seen, Some(INTERVAL));
+        assert_eq!(budget.meter().count(usize::MAX), Err(Exceeded::Cancelled));
     }
 }

@@ -7,7 +7,9 @@ use descriptors::DescriptorError;
 use files::FileError;
 use geodesics::GeodesicError;
 use index::IndexError;
+use linalg::LinalgError;
 use mesh::MeshError;
+use nmds::NmdsError;
 use retrieval::RetrievalError;
 
 use crate::input::point::InputPoint;
@@ -21,19 +23,19 @@ pub enum Error {
     Mesh(#[from] MeshError),
     /// Distances on the surface.
     #[error(transparent)]
-    Geodesic(#[from] GeodesicError),
+    Geodesic(GeodesicError),
     /// Matrices.
     #[error(transparent)]
-    Linalg(#[from] linalg::LinalgError),
+    Linalg(LinalgError),
     /// The embedding.
     #[error(transparent)]
-    Nmds(#[from] nmds::NmdsError),
+    Nmds(NmdsError),
     /// A limit on time or memory, or a cancellation.
     #[error(transparent)]
     Exceeded(#[from] Exceeded),
     /// The form, its alignment or its signatures.
     #[error(transparent)]
-    Descriptor(#[from] DescriptorError),
+    Descriptor(DescriptorError),
     /// The scores.
     #[error(transparent)]
     Retrieval(#[from] RetrievalError),
@@ -227,6 +229,31 @@ pub enum Remedy {
     BuildIndexAgain,
     /// Evaluate a part of the collection, such as one shard.
     EvaluateShard,
+}
+
+/// Errors of the stages. A limit that was exceeded is [`Error::Exceeded`] at every depth.
+macro_rules! from_stage {
+    ($($error:ident => $variant:ident: $($exceeded:pat => $limit:ident),+;)+) => {$(
+        impl From<$error> for Error {
+            fn from(error: $error) -> Self {
+                match error {
+                    $($exceeded => Self::Exceeded($limit),)+
+                    other => Self::$variant(other),
+                }
+            }
+        }
+    )+};
+}
+
+from_stage! {
+    LinalgError => Linalg: LinalgError::Exceeded(limit) => limit;
+    GeodesicError => Geodesic:
+        GeodesicError::Exceeded(limit) => limit,
+        GeodesicError::Matrix(LinalgError::Exceeded(limit)) => limit;
+    NmdsError => Nmds:
+        NmdsError::Exceeded(limit) => limit,
+        NmdsError::Linalg(LinalgError::Exceeded(limit)) => limit;
+    DescriptorError => Descriptor: DescriptorError::Linalg(LinalgError::Exceeded(limit)) => limit;
 }
 
 impl Error {

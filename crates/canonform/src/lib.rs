@@ -61,7 +61,7 @@
 //! let surface = Surface::new(&shapes::icosphere(3), &Default::default())?;
 //! // Distances from vertex 0 by fast marching, at most half of the circumference of the unit sphere.
 //! let solver = Method::default().prepare(&surface.intrinsic)?;
-//! let distances = solver.distances(VertexId(0));
+//! let distances = solver.distances(VertexId(0))?;
 //! let farthest = distances.iter().copied().fold(0.0, f64::max);
 //! assert!((3.0..3.15).contains(&farthest));
 //!
@@ -97,7 +97,8 @@ pub use error::{Error, Remedy};
 pub use form::{
     DISTANCES_LIMIT, DescentReport, DescribeOptions, EmbedMethod, EmbedReport, Embedded, FormOptions,
     MethodFacts, MethodReport, MethodsReport, Samples, SecondsReport, ShapeDescription, StressChoice,
-    StressKind, StressOptions, StressReport, compare_methods, describe, embed, embed_and_measure,
+    StressKind, StressOptions, StressReport, compare_methods, describe, describe_within, embed,
+    embed_and_measure,
 };
 pub use input::{
     AllPairs, Asymmetry, BadPoint, InputPoint, LabelFile, PathPoint, ShapeFile, Surface, SurfacePath,

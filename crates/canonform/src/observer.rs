@@ -1,6 +1,6 @@
 //! Progress and limits of long work.
 
-use budget::Budget;
+use budget::{Budget, Exceeded};
 use geodesics::{DistanceSolver, PrunedSolver, Source};
 use linalg::Matrix;
 use surface::VertexId;
@@ -26,6 +26,17 @@ impl Observer for () {
     fn step(&self) {}
 }
 
+/// Limits without progress.
+impl Observer for Budget {
+    fn budget(&self) -> Budget {
+        self.clone()
+    }
+
+    fn begin(&self, _: &str, _: usize) {}
+
+    fn step(&self) {}
+}
+
 /// Sources solved between two reports of progress.
 const BATCH: usize = 64;
 
@@ -46,21 +57,27 @@ impl DistanceSolver for Observed<'_> {
         self.solver.n_vertices()
     }
 
-    fn solve_into(&self, sources: &[Source], max_distance: f64, out: &mut [f64]) {
-        self.solver.solve_into(sources, max_distance, out);
-        self.observer.step();
+    fn budget(&self) -> Budget {
+        self.solver.budget()
     }
 
-    fn distance_columns(&self, sources: &[VertexId]) -> Matrix {
+    fn solve_into(&self, sources: &[Source], max_distance: f64, out: &mut [f64]) -> Result<(), Exceeded> {
+        self.solver.solve_into(sources, max_distance, out)?;
+        self.observer.step();
+        Ok(())
+    }
+
+    fn distance_columns(&self, sources: &[VertexId]) -> Result<Matrix, Exceeded> {
         let p = self.n_vertices();
-        let mut columns = Matrix::zeros(p, sources.len());
+        let columns = self.budget().vector(p.saturating_mul(sources.len()))?;
+        let mut columns = Matrix::from_vec(p, sources.len(), columns);
         for (i, batch) in sources.chunks(BATCH).enumerate() {
             // Some solvers solve many sources at once faster than one by one.
-            let solved = self.solver.distance_columns(batch);
+            let solved = self.solver.distance_columns(batch)?;
             columns.columns_mut(i * BATCH, batch.len()).copy_from(&solved);
             batch.iter().for_each(|_| self.observer.step());
         }
-        columns
+        Ok(columns)
     }
 
     fn pruned(&self) -> Option<&dyn PrunedSolver> {

@@ -1,6 +1,7 @@
 //! The Laplace-Beltrami spectrum of a surface.
 
-use linalg::{GeneralizedEigen, Matrix, SparseSymmetric, smallest_eigenpairs};
+use budget::Budget;
+use linalg::{GeneralizedEigen, LinalgError, Matrix, SparseSymmetric, smallest_eigenpairs_within};
 use surface::IntrinsicMesh;
 use surface::laplacian::Laplacian;
 
@@ -28,11 +29,20 @@ impl LaplaceSpectrum {
     /// The `m` smallest eigenpairs, including the constant function; fewer on a surface with fewer vertices.
     ///
     /// Cotangent stiffness on an intrinsic Delaunay triangulation, lumped masses: see
-    /// [`Laplacian`] and [`smallest_eigenpairs`]. Cost: one sparse factorisation.
+    /// [`Laplacian`] and [`smallest_eigenpairs`](linalg::smallest_eigenpairs). Cost: one sparse factorisation.
     ///
     /// # Errors
     /// [`DescriptorError::NoExtent`] for a surface without area; [`DescriptorError::Linalg`].
     pub fn new(mesh: &IntrinsicMesh, m: usize) -> Result<Self, DescriptorError> {
+        Self::within(mesh, m, &Budget::unlimited())
+    }
+
+    /// As [`new`](Self::new), within a budget.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new); a budget that is exceeded is a [`DescriptorError::Linalg`].
+    pub fn within(mesh: &IntrinsicMesh, m: usize, budget: &Budget) -> Result<Self, DescriptorError> {
+        budget.check().map_err(LinalgError::from)?;
         let laplacian = Laplacian::new(mesh);
         let mut masses = laplacian.masses();
         let area: f64 = masses.iter().sum();
@@ -41,7 +51,8 @@ impl LaplaceSpectrum {
         }
         masses.iter_mut().for_each(|mass| *mass /= area);
         let stiffness = SparseSymmetric::from_entries(mesh.n_vertices(), laplacian.stiffness_entries());
-        let GeneralizedEigen { values, vectors } = smallest_eigenpairs(&stiffness, &masses, m)?;
+        let GeneralizedEigen { values, vectors } =
+            smallest_eigenpairs_within(&stiffness, &masses, m, budget)?;
         Ok(Self { values, vectors, masses, area: area * laplacian.metric().unit.powi(2) })
     }
 }

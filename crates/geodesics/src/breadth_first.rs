@@ -2,6 +2,7 @@
 
 use std::collections::VecDeque;
 
+use budget::{Budget, Exceeded};
 use surface::IntrinsicMesh;
 
 use crate::graph::EdgeGraph;
@@ -18,20 +19,29 @@ use crate::source::Source;
 ///
 /// let mesh = shapes::tetrahedron(0).intrinsic();
 /// let hop = mesh.mean_edge_length();
-/// assert_eq!(BreadthFirst::new(&mesh).distances(VertexId(0)), [0.0, hop, hop, hop]);
+/// assert_eq!(BreadthFirst::new(&mesh).distances(VertexId(0))?, [0.0, hop, hop, hop]);
+/// # Ok::<(), canonform_geodesics::GeodesicError>(())
 /// ```
 #[derive(Debug)]
 pub struct BreadthFirst {
     graph: EdgeGraph,
     hop: f64,
     scratch: Pool<VecDeque<u32>>,
+    budget: Budget,
 }
 
 impl BreadthFirst {
     /// Prepares a surface.
     #[must_use]
     pub fn new(mesh: &IntrinsicMesh) -> Self {
-        Self { graph: EdgeGraph::new(mesh), hop: mesh.mean_edge_length(), scratch: Pool::default() }
+        let (graph, hop) = (EdgeGraph::new(mesh), mesh.mean_edge_length());
+        Self { graph, hop, scratch: Pool::default(), budget: Budget::unlimited() }
+    }
+
+    /// The same solver, which keeps to a budget.
+    #[must_use]
+    pub fn with_budget(self, budget: Budget) -> Self {
+        Self { budget, ..self }
     }
 }
 
@@ -40,11 +50,16 @@ impl DistanceSolver for BreadthFirst {
         self.graph.n_vertices()
     }
 
-    fn solve_into(&self, sources: &[Source], max_distance: f64, out: &mut [f64]) {
+    fn budget(&self) -> Budget {
+        self.budget.clone()
+    }
+
+    fn solve_into(&self, sources: &[Source], max_distance: f64, out: &mut [f64]) -> Result<(), Exceeded> {
         assert_eq!(out.len(), self.n_vertices(), "one distance per vertex");
         out.fill(f64::INFINITY);
         self.scratch.with(|queue| {
             queue.clear();
+            let mut meter = self.budget.meter();
             // A point on an edge or a face counts as its nearest vertex.
             for source in sources {
                 if let Some((vertex, _)) = source.reach().iter().min_by(|a, b| a.1.total_cmp(&b.1)) {
@@ -54,14 +69,18 @@ impl DistanceSolver for BreadthFirst {
             }
             while let Some(vertex) = queue.pop_front() {
                 let hops = out[vertex as usize] + 1.0;
-                for &(target, _) in self.graph.neighbours(vertex) {
+                let neighbours = self.graph.neighbours(vertex);
+                meter.count(1 + neighbours.len())?;
+                for &(target, _) in neighbours {
                     if out[target as usize] > hops {
                         out[target as usize] = hops;
                         queue.push_back(target);
                     }
                 }
             }
-        });
+            self.budget.check()
+        })?;
         out.iter_mut().for_each(|distance| *distance = within(*distance * self.hop, max_distance));
+        Ok(())
     }
 }

@@ -1,5 +1,6 @@
 //! Distances along edges.
 
+use budget::{Budget, Exceeded};
 use surface::IntrinsicMesh;
 
 use crate::graph::EdgeGraph;
@@ -16,20 +17,28 @@ use crate::source::Source;
 /// use surface::VertexId;
 ///
 /// // On a unit cube whose sides have one diagonal each, two corners are at most two edges apart.
-/// let along_edges = Dijkstra::new(&shapes::cube(0).intrinsic()).distances(VertexId(0));
+/// let along_edges = Dijkstra::new(&shapes::cube(0).intrinsic()).distances(VertexId(0))?;
 /// assert!(along_edges.iter().all(|d| *d <= 1.0 + 2f64.sqrt()));
+/// # Ok::<(), canonform_geodesics::GeodesicError>(())
 /// ```
 #[derive(Debug)]
 pub struct Dijkstra {
     graph: EdgeGraph,
     scratch: Pool<VertexHeap>,
+    budget: Budget,
 }
 
 impl Dijkstra {
     /// Prepares a surface.
     #[must_use]
     pub fn new(mesh: &IntrinsicMesh) -> Self {
-        Self { graph: EdgeGraph::new(mesh), scratch: Pool::default() }
+        Self { graph: EdgeGraph::new(mesh), scratch: Pool::default(), budget: Budget::unlimited() }
+    }
+
+    /// The same solver, which keeps to a budget.
+    #[must_use]
+    pub fn with_budget(self, budget: Budget) -> Self {
+        Self { budget, ..self }
     }
 }
 
@@ -38,10 +47,15 @@ impl DistanceSolver for Dijkstra {
         self.graph.n_vertices()
     }
 
-    fn solve_into(&self, sources: &[Source], max_distance: f64, out: &mut [f64]) {
+    fn budget(&self) -> Budget {
+        self.budget.clone()
+    }
+
+    fn solve_into(&self, sources: &[Source], max_distance: f64, out: &mut [f64]) -> Result<(), Exceeded> {
         assert_eq!(out.len(), self.n_vertices(), "one distance per vertex");
         self.scratch.with(|heap| {
             heap.reset(out.len());
+            let mut meter = self.budget.meter();
             for (vertex, distance) in sources.iter().flat_map(Source::reach) {
                 heap.relax(vertex.0, *distance);
             }
@@ -49,13 +63,16 @@ impl DistanceSolver for Dijkstra {
                 if distance > max_distance {
                     break;
                 }
-                for &(target, length) in self.graph.neighbours(vertex) {
+                let neighbours = self.graph.neighbours(vertex);
+                meter.count(1 + neighbours.len())?;
+                for &(target, length) in neighbours {
                     heap.relax(target, distance + length);
                 }
             }
             for (v, distance) in (0..).zip(out) {
                 *distance = within(heap.distance(v), max_distance);
             }
-        });
+            self.budget.check()
+        })
     }
 }

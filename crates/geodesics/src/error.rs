@@ -57,4 +57,10 @@ pub enum GeodesicError {
         /// Why not.
         reason: String,
     },
+    /// A limit on time or memory, or a cancellation.
+    #[error(transparent)]
+    Exceeded(#[from] budget::Exceeded),
+    /// Distances that are no matrix, because a vertex cannot be reached from another.
+    #[error(transparent)]
+    Matrix(#[from] linalg::LinalgError),
 }

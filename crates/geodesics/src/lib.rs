@@ -20,7 +20,7 @@
 //! let solver = Method::default().prepare(&surface)?;
 //!
 //! // Distances from one vertex to all, and the shortest path to one of them.
-//! let distances = solver.distances(VertexId(0));
+//! let distances = solver.distances(VertexId(0))?;
 //! let sources = [Source::vertex(VertexId(0))];
 //! let path = PathTracer::new(&surface, &sources, &distances).path_to(SurfacePoint::Vertex(VertexId(330)))?;
 //! assert!((path.length / distances[330] - 1.0).abs() < 0.05);

@@ -1,5 +1,6 @@
 //! The choice of a solver.
 
+use budget::Budget;
 use surface::IntrinsicMesh;
 
 use crate::breadth_first::BreadthFirst;
@@ -20,7 +21,7 @@ use crate::solver::DistanceSolver;
 /// let sphere = shapes::icosphere(2).intrinsic();
 /// for method in Method::all() {
 ///     let solver = method.prepare(&sphere)?;
-///     let farthest = solver.distances(VertexId(0)).into_iter().fold(0.0, f64::max);
+///     let farthest = solver.distances(VertexId(0))?.into_iter().fold(0.0, f64::max);
 ///     println!("{:13} {farthest:.3}  {}", method.name(), method.summary());
 /// }
 /// assert_eq!(Method::named("fast-marching"), Some(Method::default()));
@@ -84,18 +85,34 @@ impl Method {
         }
     }
 
-    /// Prepares a surface.
+    /// Prepares a surface, without limits on time and memory.
     ///
     /// # Errors
     /// Those of [`HeatMethod::new`]; the other methods accept any surface.
     pub fn prepare(self, mesh: &IntrinsicMesh) -> Result<Box<dyn DistanceSolver>, GeodesicError> {
-        Ok(match self {
-            Self::FastMarching(options) => Box::new(FastMarching::new(mesh, options)),
-            Self::Heat(options) => Box::new(HeatMethod::new(mesh, options)?),
-            Self::Exact => Box::new(Exact::new(mesh)),
-            Self::Dijkstra => Box::new(Dijkstra::new(mesh)),
-            Self::BreadthFirst => Box::new(BreadthFirst::new(mesh)),
-        })
+        self.prepare_within(mesh, &Budget::unlimited())
+    }
+
+    /// Prepares a surface within a budget, which the solver keeps to as well.
+    ///
+    /// # Errors
+    /// [`GeodesicError::Exceeded`] and those of [`prepare`](Self::prepare).
+    pub fn prepare_within(
+        self,
+        mesh: &IntrinsicMesh,
+        budget: &Budget,
+    ) -> Result<Box<dyn DistanceSolver>, GeodesicError> {
+        budget.check()?;
+        let own = budget.clone();
+        let solver: Box<dyn DistanceSolver> = match self {
+            Self::FastMarching(options) => Box::new(FastMarching::new(mesh, options).with_budget(own)),
+            Self::Heat(options) => Box::new(HeatMethod::within(mesh, options, own)?),
+            Self::Exact => Box::new(Exact::new(mesh).with_budget(own)),
+            Self::Dijkstra => Box::new(Dijkstra::new(mesh).with_budget(own)),
+            Self::BreadthFirst => Box::new(BreadthFirst::new(mesh).with_budget(own)),
+        };
+        budget.check()?;
+        Ok(solver)
     }
 }
 

@@ -2,56 +2,75 @@
 
 use std::sync::{Mutex, PoisonError};
 
-use linalg::{DistanceMatrix, LinalgError, Matrix};
+use budget::{Budget, Exceeded};
+use linalg::{DistanceMatrix, Matrix};
 use rayon::prelude::*;
 use surface::VertexId;
 
+use crate::error::GeodesicError;
 use crate::source::Source;
 
 /// Distances from points of one surface to all of its vertices.
 ///
-/// A solver is prepared once per surface. It may be called from several threads at once.
+/// A solver is prepared once per surface. It may be called from several threads at once. It keeps to the
+/// [`Budget`] that it was prepared with: when that is exceeded, every call ends with an error, and what it has
+/// written so far is not to be used.
 ///
 /// ```
-/// use canonform_geodesics::{Dijkstra, DistanceSolver};
+/// use canonform_geodesics::{Dijkstra, DistanceSolver, GeodesicError};
 /// use mesh::shapes;
 /// use surface::VertexId;
 ///
-/// fn farthest(solver: &dyn DistanceSolver, source: VertexId) -> f64 {
-///     solver.distances(source).into_iter().fold(0.0, f64::max)
+/// fn farthest(solver: &dyn DistanceSolver, source: VertexId) -> Result<f64, GeodesicError> {
+///     Ok(solver.distances(source)?.into_iter().fold(0.0, f64::max))
 /// }
 /// // Along the edges of a sheet of 4 x 3 vertices, with the diagonals of its cells.
 /// let sheet = shapes::grid(4, 3, 1.0).intrinsic();
-/// let diameter = farthest(&Dijkstra::new(&sheet), VertexId(0));
+/// let diameter = farthest(&Dijkstra::new(&sheet), VertexId(0))?;
 /// assert!((diameter - (1.0 + 2.0 * 2f64.sqrt())).abs() < 1e-12);
+/// # Ok::<(), GeodesicError>(())
 /// ```
 pub trait DistanceSolver: Sync + std::fmt::Debug {
     /// Number of vertices of the surface.
     fn n_vertices(&self) -> usize;
 
+    /// The limits that the solver was prepared with.
+    fn budget(&self) -> Budget {
+        Budget::unlimited()
+    }
+
     /// Writes the distance from the nearest of `sources` to every vertex, in mesh units; infinite where no edge or
     /// link leads and beyond `max_distance`.
     ///
+    /// # Errors
+    /// [`Exceeded`]; then `out` has no distances.
+    ///
     /// # Panics
     /// If `out` does not have one entry per vertex, or a source belongs to another surface.
-    fn solve_into(&self, sources: &[Source], max_distance: f64, out: &mut [f64]);
+    fn solve_into(&self, sources: &[Source], max_distance: f64, out: &mut [f64]) -> Result<(), Exceeded>;
 
     /// Writes the distance from the vertex `source` to every vertex, as [`distances`](Self::distances) does.
     ///
+    /// # Errors
+    /// As [`solve_into`](Self::solve_into).
+    ///
     /// # Panics
     /// If `out` does not have one entry per vertex, or `source` is out of range.
-    fn distances_into(&self, source: VertexId, out: &mut [f64]) {
-        self.solve_into(&[Source::vertex(source)], f64::INFINITY, out);
+    fn distances_into(&self, source: VertexId, out: &mut [f64]) -> Result<(), Exceeded> {
+        self.solve_into(&[Source::vertex(source)], f64::INFINITY, out)
     }
 
     /// The distance from `source` to every vertex, in mesh units; infinite where no edge or link leads.
     ///
+    /// # Errors
+    /// As [`solve_into`](Self::solve_into).
+    ///
     /// # Panics
     /// If `source` is out of range.
-    fn distances(&self, source: VertexId) -> Vec<f64> {
+    fn distances(&self, source: VertexId) -> Result<Vec<f64>, Exceeded> {
         let mut out = vec![f64::INFINITY; self.n_vertices()];
-        self.distances_into(source, &mut out);
-        out
+        self.distances_into(source, &mut out)?;
+        Ok(out)
     }
 
     /// The same solver with pruning, if it can prune.
@@ -62,25 +81,28 @@ pub trait DistanceSolver: Sync + std::fmt::Debug {
     /// The distances from several vertices, `n_vertices` x `sources.len()`, computed in parallel; the result does not
     /// depend on the number of threads.
     ///
+    /// # Errors
+    /// [`Exceeded`], also if the columns do not fit into memory.
+    ///
     /// # Panics
     /// If a source is out of range.
-    fn distance_columns(&self, sources: &[VertexId]) -> Matrix {
+    fn distance_columns(&self, sources: &[VertexId]) -> Result<Matrix, Exceeded> {
         let p = self.n_vertices();
-        let mut columns = Matrix::zeros(p, sources.len());
+        let mut columns = self.budget().vector(p.saturating_mul(sources.len()))?;
         if p > 0 {
-            let columns = columns.as_mut_slice().par_chunks_mut(p).zip(sources);
-            columns.for_each(|(column, source)| self.distances_into(*source, column));
+            let columns = columns.par_chunks_mut(p).zip(sources);
+            columns.try_for_each(|(column, source)| self.distances_into(*source, column))?;
         }
-        columns
+        Ok(Matrix::from_vec(p, sources.len(), columns))
     }
 
     /// The distances between all pairs of vertices, `n_vertices` x `n_vertices`, each the mean of both directions.
     ///
     /// # Errors
-    /// If some vertex cannot be reached from another.
-    fn distance_matrix(&self) -> Result<DistanceMatrix, LinalgError> {
+    /// [`GeodesicError::Matrix`] if some vertex cannot be reached from another; [`GeodesicError::Exceeded`].
+    fn distance_matrix(&self) -> Result<DistanceMatrix, GeodesicError> {
         let all: Vec<VertexId> = (0..self.n_vertices()).map(VertexId::from).collect();
-        DistanceMatrix::from_rows(all.len(), self.distance_columns(&all).data.into())
+        Ok(DistanceMatrix::from_rows(all.len(), self.distance_columns(&all)?.data.into())?)
     }
 }
 
@@ -89,9 +111,12 @@ pub trait DistanceSolver: Sync + std::fmt::Debug {
 pub trait PrunedSolver: Sync + std::fmt::Debug {
     /// Lowers `nearest`, distances to the nearest of some sources, to the distance from `source` where it is less.
     ///
+    /// # Errors
+    /// [`Exceeded`]; then `nearest` may be changed in part.
+    ///
     /// # Panics
     /// If `nearest` does not have one entry per vertex, or `source` is out of range.
-    fn lower(&self, source: VertexId, nearest: &mut [f64]);
+    fn lower(&self, source: VertexId, nearest: &mut [f64]) -> Result<(), Exceeded>;
 }
 
 /// The distance, or infinity beyond the limit, where fronts leave tentative distances.

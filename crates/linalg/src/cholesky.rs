@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use budget::Budget;
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::sparse::linalg::SupernodalThreshold;
 use faer::sparse::linalg::cholesky::{
@@ -37,6 +38,15 @@ impl EliminationOrder {
     /// # Errors
     /// [`LinalgError::NotFactorised`] if the factor does not fit into memory.
     pub fn new(matrix: &SparseSymmetric) -> Result<Self, LinalgError> {
+        Self::within(matrix, &Budget::unlimited())
+    }
+
+    /// As [`new`](Self::new), if the factor keeps to the limit of a budget on memory.
+    ///
+    /// # Errors
+    /// [`LinalgError::Exceeded`] and those of [`new`](Self::new).
+    pub fn within(matrix: &SparseSymmetric, budget: &Budget) -> Result<Self, LinalgError> {
+        budget.check()?;
         let n = matrix.order();
         // Panels even where single columns would factorise faster, because they make solving fast.
         let params = CholeskySymbolicParams {
@@ -46,6 +56,8 @@ impl EliminationOrder {
         let pattern = matrix.view().symbolic();
         let symbolic = factorize_symbolic_cholesky(pattern, Side::Lower, SymmetricOrdering::Amd, params)
             .map_err(|e| LinalgError::NotFactorised { n, reason: format!("{e:?}") })?;
+        budget.check()?;
+        budget.check_memory(symbolic.len_val().saturating_mul(size_of::<f64>()))?;
         let rows = match symbolic.perm() {
             Some(perm) => perm.arrays().0.to_vec(),
             None => (0..n).collect(),
@@ -113,6 +125,20 @@ impl SparseCholesky {
     /// # Errors
     /// As [`Self::new`]; also if the pattern has another number of entries.
     pub fn with_order(order: &EliminationOrder, matrix: &SparseSymmetric) -> Result<Self, LinalgError> {
+        Self::within(order, matrix, &Budget::unlimited())
+    }
+
+    /// As [`with_order`](Self::with_order) within a budget. The factorisation itself cannot be interrupted: time and
+    /// cancellation are checked before and after it.
+    ///
+    /// # Errors
+    /// [`LinalgError::Exceeded`] and those of [`with_order`](Self::with_order).
+    pub fn within(
+        order: &EliminationOrder,
+        matrix: &SparseSymmetric,
+        budget: &Budget,
+    ) -> Result<Self, LinalgError> {
+        budget.check()?;
         let n = matrix.order();
         let failed = |reason: String| LinalgError::NotFactorised { n, reason };
         if (n, matrix.n_stored()) != (order.0.rows.len(), order.0.n_stored) {
@@ -122,7 +148,7 @@ impl SparseCholesky {
             return Err(failed(format!("its entry ({row}, {column}) is {value}")));
         }
         let symbolic = &order.0.symbolic;
-        let mut values = vec![0.0; symbolic.len_val()];
+        let mut values = budget.vector(symbolic.len_val())?;
         let scratch = symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, Default::default());
         let mut memory = MemBuffer::try_new(scratch).map_err(|e| failed(format!("{e:?}")))?;
         symbolic
@@ -136,6 +162,7 @@ impl SparseCholesky {
                 Default::default(),
             )
             .map_err(|e| failed(format!("it is not positive definite ({e})")))?;
+        budget.check()?;
         Ok(Self { order: order.clone(), values })
     }
 

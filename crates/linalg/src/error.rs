@@ -61,4 +61,7 @@ pub enum LinalgError {
         /// The reason.
         reason: String,
     },
+    /// A limit on time or memory, or a cancellation.
+    #[error(transparent)]
+    Exceeded(#[from] budget::Exceeded),
 }

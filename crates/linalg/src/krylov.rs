@@ -1,5 +1,6 @@
 //! A few eigenpairs of a large symmetric operator.
 
+use budget::Budget;
 use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
 use faer::matrix_free::LinOp;
 use faer::matrix_free::eigen::{
@@ -42,10 +43,24 @@ const DENSE_ORDER: usize = 256;
 /// # Ok::<(), canonform_linalg::LinalgError>(())
 /// ```
 pub fn largest_eigenpairs(operator: &dyn SymmetricOperator, k: usize) -> Result<SymmetricEigen, LinalgError> {
+    largest_eigenpairs_within(operator, k, &Budget::unlimited())
+}
+
+/// As [`largest_eigenpairs`], within a budget, which is checked before every product.
+///
+/// # Errors
+/// [`LinalgError::Exceeded`] and those of [`largest_eigenpairs`].
+pub fn largest_eigenpairs_within(
+    operator: &dyn SymmetricOperator,
+    k: usize,
+    budget: &Budget,
+) -> Result<SymmetricEigen, LinalgError> {
     let n = operator.order();
+    let k = k.min(n);
     let mut wanted = k + 4;
     while n > DENSE_ORDER && 8 * wanted < n {
-        let found = largest_magnitude(operator, wanted);
+        let found = largest_magnitude(operator, wanted, budget);
+        budget.check()?;
         let mut positive: Vec<usize> = (0..found.values.len()).filter(|&i| found.values[i] > 0.0).collect();
         if positive.len() >= k {
             positive.sort_by(|&i, &j| found.values[j].total_cmp(&found.values[i]));
@@ -54,10 +69,11 @@ pub fn largest_eigenpairs(operator: &dyn SymmetricOperator, k: usize) -> Result<
         }
         wanted *= 3;
     }
-    let mut dense = Matrix::zeros(n, n);
+    let mut dense = Matrix::from_vec(n, n, budget.vector(n.saturating_mul(n))?);
     let mut unit = vec![0.0; n];
     let mut column = vec![0.0; n];
     for j in 0..n {
+        budget.check()?;
         unit[j] = 1.0;
         operator.apply(&unit, &mut column);
         unit[j] = 0.0;
@@ -68,9 +84,9 @@ pub fn largest_eigenpairs(operator: &dyn SymmetricOperator, k: usize) -> Result<
 }
 
 /// Up to `m` converged eigenpairs of largest magnitude; requires `8 m < n`.
-fn largest_magnitude(operator: &dyn SymmetricOperator, m: usize) -> SymmetricEigen {
+fn largest_magnitude(operator: &dyn SymmetricOperator, m: usize, budget: &Budget) -> SymmetricEigen {
     let n = operator.order();
-    let wrapped = Wrapped(operator);
+    let wrapped = Wrapped { operator, budget };
     // A fixed start vector without symmetry, so that no eigenvector of a symmetric shape is orthogonal to it.
     let start: Vec<f64> = (0..n).map(|i| 1.0 + 0.5 * (i as f64 * 0.754_877_666).fract()).collect();
     let params =
@@ -112,9 +128,13 @@ fn operator_scale(operator: &dyn SymmetricOperator, start: &[f64]) -> f64 {
     scale.max(f64::MIN_POSITIVE)
 }
 
-/// Adapts a [`SymmetricOperator`] to faer.
+/// Adapts a [`SymmetricOperator`] to faer. When the budget is exceeded, it becomes zero, so that the iteration ends
+/// soon.
 #[derive(Debug)]
-struct Wrapped<'a>(&'a dyn SymmetricOperator);
+struct Wrapped<'a> {
+    operator: &'a dyn SymmetricOperator,
+    budget: &'a Budget,
+}
 
 impl LinOp<f64> for Wrapped<'_> {
     fn apply_scratch(&self, _: usize, _: Par) -> StackReq {
@@ -122,19 +142,23 @@ impl LinOp<f64> for Wrapped<'_> {
     }
 
     fn nrows(&self) -> usize {
-        self.0.order()
+        self.operator.order()
     }
 
     fn ncols(&self) -> usize {
-        self.0.order()
+        self.operator.order()
     }
 
     fn apply(&self, mut out: MatMut<'_, f64>, rhs: MatRef<'_, f64>, _: Par, _: &mut MemStack) {
-        let n = self.0.order();
+        if self.budget.check().is_err() {
+            out.fill(0.0);
+            return;
+        }
+        let n = self.operator.order();
         let mut y = vec![0.0; n];
         for j in 0..rhs.ncols() {
             let x: Vec<f64> = (0..n).map(|i| rhs[(i, j)]).collect();
-            self.0.apply(&x, &mut y);
+            self.operator.apply(&x, &mut y);
             for (i, value) in y.iter().enumerate() {
                 out[(i, j)] = *value;
             }

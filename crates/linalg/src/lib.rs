@@ -21,8 +21,8 @@ pub use cholesky::{EliminationOrder, SparseCholesky};
 pub use decomposition::{SymmetricEigen, leading_sign, pseudo_inverse, symmetric_eigen, thin_qr};
 pub use distance_matrix::DistanceMatrix;
 pub use error::LinalgError;
-pub use generalized::{GeneralizedEigen, smallest_eigenpairs};
-pub use krylov::{SymmetricOperator, largest_eigenpairs};
+pub use generalized::{GeneralizedEigen, smallest_eigenpairs, smallest_eigenpairs_within};
+pub use krylov::{SymmetricOperator, largest_eigenpairs, largest_eigenpairs_within};
 pub use landmark_distances::LandmarkDistances;
 pub use sparse::SparseSymmetric;
 

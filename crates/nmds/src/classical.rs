@@ -1,7 +1,8 @@
 //! Classical multidimensional scaling.
 
+use budget::Budget;
 use linalg::{
-    DistanceMatrix, LinalgError, Matrix, SymmetricEigen, SymmetricOperator, largest_eigenpairs,
+    DistanceMatrix, LinalgError, Matrix, SymmetricEigen, SymmetricOperator, largest_eigenpairs_within,
     symmetric_eigen,
 };
 use rayon::prelude::*;
@@ -33,7 +34,19 @@ use crate::{Embedding, NmdsError};
 /// # Ok::<(), canonform_nmds::NmdsError>(())
 /// ```
 pub fn classical(distances: &DistanceMatrix, dim: usize) -> Result<Embedding, NmdsError> {
-    embed(distances, dim, |operator| largest_eigenpairs(operator, dim))
+    classical_within(distances, dim, &Budget::unlimited())
+}
+
+/// As [`classical`], within a budget.
+///
+/// # Errors
+/// As [`classical`]; a budget that is exceeded is a [`NmdsError::Linalg`].
+pub fn classical_within(
+    distances: &DistanceMatrix,
+    dim: usize,
+    budget: &Budget,
+) -> Result<Embedding, NmdsError> {
+    embed(distances, dim, |operator| largest_eigenpairs_within(operator, dim, budget))
 }
 
 /// [`classical`] by the full decomposition, with all eigenvalues and thus the true negative mass.

@@ -48,6 +48,9 @@ pub enum NmdsError {
          or keep the largest component only"
     )]
     NotDetermined(usize),
+    /// A limit on time or memory, or a cancellation.
+    #[error(transparent)]
+    Exceeded(#[from] budget::Exceeded),
     /// A decomposition failed.
     #[error(transparent)]
     Linalg(#[from] linalg::LinalgError),

@@ -1,6 +1,7 @@
 //! Fast multidimensional scaling.
 
-use linalg::{LandmarkDistances, Matrix, SparseCholesky, SparseSymmetric, thin_qr};
+use budget::Budget;
+use linalg::{EliminationOrder, LandmarkDistances, Matrix, SparseCholesky, SparseSymmetric, thin_qr};
 
 use crate::squares::{Squares, center_columns, check_dim, check_points, solve_saddle_point, symmetrized};
 use crate::{Embedding, NmdsError};
@@ -35,12 +36,27 @@ pub fn fmds(
     masses: &[f64],
     dim: usize,
 ) -> Result<Embedding, NmdsError> {
+    fmds_within(distances, stiffness, masses, dim, &Budget::unlimited())
+}
+
+/// As [`fmds`], within a budget. It is checked around the factorisation and the solutions, not within them.
+///
+/// # Errors
+/// As [`fmds`]; a budget that is exceeded is [`NmdsError::Exceeded`] or a [`NmdsError::Linalg`].
+pub fn fmds_within(
+    distances: &LandmarkDistances,
+    stiffness: &SparseSymmetric,
+    masses: &[f64],
+    dim: usize,
+    budget: &Budget,
+) -> Result<Embedding, NmdsError> {
     let (p, n) = distances.matrix().shape();
     check_points(stiffness.order(), p)?;
     check_points(masses.len(), p)?;
     check_dim(dim, n)?;
     let Squares { unit, columns, .. } = Squares::new(distances)?;
-    let interpolant = interpolant(distances.landmarks(), stiffness, masses)?;
+    let interpolant = interpolant(distances.landmarks(), stiffness, masses, budget)?;
+    budget.check()?;
     let mut both = Matrix::zeros(p, 2 * n);
     both.columns_mut(0, n).copy_from(&interpolant);
     both.columns_mut(n, n).copy_from(&columns);
@@ -51,10 +67,17 @@ pub fn fmds(
 }
 
 /// Computes `M` by splines.
-fn interpolant(samples: &[usize], stiffness: &SparseSymmetric, masses: &[f64]) -> Result<Matrix, NmdsError> {
+fn interpolant(
+    samples: &[usize],
+    stiffness: &SparseSymmetric,
+    masses: &[f64],
+    budget: &Budget,
+) -> Result<Matrix, NmdsError> {
     let (p, n) = (masses.len(), samples.len());
     let blocks = Blocks::new(stiffness, masses);
-    let factor = SparseCholesky::new(&blocks.grounded(stiffness))?;
+    let matrix = blocks.grounded(stiffness);
+    let order = EliminationOrder::within(&matrix, budget)?;
+    let factor = SparseCholesky::within(&order, &matrix, budget)?;
     let green = |mut b: Matrix| {
         factor.solve_columns(&mut b);
         blocks.subtract_means(&mut b);
@@ -69,8 +92,10 @@ fn interpolant(samples: &[usize], stiffness: &SparseSymmetric, masses: &[f64]) -
         (0..p).filter(|&i| blocks.of[i] == block).for_each(|i| unit[(i, j)] -= share * masses[i]);
     }
     let mut weighted = green(unit);
+    budget.check()?;
     weighted.row_iter_mut().zip(masses).for_each(|(mut row, mass)| row *= *mass);
     let splines = green(weighted);
+    budget.check()?;
 
     let count = blocks.mass.len();
     let constants = |rows: &[usize]| {
@@ -188,7 +213,7 @@ mod tests {
         let ring = Ring::new(40);
         let (w, a) = ring.laplacian(1.0);
         let samples = [0, 7, 13, 22, 31];
-        let found = interpolant(&samples, &w, &a).unwrap();
+        let found = interpolant(&samples, &w, &a, &Budget::unlimited()).unwrap();
         let mut dense = Matrix::zeros(40, 40);
         for (i, j, value) in w.entries() {
             dense[(i, j)] = value;
@@ -211,12 +236,15 @@ mod tests {
         let twice = w.entries().chain(w.entries().map(|(i, j, v)| (i + 30, j + 30, v)));
         let w = SparseSymmetric::from_entries(60, twice.collect::<Vec<_>>());
         let a = [a.clone(), a].concat();
-        let found = interpolant(&[3, 20, 41], &w, &a).unwrap();
+        let found = interpolant(&[3, 20, 41], &w, &a, &Budget::unlimited()).unwrap();
         for i in 0..60 {
             let own = if i < 30 { found[(i, 0)] + found[(i, 1)] } else { found[(i, 2)] };
             assert!((own - 1.0).abs() < 1e-10 && (found.row(i).sum() - 1.0).abs() < 1e-10);
         }
-        assert_eq!(interpolant(&[3, 20], &w, &a).map(|_| ()), Err(NmdsError::NotDetermined(2)));
+        assert_eq!(
+            interpolant(&[3, 20], &w, &a, &Budget::unlimited()).map(|_| ()),
+            Err(NmdsError::NotDetermined(2))
+        );
     }
 
     #[test]

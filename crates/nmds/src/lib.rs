@@ -33,16 +33,16 @@ mod testing;
 #[cfg(test)]
 mod tests;
 
-pub use classical::{classical, classical_full};
+pub use classical::{classical, classical_full, classical_within};
 pub use embedding::Embedding;
 pub use error::NmdsError;
-pub use fmds::fmds;
+pub use fmds::{fmds, fmds_within};
 pub use kernel_pca::{Bandwidth, KernelPcaOptions, kernel_pca};
 pub use landmark::landmark_mds;
 pub use nystrom::{NystromOptions, nystrom};
 pub use reconstruction::{Reconstruction, ReconstructionError, sample_eigenvalues};
 pub use regularization::{Regularization, RpiAlpha};
-pub use smacof::{SmacofOptions, SmacofReport, SmacofStop, smacof};
+pub use smacof::{SmacofOptions, SmacofReport, SmacofStop, smacof, smacof_within};
 pub use spectral::{SpectralBasis, SpectralOptions, spectral};
 pub use stress::{
     DistanceRows, StressEstimate, estimate_paper_stress, normalized_stress, paper_stress, sample_rows,

@@ -1,5 +1,6 @@
 //! How well a few columns of squared distances reconstruct all of them.
 
+use budget::Exceeded;
 use linalg::{LandmarkDistances, Matrix, thin_qr};
 use rayon::prelude::*;
 
@@ -53,7 +54,7 @@ impl Reconstruction {
     /// Takes the samples' columns and the rows of all distances. Reads each row twice.
     ///
     /// # Errors
-    /// [`NmdsError::PointMismatch`], [`NmdsError::NoExtent`].
+    /// [`NmdsError::PointMismatch`], [`NmdsError::NoExtent`], [`NmdsError::Exceeded`].
     pub fn new(distances: &LandmarkDistances, rows: &dyn DistanceRows) -> Result<Self, NmdsError> {
         let p = rows.n_points();
         check_points(distances.n_points(), p)?;
@@ -61,7 +62,7 @@ impl Reconstruction {
         let unit = squares.unit;
         let (q, _) = thin_qr(&squares.columns);
         // Row i of E Q, which is column i of Q' E.
-        let blocks = by_blocks(rows, unit, |_, block| (block.norm_squared(), block * &q));
+        let blocks = by_blocks(rows, unit, |_, block| (block.norm_squared(), block * &q))?;
         let mut image = Matrix::zeros(p, q.ncols());
         let mut norm_sq = 0.0;
         for (i, (sum, rows)) in blocks.into_iter().enumerate() {
@@ -74,7 +75,7 @@ impl Reconstruction {
         let outside = by_blocks(rows, unit, |start, block| {
             let within = across.rows(start, block.nrows()) * &image;
             (block - within).norm_squared()
-        });
+        })?;
         let outside_sq = outside.iter().sum();
         Ok(Self { squares, projected, norm_sq, outside_sq, mixed_sq, q })
     }
@@ -112,7 +113,7 @@ fn by_blocks<T: Send>(
     rows: &dyn DistanceRows,
     unit: f64,
     work: impl Fn(usize, Matrix) -> T + Sync,
-) -> Vec<T> {
+) -> Result<Vec<T>, Exceeded> {
     let p = rows.n_points();
     let starts: Vec<usize> = (0..p).step_by(BLOCK).collect();
     let block = |start: usize| {
@@ -120,12 +121,12 @@ fn by_blocks<T: Send>(
         let mut row = vec![0.0; p];
         let mut block = Matrix::zeros(height, p);
         for i in 0..height {
-            rows.row_into(start + i, &mut row);
+            rows.row_into(start + i, &mut row)?;
             for (square, d) in block.row_mut(i).iter_mut().zip(&row) {
                 *square = (d / unit).powi(2);
             }
         }
-        work(start, block)
+        Ok(work(start, block))
     };
     starts.par_iter().map(|&start| block(start)).collect()
 }

@@ -1,5 +1,6 @@
 //! SMACOF: iterative minimisation of the metric stress.
 
+use budget::Budget;
 use linalg::{DistanceMatrix, Matrix, pseudo_inverse};
 use rayon::prelude::*;
 
@@ -86,6 +87,19 @@ pub fn smacof(
     distances: &DistanceMatrix,
     options: &SmacofOptions,
 ) -> Result<(Embedding, SmacofReport), NmdsError> {
+    smacof_within(start, distances, options, &Budget::unlimited())
+}
+
+/// As [`smacof`], within a budget, which is checked before every row of a step.
+///
+/// # Errors
+/// [`NmdsError::Exceeded`] and those of [`smacof`].
+pub fn smacof_within(
+    start: &Matrix,
+    distances: &DistanceMatrix,
+    options: &SmacofOptions,
+    budget: &Budget,
+) -> Result<(Embedding, SmacofReport), NmdsError> {
     let (p, dim) = start.shape();
     check_points(p, distances.n_points())?;
     check_dim(dim, p)?;
@@ -96,14 +110,14 @@ pub fn smacof(
     check_extent(distances.max(), p)?;
     let total: f64 = distances.as_slice().iter().map(|d| d * d).sum();
 
-    let (stress, next) = guttman(start, distances);
+    let (stress, next) = guttman(start, distances, budget)?;
     let mut state = State { x: start.clone(), stress, next };
     let mut normalized_stress = vec![(stress / total).sqrt()];
     let mut stop = SmacofStop::IterationLimit;
     let mut history = vec![state.x.clone()];
     for _ in 0..options.max_iterations {
         if history.len() == CYCLE {
-            let extrapolated = State::new(extrapolate(&history)?, distances);
+            let extrapolated = State::new(extrapolate(&history)?, distances, budget)?;
             history.clear();
             if extrapolated.stress < state.stress {
                 state = extrapolated;
@@ -112,7 +126,7 @@ pub fn smacof(
             history.push(state.x.clone());
             continue;
         }
-        let (lower, after) = guttman(&state.next, distances);
+        let (lower, after) = guttman(&state.next, distances, budget)?;
         let gain = state.stress - lower;
         let settled = gain <= tolerance * state.stress;
         // Rounding may increase it slightly.
@@ -138,9 +152,9 @@ struct State {
 }
 
 impl State {
-    fn new(x: Matrix, distances: &DistanceMatrix) -> Self {
-        let (stress, next) = guttman(&x, distances);
-        Self { x, stress, next }
+    fn new(x: Matrix, distances: &DistanceMatrix, budget: &Budget) -> Result<Self, NmdsError> {
+        let (stress, next) = guttman(&x, distances, budget)?;
+        Ok(Self { x, stress, next })
     }
 }
 
@@ -165,24 +179,25 @@ fn extrapolate(iterates: &[Matrix]) -> Result<Matrix, NmdsError> {
 const LANES: usize = 4;
 
 /// The raw stress of `x` (each pair counted twice) and its Guttman transform.
-fn guttman(x: &Matrix, distances: &DistanceMatrix) -> (f64, Matrix) {
+fn guttman(x: &Matrix, distances: &DistanceMatrix, budget: &Budget) -> Result<(f64, Matrix), NmdsError> {
     let (p, dim) = x.shape();
     let mut moved = vec![0.0; p * dim];
-    let stresses: Vec<f64> = moved
+    let stresses = moved
         .par_chunks_mut(dim)
         .enumerate()
         .map_init(
             || vec![0.0; p],
             |ratios, (i, moved)| {
+                budget.check()?;
                 let stress = ratios_of_row(x, distances.row(i), i, ratios);
                 for (moved, column) in moved.iter_mut().zip(x.column_iter()) {
                     *moved = pull(ratios, column.as_slice(), column[i]) / p as f64;
                 }
-                stress
+                Ok(stress)
             },
         )
-        .collect();
-    (stresses.iter().sum(), Matrix::from_row_slice(p, dim, &moved))
+        .collect::<Result<Vec<f64>, NmdsError>>()?;
+    Ok((stresses.iter().sum(), Matrix::from_row_slice(p, dim, &moved)))
 }
 
 /// Writes `d_ij / |x_i - x_j|` (zero for coinciding points) for all `j`. Returns the sum of the squared differences
@@ -276,7 +291,7 @@ mod tests {
             b[(i, i)] = -b.row(i).sum();
         }
         let expected = b * &start / p as f64;
-        let (stress, moved) = guttman(&start, &distances);
+        let (stress, moved) = guttman(&start, &distances, &Budget::unlimited()).unwrap();
         assert!((moved - &expected).amax() < 1e-12);
         let total: f64 = distances.as_slice().iter().map(|d| d * d).sum();
         assert!(((stress / total).sqrt() / normalized_stress(&start, &distances) - 1.0).abs() < 1e-12);

@@ -1,5 +1,6 @@
 //! Stress: the difference between an embedding and the distances it was made from.
 
+use budget::Exceeded;
 use linalg::{DistanceMatrix, Matrix};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
@@ -11,7 +12,10 @@ pub trait DistanceRows: Sync {
     fn n_points(&self) -> usize;
 
     /// Writes the distances from point `i` to all points.
-    fn row_into(&self, i: usize, out: &mut [f64]);
+    ///
+    /// # Errors
+    /// [`Exceeded`] if the row has to be computed and that takes more than it may.
+    fn row_into(&self, i: usize, out: &mut [f64]) -> Result<(), Exceeded>;
 }
 
 impl DistanceRows for DistanceMatrix {
@@ -19,8 +23,9 @@ impl DistanceRows for DistanceMatrix {
         self.n_points()
     }
 
-    fn row_into(&self, i: usize, out: &mut [f64]) {
+    fn row_into(&self, i: usize, out: &mut [f64]) -> Result<(), Exceeded> {
         out.copy_from_slice(self.row(i));
+        Ok(())
     }
 }
 
@@ -41,27 +46,29 @@ const BLOCK: usize = 64;
 /// **Deviation**: eq. 17 prints `1/p^2`; the figures of the paper use `1/p`.
 ///
 /// Cost: each row once, `O(p k)` time each; `O(p)` memory per block.
-#[must_use]
-pub fn paper_stress(coords: &Matrix, rows: &dyn DistanceRows) -> f64 {
+///
+/// # Errors
+/// Those of the rows.
+pub fn paper_stress(coords: &Matrix, rows: &dyn DistanceRows) -> Result<f64, Exceeded> {
     let p = rows.n_points();
     let starts: Vec<usize> = (0..p).step_by(BLOCK).collect();
-    let blocks: Vec<_> = starts
+    let blocks = starts
         .par_iter()
         .map(|&start| {
             let mut column_sums = vec![0.0; p];
             let mut row = vec![0.0; p];
             let (mut squares, mut row_sums_sq, mut total) = (0.0, 0.0, 0.0);
             for i in start..(start + BLOCK).min(p) {
-                residuals(coords, rows, i, &mut row);
+                residuals(coords, rows, i, &mut row)?;
                 let sum: f64 = row.iter().sum();
                 squares += row.iter().map(|d| d * d).sum::<f64>();
                 row_sums_sq += sum * sum;
                 total += sum;
                 column_sums.iter_mut().zip(&row).for_each(|(c, d)| *c += d);
             }
-            (squares, row_sums_sq, total, column_sums)
+            Ok((squares, row_sums_sq, total, column_sums))
         })
-        .collect();
+        .collect::<Result<Vec<_>, Exceeded>>()?;
     let mut column_sums = vec![0.0; p];
     let (mut squares, mut row_sums_sq, mut total) = (0.0, 0.0, 0.0);
     for (s, r, t, columns) in blocks {
@@ -73,12 +80,12 @@ pub fn paper_stress(coords: &Matrix, rows: &dyn DistanceRows) -> f64 {
     let column_sums_sq: f64 = column_sums.iter().map(|c| c * c).sum();
     let n = p as f64;
     let norm_sq = squares - (row_sums_sq + column_sums_sq) / n + total * total / (n * n);
-    0.5 * norm_sq.max(0.0).sqrt() / n
+    Ok(0.5 * norm_sq.max(0.0).sqrt() / n)
 }
 
 /// `d_ij^2 - |z_i - z_j|^2` for all `j`.
-fn residuals(coords: &Matrix, rows: &dyn DistanceRows, i: usize, out: &mut [f64]) {
-    rows.row_into(i, out);
+fn residuals(coords: &Matrix, rows: &dyn DistanceRows, i: usize, out: &mut [f64]) -> Result<(), Exceeded> {
+    rows.row_into(i, out)?;
     out.iter_mut().for_each(|d| *d *= *d);
     for column in coords.column_iter() {
         let at = column[i];
@@ -86,6 +93,7 @@ fn residuals(coords: &Matrix, rows: &dyn DistanceRows, i: usize, out: &mut [f64]
             *d -= (x - at) * (x - at);
         }
     }
+    Ok(())
 }
 
 /// Kruskal's stress `sqrt(sum (d_ij - |z_i - z_j|)^2 / sum d_ij^2)` over all pairs; 0 for an embedding without distortion.
@@ -123,8 +131,14 @@ pub struct StressEstimate {
 /// columns have the same sums because `E` is symmetric).
 ///
 /// Cost: each sampled row once, `O(p k)` time each.
-#[must_use]
-pub fn estimate_paper_stress(coords: &Matrix, rows: &dyn DistanceRows, sample: &[usize]) -> StressEstimate {
+///
+/// # Errors
+/// Those of the rows.
+pub fn estimate_paper_stress(
+    coords: &Matrix,
+    rows: &dyn DistanceRows,
+    sample: &[usize],
+) -> Result<StressEstimate, Exceeded> {
     let p = rows.n_points();
     let n = p as f64;
     // For each row, the mean square and the mean of the residuals.
@@ -132,10 +146,10 @@ pub fn estimate_paper_stress(coords: &Matrix, rows: &dyn DistanceRows, sample: &
         .par_iter()
         .map(|&i| {
             let mut row = vec![0.0; p];
-            residuals(coords, rows, i, &mut row);
-            [row.iter().map(|d| d * d).sum::<f64>() / n, row.iter().sum::<f64>() / n]
+            residuals(coords, rows, i, &mut row)?;
+            Ok([row.iter().map(|d| d * d).sum::<f64>() / n, row.iter().sum::<f64>() / n])
         })
-        .collect();
+        .collect::<Result<_, Exceeded>>()?;
     let stress = |sums: [f64; 3], m: f64| {
         let [squares, means, means_sq] = sums.map(|s| s / m);
         0.5 * (squares - 2.0 * means_sq + means * means).max(0.0).sqrt()
@@ -155,7 +169,8 @@ pub fn estimate_paper_stress(coords: &Matrix, rows: &dyn DistanceRows, sample: &
         // Finite population correction: rows are drawn without replacement.
         1.96 * (variance * (1.0 - m / n)).sqrt()
     };
-    StressEstimate { value, interval: [(value - half).max(0.0), value + half], n_rows: moments.len() }
+    let interval = [(value - half).max(0.0), value + half];
+    Ok(StressEstimate { value, interval, n_rows: moments.len() })
 }
 
 /// `m` distinct numbers below `p` (at most `p`), ascending, drawn with `seed` by Floyd's algorithm.
@@ -194,7 +209,7 @@ mod tests {
     fn equals_its_definition_and_the_norm_of_the_omitted_eigenvalues() {
         let distances = circle(151);
         let embedding = classical(&distances, 3).unwrap();
-        let stress = paper_stress(&embedding.coords, &distances);
+        let stress = paper_stress(&embedding.coords, &distances).unwrap();
         assert!((stress / by_definition(&embedding.coords, &distances) - 1.0).abs() < 1e-12);
         let all = crate::classical_full(&distances, 3).unwrap().eigenvalues;
         let rest = all[3..].iter().map(|v| v * v).sum::<f64>().sqrt() / 151.0;
@@ -219,7 +234,7 @@ mod tests {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
             pool.install(|| {
                 let estimate = estimate_paper_stress(&embedding.coords, &distances, &sample_rows(500, 50, 1));
-                (paper_stress(&embedding.coords, &distances).to_bits(), estimate)
+                (paper_stress(&embedding.coords, &distances).unwrap().to_bits(), estimate.unwrap())
             })
         };
         assert_eq!(with(1), with(4));
@@ -230,16 +245,16 @@ mod tests {
         let cloud = crate::testing::Cloud::new(400, 3, 21);
         let distances = DistanceMatrix::from_pairs(400, |i, j| cloud.distance(i, j).powf(0.7)).unwrap();
         let coords = classical(&distances, 2).unwrap().coords;
-        let exact = paper_stress(&coords, &distances);
+        let exact = paper_stress(&coords, &distances).unwrap();
         let covered = (0..40)
             .filter(|&seed| {
                 let [lo, hi] =
-                    estimate_paper_stress(&coords, &distances, &sample_rows(400, 60, seed)).interval;
+                    estimate_paper_stress(&coords, &distances, &sample_rows(400, 60, seed)).unwrap().interval;
                 (lo..=hi).contains(&exact)
             })
             .count();
         assert!(covered >= 34, "only {covered} of 40 intervals contain the exact value");
-        let whole = estimate_paper_stress(&coords, &distances, &sample_rows(400, 1000, 0));
+        let whole = estimate_paper_stress(&coords, &distances, &sample_rows(400, 1000, 0)).unwrap();
         assert!((whole.value / exact - 1.0).abs() < 1e-12 && whole.n_rows == 400);
         assert!(whole.interval[1] - whole.interval[0] < 1e-9 * exact);
     }

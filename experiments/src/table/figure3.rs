@@ -68,8 +68,8 @@ fn embeddings(context: &Context<'_>, specimen: &Specimen<'_>, distances: &Distan
     let config = &context.config;
     let all = specimen.all_pairs(distances)?;
     let judged = |embedding: Embedding| {
-        let stress = paper_stress(&embedding.coords, all.as_ref());
-        (embedding, stress)
+        let stress = paper_stress(&embedding.coords, all.as_ref())?;
+        Ok::<_, canonform::Exceeded>((embedding, stress))
     };
     let low_rank = Regularization::LowRank { rank: Some(config.rank) };
     let nmds = |samples: &LandmarkDistances| {
@@ -86,12 +86,12 @@ fn embeddings(context: &Context<'_>, specimen: &Specimen<'_>, distances: &Distan
             Ok(specimen.nested(distances, sampling, first, &[config.samples])?.remove(0))
         };
         let farthest = sampled(distances, Sampling::Farthest, first)?;
-        methods[1].push(judged(nmds(&farthest)?));
-        methods[2].push(judged(spectral(&farthest, &basis, &SpectralOptions::default())?));
+        methods[1].push(judged(nmds(&farthest)?)?);
+        methods[2].push(judged(spectral(&farthest, &basis, &SpectralOptions::default())?)?);
         let least = sampled(distances, Sampling::Incremental(Variance::Least), first)?;
-        methods[3].push(judged(nmds(&least)?));
+        methods[3].push(judged(nmds(&least)?)?);
         let hops = sampled(&Distances::hops(), Sampling::Farthest, first)?;
-        methods[4].push(judged(nmds(&hops)?));
+        methods[4].push(judged(nmds(&hops)?)?);
     }
     Ok(methods)
 }

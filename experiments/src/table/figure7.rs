@@ -68,7 +68,7 @@ fn excesses(context: &Context<'_>, specimen: &Specimen<'_>) -> Result<Vec<Series
     let basis =
         SpectralBasis { values: &spectrum.values, vectors: &spectrum.vectors, masses: &spectrum.masses };
     let excess = |embedding: Result<Embedding, NmdsError>| -> Result<f64> {
-        Ok(paper_stress(&embedding?.coords, all.as_ref()) - optimum)
+        Ok(paper_stress(&embedding?.coords, all.as_ref())? - optimum)
     };
     let nmds = |samples: &LandmarkDistances, regularization| {
         excess(nystrom(samples, &NystromOptions { regularization, dim: DIM }))

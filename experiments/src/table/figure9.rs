@@ -120,7 +120,7 @@ fn all_pairs_seconds(shape: &Shape) -> Result<f64> {
     let sources: Vec<VertexId> =
         (0..TIMED_SOURCES).map(|i| VertexId::from(i * (p / TIMED_SOURCES).max(1) % p)).collect();
     let start = Instant::now();
-    solver.distance_columns(&sources);
+    solver.distance_columns(&sources)?;
     Ok(start.elapsed().as_secs_f64() * p as f64 / TIMED_SOURCES as f64)
 }
 

@@ -70,9 +70,9 @@ fn of_one_map(surface: &Surface) -> Result<[f64; 2]> {
     let start = Instant::now();
     let solver = Distances::default().method.prepare(&surface.intrinsic)?;
     let preparation = start.elapsed().as_secs_f64();
-    let mut distances = solver.distances(VertexId(0));
+    let mut distances = solver.distances(VertexId(0))?;
     let start = Instant::now();
-    solver.distances_into(VertexId(0), &mut distances);
+    solver.distances_into(VertexId(0), &mut distances)?;
     Ok([preparation, start.elapsed().as_secs_f64()])
 }
 

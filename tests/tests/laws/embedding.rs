@@ -69,11 +69,11 @@ fn more_samples_approach_the_optimal_stress_from_above() {
     let mesh = body(Family::Cat);
     let solver = marching().prepare(&mesh.intrinsic()).unwrap();
     let distances = solver.distance_matrix().unwrap();
-    let optimum = paper_stress(&classical(&distances, 3).unwrap().coords, &distances);
+    let optimum = paper_stress(&classical(&distances, 3).unwrap().coords, &distances).unwrap();
     let excess = |n: usize| {
         let samples = farthest_point_sampling(solver.as_ref(), n, FirstSample::default()).unwrap();
         let embedding = nystrom(&samples, &NystromOptions::default()).unwrap();
-        paper_stress(&embedding.coords, &distances) / optimum - 1.0
+        paper_stress(&embedding.coords, &distances).unwrap() / optimum - 1.0
     };
     let [few, many] = [10, 100].map(excess);
     println!("above classical scaling: {few:.2e} with 10 samples, {many:.2e} with 100");
@@ -164,12 +164,12 @@ fn classical_scaling_has_the_lowest_stress_and_smacof_the_lowest_normalized_stre
         let options = FormOptions { method, ..FormOptions::default() };
         embedded(&mesh, &options).embedding.coords
     };
-    let optimum = paper_stress(&coords(EmbedMethod::Classical), &distances);
+    let optimum = paper_stress(&coords(EmbedMethod::Classical), &distances).unwrap();
     let descended = methods().into_iter().find(|method| method.name() == "smacof").map(coords).unwrap();
     let best = normalized_stress(&descended, &distances);
     for method in methods().into_iter().filter(EmbedMethod::has_unit) {
         let coords = coords(method.clone());
-        let stress = paper_stress(&coords, &distances);
+        let stress = paper_stress(&coords, &distances).unwrap();
         assert!(stress > optimum * (1.0 - 1e-12), "{method:?}: {stress} {optimum}");
         assert!(normalized_stress(&coords, &distances) >= best, "{method:?}");
     }

@@ -129,10 +129,10 @@ fn scaled_pairs(pairs: &DistanceMatrix, factor: f64) -> Vec<f64> {
 fn scale_changes_only_the_unit() {
     let mesh = body(Family::Centaur);
     let solver = marching().prepare(&mesh.intrinsic()).unwrap();
-    let distances = solver.distances(VertexId(5));
+    let distances = solver.distances(VertexId(5)).unwrap();
     for factor in [1e-3, 1e3] {
         let scaled = moved(&mesh, |p| p * factor);
-        let found = marching().prepare(&scaled.intrinsic()).unwrap().distances(VertexId(5));
+        let found = marching().prepare(&scaled.intrinsic()).unwrap().distances(VertexId(5)).unwrap();
         let expected: Vec<f64> = distances.iter().map(|d| d * factor).collect();
         assert!(gap(&found, &expected) < 1e-12);
     }

@@ -1,5 +1,6 @@
 //! Fast marching on surfaces with known distances.
 
+use canonform::Exceeded;
 use datasets::Family;
 use geodesics::{
     DistanceSolver, FastMarching, FastMarchingOptions, FirstSample, Method, ObtuseTreatment, PrunedSolver,
@@ -14,7 +15,7 @@ use crate::support::{all_vertices, body, columns, marching};
 fn error_on_plane(sheet: &TriMesh, source: usize, obtuse: ObtuseTreatment) -> f64 {
     let options = FastMarchingOptions { obtuse, ..FastMarchingOptions::default() };
     let solver = FastMarching::new(&sheet.intrinsic(), options);
-    let found = solver.distances(VertexId::from(source));
+    let found = solver.distances(VertexId::from(source)).unwrap();
     let straight: Vec<f64> = sheet.positions.iter().map(|p| (p - sheet.positions[source]).norm()).collect();
     crate::support::gap(&found, &straight)
 }
@@ -90,7 +91,7 @@ fn errors_on_spheres_fall_with_edge_length() {
     let errors: Vec<f64> = (2..=5)
         .map(|level| {
             let sphere = shapes::icosphere(level);
-            let found = marching().prepare(&sphere.intrinsic()).unwrap().distances(VertexId(0));
+            let found = marching().prepare(&sphere.intrinsic()).unwrap().distances(VertexId(0)).unwrap();
             let axis = sphere.positions[0].coords;
             let arc = |v: usize| {
                 axis.cross(&sphere.positions[v].coords).norm().atan2(axis.dot(&sphere.positions[v].coords))
@@ -131,7 +132,7 @@ fn exactly_the_other_components_are_at_infinite_distance() {
         let end = start + part.n_vertices();
         for method in [marching(), Method::Dijkstra, Method::BreadthFirst] {
             let surface = whole.intrinsic();
-            let found = method.prepare(&surface).unwrap().distances(VertexId::from(start + 1));
+            let found = method.prepare(&surface).unwrap().distances(VertexId::from(start + 1)).unwrap();
             for (v, d) in found.iter().enumerate() {
                 assert_eq!(d.is_finite(), (start..end).contains(&v), "{} {v}", method.name());
                 assert!(!d.is_nan() && *d >= 0.0);
@@ -167,8 +168,8 @@ impl DistanceSolver for Unpruned<'_> {
         self.0.n_vertices()
     }
 
-    fn solve_into(&self, sources: &[Source], max_distance: f64, out: &mut [f64]) {
-        self.0.solve_into(sources, max_distance, out);
+    fn solve_into(&self, sources: &[Source], max_distance: f64, out: &mut [f64]) -> Result<(), Exceeded> {
+        self.0.solve_into(sources, max_distance, out)
     }
 }
 
@@ -181,8 +182,8 @@ impl DistanceSolver for Careless<'_> {
         self.0.n_vertices()
     }
 
-    fn solve_into(&self, sources: &[Source], max_distance: f64, out: &mut [f64]) {
-        self.0.solve_into(sources, max_distance, out);
+    fn solve_into(&self, sources: &[Source], max_distance: f64, out: &mut [f64]) -> Result<(), Exceeded> {
+        self.0.solve_into(sources, max_distance, out)
     }
 
     fn pruned(&self) -> Option<&dyn PrunedSolver> {
@@ -191,12 +192,13 @@ impl DistanceSolver for Careless<'_> {
 }
 
 impl PrunedSolver for Careless<'_> {
-    fn lower(&self, source: VertexId, nearest: &mut [f64]) {
-        for (near, distance) in nearest.iter_mut().zip(self.0.distances(source)) {
+    fn lower(&self, source: VertexId, nearest: &mut [f64]) -> Result<(), Exceeded> {
+        for (near, distance) in nearest.iter_mut().zip(self.0.distances(source)?) {
             if distance < 0.5 * *near {
                 *near = distance;
             }
         }
+        Ok(())
     }
 }
 

@@ -55,7 +55,7 @@ fn errors(data: &Path, name: &str, surface: &IntrinsicMesh) -> (f64, f64) {
     let (mut total, mut count, mut worst) = (0.0, 0usize, 0.0f64);
     for (source, exact) in sources.into_iter().zip(rows.chunks(p)) {
         let source = VertexId(source);
-        let found = solver.distances(source);
+        let found = solver.distances(source).unwrap();
         for v in (0..p).filter(|&v| v != source.index()) {
             let error = (found[v] - exact[v]).abs() / exact[v];
             total += error;
@@ -104,7 +104,7 @@ fn near_optimal_stress(name: &str, allowed: &Excess) {
     let surface = tosca(&data, name);
     let solver = marching().prepare(&surface.intrinsic).unwrap();
     let distances = solver.distance_matrix().unwrap();
-    let optimum = paper_stress(&classical(&distances, 3).unwrap().coords, &distances);
+    let optimum = paper_stress(&classical(&distances, 3).unwrap().coords, &distances).unwrap();
     for (n, rank, limit) in [(10, 5, allowed.ten_samples), (100, 50, allowed.hundred_samples)] {
         let sampled = farthest_point_sampling(solver.as_ref(), n, FirstSample::default()).unwrap();
         let embedding = nystrom(
@@ -112,7 +112,7 @@ fn near_optimal_stress(name: &str, allowed: &Excess) {
             &NystromOptions { regularization: Regularization::LowRank { rank: Some(rank) }, dim: 3 },
         )
         .unwrap();
-        let excess = paper_stress(&embedding.coords, &distances) / optimum - 1.0;
+        let excess = paper_stress(&embedding.coords, &distances).unwrap() / optimum - 1.0;
         println!("{name}, {n} samples, rank {rank}: {:.3} % above classical scaling", 100.0 * excess);
         assert!(excess <= limit, "{name}, {n} samples: {excess}");
     }

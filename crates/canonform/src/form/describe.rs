@@ -1,5 +1,6 @@
 //! A shape without its mesh: form, signatures and facts.
 
+use budget::Budget;
 use descriptors::{
     CanonicalForm, LaplaceSpectrum, Normalization, PreparedShape, ShapeMetric, Signature, SignatureKind,
     d2_histogram, geodesic_spectrum, heat_kernel_signature, moment_signature, shape_dna,
@@ -49,8 +50,20 @@ pub struct ShapeDescription {
 /// # Errors
 /// [`Error::BadDescription`] and those of the stages: a mesh without area or without extent has no description.
 pub fn describe(surface: &Surface, options: &DescribeOptions) -> Result<ShapeDescription, Error> {
+    describe_within(surface, options, &Budget::unlimited())
+}
+
+/// As [`describe`], within a budget.
+///
+/// # Errors
+/// [`Error::Exceeded`] and those of [`describe`].
+pub fn describe_within(
+    surface: &Surface,
+    options: &DescribeOptions,
+    budget: &Budget,
+) -> Result<ShapeDescription, Error> {
     options.validate()?;
-    ShapeDescription::new(surface, &embed(surface, &options.form, &())?, options)
+    ShapeDescription::within(surface, &embed(surface, &options.form, budget)?, options, budget)
 }
 
 impl ShapeDescription {
@@ -60,11 +73,25 @@ impl ShapeDescription {
     /// # Errors
     /// As [`describe`].
     pub fn new(surface: &Surface, embedded: &Embedded, options: &DescribeOptions) -> Result<Self, Error> {
+        Self::within(surface, embedded, options, &Budget::unlimited())
+    }
+
+    /// As [`new`](Self::new), within a budget.
+    ///
+    /// # Errors
+    /// [`Error::Exceeded`] and those of [`new`](Self::new).
+    pub fn within(
+        surface: &Surface,
+        embedded: &Embedded,
+        options: &DescribeOptions,
+        budget: &Budget,
+    ) -> Result<Self, Error> {
         let options = DescribeOptions { form: embedded.options.clone(), ..*options };
         options.validate()?;
         let form = embedded.form(surface)?;
         let reduced = form.reduced(options.points);
-        let spectrum = LaplaceSpectrum::new(&surface.intrinsic, LaplaceSpectrum::DESCRIBING)?;
+        let spectrum = LaplaceSpectrum::within(&surface.intrinsic, LaplaceSpectrum::DESCRIBING, budget)?;
+        budget.check()?;
         let signatures = vec![
             moment_signature(&form),
             d2_histogram(&reduced),

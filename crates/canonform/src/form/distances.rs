@@ -4,6 +4,7 @@ use std::fmt;
 use std::str::FromStr;
 use std::time::Instant;
 
+use budget::{Budget, Exceeded};
 use geodesics::{DistanceSolver, FirstSample, Sampler, Sampling, Source};
 use linalg::{DistanceMatrix, LandmarkDistances};
 use nmds::{Embedding, NmdsError, estimate_paper_stress};
@@ -73,9 +74,11 @@ impl FromStr for Samples {
     }
 }
 
-/// Refuses to hold `n_columns` columns of distances to `n_vertices` vertices beyond [`DISTANCES_LIMIT`].
-pub(super) fn check_memory(n_vertices: usize, n_columns: usize) -> Result<(), Error> {
+/// Refuses to hold `n_columns` columns of distances to `n_vertices` vertices beyond the memory of the budget or
+/// [`DISTANCES_LIMIT`].
+pub(super) fn check_memory(n_vertices: usize, n_columns: usize, budget: &Budget) -> Result<(), Error> {
     let needed = n_vertices.saturating_mul(n_columns).saturating_mul(size_of::<f64>());
+    budget.check_memory(needed)?;
     if needed <= DISTANCES_LIMIT {
         return Ok(());
     }
@@ -92,6 +95,8 @@ pub(super) struct Measurement<'a> {
     pub(super) first: FirstSample,
     pub(super) seed: u64,
     pub(super) observer: &'a dyn Observer,
+    /// The limits of all work on the surface.
+    pub(super) budget: Budget,
     /// Seconds spent on distances so far.
     pub(super) seconds: f64,
 }
@@ -108,7 +113,10 @@ impl Measurement<'_> {
         match self.samples {
             Samples::Count(n) => {
                 let distances = self.take(sampler.as_mut(), n)?;
-                Ok((embed(&distances)?, distances))
+                self.budget.check()?;
+                let embedding = embed(&distances)?;
+                self.budget.check()?;
+                Ok((embedding, distances))
             }
             Samples::Auto => self.enough(sampler.as_mut(), embed),
         }
@@ -127,8 +135,10 @@ impl Measurement<'_> {
             let more = self.take(sampler, n)?;
             let refined = embed(&more)?;
             let rows = KnownRows(&more);
-            let stress = |e: &Embedding| estimate_paper_stress(&e.coords, &rows, more.landmarks()).value;
-            let settled = stress(&embedding) <= (1.0 + AUTO_GAIN) * stress(&refined);
+            let stress = |e: &Embedding| {
+                Ok::<_, Exceeded>(estimate_paper_stress(&e.coords, &rows, more.landmarks())?.value)
+            };
+            let settled = stress(&embedding)? <= (1.0 + AUTO_GAIN) * stress(&refined)?;
             if settled || more.n_landmarks() < n || n >= AUTO_LAST {
                 return Ok((refined, more));
             }
@@ -137,6 +147,8 @@ impl Measurement<'_> {
     }
 
     fn take(&mut self, sampler: &mut dyn Sampler, n: usize) -> Result<LandmarkDistances, Error> {
+        let p = self.solver.n_vertices();
+        check_memory(p, n.min(p), &self.budget)?;
         self.timed(|_| {
             sampler.extend_to(n)?;
             Ok(sampler.distances(n)?)
@@ -146,7 +158,7 @@ impl Measurement<'_> {
     /// The distances between all pairs of vertices.
     pub(super) fn all_pairs(&mut self) -> Result<DistanceMatrix, Error> {
         let p = self.solver.n_vertices();
-        check_memory(p, p)?;
+        check_memory(p, p, &self.budget)?;
         self.observer.begin("distances", p);
         self.timed(|m| Ok(m.solver.distance_matrix()?))
     }
@@ -176,7 +188,7 @@ impl DistanceSolver for KnownDistances<'_> {
         self.0.n_points()
     }
 
-    fn solve_into(&self, sources: &[Source], max_distance: f64, out: &mut [f64]) {
+    fn solve_into(&self, sources: &[Source], max_distance: f64, out: &mut [f64]) -> Result<(), Exceeded> {
         out.fill(f64::INFINITY);
         for (vertex, offset) in sources.iter().flat_map(Source::reach) {
             for (near, distance) in out.iter_mut().zip(self.0.row(vertex.index())) {
@@ -184,5 +196,6 @@ impl DistanceSolver for KnownDistances<'_> {
             }
         }
         out.iter_mut().filter(|d| **d > max_distance).for_each(|d| *d = f64::INFINITY);
+        Ok(())
     }
 }

@@ -45,7 +45,8 @@ impl Embedded {
 ///
 /// `observer` counts every run of the distance solver as a step. The result does not depend on the number of
 /// threads. A surface that was repaired in another way than the options say keeps its repair, and the
-/// [options of the result](Embedded::options) tell.
+/// [options of the result](Embedded::options) tell. The [budget](Observer::budget) of the observer limits the work; a
+/// [`Budget`](budget::Budget) is itself an observer.
 ///
 /// ```
 /// use canonform::{FormOptions, Samples, Surface, embed, mesh::shapes};
@@ -60,8 +61,8 @@ impl Embedded {
 /// ```
 ///
 /// # Errors
-/// [`Error::AllPairsTooLarge`], [`Error::NoSuchPoint`] and [`Error::DroppedPoint`] for the first sample, and the errors of
-/// the stages.
+/// [`Error::AllPairsTooLarge`], [`Error::NoSuchPoint`] and [`Error::DroppedPoint`] for the first sample, [`Error::Exceeded`],
+/// and the errors of the stages.
 pub fn embed(surface: &Surface, options: &FormOptions, observer: &dyn Observer) -> Result<Embedded, Error> {
     let skip = StressOptions { choice: StressChoice::Skip, ..StressOptions::default() };
     embed_and_measure(surface, options, &skip, observer)
@@ -83,7 +84,8 @@ pub fn embed_and_measure(
         FirstSample::Vertex(input) => FirstSample::Vertex(surface.repaired_vertex(input)?),
     };
     let start = Instant::now();
-    let solver = options.geodesic.prepare(&surface.intrinsic)?;
+    let budget = observer.budget();
+    let solver = options.geodesic.prepare_within(&surface.intrinsic, &budget)?;
     let solver = Observed { solver: solver.as_ref(), observer };
     let mut measurement = Measurement {
         solver: &solver,
@@ -92,6 +94,7 @@ pub fn embed_and_measure(
         first,
         seed: options.seed,
         observer,
+        budget: budget.clone(),
         seconds: start.elapsed().as_secs_f64(),
     };
     let Outcome { embedding, distances, descent } =
@@ -102,11 +105,11 @@ pub fn embed_and_measure(
     let stress_report = match stress.against {
         _ if !options.method.has_unit() || stress.choice == StressChoice::Skip => None,
         Some(other) if other != options.geodesic => {
-            let solver = other.prepare(&surface.intrinsic)?;
+            let solver = other.prepare_within(&surface.intrinsic, &budget)?;
             let solver = Observed { solver: solver.as_ref(), observer };
-            Some(measure(&embedding.coords, &solver, other, stress, observer))
+            Some(measure(&embedding.coords, &solver, other, stress, observer)?)
         }
-        _ => Some(measure(&embedding.coords, &solver, options.geodesic, stress, observer)),
+        _ => Some(measure(&embedding.coords, &solver, options.geodesic, stress, observer)?),
     };
     let seconds = SecondsReport {
         load: surface.load_seconds,

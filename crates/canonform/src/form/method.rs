@@ -4,7 +4,8 @@ use descriptors::LaplaceSpectrum;
 use linalg::{LandmarkDistances, SparseSymmetric};
 use nmds::{
     Bandwidth, Embedding, KernelPcaOptions, NystromOptions, Regularization, SmacofOptions, SmacofReport,
-    SpectralBasis, SpectralOptions, classical, fmds, kernel_pca, landmark_mds, nystrom, smacof, spectral,
+    SpectralBasis, SpectralOptions, classical_within, fmds_within, kernel_pca, landmark_mds, nystrom,
+    smacof_within, spectral,
 };
 use serde::{Deserialize, Serialize};
 use surface::IntrinsicMesh;
@@ -144,6 +145,7 @@ impl EmbedMethod {
         dim: usize,
         measurement: &mut Measurement<'_>,
     ) -> Result<Outcome, Error> {
+        let budget = measurement.budget.clone();
         let sampled = |(embedding, distances)| Outcome { embedding, distances, descent: None };
         Ok(match *self {
             Self::Nystrom { regularization } => {
@@ -152,7 +154,7 @@ impl EmbedMethod {
             Self::Landmark => sampled(measurement.sampled(|d| landmark_mds(d, dim))?),
             Self::Spectral { eigenvectors, mu } => {
                 let LaplaceSpectrum { values, vectors, masses, .. } =
-                    LaplaceSpectrum::new(surface, eigenvectors)?;
+                    LaplaceSpectrum::within(surface, eigenvectors, &budget)?;
                 let basis = SpectralBasis { values: &values, vectors: &vectors, masses: &masses };
                 sampled(measurement.sampled(|d| spectral(d, &basis, &SpectralOptions { mu, dim }))?)
             }
@@ -160,20 +162,21 @@ impl EmbedMethod {
                 let laplacian = Laplacian::new(surface);
                 let (p, masses) = (laplacian.n_vertices(), laplacian.masses());
                 let stiffness = SparseSymmetric::from_entries(p, laplacian.stiffness_entries());
-                sampled(measurement.sampled(|d| fmds(d, &stiffness, &masses, dim))?)
+                sampled(measurement.sampled(|d| fmds_within(d, &stiffness, &masses, dim, &budget))?)
             }
             Self::KernelPca { rank, bandwidth } => {
                 sampled(measurement.sampled(|d| kernel_pca(d, &KernelPcaOptions { bandwidth, rank, dim }))?)
             }
             Self::Classical => {
                 let all = measurement.all_pairs()?;
-                let embedding = classical(&all, dim)?;
+                let embedding = classical_within(&all, dim, &budget)?;
                 Outcome { embedding, distances: measurement.columns_of(&all)?, descent: None }
             }
             Self::Smacof { regularization, descent } => {
                 let (start, distances) =
                     measurement.sampled(|d| nystrom(d, &NystromOptions { regularization, dim }))?;
-                let (embedding, report) = smacof(&start.coords, &measurement.all_pairs()?, &descent)?;
+                let (embedding, report) =
+                    smacof_within(&start.coords, &measurement.all_pairs()?, &descent, &budget)?;
                 let embedding = Embedding { rank: start.rank, ..embedding };
                 Outcome { embedding, distances, descent: Some(report) }
             }

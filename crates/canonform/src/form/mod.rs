@@ -14,7 +14,7 @@ mod report;
 mod side_by_side;
 mod stress;
 
-pub use describe::{ShapeDescription, describe};
+pub use describe::{ShapeDescription, describe, describe_within};
 pub use distances::{DISTANCES_LIMIT, Samples};
 pub use embed::{Embedded, embed, embed_and_measure};
 pub use method::EmbedMethod;

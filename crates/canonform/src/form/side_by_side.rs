@@ -1,5 +1,6 @@
 //! Several embeddings of one surface, side by side.
 
+use budget::Exceeded;
 use geodesics::Method;
 use linalg::LandmarkDistances;
 use mesh::RepairReport;
@@ -97,7 +98,7 @@ pub fn compare_methods(
                     StressReport::new(coords, reference.as_ref(), rows.as_deref(), options.geodesic)
                 };
                 let facts = MethodFacts {
-                    stress: changed.method.has_unit().then(stress),
+                    stress: changed.method.has_unit().then(stress).transpose()?,
                     negative_mass: report.negative_mass,
                     n_samples: report.n_samples,
                     geodesics_seconds: report.seconds.geodesics,
@@ -107,6 +108,7 @@ pub fn compare_methods(
                 };
                 (Some(facts), None)
             }
+            Some(Err(Error::Exceeded(Exceeded::Cancelled))) => return Err(Exceeded::Cancelled.into()),
             Some(Err(fault)) => {
                 let text = fault.to_string();
                 first_error.get_or_insert(fault);
@@ -144,11 +146,12 @@ fn reference(
 ) -> Result<Reference, Error> {
     let p = surface.mesh().n_vertices();
     let rows = stress.choice.rows(p, stress.seed);
-    check_memory(p, rows.as_ref().map_or(p, Vec::len))?;
+    let budget = observer.budget();
+    check_memory(p, rows.as_ref().map_or(p, Vec::len), &budget)?;
     observer.begin("stress", 1);
-    let solver = method.prepare(&surface.intrinsic)?;
+    let solver = method.prepare_within(&surface.intrinsic, &budget)?;
     let Some(rows) = rows else { return Ok((Box::new(solver.distance_matrix()?), None)) };
     let sources: Vec<VertexId> = rows.iter().copied().map(VertexId::from).collect();
-    let known = LandmarkDistances::new(rows.clone(), solver.distance_columns(&sources))?;
+    let known = LandmarkDistances::new(rows.clone(), solver.distance_columns(&sources)?)?;
     Ok((Box::new(KnownRows(known)), Some(rows)))
 }

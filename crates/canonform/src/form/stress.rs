@@ -2,6 +2,7 @@
 
 use std::borrow::Borrow;
 
+use budget::Exceeded;
 use geodesics::{DistanceSolver, Method};
 use linalg::{LandmarkDistances, Matrix};
 use nmds::{DistanceRows, StressEstimate, estimate_paper_stress, paper_stress, sample_rows};
@@ -86,18 +87,18 @@ impl StressReport {
         distances: &dyn DistanceRows,
         rows: Option<&[usize]>,
         method: Method,
-    ) -> Self {
+    ) -> Result<Self, Exceeded> {
         let (value, kind, interval) = match rows {
             None => {
-                let value = paper_stress(coords, distances);
+                let value = paper_stress(coords, distances)?;
                 (value, StressKind::Exact, [value; 2])
             }
             Some(rows) => {
-                let StressEstimate { value, interval, .. } = estimate_paper_stress(coords, distances, rows);
+                let StressEstimate { value, interval, .. } = estimate_paper_stress(coords, distances, rows)?;
                 (value, StressKind::Estimated, interval)
             }
         };
-        Self { measure: "paper_stress", geodesic: method.name(), value, kind, interval }
+        Ok(Self { measure: "paper_stress", geodesic: method.name(), value, kind, interval })
     }
 }
 
@@ -109,8 +110,8 @@ impl DistanceRows for SolvedRows<'_> {
         self.0.n_vertices()
     }
 
-    fn row_into(&self, i: usize, out: &mut [f64]) {
-        self.0.distances_into(VertexId::from(i), out);
+    fn row_into(&self, i: usize, out: &mut [f64]) -> Result<(), Exceeded> {
+        self.0.distances_into(VertexId::from(i), out)
     }
 }
 
@@ -122,10 +123,11 @@ impl<T: Borrow<LandmarkDistances> + Sync> DistanceRows for KnownRows<T> {
         self.0.borrow().n_points()
     }
 
-    fn row_into(&self, i: usize, out: &mut [f64]) {
+    fn row_into(&self, i: usize, out: &mut [f64]) -> Result<(), Exceeded> {
         let known = self.0.borrow();
         let landmark = known.landmarks().iter().position(|&l| l == i);
         out.copy_from_slice(known.column(landmark.unwrap_or_else(|| unreachable!("row {i} is not known"))));
+        Ok(())
     }
 }
 
@@ -136,7 +138,7 @@ pub(super) fn measure(
     method: Method,
     options: &StressOptions,
     observer: &dyn Observer,
-) -> StressReport {
+) -> Result<StressReport, Exceeded> {
     let rows = options.choice.rows(solver.n_vertices(), options.seed);
     observer.begin("stress", rows.as_ref().map_or(solver.n_vertices(), Vec::len));
     StressReport::new(coords, &SolvedRows(solver), rows.as_deref(), method)

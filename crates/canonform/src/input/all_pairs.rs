@@ -2,6 +2,7 @@
 
 use std::io::{self, Read, Seek, SeekFrom, Write};
 
+use budget::Exceeded;
 use geodesics::DistanceSolver;
 use linalg::Matrix;
 use serde::Serialize;
@@ -86,7 +87,7 @@ impl<'a> AllPairs<'a> {
         for first in (0..p).step_by(self.block.max(1)) {
             let n = self.block.min(p - first);
             let rows = &mut block[..n * p];
-            self.solve(first, rows, observer);
+            self.solve(first, rows, observer).map_err(io::Error::other)?;
             // Earlier blocks wrote the stripes left of this one.
             for left in (0..first).step_by(STRIPE) {
                 let width = STRIPE.min(first - left);
@@ -126,7 +127,7 @@ impl<'a> AllPairs<'a> {
     }
 
     /// Solves the rows of the input vertices from `first` on.
-    fn solve(&self, first: usize, rows: &mut [f64], observer: &dyn Observer) {
+    fn solve(&self, first: usize, rows: &mut [f64], observer: &dyn Observer) -> Result<(), Exceeded> {
         let p = self.n_vertices();
         let to_repaired = &self.surface.repaired.input_to_repaired;
         for (i, rows) in rows.chunks_mut(self.batch * p).enumerate() {
@@ -135,7 +136,7 @@ impl<'a> AllPairs<'a> {
             let mut sources: Vec<VertexId> = wanted.iter().flatten().copied().collect();
             sources.sort_unstable();
             sources.dedup();
-            let columns: Matrix = self.solver.distance_columns(&sources);
+            let columns: Matrix = self.solver.distance_columns(&sources)?;
             for (row, source) in rows.chunks_exact_mut(p).zip(wanted) {
                 let column = source.and_then(|source| sources.binary_search(&source).ok());
                 let column = column.map(|column| columns.column(column));
@@ -148,6 +149,7 @@ impl<'a> AllPairs<'a> {
                 observer.step();
             }
         }
+        Ok(())
     }
 }
 
@@ -213,7 +215,7 @@ mod tests {
         let p = surface.n_input_vertices();
         let solver = Method::default().prepare(&surface.intrinsic).unwrap();
         let all: Vec<VertexId> = (0..p).map(VertexId::from).collect();
-        let columns = solver.distance_columns(&all);
+        let columns = solver.distance_columns(&all).unwrap();
         let expected: Vec<f64> =
             (0..p * p).map(|k| 0.5 * (columns[(k / p, k % p)] + columns[(k % p, k / p)])).collect();
         for rows in [2, 3, 5, 17, 100, p, 10 * p] {

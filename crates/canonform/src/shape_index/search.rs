@@ -3,6 +3,7 @@
 use std::path::Path;
 use std::time::Instant;
 
+use budget::Budget;
 use descriptors::{PreparedShape, ShapeMetric, ShapePair};
 use index::{Index, SearchMode, ShapeEntry};
 use mesh::TriMesh;
@@ -15,7 +16,7 @@ use super::rerank::{Ranked, rerank};
 use super::source::read_unchanged;
 use crate::compare::{Comparison, compare};
 use crate::error::Error;
-use crate::form::{DescribeOptions, ShapeDescription, describe};
+use crate::form::{DescribeOptions, ShapeDescription, describe_within};
 use crate::input::Surface;
 
 /// Neighbours that vote on the class of a query.
@@ -188,10 +189,24 @@ impl ShapeSearch {
     /// # Errors
     /// [`Error::Index`], and those of describing the mesh.
     pub fn search(&self, mesh: &TriMesh, options: &SearchOptions) -> Result<SearchReport, Error> {
+        self.search_within(mesh, options, &Budget::unlimited())
+    }
+
+    /// As [`search`](Self::search), within a budget.
+    ///
+    /// # Errors
+    /// [`Error::Exceeded`] and those of [`search`](Self::search).
+    pub fn search_within(
+        &self,
+        mesh: &TriMesh,
+        options: &SearchOptions,
+        budget: &Budget,
+    ) -> Result<SearchReport, Error> {
         let start = Instant::now();
-        let query = describe(&Surface::new(mesh, &self.describe.form.repair)?, &self.describe)?;
+        let surface = Surface::new(mesh, &self.describe.form.repair)?;
+        let query = describe_within(&surface, &self.describe, budget)?;
         let describe = start.elapsed().as_secs_f64();
-        let report = self.search_described(&query, options)?;
+        let report = self.search_described_within(&query, options, budget)?;
         Ok(SearchReport { seconds: SearchSeconds { describe, ..report.seconds }, ..report })
     }
 
@@ -204,8 +219,21 @@ impl ShapeSearch {
         query: &ShapeDescription,
         options: &SearchOptions,
     ) -> Result<SearchReport, Error> {
+        self.search_described_within(query, options, &Budget::unlimited())
+    }
+
+    /// As [`search_described`](Self::search_described), within a budget.
+    ///
+    /// # Errors
+    /// [`Error::Exceeded`] and those of [`search_described`](Self::search_described).
+    pub fn search_described_within(
+        &self,
+        query: &ShapeDescription,
+        options: &SearchOptions,
+        budget: &Budget,
+    ) -> Result<SearchReport, Error> {
         self.index.expect_options(&query.options.text())?;
-        self.nearest(&query.prepare()?, options)
+        self.nearest(&query.prepare()?, options, budget)
     }
 
     /// Searches with a shape of the index, which finds itself. Its mesh is not needed.
@@ -213,20 +241,29 @@ impl ShapeSearch {
     /// # Errors
     /// [`Error::Index`].
     pub fn search_shape(&self, id: &str, options: &SearchOptions) -> Result<SearchReport, Error> {
-        self.nearest(&self.prepared(id)?, options)
+        self.nearest(&self.prepared(id)?, options, &Budget::unlimited())
     }
 
-    fn nearest(&self, query: &PreparedShape, options: &SearchOptions) -> Result<SearchReport, Error> {
+    fn nearest(
+        &self,
+        query: &PreparedShape,
+        options: &SearchOptions,
+        budget: &Budget,
+    ) -> Result<SearchReport, Error> {
         let start = Instant::now();
-        let wanted = options.k.max(VOTERS);
-        let found =
-            self.index.nearest(query.fused(), (CANDIDATES * wanted).max(LEAST_CANDIDATES), options.mode)?;
+        // There are no more results than shapes, however many are requested.
+        let wanted = options.k.max(VOTERS).min(self.index.len());
+        let n_candidates = CANDIDATES.saturating_mul(wanted).max(LEAST_CANDIDATES);
+        let found = self.index.nearest(query.fused(), n_candidates, options.mode)?;
         let near = &found.shapes;
         let candidates = near
             .iter()
             .enumerate()
             .map(|(index, near)| Candidate { index, bound: near.distance * LOWER_BOUND });
-        let shape = |i: usize| self.prepared(&near[i].id);
+        let shape = |i: usize| {
+            budget.check()?;
+            self.prepared(&near[i].id)
+        };
         let ranked = rerank(query, candidates, wanted, shape)?;
 
         let result = |(place, ranked): (usize, &Ranked)| {
@@ -240,6 +277,7 @@ impl ShapeSearch {
         results.truncate(options.k);
         if options.explain == Explain::Kind {
             results.par_iter_mut().zip(&ranked.nearest).try_for_each(|(result, ranked)| {
+                budget.check()?;
                 let shape = self.prepared(&result.id)?;
                 let pair =
                     ShapePair::new(ShapeMetric::default(), [query, &shape]).with_best(ranked.alignment);
@@ -290,7 +328,7 @@ mod tests {
 
     use super::*;
     use crate::error::Remedy;
-    use crate::form::{EmbedMethod, FormOptions};
+    use crate::form::{EmbedMethod, FormOptions, describe};
     use crate::shape_index::{BuildOptions, build_index};
 
     /// An index of a few bodies.

@@ -129,7 +129,7 @@ fn distances(args: &RenderArgs, surface: &Surface) -> Result<Vec<f64>, canonform
     let sources: Result<Vec<_>, canonform::Error> = args.distance_from.iter().map(source).collect();
     let solver = Method::default().prepare(&surface.intrinsic)?;
     let mut distances = vec![0.0; solver.n_vertices()];
-    solver.solve_into(&sources?, f64::INFINITY, &mut distances);
+    solver.solve_into(&sources?, f64::INFINITY, &mut distances)?;
     Ok(surface.in_input_order(&distances, f64::INFINITY))
 }
 

@@ -2,6 +2,8 @@
 
 use std::collections::VecDeque;
 
+use budget::{Budget, Exceeded};
+
 use surface::CornerId;
 
 use super::window::Window;
@@ -37,7 +39,24 @@ pub(super) struct Front {
     free: Vec<u32>,
     /// Lists whose vertex has left the heap.
     ready: VecDeque<u32>,
+    memory: Memory,
+    /// Windows delivered, and lists opened, since the last call of [`take_work`](Self::take_work).
+    work: usize,
 }
+
+/// The memory of the windows that wait, in windows.
+#[derive(Debug, Default)]
+struct Memory {
+    /// Room in all lists.
+    held: usize,
+    limit: usize,
+    /// What was needed when it exceeded the limit, or when the system had no more.
+    missing: Option<usize>,
+}
+
+/// Bytes for the windows of one run if the budget has no limit: the front of a real surface of a million vertices has
+/// a hundredth.
+const MOST_BYTES: usize = 1 << 30;
 
 #[derive(Debug)]
 struct List {
@@ -47,9 +66,28 @@ struct List {
     next: u32,
 }
 
+impl Memory {
+    /// Makes room for more windows, unless that would take twice the limit or the system has no more memory.
+    #[cold]
+    fn may_grow(&mut self, room: &mut Vec<Window>, count: usize) -> bool {
+        let needed = self.held.saturating_add(count);
+        let may = needed / 2 <= self.limit && room.try_reserve(count).is_ok();
+        if !may {
+            self.missing = Some(needed);
+        }
+        may
+    }
+}
+
 impl Front {
     /// Prepares for a new run. Allocates only to grow.
-    pub(super) fn reset(&mut self, n_vertices: usize, n_corners: usize) {
+    ///
+    /// Runs on all threads share the memory of the budget.
+    pub(super) fn reset(&mut self, n_vertices: usize, n_corners: usize, budget: &Budget) {
+        let bytes = budget.memory().map_or(MOST_BYTES, |bytes| bytes / rayon::current_num_threads());
+        let held = self.lists.iter().map(|list| list.windows.capacity()).sum();
+        self.memory = Memory { held, limit: bytes / size_of::<Window>(), missing: None };
+        self.work = 0;
         self.heap.reset(n_vertices);
         self.arrivals.resize(n_vertices, Arrival::Anywhere);
         self.list_at.clear();
@@ -90,31 +128,88 @@ impl Front {
         &mut self,
         corner: CornerId,
         ends: [u32; 2],
-        windows: impl Iterator<Item = Window>,
+        windows: impl ExactSizeIterator<Item = Window>,
     ) {
         let list = match self.list_at[corner.index()] {
             NONE => self.open(corner, ends),
             list => list,
         };
-        self.lists[list as usize].windows.extend(windows);
+        let count = windows.len();
+        self.work += count;
+        let room = &mut self.lists[list as usize].windows;
+        let before = room.capacity();
+        if count > before - room.len() && !self.memory.may_grow(room, count) {
+            return;
+        }
+        room.extend(windows);
+        self.memory.held = self.memory.held + room.capacity() - before;
     }
 
     /// As [`deliver`](Self::deliver), but may exchange the memory of `windows` instead of copying it.
     #[inline]
     pub(super) fn deliver_all(&mut self, corner: CornerId, ends: [u32; 2], windows: &mut Vec<Window>) {
+        self.work += windows.len();
         match self.list_at[corner.index()] {
             NONE => {
                 let list = self.open(corner, ends);
-                std::mem::swap(&mut self.lists[list as usize].windows, windows);
+                let empty = &mut self.lists[list as usize].windows;
+                self.memory.held = self.memory.held + windows.capacity() - empty.capacity();
+                std::mem::swap(empty, windows);
             }
             list => {
                 let before = &mut self.lists[list as usize].windows;
+                let held = before.capacity();
                 // Both are in order, and one comes before the other except for overlaps.
                 let start = |windows: &[Window]| windows.first().map(|window| window.start);
                 if start(windows) < start(before) {
                     std::mem::swap(before, windows);
                 }
+                if windows.len() > before.capacity() - before.len()
+                    && !self.memory.may_grow(before, windows.len())
+                {
+                    return;
+                }
                 before.extend_from_slice(windows);
+                self.memory.held = self.memory.held + before.capacity() - held;
+            }
+        }
+    }
+
+    /// The operations since the last call.
+    #[inline]
+    pub(super) fn take_work(&mut self) -> usize {
+        std::mem::take(&mut self.work)
+    }
+
+    /// Keeps to the limit on memory: frees lists at no corner if all lists exceed it.
+    ///
+    /// # Errors
+    /// [`Exceeded::Memory`] or [`Exceeded::Allocation`] if windows are missing, or half of the limit is still in use.
+    #[inline]
+    pub(super) fn check_memory(&mut self) -> Result<(), Exceeded> {
+        match self.memory {
+            Memory { missing: None, held, limit } if held <= limit => Ok(()),
+            _ => self.free_memory(),
+        }
+    }
+
+    #[cold]
+    fn free_memory(&mut self) -> Result<(), Exceeded> {
+        let bytes = |windows: usize| windows.saturating_mul(size_of::<Window>());
+        let Memory { held, limit, missing } = self.memory;
+        match missing {
+            Some(needed) if needed <= limit => Err(Exceeded::Allocation { needed: bytes(needed) }),
+            Some(needed) => Err(Exceeded::Memory { needed: bytes(needed), limit: bytes(limit) }),
+            None => {
+                for list in &self.free {
+                    self.lists[*list as usize].windows = Vec::new();
+                }
+                self.memory.held = self.lists.iter().map(|list| list.windows.capacity()).sum();
+                // Freeing must pay: what is freed has to be filled before it is freed again.
+                match self.memory.held <= limit / 2 {
+                    true => Ok(()),
+                    false => Err(Exceeded::Memory { needed: bytes(held), limit: bytes(limit) }),
+                }
             }
         }
     }
@@ -125,6 +220,7 @@ impl Front {
             self.lists.push(List { windows: Vec::new(), corner, next: NONE });
             (self.lists.len() - 1) as u32
         });
+        self.work += 1;
         let end = if self.distance(b) < self.distance(a) { b } else { a };
         let next = if self.heap.contains(end) {
             std::mem::replace(&mut self.waiting[end as usize], list)
@@ -153,6 +249,7 @@ impl Front {
         let index = self.ready.pop_front()?;
         let list = &mut self.lists[index as usize];
         windows.clear();
+        self.memory.held = self.memory.held + windows.capacity() - list.windows.capacity();
         std::mem::swap(windows, &mut list.windows);
         self.list_at[list.corner.index()] = NONE;
         self.free.push(index);

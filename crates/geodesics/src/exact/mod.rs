@@ -27,6 +27,7 @@ mod window;
 #[cfg(test)]
 mod tests;
 
+use budget::{Budget, Exceeded};
 use surface::IntrinsicMesh;
 
 use crate::solver::{DistanceSolver, Pool, within};
@@ -63,7 +64,8 @@ use propagation::Scratch;
 ///   to `1e-12` of its longest edge. Successive faces that have a side without length may hide a path; repair drops
 ///   such faces.
 /// * **Guarantees.** Every distance is the length of a path, up to rounding; symmetric, and at most that along edges.
-///   Infinite exactly where no edge or link leads. The number of windows is limited; no known surface comes near.
+///   Infinite exactly where no edge or link leads. The number of windows is limited; no known surface comes near. Those
+///   that wait at once keep to the memory of the budget divided by the number of threads, or to 1 GiB.
 /// * **Cost.** At worst `O(p^2)`, in practice near `O(p^1.2)`, linear on flat parts; about 400 bytes per vertex.
 ///
 /// Mitchell, Mount and Papadimitriou 1987 (`mitchell1987`). Splitting windows at one apex only is from Xin and Wang
@@ -78,19 +80,27 @@ use propagation::Scratch;
 ///
 /// // From a corner of a unit cube to the opposite one, straight across two unfolded sides.
 /// let solver = Exact::new(&shapes::cube(0).intrinsic());
-/// assert!((solver.distances(VertexId(0))[7] - 5f64.sqrt()).abs() < 1e-12);
+/// assert!((solver.distances(VertexId(0))?[7] - 5f64.sqrt()).abs() < 1e-12);
+/// # Ok::<(), canonform_geodesics::GeodesicError>(())
 /// ```
 #[derive(Debug)]
 pub struct Exact {
     surface: Prepared,
     scratch: Pool<Scratch>,
+    budget: Budget,
 }
 
 impl Exact {
     /// Prepares a surface.
     #[must_use]
     pub fn new(mesh: &IntrinsicMesh) -> Self {
-        Self { surface: Prepared::new(mesh), scratch: Pool::default() }
+        Self { surface: Prepared::new(mesh), scratch: Pool::default(), budget: Budget::unlimited() }
+    }
+
+    /// The same solver, which keeps to a budget.
+    #[must_use]
+    pub fn with_budget(self, budget: Budget) -> Self {
+        Self { budget, ..self }
     }
 }
 
@@ -99,14 +109,19 @@ impl DistanceSolver for Exact {
         self.surface.n_vertices()
     }
 
-    fn solve_into(&self, sources: &[Source], max_distance: f64, out: &mut [f64]) {
+    fn budget(&self) -> Budget {
+        self.budget.clone()
+    }
+
+    fn solve_into(&self, sources: &[Source], max_distance: f64, out: &mut [f64]) -> Result<(), Exceeded> {
         assert_eq!(out.len(), self.n_vertices(), "one distance per vertex");
         let unit = self.surface.faces.unit;
         self.scratch.with(|scratch| {
-            let front = propagation::run(&self.surface, scratch, max_distance / unit, sources);
+            let front = propagation::run(&self.surface, scratch, max_distance / unit, sources, &self.budget)?;
             for (distance, vertex) in out.iter_mut().zip(&self.surface.new_vertices) {
                 *distance = within(front.distance(*vertex) * unit, max_distance);
             }
-        });
+            Ok(())
+        })
     }
 }

@@ -1,5 +1,6 @@
 //! The main loop: windows are propagated in the order of the vertices that they wait for.
 
+use budget::{Budget, Exceeded, Meter};
 use surface::{CornerId, VertexKind};
 
 use super::apex::{Apex, Passes};
@@ -33,27 +34,39 @@ const LIMIT_SLACK: f64 = 1e-9;
 /// Share of a distance by which it may be longer than one along an edge, for rounding.
 const EDGE_SLACK: f64 = 1e-13;
 
+/// Operations that a window counts for in the meter of a budget.
+const OPERATIONS: usize = 16;
+
 /// Finds the distances of all vertices within `max_distance` of the nearest source.
+///
+/// # Errors
+/// [`Exceeded`]; windows have their share of the memory of the budget.
 pub(super) fn run<'a>(
     surface: &Prepared,
     scratch: &'a mut Scratch,
     max_distance: f64,
     sources: &[Source],
-) -> &'a Front {
+    limits: &Budget,
+) -> Result<&'a Front, Exceeded> {
     let Scratch { front, arrived, left, right } = scratch;
-    front.reset(surface.n_vertices(), 3 * surface.faces.all.len());
+    front.reset(surface.n_vertices(), 3 * surface.faces.all.len(), limits);
     let budget = BUDGET_PER_FACE.saturating_mul(surface.faces.all.len());
     let mut emission = Emission { surface, front, budget };
     sources.iter().for_each(|source| emission.start_at(source));
     let max_distance = max_distance * (1.0 + LIMIT_SLACK);
-    let mut propagation = Propagation { emission, left, right, max_distance };
+    let mut propagation = Propagation { emission, left, right, max_distance, meter: limits.meter() };
     loop {
-        propagation.advance(arrived);
+        let result = propagation.advance(arrived);
+        if let Err(Exceeded::Memory { .. } | Exceeded::Allocation { .. }) = result {
+            *propagation.emission.front = Front::default();
+        }
+        result?;
+        limits.check()?;
         if !propagation.relax_edges() {
             break;
         }
     }
-    front
+    Ok(front)
 }
 
 /// One run over a surface.
@@ -63,10 +76,11 @@ struct Propagation<'a> {
     right: &'a mut Vec<Window>,
     /// Windows beyond this need not be propagated.
     max_distance: f64,
+    meter: Meter<'a>,
 }
 
 impl Propagation<'_> {
-    fn advance(&mut self, arrived: &mut Vec<Window>) {
+    fn advance(&mut self, arrived: &mut Vec<Window>) -> Result<(), Exceeded> {
         // The path to a vertex within the limit may cross an edge between two vertices beyond it.
         let last = self.max_distance + self.emission.surface.faces.longest_edge;
         while let Some((distance, vertex)) = self.emission.front.pop() {
@@ -81,8 +95,18 @@ impl Propagation<'_> {
             self.emission.front.release(vertex);
             while let Some(corner) = self.emission.front.next_ready(arrived) {
                 self.enter_face(corner, arrived);
+                self.check()?;
             }
+            self.check()?;
         }
+        Ok(())
+    }
+
+    #[inline]
+    fn check(&mut self) -> Result<(), Exceeded> {
+        let front = &mut *self.emission.front;
+        front.check_memory()?;
+        self.meter.count(OPERATIONS * front.take_work())
     }
 
     /// Relaxes all edges; returns whether a label was lowered. Needed for faces that violate the triangle inequality,

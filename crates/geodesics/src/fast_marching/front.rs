@@ -3,6 +3,8 @@
 //! The steps of a round are functions that are not inlined: side by side in one function they leave each other too
 //! few registers, which takes a tenth more time.
 
+use budget::{Budget, Exceeded};
+
 use super::buckets::Buckets;
 use super::one_ring::OneRings;
 use super::relaxation::{EdgeRelaxation, Label, ROUNDING, Relaxations, Round, TriangleSolver};
@@ -12,6 +14,9 @@ use super::update::Stencil;
 /// surfaces need 1.1 with flipped edges, sheared sheets without flips up to a hundred. Where rounding decides, in
 /// triangles without height or with unfolded corners, a few vertices might otherwise lower each other almost forever.
 const VISITS_PER_VERTEX: usize = 256;
+
+/// What a relaxation counts for in the meter of a budget.
+const OPERATIONS: usize = 8;
 
 /// A front that advances bucket by bucket, each in one round or a few.
 #[derive(Debug, Default)]
@@ -47,15 +52,18 @@ impl Front {
     pub(super) fn run(
         &mut self,
         rings: &OneRings,
+        budget: &Budget,
         stops: impl Fn(u32, f64) -> bool,
         update: impl Fn(Stencil, f64, f64) -> f64,
-    ) {
+    ) -> Result<(), Exceeded> {
         let Self { labels, buckets, round, relaxations, solver } = self;
+        let mut meter = budget.meter();
         let mut visits = VISITS_PER_VERTEX.saturating_mul(labels.len());
         while let Some(finalized) = buckets.next_round(round, |v| labels[v as usize].distance) {
             visits = visits.saturating_sub(round.len());
             let round = Round { rings, labels, vertices: round, finalized, corrects: visits > 0 };
             let (edges, triangles) = relaxations.find(round, &stops);
+            meter.count(OPERATIONS * (1 + edges.len() + triangles.len()))?;
             solver.solve(triangles, rings, labels, &update);
             // Triangles first: edges seldom lower what they have lowered.
             for (apex, label) in solver.results() {
@@ -65,6 +73,7 @@ impl Front {
                 lower(labels, buckets, *end, *label);
             }
         }
+        budget.check()
     }
 }
 

@@ -45,6 +45,7 @@ mod relaxation;
 mod unfold;
 mod update;
 
+use budget::{Budget, Exceeded};
 use surface::{IntrinsicMesh, Loops, Triangulation, VertexId};
 
 use crate::graph::EdgeGraph;
@@ -122,8 +123,9 @@ pub struct FastMarchingOptions {
 /// // A sheet of 9 x 5 vertices, one unit apart: distances in a plane are exact.
 /// let sheet = shapes::grid(9, 5, 1.0);
 /// let solver = FastMarching::new(&sheet.intrinsic(), FastMarchingOptions::default());
-/// let distances = solver.distances(VertexId(0));
+/// let distances = solver.distances(VertexId(0))?;
 /// assert!((distances[44] - 8f64.hypot(4.0)).abs() < 1e-12);
+/// # Ok::<(), canonform_geodesics::GeodesicError>(())
 /// ```
 ///
 /// [`kimmel1998`]: https://doi.org/10.1073/pnas.95.15.8431
@@ -136,6 +138,7 @@ pub struct FastMarching {
     rings: OneRings,
     update: Update,
     scratch: Pool<Front>,
+    budget: Budget,
 }
 
 impl FastMarching {
@@ -156,17 +159,28 @@ impl FastMarching {
         );
         let (triangulation, links, halves) = prepared;
         let rings = OneRings::new(order, &triangulation, &links, &halves, mesh.mean_edge_length());
-        Self { rings, update: options.update, scratch: Pool::default() }
+        Self { rings, update: options.update, scratch: Pool::default(), budget: Budget::unlimited() }
     }
 
-    fn run(&self, front: &mut Front, sources: &[Source], stops: impl Fn(u32, f64) -> bool) {
+    /// The same solver, which keeps to a budget.
+    #[must_use]
+    pub fn with_budget(self, budget: Budget) -> Self {
+        Self { budget, ..self }
+    }
+
+    fn run(
+        &self,
+        front: &mut Front,
+        sources: &[Source],
+        stops: impl Fn(u32, f64) -> bool,
+    ) -> Result<(), Exceeded> {
         front.reset(&self.rings);
         for (vertex, distance) in sources.iter().flat_map(Source::reach) {
             front.start(self.rings.rank[vertex.index()], *distance);
         }
         match self.update {
-            Update::PointSource => front.run(&self.rings, stops, Stencil::point_source),
-            Update::Planar => front.run(&self.rings, stops, Stencil::planar),
+            Update::PointSource => front.run(&self.rings, &self.budget, stops, Stencil::point_source),
+            Update::Planar => front.run(&self.rings, &self.budget, stops, Stencil::planar),
         }
     }
 }
@@ -180,15 +194,20 @@ impl DistanceSolver for FastMarching {
         self.rings.order.len()
     }
 
-    fn solve_into(&self, sources: &[Source], max_distance: f64, out: &mut [f64]) {
+    fn budget(&self) -> Budget {
+        self.budget.clone()
+    }
+
+    fn solve_into(&self, sources: &[Source], max_distance: f64, out: &mut [f64]) -> Result<(), Exceeded> {
         assert_eq!(out.len(), self.n_vertices(), "one distance per vertex");
         let stops = |_, distance| distance > max_distance;
         self.scratch.with(|front| {
-            self.run(front, sources, stops);
+            self.run(front, sources, stops)?;
             for (internal, v) in (0..).zip(&self.rings.order) {
                 out[*v as usize] = within(front.distance(internal), max_distance);
             }
-        });
+            Ok(())
+        })
     }
 
     fn pruned(&self) -> Option<&dyn PrunedSolver> {
@@ -197,17 +216,18 @@ impl DistanceSolver for FastMarching {
 }
 
 impl PrunedSolver for FastMarching {
-    fn lower(&self, source: VertexId, nearest: &mut [f64]) {
+    fn lower(&self, source: VertexId, nearest: &mut [f64]) -> Result<(), Exceeded> {
         assert_eq!(nearest.len(), self.n_vertices(), "one distance per vertex");
         self.scratch.with(|front| {
             self.run(front, &[Source::vertex(source)], |vertex, distance| {
                 let excess = distance - nearest[self.rings.order[vertex as usize] as usize];
                 excess > 0.0 && excess > BORDER * self.rings.longest_at(vertex)
-            });
+            })?;
             for (internal, v) in (0..).zip(&self.rings.order) {
                 let known = &mut nearest[*v as usize];
                 *known = known.min(front.distance(internal));
             }
-        });
+            Ok(())
+        })
     }
 }

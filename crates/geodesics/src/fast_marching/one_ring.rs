@@ -1,5 +1,6 @@
 //! The one-rings of all vertices, laid out in the order in which relaxations read them.
 
+use std::collections::HashMap;
 use std::f64::consts::PI;
 
 use rayon::prelude::*;
@@ -244,13 +245,7 @@ fn lay_out(
             cross: double_area([*third, apex.1, base.1]),
         });
     }
-    for (end, length) in links {
-        let is_shorter =
-            |n: &Neighbour| n.vertex == *end && n.allowed.has(Allowed::EDGE) && n.length <= *length;
-        if !neighbours.iter().any(is_shorter) {
-            neighbours.push(Neighbour::without_triangle(*end, Allowed::EDGE, *length));
-        }
-    }
+    add_links(links, neighbours);
     if ring.is_closed() && neighbours.len() == n_fans {
         // The neighbour that closes the fan takes the place of its copy at the beginning.
         neighbours.swap_remove(0);
@@ -265,6 +260,35 @@ fn lay_out(
         VertexKind::Ordinary => false,
         VertexKind::Saddle | VertexKind::Boundary => true,
         VertexKind::Irregular => angle > PI + EXCESS,
+    }
+}
+
+/// Up to this many links at a vertex are compared with all of its neighbours.
+const FEW_LINKS: usize = 16;
+
+/// Appends the ends of links, except where an edge or an earlier link is no longer.
+fn add_links(links: &[(u32, f64)], neighbours: &mut Vec<Neighbour>) {
+    let has_edge = |n: &&Neighbour| n.allowed.has(Allowed::EDGE);
+    let appended = |(end, length): (u32, f64)| Neighbour::without_triangle(end, Allowed::EDGE, length);
+    if links.len() <= FEW_LINKS {
+        for &(end, length) in links {
+            if !neighbours.iter().filter(has_edge).any(|n| n.vertex == end && n.length <= length) {
+                neighbours.push(appended((end, length)));
+            }
+        }
+        return;
+    }
+    let mut shortest = HashMap::with_capacity(neighbours.len() + links.len());
+    for n in neighbours.iter().filter(has_edge) {
+        let known = shortest.entry(n.vertex).or_insert(f64::INFINITY);
+        *known = n.length.min(*known);
+    }
+    for &(end, length) in links {
+        let known = shortest.entry(end).or_insert(f64::INFINITY);
+        if length < *known || *known == f64::INFINITY {
+            *known = length;
+            neighbours.push(appended((end, length)));
+        }
     }
 }
 

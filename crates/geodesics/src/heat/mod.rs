@@ -3,6 +3,7 @@
 mod flow;
 mod system;
 
+use budget::{Budget, Exceeded};
 use linalg::Matrix;
 use rayon::prelude::*;
 use surface::laplacian::{Element, Laplacian, Metric};
@@ -88,7 +89,7 @@ const LANES: usize = 4;
 ///
 /// // From one pole of a unit sphere to the other.
 /// let method = HeatMethod::new(&shapes::icosphere(4).intrinsic(), HeatOptions::default())?;
-/// let farthest = method.distances(VertexId(0)).into_iter().fold(0.0, f64::max);
+/// let farthest = method.distances(VertexId(0))?.into_iter().fold(0.0, f64::max);
 /// assert!((farthest / std::f64::consts::PI - 1.0).abs() < 0.02);
 /// # Ok::<(), canonform_geodesics::GeodesicError>(())
 /// ```
@@ -111,6 +112,7 @@ pub struct HeatMethod {
     bars: Vec<Bar>,
     system: System,
     scratch: Pool<Vec<f64>>,
+    budget: Budget,
 }
 
 impl HeatMethod {
@@ -122,19 +124,28 @@ impl HeatMethod {
     /// # Errors
     /// [`GeodesicError::BadHeatTime`]; [`GeodesicError::NotFactorised`] if that does not help, or memory runs out.
     pub fn new(mesh: &IntrinsicMesh, options: HeatOptions) -> Result<Self, GeodesicError> {
+        Self::within(mesh, options, Budget::unlimited())
+    }
+
+    /// As [`new`](Self::new) within a budget, which the solver keeps to as well.
+    ///
+    /// # Errors
+    /// [`GeodesicError::Exceeded`] and those of [`new`](Self::new).
+    pub fn within(mesh: &IntrinsicMesh, options: HeatOptions, budget: Budget) -> Result<Self, GeodesicError> {
         if !(options.time > 0.0 && options.time.is_finite()) {
             return Err(GeodesicError::BadHeatTime { time: options.time });
         }
         let laplacian = Laplacian::new(mesh);
+        budget.check()?;
         let metric = laplacian.metric();
         let components = components_with_links(mesh);
         let grounded = components.lowest_vertices();
         let (side, area) = laplacian.mean_side_and_area();
         let time = options.time * side * side.max(FINE * area.sqrt());
-        let time = time.max((extent(mesh, metric, &components) / RANGE).powi(2));
+        let time = time.max((extent(mesh, metric, &components, &budget)? / RANGE).powi(2));
         let links = metric.links.iter().filter(|link| link.ends[0] != link.ends[1]);
         let mut bars: Vec<Bar> = links.map(|link| Bar::new(link, time.sqrt())).collect();
-        let system = System::new(&laplacian, &bars, time, &grounded)?;
+        let system = System::new(&laplacian, &bars, time, &grounded, &budget)?;
         let neighbours = neighbours(mesh.n_vertices(), laplacian.elements());
         let mut step = vec![0; mesh.n_vertices()];
         for (i, row) in system.heat.order().rows().iter().enumerate() {
@@ -156,6 +167,7 @@ impl HeatMethod {
             bars,
             system,
             scratch: Pool::default(),
+            budget,
         })
     }
 
@@ -166,7 +178,12 @@ impl HeatMethod {
     }
 
     /// Solves for up to `K` sets of sources at once, one column of `out` each.
-    fn solve_lanes<const K: usize>(&self, sets: &[&[Source]], max_distance: f64, out: &mut [f64]) {
+    fn solve_lanes<const K: usize>(
+        &self,
+        sets: &[&[Source]],
+        max_distance: f64,
+        out: &mut [f64],
+    ) -> Result<(), Exceeded> {
         let n = self.step.len();
         self.scratch.with(|scratch| {
             scratch.clear();
@@ -178,15 +195,20 @@ impl HeatMethod {
                     u[self.step[vertex.index()] as usize][lane] += AMPLITUDE * share;
                 }
             }
+            self.budget.check()?;
             self.system.heat.solve_ordered(u);
+            self.budget.check()?;
             self.elements.iter().for_each(|element| flow::add_divergence(element, u, phi));
             self.bars.iter().for_each(|bar| bar.add_divergence(u, phi));
+            self.budget.check()?;
             self.system.poisson.solve_ordered(phi);
+            self.budget.check()?;
             for ((lane, sources), column) in sets.iter().enumerate().zip(out.chunks_exact_mut(n)) {
                 self.read_lane(lane, sources, phi, column);
                 column.iter_mut().for_each(|distance| *distance = within(*distance, max_distance));
             }
-        });
+            Ok(())
+        })
     }
 
     /// Distances from the potential.
@@ -251,29 +273,34 @@ impl DistanceSolver for HeatMethod {
         self.step.len()
     }
 
-    fn solve_into(&self, sources: &[Source], max_distance: f64, out: &mut [f64]) {
+    fn budget(&self) -> Budget {
+        self.budget.clone()
+    }
+
+    fn solve_into(&self, sources: &[Source], max_distance: f64, out: &mut [f64]) -> Result<(), Exceeded> {
         assert_eq!(out.len(), self.n_vertices(), "one distance per vertex");
-        if !out.is_empty() {
-            self.solve_lanes::<1>(&[sources], max_distance, out);
+        match out {
+            [] => Ok(()),
+            out => self.solve_lanes::<1>(&[sources], max_distance, out),
         }
     }
 
     /// Solves for four sources at a time, in parallel. The result depends neither on the threads nor on the grouping.
-    fn distance_columns(&self, sources: &[VertexId]) -> Matrix {
+    fn distance_columns(&self, sources: &[VertexId]) -> Result<Matrix, Exceeded> {
         let p = self.n_vertices();
-        let mut columns = Matrix::zeros(p, sources.len());
+        let mut columns = self.budget.vector(p.saturating_mul(sources.len()))?;
         if p > 0 {
-            let batches = columns.as_mut_slice().par_chunks_mut(LANES * p).zip(sources.par_chunks(LANES));
-            batches.for_each(|(columns, sources)| match sources {
+            let batches = columns.par_chunks_mut(LANES * p).zip(sources.par_chunks(LANES));
+            batches.try_for_each(|(columns, sources)| match sources {
                 [source] => self.distances_into(*source, columns),
                 _ => {
                     let sets: Vec<[Source; 1]> = sources.iter().map(|v| [Source::vertex(*v)]).collect();
                     let sets: Vec<&[Source]> = sets.iter().map(|set| &set[..]).collect();
-                    self.solve_lanes::<LANES>(&sets, f64::INFINITY, columns);
+                    self.solve_lanes::<LANES>(&sets, f64::INFINITY, columns)
                 }
-            });
+            })?;
         }
-        columns
+        Ok(Matrix::from_vec(p, sources.len(), columns))
     }
 }
 
@@ -304,15 +331,20 @@ fn neighbours(n_vertices: usize, elements: &[Element]) -> Rows<(u32, f64)> {
 
 /// The width of the widest component along edges, in units: the distance to the vertex farthest from the vertex
 /// farthest from the first one.
-fn extent(mesh: &IntrinsicMesh, metric: &Metric, components: &Components) -> f64 {
+fn extent(
+    mesh: &IntrinsicMesh,
+    metric: &Metric,
+    components: &Components,
+    budget: &Budget,
+) -> Result<f64, Exceeded> {
     let links = metric.links.iter().map(|link| Link { length: link.length.min(LONGEST_BAR), ..*link });
     let scaled = IntrinsicMesh::new(mesh.topology().clone(), metric.edges.clone());
-    let graph = Dijkstra::new(&scaled.with_links(links.collect()));
+    let graph = Dijkstra::new(&scaled.with_links(links.collect())).with_budget(budget.clone());
     let mut distances = vec![0.0; mesh.n_vertices()];
     let mut farthest = components.lowest_vertices();
     for _ in 0..2 {
         let sources: Vec<Source> = farthest.iter().map(|v| Source::vertex(*v)).collect();
-        graph.solve_into(&sources, f64::INFINITY, &mut distances);
+        graph.solve_into(&sources, f64::INFINITY, &mut distances)?;
         for v in (0..distances.len()).map(VertexId::from) {
             let best = &mut farthest[components.of(v)];
             if distances[v.index()] > distances[best.index()] {
@@ -320,7 +352,7 @@ fn extent(mesh: &IntrinsicMesh, metric: &Metric, components: &Components) -> f64
             }
         }
     }
-    farthest.iter().map(|v| distances[v.index()]).fold(0.0, f64::max)
+    Ok(farthest.iter().map(|v| distances[v.index()]).fold(0.0, f64::max))
 }
 
 #[cfg(test)]

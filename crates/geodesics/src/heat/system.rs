@@ -1,5 +1,6 @@
 //! The two matrices and their factors.
 
+use budget::Budget;
 use linalg::{EliminationOrder, LinalgError, SparseCholesky, SparseSymmetric};
 use surface::VertexId;
 use surface::laplacian::{Element, Laplacian};
@@ -29,6 +30,7 @@ impl System {
         bars: &[Bar],
         time: f64,
         grounded: &[VertexId],
+        budget: &Budget,
     ) -> Result<Self, GeodesicError> {
         let (n, elements) = (laplacian.n_vertices(), laplacian.elements());
         let mut heat = stiffness(n, elements, time, bars.iter().map(|bar| (bar.ends, bar.heat())));
@@ -36,15 +38,15 @@ impl System {
         // A vertex without triangles and links has an equation of its own.
         let missing: Vec<f64> = heat.diagonal().iter().map(|d| if *d == 0.0 { 1.0 } else { 0.0 }).collect();
         heat.add_to_diagonal(missing.into_iter());
-        let order = EliminationOrder::new(&heat).map_err(failed)?;
-        let heat = factorise(&order, heat)?;
+        let order = EliminationOrder::within(&heat, budget).map_err(failed)?;
+        let heat = factorise(&order, heat, budget)?;
 
         let mut poisson =
             stiffness(n, elements, 1.0, bars.iter().map(|bar| (bar.ends, [bar.weight(), -bar.weight()])));
         let mut ground = vec![0.0; n];
         grounded.iter().for_each(|v| ground[v.index()] = 1.0);
         poisson.add_to_diagonal(ground.into_iter());
-        Ok(Self { heat, poisson: factorise(&order, poisson)? })
+        Ok(Self { heat, poisson: factorise(&order, poisson, budget)? })
     }
 }
 
@@ -71,13 +73,17 @@ fn stiffness(
 }
 
 /// The factor of a matrix, or of the matrix with the first of [`SHIFTS`] that has one.
-fn factorise(order: &EliminationOrder, mut matrix: SparseSymmetric) -> Result<SparseCholesky, GeodesicError> {
+fn factorise(
+    order: &EliminationOrder,
+    mut matrix: SparseSymmetric,
+    budget: &Budget,
+) -> Result<SparseCholesky, GeodesicError> {
     let diagonal = matrix.diagonal();
     let mut result = Err(GeodesicError::NotFactorised { reason: String::new() });
     for shift in SHIFTS {
         matrix.add_to_diagonal(diagonal.iter().map(|d| shift * d));
-        result = SparseCholesky::with_order(order, &matrix).map_err(failed);
-        if result.is_ok() {
+        result = SparseCholesky::within(order, &matrix, budget).map_err(failed);
+        if !matches!(result, Err(GeodesicError::NotFactorised { .. })) {
             break;
         }
     }
@@ -85,7 +91,10 @@ fn factorise(order: &EliminationOrder, mut matrix: SparseSymmetric) -> Result<Sp
 }
 
 fn failed(error: LinalgError) -> GeodesicError {
-    GeodesicError::NotFactorised { reason: error.to_string() }
+    match error {
+        LinalgError::Exceeded(exceeded) => exceeded.into(),
+        other => GeodesicError::NotFactorised { reason: other.to_string() },
+    }
 }
 
 #[cfg(test)]
@@ -98,8 +107,9 @@ mod tests {
         let order = EliminationOrder::new(&matrix(1.0)).unwrap();
         // Constants are mapped to zero; the shift makes the solution large and keeps its difference.
         let mut x = [1.0, -1.0];
-        factorise(&order, matrix(1.0)).unwrap().solve(&mut x);
+        factorise(&order, matrix(1.0), &Budget::unlimited()).unwrap().solve(&mut x);
         assert!((x[0] - x[1] - 1.0).abs() < 1e-3, "{x:?}");
-        assert!(matches!(factorise(&order, matrix(0.5)), Err(GeodesicError::NotFactorised { .. })));
+        let indefinite = factorise(&order, matrix(0.5), &Budget::unlimited());
+        assert!(matches!(indefinite, Err(GeodesicError::NotFactorised { .. })));
     }
 }

@@ -82,7 +82,7 @@ const ROUNDING: f64 = 1e-11;
 /// // From a corner of a unit cube to the opposite one, across the middle of an edge.
 /// let cube = shapes::cube(0).intrinsic();
 /// let sources = [Source::vertex(VertexId(0))];
-/// let distances = Exact::new(&cube).distances(VertexId(0));
+/// let distances = Exact::new(&cube).distances(VertexId(0))?;
 /// let path = PathTracer::new(&cube, &sources, &distances).path_to(SurfacePoint::Vertex(VertexId(7)))?;
 /// assert!((path.length - 5f64.sqrt()).abs() < 1e-12);
 /// assert!(matches!(path.points[1], SurfacePoint::Edge { t, .. } if (t - 0.5).abs() < 1e-12));

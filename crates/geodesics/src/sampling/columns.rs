@@ -29,7 +29,7 @@ impl<'a> Columns<'a> {
     /// Adds landmarks and finds the distances from them, in parallel.
     pub(super) fn add(&mut self, landmarks: &[usize]) -> Result<(), GeodesicError> {
         let sources: Vec<VertexId> = landmarks.iter().map(|&landmark| VertexId::from(landmark)).collect();
-        let columns = self.solver.distance_columns(&sources);
+        let columns = self.solver.distance_columns(&sources)?;
         for (source, column) in sources.iter().zip(columns.column_iter()) {
             let unreached = column.iter().filter(|d| !d.is_finite()).count();
             if unreached > 0 {

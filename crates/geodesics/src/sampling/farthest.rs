@@ -1,5 +1,8 @@
 //! Farthest point sampling.
 
+use std::sync::OnceLock;
+
+use budget::Exceeded;
 use linalg::LandmarkDistances;
 use surface::VertexId;
 
@@ -84,26 +87,40 @@ impl<'a> FarthestPointSampler<'a> {
     ///
     /// Distances may be too long where a pruned front stopped. So the choices are checked once all distances are
     /// known, and kept up to the first that is not the farthest vertex.
-    fn extend_pruned(&mut self, pruned: &dyn PrunedSolver, n: usize) {
+    fn extend_pruned(&mut self, pruned: &dyn PrunedSolver, n: usize) -> Result<(), GeodesicError> {
         let Columns { solver, landmarks, values } = &mut self.columns;
         let (p, solver, before) = (self.nearest.len(), *solver, landmarks.len());
         let mut nearest = self.nearest.clone();
         let mut guesses = Vec::new();
-        values.resize(p * n.max(before), 0.0);
+        let more = p * n.saturating_sub(before);
+        let needed = size_of::<f64>() * (values.len() + more);
+        solver.budget().check_memory(needed)?;
+        values.try_reserve(more).map_err(|_| Exceeded::Allocation { needed })?;
+        values.resize(values.len() + more, 0.0);
+        let exceeded = OnceLock::new();
+        let note = &|result: Result<(), Exceeded>| {
+            if let Err(error) = result {
+                exceeded.get_or_init(|| error);
+            }
+        };
         rayon::scope(|scope| {
             let mut unknown = values[p * before..].chunks_mut(p.max(1)).peekable();
             while let Some(column) = unknown.next() {
                 let next = farthest(&nearest);
-                if nearest[next] == 0.0 {
+                if nearest[next] == 0.0 || exceeded.get().is_some() {
                     break;
                 }
                 guesses.push(next);
-                scope.spawn(move |_| solver.distances_into(VertexId::from(next), column));
+                scope.spawn(move |_| note(solver.distances_into(VertexId::from(next), column)));
                 if unknown.peek().is_some() {
-                    pruned.lower(VertexId::from(next), &mut nearest);
+                    note(pruned.lower(VertexId::from(next), &mut nearest));
                 }
             }
         });
+        if let Some(exceeded) = exceeded.into_inner() {
+            values.truncate(p * before);
+            return Err(exceeded.into());
+        }
         for (guess, column) in guesses.into_iter().zip(values[p * before..].chunks(p.max(1))) {
             if guess != farthest(&self.nearest) {
                 break;
@@ -112,6 +129,7 @@ impl<'a> FarthestPointSampler<'a> {
             lower(&mut self.nearest, column);
         }
         values.truncate(p * landmarks.len());
+        Ok(())
     }
 }
 
@@ -121,7 +139,7 @@ impl Sampler for FarthestPointSampler<'_> {
         if rayon::current_num_threads() > 1
             && let Some(pruned) = self.columns.solver.pruned()
         {
-            self.extend_pruned(pruned, n);
+            self.extend_pruned(pruned, n)?;
         }
         self.extend_fully(n)
     }

@@ -1,5 +1,6 @@
 //! The number of negative eigenvalues of a sparse symmetric matrix.
 
+use budget::Budget;
 use faer::Par;
 use faer::dyn_stack::{MemBuffer, MemStack};
 
@@ -14,14 +15,16 @@ use crate::{EliminationOrder, LinalgError, SparseSymmetric};
 /// Returns `None` if a pivot is numerically zero: then the matrix, or a panel of it, has an eigenvalue at zero.
 ///
 /// # Errors
-/// [`LinalgError::NotFactorised`] if memory runs out.
+/// [`LinalgError::Exceeded`]; [`LinalgError::NotFactorised`] if memory runs out.
 pub(super) fn n_negative(
     order: &EliminationOrder,
     matrix: &SparseSymmetric,
+    budget: &Budget,
 ) -> Result<Option<usize>, LinalgError> {
+    budget.check()?;
     let n = matrix.order();
     let symbolic = &order.0.symbolic;
-    let mut values = vec![0.0; symbolic.len_val()];
+    let mut values = budget.vector(symbolic.len_val())?;
     let mut off_diagonal = vec![0.0; n];
     let [mut forward, mut inverse] = [vec![0; n], vec![0; n]];
     let scratch = symbolic.factorize_numeric_intranode_lblt_scratch::<f64>(Par::Seq, Default::default());
@@ -78,13 +81,16 @@ mod tests {
             let mut a = SparseSymmetric::from_entries(n, entries());
             a.add_to_diagonal((0..n).map(|_| -shift));
             let expected = symmetric_eigen(&a.dense()).unwrap().values.iter().filter(|v| **v < 0.0).count();
-            assert_eq!(n_negative(&EliminationOrder::new(&a).unwrap(), &a), Ok(Some(expected)), "{shift}");
+            let order = EliminationOrder::new(&a).unwrap();
+            let found = n_negative(&order, &a, &Budget::unlimited());
+            assert_eq!(found, Ok(Some(expected)), "{shift}");
         }
     }
 
     #[test]
     fn a_zero_pivot_is_not_counted() {
         let a = SparseSymmetric::from_entries(3, [(0, 0, 1.0), (1, 1, 0.0), (2, 2, -1.0)]);
-        assert_eq!(n_negative(&EliminationOrder::new(&a).unwrap(), &a), Ok(None));
+        let order = EliminationOrder::new(&a).unwrap();
+        assert_eq!(n_negative(&order, &a, &Budget::unlimited()), Ok(None));
     }
 }

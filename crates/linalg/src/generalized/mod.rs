@@ -5,6 +5,8 @@ mod lanczos;
 mod operator;
 mod strips;
 
+use budget::Budget;
+
 use self::inertia::n_negative;
 use self::lanczos::{Lanczos, Ritz};
 use self::operator::{ShiftInverse, shifted};
@@ -69,19 +71,40 @@ pub fn smallest_eigenpairs(
     masses: &[f64],
     m: usize,
 ) -> Result<GeneralizedEigen, LinalgError> {
+    smallest_eigenpairs_within(stiffness, masses, m, &Budget::unlimited())
+}
+
+/// As [`smallest_eigenpairs`], within a budget.
+///
+/// # Errors
+/// [`LinalgError::Exceeded`] and those of [`smallest_eigenpairs`].
+///
+/// # Panics
+/// As [`smallest_eigenpairs`].
+pub fn smallest_eigenpairs_within(
+    stiffness: &SparseSymmetric,
+    masses: &[f64],
+    m: usize,
+    budget: &Budget,
+) -> Result<GeneralizedEigen, LinalgError> {
     let n = stiffness.order();
+    let m = m.min(n);
+    // The basis has at least twice as many vectors as there are pairs.
+    budget.check_memory((2 * m).min(n).saturating_mul(n).saturating_mul(size_of::<f64>()))?;
     assert_eq!(masses.len(), n, "one mass for each row");
     if m == 0 || masses.iter().all(|mass| *mass == 0.0) {
         return Ok(GeneralizedEigen { values: Vec::new(), vectors: Matrix::zeros(n, 0) });
     }
-    let operator = ShiftInverse::new(stiffness, masses)?;
+    let operator = ShiftInverse::new(stiffness, masses, budget)?;
     let mut process = Lanczos::new(&operator);
     let mut schedule = Schedule::new(m + SPARE);
     let mut rounds = 0;
     loop {
         while process.dim() < schedule.next && !process.is_exhausted() {
+            budget.check()?;
             process.step();
         }
+        budget.check()?;
         let ritz = process.ritz()?;
         if process.is_exhausted() {
             return Ok(pairs(&operator, &process, &ritz, m));
@@ -92,7 +115,7 @@ pub fn smallest_eigenpairs(
         let values: Vec<f64> =
             ritz.eigen.values[..m + SPARE].iter().map(|t| operator.unshifted(*t)).collect();
         let gap = gap(&values, m, operator.shift);
-        let missing = n_missing(stiffness, masses, operator.factor.order(), gap)?;
+        let missing = n_missing(stiffness, masses, operator.factor.order(), gap, budget)?;
         if missing == 0 {
             return Ok(pairs(&operator, &process, &ritz, m));
         }
@@ -164,10 +187,11 @@ fn n_missing(
     masses: &[f64],
     order: &EliminationOrder,
     (found, [from, to]): (usize, [f64; 2]),
+    budget: &Budget,
 ) -> Result<usize, LinalgError> {
     for share in CUTS {
         let matrix = shifted(stiffness, masses, -(from + share * (to - from)));
-        if let Some(below) = n_negative(order, &matrix)? {
+        if let Some(below) = n_negative(order, &matrix, budget)? {
             return Ok(below.saturating_sub(found));
         }
     }

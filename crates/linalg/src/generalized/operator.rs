@@ -1,6 +1,8 @@
 //! The shift-and-invert operator, whose largest eigenvalues belong to the smallest of the pencil.
 
-use crate::{LinalgError, Matrix, SparseCholesky, SparseSymmetric};
+use budget::Budget;
+
+use crate::{EliminationOrder, LinalgError, Matrix, SparseCholesky, SparseSymmetric};
 
 /// `C = (W + s M)^-1 s M` with diagonal `M`, for vectors with rows in elimination order.
 ///
@@ -20,7 +22,11 @@ impl ShiftInverse {
     /// eigenvalues of `C`.
     ///
     /// An empty row without mass gets one on the diagonal.
-    pub(super) fn new(stiffness: &SparseSymmetric, masses: &[f64]) -> Result<Self, LinalgError> {
+    pub(super) fn new(
+        stiffness: &SparseSymmetric,
+        masses: &[f64],
+        budget: &Budget,
+    ) -> Result<Self, LinalgError> {
         let diagonal = stiffness.diagonal();
         let mut quotients: Vec<f64> =
             diagonal.iter().zip(masses).filter(|(_, m)| **m > 0.0).map(|(w, m)| w / m).collect();
@@ -30,7 +36,8 @@ impl ShiftInverse {
             false => *quotients.select_nth_unstable_by(middle, f64::total_cmp).1,
         };
         let shift = if median > 0.0 { median / stiffness.order() as f64 } else { 1.0 };
-        let factor = SparseCholesky::new(&shifted(stiffness, masses, shift))?;
+        let matrix = shifted(stiffness, masses, shift);
+        let factor = SparseCholesky::within(&EliminationOrder::within(&matrix, budget)?, &matrix, budget)?;
         let masses = factor.order().rows().iter().map(|&row| shift * masses[row]).collect();
         Ok(Self { factor, masses, shift })
     }

@@ -58,7 +58,9 @@ impl Task<'_> {
             let (from, sources): (_, Vec<Source>) = group.iter().cloned().unzip();
             let mut distances = vec![0.0; self.solver.n_vertices()];
             let start = Instant::now();
-            self.solver.solve_into(&sources, args.max_distance.unwrap_or(f64::INFINITY), &mut distances);
+            self.solver
+                .solve_into(&sources, args.max_distance.unwrap_or(f64::INFINITY), &mut distances)
+                .map_err(canonform::Error::from)?;
             per_source.push(start.elapsed().as_secs_f64());
             rows.push(Row { from, sources, distances });
             bar.inc(1);

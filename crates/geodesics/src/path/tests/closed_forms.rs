@@ -37,7 +37,7 @@ fn a_path_to_its_own_source_is_a_point() {
     let [a, _] = mesh.topology().edges()[9];
     let edge = SurfacePoint::Edge { edge: surface::EdgeId(9), t: 0.0 };
     let sources = [Source::vertex(a)];
-    let distances = Exact::new(&mesh).distances(a);
+    let distances = Exact::new(&mesh).distances(a).unwrap();
     assert_eq!(PathTracer::new(&mesh, &sources, &distances).path_to(edge).unwrap().length, 0.0);
 }
 
@@ -118,7 +118,7 @@ fn paths_cross_links_but_not_gaps_between_components() {
     assert_close(shortest(&linked, vertex(40), vertex(0)).length, expected, 1e-13);
 
     let sources = [Source::vertex(VertexId(0))];
-    let distances = Exact::new(&mesh).distances(VertexId(0));
+    let distances = Exact::new(&mesh).distances(VertexId(0)).unwrap();
     let tracer = PathTracer::new(&mesh, &sources, &distances);
     let error = tracer.path_to(vertex(40)).unwrap_err();
     assert_eq!(error, GeodesicError::NoWay { point: vertex(40) });
@@ -136,7 +136,7 @@ fn paths_lead_to_the_nearest_of_several_sources() {
     let sources =
         [Source::vertex(VertexId(3)), Source::new(&mesh, point).unwrap(), Source::vertex(VertexId(115))];
     let mut distances = vec![0.0; mesh.n_vertices()];
-    FastMarching::new(&mesh, Default::default()).solve_into(&sources, f64::INFINITY, &mut distances);
+    FastMarching::new(&mesh, Default::default()).solve_into(&sources, f64::INFINITY, &mut distances).unwrap();
     let tracer = PathTracer::new(&mesh, &sources, &distances);
     let corners = mesh.topology().faces()[100].map(|v| sheet.positions[v.index()].coords);
     let inside = corners[0] * 0.2 + corners[1] * 0.5 + corners[2] * 0.3;

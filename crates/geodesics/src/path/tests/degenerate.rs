@@ -13,10 +13,10 @@ fn assert_sane(mesh: &IntrinsicMesh) {
     let dijkstra = Dijkstra::new(mesh);
     let solvers: [&dyn DistanceSolver; 2] = [&Exact::new(mesh), &dijkstra];
     for source in (0..mesh.n_vertices()).step_by(3) {
-        let along_edges = dijkstra.distances(VertexId::from(source));
+        let along_edges = dijkstra.distances(VertexId::from(source)).unwrap();
         for solver in solvers {
             let sources = [Source::vertex(VertexId::from(source))];
-            let field = solver.distances(VertexId::from(source));
+            let field = solver.distances(VertexId::from(source)).unwrap();
             let tracer = PathTracer::new(mesh, &sources, &field);
             for (target, limit) in along_edges.iter().enumerate() {
                 match tracer.path_to(vertex(target)) {
@@ -110,7 +110,7 @@ proptest! {
         let (p, q) = (point(face, &weights[..3]), point(other, &weights[3..]));
         let sources = [Source::new(&mesh, p).unwrap()];
         let mut field = vec![0.0; mesh.n_vertices()];
-        Exact::new(&mesh).solve_into(&sources, f64::INFINITY, &mut field);
+        Exact::new(&mesh).solve_into(&sources, f64::INFINITY, &mut field).unwrap();
         let path = PathTracer::new(&mesh, &sources, &field).path_to(q).unwrap();
         assert_path(&mesh, &path, path.points[0], *path.points.last().unwrap());
         assert!(path.length < 4.0);

@@ -16,7 +16,7 @@ fn exact_distances_give_exactly_shortest_paths_between_all_pairs() {
         let mesh = bumpy(n, height, seed);
         let solver = Exact::new(&mesh);
         for source in (0..mesh.n_vertices()).map(VertexId::from) {
-            let distances = solver.distances(source);
+            let distances = solver.distances(source).unwrap();
             let sources = [Source::vertex(source)];
             let tracer = PathTracer::new(&mesh, &sources, &distances);
             for (target, distance) in distances.iter().enumerate() {
@@ -48,7 +48,7 @@ fn paths_between_points_of_edges_and_faces_are_symmetric() {
             let [there, back] = [(p, q), (q, p)].map(|(source, target)| {
                 let sources = [Source::new(&mesh, source).unwrap()];
                 let mut distances = vec![0.0; mesh.n_vertices()];
-                Exact::new(&mesh).solve_into(&sources, f64::INFINITY, &mut distances);
+                Exact::new(&mesh).solve_into(&sources, f64::INFINITY, &mut distances).unwrap();
                 PathTracer::new(&mesh, &sources, &distances).path_to(target).unwrap().length
             });
             assert_close(there, back, 1e-11);
@@ -74,10 +74,11 @@ fn any_field_gives_a_path_between_the_exact_distance_and_that_along_edges() {
         &BreadthFirst::new(&mesh),
     ];
     for source in [0, 101].map(VertexId) {
-        let (shortest, along_edges) = (exact.distances(source), dijkstra.distances(source));
+        let (shortest, along_edges) = (exact.distances(source).unwrap(), dijkstra.distances(source).unwrap());
         let nonsense = (0..mesh.n_vertices()).map(|v| ((v * 7919) % 101) as f64).collect();
         let nothing = vec![0.0; mesh.n_vertices()];
-        let fields = solvers.map(|solver| solver.distances(source)).into_iter().chain([nonsense, nothing]);
+        let fields =
+            solvers.map(|solver| solver.distances(source).unwrap()).into_iter().chain([nonsense, nothing]);
         for field in fields {
             let sources = [Source::vertex(source)];
             let tracer = PathTracer::new(&mesh, &sources, &field);
@@ -128,8 +129,8 @@ fn distances_with_a_limit_give_the_same_paths_within_it() {
     let mesh = bumpy(12, 0.8, 6);
     let solver = Exact::new(&mesh);
     let sources = [Source::vertex(VertexId(60))];
-    let (full, mut limited) = (solver.distances(VertexId(60)), vec![0.0; mesh.n_vertices()]);
-    solver.solve_into(&sources, 4.0, &mut limited);
+    let (full, mut limited) = (solver.distances(VertexId(60)).unwrap(), vec![0.0; mesh.n_vertices()]);
+    solver.solve_into(&sources, 4.0, &mut limited).unwrap();
     let [all, some] = [&full, &limited].map(|field| PathTracer::new(&mesh, &sources, field));
     for (v, distance) in full.iter().enumerate() {
         match some.path_to(vertex(v)) {

@@ -19,7 +19,7 @@ fn lengths_of_paths_equal_exact_distances() {
         for (source, exact) in rows.iter().take(2) {
             let sources = [Source::vertex(*source)];
             let tracer = PathTracer::new(&surface, &sources, exact);
-            let marched = marching.distances(*source);
+            let marched = marching.distances(*source).unwrap();
             let rough = PathTracer::new(&surface, &sources, &marched);
             let (mut excess, mut count) = (0.0, 0);
             for (v, distance) in exact.iter().enumerate().step_by(11).filter(|(_, d)| **d > 0.0) {
@@ -47,9 +47,9 @@ fn paths_on_every_tosca_mesh_are_shortest() {
         let mesh = repair(&read, &RepairOptions::default()).unwrap().intrinsic();
         let source = surface::VertexId::from(mesh.n_vertices() / 3);
         let sources = [Source::vertex(source)];
-        let exact = Exact::new(&mesh).distances(source);
+        let exact = Exact::new(&mesh).distances(source).unwrap();
         let tracer = PathTracer::new(&mesh, &sources, &exact);
-        let along_edges = Dijkstra::new(&mesh).distances(source);
+        let along_edges = Dijkstra::new(&mesh).distances(source).unwrap();
         for v in (0..mesh.n_vertices()).step_by(97) {
             let length = tracer.path_to(vertex(v)).unwrap().length;
             assert!((length - exact[v]).abs() <= 1e-10 * exact[v], "{}: {v}", path.display());
