@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use crate::clearance::entanglement;
 use crate::error::DatasetError;
 use crate::model::Model;
-use crate::pose::PosedSkeleton;
+use crate::pose::{Build, PosedSkeleton};
 use crate::shape::{posed_positions, rest_surface, shuffled};
 use crate::stream::{Purpose, Stream};
 use crate::{cat, centaur, david};
@@ -130,7 +130,7 @@ pub fn articulated(options: &ArticulatedOptions) -> Result<Vec<LabeledShape>, Da
         .iter()
         .flat_map(|(family, model)| (0..family.n_shapes()).map(move |pose| (*family, model, pose)))
         .collect();
-    shapes.into_par_iter().map(|(family, model, pose)| shape(family, model, pose, options)).collect()
+    shapes.into_par_iter().map(|(family, model, pose)| shape(family, model, [0, pose], options)).collect()
 }
 
 /// Generates one shape of the dataset, the same as in [`articulated()`].
@@ -145,22 +145,55 @@ pub fn articulated_shape(
     pose: usize,
     options: &ArticulatedOptions,
 ) -> Result<LabeledShape, DatasetError> {
-    options.validate()?;
-    shape(family, &family.model(), pose, options)
+    articulated_body(family, 0, pose, options)
 }
+
+/// Generates a shape of another body of the family: of the same anatomy, with other lengths and girths of trunk and
+/// limbs. Body 0 is that of [`articulated()`]; bodies do not depend on the seed.
+///
+/// # Errors
+/// As [`articulated()`].
+///
+/// ```
+/// use canonform_datasets::{ArticulatedOptions, Family, articulated_body};
+///
+/// let options = ArticulatedOptions { n_vertices: 1000, ..Default::default() };
+/// let other = articulated_body(Family::Cat, 2, 3, &options)?;
+/// assert_eq!((other.name.as_str(), other.label.as_str()), ("cat-body2-pose3", "cat"));
+/// # Ok::<(), canonform_datasets::DatasetError>(())
+/// ```
+pub fn articulated_body(
+    family: Family,
+    body: usize,
+    pose: usize,
+    options: &ArticulatedOptions,
+) -> Result<LabeledShape, DatasetError> {
+    options.validate()?;
+    shape(family, &family.model(), [body, pose], options)
+}
+
+/// Poses that have streams of random numbers of their own for every body.
+const POSES_PER_BODY: usize = 1 << 20;
 
 fn shape(
     family: Family,
     model: &Model,
-    pose: usize,
+    [body, pose]: [usize; 2],
     options: &ArticulatedOptions,
 ) -> Result<LabeledShape, DatasetError> {
     let ArticulatedOptions { seed, n_vertices } = *options;
-    let name = format!("{}{pose}", family.name());
-    let stream = |purpose| Stream::new(seed, family as usize, pose, purpose);
+    let name = match body {
+        0 => format!("{}{pose}", family.name()),
+        _ => format!("{}-body{body}-pose{pose}", family.name()),
+    };
+    let stream = |purpose| Stream::new(seed, family as usize, body * POSES_PER_BODY + pose, purpose);
     let surface = rest_surface(model, n_vertices, &mut stream(Purpose::Lattice))
         .ok_or_else(|| DatasetError::NoSurface { shape: name.clone(), n_vertices, seed })?;
-    let posed = posed_skeleton(model, pose, &mut stream(Purpose::Pose));
+    let mut posed = posed_skeleton(model, pose, &mut stream(Purpose::Pose));
+    if body > 0 {
+        let mut proportions = Stream::new(body as u64, family as usize, 0, Purpose::Build);
+        posed = posed.built(&Build::random(&model.skeleton, &mut proportions));
+    }
     let positions = posed_positions(&surface, &posed, scale(model));
     let mesh = shuffled(&surface, &positions, &mut stream(Purpose::Numbering));
     Ok(LabeledShape { name, label: family.name().to_owned(), mesh })

@@ -112,7 +112,33 @@ impl Pose {
     }
 }
 
-/// A rigid motion of space.
+/// The proportions of a body, relative to the one that the skeleton describes.
+#[derive(Debug, Clone)]
+pub(crate) struct Build {
+    /// Factors of the length and of the girth of every chain.
+    factors: Vec<[f64; 2]>,
+}
+
+/// Half the range of the factors of lengths and of girths, which are uniform. Their standard deviations, 4 % and 9 %,
+/// are roughly those of statures and of the girths of trunk and limbs among adults.
+const VARIATION: [f64; 2] = [0.07, 0.16];
+
+impl Build {
+    /// Random proportions, the same on the left and on the right.
+    pub(crate) fn random(skeleton: &Skeleton, stream: &mut Stream) -> Self {
+        let mut factors: Vec<[f64; 2]> = Vec::with_capacity(skeleton.chains.len());
+        for chain in &skeleton.chains {
+            let drawn = match (chain.side, factors.last()) {
+                (Side::Right, Some(left)) => *left,
+                _ => VARIATION.map(|range| 1.0 + stream.uniform(-range, range)),
+            };
+            factors.push(drawn);
+        }
+        Self { factors }
+    }
+}
+
+/// An affine map of space; a rigid motion unless the body has other proportions than the skeleton.
 #[derive(Debug, Clone, Copy)]
 struct Motion {
     rotation: Matrix3<f64>,
@@ -153,6 +179,31 @@ impl<'a> PosedSkeleton<'a> {
             motions.push(bend(chain, turns, base));
         }
         Self { skeleton, motions }
+    }
+
+    /// The same pose of a body with other proportions: the axis of every chain is lengthened, everything is moved away
+    /// from its axis, and children stay where they are attached.
+    pub(crate) fn built(self, build: &Build) -> Self {
+        let mut motions: Vec<Vec<Motion>> = Vec::with_capacity(self.motions.len());
+        let chains = self.skeleton.chains.iter().zip(&self.motions).zip(&build.factors);
+        for ((chain, plain), &[length, girth]) in chains {
+            let start = axis_point(chain, 0.0);
+            let posed = plain[0].apply(start);
+            let moved = match chain.parent {
+                Some((parent, arc)) => {
+                    interpolate(&motions[parent], arc / self.skeleton.chains[parent].length()).apply(start)
+                }
+                None => posed,
+            };
+            let at = |(i, motion): (usize, &Motion)| {
+                let axis = axis_point(chain, chain.length() * i as f64 / N_STEPS as f64);
+                let rotation = motion.rotation * girth;
+                let shift = moved + (motion.apply(axis) - posed) * length - rotation * axis.coords;
+                Motion { rotation, shift: shift.coords }
+            };
+            motions.push(plain.iter().enumerate().map(at).collect());
+        }
+        Self { motions, ..self }
     }
 
     /// The skeleton at rest.
@@ -287,6 +338,24 @@ mod tests {
         assert!((end - Vector3::new(0.0, -1.0, 0.0)).norm() < 1e-9, "{end}");
         // Far away, a symmetric bend over a length of 10 is close to a sharp one.
         assert!(axis[4000].y < -30.0 && axis[4000].y > -32.0);
+    }
+
+    #[test]
+    fn a_build_lengthens_axes_and_widens_limbs_in_every_pose() {
+        let skeleton = skeleton();
+        let build = Build { factors: vec![[1.1, 0.8], [0.9, 1.2], [0.9, 1.2]] };
+        for turned in [Turn::default(), turn(70.0, 0.0, 0.0)] {
+            let posed = PosedSkeleton::new(&skeleton, &Pose::rest(&skeleton).set(TRUNK, turned)).built(&build);
+            let length = |a: [f64; 3], b: [f64; 3]| (posed.deform(a.into()) - posed.deform(b.into())).norm();
+            // Above the bend, far from the arms: along the axis, and across it.
+            assert!((length([0.0, 0.0, 36.0], [0.0, 0.0, 40.0]) - 4.4).abs() < 1e-3);
+            assert!((length([0.0, 0.0, 38.0], [1.5, 0.0, 38.0]) - 1.2).abs() < 1e-3);
+            assert!((length([25.0, 0.0, 30.0], [35.0, 0.0, 30.0]) - 9.0).abs() < 1e-3);
+            assert!((length([-30.0, 0.0, 30.0], [-30.0, 1.0, 30.0]) - 1.2).abs() < 1e-3);
+        }
+        let random = Build::random(&skeleton, &mut Stream::new(3, 0, 0, Purpose::Build));
+        assert_eq!(random.factors[1], random.factors[2]);
+        assert_ne!(random.factors[0], random.factors[1]);
     }
 
     #[test]

@@ -16,6 +16,8 @@ pub(crate) enum Purpose {
     Lattice,
     /// Order of vertices and faces.
     Numbering,
+    /// Proportions of a body.
+    Build,
 }
 
 /// A stream of random numbers that depends only on seed, family, pose and purpose.
@@ -29,6 +31,7 @@ impl Stream {
             Purpose::Pose => 0,
             Purpose::Lattice => 1,
             Purpose::Numbering => 2,
+            Purpose::Build => 3,
         };
         rng.set_stream((pose as u64) * 16 + (family as u64) * 4 + purpose);
         Self(rng)

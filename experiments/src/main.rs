@@ -17,6 +17,7 @@ mod specimen;
 mod surfaces;
 mod sweep;
 mod table;
+mod thresholds;
 mod units;
 
 use std::process::ExitCode;

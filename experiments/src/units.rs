@@ -5,17 +5,30 @@ use std::process::ExitCode;
 
 use anyhow::Result;
 use canonform::{DescribeOptions, Observer, ShapeDescription, Surface, describe};
-use datasets::{ArticulatedOptions, Family, articulated};
+use datasets::{ArticulatedOptions, Family, LabeledShape, articulated};
 use descriptors::{FormDistance, PreparedShape, ShapeMetric, ShapePair, SignatureKind};
 use linalg::Matrix;
 use rayon::prelude::*;
 use terminal::Bars;
 
-struct Described {
-    label: String,
-    seed: usize,
+use crate::thresholds::{self, relatives};
+
+/// A built-in shape, with the number of its body within the family.
+pub(crate) struct Described {
+    pub(crate) label: String,
+    seed: u64,
+    pub(crate) body: usize,
     description: ShapeDescription,
-    shape: PreparedShape,
+    pub(crate) shape: PreparedShape,
+}
+
+impl Described {
+    pub(crate) fn new(shape: &LabeledShape, seed: u64, body: usize) -> Result<Self> {
+        let options = DescribeOptions::default();
+        let description = describe(&Surface::new(&shape.mesh, &options.form.repair)?, &options)?;
+        let prepared = description.prepare()?;
+        Ok(Self { label: shape.label.clone(), seed, body, description, shape: prepared })
+    }
 }
 
 /// Vertices of the shapes of each seed, in turn, since collections mix resolutions.
@@ -23,21 +36,17 @@ const VERTICES: [usize; 5] = [3400, 1500, 8000, 2500, 5000];
 
 /// `experiments units`: for every signature and for aligned forms, the root mean square distance between two shapes of
 /// one built-in family with poses and triangulations of their own, and the ratio of the mean squared distance between
-/// families to its square, next to the values in use.
+/// families to its square, next to the values in use; then the boundaries of verdicts.
 pub(crate) fn units(seeds: usize, quiet: bool) -> Result<ExitCode> {
     let bars = Bars::new(quiet);
-    let mut shapes = Vec::new();
+    let (mut shapes, mut others) = (Vec::new(), Vec::new());
     bars.begin("describing", 0);
     for seed in 1..=seeds {
         let options =
             ArticulatedOptions { seed: seed as u64, n_vertices: VERTICES[(seed - 1) % VERTICES.len()] };
-        let one = |shape: &datasets::LabeledShape| {
-            let options = DescribeOptions::default();
-            let description = describe(&Surface::new(&shape.mesh, &options.form.repair)?, &options)?;
-            let prepared = description.prepare()?;
-            Ok(Described { label: shape.label.clone(), seed, description, shape: prepared })
-        };
+        let one = |shape: &LabeledShape| Described::new(shape, options.seed, 0);
         shapes.extend(articulated(&options)?.par_iter().map(one).collect::<Result<Vec<_>>>()?);
+        others.extend(relatives(&options)?);
     }
     let (within, between): (Vec<Pair<'_>>, Vec<Pair<'_>>) = shapes
         .iter()
@@ -84,6 +93,8 @@ pub(crate) fn units(seeds: usize, quiet: bool) -> Result<ExitCode> {
             "{name:<18} {unit:>7.4} {separation:>11.1} {components:>11.1} {weight:>7.4} {used_unit:>14.4} {used_weight:>7.4}"
         )?;
     }
+    shapes.extend(others);
+    thresholds::print(&shapes, &mut out)?;
     Ok(ExitCode::SUCCESS)
 }
 

@@ -20,6 +20,7 @@ mod shape_pair;
 mod signature;
 mod spectrum;
 mod spread;
+mod verdict;
 
 pub use alignment::Alignment;
 pub use canonical_form::{CanonicalForm, Normalization};
@@ -35,3 +36,4 @@ pub use signature::{
     shape_dna, wave_kernel_signature,
 };
 pub use spectrum::LaplaceSpectrum;
+pub use verdict::{Boundary, Verdict, VerdictKind};

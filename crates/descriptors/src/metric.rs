@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use crate::signature::{Signature, SignatureKind};
+use crate::verdict::Boundary;
 
 /// A distance between two aligned forms.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -43,7 +44,7 @@ const FITTING: f64 = 0.08;
 
 /// Sizes that differ by less than this factor count as equal. It is also the unit of differences in size: poses and
 /// scans of one body may well differ by 5 %.
-const SAME_SIZE: f64 = 1.05;
+pub(crate) const SAME_SIZE: f64 = 1.05;
 
 /// One of two maps fits and the other does not if its distance is larger by this factor, ...
 const DECISIVE: f64 = 1.25;
@@ -94,19 +95,20 @@ pub enum Handedness {
     Unknown,
 }
 
-/// How two shapes resemble each other, up to pose.
+/// By which change of size and handedness a shape matches another, if they may be of one class. How alike they are is
+/// the [`Verdict`](crate::Verdict).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum MatchKind {
-    /// The same shape.
+    /// None: the same size, and not mirrored.
     Same,
-    /// The same shape at another size.
+    /// Another size.
     Scaled,
     /// Mirror images.
     Mirrored,
     /// Mirror images of different size.
     MirroredAndScaled,
-    /// Different shapes.
+    /// The shapes are of different classes rather than of one.
     Different,
 }
 
@@ -114,13 +116,13 @@ impl ShapeMetric {
     /// Version of the calibration and of the signatures. Fused vectors of different versions cannot be compared.
     pub const VERSION: u32 = 1;
 
-    /// Shapes of smaller combined distance are one shape in two poses.
+    /// Between poses of one body and bodies of one class.
     ///
-    /// Found on the built-in shapes: two poses of one body are at most 1.67 apart, two bodies at least 7.2; this is
-    /// the geometric mean. On the low-resolution TOSCA meshes two poses are at most 2.66 apart and two bodies at least
-    /// 3.68, except for the three people (david, michael, victoria): they differ in build only, come as near as 1.26,
-    /// and all 1,105 pairs of them are called one shape.
-    pub const SAME_BELOW: f64 = 3.5;
+    /// Measured on the built-in shapes as the units of signatures, like [`SAME_CLASS`](Self::SAME_CLASS): ...
+    pub const SAME_SHAPE: Boundary = Boundary { at: 1.6, steepness: 8.0 };
+
+    /// Between bodies of one class and classes.
+    pub const SAME_CLASS: Boundary = Boundary { at: 3.5, steepness: 8.0 };
 
     /// Points of every form that are matched with the nearest points of another form.
     pub const MATCHED_POINTS: usize = 400;
@@ -204,15 +206,10 @@ impl ShapeMetric {
         left * Self::form_unit(distance) / Self::FORM_WEIGHT.sqrt() * SLACK
     }
 
-    /// The reported distance between aligned forms below which shapes with this fused distance are one shape; 0 if their
-    /// signatures alone are too far apart.
+    /// The reported distance between aligned forms below which shapes with this fused distance
+    /// [may be of one class](crate::Verdict::may_be_same_class); 0 if their signatures alone are too far apart.
     pub fn same_below(&self, fused: f64) -> f64 {
-        Self::form_limit(fused, Self::SAME_BELOW, self.distance)
-    }
-
-    /// Whether two shapes are one shape in two poses.
-    pub fn is_same(distance: ShapeDistance) -> bool {
-        distance.combined < Self::SAME_BELOW
+        Self::form_limit(fused, Self::SAME_CLASS.at, self.distance)
     }
 
     /// Whether aligned forms of unit area fit well enough to compare normals at nearest points.
@@ -234,46 +231,17 @@ impl ShapeMetric {
             _ => Handedness::Either,
         }
     }
-
-    /// The verdict on two shapes; `scale` is the size of the second over that of the first.
-    pub fn kind(distance: ShapeDistance, handedness: Handedness, scale: f64) -> MatchKind {
-        let mirrored = handedness == Handedness::Mirrored;
-        let resized = scale.max(1.0 / scale) > SAME_SIZE;
-        match (Self::is_same(distance), mirrored, resized) {
-            (false, _, _) => MatchKind::Different,
-            (true, false, false) => MatchKind::Same,
-            (true, false, true) => MatchKind::Scaled,
-            (true, true, false) => MatchKind::Mirrored,
-            (true, true, true) => MatchKind::MirroredAndScaled,
-        }
-    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn apart(combined: f64) -> ShapeDistance {
-        ShapeDistance { fused: combined, combined }
-    }
-
     #[test]
     fn the_table_lists_every_signature_and_weights_sum_to_one() {
         assert!(SignatureKind::ALL.into_iter().eq(CALIBRATION.map(|(kind, ..)| kind)));
         let total: f64 = SignatureKind::ALL.into_iter().map(ShapeMetric::weight).sum();
         assert!((total - 1.0).abs() < 1e-9);
-    }
-
-    #[test]
-    fn the_verdict_follows_distance_size_and_handedness() {
-        let kind = ShapeMetric::kind;
-        assert_eq!(kind(apart(4.0), Handedness::Mirrored, 1.0), MatchKind::Different);
-        for unclear in [Handedness::Same, Handedness::Either, Handedness::Unknown] {
-            assert_eq!(kind(apart(1.0), unclear, 1.0), MatchKind::Same);
-            assert_eq!(kind(apart(1.0), unclear, 0.5), MatchKind::Scaled);
-        }
-        assert_eq!(kind(apart(1.0), Handedness::Mirrored, 1.02), MatchKind::Mirrored);
-        assert_eq!(kind(apart(1.0), Handedness::Mirrored, 2.0), MatchKind::MirroredAndScaled);
     }
 
     #[test]
@@ -289,12 +257,12 @@ mod tests {
     }
 
     #[test]
-    fn a_form_at_the_limit_has_the_distance_at_which_shapes_stop_being_the_same() {
+    fn a_form_at_the_limit_has_the_distance_at_which_classes_become_as_likely() {
         let metric = ShapeMetric::default();
         for fused in [0.0, 1.0, 3.0] {
             let limit = metric.same_below(fused);
-            assert!(ShapeMetric::combined(fused, limit * 1.001) > ShapeMetric::SAME_BELOW);
-            assert!(ShapeMetric::combined(fused, limit * 0.999) < ShapeMetric::SAME_BELOW);
+            assert!(ShapeMetric::combined(fused, limit * 1.001) > ShapeMetric::SAME_CLASS.at);
+            assert!(ShapeMetric::combined(fused, limit * 0.999) < ShapeMetric::SAME_CLASS.at);
         }
         assert_eq!(metric.same_below(4.0), 0.0);
         let ratio =

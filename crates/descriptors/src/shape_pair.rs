@@ -7,8 +7,9 @@ use nalgebra::Point3;
 use crate::canonical_form::{CanonicalForm, Normalization};
 use crate::error::DescriptorError;
 use crate::matching::{FormMatch, Reflections, match_forms};
-use crate::metric::{ShapeDistance, ShapeMetric};
+use crate::metric::{Handedness, ShapeDistance, ShapeMetric};
 use crate::prepared::PreparedForm;
+use crate::verdict::Verdict;
 
 /// A shape prepared for comparison: its fused vector, and its form rounded to the 32 bits that an index stores, so that a
 /// shape compares in the same way before and after it is stored.
@@ -126,6 +127,11 @@ impl<'a> ShapePair<'a> {
             self.shapes.map(|shape| shape.fused.chunks(ShapeMetric::FUSED_LENGTH).next().unwrap_or_default());
         let fused = ShapeMetric::fused(a, b);
         ShapeDistance { fused, combined: ShapeMetric::combined(fused, self.best().rms) }
+    }
+
+    /// The verdict on the shapes.
+    pub fn verdict(&self, handedness: Handedness) -> Verdict {
+        ShapeMetric::verdict(self.distance(), handedness, self.scale())
     }
 
     fn aligned(&self, reflections: Reflections) -> FormMatch {

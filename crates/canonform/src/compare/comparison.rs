@@ -2,7 +2,7 @@
 
 use descriptors::{
     Alignment, CanonicalForm, FormMatch, Handedness, MatchKind, NearestPoints, Reflections, ShapeDistance,
-    ShapeMetric, ShapePair, handedness,
+    ShapeMetric, ShapePair, Verdict, handedness,
 };
 use nalgebra::Point3;
 use serde::Serialize;
@@ -13,16 +13,19 @@ use crate::input::Surface;
 /// How two shapes resemble each other, and how far apart they are.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Comparison {
-    /// The verdict.
+    /// How alike the shapes are, and why.
+    pub verdict: Verdict,
+    /// By which change of size and handedness the second matches the first; `different` if they are of different
+    /// classes rather than of one. It does not tell one shape from one class: the verdict does.
     pub kind: MatchKind,
     /// Distance between the aligned forms, in mesh units.
     pub distance: f64,
     /// Distance between the aligned forms once both have unit area: 0 for the same shape at any size.
     pub normalized_distance: f64,
-    /// Value of `normalized_distance` below which shapes with these signatures are one shape; 0 if the signatures
-    /// alone are too far apart.
+    /// Value of `normalized_distance` from which on `kind` is `different` for shapes with these signatures; 0 if the
+    /// signatures alone are too far apart.
     pub same_below: f64,
-    /// The distances that decide on `kind`.
+    /// The distances that decide on the verdict and on `kind`.
     #[serde(flatten)]
     pub shape_distance: ShapeDistance,
     /// Size of the second surface over that of the first, by the square roots of their areas.
@@ -41,7 +44,7 @@ pub struct Comparison {
 }
 
 impl Comparison {
-    /// Compares the forms of a pair; `distance` and `handedness` decide on the kind.
+    /// Compares the forms of a pair; `distance` and `handedness` decide on the verdict.
     pub(crate) fn new(
         pair: &ShapePair<'_>,
         distance: ShapeDistance,
@@ -51,8 +54,10 @@ impl Comparison {
         let shown = |found: FormMatch| found.distance(pair.metric.distance);
         let Alignment { rotation, translation, reflected } = raw.alignment;
         let scale = pair.scale();
+        let verdict = ShapeMetric::verdict(distance, handedness, scale);
         Ok(Self {
-            kind: ShapeMetric::kind(distance, handedness, scale),
+            verdict,
+            kind: verdict.match_kind(),
             distance: shown(raw),
             normalized_distance: shown(best),
             same_below: pair.metric.same_below(distance.fused),
@@ -70,7 +75,7 @@ impl Comparison {
 /// Compares the shapes of a pair, without their surfaces.
 ///
 /// ```
-/// use canonform::descriptors::{MatchKind, ShapeMetric, ShapePair};
+/// use canonform::descriptors::{ShapeMetric, ShapePair, VerdictKind};
 /// use canonform::{DescribeOptions, Surface, compare, describe, mesh::shapes};
 ///
 /// let sheet = shapes::grid(21, 17, 0.1);
@@ -79,8 +84,8 @@ impl Comparison {
 ///     describe(&surface, &DescribeOptions::default())?.prepare()
 /// });
 /// let (metric, flat) = (ShapeMetric::default(), flat?);
-/// assert_eq!(compare(&ShapePair::new(metric, [&flat, &folded?]))?.kind, MatchKind::Same);
-/// assert_eq!(compare(&ShapePair::new(metric, [&flat, &ball?]))?.kind, MatchKind::Different);
+/// assert_eq!(compare(&ShapePair::new(metric, [&flat, &folded?]))?.verdict.kind, VerdictKind::SameShape);
+/// assert_eq!(compare(&ShapePair::new(metric, [&flat, &ball?]))?.verdict.kind, VerdictKind::Different);
 /// # Ok::<(), canonform::Error>(())
 /// ```
 ///
@@ -162,7 +167,7 @@ impl Overlay {
 }
 
 /// Compares two surfaces: their shapes, whether one is the mirror image of the other, and where they differ. `surfaces`
-/// come with the forms of all their vertices; `distance` decides on the kind of match and is that of the pair, unless
+/// come with the forms of all their vertices; `distance` decides on the verdict and is that of the pair, unless
 /// the forms of the pair were made in another way than the metric is calibrated for.
 ///
 /// # Errors
@@ -228,8 +233,10 @@ mod tests {
         let found = compare_surfaces(&pair, pair.distance(), surfaces).unwrap();
         // The same numbers without the surfaces.
         let shapes = compare(&ShapePair::new(metric, [&a.shape, &b.shape])).unwrap();
-        let Comparison { kind, handedness, .. } = found.comparison;
-        assert_eq!(Comparison { kind, handedness, ..shapes }, found.comparison);
+        let Comparison { verdict, kind, handedness, .. } = found.comparison;
+        let unhanded = Verdict { handedness: Handedness::Unknown, ..verdict };
+        assert_eq!(shapes.verdict, unhanded, "only the handedness needs surfaces");
+        assert_eq!(Comparison { verdict, kind, handedness, ..shapes }, found.comparison);
         found
     }
 

@@ -1,0 +1,109 @@
+//! The boundaries between shapes, classes and everything else, measured on the built-in families.
+
+use std::io::Write;
+
+use anyhow::Result;
+use datasets::{ArticulatedOptions, Family, articulated_body};
+use descriptors::{Boundary, ShapeMetric, ShapePair};
+use rayon::prelude::*;
+
+use crate::units::Described;
+
+/// Other bodies of every family, and poses of each.
+const BODIES: usize = 5;
+const POSES: usize = 3;
+
+/// Pairs of either kind whose forms are aligned: that takes long.
+const MOST_PAIRS: usize = 2000;
+
+/// The other bodies of every family, for the seed and the number of vertices in `options`.
+pub(crate) fn relatives(options: &ArticulatedOptions) -> Result<Vec<Described>> {
+    let one = |family: Family, i: usize| {
+        let (body, pose) = (1 + i / POSES, (i % POSES + options.seed as usize) % family.n_shapes());
+        Described::new(&articulated_body(family, body, pose, options)?, options.seed, body)
+    };
+    let all: Vec<_> = Family::all().into_iter().flat_map(|f| (0..BODIES * POSES).map(move |i| (f, i))).collect();
+    all.into_par_iter().map(|(family, i)| one(family, i)).collect()
+}
+
+/// How two of the shapes are related.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Relation {
+    OneBody,
+    OneFamily,
+    TwoFamilies,
+}
+
+impl Relation {
+    const ALL: [(Self, &str); 3] = [
+        (Self::OneBody, "poses of one body"),
+        (Self::OneFamily, "bodies of one family"),
+        (Self::TwoFamilies, "families"),
+    ];
+
+    fn of(a: &Described, b: &Described) -> Self {
+        match (a.label == b.label, a.body == b.body) {
+            (true, true) => Self::OneBody,
+            (true, false) => Self::OneFamily,
+            (false, _) => Self::TwoFamilies,
+        }
+    }
+}
+
+/// Mean and variance of the logarithms of distances.
+struct Spread {
+    mean: f64,
+    variance: f64,
+}
+
+impl Spread {
+    fn of(distances: &[f64]) -> Self {
+        let n = distances.len() as f64;
+        let mean = distances.iter().map(|d| d.ln()).sum::<f64>() / n;
+        let variance = distances.iter().map(|d| (d.ln() - mean).powi(2)).sum::<f64>() / n;
+        Self { mean, variance }
+    }
+
+    /// Fisher's linear discriminant of logarithms for equally frequent kinds: the odds are one at the geometric mean of
+    /// the two centres, and their logarithm is linear.
+    fn boundary(&self, farther: &Self) -> Boundary {
+        Boundary {
+            at: (0.5 * (self.mean + farther.mean)).exp(),
+            steepness: (farther.mean - self.mean) / (0.5 * (self.variance + farther.variance)),
+        }
+    }
+}
+
+/// Prints the combined distances of poses of one body, of bodies of one family and of families, and the boundaries
+/// between them beside those in use.
+pub(crate) fn print(shapes: &[Described], out: &mut impl Write) -> Result<()> {
+    let pairs: Vec<_> =
+        shapes.iter().enumerate().flat_map(|(i, a)| shapes[..i].iter().map(move |b| (a, b))).collect();
+    writeln!(out, "\n{:<22}  pairs  least     5 %  median    95 %  largest", "combined distances")?;
+    let mut spreads = Vec::new();
+    for (relation, name) in Relation::ALL {
+        let related: Vec<_> = pairs.iter().filter(|(a, b)| Relation::of(a, b) == relation).collect();
+        let step = related.len().div_ceil(MOST_PAIRS).max(1);
+        let mut distances: Vec<f64> = related
+            .par_iter()
+            .step_by(step)
+            .map(|(a, b)| ShapePair::new(ShapeMetric::default(), [&a.shape, &b.shape]).distance().combined)
+            .collect();
+        distances.sort_by(f64::total_cmp);
+        let quantile = |q: f64| distances[(q * (distances.len() - 1) as f64) as usize];
+        let [least, low, median, high, largest] = [0.0, 0.05, 0.5, 0.95, 1.0].map(quantile);
+        writeln!(
+            out,
+            "{name:<22} {:>6} {least:>6.2} {low:>7.2} {median:>7.2} {high:>7.2} {largest:>8.2}",
+            distances.len()
+        )?;
+        spreads.push(Spread::of(&distances));
+    }
+    writeln!(out, "\n{:<22}     at  steepness   in use: at  steepness", "boundaries")?;
+    let in_use = [("same shape", ShapeMetric::SAME_SHAPE), ("same class", ShapeMetric::SAME_CLASS)];
+    for (pair, (name, used)) in spreads.windows(2).zip(in_use) {
+        let Boundary { at, steepness } = pair[0].boundary(&pair[1]);
+        writeln!(out, "{name:<22} {at:>6.3} {steepness:>10.2} {:>12.3} {:>10.2}", used.at, used.steepness)?;
+    }
+    Ok(())
+}
