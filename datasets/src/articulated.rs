@@ -324,7 +324,7 @@ mod tests {
             Part::added(vec![Blob::ball([0.0, 0.0, 0.0], 10.0)]),
             Part::added(vec![Blob::ball([0.0, 50.0, 0.0], 10.0)]),
         ]);
-        let error = shape(Family::Cat, &model, 3, &ArticulatedOptions::default()).unwrap_err();
+        let error = shape(Family::Cat, &model, [0, 3], &ArticulatedOptions::default()).unwrap_err();
         let expected = DatasetError::NoSurface { shape: "cat3".to_owned(), n_vertices: 3400, seed: 1 };
         assert_eq!(error, expected);
         assert!(error.to_string().contains("try another seed"));

@@ -37,5 +37,7 @@ mod skeleton;
 mod stream;
 mod trig;
 
-pub use articulated::{ArticulatedOptions, Family, LabeledShape, articulated, articulated_body, articulated_shape};
+pub use articulated::{
+    ArticulatedOptions, Family, LabeledShape, articulated, articulated_body, articulated_shape,
+};
 pub use error::DatasetError;

@@ -345,7 +345,8 @@ mod tests {
         let skeleton = skeleton();
         let build = Build { factors: vec![[1.1, 0.8], [0.9, 1.2], [0.9, 1.2]] };
         for turned in [Turn::default(), turn(70.0, 0.0, 0.0)] {
-            let posed = PosedSkeleton::new(&skeleton, &Pose::rest(&skeleton).set(TRUNK, turned)).built(&build);
+            let posed =
+                PosedSkeleton::new(&skeleton, &Pose::rest(&skeleton).set(TRUNK, turned)).built(&build);
             let length = |a: [f64; 3], b: [f64; 3]| (posed.deform(a.into()) - posed.deform(b.into())).norm();
             // Above the bend, far from the arms: along the axis, and across it.
             assert!((length([0.0, 0.0, 36.0], [0.0, 0.0, 40.0]) - 4.4).abs() < 1e-3);

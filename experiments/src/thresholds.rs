@@ -22,7 +22,8 @@ pub(crate) fn relatives(options: &ArticulatedOptions) -> Result<Vec<Described>> 
         let (body, pose) = (1 + i / POSES, (i % POSES + options.seed as usize) % family.n_shapes());
         Described::new(&articulated_body(family, body, pose, options)?, options.seed, body)
     };
-    let all: Vec<_> = Family::all().into_iter().flat_map(|f| (0..BODIES * POSES).map(move |i| (f, i))).collect();
+    let all: Vec<_> =
+        Family::all().into_iter().flat_map(|f| (0..BODIES * POSES).map(move |i| (f, i))).collect();
     all.into_par_iter().map(|(family, i)| one(family, i)).collect()
 }
 
@@ -50,28 +51,39 @@ impl Relation {
     }
 }
 
-/// Mean and variance of the logarithms of distances.
+/// The distances of one kind of pairs, in ascending order, with the mean and the variance of their logarithms.
 struct Spread {
+    distances: Vec<f64>,
     mean: f64,
     variance: f64,
 }
 
 impl Spread {
-    fn of(distances: &[f64]) -> Self {
+    fn new(mut distances: Vec<f64>) -> Self {
+        distances.sort_by(f64::total_cmp);
         let n = distances.len() as f64;
         let mean = distances.iter().map(|d| d.ln()).sum::<f64>() / n;
         let variance = distances.iter().map(|d| (d.ln() - mean).powi(2)).sum::<f64>() / n;
-        Self { mean, variance }
+        Self { distances, mean, variance }
     }
 
-    /// Fisher's linear discriminant of logarithms for equally frequent kinds: the odds are one at the geometric mean of
-    /// the two centres, and their logarithm is linear.
-    fn boundary(&self, farther: &Self) -> Boundary {
-        Boundary {
-            at: (0.5 * (self.mean + farther.mean)).exp(),
-            steepness: (farther.mean - self.mean) / (0.5 * (self.variance + farther.variance)),
-        }
+    fn quantile(&self, share: f64) -> f64 {
+        self.distances[(share * (self.distances.len() - 1) as f64) as usize]
     }
+}
+
+/// The boundaries in use, from the distances of poses, bodies and families: see [`ShapeMetric::SAME_SHAPE`] and
+/// [`ShapeMetric::SAME_CLASS`].
+fn boundaries([poses, bodies, families]: [&Spread; 3]) -> [Boundary; 2] {
+    let shape = Boundary {
+        at: (0.5 * (poses.mean + bodies.mean)).exp(),
+        steepness: (bodies.mean - poses.mean) / (0.5 * (poses.variance + bodies.variance)),
+    };
+    let class = Boundary {
+        at: (poses.quantile(0.99) * families.quantile(0.01)).sqrt(),
+        steepness: (families.mean - bodies.mean) / bodies.variance,
+    };
+    [shape, class]
 }
 
 /// Prints the combined distances of poses of one body, of bodies of one family and of families, and the boundaries
@@ -84,25 +96,25 @@ pub(crate) fn print(shapes: &[Described], out: &mut impl Write) -> Result<()> {
     for (relation, name) in Relation::ALL {
         let related: Vec<_> = pairs.iter().filter(|(a, b)| Relation::of(a, b) == relation).collect();
         let step = related.len().div_ceil(MOST_PAIRS).max(1);
-        let mut distances: Vec<f64> = related
+        let distances: Vec<f64> = related
             .par_iter()
             .step_by(step)
             .map(|(a, b)| ShapePair::new(ShapeMetric::default(), [&a.shape, &b.shape]).distance().combined)
             .collect();
-        distances.sort_by(f64::total_cmp);
-        let quantile = |q: f64| distances[(q * (distances.len() - 1) as f64) as usize];
-        let [least, low, median, high, largest] = [0.0, 0.05, 0.5, 0.95, 1.0].map(quantile);
+        let spread = Spread::new(distances);
+        let [least, low, median, high, largest] = [0.0, 0.05, 0.5, 0.95, 1.0].map(|q| spread.quantile(q));
         writeln!(
             out,
             "{name:<22} {:>6} {least:>6.2} {low:>7.2} {median:>7.2} {high:>7.2} {largest:>8.2}",
-            distances.len()
+            spread.distances.len()
         )?;
-        spreads.push(Spread::of(&distances));
+        spreads.push(spread);
     }
+    let [poses, bodies, families] = &spreads[..] else { return Ok(()) };
     writeln!(out, "\n{:<22}     at  steepness   in use: at  steepness", "boundaries")?;
     let in_use = [("same shape", ShapeMetric::SAME_SHAPE), ("same class", ShapeMetric::SAME_CLASS)];
-    for (pair, (name, used)) in spreads.windows(2).zip(in_use) {
-        let Boundary { at, steepness } = pair[0].boundary(&pair[1]);
+    for (found, (name, used)) in boundaries([poses, bodies, families]).into_iter().zip(in_use) {
+        let Boundary { at, steepness } = found;
         writeln!(out, "{name:<22} {at:>6.3} {steepness:>10.2} {:>12.3} {:>10.2}", used.at, used.steepness)?;
     }
     Ok(())

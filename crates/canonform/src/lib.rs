@@ -5,7 +5,7 @@
 //! form*, does not depend on the pose, and rigid alignment compares it with other forms.
 //!
 //! ```
-//! use canonform::descriptors::{MatchKind, ShapeMetric, ShapePair};
+//! use canonform::descriptors::{ShapeMetric, ShapePair, VerdictKind};
 //! use canonform::{DescribeOptions, Surface, compare, describe, mesh::shapes};
 //!
 //! // A flat sheet and the same sheet, folded.
@@ -19,7 +19,7 @@
 //!     shapes.push(describe(&surface, &options)?.prepare()?);
 //! }
 //! let comparison = compare(&ShapePair::new(ShapeMetric::default(), [&shapes[0], &shapes[1]]))?;
-//! assert_eq!(comparison.kind, MatchKind::Same);
+//! assert_eq!(comparison.verdict.kind, VerdictKind::SameShape);
 //! # Ok::<(), canonform::Error>(())
 //! ```
 //!
@@ -106,8 +106,9 @@ pub use input::{
 };
 pub use observer::Observer;
 pub use shape_index::{
-    BuildOptions, BuildReport, Explain, Failure, Inputs, Measure, MergeReport, Prediction, Ranked, Reranked,
-    SearchOptions, SearchReport, SearchResult, SearchSeconds, ShapeSearch, Shard, add_to_index, build_index,
-    evaluate_index, evaluate_matrix, merge_indexes, remove_from_index, rerank,
+    BuildOptions, BuildReport, ClassVotes, Explain, Failure, Inputs, Measure, MergeReport, NearestShape,
+    Prediction, Ranked, Reranked, SearchOptions, SearchReport, SearchResult, SearchSeconds, ShapeSearch,
+    Shard, Unknown, add_to_index, build_index, evaluate_index, evaluate_matrix, merge_indexes,
+    remove_from_index, rerank,
 };
 pub use {descriptors, geodesics, index, linalg, mesh, nmds, retrieval, surface};

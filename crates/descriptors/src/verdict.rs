@@ -51,11 +51,11 @@ pub enum VerdictKind {
 
 /// The verdict on two shapes and all that explains it: one decision for every program. [`Display`](fmt::Display) words it.
 ///
-/// The combined distance `d` decides. Distances between two poses of one body, between two bodies of one family, and
-/// between two families overlap little; between neighbouring kinds the odds are `(t / d)^s`, with the
-/// [`Boundary`] from the means and variances of `ln d` (Fisher's linear discriminant). Probabilities assume that one
-/// shape and another shape of the class, and one class and another, are equally frequent. They were measured on the
-/// built-in families, and hold for bodies that vary as much as those. What is less than 90 % probable is undecided.
+/// The combined distance `d` decides. At the [`Boundary`] between one shape and one class, and at that between one class
+/// and two, the odds are `(at / d)^steepness`. Both were measured on poses, bodies and families of the built-in shapes,
+/// see [`ShapeMetric::SAME_SHAPE`] and [`ShapeMetric::SAME_CLASS`]: probabilities assume that the answers on either side
+/// are equally frequent, and hold for bodies and poses that vary as much as those. What is less than 90 % probable is
+/// undecided.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 #[serde(into = "VerdictRecord")]
 pub struct Verdict {
@@ -114,6 +114,11 @@ impl ShapeMetric {
 }
 
 impl Verdict {
+    /// Whether the shapes are firmly of one class: one shape, or undecided only between one shape and one class.
+    pub fn is_same_class(&self) -> bool {
+        self.distance < ShapeMetric::SAME_CLASS.gap()[0]
+    }
+
     /// Whether the shapes are at least as likely of one class as not. Neighbours with such a verdict vote on the class
     /// of a query, and [`match_kind`](Self::match_kind) is not `different`.
     pub fn may_be_same_class(&self) -> bool {
@@ -162,11 +167,11 @@ impl fmt::Display for Verdict {
                 true
             }
             VerdictKind::SameClass => {
-                write!(f, "different shapes of one class")?;
+                write!(f, "the same class, probably not the same shape")?;
                 false
             }
             VerdictKind::Undecided => {
-                write!(f, "different shapes, perhaps of one class")?;
+                write!(f, "different shapes, perhaps of the same class")?;
                 false
             }
             VerdictKind::Different => {
@@ -198,9 +203,21 @@ struct VerdictRecord {
 
 impl From<Verdict> for VerdictRecord {
     fn from(verdict: Verdict) -> Self {
-        let Verdict { kind, confidence, distance, threshold, same_shape, same_class, handedness, scale } = verdict;
+        let Verdict { kind, confidence, distance, threshold, same_shape, same_class, handedness, scale } =
+            verdict;
         let (text, reason) = (verdict.to_string(), verdict.reason());
-        Self { kind, confidence, distance, threshold, same_shape, same_class, handedness, scale, text, reason }
+        Self {
+            kind,
+            confidence,
+            distance,
+            threshold,
+            same_shape,
+            same_class,
+            handedness,
+            scale,
+            text,
+            reason,
+        }
     }
 }
 
@@ -261,26 +278,41 @@ mod tests {
         let near = 0.5;
         for unclear in [Handedness::Same, Handedness::Either, Handedness::Unknown] {
             assert_eq!(verdict(near, unclear, 1.0).to_string(), "the same shape up to pose");
-            assert_eq!(verdict(near, unclear, 1.129).to_string(), "the same shape up to pose, scaled by 1.129");
+            assert_eq!(
+                verdict(near, unclear, 1.129).to_string(),
+                "the same shape up to pose, scaled by 1.129"
+            );
             assert_eq!(verdict(near, unclear, 0.5).match_kind(), MatchKind::Scaled);
         }
         let mirrored = verdict(near, Handedness::Mirrored, 1.02);
-        assert_eq!((mirrored.match_kind(), mirrored.to_string()), (MatchKind::Mirrored, "mirror images up to pose".into()));
+        assert_eq!(
+            (mirrored.match_kind(), mirrored.to_string()),
+            (MatchKind::Mirrored, "mirror images up to pose".into())
+        );
         assert_eq!(verdict(near, Handedness::Mirrored, 2.0).match_kind(), MatchKind::MirroredAndScaled);
         let unsure = plain(ShapeMetric::SAME_SHAPE.at);
         assert_eq!(unsure.to_string(), "the same class, perhaps the same shape");
         assert_eq!((unsure.kind, unsure.match_kind()), (VerdictKind::Undecided, MatchKind::Same));
-        assert_eq!(plain(ShapeMetric::SAME_CLASS.at).to_string(), "different shapes, perhaps of one class");
+        assert_eq!(
+            plain(ShapeMetric::SAME_CLASS.at).to_string(),
+            "different shapes, perhaps of the same class"
+        );
         for scale in [1.0, 3.0] {
             let apart = verdict(30.0, Handedness::Mirrored, scale);
-            assert_eq!((apart.match_kind(), apart.to_string()), (MatchKind::Different, "different shapes".into()));
+            assert_eq!(
+                (apart.match_kind(), apart.to_string()),
+                (MatchKind::Different, "different shapes".into())
+            );
         }
     }
 
     #[test]
     fn the_record_has_the_verdict_in_words() {
         let json = serde_json::to_value(plain(0.25)).unwrap();
-        assert_eq!((&json["kind"], &json["text"]), (&"same-shape".into(), &"the same shape up to pose".into()));
+        assert_eq!(
+            (&json["kind"], &json["text"]),
+            (&"same-shape".into(), &"the same shape up to pose".into())
+        );
         assert_eq!((&json["distance"], &json["handedness"]), (&0.25.into(), &"unknown".into()));
         assert!(json["reason"].as_str().unwrap().starts_with("combined distance 0.250 (same shape below "));
     }

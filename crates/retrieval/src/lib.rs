@@ -36,4 +36,4 @@ pub use pairwise::pairwise_distances;
 pub use ranking::{Neighbor, rank};
 pub use refinement::{Candidate, Refinement, refine_nearest};
 pub use scores::{Averaging, Scores, mean_scores, precision_recall};
-pub use vote::{UnknownThreshold, Vote, vote};
+pub use vote::{Tally, UnknownThreshold, Vote, vote};

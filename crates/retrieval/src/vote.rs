@@ -81,26 +81,32 @@ pub struct Vote {
     pub votes: usize,
     /// Number of neighbours that voted.
     pub voters: usize,
+    /// The votes for every class, the winner first, then by share.
+    pub tally: Vec<Tally>,
+}
+
+/// The votes for one class.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Tally {
+    /// The class.
+    pub class: usize,
+    /// Number of votes.
+    pub votes: usize,
+    /// Weighted share of the votes, in 0..=1.
+    pub share: f64,
 }
 
 /// Lets the `k` nearest neighbours vote on a class.
 ///
-/// A neighbour at distance `d` has the weight `(1 - (d / t)²)²` with `t` the threshold; neighbours beyond it have
-/// no vote. Without a threshold all votes weigh the same. Ties go to the class of the nearest neighbour.
+/// A neighbour at distance `d` has the weight `(1 - (d / t)²)²` with `t` the `limit`; neighbours beyond it have
+/// no vote. Without a limit all votes weigh the same. Ties go to the class of the nearest neighbour.
 ///
 /// `neighbors` are in ascending order of distance; `class_of` maps the index of a shape to its class.
 #[must_use]
-pub fn vote(
-    neighbors: &[Neighbor],
-    class_of: impl Fn(usize) -> usize,
-    k: usize,
-    threshold: Option<UnknownThreshold>,
-) -> Vote {
-    let weight = |distance: f64| match threshold {
-        Some(threshold) if distance > threshold.distance => None,
-        Some(threshold) if threshold.distance > 0.0 => {
-            Some((1.0 - (distance / threshold.distance).powi(2)).powi(2))
-        }
+pub fn vote(neighbors: &[Neighbor], class_of: impl Fn(usize) -> usize, k: usize, limit: Option<f64>) -> Vote {
+    let weight = |distance: f64| match limit {
+        Some(limit) if distance > limit => None,
+        Some(limit) if limit > 0.0 => Some((1.0 - (distance / limit).powi(2)).powi(2)),
         _ => Some(1.0),
     };
     let voters: Vec<(usize, f64)> = neighbors
@@ -109,20 +115,30 @@ pub fn vote(
         .filter_map(|neighbor| Some((class_of(neighbor.index), weight(neighbor.distance)?)))
         .collect();
     let total: f64 = voters.iter().map(|(_, weight)| weight).sum();
-    let of = |class: usize| voters.iter().filter(move |(other, _)| *other == class);
-    let mut winner = Vote { class: None, confidence: 0.0, votes: 0, voters: voters.len() };
+    let mut tally: Vec<Tally> = Vec::new();
     for &(class, _) in &voters {
-        let share = if total > 0.0 {
-            of(class).map(|(_, weight)| weight).sum::<f64>() / total
-        } else {
-            of(class).count() as f64 / voters.len() as f64
-        };
-        // The first of equals is the nearest; the tolerance absorbs rounding of sums taken in another order.
-        if winner.class.is_none() || share > winner.confidence + 1e-12 {
-            winner = Vote { class: Some(class), confidence: share, votes: of(class).count(), ..winner };
+        if tally.iter().any(|other| other.class == class) {
+            continue;
         }
+        let of = voters.iter().filter(|(other, _)| *other == class);
+        let votes = of.clone().count();
+        let share = if total > 0.0 {
+            of.map(|(_, weight)| weight).sum::<f64>() / total
+        } else {
+            votes as f64 / voters.len() as f64
+        };
+        tally.push(Tally { class, votes, share });
     }
-    winner
+    // The first of equals is the nearest; rounding absorbs differences between sums taken in another order.
+    tally.sort_by_key(|of| std::cmp::Reverse((of.share * 1e12).round() as i64));
+    let winner = tally.first();
+    Vote {
+        class: winner.map(|winner| winner.class),
+        confidence: winner.map_or(0.0, |winner| winner.share),
+        votes: winner.map_or(0, |winner| winner.votes),
+        voters: voters.len(),
+        tally,
+    }
 }
 
 #[cfg(test)]
@@ -131,10 +147,6 @@ mod tests {
 
     fn neighbors(distances: &[f64]) -> Vec<Neighbor> {
         distances.iter().enumerate().map(|(index, &distance)| Neighbor { index, distance }).collect()
-    }
-
-    fn threshold(distance: f64) -> Option<UnknownThreshold> {
-        Some(UnknownThreshold { distance, missed: 0.0, mistaken: 0.0 })
     }
 
     #[test]
@@ -165,17 +177,19 @@ mod tests {
         let plain = vote(&near, class, 3, None);
         assert_eq!((plain.class, plain.votes, plain.voters), (Some(1), 2, 3));
         assert!((plain.confidence - 2.0 / 3.0).abs() < 1e-15);
-        let weighted = vote(&near, class, 3, threshold(1.0));
+        let weighted = vote(&near, class, 3, Some(1.0));
         assert_eq!((weighted.class, weighted.votes), (Some(0), 1));
         assert!(weighted.confidence > 0.9);
+        let tally: Vec<_> = weighted.tally.iter().map(|of| (of.class, of.votes)).collect();
+        assert_eq!(tally, [(0, 1), (1, 2)], "the winner comes first");
     }
 
     #[test]
     fn distant_neighbours_have_no_vote_and_the_nearest_breaks_a_tie() {
-        let far = vote(&neighbors(&[2.0, 3.0]), |i| i, 2, threshold(1.0));
-        assert_eq!(far, Vote { class: None, confidence: 0.0, votes: 0, voters: 0 });
+        let far = vote(&neighbors(&[2.0, 3.0]), |i| i, 2, Some(1.0));
+        assert_eq!(far, Vote { class: None, confidence: 0.0, votes: 0, voters: 0, tally: Vec::new() });
         assert_eq!(vote(&neighbors(&[2.0, 3.0]), |i| 7 - i, 2, None).class, Some(7));
-        assert_eq!(vote(&neighbors(&[0.0, 0.0]), |i| i, 2, threshold(0.0)).class, Some(0));
+        assert_eq!(vote(&neighbors(&[0.0, 0.0]), |i| i, 2, Some(0.0)).class, Some(0));
         assert_eq!(vote(&[], |i| i, 3, None).class, None);
     }
 }

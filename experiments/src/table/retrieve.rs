@@ -136,10 +136,11 @@ fn classified(
     let classes = labels.classes();
     let mut misclassified = Vec::new();
     let threshold = UnknownThreshold::leave_one_out(distances, labels);
+    let limit = threshold.map(|threshold| threshold.distance);
     let mut confusion = vec![vec![0; classes.len() + 1]; classes.len()];
     for i in 0..labels.n_points() {
         let ranking = rank(distances, i);
-        let found = vote(&ranking, |i| labels.class(i), voters, threshold).class;
+        let found = vote(&ranking, |i| labels.class(i), voters, limit).class;
         confusion[labels.class(i)][found.unwrap_or(classes.len())] += 1;
         if found != Some(labels.class(i)) {
             let nearest = ranking.first();
@@ -174,7 +175,7 @@ fn classified(
         classes: classes.to_vec(),
         confusion,
         misclassified,
-        threshold: threshold.map_or(0.0, |threshold| threshold.distance),
+        threshold: limit.unwrap_or(0.0),
         missed: share(missed),
         mistaken: share(mistaken),
     })

@@ -2,7 +2,7 @@
 
 use canonform::{DescribeOptions, FormOptions, describe, embed, form_matches};
 use datasets::{ArticulatedOptions, articulated};
-use descriptors::{Normalization, ShapeMetric, ShapePair};
+use descriptors::{Handedness, Normalization, ShapeMetric, ShapePair, VerdictKind};
 use rayon::prelude::*;
 use retrieval::{Labels, evaluate};
 
@@ -40,16 +40,23 @@ fn verdicts_distinguish_poses_from_families() {
         .collect();
     let pairs: Vec<(usize, usize)> =
         (0..shapes.len()).flat_map(|i| (i + 1..shapes.len()).map(move |j| (i, j))).collect();
-    pairs.par_iter().for_each(|&(i, j)| {
-        let pair = [&described[i], &described[j]];
-        let distance = ShapePair::new(ShapeMetric::default(), pair).distance();
-        let is_family = shapes[i].label == shapes[j].label;
-        assert_eq!(
-            ShapeMetric::is_same(distance),
-            is_family,
-            "{} {} {distance:?}",
-            shapes[i].name,
-            shapes[j].name
-        );
-    });
+    let verdicts: Vec<_> = pairs
+        .par_iter()
+        .map(|&(i, j)| {
+            let pair = ShapePair::new(ShapeMetric::default(), [&described[i], &described[j]]);
+            let back = ShapePair::new(ShapeMetric::default(), [&described[j], &described[i]]);
+            let [there, back] = [pair, back].map(|pair| pair.verdict(Handedness::Unknown));
+            let name = format!("{} {}", shapes[i].name, shapes[j].name);
+            assert!((there.distance / back.distance - 1.0).abs() < 0.01, "{name}: {there:?} {back:?}");
+            assert!((there.confidence - back.confidence).abs() < 0.05, "{name}: {there:?} {back:?}");
+            let is_family = shapes[i].label == shapes[j].label;
+            assert_eq!(there.may_be_same_class(), is_family, "{name}: {there:?}");
+            assert_eq!(there.kind == VerdictKind::Different, !is_family, "{name}: {there:?}");
+            (is_family, there.kind)
+        })
+        .collect();
+    let poses: Vec<_> = verdicts.iter().filter(|(is_family, _)| *is_family).map(|(_, kind)| kind).collect();
+    let same = poses.iter().filter(|kind| ***kind == VerdictKind::SameShape).count();
+    println!("{same} of {} pairs of poses are firmly one shape", poses.len());
+    assert!(2 * same > poses.len(), "{same} of {}", poses.len());
 }

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use canonform::{
     DescribeOptions, FormOptions, Surface, describe, embed, form_matches, label_of, list_shapes,
 };
-use descriptors::{Normalization, ShapeMetric, ShapePair};
+use descriptors::{Handedness, Normalization, ShapeMetric, ShapePair, VerdictKind};
 use geodesics::{FirstSample, farthest_point_sampling};
 use mesh::RepairOptions;
 use nmds::{NystromOptions, Regularization, classical, nystrom, paper_stress};
@@ -182,16 +182,20 @@ fn verdicts_distinguish_poses_from_animals() {
         (0..shapes.len()).flat_map(|i| (i + 1..shapes.len()).map(move |j| (i, j))).collect();
     let distance = |&(i, j): &(usize, usize)| {
         let pair = [&described[i], &described[j]];
-        let distance = ShapePair::new(ShapeMetric::default(), pair).distance();
-        (shapes[i].label == shapes[j].label, distance)
+        let verdict = ShapePair::new(ShapeMetric::default(), pair).verdict(Handedness::Unknown);
+        (shapes[i].label == shapes[j].label, verdict)
     };
     let distances: Vec<_> = pairs.par_iter().map(distance).collect();
-    let of = |same| distances.iter().filter(move |d| d.0 == same).map(|d| d.1.combined);
+    let of = |same| distances.iter().filter(move |d| d.0 == same).map(|d| d.1.distance);
     let (farthest, nearest) = (of(true).fold(0.0, f64::max), of(false).fold(f64::INFINITY, f64::min));
     println!(
         "{} pairs: poses of one animal differ by up to {farthest:.2}, animals by at least {nearest:.2}",
         pairs.len()
     );
-    assert!(distances.iter().all(|(same, distance)| ShapeMetric::is_same(*distance) == *same));
+    for (same, verdict) in &distances {
+        assert_eq!(verdict.may_be_same_class(), *same, "{verdict:?}");
+        assert!(*same || verdict.kind != VerdictKind::SameShape, "{verdict:?}");
+        assert!(!*same || verdict.kind != VerdictKind::Different, "{verdict:?}");
+    }
     assert!(nearest > 2.0 * farthest, "{farthest} {nearest}");
 }

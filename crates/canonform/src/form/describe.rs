@@ -8,6 +8,7 @@ use descriptors::{
 };
 use mesh::RepairReport;
 
+use super::boundary::longest_boundary;
 use super::embed::{Embedded, embed};
 use super::options::DescribeOptions;
 use crate::error::Error;
@@ -28,6 +29,8 @@ pub struct ShapeDescription {
     pub area: f64,
     /// The largest distance on the surface from one of the samples, in mesh units.
     pub diameter: f64,
+    /// Length of the longest boundary, in mesh units; 0 for a closed surface.
+    pub longest_boundary: f64,
     /// What was repaired, with the numbers of vertices and faces.
     pub repair: RepairReport,
 }
@@ -111,6 +114,7 @@ impl ShapeDescription {
             signatures,
             area: spectrum.area,
             diameter: embedded.distances.max(),
+            longest_boundary: longest_boundary(&surface.intrinsic),
             repair: surface.repaired.report.clone(),
         })
     }

@@ -5,6 +5,7 @@
 //! ```
 
 mod as_text;
+mod boundary;
 mod describe;
 mod distances;
 mod embed;

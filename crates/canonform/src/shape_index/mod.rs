@@ -8,6 +8,7 @@
 mod build;
 mod change;
 mod evaluate;
+mod predict;
 mod record;
 mod rerank;
 mod search;
@@ -16,8 +17,7 @@ mod source;
 pub use build::{BuildOptions, BuildReport, Failure, build_index};
 pub use change::{MergeReport, add_to_index, merge_indexes, remove_from_index};
 pub use evaluate::{Measure, evaluate_index, evaluate_matrix};
+pub use predict::{ClassVotes, NearestShape, Prediction, Unknown};
 pub use rerank::{Ranked, Reranked, rerank};
-pub use search::{
-    Explain, Prediction, SearchOptions, SearchReport, SearchResult, SearchSeconds, ShapeSearch,
-};
+pub use search::{Explain, SearchOptions, SearchReport, SearchResult, SearchSeconds, ShapeSearch};
 pub use source::{Inputs, Shard};

@@ -13,6 +13,9 @@ use crate::input::ShapeFile;
 /// The area of the surface, in squared mesh units.
 const AREA: &str = "area";
 
+/// Share of the area that the repair dropped, 0 to 1.
+pub(super) const DROPPED: &str = "dropped_area_share";
+
 /// How the shapes of an index were described.
 pub(super) fn options_of(index: &Index) -> Result<DescribeOptions, Error> {
     DescribeOptions::from_text(index.options()).ok_or_else(|| Error::UnknownOptions {
@@ -38,7 +41,7 @@ pub(super) fn shape(file: &ShapeFile, content: ContentHash, described: ShapeDesc
         ("faces", repair.input_faces as f64),
         (AREA, described.area),
         ("diameter", described.diameter),
-        ("dropped_area_share", repair.dropped_area_share),
+        (DROPPED, repair.dropped_area_share),
     ];
     let form = described.form.points().iter().zip(described.form.weights());
     let signatures = described.signatures.iter();

@@ -4,7 +4,9 @@ use std::borrow::Borrow;
 use std::collections::HashMap;
 use std::sync::{Mutex, PoisonError};
 
-use descriptors::{FormDistance, FormMatch, PreparedShape, ShapeMetric, match_forms_within};
+use descriptors::{
+    FormDistance, FormMatch, Handedness, PreparedShape, ShapeMetric, ShapePair, Verdict, match_forms_within,
+};
 use retrieval::{Candidate, refine_nearest};
 
 use crate::error::Error;
@@ -18,6 +20,8 @@ pub struct Ranked {
     pub distance: f64,
     /// Fused distance from the query.
     pub fused: f64,
+    /// The verdict, without handedness.
+    pub verdict: Verdict,
     /// How the form of the query, at unit area, aligns with that of the shape.
     pub alignment: FormMatch,
 }
@@ -56,13 +60,18 @@ pub fn rerank<S: Borrow<PreparedShape>>(
         let left = ShapeMetric::form_limit(fused, limit, FormDistance::NearestNeighborRms);
         let (a, b) = (query.prepared_form(), shape.prepared_form());
         let Some(alignment) = match_forms_within(a, b, left) else { return Ok(None) };
-        found.lock().unwrap_or_else(PoisonError::into_inner).insert(candidate.index, (fused, alignment));
+        let pair = ShapePair::new(ShapeMetric::default(), [query, shape]).with_best(alignment);
+        let verdict = pair.verdict(Handedness::Unknown);
+        found
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .insert(candidate.index, (fused, verdict, alignment));
         Ok::<_, Error>(Some(ShapeMetric::combined(fused, alignment.rms)))
     })?;
     let found = found.into_inner().unwrap_or_else(PoisonError::into_inner);
     let ranked = refined.nearest.iter().filter_map(|near| {
-        let (fused, alignment) = *found.get(&near.index)?;
-        Some(Ranked { index: near.index, distance: near.distance, fused, alignment })
+        let (fused, verdict, alignment) = *found.get(&near.index)?;
+        Some(Ranked { index: near.index, distance: near.distance, fused, verdict, alignment })
     });
     Ok(Reranked { nearest: ranked.collect(), aligned: refined.evaluated, abandoned: refined.abandoned })
 }
@@ -102,7 +111,8 @@ mod tests {
                         let pair = ShapePair::new(ShapeMetric::default(), [&asked, &shapes[index]]);
                         let (fused, alignment) = (fused(index), pair.best());
                         let distance = ShapeMetric::combined(fused, alignment.rms);
-                        Ranked { index, distance, fused, alignment }
+                        let verdict = pair.verdict(Handedness::Unknown);
+                        Ranked { index, distance, fused, verdict, alignment }
                     })
                     .collect();
                 all.sort_by(|a, b| a.distance.total_cmp(&b.distance).then(a.index.cmp(&b.index)));

@@ -4,23 +4,21 @@ use std::path::Path;
 use std::time::Instant;
 
 use budget::Budget;
-use descriptors::{PreparedShape, ShapeMetric, ShapePair};
+use descriptors::{PreparedShape, ShapeMetric, ShapePair, Verdict};
 use index::{Index, SearchMode, ShapeEntry};
 use mesh::TriMesh;
 use rayon::prelude::*;
-use retrieval::{Candidate, vote};
+use retrieval::Candidate;
 use serde::Serialize;
 
-use super::record::{options_of, prepared};
+use super::predict::{Completeness, Prediction, VOTERS, predicted};
+use super::record::{DROPPED, options_of, prepared};
 use super::rerank::{Ranked, rerank};
 use super::source::read_unchanged;
 use crate::compare::{Comparison, compare};
 use crate::error::Error;
 use crate::form::{DescribeOptions, ShapeDescription, describe_within};
 use crate::input::Surface;
-
-/// Neighbours that vote on the class of a query.
-const VOTERS: usize = 5;
 
 /// Shapes whose forms may be aligned, per result, ...
 const CANDIDATES: usize = 4;
@@ -73,25 +71,11 @@ pub struct SearchResult {
     pub distance: f64,
     /// Fused distance, by signatures alone.
     pub fused: f64,
+    /// How alike the query and the shape are, and why. It does not depend on size, and the handedness is unknown.
+    pub verdict: Verdict,
     /// The comparison with the query, if results are explained.
     #[serde(rename = "match", skip_serializing_if = "Option::is_none")]
     pub comparison: Option<Comparison>,
-}
-
-/// The class that the nearest shapes suggest.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Prediction {
-    /// The class; `None` if no shape is near enough.
-    pub label: Option<String>,
-    /// Neighbours of that class.
-    pub votes: usize,
-    /// Neighbours that are near enough to vote.
-    pub voters: usize,
-    /// Share of the votes for the class, from 0 to 1; nearer neighbours count more.
-    pub confidence: f64,
-    /// Fused distance beyond which no shape is near enough; `None` if the classes of the index are too small to
-    /// estimate it.
-    pub threshold: Option<f64>,
 }
 
 /// The answer to a search.
@@ -233,7 +217,11 @@ impl ShapeSearch {
         budget: &Budget,
     ) -> Result<SearchReport, Error> {
         self.index.expect_options(&query.options.text())?;
-        self.nearest(&query.prepare()?, options, budget)
+        let complete = Completeness {
+            dropped: query.repair.dropped_area_share,
+            open: query.longest_boundary / query.area.sqrt(),
+        };
+        self.nearest(&query.prepare()?, complete, options, budget)
     }
 
     /// Searches with a shape of the index, which finds itself. Its mesh is not needed.
@@ -241,12 +229,15 @@ impl ShapeSearch {
     /// # Errors
     /// [`Error::Index`].
     pub fn search_shape(&self, id: &str, options: &SearchOptions) -> Result<SearchReport, Error> {
-        self.nearest(&self.prepared(id)?, options, &Budget::unlimited())
+        let dropped = self.index.entry(id)?.fact(DROPPED).unwrap_or(0.0);
+        let complete = Completeness { dropped, ..Completeness::default() };
+        self.nearest(&self.prepared(id)?, complete, options, &Budget::unlimited())
     }
 
     fn nearest(
         &self,
         query: &PreparedShape,
+        complete: Completeness,
         options: &SearchOptions,
         budget: &Budget,
     ) -> Result<SearchReport, Error> {
@@ -269,11 +260,11 @@ impl ShapeSearch {
         let result = |(place, ranked): (usize, &Ranked)| {
             let id = near[ranked.index].id.clone();
             let ShapeEntry { label, path, .. } = self.index.entry(&id)?;
-            let (distance, fused) = (ranked.distance, ranked.fused);
-            Ok(SearchResult { rank: place + 1, id, label, path, distance, fused, comparison: None })
+            let Ranked { distance, fused, verdict, .. } = *ranked;
+            Ok(SearchResult { rank: place + 1, id, label, path, distance, fused, verdict, comparison: None })
         };
         let mut results = ranked.nearest.iter().enumerate().map(result).collect::<Result<Vec<_>, Error>>()?;
-        let predicted = predicted(&results, found.threshold);
+        let predicted = predicted(&results, found.threshold, complete);
         results.truncate(options.k);
         if options.explain == Explain::Kind {
             results.par_iter_mut().zip(&ranked.nearest).try_for_each(|(result, ranked)| {
@@ -294,27 +285,6 @@ impl ShapeSearch {
             recall: found.recall,
             seconds: SearchSeconds { describe: 0.0, search: start.elapsed().as_secs_f64() },
         })
-    }
-}
-
-/// The vote of the first results. Their order takes forms into account; the threshold is one of fused distances.
-fn predicted(results: &[SearchResult], threshold: Option<retrieval::UnknownThreshold>) -> Prediction {
-    let mut classes: Vec<&str> = results.iter().map(|result| result.label.as_str()).collect();
-    classes.sort_unstable();
-    classes.dedup();
-    let class_of = |i: usize| classes.partition_point(|class| *class < results[i].label.as_str());
-    let neighbors: Vec<_> = results
-        .iter()
-        .enumerate()
-        .map(|(index, result)| retrieval::Neighbor { index, distance: result.fused })
-        .collect();
-    let vote = vote(&neighbors, class_of, VOTERS, threshold);
-    Prediction {
-        label: vote.class.map(|class| classes[class].to_owned()),
-        votes: vote.votes,
-        voters: vote.voters,
-        confidence: vote.confidence,
-        threshold: threshold.map(|threshold| threshold.distance),
     }
 }
 
@@ -374,6 +344,7 @@ mod tests {
                 let query = described.prepare().unwrap();
                 let direct = compare(&ShapePair::new(ShapeMetric::default(), [&query, &other])).unwrap();
                 assert_eq!(result.comparison.as_ref(), Some(&direct));
+                assert_eq!(result.verdict, direct.verdict);
                 assert_eq!(result.distance, direct.shape_distance.combined);
             }
         }

@@ -126,7 +126,7 @@ pub(crate) struct SearchArgs {
     /// Number of shapes to find
     #[arg(short, default_value_t = 10)]
     pub(crate) k: usize,
-    /// Report the kind of match of every shape
+    /// Report the verdict on every shape: the same, of one class, undecided or different, with its confidence
     #[arg(long)]
     pub(crate) explain: bool,
     /// Compare the signatures of all shapes, even in a large index

@@ -10,7 +10,7 @@ mod shared;
 use std::path::PathBuf;
 
 use canonform::StressChoice;
-use canonform::descriptors::FormDistance;
+use canonform::descriptors::{FormDistance, VerdictKind};
 use canonform::geodesics::Method;
 use clap::builder::TypedValueParser;
 use clap::{Args, Parser, Subcommand};
@@ -49,7 +49,11 @@ pub(crate) enum Command {
     Embed(EmbedArgs),
     /// Embed a mesh by every method and tabulate stress, time and memory
     Methods(MethodsArgs),
-    /// Align the canonical forms of two meshes and report how the shapes differ
+    /// Decide whether two meshes are one shape, of one class or different, and report how they differ
+    ///
+    /// The verdict follows from the combined distance, by signatures and aligned canonical forms, and is one of: the same
+    /// shape, different shapes of one class, undecided, different shapes. Its confidence is a probability, measured on
+    /// poses and bodies of the built-in shapes.
     Compare(CompareArgs),
     /// Draw a shaded picture of a mesh, optionally coloured by distances or other values
     Render(RenderArgs),
@@ -124,9 +128,13 @@ pub(crate) struct CompareArgs {
     pub(crate) distance: FormDistance,
     #[arg(long, value_name = "OUT", help = residual_help())]
     pub(crate) residual_mesh: Option<PathBuf>,
-    /// Exit with code 1 if the distance at equal size exceeds this
+    /// Exit with code 1 if the distance at equal size exceeds this, or if the verdict is "different shapes"
     #[arg(long, value_name = "D")]
     pub(crate) threshold: Option<f64>,
+    /// Exit with code 0 if the verdict is at least this alike, and 1 if not: `same-shape` without a value
+    #[arg(long, value_name = "KIND", num_args = 0..=1, require_equals = true, default_missing_value = "same-shape",
+        value_parser = at_least())]
+    pub(crate) exit_code: Option<VerdictKind>,
     #[command(flatten)]
     pub(crate) embedding: EmbeddingArgs,
     #[command(flatten)]
@@ -141,6 +149,13 @@ fn form_distance() -> impl TypedValueParser<Value = FormDistance> {
     one_of([
         ("nn-rms", "Root mean square of nearest-neighbour distances", FormDistance::NearestNeighborRms),
         ("hausdorff95", "Hausdorff distance without the farthest 5 % of points", FormDistance::Hausdorff95),
+    ])
+}
+
+fn at_least() -> impl TypedValueParser<Value = VerdictKind> {
+    one_of([
+        ("same-shape", "One body in two poses, at any size, or its mirror image", VerdictKind::SameShape),
+        ("same-class", "One class, whether one shape or not", VerdictKind::SameClass),
     ])
 }
 

@@ -4,7 +4,9 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::Result;
-use canonform::descriptors::{CanonicalForm, Handedness, MatchKind, PreparedShape, ShapeMetric, ShapePair};
+use canonform::descriptors::{
+    CanonicalForm, Handedness, PreparedShape, ShapeMetric, ShapePair, Verdict, VerdictKind,
+};
 use canonform::{
     Comparison, DescribeOptions, FormOptions, Residual, ShapeDescription, Surface, SurfaceComparison,
     Triangulation, compare_surfaces, describe, embed,
@@ -26,6 +28,8 @@ struct CompareJson {
     triangulation: Triangulation,
     residual: ResidualJson,
     threshold: Option<f64>,
+    /// Whether the threshold is exceeded or the shapes are different; none without a threshold.
+    failed: Option<bool>,
 }
 
 /// Distances from the vertices of the first shape to the second shape, in units of the first mesh.
@@ -73,7 +77,7 @@ pub(crate) fn compare(args: &CompareArgs, common: &Common) -> Result<ExitCode> {
     let (a, form_a, shape_a, usual_a) = side(&args.a, args, &options, common.quiet)?;
     let (b, form_b, shape_b, usual_b) = side(&args.b, args, &options, common.quiet)?;
     let pair = ShapePair::new(metric, [&shape_a, &shape_b]);
-    // The kind of match must not depend on the options.
+    // The verdict must not depend on the options.
     let distance = match (&usual_a, &usual_b) {
         (Some(a), Some(b)) => ShapePair::new(metric, [a, b]).distance(),
         _ => pair.distance(),
@@ -86,7 +90,10 @@ pub(crate) fn compare(args: &CompareArgs, common: &Common) -> Result<ExitCode> {
     let [residual, _] = overlay.residual();
     let max_vertex = a.input_vertex(residual.max_point.into()).0;
     let residual = ResidualJson { residual, max_vertex, output: args.residual_mesh.clone() };
-    let too_far = args.threshold.is_some_and(|limit| comparison.normalized_distance > limit);
+    let failed = args.threshold.map(|limit| {
+        comparison.normalized_distance > limit || comparison.verdict.kind == VerdictKind::Different
+    });
+    let not_alike = args.exit_code.is_some_and(|least| !is_at_least(&comparison.verdict, least));
     let json = CompareJson {
         a: args.a.clone(),
         b: args.b.clone(),
@@ -94,22 +101,27 @@ pub(crate) fn compare(args: &CompareArgs, common: &Common) -> Result<ExitCode> {
         triangulation,
         residual,
         threshold: args.threshold,
+        failed,
     };
     let code = report(common, &json, table)?;
-    Ok(if too_far { ExitCode::from(1) } else { code })
+    Ok(if failed == Some(true) || not_alike { ExitCode::from(1) } else { code })
+}
+
+/// Whether a verdict is firm and at least this alike. Below the gap between one class and different ones, the shapes are
+/// of one class, whether they are one shape or not.
+fn is_at_least(verdict: &Verdict, least: VerdictKind) -> bool {
+    match least {
+        VerdictKind::SameClass => verdict.is_same_class(),
+        least => verdict.kind == least,
+    }
 }
 
 fn table(json: &CompareJson) -> String {
     let c = &json.comparison;
-    let kind = match c.kind {
-        MatchKind::Same => "the same shape up to pose".to_owned(),
-        MatchKind::Scaled => format!("the same shape up to pose, scaled by {:.3}", c.scale),
-        MatchKind::Mirrored => "mirror images up to pose".to_owned(),
-        MatchKind::MirroredAndScaled => format!("mirror images up to pose, scaled by {:.3}", c.scale),
-        MatchKind::Different => "different shapes".to_owned(),
+    let limit = match c.same_below {
+        0.0 => "the signatures alone are too far apart for one class".to_owned(),
+        limit => format!("with these signatures, different from {limit:.6} on"),
     };
-    let (apart, limit) = (c.shape_distance.combined, ShapeMetric::SAME_BELOW);
-    let apart = format!("{apart:.3} by signatures and forms (same shape below {limit})");
     let handedness = match c.handedness {
         Handedness::Same => "no",
         Handedness::Mirrored => "yes",
@@ -123,10 +135,10 @@ fn table(json: &CompareJson) -> String {
     let (Residual { median, max, .. }, vertex) = (json.residual.residual, json.residual.max_vertex);
     let residual = format!("median {median:.6}, maximum {max:.6} (at vertex {vertex}), mesh units");
     let mut rows = vec![
-        ("match", kind),
-        ("shape distance", apart),
-        ("distance", format!("{:.6} mesh units", c.distance)),
-        ("at equal size", format!("{:.6}", c.normalized_distance)),
+        ("match", c.verdict.to_string()),
+        ("because", c.verdict.reason()),
+        ("distance of the forms", format!("{:.6} mesh units", c.distance)),
+        ("at equal size", format!("{:.6} ({limit})", c.normalized_distance)),
         ("scale, second over first", format!("{:.6}", c.scale)),
         ("mirror image", handedness.to_owned()),
         ("triangulation", triangulation.to_owned()),
@@ -138,7 +150,11 @@ fn table(json: &CompareJson) -> String {
     }
     rows.push(("translation", c.translation.map(|x| format!("{x:>10.4}")).join(" ")));
     if let Some(limit) = json.threshold {
-        let held = if c.normalized_distance > limit { "exceeded" } else { "not exceeded" };
+        let held = match (c.normalized_distance > limit, json.failed == Some(true)) {
+            (true, _) => "exceeded",
+            (false, true) => "not exceeded, but the shapes are different",
+            (false, false) => "not exceeded",
+        };
         rows.push(("threshold", format!("{limit} {held}")));
     }
     facts(&rows)

@@ -4,9 +4,8 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::Result;
-use canonform::descriptors::MatchKind;
 use canonform::index::SearchMode;
-use canonform::{Explain, SearchOptions, SearchReport, SearchResult, ShapeSearch};
+use canonform::{Explain, SearchOptions, SearchReport, ShapeSearch};
 use serde::Serialize;
 
 use crate::args::{Common, SearchArgs};
@@ -93,43 +92,22 @@ fn table(query: String, report: &SearchReport) -> String {
             format!("{:.4}", result.distance),
             result.path.clone(),
         ];
-        row.extend(kind(result));
+        if explained {
+            row.push(format!("{} ({:.2})", result.verdict, result.verdict.confidence));
+        }
         table.add_row(row);
     }
-    let predicted = &report.predicted;
-    let class = match (&predicted.label, report.results.is_empty()) {
-        (_, true) => "the index is empty".to_owned(),
-        (Some(label), _) => format!(
-            "{label}, by {} of {} votes, confidence {:.2}",
-            predicted.votes, predicted.voters, predicted.confidence
-        ),
-        (None, _) => format!(
-            "unknown: no shape is within {:.2} by signatures",
-            predicted.threshold.unwrap_or(f64::INFINITY)
-        ),
-    };
     let exactness = if report.recall < 1.0 {
         format!(", {:.1} % of the nearest found", 100.0 * report.recall)
     } else {
         String::new()
     };
     format!(
-        "{query}\n{table}\n  class: {class}\n  {} of {} shapes measured{exactness}, {} aligned, {:.3} s",
+        "{query}\n{table}\n  class: {}\n  {} of {} shapes measured{exactness}, {} aligned, {:.3} s",
+        report.predicted.explanation,
         report.measured,
         report.n_shapes,
         report.aligned,
         report.seconds.describe + report.seconds.search
     )
-}
-
-fn kind(result: &SearchResult) -> Option<String> {
-    let comparison = result.comparison.as_ref()?;
-    let resized = format!("scaled by {:.3}", comparison.scale);
-    Some(match comparison.kind {
-        MatchKind::Same => "the same shape".to_owned(),
-        MatchKind::Scaled => format!("the same, {resized}"),
-        MatchKind::Mirrored => "mirrored".to_owned(),
-        MatchKind::MirroredAndScaled => format!("mirrored, {resized}"),
-        MatchKind::Different => format!("different ({:.3} apart)", comparison.normalized_distance),
-    })
 }

@@ -189,6 +189,7 @@ fn compare_reports_the_kind_of_match_and_checks_a_threshold() {
             "reflected",
             "kind",
             "same_below",
+            "verdict",
             "combined_distance",
             "fused_distance",
         ],
@@ -212,7 +213,46 @@ fn compare_reports_the_kind_of_match_and_checks_a_threshold() {
     assert_eq!(apart.code, 1);
     assert!(apart.out.contains("exceeded"), "{}", apart.out);
     let apart = place.run(&["compare", "ring.off", "ball.off", "--threshold", "0.01", "--json"]);
-    assert_eq!((apart.code, &one_object(&apart.out)["threshold"]), (1, &0.01.into()));
+    let json = one_object(&apart.out);
+    assert_eq!((apart.code, &json["threshold"], &json["failed"]), (1, &0.01.into(), &true.into()));
+}
+
+#[test]
+fn text_json_and_exit_code_of_a_comparison_agree() {
+    let place = Workplace::new();
+    place.add("ring.off", &ring());
+    place.add("ball.off", &mesh::shapes::icosphere(3));
+    for (other, alike) in [("ring.off", true), ("ball.off", false)] {
+        // The forms are always nearer than this: only the verdict can fail.
+        for option in [&["--threshold", "99"][..], &["--exit-code"], &["--exit-code=same-class"], &[]] {
+            let asked = [&["compare", "ring.off", other], option].concat();
+            let [text, json] =
+                [&asked[..], &[&asked[..], &["--json"]].concat()].map(|asked| place.run(asked));
+            let expected = i32::from(!alike && !option.is_empty());
+            assert_eq!((text.code, json.code), (expected, expected), "{asked:?}: {}", text.out);
+            let json = one_object(&json.out);
+            let verdict = &json["verdict"];
+            assert_eq!(verdict["kind"], if alike { "same-shape" } else { "different" });
+            assert_eq!(json["kind"] == "different", !alike);
+            assert_eq!(verdict["distance"], json["combined_distance"]);
+            for words in [&verdict["text"], &verdict["reason"]] {
+                assert!(text.out.contains(words.as_str().unwrap()), "{}", text.out);
+            }
+            match option.first() {
+                Some(&"--threshold") => {
+                    assert_eq!(json["failed"], !alike);
+                    assert_eq!(text.out.contains("not exceeded, but the shapes are different"), !alike);
+                }
+                _ => assert!(json["failed"].is_null()),
+            }
+        }
+        let [there, back] =
+            [["compare", "ring.off", other], ["compare", other, "ring.off"]].map(|asked| place.json(&asked));
+        assert_eq!(there["verdict"]["kind"], back["verdict"]["kind"]);
+        let distance = |json: &serde_json::Value| json["verdict"]["distance"].as_f64().unwrap();
+        assert!((distance(&there) - distance(&back)).abs() <= 0.01 * distance(&there));
+    }
+    place.refused(&["compare", "ring.off", "ring.off", "--exit-code=maybe"], &["same-shape", "same-class"]);
 }
 
 #[test]
@@ -259,7 +299,7 @@ fn help_mentions_every_option() {
         ("info", vec!["MESH"]),
         ("geodesic", geodesic.to_vec()),
         ("embed", [&embedding[..], &["-o", "--stress", "--stress-against"]].concat()),
-        ("compare", [&embedding[..], &["--threshold"]].concat()),
+        ("compare", [&embedding[..], &["--threshold", "--exit-code", "same-class"]].concat()),
         ("completions", vec!["bash", "zsh", "fish"]),
     ];
     let front = place.done(&["--help"]).out;

@@ -70,6 +70,37 @@ fn a_folder_becomes_an_index_that_finds_its_shapes() {
 }
 
 #[test]
+fn an_unknown_class_is_explained() {
+    let place = Workplace::new();
+    (0..3).for_each(|i| place.add(&format!("meshes/ring{i}.off"), &body(0, i)));
+    place.done(&BUILD);
+    // A long thin cone that is open at its base.
+    let mut cone = mesh::shapes::grid(40, 12, 1.0);
+    for p in &mut cone.positions {
+        let (turn, along) = (p.x / 39.0 * std::f64::consts::TAU, (p.y + 0.1) / 11.0);
+        *p = [along * turn.cos(), along * turn.sin(), 30.0 * along].into();
+    }
+    place.add("part.off", &cone);
+    let found = place.json(&["search", "all.canonform", "part.off"]);
+    let (predicted, nearest) = (&found["predicted"], &found["results"][0]);
+    assert_eq!((&predicted["label"], &predicted["unknown"]), (&serde_json::Value::Null, &"partial".into()));
+    assert_eq!(predicted["nearest"]["id"], nearest["id"]);
+    assert_eq!(predicted["nearest"]["verdict"], nearest["verdict"]);
+    let text = place.done(&["search", "all.canonform", "part.off"]).out;
+    let distance = format!("{:.3}", nearest["distance"].as_f64().unwrap());
+    for words in [
+        predicted["explanation"].as_str().unwrap(),
+        "class: unknown: the nearest shape",
+        nearest["id"].as_str().unwrap(),
+        nearest["verdict"]["text"].as_str().unwrap(),
+        &distance,
+        "parts are not matched",
+    ] {
+        assert!(text.contains(words), "no `{words}` in {text}");
+    }
+}
+
+#[test]
 fn an_explained_result_has_the_numbers_of_the_comparison() {
     let place = collection();
     place.done(&["index", "build", "meshes", "-o", "all.canonform"]);
@@ -80,10 +111,31 @@ fn an_explained_result_has_the_numbers_of_the_comparison() {
         let compared = place.json(&["compare", "query.ply", path]);
         // The handedness needs the surfaces.
         for (key, value) in
-            explained.iter().filter(|(key, _)| !["kind", "handedness"].contains(&key.as_str()))
+            explained.iter().filter(|(key, _)| !["kind", "handedness", "verdict"].contains(&key.as_str()))
         {
             assert_eq!(*value, compared[key], "{path}: {key}");
         }
+        assert_eq!(result["verdict"], explained["verdict"]);
+        for (key, value) in explained["verdict"].as_object().unwrap() {
+            if !["handedness", "text"].contains(&key.as_str()) {
+                assert_eq!(*value, compared["verdict"][key], "{path}: {key}");
+            }
+        }
+        if compared["handedness"] != "mirrored" {
+            assert_eq!(result["verdict"]["text"], compared["verdict"]["text"]);
+        }
+        // The text says the same.
+        let [text, found_text] =
+            [&["compare", "query.ply", path][..], &[]].map(|arguments| match arguments {
+                [] => place.done(&["search", "all.canonform", "query.ply", "-k", "9", "--explain"]).out,
+                arguments => place.done(arguments).out,
+            });
+        let [words, reason] = ["text", "reason"].map(|key| compared["verdict"][key].as_str().unwrap());
+        assert!(text.contains(words) && text.contains(reason), "{text}");
+        assert!(found_text.contains(result["verdict"]["text"].as_str().unwrap()), "{found_text}");
+        // What may be of one class is never unknown.
+        let may_be = result["verdict"]["same_class"].as_f64().unwrap() > 0.5;
+        assert!(!may_be || !found["predicted"]["label"].is_null(), "{found}");
         assert_eq!(result["distance"], compared["combined_distance"]);
     }
 }

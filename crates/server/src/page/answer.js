@@ -2,13 +2,6 @@
 import { mark, tile } from './shapes.js';
 
 const byId = (id) => document.getElementById(id);
-const KINDS = {
-  same: 'The same shape up to pose',
-  scaled: 'The same shape up to pose, at another size',
-  mirrored: 'Mirror images up to pose',
-  'mirrored-and-scaled': 'Mirror images up to pose, at another size',
-  different: 'Different shapes',
-};
 const number = (value) => Number(value).toPrecision(3).replace(/\.?0+$/, '');
 
 // Views are created once and then updated: browsers limit the number of WebGL scenes.
@@ -72,18 +65,16 @@ export class Answer {
     if (this.root.getBoundingClientRect().top > 0.6 * innerHeight) this.root.scrollIntoView({ block: 'start' });
   }
 
-  showVerdict({ predicted, repair, repaired, mesh_missing: missing, n_shapes: known, seconds, results }) {
+  showVerdict({ predicted, repair, repaired, mesh_missing: missing, n_shapes: known, seconds }) {
     const [label, line] = [predicted.label, byId('predicted')];
     line.dataset.label = label ?? '';
-    if (results.length === 0) {
-      line.textContent = 'The index is empty.';
-    } else if (label === null) {
-      line.textContent = `Class: unknown. No shape is within ${number(predicted.threshold)} by signatures.`;
+    const words = predicted.explanation;
+    if (label === null) {
+      line.textContent = `Class: ${words}.`;
     } else {
       const strong = document.createElement('strong');
       strong.textContent = label;
-      line.replaceChildren('Class: ', strong,
-        `, by ${predicted.votes} of ${predicted.voters} votes, confidence ${predicted.confidence.toFixed(2)}`);
+      line.replaceChildren('Class: ', strong, `${words.slice(label.length)}.`);
     }
     const size = repair ? `${repair.input_vertices} vertices, ${repair.input_faces} faces; ` : '';
     const time = (seconds.describe + seconds.search).toFixed(2);
@@ -120,11 +111,10 @@ export class Answer {
       byId('overlay-kind').textContent = answer.remedy ? `${answer.error}; ${answer.remedy}` : answer.error;
       return;
     }
-    const { kind, scale, distance, normalized_distance: normalized, residual, handedness } = answer;
-    const sizes = kind.includes('scaled') ? `, ${number(scale)} times as large` : '';
-    byId('overlay-kind').textContent = `${KINDS[kind]}${sizes}.`;
-    byId('overlay-kind').dataset.kind = kind;
-    byId('overlay-facts').textContent = `Distance between the forms: ${number(distance)}, ${number(normalized)} at equal size. ` +
+    const { verdict, distance, normalized_distance: normalized, residual, handedness } = answer;
+    byId('overlay-kind').textContent = `${verdict.text[0].toUpperCase()}${verdict.text.slice(1)}.`;
+    byId('overlay-kind').dataset.kind = verdict.kind;
+    byId('overlay-facts').textContent = `${verdict.reason[0].toUpperCase()}${verdict.reason.slice(1)}. Distance between the forms: ${number(distance)}, ${number(normalized)} at equal size. ` +
       `Points of the first form are ${number(residual[0].median)} from the second (median), ` +
       `${number(residual[0].max)} at most. Handedness: ${handedness}.`;
     byId('shown-first').textContent = answer.a;

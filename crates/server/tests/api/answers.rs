@@ -206,9 +206,19 @@ fn an_upload_can_be_compared_with_its_results() {
     assert!((json["scale"].as_f64().unwrap() * 3.0 - 1.0).abs() < 1e-6);
     let mut results = found["results"].as_array().unwrap().iter();
     let explained = &results.find(|result| result["id"] == "ring1").unwrap()["match"];
-    for (key, value) in explained.as_object().unwrap().iter().filter(|(key, _)| *key != "handedness") {
-        assert_eq!(*value, json[key], "{key}");
+    for (key, value) in explained.as_object().unwrap() {
+        if !["handedness", "verdict"].contains(&key.as_str()) {
+            assert_eq!(*value, json[key], "{key}");
+        }
     }
+    for (key, value) in explained["verdict"].as_object().unwrap() {
+        if key != "handedness" {
+            assert_eq!(*value, json["verdict"][key], "{key}");
+        }
+    }
+    let verdict = &json["verdict"];
+    assert_eq!((&verdict["distance"], &verdict["scale"]), (&json["combined_distance"], &json["scale"]));
+    assert!(verdict["text"].as_str().unwrap().starts_with("the same shape up to pose, scaled by 0.333"));
     let forms = [0, 1].map(|i| geometry(&json["forms"][i]));
     for (i, form) in forms.iter().enumerate() {
         let largest = form.values.as_ref().unwrap().iter().copied().fold(0.0, f32::max);

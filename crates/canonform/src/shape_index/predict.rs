@@ -1,0 +1,294 @@
+//! The class that the nearest shapes suggest, or why there is none.
+
+use descriptors::{ShapeMetric, Verdict};
+use retrieval::{Neighbor, Tally, UnknownThreshold, vote};
+use serde::Serialize;
+
+use super::search::SearchResult;
+
+/// Neighbours that vote on the class of a query.
+pub(super) const VOTERS: usize = 5;
+
+/// A vote is split if the winner has less than this share of it.
+const CLEAR: f64 = 2.0 / 3.0;
+
+/// A query without this share of its surface may be a part of a shape.
+const DROPPED: f64 = 0.01;
+
+/// A query whose longest boundary, over the square root of its area, is longer may be a part of a shape. A body that is
+/// cut at the waist or a limb that is cut off has about 1, a scan with small holes under 0.1.
+const OPEN: f64 = 0.3;
+
+/// The class that the nearest shapes suggest.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Prediction {
+    /// The class; `None` if no shape is near enough.
+    pub label: Option<String>,
+    /// Neighbours of that class.
+    pub votes: usize,
+    /// Neighbours that are near enough to vote.
+    pub voters: usize,
+    /// Share of the votes for the class, from 0 to 1; nearer neighbours count more.
+    pub confidence: f64,
+    /// Fused distance below which a shape votes whatever its verdict, since classes of this index are that wide; `None`
+    /// if the classes are too small to estimate it.
+    pub threshold: Option<f64>,
+    /// Combined distance below which a shape votes, as it may be of one class with the query by its verdict.
+    pub class_below: f64,
+    /// The votes for every class, most first.
+    pub tally: Vec<ClassVotes>,
+    /// The nearest shape; `None` if the index is empty.
+    pub nearest: Option<NearestShape>,
+    /// Why there is no class.
+    pub unknown: Option<Unknown>,
+    /// The class, or why there is none, in words.
+    pub explanation: String,
+}
+
+/// The votes for a class.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ClassVotes {
+    /// The class.
+    pub label: String,
+    /// Neighbours of this class.
+    pub votes: usize,
+    /// Their share of the weights, from 0 to 1.
+    pub share: f64,
+}
+
+/// The shape nearest to a query.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct NearestShape {
+    /// Its name.
+    pub id: String,
+    /// Its class.
+    pub label: String,
+    /// The verdict on the query and this shape.
+    pub verdict: Verdict,
+}
+
+/// Why a query has no class.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Unknown {
+    /// The index has no shapes.
+    EmptyIndex,
+    /// No shape is near enough.
+    NothingNear,
+    /// No shape is near enough, and the query looks like a part of a shape: parts are not matched with whole shapes.
+    Partial,
+}
+
+/// What makes a surface look like a part of one.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(super) struct Completeness {
+    /// Share of the area that the repair dropped.
+    pub(super) dropped: f64,
+    /// Length of the longest boundary over the square root of the area.
+    pub(super) open: f64,
+}
+
+impl Completeness {
+    /// The signs of a part, in words.
+    fn signs(self) -> Vec<String> {
+        let mut signs = Vec::new();
+        if self.dropped > DROPPED {
+            signs.push(format!("{:.0} % of its surface is not used", 100.0 * self.dropped));
+        }
+        if self.open > OPEN {
+            signs
+                .push(format!("a boundary is {:.1} times as long as the square root of its area", self.open));
+        }
+        signs
+    }
+}
+
+/// The vote of the first results.
+///
+/// A result at combined distance `d` and fused distance `f` votes if `r = min(d / c, f / t)` is below 1, with `c` the
+/// boundary of a class by verdict and `t` the width of the classes of the index; its weight is `(1 - r²)²`.
+pub(super) fn predicted(
+    results: &[SearchResult],
+    threshold: Option<UnknownThreshold>,
+    query: Completeness,
+) -> Prediction {
+    let class_below = ShapeMetric::SAME_CLASS.at;
+    let threshold = threshold.map(|threshold| threshold.distance);
+    let mut classes: Vec<&str> = results.iter().map(|result| result.label.as_str()).collect();
+    classes.sort_unstable();
+    classes.dedup();
+    let class_of = |i: usize| classes.partition_point(|class| *class < results[i].label.as_str());
+    let reach = |result: &SearchResult| {
+        let by_verdict = result.verdict.distance / class_below;
+        threshold.map_or(by_verdict, |threshold| by_verdict.min(result.fused / threshold))
+    };
+    let neighbors: Vec<_> = results
+        .iter()
+        .enumerate()
+        .map(|(index, result)| Neighbor { index, distance: reach(result) })
+        .collect();
+    let vote = vote(&neighbors, class_of, VOTERS, Some(1.0));
+    let of_class =
+        |of: &Tally| ClassVotes { label: classes[of.class].to_owned(), votes: of.votes, share: of.share };
+    let tally = vote.tally.iter().map(of_class).collect();
+    let nearest = results.first().map(|result| NearestShape {
+        id: result.id.clone(),
+        label: result.label.clone(),
+        verdict: result.verdict,
+    });
+    let signs = query.signs();
+    let unknown = match (vote.class, &nearest) {
+        (Some(_), _) => None,
+        (None, None) => Some(Unknown::EmptyIndex),
+        (None, Some(_)) if signs.is_empty() => Some(Unknown::NothingNear),
+        (None, Some(_)) => Some(Unknown::Partial),
+    };
+    let mut found = Prediction {
+        label: vote.class.map(|class| classes[class].to_owned()),
+        votes: vote.votes,
+        voters: vote.voters,
+        confidence: vote.confidence,
+        threshold,
+        class_below,
+        tally,
+        nearest,
+        unknown,
+        explanation: String::new(),
+    };
+    found.explanation = found.in_words(&signs);
+    found
+}
+
+impl Prediction {
+    fn in_words(&self, signs: &[String]) -> String {
+        if let Some(label) = &self.label {
+            return self.vote_in_words(label);
+        }
+        let Some(nearest) = &self.nearest else { return "unknown: the index is empty".to_owned() };
+        let Verdict { distance, .. } = nearest.verdict;
+        let mut words = format!(
+            "unknown: the nearest shape, {} of the class {}, is at combined distance {distance:.3}: {}. Shapes of one class are below {:.3}",
+            nearest.id, nearest.label, nearest.verdict, self.class_below
+        );
+        if let Some(threshold) = self.threshold {
+            words += &format!(", and classes of this index are up to {threshold:.3} wide by signatures");
+        }
+        if self.unknown == Some(Unknown::Partial) {
+            words += &format!(
+                ". The query may be a part of a shape ({}); parts are not matched with whole shapes",
+                signs.join(", ")
+            );
+        }
+        words
+    }
+
+    fn vote_in_words(&self, label: &str) -> String {
+        let mut words =
+            format!("{label}, by {} of {} votes, confidence {:.2}", self.votes, self.voters, self.confidence);
+        if let [_, others @ ..] = &self.tally[..]
+            && !others.is_empty()
+        {
+            let others: Vec<_> = others.iter().map(|o| format!("{} {}", o.label, o.votes)).collect();
+            let split = if self.confidence < CLEAR { "; the vote is split" } else { "" };
+            words += &format!("{split}; other votes: {}", others.join(", "));
+        }
+        let by_verdict = self.nearest.as_ref().is_some_and(|nearest| nearest.verdict.may_be_same_class());
+        if let (false, Some(threshold)) = (by_verdict, self.threshold) {
+            words += &format!(
+                "; no shape is of the class by its verdict, but classes of this index are up to {threshold:.3} wide by signatures"
+            );
+        }
+        words
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use descriptors::{Handedness, ShapeDistance};
+
+    use super::*;
+
+    fn result(rank: usize, label: &str, distance: f64) -> SearchResult {
+        let shape = ShapeDistance { fused: distance, combined: distance };
+        SearchResult {
+            rank,
+            id: format!("{label}{rank}"),
+            label: label.to_owned(),
+            path: String::new(),
+            distance,
+            fused: distance,
+            verdict: ShapeMetric::verdict(shape, Handedness::Unknown, 1.0),
+            comparison: None,
+        }
+    }
+
+    fn results(found: &[(&str, f64)]) -> Vec<SearchResult> {
+        found.iter().enumerate().map(|(i, (label, distance))| result(i + 1, label, *distance)).collect()
+    }
+
+    fn threshold(distance: f64) -> Option<UnknownThreshold> {
+        Some(UnknownThreshold { distance, missed: 0.0, mistaken: 0.0 })
+    }
+
+    const WHOLE: Completeness = Completeness { dropped: 0.0, open: 0.0 };
+
+    #[test]
+    fn a_shape_that_is_the_same_is_never_unknown() {
+        let near = results(&[("cat", 0.9), ("cat", 1.0)]);
+        // Narrow classes do not overrule the verdict.
+        for width in [None, threshold(0.2), threshold(9.0)] {
+            let found = predicted(&near, width, WHOLE);
+            assert_eq!((found.label.as_deref(), found.votes, found.unknown), (Some("cat"), 2, None));
+            assert_eq!(found.explanation, format!("cat, by 2 of 2 votes, confidence {:.2}", 1.0));
+        }
+    }
+
+    #[test]
+    fn unknown_names_the_nearest_shape_and_the_limit_it_missed() {
+        let far = results(&[("cat", 9.25), ("dog", 9.5)]);
+        let found = predicted(&far, threshold(2.0), WHOLE);
+        assert_eq!((found.label.as_deref(), found.unknown), (None, Some(Unknown::NothingNear)));
+        for words in
+            ["cat1", "9.250", "different shapes", "up to 2.000 wide", &format!("{:.3}", found.class_below)]
+        {
+            assert!(found.explanation.contains(words), "{}", found.explanation);
+        }
+        assert_eq!(found.nearest.as_ref().map(|n| n.verdict), Some(far[0].verdict));
+        // Classes of a collection may be wider than those of the metric.
+        let wide = predicted(&far, threshold(10.0), WHOLE);
+        assert_eq!((wide.label.as_deref(), wide.voters), (Some("cat"), 2));
+        assert!(wide.explanation.contains("by its verdict"), "{}", wide.explanation);
+        let empty = predicted(&[], None, WHOLE);
+        assert_eq!((empty.unknown, empty.nearest), (Some(Unknown::EmptyIndex), None));
+    }
+
+    #[test]
+    fn a_query_that_looks_like_a_part_is_said_to_be_one_only_if_nothing_is_near() {
+        let far = results(&[("cat", 9.0)]);
+        for (query, words) in [
+            (Completeness { dropped: 0.14, open: 0.0 }, "14 % of its surface"),
+            (Completeness { dropped: 0.0, open: 1.25 }, "1.2 times"),
+        ] {
+            let found = predicted(&far, None, query);
+            assert_eq!(found.unknown, Some(Unknown::Partial));
+            assert!(found.explanation.contains(words) && found.explanation.contains("parts are not matched"));
+            assert_eq!(predicted(&results(&[("cat", 0.5)]), None, query).unknown, None);
+        }
+        let small_holes = Completeness { dropped: 0.001, open: 0.05 };
+        assert_eq!(predicted(&far, None, small_holes).unknown, Some(Unknown::NothingNear));
+    }
+
+    #[test]
+    fn a_split_vote_says_so() {
+        let people = results(&[("david", 1.0), ("michael", 1.05), ("david", 1.1), ("michael", 1.1)]);
+        let found = predicted(&people, None, WHOLE);
+        assert_eq!(found.label.as_deref(), Some("david"));
+        assert!(
+            found.explanation.contains("the vote is split; other votes: michael 2"),
+            "{}",
+            found.explanation
+        );
+        assert_eq!(found.tally.iter().map(|t| t.votes).collect::<Vec<_>>(), [2, 2]);
+        assert!((found.tally.iter().map(|t| t.share).sum::<f64>() - 1.0).abs() < 1e-12);
+    }
+}
