@@ -78,7 +78,7 @@ pub fn rerank<S: Borrow<PreparedShape>>(
 
 #[cfg(test)]
 mod tests {
-    use descriptors::{CanonicalForm, ShapePair};
+    use descriptors::CanonicalForm;
     use nalgebra::Point3;
 
     use super::*;
