@@ -207,6 +207,8 @@ pub enum Remedy {
     KeepLargestOrBridge,
     /// Bridge the components of the mesh, so that none is dropped.
     BridgeComponents,
+    /// Bridge the components of the mesh or close the gaps between them, so that none is dropped; or accept the loss.
+    BridgeOrWeld,
     /// Embed in three dimensions.
     UseThreeDimensions,
     /// Measure distances by fast marching, which takes every surface.

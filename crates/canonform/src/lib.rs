@@ -106,7 +106,7 @@ pub use input::{
 };
 pub use observer::Observer;
 pub use shape_index::{
-    BuildOptions, BuildReport, ClassVotes, Explain, Failure, Inputs, Measure, MergeReport, NearestShape,
+    BuildOptions, BuildReport, ClassVotes, Dropped, Explain, Failure, Inputs, Measure, MergeReport, NearestShape,
     Prediction, Ranked, Reranked, SearchOptions, SearchReport, SearchResult, SearchSeconds, ShapeSearch,
     Shard, Unknown, add_to_index, build_index, evaluate_index, evaluate_matrix, merge_indexes,
     remove_from_index, rerank,

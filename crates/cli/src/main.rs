@@ -21,5 +21,7 @@ static ALLOCATOR: PeakAlloc = PeakAlloc;
 fn main() -> ExitCode {
     let Arguments { common, command } = Arguments::parse();
     terminal::set_quiet(common.quiet);
-    terminal::run(common.threads.into(), || commands::run(&command, &common).map_err(remedy::remedied))
+    terminal::run(common.threads.into(), || {
+        commands::run(&command, &common).map(input::exit_code_of).map_err(remedy::remedied)
+    })
 }

@@ -9,6 +9,10 @@ fn words(remedy: Remedy) -> &'static str {
     match remedy {
         Remedy::KeepLargestOrBridge => "pass --components largest or --components bridge",
         Remedy::BridgeComponents => "to keep all components, pass --components bridge",
+        Remedy::BridgeOrWeld => {
+            "pass --components bridge to keep all components, --weld TOL to close gaps up to TOL wide, or \
+             --max-dropped SHARE to accept the loss"
+        }
         Remedy::UseThreeDimensions => "leave out --dim",
         Remedy::UseFastMarching => "use fast-marching",
         Remedy::UseNystrom => "use --method nmds, which needs only a few columns",

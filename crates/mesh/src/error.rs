@@ -131,6 +131,10 @@ pub enum MeshError {
         largest: f64,
     },
 
+    /// A limit on time or memory, or a cancellation.
+    #[error(transparent)]
+    Exceeded(#[from] budget::Exceeded),
+
     /// Repair leaves no face.
     #[error(
         "none of the {n_faces} faces is usable ({degenerate} degenerate); \

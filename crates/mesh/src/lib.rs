@@ -41,6 +41,8 @@ mod validate;
 
 pub use error::{Fault, MeshError, Place};
 pub use orientation::orient_consistently;
-pub use repair::{ComponentPolicy, Orient, RepairOptions, RepairReport, Repaired, Weld, repair};
+pub use repair::{
+    ComponentPolicy, Orient, RepairOptions, RepairReport, Repaired, Weld, repair, repair_within,
+};
 pub use tri_mesh::TriMesh;
 pub use validate::{MeshReport, validate};

@@ -121,6 +121,188 @@ fn a_triangle_soup_is_welded_into_its_surface() {
     assert_eq!(stitched.mesh.n_vertices(), sphere.n_vertices());
 }
 
+/// A sphere cut along two meridians and the equator: every vertex on a cut has a copy for each part it belongs to.
+fn cut_sphere() -> TriMesh {
+    let sphere = shapes::icosphere(4);
+    let part = |f: usize| {
+        let middle = sphere.triangle(f).iter().fold(Vector3::zeros(), |sum, p| sum + p.coords);
+        u32::from(middle.z > 0.0) + 2 * u32::from(middle.x > 0.1) + 4 * u32::from(middle.y > 0.0)
+    };
+    let mut parts = Vec::new();
+    for wanted in 0..8 {
+        let mut number = vec![None; sphere.n_vertices()];
+        let mut piece = TriMesh::default();
+        for f in (0..sphere.n_faces()).filter(|&f| part(f) == wanted) {
+            piece.faces.push(sphere.faces[f].map(|v| {
+                *number[v.index()].get_or_insert_with(|| {
+                    piece.positions.push(sphere.positions[v.index()]);
+                    VertexId::from(piece.positions.len() - 1)
+                })
+            }));
+        }
+        parts.push(piece);
+    }
+    shapes::disjoint(&parts)
+}
+
+/// Moves every vertex by up to `amplitude` along each axis.
+fn jittered(mut mesh: TriMesh, amplitude: f64) -> TriMesh {
+    let mut state = 1u64;
+    let mut next = || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 33) as f64 / f64::from(1u32 << 30) - 1.0
+    };
+    for p in &mut mesh.positions {
+        *p += amplitude * Vector3::new(next(), next(), next());
+    }
+    mesh
+}
+
+/// Mean length of the edges of [`cut_sphere`].
+const EDGE: f64 = 0.07;
+
+#[test]
+fn seams_whose_sides_nearly_coincide_are_welded() {
+    let n_vertices = shapes::icosphere(4).n_vertices();
+    for share in [0.0, 1e-9, 1e-6, 1e-4, 1e-3] {
+        for scale in [1.0, 1e-100, 1e100, 3e7] {
+            let mut mesh = jittered(cut_sphere(), share * EDGE);
+            mesh.positions.iter_mut().for_each(|p| *p *= scale);
+            let repaired = mend(&mesh);
+            let report = &repaired.report;
+            assert_eq!((report.components, report.dropped_area_share), (1, 0.0), "{share} {scale}");
+            assert_eq!((repaired.mesh.n_vertices(), repaired.mesh.n_faces()), (n_vertices, mesh.n_faces()));
+            assert_eq!(validate(&repaired.mesh).genus, Some(0));
+            if share > 0.0 {
+                assert!(report.near_welded_vertices > 300, "{report:?}");
+                assert!(report.weld_gap > 0.0 && report.weld_gap <= report.weld_tolerance);
+                assert!(report.weld_gap < 4.0 * share * EDGE * scale);
+                assert!(report.summary()[0].contains("merged with another across a gap of up to"));
+            }
+            // A second repair changes nothing.
+            assert_eq!(mend(&repaired.mesh).mesh, repaired.mesh);
+        }
+    }
+}
+
+#[test]
+fn a_soup_of_jittered_triangles_is_welded() {
+    let repaired = mend(&jittered(soup(&shapes::icosphere(3)), 1e-5));
+    assert_eq!((repaired.mesh.n_vertices(), validate(&repaired.mesh).genus), (642, Some(0)));
+}
+
+#[test]
+fn gaps_of_a_fifth_of_an_edge_stay_open() {
+    let sheet = shapes::grid(9, 9, 1.0);
+    // Side by side with a gap, stacked, and a sheet that crosses another.
+    for shift in [[8.2, 0.0, 0.0], [0.0, 0.0, 0.2], [8.05, 0.05, 0.0], [4.5, 0.5, 0.01]] {
+        let both = shapes::disjoint(&[sheet.clone(), shifted(sheet.clone(), shift)]);
+        let report = mend(&both).report;
+        assert_eq!((report.near_welded_vertices, report.dropped_components), (0, 1), "{shift:?}");
+    }
+    // A slit along the middle of a sheet, and needles whose long sides are close together.
+    let mut slit = shapes::disjoint(&[sheet.clone(), shifted(sheet.clone(), [8.0, 0.0, 0.0])]);
+    for (v, p) in slit.positions.iter_mut().enumerate() {
+        let is_right = v >= 81;
+        if p.x == 8.0 && p.y > 0.5 && p.y < 7.5 {
+            p.x += if is_right { 0.1 } else { -0.1 };
+        }
+    }
+    let open = mend(&slit);
+    assert_eq!((open.report.welded_vertices, open.report.near_welded_vertices), (2, 0));
+    assert_eq!(validate(&open.mesh).n_boundary_loops, 2);
+    let mut ribbon = shapes::grid(40, 2, 1.0);
+    ribbon.positions.iter_mut().for_each(|p| p.y *= 1e-4);
+    assert_eq!(mend(&ribbon).mesh, ribbon);
+}
+
+#[test]
+fn welding_within_a_tolerance_closes_wider_gaps_and_collapses_no_edge() {
+    let sheet = shapes::grid(9, 9, 1.0);
+    let both = shapes::disjoint(&[sheet.clone(), shifted(sheet.clone(), [8.2, 0.0, 0.0])]);
+    let within = |mesh: &TriMesh, tolerance| {
+        repair(mesh, &with(ComponentPolicy::Largest, Weld::Within(tolerance), Orient::Keep)).unwrap()
+    };
+    assert_eq!(within(&both, 0.19).report.near_welded_vertices, 0);
+    let closed = within(&both, 0.21).report;
+    assert_eq!((closed.near_welded_vertices, closed.components, closed.weld_tolerance), (9, 1, 0.21));
+    // A tolerance beyond all edges merges what it can, but no two vertices of one edge.
+    for tolerance in [1.0, 3.0, 100.0] {
+        let report = within(&both, tolerance).report;
+        assert_eq!((report.zero_length_faces, report.collapsed_vertices), (0, 0), "{tolerance}");
+        assert!(report.output_faces > 0 && report.near_welded_vertices >= 9);
+    }
+}
+
+#[test]
+fn bridges_run_all_along_a_narrow_gap() {
+    // Too wide to weld.
+    let mesh = jittered(cut_sphere(), 0.05 * EDGE);
+    assert!(mend(&mesh).report.dropped_area_share > 0.5);
+    let bridged = repair(&mesh, &with(ComponentPolicy::Bridge, Weld::Seams, Orient::Keep)).unwrap();
+    assert_eq!((bridged.report.components, bridged.report.dropped_area_share), (8, 0.0));
+    let on_boundary = validate(&bridged.mesh).n_boundary_edges;
+    assert!(bridged.links.len() > on_boundary / 2, "{} links, {on_boundary} edges", bridged.links.len());
+    assert!(bridged.links.iter().all(|link| link.length < EDGE));
+}
+
+#[test]
+fn scale_changes_no_decision() {
+    let mesh = jittered(cut_sphere(), 1e-3 * EDGE);
+    let parts = shapes::disjoint(&[mesh, shifted(shapes::grid(20, 20, 0.1), [0.0, 0.0, 1.2])]);
+    for options in [
+        RepairOptions::default(),
+        with(ComponentPolicy::Bridge, Weld::Seams, Orient::Consistent),
+        with(ComponentPolicy::Bridge, Weld::None, Orient::Keep),
+    ] {
+        let expected = repair(&parts, &options).unwrap();
+        for exponent in [-497, -300, -30, 3, 200, 496] {
+            let scale = 2f64.powi(exponent);
+            let mut scaled = parts.clone();
+            scaled.positions.iter_mut().for_each(|p| *p *= scale);
+            let found = repair(&scaled, &options).unwrap();
+            assert_eq!(found.mesh.faces, expected.mesh.faces, "2^{exponent}");
+            assert_eq!(found.input_to_repaired, expected.input_to_repaired);
+            assert_eq!(found.report.dropped_area_share, expected.report.dropped_area_share);
+            assert_eq!(found.report.weld_gap, scale * expected.report.weld_gap);
+            assert_eq!(found.links.len(), expected.links.len());
+            assert!(found.links.iter().zip(&expected.links).all(|(a, b)| a.length == scale * b.length));
+            let lengths = found.intrinsic().edge_lengths().to_vec();
+            assert!(lengths.iter().zip(expected.intrinsic().edge_lengths()).all(|(a, b)| *a == scale * b));
+            assert_eq!(found.mesh.area(), scale * scale * expected.mesh.area());
+            assert_eq!(validate(&found.mesh).area, scale * scale * validate(&expected.mesh).area);
+        }
+    }
+}
+
+#[test]
+fn sizes_whose_areas_cannot_be_represented_are_refused() {
+    let cube = shapes::cube(2);
+    let scaled = |scale: f64| {
+        let mut mesh = cube.clone();
+        mesh.positions.iter_mut().for_each(|p| *p *= scale);
+        repair(&mesh, &RepairOptions::default())
+    };
+    assert!(scaled(1e-150).is_ok() && scaled(1e150).is_ok());
+    for scale in [1e-160, 1e-300, 5e-324, 1e155, 1e307] {
+        let error = scaled(scale).unwrap_err();
+        let text = error.to_string();
+        assert!(matches!(error, MeshError::OutOfRange { .. }), "{scale}: {text}");
+        assert!(text.contains("sizes from 1e-151 to 1e152 are supported"), "{text}");
+    }
+    // Coordinates near zero, and edges whose squared lengths vanish beside the others.
+    let mut mixed = cube.clone();
+    mixed.positions.iter_mut().flat_map(|p| p.iter_mut()).filter(|x| **x == 0.0).for_each(|x| *x = 5e-324);
+    assert_eq!(mend(&mixed).mesh, mixed);
+    let mut tiny = shapes::grid(4, 3, 1.0);
+    tiny.positions[6] = tiny.positions[5];
+    tiny.positions[6].x += 0.0;
+    tiny.positions[5] = Point3::new(0.0, 0.0, 1e-170);
+    tiny.positions[6] = Point3::origin();
+    let report = mend(&tiny).report;
+    assert_eq!((report.collapsed_vertices, report.zero_length_faces), (2, 4), "{report:?}");
+}
+
 #[test]
 fn the_largest_component_is_the_one_of_the_largest_area() {
     let fine_but_small = shifted(shapes::icosphere(3), [9.0, 0.0, 0.0]);

@@ -1,5 +1,6 @@
 //! The faces around a vertex, in order.
 
+use std::collections::HashSet;
 use std::f64::consts::{PI, TAU};
 
 use crate::ids::{CornerId, VertexId};
@@ -127,10 +128,15 @@ pub struct OneRing {
     corners: Vec<FanCorner>,
     /// Where each fan ends, and whether it is closed.
     fans: Vec<(usize, bool)>,
+    /// The corners of all fans so far, while a vertex with many of them is collected.
+    known: HashSet<CornerId>,
 }
 
+/// Up to this many corners, searching all of them is faster than hashing.
+const FEW: usize = 32;
+
 impl OneRing {
-    /// Replaces the fans by those of the vertex with the given corners, in linear time for a single closed fan.
+    /// Replaces the fans by those of the vertex with the given corners, in linear time.
     ///
     /// The first open fan starts at the first corner that can start one; a closed one with a forward corner.
     /// Allocates only to grow.
@@ -144,6 +150,7 @@ impl OneRing {
             return;
         }
         self.corners.clear();
+        self.known.clear();
         let sides = corners.iter().flat_map(|c| [Winding::Forward, Winding::Backward].map(|w| at(w)(c)));
         let begins_fan = |side: &FanCorner| table.opposite(side.opposite_first()).is_none();
         // All that is left after the open fans is closed.
@@ -151,9 +158,17 @@ impl OneRing {
             if self.corners.len() == corners.len() {
                 break;
             }
-            if !self.corners.iter().any(|known| known.corner == start.corner) {
+            let is_known = match corners.len() {
+                0..=FEW => self.corners.iter().any(|known| known.corner == start.corner),
+                _ => self.known.contains(&start.corner),
+            };
+            if !is_known {
+                let n_before = self.corners.len();
                 let is_closed = self.walk(table, start);
                 self.fans.push((self.corners.len(), is_closed));
+                if corners.len() > FEW {
+                    self.known.extend(self.corners[n_before..].iter().map(|known| known.corner));
+                }
             }
         }
     }

@@ -3,9 +3,10 @@
 use std::path::Path;
 use std::time::Instant;
 
+use budget::Budget;
+use mesh::io::ReadLimits;
+use mesh::{MeshError, RepairOptions, Repaired, TriMesh, io, repair_within};
 use nalgebra::Point3;
-
-use mesh::{RepairOptions, Repaired, TriMesh, io, repair};
 use surface::{IntrinsicMesh, VertexId};
 
 use super::point::InputPoint;
@@ -47,10 +48,23 @@ impl Surface {
     /// # Errors
     /// [`Error::Mesh`].
     pub fn read(path: &Path, options: &RepairOptions) -> Result<Self, Error> {
+        Self::read_within(path, options, &ReadLimits::default(), &Budget::unlimited())
+    }
+
+    /// Reads and repairs a mesh file no larger than `limits`, within a budget.
+    ///
+    /// # Errors
+    /// [`Error::Mesh`] and [`Error::Exceeded`].
+    pub fn read_within(
+        path: &Path,
+        options: &RepairOptions,
+        limits: &ReadLimits,
+        budget: &Budget,
+    ) -> Result<Self, Error> {
         let start = Instant::now();
-        let mesh = io::read(path)?;
+        let mesh = io::read_within(path, limits)?;
         let load_seconds = start.elapsed().as_secs_f64();
-        Ok(Self { load_seconds, ..Self::new(&mesh, options)? })
+        Ok(Self { load_seconds, ..Self::within(&mesh, options, budget)? })
     }
 
     /// Repairs a mesh in memory. Vertices keep their order; the report lists every change.
@@ -68,8 +82,20 @@ impl Surface {
     /// # Errors
     /// [`Error::Mesh`].
     pub fn new(mesh: &TriMesh, options: &RepairOptions) -> Result<Self, Error> {
+        Self::within(mesh, options, &Budget::unlimited())
+    }
+
+    /// Repairs a mesh in memory, within a budget; otherwise as [`new`](Self::new).
+    ///
+    /// # Errors
+    /// [`Error::Mesh`] and [`Error::Exceeded`].
+    pub fn within(mesh: &TriMesh, options: &RepairOptions, budget: &Budget) -> Result<Self, Error> {
         let start = Instant::now();
-        let repaired = repair(mesh, options)?;
+        let repaired = repair_within(mesh, options, budget).map_err(|fault| match fault {
+            MeshError::Exceeded(exceeded) => exceeded.into(),
+            fault => Error::Mesh(fault),
+        })?;
+        budget.check()?;
         let intrinsic = repaired.intrinsic();
         let mut input_vertex = vec![VertexId(u32::MAX); repaired.mesh.n_vertices()];
         for (input, vertex) in repaired.input_to_repaired.iter().enumerate().rev() {

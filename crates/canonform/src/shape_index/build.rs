@@ -9,7 +9,7 @@ use index::{Index, IndexError, IndexWriter, Job, Shape, ShapeEntry, work_path};
 use rayon::prelude::*;
 use serde::Serialize;
 
-use super::record::{path_text, same_source, shape};
+use super::record::{DROPPED, path_text, same_source, shape};
 use super::source::{Hashed, Shard, hash_all, name_apart, share};
 use crate::error::{Error, Remedy};
 use crate::form::{DescribeOptions, describe};
@@ -47,6 +47,17 @@ pub struct Failure {
     pub remedy: Option<Remedy>,
 }
 
+/// A shape that is indexed without a part of its surface.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Dropped {
+    /// Name of the shape.
+    pub id: String,
+    /// Path of the mesh.
+    pub path: PathBuf,
+    /// The share of the surface that the repair dropped, above 0.
+    pub dropped_area_share: f64,
+}
+
 /// The outcome of building or extending an index.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct BuildReport {
@@ -64,6 +75,8 @@ pub struct BuildReport {
     pub resumed: bool,
     /// Meshes that could not be described, in order.
     pub failed: Vec<Failure>,
+    /// Shapes among the inputs whose repair dropped a part of the surface, new and unchanged ones, by name.
+    pub dropped: Vec<Dropped>,
     /// Wall-clock seconds.
     pub seconds: f64,
 }
@@ -72,6 +85,22 @@ impl BuildReport {
     fn fail(&mut self, file: &ShapeFile, fault: &Error) {
         let (id, path) = (file.name.clone(), file.path.clone());
         self.failed.push(Failure { id, path, error: fault.to_string(), remedy: fault.remedy() });
+    }
+
+    /// Lists the shapes in the index whose repair dropped a part of the surface.
+    pub(super) fn list_dropped<'a>(
+        &mut self,
+        ids: impl Iterator<Item = &'a String>,
+        entry: impl Fn(&str) -> Result<Option<ShapeEntry>, IndexError>,
+    ) -> Result<(), IndexError> {
+        for id in ids {
+            let Some(entry) = entry(id)? else { continue };
+            if let Some(dropped_area_share) = entry.fact(DROPPED).filter(|share| *share > 0.0) {
+                self.dropped.push(Dropped { id: id.clone(), path: entry.path.into(), dropped_area_share });
+            }
+        }
+        self.dropped.sort_by(|a, b| a.id.cmp(&b.id));
+        Ok(())
     }
 }
 
@@ -116,6 +145,8 @@ pub fn build_index(
     let hashed = hash_all(files, observer);
     let mut report = BuildReport::default();
     if !work_path(path).exists() && path.exists() && is_current(&Index::open(path)?, &hashed)? {
+        let index = Index::open(path)?;
+        report.list_dropped(hashed.iter().map(|(file, _)| &file.name), |id| index.entry(id).map(Some))?;
         (report.n_shapes, report.unchanged) = (hashed.len(), hashed.len());
         report.seconds = start.elapsed().as_secs_f64();
         return Ok(report);
@@ -212,6 +243,7 @@ pub(super) fn fill(
     let mut failed = described.failed;
     failed.sort_by_key(|(place, _)| *place);
     failed.iter().for_each(|(place, fault)| report.fail(&wanted[*place].0, fault));
+    report.list_dropped(kept.iter(), |id| writer.entry(id))?;
     Ok(kept)
 }
 

@@ -14,7 +14,7 @@ mod rerank;
 mod search;
 mod source;
 
-pub use build::{BuildOptions, BuildReport, Failure, build_index};
+pub use build::{BuildOptions, BuildReport, Dropped, Failure, build_index};
 pub use change::{MergeReport, add_to_index, merge_indexes, remove_from_index};
 pub use evaluate::{Measure, evaluate_index, evaluate_matrix};
 pub use predict::{ClassVotes, NearestShape, Prediction, Unknown};

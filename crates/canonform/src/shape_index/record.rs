@@ -13,7 +13,7 @@ use crate::input::ShapeFile;
 /// The area of the surface, in squared mesh units.
 const AREA: &str = "area";
 
-/// Share of the area that the repair dropped, 0 to 1.
+/// The share of the surface that the repair dropped.
 pub(super) const DROPPED: &str = "dropped_area_share";
 
 /// How the shapes of an index were described.

@@ -24,7 +24,7 @@ pub(crate) use geodesic::GeodesicArgs;
 pub(crate) use index::{AddArgs, BuildArgs, EvaluateArgs, IndexCommand, SearchArgs};
 pub(crate) use render::{Place, RenderArgs};
 pub(crate) use serve::ServeArgs;
-pub(crate) use shared::{Common, FormArgs, LimitArgs, RepairArgs};
+pub(crate) use shared::{Common, FormArgs, LimitArgs, MAX_DROPPED, RepairArgs};
 
 /// Nonrigid 3D shapes: surface distances, canonical forms, comparison and search.
 ///

@@ -89,25 +89,48 @@ pub(crate) struct RepairArgs {
     /// What to do with a mesh of several components
     #[arg(long, help_heading = "Repair", value_parser = components(), default_value = "largest", value_name = "POLICY")]
     pub(crate) components: ComponentPolicy,
-    /// Which vertices at exactly the same position to merge
-    #[arg(long, help_heading = "Repair", value_parser = weld(), default_value = "seams")]
+    /// Which vertices to merge: `seams` on boundaries (the default), `all`, `none`, or a distance
+    ///
+    /// `seams` merges boundary vertices in the same position, and boundary edges that nearly coincide: those whose ends
+    /// are within 2 % of the shortest side of their faces. A number merges boundary vertices within this distance, in mesh
+    /// units. `all` merges all vertices in the same position. Two vertices of one edge are never merged.
+    #[arg(long, help_heading = "Repair", value_parser = weld, default_value = "seams", value_name = "seams|all|none|TOL")]
     pub(crate) weld: Weld,
+    /// Exit with code 1 if more than this share of the surface is dropped; results are still written
+    #[arg(long, help_heading = "Repair", value_parser = share, default_value_t = MAX_DROPPED, value_name = "SHARE")]
+    pub(crate) max_dropped: f64,
+}
+
+/// The share of a surface that a repair may drop by default.
+pub(crate) const MAX_DROPPED: f64 = 0.01;
+
+fn share(text: &str) -> Result<f64, String> {
+    let share = text.parse().ok().filter(|share| (0.0..=1.0).contains(share));
+    share.ok_or_else(|| format!("`{text}` is not a share of the surface; give a number from 0 to 1"))
 }
 
 fn components() -> impl TypedValueParser<Value = ComponentPolicy> {
     one_of([
         ("largest", "Keep the component with the largest area", ComponentPolicy::Largest),
-        ("bridge", "Join the components by the shortest links between them", ComponentPolicy::Bridge),
+        ("bridge", "Join the components by links, all along narrow gaps", ComponentPolicy::Bridge),
         ("error", "Refuse the mesh", ComponentPolicy::Error),
     ])
 }
 
-fn weld() -> impl TypedValueParser<Value = Weld> {
-    one_of([
-        ("none", "None", Weld::None),
-        ("seams", "Those on boundaries, which closes cracks", Weld::Seams),
-        ("all", "All", Weld::All),
-    ])
+fn weld(text: &str) -> Result<Weld, String> {
+    let tolerance = || {
+        let tolerance =
+            text.parse().ok().filter(|tolerance: &f64| tolerance.is_finite() && *tolerance >= 0.0);
+        tolerance.map(Weld::Within).ok_or_else(|| {
+            format!("`{text}` is neither `seams`, `all` or `none` nor a distance in mesh units")
+        })
+    };
+    match text {
+        "none" => Ok(Weld::None),
+        "seams" => Ok(Weld::Seams),
+        "all" => Ok(Weld::All),
+        _ => tolerance(),
+    }
 }
 
 impl RepairArgs {

@@ -118,7 +118,7 @@ fn batch(
         let (name, path) = (shape.name, shape.path);
         match result {
             Ok(result) => {
-                print_repair(&name, &result.report.repair);
+                print_repair(&name, &result.report.repair, &args.embedding.form.repair);
                 warn(&name, &result.report);
                 json.shapes.push(ShapeJson { name, label: shape.label, path, result });
             }

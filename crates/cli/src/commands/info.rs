@@ -8,6 +8,7 @@ use mesh::{MeshReport, RepairReport, repair, validate};
 use serde::Serialize;
 
 use crate::args::{Common, InfoArgs};
+use crate::input::check_dropped;
 use crate::output::{exit_code, facts, print, print_json};
 
 #[derive(Serialize)]
@@ -42,6 +43,8 @@ pub(crate) fn info(args: &InfoArgs, common: &Common) -> Result<ExitCode> {
                 if !common.json {
                     print(&table(&info))?;
                 }
+                let name = info.path.display().to_string();
+                check_dropped(&name, info.repair.dropped_area_share, args.repair.max_dropped);
                 json.meshes.push(info);
             }
             Err(fault) => {

@@ -63,7 +63,7 @@ pub(crate) fn draw(args: &RenderArgs, common: &Common) -> Result<ExitCode> {
     let surface = is_measured.then(|| Surface::new(&mesh, &args.repair.options())).transpose();
     let surface = surface.map_err(|fault| named(&args.mesh, fault))?;
     if let Some(surface) = &surface {
-        print_repair(&file_name(&args.mesh), &surface.repaired.report);
+        print_repair(&file_name(&args.mesh), &surface.repaired.report, &args.repair);
     }
     let field = field(args, &mesh, surface.as_ref())?;
     let drawn = match &surface {

@@ -77,7 +77,8 @@ impl<'a> Line<'a> {
 pub(super) fn check_is_text(start: &[u8], expected: &'static str) -> Result<(), Located> {
     match start.iter().position(|byte| *byte == 0) {
         Some(at) => {
-            Err(Fault::WrongFormat { expected, found: "it is not text but has zero bytes".into() }.at_byte(at))
+            Err(Fault::WrongFormat { expected, found: "it is not text but has zero bytes".into() }
+                .at_byte(at))
         }
         None => Ok(()),
     }

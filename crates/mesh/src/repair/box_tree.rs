@@ -117,13 +117,17 @@ impl Node {
     /// Squared distance to another box. Never larger than that of two points in them, even with rounding, since every
     /// step is monotonic.
     pub(super) fn sq_gap(&self, other: &Self) -> f64 {
-        sq_norm([0, 1, 2].map(|axis| {
-            (self.low[axis] - other.high[axis]).max(other.low[axis] - self.high[axis]).max(0.0)
-        }))
+        sq_norm(
+            [0, 1, 2].map(|axis| {
+                (self.low[axis] - other.high[axis]).max(other.low[axis] - self.high[axis]).max(0.0)
+            }),
+        )
     }
 
     fn sq_gap_to(&self, point: [f64; 3]) -> f64 {
-        sq_norm([0, 1, 2].map(|axis| (self.low[axis] - point[axis]).max(point[axis] - self.high[axis]).max(0.0)))
+        sq_norm(
+            [0, 1, 2].map(|axis| (self.low[axis] - point[axis]).max(point[axis] - self.high[axis]).max(0.0)),
+        )
     }
 }
 

@@ -8,6 +8,7 @@
 //! * [`near_links`] joins the boundary of every component to the others all along a narrow gap, so that distances
 //!   across it are right.
 
+use budget::{Budget, Exceeded};
 use nalgebra::Point3;
 use surface::{DisjointSets, EdgeId, Link, Topology, VertexId};
 
@@ -20,9 +21,16 @@ const MIXED: u32 = u32::MAX;
 /// so that where the sides of a gap match, only opposite vertices are linked.
 const REACH: f64 = 0.8;
 
+/// Searches between two checks of the budget.
+const BATCH: usize = 1024;
+
 /// The links of least total length that join the components of a set of points, ordered by their ends. `labels` are
 /// the components, numbered from zero. Of equally long links, the one with the lowest vertices is used.
-pub(super) fn shortest_links(positions: &[Point3<f64>], labels: &[u32]) -> Vec<Link> {
+pub(super) fn shortest_links(
+    positions: &[Point3<f64>],
+    labels: &[u32],
+    budget: &Budget,
+) -> Result<Vec<Link>, Exceeded> {
     let mut tree = GroupTree::new((0..positions.len() as u32).collect(), positions, labels);
     let n_components = labels.iter().max().map_or(0, |&most| most as usize + 1);
     let mut groups = DisjointSets::new(n_components);
@@ -30,7 +38,7 @@ pub(super) fn shortest_links(positions: &[Point3<f64>], labels: &[u32]) -> Vec<L
     while links.len() + 1 < n_components {
         tree.assign_groups(labels, |label| groups.find(label));
         let mut nearest = vec![Candidate::NONE; n_components];
-        tree.search_all(&mut nearest);
+        tree.search_all(&mut nearest, budget)?;
         nearest.retain(|candidate| candidate.sq_length.is_finite());
         nearest.sort_unstable_by(Candidate::order);
         let before = links.len();
@@ -45,12 +53,17 @@ pub(super) fn shortest_links(positions: &[Point3<f64>], labels: &[u32]) -> Vec<L
         }
     }
     links.sort_unstable_by_key(|link| link.ends);
-    links
+    Ok(links)
 }
 
 /// Links from every boundary vertex to the nearest boundary vertex of another component, if that is within [`REACH`];
 /// ordered by their ends. About `O(n log n)`.
-pub(super) fn near_links(positions: &[Point3<f64>], topology: &Topology, labels: &[u32]) -> Vec<Link> {
+pub(super) fn near_links(
+    positions: &[Point3<f64>],
+    topology: &Topology,
+    labels: &[u32],
+    budget: &Budget,
+) -> Result<Vec<Link>, Exceeded> {
     let mut edges = vec![(0.0, 0u32); positions.len()];
     for (e, ends) in topology.edges().iter().enumerate() {
         if topology.edge_corners(EdgeId::from(e)).len() == 1 {
@@ -66,7 +79,10 @@ pub(super) fn near_links(positions: &[Point3<f64>], topology: &Topology, labels:
     tree.assign_groups(labels, |label| label);
     let mut links = Vec::new();
     let mut found = Vec::new();
-    for &v in &boundary {
+    for (i, &v) in boundary.iter().enumerate() {
+        if i % BATCH == 0 {
+            budget.check()?;
+        }
         let (sum, count) = edges[v as usize];
         let (own, radius) = (labels[v as usize], REACH * sum / f64::from(count));
         let skips = |other: u32| labels[other as usize] == own;
@@ -76,7 +92,7 @@ pub(super) fn near_links(positions: &[Point3<f64>], topology: &Topology, labels:
     }
     links.sort_unstable_by_key(|link| link.ends);
     links.dedup_by_key(|link| link.ends);
-    links
+    Ok(links)
 }
 
 fn link(positions: &[Point3<f64>], ends: [u32; 2]) -> Link {
@@ -142,14 +158,20 @@ impl GroupTree {
     }
 
     /// Finds the shortest link from every group to another.
-    fn search_all(&self, nearest: &mut [Candidate]) {
+    fn search_all(&self, nearest: &mut [Candidate], budget: &Budget) -> Result<(), Exceeded> {
         let mut pending = vec![0];
+        let mut n_searched = 0usize;
         while let Some(index) = pending.pop() {
+            n_searched += 1;
+            if n_searched % BATCH == 0 {
+                budget.check()?;
+            }
             match self.boxes.nodes[index].children {
                 Some(children) if self.node_groups[index] == MIXED => pending.extend(children),
                 _ => self.search(index, 0, nearest),
             }
         }
+        Ok(())
     }
 
     /// Searches the points of node `there` for neighbours of the points of node `here`, which has a single
@@ -192,8 +214,7 @@ impl GroupTree {
             for j in there.items.clone().filter(|&j| self.groups[j] != self.groups[i]) {
                 let [p, q] = [i, j].map(|i| self.boxes.items[i]);
                 let gap = [0, 1, 2].map(|axis| p.position[axis] - q.position[axis]);
-                let candidate =
-                    Candidate { sq_length: sq_norm(gap), ends: [p.id.min(q.id), p.id.max(q.id)] };
+                let candidate = Candidate { sq_length: sq_norm(gap), ends: [p.id.min(q.id), p.id.max(q.id)] };
                 nearest[self.groups[i] as usize].improve(candidate);
                 nearest[self.groups[j] as usize].improve(candidate);
             }
@@ -211,6 +232,10 @@ mod tests {
             state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
             (state >> 33) as f64 / f64::from(1u32 << 31)
         }
+    }
+
+    fn shortest_links(positions: &[Point3<f64>], labels: &[u32]) -> Vec<Link> {
+        super::shortest_links(positions, labels, &Budget::unlimited()).unwrap()
     }
 
     /// Kruskal on all pairs of points.
@@ -271,6 +296,16 @@ mod tests {
         let links = shortest_links(&positions, &labels);
         assert_eq!(links.len(), shells as usize - 1);
         assert!(links.iter().all(|link| link.length >= 1.0 - 1e-9));
+    }
+
+    #[test]
+    fn a_cancelled_search_ends() {
+        let budget = Budget::unlimited();
+        budget.cancel();
+        let positions: Vec<_> = (0..5000).map(|i| Point3::new(f64::from(i), 0.0, 0.0)).collect();
+        let labels: Vec<u32> = (0..5000).map(|i| i % 2).collect();
+        let found = super::shortest_links(&positions, &labels, &budget);
+        assert_eq!(found, Err(Exceeded::Cancelled));
     }
 
     #[test]

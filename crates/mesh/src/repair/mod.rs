@@ -9,6 +9,7 @@ mod weld;
 pub use options::{ComponentPolicy, Orient, RepairOptions, Weld};
 pub use report::RepairReport;
 
+use budget::{Budget, Exceeded};
 use nalgebra::Point3;
 use surface::{Components, DisjointSets, IntrinsicMesh, Link, Topology, VertexId, components_of_faces};
 
@@ -73,6 +74,18 @@ const MAX_PASSES: usize = 16;
 /// # Ok::<(), canonform_mesh::MeshError>(())
 /// ```
 pub fn repair(mesh: &TriMesh, options: &RepairOptions) -> Result<Repaired, MeshError> {
+    repair_within(mesh, options, &Budget::unlimited())
+}
+
+/// Repairs as [`repair()`] does, within a budget.
+///
+/// # Errors
+/// Those of [`repair()`], and [`MeshError::Exceeded`].
+pub fn repair_within(
+    mesh: &TriMesh,
+    options: &RepairOptions,
+    budget: &Budget,
+) -> Result<Repaired, MeshError> {
     check_input(mesh)?;
     let unit = checked_unit(mesh)?;
     let scaled: Vec<Point3<f64>> = mesh.positions.iter().map(|p| p / unit).collect();
@@ -89,6 +102,7 @@ pub fn repair(mesh: &TriMesh, options: &RepairOptions) -> Result<Repaired, MeshE
         other => other,
     };
     for _ in 0..MAX_PASSES {
+        budget.check()?;
         let welded = weld::weld(&mesh.positions, &scaled, &faces, policy, &mut merged);
         let collapsed = weld::collapse_zero_edges(&scaled, &faces, &mut merged);
         if welded.coincident + welded.near + collapsed == 0 {
@@ -109,6 +123,7 @@ pub fn repair(mesh: &TriMesh, options: &RepairOptions) -> Result<Repaired, MeshE
         return Err(MeshError::NoUsableFace { n_faces: mesh.n_faces(), degenerate });
     }
 
+    budget.check()?;
     let components = components_of_faces(n_input, &faces);
     report.components = components.count;
     let kept = match options.components {
@@ -126,7 +141,7 @@ pub fn repair(mesh: &TriMesh, options: &RepairOptions) -> Result<Repaired, MeshE
     compact.report_dropped(&mut merged, &components, &mut report);
     let mut links = Vec::new();
     if options.components == ComponentPolicy::Bridge && components.count > 1 {
-        links = links_between(&scaled, &compact, &faces);
+        links = links_between(&scaled, &compact, &faces, budget)?;
         links.iter_mut().for_each(|link| link.length *= unit);
         let in_input = |link: &Link| Link { ends: link.ends.map(|v| compact.sources[v.index()]), ..*link };
         report.bridges = links.iter().map(in_input).collect();
@@ -153,14 +168,19 @@ fn checked_unit(mesh: &TriMesh) -> Result<f64, MeshError> {
 }
 
 /// A spanning tree of the components, and links all along narrow gaps; lengths in units of `scaled`.
-fn links_between(scaled: &[Point3<f64>], compact: &Compact, faces: &[[VertexId; 3]]) -> Vec<Link> {
+fn links_between(
+    scaled: &[Point3<f64>],
+    compact: &Compact,
+    faces: &[[VertexId; 3]],
+    budget: &Budget,
+) -> Result<Vec<Link>, Exceeded> {
     let positions: Vec<Point3<f64>> = compact.sources.iter().map(|v| scaled[v.index()]).collect();
     let topology = Topology::new(positions.len(), faces.to_vec());
-    let mut links = bridge::shortest_links(&positions, &compact.labels);
-    links.extend(bridge::near_links(&positions, &topology, &compact.labels));
+    let mut links = bridge::shortest_links(&positions, &compact.labels, budget)?;
+    links.extend(bridge::near_links(&positions, &topology, &compact.labels, budget)?);
     links.sort_unstable_by_key(|link| link.ends);
     links.dedup_by_key(|link| link.ends);
-    links
+    Ok(links)
 }
 
 fn disconnected(components: &Components) -> MeshError {

@@ -102,7 +102,8 @@ fn seam_pairs(positions: &[Point3<f64>], topology: &Topology, edges: &[EdgeId]) 
     };
     let tolerance = |edge: &EdgeId| {
         let [a, b, c] = topology.faces()[topology.edge_corners(*edge)[0].face().index()].map(at);
-        SEAM_TOLERANCE * [b - a, c - b, a - c].map(|side| side.norm()).into_iter().fold(f64::INFINITY, f64::min)
+        SEAM_TOLERANCE
+            * [b - a, c - b, a - c].map(|side| side.norm()).into_iter().fold(f64::INFINITY, f64::min)
     };
     let tolerances: Vec<f64> = edges.iter().map(tolerance).collect();
     let tree = BoxTree::new((0..edges.len() as u32).map(|i| (middle(i), i)));
@@ -119,7 +120,11 @@ fn seam_pairs(positions: &[Point3<f64>], topology: &Topology, edges: &[EdgeId]) 
             let best = matches[usize::from(crossed < same)];
             if same.min(crossed) <= tolerance {
                 let both = best.into_iter().zip(gaps(best)).filter(|([p, q], _)| p != q);
-                pairs.extend(both.map(|([p, q], gap)| Pair { gap, tolerance, ends: [p.min(q).0, p.max(q).0] }));
+                pairs.extend(both.map(|([p, q], gap)| Pair {
+                    gap,
+                    tolerance,
+                    ends: [p.min(q).0, p.max(q).0],
+                }));
             }
         }
     }

@@ -11,8 +11,8 @@ use canonform::{
 use serde::Serialize;
 use terminal::Bars;
 
-use crate::args::{AddArgs, BuildArgs, Common};
-use crate::input::is_named;
+use crate::args::{AddArgs, BuildArgs, Common, MAX_DROPPED};
+use crate::input::{check_dropped, is_named};
 use crate::output::{check_folder, exit_code, facts, report};
 use crate::remedy::with_remedy;
 
@@ -29,20 +29,23 @@ pub(super) fn build(args: &BuildArgs, common: &Common) -> Result<ExitCode> {
     let describe = args.describe.options(common)?;
     let options = BuildOptions { describe: &describe, labels: labels.as_ref(), shard: args.shard };
     let built = build_index(&args.folder, &args.output, &options, &Bars::new(common.quiet))?;
-    summarize(&args.output, built, common)
+    summarize(&args.output, built, args.describe.embedding.form.repair.max_dropped, common)
 }
 
 pub(super) fn add(args: &AddArgs, common: &Common) -> Result<ExitCode> {
     let labels = args.labels.as_deref().map(LabelFile::read).transpose()?;
     let inputs = Inputs { paths: &args.meshes, labels: labels.as_ref(), label: args.label.as_deref() };
     let added = add_to_index(&args.index, &inputs, args.replace, &Bars::new(common.quiet))?;
-    summarize(&args.index, added, common)
+    summarize(&args.index, added, MAX_DROPPED, common)
 }
 
-/// Prints what happened to the meshes, failures last.
-fn summarize(index: &Path, built: BuildReport, common: &Common) -> Result<ExitCode> {
+/// Prints what happened to the meshes, those that lost more of their surface than allowed and failures last.
+fn summarize(index: &Path, built: BuildReport, max_dropped: f64, common: &Common) -> Result<ExitCode> {
     let json = Json { index: index.to_owned(), report: built };
-    report(common, &json, |json| table(index, &json.report))?;
+    report(common, &json, |json| table(index, &json.report, max_dropped))?;
+    for shape in &json.report.dropped {
+        check_dropped(&shape.id, shape.dropped_area_share, max_dropped);
+    }
     for failure in &json.report.failed {
         let message = match is_named(&failure.path, &failure.error) {
             true => failure.error.clone(),
@@ -53,10 +56,16 @@ fn summarize(index: &Path, built: BuildReport, common: &Common) -> Result<ExitCo
     Ok(exit_code(json.report.failed.is_empty()))
 }
 
-fn table(index: &Path, report: &BuildReport) -> String {
+fn table(index: &Path, report: &BuildReport, max_dropped: f64) -> String {
+    let lossy = report.dropped.iter().filter(|shape| shape.dropped_area_share > max_dropped).count();
     let mut rows =
         vec![("described", report.described.to_string()), ("unchanged", report.unchanged.to_string())];
-    let rare = [("renamed", report.renamed), ("removed", report.removed), ("failed", report.failed.len())];
+    let rare = [
+        ("renamed", report.renamed),
+        ("removed", report.removed),
+        ("incomplete", lossy),
+        ("failed", report.failed.len()),
+    ];
     rows.extend(rare.into_iter().filter(|(_, n)| *n > 0).map(|(name, n)| (name, n.to_string())));
     if report.resumed {
         rows.push(("resumed", "an interrupted run".to_owned()));

@@ -94,7 +94,16 @@ const fn read_only(
     parse: Parse,
 ) -> Format {
     let precision = Precision::Double;
-    Format { name, extensions, precision, check_start, parse, write: &[], write_field: None, write_lines: None }
+    Format {
+        name,
+        extensions,
+        precision,
+        check_start,
+        parse,
+        write: &[],
+        write_field: None,
+        write_lines: None,
+    }
 }
 
 impl Format {

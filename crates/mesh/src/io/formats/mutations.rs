@@ -97,8 +97,9 @@ fn check(sample: &Sample, bytes: &[u8]) -> Option<TriMesh> {
 #[test]
 fn meshes_beyond_the_limits_are_errors_in_every_format() {
     for sample in samples().into_iter().filter(|sample| sample.name != "obj groups") {
-        let read =
-            |max_vertices, max_faces| sample.parse(sample.bytes(), &ReadLimits { max_vertices, max_faces, ..ReadLimits::default() });
+        let read = |max_vertices, max_faces| {
+            sample.parse(sample.bytes(), &ReadLimits { max_vertices, max_faces, ..ReadLimits::default() })
+        };
         assert!(read(12, 20).is_ok(), "{}", sample.name);
         let vertices = Fault::OverLimit { items: "vertices", limit: 11 };
         assert_eq!(read(11, 20), Err(vertices), "{}", sample.name);

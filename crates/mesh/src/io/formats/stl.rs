@@ -28,7 +28,9 @@ pub(super) fn check_start(start: &[u8], size: Option<u64>) -> Result<(), Located
             check_is_text(start, "a text or a binary STL file")
         }
         (Some(0), _) if !is_solid => Err(Fault::NoFaces { n_vertices: 0 }.whole()),
-        (Some(promised), Some(size)) if !is_solid && size < size_of(promised) => Err(truncated(promised, size)),
+        (Some(promised), Some(size)) if !is_solid && size < size_of(promised) => {
+            Err(truncated(promised, size))
+        }
         _ => Ok(()),
     }
 }
