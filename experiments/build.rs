@@ -10,7 +10,8 @@ fn git(arguments: &[&str]) -> Option<String> {
 
 fn main() {
     let commit = git(&["rev-parse", "--short", "HEAD"]).unwrap_or_default();
-    let is_changed = git(&["status", "--porcelain", "--untracked-files=no"]).is_some_and(|list| !list.is_empty());
+    let is_changed =
+        git(&["status", "--porcelain", "--untracked-files=no"]).is_some_and(|list| !list.is_empty());
     println!("cargo::rustc-env=CANONFORM_COMMIT={commit}{}", if is_changed { "+" } else { "" });
     // A commit or a checkout appends to this log.
     if let Some(log) = git(&["rev-parse", "--git-path", "logs/HEAD"]) {

@@ -99,7 +99,9 @@ mod tests {
     fn commands_repeat_what_decides_the_results() {
         let command = |line: &str| parsed(line).command();
         assert!(command("all").ends_with("-- run all"));
-        assert!(command("figure1 --vertices 1000 --threads 1 -q").ends_with("-- run figure1 --vertices 1000"));
+        assert!(
+            command("figure1 --vertices 1000 --threads 1 -q").ends_with("-- run figure1 --vertices 1000")
+        );
         let line = "figure3 --dataset my&data --classes cat,dog --seed 2 -o results/1";
         let expected = "-- run figure3 --dataset 'my&data' --classes cat,dog --seed 2 --output results/1";
         assert!(command(line).ends_with(expected), "{}", command(line));

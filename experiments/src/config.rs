@@ -218,7 +218,10 @@ mod tests {
     fn a_goal_that_is_missed_is_no_failure() {
         let config = Config::parse("test", &TEXT.replacen("strictly = true", "goal = true", 1)).unwrap();
         let found = config.check(Setting::Paper, &[("x".to_owned(), 0.5)].into()).unwrap();
-        assert_eq!(found.iter().map(Expectation::outcome).collect::<Vec<_>>(), [Outcome::Failed, Outcome::Missed]);
+        assert_eq!(
+            found.iter().map(Expectation::outcome).collect::<Vec<_>>(),
+            [Outcome::Failed, Outcome::Missed]
+        );
     }
 
     #[test]

@@ -6,7 +6,10 @@ use std::time::{SystemTime, UNIX_EPOCH};
 pub(crate) fn described() -> String {
     let os = std::env::consts::OS;
     let threads = rayon::current_num_threads();
-    format!("{}, {threads} worker threads, {os}", processor().unwrap_or_else(|| std::env::consts::ARCH.to_owned()))
+    format!(
+        "{}, {threads} worker threads, {os}",
+        processor().unwrap_or_else(|| std::env::consts::ARCH.to_owned())
+    )
 }
 
 /// The model of the processor, if the system tells it.

@@ -107,7 +107,10 @@ mod tests {
     fn numbers_are_written_as_the_text_asks() {
         let number = |name: &str| (name != "absent").then(|| name.parse().unwrap_or(0.079));
         let text = |text: &str| filled(text, number);
-        assert_eq!(text("{x: %} of {12345}, {1060.4}, {0.01234}").unwrap(), "7.90 % of 12,345, 1,060, 0.0123");
+        assert_eq!(
+            text("{x: %} of {12345}, {1060.4}, {0.01234}").unwrap(),
+            "7.90 % of 12,345, 1,060, 0.0123"
+        );
         assert_eq!(text("{2.345: .1}, {-1534.2: .0}, {1e-9}, {100.0}").unwrap(), "2.3, -1,534, 1.0e-9, 100");
         assert_eq!(text("{absent}").unwrap_err(), "absent");
         assert!(text("{open").is_err());

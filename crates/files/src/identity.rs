@@ -1,8 +1,8 @@
 //! Which file a name stands for.
 
-use std::fs::{self, File};
 #[cfg(unix)]
 use std::fs::Metadata;
+use std::fs::{self, File};
 use std::io;
 use std::path::Path;
 #[cfg(not(unix))]

@@ -50,6 +50,7 @@ mod solver;
 mod source;
 #[cfg(test)]
 mod testing;
+mod units;
 
 pub use breadth_first::BreadthFirst;
 pub use dijkstra::Dijkstra;

@@ -10,6 +10,7 @@ use crate::exact::Exact;
 use crate::fast_marching::{FastMarching, FastMarchingOptions};
 use crate::heat::{HeatMethod, HeatOptions};
 use crate::solver::DistanceSolver;
+use crate::units::InUnits;
 
 /// A solver and its options.
 ///
@@ -93,7 +94,8 @@ impl Method {
         self.prepare_within(mesh, &Budget::unlimited())
     }
 
-    /// Prepares a surface within a budget, which the solver keeps to as well.
+    /// Prepares a surface within a budget, which the solver keeps to as well. A mesh with very short or very long edges
+    /// is measured in a [unit](IntrinsicMesh::unit) of its own, so that scale changes no result beyond rounding.
     ///
     /// # Errors
     /// [`GeodesicError::Exceeded`] and those of [`prepare`](Self::prepare).
@@ -103,6 +105,11 @@ impl Method {
         budget: &Budget,
     ) -> Result<Box<dyn DistanceSolver>, GeodesicError> {
         budget.check()?;
+        let unit = mesh.unit();
+        if unit != 1.0 {
+            let solver = self.prepare_within(&mesh.in_units_of(unit), budget)?;
+            return Ok(Box::new(InUnits { solver, unit }));
+        }
         let own = budget.clone();
         let solver: Box<dyn DistanceSolver> = match self {
             Self::FastMarching(options) => Box::new(FastMarching::new(mesh, options).with_budget(own)),

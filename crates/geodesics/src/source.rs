@@ -34,6 +34,11 @@ impl Source {
         Self { point: SurfacePoint::Vertex(vertex), reach: vec![(vertex, 0.0)] }
     }
 
+    /// The same source of the same surface with all lengths divided by `unit`.
+    pub(crate) fn in_units_of(&self, unit: f64) -> Self {
+        Self { point: self.point, reach: self.reach.iter().map(|&(v, length)| (v, length / unit)).collect() }
+    }
+
     /// Any point of a surface.
     ///
     /// # Errors

@@ -11,7 +11,7 @@ use nalgebra::Point3;
 use surface::laplacian::Laplacian;
 use surface::{Loops, OneRing, Triangulation, VertexId, components_with_links};
 
-const MANY: u32 = 20_000;
+const MANY: u32 = 100_000;
 
 fn mesh(positions: Vec<Point3<f64>>, faces: impl Iterator<Item = [u32; 3]>) -> TriMesh {
     TriMesh { positions, faces: faces.map(|f| f.map(VertexId)).collect() }

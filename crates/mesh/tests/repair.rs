@@ -304,6 +304,28 @@ fn sizes_whose_areas_cannot_be_represented_are_refused() {
 }
 
 #[test]
+fn a_mesh_far_from_the_origin_is_reported() {
+    let sheet = shapes::grid(9, 9, 1.0);
+    assert!(mend(&sheet).report.summary().is_empty());
+    assert!(mend(&shifted(sheet.clone(), [1e5, 0.0, 0.0])).report.summary().is_empty());
+    let report = mend(&shifted(sheet, [1e8, 0.0, 0.0])).report;
+    assert!((1e-8..3e-8).contains(&report.coordinate_rounding), "{}", report.coordinate_rounding);
+    assert!(report.summary()[0].contains("only known to 2e-8 of their length"), "{:?}", report.summary());
+}
+
+#[test]
+fn pages_of_a_book_stay_apart() {
+    // Each page nearly touches the next, and all together span 3 degrees.
+    let points = [[0.0, 0.0, -1.0], [0.0, 0.0, 1.0]].map(Point3::from);
+    let pages = (0..60).map(|i| f64::from(i) * 1e-3).map(|angle| Point3::new(angle.cos(), angle.sin(), 0.0));
+    let book = TriMesh {
+        positions: points.into_iter().chain(pages).collect(),
+        faces: (0..60).map(|i| [0, 1, i + 2].map(VertexId)).collect(),
+    };
+    assert_eq!(mend(&book).mesh, book);
+}
+
+#[test]
 fn the_largest_component_is_the_one_of_the_largest_area() {
     let fine_but_small = shifted(shapes::icosphere(3), [9.0, 0.0, 0.0]);
     let coarse_but_large = shapes::grid(3, 3, 5.0);

@@ -6,8 +6,8 @@ use serde_json::json;
 use crate::results::{
     Axis, AxisScale, Classification, CurvesPanel, CurvesResults, Expectation, Figure1Results, Figure1Shape,
     Figure3Form, Figure3Results, Figure3Shape, Figure3Stress, Figure4Panel, Figure4Results, Figure9Measured,
-    Figure9Results, Figure9Row, Mark, Misclassified, Motions, Provenance, Record, RetrievalResults, RetrievalRow, Scale,
-    Series, SeriesPoint, ShapesRecord, ShownForm, ShownShape,
+    Figure9Results, Figure9Row, Mark, Misclassified, Motions, Provenance, Record, RetrievalResults,
+    RetrievalRow, Scale, Series, SeriesPoint, ShapesRecord, ShownForm, ShownShape,
 };
 use view::interactive::Geometry;
 

@@ -113,7 +113,8 @@ pub(crate) fn scores_caption(best_e: Option<f64>) -> String {
             "The best value is 1, but {} for E: the classes are smaller than the 32 results that E examines.",
             signed(best, 3)
         ),
-        _ => "The best value is 1; E, which examines 32 results, cannot reach it if classes are smaller.".to_owned(),
+        _ => "The best value is 1; E, which examines 32 results, cannot reach it if classes are smaller."
+            .to_owned(),
     };
     format!(
         "NN: nearest neighbour; FT and ST: first and second tier; E: E-measure; DCG: discounted cumulative gain; mAP: \

@@ -56,6 +56,21 @@ pub fn power_of_two_below(length: f64) -> f64 {
     }
 }
 
+/// The unit to measure a computation in whose typical length this is: 1 from 1e-19 to 1e19, where products of several
+/// lengths neither overflow nor vanish, otherwise a power of two near it.
+///
+/// ```
+/// use canonform_surface::unit_for;
+///
+/// assert_eq!(unit_for(0.3), 1.0);
+/// assert_eq!(unit_for(3e-100), 2f64.powi(-331));
+/// ```
+#[must_use]
+pub fn unit_for(length: f64) -> f64 {
+    let ordinary = 2f64.powi(-64)..=2f64.powi(64);
+    if ordinary.contains(&length) { 1.0 } else { power_of_two_below(length) }
+}
+
 impl Link {
     /// The links at each of `n_vertices` vertices: the other end and the length.
     #[must_use]
@@ -132,6 +147,22 @@ impl IntrinsicMesh {
     #[must_use]
     pub fn links(&self) -> &[Link] {
         &self.links
+    }
+
+    /// The unit that lengths are best measured in, see [`unit_for`], in mesh units.
+    #[must_use]
+    pub fn unit(&self) -> f64 {
+        unit_for(self.mean_edge_length())
+    }
+
+    /// The same surface with all lengths divided by `unit`.
+    #[must_use]
+    pub fn in_units_of(&self, unit: f64) -> Self {
+        Self {
+            topology: self.topology.clone(),
+            edge_lengths: self.edge_lengths.iter().map(|length| length / unit).collect(),
+            links: self.links.iter().map(|link| Link { length: link.length / unit, ..*link }).collect(),
+        }
     }
 
     /// Mean length of the edges, in mesh units; zero without edges.

@@ -147,7 +147,10 @@ fn ratios(rows: &[Figure9Row]) -> Measured {
     .chain(rows.iter().flat_map(|row| {
         let size = if row.n_vertices == small { "small" } else { "large" };
         let values = row.measured.map(|m| [("seconds", m.total()), ("bytes", m.peak_bytes as f64)]);
-        values.into_iter().flatten().map(move |(what, value)| (format!("{size} {} {what}", row.method), value))
+        values
+            .into_iter()
+            .flatten()
+            .map(move |(what, value)| (format!("{size} {} {what}", row.method), value))
     }))
     .collect()
 }

@@ -9,6 +9,7 @@
 //! | `marching` | distances by fast marching |
 //! | `embedding` | embeddings through the whole pipeline |
 //! | `isometry` | invariance to folding, motions, renumbering and units |
+//! | `scale` | the same results in any unit of length |
 //! | `threads` | independence of the number of threads |
 //! | `signatures` | signatures of bodies |
 //! | `builtin` | the built-in dataset |
@@ -32,6 +33,8 @@ mod marching;
 mod packaging;
 #[cfg(test)]
 mod real_meshes;
+#[cfg(test)]
+mod scale;
 #[cfg(test)]
 mod signatures;
 #[cfg(test)]

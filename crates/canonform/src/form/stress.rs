@@ -7,7 +7,7 @@ use geodesics::{DistanceSolver, Method};
 use linalg::{LandmarkDistances, Matrix};
 use nmds::{DistanceRows, StressEstimate, estimate_paper_stress, paper_stress, sample_rows};
 use serde::Serialize;
-use surface::VertexId;
+use surface::{VertexId, unit_for};
 
 use crate::observer::Observer;
 
@@ -88,6 +88,14 @@ impl StressReport {
         rows: Option<&[usize]>,
         method: Method,
     ) -> Result<Self, Exceeded> {
+        // The fourth powers of very short or very long lengths vanish or overflow.
+        let unit = unit_for(coords.amax());
+        if unit != 1.0 {
+            let distances = ScaledRows { rows: distances, unit };
+            let scaled = Self::new(&(coords / unit), &distances, rows, method)?;
+            let back = |value: f64| value * unit * unit;
+            return Ok(Self { value: back(scaled.value), interval: scaled.interval.map(back), ..scaled });
+        }
         let (value, kind, interval) = match rows {
             None => {
                 let value = paper_stress(coords, distances)?;
@@ -99,6 +107,24 @@ impl StressReport {
             }
         };
         Ok(Self { measure: "paper_stress", geodesic: method.name(), value, kind, interval })
+    }
+}
+
+/// Rows divided by a unit of length.
+struct ScaledRows<'a> {
+    rows: &'a dyn DistanceRows,
+    unit: f64,
+}
+
+impl DistanceRows for ScaledRows<'_> {
+    fn n_points(&self) -> usize {
+        self.rows.n_points()
+    }
+
+    fn row_into(&self, i: usize, out: &mut [f64]) -> Result<(), Exceeded> {
+        self.rows.row_into(i, out)?;
+        out.iter_mut().for_each(|distance| *distance /= self.unit);
+        Ok(())
     }
 }
 

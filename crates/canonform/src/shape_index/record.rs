@@ -5,6 +5,7 @@ use std::path::Path;
 use descriptors::{CanonicalForm, PreparedShape};
 use index::{ContentHash, Index, Shape, ShapeEntry, ShapeVectors};
 use nalgebra::Point3;
+use surface::unit_for;
 
 use crate::error::Error;
 use crate::form::{DescribeOptions, ShapeDescription};
@@ -33,6 +34,12 @@ pub(super) fn path_text(path: &Path) -> String {
     path.to_string_lossy().into_owned()
 }
 
+/// The unit of the points of a stored form, in mesh units: 1 unless 32-bit numbers could not hold them.
+fn form_unit(area: Option<f64>, options: &DescribeOptions) -> f64 {
+    let size = area.filter(|_| options.form.method.has_unit()).map(f64::sqrt);
+    size.map_or(1.0, unit_for)
+}
+
 /// The shape of a mesh file, as an index stores it.
 pub(super) fn shape(file: &ShapeFile, content: ContentHash, described: ShapeDescription) -> Shape {
     let repair = &described.repair;
@@ -43,7 +50,9 @@ pub(super) fn shape(file: &ShapeFile, content: ContentHash, described: ShapeDesc
         ("diameter", described.diameter),
         (DROPPED, repair.dropped_area_share),
     ];
-    let form = described.form.points().iter().zip(described.form.weights());
+    let unit = form_unit(Some(described.area), &described.options);
+    let points = described.form.points().iter().map(|p| p / unit);
+    let form = points.zip(described.form.weights());
     let signatures = described.signatures.iter();
     Shape {
         id: file.name.clone(),
@@ -69,7 +78,8 @@ pub(super) fn prepared(
     vectors: ShapeVectors,
     options: &DescribeOptions,
 ) -> Result<PreparedShape, Error> {
-    let points = vectors.form.iter().map(|[x, y, z, _]| Point3::new(*x, *y, *z).cast());
+    let unit = form_unit(entry.fact(AREA), options);
+    let points = vectors.form.iter().map(|[x, y, z, _]| Point3::new(*x, *y, *z).cast() * unit);
     let weights = vectors.form.iter().map(|[.., w]| f64::from(*w)).collect();
     let area = entry.fact(AREA);
     let form_area = area.filter(|_| options.form.method.has_unit());

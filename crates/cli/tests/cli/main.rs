@@ -1,10 +1,12 @@
 //! The program as its users see it: arguments in; files, output and exit codes out.
 //!
-//! `commands` (what each prints), `forms` (files), `errors`, `folders` (many meshes), `geodesic` (sources, paths, all
+//! `commands` (what each prints), `dropped` (lost surfaces), `forms` (files), `errors`, `folders` (many meshes), `geodesic` (sources, paths, all
 //! pairs), `index` (building, changing, searching), `killed` (interruptions, full disks), `render` (pictures), `serve`.
 
 #[cfg(test)]
 mod commands;
+#[cfg(test)]
+mod dropped;
 #[cfg(test)]
 mod errors;
 #[cfg(test)]

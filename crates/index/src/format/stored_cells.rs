@@ -186,7 +186,10 @@ impl<'a> StoredCells<'a> {
             if part.rows.0.len() != part.slots.len() * n
                 || part.slots.iter().any(|slot| *slot as usize >= self.header.n)
             {
-                return Err(self.snapshot.store.damaged(format!("part {i} of cell {cell} contradicts itself")));
+                return Err(self
+                    .snapshot
+                    .store
+                    .damaged(format!("part {i} of cell {cell} contradicts itself")));
             }
             visit(part)
         })

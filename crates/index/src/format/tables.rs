@@ -131,8 +131,8 @@ impl Store<'_> {
     pub(crate) fn remove(&self, transaction: &WriteTransaction, id: &str) -> Result<bool, IndexError> {
         let mut existed = false;
         for table in [ENTRIES, FUSED, BODIES] {
-            existed |= self
-                .call(|| Ok::<_, redb::Error>(transaction.open_table(table)?.remove(id)?.is_some()))?;
+            existed |=
+                self.call(|| Ok::<_, redb::Error>(transaction.open_table(table)?.remove(id)?.is_some()))?;
         }
         Ok(existed)
     }

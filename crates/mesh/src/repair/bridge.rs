@@ -13,6 +13,7 @@ use nalgebra::Point3;
 use surface::{DisjointSets, EdgeId, Link, Topology, VertexId};
 
 use super::box_tree::{BoxTree, Node, sq_norm};
+use crate::coincidence::coincident_pairs;
 
 /// The group of a node with points of several groups.
 const MIXED: u32 = u32::MAX;
@@ -35,7 +36,15 @@ pub(super) fn shortest_links(
     let n_components = labels.iter().max().map_or(0, |&most| most as usize + 1);
     let mut groups = DisjointSets::new(n_components);
     let mut links = Vec::with_capacity(n_components.saturating_sub(1));
+    // Components that touch: many points in one place would make the search quadratic.
+    for ends in coincident_stars(positions) {
+        let [a, b] = ends.map(|v| labels[v as usize]);
+        if groups.union(a, b) {
+            links.push(link(positions, ends));
+        }
+    }
     while links.len() + 1 < n_components {
+        budget.check()?;
         tree.assign_groups(labels, |label| groups.find(label));
         let mut nearest = vec![Candidate::NONE; n_components];
         tree.search_all(&mut nearest, budget)?;
@@ -93,6 +102,19 @@ pub(super) fn near_links(
     links.sort_unstable_by_key(|link| link.ends);
     links.dedup_by_key(|link| link.ends);
     Ok(links)
+}
+
+/// The lowest vertex at every position with each of the others there, in ascending order.
+fn coincident_stars(positions: &[Point3<f64>]) -> Vec<[u32; 2]> {
+    let mut stars = coincident_pairs(positions, 0..positions.len() as u32);
+    // Consecutive pairs share a vertex.
+    for i in 1..stars.len() {
+        if stars[i][0] == stars[i - 1][1] {
+            stars[i][0] = stars[i - 1][0];
+        }
+    }
+    stars.sort_unstable();
+    stars
 }
 
 fn link(positions: &[Point3<f64>], ends: [u32; 2]) -> Link {

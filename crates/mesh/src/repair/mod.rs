@@ -124,6 +124,7 @@ pub fn repair_within(
     }
 
     budget.check()?;
+    report.coordinate_rounding = coordinate_rounding(&scaled, &faces);
     let components = components_of_faces(n_input, &faces);
     report.components = components.count;
     let kept = match options.components {
@@ -165,6 +166,17 @@ fn checked_unit(mesh: &TriMesh) -> Result<f64, MeshError> {
         _ if SIZES.contains(&size) => Ok(mesh.unit()),
         _ => Err(MeshError::OutOfRange { size, smallest: *SIZES.start(), largest: *SIZES.end() }),
     }
+}
+
+/// The spacing of numbers at the farthest coordinate of any face, relative to the mean side of the faces.
+fn coordinate_rounding(positions: &[Point3<f64>], faces: &[[VertexId; 3]]) -> f64 {
+    let (mut farthest, mut sides) = (0.0, 0.0);
+    for face in faces {
+        let [a, b, c] = face.map(|v| positions[v.index()]);
+        farthest = f64::max(farthest, a.coords.amax());
+        sides += (b - a).norm() + (c - b).norm() + (a - c).norm();
+    }
+    f64::EPSILON * farthest * 3.0 * faces.len() as f64 / sides
 }
 
 /// A spanning tree of the components, and links all along narrow gaps; lengths in units of `scaled`.

@@ -28,7 +28,8 @@ pub enum ComponentPolicy {
     Error,
 }
 
-/// Which vertices are merged. Two vertices of one edge are merged only if its length is zero.
+/// Which vertices are merged. Two vertices of one edge are merged only if its length is zero, and vertices that do not
+/// coincide only if, along every axis, they and all that are merged with them are within the tolerance.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Weld {

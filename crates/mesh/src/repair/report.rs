@@ -37,6 +37,10 @@ pub struct RepairReport {
     /// Faces flipped.
     pub flipped_faces: usize,
 
+    /// The spacing of numbers at the farthest coordinate, relative to the mean side of the faces: far from the origin,
+    /// sides are known to this accuracy only.
+    pub coordinate_rounding: f64,
+
     /// Connected components found.
     pub components: usize,
     /// Components dropped.
@@ -56,6 +60,9 @@ pub struct RepairReport {
     /// coordinates for them.
     pub dropped_vertices: Vec<VertexId>,
 }
+
+/// Rounding of coordinates that is worth a note.
+const COARSE: f64 = 1e-9;
 
 impl RepairReport {
     /// One short line per kind of change; empty if nothing was changed.
@@ -83,6 +90,13 @@ impl RepairReport {
                 counted(self.near_welded_vertices, VERTICES),
                 self.weld_gap,
                 self.weld_tolerance
+            ));
+        }
+        if self.coordinate_rounding > COARSE {
+            lines.push(format!(
+                "the mesh is so far from the origin that its edges are only known to {:.0e} of their length; \
+                 export it closer to the origin",
+                self.coordinate_rounding
             ));
         }
         if self.dropped_components > 0 {

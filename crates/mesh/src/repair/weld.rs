@@ -65,7 +65,7 @@ pub(super) fn weld(
         Weld::Within(tolerance) => vertex_pairs(scaled, &boundary, tolerance),
         _ => seam_pairs(scaled, &topology, &edges),
     };
-    merge_near(&topology, pairs, merged)
+    merge_near(scaled, &topology, pairs, merged)
 }
 
 /// Two vertices that may be merged, the lower one first.
@@ -96,6 +96,7 @@ fn vertex_pairs(positions: &[Point3<f64>], boundary: &[u32], tolerance: f64) -> 
 fn seam_pairs(positions: &[Point3<f64>], topology: &Topology, edges: &[EdgeId]) -> Vec<Pair> {
     let ends = |i: u32| topology.edges()[edges[i as usize].index()];
     let at = |v: VertexId| positions[v.index()];
+    let apex = |i: u32| topology.corner_vertex(topology.edge_corners(edges[i as usize])[0]);
     let middle = |i: u32| {
         let [a, b] = ends(i);
         center(&at(a), &at(b))
@@ -111,6 +112,10 @@ fn seam_pairs(positions: &[Point3<f64>], topology: &Topology, edges: &[EdgeId]) 
     for i in 0..edges.len() as u32 {
         tree.nearest(&middle(i), tolerances[i as usize], CANDIDATES, |j| j == i, |_| false, &mut found);
         for &(_, j) in &found {
+            // Two faces over the same vertex would become one.
+            if apex(i) == apex(j) {
+                continue;
+            }
             let tolerance = tolerances[i as usize].min(tolerances[j as usize]);
             let ([a, b], [c, d]) = (ends(i), ends(j));
             let gaps = |pairs: [[VertexId; 2]; 2]| pairs.map(|[p, q]| (at(q) - at(p)).norm());
@@ -131,32 +136,53 @@ fn seam_pairs(positions: &[Point3<f64>], topology: &Topology, edges: &[EdgeId]) 
     pairs
 }
 
-/// Merges the nearest pairs first, unless that would merge two vertices of one edge.
-fn merge_near(topology: &Topology, mut pairs: Vec<Pair>, merged: &mut DisjointSets) -> Welded {
+/// Vertices that are merged into one.
+struct Cluster {
+    members: Vec<u32>,
+    /// Number of their corners.
+    n_corners: usize,
+    /// Their bounding box.
+    low: Point3<f64>,
+    high: Point3<f64>,
+}
+
+/// Merges the nearest pairs first, unless that would merge two vertices of one edge, or vertices farther apart along an
+/// axis than the tolerance.
+fn merge_near(
+    scaled: &[Point3<f64>],
+    topology: &Topology,
+    mut pairs: Vec<Pair>,
+    merged: &mut DisjointSets,
+) -> Welded {
     pairs.sort_unstable_by(|a, b| a.gap.total_cmp(&b.gap).then(a.ends.cmp(&b.ends)));
     pairs.dedup_by_key(|pair| pair.ends);
     let mut welded = Welded::default();
-    // The vertices of every set that was merged here, by its lowest member, and the number of their corners.
-    let mut members: HashMap<u32, (Vec<u32>, usize)> = HashMap::new();
-    let alone = |v: u32| (vec![v], topology.vertex_corners(VertexId(v)).len());
+    // Those of more than one vertex, by their lowest.
+    let mut clusters: HashMap<u32, Cluster> = HashMap::new();
+    let alone = |v: u32| {
+        let (at, n_corners) = (scaled[v as usize], topology.vertex_corners(VertexId(v)).len());
+        Cluster { members: vec![v], n_corners, low: at, high: at }
+    };
     for Pair { gap, tolerance, ends } in pairs {
         let sets = ends.map(|v| merged.find(v));
         if sets[0] == sets[1] {
             continue;
         }
-        let [a, b] = sets.map(|set| members.remove(&set).unwrap_or_else(|| alone(set)));
-        // The set with fewer corners is searched, which bounds the cost of all searches.
-        let (small, large, [own, other]) = if a.1 < b.1 { (a, b, sets) } else { (b, a, [sets[1], sets[0]]) };
-        let corners = small.0.iter().flat_map(|v| topology.vertex_corners(VertexId(*v)));
+        let [a, b] = sets.map(|set| clusters.remove(&set).unwrap_or_else(|| alone(set)));
+        let (low, high) = (a.low.inf(&b.low), a.high.sup(&b.high));
+        // The cluster with fewer corners is searched, which bounds the cost of all searches.
+        let (small, mut large, [own, other]) =
+            if a.n_corners < b.n_corners { (a, b, sets) } else { (b, a, [sets[1], sets[0]]) };
+        let corners = small.members.iter().flat_map(|v| topology.vertex_corners(VertexId(*v)));
         let mut neighbours = corners.flat_map(|corner| topology.edge_ends(*corner));
-        if neighbours.any(|v| merged.find(v.0) == other) {
-            members.extend([(own, small), (other, large)]);
+        if (high - low).max() > tolerance || neighbours.any(|v| merged.find(v.0) == other) {
+            clusters.extend([(own, small), (other, large)]);
             continue;
         }
         merged.union(own, other);
-        let (mut all, n_corners) = large;
-        all.extend(small.0);
-        members.insert(merged.find(own), (all, n_corners + small.1));
+        large.members.extend(small.members);
+        let n_corners = large.n_corners + small.n_corners;
+        clusters.insert(merged.find(own), Cluster { n_corners, low, high, ..large });
         welded.near += 1;
         if gap >= welded.gap {
             (welded.gap, welded.tolerance) = (gap, tolerance);

@@ -88,8 +88,7 @@ fn headline(sections: &[Section], contents: &[Content]) -> String {
 }
 
 fn page(sections: &[Section], contents: &[Content]) -> String {
-    let link =
-        |section: &Section| format!("<li><a href=\"#{}\">{}</a></li>", section.name, section.short());
+    let link = |section: &Section| format!("<li><a href=\"#{}\">{}</a></li>", section.name, section.short());
     let section = |(Section { name, title, .. }, Content { html, .. }): (&Section, &Content)| {
         format!("<section id=\"{name}\">\n<h2>{title}</h2>\n{html}</section>\n")
     };

@@ -141,7 +141,12 @@ fn expectations(name: &str, list: &[Expectation]) -> String {
         return String::new();
     }
     let row = |e: &Expectation| {
-        vec![Cell::Verdict(e.outcome()), Cell::text(&e.what), Cell::text(&e.expected), Cell::text(&e.measured)]
+        vec![
+            Cell::Verdict(e.outcome()),
+            Cell::text(&e.what),
+            Cell::text(&e.expected),
+            Cell::text(&e.measured),
+        ]
     };
     let headings = ["outcome", "quantity", "expected", "measured"];
     let rows = list.iter().map(row).collect();
@@ -201,7 +206,8 @@ mod tests {
 
     #[test]
     fn options_are_written_as_toml() {
-        let options = serde_json::json!({"rank": 5, "none": null, "embedding": {"samples": 10, "kinds": ["a", null]}});
+        let options =
+            serde_json::json!({"rank": 5, "none": null, "embedding": {"samples": 10, "kinds": ["a", null]}});
         assert_eq!(as_toml(&options), "rank = 5\n\n[embedding]\nkinds = [\"a\"]\nsamples = 10\n");
     }
 }

@@ -1,0 +1,133 @@
+//! Every result in any unit of length from 1e-150 to 1e150: the same bits for powers of two, the same numbers to rounding
+//! otherwise.
+
+use canonform::geodesics::{FirstSample, Method, Sampling};
+use canonform::{
+    DescribeOptions, EmbedMethod, Embedded, FormOptions, Samples, StressChoice, StressOptions, Surface,
+    describe, embed_and_measure,
+};
+use mesh::{TriMesh, shapes};
+use surface::VertexId;
+
+/// Powers of two, and other factors with the gap that rounding of the coordinates may cause.
+fn factors() -> Vec<f64> {
+    let powers = [-498, -330, -266, -100, 10, 100, 257, 330, 498].map(|exponent| 2f64.powi(exponent));
+    powers.into_iter().chain([1e-150, 1e-100, 1e-78, 1e-30, 1e30, 1e77, 1e100, 1e150]).collect()
+}
+
+fn is_power_of_two(factor: f64) -> bool {
+    factor.to_bits().trailing_zeros() >= 52
+}
+
+fn scaled(mesh: &TriMesh, factor: f64) -> TriMesh {
+    let positions = mesh.positions.iter().map(|p| p * factor).collect();
+    TriMesh { positions, faces: mesh.faces.clone() }
+}
+
+/// Requires `found` to be `expected` times `factor`: exactly, or within `tolerance` of the largest number.
+fn assert_scaled(found: &[f64], expected: &[f64], factor: f64, is_exact: bool, tolerance: f64, what: &str) {
+    assert_eq!(found.len(), expected.len(), "{what}");
+    let largest = expected.iter().fold(0.0, |largest, x| f64::max(largest, x.abs()));
+    for (a, b) in found.iter().zip(expected) {
+        let gap = (a / factor - b).abs();
+        assert!(
+            a / factor == *b || !is_exact && gap <= tolerance * largest,
+            "{what}: {a} is not {b} x {factor}"
+        );
+    }
+}
+
+/// A sheet and a closed surface, both without symmetry and with obtuse angles.
+fn meshes() -> [TriMesh; 2] {
+    let mut blob = shapes::torus(18, 11, 2.0, 0.7);
+    for (i, p) in blob.positions.iter_mut().enumerate() {
+        let wave = (i as f64 * 0.7).sin();
+        p.coords *= 1.0 + 0.05 * wave + 0.1 * p.y;
+    }
+    [shapes::jittered_grid(14, 11, 1.0, 0.3, 7), blob]
+}
+
+fn surface(mesh: &TriMesh) -> Surface {
+    Surface::new(mesh, &Default::default()).unwrap()
+}
+
+#[test]
+fn every_solver_measures_in_any_unit() {
+    for mesh in meshes() {
+        for method in Method::all() {
+            let solve = |mesh: &TriMesh| {
+                let surface = surface(mesh);
+                let solver = method.prepare(&surface.intrinsic).unwrap();
+                let mut sampler =
+                    Sampling::Farthest.start(solver.as_ref(), FirstSample::default(), 0).unwrap();
+                sampler.extend_to(12).unwrap();
+                let samples = sampler.distances(12).unwrap();
+                let columns: Vec<f64> = (0..12).flat_map(|i| samples.column(i).to_vec()).collect();
+                (solver.distances(VertexId(3)).unwrap(), samples.landmarks().to_vec(), columns)
+            };
+            let expected = solve(&mesh);
+            for factor in factors() {
+                let (distances, samples, columns) = solve(&scaled(&mesh, factor));
+                let (is_exact, name) = (is_power_of_two(factor), method.name());
+                assert_eq!(samples, expected.1, "{name} x {factor}");
+                assert_scaled(&distances, &expected.0, factor, is_exact, 1e-12, name);
+                assert_scaled(&columns, &expected.2, factor, is_exact, 1e-12, name);
+            }
+        }
+    }
+}
+
+#[test]
+fn a_tiny_flat_sheet_has_straight_distances() {
+    let sheet = shapes::grid(30, 30, 1.0);
+    for factor in [1e-100, 1.0, 1e100] {
+        let surface = surface(&scaled(&sheet, factor));
+        for method in [Method::default(), Method::Exact] {
+            let far =
+                method.prepare(&surface.intrinsic).unwrap().distances(VertexId(0)).unwrap()[899] / factor;
+            assert!((far - 29.0 * 2f64.sqrt()).abs() < 1e-9, "{} x {factor}: {far}", method.name());
+        }
+    }
+}
+
+#[test]
+fn every_embedding_and_its_stress_scale() {
+    let [_, mesh] = meshes();
+    for method in EmbedMethod::all() {
+        let options = FormOptions { method, samples: Samples::Count(30), ..FormOptions::default() };
+        let stress = StressOptions { choice: StressChoice::Exact, ..StressOptions::default() };
+        let embed = |mesh: &TriMesh| embed_and_measure(&surface(mesh), &options, &stress, &()).unwrap();
+        let value = |embedded: &Embedded| embedded.report.stress.as_ref().map_or(0.0, |stress| stress.value);
+        let expected = embed(&mesh);
+        for factor in factors() {
+            let found = embed(&scaled(&mesh, factor));
+            let (is_exact, name) = (is_power_of_two(factor), options.method.name());
+            assert_eq!(found.report.rank, expected.report.rank, "{name} x {factor}");
+            assert_eq!(found.report.samples, expected.report.samples, "{name} x {factor}");
+            let [length, square] =
+                if options.method.has_unit() { [factor, factor * factor] } else { [1.0; 2] };
+            let coords = [&found, &expected].map(|embedded| embedded.embedding.coords.as_slice());
+            assert_scaled(coords[0], coords[1], length, is_exact, 1e-9, name);
+            let eigenvalues = [&found, &expected].map(|embedded| &embedded.embedding.eigenvalues);
+            assert_scaled(eigenvalues[0], eigenvalues[1], square, is_exact, 1e-9, name);
+            assert_scaled(&[value(&found)], &[value(&expected)], square, is_exact, 1e-9, name);
+        }
+    }
+}
+
+#[test]
+fn signatures_have_no_scale() {
+    for mesh in meshes() {
+        let describe = |mesh: &TriMesh| describe(&surface(mesh), &DescribeOptions::default()).unwrap();
+        let expected = describe(&mesh);
+        for factor in factors() {
+            let found = describe(&scaled(&mesh, factor));
+            let is_exact = is_power_of_two(factor);
+            for (a, b) in found.signatures.iter().zip(&expected.signatures) {
+                assert_scaled(&a.values, &b.values, 1.0, is_exact, 1e-6, a.kind.name());
+            }
+            assert_scaled(&[found.area], &[expected.area], factor * factor, is_exact, 1e-12, "area");
+            assert_scaled(&[found.diameter], &[expected.diameter], factor, is_exact, 1e-12, "diameter");
+        }
+    }
+}
