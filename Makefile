@@ -5,7 +5,7 @@ OUT ?= out
 # For `make reproduce`: a folder of meshes with the classes of the paper. Default: the built-in dataset.
 DATASET ?=
 
-.PHONY: help setup build run test lint bench bench-peers bench-nmds bench-search bench-eigsh fmt doc reproduce report plotly deny package ci clean
+.PHONY: help setup build run test lint bench bench-peers bench-nmds bench-search bench-eigsh fmt doc reproduce report plotly deny sbom fuzz fuzz-seeds package ci clean
 
 help: ## List these commands
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "  make %-12s %s\n", $$1, $$2}'
@@ -74,6 +74,32 @@ plotly: ## Build the bundle of plotly.js that the pages embed (needs Node 20 and
 deny: ## Check licences and sources of dependencies with cargo-deny (installs it if missing)
 	@command -v cargo-deny >/dev/null || $(CARGO) install --locked cargo-deny
 	cargo-deny --all-features check licenses bans sources
+
+sbom: ## Write OUT/sbom, a CycloneDX list of the dependencies of every program (installs cargo-cyclonedx if missing)
+	@command -v cargo-cyclonedx >/dev/null || $(CARGO) install --locked cargo-cyclonedx
+	sh .ci/sbom $(OUT)/sbom
+
+# What `cargo fuzz` passes to the compiler: counters of edges, a table of functions, and traced comparisons.
+FUZZ_FLAGS = -Cpasses=sancov-module -Cllvm-args=-sanitizer-coverage-level=4 \
+  -Cllvm-args=-sanitizer-coverage-inline-8bit-counters -Cllvm-args=-sanitizer-coverage-pc-table \
+  -Cllvm-args=-sanitizer-coverage-trace-compares --cfg fuzzing
+FUZZ_TARGETS ?= read repair_embed describe index_open
+FUZZ_HOST = $(shell rustc -vV | sed -n 's/^host: //p')
+# Seconds for each target of `make fuzz`.
+SECONDS ?= 60
+
+# The flags apply to the target platform only, so procedural macros and build scripts stay as they are.
+fuzz: ## Fuzz the readers, the pipeline and the index for SECONDS=60 each; FUZZ_TARGETS chooses (needs a C++ compiler)
+	cd fuzz && RUSTFLAGS="$(FUZZ_FLAGS)" $(CARGO) build --release --locked --bins --target $(FUZZ_HOST) --target-dir target
+	@set -e; mkdir -p fuzz/artifacts; for target in $(FUZZ_TARGETS); do \
+	  mkdir -p fuzz/found/$$target; echo "== $$target, $(SECONDS) s"; \
+	  fuzz/target/$(FUZZ_HOST)/release/$$target -max_total_time=$(SECONDS) -timeout=20 -rss_limit_mb=2048 \
+	    -max_len=65536 -dict=fuzz/text.dict -artifact_prefix=fuzz/artifacts/$$target- -print_final_stats=1 \
+	    fuzz/found/$$target fuzz/corpus/$$target; \
+	done; echo "fuzz: no findings"
+
+fuzz-seeds: ## Write the seed corpus in fuzz/corpus
+	$(CARGO) run --locked -p canonform-datasets --example fuzz_seeds
 
 package: ## Check that all packages can be published
 	$(CARGO) package --workspace --no-verify --allow-dirty --offline --no-metadata --quiet

@@ -1,14 +1,20 @@
 //! Reading meshes, and naming them in messages.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
 
-use canonform::{Remedy, Surface};
-use mesh::RepairReport;
+use anyhow::{Context, Result, bail};
+use canonform::{Remedy, ShapeFile, Surface, list_shapes};
+use mesh::io::{Format, ReadLimits, ScalarField, is_mesh_path};
+use mesh::{RepairReport, TriMesh};
 
-use crate::args::RepairArgs;
+use crate::args::{Common, RepairArgs};
 use crate::remedy::with_remedy;
+
+/// The name of standard input in messages.
+const STREAM: &str = "standard input";
 
 /// Whether a mesh lost more of its surface than allowed.
 static LOST_TOO_MUCH: AtomicBool = AtomicBool::new(false);
@@ -46,22 +52,139 @@ pub(crate) fn file_name(path: &Path) -> String {
     path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
 }
 
+/// Whether an argument stands for standard input or output.
+pub(crate) fn is_stream(path: &Path) -> bool {
+    path.as_os_str() == "-"
+}
+
+/// Reads a mesh from a file, or from standard input.
+pub(crate) fn read_mesh(path: &Path, common: &Common) -> Result<TriMesh> {
+    match is_stream(path) {
+        true => Ok(read_stream(common)?.0),
+        false => Ok(mesh::io::read(path)?),
+    }
+}
+
+/// As [`read_mesh`], with the scalar field that the file carries.
+pub(crate) fn read_mesh_with_field(path: &Path, common: &Common) -> Result<(TriMesh, Option<ScalarField>)> {
+    match is_stream(path) {
+        true => read_stream(common),
+        false => Ok(mesh::io::read_with_field(path)?),
+    }
+}
+
+fn read_stream(common: &Common) -> Result<(TriMesh, Option<ScalarField>)> {
+    let Some(format) = common.input_format else {
+        bail!("standard input has no file name: pass its format, such as --input-format ply");
+    };
+    let format = Format::named(format).context("an unknown format")?;
+    let mut stream = std::io::stdin().lock();
+    Ok(mesh::io::read_from_with_field(Path::new(STREAM), &mut stream, format, &ReadLimits::default())?)
+}
+
 /// Reads and repairs a mesh, and reports repairs.
-pub(crate) fn read_surface(path: &Path, repair: &RepairArgs) -> anyhow::Result<Surface> {
-    let surface = Surface::read(path, &repair.options()).map_err(|fault| named(path, fault))?;
+pub(crate) fn read_surface(path: &Path, repair: &RepairArgs, common: &Common) -> Result<Surface> {
+    let (_, surface) = read_both(path, repair, common)?;
     print_repair(&file_name(path), &surface.repaired.report, repair);
     Ok(surface)
+}
+
+/// Reads a mesh, and repairs it as a surface.
+pub(crate) fn read_both(path: &Path, repair: &RepairArgs, common: &Common) -> Result<(TriMesh, Surface)> {
+    let start = Instant::now();
+    let mesh = read_mesh(path, common)?;
+    let load_seconds = start.elapsed().as_secs_f64();
+    let mut surface = Surface::new(&mesh, &repair.options()).map_err(|fault| named(path, fault))?;
+    surface.load_seconds = load_seconds;
+    Ok((mesh, surface))
+}
+
+/// The meshes that arguments name, in their order: files, standard input, folders, and patterns such as `scans/*.ply` that
+/// no shell has expanded.
+pub(crate) fn expand(arguments: &[PathBuf]) -> Result<Vec<ShapeFile>> {
+    if arguments.iter().filter(|path| is_stream(path)).count() > 1 {
+        bail!("standard input can be read only once; give `-` for one mesh");
+    }
+    let mut shapes = Vec::new();
+    for argument in arguments {
+        match argument.to_str().filter(|text| text.contains(['*', '?', '['])) {
+            _ if argument.is_dir() => shapes.extend(list_shapes(argument, None)?),
+            Some(pattern) if !argument.exists() => {
+                let found =
+                    glob::glob(pattern).with_context(|| format!("`{pattern}` is not a valid pattern"))?;
+                let found: Vec<PathBuf> = found.flatten().filter(|path| is_mesh_path(path)).collect();
+                if found.is_empty() {
+                    bail!("{pattern}: no mesh matches this pattern; a mesh is {}", mesh::io::mesh_files());
+                }
+                shapes.extend(found.into_iter().map(single));
+            }
+            _ => shapes.push(single(argument.clone())),
+        }
+    }
+    Ok(shapes)
+}
+
+/// Whether arguments name exactly one mesh, whose results are not part of a list.
+pub(crate) fn is_single(arguments: &[PathBuf]) -> bool {
+    let is_file = |path: &PathBuf| path.exists() || !path.to_string_lossy().contains(['*', '?', '[']);
+    matches!(arguments, [path] if !path.is_dir() && is_file(path))
+}
+
+fn single(path: PathBuf) -> ShapeFile {
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+    let name = if is_stream(&path) { "stdin".to_owned() } else { stem.into_owned() };
+    ShapeFile { label: canonform::label_of(&name), name, path }
+}
+
+/// Where the result of each mesh goes: `FOLDER/NAME.EXTENSION`. Refuses results that would overwrite each other or a mesh.
+pub(crate) fn outputs(shapes: &[ShapeFile], folder: &Path, extension: &str) -> Result<Vec<PathBuf>> {
+    if folder.exists() && !folder.is_dir() {
+        bail!("{} is a file; with several meshes, -o names a folder", folder.display());
+    }
+    let inputs: std::collections::HashSet<PathBuf> =
+        shapes.iter().filter_map(|shape| shape.path.canonicalize().ok()).collect();
+    let mut first = std::collections::HashMap::new();
+    for shape in shapes {
+        let output = folder.join(format!("{}.{extension}", shape.name));
+        if output.canonicalize().is_ok_and(|output| inputs.contains(&output)) {
+            bail!("{}: the result would overwrite a mesh; choose another folder with -o", output.display());
+        }
+        if let Some(other) = first.insert(output, &shape.path) {
+            bail!(
+                "{} and {} would have the same result file; rename one of them",
+                other.display(),
+                shape.path.display()
+            );
+        }
+    }
+    Ok(shapes.iter().map(|shape| folder.join(format!("{}.{extension}", shape.name))).collect())
+}
+
+/// Creates the folder of a result.
+pub(crate) fn create_folder_of(output: &Path) -> Result<()> {
+    match output.parent() {
+        Some(folder) => std::fs::create_dir_all(folder)
+            .with_context(|| format!("cannot create the folder {}", folder.display())),
+        None => Ok(()),
+    }
 }
 
 /// An error that names the file exactly once.
 pub(crate) fn named(path: &Path, fault: canonform::Error) -> anyhow::Error {
     let is_named = is_named(path, &fault.to_string());
     let error = anyhow::Error::from(fault);
-    if is_named { error } else { error.context(path.display().to_string()) }
+    match is_named {
+        true => error,
+        false if is_stream(path) => error.context(STREAM),
+        false => error.context(path.display().to_string()),
+    }
 }
 
 /// Whether a message names a mesh, by any of its files.
 pub(crate) fn is_named(path: &Path, text: &str) -> bool {
+    if is_stream(path) {
+        return text.contains(STREAM);
+    }
     let mut files = mesh::io::files_of(path).into_iter().chain([path.to_owned()]);
     files.any(|file| text.contains(&file.display().to_string()))
 }

@@ -2,7 +2,7 @@
 
 use std::fs::File;
 use std::io::{self, BufWriter, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::{Result, bail};
@@ -13,6 +13,7 @@ use serde::Serialize;
 use view::color::{Rgb, color_scale};
 
 use crate::args::Common;
+use crate::input::is_stream;
 
 /// Prints the result of a command: one JSON object with `--json`, else a table.
 pub(crate) fn report<T: Serialize>(
@@ -91,6 +92,82 @@ pub(crate) fn write_csv<'a>(path: &Path, rows: impl Iterator<Item = &'a [f64]>) 
         }
         Ok(())
     })?)
+}
+
+/// Where a command writes its result: a file, or standard output.
+#[derive(Debug)]
+pub(crate) struct Output {
+    /// The file to write.
+    path: PathBuf,
+    format: String,
+    /// Holds the file until it is complete and goes to standard output.
+    scratch: Option<files::Scratch>,
+}
+
+impl Output {
+    /// Refuses an unsupported format and a folder that does not exist, before any work is done. Standard output gets
+    /// `format`, or the first of `formats`.
+    pub(crate) fn new(
+        path: &Path,
+        what: &str,
+        formats: &[&str],
+        format: Option<&str>,
+        common: &Common,
+    ) -> Result<Self> {
+        if !is_stream(path) {
+            let format = check_format(path, what, formats)?;
+            check_folder(path)?;
+            return Ok(Self { path: path.to_owned(), format, scratch: None });
+        }
+        if common.json {
+            bail!(
+                "--json and `-` both write to standard output; write {what} to a file, or leave out --json"
+            );
+        }
+        let format = format.or(formats.first().copied()).unwrap_or_default().to_owned();
+        let scratch = files::Scratch::new()?;
+        let path = scratch.file(&format!("stdout.{format}"));
+        check_format(&path, what, formats)?;
+        Ok(Self { path, format, scratch: Some(scratch) })
+    }
+
+    /// The file to write.
+    pub(crate) fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Its extension.
+    pub(crate) fn format(&self) -> &str {
+        &self.format
+    }
+
+    /// The name in reports.
+    pub(crate) fn name(&self) -> PathBuf {
+        if self.is_stream() { "-".into() } else { self.path.clone() }
+    }
+
+    /// Whether it is standard output.
+    pub(crate) fn is_stream(&self) -> bool {
+        self.scratch.is_some()
+    }
+
+    /// Prints the result of a command whose file is complete. If the file goes to standard output, the table goes to
+    /// standard error.
+    pub(crate) fn report<T: Serialize>(
+        self,
+        common: &Common,
+        result: &T,
+        table: impl FnOnce(&T) -> String,
+    ) -> Result<ExitCode> {
+        if !self.is_stream() {
+            return report(common, result, table);
+        }
+        let mut out = io::stdout().lock();
+        io::copy(&mut File::open(&self.path)?, &mut out)?;
+        out.flush()?;
+        terminal::note(&table(result));
+        Ok(ExitCode::SUCCESS)
+    }
 }
 
 /// The extension of a file name, which must be one of `formats`.

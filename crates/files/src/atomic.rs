@@ -6,7 +6,7 @@ use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use tempfile::NamedTempFile;
+use tempfile::{NamedTempFile, TempDir};
 
 use crate::durable::{folder_of, sync_folder};
 use crate::error::FileError;
@@ -15,7 +15,7 @@ use crate::identity::is_at;
 /// How the names of temporary files begin.
 const PREFIX: &str = ".unfinished-";
 
-/// The temporary files of this process. The lock is held while one is created, renamed or removed, so that the
+/// The temporary files and folders of this process. The lock is held while one is created, renamed or removed, so that the
 /// list is always accurate.
 static UNFINISHED: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
@@ -30,7 +30,7 @@ pub fn abandon_unfinished() {
     let paths = unfinished();
     for path in paths.iter() {
         // Nothing more can be done if removal fails.
-        let _ = fs::remove_file(path);
+        let _ = fs::remove_file(path).or_else(|_| fs::remove_dir_all(path));
     }
     std::mem::forget(paths);
 }
@@ -128,6 +128,42 @@ impl<'a> Pending<'a> {
             file.persist(self.path).map_err(|e| FileError::write(self.path, e.error))?;
         }
         sync_folder(self.path).map_err(|source| FileError::write(self.path, source))
+    }
+}
+
+/// A folder for files that only this process reads. It is removed on drop and by [`abandon_unfinished`].
+#[derive(Debug)]
+pub struct Scratch {
+    /// `None` once it is dropped.
+    folder: Option<TempDir>,
+}
+
+impl Scratch {
+    /// Creates an empty folder among the temporary files of the system.
+    ///
+    /// # Errors
+    /// [`FileError`] with the path of the folder for temporary files.
+    pub fn new() -> Result<Self, FileError> {
+        let mut paths = unfinished();
+        let folder = tempfile::tempdir().map_err(|source| FileError::write(&std::env::temp_dir(), source))?;
+        paths.push(folder.path().to_owned());
+        Ok(Self { folder: Some(folder) })
+    }
+
+    /// A file name in the folder.
+    #[must_use]
+    pub fn file(&self, name: &str) -> PathBuf {
+        self.folder.as_ref().map_or_else(PathBuf::new, |folder| folder.path().join(name))
+    }
+}
+
+impl Drop for Scratch {
+    fn drop(&mut self) {
+        if let Some(folder) = self.folder.take() {
+            let mut paths = unfinished();
+            forget(&mut paths, folder.path());
+            drop(folder);
+        }
     }
 }
 
@@ -231,6 +267,15 @@ mod tests {
         let error = write_bytes(&path, b"x").unwrap_err();
         assert!(error.to_string().starts_with("cannot write ") && error.to_string().contains("record.json"));
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1, "the temporary file is gone");
+    }
+
+    #[test]
+    fn a_scratch_folder_is_removed() {
+        let scratch = Scratch::new().unwrap();
+        let file = scratch.file("form.ply");
+        write_bytes(&file, b"x").unwrap();
+        drop(scratch);
+        assert!(!file.exists() && !file.parent().unwrap().exists());
     }
 
     #[test]

@@ -45,5 +45,6 @@ pub use regularization::{Regularization, RpiAlpha};
 pub use smacof::{SmacofOptions, SmacofReport, SmacofStop, smacof, smacof_within};
 pub use spectral::{SpectralBasis, SpectralOptions, spectral};
 pub use stress::{
-    DistanceRows, StressEstimate, estimate_paper_stress, normalized_stress, paper_stress, sample_rows,
+    DistanceRows, Stress, StressEstimate, estimate_paper_stress, normalized_stress, paper_stress,
+    sample_rows, stress,
 };

@@ -1,5 +1,7 @@
 //! Stress: the difference between an embedding and the distances it was made from.
 
+use std::ops::Add;
+
 use budget::Exceeded;
 use linalg::{DistanceMatrix, Matrix};
 use rand_chacha::ChaCha8Rng;
@@ -33,6 +35,15 @@ impl DistanceRows for DistanceMatrix {
 /// number of threads.
 const BLOCK: usize = 64;
 
+/// How far an embedding is from the distances it was made from.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Stress {
+    /// See [`paper_stress`].
+    pub paper: f64,
+    /// See [`normalized_stress`].
+    pub normalized: f64,
+}
+
 /// The stress of the paper, `‖Z Z' + 1/2 J E J‖_F / p`, in the unit of a squared distance.
 ///
 /// | paper | here | shape | meaning |
@@ -45,33 +56,48 @@ const BLOCK: usize = 64;
 ///
 /// **Deviation**: eq. 17 prints `1/p^2`; the figures of the paper use `1/p`.
 ///
-/// Cost: each row once, `O(p k)` time each; `O(p)` memory per block.
+/// Cost: as [`stress`].
 ///
 /// # Errors
 /// Those of the rows.
 pub fn paper_stress(coords: &Matrix, rows: &dyn DistanceRows) -> Result<f64, Exceeded> {
+    Ok(stress(coords, rows)?.paper)
+}
+
+/// [`paper_stress`] and [`normalized_stress`] in one pass over the rows.
+///
+/// Cost: each row once, `O(p k)` time each; `O(p)` memory per block.
+///
+/// # Errors
+/// Those of the rows.
+pub fn stress(coords: &Matrix, rows: &dyn DistanceRows) -> Result<Stress, Exceeded> {
     let p = rows.n_points();
     let starts: Vec<usize> = (0..p).step_by(BLOCK).collect();
     let blocks = starts
         .par_iter()
         .map(|&start| {
             let mut column_sums = vec![0.0; p];
-            let mut row = vec![0.0; p];
+            let (mut row, mut distances) = (vec![0.0; p], vec![0.0; p]);
             let (mut squares, mut row_sums_sq, mut total) = (0.0, 0.0, 0.0);
+            let mut kruskal = Kruskal::default();
             for i in start..(start + BLOCK).min(p) {
-                residuals(coords, rows, i, &mut row)?;
+                rows.row_into(i, &mut distances)?;
+                residuals(coords, &distances, i, &mut row);
+                kruskal = kruskal + Kruskal::of_row(&distances, &row);
                 let sum: f64 = row.iter().sum();
                 squares += row.iter().map(|d| d * d).sum::<f64>();
                 row_sums_sq += sum * sum;
                 total += sum;
                 column_sums.iter_mut().zip(&row).for_each(|(c, d)| *c += d);
             }
-            Ok((squares, row_sums_sq, total, column_sums))
+            Ok((squares, row_sums_sq, total, column_sums, kruskal))
         })
         .collect::<Result<Vec<_>, Exceeded>>()?;
     let mut column_sums = vec![0.0; p];
     let (mut squares, mut row_sums_sq, mut total) = (0.0, 0.0, 0.0);
-    for (s, r, t, columns) in blocks {
+    let mut kruskal = Kruskal::default();
+    for (s, r, t, columns, k) in blocks {
+        kruskal = kruskal + k;
         squares += s;
         row_sums_sq += r;
         total += t;
@@ -80,25 +106,60 @@ pub fn paper_stress(coords: &Matrix, rows: &dyn DistanceRows) -> Result<f64, Exc
     let column_sums_sq: f64 = column_sums.iter().map(|c| c * c).sum();
     let n = p as f64;
     let norm_sq = squares - (row_sums_sq + column_sums_sq) / n + total * total / (n * n);
-    Ok(0.5 * norm_sq.max(0.0).sqrt() / n)
+    Ok(Stress { paper: 0.5 * norm_sq.max(0.0).sqrt() / n, normalized: kruskal.stress() })
+}
+
+/// The sums of Kruskal's stress.
+#[derive(Debug, Clone, Copy, Default)]
+struct Kruskal {
+    /// `sum (d_ij - |z_i - z_j|)^2`.
+    residual: f64,
+    /// `sum d_ij^2`.
+    total: f64,
+}
+
+impl Kruskal {
+    /// The sums over one row, from distances `d` and residuals `d^2 - |z|^2`.
+    fn of_row(distances: &[f64], residuals: &[f64]) -> Self {
+        let mut sums = Self::default();
+        for (&d, &r) in distances.iter().zip(residuals) {
+            // Without cancellation: d - |z| = (d^2 - |z|^2) / (d + |z|).
+            let along = d + (d * d - r).max(0.0).sqrt();
+            let difference = if along > 0.0 { r / along } else { 0.0 };
+            sums.residual += difference * difference;
+            sums.total += d * d;
+        }
+        sums
+    }
+
+    fn stress(self) -> f64 {
+        if self.total > 0.0 { (self.residual / self.total).sqrt() } else { 0.0 }
+    }
+}
+
+impl Add for Kruskal {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self { residual: self.residual + other.residual, total: self.total + other.total }
+    }
 }
 
 /// `d_ij^2 - |z_i - z_j|^2` for all `j`.
-fn residuals(coords: &Matrix, rows: &dyn DistanceRows, i: usize, out: &mut [f64]) -> Result<(), Exceeded> {
-    rows.row_into(i, out)?;
-    out.iter_mut().for_each(|d| *d *= *d);
+fn residuals(coords: &Matrix, distances: &[f64], i: usize, out: &mut [f64]) {
+    out.iter_mut().zip(distances).for_each(|(r, d)| *r = d * d);
     for column in coords.column_iter() {
         let at = column[i];
         for (d, x) in out.iter_mut().zip(column.iter()) {
             *d -= (x - at) * (x - at);
         }
     }
-    Ok(())
 }
 
-/// Kruskal's stress `sqrt(sum (d_ij - |z_i - z_j|)^2 / sum d_ij^2)` over all pairs; 0 for an embedding without distortion.
+/// Kruskal's stress `sqrt(sum (d_ij - |z_i - z_j|)^2 / sum d_ij^2)` over all pairs; 0 for an embedding without distortion,
+/// 1 if all points coincide. It has no unit.
 ///
-/// Cost: `O(p^2 k)` time on one thread, for small p.
+/// Cost: `O(p^2 k)` time on one thread, for small p; [`stress`] finds it faster.
 #[must_use]
 pub fn normalized_stress(coords: &Matrix, distances: &DistanceMatrix) -> f64 {
     let p = distances.n_points();
@@ -113,18 +174,20 @@ pub fn normalized_stress(coords: &Matrix, distances: &DistanceMatrix) -> f64 {
     if total > 0.0 { (residual / total).sqrt() } else { 0.0 }
 }
 
-/// An estimate of [`paper_stress`] from some of the rows.
+/// An estimate of [`stress`] from some of the rows.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StressEstimate {
-    /// The estimate, in the unit of a squared distance.
+    /// The estimate of [`paper_stress`], in the unit of a squared distance.
     pub value: f64,
+    /// The estimate of [`normalized_stress`], without a unit.
+    pub normalized: f64,
     /// 95 % confidence interval by the jackknife.
     pub interval: [f64; 2],
     /// Number of rows used.
     pub n_rows: usize,
 }
 
-/// Estimates [`paper_stress`] from the rows `sample`, which should be distinct and drawn uniformly, as by
+/// Estimates [`stress`] from the rows `sample`, which should be distinct and drawn uniformly, as by
 /// [`sample_rows`].
 ///
 /// The three sums of the exact formula are means over rows, so a sample of rows estimates each without bias (rows and
@@ -142,14 +205,19 @@ pub fn estimate_paper_stress(
     let p = rows.n_points();
     let n = p as f64;
     // For each row, the mean square and the mean of the residuals.
-    let moments: Vec<[f64; 2]> = sample
+    let (moments, kruskal): (Vec<[f64; 2]>, Vec<Kruskal>) = sample
         .par_iter()
         .map(|&i| {
-            let mut row = vec![0.0; p];
-            residuals(coords, rows, i, &mut row)?;
-            Ok([row.iter().map(|d| d * d).sum::<f64>() / n, row.iter().sum::<f64>() / n])
+            let (mut row, mut distances) = (vec![0.0; p], vec![0.0; p]);
+            rows.row_into(i, &mut distances)?;
+            residuals(coords, &distances, i, &mut row);
+            let moments = [row.iter().map(|d| d * d).sum::<f64>() / n, row.iter().sum::<f64>() / n];
+            Ok((moments, Kruskal::of_row(&distances, &row)))
         })
-        .collect::<Result<_, Exceeded>>()?;
+        .collect::<Result<Vec<_>, Exceeded>>()?
+        .into_iter()
+        .unzip();
+    let normalized = kruskal.into_iter().fold(Kruskal::default(), Add::add).stress();
     let stress = |sums: [f64; 3], m: f64| {
         let [squares, means, means_sq] = sums.map(|s| s / m);
         0.5 * (squares - 2.0 * means_sq + means * means).max(0.0).sqrt()
@@ -170,7 +238,7 @@ pub fn estimate_paper_stress(
         1.96 * (variance * (1.0 - m / n)).sqrt()
     };
     let interval = [(value - half).max(0.0), value + half];
-    Ok(StressEstimate { value, interval, n_rows: moments.len() })
+    Ok(StressEstimate { value, normalized, interval, n_rows: moments.len() })
 }
 
 /// `m` distinct numbers below `p` (at most `p`), ascending, drawn with `seed` by Floyd's algorithm.
@@ -257,5 +325,19 @@ mod tests {
         let whole = estimate_paper_stress(&coords, &distances, &sample_rows(400, 1000, 0)).unwrap();
         assert!((whole.value / exact - 1.0).abs() < 1e-12 && whole.n_rows == 400);
         assert!(whole.interval[1] - whole.interval[0] < 1e-9 * exact);
+    }
+
+    #[test]
+    fn the_normalised_stress_equals_its_definition_and_has_no_unit() {
+        let distances = circle(151);
+        let embedding = classical(&distances, 3).unwrap();
+        let found = stress(&embedding.coords, &distances).unwrap().normalized;
+        assert!((found / normalized_stress(&embedding.coords, &distances) - 1.0).abs() < 1e-12);
+        let all: Vec<usize> = (0..151).collect();
+        let estimate = estimate_paper_stress(&embedding.coords, &distances, &all).unwrap();
+        assert!((estimate.normalized / found - 1.0).abs() < 1e-12);
+        let large = DistanceMatrix::from_pairs(151, |i, j| 1024.0 * distances.get(i, j)).unwrap();
+        assert_eq!(stress(&(embedding.coords * 1024.0), &large).unwrap().normalized, found);
+        assert_eq!(stress(&Matrix::zeros(151, 3), &distances).unwrap().normalized, 1.0);
     }
 }

@@ -5,7 +5,7 @@ use std::borrow::Borrow;
 use budget::Exceeded;
 use geodesics::{DistanceSolver, Method};
 use linalg::{LandmarkDistances, Matrix};
-use nmds::{DistanceRows, StressEstimate, estimate_paper_stress, paper_stress, sample_rows};
+use nmds::{DistanceRows, StressEstimate, estimate_paper_stress, sample_rows, stress};
 use serde::Serialize;
 use surface::{VertexId, unit_for};
 
@@ -64,6 +64,9 @@ pub struct StressReport {
     pub geodesic: &'static str,
     /// Its value.
     pub value: f64,
+    /// Kruskal's stress `sqrt(sum (d_ij - |z_i - z_j|)^2 / sum d_ij^2)` over the same pairs: the relative error of the
+    /// distances, without a unit.
+    pub normalized: f64,
     /// Exact or estimated.
     pub kind: StressKind,
     /// A 95 % confidence interval; the value twice when it is exact.
@@ -96,17 +99,18 @@ impl StressReport {
             let back = |value: f64| value * unit * unit;
             return Ok(Self { value: back(scaled.value), interval: scaled.interval.map(back), ..scaled });
         }
-        let (value, kind, interval) = match rows {
+        let (value, normalized, kind, interval) = match rows {
             None => {
-                let value = paper_stress(coords, distances)?;
-                (value, StressKind::Exact, [value; 2])
+                let found = stress(coords, distances)?;
+                (found.paper, found.normalized, StressKind::Exact, [found.paper; 2])
             }
             Some(rows) => {
-                let StressEstimate { value, interval, .. } = estimate_paper_stress(coords, distances, rows)?;
-                (value, StressKind::Estimated, interval)
+                let StressEstimate { value, normalized, interval, .. } =
+                    estimate_paper_stress(coords, distances, rows)?;
+                (value, normalized, StressKind::Estimated, interval)
             }
         };
-        Ok(Self { measure: "paper_stress", geodesic: method.name(), value, kind, interval })
+        Ok(Self { measure: "paper_stress", geodesic: method.name(), value, normalized, kind, interval })
     }
 }
 

@@ -23,12 +23,13 @@ Examples:
   canonform geodesic cat.off --source 0,17 -o rows.npy
   canonform geodesic cat.off --source 0,f8 --nearest --max-distance 5 -o near.ply
   canonform geodesic cat.off --source 0 --path-to 17,42 --method exact -o paths.obj
-  canonform geodesic cat.off --all-pairs --memory 2G -o pairs.npy";
+  canonform geodesic cat.off --all-pairs --memory 2G -o pairs.npy
+  canonform geodesic - --input-format off --source 0 -o - --output-format csv < cat.off";
 
 #[derive(Debug, Args)]
 #[command(after_long_help = POINTS, after_help = "See `--help` for how to write points, and for examples.")]
 pub(crate) struct GeodesicArgs {
-    /// Mesh file
+    /// Mesh file, or `-` for standard input
     pub(crate) mesh: PathBuf,
     /// Sources: vertices, or points on edges and faces; each gives one row of distances
     #[arg(
@@ -40,6 +41,9 @@ pub(crate) struct GeodesicArgs {
     pub(crate) source: Vec<InputPoint>,
     #[arg(short, long, value_name = "OUT", help = output_help())]
     pub(crate) output: PathBuf,
+    /// File format on standard output
+    #[arg(long, default_value = "npy", value_name = "EXT")]
+    pub(crate) output_format: String,
     /// Measure the distance to the nearest source: a single row
     #[arg(long)]
     pub(crate) nearest: bool,
@@ -54,6 +58,9 @@ pub(crate) struct GeodesicArgs {
     /// directions), in blocks of as many rows as fit into --memory [default: 1G]
     #[arg(long, conflicts_with_all = ["source", "nearest", "max_distance", "path_to"])]
     pub(crate) all_pairs: bool,
+    /// Write a matrix of all pairs that is larger than 100 GB
+    #[arg(long, requires = "all_pairs")]
+    pub(crate) force: bool,
     /// How to measure distances
     #[arg(long, value_parser = distance_method(), default_value = Method::default().name())]
     pub(crate) method: Method,
@@ -68,7 +75,7 @@ pub(crate) struct GeodesicArgs {
 fn output_help() -> String {
     format!(
         "Output file. Distances: .npy (sources x vertices, float64), .csv (one row per source) or {} (one \
-         coloured mesh per source). Paths: {} (lines), .csv or .json. All pairs: .npy",
+         coloured mesh per source). Paths: {} (lines), .csv or .json. All pairs: .npy. `-` for standard output",
         or_list(writable(Content::Field)),
         or_list(writable(Content::Lines))
     )

@@ -75,24 +75,47 @@ pub(crate) enum Command {
 }
 
 #[derive(Debug, Args)]
+#[command(after_help = "Exit code 2 if a mesh cannot be read; the others are reported all the same.")]
 pub(crate) struct InfoArgs {
-    /// Mesh files, or folders of them
+    /// Mesh files, folders of them, patterns such as 'scans/*.ply', or `-` for standard input
     #[arg(required = true, value_name = "MESH")]
     pub(crate) meshes: Vec<PathBuf>,
     #[command(flatten)]
     pub(crate) repair: RepairArgs,
 }
 
+/// What stress is, and what happens to several meshes.
+const EMBED_NOTES: &str = "\
+Stress, with the distances d_ij between p vertices along the surface and the coordinates z_i:
+  stress             ||Z Z' + 1/2 J E J||_F / p, with E_ij = d_ij^2 and J = I - 1/p: the paper's, in squared mesh units
+  normalised stress  sqrt(sum (d_ij - |z_i - z_j|)^2 / sum d_ij^2): the relative error of the distances, without a unit
+
+Several meshes: each form is written to FOLDER/NAME.EXT. A mesh that cannot be embedded is reported and does not
+stop the others; the exit code is then 2.
+
+Examples:
+  canonform embed cat.off -o form.ply
+  canonform embed cat.off dog.ply 'scans/*.obj' -o forms/ --output-format npy
+  canonform embed - --input-format off -o - --output-format ply < cat.off > form.ply";
+
 #[derive(Debug, Args)]
+#[command(after_long_help = EMBED_NOTES, after_help = "See `--help` for the formulas of the stress, and for examples.")]
 pub(crate) struct EmbedArgs {
-    /// Mesh file, or a folder of them
-    pub(crate) mesh: PathBuf,
+    /// Mesh files, folders of them, patterns such as 'scans/*.ply', or `-` for standard input
+    #[arg(required = true, value_name = "MESH")]
+    pub(crate) meshes: Vec<PathBuf>,
     #[arg(short, long, value_name = "FORM", help = form_help())]
     pub(crate) output: PathBuf,
-    /// File format of forms when embedding a folder
-    #[arg(long, value_parser = one_of(FORM_FORMATS.map(|(name, help)| (name, help, name))), default_value = "ply")]
-    pub(crate) format: &'static str,
-    /// How to find the stress
+    /// File format of forms in a folder or on standard output
+    #[arg(
+        long,
+        visible_alias = "format",
+        value_name = "EXT",
+        value_parser = one_of(FORM_FORMATS.map(|(name, help)| (name, help, name))),
+        default_value = "ply"
+    )]
+    pub(crate) output_format: &'static str,
+    /// How to find the stress; see below for its formulas
     #[arg(long, value_parser = one_of(STRESS), default_value = "auto")]
     pub(crate) stress: StressChoice,
     /// How to measure the distances that the stress compares the form with [default: as --geodesic]
@@ -106,7 +129,7 @@ pub(crate) struct EmbedArgs {
 
 #[derive(Debug, Args)]
 pub(crate) struct MethodsArgs {
-    /// Mesh file
+    /// Mesh file, or `-` for standard input
     pub(crate) mesh: PathBuf,
     /// How to find the stress
     #[arg(long, value_parser = one_of([STRESS[0], STRESS[1], STRESS[2]]), default_value = "auto")]
@@ -119,9 +142,9 @@ pub(crate) struct MethodsArgs {
 
 #[derive(Debug, Args)]
 pub(crate) struct CompareArgs {
-    /// First mesh
+    /// First mesh, a file or `-` for standard input
     pub(crate) a: PathBuf,
-    /// Second mesh
+    /// Second mesh, a file or `-`
     pub(crate) b: PathBuf,
     /// Distance between aligned forms
     #[arg(long, value_parser = form_distance(), default_value = "nn-rms")]
@@ -161,14 +184,16 @@ fn at_least() -> impl TypedValueParser<Value = VerdictKind> {
 
 fn form_help() -> String {
     format!(
-        "Output file: {} (.npy: vertices x dim, float64); for a folder of meshes, the folder to write NAME.EXT into",
+        "Output file: {} (.npy: vertices x dim, float64), or `-` for standard output; with several meshes or a folder of \
+         them, the folder to write NAME.EXT into",
         or_list(FORM_FORMATS.map(|(extension, _)| extension))
     )
 }
 
 fn residual_help() -> String {
     format!(
-        "Write the first mesh, coloured by the distance of each vertex from the second shape after alignment ({})",
+        "Write the first mesh, coloured by the distance of each vertex from the second shape after alignment ({}; only \
+         .ply also holds the values, and `canonform render` draws them)",
         or_list(writable(Content::Field))
     )
 }

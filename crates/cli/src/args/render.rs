@@ -17,21 +17,27 @@ how far up. Many files have y up: pass `--up y`.
 
 A field has one value per vertex of the mesh file, in its order, as written by `canonform geodesic -o`: .npy
 (vertices, or rows x vertices) or .csv (one row per line, or one value per line). Vertices without a finite
-value, such as those that distances do not reach, are grey.
+value, such as those that distances do not reach, are grey. A .ply file may carry the field itself, as written by
+`geodesic -o x.ply` and `compare --residual-mesh x.ply`; it is drawn unless an option says otherwise.
 
 Examples:
   canonform render cat.off -o cat.png
   canonform render cat.off --distance-from 17 --isolines 20 -o distances.png
   canonform render cat.off --field rows.npy --row 2 --range 0,80 -o third.png
-  canonform render cat.off --form --background dark --size 1200x800 -o form.png";
+  canonform render cat.off --form --background dark --size 1200x800 -o form.png
+  canonform render cat.off dog.ply -o pictures/
+
+Several meshes: a mesh that cannot be drawn is reported and does not stop the others; the exit code is then 2.";
 
 #[derive(Debug, Args)]
 #[command(after_long_help = NOTES, after_help = "See `--help` for how to write views and fields, and for examples.")]
 pub(crate) struct RenderArgs {
-    /// Mesh file
-    pub(crate) mesh: PathBuf,
-    /// Output picture: .png
-    #[arg(short, long, value_name = "PICTURE.png")]
+    /// Mesh files, folders of them, patterns such as 'scans/*.ply', or `-` for standard input
+    #[arg(required = true, value_name = "MESH")]
+    pub(crate) meshes: Vec<PathBuf>,
+    /// Output picture: .png, or `-` for standard output; with several meshes or a folder of them, the folder to write
+    /// NAME.png into
+    #[arg(short, long, value_name = "PICTURE")]
     pub(crate) output: PathBuf,
     /// Width and height in pixels, or one number for both
     #[arg(long, default_value = "800x800", value_name = "WIDTHxHEIGHT", value_parser = parse_size)]
@@ -45,7 +51,7 @@ pub(crate) struct RenderArgs {
     /// Background: white, dark, transparent or a colour #rrggbb
     #[arg(long, default_value = "white", value_name = "BACKGROUND", value_parser = parse_background)]
     pub(crate) background: Background,
-    /// Colour of the mesh, #rrggbb [default: a light clay]
+    /// Colour of the mesh, #rrggbb [default: a light clay, or the values that a .ply file carries]
     #[arg(long, value_name = "#rrggbb", value_parser = parse_color, conflicts_with_all = ["field", "distance_from"])]
     pub(crate) color: Option<[u8; 3]>,
     /// Colour by the values in this file, one per vertex: .npy or .csv

@@ -21,6 +21,9 @@ pub(crate) struct Common {
     /// Seed for everything random
     #[arg(long, global = true, default_value_t = 0, value_name = "S")]
     pub(crate) seed: u64,
+    /// Format of a mesh from standard input, which the mesh argument `-` stands for
+    #[arg(long, global = true, value_name = "EXT", value_parser = input_format())]
+    pub(crate) input_format: Option<&'static str>,
     /// Write nothing but errors to standard error: no progress, no notes on repairs
     #[arg(long, short, global = true)]
     pub(crate) quiet: bool,
@@ -31,6 +34,15 @@ const MOST_THREADS: i64 = 1024;
 
 fn threads() -> clap::builder::RangedI64ValueParser<u16> {
     clap::value_parser!(u16).range(0..=MOST_THREADS)
+}
+
+/// The extensions of formats that hold a mesh in one file.
+fn input_format() -> impl TypedValueParser<Value = &'static str> {
+    let single = || mesh::io::FORMATS.iter().filter(|format| format.extensions.len() == 1);
+    PossibleValuesParser::new(single().map(|format| format.extensions[0])).try_map(move |chosen| {
+        let found = single().find(|format| format.extensions[0] == chosen);
+        found.map(|format| format.extensions[0]).ok_or_else(|| format!("`{chosen}` is unknown"))
+    })
 }
 
 /// Limits on what a command may use. Flatten it last.

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use anyhow::Result;
+use anyhow::{Result, bail};
 use canonform::descriptors::{
     CanonicalForm, Handedness, PreparedShape, ShapeMetric, ShapePair, Verdict, VerdictKind,
 };
@@ -15,7 +15,7 @@ use mesh::io::{Content, writable};
 use serde::Serialize;
 
 use crate::args::{Common, CompareArgs};
-use crate::input::{named, read_surface};
+use crate::input::{is_stream, named, read_surface};
 use crate::output::{check_folder, check_format, facts, report, write_colored};
 use terminal::Bars;
 
@@ -46,12 +46,12 @@ struct ResidualJson {
 /// options that the metric is calibrated for, if those differ.
 type Side = (Surface, CanonicalForm, PreparedShape, Option<PreparedShape>);
 
-fn side(path: &Path, args: &CompareArgs, options: &FormOptions, quiet: bool) -> Result<Side> {
-    let surface = read_surface(path, &args.embedding.form.repair)?;
+fn side(path: &Path, args: &CompareArgs, options: &FormOptions, common: &Common) -> Result<Side> {
+    let surface = read_surface(path, &args.embedding.form.repair, common)?;
     let usual = FormOptions { repair: options.repair, ..FormOptions::default() };
     let usual = DescribeOptions { form: usual, ..DescribeOptions::default() };
     let measure = || {
-        let embedded = embed(&surface, options, &Bars::with_budget(quiet, args.limits.budget()))?;
+        let embedded = embed(&surface, options, &Bars::with_budget(common.quiet, args.limits.budget()))?;
         let form = embedded.form(&surface)?;
         if embedded.options == usual.form {
             return Ok((form, ShapeDescription::new(&surface, &embedded, &usual)?.prepare()?, None));
@@ -69,13 +69,16 @@ fn side(path: &Path, args: &CompareArgs, options: &FormOptions, quiet: bool) -> 
 pub(crate) fn compare(args: &CompareArgs, common: &Common) -> Result<ExitCode> {
     let options = args.embedding.options(common)?;
     options.validate()?;
+    if is_stream(&args.a) && is_stream(&args.b) {
+        bail!("standard input can be read only once; give `-` for one mesh");
+    }
     if let Some(path) = &args.residual_mesh {
         check_format(path, "a coloured mesh", &writable(Content::Field).collect::<Vec<_>>())?;
         check_folder(path)?;
     }
     let metric = ShapeMetric { distance: args.distance };
-    let (a, form_a, shape_a, usual_a) = side(&args.a, args, &options, common.quiet)?;
-    let (b, form_b, shape_b, usual_b) = side(&args.b, args, &options, common.quiet)?;
+    let (a, form_a, shape_a, usual_a) = side(&args.a, args, &options, common)?;
+    let (b, form_b, shape_b, usual_b) = side(&args.b, args, &options, common)?;
     let pair = ShapePair::new(metric, [&shape_a, &shape_b]);
     // The verdict must not depend on the options.
     let distance = match (&usual_a, &usual_b) {

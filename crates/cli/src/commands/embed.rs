@@ -3,18 +3,17 @@
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use anyhow::{Context, Result, bail};
-use canonform::{
-    EmbedMethod, EmbedReport, Embedded, FormOptions, ShapeFile, StressOptions, Surface, embed_and_measure,
-    list_shapes,
-};
+use anyhow::{Result, bail};
+use canonform::{EmbedMethod, EmbedReport, Embedded, FormOptions, StressOptions, Surface, embed_and_measure};
 use mesh::io::extension;
 use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::args::{Common, EmbedArgs, FORM_FORMATS};
-use crate::input::{named, print_repair, read_surface};
-use crate::output::{check_folder, check_format, exit_code, facts, report, write_npy};
+use crate::input::{
+    create_folder_of, expand, is_single, is_stream, named, outputs, print_repair, read_both, read_surface,
+};
+use crate::output::{Output, exit_code, facts, report, write_npy};
 use terminal::Bars;
 
 #[derive(Serialize)]
@@ -46,7 +45,7 @@ struct Failure {
     error: String,
 }
 
-/// Embeds a mesh, or every mesh in a folder.
+/// Embeds one mesh, or each of several.
 pub(crate) fn embed(args: &EmbedArgs, common: &Common) -> Result<ExitCode> {
     let options = args.embedding.options(common)?;
     let against = args.stress_against.map(|method| args.embedding.form.marching.of(method));
@@ -54,55 +53,56 @@ pub(crate) fn embed(args: &EmbedArgs, common: &Common) -> Result<ExitCode> {
     if args.embedding.form.samples.is_some() && options.method == EmbedMethod::Classical {
         terminal::note("note: -n has no effect with --method mds, which measures all pairs of vertices");
     }
-    if args.mesh.is_dir() {
-        return batch(args, &options, &stress, common);
+    match &args.meshes[..] {
+        [mesh] if is_single(&args.meshes) => one(mesh, args, &options, &stress, common),
+        _ => batch(args, &options, &stress, common),
     }
-    check_form(&args.output, options.dim)?;
-    check_folder(&args.output)?;
-    let surface = read_surface(&args.mesh, &args.embedding.form.repair)?;
-    let embedded = embed_and_measure(
-        &surface,
-        &options,
-        &stress,
-        &Bars::with_budget(common.quiet, args.limits.budget()),
-    )
-    .map_err(|fault| named(&args.mesh, fault))?;
-    warn(&args.mesh.display().to_string(), &embedded.report);
-    write(&args.output, &surface, &embedded)?;
-    let json = EmbedJson { report: embedded.report, output: args.output.clone() };
-    report(common, &json, table)
 }
 
-/// Embeds the meshes of a folder in parallel. Failures are listed at the end and do not stop the rest.
+fn one(
+    mesh: &Path,
+    args: &EmbedArgs,
+    options: &FormOptions,
+    stress: &StressOptions,
+    common: &Common,
+) -> Result<ExitCode> {
+    let formats = FORM_FORMATS.map(|(extension, _)| extension);
+    let output = Output::new(&args.output, "a form", &formats, Some(args.output_format), common)?;
+    check_dim(output.path(), options.dim)?;
+    let surface = read_surface(mesh, &args.embedding.form.repair, common)?;
+    let bars = Bars::with_budget(common.quiet, args.limits.budget());
+    let embedded = embed_and_measure(&surface, options, stress, &bars).map_err(|fault| named(mesh, fault))?;
+    warn(&mesh.display().to_string(), &embedded.report);
+    write(output.path(), &surface, &embedded)?;
+    let json = EmbedJson { report: embedded.report, output: output.name() };
+    output.report(common, &json, table)
+}
+
+/// Embeds meshes in parallel. Failures are listed at the end and do not stop the rest.
 fn batch(
     args: &EmbedArgs,
     options: &FormOptions,
     stress: &StressOptions,
     common: &Common,
 ) -> Result<ExitCode> {
-    let extension = args.format;
-    check_form(&PathBuf::from(format!("form.{extension}")), options.dim)?;
-    let shapes = list_shapes(&args.mesh, None)?;
-    check_names(&shapes, &args.mesh, &args.output)?;
+    let extension = args.output_format;
+    if is_stream(&args.output) {
+        bail!("several forms cannot go to standard output; name a folder with -o");
+    }
+    check_dim(Path::new(&format!("form.{extension}")), options.dim)?;
+    let shapes = expand(&args.meshes)?;
+    let outputs = outputs(&shapes, &args.output, extension)?;
     let bar = Bars::new(common.quiet).bar("shapes", shapes.len());
     let results: Vec<Result<EmbedJson>> = shapes
         .par_iter()
-        .map(|shape| {
-            let output = args.output.join(format!("{}.{extension}", shape.name));
+        .zip(outputs)
+        .map(|(shape, output)| {
             let one = || {
-                let surface =
-                    Surface::read(&shape.path, &options.repair).map_err(|fault| named(&shape.path, fault))?;
-                let embedded = embed_and_measure(
-                    &surface,
-                    options,
-                    stress,
-                    &Bars::with_budget(true, args.limits.budget()),
-                )
-                .map_err(|fault| named(&shape.path, fault))?;
-                if let Some(folder) = output.parent() {
-                    std::fs::create_dir_all(folder)
-                        .with_context(|| format!("cannot create the folder {}", folder.display()))?;
-                }
+                let (_, surface) = read_both(&shape.path, &args.embedding.form.repair, common)?;
+                let bars = Bars::with_budget(true, args.limits.budget());
+                let embedded = embed_and_measure(&surface, options, stress, &bars)
+                    .map_err(|fault| named(&shape.path, fault))?;
+                create_folder_of(&output)?;
                 write(&output, &surface, &embedded)?;
                 Ok(EmbedJson { report: embedded.report, output: output.clone() })
             };
@@ -134,27 +134,9 @@ fn batch(
     Ok(exit_code(json.failed.is_empty()))
 }
 
-/// Refuses a folder whose forms would overwrite each other or the meshes.
-fn check_names(shapes: &[ShapeFile], input: &Path, output: &Path) -> Result<()> {
-    let place = |folder: &Path| folder.canonicalize().ok();
-    if place(output).is_some_and(|output| place(input) == Some(output)) {
-        bail!("{}: forms would overwrite meshes; choose another folder with -o", output.display());
-    }
-    // Shapes are sorted by name.
-    match shapes.windows(2).find(|pair| pair[0].name == pair[1].name) {
-        None => Ok(()),
-        Some(pair) => bail!(
-            "{} and {} would be written to the same form; rename one of them",
-            pair[0].path.display(),
-            pair[1].path.display()
-        ),
-    }
-}
-
-/// Refuses an output that cannot be written, before any work is done.
-fn check_form(output: &Path, dim: usize) -> Result<()> {
-    let format = check_format(output, "a form", &FORM_FORMATS.map(|(extension, _)| extension))?;
-    if format != "npy" && dim != 3 {
+/// Refuses a form whose file cannot hold this many dimensions, before any work is done.
+fn check_dim(output: &Path, dim: usize) -> Result<()> {
+    if extension(output) != "npy" && dim != 3 {
         bail!("{}: a mesh has 3 dimensions, not {dim}; write .npy or leave out --dim", output.display());
     }
     Ok(())
@@ -193,6 +175,10 @@ fn stress_text(report: &EmbedReport) -> String {
     }
 }
 
+fn normalized_text(report: &EmbedReport) -> String {
+    report.stress.as_ref().map_or_else(|| "-".to_owned(), |s| format!("{:.4}", s.normalized))
+}
+
 /// The method and its options.
 fn method_text(report: &EmbedReport) -> String {
     let regularization = report.regularization.map_or(String::new(), |name| format!(" ({name})"));
@@ -214,6 +200,7 @@ fn table(json: &EmbedJson) -> String {
         ("eigenvalues", eigenvalues.join(" ")),
         ("negative mass", format!("{:.4}", r.negative_mass)),
         ("stress", stress_text(r)),
+        ("normalised stress", normalized_text(r)),
         (
             "seconds",
             format!(
@@ -227,9 +214,15 @@ fn table(json: &EmbedJson) -> String {
 
 fn batch_table(json: &BatchJson, folder: &Path) -> String {
     let mut table = comfy_table::Table::new();
-    table
-        .load_style(comfy_table::presets::NOTHING)
-        .set_header(["shape", "class", "vertices", "samples", "stress", "seconds"]);
+    table.load_style(comfy_table::presets::NOTHING).set_header([
+        "shape",
+        "class",
+        "vertices",
+        "samples",
+        "stress",
+        "normalised stress",
+        "seconds",
+    ]);
     for shape in &json.shapes {
         let r = &shape.result.report;
         table.add_row([
@@ -238,6 +231,7 @@ fn batch_table(json: &BatchJson, folder: &Path) -> String {
             r.n_embedded.to_string(),
             r.n_samples.to_string(),
             stress_text(r),
+            normalized_text(r),
             format!("{:.3}", r.seconds.total),
         ]);
     }

@@ -8,7 +8,7 @@ use mesh::{MeshReport, RepairReport, repair, validate};
 use serde::Serialize;
 
 use crate::args::{Common, InfoArgs};
-use crate::input::check_dropped;
+use crate::input::{check_dropped, expand, read_mesh};
 use crate::output::{exit_code, facts, print, print_json};
 
 #[derive(Serialize)]
@@ -34,8 +34,8 @@ struct Failure {
 /// Reports on meshes; unreadable ones are listed and do not stop the others.
 pub(crate) fn info(args: &InfoArgs, common: &Common) -> Result<ExitCode> {
     let mut json = InfoJson { meshes: Vec::new(), failed: Vec::new() };
-    for path in paths(&args.meshes)? {
-        let report = mesh::io::read(&path)
+    for path in expand(&args.meshes)?.into_iter().map(|shape| shape.path) {
+        let report = read_mesh(&path, common)
             .and_then(|mesh| Ok((validate(&mesh), repair(&mesh, &args.repair.options())?.report)));
         match report {
             Ok((mesh, repair)) => {
@@ -48,8 +48,9 @@ pub(crate) fn info(args: &InfoArgs, common: &Common) -> Result<ExitCode> {
                 json.meshes.push(info);
             }
             Err(fault) => {
-                terminal::error(&fault.to_string());
-                json.failed.push(Failure { path, error: fault.to_string() });
+                let error = crate::remedy::message(&fault);
+                terminal::error(&error);
+                json.failed.push(Failure { path, error });
             }
         }
     }
@@ -57,19 +58,6 @@ pub(crate) fn info(args: &InfoArgs, common: &Common) -> Result<ExitCode> {
         print_json(&json)?;
     }
     Ok(exit_code(json.failed.is_empty()))
-}
-
-/// The given files, and the meshes in the given folders.
-fn paths(arguments: &[PathBuf]) -> Result<Vec<PathBuf>> {
-    let mut paths = Vec::new();
-    for path in arguments {
-        if path.is_dir() {
-            paths.extend(canonform::list_shapes(path, None)?.into_iter().map(|shape| shape.path));
-        } else {
-            paths.push(path.clone());
-        }
-    }
-    Ok(paths)
 }
 
 fn table(info: &MeshInfo) -> String {

@@ -15,7 +15,7 @@ use crate::output::report;
 /// Embeds a mesh by every method and tabulates the results.
 pub(crate) fn methods(args: &MethodsArgs, common: &Common) -> Result<ExitCode> {
     let stress = StressOptions { choice: args.stress, against: None, seed: common.seed };
-    let surface = read_surface(&args.mesh, &args.form.repair)?;
+    let surface = read_surface(&args.mesh, &args.form.repair, common)?;
     let options = args.form.options(common);
     let methods = compare_methods(
         &surface,
@@ -67,6 +67,7 @@ fn table(report: &MethodsReport) -> String {
         "options",
         "samples",
         "stress  ",
+        "normalised",
         "seconds  ",
         "memory  ",
         "negative mass",
@@ -79,12 +80,13 @@ fn table(report: &MethodsReport) -> String {
                 row.extend([
                     f.n_samples.to_string(),
                     value + star(stress(f), best[0]),
+                    f.stress.as_ref().map_or_else(String::new, |s| format!("{:.4}", s.normalized)),
                     view::numbers::seconds(f.seconds) + star(seconds(f), best[1]),
                     view::numbers::bytes(f.peak_bytes) + star(memory(f), best[2]),
                     format!("{:.4}", f.negative_mass),
                 ]);
             }
-            None => row.extend(["", "failed  ", "", "", ""].map(str::to_owned)),
+            None => row.extend(["", "failed  ", "", "", "", ""].map(str::to_owned)),
         }
         table.add_row(row);
     }
@@ -100,8 +102,8 @@ fn table(report: &MethodsReport) -> String {
     let kind = report.methods.iter().find_map(|m| m.facts.as_ref()?.stress.as_ref());
     let kind = kind.map_or_else(String::new, |s| format!(", {:?}", s.kind).to_lowercase());
     text + &format!(
-        "\n* lowest of its column. {} vertices, {} dimensions; stress against {} distances{kind}; seconds from the \
-         repaired mesh to the embedding.",
+        "\n* lowest of its column. {} vertices, {} dimensions; stress against {} distances{kind}; normalised \
+         stress without a unit, see `canonform embed --help`; seconds from the repaired mesh to the embedding.",
         report.n_embedded, report.dim, report.geodesic
     )
 }

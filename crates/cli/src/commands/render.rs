@@ -1,12 +1,13 @@
 //! `canonform render`.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
 
 use anyhow::{Result, bail};
 use canonform::geodesics::{Method, Source};
 use canonform::{FormOptions, Surface, embed};
+use mesh::io::ScalarField;
 use mesh::{RepairReport, TriMesh};
 use serde::Serialize;
 use terminal::Bars;
@@ -14,8 +15,11 @@ use view::render::{RenderOptions, Surface as Paint, render, render_with_bar, val
 
 use crate::args::{Common, Place, RenderArgs};
 use crate::field::read_field;
-use crate::input::{file_name, named, print_repair};
-use crate::output::{check_folder, check_format, facts, report};
+use crate::input::{
+    create_folder_of, expand, file_name, is_single, is_stream, named, outputs, print_repair,
+    read_mesh_with_field,
+};
+use crate::output::{Output, exit_code, facts, report};
 
 #[derive(Serialize)]
 struct RenderJson {
@@ -43,31 +47,81 @@ struct FieldJson {
     missing: usize,
 }
 
-/// Values to colour by, one per input vertex.
-struct Field {
-    name: String,
-    values: Vec<f64>,
+#[derive(Serialize)]
+struct BatchJson {
+    pictures: Vec<RenderJson>,
+    failed: Vec<Failure>,
+}
+
+#[derive(Serialize)]
+struct Failure {
+    path: PathBuf,
+    error: String,
+}
+
+/// Draws one mesh, or each of several.
+pub(crate) fn draw(args: &RenderArgs, common: &Common) -> Result<ExitCode> {
+    if let ([mesh], true) = (&args.meshes[..], is_single(&args.meshes)) {
+        let output = Output::new(&args.output, "a picture", &["png"], None, common)?;
+        let mut json = draw_one(
+            mesh,
+            output.path(),
+            args,
+            &Bars::with_budget(common.quiet, args.limits.budget()),
+            common,
+        )?;
+        json.output = output.name();
+        return output.report(common, &json, table);
+    }
+    if is_stream(&args.output) {
+        bail!("several pictures cannot go to standard output; name a folder with -o");
+    }
+    let shapes = expand(&args.meshes)?;
+    let outputs = outputs(&shapes, &args.output, "png")?;
+    let bar = Bars::new(common.quiet).bar("pictures", shapes.len());
+    let mut json = BatchJson { pictures: Vec::new(), failed: Vec::new() };
+    for (shape, output) in shapes.into_iter().zip(outputs) {
+        let drawn = create_folder_of(&output).and_then(|()| {
+            let bars = Bars::with_budget(true, args.limits.budget());
+            draw_one(&shape.path, &output, args, &bars, common)
+        });
+        match drawn {
+            Ok(picture) => json.pictures.push(picture),
+            Err(fault) => {
+                let error = crate::remedy::message(&fault);
+                terminal::error(&error);
+                json.failed.push(Failure { path: shape.path, error });
+            }
+        }
+        bar.inc(1);
+    }
+    bar.finish_and_clear();
+    report(common, &json, |json| {
+        let folder = args.output.display();
+        format!("{} pictures in {folder}, {} failed", json.pictures.len(), json.failed.len())
+    })?;
+    Ok(exit_code(json.failed.is_empty()))
 }
 
 /// Draws a mesh, or its form, into a file.
-pub(crate) fn draw(args: &RenderArgs, common: &Common) -> Result<ExitCode> {
-    check_format(&args.output, "a picture", &["png"])?;
-    check_folder(&args.output)?;
-    check_options(args)?;
+fn draw_one(
+    path: &Path,
+    output: &Path,
+    args: &RenderArgs,
+    bars: &Bars,
+    common: &Common,
+) -> Result<RenderJson> {
     let start = Instant::now();
-    let mesh = mesh::io::read(&args.mesh)?;
-    if mesh.n_faces() == 0 {
-        bail!("{}: the mesh has no faces to draw; give a mesh with faces", args.mesh.display());
-    }
+    let (mesh, carried) = read_mesh_with_field(path, common)?;
     let is_measured = args.form || !args.distance_from.is_empty();
     let surface = is_measured.then(|| Surface::new(&mesh, &args.repair.options())).transpose();
-    let surface = surface.map_err(|fault| named(&args.mesh, fault))?;
+    let surface = surface.map_err(|fault| named(path, fault))?;
     if let Some(surface) = &surface {
-        print_repair(&file_name(&args.mesh), &surface.repaired.report, &args.repair);
+        print_repair(&file_name(path), &surface.repaired.report, &args.repair);
     }
-    let field = field(args, &mesh, surface.as_ref())?;
+    let field = field(path, args, &mesh, carried, surface.as_ref())?;
     let drawn = match &surface {
-        Some(surface) if args.form => form(args, surface, common)?,
+        Some(surface) if args.form => form(surface, bars, common).map_err(|fault| named(path, fault))?,
         _ => mesh,
     };
     let options = options(args, field.as_ref());
@@ -75,10 +129,10 @@ pub(crate) fn draw(args: &RenderArgs, common: &Common) -> Result<ExitCode> {
         Some(field) if !args.no_bar => render_with_bar(&drawn, &options, &field.name)?,
         _ => render(&drawn, &options),
     };
-    image.write_png(&args.output)?;
-    let json = RenderJson {
-        mesh: args.mesh.clone(),
-        output: args.output.clone(),
+    image.write_png(output)?;
+    Ok(RenderJson {
+        mesh: path.to_owned(),
+        output: output.to_owned(),
         width: image.width(),
         height: image.height(),
         n_vertices: drawn.n_vertices(),
@@ -91,15 +145,11 @@ pub(crate) fn draw(args: &RenderArgs, common: &Common) -> Result<ExitCode> {
         }),
         seconds: start.elapsed().as_secs_f64(),
         repair: surface.map(|surface| surface.repaired.report),
-    };
-    report(common, &json, table)
+    })
 }
 
-/// Refuses options that would have no effect.
+/// Refuses options that would have no effect on a mesh without values.
 fn check_options(args: &RenderArgs) -> Result<()> {
-    if args.field.is_some() || !args.distance_from.is_empty() {
-        return Ok(());
-    }
     let given =
         [("--isolines", args.isolines > 0), ("--range", args.range.is_some()), ("--no-bar", args.no_bar)];
     if let Some((option, _)) = given.iter().find(|(_, is_given)| *is_given) {
@@ -110,17 +160,28 @@ fn check_options(args: &RenderArgs) -> Result<()> {
     Ok(())
 }
 
-fn field(args: &RenderArgs, mesh: &TriMesh, surface: Option<&Surface>) -> Result<Option<Field>> {
+/// The values to draw: of a file, of distances, or those that the mesh file carries.
+fn field(
+    path: &Path,
+    args: &RenderArgs,
+    mesh: &TriMesh,
+    carried: Option<ScalarField>,
+    surface: Option<&Surface>,
+) -> Result<Option<ScalarField>> {
     if let Some(path) = &args.field {
         let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-        return Ok(Some(Field { name, values: read_field(path, args.row, mesh.n_vertices())? }));
+        return Ok(Some(ScalarField { name, values: read_field(path, args.row, mesh.n_vertices())? }));
     }
-    match surface {
-        Some(surface) if !args.distance_from.is_empty() => {
-            let values = distances(args, surface).map_err(|fault| named(&args.mesh, fault))?;
-            Ok(Some(Field { name: "distance".to_owned(), values }))
+    match (surface, carried) {
+        (Some(surface), _) if !args.distance_from.is_empty() => {
+            let values = distances(args, surface).map_err(|fault| named(path, fault))?;
+            Ok(Some(ScalarField { name: "distance".to_owned(), values }))
         }
-        _ => Ok(None),
+        (_, Some(field)) if args.color.is_none() => Ok(Some(field)),
+        _ => {
+            check_options(args)?;
+            Ok(None)
+        }
     }
 }
 
@@ -134,17 +195,16 @@ fn distances(args: &RenderArgs, surface: &Surface) -> Result<Vec<f64>, canonform
 }
 
 /// The canonical form with the faces of the input; vertices that the repair dropped have NaN positions.
-fn form(args: &RenderArgs, surface: &Surface, common: &Common) -> Result<TriMesh> {
+fn form(surface: &Surface, bars: &Bars, common: &Common) -> Result<TriMesh, canonform::Error> {
     let options = FormOptions { seed: common.seed, ..FormOptions::default() };
-    let embedded = embed(surface, &options, &Bars::with_budget(common.quiet, args.limits.budget()))
-        .map_err(|fault| named(&args.mesh, fault))?;
+    let embedded = embed(surface, &options, bars)?;
     let points: Vec<_> =
         embedded.embedding.coords.row_iter().map(|row| [row[0], row[1], row[2]].into()).collect();
     let positions = surface.in_input_order(&points, [f64::NAN; 3].into());
     Ok(TriMesh { positions, faces: surface.input_faces.clone() })
 }
 
-fn options(args: &RenderArgs, field: Option<&Field>) -> RenderOptions {
+fn options(args: &RenderArgs, field: Option<&ScalarField>) -> RenderOptions {
     let usual = RenderOptions::default();
     let surface = match (field, args.color) {
         (Some(field), _) => Paint::Scalars {

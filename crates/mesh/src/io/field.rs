@@ -1,4 +1,4 @@
-//! A number and a colour per vertex.
+//! A number per vertex, and a colour when it is written.
 
 use crate::error::MeshError;
 
@@ -11,6 +11,15 @@ pub struct VertexField<'a> {
     pub values: &'a [f64],
     /// One colour per vertex: red, green, blue.
     pub colors: &'a [[u8; 3]],
+}
+
+/// A scalar field read from a file.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ScalarField {
+    /// Its name in the file.
+    pub name: String,
+    /// One value per vertex, in the order of the file; NaN and infinities are allowed.
+    pub values: Vec<f64>,
 }
 
 impl VertexField<'_> {

@@ -21,14 +21,14 @@ use files::Pending;
 use nalgebra::Point3;
 use surface::VertexId;
 
-use crate::error::{Fault, MeshError};
+use crate::error::{Fault, Located, MeshError};
 use crate::face_set::check_input;
 use crate::tri_mesh::TriMesh;
 use formats::{CheckStart, Precision};
 use source::{Disk, Memory, Source, read_checked};
 
 pub use crate::error::Content;
-pub use field::VertexField;
+pub use field::{ScalarField, VertexField};
 pub use formats::{FORMATS, Format, extension, mesh_files, or_list, writable};
 pub use limits::ReadLimits;
 pub use source::MemoryFile;
@@ -73,7 +73,7 @@ pub fn read(path: &Path) -> Result<TriMesh, MeshError> {
 /// # Errors
 /// As [`read()`]; [`Fault::OverLimit`] beyond `limits`.
 pub fn read_within(path: &Path, limits: &ReadLimits) -> Result<TriMesh, MeshError> {
-    read_source(path, &Disk, limits)
+    Ok(read_source(path, &Disk, limits, Format::parse)?.0)
 }
 
 /// Reads a mesh from a stream, such as standard input, to its end. `name` stands for it in messages. Formats of more
@@ -99,13 +99,49 @@ pub fn read_from(
     format: &Format,
     limits: &ReadLimits,
 ) -> Result<TriMesh, MeshError> {
+    Ok(read_stream(name, stream, format, limits, Format::parse)?.0)
+}
+
+/// As [`read_from`], with the scalar field that a PLY file carries.
+///
+/// # Errors
+/// As [`read_from`].
+pub fn read_from_with_field(
+    name: &Path,
+    stream: &mut dyn Read,
+    format: &Format,
+    limits: &ReadLimits,
+) -> Result<(TriMesh, Option<ScalarField>), MeshError> {
+    read_stream(name, stream, format, limits, Format::parse_with_field)
+}
+
+/// A mesh and its field, if there is one and it was asked for.
+type WithField = (TriMesh, Option<ScalarField>);
+
+type Parse = fn(&Format, &[&[u8]], &ReadLimits) -> Result<WithField, Located>;
+
+fn read_stream(
+    name: &Path,
+    stream: &mut dyn Read,
+    format: &Format,
+    limits: &ReadLimits,
+    parse: Parse,
+) -> Result<WithField, MeshError> {
     let [check] = format.check_start else {
         let what = format!("{} consists of two files and cannot be read from a stream", format.name);
         let remedy = "name one of its files, or convert it to OFF or PLY";
         return Err(Fault::Unsupported { what, remedy }.whole().in_file(name));
     };
     let bytes = read_checked(name, stream, *check, None, limits.max_bytes)?;
-    (format.parse)(&[&bytes], limits).map_err(|fault| fault.in_file(name))
+    parse(format, &[&bytes], limits).map_err(|fault| fault.in_file(name))
+}
+
+/// As [`read()`], with the scalar field that a PLY file carries, such as one by [`write_scalar_field`].
+///
+/// # Errors
+/// As [`read()`].
+pub fn read_with_field(path: &Path) -> Result<(TriMesh, Option<ScalarField>), MeshError> {
+    read_source(path, &Disk, &ReadLimits::default(), Format::parse_with_field)
 }
 
 /// Reads a mesh from files in memory: one file, or a `.vert`/`.tri` pair in either order. Looks for no other file.
@@ -131,10 +167,15 @@ pub fn read_memory(files: &[MemoryFile<'_>], limits: &ReadLimits) -> Result<TriM
         let (path, extra) = (first.name.to_owned(), extra.name.to_owned());
         return Err(MeshError::StrayFile { path, extra, supported: mesh_files() });
     }
-    read_source(first.name, &Memory(files), limits)
+    Ok(read_source(first.name, &Memory(files), limits, Format::parse)?.0)
 }
 
-fn read_source(path: &Path, source: &dyn Source, limits: &ReadLimits) -> Result<TriMesh, MeshError> {
+fn read_source(
+    path: &Path,
+    source: &dyn Source,
+    limits: &ReadLimits,
+    parse: Parse,
+) -> Result<WithField, MeshError> {
     let format = Format::of(path)?;
     let paths = format.files(path, source);
     let load = |(file, check): (&PathBuf, &CheckStart)| {
@@ -146,7 +187,7 @@ fn read_source(path: &Path, source: &dyn Source, limits: &ReadLimits) -> Result<
     };
     let contents = paths.iter().zip(format.check_start).map(load).collect::<Result<Vec<_>, _>>()?;
     let contents: Vec<&[u8]> = contents.iter().map(AsRef::as_ref).collect();
-    (format.parse)(&contents, limits).map_err(|fault| {
+    parse(format, &contents, limits).map_err(|fault| {
         let file = &paths[fault.file];
         fault.in_file(file)
     })
@@ -190,10 +231,10 @@ fn check_single_precision(mesh: &TriMesh, format: &Format) -> Result<(), MeshErr
 }
 
 /// Writes a mesh with a scalar field: as PLY with the property [`VertexField::name`] (double) and the colours
-/// `red green blue`.
+/// `red green blue`; as OFF and OBJ with the colours alone.
 ///
 /// # Errors
-/// As [`write()`]; [`MeshError::UnsupportedContent`] if the extension is not `.ply`,
+/// As [`write()`]; [`MeshError::UnsupportedContent`] for another extension,
 /// [`MeshError::FieldLength`] and [`MeshError::FieldName`] for a field that the file cannot hold.
 pub fn write_scalar_field(path: &Path, mesh: &TriMesh, field: &VertexField<'_>) -> Result<(), MeshError> {
     let format = Format::of(path)?;

@@ -15,10 +15,10 @@ use mesh::io::{Content, writable};
 
 use self::task::Task;
 use crate::args::{Common, GeodesicArgs};
-use crate::input::{named, read_surface};
-use crate::output::{check_folder, check_format};
+use crate::input::{file_name, named, print_repair, read_both};
+use crate::output::Output;
 
-type Write = fn(&Task) -> Result<ExitCode>;
+type Write = fn(Task<'_>) -> Result<ExitCode>;
 
 /// Measures distances or finds paths.
 pub(crate) fn geodesic(args: &GeodesicArgs, common: &Common) -> Result<ExitCode> {
@@ -29,12 +29,15 @@ pub(crate) fn geodesic(args: &GeodesicArgs, common: &Common) -> Result<ExitCode>
     } else {
         ("paths", writable(Content::Lines).chain(["csv", "json"]).collect(), paths::write)
     };
-    let format = check_format(&args.output, what, &formats)?;
-    check_folder(&args.output)?;
-    let surface = read_surface(&args.mesh, &args.repair)?;
+    let output = Output::new(&args.output, what, &formats, Some(&args.output_format), common)?;
+    let (mesh, surface) = read_both(&args.mesh, &args.repair, common)?;
+    print_repair(&file_name(&args.mesh), &surface.repaired.report, &args.repair);
+    if args.all_pairs {
+        pairs::check_size(surface.n_input_vertices(), args.force)?;
+    }
     let start = Instant::now();
     let method = args.marching.of(args.method);
     let solver = method.prepare(&surface.intrinsic).map_err(|fault| named(&args.mesh, fault.into()))?;
     let setup = surface.repair_seconds + start.elapsed().as_secs_f64();
-    write(&Task { args, common, format: &format, surface: &surface, solver: solver.as_ref(), setup })
+    write(Task { args, common, output, mesh: &mesh, surface: &surface, solver: solver.as_ref(), setup })
 }

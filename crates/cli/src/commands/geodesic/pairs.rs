@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Instant;
 
-use anyhow::Result;
+use anyhow::{Result, bail};
 use canonform::{AllPairs, Asymmetry};
 use mesh::RepairReport;
 use serde::Serialize;
@@ -13,7 +13,7 @@ use terminal::Bars;
 
 use super::task::Task;
 use crate::input::named;
-use crate::output::{facts, fill_npy, report};
+use crate::output::{facts, fill_npy};
 
 /// Default memory for distances, in bytes.
 const DEFAULT_MEMORY: usize = 1 << 30;
@@ -39,21 +39,47 @@ struct Seconds {
     all_pairs: f64,
 }
 
+/// The largest file that is written without --force, in bytes: 111,803 vertices.
+const LARGEST_FILE: u128 = 100_000_000_000;
+
+/// Announces a large file, and refuses one that is likely a mistake.
+pub(super) fn check_size(n_vertices: usize, force: bool) -> Result<()> {
+    let bytes = (n_vertices as u128).pow(2) * 8;
+    let size = format!("all pairs of {n_vertices} vertices take a file of {}", decimal_bytes(bytes));
+    if bytes > LARGEST_FILE && !force {
+        bail!(
+            "{size}; measure from some vertices with --source, simplify the mesh, or pass --force to write it all \
+             the same"
+        );
+    }
+    if bytes > LARGEST_FILE / 100 {
+        terminal::note(&size);
+    }
+    Ok(())
+}
+
+/// Bytes in powers of 1000, as disks are sold.
+fn decimal_bytes(bytes: u128) -> String {
+    let units = [(1_000_000_000_000, "TB"), (1_000_000_000, "GB"), (1_000_000, "MB")];
+    let (unit, name) = units.into_iter().find(|(unit, _)| bytes >= *unit).unwrap_or((1_000, "kB"));
+    format!("{:.1} {name}", bytes as f64 / unit as f64)
+}
+
 /// Measures, writes and reports the distances between all pairs.
-pub(super) fn write(task: &Task) -> Result<ExitCode> {
+pub(super) fn write(task: Task<'_>) -> Result<ExitCode> {
     let Task { args, surface, .. } = task;
     let memory = args.limits.memory.unwrap_or(DEFAULT_MEMORY);
     let pairs = AllPairs::new(surface, task.solver, memory).map_err(|fault| named(&args.mesh, fault))?;
     let start = Instant::now();
     let mut asymmetry = Asymmetry::default();
-    fill_npy(&args.output, [pairs.n_vertices(); 2], |file| {
+    fill_npy(task.output.path(), [pairs.n_vertices(); 2], |file| {
         asymmetry = pairs.write(file, &Bars::with_budget(task.common.quiet, args.limits.budget()))?;
         Ok(())
     })?;
     let json = PairsJson {
         method: args.method.name(),
         n_vertices: pairs.n_vertices(),
-        output: args.output.clone(),
+        output: task.output.name(),
         asymmetry,
         seconds: Seconds {
             load: surface.load_seconds,
@@ -63,7 +89,7 @@ pub(super) fn write(task: &Task) -> Result<ExitCode> {
         unreached: surface.repaired.report.dropped_vertices.clone(),
         repair: surface.repaired.report.clone(),
     };
-    report(task.common, &json, table)
+    task.output.report(task.common, &json, table)
 }
 
 fn table(json: &PairsJson) -> String {
@@ -88,4 +114,21 @@ fn table(json: &PairsJson) -> String {
     }
     lines.push(("wrote", json.output.display().to_string()));
     facts(&lines)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn files_beyond_100_gb_need_force() {
+        let refused = check_size(750_000, false).unwrap_err().to_string();
+        assert!(
+            refused.contains("750000 vertices take a file of 4.5 TB") && refused.contains("--force"),
+            "{refused}"
+        );
+        assert!(check_size(750_000, true).is_ok() && check_size(111_803, false).is_ok());
+        assert!(check_size(111_804, false).is_err());
+        assert_eq!([12, 12_345, 12_345_678].map(decimal_bytes), ["0.0 kB", "12.3 kB", "12.3 MB"]);
+    }
 }

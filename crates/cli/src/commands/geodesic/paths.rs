@@ -13,7 +13,7 @@ use serde::Serialize;
 
 use super::task::{Row, Seconds, Task, spelled};
 use crate::input::named;
-use crate::output::{facts, report};
+use crate::output::{Output, facts};
 
 #[derive(Serialize)]
 struct PathsJson {
@@ -41,7 +41,7 @@ struct PathFacts {
 }
 
 /// Finds, writes and reports paths.
-pub(super) fn write(task: &Task) -> Result<ExitCode> {
+pub(super) fn write(task: Task<'_>) -> Result<ExitCode> {
     let Task { args, surface, .. } = task;
     let fault = |fault| named(&args.mesh, fault);
     // Bad targets fail before any work is done.
@@ -71,19 +71,19 @@ pub(super) fn write(task: &Task) -> Result<ExitCode> {
         }
     }
     let path_seconds = start.elapsed().as_secs_f64();
-    write_paths(task, &paths, &facts)?;
+    write_paths(&task.output, &paths, &facts)?;
     let json = PathsJson {
         method: args.method.name(),
         n_vertices: surface.n_input_vertices(),
         sources: args.source.clone(),
         targets: args.path_to.clone(),
-        outputs: vec![args.output.clone()],
+        outputs: vec![task.output.name()],
         paths: facts,
         seconds,
         path_seconds,
         repair: surface.repaired.report.clone(),
     };
-    report(task.common, &json, table)
+    task.output.report(task.common, &json, table)
 }
 
 /// The source where a path starts.
@@ -110,15 +110,15 @@ fn table(json: &PathsJson) -> String {
     facts(&lines)
 }
 
-fn write_paths(task: &Task, paths: &[SurfacePath], facts: &[PathFacts]) -> Result<()> {
-    let output = &task.args.output;
-    match task.format {
-        "csv" => files::write_atomically(output, |out| write_csv(out, paths))?,
-        "json" => files::write_atomically(output, |out| write_json(out, paths, facts))?,
+fn write_paths(output: &Output, paths: &[SurfacePath], facts: &[PathFacts]) -> Result<()> {
+    let path = output.path();
+    match output.format() {
+        "csv" => files::write_atomically(path, |out| write_csv(out, paths))?,
+        "json" => files::write_atomically(path, |out| write_json(out, paths, facts))?,
         _ => {
             let lines: Vec<Vec<_>> =
                 paths.iter().map(|path| path.points.iter().map(|point| point.position).collect()).collect();
-            mesh::io::write_polylines(output, &lines)?;
+            mesh::io::write_polylines(path, &lines)?;
         }
     }
     Ok(())

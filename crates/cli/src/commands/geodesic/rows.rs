@@ -3,13 +3,13 @@
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use anyhow::{Context, Result};
+use anyhow::{Context, Result, bail};
 use canonform::InputPoint;
 use mesh::RepairReport;
 use serde::Serialize;
 
 use super::task::{Row, Seconds, Task, spelled};
-use crate::output::{facts, report, write_colored, write_csv, write_npy};
+use crate::output::{facts, write_colored, write_csv, write_npy};
 
 #[derive(Serialize)]
 struct RowsJson {
@@ -29,12 +29,12 @@ struct RowsJson {
 }
 
 /// Measures, writes and reports distances.
-pub(super) fn write(task: &Task) -> Result<ExitCode> {
+pub(super) fn write(task: Task<'_>) -> Result<ExitCode> {
     let Task { args, surface, .. } = task;
     let (solved, seconds) = task.solve()?;
     let rows: Vec<Vec<f64>> =
         solved.iter().map(|row| surface.in_input_order(&row.distances, f64::INFINITY)).collect();
-    let outputs = write_rows(task, &solved, &rows)?;
+    let outputs = write_rows(&task, &solved, &rows)?;
     let is_infinite = |v: &u32| rows.iter().any(|row| !row[*v as usize].is_finite());
     // A repaired surface is connected: with a limit, vertices that are not reached lie beyond it.
     let unreached = if args.max_distance.is_some() {
@@ -60,7 +60,7 @@ pub(super) fn write(task: &Task) -> Result<ExitCode> {
         },
         repair: surface.repaired.report.clone(),
     };
-    report(task.common, &json, |json| table(json, &solved))
+    task.output.report(task.common, &json, |json| table(json, &solved))
 }
 
 fn table(json: &RowsJson, rows: &[Row]) -> String {
@@ -87,24 +87,29 @@ fn table(json: &RowsJson, rows: &[Row]) -> String {
 
 /// Writes the distances, in the vertex order of the input, and returns the files.
 fn write_rows(task: &Task, solved: &[Row], rows: &[Vec<f64>]) -> Result<Vec<PathBuf>> {
-    let (output, slices) = (&task.args.output, rows.iter().map(Vec::as_slice));
-    match task.format {
+    let (output, slices) = (task.output.path(), rows.iter().map(Vec::as_slice));
+    match task.output.format() {
         "npy" => write_npy(output, task.surface.n_input_vertices(), slices)?,
         "csv" => write_csv(output, slices)?,
         _ => {
-            let mesh = mesh::io::read(&task.args.mesh)?;
+            if task.output.is_stream() && rows.len() > 1 {
+                bail!("several meshes cannot go to standard output; name a file with -o, or write .npy");
+            }
             let mut outputs = Vec::new();
             for (row, distances) in solved.iter().zip(rows) {
-                let path =
-                    if rows.len() == 1 { output.clone() } else { numbered(output, &row.from, task.format) };
-                write_colored(&path, &mesh, "distance", distances)
+                let path = if rows.len() == 1 {
+                    output.to_owned()
+                } else {
+                    numbered(output, &row.from, task.output.format())
+                };
+                write_colored(&path, task.mesh, "distance", distances)
                     .with_context(|| format!("source {}", spelled(&row.from)))?;
-                outputs.push(path);
+                outputs.push(if task.output.is_stream() { task.output.name() } else { path });
             }
             return Ok(outputs);
         }
     }
-    Ok(vec![output.clone()])
+    Ok(vec![task.output.name()])
 }
 
 /// `out.ply` for source 7 of several: `out-7.ply`.

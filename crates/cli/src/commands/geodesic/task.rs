@@ -5,18 +5,21 @@ use std::time::Instant;
 use anyhow::Result;
 use canonform::geodesics::{DistanceSolver, Source};
 use canonform::{InputPoint, Surface};
+use mesh::TriMesh;
 use serde::Serialize;
 use terminal::Bars;
 
 use crate::args::{Common, GeodesicArgs};
 use crate::input::named;
+use crate::output::Output;
 
 /// A surface with its solver, and what to do with them.
 pub(super) struct Task<'a> {
     pub(super) args: &'a GeodesicArgs,
     pub(super) common: &'a Common,
-    /// Extension of the output.
-    pub(super) format: &'a str,
+    pub(super) output: Output,
+    /// The input.
+    pub(super) mesh: &'a TriMesh,
     pub(super) surface: &'a Surface,
     pub(super) solver: &'a dyn DistanceSolver,
     /// Seconds to repair the mesh and to prepare the solver.

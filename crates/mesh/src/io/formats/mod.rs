@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 use nalgebra::Point3;
 
 use crate::error::{Content, Located, MeshError};
-use crate::io::field::VertexField;
+use crate::io::field::{ScalarField, VertexField};
 use crate::io::limits::ReadLimits;
 use crate::io::source::Source;
 use crate::tri_mesh::TriMesh;
@@ -23,6 +23,8 @@ use crate::tri_mesh::TriMesh;
 type Parse = fn(&[&[u8]], &ReadLimits) -> Result<TriMesh, Located>;
 /// Checks the first bytes of a file, given its size if that is known: whether the whole can be a file of the format.
 pub(super) type CheckStart = fn(&[u8], Option<u64>) -> Result<(), Located>;
+type ParsedMesh = (TriMesh, Option<ScalarField>);
+type ParseField = fn(&[u8], &ReadLimits) -> Result<ParsedMesh, Located>;
 type WriteMesh = fn(&mut dyn Write, &TriMesh) -> io::Result<()>;
 type WriteField = fn(&mut dyn Write, &TriMesh, &VertexField<'_>) -> io::Result<()>;
 type WriteLines = fn(&mut dyn Write, &[Vec<Point3<f64>>]) -> io::Result<()>;
@@ -40,6 +42,8 @@ pub struct Format {
     pub(super) check_start: &'static [CheckStart],
     /// Parses the contents of [`files`](Self::files).
     pub(super) parse: Parse,
+    /// Parses the content of the file with its scalar field, if the format can hold one that reads back.
+    pub(super) parse_field: Option<ParseField>,
     /// Writers of the files, in the order of `extensions`; empty if the format is read-only.
     pub(super) write: &'static [WriteMesh],
     pub(super) write_field: Option<WriteField>,
@@ -59,14 +63,17 @@ pub(super) enum Precision {
 pub static FORMATS: [Format; 6] = [
     Format {
         write: &[off::write],
+        write_field: Some(off::write_field),
         ..read_only("OFF", &["off"], &[off::check_start], |files, limits| off::parse(files[0], limits))
     },
     Format {
         write: &[obj::write],
+        write_field: Some(obj::write_field),
         write_lines: Some(obj::write_lines),
         ..read_only("OBJ", &["obj"], &[obj::check_start], |files, limits| obj::parse(files[0], limits))
     },
     Format {
+        parse_field: Some(ply::parse_field),
         write: &[ply::write],
         write_field: Some(ply::write_field),
         write_lines: Some(ply::write_lines),
@@ -100,6 +107,7 @@ const fn read_only(
         precision,
         check_start,
         parse,
+        parse_field: None,
         write: &[],
         write_field: None,
         write_lines: None,
@@ -125,6 +133,23 @@ impl Format {
     pub fn named(extension: &str) -> Option<&'static Self> {
         let extension = extension.to_ascii_lowercase();
         FORMATS.iter().find(|format| format.extensions.contains(&extension.as_str()))
+    }
+
+    /// Parses the contents of the [`files`](Self::files) of a mesh.
+    pub(super) fn parse(&self, files: &[&[u8]], limits: &ReadLimits) -> Result<ParsedMesh, Located> {
+        Ok(((self.parse)(files, limits)?, None))
+    }
+
+    /// As [`parse`](Self::parse), with the scalar field, if there is one.
+    pub(super) fn parse_with_field(
+        &self,
+        files: &[&[u8]],
+        limits: &ReadLimits,
+    ) -> Result<ParsedMesh, Located> {
+        match self.parse_field {
+            Some(parse) => parse(files[0], limits),
+            None => self.parse(files, limits),
+        }
     }
 
     /// Whether files of this format can be written with this content.
@@ -216,7 +241,7 @@ mod tests {
         assert_eq!(or_list(["ply"]), ".ply");
         assert_eq!(or_list(["npy", "csv", "ply"]), ".npy, .csv or .ply");
         assert_eq!(or_list(writable(Content::Lines)), ".obj or .ply");
-        assert_eq!(or_list(writable(Content::Field)), ".ply");
+        assert_eq!(or_list(writable(Content::Field)), ".off, .obj or .ply");
         assert_eq!(or_list(writable(Content::Mesh)), ".off, .obj, .ply, .stl or .vert");
         assert_eq!(mesh_files(), "a .off, .obj, .ply, .stl or .mat file, or a .vert with its .tri");
     }

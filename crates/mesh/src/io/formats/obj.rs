@@ -6,6 +6,7 @@ use nalgebra::Point3;
 use surface::VertexId;
 
 use crate::error::{Fault, Located};
+use crate::io::field::VertexField;
 use crate::io::limits::ReadLimits;
 use crate::io::polygons::{finish, push_polygon};
 use crate::io::text::{Line, Lines, check_is_text, excerpt, parse_number, parse_position, write_position};
@@ -87,6 +88,19 @@ fn parse_corner(line: Line<'_>, token: &[u8], n_before: i64, n_vertices: usize) 
 /// Writes OBJ; coordinates read back bit for bit.
 pub(super) fn write(out: &mut dyn Write, mesh: &TriMesh) -> io::Result<()> {
     mesh.positions.iter().try_for_each(|p| write_position(out, "v ", p))?;
+    write_faces(out, mesh)
+}
+
+/// Writes OBJ with a colour per vertex, behind its position. The format has no place for values.
+pub(super) fn write_field(out: &mut dyn Write, mesh: &TriMesh, field: &VertexField<'_>) -> io::Result<()> {
+    for (p, color) in mesh.positions.iter().zip(field.colors) {
+        let [r, g, b] = color.map(|channel| f64::from(channel) / 255.0);
+        writeln!(out, "v {:?} {:?} {:?} {r:.4} {g:.4} {b:.4}", p.x, p.y, p.z)?;
+    }
+    write_faces(out, mesh)
+}
+
+fn write_faces(out: &mut dyn Write, mesh: &TriMesh) -> io::Result<()> {
     for face in &mesh.faces {
         let [a, b, c] = face.map(|v| u64::from(v.0) + 1);
         writeln!(out, "f {a} {b} {c}")?;

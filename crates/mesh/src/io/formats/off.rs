@@ -5,6 +5,7 @@ use std::io::{self, Write};
 use surface::VertexId;
 
 use crate::error::{Fault, Located};
+use crate::io::field::VertexField;
 use crate::io::limits::ReadLimits;
 use crate::io::polygons::{finish, push_polygon};
 use crate::io::text::{Line, Lines, check_is_text, excerpt, parse_integer, parse_position, write_position};
@@ -123,6 +124,15 @@ fn parse_corners(line: Line<'_>, n_vertices: u64, corners: &mut Vec<VertexId>) -
 pub(super) fn write(out: &mut dyn Write, mesh: &TriMesh) -> io::Result<()> {
     writeln!(out, "OFF\n{} {} 0", mesh.n_vertices(), mesh.n_faces())?;
     mesh.positions.iter().try_for_each(|p| write_position(out, "", p))?;
+    mesh.faces.iter().try_for_each(|[a, b, c]| writeln!(out, "3 {a} {b} {c}"))
+}
+
+/// Writes COFF: a colour per vertex. The format has no place for values.
+pub(super) fn write_field(out: &mut dyn Write, mesh: &TriMesh, field: &VertexField<'_>) -> io::Result<()> {
+    writeln!(out, "COFF\n{} {} 0", mesh.n_vertices(), mesh.n_faces())?;
+    for (p, [r, g, b]) in mesh.positions.iter().zip(field.colors) {
+        writeln!(out, "{:?} {:?} {:?} {r} {g} {b} 255", p.x, p.y, p.z)?;
+    }
     mesh.faces.iter().try_for_each(|[a, b, c]| writeln!(out, "3 {a} {b} {c}"))
 }
 

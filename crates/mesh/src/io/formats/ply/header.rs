@@ -145,6 +145,34 @@ impl Property {
         let axis = ["x", "y", "z"].iter().position(|axis| *axis == self.name);
         axis.filter(|_| self.length.is_none())
     }
+
+    /// Whether a property of a vertex is a scalar field, judging by its type and name.
+    pub(super) fn is_field(&self) -> bool {
+        const OTHERS: [&str; 21] = [
+            "x",
+            "y",
+            "z",
+            "nx",
+            "ny",
+            "nz",
+            "red",
+            "green",
+            "blue",
+            "alpha",
+            "r",
+            "g",
+            "b",
+            "a",
+            "s",
+            "t",
+            "u",
+            "v",
+            "texture_u",
+            "texture_v",
+            "w",
+        ];
+        self.length.is_none() && !self.item.is_integer() && !OTHERS.contains(&self.name.as_str())
+    }
 }
 
 fn scalar(name: &str) -> Option<Scalar> {

@@ -6,6 +6,7 @@ use surface::VertexId;
 use super::header::{Element, Encoding, Header};
 use crate::error::{Fault, Located, Place};
 use crate::io::binary::{ByteOrder, Scalar};
+use crate::io::field::ScalarField;
 use crate::io::limits::ReadLimits;
 use crate::io::polygons::{finish, push_polygon};
 use crate::io::text::{Lines, check_is_text, excerpt, parse_integer, parse_number};
@@ -34,9 +35,28 @@ fn check_first_line(lines: &mut Lines<'_>) -> Result<(), Located> {
     }
 }
 
+/// As [`parse`], with the scalar field of the vertices, if there is one: the first floating-point property other than
+/// positions, normals, colours and texture coordinates.
+pub(crate) fn parse_field(
+    bytes: &[u8],
+    limits: &ReadLimits,
+) -> Result<(TriMesh, Option<ScalarField>), Located> {
+    let mut field = None;
+    let mesh = parse_into(bytes, limits, &mut field)?;
+    Ok((mesh, field))
+}
+
 /// Reads PLY: the element `vertex` with `x y z`, then `face` with a list `vertex_indices` or `vertex_index`.
 /// Other elements and properties are ignored.
 pub(crate) fn parse(bytes: &[u8], limits: &ReadLimits) -> Result<TriMesh, Located> {
+    parse_into(bytes, limits, &mut None)
+}
+
+fn parse_into(
+    bytes: &[u8],
+    limits: &ReadLimits,
+    field: &mut Option<ScalarField>,
+) -> Result<TriMesh, Located> {
     let mut lines = Lines::new(bytes);
     check_first_line(&mut lines)?;
     let header = Header::parse(&mut lines)?;
@@ -51,11 +71,16 @@ pub(crate) fn parse(bytes: &[u8], limits: &ReadLimits) -> Result<TriMesh, Locate
             "vertex" => {
                 positions.reserve_exact(element.count as usize);
                 let axes: Vec<Option<usize>> = element.properties.iter().map(|p| p.axis()).collect();
+                let carrier = element.properties.iter().position(|p| p.is_field());
+                let mut values = Vec::new();
                 for row in 0..element.count {
                     let mut p = Point3::origin();
                     let place = body.row(element, row, |property, x| {
                         if let Some(axis) = axes[property] {
                             p[axis] = x;
+                        }
+                        if carrier == Some(property) {
+                            values.push(x);
                         }
                     })?;
                     if let Some(&value) = p.iter().find(|x| !x.is_finite()) {
@@ -63,6 +88,7 @@ pub(crate) fn parse(bytes: &[u8], limits: &ReadLimits) -> Result<TriMesh, Locate
                     }
                     positions.push(p);
                 }
+                *field = carrier.map(|i| ScalarField { name: element.properties[i].name.clone(), values });
             }
             "face" => {
                 faces.reserve_exact(element.count as usize);
