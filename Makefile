@@ -77,7 +77,11 @@ deny: ## Check licences and sources of dependencies with cargo-deny (installs it
 
 sbom: ## Write OUT/sbom, a CycloneDX list of the dependencies of every program (installs cargo-cyclonedx if missing)
 	@command -v cargo-cyclonedx >/dev/null || $(CARGO) install --locked cargo-cyclonedx
-	sh .ci/sbom $(OUT)/sbom
+	@mkdir -p $(OUT)/sbom
+	@set -e; for folder in crates/cli experiments; do \
+	  cargo-cyclonedx cyclonedx --format json --override-filename sbom --manifest-path $$folder/Cargo.toml; \
+	  mv $$folder/sbom.json $(OUT)/sbom/$$(basename $$folder).json; \
+	done; find crates experiments datasets -name sbom.json -delete; ls $(OUT)/sbom
 
 # What `cargo fuzz` passes to the compiler: counters of edges, a table of functions, and traced comparisons.
 FUZZ_FLAGS = -Cpasses=sancov-module -Cllvm-args=-sanitizer-coverage-level=4 \

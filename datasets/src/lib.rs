@@ -1,4 +1,4 @@
-//! Generated datasets of labelled shapes.
+//! Generated datasets of labelled shapes, and a zoo of broken meshes ([`broken_meshes`]).
 //!
 //! `ArticulatedOptions` -> **datasets** -> `LabeledShape` (`mesh::TriMesh`, name, class) -> `experiments`
 //!
@@ -18,6 +18,7 @@
 //! Nothing here depends on distances, embeddings or the algorithms that will use the shapes.
 
 mod articulated;
+mod broken;
 mod cases;
 mod cat;
 mod centaur;
@@ -40,4 +41,5 @@ mod trig;
 pub use articulated::{
     ArticulatedOptions, Family, LabeledShape, articulated, articulated_body, articulated_shape,
 };
+pub use broken::{BrokenFile, broken_meshes};
 pub use error::DatasetError;

@@ -6,6 +6,7 @@
 //! | `cycles` | imports between the modules of a crate |
 //! | `packaging` | whether all packages can be published |
 //! | `licences` | licences of dependencies |
+//! | `guarantees` | the tests behind `docs/robustness.md` |
 //! | `marching` | distances by fast marching |
 //! | `embedding` | embeddings through the whole pipeline |
 //! | `isometry` | invariance to folding, motions, renumbering and units |
@@ -23,6 +24,8 @@ mod builtin;
 mod cycles;
 #[cfg(test)]
 mod embedding;
+#[cfg(test)]
+mod guarantees;
 #[cfg(test)]
 mod isometry;
 #[cfg(test)]

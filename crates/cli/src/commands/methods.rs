@@ -1,11 +1,16 @@
 //! `canonform methods`.
 
 use std::process::ExitCode;
+use std::time::Instant;
 
 use anyhow::Result;
 use canonform::geodesics::{Method, Sampling, Variance};
 use canonform::nmds::{Regularization, RpiAlpha};
-use canonform::{EmbedMethod, FormOptions, MethodFacts, MethodsReport, StressOptions, compare_methods};
+use canonform::{
+    DISTANCES_LIMIT, EmbedMethod, FormOptions, MethodFacts, MethodsReport, Samples, StressOptions, Surface,
+    compare_methods,
+};
+use surface::VertexId;
 use terminal::{Bars, with_peak_bytes};
 
 use crate::args::{Common, MethodsArgs};
@@ -17,16 +22,57 @@ pub(crate) fn methods(args: &MethodsArgs, common: &Common) -> Result<ExitCode> {
     let stress = StressOptions { choice: args.stress, against: None, seed: common.seed };
     let surface = read_surface(&args.mesh, &args.form.repair, common)?;
     let options = args.form.options(common);
+    let variants = variants(&options);
+    announce(&surface, &options, &variants).map_err(|fault| named(&args.mesh, fault))?;
     let methods = compare_methods(
         &surface,
         &options,
-        &variants(&options),
+        &variants,
         &stress,
         &Bars::with_budget(common.quiet, args.limits.budget()),
         &|work| with_peak_bytes(work).1,
     )
     .map_err(|fault| named(&args.mesh, fault))?;
     report(common, &methods, table)
+}
+
+/// Most samples that `auto` takes.
+const MOST_AUTO: usize = 640;
+
+/// Seconds of distances beyond which they are announced.
+const WORTH_ANNOUNCING: f64 = 10.0;
+
+/// Times one run of the solver and announces how long all of them will take.
+fn announce(
+    surface: &Surface,
+    options: &FormOptions,
+    variants: &[(&'static str, FormOptions)],
+) -> Result<(), canonform::Error> {
+    let p = surface.mesh().n_vertices();
+    let solver = options.geodesic.prepare(&surface.intrinsic)?;
+    let start = Instant::now();
+    let _ = solver.distances(VertexId(0));
+    let one = start.elapsed().as_secs_f64();
+    let samples = match options.samples {
+        Samples::Count(n) => n.min(p),
+        Samples::Auto => p.min(MOST_AUTO),
+    };
+    let fits = p.saturating_mul(p).saturating_mul(size_of::<f64>()) <= DISTANCES_LIMIT;
+    let runs = |options: &FormOptions| match options.method.is_sampled() {
+        true => samples,
+        false if fits => p,
+        false => 0,
+    };
+    let runs: usize = variants.iter().map(|(_, options)| runs(options)).sum();
+    let seconds = runs as f64 * one / rayon::current_num_threads() as f64;
+    if seconds > WORTH_ANNOUNCING {
+        terminal::note(&format!(
+            "about {} s for distances ({runs} runs of {} s), besides the embeddings; -n with fewer samples takes less",
+            view::numbers::seconds(seconds),
+            view::numbers::seconds(one)
+        ));
+    }
+    Ok(())
 }
 
 /// Every method, and the variants of the first one by the options that select them.

@@ -80,8 +80,10 @@ fn errors_name_options_out_of_range() {
     embed(&["-o", "f.stl"], &["f.stl", ".npy, .ply, .obj or .off"]);
     embed(&["-o", "f"], &["f: ", ".npy, .ply, .obj or .off"]);
     embed(&[], &["--output"]);
-    place
-        .refused(&["geodesic", "ring.off", "--source", "0", "-o", "d.off"], &["d.off", ".npy, .csv or .ply"]);
+    place.refused(
+        &["geodesic", "ring.off", "--source", "0", "-o", "d.stl"],
+        &["d.stl", ".npy, .csv, .off, .obj or .ply"],
+    );
     place.refused(&["geodesic", "ring.off", "--source", "-1", "-o", "d.npy"], &["-1"]);
     place.refused(&["geodesic", "ring.off", "-o", "d.npy"], &["--source"]);
     place.refused(&["compare", "ring.off", "ring.off", "--dim", "2"], &["3 dimensions", "--dim"]);

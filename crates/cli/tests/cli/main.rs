@@ -1,7 +1,8 @@
 //! The program as its users see it: arguments in; files, output and exit codes out.
 //!
-//! `commands` (what each prints), `dropped` (lost surfaces), `forms` (files), `errors`, `folders` (many meshes), `geodesic` (sources, paths, all
-//! pairs), `index` (building, changing, searching), `killed` (interruptions, full disks), `render` (pictures), `serve`.
+//! `commands` (what each prints), `dropped` (lost surfaces), `forms` (files), `errors`, `folders` (many meshes), `geodesic`
+//! (sources, paths, all pairs), `index` (building, changing, searching), `killed` (interruptions, full disks), `render`
+//! (pictures), `serve`, `streams` (standard input and output, several meshes, limits), `zoo` (broken meshes).
 
 #[cfg(test)]
 mod commands;
@@ -24,4 +25,8 @@ mod render;
 #[cfg(test)]
 mod serve;
 #[cfg(test)]
+mod streams;
+#[cfg(test)]
 mod support;
+#[cfg(test)]
+mod zoo;

@@ -1,0 +1,253 @@
+//! Standard input and output, several meshes, limits, and quiet runs.
+
+use std::fs;
+use std::io::Write;
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+
+use mesh::shapes;
+
+use crate::support::{Workplace, broken_ring, one_object, program, read_npy, ring};
+
+fn place() -> Workplace {
+    let place = Workplace::new();
+    for name in ["ring.off", "ring.ply", "ring.stl", "ring.obj"] {
+        place.add(name, &ring());
+    }
+    place
+}
+
+/// Runs the program with a file as standard input: exit code, standard output, standard error.
+fn piped(place: &Workplace, input: &str, arguments: &[&str]) -> (i32, Vec<u8>, String) {
+    let mut child = Command::new(program())
+        .current_dir(place.path("."))
+        .args(arguments)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let bytes = fs::read(place.path(input)).unwrap();
+    // The program may refuse before it has read everything.
+    let _ = child.stdin.take().unwrap().write_all(&bytes);
+    let output = child.wait_with_output().unwrap();
+    (output.status.code().unwrap(), output.stdout, String::from_utf8(output.stderr).unwrap())
+}
+
+#[test]
+fn meshes_come_from_standard_input_in_every_format_of_one_file() {
+    let place = place();
+    for format in ["off", "ply", "stl", "obj"] {
+        let file = format!("ring.{format}");
+        let (code, out, err) = piped(&place, &file, &["info", "-", "--input-format", format, "--json"]);
+        assert_eq!(code, 0, "{err}");
+        let json = one_object(&String::from_utf8(out).unwrap());
+        assert_eq!(json["meshes"][0]["mesh"]["n_faces"], 320, "{format}");
+    }
+    place.done(&["embed", "ring.ply", "-n", "20", "-o", "named.npy"]);
+    let stream = ["embed", "-", "--input-format", "ply", "-n", "20", "-o", "streamed.npy", "-q"];
+    assert_eq!(piped(&place, "ring.ply", &stream).0, 0);
+    assert_eq!(read_npy(&place.path("named.npy")), read_npy(&place.path("streamed.npy")));
+}
+
+#[test]
+fn results_go_to_standard_output_and_nothing_else_does() {
+    let place = place();
+    for (file, arguments) in [
+        ("form.npy", vec!["embed", "ring.off", "-n", "20", "--output-format", "npy"]),
+        ("form.ply", vec!["embed", "ring.off", "-n", "20"]),
+        ("rows.npy", vec!["geodesic", "ring.off", "--source", "0,9"]),
+        ("rows.csv", vec!["geodesic", "ring.off", "--source", "0,9", "--output-format", "csv"]),
+        ("near.ply", vec!["geodesic", "ring.off", "--source", "0", "--output-format", "ply"]),
+        ("pairs.npy", vec!["geodesic", "ring.off", "--all-pairs"]),
+        (
+            "path.obj",
+            vec!["geodesic", "ring.off", "--source", "0", "--path-to", "9", "--output-format", "obj"],
+        ),
+        ("x.png", vec!["render", "ring.off", "--size", "60"]),
+    ] {
+        place.done(&[&arguments[..], &["-o", file]].concat());
+        let (code, out, err) = piped(&place, "ring.off", &[&arguments[..], &["-o", "-"]].concat());
+        assert_eq!((code, out), (0, fs::read(place.path(file)).unwrap()), "{arguments:?}: {err}");
+        assert!(err.contains("wrote"), "the table goes to standard error: {err}");
+        let (_, _, err) = piped(&place, "ring.off", &[&arguments[..], &["-o", "-", "-q"]].concat());
+        assert_eq!(err, "", "{arguments:?}");
+    }
+}
+
+#[test]
+fn streams_that_cannot_work_are_refused() {
+    let place = place();
+    place.refused(&["info", "-"], &["standard input", "--input-format ply"]);
+    place.refused(&["info", "-", "--input-format", "vert"], &["vert", "off"]);
+    place.refused(&["info", "-", "-", "--input-format", "off"], &["only once"]);
+    place.refused(&["compare", "-", "-", "--input-format", "off"], &["only once"]);
+    place.refused(&["embed", "ring.off", "-o", "-", "--json"], &["--json", "standard output"]);
+    place.refused(&["embed", "ring.off", "ring.ply", "-o", "-"], &["several", "folder"]);
+    place.refused(&["render", "ring.off", "ring.ply", "-o", "-"], &["several", "folder"]);
+    place.refused(
+        &["geodesic", "ring.off", "--source", "0,9", "-o", "-", "--output-format", "ply"],
+        &["several", ".npy"],
+    );
+    fs::write(place.path("bad.off"), "OFF\n3 1 0\n0 0 0\n").unwrap();
+    let (code, _, err) = piped(&place, "bad.off", &["info", "-", "--input-format", "off"]);
+    assert!(code == 2 && err.contains("standard input, line 3"), "{err}");
+}
+
+#[test]
+fn lists_folders_and_patterns_are_embedded_and_drawn() {
+    let place = Workplace::new();
+    for name in ["scans/ring2.off", "scans/ring10.off", "more/sheet.ply"] {
+        place.add(name, &ring());
+    }
+    fs::write(place.path("scans/notes.txt"), "no mesh").unwrap();
+    let embed = place.json(&["embed", "scans/*", "more", "-n", "20", "-o", "forms", "--format", "npy"]);
+    let names: Vec<&str> =
+        embed["shapes"].as_array().unwrap().iter().map(|shape| shape["name"].as_str().unwrap()).collect();
+    assert_eq!(names, ["ring2", "ring10", "sheet"]);
+    for name in names {
+        assert_eq!(read_npy(&place.path(&format!("forms/{name}.npy"))).0, [160, 3]);
+    }
+    let drawn = place.json(&["render", "scans/ring2.off", "more/*.ply", "--size", "40", "-o", "pictures/"]);
+    assert_eq!(drawn["pictures"].as_array().unwrap().len(), 2);
+    assert!(place.path("pictures/ring2.png").exists() && place.path("pictures/sheet.png").exists());
+    place.refused(&["embed", "none/*.off", "-o", "forms"], &["none/*.off", "no mesh matches"]);
+}
+
+#[test]
+fn two_inputs_of_one_name_are_refused_and_a_bad_mesh_does_not_stop_the_rest() {
+    let place = place();
+    let before = place.names();
+    place.refused(&["embed", "ring.off", "ring.ply", "-o", "forms"], &["ring.off", "ring.ply", "rename"]);
+    place.refused(&["render", "ring.off", "ring.ply", "-o", "pictures"], &["ring.off", "ring.ply", "rename"]);
+    place.refused(&["embed", "ring.off", "*.ply", "-o", "."], &["ring.ply", "overwrite"]);
+    assert_eq!(place.names(), before);
+    place.add("sheet.off", &shapes::grid(12, 9, 0.1));
+    for (command, key) in [("embed", "shapes"), ("render", "pictures")] {
+        let outcome = place.run(&[command, "absent.off", "sheet.off", "ring.obj", "-o", "out", "--json"]);
+        assert_eq!(outcome.code, 2);
+        assert_eq!(outcome.err.matches("error: ").count(), 1, "{}", outcome.err);
+        let json = one_object(&outcome.out);
+        assert_eq!(json[key].as_array().unwrap().len(), 2);
+        assert_eq!(json["failed"][0]["path"], "absent.off");
+    }
+}
+
+#[test]
+fn quiet_runs_write_nothing_but_errors_to_standard_error() {
+    let place = place();
+    place.add("broken.off", &broken_ring());
+    for arguments in [
+        vec!["info", "broken.off"],
+        vec!["embed", "broken.off", "--dim", "3", "-n", "20", "-o", "form.npy"],
+        vec!["geodesic", "broken.off", "--source", "0", "-o", "d.npy"],
+        vec!["render", "broken.off", "--form", "-o", "x.png", "--size", "40"],
+        vec!["compare", "broken.off", "broken.off"],
+        vec!["methods", "broken.off", "-n", "20"],
+    ] {
+        assert_eq!(place.run(&[&arguments[..], &["-q"]].concat()).err, "", "{arguments:?}");
+    }
+    assert!(place.run(&["info", "absent.off", "-q"]).err.contains("absent.off"));
+}
+
+#[test]
+fn the_stress_has_a_form_without_a_unit() {
+    let place = place();
+    let mut large = ring();
+    large.positions.iter_mut().for_each(|p| p.coords *= 1024.0);
+    place.add("large.off", &large);
+    for kind in ["exact", "estimate"] {
+        let [small, large] = ["ring.off", "large.off"].map(|mesh| {
+            let json = place.json(&["embed", mesh, "-n", "20", "--stress", kind, "-o", "form.npy"]);
+            json["stress"]["normalized"].as_f64().unwrap()
+        });
+        assert!(small > 0.0 && small < 0.5 && small == large, "{small} {large}");
+    }
+    let text = place.done(&["embed", "ring.off", "-n", "20", "-o", "form.npy"]).out;
+    assert!(text.contains("normalised stress"), "{text}");
+    let help = place.done(&["embed", "--help"]).out;
+    assert!(help.contains("||Z Z' + 1/2 J E J||_F / p") && help.contains("sqrt(sum (d_ij"), "{help}");
+}
+
+#[test]
+fn absurd_requests_are_refused_before_they_cost_anything() {
+    let place = place();
+    place.add("large.ply", &shapes::icosphere(7));
+    let start = Instant::now();
+    place.refused(
+        &["geodesic", "large.ply", "--all-pairs", "-o", "all.npy"],
+        &["163842 vertices", "214.8 GB", "--force"],
+    );
+    for threads in ["4294967296", "1025", "-1"] {
+        place.refused(&["info", "ring.off", &format!("--threads={threads}")], &["--threads", "0..=1024"]);
+    }
+    for (option, value) in
+        [("-n", "10000000"), ("--eigenvectors", "9223372036854775807"), ("--dim", "9223372036854775807")]
+    {
+        let outcome =
+            place.run(&["embed", "ring.off", "--method", "spectral", option, value, "-o", "form.npy"]);
+        assert!([0, 2].contains(&outcome.code), "{option} {value}: {}", outcome.err);
+        assert!(outcome.code == 0 || outcome.err.contains("error: "), "{option} {value}: {}", outcome.err);
+    }
+    assert!(start.elapsed() < Duration::from_secs(120));
+}
+
+#[test]
+fn time_and_memory_limits_end_a_command_with_an_error_and_leave_nothing() {
+    let place = Workplace::new();
+    place.add("ball.ply", &shapes::icosphere(6));
+    let before = place.names();
+    let start = Instant::now();
+    for arguments in [
+        vec!["embed", "ball.ply", "-n", "2000", "--stress", "exact", "-o", "form.npy"],
+        vec!["geodesic", "ball.ply", "--all-pairs", "--method", "exact", "-o", "all.npy"],
+        vec!["methods", "ball.ply", "-n", "2000"],
+        vec!["compare", "ball.ply", "ball.ply", "-n", "2000"],
+    ] {
+        place.refused(&[&arguments[..], &["--timeout", "0.2"]].concat(), &["0.2 seconds", "--timeout"]);
+        assert_eq!(place.names(), before);
+    }
+    place.refused(
+        &["embed", "ball.ply", "-n", "2000", "--memory", "1M", "-o", "form.npy"],
+        &["bytes of memory", "--memory"],
+    );
+    assert!(start.elapsed() < Duration::from_secs(300));
+    place.refused(&["info", "ball.ply", "--timeout", "0"], &["--timeout"]);
+}
+
+#[test]
+fn fields_are_written_in_every_format_with_colours_and_drawn_again() {
+    let place = place();
+    place.add("ball.off", &shapes::icosphere(3));
+    for name in ["r.ply", "r.obj", "r.off"] {
+        place.done(&["compare", "ring.off", "ball.off", "--residual-mesh", name]);
+        let json = place.json(&["render", name, "-o", "r.png", "--size", "60"]);
+        assert_eq!(json["n_vertices"], 160);
+        assert_eq!(json["field"]["name"].as_str(), name.ends_with("ply").then_some("residual"), "{name}");
+    }
+    place.refused(
+        &["compare", "ring.off", "ball.off", "--residual-mesh", "r.stl"],
+        &["r.stl", ".off, .obj or .ply"],
+    );
+    // The values of a file are drawn as those of the same field in another file.
+    place.done(&["geodesic", "ring.off", "--source", "3", "-o", "d.ply"]);
+    place.done(&["geodesic", "ring.off", "--source", "3", "-o", "d.npy"]);
+    place.done(&["render", "d.ply", "--isolines", "5", "--no-bar", "--size", "90", "-o", "a.png"]);
+    place.done(&[
+        "render",
+        "ring.off",
+        "--field",
+        "d.npy",
+        "--isolines",
+        "5",
+        "--no-bar",
+        "--size",
+        "90",
+        "-o",
+        "b.png",
+    ]);
+    assert_eq!(fs::read(place.path("a.png")).unwrap(), fs::read(place.path("b.png")).unwrap());
+    let (code, _, err) =
+        piped(&place, "d.ply", &["render", "-", "--input-format", "ply", "--range", "0,1", "-o", "c.png"]);
+    assert_eq!(code, 0, "{err}");
+}
