@@ -4,10 +4,11 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use anyhow::Result;
+use budget::Budget;
 use canonform::geodesics::{Method, Sampling, Variance};
 use canonform::nmds::{Regularization, RpiAlpha};
 use canonform::{
-    DISTANCES_LIMIT, EmbedMethod, FormOptions, MethodFacts, MethodsReport, Samples, StressOptions, Surface,
+    DISTANCES_LIMIT, EmbedMethod, FormOptions, MethodFacts, MethodsReport, Observer, Samples, StressOptions, Surface,
     compare_methods,
 };
 use surface::VertexId;
@@ -23,13 +24,14 @@ pub(crate) fn methods(args: &MethodsArgs, common: &Common) -> Result<ExitCode> {
     let surface = read_surface(&args.mesh, &args.form.repair, common)?;
     let options = args.form.options(common);
     let variants = variants(&options);
-    announce(&surface, &options, &variants).map_err(|fault| named(&args.mesh, fault))?;
+    let bars = Bars::with_budget(common.quiet, args.limits.budget());
+    announce(&surface, &options, &variants, &bars.budget()).map_err(|fault| named(&args.mesh, fault))?;
     let methods = compare_methods(
         &surface,
         &options,
         &variants,
         &stress,
-        &Bars::with_budget(common.quiet, args.limits.budget()),
+        &bars,
         &|work| with_peak_bytes(work).1,
     )
     .map_err(|fault| named(&args.mesh, fault))?;
@@ -47,11 +49,12 @@ fn announce(
     surface: &Surface,
     options: &FormOptions,
     variants: &[(&'static str, FormOptions)],
+    budget: &Budget,
 ) -> Result<(), canonform::Error> {
     let p = surface.mesh().n_vertices();
-    let solver = options.geodesic.prepare(&surface.intrinsic)?;
+    let solver = options.geodesic.prepare_within(&surface.intrinsic, budget)?;
     let start = Instant::now();
-    let _ = solver.distances(VertexId(0));
+    solver.distances(VertexId(0))?;
     let one = start.elapsed().as_secs_f64();
     let samples = match options.samples {
         Samples::Count(n) => n.min(p),

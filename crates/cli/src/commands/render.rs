@@ -188,7 +188,7 @@ fn field(
 fn distances(args: &RenderArgs, surface: &Surface) -> Result<Vec<f64>, canonform::Error> {
     let source = |point| Ok(Source::new(&surface.intrinsic, surface.locate(point)?)?);
     let sources: Result<Vec<_>, canonform::Error> = args.distance_from.iter().map(source).collect();
-    let solver = Method::default().prepare(&surface.intrinsic)?;
+    let solver = Method::default().prepare_within(&surface.intrinsic, &args.limits.budget())?;
     let mut distances = vec![0.0; solver.n_vertices()];
     solver.solve_into(&sources?, f64::INFINITY, &mut distances)?;
     Ok(surface.in_input_order(&distances, f64::INFINITY))
