@@ -94,7 +94,7 @@ SECONDS ?= 60
 
 # The flags apply to the target platform only, so procedural macros and build scripts stay as they are.
 fuzz: ## Fuzz the readers, the pipeline and the index for SECONDS=60 each; FUZZ_TARGETS chooses (needs a C++ compiler)
-	cd fuzz && RUSTFLAGS="$(FUZZ_FLAGS)" $(CARGO) build --release --locked --bins --target $(FUZZ_HOST) --target-dir target
+	cd fuzz && RUSTFLAGS="$(FUZZ_FLAGS)" $(CARGO) build --release --bins --target $(FUZZ_HOST) --target-dir target
 	@set -e; mkdir -p fuzz/artifacts; for target in $(FUZZ_TARGETS); do \
 	  mkdir -p fuzz/found/$$target; echo "== $$target, $(SECONDS) s"; \
 	  fuzz/target/$(FUZZ_HOST)/release/$$target -max_total_time=$(SECONDS) -timeout=20 -rss_limit_mb=2048 \

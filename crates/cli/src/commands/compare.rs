@@ -9,7 +9,7 @@ use canonform::descriptors::{
 };
 use canonform::{
     Comparison, DescribeOptions, FormOptions, Residual, ShapeDescription, Surface, SurfaceComparison,
-    Triangulation, compare_surfaces, describe, embed,
+    Triangulation, compare_surfaces, describe_within, embed,
 };
 use mesh::io::{Content, writable};
 use serde::Serialize;
@@ -51,12 +51,13 @@ fn side(path: &Path, args: &CompareArgs, options: &FormOptions, common: &Common)
     let usual = FormOptions { repair: options.repair, ..FormOptions::default() };
     let usual = DescribeOptions { form: usual, ..DescribeOptions::default() };
     let measure = || {
-        let embedded = embed(&surface, options, &Bars::with_budget(common.quiet, args.limits.budget()))?;
+        let budget = args.limits.budget();
+        let embedded = embed(&surface, options, &Bars::with_budget(common.quiet, budget.clone()))?;
         let form = embedded.form(&surface)?;
         if embedded.options == usual.form {
             return Ok((form, ShapeDescription::new(&surface, &embedded, &usual)?.prepare()?, None));
         }
-        let description = describe(&surface, &usual)?;
+        let description = describe_within(&surface, &usual, &budget)?;
         let (fused, area) = (description.fused.clone(), Some(description.area));
         let shape = PreparedShape::new(fused, &form.reduced(usual.points), area)?;
         Ok((form, shape, Some(description.prepare()?)))

@@ -8,8 +8,8 @@ use budget::Budget;
 use canonform::geodesics::{Method, Sampling, Variance};
 use canonform::nmds::{Regularization, RpiAlpha};
 use canonform::{
-    DISTANCES_LIMIT, EmbedMethod, FormOptions, MethodFacts, MethodsReport, Observer, Samples, StressOptions, Surface,
-    compare_methods,
+    DISTANCES_LIMIT, EmbedMethod, FormOptions, MethodFacts, MethodsReport, Observer, Samples, StressOptions,
+    Surface, compare_methods,
 };
 use surface::VertexId;
 use terminal::{Bars, with_peak_bytes};
@@ -26,15 +26,9 @@ pub(crate) fn methods(args: &MethodsArgs, common: &Common) -> Result<ExitCode> {
     let variants = variants(&options);
     let bars = Bars::with_budget(common.quiet, args.limits.budget());
     announce(&surface, &options, &variants, &bars.budget()).map_err(|fault| named(&args.mesh, fault))?;
-    let methods = compare_methods(
-        &surface,
-        &options,
-        &variants,
-        &stress,
-        &bars,
-        &|work| with_peak_bytes(work).1,
-    )
-    .map_err(|fault| named(&args.mesh, fault))?;
+    let methods =
+        compare_methods(&surface, &options, &variants, &stress, &bars, &|work| with_peak_bytes(work).1)
+            .map_err(|fault| named(&args.mesh, fault))?;
     report(common, &methods, table)
 }
 

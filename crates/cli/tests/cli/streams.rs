@@ -251,3 +251,39 @@ fn fields_are_written_in_every_format_with_colours_and_drawn_again() {
         piped(&place, "d.ply", &["render", "-", "--input-format", "ply", "--range", "0,1", "-o", "c.png"]);
     assert_eq!(code, 0, "{err}");
 }
+
+/// Waits for something to happen.
+fn until(what: impl Fn() -> bool) {
+    let start = Instant::now();
+    while !what() {
+        assert!(start.elapsed() < Duration::from_secs(60), "nothing happened for a minute");
+        std::thread::sleep(Duration::from_millis(10));
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupted_command_stops_at_once_and_leaves_nothing() {
+    let place = Workplace::new();
+    place.add("ball.ply", &shapes::icosphere(5));
+    fs::create_dir(place.path("tmp")).unwrap();
+    let is_begun = |folder: &str| fs::read_dir(place.path(folder)).unwrap().count() > 0;
+    fs::create_dir(place.path("out")).unwrap();
+    for (output, folder) in [("-", "tmp"), ("out/all.npy", "out")] {
+        let mut child = Command::new(program())
+            .current_dir(place.path("."))
+            .env("TMPDIR", place.path("tmp"))
+            .args(["geodesic", "ball.ply", "--all-pairs", "--method", "exact", "-o", output])
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap();
+        until(|| is_begun(folder));
+        let start = Instant::now();
+        let sent = Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
+        assert!(sent.success());
+        assert_eq!(child.wait().unwrap().code(), Some(130));
+        assert!(start.elapsed() < Duration::from_secs(10));
+        assert!(!is_begun("tmp") && !is_begun("out"), "{output}");
+    }
+}

@@ -37,7 +37,9 @@ pub(crate) fn geodesic(args: &GeodesicArgs, common: &Common) -> Result<ExitCode>
     }
     let start = Instant::now();
     let method = args.marching.of(args.method);
-    let solver = method.prepare_within(&surface.intrinsic, &args.limits.budget()).map_err(|fault| named(&args.mesh, fault.into()))?;
+    let solver = method
+        .prepare_within(&surface.intrinsic, &args.limits.budget())
+        .map_err(|fault| named(&args.mesh, fault.into()))?;
     let setup = surface.repair_seconds + start.elapsed().as_secs_f64();
     write(Task { args, common, output, mesh: &mesh, surface: &surface, solver: solver.as_ref(), setup })
 }
