@@ -106,9 +106,9 @@ pub use input::{
 };
 pub use observer::Observer;
 pub use shape_index::{
-    BuildOptions, BuildReport, ClassVotes, Dropped, Explain, Failure, Inputs, Measure, MergeReport, NearestShape,
-    Prediction, Ranked, Reranked, SearchOptions, SearchReport, SearchResult, SearchSeconds, ShapeSearch,
-    Shard, Unknown, add_to_index, build_index, evaluate_index, evaluate_matrix, merge_indexes,
+    BuildOptions, BuildReport, ClassVotes, Dropped, Explain, Failure, Inputs, Measure, MergeReport,
+    NearestShape, Prediction, Ranked, Reranked, SearchOptions, SearchReport, SearchResult, SearchSeconds,
+    ShapeSearch, Shard, Unknown, add_to_index, build_index, evaluate_index, evaluate_matrix, merge_indexes,
     remove_from_index, rerank,
 };
 pub use {descriptors, geodesics, index, linalg, mesh, nmds, retrieval, surface};

@@ -8,7 +8,7 @@ use mesh::{MeshReport, RepairReport, repair, validate};
 use serde::Serialize;
 
 use crate::args::{Common, InfoArgs};
-use crate::input::{check_dropped, expand, read_mesh};
+use crate::input::{check_dropped, expand, named, read_mesh};
 use crate::output::{exit_code, facts, print, print_json};
 
 #[derive(Serialize)]
@@ -35,8 +35,11 @@ struct Failure {
 pub(crate) fn info(args: &InfoArgs, common: &Common) -> Result<ExitCode> {
     let mut json = InfoJson { meshes: Vec::new(), failed: Vec::new() };
     for path in expand(&args.meshes)?.into_iter().map(|shape| shape.path) {
-        let report = read_mesh(&path, common)
-            .and_then(|mesh| Ok((validate(&mesh), repair(&mesh, &args.repair.options())?.report)));
+        let report = read_mesh(&path, common).and_then(|mesh| {
+            let repaired =
+                repair(&mesh, &args.repair.options()).map_err(|fault| named(&path, fault.into()))?;
+            Ok((validate(&mesh), repaired.report))
+        });
         match report {
             Ok((mesh, repair)) => {
                 let info = MeshInfo { path, mesh, repair };
