@@ -75,13 +75,13 @@ deny: ## Check licences and sources of dependencies with cargo-deny (installs it
 	@command -v cargo-deny >/dev/null || $(CARGO) install --locked cargo-deny
 	cargo-deny --all-features check licenses bans sources
 
-sbom: ## Write OUT/sbom, a CycloneDX list of the dependencies of every program (installs cargo-cyclonedx if missing)
+sbom: ## Write OUT/sbom, CycloneDX lists of the dependencies of both programs (installs cargo-cyclonedx if missing)
 	@command -v cargo-cyclonedx >/dev/null || $(CARGO) install --locked cargo-cyclonedx
 	@mkdir -p $(OUT)/sbom
-	@set -e; for folder in crates/cli experiments; do \
-	  cargo-cyclonedx cyclonedx --format json --override-filename sbom --manifest-path $$folder/Cargo.toml; \
-	  mv $$folder/sbom.json $(OUT)/sbom/$$(basename $$folder).json; \
-	done; find crates experiments datasets -name sbom.json -delete; ls $(OUT)/sbom
+	cargo-cyclonedx cyclonedx --quiet --format json --override-filename canonform-sbom
+	mv crates/cli/canonform-sbom.json $(OUT)/sbom/canonform.json
+	mv experiments/canonform-sbom.json $(OUT)/sbom/experiments.json
+	@find bench crates datasets experiments tests -name canonform-sbom.json -delete
 
 # What `cargo fuzz` passes to the compiler: counters of edges, a table of functions, and traced comparisons.
 FUZZ_FLAGS = -Cpasses=sancov-module -Cllvm-args=-sanitizer-coverage-level=4 \
