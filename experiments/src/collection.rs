@@ -107,6 +107,8 @@ impl Collection {
             Some(folder) => {
                 let labels = args.labels.as_deref().map(LabelFile::read).transpose()?;
                 let mut files = list_shapes(folder, labels.as_ref())?;
+                // A label file need not name all shapes.
+                files.retain(|file| !file.label.is_empty());
                 let is_there = |class: &&str| files.iter().any(|file| file.label == *class);
                 if wanted.is_empty() && !takes_all && PAPER_CLASSES.iter().all(is_there) {
                     wanted = PAPER_CLASSES.map(str::to_owned).to_vec();

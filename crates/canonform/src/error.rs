@@ -189,14 +189,6 @@ pub enum Error {
         /// The folder.
         path: PathBuf,
     },
-    /// A shape that the label file does not name.
-    #[error("{path}: no label for `{name}`; add a line `{name},LABEL`", path = path.display())]
-    NoLabel {
-        /// The label file.
-        path: PathBuf,
-        /// Name of the shape.
-        name: String,
-    },
 }
 
 /// What a user can do about an [`Error`]. A program words it in terms of its own interface.
@@ -229,6 +221,8 @@ pub enum Remedy {
     RestoreMesh,
     /// Build the index again.
     BuildIndexAgain,
+    /// Look at the names in the index.
+    ListShapes,
     /// Evaluate a part of the collection, such as one shard.
     EvaluateShard,
 }
@@ -258,6 +252,18 @@ from_stage! {
     DescriptorError => Descriptor: DescriptorError::Linalg(LinalgError::Exceeded(limit)) => limit;
 }
 
+impl Remedy {
+    /// What would help against an error of an index.
+    #[must_use]
+    pub fn of_index(fault: &IndexError) -> Option<Self> {
+        match fault {
+            IndexError::Damaged { .. } => Some(Self::BuildIndexAgain),
+            IndexError::NoSuchShape { .. } => Some(Self::ListShapes),
+            _ => None,
+        }
+    }
+}
+
 impl Error {
     /// What would help, if it depends on the interface of the program; other advice is part of the message.
     pub fn remedy(&self) -> Option<Remedy> {
@@ -279,6 +285,7 @@ impl Error {
             Self::AlreadyThere { .. } => Remedy::ReplaceShape,
             Self::MeshGone { .. } | Self::MeshChanged { .. } => Remedy::RestoreMesh,
             Self::UnknownOptions { .. } => Remedy::BuildIndexAgain,
+            Self::Index(fault) => return Remedy::of_index(fault),
             Self::TooManyShapes { .. } => Remedy::EvaluateShard,
             _ => return None,
         })

@@ -101,14 +101,15 @@ pub use form::{
     embed_and_measure,
 };
 pub use input::{
-    AllPairs, Asymmetry, BadPoint, InputPoint, LabelFile, PathPoint, ShapeFile, Surface, SurfacePath,
-    label_of, list_shapes,
+    AllPairs, Asymmetry, BadPoint, Dataset, InputPoint, LabelFile, PathPoint, ShapeFile, SkipKind, Skipped,
+    Surface, SurfacePath, label_of, list_shapes,
 };
 pub use observer::Observer;
 pub use shape_index::{
-    BuildOptions, BuildReport, ClassVotes, Dropped, Explain, Failure, Inputs, Measure, MergeReport,
-    NearestShape, Prediction, Ranked, Reranked, SearchOptions, SearchReport, SearchResult, SearchSeconds,
-    ShapeSearch, Shard, Unknown, add_to_index, build_index, evaluate_index, evaluate_matrix, merge_indexes,
+    BuildOptions, BuildReport, ClassVotes, Dropped, Elsewhere, Explain, Failure, FailureReason, Inputs,
+    Measure, MergeReport, NearestShape, Prediction, Ranked, Reranked, SearchOptions, SearchReport,
+    SearchResult, SearchSeconds, ShapeLimits, ShapeSearch, Shard, Unknown, add_to_index, build_index,
+    evaluate_index, evaluate_matrix, merge_indexes, mesh_path,
     remove_from_index, rerank,
 };
 pub use {descriptors, geodesics, index, linalg, mesh, nmds, retrieval, surface};

@@ -41,9 +41,9 @@ pub(crate) fn print_json(value: &impl Serialize) -> Result<()> {
     Ok(writeln!(out)?)
 }
 
-/// Prints text to standard output.
+/// Prints text to standard output, without codes that a terminal would obey.
 pub(crate) fn print(text: &str) -> Result<()> {
-    Ok(writeln!(io::stdout().lock(), "{text}")?)
+    Ok(writeln!(io::stdout().lock(), "{}", terminal::printable(text))?)
 }
 
 /// A table of two columns: names and values.

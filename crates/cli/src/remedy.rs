@@ -22,9 +22,12 @@ fn words(remedy: Remedy) -> &'static str {
         Remedy::GiveLabels => "give classes with --labels FILE.csv",
         Remedy::ReplaceShape => "rename the new shape, remove the old one, or pass --replace",
         Remedy::RestoreMesh => {
-            "restore the file, run in the folder where the index was built, or build the index again"
+            "restore the file, move the index back to the place where it was built, or build the index again"
         }
-        Remedy::BuildIndexAgain => "build the index again with `canonform index build`",
+        Remedy::BuildIndexAgain => {
+            "restore the index from a copy, or build it again with `canonform index build`"
+        }
+        Remedy::ListShapes => "`canonform index list` names its shapes",
         Remedy::EvaluateShard => "evaluate one shard at a time",
         _ => "see `canonform --help`",
     }
@@ -40,6 +43,9 @@ fn advice(cause: &(dyn std::error::Error + 'static)) -> Option<&'static str> {
             ErrorKind::PermissionDenied => "pass --listen with a port above 1023",
             _ => "pass --listen with an address of this machine",
         });
+    }
+    if let Some(fault) = cause.downcast_ref() {
+        return Remedy::of_index(fault).map(words);
     }
     let fault = match cause.downcast_ref() {
         Some(ServerError::Index(fault)) => Some(fault),

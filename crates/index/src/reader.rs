@@ -130,11 +130,6 @@ impl Index {
 
     /// All names and entries, in ascending order of names.
     pub fn entries(&self) -> Result<Vec<(String, ShapeEntry)>, IndexError> {
-        let mut entries = Vec::with_capacity(self.n_shapes);
-        self.store().read()?.each(ENTRIES, |id, entry| {
-            entries.push((id.to_owned(), entry));
-            Ok::<(), IndexError>(())
-        })?;
-        Ok(entries)
+        self.store().read()?.all(ENTRIES)
     }
 }

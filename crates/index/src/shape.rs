@@ -1,6 +1,9 @@
 //! The record of one shape.
 
 use std::fmt;
+use std::fs::File;
+use std::io::{self, Read};
+use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
@@ -20,6 +23,36 @@ impl ContentHash {
             hash.update(piece);
         }
         Self(hash.finalize().into())
+    }
+
+    /// The same hash of the content of files, without holding it in memory.
+    ///
+    /// # Errors
+    /// The path and the error of the first file that cannot be read, or that changes meanwhile.
+    pub fn of_files<'a>(
+        files: impl Iterator<Item = (&'a Path, &'a mut File)>,
+    ) -> Result<Self, (PathBuf, io::Error)> {
+        let mut hash = Sha256::new();
+        let mut buffer = vec![0; 1 << 16];
+        for (path, file) in files {
+            let mut add = || {
+                let length = file.metadata()?.len();
+                hash.update(length.to_le_bytes());
+                let mut left = length;
+                loop {
+                    match file.read(&mut buffer)? {
+                        0 if left == 0 => return Ok(()),
+                        n if n > 0 && n as u64 <= left => {
+                            hash.update(&buffer[..n]);
+                            left -= n as u64;
+                        }
+                        _ => return Err(io::Error::other("the file changed while it was read")),
+                    }
+                }
+            };
+            add().map_err(|error| (path.to_owned(), error))?;
+        }
+        Ok(Self(hash.finalize().into()))
     }
 }
 
@@ -96,6 +129,18 @@ pub struct Shape {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn files_have_the_hash_of_their_content() {
+        let mut files: Vec<File> = (0..2).map(|_| tempfile::tempfile().unwrap()).collect();
+        let pieces = [vec![7; 100_000], vec![1, 2, 3]];
+        for (file, piece) in files.iter_mut().zip(&pieces) {
+            std::io::Write::write_all(file, piece).unwrap();
+            std::io::Seek::rewind(file).unwrap();
+        }
+        let found = ContentHash::of_files(files.iter_mut().map(|file| (Path::new("x"), file))).unwrap();
+        assert_eq!(found, ContentHash::of(&pieces));
+    }
 
     #[test]
     fn hashes_are_sha_256_and_depend_on_where_pieces_end() {

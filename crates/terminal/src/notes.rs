@@ -3,6 +3,8 @@
 use std::io::Write;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use crate::text::printable;
+
 static QUIET: AtomicBool = AtomicBool::new(false);
 
 /// Hides all messages but errors, for the rest of the program.
@@ -30,5 +32,5 @@ pub fn error(text: &str) {
 
 /// Standard error may be closed: that is no reason to stop, and `eprintln` would panic.
 pub(crate) fn write_line(text: &str) {
-    let _ = writeln!(std::io::stderr().lock(), "{text}");
+    let _ = writeln!(std::io::stderr().lock(), "{}", printable(text));
 }

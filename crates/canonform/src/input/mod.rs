@@ -8,8 +8,8 @@ pub(crate) mod point;
 mod repaired;
 
 pub use all_pairs::{AllPairs, Asymmetry};
-pub(crate) use dataset::label_in;
-pub use dataset::{LabelFile, ShapeFile, label_of, list_shapes};
+pub use dataset::{Dataset, LabelFile, ShapeFile, SkipKind, Skipped, label_of, list_shapes};
+pub(crate) use dataset::{count_skipped, drop_single_class, label_in};
 pub use path::{PathPoint, SurfacePath};
 pub use point::{BadPoint, InputPoint};
 pub use repaired::Surface;

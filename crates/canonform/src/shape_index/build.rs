@@ -1,19 +1,22 @@
 //! Building the index of a folder.
 
-use std::collections::HashSet;
+use std::collections::{BTreeMap, HashMap, HashSet};
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, sync_channel};
 use std::time::Instant;
 
+use budget::{Budget, Exceeded};
 use index::{Index, IndexError, IndexWriter, Job, Shape, ShapeEntry, work_path};
+use mesh::{Fault, MeshError};
 use rayon::prelude::*;
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
-use super::record::{DROPPED, path_text, same_source, shape};
-use super::source::{Hashed, Shard, hash_all, name_apart, share};
+use super::place::{Home, Root, mesh_path};
+use super::record::{DROPPED, same_source, shape};
+use super::source::{Hashed, Listed, Listing, ShapeLimits, Shard, hash_all, share};
 use crate::error::{Error, Remedy};
-use crate::form::{DescribeOptions, describe};
-use crate::input::{LabelFile, ShapeFile, Surface, list_shapes};
+use crate::form::{DescribeOptions, ShapeDescription, embed};
+use crate::input::{LabelFile, Surface, count_skipped};
 use crate::observer::Observer;
 
 /// Most shapes written to disk in one transaction.
@@ -31,6 +34,29 @@ pub struct BuildOptions<'a> {
     pub labels: Option<&'a LabelFile>,
     /// The part of the folder to index. Default: all of it.
     pub shard: Option<Shard>,
+    /// What becomes of shapes of the index that did not come from the folder. Default: they are kept.
+    pub elsewhere: Elsewhere,
+    /// What describing each shape may use. Default: no limits.
+    pub limits: ShapeLimits,
+}
+
+impl<'a> BuildOptions<'a> {
+    /// The defaults.
+    #[must_use]
+    pub fn new(describe: &'a DescribeOptions) -> Self {
+        let (elsewhere, limits) = (Elsewhere::default(), ShapeLimits::default());
+        Self { describe, labels: None, shard: None, elsewhere, limits }
+    }
+}
+
+/// What becomes of shapes of an index that did not come from the folder it is built from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Elsewhere {
+    /// They stay.
+    #[default]
+    Keep,
+    /// They are removed.
+    Prune,
 }
 
 /// A mesh that could not be described.
@@ -40,6 +66,8 @@ pub struct Failure {
     pub id: String,
     /// Path of the mesh.
     pub path: PathBuf,
+    /// Why it failed.
+    pub reason: FailureReason,
     /// The error.
     pub error: String,
     /// What would help against it.
@@ -58,6 +86,36 @@ pub struct Dropped {
     pub dropped_area_share: f64,
 }
 
+/// Why a mesh could not be described.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+#[non_exhaustive]
+pub enum FailureReason {
+    /// The file cannot be read, or holds no mesh.
+    Unreadable,
+    /// The mesh has more vertices or faces than allowed.
+    TooLarge,
+    /// It took longer than allowed.
+    Time,
+    /// It needs more memory than allowed.
+    Memory,
+    /// The mesh has no description.
+    Shape,
+}
+
+impl FailureReason {
+    fn of(fault: &Error) -> Self {
+        match fault {
+            Error::Exceeded(Exceeded::Time { .. }) => Self::Time,
+            Error::Exceeded(Exceeded::Memory { .. }) => Self::Memory,
+            Error::Mesh(MeshError::File { fault: Fault::OverLimit { .. }, .. }) => Self::TooLarge,
+            Error::Mesh(MeshError::Io(_) | MeshError::File { .. } | MeshError::UnknownFormat { .. })
+            | Error::File(_) => Self::Unreadable,
+            _ => Self::Shape,
+        }
+    }
+}
+
 /// The outcome of building or extending an index.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct BuildReport {
@@ -69,8 +127,26 @@ pub struct BuildReport {
     pub unchanged: usize,
     /// Shapes whose path or class changed.
     pub renamed: usize,
-    /// Shapes removed because their files are gone or cannot be read any more.
+    /// Shapes removed because their files are gone from the folder or cannot be described any more.
     pub removed: usize,
+    /// Shapes kept although they did not come from the folder; [`Elsewhere::Prune`] removes them.
+    pub elsewhere: usize,
+    /// Shapes removed by [`Elsewhere::Prune`].
+    pub pruned: usize,
+    /// Shapes of this run without a class.
+    pub unlabelled: usize,
+    /// The class that nearly all shapes would have got from the letters that their names begin with. It says nothing, so
+    /// they have none.
+    pub single_class: Option<String>,
+    /// Lines of the label file that name none of the shapes.
+    pub unused_labels: usize,
+    /// What was found beside meshes: the number of each kind.
+    pub skipped: BTreeMap<String, usize>,
+    /// What was skipped although its name is that of a mesh or a folder.
+    #[serde(serialize_with = "as_text")]
+    pub skipped_paths: Vec<PathBuf>,
+    /// Whether a damaged index was replaced; `NAME.damaged` keeps it.
+    pub replaced_damaged: bool,
     /// Whether an interrupted run was resumed.
     pub resumed: bool,
     /// Meshes that could not be described, in order.
@@ -81,22 +157,43 @@ pub struct BuildReport {
     pub seconds: f64,
 }
 
+/// JSON has no names that are not UTF-8.
+fn as_text<S: Serializer>(paths: &[PathBuf], out: S) -> Result<S::Ok, S::Error> {
+    out.collect_seq(paths.iter().map(|path| path.to_string_lossy()))
+}
+
 impl BuildReport {
-    fn fail(&mut self, file: &ShapeFile, fault: &Error) {
-        let (id, path) = (file.name.clone(), file.path.clone());
-        self.failed.push(Failure { id, path, error: fault.to_string(), remedy: fault.remedy() });
+    /// The report on a listing before anything is described.
+    pub(super) fn of(listing: &Listing) -> Self {
+        let unexpected = listing.skipped.iter().filter(|skipped| !skipped.kind.is_expected());
+        Self {
+            unlabelled: listing.shapes.iter().filter(|listed| listed.file.label.is_empty()).count(),
+            single_class: listing.single_class.clone(),
+            unused_labels: listing.unused_labels,
+            skipped: count_skipped(&listing.skipped),
+            skipped_paths: unexpected.map(|skipped| skipped.path.clone()).collect(),
+            ..Self::default()
+        }
+    }
+
+    fn fail(&mut self, listed: &Listed, fault: &Error) {
+        let (id, path) = (listed.file.name.clone(), listed.file.path.clone());
+        let (reason, error) = (FailureReason::of(fault), fault.to_string());
+        self.failed.push(Failure { id, path, reason, error, remedy: fault.remedy() });
     }
 
     /// Lists the shapes in the index whose repair dropped a part of the surface.
     pub(super) fn list_dropped<'a>(
         &mut self,
+        index: &Path,
         ids: impl Iterator<Item = &'a String>,
         entry: impl Fn(&str) -> Result<Option<ShapeEntry>, IndexError>,
     ) -> Result<(), IndexError> {
         for id in ids {
             let Some(entry) = entry(id)? else { continue };
             if let Some(dropped_area_share) = entry.fact(DROPPED).filter(|share| *share > 0.0) {
-                self.dropped.push(Dropped { id: id.clone(), path: entry.path.into(), dropped_area_share });
+                let path = mesh_path(index, &entry.path);
+                self.dropped.push(Dropped { id: id.clone(), path, dropped_area_share });
             }
         }
         self.dropped.sort_by(|a, b| a.id.cmp(&b.id));
@@ -104,8 +201,8 @@ impl BuildReport {
     }
 }
 
-/// Makes `path` the index of the meshes in `folder`: describes new and changed meshes, removes shapes whose files
-/// are gone, and keeps the rest.
+/// Makes `path` the index of the meshes in `folder`: describes new and changed meshes, removes shapes of the folder whose
+/// files are gone, and keeps the rest. Shapes that were added from elsewhere stay, unless the options say otherwise.
 ///
 /// Every described shape is on disk before `observer` counts it, and the next run resumes an interrupted one.
 /// Meshes that cannot be described are reported and left out; if there are no others, no index is written.
@@ -118,8 +215,7 @@ impl BuildReport {
 /// mesh::io::write(&folder.path().join("ring1.off"), &mesh::shapes::torus(24, 12, 2.0, 0.7))?;
 /// let index = folder.path().join("shapes.canonform");
 /// let describe = DescribeOptions::default();
-/// let options = BuildOptions { describe: &describe, labels: None, shard: None };
-/// let report = build_index(folder.path(), &index, &options, &())?;
+/// let report = build_index(folder.path(), &index, &BuildOptions::new(&describe), &())?;
 /// assert_eq!((report.n_shapes, report.failed.len()), (2, 0));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -134,30 +230,54 @@ pub fn build_index(
 ) -> Result<BuildReport, Error> {
     let start = Instant::now();
     options.describe.validate()?;
-    let mut files = list_shapes(folder, options.labels)?;
-    name_apart(&mut files);
-    let files = share(files, options.shard);
     let text = options.describe.text();
     // Refuse other options before any mesh is read.
-    if path.exists() {
-        Index::open(path)?.expect_options(&text)?;
-    }
-    let hashed = hash_all(files, observer);
-    let mut report = BuildReport::default();
-    if !work_path(path).exists() && path.exists() && is_current(&Index::open(path)?, &hashed)? {
-        let index = Index::open(path)?;
-        report.list_dropped(hashed.iter().map(|(file, _)| &file.name), |id| index.entry(id).map(Some))?;
-        (report.n_shapes, report.unchanged) = (hashed.len(), hashed.len());
+    let existing = match Index::open(path) {
+        Ok(index) => index.expect_options(&text).map(|()| Some(index))?,
+        // The writer takes care of a damaged index.
+        Err(IndexError::Damaged { .. }) => None,
+        Err(IndexError::Io { source, .. }) if source.kind() == std::io::ErrorKind::NotFound => None,
+        Err(fault) => return Err(fault.into()),
+    };
+    let home = Home::of(path)?;
+    let root = Root::new(folder, &home)?;
+    let mut listing = Listing::of_folder(&root, options.labels)?;
+    listing.shapes = share(listing.shapes, options.shard);
+    let mut report = BuildReport::of(&listing);
+    let hashed = hash_all(listing.shapes, observer);
+    if let Some(index) = &existing
+        && !work_path(path).exists()
+        && let Some(elsewhere) = is_current(index, &hashed, &root, options.elsewhere)?
+    {
+        let ids = hashed.iter().map(|(listed, _)| &listed.file.name);
+        report.list_dropped(path, ids, |id| index.entry(id).map(Some))?;
+        (report.n_shapes, report.unchanged, report.elsewhere) = (index.len(), hashed.len(), elsewhere);
         report.seconds = start.elapsed().as_secs_f64();
         return Ok(report);
     }
+    drop(existing);
     let mut writer = IndexWriter::open(path, Job::Build, Some(&text))?;
     report.resumed = writer.is_resumed();
-    let kept = fill(&mut writer, hashed, options.describe, &mut report, observer)?;
-    let gone: Vec<String> = writer.ids()?.into_iter().filter(|id| !kept.contains(id)).collect();
-    report.removed = gone.len();
+    report.replaced_damaged = writer.replaces_damaged();
+    let kept = fill(&mut writer, hashed, options.describe, options.limits, &mut report, observer)?;
+    let mut gone = Vec::new();
+    for (id, entry) in writer.entries()? {
+        if kept.contains(&id) {
+            continue;
+        }
+        match (root.brought(&id, &entry.path), options.elsewhere) {
+            (true, _) => report.removed += 1,
+            (false, Elsewhere::Prune) => report.pruned += 1,
+            (false, Elsewhere::Keep) => {
+                report.elsewhere += 1;
+                continue;
+            }
+        }
+        gone.push(id);
+    }
     writer.remove(&gone)?;
-    let nothing_new = report.described + report.renamed + report.removed == 0 && !report.resumed;
+    let nothing_new =
+        report.described + report.renamed + gone.len() == 0 && !report.resumed && !report.replaced_damaged;
     if nothing_new && path.exists() || writer.is_empty()? && !report.failed.is_empty() {
         report.n_shapes = writer.len()?;
         writer.discard()?;
@@ -170,22 +290,25 @@ pub fn build_index(
     Ok(report)
 }
 
-/// Whether an index already holds exactly these files.
-fn is_current(index: &Index, files: &[Hashed]) -> Result<bool, IndexError> {
-    if index.len() != files.len() {
-        return Ok(false);
-    }
-    for (file, hash) in files {
-        let Ok(hash) = hash else { return Ok(false) };
-        if !index.contains(&file.name)? {
-            return Ok(false);
+/// Whether an index already holds these files, and nothing that has to be removed. Returns the number of its other shapes.
+fn is_current(
+    index: &Index,
+    files: &[Hashed],
+    root: &Root<'_>,
+    elsewhere: Elsewhere,
+) -> Result<Option<usize>, IndexError> {
+    let mut entries: HashMap<String, ShapeEntry> = index.entries()?.into_iter().collect();
+    for (listed, hash) in files {
+        let Ok(hash) = hash else { return Ok(None) };
+        match entries.remove(&listed.file.name) {
+            Some(entry) if entry.content == *hash && same_source(&entry, listed) => {}
+            _ => return Ok(None),
         }
-        let entry = index.entry(&file.name)?;
-        if entry.content != *hash || !same_source(&entry, file) {
-            return Ok(false);
-        }
     }
-    Ok(true)
+    let others = entries.len();
+    let stays =
+        |(id, entry): (&String, &ShapeEntry)| elsewhere == Elsewhere::Keep && !root.brought(id, &entry.path);
+    Ok(entries.iter().all(stays).then_some(others))
 }
 
 /// Puts new and changed files into the index. Returns the names of all files that are in it afterwards.
@@ -193,30 +316,31 @@ pub(super) fn fill(
     writer: &mut IndexWriter,
     files: Vec<Hashed>,
     options: &DescribeOptions,
+    limits: ShapeLimits,
     report: &mut BuildReport,
     observer: &dyn Observer,
 ) -> Result<HashSet<String>, Error> {
     let mut kept = HashSet::new();
     let mut renamed: Vec<(String, ShapeEntry)> = Vec::new();
     let mut wanted = Vec::new();
-    for (file, hash) in files {
+    for (listed, hash) in files {
         let content = match hash {
             Ok(content) => content,
             Err(fault) => {
-                report.fail(&file, &fault);
+                report.fail(&listed, &fault);
                 continue;
             }
         };
-        match writer.entry(&file.name)? {
+        match writer.entry(&listed.file.name)? {
             Some(entry) if entry.content == content => {
-                kept.insert(file.name.clone());
+                kept.insert(listed.file.name.clone());
                 report.unchanged += 1;
-                if !same_source(&entry, &file) {
-                    let entry = ShapeEntry { label: file.label, path: path_text(&file.path), ..entry };
-                    renamed.push((file.name, entry));
+                if !same_source(&entry, &listed) {
+                    let Listed { file, stored } = listed;
+                    renamed.push((file.name, ShapeEntry { label: file.label, path: stored, ..entry }));
                 }
             }
-            _ => wanted.push((file, content)),
+            _ => wanted.push((listed, content)),
         }
     }
     report.renamed = renamed.len();
@@ -224,15 +348,15 @@ pub(super) fn fill(
         writer.set_entries(&renamed)?;
     }
     observer.begin("describing", wanted.len());
+    let whole = observer.budget();
     let (send, receive) = sync_channel(WAITING);
     let described = std::thread::scope(|scope| {
         scope.spawn(|| {
             // Sending fails only if the writer has failed; the error stops the loop.
             let _ =
-                wanted.par_iter().enumerate().try_for_each_with(send, |send, (place, (file, content))| {
-                    let described = Surface::read(&file.path, &options.form.repair)
-                        .and_then(|surface| describe(&surface, options))
-                        .map(|described| shape(file, *content, described));
+                wanted.par_iter().enumerate().try_for_each_with(send, |send, (place, (listed, content))| {
+                    let described = describe_file(&listed.file.path, options, limits, whole.clone())
+                        .map(|described| shape(listed, *content, described));
                     send.send((place, described)).map_err(drop)
                 });
         });
@@ -243,8 +367,41 @@ pub(super) fn fill(
     let mut failed = described.failed;
     failed.sort_by_key(|(place, _)| *place);
     failed.iter().for_each(|(place, fault)| report.fail(&wanted[*place].0, fault));
-    report.list_dropped(kept.iter(), |id| writer.entry(id))?;
+    report.list_dropped(writer.path(), kept.iter(), |id| writer.entry(id))?;
     Ok(kept)
+}
+
+/// Describes a mesh within limits.
+fn describe_file(
+    path: &Path,
+    options: &DescribeOptions,
+    limits: ShapeLimits,
+    whole: Budget,
+) -> Result<ShapeDescription, Error> {
+    let budget = limits.budget(whole);
+    let mesh = limits.read(path, &budget)?;
+    budget.check()?;
+    let surface = Surface::new(&mesh, &options.form.repair)?;
+    drop(mesh);
+    budget.check()?;
+    let embedded = embed(&surface, &options.form, &Limited(budget.clone()))?;
+    budget.check()?;
+    let described = ShapeDescription::new(&surface, &embedded, options)?;
+    budget.check()?;
+    Ok(described)
+}
+
+/// The limits of one of many shapes, whose progress is not shown.
+struct Limited(Budget);
+
+impl Observer for Limited {
+    fn budget(&self) -> Budget {
+        self.0.clone()
+    }
+
+    fn begin(&self, _: &str, _: usize) {}
+
+    fn step(&self) {}
 }
 
 /// Shapes that were described, and meshes that failed.

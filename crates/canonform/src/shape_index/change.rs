@@ -1,12 +1,14 @@
 //! Changing an index, and merging several.
 
+use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use index::{Index, IndexError, IndexWriter, Job, Shape};
+use index::{Index, IndexError, IndexWriter, Job, Shape, ShapeEntry};
 use serde::Serialize;
 
 use super::build::{BuildReport, fill};
+use super::place::{Home, mesh_path};
 use super::record::options_of;
 use super::source::{Inputs, hash_all};
 use crate::error::Error;
@@ -30,22 +32,26 @@ pub fn add_to_index(
     let start = Instant::now();
     let index = Index::open(path)?;
     let options = options_of(&index)?;
-    let hashed = hash_all(inputs.list()?, observer);
+    let classes: HashSet<String> = index.entries()?.into_iter().map(|(_, entry)| entry.label).collect();
+    let listing = inputs.list(&Home::of(path)?, |label| classes.contains(label))?;
+    let mut report = BuildReport::of(&listing);
+    let hashed = hash_all(listing.shapes, observer);
     if !replace {
-        for (file, hash) in &hashed {
+        for (listed, hash) in &hashed {
             let Ok(hash) = hash else { continue };
-            if index.contains(&file.name)? {
-                let entry = index.entry(&file.name)?;
+            let id = &listed.file.name;
+            if index.contains(id)? {
+                let entry = index.entry(id)?;
                 if entry.content != *hash {
-                    return Err(Error::AlreadyThere { id: file.name.clone(), path: entry.path.into() });
+                    return Err(Error::AlreadyThere { id: id.clone(), path: mesh_path(path, &entry.path) });
                 }
             }
         }
     }
     let before = index.len();
     let mut writer = IndexWriter::open(path, Job::Add, None)?;
-    let mut report = BuildReport { resumed: writer.is_resumed(), ..Default::default() };
-    fill(&mut writer, hashed, &options, &mut report, observer)?;
+    report.resumed = writer.is_resumed();
+    fill(&mut writer, hashed, &options, inputs.limits, &mut report, observer)?;
     report.n_shapes = before;
     if report.described + report.renamed == 0 && !report.resumed {
         writer.discard()?;
@@ -95,6 +101,7 @@ pub fn merge_indexes(inputs: &[PathBuf], path: &Path, observer: &dyn Observer) -
     for index in &indexes {
         index.expect_options(first.options())?;
     }
+    let home = Home::of(path)?;
     let mut writer = IndexWriter::open(path, Job::Merge, Some(first.options()))?;
     let mut repeated = 0;
     observer.begin("merging", indexes.iter().map(Index::len).sum());
@@ -103,7 +110,10 @@ pub fn merge_indexes(inputs: &[PathBuf], path: &Path, observer: &dyn Observer) -
         index.each(|shape| {
             observer.step();
             match writer.entry(&shape.id)? {
-                None => batch.push(shape),
+                None => {
+                    let stored = home.text_of(index.path(), &shape.entry.path);
+                    batch.push(Shape { entry: ShapeEntry { path: stored, ..shape.entry }, ..shape });
+                }
                 Some(entry) if entry.content == shape.entry.content => repeated += 1,
                 Some(_) => return Err(IndexError::Conflict { id: shape.id, path: index.path().to_owned() }),
             }

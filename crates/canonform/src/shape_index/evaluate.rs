@@ -25,7 +25,8 @@ pub enum Measure {
     Signature(SignatureKind),
 }
 
-/// Scores an index by the distances between all pairs of its shapes. Classes come from the index, or from `labels`.
+/// Scores an index by the distances between all pairs of its shapes. Classes come from the index, or from `labels`; shapes
+/// without a class are left out.
 ///
 /// # Errors
 /// [`Error::TooManyShapes`], [`Error::Index`], [`Error::Retrieval`].
@@ -43,10 +44,15 @@ pub fn evaluate_index(
     }
     let (mut names, mut rows) = (Vec::with_capacity(n), Vec::with_capacity(n));
     index.each(|shape| {
-        names.push(match labels {
-            Some(file) => file.label(&shape.id)?,
+        let label = match labels {
+            Some(file) => label_in(Some(file), &shape.id, Some(Path::new(&shape.entry.path))),
             None => shape.entry.label,
-        });
+        };
+        // Nothing can be said about shapes without a class.
+        if label.is_empty() {
+            return Ok(());
+        }
+        names.push(label);
         rows.push(match measure {
             Measure::Fused => shape.vectors.fused,
             Measure::Signature(kind) => {
@@ -61,6 +67,7 @@ pub fn evaluate_index(
         });
         Ok::<(), Error>(())
     })?;
+    let n = names.len();
     observer.begin("distances", n * n.saturating_sub(1) / 2);
     let distance = |i: usize, j: usize| Ok::<_, Error>(ShapeMetric::fused(&rows[i], &rows[j]));
     let distances = pairwise_distances(n, distance, || observer.step())?;
@@ -90,14 +97,26 @@ pub fn evaluate_index(
 pub fn evaluate_matrix(path: &Path, labels: Option<&LabelFile>, knn_k: usize) -> Result<Evaluation, Error> {
     let text = std::fs::read_to_string(path).map_err(|source| FileError::read(path, source))?;
     let Matrix { names, rows } = Matrix::parse(&text, path)?;
-    let n = rows.len();
-    let classes = match (labels, names) {
-        (_, Some(names)) => names.iter().map(|name| label_in(labels, name)).collect::<Result<_, _>>()?,
+    let classes: Vec<String> = match (labels, names) {
+        (_, Some(names)) => names.iter().map(|name| label_in(labels, name, None)).collect(),
         (Some(file), None) => file.in_order().to_vec(),
         (None, None) => return Err(Error::NoNames { path: path.to_owned() }),
     };
+    // Rows that a label file does not name are left out; missing lines of a file without names are an error.
+    let (rows, classes) = match classes.iter().any(String::is_empty) {
+        true => labelled(&rows, classes),
+        false => (rows, classes),
+    };
+    let n = rows.len();
     let distances = DistanceMatrix::from_pairs(n, |i, j| 0.5 * (rows[i][j] + rows[j][i]))?;
     Ok(evaluate(&distances, &Labels::new(&classes), knn_k)?)
+}
+
+/// The part of a matrix whose rows and columns have a class.
+fn labelled(rows: &[Vec<f64>], classes: Vec<String>) -> (Vec<Vec<f64>>, Vec<String>) {
+    let kept: Vec<usize> = (0..rows.len()).filter(|i| !classes[*i].is_empty()).collect();
+    let rows = kept.iter().map(|i| kept.iter().map(|j| rows[*i][*j]).collect()).collect();
+    (rows, classes.into_iter().filter(|class| !class.is_empty()).collect())
 }
 
 /// A square matrix and the names of its rows.

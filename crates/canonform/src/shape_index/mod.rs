@@ -8,16 +8,18 @@
 mod build;
 mod change;
 mod evaluate;
+mod place;
 mod predict;
 mod record;
 mod rerank;
 mod search;
 mod source;
 
-pub use build::{BuildOptions, BuildReport, Dropped, Failure, build_index};
+pub use build::{BuildOptions, BuildReport, Dropped, Elsewhere, Failure, FailureReason, build_index};
 pub use change::{MergeReport, add_to_index, merge_indexes, remove_from_index};
 pub use evaluate::{Measure, evaluate_index, evaluate_matrix};
+pub use place::mesh_path;
 pub use predict::{ClassVotes, NearestShape, Prediction, Unknown};
 pub use rerank::{Ranked, Reranked, rerank};
 pub use search::{Explain, SearchOptions, SearchReport, SearchResult, SearchSeconds, ShapeSearch};
-pub use source::{Inputs, Shard};
+pub use source::{Inputs, ShapeLimits, Shard};

@@ -73,6 +73,8 @@ pub struct NearestShape {
 pub enum Unknown {
     /// The index has no shapes.
     EmptyIndex,
+    /// None of the nearest shapes has a class.
+    Unlabelled,
     /// No shape is near enough.
     NothingNear,
     /// No shape is near enough, and the query looks like a part of a shape: parts are not matched with whole shapes.
@@ -114,7 +116,9 @@ pub(super) fn predicted(
 ) -> Prediction {
     let class_below = ShapeMetric::SAME_CLASS.at;
     let threshold = threshold.map(|threshold| threshold.distance);
-    let mut classes: Vec<&str> = results.iter().map(|result| result.label.as_str()).collect();
+    // Shapes without a class have no vote.
+    let labelled = || results.iter().enumerate().filter(|(_, result)| !result.label.is_empty());
+    let mut classes: Vec<&str> = labelled().map(|(_, result)| result.label.as_str()).collect();
     classes.sort_unstable();
     classes.dedup();
     let class_of = |i: usize| classes.partition_point(|class| *class < results[i].label.as_str());
@@ -122,11 +126,8 @@ pub(super) fn predicted(
         let by_verdict = result.verdict.distance / class_below;
         threshold.map_or(by_verdict, |threshold| by_verdict.min(result.fused / threshold))
     };
-    let neighbors: Vec<_> = results
-        .iter()
-        .enumerate()
-        .map(|(index, result)| Neighbor { index, distance: reach(result) })
-        .collect();
+    let neighbors: Vec<_> =
+        labelled().map(|(index, result)| Neighbor { index, distance: reach(result) }).collect();
     let vote = vote(&neighbors, class_of, VOTERS, Some(1.0));
     let of_class =
         |of: &Tally| ClassVotes { label: classes[of.class].to_owned(), votes: of.votes, share: of.share };
@@ -140,6 +141,7 @@ pub(super) fn predicted(
     let unknown = match (vote.class, &nearest) {
         (Some(_), _) => None,
         (None, None) => Some(Unknown::EmptyIndex),
+        (None, Some(_)) if classes.is_empty() => Some(Unknown::Unlabelled),
         (None, Some(_)) if signs.is_empty() => Some(Unknown::NothingNear),
         (None, Some(_)) => Some(Unknown::Partial),
     };
@@ -166,9 +168,19 @@ impl Prediction {
         }
         let Some(nearest) = &self.nearest else { return "unknown: the index is empty".to_owned() };
         let Verdict { distance, .. } = nearest.verdict;
+        if self.unknown == Some(Unknown::Unlabelled) {
+            return format!(
+                "unknown: none of the nearest shapes has a class; the nearest, {}, is at combined distance {distance:.3}: {}",
+                nearest.id, nearest.verdict
+            );
+        }
+        let class = match nearest.label.as_str() {
+            "" => "without a class".to_owned(),
+            label => format!("of the class {label}"),
+        };
         let mut words = format!(
-            "unknown: the nearest shape, {} of the class {}, is at combined distance {distance:.3}: {}. Shapes of one class are below {:.3}",
-            nearest.id, nearest.label, nearest.verdict, self.class_below
+            "unknown: the nearest shape, {} {class}, is at combined distance {distance:.3}: {}. Shapes of one class are below {:.3}",
+            nearest.id, nearest.verdict, self.class_below
         );
         if let Some(threshold) = self.threshold {
             words += &format!(", and classes of this index are up to {threshold:.3} wide by signatures");

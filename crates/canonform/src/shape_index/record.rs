@@ -1,15 +1,13 @@
 //! A description as an index stores it.
 
-use std::path::Path;
-
 use descriptors::{CanonicalForm, PreparedShape};
 use index::{ContentHash, Index, Shape, ShapeEntry, ShapeVectors};
 use nalgebra::Point3;
 use surface::unit_for;
 
+use super::source::Listed;
 use crate::error::Error;
 use crate::form::{DescribeOptions, ShapeDescription};
-use crate::input::ShapeFile;
 
 /// The area of the surface, in squared mesh units.
 const AREA: &str = "area";
@@ -19,19 +17,17 @@ pub(super) const DROPPED: &str = "dropped_area_share";
 
 /// How the shapes of an index were described.
 pub(super) fn options_of(index: &Index) -> Result<DescribeOptions, Error> {
-    DescribeOptions::from_text(index.options()).ok_or_else(|| Error::UnknownOptions {
+    let options = DescribeOptions::from_text(index.options()).ok_or_else(|| Error::UnknownOptions {
         path: index.path().to_owned(),
         options: index.options().to_owned(),
-    })
+    })?;
+    options.validate()?;
+    Ok(options)
 }
 
 /// Whether an entry has the class and the path of a file.
-pub(super) fn same_source(entry: &ShapeEntry, file: &ShapeFile) -> bool {
-    entry.label == file.label && entry.path == path_text(&file.path)
-}
-
-pub(super) fn path_text(path: &Path) -> String {
-    path.to_string_lossy().into_owned()
+pub(super) fn same_source(entry: &ShapeEntry, listed: &Listed) -> bool {
+    entry.label == listed.file.label && entry.path == listed.stored
 }
 
 /// The unit of the points of a stored form, in mesh units: 1 unless 32-bit numbers could not hold them.
@@ -41,7 +37,7 @@ fn form_unit(area: Option<f64>, options: &DescribeOptions) -> f64 {
 }
 
 /// The shape of a mesh file, as an index stores it.
-pub(super) fn shape(file: &ShapeFile, content: ContentHash, described: ShapeDescription) -> Shape {
+pub(super) fn shape(listed: &Listed, content: ContentHash, described: ShapeDescription) -> Shape {
     let repair = &described.repair;
     let facts = [
         ("vertices", repair.input_vertices as f64),
@@ -55,10 +51,10 @@ pub(super) fn shape(file: &ShapeFile, content: ContentHash, described: ShapeDesc
     let form = points.zip(described.form.weights());
     let signatures = described.signatures.iter();
     Shape {
-        id: file.name.clone(),
+        id: listed.file.name.clone(),
         entry: ShapeEntry {
-            label: file.label.clone(),
-            path: path_text(&file.path),
+            label: listed.file.label.clone(),
+            path: listed.stored.clone(),
             content,
             facts: facts.map(|(name, value)| (name.to_owned(), value)).to_vec(),
         },

@@ -65,7 +65,7 @@ pub struct SearchResult {
     pub id: String,
     /// Its class.
     pub label: String,
-    /// Path of its mesh.
+    /// Path of its mesh as the index states it; [`mesh_path`](crate::mesh_path) finds the file.
     pub path: String,
     /// Combined distance, by signatures and aligned forms; results are ordered by it.
     pub distance: f64,
@@ -148,7 +148,7 @@ impl ShapeSearch {
     /// [`Error::MeshGone`] and [`Error::MeshChanged`] unless the file still has the content that was indexed;
     /// [`Error::Index`], [`Error::Mesh`].
     pub fn mesh(&self, id: &str) -> Result<TriMesh, Error> {
-        read_unchanged(id, &self.index.entry(id)?)
+        read_unchanged(self.index.path(), id, &self.index.entry(id)?)
     }
 
     /// Finds the shapes nearest to a mesh: candidates by fused signatures, ordered by aligned forms.
@@ -161,7 +161,7 @@ impl ShapeSearch {
     /// mesh::io::write(&folder.path().join("ring1.off"), &mesh::shapes::torus(24, 12, 2.0, 0.7))?;
     /// let index = folder.path().join("shapes.canonform");
     /// let describe = DescribeOptions::default();
-    /// let options = BuildOptions { describe: &describe, labels: None, shard: None };
+    /// let options = BuildOptions::new(&describe);
     /// build_index(folder.path(), &index, &options, &())?;
     ///
     /// let query = mesh::shapes::torus(22, 13, 1.0, 0.35);
@@ -314,8 +314,7 @@ mod tests {
             mesh::io::write(&folder.path().join(name), &mesh).unwrap();
         }
         let path = folder.path().join("all.canonform");
-        build_index(folder.path(), &path, &BuildOptions { describe, labels: None, shard: None }, &())
-            .unwrap();
+        build_index(folder.path(), &path, &BuildOptions::new(describe), &()).unwrap();
         let search = ShapeSearch::open(&path).unwrap();
         (folder, search)
     }

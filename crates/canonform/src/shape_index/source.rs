@@ -1,17 +1,22 @@
 //! The mesh files that become shapes of an index.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
+use std::fs::File;
+use std::io;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
+use std::time::Duration;
 
-use files::FileError;
+use budget::Budget;
+use files::{FileError, FileId};
 use index::{ContentHash, ShapeEntry};
 use mesh::TriMesh;
 use mesh::io::{MemoryFile, ReadLimits};
 use rayon::prelude::*;
 
+use super::place::{Home, Root, mesh_path};
 use crate::error::Error;
-use crate::input::{LabelFile, ShapeFile, label_in, list_shapes};
+use crate::input::{Dataset, LabelFile, ShapeFile, SkipKind, Skipped, drop_single_class, label_in};
 use crate::observer::Observer;
 
 /// One of several equal parts of a collection.
@@ -58,25 +63,135 @@ pub struct Inputs<'a> {
     pub labels: Option<&'a LabelFile>,
     /// One class for all of them, regardless of their names.
     pub label: Option<&'a str>,
+    /// What describing each of them may use.
+    pub limits: ShapeLimits,
+}
+
+/// What reading and describing one shape may use, so that a batch goes on past a large or slow one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct ShapeLimits {
+    /// Most vertices of a mesh, which may have four times as many faces. Default: as many as a mesh can have.
+    pub max_vertices: Option<u64>,
+    /// Time from reading the mesh to its description. Default: none.
+    pub time: Option<Duration>,
+    /// Bytes of memory, also of the files. Default: none.
+    pub memory: Option<usize>,
+}
+
+impl ShapeLimits {
+    /// The budget of a shape that is begun now.
+    pub(super) fn budget(&self, whole: Budget) -> Budget {
+        let budget = match self.time {
+            Some(limit) => whole.with_time(limit),
+            None => whole,
+        };
+        match self.memory {
+            Some(bytes) => budget.with_memory(bytes),
+            None => budget,
+        }
+    }
+
+    /// Reads a mesh within these limits.
+    pub(super) fn read(&self, path: &Path, budget: &Budget) -> Result<TriMesh, Error> {
+        let limits = self.max_vertices.map_or_else(ReadLimits::default, ReadLimits::of_vertices);
+        let files = mesh::io::files_of(path);
+        let mut n_bytes = 0;
+        for file in &files {
+            n_bytes += open_regular(file)?.metadata().map_err(|source| FileError::read(file, source))?.len();
+        }
+        budget.check_memory(usize::try_from(n_bytes).unwrap_or(usize::MAX))?;
+        Ok(parse(&files, &read_all(&files)?, &limits)?)
+    }
+}
+
+/// A mesh file, and how the index names it.
+#[derive(Debug, Clone)]
+pub(super) struct Listed {
+    pub(super) file: ShapeFile,
+    /// Its path as the index stores it.
+    pub(super) stored: String,
+}
+
+/// The meshes to index, and what was found beside them.
+#[derive(Debug, Default)]
+pub(super) struct Listing {
+    pub(super) shapes: Vec<Listed>,
+    pub(super) skipped: Vec<Skipped>,
+    /// The label that nearly all shapes would have got.
+    pub(super) single_class: Option<String>,
+    /// Lines of the label file that name none of the shapes.
+    pub(super) unused_labels: usize,
+}
+
+impl Listing {
+    /// The meshes of a folder; files that differ only in their extensions have them in their names.
+    pub(super) fn of_folder(root: &Root<'_>, labels: Option<&LabelFile>) -> Result<Self, Error> {
+        let Dataset { shapes, skipped } = Dataset::read(root.given(), labels)?;
+        let stored = shapes.iter().map(|shape| root.text(&shape.path)).collect();
+        Ok(Self::new(shapes, stored, skipped, labels, |_| false))
+    }
+
+    fn new(
+        mut shapes: Vec<ShapeFile>,
+        stored: Vec<String>,
+        skipped: Vec<Skipped>,
+        labels: Option<&LabelFile>,
+        is_class: impl Fn(&str) -> bool,
+    ) -> Self {
+        let single_class = labels.is_none().then(|| drop_single_class(&mut shapes, is_class)).flatten();
+        let unused_labels = labels.map_or(0, |labels| labels.n_unused(&shapes));
+        name_apart(&mut shapes);
+        let listed = shapes.into_iter().zip(stored).map(|(file, stored)| Listed { file, stored });
+        Self { shapes: listed.collect(), skipped, single_class, unused_labels }
+    }
 }
 
 impl Inputs<'_> {
-    /// The meshes; files that differ only in their extensions have them in their names.
-    pub(super) fn list(&self) -> Result<Vec<ShapeFile>, Error> {
-        let mut shapes = Vec::new();
+    /// The meshes; files that differ only in their extensions have them in their names. `is_class` tells classes of the
+    /// index.
+    pub(super) fn list(&self, home: &Home, is_class: impl Fn(&str) -> bool) -> Result<Listing, Error> {
+        let (mut shapes, mut stored, mut skipped) = (Vec::new(), Vec::new(), Vec::new());
+        let mut seen = HashSet::new();
+        let mut skip = |path: &Path, kind| skipped.push(Skipped { path: path.to_owned(), kind });
         for path in self.paths {
             if path.is_dir() {
-                shapes.extend(list_shapes(path, self.labels)?);
-            } else {
-                let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-                shapes.push(ShapeFile { label: label_in(self.labels, &name)?, name, path: path.clone() });
+                let root = Root::new(path, home)?;
+                let dataset = Dataset::read(path, self.labels)?;
+                dataset.skipped.into_iter().for_each(|it| skip(&it.path, it.kind));
+                for shape in dataset.shapes {
+                    match FileId::of(&shape.path).map(|id| seen.insert(id)) {
+                        Ok(false) => skip(&shape.path, SkipKind::Repeated),
+                        _ => {
+                            stored.push(root.text(&shape.path));
+                            shapes.push(shape);
+                        }
+                    }
+                }
+                continue;
+            }
+            let Some(name) = path.file_stem().and_then(|name| name.to_str()) else {
+                skip(path, SkipKind::NotUtf8);
+                continue;
+            };
+            match FileId::of(path).map(|id| seen.insert(id)) {
+                Ok(false) => skip(path, SkipKind::Repeated),
+                // What cannot be found is reported when it is read.
+                _ => {
+                    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+                    let root = Root::new(folder.unwrap_or(Path::new(".")), home)?;
+                    let below = path.file_name().map_or(path.as_path(), Path::new);
+                    stored.push(root.text(below));
+                    let label = label_in(self.labels, name, Some(path));
+                    shapes.push(ShapeFile { label, name: name.to_owned(), path: path.clone() });
+                }
             }
         }
         if let Some(label) = self.label {
             shapes.iter_mut().for_each(|shape| shape.label = label.to_owned());
         }
-        name_apart(&mut shapes);
-        Ok(shapes)
+        // A class that was asked for is one.
+        let is_class = |label: &str| self.label == Some(label) || is_class(label);
+        Ok(Listing::new(shapes, stored, skipped, self.labels, is_class))
     }
 }
 
@@ -94,22 +209,22 @@ pub(super) fn name_apart(shapes: &mut [ShapeFile]) {
 }
 
 /// The shapes of a shard.
-pub(super) fn share(shapes: Vec<ShapeFile>, shard: Option<Shard>) -> Vec<ShapeFile> {
+pub(super) fn share<T>(shapes: Vec<T>, shard: Option<Shard>) -> Vec<T> {
     let Some(shard) = shard else { return shapes };
-    let in_share = |(i, shape): (usize, ShapeFile)| shard.holds(i + 1).then_some(shape);
+    let in_share = |(i, shape): (usize, T)| shard.holds(i + 1).then_some(shape);
     shapes.into_iter().enumerate().filter_map(in_share).collect()
 }
 
 /// A mesh file and the hash of its content, or the error of reading it.
-pub(super) type Hashed = (ShapeFile, Result<ContentHash, Error>);
+pub(super) type Hashed = (Listed, Result<ContentHash, Error>);
 
 /// Hashes all files, in parallel.
-pub(super) fn hash_all(shapes: Vec<ShapeFile>, observer: &dyn Observer) -> Vec<Hashed> {
+pub(super) fn hash_all(shapes: Vec<Listed>, observer: &dyn Observer) -> Vec<Hashed> {
     observer.begin("reading", shapes.len());
     shapes
         .into_par_iter()
         .map(|shape| {
-            let hash = content(&shape.path);
+            let hash = content(&shape.file.path);
             observer.step();
             (shape, hash)
         })
@@ -117,24 +232,61 @@ pub(super) fn hash_all(shapes: Vec<ShapeFile>, observer: &dyn Observer) -> Vec<H
 }
 
 /// Reads the mesh of an indexed shape, if the file still has the content that was indexed.
-pub(super) fn read_unchanged(id: &str, entry: &ShapeEntry) -> Result<TriMesh, Error> {
-    let path = PathBuf::from(&entry.path);
+pub(super) fn read_unchanged(index: &Path, id: &str, entry: &ShapeEntry) -> Result<TriMesh, Error> {
+    let path = mesh_path(index, &entry.path);
     let files = mesh::io::files_of(&path);
-    let pieces = files.iter().map(std::fs::read).collect::<Result<Vec<_>, _>>();
-    let pieces =
-        pieces.map_err(|source| Error::MeshGone { id: id.to_owned(), path: path.clone(), source })?;
-    if ContentHash::of(&pieces) != entry.content {
-        return Err(Error::MeshChanged { id: id.to_owned(), path });
+    let gone = |fault: FileError| {
+        let (id, path, source) = (id.to_owned(), path.clone(), fault.source);
+        Error::MeshGone { id, path, source }
+    };
+    let changed = || Error::MeshChanged { id: id.to_owned(), path: path.clone() };
+    // Hashing takes no memory, whatever the path of a foreign index leads to.
+    if hash(&files).map_err(gone)? != entry.content {
+        return Err(changed());
     }
-    // Parse the bytes that were hashed: the file might change in between.
-    let files = files.iter().zip(&pieces).map(|(name, bytes)| MemoryFile { name, bytes });
-    Ok(mesh::io::read_memory(&files.collect::<Vec<_>>(), &ReadLimits::default())?)
+    let pieces = read_all(&files).map_err(gone)?;
+    // The file might have changed in between.
+    if ContentHash::of(&pieces) != entry.content {
+        return Err(changed());
+    }
+    Ok(parse(&files, &pieces, &ReadLimits::default())?)
+}
+
+fn parse(files: &[PathBuf], pieces: &[Vec<u8>], limits: &ReadLimits) -> Result<TriMesh, mesh::MeshError> {
+    let files = files.iter().zip(pieces).map(|(name, bytes)| MemoryFile { name, bytes });
+    mesh::io::read_memory(&files.collect::<Vec<_>>(), limits)
 }
 
 fn content(path: &Path) -> Result<ContentHash, Error> {
-    let read = |path: &PathBuf| std::fs::read(path).map_err(|source| FileError::read(path, source));
-    let pieces = mesh::io::files_of(path).iter().map(read).collect::<Result<Vec<_>, _>>()?;
-    Ok(ContentHash::of(&pieces))
+    Ok(hash(&mesh::io::files_of(path))?)
+}
+
+fn hash(files: &[PathBuf]) -> Result<ContentHash, FileError> {
+    let mut open = Vec::new();
+    for path in files {
+        open.push((path.as_path(), open_regular(path)?));
+    }
+    ContentHash::of_files(open.iter_mut().map(|(path, file)| (*path, file)))
+        .map_err(|(path, source)| FileError::read(&path, source))
+}
+
+fn read_all(files: &[PathBuf]) -> Result<Vec<Vec<u8>>, FileError> {
+    let read = |path: &PathBuf| {
+        let mut bytes = Vec::new();
+        let mut file = open_regular(path)?;
+        io::Read::read_to_end(&mut file, &mut bytes).map_err(|source| FileError::read(path, source))?;
+        Ok(bytes)
+    };
+    files.iter().map(read).collect()
+}
+
+/// Opens a file. A pipe or a device would block, or never end.
+fn open_regular(path: &Path) -> Result<File, FileError> {
+    let open = || match std::fs::metadata(path)?.is_file() {
+        true => File::open(path),
+        false => Err(io::Error::new(io::ErrorKind::InvalidInput, "not a regular file")),
+    };
+    open().map_err(|source| FileError::read(path, source))
 }
 
 #[cfg(test)]

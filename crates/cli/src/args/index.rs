@@ -4,19 +4,20 @@ use std::path::PathBuf;
 
 use anyhow::Result;
 use canonform::descriptors::{DescriptorError, Normalization};
-use canonform::{DescribeOptions, Measure, Shard};
+use canonform::{DescribeOptions, Measure, ShapeLimits, Shard};
 use clap::{Args, Subcommand};
 
 use super::embedding::EmbeddingArgs;
-use super::shared::Common;
+use super::shared::{Common, LimitArgs};
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum IndexCommand {
     /// Index every mesh in a folder; describe only new and changed ones
     ///
     /// An interrupted run keeps its finished work in INDEX.work; run the same command again to continue. Readers see
-    /// the old index until the new one is complete. Meshes that cannot be read are listed at the end, and the exit
-    /// code is then 2.
+    /// the old index until the new one is complete. Meshes that cannot be described are listed at the end, and the exit
+    /// code is then 2. Shapes of the folder whose files are gone are removed; shapes that came from elsewhere stay
+    /// (see --prune). Links are followed, but nothing is indexed twice through them.
     Build(Box<BuildArgs>),
     /// Add meshes, or folders of them
     Add(AddArgs),
@@ -42,6 +43,8 @@ pub(crate) enum IndexCommand {
         /// The index
         index: PathBuf,
     },
+    /// List the shapes of an index: names, classes and paths; exit with code 1 if there are none
+    List(ListArgs),
     /// Report what an index contains
     Info {
         /// The index
@@ -58,21 +61,56 @@ pub(crate) enum IndexCommand {
 }
 
 #[derive(Debug, Args)]
+pub(crate) struct ListArgs {
+    /// The index
+    pub(crate) index: PathBuf,
+    /// Only shapes of this class; may be repeated
+    #[arg(long, value_name = "CLASS")]
+    pub(crate) label: Vec<String>,
+    /// Only shapes without a class, or also these with --label
+    #[arg(long)]
+    pub(crate) unlabelled: bool,
+}
+
+#[derive(Debug, Args)]
 pub(crate) struct BuildArgs {
-    /// Folder of meshes. Classes are the names of sub-folders, else the leading letters of file names
+    /// Folder of meshes. Classes are the names of sub-folders, else the leading letters of file names, unless nearly
+    /// all names begin with the same letters
     #[arg(value_name = "DIR")]
     pub(crate) folder: PathBuf,
     /// Output index
     #[arg(short, long, value_name = "INDEX")]
     pub(crate) output: PathBuf,
-    /// Classes, a file of lines `name,label`
+    /// Classes, a file of lines `name,label`; shapes that it does not name have none
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) labels: Option<PathBuf>,
+    /// Remove the shapes that did not come from this folder, such as those that `index add` put in
+    #[arg(long)]
+    pub(crate) prune: bool,
     /// Index only the I-th of N equal parts of the folder, for `merge`
     #[arg(long, value_name = "I/N")]
     pub(crate) shard: Option<Shard>,
     #[command(flatten)]
     pub(crate) describe: DescribeArgs,
+    #[command(flatten)]
+    pub(crate) limits: BatchLimitArgs,
+}
+
+/// Limits on each of many shapes; the rest goes on when one exceeds them. Flatten it last.
+#[derive(Debug, Clone, Copy, Args)]
+pub(crate) struct BatchLimitArgs {
+    /// Leave out meshes with more vertices than this, or with more than four times as many faces
+    #[arg(long, help_heading = "Limits", value_name = "N")]
+    pub(crate) max_vertices: Option<u64>,
+    #[command(flatten)]
+    pub(crate) limits: LimitArgs,
+}
+
+impl BatchLimitArgs {
+    pub(crate) fn each(&self) -> ShapeLimits {
+        let Self { max_vertices, limits } = *self;
+        ShapeLimits { max_vertices, time: limits.timeout, memory: limits.memory }
+    }
 }
 
 /// How shapes are described.
@@ -108,22 +146,33 @@ pub(crate) struct AddArgs {
     /// Class of all these meshes [default: from their names]
     #[arg(long, value_name = "CLASS", conflicts_with = "labels")]
     pub(crate) label: Option<String>,
-    /// Classes, a file of lines `name,label`
+    /// Classes, a file of lines `name,label`; shapes that it does not name have none
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) labels: Option<PathBuf>,
     /// Replace shapes that have the same name
     #[arg(long)]
     pub(crate) replace: bool,
+    #[command(flatten)]
+    pub(crate) limits: BatchLimitArgs,
 }
 
+/// What --json prints.
+const SEARCH_JSON: &str = "\
+With --json, `queries` holds the answer to each query and `failed` the queries that could not be read. If there is one
+query, the keys of its answer (`query`, `results`, `predicted`, ...) are also at the top.";
+
 #[derive(Debug, Args)]
+#[command(after_help = SEARCH_JSON)]
 pub(crate) struct SearchArgs {
     /// The index
     pub(crate) index: PathBuf,
-    /// Meshes to search for
-    #[arg(required = true, value_name = "QUERY")]
+    /// Meshes, folders of meshes, or names of shapes in the index. A file goes before a shape of the same name
+    #[arg(required_unless_present = "id", value_name = "MESH|DIR|ID")]
     pub(crate) queries: Vec<PathBuf>,
-    /// Number of shapes to find
+    /// Search with this shape of the index, even if a file has its name; may be repeated
+    #[arg(long, value_name = "ID")]
+    pub(crate) id: Vec<String>,
+    /// Number of shapes to find; 0 predicts the class only
     #[arg(short, default_value_t = 10)]
     pub(crate) k: usize,
     /// Report the verdict on every shape: the same, of one class, undecided or different, with its confidence

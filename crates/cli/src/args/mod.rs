@@ -21,7 +21,7 @@ use self::shared::{STRESS, distance_method, one_of};
 
 pub(crate) use embedding::EmbeddingArgs;
 pub(crate) use geodesic::GeodesicArgs;
-pub(crate) use index::{AddArgs, BuildArgs, EvaluateArgs, IndexCommand, SearchArgs};
+pub(crate) use index::{AddArgs, BuildArgs, EvaluateArgs, IndexCommand, ListArgs, SearchArgs};
 pub(crate) use render::{Place, RenderArgs};
 pub(crate) use serve::ServeArgs;
 pub(crate) use shared::{Common, FormArgs, LimitArgs, MAX_DROPPED, RepairArgs};
@@ -60,7 +60,7 @@ pub(crate) enum Command {
     /// Build, change, check and export an index of shapes
     #[command(subcommand)]
     Index(IndexCommand),
-    /// Find the shapes of an index that are most similar to a mesh, and predict its class
+    /// Find the shapes of an index that are most similar to meshes, and predict their classes
     Search(SearchArgs),
     /// Score how well an index or a matrix of distances separates classes
     Evaluate(EvaluateArgs),

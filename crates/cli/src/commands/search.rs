@@ -5,7 +5,7 @@ use std::process::ExitCode;
 
 use anyhow::Result;
 use canonform::index::SearchMode;
-use canonform::{Explain, SearchOptions, SearchReport, ShapeSearch};
+use canonform::{Explain, SearchOptions, SearchReport, ShapeSearch, list_shapes, mesh_path};
 use serde::Serialize;
 
 use crate::args::{Common, SearchArgs};
@@ -14,26 +14,68 @@ use crate::output::{exit_code, print, print_json};
 
 #[derive(Serialize)]
 struct Answer {
-    query: PathBuf,
+    query: String,
     #[serde(flatten)]
     report: SearchReport,
 }
 
-/// One answer as an object, several as a list in an object.
+/// All answers; the only one also by its own keys.
 #[derive(Serialize)]
-#[serde(untagged)]
-enum Json {
-    One(Box<Answer>),
-    Several { queries: Vec<Answer>, failed: Vec<Failure> },
+struct Json<'a> {
+    #[serde(flatten)]
+    only: Option<&'a Answer>,
+    queries: &'a [Answer],
+    failed: &'a [Failure],
 }
 
 #[derive(Serialize)]
 struct Failure {
-    query: PathBuf,
+    query: String,
     error: String,
 }
 
-/// Searches an index for meshes; unreadable ones are listed and do not stop the others. Exits with code 1 if nothing is
+/// What to search with.
+enum Query {
+    Mesh(PathBuf),
+    /// A shape of the index.
+    Indexed(String),
+}
+
+impl Query {
+    fn name(&self) -> String {
+        match self {
+            Self::Mesh(path) => path.display().to_string(),
+            Self::Indexed(id) => id.clone(),
+        }
+    }
+
+    fn search(&self, index: &ShapeSearch, options: &SearchOptions) -> Result<SearchReport> {
+        match self {
+            Self::Indexed(id) => Ok(index.search_shape(id, options)?),
+            Self::Mesh(path) => mesh::io::read(path)
+                .map_err(Into::into)
+                .and_then(|mesh| index.search(&mesh, options))
+                .map_err(|fault| named(path, fault)),
+        }
+    }
+}
+
+/// The queries of a command: folders stand for their meshes, and names without a file for shapes of the index.
+fn queries(args: &SearchArgs, index: &ShapeSearch) -> Result<Vec<Query>> {
+    let mut queries = Vec::new();
+    for given in &args.queries {
+        if given.is_dir() {
+            queries.extend(list_shapes(given, None)?.into_iter().map(|shape| Query::Mesh(shape.path)));
+            continue;
+        }
+        let id = given.to_str().filter(|id| !given.exists() && index.index().contains(id).unwrap_or(false));
+        queries.push(id.map_or_else(|| Query::Mesh(given.clone()), |id| Query::Indexed(id.to_owned())));
+    }
+    queries.extend(args.id.iter().cloned().map(Query::Indexed));
+    Ok(queries)
+}
+
+/// Searches an index; queries that cannot be read are listed and do not stop the others. Exits with code 1 if nothing is
 /// found for some.
 pub(crate) fn search(args: &SearchArgs, common: &Common) -> Result<ExitCode> {
     let index = ShapeSearch::open(&args.index)?;
@@ -42,35 +84,42 @@ pub(crate) fn search(args: &SearchArgs, common: &Common) -> Result<ExitCode> {
         mode: if args.exact { SearchMode::Exact } else { SearchMode::Auto },
         explain: if args.explain { Explain::Kind } else { Explain::No },
     };
+    let queries = queries(args, &index)?;
     let (mut answers, mut failed) = (Vec::new(), Vec::new());
-    for query in &args.queries {
-        let report = mesh::io::read(query)
-            .map_err(Into::into)
-            .and_then(|mesh| index.search(&mesh, &options))
-            .map_err(|fault| named(query, fault));
-        match report {
-            Ok(report) => {
-                if !common.json {
-                    print(&table(query.display().to_string(), &report))?;
+    for query in &queries {
+        match query.search(&index, &options) {
+            Ok(mut report) => {
+                for result in &mut report.results {
+                    result.path = mesh_path(&args.index, &result.path).to_string_lossy().into_owned();
                 }
-                answers.push(Answer { query: query.to_path_buf(), report });
+                if !common.json {
+                    print(&table(query.name(), &report))?;
+                }
+                answers.push(Answer { query: query.name(), report });
             }
-            Err(fault) if args.queries.len() == 1 => return Err(fault),
             Err(fault) => {
+                let missing = matches!(query, Query::Mesh(path) if !path.exists());
+                let fault = match missing {
+                    true => fault.context(format!(
+                        "{} is neither a file nor a shape of the index; `canonform index list` names its shapes",
+                        query.name()
+                    )),
+                    false => fault,
+                };
+                if queries.len() == 1 {
+                    return Err(fault);
+                }
                 let error = crate::remedy::message(&fault);
-                eprintln!("error: {error}");
-                failed.push(Failure { query: query.to_path_buf(), error });
+                terminal::error(&error);
+                failed.push(Failure { query: query.name(), error });
             }
         }
     }
-    let nothing = answers.iter().any(|answer| answer.report.results.is_empty());
+    let nothing = answers.iter().any(|answer| answer.report.n_shapes == 0);
     let code = if failed.is_empty() && nothing { ExitCode::from(1) } else { exit_code(failed.is_empty()) };
     if common.json {
-        let json = match args.queries.len() {
-            1 => answers.pop().map(|answer| Json::One(Box::new(answer))),
-            _ => Some(Json::Several { queries: answers, failed }),
-        };
-        print_json(&json)?;
+        let only = answers.first().filter(|_| queries.len() == 1);
+        print_json(&Json { only, queries: &answers, failed: &failed })?;
     }
     Ok(code)
 }

@@ -1,9 +1,12 @@
 //! The program as its users see it: arguments in; files, output and exit codes out.
 //!
-//! `commands` (what each prints), `dropped` (lost surfaces), `forms` (files), `errors`, `folders` (many meshes), `geodesic`
-//! (sources, paths, all pairs), `index` (building, changing, searching), `killed` (interruptions, full disks), `render`
-//! (pictures), `serve`, `streams` (standard input and output, several meshes, limits), `zoo` (broken meshes).
+//! `collections` (folders and indexes as people keep them), `commands` (what each prints), `dropped` (lost surfaces),
+//! `forms` (files), `errors`, `folders` (many meshes), `geodesic` (sources, paths, all pairs), `index` (building,
+//! changing, searching), `killed` (interruptions, full disks), `render` (pictures), `serve`, `streams` (standard input and
+//! output, several meshes, limits), `zoo` (broken meshes).
 
+#[cfg(test)]
+mod collections;
 #[cfg(test)]
 mod commands;
 #[cfg(test)]

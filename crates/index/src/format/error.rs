@@ -35,7 +35,7 @@ pub enum IndexError {
         supported: u32,
     },
     /// The content differs from what was written.
-    #[error("{path} is damaged: {what}; restore it, or build it again", path = path.display())]
+    #[error("{path} is damaged: {what}", path = path.display())]
     Damaged {
         /// The file.
         path: PathBuf,
@@ -94,7 +94,7 @@ pub enum IndexError {
         path: PathBuf,
     },
     /// The index has no shape of this name.
-    #[error("{path} has no shape `{id}`; export the index to list its shapes", path = path.display())]
+    #[error("{path} has no shape `{id}`", path = path.display())]
     NoSuchShape {
         /// The index.
         path: PathBuf,

@@ -216,6 +216,16 @@ impl Snapshot<'_> {
         Ok(keys)
     }
 
+    /// The keys and values of a table, in ascending order of the keys.
+    pub(crate) fn all<T: DeserializeOwned>(&self, table: Named) -> Result<Vec<(String, T)>, IndexError> {
+        let mut rows = Vec::new();
+        self.each(table, |key, value| {
+            rows.push((key.to_owned(), value));
+            Ok::<(), IndexError>(())
+        })?;
+        Ok(rows)
+    }
+
     /// Calls `visit` with each key and value of a table, in ascending order of the keys.
     pub(crate) fn each<T: DeserializeOwned, E: From<IndexError>>(
         &self,

@@ -46,7 +46,7 @@ fn an_interrupted_writer_is_resumed() {
     }
     assert_eq!(folder.names(), ["cut.work", "whole"]);
     let writer = IndexWriter::open(&path, Job::Build, Some(OPTIONS)).unwrap();
-    assert_eq!(writer.ids().unwrap().len(), 30);
+    assert_eq!(writer.entries().unwrap().len(), 30);
     writer.finish().unwrap();
     assert_eq!(export(&path), whole);
     assert_eq!(folder.names(), ["cut", "whole"]);

@@ -53,7 +53,7 @@ fn change(path: &Path) -> Result<(), IndexError> {
     let mut writer = IndexWriter::open(path, Job::Add, None)?;
     writer.put(&[shape(1000)])?;
     writer.remove(&[shape(3).id])?;
-    writer.ids()?;
+    writer.entries()?;
     writer.finish().map(drop)
 }
 

@@ -140,6 +140,12 @@ impl IndexWriter {
         Store { database: &self.database, path: &self.work, action: "write", n_bytes }
     }
 
+    /// The index.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
     /// Whether the existing index is damaged, so that the work started from nothing.
     #[must_use]
     pub fn replaces_damaged(&self) -> bool {
@@ -167,9 +173,9 @@ impl IndexWriter {
         self.store().read()?.entry(id)
     }
 
-    /// The names of all shapes so far, in ascending order.
-    pub fn ids(&self) -> Result<Vec<String>, IndexError> {
-        self.store().read()?.keys(ENTRIES)
+    /// The names and entries of all shapes so far, in ascending order of names.
+    pub fn entries(&self) -> Result<Vec<(String, ShapeEntry)>, IndexError> {
+        self.store().read()?.all(ENTRIES)
     }
 
     /// Stores shapes, replacing those of the same names. Either all of them are on disk when it returns, or none.

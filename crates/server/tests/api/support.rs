@@ -58,7 +58,8 @@ fn index(folder: &Path) {
     for (name, mesh) in bodies() {
         mesh::io::write(&meshes.join(format!("{name}.off")), &mesh).unwrap();
     }
-    let options = BuildOptions { describe: &DescribeOptions::default(), labels: None, shard: None };
+    let describe = DescribeOptions::default();
+    let options = BuildOptions::new(&describe);
     build_index(&meshes, &folder.join(INDEX), &options, &()).unwrap();
 }
 

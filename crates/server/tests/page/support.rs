@@ -35,7 +35,8 @@ fn collection() -> PathBuf {
         }
         mesh::io::write(&meshes.join(format!("{AWKWARD}.off")), &mesh::shapes::torus(24, 12, 2.0, 0.6))
             .unwrap();
-        let options = BuildOptions { describe: &DescribeOptions::default(), labels: None, shard: None };
+        let describe = DescribeOptions::default();
+        let options = BuildOptions::new(&describe);
         build_index(&meshes, &folder.join("all.canonform"), &options, &()).unwrap();
         folder
     };

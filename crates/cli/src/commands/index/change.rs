@@ -5,9 +5,10 @@ use std::process::ExitCode;
 
 use anyhow::Result;
 use canonform::{
-    BuildOptions, BuildReport, Inputs, LabelFile, MergeReport, add_to_index, build_index, merge_indexes,
-    remove_from_index,
+    BuildOptions, BuildReport, Elsewhere, FailureReason, Inputs, LabelFile, MergeReport, add_to_index,
+    build_index, merge_indexes, remove_from_index,
 };
+use index::damaged_path;
 use serde::Serialize;
 use terminal::Bars;
 
@@ -27,33 +28,89 @@ pub(super) fn build(args: &BuildArgs, common: &Common) -> Result<ExitCode> {
     check_folder(&args.output)?;
     let labels = args.labels.as_deref().map(LabelFile::read).transpose()?;
     let describe = args.describe.options(common)?;
-    let options = BuildOptions { describe: &describe, labels: labels.as_ref(), shard: args.shard };
+    let options = BuildOptions {
+        labels: labels.as_ref(),
+        shard: args.shard,
+        elsewhere: if args.prune { Elsewhere::Prune } else { Elsewhere::Keep },
+        limits: args.limits.each(),
+        ..BuildOptions::new(&describe)
+    };
     let built = build_index(&args.folder, &args.output, &options, &Bars::new(common.quiet))?;
-    summarize(&args.output, built, args.describe.embedding.form.repair.max_dropped, common)
+    let max_dropped = args.describe.embedding.form.repair.max_dropped;
+    summarize(&args.output, built, labels.as_ref(), max_dropped, common)
 }
 
 pub(super) fn add(args: &AddArgs, common: &Common) -> Result<ExitCode> {
     let labels = args.labels.as_deref().map(LabelFile::read).transpose()?;
-    let inputs = Inputs { paths: &args.meshes, labels: labels.as_ref(), label: args.label.as_deref() };
+    let inputs = Inputs {
+        paths: &args.meshes,
+        labels: labels.as_ref(),
+        label: args.label.as_deref(),
+        limits: args.limits.each(),
+    };
     let added = add_to_index(&args.index, &inputs, args.replace, &Bars::new(common.quiet))?;
-    summarize(&args.index, added, MAX_DROPPED, common)
+    summarize(&args.index, added, labels.as_ref(), MAX_DROPPED, common)
 }
 
+/// Most names that a note lists.
+const MOST_NAMED: usize = 10;
+
 /// Prints what happened to the meshes, those that lost more of their surface than allowed and failures last.
-fn summarize(index: &Path, built: BuildReport, max_dropped: f64, common: &Common) -> Result<ExitCode> {
+fn summarize(
+    index: &Path,
+    built: BuildReport,
+    labels: Option<&LabelFile>,
+    max_dropped: f64,
+    common: &Common,
+) -> Result<ExitCode> {
     let json = Json { index: index.to_owned(), report: built };
     report(common, &json, |json| table(index, &json.report, max_dropped))?;
-    for shape in &json.report.dropped {
+    let built = &json.report;
+    notes(index, built, labels).iter().for_each(|note| terminal::note(note));
+    for shape in &built.dropped {
         check_dropped(&shape.id, shape.dropped_area_share, max_dropped);
     }
-    for failure in &json.report.failed {
+    for failure in &built.failed {
         let message = match is_named(&failure.path, &failure.error) {
             true => failure.error.clone(),
             false => format!("{}: {}", failure.path.display(), failure.error),
         };
-        eprintln!("error: {}", with_remedy(message, failure.remedy));
+        terminal::error(&with_remedy(message, failure.remedy));
     }
-    Ok(exit_code(json.report.failed.is_empty()))
+    Ok(exit_code(built.failed.is_empty()))
+}
+
+/// What users should know although nothing failed.
+fn notes(index: &Path, built: &BuildReport, labels: Option<&LabelFile>) -> Vec<String> {
+    let mut notes = Vec::new();
+    if built.replaced_damaged {
+        notes.push(format!(
+            "warning: the damaged index was built again from this folder; {} keeps the damaged file",
+            damaged_path(index).display()
+        ));
+    }
+    if let Some(class) = &built.single_class {
+        notes.push(format!(
+            "warning: nearly all names begin with `{class}`, which would be the only class, so the shapes have none; put \
+             each class into a sub-folder, or pass --labels FILE.csv"
+        ));
+    }
+    if let (Some(labels), 1..) = (labels, built.unused_labels) {
+        let path = labels.path().display();
+        notes.push(format!("warning: {} lines of {path} name no shape", built.unused_labels));
+    }
+    let skipped = &built.skipped_paths;
+    notes.extend(skipped.iter().take(MOST_NAMED).map(|path| format!("warning: skipped {}", path.display())));
+    if skipped.len() > MOST_NAMED {
+        notes.push(format!("warning: skipped {} more", skipped.len() - MOST_NAMED));
+    }
+    if built.elsewhere > 0 {
+        let n = built.elsewhere;
+        notes.push(format!(
+            "note: {n} shapes did not come from this folder and were kept; --prune removes them"
+        ));
+    }
+    notes
 }
 
 fn table(index: &Path, report: &BuildReport, max_dropped: f64) -> String {
@@ -64,9 +121,18 @@ fn table(index: &Path, report: &BuildReport, max_dropped: f64) -> String {
         ("renamed", report.renamed),
         ("removed", report.removed),
         ("incomplete", lossy),
-        ("failed", report.failed.len()),
+        ("pruned", report.pruned),
+        ("from elsewhere", report.elsewhere),
+        ("unlabelled", report.unlabelled),
     ];
     rows.extend(rare.into_iter().filter(|(_, n)| *n > 0).map(|(name, n)| (name, n.to_string())));
+    if !report.skipped.is_empty() {
+        let kinds: Vec<String> = report.skipped.iter().map(|(kind, n)| format!("{n} {kind}")).collect();
+        rows.push(("skipped", kinds.join(", ")));
+    }
+    if !report.failed.is_empty() {
+        rows.push(("failed", failures(report)));
+    }
     if report.resumed {
         rows.push(("resumed", "an interrupted run".to_owned()));
     }
@@ -76,6 +142,21 @@ fn table(index: &Path, report: &BuildReport, max_dropped: f64) -> String {
         false => ("index", "not written: no mesh could be described".to_owned()),
     });
     facts(&rows)
+}
+
+/// The number of failures, and how many there are for each reason.
+fn failures(report: &BuildReport) -> String {
+    let reasons = [
+        (FailureReason::Unreadable, "unreadable"),
+        (FailureReason::TooLarge, "too large"),
+        (FailureReason::Time, "over the time limit"),
+        (FailureReason::Memory, "over the memory limit"),
+        (FailureReason::Shape, "without a description"),
+    ];
+    let count = |reason| report.failed.iter().filter(|failure| failure.reason == reason).count();
+    let parts = reasons.map(|(reason, words)| (count(reason), words)).into_iter().filter(|(n, _)| *n > 0);
+    let parts: Vec<String> = parts.map(|(n, words)| format!("{n} {words}")).collect();
+    format!("{}: {}", report.failed.len(), parts.join(", "))
 }
 
 #[derive(Serialize)]

@@ -5,12 +5,14 @@ use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use anyhow::Result;
+use anyhow::{Result, bail};
+use canonform::Remedy;
 use index::{ExportError, Index, Verification, work_path};
 use serde::Serialize;
 
 use crate::args::Common;
 use crate::output::{check_folder, exit_code, facts, print, print_json, report};
+use crate::remedy::with_remedy;
 
 #[derive(Serialize)]
 struct VerifyJson<'a> {
@@ -30,7 +32,8 @@ pub(super) fn verify(index: &Path, common: &Common) -> Result<ExitCode> {
         print(&format!("{name}: intact, {n_shapes} shapes, {n_bytes} bytes"))?;
     }
     for fault in faults {
-        eprintln!("error: {name} is damaged: {fault}; restore it, or build it again");
+        let message = format!("{name} is damaged: {fault}");
+        terminal::error(&with_remedy(message, Some(Remedy::BuildIndexAgain)));
     }
     Ok(exit_code(sound))
 }
@@ -42,7 +45,9 @@ struct InfoJson {
     n_shapes: usize,
     n_bytes: u64,
     options: serde_json::Value,
+    /// Shapes of each class; those without one have an empty key.
     classes: BTreeMap<String, usize>,
+    unlabelled: usize,
     /// The file with unfinished work, if there is one.
     unfinished: Option<PathBuf>,
 }
@@ -59,6 +64,7 @@ pub(super) fn info(path: &Path, common: &Common) -> Result<ExitCode> {
         n_shapes: index.len(),
         n_bytes: index.n_bytes(),
         options: serde_json::from_str(index.options()).unwrap_or_else(|_| index.options().into()),
+        unlabelled: classes.get("").copied().unwrap_or(0),
         classes,
         unfinished: Some(work_path(path)).filter(|work| work.exists()),
     };
@@ -66,10 +72,12 @@ pub(super) fn info(path: &Path, common: &Common) -> Result<ExitCode> {
 }
 
 fn table(json: &InfoJson) -> String {
-    let classes: Vec<String> = json.classes.iter().map(|(class, n)| format!("{class} {n}")).collect();
+    let classes = json.classes.iter().filter(|(class, _)| !class.is_empty());
+    let classes: Vec<String> = classes.map(|(class, n)| format!("{class} {n}")).collect();
     let mut rows = vec![
         ("shapes", json.n_shapes.to_string()),
         ("classes", format!("{}: {}", classes.len(), classes.join(", "))),
+        ("unlabelled", json.unlabelled.to_string()),
         ("bytes", json.n_bytes.to_string()),
         ("format", json.format.to_string()),
         ("described by", json.options.to_string()),
@@ -81,6 +89,11 @@ fn table(json: &InfoJson) -> String {
 }
 
 pub(super) fn export(index: &Path, output: Option<&Path>) -> Result<ExitCode> {
+    if let Some(path) = output
+        && [index.to_owned(), work_path(index)].iter().any(|taken| files::is_same_file(taken, path))
+    {
+        bail!("{} is the index itself; choose another file with -o", path.display());
+    }
     let index = Index::open(index)?;
     let Some(path) = output else {
         let mut out = BufWriter::with_capacity(1 << 16, std::io::stdout().lock());

@@ -1,6 +1,7 @@
 //! `canonform index`.
 
 mod change;
+mod list;
 mod look;
 
 use std::process::ExitCode;
@@ -16,6 +17,7 @@ pub(crate) fn index(command: &IndexCommand, common: &Common) -> Result<ExitCode>
         IndexCommand::Remove { index, ids } => change::remove(index, ids, common),
         IndexCommand::Merge { inputs, output } => change::merge(inputs, output, common),
         IndexCommand::Verify { index } => look::verify(index, common),
+        IndexCommand::List(args) => list::list(args, common),
         IndexCommand::Info { index } => look::info(index, common),
         IndexCommand::Export { index, output } => look::export(index, output.as_deref()),
     }

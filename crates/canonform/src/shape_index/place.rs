@@ -1,0 +1,172 @@
+//! Where meshes are, as seen from an index: relative to its folder, so that an index moves with its meshes.
+
+use std::path::{Component, Path, PathBuf};
+
+use files::FileError;
+
+use crate::error::Error;
+
+/// The folder of an index, without links.
+#[derive(Debug, Clone)]
+pub(super) struct Home(PathBuf);
+
+impl Home {
+    /// # Errors
+    /// [`Error::File`] if the folder does not exist.
+    pub(super) fn of(index: &Path) -> Result<Self, Error> {
+        Ok(Self(canonical(folder_of(index))?))
+    }
+
+    /// The text that stands for a path without links: relative to this folder, separated by `/`. A path on another drive
+    /// stays as it is.
+    fn text(&self, path: &Path) -> String {
+        let shared = self.0.components().zip(path.components()).take_while(|(a, b)| a == b).count();
+        if shared == 0 {
+            return path.to_string_lossy().into_owned();
+        }
+        let up = self.0.components().skip(shared).map(|_| "..".into());
+        let down = path.components().skip(shared).map(|part| part.as_os_str().to_string_lossy());
+        up.chain(down).collect::<Vec<_>>().join("/")
+    }
+
+    /// The text for a path that another index states.
+    pub(super) fn text_of(&self, index: &Path, stored: &str) -> String {
+        let path = mesh_path(index, stored);
+        let absolute = path
+            .parent()
+            .zip(path.file_name())
+            .and_then(|(_, name)| Some(folder_of(&path).canonicalize().ok()?.join(name)));
+        // Without the folder of the mesh, the text says no less than before.
+        absolute.map_or_else(|| stored.to_owned(), |path| self.text(&path))
+    }
+}
+
+/// A folder of meshes, as seen from an index.
+#[derive(Debug, Clone)]
+pub(super) struct Root<'a> {
+    given: &'a Path,
+    canonical: PathBuf,
+    home: &'a Home,
+}
+
+impl<'a> Root<'a> {
+    /// # Errors
+    /// [`Error::File`] if the folder does not exist.
+    pub(super) fn new(given: &'a Path, home: &'a Home) -> Result<Self, Error> {
+        Ok(Self { given, canonical: canonical(given)?, home })
+    }
+
+    /// The folder as it was named.
+    pub(super) fn given(&self) -> &Path {
+        self.given
+    }
+
+    /// The text for a file below this folder. It does not depend on how the folder was named.
+    pub(super) fn text(&self, file: &Path) -> String {
+        let below = file.strip_prefix(self.given).unwrap_or(file);
+        self.home.text(&self.canonical.join(below))
+    }
+
+    /// Whether a shape with this name and path came from this folder.
+    pub(super) fn brought(&self, id: &str, stored: &str) -> bool {
+        // Earlier versions stored paths as they were given.
+        [self.home.text(&self.canonical), slashed(self.given)].iter().any(|folder| {
+            let below = match folder.as_str() {
+                "" | "." => {
+                    Some(stored).filter(|stored| !stored.starts_with("../") && !stored.starts_with('/'))
+                }
+                folder => stored.strip_prefix(folder).and_then(|rest| rest.strip_prefix('/')),
+            };
+            // The name may hold the extension, if several files differ in nothing else.
+            below.is_some_and(|below| below == id || slashed(&Path::new(below).with_extension("")) == id)
+        })
+    }
+}
+
+/// The path of a mesh that an index states as `stored`, for programs to open and people to read.
+///
+/// Paths are relative to the folder of the index. Earlier versions wrote paths relative to the folder in which they ran;
+/// such a path is found if it leads to a file from the current folder only.
+///
+/// ```
+/// use std::path::Path;
+///
+/// let path = canonform::mesh_path(Path::new("work/shapes.canonform"), "../meshes/cat0.off");
+/// assert_eq!(path, Path::new("meshes/cat0.off"));
+/// ```
+#[must_use]
+pub fn mesh_path(index: &Path, stored: &str) -> PathBuf {
+    let joined = index.parent().unwrap_or(Path::new("")).join(stored);
+    let tidy = without_detours(&joined);
+    // Leaving out `x/..` is wrong where `x` is a link.
+    let found =
+        [&tidy, &joined, Path::new(stored)].into_iter().find(|path| path.exists()).map(Path::to_owned);
+    found.unwrap_or(tidy)
+}
+
+/// A path without `.` and without `x/..`.
+fn without_detours(path: &Path) -> PathBuf {
+    let mut parts: Vec<Component<'_>> = Vec::new();
+    for part in path.components() {
+        match (part, parts.last()) {
+            (Component::CurDir, _) => {}
+            (Component::ParentDir, Some(Component::Normal(_))) => {
+                parts.pop();
+            }
+            _ => parts.push(part),
+        }
+    }
+    parts.iter().collect()
+}
+
+fn folder_of(path: &Path) -> &Path {
+    path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
+}
+
+fn canonical(folder: &Path) -> Result<PathBuf, Error> {
+    Ok(folder.canonicalize().map_err(|source| FileError::read(folder, source))?)
+}
+
+fn slashed(path: &Path) -> String {
+    let parts = without_detours(path);
+    parts.to_string_lossy().replace(std::path::MAIN_SEPARATOR, "/")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn texts_do_not_depend_on_how_a_folder_is_named() {
+        let place = tempfile::tempdir().unwrap();
+        let at = |name: &str| place.path().join(name);
+        std::fs::create_dir_all(at("data/meshes/sub")).unwrap();
+        std::fs::create_dir_all(at("work")).unwrap();
+        for (index, text) in [
+            ("work/i", "../data/meshes/sub/a.off"),
+            ("data/i", "meshes/sub/a.off"),
+            ("data/meshes/i", "sub/a.off"),
+        ] {
+            let home = Home::of(&at(index)).unwrap();
+            for folder in ["data/meshes", "work/../data/./meshes"] {
+                let folder = at(folder);
+                let root = Root::new(&folder, &home).unwrap();
+                assert_eq!(root.text(&folder.join("sub/a.off")), text);
+                assert!(root.brought("sub/a", text) && root.brought("sub/a.off", text));
+                assert!(!root.brought("a", text) && !root.brought("sub/a", "../other/sub/a.off"));
+            }
+            assert_eq!(mesh_path(&at(index), text), at("data/meshes/sub/a.off"));
+            assert_eq!(home.text_of(&at("work/other"), "../data/meshes/sub/a.off"), text);
+        }
+    }
+
+    #[test]
+    fn shapes_of_the_folder_of_the_index_are_told_from_others() {
+        let place = tempfile::tempdir().unwrap();
+        let index = place.path().join("i");
+        let home = Home::of(&index).unwrap();
+        let root = Root::new(place.path(), &home).unwrap();
+        assert!(root.brought("a", "a.off") && root.brought("b/a", "b/a.off"));
+        assert!(!root.brought("a", "../a.off") && !root.brought("a", "/a.off"));
+    }
+}

@@ -1,0 +1,60 @@
+//! `canonform index list`.
+
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use anyhow::Result;
+use canonform::mesh_path;
+use index::{Index, ShapeEntry};
+use serde::Serialize;
+
+use crate::args::{Common, ListArgs};
+use crate::output::report;
+
+#[derive(Serialize)]
+struct Json {
+    index: PathBuf,
+    /// Shapes in the index, listed or not.
+    n_shapes: usize,
+    shapes: Vec<Listed>,
+}
+
+#[derive(Serialize)]
+struct Listed {
+    id: String,
+    /// Empty if it has none.
+    label: String,
+    path: String,
+    vertices: Option<f64>,
+    faces: Option<f64>,
+}
+
+pub(super) fn list(args: &ListArgs, common: &Common) -> Result<ExitCode> {
+    let index = Index::open(&args.index)?;
+    let lists_all = args.label.is_empty() && !args.unlabelled;
+    let is_listed =
+        |label: &String| lists_all || args.label.contains(label) || args.unlabelled && label.is_empty();
+    let entries = index.entries()?.into_iter().filter(|(_, entry)| is_listed(&entry.label));
+    let shapes = entries.map(|(id, entry)| listed(&args.index, id, entry)).collect();
+    let json = Json { index: args.index.clone(), n_shapes: index.len(), shapes };
+    let code = report(common, &json, table)?;
+    Ok(if json.shapes.is_empty() { ExitCode::from(1) } else { code })
+}
+
+fn listed(index: &Path, id: String, entry: ShapeEntry) -> Listed {
+    let (vertices, faces) = (entry.fact("vertices"), entry.fact("faces"));
+    let path = mesh_path(index, &entry.path).to_string_lossy().into_owned();
+    Listed { id, label: entry.label, path, vertices, faces }
+}
+
+fn table(json: &Json) -> String {
+    let mut table = comfy_table::Table::new();
+    table.load_style(comfy_table::presets::NOTHING).set_header(["shape", "class", "vertices", "path"]);
+    for shape in &json.shapes {
+        let class = if shape.label.is_empty() { "-" } else { &shape.label };
+        let vertices = shape.vertices.map_or_else(|| "-".to_owned(), |n| n.to_string());
+        table.add_row([&shape.id, class, &vertices, &shape.path]);
+    }
+    let counts = format!("{} of {} shapes in {}", json.shapes.len(), json.n_shapes, json.index.display());
+    format!("{table}\n  {counts}")
+}

@@ -1,0 +1,337 @@
+//! Folders and indexes as people keep them: links, strange names, labels, limits, moves, damage.
+
+use std::fs;
+use std::path::Path;
+
+use mesh::shapes;
+
+use crate::index::body;
+use crate::support::{Workplace, assert_keys, one_object};
+
+/// Six shapes of two classes.
+fn collection() -> Workplace {
+    let place = Workplace::new();
+    for (kind, name) in ["ring", "ball"].into_iter().enumerate() {
+        (0..3).for_each(|i| place.add(&format!("meshes/{name}{i}.off"), &body(kind, i)));
+    }
+    place
+}
+
+const BUILD: [&str; 7] = ["index", "build", "meshes", "-n", "20", "-o", "all.canonform"];
+
+fn build(place: &Workplace) {
+    place.done(&BUILD);
+}
+
+fn ids(json: &serde_json::Value) -> Vec<&str> {
+    json["shapes"].as_array().unwrap().iter().map(|shape| shape["id"].as_str().unwrap()).collect()
+}
+
+#[test]
+fn a_build_keeps_what_did_not_come_from_its_folder() {
+    let place = collection();
+    build(&place);
+    place.add("more/box0.off", &body(2, 0));
+    place.add("extra.ply", &body(2, 1));
+    place.done(&["index", "add", "all.canonform", "more", "extra.ply", "--label", "box"]);
+    fs::remove_file(place.path("meshes/ring1.off")).unwrap();
+    let kept = place.json(&BUILD);
+    let counts = ["n_shapes", "removed", "elsewhere", "pruned"].map(|key| kept[key].as_u64().unwrap());
+    assert_eq!(counts, [7, 1, 2, 0]);
+    // The next run has nothing to do, and says the same.
+    let before = fs::read(place.path("all.canonform")).unwrap();
+    let outcome = place.done(&BUILD);
+    assert!(outcome.out.contains("from elsewhere") && outcome.err.contains("--prune"), "{}", outcome.err);
+    assert_eq!(fs::read(place.path("all.canonform")).unwrap(), before);
+    let pruned = place.json(&[&BUILD[..], &["--prune"]].concat());
+    let counts = ["n_shapes", "removed", "elsewhere", "pruned"].map(|key| pruned[key].as_u64().unwrap());
+    assert_eq!(counts, [5, 0, 0, 2]);
+}
+
+#[test]
+fn shapes_are_listed_by_class() {
+    let place = collection();
+    build(&place);
+    place.add("extra.ply", &body(2, 1));
+    fs::write(place.path("none.csv"), "other,x\n").unwrap();
+    place.done(&["index", "add", "all.canonform", "extra.ply", "--labels", "none.csv"]);
+    let all = place.json(&["index", "list", "all.canonform"]);
+    assert_eq!(all["n_shapes"], 7);
+    assert_eq!(ids(&all), ["ball0", "ball1", "ball2", "extra", "ring0", "ring1", "ring2"]);
+    assert_keys(&all["shapes"][0], &["id", "label", "path", "vertices", "faces"]);
+    assert_eq!(
+        (&all["shapes"][0]["path"], &all["shapes"][0]["vertices"]),
+        (&"meshes/ball0.off".into(), &162.0.into())
+    );
+    let some = place.json(&["index", "list", "all.canonform", "--label", "ring", "--unlabelled"]);
+    assert_eq!(ids(&some), ["extra", "ring0", "ring1", "ring2"]);
+    let text = place.done(&["index", "list", "all.canonform", "--label", "ball"]).out;
+    assert!(text.contains("meshes/ball2.off") && text.contains("3 of 7 shapes"), "{text}");
+    assert_eq!(place.run(&["index", "list", "all.canonform", "--label", "cat"]).code, 1);
+    assert_eq!(place.json(&["index", "info", "all.canonform"])["unlabelled"], 1);
+}
+
+#[test]
+fn queries_are_meshes_folders_and_shapes_of_the_index() {
+    let place = collection();
+    build(&place);
+    let search = |rest: &[&str]| place.json(&[&["search", "all.canonform"], rest].concat());
+    let by_id = search(&["ring1"]);
+    let by_mesh = search(&["meshes/ring1.off"]);
+    assert_eq!((&by_id["query"], &by_id["results"][0]["id"]), (&"ring1".into(), &"ring1".into()));
+    let places = |json: &serde_json::Value| -> Vec<String> {
+        json["results"].as_array().unwrap().iter().map(|result| result["id"].to_string()).collect()
+    };
+    assert_eq!(places(&by_id), places(&by_mesh));
+    // A file goes before a shape of the same name, unless the shape is asked for.
+    fs::copy(place.path("meshes/ball0.off"), place.path("ring0")).unwrap();
+    place.refused(&["search", "all.canonform", "ring0"], &["ring0"]);
+    assert_eq!(search(&["--id", "ring0"])["results"][0]["id"], "ring0");
+    place.refused(&["search", "all.canonform", "--id", "cat"], &["`cat`", "index list"]);
+    place.refused(&["search", "all.canonform", "cat"], &["cat", "neither a file nor a shape", "index list"]);
+    // One query and many have the same keys; the only one has its own as well.
+    let many = search(&["meshes", "--id", "ring2"]);
+    assert_eq!(many["queries"].as_array().unwrap().len(), 7);
+    assert!(many.get("results").is_none() && many["failed"].as_array().unwrap().is_empty());
+    for json in [&by_id, &many, &search(&["ball1", "-k", "0"])] {
+        assert_keys(&json["queries"][0], &["query", "results", "predicted", "n_shapes", "seconds"]);
+    }
+    assert_eq!(by_id["queries"][0]["results"], by_id["results"]);
+    // Without results the class is predicted all the same.
+    let none = search(&["ball1", "-k", "0"]);
+    assert!(none["results"].as_array().unwrap().is_empty());
+    assert_eq!(none["predicted"]["label"], "ball");
+    let text = place.done(&["search", "all.canonform", "ball1", "-k", "0"]).out;
+    assert!(text.contains("class: ball"), "{text}");
+    // No more than there are.
+    assert_eq!(places(&search(&["ball1", "-k", "9223372036854775807"])).len(), 6);
+}
+
+#[test]
+fn an_index_moves_with_its_folder() {
+    let place = collection();
+    fs::create_dir_all(place.path("here/work")).unwrap();
+    fs::rename(place.path("meshes"), place.path("here/meshes")).unwrap();
+    place.done(&["index", "build", "here/meshes", "-n", "20", "-o", "here/work/i"]);
+    let absolute = place.path("here/meshes");
+    place.done(&["index", "build", absolute.to_str().unwrap(), "-n", "20", "-o", "here/work/j"]);
+    let export = |index: &str| place.done(&["index", "export", index]).out;
+    let text = export("here/work/i");
+    assert_eq!(export("here/work/j"), text, "relative or absolute");
+    assert!(text.contains("\"path\":\"../meshes/ball0.off\""), "{text}");
+    fs::rename(place.path("here"), place.path("there")).unwrap();
+    let found = place.json(&["search", "there/work/i", "ball0", "-k", "1"]);
+    assert_eq!(found["results"][0]["path"], "there/meshes/ball0.off");
+    // Nothing has changed.
+    let again = place.json(&["index", "build", "there/meshes", "-n", "20", "-o", "there/work/i"]);
+    assert_eq!((&again["unchanged"], &again["renamed"]), (&6.into(), &0.into()));
+    // A merge into another folder keeps the way to the meshes.
+    place.done(&["index", "merge", "there/work/i", "-o", "merged"]);
+    assert!(export("merged").contains("\"path\":\"there/meshes/ball0.off\""));
+}
+
+#[test]
+fn numbers_are_no_classes_and_label_files_may_be_partial() {
+    let place = Workplace::new();
+    (0..4).for_each(|i| place.add(&format!("meshes/T17{i}.off"), &body(i % 2, i)));
+    let outcome = place.done(&BUILD);
+    assert!(outcome.err.contains("`T`") && outcome.err.contains("--labels"), "{}", outcome.err);
+    let classes = |place: &Workplace| place.json(&["index", "info", "all.canonform"])["classes"].clone();
+    assert_eq!(classes(&place), serde_json::json!({"": 4}));
+    let found = place.json(&["search", "all.canonform", "T170"]);
+    assert_eq!(found["predicted"]["label"], serde_json::Value::Null);
+    place.refused(&["evaluate", "all.canonform"], &["--labels"]);
+    place.add("meshes/scan.001.off", &body(0, 7));
+    place.add("meshes/scan.off", &body(1, 7));
+    fs::write(place.path("labels.csv"), "T170,ring\nT172.off,ring\nscan.001,ring\nscan.7,box\nT171,ball\n")
+        .unwrap();
+    let built = place.json(&[&BUILD[..], &["--labels", "labels.csv"]].concat());
+    assert_eq!((&built["unlabelled"], &built["unused_labels"]), (&2.into(), &1.into()));
+    assert_eq!(classes(&place), serde_json::json!({"": 2, "ball": 1, "ring": 3}));
+    let listed = place.json(&["index", "list", "all.canonform", "--unlabelled"]);
+    assert_eq!(ids(&listed), ["T173", "scan"]);
+    assert_eq!(place.json(&["evaluate", "all.canonform"])["n"], 4);
+}
+
+#[test]
+fn a_batch_goes_on_past_shapes_beyond_its_limits() {
+    let place = collection();
+    place.add("meshes/big0.off", &shapes::icosphere(4));
+    let outcome = place.run(&[&BUILD[..], &["--max-vertices", "1000", "--json"]].concat());
+    let json = one_object(&outcome.out);
+    assert_eq!((outcome.code, &json["n_shapes"]), (2, &6.into()));
+    let failed = json["failed"].as_array().unwrap();
+    assert_eq!(
+        (failed.len(), &failed[0]["id"], &failed[0]["reason"]),
+        (1, &"big0".into(), &"too-large".into())
+    );
+    // The next run, with more room, takes it.
+    assert_eq!(place.json(&BUILD)["n_shapes"], 7);
+    for (limit, value, reason) in [("--memory", "100", "memory"), ("--timeout", "0.000001", "time")] {
+        let outcome = place.run(&["index", "build", "meshes", "-o", "none", limit, value, "--json"]);
+        let json = one_object(&outcome.out);
+        assert_eq!((outcome.code, json["failed"].as_array().unwrap().len()), (2, 7));
+        assert!(
+            json["failed"].as_array().unwrap().iter().all(|failure| failure["reason"] == reason),
+            "{json}"
+        );
+        assert!(outcome.err.contains(&format!("raise {limit}")), "{}", outcome.err);
+    }
+    place.add("more/box.off", &body(2, 0));
+    let outcome = place.run(&["index", "add", "all.canonform", "more", "--max-vertices", "9"]);
+    assert!(outcome.code == 2 && outcome.out.contains("1 too large"), "{}", outcome.out);
+}
+
+#[cfg(unix)]
+#[test]
+fn links_and_special_files_are_skipped_and_counted() {
+    use std::ffi::OsStr;
+    use std::os::unix::ffi::OsStrExt;
+    use std::os::unix::fs::symlink;
+
+    let place = collection();
+    let at = |name: &str| place.path(&format!("meshes/{name}"));
+    symlink(".", at("self")).unwrap();
+    symlink("..", at("up")).unwrap();
+    symlink("/dev/zero", at("endless.off")).unwrap();
+    assert!(std::process::Command::new("mkfifo").arg(at("pipe.off")).status().unwrap().success());
+    fs::write(at("notes.txt"), "").unwrap();
+    for name in [&b"\xff1.off"[..], b"\xfe2.off"] {
+        fs::copy(at("ring0.off"), place.path("meshes").join(OsStr::from_bytes(name))).unwrap();
+    }
+    let json = place.json(&BUILD);
+    assert_eq!(json["n_shapes"], 6);
+    let expected = serde_json::json!({
+        ".txt": 1, "link to something found already": 2, "name is not UTF-8": 2, "special file": 2
+    });
+    assert_eq!(json["skipped"], expected);
+    let outcome = place.done(&BUILD);
+    assert!(
+        outcome.out.contains("2 special file") && outcome.err.contains("meshes/pipe.off"),
+        "{}",
+        outcome.err
+    );
+    // Given by name they are errors.
+    for name in ["meshes/pipe.off", "meshes/endless.off"] {
+        let outcome = place.run(&["index", "add", "all.canonform", name]);
+        assert!(outcome.code == 2 && outcome.err.contains("not a regular file"), "{}", outcome.err);
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn names_do_not_control_the_terminal() {
+    let place = collection();
+    fs::write(place.path("meshes/\u{1b}[31mred.off"), "OFF\n").unwrap();
+    place.add("meshes/\u{1b}[2Jclear.off", &body(0, 5));
+    let built = place.run(&BUILD);
+    let listed = place.done(&["index", "list", "all.canonform"]);
+    let searched = place.done(&["search", "all.canonform", "ring0"]);
+    for outcome in [&built, &listed, &searched] {
+        assert!(
+            !outcome.out.contains('\u{1b}') && !outcome.err.contains('\u{1b}'),
+            "{}{}",
+            outcome.out,
+            outcome.err
+        );
+    }
+    assert!(
+        built.err.contains("\\u{1b}[31mred.off") && listed.out.contains("\\u{1b}[2Jclear"),
+        "{}",
+        built.err
+    );
+}
+
+#[test]
+fn an_export_never_overwrites_the_index() {
+    let place = collection();
+    build(&place);
+    let before = fs::read(place.path("all.canonform")).unwrap();
+    for output in ["all.canonform", "./all.canonform", "meshes/../all.canonform"] {
+        place.refused(&["index", "export", "all.canonform", "-o", output], &["is the index itself"]);
+    }
+    assert_eq!(fs::read(place.path("all.canonform")).unwrap(), before);
+    // What a killed program left goes with the next export.
+    fs::write(place.path(".unfinished-Ab12"), "half").unwrap();
+    place.done(&["index", "export", "all.canonform", "-o", "all.jsonl"]);
+    assert!(!place.path(".unfinished-Ab12").exists());
+}
+
+#[test]
+fn a_damaged_index_is_built_again() {
+    let place = collection();
+    build(&place);
+    let text = place.done(&["index", "export", "all.canonform"]).out;
+    let mut bytes = fs::read(place.path("all.canonform")).unwrap();
+    for byte in &mut bytes[4096..] {
+        *byte ^= 1;
+    }
+    let end = bytes.len();
+    bytes[end - 1] ^= 1;
+    fs::write(place.path("all.canonform"), &bytes).unwrap();
+    for command in [&["index", "info", "all.canonform"][..], &["search", "all.canonform", "ring0"]] {
+        place.refused(command, &["all.canonform is damaged", "index build"]);
+    }
+    let outcome = place.run(&[&BUILD[..], &["--json"]].concat());
+    assert_eq!(outcome.code, 0, "{}", outcome.err);
+    assert_eq!(one_object(&outcome.out)["replaced_damaged"], true);
+    assert!(outcome.err.contains("all.canonform.damaged"), "{}", outcome.err);
+    assert_eq!(place.done(&["index", "export", "all.canonform"]).out, text);
+    assert_eq!(fs::read(place.path("all.canonform.damaged")).unwrap(), bytes);
+}
+
+/// CRC-32 as in the checksums of an index.
+fn crc(bytes: &[u8]) -> [u8; 4] {
+    let step = |sum: u32, byte: &u8| {
+        (0..8).fold(sum ^ u32::from(*byte), |sum, _| sum >> 1 ^ if sum & 1 == 1 { 0xedb8_8320 } else { 0 })
+    };
+    (!bytes.iter().fold(!0, step)).to_le_bytes()
+}
+
+/// Changes one byte of an index and makes all its checksums right again.
+fn forge(path: &Path, at: usize, value: u8) {
+    let mut bytes = fs::read(path).unwrap();
+    let footer = bytes.len() - 40;
+    let n = u64::from_le_bytes(bytes[footer..footer + 8].try_into().unwrap()) as usize;
+    bytes[at] = value;
+    let block = at / 4096;
+    let sum = crc(&bytes[4096 * block..n.min(4096 * (block + 1))]);
+    let sums = n + 24;
+    bytes[sums + 4 * block..][..4].copy_from_slice(&sum);
+    let sum = crc(&bytes[sums..footer]);
+    bytes[footer + 8..][..4].copy_from_slice(&sum);
+    let sum = crc(&[&bytes[footer..footer + 20], &bytes[footer + 24..]].concat());
+    bytes[footer + 20..][..4].copy_from_slice(&sum);
+    fs::write(path, bytes).unwrap();
+}
+
+#[test]
+fn every_command_survives_a_forged_index() {
+    let place = collection();
+    build(&place);
+    let whole = fs::read(place.path("all.canonform")).unwrap();
+    let n_pages = (whole.len() - 64) / 4100;
+    let mut refused = 0;
+    for turn in 0..60 {
+        // The first bytes of a page say where everything else is.
+        let at = 4096 * (turn * 7 % n_pages) + [0, 1, 2, 4, 8, 10, 13, 20, 33, 64, 72, 96][turn % 12];
+        for command in [
+            &["index", "info", "forged"][..],
+            &["index", "list", "forged"],
+            &["index", "verify", "forged"],
+            &["index", "export", "forged", "-o", "export.jsonl"],
+            &["search", "forged", "ring0"],
+            &["index", "remove", "forged", "ring1"],
+            &["evaluate", "forged"],
+        ] {
+            fs::write(place.path("forged"), &whole).unwrap();
+            forge(&place.path("forged"), at, [255, 0, 77][turn % 3]);
+            let outcome = place.run(command);
+            assert!(outcome.code <= 2, "byte {at}, {command:?}: {} {}", outcome.code, outcome.err);
+            assert!(!outcome.err.contains("panicked"), "byte {at}, {command:?}: {}", outcome.err);
+            refused += usize::from(outcome.code == 2);
+            let _ = fs::remove_file(place.path("forged.work"));
+        }
+    }
+    assert!(refused > 50, "{refused}");
+}
