@@ -148,7 +148,7 @@ fn remedy(fault: &Error) -> Option<&'static str> {
             "join the components of the mesh, or keep only the largest one"
         }
         Remedy::RestoreMesh => {
-            "restore the mesh file, start the server in the folder where the index was built, or build the index again"
+            "restore the mesh file, move the index back to the place where it was built, or build the index again"
         }
         Remedy::BuildIndexAgain => "build the index again",
         Remedy::UseNystrom => "simplify the mesh, or build the index with NMDS, which needs less memory",

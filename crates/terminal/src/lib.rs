@@ -12,7 +12,7 @@ use std::sync::{Mutex, PoisonError};
 
 use anyhow::{Context, Result};
 
-pub use memory::with_peak_bytes;
+pub use memory::{memory_limit, with_peak_bytes};
 pub use notes::{error, is_quiet, note, set_quiet};
 pub use progress::Bars;
 pub use text::printable;

@@ -1,4 +1,4 @@
-//! Peak memory, as the counting allocator of a program knows it.
+//! Peak memory, as the counting allocator of a program knows it, and the limit that the system sets.
 
 use peak_alloc::PeakAlloc;
 
@@ -12,9 +12,30 @@ pub fn with_peak_bytes<T>(work: impl FnOnce() -> T) -> (T, usize) {
     (result, PeakAlloc.peak_usage().saturating_sub(before))
 }
 
+/// The memory that the program may reserve, in bytes, if the user has limited it with `ulimit -v`; known on Linux only.
+#[must_use]
+pub fn memory_limit() -> Option<usize> {
+    parse_limit(&std::fs::read_to_string("/proc/self/limits").ok()?)
+}
+
+fn parse_limit(limits: &str) -> Option<usize> {
+    let line = limits.lines().find_map(|line| line.strip_prefix("Max address space"))?;
+    line.split_whitespace().next()?.parse().ok()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn limits_are_read_as_the_system_prints_them() {
+        let text = |limit: &str| {
+            format!("Limit                     Soft Limit           Hard Limit           Units\nMax address space         {limit}           unlimited            bytes\n")
+        };
+        assert_eq!(parse_limit(&text("4096000")), Some(4_096_000));
+        assert_eq!(parse_limit(&text("unlimited")), None);
+        assert_eq!(parse_limit(""), None);
+    }
 
     #[global_allocator]
     static ALLOCATOR: PeakAlloc = PeakAlloc;

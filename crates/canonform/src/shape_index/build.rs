@@ -15,7 +15,7 @@ use super::place::{Home, Root, mesh_path};
 use super::record::{DROPPED, same_source, shape};
 use super::source::{Hashed, Listed, Listing, ShapeLimits, Shard, hash_all, share};
 use crate::error::{Error, Remedy};
-use crate::form::{DescribeOptions, ShapeDescription, embed};
+use crate::form::{DescribeOptions, ShapeDescription, describe_within};
 use crate::input::{LabelFile, Surface, count_skipped};
 use crate::observer::Observer;
 
@@ -384,24 +384,7 @@ fn describe_file(
     let surface = Surface::new(&mesh, &options.form.repair)?;
     drop(mesh);
     budget.check()?;
-    let embedded = embed(&surface, &options.form, &Limited(budget.clone()))?;
-    budget.check()?;
-    let described = ShapeDescription::new(&surface, &embedded, options)?;
-    budget.check()?;
-    Ok(described)
-}
-
-/// The limits of one of many shapes, whose progress is not shown.
-struct Limited(Budget);
-
-impl Observer for Limited {
-    fn budget(&self) -> Budget {
-        self.0.clone()
-    }
-
-    fn begin(&self, _: &str, _: usize) {}
-
-    fn step(&self) {}
+    describe_within(&surface, options, &budget)
 }
 
 /// Shapes that were described, and meshes that failed.

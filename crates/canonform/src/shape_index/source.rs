@@ -100,7 +100,7 @@ impl ShapeLimits {
             n_bytes += open_regular(file)?.metadata().map_err(|source| FileError::read(file, source))?.len();
         }
         budget.check_memory(usize::try_from(n_bytes).unwrap_or(usize::MAX))?;
-        Ok(parse(&files, &read_all(&files)?, &limits)?)
+        Ok(mesh::io::read_within(path, &limits)?)
     }
 }
 
@@ -249,12 +249,8 @@ pub(super) fn read_unchanged(index: &Path, id: &str, entry: &ShapeEntry) -> Resu
     if ContentHash::of(&pieces) != entry.content {
         return Err(changed());
     }
-    Ok(parse(&files, &pieces, &ReadLimits::default())?)
-}
-
-fn parse(files: &[PathBuf], pieces: &[Vec<u8>], limits: &ReadLimits) -> Result<TriMesh, mesh::MeshError> {
-    let files = files.iter().zip(pieces).map(|(name, bytes)| MemoryFile { name, bytes });
-    mesh::io::read_memory(&files.collect::<Vec<_>>(), limits)
+    let files = files.iter().zip(&pieces).map(|(name, bytes)| MemoryFile { name, bytes });
+    Ok(mesh::io::read_memory(&files.collect::<Vec<_>>(), &ReadLimits::default())?)
 }
 
 fn content(path: &Path) -> Result<ContentHash, Error> {
@@ -280,11 +276,16 @@ fn read_all(files: &[PathBuf]) -> Result<Vec<Vec<u8>>, FileError> {
     files.iter().map(read).collect()
 }
 
-/// Opens a file. A pipe or a device would block, or never end.
+/// Opens a file. A pipe or a device would block, or never end, and no reader takes a larger file.
 fn open_regular(path: &Path) -> Result<File, FileError> {
-    let open = || match std::fs::metadata(path)?.is_file() {
-        true => File::open(path),
-        false => Err(io::Error::new(io::ErrorKind::InvalidInput, "not a regular file")),
+    let open = || {
+        let about = std::fs::metadata(path)?;
+        let most = ReadLimits::default().max_bytes;
+        match about.is_file() {
+            true if about.len() <= most => File::open(path),
+            true => Err(io::Error::other(format!("{} bytes are more than {most}", about.len()))),
+            false => Err(io::Error::new(io::ErrorKind::InvalidInput, "not a regular file")),
+        }
     };
     open().map_err(|source| FileError::read(path, source))
 }

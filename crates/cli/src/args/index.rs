@@ -107,9 +107,11 @@ pub(crate) struct BatchLimitArgs {
 }
 
 impl BatchLimitArgs {
+    /// Under `ulimit -v` each thread gets its share of half the memory: a shape beyond it would end the whole run.
     pub(crate) fn each(&self) -> ShapeLimits {
         let Self { max_vertices, limits } = *self;
-        ShapeLimits { max_vertices, time: limits.timeout, memory: limits.memory }
+        let share = || Some(terminal::memory_limit()? / 2 / rayon::current_num_threads());
+        ShapeLimits { max_vertices, time: limits.timeout, memory: limits.memory.or_else(share) }
     }
 }
 

@@ -1,6 +1,8 @@
-//! Killed builds of an index, and full disks.
+//! Killed programs, and full disks.
 
+use std::collections::BTreeMap;
 use std::fs;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
@@ -37,10 +39,121 @@ fn kept(place: &Workplace, index: &str) -> usize {
     n
 }
 
-/// `CANONFORM_KILLS=50 cargo test -p canonform-cli killed` kills more often.
+/// How often programs are killed; `make kills` does it 200 times.
+fn n_kills() -> u32 {
+    std::env::var("CANONFORM_KILLS").ok().and_then(|n| n.parse().ok()).unwrap_or(24)
+}
+
+/// Starts the program and kills it after `time`, unless it ends before. Returns whether it was killed.
+fn kill_after(place: &Workplace, arguments: &[&str], time: Duration) -> bool {
+    let mut child = Command::new(program())
+        .args(arguments)
+        .current_dir(place.path(""))
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    std::thread::sleep(time);
+    child.kill().unwrap();
+    !child.wait().unwrap().success()
+}
+
+/// Every file in a folder and its sub-folders.
+fn contents(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
+    let mut found = BTreeMap::new();
+    let mut folders = vec![folder.to_owned()];
+    while let Some(current) = folders.pop() {
+        for entry in fs::read_dir(&current).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                folders.push(path);
+            } else {
+                found.insert(path.strip_prefix(folder).unwrap().to_owned(), fs::read(&path).unwrap());
+            }
+        }
+    }
+    found
+}
+
+fn is_leftover(path: &Path) -> bool {
+    path.file_name().is_some_and(|name| name.to_string_lossy().starts_with(".unfinished-"))
+}
+
+#[test]
+fn killed_commands_leave_whole_files_and_the_next_run_tidies_up() {
+    let place = collection();
+    place.add("a.off", &mesh::shapes::icosphere(5));
+    place.add("b.off", &body(0, 3));
+    place.done(&build("all"));
+    let commands: [&[&str]; 8] = [
+        &["index", "export", "all", "-o", "out/all.jsonl"],
+        &["embed", "a.off", "-o", "out/a.npy", "--stress", "skip"],
+        &["embed", "a.off", "-o", "out/a.ply", "--stress", "skip"],
+        &["embed", "meshes", "-n", "20", "-o", "out", "--format", "obj"],
+        &["render", "a.off", "-o", "out/a.png"],
+        &["compare", "a.off", "b.off", "-n", "20", "--residual-mesh", "out/residual.ply"],
+        &["geodesic", "a.off", "--source", "7", "-o", "out/distances.npy"],
+        &["geodesic", "b.off", "--all-pairs", "-o", "out/pairs.npy"],
+    ];
+    let out = place.path("out");
+    let turns = (3 * n_kills() / 4).div_ceil(commands.len() as u32);
+    for command in commands {
+        fs::create_dir(&out).unwrap();
+        let start = Instant::now();
+        place.done(command);
+        let usual = start.elapsed();
+        let whole = contents(&out);
+        assert!(!whole.is_empty(), "{command:?}");
+        for turn in 0..turns {
+            fs::remove_dir_all(&out).unwrap();
+            fs::create_dir(&out).unwrap();
+            kill_after(&place, command, usual.mul_f64(f64::from(turn + 1) / f64::from(turns + 1)));
+            for (path, bytes) in contents(&out) {
+                assert!(is_leftover(&path) || whole.get(&path) == Some(&bytes), "{command:?}: {path:?}");
+            }
+            place.done(command);
+            assert!(contents(&out) == whole, "{command:?}: {:?}", contents(&out).keys());
+        }
+        fs::remove_dir_all(&out).unwrap();
+    }
+}
+
+#[test]
+fn a_killed_change_leaves_the_old_index_or_the_new_one() {
+    let place = collection();
+    place.done(&build("whole"));
+    (0..6).for_each(|i| place.add(&format!("more/t{i}.off"), &body(i % 3, 30 + i)));
+    let changes: [&[&str]; 2] =
+        [&["index", "add", "all", "more", "--threads", "1"], &["index", "remove", "all", "s3", "s7"]];
+    let turns = (n_kills() / 4).div_ceil(2);
+    for change in changes {
+        let renew = || fs::copy(place.path("whole"), place.path("all")).unwrap();
+        let export = || place.done(&["index", "export", "all"]).out;
+        renew();
+        let before = export();
+        let start = Instant::now();
+        place.done(change);
+        let usual = start.elapsed();
+        let after = export();
+        for turn in 0..turns {
+            renew();
+            kill_after(&place, change, usual.mul_f64(f64::from(turn + 1) / f64::from(turns + 1)));
+            place.done(&["index", "verify", "all"]);
+            let now = export();
+            assert!(now == before || now == after, "{change:?}");
+            // Other work is not blocked for good, and the same work can be done again.
+            if now == before {
+                place.done(change);
+            }
+            assert_eq!(export(), after, "{change:?}");
+            let _ = fs::remove_file(place.path("all.work"));
+        }
+    }
+}
+
 #[test]
 fn a_killed_build_continues_and_loses_nothing() {
-    let kills: u32 = std::env::var("CANONFORM_KILLS").ok().and_then(|n| n.parse().ok()).unwrap_or(8);
+    let kills = n_kills() / 4;
     let place = collection();
     let start = Instant::now();
     place.done(&build("whole"));
@@ -55,17 +168,9 @@ fn a_killed_build_continues_and_loses_nothing() {
         let index = format!("cut{round}");
         let mut before = 0;
         for turn in 0..4 {
-            let mut child = Command::new(program())
-                .args(build(&index))
-                .current_dir(place.path(""))
-                .stdout(Stdio::null())
-                .stderr(Stdio::null())
-                .spawn()
-                .unwrap();
             let share = f64::from((7 * killed + 3 * turn) % 20) / 20.0;
-            std::thread::sleep(usual.mul_f64(share * 0.9) + Duration::from_millis(u64::from(killed % 5)));
-            child.kill().unwrap();
-            killed += u32::from(!child.wait().unwrap().success());
+            let time = usual.mul_f64(share * 0.9) + Duration::from_millis(u64::from(killed % 5));
+            killed += u32::from(kill_after(&place, &build(&index), time));
             if place.path(&index).exists() {
                 break;
             }

@@ -76,7 +76,7 @@ fn a_forged_file_is_an_error_or_an_index() {
     let mut random = ChaCha8Rng::seed_from_u64(7);
     let mut below = |n: usize| (random.next_u64() % n as u64) as usize;
     let path: PathBuf = folder.path("forged");
-    let mut refused = 0;
+    let (mut refused, mut panics) = (0, 0);
     for turn in 0..600 {
         let mut bytes = whole.clone();
         for _ in 0..1 + below(3) {
@@ -90,19 +90,23 @@ fn a_forged_file_is_an_error_or_an_index() {
             };
         }
         forge(&path, &bytes);
-        let results = [read(&path), change(&path)];
-        for result in &results {
-            assert!(is_clean(result), "turn {turn}: {result:?}");
+        let result = read(&path);
+        assert!(is_clean(&result), "turn {turn}: {result:?}");
+        if let Err(error) = &result {
+            refused += 1;
+            panics += usize::from(error.to_string().contains("contradicts itself"));
         }
-        refused += usize::from(results[0].is_err());
         // Verification finds whatever keeps the rest from working.
-        forge(&path, &bytes);
         if let Ok(found) = verify(&path, || ()) {
-            assert!(read(&path).is_ok() || !found.faults.is_empty(), "turn {turn}");
+            assert!(result.is_ok() || !found.faults.is_empty(), "turn {turn}");
         }
-        let _ = fs::remove_file(work_path(&path));
+        if turn % 4 == 0 {
+            let result = change(&path);
+            assert!(is_clean(&result), "turn {turn}: {result:?}");
+            let _ = fs::remove_file(work_path(&path));
+        }
     }
-    assert!(refused > 100, "{refused} of 600 files are refused");
+    assert!(refused > 100 && panics > 20, "{refused} of 600 files are refused, {panics} by a panic");
 }
 
 #[test]
