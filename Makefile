@@ -24,6 +24,7 @@ test: ## Run all tests
 
 kills: ## Kill writing commands 200 times: nothing half-written, and the next run works
 	CANONFORM_KILLS=200 $(CARGO) test --locked -p canonform-cli --test cli killed
+	CANONFORM_KILLS=200 $(CARGO) test --locked -p experiments --test killed
 
 lint: ## Check formatting, clippy and rustdoc; warnings are errors
 	$(CARGO) fmt --all --check

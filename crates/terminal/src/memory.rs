@@ -30,7 +30,9 @@ mod tests {
     #[test]
     fn limits_are_read_as_the_system_prints_them() {
         let text = |limit: &str| {
-            format!("Limit                     Soft Limit           Hard Limit           Units\nMax address space         {limit}           unlimited            bytes\n")
+            format!(
+                "Limit                     Soft Limit           Hard Limit           Units\nMax address space         {limit}           unlimited            bytes\n"
+            )
         };
         assert_eq!(parse_limit(&text("4096000")), Some(4_096_000));
         assert_eq!(parse_limit(&text("unlimited")), None);

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use files::FileError;
 use mesh::io::is_mesh_path;
 
-use super::ShapeFile;
+use super::shape_file::ShapeFile;
 use crate::error::Error;
 
 /// Labels from a file of lines `name,label`.

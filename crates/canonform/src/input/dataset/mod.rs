@@ -1,10 +1,11 @@
 //! A folder of meshes as a labelled dataset.
 
 mod labels;
+mod shape_file;
 mod walk;
 
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use crate::error::Error;
 use labels::joined;
@@ -12,18 +13,8 @@ use walk::Walk;
 
 pub use labels::{LabelFile, label_of};
 pub(crate) use labels::{drop_single_class, label_in};
+pub use shape_file::ShapeFile;
 pub use walk::{SkipKind, Skipped};
-
-/// A mesh file of a dataset.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct ShapeFile {
-    /// Its path below the folder, without extension: `cats/sitting`.
-    pub name: String,
-    /// Its class; empty if it has none.
-    pub label: String,
-    /// Path of the file.
-    pub path: PathBuf,
-}
 
 /// What a folder holds.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
