@@ -109,7 +109,6 @@ pub use shape_index::{
     BuildOptions, BuildReport, ClassVotes, Dropped, Elsewhere, Explain, Failure, FailureReason, Inputs,
     Measure, MergeReport, NearestShape, Prediction, Ranked, Reranked, SearchOptions, SearchReport,
     SearchResult, SearchSeconds, ShapeLimits, ShapeSearch, Shard, Unknown, add_to_index, build_index,
-    evaluate_index, evaluate_matrix, merge_indexes, mesh_path,
-    remove_from_index, rerank,
+    evaluate_index, evaluate_matrix, merge_indexes, mesh_path, remove_from_index, rerank,
 };
 pub use {descriptors, geodesics, index, linalg, mesh, nmds, retrieval, surface};
