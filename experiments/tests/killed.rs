@@ -6,7 +6,7 @@ use std::time::Instant;
 
 fn run(folder: &Path) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_experiments"));
-    command.args(["run", "figure1", "--vertices", "400", "--quiet", "--output", "out"]).current_dir(folder);
+    command.args(["run", "figure1", "--vertices", "1000", "--quiet", "--output", "out"]).current_dir(folder);
     command.stdout(Stdio::null()).stderr(Stdio::null());
     command
 }
