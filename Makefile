@@ -5,7 +5,7 @@ OUT ?= out
 # For `make reproduce`: a folder of meshes with the classes of the paper. Default: the built-in dataset.
 DATASET ?=
 
-.PHONY: help setup build run test kills lint bench bench-peers bench-nmds bench-search bench-eigsh fmt doc reproduce report plotly deny sbom fuzz fuzz-seeds package ci clean
+.PHONY: help setup build run test kills lint bench bench-peers bench-nmds bench-search bench-eigsh fmt doc reproduce report paper plotly deny sbom fuzz fuzz-seeds package ci clean
 
 help: ## List these commands
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "  make %-12s %s\n", $$1, $$2}'
@@ -71,6 +71,9 @@ comma := ,
 
 report: ## Write OUT/report.html from the results in OUT without running experiments
 	$(CARGO) run --release --locked -p experiments -- report --output $(OUT)
+
+paper: ## Write docs/paper.md from the results in OUT of `make reproduce DATASET=folder`
+	$(CARGO) run --release --locked -p experiments -- report --output $(OUT) --markdown docs/paper.md
 
 plotly: ## Build the bundle of plotly.js that the pages embed (needs Node 20 and npm)
 	node crates/view/assets/plotly/build.mjs

@@ -38,6 +38,10 @@ pub(crate) enum Command {
         /// Folder with the results
         #[arg(short, long, default_value = OUTPUT, value_name = "OUT")]
         output: PathBuf,
+        /// Also write the comparison with the paper (docs/paper.md), from results on its shapes, and its numbers as
+        /// .json beside it
+        #[arg(long, value_name = "PAGE.md")]
+        markdown: Option<PathBuf>,
     },
     /// Measure how poses and triangulations of the built-in shapes change every signature
     Units {
@@ -60,6 +64,9 @@ pub(crate) struct RunArgs {
     /// Folder for the results
     #[arg(short, long, default_value = OUTPUT, value_name = "OUT")]
     pub(crate) output: PathBuf,
+    /// Skip experiments that the folder already has, if the same version made them with the same shapes and seed
+    #[arg(long)]
+    pub(crate) resume: bool,
     /// Worker threads; 0 for all cores. Results do not depend on it
     #[arg(long, default_value_t = 0, value_name = "N")]
     pub(crate) threads: usize,

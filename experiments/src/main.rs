@@ -11,6 +11,7 @@ mod collection;
 mod config;
 mod context;
 mod machine;
+mod paper;
 mod prose;
 mod run;
 mod specimen;
@@ -40,7 +41,7 @@ fn main() -> ExitCode {
     terminal::run(threads, || match &arguments.command {
         Command::Run(args) => run::run(args),
         Command::List => run::list(),
-        Command::Report { output } => run::report(output),
+        Command::Report { output, markdown } => run::report(output, markdown.as_deref()),
         Command::Units { seeds, quiet } => units::units(*seeds, *quiet),
     })
 }

@@ -3,11 +3,13 @@
 //! A text refers to numbers by name: `{NAME}`, or `{NAME: FORMAT}` with one of these formats:
 //! * `%`: as a percentage;
 //! * `.2`: with two decimals (or any other digit);
+//! * `s` and `B`: seconds, and bytes as MiB or GiB;
 //! * none: with three significant digits; whole numbers in full.
 //!
 //! `{shape1}` and `{shape2}` stand for the classes of the shapes that are examined closely, in names as well.
 
 use serde::Deserialize;
+use view::numbers::{bytes, seconds};
 
 use crate::config::Bound;
 use crate::sweep::Measured;
@@ -67,8 +69,11 @@ pub(crate) fn filled(text: &str, number: impl Fn(&str) -> Option<f64>) -> Result
 }
 
 fn written(value: f64, format: &str) -> String {
-    if format == "%" {
-        return format!("{} %", written(100.0 * value, ""));
+    match format {
+        "%" => return format!("{} %", written(100.0 * value, "")),
+        "s" => return seconds(value),
+        "B" => return bytes(value as usize),
+        _ => {}
     }
     if let Some(decimals) = format.strip_prefix('.').and_then(|digits| digits.parse::<usize>().ok()) {
         return grouped(&format!("{value:.decimals$}"));

@@ -3,11 +3,13 @@
 use std::io::Write;
 use std::path::Path;
 use std::process::ExitCode;
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;
 
 use anyhow::Result;
 use report::page::write_report;
-use terminal::Bars;
+use report::results::{Provenance, provenance};
+use terminal::{Bars, on_interruption};
 
 use crate::args::RunArgs;
 use crate::collection::Collection;
@@ -16,31 +18,70 @@ use crate::context::Context;
 use crate::specimen::specimens;
 use crate::table::{ALL, EXPERIMENTS, Experiment};
 
+/// Exit code after an interruption, by the convention of shells: 128 plus the number of the signal.
+const INTERRUPTED: i32 = 130;
+
 /// `experiments run`.
 pub(crate) fn run(args: &RunArgs) -> Result<ExitCode> {
-    let bars = Bars::new(args.quiet);
-    let collection = Collection::load(&args.source, &bars)?;
-    let specimens = specimens(&collection);
-    for Experiment { section, config, run } in &EXPERIMENTS {
-        if !args.names.iter().any(|name| name == section.name || name == ALL) {
-            continue;
-        }
-        let context = Context {
-            name: section.name,
-            config: Config::parse(section.name, config)?,
-            collection: &collection,
-            specimens: &specimens,
-            seed: args.source.seed,
-            folder: &args.output,
-            command: args.command(),
-            arguments: args.arguments(),
-            observer: &bars,
-            bars: &bars,
-            start: Instant::now(),
-        };
-        run(&context)?;
+    let is_wanted = |experiment: &&Experiment| {
+        args.names.iter().any(|name| name == experiment.section.name || name == ALL)
+    };
+    let (kept, open): (Vec<&Experiment>, Vec<&Experiment>) =
+        EXPERIMENTS.iter().filter(is_wanted).partition(|experiment| args.resume && is_made(args, experiment));
+    for experiment in kept {
+        eprintln!("{} is there already, made with these options", experiment.section.name);
     }
-    report(&args.output)
+    let finished = Arc::new(Mutex::new(Vec::new()));
+    keep_finished(args, Arc::clone(&finished));
+    if !open.is_empty() {
+        let bars = Bars::new(args.quiet);
+        let collection = Collection::load(&args.source, &bars)?;
+        let specimens = specimens(&collection);
+        for Experiment { section, config, run } in open {
+            let context = Context {
+                name: section.name,
+                config: Config::parse(section.name, config)?,
+                collection: &collection,
+                specimens: &specimens,
+                seed: args.source.seed,
+                folder: &args.output,
+                command: args.command(),
+                arguments: args.arguments(),
+                observer: &bars,
+                bars: &bars,
+                start: Instant::now(),
+            };
+            run(&context)?;
+            finished.lock().unwrap_or_else(PoisonError::into_inner).push(section.name);
+        }
+    }
+    report(&args.output, None)
+}
+
+/// Whether the folder has the record of an experiment that this program would make again.
+fn is_made(args: &RunArgs, experiment: &Experiment) -> bool {
+    let path = args.output.join(format!("{}.json", experiment.section.name));
+    let [version, commit] = [env!("CARGO_PKG_VERSION"), env!("CANONFORM_COMMIT")];
+    provenance(path).is_ok_and(|made: Provenance| {
+        made.version == version && made.commit == commit && made.arguments == args.arguments()
+    })
+}
+
+/// On an interruption, writes the page of what is finished, names it, and says how to continue.
+fn keep_finished(args: &RunArgs, finished: Arc<Mutex<Vec<&'static str>>>) {
+    let (folder, command) = (args.output.clone(), args.command());
+    on_interruption(move || {
+        let names = finished.lock().unwrap_or_else(PoisonError::into_inner).join(", ");
+        if names.is_empty() {
+            eprintln!("interrupted; no experiment is finished");
+        } else {
+            let page = write_page(&folder).map_or_else(|e| e.to_string(), |page| page.display().to_string());
+            eprintln!("interrupted; finished: {names} (report: {page})");
+            eprintln!("to continue: {command} --resume");
+        }
+        files::abandon_unfinished();
+        std::process::exit(INTERRUPTED);
+    });
 }
 
 /// `experiments list`.
@@ -52,9 +93,17 @@ pub(crate) fn list() -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// `experiments report`: writes the page and prints its path.
-pub(crate) fn report(folder: &Path) -> Result<ExitCode> {
-    let page = write_report(folder, &EXPERIMENTS.map(|experiment| experiment.section))?;
-    writeln!(std::io::stdout().lock(), "report: {}", page.display())?;
+fn write_page(folder: &Path) -> Result<std::path::PathBuf> {
+    Ok(write_report(folder, &EXPERIMENTS.map(|experiment| experiment.section))?)
+}
+
+/// `experiments report`: writes the page and prints its path; with a path, also the summary of the paper.
+pub(crate) fn report(folder: &Path, markdown: Option<&Path>) -> Result<ExitCode> {
+    let mut out = std::io::stdout().lock();
+    writeln!(out, "report: {}", write_page(folder)?.display())?;
+    if let Some(path) = markdown {
+        crate::paper::write(folder, path)?;
+        writeln!(out, "summary: {}", path.display())?;
+    }
     Ok(ExitCode::SUCCESS)
 }

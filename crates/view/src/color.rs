@@ -2,6 +2,8 @@
 
 use plotters::prelude::ViridisRGB;
 
+pub use crate::color_map::ColorMap;
+
 /// 8-bit sRGB.
 pub type Rgb = [u8; 3];
 

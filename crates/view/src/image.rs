@@ -54,13 +54,19 @@ impl RgbaImage {
         &mut self.pixels
     }
 
-    /// Red, green and blue bytes without alpha, with every pixel repeated in a square of `zoom` x `zoom`.
+    /// Red, green and blue bytes over white, with every pixel repeated in a square of `zoom` x `zoom`.
     pub(crate) fn rgb_bytes(&self, zoom: u32) -> Vec<u8> {
         let zoom = zoom as usize;
+        let over_white = |[r, g, b, alpha]: &[u8; 4]| {
+            [r, g, b].map(|&c| {
+                let (c, alpha) = (u32::from(c), u32::from(*alpha));
+                ((c * alpha + 255 * (255 - alpha) + 127) / 255) as u8
+            })
+        };
         let mut bytes = Vec::with_capacity(self.pixels.len() * 3 * zoom * zoom);
         for row in self.pixels.chunks(self.width.max(1) as usize) {
             let line: Vec<u8> =
-                row.iter().flat_map(|p| std::iter::repeat_n([p[0], p[1], p[2]], zoom)).flatten().collect();
+                row.iter().flat_map(|p| std::iter::repeat_n(over_white(p), zoom)).flatten().collect();
             (0..zoom).for_each(|_| bytes.extend_from_slice(&line));
         }
         bytes
@@ -138,5 +144,6 @@ mod tests {
         image.pixels_mut()[1] = [2, 2, 2, 255];
         let line = [1, 1, 1, 1, 1, 1, 2, 2, 2, 2, 2, 2];
         assert_eq!(image.rgb_bytes(2), [line, line].concat());
+        assert_eq!(RgbaImage::new(1, 1, [100, 0, 255, 51]).rgb_bytes(1), [224, 204, 255]);
     }
 }

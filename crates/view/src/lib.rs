@@ -8,6 +8,7 @@
 
 pub mod canvas;
 pub mod color;
+mod color_map;
 mod error;
 mod image;
 pub mod interactive;

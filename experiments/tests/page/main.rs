@@ -3,4 +3,6 @@
 //! Screenshots are written to `target/browser`.
 
 #[cfg(test)]
+mod interruption;
+#[cfg(test)]
 mod report;

@@ -4,7 +4,8 @@ use std::path::PathBuf;
 
 use canonform::InputPoint;
 use clap::Args;
-use clap::builder::{PossibleValuesParser, TypedValueParser};
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use view::color::ColorMap;
 use view::render::{Background, View};
 
 use super::shared::{LimitArgs, RepairArgs};
@@ -23,7 +24,7 @@ value, such as those that distances do not reach, are grey. A .ply file may carr
 Examples:
   canonform render cat.off -o cat.png
   canonform render cat.off --distance-from 17 --isolines 20 -o distances.png
-  canonform render cat.off --field rows.npy --row 2 --range 0,80 -o third.png
+  canonform render cat.off --field rows.npy --row 2 --range 0,80 --colors magma -o third.png
   canonform render cat.off --form --background dark --size 1200x800 -o form.png
   canonform render cat.off dog.ply -o pictures/
 
@@ -54,6 +55,9 @@ pub(crate) struct RenderArgs {
     /// Colour of the mesh, #rrggbb [default: a light clay, or the values that a .ply file carries]
     #[arg(long, value_name = "#rrggbb", value_parser = parse_color, conflicts_with_all = ["field", "distance_from"])]
     pub(crate) color: Option<[u8; 3]>,
+    /// Colours of the values
+    #[arg(long, default_value_t, value_name = "MAP", value_parser = color_map())]
+    pub(crate) colors: ColorMap,
     /// Colour by the values in this file, one per vertex: .npy or .csv
     #[arg(long, value_name = "FIELD")]
     pub(crate) field: Option<PathBuf>,
@@ -97,6 +101,12 @@ impl Place {
             Self::Angles([azimuth, elevation]) => View::Upright { azimuth, elevation, up: up.into() },
         }
     }
+}
+
+/// A colour map; `--help` lists them.
+fn color_map() -> impl TypedValueParser<Value = ColorMap> {
+    let value = |map: ColorMap| PossibleValue::new(map.name()).help(map.description());
+    PossibleValuesParser::new(ColorMap::ALL.map(value)).try_map(|name| name.parse::<ColorMap>())
 }
 
 /// The direction of an axis.

@@ -221,7 +221,17 @@ fn options(args: &RenderArgs, field: Option<&ScalarField>) -> RenderOptions {
     // Nine samples per pixel of a large picture would take gigabytes; its pixels are small enough.
     let supersampling = if width * height > 2000 * 2000 { 2 } else { usual.supersampling };
     let view = place.view(args.up);
-    RenderOptions { width, height, view, background: args.background, surface, supersampling, ..usual }
+    let colors = args.colors;
+    RenderOptions {
+        width,
+        height,
+        view,
+        background: args.background,
+        surface,
+        colors,
+        supersampling,
+        ..usual
+    }
 }
 
 fn table(json: &RenderJson) -> String {

@@ -104,15 +104,20 @@ fn log_ticks([low, high]: [f64; 2]) -> Vec<(f64, String)> {
         let step = (decades / TICKS as f64).ceil().max(1.0) as i32;
         (first..=last).filter(|e| e.rem_euclid(step) == 0).map(|e| 10f64.powi(e)).collect()
     };
-    values.into_iter().filter(inside).map(|value| (value, log_label(value))).collect()
+    let values: Vec<f64> = values.into_iter().filter(inside).collect();
+    let is_plain = values.iter().all(|&value| (-2..4).contains(&exponent(value)));
+    let label =
+        |value: f64| if is_plain { format!("{}", (value * 1e6).round() / 1e6) } else { power_label(value) };
+    values.into_iter().map(|value| (value, label(value))).collect()
 }
 
-/// The label of a tick of a logarithmic axis: a plain number near one, else with a power of ten.
-fn log_label(tick: f64) -> String {
-    let exponent = (tick.log10() + 1e-9).floor() as i32;
-    if (-2..4).contains(&exponent) {
-        return format!("{}", (tick * 1e6).round() / 1e6);
-    }
+fn exponent(tick: f64) -> i32 {
+    (tick.log10() + 1e-9).floor() as i32
+}
+
+/// A tick as a multiple of a power of ten. An axis with one such label has no others.
+fn power_label(tick: f64) -> String {
+    let exponent = exponent(tick);
     let factor = tick / 10f64.powi(exponent);
     let power = format!("10{}", superscript(exponent));
     if (factor - 1.0).abs() < 1e-9 { power } else { format!("{}·{power}", (factor * 10.0).round() / 10.0) }
@@ -133,9 +138,10 @@ mod tests {
 
     #[test]
     fn logarithmic_ticks_are_powers_of_ten_unless_the_range_is_short() {
-        assert_eq!(log(1e-3, 1e2), ["10⁻³", "0.01", "0.1", "1", "10", "100"]);
-        assert_eq!(log(1e-20, 1.0), ["10⁻²⁰", "10⁻¹⁶", "10⁻¹²", "10⁻⁸", "10⁻⁴", "1"]);
+        assert_eq!(log(1e-3, 1e2), ["10⁻³", "10⁻²", "10⁻¹", "10⁰", "10¹", "10²"]);
+        assert_eq!(log(1e-20, 1.0), ["10⁻²⁰", "10⁻¹⁶", "10⁻¹²", "10⁻⁸", "10⁻⁴", "10⁰"]);
         assert_eq!(log(3.0, 30.0), ["5", "10", "20"]);
+        assert_eq!(log(0.02, 5000.0), ["0.1", "1", "10", "100", "1000"]);
         assert_eq!(log(2e4, 6e4), ["2·10⁴", "3·10⁴", "4·10⁴", "5·10⁴", "6·10⁴"]);
     }
 

@@ -4,9 +4,9 @@ use super::axis::Axis;
 use super::model::Heat;
 use view::RgbaImage;
 use view::canvas::{
-    Anchor, Canvas, GRID, INK, PAGE_WIDTH, PALE_INK, PIXELS_PER_UNIT, Point as Place, TextStyle, text_width,
+    Anchor, Canvas, GRID, PAGE_WIDTH, PALE_INK, PIXELS_PER_UNIT, Point as Place, TextStyle, text_width,
 };
-use view::color::{Rgb, mix, perceptual};
+use view::color::{Rgb, perceptual};
 
 const COLUMN: f64 = PAGE_WIDTH / 2.0;
 const WHITE: Rgb = [255; 3];
@@ -48,7 +48,8 @@ fn counts(heat: &Heat) -> Canvas {
         for (column, count) in own.iter().enumerate().filter(|(_, count)| **count > 0) {
             let is_dark = grid.share(heat.values[row][column]) > 0.5;
             let [x, y] = [column, row].map(|at| (at as f64 + 0.5) * cell);
-            let style = TextStyle::LABEL.colored(if is_dark { WHITE } else { INK });
+            let style = TextStyle::LABEL;
+            let style = if is_dark { style.colored(WHITE).on_image() } else { style };
             canvas.text(count.to_string(), (grid.left + x, grid.top + y), style);
         }
     }
@@ -159,10 +160,10 @@ impl Grid<'_> {
     }
 }
 
-/// The pixel for a share of the greatest value.
+/// The pixel for a share of the greatest value. A tint covers the page as far as the share says.
 fn color(tint: Option<Rgb>, share: f64) -> [u8; 4] {
-    let [r, g, b] = tint.map_or_else(|| perceptual(share), |full| mix(WHITE, full, share));
-    [r, g, b, 255]
+    let ([r, g, b], alpha) = tint.map_or_else(|| (perceptual(share), 1.0), |full| (full, share));
+    [r, g, b, (255.0 * alpha).round() as u8]
 }
 
 /// A name that fits to the left of a matrix with a colour bar.

@@ -1,6 +1,6 @@
 //! Figures as data. What a figure shows is decided here once, for the static files and for the page.
 //!
-//! record -> [`Figure`] -> PNG and SVG ([`Figure::save`]), or JSON that the script of the page draws
+//! record -> [`Figure`] -> PNG, SVG and PDF ([`Figure::save`]), or JSON that the script of the page draws
 //!
 //! A figure consists of plots or of matrices of the same kind. Surfaces are [`Tiles`]: rendered images in rows.
 
@@ -24,7 +24,7 @@ use std::path::{Path, PathBuf};
 use crate::error::ReportError;
 
 impl Figure {
-    /// Draws the figure and returns the paths of its PNG and its SVG: the stem, the part and the extension. On logarithmic
+    /// Draws the figure and returns the paths of its PNG, SVG and PDF: the stem, the part and the extension. On logarithmic
     /// axes, values that are not positive are left out. A figure of surfaces has no files here.
     ///
     /// # Errors

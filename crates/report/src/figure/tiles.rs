@@ -7,7 +7,7 @@ use mesh::TriMesh;
 use crate::error::ReportError;
 use view::canvas::{Anchor, Canvas, GRID, PAGE_WIDTH, PALE_INK, PIXELS_PER_UNIT, TextStyle};
 use view::color::class_clay;
-use view::render::{RenderOptions, Surface, View, aspect, render};
+use view::render::{Background, RenderOptions, Surface, View, aspect, render};
 
 const MARGIN: f64 = 10.0;
 const TILE: f64 = 240.0;
@@ -86,7 +86,7 @@ impl Layout {
 }
 
 impl Tiles<'_> {
-    /// Draws the figure and returns the paths of the PNG and the SVG.
+    /// Draws the figure and returns the paths of the PNG, the SVG and the PDF.
     ///
     /// # Errors
     /// [`ReportError::View`] if drawing or writing fails.
@@ -120,6 +120,7 @@ impl Tiles<'_> {
                     width: width as u32 * PIXELS_PER_UNIT,
                     height: height as u32 * PIXELS_PER_UNIT,
                     view,
+                    background: Background::Transparent,
                     surface: Surface::Plain(class_clay(class)),
                     ..RenderOptions::default()
                 };

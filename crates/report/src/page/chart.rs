@@ -10,33 +10,47 @@ use base64::engine::general_purpose::STANDARD;
 use super::html::escape;
 use super::scripts::island;
 use crate::error::ReportError;
-use crate::figure::{Content, Figure};
+use crate::figure::{Content, Figure, Heat, Plot};
 use files::FileError;
+use view::canvas::dark;
 
 /// The figure of an experiment, with the static files in the folder.
 pub(super) fn chart(folder: &Path, name: &str, figure: &Figure) -> Result<String, ReportError> {
     let still = picture(folder, name, figure)?;
     let id = format!("{name}{}", figure.part);
-    let (kind, labels): (&str, Vec<(&str, bool)>) = match &figure.content {
+    let (kind, labels): (&str, Vec<(&str, String)>) = match &figure.content {
         Content::Plots(plots) => {
-            ("plot", plots.iter().map(|plot| (plot.label.as_str(), plot.series.len() > 5)).collect())
+            let class = |plot: &Plot| if plot.series.len() > 5 { " tall" } else { "" }.to_owned();
+            ("plot", plots.iter().map(|plot| (plot.label.as_str(), class(plot))).collect())
         }
-        Content::Heats(heats) => ("heat", heats.iter().map(|heat| (heat.label.as_str(), false)).collect()),
+        Content::Heats(heats) => {
+            ("heat", heats.iter().map(|heat| (heat.label.as_str(), room(heat))).collect())
+        }
         Content::Surfaces => return Ok(still),
     };
     let mut boxes = String::new();
-    for (panel, (label, is_tall)) in labels.into_iter().enumerate() {
-        let tall = if is_tall { " tall" } else { "" };
+    for (panel, (label, class)) in labels.into_iter().enumerate() {
         let _ = writeln!(
             boxes,
-            "<div class=\"plot{tall}\" id=\"{id}-{panel}\" data-plot=\"{kind}\" data-panel=\"{panel}\" \
+            "<div class=\"plot{class}\" id=\"{id}-{panel}\" data-plot=\"{kind}\" data-panel=\"{panel}\" \
              data-source=\"{id}-data\" role=\"img\" aria-label=\"{}\"></div>",
             escape(label)
         );
     }
     let caption = escape(&figure.caption);
-    let live = format!("<div class=\"plots\">\n{boxes}</div>\n<p class=\"pale\">{caption}</p>\n");
+    let links = links(name, figure);
+    let live = format!("<div class=\"plots\">\n{boxes}</div>\n<p class=\"pale\">{caption} {links}</p>\n");
     Ok(framed(&id, &live, &still) + &island(&format!("{id}-data"), &serde_json::json!(figure)))
+}
+
+/// What a matrix needs for its counts to be legible: nothing more than other plots, or room for its cells, over which a
+/// narrow window scrolls.
+fn room(heat: &Heat) -> String {
+    let n = heat.rows.len().max(heat.columns.len());
+    match heat.counts {
+        Some(_) if n > 12 => format!(" counts\" style=\"--cells: {n}"),
+        _ => String::new(),
+    }
 }
 
 /// An element that scripts fill, the static figure in its place, and the button that switches between them.
@@ -48,24 +62,38 @@ pub(super) fn framed(id: &str, live: &str, still: &str) -> String {
     )
 }
 
-/// The PNG of a figure, as part of the page and linked to its SVG.
+/// The SVG of a figure, as an image that is part of the page and follows dark mode, and links to its files.
+///
+/// Inside an image, whatever a file contains can neither run nor change the page.
 pub(super) fn picture(folder: &Path, name: &str, figure: &Figure) -> Result<String, ReportError> {
-    let (png, svg) = (format!("{name}{}.png", figure.part), format!("{name}{}.svg", figure.part));
-    let path = folder.join(&png);
+    let svg = format!("{name}{}.svg", figure.part);
+    let path = folder.join(&svg);
     if !path.exists() {
         return Ok(format!(
-            "<div class=\"missing\"><p>The file <code>{png}</code> is missing. Run {name} again to create it.</p></div>\n"
+            "<div class=\"missing\"><p>The file <code>{svg}</code> is missing. Run {name} again to create it.</p></div>\n"
         ));
     }
-    let bytes = fs::read(&path).map_err(|source| FileError::read(&path, source))?;
-    // Width and height, big-endian in the header of a PNG, keep the layout from shifting while the page loads.
-    let word =
-        |at: usize| bytes.get(at..at + 4).and_then(|w| w.try_into().ok()).map_or(0, u32::from_be_bytes);
-    let (width, height) = (word(16), word(20));
+    let text = fs::read_to_string(&path).map_err(|source| FileError::read(&path, source))?;
+    // The size keeps the layout from shifting while the page loads.
+    let size = |name: &str| -> Option<u32> {
+        let (_, rest) = text.split_once(&format!(" {name}=\""))?;
+        rest.split_once('"')?.0.parse().ok()
+    };
+    let [width, height] = ["width", "height"].map(|name| size(name).unwrap_or(0));
     Ok(format!(
-        "<figure>\n<a href=\"{svg}\"><img src=\"data:image/png;base64,{}\" width=\"{width}\" height=\"{height}\" \
-         alt=\"{alt}\"></a>\n<figcaption>{alt} <a href=\"{png}\">PNG</a> <a href=\"{svg}\">SVG</a></figcaption>\n</figure>\n",
-        STANDARD.encode(&bytes),
+        "<figure>\n<img src=\"data:image/svg+xml;base64,{}\" width=\"{width}\" height=\"{height}\" alt=\"{alt}\">\n\
+         <figcaption>{alt} {}</figcaption>\n</figure>\n",
+        STANDARD.encode(dark(&text)),
+        links(name, figure),
         alt = escape(&figure.caption),
     ))
+}
+
+/// Links to the files of a figure.
+fn links(name: &str, figure: &Figure) -> String {
+    let link = |kind: &str| {
+        let file = format!("{name}{}.{}", figure.part, kind.to_lowercase());
+        format!("<a href=\"{file}\" download>{kind}</a>")
+    };
+    format!("<span class=\"files\">{}</span>", ["PNG", "SVG", "PDF"].map(link).join(" "))
 }

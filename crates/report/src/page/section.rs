@@ -10,7 +10,10 @@ use super::html::{escape, folded, paragraphs, table};
 use crate::error::ReportError;
 use crate::figure::Figure;
 use crate::record::Results;
-use crate::results::{Expectation, Figure1Results, Figure4Results, Provenance, Record, ShapesRecord, read};
+use crate::results::{
+    Expectation, Figure1Results, Figure4Results, Provenance, Record, ShapesRecord,
+    provenance as provenance_of, read,
+};
 use crate::table::{Cell, Table};
 
 /// An experiment on the page.
@@ -45,15 +48,11 @@ pub struct Folder<'a> {
 impl<'a> Folder<'a> {
     /// A folder with records of experiments of these names.
     pub(super) fn new(path: &'a Path, names: impl Iterator<Item = &'a str>) -> Result<Self, ReportError> {
-        #[derive(serde::Deserialize)]
-        struct Source {
-            provenance: Provenance,
-        }
         let records = names.map(|name| path.join(format!("{name}.json"))).filter(|record| record.exists());
-        let sources: Vec<Source> = records.map(read).collect::<Result<_, _>>()?;
+        let sources: Vec<Provenance> = records.map(provenance_of).collect::<Result<_, _>>()?;
         // Records of several runs: the last one decides.
-        let last = sources.into_iter().max_by(|a, b| a.provenance.date.cmp(&b.provenance.date));
-        let arguments = last.map_or_else(String::new, |source| source.provenance.arguments);
+        let last = sources.into_iter().max_by(|a, b| a.date.cmp(&b.date));
+        let arguments = last.map_or_else(String::new, |made| made.arguments);
         Ok(Self { path, shapes: explorer::shapes(path)?, arguments })
     }
 

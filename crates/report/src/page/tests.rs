@@ -52,12 +52,18 @@ fn a_section_has_figures_numbers_options_and_expectations() {
     let record = figure4_record(&[("cat", 3), ("dog", 2)]);
     save(&record, folder.path(), "figure4").unwrap();
     let html = page_of(folder.path());
-    assert_eq!(without_scripts(&html).matches("data:image/png;base64,").count(), 4);
+    assert_eq!(without_scripts(&html).matches("data:image/svg+xml;base64,").count(), 4);
     for part in record.results.figures().iter().map(|figure| figure.part) {
-        assert!(html.contains(&format!("href=\"figure4{part}.svg\"")), "{part}");
+        for kind in ["png", "svg", "pdf"] {
+            let file = format!("figure4{part}.{kind}");
+            assert!(html.contains(&format!("href=\"{file}\" download")), "{file}");
+            assert!(folder.path().join(&file).exists(), "{file}");
+        }
     }
     for text in [
-        "1 of 2 expectations failed",
+        "1 of 2 expectations held, 1 expectation failed",
+        "<a href=\"#figure4-expectations\">Classes: NMDS, raw: silhouette</a> is -0.125 (expected: at least 0.9)",
+        "<h3 id=\"figure4-expectations\">",
         "✓ held",
         "✗ failed",
         "0.910",
@@ -67,10 +73,55 @@ fn a_section_has_figures_numbers_options_and_expectations() {
     ] {
         assert!(html.contains(text), "{text}");
     }
-    for text in ["experiments 0.1.0", "--dataset", "rank", "embedding 0.25 s", "width=\"2000\""] {
+    for text in [
+        "experiments 0.1.0, commit abc1234",
+        "a processor",
+        "--dataset",
+        "rank = 5",
+        "embedding 0.25 s",
+        "width=\"1000\"",
+    ] {
         assert!(html.contains(text), "{text}");
     }
     assert_eq!(html, page_of(folder.path()), "the page is deterministic");
+}
+
+#[test]
+fn goals_that_are_missed_are_no_failures() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut record = figure4_record(&[("cat", 3), ("dog", 2)]);
+    record.expectations[1].goal = true;
+    write(&record, folder.path().join("figure4.json")).unwrap();
+    let html = without_scripts(&page_of(folder.path()));
+    assert!(html.contains("<span class=\"goal\">○ 1 of 2 expectations held, 1 goal missed</span>"));
+    assert!(html.contains("<td class=\"goal\">○ goal missed</td>") && !html.contains("class=\"failed\""));
+    record.expectations.truncate(1);
+    write(&record, folder.path().join("figure4.json")).unwrap();
+    let html = without_scripts(&page_of(folder.path()));
+    assert!(html.contains("✓ 1 of 1 expectations held</span>") && !html.contains("class=\"outcomes\""));
+}
+
+#[test]
+fn experiments_that_were_not_run_are_named_with_the_shapes_and_the_folder_of_the_others() {
+    let folder = tempfile::tempdir().unwrap();
+    write(&figure4_record(&CLASSES), folder.path().join("figure4.json")).unwrap();
+    let html = page_of(folder.path());
+    let command = "-- run figure9 --dataset &#39;a &amp; b&#39; --output results</code>";
+    assert!(html.contains(command), "the command has the options of the other record");
+}
+
+#[test]
+fn counts_of_many_classes_have_room() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut record = retrieval_record();
+    let names: Vec<String> = (0..30).map(|i| format!("class{i}")).collect();
+    record.results.classification.confusion = vec![vec![1; 31]; 30];
+    record.results.classification.classes = names;
+    save(&record, folder.path(), "retrieval").unwrap();
+    assert!(page_of(folder.path()).contains("class=\"plot counts\" style=\"--cells: 31\""));
+    let svg = fs::read_to_string(folder.path().join("retrieval-confusion.svg")).unwrap();
+    assert!(svg.matches(">1</text>").count() == 30 * 31, "every count is written");
+    assert!((0..30).all(|i| svg.matches(&format!(">class{i}</text>")).count() == 2), "every class is named");
 }
 
 #[test]
@@ -79,12 +130,23 @@ fn retrieval_has_its_scores_curves_and_confusion() {
     let record = retrieval_record();
     save(&record, folder.path(), "retrieval").unwrap();
     let html = page_of(folder.path());
-    assert_eq!(without_scripts(&html).matches("data:image/png;base64,").count(), 2);
-    for text in
-        ["wave-kernel", "ignored", "counts", "0.875", "0.625", "Near is alike.", "3 nearest neighbours"]
-    {
+    assert_eq!(without_scripts(&html).matches("data:image/svg+xml;base64,").count(), 2);
+    for text in [
+        "wave-kernel",
+        "ignored",
+        "counts",
+        "0.875",
+        "0.625",
+        "Near is alike.",
+        "3 nearest neighbours",
+        "0.512 for E",
+    ] {
         assert!(html.contains(text), "{text}");
     }
+    assert!(
+        html.contains("<td>a1</td><td>a &amp; b</td><td>unknown</td><td>cat0</td>"),
+        "misclassified shapes are named"
+    );
 }
 
 #[test]
@@ -106,7 +168,7 @@ fn names_from_files_never_become_markup() {
             && html.contains("dog&lt;3&gt;")
             && html.contains("a &lt; b &amp; c")
     );
-    assert!(html.contains("figure1-forms.png</code> is missing"));
+    assert!(html.contains("figure1-forms.svg</code> is missing"));
     assert!(
         html.contains("262.1")
             && html.contains("nothing") == record.results.shapes.iter().any(|s| s.repair.is_empty())
@@ -134,7 +196,7 @@ fn figures_of_several_methods_have_medians_ranges_and_the_numbers_of_the_paper()
     write(&figure9_record(), place("figure9.json")).unwrap();
     let html = page_of(folder.path());
     assert!(
-        html.contains("href=\"figure6-curves.svg\"") && html.contains("figure3-forms.png</code> is missing")
+        html.contains("href=\"figure6-curves.svg\"") && html.contains("figure3-forms.svg</code> is missing")
     );
     for text in ["394.41", "386.2", "david&lt;0&gt;", "<summary>cat0</summary>", "1.0e4", "error, in m⁴"] {
         assert!(html.contains(text), "{text}");

@@ -5,6 +5,7 @@ use std::path::Path;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
+use super::common::Provenance;
 use crate::error::ReportError;
 use files::{FileError, write_bytes};
 
@@ -27,6 +28,18 @@ pub fn read<T: DeserializeOwned>(path: impl AsRef<Path>) -> Result<T, ReportErro
     let path = path.as_ref();
     let bytes = std::fs::read(path).map_err(|source| FileError::read(path, source))?;
     serde_json::from_slice(&bytes).map_err(|source| ReportError::Parse { path: path.to_path_buf(), source })
+}
+
+/// Reads how a record was made.
+///
+/// # Errors
+/// As [`read`].
+pub fn provenance(path: impl AsRef<Path>) -> Result<Provenance, ReportError> {
+    #[derive(serde::Deserialize)]
+    struct Made {
+        provenance: Provenance,
+    }
+    Ok(read::<Made>(path)?.provenance)
 }
 
 #[cfg(test)]

@@ -19,7 +19,7 @@ pub use figure1::{Figure1Results, Figure1Shape};
 pub use figure3::{Figure3Form, Figure3Results, Figure3Shape, Figure3Stress};
 pub use figure4::{Figure4Panel, Figure4Results};
 pub use figure9::{Figure9Measured, Figure9Results, Figure9Row};
-pub use file::{read, write};
+pub use file::{provenance, read, write};
 pub use retrieval::{Classification, Misclassified, RetrievalResults, RetrievalRow};
 pub use shapes::{Motions, SHAPES_FILE, ShapesRecord, ShownForm, ShownShape};
 pub use tables::{Entry, RecordedTable, TablesResults};

@@ -115,14 +115,43 @@ const canonform = (() => {
     });
   }
 
+  // The share of the scene that surfaces fill, seen from the first position of the camera.
+  const FILLED = 0.94;
+  // The tangent of half the vertical field of view of plotly's scenes, 45 degrees.
+  const VIEW = Math.tan(Math.PI / 8);
+
+  // The scale at which all vertices are just inside a scene of this aspect.
+  function filling(data, sides, aspect) {
+    const { eye, up } = CAMERA;
+    const distance = Math.hypot(eye.x, eye.y, eye.z);
+    const towards = unit(eye);
+    const across = unit(cross(up, eye));
+    const above = cross(towards, across);
+    const dot = (a, b) => a.x * b[0] + a.y * b[1] + a.z * b[2];
+    // From values to shares of the diagonal around the middle of the scene.
+    const [x, y, z] = sides.map(({ range: [low, high], share }) =>
+      (value) => (share * (value - (low + high) / 2)) / (high - low));
+    let zoom = 10;
+    for (const trace of data) {
+      for (let v = 0; v < trace.x.length; v += 1) {
+        const at = [x(trace.x[v]), y(trace.y[v]), z(trace.z[v])];
+        // A vertex at s times `at` is seen at s * side / (VIEW * (distance - s * depth)).
+        for (const [side, room] of [[Math.abs(dot(above, at)), VIEW * FILLED], [Math.abs(dot(across, at)), VIEW * FILLED * aspect]]) {
+          const size = side + room * dot(towards, at);
+          if (size * zoom > room * distance) zoom = (room * distance) / size;
+        }
+      }
+    }
+    return zoom;
+  }
+
   // Width of a colour bar, in pixels, which the scene leaves free.
   const BAR = 64;
 
   function layout(data, [width, height], colors, hasLegend) {
     const sides = bounds(data);
     const share = data.some((trace) => trace.colorbar) ? Math.max(1 - BAR / width, 0.6) : 1;
-    // The field of view follows the height, so a narrow scene must show the surface smaller.
-    const zoom = Math.min(1.4, (1.45 * share * width) / height);
+    const zoom = filling(data, sides, (share * width) / height);
     // Without titles and ticks plotly sets no text in 3D.
     const axis = (i) => ({
       visible: false, showspikes: false, title: { text: '' }, tickmode: 'array', tickvals: [], showticklabels: false,

@@ -6,7 +6,7 @@ use super::draw::render;
 use super::options::{Background, RenderOptions};
 use super::surface::{ISOLINE_LIGHT, Surface};
 use crate::canvas::{Anchor, Canvas, TextStyle, text_width};
-use crate::color::{Rgb, from_linear, mix, perceptual, to_linear, value_range};
+use crate::color::{ColorMap, Rgb, from_linear, mix, to_linear, value_range};
 use crate::error::ViewError;
 use crate::image::RgbaImage;
 use crate::numbers::{Numbers, ticks};
@@ -43,6 +43,7 @@ struct Bar {
     /// Values with their labels.
     ticks: Vec<(f64, String)>,
     name: String,
+    colors: ColorMap,
 }
 
 impl Bar {
@@ -56,8 +57,9 @@ impl Bar {
         }
         let size = (options.width.clamp(1, 8192), options.height.clamp(1, 8192));
         let em = (f64::from(size.0.min(size.1)) / 36.0).clamp(11.0, 64.0).round();
+        let (name, ticks) = (name.to_owned(), Vec::new());
         let mut bar =
-            Self { size, em, range: [low, high], steps: *isolines, ticks: Vec::new(), name: name.to_owned() };
+            Self { size, em, range: [low, high], steps: *isolines, ticks, name, colors: options.colors };
         let ticks = bar.tick_values();
         let numbers = Numbers::for_ticks(&ticks);
         bar.name = match numbers.unit("").as_str() {
@@ -156,7 +158,7 @@ impl Bar {
             let pixels_away = (level - line).abs() * height as f64 / f64::from(self.steps.max(1));
             let is_inside = line > 0.5 && line < f64::from(self.steps) - 0.5;
             let light = if is_inside && pixels_away <= half_line.max(0.5) { ISOLINE_LIGHT } else { 1.0 };
-            let [r, g, b] = perceptual(share).map(|c| from_linear(to_linear(c) * light));
+            let [r, g, b] = self.colors.color(share).map(|c| from_linear(to_linear(c) * light));
             row[left..right].fill([r, g, b, 255]);
         }
     }
@@ -208,10 +210,12 @@ mod tests {
             (render(&sphere(12), &options), render_with_bar(&sphere(12), &options, "z").unwrap());
         assert_eq!((with_bar.width(), with_bar.height()), (320, 240));
         assert!(plain != with_bar);
+        let other = RenderOptions { colors: ColorMap::Magma, ..options.clone() };
+        assert!(render_with_bar(&sphere(12), &other, "z").unwrap() != with_bar);
         let bar = Bar::new(&options, "z").unwrap();
         let column = (bar.left() + bar.em / 2.0) as u32;
         let [low, high] = [bar.row(bar.range[0]) as u32 - 1, bar.row(bar.range[1]) as u32];
-        for (row, end) in [(low, perceptual(0.0)), (high, perceptual(1.0))] {
+        for (row, end) in [(low, ColorMap::Viridis.color(0.0)), (high, ColorMap::Viridis.color(1.0))] {
             let found = with_bar.pixel(column, row);
             assert!(found.iter().zip(end).all(|(a, b)| a.abs_diff(b) < 8), "{found:?} {end:?}");
         }

@@ -24,6 +24,6 @@ pub fn render(mesh: &TriMesh, options: &RenderOptions) -> RgbaImage {
     let camera = Camera::fit(mesh, &faces, &options.view, size, options.margin.clamp(0.0, 0.45));
     let buffer = DepthBuffer::draw(mesh, &faces, &camera, size);
     let normals = corner_normals(mesh, &faces, &camera, options.crease.clamp(0.0, 90.0));
-    let paint = Paint::new(mesh.n_vertices(), &options.surface, samples);
+    let paint = Paint::new(mesh.n_vertices(), &options.surface, options.colors, samples);
     shade(&buffer, &normals, &paint, samples, options.background)
 }

@@ -2,6 +2,7 @@
 
 use super::camera::View;
 use super::surface::Surface;
+use crate::color::ColorMap;
 
 /// Options of [`render`](super::render). Every value is usable: sizes are clamped to the stated ranges.
 #[derive(Debug, Clone, PartialEq)]
@@ -18,6 +19,8 @@ pub struct RenderOptions {
     pub background: Background,
     /// Colours of the surface. Default: a light clay.
     pub surface: Surface,
+    /// The colours of numbers. Default: [`ColorMap::Viridis`].
+    pub colors: ColorMap,
     /// Dihedral angle in degrees, clamped to 0..=90, above which an edge is shaded as a crease. Default: 80.
     pub crease: f64,
     /// Samples along each side of a pixel, clamped to 1..=4. Default: 3, nine samples per pixel.
@@ -33,6 +36,7 @@ impl Default for RenderOptions {
             view: View::default(),
             background: Background::White,
             surface: Surface::Plain([214, 206, 194]),
+            colors: ColorMap::default(),
             crease: 80.0,
             supersampling: 3,
         }

@@ -2,14 +2,14 @@
 
 use nalgebra::Vector3;
 
-use crate::color::{perceptual, to_linear, value_range};
+use crate::color::{ColorMap, to_linear, value_range};
 
 /// Colours of a surface.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Surface {
     /// One sRGB colour.
     Plain([u8; 3]),
-    /// One number per vertex, mapped to a perceptual colour map (viridis) and interpolated across faces.
+    /// One number per vertex, mapped to [`colors`](super::RenderOptions::colors) and interpolated across faces.
     Scalars {
         /// The numbers. Vertices beyond the list and numbers that are not finite are grey.
         values: Vec<f64>,
@@ -34,11 +34,12 @@ pub(super) enum Paint {
         steps: f32,
         /// Half the width of an isoline, in samples: isolines are one pixel wide.
         half_width: f32,
+        colors: ColorMap,
     },
 }
 
 impl Paint {
-    pub(super) fn new(n_vertices: usize, surface: &Surface, samples: u32) -> Self {
+    pub(super) fn new(n_vertices: usize, surface: &Surface, colors: ColorMap, samples: u32) -> Self {
         match surface {
             Surface::Plain(color) => Self::Plain(color.map(to_linear)),
             Surface::Scalars { values, range, isolines } => {
@@ -50,6 +51,7 @@ impl Paint {
                     values: (0..n_vertices).map(scaled).collect(),
                     steps: *isolines as f32,
                     half_width: samples as f32 / 2.0,
+                    colors,
                 }
             }
         }
@@ -65,10 +67,10 @@ impl Paint {
     ) -> Vector3<f32> {
         match self {
             Self::Plain(color) => Vector3::from(*color),
-            Self::Scalars { values, steps, half_width } => {
+            Self::Scalars { values, steps, half_width, colors } => {
                 let corners = Vector3::from(face.map(|v| values[v]));
                 let value = corners.dot(&at);
-                let color = Vector3::from(perceptual(f64::from(value)).map(to_linear));
+                let color = Vector3::from(colors.color(f64::from(value)).map(to_linear));
                 let level = value * steps;
                 let line = level.round();
                 let slope = corners.dot(&slopes[0]).hypot(corners.dot(&slopes[1])) * steps;
