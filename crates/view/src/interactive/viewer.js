@@ -103,15 +103,39 @@ const canonform = (() => {
     return [low, high];
   }
 
-  // Ranges of the axes, and their lengths as shares of the diagonal: surfaces of any size fill the scene.
+  const AXES = ['x', 'y', 'z'];
+  const dot = (a, b) => a.x * b[0] + a.y * b[1] + a.z * b[2];
+
+  // To the viewer, to the right and upwards, seen from the first position of the camera.
+  function directions() {
+    const towards = unit(CAMERA.eye);
+    const across = unit(cross(CAMERA.up, CAMERA.eye));
+    return { towards, across, above: cross(towards, across) };
+  }
+
+  // Calls `use` on every vertex.
+  function eachVertex(data, use) {
+    for (const { x, y, z } of data) for (let v = 0; v < x.length; v += 1) use([x[v], y[v], z[v]]);
+  }
+
+  // Ranges of the axes, and their lengths as shares of the diagonal. Their middle is where the surfaces have equal room on
+  // all sides, seen from the first position of the camera.
   function bounds(data) {
-    const ranges = ['x', 'y', 'z'].map((axis) => extent(data.flatMap((trace) => extent(trace[axis]))));
-    const sides = ranges.map(([low, high]) => high - low);
-    const size = Math.hypot(...sides) || 1;
-    const thick = (side) => Math.max(side, 1e-3 * size);
+    const ranges = AXES.map((axis) => extent(data.flatMap((trace) => extent(trace[axis]))));
+    const size = Math.hypot(...ranges.map(([low, high]) => high - low)) || 1;
+    const { across, above } = directions();
+    const middle = ranges.map(([low, high]) => (low + high) / 2);
+    for (const side of [across, above]) {
+      let [low, high] = [Infinity, -Infinity];
+      eachVertex(data, (at) => {
+        const place = dot(side, at) - dot(side, middle);
+        [low, high] = [Math.min(low, place), Math.max(high, place)];
+      });
+      if (low < high) AXES.forEach((axis, i) => { middle[i] += (side[axis] * (low + high)) / 2; });
+    }
     return ranges.map(([low, high], i) => {
-      const [middle, half] = [(low + high) / 2, thick(sides[i]) / 2];
-      return { range: [middle - half, middle + half], share: thick(sides[i]) / size };
+      const half = Math.max(high - middle[i], middle[i] - low, 5e-4 * size);
+      return { range: [middle[i] - half, middle[i] + half], share: (2 * half) / size };
     });
   }
 
@@ -122,26 +146,18 @@ const canonform = (() => {
 
   // The scale at which all vertices are just inside a scene of this aspect.
   function filling(data, sides, aspect) {
-    const { eye, up } = CAMERA;
-    const distance = Math.hypot(eye.x, eye.y, eye.z);
-    const towards = unit(eye);
-    const across = unit(cross(up, eye));
-    const above = cross(towards, across);
-    const dot = (a, b) => a.x * b[0] + a.y * b[1] + a.z * b[2];
-    // From values to shares of the diagonal around the middle of the scene.
-    const [x, y, z] = sides.map(({ range: [low, high], share }) =>
-      (value) => (share * (value - (low + high) / 2)) / (high - low));
+    const { towards, across, above } = directions();
+    const distance = Math.hypot(...Object.values(CAMERA.eye));
     let zoom = 10;
-    for (const trace of data) {
-      for (let v = 0; v < trace.x.length; v += 1) {
-        const at = [x(trace.x[v]), y(trace.y[v]), z(trace.z[v])];
-        // A vertex at s times `at` is seen at s * side / (VIEW * (distance - s * depth)).
-        for (const [side, room] of [[Math.abs(dot(above, at)), VIEW * FILLED], [Math.abs(dot(across, at)), VIEW * FILLED * aspect]]) {
-          const size = side + room * dot(towards, at);
-          if (size * zoom > room * distance) zoom = (room * distance) / size;
-        }
+    eachVertex(data, (values) => {
+      // In shares of the diagonal around the middle of the scene.
+      const at = sides.map(({ range: [low, high], share }, i) => (share * (values[i] - (low + high) / 2)) / (high - low));
+      // A vertex at s times `at` is seen at s * side / (VIEW * (distance - s * depth)).
+      for (const [side, room] of [[dot(above, at), VIEW * FILLED], [dot(across, at), VIEW * FILLED * aspect]]) {
+        const size = Math.abs(side) + room * dot(towards, at);
+        if (size * zoom > room * distance) zoom = (room * distance) / size;
       }
-    }
+    });
     return zoom;
   }
 
