@@ -28,10 +28,11 @@ pub(crate) fn run(args: &RunArgs) -> Result<ExitCode> {
     };
     let (kept, open): (Vec<&Experiment>, Vec<&Experiment>) =
         EXPERIMENTS.iter().filter(is_wanted).partition(|experiment| args.resume && is_made(args, experiment));
-    for experiment in kept {
-        eprintln!("{} is there already, made with these options", experiment.section.name);
+    let finished: Vec<&'static str> = kept.iter().map(|experiment| experiment.section.name).collect();
+    for name in &finished {
+        eprintln!("{name} is there already, made with these options");
     }
-    let finished = Arc::new(Mutex::new(Vec::new()));
+    let finished = Arc::new(Mutex::new(finished));
     keep_finished(args, Arc::clone(&finished));
     if !open.is_empty() {
         let bars = Bars::new(args.quiet);
