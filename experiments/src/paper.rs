@@ -23,7 +23,7 @@ const MADE: &str = "MADE";
 /// The numbers of one experiment that the page states.
 #[derive(Debug, Default, Serialize, Deserialize)]
 struct Numbers {
-    /// Version, commit, machine and date.
+    /// Version, commit, machine and day.
     made: String,
     measured: Measured,
 }
@@ -51,7 +51,8 @@ pub(crate) fn write(folder: &Path, path: &Path) -> Result<()> {
         if !known.contains_key(experiment) {
             let Made { provenance: p, measured } = read(folder.join(format!("{experiment}.json")))?;
             let commit = if p.commit.is_empty() { String::new() } else { format!(", commit {}", p.commit) };
-            let made = format!("version {}{commit}, {}, {}", p.version, p.machine, p.date);
+            let day = p.date.split(' ').next().unwrap_or_default();
+            let made = format!("version {}{commit}, {}, {day}", p.version, p.machine);
             known.insert(experiment.to_owned(), Numbers { made, measured });
         }
         if !known.get(experiment).is_some_and(|numbers| numbers.measured.contains_key(number)) {
@@ -81,9 +82,8 @@ fn page(known: &Known) -> Result<String> {
     for (experiment, numbers) in known {
         made.entry(&numbers.made).or_default().push(experiment);
     }
-    let made: Vec<String> =
-        made.iter().map(|(made, experiments)| format!("{}: {made}.", experiments.join(", "))).collect();
-    Ok(page.replacen(MADE, &made.join(" "), 1) + "\n")
+    let made = made.iter().map(|(made, experiments)| format!("* {made}: {}", experiments.join(", ")));
+    Ok(page.replacen(MADE, &made.collect::<Vec<_>>().join("\n"), 1) + "\n")
 }
 
 #[cfg(test)]
