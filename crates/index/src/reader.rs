@@ -85,6 +85,12 @@ impl Index {
         self.n_shapes == 0
     }
 
+    /// A number that changes with the content of the file.
+    #[must_use]
+    pub fn fingerprint(&self) -> u64 {
+        self.fingerprint
+    }
+
     /// Size of the database in bytes.
     #[must_use]
     pub fn n_bytes(&self) -> u64 {

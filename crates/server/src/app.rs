@@ -4,94 +4,118 @@ use std::path::Path;
 use std::sync::Arc;
 
 use axum::body::Bytes;
-use canonform::descriptors::PreparedShape;
-use canonform::{Error, ShapeSearch, Surface, embed};
-use serde::Serialize;
+use axum::http::StatusCode;
+use canonform::index::ContentHash;
+use canonform::{Error, ShapeDescription, Surface, embed};
 
 use crate::cache::Cache;
+use crate::collection::{Collection, Served};
 use crate::error::ApiError;
+use crate::load::VERTEX_BYTES;
 use crate::measured::Measured;
 use crate::options::ServeOptions;
-use crate::work::Work;
+use crate::places::Places;
+use crate::work::{Limits, Work};
 
 /// The index, the caches and the queue.
 pub(crate) struct App {
-    pub(crate) search: ShapeSearch,
-    /// All shapes, by ascending name.
-    pub(crate) shapes: Vec<ShapeSummary>,
+    pub(crate) served: Served,
     pub(crate) options: ServeOptions,
     pub(crate) work: Work,
-    pub(crate) measured: Cache<Arc<Measured>>,
+    pub(crate) uploads: Arc<Places>,
+    measured: Cache<Arc<Measured>>,
     pub(crate) thumbnails: Cache<Bytes>,
-    pub(crate) queries: Cache<Arc<Query>>,
-}
-
-/// A shape in a list.
-#[derive(Debug, Clone, Serialize)]
-pub(crate) struct ShapeSummary {
-    pub(crate) id: String,
-    pub(crate) label: String,
-    vertices: Option<u64>,
-    faces: Option<u64>,
-    /// In squared mesh units.
-    area: Option<f64>,
-    /// The largest surface distance from a sample, in mesh units.
-    diameter: Option<f64>,
+    queries: Cache<Arc<Query>>,
 }
 
 /// An upload that was searched for.
 pub(crate) struct Query {
     pub(crate) name: String,
     pub(crate) measured: Measured,
-    pub(crate) shape: PreparedShape,
+    pub(crate) description: ShapeDescription,
+    /// The options of the index that it was described with.
+    options: String,
+}
+
+impl Query {
+    pub(crate) fn new(name: String, measured: Measured, description: ShapeDescription) -> Self {
+        Self { name, options: description.options.text(), measured, description }
+    }
 }
 
 impl App {
     pub(crate) fn open(index: &Path, options: ServeOptions) -> Result<Self, Error> {
-        let search = ShapeSearch::open(index)?;
-        let shapes = search.index().entries()?.into_iter().map(|(id, entry)| {
-            let count = |name| entry.fact(name).map(|count| count as u64);
-            ShapeSummary {
-                vertices: count("vertices"),
-                faces: count("faces"),
-                area: entry.fact("area"),
-                diameter: entry.fact("diameter"),
-                id,
-                label: entry.label,
-            }
-        });
         Ok(Self {
-            shapes: shapes.collect(),
+            served: Served::open(index)?,
             work: Work::new(&options),
+            uploads: Places::new(options.max_uploads),
             // Thumbnails are smaller than meshes.
             measured: Cache::new(options.cache / 4 * 3),
             thumbnails: Cache::new(options.cache / 4),
             queries: Cache::new(options.kept_queries).with_lifetime(options.query_lifetime),
-            search,
             options,
         })
     }
 
     /// A shape of the index with the form of all its vertices, from the cache or measured now.
-    pub(crate) fn indexed(&self, id: &str) -> Result<Arc<Measured>, Error> {
-        if let Some(known) = self.measured.get(id) {
+    pub(crate) fn indexed(
+        &self,
+        collection: &Collection,
+        id: &str,
+        limits: &Limits,
+    ) -> Result<Arc<Measured>, Error> {
+        let index = collection.search.index();
+        let key = measured_key(&index.entry(id)?.content, index.options());
+        if let Some(known) = self.measured.get(&key) {
             return Ok(known);
         }
-        let options = &self.search.describe_options().form;
-        let surface = Surface::new(&self.search.mesh(id)?, &options.repair)?;
-        let embedded = embed(&surface, options, &())?;
+        let options = &collection.search.describe_options().form;
+        let mesh = collection.search.mesh(id)?;
+        limits.check()?;
+        let surface = Surface::new(&mesh, &options.repair)?;
+        limits.check()?;
+        let embedded = embed(&surface, options, limits)?;
         let measured = Arc::new(Measured::new(surface, &embedded)?);
-        self.measured.put(id.to_owned(), measured.clone(), measured.bytes());
+        self.measured.put(key, measured.clone(), measured.bytes());
         Ok(measured)
     }
 
-    /// Keeps a query under an unguessable name.
-    pub(crate) fn keep(&self, query: Query) -> Result<String, ApiError> {
-        let mut secret = [0_u8; 16];
-        getrandom::fill(&mut secret).map_err(|_| ApiError::internal())?;
-        let name: String = secret.iter().map(|byte| format!("{byte:02x}")).collect();
-        let bytes = query.measured.bytes();
-        self.queries.put(name.clone(), Arc::new(query), bytes);
-        Ok(name)
+    /// The size of the mesh of a shape, for [`Work::run`]: nothing if it need not be measured.
+    pub(crate) fn cost(&self, collection: &Collection, id: &str) -> usize {
+        let Some(shape) = collection.shape(id) else { return 0 };
+        let key = measured_key(&shape.content, collection.search.index().options());
+        let bytes = shape.vertices.unwrap_or(0).saturating_mul(VERTEX_BYTES);
+        if self.measured.get(&key).is_some() { 0 } else { usize::try_from(bytes).unwrap_or(usize::MAX) }
     }
+
+    /// The address of an upload: part of the hash of its names and contents.
+    pub(crate) fn address(files: &[(std::path::PathBuf, Vec<u8>)]) -> String {
+        let pieces: Vec<&[u8]> =
+            files.iter().flat_map(|(name, content)| [name.as_os_str().as_encoded_bytes(), content]).collect();
+        ContentHash::of(&pieces).to_string()[..32].to_owned()
+    }
+
+    /// Keeps a query under its address.
+    pub(crate) fn keep(&self, address: String, query: Arc<Query>) {
+        let bytes = query.measured.bytes();
+        self.queries.put(address, query, bytes);
+    }
+
+    /// A kept query, if it was described as the shapes of the index are.
+    pub(crate) fn kept(&self, collection: &Collection, address: &str) -> Option<Arc<Query>> {
+        let query = self.queries.get(address)?;
+        (query.options == collection.search.index().options()).then_some(query)
+    }
+
+    /// As [`kept`](Self::kept), or an error for the client.
+    pub(crate) fn query(&self, collection: &Collection, address: &str) -> Result<Arc<Query>, ApiError> {
+        self.kept(collection, address).ok_or_else(|| {
+            ApiError::new(StatusCode::GONE, "this upload has expired").with_remedy("choose the file again")
+        })
+    }
+}
+
+/// A mesh gives another form with other options.
+fn measured_key(content: &ContentHash, options: &str) -> String {
+    format!("{content} {options}")
 }

@@ -8,7 +8,7 @@ use axum::Json;
 use axum::http::{HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use canonform::index::IndexError;
-use canonform::{Error, Remedy};
+use canonform::{Error, Exceeded, Remedy};
 use mesh::io::Format;
 use mesh::{Fault, MeshError};
 use serde::Serialize;
@@ -75,6 +75,12 @@ impl ApiError {
             .with_remedy("check the connection and send it again")
     }
 
+    /// Another client needed the place of an upload that arrives slowly.
+    pub(crate) fn upload_overtaken() -> Self {
+        Self::new(StatusCode::REQUEST_TIMEOUT, "the upload arrived too slowly while others were waiting")
+            .with_remedy("check the connection and send it again")
+    }
+
     /// Too many requests; the client may retry after this many seconds.
     pub(crate) fn busy(seconds: u32) -> Self {
         let busy = Self::new(StatusCode::SERVICE_UNAVAILABLE, "too many requests in progress")
@@ -96,6 +102,19 @@ impl ApiError {
             .with_remedy("report it with the mesh that caused it")
     }
 
+    /// A limit of the server ended the job.
+    pub(crate) fn exceeded(exceeded: Exceeded) -> Self {
+        match exceeded {
+            Exceeded::Time { limit } => Self::too_slow(limit),
+            // Nobody reads this: its client has gone, or got an answer at the time limit.
+            Exceeded::Cancelled => Self::new(StatusCode::SERVICE_UNAVAILABLE, "the request was cancelled"),
+            Exceeded::Memory { .. } => {
+                Self::new(StatusCode::PAYLOAD_TOO_LARGE, "the mesh needs more memory than allowed")
+                    .with_remedy("simplify the mesh")
+            }
+        }
+    }
+
     fn of_fault(status: StatusCode, error: String, fault: &Error) -> Self {
         let remedy = match fault {
             _ if status == StatusCode::PAYLOAD_TOO_LARGE => Some("raise the vertex limit of the server"),
@@ -113,6 +132,7 @@ impl ApiError {
             }
             Error::Mesh(MeshError::File { .. } | MeshError::StrayFile { .. }) => StatusCode::BAD_REQUEST,
             Error::Index(_) => return fault.into(),
+            Error::Exceeded(exceeded) => return Self::exceeded(*exceeded),
             _ => StatusCode::UNPROCESSABLE_ENTITY,
         };
         let text = fault.to_string();
@@ -123,21 +143,36 @@ impl ApiError {
         Self::of_fault(status, if is_named { text } else { format!("{}: {text}", name.display()) }, &fault)
     }
 
+    /// What is wrong.
+    pub(crate) fn text(&self) -> &str {
+        &self.body.error
+    }
+
     #[cfg(test)]
     pub(crate) fn status(&self) -> u16 {
         self.status.as_u16()
     }
 }
 
-/// Errors of indexed shapes.
+/// Errors of indexed shapes. Where the index and its meshes lie on this machine is nobody's business, so messages with
+/// paths are replaced.
 impl From<Error> for ApiError {
     fn from(fault: Error) -> Self {
-        let status = match fault {
-            Error::Index(IndexError::NoSuchShape { .. }) | Error::MeshGone { .. } => StatusCode::NOT_FOUND,
-            Error::MeshChanged { .. } => StatusCode::GONE,
-            _ => StatusCode::INTERNAL_SERVER_ERROR,
+        let (status, text) = match &fault {
+            Error::Index(IndexError::NoSuchShape { id, .. }) => {
+                (StatusCode::NOT_FOUND, format!("the index has no shape `{id}`"))
+            }
+            Error::MeshGone { id, .. } => (StatusCode::NOT_FOUND, format!("cannot read the mesh of `{id}`")),
+            Error::MeshChanged { id, .. } => {
+                (StatusCode::GONE, format!("the mesh of `{id}` has changed since it was indexed"))
+            }
+            Error::Exceeded(exceeded) => return Self::exceeded(*exceeded),
+            _ => {
+                eprintln!("error: {fault}");
+                return Self::internal();
+            }
         };
-        Self::of_fault(status, fault.to_string(), &fault)
+        Self::of_fault(status, text, &fault)
     }
 }
 

@@ -5,13 +5,15 @@ use std::panic::AssertUnwindSafe;
 use std::sync::Arc;
 
 use axum::extract::{Request, State};
-use axum::http::{HeaderMap, HeaderName, HeaderValue, Method, StatusCode, header};
+use axum::http::{HeaderMap, HeaderName, HeaderValue, Method, StatusCode, Uri, header};
 use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
 use futures_util::FutureExt;
 
 use crate::app::App;
+use crate::connection::pace_of;
 use crate::error::ApiError;
+use crate::pace::Phase;
 
 /// Headers of every response. Plotly inserts style rules and renders its drawings to images.
 const HEADERS: [(HeaderName, &str); 5] = [
@@ -28,13 +30,17 @@ const HEADERS: [(HeaderName, &str); 5] = [
 
 /// Rejects requests for other servers, turns panics into responses, and adds the headers.
 pub(crate) async fn guard(State(app): State<Arc<App>>, request: Request, next: Next) -> Response {
-    let mut response = match check(&app, request.method(), request.headers()) {
+    let pace = pace_of(&request);
+    let begin = |phase| pace.iter().for_each(|pace| pace.begin(phase));
+    begin(Phase::Working);
+    let mut response = match check(&app, request.method(), request.uri(), request.headers()) {
         Ok(()) => {
             let answer = AssertUnwindSafe(next.run(request)).catch_unwind().await;
             answer.unwrap_or_else(|_| ApiError::internal().into_response())
         }
         Err(refused) => refused.into_response(),
     };
+    begin(Phase::Waiting);
     let headers = response.headers_mut();
     for (name, value) in HEADERS {
         headers.insert(name, HeaderValue::from_static(value));
@@ -44,16 +50,28 @@ pub(crate) async fn guard(State(app): State<Arc<App>>, request: Request, next: N
     response
 }
 
-fn check(app: &App, method: &Method, headers: &HeaderMap) -> Result<(), ApiError> {
-    let text = |name| headers.get(name).and_then(|value: &HeaderValue| value.to_str().ok());
-    let host = text(header::HOST).ok_or_else(|| ApiError::bad_request("the request has no Host header"))?;
+fn check(app: &App, method: &Method, uri: &Uri, headers: &HeaderMap) -> Result<(), ApiError> {
+    // With several values, another program on the way may read another one.
+    let single = |name: HeaderName| {
+        let mut values = headers.get_all(&name).iter();
+        let value = values.next().and_then(|value| value.to_str().ok());
+        match values.next() {
+            Some(_) => Err(ApiError::bad_request(format!("the request has several `{name}` headers"))),
+            None => Ok(value),
+        }
+    };
+    let host = single(header::HOST)?;
+    let host = host.ok_or_else(|| ApiError::bad_request("the request has no Host header"))?;
+    if uri.authority().is_some_and(|authority| authority.as_str() != host) {
+        return Err(ApiError::bad_request("the address of the request and its Host header differ"));
+    }
     // A page elsewhere can resolve its own name to this machine (DNS rebinding), but not change the Host header.
     if app.options.listen.ip().is_loopback() && !is_loopback(host) {
         let error = format!("this server is not `{}`", host.chars().take(100).collect::<String>());
         return Err(ApiError::new(StatusCode::MISDIRECTED_REQUEST, error)
             .with_remedy("open it as localhost, or let the server listen on the address that others use"));
     }
-    let origin = text(header::ORIGIN);
+    let origin = single(header::ORIGIN)?;
     let foreign = origin.is_some_and(|origin| origin.strip_prefix("http://") != Some(host));
     if foreign && method != Method::GET && method != Method::HEAD {
         return Err(ApiError::new(StatusCode::FORBIDDEN, "cross-origin requests are not allowed"));

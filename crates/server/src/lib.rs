@@ -4,19 +4,25 @@
 //! request -> guard (host, origin, headers) -> api / page -> work (a bounded number of jobs) -> canonform::ShapeSearch
 //! ```
 //!
-//! **Invariants.** The index is only read. No text of a request becomes a path: shapes are looked up by name in the
+//! **Invariants.** The index is only read, and opened again when its file changes; no response tells where it lies. No text of a request becomes a path: shapes are looked up by name in the
 //! index, which knows the paths of their meshes. Uploads stay in memory. Memory and time are limited for any number of
-//! requests, see [`ServeOptions`]. All numerical work is done by `canonform`.
+//! requests, see [`ServeOptions`]: a client that keeps the server waiting loses its place to others, and a job that is late
+//! or that nobody waits for is cancelled. All numerical work is done by `canonform`.
 
 mod api;
 mod app;
 mod cache;
+mod collection;
+mod connection;
 mod error;
 mod formats;
 mod guard;
+mod load;
 mod measured;
 mod options;
+mod pace;
 mod page;
+mod places;
 mod serve;
 mod upload;
 mod work;

@@ -17,25 +17,33 @@ pub struct ServeOptions {
     pub max_vertices: u64,
     /// Maximum number of uploads being received or waiting. Default: 16.
     pub max_uploads: usize,
-    /// Number of requests processed at once; 0 for one per core. Default: 0.
+    /// Number of requests processed at once; 0 for one more than there are cores. One of several places is kept for
+    /// requests that take little time. Default: 0.
     pub jobs: usize,
     /// Number of requests that may wait for a job; further ones are rejected. Default: 64.
     pub queue: usize,
-    /// Maximum time from the start of the wait for a job to the response. Default: one minute.
+    /// Maximum time from the start of the wait for a job to the response; then the job is cancelled. An upload that
+    /// could not be answered in time, as far as can be estimated, is refused at once. Default: one minute.
     pub time_limit: Duration,
     /// Maximum time for a complete upload. Default: five minutes.
     pub upload_time: Duration,
-    /// Maximum time for the header of a request, and for the next piece of its body. Default: 15 seconds.
+    /// How long a client may keep the server waiting: for a request, for its body, or for taking the response. Every byte
+    /// that moves is worth some of that time, see `min_rate`. Default: 15 seconds.
     pub idle_time: Duration,
-    /// Maximum number of connections; further ones wait to be accepted. Default: 256.
+    /// The rate in bytes per second at which a client does not keep the server waiting. Default: 4,000.
+    pub min_rate: usize,
+    /// Maximum number of connections; a further one takes the place of the one that has kept the server waiting longest.
+    /// The same holds for uploads. Default: 256.
     pub connections: usize,
     /// Size of the cache of meshes, forms and thumbnails, in bytes. Default: 256 MB.
     pub cache: usize,
     /// Size of the cache of queries, in bytes; the last query is always kept. A kept query can be compared with its
     /// results. Default: 128 MB.
     pub kept_queries: usize,
-    /// How long a query is kept. Default: half an hour.
+    /// How long a query is kept. Default: one hour.
     pub query_lifetime: Duration,
+    /// Time between two looks at the file of the index, which is opened again when it has changed. Default: one second.
+    pub index_check: Duration,
     /// How long requests in progress may take to finish after the server is stopped. Default: 30 seconds.
     pub farewell: Duration,
 }
@@ -52,10 +60,12 @@ impl Default for ServeOptions {
             time_limit: Duration::from_secs(60),
             upload_time: Duration::from_secs(300),
             idle_time: Duration::from_secs(15),
+            min_rate: 4000,
             connections: 256,
             cache: 256_000_000,
             kept_queries: 128_000_000,
-            query_lifetime: Duration::from_secs(1800),
+            query_lifetime: Duration::from_secs(3600),
+            index_check: Duration::from_secs(1),
             farewell: Duration::from_secs(30),
         }
     }

@@ -8,21 +8,16 @@ use std::time::Duration;
 
 use axum::middleware::from_fn_with_state;
 use futures_util::future::{Either, select};
-use hyper::server::conn::http1;
-use hyper_util::rt::{TokioIo, TokioTimer};
 use hyper_util::server::graceful::GracefulShutdown;
-use hyper_util::service::TowerToHyperService;
-use tokio::net::TcpStream;
-use tokio::sync::{Semaphore, watch};
+use tokio::sync::watch;
 
 use crate::app::App;
 use crate::error::ServerError;
 use crate::guard::guard;
 use crate::options::ServeOptions;
-use crate::{api, page};
-
-/// Maximum size of a request header, and of one read of a body, in bytes.
-const BUFFER: usize = 64 << 10;
+use crate::pace::Pace;
+use crate::places::Places;
+use crate::{api, connection, page};
 
 /// Pause after a connection could not be accepted, for example because of too many open files.
 const RETRY_PAUSE: Duration = Duration::from_millis(100);
@@ -79,7 +74,7 @@ impl Server {
     /// Number of shapes in its index.
     #[must_use]
     pub fn n_shapes(&self) -> usize {
-        self.app.shapes.len()
+        self.app.served.collection().shapes.len()
     }
 
     /// A handle that stops the server from another thread.
@@ -111,42 +106,40 @@ impl Server {
             .merge(page::router())
             .layer(from_fn_with_state(app.clone(), guard))
             .with_state(app.clone());
-        let places = Arc::new(Semaphore::new(app.options.connections));
+        let refreshing = tokio::spawn(refresh(app.clone()));
+        let options = &app.options;
+        let places = Places::new(options.connections);
         let graceful = GracefulShutdown::new();
         loop {
             let next = pin!(async {
-                let place = places.clone().acquire_owned().await;
-                (place, listener.accept().await)
+                let (stream, _) = listener.accept().await?;
+                let pace = Arc::new(Pace::new(options.min_rate));
+                let place = places.enter(&pace).await;
+                Ok::<_, std::io::Error>((stream, place, pace))
             });
             // Never fails: the sender lives as long as `self.stop`.
             let stopped = pin!(stop.wait_for(|stopped| *stopped));
-            let Either::Left(((place, accepted), _)) = select(next, stopped).await else { break };
-            let Ok((stream, _)) = accepted else {
+            let Either::Left((accepted, _)) = select(next, stopped).await else { break };
+            let Ok((stream, place, pace)) = accepted else {
                 tokio::time::sleep(RETRY_PAUSE).await;
                 continue;
             };
-            let connection = graceful.watch(connection(stream, router.clone(), app.options.idle_time));
-            tokio::spawn(async move {
-                let _place = place;
-                // Broken connections are not errors of the server.
-                let _ = connection.await;
-            });
+            let watcher = graceful.watcher();
+            tokio::spawn(connection::serve(stream, place, pace, router.clone(), watcher, options.idle_time));
         }
         drop(listener);
-        let _ = tokio::time::timeout(app.options.farewell, graceful.shutdown()).await;
+        refreshing.abort();
+        let _ = tokio::time::timeout(options.farewell, graceful.shutdown()).await;
         Ok(())
     }
 }
 
-/// One connection with all its requests.
-fn connection(
-    stream: TcpStream,
-    router: axum::Router,
-    idle_time: Duration,
-) -> http1::Connection<TokioIo<TcpStream>, TowerToHyperService<axum::Router>> {
-    http1::Builder::new()
-        .timer(TokioTimer::new())
-        .header_read_timeout(idle_time)
-        .max_buf_size(BUFFER)
-        .serve_connection(TokioIo::new(stream), TowerToHyperService::new(router))
+/// Looks again and again whether the index has changed.
+async fn refresh(app: Arc<App>) {
+    loop {
+        tokio::time::sleep(app.options.index_check).await;
+        let shared = app.clone();
+        // A panic while opening leaves the old index in service.
+        let _ = tokio::task::spawn_blocking(move || shared.served.refresh()).await;
+    }
 }

@@ -1,7 +1,7 @@
 //! Receives a multipart form with a mesh into memory, within limits.
 
 use std::path::PathBuf;
-use std::pin::Pin;
+use std::pin::{Pin, pin};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::task::{Context, Poll};
 use std::time::Duration;
@@ -9,12 +9,15 @@ use std::time::Duration;
 use axum::body::{BodyDataStream, Bytes};
 use axum::extract::Request;
 use axum::http::{StatusCode, header};
+use futures_util::future::{Either, select};
 use futures_util::{Stream, StreamExt};
 use mesh::io::mesh_files;
 use multer::{Multipart, parse_boundary};
 
 use crate::error::ApiError;
 use crate::options::ServeOptions;
+use crate::pace::{Pace, Phase};
+use crate::places::Place;
 
 /// Allowance for boundaries, headers and other fields of a form, in bytes.
 const FRAME: usize = 64 << 10;
@@ -39,15 +42,33 @@ pub(crate) struct Upload {
     pub(crate) fields: Vec<(String, String)>,
 }
 
-/// Receives a form.
-pub(crate) async fn receive(request: Request, options: &ServeOptions) -> Result<Upload, ApiError> {
+impl Upload {
+    /// Size of the files.
+    pub(crate) fn bytes(&self) -> usize {
+        self.files.iter().map(|(_, content)| content.len()).sum()
+    }
+}
+
+/// The announced length of a body, in bytes; 0 if it is not announced.
+pub(crate) fn announced(request: &Request) -> usize {
+    let length = request.headers().get(header::CONTENT_LENGTH).and_then(|length| length.to_str().ok());
+    length.and_then(|length| length.parse().ok()).unwrap_or(0)
+}
+
+/// Receives a form. The client must keep its pace, or it loses the `place`.
+pub(crate) async fn receive(
+    request: Request,
+    place: &Place,
+    pace: &Pace,
+    options: &ServeOptions,
+) -> Result<Upload, ApiError> {
+    let announced = announced(&request);
     let headers = request.headers();
     let text = |name| headers.get(name).and_then(|value: &header::HeaderValue| value.to_str().ok());
     let boundary = text(header::CONTENT_TYPE).and_then(|kind| parse_boundary(kind).ok());
-    let announced = text(header::CONTENT_LENGTH).and_then(|length| length.parse::<usize>().ok());
     let body = Body(Arc::new(Mutex::new(request.into_body().into_data_stream())));
     let received = async {
-        if announced.is_some_and(|length| length > options.max_upload + FRAME) {
+        if announced > options.max_upload + FRAME {
             return Err(ApiError::upload_too_large(options.max_upload));
         }
         let boundary = boundary.ok_or_else(|| {
@@ -56,10 +77,20 @@ pub(crate) async fn receive(request: Request, options: &ServeOptions) -> Result<
         })?;
         let metered = Metered { body: body.clone(), left: options.max_upload + FRAME };
         let form = Multipart::new(metered, boundary);
-        let all = tokio::time::timeout(options.upload_time, read(form, options));
-        all.await.unwrap_or_else(|_| Err(ApiError::upload_too_slow()))
+        let form = pin!(read(form, options));
+        let slow = pin!(pace.exceeds(options.idle_time, &[Phase::Receiving]));
+        let late = pin!(tokio::time::sleep(options.upload_time));
+        let lost = pin!(place.lost());
+        match select(form, select(select(slow, late), lost)).await {
+            Either::Left((form, _)) => form,
+            Either::Right((Either::Left(_), _)) => Err(ApiError::upload_too_slow()),
+            Either::Right((Either::Right(_), _)) => Err(ApiError::upload_overtaken()),
+        }
     };
+    pace.begin(Phase::Receiving);
     let received = received.await;
+    pace.begin(Phase::Working);
+    place.keep();
     if received.is_err() {
         tokio::spawn(body.drain());
     }
@@ -75,14 +106,14 @@ pub(crate) fn drain(request: Request) {
 async fn read(mut form: Multipart<'static>, options: &ServeOptions) -> Result<Upload, ApiError> {
     let mut upload = Upload::default();
     let mut n_parts = 0;
-    while let Some(mut part) = in_time(form.next_field(), options).await? {
+    while let Some(mut part) = understood(form.next_field().await, options)? {
         n_parts += 1;
         if n_parts > MOST_PARTS {
             return Err(ApiError::bad_request(format!("the form has more than {MOST_PARTS} parts")));
         }
         let file = part.file_name().map(clean_name);
         let mut content = Vec::new();
-        while let Some(chunk) = in_time(part.chunk(), options).await? {
+        while let Some(chunk) = understood(part.chunk().await, options)? {
             let limit = if file.is_some() { options.max_upload } else { LONGEST_FIELD };
             if content.len() + chunk.len() > limit {
                 return Err(match file {
@@ -109,21 +140,16 @@ fn form_remedy() -> String {
     format!("send multipart/form-data with one mesh: {}", mesh_files())
 }
 
-/// The next piece, or an error if it takes too long.
-async fn in_time<T>(
-    piece: impl Future<Output = Result<T, multer::Error>>,
-    options: &ServeOptions,
-) -> Result<T, ApiError> {
-    match tokio::time::timeout(options.idle_time, piece).await {
-        Err(_) => Err(ApiError::upload_too_slow()),
-        Ok(Ok(piece)) => Ok(piece),
-        Ok(Err(multer::Error::StreamReadFailed(fault))) if fault.is::<TooLong>() => {
-            Err(ApiError::upload_too_large(options.max_upload))
+/// A piece of a form, or an error for the client.
+fn understood<T>(piece: Result<T, multer::Error>, options: &ServeOptions) -> Result<T, ApiError> {
+    piece.map_err(|fault| match fault {
+        multer::Error::StreamReadFailed(fault) if fault.is::<TooLong>() => {
+            ApiError::upload_too_large(options.max_upload)
         }
-        Ok(Err(fault)) => {
-            Err(ApiError::bad_request(format!("the form cannot be read: {fault}")).with_remedy(form_remedy()))
+        fault => {
+            ApiError::bad_request(format!("the form cannot be read: {fault}")).with_remedy(form_remedy())
         }
-    }
+    })
 }
 
 /// A file name without folders and control characters; only the end of a long one.

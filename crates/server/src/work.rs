@@ -2,57 +2,103 @@
 
 use std::num::NonZero;
 use std::sync::Arc;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
-use tokio::sync::{OwnedSemaphorePermit, Semaphore};
+use canonform::{Budget, Exceeded, Observer};
+use tokio::sync::Semaphore;
 
 use crate::error::ApiError;
+use crate::load::{Length, Load};
 use crate::options::ServeOptions;
+use crate::places::Place;
 
-/// Seconds after which a rejected client may try again.
-const RETRY_AFTER: u32 = 2;
+/// Seconds after which a client that was rejected for the length of the queue may try again.
+pub(crate) const RETRY_AFTER: u32 = 2;
 
 /// The queue of requests that take time.
 pub(crate) struct Work {
     jobs: Arc<Semaphore>,
+    /// Long jobs need a permit of these too, so that one place is left for short ones.
+    long_jobs: Arc<Semaphore>,
     waiting: Arc<Semaphore>,
-    uploads: Arc<Semaphore>,
+    load: Arc<Load>,
     time_limit: Duration,
 }
 
-/// The right to send a mesh; returned by dropping it once the mesh is measured.
-pub(crate) type UploadPermit = OwnedSemaphorePermit;
+/// The limits of a job, for the computations in it.
+pub(crate) struct Limits(Budget);
+
+impl Limits {
+    /// Whether the job may go on.
+    pub(crate) fn check(&self) -> Result<(), Exceeded> {
+        self.0.check()
+    }
+}
+
+impl Observer for Limits {
+    fn budget(&self) -> Budget {
+        self.0.clone()
+    }
+
+    fn begin(&self, _: &str, _: usize) {}
+
+    fn step(&self) {}
+}
+
+/// Cancels a job when nobody waits for it any more.
+struct CancelOnDrop(Budget);
+
+impl Drop for CancelOnDrop {
+    fn drop(&mut self) {
+        self.0.cancel();
+    }
+}
 
 impl Work {
     pub(crate) fn new(options: &ServeOptions) -> Self {
         let cores = || std::thread::available_parallelism().map_or(1, NonZero::get);
-        let jobs = if options.jobs == 0 { cores() } else { options.jobs };
+        let jobs = if options.jobs == 0 { cores() + 1 } else { options.jobs };
+        let long_jobs = (jobs - 1).max(1);
         Self {
             jobs: Arc::new(Semaphore::new(jobs)),
+            long_jobs: Arc::new(Semaphore::new(long_jobs)),
             waiting: Arc::new(Semaphore::new(jobs + options.queue)),
-            uploads: Arc::new(Semaphore::new(options.max_uploads)),
+            load: Load::new(jobs, long_jobs),
             time_limit: options.time_limit,
         }
     }
 
-    /// Rejects an upload before its first byte if there are too many.
-    pub(crate) fn upload(&self) -> Result<UploadPermit, ApiError> {
-        self.uploads.clone().try_acquire_owned().map_err(|_| ApiError::busy(RETRY_AFTER))
+    /// Rejects an upload of this many bytes before it is received if it could not be answered in time.
+    pub(crate) fn expect(&self, bytes: usize) -> Result<(), ApiError> {
+        self.load.would_accept(bytes, self.time_limit).map_err(ApiError::busy)
     }
 
-    /// Runs `job` on a thread of its own when its turn comes. After the time limit this returns an error, but the job
-    /// counts until it ends; `held` is dropped then.
+    /// Runs `job` on a thread of its own when its turn comes; `bytes` is the size of its mesh. After the time limit, and
+    /// when the client has gone, the job is cancelled. It counts until it ends; `held` is dropped then.
     pub(crate) async fn run<T: Send + 'static>(
         &self,
-        held: Option<UploadPermit>,
-        job: impl FnOnce() -> Result<T, ApiError> + Send + 'static,
+        bytes: usize,
+        held: Option<Place>,
+        job: impl FnOnce(&Limits) -> Result<T, ApiError> + Send + 'static,
     ) -> Result<T, ApiError> {
-        let place = self.waiting.clone().try_acquire_owned().map_err(|_| ApiError::busy(RETRY_AFTER))?;
+        let busy = |_| ApiError::busy(RETRY_AFTER);
+        let place = self.waiting.clone().try_acquire_owned().map_err(busy)?;
+        let accepted = self.load.accept(bytes, self.time_limit).map_err(ApiError::busy)?;
+        let budget = Budget::unlimited().with_time(self.time_limit);
+        // Dropped at the time limit, and with the connection of a client that has gone.
+        let _cancel = CancelOnDrop(budget.clone());
         let work = async {
-            let turn = self.jobs.clone().acquire_owned().await.map_err(|_| ApiError::busy(RETRY_AFTER))?;
+            let long = match accepted.length {
+                Length::Long => Some(self.long_jobs.clone().acquire_owned().await),
+                Length::Short => None,
+            };
+            let turn = self.jobs.clone().acquire_owned().await;
             let outcome = tokio::task::spawn_blocking(move || {
-                let _held = (place, turn, held);
-                job()
+                let _held = (place, turn, long, held);
+                let begun = Instant::now();
+                let outcome = job(&Limits(budget));
+                accepted.ended(begun);
+                outcome
             });
             // The only other outcome is a panic, whose message is already printed.
             outcome.await.unwrap_or_else(|_| Err(ApiError::internal()))
@@ -67,41 +113,84 @@ mod tests {
     use std::sync::mpsc;
 
     use super::*;
+    use crate::pace::Pace;
+    use crate::places::Places;
+
+    /// The size of a mesh that takes long.
+    const LONG: usize = 10_000_000;
 
     fn runtime() -> tokio::runtime::Runtime {
         tokio::runtime::Builder::new_multi_thread().worker_threads(2).enable_time().build().unwrap()
     }
 
+    /// Waits for the end of its budget.
+    fn obedient(limits: &Limits) -> Result<(), ApiError> {
+        while limits.check().is_ok() {
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        Ok(())
+    }
+
+    async fn until_done(work: &Work, bytes: usize) {
+        let ends = async {
+            while work.run(bytes, None, |_| Ok(())).await.is_err() {
+                tokio::time::sleep(Duration::from_millis(10)).await;
+            }
+        };
+        tokio::time::timeout(Duration::from_secs(20), ends).await.unwrap();
+    }
+
     #[test]
-    fn a_late_job_still_counts_and_the_queue_is_bounded() {
+    fn a_late_job_is_cancelled_and_counts_until_it_ends() {
         let options = ServeOptions {
             jobs: 1,
             queue: 1,
-            time_limit: Duration::from_millis(200),
+            time_limit: Duration::from_millis(400),
             ..ServeOptions::default()
         };
         let work = Work::new(&options);
         let (finish, finished) = mpsc::channel::<()>();
         runtime().block_on(async {
-            let late = work.run(None, move || {
+            let late = work.run(0, None, move |limits| {
+                obedient(limits)?;
+                // It notices, and still takes its time.
                 let _ = finished.recv();
                 Ok(())
             });
             assert_eq!(late.await.unwrap_err().status(), 503);
-            // The thread is still busy: one request may wait, in vain, but not a second one.
-            let (waiting, refused) = (work.run(None, || Ok(())), async {
-                tokio::time::sleep(Duration::from_millis(50)).await;
-                work.run(None, || Ok(())).await
-            });
-            let (waiting, refused) = futures_util::future::join(waiting, refused).await;
-            assert_eq!((waiting.unwrap_err().status(), refused.unwrap_err().status()), (503, 503));
+            // The thread is still busy: a request that waits gets no turn.
+            assert_eq!(work.run(0, None, |_| Ok(())).await.unwrap_err().status(), 503);
             finish.send(()).unwrap();
-            let ends = async {
-                while work.run(None, || Ok(())).await.is_err() {
-                    tokio::time::sleep(Duration::from_millis(10)).await;
-                }
-            };
-            tokio::time::timeout(Duration::from_secs(20), ends).await.unwrap();
+            until_done(&work, 0).await;
+        });
+    }
+
+    #[test]
+    fn a_job_whose_client_has_gone_is_cancelled() {
+        let work = Work::new(&ServeOptions { jobs: 1, queue: 0, ..ServeOptions::default() });
+        runtime().block_on(async {
+            let gone = work.run(0, None, obedient);
+            assert!(tokio::time::timeout(Duration::from_millis(50), gone).await.is_err());
+            until_done(&work, 0).await;
+        });
+    }
+
+    #[test]
+    fn long_jobs_leave_a_place_to_short_ones() {
+        let work = Arc::new(Work::new(&ServeOptions { jobs: 2, ..ServeOptions::default() }));
+        runtime().block_on(async {
+            let long: Vec<_> = (0..2)
+                .map(|_| {
+                    let work = work.clone();
+                    tokio::spawn(async move { work.run(LONG, None, obedient).await })
+                })
+                .collect();
+            tokio::time::sleep(Duration::from_millis(50)).await;
+            for _ in 0..10 {
+                work.run(1000, None, |_| Ok(())).await.unwrap();
+            }
+            long.iter().for_each(tokio::task::JoinHandle::abort);
+            until_done(&work, LONG).await;
         });
     }
 
@@ -110,21 +199,22 @@ mod tests {
         let work = Work::new(&ServeOptions { jobs: 1, queue: 0, ..ServeOptions::default() });
         runtime().block_on(async {
             for _ in 0..3 {
-                let fault = work.run::<()>(None, || panic!("for the test")).await.unwrap_err();
+                let fault = work.run::<()>(0, None, |_| panic!("for the test")).await.unwrap_err();
                 assert_eq!(fault.status(), 500);
             }
-            assert_eq!(work.run(None, || Ok(7)).await.unwrap(), 7);
+            assert_eq!(work.run(0, None, |_| Ok(7)).await.unwrap(), 7);
         });
     }
 
     #[test]
     fn uploads_are_counted_until_they_are_measured() {
-        let work = Work::new(&ServeOptions { max_uploads: 1, ..ServeOptions::default() });
+        let work = Work::new(&ServeOptions::default());
+        let (places, pace) = (Places::new(1), Arc::new(Pace::new(1000)));
         runtime().block_on(async {
-            let permit = work.upload().unwrap();
-            assert_eq!(work.upload().err().unwrap().status(), 503);
-            work.run(Some(permit), || Ok(())).await.unwrap();
-            drop(work.upload().unwrap());
+            let place = places.try_enter(&pace).unwrap();
+            assert!(places.try_enter(&pace).is_none());
+            work.run(0, Some(place), |_| Ok(())).await.unwrap();
+            drop(places.try_enter(&pace).unwrap());
         });
     }
 }

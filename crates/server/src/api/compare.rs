@@ -3,7 +3,6 @@
 use std::sync::Arc;
 
 use axum::extract::State;
-use axum::http::StatusCode;
 use canonform::descriptors::{CanonicalForm, PreparedShape, ShapeMetric, ShapePair};
 use canonform::{Comparison, Error, Overlay, Residual, SurfaceComparison, Triangulation, compare_surfaces};
 use serde::{Deserialize, Serialize};
@@ -12,8 +11,10 @@ use view::interactive::Geometry;
 use super::answer::{Params, Written};
 use super::shapes::is_missing;
 use crate::app::{App, Query};
+use crate::collection::Collection;
 use crate::error::ApiError;
 use crate::measured::{Measured, overlaid};
+use crate::work::Limits;
 
 /// The two shapes: `query` or `a`, and `b`.
 #[derive(Deserialize)]
@@ -43,15 +44,15 @@ struct Answer {
 
 /// One of the two shapes.
 enum Side {
-    Query(Arc<Query>),
+    Query(Arc<Query>, Box<PreparedShape>),
     /// Not measured if the mesh is missing.
     Shape(Box<PreparedShape>, Option<Arc<Measured>>),
 }
 
 impl Side {
-    fn of_shape(app: &App, id: &str) -> Result<Self, Error> {
-        let shape = Box::new(app.search.prepared(id)?);
-        match app.indexed(id) {
+    fn of_shape(app: &App, collection: &Collection, id: &str, limits: &Limits) -> Result<Self, Error> {
+        let shape = Box::new(collection.search.prepared(id)?);
+        match app.indexed(collection, id, limits) {
             Err(fault) if !is_missing(&fault) => Err(fault),
             measured => Ok(Self::Shape(shape, measured.ok())),
         }
@@ -59,14 +60,13 @@ impl Side {
 
     fn shape(&self) -> &PreparedShape {
         match self {
-            Self::Query(query) => &query.shape,
-            Self::Shape(shape, _) => shape,
+            Self::Query(_, shape) | Self::Shape(shape, _) => shape,
         }
     }
 
     fn measured(&self) -> Option<&Measured> {
         match self {
-            Self::Query(query) => Some(&query.measured),
+            Self::Query(query, _) => Some(&query.measured),
             Self::Shape(_, measured) => measured.as_deref(),
         }
     }
@@ -80,23 +80,33 @@ pub(super) async fn compare(
     State(app): State<Arc<App>>,
     Params(params): Params<CompareParams>,
 ) -> Result<Written, ApiError> {
-    let shared = app.clone();
-    app.work.run(None, move || Written::new(&answer(&shared, params)?)).await
+    let (shared, collection) = (app.clone(), app.served.collection());
+    let ids = params.a.iter().chain([&params.b]);
+    let cost = ids.map(|id| app.cost(&collection, id)).fold(0, usize::saturating_add);
+    let job = move |limits: &Limits| Written::new(&answer(&shared, &collection, params, limits)?);
+    app.work.run(cost, None, job).await
 }
 
-fn answer(app: &App, params: CompareParams) -> Result<Answer, ApiError> {
+fn answer(
+    app: &App,
+    collection: &Collection,
+    params: CompareParams,
+    limits: &Limits,
+) -> Result<Answer, ApiError> {
     let (name, a) = match (params.query, params.a) {
         (Some(query), None) => {
-            let query = app.queries.get(&query).ok_or_else(expired)?;
-            (query.name.clone(), Side::Query(query))
+            let query = app.query(collection, &query)?;
+            let shape = Box::new(query.description.prepare()?);
+            (query.name.clone(), Side::Query(query, shape))
         }
         (None, Some(id)) => {
-            let side = Side::of_shape(app, &id)?;
+            let side = Side::of_shape(app, collection, &id, limits)?;
             (id, side)
         }
         _ => return Err(ApiError::bad_request("give either an upload with `query` or a shape with `a`")),
     };
-    let b = Side::of_shape(app, &params.b)?;
+    let b = Side::of_shape(app, collection, &params.b, limits)?;
+    limits.check().map_err(ApiError::exceeded)?;
     let pair = ShapePair::new(ShapeMetric::default(), [a.shape(), b.shape()]);
     let (comparison, triangulation, overlay) = match (a.measured(), b.measured()) {
         (Some(a), Some(b)) => {
@@ -116,8 +126,4 @@ fn answer(app: &App, params: CompareParams) -> Result<Answer, ApiError> {
         residual: overlay.residual(),
         forms: [overlaid(&overlay, 0, a.measured(), dot), overlaid(&overlay, 1, b.measured(), dot)],
     })
-}
-
-fn expired() -> ApiError {
-    ApiError::new(StatusCode::GONE, "this query has expired").with_remedy("upload the mesh again")
 }

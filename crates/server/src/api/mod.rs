@@ -2,6 +2,7 @@
 
 mod answer;
 mod compare;
+mod csv;
 mod search;
 mod shapes;
 
@@ -15,6 +16,7 @@ use serde::Serialize;
 
 use self::answer::Written;
 use crate::app::App;
+use crate::collection::FileState;
 use crate::error::ApiError;
 use crate::formats::filled_in;
 
@@ -28,6 +30,7 @@ type Route = (&'static str, &'static str, MethodRouter<Arc<App>>);
 
 fn routes() -> Vec<Route> {
     vec![
+        ("get", "/api/search", get(search::search_again)),
         ("post", "/api/search", post(search::search)),
         ("get", "/api/shapes", get(shapes::list)),
         ("get", "/api/shapes/{id}/mesh", get(shapes::mesh)),
@@ -46,7 +49,7 @@ pub(crate) fn router() -> Router<Arc<App>> {
 }
 
 async fn openapi() -> Written {
-    Written(OPENAPI.clone().into_bytes())
+    Written::json(&OPENAPI)
 }
 
 async fn not_found() -> ApiError {
@@ -65,15 +68,26 @@ struct Health {
     status: &'static str,
     version: &'static str,
     shapes: usize,
+    index: IndexHealth,
     max_upload: usize,
     max_vertices: u64,
 }
 
+#[derive(Serialize)]
+struct IndexHealth {
+    /// Changes with the content of the index in service.
+    version: String,
+    /// Whether that is the content of its file.
+    state: FileState,
+}
+
 async fn health(State(app): State<Arc<App>>) -> Json<Health> {
+    let collection = app.served.collection();
     Json(Health {
         status: "ok",
         version: env!("CARGO_PKG_VERSION"),
-        shapes: app.shapes.len(),
+        shapes: collection.shapes.len(),
+        index: IndexHealth { version: collection.version.clone(), state: app.served.state() },
         max_upload: app.options.max_upload,
         max_vertices: app.options.max_vertices,
     })

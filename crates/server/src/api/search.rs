@@ -5,6 +5,7 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use axum::extract::{Request, State};
+use canonform::index::SearchMode;
 use canonform::{
     Error, Explain, SearchOptions, SearchReport, SearchSeconds, ShapeDescription, Surface, embed,
 };
@@ -14,11 +15,15 @@ use serde::{Deserialize, Serialize};
 use view::interactive::Geometry;
 
 use super::answer::{Params, Written};
+use super::csv;
 use super::shapes::{is_missing, points};
 use crate::app::{App, Query};
+use crate::collection::Collection;
+use crate::connection::pace_of;
 use crate::error::ApiError;
 use crate::measured::Measured;
-use crate::upload::{Upload, drain, receive};
+use crate::upload::{Upload, announced, drain, receive};
+use crate::work::Limits;
 
 /// Maximum number of results.
 const MOST_FOUND: usize = 100;
@@ -28,8 +33,29 @@ const MOST_FOUND: usize = 100;
 pub(super) struct SearchParams {
     /// A shape of the index to search with, instead of an upload.
     shape: Option<String>,
+    /// The `query_id` of an earlier upload, instead of an upload.
+    query: Option<String>,
     k: Option<usize>,
+    exact: Option<bool>,
     explain: Option<bool>,
+    geometry: Option<bool>,
+    format: Option<Format>,
+}
+
+/// How results are written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+enum Format {
+    Json,
+    Csv,
+}
+
+/// What to answer.
+struct Wanted {
+    options: SearchOptions,
+    /// Whether the response contains the surfaces.
+    geometry: bool,
+    format: Format,
 }
 
 impl SearchParams {
@@ -38,25 +64,39 @@ impl SearchParams {
         for (name, text) in &upload.fields {
             let wrong =
                 |expected: &str| ApiError::bad_request(format!("{name} is `{text}`; expected {expected}"));
+            let choice = || text.parse().map_err(|_| wrong("true or false"));
             match name.as_str() {
                 "k" => self.k = Some(text.parse().map_err(|_| wrong("a number"))?),
-                "explain" => self.explain = Some(text.parse().map_err(|_| wrong("true or false"))?),
+                "exact" => self.exact = Some(choice()?),
+                "explain" => self.explain = Some(choice()?),
+                "geometry" => self.geometry = Some(choice()?),
+                "format" => {
+                    self.format = Some(match text.as_str() {
+                        "json" => Format::Json,
+                        "csv" => Format::Csv,
+                        _ => return Err(wrong("json or csv")),
+                    });
+                }
                 _ => {
                     let error = format!("the form has an unknown field `{name}`");
-                    return Err(ApiError::bad_request(error).with_remedy("send files, `k` and `explain`"));
+                    let remedy = "send files, `k`, `exact`, `explain`, `geometry` and `format`";
+                    return Err(ApiError::bad_request(error).with_remedy(remedy));
                 }
             }
         }
         Ok(self)
     }
 
-    fn options(&self) -> Result<SearchOptions, ApiError> {
+    fn wanted(&self) -> Result<Wanted, ApiError> {
         let k = self.k.unwrap_or(SearchOptions::default().k);
         if !(1..=MOST_FOUND).contains(&k) {
             return Err(ApiError::bad_request(format!("k is {k}; use 1 to {MOST_FOUND}")));
         }
         let explain = if self.explain == Some(true) { Explain::Kind } else { Explain::No };
-        Ok(SearchOptions { k, explain, ..SearchOptions::default() })
+        let mode = if self.exact == Some(true) { SearchMode::Exact } else { SearchMode::Auto };
+        let format = self.format.unwrap_or(Format::Json);
+        let geometry = format == Format::Json && self.geometry != Some(false);
+        Ok(Wanted { options: SearchOptions { k, explain, mode }, geometry, format })
     }
 }
 
@@ -67,7 +107,7 @@ struct Answer {
     query: String,
     #[serde(flatten)]
     report: SearchReport,
-    /// Identifies this upload for later comparisons; none for a shape of the index.
+    /// Identifies this upload for later searches and comparisons; none for a shape of the index.
     query_id: Option<String>,
     /// None if the mesh of a shape of the index is missing.
     repair: Option<RepairReport>,
@@ -76,92 +116,161 @@ struct Answer {
     mesh: Option<Geometry>,
     /// Why there is no mesh.
     mesh_missing: Option<String>,
-    form: Geometry,
+    form: Option<Geometry>,
 }
 
 impl Answer {
-    fn new(query: String, report: SearchReport, measured: &Measured) -> Self {
-        let repair = measured.surface.repaired.report.clone();
+    /// Without geometry and repair. Paths are shown as clients may see them.
+    fn new(collection: &Collection, query: String, mut report: SearchReport) -> Self {
+        report.results.iter_mut().for_each(|result| result.path = collection.public_path(&result.path));
         Self {
             query,
-            report,
-            query_id: None,
-            repaired: repair.summary(),
-            repair: Some(repair),
-            mesh: Some(measured.mesh()),
-            mesh_missing: None,
-            form: measured.form(),
-        }
-    }
-}
-
-/// Searches with an upload, or with a shape of the index.
-pub(super) async fn search(
-    State(app): State<Arc<App>>,
-    Params(params): Params<SearchParams>,
-    request: Request,
-) -> Result<Written, ApiError> {
-    let shared = app.clone();
-    if let Some(id) = params.shape.clone() {
-        let options = params.options()?;
-        return app.work.run(None, move || Written::new(&with_shape(&shared, id, &options)?)).await;
-    }
-    let permit = match app.work.upload() {
-        Ok(permit) => permit,
-        Err(busy) => {
-            drain(request);
-            return Err(busy);
-        }
-    };
-    let upload = receive(request, &app.options).await?;
-    let options = params.with_fields(&upload)?.options()?;
-    let answer = move || Written::new(&with_upload(&shared, upload, &options)?);
-    app.work.run(Some(permit), answer).await
-}
-
-fn with_shape(app: &App, id: String, options: &SearchOptions) -> Result<Answer, ApiError> {
-    let report = app.search.search_shape(&id, options)?;
-    match app.indexed(&id) {
-        Ok(measured) => Ok(Answer::new(id, report, &measured)),
-        Err(fault) if is_missing(&fault) => Ok(Answer {
-            form: points(app, &id)?,
-            query: id,
             report,
             query_id: None,
             repair: None,
             repaired: Vec::new(),
             mesh: None,
-            mesh_missing: Some(fault.to_string()),
-        }),
+            mesh_missing: None,
+            form: None,
+        }
+    }
+
+    fn with_measured(self, measured: &Measured, geometry: bool) -> Self {
+        let repair = measured.surface.repaired.report.clone();
+        Self {
+            repaired: repair.summary(),
+            repair: Some(repair),
+            mesh: geometry.then(|| measured.mesh()),
+            form: geometry.then(|| measured.form()),
+            ..self
+        }
+    }
+
+    fn written(&self, wanted: &Wanted) -> Result<Written, ApiError> {
+        match wanted.format {
+            Format::Json => Written::new(self),
+            Format::Csv => Ok(Written::csv(csv::of(&self.query, &self.report))),
+        }
+    }
+}
+
+/// Searches with an upload, or with a shape of the index or an earlier upload.
+pub(super) async fn search(
+    State(app): State<Arc<App>>,
+    Params(params): Params<SearchParams>,
+    request: Request,
+) -> Result<Written, ApiError> {
+    if params.shape.is_some() || params.query.is_some() {
+        return again(app, params).await;
+    }
+    if let Err(busy) = app.work.expect(announced(&request)) {
+        drain(request);
+        return Err(busy);
+    }
+    let pace = pace_of(&request).ok_or_else(ApiError::internal)?;
+    let Some(place) = app.uploads.try_enter(&pace) else {
+        drain(request);
+        return Err(ApiError::busy(crate::work::RETRY_AFTER));
+    };
+    let upload = receive(request, &place, &pace, &app.options).await?;
+    let wanted = params.with_fields(&upload)?.wanted()?;
+    let (shared, bytes) = (app.clone(), upload.bytes());
+    let answer = move |limits: &Limits| with_upload(&shared, upload, &wanted, limits)?.written(&wanted);
+    app.work.run(bytes, Some(place), answer).await
+}
+
+/// Searches with a shape of the index or an earlier upload.
+pub(super) async fn search_again(
+    State(app): State<Arc<App>>,
+    Params(params): Params<SearchParams>,
+) -> Result<Written, ApiError> {
+    again(app, params).await
+}
+
+async fn again(app: Arc<App>, params: SearchParams) -> Result<Written, ApiError> {
+    let wanted = params.wanted()?;
+    let (shared, collection) = (app.clone(), app.served.collection());
+    match (params.shape, params.query) {
+        (Some(id), None) => {
+            let cost = if wanted.geometry { app.cost(&collection, &id) } else { 0 };
+            let answer = move |limits: &Limits| {
+                with_shape(&shared, &collection, id, &wanted, limits)?.written(&wanted)
+            };
+            app.work.run(cost, None, answer).await
+        }
+        (None, Some(address)) => {
+            let query = app.query(&collection, &address)?;
+            let answer = move |_: &Limits| {
+                let report = collection.search.search_described(&query.description, &wanted.options)?;
+                let answer = Answer::new(&collection, query.name.clone(), report);
+                let answer = answer.with_measured(&query.measured, wanted.geometry);
+                Answer { query_id: Some(address), ..answer }.written(&wanted)
+            };
+            app.work.run(0, None, answer).await
+        }
+        _ => Err(ApiError::bad_request("give either a shape with `shape` or an upload with `query`")),
+    }
+}
+
+fn with_shape(
+    app: &App,
+    collection: &Collection,
+    id: String,
+    wanted: &Wanted,
+    limits: &Limits,
+) -> Result<Answer, ApiError> {
+    let report = collection.search.search_shape(&id, &wanted.options)?;
+    let answer = Answer::new(collection, id.clone(), report);
+    if !wanted.geometry {
+        return Ok(answer);
+    }
+    match app.indexed(collection, &id, limits) {
+        Ok(measured) => Ok(answer.with_measured(&measured, true)),
+        Err(fault) if is_missing(&fault) => {
+            let form = Some(points(collection, &id)?);
+            Ok(Answer { form, mesh_missing: Some(ApiError::from(fault).text().to_owned()), ..answer })
+        }
         Err(fault) => Err(fault.into()),
     }
 }
 
-fn with_upload(app: &App, upload: Upload, options: &SearchOptions) -> Result<Answer, ApiError> {
+fn with_upload(app: &App, upload: Upload, wanted: &Wanted, limits: &Limits) -> Result<Answer, ApiError> {
     let Some(name) = upload.files.first().map(|(name, _)| name.clone()) else {
         let remedy = format!("send one mesh, {}; or name a shape of the index with ?shape=", mesh_files());
         return Err(ApiError::bad_request("the request has no file").with_remedy(remedy));
     };
-    let (query, report) = measure(app, upload, options).map_err(|fault| ApiError::of_upload(&name, fault))?;
-    let answer = Answer::new(query.name.clone(), report, &query.measured);
-    Ok(Answer { query_id: Some(app.keep(query)?), ..answer })
+    let start = Instant::now();
+    let collection = app.served.collection();
+    let address = App::address(&upload.files);
+    let query = match app.kept(&collection, &address) {
+        Some(known) => known,
+        None => {
+            let query = measure(app, &collection, upload, limits);
+            let query = Arc::new(query.map_err(|fault| ApiError::of_upload(&name, fault))?);
+            app.keep(address.clone(), query.clone());
+            query
+        }
+    };
+    let describe = start.elapsed().as_secs_f64();
+    limits.check().map_err(ApiError::exceeded)?;
+    let report = collection.search.search_described(&query.description, &wanted.options)?;
+    let seconds = SearchSeconds { describe, ..report.seconds };
+    let answer = Answer::new(&collection, query.name.clone(), SearchReport { seconds, ..report });
+    Ok(Answer { query_id: Some(address), ..answer.with_measured(&query.measured, wanted.geometry) })
 }
 
-fn measure(app: &App, upload: Upload, options: &SearchOptions) -> Result<(Query, SearchReport), Error> {
-    let start = Instant::now();
+fn measure(app: &App, collection: &Collection, upload: Upload, limits: &Limits) -> Result<Query, Error> {
     let files: Vec<MemoryFile<'_>> =
         upload.files.iter().map(|(name, bytes)| MemoryFile { name: Path::new(name), bytes }).collect();
     let name = files.first().map(|file| file.name.display().to_string()).unwrap_or_default();
     let mesh = read_memory(&files, &ReadLimits::of_vertices(app.options.max_vertices))?;
     drop(upload);
-    let describe = app.search.describe_options();
+    limits.check()?;
+    let describe = collection.search.describe_options();
     let surface = Surface::new(&mesh, &describe.form.repair)?;
-    let embedded = embed(&surface, &describe.form, &())?;
+    limits.check()?;
+    let embedded = embed(&surface, &describe.form, limits)?;
+    limits.check()?;
     let description = ShapeDescription::new(&surface, &embedded, describe)?;
-    let described = start.elapsed().as_secs_f64();
-    let report = app.search.search_described(&description, options)?;
-    let seconds = SearchSeconds { describe: described, ..report.seconds };
-    let shape = description.prepare()?;
-    let query = Query { name, measured: Measured::new(surface, &embedded)?, shape };
-    Ok((query, SearchReport { seconds, ..report }))
+    Ok(Query::new(name, Measured::new(surface, &embedded)?, description))
 }

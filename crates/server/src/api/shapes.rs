@@ -13,9 +13,11 @@ use view::interactive::Geometry;
 use view::render::{Background, RenderOptions, View, render};
 
 use super::answer::{Id, Params, Written, is_known, tag, tagged};
-use crate::app::{App, ShapeSummary};
+use crate::app::App;
+use crate::collection::{Collection, ShapeSummary};
 use crate::error::ApiError;
 use crate::measured::dots;
+use crate::work::Limits;
 
 /// Maximum number of shapes on one page of the list.
 const MOST_LISTED: usize = 500;
@@ -38,6 +40,8 @@ pub(super) struct ListParams {
     #[serde(default)]
     q: String,
     label: Option<String>,
+    /// Instead of a page: this many shapes, of as many classes as possible.
+    sample: Option<usize>,
 }
 
 fn usual_limit() -> usize {
@@ -59,13 +63,21 @@ pub(super) async fn list(
         let error = format!("limit is {}; use 1 to {MOST_LISTED}", params.limit);
         return Err(ApiError::bad_request(error));
     }
+    let collection = app.served.collection();
+    if let Some(n) = params.sample {
+        if !(1..=MOST_LISTED).contains(&n) {
+            return Err(ApiError::bad_request(format!("sample is {n}; use 1 to {MOST_LISTED}")));
+        }
+        let (total, shapes) = (collection.shapes.len(), collection.sample(n));
+        return Written::new(&List { total, offset: 0, shapes });
+    }
     let part = params.q.to_lowercase();
     let is_meant = |shape: &&ShapeSummary| {
         params.label.as_ref().is_none_or(|label| *label == shape.label)
             && (shape.id.to_lowercase().contains(&part) || shape.label.to_lowercase().contains(&part))
     };
     let (mut total, mut shapes) = (0, Vec::new());
-    for shape in app.shapes.iter().filter(is_meant) {
+    for shape in collection.shapes.iter().filter(is_meant) {
         if total >= params.offset && shapes.len() < params.limit {
             shapes.push(shape);
         }
@@ -76,24 +88,27 @@ pub(super) async fn list(
 
 /// The repaired mesh of a shape.
 pub(super) async fn mesh(State(app): State<Arc<App>>, Id(id): Id) -> Result<Written, ApiError> {
-    let shared = app.clone();
-    app.work.run(None, move || Written::new(&shared.indexed(&id)?.mesh())).await
+    let (shared, collection) = (app.clone(), app.served.collection());
+    let cost = app.cost(&collection, &id);
+    let mesh = move |limits: &Limits| Written::new(&shared.indexed(&collection, &id, limits)?.mesh());
+    app.work.run(cost, None, mesh).await
 }
 
 /// The form of a shape: a surface, or the points stored in the index if its mesh is missing.
 pub(super) async fn form(State(app): State<Arc<App>>, Id(id): Id) -> Result<Written, ApiError> {
-    let shared = app.clone();
-    let form = move || match shared.indexed(&id) {
+    let (shared, collection) = (app.clone(), app.served.collection());
+    let cost = app.cost(&collection, &id);
+    let form = move |limits: &Limits| match shared.indexed(&collection, &id, limits) {
         Ok(measured) => Written::new(&measured.form()),
-        Err(fault) if is_missing(&fault) => Written::new(&points(&shared, &id)?),
+        Err(fault) if is_missing(&fault) => Written::new(&points(&collection, &id)?),
         Err(fault) => Err(fault.into()),
     };
-    app.work.run(None, form).await
+    app.work.run(cost, None, form).await
 }
 
 /// The points of the form in the index, as dots.
-pub(super) fn points(app: &App, id: &str) -> Result<Geometry, Error> {
-    Ok(Geometry::new(&dots(app.search.prepared(id)?.form())))
+pub(super) fn points(collection: &Collection, id: &str) -> Result<Geometry, Error> {
+    Ok(Geometry::new(&dots(collection.search.prepared(id)?.form())))
 }
 
 /// Whether the mesh of a shape is missing or has changed.
@@ -108,31 +123,33 @@ pub(super) async fn thumbnail(
     headers: HeaderMap,
 ) -> Result<Response, ApiError> {
     const PNG: &str = "image/png";
-    let shared = app.clone();
-    let drawing = move || {
-        let tag =
-            tag(&format!("{}-{DRAWING}", shared.search.index().entry(&id).map_err(Error::from)?.content));
+    let (shared, collection) = (app.clone(), app.served.collection());
+    // A known picture needs no job. Shapes that do not exist get their error from the job.
+    let content = collection.shape(&id).map(|shape| shape.content.to_string()).unwrap_or_default();
+    let tag = tag(&format!("{content}-{DRAWING}"));
+    if !content.is_empty() {
         if is_known(&headers, &tag) {
             return Ok(tagged(tag, PNG, None));
         }
-        if let Some(picture) = shared.thumbnails.get(&id) {
+        if let Some(picture) = app.thumbnails.get(&content) {
             return Ok(tagged(tag, PNG, Some(picture)));
         }
-        match shared.search.mesh(&id) {
-            Ok(mesh) => {
-                let picture = draw(&mesh, View::default())?;
-                shared.thumbnails.put(id, picture.clone(), picture.len());
-                Ok(tagged(tag, PNG, Some(picture)))
-            }
-            // Under another tag, and not cached: the mesh may come back.
-            Err(fault) if is_missing(&fault) => {
-                let picture = draw(&dots(shared.search.prepared(&id)?.form()), View::Principal)?;
-                Ok(tagged(super::answer::tag("points"), PNG, Some(picture)))
-            }
-            Err(fault) => Err(fault.into()),
+    }
+    let drawing = move |limits: &Limits| match collection.search.mesh(&id) {
+        Ok(mesh) => {
+            limits.check().map_err(ApiError::exceeded)?;
+            let picture = draw(&mesh, View::default())?;
+            shared.thumbnails.put(content, picture.clone(), picture.len());
+            Ok(tagged(tag, PNG, Some(picture)))
         }
+        // Under another tag, and not cached: the mesh may come back.
+        Err(fault) if is_missing(&fault) => {
+            let picture = draw(&dots(collection.search.prepared(&id)?.form()), View::Principal)?;
+            Ok(tagged(super::answer::tag("points"), PNG, Some(picture)))
+        }
+        Err(fault) => Err(fault.into()),
     };
-    app.work.run(None, drawing).await
+    app.work.run(0, None, drawing).await
 }
 
 fn draw(mesh: &TriMesh, view: View) -> Result<Bytes, ApiError> {

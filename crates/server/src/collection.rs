@@ -1,0 +1,196 @@
+//! The index that is served, reopened when its file changes.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, PoisonError, RwLock};
+use std::time::SystemTime;
+
+use canonform::index::ContentHash;
+use canonform::{Error, ShapeSearch};
+use serde::Serialize;
+
+/// An open index and the list of its shapes. Requests that began with it finish with it.
+pub(crate) struct Collection {
+    pub(crate) search: ShapeSearch,
+    /// All shapes, by ascending name.
+    pub(crate) shapes: Vec<ShapeSummary>,
+    /// Places in `shapes`, by class.
+    classes: Vec<Vec<usize>>,
+    /// Changes with the content of the index.
+    pub(crate) version: String,
+    /// The folder of the index, absolute, and the same with links resolved.
+    folders: Vec<PathBuf>,
+}
+
+/// A shape in a list.
+#[derive(Debug, Clone, Serialize)]
+pub(crate) struct ShapeSummary {
+    pub(crate) id: String,
+    pub(crate) label: String,
+    pub(crate) vertices: Option<u64>,
+    faces: Option<u64>,
+    /// In squared mesh units.
+    area: Option<f64>,
+    /// The largest surface distance from a sample, in mesh units.
+    diameter: Option<f64>,
+    #[serde(skip)]
+    pub(crate) content: ContentHash,
+}
+
+impl Collection {
+    fn open(path: &Path) -> Result<Self, Error> {
+        let search = ShapeSearch::open(path)?;
+        let shapes = search.index().entries()?.into_iter().map(|(id, entry)| {
+            let count = |name| entry.fact(name).map(|count| count as u64);
+            ShapeSummary {
+                vertices: count("vertices"),
+                faces: count("faces"),
+                area: entry.fact("area"),
+                diameter: entry.fact("diameter"),
+                id,
+                content: entry.content,
+                label: entry.label,
+            }
+        });
+        let shapes: Vec<ShapeSummary> = shapes.collect();
+        let mut classes: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
+        for (place, shape) in shapes.iter().enumerate() {
+            classes.entry(&shape.label).or_default().push(place);
+        }
+        let classes = classes.into_values().collect();
+        let version = format!("{:016x}", search.index().fingerprint());
+        let absolute = std::path::absolute(path).ok();
+        let folders = [absolute, path.canonicalize().ok()];
+        let folders = folders.into_iter().flatten().filter_map(|file| Some(file.parent()?.to_owned()));
+        Ok(Self { folders: folders.collect(), search, shapes, classes, version })
+    }
+
+    /// A shape by its name.
+    pub(crate) fn shape(&self, id: &str) -> Option<&ShapeSummary> {
+        let place = self.shapes.binary_search_by(|shape| shape.id.as_str().cmp(id)).ok()?;
+        self.shapes.get(place)
+    }
+
+    /// Up to `n` shapes of as many classes as possible.
+    pub(crate) fn sample(&self, n: usize) -> Vec<&ShapeSummary> {
+        let n_classes = self.classes.len();
+        let places: Vec<usize> = if n_classes > n {
+            (0..n).map(|i| self.classes[i * n_classes / n][0]).collect()
+        } else {
+            let longest = self.classes.iter().map(Vec::len).max().unwrap_or(0);
+            let rounds = (0..longest).flat_map(|i| self.classes.iter().filter_map(move |class| class.get(i)));
+            let mut places: Vec<usize> = rounds.take(n).copied().collect();
+            places.sort_unstable();
+            places
+        };
+        places.into_iter().map(|place| &self.shapes[place]).collect()
+    }
+
+    /// A path as clients may see it: relative to the folder of the index, or only the name of the file. Where the index
+    /// lies on this machine is nobody's business.
+    pub(crate) fn public_path(&self, path: &str) -> String {
+        let given = Path::new(path);
+        let absolute = std::path::absolute(given).unwrap_or_else(|_| given.to_owned());
+        let relative = self.folders.iter().find_map(|folder| absolute.strip_prefix(folder).ok());
+        match relative {
+            Some(relative) => relative.display().to_string(),
+            None if given.is_relative() => path.to_owned(),
+            None => given.file_name().unwrap_or_default().to_string_lossy().into_owned(),
+        }
+    }
+}
+
+/// Whether the file of the index is the one that is open.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub(crate) enum FileState {
+    /// It is.
+    Current,
+    /// There is no file; searches go on in the one that was opened.
+    Missing,
+    /// The file has changed and cannot be opened; searches go on in the old one.
+    Unreadable,
+}
+
+/// The index in service.
+pub(crate) struct Served {
+    path: PathBuf,
+    now: RwLock<Now>,
+}
+
+struct Now {
+    collection: Arc<Collection>,
+    /// The file that was opened or tried last.
+    seen: Option<Identity>,
+    state: FileState,
+}
+
+/// Differs when a file was replaced or written to.
+#[derive(Debug, Clone, PartialEq, Eq)]
+struct Identity {
+    file: Option<(u64, u64)>,
+    length: u64,
+    modified: Option<SystemTime>,
+}
+
+impl Identity {
+    fn of(path: &Path) -> Option<Self> {
+        let about = std::fs::metadata(path).ok()?;
+        #[cfg(unix)]
+        let file = {
+            use std::os::unix::fs::MetadataExt;
+            Some((about.dev(), about.ino()))
+        };
+        #[cfg(not(unix))]
+        let file = None;
+        Some(Self { file, length: about.len(), modified: about.modified().ok() })
+    }
+}
+
+impl Served {
+    pub(crate) fn open(path: &Path) -> Result<Self, Error> {
+        // Taken first: a file that is replaced in between is opened again.
+        let seen = Identity::of(path);
+        let collection = Arc::new(Collection::open(path)?);
+        let now = Now { collection, seen, state: FileState::Current };
+        Ok(Self { path: path.to_owned(), now: RwLock::new(now) })
+    }
+
+    /// The index for a request.
+    pub(crate) fn collection(&self) -> Arc<Collection> {
+        self.read(|now| now.collection.clone())
+    }
+
+    pub(crate) fn state(&self) -> FileState {
+        self.read(|now| now.state)
+    }
+
+    /// Opens the file if it has changed. An error leaves the old index in service and is printed once.
+    pub(crate) fn refresh(&self) {
+        let found = Identity::of(&self.path);
+        if self.read(|now| now.seen == found) {
+            return;
+        }
+        let opened = found.as_ref().map(|_| Collection::open(&self.path));
+        let mut now = self.now.write().unwrap_or_else(PoisonError::into_inner);
+        now.seen = found;
+        now.state = match opened {
+            None => FileState::Missing,
+            Some(Ok(collection)) => {
+                let collection = Arc::new(collection);
+                eprintln!("the index has changed: {} shapes", collection.shapes.len());
+                now.collection = collection;
+                FileState::Current
+            }
+            Some(Err(error)) => {
+                eprintln!("the index has changed and cannot be opened; the old one is used: {error}");
+                FileState::Unreadable
+            }
+        };
+    }
+
+    /// A poisoned lock is harmless: the state changes as a whole.
+    fn read<T>(&self, get: impl FnOnce(&Now) -> T) -> T {
+        get(&self.now.read().unwrap_or_else(PoisonError::into_inner))
+    }
+}
