@@ -6,7 +6,7 @@ use std::sync::Arc;
 use axum::body::Bytes;
 use axum::http::StatusCode;
 use canonform::index::ContentHash;
-use canonform::{Error, ShapeDescription, Surface, embed};
+use canonform::{Budget, Error, ShapeDescription, Surface, embed};
 
 use crate::cache::Cache;
 use crate::collection::{Collection, Served};
@@ -15,7 +15,7 @@ use crate::load::VERTEX_BYTES;
 use crate::measured::Measured;
 use crate::options::ServeOptions;
 use crate::places::Places;
-use crate::work::{Limits, Work};
+use crate::work::Work;
 
 /// The index, the caches and the queue.
 pub(crate) struct App {
@@ -62,7 +62,7 @@ impl App {
         &self,
         collection: &Collection,
         id: &str,
-        limits: &Limits,
+        budget: &Budget,
     ) -> Result<Arc<Measured>, Error> {
         let index = collection.search.index();
         let key = measured_key(&index.entry(id)?.content, index.options());
@@ -71,10 +71,10 @@ impl App {
         }
         let options = &collection.search.describe_options().form;
         let mesh = collection.search.mesh(id)?;
-        limits.check()?;
+        budget.check()?;
         let surface = Surface::new(&mesh, &options.repair)?;
-        limits.check()?;
-        let embedded = embed(&surface, options, limits)?;
+        budget.check()?;
+        let embedded = embed(&surface, options, budget)?;
         let measured = Arc::new(Measured::new(surface, &embedded)?);
         self.measured.put(key, measured.clone(), measured.bytes());
         Ok(measured)

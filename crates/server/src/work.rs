@@ -4,7 +4,7 @@ use std::num::NonZero;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use canonform::{Budget, Exceeded, Observer};
+use canonform::Budget;
 use tokio::sync::Semaphore;
 
 use crate::error::ApiError;
@@ -23,26 +23,6 @@ pub(crate) struct Work {
     waiting: Arc<Semaphore>,
     load: Arc<Load>,
     time_limit: Duration,
-}
-
-/// The limits of a job, for the computations in it.
-pub(crate) struct Limits(Budget);
-
-impl Limits {
-    /// Whether the job may go on.
-    pub(crate) fn check(&self) -> Result<(), Exceeded> {
-        self.0.check()
-    }
-}
-
-impl Observer for Limits {
-    fn budget(&self) -> Budget {
-        self.0.clone()
-    }
-
-    fn begin(&self, _: &str, _: usize) {}
-
-    fn step(&self) {}
 }
 
 /// Cancels a job when nobody waits for it any more.
@@ -79,7 +59,7 @@ impl Work {
         &self,
         bytes: usize,
         held: Option<Place>,
-        job: impl FnOnce(&Limits) -> Result<T, ApiError> + Send + 'static,
+        job: impl FnOnce(&Budget) -> Result<T, ApiError> + Send + 'static,
     ) -> Result<T, ApiError> {
         let busy = |_| ApiError::busy(RETRY_AFTER);
         let place = self.waiting.clone().try_acquire_owned().map_err(busy)?;
@@ -96,7 +76,7 @@ impl Work {
             let outcome = tokio::task::spawn_blocking(move || {
                 let _held = (place, turn, long, held);
                 let begun = Instant::now();
-                let outcome = job(&Limits(budget));
+                let outcome = job(&budget);
                 accepted.ended(begun);
                 outcome
             });
@@ -124,8 +104,8 @@ mod tests {
     }
 
     /// Waits for the end of its budget.
-    fn obedient(limits: &Limits) -> Result<(), ApiError> {
-        while limits.check().is_ok() {
+    fn obedient(budget: &Budget) -> Result<(), ApiError> {
+        while budget.check().is_ok() {
             std::thread::sleep(Duration::from_millis(1));
         }
         Ok(())
@@ -151,8 +131,8 @@ mod tests {
         let work = Work::new(&options);
         let (finish, finished) = mpsc::channel::<()>();
         runtime().block_on(async {
-            let late = work.run(0, None, move |limits| {
-                obedient(limits)?;
+            let late = work.run(0, None, move |budget| {
+                obedient(budget)?;
                 // It notices, and still takes its time.
                 let _ = finished.recv();
                 Ok(())

@@ -4,7 +4,9 @@ use std::sync::Arc;
 
 use axum::extract::State;
 use canonform::descriptors::{CanonicalForm, PreparedShape, ShapeMetric, ShapePair};
-use canonform::{Comparison, Error, Overlay, Residual, SurfaceComparison, Triangulation, compare_surfaces};
+use canonform::{
+    Budget, Comparison, Error, Overlay, Residual, SurfaceComparison, Triangulation, compare_surfaces,
+};
 use serde::{Deserialize, Serialize};
 use view::interactive::Geometry;
 
@@ -14,7 +16,6 @@ use crate::app::{App, Query};
 use crate::collection::Collection;
 use crate::error::ApiError;
 use crate::measured::{Measured, overlaid};
-use crate::work::Limits;
 
 /// The two shapes: `query` or `a`, and `b`.
 #[derive(Deserialize)]
@@ -50,9 +51,9 @@ enum Side {
 }
 
 impl Side {
-    fn of_shape(app: &App, collection: &Collection, id: &str, limits: &Limits) -> Result<Self, Error> {
+    fn of_shape(app: &App, collection: &Collection, id: &str, budget: &Budget) -> Result<Self, Error> {
         let shape = Box::new(collection.search.prepared(id)?);
-        match app.indexed(collection, id, limits) {
+        match app.indexed(collection, id, budget) {
             Err(fault) if !is_missing(&fault) => Err(fault),
             measured => Ok(Self::Shape(shape, measured.ok())),
         }
@@ -83,7 +84,7 @@ pub(super) async fn compare(
     let (shared, collection) = (app.clone(), app.served.collection());
     let ids = params.a.iter().chain([&params.b]);
     let cost = ids.map(|id| app.cost(&collection, id)).fold(0, usize::saturating_add);
-    let job = move |limits: &Limits| Written::new(&answer(&shared, &collection, params, limits)?);
+    let job = move |budget: &Budget| Written::new(&answer(&shared, &collection, params, budget)?);
     app.work.run(cost, None, job).await
 }
 
@@ -91,7 +92,7 @@ fn answer(
     app: &App,
     collection: &Collection,
     params: CompareParams,
-    limits: &Limits,
+    budget: &Budget,
 ) -> Result<Answer, ApiError> {
     let (name, a) = match (params.query, params.a) {
         (Some(query), None) => {
@@ -100,13 +101,13 @@ fn answer(
             (query.name.clone(), Side::Query(query, shape))
         }
         (None, Some(id)) => {
-            let side = Side::of_shape(app, collection, &id, limits)?;
+            let side = Side::of_shape(app, collection, &id, budget)?;
             (id, side)
         }
         _ => return Err(ApiError::bad_request("give either an upload with `query` or a shape with `a`")),
     };
-    let b = Side::of_shape(app, collection, &params.b, limits)?;
-    limits.check().map_err(ApiError::exceeded)?;
+    let b = Side::of_shape(app, collection, &params.b, budget)?;
+    budget.check().map_err(ApiError::exceeded)?;
     let pair = ShapePair::new(ShapeMetric::default(), [a.shape(), b.shape()]);
     let (comparison, triangulation, overlay) = match (a.measured(), b.measured()) {
         (Some(a), Some(b)) => {

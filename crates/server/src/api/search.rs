@@ -7,7 +7,7 @@ use std::time::Instant;
 use axum::extract::{Request, State};
 use canonform::index::SearchMode;
 use canonform::{
-    Error, Explain, SearchOptions, SearchReport, SearchSeconds, ShapeDescription, Surface, embed,
+    Budget, Error, Explain, SearchOptions, SearchReport, SearchSeconds, ShapeDescription, Surface, embed,
 };
 use mesh::RepairReport;
 use mesh::io::{MemoryFile, ReadLimits, mesh_files, read_memory};
@@ -23,7 +23,6 @@ use crate::connection::pace_of;
 use crate::error::ApiError;
 use crate::measured::Measured;
 use crate::upload::{Upload, announced, drain, receive};
-use crate::work::Limits;
 
 /// Maximum number of results.
 const MOST_FOUND: usize = 100;
@@ -175,7 +174,7 @@ pub(super) async fn search(
     let upload = receive(request, &place, &pace, &app.options).await?;
     let wanted = params.with_fields(&upload)?.wanted()?;
     let (shared, bytes) = (app.clone(), upload.bytes());
-    let answer = move |limits: &Limits| with_upload(&shared, upload, &wanted, limits)?.written(&wanted);
+    let answer = move |budget: &Budget| with_upload(&shared, upload, &wanted, budget)?.written(&wanted);
     app.work.run(bytes, Some(place), answer).await
 }
 
@@ -193,15 +192,16 @@ async fn again(app: Arc<App>, params: SearchParams) -> Result<Written, ApiError>
     match (params.shape, params.query) {
         (Some(id), None) => {
             let cost = if wanted.geometry { app.cost(&collection, &id) } else { 0 };
-            let answer = move |limits: &Limits| {
-                with_shape(&shared, &collection, id, &wanted, limits)?.written(&wanted)
+            let answer = move |budget: &Budget| {
+                with_shape(&shared, &collection, id, &wanted, budget)?.written(&wanted)
             };
             app.work.run(cost, None, answer).await
         }
         (None, Some(address)) => {
             let query = app.query(&collection, &address)?;
-            let answer = move |_: &Limits| {
-                let report = collection.search.search_described(&query.description, &wanted.options)?;
+            let answer = move |budget: &Budget| {
+                let report =
+                    collection.search.search_described_within(&query.description, &wanted.options, budget)?;
                 let answer = Answer::new(&collection, query.name.clone(), report);
                 let answer = answer.with_measured(&query.measured, wanted.geometry);
                 Answer { query_id: Some(address), ..answer }.written(&wanted)
@@ -217,14 +217,14 @@ fn with_shape(
     collection: &Collection,
     id: String,
     wanted: &Wanted,
-    limits: &Limits,
+    budget: &Budget,
 ) -> Result<Answer, ApiError> {
     let report = collection.search.search_shape(&id, &wanted.options)?;
     let answer = Answer::new(collection, id.clone(), report);
     if !wanted.geometry {
         return Ok(answer);
     }
-    match app.indexed(collection, &id, limits) {
+    match app.indexed(collection, &id, budget) {
         Ok(measured) => Ok(answer.with_measured(&measured, true)),
         Err(fault) if is_missing(&fault) => {
             let form = Some(points(collection, &id)?);
@@ -234,7 +234,7 @@ fn with_shape(
     }
 }
 
-fn with_upload(app: &App, upload: Upload, wanted: &Wanted, limits: &Limits) -> Result<Answer, ApiError> {
+fn with_upload(app: &App, upload: Upload, wanted: &Wanted, budget: &Budget) -> Result<Answer, ApiError> {
     let Some(name) = upload.files.first().map(|(name, _)| name.clone()) else {
         let remedy = format!("send one mesh, {}; or name a shape of the index with ?shape=", mesh_files());
         return Err(ApiError::bad_request("the request has no file").with_remedy(remedy));
@@ -245,32 +245,31 @@ fn with_upload(app: &App, upload: Upload, wanted: &Wanted, limits: &Limits) -> R
     let query = match app.kept(&collection, &address) {
         Some(known) => known,
         None => {
-            let query = measure(app, &collection, upload, limits);
+            let query = measure(app, &collection, upload, budget);
             let query = Arc::new(query.map_err(|fault| ApiError::of_upload(&name, fault))?);
             app.keep(address.clone(), query.clone());
             query
         }
     };
     let describe = start.elapsed().as_secs_f64();
-    limits.check().map_err(ApiError::exceeded)?;
-    let report = collection.search.search_described(&query.description, &wanted.options)?;
+    let report = collection.search.search_described_within(&query.description, &wanted.options, budget)?;
     let seconds = SearchSeconds { describe, ..report.seconds };
     let answer = Answer::new(&collection, query.name.clone(), SearchReport { seconds, ..report });
     Ok(Answer { query_id: Some(address), ..answer.with_measured(&query.measured, wanted.geometry) })
 }
 
-fn measure(app: &App, collection: &Collection, upload: Upload, limits: &Limits) -> Result<Query, Error> {
+fn measure(app: &App, collection: &Collection, upload: Upload, budget: &Budget) -> Result<Query, Error> {
     let files: Vec<MemoryFile<'_>> =
         upload.files.iter().map(|(name, bytes)| MemoryFile { name: Path::new(name), bytes }).collect();
     let name = files.first().map(|file| file.name.display().to_string()).unwrap_or_default();
     let mesh = read_memory(&files, &ReadLimits::of_vertices(app.options.max_vertices))?;
     drop(upload);
-    limits.check()?;
+    budget.check()?;
     let describe = collection.search.describe_options();
     let surface = Surface::new(&mesh, &describe.form.repair)?;
-    limits.check()?;
-    let embedded = embed(&surface, &describe.form, limits)?;
-    limits.check()?;
-    let description = ShapeDescription::new(&surface, &embedded, describe)?;
+    budget.check()?;
+    let embedded = embed(&surface, &describe.form, budget)?;
+    budget.check()?;
+    let description = ShapeDescription::within(&surface, &embedded, describe, budget)?;
     Ok(Query::new(name, Measured::new(surface, &embedded)?, description))
 }

@@ -6,7 +6,7 @@ use axum::body::Bytes;
 use axum::extract::State;
 use axum::http::HeaderMap;
 use axum::response::Response;
-use canonform::Error;
+use canonform::{Budget, Error};
 use mesh::TriMesh;
 use serde::{Deserialize, Serialize};
 use view::interactive::Geometry;
@@ -17,7 +17,6 @@ use crate::app::App;
 use crate::collection::{Collection, ShapeSummary};
 use crate::error::ApiError;
 use crate::measured::dots;
-use crate::work::Limits;
 
 /// Maximum number of shapes on one page of the list.
 const MOST_LISTED: usize = 500;
@@ -90,7 +89,7 @@ pub(super) async fn list(
 pub(super) async fn mesh(State(app): State<Arc<App>>, Id(id): Id) -> Result<Written, ApiError> {
     let (shared, collection) = (app.clone(), app.served.collection());
     let cost = app.cost(&collection, &id);
-    let mesh = move |limits: &Limits| Written::new(&shared.indexed(&collection, &id, limits)?.mesh());
+    let mesh = move |budget: &Budget| Written::new(&shared.indexed(&collection, &id, budget)?.mesh());
     app.work.run(cost, None, mesh).await
 }
 
@@ -98,7 +97,7 @@ pub(super) async fn mesh(State(app): State<Arc<App>>, Id(id): Id) -> Result<Writ
 pub(super) async fn form(State(app): State<Arc<App>>, Id(id): Id) -> Result<Written, ApiError> {
     let (shared, collection) = (app.clone(), app.served.collection());
     let cost = app.cost(&collection, &id);
-    let form = move |limits: &Limits| match shared.indexed(&collection, &id, limits) {
+    let form = move |budget: &Budget| match shared.indexed(&collection, &id, budget) {
         Ok(measured) => Written::new(&measured.form()),
         Err(fault) if is_missing(&fault) => Written::new(&points(&collection, &id)?),
         Err(fault) => Err(fault.into()),
@@ -135,9 +134,9 @@ pub(super) async fn thumbnail(
             return Ok(tagged(tag, PNG, Some(picture)));
         }
     }
-    let drawing = move |limits: &Limits| match collection.search.mesh(&id) {
+    let drawing = move |budget: &Budget| match collection.search.mesh(&id) {
         Ok(mesh) => {
-            limits.check().map_err(ApiError::exceeded)?;
+            budget.check().map_err(ApiError::exceeded)?;
             let picture = draw(&mesh, View::default())?;
             shared.thumbnails.put(content, picture.clone(), picture.len());
             Ok(tagged(tag, PNG, Some(picture)))

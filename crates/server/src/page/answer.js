@@ -1,5 +1,6 @@
 // The results: repairs, mesh and form, class, nearest shapes, and the overlay of two forms.
 import { mark, tile } from './shapes.js';
+import { USUAL_K, searched } from './state.js';
 
 const byId = (id) => document.getElementById(id);
 const number = (value) => Number(value).toPrecision(3).replace(/\.?0+$/, '');
@@ -13,11 +14,18 @@ function view(id, geometries, options) {
 }
 
 export class Answer {
-  constructor() {
+  // Calls `picked` with a result to overlay, and `closed` without one.
+  constructor({ picked, closed }) {
+    this.picked = picked;
     this.root = byId('answer');
     this.root.dataset.state = 'empty';
     this.comparison = 0;
     byId('overlay-shown').addEventListener('change', () => this.drawOverlay());
+    byId('close-hit').addEventListener('click', () => {
+      const result = byId('results').querySelector('[aria-pressed=true]');
+      closed();
+      result?.focus();
+    });
   }
 
   begin(name) {
@@ -25,35 +33,61 @@ export class Answer {
     this.root.dataset.query = name;
     this.root.setAttribute('aria-busy', 'true');
     byId('found').classList.add('busy');
+    byId('start').classList.add('busy');
   }
 
   fail() {
     this.root.dataset.state = 'failed';
-    this.root.removeAttribute('aria-busy');
+    this.hide();
+  }
+
+  // The start.
+  clear() {
+    this.root.dataset.state = 'empty';
+    this.root.dataset.query = '';
     this.hide();
   }
 
   // Old results do not answer a new query.
   hide() {
+    this.comparison += 1;
+    this.root.removeAttribute('aria-busy');
     byId('found').hidden = true;
-    byId('nothing').hidden = false;
+    byId('start').hidden = false;
+    byId('start').classList.remove('busy');
   }
 
-  show(found) {
+  // How the address says to search.
+  controls({ k, exact }) {
+    const select = byId('k');
+    const isListed = (value) => [...select.options].some((option) => Number(option.value) === value);
+    // A number that someone typed into the address.
+    if (!isListed(k)) select.add(new Option(k, k));
+    select.value = String(k ?? USUAL_K);
+    byId('exact').checked = exact;
+  }
+
+  show(found, state) {
     this.found = found;
     this.comparison += 1;
-    byId('nothing').hidden = true;
+    byId('start').hidden = true;
     byId('found').hidden = false;
     byId('found').classList.remove('busy');
     byId('overlay').hidden = true;
     byId('query-name').textContent = found.query;
     this.showVerdict(found);
+    for (const format of ['csv', 'json']) {
+      const params = searched(state);
+      params.set('format', format);
+      params.set('geometry', 'false');
+      byId(`as-${format}`).href = `/api/search?${params}`;
+    }
     view('form-view', found.form, { title: found.mesh ? 'Canonical form' : 'Canonical form, points stored in the index' });
     byId('mesh-view').hidden = !found.mesh;
     if (found.mesh) view('mesh-view', found.mesh, { title: 'Shape', linkedWith: views['form-view'] });
     const tiles = found.results.map(({ rank, id, label, distance }) => {
       const lines = [['more', label], ['more', `${distance.toFixed(3)} away`]];
-      const item = tile(id, label, lines, (hit) => this.compare(hit));
+      const item = tile(id, label, lines, this.picked);
       Object.assign(item.firstChild.dataset, { distance, rank });
       return item;
     });
@@ -87,6 +121,12 @@ export class Answer {
       item.textContent = text;
       return item;
     }));
+  }
+
+  uncompare() {
+    this.comparison += 1;
+    byId('overlay').hidden = true;
+    mark(byId('results'), null);
   }
 
   async compare(id) {

@@ -1,35 +1,152 @@
 // The page of `canonform serve`: searches with a dropped mesh or a shape of the index, and shows the results.
 //
-// app.js      connects queries and results
-// ask.js      drop zone, file button, upload with its progress
-// shapes.js   list of the shapes of the index
+// app.js      follows the address of the page
+// state.js    what the address says
+// ask.js      drop zone, file button, requests with their progress
+// shapes.js   tiles, list of the shapes of the index, some of them at the start
 // answer.js   results: class, views, nearest shapes, overlay
 //
 // Stable names, for tests and other scripts:
 //   #file #drop              file input (the files of one mesh); drop zone, class `over` while dragged over
-//   #progress #status #error progress bar; current activity; error, worded as on the command line
+//   #progress #status #error progress bar; current activity; error, worded as on the command line; #retry
+//   #index-size #index-note  size of the index; whether it has changed; #search-again
 //   #filter #shapes #more    search field, list of shapes, button to show more; #shapes-count
 //     #shapes button.tile[data-id][data-label], aria-pressed on the query
 //   #answer                  data-state: `empty`, `busy`, `ready` or `failed`; data-query: name of the query
+//     #start #sample         shown without a query: tiles of some shapes
 //     #query-name #predicted[data-label] #facts #repaired (li: one line per repair)
 //     #mesh-view #form-view  viewers with linked cameras; data-state from viewer.js
+//     #k #exact #as-csv #as-json  number of results, exact search, downloads
 //     #results button.tile[data-id][data-label][data-distance], aria-pressed on the one in the overlay
 //     #overlay               data-state: `busy`, `ready` or `failed`; data-id of the shape
 //       #overlay-title #overlay-kind[data-kind] #overlay-facts #overlay-view, input[name=shown] (both, first, second)
+//       #search-hit #close-hit  a search with the shape of the overlay; back to the results alone
 // Texts from outside are set as text, never as HTML.
 import { Ask } from './ask.js';
-import { Shapes } from './shapes.js';
+import { Sample, Shapes } from './shapes.js';
 import { Answer } from './answer.js';
+import { address, read, sameSearch, searched } from './state.js';
 
-const answer = new Answer();
-const shapes = new Shapes((id) => ask.withShape(id));
+const byId = (id) => document.getElementById(id);
+const CHECK = 10_000;
+
+// What the page shows; null while it shows something else, such as an error.
+let shown = null;
+
+const answer = new Answer({
+  picked: (hit) => go({ ...read(), hit }),
+  closed: () => go({ ...read(), hit: null }),
+});
+const shapes = new Shapes({
+  picked: (shape) => go({ ...read(), shape, query: null, hit: null }),
+  filtered: (filter) => history.replaceState(history.state, '', address({ ...read(), filter })),
+});
+const sample = new Sample((shape) => go({ ...read(), shape, query: null, hit: null }));
 const ask = new Ask({
-  begin(name) { answer.begin(name); shapes.mark(null); },
-  answer(found) { answer.show(found); if (!found.query_id) shapes.mark(found.query); },
+  begin(name) { shown = null; answer.begin(name); shapes.mark(null); title(name); },
+  answer(found) {
+    const { k, exact, filter, hit, query } = read();
+    const state = { k, exact, filter };
+    if (found.query_id) Object.assign(state, { query: found.query_id });
+    else Object.assign(state, { shape: found.query });
+    // An upload gets its address here; the other searches have theirs.
+    if (found.query_id && found.query_id !== query) {
+      history.pushState({ name: found.query }, '', address(state));
+    } else {
+      state.hit = hit;
+    }
+    shown = { ...state, hit: null };
+    answer.show(found, state);
+    if (state.shape) shapes.mark(state.shape);
+    title(found.query);
+    overlay();
+  },
   failed() { answer.fail(); },
 });
 
-const health = await (await fetch('/healthz')).json();
-document.getElementById('index-size').textContent = health.shapes === 1 ? '1 shape in the index.' : `${health.shapes} shapes in the index.`;
-ask.limit(health);
-await shapes.search('');
+// Shows another state.
+function go(state) {
+  if (address(state) === address(read())) return;
+  history.pushState(state.query === read().query ? history.state : null, '', address(state));
+  follow();
+}
+
+// Shows what the address says.
+function follow() {
+  const state = read();
+  answer.controls(state);
+  if (!state.shape && !state.query) {
+    ask.stop();
+    shown = state;
+    answer.clear();
+    shapes.mark(null);
+    title(null);
+  } else if (sameSearch(shown, state)) {
+    overlay();
+  } else {
+    const name = state.shape ?? history.state?.name ?? 'the upload';
+    ask.again(`/api/search?${searched(state)}`, name);
+  }
+}
+
+// The overlay follows the address without another search.
+function overlay() {
+  const { hit } = read();
+  if (hit && hit !== shown.hit) answer.compare(hit);
+  if (!hit) answer.uncompare();
+  shown.hit = hit;
+}
+
+function title(name) {
+  document.title = name ? `${name} – canonform` : 'canonform: shape search';
+}
+
+addEventListener('popstate', follow);
+byId('k').addEventListener('change', () => go({ ...read(), k: Number(byId('k').value) }));
+byId('exact').addEventListener('change', () => go({ ...read(), exact: byId('exact').checked }));
+byId('home').addEventListener('click', (event) => {
+  if (event.ctrlKey || event.metaKey || event.shiftKey) return;
+  event.preventDefault();
+  go({ k: read().k, exact: read().exact });
+});
+byId('search-hit').addEventListener('click', () => go({ ...read(), shape: read().hit, query: null, hit: null }));
+byId('search-again').addEventListener('click', () => {
+  byId('search-again').hidden = true;
+  byId('index-note').textContent = '';
+  shown = null;
+  follow();
+});
+
+// The server opens the index again when it changes; then the lists are old, and maybe the results.
+let version = null;
+async function check() {
+  const note = byId('index-note');
+  let health;
+  try {
+    health = await (await fetch('/healthz')).json();
+  } catch {
+    note.textContent = 'The server does not respond.';
+    return;
+  }
+  const { shapes: count, index } = health;
+  byId('index-size').textContent = count === 1 ? '1 shape in the index.' : `${count} shapes in the index.`;
+  ask.limit(health);
+  if (index.version === version) {
+    const state = { missing: 'The file of the index is missing.', unreadable: 'The file of the index has changed and cannot be read.' }[index.state];
+    if (state) note.textContent = `${state} Searches use the index as it was opened.`;
+    else if (byId('search-again').hidden) note.textContent = '';
+    return;
+  }
+  if (version !== null) {
+    note.textContent = 'The index has changed.';
+    byId('search-again').hidden = !(read().shape || read().query);
+  }
+  version = index.version;
+  await Promise.all([shapes.search(byId('filter').value), sample.load()]);
+}
+setInterval(() => { if (!document.hidden) check(); }, CHECK);
+document.addEventListener('visibilitychange', () => { if (!document.hidden) check(); });
+
+byId('filter').value = read().filter;
+follow();
+await check();

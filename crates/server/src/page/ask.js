@@ -1,4 +1,4 @@
-// Queries: files that are dropped or chosen, or a shape of the index.
+// Requests: files that are dropped or chosen, a shape of the index, or an earlier upload.
 
 const byId = (id) => document.getElementById(id);
 
@@ -29,6 +29,7 @@ export class Ask {
       if (event.dataTransfer.files.length > 0) this.withFiles([...event.dataTransfer.files]);
     });
     byId('upload').addEventListener('submit', (event) => event.preventDefault());
+    byId('retry').addEventListener('click', () => this.send(...this.last));
   }
 
   limit({ max_upload: maxUpload }) {
@@ -39,7 +40,8 @@ export class Ask {
     if (files.length === 0) return;
     const form = new FormData();
     for (const file of files) form.append('mesh', file, file.name);
-    form.append('k', '12');
+    form.append('k', byId('k').value);
+    form.append('exact', String(byId('exact').checked));
     const size = files.reduce((sum, file) => sum + file.size, 0);
     const name = files.map((file) => file.name).join(' and ');
     if (size > this.maxUpload) {
@@ -48,33 +50,44 @@ export class Ask {
         'simplify the mesh, or raise the upload limit of the server');
       return;
     }
-    this.send('/api/search', form, name);
+    this.send('POST', '/api/search', form, name);
   }
 
-  withShape(id) {
-    this.send(`/api/search?${new URLSearchParams({ shape: id, k: '12' })}`, null, id);
+  // A search that needs no upload.
+  again(address, name) {
+    this.send('GET', address, null, name);
   }
 
-  begin(name) {
+  // Forgets the current query.
+  stop() {
     this.question += 1;
     this.request?.abort();
     this.request = null;
-    byId('error').textContent = '';
-    byId('status').textContent = '';
+    clearInterval(this.clock);
+    byId('progress').hidden = true;
+    byId('retry').hidden = true;
+    for (const id of ['error', 'status', 'elapsed']) byId(id).textContent = '';
+  }
+
+  begin(name) {
+    this.stop();
     this.to.begin(name);
     return this.question;
   }
 
   // XMLHttpRequest, because fetch does not report upload progress.
-  send(address, body, name) {
+  send(method, address, body, name) {
+    this.last = [method, address, body, name];
     const question = this.begin(name);
     const current = () => question === this.question;
-    const [progress, status] = [byId('progress'), byId('status')];
+    const [progress, status, elapsed] = [byId('progress'), byId('status'), byId('elapsed')];
     const request = new XMLHttpRequest();
     this.request = request;
+    const start = Date.now();
+    this.clock = setInterval(() => { elapsed.textContent = `${Math.round((Date.now() - start) / 1000)} s`; }, 1000);
     const measuring = () => {
       progress.removeAttribute('value');
-      status.textContent = `Measuring ${name}…`;
+      status.textContent = body ? `Measuring and searching with ${name}…` : `Searching with ${name}…`;
     };
     progress.hidden = false;
     progress.value = 0;
@@ -89,19 +102,26 @@ export class Ask {
     }
     request.addEventListener('loadend', () => {
       if (!current()) return;
+      clearInterval(this.clock);
+      elapsed.textContent = '';
       progress.hidden = true;
       const found = request.response;
       if (request.status === 200 && found) {
         status.textContent = `${name}: done.`;
         this.to.answer(found);
-      } else if (found?.error) {
-        this.fail(found.remedy ? `${found.error}; ${found.remedy}` : found.error);
+        return;
+      }
+      // Later, the same request may succeed.
+      byId('retry').hidden = request.status !== 503 && request.status !== 0 && request.status !== 408;
+      if (found?.error) {
+        const text = found.remedy ? `${found.error}; ${found.remedy}` : found.error;
+        this.fail(request.status === 410 ? `${name}: ${text}` : text);
       } else {
-        this.fail('The server did not respond; check that it is running, and send the mesh again.');
+        this.fail('The server did not respond; check that it is running, and try again.');
       }
     });
     request.responseType = 'json';
-    request.open('POST', address);
+    request.open(method, address);
     request.send(body);
   }
 

@@ -22,6 +22,7 @@ pub(crate) fn router() -> Router<Arc<App>> {
     let files = [
         ("/assets/style.css", CSS, include_str!("style.css")),
         ("/assets/app.js", JS, include_str!("app.js")),
+        ("/assets/state.js", JS, include_str!("state.js")),
         ("/assets/ask.js", JS, include_str!("ask.js")),
         ("/assets/shapes.js", JS, include_str!("shapes.js")),
         ("/assets/answer.js", JS, include_str!("answer.js")),

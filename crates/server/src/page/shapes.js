@@ -1,6 +1,10 @@
-// The list of the shapes of the index, filtered while typing.
+// Tiles of shapes: the list of the index, filtered while typing, and some shapes at the start.
 
 const PAGE = 60;
+const SAMPLE = 24;
+
+// A busy server refuses pictures too; they are asked for again after these milliseconds.
+const AGAIN = [2000, 5000, 15000];
 
 // A button with a thumbnail, of a size that does not depend on the image.
 export function tile(id, label, lines, pressed) {
@@ -15,7 +19,14 @@ export function tile(id, label, lines, pressed) {
   image.loading = 'lazy';
   image.width = 176;
   image.height = 176;
-  image.src = `/api/shapes/${encodeURIComponent(id)}/thumbnail`;
+  const address = `/api/shapes/${encodeURIComponent(id)}/thumbnail`;
+  let failures = 0;
+  image.addEventListener('error', () => {
+    if (failures === AGAIN.length) return;
+    setTimeout(() => { image.src = `${address}?try=${failures}`; }, AGAIN[failures]);
+    failures += 1;
+  });
+  image.src = address;
   button.append(image);
   for (const [kind, text] of [['name', id], ...lines]) {
     const line = button.appendChild(document.createElement('span'));
@@ -37,7 +48,7 @@ export function mark(list, id) {
 }
 
 export class Shapes {
-  constructor(picked) {
+  constructor({ picked, filtered }) {
     this.picked = picked;
     this.list = document.getElementById('shapes');
     this.more = document.getElementById('more');
@@ -46,7 +57,10 @@ export class Shapes {
     let waiting;
     filter.addEventListener('input', () => {
       clearTimeout(waiting);
-      waiting = setTimeout(() => this.search(filter.value), 200);
+      waiting = setTimeout(() => {
+        filtered(filter.value.trim());
+        this.search(filter.value);
+      }, 200);
     });
     this.more.addEventListener('click', () => this.load(this.list.children.length));
   }
@@ -74,5 +88,20 @@ export class Shapes {
   mark(id) {
     this.asked = id;
     mark(this.list, id);
+  }
+}
+
+// Some shapes of as many classes as possible.
+export class Sample {
+  constructor(picked) {
+    this.picked = picked;
+  }
+
+  async load() {
+    const response = await fetch(`/api/shapes?${new URLSearchParams({ sample: SAMPLE })}`);
+    if (!response.ok) return;
+    const { shapes } = await response.json();
+    const tiles = shapes.map(({ id, label }) => tile(id, label, [['more', label]], this.picked));
+    document.getElementById('sample').replaceChildren(...tiles);
   }
 }

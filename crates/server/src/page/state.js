@@ -1,0 +1,47 @@
+// The state of the page is its address, so that it can be reloaded, kept and shared:
+//
+//   /                      the start
+//   /?shape=ID             a search with a shape of the index
+//   /?query=ADDRESS        a search with an upload, while the server keeps it
+//   &hit=ID                one of the results, overlaid with the query
+//   &k=N &exact=true       how to search
+//   &filter=TEXT           the shapes listed beside the results
+
+export const USUAL_K = 12;
+
+export function read() {
+  const given = new URLSearchParams(location.search);
+  const k = Number.parseInt(given.get('k'), 10);
+  return {
+    shape: given.get('shape'),
+    query: given.get('query'),
+    hit: given.get('hit'),
+    k: k >= 1 && k <= 100 ? k : USUAL_K,
+    exact: given.get('exact') === 'true',
+    filter: given.get('filter') ?? '',
+  };
+}
+
+export function address({ shape, query, hit, k, exact, filter }) {
+  const params = new URLSearchParams();
+  if (shape) params.set('shape', shape);
+  else if (query) params.set('query', query);
+  if (hit) params.set('hit', hit);
+  if (k && k !== USUAL_K) params.set('k', k);
+  if (exact) params.set('exact', 'true');
+  if (filter) params.set('filter', filter);
+  const text = params.toString();
+  return text ? `/?${text}` : '/';
+}
+
+// The parameters of a search in the JSON interface.
+export function searched({ shape, query, k, exact }) {
+  const params = new URLSearchParams(shape ? { shape } : { query });
+  params.set('k', k);
+  if (exact) params.set('exact', 'true');
+  return params;
+}
+
+// Whether two states have the same results.
+export const sameSearch = (a, b) => Boolean(a && b) && (a.shape || a.query)
+  ? searched(a).toString() === searched(b).toString() : Boolean(a && b) && !(b.shape || b.query);
