@@ -71,7 +71,14 @@ fn an_upload_gives_the_same_answer_as_the_library() {
     let search = canonform::ShapeSearch::open(&server.folder.join(INDEX)).unwrap();
     let report = search.search(&mesh, &canonform::SearchOptions::default()).unwrap();
     let answer = upload(server.address, &[("q.off", &written("q.off", &mesh))], &[]).unwrap().json();
-    for (name, expected) in serde_json::to_value(&report).unwrap().as_object().unwrap() {
+    let mut report = serde_json::to_value(&report).unwrap();
+    for found in report["results"].as_array_mut().unwrap() {
+        // Only the library tells where the meshes lie.
+        let path = std::path::PathBuf::from(found["path"].as_str().unwrap());
+        let path = path.strip_prefix(&server.folder).unwrap_or(&path);
+        found["path"] = path.to_str().into();
+    }
+    for (name, expected) in report.as_object().unwrap() {
         if name != "seconds" {
             assert_eq!(&answer[name], expected, "{name}");
         }
@@ -105,6 +112,83 @@ fn a_shape_of_the_index_finds_itself() {
 }
 
 #[test]
+fn an_upload_can_be_searched_again_and_exported() {
+    let server = Served::start(options());
+    let description = description(&server);
+    let mesh = written("q.off", &shapes::torus(24, 12, 2.0, 0.7));
+    let first = upload(server.address, &[("q.off", &mesh)], &[("k", "3")]).unwrap().json();
+    let query = first["query_id"].as_str().unwrap();
+    let again = get(&server, &format!("/api/search?query={query}&k=3")).json();
+    description.check("get", "/api/search", 200, &again);
+    for (name, value) in again.as_object().unwrap() {
+        assert!(name == "seconds" || *value == first[name], "{name}");
+    }
+    // The address depends on the content, and on the name, which tells the format.
+    let same = upload(server.address, &[("q.off", &mesh)], &[("geometry", "false")]).unwrap().json();
+    assert_eq!(
+        (same["query_id"].as_str(), &same["mesh"], &same["form"]),
+        (Some(query), &Value::Null, &Value::Null)
+    );
+    let other = upload(server.address, &[("r.off", &mesh)], &[]).unwrap().json();
+    assert_ne!(other["query_id"], query);
+
+    let table = get(&server, &format!("/api/search?query={query}&k=3&format=csv"));
+    assert_eq!(table.header("content-type"), Some("text/csv; charset=utf-8; header=present"));
+    let table = String::from_utf8(table.body).unwrap();
+    let lines: Vec<&str> = table.lines().collect();
+    assert_eq!((lines.len(), lines[0]), (4, "query,rank,id,label,path,distance,signature_distance"));
+    assert!(lines[1].starts_with("q.off,1,") && lines[1].contains(",meshes/"), "{}", lines[1]);
+    let posted = upload(server.address, &[("q.off", &mesh)], &[("k", "3"), ("format", "csv")]).unwrap();
+    assert_eq!(posted.body, table.as_bytes());
+    let shape = get(&server, "/api/search?shape=ring0&geometry=false&exact=true").json();
+    description.check("get", "/api/search", 200, &shape);
+    assert_eq!((ids(&shape)[0], &shape["mesh"]), ("ring0", &Value::Null));
+
+    let gone = get(&server, "/api/search?query=0123456789abcdef0123456789abcdef");
+    description.check("get", "/api/search", 410, &gone.json());
+    assert_eq!(gone.json()["error"], "this upload has expired");
+    assert_eq!(gone.json()["remedy"], "choose the file again");
+    for bad in [format!("shape=ring0&query={query}"), "k=3".to_owned(), "shape=ring0&format=xml".to_owned()] {
+        let answer = get(&server, &format!("/api/search?{bad}"));
+        assert_eq!(answer.status, 400, "{bad}");
+        description.check("get", "/api/search", 400, &answer.json());
+    }
+}
+
+#[test]
+fn no_response_tells_where_the_index_lies() {
+    let server = Served::start_apart(options());
+    let mesh = fs::read(server.mesh("ring1")).unwrap();
+    fs::remove_file(server.mesh("ring0")).unwrap();
+    fs::write(server.mesh("box0"), "OFF\n").unwrap();
+    let mut texts = vec![upload(server.address, &[("q.off", &mesh)], &[("explain", "true")]).unwrap()];
+    texts.push(upload(server.address, &[("q.off", b"OFF\n3 1 0\n")], &[]).unwrap());
+    for target in [
+        "/healthz",
+        "/api/shapes",
+        "/api/shapes/ring0/mesh",
+        "/api/shapes/box0/mesh",
+        "/api/shapes/none/mesh",
+        "/api/search?shape=ring0",
+        "/api/search?shape=box0",
+        "/api/search?shape=none",
+        "/api/search?shape=ring1&format=csv",
+        "/api/compare?a=ring0&b=box0",
+        "/api/compare?a=none&b=box0",
+    ] {
+        texts.push(get(&server, target));
+    }
+    let folder = server.folder.canonicalize().unwrap();
+    for answer in texts {
+        let text = String::from_utf8(answer.body).unwrap();
+        for path in [&server.folder, &folder] {
+            assert!(!text.contains(path.to_str().unwrap()), "{text}");
+        }
+        assert!(answer.status != 500, "{text}");
+    }
+}
+
+#[test]
 fn the_list_is_paged_and_filtered() {
     let server = Served::start(options());
     let description = description(&server);
@@ -123,7 +207,11 @@ fn the_list_is_paged_and_filtered() {
     assert_eq!(list("/api/shapes?q=%3Cb%3E"), (1, AWKWARD.to_owned()));
     assert_eq!(list("/api/shapes?q=none"), (0, String::new()));
     assert_eq!(list("/api/shapes?offset=99"), (7, String::new()));
-    for bad in ["limit=0", "limit=501", "limit=x", "offset=-1", "other=1"] {
+    // One shape of each class before the second of any, in the order of their names.
+    assert_eq!(list("/api/shapes?sample=4"), (7, format!("{AWKWARD} ball0 box0 ring0")));
+    assert_eq!(list("/api/shapes?sample=2"), (7, format!("{AWKWARD} box0")));
+    assert_eq!(list("/api/shapes?sample=99").1, list("/api/shapes").1);
+    for bad in ["limit=0", "limit=501", "limit=x", "offset=-1", "other=1", "sample=0"] {
         let answer = get(&server, &format!("/api/shapes?{bad}"));
         assert_eq!(answer.status, 400, "{bad}");
         description.check("get", "/api/shapes", 400, &answer.json());
@@ -270,7 +358,7 @@ fn the_page_and_its_files_have_tags_and_security_headers() {
         assert_eq!(again.unwrap().status, 304);
         files += 1;
     }
-    assert_eq!(files, 4);
+    assert_eq!(files, 4, "the page loads its other scripts as modules");
     assert!(
         !html.contains("http:/")
             || html.matches("http:/").count() == html.matches("http://www.w3.org").count()
@@ -292,7 +380,7 @@ fn errors_of_unknown_routes_are_json() {
         ("GET", "/none", 404),
         ("GET", "/../../etc/passwd", 404),
         ("GET", "/assets/../openapi.json", 404),
-        ("GET", "/api/search", 405),
+        ("DELETE", "/api/search", 405),
         ("POST", "/api/shapes", 405),
         ("DELETE", "/api/shapes/ring0/mesh", 405),
     ] {

@@ -106,9 +106,17 @@ fn requests_for_other_servers_are_rejected() {
             assert_eq!(status("GET", target, &[("Host", host)]), 421, "{host}");
         }
     }
+    // Two programs on the way could read different ones.
+    let host = format!("127.0.0.1:{port}");
+    let twice = [("Host", &*host), ("Host", "evil.example")];
+    assert_eq!(status("GET", "/healthz", &twice), 400);
+    assert_eq!(status("GET", "/healthz", &[twice[1], twice[0]]), 400);
+    assert_eq!(status("GET", "http://evil.example/healthz", &[("Host", &host)]), 400);
+    assert_eq!(status("GET", &format!("http://{host}/healthz"), &[("Host", &host)]), 200);
     let search = "/api/search?shape=ring0";
     let own = format!("http://127.0.0.1:{port}");
     assert_eq!(status("POST", search, &[("Origin", &own)]), 200);
+    assert_eq!(status("POST", search, &[("Origin", &own), ("Origin", "http://evil.example")]), 400);
     for origin in
         ["http://evil.example", "null", "https://127.0.0.1", &format!("http://127.0.0.1:{}", port ^ 1)]
     {

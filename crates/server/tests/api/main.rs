@@ -3,9 +3,13 @@
 #[cfg(test)]
 mod answers;
 #[cfg(test)]
+mod attacks;
+#[cfg(test)]
 mod client;
 #[cfg(test)]
 mod hostile;
+#[cfg(test)]
+mod index;
 #[cfg(test)]
 mod limits;
 #[cfg(test)]

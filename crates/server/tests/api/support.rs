@@ -91,6 +91,12 @@ impl Served {
         Self { running: Running::start(&folder.join(INDEX), options), folder, _own: own }
     }
 
+    /// Builds the index again, from the meshes that are there now.
+    pub(crate) fn rebuild(&self) {
+        let options = BuildOptions { describe: &DescribeOptions::default(), labels: None, shard: None };
+        build_index(&self.folder.join("meshes"), &self.folder.join(INDEX), &options, &()).unwrap();
+    }
+
     /// Path of the mesh of a body.
     pub(crate) fn mesh(&self, id: &str) -> PathBuf {
         self.folder.join("meshes").join(format!("{id}.off"))

@@ -8,4 +8,6 @@ mod running;
 #[cfg(test)]
 mod search;
 #[cfg(test)]
+mod states;
+#[cfg(test)]
 mod support;

@@ -15,7 +15,7 @@ fn eye(page: &Page, css: &str) -> serde_json::Value {
 }
 
 /// A mesh in a file of its own.
-fn file(folder: &tempfile::TempDir, name: &str, family: Family) -> std::path::PathBuf {
+pub(crate) fn file(folder: &tempfile::TempDir, name: &str, family: Family) -> std::path::PathBuf {
     let path = folder.path().join(name);
     mesh::io::write(&path, &body(family, 4).mesh).unwrap();
     path

@@ -6,6 +6,7 @@ use std::sync::OnceLock;
 
 use browser::Browser;
 use canonform::{BuildOptions, DescribeOptions, build_index};
+use canonform_server::ServeOptions;
 use datasets::{ArticulatedOptions, Family, LabeledShape, articulated_shape};
 use serde_json::{Value, json};
 
@@ -52,13 +53,37 @@ pub(crate) struct Page {
 impl Page {
     /// Opens the page in a window of this size; `None` where there is no browser.
     pub(crate) fn open(width: u32, height: u32) -> Option<Self> {
+        Self::with(width, height, options())
+    }
+
+    /// As [`open`](Self::open), with options of the server.
+    pub(crate) fn with(width: u32, height: u32, options: ServeOptions) -> Option<Self> {
         let browser = Browser::start()?;
-        let server = Running::start(&collection().join("all.canonform"), options());
+        let server = Running::start(&collection().join("all.canonform"), options);
         browser.resize(width, height).unwrap();
         browser.watch_layout().unwrap();
         browser.open(&format!("http://{}/", server.address)).unwrap();
         browser.wait_for("document.querySelectorAll('#shapes .tile').length === 10").unwrap();
         Some(Self { browser, server })
+    }
+
+    /// Opens an address of the page.
+    pub(crate) fn go(&self, target: &str) {
+        self.browser.open(&format!("http://{}{target}", self.server.address)).unwrap();
+    }
+
+    /// The path and the parameters of the address.
+    pub(crate) fn address(&self) -> String {
+        self.eval("location.pathname + location.search").as_str().unwrap().to_owned()
+    }
+
+    /// Waits until one of the results is overlaid with the query.
+    pub(crate) fn overlaid(&self, id: &str) {
+        self.wait_for(&format!(
+            "document.querySelector('#overlay').dataset.state === 'ready' && \
+             document.querySelector('#overlay').dataset.id === {}",
+            json!(id)
+        ));
     }
 
     pub(crate) fn eval(&self, expression: &str) -> Value {
