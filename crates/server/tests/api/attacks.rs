@@ -64,7 +64,7 @@ fn uploads_of_huge_polygons_free_their_places_at_the_time_limit() {
 #[test]
 fn large_uploads_are_answered_in_time_or_refused_at_once() {
     let limit = Duration::from_secs(30);
-    let server = Served::start(ServeOptions { time_limit: limit, ..options() });
+    let server = Served::start(ServeOptions { time_limit: limit, max_uploads: 20, ..options() });
     // 5 MB, some ten seconds each.
     let mesh = written("large.off", &shapes::torus(300, 240, 2.0, 0.6));
     let attack = |_| {
@@ -82,7 +82,7 @@ fn large_uploads_are_answered_in_time_or_refused_at_once() {
     assert!(!done.is_empty(), "some are answered");
     assert!(refused.iter().all(|(answer, _)| answer.status == 503));
     let early: Vec<_> = refused.iter().filter(|(answer, _)| answer.header("retry-after").is_some()).collect();
-    assert!(early.len() + done.len() >= 18, "{} answered, {} refused at once", done.len(), early.len());
+    assert!(early.len() >= 12, "{} answered, {} refused at once", done.len(), early.len());
     assert!(early.iter().all(|(_, elapsed)| *elapsed < limit / 2), "{early:?}");
 }
 
@@ -101,16 +101,18 @@ fn the_job_of_a_client_that_disconnects_is_cancelled() {
     )
     .unwrap();
     stream.write_all(&body).unwrap();
-    std::thread::sleep(Duration::from_secs(2));
     let small = fs::read(server.mesh("ring0")).unwrap();
-    let status = || upload(server.address, &[("q.off", &small)], &[]).unwrap().status;
-    assert_eq!(status(), 503, "its job takes the only place");
+    let until = |status: u16| {
+        let start = Instant::now();
+        while upload(server.address, &[("q.off", &small)], &[]).unwrap().status != status {
+            assert!(start.elapsed() < Duration::from_secs(10), "no answer {status}");
+            std::thread::sleep(Duration::from_millis(50));
+        }
+    };
+    // Its job takes the only place, and would for much longer than a test waits.
+    until(503);
     drop(stream);
-    let start = Instant::now();
-    while status() != 200 {
-        assert!(start.elapsed() < Duration::from_secs(10), "the place is not freed");
-        std::thread::sleep(Duration::from_millis(100));
-    }
+    until(200);
 }
 
 /// Keeps connections open and does something on each of them again and again, until the end of `meanwhile`.
