@@ -61,7 +61,7 @@ const ask = new Ask({
     title(found.query);
     overlay();
   },
-  failed() { answer.fail(); },
+  failed() { answer.fail(); title(null); },
 });
 
 // Shows another state.
@@ -84,7 +84,7 @@ function follow() {
   } else if (sameSearch(shown, state)) {
     overlay();
   } else {
-    const name = state.shape ?? history.state?.name ?? 'the upload';
+    const name = state.shape ?? history.state?.name ?? 'an earlier upload';
     ask.again(`/api/search?${searched(state)}`, name);
   }
 }

@@ -115,7 +115,9 @@ export class Ask {
       byId('retry').hidden = request.status !== 503 && request.status !== 0 && request.status !== 408;
       if (found?.error) {
         const text = found.remedy ? `${found.error}; ${found.remedy}` : found.error;
-        this.fail(request.status === 410 ? `${name}: ${text}` : text);
+        // The error does not name an upload that the server has forgotten.
+        const forgotten = request.status === 410 && history.state?.name;
+        this.fail(forgotten ? `${forgotten}: ${text}` : text);
       } else {
         this.fail('The server did not respond; check that it is running, and try again.');
       }
