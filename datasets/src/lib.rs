@@ -13,6 +13,8 @@
 //!   -> shape              vertices and faces in random order
 //! ```
 //!
+//! [`Damage`] changes meshes, generated or not, in ways that leave the shape recognisable.
+//!
 //! **Invariant.** The same options give the same bytes on any machine and any number of threads: every shape
 //! has its own random streams, and all arithmetic consists of operations that IEEE 754 defines exactly.
 //! Nothing here depends on distances, embeddings or the algorithms that will use the shapes.
@@ -24,6 +26,7 @@ mod cat;
 mod centaur;
 mod clearance;
 mod corner_table;
+mod damage;
 mod david;
 mod error;
 mod extract;
@@ -42,4 +45,5 @@ pub use articulated::{
     ArticulatedOptions, Family, LabeledShape, articulated, articulated_body, articulated_shape,
 };
 pub use broken::{BrokenFile, broken_meshes};
+pub use damage::Damage;
 pub use error::DatasetError;

@@ -18,6 +18,8 @@ pub(crate) enum Purpose {
     Numbering,
     /// Proportions of a body.
     Build,
+    /// Damage of a finished mesh.
+    Damage,
 }
 
 /// A stream of random numbers that depends only on seed, family, pose and purpose.
@@ -32,6 +34,7 @@ impl Stream {
             Purpose::Lattice => 1,
             Purpose::Numbering => 2,
             Purpose::Build => 3,
+            Purpose::Damage => 12,
         };
         rng.set_stream((pose as u64) * 16 + (family as u64) * 4 + purpose);
         Self(rng)

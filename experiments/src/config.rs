@@ -36,6 +36,9 @@ pub(crate) struct Config {
     pub(crate) exponents: Vec<f64>,
     #[serde(default)]
     printed: Vec<Printed>,
+    /// Shapes of each class that are damaged.
+    #[serde(default)]
+    pub(crate) queries: usize,
     /// Number of nearest neighbours that vote.
     #[serde(default = "one")]
     pub(crate) knn: usize,

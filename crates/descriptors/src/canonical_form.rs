@@ -112,6 +112,21 @@ impl CanonicalForm {
         Self { points, weights, area: self.area }
     }
 
+    /// The form at its first points, with as many new weights; coordinates and area stay.
+    ///
+    /// # Errors
+    /// [`DescriptorError::SizeMismatch`] for more weights than points; [`DescriptorError::NoExtent`] if one is negative or the
+    /// points coincide.
+    pub fn leading(&self, mut weights: Vec<f64>) -> Result<Self, DescriptorError> {
+        let n_points = self.points.len();
+        let points = self.points.get(..weights.len());
+        let points = points.ok_or(DescriptorError::SizeMismatch { n_points, n_vertices: weights.len() })?;
+        let total: f64 = weights.iter().sum();
+        let even = 1.0 / weights.len().max(1) as f64;
+        weights.iter_mut().for_each(|w| *w = if total > 0.0 { *w / total } else { even });
+        Self::from_parts(points.to_vec(), weights, self.area)
+    }
+
     /// The centred points, one per vertex, in the unit of the distances.
     pub fn points(&self) -> &[Point3<f64>] {
         &self.points
@@ -206,6 +221,18 @@ mod tests {
         assert_eq!(bare.normalized(Normalization::UnitArea), bare);
         assert!(a.points().iter().zip(b.points()).all(|(p, q)| (p - q).norm() < 1e-14));
         assert_eq!(form.to_mesh(&mesh).faces, mesh.faces);
+    }
+
+    #[test]
+    fn leading_points_keep_their_coordinates() {
+        let points = [[3.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, -2.0]].map(Point3::from).to_vec();
+        let form = CanonicalForm::from_parts(points, vec![0.2, 0.3, 0.5], Some(4.0)).unwrap();
+        let first = form.leading(vec![1.0, 3.0]).unwrap();
+        assert_eq!((first.points(), first.weights()), (&form.points()[..2], &[0.25, 0.75][..]));
+        assert_eq!(first.area(), form.area());
+        assert_eq!(form.leading(vec![0.0; 2]).unwrap().weights(), [0.5; 2]);
+        let fault = form.leading(vec![1.0; 4]).unwrap_err();
+        assert_eq!(fault, DescriptorError::SizeMismatch { n_points: 3, n_vertices: 4 });
     }
 
     #[test]

@@ -114,7 +114,7 @@ pub enum MatchKind {
 
 impl ShapeMetric {
     /// Version of the calibration and of the signatures. Fused vectors of different versions cannot be compared.
-    pub const VERSION: u32 = 1;
+    pub const VERSION: u32 = 2;
 
     /// The boundary between two poses of one body and two bodies of one class.
     ///

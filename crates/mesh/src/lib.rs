@@ -6,6 +6,7 @@
 //!   fault and remedy.
 //! * [`validate`] reports the properties and defects of a mesh.
 //! * [`repair()`] removes defects that algorithms cannot handle, as [`RepairOptions`] say, and reports every change.
+//! * [`refine()`] splits long edges.
 //! * [`shapes`] has small analytic surfaces for tests, benches and documentation.
 //!
 //! **Invariant.** Vertices keep the order of the file: repair drops and merges vertices but never reorders
@@ -34,6 +35,7 @@ mod error;
 mod face_set;
 pub mod io;
 mod orientation;
+mod refine;
 mod repair;
 pub mod shapes;
 mod tri_mesh;
@@ -41,6 +43,7 @@ mod validate;
 
 pub use error::{Fault, MeshError, Place};
 pub use orientation::orient_consistently;
+pub use refine::{Refined, refine};
 pub use repair::{
     ComponentPolicy, Orient, RepairOptions, RepairReport, Repaired, Weld, repair, repair_within,
 };

@@ -16,6 +16,7 @@ mod figure4;
 mod figure9;
 #[cfg(test)]
 mod fixtures;
+mod invariance;
 pub mod page;
 mod record;
 pub mod results;

@@ -73,9 +73,10 @@ impl App {
         let mesh = collection.search.mesh(id)?;
         budget.check()?;
         let surface = Surface::new(&mesh, &options.repair)?;
+        let refined = surface.refined();
         budget.check()?;
-        let embedded = embed(&surface, options, budget)?;
-        let measured = Arc::new(Measured::new(surface, &embedded)?);
+        let embedded = embed(&refined, options, budget)?;
+        let measured = Arc::new(Measured::new(surface, &refined, &embedded)?);
         self.measured.put(key, measured.clone(), measured.bytes());
         Ok(measured)
     }

@@ -25,9 +25,11 @@ pub(crate) struct Measured {
 }
 
 impl Measured {
-    pub(crate) fn new(surface: Surface, embedded: &Embedded) -> Result<Self, Error> {
-        let form = embedded.form(&surface)?;
-        Ok(Self { surface, form, distances: embedded.distances.column(0).to_vec() })
+    /// The surface, with the form of its vertices from that of the [refined](Surface::refined) surface.
+    pub(crate) fn new(surface: Surface, refined: &Surface, embedded: &Embedded) -> Result<Self, Error> {
+        let form = embedded.form(refined)?.leading(surface.mesh().vertex_areas())?;
+        let distances = embedded.distances.column(0)[..surface.mesh().n_vertices()].to_vec();
+        Ok(Self { surface, form, distances })
     }
 
     /// Approximate size in memory.

@@ -8,12 +8,13 @@ mod figure6;
 mod figure7;
 mod figure8;
 mod figure9;
+mod invariance;
 mod retrieve;
 mod scaling;
 
 use anyhow::Result;
 use report::page::{Section, charts, explorer, gallery};
-use report::results::{CurvesResults, Figure3Results, Figure9Results, RetrievalResults};
+use report::results::{CurvesResults, Figure3Results, Figure9Results, InvarianceResults, RetrievalResults};
 
 use crate::context::Context;
 
@@ -38,7 +39,7 @@ macro_rules! experiment {
 
 /// All experiments, in the order in which they run and appear on the page.
 #[rustfmt::skip]
-pub(crate) const EXPERIMENTS: [Experiment; 11] = [
+pub(crate) const EXPERIMENTS: [Experiment; 12] = [
     experiment!("figure1", "Figure 1. Shapes and their canonical forms", gallery, figure1::run),
     experiment!("figure3", "Figure 3. Canonical forms by several methods", charts::<Figure3Results>, figure3::run),
     experiment!("figure4", "Figure 4. Classification of shapes by their canonical forms", explorer, figure4::run),
@@ -49,6 +50,7 @@ pub(crate) const EXPERIMENTS: [Experiment; 11] = [
     experiment!("figure8", "Figure 8. Time against the number of samples", charts::<CurvesResults>, figure8::run),
     experiment!("figure9", "Figure 9. Time and memory of whole embeddings", charts::<Figure9Results>, figure9::run),
     experiment!("retrieval", "Retrieval. Classification by signatures and canonical forms", charts::<RetrievalResults>, retrieve::run),
+    experiment!("invariance", "Invariance. Retrieval of damaged shapes", charts::<InvarianceResults>, invariance::run),
     experiment!("scaling", "Scaling. Time and memory up to a million vertices", charts::<CurvesResults>, scaling::run),
 ];
 

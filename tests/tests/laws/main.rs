@@ -9,6 +9,7 @@
 //! | `guarantees` | the tests behind `docs/robustness.md` |
 //! | `marching` | distances by fast marching |
 //! | `embedding` | embeddings through the whole pipeline |
+//! | `invariance` | signatures of subdivided, simplified, remeshed, noisy and moved shapes |
 //! | `isometry` | invariance to folding, motions, renumbering and units |
 //! | `scale` | the same results in any unit of length |
 //! | `threads` | independence of the number of threads |
@@ -26,6 +27,7 @@ mod cycles;
 mod embedding;
 #[cfg(test)]
 mod guarantees;
+mod invariance;
 #[cfg(test)]
 mod isometry;
 #[cfg(test)]

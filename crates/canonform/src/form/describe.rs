@@ -66,11 +66,13 @@ pub fn describe_within(
     budget: &Budget,
 ) -> Result<ShapeDescription, Error> {
     options.validate()?;
-    ShapeDescription::within(surface, &embed(surface, &options.form, budget)?, options, budget)
+    let working = surface.refined();
+    ShapeDescription::within(&working, &embed(&working, &options.form, budget)?, options, budget)
 }
 
 impl ShapeDescription {
-    /// Describes a surface that has been embedded. The form options are those of the embedding; `options` says
+    /// Describes a surface that has been embedded. [`describe`] gives it a [refined](Surface::refined) one; a coarser one
+    /// has less accurate signatures. The form options are those of the embedding; `options` says
     /// how many points are kept and whether size counts.
     ///
     /// # Errors
@@ -251,9 +253,9 @@ mod tests {
             let form = FormOptions { method, samples: Samples::Count(60), ..FormOptions::default() };
             let options = DescribeOptions { form, ..DescribeOptions::default() };
             let description = describe(&surface, &options).unwrap();
-            let embedded = embed(&surface, &options.form, &()).unwrap();
-            assert_eq!(description, ShapeDescription::new(&surface, &embedded, &options).unwrap());
-            let whole = embedded.form(&surface).unwrap();
+            let embedded = embed(&surface.refined(), &options.form, &()).unwrap();
+            assert_eq!(description, ShapeDescription::new(&surface.refined(), &embedded, &options).unwrap());
+            let whole = embedded.form(&surface.refined()).unwrap();
             assert_eq!(whole.reduced(options.points), description.form);
             assert_eq!(description.form.area().is_some(), options.form.method.has_unit());
             assert_eq!(embedded.distances.n_landmarks(), 60, "{}", options.form.method.name());

@@ -5,6 +5,7 @@ mod dataset;
 mod locate;
 mod path;
 pub(crate) mod point;
+mod refined;
 mod repaired;
 
 pub use all_pairs::{AllPairs, Asymmetry};

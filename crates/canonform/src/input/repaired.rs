@@ -114,6 +114,16 @@ impl Surface {
         })
     }
 
+    /// The same surface on another mesh, whose first vertices are those of the repaired mesh. `origins` are vertices of
+    /// the repaired mesh near the others.
+    #[must_use]
+    pub(crate) fn with_mesh(&self, mesh: TriMesh, origins: &[VertexId]) -> Self {
+        let repaired = Repaired { mesh, ..self.repaired.clone() };
+        let near = origins.iter().map(|&v| self.input_vertex(v));
+        let input_vertex = self.input_vertex.iter().copied().chain(near).collect();
+        Self { intrinsic: repaired.intrinsic(), repaired, input_vertex, ..self.clone() }
+    }
+
     /// The repaired mesh.
     pub fn mesh(&self) -> &TriMesh {
         &self.repaired.mesh

@@ -52,10 +52,11 @@ fn side(path: &Path, args: &CompareArgs, options: &FormOptions, common: &Common)
     let usual = DescribeOptions { form: usual, ..DescribeOptions::default() };
     let measure = || {
         let budget = args.limits.budget();
-        let embedded = embed(&surface, options, &Bars::with_budget(common.quiet, budget.clone()))?;
-        let form = embedded.form(&surface)?;
+        let refined = surface.refined();
+        let embedded = embed(&refined, options, &Bars::with_budget(common.quiet, budget.clone()))?;
+        let form = embedded.form(&refined)?.leading(surface.mesh().vertex_areas())?;
         if embedded.options == usual.form {
-            return Ok((form, ShapeDescription::new(&surface, &embedded, &usual)?.prepare()?, None));
+            return Ok((form, ShapeDescription::new(&refined, &embedded, &usual)?.prepare()?, None));
         }
         let description = describe_within(&surface, &usual, &budget)?;
         let (fused, area) = (description.fused.clone(), Some(description.area));

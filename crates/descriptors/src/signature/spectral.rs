@@ -21,7 +21,7 @@ const EIGENVALUES: usize = SignatureKind::ShapeDna.n_values();
 ///   error of linear finite elements.
 /// * If a mesh has fewer eigenvalues, the remaining values are one.
 pub fn shape_dna(spectrum: &LaplaceSpectrum) -> Signature {
-    let value = |i: usize| spectrum.values.get(i).map_or(1.0, |value| value / (4.0 * PI * i as f64));
+    let value = |i: usize| spectrum.corrected.get(i).map_or(1.0, |value| value / (4.0 * PI * i as f64));
     Signature { kind: SignatureKind::ShapeDna, values: (1..=EIGENVALUES).map(value).collect() }
 }
 
@@ -83,7 +83,9 @@ pub fn wave_kernel_signature(spectrum: &LaplaceSpectrum) -> Signature {
     // Relative to the largest, since all of them underflow far from the eigenvalues.
     let exponent = |j: usize, value: f64| -0.5 * ((energies[j] - value.ln()) / sigma).powi(2);
     let nearest: Vec<f64> = (0..ENERGIES)
-        .map(|j| curved(spectrum).map(|i| exponent(j, spectrum.values[i])).fold(f64::NEG_INFINITY, f64::max))
+        .map(|j| {
+            curved(spectrum).map(|i| exponent(j, spectrum.corrected[i])).fold(f64::NEG_INFINITY, f64::max)
+        })
         .collect();
     let filters = filters(spectrum, ENERGIES, |j, value| (exponent(j, value) - nearest[j]).exp());
     Signature { kind: SignatureKind::WaveKernel, values: distributions(spectrum, &filters, WAVE_BINS) }
@@ -105,7 +107,7 @@ fn curved(spectrum: &LaplaceSpectrum) -> impl Iterator<Item = usize> {
 fn filters(spectrum: &LaplaceSpectrum, n: usize, weight: impl Fn(usize, f64) -> f64) -> Matrix {
     let mut filters = Matrix::zeros(spectrum.values.len(), n);
     for (j, mut column) in filters.column_iter_mut().enumerate() {
-        curved(spectrum).for_each(|i| column[i] = weight(j, spectrum.values[i]));
+        curved(spectrum).for_each(|i| column[i] = weight(j, spectrum.corrected[i]));
         let sum = column.sum();
         if sum > 0.0 {
             column /= sum;

@@ -267,9 +267,10 @@ fn measure(app: &App, collection: &Collection, upload: Upload, budget: &Budget) 
     budget.check()?;
     let describe = collection.search.describe_options();
     let surface = Surface::new(&mesh, &describe.form.repair)?;
+    let refined = surface.refined();
     budget.check()?;
-    let embedded = embed(&surface, &describe.form, budget)?;
+    let embedded = embed(&refined, &describe.form, budget)?;
     budget.check()?;
-    let description = ShapeDescription::within(&surface, &embedded, describe, budget)?;
-    Ok(Query::new(name, Measured::new(surface, &embedded)?, description))
+    let description = ShapeDescription::within(&refined, &embedded, describe, budget)?;
+    Ok(Query::new(name, Measured::new(surface, &refined, &embedded)?, description))
 }

@@ -93,7 +93,8 @@ impl Served {
 
     /// Builds the index again, from the meshes that are there now.
     pub(crate) fn rebuild(&self) {
-        let options = BuildOptions { describe: &DescribeOptions::default(), labels: None, shard: None };
+        let describe = DescribeOptions::default();
+        let options = BuildOptions::new(&describe);
         build_index(&self.folder.join("meshes"), &self.folder.join(INDEX), &options, &()).unwrap();
     }
 

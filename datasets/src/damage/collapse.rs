@@ -1,0 +1,243 @@
+//! Edge collapses on any mesh: decimation and remeshing.
+
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
+use mesh::{TriMesh, shapes};
+use nalgebra::{Matrix3, Point3, Vector3};
+use surface::VertexId;
+
+use super::holes::compacted;
+use crate::stream::Stream;
+
+/// Weight of the planes that hold boundaries in place, relative to those of faces.
+const BOUNDARY: f64 = 10.0;
+
+/// Smallest cosine between the normals of a face before and after a collapse.
+const LEAST_COSINE: f64 = 0.2;
+
+/// Vertices per new vertex before a mesh is triangulated anew.
+const SURPLUS: usize = 6;
+
+/// Collapses edges by quadric error until `n_vertices` vertices are left.
+pub(super) fn decimate(mesh: &TriMesh, n_vertices: usize) -> TriMesh {
+    collapsed(mesh, n_vertices, |error, _, _| error)
+}
+
+/// Triangulates a mesh anew: splits its faces into many and collapses short edges, in an order that is partly random.
+pub(super) fn remesh(mesh: &TriMesh, stream: &mut Stream) -> TriMesh {
+    let n_vertices = mesh.n_vertices();
+    let mut fine = mesh.clone();
+    while !fine.faces.is_empty() && fine.n_vertices() < SURPLUS * n_vertices {
+        fine = shapes::subdivide(&fine);
+    }
+    let factors: Vec<f64> = (0..fine.n_vertices()).map(|_| stream.uniform(0.7, 1.4)).collect();
+    collapsed(&fine, n_vertices, |_, sq_length, [a, b]| sq_length * factors[a] * factors[b])
+}
+
+/// A sum of weighted squared distances from planes, `x' A x + 2 b' x + c`.
+#[derive(Debug, Clone, Copy)]
+struct Quadric {
+    a: Matrix3<f64>,
+    b: Vector3<f64>,
+    c: f64,
+}
+
+impl Quadric {
+    const ZERO: Self = Self {
+        a: Matrix3::new(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0),
+        b: Vector3::new(0.0, 0.0, 0.0),
+        c: 0.0,
+    };
+
+    /// The plane through `at` with the given unit normal.
+    fn plane(normal: Vector3<f64>, at: Point3<f64>, weight: f64) -> Self {
+        let d = -normal.dot(&at.coords);
+        Self { a: normal * normal.transpose() * weight, b: normal * (d * weight), c: d * d * weight }
+    }
+
+    fn plus(self, other: Self) -> Self {
+        Self { a: self.a + other.a, b: self.b + other.b, c: self.c + other.c }
+    }
+
+    fn error(&self, p: Point3<f64>) -> f64 {
+        (p.coords.dot(&(self.a * p.coords)) + 2.0 * self.b.dot(&p.coords) + self.c).max(0.0)
+    }
+
+    /// The point of least error, if the planes determine it and it is near the edge from `p` to `q`; otherwise the best
+    /// of the ends and the middle.
+    fn best(&self, p: Point3<f64>, q: Point3<f64>) -> Point3<f64> {
+        let middle = nalgebra::center(&p, &q);
+        let near = (p - q).norm_squared();
+        let scale = self.a.trace() / 3.0;
+        let solved = (self.a.determinant() > 1e-6 * scale * scale * scale)
+            .then(|| self.a.try_inverse())
+            .flatten()
+            .map(|inverse| Point3::from(-(inverse * self.b)))
+            .filter(|found| (found - middle).norm_squared() <= near);
+        solved.unwrap_or_else(|| {
+            let by_error = |a: &Point3<f64>, b: &Point3<f64>| self.error(*a).total_cmp(&self.error(*b));
+            [middle, p, q].into_iter().min_by(by_error).unwrap_or(middle)
+        })
+    }
+}
+
+/// A mesh under collapse. Dead faces have no vertices in `faces_at`.
+struct Collapse<C> {
+    positions: Vec<Point3<f64>>,
+    faces: Vec<[VertexId; 3]>,
+    /// The living faces at every vertex; empty at a dead one.
+    faces_at: Vec<Vec<u32>>,
+    quadrics: Vec<Quadric>,
+    /// How often a vertex has changed; older entries of the queue are void.
+    changes: Vec<u32>,
+    queue: BinaryHeap<Reverse<(u64, [u32; 2], [u32; 2])>>,
+    cost: C,
+}
+
+/// Collapses edges, those of least `cost` first, until `n_vertices` vertices are left or no edge can be collapsed.
+/// The cost is a function of the quadric error, the squared length and the ends. Edges stay if their collapse would
+/// pinch the surface or invert a face, and so do edges of more than two faces.
+fn collapsed(mesh: &TriMesh, n_vertices: usize, cost: impl Fn(f64, f64, [usize; 2]) -> f64) -> TriMesh {
+    let mut work = Collapse::new(compacted(mesh), cost);
+    let mut n_left = work.positions.len();
+    while n_left > n_vertices.max(4)
+        && let Some(Reverse((_, [a, b], changes))) = work.queue.pop()
+    {
+        let ends = [a as usize, b as usize];
+        if ends.map(|v| work.changes[v]) == changes && work.collapse(ends) {
+            n_left -= 1;
+        }
+    }
+    let mut alive = vec![false; work.faces.len()];
+    work.faces_at.iter().flatten().for_each(|&f| alive[f as usize] = true);
+    let faces = work.faces.iter().zip(alive).filter(|(_, alive)| *alive).map(|(face, _)| *face).collect();
+    compacted(&TriMesh { positions: work.positions, faces })
+}
+
+impl<C: Fn(f64, f64, [usize; 2]) -> f64> Collapse<C> {
+    fn new(mesh: TriMesh, cost: C) -> Self {
+        let n = mesh.n_vertices();
+        let mut faces_at = vec![Vec::new(); n];
+        for (f, face) in mesh.faces.iter().enumerate() {
+            face.iter().for_each(|v| faces_at[v.index()].push(f as u32));
+        }
+        let mut work = Self {
+            positions: mesh.positions,
+            faces: mesh.faces,
+            faces_at,
+            quadrics: vec![Quadric::ZERO; n],
+            changes: vec![0; n],
+            queue: BinaryHeap::new(),
+            cost,
+        };
+        for f in 0..work.faces.len() {
+            work.add_planes(f);
+        }
+        for v in 0..n {
+            work.enqueue(v, |w| v < w);
+        }
+        work
+    }
+
+    /// Adds the plane of a face to its vertices, and upright planes along its boundary edges.
+    fn add_planes(&mut self, f: usize) {
+        let face = self.faces[f].map(|v| v.index());
+        let [a, b, c] = face.map(|v| self.positions[v]);
+        let vector = (b - a).cross(&(c - a));
+        let double_area = vector.norm();
+        if double_area <= 0.0 {
+            return;
+        }
+        let normal = vector / double_area;
+        let plane = Quadric::plane(normal, a, 0.5 * double_area);
+        face.iter().for_each(|&v| self.quadrics[v] = self.quadrics[v].plus(plane));
+        for (i, j) in [(0, 1), (1, 2), (2, 0)] {
+            let (v, w) = (face[i], face[j]);
+            let edge = self.positions[w] - self.positions[v];
+            let length = edge.norm();
+            if self.faces_of_edge(v, w) == 1 && length > 0.0 {
+                let upright = edge.cross(&normal) / length;
+                let plane = Quadric::plane(upright, self.positions[v], BOUNDARY * length * length);
+                for v in [v, w] {
+                    self.quadrics[v] = self.quadrics[v].plus(plane);
+                }
+            }
+        }
+    }
+
+    fn neighbors(&self, v: usize) -> Vec<usize> {
+        let faces = self.faces_at[v].iter().flat_map(|&f| self.faces[f as usize]);
+        let mut found: Vec<usize> = faces.map(VertexId::index).filter(|&w| w != v).collect();
+        found.sort_unstable();
+        found.dedup();
+        found
+    }
+
+    fn faces_of_edge(&self, v: usize, w: usize) -> usize {
+        self.faces_at[v].iter().filter(|&&f| self.faces[f as usize].iter().any(|x| x.index() == w)).count()
+    }
+
+    /// Queues the edges from `v` to the chosen neighbours.
+    fn enqueue(&mut self, v: usize, chosen: impl Fn(usize) -> bool) {
+        for w in self.neighbors(v).into_iter().filter(|&w| chosen(w)) {
+            let (p, q) = (self.positions[v], self.positions[w]);
+            let sum = self.quadrics[v].plus(self.quadrics[w]);
+            let cost = (self.cost)(sum.error(sum.best(p, q)), (p - q).norm_squared(), [v, w]);
+            let changes = [v, w].map(|v| self.changes[v]);
+            // Nonnegative numbers are ordered as their bits are.
+            self.queue.push(Reverse((cost.to_bits(), [v as u32, w as u32], changes)));
+        }
+    }
+
+    /// Merges the second end into the first, at the point of least error; returns whether that was possible.
+    fn collapse(&mut self, [v, w]: [usize; 2]) -> bool {
+        let of_edge = self.faces_of_edge(v, w);
+        let (near_v, near_w) = (self.neighbors(v), self.neighbors(w));
+        let common = near_v.iter().filter(|x| near_w.binary_search(x).is_ok()).count();
+        let on_boundary = |v: usize, near: &[usize]| near.iter().any(|&x| self.faces_of_edge(v, x) != 2);
+        let pinches = of_edge == 2 && on_boundary(v, &near_v) && on_boundary(w, &near_w);
+        // A vertex with fewer than three neighbours would leave a face without area.
+        let small = near_v.len() + near_w.len() - common < 5 && of_edge == 2;
+        if common != of_edge || of_edge > 2 || pinches || small {
+            return false;
+        }
+        let sum = self.quadrics[v].plus(self.quadrics[w]);
+        let target = sum.best(self.positions[v], self.positions[w]);
+        if !(self.stays_unfolded(v, w, target) && self.stays_unfolded(w, v, target)) {
+            return false;
+        }
+        let moved = std::mem::take(&mut self.faces_at[w]);
+        for f in moved {
+            let face = &mut self.faces[f as usize];
+            if face.iter().any(|x| x.index() == v) {
+                for x in *face {
+                    self.faces_at[x.index()].retain(|&g| g != f);
+                }
+            } else {
+                face.iter_mut().filter(|x| x.index() == w).for_each(|x| *x = VertexId::from(v));
+                self.faces_at[v].push(f);
+            }
+        }
+        self.positions[v] = target;
+        self.quadrics[v] = sum;
+        self.changes[v] += 1;
+        self.changes[w] += 1;
+        self.enqueue(v, |_| true);
+        true
+    }
+
+    /// Whether no face at `v` but those of the edge to `w` is inverted when `v` moves to `target`.
+    fn stays_unfolded(&self, v: usize, w: usize, target: Point3<f64>) -> bool {
+        self.faces_at[v].iter().all(|&f| {
+            let face = self.faces[f as usize].map(VertexId::index);
+            if face.contains(&w) {
+                return true;
+            }
+            let normal = |[a, b, c]: [Point3<f64>; 3]| (b - a).cross(&(c - a));
+            let old = normal(face.map(|x| self.positions[x]));
+            let new = normal(face.map(|x| if x == v { target } else { self.positions[x] }));
+            old.dot(&new) > LEAST_COSINE * (old.norm_squared() * new.norm_squared()).sqrt()
+        })
+    }
+}

@@ -1,0 +1,83 @@
+//! Holes.
+
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
+use mesh::TriMesh;
+use surface::components_of_faces;
+
+use crate::stream::Stream;
+
+/// Number of discs.
+const DISCS: usize = 3;
+
+/// Most places that are drawn for a disc.
+const DRAWS: usize = 20;
+
+/// Cuts discs with the given share of the area in total out of a mesh.
+pub(super) fn holes(mesh: &TriMesh, share: f64, stream: &mut Stream) -> TriMesh {
+    let each = share * mesh.area() / DISCS as f64;
+    let mut left = mesh.clone();
+    for _ in 0..DISCS {
+        let parts = components_of_faces(left.n_vertices(), &left.faces).count;
+        for draw in 1..=DRAWS {
+            if left.faces.is_empty() {
+                return left;
+            }
+            let first = stream.below(left.n_faces());
+            let cut = without_disc(&left, first, each);
+            if draw == DRAWS || components_of_faces(cut.n_vertices(), &cut.faces).count == parts {
+                left = cut;
+                break;
+            }
+        }
+    }
+    compacted(&left)
+}
+
+/// The mesh without the faces around `first`, nearest in space first, until they cover `area`. They are connected by
+/// vertices.
+fn without_disc(mesh: &TriMesh, first: usize, area: f64) -> TriMesh {
+    let mut faces_at = vec![Vec::new(); mesh.n_vertices()];
+    for (f, face) in mesh.faces.iter().enumerate() {
+        face.iter().for_each(|v| faces_at[v.index()].push(f));
+    }
+    let centre = |f: usize| mesh.triangle(f).iter().map(|p| p.coords).sum::<nalgebra::Vector3<f64>>() / 3.0;
+    let middle = centre(first);
+    // Nonnegative numbers are ordered as their bits are.
+    let entry = |f: usize| Reverse(((centre(f) - middle).norm_squared().to_bits(), f));
+    let mut reached = vec![false; mesh.n_faces()];
+    let mut is_cut = vec![false; mesh.n_faces()];
+    let mut queue = BinaryHeap::from([entry(first)]);
+    reached[first] = true;
+    let mut covered = 0.0;
+    while covered < area
+        && let Some(Reverse((_, f))) = queue.pop()
+    {
+        is_cut[f] = true;
+        covered += 0.5 * mesh.area_vector(f).norm();
+        for &near in mesh.faces[f].iter().flat_map(|v| &faces_at[v.index()]) {
+            if !std::mem::replace(&mut reached[near], true) {
+                queue.push(entry(near));
+            }
+        }
+    }
+    let kept = mesh.faces.iter().zip(&is_cut).filter(|(_, cut)| !**cut).map(|(face, _)| *face).collect();
+    TriMesh { positions: mesh.positions.clone(), faces: kept }
+}
+
+/// The mesh without vertices that no face names.
+pub(super) fn compacted(mesh: &TriMesh) -> TriMesh {
+    let mut number = vec![None; mesh.n_vertices()];
+    mesh.faces.iter().flatten().for_each(|v| number[v.index()] = Some(0));
+    let mut positions = Vec::new();
+    for (p, number) in mesh.positions.iter().zip(&mut number) {
+        if let Some(number) = number {
+            *number = positions.len();
+            positions.push(*p);
+        }
+    }
+    let faces =
+        mesh.faces.iter().map(|face| face.map(|v| surface::VertexId::from(number[v.index()].unwrap_or(0))));
+    TriMesh { faces: faces.collect(), positions }
+}

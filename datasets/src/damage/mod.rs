@@ -1,0 +1,190 @@
+//! Damage: what happens to the mesh of a shape between one program and the next.
+//!
+//! A retrieval system should find a shape again after each of them. All work on any mesh, not only on generated ones.
+
+mod collapse;
+mod holes;
+mod noise;
+
+use std::fmt;
+
+use mesh::{TriMesh, shapes};
+use nalgebra::{Matrix3, Point3};
+
+use crate::stream::{Purpose, Stream};
+
+/// A change of a mesh that leaves the shape recognisable.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Damage {
+    /// Every face is split into four at the midpoints of its edges, this many times. The surface is the same.
+    Subdivide(u32),
+    /// Edges are collapsed by quadric error (Garland and Heckbert 1997, `garland1997` in `REFERENCES.bib`) until this
+    /// share of the vertices is left.
+    Decimate(f64),
+    /// The surface gets new vertices, as many as before and evenly spread, and new triangles.
+    Remesh,
+    /// Every coordinate of every vertex gets normal noise. Its standard deviation is this share of the diagonal of the
+    /// bounding box.
+    Noise(f64),
+    /// Three discs with this share of the area in total are cut out. The rest stays in one piece if a place for them can
+    /// be found.
+    Holes(f64),
+    /// A random rotation and a shift by the diagonal of the bounding box.
+    Move,
+    /// A random scale from 1/10 to 10.
+    Scale,
+    /// A mirror image, with faces still oriented outwards.
+    Mirror,
+}
+
+impl Damage {
+    /// Applies the damage. The same mesh and seed give the same bytes on any machine.
+    #[must_use]
+    pub fn apply(self, mesh: &TriMesh, seed: u64) -> TriMesh {
+        let mut stream = Stream::new(seed, 0, 0, Purpose::Damage);
+        match self {
+            Self::Subdivide(times) => (0..times).fold(mesh.clone(), |mesh, _| shapes::subdivide(&mesh)),
+            Self::Decimate(share) => collapse::decimate(mesh, (share * mesh.n_vertices() as f64) as usize),
+            Self::Remesh => collapse::remesh(mesh, &mut stream),
+            Self::Noise(share) => noise::noise(mesh, share * diagonal(mesh), &mut stream),
+            Self::Holes(share) => holes::holes(mesh, share, &mut stream),
+            Self::Move => {
+                let (turn, shift) = (stream.rotation(), diagonal(mesh));
+                transformed(mesh, |p| turn * p + nalgebra::Vector3::new(shift, -shift, shift))
+            }
+            Self::Scale => {
+                // Evenly spread in powers of two and fractions between them.
+                let factor = f64::powi(2.0, stream.below(6) as i32 - 3) * stream.uniform(0.8, 1.25);
+                transformed(mesh, |p| p * factor)
+            }
+            Self::Mirror => {
+                let flip = Matrix3::from_diagonal(&[-1.0, 1.0, 1.0].into());
+                let mut mirrored = transformed(mesh, |p| flip * p);
+                mirrored.faces.iter_mut().for_each(|face| face.swap(0, 1));
+                mirrored
+            }
+        }
+    }
+
+    /// Whether the surface is the same up to a motion, a reflection and scale.
+    #[must_use]
+    pub fn keeps_surface(self) -> bool {
+        matches!(self, Self::Subdivide(_) | Self::Move | Self::Scale | Self::Mirror)
+    }
+}
+
+impl fmt::Display for Damage {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Subdivide(1) => f.write_str("subdivided"),
+            Self::Subdivide(times) => write!(f, "subdivided {times} times"),
+            Self::Decimate(share) => write!(f, "decimated to {} %", percent(*share)),
+            Self::Remesh => f.write_str("remeshed"),
+            Self::Noise(share) => write!(f, "noise {} %", percent(*share)),
+            Self::Holes(share) => write!(f, "holes {} %", percent(*share)),
+            Self::Move => f.write_str("moved"),
+            Self::Scale => f.write_str("scaled"),
+            Self::Mirror => f.write_str("mirrored"),
+        }
+    }
+}
+
+/// In percent, without rounding errors.
+fn percent(share: f64) -> f64 {
+    (share * 1e6).round() / 1e4
+}
+
+fn transformed(mesh: &TriMesh, map: impl Fn(&Point3<f64>) -> Point3<f64>) -> TriMesh {
+    TriMesh { positions: mesh.positions.iter().map(map).collect(), faces: mesh.faces.clone() }
+}
+
+/// The diagonal of the bounding box.
+fn diagonal(mesh: &TriMesh) -> f64 {
+    mesh.bounds().map_or(0.0, |[lo, hi]| (hi - lo).norm())
+}
+
+#[cfg(test)]
+mod tests {
+    use mesh::{RepairOptions, repair, validate};
+
+    use super::*;
+    use crate::{ArticulatedOptions, Family, articulated_shape};
+
+    const ALL: [Damage; 11] = [
+        Damage::Subdivide(1),
+        Damage::Subdivide(2),
+        Damage::Decimate(0.5),
+        Damage::Decimate(0.2),
+        Damage::Remesh,
+        Damage::Noise(0.002),
+        Damage::Holes(0.01),
+        Damage::Holes(0.03),
+        Damage::Move,
+        Damage::Scale,
+        Damage::Mirror,
+    ];
+
+    fn cat() -> TriMesh {
+        let options = ArticulatedOptions { n_vertices: 1000, ..ArticulatedOptions::default() };
+        articulated_shape(Family::Cat, 1, &options).unwrap().mesh
+    }
+
+    #[test]
+    fn damage_is_reproducible_and_changes_the_mesh() {
+        let mesh = cat();
+        for damage in ALL {
+            let found = damage.apply(&mesh, 4);
+            assert_eq!(found, damage.apply(&mesh, 4), "{damage}");
+            assert_ne!(found, mesh, "{damage}");
+            let drawn = !matches!(damage, Damage::Subdivide(_) | Damage::Decimate(_) | Damage::Mirror);
+            assert_eq!(found != damage.apply(&mesh, 5), drawn, "{damage}");
+        }
+    }
+
+    #[test]
+    fn a_manifold_stays_one() {
+        let mesh = cat();
+        for damage in ALL {
+            let found = validate(&damage.apply(&mesh, 4));
+            let holes = matches!(damage, Damage::Holes(_));
+            let defects = [found.non_manifold_edges, found.inconsistent_edges, found.unreferenced_vertices];
+            assert_eq!((found.n_components, defects), (1, [0; 3]), "{damage}");
+            assert_eq!(found.n_boundary_loops > 0, holes, "{damage}: {found:?}");
+        }
+    }
+
+    #[test]
+    fn counts_and_areas_are_those_that_were_asked_for() {
+        let mesh = cat();
+        let of = |damage: Damage| damage.apply(&mesh, 4);
+        let area = |damage| of(damage).area() / mesh.area();
+        assert_eq!(of(Damage::Decimate(0.2)).n_vertices(), 200);
+        assert_eq!(of(Damage::Remesh).n_vertices(), 1000);
+        for damage in [Damage::Subdivide(2), Damage::Move, Damage::Mirror] {
+            assert!((area(damage) - 1.0).abs() < 1e-12 && damage.keeps_surface(), "{damage}");
+        }
+        assert!((area(Damage::Decimate(0.5)) - 1.0).abs() < 0.02, "{}", area(Damage::Decimate(0.5)));
+        assert!((area(Damage::Remesh) - 1.0).abs() < 0.03, "{}", area(Damage::Remesh));
+        for share in [0.01, 0.03] {
+            let cut = 1.0 - area(Damage::Holes(share));
+            assert!((share..1.6 * share).contains(&cut), "{cut}");
+        }
+    }
+
+    #[test]
+    fn any_mesh_can_be_damaged() {
+        let mut fans = shapes::disjoint(&[shapes::grid(9, 9, 0.3), shapes::cube(2)]);
+        fans.positions.push([0.4, 0.4, 1.0].into());
+        let first = fans.faces[0];
+        fans.faces.push([first[0], first[1], surface::VertexId(fans.positions.len() as u32 - 1)]);
+        for mesh in [TriMesh::default(), shapes::tetrahedron(0), fans] {
+            for damage in ALL {
+                let found = damage.apply(&mesh, 1);
+                assert!(
+                    mesh.faces.is_empty() || repair(&found, &RepairOptions::default()).is_ok(),
+                    "{damage}"
+                );
+            }
+        }
+    }
+}

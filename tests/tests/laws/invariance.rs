@@ -1,0 +1,82 @@
+//! Signatures depend on the surface, not on its triangles.
+
+use canonform::{DescribeOptions, ShapeDescription, describe};
+use datasets::{ArticulatedOptions, Damage, Family, articulated_shape};
+use descriptors::{ShapeMetric, ShapePair};
+use mesh::TriMesh;
+use rayon::prelude::*;
+
+use crate::support::surface;
+
+/// Largest combined distance of shapes with the same surface, at 250 vertices and more.
+const SAME_SURFACE: f64 = 0.4;
+
+/// The same by one signature, in its unit.
+const SAME_SIGNATURE: f64 = 0.6;
+
+/// Largest combined distance of a shape from the damaged one, which has as good as the same surface.
+const SAME_SHAPE: f64 = 2.1;
+
+fn described(mesh: &TriMesh) -> ShapeDescription {
+    describe(&surface(mesh), &DescribeOptions::default()).unwrap()
+}
+
+/// The largest change of a signature in its unit, and the combined distance.
+fn change(a: &ShapeDescription, b: &ShapeDescription) -> (f64, f64) {
+    let signatures = a.signatures.iter().zip(&b.signatures);
+    let largest = signatures.map(|(a, b)| a.distance(b) / ShapeMetric::unit(a.kind)).fold(0.0, f64::max);
+    let shapes = [a, b].map(|shape| shape.prepare().unwrap());
+    (largest, ShapePair::new(ShapeMetric::default(), [&shapes[0], &shapes[1]]).distance().combined)
+}
+
+/// A shape of the built-in families with any number of vertices.
+fn body(family: Family, n_vertices: usize) -> TriMesh {
+    let options = ArticulatedOptions { n_vertices: n_vertices.max(1000), ..Default::default() };
+    let mesh = articulated_shape(family, 2, &options).unwrap().mesh;
+    match n_vertices < 1000 {
+        true => Damage::Decimate(n_vertices as f64 / 1000.0).apply(&mesh, 1),
+        false => mesh,
+    }
+}
+
+/// Asserts bounds on the changes by all damages of bodies with this many vertices.
+fn check(n_vertices: usize, damages: &[Damage], most: f64, most_of_signature: f64) {
+    let bodies: Vec<_> =
+        Family::all().into_par_iter().map(|family| (family, body(family, n_vertices))).collect();
+    bodies.par_iter().for_each(|(family, mesh)| {
+        let before = described(mesh);
+        for damage in damages {
+            let (signature, combined) = change(&before, &described(&damage.apply(mesh, 7)));
+            let what = format!("{} of {n_vertices} vertices, {damage}", family.name());
+            println!("{what}: {combined:.3}, by one signature {signature:.3}");
+            assert!(combined < most && signature < most_of_signature, "{what}: {combined} {signature}");
+        }
+    });
+}
+
+#[test]
+fn the_same_surface_has_the_same_signatures() {
+    let same = [Damage::Subdivide(1), Damage::Move, Damage::Scale, Damage::Mirror];
+    assert!(same.iter().all(|damage| damage.keeps_surface()));
+    for n_vertices in [250, 1000, 4000] {
+        check(n_vertices, &same, SAME_SURFACE, SAME_SIGNATURE);
+    }
+    check(250, &[Damage::Subdivide(3)], SAME_SURFACE, SAME_SIGNATURE);
+}
+
+#[test]
+fn another_triangulation_is_the_same_shape() {
+    for n_vertices in [1000, 4000] {
+        check(n_vertices, &[Damage::Remesh, Damage::Decimate(0.5)], SAME_SHAPE, f64::INFINITY);
+    }
+    check(4000, &[Damage::Decimate(0.2)], SAME_SHAPE, f64::INFINITY);
+}
+
+#[test]
+fn noise_and_holes_leave_the_same_shape() {
+    for n_vertices in [1000, 4000] {
+        check(n_vertices, &[Damage::Noise(0.002)], SAME_SHAPE, f64::INFINITY);
+        let more = [Damage::Noise(0.005), Damage::Holes(0.01)];
+        check(n_vertices, &more, ShapeMetric::SAME_CLASS.at, f64::INFINITY);
+    }
+}
