@@ -8,14 +8,14 @@ use rayon::prelude::*;
 
 use crate::support::surface;
 
-/// Largest combined distance of shapes with the same surface, at 250 vertices and more.
-const SAME_SURFACE: f64 = 0.4;
+/// Largest combined distance of shapes with the same surface, at 250 vertices and more: a firm verdict of one shape.
+const SAME_SURFACE: f64 = 1.2;
 
 /// The same by one signature, in its unit.
-const SAME_SIGNATURE: f64 = 0.6;
+const SAME_SIGNATURE: f64 = 1.5;
 
-/// Largest combined distance of a shape from the damaged one, which has as good as the same surface.
-const SAME_SHAPE: f64 = 2.1;
+/// Largest combined distance of a shape from the damaged one, whose surface is as good as the same.
+const SAME_SHAPE: f64 = 0.7 * ShapeMetric::SAME_CLASS.at;
 
 fn described(mesh: &TriMesh) -> ShapeDescription {
     describe(&surface(mesh), &DescribeOptions::default()).unwrap()
