@@ -27,6 +27,7 @@ mod cycles;
 mod embedding;
 #[cfg(test)]
 mod guarantees;
+#[cfg(test)]
 mod invariance;
 #[cfg(test)]
 mod isometry;
