@@ -4,7 +4,7 @@ use std::collections::HashSet;
 use std::f64::consts::PI;
 
 use canonform_datasets::{
-    ArticulatedOptions, DatasetError, Family, LabeledShape, articulated, articulated_shape,
+    ArticulatedOptions, DatasetError, Family, LabeledShape, articulated, articulated_body, articulated_shape,
 };
 use mesh::{TriMesh, validate};
 use nalgebra::Point3;
@@ -173,4 +173,24 @@ fn sizes_out_of_range_are_errors() {
     let none = options(0).validate().unwrap_err();
     assert_eq!(none, DatasetError::VertexCount { n_vertices: 0, least, most });
     assert!(ArticulatedOptions::default().validate().is_ok());
+}
+
+#[test]
+fn bodies_of_a_family_differ_in_every_seed_alike() {
+    let area = |seed: u64, body: usize| {
+        let options = ArticulatedOptions { seed, n_vertices: 2000 };
+        let shape = articulated_body(Family::David, body, 0, &options).unwrap();
+        let report = validate(&shape.mesh);
+        assert_eq!((report.n_components, report.genus, report.n_boundary_edges), (1, Some(0), 0));
+        assert_eq!(shape.label, "david");
+        report.area
+    };
+    for body in [1, 2] {
+        // Triangulations differ from seed to seed, bodies do not.
+        assert!((area(1, body) / area(2, body) - 1.0).abs() < 0.01);
+        assert!((area(1, body) / area(1, 0) - 1.0).abs() > 0.01);
+    }
+    let options = options(1000);
+    let own = articulated_shape(Family::Cat, 3, &options).unwrap();
+    assert_eq!(articulated_body(Family::Cat, 0, 3, &options).unwrap(), own);
 }
