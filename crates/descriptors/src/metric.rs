@@ -132,7 +132,7 @@ impl ShapeMetric {
     ///
     /// The steepness is Fisher's with the variance of bodies for both, since three families say little about the
     /// variance among families. Measured as [`SAME_SHAPE`](Self::SAME_SHAPE).
-    pub const SAME_CLASS: Boundary = Boundary { at: 3.5, steepness: 18.0 };
+    pub const SAME_CLASS: Boundary = Boundary { at: 3.525, steepness: 17.98 };
 
     /// Points of every form that are matched with the nearest points of another form.
     pub const MATCHED_POINTS: usize = 400;

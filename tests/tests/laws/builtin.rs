@@ -2,7 +2,7 @@
 
 use canonform::{DescribeOptions, FormOptions, describe, embed, form_matches};
 use datasets::{ArticulatedOptions, articulated};
-use descriptors::{Handedness, Normalization, ShapeMetric, ShapePair, VerdictKind};
+use descriptors::{Boundary, Handedness, Normalization, ShapeMetric, ShapePair, VerdictKind};
 use rayon::prelude::*;
 use retrieval::{Labels, evaluate};
 
@@ -59,4 +59,21 @@ fn verdicts_distinguish_poses_from_families() {
     let same = poses.iter().filter(|kind| ***kind == VerdictKind::SameShape).count();
     println!("{same} of {} pairs of poses are firmly one shape", poses.len());
     assert!(2 * same > poses.len(), "{same} of {}", poses.len());
+}
+
+#[test]
+fn the_manual_lists_the_limits_of_verdicts() {
+    let manual = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/program.md")).unwrap();
+    let limits =
+        |boundary: Boundary| [0.9, 0.1].map(|probability| format!("{:.2}", boundary.distance(probability)));
+    let ([shape, class], [near, far]) = (limits(ShapeMetric::SAME_SHAPE), limits(ShapeMetric::SAME_CLASS));
+    for row in [
+        format!("below {shape} |"),
+        format!("{shape} to {class} |"),
+        format!("{class} to {near} |"),
+        format!("{near} to {far} |"),
+        format!("above {far} |"),
+    ] {
+        assert!(manual.contains(&row), "docs/program.md does not list `{row}`");
+    }
 }
