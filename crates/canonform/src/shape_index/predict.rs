@@ -166,7 +166,7 @@ impl Prediction {
         if let Some(label) = &self.label {
             return self.vote_in_words(label);
         }
-        let Some(nearest) = &self.nearest else { return "unknown: the index is empty".to_owned() };
+        let Some(nearest) = &self.nearest else { return "unknown. The index is empty".to_owned() };
         let Verdict { distance, .. } = nearest.verdict;
         if self.unknown == Some(Unknown::Unlabelled) {
             return format!(
@@ -179,7 +179,7 @@ impl Prediction {
             label => format!("of the class {label}"),
         };
         let mut words = format!(
-            "unknown: the nearest shape, {} {class}, is at combined distance {distance:.3}: {}. Shapes of one class are below {:.3}",
+            "unknown. The nearest shape, {} {class}, is at combined distance {distance:.3}: {}. Shapes of one class are below {:.3}",
             nearest.id, nearest.verdict, self.class_below
         );
         if let Some(threshold) = self.threshold {

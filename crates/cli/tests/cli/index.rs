@@ -90,7 +90,7 @@ fn an_unknown_class_is_explained() {
     let distance = format!("{:.3}", nearest["distance"].as_f64().unwrap());
     for words in [
         predicted["explanation"].as_str().unwrap(),
-        "class: unknown: the nearest shape",
+        "class: unknown. The nearest shape",
         nearest["id"].as_str().unwrap(),
         nearest["verdict"]["text"].as_str().unwrap(),
         &distance,
