@@ -14,9 +14,9 @@ const TOO_HIGH: u32 = 1 << 31;
 
 /// Buckets become this much narrower or wider at a time.
 const FACTOR: f64 = 4.0;
-/// They become narrower after this many vertices, plus a share of those in the ring, entered one late.
+/// They become narrower after this many vertices, plus a share of those in the queue, entered one late.
 const LATE: usize = 64;
-/// Whether they should become wider is decided after this many buckets, plus a share of the vertices in the ring.
+/// Whether they should become wider is decided after this many buckets, plus a share of the vertices in the queue.
 const PERIOD: usize = 256;
 /// Divisor for that share: sorting again must cost no more than the work since the last time.
 const SHARE: usize = 8;
@@ -197,7 +197,7 @@ impl Buckets {
     /// Makes buckets narrower or wider if that is due.
     #[inline]
     fn fit_width(&mut self, distance: &impl Fn(u32) -> f64) {
-        let share = self.n_entries / SHARE;
+        let share = (self.n_entries + self.beyond.len()) / SHARE;
         let is_too_high = self.current > TOO_HIGH;
         if self.n_late > LATE + share && self.current < TOO_HIGH / FACTOR as u32 {
             self.sort_again(self.width / FACTOR, distance);
