@@ -17,7 +17,7 @@ mod surface;
 pub use bar::render_with_bar;
 pub use camera::{View, aspect};
 pub use dots::dots;
-pub use draw::render;
+pub use draw::{render, render_within};
 pub use options::{Background, RenderOptions};
 pub use surface::Surface;
 
