@@ -12,7 +12,7 @@ use surface::IntrinsicMesh;
 use surface::laplacian::Laplacian;
 
 use super::as_text;
-use super::distances::Measurement;
+use super::distances::{Measurement, check_memory};
 use crate::error::Error;
 
 /// How distances become coordinates.
@@ -153,6 +153,8 @@ impl EmbedMethod {
             }
             Self::Landmark => sampled(measurement.sampled(|d| landmark_mds(d, dim))?),
             Self::Spectral { eigenvectors, mu } => {
+                let p = surface.n_vertices();
+                check_memory(p, eigenvectors.min(p), &budget)?;
                 let LaplaceSpectrum { values, vectors, masses, .. } =
                     LaplaceSpectrum::within(surface, eigenvectors, &budget)?;
                 let basis = SpectralBasis { values: &values, vectors: &vectors, masses: &masses };

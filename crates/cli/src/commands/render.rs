@@ -11,7 +11,7 @@ use mesh::io::ScalarField;
 use mesh::{RepairReport, TriMesh};
 use serde::Serialize;
 use terminal::Bars;
-use view::render::{RenderOptions, Surface as Paint, render, render_with_bar, value_range};
+use view::render::{RenderOptions, Surface as Paint, render_with_bar, render_within, value_range};
 
 use crate::args::{Common, Place, RenderArgs};
 use crate::field::read_field;
@@ -125,9 +125,10 @@ fn draw_one(
         _ => mesh,
     };
     let options = options(args, field.as_ref());
+    let budget = args.limits.budget();
     let image = match &field {
         Some(field) if !args.no_bar => render_with_bar(&drawn, &options, &field.name)?,
-        _ => render(&drawn, &options),
+        _ => render_within(&drawn, &options, &budget).map_err(|fault| named(path, fault.into()))?,
     };
     image.write_png(output)?;
     Ok(RenderJson {

@@ -26,6 +26,7 @@ mod visibility;
 
 use std::sync::OnceLock;
 
+use budget::Budget;
 use surface::IntrinsicMesh;
 
 use crate::error::GeodesicError;
@@ -92,6 +93,7 @@ const ROUNDING: f64 = 1e-11;
 pub struct PathTracer<'a> {
     field: Field<'a>,
     tree: OnceLock<EdgeTree>,
+    budget: Budget,
 }
 
 impl<'a> PathTracer<'a> {
@@ -102,14 +104,25 @@ impl<'a> PathTracer<'a> {
     #[must_use]
     pub fn new(mesh: &'a IntrinsicMesh, sources: &'a [Source], distances: &'a [f64]) -> Self {
         assert_eq!(distances.len(), mesh.n_vertices(), "one distance per vertex");
-        Self { field: Field::new(mesh, sources, distances), tree: OnceLock::new() }
+        Self {
+            field: Field::new(mesh, sources, distances),
+            tree: OnceLock::new(),
+            budget: Budget::unlimited(),
+        }
+    }
+
+    /// The same tracer, which keeps to the time of a budget. It is checked before and after each attempt at a path.
+    #[must_use]
+    pub fn with_budget(self, budget: Budget) -> Self {
+        Self { budget, ..self }
     }
 
     /// The shortest path from the nearest source to `target`.
     ///
     /// # Errors
     /// [`GeodesicError::NoSuchVertex`] and [`GeodesicError::BadPoint`] if the target is not on the surface;
-    /// [`GeodesicError::NoWay`] if its distance is infinite, or no edge or link leads there.
+    /// [`GeodesicError::NoWay`] if its distance is infinite, or no edge or link leads there;
+    /// [`GeodesicError::Exceeded`].
     pub fn path_to(&self, target: SurfacePoint) -> Result<GeodesicPath, GeodesicError> {
         let mesh = self.field.mesh;
         let around = Source::new(mesh, target)?;
@@ -126,8 +139,10 @@ impl<'a> PathTracer<'a> {
         }
         // Between vertices the field gives only an upper bound.
         let enough = if matches!(target, SurfacePoint::Vertex(_)) { known } else { 0.0 };
+        self.budget.check()?;
         let mut rays = MAX_RAYS;
         let mut best = self.path_from(target, enough, MAX_LEGS, &mut rays);
+        self.budget.check()?;
         let length = |path: &Option<Path>| path.as_ref().map_or(f64::INFINITY, |path| path.length(mesh));
         if length(&best) > known && length(&best) > distance(&self.tree().distances) {
             let other = self.tree().path_from(mesh, target).map(|path| straighten(mesh, path));

@@ -51,7 +51,8 @@ pub(super) fn write(task: Task<'_>) -> Result<ExitCode> {
     let start = Instant::now();
     let (mut paths, mut facts) = (Vec::new(), Vec::new());
     for row in &rows {
-        let tracer = PathTracer::new(&surface.intrinsic, &row.sources, &row.distances);
+        let tracer = PathTracer::new(&surface.intrinsic, &row.sources, &row.distances)
+            .with_budget(task.solver.budget());
         for (target, at) in args.path_to.iter().zip(&targets) {
             let mut path = surface.path(&tracer, *at).map_err(fault)?;
             // The ends as the user wrote them.
