@@ -1,0 +1,161 @@
+//! Every entry point ends early when its budget is exceeded, and never with a wrong result.
+
+use std::time::{Duration, Instant};
+
+use canonform::geodesics::Method;
+use canonform::mesh::shapes;
+use canonform::{
+    Budget, BuildOptions, DescribeOptions, EmbedMethod, Error, Exceeded, FormOptions, Remedy, Samples,
+    SearchOptions, ShapeSearch, StressOptions, Surface, build_index, compare_methods, describe_within, embed,
+    embed_and_measure,
+};
+
+/// Work on a surface of this size ends within this time after a cancellation. Only a factorisation or a dense
+/// decomposition in progress is finished first.
+const LATENCY: Duration = Duration::from_millis(500);
+
+/// Runs `work` with a budget that is cancelled after a delay, for some delays. The work must end soon, with the
+/// expected result if it was faster than the delay and cancelled otherwise.
+fn assert_cancellable<T: PartialEq + std::fmt::Debug>(
+    name: &str,
+    work: impl Fn(&Budget) -> Result<T, Error> + Sync,
+) {
+    let expected = work(&Budget::unlimited()).unwrap();
+    for delay in [0, 2, 10, 40, 150].map(Duration::from_millis) {
+        let budget = Budget::unlimited();
+        let (result, latency) = std::thread::scope(|scope| {
+            let at = scope.spawn(|| {
+                std::thread::sleep(delay);
+                budget.cancel();
+                Instant::now()
+            });
+            let result = work(&budget);
+            let end = Instant::now();
+            (result, end.saturating_duration_since(at.join().unwrap()))
+        });
+        assert!(latency < LATENCY, "{name}: {latency:?} after {delay:?}");
+        match result {
+            Ok(found) => assert_eq!(found, expected, "{name}"),
+            Err(Error::Exceeded(Exceeded::Cancelled)) => {}
+            Err(other) => panic!("{name}: {other:?}"),
+        }
+    }
+    let cancelled = Budget::unlimited();
+    cancelled.cancel();
+    assert!(matches!(work(&cancelled), Err(Error::Exceeded(Exceeded::Cancelled))), "{name}");
+    let limit = Duration::ZERO;
+    let late = work(&Budget::unlimited().with_time(limit)).unwrap_err();
+    assert!(matches!(late, Error::Exceeded(Exceeded::Time { .. })), "{name}: {late:?}");
+    assert_eq!(late.remedy(), Some(Remedy::RaiseTimeLimit));
+}
+
+fn torus(n: usize) -> Surface {
+    Surface::new(&shapes::torus(2 * n, n, 2.0, 0.7), &Default::default()).unwrap()
+}
+
+#[test]
+fn every_embedding_is_cancellable() {
+    let surface = torus(24);
+    for method in EmbedMethod::all() {
+        let options = FormOptions { method, samples: Samples::Count(60), ..FormOptions::default() };
+        assert_cancellable(options.method.name(), |budget| {
+            Ok(embed(&surface, &options, budget)?.embedding.coords)
+        });
+    }
+}
+
+#[test]
+fn every_solver_is_cancellable_in_an_embedding_and_its_stress() {
+    let surface = torus(24);
+    for geodesic in Method::all() {
+        let options = FormOptions { geodesic, samples: Samples::Auto, ..FormOptions::default() };
+        assert_cancellable(geodesic.name(), |budget| {
+            let embedded = embed_and_measure(&surface, &options, &StressOptions::default(), budget)?;
+            Ok(embedded.report.stress)
+        });
+    }
+}
+
+#[test]
+fn describing_searching_and_comparing_methods_are_cancellable() {
+    let surface = torus(30);
+    let options = DescribeOptions::default();
+    assert_cancellable("describe", |budget| describe_within(&surface, &options, budget));
+
+    let folder = tempfile::tempdir().unwrap();
+    for n in 0..8u32 {
+        let mesh = shapes::torus(20 + 2 * n as usize, 11, 2.0, 0.4 + 0.05 * f64::from(n));
+        canonform::mesh::io::write(&folder.path().join(format!("ring{n}.off")), &mesh).unwrap();
+    }
+    let path = folder.path().join("rings.canonform");
+    let build = BuildOptions { describe: &options, labels: None, shard: None };
+    build_index(folder.path(), &path, &build, &()).unwrap();
+    let (search, query) = (ShapeSearch::open(&path).unwrap(), shapes::torus(23, 12, 2.0, 0.5));
+    assert_cancellable("search", |budget| {
+        let report = search.search_within(&query, &SearchOptions::default(), budget)?;
+        Ok(report
+            .results
+            .into_iter()
+            .map(|result| (result.id, result.distance.to_bits()))
+            .collect::<Vec<_>>())
+    });
+
+    let form = FormOptions::default();
+    let variants = [("", form.clone()), ("exact", FormOptions { geodesic: Method::Exact, ..form.clone() })];
+    assert_cancellable("methods", |budget| {
+        let watch = |work: &mut dyn FnMut()| {
+            work();
+            0
+        };
+        let report = compare_methods(&surface, &form, &variants, &StressOptions::default(), budget, &watch)?;
+        Ok(report.methods.into_iter().map(|m| m.facts.map(|f| f.stress)).collect::<Vec<_>>())
+    });
+}
+
+#[test]
+fn distances_and_eigenpairs_keep_to_the_memory_of_the_budget() {
+    let surface = torus(40);
+    for method in EmbedMethod::all() {
+        let options = FormOptions { method, samples: Samples::Count(200), ..FormOptions::default() };
+        let small = Budget::unlimited().with_memory(1 << 20);
+        let refused = embed(&surface, &options, &small).map(|_| ()).unwrap_err();
+        assert!(matches!(refused, Error::Exceeded(Exceeded::Memory { .. })), "{refused:?}");
+        assert_eq!(refused.remedy(), Some(Remedy::RaiseMemory));
+    }
+}
+
+#[test]
+fn arguments_beyond_the_surface_are_clamped_to_it() {
+    let mesh = shapes::icosphere(2);
+    let surface = Surface::new(&mesh, &Default::default()).unwrap();
+    let all = surface.mesh().n_vertices();
+    let samples = |n| {
+        let options = FormOptions { samples: Samples::Count(n), ..FormOptions::default() };
+        embed(&surface, &options, &()).unwrap().report.n_samples
+    };
+    assert_eq!((samples(usize::MAX), samples(10_000_000)), (all, all));
+    let eigenvectors = |eigenvectors| {
+        let method = EmbedMethod::Spectral { eigenvectors, mu: f64::INFINITY };
+        let options = FormOptions { method, samples: Samples::Count(100), ..FormOptions::default() };
+        embed(&surface, &options, &()).unwrap().embedding.coords
+    };
+    assert_eq!(eigenvectors(usize::MAX), eigenvectors(all));
+}
+
+#[test]
+fn more_results_than_shapes_are_all_shapes() {
+    let folder = tempfile::tempdir().unwrap();
+    let mesh = shapes::icosphere(2);
+    for name in ["ball0", "ball1"] {
+        canonform::mesh::io::write(&folder.path().join(format!("{name}.off")), &mesh).unwrap();
+    }
+    let path = folder.path().join("balls.canonform");
+    let describe = DescribeOptions::default();
+    build_index(folder.path(), &path, &BuildOptions { describe: &describe, labels: None, shard: None }, &())
+        .unwrap();
+    let search = ShapeSearch::open(&path).unwrap();
+    for k in [100_000_000, usize::MAX] {
+        let found = search.search(&mesh, &SearchOptions { k, ..SearchOptions::default() }).unwrap();
+        assert_eq!(found.results.len(), 2);
+    }
+}
