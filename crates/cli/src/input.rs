@@ -37,7 +37,7 @@ pub(crate) fn check_dropped(name: &str, share: f64, allowed: f64) {
             100.0 * share,
             100.0 * allowed
         );
-        eprintln!("warning: {}", with_remedy(message, Some(Remedy::BridgeOrWeld)));
+        terminal::note(&format!("warning: {}", with_remedy(message, Some(Remedy::BridgeOrWeld))));
     }
 }
 
