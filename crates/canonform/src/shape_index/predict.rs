@@ -170,7 +170,7 @@ impl Prediction {
         let Verdict { distance, .. } = nearest.verdict;
         if self.unknown == Some(Unknown::Unlabelled) {
             return format!(
-                "unknown: none of the nearest shapes has a class; the nearest, {}, is at combined distance {distance:.3}: {}",
+                "unknown. None of the nearest shapes has a class; the nearest, {}, is at combined distance {distance:.3}: {}",
                 nearest.id, nearest.verdict
             );
         }
