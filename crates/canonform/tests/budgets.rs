@@ -88,7 +88,7 @@ fn describing_searching_and_comparing_methods_are_cancellable() {
         canonform::mesh::io::write(&folder.path().join(format!("ring{n}.off")), &mesh).unwrap();
     }
     let path = folder.path().join("rings.canonform");
-    let build = BuildOptions { describe: &options, labels: None, shard: None };
+    let build = BuildOptions::new(&options);
     build_index(folder.path(), &path, &build, &()).unwrap();
     let (search, query) = (ShapeSearch::open(&path).unwrap(), shapes::torus(23, 12, 2.0, 0.5));
     assert_cancellable("search", |budget| {
@@ -151,7 +151,7 @@ fn more_results_than_shapes_are_all_shapes() {
     }
     let path = folder.path().join("balls.canonform");
     let describe = DescribeOptions::default();
-    build_index(folder.path(), &path, &BuildOptions { describe: &describe, labels: None, shard: None }, &())
+    build_index(folder.path(), &path, &BuildOptions::new(&describe), &())
         .unwrap();
     let search = ShapeSearch::open(&path).unwrap();
     for k in [100_000_000, usize::MAX] {
