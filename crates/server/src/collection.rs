@@ -90,13 +90,12 @@ impl Collection {
     /// lies on this machine is nobody's business.
     pub(crate) fn public_path(&self, path: &str) -> String {
         let given = Path::new(path);
-        let absolute = std::path::absolute(given).unwrap_or_else(|_| given.to_owned());
-        let relative = self.folders.iter().find_map(|folder| absolute.strip_prefix(folder).ok());
-        match relative {
-            Some(relative) => relative.display().to_string(),
-            None if given.is_relative() => path.to_owned(),
-            None => given.file_name().unwrap_or_default().to_string_lossy().into_owned(),
+        if given.is_relative() {
+            return path.to_owned();
         }
+        let relative = self.folders.iter().find_map(|folder| given.strip_prefix(folder).ok());
+        let name = || Path::new(given.file_name().unwrap_or_default());
+        relative.unwrap_or_else(name).display().to_string()
     }
 }
 
