@@ -151,8 +151,7 @@ fn more_results_than_shapes_are_all_shapes() {
     }
     let path = folder.path().join("balls.canonform");
     let describe = DescribeOptions::default();
-    build_index(folder.path(), &path, &BuildOptions::new(&describe), &())
-        .unwrap();
+    build_index(folder.path(), &path, &BuildOptions::new(&describe), &()).unwrap();
     let search = ShapeSearch::open(&path).unwrap();
     for k in [100_000_000, usize::MAX] {
         let found = search.search(&mesh, &SearchOptions { k, ..SearchOptions::default() }).unwrap();
