@@ -145,7 +145,7 @@ fn comparisons_report_where_shapes_differ() {
     assert!(json["residual"]["max"].as_f64().unwrap() > 0.0 && json["handedness"].is_string());
     assert_eq!(io::read(&place.path("r.ply")).unwrap(), ring());
     place.refused(
-        &["compare", "ring.off", "bumpy.off", "--residual-mesh", "r.obj"],
-        &["unsupported format", ".ply", "r.obj"],
+        &["compare", "ring.off", "bumpy.off", "--residual-mesh", "r.stl"],
+        &["unsupported format", ".ply", "r.stl"],
     );
 }
