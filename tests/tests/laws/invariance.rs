@@ -8,11 +8,11 @@ use rayon::prelude::*;
 
 use crate::support::surface;
 
-/// Largest combined distance of shapes with the same surface, at 250 vertices and more: a firm verdict of one shape.
-const SAME_SURFACE: f64 = 1.2;
+/// Largest combined distance of shapes with the same surface, at 250 vertices and more. A verdict of one shape is firm up to 1.2.
+const SAME_SURFACE: f64 = 0.4;
 
 /// The same by one signature, in its unit.
-const SAME_SIGNATURE: f64 = 1.5;
+const SAME_SIGNATURE: f64 = 0.6;
 
 /// Largest combined distance of a shape from the damaged one, whose surface is as good as the same.
 const SAME_SHAPE: f64 = 0.7 * ShapeMetric::SAME_CLASS.at;
@@ -76,7 +76,8 @@ fn another_triangulation_is_the_same_shape() {
 fn noise_and_holes_leave_the_same_shape() {
     for n_vertices in [1000, 4000] {
         check(n_vertices, &[Damage::Noise(0.002)], SAME_SHAPE, f64::INFINITY);
-        let more = [Damage::Noise(0.005), Damage::Holes(0.01)];
-        check(n_vertices, &more, ShapeMetric::SAME_CLASS.at, f64::INFINITY);
+        check(n_vertices, &[Damage::Holes(0.01)], ShapeMetric::SAME_CLASS.at, f64::INFINITY);
     }
+    // On finer meshes, noise of this size folds the surface.
+    check(1000, &[Damage::Noise(0.005)], ShapeMetric::SAME_CLASS.at, f64::INFINITY);
 }
