@@ -5,7 +5,8 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use anyhow::{Result, bail};
-use canonform::{AllPairs, Asymmetry};
+use canonform::{AllPairs, Asymmetry, Exceeded};
+use files::FileError;
 use mesh::RepairReport;
 use serde::Serialize;
 use surface::VertexId;
@@ -75,7 +76,8 @@ pub(super) fn write(task: Task<'_>) -> Result<ExitCode> {
     fill_npy(task.output.path(), [pairs.n_vertices(); 2], |file| {
         asymmetry = pairs.write(file, &Bars::with_budget(task.common.quiet, args.limits.budget()))?;
         Ok(())
-    })?;
+    })
+    .map_err(|fault| stopped(&fault).map_or(fault, |limit| named(&args.mesh, limit.into())))?;
     let json = PairsJson {
         method: args.method.name(),
         n_vertices: pairs.n_vertices(),
@@ -90,6 +92,12 @@ pub(super) fn write(task: Task<'_>) -> Result<ExitCode> {
         repair: surface.repaired.report.clone(),
     };
     task.output.report(task.common, &json, table)
+}
+
+/// The limit that ended the work, if it was not the file that failed.
+fn stopped(fault: &anyhow::Error) -> Option<Exceeded> {
+    let FileError { source, .. } = fault.downcast_ref()?;
+    source.get_ref()?.downcast_ref().copied()
 }
 
 fn table(json: &PairsJson) -> String {
