@@ -1,5 +1,7 @@
 //! Every entry point ends early when its budget is exceeded, and never with a wrong result.
 
+#![cfg(test)]
+
 use std::time::{Duration, Instant};
 
 use canonform::geodesics::Method;

@@ -273,13 +273,11 @@ impl IndexWriter {
     }
 }
 
-/// The database of an interrupted job and the length of its vectors, if `begun` continues that job.
-fn resume(
-    file: &mut File,
-    work: &Path,
-    job: Job,
-    begun: &Begun,
-) -> Result<Option<(Guarded<Database>, Option<usize>)>, IndexError> {
+/// The database of an interrupted job and the length of its vectors, if it is known.
+type Resumed = (Guarded<Database>, Option<usize>);
+
+/// What an interrupted job left, if `begun` continues that job.
+fn resume(file: &mut File, work: &Path, job: Job, begun: &Begun) -> Result<Option<Resumed>, IndexError> {
     if !is_database(file).map_err(IndexError::io("write", work))? {
         return Ok(None);
     }

@@ -185,7 +185,7 @@ impl GroupTree {
         let mut n_searched = 0usize;
         while let Some(index) = pending.pop() {
             n_searched += 1;
-            if n_searched % BATCH == 0 {
+            if n_searched.is_multiple_of(BATCH) {
                 budget.check()?;
             }
             match self.boxes.nodes[index].children {
