@@ -19,6 +19,13 @@ fn moved(mut mesh: TriMesh, by: [f64; 3]) -> TriMesh {
     mesh
 }
 
+/// A body with a hundredth of the size of the ball.
+fn crumb(at: [f64; 3]) -> TriMesh {
+    let mut mesh = shapes::tetrahedron(0);
+    mesh.positions.iter_mut().for_each(|p| p.coords *= 0.01);
+    moved(mesh, at)
+}
+
 /// Gives every face corners of its own.
 fn soup(mesh: &TriMesh) -> TriMesh {
     let positions = mesh.faces.iter().flatten().map(|v| mesh.positions[v.index()]).collect();
@@ -185,11 +192,7 @@ pub(super) fn defective() -> Vec<BrokenFile> {
         }),
     );
     add("twins.off", "two components of one size", pair([3.0, 0.0, 0.0]));
-    add(
-        "crumb.off",
-        "a small second component",
-        shapes::disjoint(&[ball(), moved(shapes::tetrahedron(0), [9.0; 3])]),
-    );
+    add("crumb.off", "a small second component", shapes::disjoint(&[ball(), crumb([9.0; 3])]));
     add(
         "crumbs.off",
         "sixty components",
@@ -232,7 +235,10 @@ pub(super) fn defective() -> Vec<BrokenFile> {
         "wall.off",
         "a wall through a closed body",
         changed(&|m| {
-            let rim: Vec<usize> = (0..m.n_vertices()).filter(|&v| m.positions[v].z.abs() < 1e-9).collect();
+            let mut rim: Vec<usize> =
+                (0..m.n_vertices()).filter(|&v| m.positions[v].z.abs() < 1e-9).collect();
+            let angle = |v: usize| m.positions[v].y.atan2(m.positions[v].x);
+            rim.sort_by(|&a, &b| angle(a).total_cmp(&angle(b)));
             let centre = m.n_vertices();
             m.positions.push(Point3::origin());
             for (i, &a) in rim.iter().enumerate() {
@@ -256,7 +262,7 @@ pub(super) fn defective() -> Vec<BrokenFile> {
     add("moebius.off", "a band with one side", moebius(40));
     add("projective-plane.off", "a closed surface with one side", projective_plane());
     add("fan.off", "2,000 faces around one vertex", fan(2000));
-    add("triangle.off", "a single triangle", TriMesh { faces: vec![face([0, 1, 2])], ..fan(2) });
+    add("triangle.off", "a single triangle", TriMesh { faces: vec![face([0, 1, 2])], ..fan(5) });
     add("two-triangles.off", "two triangles", shapes::grid(2, 2, 1.0));
     all
 }

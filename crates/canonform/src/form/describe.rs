@@ -2,8 +2,8 @@
 
 use budget::Budget;
 use descriptors::{
-    CanonicalForm, LaplaceSpectrum, Normalization, PreparedShape, ShapeMetric, Signature, SignatureKind,
-    d2_histogram, geodesic_spectrum, heat_kernel_signature, moment_signature, shape_dna,
+    CanonicalForm, DescriptorError, LaplaceSpectrum, Normalization, PreparedShape, ShapeMetric, Signature,
+    SignatureKind, d2_histogram, geodesic_spectrum, heat_kernel_signature, moment_signature, shape_dna,
     wave_kernel_signature,
 };
 use mesh::RepairReport;
@@ -105,6 +105,10 @@ impl ShapeDescription {
             heat_kernel_signature(&spectrum),
             wave_kernel_signature(&spectrum),
         ];
+        let is_wrong = |signature: &&Signature| signature.values.iter().any(|value| !value.is_finite());
+        if let Some(Signature { kind, .. }) = signatures.iter().find(is_wrong) {
+            return Err(DescriptorError::NotFinite { signature: kind.name() }.into());
+        }
         let area = match options.size {
             Normalization::Raw => Some(spectrum.area),
             Normalization::UnitArea => None,
@@ -170,6 +174,15 @@ mod tests {
             p.coords *= 1.0 + 0.5 * bump + 0.1 * p.y;
         }
         mesh
+    }
+
+    #[test]
+    fn signatures_that_are_not_finite_are_an_error() {
+        let mut mesh = shapes::grid(5, 4, 0.1);
+        mesh.positions[18].y = 8.9e124;
+        let surface = Surface::new(&mesh, &RepairOptions::default()).unwrap();
+        let found = describe(&surface, &DescribeOptions::default());
+        assert!(matches!(found, Err(Error::Descriptor(DescriptorError::NotFinite { .. }))), "{found:?}");
     }
 
     #[test]

@@ -30,10 +30,10 @@ fn short(outcome: &Outcome, name: &str) -> String {
 /// What `info` found.
 fn found(info: &Value) -> String {
     let mesh = &info["mesh"];
-    let mut facts = vec![format!("{} vertices, {} faces", mesh["n_vertices"], mesh["n_faces"])];
+    let mut facts = vec![format!("vertices: {}, faces: {}", mesh["n_vertices"], mesh["n_faces"])];
     let count = |name: &str| mesh[name].as_u64().unwrap_or(0);
     if count("n_components") > 1 {
-        facts.push(format!("{} components", count("n_components")));
+        facts.push(format!("components: {}", count("n_components")));
     }
     for (key, name) in [
         ("n_boundary_loops", "boundary loops"),
@@ -47,7 +47,7 @@ fn found(info: &Value) -> String {
         ("flipped_faces", "flipped faces"),
     ] {
         if count(key) > 0 {
-            facts.push(format!("{} {name}", count(key)));
+            facts.push(format!("{name}: {}", count(key)));
         }
     }
     if mesh["orientable"] == false {
