@@ -23,15 +23,12 @@ pub enum DescriptorError {
         /// Number of points.
         n_points: usize,
     },
-    /// A signature with a value that is not finite.
+    /// Signatures with values that are not finite.
     #[error(
-        "the {signature} signature of the mesh is not finite: its triangles differ too much in size; remesh it, or remove \
-         vertices that lie far from the rest"
+        "the signatures of the mesh are not finite: its triangles differ too much in size; remesh it, or remove vertices \
+         that lie far from the rest"
     )]
-    NotFinite {
-        /// Name of the signature.
-        signature: &'static str,
-    },
+    NotFinite,
     /// The name of no signature.
     #[error("there is no signature `{name}`; choose from {known}")]
     UnknownSignature {

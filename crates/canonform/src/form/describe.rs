@@ -105,16 +105,16 @@ impl ShapeDescription {
             heat_kernel_signature(&spectrum),
             wave_kernel_signature(&spectrum),
         ];
-        let is_wrong = |signature: &&Signature| signature.values.iter().any(|value| !value.is_finite());
-        if let Some(Signature { kind, .. }) = signatures.iter().find(is_wrong) {
-            return Err(DescriptorError::NotFinite { signature: kind.name() }.into());
-        }
         let area = match options.size {
             Normalization::Raw => Some(spectrum.area),
             Normalization::UnitArea => None,
         };
+        let fused = ShapeMetric::fuse(&signatures, area);
+        if fused.iter().any(|value| !value.is_finite()) {
+            return Err(DescriptorError::NotFinite.into());
+        }
         Ok(Self {
-            fused: ShapeMetric::fuse(&signatures, area),
+            fused,
             options,
             form: reduced,
             signatures,
@@ -177,12 +177,17 @@ mod tests {
     }
 
     #[test]
-    fn signatures_that_are_not_finite_are_an_error() {
-        let mut mesh = shapes::grid(5, 4, 0.1);
-        mesh.positions[18].y = 8.9e124;
-        let surface = Surface::new(&mesh, &RepairOptions::default()).unwrap();
-        let found = describe(&surface, &DescribeOptions::default());
-        assert!(matches!(found, Err(Error::Descriptor(DescriptorError::NotFinite { .. }))), "{found:?}");
+    fn descriptions_are_finite_or_an_error() {
+        for far in [1e3, 1e50, 8.9e124, 1e150] {
+            let mut mesh = shapes::grid(5, 4, 0.1);
+            mesh.positions[8].z = 1.0;
+            mesh.positions[18].y = far;
+            let surface = Surface::new(&mesh, &RepairOptions::default()).unwrap();
+            match describe(&surface, &DescribeOptions::default()) {
+                Ok(found) => assert!(found.fused.iter().all(|value| value.is_finite()), "{far:e}"),
+                Err(fault) => assert!(matches!(fault, Error::Descriptor(_)), "{far:e}: {fault}"),
+            }
+        }
     }
 
     #[test]
