@@ -129,8 +129,8 @@ mod tests {
         )
         .unwrap();
         let text = |off: f64| paragraph.write(&[("cat off".to_owned(), off)].into(), &["david", "cat"]);
-        assert_eq!(text(0.03).unwrap(), "On cat, 3.00 % is close.");
-        assert_eq!(text(0.079).unwrap(), "On cat, 7.90 % is far.");
+        assert_eq!(text(0.0312).unwrap(), "On cat, 3.12 % is close.");
+        assert_eq!(text(0.0789).unwrap(), "On cat, 7.89 % is far.");
         assert_eq!(paragraph.write(&Measured::new(), &["david", "cat"]).unwrap_err(), "cat off");
     }
 }

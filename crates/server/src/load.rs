@@ -175,10 +175,11 @@ mod tests {
             let job = load.accept(1_000_000, LIMIT).unwrap();
             job.ended(Instant::now().checked_sub(Duration::from_secs_f64(seconds)).unwrap());
         };
-        (0..8).for_each(|_| ended(0.8));
-        assert!((per_byte(&load) - 0.5e-6).abs() < 0.05e-6, "{}", per_byte(&load));
+        let is_half_a_second = || (per_byte(&load) - 0.5e-6).abs() < 0.05e-6;
+        (0..8).for_each(|_| ended(BASE + 0.5));
+        assert!(is_half_a_second(), "{}", per_byte(&load));
         (0..7).for_each(|_| ended(60.0));
-        assert!((per_byte(&load) - 0.5e-6).abs() < 0.05e-6, "{}", per_byte(&load));
+        assert!(is_half_a_second(), "{}", per_byte(&load));
         (0..15).for_each(|_| ended(60.0));
         assert_eq!(per_byte(&load), FACTORS[1] * PER_BYTE);
     }

@@ -268,7 +268,9 @@ fn a_shape_without_its_mesh_shows_the_points_of_its_form() {
         assert!(!form.faces.is_empty() && form.positions.len().is_multiple_of(6), "dots");
         let found = ask(server.address, "POST", &format!("/api/search?shape={id}"), &[], b"").unwrap().json();
         description.check("post", "/api/search", 200, &found);
-        assert_eq!((ids(&found)[0], found["mesh_missing"].as_str().unwrap()), (id, &*error));
+        // `box0` and `box1` are one surface.
+        assert!(ids(&found)[..2].contains(&id), "{found}");
+        assert_eq!(found["mesh_missing"].as_str().unwrap(), error);
         let compared = get(&server, &format!("/api/compare?a={id}&b=ring1"));
         description.check("get", "/api/compare", 200, &compared.json());
         assert!(compared.json()["triangulation"].is_null());

@@ -38,7 +38,12 @@ fn collection() -> PathBuf {
             .unwrap();
         let describe = DescribeOptions::default();
         let options = BuildOptions::new(&describe);
-        build_index(&meshes, &folder.join("all.canonform"), &options, &()).unwrap();
+        let path = folder.join("all.canonform");
+        if build_index(&meshes, &path, &options, &()).is_err() {
+            // An index of an earlier version was left here.
+            fs::remove_file(&path).unwrap();
+            build_index(&meshes, &path, &options, &()).unwrap();
+        }
         folder
     };
     FOLDER.get_or_init(make).clone()
