@@ -9,6 +9,7 @@
 //! Knows nothing of files or indexes.
 
 mod alignment;
+mod boundary;
 mod canonical_form;
 mod error;
 mod handedness;
@@ -23,6 +24,7 @@ mod spread;
 mod verdict;
 
 pub use alignment::Alignment;
+pub use boundary::Boundary;
 pub use canonical_form::{CanonicalForm, Normalization};
 pub use error::DescriptorError;
 pub use handedness::handedness;
@@ -36,4 +38,4 @@ pub use signature::{
     shape_dna, wave_kernel_signature,
 };
 pub use spectrum::LaplaceSpectrum;
-pub use verdict::{Boundary, Verdict, VerdictKind};
+pub use verdict::{Verdict, VerdictKind};

@@ -2,8 +2,8 @@
 
 use serde::Serialize;
 
+use crate::boundary::Boundary;
 use crate::signature::{Signature, SignatureKind};
-use crate::verdict::Boundary;
 
 /// A distance between two aligned forms.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

@@ -6,35 +6,6 @@ use serde::Serialize;
 
 use crate::metric::{Handedness, MatchKind, SAME_SIZE, ShapeDistance, ShapeMetric};
 
-/// A verdict is firm if it is at least this probable.
-const FIRM: f64 = 0.9;
-
-/// The combined distance at which one answer becomes less likely than the other.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Boundary {
-    /// Where both are equally likely.
-    pub at: f64,
-    /// How fast the odds change: they are `(at / d)^steepness` for the nearer answer at distance `d`.
-    pub steepness: f64,
-}
-
-impl Boundary {
-    /// The probability of the nearer answer at a combined distance: 1 at distance 0, falling towards 0.
-    pub fn probability(&self, distance: f64) -> f64 {
-        1.0 / (1.0 + (distance / self.at).powf(self.steepness))
-    }
-
-    /// The combined distance at which the nearer answer has this probability.
-    pub fn distance(&self, probability: f64) -> f64 {
-        self.at * (1.0 / probability - 1.0).powf(1.0 / self.steepness)
-    }
-
-    /// The range of distances within which neither answer is firm.
-    fn gap(&self) -> [f64; 2] {
-        [FIRM, 1.0 - FIRM].map(|probability| self.distance(probability))
-    }
-}
-
 /// How alike two shapes are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "kebab-case")]
@@ -51,7 +22,7 @@ pub enum VerdictKind {
 
 /// The verdict on two shapes and all that explains it: one decision for every program. [`Display`](fmt::Display) words it.
 ///
-/// The combined distance `d` decides. At the [`Boundary`] between one shape and one class, and at that between one class
+/// The combined distance `d` decides. At the [`Boundary`](crate::Boundary) between one shape and one class, and at that between one class
 /// and two, the odds are `(at / d)^steepness`. Both were measured on poses, bodies and families of the built-in shapes,
 /// see [`ShapeMetric::SAME_SHAPE`] and [`ShapeMetric::SAME_CLASS`]: probabilities assume that the answers on either side
 /// are equally frequent, and hold for bodies and poses that vary as much as those. What is less than 90 % probable is
@@ -224,6 +195,7 @@ impl From<Verdict> for VerdictRecord {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::boundary::Boundary;
 
     fn verdict(combined: f64, handedness: Handedness, scale: f64) -> Verdict {
         ShapeMetric::verdict(ShapeDistance { fused: combined, combined }, handedness, scale)

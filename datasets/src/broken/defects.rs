@@ -4,7 +4,7 @@ use mesh::{TriMesh, shapes};
 use nalgebra::{Point3, Vector3};
 use surface::VertexId;
 
-use super::{BrokenFile, off};
+use super::file::{BrokenFile, off};
 
 fn ball() -> TriMesh {
     shapes::icosphere(2)

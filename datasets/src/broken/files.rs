@@ -2,7 +2,7 @@
 
 use mesh::shapes;
 
-use super::{BrokenFile, off};
+use super::file::{BrokenFile, off};
 
 /// A PLY file of one triangle whose header has other lines for vertices.
 fn ply(vertices: &str, rows: &str) -> String {

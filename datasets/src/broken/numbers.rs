@@ -3,7 +3,7 @@
 use mesh::{TriMesh, shapes};
 use nalgebra::{Point3, Vector3};
 
-use super::{BrokenFile, off};
+use super::file::{BrokenFile, off};
 
 fn scaled(mut mesh: TriMesh, factor: f64) -> TriMesh {
     mesh.positions.iter_mut().for_each(|p| p.coords *= factor);

@@ -55,7 +55,7 @@ pub(crate) fn rank(context: &Context<'_>) -> Result<()> {
         let good = || low_rank.points.iter().filter(|p| p.median <= 1.5 * least(&low_rank)).map(|p| p.x);
         for (name, value) in [
             ("good from", good().next().unwrap_or(f64::NAN)),
-            ("good to", good().last().unwrap_or(f64::NAN)),
+            ("good to", good().next_back().unwrap_or(f64::NAN)),
             ("best rank", best),
             ("best rank over n", best / n as f64),
             ("rise", last / least(&low_rank)),

@@ -25,7 +25,7 @@ const RULES: [(&str, May); 21] = [
     ("geodesics", May::Know(&["surface", "linalg"])),
     ("nmds", May::Know(&["linalg"])),
     ("retrieval", May::Know(&["linalg"])),
-    ("index", May::Know(&["retrieval"])),
+    ("index", May::Know(&["retrieval", "files"])),
     ("descriptors", May::Know(&["mesh", "surface", "linalg", "nmds"])),
     (
         "canonform",

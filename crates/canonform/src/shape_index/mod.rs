@@ -8,6 +8,7 @@
 mod build;
 mod change;
 mod evaluate;
+mod found;
 mod place;
 mod predict;
 mod record;
@@ -18,8 +19,9 @@ mod source;
 pub use build::{BuildOptions, BuildReport, Dropped, Elsewhere, Failure, FailureReason, build_index};
 pub use change::{MergeReport, add_to_index, merge_indexes, remove_from_index};
 pub use evaluate::{Measure, evaluate_index, evaluate_matrix};
+pub use found::SearchResult;
 pub use place::mesh_path;
 pub use predict::{ClassVotes, NearestShape, Prediction, Unknown};
 pub use rerank::{Ranked, Reranked, rerank};
-pub use search::{Explain, SearchOptions, SearchReport, SearchResult, SearchSeconds, ShapeSearch};
+pub use search::{Explain, SearchOptions, SearchReport, SearchSeconds, ShapeSearch};
 pub use source::{Inputs, ShapeLimits, Shard};

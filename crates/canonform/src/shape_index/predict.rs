@@ -4,7 +4,7 @@ use descriptors::{ShapeMetric, Verdict};
 use retrieval::{Neighbor, Tally, UnknownThreshold, vote};
 use serde::Serialize;
 
-use super::search::SearchResult;
+use super::found::SearchResult;
 
 /// Neighbours that vote on the class of a query.
 pub(super) const VOTERS: usize = 5;

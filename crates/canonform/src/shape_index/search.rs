@@ -4,18 +4,19 @@ use std::path::Path;
 use std::time::Instant;
 
 use budget::Budget;
-use descriptors::{PreparedShape, ShapeMetric, ShapePair, Verdict};
+use descriptors::{PreparedShape, ShapeMetric, ShapePair};
 use index::{Index, SearchMode, ShapeEntry};
 use mesh::TriMesh;
 use rayon::prelude::*;
 use retrieval::Candidate;
 use serde::Serialize;
 
+use super::found::SearchResult;
 use super::predict::{Completeness, Prediction, VOTERS, predicted};
 use super::record::{DROPPED, options_of, prepared};
 use super::rerank::{Ranked, rerank};
 use super::source::read_unchanged;
-use crate::compare::{Comparison, compare};
+use crate::compare::compare;
 use crate::error::Error;
 use crate::form::{DescribeOptions, ShapeDescription, describe_within};
 use crate::input::Surface;
@@ -54,28 +55,6 @@ impl Default for SearchOptions {
     fn default() -> Self {
         Self { k: 10, mode: SearchMode::Auto, explain: Explain::No }
     }
-}
-
-/// A shape that was found.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct SearchResult {
-    /// Counted from 1.
-    pub rank: usize,
-    /// Name of the shape.
-    pub id: String,
-    /// Its class.
-    pub label: String,
-    /// Path of its mesh as the index states it; [`mesh_path`](crate::mesh_path) finds the file.
-    pub path: String,
-    /// Combined distance, by signatures and aligned forms; results are ordered by it.
-    pub distance: f64,
-    /// Fused distance, by signatures alone.
-    pub fused: f64,
-    /// How alike the query and the shape are, and why. It does not depend on size, and the handedness is unknown.
-    pub verdict: Verdict,
-    /// The comparison with the query, if results are explained.
-    #[serde(rename = "match", skip_serializing_if = "Option::is_none")]
-    pub comparison: Option<Comparison>,
 }
 
 /// The answer to a search.

@@ -24,8 +24,8 @@ use surface::VertexId;
 use crate::error::{Fault, Located, MeshError};
 use crate::face_set::check_input;
 use crate::tri_mesh::TriMesh;
-use formats::{CheckStart, Precision};
-use source::{Disk, Memory, Source, read_checked};
+use formats::Precision;
+use source::{CheckStart, Disk, Memory, Source, read_checked};
 
 pub use crate::error::Content;
 pub use field::{ScalarField, VertexField};

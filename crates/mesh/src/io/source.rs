@@ -7,8 +7,10 @@ use std::path::Path;
 
 use files::FileError;
 
-use super::formats::CheckStart;
-use crate::error::{Fault, MeshError};
+use crate::error::{Fault, Located, MeshError};
+
+/// Checks the first bytes of a file, given its size if that is known: whether the whole can be a file of the format.
+pub(super) type CheckStart = fn(&[u8], Option<u64>) -> Result<(), Located>;
 
 /// Bytes that are checked before the rest of a file is read.
 const START: u64 = 16 << 10;

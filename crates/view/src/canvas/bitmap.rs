@@ -7,7 +7,7 @@ use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{FontStyle, FontTransform, TextStyle as PlottersStyle, register_font};
 
-use super::{Anchor, Canvas, Element, PIXELS_PER_UNIT, Point, TextStyle};
+use super::drawing::{Anchor, Canvas, Element, PIXELS_PER_UNIT, Point, TextStyle};
 use crate::color::Rgb;
 use crate::image::encode_png;
 

@@ -10,7 +10,7 @@ use pdf_writer::{Content, Filter, Finish, Name, Pdf, Rect, Ref, Str};
 use subsetter::{GlyphRemapper, subset};
 use ttf_parser::{Face, GlyphId};
 
-use super::{Anchor, Canvas, DROP, Element, PAGE_WIDTH, Point, TextStyle};
+use super::drawing::{Anchor, Canvas, DROP, Element, PAGE_WIDTH, Point, TextStyle};
 use crate::color::Rgb;
 use crate::image::RgbaImage;
 
@@ -134,7 +134,7 @@ impl Page {
         object.color_space().device_gray();
         object.finish();
         let name = format!("I{}", self.images.len());
-        let [wide, high] = super::in_units(image).map(|side| side as f32);
+        let [wide, high] = super::drawing::in_units(image).map(|side| side as f32);
         self.content.save_state();
         self.content.transform([wide, 0.0, 0.0, -high, left as f32, top as f32 + high]);
         self.content.x_object(Name(name.as_bytes())).restore_state();

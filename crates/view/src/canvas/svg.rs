@@ -8,7 +8,7 @@ use std::fmt::Write;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 
-use super::{Anchor, Canvas, DROP, Element, GRID, INK, PALE_INK, PAPER, Point, TextStyle};
+use super::drawing::{Anchor, Canvas, DROP, Element, GRID, INK, PALE_INK, PAPER, Point, TextStyle};
 use crate::color::{Rgb, class_color, class_color_on_dark, hex};
 
 /// The embedded font of the PNG, and fonts of similar width.
@@ -53,7 +53,7 @@ pub(super) fn svg(canvas: &Canvas) -> Result<String, std::io::Error> {
             Element::Text { text, at, style } => write_text(&mut svg, text, *at, *style),
             Element::Image { image, corner } => {
                 let (left, top) = *corner;
-                let [wide, high] = super::in_units(image);
+                let [wide, high] = super::drawing::in_units(image);
                 let data = STANDARD.encode(image.to_png()?);
                 let _ = writeln!(
                     svg,

@@ -17,12 +17,10 @@ use nalgebra::Point3;
 use crate::error::{Content, Located, MeshError};
 use crate::io::field::{ScalarField, VertexField};
 use crate::io::limits::ReadLimits;
-use crate::io::source::Source;
+use crate::io::source::{CheckStart, Source};
 use crate::tri_mesh::TriMesh;
 
 type Parse = fn(&[&[u8]], &ReadLimits) -> Result<TriMesh, Located>;
-/// Checks the first bytes of a file, given its size if that is known: whether the whole can be a file of the format.
-pub(super) type CheckStart = fn(&[u8], Option<u64>) -> Result<(), Located>;
 type ParsedMesh = (TriMesh, Option<ScalarField>);
 type ParseField = fn(&[u8], &ReadLimits) -> Result<ParsedMesh, Located>;
 type WriteMesh = fn(&mut dyn Write, &TriMesh) -> io::Result<()>;

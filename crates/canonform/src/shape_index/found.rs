@@ -1,0 +1,28 @@
+//! A shape that a search found.
+
+use descriptors::Verdict;
+use serde::Serialize;
+
+use crate::compare::Comparison;
+
+/// A shape that was found.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SearchResult {
+    /// Counted from 1.
+    pub rank: usize,
+    /// Name of the shape.
+    pub id: String,
+    /// Its class.
+    pub label: String,
+    /// Path of its mesh as the index states it; [`mesh_path`](crate::mesh_path) finds the file.
+    pub path: String,
+    /// Combined distance, by signatures and aligned forms; results are ordered by it.
+    pub distance: f64,
+    /// Fused distance, by signatures alone.
+    pub fused: f64,
+    /// How alike the query and the shape are, and why. It does not depend on size, and the handedness is unknown.
+    pub verdict: Verdict,
+    /// The comparison with the query, if results are explained.
+    #[serde(rename = "match", skip_serializing_if = "Option::is_none")]
+    pub comparison: Option<Comparison>,
+}

@@ -1,0 +1,26 @@
+//! The file of a broken mesh.
+
+use mesh::TriMesh;
+
+/// The file of a broken mesh.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct BrokenFile {
+    /// Its name, with the extension of its format.
+    pub name: &'static str,
+    /// What is wrong with it.
+    pub defect: &'static str,
+    /// Its content.
+    pub content: Vec<u8>,
+}
+
+/// A mesh as text, also with coordinates that our writer refuses.
+pub(super) fn off(mesh: &TriMesh) -> Vec<u8> {
+    let mut text = format!("OFF\n{} {} 0\n", mesh.n_vertices(), mesh.n_faces());
+    for p in &mesh.positions {
+        text += &format!("{:?} {:?} {:?}\n", p.x, p.y, p.z);
+    }
+    for [a, b, c] in &mesh.faces {
+        text += &format!("3 {a} {b} {c}\n");
+    }
+    text.into_bytes()
+}
