@@ -36,14 +36,14 @@ fn every_state_of_an_indexed_shape_is_reached_by_its_address() {
     let overlay = format!("/?shape={shape}&hit={other}");
     assert_eq!(page.address(), overlay);
 
-    // Reload, back twice, and forward.
+    // Open the address again, which replaces the entry of the history, reload, back twice, and forward.
     page.go(&overlay);
     page.answered();
     page.overlaid(&other);
     page.browser.eval("location.reload()").unwrap();
     page.answered();
     page.overlaid(&other);
-    page.browser.eval("history.go(-2)").unwrap();
+    page.browser.eval("history.back()").unwrap();
     page.wait_for(&format!("location.search === '?shape={shape}'"));
     page.answered();
     page.wait_for("document.querySelector('#overlay').hidden");
