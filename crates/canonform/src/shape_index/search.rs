@@ -47,7 +47,7 @@ pub enum Explain {
     /// No.
     #[default]
     No,
-    /// With a [`Comparison`] for each result.
+    /// With a [`Comparison`](crate::Comparison) for each result.
     Kind,
 }
 
