@@ -5,19 +5,11 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand};
 
 use crate::collection::Source;
+use crate::quoted::quoted;
 use crate::table::parse_name;
 
 /// The default folder for results.
 const OUTPUT: &str = "out";
-
-/// A word of a command line, in quotes if a shell would take it apart.
-pub(crate) fn quoted(word: &str) -> String {
-    let is_plain = |c: char| c.is_alphanumeric() || "-_./:,+=@%".contains(c);
-    match !word.is_empty() && word.chars().all(is_plain) {
-        true => word.to_owned(),
-        false => format!("'{}'", word.replace('\'', "'\\''")),
-    }
-}
 
 /// Reproduces the figures of the paper on the built-in dataset or on a folder of meshes.
 #[derive(Debug, Parser)]

@@ -10,7 +10,7 @@ use datasets::{ArticulatedOptions, articulated};
 use mesh::RepairOptions;
 use rayon::prelude::*;
 
-use crate::args::quoted;
+use crate::quoted::quoted;
 
 /// Name of the built-in dataset in records.
 pub(crate) const BUILT_IN: &str = "built-in articulated families";

@@ -6,13 +6,16 @@
 //! line in [`table::EXPERIMENTS`]. Its results are data, of which `report` makes figures, tables and the page.
 
 mod args;
+mod bound;
 mod coarse;
 mod collection;
 mod config;
 mod context;
+mod described;
 mod machine;
 mod paper;
 mod prose;
+mod quoted;
 mod run;
 mod specimen;
 mod surfaces;

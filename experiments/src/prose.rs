@@ -11,7 +11,7 @@
 use serde::Deserialize;
 use view::numbers::{bytes, seconds};
 
-use crate::config::Bound;
+use crate::bound::Bound;
 use crate::sweep::Measured;
 
 /// A paragraph of an analysis.

@@ -7,7 +7,7 @@ use datasets::{ArticulatedOptions, Family, articulated_body};
 use descriptors::{Boundary, ShapeMetric, ShapePair};
 use rayon::prelude::*;
 
-use crate::units::Described;
+use crate::described::Described;
 
 /// Other bodies of every family, and poses of each.
 const BODIES: usize = 5;

@@ -4,32 +4,15 @@ use std::io::Write;
 use std::process::ExitCode;
 
 use anyhow::Result;
-use canonform::{DescribeOptions, Observer, ShapeDescription, Surface, describe};
+use canonform::Observer;
 use datasets::{ArticulatedOptions, Family, LabeledShape, articulated};
-use descriptors::{FormDistance, PreparedShape, ShapeMetric, ShapePair, SignatureKind};
+use descriptors::{FormDistance, ShapeMetric, ShapePair, SignatureKind};
 use linalg::Matrix;
 use rayon::prelude::*;
 use terminal::Bars;
 
+use crate::described::Described;
 use crate::thresholds::{self, relatives};
-
-/// A built-in shape, with the number of its body within the family.
-pub(crate) struct Described {
-    pub(crate) label: String,
-    seed: u64,
-    pub(crate) body: usize,
-    description: ShapeDescription,
-    pub(crate) shape: PreparedShape,
-}
-
-impl Described {
-    pub(crate) fn new(shape: &LabeledShape, seed: u64, body: usize) -> Result<Self> {
-        let options = DescribeOptions::default();
-        let description = describe(&Surface::new(&shape.mesh, &options.form.repair)?, &options)?;
-        let prepared = description.prepare()?;
-        Ok(Self { label: shape.label.clone(), seed, body, description, shape: prepared })
-    }
-}
 
 /// Vertices of the shapes of each seed, in turn, since collections mix resolutions.
 const VERTICES: [usize; 5] = [3400, 1500, 8000, 2500, 5000];
