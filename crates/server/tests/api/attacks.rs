@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 use canonform_server::ServeOptions;
 use mesh::shapes;
 
-use crate::client::{Answer, ask, connect, form, read_answer, upload};
+use crate::client::{Answer, ask, connect, form, read_answer, upload, upload_head};
 use crate::running::options;
 use crate::support::{Served, written};
 
@@ -94,14 +94,7 @@ fn the_job_of_a_client_that_disconnects_is_cancelled() {
     let mesh = written("large.off", &shapes::torus(440, 440, 2.0, 0.6));
     let (body, boundary) = form(&[("large.off", &mesh)], &[]);
     let mut stream = connect(server.address).unwrap();
-    write!(
-        stream,
-        "POST /api/search HTTP/1.1\r\nHost: {}\r\nContent-Type: multipart/form-data; boundary={boundary}\r\n\
-         Content-Length: {}\r\n\r\n",
-        server.address,
-        body.len()
-    )
-    .unwrap();
+    stream.write_all(upload_head(server.address, boundary, body.len()).as_bytes()).unwrap();
     stream.write_all(&body).unwrap();
     let small = fs::read(server.mesh("ring0")).unwrap();
     let until = |status: u16| {
@@ -200,11 +193,7 @@ fn a_client_that_never_reads_is_disconnected() {
 fn uploads_of_a_byte_now_and_then_give_way() {
     let server = Served::start(options());
     let (_, boundary) = form(&[], &[]);
-    let head = format!(
-        "POST /api/search HTTP/1.1\r\nHost: {}\r\nContent-Type: multipart/form-data; boundary={boundary}\r\n\
-         Content-Length: 1000000\r\n\r\n--{boundary}\r\n",
-        server.address
-    );
+    let head = upload_head(server.address, boundary, 1_000_000) + &format!("--{boundary}\r\n");
     let open = |stream: &mut TcpStream| drop(stream.write_all(head.as_bytes()));
     let again = |stream: &mut TcpStream| drop(stream.write_all(b"C"));
     besieged(&server, 40, open, again, || assert_serves(&server, Duration::from_secs(30)));
@@ -216,13 +205,7 @@ fn an_upload_below_the_minimum_rate_is_told_so() {
     let server = Served::start(ServeOptions { idle_time: idle, ..options() });
     let (body, boundary) = form(&[("q.off", &[b'0'; 2000])], &[]);
     let mut stream = connect(server.address).unwrap();
-    let head = format!(
-        "POST /api/search HTTP/1.1\r\nHost: {}\r\nContent-Type: multipart/form-data; boundary={boundary}\r\n\
-         Content-Length: {}\r\n\r\n",
-        server.address,
-        body.len()
-    );
-    stream.write_all(head.as_bytes()).unwrap();
+    stream.write_all(upload_head(server.address, boundary, body.len()).as_bytes()).unwrap();
     // Never silent for long.
     for byte in &body {
         if stream.write_all(&[*byte]).is_err() {

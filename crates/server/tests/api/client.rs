@@ -64,6 +64,15 @@ pub(crate) fn read_answer(stream: &mut impl Read) -> io::Result<Answer> {
     Ok(answer)
 }
 
+/// The header of a search with an upload of this many bytes.
+#[allow(dead_code, reason = "the load sends whole uploads only")]
+pub(crate) fn upload_head(address: SocketAddr, boundary: &str, length: usize) -> String {
+    format!(
+        "POST /api/search HTTP/1.1\r\nHost: {address}\r\n\
+         Content-Type: multipart/form-data; boundary={boundary}\r\nContent-Length: {length}\r\n\r\n"
+    )
+}
+
 /// A form with files, and its boundary.
 pub(crate) fn form(files: &[(&str, &[u8])], fields: &[(&str, &str)]) -> (Vec<u8>, &'static str) {
     const BOUNDARY: &str = "a-line-that-is-in-no-mesh";

@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use canonform_server::{ServeOptions, Server, ServerError};
 use mesh::shapes;
 
-use crate::client::{ask, connect, form, upload};
+use crate::client::{ask, connect, form, upload, upload_head};
 use crate::running::options;
 use crate::support::{INDEX, Served, written};
 
@@ -73,13 +73,7 @@ fn silent_clients_are_disconnected() {
     let (body, boundary) = form(&[("q.off", &[b'0'; 1000])], &[]);
     for drips in [false, true] {
         let mut stream = connect(server.address).unwrap();
-        let head = format!(
-            "POST /api/search HTTP/1.1\r\nHost: {}\r\nContent-Type: multipart/form-data; boundary={boundary}\r\n\
-             Content-Length: {}\r\n\r\n",
-            server.address,
-            body.len()
-        );
-        stream.write_all(head.as_bytes()).unwrap();
+        stream.write_all(upload_head(server.address, boundary, body.len()).as_bytes()).unwrap();
         for byte in &body[..if drips { 30 } else { 0 }] {
             if stream.write_all(&[*byte]).is_err() {
                 break;
