@@ -72,7 +72,7 @@ impl App {
         let options = &collection.search.describe_options().form;
         let mesh = collection.search.mesh(id)?;
         budget.check()?;
-        let surface = Surface::new(&mesh, &options.repair)?;
+        let surface = Surface::within(&mesh, &options.repair, budget)?;
         let refined = surface.refined();
         budget.check()?;
         let embedded = embed(&refined, options, budget)?;

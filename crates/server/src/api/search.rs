@@ -266,7 +266,7 @@ fn measure(app: &App, collection: &Collection, upload: Upload, budget: &Budget) 
     drop(upload);
     budget.check()?;
     let describe = collection.search.describe_options();
-    let surface = Surface::new(&mesh, &describe.form.repair)?;
+    let surface = Surface::within(&mesh, &describe.form.repair, budget)?;
     let refined = surface.refined();
     budget.check()?;
     let embedded = embed(&refined, &describe.form, budget)?;
