@@ -20,7 +20,7 @@ run: ## Generate the built-in shapes, run figures 1 and 4, and write out/report.
 	$(CARGO) run --release --locked -p experiments -- run figure1 figure4 --output $(OUT)
 
 test: ## Run all tests
-	$(CARGO) test --workspace --locked
+	$(CARGO) test --workspace --locked --no-fail-fast
 
 kills: ## Kill writing commands 200 times: nothing half-written, and the next run works
 	CANONFORM_KILLS=200 $(CARGO) test --locked -p canonform-cli --test cli killed
