@@ -3,7 +3,7 @@
 use std::fs;
 use std::ops::Deref;
 use std::path::{Path, PathBuf};
-use std::sync::OnceLock;
+use std::sync::{OnceLock, PoisonError, RwLock, RwLockReadGuard, RwLockWriteGuard};
 
 use canonform::{BuildOptions, DescribeOptions, build_index};
 use canonform_server::{ServeOptions, ServerError};
@@ -41,6 +41,21 @@ pub(crate) struct Served {
     running: Running,
     pub(crate) folder: PathBuf,
     _own: Option<TempDir>,
+    _turn: Turn,
+}
+
+/// Held by every test with a server: tests under attack run alone, so that their times are those of the server.
+static TURNS: RwLock<()> = RwLock::new(());
+
+#[derive(Debug)]
+enum Turn {
+    Shared(#[expect(dead_code, reason = "held")] RwLockReadGuard<'static, ()>),
+    Alone(#[expect(dead_code, reason = "held")] RwLockWriteGuard<'static, ()>),
+}
+
+/// A test that failed holds nothing back.
+fn shared_turn() -> Turn {
+    Turn::Shared(TURNS.read().unwrap_or_else(PoisonError::into_inner))
 }
 
 impl Deref for Served {
@@ -82,18 +97,24 @@ fn shared() -> PathBuf {
 impl Served {
     /// A server on the shared index.
     pub(crate) fn start(options: ServeOptions) -> Self {
-        Self::serve(shared(), None, options)
+        Self::serve(shared(), None, options, shared_turn())
+    }
+
+    /// A server on the shared index while no other test has a server.
+    pub(crate) fn start_alone(options: ServeOptions) -> Self {
+        let turn = TURNS.write().unwrap_or_else(PoisonError::into_inner);
+        Self::serve(shared(), None, options, Turn::Alone(turn))
     }
 
     /// A server on an index of its own, whose meshes the test may change.
     pub(crate) fn start_apart(options: ServeOptions) -> Self {
         let own = tempfile::tempdir().unwrap();
         index(own.path());
-        Self::serve(own.path().to_owned(), Some(own), options)
+        Self::serve(own.path().to_owned(), Some(own), options, shared_turn())
     }
 
-    fn serve(folder: PathBuf, own: Option<TempDir>, options: ServeOptions) -> Self {
-        Self { running: Running::start(&folder.join(INDEX), options), folder, _own: own }
+    fn serve(folder: PathBuf, own: Option<TempDir>, options: ServeOptions, turn: Turn) -> Self {
+        Self { running: Running::start(&folder.join(INDEX), options), folder, _own: own, _turn: turn }
     }
 
     /// Builds the index again, from the meshes that are there now.
