@@ -6,7 +6,7 @@
 //!   fault and remedy.
 //! * [`validate`] reports the properties and defects of a mesh.
 //! * [`repair()`] removes defects that algorithms cannot handle, as [`RepairOptions`] say, and reports every change.
-//! * [`refine()`] splits long edges.
+//! * [`without_noise`] smooths noisy meshes, [`fill_holes`] closes small holes, [`refine()`] splits long edges.
 //! * [`shapes`] has small analytic surfaces for tests, benches and documentation.
 //!
 //! **Invariant.** Vertices keep the order of the file: repair drops and merges vertices but never reorders
@@ -33,7 +33,9 @@
 mod coincidence;
 mod error;
 mod face_set;
+mod holes;
 pub mod io;
+mod noise;
 mod orientation;
 mod refine;
 mod repair;
@@ -42,6 +44,8 @@ mod tri_mesh;
 mod validate;
 
 pub use error::{Fault, MeshError, Place};
+pub use holes::fill_holes;
+pub use noise::{is_noisy, without_noise};
 pub use orientation::orient_consistently;
 pub use refine::{Refined, refine};
 pub use repair::{

@@ -4,13 +4,25 @@ use surface::{FaceId, Topology, VertexId};
 
 use crate::tri_mesh::TriMesh;
 
-/// A mesh with shorter edges and the same surface.
+/// A mesh with new vertices.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Refined {
     /// The mesh. The old vertices come first, unchanged.
     pub mesh: TriMesh,
-    /// For every new vertex, an old vertex at an end of the edge on which it is.
+    /// For every new vertex, an old vertex near it: at an end of the edge that was split, or on the boundary of the hole that
+    /// was closed.
     pub origins: Vec<VertexId>,
+}
+
+impl Refined {
+    /// What `next` made of this mesh: its origins are then vertices of the first mesh.
+    #[must_use]
+    pub fn then(self, next: Self) -> Self {
+        let n_old = self.mesh.n_vertices() - self.origins.len();
+        let first = |v: &VertexId| v.index().checked_sub(n_old).map_or(*v, |i| self.origins[i]);
+        let new: Vec<VertexId> = next.origins.iter().map(first).collect();
+        Self { mesh: next.mesh, origins: [self.origins, new].concat() }
+    }
 }
 
 /// Splits edges longer than `longest` at their midpoints, in rounds, until there are none or the next round would give

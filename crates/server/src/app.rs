@@ -73,7 +73,7 @@ impl App {
         let mesh = collection.search.mesh(id)?;
         budget.check()?;
         let surface = Surface::within(&mesh, &options.repair, budget)?;
-        let refined = surface.refined();
+        let refined = surface.for_description();
         budget.check()?;
         let embedded = embed(&refined, options, budget)?;
         let measured = Arc::new(Measured::new(surface, &refined, &embedded)?);

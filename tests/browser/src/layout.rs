@@ -9,7 +9,7 @@ const WATCH: &str = "window.shifts = 0; window.moved = []; new PerformanceObserv
     for (const shift of list.getEntries()) if (!shift.hadRecentInput) {
         window.shifts += shift.value;
         window.moved.push(...shift.sources.map(({ node, previousRect: a, currentRect: b }) =>
-            `${node?.id || node?.className || node?.nodeName} ${a.y} to ${b.y}, ${a.height} to ${b.height}`));
+            `${node?.id || node?.className || node?.nodeName} (${a.x}, ${a.y}) to (${b.x}, ${b.y}), height ${a.height} to ${b.height}`));
     }
 }).observe({ type: 'layout-shift', buffered: true });";
 

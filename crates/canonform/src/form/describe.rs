@@ -66,12 +66,12 @@ pub fn describe_within(
     budget: &Budget,
 ) -> Result<ShapeDescription, Error> {
     options.validate()?;
-    let working = surface.refined();
+    let working = surface.for_description();
     ShapeDescription::within(&working, &embed(&working, &options.form, budget)?, options, budget)
 }
 
 impl ShapeDescription {
-    /// Describes a surface that has been embedded. [`describe`] gives it a [refined](Surface::refined) one; a coarser one
+    /// Describes a surface that has been embedded. [`describe`] gives it a [prepared](Surface::for_description) one; a coarser one
     /// has less accurate signatures. The form options are those of the embedding; `options` says
     /// how many points are kept and whether size counts.
     ///
@@ -271,9 +271,12 @@ mod tests {
             let form = FormOptions { method, samples: Samples::Count(60), ..FormOptions::default() };
             let options = DescribeOptions { form, ..DescribeOptions::default() };
             let description = describe(&surface, &options).unwrap();
-            let embedded = embed(&surface.refined(), &options.form, &()).unwrap();
-            assert_eq!(description, ShapeDescription::new(&surface.refined(), &embedded, &options).unwrap());
-            let whole = embedded.form(&surface.refined()).unwrap();
+            let embedded = embed(&surface.for_description(), &options.form, &()).unwrap();
+            assert_eq!(
+                description,
+                ShapeDescription::new(&surface.for_description(), &embedded, &options).unwrap()
+            );
+            let whole = embedded.form(&surface.for_description()).unwrap();
             assert_eq!(whole.reduced(options.points), description.form);
             assert_eq!(description.form.area().is_some(), options.form.method.has_unit());
             assert_eq!(embedded.distances.n_landmarks(), 60, "{}", options.form.method.name());

@@ -2,10 +2,10 @@
 
 mod all_pairs;
 mod dataset;
+mod for_description;
 mod locate;
 mod path;
 pub(crate) mod point;
-mod refined;
 mod repaired;
 
 pub use all_pairs::{AllPairs, Asymmetry};

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::Result;
-use mesh::{MeshReport, RepairReport, repair, validate};
+use mesh::{MeshReport, RepairReport, is_noisy, repair, validate};
 use serde::Serialize;
 
 use crate::args::{Common, InfoArgs};
@@ -21,6 +21,8 @@ struct InfoJson {
 struct MeshInfo {
     path: PathBuf,
     mesh: MeshReport,
+    /// Whether comparison and search smooth the repaired mesh, because it is noisy.
+    noisy: bool,
     /// What a repair would change.
     repair: RepairReport,
 }
@@ -38,11 +40,11 @@ pub(crate) fn info(args: &InfoArgs, common: &Common) -> Result<ExitCode> {
         let report = read_mesh(&path, common).and_then(|mesh| {
             let repaired =
                 repair(&mesh, &args.repair.options()).map_err(|fault| named(&path, fault.into()))?;
-            Ok((validate(&mesh), repaired.report))
+            Ok((validate(&mesh), is_noisy(&repaired.mesh), repaired.report))
         });
         match report {
-            Ok((mesh, repair)) => {
-                let info = MeshInfo { path, mesh, repair };
+            Ok((mesh, noisy, repair)) => {
+                let info = MeshInfo { path, mesh, noisy, repair };
                 if !common.json {
                     print(&table(&info))?;
                 }
@@ -65,6 +67,9 @@ pub(crate) fn info(args: &InfoArgs, common: &Common) -> Result<ExitCode> {
 
 fn table(info: &MeshInfo) -> String {
     let mut rows = facts_of(&info.mesh);
+    if info.noisy {
+        rows.push(("noisy", "yes; compare, index and search smooth it first".to_owned()));
+    }
     let changes = info.repair.summary();
     if changes.is_empty() {
         rows.push(("would repair", "nothing".to_owned()));

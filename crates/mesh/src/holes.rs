@@ -1,0 +1,151 @@
+//! Closing small holes.
+
+use nalgebra::{Point3, Vector3};
+use surface::{EdgeId, Topology, VertexId};
+
+use crate::orientation::orient_consistently;
+use crate::refine::Refined;
+use crate::tri_mesh::TriMesh;
+
+/// Closes the holes whose boundary is at most `longest` long, in mesh units: each gets a vertex in the middle of its
+/// boundary, joined to it by triangles. `origins` are vertices of the boundaries.
+///
+/// A hole is a closed loop of edges with one face. Loops that touch each other in a vertex are left open.
+///
+/// # Panics
+/// If a face has a repeated vertex or one that does not exist, see [`Topology::new`].
+///
+/// ```
+/// use canonform_mesh::{fill_holes, shapes, validate};
+///
+/// let mut ball = shapes::icosphere(3);
+/// ball.faces.truncate(ball.faces.len() - 4);
+/// assert_eq!(validate(&ball).n_boundary_loops, 1);
+/// assert_eq!(validate(&fill_holes(&ball, 1.0).mesh).n_boundary_loops, 0);
+/// assert!(fill_holes(&ball, 0.1).origins.is_empty());
+/// ```
+#[must_use]
+pub fn fill_holes(mesh: &TriMesh, longest: f64) -> Refined {
+    let mut oriented = mesh.clone();
+    orient_consistently(&mut oriented);
+    let mut filled = Refined { mesh: mesh.clone(), origins: Vec::new() };
+    for hole in holes(&oriented) {
+        let Some(middle) = middle_within(mesh, &hole, longest) else { continue };
+        let center = VertexId::from(filled.mesh.n_vertices());
+        filled.mesh.positions.push(middle);
+        filled.origins.push(hole[0]);
+        // Against the direction in which the faces outside run.
+        filled.mesh.faces.extend(sides(&hole).map(|[a, b]| [b, a, center]));
+    }
+    filled
+}
+
+/// The sides of a closed loop.
+fn sides(hole: &[VertexId]) -> impl Iterator<Item = [VertexId; 2]> {
+    hole.iter().zip(hole.iter().cycle().skip(1)).map(|(&a, &b)| [a, b])
+}
+
+/// The centre of gravity of a boundary, if it is short enough. Measured along the boundary, so that it does not depend on
+/// where its vertices are.
+fn middle_within(mesh: &TriMesh, hole: &[VertexId], longest: f64) -> Option<Point3<f64>> {
+    let unit = mesh.unit();
+    let (mut moment, mut length) = (Vector3::zeros(), 0.0);
+    for [a, b] in sides(hole).map(|side| side.map(|v| mesh.positions[v.index()].coords / unit)) {
+        let side = (b - a).norm();
+        moment += (a + b) * (0.5 * side);
+        length += side;
+    }
+    (length > 0.0 && length * unit <= longest).then(|| Point3::from(moment / length * unit))
+}
+
+/// The simple loops of edges with one face, each in the direction of its faces, by their lowest vertex.
+fn holes(mesh: &TriMesh) -> Vec<Vec<VertexId>> {
+    let topology = Topology::new(mesh.n_vertices(), mesh.faces.clone());
+    let mut next = vec![None; mesh.n_vertices()];
+    let mut n_sides = vec![0; mesh.n_vertices()];
+    for edge in (0..topology.n_edges()).map(EdgeId::from) {
+        if let [corner] = topology.edge_corners(edge) {
+            let [a, b] = [corner.next(), corner.next().next()].map(|c| topology.corner_vertex(c));
+            next[a.index()] = Some(b);
+            n_sides[a.index()] += 1;
+            n_sides[b.index()] += 1;
+        }
+    }
+    let mut is_seen = vec![false; mesh.n_vertices()];
+    let mut holes = Vec::new();
+    for first in (0..mesh.n_vertices()).map(VertexId::from) {
+        let mut hole = Vec::new();
+        let mut at = first;
+        let is_closed = loop {
+            if n_sides[at.index()] != 2 || is_seen[at.index()] {
+                break at == first && !hole.is_empty();
+            }
+            is_seen[at.index()] = true;
+            hole.push(at);
+            match next[at.index()] {
+                Some(after) => at = after,
+                None => break false,
+            }
+        };
+        if is_closed {
+            holes.push(hole);
+        }
+    }
+    holes
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{refine, shapes, validate};
+
+    /// A torus without the faces at some vertices.
+    fn pierced(vertices: &[u32]) -> TriMesh {
+        let mut mesh = shapes::torus(40, 20, 2.0, 0.7);
+        mesh.faces.retain(|face| !face.iter().any(|v| vertices.contains(&v.0)));
+        mesh
+    }
+
+    #[test]
+    fn holes_are_closed_and_faces_stay_oriented() {
+        let mesh = pierced(&[3, 100, 500]);
+        let filled = fill_holes(&mesh, 3.0);
+        let report = validate(&filled.mesh);
+        assert_eq!((report.n_boundary_loops, report.flipped_faces), (0, 0), "{report:?}");
+        assert_eq!(filled.mesh.positions[..mesh.n_vertices()], mesh.positions);
+        assert_eq!(filled.mesh.faces[..mesh.n_faces()], mesh.faces);
+        assert_eq!((filled.origins.len(), filled.mesh.n_vertices()), (3, mesh.n_vertices() + 3));
+        let whole = shapes::torus(40, 20, 2.0, 0.7).area();
+        assert!((filled.mesh.area() / whole - 1.0).abs() < 0.002 && mesh.area() < 0.99 * whole);
+    }
+
+    #[test]
+    fn large_holes_and_touching_ones_stay() {
+        let sheet = shapes::grid(5, 5, 1.0);
+        assert!(fill_holes(&sheet, 15.9).origins.is_empty());
+        assert_eq!(fill_holes(&sheet, 16.1).origins.len(), 1);
+        let mut touching = shapes::grid(6, 6, 1.0);
+        touching.faces.retain(|face| {
+            let corner = face.iter().map(|v| v.0).min().unwrap();
+            ![7, 14].contains(&corner)
+        });
+        assert!(fill_holes(&touching, 6.0).origins.is_empty());
+        assert!(fill_holes(&shapes::torus(8, 8, 2.0, 0.7), 100.0).origins.is_empty());
+    }
+
+    #[test]
+    fn subdivision_and_flipped_faces_do_not_change_the_middle() {
+        let mesh = pierced(&[77]);
+        let expected = fill_holes(&mesh, 3.0);
+        let fine = refine(&mesh, 0.0, 5 * mesh.n_vertices()).mesh;
+        assert!(fine.n_vertices() > 3 * mesh.n_vertices());
+        let mut turned = mesh.clone();
+        turned.faces.iter_mut().step_by(5).for_each(|face| face.swap(0, 2));
+        for other in [fine, turned] {
+            let found = fill_holes(&other, 3.0);
+            assert_eq!(found.origins.len(), 1);
+            let gap = found.mesh.positions.last().unwrap() - expected.mesh.positions.last().unwrap();
+            assert!(gap.norm() < 1e-12);
+        }
+    }
+}
