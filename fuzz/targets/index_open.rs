@@ -26,8 +26,7 @@ fn intact() -> &'static (Vec<u8>, PathBuf) {
         }
         let path = folder.path().join("intact.canonform");
         let describe = DescribeOptions::default();
-        let options = BuildOptions { describe: &describe, labels: None, shard: None };
-        build_index(&meshes, &path, &options, &()).expect("an index");
+        build_index(&meshes, &path, &BuildOptions::new(&describe), &()).expect("an index");
         let bytes = std::fs::read(&path).expect("an index");
         let damaged = folder.path().join("damaged.canonform");
         (folder, (bytes, damaged))
