@@ -5,7 +5,6 @@
 //! ```
 
 mod as_text;
-mod boundary;
 mod describe;
 mod distances;
 mod embed;

@@ -1,6 +1,7 @@
 //! What comes in: repaired surfaces, points and paths in the numbers of the input, folders of meshes.
 
 mod all_pairs;
+mod boundary;
 mod dataset;
 mod for_description;
 mod locate;

@@ -9,6 +9,7 @@ use mesh::{MeshError, RepairOptions, Repaired, TriMesh, io, repair_within};
 use nalgebra::Point3;
 use surface::{IntrinsicMesh, VertexId};
 
+use super::boundary::longest_boundary;
 use super::point::InputPoint;
 use crate::error::Error;
 
@@ -23,6 +24,8 @@ pub struct Surface {
     pub intrinsic: IntrinsicMesh,
     /// The faces of the input, in the vertex numbers of the input.
     pub input_faces: Vec<[VertexId; 3]>,
+    /// Length of the longest boundary of the surface of which this one is the prepared copy.
+    open_boundary: Option<f64>,
     /// For every vertex of the repaired mesh, the first input vertex that was mapped to it.
     input_vertex: Vec<VertexId>,
     /// Seconds to read the file; zero for a mesh in memory.
@@ -107,6 +110,7 @@ impl Surface {
             repair: *options,
             repaired,
             intrinsic,
+            open_boundary: None,
             input_faces: mesh.faces.clone(),
             input_vertex,
             load_seconds: 0.0,
@@ -121,7 +125,13 @@ impl Surface {
         let repaired = Repaired { mesh, ..self.repaired.clone() };
         let near = origins.iter().map(|&v| self.input_vertex(v));
         let input_vertex = self.input_vertex.iter().copied().chain(near).collect();
-        Self { intrinsic: repaired.intrinsic(), repaired, input_vertex, ..self.clone() }
+        let open_boundary = Some(self.longest_boundary());
+        Self { intrinsic: repaired.intrinsic(), repaired, input_vertex, open_boundary, ..self.clone() }
+    }
+
+    /// Length of the longest boundary of the repaired mesh, in mesh units.
+    pub(crate) fn longest_boundary(&self) -> f64 {
+        self.open_boundary.unwrap_or_else(|| longest_boundary(&self.intrinsic))
     }
 
     /// The repaired mesh.
