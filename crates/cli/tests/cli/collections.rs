@@ -207,7 +207,7 @@ fn links_and_special_files_are_skipped_and_counted() {
     assert_eq!(json["skipped"], expected);
     let outcome = place.done(&BUILD);
     assert!(
-        outcome.out.contains("2 special file") && outcome.err.contains("meshes/pipe.off"),
+        outcome.out.contains("special file (2)") && outcome.err.contains("meshes/pipe.off"),
         "{}",
         outcome.err
     );

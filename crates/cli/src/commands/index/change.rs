@@ -127,7 +127,7 @@ fn table(index: &Path, report: &BuildReport, max_dropped: f64) -> String {
     ];
     rows.extend(rare.into_iter().filter(|(_, n)| *n > 0).map(|(name, n)| (name, n.to_string())));
     if !report.skipped.is_empty() {
-        let kinds: Vec<String> = report.skipped.iter().map(|(kind, n)| format!("{n} {kind}")).collect();
+        let kinds: Vec<String> = report.skipped.iter().map(|(kind, n)| format!("{kind} ({n})")).collect();
         rows.push(("skipped", kinds.join(", ")));
     }
     if !report.failed.is_empty() {
