@@ -56,7 +56,7 @@ pub fn without_noise(mesh: &TriMesh) -> Option<TriMesh> {
         return None;
     }
     for _ in 0..MOST {
-        for step in [STEPS; ROUNDS].concat() {
+        for step in [STEPS; ROUNDS].into_iter().flatten() {
             let offsets = umbrellas.offsets(&smooth, 1.0);
             smooth.positions.iter_mut().zip(offsets).for_each(|(p, offset)| *p -= offset * step);
         }
@@ -169,8 +169,7 @@ impl Umbrellas {
     fn normals(&self, mesh: &TriMesh, unit: f64) -> Vec<Vector3<f64>> {
         let mut normals = vec![Vector3::zeros(); mesh.n_vertices()];
         for face in 0..mesh.n_faces() {
-            let [a, b, c] = mesh.triangle(face);
-            let normal = ((b - a) / unit).cross(&((c - a) / unit));
+            let normal = mesh.area_vector_in(face, unit);
             mesh.faces[face].iter().for_each(|v| normals[v.index()] += normal);
         }
         for _ in 0..2 {

@@ -19,10 +19,14 @@ impl Refined {
     #[must_use]
     pub fn then(self, next: Self) -> Self {
         let n_old = self.mesh.n_vertices() - self.origins.len();
-        let first = |v: &VertexId| v.index().checked_sub(n_old).map_or(*v, |i| self.origins[i]);
-        let new: Vec<VertexId> = next.origins.iter().map(first).collect();
+        let new: Vec<VertexId> = next.origins.iter().map(|&v| origin(v, n_old, &self.origins)).collect();
         Self { mesh: next.mesh, origins: [self.origins, new].concat() }
     }
+}
+
+/// The old vertex near a vertex: itself if it is old.
+fn origin(v: VertexId, n_old: usize, origins: &[VertexId]) -> VertexId {
+    v.index().checked_sub(n_old).map_or(v, |i| origins[i])
 }
 
 /// Splits edges longer than `longest` at their midpoints, in rounds, until there are none or the next round would give
@@ -51,8 +55,7 @@ pub fn refine(mesh: &TriMesh, longest: f64, most: usize) -> Refined {
         for (edge, middle) in topology.edges().iter().zip(&mut middle).filter(|(edge, _)| is_long(edge)) {
             *middle = Some(VertexId::from(positions.len() + new.len()));
             new.push(nalgebra::center(&at(edge[0]), &at(edge[1])));
-            let end = edge[0].index();
-            refined.origins.push(end.checked_sub(n_old).map_or(edge[0], |i| refined.origins[i]));
+            refined.origins.push(origin(edge[0], n_old, &refined.origins));
         }
         positions.extend(new);
         let mut finer = Vec::with_capacity(faces.len() + 2 * n_long);

@@ -50,8 +50,13 @@ impl TriMesh {
     /// The normal of face `face`; its length is twice the area of the face.
     #[must_use]
     pub fn area_vector(&self, face: usize) -> Vector3<f64> {
+        self.area_vector_in(face, 1.0)
+    }
+
+    /// The same in squares of `unit`, whose products neither overflow nor vanish if it is [that of the mesh](Self::unit).
+    pub(crate) fn area_vector_in(&self, face: usize, unit: f64) -> Vector3<f64> {
         let [a, b, c] = self.triangle(face);
-        (b - a).cross(&(c - a))
+        ((b - a) / unit).cross(&((c - a) / unit))
     }
 
     /// Sum of the areas of all faces, in squared mesh units.
@@ -63,10 +68,14 @@ impl TriMesh {
     /// The area of every face, in squared mesh units; accurate at any scale.
     pub fn face_areas(&self) -> impl Iterator<Item = f64> {
         let unit = self.unit();
-        (0..self.n_faces()).map(move |f| {
-            let [a, b, c] = self.triangle(f);
-            0.5 * ((b - a) / unit).cross(&((c - a) / unit)).norm() * unit * unit
-        })
+        (0..self.n_faces()).map(move |f| 0.5 * self.area_vector_in(f, unit).norm() * unit * unit)
+    }
+
+    /// The square root of the area, in mesh units; accurate also where the area is too small for a number.
+    #[must_use]
+    pub fn root_of_area(&self) -> f64 {
+        let unit = self.unit();
+        (0..self.n_faces()).map(|f| 0.5 * self.area_vector_in(f, unit).norm()).sum::<f64>().sqrt() * unit
     }
 
     /// The lumped mass of each vertex, a third of the area of its faces, in squared mesh units.

@@ -1,6 +1,6 @@
 //! The mesh on which a surface is measured for its description.
 
-use mesh::{Refined, TriMesh, fill_holes, refine, without_noise};
+use mesh::{Refined, fill_holes, refine, without_noise};
 
 use super::repaired::Surface;
 
@@ -34,30 +34,18 @@ impl Surface {
     /// ```
     #[must_use]
     pub fn for_description(&self) -> Self {
-        let size = root_of_area(self.mesh());
+        let smooth = without_noise(self.mesh());
+        let mesh = smooth.as_ref().unwrap_or(self.mesh());
+        let size = mesh.root_of_area();
         if size.is_nan() || size <= 0.0 {
             return self.clone();
         }
-        let smooth = without_noise(self.mesh());
-        let is_noisy = smooth.is_some();
-        let mesh = smooth.unwrap_or_else(|| self.mesh().clone());
-        let (size, most) = (root_of_area(&mesh), mesh.n_vertices() + MOST);
-        let filled = fill_holes(&mesh, LONGEST_HOLE * size);
-        let fine = refine(&filled.mesh, LONGEST * size, most);
+        let filled = fill_holes(mesh, LONGEST_HOLE * size);
+        let fine = refine(&filled.mesh, LONGEST * size, mesh.n_vertices() + MOST);
         let Refined { mesh, origins } = filled.then(fine);
-        match is_noisy || !origins.is_empty() {
+        match smooth.is_some() || !origins.is_empty() {
             true => self.with_mesh(mesh, &origins),
             false => self.clone(),
         }
     }
-}
-
-/// The square root of the area of a mesh, which may be too small for a number although its lengths are not.
-fn root_of_area(mesh: &TriMesh) -> f64 {
-    let unit = mesh.unit();
-    let area = |face: usize| {
-        let [a, b, c] = mesh.triangle(face);
-        0.5 * ((b - a) / unit).cross(&((c - a) / unit)).norm()
-    };
-    (0..mesh.n_faces()).map(area).sum::<f64>().sqrt() * unit
 }
