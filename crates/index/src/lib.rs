@@ -4,9 +4,10 @@
 //! Shape -> IndexWriter -> NAME.work -> finish -> NAME -> Index -> Searcher | each | verify | export
 //! ```
 //!
-//! A finished file is never modified. A writer works on a copy next to it, `NAME.work`, commits every `put` in a
-//! transaction, and renames the copy when it is done. So readers need no lock, and an interrupted writer loses
-//! nothing that it has put. Each block of a finished file has a checksum that is compared whenever the block is read.
+//! Nothing that a reader uses is ever modified. A writer collects changed blocks in a file next to the index, `NAME.work`,
+//! and commits every `put` in a transaction. When it is done, it appends these blocks to the index, or writes the index
+//! anew if they are many. So readers need no lock, an addition takes time in proportion to what is added, and an
+//! interrupted writer loses nothing that it has put. Each block has a checksum that is compared whenever the block is read.
 //!
 //! Vectors come from outside; the index does not know what they describe.
 //!
@@ -42,9 +43,9 @@
 //!
 //! | module | contents |
 //! |---|---|
-//! | `vectors` | nearest vectors in memory: kernels, k-means, cells, the threshold of unknown classes. Knows no file |
-//! | `shape` | the record of one shape |
-//! | `format` | the file: errors, encoding, checksummed blocks, tables, stored cells |
+//! | `texts`, `shape` | names, the record of one shape |
+//! | `vectors` | nearest vectors in memory: kernels, k-means, cells, calibration, the threshold of unknown classes. Knows no file |
+//! | `format` | the file: errors, encoding, checksummed blocks, tables, cells |
 //! | `reader`, `writer` | [`Index`], [`IndexWriter`] |
 //! | `search` | [`Index::nearest`], [`Searcher`] |
 //! | `verify`, `export` | [`verify`], [`Index::export`] |
@@ -54,6 +55,7 @@ mod format;
 mod reader;
 mod search;
 mod shape;
+mod texts;
 mod vectors;
 mod verify;
 mod writer;

@@ -1,10 +1,12 @@
 //! Reading a finished index.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+use std::sync::{Arc, OnceLock};
 
 use redb::Database;
 
-use crate::format::{CACHE, ENTRIES, Guarded, Overlay, Sealed, Snapshot, Store, call};
+use crate::format::{CACHE, ENTRIES, Guarded, Heads, Overlay, Sealed, Snapshot, Store, call};
 use crate::{IndexError, Shape, ShapeEntry, ShapeVectors};
 
 /// A finished index, open for reading.
@@ -17,9 +19,9 @@ pub struct Index {
     database: Guarded<Database>,
     options: String,
     n_shapes: usize,
-    /// A number that changes with the content of the file.
-    pub(crate) fingerprint: u64,
-    size: u64,
+    pub(crate) sealed: Arc<Sealed>,
+    /// Read with the first search.
+    heads: OnceLock<Heads>,
 }
 
 impl Index {
@@ -28,22 +30,34 @@ impl Index {
     /// # Errors
     /// [`IndexError::Foreign`], [`IndexError::FutureVersion`], [`IndexError::Damaged`], [`IndexError::Io`].
     pub fn open(path: &Path) -> Result<Self, IndexError> {
-        let sealed = Sealed::open(path)?;
-        let (fingerprint, size) = (sealed.footer.fingerprint(), sealed.len());
+        Self::of(path, Sealed::open(path)?)
+    }
+
+    pub(crate) fn of(path: &Path, sealed: Sealed) -> Result<Self, IndexError> {
+        let sealed = Arc::new(sealed);
         let database = Guarded::new(call(path, "read", || {
-            Database::builder().set_cache_size(CACHE).create_with_backend(Overlay::new(sealed))
+            Database::builder().set_cache_size(CACHE).create_with_backend(Overlay::new(sealed.clone()))
         })?);
-        let store = Store { database: &database, path, action: "read", n_bytes: size };
+        let store = Store { database: &database, path, action: "read", n_bytes: sealed.n_bytes() };
         let about = store.read()?;
         let missing = || IndexError::damaged(path, "its options are missing");
         let options = about.about("options")?.ok_or_else(missing)?;
         let n_shapes = about.len()?;
         drop(about);
-        Ok(Self { path: path.to_owned(), database, options, n_shapes, fingerprint, size })
+        Ok(Self { path: path.to_owned(), database, options, n_shapes, sealed, heads: OnceLock::new() })
     }
 
     pub(crate) fn store(&self) -> Store<'_> {
-        Store { database: &self.database, path: &self.path, action: "read", n_bytes: self.size }
+        Store { database: &self.database, path: &self.path, action: "read", n_bytes: self.sealed.n_bytes() }
+    }
+
+    /// What a search needs before it reads cells.
+    pub(crate) fn heads(&self) -> Result<&Heads, IndexError> {
+        if let Some(heads) = self.heads.get() {
+            return Ok(heads);
+        }
+        let heads = Heads::read(&self.store())?;
+        Ok(self.heads.get_or_init(|| heads))
     }
 
     /// The file.
@@ -88,13 +102,18 @@ impl Index {
     /// A number that changes with the content of the file.
     #[must_use]
     pub fn fingerprint(&self) -> u64 {
-        self.fingerprint
+        self.sealed.fingerprint()
     }
 
-    /// Size of the database in bytes.
+    /// Size in bytes.
     #[must_use]
     pub fn n_bytes(&self) -> u64 {
-        self.size
+        self.sealed.n_bytes()
+    }
+
+    /// The classes and the number of shapes in each. Shapes without a class do not count.
+    pub fn classes(&self) -> Result<BTreeMap<String, u64>, IndexError> {
+        self.store().read()?.classes()
     }
 
     fn with<T>(

@@ -25,6 +25,11 @@ impl ContentHash {
         Self(hash.finalize().into())
     }
 
+    /// Its first 64 bits.
+    pub(crate) fn start(&self) -> u64 {
+        self.0.iter().take(8).fold(0, |bits, byte| bits << 8 | u64::from(*byte))
+    }
+
     /// The same hash of the content of files, without holding it in memory.
     ///
     /// # Errors

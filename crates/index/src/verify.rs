@@ -1,9 +1,10 @@
 //! Integrity check of a whole index.
 
+use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
 
-use crate::format::{BODIES, FUSED, Sealed, StoredCells, vectors};
-use crate::vectors::padded;
+use crate::format::{BODIES, FUSED, Sealed, all_shapes};
+use crate::vectors::{Rows, Trials, padded};
 use crate::{Index, IndexError, Shape};
 
 /// The result of [`verify`].
@@ -25,12 +26,12 @@ pub struct Verification {
 /// As [`Index::open`], if the file is not an index.
 pub fn verify(path: &Path, done: impl FnMut()) -> Result<Verification, IndexError> {
     let sealed = Sealed::open(path)?;
-    let mut found = Verification { n_shapes: 0, n_bytes: sealed.len(), faults: Vec::new() };
+    let mut found = Verification { n_shapes: 0, n_bytes: sealed.n_bytes(), faults: Vec::new() };
     if let Err(error) = sealed.check(done) {
         found.faults.push(error.to_string());
         return Ok(found);
     }
-    let index = Index::open(path)?;
+    let index = Index::of(path, sealed)?;
     let mut n_shapes = 0;
     let read = index.each(|_: Shape| {
         n_shapes += 1;
@@ -47,7 +48,7 @@ pub fn verify(path: &Path, done: impl FnMut()) -> Result<Verification, IndexErro
     Ok(found)
 }
 
-/// Checks that all vectors belong to an entry.
+/// Checks that all vectors belong to an entry, and that classes are counted.
 fn check_entries(index: &Index) -> Result<(), IndexError> {
     let store = index.store();
     let snapshot = store.read()?;
@@ -58,35 +59,49 @@ fn check_entries(index: &Index) -> Result<(), IndexError> {
             }
         }
     }
-    Ok(())
+    let mut classes = BTreeMap::new();
+    for (_, entry) in index.entries()? {
+        if !entry.label.is_empty() {
+            *classes.entry(entry.label).or_insert(0) += 1;
+        }
+    }
+    match index.classes()? == classes {
+        true => Ok(()),
+        false => Err(IndexError::damaged(index.path(), "its classes are counted wrong")),
+    }
 }
 
-/// Compares the cells with the vectors that they were made from. Returns the differences.
+/// Compares the cells with the shapes. Returns the differences.
 fn check_cells(index: &Index) -> Result<Vec<String>, IndexError> {
     let store = index.store();
-    let (names, rows, dim) = vectors(&store)?;
+    let (shapes, dim) = all_shapes(&store)?;
     let n = padded(dim);
-    let stored = StoredCells::open(&store)?;
+    let (heads, snapshot) = (index.heads()?, store.read()?);
+    let places: HashMap<&str, usize> = shapes.ids.iter().zip(0..).collect();
     let mut faults = Vec::new();
-    let mut seen = vec![false; names.len()];
-    for cell in 0..stored.header.sizes.len() as u32 {
-        stored.each_part(cell, |part| {
-            for (slot, row) in part.slots.iter().zip(part.rows().chunks_exact(n)) {
-                let slot = *slot as usize;
-                match seen.get_mut(slot) {
-                    Some(seen) if !*seen && rows[slot * n..][..n] == *row => *seen = true,
-                    _ => faults.push(format!("row {slot} of cell {cell} is not the vector of a shape")),
+    let mut cells = vec![u32::MAX; shapes.ids.len()];
+    for cell in 0..heads.header.n_cells as u32 {
+        heads.each_part(&snapshot, cell, |part| {
+            for (i, (id, class)) in part.ids.iter().zip(part.classes.iter()).enumerate() {
+                let place = places.get(id).filter(|place| {
+                    let (row, known) = (&part.rows()[i * n..][..n], &shapes.rows()[**place * n..][..n]);
+                    cells[**place] == u32::MAX && class == shapes.classes.get(**place) && row == known
+                });
+                match place {
+                    Some(place) => cells[*place] = cell,
+                    None => faults.push(format!("`{id}` in cell {cell} is not a shape")),
                 }
             }
             Ok(())
         })?;
     }
-    let unseen = seen.iter().zip(&names).filter(|(seen, _)| !**seen);
+    let unseen = cells.iter().zip(shapes.ids.iter()).filter(|(cell, _)| **cell == u32::MAX);
     faults.extend(unseen.map(|(_, id)| format!("`{id}` is in no cell")));
-    let stored_names: Vec<String> = stored.names().collect::<Result<Vec<_>, _>>()?.concat();
-    for (slot, id) in names.iter().enumerate() {
-        if stored_names.get(slot) != Some(id) {
-            faults.push(format!("row {slot} is not named `{id}`"));
+    if faults.is_empty() {
+        let all = Rows { cells: &cells, ..shapes.in_cell(&0) };
+        let fresh = Trials::of(all, heads.header.n_cells);
+        if heads.header.n != shapes.ids.len() || !heads.trials(&snapshot)?.agree(&fresh) {
+            faults.push("its trials are not those of its shapes".to_owned());
         }
     }
     Ok(faults)

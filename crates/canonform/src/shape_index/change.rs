@@ -1,6 +1,5 @@
 //! Changing an index, and merging several.
 
-use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -32,8 +31,8 @@ pub fn add_to_index(
     let start = Instant::now();
     let index = Index::open(path)?;
     let options = options_of(&index)?;
-    let classes: HashSet<String> = index.entries()?.into_iter().map(|(_, entry)| entry.label).collect();
-    let listing = inputs.list(&Home::of(path)?, |label| classes.contains(label))?;
+    let classes = index.classes()?;
+    let listing = inputs.list(&Home::of(path)?, |label| classes.contains_key(label))?;
     let mut report = BuildReport::of(&listing);
     let hashed = hash_all(listing.shapes, observer);
     if !replace {

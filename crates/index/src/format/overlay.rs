@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
 use std::io;
 use std::ops::Range;
-use std::sync::Mutex;
+use std::sync::{Arc, Mutex};
 
 use redb::StorageBackend;
 
@@ -13,7 +13,7 @@ use super::sealed::{BLOCK, Sealed, lock};
 /// A sealed file, and in memory the blocks that were written over it: redb writes a little even when it only reads.
 #[derive(Debug)]
 pub(crate) struct Overlay {
-    base: Sealed,
+    base: Arc<Sealed>,
     top: Mutex<Top>,
 }
 
@@ -24,7 +24,7 @@ struct Top {
 }
 
 impl Overlay {
-    pub(crate) fn new(base: Sealed) -> Self {
+    pub(crate) fn new(base: Arc<Sealed>) -> Self {
         let top = Top { length: base.len(), blocks: BTreeMap::new() };
         Self { base, top: Mutex::new(top) }
     }
@@ -43,7 +43,7 @@ impl Overlay {
 
 /// Splits `length` bytes from `offset` on at block boundaries: the number of the block, the range inside it, and the
 /// range counted from `offset`.
-fn pieces(offset: u64, length: usize) -> impl Iterator<Item = (u64, Range<usize>, Range<usize>)> {
+pub(super) fn pieces(offset: u64, length: usize) -> impl Iterator<Item = (u64, Range<usize>, Range<usize>)> {
     let mut at = 0;
     std::iter::from_fn(move || {
         let (number, start) = ((offset + at as u64) / BLOCK as u64, (offset as usize + at) % BLOCK);

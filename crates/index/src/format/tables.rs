@@ -1,5 +1,6 @@
 //! The tables of the database, and how to read and write them.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use redb::{
@@ -23,6 +24,10 @@ pub(crate) const ENTRIES: Named = TableDefinition::new("entries");
 pub(crate) const FUSED: Named = TableDefinition::new("fused");
 /// Shape -> its signatures and form.
 pub(crate) const BODIES: Named = TableDefinition::new("bodies");
+/// Class -> number of its shapes.
+const CLASSES: Named = TableDefinition::new("classes");
+/// Shapes that a writer has put, removed or changed while cells [follow](CellState::Follow).
+pub(crate) const CHANGED: Named = TableDefinition::new("changed");
 /// Properties of the whole index, by name.
 const ABOUT: Named = TableDefinition::new("about");
 
@@ -86,18 +91,19 @@ impl Store<'_> {
         decode(bytes).map_err(|error| self.damaged(format!("{what}: {error}")))
     }
 
-    /// Writes a value under a name, replacing an earlier one.
+    /// Writes a value under a name. Returns the bytes of the one that it replaces.
     fn insert<T: Serialize>(
         &self,
         transaction: &WriteTransaction,
         table: Named,
         name: &str,
         value: &T,
-    ) -> Result<(), IndexError> {
+    ) -> Result<Option<Vec<u8>>, IndexError> {
         let bytes = encode(value).map_err(|source| IndexError::Codec { id: name.to_owned(), source })?;
         self.call(|| {
-            transaction.open_table(table)?.insert(name, bytes.as_slice())?;
-            Ok::<_, redb::Error>(())
+            let mut table = Guarded::new(transaction.open_table(table)?);
+            let before = table.insert(name, bytes.as_slice())?;
+            Ok::<_, redb::Error>(before.map(|bytes| bytes.value().to_vec()))
         })
     }
 
@@ -108,14 +114,19 @@ impl Store<'_> {
         name: &str,
         value: &T,
     ) -> Result<(), IndexError> {
-        self.insert(transaction, ABOUT, name, value)
+        self.insert(transaction, ABOUT, name, value).map(drop)
     }
 
     /// Writes a shape over the one of the same name.
-    pub(crate) fn put(&self, transaction: &WriteTransaction, shape: &Shape) -> Result<(), IndexError> {
-        self.put_entry(transaction, &shape.id, &shape.entry)?;
+    pub(crate) fn put(
+        &self,
+        transaction: &WriteTransaction,
+        shape: &Shape,
+        changes: &mut Changes,
+    ) -> Result<(), IndexError> {
+        self.put_entry(transaction, &shape.id, &shape.entry, changes)?;
         self.insert(transaction, FUSED, &shape.id, &Floats(shape.vectors.fused.clone()))?;
-        self.insert(transaction, BODIES, &shape.id, &StoredBody::new(&shape.vectors))
+        self.insert(transaction, BODIES, &shape.id, &StoredBody::new(&shape.vectors)).map(drop)
     }
 
     pub(crate) fn put_entry(
@@ -123,18 +134,118 @@ impl Store<'_> {
         transaction: &WriteTransaction,
         id: &str,
         entry: &ShapeEntry,
+        changes: &mut Changes,
     ) -> Result<(), IndexError> {
-        self.insert(transaction, ENTRIES, id, entry)
+        let before = self.insert(transaction, ENTRIES, id, entry)?;
+        let before: Option<ShapeEntry> = before.map(|bytes| self.decoded(&bytes, id)).transpose()?;
+        changes.count(before.as_ref(), Some(entry));
+        self.list(transaction, id, changes)
     }
 
     /// Removes a shape. Returns whether it existed.
-    pub(crate) fn remove(&self, transaction: &WriteTransaction, id: &str) -> Result<bool, IndexError> {
-        let mut existed = false;
-        for table in [ENTRIES, FUSED, BODIES] {
-            existed |=
-                self.call(|| Ok::<_, redb::Error>(transaction.open_table(table)?.remove(id)?.is_some()))?;
-        }
+    pub(crate) fn remove(
+        &self,
+        transaction: &WriteTransaction,
+        id: &str,
+        changes: &mut Changes,
+    ) -> Result<bool, IndexError> {
+        let take = |table: Named| {
+            self.call(|| {
+                let mut table = Guarded::new(transaction.open_table(table)?);
+                let before = table.remove(id)?;
+                Ok::<_, redb::Error>(before.map(|bytes| bytes.value().to_vec()))
+            })
+        };
+        let before = take(ENTRIES)?;
+        let existed = take(FUSED)?.is_some() | take(BODIES)?.is_some() | before.is_some();
+        let before: Option<ShapeEntry> = before.map(|bytes| self.decoded(&bytes, id)).transpose()?;
+        changes.count(before.as_ref(), None);
+        self.list(transaction, id, changes)?;
         Ok(existed)
+    }
+
+    fn list(&self, transaction: &WriteTransaction, id: &str, changes: &Changes) -> Result<(), IndexError> {
+        match changes.cells {
+            CellState::Follow => self.insert(transaction, CHANGED, id, &()).map(drop),
+            CellState::Current | CellState::Stale => Ok(()),
+        }
+    }
+
+    /// Ends a transaction that changes shapes: updates the numbers of shapes in classes and the state of the cells.
+    pub(crate) fn end_changes(
+        &self,
+        transaction: &WriteTransaction,
+        changes: &Changes,
+    ) -> Result<(), IndexError> {
+        if changes.cells == CellState::Current {
+            self.set(transaction, "cells", &CellState::Stale)?;
+        }
+        for (class, change) in changes.classes.iter().filter(|(_, change)| **change != 0) {
+            let before = self.call(|| {
+                let table = Guarded::new(transaction.open_table(CLASSES)?);
+                let bytes = table.get(class.as_str())?;
+                Ok::<_, redb::Error>(bytes.map(|bytes| bytes.value().to_vec()))
+            })?;
+            let before: u64 = before.map_or(Ok(0), |bytes| self.decoded(&bytes, class))?;
+            match before.saturating_add_signed(*change) {
+                0 => self.call(|| {
+                    let mut table = Guarded::new(transaction.open_table(CLASSES)?);
+                    table.remove(class.as_str())?;
+                    Ok::<_, redb::Error>(())
+                })?,
+                n => self.insert(transaction, CLASSES, class, &n).map(drop)?,
+            }
+        }
+        Ok(())
+    }
+
+    /// Makes sure that the table of classes exists, which format 1 does not have.
+    pub(crate) fn make_classes(&self, transaction: &WriteTransaction) -> Result<(), IndexError> {
+        let snapshot = self.read()?;
+        if snapshot.has(CLASSES)? {
+            return Ok(());
+        }
+        self.call(|| transaction.open_table(CLASSES).map(|table| drop(Guarded::new(table))))?;
+        let mut changes = Changes::new(CellState::Stale);
+        snapshot.each(ENTRIES, |_, entry| {
+            changes.count(None, Some(&entry));
+            Ok::<(), IndexError>(())
+        })?;
+        self.end_changes(transaction, &changes)
+    }
+}
+
+/// How the cells of a database relate to its shapes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) enum CellState {
+    /// They hold all shapes.
+    Current,
+    /// They hold the shapes of the base; [`CHANGED`] lists what has changed since.
+    Follow,
+    /// There are none, or nobody knows what they hold.
+    Stale,
+}
+
+/// What a transaction changes beside the shapes themselves.
+#[derive(Debug)]
+pub(crate) struct Changes {
+    /// How many shapes classes gain or lose.
+    classes: BTreeMap<String, i64>,
+    /// The state of the cells before.
+    cells: CellState,
+}
+
+impl Changes {
+    pub(crate) fn new(cells: CellState) -> Self {
+        Self { classes: BTreeMap::new(), cells }
+    }
+
+    fn count(&mut self, before: Option<&ShapeEntry>, now: Option<&ShapeEntry>) {
+        for (entry, change) in [(before, -1), (now, 1)] {
+            if let Some(entry) = entry.filter(|entry| !entry.label.is_empty()) {
+                *self.classes.entry(entry.label.clone()).or_default() += change;
+            }
+        }
     }
 }
 
@@ -145,8 +256,31 @@ pub(crate) struct Snapshot<'a> {
 }
 
 impl Snapshot<'_> {
+    /// Whether a table was ever written to.
+    pub(super) fn has<K: redb::Key + 'static>(
+        &self,
+        table: TableDefinition<'static, K, &'static [u8]>,
+    ) -> Result<bool, IndexError> {
+        Ok(self.table(table)?.is_some())
+    }
+
+    /// The number of shapes in each class.
+    pub(crate) fn classes(&self) -> Result<BTreeMap<String, u64>, IndexError> {
+        if self.has(CLASSES)? {
+            return Ok(self.all(CLASSES)?.into_iter().collect());
+        }
+        let mut classes = BTreeMap::new();
+        self.each(ENTRIES, |_, entry: ShapeEntry| {
+            if !entry.label.is_empty() {
+                *classes.entry(entry.label).or_default() += 1;
+            }
+            Ok::<(), IndexError>(())
+        })?;
+        Ok(classes)
+    }
+
     /// Opens a table; `None` if it was never written to.
-    fn table<K: redb::Key + 'static>(
+    pub(super) fn table<K: redb::Key + 'static>(
         &self,
         table: TableDefinition<'static, K, &'static [u8]>,
     ) -> Result<Option<Guarded<Table<K>>>, IndexError> {
@@ -262,7 +396,7 @@ impl Snapshot<'_> {
 }
 
 /// A table as a reader sees it.
-type Table<K> = redb::ReadOnlyTable<K, &'static [u8]>;
+pub(super) type Table<K> = redb::ReadOnlyTable<K, &'static [u8]>;
 
 /// Signatures and form as stored; the fused vector is stored separately.
 #[derive(Serialize, Deserialize)]

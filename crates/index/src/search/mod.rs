@@ -2,8 +2,8 @@
 
 mod searcher;
 
-use crate::format::StoredCells;
-use crate::vectors::{CellsHeader, Hit, Nearest, nearest_cells, padded, scan};
+use crate::texts::Texts;
+use crate::vectors::{CellsHeader, Nearest, nearest_cells, padded, scan};
 use crate::{Index, IndexError};
 use retrieval::UnknownThreshold;
 
@@ -24,7 +24,7 @@ impl SearchMode {
     fn probes(self, header: &CellsHeader) -> usize {
         match self {
             Self::Auto => header.probes,
-            Self::Exact => header.sizes.len(),
+            Self::Exact => header.n_cells,
         }
     }
 }
@@ -56,9 +56,17 @@ pub struct Found {
 }
 
 impl Found {
-    fn new(mut shapes: Vec<NearShape>, n_measured: usize, header: &CellsHeader, mode: SearchMode) -> Self {
+    /// Takes the `k` nearest and what is as near as the last of them.
+    fn new(
+        mut shapes: Vec<NearShape>,
+        k: usize,
+        n_measured: usize,
+        header: &CellsHeader,
+        mode: SearchMode,
+    ) -> Self {
         // Selected in single precision, sorted in double.
         shapes.sort_by(|a, b| a.distance.total_cmp(&b.distance).then_with(|| a.id.cmp(&b.id)));
+        shapes.truncate(k);
         let is_exact = mode == SearchMode::Exact || header.is_exact();
         Self {
             shapes,
@@ -77,22 +85,24 @@ impl Index {
     /// [`IndexError::OtherLength`], [`IndexError::BadVector`], [`IndexError::Io`], [`IndexError::Damaged`].
     pub fn nearest(&self, query: &[f32], k: usize, mode: SearchMode) -> Result<Found, IndexError> {
         let store = self.store();
-        let stored = StoredCells::open(&store)?;
-        let row = padded_query(query, &stored.header)?;
-        let (mut nearest, mut n_measured) = (Nearest::new(k), 0);
-        for cell in nearest_cells(&row, &stored.centroids, mode.probes(&stored.header)) {
-            stored.each_part(cell, |part| {
-                n_measured += part.slots.len();
-                scan(&row, &part.slots, part.rows(), &mut nearest);
+        let (heads, snapshot) = (self.heads()?, store.read()?);
+        let row = padded_query(query, &heads.header)?;
+        let (mut nearest, mut ids) = (Nearest::new(k), Texts::default());
+        for cell in nearest_cells(&row, &heads.centroids, mode.probes(&heads.header)) {
+            heads.each_part(&snapshot, cell, |part| {
+                scan(&row, ids.len() as u32, part.rows(), &mut nearest);
+                ids.extend(&part.ids);
                 Ok(())
             })?;
         }
         let mut shapes = Vec::with_capacity(k.min(self.len()));
-        for Hit { slot, .. } in nearest.into_sorted() {
-            let id = stored.name(slot)?;
-            shapes.push(NearShape { distance: distance(query, &stored.vector(&id)?), id });
+        for hit in nearest.into_hits() {
+            let id = ids.get(hit.slot as usize);
+            let missing = || IndexError::damaged(self.path(), format!("`{id}` has no vector"));
+            let vector = snapshot.fused(id)?.ok_or_else(missing)?;
+            shapes.push(NearShape { distance: distance(query, &vector), id: id.to_owned() });
         }
-        Ok(Found::new(shapes, n_measured, &stored.header, mode))
+        Ok(Found::new(shapes, k, ids.len(), &heads.header, mode))
     }
 }
 

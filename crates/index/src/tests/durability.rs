@@ -1,9 +1,11 @@
 //! Readers, writers and interruptions.
 
 use std::fs;
+use std::path::Path;
 
 use super::{Folder, OPTIONS, export, shape};
-use crate::{Index, IndexError, IndexWriter, Job, work_path};
+use crate::format::sealed_whole;
+use crate::{Index, IndexError, IndexWriter, Job, Shape, verify, work_path};
 
 #[test]
 fn readers_see_the_old_index_until_the_new_one_is_finished() {
@@ -93,44 +95,101 @@ fn additions_start_over_if_the_index_changed() {
     assert_eq!((writer.is_resumed(), writer.len().unwrap()), (false, 7));
 }
 
+/// The work file of an interrupted job.
+fn interrupted(path: &Path, job: Job, shapes: &[Shape]) -> Vec<u8> {
+    let mut writer = IndexWriter::open(path, job, Some(OPTIONS)).unwrap();
+    writer.put(shapes).unwrap();
+    drop(writer);
+    let bytes = fs::read(work_path(path)).unwrap();
+    fs::remove_file(work_path(path)).unwrap();
+    bytes
+}
+
 #[test]
-fn a_writer_survives_an_interruption_at_any_byte() {
+fn a_build_survives_an_interruption_at_any_byte() {
     let folder = Folder::new();
-    let path = folder.index("a", 30);
-    let whole = export(&path);
-    let finished = fs::read(&path).unwrap();
+    let path = folder.path("a");
+    let shapes: Vec<Shape> = (0..31).map(shape).collect();
+    let begun = interrupted(&path, Job::Build, &shapes);
     let work = work_path(&path);
-    // During the copy, when the first block is still missing.
-    for length in [0, 100, 4096, finished.len() / 2] {
-        let mut cut = finished[..length].to_vec();
-        let head = cut.len().min(4096);
-        cut[..head].fill(0);
-        fs::write(&work, cut).unwrap();
+    // Before the head is written.
+    for length in [0, 51] {
+        fs::write(&work, &begun[..length]).unwrap();
         let writer = IndexWriter::open(&path, Job::Build, Some(OPTIONS)).unwrap();
-        assert_eq!((writer.is_resumed(), writer.len().unwrap()), (false, 30));
+        assert_eq!((writer.is_resumed(), writer.len().unwrap()), (false, 0));
         writer.discard().unwrap();
     }
     // While checksums and footer are written, and just before the file is renamed.
-    let mut writer = IndexWriter::open(&path, Job::Build, Some(OPTIONS)).unwrap();
-    writer.put(&[shape(30)]).unwrap();
-    drop(writer);
-    IndexWriter::open(&path, Job::Build, Some(OPTIONS)).unwrap().finish().unwrap();
-    let sealed = fs::read(&path).unwrap();
-    fs::remove_file(&path).unwrap();
-    let database = sealed.len() - sealed.len() % 4096;
-    for length in (database..sealed.len()).step_by(7).chain([sealed.len() - 1, sealed.len()]) {
-        fs::write(&work, &sealed[..length]).unwrap();
+    let sealed = fs::read(folder.index("b", 31)).unwrap();
+    let (end, _) = sealed_whole(&mut fs::File::open(folder.path("b")).unwrap(), &path).unwrap().unwrap();
+    let end = end as usize;
+    let mut head = begun[..4096].to_vec();
+    head[32..40].copy_from_slice(&(end as u64).to_le_bytes());
+    let sum = crc32fast::hash(&head[..48]);
+    head[48..52].copy_from_slice(&sum.to_le_bytes());
+    for length in (end..sealed.len()).step_by(7).chain([sealed.len() - 1, sealed.len()]) {
+        fs::write(&work, [&head, &sealed[4096..length]].concat()).unwrap();
         let resumed = IndexWriter::open(&path, Job::Build, Some(OPTIONS)).unwrap();
         assert_eq!((resumed.is_resumed(), resumed.len().unwrap()), (true, 31), "{length}");
     }
-    IndexWriter::open(&path, Job::Build, Some(OPTIONS)).unwrap().finish().unwrap();
-    fs::rename(&path, &work).unwrap();
-    let resumed = IndexWriter::open(&path, Job::Build, Some(OPTIONS)).unwrap();
+    fs::write(&work, &sealed).unwrap();
+    let mut resumed = IndexWriter::open(&path, Job::Build, Some(OPTIONS)).unwrap();
     assert_eq!((resumed.is_resumed(), resumed.len().unwrap()), (true, 31));
-    let mut index = resumed;
-    index.remove(&[shape(30).id]).unwrap();
-    index.finish().unwrap();
-    assert_eq!(export(&path), whole);
+    resumed.remove(&[shape(30).id]).unwrap();
+    resumed.finish().unwrap();
+    assert_eq!(export(&path), export(&folder.index("c", 30)));
+    assert_eq!(verify(&path, || ()).unwrap().faults, Vec::<String>::new());
+}
+
+#[test]
+fn an_addition_survives_an_interruption_at_any_byte() {
+    let folder = Folder::new();
+    let path = folder.index("a", 60);
+    let before = fs::read(&path).unwrap();
+    let added = [shape(60), shape(61)];
+    let work = interrupted(&path, Job::Add, &added);
+    fs::write(work_path(&path), &work).unwrap();
+    let writer = IndexWriter::open(&path, Job::Add, None).unwrap();
+    assert_eq!((writer.is_resumed(), writer.len().unwrap()), (true, 62));
+    writer.finish().unwrap();
+    let after = fs::read(&path).unwrap();
+    assert_eq!(folder.names(), ["a"]);
+    assert!(after[4096..].starts_with(&before[4096..]), "nothing is overwritten");
+    let whole = export(&path);
+    assert_eq!(whole, export(&folder.index("b", 62)));
+    // While the segment is appended: the old index, and the work goes on.
+    let steps = (before.len()..=after.len()).step_by(5000).chain([after.len()]);
+    for length in steps {
+        fs::write(&path, [&before[..4096], &after[4096..length]].concat()).unwrap();
+        fs::write(work_path(&path), &work).unwrap();
+        assert_eq!(Index::open(&path).unwrap().len(), 60);
+        assert_eq!(verify(&path, || ()).unwrap().faults, Vec::<String>::new());
+        let writer = IndexWriter::open(&path, Job::Add, None).unwrap();
+        assert_eq!((writer.is_resumed(), writer.len().unwrap()), (true, 62));
+        writer.finish().unwrap();
+        assert_eq!(export(&path), whole);
+    }
+    // After it counts, but before the work file is removed.
+    fs::write(&path, &after).unwrap();
+    fs::write(work_path(&path), &work).unwrap();
+    let writer = IndexWriter::open(&path, Job::Add, None).unwrap();
+    assert_eq!((writer.is_resumed(), writer.len().unwrap()), (false, 62));
+}
+
+#[test]
+fn changes_after_an_interrupted_end_are_not_lost() {
+    let folder = Folder::new();
+    let path = folder.index("a", 60);
+    let mut writer = IndexWriter::open(&path, Job::Add, None).unwrap();
+    writer.put(&[shape(60), shape(61)]).unwrap();
+    writer.refresh().unwrap();
+    drop(writer);
+    let mut writer = IndexWriter::open(&path, Job::Add, None).unwrap();
+    assert!(writer.is_resumed());
+    writer.remove(&[shape(60).id, shape(0).id]).unwrap();
+    writer.finish().unwrap();
+    assert_eq!(verify(&path, || ()).unwrap().faults, Vec::<String>::new());
+    assert_eq!(Index::open(&path).unwrap().len(), 60);
 }
 
 #[test]

@@ -7,23 +7,20 @@ use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
 use super::{Folder, shape};
-use crate::format::{BLOCK, seal, unseal};
+use crate::format::{BLOCK, HEAD, seal, sealed_whole};
 use crate::{Index, IndexError, IndexWriter, Job, SearchMode, Searcher, Shape, verify, work_path};
 
-/// The bytes of an index without checksums and footer.
+/// The bytes of an index that is sealed whole, without head, checksums and footer.
 fn database(path: &Path) -> Vec<u8> {
-    let copy = path.with_extension("bare");
-    fs::copy(path, &copy).unwrap();
-    let mut file = fs::OpenOptions::new().read(true).write(true).open(&copy).unwrap();
-    unseal(&mut file).unwrap();
-    fs::read(copy).unwrap()
+    let (end, padding) = sealed_whole(&mut fs::File::open(path).unwrap(), path).unwrap().unwrap();
+    fs::read(path).unwrap()[HEAD as usize + padding as usize * BLOCK..end as usize].to_vec()
 }
 
 /// Writes a file that holds this database, with the right checksums.
 fn forge(path: &Path, database: &[u8]) {
-    fs::write(path, database).unwrap();
+    fs::write(path, [&[0; HEAD as usize], database].concat()).unwrap();
     let mut file = fs::OpenOptions::new().read(true).write(true).open(path).unwrap();
-    seal(&mut file).unwrap();
+    seal(&mut file, 0).unwrap();
 }
 
 /// Reads everything in every way.
@@ -113,13 +110,16 @@ fn a_forged_file_is_an_error_or_an_index() {
 fn a_forged_count_reserves_no_memory() {
     use crate::format::write_header;
     let folder = Folder::new();
-    for (dim, sizes) in [(usize::MAX - 3, vec![20]), (3, vec![u32::MAX; 3]), (0, vec![20]), (3, vec![])] {
-        let path = folder.index("a", 20);
-        let writer = IndexWriter::open(&path, Job::Build, Some(super::OPTIONS)).unwrap();
-        write_header(&writer.store(), dim, sizes).unwrap();
-        drop(writer);
-        forge(&path, &fs::read(work_path(&path)).unwrap());
-        fs::remove_file(work_path(&path)).unwrap();
-        assert!(matches!(read(&path), Err(IndexError::Damaged { .. })), "{dim}");
+    for (dim, n, n_cells) in
+        [(usize::MAX - 3, 20, 1), (3, usize::MAX, 1), (0, 20, 1), (3, 20, 0), (3, 20, usize::MAX), (3, 20, 20)]
+    {
+        let path = folder.path("a");
+        let mut writer = IndexWriter::open(&path, Job::Build, Some(super::OPTIONS)).unwrap();
+        writer.put(&(0..20).map(shape).collect::<Vec<_>>()).unwrap();
+        writer.refresh().unwrap();
+        write_header(&writer.store(), dim, n, n_cells).unwrap();
+        writer.finish().unwrap();
+        assert!(matches!(read(&path), Err(IndexError::Damaged { .. })), "{dim} {n} {n_cells}");
+        fs::remove_file(path).unwrap();
     }
 }

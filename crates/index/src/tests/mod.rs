@@ -4,6 +4,7 @@ mod damage;
 mod durability;
 mod equality;
 mod forged;
+mod growth;
 
 use std::path::{Path, PathBuf};
 
@@ -33,6 +34,14 @@ impl Folder {
             entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
         names.sort();
         names
+    }
+
+    /// Adds shapes to a finished index and removes others.
+    pub(super) fn change(&self, path: &Path, added: &[usize], removed: &[String]) {
+        let mut writer = IndexWriter::open(path, Job::Add, None).unwrap();
+        writer.put(&added.iter().copied().map(shape).collect::<Vec<_>>()).unwrap();
+        writer.remove(removed).unwrap();
+        writer.finish().unwrap();
     }
 
     /// A finished index of shapes 0 to `n`.

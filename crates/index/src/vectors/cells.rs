@@ -1,6 +1,5 @@
-//! Division of vectors into cells, and the calibrated number of cells that a search scans.
+//! Division of vectors into cells.
 
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use super::kernels::sq_distances_into;
@@ -14,27 +13,20 @@ pub(crate) const EXACT_LIMIT: usize = 50_000;
 /// Sampled points per cell for k-means.
 const SAMPLE: usize = 48;
 
-/// Vectors used as queries to calibrate the number of cells to scan.
-const TRIALS: usize = 256;
-
-/// Neighbours searched for in a trial.
-const NEIGHBORS: usize = 10;
-
-/// Share of them that must be found: higher than what is promised, because there are few trials.
-const RECALL: f64 = 0.996;
-
 /// Rows measured together.
-pub(crate) const CHUNK: usize = 256;
+const CHUNK: usize = 256;
 
-/// Summary of [`Cells`], stored with them.
+/// What is known about the cells of an index, stored with them.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct CellsHeader {
     /// Length of a vector.
     pub(crate) dim: usize,
     /// Number of vectors.
     pub(crate) n: usize,
-    /// Number of vectors in each cell.
-    pub(crate) sizes: Vec<u32>,
+    /// Number of cells.
+    pub(crate) n_cells: usize,
+    /// Number of vectors when the centres were chosen.
+    pub(crate) n_trained: usize,
     /// Number of cells that a search scans.
     pub(crate) probes: usize,
     /// Measured share of the ten nearest that such a search finds; 1 if it scans all cells.
@@ -46,52 +38,36 @@ pub(crate) struct CellsHeader {
 impl CellsHeader {
     /// Whether a search scans all cells.
     pub(crate) fn is_exact(&self) -> bool {
-        self.probes >= self.sizes.len()
+        self.probes >= self.n_cells
+    }
+
+    /// Whether the centres still serve an index of `n` vectors of this length. New ones are chosen whenever it has
+    /// grown or shrunk by half, so the time this takes is proportional to the number of changes.
+    pub(crate) fn serves(&self, n: usize, dim: usize) -> bool {
+        let is_near = 2 * n <= 3 * self.n_trained && 3 * n >= 2 * self.n_trained;
+        self.dim == dim && if n <= EXACT_LIMIT { self.n_cells == 1 } else { self.n_cells > 1 && is_near }
     }
 }
 
-/// Vectors divided into cells.
-#[derive(Debug, PartialEq)]
-pub(crate) struct Cells {
-    pub(crate) header: CellsHeader,
-    pub(crate) centroids: Centroids,
-    /// The numbers of the vectors, cell by cell, ascending in each cell.
-    pub(crate) slots: Vec<u32>,
+/// The number of cells for `n` vectors.
+pub(crate) fn n_cells(n: usize) -> usize {
+    if n <= EXACT_LIMIT { 1 } else { 2 * n.isqrt() }
 }
 
-impl Cells {
-    /// Divides `rows`, vectors of `dim` numbers padded to `n`, into cells. The result does not depend on the number
-    /// of threads.
-    pub(crate) fn of(rows: &[f32], dim: usize, n: usize) -> Self {
-        let n_rows = rows.len() / n;
-        match n_rows {
-            0..=EXACT_LIMIT => Self::with_cells(rows, dim, n, 1),
-            _ => Self::with_cells(rows, dim, n, 2 * n_rows.isqrt()),
-        }
+/// Centres of `n_cells` cells for `rows`, vectors padded to `n`, and the cell of each row. The result does not depend on
+/// the number of threads.
+pub(crate) fn divided(rows: &[f32], n: usize, n_cells: usize) -> (Centroids, Vec<u32>) {
+    let n_rows = rows.len() / n;
+    if n_cells < 2 || n_rows < n_cells {
+        return (Centroids::new(vec![0.0; n], n), vec![0; n_rows]);
     }
-
-    pub(crate) fn with_cells(rows: &[f32], dim: usize, n: usize, n_cells: usize) -> Self {
-        let n_rows = rows.len() / n;
-        if n_cells < 2 || n_rows < n_cells {
-            let sizes = vec![n_rows as u32];
-            let header = CellsHeader { dim, n: n_rows, sizes, probes: 1, recall: 1.0, threshold: None };
-            let centroids = Centroids::new(vec![0.0; n], n);
-            return Self { header, centroids, slots: (0..n_rows as u32).collect() };
-        }
-        let n_sampled = (SAMPLE * n_cells).min(n_rows);
-        let sample: Vec<f32> =
-            (0..n_sampled).flat_map(|i| &rows[i * n_rows / n_sampled * n..][..n]).copied().collect();
-        let centroids = Centroids::of(&sample, n_cells, n);
-        drop(sample);
-        let cells = centroids.assign(rows);
-        let mut sizes = vec![0u32; n_cells];
-        cells.iter().for_each(|cell| sizes[*cell as usize] += 1);
-        let mut slots: Vec<u32> = (0..n_rows as u32).collect();
-        slots.sort_by_key(|slot| cells[*slot as usize]);
-        let (probes, recall) = calibrated(rows, n, &cells, &centroids);
-        let header = CellsHeader { dim, n: n_rows, sizes, probes, recall, threshold: None };
-        Self { header, centroids, slots }
-    }
+    let n_sampled = (SAMPLE * n_cells).min(n_rows);
+    let sample: Vec<f32> =
+        (0..n_sampled).flat_map(|i| &rows[i * n_rows / n_sampled * n..][..n]).copied().collect();
+    let centroids = Centroids::of(&sample, n_cells, n);
+    drop(sample);
+    let cells = centroids.assign(rows);
+    (centroids, cells)
 }
 
 /// The `probes` cells nearest to `query`, nearest first.
@@ -108,102 +84,67 @@ pub(crate) fn nearest_cells(query: &[f32], centroids: &Centroids, probes: usize)
     order.into_iter().map(|hit| hit.slot).collect()
 }
 
-/// Offers `rows`, whose numbers are `slots`, to `nearest`.
-pub(crate) fn scan(query: &[f32], slots: &[u32], rows: &[f32], nearest: &mut Nearest) {
+/// Offers `rows`, numbered from `first`, to `nearest`.
+pub(crate) fn scan(query: &[f32], first: u32, rows: &[f32], nearest: &mut Nearest) {
     let mut sqs = [0.0; CHUNK];
-    for (slots, rows) in slots.chunks(CHUNK).zip(rows.chunks(CHUNK * query.len())) {
-        let sqs = &mut sqs[..slots.len()];
+    for (first, rows) in (first..).step_by(CHUNK).zip(rows.chunks(CHUNK * query.len())) {
+        let sqs = &mut sqs[..rows.len() / query.len()];
         sq_distances_into(query, rows, sqs);
-        nearest.offer_all(slots, sqs);
+        nearest.offer_all(first, sqs);
     }
-}
-
-/// The number of cells that must be scanned to reach [`RECALL`], and the recall reached, measured by searching for
-/// some of the vectors among all others.
-fn calibrated(rows: &[f32], n: usize, cells: &[u32], centroids: &Centroids) -> (usize, f64) {
-    let n_rows = rows.len() / n;
-    let n_cells = centroids.rows.len() / n;
-    let trials: Vec<usize> =
-        (0..TRIALS.min(n_rows)).map(|i| (2 * i + 1) * n_rows / (2 * TRIALS.min(n_rows))).collect();
-    let found = exact(rows, n, &trials);
-    // For each neighbour of each trial, the number of cells that must be scanned to find it.
-    let mut found_from: Vec<usize> = trials
-        .par_iter()
-        .zip(&found)
-        .flat_map_iter(|(trial, hits)| {
-            let mut rank = vec![0; n_cells];
-            let order = nearest_cells(&rows[trial * n..][..n], centroids, n_cells);
-            order.iter().enumerate().for_each(|(i, cell)| rank[*cell as usize] = i + 1);
-            let others = hits.iter().filter(|hit| hit.slot as usize != *trial).take(NEIGHBORS);
-            others.map(|hit| rank[cells[hit.slot as usize] as usize]).collect::<Vec<_>>()
-        })
-        .collect();
-    found_from.sort_unstable();
-    let wanted = (RECALL * found_from.len() as f64).ceil() as usize;
-    let probes = found_from.get(wanted.saturating_sub(1)).copied().unwrap_or(n_cells).max(1);
-    let within = found_from.partition_point(|from| *from <= probes);
-    (probes, within as f64 / found_from.len().max(1) as f64)
-}
-
-/// The nearest rows of each query row, itself included.
-fn exact(rows: &[f32], n: usize, queries: &[usize]) -> Vec<Vec<Hit>> {
-    let start = || vec![Nearest::new(NEIGHBORS + 1); queries.len()];
-    let block = 16 * CHUNK;
-    let found = rows
-        .par_chunks(block * n)
-        .enumerate()
-        .fold(start, |mut nearest, (i, part)| {
-            let first = (i * block) as u32;
-            let slots: Vec<u32> = (first..first + (part.len() / n) as u32).collect();
-            for (slots, part) in slots.chunks(CHUNK).zip(part.chunks(CHUNK * n)) {
-                for (nearest, query) in nearest.iter_mut().zip(queries) {
-                    scan(&rows[query * n..][..n], slots, part, nearest);
-                }
-            }
-            nearest
-        })
-        .reduce(start, |a, b| a.into_iter().zip(b).map(|(a, b)| a.join(b)).collect());
-    found.into_iter().map(Nearest::into_sorted).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::super::testing::{clustered, noise};
+    use super::super::trials::{Rows, Trials};
     use super::*;
-
-    #[test]
-    fn each_vector_is_in_exactly_one_cell() {
-        let rows = noise(3000, 16, 2);
-        let cells = Cells::with_cells(&rows, 12, 16, 50);
-        let mut slots = cells.slots.clone();
-        slots.sort_unstable();
-        assert!(slots.iter().copied().eq(0..3000));
-        assert_eq!(cells.header.sizes.iter().sum::<u32>(), 3000);
-        assert_eq!((cells.header.dim, cells.header.n), (12, 3000));
-    }
+    use crate::texts::Texts;
 
     #[test]
     fn few_vectors_form_one_cell() {
-        for rows in [Vec::new(), noise(7, 16, 2)] {
-            let cells = Cells::of(&rows, 16, 16);
-            assert_eq!(cells.header.sizes, [rows.len() as u32 / 16]);
-            assert!(cells.header.is_exact());
+        for n in [0, 7] {
+            let (centroids, cells) = divided(&noise(n, 16, 2), 16, n_cells(n));
+            assert_eq!((centroids.rows.len(), cells), (16, vec![0; n]));
         }
+        assert_eq!((n_cells(EXACT_LIMIT), n_cells(1_000_000)), (1, 2000));
+    }
+
+    #[test]
+    fn centres_serve_until_the_index_has_grown_or_shrunk_by_half() {
+        let header = |n_cells, n_trained| CellsHeader {
+            dim: 3,
+            n: n_trained,
+            n_cells,
+            n_trained,
+            probes: 1,
+            recall: 1.0,
+            threshold: None,
+        };
+        let large = header(632, 100_000);
+        let serves = [66_666, 66_667, 150_000, 150_001].map(|n| large.serves(n, 3));
+        assert_eq!(serves, [false, true, true, false]);
+        assert!(!large.serves(100_000, 4) && !large.serves(EXACT_LIMIT, 3));
+        let small = header(1, 10);
+        assert!(small.serves(0, 3) && small.serves(EXACT_LIMIT, 3) && !small.serves(EXACT_LIMIT + 1, 3));
     }
 
     #[test]
     fn the_recall_holds_for_vectors_that_are_not_in_the_index() {
         let (all, _) = clustered(6200, 300, 16, 0.3);
         let (rows, queries) = all.split_at(6000 * 16);
-        let cells = Cells::with_cells(rows, 16, 16, 80);
-        assert!(cells.header.recall >= RECALL && cells.header.probes < 40, "{:?}", cells.header.probes);
-        let of_row = cells.centroids.assign(rows);
+        let (centroids, of_row) = divided(rows, 16, 80);
+        let ids: Texts = (0..6000).map(|i| i.to_string()).collect();
+        let classes: Texts = (0..6000).map(|_| "").collect();
+        let trials = Trials::of(Rows { rows, ids: &ids, classes: &classes, cells: &of_row }, 80);
+        let (probes, recall) = trials.calibrated(&centroids);
+        assert!(recall >= 0.99 && probes < 40, "{recall} with {probes} cells");
         let (mut found, mut wanted) = (0, 0);
         for query in queries.chunks(16) {
             let mut nearest = Nearest::new(10);
-            scan(query, &(0..6000).collect::<Vec<_>>(), rows, &mut nearest);
-            let probed = nearest_cells(query, &cells.centroids, cells.header.probes);
-            for hit in nearest.into_sorted() {
+            scan(query, 0, rows, &mut nearest);
+            let probed = nearest_cells(query, &centroids, probes);
+            for hit in nearest.into_hits() {
                 wanted += 1;
                 found += usize::from(probed.contains(&of_row[hit.slot as usize]));
             }
@@ -216,7 +157,7 @@ mod tests {
         let rows = noise(2000, 16, 9);
         let on = |threads| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-            pool.install(|| Cells::with_cells(&rows, 16, 16, 30))
+            pool.install(|| divided(&rows, 16, 30))
         };
         assert_eq!(on(1), on(4));
     }

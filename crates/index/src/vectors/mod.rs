@@ -2,10 +2,13 @@
 //!
 //! Up to [`EXACT_LIMIT`](cells::EXACT_LIMIT) vectors a search measures all of them. Larger sets are divided into
 //! about `2 √n` cells by k-means (an inverted file), and a search scans the cells whose centres are nearest to the
-//! query. Their number is calibrated when the index is finished, so that searches for some of its own vectors find
+//! query. Their number is calibrated whenever the index is finished, so that searches for some of its own vectors find
 //! 99.6 % of the ten nearest. Vectors are not quantised.
 //!
-//! **Invariant.** Results depend on the vectors only, not on threads, insertion order or the history of the index.
+//! New vectors join the nearest cells; centres are chosen again when the set has grown by half.
+//!
+//! **Invariant.** Nothing depends on the number of threads. Exact searches and the threshold of unknown classes depend on
+//! the vectors only, not on the order or the history of insertions.
 
 pub(crate) mod cells;
 pub(crate) mod kernels;
@@ -13,10 +16,10 @@ mod kmeans;
 mod nearest;
 #[cfg(test)]
 mod testing;
-mod threshold;
+mod trials;
 
-pub(crate) use cells::{Cells, CellsHeader, nearest_cells, scan};
+pub(crate) use cells::{CellsHeader, divided, n_cells, nearest_cells, scan};
 pub(crate) use kernels::padded;
 pub(crate) use kmeans::Centroids;
 pub(crate) use nearest::{Hit, Nearest};
-pub(crate) use threshold::threshold;
+pub(crate) use trials::{Change, Rows, Trial, TrialKey, Trials};

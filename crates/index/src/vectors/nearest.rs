@@ -26,17 +26,20 @@ impl PartialOrd for Hit {
     }
 }
 
-/// The `k` nearest rows offered so far, independent of the order of offers.
+/// The `k` nearest rows offered so far, and all rows as far away as the last of them, so that the caller can decide
+/// between equals. Independent of the order of offers.
 #[derive(Debug, Clone)]
 pub(crate) struct Nearest {
     k: usize,
     /// The farthest is on top.
     heap: BinaryHeap<Hit>,
+    /// Further rows at the distance of the farthest.
+    ties: Vec<Hit>,
 }
 
 impl Nearest {
     pub(crate) fn new(k: usize) -> Self {
-        Self { k, heap: BinaryHeap::with_capacity(k.min(1 << 16) + 1) }
+        Self { k, heap: BinaryHeap::with_capacity(k.min(1 << 16) + 1), ties: Vec::new() }
     }
 
     /// Rows beyond this squared distance are dropped.
@@ -51,32 +54,42 @@ impl Nearest {
     pub(crate) fn offer(&mut self, hit: Hit) {
         if self.heap.len() < self.k {
             self.heap.push(hit);
-        } else if let Some(mut last) = self.heap.peek_mut()
-            && hit < *last
-        {
-            *last = hit;
+            return;
+        }
+        let Some(mut last) = self.heap.peek_mut() else { return };
+        match hit.sq.total_cmp(&last.sq) {
+            Ordering::Greater => {}
+            Ordering::Equal => self.ties.push(hit),
+            Ordering::Less => {
+                let dropped = std::mem::replace(&mut *last, hit);
+                drop(last);
+                match self.bound() == dropped.sq {
+                    true => self.ties.push(dropped),
+                    false => self.ties.clear(),
+                }
+            }
         }
     }
 
-    /// Offers rows with their squared distances.
-    pub(crate) fn offer_all(&mut self, slots: &[u32], sqs: &[f32]) {
+    /// Offers rows with their squared distances; `first` is the number of the first row.
+    pub(crate) fn offer_all(&mut self, first: u32, sqs: &[f32]) {
         let mut bound = self.bound();
-        for (slot, sq) in slots.iter().zip(sqs) {
+        for (slot, sq) in (first..).zip(sqs) {
             if *sq <= bound {
-                self.offer(Hit { sq: *sq, slot: *slot });
+                self.offer(Hit { sq: *sq, slot });
                 bound = self.bound();
             }
         }
     }
 
     pub(crate) fn join(mut self, other: Self) -> Self {
-        other.heap.into_iter().for_each(|hit| self.offer(hit));
+        other.heap.into_iter().chain(other.ties).for_each(|hit| self.offer(hit));
         self
     }
 
-    /// Nearest first.
-    pub(crate) fn into_sorted(self) -> Vec<Hit> {
-        self.heap.into_sorted_vec()
+    /// At least `k` hits if there are as many, in any order.
+    pub(crate) fn into_hits(self) -> impl Iterator<Item = Hit> {
+        self.heap.into_iter().chain(self.ties)
     }
 }
 
@@ -85,21 +98,24 @@ mod tests {
     use super::*;
 
     #[test]
-    fn keeps_the_nearest_sorted_for_any_order_of_offers() {
-        let sqs = [5.0, 1.0, 3.0, 1.0, 9.0, 0.5, 3.0];
-        let expected = [(0.5, 5), (1.0, 1), (1.0, 3), (3.0, 2)];
-        for turn in 0..sqs.len() {
-            let [mut a, mut b] = [Nearest::new(4), Nearest::new(4)];
-            for i in 0..sqs.len() {
-                let slot = (i + turn) % sqs.len();
-                let part = if i % 2 == 0 { &mut a } else { &mut b };
-                part.offer_all(&[slot as u32], &[sqs[slot]]);
+    fn keeps_the_nearest_and_what_equals_the_last_for_any_order_of_offers() {
+        let sqs = [5.0, 1.0, 3.0, 1.0, 9.0, 0.5, 3.0, 3.0];
+        for (k, expected) in [
+            (0, vec![]),
+            (2, vec![(0.5, 5), (1.0, 1), (1.0, 3)]),
+            (4, vec![(0.5, 5), (1.0, 1), (1.0, 3), (3.0, 2), (3.0, 6), (3.0, 7)]),
+        ] {
+            for turn in 0..sqs.len() {
+                let [mut a, mut b] = [Nearest::new(k), Nearest::new(k)];
+                for i in 0..sqs.len() {
+                    let slot = (i + turn) % sqs.len();
+                    let part = if i % 2 == 0 { &mut a } else { &mut b };
+                    part.offer_all(slot as u32, &[sqs[slot]]);
+                }
+                let mut kept: Vec<_> = a.join(b).into_hits().collect();
+                kept.sort();
+                assert_eq!(kept.iter().map(|hit| (hit.sq, hit.slot)).collect::<Vec<_>>(), expected);
             }
-            let kept: Vec<_> = a.join(b).into_sorted().iter().map(|hit| (hit.sq, hit.slot)).collect();
-            assert_eq!(kept, expected);
         }
-        let mut none = Nearest::new(0);
-        none.offer_all(&[1], &[0.0]);
-        assert!(none.into_sorted().is_empty());
     }
 }

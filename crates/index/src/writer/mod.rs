@@ -2,14 +2,16 @@
 
 mod work;
 
-use std::fs::{self, File};
+use std::fs::{self, File, OpenOptions};
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
-use redb::Database;
+use redb::{Database, WriteTransaction};
 
-use self::work::{Begun, copy_database, database, is_database, open_exclusively, with_suffix};
-use crate::format::{ENTRIES, Guarded, Store, call, seal, unseal, write_cells};
+use self::work::{Begun, open_exclusively, with_suffix};
+use crate::format::{
+    CellState, Changes, ENTRIES, Guarded, Sealed, Store, WorkFile, call, refresh_cells,
+};
 use crate::{Index, IndexError, Shape, ShapeEntry};
 
 pub use self::work::work_path;
@@ -52,9 +54,10 @@ impl Job {
 
 /// The only writer of an index.
 ///
-/// It works in a file next to the index, `NAME.work`, which replaces the index when the job is finished. Until then
-/// readers see the old state. Shapes are on disk when [`put`](Self::put) returns. An interrupted writer leaves its
-/// work file, and the next writer resumes it. All methods may return [`IndexError::Io`] and [`IndexError::Damaged`].
+/// It works in a file next to the index, `NAME.work`, which holds what is new. When the job is finished, that is appended
+/// to the index, or, if it is much, the index is written anew. Until then readers see the old state. Shapes are on disk
+/// when [`put`](Self::put) returns. An interrupted writer leaves its work file, and the next writer resumes it. All
+/// methods may return [`IndexError::Io`] and [`IndexError::Damaged`].
 ///
 /// ```
 /// use canonform_index::{IndexWriter, Job};
@@ -73,8 +76,12 @@ pub struct IndexWriter {
     path: PathBuf,
     work: PathBuf,
     /// Locked as long as it is open.
-    file: File,
+    lock: File,
+    file: WorkFile,
     database: Guarded<Database>,
+    /// The index as it was when the job began.
+    base: Option<Index>,
+    cells: CellState,
     /// Length of the vectors, once there is one.
     length: Option<usize>,
     resumed: bool,
@@ -92,52 +99,54 @@ impl IndexWriter {
     /// [`IndexError::Busy`], [`IndexError::Unfinished`], [`IndexError::OtherOptions`] and those of [`Index::open`].
     pub fn open(path: &Path, job: Job, options: Option<&str>) -> Result<Self, IndexError> {
         let work = work_path(path);
-        let (base, replaces_damaged) = match Index::open(path) {
-            Ok(base) => (Some(base), false),
-            Err(IndexError::Io { source, .. }) if source.kind() == ErrorKind::NotFound => (None, false),
-            Err(IndexError::Damaged { .. }) if job.starts_over() => (None, true),
-            Err(error) => return Err(error),
+        let opened = || match Index::open(path) {
+            Ok(base) => Ok((Some(base), false)),
+            Err(IndexError::Io { source, .. }) if source.kind() == ErrorKind::NotFound => Ok((None, false)),
+            Err(IndexError::Damaged { .. }) if job.starts_over() => Ok((None, true)),
+            Err(error) => Err(error),
         };
+        if let ((None, false), None) = (opened()?, options) {
+            return Err(IndexError::io("read", path)(ErrorKind::NotFound.into()));
+        }
+        let lock = open_exclusively(path, &work)?;
+        // Another writer may have finished before the file was locked.
+        let (base, replaces_damaged) = opened()?;
         let options = match (options, &base) {
             (Some(requested), Some(base)) => base.expect_options(requested).map(|()| requested.to_owned())?,
             (Some(requested), None) => requested.to_owned(),
             (None, Some(base)) => base.options().to_owned(),
             (None, None) => return Err(IndexError::io("read", path)(ErrorKind::NotFound.into())),
         };
-        let cannot_write = IndexError::io("write", &work);
-        let mut file = open_exclusively(path, &work)?;
-        unseal(&mut file).map_err(cannot_write)?;
         let begun = Begun {
             job: job.name().to_owned(),
             options,
-            base: base.as_ref().map_or(0, |index| index.fingerprint),
+            base: base.as_ref().map_or(0, Index::fingerprint),
         };
-        let new = |file: File, database: Guarded<Database>, length, resumed| {
-            let (path, work) = (path.to_owned(), work.clone());
-            Self { path, work, file, database, length, resumed, replaces_damaged }
-        };
-        match resume(&mut file, &work, job, &begun) {
-            Ok(Some((database, length))) => return Ok(new(file, database, length, true)),
+        let (file, database, resumed) = match resume(&lock, &work, job, &begun, base.as_ref()) {
+            Ok(Some((file, database))) => (file, database, true),
             // Work that cannot be read is of no use.
-            Ok(None) | Err(IndexError::Damaged { .. }) => {}
+            Ok(None) | Err(IndexError::Damaged { .. }) => {
+                // A merge starts empty.
+                let source = base.as_ref().filter(|_| job != Job::Merge);
+                let begin = || WorkFile::begin(lock.try_clone()?, source.map(|base| base.sealed.clone()));
+                let file = begin().map_err(IndexError::io("write", &work))?;
+                let database = file.database(&work)?;
+                let cells = if source.is_some() { CellState::Follow } else { CellState::Stale };
+                begun.write(&store(&file, &database, &work), cells)?;
+                (file, database, false)
+            }
             Err(error) => return Err(error),
-        }
-        // A merge starts empty.
-        let base = base.filter(|_| job != Job::Merge);
-        copy_database(&mut file, base.as_ref()).map_err(|error| match error.kind() {
-            ErrorKind::InvalidData => IndexError::damaged(path, error.to_string()),
-            _ => cannot_write(error),
-        })?;
-        let database = database(&file, &work)?;
-        let store = Store { database: &database, path: &work, action: "write", n_bytes: n_bytes(&file) };
-        begun.write(&store)?;
-        let length = store.read()?.about("length")?;
-        Ok(new(file, database, length, false))
+        };
+        let about = store(&file, &database, &work);
+        let about = about.read()?;
+        let (length, cells) = (about.about("length")?, about.about("cells")?.unwrap_or(CellState::Stale));
+        drop(about);
+        let path = path.to_owned();
+        Ok(Self { path, work, lock, file, database, base, cells, length, resumed, replaces_damaged })
     }
 
     pub(crate) fn store(&self) -> Store<'_> {
-        let n_bytes = n_bytes(&self.file);
-        Store { database: &self.database, path: &self.work, action: "write", n_bytes }
+        store(&self.file, &self.database, &self.work)
     }
 
     /// The index.
@@ -194,14 +203,29 @@ impl IndexWriter {
                 return Err(IndexError::OtherLength { id: shape.id.clone(), found: fused.len(), expected });
             }
         }
-        let store = self.store();
-        store.write(|transaction| {
+        self.change(|store, transaction, changes| {
             if let Some(length) = length {
                 store.set(transaction, "length", &length)?;
             }
-            shapes.iter().try_for_each(|shape| store.put(transaction, shape))
+            shapes.iter().try_for_each(|shape| store.put(transaction, shape, changes))
         })?;
         self.length = length;
+        Ok(())
+    }
+
+    /// Changes shapes in one transaction.
+    fn change(
+        &mut self,
+        change: impl FnOnce(&Store<'_>, &WriteTransaction, &mut Changes) -> Result<(), IndexError>,
+    ) -> Result<(), IndexError> {
+        let (store, mut changes) = (self.store(), Changes::new(self.cells));
+        store.write(|transaction| {
+            change(&store, transaction, &mut changes)?;
+            store.end_changes(transaction, &changes)
+        })?;
+        if self.cells == CellState::Current {
+            self.cells = CellState::Stale;
+        }
         Ok(())
     }
 
@@ -218,8 +242,8 @@ impl IndexWriter {
             }
         }
         drop(known);
-        store.write(|transaction| {
-            entries.iter().try_for_each(|(id, entry)| store.put_entry(transaction, id, entry))
+        self.change(|store, transaction, changes| {
+            entries.iter().try_for_each(|(id, entry)| store.put_entry(transaction, id, entry, changes))
         })
     }
 
@@ -228,41 +252,62 @@ impl IndexWriter {
     /// # Errors
     /// [`IndexError::NoSuchShape`]; then no shape is removed.
     pub fn remove(&mut self, ids: &[String]) -> Result<(), IndexError> {
-        let store = self.store();
-        store.write(|transaction| {
-            ids.iter().try_for_each(|id| match store.remove(transaction, id)? {
+        let path = self.path.clone();
+        self.change(|store, transaction, changes| {
+            ids.iter().try_for_each(|id| match store.remove(transaction, id, changes)? {
                 true => Ok(()),
-                false => Err(IndexError::NoSuchShape { path: self.path.clone(), id: id.clone() }),
+                false => Err(IndexError::NoSuchShape { path: path.clone(), id: id.clone() }),
             })
         })
     }
 
-    /// Finishes the index and replaces the previous one.
+    /// Brings the cells up to date with the shapes.
+    pub(crate) fn refresh(&self) -> Result<(), IndexError> {
+        refresh_cells(&self.store(), self.base.as_ref().map(Index::store).as_ref())
+    }
+
+    /// Finishes the index: appends what is new to it, or replaces it.
     ///
     /// # Errors
     /// [`IndexError::Io`]; then the index is unchanged, and the work is kept.
     pub fn finish(self) -> Result<Index, IndexError> {
-        let store = self.store();
-        write_cells(&store)?;
-        let n_shapes = store.read()?.len()?;
-        let Self { path, work, mut file, mut database, replaces_damaged, .. } = self;
-        call(&work, "write", || database.compact())?;
+        self.refresh()?;
+        let n_shapes = self.store().read()?.len()?;
+        let Self { path, work, lock, mut file, database, base, replaces_damaged, .. } = self;
         drop(database);
-        // If this fails half-way, `unseal` removes the rest when the job is resumed.
-        seal(&mut file).map_err(IndexError::io("write", &work))?;
-        // redb does not report whether its last bytes were written, so check.
-        let written = Index::open(&work)?;
-        if written.len() != n_shapes {
-            let what = format!("{} of {n_shapes} shapes were written", written.len());
-            return Err(IndexError::damaged(&work, what));
+        let cannot_write = IndexError::io("write", &work);
+        // Somebody may have moved another file here.
+        let base = base.filter(|base| {
+            Sealed::open(&path).is_ok_and(|sealed| sealed.fingerprint() == base.fingerprint())
+        });
+        if let Some((base, room)) = base.as_ref().and_then(|base| Some((base, base.sealed.room()?)))
+            && let Some(changed) = file.changed(&base.sealed, room).map_err(cannot_write)?
+        {
+            append(&path, &file, &changed, &base.sealed, n_shapes)?;
+            fs::remove_file(&work).map_err(IndexError::io("remove", &work))?;
+        } else {
+            file.fill().map_err(cannot_write)?;
+            let mut database = file.database(&work)?;
+            call(&work, "write", || database.compact())?;
+            drop(database);
+            file.seal().map_err(cannot_write)?;
+            expect(&Index::open(&work)?, n_shapes)?;
+            if replaces_damaged {
+                keep_damaged(&path)?;
+            }
+            let cannot_write = |error: files::FileError| IndexError::io("write", &path)(error.source);
+            files::rename_durably(&work, &path).map_err(cannot_write)?;
         }
-        if replaces_damaged {
-            keep_damaged(&path)?;
-        }
-        let cannot_write = |error: files::FileError| IndexError::io("write", &path)(error.source);
-        files::rename_durably(&work, &path).map_err(cannot_write)?;
-        drop(file);
+        drop((file, lock));
         Index::open(&path)
+    }
+
+    /// Bytes in the work file, without holes.
+    #[cfg(all(test, unix))]
+    pub(crate) fn n_written(&self) -> Result<u64, IndexError> {
+        use std::os::unix::fs::MetadataExt;
+        let about = self.lock.metadata().map_err(IndexError::io("read", &self.work))?;
+        Ok(512 * about.blocks())
     }
 
     /// Discards the work. The index stays unchanged.
@@ -273,20 +318,46 @@ impl IndexWriter {
     }
 }
 
-/// The database of an interrupted job and the length of its vectors, if it is known.
-type Resumed = (Guarded<Database>, Option<usize>);
+/// Appends changed blocks to an index.
+fn append(
+    path: &Path,
+    work: &WorkFile,
+    changed: &[u64],
+    base: &Sealed,
+    n_shapes: usize,
+) -> Result<(), IndexError> {
+    let cannot_write = IndexError::io("write", path);
+    let mut file = OpenOptions::new().read(true).write(true).open(path).map_err(cannot_write)?;
+    let state = work.append(changed, base, &mut file).map_err(cannot_write)?;
+    expect(&Index::of(path, Sealed::open_state(path, state)?)?, n_shapes)?;
+    state.commit(&mut file).map_err(cannot_write)
+}
+
+/// redb does not report whether its last bytes were written, so this checks it.
+fn expect(written: &Index, n_shapes: usize) -> Result<(), IndexError> {
+    match written.len() == n_shapes {
+        true => Ok(()),
+        false => {
+            let what = format!("{} of {n_shapes} shapes were written", written.len());
+            Err(IndexError::damaged(written.path(), what))
+        }
+    }
+}
 
 /// What an interrupted job left, if `begun` continues that job.
-fn resume(file: &mut File, work: &Path, job: Job, begun: &Begun) -> Result<Option<Resumed>, IndexError> {
-    if !is_database(file).map_err(IndexError::io("write", work))? {
-        return Ok(None);
-    }
-    let database = database(file, work)?;
-    let store = Store { database: &database, path: work, action: "write", n_bytes: n_bytes(file) };
-    let Some(known) = Begun::read(&store)? else { return Ok(None) };
-    // A work file that names another base is a copy of the index, made by a writer that was interrupted before it
-    // recorded its job, or belongs to an earlier state of the index. A build determines the whole content, so it
-    // continues all the same.
+fn resume(
+    lock: &File,
+    work: &Path,
+    job: Job,
+    begun: &Begun,
+    base: Option<&Index>,
+) -> Result<Option<(WorkFile, Guarded<Database>)>, IndexError> {
+    let sealed = base.map(|base| &base.sealed);
+    let Some(file) = WorkFile::resume(lock, work, sealed)? else { return Ok(None) };
+    let database = file.database(work)?;
+    let Some(known) = Begun::read(&store(&file, &database, work))? else { return Ok(None) };
+    // A work file that names another base is a copy of an index, or belongs to an earlier state of the index. A build
+    // determines the whole content, so it continues all the same.
     let is_build = job == Job::Build && known.job == job.name();
     if !Job::resumes(&known.job) || known.base != begun.base && !is_build {
         return Ok(None);
@@ -298,13 +369,11 @@ fn resume(file: &mut File, work: &Path, job: Job, begun: &Begun) -> Result<Optio
         let (found, requested) = (known.options, begun.options.clone());
         return Err(IndexError::OtherOptions { path: work.to_owned(), found, requested });
     }
-    let length = store.read()?.about("length")?;
-    Ok(Some((database, length)))
+    Ok(Some((file, database)))
 }
 
-/// The size of an open file; 0 if it is unknown.
-fn n_bytes(file: &File) -> u64 {
-    file.metadata().map_or(0, |about| about.len())
+fn store<'a>(file: &WorkFile, database: &'a Guarded<Database>, work: &'a Path) -> Store<'a> {
+    Store { database, path: work, action: "write", n_bytes: file.n_bytes() }
 }
 
 /// Gives a damaged index a second name before the first one is taken.

@@ -1,0 +1,474 @@
+//! Shapes of the index that are searched for to calibrate it.
+//!
+//! A [`Trial`] keeps the distances from one shape to its nearest others, to the nearest of its class and to the nearest
+//! of another class. Shapes that come and go change them one by one, and the result is that of a new start. Which shapes
+//! are trials is decided by hashes of their names, so it depends on the shapes alone.
+
+use std::collections::{HashMap, HashSet};
+use std::ops::Range;
+
+use rayon::prelude::*;
+use retrieval::UnknownThreshold;
+use serde::{Deserialize, Serialize};
+
+use super::kernels::sq_distances_into;
+use super::kmeans::Centroids;
+use crate::shape::ContentHash;
+use crate::texts::Texts;
+
+/// Number of trials among all shapes, and among those with a class.
+const TRIALS: usize = 512;
+
+/// Neighbours searched for in a trial.
+const NEIGHBORS: usize = 10;
+
+/// Neighbours kept, so that a few can go before all shapes must be measured again.
+const KEPT: usize = 16;
+
+/// Share of the neighbours that must be found: higher than what is promised, because there are few trials.
+const RECALL: f64 = 0.996;
+
+/// Rows measured together.
+const CHUNK: usize = 256;
+
+/// Trials, and shapes, that meet while both are in the cache.
+const GROUP: usize = 16;
+const BLOCK: usize = 1024;
+
+/// The place of a name in the order that decides about trials.
+pub(crate) type TrialKey = [u32; 2];
+
+fn trial_key(id: &str) -> TrialKey {
+    let hash = ContentHash::of(&[id]).start();
+    [(hash >> 32) as u32, hash as u32]
+}
+
+/// A shape near a trial.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+struct Near {
+    /// Squared distance.
+    sq: f32,
+    /// Its cell.
+    cell: u32,
+    id: String,
+}
+
+/// A shape and what is near it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Trial {
+    pub(crate) id: String,
+    class: String,
+    row: Vec<f32>,
+    /// The nearest other shapes, nearest first; empty if searches are exact.
+    near: Vec<Near>,
+    /// All shapes nearer than this squared distance are in `near`.
+    reach: f32,
+    /// The squared distance of the nearest other shape of its class, and the name of that shape.
+    own: Option<(f32, String)>,
+    /// The same for other classes.
+    foreign: Option<(f32, String)>,
+    /// Whether a shape has left that something is missing without.
+    #[serde(skip)]
+    is_stale: bool,
+}
+
+/// Shapes that a trial meets.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Rows<'a> {
+    /// Padded vectors.
+    pub(crate) rows: &'a [f32],
+    pub(crate) ids: &'a Texts,
+    pub(crate) classes: &'a Texts,
+    /// The cell of all of them, or of each.
+    pub(crate) cells: &'a [u32],
+}
+
+impl<'a> Rows<'a> {
+    /// The vector of a shape.
+    fn row(self, i: usize) -> &'a [f32] {
+        let n = self.rows.len() / self.ids.len();
+        &self.rows[i * n..][..n]
+    }
+
+    /// Names and classes.
+    fn pairs(self) -> impl Iterator<Item = (&'a str, &'a str)> {
+        self.ids.iter().zip(self.classes.iter())
+    }
+}
+
+impl Trial {
+    /// A trial that has met no shape. In an index of one cell it keeps no neighbours.
+    fn new(id: &str, class: &str, row: &[f32], n_cells: usize) -> Self {
+        Self {
+            id: id.to_owned(),
+            class: class.to_owned(),
+            row: row.to_vec(),
+            near: Vec::new(),
+            reach: if n_cells > 1 { f32::INFINITY } else { 0.0 },
+            own: None,
+            foreign: None,
+            is_stale: true,
+        }
+    }
+
+    /// Its place among the trials.
+    pub(crate) fn key(&self) -> TrialKey {
+        trial_key(&self.id)
+    }
+
+    /// Whether its vector and its cells can be those of an index.
+    pub(crate) fn is_of(&self, n: usize, n_cells: usize) -> bool {
+        self.row.len() == n && self.near.iter().all(|near| (near.cell as usize) < n_cells)
+    }
+
+    /// Meets some of these shapes, which it has not met before.
+    fn meet(&mut self, shapes: Rows<'_>, range: Range<usize>) {
+        let n = self.row.len();
+        let first = range.start;
+        let is_labelled = !self.class.is_empty();
+        let least = |known: &Option<(f32, String)>| known.as_ref().map_or(f32::INFINITY, |(sq, _)| *sq);
+        let mut sqs = [0.0; CHUNK];
+        for (chunk, rows) in shapes.rows[range.start * n..range.end * n].chunks(CHUNK * n).enumerate() {
+            let sqs = &mut sqs[..rows.len() / n];
+            sq_distances_into(&self.row, rows, sqs);
+            let mut bound = self.reach.max(least(&self.own)).max(least(&self.foreign));
+            if !is_labelled {
+                bound = self.reach;
+            }
+            for (i, sq) in (first + chunk * CHUNK..).zip(sqs.iter().copied()) {
+                if sq > bound {
+                    continue;
+                }
+                let id = shapes.ids.get(i);
+                if id == self.id {
+                    continue;
+                }
+                if sq < self.reach {
+                    let cell = shapes.cells[i % shapes.cells.len()];
+                    self.keep(Near { sq, cell, id: id.to_owned() });
+                }
+                let class = shapes.classes.get(i);
+                if is_labelled && !class.is_empty() {
+                    let place = if class == self.class { &mut self.own } else { &mut self.foreign };
+                    if place.as_ref().is_none_or(|(least, known)| (sq, id) < (*least, known.as_str())) {
+                        *place = Some((sq, id.to_owned()));
+                    }
+                    bound = self.reach.max(least(&self.own)).max(least(&self.foreign));
+                }
+            }
+        }
+    }
+
+    fn keep(&mut self, near: Near) {
+        let at = self.near.partition_point(|known| (known.sq, &known.id) < (near.sq, &near.id));
+        self.near.insert(at, near);
+        if self.near.len() > KEPT {
+            self.near.truncate(KEPT);
+            self.reach = self.near.last().map_or(self.reach, |last| last.sq);
+        }
+    }
+
+    /// Forgets a shape.
+    fn part(&mut self, id: &str) {
+        self.near.retain(|near| near.id != id);
+        let is_it = |known: &Option<(f32, String)>| known.as_ref().is_some_and(|(_, known)| known == id);
+        self.is_stale |= is_it(&self.own) || is_it(&self.foreign);
+        self.is_stale |= self.near.len() < NEIGHBORS && self.reach.is_finite() && self.reach > 0.0;
+    }
+
+    /// Whether it agrees with a trial of the same shape that has just met all others. Distances may differ as those of
+    /// different processors do.
+    fn agrees(&self, fresh: &Self) -> bool {
+        let close = |a: f32, b: f32| (a - b).abs() <= 1e-3 * a.max(b) || a == b;
+        let same = |a: &Option<(f32, String)>, b: &Option<(f32, String)>| match (a, b) {
+            (Some((a, _)), Some((b, _))) => close(*a, *b),
+            (None, None) => true,
+            _ => false,
+        };
+        let n = self.near.len();
+        (n >= fresh.near.len().min(NEIGHBORS) && n <= fresh.near.len())
+            && self.near.iter().zip(&fresh.near).all(|(a, b)| close(a.sq, b.sq))
+            && (&self.id, &self.class, &self.row) == (&fresh.id, &fresh.class, &fresh.row)
+            && same(&self.own, &fresh.own)
+            && same(&self.foreign, &fresh.foreign)
+    }
+}
+
+/// Which shapes are trials: those whose keys come first, among all shapes and among those with a class.
+#[derive(Debug, Clone, Copy)]
+struct Sample {
+    /// The last key among all.
+    all: TrialKey,
+    /// The last key among those with a class.
+    labelled: TrialKey,
+}
+
+impl Sample {
+    /// From names and classes; an empty class is none.
+    fn of<'a>(shapes: impl Iterator<Item = (&'a str, &'a str)>) -> Self {
+        let mut keys: Vec<(TrialKey, bool)> =
+            shapes.map(|(id, class)| (trial_key(id), !class.is_empty())).collect();
+        keys.sort_unstable();
+        let last = |keys: &mut dyn Iterator<Item = &(TrialKey, bool)>| keys.take(TRIALS).last().map_or([0; 2], |key| key.0);
+        Self { all: last(&mut keys.iter()), labelled: last(&mut keys.iter().filter(|(_, labelled)| *labelled)) }
+    }
+
+    fn holds(&self, id: &str, class: &str) -> bool {
+        let key = trial_key(id);
+        key <= self.all || !class.is_empty() && key <= self.labelled
+    }
+}
+
+/// All trials of an index, in the order of their keys.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Trials {
+    pub(crate) all: Vec<Trial>,
+    n_cells: usize,
+}
+
+/// A shape before and after a change: its padded vector, class and cell.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Change {
+    pub(crate) id: String,
+    pub(crate) was_there: bool,
+    pub(crate) now: Option<(Vec<f32>, String, u32)>,
+}
+
+impl Trials {
+    /// Trials of an index as it stores them.
+    pub(crate) fn stored(all: Vec<Trial>, n_cells: usize) -> Self {
+        Self { all, n_cells }
+    }
+
+    /// Trials of an index that holds `shapes` in `n_cells` cells.
+    pub(crate) fn of(shapes: Rows<'_>, n_cells: usize) -> Self {
+        let sample = Sample::of(shapes.pairs());
+        let of = shapes.pairs().enumerate().filter(|(_, (id, class))| sample.holds(id, class));
+        let mut trials =
+            Self::stored(of.map(|(i, (id, class))| Trial::new(id, class, shapes.row(i), n_cells)).collect(), n_cells);
+        trials.all.sort_by_key(Trial::key);
+        meet_all(&mut trials.all.iter_mut().collect::<Vec<_>>(), shapes);
+        trials.all.iter_mut().for_each(|trial| trial.is_stale = false);
+        trials
+    }
+
+    /// Takes changes into account. `everything` lists all shapes of the changed index in some number of pieces. It is
+    /// called only if the changes do not tell enough: rarely, if the index is large.
+    pub(crate) fn change<E>(
+        &mut self,
+        changes: &[Change],
+        mut everything: impl FnMut(&mut dyn FnMut(Rows<'_>)) -> Result<(), E>,
+    ) -> Result<(), E> {
+        let changed: HashMap<&str, &Change> =
+            changes.iter().map(|change| (change.id.as_str(), change)).collect();
+        // A trial that is gone makes room for a shape that is not among the trials, unless all shapes are.
+        let is_sample = self.all.len() >= TRIALS;
+        let makes_room = |trial: &Trial| match changed.get(trial.id.as_str()) {
+            Some(Change { now: Some((_, class, _)), .. }) => class.is_empty() && !trial.class.is_empty(),
+            Some(_) => true,
+            None => false,
+        };
+        let makes_room = is_sample && self.all.iter().any(makes_room);
+        self.all.retain(|trial| !changed.contains_key(trial.id.as_str()));
+        self.all.par_iter_mut().for_each(|trial| {
+            for change in changes {
+                if change.was_there {
+                    trial.part(&change.id);
+                }
+                if let Some((rows, class, cell)) = &change.now {
+                    let (ids, classes) = ([&change.id].iter().collect(), [class].iter().collect());
+                    trial.meet(Rows { rows, ids: &ids, classes: &classes, cells: &[*cell] }, 0..1);
+                }
+            }
+        });
+        let sample = if makes_room {
+            let mut keys: Vec<(String, String)> = Vec::new();
+            everything(&mut |shapes| {
+                keys.extend(shapes.pairs().map(|(id, class)| (id.to_owned(), class.to_owned())));
+            })?;
+            Sample::of(keys.iter().map(|(id, class)| (id.as_str(), class.as_str())))
+        } else {
+            let new = changes.iter().filter_map(|change| Some((change.id.as_str(), change.now.as_ref()?.1.as_str())));
+            Sample::of(self.all.iter().map(|trial| (trial.id.as_str(), trial.class.as_str())).chain(new))
+        };
+        self.all.retain(|trial| sample.holds(&trial.id, &trial.class));
+        let (known, n_cells) = (self.all.len(), self.n_cells);
+        for change in changes {
+            if let Some((row, class, _)) = change.now.as_ref().filter(|(_, class, _)| sample.holds(&change.id, class)) {
+                self.all.push(Trial::new(&change.id, class, row, n_cells));
+            }
+        }
+        if makes_room {
+            let present: HashSet<String> = self.all.iter().map(|trial| trial.id.clone()).collect();
+            everything(&mut |shapes| {
+                let new = shapes.pairs().enumerate().filter(|(_, (id, class))| sample.holds(id, class) && !present.contains(*id));
+                self.all.extend(new.map(|(i, (id, class))| Trial::new(id, class, shapes.row(i), n_cells)));
+            })?;
+        }
+        debug_assert!(self.all[known..].iter().all(|trial| trial.is_stale));
+        self.all.sort_by_key(Trial::key);
+        let mut stale: Vec<&mut Trial> = self.all.iter_mut().filter(|trial| trial.is_stale).collect();
+        if !stale.is_empty() {
+            for trial in &mut stale {
+                **trial = Trial::new(&trial.id, &trial.class, &trial.row, n_cells);
+            }
+            everything(&mut |shapes| meet_all(&mut stale, shapes))?;
+            stale.into_iter().for_each(|trial| trial.is_stale = false);
+        }
+        Ok(())
+    }
+
+    /// Whether stored trials are those of these shapes.
+    pub(crate) fn agree(&self, fresh: &Self) -> bool {
+        self.all.len() == fresh.all.len() && self.all.iter().zip(&fresh.all).all(|(a, b)| a.agrees(b))
+    }
+
+    /// Distance beyond which a query belongs to no class of the index.
+    pub(crate) fn threshold(&self) -> Option<UnknownThreshold> {
+        let distances = |of: fn(&Trial) -> &Option<(f32, String)>| -> Vec<f64> {
+            let known = self.all.iter().filter_map(|trial| of(trial).as_ref());
+            known.map(|(sq, _)| f64::from(*sq).sqrt()).collect()
+        };
+        UnknownThreshold::of(&distances(|trial| &trial.own), &distances(|trial| &trial.foreign))
+    }
+
+    /// The number of cells that must be scanned to reach [`RECALL`], and the recall reached.
+    pub(crate) fn calibrated(&self, centroids: &Centroids) -> (usize, f64) {
+        let n_cells = self.n_cells;
+        if n_cells < 2 {
+            return (1, 1.0);
+        }
+        // For each neighbour of each trial, the number of cells that must be scanned to find it.
+        let from = |trial: &Trial| {
+            let mut gaps = vec![0.0; n_cells];
+            sq_distances_into(&trial.row, &centroids.rows, &mut gaps);
+            let rank = |cell: u32| {
+                let own = gaps.get(cell as usize).map_or((f32::INFINITY, usize::MAX), |gap| (*gap, cell as usize));
+                1 + (0..n_cells).filter(|other| (gaps[*other], *other) < own).count()
+            };
+            trial.near.iter().take(NEIGHBORS).map(|near| rank(near.cell)).collect::<Vec<_>>()
+        };
+        let mut found_from: Vec<usize> = self.all.par_iter().flat_map_iter(from).collect();
+        found_from.sort_unstable();
+        let wanted = (RECALL * found_from.len() as f64).ceil() as usize;
+        let probes = found_from.get(wanted.saturating_sub(1)).copied().unwrap_or(n_cells).clamp(1, n_cells);
+        let within = found_from.partition_point(|from| *from <= probes);
+        (probes, within as f64 / found_from.len().max(1) as f64)
+    }
+}
+
+/// Lets trials meet all of these shapes, a group of trials and a block of shapes at a time.
+fn meet_all(trials: &mut [&mut Trial], shapes: Rows<'_>) {
+    let n_shapes = shapes.ids.len();
+    trials.par_chunks_mut(GROUP).for_each(|group| {
+        for first in (0..n_shapes).step_by(BLOCK) {
+            for trial in &mut *group {
+                trial.meet(shapes, first..(first + BLOCK).min(n_shapes));
+            }
+        }
+    });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::testing::{clustered, noise};
+    use super::*;
+
+    /// Shapes with names, classes and cells, all derived from their numbers.
+    struct Shapes {
+        rows: Vec<f32>,
+        ids: Texts,
+        classes: Texts,
+        cells: Vec<u32>,
+    }
+
+    impl Shapes {
+        fn of(numbers: impl Iterator<Item = usize> + Clone, all: &[f32]) -> Self {
+            Self {
+                rows: numbers.clone().flat_map(|i| &all[i * 16..][..16]).copied().collect(),
+                ids: numbers.clone().map(|i| format!("s{i}")).collect(),
+                classes: numbers.clone().map(class).collect(),
+                cells: numbers.map(|i| i as u32 % 7).collect(),
+            }
+        }
+
+        fn rows(&self) -> Rows<'_> {
+            Rows { rows: &self.rows, ids: &self.ids, classes: &self.classes, cells: &self.cells }
+        }
+    }
+
+    fn class(i: usize) -> String {
+        if i % 5 == 0 { String::new() } else { format!("c{}", i % 40) }
+    }
+
+    /// The same trials, whatever is beyond what both know.
+    fn assert_same(changed: &Trials, fresh: &Trials) {
+        assert!(changed.agree(fresh));
+        assert_eq!(changed.threshold(), fresh.threshold());
+        for (a, b) in changed.all.iter().zip(&fresh.all) {
+            assert_eq!((&a.id, &a.own, &a.foreign), (&b.id, &b.own, &b.foreign));
+            assert_eq!(a.near[..], b.near[..a.near.len()]);
+        }
+    }
+
+    #[test]
+    fn changes_lead_where_a_new_start_leads() {
+        let all = clustered(3000, 40, 16, 0.2).0;
+        for n_cells in [1, 7] {
+            let mut trials = Trials::of(Shapes::of(0..300, &all).rows(), n_cells);
+            let mut present: Vec<usize> = (0..300).collect();
+            let mut asked = 0;
+            // Grows beyond the number of trials, and shrinks again.
+            for step in 0..60 {
+                let new = (300 + 40 * step..340 + 40 * step).filter(|_| step < 40);
+                let gone: Vec<usize> = present.iter().copied().filter(|i| (i * 7 + step) % 60 == 0).collect();
+                present.retain(|i| !gone.contains(i));
+                present.extend(new.clone());
+                let change = |i: usize, now: bool| Change {
+                    id: format!("s{i}"),
+                    was_there: !now,
+                    now: now.then(|| (all[i * 16..][..16].to_vec(), class(i), i as u32 % 7)),
+                };
+                let changes: Vec<Change> =
+                    gone.iter().map(|i| change(*i, false)).chain(new.map(|i| change(i, true))).collect();
+                let now = Shapes::of(present.iter().copied(), &all);
+                let everything = |visit: &mut dyn FnMut(Rows<'_>)| {
+                    asked += 1;
+                    visit(now.rows());
+                    Ok::<(), ()>(())
+                };
+                trials.change(&changes, everything).unwrap();
+                assert_same(&trials, &Trials::of(now.rows(), n_cells));
+            }
+            assert!(asked > 0);
+        }
+    }
+
+    #[test]
+    fn an_addition_that_is_no_trial_measures_trials_only() {
+        let all = noise(2000, 16, 3);
+        let mut trials = Trials::of(Shapes::of(0..1999, &all).rows(), 1);
+        let before = trials.clone();
+        let outside = (0..).map(|i| format!("x{i}")).find(|id| trial_key(id) > [u32::MAX - 1000, 0]);
+        let now = Some((all[1999 * 16..].to_vec(), "c1".to_owned(), 0));
+        let change = Change { id: outside.unwrap_or_default(), was_there: false, now };
+        trials.change(&[change], |_| Err("nothing else is needed")).unwrap();
+        assert_eq!(trials.all.len(), before.all.len());
+    }
+
+    #[test]
+    fn matches_the_threshold_from_all_pairs() {
+        let positions = [0.0f32, 1.0, 2.5, 10.0, 11.0, 30.0];
+        let rows: Vec<f32> = positions.iter().flat_map(|x| [&[*x][..], &[0.0; 15]].concat()).collect();
+        let ids: Texts = (0..6).map(|i| i.to_string()).collect();
+        let threshold = |classes: [&str; 6]| {
+            let classes = classes.iter().collect();
+            Trials::of(Rows { rows: &rows, ids: &ids, classes: &classes, cells: &[0] }, 1).threshold()
+        };
+        // Own: 1, 1, 1.5, 1, 1; foreign: 10, 9, 7.5, 7.5, 8.5, 19.
+        let expected = UnknownThreshold { distance: 4.5, missed: 0.0, mistaken: 0.0 };
+        assert_eq!(threshold(["a", "a", "a", "b", "b", "c"]), Some(expected));
+        assert_eq!(threshold(["a", "b", "c", "d", "e", "f"]), None);
+        assert_eq!(threshold([""; 6]), None);
+    }
+}
