@@ -26,6 +26,7 @@ from support import answer, arguments, write_page
 K = 10
 RECALL = 0.99
 WARMING = 500
+ADDED = 20
 
 
 def signatures(n, dim, seed, width):
@@ -230,6 +231,9 @@ def measure(program, folder, n, dim, width, n_queries, rounds):
             f"{ours.ready['loaded']:.2f} s; building takes {built['megabytes']} MB.")
     for process in [ours, *peers.values()]:
         process.end()
+    added = answer([program, "add", queries_path, index, str(ADDED)])
+    note += (f" Adding one shape takes {np.median(added['seconds']):.2f} s and appends {np.median(added['bytes']) / 1e3:,.0f} kB "
+             f"(medians of {ADDED}).")
     return "\n".join(lines) + "\n" + note
 
 

@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! vectors build BASE.npy INDEX           builds an index and prints the seconds taken
+//! vectors add QUERIES.npy INDEX COUNT    adds the first rows one by one; prints the seconds and the bytes of each addition
 //! vectors serve INDEX QUERIES.npy        for each input line `memory|file|scan K FIRST COUNT`, prints
 //!                                        {"seconds": [..], "found": [[..], ..]}
 //! ```
@@ -25,8 +26,12 @@ fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     match arguments.iter().map(String::as_str).collect::<Vec<_>>()[..] {
         ["build", base, index] => build(Path::new(base), Path::new(index)),
+        ["add", queries, index, count] => add(Path::new(queries), Path::new(index), count.parse()?),
         ["serve", index, queries] => serve(Path::new(index), Path::new(queries)),
-        _ => Err("usage: vectors build BASE.npy INDEX | vectors serve INDEX QUERIES.npy".into()),
+        _ => {
+            Err("usage: vectors build BASE.npy INDEX | add QUERIES.npy INDEX COUNT | serve INDEX QUERIES.npy"
+                .into())
+        }
     }
 }
 
@@ -38,20 +43,34 @@ fn read(path: &Path) -> Result<(Vec<f32>, usize), Box<dyn Error>> {
     Ok((array.into_vec()?, dim))
 }
 
+/// A shape of which only the vector matters.
+fn shape(id: String, row: &[f32]) -> Shape {
+    let content = ContentHash::of(&[&id]);
+    let entry = ShapeEntry { label: String::new(), path: String::new(), content, facts: Vec::new() };
+    Shape { id, entry, vectors: ShapeVectors { fused: row.to_vec(), ..Default::default() } }
+}
+
+fn add(queries: &Path, path: &Path, count: usize) -> Result<(), Box<dyn Error>> {
+    let (rows, dim) = read(queries)?;
+    let (mut seconds, mut bytes) = (Vec::new(), Vec::new());
+    for (i, row) in rows.chunks_exact(dim).take(count).enumerate() {
+        let before = std::fs::metadata(path)?.len();
+        let start = Instant::now();
+        let mut writer = IndexWriter::open(path, Job::Add, None)?;
+        writer.put(&[shape(format!("added{i:04}"), row)])?;
+        writer.finish()?;
+        seconds.push(start.elapsed().as_secs_f64());
+        bytes.push(std::fs::metadata(path)?.len() as i64 - before as i64);
+    }
+    println!("{}", json!({ "seconds": seconds, "bytes": bytes, "megabytes": peak_memory() }));
+    Ok(())
+}
+
 fn build(base: &Path, path: &Path) -> Result<(), Box<dyn Error>> {
     let (rows, dim) = read(base)?;
     let start = Instant::now();
     let mut writer = IndexWriter::open(path, Job::Build, Some("vectors"))?;
-    let shape = |(i, row): (usize, &[f32])| Shape {
-        id: format!("{i:08}"),
-        entry: ShapeEntry {
-            label: String::new(),
-            path: String::new(),
-            content: ContentHash::of(&[i.to_le_bytes()]),
-            facts: Vec::new(),
-        },
-        vectors: ShapeVectors { fused: row.to_vec(), ..Default::default() },
-    };
+    let shape = |(i, row): (usize, &[f32])| shape(format!("{i:08}"), row);
     let mut shapes = rows.chunks_exact(dim).enumerate().map(shape).peekable();
     while shapes.peek().is_some() {
         writer.put(&shapes.by_ref().take(BATCH).collect::<Vec<_>>())?;

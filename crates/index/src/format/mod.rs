@@ -17,11 +17,11 @@ pub(crate) use guard::Guarded;
 pub(crate) use overlay::Overlay;
 pub(crate) use refresh::refresh_cells;
 pub use sealed::FORMAT_VERSION;
-#[cfg(test)]
-pub(crate) use sealed::{BLOCK, HEAD, seal, sealed_whole};
 pub(crate) use sealed::Sealed;
 #[cfg(test)]
-pub(crate) use stored_cells::write_header;
+pub(crate) use sealed::{BLOCK, HEAD, seal, sealed_whole};
 pub(crate) use stored_cells::{Heads, all_shapes};
+#[cfg(test)]
+pub(crate) use stored_cells::{make_format_1, write_header};
 pub(crate) use tables::{BODIES, CACHE, CellState, Changes, ENTRIES, FUSED, Snapshot, Store, call};
 pub(crate) use work::WorkFile;

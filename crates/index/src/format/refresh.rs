@@ -14,7 +14,7 @@ use super::stored_cells::{
 };
 use super::tables::{CHANGED, CellState, Snapshot, Store};
 use crate::vectors::{
-    CellsHeader, Change, Centroids, Rows, Trial, TrialKey, Trials, divided, n_cells, nearest_cells, padded,
+    CellsHeader, Centroids, Change, Rows, Trial, TrialKey, Trials, divided, n_cells, nearest_cells, padded,
 };
 
 /// Brings the cells of a database up to date with its shapes. `base` is the database that it was copied from, if there
@@ -69,9 +69,9 @@ fn train(store: &Store<'_>) -> Result<(), IndexError> {
 }
 
 fn header(dim: usize, n: usize, n_trained: usize, centroids: &Centroids, trials: &Trials) -> CellsHeader {
-    let (probes, recall) = trials.calibrated(centroids);
+    let (reach, recall) = trials.calibrated(centroids);
     let n_cells = centroids.rows.len() / padded(dim);
-    CellsHeader { dim, n, n_cells, n_trained, probes, recall, threshold: trials.threshold() }
+    CellsHeader { dim, n, n_cells, n_trained, reach, recall, threshold: trials.threshold() }
 }
 
 /// A shape as cells hold it: its padded vector and its class.
@@ -127,7 +127,7 @@ fn change(
     for (id, (row, _)) in gone.iter().filter(|(id, _)| lost.contains(id.as_str())) {
         let mut name = HashSet::from([id.as_str()]);
         for cell in nearest_cells(row, &heads.centroids, heads.header.n_cells) {
-            cells.remove(cell, &mut name)?;
+            cells.remove(cell.cell, &mut name)?;
             if name.is_empty() {
                 break;
             }

@@ -107,7 +107,8 @@ impl State {
                 return Ok(None);
             }
             let slots = SLOTS.map(|at| Self::of_slot(&head[at..][..SLOT]));
-            let is_rest_zero = SLOTS.iter().all(|at| head[at + SLOT..at + BLOCK / 2].iter().all(|byte| *byte == 0));
+            let is_rest_zero =
+                SLOTS.iter().all(|at| head[at + SLOT..at + BLOCK / 2].iter().all(|byte| *byte == 0));
             match slots {
                 [Some(Err(found)), _] | [_, Some(Err(found))] => {
                     let (path, supported) = (path.to_owned(), FORMAT_VERSION);
@@ -158,7 +159,8 @@ impl Segment {
         let (start, table_sum) = (u64_at(footer, 0), u32_at(footer, 8));
         let size = |of: u64, bytes: u64| of.checked_mul(bytes);
         let table = size(n_runs, 16).zip(size(n_blocks, 4)).and_then(|(runs, sums)| runs.checked_add(sums));
-        let whole = table.zip(size(n_blocks, BLOCK as u64)).and_then(|(a, b)| a.checked_add(b)?.checked_add(start));
+        let whole =
+            table.zip(size(n_blocks, BLOCK as u64)).and_then(|(a, b)| a.checked_add(b)?.checked_add(start));
         let (Some(table), true) = (table, whole == Some(at) && start >= HEAD) else { return Ok(None) };
         file.seek(SeekFrom::Start(at - table))?;
         let mut runs = vec![0; table as usize];
@@ -363,15 +365,23 @@ impl Sealed {
         segments.reverse();
         // Blocks of no segment take no place in the file, but a forged size must not make redb reserve memory.
         let most = state.end.saturating_mul(16).saturating_add(1 << 34);
-        if segments.last().is_none_or(|segment| segment.database > most) || sum_of(segments.iter().map(|segment| segment.table_sum)) != state.sums {
+        if segments.last().is_none_or(|segment| segment.database > most)
+            || sum_of(segments.iter().map(|segment| segment.table_sum)) != state.sums
+        {
             return Err(IndexError::damaged(path, "its checksums changed"));
         }
         Ok(Self::new(file, state, FORMAT_VERSION, segments))
     }
 
     fn new(file: File, state: State, version: u32, segments: Vec<Segment>) -> Self {
-        let mut sealed =
-            Self { file: Mutex::new(file), state, version, first: (0, 0), changed: BTreeMap::new(), segments };
+        let mut sealed = Self {
+            file: Mutex::new(file),
+            state,
+            version,
+            first: (0, 0),
+            changed: BTreeMap::new(),
+            segments,
+        };
         for (i, segment) in sealed.segments.iter().enumerate() {
             let mut at = segment.start;
             let mut sums = segment.sums.as_chunks::<4>().0.iter();
@@ -384,7 +394,8 @@ impl Sealed {
                 } else if *first == PADDING {
                     of_run.for_each(drop);
                 } else {
-                    let places = of_run.zip(0..).map(|(sum, i)| (first + i, Place { at: at + i * block, sum: *sum }));
+                    let places =
+                        of_run.zip(0..).map(|(sum, i)| (first + i, Place { at: at + i * block, sum: *sum }));
                     sealed.changed.extend(places);
                 }
                 at += n * block;

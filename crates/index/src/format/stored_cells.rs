@@ -10,7 +10,7 @@ use super::guard::Guarded;
 use super::tables::{ENTRIES, FUSED, Snapshot, Store};
 use crate::ShapeEntry;
 use crate::texts::Texts;
-use crate::vectors::{CellsHeader, Centroids, Rows, Trial, Trials, padded};
+use crate::vectors::{CellsHeader, Centroids, Reach, Rows, Trial, Trials, padded};
 
 /// A key: the kind of a part, then the cell and the part of it, the part and zero, or the key of a trial.
 pub(super) type Key = (u8, u32, u32);
@@ -81,7 +81,8 @@ impl Heads {
         let (part, dim) = all_shapes(store)?;
         let (n, trials) = (part.ids.len(), Trials::of(part.in_cell(&0), 1));
         let threshold = trials.threshold();
-        let header = CellsHeader { dim, n, n_cells: 1, n_trained: n, probes: 1, recall: 1.0, threshold };
+        let header =
+            CellsHeader { dim, n, n_cells: 1, n_trained: n, reach: Reach::ALL, recall: 1.0, threshold };
         let centroids = Centroids::new(vec![0.0; padded(dim)], padded(dim));
         Ok(Self { header, centroids, format_1: Some(part) })
     }
@@ -268,12 +269,30 @@ fn missing(store: &Store<'_>, what: &str) -> IndexError {
 
 /// Overwrites the header with one that states these sizes.
 #[cfg(test)]
-pub(crate) fn write_header(store: &Store<'_>, dim: usize, n: usize, n_cells: usize) -> Result<(), IndexError> {
-    let header = CellsHeader { dim, n, n_cells, n_trained: n, probes: 1, recall: 1.0, threshold: None };
+pub(crate) fn write_header(
+    store: &Store<'_>,
+    dim: usize,
+    n: usize,
+    n_cells: usize,
+) -> Result<(), IndexError> {
+    let header =
+        CellsHeader { dim, n, n_cells, n_trained: n, reach: Reach::ALL, recall: 1.0, threshold: None };
     let Ok(bytes) = super::codec::encode(&header) else { return Err(missing(store, "the header")) };
     store.write(|transaction| {
         store.call(|| {
             transaction.open_table(CELLS)?.insert((HEADER, 0, 0), bytes.as_slice())?;
+            Ok::<_, redb::Error>(())
+        })
+    })
+}
+
+/// Removes what format 1 does not have.
+#[cfg(test)]
+pub(crate) fn make_format_1(store: &Store<'_>) -> Result<(), IndexError> {
+    store.write(|transaction| {
+        store.call(|| {
+            transaction.delete_table(super::tables::CLASSES)?;
+            transaction.open_table(FORMAT_1)?.insert((HEADER, 0, 0), &[][..])?;
             Ok::<_, redb::Error>(())
         })
     })

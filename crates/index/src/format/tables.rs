@@ -25,7 +25,7 @@ pub(crate) const FUSED: Named = TableDefinition::new("fused");
 /// Shape -> its signatures and form.
 pub(crate) const BODIES: Named = TableDefinition::new("bodies");
 /// Class -> number of its shapes.
-const CLASSES: Named = TableDefinition::new("classes");
+pub(super) const CLASSES: Named = TableDefinition::new("classes");
 /// Shapes that a writer has put, removed or changed while cells [follow](CellState::Follow).
 pub(crate) const CHANGED: Named = TableDefinition::new("changed");
 /// Properties of the whole index, by name.

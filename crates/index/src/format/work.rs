@@ -20,11 +20,11 @@ use std::sync::{Arc, Mutex};
 use redb::backends::FileBackend;
 use redb::{Database, StorageBackend};
 
+use super::IndexError;
 use super::guard::Guarded;
 use super::overlay::pieces;
-use super::sealed::{Appending, BLOCK, HEAD, Sealed, State, lock, sealed_whole, seal};
+use super::sealed::{Appending, BLOCK, HEAD, Sealed, State, lock, seal, sealed_whole};
 use super::tables::{CACHE, call};
-use super::IndexError;
 
 const MAGIC: [u8; 16] = *b"canonform work \n";
 const FIELDS: usize = 52;
@@ -66,7 +66,8 @@ impl Head {
         if bytes.len() < FIELDS || fields[..16] != MAGIC || crc32fast::hash(fields).to_le_bytes() != *sum {
             return Ok(None);
         }
-        let number = |i: usize| fields[16 + 8 * i..].first_chunk().map_or(0, |bytes| u64::from_le_bytes(*bytes));
+        let number =
+            |i: usize| fields[16 + 8 * i..].first_chunk().map_or(0, |bytes| u64::from_le_bytes(*bytes));
         Ok(Some(Self { base: number(0), n_map: number(1), sealing: number(2), is_whole: number(3) != 0 }))
     }
 }
@@ -262,7 +263,8 @@ impl Blocks {
     fn present(&self, end: u64) -> impl Iterator<Item = u64> {
         let bits = lock(&self.map).bits.clone();
         let listed = 8 * bits.len() as u64;
-        let of_byte = |(i, bits): (u64, u8)| (0..8).filter(move |bit| bits >> bit & 1 == 1).map(move |bit| 8 * i + bit);
+        let of_byte =
+            |(i, bits): (u64, u8)| (0..8).filter(move |bit| bits >> bit & 1 == 1).map(move |bit| 8 * i + bit);
         let here = (0..).zip(bits).filter(|(_, bits)| *bits != 0).flat_map(of_byte);
         here.take_while(move |block| *block < end).chain(listed..end.max(listed))
     }

@@ -3,7 +3,7 @@
 mod searcher;
 
 use crate::texts::Texts;
-use crate::vectors::{CellsHeader, Nearest, nearest_cells, padded, scan};
+use crate::vectors::{CellsHeader, NEIGHBORS, Nearest, Reach, nearest_cells, padded, scan};
 use crate::{Index, IndexError};
 use retrieval::UnknownThreshold;
 
@@ -20,11 +20,11 @@ pub enum SearchMode {
 }
 
 impl SearchMode {
-    /// Number of cells to scan.
-    fn probes(self, header: &CellsHeader) -> usize {
+    /// Which cells to scan.
+    fn reach(self, header: &CellsHeader) -> Reach {
         match self {
-            Self::Auto => header.probes,
-            Self::Exact => header.n_cells,
+            Self::Auto => header.reach,
+            Self::Exact => Reach::ALL,
         }
     }
 }
@@ -87,9 +87,13 @@ impl Index {
         let store = self.store();
         let (heads, snapshot) = (self.heads()?, store.read()?);
         let row = padded_query(query, &heads.header)?;
-        let (mut nearest, mut ids) = (Nearest::new(k), Texts::default());
-        for cell in nearest_cells(&row, &heads.centroids, mode.probes(&heads.header)) {
-            heads.each_part(&snapshot, cell, |part| {
+        let (mut nearest, mut ids) = (Nearest::new(k.max(NEIGHBORS)), Texts::default());
+        let reach = mode.reach(&heads.header);
+        for cell in nearest_cells(&row, &heads.centroids, reach.probes) {
+            if !reach.includes(&cell, nearest.bound()) {
+                continue;
+            }
+            heads.each_part(&snapshot, cell.cell, |part| {
                 scan(&row, ids.len() as u32, part.rows(), &mut nearest);
                 ids.extend(&part.ids);
                 Ok(())

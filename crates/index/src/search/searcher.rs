@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use super::{Found, NearShape, SearchMode, distance, padded_query};
 use crate::texts::Texts;
-use crate::vectors::{CellsHeader, Centroids, Hit, Nearest, nearest_cells, padded, scan};
+use crate::vectors::{CellsHeader, Centroids, Hit, NEIGHBORS, Nearest, Reach, nearest_cells, padded, scan};
 use crate::{Index, IndexError};
 
 /// Rows in one parallel task.
@@ -55,8 +55,9 @@ impl Searcher {
     pub fn nearest(&self, query: &[f32], k: usize, mode: SearchMode) -> Result<Found, IndexError> {
         let row = padded_query(query, &self.header)?;
         let n = row.len();
-        let (nearest, n_measured) = if mode.probes(&self.header) >= self.header.n_cells {
-            let start = || Nearest::new(k);
+        let (reach, k_least) = (mode.reach(&self.header), k.max(NEIGHBORS));
+        let (nearest, n_measured) = if reach == Reach::ALL {
+            let start = || Nearest::new(k_least);
             let parts = self.rows.par_chunks(TASK * n).enumerate();
             let nearest = parts
                 .fold(start, |mut nearest, (i, rows)| {
@@ -66,9 +67,12 @@ impl Searcher {
                 .reduce(start, Nearest::join);
             (nearest, self.ids.len())
         } else {
-            let (mut nearest, mut n_measured) = (Nearest::new(k), 0);
-            for cell in nearest_cells(&row, &self.centroids, self.header.probes) {
-                let [start, end] = [0, 1].map(|i| self.starts[cell as usize + i]);
+            let (mut nearest, mut n_measured) = (Nearest::new(k_least), 0);
+            for cell in nearest_cells(&row, &self.centroids, reach.probes) {
+                if !reach.includes(&cell, nearest.bound()) {
+                    continue;
+                }
+                let [start, end] = [0, 1].map(|i| self.starts[cell.cell as usize + i]);
                 n_measured += end - start;
                 scan(&row, start as u32, &self.rows[start * n..end * n], &mut nearest);
             }

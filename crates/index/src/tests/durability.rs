@@ -144,28 +144,28 @@ fn a_build_survives_an_interruption_at_any_byte() {
 #[test]
 fn an_addition_survives_an_interruption_at_any_byte() {
     let folder = Folder::new();
-    let path = folder.index("a", 60);
+    let path = folder.index("a", 400);
     let before = fs::read(&path).unwrap();
-    let added = [shape(60), shape(61)];
+    let added = [shape(400), shape(401)];
     let work = interrupted(&path, Job::Add, &added);
     fs::write(work_path(&path), &work).unwrap();
     let writer = IndexWriter::open(&path, Job::Add, None).unwrap();
-    assert_eq!((writer.is_resumed(), writer.len().unwrap()), (true, 62));
+    assert_eq!((writer.is_resumed(), writer.len().unwrap()), (true, 402));
     writer.finish().unwrap();
     let after = fs::read(&path).unwrap();
     assert_eq!(folder.names(), ["a"]);
     assert!(after[4096..].starts_with(&before[4096..]), "nothing is overwritten");
     let whole = export(&path);
-    assert_eq!(whole, export(&folder.index("b", 62)));
+    assert_eq!(whole, export(&folder.index("b", 402)));
     // While the segment is appended: the old index, and the work goes on.
-    let steps = (before.len()..=after.len()).step_by(5000).chain([after.len()]);
+    let steps = (before.len()..=after.len()).step_by(20_000).chain([after.len()]);
     for length in steps {
         fs::write(&path, [&before[..4096], &after[4096..length]].concat()).unwrap();
         fs::write(work_path(&path), &work).unwrap();
-        assert_eq!(Index::open(&path).unwrap().len(), 60);
+        assert_eq!(Index::open(&path).unwrap().len(), 400);
         assert_eq!(verify(&path, || ()).unwrap().faults, Vec::<String>::new());
         let writer = IndexWriter::open(&path, Job::Add, None).unwrap();
-        assert_eq!((writer.is_resumed(), writer.len().unwrap()), (true, 62));
+        assert_eq!((writer.is_resumed(), writer.len().unwrap()), (true, 402));
         writer.finish().unwrap();
         assert_eq!(export(&path), whole);
     }
@@ -173,7 +173,7 @@ fn an_addition_survives_an_interruption_at_any_byte() {
     fs::write(&path, &after).unwrap();
     fs::write(work_path(&path), &work).unwrap();
     let writer = IndexWriter::open(&path, Job::Add, None).unwrap();
-    assert_eq!((writer.is_resumed(), writer.len().unwrap()), (false, 62));
+    assert_eq!((writer.is_resumed(), writer.len().unwrap()), (false, 402));
 }
 
 #[test]

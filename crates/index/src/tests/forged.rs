@@ -110,9 +110,14 @@ fn a_forged_file_is_an_error_or_an_index() {
 fn a_forged_count_reserves_no_memory() {
     use crate::format::write_header;
     let folder = Folder::new();
-    for (dim, n, n_cells) in
-        [(usize::MAX - 3, 20, 1), (3, usize::MAX, 1), (0, 20, 1), (3, 20, 0), (3, 20, usize::MAX), (3, 20, 20)]
-    {
+    for (dim, n, n_cells) in [
+        (usize::MAX - 3, 20, 1),
+        (3, usize::MAX, 1),
+        (0, 20, 1),
+        (3, 20, 0),
+        (3, 20, usize::MAX),
+        (3, 20, 20),
+    ] {
         let path = folder.path("a");
         let mut writer = IndexWriter::open(&path, Job::Build, Some(super::OPTIONS)).unwrap();
         writer.put(&(0..20).map(shape).collect::<Vec<_>>()).unwrap();

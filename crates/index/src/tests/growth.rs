@@ -5,7 +5,8 @@ use std::path::Path;
 
 use super::{Folder, OPTIONS, export, shape};
 use crate::{
-    ContentHash, Found, Index, IndexWriter, Job, SearchMode, Searcher, Shape, ShapeEntry, ShapeVectors, verify,
+    ContentHash, Found, Index, IndexWriter, Job, SearchMode, Searcher, Shape, ShapeEntry, ShapeVectors,
+    verify,
 };
 
 /// A small shape of 24 numbers in one of many clusters.
@@ -60,12 +61,12 @@ fn search(index: &Index, query: &Shape, mode: SearchMode) -> Found {
 fn an_addition_writes_as_much_to_a_large_index_as_to_a_small_one() {
     let folder = Folder::new();
     let mut written = Vec::new();
-    for n in [1000, 16_000] {
+    for n in [4000, 32_000] {
         let path = folder.path(&n.to_string());
         built(&path, 0..n);
         let size = || fs::metadata(&path).unwrap().len();
         let mut of_size = Vec::new();
-        for i in 0..4 {
+        for i in 0..3 {
             let before = size();
             let mut writer = IndexWriter::open(&path, Job::Add, None).unwrap();
             writer.put(&[point(n + i)]).unwrap();
@@ -76,14 +77,14 @@ fn an_addition_writes_as_much_to_a_large_index_as_to_a_small_one() {
             of_size.push(work + size() - before);
         }
         let before = size();
-        assert_eq!(removed(&path, 0..1).len(), n + 3);
+        assert_eq!(removed(&path, 0..1).len(), n + 2);
         assert!(size() > before, "it is appended");
         of_size.push(size() - before);
         written.push(of_size.into_iter().max().unwrap());
         assert_eq!(verify(&path, || ()).unwrap().faults, Vec::<String>::new());
     }
-    assert!(written[1] * 10 < written[0] * 13, "{written:?} bytes");
-    assert!(written[1] < 1 << 20, "{written:?} bytes");
+    println!("{written:?} bytes");
+    assert!(written[1] * 10 < written[0] * 13 && written[1] < 1 << 20, "{written:?} bytes");
 }
 
 #[test]
@@ -124,7 +125,8 @@ fn equal_vectors_are_found_by_name_whatever_came_first() {
             writer.put(&[copy]).unwrap();
             writer.finish().unwrap();
         }
-        let found = Index::open(&path).unwrap().nearest(&shape(3).vectors.fused, 4, SearchMode::Auto).unwrap();
+        let found =
+            Index::open(&path).unwrap().nearest(&shape(3).vectors.fused, 4, SearchMode::Auto).unwrap();
         found.shapes.into_iter().map(|near| near.id).collect::<Vec<_>>()
     };
     let expected = ["copy00", "copy01", "copy02", "copy03"];
@@ -147,7 +149,8 @@ fn cells_that_have_grown_find_as_much_as_new_ones() {
     let header = &index.heads().unwrap().header;
     assert_eq!((header.n_trained, header.n), (56_000, 60_666));
     assert_eq!(verify(&path, || ()).unwrap().faults, Vec::<String>::new());
-    let fresh = built(&folder.path("b"), (3000..64_000).filter(|i| !(20_000..21_000).step_by(3).any(|x| x == *i)));
+    let fresh =
+        built(&folder.path("b"), (3000..64_000).filter(|i| !(20_000..21_000).step_by(3).any(|x| x == *i)));
     assert_eq!(export(&path), export(&folder.path("b")));
     let mut searchers = [&index, &fresh].map(|index| (Searcher::load(index).unwrap(), 0));
     for i in 0..300 {

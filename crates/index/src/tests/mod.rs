@@ -4,6 +4,7 @@ mod damage;
 mod durability;
 mod equality;
 mod forged;
+mod format_1;
 mod growth;
 
 use std::path::{Path, PathBuf};

@@ -1,9 +1,10 @@
 //! Nearest vectors in memory, among a hundred or millions.
 //!
 //! Up to [`EXACT_LIMIT`](cells::EXACT_LIMIT) vectors a search measures all of them. Larger sets are divided into
-//! about `2 √n` cells by k-means (an inverted file), and a search scans the cells whose centres are nearest to the
-//! query. Their number is calibrated whenever the index is finished, so that searches for some of its own vectors find
-//! 99.6 % of the ten nearest. Vectors are not quantised.
+//! about `2 √n` cells by k-means (an inverted file). A search scans some of the cells whose centres are nearest to the
+//! query: those whose border is near, compared with the neighbours found so far. How many and how near is calibrated
+//! whenever the index is finished, so that searches for some of its own vectors find 99.4 % of the ten nearest. Vectors
+//! are not quantised.
 //!
 //! New vectors join the nearest cells; centres are chosen again when the set has grown by half.
 //!
@@ -18,8 +19,8 @@ mod nearest;
 mod testing;
 mod trials;
 
-pub(crate) use cells::{CellsHeader, divided, n_cells, nearest_cells, scan};
+pub(crate) use cells::{CellsHeader, Reach, divided, n_cells, nearest_cells, scan};
 pub(crate) use kernels::padded;
 pub(crate) use kmeans::Centroids;
 pub(crate) use nearest::{Hit, Nearest};
-pub(crate) use trials::{Change, Rows, Trial, TrialKey, Trials};
+pub(crate) use trials::{Change, NEIGHBORS, Rows, Trial, TrialKey, Trials};

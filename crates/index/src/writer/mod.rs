@@ -9,9 +9,7 @@ use std::path::{Path, PathBuf};
 use redb::{Database, WriteTransaction};
 
 use self::work::{Begun, open_exclusively, with_suffix};
-use crate::format::{
-    CellState, Changes, ENTRIES, Guarded, Sealed, Store, WorkFile, call, refresh_cells,
-};
+use crate::format::{CellState, Changes, ENTRIES, Guarded, Sealed, Store, WorkFile, call, refresh_cells};
 use crate::{Index, IndexError, Shape, ShapeEntry};
 
 pub use self::work::work_path;
@@ -105,23 +103,19 @@ impl IndexWriter {
             Err(IndexError::Damaged { .. }) if job.starts_over() => Ok((None, true)),
             Err(error) => Err(error),
         };
-        if let ((None, false), None) = (opened()?, options) {
-            return Err(IndexError::io("read", path)(ErrorKind::NotFound.into()));
-        }
+        let options_of = |base: Option<&Index>| match (options, base) {
+            (Some(requested), Some(base)) => base.expect_options(requested).map(|()| requested.to_owned()),
+            (Some(requested), None) => Ok(requested.to_owned()),
+            (None, Some(base)) => Ok(base.options().to_owned()),
+            (None, None) => Err(IndexError::io("read", path)(ErrorKind::NotFound.into())),
+        };
+        options_of(opened()?.0.as_ref())?;
         let lock = open_exclusively(path, &work)?;
         // Another writer may have finished before the file was locked.
         let (base, replaces_damaged) = opened()?;
-        let options = match (options, &base) {
-            (Some(requested), Some(base)) => base.expect_options(requested).map(|()| requested.to_owned())?,
-            (Some(requested), None) => requested.to_owned(),
-            (None, Some(base)) => base.options().to_owned(),
-            (None, None) => return Err(IndexError::io("read", path)(ErrorKind::NotFound.into())),
-        };
-        let begun = Begun {
-            job: job.name().to_owned(),
-            options,
-            base: base.as_ref().map_or(0, Index::fingerprint),
-        };
+        let options = options_of(base.as_ref())?;
+        let begun =
+            Begun { job: job.name().to_owned(), options, base: base.as_ref().map_or(0, Index::fingerprint) };
         let (file, database, resumed) = match resume(&lock, &work, job, &begun, base.as_ref()) {
             Ok(Some((file, database))) => (file, database, true),
             // Work that cannot be read is of no use.

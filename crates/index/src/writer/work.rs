@@ -66,4 +66,3 @@ pub(super) fn open_exclusively(path: &Path, work: &Path) -> Result<File, IndexEr
         }
     }
 }
-
