@@ -105,6 +105,12 @@ impl Index {
         self.sealed.fingerprint()
     }
 
+    /// Version of the format of the file.
+    #[must_use]
+    pub fn format(&self) -> u32 {
+        self.sealed.version
+    }
+
     /// Size in bytes.
     #[must_use]
     pub fn n_bytes(&self) -> u64 {

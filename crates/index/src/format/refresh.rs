@@ -95,7 +95,7 @@ fn change(
     n_shapes: usize,
 ) -> Result<(), IndexError> {
     let (store, dim) = (snapshot.store, heads.header.dim);
-    let (mut gone, mut come): (Vec<(String, Held)>, Vec<(String, Held)>) = (Vec::new(), Vec::new());
+    let (mut gone, mut come) = (Vec::new(), Vec::new());
     let mut changes = Vec::new();
     for id in changed {
         let (before, now) = (held(base, &id, dim)?, held(snapshot, &id, dim)?);

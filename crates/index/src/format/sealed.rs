@@ -318,7 +318,7 @@ pub(crate) struct Sealed {
     file: Mutex<File>,
     pub(crate) state: State,
     /// The version of its format.
-    version: u32,
+    pub(crate) version: u32,
     /// From the first one on.
     segments: Vec<Segment>,
     /// Where block 0 is in the first segment, and the number of blocks there.

@@ -82,7 +82,7 @@ pub(crate) struct Reach {
 
 impl Reach {
     /// Everything.
-    pub(crate) const ALL: Self = Self { probes: usize::MAX, margin: f32::INFINITY };
+    pub(crate) const ALL: Self = Self { probes: u32::MAX as usize, margin: f32::INFINITY };
 
     /// Whether to scan a cell, where the neighbour that decides has this squared distance.
     pub(crate) fn includes(&self, cell: &NearCell, sq: f32) -> bool {

@@ -289,16 +289,15 @@ impl Trials {
         };
         let makes_room = is_sample && self.all.iter().any(makes_room);
         self.all.retain(|trial| !changed.contains_key(trial.id.as_str()));
+        let come = || changes.iter().filter_map(|change| Some((change.id.as_str(), change.now.as_ref()?)));
+        let rows: Vec<f32> = come().flat_map(|(_, (row, ..))| row).copied().collect();
+        let ids = come().map(|(id, _)| id).collect();
+        let classes = come().map(|(_, (_, class, _))| class).collect();
+        let cells: Vec<u32> = come().map(|(_, (.., cell))| *cell).collect();
+        let new = Rows { rows: &rows, ids: &ids, classes: &classes, cells: &cells };
         self.all.par_iter_mut().for_each(|trial| {
-            for change in changes {
-                if change.was_there {
-                    trial.part(&change.id);
-                }
-                if let Some((rows, class, cell)) = &change.now {
-                    let (ids, classes) = ([&change.id].iter().collect(), [class].iter().collect());
-                    trial.meet(Rows { rows, ids: &ids, classes: &classes, cells: &[*cell] }, 0..1);
-                }
-            }
+            changes.iter().filter(|change| change.was_there).for_each(|change| trial.part(&change.id));
+            trial.meet(new, 0..cells.len());
         });
         let sample = if makes_room {
             let mut keys: Vec<(String, String)> = Vec::new();
@@ -307,20 +306,15 @@ impl Trials {
             })?;
             Sample::of(keys.iter().map(|(id, class)| (id.as_str(), class.as_str())))
         } else {
-            let new = changes
-                .iter()
-                .filter_map(|change| Some((change.id.as_str(), change.now.as_ref()?.1.as_str())));
-            Sample::of(self.all.iter().map(|trial| (trial.id.as_str(), trial.class.as_str())).chain(new))
+            Sample::of(
+                self.all.iter().map(|trial| (trial.id.as_str(), trial.class.as_str())).chain(new.pairs()),
+            )
         };
         self.all.retain(|trial| sample.holds(&trial.id, &trial.class));
         let (known, n_cells) = (self.all.len(), self.n_cells);
-        for change in changes {
-            if let Some((row, class, _)) =
-                change.now.as_ref().filter(|(_, class, _)| sample.holds(&change.id, class))
-            {
-                self.all.push(Trial::new(&change.id, class, row, n_cells));
-            }
-        }
+        let is_trial = |(_, (id, class)): &(usize, (&str, &str))| sample.holds(id, class);
+        let trial = |(i, (id, class)): (usize, (&str, &str))| Trial::new(id, class, new.row(i), n_cells);
+        self.all.extend(new.pairs().enumerate().filter(is_trial).map(trial));
         if makes_room {
             let present: HashSet<String> = self.all.iter().map(|trial| trial.id.clone()).collect();
             everything(&mut |shapes| {
@@ -447,7 +441,7 @@ mod tests {
     }
 
     fn class(i: usize) -> String {
-        if i % 5 == 0 { String::new() } else { format!("c{}", i % 40) }
+        if i.is_multiple_of(5) { String::new() } else { format!("c{}", i % 40) }
     }
 
     /// The same trials, whatever is beyond what both know.
@@ -470,7 +464,8 @@ mod tests {
             // Grows beyond the number of trials, and shrinks again.
             for step in 0..60 {
                 let new = (300 + 40 * step..340 + 40 * step).filter(|_| step < 40);
-                let gone: Vec<usize> = present.iter().copied().filter(|i| (i * 7 + step) % 60 == 0).collect();
+                let gone: Vec<usize> =
+                    present.iter().copied().filter(|i| (i * 7 + step).is_multiple_of(60)).collect();
                 present.retain(|i| !gone.contains(i));
                 present.extend(new.clone());
                 let change = |i: usize, now: bool| Change {

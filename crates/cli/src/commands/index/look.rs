@@ -60,7 +60,7 @@ pub(super) fn info(path: &Path, common: &Common) -> Result<ExitCode> {
     }
     let json = InfoJson {
         index: path.to_owned(),
-        format: index::FORMAT_VERSION,
+        format: index.format(),
         n_shapes: index.len(),
         n_bytes: index.n_bytes(),
         options: serde_json::from_str(index.options()).unwrap_or_else(|_| index.options().into()),
