@@ -11,7 +11,7 @@ use retrieval::UnknownThreshold;
 pub(crate) const EXACT_LIMIT: usize = 50_000;
 
 /// Sampled points per cell for k-means.
-const SAMPLE: usize = 48;
+const SAMPLE: usize = 96;
 
 /// Rows measured together.
 const CHUNK: usize = 256;

@@ -8,8 +8,9 @@ use pulp::{Arch, Simd, WithSimd};
 /// The length of a row is a multiple of this.
 pub(crate) const LANES: usize = 16;
 
-/// Rows measured together, so that their sums are independent chains of additions.
-const ROWS: usize = 4;
+/// Independent chains of additions for one row. One row after the other is read from memory more than twice as fast as
+/// four at once.
+const SUMS: usize = 4;
 
 /// Points compared with a group of centres together.
 const POINTS: usize = 8;
@@ -37,29 +38,22 @@ impl WithSimd for SqDistances<'_> {
     fn with_simd<S: Simd>(self, simd: S) {
         let n = self.query.len();
         let query = S::as_simd_f32s(self.query).0;
-        let mut groups = self.rows.chunks_exact(ROWS * n);
-        let mut places = self.out.chunks_exact_mut(ROWS);
-        for (rows, out) in groups.by_ref().zip(places.by_ref()) {
-            let rows: [&[S::f32s]; ROWS] = std::array::from_fn(|r| S::as_simd_f32s(&rows[r * n..][..n]).0);
-            let rows = rows.map(|row| &row[..query.len()]);
-            let mut sums = [simd.splat_f32s(0.0); ROWS];
-            for (i, x) in query.iter().enumerate() {
-                for (sum, row) in sums.iter_mut().zip(&rows) {
-                    let gap = simd.sub_f32s(*x, row[i]);
-                    *sum = simd.mul_add_f32s(gap, gap, *sum);
-                }
+        let (query, query_rest) = query.as_chunks::<SUMS>();
+        let add = |sum: &mut S::f32s, x: S::f32s, y: S::f32s| {
+            let gap = simd.sub_f32s(x, y);
+            *sum = simd.mul_add_f32s(gap, gap, *sum);
+        };
+        for (row, out) in self.rows.chunks_exact(n).zip(self.out) {
+            let (row, row_rest) = S::as_simd_f32s(row).0.as_chunks::<SUMS>();
+            let mut sums = [simd.splat_f32s(0.0); SUMS];
+            for (x, y) in query.iter().zip(row) {
+                (0..SUMS).for_each(|i| add(&mut sums[i], x[i], y[i]));
             }
-            for (out, sum) in out.iter_mut().zip(sums) {
-                *out = simd.reduce_sum_f32s(sum);
+            for ((sum, x), y) in sums.iter_mut().zip(query_rest).zip(row_rest) {
+                add(sum, *x, *y);
             }
-        }
-        for (row, out) in groups.remainder().chunks_exact(n).zip(places.into_remainder()) {
-            let mut sum = simd.splat_f32s(0.0);
-            for (x, y) in query.iter().zip(S::as_simd_f32s(row).0) {
-                let gap = simd.sub_f32s(*x, *y);
-                sum = simd.mul_add_f32s(gap, gap, sum);
-            }
-            *out = simd.reduce_sum_f32s(sum);
+            let [a, b, c, d] = sums;
+            *out = simd.reduce_sum_f32s(simd.add_f32s(simd.add_f32s(a, b), simd.add_f32s(c, d)));
         }
     }
 }

@@ -7,8 +7,8 @@ use super::kernels::Interleaved;
 /// Points in one parallel task.
 const BLOCK: usize = 256;
 
-/// Iterations of Lloyd's algorithm. More do not improve recall.
-const ROUNDS: usize = 8;
+/// Iterations of Lloyd's algorithm. Half as many need a cell more for the same recall.
+const ROUNDS: usize = 12;
 
 /// Cell centres.
 #[derive(Debug, Clone, PartialEq)]
