@@ -60,6 +60,21 @@ pub fn is_at(_: &File, path: &Path) -> bool {
     path.exists()
 }
 
+/// Whether an open file has several names (hard links).
+#[cfg(unix)]
+#[must_use]
+pub fn has_other_names(file: &File) -> bool {
+    use std::os::unix::fs::MetadataExt;
+    file.metadata().is_ok_and(|about| about.nlink() > 1)
+}
+
+/// Whether an open file has several names (hard links): unknown here.
+#[cfg(not(unix))]
+#[must_use]
+pub fn has_other_names(_: &File) -> bool {
+    false
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -409,13 +409,14 @@ impl Sealed {
         let length = file.metadata().map_err(cannot_read)?.len();
         let mut head = Vec::new();
         file.seek(SeekFrom::Start(0)).map_err(cannot_read)?;
-        Read::by_ref(&mut file).take(4).read_to_end(&mut head).map_err(cannot_read)?;
+        Read::by_ref(&mut file).take(16).read_to_end(&mut head).map_err(cannot_read)?;
         let mut footer = Vec::new();
         file.seek(SeekFrom::Start(length.saturating_sub(FOOTER))).map_err(cannot_read)?;
         Read::by_ref(&mut file).take(FOOTER).read_to_end(&mut footer).map_err(cannot_read)?;
         if length < FOOTER || footer[24..] != MAGIC {
-            return Err(match head == DATABASE_MAGIC {
-                true => IndexError::damaged(path, "its footer is missing"),
+            let is_start = head.len() >= 4 && (head.starts_with(&DATABASE_MAGIC) || MAGIC.starts_with(&head));
+            return Err(match is_start {
+                true => IndexError::damaged(path, "its end is missing"),
                 false => IndexError::Foreign(path.to_owned()),
             });
         }

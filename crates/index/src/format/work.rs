@@ -350,6 +350,10 @@ impl StorageBackend for Blocks {
         self.file.sync_data()
     }
 
+    fn close(&self) -> io::Result<()> {
+        self.sync_data()
+    }
+
     fn write(&self, offset: u64, data: &[u8]) -> io::Result<()> {
         if self.base.is_none() {
             return self.file.write(self.start + offset, data);

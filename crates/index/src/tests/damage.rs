@@ -61,7 +61,7 @@ fn a_truncated_file_is_damaged_and_bytes_after_the_end_do_not_count() {
     let folder = Folder::new();
     let bytes = fs::read(folder.index("a", 6)).unwrap();
     let copy = folder.path("b");
-    for length in [bytes.len() - 1, bytes.len() - 40, bytes.len() / 2, 4096] {
+    for length in [bytes.len() - 1, bytes.len() - 40, bytes.len() / 2, 4096, 50, 4] {
         fs::write(&copy, &bytes[..length]).unwrap();
         let error = Index::open(&copy).unwrap_err();
         assert!(matches!(error, IndexError::Damaged { .. }), "{length}: {error}");

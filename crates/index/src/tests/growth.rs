@@ -111,6 +111,19 @@ fn many_small_changes_lead_where_one_build_leads() {
     assert_eq!(verify(&path, || ()).unwrap().faults, Vec::<String>::new());
 }
 
+#[cfg(unix)]
+#[test]
+fn an_index_with_another_name_or_without_a_right_to_write_is_written_anew() {
+    let folder = Folder::new();
+    let (path, link) = (folder.path("a"), folder.path("link"));
+    built(&path, 0..2000);
+    fs::hard_link(&path, &link).unwrap();
+    assert_eq!(added(&path, 2000..2001).len(), 2001);
+    assert_eq!(Index::open(&link).unwrap().len(), 2000);
+    fs::set_permissions(&path, std::os::unix::fs::PermissionsExt::from_mode(0o444)).unwrap();
+    assert_eq!(added(&path, 2001..2002).len(), 2002);
+}
+
 #[test]
 fn equal_vectors_are_found_by_name_whatever_came_first() {
     let folder = Folder::new();

@@ -270,14 +270,12 @@ impl IndexWriter {
         let Self { path, work, lock, mut file, database, base, replaces_damaged, .. } = self;
         drop(database);
         let cannot_write = IndexError::io("write", &work);
-        // Somebody may have moved another file here.
-        let base = base.filter(|base| {
-            Sealed::open(&path).is_ok_and(|sealed| sealed.fingerprint() == base.fingerprint())
-        });
-        if let Some((base, room)) = base.as_ref().and_then(|base| Some((base, base.sealed.room()?)))
+        if let Some(base) = base
+            && let Some(mut target) = appendable(&path, &base.sealed)
+            && let Some(room) = base.sealed.room()
             && let Some(changed) = file.changed(&base.sealed, room).map_err(cannot_write)?
         {
-            append(&path, &file, &changed, &base.sealed, n_shapes)?;
+            append(&path, &mut target, &file, &changed, &base.sealed, n_shapes)?;
             fs::remove_file(&work).map_err(IndexError::io("remove", &work))?;
         } else {
             file.fill().map_err(cannot_write)?;
@@ -312,19 +310,27 @@ impl IndexWriter {
     }
 }
 
+/// The file of an index, if a change may be appended to it: it is still the one that the job began with, may be written
+/// and has no other name.
+fn appendable(path: &Path, base: &Sealed) -> Option<File> {
+    let file = OpenOptions::new().read(true).write(true).open(path).ok()?;
+    let is_base = Sealed::open(path).is_ok_and(|sealed| sealed.fingerprint() == base.fingerprint());
+    (is_base && files::is_at(&file, path) && !files::has_other_names(&file)).then_some(file)
+}
+
 /// Appends changed blocks to an index.
 fn append(
     path: &Path,
+    file: &mut File,
     work: &WorkFile,
     changed: &[u64],
     base: &Sealed,
     n_shapes: usize,
 ) -> Result<(), IndexError> {
     let cannot_write = IndexError::io("write", path);
-    let mut file = OpenOptions::new().read(true).write(true).open(path).map_err(cannot_write)?;
-    let state = work.append(changed, base, &mut file).map_err(cannot_write)?;
+    let state = work.append(changed, base, file).map_err(cannot_write)?;
     expect(&Index::of(path, Sealed::open_state(path, state)?)?, n_shapes)?;
-    state.commit(&mut file).map_err(cannot_write)
+    state.commit(file).map_err(cannot_write)
 }
 
 /// redb does not report whether its last bytes were written, so this checks it.
