@@ -3,7 +3,7 @@
 //! Up to [`EXACT_LIMIT`](cells::EXACT_LIMIT) vectors a search measures all of them. Larger sets are divided into
 //! about `2 √n` cells by k-means (an inverted file). A search scans some of the cells whose centres are nearest to the
 //! query: those whose border is near, compared with the neighbours found so far. How many and how near is calibrated
-//! whenever the index is finished, so that searches for some of its own vectors find 99.3 % of the ten nearest. Vectors
+//! whenever the index is finished, so that searches for some of its own vectors find 99.4 % of the ten nearest. Vectors
 //! are not quantised.
 //!
 //! New vectors join the nearest cells; centres are chosen again when the set has grown by half.
