@@ -21,7 +21,7 @@ pub struct EdgeId(pub u32);
 ///
 /// A corner stands for the vertex in it and for the side of the face opposite it. The side runs from the
 /// [next](Self::next) corner to the [previous](Self::prev) one.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default, Serialize)]
 #[repr(transparent)]
 pub struct CornerId(pub u32);
 

@@ -21,6 +21,7 @@ mod testing;
 mod topology;
 mod triangle;
 mod triangulation;
+mod waiting_sides;
 
 pub use components::{Components, components_of_faces, components_with_links};
 pub use disjoint_sets::DisjointSets;
@@ -30,4 +31,4 @@ pub use one_ring::{CornerTable, Fan, FanCorner, OneRing, VertexKind, Winding, to
 pub use rows::Rows;
 pub use topology::Topology;
 pub use triangle::{Triangle, double_area, scalar_product};
-pub use triangulation::{GluedTriangle, Loops, Triangulation};
+pub use triangulation::{GluedTriangle, Loops, Triangulation, VertexCorners};

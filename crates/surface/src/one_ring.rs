@@ -173,6 +173,18 @@ impl OneRing {
         }
     }
 
+    /// Replaces the fans by the one that begins with a forward corner, if it is closed, otherwise by none; returns the
+    /// number of its corners. For a vertex with a single fan, this is [`collect`](Self::collect) without a list of the
+    /// corners.
+    pub fn collect_closed(&mut self, table: &impl CornerTable, first: CornerId) -> usize {
+        self.corners.clear();
+        self.fans.clear();
+        if self.walk(table, FanCorner { corner: first, winding: Winding::Forward }) {
+            self.fans.push((self.corners.len(), true));
+        }
+        self.fans.len() * self.corners.len()
+    }
+
     /// Appends the fan that begins with `start`; returns whether it is closed.
     #[inline]
     fn walk(&mut self, table: &impl CornerTable, start: FanCorner) -> bool {

@@ -31,6 +31,8 @@ pub struct Topology {
     n_vertices: usize,
     faces: Vec<[VertexId; 3]>,
     edges: Vec<[VertexId; 2]>,
+    /// The number of edges whose lower end is below each vertex, and of all.
+    first_edge: Vec<u32>,
     /// Edge opposite each corner, indexed by corner.
     corner_edge: Vec<EdgeId>,
     vertex_corners: Rows<CornerId>,
@@ -62,6 +64,8 @@ impl Topology {
         let by_lower = Rows::collect(n_vertices, corners.clone().map(|c| (ends(c)[0].index(), c)));
         let mut edges = Vec::with_capacity(faces.len() * 3 / 2 + 1);
         let mut corner_edge = vec![EdgeId(0); 3 * faces.len()];
+        let mut first_edge = Vec::with_capacity(n_vertices + 1);
+        first_edge.push(0);
         let mut bucket = Vec::new();
         for lower in 0..n_vertices {
             bucket.clear();
@@ -73,9 +77,10 @@ impl Topology {
                 }
                 corner_edge[corner.index()] = EdgeId::from(edges.len() - 1);
             }
+            first_edge.push(edges.len() as u32);
         }
         let edge_corners = Rows::collect(edges.len(), corners.map(|c| (corner_edge[c.index()].index(), c)));
-        Self { n_vertices, faces, edges, corner_edge, vertex_corners, edge_corners }
+        Self { n_vertices, faces, edges, first_edge, corner_edge, vertex_corners, edge_corners }
     }
 
     /// Number of vertices.
@@ -106,6 +111,18 @@ impl Topology {
     #[must_use]
     pub fn edges(&self) -> &[[VertexId; 2]] {
         &self.edges
+    }
+
+    /// The edges from a vertex to higher ones, in ascending order.
+    #[inline]
+    #[must_use]
+    pub fn edges_above(&self, vertex: VertexId) -> &[[VertexId; 2]] {
+        &self.edges[self.range_above(vertex)]
+    }
+
+    fn range_above(&self, vertex: VertexId) -> std::ops::Range<usize> {
+        let v = vertex.index();
+        self.first_edge[v] as usize..self.first_edge[v + 1] as usize
     }
 
     /// The vertex in a corner.
@@ -169,7 +186,12 @@ impl Topology {
     /// The edge between two vertices, if there is one.
     #[must_use]
     pub fn edge_between(&self, a: VertexId, b: VertexId) -> Option<EdgeId> {
-        self.edges.binary_search(&[a.min(b), a.max(b)]).ok().map(EdgeId::from)
+        if a.max(b).index() >= self.n_vertices {
+            return None;
+        }
+        let above = self.range_above(a.min(b));
+        let found = self.edges[above.clone()].binary_search_by_key(&a.max(b), |ends| ends[1]);
+        found.ok().map(|i| EdgeId::from(above.start + i))
     }
 }
 

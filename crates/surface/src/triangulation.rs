@@ -1,9 +1,12 @@
 //! Intrinsic triangulations and their edge flips.
 
+use rayon::prelude::*;
+
 use crate::ids::{CornerId, FaceId, VertexId};
 use crate::intrinsic::{IntrinsicMesh, Link};
 use crate::one_ring::CornerTable;
 use crate::triangle::{Triangle, double_area};
+use crate::waiting_sides::WaitingSides;
 
 /// Limit of the number of flips per side; real meshes need less than one.
 const FLIPS_PER_SIDE: usize = 32;
@@ -13,6 +16,9 @@ const SLACK: f64 = 1e-10;
 
 /// Marks a side without a neighbour.
 const NONE: u32 = u32::MAX;
+
+/// Number of triangles that one thread handles at a time.
+const BLOCK: usize = 1024;
 
 /// Triangles given by their side lengths and glued side to side, as a corner table.
 ///
@@ -51,6 +57,35 @@ pub struct GluedTriangle {
     opposite: [u32; 3],
 }
 
+/// Two triangles at a side that is not Delaunay.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Quad {
+    /// The corner opposite the side in the triangle below.
+    far: CornerId,
+    /// Whether the two triangles have opposite orientations.
+    is_reversed: bool,
+    /// The side, and those from its start and its end to the apex of the triangle above.
+    above: [f64; 3],
+    /// The same of the triangle below: from the end of the side and from its start.
+    below: [f64; 3],
+    /// The distance between the two apices.
+    diagonal: f64,
+}
+
+impl Quad {
+    /// The sides of the triangles after the flip.
+    fn halves(&self) -> [[f64; 3]; 2] {
+        let ([_, ca, bc], [_, db, ad]) = (self.above, self.below);
+        [[self.diagonal, db, bc], [self.diagonal, ca, ad]]
+    }
+}
+
+/// Whether the angle opposite the first of three sides is at most 90 degrees.
+#[inline]
+fn is_acute([base, p, q]: [f64; 3]) -> bool {
+    base * base <= p * p + q * q
+}
+
 /// Whether flips may produce loops, sides from a vertex to itself.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Loops {
@@ -67,11 +102,12 @@ impl Triangulation {
         let topology = mesh.topology();
         let far = |corner| topology.opposite(corner).map_or(NONE, |far| far.0);
         let triangle = |(f, vertices): (usize, &[VertexId; 3])| {
-            let [a, b, c] = FaceId::from(f).corners();
+            let [a, b, c] = FaceId(f as u32).corners();
             let lengths = [mesh.opposite_length(a), mesh.opposite_length(b), mesh.opposite_length(c)];
             GluedTriangle { vertices: *vertices, lengths, opposite: [far(a), far(b), far(c)] }
         };
-        Self { triangles: topology.faces().iter().enumerate().map(triangle).collect() }
+        let faces = topology.faces().par_iter().with_min_len(BLOCK);
+        Self { triangles: faces.enumerate().map(triangle).collect() }
     }
 
     /// Triangles with the given vertices, whose sides have neither lengths nor neighbours yet.
@@ -123,28 +159,27 @@ impl Triangulation {
     /// were removed (the intrinsic Delaunay triangulation; Bobenko and Springborn 2007, `bobenko2007`).
     ///
     /// Free sides stay. The number of flips is limited, so a very degenerate surface may not become Delaunay.
+    ///
+    /// All sides are tested in parallel; only those that may have to be flipped are visited one after the other.
     pub fn flip_to_delaunay(&mut self, loops: Loops) -> Vec<Link> {
-        let corners = (0..self.triangles.len()).flat_map(|t| FaceId::from(t).corners());
-        let n_sides = 3 * self.triangles.len();
         let mut removed = Vec::new();
+        let Some(mut waiting) = WaitingSides::of(self, loops) else { return removed };
+        let n_sides = 3 * self.triangles.len();
         let mut is_new = vec![false; n_sides];
-        // The lower of its two corners represents a side.
-        let is_lower = |c: &CornerId| self.opposite(*c).is_some_and(|far| *c < far);
-        let mut waiting: Vec<CornerId> = corners.filter(is_lower).collect();
-        let mut is_queued = vec![false; n_sides];
-        waiting.iter().for_each(|corner| is_queued[corner.index()] = true);
         let mut budget = FLIPS_PER_SIDE * n_sides;
         while let Some(corner) = waiting.pop() {
-            is_queued[corner.index()] = false;
-            let Some(triangles) = self.flip(corner, loops, &mut is_new, &mut removed) else {
-                continue;
-            };
+            let Some(quad) = self.crossed(corner, loops) else { continue };
+            let triangles = self.flip(corner, quad, &mut is_new, &mut removed);
+            for side in triangles.into_iter().flat_map(FaceId::corners) {
+                waiting.suspect(side);
+                if let Some(far) = self.opposite(side) {
+                    waiting.suspect(far);
+                }
+            }
             // The four sides around the two triangles have new numbers.
             for outer in triangles.into_iter().flat_map(|t| [1, 2].map(|slot| CornerId::new(t, slot))) {
-                let Some(far) = self.opposite(outer) else { continue };
-                let side = outer.min(far);
-                if !std::mem::replace(&mut is_queued[side.index()], true) {
-                    waiting.push(side);
+                if let Some(far) = self.opposite(outer) {
+                    waiting.push(outer.min(far));
                 }
             }
             budget -= 1;
@@ -155,17 +190,16 @@ impl Triangulation {
         removed
     }
 
-    /// Replaces a side that is not Delaunay by the other diagonal, the side opposite slot 0 of both triangles.
-    fn flip(
-        &mut self,
-        corner: CornerId,
-        loops: Loops,
-        is_new: &mut [bool],
-        removed: &mut Vec<Link>,
-    ) -> Option<[FaceId; 2]> {
+    /// Whether a corner is wider than 90 degrees.
+    #[inline]
+    pub(crate) fn is_obtuse(&self, corner: CornerId) -> bool {
+        !is_acute(self.sides(corner))
+    }
+
+    /// The two triangles at a side, if it is not Delaunay and can be flipped.
+    pub(crate) fn crossed(&self, corner: CornerId, loops: Loops) -> Option<Quad> {
         let far = self.opposite(corner)?;
-        let [f, g] = [corner.face(), far.face()];
-        if f == g {
+        if corner.face() == far.face() {
             return None;
         }
         // The triangles a b c above the side from a to b, and b a d below it.
@@ -176,7 +210,6 @@ impl Triangulation {
             below.swap(1, 2);
         }
         // Nearly all sides face two acute angles, and stay.
-        let is_acute = |[base, p, q]: [f64; 3]| base * base <= p * p + q * q;
         if is_acute(above) && is_acute(below) {
             return None;
         }
@@ -184,17 +217,27 @@ impl Triangulation {
         let (at_c, at_d) = (upper.apex_cotangent(), lower.apex_cotangent());
         // False for NaN, which lengths that violate the triangle inequality may give.
         let exceeds_180_degrees = at_c + at_d < -SLACK * (1.0 + at_c.abs() + at_d.abs());
-        let [base, ca, bc] = above;
-        let [_, db, ad] = below;
+        if !exceeds_180_degrees {
+            return None;
+        }
         let diagonal = upper.apex_to_apex(lower);
-        let has_area = |sides| double_area(sides) > 0.0;
-        if !exceeds_180_degrees || !has_area([diagonal, db, bc]) || !has_area([diagonal, ca, ad]) {
-            return None;
-        }
+        let quad = Quad { far, is_reversed, above, below, diagonal };
+        let has_area = quad.halves().iter().all(|sides| double_area(*sides) > 0.0);
         let [c, d] = [corner, far].map(|apex| self.corner_vertex(apex));
-        if loops == Loops::Forbidden && c == d {
-            return None;
-        }
+        (has_area && (loops == Loops::Allowed || c != d)).then_some(quad)
+    }
+
+    /// Replaces a side by the other diagonal, the side opposite slot 0 of both triangles.
+    fn flip(
+        &mut self,
+        corner: CornerId,
+        quad: Quad,
+        is_new: &mut [bool],
+        removed: &mut Vec<Link>,
+    ) -> [FaceId; 2] {
+        let Quad { far, is_reversed, above: [base, ..], .. } = quad;
+        let [f, g] = [corner.face(), far.face()];
+        let [c, d] = [corner, far].map(|apex| self.corner_vertex(apex));
         if is_reversed {
             self.turn_over(far, is_new);
         }
@@ -208,8 +251,9 @@ impl Triangulation {
         let neighbours = outer.map(|old| new_number(self.neighbour(old)));
         let were_new = outer.map(|old| is_new[old.index()]);
         let triangle = |vertices, lengths| GluedTriangle { vertices, lengths, opposite: [NONE; 3] };
-        self.triangles[f.index()] = triangle([b, c, d], [diagonal, db, bc]);
-        self.triangles[g.index()] = triangle([a, d, c], [diagonal, ca, ad]);
+        let halves = quad.halves();
+        self.triangles[f.index()] = triangle([b, c, d], halves[0]);
+        self.triangles[g.index()] = triangle([a, d, c], halves[1]);
         for ((side, neighbour), was_new) in moved.into_iter().zip(neighbours).zip(were_new) {
             self.set_neighbour(side, neighbour);
             is_new[side.index()] = was_new;
@@ -217,7 +261,7 @@ impl Triangulation {
         let diagonals = [f, g].map(|triangle| CornerId::new(triangle, 0));
         self.glue(diagonals[0], diagonals[1]);
         diagonals.iter().for_each(|side| is_new[side.index()] = true);
-        Some([f, g])
+        [f, g]
     }
 
     /// Whether two glued sides have the same direction, so that their triangles have opposite orientations.
@@ -243,6 +287,41 @@ impl Triangulation {
         };
         self.set_neighbour(p, renamed(at_q));
         self.set_neighbour(q, renamed(at_p));
+    }
+}
+
+/// The corners around every vertex of a triangulation, summarized.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct VertexCorners {
+    /// The lowest corner; meaningless without corners.
+    pub first: CornerId,
+    /// The number of corners.
+    pub n_corners: u32,
+    /// The number of free sides that end at the vertex.
+    pub n_free: u32,
+}
+
+impl Triangulation {
+    /// The corners around each of `n_vertices` vertices, in linear time.
+    ///
+    /// # Panics
+    /// If a triangle has a vertex that is out of range.
+    #[must_use]
+    pub fn vertex_corners(&self, n_vertices: usize) -> Vec<VertexCorners> {
+        let mut around = vec![VertexCorners::default(); n_vertices];
+        for (t, triangle) in self.triangles.iter().enumerate().rev() {
+            for slot in (0..3).rev() {
+                let at = &mut around[triangle.vertices[slot].index()];
+                at.first = CornerId((3 * t + slot) as u32);
+                at.n_corners += 1;
+                if triangle.opposite[slot] == NONE {
+                    for end in [(slot + 1) % 3, (slot + 2) % 3] {
+                        around[triangle.vertices[end].index()].n_free += 1;
+                    }
+                }
+            }
+        }
+        around
     }
 }
 

@@ -48,7 +48,7 @@ mod update;
 use budget::{Budget, Exceeded};
 use surface::{IntrinsicMesh, Loops, Triangulation, VertexId};
 
-use crate::graph::EdgeGraph;
+use crate::graph::breadth_first_order_of;
 use crate::solver::{DistanceSolver, Pool, PrunedSolver, within};
 use crate::source::Source;
 use front::Front;
@@ -155,7 +155,7 @@ impl FastMarching {
                 };
                 (triangulation, [mesh.links(), &segments].concat(), halves)
             },
-            || EdgeGraph::new(mesh).breadth_first_order(),
+            || breadth_first_order_of(mesh),
         );
         let (triangulation, links, halves) = prepared;
         let rings = OneRings::new(order, &triangulation, &links, &halves, mesh.mean_edge_length());

@@ -5,8 +5,8 @@ use std::f64::consts::PI;
 
 use rayon::prelude::*;
 use surface::{
-    CornerId, CornerTable, FanCorner, Link, OneRing, Rows, Triangulation, VertexKind, Winding, double_area,
-    scalar_product, total_angle,
+    CornerId, CornerTable, FanCorner, Link, OneRing, Rows, Triangulation, VertexCorners, VertexKind, Winding,
+    double_area, scalar_product, total_angle,
 };
 
 use super::update::Stencil;
@@ -153,37 +153,23 @@ impl OneRings {
         mean_edge_length: f64,
     ) -> Self {
         let n = order.len();
-        let corners = (0..3 * triangulation.triangles().len()).map(CornerId::from);
-        let corners = Rows::collect(n, corners.map(|c| (triangulation.corner_vertex(c).index(), c)));
         let mut rank = vec![0; n];
         for (internal, v) in order.iter().enumerate() {
             rank[*v as usize] = internal as u32;
         }
-        let links = Link::by_vertex(n, links.iter().copied());
         let halves = Rows::collect(n, halves.iter().map(|(v, half)| (*v as usize, *half)));
-        let blocks: Vec<(Rows<Neighbour>, Vec<bool>)> = order
-            .par_chunks(BLOCK)
-            .map(|vertices| {
-                let (mut ring, mut neighbours) = (OneRing::default(), Vec::new());
-                let (mut rows, mut may_bend) = (Rows::default(), Vec::with_capacity(vertices.len()));
-                for v in vertices.iter().map(|v| *v as usize) {
-                    ring.collect(triangulation, corners.row(v));
-                    may_bend.push(lay_out(
-                        triangulation,
-                        &ring,
-                        links.row(v),
-                        halves.row(v),
-                        &mut neighbours,
-                    ));
-                    let renamed = |n: Neighbour| Neighbour { vertex: rank[n.vertex as usize], ..n };
-                    rows.push_row(neighbours.drain(..).map(renamed));
-                }
-                (rows, may_bend)
-            })
-            .collect();
-        let neighbours = Rows::concat(blocks.iter().map(|(rows, _)| rows));
-        let may_bend = blocks.iter().flat_map(|(_, may_bend)| may_bend).copied().collect();
-        let longest = neighbours.items().iter().map(|n: &Neighbour| n.length).fold(0.0, f64::max);
+        let mut layout = Layout {
+            triangulation,
+            around: triangulation.vertex_corners(n),
+            links: Link::by_vertex(n, links.iter().copied()),
+            halves,
+            has_fans: Vec::new(),
+            corners: Rows::default(),
+            order,
+            rank,
+        };
+        let Filled { neighbours, may_bend, longest } = layout.fill();
+        let Layout { order, rank, .. } = layout;
         Self { neighbours, may_bend, order, rank, longest, bucket_width: BUCKET_WIDTH * mean_edge_length }
     }
 
@@ -213,6 +199,150 @@ impl OneRings {
     #[inline]
     pub(super) fn may_bend(&self, vertex: u32) -> bool {
         self.may_bend[vertex as usize]
+    }
+}
+
+/// What the one-rings are made of.
+struct Layout<'a> {
+    triangulation: &'a Triangulation,
+    around: Vec<VertexCorners>,
+    links: Rows<(u32, f64)>,
+    halves: Rows<HalfCorner>,
+    /// Whether all corners of a vertex are listed, because its faces may not form a closed fan.
+    has_fans: Vec<bool>,
+    /// The corners of such vertices.
+    corners: Rows<CornerId>,
+    order: Vec<u32>,
+    rank: Vec<u32>,
+}
+
+/// The one-rings laid out.
+struct Filled {
+    neighbours: Rows<Neighbour>,
+    may_bend: Vec<bool>,
+    longest: f64,
+}
+
+/// Memory for laying out one vertex after the other.
+#[derive(Default)]
+struct Scratch {
+    ring: OneRing,
+    neighbours: Vec<Neighbour>,
+}
+
+impl Layout<'_> {
+    /// Lays out all one-rings in place, in parallel. Their sizes are computed before. Where that is wrong, in rare
+    /// cases, they are corrected and all is laid out again.
+    fn fill(&mut self) -> Filled {
+        self.has_fans = self.around.iter().map(|at| at.n_free > 0).collect();
+        self.list_corners();
+        let mut sizes: Vec<u32> = self.order.par_iter().map(|v| self.likely_size(*v)).collect();
+        loop {
+            match self.try_fill(&sizes) {
+                Ok(filled) => return filled,
+                Err(wrong) => {
+                    wrong.iter().for_each(|i| self.has_fans[self.order[*i] as usize] = true);
+                    self.list_corners();
+                    let mut scratch = Scratch::default();
+                    for i in wrong {
+                        self.lay_out(self.order[i], &mut scratch);
+                        sizes[i] = scratch.neighbours.len() as u32;
+                    }
+                }
+            }
+        }
+    }
+
+    /// Lists the corners of the vertices that may have several fans.
+    fn list_corners(&mut self) {
+        if self.has_fans.iter().any(|has_fans| *has_fans) {
+            let corners = (0..3 * self.triangulation.triangles().len()).map(CornerId::from);
+            let corners = corners.map(|c| (self.triangulation.corner_vertex(c).index(), c));
+            self.corners = Rows::collect(self.order.len(), corners.filter(|(v, _)| self.has_fans[*v]));
+        }
+    }
+
+    /// The number of neighbours of a vertex whose faces form open fans or a single closed one, if every link leads
+    /// elsewhere than the edges.
+    fn likely_size(&self, v: u32) -> u32 {
+        let (at, links, halves) =
+            (self.around[v as usize], self.links.row(v as usize), self.halves.row(v as usize));
+        let n_open = at.n_free / 2;
+        let closes = at.n_corners > 0 && n_open == 0 && !(links.is_empty() && halves.is_empty());
+        at.n_corners + n_open + u32::from(closes) + (links.len() + 2 * halves.len()) as u32
+    }
+
+    /// Lays out one-rings of the given sizes, or returns the vertices that have others.
+    fn try_fill(&self, sizes: &[u32]) -> Result<Filled, Vec<usize>> {
+        let mut offsets = Vec::with_capacity(sizes.len() + 1);
+        let mut total = 0u64;
+        offsets.push(0);
+        offsets.extend(sizes.iter().map(|size| {
+            total += u64::from(*size);
+            total as u32
+        }));
+        assert!(u32::try_from(total).is_ok(), "more neighbours than fit into 32 bits");
+        let mut neighbours = vec![Neighbour::without_triangle(0, Allowed::NONE, 0.0); total as usize];
+        let mut may_bend = vec![false; sizes.len()];
+        let mut rest = &mut neighbours[..];
+        let blocks: Vec<_> = may_bend
+            .chunks_mut(BLOCK)
+            .zip(sizes.chunks(BLOCK))
+            .map(|(may_bend, sizes)| {
+                let n: usize = sizes.iter().map(|size| *size as usize).sum();
+                let (block, after) = std::mem::take(&mut rest).split_at_mut(n);
+                rest = after;
+                (may_bend, sizes, block)
+            })
+            .collect();
+        let blocks: Vec<(f64, Vec<usize>)> = blocks
+            .into_par_iter()
+            .enumerate()
+            .map_init(Scratch::default, |scratch, (block, (may_bend, sizes, mut rest))| {
+                let (mut longest, mut wrong) = (0.0, Vec::new());
+                for (i, (may_bend, size)) in (block * BLOCK..).zip(may_bend.iter_mut().zip(sizes)) {
+                    *may_bend = self.lay_out(self.order[i], scratch);
+                    let (place, after) = rest.split_at_mut(*size as usize);
+                    rest = after;
+                    if place.len() == scratch.neighbours.len() {
+                        place.copy_from_slice(&scratch.neighbours);
+                        longest = place.iter().map(|n| n.length).fold(longest, f64::max);
+                    } else {
+                        wrong.push(i);
+                    }
+                }
+                (longest, wrong)
+            })
+            .collect();
+        let longest = blocks.iter().map(|(longest, _)| *longest).fold(0.0, f64::max);
+        let wrong: Vec<usize> = blocks.into_iter().flat_map(|(_, wrong)| wrong).collect();
+        match wrong.is_empty() {
+            true => Ok(Filled { neighbours: Rows::from_offsets(offsets, neighbours), may_bend, longest }),
+            false => Err(wrong),
+        }
+    }
+
+    /// Lays out the neighbours of a mesh vertex in `scratch`; returns whether shortest paths may bend there.
+    fn lay_out(&self, v: u32, scratch: &mut Scratch) -> bool {
+        let Scratch { ring, neighbours } = scratch;
+        let v = v as usize;
+        if self.has_fans[v] {
+            ring.collect(self.triangulation, self.corners.row(v));
+        } else if self.around[v].n_corners == 0 {
+            ring.collect(self.triangulation, &[]);
+        } else if ring.collect_closed(self.triangulation, self.around[v].first)
+            != self.around[v].n_corners as usize
+        {
+            // Several fans: with no neighbours, the size is wrong.
+            neighbours.clear();
+            return false;
+        }
+        neighbours.clear();
+        let may_bend = lay_out(self.triangulation, ring, self.links.row(v), self.halves.row(v), neighbours);
+        for neighbour in neighbours {
+            neighbour.vertex = self.rank[neighbour.vertex as usize];
+        }
+        may_bend
     }
 }
 
