@@ -49,7 +49,8 @@ pub use noise::{is_noisy, without_noise};
 pub use orientation::orient_consistently;
 pub use refine::{Refined, refine};
 pub use repair::{
-    ComponentPolicy, Orient, RepairOptions, RepairReport, Repaired, Weld, repair, repair_within,
+    ComponentPolicy, Orient, RepairOptions, RepairReport, Repaired, Weld, repair, repair_and_measure,
+    repair_within,
 };
 pub use tri_mesh::TriMesh;
 pub use validate::{MeshReport, validate};

@@ -97,13 +97,15 @@ impl TriMesh {
     /// [`repair`](crate::repair()) removes such faces.
     #[must_use]
     pub fn intrinsic(&self) -> IntrinsicMesh {
-        let topology = Topology::new(self.n_vertices(), self.faces.clone());
+        self.measured(Topology::new(self.n_vertices(), self.faces.clone()))
+    }
+
+    /// The intrinsic geometry, given the connectivity of the mesh.
+    pub(crate) fn measured(&self, topology: Topology) -> IntrinsicMesh {
         let unit = self.unit();
-        let length = |[a, b]: &[VertexId; 2]| {
+        IntrinsicMesh::with_lengths(topology, |[a, b]| {
             ((self.positions[a.index()] - self.positions[b.index()]) / unit).norm() * unit
-        };
-        let lengths = topology.edges().iter().map(length).collect();
-        IntrinsicMesh::new(topology, lengths)
+        })
     }
 
     /// The largest extent along an axis, in mesh units; zero without vertices, infinite if it cannot be represented.

@@ -1,5 +1,6 @@
 //! Intrinsic geometry: connectivity and edge lengths, no coordinates.
 
+use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::ids::{CornerId, EdgeId, VertexId};
@@ -27,6 +28,9 @@ pub struct IntrinsicMesh {
     edge_lengths: Vec<f64>,
     links: Vec<Link>,
 }
+
+/// Number of edges that one thread measures at a time.
+const BLOCK: usize = 4096;
 
 /// A straight connection of two vertices outside all faces, such as a bridge between two components.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -94,6 +98,23 @@ impl IntrinsicMesh {
             "edge lengths are finite and not negative"
         );
         Self { topology, edge_lengths, links: Vec::new() }
+    }
+
+    /// A surface given by its connectivity and the length of an edge between two vertices, computed in parallel.
+    ///
+    /// # Panics
+    /// If a length is negative or not finite.
+    #[must_use]
+    pub fn with_lengths(topology: Topology, length: impl Fn([VertexId; 2]) -> f64 + Sync) -> Self {
+        let edges = topology.edges().par_iter().with_min_len(BLOCK);
+        let edge_lengths = edges.map(|ends| length(*ends)).collect();
+        Self::new(topology, edge_lengths)
+    }
+
+    /// The connectivity, without the lengths.
+    #[must_use]
+    pub fn into_topology(self) -> Topology {
+        self.topology
     }
 
     /// The same surface with the given links instead of its own.

@@ -1,5 +1,10 @@
 //! Connectivity: edges, the faces on each edge, the corners at each vertex.
 
+use std::ops::Range;
+use std::sync::atomic::{AtomicU32, Ordering};
+
+use rayon::prelude::*;
+
 use crate::ids::{CornerId, EdgeId, FaceId, VertexId};
 use crate::rows::Rows;
 
@@ -37,10 +42,115 @@ pub struct Topology {
     corner_edge: Vec<EdgeId>,
     vertex_corners: Rows<CornerId>,
     edge_corners: Rows<CornerId>,
+    has_duplicate_faces: bool,
+}
+
+/// Number of vertices whose edges one thread collects at a time.
+const BLOCK: usize = 1024;
+
+/// The edges from some successive vertices to higher ones.
+#[derive(Default)]
+struct EdgeBlock {
+    edges: Vec<[VertexId; 2]>,
+    /// Per vertex, the number of edges before its own, and at the end the number of all.
+    first_edge: Vec<u32>,
+    /// Per edge, the number of corners opposite the edges before it, and at the end that of all.
+    ends: Vec<u32>,
+    corners: Vec<CornerId>,
+    has_duplicate_faces: bool,
+}
+
+/// A side of a face at the lower of its ends.
+#[derive(Clone, Copy)]
+struct Side {
+    upper: VertexId,
+    /// The corner opposite.
+    corner: CornerId,
+    /// The vertex in it.
+    apex: VertexId,
+}
+
+impl EdgeBlock {
+    fn of(vertices: Range<usize>, faces: &[[VertexId; 3]], vertex_corners: &Rows<CornerId>) -> Self {
+        let n_corners =
+            vertex_corners.range(vertices.end - 1).end - vertex_corners.range(vertices.start).start;
+        let mut block = Self {
+            edges: Vec::with_capacity(n_corners / 2 + 1),
+            first_edge: Vec::with_capacity(vertices.len() + 1),
+            ends: Vec::with_capacity(n_corners / 2 + 2),
+            corners: Vec::with_capacity(n_corners),
+            has_duplicate_faces: false,
+        };
+        block.first_edge.push(0);
+        block.ends.push(0);
+        let mut sides: Vec<Side> = Vec::new();
+        for lower in vertices.map(|v| VertexId(v as u32)) {
+            sides.clear();
+            for corner in vertex_corners.row(lower.index()) {
+                let (next, prev, face) = (corner.next(), corner.prev(), faces[corner.face().index()]);
+                let ends = [face[next.slot()], face[prev.slot()]];
+                sides.extend((ends[0] > lower).then_some(Side {
+                    upper: ends[0],
+                    corner: prev,
+                    apex: ends[1],
+                }));
+                sides.extend((ends[1] > lower).then_some(Side {
+                    upper: ends[1],
+                    corner: next,
+                    apex: ends[0],
+                }));
+            }
+            sides.sort_unstable_by_key(|side| (side.upper, side.corner));
+            for around in sides.chunk_by(|a, b| a.upper == b.upper) {
+                block.edges.push([lower, around[0].upper]);
+                block.corners.extend(around.iter().map(|side| side.corner));
+                block.ends.push(block.corners.len() as u32);
+                block.has_duplicate_faces |= has_repeated_apex(around);
+            }
+            block.first_edge.push(block.edges.len() as u32);
+        }
+        block
+    }
+
+    /// The edges of blocks of vertices that follow each other.
+    fn concat(blocks: Vec<Self>) -> Self {
+        let total = |count: fn(&Self) -> usize| blocks.iter().map(count).sum::<usize>();
+        let mut all = Self {
+            edges: Vec::with_capacity(total(|block| block.edges.len())),
+            first_edge: Vec::with_capacity(total(|block| block.first_edge.len()) + 1),
+            ends: Vec::with_capacity(total(|block| block.ends.len()) + 1),
+            corners: Vec::with_capacity(total(|block| block.corners.len())),
+            has_duplicate_faces: false,
+        };
+        all.first_edge.push(0);
+        all.ends.push(0);
+        for block in blocks {
+            let (n_edges, n_corners) = (all.edges.len() as u32, all.corners.len() as u32);
+            all.first_edge.extend(block.first_edge[1..].iter().map(|edge| n_edges + edge));
+            all.ends.extend(block.ends[1..].iter().map(|end| n_corners + end));
+            all.edges.extend(block.edges);
+            all.corners.extend(block.corners);
+            all.has_duplicate_faces |= block.has_duplicate_faces;
+        }
+        all
+    }
+}
+
+/// Whether two faces at one edge have the same third vertex.
+fn has_repeated_apex(around: &[Side]) -> bool {
+    match around {
+        [_] => false,
+        [a, b] => a.apex == b.apex,
+        _ => {
+            let mut apices: Vec<VertexId> = around.iter().map(|side| side.apex).collect();
+            apices.sort_unstable();
+            apices.windows(2).any(|pair| pair[0] == pair[1])
+        }
+    }
 }
 
 impl Topology {
-    /// Builds the connectivity of `faces` over `n_vertices` vertices, in linear time.
+    /// Builds the connectivity of `faces` over `n_vertices` vertices, in linear time and in parallel.
     ///
     /// # Panics
     /// If a face has a vertex twice (`mesh::repair` removes such faces) or out of range (readers reject such files).
@@ -50,37 +160,48 @@ impl Topology {
             assert!(a != b && b != c && c != a, "degenerate face {a} {b} {c}: repair the mesh first");
             assert!(a.max(b).max(c).index() < n_vertices, "face {a} {b} {c} is out of range");
         }
-        let corners = (0..3 * faces.len()).map(|c| CornerId(c as u32));
-        let vertex_corners = Rows::collect(
-            n_vertices,
-            corners.clone().map(|c| (faces[c.face().index()][c.slot()].index(), c)),
-        );
-        let ends = |c: CornerId| {
-            let face = faces[c.face().index()];
-            let [a, b] = [face[(c.slot() + 1) % 3], face[(c.slot() + 2) % 3]];
-            [a.min(b), a.max(b)]
-        };
-        // Bucket the corners by the lower end of their edge, then sort each small bucket by the upper.
-        let by_lower = Rows::collect(n_vertices, corners.clone().map(|c| (ends(c)[0].index(), c)));
-        let mut edges = Vec::with_capacity(faces.len() * 3 / 2 + 1);
-        let mut corner_edge = vec![EdgeId(0); 3 * faces.len()];
-        let mut first_edge = Vec::with_capacity(n_vertices + 1);
-        first_edge.push(0);
-        let mut bucket = Vec::new();
-        for lower in 0..n_vertices {
-            bucket.clear();
-            bucket.extend(by_lower.row(lower).iter().map(|&c| (ends(c)[1], c)));
-            bucket.sort_unstable();
-            for (i, &(upper, corner)) in bucket.iter().enumerate() {
-                if i == 0 || bucket[i - 1].0 != upper {
-                    edges.push([VertexId(lower as u32), upper]);
-                }
-                corner_edge[corner.index()] = EdgeId::from(edges.len() - 1);
+        let at_corner = faces.as_flattened().iter().enumerate();
+        let vertex_corners =
+            Rows::collect(n_vertices, at_corner.map(|(c, v)| (v.index(), CornerId(c as u32))));
+        let blocks: Vec<EdgeBlock> = (0..n_vertices.div_ceil(BLOCK))
+            .into_par_iter()
+            .map(|block| {
+                let vertices = block * BLOCK..n_vertices.min((block + 1) * BLOCK);
+                EdgeBlock::of(vertices, &faces, &vertex_corners)
+            })
+            .collect();
+        let EdgeBlock { edges, first_edge, ends, corners, has_duplicate_faces } = EdgeBlock::concat(blocks);
+        let edge_corners = Rows::from_offsets(ends, corners);
+        // Every corner is written once, so the order of the writes does not matter.
+        let corner_edge: Vec<AtomicU32> = faces.as_flattened().iter().map(|_| AtomicU32::new(0)).collect();
+        (0..edges.len()).into_par_iter().with_min_len(BLOCK).for_each(|edge| {
+            for corner in edge_corners.row(edge) {
+                corner_edge[corner.index()].store(edge as u32, Ordering::Relaxed);
             }
-            first_edge.push(edges.len() as u32);
+        });
+        let corner_edge = corner_edge.into_iter().map(|edge| EdgeId(edge.into_inner())).collect();
+        Self {
+            n_vertices,
+            faces,
+            edges,
+            first_edge,
+            corner_edge,
+            vertex_corners,
+            edge_corners,
+            has_duplicate_faces,
         }
-        let edge_corners = Rows::collect(edges.len(), corners.map(|c| (corner_edge[c.index()].index(), c)));
-        Self { n_vertices, faces, edges, first_edge, corner_edge, vertex_corners, edge_corners }
+    }
+
+    /// The vertices of every face, without the connectivity.
+    #[must_use]
+    pub fn into_faces(self) -> Vec<[VertexId; 3]> {
+        self.faces
+    }
+
+    /// Whether two faces have the same three vertices.
+    #[must_use]
+    pub fn has_duplicate_faces(&self) -> bool {
+        self.has_duplicate_faces
     }
 
     /// Number of vertices.
@@ -120,7 +241,7 @@ impl Topology {
         &self.edges[self.range_above(vertex)]
     }
 
-    fn range_above(&self, vertex: VertexId) -> std::ops::Range<usize> {
+    fn range_above(&self, vertex: VertexId) -> Range<usize> {
         let v = vertex.index();
         self.first_edge[v] as usize..self.first_edge[v + 1] as usize
     }

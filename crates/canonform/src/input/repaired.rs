@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use budget::Budget;
 use mesh::io::ReadLimits;
-use mesh::{MeshError, RepairOptions, Repaired, TriMesh, io, repair_within};
+use mesh::{MeshError, RepairOptions, Repaired, TriMesh, io, repair_and_measure};
 use nalgebra::Point3;
 use surface::{IntrinsicMesh, VertexId};
 
@@ -94,12 +94,12 @@ impl Surface {
     /// [`Error::Mesh`] and [`Error::Exceeded`].
     pub fn within(mesh: &TriMesh, options: &RepairOptions, budget: &Budget) -> Result<Self, Error> {
         let start = Instant::now();
-        let repaired = repair_within(mesh, options, budget).map_err(|fault| match fault {
-            MeshError::Exceeded(exceeded) => exceeded.into(),
-            fault => Error::Mesh(fault),
-        })?;
+        let (repaired, intrinsic) =
+            repair_and_measure(mesh, options, budget).map_err(|fault| match fault {
+                MeshError::Exceeded(exceeded) => exceeded.into(),
+                fault => Error::Mesh(fault),
+            })?;
         budget.check()?;
-        let intrinsic = repaired.intrinsic();
         let mut input_vertex = vec![VertexId(u32::MAX); repaired.mesh.n_vertices()];
         for (input, vertex) in repaired.input_to_repaired.iter().enumerate().rev() {
             if let Some(vertex) = vertex {

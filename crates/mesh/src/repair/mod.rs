@@ -11,7 +11,7 @@ pub use report::RepairReport;
 
 use budget::{Budget, Exceeded};
 use nalgebra::Point3;
-use surface::{Components, DisjointSets, IntrinsicMesh, Link, Topology, VertexId, components_of_faces};
+use surface::{Components, DisjointSets, FaceId, IntrinsicMesh, Link, Topology, VertexId, components_of};
 
 use crate::error::MeshError;
 use crate::face_set::{check_input, remove_degenerate, remove_duplicates};
@@ -86,6 +86,19 @@ pub fn repair_within(
     options: &RepairOptions,
     budget: &Budget,
 ) -> Result<Repaired, MeshError> {
+    Ok(repair_and_measure(mesh, options, budget)?.0)
+}
+
+/// Repairs as [`repair_within()`] does, and returns the [intrinsic geometry](Repaired::intrinsic) as well, whose
+/// connectivity is built once for both where nothing has to be repaired.
+///
+/// # Errors
+/// Those of [`repair_within()`].
+pub fn repair_and_measure(
+    mesh: &TriMesh,
+    options: &RepairOptions,
+    budget: &Budget,
+) -> Result<(Repaired, IntrinsicMesh), MeshError> {
     check_input(mesh)?;
     let unit = checked_unit(mesh)?;
     let scaled: Vec<Point3<f64>> = mesh.positions.iter().map(|p| p / unit).collect();
@@ -95,7 +108,7 @@ pub fn repair_within(
 
     let mut faces = mesh.faces.clone();
     report.degenerate_faces = remove_degenerate(&mut faces);
-    report.duplicate_faces = remove_duplicates(n_input, &mut faces);
+    let mut surface = without_duplicates(mesh, faces, &mut report);
     let mut merged = DisjointSets::new(n_input);
     let policy = match options.weld {
         Weld::Within(tolerance) => Weld::Within(tolerance / unit),
@@ -103,11 +116,12 @@ pub fn repair_within(
     };
     for _ in 0..MAX_PASSES {
         budget.check()?;
-        let welded = weld::weld(&mesh.positions, &scaled, &faces, policy, &mut merged);
-        let collapsed = weld::collapse_zero_edges(&scaled, &faces, &mut merged);
+        let welded = weld::weld(&mesh.positions, &scaled, surface.topology(), policy, &mut merged);
+        let collapsed = weld::collapse_zero_edges(&surface, unit, &mut merged);
         if welded.coincident + welded.near + collapsed == 0 {
             break;
         }
+        let mut faces = surface.into_topology().into_faces();
         faces.iter_mut().flatten().for_each(|v| *v = VertexId(merged.find(v.0)));
         report.welded_vertices += welded.coincident;
         report.near_welded_vertices += welded.near;
@@ -116,30 +130,39 @@ pub fn repair_within(
         }
         report.collapsed_vertices += collapsed;
         report.zero_length_faces += remove_degenerate(&mut faces);
-        report.duplicate_faces += remove_duplicates(n_input, &mut faces);
+        surface = without_duplicates(mesh, faces, &mut report);
     }
-    if faces.is_empty() {
+    if surface.topology().n_faces() == 0 {
         let degenerate = report.degenerate_faces + report.zero_length_faces;
         return Err(MeshError::NoUsableFace { n_faces: mesh.n_faces(), degenerate });
     }
 
     budget.check()?;
-    report.coordinate_rounding = coordinate_rounding(&scaled, &faces);
-    let components = components_of_faces(n_input, &faces);
+    report.coordinate_rounding = coordinate_rounding(&scaled, &surface, unit);
+    let components = components_of(surface.topology());
     report.components = components.count;
-    let kept = match options.components {
-        ComponentPolicy::Error if components.count > 1 => return Err(disconnected(&components)),
-        ComponentPolicy::Largest if components.count > 1 => {
-            Some(keep_largest(&scaled, &mut faces, &components, &mut report))
-        }
-        _ => None,
-    };
+    // The faces, if some of their vertices have to be dropped or renumbered.
+    let (mut changed, mut kept) = (None, None);
+    if components.count > 1 && options.components == ComponentPolicy::Error {
+        return Err(disconnected(&components));
+    }
+    if components.count > 1 && options.components == ComponentPolicy::Largest {
+        let mut faces = surface.topology().faces().to_vec();
+        kept = Some(keep_largest(&scaled, &mut faces, &components, &mut report));
+        changed = Some(faces);
+    } else if components.labels.iter().any(Option::is_none) {
+        changed = Some(surface.topology().faces().to_vec());
+    }
 
     let compact = Compact::of(mesh, &mut merged, &components, kept);
-    for v in faces.iter_mut().flatten() {
-        *v = compact.input_to_repaired[v.index()].unwrap_or(*v);
-    }
     compact.report_dropped(&mut merged, &components, &mut report);
+    let is_changed = changed.is_some();
+    let mut faces = changed.unwrap_or_else(|| surface.topology().faces().to_vec());
+    if is_changed {
+        for v in faces.iter_mut().flatten() {
+            *v = compact.input_to_repaired[v.index()].unwrap_or(*v);
+        }
+    }
     let mut links = Vec::new();
     if options.components == ComponentPolicy::Bridge && components.count > 1 {
         links = links_between(&scaled, &compact, &faces, budget)?;
@@ -154,7 +177,23 @@ pub fn repair_within(
     }
     report.output_vertices = repaired.n_vertices();
     report.output_faces = repaired.n_faces();
-    Ok(Repaired { mesh: repaired, links, input_to_repaired: compact.input_to_repaired, report })
+    let surface = match is_changed || report.flipped_faces > 0 {
+        true => repaired.intrinsic(),
+        false => surface,
+    };
+    let surface = surface.with_links(links.clone());
+    Ok((Repaired { mesh: repaired, links, input_to_repaired: compact.input_to_repaired, report }, surface))
+}
+
+/// The surface of faces that are not degenerate, over the vertices of a mesh, without duplicate faces.
+fn without_duplicates(mesh: &TriMesh, faces: Vec<[VertexId; 3]>, report: &mut RepairReport) -> IntrinsicMesh {
+    let mut topology = Topology::new(mesh.n_vertices(), faces);
+    if topology.has_duplicate_faces() {
+        let mut faces = topology.into_faces();
+        report.duplicate_faces += remove_duplicates(mesh.n_vertices(), &mut faces);
+        topology = Topology::new(mesh.n_vertices(), faces);
+    }
+    mesh.measured(topology)
 }
 
 /// The unit of length of a mesh whose size is in the supported range.
@@ -168,13 +207,15 @@ fn checked_unit(mesh: &TriMesh) -> Result<f64, MeshError> {
     }
 }
 
-/// The spacing of numbers at the farthest coordinate of any face, relative to the mean side of the faces.
-fn coordinate_rounding(positions: &[Point3<f64>], faces: &[[VertexId; 3]]) -> f64 {
+/// The spacing of numbers at the farthest coordinate of any face, relative to the mean side of the faces. Positions are
+/// in units of length.
+fn coordinate_rounding(positions: &[Point3<f64>], surface: &IntrinsicMesh, unit: f64) -> f64 {
     let (mut farthest, mut sides) = (0.0, 0.0);
-    for face in faces {
-        let [a, b, c] = face.map(|v| positions[v.index()]);
-        farthest = f64::max(farthest, a.coords.amax());
-        sides += (b - a).norm() + (c - b).norm() + (a - c).norm();
+    let faces = surface.topology().faces();
+    for (f, [first, ..]) in faces.iter().enumerate() {
+        farthest = f64::max(farthest, positions[first.index()].coords.amax());
+        let [bc, ca, ab] = FaceId(f as u32).corners().map(|corner| surface.opposite_length(corner) / unit);
+        sides += ab + bc + ca;
     }
     f64::EPSILON * farthest * 3.0 * faces.len() as f64 / sides
 }

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use nalgebra::{Point3, center};
-use surface::{DisjointSets, EdgeId, Topology, VertexId};
+use surface::{DisjointSets, EdgeId, IntrinsicMesh, Topology, VertexId};
 
 use super::box_tree::BoxTree;
 use super::options::Weld;
@@ -35,7 +35,7 @@ pub(super) struct Welded {
 pub(super) fn weld(
     positions: &[Point3<f64>],
     scaled: &[Point3<f64>],
-    faces: &[[VertexId; 3]],
+    topology: &Topology,
     policy: Weld,
     merged: &mut DisjointSets,
 ) -> Welded {
@@ -48,7 +48,6 @@ pub(super) fn weld(
     if policy == Weld::All {
         return coincident(unite(coincident_pairs(positions, 0..n_vertices as u32)));
     }
-    let topology = Topology::new(n_vertices, faces.to_vec());
     let edges: Vec<EdgeId> = (0..topology.n_edges())
         .map(EdgeId::from)
         .filter(|edge| topology.edge_corners(*edge).len() == 1)
@@ -63,9 +62,9 @@ pub(super) fn weld(
     }
     let pairs = match policy {
         Weld::Within(tolerance) => vertex_pairs(scaled, &boundary, tolerance),
-        _ => seam_pairs(scaled, &topology, &edges),
+        _ => seam_pairs(scaled, topology, &edges),
     };
-    merge_near(scaled, &topology, pairs, merged)
+    merge_near(scaled, topology, pairs, merged)
 }
 
 /// Two vertices that may be merged, the lower one first.
@@ -191,22 +190,12 @@ fn merge_near(
     welded
 }
 
-/// Merges the ends of every edge whose squared length, in units of the mesh, vanishes; returns how many vertices were
-/// merged into another.
+/// Merges the ends of every edge whose squared length, in a `unit` near the size of the mesh, vanishes; returns how many
+/// vertices were merged into another.
 ///
 /// The faces at such an edge become degenerate and are removed. If its ends stayed apart, that would leave a slit.
-pub(super) fn collapse_zero_edges(
-    scaled: &[Point3<f64>],
-    faces: &[[VertexId; 3]],
-    merged: &mut DisjointSets,
-) -> usize {
-    let mut count = 0;
-    for &[a, b, c] in faces {
-        for [u, v] in [[a, b], [b, c], [c, a]] {
-            if (scaled[u.index()] - scaled[v.index()]).norm_squared() < f64::MIN_POSITIVE {
-                count += usize::from(merged.union(u.0, v.0));
-            }
-        }
-    }
-    count
+pub(super) fn collapse_zero_edges(surface: &IntrinsicMesh, unit: f64, merged: &mut DisjointSets) -> usize {
+    let edges = surface.topology().edges().iter().zip(surface.edge_lengths());
+    let vanishing = edges.filter(|(_, length)| (*length / unit).powi(2) < f64::MIN_POSITIVE);
+    vanishing.filter(|([a, b], _)| merged.union(a.0, b.0)).count()
 }

@@ -4,7 +4,7 @@ mod fans;
 
 use nalgebra::Point3;
 use serde::Serialize;
-use surface::{EdgeId, Topology, VertexId, components_of_faces};
+use surface::{EdgeId, Topology, VertexId, components_of};
 
 use crate::coincidence::coincident_pairs;
 use crate::face_set::{remove_degenerate, remove_duplicates};
@@ -115,12 +115,11 @@ pub fn validate(mesh: &TriMesh) -> MeshReport {
     let duplicate_faces = remove_duplicates(n_vertices, &mut faces);
     let mut referenced = vec![false; n_vertices];
     mesh.faces.iter().flatten().for_each(|v| referenced[v.index()] = true);
-    let components = components_of_faces(n_vertices, &faces);
-    let mut component_faces = vec![0; components.count];
-    faces.iter().for_each(|f| component_faces[components.of(f[0])] += 1);
-
     let n_faces = faces.len();
     let topology = Topology::new(n_vertices, faces);
+    let components = components_of(&topology);
+    let mut component_faces = vec![0; components.count];
+    topology.faces().iter().for_each(|f| component_faces[components.of(f[0])] += 1);
     let orientation = Orientation::of(&topology);
     let n_used = components.labels.iter().flatten().count();
     let mut report = MeshReport {
