@@ -5,10 +5,10 @@ OUT ?= out
 # For `make reproduce`: a folder of meshes with the classes of the paper. Default: the built-in dataset.
 DATASET ?=
 
-.PHONY: help setup build run test kills lint bench bench-peers bench-nmds bench-search bench-eigsh fmt doc reproduce report paper plotly deny sbom fuzz fuzz-seeds package ci clean
+.PHONY: help setup build run test kills lint bench bench-peers bench-nmds bench-preparation bench-search bench-eigsh fmt doc reproduce report paper plotly deny sbom fuzz fuzz-seeds package ci clean
 
 help: ## List these commands
-	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "  make %-12s %s\n", $$1, $$2}'
+	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "  make %-17s %s\n", $$1, $$2}'
 
 setup: ## Download the dependencies
 	$(CARGO) fetch --locked
@@ -44,6 +44,12 @@ bench-nmds: build ## Compare canonical forms with potpourri3d and NumPy and writ
 	test -x target/peers/bin/python || python3 -m venv target/peers
 	target/peers/bin/pip install --quiet numpy potpourri3d
 	target/peers/bin/python bench/nmds.py
+
+bench-preparation: ## Time the preparation of meshes and write docs/preparation.md (needs Python and test meshes)
+	$(CARGO) build --release --locked -p canonform --example preparation
+	test -x target/peers/bin/python || python3 -m venv target/peers
+	target/peers/bin/pip install --quiet numpy
+	target/peers/bin/python bench/preparation.py
 
 bench-eigsh: ## Compare eigenpairs with SciPy and write docs/eigenpairs.md (needs Python and test meshes)
 	$(CARGO) build --release --locked -p canonform-descriptors --example eigenpairs

@@ -27,8 +27,8 @@ pub use components::{Components, components_of, components_of_faces, components_
 pub use disjoint_sets::DisjointSets;
 pub use ids::{CornerId, EdgeId, FaceId, VertexId};
 pub use intrinsic::{IntrinsicMesh, Link, power_of_two_below, unit_for};
-pub use one_ring::{CornerTable, Fan, FanCorner, OneRing, VertexKind, Winding, total_angle};
+pub use one_ring::{AngleSum, CornerTable, Fan, FanCorner, OneRing, VertexKind, Winding};
 pub use rows::Rows;
 pub use topology::Topology;
 pub use triangle::{Triangle, double_area, scalar_product};
-pub use triangulation::{GluedTriangle, Loops, Triangulation, VertexCorners};
+pub use triangulation::{GluedTriangle, Loops, Sector, Triangulation, VertexCorners};

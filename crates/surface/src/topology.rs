@@ -100,7 +100,7 @@ impl EdgeBlock {
                     apex: ends[0],
                 }));
             }
-            sides.sort_unstable_by_key(|side| (side.upper, side.corner));
+            sides.sort_unstable_by_key(|side| u64::from(side.upper.0) << 32 | u64::from(side.corner.0));
             for around in sides.chunk_by(|a, b| a.upper == b.upper) {
                 block.edges.push([lower, around[0].upper]);
                 block.corners.extend(around.iter().map(|side| side.corner));

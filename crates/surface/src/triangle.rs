@@ -25,9 +25,12 @@ pub struct Triangle {
 #[inline]
 #[must_use]
 pub fn double_area([p, q, r]: [f64; 3]) -> f64 {
-    let (low, high) = if p < q { (p, q) } else { (q, p) };
-    let (a, low) = if high < r { (r, (low, high)) } else { (high, (low, r)) };
-    let (b, c) = if low.0 < low.1 { (low.1, low.0) } else { low };
+    // Not `min` and `max`, which check for NaN as well.
+    let least = |p: f64, q: f64| if p < q { p } else { q };
+    let greatest = |p: f64, q: f64| if p < q { q } else { p };
+    let (low, high) = (least(p, q), greatest(p, q));
+    let (a, middle) = (greatest(high, r), least(high, r));
+    let (b, c) = (greatest(low, middle), least(low, middle));
     // a >= b >= c
     let (sum, excess, p, q) = (a + (b + c), c - (a - b), c + (a - b), a + (b - c));
     let product = sum * excess * p * q;

@@ -301,7 +301,47 @@ pub struct VertexCorners {
     pub n_free: u32,
 }
 
+/// A triangle at a vertex, as a walk around the vertex passes it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sector {
+    /// The vertex at the far end of the last side.
+    pub end: VertexId,
+    /// The length of the first side at the vertex.
+    pub first: f64,
+    /// The length of the last.
+    pub last: f64,
+    /// The length of the side opposite the vertex.
+    pub third: f64,
+}
+
 impl Triangulation {
+    /// Visits the triangles around the vertex in a corner, from that corner on, in the order of a
+    /// [fan](crate::OneRing) that begins with its forward side. Returns their number if they are back at the corner, and
+    /// zero if they end at a free side.
+    #[inline]
+    pub fn walk_around(&self, start: CornerId, mut visit: impl FnMut(Sector)) -> usize {
+        let (mut corner, mut is_forward, mut n) = (start, true, 0);
+        let vertex = self.corner_vertex(start);
+        loop {
+            let triangle = &self.triangles[corner.face().index()];
+            let [next, prev] = [corner.next().slot(), corner.prev().slot()];
+            let [from, to] = if is_forward { [next, prev] } else { [prev, next] };
+            let GluedTriangle { vertices, lengths, opposite } = triangle;
+            let third = lengths[corner.slot()];
+            visit(Sector { end: vertices[to], first: lengths[to], last: lengths[from], third });
+            n += 1;
+            if opposite[from] == NONE {
+                return 0;
+            }
+            let far = CornerId(opposite[from]);
+            is_forward = self.corner_vertex(far.next()) == vertex;
+            corner = if is_forward { far.next() } else { far.prev() };
+            if corner == start {
+                return n;
+            }
+        }
+    }
+
     /// The corners around each of `n_vertices` vertices, in linear time.
     ///
     /// # Panics

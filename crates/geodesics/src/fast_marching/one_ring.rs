@@ -1,12 +1,11 @@
 //! The one-rings of all vertices, laid out in the order in which relaxations read them.
 
 use std::collections::HashMap;
-use std::f64::consts::PI;
 
 use rayon::prelude::*;
 use surface::{
-    CornerId, CornerTable, FanCorner, Link, OneRing, Rows, Triangulation, VertexCorners, VertexKind, Winding,
-    double_area, scalar_product, total_angle,
+    AngleSum, CornerId, CornerTable, Link, OneRing, Rows, Sector, Triangulation, VertexCorners, VertexId,
+    VertexKind, Winding, double_area, scalar_product,
 };
 
 use super::update::Stencil;
@@ -34,19 +33,20 @@ impl Neighbour {
         Self { vertex, allowed, length, dot: 0.0, cross: 0.0 }
     }
 
-    /// Sets the flags of the updates through the triangle that may be late.
-    fn set_late_updates(&mut self, before: &Self) {
-        let Self { length, dot, cross, .. } = *self;
-        let backward = Stencil { base: length, side: before.length, dot, cross };
-        let forward = Stencil { base: before.length, side: length, dot, cross };
-        for (stencil, shift) in [(backward, 0), (forward, 1)] {
-            if stencil.may_complete_late() {
-                self.allowed.0 |= Allowed::LATE_NEARBY.0 << shift;
-            }
-            if stencil.may_complete_late_from_afar() {
-                self.allowed.0 |= Allowed::LATE.0 << shift;
-            }
-        }
+    /// A neighbour with the triangle between it and one before.
+    #[inline]
+    fn through(sector: Sector, allowed: Allowed) -> Self {
+        let Sector { end, first, last, third } = sector;
+        let (dot, cross) = (scalar_product(third, first, last), double_area([third, first, last]));
+        let backward = Stencil { base: last, side: first, dot, cross };
+        let forward = Stencil { base: first, side: last, dot, cross };
+        // Without branches, which could not be predicted.
+        let flags = |stencil: Stencil| {
+            u32::from(stencil.may_complete_late()) * Allowed::LATE_NEARBY.0
+                | u32::from(stencil.may_complete_late_from_afar()) * Allowed::LATE.0
+        };
+        let late = Allowed(flags(backward) | flags(forward) << 1);
+        Self { vertex: end.0, allowed: allowed.and(late), length: last, dot, cross }
     }
 }
 
@@ -68,6 +68,8 @@ impl Allowed {
     const LATE_NEARBY: Self = Self(16);
     /// Relax the edge.
     pub(super) const EDGE: Self = Self(64);
+    /// All that a triangle of the surface allows at a neighbour.
+    const TRIANGLE: Self = Self(Self::BACKWARD.0 | Self::FORWARD.0 | Self::EDGE.0);
 
     /// What a front may do, depending on whether it corrects finalized vertices and is close to its source.
     pub(super) fn by_front(corrects: bool, is_nearby: bool) -> Self {
@@ -326,19 +328,48 @@ impl Layout<'_> {
     fn lay_out(&self, v: u32, scratch: &mut Scratch) -> bool {
         let Scratch { ring, neighbours } = scratch;
         let v = v as usize;
-        if self.has_fans[v] {
-            ring.collect(self.triangulation, self.corners.row(v));
-        } else if self.around[v].n_corners == 0 {
-            ring.collect(self.triangulation, &[]);
-        } else if ring.collect_closed(self.triangulation, self.around[v].first)
-            != self.around[v].n_corners as usize
-        {
-            // Several fans: with no neighbours, the size is wrong.
-            neighbours.clear();
-            return false;
-        }
+        let (around, links, halves) = (&self.around[v], self.links.row(v), self.halves.row(v));
         neighbours.clear();
-        let may_bend = lay_out(self.triangulation, ring, self.links.row(v), self.halves.row(v), neighbours);
+        let (mut angle, mut is_closed) = (AngleSum::default(), false);
+        let may_bend = if self.has_fans[v] {
+            ring.collect(self.triangulation, self.corners.row(v));
+            is_closed = ring.is_closed();
+            add_fans(self.triangulation, ring, neighbours, &mut angle);
+            match ring.kind(angle.radians(), EXCESS) {
+                VertexKind::Ordinary => false,
+                VertexKind::Saddle | VertexKind::Boundary => true,
+                VertexKind::Irregular => angle.exceeds(1, EXCESS),
+            }
+        } else if around.n_corners > 0 {
+            is_closed = true;
+            neighbours.push(Neighbour::without_triangle(0, Allowed::NONE, 0.0));
+            let n_corners = self.triangulation.walk_around(around.first, |sector| {
+                let neighbour = Neighbour::through(sector, Allowed::TRIANGLE);
+                angle.add([neighbour.cross, neighbour.dot]);
+                neighbours.push(neighbour);
+            });
+            if n_corners != around.n_corners as usize {
+                // Several fans: without neighbours, the size is wrong.
+                neighbours.clear();
+                return false;
+            }
+            let Neighbour { vertex, length, .. } = neighbours[n_corners];
+            neighbours[0] = Neighbour::without_triangle(vertex, Allowed::EDGE, length);
+            angle.exceeds(2, EXCESS)
+        } else {
+            false
+        };
+        let n_fans = neighbours.len();
+        for HalfCorner { base, apex, third } in halves {
+            let sector = Sector { end: VertexId(apex.0), first: base.1, last: apex.1, third: *third };
+            neighbours.push(Neighbour::without_triangle(base.0, Allowed::NONE, base.1));
+            neighbours.push(Neighbour::through(sector, Allowed::FORWARD));
+        }
+        add_links(links, neighbours);
+        if is_closed && neighbours.len() == n_fans {
+            // The neighbour that closes the fan takes the place of its copy at the beginning.
+            neighbours.swap_remove(0);
+        }
         for neighbour in neighbours {
             neighbour.vertex = self.rank[neighbour.vertex as usize];
         }
@@ -346,50 +377,30 @@ impl Layout<'_> {
     }
 }
 
-/// Appends the neighbours of the vertex of a one-ring; returns whether shortest paths may bend there.
-fn lay_out(
+/// Appends the neighbours in the fans of a vertex, and adds up the angles.
+fn add_fans(
     triangulation: &Triangulation,
     ring: &OneRing,
-    links: &[(u32, f64)],
-    halves: &[HalfCorner],
     neighbours: &mut Vec<Neighbour>,
-) -> bool {
+    angle: &mut AngleSum,
+) {
+    let vertex = |corner| triangulation.corner_vertex(corner);
     for fan in ring.fans() {
         for (i, corner) in fan.corners.iter().enumerate() {
-            let [first, last] = neighbours_at(triangulation, *corner);
+            let [third, to_next, to_prev] = triangulation.sides(corner.corner);
+            let [first, last] = match corner.winding {
+                Winding::Forward => [to_next, to_prev],
+                Winding::Backward => [to_prev, to_next],
+            };
             if i == 0 {
-                neighbours.push(first);
+                let start = vertex(corner.opposite_last());
+                neighbours.push(Neighbour::without_triangle(start.0, Allowed::EDGE, first));
             }
-            neighbours.push(last);
+            let sector = Sector { end: vertex(corner.opposite_first()), first, last, third };
+            let neighbour = Neighbour::through(sector, Allowed::TRIANGLE);
+            angle.add([neighbour.cross, neighbour.dot]);
+            neighbours.push(neighbour);
         }
-    }
-    let n_fans = neighbours.len();
-    let angle = total_angle(neighbours.iter().map(|n| [n.cross, n.dot]));
-    for HalfCorner { base, apex, third } in halves {
-        neighbours.push(Neighbour::without_triangle(base.0, Allowed::NONE, base.1));
-        neighbours.push(Neighbour {
-            vertex: apex.0,
-            allowed: Allowed::FORWARD,
-            length: apex.1,
-            dot: scalar_product(*third, apex.1, base.1),
-            cross: double_area([*third, apex.1, base.1]),
-        });
-    }
-    add_links(links, neighbours);
-    if ring.is_closed() && neighbours.len() == n_fans {
-        // The neighbour that closes the fan takes the place of its copy at the beginning.
-        neighbours.swap_remove(0);
-    }
-    if let Some(mut before) = neighbours.last().copied() {
-        for neighbour in neighbours {
-            neighbour.set_late_updates(&before);
-            before = *neighbour;
-        }
-    }
-    match ring.kind(angle, EXCESS) {
-        VertexKind::Ordinary => false,
-        VertexKind::Saddle | VertexKind::Boundary => true,
-        VertexKind::Irregular => angle > PI + EXCESS,
     }
 }
 
@@ -420,25 +431,4 @@ fn add_links(links: &[(u32, f64)], neighbours: &mut Vec<Neighbour>) {
             neighbours.push(appended((end, length)));
         }
     }
-}
-
-/// The neighbours at the first side of a corner, as if without a triangle, and at its last.
-fn neighbours_at(triangulation: &Triangulation, corner: FanCorner) -> [Neighbour; 2] {
-    let [third, to_next, to_prev] = triangulation.sides(corner.corner);
-    let [first, last] = match corner.winding {
-        Winding::Forward => [to_next, to_prev],
-        Winding::Backward => [to_prev, to_next],
-    };
-    let vertex = |corner| triangulation.corner_vertex(corner).0;
-    let through = Allowed::FORWARD.and(Allowed::BACKWARD);
-    [
-        Neighbour::without_triangle(vertex(corner.opposite_last()), Allowed::EDGE, first),
-        Neighbour {
-            vertex: vertex(corner.opposite_first()),
-            allowed: through.and(Allowed::EDGE),
-            length: last,
-            dot: scalar_product(third, first, last),
-            cross: double_area([third, first, last]),
-        },
-    ]
 }

@@ -37,8 +37,8 @@ impl Stencil {
     /// source is farther from `A` than from `C`: `|AC| > 2 T cos C`, where `T` is the distance at `C`.
     pub(super) fn may_complete_late_from_afar(self) -> bool {
         let Self { base, side, dot, .. } = self;
-        let third = || (base * base + side * side - 2.0 * dot).max(0.0).sqrt();
-        self.may_complete_late() && 2.0 * FAR * (side * side - dot) <= side * third()
+        let third = (base * base + side * side - 2.0 * dot).max(0.0).sqrt();
+        self.may_complete_late() & (2.0 * FAR * (side * side - dot) <= side * third)
     }
 
     /// Distance at `C` of a front that comes from a single point beyond the base, from the distances at `A` and `B`;
