@@ -17,7 +17,8 @@ pub(crate) fn prefetch<T>(items: &[T]) {
     {
         use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
 
-        let lines = size_of_val(items).div_ceil(LINE);
+        let offset = items.as_ptr().addr() % LINE;
+        let lines = (offset + size_of_val(items)).div_ceil(LINE);
         for line in 0..lines {
             // SAFETY: SSE is part of the architecture; a prefetch of any address, valid or not, is defined to have no
             // effect that a program could observe.

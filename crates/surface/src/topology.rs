@@ -46,7 +46,7 @@ pub struct Topology {
 }
 
 /// Number of vertices whose edges one thread collects at a time.
-const BLOCK: usize = 1024;
+const BLOCK: usize = 512;
 
 /// The edges from some successive vertices to higher ones.
 #[derive(Default)]
@@ -83,23 +83,24 @@ impl EdgeBlock {
         };
         block.first_edge.push(0);
         block.ends.push(0);
-        let mut sides: Vec<Side> = Vec::new();
-        for lower in vertices.map(|v| VertexId(v as u32)) {
-            sides.clear();
+        // The sides of all vertices, collected without a branch, so that many faces are read at once.
+        let none = Side { upper: VertexId(0), corner: CornerId(0), apex: VertexId(0) };
+        let (mut sides, mut n_sides) = (vec![none; 2 * n_corners + 1], 0);
+        let mut sides_end = Vec::with_capacity(vertices.len());
+        for lower in vertices.clone().map(|v| VertexId(v as u32)) {
             for corner in vertex_corners.row(lower.index()) {
                 let (next, prev, face) = (corner.next(), corner.prev(), faces[corner.face().index()]);
                 let ends = [face[next.slot()], face[prev.slot()]];
-                sides.extend((ends[0] > lower).then_some(Side {
-                    upper: ends[0],
-                    corner: prev,
-                    apex: ends[1],
-                }));
-                sides.extend((ends[1] > lower).then_some(Side {
-                    upper: ends[1],
-                    corner: next,
-                    apex: ends[0],
-                }));
+                sides[n_sides] = Side { upper: ends[0], corner: prev, apex: ends[1] };
+                n_sides += usize::from(ends[0] > lower);
+                sides[n_sides] = Side { upper: ends[1], corner: next, apex: ends[0] };
+                n_sides += usize::from(ends[1] > lower);
             }
+            sides_end.push(n_sides);
+        }
+        let mut start = 0;
+        for (lower, end) in vertices.map(|v| VertexId(v as u32)).zip(sides_end) {
+            let sides = &mut sides[std::mem::replace(&mut start, end)..end];
             sides.sort_unstable_by_key(|side| u64::from(side.upper.0) << 32 | u64::from(side.corner.0));
             for around in sides.chunk_by(|a, b| a.upper == b.upper) {
                 block.edges.push([lower, around[0].upper]);
@@ -299,7 +300,8 @@ impl Topology {
     #[must_use]
     pub fn opposite(&self, corner: CornerId) -> Option<CornerId> {
         match *self.edge_corners(self.opposite_edge(corner)) {
-            [a, b] => Some(if a == corner { b } else { a }),
+            // The other of the two; a branch would be mispredicted every second time.
+            [a, b] => Some(CornerId(a.0 ^ b.0 ^ corner.0)),
             _ => None,
         }
     }

@@ -40,19 +40,18 @@ impl WaitingSides {
             .map(|block| {
                 let triangles = block * BLOCK..n_triangles.min((block + 1) * BLOCK);
                 let mut initial = vec![0; (3 * triangles.len()).div_ceil(WORD)];
-                let mut crossed = Vec::new();
+                // No branch depends on angles, which could not be predicted.
+                let (mut obtuse, mut n_obtuse) = (vec![CornerId(0); 3 * triangles.len() + 1], 0);
                 for corner in triangles.flat_map(|t| FaceId(t as u32).corners()) {
                     let Some(far) = triangulation.opposite(corner) else { continue };
-                    if corner < far {
-                        set(&mut initial, corner.index() - 3 * block * BLOCK);
-                    }
-                    if triangulation.is_obtuse(corner)
-                        && triangulation.crossed(corner.min(far), loops).is_some()
-                    {
-                        crossed.push(corner.min(far));
-                    }
+                    let bit = corner.index() - 3 * block * BLOCK;
+                    initial[bit / WORD] |= u64::from(corner < far) << (bit % WORD);
+                    obtuse[n_obtuse] = corner.min(far);
+                    n_obtuse += usize::from(triangulation.is_obtuse(corner));
                 }
-                (initial, crossed)
+                obtuse.truncate(n_obtuse);
+                obtuse.retain(|side| triangulation.crossed(*side, loops).is_some());
+                (initial, obtuse)
             })
             .collect();
         let mut suspects = vec![0; n_words];

@@ -158,7 +158,8 @@ impl FastMarching {
             || breadth_first_order_of(mesh),
         );
         let (triangulation, links, halves) = prepared;
-        let rings = OneRings::new(order, &triangulation, &links, &halves, mesh.mean_edge_length());
+        let rings =
+            OneRings::new(order, mesh.topology(), &triangulation, &links, &halves, mesh.mean_edge_length());
         Self { rings, update: options.update, scratch: Pool::default(), budget: Budget::unlimited() }
     }
 

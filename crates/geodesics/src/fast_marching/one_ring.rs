@@ -4,11 +4,12 @@ use std::collections::HashMap;
 
 use rayon::prelude::*;
 use surface::{
-    AngleSum, CornerId, CornerTable, Link, OneRing, Rows, Sector, Triangulation, VertexCorners, VertexId,
-    VertexKind, Winding, double_area, scalar_product,
+    AngleSum, CornerId, CornerTable, Link, OneRing, Rows, Sector, Topology, Triangulation, VertexCorners,
+    VertexId, VertexKind, Winding, double_area, scalar_product,
 };
 
 use super::update::Stencil;
+use crate::prefetch::prefetch;
 
 /// A neighbour of a vertex: the edge to it, and the triangle between this neighbour and the one before it.
 ///
@@ -139,16 +140,21 @@ const BUCKET_WIDTH: f64 = 0.05;
 /// Number of vertices whose one-rings one thread lays out at a time.
 const BLOCK: usize = 1024;
 
+/// How many vertices ahead their triangles are requested, and at most how many of them for each.
+const AHEAD: usize = 6;
+const MOST_AHEAD: usize = 16;
+
 /// Excess of a total angle, in radians, below which it is rounding.
 const EXCESS: f64 = 5e-9;
 
 impl OneRings {
-    /// The one-rings of a triangulation whose vertices are renumbered in the given order, with straight connections
+    /// The one-rings of a triangulation of a mesh with the given connectivity, whose vertices are renumbered in the given order, with straight connections
     /// and halves of obtuse corners (by the vertex that they are at) in addition.
     ///
     /// The mean edge length is that of the mesh: after flips, it may depend on the numbering of the vertices.
     pub(super) fn new(
         order: Vec<u32>,
+        topology: &Topology,
         triangulation: &Triangulation,
         links: &[Link],
         halves: &[(u32, HalfCorner)],
@@ -161,6 +167,7 @@ impl OneRings {
         }
         let halves = Rows::collect(n, halves.iter().map(|(v, half)| (*v as usize, *half)));
         let mut layout = Layout {
+            topology,
             triangulation,
             around: triangulation.vertex_corners(n),
             links: Link::by_vertex(n, links.iter().copied()),
@@ -206,6 +213,8 @@ impl OneRings {
 
 /// What the one-rings are made of.
 struct Layout<'a> {
+    /// The connectivity of the mesh; a few edges may have been flipped since.
+    topology: &'a Topology,
     triangulation: &'a Triangulation,
     around: Vec<VertexCorners>,
     links: Rows<(u32, f64)>,
@@ -303,6 +312,7 @@ impl Layout<'_> {
             .map_init(Scratch::default, |scratch, (block, (may_bend, sizes, mut rest))| {
                 let (mut longest, mut wrong) = (0.0, Vec::new());
                 for (i, (may_bend, size)) in (block * BLOCK..).zip(may_bend.iter_mut().zip(sizes)) {
+                    self.prefetch(i);
                     *may_bend = self.lay_out(self.order[i], scratch);
                     let (place, after) = rest.split_at_mut(*size as usize);
                     rest = after;
@@ -321,6 +331,22 @@ impl Layout<'_> {
         match wrong.is_empty() {
             true => Ok(Filled { neighbours: Rows::from_offsets(offsets, neighbours), may_bend, longest }),
             false => Err(wrong),
+        }
+    }
+
+    /// Requests what vertices a little after number `i` need. A walk around a vertex finds each triangle through the one
+    /// before, so it would wait for each of them.
+    fn prefetch(&self, i: usize) {
+        if let Some(v) = self.order.get(i + 2 * AHEAD) {
+            let v = *v as usize;
+            prefetch(self.topology.vertex_corners(VertexId(v as u32)));
+            prefetch(&self.around[v..=v]);
+        }
+        if let Some(v) = self.order.get(i + AHEAD) {
+            for corner in self.topology.vertex_corners(VertexId(*v)).iter().take(MOST_AHEAD) {
+                let triangle = corner.face().index();
+                prefetch(&self.triangulation.triangles()[triangle..=triangle]);
+            }
         }
     }
 

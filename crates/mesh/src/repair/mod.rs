@@ -279,10 +279,11 @@ struct Compact {
 impl Compact {
     /// Keeps the vertices with a face; if `kept` is given, only those of that component.
     fn of(mesh: &TriMesh, merged: &mut DisjointSets, components: &Components, kept: Option<u32>) -> Self {
+        let n = mesh.n_vertices();
         let mut compact = Self {
-            positions: Vec::new(),
-            labels: Vec::new(),
-            sources: Vec::new(),
+            positions: Vec::with_capacity(n),
+            labels: Vec::with_capacity(n),
+            sources: Vec::with_capacity(n),
             input_to_repaired: vec![None; mesh.n_vertices()],
         };
         for v in 0..mesh.n_vertices() {
