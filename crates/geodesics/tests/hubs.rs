@@ -108,3 +108,29 @@ fn no_method_is_quadratic_in_the_degree() {
         }
     }
 }
+
+#[test]
+fn surfaces_that_touch_in_a_vertex_are_crossed_there() {
+    // Two closed cones with a common tip: its faces form two closed fans, and no edge is free.
+    let n = 12;
+    let points: Vec<_> = std::iter::once([0.0; 3])
+        .chain(rim(n, 1.0))
+        .chain(rim(n, -1.0))
+        .chain([[0.0, 0.0, 1.5], [0.0, 0.0, -1.5]])
+        .collect();
+    let cone = |first: usize, far: usize| {
+        (0..n).flat_map(move |i| {
+            let [a, b] = [first + i, first + (i + 1) % n];
+            [[0, a, b], [far, b, a]]
+        })
+    };
+    let surface = surface(&points, cone(1, 2 * n + 1).chain(cone(n + 1, 2 * n + 2)).collect());
+    for method in Method::all().into_iter().filter(|method| !matches!(method, Method::Heat(_))) {
+        let solver = method.prepare(&surface).unwrap();
+        let [from_tip, from_rim] = [0, 3].map(|v| solver.distances(VertexId(v)).unwrap());
+        for below in n + 1..=2 * n {
+            let expected = from_rim[0] + from_tip[below];
+            assert!((from_rim[below] / expected - 1.0).abs() < 1e-12, "{}", method.name());
+        }
+    }
+}

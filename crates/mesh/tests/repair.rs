@@ -3,8 +3,10 @@
 // Helper functions are test code too, which clippy cannot see.
 #![allow(clippy::unwrap_used)]
 
+use budget::Budget;
 use canonform_mesh::{
-    ComponentPolicy, MeshError, Orient, RepairOptions, Repaired, TriMesh, Weld, repair, shapes, validate,
+    ComponentPolicy, MeshError, Orient, RepairOptions, Repaired, TriMesh, Weld, repair, repair_and_measure,
+    shapes, validate,
 };
 use nalgebra::{Point3, Rotation3, Vector3};
 use proptest::prelude::*;
@@ -50,6 +52,29 @@ fn a_clean_mesh_is_returned_unchanged() {
         assert!(repaired.report.summary().is_empty());
         assert!(repaired.report.summary().is_empty());
         assert!(repaired.input_to_repaired.iter().enumerate().all(|(v, to)| *to == Some(VertexId::from(v))));
+    }
+}
+
+#[test]
+fn the_surface_measured_during_repair_is_that_of_the_repaired_mesh() {
+    let clean = shapes::torus(9, 7, 2.0, 0.5);
+    let mut turned = clean.clone();
+    turned.faces.iter_mut().step_by(3).for_each(|face| face.swap(0, 1));
+    let mut doubled = clean.clone();
+    doubled.faces.extend_from_within(3..7);
+    let mut unused = clean.clone();
+    unused.positions.insert(0, Point3::new(0.1, 0.2, 0.3));
+    unused.faces.iter_mut().flatten().for_each(|v| v.0 += 1);
+    let pieces = shapes::disjoint(&[clean.clone(), shifted(shapes::cube(1), [5.0, 0.0, 0.0])]);
+    for mesh in [soup(&clean), clean, turned, doubled, unused, pieces] {
+        for components in [ComponentPolicy::Largest, ComponentPolicy::Bridge] {
+            for orient in [Orient::Keep, Orient::Consistent] {
+                let options = with(components, Weld::Seams, orient);
+                let (repaired, surface) = repair_and_measure(&mesh, &options, &Budget::unlimited()).unwrap();
+                assert_eq!(surface, repaired.intrinsic(), "{options:?}");
+                assert_eq!(repaired, repair(&mesh, &options).unwrap());
+            }
+        }
     }
 }
 

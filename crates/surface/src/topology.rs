@@ -350,4 +350,47 @@ mod tests {
         assert_eq!(t.opposite(CornerId(2)), None);
         assert_eq!(t.vertex_corners(VertexId(1)).len(), 3);
     }
+
+    #[test]
+    fn edges_above_a_vertex_are_sorted_and_complete() {
+        let list = [[4, 1, 0], [1, 4, 2], [0, 3, 1], [6, 2, 1]];
+        let t = Topology::new(8, faces(&list));
+        let above: Vec<Vec<u32>> =
+            (0..8).map(|v| t.edges_above(VertexId(v)).iter().map(|ends| ends[1].0).collect()).collect();
+        let expected: [&[u32]; 8] = [&[1, 3, 4], &[2, 3, 4, 6], &[4, 6], &[], &[], &[], &[], &[]];
+        assert_eq!(above, expected);
+        assert_eq!(t.edge_between(VertexId(6), VertexId(4)), None);
+        assert_eq!(t.edge_between(VertexId(6), VertexId(9)), None);
+        assert_eq!(t.into_faces(), faces(&list));
+    }
+
+    #[test]
+    fn duplicate_faces_are_noticed_among_two_faces_of_an_edge_and_among_more() {
+        let book = [[0, 1, 2], [0, 1, 3], [1, 0, 4], [5, 0, 1]];
+        for (more, expected) in [(None, false), (Some([4, 1, 0]), true), (Some([2, 3, 4]), false)] {
+            let list: Vec<_> = book.into_iter().chain(more).collect();
+            assert_eq!(Topology::new(6, faces(&list)).has_duplicate_faces(), expected, "{more:?}");
+        }
+        assert!(Topology::new(3, faces(&[[0, 1, 2], [2, 1, 0]])).has_duplicate_faces());
+    }
+
+    #[test]
+    fn the_numbers_of_vertices_and_blocks_do_not_matter() {
+        // More vertices than a block has, in an order without locality.
+        let n = 3 * BLOCK as u32 + 5;
+        let list: Vec<_> = (0..n).map(|i| [i, i + 1, i + 2].map(|v| VertexId(v * 7919 % n))).collect();
+        let t = Topology::new(n as usize, list.clone());
+        assert!(t.edges().is_sorted() && t.edges().iter().all(|[a, b]| a < b));
+        for corner in (0..3 * list.len()).map(CornerId::from) {
+            let mut ends = t.edge_ends(corner);
+            ends.sort_unstable();
+            assert_eq!(t.edges()[t.opposite_edge(corner).index()], ends);
+            assert!(t.vertex_corners(t.corner_vertex(corner)).contains(&corner));
+        }
+        for edge in (0..t.n_edges()).map(EdgeId::from) {
+            let corners = t.edge_corners(edge);
+            assert!(!corners.is_empty() && corners.is_sorted());
+            assert!(corners.iter().all(|corner| t.opposite_edge(*corner) == edge));
+        }
+    }
 }

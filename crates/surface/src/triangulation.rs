@@ -512,4 +512,41 @@ pub(crate) mod tests {
         assert_delaunay(&triangulation);
         assert!(triangulation.triangles.iter().all(|t| t.vertices.iter().filter(|v| v.0 == 2).count() == 2));
     }
+
+    /// Flips as [`Triangulation::flip_to_delaunay`] does, with a stack that holds every side to begin with.
+    fn flip_all(triangulation: &mut Triangulation, loops: Loops) -> Vec<Link> {
+        let n_sides = 3 * triangulation.triangles.len();
+        let (mut is_new, mut removed) = (vec![false; n_sides], Vec::new());
+        let is_lower = |c: &CornerId| triangulation.opposite(*c).is_some_and(|far| *c < far);
+        let mut stack: Vec<CornerId> = (0..n_sides).map(CornerId::from).filter(is_lower).collect();
+        while let Some(corner) = stack.pop() {
+            let Some(quad) = triangulation.crossed(corner, loops) else { continue };
+            let triangles = triangulation.flip(corner, quad, &mut is_new, &mut removed);
+            for outer in triangles.into_iter().flat_map(|t| [1, 2].map(|slot| CornerId::new(t, slot))) {
+                let Some(far) = triangulation.opposite(outer) else { continue };
+                if !stack.contains(&outer.min(far)) {
+                    stack.push(outer.min(far));
+                }
+            }
+        }
+        removed
+    }
+
+    #[test]
+    fn flips_are_those_of_a_stack_of_all_sides() {
+        let mut n_removed = 0;
+        for seed in 0..6 {
+            let mut sheet = shapes::jittered_grid(13, 11, 1.0, 0.3, seed);
+            sheet.positions.iter_mut().for_each(|p| p.x *= 1.0 + seed as f64);
+            sheet.faces.iter_mut().step_by(seed as usize + 2).for_each(|face| face.swap(0, 1));
+            for mesh in [sheet, shapes::sheared_grid(12, 9, 1.0, 0.7 * (1 + seed) as f64)] {
+                let surface = intrinsic(&mesh);
+                let mut one_by_one = Triangulation::new(&surface);
+                let removed = flip_all(&mut one_by_one, Loops::Forbidden);
+                n_removed += removed.len();
+                assert_eq!(flipped(&surface), (one_by_one, removed), "{seed}");
+            }
+        }
+        assert!(n_removed > 500);
+    }
 }

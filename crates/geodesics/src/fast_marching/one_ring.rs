@@ -43,10 +43,10 @@ impl Neighbour {
         let forward = Stencil { base: first, side: last, dot, cross };
         // Without branches, which could not be predicted.
         let flags = |stencil: Stencil| {
-            u32::from(stencil.may_complete_late()) * Allowed::LATE_NEARBY.0
-                | u32::from(stencil.may_complete_late_from_afar()) * Allowed::LATE.0
+            let nearby = u32::from(stencil.may_complete_late()) * Allowed::LATE_NEARBY.0;
+            nearby | (u32::from(stencil.may_complete_late_from_afar()) * Allowed::LATE.0)
         };
-        let late = Allowed(flags(backward) | flags(forward) << 1);
+        let late = Allowed(flags(backward) | (flags(forward) << 1));
         Self { vertex: end.0, allowed: allowed.and(late), length: last, dot, cross }
     }
 }
