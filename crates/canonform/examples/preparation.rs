@@ -27,11 +27,11 @@ fn main() -> Result<(), Box<dyn Error>> {
         mesh = shapes::subdivide(&mesh);
     }
     let rounds: usize = rounds.parse()?;
-    let pools = [1, 2].map(|threads| (threads, rayon::ThreadPoolBuilder::new().num_threads(threads).build()));
+    let pool = |threads| rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+    let pools = [(1, pool(1)?), (2, pool(2)?)];
     let mut seconds = [const { [const { Vec::new() }; 4] }; 2];
     for round in 0..=rounds {
         for ((_, pool), seconds) in pools.iter().zip(&mut seconds) {
-            let pool = pool.as_ref().map_err(ToString::to_string)?;
             let found = pool.install(|| one_round(&mesh, round))?;
             // The first round warms up.
             if round > 0 {
@@ -40,7 +40,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         }
     }
     for ((threads, _), seconds) in pools.iter().zip(&mut seconds) {
-        let [connectivity, solver, both, map] = seconds.each_mut().map(median);
+        let [connectivity, solver, both, map] = seconds.each_mut().map(|all| median(all));
         println!(
             r#"{{"vertices": {}, "threads": {threads}, "connectivity": {connectivity}, "solver": {solver}, "both": {both}, "map": {map}}}"#,
             mesh.n_vertices()
@@ -68,7 +68,7 @@ fn one_round(mesh: &mesh::TriMesh, round: usize) -> Result<[f64; 4], canonform::
     Ok([connectivity, both - connectivity, both, map])
 }
 
-fn median(values: &mut Vec<f64>) -> f64 {
+fn median(values: &mut [f64]) -> f64 {
     values.sort_by(f64::total_cmp);
     values.get(values.len() / 2).copied().unwrap_or(f64::NAN)
 }
