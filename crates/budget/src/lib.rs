@@ -23,6 +23,7 @@
 //! # Ok::<(), Exceeded>(())
 //! ```
 
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
@@ -33,6 +34,7 @@ pub struct Budget {
     cancelled: Arc<AtomicBool>,
     time: Option<(Duration, Instant)>,
     memory: Option<usize>,
+    spill: Option<Arc<Path>>,
 }
 
 /// Why a computation ended early.
@@ -87,6 +89,18 @@ impl Budget {
     #[must_use]
     pub fn memory(&self) -> Option<usize> {
         self.memory
+    }
+
+    /// The same budget with a folder for temporary files, which hold what does not fit into memory.
+    #[must_use]
+    pub fn with_spill(self, folder: PathBuf) -> Self {
+        Self { spill: Some(folder.into()), ..self }
+    }
+
+    /// The folder for temporary files; without one, everything has to fit into memory.
+    #[must_use]
+    pub fn spill(&self) -> Option<&Path> {
+        self.spill.as_deref()
     }
 
     /// Ends every computation that uses this budget or a clone of it, at its next check.

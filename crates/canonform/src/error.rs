@@ -163,6 +163,21 @@ pub enum Error {
         /// The limit, in bytes.
         limit: usize,
     },
+    /// An embedding that would not fit into memory even with its distances in a file.
+    #[error(
+        "embedding {n_vertices} vertices needs about {needed} bytes of memory with distances in a temporary file, more \
+         than the {limit} allowed, which are enough for {fits} vertices"
+    )]
+    EmbeddingTooLarge {
+        /// Vertices of the surface.
+        n_vertices: usize,
+        /// The least that is needed, in bytes.
+        needed: usize,
+        /// The limit, in bytes.
+        limit: usize,
+        /// The number of vertices that the limit is enough for.
+        fits: usize,
+    },
     /// Distances that would not fit into memory.
     #[error(
         "the distances between {n_vertices} vertices need {needed_mib} MiB, more than the {limit_mib} MiB allowed"
@@ -277,7 +292,9 @@ impl Error {
             Self::Geodesic(GeodesicError::NotFactorised { .. }) => Remedy::UseFastMarching,
             Self::Geodesic(GeodesicError::NoWay { .. }) | Self::NoPath { .. } => Remedy::RaiseMaxDistance,
             Self::AllPairsTooLarge { .. } => Remedy::UseNystrom,
-            Self::MemoryTooSmall { .. } | Self::Exceeded(Exceeded::Memory { .. }) => Remedy::RaiseMemory,
+            Self::MemoryTooSmall { .. }
+            | Self::EmbeddingTooLarge { .. }
+            | Self::Exceeded(Exceeded::Memory { .. }) => Remedy::RaiseMemory,
             Self::Exceeded(Exceeded::Time { .. }) => Remedy::RaiseTimeLimit,
             Self::NoNames { .. } | Self::Retrieval(RetrievalError::NothingToScore { .. }) => {
                 Remedy::GiveLabels

@@ -98,11 +98,11 @@ pub use form::{
     DISTANCES_LIMIT, DescentReport, DescribeOptions, EmbedMethod, EmbedReport, Embedded, FormOptions,
     MethodFacts, MethodReport, MethodsReport, Samples, SecondsReport, ShapeDescription, StressChoice,
     StressKind, StressOptions, StressReport, compare_methods, describe, describe_within, embed,
-    embed_and_measure,
+    embed_and_measure, embed_and_release,
 };
 pub use input::{
-    AllPairs, Asymmetry, BadPoint, Dataset, InputPoint, LabelFile, PathPoint, ShapeFile, SkipKind, Skipped,
-    Surface, SurfacePath, label_of, list_shapes,
+    AllPairs, Asymmetry, BadPoint, Dataset, InputMap, InputPoint, LabelFile, PathPoint, ShapeFile, SkipKind,
+    Skipped, Surface, SurfacePath, label_of, list_shapes,
 };
 pub use observer::Observer;
 pub use shape_index::{

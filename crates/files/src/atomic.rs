@@ -131,6 +131,16 @@ impl<'a> Pending<'a> {
     }
 }
 
+/// Creates a file without a name in a folder, for numbers that do not fit into memory. The system removes it when it is
+/// closed, however the program ends.
+///
+/// # Errors
+/// [`FileError`] with the folder.
+pub fn nameless_in(folder: &Path) -> Result<File, FileError> {
+    let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+    tempfile::tempfile_in(folder).map_err(|source| FileError::write(folder, source))
+}
+
 /// A folder for files that only this process reads. It is removed on drop and by [`abandon_unfinished`].
 #[derive(Debug)]
 pub struct Scratch {
@@ -276,6 +286,21 @@ mod tests {
         write_bytes(&file, b"x").unwrap();
         drop(scratch);
         assert!(!file.exists() && !file.parent().unwrap().exists());
+    }
+
+    #[test]
+    fn a_nameless_file_leaves_nothing_in_its_folder() {
+        use std::io::{Read, Seek};
+        let folder = tempfile::tempdir().unwrap();
+        let mut file = nameless_in(folder.path()).unwrap();
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+        file.write_all(b"numbers").unwrap();
+        file.rewind().unwrap();
+        let mut text = String::new();
+        file.read_to_string(&mut text).unwrap();
+        assert_eq!(text, "numbers");
+        let error = nameless_in(&folder.path().join("missing")).unwrap_err();
+        assert!(error.to_string().contains("missing"));
     }
 
     #[test]

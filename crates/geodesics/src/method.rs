@@ -121,6 +121,27 @@ impl Method {
         budget.check()?;
         Ok(solver)
     }
+
+    /// Prepares a surface as [`prepare_within`](Self::prepare_within) does. Solvers that do not keep the surface free its
+    /// memory as early as they can.
+    ///
+    /// # Errors
+    /// As [`prepare_within`](Self::prepare_within).
+    pub fn prepare_owned_within(
+        self,
+        mesh: IntrinsicMesh,
+        budget: &Budget,
+    ) -> Result<Box<dyn DistanceSolver>, GeodesicError> {
+        budget.check()?;
+        match self {
+            Self::FastMarching(options) if mesh.unit() == 1.0 => {
+                let solver = FastMarching::from_owned(mesh, options).with_budget(budget.clone());
+                budget.check()?;
+                Ok(Box::new(solver))
+            }
+            _ => self.prepare_within(&mesh, budget),
+        }
+    }
 }
 
 #[cfg(test)]

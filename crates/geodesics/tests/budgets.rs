@@ -62,7 +62,10 @@ fn samplers_end_with_the_solver_and_continue_with_another() {
         // What was complete before is still right.
         let taken = sampler.distances(1).unwrap();
         let source = VertexId::from(taken.landmarks()[0]);
-        assert_eq!(taken.column(0), Method::default().prepare(&surface).unwrap().distances(source).unwrap());
+        assert_eq!(
+            taken.column(0).unwrap(),
+            Method::default().prepare(&surface).unwrap().distances(source).unwrap()
+        );
     }
 }
 

@@ -84,6 +84,14 @@ pub fn thin_qr(a: &Matrix) -> (Matrix, Matrix) {
     (from_faer(q.as_ref()), from_faer(qr.thin_R()))
 }
 
+/// The upper triangular factor of [`thin_qr`] alone, min(p, n) x n, up to the signs of its rows.
+///
+/// Cost: `O(p n^2)`.
+#[must_use]
+pub fn triangular_factor(a: &Matrix) -> Matrix {
+    from_faer(view(a).qr().thin_R())
+}
+
 /// The pseudo-inverse of a matrix. Singular values below `max(rows, columns) * 2.2e-16` of the largest count as zero.
 ///
 /// Cost: `O(m n min(m, n))`.

@@ -61,7 +61,20 @@ pub enum LinalgError {
         /// The reason.
         reason: String,
     },
+    /// A temporary file that holds numbers cannot be read or written.
+    #[error("a temporary file of distances cannot be used: {reason}")]
+    File {
+        /// The reason, in the words of the operating system.
+        reason: String,
+    },
     /// A limit on time or memory, or a cancellation.
     #[error(transparent)]
     Exceeded(#[from] budget::Exceeded),
+}
+
+impl LinalgError {
+    /// An error of a file that holds numbers.
+    pub(crate) fn file(error: std::io::Error) -> Self {
+        Self::File { reason: error.to_string() }
+    }
 }

@@ -1,7 +1,10 @@
 //! Distances from a few landmarks to all points.
 
+use std::borrow::Cow;
+use std::ops::Range;
+
 use crate::distance_matrix::first_invalid;
-use crate::{LinalgError, Matrix};
+use crate::{ColumnStore, LinalgError, Matrix};
 
 /// The p x n matrix of distances from n landmarks to all p points, with the points that are landmarks.
 ///
@@ -20,37 +23,61 @@ use crate::{LinalgError, Matrix};
 #[derive(Debug, Clone, PartialEq)]
 pub struct LandmarkDistances {
     landmarks: Vec<usize>,
-    columns: Matrix,
+    columns: ColumnStore,
+    max: f64,
+    /// The squared distances between the landmarks.
+    sq_block: Matrix,
 }
+
+/// Rows read at a time.
+const BLOCK: usize = 1024;
 
 impl LandmarkDistances {
     /// Takes one column of distances per landmark.
     ///
     /// # Errors
-    /// [`LinalgError::BadDistance`] for the first distance that is infinite (an unreachable point), NaN or negative;
-    /// [`LinalgError::Shape`]; [`LinalgError::BadLandmark`].
+    /// As [`of_columns`](Self::of_columns).
     pub fn new(landmarks: Vec<usize>, columns: Matrix) -> Result<Self, LinalgError> {
-        let (p, n) = columns.shape();
+        Self::of_columns(landmarks, ColumnStore::of_matrix(columns))
+    }
+
+    /// Takes one column of distances per landmark, in memory or in a file.
+    ///
+    /// # Errors
+    /// [`LinalgError::BadDistance`] for the first distance that is infinite (an unreachable point), NaN or negative;
+    /// [`LinalgError::Shape`]; [`LinalgError::BadLandmark`]; [`LinalgError::File`].
+    pub fn of_columns(landmarks: Vec<usize>, columns: ColumnStore) -> Result<Self, LinalgError> {
+        let (p, n) = (columns.n_rows(), columns.n_columns());
         if landmarks.len() != n {
             return Err(LinalgError::Shape { n_rows: p, n_columns: landmarks.len(), actual: p * n });
         }
-        let mut taken = vec![false; p];
+        let mut taken = std::collections::HashSet::with_capacity(n);
         for &landmark in &landmarks {
-            if landmark >= p || std::mem::replace(&mut taken[landmark], true) {
+            if landmark >= p || !taken.insert(landmark) {
                 return Err(LinalgError::BadLandmark { landmark, n_points: p });
             }
         }
-        if let Some(bad) = first_invalid(columns.as_slice()) {
-            let (row, column) = (bad % p, landmarks[bad / p]);
-            return Err(LinalgError::BadDistance { row, column, value: columns.as_slice()[bad] });
+        let (mut max, mut at_landmarks) = (0.0, Matrix::zeros(n, n));
+        for (j, &landmark) in landmarks.iter().enumerate() {
+            let column = columns.column(j)?;
+            if let Some(row) = first_invalid(&column) {
+                return Err(LinalgError::BadDistance { row, column: landmark, value: column[row] });
+            }
+            max = column.iter().copied().fold(max, f64::max);
+            for (i, &other) in landmarks.iter().enumerate() {
+                at_landmarks[(i, j)] = column[other];
+            }
         }
-        Ok(Self { landmarks, columns })
+        let square = |i: usize, j: usize| at_landmarks[(i, j)].powi(2);
+        let sq_block =
+            Matrix::from_fn(n, n, |i, j| if i == j { 0.0 } else { 0.5 * (square(i, j) + square(j, i)) });
+        Ok(Self { landmarks, columns, max, sq_block })
     }
 
     /// Number of points p.
     #[must_use]
     pub fn n_points(&self) -> usize {
-        self.columns.nrows()
+        self.columns.n_rows()
     }
 
     /// Number of landmarks n.
@@ -65,32 +92,48 @@ impl LandmarkDistances {
         &self.landmarks
     }
 
-    /// The p x n distances.
-    #[must_use]
-    pub fn matrix(&self) -> &Matrix {
-        &self.columns
+    /// The p x n distances; a copy in memory if they are in a file.
+    ///
+    /// # Errors
+    /// [`LinalgError::File`], [`LinalgError::Exceeded`].
+    pub fn to_matrix(&self) -> Result<Matrix, LinalgError> {
+        self.columns.clone().into_matrix()
     }
 
     /// The distances from landmark number `landmark` to all points.
+    ///
+    /// # Errors
+    /// [`LinalgError::File`].
+    pub fn column(&self, landmark: usize) -> Result<Cow<'_, [f64]>, LinalgError> {
+        self.columns.column(landmark)
+    }
+
+    /// The distances from all landmarks to the points of a range, `range.len()` x n.
+    ///
+    /// # Errors
+    /// [`LinalgError::File`].
+    pub fn rows(&self, range: Range<usize>) -> Result<Matrix, LinalgError> {
+        self.columns.rows(range)
+    }
+
+    /// Ranges of rows that a pass over all rows reads one at a time. They depend on the number of points only.
     #[must_use]
-    pub fn column(&self, landmark: usize) -> &[f64] {
+    pub fn blocks(&self) -> Vec<Range<usize>> {
         let p = self.n_points();
-        &self.columns.as_slice()[landmark * p..(landmark + 1) * p]
+        (0..p).step_by(BLOCK).map(|start| start..(start + BLOCK).min(p)).collect()
     }
 
     /// The largest distance; zero if there are no points.
     #[must_use]
     pub fn max(&self) -> f64 {
-        self.columns.as_slice().iter().copied().fold(0.0, f64::max)
+        self.max
     }
 
     /// The n x n squared distances between the landmarks (`S` in the paper). Averages the two directions of each pair,
     /// because computed distances are not exactly symmetric.
     #[must_use]
     pub fn sq_block(&self) -> Matrix {
-        let square = |i: usize, j: usize| self.columns[(self.landmarks[i], j)].powi(2);
-        let n = self.n_landmarks();
-        Matrix::from_fn(n, n, |i, j| if i == j { 0.0 } else { 0.5 * (square(i, j) + square(j, i)) })
+        self.sq_block.clone()
     }
 }
 
@@ -109,7 +152,7 @@ mod tests {
         let s = d.sq_block();
         assert_eq!(s[(0, 1)], s[(1, 0)]);
         assert!((s[(0, 1)] - 0.5 * (4.0 + 2.2 * 2.2)).abs() < 1e-15);
-        assert_eq!(d.column(1), &[2.2, 1.0, 0.0]);
+        assert_eq!(d.column(1).unwrap()[..], [2.2, 1.0, 0.0]);
     }
 
     #[test]

@@ -8,6 +8,7 @@
 //! a few eigenpairs of large matrices. Knows nothing of meshes.
 
 mod cholesky;
+mod column_store;
 mod decomposition;
 mod distance_matrix;
 mod error;
@@ -18,7 +19,10 @@ mod panels;
 mod sparse;
 
 pub use cholesky::{EliminationOrder, SparseCholesky};
-pub use decomposition::{SymmetricEigen, leading_sign, pseudo_inverse, symmetric_eigen, thin_qr};
+pub use column_store::{ColumnSlot, ColumnStore};
+pub use decomposition::{
+    SymmetricEigen, leading_sign, pseudo_inverse, symmetric_eigen, thin_qr, triangular_factor,
+};
 pub use distance_matrix::DistanceMatrix;
 pub use error::LinalgError;
 pub use generalized::{GeneralizedEigen, smallest_eigenpairs, smallest_eigenpairs_within};

@@ -50,7 +50,7 @@ pub fn fmds_within(
     dim: usize,
     budget: &Budget,
 ) -> Result<Embedding, NmdsError> {
-    let (p, n) = distances.matrix().shape();
+    let (p, n) = (distances.n_points(), distances.n_landmarks());
     check_points(stiffness.order(), p)?;
     check_points(masses.len(), p)?;
     check_dim(dim, n)?;

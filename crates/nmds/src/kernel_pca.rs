@@ -1,6 +1,6 @@
 //! Kernel PCA with the Nystrom method, the baseline of the NMDS paper.
 
-use linalg::{LandmarkDistances, symmetric_eigen, thin_qr};
+use linalg::{LandmarkDistances, Matrix, symmetric_eigen, thin_qr};
 
 use crate::squares::{center_columns, check_extent};
 use crate::{Embedding, NmdsError, NystromOptions, Regularization};
@@ -21,8 +21,8 @@ pub enum Bandwidth {
 }
 
 impl Bandwidth {
-    fn sigma(self, distances: &LandmarkDistances) -> Result<f64, NmdsError> {
-        let values = distances.matrix().as_slice();
+    fn sigma(self, distances: &Matrix) -> Result<f64, NmdsError> {
+        let values = distances.as_slice();
         let sigma = match self {
             Self::Mean => values.iter().sum::<f64>() / values.len().max(1) as f64,
             Self::Median => {
@@ -30,7 +30,7 @@ impl Bandwidth {
                 let middle = sorted.len() / 2;
                 *sorted.select_nth_unstable_by(middle, f64::total_cmp).1
             }
-            Self::Max => distances.max(),
+            Self::Max => values.iter().copied().fold(0.0, f64::max),
             Self::Value(sigma) => sigma,
         };
         if sigma > 0.0 && sigma.is_finite() { Ok(sigma) } else { Err(NmdsError::BadBandwidth(sigma)) }
@@ -76,9 +76,10 @@ pub fn kernel_pca(distances: &LandmarkDistances, options: &KernelPcaOptions) -> 
     let shape = NystromOptions { regularization, dim: options.dim };
     let rank = shape.validate(distances.n_landmarks())?;
     check_extent(distances.max(), distances.n_points())?;
-    let sigma = options.bandwidth.sigma(distances)?;
+    let mut kernel = distances.to_matrix()?;
+    let sigma = options.bandwidth.sigma(&kernel)?;
     let gauss = |sq: f64| (-0.5 * sq / (sigma * sigma)).exp();
-    let kernel = distances.matrix().map(|d| gauss(d * d));
+    kernel.apply(|d| *d = gauss(*d * *d));
     let block = distances.sq_block().map(gauss);
 
     let eigen = symmetric_eigen(&block)?;
@@ -99,7 +100,6 @@ pub fn kernel_pca(distances: &LandmarkDistances, options: &KernelPcaOptions) -> 
 mod tests {
     use super::*;
     use crate::testing::{Cloud, landmark_distances, procrustes_free_gap, scaled};
-    use linalg::Matrix;
 
     #[test]
     fn with_all_samples_equals_the_principal_components_of_the_centred_kernel() {
@@ -134,7 +134,7 @@ mod tests {
     #[test]
     fn relative_widths_are_statistics_of_the_distances() {
         let distances = landmark_distances(&Cloud::new(101, 3, 14), 9);
-        let mut sorted = distances.matrix().as_slice().to_vec();
+        let mut sorted = distances.to_matrix().unwrap().as_slice().to_vec();
         sorted.sort_by(f64::total_cmp);
         let mean = sorted.iter().sum::<f64>() / sorted.len() as f64;
         let embed = |bandwidth| {

@@ -3,7 +3,8 @@
 use linalg::{LandmarkDistances, symmetric_eigen};
 
 use crate::embedding::negative_mass;
-use crate::squares::{Squares, center_columns, check_dim, symmetrized};
+use crate::passes::product;
+use crate::squares::{center_columns, check_dim, check_extent, symmetrized};
 use crate::{Embedding, NmdsError};
 
 /// Landmark MDS: embeds the n landmarks by classical scaling and places all points by their distances from them.
@@ -15,7 +16,7 @@ use crate::{Embedding, NmdsError};
 /// | `δ_a - μ` | `columns` | p x n | squared distances of point a from the landmarks, minus the mean row of `S` |
 /// | `x_a` | result | p x k | `-1/2 L^(-1/2) V' (δ_a - μ)`, centred and rotated to its principal axes |
 ///
-/// * Cost: `O(p n k)` time, `O(p n)` memory.
+/// * Cost: `O(p n k)` time, `O(p k + n^2)` memory besides the distances, which may be in a file.
 /// * Exact for Euclidean distances in `R^k` from landmarks in general position (`n >= k + 1`). Otherwise the subspace
 ///   depends on the landmarks only, so the stress stays above the optimum for any number of them.
 /// * The `eigenvalues` of the result are the k of its coordinates; its `negative_mass` is that of the landmarks.
@@ -28,7 +29,8 @@ pub fn landmark_mds(distances: &LandmarkDistances, dim: usize) -> Result<Embeddi
     let n = distances.n_landmarks();
     // Centring removes one dimension.
     check_dim(dim, n.saturating_sub(1))?;
-    let Squares { unit, mut columns, mut block } = Squares::new(distances)?;
+    let unit = check_extent(distances.max(), distances.n_points())?;
+    let mut block = distances.sq_block() / (unit * unit);
     let means = block.row_mean();
     center_columns(&mut block);
     let mut gram = block.transpose() * -0.5;
@@ -38,14 +40,11 @@ pub fn landmark_mds(distances: &LandmarkDistances, dim: usize) -> Result<Embeddi
     let positive: Vec<usize> = (0..dim).filter(|&i| eigen.values[i] > floor).collect();
     let kept = eigen.select(&positive);
 
-    for (mut column, mean) in columns.column_iter_mut().zip(means.iter()) {
-        column.add_scalar_mut(-mean);
+    let mut axes = kept.vectors * -0.5;
+    for (mut axis, value) in axes.column_iter_mut().zip(&kept.values) {
+        axis /= value.sqrt();
     }
-    let mut placed = columns * &kept.vectors * -0.5;
-    for (mut column, value) in placed.column_iter_mut().zip(&kept.values) {
-        column /= value.sqrt();
-    }
-    let coords = placed.resize_horizontally(dim, 0.0);
+    let coords = product(distances, unit, means.as_slice(), &axes.resize_horizontally(dim, 0.0))?;
     let embedding = Embedding::along_principal_axes(coords, unit, positive.len())?;
     Ok(Embedding { negative_mass: negative_mass(&eigen.values), ..embedding })
 }
@@ -77,11 +76,12 @@ mod tests {
         let embedding = landmark_mds(&distances, k).unwrap();
 
         let squares = distances.sq_block();
+        let columns = distances.to_matrix().unwrap();
         let centring = Matrix::identity(n, n).add_scalar(-1.0 / n as f64);
         let eigen = symmetric_eigen(&(&centring * &squares * &centring * -0.5)).unwrap();
         let position = |a: usize| -> Vec<f64> {
             let inner = |c: usize| -> f64 {
-                let off = |j: usize| distances.matrix()[(a, j)].powi(2) - squares.row(j).sum() / n as f64;
+                let off = |j: usize| columns[(a, j)].powi(2) - squares.row(j).sum() / n as f64;
                 (0..n).map(|j| eigen.vectors[(j, c)] * off(j)).sum()
             };
             (0..k).map(|c| -0.5 * inner(c) / eigen.values[c].sqrt()).collect()

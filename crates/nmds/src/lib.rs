@@ -18,10 +18,12 @@
 mod classical;
 mod embedding;
 mod error;
+mod estimate;
 mod fmds;
 mod kernel_pca;
 mod landmark;
 mod nystrom;
+mod passes;
 mod reconstruction;
 mod regularization;
 mod smacof;
@@ -36,6 +38,7 @@ mod tests;
 pub use classical::{classical, classical_full, classical_within};
 pub use embedding::Embedding;
 pub use error::NmdsError;
+pub use estimate::{RowSample, StressEstimate, estimate_stress, sample_rows};
 pub use fmds::{fmds, fmds_within};
 pub use kernel_pca::{Bandwidth, KernelPcaOptions, kernel_pca};
 pub use landmark::landmark_mds;
@@ -44,7 +47,4 @@ pub use reconstruction::{Reconstruction, ReconstructionError, sample_eigenvalues
 pub use regularization::{Regularization, RpiAlpha};
 pub use smacof::{SmacofOptions, SmacofReport, SmacofStop, smacof, smacof_within};
 pub use spectral::{SpectralBasis, SpectralOptions, spectral};
-pub use stress::{
-    DistanceRows, Stress, StressEstimate, estimate_paper_stress, normalized_stress, paper_stress,
-    sample_rows, stress,
-};
+pub use stress::{DistanceRows, Stress, normalized_stress, paper_stress, stress};

@@ -1,8 +1,9 @@
 //! Nystrom multidimensional scaling.
 
-use linalg::{LandmarkDistances, thin_qr};
+use linalg::{LandmarkDistances, Matrix, SymmetricEigen, symmetric_eigen};
 
-use crate::squares::{Squares, center_columns, check_dim, symmetrized};
+use crate::passes::{product, sq_means, triangle};
+use crate::squares::{check_dim, check_extent, symmetrized};
 use crate::{Embedding, NmdsError, Regularization};
 
 /// Options of [`nystrom`].
@@ -47,7 +48,8 @@ impl NystromOptions {
 /// inner matrix is `-1/4 W (P U + U' P') W'` with `P` the first n1 columns of the identity. (The paper decomposes
 /// `J [C R]`, which is redundant because `C` is part of `R`.)
 ///
-/// * Cost: `O(p n n1)` time, `O(p n)` memory; n1 is n except for [`Regularization::LowRank`].
+/// * Cost: `O(p n n1)` time; n1 is n except for [`Regularization::LowRank`]. Reads the distances three times, in blocks of
+///   rows, and needs `O(p k + n^2)` memory besides them; they may be in a file.
 /// * Exact for Euclidean distances in `R^d` if `n1 >= d + 2`.
 /// * Independent of the unit of length, except for [`RpiAlpha::Paper`](crate::RpiAlpha::Paper).
 /// * Drops eigenvalues of `S` below rounding error, even if the rank includes them, and negative eigenvalues of the
@@ -80,14 +82,35 @@ impl NystromOptions {
 /// ```
 pub fn nystrom(distances: &LandmarkDistances, options: &NystromOptions) -> Result<Embedding, NmdsError> {
     let rank = options.validate(distances.n_landmarks())?;
-    let Squares { unit, columns, block } = Squares::new(distances)?;
+    let unit = check_extent(distances.max(), distances.n_points())?;
+    let block = distances.sq_block() / (unit * unit);
     let inverse = options.regularization.pseudo_inverse(&block, unit, rank)?;
 
-    let mut centred = inverse.apply(columns);
-    center_columns(&mut centred);
-    let (q, w) = thin_qr(&centred);
-    let inner = symmetrized(&w * &inverse.core * w.transpose() * -0.5);
-    Embedding::from_factors(q, &inner, options.dim, unit, inverse.rank)
+    let means = sq_means(distances, unit)?;
+    let w = triangle(distances, unit, &means, inverse.basis.as_ref())?;
+    let core = symmetrized(inverse.core) * -0.5;
+    let inner = symmetrized(&w * &core * w.transpose());
+    let (axes, values) = principal_axes(&(core * w.transpose()), &inner, options.dim)?;
+    let axes = match &inverse.basis {
+        Some(basis) => basis * axes,
+        None => axes,
+    };
+    let columns = product(distances, unit, &means, &axes)?;
+    Ok(Embedding::from_orthonormal(columns, values, unit, inverse.rank))
+}
+
+/// The axes `A` for which `X A = Q U`, and all eigenvalues, descending, for `X = Q W`, `inner = W C W' = U L U'` and
+/// `half = C W'`: from `U = inner U L⁻¹` follows `A = half U L⁻¹`, without `Q` and without an inverse of `W`, which may be
+/// singular. An axis whose eigenvalue is not above rounding error is zero.
+fn principal_axes(half: &Matrix, inner: &Matrix, dim: usize) -> Result<(Matrix, Vec<f64>), NmdsError> {
+    let SymmetricEigen { values, vectors } = symmetric_eigen(inner)?;
+    let largest = values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
+    let floor = values.len() as f64 * f64::EPSILON * largest;
+    let mut axes = (half * vectors.columns(0, dim.min(values.len()))).resize_horizontally(dim, 0.0);
+    for (mut axis, value) in axes.column_iter_mut().zip(&values) {
+        axis *= if *value > floor { 1.0 / value } else { 0.0 };
+    }
+    Ok((axes, values))
 }
 
 #[cfg(test)]
@@ -95,7 +118,6 @@ mod tests {
     use super::*;
     use crate::RpiAlpha;
     use crate::testing::{Cloud, landmark_distances, procrustes_free_gap, scaled};
-    use linalg::Matrix;
 
     const ALL: [Regularization; 5] = [
         Regularization::LowRank { rank: None },

@@ -1,7 +1,6 @@
 //! How well a few columns of squared distances reconstruct all of them.
 
-use budget::Exceeded;
-use linalg::{LandmarkDistances, Matrix, thin_qr};
+use linalg::{LandmarkDistances, LinalgError, Matrix, thin_qr};
 use rayon::prelude::*;
 
 use crate::regularization::by_magnitude;
@@ -113,7 +112,7 @@ fn by_blocks<T: Send>(
     rows: &dyn DistanceRows,
     unit: f64,
     work: impl Fn(usize, Matrix) -> T + Sync,
-) -> Result<Vec<T>, Exceeded> {
+) -> Result<Vec<T>, LinalgError> {
     let p = rows.n_points();
     let starts: Vec<usize> = (0..p).step_by(BLOCK).collect();
     let block = |start: usize| {

@@ -168,7 +168,7 @@ impl Regularization {
 #[derive(Debug)]
 pub(crate) struct PseudoInverse {
     /// `T`, n x m; `None` stands for the identity.
-    basis: Option<Matrix>,
+    pub(crate) basis: Option<Matrix>,
     /// `M`, m x m; symmetric except for CUR.
     pub(crate) core: Matrix,
     /// Number of eigenpairs or columns used.

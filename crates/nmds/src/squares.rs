@@ -18,10 +18,11 @@ pub(crate) struct Squares {
 
 impl Squares {
     /// # Errors
-    /// [`NmdsError::NoExtent`].
+    /// [`NmdsError::NoExtent`], [`NmdsError::Linalg`].
     pub(crate) fn new(distances: &LandmarkDistances) -> Result<Self, NmdsError> {
         let unit = check_extent(distances.max(), distances.n_points())?;
-        let columns = distances.matrix().map(|d| (d / unit).powi(2));
+        let mut columns = distances.to_matrix()?;
+        columns.apply(|d| *d = (*d / unit).powi(2));
         Ok(Self { unit, columns, block: distances.sq_block() / (unit * unit) })
     }
 }

@@ -2,10 +2,7 @@
 
 use std::ops::Add;
 
-use budget::Exceeded;
-use linalg::{DistanceMatrix, Matrix};
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::{Rng, SeedableRng};
+use linalg::{DistanceMatrix, LinalgError, Matrix};
 use rayon::prelude::*;
 
 /// The rows of a p x p matrix of distances, stored or computed on demand.
@@ -16,8 +13,9 @@ pub trait DistanceRows: Sync {
     /// Writes the distances from point `i` to all points.
     ///
     /// # Errors
-    /// [`Exceeded`] if the row has to be computed and that takes more than it may.
-    fn row_into(&self, i: usize, out: &mut [f64]) -> Result<(), Exceeded>;
+    /// [`LinalgError::Exceeded`] if the row has to be computed and that takes more than it may; [`LinalgError::File`] if it is in a
+    /// file that cannot be read.
+    fn row_into(&self, i: usize, out: &mut [f64]) -> Result<(), LinalgError>;
 }
 
 impl DistanceRows for DistanceMatrix {
@@ -25,7 +23,7 @@ impl DistanceRows for DistanceMatrix {
         self.n_points()
     }
 
-    fn row_into(&self, i: usize, out: &mut [f64]) -> Result<(), Exceeded> {
+    fn row_into(&self, i: usize, out: &mut [f64]) -> Result<(), LinalgError> {
         out.copy_from_slice(self.row(i));
         Ok(())
     }
@@ -60,7 +58,7 @@ pub struct Stress {
 ///
 /// # Errors
 /// Those of the rows.
-pub fn paper_stress(coords: &Matrix, rows: &dyn DistanceRows) -> Result<f64, Exceeded> {
+pub fn paper_stress(coords: &Matrix, rows: &dyn DistanceRows) -> Result<f64, LinalgError> {
     Ok(stress(coords, rows)?.paper)
 }
 
@@ -70,7 +68,7 @@ pub fn paper_stress(coords: &Matrix, rows: &dyn DistanceRows) -> Result<f64, Exc
 ///
 /// # Errors
 /// Those of the rows.
-pub fn stress(coords: &Matrix, rows: &dyn DistanceRows) -> Result<Stress, Exceeded> {
+pub fn stress(coords: &Matrix, rows: &dyn DistanceRows) -> Result<Stress, LinalgError> {
     let p = rows.n_points();
     let starts: Vec<usize> = (0..p).step_by(BLOCK).collect();
     let blocks = starts
@@ -92,7 +90,7 @@ pub fn stress(coords: &Matrix, rows: &dyn DistanceRows) -> Result<Stress, Exceed
             }
             Ok((squares, row_sums_sq, total, column_sums, kruskal))
         })
-        .collect::<Result<Vec<_>, Exceeded>>()?;
+        .collect::<Result<Vec<_>, LinalgError>>()?;
     let mut column_sums = vec![0.0; p];
     let (mut squares, mut row_sums_sq, mut total) = (0.0, 0.0, 0.0);
     let mut kruskal = Kruskal::default();
@@ -111,16 +109,16 @@ pub fn stress(coords: &Matrix, rows: &dyn DistanceRows) -> Result<Stress, Exceed
 
 /// The sums of Kruskal's stress.
 #[derive(Debug, Clone, Copy, Default)]
-struct Kruskal {
+pub(crate) struct Kruskal {
     /// `sum (d_ij - |z_i - z_j|)^2`.
-    residual: f64,
+    pub(crate) residual: f64,
     /// `sum d_ij^2`.
-    total: f64,
+    pub(crate) total: f64,
 }
 
 impl Kruskal {
     /// The sums over one row, from distances `d` and residuals `d^2 - |z|^2`.
-    fn of_row(distances: &[f64], residuals: &[f64]) -> Self {
+    pub(crate) fn of_row(distances: &[f64], residuals: &[f64]) -> Self {
         let mut sums = Self::default();
         for (&d, &r) in distances.iter().zip(residuals) {
             // Without cancellation: d - |z| = (d^2 - |z|^2) / (d + |z|).
@@ -132,7 +130,7 @@ impl Kruskal {
         sums
     }
 
-    fn stress(self) -> f64 {
+    pub(crate) fn stress(self) -> f64 {
         if self.total > 0.0 { (self.residual / self.total).sqrt() } else { 0.0 }
     }
 }
@@ -146,7 +144,7 @@ impl Add for Kruskal {
 }
 
 /// `d_ij^2 - |z_i - z_j|^2` for all `j`.
-fn residuals(coords: &Matrix, distances: &[f64], i: usize, out: &mut [f64]) {
+pub(crate) fn residuals(coords: &Matrix, distances: &[f64], i: usize, out: &mut [f64]) {
     out.iter_mut().zip(distances).for_each(|(r, d)| *r = d * d);
     for column in coords.column_iter() {
         let at = column[i];
@@ -172,88 +170,6 @@ pub fn normalized_stress(coords: &Matrix, distances: &DistanceMatrix) -> f64 {
         }
     }
     if total > 0.0 { (residual / total).sqrt() } else { 0.0 }
-}
-
-/// An estimate of [`stress`] from some of the rows.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct StressEstimate {
-    /// The estimate of [`paper_stress`], in the unit of a squared distance.
-    pub value: f64,
-    /// The estimate of [`normalized_stress`], without a unit.
-    pub normalized: f64,
-    /// 95 % confidence interval by the jackknife.
-    pub interval: [f64; 2],
-    /// Number of rows used.
-    pub n_rows: usize,
-}
-
-/// Estimates [`stress`] from the rows `sample`, which should be distinct and drawn uniformly, as by
-/// [`sample_rows`].
-///
-/// The three sums of the exact formula are means over rows, so a sample of rows estimates each without bias (rows and
-/// columns have the same sums because `E` is symmetric).
-///
-/// Cost: each sampled row once, `O(p k)` time each.
-///
-/// # Errors
-/// Those of the rows.
-pub fn estimate_paper_stress(
-    coords: &Matrix,
-    rows: &dyn DistanceRows,
-    sample: &[usize],
-) -> Result<StressEstimate, Exceeded> {
-    let p = rows.n_points();
-    let n = p as f64;
-    // For each row, the mean square and the mean of the residuals.
-    let (moments, kruskal): (Vec<[f64; 2]>, Vec<Kruskal>) = sample
-        .par_iter()
-        .map(|&i| {
-            let (mut row, mut distances) = (vec![0.0; p], vec![0.0; p]);
-            rows.row_into(i, &mut distances)?;
-            residuals(coords, &distances, i, &mut row);
-            let moments = [row.iter().map(|d| d * d).sum::<f64>() / n, row.iter().sum::<f64>() / n];
-            Ok((moments, Kruskal::of_row(&distances, &row)))
-        })
-        .collect::<Result<Vec<_>, Exceeded>>()?
-        .into_iter()
-        .unzip();
-    let normalized = kruskal.into_iter().fold(Kruskal::default(), Add::add).stress();
-    let stress = |sums: [f64; 3], m: f64| {
-        let [squares, means, means_sq] = sums.map(|s| s / m);
-        0.5 * (squares - 2.0 * means_sq + means * means).max(0.0).sqrt()
-    };
-    let sums = moments.iter().fold([0.0; 3], |[a, b, c], [s, m]| [a + s, b + m, c + m * m]);
-    let m = moments.len() as f64;
-    let value = stress(sums, m);
-    let half = if moments.len() < 2 {
-        f64::INFINITY
-    } else {
-        let left_out: Vec<f64> = moments
-            .iter()
-            .map(|[s, mean]| stress([sums[0] - s, sums[1] - mean, sums[2] - mean * mean], m - 1.0))
-            .collect();
-        let centre = left_out.iter().sum::<f64>() / m;
-        let variance = left_out.iter().map(|v| (v - centre).powi(2)).sum::<f64>() * (m - 1.0) / m;
-        // Finite population correction: rows are drawn without replacement.
-        1.96 * (variance * (1.0 - m / n)).sqrt()
-    };
-    let interval = [(value - half).max(0.0), value + half];
-    Ok(StressEstimate { value, normalized, interval, n_rows: moments.len() })
-}
-
-/// `m` distinct numbers below `p` (at most `p`), ascending, drawn with `seed` by Floyd's algorithm.
-#[must_use]
-pub fn sample_rows(p: usize, m: usize, seed: u64) -> Vec<usize> {
-    let m = m.min(p);
-    let mut rng = ChaCha8Rng::seed_from_u64(seed);
-    let mut chosen = std::collections::BTreeSet::new();
-    for limit in p - m..p {
-        let pick = (rng.next_u64() % (limit as u64 + 1)) as usize;
-        if !chosen.insert(pick) {
-            chosen.insert(limit);
-        }
-    }
-    chosen.into_iter().collect()
 }
 
 #[cfg(test)]
@@ -300,31 +216,9 @@ mod tests {
         let embedding = classical(&distances, 2).unwrap();
         let with = |threads: usize| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-            pool.install(|| {
-                let estimate = estimate_paper_stress(&embedding.coords, &distances, &sample_rows(500, 50, 1));
-                (paper_stress(&embedding.coords, &distances).unwrap().to_bits(), estimate.unwrap())
-            })
+            pool.install(|| paper_stress(&embedding.coords, &distances).unwrap().to_bits())
         };
         assert_eq!(with(1), with(4));
-    }
-
-    #[test]
-    fn the_estimate_covers_the_exact_value_and_equals_it_for_all_rows() {
-        let cloud = crate::testing::Cloud::new(400, 3, 21);
-        let distances = DistanceMatrix::from_pairs(400, |i, j| cloud.distance(i, j).powf(0.7)).unwrap();
-        let coords = classical(&distances, 2).unwrap().coords;
-        let exact = paper_stress(&coords, &distances).unwrap();
-        let covered = (0..40)
-            .filter(|&seed| {
-                let [lo, hi] =
-                    estimate_paper_stress(&coords, &distances, &sample_rows(400, 60, seed)).unwrap().interval;
-                (lo..=hi).contains(&exact)
-            })
-            .count();
-        assert!(covered >= 34, "only {covered} of 40 intervals contain the exact value");
-        let whole = estimate_paper_stress(&coords, &distances, &sample_rows(400, 1000, 0)).unwrap();
-        assert!((whole.value / exact - 1.0).abs() < 1e-12 && whole.n_rows == 400);
-        assert!(whole.interval[1] - whole.interval[0] < 1e-9 * exact);
     }
 
     #[test]
@@ -333,9 +227,6 @@ mod tests {
         let embedding = classical(&distances, 3).unwrap();
         let found = stress(&embedding.coords, &distances).unwrap().normalized;
         assert!((found / normalized_stress(&embedding.coords, &distances) - 1.0).abs() < 1e-12);
-        let all: Vec<usize> = (0..151).collect();
-        let estimate = estimate_paper_stress(&embedding.coords, &distances, &all).unwrap();
-        assert!((estimate.normalized / found - 1.0).abs() < 1e-12);
         let large = DistanceMatrix::from_pairs(151, |i, j| 1024.0 * distances.get(i, j)).unwrap();
         assert_eq!(stress(&(embedding.coords * 1024.0), &large).unwrap().normalized, found);
         assert_eq!(stress(&Matrix::zeros(151, 3), &distances).unwrap().normalized, 1.0);

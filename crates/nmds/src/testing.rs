@@ -48,5 +48,5 @@ pub(crate) fn procrustes_free_gap(cloud: &Cloud, embedding: &Embedding) -> f64 {
 
 /// The same distances in another unit of length.
 pub(crate) fn scaled(distances: &LandmarkDistances, scale: f64) -> LandmarkDistances {
-    LandmarkDistances::new(distances.landmarks().to_vec(), distances.matrix() * scale).unwrap()
+    LandmarkDistances::new(distances.landmarks().to_vec(), distances.to_matrix().unwrap() * scale).unwrap()
 }

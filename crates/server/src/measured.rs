@@ -28,7 +28,7 @@ impl Measured {
     /// The surface, with the form of its vertices from that of the [prepared](Surface::for_description) surface.
     pub(crate) fn new(surface: Surface, refined: &Surface, embedded: &Embedded) -> Result<Self, Error> {
         let form = embedded.form(refined)?.leading(surface.mesh().vertex_areas())?;
-        let distances = embedded.distances.column(0)[..surface.mesh().n_vertices()].to_vec();
+        let distances = embedded.distances.column(0)?[..surface.mesh().n_vertices()].to_vec();
         Ok(Self { surface, form, distances })
     }
 

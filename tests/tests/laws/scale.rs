@@ -62,7 +62,7 @@ fn every_solver_measures_in_any_unit() {
                     Sampling::Farthest.start(solver.as_ref(), FirstSample::default(), 0).unwrap();
                 sampler.extend_to(12).unwrap();
                 let samples = sampler.distances(12).unwrap();
-                let columns: Vec<f64> = (0..12).flat_map(|i| samples.column(i).to_vec()).collect();
+                let columns: Vec<f64> = (0..12).flat_map(|i| samples.column(i).unwrap().to_vec()).collect();
                 (solver.distances(VertexId(3)).unwrap(), samples.landmarks().to_vec(), columns)
             };
             let expected = solve(&mesh);

@@ -7,8 +7,9 @@ use std::time::Instant;
 use budget::{Budget, Exceeded};
 use geodesics::{DistanceSolver, FirstSample, Sampler, Sampling, Source};
 use linalg::{DistanceMatrix, LandmarkDistances};
-use nmds::{Embedding, NmdsError, estimate_paper_stress};
+use nmds::{Embedding, NmdsError, RowSample, estimate_stress};
 
+use super::plan::Plan;
 use super::stress::KnownRows;
 use crate::error::Error;
 use crate::observer::Observer;
@@ -97,6 +98,8 @@ pub(super) struct Measurement<'a> {
     pub(super) observer: &'a dyn Observer,
     /// The limits of all work on the surface.
     pub(super) budget: Budget,
+    /// Whether the method reads distances in blocks, so that they may be in a file.
+    pub(super) streams: bool,
     /// Seconds spent on distances so far.
     pub(super) seconds: f64,
 }
@@ -110,9 +113,14 @@ impl Measurement<'_> {
         let (solver, sampling) = (self.solver, self.sampling);
         self.observer.begin("distances", self.samples.count_or(AUTO_LAST));
         let mut sampler = self.timed(|m| sampling.start(solver, m.first, m.seed))?;
+        if self.streams && self.budget.spill().is_some() {
+            let store = self.plan().store(&self.budget)?;
+            self.timed(|_| sampler.move_to(store))?;
+        }
         match self.samples {
             Samples::Count(n) => {
-                let distances = self.take(sampler.as_mut(), n)?;
+                self.extend(sampler.as_mut(), n)?;
+                let distances = self.timed(|_| sampler.into_distances(n))?;
                 self.budget.check()?;
                 let embedding = embed(&distances)?;
                 self.budget.check()?;
@@ -135,9 +143,9 @@ impl Measurement<'_> {
             let more = self.take(sampler, n)?;
             let refined = embed(&more)?;
             let rows = KnownRows(&more);
-            let stress = |e: &Embedding| {
-                Ok::<_, Exceeded>(estimate_paper_stress(&e.coords, &rows, more.landmarks())?.value)
-            };
+            // All landmarks, so that both are compared on the same rows.
+            let sample = RowSample::of_rows(more.landmarks().to_vec(), more.n_points());
+            let stress = |e: &Embedding| Ok::<_, Error>(estimate_stress(&e.coords, &rows, &sample)?.value);
             let settled = stress(&embedding)? <= (1.0 + AUTO_GAIN) * stress(&refined)?;
             if settled || more.n_landmarks() < n || n >= AUTO_LAST {
                 return Ok((refined, more));
@@ -146,13 +154,22 @@ impl Measurement<'_> {
         }
     }
 
+    fn plan(&self) -> Plan {
+        Plan::new(self.solver.n_vertices(), self.samples.count_or(AUTO_LAST))
+    }
+
+    /// Takes samples until there are `n`, or as many as there are vertices.
+    fn extend(&mut self, sampler: &mut dyn Sampler, n: usize) -> Result<(), Error> {
+        if !self.streams || self.budget.spill().is_none() {
+            let p = self.solver.n_vertices();
+            check_memory(p, n.min(p), &self.budget)?;
+        }
+        Ok(self.timed(|_| sampler.extend_to(n))?)
+    }
+
     fn take(&mut self, sampler: &mut dyn Sampler, n: usize) -> Result<LandmarkDistances, Error> {
-        let p = self.solver.n_vertices();
-        check_memory(p, n.min(p), &self.budget)?;
-        self.timed(|_| {
-            sampler.extend_to(n)?;
-            Ok(sampler.distances(n)?)
-        })
+        self.extend(sampler, n)?;
+        Ok(self.timed(|_| sampler.distances(n))?)
     }
 
     /// The distances between all pairs of vertices.

@@ -1,20 +1,22 @@
 //! From a surface to coordinates.
 
+use std::borrow::Cow;
 use std::time::Instant;
 
 use descriptors::CanonicalForm;
 use geodesics::FirstSample;
 use linalg::LandmarkDistances;
+use mesh::RepairReport;
 use nmds::Embedding;
-use surface::VertexId;
+use surface::{IntrinsicMesh, VertexId};
 
 use super::distances::Measurement;
 use super::method::Outcome;
 use super::options::FormOptions;
 use super::report::{EmbedReport, SecondsReport};
-use super::stress::{StressChoice, StressOptions, measure};
+use super::stress::{Known, Rows, StressChoice, StressOptions};
 use crate::error::Error;
-use crate::input::Surface;
+use crate::input::{InputMap, Surface};
 use crate::observer::{Observed, Observer};
 
 /// An embedded surface.
@@ -79,13 +81,92 @@ pub fn embed_and_measure(
     observer: &dyn Observer,
 ) -> Result<Embedded, Error> {
     let options = FormOptions { repair: surface.repair, ..options.clone() }.normalized();
-    let first = match options.first_sample {
+    let first = first_sample(surface, &options)?;
+    let origin = Origin {
+        report: &surface.repaired.report,
+        input_vertex: &|v| surface.input_vertex(v),
+        load_seconds: surface.load_seconds,
+        repair_seconds: surface.repair_seconds,
+    };
+    run(Cow::Borrowed(&surface.intrinsic), &origin, options, first, stress, observer)
+}
+
+/// Embeds a surface as [`embed_and_measure`] does, in less memory: the mesh is dropped before distances are measured. The
+/// result is the same.
+///
+/// If the [budget](Observer::budget) limits memory and names a folder for temporary files, distances that do not fit are
+/// kept in a file there, by methods that can read them in blocks: NMDS and landmark MDS.
+///
+/// ```
+/// use canonform::{Budget, FormOptions, StressOptions, Surface, embed_and_measure, embed_and_release, mesh::shapes};
+///
+/// let surface = Surface::new(&shapes::torus(40, 20, 2.0, 0.7), &Default::default())?;
+/// let (options, stress) = (FormOptions::default(), StressOptions::default());
+/// let usual = embed_and_measure(&surface, &options, &stress, &())?;
+/// // Too little for the distances, which take 640 kB.
+/// let budget = Budget::unlimited().with_memory(1_200_000).with_spill(std::env::temp_dir());
+/// let (lean, map) = embed_and_release(surface, &options, &stress, &budget)?;
+/// assert_eq!(lean.embedding, usual.embedding);
+/// assert_eq!(map.input_to_repaired.len(), 800);
+/// # Ok::<(), canonform::Error>(())
+/// ```
+///
+/// # Errors
+/// As [`embed`], and [`Error::EmbeddingTooLarge`].
+pub fn embed_and_release(
+    surface: Surface,
+    options: &FormOptions,
+    stress: &StressOptions,
+    observer: &dyn Observer,
+) -> Result<(Embedded, InputMap), Error> {
+    let options = FormOptions { repair: surface.repair, ..options.clone() }.normalized();
+    let first = first_sample(&surface, &options)?;
+    let (intrinsic, map) = surface.into_parts();
+    let origin = Origin {
+        report: &map.report,
+        input_vertex: &|v| map.input_vertex[v.index()],
+        load_seconds: map.load_seconds,
+        repair_seconds: map.repair_seconds,
+    };
+    let embedded = run(Cow::Owned(intrinsic), &origin, options, first, stress, observer)?;
+    Ok((embedded, map))
+}
+
+/// The first sample, as a vertex of the repaired mesh.
+fn first_sample(surface: &Surface, options: &FormOptions) -> Result<FirstSample, Error> {
+    Ok(match options.first_sample {
         FirstSample::Farthest => FirstSample::Farthest,
         FirstSample::Vertex(input) => FirstSample::Vertex(surface.repaired_vertex(input)?),
-    };
+    })
+}
+
+/// What the report tells of the input.
+struct Origin<'a> {
+    report: &'a RepairReport,
+    /// The input vertex of a vertex of the repaired mesh.
+    input_vertex: &'a dyn Fn(VertexId) -> VertexId,
+    load_seconds: f64,
+    repair_seconds: f64,
+}
+
+fn run(
+    surface: Cow<'_, IntrinsicMesh>,
+    origin: &Origin<'_>,
+    options: FormOptions,
+    first: FirstSample,
+    stress: &StressOptions,
+    observer: &dyn Observer,
+) -> Result<Embedded, Error> {
     let start = Instant::now();
     let budget = observer.budget();
-    let solver = options.geodesic.prepare_within(&surface.intrinsic, &budget)?;
+    let measures = options.method.has_unit() && stress.choice != StressChoice::Skip;
+    let against = stress.against.filter(|other| measures && *other != options.geodesic);
+    let (solver, surface) = match surface {
+        Cow::Owned(surface) if against.is_none() && !options.method.needs_surface() => {
+            (options.geodesic.prepare_owned_within(surface, &budget)?, None)
+        }
+        surface => (options.geodesic.prepare_within(&surface, &budget)?, Some(surface)),
+    };
     let solver = Observed { solver: solver.as_ref(), observer };
     let mut measurement = Measurement {
         solver: &solver,
@@ -95,29 +176,35 @@ pub fn embed_and_measure(
         seed: options.seed,
         observer,
         budget: budget.clone(),
+        streams: options.method.streams(),
         seconds: start.elapsed().as_secs_f64(),
     };
-    let Outcome { embedding, distances, descent } =
-        options.method.run(&surface.intrinsic, options.dim, &mut measurement)?;
+    let Outcome { embedding, distances, all, descent } =
+        options.method.run(surface.as_deref(), options.dim, &mut measurement)?;
     let (elapsed, geodesics) = (start.elapsed().as_secs_f64(), measurement.seconds);
 
     let start = Instant::now();
-    let stress_report = match stress.against {
-        _ if !options.method.has_unit() || stress.choice == StressChoice::Skip => None,
-        Some(other) if other != options.geodesic => {
-            let solver = other.prepare_within(&surface.intrinsic, &budget)?;
+    let known = Known { coords: &embedding.coords, samples: &distances };
+    let stress_report = match (against, surface.as_deref()) {
+        _ if !measures => None,
+        (Some(other), Some(surface)) => {
+            let solver = other.prepare_within(surface, &budget)?;
             let solver = Observed { solver: solver.as_ref(), observer };
-            Some(measure(&embedding.coords, &solver, other, stress, observer)?)
+            Some(known.stress(Rows::Solved(&solver), other, stress, observer)?)
         }
-        _ => Some(measure(&embedding.coords, &solver, options.geodesic, stress, observer)?),
+        _ => {
+            let rows = all.as_ref().map_or(Rows::Solved(&solver), Rows::Known);
+            Some(known.stress(rows, options.geodesic, stress, observer)?)
+        }
     };
+    drop(all);
     let seconds = SecondsReport {
-        load: surface.load_seconds,
-        repair: surface.repair_seconds,
+        load: origin.load_seconds,
+        repair: origin.repair_seconds,
         geodesics,
         embedding: elapsed - geodesics,
         stress: start.elapsed().as_secs_f64(),
-        total: surface.load_seconds + surface.repair_seconds + elapsed,
+        total: origin.load_seconds + origin.repair_seconds + elapsed,
     };
     let samples = match options.method.is_sampled() {
         true => distances.landmarks(),
@@ -128,20 +215,20 @@ pub fn embed_and_measure(
         geodesic: options.geodesic.name(),
         sampling: options.method.is_sampled().then(|| options.sampling.name()),
         regularization: options.method.regularization().map(|chosen| chosen.name()),
-        n_vertices: surface.n_input_vertices(),
-        n_faces: surface.input_faces.len(),
+        n_vertices: origin.report.input_vertices,
+        n_faces: origin.report.input_faces,
         n_embedded: embedding.n_points(),
         n_samples: if options.method.is_sampled() { samples.len() } else { embedding.n_points() },
         rank: embedding.rank,
         dim: embedding.dim(),
-        samples: samples.iter().map(|&v| surface.input_vertex(VertexId::from(v)).0).collect(),
+        samples: samples.iter().map(|&v| (origin.input_vertex)(VertexId::from(v)).0).collect(),
         eigenvalues: embedding.eigenvalues.clone(),
         negative_mass: embedding.negative_mass,
         empty_dimensions: embedding.dim() - embedding.positive_dims(),
         stress: stress_report,
         descent: descent.map(Into::into),
         seconds,
-        repair: surface.repaired.report.clone(),
+        repair: origin.report.clone(),
     };
     Ok(Embedded { options, embedding, distances, report })
 }

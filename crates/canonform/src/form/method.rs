@@ -1,7 +1,7 @@
 //! Embedding methods: one entry here makes a method available to every program.
 
 use descriptors::LaplaceSpectrum;
-use linalg::{LandmarkDistances, SparseSymmetric};
+use linalg::{DistanceMatrix, LandmarkDistances, SparseSymmetric};
 use nmds::{
     Bandwidth, Embedding, KernelPcaOptions, NystromOptions, Regularization, SmacofOptions, SmacofReport,
     SpectralBasis, SpectralOptions, classical_within, fmds_within, kernel_pca, landmark_mds, nystrom,
@@ -138,21 +138,36 @@ impl EmbedMethod {
         !matches!(self, Self::Classical)
     }
 
+    /// Whether the method reads distances from samples in blocks, so that they need not fit into memory.
+    pub(super) fn streams(&self) -> bool {
+        matches!(self, Self::Nystrom { .. } | Self::Landmark)
+    }
+
+    /// Whether the method needs the surface besides distances.
+    pub(super) fn needs_surface(&self) -> bool {
+        matches!(self, Self::Spectral { .. } | Self::Fmds)
+    }
+
     /// Measures the distances that the method needs and embeds in `dim` dimensions.
+    ///
+    /// # Panics
+    /// If the method [needs the surface](Self::needs_surface) and there is none.
     pub(super) fn run(
         &self,
-        surface: &IntrinsicMesh,
+        surface: Option<&IntrinsicMesh>,
         dim: usize,
         measurement: &mut Measurement<'_>,
     ) -> Result<Outcome, Error> {
         let budget = measurement.budget.clone();
-        let sampled = |(embedding, distances)| Outcome { embedding, distances, descent: None };
+        let sampled = |(embedding, distances)| Outcome { embedding, distances, all: None, descent: None };
+        let surface = || surface.unwrap_or_else(|| unreachable!("{} needs the surface", self.name()));
         Ok(match *self {
             Self::Nystrom { regularization } => {
                 sampled(measurement.sampled(|d| nystrom(d, &NystromOptions { regularization, dim }))?)
             }
             Self::Landmark => sampled(measurement.sampled(|d| landmark_mds(d, dim))?),
             Self::Spectral { eigenvectors, mu } => {
+                let surface = surface();
                 let p = surface.n_vertices();
                 check_memory(p, eigenvectors.min(p), &budget)?;
                 let LaplaceSpectrum { values, vectors, masses, .. } =
@@ -161,7 +176,7 @@ impl EmbedMethod {
                 sampled(measurement.sampled(|d| spectral(d, &basis, &SpectralOptions { mu, dim }))?)
             }
             Self::Fmds => {
-                let laplacian = Laplacian::new(surface);
+                let laplacian = Laplacian::new(surface());
                 let (p, masses) = (laplacian.n_vertices(), laplacian.masses());
                 let stiffness = SparseSymmetric::from_entries(p, laplacian.stiffness_entries());
                 sampled(measurement.sampled(|d| fmds_within(d, &stiffness, &masses, dim, &budget))?)
@@ -172,15 +187,16 @@ impl EmbedMethod {
             Self::Classical => {
                 let all = measurement.all_pairs()?;
                 let embedding = classical_within(&all, dim, &budget)?;
-                Outcome { embedding, distances: measurement.columns_of(&all)?, descent: None }
+                let distances = measurement.columns_of(&all)?;
+                Outcome { embedding, distances, all: Some(all), descent: None }
             }
             Self::Smacof { regularization, descent } => {
                 let (start, distances) =
                     measurement.sampled(|d| nystrom(d, &NystromOptions { regularization, dim }))?;
-                let (embedding, report) =
-                    smacof_within(&start.coords, &measurement.all_pairs()?, &descent, &budget)?;
+                let all = measurement.all_pairs()?;
+                let (embedding, report) = smacof_within(&start.coords, &all, &descent, &budget)?;
                 let embedding = Embedding { rank: start.rank, ..embedding };
-                Outcome { embedding, distances, descent: Some(report) }
+                Outcome { embedding, distances, all: Some(all), descent: Some(report) }
             }
         })
     }
@@ -191,6 +207,8 @@ pub(super) struct Outcome {
     pub(super) embedding: Embedding,
     /// Distances from the samples to all vertices; from as many of them for a method without samples.
     pub(super) distances: LandmarkDistances,
+    /// Distances between all vertices, if the method has measured them.
+    pub(super) all: Option<DistanceMatrix>,
     pub(super) descent: Option<SmacofReport>,
 }
 

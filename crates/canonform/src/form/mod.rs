@@ -10,13 +10,14 @@ mod distances;
 mod embed;
 mod method;
 mod options;
+mod plan;
 mod report;
 mod side_by_side;
 mod stress;
 
 pub use describe::{ShapeDescription, describe, describe_within};
 pub use distances::{DISTANCES_LIMIT, Samples};
-pub use embed::{Embedded, embed, embed_and_measure};
+pub use embed::{Embedded, embed, embed_and_measure, embed_and_release};
 pub use method::EmbedMethod;
 pub use options::{DescribeOptions, FormOptions};
 pub use report::{DescentReport, EmbedReport, SecondsReport};

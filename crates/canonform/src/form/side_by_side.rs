@@ -2,9 +2,9 @@
 
 use budget::Exceeded;
 use geodesics::Method;
-use linalg::LandmarkDistances;
+use linalg::{LandmarkDistances, Matrix};
 use mesh::RepairReport;
-use nmds::DistanceRows;
+use nmds::{DistanceRows, RowSample};
 use serde::Serialize;
 use surface::VertexId;
 
@@ -86,6 +86,8 @@ pub fn compare_methods(
     watch: &dyn Fn(&mut dyn FnMut()) -> usize,
 ) -> Result<MethodsReport, Error> {
     let (reference, rows) = reference(surface, options.geodesic, stress, observer)?;
+    let of_rows = |rows: &Vec<usize>| RowSample::of_rows(rows.clone(), reference.n_points());
+    let sample = |_: &Matrix, _: f64| Ok(rows.as_ref().map(of_rows));
     let (mut methods, mut first_error) = (Vec::new(), None);
     for (name, changed) in variants {
         let mut result = None;
@@ -95,7 +97,7 @@ pub fn compare_methods(
                 let report = &embedded.report;
                 let stress = || {
                     let coords = &embedded.embedding.coords;
-                    StressReport::new(coords, reference.as_ref(), rows.as_deref(), options.geodesic)
+                    StressReport::new(coords, reference.as_ref(), &sample, options.geodesic)
                 };
                 let facts = MethodFacts {
                     stress: changed.method.has_unit().then(stress).transpose()?,
@@ -145,7 +147,7 @@ fn reference(
     observer: &dyn Observer,
 ) -> Result<Reference, Error> {
     let p = surface.mesh().n_vertices();
-    let rows = stress.choice.rows(p, stress.seed);
+    let rows = stress.choice.shared_rows(p, stress.seed);
     let budget = observer.budget();
     check_memory(p, rows.as_ref().map_or(p, Vec::len), &budget)?;
     observer.begin("stress", 1);

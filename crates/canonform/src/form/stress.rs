@@ -2,20 +2,29 @@
 
 use std::borrow::Borrow;
 
-use budget::Exceeded;
 use geodesics::{DistanceSolver, Method};
-use linalg::{LandmarkDistances, Matrix};
-use nmds::{DistanceRows, StressEstimate, estimate_paper_stress, sample_rows, stress};
+use linalg::{DistanceMatrix, LandmarkDistances, LinalgError, Matrix};
+use nmds::{DistanceRows, RowSample, StressEstimate, estimate_stress, sample_rows, stress};
 use serde::Serialize;
 use surface::{VertexId, unit_for};
 
+use crate::error::Error;
 use crate::observer::Observer;
 
-/// [`StressChoice::Auto`] is exact up to this many vertices.
-const EXACT_LIMIT: usize = 5000;
+/// [`StressChoice::Auto`] is exact up to this many vertices, where that takes a tenth of a second.
+const EXACT_LIMIT: usize = 1000;
 
-/// Number of rows an estimate is made from.
+/// [`StressChoice::Auto`] measures one row for this many samples.
+const SAMPLES_PER_ROW: usize = 5;
+
+/// Fewest rows that give a useful interval.
+const FEWEST_ROWS: usize = 4;
+
+/// Number of rows of [`StressChoice::Estimate`].
 const ESTIMATE_ROWS: usize = 100;
+
+/// As many vertices as methods are compared on by all pairs.
+const COMPARED_EXACTLY: usize = 5000;
 
 /// How the stress of an embedding is measured.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -32,7 +41,8 @@ pub struct StressOptions {
 /// From which distances a stress is measured.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum StressChoice {
-    /// From all pairs up to 5,000 vertices, estimated beyond.
+    /// From all pairs up to 1,000 vertices and where the method has measured them, else estimated from one row for every 5
+    /// samples, at least 4, so that it takes about a fifth of the time for distances.
     #[default]
     Auto,
     /// From the distances between all pairs of vertices.
@@ -44,10 +54,21 @@ pub enum StressChoice {
 }
 
 impl StressChoice {
-    /// The vertices whose distances to all others are needed, of `n_vertices`; `None` for all of them.
-    pub(super) fn rows(self, n_vertices: usize, seed: u64) -> Option<Vec<usize>> {
+    /// Number of rows that an estimate for a form of `n_samples` samples is made from; `None` for all of them.
+    fn n_rows(self, n_vertices: usize, n_samples: usize) -> Option<usize> {
+        let n = match self {
+            Self::Auto if n_vertices <= EXACT_LIMIT => return None,
+            Self::Auto => (n_samples / SAMPLES_PER_ROW).max(FEWEST_ROWS),
+            Self::Exact => return None,
+            Self::Estimate | Self::Skip => ESTIMATE_ROWS,
+        };
+        (n < n_vertices).then_some(n)
+    }
+
+    /// The rows that several embeddings of the same vertices are compared by; `None` for all of them.
+    pub(super) fn shared_rows(self, n_vertices: usize, seed: u64) -> Option<Vec<usize>> {
         let is_exact = match self {
-            Self::Auto => n_vertices <= EXACT_LIMIT,
+            Self::Auto => n_vertices <= COMPARED_EXACTLY,
             Self::Exact => true,
             Self::Estimate | Self::Skip => false,
         };
@@ -71,6 +92,8 @@ pub struct StressReport {
     pub kind: StressKind,
     /// A 95 % confidence interval; the value twice when it is exact.
     pub interval: [f64; 2],
+    /// Number of vertices whose distances to all others were used.
+    pub rows: usize,
 }
 
 /// Where a stress comes from.
@@ -84,33 +107,36 @@ pub enum StressKind {
 }
 
 impl StressReport {
-    /// The stress of `coords` against distances by `method`: of the given rows, or of all.
+    /// The stress of `coords` against distances by `method`: of all rows, or of those that `sample` takes for
+    /// coordinates in the unit that it is given.
     pub(super) fn new(
         coords: &Matrix,
         distances: &dyn DistanceRows,
-        rows: Option<&[usize]>,
+        sample: &dyn Fn(&Matrix, f64) -> Result<Option<RowSample>, LinalgError>,
         method: Method,
-    ) -> Result<Self, Exceeded> {
+    ) -> Result<Self, Error> {
         // The fourth powers of very short or very long lengths vanish or overflow.
         let unit = unit_for(coords.amax());
         if unit != 1.0 {
             let distances = ScaledRows { rows: distances, unit };
-            let scaled = Self::new(&(coords / unit), &distances, rows, method)?;
+            let sample = |coords: &Matrix, _| sample(coords, unit);
+            let scaled = Self::new(&(coords / unit), &distances, &sample, method)?;
             let back = |value: f64| value * unit * unit;
             return Ok(Self { value: back(scaled.value), interval: scaled.interval.map(back), ..scaled });
         }
-        let (value, normalized, kind, interval) = match rows {
+        let (value, normalized, kind, interval, rows) = match sample(coords, 1.0)? {
             None => {
                 let found = stress(coords, distances)?;
-                (found.paper, found.normalized, StressKind::Exact, [found.paper; 2])
+                let (exact, all) = (StressKind::Exact, distances.n_points());
+                (found.paper, found.normalized, exact, [found.paper; 2], all)
             }
-            Some(rows) => {
-                let StressEstimate { value, normalized, interval, .. } =
-                    estimate_paper_stress(coords, distances, rows)?;
-                (value, normalized, StressKind::Estimated, interval)
+            Some(sample) => {
+                let StressEstimate { value, normalized, interval, n_rows } =
+                    estimate_stress(coords, distances, &sample)?;
+                (value, normalized, StressKind::Estimated, interval, n_rows)
             }
         };
-        Ok(Self { measure: "paper_stress", geodesic: method.name(), value, normalized, kind, interval })
+        Ok(Self { measure: "paper_stress", geodesic: method.name(), value, normalized, kind, interval, rows })
     }
 }
 
@@ -125,7 +151,7 @@ impl DistanceRows for ScaledRows<'_> {
         self.rows.n_points()
     }
 
-    fn row_into(&self, i: usize, out: &mut [f64]) -> Result<(), Exceeded> {
+    fn row_into(&self, i: usize, out: &mut [f64]) -> Result<(), LinalgError> {
         self.rows.row_into(i, out)?;
         out.iter_mut().for_each(|distance| *distance /= self.unit);
         Ok(())
@@ -140,8 +166,8 @@ impl DistanceRows for SolvedRows<'_> {
         self.0.n_vertices()
     }
 
-    fn row_into(&self, i: usize, out: &mut [f64]) -> Result<(), Exceeded> {
-        self.0.distances_into(VertexId::from(i), out)
+    fn row_into(&self, i: usize, out: &mut [f64]) -> Result<(), LinalgError> {
+        Ok(self.0.distances_into(VertexId::from(i), out)?)
     }
 }
 
@@ -153,23 +179,52 @@ impl<T: Borrow<LandmarkDistances> + Sync> DistanceRows for KnownRows<T> {
         self.0.borrow().n_points()
     }
 
-    fn row_into(&self, i: usize, out: &mut [f64]) -> Result<(), Exceeded> {
+    fn row_into(&self, i: usize, out: &mut [f64]) -> Result<(), LinalgError> {
         let known = self.0.borrow();
         let landmark = known.landmarks().iter().position(|&l| l == i);
-        out.copy_from_slice(known.column(landmark.unwrap_or_else(|| unreachable!("row {i} is not known"))));
+        let landmark = landmark.unwrap_or_else(|| unreachable!("row {i} is not known"));
+        out.copy_from_slice(&known.column(landmark)?);
         Ok(())
     }
 }
 
-/// Measures the stress of `coords` against the distances of `solver`, which belongs to `method`.
-pub(super) fn measure(
-    coords: &Matrix,
-    solver: &dyn DistanceSolver,
-    method: Method,
-    options: &StressOptions,
-    observer: &dyn Observer,
-) -> Result<StressReport, Exceeded> {
-    let rows = options.choice.rows(solver.n_vertices(), options.seed);
-    observer.begin("stress", rows.as_ref().map_or(solver.n_vertices(), Vec::len));
-    StressReport::new(coords, &SolvedRows(solver), rows.as_deref(), method)
+/// What is known of an embedding before its stress is measured.
+pub(super) struct Known<'a> {
+    pub(super) coords: &'a Matrix,
+    /// Distances from the samples, which tell what rows are worth measuring.
+    pub(super) samples: &'a LandmarkDistances,
+}
+
+/// The distances that a stress is measured against.
+pub(super) enum Rows<'a> {
+    /// Solved row by row.
+    Solved(&'a dyn DistanceSolver),
+    /// Measured before.
+    Known(&'a DistanceMatrix),
+}
+
+impl Known<'_> {
+    /// Measures the stress against distances by `method`.
+    pub(super) fn stress(
+        &self,
+        rows: Rows<'_>,
+        method: Method,
+        options: &StressOptions,
+        observer: &dyn Observer,
+    ) -> Result<StressReport, Error> {
+        let p = self.coords.nrows();
+        let n_rows = match (&rows, options.choice) {
+            (Rows::Known(_), StressChoice::Auto) => None,
+            (_, choice) => choice.n_rows(p, self.samples.n_landmarks()),
+        };
+        observer.begin("stress", n_rows.unwrap_or(p));
+        let sample = |coords: &Matrix, unit: f64| {
+            let drawn = |m| RowSample::by_landmarks(coords, self.samples, unit, m, options.seed);
+            n_rows.map(drawn).transpose()
+        };
+        match rows {
+            Rows::Solved(solver) => StressReport::new(self.coords, &SolvedRows(solver), &sample, method),
+            Rows::Known(all) => StressReport::new(self.coords, all, &sample, method),
+        }
+    }
 }

@@ -14,4 +14,4 @@ pub use dataset::{Dataset, LabelFile, ShapeFile, SkipKind, Skipped, label_of, li
 pub(crate) use dataset::{count_skipped, drop_single_class, label_in};
 pub use path::{PathPoint, SurfacePath};
 pub use point::{BadPoint, InputPoint};
-pub use repaired::Surface;
+pub use repaired::{InputMap, Surface};

@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use budget::Budget;
 use mesh::io::ReadLimits;
-use mesh::{MeshError, RepairOptions, Repaired, TriMesh, io, repair_and_measure};
+use mesh::{MeshError, RepairOptions, RepairReport, Repaired, TriMesh, io, repair_and_measure};
 use nalgebra::Point3;
 use surface::{IntrinsicMesh, VertexId};
 
@@ -118,6 +118,21 @@ impl Surface {
         })
     }
 
+    /// The geometry, and everything that relates results to the input. The mesh with its coordinates is dropped.
+    #[must_use]
+    pub fn into_parts(self) -> (IntrinsicMesh, InputMap) {
+        let map = InputMap {
+            repair: self.repair,
+            report: self.repaired.report,
+            input_faces: self.input_faces,
+            input_to_repaired: self.repaired.input_to_repaired,
+            input_vertex: self.input_vertex,
+            load_seconds: self.load_seconds,
+            repair_seconds: self.repair_seconds,
+        };
+        (self.intrinsic, map)
+    }
+
     /// The same surface on another mesh, whose first vertices are those of the repaired mesh. `origins` are vertices of
     /// the repaired mesh near the others.
     #[must_use]
@@ -167,20 +182,7 @@ impl Surface {
     /// The faces of the input with new positions, given for the vertices of the repaired mesh. Vertices that the
     /// repair dropped have no position; they are left out, and so are their faces.
     pub fn with_positions(&self, positions: &[Point3<f64>]) -> TriMesh {
-        let to_repaired = &self.repaired.input_to_repaired;
-        let mut number = vec![None; to_repaired.len()];
-        let mut kept = Vec::with_capacity(to_repaired.len());
-        for (input, vertex) in to_repaired.iter().enumerate() {
-            if let Some(vertex) = vertex {
-                number[input] = Some(VertexId::from(kept.len()));
-                kept.push(positions[vertex.index()]);
-            }
-        }
-        let renumbered = |face: &[VertexId; 3]| {
-            let [a, b, c] = face.map(|v| number[v.index()]);
-            Some([a?, b?, c?])
-        };
-        TriMesh { positions: kept, faces: self.input_faces.iter().filter_map(renumbered).collect() }
+        with_positions(&self.repaired.input_to_repaired, &self.input_faces, |v| positions[v.index()])
     }
 
     /// Puts values of the repaired vertices into the order of the input, with `missing` for dropped vertices.
@@ -188,4 +190,49 @@ impl Surface {
         let value = |vertex: &Option<VertexId>| vertex.map_or(missing, |v| values[v.index()]);
         self.repaired.input_to_repaired.iter().map(value).collect()
     }
+}
+
+/// The relation of the vertices of a repaired mesh to those of the input, without the mesh.
+#[derive(Debug, Clone)]
+pub struct InputMap {
+    /// How the mesh was repaired.
+    pub repair: RepairOptions,
+    /// What was repaired.
+    pub report: RepairReport,
+    /// The faces of the input, in the vertex numbers of the input.
+    pub input_faces: Vec<[VertexId; 3]>,
+    /// For each input vertex, its vertex in the repaired mesh; `None` if it was dropped.
+    pub input_to_repaired: Vec<Option<VertexId>>,
+    /// For every vertex of the repaired mesh, the first input vertex that was mapped to it.
+    pub(crate) input_vertex: Vec<VertexId>,
+    /// Seconds to read the file; zero for a mesh in memory.
+    pub load_seconds: f64,
+    /// Seconds to repair the mesh and to build the connectivity.
+    pub repair_seconds: f64,
+}
+
+impl InputMap {
+    /// The faces of the input with a new position for every vertex of the repaired mesh; see
+    /// [`Surface::with_positions`].
+    pub fn with_positions(&self, position: impl Fn(VertexId) -> Point3<f64>) -> TriMesh {
+        with_positions(&self.input_to_repaired, &self.input_faces, position)
+    }
+}
+
+fn with_positions(
+    to_repaired: &[Option<VertexId>],
+    input_faces: &[[VertexId; 3]],
+    position: impl Fn(VertexId) -> Point3<f64>,
+) -> TriMesh {
+    let mut number = vec![VertexId(u32::MAX); to_repaired.len()];
+    let mut kept = Vec::with_capacity(to_repaired.len());
+    for (number, vertex) in number.iter_mut().zip(to_repaired) {
+        if let Some(vertex) = vertex {
+            *number = VertexId::from(kept.len());
+            kept.push(position(*vertex));
+        }
+    }
+    let is_kept = |face: &&[VertexId; 3]| face.iter().all(|v| to_repaired[v.index()].is_some());
+    let faces = input_faces.iter().filter(is_kept).map(|face| face.map(|v| number[v.index()])).collect();
+    TriMesh { positions: kept, faces }
 }

@@ -17,7 +17,7 @@ use clap::{Args, Parser, Subcommand};
 use clap_complete::Shell;
 use mesh::io::{Content, mesh_files, or_list, writable};
 
-use self::shared::{STRESS, distance_method, one_of};
+use self::shared::{COMPARED_STRESS, STRESS, distance_method, one_of};
 
 pub(crate) use embedding::EmbeddingArgs;
 pub(crate) use geodesic::GeodesicArgs;
@@ -132,7 +132,7 @@ pub(crate) struct MethodsArgs {
     /// Mesh file, or `-` for standard input
     pub(crate) mesh: PathBuf,
     /// How to find the stress
-    #[arg(long, value_parser = one_of([STRESS[0], STRESS[1], STRESS[2]]), default_value = "auto")]
+    #[arg(long, value_parser = one_of([COMPARED_STRESS, STRESS[1], STRESS[2]]), default_value = "auto")]
     pub(crate) stress: StressChoice,
     #[command(flatten)]
     pub(crate) form: FormArgs,

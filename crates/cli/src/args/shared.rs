@@ -227,11 +227,19 @@ impl FormArgs {
 
 /// How to find the stress of an embedding.
 pub(crate) const STRESS: [(&str, &str, StressChoice); 4] = [
-    ("auto", "Exactly up to 5,000 vertices, estimated beyond", StressChoice::Auto),
+    (
+        "auto",
+        "Exactly up to 1,000 vertices, beyond from one row for every 5 samples, at least 4",
+        StressChoice::Auto,
+    ),
     ("exact", "From the distances between all pairs of vertices", StressChoice::Exact),
     ("estimate", "From the distances of 100 vertices to all others", StressChoice::Estimate),
     ("skip", "Not at all", StressChoice::Skip),
 ];
+
+/// How to find it when methods are compared.
+pub(crate) const COMPARED_STRESS: (&str, &str, StressChoice) =
+    ("auto", "Exactly up to 5,000 vertices, beyond from 100 vertices to all others", StressChoice::Auto);
 
 /// Reads values by their names, each with a line of help.
 pub(crate) fn one_of<T: Clone + Send + Sync + 'static, const N: usize>(

@@ -1,19 +1,22 @@
 //! `canonform embed`.
 
+use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::{Result, bail};
-use canonform::{EmbedMethod, EmbedReport, Embedded, FormOptions, StressOptions, Surface, embed_and_measure};
+use canonform::linalg::Matrix;
+use canonform::{EmbedMethod, EmbedReport, FormOptions, InputMap, StressOptions, Surface, embed_and_release};
 use mesh::io::extension;
 use rayon::prelude::*;
 use serde::Serialize;
+use surface::VertexId;
 
 use crate::args::{Common, EmbedArgs, FORM_FORMATS};
 use crate::input::{
     create_folder_of, expand, is_single, is_stream, named, outputs, print_repair, read_both, read_surface,
 };
-use crate::output::{Output, exit_code, facts, report, write_npy};
+use crate::output::{Output, exit_code, facts, fill_npy, report};
 use terminal::Bars;
 
 #[derive(Serialize)]
@@ -70,12 +73,33 @@ fn one(
     let output = Output::new(&args.output, "a form", &formats, Some(args.output_format), common)?;
     check_dim(output.path(), options.dim)?;
     let surface = read_surface(mesh, &args.embedding.form.repair, common)?;
-    let bars = Bars::with_budget(common.quiet, args.limits.budget());
-    let embedded = embed_and_measure(&surface, options, stress, &bars).map_err(|fault| named(mesh, fault))?;
-    warn(&mesh.display().to_string(), &embedded.report);
-    write(output.path(), &surface, &embedded)?;
-    let json = EmbedJson { report: embedded.report, output: output.name() };
+    let report = embed_and_write(mesh, surface, output.path(), options, stress, args, common.quiet)?;
+    warn(&mesh.display().to_string(), &report);
+    let json = EmbedJson { report, output: output.name() };
     output.report(common, &json, table)
+}
+
+/// Embeds a surface and writes its form. Distances that do not fit into memory are kept in a file beside the form.
+fn embed_and_write(
+    mesh: &Path,
+    mut surface: Surface,
+    output: &Path,
+    options: &FormOptions,
+    stress: &StressOptions,
+    args: &EmbedArgs,
+    quiet: bool,
+) -> Result<EmbedReport> {
+    if extension(output) == "npy" {
+        // Only meshes need them.
+        surface.input_faces = Vec::new();
+    }
+    let folder = output.ancestors().skip(1).find(|folder| folder.is_dir()).unwrap_or(Path::new("."));
+    let bars = Bars::with_budget(quiet, args.limits.budget().with_spill(folder.to_owned()));
+    let (embedded, map) =
+        embed_and_release(surface, options, stress, &bars).map_err(|fault| named(mesh, fault))?;
+    create_folder_of(output)?;
+    write(output, &map, &embedded.embedding.coords)?;
+    Ok(embedded.report)
 }
 
 /// Embeds meshes in parallel. Failures are listed at the end and do not stop the rest.
@@ -99,12 +123,8 @@ fn batch(
         .map(|(shape, output)| {
             let one = || {
                 let (_, surface) = read_both(&shape.path, &args.embedding.form.repair, common)?;
-                let bars = Bars::with_budget(true, args.limits.budget());
-                let embedded = embed_and_measure(&surface, options, stress, &bars)
-                    .map_err(|fault| named(&shape.path, fault))?;
-                create_folder_of(&output)?;
-                write(&output, &surface, &embedded)?;
-                Ok(EmbedJson { report: embedded.report, output: output.clone() })
+                let report = embed_and_write(&shape.path, surface, &output, options, stress, args, true)?;
+                Ok(EmbedJson { report, output: output.clone() })
             };
             let result = one();
             bar.inc(1);
@@ -143,18 +163,22 @@ fn check_dim(output: &Path, dim: usize) -> Result<()> {
 }
 
 /// Writes the form: an array with one row per input vertex, or a mesh with the faces of the repaired input.
-fn write(output: &Path, surface: &Surface, embedded: &Embedded) -> Result<()> {
-    let coords = &embedded.embedding.coords;
+fn write(output: &Path, map: &InputMap, coords: &Matrix) -> Result<()> {
     if extension(output) == "npy" {
-        let dim = coords.ncols();
-        let rows: Vec<Vec<f64>> = coords.row_iter().map(|row| row.iter().copied().collect()).collect();
-        let missing = vec![f64::NAN; dim];
-        let slices: Vec<&[f64]> = rows.iter().map(Vec::as_slice).collect();
-        let in_order = surface.in_input_order(&slices, missing.as_slice());
-        return write_npy(output, dim, in_order.into_iter());
+        let shape = [map.input_to_repaired.len(), coords.ncols()];
+        return fill_npy(output, shape, |file| {
+            let mut out = BufWriter::with_capacity(1 << 16, file);
+            for vertex in &map.input_to_repaired {
+                for column in coords.column_iter() {
+                    let value = vertex.map_or(f64::NAN, |v| column[v.index()]);
+                    out.write_all(&value.to_le_bytes())?;
+                }
+            }
+            out.flush()
+        });
     }
-    let positions: Vec<_> = coords.row_iter().map(|row| [row[0], row[1], row[2]].into()).collect();
-    Ok(mesh::io::write(output, &surface.with_positions(&positions))?)
+    let position = |v: VertexId| [0, 1, 2].map(|axis| coords[(v.index(), axis)]).into();
+    Ok(mesh::io::write(output, &map.with_positions(position))?)
 }
 
 /// Warns about dimensions without a positive eigenvalue.
@@ -171,7 +195,10 @@ fn stress_text(report: &EmbedReport) -> String {
     match &report.stress {
         None => "-".to_owned(),
         Some(s) if s.interval[0] == s.interval[1] => format!("{:.6}", s.value),
-        Some(s) => format!("{:.6} (95 %: {:.6} to {:.6})", s.value, s.interval[0], s.interval[1]),
+        Some(s) => {
+            let [low, high] = s.interval;
+            format!("{:.6} (95 %: {low:.6} to {high:.6}, from {} rows)", s.value, s.rows)
+        }
     }
 }
 

@@ -50,7 +50,9 @@ pub fn geodesic_spectrum(
     let eigen = symmetric_eigen(&(distances.sq_block() / (unit * unit)))?;
     let kept = strongest(&eigen.values);
     let eigen = eigen.select(&kept);
-    let mut columns = distances.matrix().map(|d| (d / unit).powi(2)) * &eigen.vectors;
+    let mut columns = distances.to_matrix()?;
+    columns.apply(|d| *d = (*d / unit).powi(2));
+    let mut columns = columns * &eigen.vectors;
     for mut column in columns.column_iter_mut() {
         let mean = column.iter().zip(masses).map(|(x, m)| x * m).sum::<f64>() / total;
         column.iter_mut().zip(masses).for_each(|(x, m)| *x = (*x - mean) * (m / total).sqrt());

@@ -45,6 +45,8 @@ mod relaxation;
 mod unfold;
 mod update;
 
+use std::borrow::Cow;
+
 use budget::{Budget, Exceeded};
 use surface::{IntrinsicMesh, Loops, Triangulation, VertexId};
 
@@ -145,6 +147,17 @@ impl FastMarching {
     /// Prepares a surface.
     #[must_use]
     pub fn new(mesh: &IntrinsicMesh, options: FastMarchingOptions) -> Self {
+        Self::of(Cow::Borrowed(mesh), options)
+    }
+
+    /// Prepares a surface, whose memory is free before that of the solver is needed.
+    #[must_use]
+    pub fn from_owned(mesh: IntrinsicMesh, options: FastMarchingOptions) -> Self {
+        Self::of(Cow::Owned(mesh), options)
+    }
+
+    fn of(owned: Cow<'_, IntrinsicMesh>, options: FastMarchingOptions) -> Self {
+        let mesh = owned.as_ref();
         let (prepared, order) = rayon::join(
             || {
                 let mut triangulation = Triangulation::new(mesh);
@@ -158,8 +171,16 @@ impl FastMarching {
             || breadth_first_order_of(mesh),
         );
         let (triangulation, links, halves) = prepared;
-        let rings =
-            OneRings::new(order, mesh.topology(), &triangulation, &links, &halves, mesh.mean_edge_length());
+        let mean_edge_length = mesh.mean_edge_length();
+        // The connectivity only makes the layout faster, so memory that can be freed before is freed.
+        let topology = match owned {
+            Cow::Borrowed(mesh) => Some(mesh.topology()),
+            Cow::Owned(mesh) => {
+                drop(mesh);
+                None
+            }
+        };
+        let rings = OneRings::new(order, topology, &triangulation, &links, &halves, mean_edge_length);
         Self { rings, update: options.update, scratch: Pool::default(), budget: Budget::unlimited() }
     }
 

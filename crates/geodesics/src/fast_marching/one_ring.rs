@@ -154,7 +154,7 @@ impl OneRings {
     /// The mean edge length is that of the mesh: after flips, it may depend on the numbering of the vertices.
     pub(super) fn new(
         order: Vec<u32>,
-        topology: &Topology,
+        topology: Option<&Topology>,
         triangulation: &Triangulation,
         links: &[Link],
         halves: &[(u32, HalfCorner)],
@@ -213,8 +213,8 @@ impl OneRings {
 
 /// What the one-rings are made of.
 struct Layout<'a> {
-    /// The connectivity of the mesh; a few edges may have been flipped since.
-    topology: &'a Topology,
+    /// The connectivity of the mesh, if it is still there; a few edges may have been flipped since.
+    topology: Option<&'a Topology>,
     triangulation: &'a Triangulation,
     around: Vec<VertexCorners>,
     links: Rows<(u32, f64)>,
@@ -337,13 +337,14 @@ impl Layout<'_> {
     /// Requests what vertices a little after number `i` need. A walk around a vertex finds each triangle through the one
     /// before, so it would wait for each of them.
     fn prefetch(&self, i: usize) {
+        let Some(topology) = self.topology else { return };
         if let Some(v) = self.order.get(i + 2 * AHEAD) {
             let v = *v as usize;
-            prefetch(self.topology.vertex_corners(VertexId(v as u32)));
+            prefetch(topology.vertex_corners(VertexId(v as u32)));
             prefetch(&self.around[v..=v]);
         }
         if let Some(v) = self.order.get(i + AHEAD) {
-            for corner in self.topology.vertex_corners(VertexId(*v)).iter().take(MOST_AHEAD) {
+            for corner in topology.vertex_corners(VertexId(*v)).iter().take(MOST_AHEAD) {
                 let triangle = corner.face().index();
                 prefetch(&self.triangulation.triangles()[triangle..=triangle]);
             }

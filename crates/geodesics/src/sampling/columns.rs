@@ -1,6 +1,8 @@
 //! The landmarks taken so far and the distances from them.
 
-use linalg::{LandmarkDistances, Matrix};
+use std::borrow::Cow;
+
+use linalg::{ColumnStore, LandmarkDistances};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::Rng;
 use surface::VertexId;
@@ -9,52 +11,86 @@ use super::sampler::FirstSample;
 use crate::error::GeodesicError;
 use crate::solver::DistanceSolver;
 
+/// Most columns that are measured at once: some solvers take many sources at once faster than one by one.
+const BATCH: usize = 64;
+
 /// Landmarks with the distances from them, all finite.
 #[derive(Debug)]
 pub(super) struct Columns<'a> {
     pub(super) solver: &'a dyn DistanceSolver,
     pub(super) landmarks: Vec<usize>,
-    pub(super) values: Vec<f64>,
+    pub(super) store: ColumnStore,
 }
 
 impl<'a> Columns<'a> {
     pub(super) fn new(solver: &'a dyn DistanceSolver) -> Self {
-        Self { solver, landmarks: Vec::new(), values: Vec::new() }
+        Self { solver, landmarks: Vec::new(), store: ColumnStore::in_memory(solver.n_vertices()) }
     }
 
     pub(super) fn len(&self) -> usize {
         self.landmarks.len()
     }
 
-    /// Adds landmarks and finds the distances from them, in parallel.
-    pub(super) fn add(&mut self, landmarks: &[usize]) -> Result<(), GeodesicError> {
-        let sources: Vec<VertexId> = landmarks.iter().map(|&landmark| VertexId::from(landmark)).collect();
-        let columns = self.solver.distance_columns(&sources)?;
-        for (source, column) in sources.iter().zip(columns.column_iter()) {
-            let unreached = column.iter().filter(|d| !d.is_finite()).count();
-            if unreached > 0 {
-                let n_vertices = self.solver.n_vertices();
-                return Err(GeodesicError::Disconnected { unreached, n_vertices, source_vertex: *source });
-            }
+    /// Moves the distances into another, empty store.
+    pub(super) fn move_to(&mut self, mut store: ColumnStore) -> Result<(), GeodesicError> {
+        for index in 0..self.len() {
+            store.push(&self.store.column(index)?)?;
         }
-        self.landmarks.extend_from_slice(landmarks);
-        self.values.extend_from_slice(columns.as_slice());
+        self.store = store;
         Ok(())
     }
 
-    pub(super) fn last(&self) -> &[f64] {
-        &self.values[self.values.len() - self.solver.n_vertices()..]
+    /// Adds landmarks and finds the distances from them, in parallel.
+    pub(super) fn add(&mut self, landmarks: &[usize]) -> Result<(), GeodesicError> {
+        // Columns in a file are few in memory.
+        let batch = if self.store.is_in_file() { rayon::current_num_threads() } else { BATCH };
+        let n_vertices = self.solver.n_vertices();
+        for landmarks in landmarks.chunks(batch) {
+            let sources: Vec<VertexId> = landmarks.iter().map(|&landmark| VertexId::from(landmark)).collect();
+            let columns = self.solver.distance_columns(&sources)?;
+            let slots = self.store.grow(sources.len(), &self.solver.budget())?;
+            for ((source, column), slot) in sources.iter().zip(columns.column_iter()).zip(slots) {
+                let unreached = column.iter().filter(|d| !d.is_finite()).count();
+                if unreached > 0 {
+                    self.store.truncate(self.landmarks.len());
+                    return Err(GeodesicError::Disconnected {
+                        unreached,
+                        n_vertices,
+                        source_vertex: *source,
+                    });
+                }
+                slot.fill(|place| {
+                    place.copy_from_slice(column.as_slice());
+                    Ok(())
+                })?;
+            }
+            self.landmarks.extend_from_slice(landmarks);
+        }
+        Ok(())
+    }
+
+    pub(super) fn last(&self) -> Result<Cow<'_, [f64]>, GeodesicError> {
+        Ok(self.store.column(self.len() - 1)?)
     }
 
     /// The distances from the first `n` landmarks, or from all if there are fewer.
     pub(super) fn distances(&self, n: usize) -> Result<LandmarkDistances, GeodesicError> {
-        let (p, n) = (self.solver.n_vertices(), n.min(self.len()));
-        if n == 0 {
-            return Err(GeodesicError::NoSamples);
-        }
-        let columns = Matrix::from_column_slice(p, n, &self.values[..p * n]);
-        Ok(LandmarkDistances::new(self.landmarks[..n].to_vec(), columns)
-            .unwrap_or_else(|fault| unreachable!("every column was checked: {fault}")))
+        let n = n.min(self.len());
+        landmark_distances(self.landmarks[..n].to_vec(), self.store.first(n))
+    }
+
+    /// The same, without a copy.
+    pub(super) fn into_distances(mut self, n: usize) -> Result<LandmarkDistances, GeodesicError> {
+        self.landmarks.truncate(n);
+        self.store.truncate(n);
+        landmark_distances(self.landmarks, self.store)
+    }
+}
+
+fn landmark_distances(landmarks: Vec<usize>, store: ColumnStore) -> Result<LandmarkDistances, GeodesicError> {
+    match landmarks.is_empty() {
+        true => Err(GeodesicError::NoSamples),
+        false => Ok(LandmarkDistances::of_columns(landmarks, store)?),
     }
 }
 

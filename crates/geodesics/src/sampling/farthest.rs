@@ -2,8 +2,7 @@
 
 use std::sync::OnceLock;
 
-use budget::Exceeded;
-use linalg::LandmarkDistances;
+use linalg::{ColumnStore, LandmarkDistances, LinalgError};
 use surface::VertexId;
 
 use super::columns::Columns;
@@ -62,11 +61,12 @@ impl<'a> FarthestPointSampler<'a> {
         let mut columns = Columns::new(solver);
         columns.add(&[start.index()])?;
         if first == FirstSample::Farthest {
-            let landmark = farthest(columns.last());
+            let landmark = farthest(&columns.last()?);
             columns = Columns::new(solver);
             columns.add(&[landmark])?;
         }
-        Ok(Self { nearest: columns.last().to_vec(), columns })
+        let nearest = columns.last()?.into_owned();
+        Ok(Self { nearest, columns })
     }
 
     /// Takes each landmark after the distances from those before.
@@ -77,7 +77,7 @@ impl<'a> FarthestPointSampler<'a> {
                 break;
             }
             self.columns.add(&[next])?;
-            lower(&mut self.nearest, self.columns.last());
+            lower(&mut self.nearest, &self.columns.last()?);
         }
         Ok(())
     }
@@ -88,47 +88,45 @@ impl<'a> FarthestPointSampler<'a> {
     /// Distances may be too long where a pruned front stopped. So the choices are checked once all distances are
     /// known, and kept up to the first that is not the farthest vertex.
     fn extend_pruned(&mut self, pruned: &dyn PrunedSolver, n: usize) -> Result<(), GeodesicError> {
-        let Columns { solver, landmarks, values } = &mut self.columns;
-        let (p, solver, before) = (self.nearest.len(), *solver, landmarks.len());
+        let Columns { solver, landmarks, store } = &mut self.columns;
+        let (solver, before) = (*solver, landmarks.len());
         let mut nearest = self.nearest.clone();
         let mut guesses = Vec::new();
-        let more = p * n.saturating_sub(before);
-        let needed = size_of::<f64>() * (values.len() + more);
-        solver.budget().check_memory(needed)?;
-        values.try_reserve(more).map_err(|_| Exceeded::Allocation { needed })?;
-        values.resize(values.len() + more, 0.0);
-        let exceeded = OnceLock::new();
-        let note = &|result: Result<(), Exceeded>| {
+        let failed = OnceLock::new();
+        let note = &|result: Result<(), LinalgError>| {
             if let Err(error) = result {
-                exceeded.get_or_init(|| error);
+                failed.get_or_init(|| error);
             }
         };
+        let slots = store.grow(n.saturating_sub(before), &solver.budget())?;
         rayon::scope(|scope| {
-            let mut unknown = values[p * before..].chunks_mut(p.max(1)).peekable();
-            while let Some(column) = unknown.next() {
+            let mut unknown = slots.into_iter().peekable();
+            while let Some(slot) = unknown.next() {
                 let next = farthest(&nearest);
-                if nearest[next] == 0.0 || exceeded.get().is_some() {
+                if nearest[next] == 0.0 || failed.get().is_some() {
                     break;
                 }
                 guesses.push(next);
-                scope.spawn(move |_| note(solver.distances_into(VertexId::from(next), column)));
+                let source = VertexId::from(next);
+                scope.spawn(move |_| note(slot.fill(|column| solver.distances_into(source, column))));
                 if unknown.peek().is_some() {
-                    note(pruned.lower(VertexId::from(next), &mut nearest));
+                    note(pruned.lower(source, &mut nearest).map_err(Into::into));
                 }
             }
         });
-        if let Some(exceeded) = exceeded.into_inner() {
-            values.truncate(p * before);
-            return Err(exceeded.into());
+        drop(nearest);
+        if let Some(error) = failed.into_inner() {
+            store.truncate(before);
+            return Err(error.into());
         }
-        for (guess, column) in guesses.into_iter().zip(values[p * before..].chunks(p.max(1))) {
+        for (index, guess) in guesses.into_iter().enumerate() {
             if guess != farthest(&self.nearest) {
                 break;
             }
             landmarks.push(guess);
-            lower(&mut self.nearest, column);
+            lower(&mut self.nearest, &store.column(before + index)?);
         }
-        values.truncate(p * landmarks.len());
+        store.truncate(landmarks.len());
         Ok(())
     }
 }
@@ -146,6 +144,14 @@ impl Sampler for FarthestPointSampler<'_> {
 
     fn distances(&self, n: usize) -> Result<LandmarkDistances, GeodesicError> {
         self.columns.distances(n)
+    }
+
+    fn into_distances(self: Box<Self>, n: usize) -> Result<LandmarkDistances, GeodesicError> {
+        self.columns.into_distances(n)
+    }
+
+    fn move_to(&mut self, store: ColumnStore) -> Result<(), GeodesicError> {
+        self.columns.move_to(store)
     }
 }
 

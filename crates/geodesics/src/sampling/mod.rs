@@ -119,7 +119,7 @@ mod tests {
             assert_eq!(many.n_landmarks(), 20);
             for (i, landmark) in many.landmarks().iter().enumerate() {
                 assert_eq!(
-                    many.column(i),
+                    many.column(i).unwrap(),
                     solver.distances(VertexId::from(*landmark)).unwrap(),
                     "{sampling:?}"
                 );

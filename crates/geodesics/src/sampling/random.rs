@@ -1,6 +1,6 @@
 //! Random landmarks.
 
-use linalg::LandmarkDistances;
+use linalg::{ColumnStore, LandmarkDistances};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 
@@ -60,6 +60,14 @@ impl Sampler for RandomSampler<'_> {
 
     fn distances(&self, n: usize) -> Result<LandmarkDistances, GeodesicError> {
         self.columns.distances(n)
+    }
+
+    fn into_distances(self: Box<Self>, n: usize) -> Result<LandmarkDistances, GeodesicError> {
+        self.columns.into_distances(n)
+    }
+
+    fn move_to(&mut self, store: ColumnStore) -> Result<(), GeodesicError> {
+        self.columns.move_to(store)
     }
 }
 

@@ -1,6 +1,6 @@
 //! The trait of all samplings.
 
-use linalg::LandmarkDistances;
+use linalg::{ColumnStore, LandmarkDistances};
 use surface::VertexId;
 
 use crate::error::GeodesicError;
@@ -18,6 +18,19 @@ pub trait Sampler: std::fmt::Debug {
     /// # Errors
     /// [`GeodesicError::NoSamples`] if `n` is zero.
     fn distances(&self, n: usize) -> Result<LandmarkDistances, GeodesicError>;
+
+    /// The same as [`distances`](Self::distances), without a copy of what is in memory.
+    ///
+    /// # Errors
+    /// As [`distances`](Self::distances).
+    fn into_distances(self: Box<Self>, n: usize) -> Result<LandmarkDistances, GeodesicError>;
+
+    /// Moves the distances into another, empty store, where further ones go too: by default they are in memory. The
+    /// result does not depend on the store.
+    ///
+    /// # Errors
+    /// [`GeodesicError::Matrix`] if the store is a file that cannot be written.
+    fn move_to(&mut self, store: ColumnStore) -> Result<(), GeodesicError>;
 }
 
 /// The first landmark.

@@ -1,6 +1,6 @@
 //! Landmarks chosen by the variance of their squared distances.
 
-use linalg::LandmarkDistances;
+use linalg::{ColumnStore, LandmarkDistances};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::SeedableRng;
 
@@ -84,7 +84,7 @@ impl<'a> VarianceSampler<'a> {
         self.columns.add(&[landmark])?;
         self.is_landmark[landmark] = true;
         let count = self.columns.len() as f64;
-        for ([mean, spread], d) in self.moments.iter_mut().zip(self.columns.last()) {
+        for ([mean, spread], d) in self.moments.iter_mut().zip(self.columns.last()?.iter()) {
             let square = d * d;
             let off = square - *mean;
             *mean += off / count;
@@ -119,6 +119,14 @@ impl Sampler for VarianceSampler<'_> {
     fn distances(&self, n: usize) -> Result<LandmarkDistances, GeodesicError> {
         self.columns.distances(n)
     }
+
+    fn into_distances(self: Box<Self>, n: usize) -> Result<LandmarkDistances, GeodesicError> {
+        self.columns.into_distances(n)
+    }
+
+    fn move_to(&mut self, store: ColumnStore) -> Result<(), GeodesicError> {
+        self.columns.move_to(store)
+    }
 }
 
 #[cfg(test)]
@@ -138,7 +146,7 @@ mod tests {
             let distances = sampler.distances(12).unwrap();
             for n in 2..12 {
                 let spread = |v: usize| {
-                    let squares: Vec<f64> = (0..n).map(|i| distances.column(i)[v].powi(2)).collect();
+                    let squares: Vec<f64> = (0..n).map(|i| distances.column(i).unwrap()[v].powi(2)).collect();
                     let mean = squares.iter().sum::<f64>() / n as f64;
                     sign * squares.iter().map(|s| (s - mean).powi(2)).sum::<f64>() / n as f64
                 };

@@ -1,0 +1,101 @@
+//! Where the distances of an embedding are kept: in memory, or in a temporary file.
+
+use budget::Budget;
+use linalg::ColumnStore;
+
+use super::distances::{DISTANCES_LIMIT, check_memory};
+use crate::error::Error;
+
+/// Bytes per vertex while distances are measured by fast marching, besides the distances: one-rings, what relates results to
+/// the input, the nearest sample of every vertex, coordinates. Measured with a counting allocator.
+const PER_VERTEX: usize = 320;
+
+/// Bytes per vertex and thread: a front, and a column of distances on its way to the file.
+const PER_VERTEX_AND_THREAD: usize = 45;
+
+/// Numbers per pair of samples: the matrices of the embedding.
+const PER_PAIR: usize = 8;
+
+const BYTES: usize = size_of::<f64>();
+
+/// The memory of an embedding of `n_vertices` vertices from `n_columns` samples.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Plan {
+    n_vertices: usize,
+    n_columns: usize,
+    n_threads: usize,
+}
+
+impl Plan {
+    pub(super) fn new(n_vertices: usize, n_columns: usize) -> Self {
+        Self { n_vertices, n_columns: n_columns.min(n_vertices), n_threads: rayon::current_num_threads() }
+    }
+
+    /// Bytes of the distances.
+    fn columns(self) -> usize {
+        self.n_vertices.saturating_mul(self.n_columns).saturating_mul(BYTES)
+    }
+
+    fn per_vertex(self) -> usize {
+        PER_VERTEX + self.n_threads * PER_VERTEX_AND_THREAD
+    }
+
+    fn matrices(self) -> usize {
+        self.n_columns.saturating_mul(self.n_columns).saturating_mul(PER_PAIR * BYTES)
+    }
+
+    /// Bytes of everything else.
+    fn rest(self) -> usize {
+        self.n_vertices.saturating_mul(self.per_vertex()).saturating_add(self.matrices())
+    }
+
+    /// A store for the distances: in memory if they fit, else in a file if the budget names a folder for it.
+    ///
+    /// # Errors
+    /// [`Error::EmbeddingTooLarge`], [`Error::AllPairsTooLarge`] and [`Error::Exceeded`] if there is too little memory;
+    /// [`Error::File`].
+    pub(super) fn store(self, budget: &Budget) -> Result<ColumnStore, Error> {
+        let Some(folder) = budget.spill() else {
+            check_memory(self.n_vertices, self.n_columns, budget)?;
+            return Ok(ColumnStore::in_memory(self.n_vertices));
+        };
+        let fits = match budget.memory() {
+            None => self.columns() <= DISTANCES_LIMIT,
+            Some(limit) if self.rest() > limit => {
+                let fits = limit.saturating_sub(self.matrices()) / self.per_vertex();
+                let (n_vertices, needed) = (self.n_vertices, self.rest());
+                return Err(Error::EmbeddingTooLarge { n_vertices, needed, limit, fits });
+            }
+            Some(limit) => self.rest().saturating_add(self.columns()) <= limit,
+        };
+        Ok(match fits {
+            true => ColumnStore::in_memory(self.n_vertices),
+            false => ColumnStore::in_file(self.n_vertices, files::nameless_in(folder)?),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::error::Remedy;
+
+    #[test]
+    fn distances_that_do_not_fit_go_to_a_file_and_what_fits_is_named() {
+        let folder = tempfile::tempdir().unwrap();
+        let plan = Plan::new(1_000_000, 20);
+        let budget = |bytes| Budget::unlimited().with_memory(bytes).with_spill(folder.path().to_owned());
+        assert!(!plan.store(&budget(4 << 30)).unwrap().is_in_file());
+        assert!(plan.store(&budget(plan.rest())).unwrap().is_in_file());
+        let error = plan.store(&budget(plan.rest() / 2)).unwrap_err();
+        let Error::EmbeddingTooLarge { needed, fits, .. } = error else { panic!("{error}") };
+        assert_eq!((needed, error.remedy()), (plan.rest(), Some(Remedy::RaiseMemory)));
+        assert!(Plan::new(fits, 20).store(&budget(plan.rest() / 2)).is_ok());
+        // Without a limit, only what no usual machine has room for goes to a file.
+        let open = Budget::unlimited().with_spill(folder.path().to_owned());
+        assert!(!plan.store(&open).unwrap().is_in_file());
+        assert!(Plan::new(10_000_000, 100).store(&open).unwrap().is_in_file());
+        let nowhere = Plan::new(10_000_000, 100).store(&Budget::unlimited()).unwrap_err();
+        assert!(matches!(nowhere, Error::AllPairsTooLarge { .. }));
+    }
+}
