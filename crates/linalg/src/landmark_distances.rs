@@ -92,6 +92,12 @@ impl LandmarkDistances {
         &self.landmarks
     }
 
+    /// Whether the distances are in a file.
+    #[must_use]
+    pub fn is_in_file(&self) -> bool {
+        self.columns.is_in_file()
+    }
+
     /// The p x n distances; a copy in memory if they are in a file.
     ///
     /// # Errors

@@ -35,6 +35,7 @@ mod isometry;
 mod licences;
 #[cfg(test)]
 mod marching;
+mod memory;
 #[cfg(test)]
 mod packaging;
 #[cfg(test)]

@@ -98,14 +98,12 @@ pub fn embed_and_measure(
 /// kept in a file there, by methods that can read them in blocks: NMDS and landmark MDS.
 ///
 /// ```
-/// use canonform::{Budget, FormOptions, StressOptions, Surface, embed_and_measure, embed_and_release, mesh::shapes};
+/// use canonform::{FormOptions, StressOptions, Surface, embed_and_measure, embed_and_release, mesh::shapes};
 ///
 /// let surface = Surface::new(&shapes::torus(40, 20, 2.0, 0.7), &Default::default())?;
 /// let (options, stress) = (FormOptions::default(), StressOptions::default());
 /// let usual = embed_and_measure(&surface, &options, &stress, &())?;
-/// // Too little for the distances, which take 640 kB.
-/// let budget = Budget::unlimited().with_memory(1_200_000).with_spill(std::env::temp_dir());
-/// let (lean, map) = embed_and_release(surface, &options, &stress, &budget)?;
+/// let (lean, map) = embed_and_release(surface, &options, &stress, &())?;
 /// assert_eq!(lean.embedding, usual.embedding);
 /// assert_eq!(map.input_to_repaired.len(), 800);
 /// # Ok::<(), canonform::Error>(())

@@ -51,7 +51,8 @@ pub(crate) struct LimitArgs {
     /// Stop with an error after this many seconds; with several meshes, this applies to each of them
     #[arg(long, help_heading = "Limits", value_name = "SECONDS", value_parser = parse_seconds)]
     pub(crate) timeout: Option<Duration>,
-    /// Stop with an error when more memory is needed for distances or matrices, in bytes or with K, M, G or T
+    /// Most memory for distances and matrices, in bytes or with K, M, G or T. Beyond it, embed keeps distances in a temporary
+    /// file beside its output; other commands, and embed if that is not enough, stop with an error
     #[arg(long, help_heading = "Limits", value_name = "BYTES", value_parser = parse_bytes)]
     pub(crate) memory: Option<usize>,
 }

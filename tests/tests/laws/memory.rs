@@ -1,0 +1,72 @@
+//! Distances that do not fit into memory are kept in a file, and results are the same bit for bit.
+
+use canonform::{
+    Budget, EmbedMethod, Embedded, FormOptions, Samples, StressChoice, StressOptions, embed_and_measure,
+    embed_and_release,
+};
+use datasets::Family;
+use geodesics::{FirstSample, Sampler, Sampling};
+use linalg::ColumnStore;
+
+use crate::support::{body, marching, surface};
+
+/// Coordinates, samples and stress.
+fn facts(embedded: &Embedded) -> (Vec<u64>, Vec<u32>, [u64; 3]) {
+    let stress = embedded.report.stress.as_ref().unwrap();
+    (
+        embedded.embedding.coords.iter().map(|x| x.to_bits()).collect(),
+        embedded.report.samples.clone(),
+        [stress.value, stress.interval[0], stress.interval[1]].map(f64::to_bits),
+    )
+}
+
+#[test]
+fn a_form_does_not_depend_on_memory() {
+    let folder = tempfile::tempdir().unwrap();
+    let surface = surface(&body(Family::Cat));
+    let stress = StressOptions { choice: StressChoice::Estimate, ..StressOptions::default() };
+    for method in [EmbedMethod::default(), EmbedMethod::Landmark] {
+        for (samples, sampling) in [
+            (Samples::Count(150), Sampling::Farthest),
+            (Samples::Count(150), Sampling::Random),
+            (Samples::Auto, Sampling::Farthest),
+        ] {
+            let options = FormOptions { method: method.clone(), samples, sampling, ..FormOptions::default() };
+            let usual = embed_and_measure(&surface, &options, &stress, &()).unwrap();
+            for threads in [1, 2] {
+                let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+                // Enough for all but the distances.
+                let bytes = if samples == Samples::Auto { 28_000_000 } else { 2_600_000 };
+                let lean = || {
+                    let budget = Budget::unlimited().with_memory(bytes).with_spill(folder.path().to_owned());
+                    embed_and_release(surface.clone(), &options, &stress, &budget).unwrap().0
+                };
+                let lean = pool.install(lean);
+                assert!(lean.distances.is_in_file() && !usual.distances.is_in_file());
+                assert!(facts(&lean) == facts(&usual), "{options:?} on {threads} threads");
+            }
+        }
+    }
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
+}
+
+#[test]
+fn samplers_take_the_same_samples_into_a_file() {
+    let surface = surface(&body(Family::Centaur));
+    let solver = marching().prepare(&surface.intrinsic).unwrap();
+    for sampling in Sampling::ALL {
+        let start = || sampling.start(solver.as_ref(), FirstSample::default(), 3).unwrap();
+        let take = |mut sampler: Box<dyn Sampler + '_>| {
+            sampler.extend_to(7).unwrap();
+            sampler.extend_to(30).unwrap();
+            sampler.into_distances(25).unwrap()
+        };
+        let in_memory = take(start());
+        let mut sampler = start();
+        sampler.move_to(ColumnStore::in_file(solver.n_vertices(), tempfile::tempfile().unwrap())).unwrap();
+        let in_file = take(sampler);
+        assert_eq!(in_file.landmarks(), in_memory.landmarks(), "{sampling:?}");
+        assert_eq!(in_file.to_matrix().unwrap(), in_memory.to_matrix().unwrap(), "{sampling:?}");
+        assert_eq!((in_file.max(), in_file.sq_block()), (in_memory.max(), in_memory.sq_block()));
+    }
+}
