@@ -2,6 +2,8 @@
 
 use std::process::Stdio;
 
+use mesh::shapes;
+
 use crate::support::{Workplace, assert_keys, broken_ring, one_object, program, ring};
 
 #[test]
@@ -85,6 +87,29 @@ fn embed_keeps_the_contract_of_its_json() {
 
     let text = place.done(&["embed", "ring.off", "-n", "20", "-o", "form.ply"]).out;
     assert!(text.contains("stress") && text.contains("form.ply"), "{text}");
+}
+
+#[test]
+fn the_stress_of_a_large_mesh_comes_from_a_few_rows() {
+    let place = Workplace::new();
+    place.add("ball.off", &shapes::icosphere(4));
+    let embed = |options: &[&str]| {
+        let usual = ["embed", "ball.off", "-n", "20", "-o", "form.npy"];
+        place.json(&[&usual, options].concat())["stress"].clone()
+    };
+    let number = |stress: &serde_json::Value, key: &str| stress[key].as_f64().unwrap();
+    let exact = embed(&["--stress", "exact"]);
+    assert_eq!((&exact["kind"], &exact["rows"]), (&"exact".into(), &2562.into()));
+    for options in [&[][..], &["--seed", "7"], &["--stress", "estimate"]] {
+        let stress = embed(options);
+        assert_eq!(stress["kind"], "estimated");
+        assert!(number(&stress, "rows") <= if options.contains(&"estimate") { 100.0 } else { 4.0 });
+        let [low, high] = [0, 1].map(|i| stress["interval"][i].as_f64().unwrap());
+        let value = number(&exact, "value");
+        assert!(low <= value && value <= high, "{options:?}: {low} to {high}, not {value}");
+    }
+    let text = place.done(&["embed", "ball.off", "-n", "20", "-o", "form.npy"]).out;
+    assert!(text.contains("95 %") && text.contains("rows)"), "{text}");
 }
 
 #[test]

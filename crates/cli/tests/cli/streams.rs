@@ -217,6 +217,26 @@ fn time_and_memory_limits_end_a_command_with_an_error_and_leave_nothing() {
 }
 
 #[test]
+fn a_form_does_not_depend_on_memory_and_what_would_fit_is_named() {
+    let place = Workplace::new();
+    place.add("ball.ply", &shapes::icosphere(5));
+    let before = place.names();
+    let embed = ["embed", "ball.ply", "--threads", "2", "-n", "100", "--stress", "skip"];
+    let small = [&embed[..], &["--memory", "10k", "-o", "form.npy"]].concat();
+    place.refused(&small, &["bytes of memory", "temporary file", "--memory", "enough for 0 vertices"]);
+    assert_eq!(place.names(), before);
+    let text = place.run(&small).err;
+    let needed = text.split("needs about ").nth(1).unwrap().split(' ').next().unwrap();
+    for format in ["npy", "off"] {
+        let [usual, lean] = ["usual", "lean"].map(|name| format!("{name}.{format}"));
+        place.done(&[&embed[..], &["-o", &usual]].concat());
+        place.done(&[&embed[..], &["--memory", needed, "-o", &lean]].concat());
+        assert!(fs::read(place.path(&usual)).unwrap() == fs::read(place.path(&lean)).unwrap(), "{format}");
+    }
+    assert_eq!(place.names().len(), before.len() + 4);
+}
+
+#[test]
 fn fields_are_written_in_every_format_with_colours_and_drawn_again() {
     let place = place();
     place.add("ball.off", &shapes::icosphere(3));
