@@ -69,7 +69,7 @@ fn embeddings(context: &Context<'_>, specimen: &Specimen<'_>, distances: &Distan
     let all = specimen.all_pairs(distances)?;
     let judged = |embedding: Embedding| {
         let stress = paper_stress(&embedding.coords, all.as_ref())?;
-        Ok::<_, canonform::Exceeded>((embedding, stress))
+        Ok::<_, linalg::LinalgError>((embedding, stress))
     };
     let low_rank = Regularization::LowRank { rank: Some(config.rank) };
     let nmds = |samples: &LandmarkDistances| {

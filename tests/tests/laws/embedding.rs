@@ -104,7 +104,7 @@ fn intervals_of_the_estimated_stress_contain_the_exact_one_as_often_as_they_say(
     sheet
         .positions
         .iter_mut()
-        .for_each(|p| p.z = (-2.0 * (p - Point3::new(1.0, 1.7, 0.0)).norm_squared()).exp());
+        .for_each(|p| p.z = (-2.0 * (*p - Point3::new(1.0, 1.7, 0.0)).norm_squared()).exp());
     let meshes = Family::all().map(body).into_iter().chain([
         torus,
         shapes::icosphere(3),

@@ -87,6 +87,11 @@ pub(super) fn check_memory(n_vertices: usize, n_columns: usize, budget: &Budget)
     Err(Error::AllPairsTooLarge { n_vertices, needed_mib, limit_mib })
 }
 
+/// The memory of an embedding by distances from samples.
+pub(super) fn plan(n_vertices: usize, samples: Samples) -> Plan {
+    Plan::new(n_vertices, samples.count_or(AUTO_LAST))
+}
+
 /// Measures distances on one surface and counts the time it takes.
 pub(super) struct Measurement<'a> {
     pub(super) solver: &'a dyn DistanceSolver,
@@ -114,7 +119,7 @@ impl Measurement<'_> {
         self.observer.begin("distances", self.samples.count_or(AUTO_LAST));
         let mut sampler = self.timed(|m| sampling.start(solver, m.first, m.seed))?;
         if self.streams && self.budget.spill().is_some() {
-            let store = self.plan().store(&self.budget)?;
+            let store = plan(solver.n_vertices(), self.samples).store(&self.budget)?;
             self.timed(|_| sampler.move_to(store))?;
         }
         match self.samples {
@@ -152,10 +157,6 @@ impl Measurement<'_> {
             }
             embedding = refined;
         }
-    }
-
-    fn plan(&self) -> Plan {
-        Plan::new(self.solver.n_vertices(), self.samples.count_or(AUTO_LAST))
     }
 
     /// Takes samples until there are `n`, or as many as there are vertices.

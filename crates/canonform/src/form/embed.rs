@@ -10,7 +10,7 @@ use mesh::RepairReport;
 use nmds::Embedding;
 use surface::{IntrinsicMesh, VertexId};
 
-use super::distances::Measurement;
+use super::distances::{Measurement, plan};
 use super::method::Outcome;
 use super::options::FormOptions;
 use super::report::{EmbedReport, SecondsReport};
@@ -157,6 +157,9 @@ fn run(
 ) -> Result<Embedded, Error> {
     let start = Instant::now();
     let budget = observer.budget();
+    if options.method.streams() {
+        plan(surface.n_vertices(), options.samples).check(&budget)?;
+    }
     let measures = options.method.has_unit() && stress.choice != StressChoice::Skip;
     let against = stress.against.filter(|other| measures && *other != options.geodesic);
     let (solver, surface) = match surface {

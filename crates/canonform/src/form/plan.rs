@@ -49,23 +49,32 @@ impl Plan {
         self.n_vertices.saturating_mul(self.per_vertex()).saturating_add(self.matrices())
     }
 
+    /// Refuses what does not fit into memory even with distances in a file.
+    ///
+    /// # Errors
+    /// [`Error::EmbeddingTooLarge`].
+    pub(super) fn check(self, budget: &Budget) -> Result<(), Error> {
+        let limit = budget.memory().unwrap_or(usize::MAX);
+        if budget.spill().is_none() || self.rest() <= limit {
+            return Ok(());
+        }
+        let fits = limit.saturating_sub(self.matrices()) / self.per_vertex();
+        Err(Error::EmbeddingTooLarge { n_vertices: self.n_vertices, needed: self.rest(), limit, fits })
+    }
+
     /// A store for the distances: in memory if they fit, else in a file if the budget names a folder for it.
     ///
     /// # Errors
-    /// [`Error::EmbeddingTooLarge`], [`Error::AllPairsTooLarge`] and [`Error::Exceeded`] if there is too little memory;
+    /// As [`check`](Self::check); [`Error::AllPairsTooLarge`] and [`Error::Exceeded`] if the budget names no folder;
     /// [`Error::File`].
     pub(super) fn store(self, budget: &Budget) -> Result<ColumnStore, Error> {
         let Some(folder) = budget.spill() else {
             check_memory(self.n_vertices, self.n_columns, budget)?;
             return Ok(ColumnStore::in_memory(self.n_vertices));
         };
+        self.check(budget)?;
         let fits = match budget.memory() {
             None => self.columns() <= DISTANCES_LIMIT,
-            Some(limit) if self.rest() > limit => {
-                let fits = limit.saturating_sub(self.matrices()) / self.per_vertex();
-                let (n_vertices, needed) = (self.n_vertices, self.rest());
-                return Err(Error::EmbeddingTooLarge { n_vertices, needed, limit, fits });
-            }
             Some(limit) => self.rest().saturating_add(self.columns()) <= limit,
         };
         Ok(match fits {

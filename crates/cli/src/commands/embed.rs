@@ -6,13 +6,15 @@ use std::process::ExitCode;
 
 use anyhow::{Result, bail};
 use canonform::linalg::Matrix;
-use canonform::{EmbedMethod, EmbedReport, FormOptions, InputMap, StressOptions, Surface, embed_and_release};
+use canonform::{
+    Budget, EmbedMethod, EmbedReport, FormOptions, InputMap, StressOptions, Surface, embed_and_release,
+};
 use mesh::io::extension;
 use rayon::prelude::*;
 use serde::Serialize;
 use surface::VertexId;
 
-use crate::args::{Common, EmbedArgs, FORM_FORMATS};
+use crate::args::{Common, EmbedArgs, FORM_FORMATS, LimitArgs};
 use crate::input::{
     create_folder_of, expand, is_single, is_stream, named, outputs, print_repair, read_both, read_surface,
 };
@@ -73,30 +75,39 @@ fn one(
     let output = Output::new(&args.output, "a form", &formats, Some(args.output_format), common)?;
     check_dim(output.path(), options.dim)?;
     let surface = read_surface(mesh, &args.embedding.form.repair, common)?;
-    let report = embed_and_write(mesh, surface, output.path(), options, stress, args, common.quiet)?;
+    let bars = Bars::with_budget(common.quiet, budget(args, output.path(), 1));
+    let report = embed_and_write(mesh, surface, output.path(), options, stress, &bars)?;
+    drop(bars);
     warn(&mesh.display().to_string(), &report);
     let json = EmbedJson { report, output: output.name() };
     output.report(common, &json, table)
 }
 
-/// Embeds a surface and writes its form. Distances that do not fit into memory are kept in a file beside the form.
+/// The limits of an embedding, one of `n_at_once`. Distances that do not fit into memory are kept in a file beside the form.
+///
+/// Under `ulimit -v` they have their share of three quarters of that memory; the rest is for the program itself.
+fn budget(args: &EmbedArgs, output: &Path, n_at_once: usize) -> Budget {
+    let share = || Some(terminal::memory_limit()? / 4 * 3 / n_at_once);
+    let limits = LimitArgs { memory: args.limits.memory.or_else(share), ..args.limits };
+    let folder = output.ancestors().skip(1).find(|folder| folder.is_dir()).unwrap_or(Path::new("."));
+    limits.budget().with_spill(folder.to_owned())
+}
+
+/// Embeds a surface and writes its form.
 fn embed_and_write(
     mesh: &Path,
     mut surface: Surface,
     output: &Path,
     options: &FormOptions,
     stress: &StressOptions,
-    args: &EmbedArgs,
-    quiet: bool,
+    bars: &Bars,
 ) -> Result<EmbedReport> {
     if extension(output) == "npy" {
         // Only meshes need them.
         surface.input_faces = Vec::new();
     }
-    let folder = output.ancestors().skip(1).find(|folder| folder.is_dir()).unwrap_or(Path::new("."));
-    let bars = Bars::with_budget(quiet, args.limits.budget().with_spill(folder.to_owned()));
     let (embedded, map) =
-        embed_and_release(surface, options, stress, &bars).map_err(|fault| named(mesh, fault))?;
+        embed_and_release(surface, options, stress, bars).map_err(|fault| named(mesh, fault))?;
     create_folder_of(output)?;
     write(output, &map, &embedded.embedding.coords)?;
     Ok(embedded.report)
@@ -123,7 +134,8 @@ fn batch(
         .map(|(shape, output)| {
             let one = || {
                 let (_, surface) = read_both(&shape.path, &args.embedding.form.repair, common)?;
-                let report = embed_and_write(&shape.path, surface, &output, options, stress, args, true)?;
+                let bars = Bars::with_budget(true, budget(args, &output, rayon::current_num_threads()));
+                let report = embed_and_write(&shape.path, surface, &output, options, stress, &bars)?;
                 Ok(EmbedJson { report, output: output.clone() })
             };
             let result = one();
