@@ -106,13 +106,16 @@ pub enum StressKind {
     Estimated,
 }
 
+/// Draws rows for coordinates in the unit that it is given; `None` for all rows.
+type Draw<'a> = &'a dyn Fn(&Matrix, f64) -> Result<Option<RowSample>, LinalgError>;
+
 impl StressReport {
     /// The stress of `coords` against distances by `method`: of all rows, or of those that `sample` takes for
     /// coordinates in the unit that it is given.
     pub(super) fn new(
         coords: &Matrix,
         distances: &dyn DistanceRows,
-        sample: &dyn Fn(&Matrix, f64) -> Result<Option<RowSample>, LinalgError>,
+        sample: Draw<'_>,
         method: Method,
     ) -> Result<Self, Error> {
         // The fourth powers of very short or very long lengths vanish or overflow.
