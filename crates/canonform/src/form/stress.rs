@@ -17,8 +17,8 @@ const EXACT_LIMIT: usize = 1000;
 /// [`StressChoice::Auto`] measures one row for this many samples.
 const SAMPLES_PER_ROW: usize = 5;
 
-/// Fewest rows that give a useful interval.
-const FEWEST_ROWS: usize = 4;
+/// Fewest rows with a useful interval.
+const FEWEST_ROWS: usize = 3;
 
 /// Number of rows of [`StressChoice::Estimate`].
 const ESTIMATE_ROWS: usize = 100;
@@ -42,7 +42,7 @@ pub struct StressOptions {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum StressChoice {
     /// From all pairs up to 1,000 vertices and where the method has measured them, else estimated from one row for every 5
-    /// samples, at least 4, so that it takes about a fifth of the time for distances.
+    /// samples, at least 3, so that it takes less than a fifth of the time for distances.
     #[default]
     Auto,
     /// From the distances between all pairs of vertices.
