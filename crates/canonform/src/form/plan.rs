@@ -77,10 +77,11 @@ impl Plan {
             None => self.columns() <= DISTANCES_LIMIT,
             Some(limit) => self.rest().saturating_add(self.columns()) <= limit,
         };
-        Ok(match fits {
-            true => ColumnStore::in_memory(self.n_vertices),
-            false => ColumnStore::in_file(self.n_vertices, files::nameless_in(folder)?),
-        })
+        // The system may have less memory than the budget.
+        if fits && let Ok(store) = ColumnStore::with_capacity(self.n_vertices, self.n_columns) {
+            return Ok(store);
+        }
+        Ok(ColumnStore::in_file(self.n_vertices, files::nameless_in(folder)?))
     }
 }
 
