@@ -105,7 +105,7 @@ pub fn embed_and_measure(
 /// let usual = embed_and_measure(&surface, &options, &stress, &())?;
 /// let (lean, map) = embed_and_release(surface, &options, &stress, &())?;
 /// assert_eq!(lean.embedding, usual.embedding);
-/// assert_eq!(map.input_to_repaired.len(), 800);
+/// assert_eq!(map.n_input_vertices(), 800);
 /// # Ok::<(), canonform::Error>(())
 /// ```
 ///
@@ -122,7 +122,7 @@ pub fn embed_and_release(
     let (intrinsic, map) = surface.into_parts();
     let origin = Origin {
         report: &map.report,
-        input_vertex: &|v| map.input_vertex[v.index()],
+        input_vertex: &|v| map.input_vertex(v),
         load_seconds: map.load_seconds,
         repair_seconds: map.repair_seconds,
     };

@@ -121,12 +121,18 @@ impl Surface {
     /// The geometry, and everything that relates results to the input. The mesh with its coordinates is dropped.
     #[must_use]
     pub fn into_parts(self) -> (IntrinsicMesh, InputMap) {
+        let to_repaired = self.repaired.input_to_repaired;
+        let stays = |(input, vertex): (usize, &Option<VertexId>)| *vertex == Some(VertexId::from(input));
+        let changes =
+            match to_repaired.len() == self.input_vertex.len() && to_repaired.iter().enumerate().all(stays) {
+                true => None,
+                false => Some(Changes { to_repaired, to_input: self.input_vertex }),
+            };
         let map = InputMap {
             repair: self.repair,
             report: self.repaired.report,
             input_faces: self.input_faces,
-            input_to_repaired: self.repaired.input_to_repaired,
-            input_vertex: self.input_vertex,
+            changes,
             load_seconds: self.load_seconds,
             repair_seconds: self.repair_seconds,
         };
@@ -182,7 +188,9 @@ impl Surface {
     /// The faces of the input with new positions, given for the vertices of the repaired mesh. Vertices that the
     /// repair dropped have no position; they are left out, and so are their faces.
     pub fn with_positions(&self, positions: &[Point3<f64>]) -> TriMesh {
-        with_positions(&self.repaired.input_to_repaired, &self.input_faces, |v| positions[v.index()])
+        let to_repaired = &self.repaired.input_to_repaired;
+        let position = |v: VertexId| positions[v.index()];
+        with_positions(to_repaired.len(), &|input| to_repaired[input.index()], &self.input_faces, position)
     }
 
     /// Puts values of the repaired vertices into the order of the input, with `missing` for dropped vertices.
@@ -201,38 +209,67 @@ pub struct InputMap {
     pub report: RepairReport,
     /// The faces of the input, in the vertex numbers of the input.
     pub input_faces: Vec<[VertexId; 3]>,
-    /// For each input vertex, its vertex in the repaired mesh; `None` if it was dropped.
-    pub input_to_repaired: Vec<Option<VertexId>>,
-    /// For every vertex of the repaired mesh, the first input vertex that was mapped to it.
-    pub(crate) input_vertex: Vec<VertexId>,
+    /// The vertices that the repair changed; `None` if it kept them all.
+    changes: Option<Changes>,
     /// Seconds to read the file; zero for a mesh in memory.
     pub load_seconds: f64,
     /// Seconds to repair the mesh and to build the connectivity.
     pub repair_seconds: f64,
 }
 
+/// The vertices of the input and of the repaired mesh.
+#[derive(Debug, Clone)]
+struct Changes {
+    /// For each input vertex, its vertex in the repaired mesh; `None` if it was dropped.
+    to_repaired: Vec<Option<VertexId>>,
+    /// For every vertex of the repaired mesh, the first input vertex that was mapped to it.
+    to_input: Vec<VertexId>,
+}
+
 impl InputMap {
+    /// Number of vertices of the input.
+    pub fn n_input_vertices(&self) -> usize {
+        self.report.input_vertices
+    }
+
+    /// The vertex of the repaired mesh that an input vertex became; `None` if it was dropped.
+    ///
+    /// # Panics
+    /// If the input has no such vertex.
+    pub fn repaired_vertex(&self, input: VertexId) -> Option<VertexId> {
+        assert!(input.index() < self.n_input_vertices(), "vertex {input} of {}", self.n_input_vertices());
+        self.changes.as_ref().map_or(Some(input), |changes| changes.to_repaired[input.index()])
+    }
+
+    /// The first input vertex that was mapped to this vertex of the repaired mesh.
+    pub fn input_vertex(&self, vertex: VertexId) -> VertexId {
+        self.changes.as_ref().map_or(vertex, |changes| changes.to_input[vertex.index()])
+    }
+
     /// The faces of the input with a new position for every vertex of the repaired mesh; see
     /// [`Surface::with_positions`].
     pub fn with_positions(&self, position: impl Fn(VertexId) -> Point3<f64>) -> TriMesh {
-        with_positions(&self.input_to_repaired, &self.input_faces, position)
+        with_positions(self.n_input_vertices(), &|v| self.repaired_vertex(v), &self.input_faces, position)
     }
 }
 
 fn with_positions(
-    to_repaired: &[Option<VertexId>],
+    n_input: usize,
+    to_repaired: &dyn Fn(VertexId) -> Option<VertexId>,
     input_faces: &[[VertexId; 3]],
     position: impl Fn(VertexId) -> Point3<f64>,
 ) -> TriMesh {
-    let mut number = vec![VertexId(u32::MAX); to_repaired.len()];
-    let mut kept = Vec::with_capacity(to_repaired.len());
-    for (number, vertex) in number.iter_mut().zip(to_repaired) {
-        if let Some(vertex) = vertex {
-            *number = VertexId::from(kept.len());
-            kept.push(position(*vertex));
+    let mut number = vec![None; n_input];
+    let mut kept = Vec::with_capacity(n_input);
+    for (input, number) in number.iter_mut().enumerate() {
+        if let Some(vertex) = to_repaired(VertexId::from(input)) {
+            *number = Some(VertexId::from(kept.len()));
+            kept.push(position(vertex));
         }
     }
-    let is_kept = |face: &&[VertexId; 3]| face.iter().all(|v| to_repaired[v.index()].is_some());
-    let faces = input_faces.iter().filter(is_kept).map(|face| face.map(|v| number[v.index()])).collect();
-    TriMesh { positions: kept, faces }
+    let renumbered = |face: &[VertexId; 3]| {
+        let [a, b, c] = face.map(|v| number[v.index()]);
+        Some([a?, b?, c?])
+    };
+    TriMesh { positions: kept, faces: input_faces.iter().filter_map(renumbered).collect() }
 }

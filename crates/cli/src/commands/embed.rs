@@ -177,10 +177,11 @@ fn check_dim(output: &Path, dim: usize) -> Result<()> {
 /// Writes the form: an array with one row per input vertex, or a mesh with the faces of the repaired input.
 fn write(output: &Path, map: &InputMap, coords: &Matrix) -> Result<()> {
     if extension(output) == "npy" {
-        let shape = [map.input_to_repaired.len(), coords.ncols()];
+        let shape = [map.n_input_vertices(), coords.ncols()];
         return fill_npy(output, shape, |file| {
             let mut out = BufWriter::with_capacity(1 << 16, file);
-            for vertex in &map.input_to_repaired {
+            for vertex in 0..map.n_input_vertices() {
+                let vertex = map.repaired_vertex(VertexId::from(vertex));
                 for column in coords.column_iter() {
                     let value = vertex.map_or(f64::NAN, |v| column[v.index()]);
                     out.write_all(&value.to_le_bytes())?;
