@@ -182,6 +182,9 @@ fn drawn(sizes: &[f64], total: f64, m: usize, seed: u64) -> Vec<usize> {
     rows
 }
 
+/// Residuals of a row that are held at once.
+const PART: usize = 1 << 13;
+
 /// Quantiles of Student's t distribution at 0.99, for 1, 2, ... degrees of freedom.
 const T_99: [f64; 30] = [
     31.821, 6.965, 4.541, 3.747, 3.365, 3.143, 2.998, 2.896, 2.821, 2.764, 2.7181, 2.681, 2.650, 2.624,
@@ -225,14 +228,20 @@ pub fn estimate_stress(
     let solved = different
         .par_iter()
         .map(|&i| {
-            let (mut row, mut distances) = (vec![0.0; p], vec![0.0; p]);
+            let mut distances = vec![0.0; p];
             rows.row_into(i, &mut distances)?;
-            residuals(coords, &distances, i, &mut row);
-            let kruskal = Kruskal::of_row(&distances, &row);
-            if let Some(own) = sample.offsets.get(i) {
-                row.iter_mut().zip(&sample.offsets).for_each(|(r, other)| *r -= own + other);
+            let (mut moments, mut kruskal) = ([0.0; 2], Kruskal::default());
+            let mut part = vec![0.0; PART.min(p)];
+            for (start, distances) in (0..p).step_by(PART).zip(distances.chunks(PART)) {
+                let part = &mut part[..distances.len()];
+                residuals(coords, distances, i, start, part);
+                kruskal = kruskal + Kruskal::of_row(distances, part);
+                if let Some(own) = sample.offsets.get(i) {
+                    part.iter_mut().zip(&sample.offsets[start..]).for_each(|(r, other)| *r -= own + other);
+                }
+                moments[0] += part.iter().map(|d| d * d).sum::<f64>() / n;
+                moments[1] += part.iter().sum::<f64>() / n;
             }
-            let moments = [row.iter().map(|d| d * d).sum::<f64>() / n, row.iter().sum::<f64>() / n];
             Ok((moments, kruskal))
         })
         .collect::<Result<Vec<_>, LinalgError>>()?;

@@ -80,7 +80,7 @@ pub fn stress(coords: &Matrix, rows: &dyn DistanceRows) -> Result<Stress, Linalg
             let mut kruskal = Kruskal::default();
             for i in start..(start + BLOCK).min(p) {
                 rows.row_into(i, &mut distances)?;
-                residuals(coords, &distances, i, &mut row);
+                residuals(coords, &distances, i, 0, &mut row);
                 kruskal = kruskal + Kruskal::of_row(&distances, &row);
                 let sum: f64 = row.iter().sum();
                 squares += row.iter().map(|d| d * d).sum::<f64>();
@@ -143,12 +143,12 @@ impl Add for Kruskal {
     }
 }
 
-/// `d_ij^2 - |z_i - z_j|^2` for all `j`.
-pub(crate) fn residuals(coords: &Matrix, distances: &[f64], i: usize, out: &mut [f64]) {
+/// `d_ij^2 - |z_i - z_j|^2` for all `j` from `start` on, for as many as there are `distances`.
+pub(crate) fn residuals(coords: &Matrix, distances: &[f64], i: usize, start: usize, out: &mut [f64]) {
     out.iter_mut().zip(distances).for_each(|(r, d)| *r = d * d);
     for column in coords.column_iter() {
         let at = column[i];
-        for (d, x) in out.iter_mut().zip(column.iter()) {
+        for (d, x) in out.iter_mut().zip(&column.as_slice()[start..]) {
             *d -= (x - at) * (x - at);
         }
     }
