@@ -3,7 +3,7 @@
 // Helper functions are test code too, which clippy cannot see.
 #![allow(clippy::unwrap_used)]
 
-use canonform_geodesics::{DistanceSolver, Method, Source};
+use canonform_geodesics::{DistanceSolver, FastMarchingOptions, Method, Source, Update};
 use mesh::{TriMesh, shapes};
 use surface::{IntrinsicMesh, Link, Topology, VertexId};
 
@@ -51,10 +51,18 @@ fn promises(method: Method) -> Promises {
     }
 }
 
+/// Every method with its default options, and fast marching with virtual sources.
+fn methods() -> Vec<(&'static str, Method)> {
+    let carried = FastMarchingOptions { update: Update::VirtualSource, ..Default::default() };
+    let named = Method::all().map(|method| (method.name(), method));
+    named.into_iter().chain([("virtual sources", Method::FastMarching(carried))]).collect()
+}
+
 /// Every method, prepared for a surface, and its promises.
 fn solvers(surface: &IntrinsicMesh) -> Vec<(&'static str, Promises, Box<dyn DistanceSolver>)> {
-    let prepare = |method: Method| (method.name(), promises(method), method.prepare(surface).unwrap());
-    Method::all().into_iter().map(prepare).collect()
+    let prepare =
+        |(name, method): (&'static str, Method)| (name, promises(method), method.prepare(surface).unwrap());
+    methods().into_iter().map(prepare).collect()
 }
 
 /// A hilly sheet of 12 x 12 vertices with saddle vertices and obtuse corners.
@@ -202,7 +210,7 @@ fn distances_are_infinite_exactly_on_unconnected_components() {
 #[test]
 fn the_unit_of_length_changes_only_the_unit() {
     let surface = hills(11).intrinsic();
-    for method in Method::all() {
+    for (name, method) in methods() {
         let Promises { rounding, largest_unit, .. } = promises(method);
         let with_unit = |unit: f64| {
             let lengths = surface.edge_lengths().iter().map(|length| length * unit).collect();
@@ -212,9 +220,9 @@ fn the_unit_of_length_changes_only_the_unit() {
         let plain = with_unit(1.0);
         let times = |unit: f64| plain.iter().map(|d| d * unit).collect::<Vec<f64>>();
         // Powers of two are exact.
-        assert_eq!(with_unit(1024.0), times(1024.0), "{}", method.name());
+        assert_eq!(with_unit(1024.0), times(1024.0), "{name}");
         for unit in [3.7, 1e-9, largest_unit, largest_unit.recip()] {
-            assert_close(&with_unit(unit), &times(unit), rounding.max(1e-11), 0.0, method.name());
+            assert_close(&with_unit(unit), &times(unit), rounding.max(1e-11), 0.0, name);
         }
     }
 }

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 use std::time::Duration;
 
 use budget::Budget;
-use canonform_geodesics::{DistanceSolver, Exact, Method};
+use canonform_geodesics::{DistanceSolver, Exact, FastMarchingOptions, Method, Update};
 use surface::{IntrinsicMesh, Topology, VertexId};
 
 fn surface(points: &[[f64; 3]], faces: Vec<[usize; 3]>) -> IntrinsicMesh {
@@ -52,6 +52,12 @@ fn all_triangles(n: usize) -> IntrinsicMesh {
     surface(&(0..n).map(|i| at(i as f64)).collect::<Vec<_>>(), faces.collect())
 }
 
+/// Every method with its default options, and fast marching with virtual sources.
+fn methods() -> impl Iterator<Item = Method> {
+    let carried = FastMarchingOptions { update: Update::VirtualSource, ..Default::default() };
+    Method::all().into_iter().chain([Method::FastMarching(carried)])
+}
+
 /// The largest error relative to the largest exact distance that a method may make at hubs.
 fn tolerance(method: Method) -> f64 {
     match method {
@@ -78,7 +84,7 @@ fn distances_at_hubs_are_those_of_the_exact_solver() {
         for source in [0, 1, 5].map(VertexId) {
             let exact = Exact::new(&hub).distances(source).unwrap();
             let largest = exact.iter().copied().fold(0.0, f64::max);
-            for method in Method::all() {
+            for method in methods() {
                 let found = method.prepare(&hub).unwrap().distances(source).unwrap();
                 let error = found.iter().zip(&exact).map(|(f, e)| (f - e).abs()).fold(0.0, f64::max);
                 let error = error / largest;
@@ -96,7 +102,7 @@ const GENEROUS: Duration = Duration::from_secs(60);
 fn no_method_is_quadratic_in_the_degree() {
     let n = 200_000;
     for (name, hub) in [("polygon", polygon(n)), ("cone", cone(n)), ("book", book(n)), ("star", star(n))] {
-        for method in Method::all() {
+        for method in methods() {
             // Its windows grow with the square of the number of faces at an edge.
             if (name, method) == ("book", Method::Exact) {
                 continue;

@@ -5,7 +5,8 @@
 #![allow(clippy::unwrap_used)]
 
 use canonform_geodesics::{
-    Dijkstra, DistanceSolver, Exact, FastMarching, Method, PathTracer, Source, SurfacePoint,
+    Dijkstra, DistanceSolver, Exact, FastMarching, FastMarchingOptions, Method, PathTracer, Source,
+    SurfacePoint, Update,
 };
 use mesh::{TriMesh, shapes};
 use nalgebra::Point3;
@@ -98,6 +99,14 @@ fn euclid(mesh: &TriMesh, a: VertexId, b: usize) -> f64 {
     (mesh.positions[a.index()] - mesh.positions[b]).norm()
 }
 
+/// Fast marching with a local solver.
+fn marching(surface: &IntrinsicMesh, update: Update) -> FastMarching {
+    FastMarching::new(surface, FastMarchingOptions { update, ..Default::default() })
+}
+
+/// The local solvers that are compared with exact distances.
+const ACCURATE: [Update; 2] = [Update::PointSource, Update::VirtualSource];
+
 /// Three solvers prepared for one surface.
 struct Solvers {
     exact: Exact,
@@ -113,8 +122,8 @@ struct Found {
 }
 
 impl Solvers {
-    fn new(surface: &IntrinsicMesh) -> Self {
-        let marching = FastMarching::new(surface, Default::default());
+    fn new(surface: &IntrinsicMesh, update: Update) -> Self {
+        let marching = marching(surface, update);
         Self { exact: Exact::new(surface), marching, along_edges: Dijkstra::new(surface) }
     }
 
@@ -138,9 +147,13 @@ fn assert_lipschitz(surface: &IntrinsicMesh, distances: &[f64], name: &str) {
 
 /// Asserts what holds for any triangles.
 fn assert_laws(mesh: &TriMesh) {
+    ACCURATE.into_iter().for_each(|update| assert_laws_of(mesh, update));
+}
+
+fn assert_laws_of(mesh: &TriMesh, update: Update) {
     let surface = mesh.intrinsic();
     let (longest, open) = (longest_edge(&surface), left_open(&surface));
-    let solvers = Solvers::new(&surface);
+    let solvers = Solvers::new(&surface, update);
     for source in sources(mesh) {
         let Found { exact, marched, along_edges } = solvers.from(source);
         assert_lipschitz(&surface, &exact, "exact");
@@ -178,7 +191,8 @@ proptest! {
     fn every_method_reaches_what_dijkstra_reaches(mesh in prop_oneof![soup(), tame()]) {
         let surface = mesh.intrinsic();
         let dijkstra = Dijkstra::new(&surface);
-        for method in Method::all() {
+        let carried = FastMarchingOptions { update: Update::VirtualSource, ..Default::default() };
+        for method in Method::all().into_iter().chain([Method::FastMarching(carried)]) {
             let solver = method.prepare(&surface).unwrap();
             for source in sources(&mesh) {
                 for (found, known) in solver.distances(source).unwrap().iter().zip(dijkstra.distances(source).unwrap()) {
@@ -205,16 +219,18 @@ proptest! {
     #[test]
     fn fast_marching_is_within_an_edge_of_exact_distances(mesh in tame()) {
         let surface = mesh.intrinsic();
-        let (marching, exact) = (FastMarching::new(&surface, Default::default()), Exact::new(&surface));
-        let all = from_everywhere(&marching);
+        let exact = Exact::new(&surface);
         let longest = longest_edge(&surface);
-        for source in sources(&mesh) {
-            let exact = exact.distances(source).unwrap();
-            for (v, e) in exact.iter().enumerate().filter(|(_, e)| e.is_finite()) {
-                let [there, back] = [all[source.index()][v], all[v][source.index()]];
-                prop_assert!((there - back).abs() <= longest, "{there} {back} {longest}");
-                prop_assert!((there - e).abs() <= longest, "{there} {e} {longest}");
-                prop_assert!(there >= euclid(&mesh, source, v) - longest);
+        for update in ACCURATE {
+            let all = from_everywhere(&marching(&surface, update));
+            for source in sources(&mesh) {
+                let exact = exact.distances(source).unwrap();
+                for (v, e) in exact.iter().enumerate().filter(|(_, e)| e.is_finite()) {
+                    let [there, back] = [all[source.index()][v], all[v][source.index()]];
+                    prop_assert!((there - back).abs() <= longest, "{update:?}: {there} {back} {longest}");
+                    prop_assert!((there - e).abs() <= longest, "{update:?}: {there} {e} {longest}");
+                    prop_assert!(there >= euclid(&mesh, source, v) - longest, "{update:?}");
+                }
             }
         }
     }
@@ -224,7 +240,7 @@ proptest! {
         let surface = mesh.intrinsic();
         // Exact distances may miss paths through faces with a side of length zero, which repair drops.
         prop_assume!(surface.edge_lengths().iter().all(|length| *length > 0.0));
-        let (open, solvers) = (left_open(&surface), Solvers::new(&surface));
+        let (open, solvers) = (left_open(&surface), Solvers::new(&surface, Update::VirtualSource));
         for source in sources(&mesh) {
             let Found { exact, marched, along_edges } = solvers.from(source);
             let sources = [Source::vertex(source)];

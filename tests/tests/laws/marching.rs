@@ -4,16 +4,23 @@ use canonform::Exceeded;
 use datasets::Family;
 use geodesics::{
     DistanceSolver, FastMarching, FastMarchingOptions, FirstSample, Method, ObtuseTreatment, PrunedSolver,
-    Source, farthest_point_sampling,
+    Source, SurfacePoint, Update, farthest_point_sampling,
 };
 use mesh::{TriMesh, shapes};
 use surface::{IntrinsicMesh, VertexId};
 
 use crate::support::{all_vertices, body, columns, marching};
 
-/// The largest error on a flat sheet, relative to the largest distance.
+/// The largest error on a flat sheet, relative to the largest distance, of both local solvers that are exact there.
 fn error_on_plane(sheet: &TriMesh, source: usize, obtuse: ObtuseTreatment) -> f64 {
-    let options = FastMarchingOptions { obtuse, ..FastMarchingOptions::default() };
+    let updates = [Update::PointSource, Update::VirtualSource];
+    updates
+        .map(|update| error_of(FastMarchingOptions { update, obtuse }, sheet, source))
+        .into_iter()
+        .fold(0.0, f64::max)
+}
+
+fn error_of(options: FastMarchingOptions, sheet: &TriMesh, source: usize) -> f64 {
     let solver = FastMarching::new(&sheet.intrinsic(), options);
     let found = solver.distances(VertexId::from(source)).unwrap();
     let straight: Vec<f64> = sheet.positions.iter().map(|p| (p - sheet.positions[source]).norm()).collect();
@@ -102,6 +109,56 @@ fn errors_on_spheres_fall_with_edge_length() {
     println!("mean errors on spheres with halved edges: {errors:?}");
     for pair in errors.windows(2) {
         assert!(pair[1] < 0.6 * pair[0], "{errors:?}");
+    }
+}
+
+/// The mean error relative to exact distances from a few vertices, and the largest.
+fn errors(mesh: &TriMesh, update: Update) -> [f64; 2] {
+    let surface = mesh.intrinsic();
+    let marching = FastMarching::new(&surface, FastMarchingOptions { update, ..Default::default() });
+    let exact = Method::Exact.prepare(&surface).unwrap();
+    let mut errors = Vec::new();
+    for source in [3, 60, 500, 800].map(VertexId) {
+        let exact = exact.distances(source).unwrap();
+        let found = marching.distances(source).unwrap();
+        errors.extend(found.iter().zip(&exact).filter(|(_, e)| **e > 0.0).map(|(f, e)| (f - e).abs() / e));
+    }
+    [errors.iter().sum::<f64>() / errors.len() as f64, errors.into_iter().fold(0.0, f64::max)]
+}
+
+/// A subdivided surface is the same polyhedron. Only virtual sources profit from its flat parts.
+#[test]
+fn virtual_sources_are_more_accurate_the_more_often_a_surface_is_subdivided() {
+    for family in [Family::Cat, Family::Centaur, Family::David] {
+        let coarse = body(family);
+        let fine = shapes::subdivide(&shapes::subdivide(&coarse));
+        let [before, after] = [&coarse, &fine].map(|mesh| errors(mesh, Update::VirtualSource)[0]);
+        let [point, _] = errors(&fine, Update::PointSource);
+        println!(
+            "{}: mean error {before:.1e}, {after:.1e} after two subdivisions; point sources {point:.1e}",
+            family.name()
+        );
+        assert!(after < 0.7 * before && after < 0.5 * point, "{before} {after} {point}");
+    }
+}
+
+#[test]
+fn virtual_sources_are_exact_from_points_of_edges_and_faces_in_the_plane() {
+    let sheet = shapes::sheared_grid(21, 17, 0.3, -0.3);
+    let surface = sheet.intrinsic();
+    let options = FastMarchingOptions { update: Update::VirtualSource, ..Default::default() };
+    let solver = FastMarching::new(&surface, options);
+    for i in (0..surface.topology().n_faces()).step_by(37) {
+        let face = surface::FaceId::from(i);
+        let barycentric = [0.2, 0.5, 0.3];
+        let corners = surface.topology().faces()[i].map(|v| sheet.positions[v.index()].coords);
+        let at: nalgebra::Vector3<f64> = corners.iter().zip(barycentric).map(|(p, b)| p * b).sum();
+        let source = Source::new(&surface, SurfacePoint::Face { face, barycentric }).unwrap();
+        let mut found = vec![0.0; surface.n_vertices()];
+        solver.solve_into(&[source], f64::INFINITY, &mut found).unwrap();
+        let straight: Vec<f64> = sheet.positions.iter().map(|p| (p.coords - at).norm()).collect();
+        let error = crate::support::gap(&found, &straight);
+        assert!(error < 1e-9, "face {i}: {error:e}");
     }
 }
 

@@ -165,7 +165,12 @@ pub(crate) struct MarchingArgs {
 
 fn update() -> impl TypedValueParser<Value = Update> {
     one_of([
-        ("point-source", "The front in a triangle comes from one point (more accurate)", Update::PointSource),
+        ("point-source", "The front in a triangle comes from one point (fastest)", Update::PointSource),
+        (
+            "virtual-source",
+            "Triangles hand on where the source lies in their plane (most accurate)",
+            Update::VirtualSource,
+        ),
         ("planar", "The front in a triangle is a straight line (Kimmel and Sethian)", Update::Planar),
     ])
 }

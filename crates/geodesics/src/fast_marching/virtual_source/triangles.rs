@@ -1,0 +1,326 @@
+//! Triangles, laid out in the order in which the front reads them.
+
+use std::collections::HashMap;
+use std::f64::consts::{PI, TAU};
+
+use rayon::prelude::*;
+use surface::{
+    CornerId, CornerTable, FaceId, Link, Rows, Triangulation, VertexId, double_area, scalar_product,
+};
+
+use super::crossing::Sides;
+use super::window::Entered;
+use crate::plane::Point;
+
+/// Excess of a total angle, in radians, below which it is rounding.
+const EXCESS: f64 = 5e-9;
+
+/// A triangle: one cache line. Corners are numbered 0, 1 and 2, sides by the corner opposite.
+#[derive(Debug, Clone, Copy)]
+#[repr(align(64))]
+pub(super) struct Triangle {
+    pub(super) lengths: [f64; 3],
+    double_area: f64,
+    /// For each side, the next of the corners opposite to it in the triangles that share it; the same corner again if
+    /// no other triangle does.
+    pub(super) across: [u32; 3],
+    pub(super) vertices: [u32; 3],
+    flags: u32,
+}
+
+/// A corner and the side opposite, through which the triangle is entered.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Entry(u32);
+
+impl Entry {
+    /// Whether the next corner is the right end of the side, not the left one.
+    const MIRRORED: u32 = 1 << 31;
+
+    pub(super) fn new(corner: u32, is_mirrored: bool) -> Self {
+        Self(corner | if is_mirrored { Self::MIRRORED } else { 0 })
+    }
+
+    pub(super) fn number(self) -> u32 {
+        self.0
+    }
+
+    pub(super) fn numbered(number: u32) -> Self {
+        Self(number)
+    }
+
+    pub(super) fn triangle(self) -> u32 {
+        (self.0 & !Self::MIRRORED) / 3
+    }
+
+    pub(super) fn is_mirrored(self) -> bool {
+        self.0 & Self::MIRRORED != 0
+    }
+
+    /// The corners at the left and right end of the side, and the one opposite.
+    #[inline]
+    pub(super) fn corners(self) -> [usize; 3] {
+        let apex = (self.0 & !Self::MIRRORED) as usize % 3;
+        let [next, prev] = around(apex);
+        if self.is_mirrored() { [prev, next, apex] } else { [next, prev, apex] }
+    }
+}
+
+impl Triangle {
+    /// The flag of the first corner's vertex: shortest paths may bend there.
+    const BENDS: u32 = 1;
+
+    /// The lengths of the triangle as seen through the side where it is entered.
+    #[inline]
+    pub(super) fn sides(&self, entry: Entry) -> Sides {
+        let [left, right, apex] = entry.corners();
+        Sides {
+            base: self.lengths[apex],
+            from_left: self.lengths[right],
+            from_right: self.lengths[left],
+            double_area: self.double_area,
+        }
+    }
+
+    /// Whether shortest paths may bend at the left and at the right end of an entry.
+    #[inline]
+    pub(super) fn bends(&self, entry: Entry) -> [bool; 2] {
+        let [left, right, _] = entry.corners();
+        [left, right].map(|corner| self.flags & (Self::BENDS << corner) != 0)
+    }
+
+    /// The triangle laid out above an entry.
+    #[inline]
+    pub(super) fn entered(&self, entry: Entry) -> Entered {
+        let Sides { base, from_left, from_right, double_area } = self.sides(entry);
+        let x = 0.5 * (base + (from_left - from_right) * ((from_left + from_right) / base));
+        Entered { base, apex: [x, double_area / base] }
+    }
+}
+
+/// The triangles of a triangulation, and what front and vertices need to find them. Vertices and triangles are
+/// renumbered for locality.
+#[derive(Debug)]
+pub(in super::super) struct Triangles {
+    pub(super) triangles: Vec<Triangle>,
+    /// The corners at every vertex.
+    pub(super) corners: Rows<u32>,
+    /// Straight connections of vertices outside triangles.
+    pub(super) links: Rows<(u32, f64)>,
+    /// Vertices that join parts which no side joins: ends of links, and vertices of several fans.
+    pub(super) joints: Vec<u32>,
+    /// Mesh vertex of every internal number.
+    pub(in super::super) order: Vec<u32>,
+    /// Internal number of every mesh vertex.
+    pub(in super::super) rank: Vec<u32>,
+    /// The numbers of the hubs, edges of many triangles, by corner opposite. A window enters their triangles only if
+    /// the middle of the edge is nearer through it than through those before.
+    pub(super) hubs: HashMap<u32, u32>,
+    pub(super) n_hubs: usize,
+    /// The length of the longest side.
+    pub(super) longest: f64,
+    /// The width of the buckets to begin with.
+    pub(super) bucket_width: f64,
+}
+
+/// Width of the buckets, as a share of the mean edge length.
+const BUCKET_WIDTH: f64 = 0.3;
+
+/// Edges of more triangles are hubs.
+const MOST_AROUND: usize = 8;
+
+impl Triangles {
+    /// The triangles of a triangulation whose vertices are renumbered in the given order. Windows do not cross
+    /// `removed` edges, which distances follow nevertheless; links may lead anywhere.
+    pub(in super::super) fn new(
+        order: Vec<u32>,
+        triangulation: &Triangulation,
+        links: &[Link],
+        removed: &[Link],
+        mean_edge_length: f64,
+    ) -> Self {
+        let n = order.len();
+        let mut rank = vec![0; n];
+        for (internal, v) in order.iter().enumerate() {
+            rank[*v as usize] = internal as u32;
+        }
+        let glued = triangulation.triangles();
+        // Triangles follow their first vertices.
+        let first = |t: usize| glued[t].vertices.iter().map(|v| rank[v.index()]).min().unwrap_or(0);
+        let by_vertex = Rows::collect(n, (0..glued.len()).map(|t| (first(t) as usize, t as u32)));
+        let place = by_vertex.items();
+        let mut number = vec![0; glued.len()];
+        for (i, t) in (0..).zip(place) {
+            number[*t as usize] = i;
+        }
+        let renamed = |corner: CornerId| 3 * number[corner.face().index()] + corner.slot() as u32;
+        let (next, many) = around_edges(triangulation);
+        let across =
+            |corner| triangulation.opposite(corner).unwrap_or_else(|| *next.get(&corner).unwrap_or(&corner));
+        let mut triangles: Vec<Triangle> = place
+            .par_iter()
+            .map(|t| {
+                let face = FaceId(*t);
+                let lengths = glued[face.index()].lengths;
+                Triangle {
+                    lengths,
+                    double_area: double_area(lengths),
+                    across: face.corners().map(|corner| renamed(across(corner))),
+                    vertices: glued[face.index()].vertices.map(|v| rank[v.index()]),
+                    flags: 0,
+                }
+            })
+            .collect();
+        let hubs =
+            (0..).zip(&many).flat_map(|(hub, edge)| edge.iter().map(move |corner| (renamed(*corner), hub)));
+        let hubs = hubs.collect();
+        let corners = triangles.iter().enumerate().flat_map(|(t, triangle)| {
+            [0, 1, 2].map(|slot| (triangle.vertices[slot] as usize, (3 * t + slot) as u32))
+        });
+        let corners = Rows::collect(n, corners);
+        let renumbered = |link: &Link| Link { ends: link.ends.map(|v| VertexId(rank[v.index()])), ..*link };
+        let all_links = links.iter().chain(removed).map(renumbered);
+        let kinds = kinds(&triangles, &corners);
+        triangles.par_iter_mut().for_each(|triangle| {
+            for slot in 0..3 {
+                if kinds[triangle.vertices[slot] as usize].may_bend {
+                    triangle.flags |= Triangle::BENDS << slot;
+                }
+            }
+        });
+        let mut joints: Vec<u32> = links.iter().flat_map(|link| link.ends).map(|v| rank[v.index()]).collect();
+        joints.extend((0..).zip(&kinds).filter(|(_, kind)| kind.has_fans).map(|(v, _)| v));
+        joints.sort_unstable();
+        joints.dedup();
+        let longest =
+            triangles.iter().flat_map(|t| t.lengths).chain(all_links.clone().map(|link| link.length));
+        let longest = longest.fold(0.0, f64::max);
+        Self {
+            links: Link::by_vertex(n, all_links),
+            triangles,
+            corners,
+            joints,
+            hubs,
+            n_hubs: many.len(),
+            order,
+            rank,
+            longest,
+            bucket_width: BUCKET_WIDTH * mean_edge_length,
+        }
+    }
+
+    /// The length of the longest side of a triangle.
+    pub(in super::super) fn longest_of(&self, triangle: u32) -> f64 {
+        self.at(triangle).lengths.into_iter().fold(0.0, f64::max)
+    }
+
+    /// The mesh vertices of a triangle.
+    pub(in super::super) fn mesh_vertices(&self, triangle: u32) -> [u32; 3] {
+        self.at(triangle).vertices.map(|v| self.order[v as usize])
+    }
+
+    #[inline]
+    pub(super) fn at(&self, triangle: u32) -> &Triangle {
+        &self.triangles[triangle as usize]
+    }
+
+    /// The edges and links at a vertex: their other ends and lengths.
+    pub(super) fn ways_from(&self, vertex: u32) -> impl Iterator<Item = (u32, f64)> {
+        let edges = self.corners.row(vertex as usize).iter().flat_map(|corner| {
+            let (triangle, slot) = (self.at(corner / 3), *corner as usize % 3);
+            let [next, prev] = around(slot);
+            [
+                (triangle.vertices[next], triangle.lengths[prev]),
+                (triangle.vertices[prev], triangle.lengths[next]),
+            ]
+        });
+        edges.chain(self.links.row(vertex as usize).iter().copied())
+    }
+}
+
+/// The next corner opposite the same edge, for edges of more than two triangles, which are free sides with the same
+/// ends; and all corners of those with many triangles.
+fn around_edges(triangulation: &Triangulation) -> (HashMap<CornerId, CornerId>, Vec<Vec<CornerId>>) {
+    let ends = |corner: CornerId| {
+        let mut ends = [corner.next(), corner.prev()].map(|end| triangulation.corner_vertex(end));
+        ends.sort_unstable();
+        ends
+    };
+    let corners = (0..3 * triangulation.triangles().len()).map(CornerId::from);
+    let mut free: Vec<CornerId> =
+        corners.filter(|corner| triangulation.opposite(*corner).is_none()).collect();
+    free.sort_by_key(|corner| ends(*corner));
+    let (mut next, mut many) = (HashMap::new(), Vec::new());
+    for edge in free.chunk_by(|a, b| ends(*a) == ends(*b)).filter(|edge| edge.len() > 1) {
+        let following = edge.iter().skip(1).chain(&edge[..1]);
+        next.extend(edge.iter().copied().zip(following.copied()));
+        if edge.len() > MOST_AROUND {
+            many.push(edge.to_vec());
+        }
+    }
+    (next, many)
+}
+
+/// What shortest paths may do at a vertex.
+struct Kind {
+    /// Whether they may bend.
+    may_bend: bool,
+    /// Whether its triangles form several fans.
+    has_fans: bool,
+}
+
+fn kinds(triangles: &[Triangle], corners: &Rows<u32>) -> Vec<Kind> {
+    let angles: Vec<[f64; 3]> = triangles
+        .par_iter()
+        .map(|t| {
+            [0, 1, 2].map(|slot: usize| {
+                let [next, prev] = around(slot);
+                t.double_area.atan2(scalar_product(t.lengths[slot], t.lengths[next], t.lengths[prev]))
+            })
+        })
+        .collect();
+    // The corner at the same vertex behind a side, if exactly two triangles share that.
+    let beyond = |corner: u32, side: usize| {
+        let own = corner - corner % 3 + side as u32;
+        let (near, far) = (&triangles[own as usize / 3], triangles[own as usize / 3].across[side]);
+        let behind = &triangles[far as usize / 3];
+        let vertex = near.vertices[corner as usize % 3];
+        let is_shared = far != own && behind.across[far as usize % 3] == own;
+        let slot = around(far as usize % 3).into_iter().find(|slot| behind.vertices[*slot] == vertex)?;
+        is_shared.then_some([far - far % 3 + slot as u32, far % 3])
+    };
+    let kind = |v: usize| {
+        let at = corners.row(v);
+        let sum: f64 = at.iter().map(|c| angles[*c as usize / 3][*c as usize % 3]).sum();
+        let n_free = at.iter().flat_map(|c| around(*c as usize % 3).map(|side| beyond(*c, side)));
+        let n_free = n_free.filter(Option::is_none).count();
+        // All the way around, from the first corner.
+        let mut n_in_fan = 0;
+        if let (0, Some(&first)) = (n_free, at.first()) {
+            let (mut corner, mut side) = (first, around(first as usize % 3)[0]);
+            while let Some([next, entry]) = beyond(corner, side) {
+                n_in_fan += 1;
+                let out = around(next as usize % 3).into_iter().find(|side| *side != entry as usize);
+                (corner, side) = (next, out.unwrap_or(side));
+                if corner == first || n_in_fan > at.len() {
+                    break;
+                }
+            }
+        }
+        let has_fans = if n_free == 0 { n_in_fan < at.len() } else { n_free > 2 };
+        let is_inside = n_free == 0 && !has_fans;
+        Kind { may_bend: sum > if is_inside { TAU } else { PI } + EXCESS, has_fans }
+    };
+    (0..corners.n_rows()).into_par_iter().map(kind).collect()
+}
+
+/// The next and the previous of the three corners of a triangle.
+#[inline]
+pub(super) fn around(slot: usize) -> [usize; 2] {
+    [[1, 2], [2, 0], [0, 1]][slot]
+}
+
+/// Distances of a point from the ends of a base, as a point above or on it.
+pub(super) fn above(base: f64, [from_left, from_right]: [f64; 2]) -> Point {
+    let x = 0.5 * (base + (from_left - from_right) * ((from_left + from_right) / base));
+    [x, ((from_left - x) * (from_left + x)).max(0.0).sqrt()]
+}
