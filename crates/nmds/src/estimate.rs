@@ -1,6 +1,6 @@
 //! The stress of an embedding, estimated from a few rows of distances.
 
-use std::ops::Add;
+use std::ops::{Add, Range};
 
 use linalg::{LandmarkDistances, LinalgError, Matrix};
 use rand_chacha::ChaCha8Rng;
@@ -84,29 +84,40 @@ impl RowSample {
         let blocks = distances.blocks();
         let shares = shares(distances)?;
         // Residuals of all points of a block and all landmarks.
-        let of_block = |rows: std::ops::Range<usize>| {
+        let of_block = |rows: Range<usize>| {
             let mut block = distances.rows(rows.clone())?;
             for (mut column, &landmark) in block.column_iter_mut().zip(landmarks) {
-                for (d, i) in column.iter_mut().zip(rows.clone()) {
-                    let sq: f64 = coords.column_iter().map(|z| (z[i] - z[landmark]).powi(2)).sum();
-                    *d = (*d / unit).powi(2) - sq;
+                let column = column.as_mut_slice();
+                column.iter_mut().for_each(|d| *d = (*d / unit).powi(2));
+                for z in coords.column_iter() {
+                    let at = z[landmark];
+                    let points = &z.as_slice()[rows.clone()];
+                    column.iter_mut().zip(points).for_each(|(r, x)| *r -= (x - at) * (x - at));
                 }
             }
             Ok::<_, LinalgError>(block)
         };
         let flat = |parts: Vec<Vec<f64>>| parts.into_iter().flatten().collect::<Vec<f64>>();
-        let means = |rows| Ok(of_block(rows)?.row_iter().map(|row| weighted(row.iter(), &shares)).collect());
+        let means = |rows: Range<usize>| {
+            let mut means = vec![0.0; rows.len()];
+            for (column, share) in of_block(rows)?.column_iter().zip(&shares) {
+                means.iter_mut().zip(column.as_slice()).for_each(|(mean, r)| *mean += share * r);
+            }
+            Ok(means)
+        };
         let means = blocks.clone().into_par_iter().map(means).collect::<Result<Vec<_>, LinalgError>>()?;
         let mut offsets = flat(means);
         let half = 0.5 * landmarks.iter().zip(&shares).map(|(&j, share)| share * offsets[j]).sum::<f64>();
         offsets.iter_mut().for_each(|offset| *offset -= half);
-        let expected = |rows: std::ops::Range<usize>| {
-            let block = of_block(rows.clone())?;
-            let squares = |(row, i): (usize, usize)| {
-                let square = |(r, &j): (&f64, &usize)| (r - offsets[i] - offsets[j]).powi(2);
-                weighted(block.row(row).iter().zip(landmarks).map(square), &shares)
-            };
-            Ok((0..rows.len()).zip(rows).map(squares).collect())
+        let expected = |rows: Range<usize>| {
+            let mut expected = vec![0.0; rows.len()];
+            for ((column, share), &j) in of_block(rows.clone())?.column_iter().zip(&shares).zip(landmarks) {
+                let residuals = column.as_slice().iter().zip(&offsets[rows.clone()]);
+                for (sum, (r, own)) in expected.iter_mut().zip(residuals) {
+                    *sum += share * (r - own - offsets[j]).powi(2);
+                }
+            }
+            Ok(expected)
         };
         let expected = blocks.into_par_iter().map(expected).collect::<Result<Vec<_>, LinalgError>>()?;
         let mut expected = flat(expected);
@@ -147,20 +158,20 @@ pub fn sample_rows(p: usize, m: usize, seed: u64) -> Vec<usize> {
 /// The share of points that are nearest to each landmark, the first in case of a tie.
 fn shares(distances: &LandmarkDistances) -> Result<Vec<f64>, LinalgError> {
     let n = distances.n_landmarks();
-    let nearest = |rows| {
-        let mut counts = vec![0usize; n];
-        for row in distances.rows(rows)?.row_iter() {
-            counts[row.transpose().imin()] += 1;
+    let nearest = |rows: Range<usize>| {
+        let (mut nearest, mut least) = (vec![0; rows.len()], vec![f64::INFINITY; rows.len()]);
+        for (j, column) in distances.rows(rows)?.column_iter().enumerate() {
+            for ((d, nearest), least) in column.as_slice().iter().zip(&mut nearest).zip(&mut least) {
+                (*nearest, *least) = if d < least { (j, *d) } else { (*nearest, *least) };
+            }
         }
+        let mut counts = vec![0usize; n];
+        nearest.into_iter().for_each(|j: usize| counts[j] += 1);
         Ok(counts)
     };
     let counts = distances.blocks().into_par_iter().map(nearest).collect::<Result<Vec<_>, LinalgError>>()?;
     let total = |j: usize| counts.iter().map(|block: &Vec<usize>| block[j]).sum::<usize>() as f64;
     Ok((0..n).map(|j| total(j) / distances.n_points().max(1) as f64).collect())
-}
-
-fn weighted(values: impl Iterator<Item = impl std::borrow::Borrow<f64>>, shares: &[f64]) -> f64 {
-    values.zip(shares).map(|(value, share)| *value.borrow() * share).sum()
 }
 
 /// `m` numbers, ascending, drawn with replacement with probabilities proportional to `sizes`.
