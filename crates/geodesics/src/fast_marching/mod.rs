@@ -156,6 +156,9 @@ enum Layout {
     OneRings(OneRings, Update, Pool<Front>),
 }
 
+/// Up to this many vertices, a mesh that is handed over is kept until one-rings are laid out, which is then faster.
+const LEAN: usize = 1 << 19;
+
 impl FastMarching {
     /// Prepares a surface.
     #[must_use]
@@ -186,18 +189,19 @@ impl FastMarching {
         );
         let (triangulation, segments, halves) = prepared;
         let (mean, links) = (mesh.mean_edge_length(), mesh.links().to_vec());
-        // The connectivity only makes the layout faster, so memory that can be freed before is freed.
-        let topology = match owned {
-            Cow::Borrowed(mesh) => Some(mesh.topology()),
-            Cow::Owned(mesh) => {
+        // The connectivity only makes the layout faster.
+        let kept = match owned {
+            Cow::Owned(mesh) if mesh.n_vertices() > LEAN => {
                 drop(mesh);
                 None
             }
+            mesh => Some(mesh),
         };
         let layout = if carries_sources {
             let triangles = Triangles::new(order, &triangulation, &links, &segments, mean);
             Layout::Triangles(triangles, Pool::default())
         } else {
+            let topology = kept.as_deref().map(IntrinsicMesh::topology);
             let links = [links, segments].concat();
             let rings = OneRings::new(order, topology, &triangulation, &links, &halves, mean);
             Layout::OneRings(rings, options.update, Pool::default())
