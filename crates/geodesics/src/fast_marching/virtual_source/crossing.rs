@@ -42,6 +42,22 @@ impl SideLanes {
     }
 }
 
+/// A window that leaves a triangle through a side.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Crossing<'a> {
+    pub(super) window: &'a Window,
+    /// The triangle that is left, as seen through its entry.
+    pub(super) from: Sides,
+    /// Whether the side is on the right of the entry or on the left.
+    pub(super) is_right: bool,
+    /// The triangle that is entered.
+    pub(super) to: Sides,
+    /// Whether shortest paths may bend at the left and at the right end of the side.
+    pub(super) bends: [bool; 2],
+    /// The number of the entry.
+    pub(super) entry: u32,
+}
+
 /// Crossings in lanes: each quantity of all of them side by side, as vector instructions need it.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Crossings {
@@ -67,6 +83,12 @@ fn select(condition: bool, yes: f64, no: f64) -> f64 {
     if condition { yes } else { no }
 }
 
+/// Whether a number is below another, or there is no limit to compare with.
+#[inline]
+fn below_or_nan(a: f64, b: f64) -> bool {
+    (a < b) | a.is_nan() | b.is_nan()
+}
+
 #[inline]
 fn cross(a: [f64; 2], b: [f64; 2]) -> f64 {
     a[0] * b[1] - a[1] * b[0]
@@ -79,22 +101,15 @@ fn norm([x, y]: [f64; 2]) -> f64 {
 
 impl Crossings {
     #[inline]
-    pub(super) fn set(
-        &mut self,
-        lane: usize,
-        window: &Window,
-        from: Sides,
-        is_right: bool,
-        to: Sides,
-        bends: [bool; 2],
-        entry: u32,
-    ) {
+    pub(super) fn set(&mut self, lane: usize, crossing: Crossing<'_>) {
+        let Crossing { window, from, is_right, to, bends, entry } = crossing;
         for axis in 0..2 {
             self.source[axis][lane] = window.source[axis];
             self.left[axis][lane] = window.limits[0][axis];
             self.right[axis][lane] = window.limits[1][axis];
-            self.bends[axis][lane] = f64::from(bends[axis]);
         }
+        self.bends[0][lane] = f64::from(bends[0]);
+        self.bends[1][lane] = f64::from(bends[1]);
         self.offset[lane] = window.offset;
         self.from.set(lane, from);
         self.is_right[lane] = f64::from(is_right);
@@ -102,12 +117,13 @@ impl Crossings {
         self.entry[lane] = entry;
     }
 
-    /// The new window of a lane, and its distance.
+    /// The distance of the centroid behind the side.
     #[inline]
     pub(super) fn distance(&self, lane: usize) -> f64 {
         self.distance[lane]
     }
 
+    /// The window behind the side.
     #[inline]
     pub(super) fn window(&self, lane: usize) -> Window {
         let at = |point: &[Lane; 2]| [point[0][lane], point[1][lane]];
@@ -142,15 +158,17 @@ impl Crossings {
             let ends = [from_source([0.0, 0.0]), from_source([base, 0.0])];
             let (ray, apex) = (from_source(target), from_source([bx, by]));
             // On the left, an end that is to the right of the limit is a new limit, and the reverse.
-            let narrows_left = (self.bends[0][i] > 0.0) & !(cross(from_source(left), ends[0]) >= 0.0);
-            let narrows_right = (self.bends[1][i] > 0.0) & !(cross(from_source(right), ends[1]) <= 0.0);
+            let narrows_left =
+                (self.bends[0][i] > 0.0) & below_or_nan(cross(from_source(left), ends[0]), 0.0);
+            let narrows_right =
+                (self.bends[1][i] > 0.0) & below_or_nan(0.0, cross(from_source(right), ends[1]));
             left = [select(narrows_left, 0.0, left[0]), select(narrows_left, 0.0, left[1])];
             right = [select(narrows_right, base, right[0]), select(narrows_right, 0.0, right[1])];
             let (to_left, to_right) = (from_source(left), from_source(right));
             // Negative in the shadow.
             let [at_left, at_right] = [cross(ray, to_left), -cross(ray, to_right)];
             // If a point is in both shadows, the deeper one counts.
-            let in_left = (at_left < 0.0) & !(at_right < at_left);
+            let in_left = (at_left < 0.0) & (below_or_nan(at_left, at_right) | (at_left == at_right));
             let in_right = (at_right < 0.0) & !in_left;
             let shade = |to: [f64; 2], sign: f64, at: f64| {
                 let [p, q, r] = [ends[0], ends[1], apex].map(|corner| sign * cross(corner, to));
@@ -225,7 +243,7 @@ impl Views {
             let ends = [from_source(0.0, 0.0), from_source(self.sides.base[i], 0.0)];
             for (corner, ray) in [ends[0], ends[1], from_source(x, y)].into_iter().enumerate() {
                 let [at_left, at_right] = [cross(ray, left), -cross(ray, right)];
-                let in_left = (at_left < 0.0) & !(at_right < at_left);
+                let in_left = (at_left < 0.0) & (below_or_nan(at_left, at_right) | (at_left == at_right));
                 let in_right = (at_right < 0.0) & !in_left;
                 // Rays that miss the entry go along it.
                 let misses_left = (corner == 2) & (cross(ray, ends[0]) < 0.0);

@@ -7,7 +7,7 @@ use budget::{Budget, Exceeded};
 
 use super::super::buckets::Buckets;
 use super::super::relaxation::ROUNDING;
-use super::crossing::{Crossings, LANES, Views};
+use super::crossing::{Crossing, Crossings, LANES, Views};
 use super::triangles::{Entry, Triangles, above, around};
 use super::window::Window;
 use crate::prefetch::prefetch;
@@ -115,7 +115,7 @@ impl Front {
                 let entered = triangle.entered(entry);
                 let window = Window::around(above(entered.base, [from[left], from[right]]), 0.0);
                 let error = window.distance(entered.apex) - from[apex];
-                if !(error.abs() <= SAME_POINT * triangles.longest) {
+                if error.is_nan() || error.abs() > SAME_POINT * triangles.longest {
                     break;
                 }
                 let label = Label { window, entry };
@@ -259,7 +259,7 @@ impl Front {
         {
             let middle = label.window.middle_distance(triangle.entered(label.entry), is_right);
             let known = &mut self.hubs[*hub as usize];
-            if !(middle < *known * (1.0 - ROUNDING)) {
+            if middle.is_nan() || middle >= *known * (1.0 - ROUNDING) {
                 return;
             }
             *known = middle;
@@ -274,9 +274,15 @@ impl Front {
                 if block == self.crossings.len() {
                     self.crossings.push(Crossings::default());
                 }
-                let (from, to) = (triangle.sides(label.entry), behind.sides(entry));
-                let bends = behind.bends(entry);
-                self.crossings[block].set(lane, &label.window, from, is_right, to, bends, entry.number());
+                let crossing = Crossing {
+                    window: &label.window,
+                    from: triangle.sides(label.entry),
+                    is_right,
+                    to: behind.sides(entry),
+                    bends: behind.bends(entry),
+                    entry: entry.number(),
+                };
+                self.crossings[block].set(lane, crossing);
                 self.n_crossings += 1;
             }
             corner = behind.across[slot];
