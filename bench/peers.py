@@ -8,12 +8,17 @@ gives medians over the rounds. `canonform` reports the time of its solver; its p
 call. Setup per mesh is listed separately. Errors are relative to the exact polyhedral distances of
 `canonform --method exact`, which tests compare with an independent implementation. pygeodesic crashes on some meshes,
 so it runs in its own process.
+
+The variable GSP names a program for geodesic source propagation (Trettner, Bommes and Kobbelt 2021) with the arguments
+mesh.obj, sources (separated by commas), repeats and output: it writes the distances, one row per source, as 64-bit
+floats to the output, and the seconds of every run, one a line, to standard output. Without it, GSP is skipped.
 """
 import math
 import multiprocessing
 import os
 import platform
 import statistics
+import subprocess
 import tempfile
 import time
 
@@ -22,7 +27,8 @@ for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
 
 import numpy as np
 
-from support import distances, mesh_arguments, mesh_sections, read_mesh, write_mesh, write_page
+from support import (FINE, bisected, distances, in_cache_order, mesh_arguments, mesh_sections, read_mesh, subdivided,
+                     write_mesh, write_page)
 
 OURS = ["fast-marching", "exact", "heat", "dijkstra"]
 FIRST = "canonform fast-marching"
@@ -156,6 +162,58 @@ def measure(program, path, rounds):
     return len(vertices), "\n".join(lines)
 
 
+def propagation_meshes(data):
+    """Title and mesh of the comparison with GSP: two-manifold, in the order of their files and in cache order."""
+    single = lambda name: read_mesh(os.path.join(data, "single", name))
+    yield "rocker-arm", *single("rocker-arm.obj")
+    cat = read_mesh(os.path.join(data, "tosca-lowres", "cat0.vert"))
+    yield "cat0, longest edges bisected", *bisected(*cat, FINE)
+    mesh = single("armadillo.obj")
+    yield "armadillo", *mesh
+    yield "armadillo in cache order", *in_cache_order(*mesh)
+    mesh = subdivided(*mesh)
+    yield "armadillo, subdivided", *mesh
+    yield "armadillo, subdivided twice", *subdivided(*mesh)
+
+
+def propagation(program, data, rounds):
+    """A table beside GSP, if the variable GSP names it."""
+    gsp = os.environ.get("GSP")
+    solvers = {"point source": ("fast-marching", "--update", "point-source"),
+               "virtual source": ("fast-marching", "--update", "virtual-source")}
+    names = [*solvers] + (["GSP"] if gsp else [])
+    lines = ["| mesh | vertices | " + " | ".join(f"{name}: ms, mean %, max %" for name in names) + " |",
+             "|---|---|" + "---|" * len(names)]
+    with tempfile.TemporaryDirectory() as folder:
+        path, out = os.path.join(folder, "mesh.obj"), os.path.join(folder, "distances")
+        for title, vertices, faces in propagation_meshes(data):
+            write_mesh(path, vertices, faces)
+            sources = [int(s) for s in np.random.default_rng(0).integers(0, len(vertices), 3)]
+            exact, _, _ = distances(program, path, "exact", sources)
+            rows, seconds = {}, {name: [] for name in names}
+            for _ in range(rounds):
+                for name, options in solvers.items():
+                    repeated = [source for source in sources for _ in range(3)]
+                    found, spent, _ = distances(program, path, options[0], repeated, *options[1:])
+                    rows[name] = found[::3]
+                    seconds[name] += [min(spent[3 * i:3 * i + 3]) for i in range(len(sources))]
+                if gsp:
+                    command = [gsp, path, ",".join(map(str, sources)), "3", out]
+                    run = subprocess.run(command, check=True, capture_output=True, text=True)
+                    spent = [float(line) for line in run.stdout.split()]
+                    rows["GSP"] = np.fromfile(out).reshape(len(sources), -1)
+                    seconds["GSP"] += [min(spent[3 * i:3 * i + 3]) for i in range(len(sources))]
+            known = np.isfinite(exact) & (exact > 0)
+            cells = []
+            for name in names:
+                error = 100 * np.abs(rows[name] - exact)[known] / exact[known]
+                cells.append(f"{1e3 * statistics.median(seconds[name]):.1f}, {error.mean():.3f}, {error.max():.1f}")
+            lines.append(f"| {title} | {len(vertices):,} | " + " | ".join(cells) + " |")
+            print(lines[-1], flush=True)
+    skipped = "" if gsp else "\n\nGSP is skipped: the variable GSP does not name its program."
+    return "\n".join(lines) + skipped
+
+
 def wavy_torus(n_vertices):
     """An irregular closed surface of any size."""
     m = int(round(math.sqrt(n_vertices / 3)))
@@ -195,6 +253,10 @@ def main():
         "polyhedral distances. Compare ratios; absolute times depend on the machine.\n",
     ]
     page += mesh_sections(args.data, lambda path: measure(args.program, path, args.rounds))
+    page.append(
+        "## Virtual sources and geodesic source propagation\n\nTrettner, Bommes and Kobbelt 2021. Times are medians over "
+        "three sources and all rounds, of the fastest of three runs each.\n\n"
+        f"{propagation(args.program, args.data, args.rounds)}\n")
     with tempfile.TemporaryDirectory() as folder:
         exponent, table = growth(args.program, folder)
     page.append(f"## Scaling of fast marching on an irregular torus\n\n{table}\n\nTime grows with the number of vertices to the power {exponent:.2f}.\n")

@@ -99,17 +99,42 @@ def bisected(vertices, faces, n_vertices):
     return np.array(vertices), np.array(faces)
 
 
+def subdivided(vertices, faces):
+    """Splits every face into four at the middles of its edges, without changing the surface."""
+    sides = np.sort(np.vstack([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1)
+    edges, middle = np.unique(sides, axis=0, return_inverse=True)
+    ab, bc, ca = len(vertices) + middle.reshape(3, -1)
+    a, b, c = faces.T
+    vertices = np.vstack([vertices, vertices[edges].mean(axis=1)])
+    return vertices, np.vstack([np.stack(f, 1) for f in [(a, ab, ca), (b, bc, ab), (c, ca, bc), (ab, bc, ca)]])
+
+
+def in_cache_order(vertices, faces):
+    """Renumbers vertices breadth-first, and sorts faces by their first vertex."""
+    from scipy.sparse import coo_matrix
+    from scipy.sparse.csgraph import breadth_first_order
+
+    n = len(vertices)
+    graph = coo_matrix((np.ones(faces.size), (faces.ravel(), np.roll(faces, 1, axis=1).ravel())), (n, n)).tocsr()
+    order = breadth_first_order(graph, 0, directed=False, return_predecessors=False)
+    order = np.concatenate([order, np.setdiff1d(np.arange(n), order)])
+    rank = np.empty(n, dtype=np.int64)
+    rank[order] = np.arange(n)
+    faces = rank[faces]
+    return vertices[order], faces[np.argsort(faces.min(axis=1), kind="stable")]
+
+
 def answer(command, **how):
     """The JSON output of a program."""
     return json.loads(subprocess.run(command, check=True, capture_output=True, text=True, **how).stdout)
 
 
-def distances(program, mesh, method, sources):
+def distances(program, mesh, method, sources, *options):
     """`canonform geodesic` on one thread: distances (one row per source), seconds per source, seconds of setup."""
     with tempfile.TemporaryDirectory() as folder:
         out = os.path.join(folder, "distances.npy")
         seconds = answer([program, "geodesic", mesh, "--method", method, "--threads", "1", "--json", "-o", out,
-                          "--source", ",".join(map(str, sources))])["seconds"]
+                          "--source", ",".join(map(str, sources)), *options])["seconds"]
         return np.atleast_2d(np.load(out)), seconds["per_source"], seconds["setup"]
 
 
