@@ -1,6 +1,9 @@
 //! A few eigenpairs of a large symmetric operator.
 
-use budget::Budget;
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+use budget::{Budget, Exceeded};
 use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
 use faer::matrix_free::LinOp;
 use faer::matrix_free::eigen::{
@@ -59,8 +62,7 @@ pub fn largest_eigenpairs_within(
     let k = k.min(n);
     let mut wanted = k + 4;
     while n > DENSE_ORDER && 8 * wanted < n {
-        let found = largest_magnitude(operator, wanted, budget);
-        budget.check()?;
+        let found = largest_magnitude(operator, wanted, budget)?;
         let mut positive: Vec<usize> = (0..found.values.len()).filter(|&i| found.values[i] > 0.0).collect();
         if positive.len() >= k {
             positive.sort_by(|&i, &j| found.values[j].total_cmp(&found.values[i]));
@@ -84,29 +86,47 @@ pub fn largest_eigenpairs_within(
 }
 
 /// Up to `m` converged eigenpairs of largest magnitude; requires `8 m < n`.
-fn largest_magnitude(operator: &dyn SymmetricOperator, m: usize, budget: &Budget) -> SymmetricEigen {
+fn largest_magnitude(
+    operator: &dyn SymmetricOperator,
+    m: usize,
+    budget: &Budget,
+) -> Result<SymmetricEigen, Exceeded> {
     let n = operator.order();
-    let wrapped = Wrapped { operator, budget };
+    let wrapped = Wrapped { operator, budget, n_zeros: AtomicUsize::new(0) };
     // A fixed start vector without symmetry, so that no eigenvector of a symmetric shape is orthogonal to it.
-    let start: Vec<f64> = (0..n).map(|i| 1.0 + 0.5 * (i as f64 * 0.754_877_666).fract()).collect();
+    let start: Vec<f64> = (0..n).map(uneven).collect();
     let params =
         PartialEigenParams { min_dim: 2 * m, max_dim: (4 * m).max(64).min(n - 1), ..Default::default() };
     let tolerance = 1e-11 * operator_scale(operator, &start);
     let mut vectors = Mat::<f64>::zeros(n, m);
     let mut values = vec![0.0; m];
     let mut memory = MemBuffer::new(partial_self_adjoint_eigen_scratch(&wrapped, m, Par::Seq, params));
-    let info = partial_self_adjoint_eigen(
-        vectors.as_mut(),
-        &mut values,
-        &wrapped,
-        ColRef::from_slice(&start),
-        tolerance,
-        Par::Seq,
-        MemStack::new(&mut memory),
-        params,
-    );
+    let iteration = AssertUnwindSafe(|| {
+        partial_self_adjoint_eigen(
+            vectors.as_mut(),
+            &mut values,
+            &wrapped,
+            ColRef::from_slice(&start),
+            tolerance,
+            Par::Seq,
+            MemStack::new(&mut memory),
+            params,
+        )
+    });
+    let info = catch_unwind(iteration).map_err(|payload| match payload.downcast() {
+        Ok(exceeded) => *exceeded,
+        Err(panic) => resume_unwind(panic),
+    })?;
     values.truncate(info.n_converged_eigen);
-    SymmetricEigen { vectors: from_faer(vectors.as_ref().subcols(0, values.len())), values }
+    Ok(SymmetricEigen { vectors: from_faer(vectors.as_ref().subcols(0, values.len())), values })
+}
+
+/// The size of the product with a vector of the kernel, far below any tolerance.
+const KERNEL: f64 = 1e-100;
+
+/// Entries of a vector without symmetry, from 1 to 1.5.
+fn uneven(i: usize) -> f64 {
+    1.0 + 0.5 * (i as f64 * 0.754_877_666).fract()
 }
 
 /// A lower bound of the operator's norm by a few power iterations, for relative tolerances.
@@ -128,12 +148,14 @@ fn operator_scale(operator: &dyn SymmetricOperator, start: &[f64]) -> f64 {
     scale.max(f64::MIN_POSITIVE)
 }
 
-/// Adapts a [`SymmetricOperator`] to faer. When the budget is exceeded, it becomes zero, so that the iteration ends
-/// soon.
+/// Adapts a [`SymmetricOperator`] to faer. When the budget is exceeded, it leaves the iteration by unwinding: that has
+/// no other way to end early.
 #[derive(Debug)]
 struct Wrapped<'a> {
     operator: &'a dyn SymmetricOperator,
     budget: &'a Budget,
+    /// How many products were zero.
+    n_zeros: AtomicUsize,
 }
 
 impl LinOp<f64> for Wrapped<'_> {
@@ -150,15 +172,19 @@ impl LinOp<f64> for Wrapped<'_> {
     }
 
     fn apply(&self, mut out: MatMut<'_, f64>, rhs: MatRef<'_, f64>, _: Par, _: &mut MemStack) {
-        if self.budget.check().is_err() {
-            out.fill(0.0);
-            return;
+        if let Err(exceeded) = self.budget.check() {
+            resume_unwind(Box::new(exceeded));
         }
         let n = self.operator.order();
         let mut y = vec![0.0; n];
         for j in 0..rhs.ncols() {
             let x: Vec<f64> = (0..n).map(|i| rhs[(i, j)]).collect();
             self.operator.apply(&x, &mut y);
+            if y.iter().all(|value| *value == 0.0) {
+                // The iteration would never end: it waits until the product is orthogonal to what it has.
+                let first = n * self.n_zeros.fetch_add(1, Ordering::Relaxed);
+                y.iter_mut().zip(first..).for_each(|(value, i)| *value = KERNEL * uneven(i));
+            }
             for (i, value) in y.iter().enumerate() {
                 out[(i, j)] = *value;
             }
@@ -235,5 +261,43 @@ mod tests {
     #[test]
     fn small_operators_have_fewer_pairs_than_requested() {
         check(vec![3.0, -7.0, 2.0], 5);
+    }
+
+    /// An operator that cancels the budget at one of its products.
+    #[derive(Debug)]
+    struct Cancelling {
+        reflected: Reflected,
+        budget: Budget,
+        left: AtomicUsize,
+    }
+
+    impl SymmetricOperator for Cancelling {
+        fn order(&self) -> usize {
+            self.reflected.order()
+        }
+
+        fn apply(&self, x: &[f64], y: &mut [f64]) {
+            if self.left.fetch_sub(1, Ordering::Relaxed) == 1 {
+                self.budget.cancel();
+            }
+            self.reflected.apply(x, y);
+        }
+    }
+
+    #[test]
+    fn an_iteration_ends_wherever_it_is_cancelled() {
+        for at in 1..40 {
+            let budget = Budget::unlimited();
+            let reflected = Reflected { spectrum: (0..600).map(|i| 1.0 / (1.0 + f64::from(i))).collect() };
+            let operator = Cancelling { reflected, budget: budget.clone(), left: at.into() };
+            let found = largest_eigenpairs_within(&operator, 3, &budget);
+            assert!(matches!(found, Err(LinalgError::Exceeded(Exceeded::Cancelled))), "{at}: {found:?}");
+        }
+    }
+
+    #[test]
+    fn the_pairs_of_zero_are_zero() {
+        let found = largest_eigenpairs(&Reflected { spectrum: vec![0.0; 400] }, 3).unwrap();
+        assert!(found.values.iter().all(|value| value.abs() < 1e-90), "{:?}", found.values);
     }
 }
