@@ -40,6 +40,7 @@ mod fast_marching;
 mod graph;
 mod heap;
 mod heat;
+mod instructions;
 mod method;
 mod path;
 mod plane;

@@ -52,7 +52,7 @@ use std::borrow::Cow;
 use budget::{Budget, Exceeded};
 use surface::{IntrinsicMesh, Loops, Triangulation, VertexId};
 
-use crate::graph::breadth_first_order_of;
+use crate::graph::patches_of;
 use crate::solver::{DistanceSolver, Pool, PrunedSolver, within};
 use crate::source::Source;
 use front::Front;
@@ -185,7 +185,7 @@ impl FastMarching {
                 };
                 (triangulation, segments, halves)
             },
-            || breadth_first_order_of(mesh),
+            || patches_of(mesh),
         );
         let (triangulation, segments, halves) = prepared;
         let (mean, links) = (mesh.mean_edge_length(), mesh.links().to_vec());

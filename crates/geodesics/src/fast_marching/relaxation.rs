@@ -2,6 +2,7 @@
 
 use super::one_ring::{Allowed, OneRings};
 use super::update::{FAR, Stencil};
+use crate::instructions::Instructions;
 use crate::prefetch::prefetch;
 
 /// Distances that differ by less than this share are equal up to rounding: a smaller improvement causes no visit, and
@@ -216,7 +217,7 @@ impl Block {
     }
 
     /// Without branches, so that the same instructions solve all lanes.
-    #[inline]
+    #[inline(always)]
     fn solve(&mut self, update: &impl Fn(Stencil, f64, f64) -> f64) {
         for i in 0..LANES {
             let (p, q) = (self.pseudo_source_a[i], self.pseudo_source_b[i]);
@@ -237,6 +238,7 @@ impl Block {
 pub(super) struct TriangleSolver {
     blocks: Vec<Block>,
     n: usize,
+    instructions: Instructions,
 }
 
 impl TriangleSolver {
@@ -258,8 +260,9 @@ impl TriangleSolver {
             for (lane, triangle) in some.iter().enumerate() {
                 block.set(lane, triangle, rings, labels);
             }
-            block.solve(update);
         }
+        let blocks = &mut self.blocks[..n_blocks];
+        self.instructions.dispatch(|| blocks.iter_mut().for_each(|block| block.solve(update)));
     }
 
     /// The vertices updated and their new labels; infinite where the triangle does not carry the front.

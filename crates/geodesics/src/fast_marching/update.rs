@@ -46,7 +46,7 @@ impl Stencil {
     /// front.
     ///
     /// Exact in the plane. Novotni and Klein 2002 (`novotni2002`), in coordinates that are multiples of `|AB|`.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn point_source(self, at_a: f64, at_b: f64) -> f64 {
         let Self { base, side, dot, cross } = self;
         let sq_base = base * base;
@@ -69,7 +69,7 @@ impl Stencil {
     ///
     /// Kimmel and Sethian 1998 (`kimmel1998`): the larger root of their quadratic, here by the unit gradient whose
     /// component along the base is `(at_b - at_a) / |AB|`.
-    #[inline]
+    #[inline(always)]
     pub(super) fn planar(self, at_a: f64, at_b: f64) -> f64 {
         let Self { base, dot, cross, .. } = self;
         let rise = at_b - at_a;

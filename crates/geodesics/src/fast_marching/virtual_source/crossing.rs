@@ -34,7 +34,7 @@ impl SideLanes {
         self.double_area[lane] = sides.double_area;
     }
 
-    #[inline]
+    #[inline(always)]
     fn apex(&self, i: usize) -> [f64; 2] {
         let scale = 1.0 / self.base[i];
         let (left, right) = (self.from_left[i], self.from_right[i]);
@@ -78,23 +78,23 @@ pub(super) struct Crossings {
 }
 
 /// Without a branch.
-#[inline]
+#[inline(always)]
 fn select(condition: bool, yes: f64, no: f64) -> f64 {
     if condition { yes } else { no }
 }
 
 /// Whether a number is below another, or there is no limit to compare with.
-#[inline]
+#[inline(always)]
 fn below_or_nan(a: f64, b: f64) -> bool {
     (a < b) | a.is_nan() | b.is_nan()
 }
 
-#[inline]
+#[inline(always)]
 fn cross(a: [f64; 2], b: [f64; 2]) -> f64 {
     a[0] * b[1] - a[1] * b[0]
 }
 
-#[inline]
+#[inline(always)]
 fn norm([x, y]: [f64; 2]) -> f64 {
     (x * x + y * y).sqrt()
 }
@@ -135,7 +135,7 @@ impl Crossings {
     }
 
     /// Without branches, so that the same instructions solve all lanes.
-    #[inline(never)]
+    #[inline(always)]
     pub(super) fn solve(&mut self) {
         for i in 0..LANES {
             let [ax, ay] = self.from.apex(i);
@@ -232,7 +232,7 @@ impl Views {
     }
 
     /// Without branches, so that the same instructions solve all lanes.
-    #[inline(never)]
+    #[inline(always)]
     pub(super) fn solve(&mut self) {
         for i in 0..LANES {
             let source = [self.source[0][i], self.source[1][i]];

@@ -10,6 +10,7 @@ use super::super::relaxation::ROUNDING;
 use super::crossing::{Crossing, Crossings, LANES, Views};
 use super::triangles::{Entry, Triangles, above, around};
 use super::window::Window;
+use crate::instructions::Instructions;
 use crate::prefetch::prefetch;
 use crate::source::Source;
 
@@ -60,6 +61,7 @@ pub(in super::super) struct Front {
     visits: usize,
     /// The distance of the middle of every hub.
     hubs: Vec<f64>,
+    instructions: Instructions,
 }
 
 impl Front {
@@ -291,9 +293,10 @@ impl Front {
 
     /// Solves all crossings and improves the triangles behind them.
     fn solve_crossings(&mut self) {
+        let blocks = &mut self.crossings[..self.n_crossings.div_ceil(LANES)];
+        self.instructions.dispatch(|| blocks.iter_mut().for_each(Crossings::solve));
         for first in (0..self.n_crossings).step_by(LANES) {
-            let block = &mut self.crossings[first / LANES];
-            block.solve();
+            let block = &self.crossings[first / LANES];
             for lane in 0..LANES.min(self.n_crossings - first) {
                 let entry = Entry::numbered(block.entry[lane]);
                 let distance = block.distance(lane);
@@ -325,7 +328,7 @@ impl Front {
                 has_unreached |= !is_reached;
                 views.set(lane, &label.window, triangles.triangles[number].sides(label.entry), is_reached);
             }
-            views.solve();
+            self.instructions.dispatch(|| views.solve());
             for (lane, number) in some.enumerate() {
                 let triangle = &triangles.triangles[number];
                 for (corner, distance) in
@@ -344,15 +347,21 @@ impl Front {
         let improves = |distance: f64, known: f64| distance < known * (1.0 - ROUNDING);
         for triangle in &triangles.triangles {
             let at = triangle.vertices.map(|v| self.vertices[v as usize]);
-            let is_too_long = |side: usize| {
+            let too_long = [0, 1, 2].map(|side| {
                 let [a, b] = around(side).map(|end| at[end]);
                 let [near, far] = if a < b { [a, b] } else { [b, a] };
                 improves(near + triangle.lengths[side], far)
-            };
-            if is_too_long(0) | is_too_long(1) | is_too_long(2) {
-                for (vertex, distance) in triangle.vertices.into_iter().zip(at) {
-                    if distance.is_finite() {
-                        self.lowered.push(Reverse((distance.to_bits(), vertex)));
+            });
+            if too_long[0] | too_long[1] | too_long[2] {
+                for side in 0..3 {
+                    let [a, b] = around(side).map(|end| triangle.vertices[end]);
+                    for (near, far) in [(a, b), (b, a)] {
+                        let distance = self.vertices[near as usize] + triangle.lengths[side];
+                        let known = &mut self.vertices[far as usize];
+                        if improves(distance, *known) {
+                            *known = distance;
+                            self.lowered.push(Reverse((distance.to_bits(), far)));
+                        }
                     }
                 }
             }
