@@ -62,5 +62,14 @@ pub enum GeodesicError {
     Exceeded(#[from] budget::Exceeded),
     /// Distances that are no matrix, because a vertex cannot be reached from another.
     #[error(transparent)]
-    Matrix(#[from] linalg::LinalgError),
+    Matrix(linalg::LinalgError),
+}
+
+impl From<linalg::LinalgError> for GeodesicError {
+    fn from(error: linalg::LinalgError) -> Self {
+        match error {
+            linalg::LinalgError::Exceeded(exceeded) => Self::Exceeded(exceeded),
+            other => Self::Matrix(other),
+        }
+    }
 }
