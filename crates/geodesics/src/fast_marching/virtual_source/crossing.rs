@@ -178,7 +178,9 @@ impl Crossings {
             };
             let leaves_left = shade(to_left, 1.0, at_left);
             let leaves_right = shade(to_right, -1.0, at_right);
-            let (misses_left, misses_right) = (cross(ray, ends[0]) < 0.0, cross(ray, ends[1]) > 0.0);
+            // A ray through an end may bend there or not; it must not bend because of rounding.
+            let slack = COLLINEAR * (ray[0] * ray[0] + ray[1] * ray[1]);
+            let (misses_left, misses_right) = (cross(ray, ends[0]) < -slack, cross(ray, ends[1]) > slack);
             let via = [ends[0], ends[1]].map(|end| norm(end) + norm([ray[0] - end[0], ray[1] - end[1]]));
             // Where the path to the centroid bends, from the source.
             let is_end = is_behind | (!in_left & !in_right & (misses_left | misses_right));

@@ -42,7 +42,7 @@ struct Candidate {
 
 /// A front that advances bucket by bucket from triangle to triangle.
 #[derive(Debug, Default)]
-pub(in super::super) struct Front {
+pub(crate) struct Front {
     /// The distance of the centroid of every triangle.
     distances: Vec<f64>,
     /// The labels of triangles at finite distances.
@@ -168,7 +168,7 @@ impl Front {
 
     /// Runs from sources until no triangle is left, without continuing from triangles where it `stops` at their
     /// distance.
-    pub(in super::super) fn run(
+    pub(crate) fn run(
         &mut self,
         triangles: &Triangles,
         sources: &[Source],
@@ -245,8 +245,7 @@ impl Front {
         }
     }
 
-    /// Adds the crossings of the side of a triangle on the left or right of its entry, to triangles that are farther
-    /// away.
+    /// Adds the crossings of the side of a triangle on the left or right of its entry.
     #[inline]
     fn cross(&mut self, triangles: &Triangles, number: u32, label: &Label, is_right: bool) {
         let triangle = triangles.at(number);
@@ -255,7 +254,6 @@ impl Front {
         let length = triangle.lengths[side];
         let own = 3 * number + side as u32;
         let mut corner = triangle.across[side];
-        let distance = self.distances[number as usize];
         if triangles.at(corner / 3).across[corner as usize % 3] != own
             && let Some(hub) = triangles.hubs.get(&own)
         {
@@ -269,7 +267,7 @@ impl Front {
         while corner != own {
             let behind = triangles.at(corner / 3);
             let slot = corner as usize % 3;
-            if length > 0.0 && self.distances[corner as usize / 3] >= distance {
+            if length > 0.0 {
                 let is_mirrored = behind.vertices[around(slot)[0]] != triangle.vertices[start];
                 let entry = Entry::new(corner, is_mirrored);
                 let (block, lane) = (self.n_crossings / LANES, self.n_crossings % LANES);
@@ -399,7 +397,7 @@ impl Front {
 
     /// The distance of a vertex.
     #[inline]
-    pub(in super::super) fn distance(&self, vertex: u32) -> f64 {
+    pub(crate) fn distance(&self, vertex: u32) -> f64 {
         self.vertices[vertex as usize]
     }
 }

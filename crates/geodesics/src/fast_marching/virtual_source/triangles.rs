@@ -100,7 +100,7 @@ impl Triangle {
 /// The triangles of a triangulation, and what front and vertices need to find them. Vertices and triangles are
 /// renumbered for locality.
 #[derive(Debug)]
-pub(in super::super) struct Triangles {
+pub(crate) struct Triangles {
     pub(super) triangles: Vec<Triangle>,
     /// The corners at every vertex.
     pub(super) corners: Rows<u32>,
@@ -109,9 +109,9 @@ pub(in super::super) struct Triangles {
     /// Vertices that join parts which no side joins: ends of links, and vertices of several fans.
     pub(super) joints: Vec<u32>,
     /// Mesh vertex of every internal number.
-    pub(in super::super) order: Vec<u32>,
+    pub(crate) order: Vec<u32>,
     /// Internal number of every mesh vertex.
-    pub(in super::super) rank: Vec<u32>,
+    pub(crate) rank: Vec<u32>,
     /// The numbers of the hubs, edges of many triangles, by corner opposite. A window enters their triangles only if
     /// the middle of the edge is nearer through it than through those before.
     pub(super) hubs: HashMap<u32, u32>,
@@ -131,7 +131,7 @@ const MOST_AROUND: usize = 8;
 impl Triangles {
     /// The triangles of a triangulation whose vertices are renumbered in the given order. Windows do not cross
     /// `removed` edges, which distances follow nevertheless; links may lead anywhere.
-    pub(in super::super) fn new(
+    pub(crate) fn new(
         order: Vec<u32>,
         triangulation: &Triangulation,
         links: &[Link],
@@ -209,12 +209,12 @@ impl Triangles {
     }
 
     /// The length of the longest side of a triangle.
-    pub(in super::super) fn longest_of(&self, triangle: u32) -> f64 {
+    pub(crate) fn longest_of(&self, triangle: u32) -> f64 {
         self.at(triangle).lengths.into_iter().fold(0.0, f64::max)
     }
 
     /// The mesh vertices of a triangle.
-    pub(in super::super) fn mesh_vertices(&self, triangle: u32) -> [u32; 3] {
+    pub(crate) fn mesh_vertices(&self, triangle: u32) -> [u32; 3] {
         self.at(triangle).vertices.map(|v| self.order[v as usize])
     }
 

@@ -7,7 +7,7 @@ use crate::plane::{Point, cross, sub};
 /// distances become too short, at 0 they leave the light too early and distances become too long.
 pub(super) const TEST_POINTS: f64 = 0.75;
 
-/// A source is on the line through a side if it is nearer to it than this share of its distance.
+/// A source is on the line through a side, and a ray meets its end, up to this share of the distance.
 pub(super) const COLLINEAR: f64 = 1e-12;
 
 /// The view of the source through one side of a triangle, the *entry*, laid out in the plane: the entry runs from the
