@@ -163,7 +163,13 @@ impl Triangulation {
     /// All sides are tested in parallel; only those that may have to be flipped are visited one after the other.
     pub fn flip_to_delaunay(&mut self, loops: Loops) -> Vec<Link> {
         let mut removed = Vec::new();
-        let Some(mut waiting) = WaitingSides::of(self, loops) else { return removed };
+        let waiting = WaitingSides::new(
+            self.triangles.len(),
+            |corner| self.opposite(corner),
+            |corner| self.is_obtuse(corner),
+            |side| self.crossed(side, loops).is_some(),
+        );
+        let Some(mut waiting) = waiting else { return removed };
         let n_sides = 3 * self.triangles.len();
         let mut is_new = vec![false; n_sides];
         let mut budget = FLIPS_PER_SIDE * n_sides;

@@ -3,8 +3,6 @@
 use rayon::prelude::*;
 
 use crate::ids::{CornerId, FaceId};
-use crate::one_ring::CornerTable;
-use crate::triangulation::{Loops, Triangulation};
 
 /// The bits of a word.
 const WORD: usize = 64;
@@ -30,9 +28,14 @@ pub(crate) struct WaitingSides {
 }
 
 impl WaitingSides {
-    /// The sides of a triangulation; `None` if none is to be flipped.
-    pub(crate) fn of(triangulation: &Triangulation, loops: Loops) -> Option<Self> {
-        let n_triangles = triangulation.triangles().len();
+    /// The sides of triangles, given by the corners across them; `None` if none is to be flipped. Only sides opposite
+    /// obtuse corners are tested.
+    pub(crate) fn new(
+        n_triangles: usize,
+        opposite: impl Fn(CornerId) -> Option<CornerId> + Sync,
+        is_obtuse: impl Fn(CornerId) -> bool + Sync,
+        is_to_be_flipped: impl Fn(CornerId) -> bool + Sync,
+    ) -> Option<Self> {
         let n_sides = 3 * n_triangles;
         let n_words = n_sides.div_ceil(WORD);
         let blocks: Vec<(Vec<u64>, Vec<CornerId>)> = (0..n_triangles.div_ceil(BLOCK))
@@ -43,14 +46,14 @@ impl WaitingSides {
                 // No branch depends on angles, which could not be predicted.
                 let (mut obtuse, mut n_obtuse) = (vec![CornerId(0); 3 * triangles.len() + 1], 0);
                 for corner in triangles.flat_map(|t| FaceId(t as u32).corners()) {
-                    let Some(far) = triangulation.opposite(corner) else { continue };
+                    let Some(far) = opposite(corner) else { continue };
                     let bit = corner.index() - 3 * block * BLOCK;
                     initial[bit / WORD] |= u64::from(corner < far) << (bit % WORD);
                     obtuse[n_obtuse] = corner.min(far);
-                    n_obtuse += usize::from(triangulation.is_obtuse(corner));
+                    n_obtuse += usize::from(is_obtuse(corner));
                 }
                 obtuse.truncate(n_obtuse);
-                obtuse.retain(|side| triangulation.crossed(*side, loops).is_some());
+                obtuse.retain(|side| is_to_be_flipped(*side));
                 (initial, obtuse)
             })
             .collect();
