@@ -9,13 +9,10 @@ use geodesics::{DistanceSolver, FirstSample, Sampler, Sampling, Source};
 use linalg::{DistanceMatrix, LandmarkDistances};
 use nmds::{Embedding, NmdsError, RowSample, estimate_stress};
 
-use super::plan::Plan;
+use super::plan::{Plan, check_memory};
 use super::stress::KnownRows;
 use crate::error::Error;
 use crate::observer::Observer;
-
-/// Most memory for distances that are held at once, in bytes.
-pub const DISTANCES_LIMIT: usize = 4 << 30;
 
 /// Samples taken by default, as in the paper's Figure 4.
 const DEFAULT_COUNT: usize = 100;
@@ -73,18 +70,6 @@ impl FromStr for Samples {
             Ok(n) => Ok(Self::Count(n)),
         }
     }
-}
-
-/// Refuses to hold `n_columns` columns of distances to `n_vertices` vertices beyond the memory of the budget or
-/// [`DISTANCES_LIMIT`].
-pub(super) fn check_memory(n_vertices: usize, n_columns: usize, budget: &Budget) -> Result<(), Error> {
-    let needed = n_vertices.saturating_mul(n_columns).saturating_mul(size_of::<f64>());
-    budget.check_memory(needed)?;
-    if needed <= DISTANCES_LIMIT {
-        return Ok(());
-    }
-    let [needed_mib, limit_mib] = [needed, DISTANCES_LIMIT].map(|bytes| bytes >> 20);
-    Err(Error::AllPairsTooLarge { n_vertices, needed_mib, limit_mib })
 }
 
 /// The memory of an embedding by distances from samples.

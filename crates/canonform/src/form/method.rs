@@ -12,7 +12,8 @@ use surface::IntrinsicMesh;
 use surface::laplacian::Laplacian;
 
 use super::as_text;
-use super::distances::{Measurement, check_memory};
+use super::distances::Measurement;
+use super::plan::check_memory;
 use crate::error::Error;
 
 /// How distances become coordinates.

@@ -16,10 +16,11 @@ mod side_by_side;
 mod stress;
 
 pub use describe::{ShapeDescription, describe, describe_within};
-pub use distances::{DISTANCES_LIMIT, Samples};
+pub use distances::Samples;
 pub use embed::{Embedded, embed, embed_and_measure, embed_and_release};
 pub use method::EmbedMethod;
 pub use options::{DescribeOptions, FormOptions};
+pub use plan::DISTANCES_LIMIT;
 pub use report::{DescentReport, EmbedReport, SecondsReport};
 pub use side_by_side::{MethodFacts, MethodReport, MethodsReport, compare_methods};
 pub use stress::{StressChoice, StressKind, StressOptions, StressReport};

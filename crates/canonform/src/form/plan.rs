@@ -3,8 +3,10 @@
 use budget::Budget;
 use linalg::ColumnStore;
 
-use super::distances::{DISTANCES_LIMIT, check_memory};
 use crate::error::Error;
+
+/// Most memory for distances that are held at once, in bytes.
+pub const DISTANCES_LIMIT: usize = 4 << 30;
 
 /// Bytes per vertex while distances are measured by fast marching, besides the distances: one-rings, what relates results to
 /// the input, the nearest sample of every vertex, coordinates. Measured with a counting allocator.
@@ -83,6 +85,18 @@ impl Plan {
         }
         Ok(ColumnStore::in_file(self.n_vertices, files::nameless_in(folder)?))
     }
+}
+
+/// Refuses to hold `n_columns` columns of distances to `n_vertices` vertices beyond the memory of the budget or
+/// [`DISTANCES_LIMIT`].
+pub(super) fn check_memory(n_vertices: usize, n_columns: usize, budget: &Budget) -> Result<(), Error> {
+    let needed = n_vertices.saturating_mul(n_columns).saturating_mul(size_of::<f64>());
+    budget.check_memory(needed)?;
+    if needed <= DISTANCES_LIMIT {
+        return Ok(());
+    }
+    let [needed_mib, limit_mib] = [needed, DISTANCES_LIMIT].map(|bytes| bytes >> 20);
+    Err(Error::AllPairsTooLarge { n_vertices, needed_mib, limit_mib })
 }
 
 #[cfg(test)]

@@ -8,9 +8,9 @@ use nmds::{DistanceRows, RowSample};
 use serde::Serialize;
 use surface::VertexId;
 
-use super::distances::check_memory;
 use super::embed::embed;
 use super::options::FormOptions;
+use super::plan::check_memory;
 use super::stress::{KnownRows, StressOptions, StressReport};
 use crate::error::Error;
 use crate::input::Surface;
