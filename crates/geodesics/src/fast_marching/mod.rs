@@ -67,8 +67,8 @@ use virtual_source::{Front as TriangleFront, Triangles};
 pub enum Update {
     /// Every triangle knows where the source, or the vertex where the path bent last, lies in its plane, and hands
     /// that on to its neighbours. After Trettner, Bommes and Kobbelt 2021 (`trettner2021`), with limits to what a
-    /// triangle sees. The most accurate, and its error falls when flat triangles are subdivided; it takes two to three
-    /// times as long. It needs no treatment of obtuse corners: [`ObtuseTreatment::Unfold`] leaves them as they are.
+    /// triangle sees. The most accurate, and its error falls when flat triangles are subdivided; it takes twice as
+    /// long. It needs no treatment of obtuse corners: [`ObtuseTreatment::Unfold`] leaves them as they are.
     VirtualSource,
     /// The front in a triangle comes from one point: exact in the plane, elsewhere of first order with a small
     /// constant. Novotni and Klein 2002 (`novotni2002`).
