@@ -90,6 +90,15 @@ pub(crate) fn order_by_patches<I: Iterator<Item = u32>>(n: usize, neighbours: im
     }
 }
 
+/// The place of every vertex in an order of all of them.
+pub(crate) fn ranks(order: &[u32]) -> Vec<u32> {
+    let mut ranks = vec![0; order.len()];
+    for (rank, v) in (0..).zip(order) {
+        ranks[*v as usize] = rank;
+    }
+    ranks
+}
+
 /// Patches along the edges and links of a mesh: from each vertex first along edges, to lower vertices first.
 pub(crate) fn patches_of(mesh: &IntrinsicMesh) -> Vec<u32> {
     let (n, topology) = (mesh.n_vertices(), mesh.topology());

@@ -48,6 +48,7 @@ mod update;
 mod virtual_source;
 
 use std::borrow::Cow;
+use std::cell::Cell;
 
 use budget::{Budget, Exceeded};
 use surface::{IntrinsicMesh, Loops, Triangulation, VertexId};
@@ -287,14 +288,14 @@ impl DistanceSolver for FastMarching {
 impl PrunedSolver for FastMarching {
     fn lower(&self, source: VertexId, nearest: &mut [f64]) -> Result<(), Exceeded> {
         assert_eq!(nearest.len(), self.n_vertices(), "one distance per vertex");
-        let known = nearest.to_vec();
+        let nearest = Cell::from_mut(nearest).as_slice_of_cells();
         let stops = |v: u32, distance, longest: &dyn Fn() -> f64| {
-            let excess = distance - known[v as usize];
+            let excess = distance - nearest[v as usize].get();
             excess > 0.0 && excess > BORDER * longest()
         };
         self.run(&[Source::vertex(source)], stops, |v, distance| {
-            let known = &mut nearest[v as usize];
-            *known = known.min(distance);
+            let known = &nearest[v as usize];
+            known.set(known.get().min(distance));
         })
     }
 }

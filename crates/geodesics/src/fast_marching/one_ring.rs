@@ -9,6 +9,7 @@ use surface::{
 };
 
 use super::update::Stencil;
+use crate::graph::ranks;
 use crate::prefetch::prefetch;
 
 /// A neighbour of a vertex: the edge to it, and the triangle between this neighbour and the one before it.
@@ -161,10 +162,7 @@ impl OneRings {
         mean_edge_length: f64,
     ) -> Self {
         let n = order.len();
-        let mut rank = vec![0; n];
-        for (internal, v) in order.iter().enumerate() {
-            rank[*v as usize] = internal as u32;
-        }
+        let rank = ranks(&order);
         let halves = Rows::collect(n, halves.iter().map(|(v, half)| (*v as usize, *half)));
         let mut layout = Layout {
             topology,

@@ -1,6 +1,6 @@
 //! Windows that cross a side from one triangle to the next, several at a time.
 
-use super::window::{COLLINEAR, TEST_POINTS, Window};
+use super::window::{COLLINEAR, TEST_POINTS, Window, norm};
 
 /// Number of crossings solved together.
 pub(super) const LANES: usize = 8;
@@ -14,6 +14,16 @@ pub(super) struct Sides {
     pub(super) from_left: f64,
     pub(super) from_right: f64,
     pub(super) double_area: f64,
+}
+
+impl Sides {
+    /// The corner opposite the side, above the side.
+    #[inline(always)]
+    pub(super) fn apex(self) -> [f64; 2] {
+        let Self { base, from_left, from_right, double_area } = self;
+        let scale = 1.0 / base;
+        [0.5 * (base + (from_left - from_right) * ((from_left + from_right) * scale)), double_area * scale]
+    }
 }
 
 /// The lengths of triangles in lanes.
@@ -36,9 +46,8 @@ impl SideLanes {
 
     #[inline(always)]
     fn apex(&self, i: usize) -> [f64; 2] {
-        let scale = 1.0 / self.base[i];
-        let (left, right) = (self.from_left[i], self.from_right[i]);
-        [0.5 * (self.base[i] + (left - right) * ((left + right) * scale)), self.double_area[i] * scale]
+        let (base, double_area) = (self.base[i], self.double_area[i]);
+        Sides { base, from_left: self.from_left[i], from_right: self.from_right[i], double_area }.apex()
     }
 }
 
@@ -92,11 +101,6 @@ fn below_or_nan(a: f64, b: f64) -> bool {
 #[inline(always)]
 fn cross(a: [f64; 2], b: [f64; 2]) -> f64 {
     a[0] * b[1] - a[1] * b[0]
-}
-
-#[inline(always)]
-fn norm([x, y]: [f64; 2]) -> f64 {
-    (x * x + y * y).sqrt()
 }
 
 impl Crossings {

@@ -8,9 +8,10 @@ use budget::{Budget, Exceeded};
 use super::super::buckets::Buckets;
 use super::super::relaxation::ROUNDING;
 use super::crossing::{Crossing, Crossings, LANES, Views};
-use super::triangles::{Entry, Triangles, above, around};
+use super::triangles::{Entry, Triangles, around};
 use super::window::Window;
 use crate::instructions::Instructions;
+use crate::plane;
 use crate::prefetch::prefetch;
 use crate::source::Source;
 
@@ -115,7 +116,7 @@ impl Front {
                 let entry = Entry::new(3 * number + slot, false);
                 let [left, right, apex] = entry.corners();
                 let entered = triangle.entered(entry);
-                let window = Window::around(above(entered.base, [from[left], from[right]]), 0.0);
+                let window = Window::around(plane::apex([entered.base, from[left], from[right]]), 0.0);
                 let error = window.distance(entered.apex) - from[apex];
                 if error.is_nan() || error.abs() > SAME_POINT * triangles.longest {
                     break;
@@ -161,7 +162,7 @@ impl Front {
         let at = if entry.corners()[0] == slot { [0.0, 0.0] } else { [entered.base, 0.0] };
         let window = Window::around(at, offset);
         let distance = window.distance(entered.centroid());
-        if !stops(number, distance) && distance < self.distances[number as usize] * (1.0 - ROUNDING) {
+        if !stops(number, distance) && improves(distance, self.distances[number as usize]) {
             self.candidates.push(Candidate { distance, label: Label { window, entry } });
         }
     }
@@ -342,7 +343,6 @@ impl Front {
 
     /// Lowers vertices along edges and links.
     fn relax_edges(&mut self, triangles: &Triangles, budget: &Budget) -> Result<(), Exceeded> {
-        let improves = |distance: f64, known: f64| distance < known * (1.0 - ROUNDING);
         for triangle in &triangles.triangles {
             let at = triangle.vertices.map(|v| self.vertices[v as usize]);
             let too_long = [0, 1, 2].map(|side| {
@@ -353,46 +353,38 @@ impl Front {
             if too_long[0] | too_long[1] | too_long[2] {
                 for side in 0..3 {
                     let [a, b] = around(side).map(|end| triangle.vertices[end]);
-                    for (near, far) in [(a, b), (b, a)] {
-                        let distance = self.vertices[near as usize] + triangle.lengths[side];
-                        let known = &mut self.vertices[far as usize];
-                        if improves(distance, *known) {
-                            *known = distance;
-                            self.lowered.push(Reverse((distance.to_bits(), far)));
-                        }
-                    }
+                    self.relax(a, b, triangle.lengths[side]);
+                    self.relax(b, a, triangle.lengths[side]);
                 }
             }
         }
         for vertex in 0..triangles.links.n_rows() as u32 {
-            let from = self.vertices[vertex as usize];
-            if from.is_finite() {
-                for (end, length) in triangles.links.row(vertex as usize) {
-                    if improves(from + length, self.vertices[*end as usize]) {
-                        self.lowered.push(Reverse((from.to_bits(), vertex)));
-                    }
-                }
+            for (end, length) in triangles.links.row(vertex as usize) {
+                self.relax(vertex, *end, *length);
             }
         }
         let mut meter = budget.meter();
-        let mut last = None;
         while let Some(Reverse((at, vertex))) = self.lowered.pop() {
-            let distance = f64::from_bits(at);
-            // Entries of the same vertex at the same distance come one after the other.
-            if last == Some((at, vertex)) || distance > self.vertices[vertex as usize] {
+            if f64::from_bits(at) > self.vertices[vertex as usize] {
                 continue;
             }
-            last = Some((at, vertex));
             for (end, length) in triangles.ways_from(vertex) {
                 meter.count(1)?;
-                let known = &mut self.vertices[end as usize];
-                if improves(distance + length, *known) {
-                    *known = distance + length;
-                    self.lowered.push(Reverse((known.to_bits(), end)));
-                }
+                self.relax(vertex, end, length);
             }
         }
         Ok(())
+    }
+
+    /// Lowers a vertex to the distance of another and the length of the way between them, if that is less.
+    #[inline]
+    fn relax(&mut self, from: u32, to: u32, length: f64) {
+        let distance = self.vertices[from as usize] + length;
+        let known = &mut self.vertices[to as usize];
+        if improves(distance, *known) {
+            *known = distance;
+            self.lowered.push(Reverse((distance.to_bits(), to)));
+        }
     }
 
     /// The distance of a vertex.
@@ -400,6 +392,12 @@ impl Front {
     pub(crate) fn distance(&self, vertex: u32) -> f64 {
         self.vertices[vertex as usize]
     }
+}
+
+/// Whether a distance is less than the known one by more than rounding.
+#[inline]
+fn improves(distance: f64, known: f64) -> bool {
+    distance < known * (1.0 - ROUNDING)
 }
 
 /// Gives a triangle another window, if that is nearer to the source, or sees as near but from a source that bent less.
@@ -418,7 +416,7 @@ fn improve(
         return;
     }
     let window = window();
-    if distance < *known * (1.0 - ROUNDING) || window.offset < label.window.offset * (1.0 - ROUNDING) {
+    if improves(distance, *known) || improves(window.offset, label.window.offset) {
         *known = distance;
         *label = Label { window, entry };
         buckets.put(number, distance);

@@ -10,7 +10,7 @@ use surface::{
 
 use super::crossing::Sides;
 use super::window::Entered;
-use crate::plane::Point;
+use crate::graph::ranks;
 
 /// Excess of a total angle, in radians, below which it is rounding.
 const EXCESS: f64 = 5e-9;
@@ -91,9 +91,8 @@ impl Triangle {
     /// The triangle laid out above an entry.
     #[inline]
     pub(super) fn entered(&self, entry: Entry) -> Entered {
-        let Sides { base, from_left, from_right, double_area } = self.sides(entry);
-        let x = 0.5 * (base + (from_left - from_right) * ((from_left + from_right) / base));
-        Entered { base, apex: [x, double_area / base] }
+        let sides = self.sides(entry);
+        Entered { base: sides.base, apex: sides.apex() }
     }
 }
 
@@ -139,10 +138,7 @@ impl Triangles {
         mean_edge_length: f64,
     ) -> Self {
         let n = order.len();
-        let mut rank = vec![0; n];
-        for (internal, v) in order.iter().enumerate() {
-            rank[*v as usize] = internal as u32;
-        }
+        let rank = ranks(&order);
         let glued = triangulation.triangles();
         // Triangles follow their first vertices.
         let first = |t: usize| glued[t].vertices.iter().map(|v| rank[v.index()]).min().unwrap_or(0);
@@ -317,10 +313,4 @@ fn kinds(triangles: &[Triangle], corners: &Rows<u32>) -> Vec<Kind> {
 #[inline]
 pub(super) fn around(slot: usize) -> [usize; 2] {
     [[1, 2], [2, 0], [0, 1]][slot]
-}
-
-/// Distances of a point from the ends of a base, as a point above or on it.
-pub(super) fn above(base: f64, [from_left, from_right]: [f64; 2]) -> Point {
-    let x = 0.5 * (base + (from_left - from_right) * ((from_left + from_right) / base));
-    [x, ((from_left - x) * (from_left + x)).max(0.0).sqrt()]
 }

@@ -29,7 +29,8 @@ pub(super) struct Window {
 /// No limit: comparisons with it are false.
 pub(super) const NO_LIMIT: Point = [f64::NAN; 2];
 
-fn norm(a: Point) -> f64 {
+#[inline(always)]
+pub(super) fn norm(a: Point) -> f64 {
     (a[0] * a[0] + a[1] * a[1]).sqrt()
 }
 
