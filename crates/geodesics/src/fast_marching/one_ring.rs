@@ -146,7 +146,7 @@ const AHEAD: usize = 6;
 const MOST_AHEAD: usize = 16;
 
 /// Excess of a total angle, in radians, below which it is rounding.
-const EXCESS: f64 = 5e-9;
+pub(super) const EXCESS: f64 = 5e-9;
 
 impl OneRings {
     /// The one-rings of a triangulation of a mesh with the given connectivity, whose vertices are renumbered in the given order, with straight connections

@@ -1,19 +1,17 @@
 //! Triangles, laid out in the order in which the front reads them.
 
 use std::collections::HashMap;
-use std::f64::consts::{PI, TAU};
 
 use rayon::prelude::*;
 use surface::{
-    CornerId, CornerTable, FaceId, Link, Rows, Triangulation, VertexId, double_area, scalar_product,
+    AngleSum, CornerId, CornerTable, FaceId, Link, Rows, Triangulation, VertexCorners, VertexId, double_area,
+    scalar_product,
 };
 
+use super::super::one_ring::EXCESS;
 use super::crossing::Sides;
 use super::window::Entered;
 use crate::graph::ranks;
-
-/// Excess of a total angle, in radians, below which it is rounding.
-const EXCESS: f64 = 5e-9;
 
 /// A triangle: one cache line. Corners are numbered 0, 1 and 2, sides by the corner opposite.
 #[derive(Debug, Clone, Copy)]
@@ -175,7 +173,7 @@ impl Triangles {
         let corners = Rows::collect(n, corners);
         let renumbered = |link: &Link| Link { ends: link.ends.map(|v| VertexId(rank[v.index()])), ..*link };
         let all_links = links.iter().chain(removed).map(renumbered);
-        let kinds = kinds(&triangles, &corners);
+        let kinds = kinds(triangulation, &triangles, &corners, &order);
         triangles.par_iter_mut().for_each(|triangle| {
             for slot in 0..3 {
                 if kinds[triangle.vertices[slot] as usize].may_bend {
@@ -264,49 +262,28 @@ struct Kind {
     has_fans: bool,
 }
 
-fn kinds(triangles: &[Triangle], corners: &Rows<u32>) -> Vec<Kind> {
-    let angles: Vec<[f64; 3]> = triangles
-        .par_iter()
-        .map(|t| {
-            [0, 1, 2].map(|slot: usize| {
-                let [next, prev] = around(slot);
-                t.double_area.atan2(scalar_product(t.lengths[slot], t.lengths[next], t.lengths[prev]))
-            })
-        })
-        .collect();
-    // The corner at the same vertex behind a side, if exactly two triangles share that.
-    let beyond = |corner: u32, side: usize| {
-        let own = corner - corner % 3 + side as u32;
-        let (near, far) = (&triangles[own as usize / 3], triangles[own as usize / 3].across[side]);
-        let behind = &triangles[far as usize / 3];
-        let vertex = near.vertices[corner as usize % 3];
-        let is_shared = far != own && behind.across[far as usize % 3] == own;
-        let slot = around(far as usize % 3).into_iter().find(|slot| behind.vertices[*slot] == vertex)?;
-        is_shared.then_some([far - far % 3 + slot as u32, far % 3])
-    };
+/// The kinds of the vertices, in the given order; `corners` are those of the triangles at each.
+fn kinds(
+    triangulation: &Triangulation,
+    triangles: &[Triangle],
+    corners: &Rows<u32>,
+    order: &[u32],
+) -> Vec<Kind> {
+    let surroundings = triangulation.vertex_corners(order.len());
     let kind = |v: usize| {
-        let at = corners.row(v);
-        let sum: f64 = at.iter().map(|c| angles[*c as usize / 3][*c as usize % 3]).sum();
-        let n_free = at.iter().flat_map(|c| around(*c as usize % 3).map(|side| beyond(*c, side)));
-        let n_free = n_free.filter(Option::is_none).count();
-        // All the way around, from the first corner.
-        let mut n_in_fan = 0;
-        if let (0, Some(&first)) = (n_free, at.first()) {
-            let (mut corner, mut side) = (first, around(first as usize % 3)[0]);
-            while let Some([next, entry]) = beyond(corner, side) {
-                n_in_fan += 1;
-                let out = around(next as usize % 3).into_iter().find(|side| *side != entry as usize);
-                (corner, side) = (next, out.unwrap_or(side));
-                if corner == first || n_in_fan > at.len() {
-                    break;
-                }
-            }
+        let mut angle = AngleSum::default();
+        for corner in corners.row(v) {
+            let (t, slot) = (&triangles[*corner as usize / 3], *corner as usize % 3);
+            let [next, prev] = around(slot);
+            angle.add([t.double_area, scalar_product(t.lengths[slot], t.lengths[next], t.lengths[prev])]);
         }
-        let has_fans = if n_free == 0 { n_in_fan < at.len() } else { n_free > 2 };
-        let is_inside = n_free == 0 && !has_fans;
-        Kind { may_bend: sum > if is_inside { TAU } else { PI } + EXCESS, has_fans }
+        let VertexCorners { first, n_corners, n_free } = surroundings[order[v] as usize];
+        let is_closed = n_corners > 0 && n_free == 0;
+        let is_inside = is_closed && triangulation.walk_around(first, |_| {}) == n_corners as usize;
+        let has_fans = n_free > 2 || (is_closed && !is_inside);
+        Kind { may_bend: angle.exceeds(if is_inside { 2 } else { 1 }, EXCESS), has_fans }
     };
-    (0..corners.n_rows()).into_par_iter().map(kind).collect()
+    (0..order.len()).into_par_iter().map(kind).collect()
 }
 
 /// The next and the previous of the three corners of a triangle.
