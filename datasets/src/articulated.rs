@@ -99,7 +99,8 @@ pub struct LabeledShape {
     pub name: String,
     /// Family, such as `cat`.
     pub label: String,
-    /// A closed surface without handles, oriented outwards; `z` is up and the ground at zero.
+    /// A closed surface in one piece, oriented outwards; `z` is up and the ground at zero. Only some creatures have
+    /// handles.
     pub mesh: TriMesh,
 }
 

@@ -13,7 +13,7 @@ use crate::skeleton::{Joint, JointId, JointPair, Node, Skeleton, joint_pairs, jo
 pub(crate) fn model() -> Model {
     let (skeleton, joints) = skeleton();
     let poses = poses(&skeleton, &joints);
-    Model { body: body(), skeleton, poses, area: 19_750.0, spacing: 1.4 }
+    Model { body: body(), skeleton, poses, genus: 0, area: 19_750.0, spacing: 1.4 }
 }
 
 fn body() -> Body {

@@ -19,7 +19,7 @@ const MAN_GRAIN: f64 = 0.7;
 pub(crate) fn model() -> Model {
     let (skeleton, joints) = skeleton();
     let poses = poses(&skeleton, &joints);
-    Model { body: body(), skeleton, poses, area: 41_250.0, spacing: 1.0 }
+    Model { body: body(), skeleton, poses, genus: 0, area: 41_250.0, spacing: 1.0 }
 }
 
 fn body() -> Body {

@@ -14,7 +14,7 @@ use crate::skeleton::{Joint, JointId, JointPair, Skeleton, joint_pairs, joints, 
 pub(crate) fn model() -> Model {
     let (skeleton, joints) = skeleton();
     let poses = poses(&skeleton, &joints);
-    Model { body: body(), skeleton, poses, area: 17_950.0, spacing: 0.9 }
+    Model { body: body(), skeleton, poses, genus: 0, area: 17_950.0, spacing: 0.9 }
 }
 
 fn body() -> Body {

@@ -260,20 +260,34 @@ fn dip(a: f64, b: f64, reach: f64) -> f64 {
     if overlap <= 0.0 { 0.0 } else { 0.25 * overlap * overlap / reach }
 }
 
-/// A whole body, symmetric under `x -> -x`. Its parts describe the half `x >= 0`.
+/// A whole body.
 #[derive(Debug, Clone)]
 pub(crate) struct Body {
     parts: Vec<Part>,
+    /// Whether the body is symmetric under `x -> -x`. Its parts then describe the half `x >= 0`.
+    is_symmetric: bool,
 }
 
 impl Body {
+    /// A symmetric body, of which the parts describe the half `x >= 0`.
     pub(crate) fn new(parts: Vec<Part>) -> Self {
-        Self { parts }
+        Self { parts, is_symmetric: true }
+    }
+
+    /// A body of which the parts describe everything.
+    pub(crate) fn whole(parts: Vec<Part>) -> Self {
+        Self { parts, is_symmetric: false }
+    }
+
+    /// The point of the described half that has the same value.
+    #[inline]
+    fn folded(&self, p: Point3<f64>) -> Point3<f64> {
+        if self.is_symmetric { Point3::new(p.x.abs(), p.y, p.z) } else { p }
     }
 
     /// Value and gradient at `p`. The value is 1-Lipschitz.
     pub(crate) fn sample(&self, p: Point3<f64>) -> Sample {
-        let folded = Point3::new(p.x.abs(), p.y, p.z);
+        let folded = self.folded(p);
         let mut sum = (f64::INFINITY, Vector3::zeros());
         for part in &self.parts {
             if part.may_change(folded, sum.0) {
@@ -283,7 +297,7 @@ impl Body {
                 };
             }
         }
-        if p.x < 0.0 {
+        if self.is_symmetric && p.x < 0.0 {
             sum.1.x = -sum.1.x;
         }
         sum
@@ -291,7 +305,7 @@ impl Body {
 
     /// The value alone at `p`, the same as that of [`sample`](Self::sample).
     pub(crate) fn value(&self, p: Point3<f64>) -> f64 {
-        let folded = Point3::new(p.x.abs(), p.y, p.z);
+        let folded = self.folded(p);
         let mut sum = f64::INFINITY;
         for part in &self.parts {
             if part.may_change(folded, sum) {
@@ -305,12 +319,14 @@ impl Body {
         sum
     }
 
-    /// Centre, in the plane of symmetry, and radius of a ball around the body.
+    /// Centre, in the plane of symmetry if there is one, and radius of a ball around the body.
     pub(crate) fn bounding_ball(&self) -> (Point3<f64>, f64) {
         let added = || self.parts.iter().filter(|part| part.effect == Effect::Add);
         let n = added().count().max(1) as f64;
         let mut center = Point3::from(added().fold(Vector3::zeros(), |sum, p| sum + p.center.coords) / n);
-        center.x = 0.0;
+        if self.is_symmetric {
+            center.x = 0.0;
+        }
         let slack: f64 = added().map(|p| p.slack + 0.25 * p.blend).sum();
         let radius = added().map(|p| (p.center - center).norm() + p.radius).fold(0.0, f64::max);
         (center, radius + slack)

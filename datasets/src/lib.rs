@@ -13,6 +13,8 @@
 //!   -> shape              vertices and faces in random order
 //! ```
 //!
+//! [`creatures`] generates any number of further families from a seed, some with handles.
+//!
 //! [`Damage`] changes meshes, generated or not, in ways that leave the shape recognisable.
 //!
 //! **Invariant.** The same options give the same bytes on any machine and any number of threads: every shape
@@ -26,6 +28,7 @@ mod cat;
 mod centaur;
 mod clearance;
 mod corner_table;
+mod creature;
 mod damage;
 mod david;
 mod error;
@@ -45,5 +48,6 @@ pub use articulated::{
     ArticulatedOptions, Family, LabeledShape, articulated, articulated_body, articulated_shape,
 };
 pub use broken::{BrokenFile, broken_meshes};
+pub use creature::{CreatureOptions, creature, creature_plans, creatures};
 pub use damage::Damage;
 pub use error::DatasetError;

@@ -11,6 +11,8 @@ pub(crate) struct Model {
     pub(crate) skeleton: Skeleton,
     /// Typical poses; the first is the rest pose.
     pub(crate) poses: Vec<Pose>,
+    /// Number of handles of the rest surface.
+    pub(crate) genus: usize,
     /// Area of the rest surface, in squared body units; families are scaled to a common one.
     pub(crate) area: f64,
     /// Coarsest lattice that resolves the smallest features, in body units.

@@ -28,7 +28,8 @@ const GRADING: [f64; 2] = [0.25, 0.6];
 /// Rounds of flips and smoothing.
 const N_ROUNDS: usize = 6;
 
-/// The rest surface with `n_vertices` vertices; `None` if no lattice gives a topological sphere of that size.
+/// The rest surface with `n_vertices` vertices; `None` if no lattice gives a closed surface of that size in one piece and
+/// with as many handles as the model says.
 pub(crate) fn rest_surface(model: &Model, n_vertices: usize, stream: &mut Stream) -> Option<Surface> {
     let dense = (CROSSINGS * model.area / (SURPLUS * n_vertices as f64)).sqrt();
     let mut spacing = model.spacing.min(dense);
@@ -38,18 +39,16 @@ pub(crate) fn rest_surface(model: &Model, n_vertices: usize, stream: &mut Stream
         let shift = Vector3::from([(); 3].map(|()| stream.uniform(0.0, 1.0)));
         let raw = extract(&model.body, Lattice { rotation, shift, spacing });
         spacing *= REFINEMENT;
-        if let Some(surface) = sphere(model, raw, grading, n_vertices) {
+        if let Some(surface) = closed_surface(model, raw, grading, n_vertices) {
             return Some(surface);
         }
     }
     None
 }
 
-fn sphere(model: &Model, raw: RawSurface, grading: f64, n_vertices: usize) -> Option<Surface> {
+fn closed_surface(model: &Model, raw: RawSurface, grading: f64, n_vertices: usize) -> Option<Surface> {
     let n_raw = raw.positions.len();
-    // For a closed surface, Euler's formula of the sphere is F = 2 V - 4.
-    let is_sphere = raw.faces.len() + 4 == 2 * n_raw && components_of_faces(n_raw, &raw.faces).count == 1;
-    if n_raw < n_vertices || !is_sphere {
+    if n_raw < n_vertices || genus(&raw) != Some(model.genus) {
         return None;
     }
     let table = CornerTable::new(n_raw, &raw.faces)?;
@@ -61,6 +60,15 @@ fn sphere(model: &Model, raw: RawSurface, grading: f64, n_vertices: usize) -> Op
     surface.compact();
     relax(&mut surface, &model.body, N_ROUNDS);
     Some(surface)
+}
+
+/// The number of handles of an extracted surface; `None` unless it is in one piece.
+pub(crate) fn genus(raw: &RawSurface) -> Option<usize> {
+    let n_vertices = raw.positions.len();
+    let is_connected = components_of_faces(n_vertices, &raw.faces).count == 1;
+    // Euler's formula of a closed surface is F = 2 V - 4 + 4 g.
+    let quadruple = (raw.faces.len() + 4).checked_sub(2 * n_vertices)?;
+    is_connected.then_some(quadruple / 4)
 }
 
 /// The positions of the surface in a pose, scaled and standing on the ground.

@@ -22,21 +22,35 @@ pub(crate) enum Purpose {
     Damage,
 }
 
+impl Purpose {
+    fn number(self) -> u64 {
+        match self {
+            Self::Pose => 0,
+            Self::Lattice => 1,
+            Self::Numbering => 2,
+            Self::Build => 3,
+            Self::Damage => 12,
+        }
+    }
+}
+
 /// A stream of random numbers that depends only on seed, family, pose and purpose.
 #[derive(Debug, Clone)]
 pub(crate) struct Stream(ChaCha8Rng);
 
 impl Stream {
     pub(crate) fn new(seed: u64, family: usize, pose: usize, purpose: Purpose) -> Self {
+        Self::numbered(seed, (pose as u64) * 16 + (family as u64) * 4 + purpose.number())
+    }
+
+    /// The stream of a creature, none of those of [`new`](Self::new).
+    pub(crate) fn of_creature(seed: u64, family: usize, pose: usize, purpose: Purpose) -> Self {
+        Self::numbered(seed, (1 << 63) | ((family as u64) << 40) | ((pose as u64) * 16 + purpose.number()))
+    }
+
+    fn numbered(seed: u64, number: u64) -> Self {
         let mut rng = ChaCha8Rng::seed_from_u64(seed);
-        let purpose = match purpose {
-            Purpose::Pose => 0,
-            Purpose::Lattice => 1,
-            Purpose::Numbering => 2,
-            Purpose::Build => 3,
-            Purpose::Damage => 12,
-        };
-        rng.set_stream((pose as u64) * 16 + (family as u64) * 4 + purpose);
+        rng.set_stream(number);
         Self(rng)
     }
 
@@ -81,6 +95,8 @@ mod tests {
             draw(0, 1, Purpose::Pose),
             draw(0, 0, Purpose::Lattice),
             draw(0, 0, Purpose::Numbering),
+            Stream::of_creature(7, 0, 0, Purpose::Pose).uniform(0.0, 1.0),
+            Stream::of_creature(7, 1, 0, Purpose::Pose).uniform(0.0, 1.0),
         ];
         for (i, a) in all.iter().enumerate() {
             assert!(all[..i].iter().all(|b| a != b));

@@ -101,6 +101,9 @@ mod tests {
         assert!(
             command("figure1 --vertices 1000 --threads 1 -q").ends_with("-- run figure1 --vertices 1000")
         );
+        assert!(command("retrieval").ends_with("-- run retrieval"));
+        let line = "retrieval --families articulated,creatures:40x8 --vertices 1000";
+        assert!(command(line).ends_with(line), "{}", command(line));
         let line = "figure3 --dataset my&data --classes cat,dog --seed 2 -o results/1";
         let expected = "-- run figure3 --dataset 'my&data' --classes cat,dog --seed 2 --output results/1";
         assert!(command(line).ends_with(expected), "{}", command(line));

@@ -6,10 +6,10 @@ use std::path::PathBuf;
 use anyhow::{Context, Result, bail};
 use canonform::{LabelFile, Observer, Surface, list_shapes};
 use clap::Args;
-use datasets::{ArticulatedOptions, articulated};
 use mesh::RepairOptions;
 use rayon::prelude::*;
 
+use crate::families::Families;
 use crate::quoted::quoted;
 
 /// Name of the built-in dataset in records.
@@ -43,6 +43,15 @@ pub(crate) struct Source {
     /// folder has them; else all]
     #[arg(long, value_delimiter = ',', value_name = "CLASS,...")]
     classes: Vec<String>,
+    /// Built-in families: `articulated` (30 shapes), `creatures:FxP` (F random families of P shapes each), or both
+    #[arg(
+        long,
+        value_delimiter = ',',
+        default_values_t = [Families::Articulated],
+        value_name = "NAME,...",
+        conflicts_with = "dataset"
+    )]
+    families: Vec<Families>,
     /// Vertices of the built-in shapes, 1,000 to 1,000,000
     #[arg(long, default_value_t = VERTICES, value_name = "P", conflicts_with = "dataset")]
     vertices: usize,
@@ -57,8 +66,13 @@ impl Source {
         let mut arguments = String::new();
         if let Some(folder) = &self.dataset {
             arguments += &format!(" --dataset {}", quoted(&folder.display().to_string()));
-        } else if self.vertices != VERTICES {
-            arguments += &format!(" --vertices {}", self.vertices);
+        } else {
+            if self.families != [Families::Articulated] {
+                arguments += &format!(" --families {}", self.families());
+            }
+            if self.vertices != VERTICES {
+                arguments += &format!(" --vertices {}", self.vertices);
+            }
         }
         if let Some(labels) = &self.labels {
             arguments += &format!(" --labels {}", quoted(&labels.display().to_string()));
@@ -70,6 +84,11 @@ impl Source {
             arguments += &format!(" --seed {}", self.seed);
         }
         arguments
+    }
+
+    /// The built-in families, as on the command line.
+    fn families(&self) -> String {
+        self.families.iter().map(ToString::to_string).collect::<Vec<_>>().join(",")
     }
 }
 
@@ -96,13 +115,19 @@ impl Collection {
         let mut wanted = if takes_all { Vec::new() } else { args.classes.clone() };
         let (dataset, found) = match &args.dataset {
             None => {
-                let options = ArticulatedOptions { seed: args.seed, n_vertices: args.vertices };
                 observer.begin("generating", 0);
-                let shapes = articulated(&options)?;
+                let mut shapes = Vec::new();
+                for families in &args.families {
+                    shapes.extend(families.generate(args.seed, args.vertices)?);
+                }
                 let shape = |shape: datasets::LabeledShape| {
                     (shape.name, shape.label, Surface::new(&shape.mesh, &repair))
                 };
-                (BUILT_IN.to_owned(), shapes.into_par_iter().map(shape).collect::<Vec<_>>())
+                let dataset = match args.families[..] {
+                    [Families::Articulated] => BUILT_IN.to_owned(),
+                    _ => format!("built-in {}", args.families()),
+                };
+                (dataset, shapes.into_par_iter().map(shape).collect::<Vec<_>>())
             }
             Some(folder) => {
                 let labels = args.labels.as_deref().map(LabelFile::read).transpose()?;

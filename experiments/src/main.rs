@@ -12,6 +12,7 @@ mod collection;
 mod config;
 mod context;
 mod described;
+mod families;
 mod machine;
 mod paper;
 mod prose;

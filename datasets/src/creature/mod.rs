@@ -1,0 +1,199 @@
+//! Creatures: families of articulated shapes from a seed.
+//!
+//! A [plan](plans) says what a body is made of, such as a trunk with eight legs; random proportions say how long, how
+//! thick and how many. Bodies are then made like those of the [articulated](crate::articulated()) families.
+
+mod draft;
+mod plans;
+mod proportions;
+
+use nalgebra::{Matrix3, Vector3};
+use rayon::prelude::*;
+use surface::VertexId;
+
+use crate::articulated::{ArticulatedOptions, LabeledShape, posed_skeleton, scale};
+use crate::clearance::entanglement;
+use crate::error::DatasetError;
+use crate::extract::{Lattice, RawSurface, extract};
+use crate::model::Model;
+use crate::pose::{Pose, PosedSkeleton, turn};
+use crate::shape::{genus, posed_positions, rest_surface, shuffled};
+use crate::skeleton::{JointId, Skeleton};
+use crate::stream::{Purpose, Stream};
+use draft::{Draft, PLAY};
+use plans::PLANS;
+use proportions::Proportions;
+
+/// Options of [`creatures`].
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct CreatureOptions {
+    /// Determines bodies, poses, triangulations and vertex numbers, for any number of threads. Default: 1.
+    pub seed: u64,
+    /// Number of families; families with the same number are the same for any total. Default: 48.
+    pub n_families: usize,
+    /// Shapes of each family. Default: 8.
+    pub n_poses: usize,
+    /// Exact number of vertices of every shape; 1,000 to 1,000,000. Default: 3,400.
+    pub n_vertices: usize,
+}
+
+impl Default for CreatureOptions {
+    fn default() -> Self {
+        Self { seed: 1, n_families: 48, n_poses: 8, n_vertices: 3400 }
+    }
+}
+
+/// Typical poses of a family; others are variations of them.
+const N_POSES: usize = 12;
+
+/// Most draws of the proportions of a family, until its body has the topology of its plan.
+const N_ATTEMPTS: usize = 40;
+
+/// Most draws of a typical pose.
+const N_DRAWS: usize = 60;
+
+/// Spacing of the lattice, relative to the smallest radius of the body.
+const SPACING: f64 = 0.55;
+
+/// Generates families of creatures: worms, stars, octopuses, spiders, hands, birds, fish, animals on four and on two
+/// legs, trees, and also rings, glasses, keys, cups and scissors, whose surfaces have handles.
+///
+/// Families take turns to follow [each plan](creature_plans); those of one plan differ in all proportions and in the
+/// number of their limbs. The shapes of a family are one body in different poses, nearly isometric; each has a
+/// triangulation and a numbering of its own, as in [`articulated()`](crate::articulated()). All bodies have the same area
+/// at rest. Shapes are generated in parallel.
+///
+/// # Errors
+/// [`DatasetError::VertexCount`] and [`DatasetError::NoSurface`].
+///
+/// ```
+/// use canonform_datasets::{CreatureOptions, creatures};
+///
+/// let options = CreatureOptions { n_families: 2, n_poses: 3, n_vertices: 1000, ..Default::default() };
+/// let shapes = creatures(&options)?;
+/// let names: Vec<&str> = shapes.iter().map(|shape| shape.name.as_str()).collect();
+/// assert_eq!(names, ["worm0", "worm1", "worm2", "star0", "star1", "star2"]);
+/// assert!(shapes.iter().all(|shape| shape.mesh.n_vertices() == 1000));
+/// # Ok::<(), canonform_datasets::DatasetError>(())
+/// ```
+pub fn creatures(options: &CreatureOptions) -> Result<Vec<LabeledShape>, DatasetError> {
+    validate(options)?;
+    let models: Vec<Model> =
+        (0..options.n_families).into_par_iter().map(|f| model(f, options)).collect::<Result<_, _>>()?;
+    let n_shapes = options.n_families * options.n_poses;
+    let one = |i: usize| {
+        let (family, pose) = (i / options.n_poses, i % options.n_poses);
+        shape(family, &models[family], pose, options)
+    };
+    (0..n_shapes).into_par_iter().map(one).collect()
+}
+
+/// Generates one creature, the same as in [`creatures`]; poses beyond the number in the options are further variations.
+///
+/// # Errors
+/// As [`creatures`].
+pub fn creature(family: usize, pose: usize, options: &CreatureOptions) -> Result<LabeledShape, DatasetError> {
+    validate(options)?;
+    shape(family, &model(family, options)?, pose, options)
+}
+
+/// The names of the body plans, in the order of the families; they are the labels of the first ones.
+#[must_use]
+pub fn creature_plans() -> Vec<&'static str> {
+    PLANS.iter().map(|(name, _)| *name).collect()
+}
+
+fn validate(options: &CreatureOptions) -> Result<(), DatasetError> {
+    ArticulatedOptions { seed: options.seed, n_vertices: options.n_vertices }.validate()
+}
+
+/// The label of a family: that of its plan, followed by a capital letter after the first round (`worm`, `wormB`, ...).
+/// Letters, since the leading letters of a file name are its class.
+fn label(family: usize) -> String {
+    let (name, mut round) = (PLANS[family % PLANS.len()].0, family / PLANS.len());
+    let mut letters = String::new();
+    while round > 0 {
+        letters.insert(0, char::from(b'A' + (round % 26) as u8));
+        round /= 26;
+    }
+    name.to_owned() + &letters
+}
+
+fn no_surface(shape: String, options: &CreatureOptions) -> DatasetError {
+    DatasetError::NoSurface { shape, n_vertices: options.n_vertices, seed: options.seed }
+}
+
+fn model(family: usize, options: &CreatureOptions) -> Result<Model, DatasetError> {
+    let (plan, round) = (family % PLANS.len(), family / PLANS.len());
+    for attempt in 0..N_ATTEMPTS {
+        let mut proportions = Proportions::new(options.seed, plan, round, attempt);
+        let draft = PLANS[plan].1(&mut proportions);
+        if let Some(model) = measured(draft, &mut proportions.into_stream()) {
+            return Ok(model);
+        }
+    }
+    Err(no_surface(label(family), options))
+}
+
+/// The model of a body with random poses; `None` if its limbs touch at rest.
+fn measured(draft: Draft, stream: &mut Stream) -> Option<Model> {
+    let body = draft.body();
+    let spacing = SPACING * draft.finest?;
+    let raw =
+        extract(&body, Lattice { rotation: Matrix3::identity(), shift: Vector3::repeat(0.37), spacing });
+    if genus(&raw) != Some(draft.genus) {
+        return None;
+    }
+    let mut poses = vec![Pose::rest(&draft.skeleton)];
+    poses.extend((1..N_POSES).map(|_| typical_pose(&draft.skeleton, stream)));
+    let Draft { skeleton, genus, .. } = draft;
+    Some(Model { area: area(&raw), body, skeleton, poses, genus, spacing })
+}
+
+fn area(raw: &RawSurface) -> f64 {
+    let at = |v: VertexId| raw.positions[v.index()];
+    raw.faces.iter().map(|&[a, b, c]| 0.5 * (at(b) - at(a)).cross(&(at(c) - at(a))).norm()).sum()
+}
+
+/// A random pose without intersecting limbs; after a few draws, the last one.
+fn typical_pose(skeleton: &Skeleton, stream: &mut Stream) -> Pose {
+    let mut pose = random_pose(skeleton, stream);
+    for _ in 1..N_DRAWS {
+        if entanglement(&PosedSkeleton::new(skeleton, &pose)) <= 0.0 {
+            break;
+        }
+        pose = random_pose(skeleton, stream);
+    }
+    pose
+}
+
+/// A random pose within the limits of the joints. A limb bends to one side in most places.
+fn random_pose(skeleton: &Skeleton, stream: &mut Stream) -> Pose {
+    let mut pose = Pose::rest(skeleton);
+    for (c, chain) in skeleton.chains.iter().enumerate() {
+        let side = [(); 2].map(|()| stream.uniform(-0.6, 0.6));
+        for (j, joint) in chain.joints.iter().enumerate() {
+            let [x, y, z] = joint.play.map(|play| play / PLAY);
+            let [a, b] = side.map(|side| side + stream.uniform(-0.4, 0.4));
+            pose = pose.set(JointId { chain: c, joint: j }, turn(a * x, stream.uniform(-y, y), b * z));
+        }
+    }
+    pose
+}
+
+fn shape(
+    family: usize,
+    model: &Model,
+    pose: usize,
+    options: &CreatureOptions,
+) -> Result<LabeledShape, DatasetError> {
+    let label = label(family);
+    let name = format!("{label}{pose}");
+    let stream = |purpose| Stream::of_creature(options.seed, family, pose, purpose);
+    let surface = rest_surface(model, options.n_vertices, &mut stream(Purpose::Lattice))
+        .ok_or_else(|| no_surface(name.clone(), options))?;
+    let posed = posed_skeleton(model, pose, &mut stream(Purpose::Pose));
+    let positions = posed_positions(&surface, &posed, scale(model));
+    let mesh = shuffled(&surface, &positions, &mut stream(Purpose::Numbering));
+    Ok(LabeledShape { name, label, mesh })
+}

@@ -1,0 +1,83 @@
+//! Laws of the creatures.
+
+use std::collections::HashSet;
+
+use canonform_datasets::{CreatureOptions, DatasetError, creature, creature_plans, creatures};
+use mesh::{TriMesh, validate};
+use rayon::ThreadPoolBuilder;
+use rayon::prelude::*;
+
+fn options(n_families: usize, n_poses: usize) -> CreatureOptions {
+    CreatureOptions { n_families, n_poses, n_vertices: 1000, ..CreatureOptions::default() }
+}
+
+fn volume(mesh: &TriMesh) -> f64 {
+    let cone = |f| {
+        let [a, b, c] = mesh.triangle(f);
+        a.coords.dot(&b.coords.cross(&c.coords)) / 6.0
+    };
+    (0..mesh.n_faces()).map(cone).sum()
+}
+
+#[test]
+fn every_creature_is_a_clean_surface_with_the_handles_of_its_plan() {
+    let options = options(creature_plans().len(), 3);
+    let shapes = creatures(&options).unwrap();
+    for shape in &shapes {
+        let report = validate(&shape.mesh);
+        let handles = match shape.label.as_str() {
+            "ring" | "cup" | "key" => 1,
+            "glasses" | "scissors" => 2,
+            _ => 0,
+        };
+        assert!(report.is_clean() && report.genus == Some(handles), "{}: {report:?}", shape.name);
+        assert_eq!((report.n_vertices, report.n_boundary_edges), (1000, 0));
+        assert!(volume(&shape.mesh) > 0.0, "{} is inside out", shape.name);
+        assert!((report.area / 18_000.0 - 1.0).abs() < 0.15, "{}: area {}", shape.name, report.area);
+    }
+}
+
+#[test]
+fn families_have_their_own_labels_and_sizes() {
+    let n_plans = creature_plans().len();
+    let options = options(2 * n_plans, 1);
+    let shapes = creatures(&options).unwrap();
+    let labels: HashSet<&str> = shapes.iter().map(|shape| shape.label.as_str()).collect();
+    assert_eq!(labels.len(), 2 * n_plans);
+    assert_eq!((shapes[0].label.as_str(), shapes[n_plans].label.as_str()), ("worm", "wormB"));
+    // All have one area, so bodies of other proportions have other volumes or reach less far.
+    for (first, second) in shapes.iter().zip(&shapes[n_plans..]) {
+        let [a, b] = [first, second].map(|shape| {
+            let [low, high] = shape.mesh.bounds().unwrap();
+            [volume(&shape.mesh), (high - low).norm()]
+        });
+        let change = a.iter().zip(&b).map(|(a, b)| (a / b - 1.0).abs()).fold(0.0, f64::max);
+        assert!(change > 0.02, "{} and {}: {change}", first.name, second.name);
+    }
+}
+
+#[test]
+fn bytes_depend_on_the_seed_and_not_on_threads_or_the_number_of_families() {
+    let few = options(5, 2);
+    let threads = |n| ThreadPoolBuilder::new().num_threads(n).build().unwrap();
+    let all = threads(2).install(|| creatures(&few)).unwrap();
+    assert_eq!(threads(1).install(|| creatures(&few)).unwrap(), all);
+    assert_eq!(creature(3, 1, &options(40, 8)).unwrap(), all[7]);
+    let other = CreatureOptions { seed: 2, ..few };
+    assert_ne!(creature(3, 1, &other).unwrap().mesh, all[7].mesh);
+}
+
+#[test]
+fn every_seed_gives_bodies() {
+    (2..8u64).into_par_iter().for_each(|seed| {
+        let options = CreatureOptions { seed, ..options(2 * creature_plans().len(), 1) };
+        let shapes = creatures(&options).unwrap();
+        assert!(shapes.iter().all(|shape| validate(&shape.mesh).is_clean()), "seed {seed}");
+    });
+}
+
+#[test]
+fn sizes_out_of_range_are_errors() {
+    let few = CreatureOptions { n_vertices: 999, ..options(1, 1) };
+    assert!(matches!(creatures(&few), Err(DatasetError::VertexCount { n_vertices: 999, .. })));
+}
