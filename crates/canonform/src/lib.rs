@@ -90,7 +90,8 @@ mod shape_index;
 
 pub use budget::{Budget, Exceeded};
 pub use compare::{
-    Comparison, FormMatches, Overlay, Residual, SurfaceComparison, Triangulation, compare, compare_surfaces,
+    Basis, Change, Comparison, EvidenceKind, FormMatches, MatchEvidence, MeshGeometry, Overlay, Parts,
+    Residual, Side, SurfaceComparison, SurfaceGap, Triangulation, UnitChange, compare, compare_surfaces,
     embedded_distances, form_matches,
 };
 pub use error::{Error, Remedy};

@@ -120,7 +120,8 @@ impl Verdict {
         self.handedness == Handedness::Mirrored
     }
 
-    fn is_resized(&self) -> bool {
+    /// Whether the sizes differ by more than those of poses and scans of one body may.
+    pub fn is_resized(&self) -> bool {
         self.scale.max(1.0 / self.scale) > SAME_SIZE
     }
 }

@@ -10,6 +10,7 @@
 //! | `marching` | distances by fast marching |
 //! | `embedding` | embeddings through the whole pipeline |
 //! | `invariance` | signatures of subdivided, simplified, remeshed, noisy and moved shapes |
+//! | `matches` | what kind of match a changed mesh is with the original |
 //! | `isometry` | invariance to folding, motions, renumbering and units |
 //! | `scale` | the same results in any unit of length |
 //! | `threads` | independence of the number of threads |
@@ -35,6 +36,8 @@ mod isometry;
 mod licences;
 #[cfg(test)]
 mod marching;
+#[cfg(test)]
+mod matches;
 mod memory;
 #[cfg(test)]
 mod packaging;

@@ -1,9 +1,13 @@
 //! Comparing two shapes, and all pairs of a collection.
 
 mod comparison;
+mod evidence;
 mod forms;
 
 pub use comparison::{
     Comparison, Overlay, Residual, SurfaceComparison, Triangulation, compare, compare_surfaces,
+};
+pub use evidence::{
+    Basis, Change, EvidenceKind, MatchEvidence, MeshGeometry, Parts, Side, SurfaceGap, UnitChange,
 };
 pub use forms::{FormMatches, embedded_distances, form_matches};

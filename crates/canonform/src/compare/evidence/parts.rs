@@ -1,0 +1,115 @@
+//! A mesh among the components of another.
+
+use serde::Serialize;
+
+use super::exact::{SameVertices, same_vertices};
+use super::geometry::MeshGeometry;
+use super::in_space::{Aligned, Mirrored, SurfaceGap, aligned};
+use super::same_surface;
+
+/// Most different components that are aligned with a mesh.
+const MOST_ALIGNED: usize = 20;
+
+/// Copies on one plate have sizes that differ by less than this share.
+const SAME_SIZE: f64 = 0.01;
+
+/// One of two meshes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Side {
+    /// The first mesh.
+    First,
+    /// The second mesh.
+    Second,
+}
+
+/// How often one mesh occurs among the components of the other.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Parts {
+    /// The mesh whose components were searched.
+    pub whole: Side,
+    /// Components that are the other mesh.
+    pub found: usize,
+    /// Components with at least a thousandth of the area.
+    pub components: usize,
+}
+
+/// The occurrences of a mesh among the components of another.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Occurrences {
+    pub(super) found: usize,
+    pub(super) components: usize,
+    /// Size of the copies over that of the mesh.
+    pub(super) scale: f64,
+    pub(super) mirrored: bool,
+    /// How far the worst copy is apart, unless all have the same vertices.
+    pub(super) gap: Option<SurfaceGap>,
+    pub(super) same_vertices: bool,
+}
+
+/// One component beside the mesh that it may be a copy of.
+#[derive(Debug, Clone, Copy)]
+struct Copy {
+    scale: f64,
+    mirrored: bool,
+    gap: Option<SurfaceGap>,
+}
+
+/// Searches the components of `whole` for copies of a connected mesh, of one size. `None` if there are none, or if `whole` has
+/// one component.
+pub(super) fn occurrences(mesh: &MeshGeometry, whole: &MeshGeometry) -> Option<Occurrences> {
+    let parts = whole.parts();
+    if mesh.n_components() > 1 || parts.is_empty() {
+        return None;
+    }
+    // Equal components are compared once.
+    let mut kinds: Vec<(&MeshGeometry, Option<Copy>)> = Vec::new();
+    let mut copies: Vec<Copy> = Vec::new();
+    for part in parts {
+        let known = kinds.iter().find_map(|(kind, copy)| {
+            let same = same_vertices(kind, part).filter(|same| same.same_faces)?;
+            Some(copy.map(|copy| Copy {
+                scale: copy.scale * part.size / kind.size,
+                mirrored: copy.mirrored != same.mirrored,
+                ..copy
+            }))
+        });
+        let copy = known.unwrap_or_else(|| {
+            let copy = copy_of(mesh, part, kinds.len() < MOST_ALIGNED);
+            kinds.push((part, copy));
+            copy
+        });
+        copies.extend(copy);
+    }
+    // The size of most, the larger size of equally many.
+    let alike = |copy: &Copy| {
+        copies
+            .iter()
+            .filter(|other| (other.scale / copy.scale).ln().abs() < SAME_SIZE)
+            .copied()
+            .collect::<Vec<_>>()
+    };
+    let found = copies
+        .iter()
+        .map(alike)
+        .max_by(|x, y| x.len().cmp(&y.len()).then(y[0].scale.total_cmp(&x[0].scale)))?;
+    let gaps = found.iter().filter_map(|copy| copy.gap);
+    Some(Occurrences {
+        found: found.len(),
+        components: parts.len(),
+        scale: found[0].scale,
+        mirrored: found.iter().all(|copy| copy.mirrored),
+        gap: gaps.max_by(|x, y| x.rms.total_cmp(&y.rms)),
+        same_vertices: found.iter().all(|copy| copy.gap.is_none()),
+    })
+}
+
+fn copy_of(mesh: &MeshGeometry, part: &MeshGeometry, align: bool) -> Option<Copy> {
+    let sizes = part.size / mesh.size;
+    if let Some(SameVertices { mirrored, scale, .. }) = same_vertices(mesh, part) {
+        return Some(Copy { scale: scale * sizes, mirrored, gap: None });
+    }
+    let found = if align { aligned(mesh, part) } else { None };
+    let Aligned { map, gap, mirrored } = found.filter(|found| same_surface(found.gap) > 0.5)?;
+    Some(Copy { scale: map.scale * sizes, mirrored: mirrored == Mirrored::Yes, gap: Some(gap) })
+}

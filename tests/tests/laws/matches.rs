@@ -1,0 +1,255 @@
+//! What kind of match a changed mesh is with the original.
+
+use std::collections::BTreeMap;
+
+use canonform::{Change, EvidenceKind, MatchEvidence, MeshGeometry, Side, list_shapes};
+use datasets::{ArticulatedOptions, Damage, Family, articulated_body, articulated_shape};
+use descriptors::{Handedness, ShapeDistance, ShapeMetric, Verdict};
+use mesh::{TriMesh, shapes};
+use nalgebra::{Point3, Vector3};
+use rayon::prelude::*;
+
+use crate::real_meshes::data;
+
+/// Every change, with the kind of match and the changes that must be told.
+const VARIANTS: [(Damage, EvidenceKind, &[Change]); 12] = [
+    (Damage::Move, EvidenceKind::IdenticalGeometry, &[Change::Moved, Change::Rotated]),
+    (Damage::Scale, EvidenceKind::Scaled, &[Change::Scaled]),
+    (Damage::Mirror, EvidenceKind::Mirrored, &[Change::Mirrored]),
+    (Damage::Decimate(0.5), EvidenceKind::Remeshed, &[Change::Decimated]),
+    (Damage::Decimate(0.2), EvidenceKind::Remeshed, &[Change::Decimated]),
+    (Damage::Subdivide(1), EvidenceKind::Remeshed, &[Change::Subdivided]),
+    (Damage::Subdivide(2), EvidenceKind::Remeshed, &[Change::Subdivided]),
+    (Damage::Remesh, EvidenceKind::Remeshed, &[Change::Remeshed]),
+    (Damage::Noise(0.001), EvidenceKind::Noisy, &[Change::Noisy]),
+    (Damage::Noise(0.002), EvidenceKind::Noisy, &[Change::Noisy]),
+    (Damage::Noise(0.005), EvidenceKind::Noisy, &[Change::Noisy]),
+    (Damage::Holes(0.01), EvidenceKind::Remeshed, &[]),
+];
+
+/// Changes after one another, with what they amount to.
+const COMBINED: [(&[Damage], EvidenceKind, &[Change]); 4] = [
+    (
+        &[Damage::Scale, Damage::Mirror, Damage::Move],
+        EvidenceKind::Mirrored,
+        &[Change::Scaled, Change::Mirrored],
+    ),
+    (
+        &[Damage::Decimate(0.5), Damage::Mirror, Damage::Scale, Damage::Move],
+        EvidenceKind::Remeshed,
+        &[Change::Scaled, Change::Mirrored, Change::Decimated],
+    ),
+    (&[Damage::Noise(0.002), Damage::Move], EvidenceKind::Noisy, &[Change::Noisy]),
+    (&[Damage::Remesh, Damage::Move], EvidenceKind::Remeshed, &[Change::Remeshed]),
+];
+
+/// The verdict on two poses. Evidence in space does not depend on it.
+fn one_shape() -> Verdict {
+    ShapeMetric::verdict(ShapeDistance { fused: 0.5, combined: 0.5 }, Handedness::Unknown, 1.0)
+}
+
+fn geometry(mesh: &TriMesh) -> MeshGeometry {
+    MeshGeometry::new(mesh, None).unwrap()
+}
+
+fn evidence(a: &MeshGeometry, b: &MeshGeometry) -> MatchEvidence {
+    MatchEvidence::new([a, b], one_shape())
+}
+
+/// How often a kind of match was told.
+#[derive(Default)]
+struct Score {
+    right: usize,
+    all: usize,
+    falsely_identical: usize,
+    /// Largest distance of the surfaces, root mean square and maximum.
+    gap: [f64; 2],
+    wrong: Vec<String>,
+}
+
+/// Changes all shapes in every way, and counts what is told right.
+fn scores(shapes: &[(String, TriMesh)]) -> BTreeMap<String, Score> {
+    let single = VARIANTS.iter().map(|(damage, kind, changes)| (vec![*damage], *kind, *changes));
+    let combined = COMBINED.iter().map(|(damages, kind, changes)| (damages.to_vec(), *kind, *changes));
+    let all: Vec<_> = single.chain(combined).collect();
+    let found: Vec<_> = shapes
+        .par_iter()
+        .flat_map_iter(|(name, mesh)| {
+            let own = geometry(mesh);
+            let all = &all;
+            all.iter().map(move |(damages, kind, changes)| {
+                let changed = damages.iter().fold(mesh.clone(), |mesh, damage| damage.apply(&mesh, 7));
+                let found = evidence(&own, &geometry(&changed)).named(name, "the copy");
+                let label = damages.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
+                let is_right = found.kind == *kind && changes.iter().all(|change| found.has(*change));
+                (label, *kind, is_right, found)
+            })
+        })
+        .collect();
+    let mut scores: BTreeMap<String, Score> = BTreeMap::new();
+    for (label, kind, is_right, found) in found {
+        let score = scores.entry(label).or_default();
+        score.all += 1;
+        score.right += usize::from(is_right);
+        score.falsely_identical +=
+            usize::from(found.kind <= EvidenceKind::IdenticalGeometry && kind != found.kind);
+        if let Some(gap) = found.surface_gap {
+            score.gap = [score.gap[0].max(gap.rms), score.gap[1].max(gap.max)];
+        }
+        if !is_right {
+            score.wrong.push(format!("{found} ({})", found.reason()));
+        }
+    }
+    for (label, score) in &scores {
+        let Score { right, all, gap: [rms, max], .. } = score;
+        println!("{label}: {right} of {all} right; largest distance {rms:.4}, maximum {max:.4}");
+        score.wrong.iter().take(3).for_each(|wrong| println!("    {wrong}"));
+    }
+    scores
+}
+
+fn bodies(n_vertices: usize, poses: usize) -> Vec<(String, TriMesh)> {
+    let options = ArticulatedOptions { n_vertices, ..Default::default() };
+    let all: Vec<_> = Family::all().into_iter().flat_map(|f| (0..poses).map(move |pose| (f, pose))).collect();
+    all.into_par_iter()
+        .map(|(family, pose)| {
+            let shape = articulated_shape(family, pose, &options).unwrap();
+            (shape.name, shape.mesh)
+        })
+        .collect()
+}
+
+#[test]
+fn every_change_of_a_built_in_shape_is_told() {
+    for n_vertices in [1000, 3400, 10_000] {
+        println!("{n_vertices} vertices");
+        for (label, score) in scores(&bodies(n_vertices, 2)) {
+            assert_eq!(score.falsely_identical, 0, "{label}");
+            assert_eq!(score.right, score.all, "{n_vertices} vertices, {label}: {:?}", score.wrong);
+        }
+    }
+}
+
+#[test]
+fn two_poses_and_two_bodies_are_not_one_surface() {
+    let options = ArticulatedOptions { n_vertices: 1000, ..Default::default() };
+    let all: Vec<_> = Family::all()
+        .into_par_iter()
+        .flat_map_iter(|family| {
+            let body = |body, pose| articulated_body(family, body, pose, &options).unwrap().mesh;
+            let poses = (0..6).map(|pose| (pose, body(0, pose)));
+            let bodies = (1..4).map(|i| (0, body(i, 0)));
+            let geometries: Vec<_> =
+                poses.chain(bodies).map(|(pose, mesh)| (pose, geometry(&mesh))).collect();
+            let pairs = (0..geometries.len()).flat_map(|i| (0..i).map(move |j| (i, j)));
+            pairs
+                .map(|(i, j)| {
+                    let same_pose = geometries[i].0 == geometries[j].0;
+                    (same_pose, evidence(&geometries[i].1, &geometries[j].1))
+                })
+                .collect::<Vec<_>>()
+        })
+        .collect();
+    let mut gaps: Vec<_> = all
+        .iter()
+        .filter_map(|(same_pose, found)| found.surface_gap.map(|gap| (gap.rms, gap.max, same_pose)))
+        .collect();
+    gaps.sort_by(|a, b| a.0.total_cmp(&b.0));
+    println!("{} pairs, {} aligned, nearest:", all.len(), gaps.len());
+    for (rms, max, same_pose) in gaps.iter().take(20) {
+        println!(
+            "    {rms:.4}, maximum {max:.4}{}",
+            if **same_pose { ", two bodies in one pose" } else { "" }
+        );
+    }
+    let wrong: Vec<_> = all.iter().filter(|(_, found)| found.kind < EvidenceKind::OtherPose).collect();
+    assert!(wrong.is_empty(), "{wrong:?}");
+}
+
+#[test]
+fn every_change_of_a_tosca_shape_is_told() {
+    let Some(data) = data("kinds of match on TOSCA") else { return };
+    let files = list_shapes(&data.join("tosca-lowres"), None).unwrap();
+    let shapes: Vec<_> = files
+        .into_par_iter()
+        .filter_map(|file| Some((file.name, mesh::io::read(&file.path).ok()?)))
+        .collect();
+    let scores = scores(&shapes);
+    let total = |of: fn(&Score) -> usize| scores.values().map(of).sum::<usize>();
+    let (right, all) = (total(|s| s.right), total(|s| s.all));
+    println!("{} shapes: {right} of {all} right, {:.2} %", shapes.len(), 100.0 * right as f64 / all as f64);
+    assert_eq!(total(|s| s.falsely_identical), 0);
+    assert!(right as f64 >= 0.98 * all as f64, "{right} of {all}");
+}
+
+/// The mesh at a place.
+fn at(mesh: &TriMesh, x: f64, y: f64) -> TriMesh {
+    TriMesh {
+        positions: mesh.positions.iter().map(|p| p + Vector3::new(x, y, 0.0)).collect(),
+        faces: mesh.faces.clone(),
+    }
+}
+
+#[test]
+fn copies_on_a_plate_are_counted() {
+    let bodies = bodies(1000, 1);
+    let [cat, other] = [&bodies[0].1, &bodies[1].1];
+    let single = geometry(cat);
+    for decimated in [false, true] {
+        let copy = if decimated { Damage::Decimate(0.5).apply(cat, 1) } else { cat.clone() };
+        let copies = |n: usize| (0..n).map(|i| at(&Damage::Move.apply(&copy, i as u64), 9.0 * i as f64, 0.0));
+        let six = geometry(&shapes::disjoint(&copies(6).collect::<Vec<_>>()));
+        let found = evidence(&single, &six).named("cat", "plate");
+        assert_eq!(
+            (found.kind, found.to_string().starts_with("plate is six copies of cat")),
+            (EvidenceKind::Copies, true),
+            "{found}"
+        );
+        assert_eq!(found.has(Change::Remeshed), decimated);
+        let back = evidence(&six, &single).named("plate", "cat");
+        assert_eq!(back.parts.unwrap().whole, Side::First);
+        assert!(back.to_string().starts_with("plate is six copies of cat"), "{back}");
+        let mixed: Vec<_> = copies(2).chain([at(other, 0.0, 30.0), shapes::cube(2)]).collect();
+        let mixed = geometry(&shapes::disjoint(&mixed));
+        let found = evidence(&single, &mixed).named("cat", "plate");
+        assert_eq!(found.kind, EvidenceKind::PartOf, "{found}");
+        assert!(
+            found.to_string().starts_with("plate has two copies of cat among its four components"),
+            "{found}"
+        );
+        let found = evidence(&geometry(other), &mixed).named("dog", "plate");
+        assert_eq!(found.kind, EvidenceKind::PartOf);
+        assert_eq!(found.to_string(), "dog is part of plate, one of its four components");
+        assert_eq!(evidence(&geometry(&shapes::torus(30, 20, 2.0, 0.5)), &mixed).parts, None);
+    }
+}
+
+#[test]
+fn scale_and_rounding_of_files_do_not_hide_one_geometry() {
+    let cat = &bodies(1000, 1)[0].1;
+    let own = geometry(cat);
+    for (scale, units) in
+        [(25.4, Some("inches to millimetres")), (0.001, Some("millimetres to metres")), (3.0, None)]
+    {
+        let moved = Damage::Move.apply(cat, 3);
+        let rounded = |p: &Point3<f64>| (p * scale).map(|x| f64::from(x as f32));
+        let copy = TriMesh { positions: moved.positions.iter().map(rounded).collect(), faces: moved.faces };
+        let found = evidence(&own, &geometry(&copy));
+        assert_eq!(
+            (found.kind, found.units.map(|u| u.to_string()).as_deref()),
+            (EvidenceKind::Scaled, units)
+        );
+        assert!((found.scale / scale - 1.0).abs() < 1e-6);
+    }
+    let folder = tempfile::tempdir().unwrap();
+    for extension in ["off", "obj", "ply", "stl"] {
+        let path = folder.path().join(format!("cat.{extension}"));
+        mesh::io::write(&path, cat).unwrap();
+        let found = evidence(&own, &geometry(&mesh::io::read(&path).unwrap()));
+        assert_eq!(
+            (found.kind, found.changes.len()),
+            (EvidenceKind::IdenticalGeometry, 0),
+            "{extension}: {found}"
+        );
+    }
+}
