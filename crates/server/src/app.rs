@@ -6,7 +6,7 @@ use std::sync::Arc;
 use axum::body::Bytes;
 use axum::http::StatusCode;
 use canonform::index::ContentHash;
-use canonform::{Budget, Error, ShapeDescription, Surface, embed};
+use canonform::{Budget, Error, MeshGeometry, SearchOptions, SearchReport, ShapeDescription, Surface, embed};
 
 use crate::cache::Cache;
 use crate::collection::{Collection, Served};
@@ -33,13 +33,34 @@ pub(crate) struct Query {
     pub(crate) name: String,
     pub(crate) measured: Measured,
     pub(crate) description: ShapeDescription,
+    /// Hash of its files.
+    pub(crate) content: ContentHash,
     /// The options of the index that it was described with.
     options: String,
 }
 
 impl Query {
-    pub(crate) fn new(name: String, measured: Measured, description: ShapeDescription) -> Self {
-        Self { name, options: description.options.text(), measured, description }
+    pub(crate) fn new(
+        name: String,
+        content: ContentHash,
+        measured: Measured,
+        description: ShapeDescription,
+    ) -> Self {
+        Self { name, content, options: description.options.text(), measured, description }
+    }
+}
+
+impl Query {
+    /// Searches the collection with it.
+    pub(crate) fn search(
+        &self,
+        collection: &Collection,
+        options: &SearchOptions,
+        budget: &Budget,
+    ) -> Result<SearchReport, Error> {
+        let geometry = self.measured.geometry.as_ref();
+        let known = canonform::Query { name: &self.name, content: Some(self.content), geometry };
+        collection.search.search_query_within(&self.description, &known, options, budget)
     }
 }
 
@@ -65,7 +86,8 @@ impl App {
         budget: &Budget,
     ) -> Result<Arc<Measured>, Error> {
         let index = collection.search.index();
-        let key = measured_key(&index.entry(id)?.content, index.options());
+        let content = index.entry(id)?.content;
+        let key = measured_key(&content, index.options());
         if let Some(known) = self.measured.get(&key) {
             return Ok(known);
         }
@@ -76,7 +98,8 @@ impl App {
         let refined = surface.for_description();
         budget.check()?;
         let embedded = embed(&refined, options, budget)?;
-        let measured = Arc::new(Measured::new(surface, &refined, &embedded)?);
+        let geometry = MeshGeometry::new(&mesh, Some(content));
+        let measured = Arc::new(Measured::new(surface, geometry, &refined, &embedded)?);
         self.measured.put(key, measured.clone(), measured.bytes());
         Ok(measured)
     }

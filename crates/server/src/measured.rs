@@ -1,7 +1,7 @@
 //! A mesh with its form, as geometry for the browser.
 
 use canonform::descriptors::CanonicalForm;
-use canonform::{Embedded, Error, Overlay, Surface};
+use canonform::{Embedded, Error, MeshGeometry, Overlay, Surface};
 use mesh::TriMesh;
 use view::interactive::Geometry;
 
@@ -19,6 +19,8 @@ const DOT: f64 = 0.025;
 /// A repaired surface and the form of all its vertices.
 pub(crate) struct Measured {
     pub(crate) surface: Surface,
+    /// The mesh in space, with all its components; none for one without area.
+    pub(crate) geometry: Option<MeshGeometry>,
     pub(crate) form: CanonicalForm,
     /// Surface distance of every vertex from the first sample, in mesh units.
     distances: Vec<f64>,
@@ -26,16 +28,22 @@ pub(crate) struct Measured {
 
 impl Measured {
     /// The surface, with the form of its vertices from that of the [prepared](Surface::for_description) surface.
-    pub(crate) fn new(surface: Surface, refined: &Surface, embedded: &Embedded) -> Result<Self, Error> {
+    pub(crate) fn new(
+        surface: Surface,
+        geometry: Option<MeshGeometry>,
+        refined: &Surface,
+        embedded: &Embedded,
+    ) -> Result<Self, Error> {
         let form = embedded.form(refined)?.leading(surface.mesh().vertex_areas())?;
         let distances = embedded.distances.column(0)?[..surface.mesh().n_vertices()].to_vec();
-        Ok(Self { surface, form, distances })
+        Ok(Self { surface, geometry, form, distances })
     }
 
     /// Approximate size in memory.
     pub(crate) fn bytes(&self) -> usize {
         let mesh = self.surface.mesh();
-        VERTEX_BYTES * mesh.n_vertices() + FACE_BYTES * mesh.n_faces()
+        let geometry = self.geometry.as_ref().map_or(0, MeshGeometry::n_bytes);
+        VERTEX_BYTES * mesh.n_vertices() + FACE_BYTES * mesh.n_faces() + geometry
     }
 
     /// The repaired mesh, coloured by distance from the first sample.

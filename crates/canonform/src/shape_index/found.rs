@@ -3,7 +3,7 @@
 use descriptors::Verdict;
 use serde::Serialize;
 
-use crate::compare::Comparison;
+use crate::compare::{Comparison, MatchEvidence};
 
 /// A shape that was found.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -25,4 +25,7 @@ pub struct SearchResult {
     /// The comparison with the query, if results are explained.
     #[serde(rename = "match", skip_serializing_if = "Option::is_none")]
     pub comparison: Option<Comparison>,
+    /// What kind of match the query and the shape are, if results are explained.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub evidence: Option<MatchEvidence>,
 }

@@ -8,6 +8,7 @@
 mod build;
 mod change;
 mod evaluate;
+mod explain;
 mod found;
 mod place;
 mod predict;
@@ -23,5 +24,5 @@ pub use found::SearchResult;
 pub use place::mesh_path;
 pub use predict::{ClassVotes, NearestShape, Prediction, Unknown};
 pub use rerank::{Ranked, Reranked, rerank};
-pub use search::{Explain, SearchOptions, SearchReport, SearchSeconds, ShapeSearch};
-pub use source::{Inputs, ShapeLimits, Shard};
+pub use search::{Explain, Query, SearchOptions, SearchReport, SearchSeconds, ShapeSearch};
+pub use source::{Inputs, ShapeLimits, Shard, content_hash};

@@ -231,6 +231,7 @@ mod tests {
             fused: distance,
             verdict: ShapeMetric::verdict(shape, Handedness::Unknown, 1.0),
             comparison: None,
+            evidence: None,
         }
     }
 

@@ -15,6 +15,9 @@ const AREA: &str = "area";
 /// The share of the surface that the repair dropped.
 pub(super) const DROPPED: &str = "dropped_area_share";
 
+/// The number of connected components before the repair. Indexes may lack it.
+pub(super) const COMPONENTS: &str = "components";
+
 /// How the shapes of an index were described.
 pub(super) fn options_of(index: &Index) -> Result<DescribeOptions, Error> {
     let options = DescribeOptions::from_text(index.options()).ok_or_else(|| Error::UnknownOptions {
@@ -45,6 +48,7 @@ pub(super) fn shape(listed: &Listed, content: ContentHash, described: ShapeDescr
         (AREA, described.area),
         ("diameter", described.diameter),
         (DROPPED, repair.dropped_area_share),
+        (COMPONENTS, repair.components as f64),
     ];
     let unit = form_unit(Some(described.area), &described.options);
     let points = described.form.points().iter().map(|p| p / unit);

@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use budget::Budget;
 use descriptors::{PreparedShape, ShapeMetric, ShapePair};
-use index::{Index, SearchMode, ShapeEntry};
+use index::{ContentHash, Index, SearchMode, ShapeEntry};
 use mesh::TriMesh;
 use rayon::prelude::*;
 use retrieval::Candidate;
@@ -16,7 +16,7 @@ use super::predict::{Completeness, Prediction, VOTERS, predicted};
 use super::record::{DROPPED, options_of, prepared};
 use super::rerank::{Ranked, rerank};
 use super::source::read_unchanged;
-use crate::compare::compare;
+use crate::compare::{MeshGeometry, compare};
 use crate::error::Error;
 use crate::form::{DescribeOptions, ShapeDescription, describe_within};
 use crate::input::Surface;
@@ -47,13 +47,30 @@ pub enum Explain {
     /// No.
     #[default]
     No,
-    /// With a [`Comparison`](crate::Comparison) for each result.
+    /// With a [`Comparison`](crate::Comparison) and the [`MatchEvidence`](crate::MatchEvidence) for each result.
     Kind,
 }
 
 impl Default for SearchOptions {
     fn default() -> Self {
         Self { k: 10, mode: SearchMode::Auto, explain: Explain::No }
+    }
+}
+
+/// What is known of the mesh that is searched for, to explain results.
+#[derive(Debug, Clone, Copy)]
+pub struct Query<'a> {
+    /// What it is called in words.
+    pub name: &'a str,
+    /// The [hash](crate::content_hash) of its file.
+    pub content: Option<ContentHash>,
+    /// Its mesh in space.
+    pub geometry: Option<&'a MeshGeometry>,
+}
+
+impl Default for Query<'_> {
+    fn default() -> Self {
+        Self { name: "the query", content: None, geometry: None }
     }
 }
 
@@ -165,11 +182,32 @@ impl ShapeSearch {
         options: &SearchOptions,
         budget: &Budget,
     ) -> Result<SearchReport, Error> {
+        self.search_named_within(mesh, "the query", None, options, budget)
+    }
+
+    /// As [`search_within`](Self::search_within), with a mesh that is called `name` in words, and with the
+    /// [hash](crate::content_hash) of its file.
+    ///
+    /// # Errors
+    /// As [`search_within`](Self::search_within).
+    pub fn search_named_within(
+        &self,
+        mesh: &TriMesh,
+        name: &str,
+        content: Option<ContentHash>,
+        options: &SearchOptions,
+        budget: &Budget,
+    ) -> Result<SearchReport, Error> {
         let start = Instant::now();
         let surface = Surface::new(mesh, &self.describe.form.repair)?;
-        let query = describe_within(&surface, &self.describe, budget)?;
+        let description = describe_within(&surface, &self.describe, budget)?;
         let describe = start.elapsed().as_secs_f64();
-        let report = self.search_described_within(&query, options, budget)?;
+        let geometry = match options.explain {
+            Explain::No => None,
+            Explain::Kind => MeshGeometry::new(mesh, content),
+        };
+        let query = Query { name, content, geometry: geometry.as_ref() };
+        let report = self.search_query_within(&description, &query, options, budget)?;
         Ok(SearchReport { seconds: SearchSeconds { describe, ..report.seconds }, ..report })
     }
 
@@ -195,27 +233,50 @@ impl ShapeSearch {
         options: &SearchOptions,
         budget: &Budget,
     ) -> Result<SearchReport, Error> {
-        self.index.expect_options(&query.options.text())?;
-        let complete = Completeness {
-            dropped: query.repair.dropped_area_share,
-            open: query.longest_boundary / query.area.sqrt(),
-        };
-        self.nearest(&query.prepare()?, complete, options, budget)
+        self.search_query_within(query, &Query::default(), options, budget)
     }
 
-    /// Searches with a shape of the index, which finds itself. Its mesh is not needed.
+    /// As [`search_described_within`](Self::search_described_within), with what is known of the mesh: results are explained by
+    /// it.
+    ///
+    /// # Errors
+    /// As [`search_described_within`](Self::search_described_within).
+    pub fn search_query_within(
+        &self,
+        description: &ShapeDescription,
+        query: &Query<'_>,
+        options: &SearchOptions,
+        budget: &Budget,
+    ) -> Result<SearchReport, Error> {
+        self.index.expect_options(&description.options.text())?;
+        let complete = Completeness {
+            dropped: description.repair.dropped_area_share,
+            open: description.longest_boundary / description.area.sqrt(),
+        };
+        self.nearest(&description.prepare()?, query, complete, options, budget)
+    }
+
+    /// Searches with a shape of the index, which finds itself. Its mesh is read only if results are explained, and need not be
+    /// there.
     ///
     /// # Errors
     /// [`Error::Index`].
     pub fn search_shape(&self, id: &str, options: &SearchOptions) -> Result<SearchReport, Error> {
-        let dropped = self.index.entry(id)?.fact(DROPPED).unwrap_or(0.0);
-        let complete = Completeness { dropped, ..Completeness::default() };
-        self.nearest(&self.prepared(id)?, complete, options, &Budget::unlimited())
+        let entry = self.index.entry(id)?;
+        let complete =
+            Completeness { dropped: entry.fact(DROPPED).unwrap_or(0.0), ..Completeness::default() };
+        let geometry = match options.explain {
+            Explain::No => None,
+            Explain::Kind => self.geometry(id, &entry),
+        };
+        let query = Query { name: id, content: Some(entry.content), geometry: geometry.as_ref() };
+        self.nearest(&self.prepared(id)?, &query, complete, options, &Budget::unlimited())
     }
 
     fn nearest(
         &self,
         query: &PreparedShape,
+        known: &Query<'_>,
         complete: Completeness,
         options: &SearchOptions,
         budget: &Budget,
@@ -240,7 +301,8 @@ impl ShapeSearch {
             let id = near[ranked.index].id.clone();
             let ShapeEntry { label, path, .. } = self.index.entry(&id)?;
             let Ranked { distance, fused, verdict, .. } = *ranked;
-            Ok(SearchResult { rank: place + 1, id, label, path, distance, fused, verdict, comparison: None })
+            let (rank, comparison, evidence) = (place + 1, None, None);
+            Ok(SearchResult { rank, id, label, path, distance, fused, verdict, comparison, evidence })
         };
         let mut results = ranked.nearest.iter().enumerate().map(result).collect::<Result<Vec<_>, Error>>()?;
         let predicted = predicted(&results, found.threshold, complete);
@@ -252,6 +314,7 @@ impl ShapeSearch {
                 let pair =
                     ShapePair::new(ShapeMetric::default(), [query, &shape]).with_best(ranked.alignment);
                 result.comparison = Some(compare(&pair)?);
+                result.evidence = Some(self.evidence(known, &result.id, result.verdict)?);
                 Ok::<_, Error>(())
             })?;
         }
@@ -276,6 +339,7 @@ mod tests {
     use tempfile::TempDir;
 
     use super::*;
+    use crate::compare::{Basis, EvidenceKind};
     use crate::error::Remedy;
     use crate::form::{EmbedMethod, FormOptions, describe};
     use crate::shape_index::{BuildOptions, build_index};
@@ -314,8 +378,16 @@ mod tests {
             let described = describe(&surface, &describe_options).unwrap();
             let by_description = search.search_described(&described, &options).unwrap();
             assert!(by_mesh.results[0].id == "ring0" && by_mesh.results[0].distance < 1e-6);
-            assert_eq!(by_mesh.results, by_name.results);
-            assert_eq!(by_mesh.results, by_description.results);
+            let unexplained = |report: &SearchReport| {
+                let results = report.results.iter();
+                results.map(|r| SearchResult { evidence: None, ..r.clone() }).collect::<Vec<_>>()
+            };
+            assert_eq!(unexplained(&by_mesh), unexplained(&by_name));
+            assert_eq!(unexplained(&by_mesh), unexplained(&by_description));
+            let kind = |report: &SearchReport| report.results[0].evidence.clone().unwrap().kind;
+            assert_eq!(kind(&by_mesh), EvidenceKind::IdenticalGeometry);
+            assert_eq!(kind(&by_name), EvidenceKind::IdenticalFile);
+            assert_eq!(kind(&by_description), EvidenceKind::OtherPose, "only descriptions were compared");
             // The comparison of the two shapes says the same.
             for result in &by_mesh.results {
                 let other = search.prepared(&result.id).unwrap();
@@ -362,5 +434,40 @@ mod tests {
         assert!(matches!(&gone, Error::MeshGone { id, .. } if id == "box0"));
         assert!(gone.to_string().contains("box0.vert"), "{gone}");
         search.prepared("box0").unwrap();
+    }
+
+    #[test]
+    fn results_are_explained_by_meshes_where_their_files_are_unchanged() {
+        let (folder, search) = indexed(&DescribeOptions::default());
+        let options = SearchOptions { explain: Explain::Kind, ..SearchOptions::default() };
+        let mut ring = search.mesh("ring0").unwrap();
+        ring.positions.iter_mut().for_each(|p| *p /= 25.4);
+        let nearest = || search.search(&ring, &options).unwrap().results[0].clone();
+        let found = nearest().evidence.unwrap();
+        assert_eq!((found.kind, found.basis), (EvidenceKind::Scaled, Basis::Meshes));
+        assert_eq!(found.to_string(), "ring0 is the query scaled by 25.4 (inches to millimetres)");
+        fs::remove_file(folder.path().join("ring0.off")).unwrap();
+        let found = nearest().evidence.unwrap();
+        assert_eq!((found.kind, found.basis), (EvidenceKind::OtherPose, Basis::Descriptions));
+        assert!(found.reason().ends_with("the mesh was not compared"), "{}", found.reason());
+        let by_name = search.search_shape("ring0", &options).unwrap();
+        assert_eq!(by_name.results[0].evidence.as_ref().unwrap().kind, EvidenceKind::IdenticalFile);
+    }
+
+    #[test]
+    fn the_file_of_a_query_and_copies_on_a_plate_are_recognised() {
+        let (folder, search) = indexed(&DescribeOptions::default());
+        let options = SearchOptions { explain: Explain::Kind, ..SearchOptions::default() };
+        let path = folder.path().join("ring1.off");
+        let content = crate::content_hash(&path).unwrap();
+        let ring = mesh::io::read(&path).unwrap();
+        let explained = |mesh: &TriMesh, name: &str, content| {
+            let budget = Budget::unlimited();
+            let found = search.search_named_within(mesh, name, content, &options, &budget).unwrap();
+            found.results[0].evidence.clone().unwrap().to_string()
+        };
+        assert_eq!(explained(&ring, "a.off", Some(content)), "ring1 is the same file as a.off");
+        let plate = shapes::disjoint(&[ring.clone(), ring.clone(), ring]);
+        assert_eq!(explained(&plate, "plate.stl", None), "plate.stl is three copies of ring1");
     }
 }

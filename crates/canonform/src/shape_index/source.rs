@@ -224,7 +224,7 @@ pub(super) fn hash_all(shapes: Vec<Listed>, observer: &dyn Observer) -> Vec<Hash
     shapes
         .into_par_iter()
         .map(|shape| {
-            let hash = content(&shape.file.path);
+            let hash = content_hash(&shape.file.path);
             observer.step();
             (shape, hash)
         })
@@ -253,7 +253,11 @@ pub(super) fn read_unchanged(index: &Path, id: &str, entry: &ShapeEntry) -> Resu
     Ok(mesh::io::read_memory(&files.collect::<Vec<_>>(), &ReadLimits::default())?)
 }
 
-fn content(path: &Path) -> Result<ContentHash, Error> {
+/// The hash of the files of a mesh, by which an index recognises them.
+///
+/// # Errors
+/// [`Error::File`] if a file cannot be read.
+pub fn content_hash(path: &Path) -> Result<ContentHash, Error> {
     Ok(hash(&mesh::io::files_of(path))?)
 }
 

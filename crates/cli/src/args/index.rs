@@ -177,7 +177,7 @@ pub(crate) struct SearchArgs {
     /// Number of shapes to find; 0 predicts the class only
     #[arg(short, default_value_t = 10)]
     pub(crate) k: usize,
-    /// Report the verdict on every shape: the same, of one class, undecided or different, with its confidence
+    /// Say what kind of match every shape is, as `compare` does; reads the files of the shapes again
     #[arg(long)]
     pub(crate) explain: bool,
     /// Compare the signatures of all shapes, even in a large index

@@ -49,9 +49,13 @@ pub(crate) enum Command {
     Embed(EmbedArgs),
     /// Embed a mesh by every method and tabulate stress, time and memory
     Methods(MethodsArgs),
-    /// Decide whether two meshes are one shape, of one class or different, and report how they differ
+    /// Say what kind of match two meshes are: one file, geometry, surface, shape or class, scaled, mirrored, or a part
     ///
-    /// The verdict follows from the combined distance, by signatures and aligned canonical forms, and is one of: the same
+    /// The match is told from the files and from the meshes in space: the same bytes; the same vertices, perhaps moved, scaled
+    /// or mirrored; the same surface, decimated, subdivided, remeshed or with noise; copies or a part of each other. If
+    /// they are none of these, the shapes decide: another pose, one class, or different.
+    ///
+    /// The verdict on the shapes follows from the combined distance, by signatures and aligned canonical forms, and is one of: the same
     /// shape, different shapes of one class, undecided, different shapes. Its confidence is a probability, measured on
     /// poses and bodies of the built-in shapes.
     Compare(CompareArgs),

@@ -8,14 +8,14 @@ use canonform::descriptors::{
     CanonicalForm, Handedness, PreparedShape, ShapeMetric, ShapePair, Verdict, VerdictKind,
 };
 use canonform::{
-    Comparison, DescribeOptions, FormOptions, Residual, ShapeDescription, Surface, SurfaceComparison,
-    Triangulation, compare_surfaces, describe_within, embed,
+    Comparison, DescribeOptions, FormOptions, MatchEvidence, MeshGeometry, Residual, ShapeDescription,
+    Surface, SurfaceComparison, Triangulation, compare_surfaces, content_hash, describe_within, embed,
 };
 use mesh::io::{Content, writable};
 use serde::Serialize;
 
 use crate::args::{Common, CompareArgs};
-use crate::input::{is_stream, named, read_surface};
+use crate::input::{file_name, is_stream, named, print_repair, read_both};
 use crate::output::{check_folder, check_format, facts, report, write_colored};
 use terminal::Bars;
 
@@ -23,6 +23,8 @@ use terminal::Bars;
 struct CompareJson {
     a: PathBuf,
     b: PathBuf,
+    /// What kind of match the meshes are.
+    evidence: MatchEvidence,
     #[serde(flatten)]
     comparison: Comparison,
     triangulation: Triangulation,
@@ -42,12 +44,25 @@ struct ResidualJson {
     output: Option<PathBuf>,
 }
 
-/// One of the two meshes: its surface, the form of all vertices, the shape with this form, and the shape made with the
-/// options that the metric is calibrated for, if those differ.
-type Side = (Surface, CanonicalForm, PreparedShape, Option<PreparedShape>);
+/// One of the two meshes.
+struct Side {
+    surface: Surface,
+    /// The mesh in space, with the hash of its file.
+    geometry: Option<MeshGeometry>,
+    /// The form of all vertices.
+    form: CanonicalForm,
+    /// The shape with this form.
+    shape: PreparedShape,
+    /// The shape made with the options that the metric is calibrated for, if those differ.
+    usual: Option<PreparedShape>,
+}
 
 fn side(path: &Path, args: &CompareArgs, options: &FormOptions, common: &Common) -> Result<Side> {
-    let surface = read_surface(path, &args.embedding.form.repair, common)?;
+    let (mesh, surface) = read_both(path, &args.embedding.form.repair, common)?;
+    print_repair(&file_name(path), &surface.repaired.report, &args.embedding.form.repair);
+    let content = if is_stream(path) { None } else { Some(content_hash(path)?) };
+    let geometry = MeshGeometry::new(&mesh, content);
+    drop(mesh);
     let usual = FormOptions { repair: options.repair, ..FormOptions::default() };
     let usual = DescribeOptions { form: usual, ..DescribeOptions::default() };
     let measure = || {
@@ -64,7 +79,16 @@ fn side(path: &Path, args: &CompareArgs, options: &FormOptions, common: &Common)
         Ok((form, shape, Some(description.prepare()?)))
     };
     let (form, shape, usual) = measure().map_err(|fault| named(path, fault))?;
-    Ok((surface, form, shape, usual))
+    Ok(Side { surface, geometry, form, shape, usual })
+}
+
+/// What the two meshes are called: by their files, or by their paths if the files have one name.
+fn names(args: &CompareArgs) -> [String; 2] {
+    let [a, b] = [&args.a, &args.b].map(|path| file_name(path));
+    match a == b {
+        true => [&args.a, &args.b].map(|path| path.display().to_string()),
+        false => [a, b],
+    }
 }
 
 /// Embeds, aligns and compares two meshes.
@@ -79,21 +103,25 @@ pub(crate) fn compare(args: &CompareArgs, common: &Common) -> Result<ExitCode> {
         check_folder(path)?;
     }
     let metric = ShapeMetric { distance: args.distance };
-    let (a, form_a, shape_a, usual_a) = side(&args.a, args, &options, common)?;
-    let (b, form_b, shape_b, usual_b) = side(&args.b, args, &options, common)?;
-    let pair = ShapePair::new(metric, [&shape_a, &shape_b]);
+    let [a, b] = [side(&args.a, args, &options, common)?, side(&args.b, args, &options, common)?];
+    let pair = ShapePair::new(metric, [&a.shape, &b.shape]);
     // The verdict must not depend on the options.
-    let distance = match (&usual_a, &usual_b) {
+    let distance = match (&a.usual, &b.usual) {
         (Some(a), Some(b)) => ShapePair::new(metric, [a, b]).distance(),
         _ => pair.distance(),
     };
     let SurfaceComparison { comparison, triangulation, overlay } =
-        compare_surfaces(&pair, distance, [(&a, &form_a), (&b, &form_b)])?;
+        compare_surfaces(&pair, distance, [(&a.surface, &a.form), (&b.surface, &b.form)])?;
     if let Some(path) = &args.residual_mesh {
-        write_colored(path, a.mesh(), "residual", &overlay.residuals[0])?;
+        write_colored(path, a.surface.mesh(), "residual", &overlay.residuals[0])?;
     }
+    let evidence = match (&a.geometry, &b.geometry) {
+        (Some(a), Some(b)) => MatchEvidence::new([a, b], comparison.verdict),
+        _ => MatchEvidence::of_shapes([None, None], comparison.verdict),
+    };
+    let [name_a, name_b] = names(args);
     let [residual, _] = overlay.residual();
-    let max_vertex = a.input_vertex(residual.max_point.into()).0;
+    let max_vertex = a.surface.input_vertex(residual.max_point.into()).0;
     let residual = ResidualJson { residual, max_vertex, output: args.residual_mesh.clone() };
     let failed = args.threshold.map(|limit| {
         comparison.normalized_distance > limit || comparison.verdict.kind == VerdictKind::Different
@@ -102,6 +130,7 @@ pub(crate) fn compare(args: &CompareArgs, common: &Common) -> Result<ExitCode> {
     let json = CompareJson {
         a: args.a.clone(),
         b: args.b.clone(),
+        evidence: evidence.named(&name_a, &name_b),
         comparison,
         triangulation,
         residual,
@@ -140,8 +169,11 @@ fn table(json: &CompareJson) -> String {
     let (Residual { median, max, .. }, vertex) = (json.residual.residual, json.residual.max_vertex);
     let residual = format!("median {median:.6}, maximum {max:.6} (at vertex {vertex}), mesh units");
     let mut rows = vec![
-        ("match", c.verdict.to_string()),
-        ("because", c.verdict.reason()),
+        ("match", json.evidence.to_string()),
+        ("confidence", format!("{:.2}", json.evidence.confidence)),
+        ("because", json.evidence.reason()),
+        ("shape", c.verdict.to_string()),
+        ("by distance", c.verdict.reason()),
         ("distance of the forms", format!("{:.6} mesh units", c.distance)),
         ("at equal size", format!("{:.6} ({limit})", c.normalized_distance)),
         ("scale, second over first", format!("{:.6}", c.scale)),

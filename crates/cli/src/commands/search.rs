@@ -5,11 +5,13 @@ use std::process::ExitCode;
 
 use anyhow::Result;
 use canonform::index::SearchMode;
-use canonform::{Explain, SearchOptions, SearchReport, ShapeSearch, list_shapes, mesh_path};
+use canonform::{
+    Budget, Explain, SearchOptions, SearchReport, ShapeSearch, content_hash, list_shapes, mesh_path,
+};
 use serde::Serialize;
 
 use crate::args::{Common, SearchArgs};
-use crate::input::named;
+use crate::input::{file_name, named};
 use crate::output::{exit_code, print, print_json};
 
 #[derive(Serialize)]
@@ -52,10 +54,18 @@ impl Query {
     fn search(&self, index: &ShapeSearch, options: &SearchOptions) -> Result<SearchReport> {
         match self {
             Self::Indexed(id) => Ok(index.search_shape(id, options)?),
-            Self::Mesh(path) => mesh::io::read(path)
-                .map_err(Into::into)
-                .and_then(|mesh| index.search(&mesh, options))
-                .map_err(|fault| named(path, fault)),
+            Self::Mesh(path) => {
+                let search = || {
+                    let mesh = mesh::io::read(path)?;
+                    let content = match options.explain {
+                        Explain::No => None,
+                        Explain::Kind => Some(content_hash(path)?),
+                    };
+                    let (name, budget) = (file_name(path), Budget::unlimited());
+                    index.search_named_within(&mesh, &name, content, options, &budget)
+                };
+                search().map_err(|fault| named(path, fault))
+            }
         }
     }
 }
@@ -127,7 +137,7 @@ pub(crate) fn search(args: &SearchArgs, common: &Common) -> Result<ExitCode> {
 fn table(query: String, report: &SearchReport) -> String {
     let mut table = comfy_table::Table::new();
     table.load_style(comfy_table::presets::NOTHING);
-    let explained = report.results.iter().any(|result| result.comparison.is_some());
+    let explained = report.results.iter().any(|result| result.evidence.is_some());
     let mut head = vec!["", "shape", "class", "distance", "path"];
     if explained {
         head.push("match");
@@ -141,8 +151,8 @@ fn table(query: String, report: &SearchReport) -> String {
             format!("{:.4}", result.distance),
             result.path.clone(),
         ];
-        if explained {
-            row.push(format!("{} ({:.2})", result.verdict, result.verdict.confidence));
+        if let Some(evidence) = &result.evidence {
+            row.push(format!("{evidence} ({:.2}); {}", evidence.confidence, result.verdict));
         }
         table.add_row(row);
     }

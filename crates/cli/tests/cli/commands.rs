@@ -281,6 +281,47 @@ fn text_json_and_exit_code_of_a_comparison_agree() {
 }
 
 #[test]
+fn copies_are_told_from_other_shapes_and_named_by_their_files() {
+    let place = Workplace::new();
+    place.add("ring.off", &ring());
+    place.add("copy.off", &ring());
+    let mut inches = ring();
+    inches.positions.iter_mut().for_each(|p| *p = nalgebra::Point3::new(p.y, -p.x, p.z) / 25.4);
+    place.add("inches.ply", &inches);
+    place.add("fine.off", &mesh::shapes::subdivide(&ring()));
+    place.add("plate.stl", &mesh::shapes::disjoint(&[ring(), mesh::shapes::icosphere(3), ring(), ring()]));
+    place.add("ball.off", &mesh::shapes::icosphere(3));
+    for (a, b, kind, text) in [
+        ("ring.off", "copy.off", "identical-file", "copy.off is the same file as ring.off"),
+        ("inches.ply", "ring.off", "scaled", "scaled by 25.4 (inches to millimetres)"),
+        ("ring.off", "fine.off", "remeshed", "fine.off is ring.off subdivided to 4.0 times the vertices"),
+        ("fine.off", "ring.off", "remeshed", "ring.off is fine.off decimated to 25 % of the vertices"),
+        (
+            "ring.off",
+            "plate.stl",
+            "part-of",
+            "plate.stl has three copies of ring.off among its four components",
+        ),
+        ("ring.off", "ball.off", "different", "ball.off is another kind of shape than ring.off"),
+    ] {
+        let asked = ["compare", a, b, "--max-dropped", "1"];
+        let found = place.json(&asked)["evidence"].clone();
+        assert_eq!(found["kind"], kind, "{found}");
+        assert!(found["text"].as_str().unwrap().contains(text), "{found}");
+        let told = place.done(&asked).out;
+        for key in ["text", "reason"] {
+            assert!(told.contains(found[key].as_str().unwrap()), "{told}");
+        }
+    }
+    let changed = place.json(&["compare", "ring.off", "inches.ply"])["evidence"].clone();
+    assert_eq!(changed["units"], "millimetres to inches");
+    std::fs::create_dir(place.path("other")).unwrap();
+    std::fs::copy(place.path("ring.off"), place.path("other/ring.off")).unwrap();
+    let found = place.json(&["compare", "ring.off", "other/ring.off"])["evidence"].clone();
+    assert_eq!(found["text"], "other/ring.off is the same file as ring.off");
+}
+
+#[test]
 fn completions_cover_every_shell() {
     let place = Workplace::new();
     for shell in ["bash", "zsh", "fish"] {

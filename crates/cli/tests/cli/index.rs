@@ -116,6 +116,8 @@ fn an_explained_result_has_the_numbers_of_the_comparison() {
             assert_eq!(*value, compared[key], "{path}: {key}");
         }
         assert_eq!(result["verdict"], explained["verdict"]);
+        let evidence = &result["evidence"];
+        assert_eq!(evidence["kind"], compared["evidence"]["kind"]);
         for (key, value) in explained["verdict"].as_object().unwrap() {
             if !["handedness", "text"].contains(&key.as_str()) {
                 assert_eq!(*value, compared["verdict"][key], "{path}: {key}");
@@ -132,7 +134,9 @@ fn an_explained_result_has_the_numbers_of_the_comparison() {
             });
         let [words, reason] = ["text", "reason"].map(|key| compared["verdict"][key].as_str().unwrap());
         assert!(text.contains(words) && text.contains(reason), "{text}");
-        assert!(found_text.contains(result["verdict"]["text"].as_str().unwrap()), "{found_text}");
+        for words in [&result["verdict"]["text"], &evidence["text"]] {
+            assert!(found_text.contains(words.as_str().unwrap()), "{found_text}");
+        }
         // What may be of one class is never unknown.
         let may_be = result["verdict"]["same_class"].as_f64().unwrap() > 0.5;
         assert!(!may_be || !found["predicted"]["label"].is_null(), "{found}");

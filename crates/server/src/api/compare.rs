@@ -4,8 +4,10 @@ use std::sync::Arc;
 
 use axum::extract::State;
 use canonform::descriptors::{CanonicalForm, PreparedShape, ShapeMetric, ShapePair};
+use canonform::index::ContentHash;
 use canonform::{
-    Budget, Comparison, Error, Overlay, Residual, SurfaceComparison, Triangulation, compare_surfaces,
+    Budget, Comparison, Error, MatchEvidence, Overlay, Residual, SurfaceComparison, Triangulation,
+    compare_surfaces,
 };
 use serde::{Deserialize, Serialize};
 use view::interactive::Geometry;
@@ -33,6 +35,8 @@ pub(super) struct CompareParams {
 struct Answer {
     a: String,
     b: String,
+    /// What kind of match the shapes are.
+    evidence: MatchEvidence,
     #[serde(flatten)]
     comparison: Comparison,
     /// Whether both meshes have the same triangles; unknown if a mesh is missing.
@@ -47,28 +51,37 @@ struct Answer {
 enum Side {
     Query(Arc<Query>, Box<PreparedShape>),
     /// Not measured if the mesh is missing.
-    Shape(Box<PreparedShape>, Option<Arc<Measured>>),
+    Shape(Box<PreparedShape>, Option<Arc<Measured>>, ContentHash),
 }
 
 impl Side {
     fn of_shape(app: &App, collection: &Collection, id: &str, budget: &Budget) -> Result<Self, Error> {
         let shape = Box::new(collection.search.prepared(id)?);
+        let content = collection.search.index().entry(id)?.content;
         match app.indexed(collection, id, budget) {
             Err(fault) if !is_missing(&fault) => Err(fault),
-            measured => Ok(Self::Shape(shape, measured.ok())),
+            measured => Ok(Self::Shape(shape, measured.ok(), content)),
         }
     }
 
     fn shape(&self) -> &PreparedShape {
         match self {
-            Self::Query(_, shape) | Self::Shape(shape, _) => shape,
+            Self::Query(_, shape) | Self::Shape(shape, ..) => shape,
         }
     }
 
     fn measured(&self) -> Option<&Measured> {
         match self {
             Self::Query(query, _) => Some(&query.measured),
-            Self::Shape(_, measured) => measured.as_deref(),
+            Self::Shape(_, measured, _) => measured.as_deref(),
+        }
+    }
+
+    /// The hash of the file.
+    fn content(&self) -> ContentHash {
+        match self {
+            Self::Query(query, _) => query.content,
+            Self::Shape(.., content) => *content,
         }
     }
 
@@ -118,8 +131,14 @@ fn answer(
         }
         _ => (canonform::compare(&pair)?, None, Overlay::new(&pair, [a.form(), b.form()])?),
     };
+    let geometries = [&a, &b].map(|side| side.measured().and_then(|measured| measured.geometry.as_ref()));
+    let evidence = match geometries {
+        [Some(a), Some(b)] => MatchEvidence::new([a, b], comparison.verdict),
+        _ => MatchEvidence::of_shapes([a.content(), b.content()].map(Some), comparison.verdict),
+    };
     let dot = a.form().spread();
     Ok(Answer {
+        evidence: evidence.named(&name, &params.b),
         a: name,
         b: params.b,
         comparison,

@@ -5,12 +5,13 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use axum::extract::{Request, State};
-use canonform::index::SearchMode;
+use canonform::index::{ContentHash, SearchMode};
 use canonform::{
-    Budget, Error, Explain, SearchOptions, SearchReport, SearchSeconds, ShapeDescription, Surface, embed,
+    Budget, Error, Explain, MeshGeometry, SearchOptions, SearchReport, SearchSeconds, ShapeDescription,
+    Surface, embed,
 };
 use mesh::RepairReport;
-use mesh::io::{MemoryFile, ReadLimits, mesh_files, read_memory};
+use mesh::io::{MemoryFile, ReadLimits, is_mesh_path, mesh_files, read_memory};
 use serde::{Deserialize, Serialize};
 use view::interactive::Geometry;
 
@@ -200,8 +201,7 @@ async fn again(app: Arc<App>, params: SearchParams) -> Result<Written, ApiError>
         (None, Some(address)) => {
             let query = app.query(&collection, &address)?;
             let answer = move |budget: &Budget| {
-                let report =
-                    collection.search.search_described_within(&query.description, &wanted.options, budget)?;
+                let report = query.search(&collection, &wanted.options, budget)?;
                 let answer = Answer::new(&collection, query.name.clone(), report);
                 let answer = answer.with_measured(&query.measured, wanted.geometry);
                 Answer { query_id: Some(address), ..answer }.written(&wanted)
@@ -252,7 +252,7 @@ fn with_upload(app: &App, upload: Upload, wanted: &Wanted, budget: &Budget) -> R
         }
     };
     let describe = start.elapsed().as_secs_f64();
-    let report = collection.search.search_described_within(&query.description, &wanted.options, budget)?;
+    let report = query.search(&collection, &wanted.options, budget)?;
     let seconds = SearchSeconds { describe, ..report.seconds };
     let answer = Answer::new(&collection, query.name.clone(), SearchReport { seconds, ..report });
     Ok(Answer { query_id: Some(address), ..answer.with_measured(&query.measured, wanted.geometry) })
@@ -263,6 +263,7 @@ fn measure(app: &App, collection: &Collection, upload: Upload, budget: &Budget) 
         upload.files.iter().map(|(name, bytes)| MemoryFile { name: Path::new(name), bytes }).collect();
     let name = files.first().map(|file| file.name.display().to_string()).unwrap_or_default();
     let mesh = read_memory(&files, &ReadLimits::of_vertices(app.options.max_vertices))?;
+    let content = content_of(&files);
     drop(upload);
     budget.check()?;
     let describe = collection.search.describe_options();
@@ -272,5 +273,14 @@ fn measure(app: &App, collection: &Collection, upload: Upload, budget: &Budget) 
     let embedded = embed(&refined, &describe.form, budget)?;
     budget.check()?;
     let description = ShapeDescription::within(&refined, &embedded, describe, budget)?;
-    Ok(Query::new(name, Measured::new(surface, &refined, &embedded)?, description))
+    let geometry = MeshGeometry::new(&mesh, Some(content));
+    let measured = Measured::new(surface, geometry, &refined, &embedded)?;
+    Ok(Query::new(name, content, measured, description))
+}
+
+/// The hash by which an index knows the files of a mesh: that of the mesh itself comes first.
+fn content_of(files: &[MemoryFile<'_>]) -> ContentHash {
+    let mut files: Vec<_> = files.iter().collect();
+    files.sort_by_key(|file| !is_mesh_path(file.name));
+    ContentHash::of(&files.iter().map(|file| file.bytes).collect::<Vec<_>>())
 }

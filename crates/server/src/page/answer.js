@@ -3,6 +3,7 @@ import { mark, tile } from './shapes.js';
 import { USUAL_K, searched } from './state.js';
 
 const byId = (id) => document.getElementById(id);
+const sentence = (text) => `${text[0].toUpperCase()}${text.slice(1)}.`;
 const number = (value) => Number(value).toPrecision(3).replace(/\.?0+$/, '');
 
 // Views are created once and then updated: browsers limit the number of WebGL scenes.
@@ -141,6 +142,7 @@ export class Answer {
     byId('overlay-title').textContent = `${query} over ${id}`;
     byId('overlay-kind').textContent = 'Aligning…';
     byId('overlay-kind').dataset.kind = '';
+    byId('overlay-kind').dataset.evidence = '';
     byId('overlay-facts').textContent = '';
     if (isNew) byId('overlay-title').focus({ preventScroll: true });
     overlay.scrollIntoView({ block: 'nearest' });
@@ -151,10 +153,13 @@ export class Answer {
       byId('overlay-kind').textContent = answer.remedy ? `${answer.error}; ${answer.remedy}` : answer.error;
       return;
     }
-    const { verdict, distance, normalized_distance: normalized, residual, handedness } = answer;
-    byId('overlay-kind').textContent = `${verdict.text[0].toUpperCase()}${verdict.text.slice(1)}.`;
+    const { evidence, verdict, distance, normalized_distance: normalized, residual, handedness } = answer;
+    // Names keep their letters.
+    byId('overlay-kind').textContent = `${evidence.text} (${Math.round(100 * evidence.confidence)} % certain).`;
     byId('overlay-kind').dataset.kind = verdict.kind;
-    byId('overlay-facts').textContent = `${verdict.reason[0].toUpperCase()}${verdict.reason.slice(1)}. Distance between the forms: ${number(distance)}, ${number(normalized)} at equal size. ` +
+    byId('overlay-kind').dataset.evidence = evidence.kind;
+    byId('overlay-facts').textContent = `${sentence(evidence.reason)} ${sentence(verdict.text)} ` +
+      `Distance between the forms: ${number(distance)}, ${number(normalized)} at equal size. ` +
       `Points of the first form are ${number(residual[0].median)} from the second (median), ` +
       `${number(residual[0].max)} at most. Handedness: ${handedness}.`;
     byId('shown-first').textContent = answer.a;

@@ -278,6 +278,7 @@ fn a_shape_without_its_mesh_shows_the_points_of_its_form() {
         let compared = get(&server, &format!("/api/compare?a={id}&b=ring1"));
         description.check("get", "/api/compare", 200, &compared.json());
         assert!(compared.json()["triangulation"].is_null());
+        assert_eq!(compared.json()["evidence"]["basis"], "descriptions");
     }
 }
 
@@ -299,7 +300,14 @@ fn an_upload_can_be_compared_with_its_results() {
     assert_eq!((json["kind"].as_str(), json["triangulation"].as_str()), (Some("scaled"), Some("same")));
     assert!((json["scale"].as_f64().unwrap() * 4.0 - 1.0).abs() < 1e-6);
     let mut results = found["results"].as_array().unwrap().iter();
-    let explained = &results.find(|result| result["id"] == "ring1").unwrap()["match"];
+    let result = results.find(|result| result["id"] == "ring1").unwrap();
+    let evidence = &json["evidence"];
+    assert_eq!((&evidence["kind"], &evidence["basis"]), (&"scaled".into(), &"meshes".into()));
+    assert_eq!(evidence["text"], "ring1 is q.off scaled by 0.25");
+    for key in ["kind", "text", "reason", "changes", "vertex_gap"] {
+        assert_eq!(evidence[key], result["evidence"][key], "{key}");
+    }
+    let explained = &result["match"];
     for (key, value) in explained.as_object().unwrap() {
         if !["handedness", "verdict"].contains(&key.as_str()) {
             assert_eq!(*value, json[key], "{key}");

@@ -64,6 +64,8 @@ fn a_chosen_mesh_is_classified_and_overlaid_with_a_result() {
         page.wait_for("document.querySelector('#overlay').dataset.state === 'ready'");
         page.wait_for("document.querySelector('#overlay-view').dataset.state === 'ready'");
         assert_eq!(page.eval("document.querySelector('#overlay-kind').dataset.kind !== 'different'"), true);
+        let told = "document.querySelector('#overlay-kind').dataset.evidence";
+        page.wait_for(&format!("['identical-file', 'identical-geometry', 'other-pose'].includes({told})"));
         page.picture("#overlay", &format!("overlay-{name}"));
         page.browser.click("input[name=shown][value=second]").unwrap();
         page.wait_for("document.querySelector('#overlay-view .canonform-scene').data.length === 1");

@@ -136,10 +136,15 @@ impl MeshGeometry {
         self.tree.get_or_init(|| TriangleTree::new(&self.mesh))
     }
 
-    /// The samples as a form, ready to be aligned.
+    /// Root mean square distance of the surface from its centroid, relative to the size. Noise changes it less than the size.
+    pub(super) fn spread(&self) -> f64 {
+        self.spreads.iter().map(|x| x * x).sum::<f64>().sqrt()
+    }
+
+    /// The samples as a form of unit spread, ready to be aligned.
     pub(super) fn form(&self) -> Option<&PreparedForm> {
         let prepare = || {
-            let points = self.samples().to_vec();
+            let points: Vec<_> = self.samples().iter().map(|p| p / self.spread()).collect();
             let weights = vec![1.0 / points.len() as f64; points.len()];
             PreparedForm::new(&CanonicalForm::from_parts(points, weights, Some(1.0)).ok()?).ok()
         };

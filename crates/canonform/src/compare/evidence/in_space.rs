@@ -1,15 +1,15 @@
 //! How far two surfaces are apart in space, after the best motion, reflection and change of size.
 
-use descriptors::{Alignment, Reflections, match_forms};
+use descriptors::{Alignment, FormMatch, Reflections, match_forms};
 use nalgebra::{Matrix3, Point3, Rotation3, SMatrix, SVector, Unit, UnitQuaternion, Vector3};
 use serde::Serialize;
 
 use super::exact::Similarity;
 use super::geometry::MeshGeometry;
 
-/// Surfaces whose spreads along the principal axes differ by more than this share are not aligned: they are farther apart than
-/// any copy of a surface.
-const MOST_SPREAD: f64 = 0.08;
+/// Surfaces of one spread whose spreads along a principal axis differ by more than this are not aligned: they are farther apart
+/// than any copy of a surface.
+const MOST_SPREAD: f64 = 0.05;
 
 /// Samples of either surface that refine an alignment.
 const REFINING: usize = 400;
@@ -33,6 +33,9 @@ const RANKED: usize = 4;
 /// A surface is the mirror image of another, and not the same, if the distance is smaller by this factor with a reflection.
 const DECISIVE: f64 = 1.25;
 
+/// An alignment of the samples is refined unless the other handedness is better by this factor.
+const PROMISING: f64 = 1.6;
+
 /// How far two surfaces are apart after alignment in space, relative to the size of the second: the square root of its area.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct SurfaceGap {
@@ -48,51 +51,49 @@ pub(super) struct Aligned {
     /// Takes the first surface, at unit area, onto the second, at unit area.
     pub(super) map: Similarity,
     pub(super) gap: SurfaceGap,
-    /// Whether a reflection is needed, or makes no difference.
-    pub(super) mirrored: Mirrored,
-}
-
-/// Whether the second surface is the mirror image of the first in space.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Mirrored {
-    No,
-    Yes,
-    /// The surface is its own mirror image.
-    Either,
+    /// Whether the surfaces fit decisively better with a reflection.
+    pub(super) mirrored: bool,
 }
 
 /// Aligns two surfaces in space; `None` if their extents differ too much to be one surface.
 pub(super) fn aligned(a: &MeshGeometry, b: &MeshGeometry) -> Option<Aligned> {
-    let is_far = |(x, y): (&f64, &f64)| (x - y).abs() > MOST_SPREAD * a.spreads[0].max(b.spreads[0]);
-    if a.spreads.iter().zip(&b.spreads).any(is_far) {
+    let [spreads_a, spreads_b] = [a, b].map(|geometry| geometry.spreads.map(|x| x / geometry.spread()));
+    if spreads_a.iter().zip(&spreads_b).any(|(x, y)| (x - y).abs() > MOST_SPREAD) {
         return None;
     }
-    let [proper, reflected] = [Reflections::Forbid, Reflections::Require].map(|by| best(a, b, by));
-    let (proper, reflected) = (proper?, reflected?);
-    let mirrored = if proper.1.rms > DECISIVE * reflected.1.rms {
-        Mirrored::Yes
-    } else if reflected.1.rms > DECISIVE * proper.1.rms {
-        Mirrored::No
-    } else {
-        Mirrored::Either
+    let start = |by| Some(match_forms(a.form()?, b.form()?, by));
+    let [proper, reflected] = [start(Reflections::Forbid)?, start(Reflections::Require)?];
+    let turnable = equal_axes(a, b) != [false; 2];
+    let worth = |mine: FormMatch, other: FormMatch| turnable || mine.rms < PROMISING * other.rms;
+    let found = |start: FormMatch, is_worth: bool| if is_worth { best(a, b, &start.alignment) } else { None };
+    let proper_found = found(proper, worth(proper, reflected));
+    let reflected_found = found(reflected, worth(reflected, proper));
+    let ((map, gap), mirrored) = match (proper_found, reflected_found) {
+        (Some(proper), Some(reflected)) if proper.1.rms > DECISIVE * reflected.1.rms => (reflected, true),
+        (Some(proper), _) => (proper, false),
+        (None, Some(reflected)) => (reflected, true),
+        (None, None) => return None,
     };
-    let (map, gap) = if mirrored == Mirrored::Yes { reflected } else { proper };
     Some(Aligned { map, gap, mirrored })
 }
 
-/// The best alignment with or without a reflection.
-fn best(a: &MeshGeometry, b: &MeshGeometry, by: Reflections) -> Option<(Similarity, SurfaceGap)> {
-    let start = match_forms(a.form()?, b.form()?, by).alignment;
-    let found = refined(a, b, Similarity { motion: start, scale: 1.0 });
+/// The best alignment from a motion between the forms, with a reflection if and only if that has one.
+fn best(a: &MeshGeometry, b: &MeshGeometry, start: &Alignment) -> Option<(Similarity, SurfaceGap)> {
+    // The forms have unit spread.
+    let scaled = |motion: Alignment| {
+        let translation = motion.translation * b.spread();
+        Similarity { motion: Alignment { translation, ..motion }, scale: b.spread() / a.spread() }
+    };
+    let found = refined(a, b, scaled(*start));
     let mut best = (found, gap(a, b, &found, usize::MAX)?);
     if best.1.rms < CLOSE {
         return Some(best);
     }
-    let turned = turned_starts(a, b, &start);
+    let turned = turned_starts(a, b, start);
     let mut ranked: Vec<(f64, Similarity)> = turned
         .into_iter()
         .filter_map(|motion| {
-            let start = Similarity { motion, scale: 1.0 };
+            let start = scaled(motion);
             Some((gap(a, b, &start, RANKING)?.rms, start))
         })
         .collect();
@@ -107,16 +108,20 @@ fn best(a: &MeshGeometry, b: &MeshGeometry, by: Reflections) -> Option<(Similari
     Some(best)
 }
 
+/// Whether the spreads along the first and second, and along the second and third axis are nearly equal.
+fn equal_axes(a: &MeshGeometry, b: &MeshGeometry) -> [bool; 2] {
+    [0, 1].map(|i| {
+        [a, b].iter().all(|geometry| geometry.spreads[i] <= NEAR_EQUAL_AXES * geometry.spreads[i + 1])
+    })
+}
+
 /// Starts that are turned about axes which the spreads of a surface do not determine.
 fn turned_starts(a: &MeshGeometry, b: &MeshGeometry, start: &Alignment) -> Vec<Alignment> {
-    let near = |i: usize| {
-        [a, b].iter().all(|geometry| geometry.spreads[i] <= NEAR_EQUAL_AXES * geometry.spreads[i + 1])
-    };
     let turned = |turn: Rotation3<f64>| Alignment::about_origin(turn.into_inner()).after(start);
-    match (near(0), near(1)) {
-        (true, true) => (0..ORIENTATIONS).map(|i| turned(orientation(i))).collect(),
-        (false, false) => Vec::new(),
-        (first, _) => {
+    match equal_axes(a, b) {
+        [true, true] => (0..ORIENTATIONS).map(|i| turned(orientation(i))).collect(),
+        [false, false] => Vec::new(),
+        [first, _] => {
             let Some(axis) = principal_axis(b, if first { 2 } else { 0 }) else { return Vec::new() };
             let turn = |i: usize| std::f64::consts::TAU * i as f64 / TURNS as f64;
             (1..TURNS).map(|i| turned(Rotation3::from_axis_angle(&axis, turn(i)))).collect()
@@ -283,7 +288,7 @@ mod tests {
     #[test]
     fn subdivided_and_moved_surfaces_coincide() {
         let mesh = hand();
-        for (flip, mirrored) in [(1.0, Mirrored::No), (-1.0, Mirrored::Yes)] {
+        for (flip, mirrored) in [(1.0, false), (-1.0, true)] {
             let other = changed(&shapes::subdivide(&mesh), 25.4, flip);
             let found = aligned(&geometry(&mesh), &geometry(&other)).unwrap();
             assert!(found.gap.max < 1e-4, "{found:?}");
@@ -304,7 +309,7 @@ mod tests {
             let other = changed(&shapes::subdivide(&mesh), 1.0, 1.0);
             let found = aligned(&geometry(&mesh), &geometry(&other)).unwrap();
             assert!(found.gap.rms < 1e-3, "{found:?}");
-            assert_eq!(found.mirrored, Mirrored::Either);
+            assert!(!found.mirrored, "its own mirror image");
         }
     }
 

@@ -19,7 +19,7 @@ pub use parts::{Parts, Side};
 pub use units::UnitChange;
 
 use exact::{SameVertices, same_vertices};
-use in_space::{Aligned, Mirrored, aligned};
+use in_space::{Aligned, aligned};
 use mesh_change::MeshChange;
 use parts::{Occurrences, occurrences};
 
@@ -317,7 +317,7 @@ impl MatchEvidence {
         if scale.ln().abs() > SAME_SIZE_OF_SURFACES {
             changes.push(Change::Scaled);
         }
-        if mirrored == Mirrored::Yes {
+        if mirrored {
             changes.push(Change::Mirrored);
         }
         changes.extend(change.triangles());

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::exact::{SameVertices, same_vertices};
 use super::geometry::MeshGeometry;
-use super::in_space::{Aligned, Mirrored, SurfaceGap, aligned};
+use super::in_space::{Aligned, SurfaceGap, aligned};
 use super::same_surface;
 
 /// Most different components that are aligned with a mesh.
@@ -111,5 +111,5 @@ fn copy_of(mesh: &MeshGeometry, part: &MeshGeometry, align: bool) -> Option<Copy
     }
     let found = if align { aligned(mesh, part) } else { None };
     let Aligned { map, gap, mirrored } = found.filter(|found| same_surface(found.gap) > 0.5)?;
-    Some(Copy { scale: map.scale * sizes, mirrored: mirrored == Mirrored::Yes, gap: Some(gap) })
+    Some(Copy { scale: map.scale * sizes, mirrored, gap: Some(gap) })
 }

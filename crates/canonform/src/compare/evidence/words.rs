@@ -69,7 +69,7 @@ impl MatchEvidence {
                 format!("the surfaces are {} once aligned in space; {}", apart(gap), self.verdict.reason())
             }
             (_, None, None) if self.basis == Basis::Descriptions => {
-                format!("{}; no meshes were compared", self.verdict.reason())
+                format!("{}; the mesh was not compared", self.verdict.reason())
             }
             (_, None, None) => {
                 format!("the surfaces differ too much in space to be aligned; {}", self.verdict.reason())
