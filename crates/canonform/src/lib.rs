@@ -107,9 +107,10 @@ pub use input::{
 };
 pub use observer::Observer;
 pub use shape_index::{
-    BuildOptions, BuildReport, ClassVotes, Dropped, Elsewhere, Explain, Failure, FailureReason, Inputs,
-    Measure, MergeReport, NearestShape, Prediction, Query, Ranked, Reranked, SearchOptions, SearchReport,
-    SearchResult, SearchSeconds, ShapeLimits, ShapeSearch, Shard, Unknown, add_to_index, build_index,
-    content_hash, evaluate_index, evaluate_matrix, merge_indexes, mesh_path, remove_from_index, rerank,
+    BuildOptions, BuildReport, ClassVotes, ComponentResult, Dropped, Elsewhere, Explain, Failure,
+    FailureReason, Inputs, Measure, MergeReport, NearestShape, Prediction, Query, Ranked, Reranked,
+    SearchOptions, SearchReport, SearchResult, SearchSeconds, ShapeLimits, ShapeSearch, Shard, Unknown,
+    add_to_index, build_index, content_hash, evaluate_index, evaluate_matrix, merge_indexes, mesh_path,
+    remove_from_index, rerank,
 };
 pub use {descriptors, geodesics, index, linalg, mesh, nmds, retrieval, surface};

@@ -29,10 +29,11 @@ impl Results for InvarianceResults {
                 "{} of {} shapes of about {} vertices, damaged and searched for in the undamaged collection. \
                  Distance: combined distance from the undamaged shape; at {:.2}, one shape and two are equally likely. \
                  Top 1: share of shapes whose nearest has their class; others: the same without the undamaged shape \
-                 itself. Unknown: share of shapes whose nearest is {:.2} or farther.",
+                 itself. Unknown: share of shapes whose nearest is {:.2} or farther. Told: share of shapes whose kind of match \
+                 with the undamaged shape is right.",
                 self.n_damaged, self.n_shapes, self.n_vertices, self.same_shape, self.same_class
             ),
-            ["damage", "distance, median", "largest", "farthest shape", "top 1", "others", "unknown"],
+            ["damage", "distance, median", "largest", "farthest shape", "top 1", "others", "unknown", "told"],
             self.rows
                 .iter()
                 .map(|row| {
@@ -40,6 +41,7 @@ impl Results for InvarianceResults {
                     cells.extend([row.combined, row.largest].map(Cell::score));
                     cells.push(Cell::text(&row.farthest));
                     cells.extend([row.top1, row.top1_others, row.unknown].map(Cell::score));
+                    cells.push(row.told.map_or(Cell::Missing, Cell::score));
                     cells
                 })
                 .collect(),
@@ -88,6 +90,7 @@ mod tests {
             top1: 1.0,
             top1_others: 0.975,
             unknown: 0.0,
+            told: Some(0.625),
         };
         InvarianceResults {
             n_shapes: 30,
@@ -104,9 +107,19 @@ mod tests {
         let results = results();
         results.validate().unwrap();
         let text: String = results.tables().iter().map(Table::to_text).collect();
-        for part in
-            ["subdivided", "shape-dna", "0.400", "0.750", "cat3", "1.000", "0.975", "0.012", "0.500", "0.250"]
-        {
+        for part in [
+            "subdivided",
+            "shape-dna",
+            "0.400",
+            "0.750",
+            "cat3",
+            "1.000",
+            "0.975",
+            "0.012",
+            "0.500",
+            "0.250",
+            "0.625",
+        ] {
             assert!(text.contains(part), "{part} in {text}");
         }
     }

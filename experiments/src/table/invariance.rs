@@ -1,12 +1,15 @@
 //! Invariance: some shapes of every class are damaged in several ways, and searched for in the undamaged collection.
 //!
 //! Measures `least top1`, the lowest share over all damages of shapes whose nearest has their class, and `unknown`, the
-//! largest share of unknown shapes over the damages that keep the surface.
+//! largest share of unknown shapes over the damages that keep the surface; and `least told`, the lowest share of shapes whose
+//! kind of match with the undamaged shape is right.
 
 use anyhow::{Context as _, Result};
-use canonform::{DescribeOptions, ShapeDescription, Surface, describe, rerank};
+use canonform::{
+    DescribeOptions, EvidenceKind, MatchEvidence, MeshGeometry, ShapeDescription, Surface, describe, rerank,
+};
 use datasets::Damage;
-use descriptors::{FormDistance, ShapeMetric, ShapePair, SignatureKind};
+use descriptors::{FormDistance, Handedness, ShapeMetric, ShapePair, SignatureKind};
 use report::results::{InvarianceResults, InvarianceRow, SignatureChange};
 use retrieval::{Candidate, Labels};
 
@@ -40,6 +43,20 @@ struct Found {
     is_top1: bool,
     is_top1_of_others: bool,
     is_unknown: bool,
+    /// Whether the kind of match with the undamaged shape is right; none if the damage has no kind of its own.
+    is_told: Option<bool>,
+}
+
+/// What a damaged shape is beside the undamaged one.
+fn kind_of(damage: Damage) -> Option<EvidenceKind> {
+    match damage {
+        Damage::Move => Some(EvidenceKind::IdenticalGeometry),
+        Damage::Scale => Some(EvidenceKind::Scaled),
+        Damage::Mirror => Some(EvidenceKind::Mirrored),
+        Damage::Noise(_) => Some(EvidenceKind::Noisy),
+        Damage::Subdivide(_) | Damage::Decimate(_) | Damage::Remesh => Some(EvidenceKind::Remeshed),
+        _ => None,
+    }
 }
 
 pub(crate) fn run(context: &Context<'_>) -> Result<()> {
@@ -68,7 +85,15 @@ pub(crate) fn run(context: &Context<'_>) -> Result<()> {
             let is_right = |index: usize| labels.class(index) == labels.class(own);
             let first = nearest.first().context("the collection has shapes")?;
             let pair = ShapePair::new(ShapeMetric::default(), [&query, &prepared[own]]);
+            let geometries = [shape.surface.mesh(), &mesh].map(|mesh| MeshGeometry::new(mesh, None));
+            let is_told = match (kind_of(damage), &geometries) {
+                (Some(kind), [Some(a), Some(b)]) => {
+                    Some(MatchEvidence::new([a, b], pair.verdict(Handedness::Unknown)).kind == kind)
+                }
+                _ => None,
+            };
             Ok(Found {
+                is_told,
                 name: shape.name.clone(),
                 relative,
                 units,
@@ -83,7 +108,10 @@ pub(crate) fn run(context: &Context<'_>) -> Result<()> {
     }
     let least = rows.iter().map(|row| row.top1).fold(1.0, f64::min);
     let unknown = rows.iter().filter(|row| row.keeps_surface).map(|row| row.unknown).fold(0.0, f64::max);
-    let measured: Measured = [("least top1".to_owned(), least), ("unknown".to_owned(), unknown)].into();
+    let told = rows.iter().filter_map(|row| row.told).fold(1.0, f64::min);
+    let measured: Measured = [("least top1", least), ("unknown", unknown), ("least told", told)]
+        .map(|(k, v)| (k.to_owned(), v))
+        .into();
     let vertices = all.iter().map(|shape| shape.surface.mesh().n_vertices() as f64);
     let results = InvarianceResults {
         n_shapes: all.len(),
@@ -134,6 +162,7 @@ fn row(damage: Damage, found: &[Found]) -> InvarianceRow {
         top1: share(&|f| f.is_top1),
         top1_others: share(&|f| f.is_top1_of_others),
         unknown: share(&|f| f.is_unknown),
+        told: kind_of(damage).map(|_| share(&|f| f.is_told == Some(true))),
     }
 }
 

@@ -7,6 +7,7 @@
 
 mod build;
 mod change;
+mod components;
 mod evaluate;
 mod explain;
 mod found;
@@ -19,6 +20,7 @@ mod source;
 
 pub use build::{BuildOptions, BuildReport, Dropped, Elsewhere, Failure, FailureReason, build_index};
 pub use change::{MergeReport, add_to_index, merge_indexes, remove_from_index};
+pub use components::ComponentResult;
 pub use evaluate::{Measure, evaluate_index, evaluate_matrix};
 pub use found::SearchResult;
 pub use place::mesh_path;

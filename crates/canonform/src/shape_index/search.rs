@@ -11,6 +11,7 @@ use rayon::prelude::*;
 use retrieval::Candidate;
 use serde::Serialize;
 
+use super::components::ComponentResult;
 use super::found::SearchResult;
 use super::predict::{Completeness, Prediction, VOTERS, predicted};
 use super::record::{DROPPED, options_of, prepared};
@@ -79,6 +80,9 @@ impl Default for Query<'_> {
 pub struct SearchReport {
     /// Nearest first.
     pub results: Vec<SearchResult>,
+    /// The components of a query that has several, if results are explained: what each of them is.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub components: Vec<ComponentResult>,
     /// The class.
     pub predicted: Prediction,
     /// Shapes in the index.
@@ -253,7 +257,8 @@ impl ShapeSearch {
             dropped: description.repair.dropped_area_share,
             open: description.longest_boundary / description.area.sqrt(),
         };
-        self.nearest(&description.prepare()?, query, complete, options, budget)
+        let report = self.nearest(&description.prepare()?, query, complete, options, budget)?;
+        Ok(SearchReport { components: self.search_components(query, options, budget)?, ..report })
     }
 
     /// Searches with a shape of the index, which finds itself. Its mesh is read only if results are explained, and need not be
@@ -273,7 +278,7 @@ impl ShapeSearch {
         self.nearest(&self.prepared(id)?, &query, complete, options, &Budget::unlimited())
     }
 
-    fn nearest(
+    pub(super) fn nearest(
         &self,
         query: &PreparedShape,
         known: &Query<'_>,
@@ -320,6 +325,7 @@ impl ShapeSearch {
         }
         Ok(SearchReport {
             results,
+            components: Vec::new(),
             predicted,
             n_shapes: found.n_shapes,
             measured: found.n_measured,
@@ -469,5 +475,24 @@ mod tests {
         assert_eq!(explained(&ring, "a.off", Some(content)), "ring1 is the same file as a.off");
         let plate = shapes::disjoint(&[ring.clone(), ring.clone(), ring]);
         assert_eq!(explained(&plate, "plate.stl", None), "plate.stl is three copies of ring1");
+
+        let (mut other, ball) = (search.mesh("ring0").unwrap(), search.mesh("ball0").unwrap());
+        other.positions.iter_mut().for_each(|p| p.coords *= 3.0);
+        let plate = shapes::disjoint(&[ball.clone(), other, ball]);
+        let budget = Budget::unlimited();
+        let report = search.search_named_within(&plate, "plate.stl", None, &options, &budget).unwrap();
+        let found: Vec<_> =
+            report.components.iter().map(|part| (part.copies, part.nearest.clone().unwrap())).collect();
+        assert_eq!((found[0].0, found[0].1.id.as_str()), (1, "ring0"));
+        assert_eq!((found[1].0, found[1].1.id.as_str(), found.len()), (2, "ball0", 2));
+        let kinds: Vec<_> = found.iter().map(|(_, result)| result.evidence.clone().unwrap().kind).collect();
+        assert_eq!(kinds, [EvidenceKind::Scaled, EvidenceKind::IdenticalGeometry]);
+        assert!(
+            search
+                .search_named_within(&plate, "", None, &SearchOptions::default(), &budget)
+                .unwrap()
+                .components
+                .is_empty()
+        );
     }
 }

@@ -6,7 +6,8 @@ use std::process::ExitCode;
 use anyhow::Result;
 use canonform::index::SearchMode;
 use canonform::{
-    Budget, Explain, SearchOptions, SearchReport, ShapeSearch, content_hash, list_shapes, mesh_path,
+    Budget, ComponentResult, Explain, SearchOptions, SearchReport, ShapeSearch, content_hash, list_shapes,
+    mesh_path,
 };
 use serde::Serialize;
 
@@ -102,6 +103,9 @@ pub(crate) fn search(args: &SearchArgs, common: &Common) -> Result<ExitCode> {
                 for result in &mut report.results {
                     result.path = mesh_path(&args.index, &result.path).to_string_lossy().into_owned();
                 }
+                for result in report.components.iter_mut().filter_map(|part| part.nearest.as_mut()) {
+                    result.path = mesh_path(&args.index, &result.path).to_string_lossy().into_owned();
+                }
                 if !common.json {
                     print(&table(query.name(), &report))?;
                 }
@@ -161,12 +165,22 @@ fn table(query: String, report: &SearchReport) -> String {
     } else {
         String::new()
     };
+    let components: String = report.components.iter().map(component).collect();
     format!(
-        "{query}\n{table}\n  class: {}\n  {} of {} shapes measured{exactness}, {} aligned, {:.3} s",
+        "{query}\n{table}\n{components}  class: {}\n  {} of {} shapes measured{exactness}, {} aligned, {:.3} s",
         report.predicted.explanation,
         report.measured,
         report.n_shapes,
         report.aligned,
         report.seconds.describe + report.seconds.search
     )
+}
+
+/// What a component of the query is, as a line.
+fn component(found: &ComponentResult) -> String {
+    let copies =
+        if found.copies == 1 { "1 component".to_owned() } else { format!("{} components", found.copies) };
+    let evidence = found.nearest.as_ref().and_then(|nearest| nearest.evidence.as_ref());
+    let words = evidence.map_or_else(|| "nothing found".to_owned(), |e| format!("{e} ({:.2})", e.confidence));
+    format!("  {copies} of {} vertices: {words}\n", found.n_vertices)
 }

@@ -42,6 +42,10 @@ pub struct InvarianceRow {
     pub top1_others: f64,
     /// Share of shapes classified as unknown.
     pub unknown: f64,
+    /// Share of shapes whose change is told when they are compared with the undamaged shape; none for damages that have no
+    /// kind of match of their own, and in older records.
+    #[serde(default)]
+    pub told: Option<f64>,
 }
 
 /// Change of a signature by damage.

@@ -122,7 +122,10 @@ struct Answer {
 impl Answer {
     /// Without geometry and repair. Paths are shown as clients may see them.
     fn new(collection: &Collection, query: String, mut report: SearchReport) -> Self {
-        report.results.iter_mut().for_each(|result| result.path = collection.public_path(&result.path));
+        let components = report.components.iter_mut().filter_map(|part| part.nearest.as_mut());
+        for result in report.results.iter_mut().chain(components) {
+            result.path = collection.public_path(&result.path);
+        }
         Self {
             query,
             report,

@@ -120,6 +120,19 @@ impl MeshGeometry {
         self.n_components
     }
 
+    /// The square root of the area, in mesh units.
+    #[must_use]
+    pub fn size(&self) -> f64 {
+        self.size
+    }
+
+    /// The mesh in its own units and place, without repeated positions, degenerate and duplicate faces and unused vertices.
+    #[must_use]
+    pub fn to_mesh(&self) -> TriMesh {
+        let positions = self.mesh.positions.iter().map(|p| self.centre + p.coords * self.size).collect();
+        TriMesh { positions, faces: self.mesh.faces.clone() }
+    }
+
     /// Approximate size in memory.
     #[must_use]
     pub fn n_bytes(&self) -> usize {

@@ -23,9 +23,23 @@ use in_space::{Aligned, aligned};
 use mesh_change::MeshChange;
 use parts::{Occurrences, occurrences};
 
-/// The root mean square distance of two surfaces, aligned in space, at which they are as likely one surface in two
-/// triangulations as two poses.
-const SAME_SURFACE: Boundary = Boundary { at: 0.012, steepness: 6.0 };
+/// Two triangulations of one surface are at most this far apart, root mean square and times the number of vertices of the
+/// coarser one, relative to the size: the error of flat triangles. Measured on the built-in families with 200 to 10,000 vertices
+/// (`cargo test -p tests --test laws -- matches --nocapture`), where decimation brings the largest.
+const FLATNESS: f64 = 0.7;
+
+/// What else is allowed in copies of one surface. Two bodies of one family in one pose are at least 0.0045 apart there, two
+/// poses 0.037.
+const ALLOWED: f64 = 0.0015;
+
+/// What noise adds: 0.5 % of the diagonal is 0.0054.
+const ALLOWED_NOISE: f64 = 0.006;
+
+/// How far vertices may be apart on which independent noise is the only change, which needs no small distance to be told.
+const MOST_NOISE: f64 = 0.02;
+
+/// The odds of one surface are `(limit / distance)^STEEPNESS`. All distances above are then told with 90 % and more.
+const STEEPNESS: f64 = 6.0;
 
 /// Sizes of two meshes with the same vertices are equal up to this share.
 const SAME_SIZE: f64 = 1e-4;
@@ -143,9 +157,17 @@ pub struct MatchEvidence {
     pub names: [String; 2],
 }
 
-/// The probability that surfaces this far apart are one surface rather than two poses.
-pub(super) fn same_surface(gap: SurfaceGap) -> f64 {
-    SAME_SURFACE.probability(gap.rms)
+/// The probability that surfaces this far apart are one surface.
+fn same_surface(gap: SurfaceGap, meshes: [&MeshGeometry; 2], change: MeshChange) -> f64 {
+    let fewest = meshes.map(MeshGeometry::n_vertices).into_iter().min().unwrap_or(1).max(1);
+    let at = match change {
+        MeshChange::Noisy => MOST_NOISE,
+        _ if meshes.iter().any(|mesh| mesh.is_noisy()) => {
+            ALLOWED + ALLOWED_NOISE + 2.0 * FLATNESS / fewest as f64
+        }
+        _ => ALLOWED + 2.0 * FLATNESS / fewest as f64,
+    };
+    Boundary { at, steepness: STEEPNESS }.probability(gap.rms)
 }
 
 impl MatchEvidence {
@@ -294,7 +316,7 @@ impl MatchEvidence {
         let all = found.found == found.components && found.found > 1;
         Self {
             kind: if all { EvidenceKind::Copies } else { EvidenceKind::PartOf },
-            confidence: found.gap.map_or(1.0, same_surface),
+            confidence: found.confidence,
             changes,
             scale,
             units: UnitChange::of(scale, SAME_SIZE_OF_SURFACES),
@@ -307,8 +329,8 @@ impl MatchEvidence {
     /// Of meshes with different vertices: one surface, or what the verdict says.
     fn with_surfaces(self, [a, b]: [&MeshGeometry; 2]) -> Self {
         let Some(Aligned { map, gap, mirrored }) = aligned(a, b) else { return self };
-        let (probability, surface_gap) = (same_surface(gap), Some(gap));
         let change = MeshChange::of([a, b], &map);
+        let (probability, surface_gap) = (same_surface(gap, [a, b], change), Some(gap));
         if probability < 0.5 || change == MeshChange::Deformed {
             return Self { surface_gap, ..self };
         }

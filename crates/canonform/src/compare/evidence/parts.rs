@@ -5,6 +5,7 @@ use serde::Serialize;
 use super::exact::{SameVertices, same_vertices};
 use super::geometry::MeshGeometry;
 use super::in_space::{Aligned, SurfaceGap, aligned};
+use super::mesh_change::MeshChange;
 use super::same_surface;
 
 /// Most different components that are aligned with a mesh.
@@ -45,6 +46,8 @@ pub(super) struct Occurrences {
     /// How far the worst copy is apart, unless all have the same vertices.
     pub(super) gap: Option<SurfaceGap>,
     pub(super) same_vertices: bool,
+    /// Probability that the least certain copy is one.
+    pub(super) confidence: f64,
 }
 
 /// One component beside the mesh that it may be a copy of.
@@ -53,6 +56,7 @@ struct Copy {
     scale: f64,
     mirrored: bool,
     gap: Option<SurfaceGap>,
+    confidence: f64,
 }
 
 /// Searches the components of `whole` for copies of a connected mesh, of one size. `None` if there are none, or if `whole` has
@@ -101,15 +105,36 @@ pub(super) fn occurrences(mesh: &MeshGeometry, whole: &MeshGeometry) -> Option<O
         mirrored: found.iter().all(|copy| copy.mirrored),
         gap: gaps.max_by(|x, y| x.rms.total_cmp(&y.rms)),
         same_vertices: found.iter().all(|copy| copy.gap.is_none()),
+        confidence: found.iter().map(|copy| copy.confidence).fold(1.0, f64::min),
     })
 }
 
 fn copy_of(mesh: &MeshGeometry, part: &MeshGeometry, align: bool) -> Option<Copy> {
     let sizes = part.size / mesh.size;
     if let Some(SameVertices { mirrored, scale, .. }) = same_vertices(mesh, part) {
-        return Some(Copy { scale: scale * sizes, mirrored, gap: None });
+        return Some(Copy { scale: scale * sizes, mirrored, gap: None, confidence: 1.0 });
     }
-    let found = if align { aligned(mesh, part) } else { None };
-    let Aligned { map, gap, mirrored } = found.filter(|found| same_surface(found.gap) > 0.5)?;
-    Some(Copy { scale: map.scale * sizes, mirrored, gap: Some(gap) })
+    let Aligned { map, gap, mirrored } = if align { aligned(mesh, part)? } else { return None };
+    let confidence = same_surface(gap, [mesh, part], MeshChange::of([mesh, part], &map));
+    (confidence > 0.5).then(|| Copy { scale: map.scale * sizes, mirrored, gap: Some(gap), confidence })
+}
+
+impl MeshGeometry {
+    /// The components with at least a thousandth of the area, and how many copies there are of each, largest first; none if there
+    /// is only one. Copies have the same vertices and faces.
+    #[must_use]
+    pub fn different_components(&self) -> Vec<(&Self, usize)> {
+        let mut kinds: Vec<(&Self, usize)> = Vec::new();
+        for part in self.parts() {
+            let is_copy = |kind: &Self| {
+                (part.size / kind.size).ln().abs() < SAME_SIZE
+                    && same_vertices(kind, part).is_some_and(|same| same.same_faces && !same.mirrored)
+            };
+            match kinds.iter_mut().find(|(kind, _)| is_copy(kind)) {
+                Some((_, copies)) => *copies += 1,
+                None => kinds.push((part, 1)),
+            }
+        }
+        kinds
+    }
 }
