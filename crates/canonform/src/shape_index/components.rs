@@ -2,9 +2,8 @@
 
 use budget::Budget;
 use descriptors::PreparedShape;
-use serde::Serialize;
 
-use super::found::SearchResult;
+use super::found::ComponentResult;
 use super::search::{Explain, Query, SearchOptions, ShapeSearch};
 use crate::compare::MeshGeometry;
 use crate::error::Error;
@@ -13,19 +12,6 @@ use crate::input::Surface;
 
 /// Most different components that are searched for, the largest by area.
 const MOST_SEARCHED: usize = 12;
-
-/// One of the components of a query, or several copies of one, and the shape nearest to it.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct ComponentResult {
-    /// Copies of the component in the query.
-    pub copies: usize,
-    /// The share of the surface of one copy.
-    pub area_share: f64,
-    /// Vertices of one copy.
-    pub n_vertices: usize,
-    /// The nearest shape of the index, and what kind of match it is.
-    pub nearest: Option<SearchResult>,
-}
 
 impl ShapeSearch {
     /// Searches for each different component of a query that has several, largest first.

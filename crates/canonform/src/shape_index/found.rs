@@ -1,4 +1,4 @@
-//! A shape that a search found.
+//! What a search found.
 
 use descriptors::Verdict;
 use serde::Serialize;
@@ -28,4 +28,17 @@ pub struct SearchResult {
     /// What kind of match the query and the shape are, if results are explained.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub evidence: Option<MatchEvidence>,
+}
+
+/// One of the components of a query, or several copies of one, and the shape nearest to it.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ComponentResult {
+    /// Copies of the component in the query.
+    pub copies: usize,
+    /// The share of the surface of one copy.
+    pub area_share: f64,
+    /// Vertices of one copy.
+    pub n_vertices: usize,
+    /// The nearest shape of the index, and what kind of match it is.
+    pub nearest: Option<SearchResult>,
 }

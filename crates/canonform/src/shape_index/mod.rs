@@ -20,9 +20,8 @@ mod source;
 
 pub use build::{BuildOptions, BuildReport, Dropped, Elsewhere, Failure, FailureReason, build_index};
 pub use change::{MergeReport, add_to_index, merge_indexes, remove_from_index};
-pub use components::ComponentResult;
 pub use evaluate::{Measure, evaluate_index, evaluate_matrix};
-pub use found::SearchResult;
+pub use found::{ComponentResult, SearchResult};
 pub use place::mesh_path;
 pub use predict::{ClassVotes, NearestShape, Prediction, Unknown};
 pub use rerank::{Ranked, Reranked, rerank};

@@ -11,8 +11,7 @@ use rayon::prelude::*;
 use retrieval::Candidate;
 use serde::Serialize;
 
-use super::components::ComponentResult;
-use super::found::SearchResult;
+use super::found::{ComponentResult, SearchResult};
 use super::predict::{Completeness, Prediction, VOTERS, predicted};
 use super::record::{DROPPED, options_of, prepared};
 use super::rerank::{Ranked, rerank};

@@ -3,9 +3,9 @@
 use descriptors::NearestPoints;
 use surface::{Topology, VertexId};
 
-use super::Change;
 use super::exact::Similarity;
 use super::geometry::MeshGeometry;
+use super::kinds::Change;
 
 /// Meshes with numbers of vertices that differ by less than this share have about as many vertices.
 const AS_MANY: f64 = 0.05;

@@ -6,7 +6,7 @@ use super::exact::{SameVertices, same_vertices};
 use super::geometry::MeshGeometry;
 use super::in_space::{Aligned, SurfaceGap, aligned};
 use super::mesh_change::MeshChange;
-use super::same_surface;
+use super::same_surface::same_surface;
 
 /// Most different components that are aligned with a mesh.
 const MOST_ALIGNED: usize = 20;

@@ -3,9 +3,13 @@
 use std::fmt::{self, Display, Formatter};
 
 use index::ContentHash;
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
-use super::{Basis, Change, EvidenceKind, MatchEvidence, Parts, Side, SurfaceGap, UnitChange};
+use super::in_space::SurfaceGap;
+use super::kinds::{Basis, Change, EvidenceKind};
+use super::match_evidence::MatchEvidence;
+use super::parts::{Parts, Side};
+use super::units::UnitChange;
 
 /// What is less probable is only probable.
 const FIRM: f64 = 0.9;
@@ -176,12 +180,12 @@ fn in_words(n: usize) -> String {
 
 /// Evidence with its words, as it is written. The verdict is written beside it.
 #[derive(Serialize)]
-pub(super) struct EvidenceRecord {
+struct EvidenceRecord<'a> {
     kind: EvidenceKind,
     confidence: f64,
     text: String,
     reason: String,
-    changes: Vec<Change>,
+    changes: &'a [Change],
     scale: f64,
     units: Option<UnitChange>,
     basis: Basis,
@@ -195,28 +199,27 @@ pub(super) struct EvidenceRecord {
     parts: Option<Parts>,
 }
 
-impl From<MatchEvidence> for EvidenceRecord {
-    fn from(evidence: MatchEvidence) -> Self {
-        let (text, reason) = (evidence.to_string(), evidence.reason());
-        let hash = |content: Option<ContentHash>| content.map(|hash| hash.to_string());
-        Self {
-            kind: evidence.kind,
-            confidence: evidence.confidence,
-            text,
-            reason,
-            changes: evidence.changes,
-            scale: evidence.scale,
-            units: evidence.units,
-            basis: evidence.basis,
-            content: evidence.content.map(hash),
-            vertices: evidence.vertices,
-            faces: evidence.faces,
-            components: evidence.components,
-            rotation: evidence.rotation,
-            vertex_gap: evidence.vertex_gap,
-            surface_gap: evidence.surface_gap,
-            parts: evidence.parts,
-        }
+impl Serialize for MatchEvidence {
+    fn serialize<S: Serializer>(&self, out: S) -> Result<S::Ok, S::Error> {
+        let record = EvidenceRecord {
+            kind: self.kind,
+            confidence: self.confidence,
+            text: self.to_string(),
+            reason: self.reason(),
+            changes: &self.changes,
+            scale: self.scale,
+            units: self.units,
+            basis: self.basis,
+            content: self.content.map(|content| content.map(|hash: ContentHash| hash.to_string())),
+            vertices: self.vertices,
+            faces: self.faces,
+            components: self.components,
+            rotation: self.rotation,
+            vertex_gap: self.vertex_gap,
+            surface_gap: self.surface_gap,
+            parts: self.parts,
+        };
+        record.serialize(out)
     }
 }
 
