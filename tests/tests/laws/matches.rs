@@ -173,6 +173,17 @@ fn every_change_of_a_tosca_shape_is_told() {
         .into_par_iter()
         .filter_map(|file| Some((file.name, mesh::io::read(&file.path).ok()?)))
         .collect();
+    let neighbours = shapes.par_windows(2).map(|pair| {
+        let found = evidence(&geometry(&pair[0].1), &geometry(&pair[1].1)).named(&pair[0].0, &pair[1].0);
+        assert!(found.kind > EvidenceKind::IdenticalGeometry, "{found}");
+        (found.kind < EvidenceKind::OtherPose).then(|| format!("{found} ({})", found.reason()))
+    });
+    let one: Vec<_> = neighbours.collect::<Vec<_>>().into_iter().flatten().collect();
+    println!(
+        "{} of {} pairs of different shapes are called one surface: {one:?}",
+        one.len(),
+        shapes.len() - 1
+    );
     let scores = scores(&shapes, &VARIANTS);
     let total = |of: fn(&Score) -> usize| scores.values().map(of).sum::<usize>();
     let (right, all) = (total(|s| s.right), total(|s| s.all));

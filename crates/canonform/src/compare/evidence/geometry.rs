@@ -175,21 +175,21 @@ impl MeshGeometry {
             if self.n_components < 2 {
                 return Vec::new();
             }
-            let mut faces: Vec<Vec<[VertexId; 3]>> = vec![Vec::new(); self.n_components];
+            let mut parts = vec![TriMesh::default(); self.n_components];
+            let mut number = Vec::with_capacity(self.n_vertices());
+            for (p, &label) in self.mesh.positions.iter().zip(&self.labels) {
+                number.push(VertexId::from(parts[label].n_vertices()));
+                parts[label].positions.push(self.centre + p.coords * self.size);
+            }
             let mut areas = vec![0.0; self.n_components];
             for (face, area) in self.mesh.faces.iter().zip(self.mesh.face_areas()) {
                 let label = self.labels[face[0].index()];
-                faces[label].push(*face);
+                parts[label].faces.push(face.map(|v| number[v.index()]));
                 areas[label] += area;
             }
-            let mut order: Vec<usize> = (0..faces.len()).filter(|&i| areas[i] >= LEAST_COMPONENT).collect();
+            let mut order: Vec<usize> = (0..areas.len()).filter(|&i| areas[i] >= LEAST_COMPONENT).collect();
             order.sort_by(|&i, &j| areas[j].total_cmp(&areas[i]).then(i.cmp(&j)));
-            let part = |&i: &usize| {
-                let mut mesh =
-                    compact(&TriMesh { positions: self.mesh.positions.clone(), faces: faces[i].clone() });
-                mesh.positions.iter_mut().for_each(|p| *p = self.centre + p.coords * self.size);
-                Self::of_welded(mesh, self.farthest)
-            };
+            let part = |&i: &usize| Self::of_welded(std::mem::take(&mut parts[i]), self.farthest);
             order.iter().take(MOST_COMPONENTS).filter_map(part).collect()
         })
     }

@@ -24,7 +24,11 @@ impl Display for MatchEvidence {
                 write!(f, "{b} has the same geometry as {a}")
             }
             (EvidenceKind::OtherPose, _) => {
-                write!(f, "{b} is {probably}{a} in another pose")?;
+                let pose = match self.basis {
+                    Basis::Descriptions => "in this or another pose",
+                    Basis::Files | Basis::Meshes => "in another pose",
+                };
+                write!(f, "{b} is {probably}{a} {pose}")?;
                 self.write_changes(f, ", ")
             }
             (EvidenceKind::SameClass, _) => {
