@@ -11,11 +11,12 @@ use mesh::{Fault, MeshError};
 use rayon::prelude::*;
 use serde::{Serialize, Serializer};
 
+use super::components::other_components;
 use super::place::{Home, Root, mesh_path};
-use super::record::{DROPPED, same_source, shape};
+use super::record::{DROPPED, Described, same_source, shape};
 use super::source::{Hashed, Listed, Listing, ShapeLimits, Shard, hash_all, share};
 use crate::error::{Error, Remedy};
-use crate::form::{DescribeOptions, ShapeDescription, describe_within};
+use crate::form::{DescribeOptions, describe_within};
 use crate::input::{LabelFile, Surface, count_skipped};
 use crate::observer::Observer;
 
@@ -377,19 +378,23 @@ fn describe_file(
     options: &DescribeOptions,
     limits: ShapeLimits,
     whole: Budget,
-) -> Result<ShapeDescription, Error> {
+) -> Result<Described, Error> {
     let budget = limits.budget(whole);
     let mesh = limits.read(path, &budget)?;
     budget.check()?;
     let surface = Surface::new(&mesh, &options.form.repair)?;
-    drop(mesh);
     budget.check()?;
-    describe_within(&surface, options, &budget)
+    let components = match surface.repaired.report.components {
+        0 | 1 => Vec::new(),
+        _ => other_components(&mesh, options, &budget)?,
+    };
+    drop(mesh);
+    Ok(Described { shape: describe_within(&surface, options, &budget)?, components })
 }
 
 /// Shapes that were described, and meshes that failed.
 #[derive(Default)]
-struct Described {
+struct Outcome {
     stored: Vec<String>,
     failed: Vec<(usize, Error)>,
 }
@@ -399,8 +404,8 @@ fn store(
     writer: &mut IndexWriter,
     receive: Receiver<(usize, Result<Shape, Error>)>,
     observer: &dyn Observer,
-) -> Result<Described, Error> {
-    let mut described = Described::default();
+) -> Result<Outcome, Error> {
+    let mut described = Outcome::default();
     while let Ok(first) = receive.recv() {
         let mut shapes = Vec::new();
         let mut n_failed = 0;

@@ -1,63 +1,47 @@
-//! Searching for every component of a query.
+//! Describing the components of a mesh.
 
 use budget::Budget;
-use descriptors::PreparedShape;
+use mesh::TriMesh;
 
-use super::found::ComponentResult;
-use super::search::{Explain, Query, SearchOptions, ShapeSearch};
 use crate::compare::MeshGeometry;
 use crate::error::Error;
-use crate::form::describe_within;
+use crate::form::{DescribeOptions, ShapeDescription, describe_within};
 use crate::input::Surface;
 
-/// Most different components that are searched for, the largest by area.
-const MOST_SEARCHED: usize = 12;
+/// Most different components of an indexed mesh that are described, the largest by area.
+const MOST: usize = 8;
 
-impl ShapeSearch {
-    /// Searches for each different component of a query that has several, largest first.
-    ///
-    /// # Errors
-    /// [`Error::Exceeded`] and [`Error::Index`]. A component that cannot be described is left out.
-    pub(super) fn search_components(
-        &self,
-        query: &Query<'_>,
-        options: &SearchOptions,
-        budget: &Budget,
-    ) -> Result<Vec<ComponentResult>, Error> {
-        let Some(whole) = query.geometry.filter(|_| options.explain == Explain::Kind) else {
-            return Ok(Vec::new());
-        };
-        let mut found = Vec::new();
-        for (part, copies) in whole.different_components().into_iter().take(MOST_SEARCHED) {
-            budget.check()?;
-            let Some(shape) = self.described_part(part, budget)? else { continue };
-            let name = match copies {
-                1 => format!("a component of {}", query.name),
-                _ => format!("{copies} components of {}", query.name),
-            };
-            let known = Query { name: &name, content: None, geometry: Some(part) };
-            let options = SearchOptions { k: 1, ..options.clone() };
-            let nearest = self.nearest(&shape, &known, Default::default(), &options, budget)?;
-            found.push(ComponentResult {
-                copies,
-                area_share: (part.size() / whole.size()).powi(2),
-                n_vertices: part.n_vertices(),
-                nearest: nearest.results.into_iter().next(),
-            });
-        }
-        Ok(found)
-    }
+/// Components of an indexed mesh with a smaller share of its area are not described.
+const LEAST_SHARE: f64 = 0.01;
 
-    /// A component, described as the shapes of the index are.
-    fn described_part(&self, part: &MeshGeometry, budget: &Budget) -> Result<Option<PreparedShape>, Error> {
-        let options = self.describe_options();
-        let described = Surface::within(&part.to_mesh(), &options.form.repair, budget)
-            .and_then(|surface| describe_within(&surface, options, budget))
-            .and_then(|description| description.prepare());
-        match described {
-            Ok(shape) => Ok(Some(shape)),
-            Err(fault @ Error::Exceeded(_)) => Err(fault),
-            Err(_) => Ok(None),
-        }
+/// A component, described as the shapes of an index are; `None` if it has no description.
+pub(super) fn described(
+    component: &MeshGeometry,
+    options: &DescribeOptions,
+    budget: &Budget,
+) -> Result<Option<ShapeDescription>, Error> {
+    let found = Surface::within(&component.to_mesh(), &options.form.repair, budget)
+        .and_then(|surface| describe_within(&surface, options, budget));
+    match found {
+        Ok(description) => Ok(Some(description)),
+        Err(fault @ Error::Exceeded(_)) => Err(fault),
+        Err(_) => Ok(None),
     }
+}
+
+/// The fused vectors of the different components of a mesh, but the largest.
+pub(super) fn other_components(
+    mesh: &TriMesh,
+    options: &DescribeOptions,
+    budget: &Budget,
+) -> Result<Vec<Vec<f32>>, Error> {
+    let Some(whole) = MeshGeometry::new(mesh, None) else { return Ok(Vec::new()) };
+    let mut vectors = Vec::new();
+    for (component, _) in whole.different_components().into_iter().skip(1).take(MOST) {
+        if (component.size() / whole.size()).powi(2) < LEAST_SHARE {
+            break;
+        }
+        vectors.extend(described(component, options, budget)?.map(|description| description.fused));
+    }
+    Ok(vectors)
 }

@@ -1,13 +1,23 @@
-//! What kind of match a query and a shape of an index are.
+//! What kind of match a query and a shape of an index are, what its components are, and of what it is a component.
 
-use descriptors::{Verdict, VerdictKind};
+use budget::Budget;
+use descriptors::{Handedness, PreparedShape, ShapeDistance, ShapeMetric, Verdict, VerdictKind};
 use index::ShapeEntry;
 
-use super::record::COMPONENTS;
-use super::search::{Query, ShapeSearch};
+use super::components::described;
+use super::found::{ComponentResult, SearchResult, StoredComponent};
+use super::predict::Completeness;
+use super::record::{COMPONENTS, OTHER_COMPONENTS, components};
+use super::search::{Explain, Query, SearchOptions, ShapeSearch};
 use super::source::read_unchanged;
 use crate::compare::{MatchEvidence, MeshGeometry};
 use crate::error::Error;
+
+/// Most different components of a query that are searched for, the largest by area.
+const MOST_SEARCHED: usize = 12;
+
+/// Most shapes of which a query is named as a component.
+const MOST_WHOLES: usize = 10;
 
 impl ShapeSearch {
     /// The evidence on a query and a shape with this verdict. The file of the shape is read again if it is unchanged; otherwise
@@ -41,5 +51,95 @@ impl ShapeSearch {
     pub(super) fn geometry(&self, id: &str, entry: &ShapeEntry) -> Option<MeshGeometry> {
         let mesh = read_unchanged(self.index().path(), id, entry).ok()?;
         MeshGeometry::new(&mesh, Some(entry.content))
+    }
+
+    /// Searches for each different component of a query that has several, largest first. A component that cannot be described
+    /// is left out.
+    pub(super) fn search_components(
+        &self,
+        query: &Query<'_>,
+        options: &SearchOptions,
+        budget: &Budget,
+    ) -> Result<Vec<ComponentResult>, Error> {
+        let Some(whole) = query.geometry.filter(|_| options.explain == Explain::Kind) else {
+            return Ok(Vec::new());
+        };
+        let mut found = Vec::new();
+        for (part, copies) in whole.different_components().into_iter().take(MOST_SEARCHED) {
+            budget.check()?;
+            let Some(description) = described(part, self.describe_options(), budget)? else { continue };
+            let name = match copies {
+                1 => format!("a component of {}", query.name),
+                _ => format!("each of {copies} components of {}", query.name),
+            };
+            let known = Query { name: &name, content: None, geometry: Some(part) };
+            let options = SearchOptions { k: 1, ..options.clone() };
+            let complete = Completeness::default();
+            let nearest = self.nearest(&description.prepare()?, &known, complete, &options, budget)?;
+            found.push(ComponentResult {
+                copies,
+                area_share: (part.size() / whole.size()).powi(2),
+                n_vertices: part.n_vertices(),
+                nearest: nearest.results.into_iter().next(),
+            });
+        }
+        Ok(found)
+    }
+
+    /// The shapes with a component, not the largest, that is the query: nearest first.
+    pub(super) fn search_wholes(
+        &self,
+        shape: &PreparedShape,
+        query: &Query<'_>,
+        budget: &Budget,
+    ) -> Result<Vec<SearchResult>, Error> {
+        let without_size = |fused: &[f32]| fused[..ShapeMetric::FUSED_LENGTH.min(fused.len())].to_vec();
+        let asked = without_size(shape.fused());
+        let mut near: Vec<(f64, &str)> = self
+            .stored_components()?
+            .iter()
+            .map(|stored| (ShapeMetric::fused(&asked, &without_size(&stored.fused)), stored.id.as_str()))
+            .filter(|(fused, _)| *fused < ShapeMetric::SAME_SHAPE.at)
+            .collect();
+        near.sort_by(|x, y| x.0.total_cmp(&y.0).then(x.1.cmp(y.1)));
+        let mut wholes: Vec<SearchResult> = Vec::new();
+        for (fused, id) in near {
+            budget.check()?;
+            if wholes.len() == MOST_WHOLES || wholes.iter().any(|known| known.id == id) {
+                continue;
+            }
+            let entry = self.index().entry(id)?;
+            let distance = ShapeDistance { fused, combined: fused };
+            let verdict = ShapeMetric::verdict(distance, Handedness::Unknown, 1.0);
+            let n_components = entry.fact(COMPONENTS).unwrap_or(2.0) as usize;
+            let evidence = self.evidence(query, id, verdict)?.of_component(n_components);
+            wholes.push(SearchResult {
+                rank: wholes.len() + 1,
+                id: id.to_owned(),
+                label: entry.label,
+                path: entry.path,
+                distance: fused,
+                fused,
+                verdict,
+                comparison: None,
+                evidence: Some(evidence),
+            });
+        }
+        Ok(wholes)
+    }
+
+    /// The components of all shapes, but the largest of each; read once.
+    fn stored_components(&self) -> Result<&[StoredComponent], Error> {
+        if let Some(known) = self.components.get() {
+            return Ok(known);
+        }
+        let mut stored = Vec::new();
+        for (id, entry) in self.index().entries()? {
+            if entry.fact(OTHER_COMPONENTS).is_some() {
+                let vectors = components(self.index().vectors(&id)?);
+                stored.extend(vectors.into_iter().map(|fused| StoredComponent { id: id.clone(), fused }));
+            }
+        }
+        Ok(self.components.get_or_init(|| stored))
     }
 }

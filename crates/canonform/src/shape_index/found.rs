@@ -42,3 +42,10 @@ pub struct ComponentResult {
     /// The nearest shape of the index, and what kind of match it is.
     pub nearest: Option<SearchResult>,
 }
+
+/// A component of an indexed shape, but the largest.
+#[derive(Debug)]
+pub(super) struct StoredComponent {
+    pub(super) id: String,
+    pub(super) fused: Vec<f32>,
+}

@@ -18,6 +18,13 @@ pub(super) const DROPPED: &str = "dropped_area_share";
 /// The number of connected components before the repair. Indexes may lack it.
 pub(super) const COMPONENTS: &str = "components";
 
+/// The names of the fused vectors of components but the largest begin with this. They are stored as signatures; indexes may lack
+/// them.
+const COMPONENT: &str = "component-";
+
+/// The number of these vectors. Indexes may lack it.
+pub(super) const OTHER_COMPONENTS: &str = "other_components";
+
 /// How the shapes of an index were described.
 pub(super) fn options_of(index: &Index) -> Result<DescribeOptions, Error> {
     let options = DescribeOptions::from_text(index.options()).ok_or_else(|| Error::UnknownOptions {
@@ -40,9 +47,10 @@ fn form_unit(area: Option<f64>, options: &DescribeOptions) -> f64 {
 }
 
 /// The shape of a mesh file, as an index stores it.
-pub(super) fn shape(listed: &Listed, content: ContentHash, described: ShapeDescription) -> Shape {
+pub(super) fn shape(listed: &Listed, content: ContentHash, described: Described) -> Shape {
+    let Described { shape: described, components } = described;
     let repair = &described.repair;
-    let facts = [
+    let mut facts = vec![
         ("vertices", repair.input_vertices as f64),
         ("faces", repair.input_faces as f64),
         (AREA, described.area),
@@ -50,6 +58,11 @@ pub(super) fn shape(listed: &Listed, content: ContentHash, described: ShapeDescr
         (DROPPED, repair.dropped_area_share),
         (COMPONENTS, repair.components as f64),
     ];
+    if !components.is_empty() {
+        facts.push((OTHER_COMPONENTS, components.len() as f64));
+    }
+    let components =
+        components.into_iter().enumerate().map(|(i, fused)| (format!("{COMPONENT}{}", i + 2), fused));
     let unit = form_unit(Some(described.area), &described.options);
     let points = described.form.points().iter().map(|p| p / unit);
     let form = points.zip(described.form.weights());
@@ -60,16 +73,31 @@ pub(super) fn shape(listed: &Listed, content: ContentHash, described: ShapeDescr
             label: listed.file.label.clone(),
             path: listed.stored.clone(),
             content,
-            facts: facts.map(|(name, value)| (name.to_owned(), value)).to_vec(),
+            facts: facts.into_iter().map(|(name, value)| (name.to_owned(), value)).collect(),
         },
         vectors: ShapeVectors {
             signatures: signatures
                 .map(|s| (s.kind.name().to_owned(), s.values.iter().map(|x| *x as f32).collect()))
+                .chain(components)
                 .collect(),
             form: form.map(|(p, w)| [p.x, p.y, p.z, *w].map(|x| x as f32)).collect(),
             fused: described.fused,
         },
     }
+}
+
+/// The fused vectors of the components of an indexed shape, but the largest.
+pub(super) fn components(vectors: ShapeVectors) -> Vec<Vec<f32>> {
+    let signatures = vectors.signatures.into_iter();
+    signatures.filter(|(name, _)| name.starts_with(COMPONENT)).map(|(_, fused)| fused).collect()
+}
+
+/// A described mesh file.
+pub(super) struct Described {
+    /// The largest component.
+    pub(super) shape: ShapeDescription,
+    /// The fused vectors of the other different components.
+    pub(super) components: Vec<Vec<f32>>,
 }
 
 /// An indexed shape, which was described with `options`, ready to be compared.

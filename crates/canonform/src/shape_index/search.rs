@@ -1,6 +1,7 @@
 //! Searching an index for the shapes nearest to a mesh.
 
 use std::path::Path;
+use std::sync::OnceLock;
 use std::time::Instant;
 
 use budget::Budget;
@@ -11,7 +12,7 @@ use rayon::prelude::*;
 use retrieval::Candidate;
 use serde::Serialize;
 
-use super::found::{ComponentResult, SearchResult};
+use super::found::{ComponentResult, SearchResult, StoredComponent};
 use super::predict::{Completeness, Prediction, VOTERS, predicted};
 use super::record::{DROPPED, options_of, prepared};
 use super::rerank::{Ranked, rerank};
@@ -82,6 +83,10 @@ pub struct SearchReport {
     /// The components of a query that has several, if results are explained: what each of them is.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub components: Vec<ComponentResult>,
+    /// Shapes of which the query is a component, but not the largest, if results are explained. Their distance is that by
+    /// signatures.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub wholes: Vec<SearchResult>,
     /// The class.
     pub predicted: Prediction,
     /// Shapes in the index.
@@ -110,6 +115,8 @@ pub struct SearchSeconds {
 pub struct ShapeSearch {
     index: Index,
     describe: DescribeOptions,
+    /// Filled by the first explained search.
+    pub(super) components: OnceLock<Vec<StoredComponent>>,
 }
 
 impl ShapeSearch {
@@ -120,7 +127,7 @@ impl ShapeSearch {
     pub fn open(path: &Path) -> Result<Self, Error> {
         let index = Index::open(path)?;
         let describe = options_of(&index)?;
-        Ok(Self { index, describe })
+        Ok(Self { index, describe, components: OnceLock::new() })
     }
 
     /// How the shapes of the index were described; queries are described in the same way.
@@ -256,8 +263,7 @@ impl ShapeSearch {
             dropped: description.repair.dropped_area_share,
             open: description.longest_boundary / description.area.sqrt(),
         };
-        let report = self.nearest(&description.prepare()?, query, complete, options, budget)?;
-        Ok(SearchReport { components: self.search_components(query, options, budget)?, ..report })
+        self.explained(&description.prepare()?, query, complete, options, budget)
     }
 
     /// Searches with a shape of the index, which finds itself. Its mesh is read only if results are explained, and need not be
@@ -274,7 +280,24 @@ impl ShapeSearch {
             Explain::Kind => self.geometry(id, &entry),
         };
         let query = Query { name: id, content: Some(entry.content), geometry: geometry.as_ref() };
-        self.nearest(&self.prepared(id)?, &query, complete, options, &Budget::unlimited())
+        self.explained(&self.prepared(id)?, &query, complete, options, &Budget::unlimited())
+    }
+
+    /// The nearest shapes and, if results are explained, what the components of the query are and of what it is one.
+    fn explained(
+        &self,
+        shape: &PreparedShape,
+        query: &Query<'_>,
+        complete: Completeness,
+        options: &SearchOptions,
+        budget: &Budget,
+    ) -> Result<SearchReport, Error> {
+        let report = self.nearest(shape, query, complete, options, budget)?;
+        if options.explain == Explain::No {
+            return Ok(report);
+        }
+        let components = self.search_components(query, options, budget)?;
+        Ok(SearchReport { components, wholes: self.search_wholes(shape, query, budget)?, ..report })
     }
 
     pub(super) fn nearest(
@@ -325,6 +348,7 @@ impl ShapeSearch {
         Ok(SearchReport {
             results,
             components: Vec::new(),
+            wholes: Vec::new(),
             predicted,
             n_shapes: found.n_shapes,
             measured: found.n_measured,
@@ -484,6 +508,23 @@ mod tests {
             report.components.iter().map(|part| (part.copies, part.nearest.clone().unwrap())).collect();
         assert_eq!((found[0].0, found[0].1.id.as_str()), (1, "ring0"));
         assert_eq!((found[1].0, found[1].1.id.as_str(), found.len()), (2, "ball0", 2));
+        // The ball is a component of the plate, but not the largest.
+        mesh::io::write(&folder.path().join("plate7.off"), &plate).unwrap();
+        let path = folder.path().join("all.canonform");
+        build_index(folder.path(), &path, &BuildOptions::new(search.describe_options()), &()).unwrap();
+        let again = ShapeSearch::open(&path).unwrap();
+        let wholes = again.search_shape("ball0", &options).unwrap().wholes;
+        assert_eq!((wholes.len(), wholes[0].id.as_str()), (1, "plate7"));
+        let evidence = wholes[0].evidence.clone().unwrap();
+        assert_eq!(evidence.to_string(), "plate7 has two copies of ball0 among its three components");
+        fs::remove_file(folder.path().join("plate7.off")).unwrap();
+        let evidence = again.search_shape("ball0", &options).unwrap().wholes[0].evidence.clone().unwrap();
+        assert_eq!(
+            evidence.to_string(),
+            "ball0 is part of plate7, one of its three components, in this or another pose"
+        );
+        assert!(again.search_shape("box0", &options).unwrap().wholes.is_empty());
+
         let kinds: Vec<_> = found.iter().map(|(_, result)| result.evidence.clone().unwrap().kind).collect();
         assert_eq!(kinds, [EvidenceKind::Scaled, EvidenceKind::IdenticalGeometry]);
         assert!(

@@ -103,7 +103,8 @@ pub(crate) fn search(args: &SearchArgs, common: &Common) -> Result<ExitCode> {
                 for result in &mut report.results {
                     result.path = mesh_path(&args.index, &result.path).to_string_lossy().into_owned();
                 }
-                for result in report.components.iter_mut().filter_map(|part| part.nearest.as_mut()) {
+                let components = report.components.iter_mut().filter_map(|part| part.nearest.as_mut());
+                for result in components.chain(&mut report.wholes) {
                     result.path = mesh_path(&args.index, &result.path).to_string_lossy().into_owned();
                 }
                 if !common.json {
@@ -165,7 +166,10 @@ fn table(query: String, report: &SearchReport) -> String {
     } else {
         String::new()
     };
-    let components: String = report.components.iter().map(component).collect();
+    let mut components: String = report.components.iter().map(component).collect();
+    for evidence in report.wholes.iter().filter_map(|whole| whole.evidence.as_ref()) {
+        components += &format!("  {evidence} ({:.2})\n", evidence.confidence);
+    }
     format!(
         "{query}\n{table}\n{components}  class: {}\n  {} of {} shapes measured{exactness}, {} aligned, {:.3} s",
         report.predicted.explanation,

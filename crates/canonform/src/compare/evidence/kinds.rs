@@ -50,6 +50,8 @@ pub enum Change {
     Remeshed,
     /// One of the two has noise.
     Noisy,
+    /// It is in another pose, or may be.
+    Posed,
 }
 
 /// What the evidence is taken from.

@@ -154,6 +154,17 @@ impl MatchEvidence {
         Self { names: [first, second].map(str::to_owned), ..self }
     }
 
+    /// The evidence on the first mesh and one of the components of the second, when the verdict is on these two.
+    #[must_use]
+    pub(crate) fn of_component(mut self, n_components: usize) -> Self {
+        if self.kind != EvidenceKind::PartOf && self.kind != EvidenceKind::Copies {
+            self.kind = EvidenceKind::PartOf;
+            self.parts = Some(Parts { whole: Side::Second, found: 1, components: n_components });
+            self.changes.push(Change::Posed);
+        }
+        self
+    }
+
     /// Whether the second mesh changed from the first in this way.
     #[must_use]
     pub fn has(&self, change: Change) -> bool {

@@ -24,11 +24,7 @@ impl Display for MatchEvidence {
                 write!(f, "{b} has the same geometry as {a}")
             }
             (EvidenceKind::OtherPose, _) => {
-                let pose = match self.basis {
-                    Basis::Descriptions => "in this or another pose",
-                    Basis::Files | Basis::Meshes => "in another pose",
-                };
-                write!(f, "{b} is {probably}{a} {pose}")?;
+                write!(f, "{b} is {probably}{a} {}", self.pose())?;
                 self.write_changes(f, ", ")
             }
             (EvidenceKind::SameClass, _) => {
@@ -55,6 +51,9 @@ impl MatchEvidence {
         };
         let vertices = sides(self.vertices, "vertices");
         match (self.kind, self.vertex_gap, self.surface_gap) {
+            (EvidenceKind::PartOf, ..) if self.has(Change::Posed) => {
+                format!("by the signatures of the component alone; {}", self.verdict.reason())
+            }
             (EvidenceKind::IdenticalFile, ..) => match self.content[0] {
                 Some(hash) => format!("the files have the same SHA-256 hash, {}...", &hash.to_string()[..12]),
                 None => "the files have the same hash".to_owned(),
@@ -63,7 +62,7 @@ impl MatchEvidence {
                 let faces = if self.has(Change::Remeshed) { "other faces" } else { "the same faces" };
                 format!("{vertices}, at most {gap:.1e} of the size apart once aligned in space; {faces}")
             }
-            (EvidenceKind::Copies | EvidenceKind::PartOf, None, None) => {
+            (EvidenceKind::Copies | EvidenceKind::PartOf, None, None) if !self.has(Change::Posed) => {
                 "the components have the same vertices once aligned in space".to_owned()
             }
             (
@@ -103,6 +102,7 @@ impl MatchEvidence {
                 Change::Remeshed if self.vertex_gap.is_some() => f.write_str("with other faces")?,
                 Change::Remeshed if (share - 1.0).abs() < 0.005 => f.write_str("remeshed")?,
                 Change::Remeshed => write!(f, "remeshed with {share:.2} times the vertices")?,
+                Change::Posed => f.write_str(self.pose())?,
                 Change::Noisy => {
                     let gap = self.surface_gap.map_or(0.0, |gap| gap.rms);
                     write!(f, "with noise of {} of the size", percent(gap))?;
@@ -110,6 +110,14 @@ impl MatchEvidence {
             }
         }
         Ok(())
+    }
+
+    /// Without meshes the pose is unknown.
+    fn pose(&self) -> &'static str {
+        match self.basis {
+            Basis::Descriptions => "in this or another pose",
+            Basis::Files | Basis::Meshes => "in another pose",
+        }
     }
 
     fn write_scale(&self, f: &mut Formatter<'_>) -> fmt::Result {
@@ -145,7 +153,10 @@ impl MatchEvidence {
         if self.has(Change::Remeshed) {
             f.write_str(", remeshed")?;
         }
-        Ok(())
+        match self.has(Change::Posed) {
+            true => write!(f, ", {}", self.pose()),
+            false => Ok(()),
+        }
     }
 }
 
