@@ -496,12 +496,18 @@ mod tests {
             found.results[0].evidence.clone().unwrap().to_string()
         };
         assert_eq!(explained(&ring, "a.off", Some(content)), "ring1 is the same file as a.off");
-        let plate = shapes::disjoint(&[ring.clone(), ring.clone(), ring]);
-        assert_eq!(explained(&plate, "plate.stl", None), "plate.stl is three copies of ring1");
+        let plate = |mut meshes: [TriMesh; 3]| {
+            for (i, mesh) in meshes.iter_mut().enumerate() {
+                mesh.positions.iter_mut().for_each(|p| p.x += 40.0 * i as f64);
+            }
+            shapes::disjoint(&meshes)
+        };
+        let rings = plate([ring.clone(), ring.clone(), ring]);
+        assert_eq!(explained(&rings, "plate.stl", None), "plate.stl is three copies of ring1");
 
         let (mut other, ball) = (search.mesh("ring0").unwrap(), search.mesh("ball0").unwrap());
         other.positions.iter_mut().for_each(|p| p.coords *= 3.0);
-        let plate = shapes::disjoint(&[ball.clone(), other, ball]);
+        let plate = plate([ball.clone(), other, ball]);
         let budget = Budget::unlimited();
         let report = search.search_named_within(&plate, "plate.stl", None, &options, &budget).unwrap();
         let found: Vec<_> =

@@ -289,7 +289,11 @@ fn copies_are_told_from_other_shapes_and_named_by_their_files() {
     inches.positions.iter_mut().for_each(|p| *p = nalgebra::Point3::new(p.y, -p.x, p.z) / 25.4);
     place.add("inches.ply", &inches);
     place.add("fine.off", &mesh::shapes::subdivide(&ring()));
-    place.add("plate.stl", &mesh::shapes::disjoint(&[ring(), mesh::shapes::icosphere(3), ring(), ring()]));
+    let mut plate = [ring(), mesh::shapes::icosphere(3), ring(), ring()];
+    for (i, mesh) in plate.iter_mut().enumerate() {
+        mesh.positions.iter_mut().for_each(|p| p.x += 40.0 * i as f64);
+    }
+    place.add("plate.stl", &mesh::shapes::disjoint(&plate));
     place.add("ball.off", &mesh::shapes::icosphere(3));
     for (a, b, kind, text) in [
         ("ring.off", "copy.off", "identical-file", "copy.off is the same file as ring.off"),

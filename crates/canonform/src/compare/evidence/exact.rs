@@ -293,15 +293,16 @@ mod tests {
         let mut nudged = mesh.clone();
         nudged.positions[77].x += 0.01;
         assert_eq!(found(&mesh, &nudged), None);
-        let mut flipped = shapes::cube(4);
         // Two triangles of a square with the other diagonal.
-        let [[a, b, c], [d, e, f]] = [flipped.faces[0], flipped.faces[1]];
-        let shared: Vec<_> = [a, b, c].into_iter().filter(|v| [d, e, f].contains(v)).collect();
+        let mut flipped = shapes::grid(4, 5, 1.0);
+        let whole = flipped.clone();
+        let [first, second] = [whole.faces[0], whole.faces[1]];
+        let shared: Vec<_> = first.into_iter().filter(|v| second.contains(v)).collect();
         let apart = |face: [surface::VertexId; 3]| face.into_iter().find(|v| !shared.contains(v)).unwrap();
-        let (u, v) = (apart([a, b, c]), apart([d, e, f]));
-        flipped.faces[0] = [u, shared[0], v];
-        flipped.faces[1] = [u, shared[1], v];
-        let same = found(&shapes::cube(4), &flipped).unwrap();
+        for (i, end) in shared.iter().enumerate() {
+            flipped.faces[i] = [apart(first), *end, apart(second)];
+        }
+        let same = found(&whole, &flipped).unwrap();
         assert!(!same.same_faces && same.gap < 1e-9);
         assert_eq!(found(&mesh, &shapes::icosphere(3)), None);
     }

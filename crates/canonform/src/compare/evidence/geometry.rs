@@ -33,7 +33,9 @@ const LEAST_COMPONENT: f64 = 1e-3;
 /// ```
 /// use canonform::{MeshGeometry, mesh::shapes};
 ///
-/// let plate = shapes::disjoint(&[shapes::icosphere(2), shapes::cube(1)]);
+/// let mut cube = shapes::cube(1);
+/// cube.positions.iter_mut().for_each(|p| p.x += 3.0);
+/// let plate = shapes::disjoint(&[shapes::icosphere(2), cube]);
 /// let geometry = MeshGeometry::new(&plate, None).unwrap();
 /// assert_eq!((geometry.n_vertices(), geometry.n_components()), (plate.n_vertices(), 2));
 /// ```
@@ -304,8 +306,11 @@ mod tests {
 
     #[test]
     fn components_are_geometries_of_their_own() {
-        let plate = shapes::disjoint(&[shapes::cube(1), shapes::icosphere(2), shapes::cube(1)]);
-        let geometry = MeshGeometry::new(&plate, None).unwrap();
+        let mut apart = [shapes::cube(1), shapes::icosphere(2), shapes::cube(1)];
+        for (i, mesh) in apart.iter_mut().enumerate() {
+            mesh.positions.iter_mut().for_each(|p| p.x += 5.0 * i as f64);
+        }
+        let geometry = MeshGeometry::new(&shapes::disjoint(&apart), None).unwrap();
         let parts = geometry.parts();
         assert_eq!((geometry.n_components(), parts.len()), (3, 3));
         assert_eq!(parts[0].n_vertices(), shapes::icosphere(2).n_vertices(), "the largest area first");

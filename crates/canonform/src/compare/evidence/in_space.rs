@@ -30,8 +30,12 @@ const ORIENTATIONS: usize = 300;
 const RANKING: usize = 60;
 const RANKED: usize = 4;
 
-/// A surface is the mirror image of another, and not the same, if the distance is smaller by this factor with a reflection.
+/// A surface is the mirror image of another, and not the same, if the distance is smaller with a reflection: by this factor, ...
 const DECISIVE: f64 = 1.25;
+
+/// ... and by this much in the mean square, since the distances of a surface that is its own mirror image are those at which the
+/// refinement ends.
+const EXCESS: f64 = 5e-4;
 
 /// An alignment of the samples is refined unless the other handedness is better by this factor.
 const PROMISING: f64 = 1.6;
@@ -69,7 +73,9 @@ pub(super) fn aligned(a: &MeshGeometry, b: &MeshGeometry) -> Option<Aligned> {
     let proper_found = found(proper, worth(proper, reflected));
     let reflected_found = found(reflected, worth(reflected, proper));
     let ((map, gap), mirrored) = match (proper_found, reflected_found) {
-        (Some(proper), Some(reflected)) if proper.1.rms > DECISIVE * reflected.1.rms => (reflected, true),
+        (Some(proper), Some(reflected)) if proper.1.rms > (DECISIVE * reflected.1.rms).hypot(EXCESS) => {
+            (reflected, true)
+        }
         (Some(proper), _) => (proper, false),
         (None, Some(reflected)) => (reflected, true),
         (None, None) => return None,
