@@ -49,5 +49,5 @@ pub use articulated::{
 };
 pub use broken::{BrokenFile, broken_meshes};
 pub use creature::{CreatureOptions, creature, creature_plans, creatures};
-pub use damage::Damage;
+pub use damage::{Damage, DamageKind, WeldPair};
 pub use error::DatasetError;

@@ -6,6 +6,7 @@
 //!   fault and remedy.
 //! * [`validate`] reports the properties and defects of a mesh.
 //! * [`repair()`] removes defects that algorithms cannot handle, as [`RepairOptions`] say, and reports every change.
+//! * [`cut_shortcuts`] separates surfaces that touch and were welded, [`without_spikes`] moves displaced vertices back.
 //! * [`without_noise`] smooths noisy meshes, [`fill_holes`] closes small holes, [`refine()`] splits long edges.
 //! * [`shapes`] has small analytic surfaces for tests, benches and documentation.
 //!
@@ -40,6 +41,8 @@ mod orientation;
 mod refine;
 mod repair;
 pub mod shapes;
+mod shortcuts;
+mod spikes;
 mod tri_mesh;
 mod validate;
 
@@ -52,5 +55,7 @@ pub use repair::{
     ComponentPolicy, Orient, RepairOptions, RepairReport, Repaired, Weld, repair, repair_and_measure,
     repair_within,
 };
+pub use shortcuts::{Opened, Shortcut, ShortcutKind, cut_shortcuts};
+pub use spikes::without_spikes;
 pub use tri_mesh::TriMesh;
 pub use validate::{MeshReport, validate};

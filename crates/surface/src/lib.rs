@@ -7,6 +7,7 @@
 //! * [`OneRing`] has the faces around a vertex in order, and tells whether shortest paths may bend there.
 //! * [`Triangulation`] flips edges inside the surface until it is Delaunay.
 //! * [`laplacian`] has the stiffness and mass matrices of any surface.
+//! * [`short_loops`] finds narrow handles and tunnels.
 //! * [`Components`] are the connected components, found with [`DisjointSets`].
 
 mod components;
@@ -14,6 +15,7 @@ mod disjoint_sets;
 mod ids;
 mod intrinsic;
 pub mod laplacian;
+mod loops;
 mod one_ring;
 mod rows;
 #[cfg(test)]
@@ -27,6 +29,7 @@ pub use components::{Components, components_of, components_of_faces, components_
 pub use disjoint_sets::DisjointSets;
 pub use ids::{CornerId, EdgeId, FaceId, VertexId};
 pub use intrinsic::{IntrinsicMesh, Link, power_of_two_below, unit_for};
+pub use loops::{SurfaceLoop, short_loops};
 pub use one_ring::{AngleSum, CornerTable, Fan, FanCorner, OneRing, VertexKind, Winding};
 pub use rows::Rows;
 pub use topology::Topology;

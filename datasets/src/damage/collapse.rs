@@ -24,9 +24,10 @@ pub(super) fn decimate(mesh: &TriMesh, n_vertices: usize) -> TriMesh {
     collapsed(mesh, n_vertices, |error, _, _| error)
 }
 
-/// Triangulates a mesh anew: splits its faces into many and collapses short edges, in an order that is partly random.
-pub(super) fn remesh(mesh: &TriMesh, stream: &mut Stream) -> TriMesh {
-    let n_vertices = mesh.n_vertices();
+/// Triangulates a mesh anew, with the given share of its vertices: splits its faces into many and collapses short edges, in
+/// an order that is partly random.
+pub(super) fn remesh(mesh: &TriMesh, share: f64, stream: &mut Stream) -> TriMesh {
+    let n_vertices = (share * mesh.n_vertices() as f64) as usize;
     let mut fine = mesh.clone();
     while !fine.faces.is_empty() && fine.n_vertices() < SURPLUS * n_vertices {
         fine = shapes::subdivide(&fine);

@@ -3,8 +3,12 @@
 //! A retrieval system should find a shape again after each of them. All work on any mesh, not only on generated ones.
 
 mod collapse;
+mod cut_off;
 mod holes;
+mod kind;
 mod noise;
+mod paths;
+mod weld;
 
 use std::fmt;
 
@@ -12,6 +16,18 @@ use mesh::{TriMesh, shapes};
 use nalgebra::{Matrix3, Point3};
 
 use crate::stream::{Purpose, Stream};
+
+pub use kind::DamageKind;
+
+/// How two points are drawn that become one. They are far apart on the surface: at least half as far as the farthest point
+/// is from the first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum WeldPair {
+    /// Near in space, as a hand and the hip that it touches; their surroundings are pushed together.
+    Near,
+    /// At random; the points meet in their middle.
+    Random,
+}
 
 /// A change of a mesh that leaves the shape recognisable.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -23,6 +39,16 @@ pub enum Damage {
     Decimate(f64),
     /// The surface gets new vertices, as many as before and evenly spread, and new triangles.
     Remesh,
+    /// The surface gets this share of the number of vertices, evenly spread, and new triangles.
+    Sample(f64),
+    /// This many pairs of points become one vertex each.
+    Weld(WeldPair, u32),
+    /// This many pairs of points that are near in space are pushed together and joined by a narrow handle.
+    Contact(u32),
+    /// The end of a limb with this share of the area is cut off.
+    CutOff(f64),
+    /// This share of the vertices, and at least one, is displaced by 4 % of the diagonal of the bounding box.
+    ShotNoise(f64),
     /// Every coordinate of every vertex gets normal noise. Its standard deviation is this share of the diagonal of the
     /// bounding box.
     Noise(f64),
@@ -33,6 +59,8 @@ pub enum Damage {
     Move,
     /// A random scale from 1/10 to 10.
     Scale,
+    /// This scale.
+    Resize(f64),
     /// A mirror image, with faces still oriented outwards.
     Mirror,
 }
@@ -45,7 +73,12 @@ impl Damage {
         match self {
             Self::Subdivide(times) => (0..times).fold(mesh.clone(), |mesh, _| shapes::subdivide(&mesh)),
             Self::Decimate(share) => collapse::decimate(mesh, (share * mesh.n_vertices() as f64) as usize),
-            Self::Remesh => collapse::remesh(mesh, &mut stream),
+            Self::Remesh => collapse::remesh(mesh, 1.0, &mut stream),
+            Self::Sample(share) => collapse::remesh(mesh, share, &mut stream),
+            Self::Weld(pair, n) => weld::weld(mesh, pair, n, &mut stream),
+            Self::Contact(n) => weld::contact(mesh, n, &mut stream),
+            Self::CutOff(share) => cut_off::cut_off(mesh, share, &mut stream),
+            Self::ShotNoise(share) => noise::shot_noise(mesh, share, diagonal(mesh), &mut stream),
             Self::Noise(share) => noise::noise(mesh, share * diagonal(mesh), &mut stream),
             Self::Holes(share) => holes::holes(mesh, share, &mut stream),
             Self::Move => {
@@ -57,6 +90,7 @@ impl Damage {
                 let factor = f64::powi(2.0, stream.below(6) as i32 - 3) * stream.uniform(0.8, 1.25);
                 transformed(mesh, |p| p * factor)
             }
+            Self::Resize(factor) => transformed(mesh, |p| p * factor),
             Self::Mirror => {
                 let flip = Matrix3::from_diagonal(&[-1.0, 1.0, 1.0].into());
                 let mut mirrored = transformed(mesh, |p| flip * p);
@@ -69,7 +103,7 @@ impl Damage {
     /// Whether the surface is the same up to a motion, a reflection and scale.
     #[must_use]
     pub fn keeps_surface(self) -> bool {
-        matches!(self, Self::Subdivide(_) | Self::Move | Self::Scale | Self::Mirror)
+        matches!(self, Self::Subdivide(_) | Self::Move | Self::Scale | Self::Resize(_) | Self::Mirror)
     }
 }
 
@@ -80,10 +114,20 @@ impl fmt::Display for Damage {
             Self::Subdivide(times) => write!(f, "subdivided {times} times"),
             Self::Decimate(share) => write!(f, "decimated to {} %", percent(*share)),
             Self::Remesh => f.write_str("remeshed"),
+            Self::Sample(share) => write!(f, "remeshed with {} %", percent(*share)),
+            Self::Weld(pair, n) => {
+                let pair = if *pair == WeldPair::Near { "near" } else { "random" };
+                write!(f, "{n} {pair} {} welded", if *n == 1 { "pair" } else { "pairs" })
+            }
+            Self::Contact(1) => f.write_str("a handle"),
+            Self::Contact(n) => write!(f, "{n} handles"),
+            Self::CutOff(share) => write!(f, "{} % cut off", percent(*share)),
+            Self::ShotNoise(share) => write!(f, "shot noise {} %", percent(*share)),
             Self::Noise(share) => write!(f, "noise {} %", percent(*share)),
             Self::Holes(share) => write!(f, "holes {} %", percent(*share)),
             Self::Move => f.write_str("moved"),
             Self::Scale => f.write_str("scaled"),
+            Self::Resize(factor) => write!(f, "scaled by {factor}"),
             Self::Mirror => f.write_str("mirrored"),
         }
     }
@@ -110,7 +154,14 @@ mod tests {
     use super::*;
     use crate::{ArticulatedOptions, Family, articulated_shape};
 
-    const ALL: [Damage; 11] = [
+    const ALL: [Damage; 18] = [
+        Damage::Sample(0.5),
+        Damage::Weld(WeldPair::Near, 2),
+        Damage::Weld(WeldPair::Random, 1),
+        Damage::Contact(1),
+        Damage::CutOff(0.1),
+        Damage::ShotNoise(0.01),
+        Damage::Resize(2.0),
         Damage::Subdivide(1),
         Damage::Subdivide(2),
         Damage::Decimate(0.5),
@@ -136,7 +187,10 @@ mod tests {
             let found = damage.apply(&mesh, 4);
             assert_eq!(found, damage.apply(&mesh, 4), "{damage}");
             assert_ne!(found, mesh, "{damage}");
-            let drawn = !matches!(damage, Damage::Subdivide(_) | Damage::Decimate(_) | Damage::Mirror);
+            let drawn = !matches!(
+                damage,
+                Damage::Subdivide(_) | Damage::Decimate(_) | Damage::Resize(_) | Damage::Mirror
+            );
             assert_eq!(found != damage.apply(&mesh, 5), drawn, "{damage}");
         }
     }
@@ -146,7 +200,7 @@ mod tests {
         let mesh = cat();
         for damage in ALL {
             let found = validate(&damage.apply(&mesh, 4));
-            let holes = matches!(damage, Damage::Holes(_));
+            let holes = matches!(damage, Damage::Holes(_) | Damage::CutOff(_));
             let defects = [found.non_manifold_edges, found.inconsistent_edges, found.unreferenced_vertices];
             assert_eq!((found.n_components, defects), (1, [0; 3]), "{damage}");
             assert_eq!(found.n_boundary_loops > 0, holes, "{damage}: {found:?}");
@@ -168,6 +222,46 @@ mod tests {
         for share in [0.01, 0.03] {
             let cut = 1.0 - area(Damage::Holes(share));
             assert!((share..1.6 * share).contains(&cut), "{cut}");
+        }
+    }
+
+    #[test]
+    fn welds_join_distant_points_of_a_surface_that_stays_in_one_piece() {
+        let mesh = cat();
+        for seed in 0..8 {
+            for pair in [WeldPair::Near, WeldPair::Random] {
+                let found = validate(&Damage::Weld(pair, 2).apply(&mesh, seed));
+                assert_eq!((found.non_manifold_vertices, found.n_components), (2, 1), "{pair:?}, {seed}");
+                assert_eq!((found.n_vertices, found.n_faces), (mesh.n_vertices() - 2, mesh.n_faces()));
+            }
+            let found = validate(&Damage::Contact(1).apply(&mesh, seed));
+            assert!(found.is_clean() && found.genus == Some(1), "{seed}: {found:?}");
+        }
+    }
+
+    #[test]
+    fn strengths_are_monotone() {
+        let mesh = cat();
+        let amount = |kind: DamageKind, found: &TriMesh| match kind {
+            DamageKind::Weld | DamageKind::FarWeld => validate(found).non_manifold_vertices as f64,
+            DamageKind::Contact => validate(found).genus.unwrap_or(0) as f64,
+            DamageKind::Holes | DamageKind::CutOff => -found.area(),
+            DamageKind::Noise => found.area(),
+            DamageKind::ShotNoise => {
+                found.positions.iter().zip(&mesh.positions).filter(|(p, q)| p != q).count() as f64
+            }
+            DamageKind::Decimation | DamageKind::Sampling => -(found.n_vertices() as f64),
+            DamageKind::Scale => diagonal(found),
+            DamageKind::Mirror => 0.0,
+        };
+        for kind in DamageKind::ALL {
+            let amounts: Vec<f64> =
+                (1..=DamageKind::STRENGTHS).map(|s| amount(kind, &kind.at(s).apply(&mesh, 3))).collect();
+            let is_monotone = amounts.windows(2).all(|pair| match kind {
+                DamageKind::Mirror => pair[0] == pair[1],
+                _ => pair[0] < pair[1],
+            });
+            assert!(is_monotone, "{}: {amounts:?}", kind.name());
         }
     }
 

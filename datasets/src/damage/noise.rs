@@ -13,3 +13,18 @@ pub(super) fn noise(mesh: &TriMesh, deviation: f64, stream: &mut Stream) -> TriM
         mesh.positions.iter().map(|p| p + Vector3::from([(); 3].map(|()| normal())) * deviation).collect();
     TriMesh { positions, faces: mesh.faces.clone() }
 }
+
+/// Displacement of shot noise, relative to the diagonal of the bounding box.
+const SHOT: f64 = 0.04;
+
+/// Displaces the given share of the vertices, and at least one, in random directions.
+pub(super) fn shot_noise(mesh: &TriMesh, share: f64, diagonal: f64, stream: &mut Stream) -> TriMesh {
+    let mut shot = mesh.clone();
+    let order = stream.permutation(mesh.n_vertices());
+    let n = (share * mesh.n_vertices() as f64).ceil() as usize;
+    for v in order.into_iter().take(n) {
+        let direction = stream.rotation().column(2).into_owned();
+        shot.positions[v as usize] += direction * (SHOT * diagonal);
+    }
+    shot
+}

@@ -6,7 +6,7 @@ use descriptors::{
     SignatureKind, d2_histogram, geodesic_spectrum, heat_kernel_signature, moment_signature, shape_dna,
     wave_kernel_signature,
 };
-use mesh::RepairReport;
+use mesh::{RepairReport, Shortcut};
 
 use super::embed::{Embedded, embed};
 use super::options::DescribeOptions;
@@ -33,6 +33,8 @@ pub struct ShapeDescription {
     pub diameter: f64,
     /// Length of the longest boundary before holes were closed, in mesh units; 0 for a closed surface.
     pub longest_boundary: f64,
+    /// Shortcuts of the surface, where parts that touch were welded; it is described without them.
+    pub shortcuts: Vec<Shortcut>,
     /// What was repaired, with the numbers of vertices and faces.
     pub repair: RepairReport,
 }
@@ -124,6 +126,7 @@ impl ShapeDescription {
             area: spectrum.area,
             diameter: embedded.distances.max(),
             longest_boundary: surface.longest_boundary(),
+            shortcuts: surface.shortcuts().to_vec(),
             repair: surface.repaired.report.clone(),
         })
     }
@@ -178,6 +181,17 @@ mod tests {
         assert!(gap(&whole, &pierced) < 0.3, "{}", gap(&whole, &pierced));
         assert_eq!(whole.longest_boundary, 0.0);
         assert!(pierced.longest_boundary > 0.5);
+    }
+
+    #[test]
+    fn a_weld_of_two_distant_points_is_cut() {
+        let mut welded = lopsided();
+        welded.faces.iter_mut().flatten().filter(|v| v.0 == 400).for_each(|v| *v = VertexId(5));
+        let (whole, welded) = (described(&lopsided()), described(&welded));
+        assert!(gap(&whole, &welded) < 0.5, "{}", gap(&whole, &welded));
+        assert!(whole.shortcuts.is_empty());
+        let [shortcut] = welded.shortcuts[..] else { panic!("{:?}", welded.shortcuts) };
+        assert!(shortcut.vertex == VertexId(5) && shortcut.detour > 3.0, "{shortcut:?}");
     }
 
     /// Largest distance between two signatures of one kind, in units of the change by poses.

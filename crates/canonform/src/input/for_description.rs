@@ -1,6 +1,6 @@
 //! The mesh on which a surface is measured for its description.
 
-use mesh::{Refined, fill_holes, refine, without_noise};
+use mesh::{Refined, cut_shortcuts, fill_holes, refine, without_noise, without_spikes};
 
 use super::repaired::Surface;
 
@@ -18,10 +18,11 @@ const LONGEST_HOLE: f64 = 1.0;
 const MOST: usize = 10_000;
 
 impl Surface {
-    /// The surface that is described: without [noise](mesh::without_noise), with small [holes](mesh::fill_holes) closed and long
-    /// edges split. Coarse meshes are then measured as accurately as fine ones, and neither subdivision, noise nor small
-    /// holes change much. The first vertices are those of the repaired mesh, and so are the links. A mesh without noise and
-    /// holes stays the same surface.
+    /// The surface that is described: without [shortcuts](mesh::cut_shortcuts), [spikes](mesh::without_spikes) and
+    /// [noise](mesh::without_noise), with small [holes](mesh::fill_holes) closed and long edges split. Coarse meshes are then
+    /// measured as accurately as fine ones, and neither subdivision, noise, small holes nor a weld of two parts that touch
+    /// change much. The first vertices are those of the repaired mesh, and so are the links. A mesh without such damage
+    /// stays the same surface.
     ///
     /// ```
     /// use canonform::{Surface, mesh::shapes};
@@ -34,17 +35,19 @@ impl Surface {
     /// ```
     #[must_use]
     pub fn for_description(&self) -> Self {
-        let smooth = without_noise(self.mesh());
-        let mesh = smooth.as_ref().unwrap_or(self.mesh());
+        let opened = cut_shortcuts(self.mesh());
+        let smooth = without_spikes(&opened.refined.mesh);
+        let smooth = without_noise(smooth.as_ref().unwrap_or(&opened.refined.mesh)).or(smooth);
+        let mesh = smooth.as_ref().unwrap_or(&opened.refined.mesh);
         let size = mesh.root_of_area();
         if size.is_nan() || size <= 0.0 {
             return self.clone();
         }
         let filled = fill_holes(mesh, LONGEST_HOLE * size);
         let fine = refine(&filled.mesh, LONGEST * size, mesh.n_vertices() + MOST);
-        let Refined { mesh, origins } = filled.then(fine);
+        let Refined { mesh, origins } = opened.refined.clone().then(filled).then(fine);
         match smooth.is_some() || !origins.is_empty() {
-            true => self.with_mesh(mesh, &origins),
+            true => self.with_mesh(mesh, &origins, opened.shortcuts),
             false => self.clone(),
         }
     }

@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use budget::Budget;
 use mesh::io::ReadLimits;
-use mesh::{MeshError, RepairOptions, RepairReport, Repaired, TriMesh, io, repair_and_measure};
+use mesh::{MeshError, RepairOptions, RepairReport, Repaired, Shortcut, TriMesh, io, repair_and_measure};
 use nalgebra::Point3;
 use surface::{IntrinsicMesh, VertexId};
 
@@ -26,6 +26,8 @@ pub struct Surface {
     pub input_faces: Vec<[VertexId; 3]>,
     /// Length of the longest boundary of the surface of which this one is the prepared copy.
     open_boundary: Option<f64>,
+    /// Shortcuts of the surface of which this one is the prepared copy. They are cut.
+    shortcuts: Vec<Shortcut>,
     /// For every vertex of the repaired mesh, the first input vertex that was mapped to it.
     input_vertex: Vec<VertexId>,
     /// Seconds to read the file; zero for a mesh in memory.
@@ -111,6 +113,7 @@ impl Surface {
             repaired,
             intrinsic,
             open_boundary: None,
+            shortcuts: Vec::new(),
             input_faces: mesh.faces.clone(),
             input_vertex,
             load_seconds: 0.0,
@@ -139,20 +142,26 @@ impl Surface {
         (self.intrinsic, map)
     }
 
-    /// The same surface on another mesh, whose first vertices are those of the repaired mesh. `origins` are vertices of
-    /// the repaired mesh near the others.
+    /// The same surface on another mesh, whose first vertices are those of the repaired mesh and which is cut at
+    /// `shortcuts`. `origins` are vertices of the repaired mesh near the others.
     #[must_use]
-    pub(crate) fn with_mesh(&self, mesh: TriMesh, origins: &[VertexId]) -> Self {
+    pub(crate) fn with_mesh(&self, mesh: TriMesh, origins: &[VertexId], shortcuts: Vec<Shortcut>) -> Self {
         let repaired = Repaired { mesh, ..self.repaired.clone() };
         let near = origins.iter().map(|&v| self.input_vertex(v));
         let input_vertex = self.input_vertex.iter().copied().chain(near).collect();
         let open_boundary = Some(self.longest_boundary());
-        Self { intrinsic: repaired.intrinsic(), repaired, input_vertex, open_boundary, ..self.clone() }
+        let intrinsic = repaired.intrinsic();
+        Self { intrinsic, repaired, input_vertex, open_boundary, shortcuts, ..self.clone() }
     }
 
     /// Length of the longest boundary of the repaired mesh, in mesh units.
     pub(crate) fn longest_boundary(&self) -> f64 {
         self.open_boundary.unwrap_or_else(|| longest_boundary(&self.intrinsic))
+    }
+
+    /// The shortcuts that were cut to [prepare](Self::for_description) the surface; none before.
+    pub fn shortcuts(&self) -> &[Shortcut] {
+        &self.shortcuts
     }
 
     /// The repaired mesh.

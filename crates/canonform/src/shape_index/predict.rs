@@ -81,13 +81,15 @@ pub enum Unknown {
     Partial,
 }
 
-/// What makes a surface look like a part of one.
+/// What makes a surface look like a part of one, or like a damaged one.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(super) struct Completeness {
     /// Share of the area that the repair dropped.
     pub(super) dropped: f64,
     /// Length of the longest boundary over the square root of the area.
     pub(super) open: f64,
+    /// Places where distant parts of the surface were welded.
+    pub(super) shortcuts: usize,
 }
 
 impl Completeness {
@@ -102,6 +104,18 @@ impl Completeness {
                 .push(format!("a boundary is {:.1} times as long as the square root of its area", self.open));
         }
         signs
+    }
+
+    /// The warning that the query has shortcuts; empty if it has none.
+    fn warning(self) -> String {
+        let places = match self.shortcuts {
+            0 => return String::new(),
+            1 => "one place".to_owned(),
+            n => format!("{n} places"),
+        };
+        format!(
+            ". The query probably has a shortcut: distant parts of its surface are joined in {places}; it was compared as if they were separate"
+        )
     }
 }
 
@@ -157,7 +171,7 @@ pub(super) fn predicted(
         unknown,
         explanation: String::new(),
     };
-    found.explanation = found.in_words(&signs);
+    found.explanation = found.in_words(&signs) + &query.warning();
     found
 }
 
@@ -243,7 +257,7 @@ mod tests {
         Some(UnknownThreshold { distance, missed: 0.0, mistaken: 0.0 })
     }
 
-    const WHOLE: Completeness = Completeness { dropped: 0.0, open: 0.0 };
+    const WHOLE: Completeness = Completeness { dropped: 0.0, open: 0.0, shortcuts: 0 };
 
     #[test]
     fn a_shape_that_is_the_same_is_never_unknown() {
@@ -279,16 +293,25 @@ mod tests {
     fn a_query_that_looks_like_a_part_is_said_to_be_one_only_if_nothing_is_near() {
         let far = results(&[("cat", 9.0)]);
         for (query, words) in [
-            (Completeness { dropped: 0.14, open: 0.0 }, "14 % of its surface"),
-            (Completeness { dropped: 0.0, open: 1.25 }, "1.2 times"),
+            (Completeness { dropped: 0.14, open: 0.0, shortcuts: 0 }, "14 % of its surface"),
+            (Completeness { dropped: 0.0, open: 1.25, shortcuts: 0 }, "1.2 times"),
         ] {
             let found = predicted(&far, None, query);
             assert_eq!(found.unknown, Some(Unknown::Partial));
             assert!(found.explanation.contains(words) && found.explanation.contains("parts are not matched"));
             assert_eq!(predicted(&results(&[("cat", 0.5)]), None, query).unknown, None);
         }
-        let small_holes = Completeness { dropped: 0.001, open: 0.05 };
+        let small_holes = Completeness { dropped: 0.001, open: 0.05, shortcuts: 0 };
         assert_eq!(predicted(&far, None, small_holes).unknown, Some(Unknown::NothingNear));
+    }
+
+    #[test]
+    fn shortcuts_of_the_query_are_a_warning() {
+        let near = results(&[("cat", 0.5)]);
+        let words = |shortcuts| predicted(&near, None, Completeness { shortcuts, ..WHOLE }).explanation;
+        assert!(!words(0).contains("shortcut"));
+        assert!(words(1).contains("probably has a shortcut") && words(1).contains("in one place"));
+        assert!(words(3).contains("in 3 places"), "{}", words(3));
     }
 
     #[test]

@@ -25,6 +25,9 @@ const COMPONENT: &str = "component-";
 /// The number of these vectors. Indexes may lack it.
 pub(super) const OTHER_COMPONENTS: &str = "other_components";
 
+/// The number of shortcuts that were cut.
+pub(super) const SHORTCUTS: &str = "shortcuts";
+
 /// How the shapes of an index were described.
 pub(super) fn options_of(index: &Index) -> Result<DescribeOptions, Error> {
     let options = DescribeOptions::from_text(index.options()).ok_or_else(|| Error::UnknownOptions {
@@ -57,6 +60,7 @@ pub(super) fn shape(listed: &Listed, content: ContentHash, described: Described)
         ("diameter", described.diameter),
         (DROPPED, repair.dropped_area_share),
         (COMPONENTS, repair.components as f64),
+        (SHORTCUTS, described.shortcuts.len() as f64),
     ];
     if !components.is_empty() {
         facts.push((OTHER_COMPONENTS, components.len() as f64));

@@ -14,7 +14,7 @@ use serde::Serialize;
 
 use super::found::{ComponentResult, SearchResult, StoredComponent};
 use super::predict::{Completeness, Prediction, VOTERS, predicted};
-use super::record::{DROPPED, options_of, prepared};
+use super::record::{DROPPED, SHORTCUTS, options_of, prepared};
 use super::rerank::{Ranked, rerank};
 use super::source::read_unchanged;
 use crate::compare::{MeshGeometry, compare};
@@ -262,6 +262,7 @@ impl ShapeSearch {
         let complete = Completeness {
             dropped: description.repair.dropped_area_share,
             open: description.longest_boundary / description.area.sqrt(),
+            shortcuts: description.shortcuts.len(),
         };
         self.explained(&description.prepare()?, query, complete, options, budget)
     }
@@ -273,8 +274,9 @@ impl ShapeSearch {
     /// [`Error::Index`].
     pub fn search_shape(&self, id: &str, options: &SearchOptions) -> Result<SearchReport, Error> {
         let entry = self.index.entry(id)?;
-        let complete =
-            Completeness { dropped: entry.fact(DROPPED).unwrap_or(0.0), ..Completeness::default() };
+        let dropped = entry.fact(DROPPED).unwrap_or(0.0);
+        let shortcuts = entry.fact(SHORTCUTS).unwrap_or(0.0) as usize;
+        let complete = Completeness { dropped, shortcuts, ..Completeness::default() };
         let geometry = match options.explain {
             Explain::No => None,
             Explain::Kind => self.geometry(id, &entry),

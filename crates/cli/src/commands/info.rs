@@ -4,7 +4,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::Result;
-use mesh::{MeshReport, RepairReport, is_noisy, repair, validate};
+use mesh::{MeshReport, RepairReport, Shortcut, ShortcutKind, cut_shortcuts, is_noisy, repair, validate};
 use serde::Serialize;
 
 use crate::args::{Common, InfoArgs};
@@ -23,6 +23,8 @@ struct MeshInfo {
     mesh: MeshReport,
     /// Whether comparison and search smooth the repaired mesh, because it is noisy.
     noisy: bool,
+    /// Places where distant parts of the repaired surface are joined; comparison and search separate them.
+    shortcuts: Vec<Shortcut>,
     /// What a repair would change.
     repair: RepairReport,
 }
@@ -40,11 +42,17 @@ pub(crate) fn info(args: &InfoArgs, common: &Common) -> Result<ExitCode> {
         let report = read_mesh(&path, common).and_then(|mesh| {
             let repaired =
                 repair(&mesh, &args.repair.options()).map_err(|fault| named(&path, fault.into()))?;
-            Ok((validate(&mesh), is_noisy(&repaired.mesh), repaired.report))
+            let mut shortcuts = cut_shortcuts(&repaired.mesh).shortcuts;
+            // The first vertex of the input that was mapped to that of the repaired mesh.
+            for shortcut in &mut shortcuts {
+                let place = repaired.input_to_repaired.iter().position(|v| *v == Some(shortcut.vertex));
+                shortcut.vertex = place.map_or(shortcut.vertex, Into::into);
+            }
+            Ok((validate(&mesh), is_noisy(&repaired.mesh), shortcuts, repaired.report))
         });
         match report {
-            Ok((mesh, noisy, repair)) => {
-                let info = MeshInfo { path, mesh, noisy, repair };
+            Ok((mesh, noisy, shortcuts, repair)) => {
+                let info = MeshInfo { path, mesh, noisy, shortcuts, repair };
                 if !common.json {
                     print(&table(&info))?;
                 }
@@ -70,12 +78,22 @@ fn table(info: &MeshInfo) -> String {
     if info.noisy {
         rows.push(("noisy", "yes; compare, index and search smooth it first".to_owned()));
     }
+    rows.extend(info.shortcuts.iter().map(|shortcut| ("probable shortcut", shortcut_in_words(shortcut))));
     let changes = info.repair.summary();
     if changes.is_empty() {
         rows.push(("would repair", "nothing".to_owned()));
     }
     rows.extend(changes.into_iter().map(|line| ("would repair", line)));
     format!("{}\n{}", info.path.display(), facts(&rows))
+}
+
+fn shortcut_in_words(shortcut: &Shortcut) -> String {
+    let Shortcut { kind, vertex, girth, detour } = shortcut;
+    let what = match kind {
+        ShortcutKind::Pinch => format!("parts share vertex {vertex}"),
+        ShortcutKind::Handle => format!("a handle {girth:.4} around at vertex {vertex}"),
+    };
+    format!("{what}; without it, its sides are {detour:.4} apart; compare, index and search cut it")
 }
 
 /// General properties, then the defects that were found.

@@ -1,0 +1,169 @@
+//! Narrow handles.
+
+use std::collections::BTreeSet;
+
+use surface::{CornerId, DisjointSets, SurfaceLoop, Topology, VertexId, short_loops};
+
+use super::reach::Graph;
+use super::{Shortcut, ShortcutKind};
+use crate::refine::Refined;
+use crate::tri_mesh::TriMesh;
+
+/// Least area within the girth of a handle on either side of its narrowest loop, relative to the square of the girth. A tube
+/// has 1; where two flat surfaces meet in a small contact, each side has 1 + π.
+const FLARE: f64 = 1.6;
+
+/// Cuts the narrowest handle that is a shortcut.
+pub(super) fn cut(mesh: &TriMesh, girth: f64) -> Option<(Refined, Shortcut)> {
+    let topology = Topology::new(mesh.n_vertices(), mesh.faces.clone());
+    let length = |[a, b]: &[VertexId; 2]| (mesh.positions[a.index()] - mesh.positions[b.index()]).norm();
+    let lengths: Vec<f64> = topology.edges().iter().map(length).collect();
+    short_loops(&topology, &lengths, girth).iter().find_map(|around| opened(mesh, &topology, around))
+}
+
+/// The surface cut along a loop, if the loop goes around a shortcut.
+fn opened(mesh: &TriMesh, topology: &Topology, around: &SurfaceLoop) -> Option<(Refined, Shortcut)> {
+    let (cut, sides) = cut_along(mesh, topology, &around.vertices)?;
+    let areas = cut.mesh.vertex_areas();
+    let graph = Graph::of(&cut.mesh);
+    let flare = |side: &Vec<VertexId>| {
+        let near = graph.within(side, around.length, |_| false);
+        near.iter().map(|(v, _)| areas[v.index()]).sum::<f64>() / (around.length * around.length)
+    };
+    if sides.iter().any(|side| flare(side) < FLARE) {
+        return None;
+    }
+    let detour = graph.between(&sides[0], &sides[1]);
+    // A loop that separates would leave no way around.
+    let shortcut =
+        Shortcut { kind: ShortcutKind::Handle, vertex: around.vertices[0], girth: around.length, detour };
+    detour.is_finite().then_some((cut, shortcut))
+}
+
+/// The mesh with two copies of every vertex of a loop, one for each side, and the loop on both sides; `None` if the loop has
+/// one side only or touches the boundary.
+fn cut_along(
+    mesh: &TriMesh,
+    topology: &Topology,
+    around: &[VertexId],
+) -> Option<(Refined, [Vec<VertexId>; 2])> {
+    let sides: BTreeSet<[VertexId; 2]> = (0..around.len())
+        .map(|i| {
+            let (a, b) = (around[i], around[(i + 1) % around.len()]);
+            [a.min(b), a.max(b)]
+        })
+        .collect();
+    // Corners at the loop, numbered.
+    let corners: Vec<CornerId> = around.iter().flat_map(|v| topology.vertex_corners(*v)).copied().collect();
+    let mut sorted = corners.clone();
+    sorted.sort_unstable();
+    let number = |corner: CornerId| sorted.binary_search(&corner).ok().map(|i| i as u32);
+    let mut sets = DisjointSets::new(sorted.len());
+    for &corner in &sorted {
+        let v = topology.corner_vertex(corner);
+        for side in [corner.next(), corner.prev()] {
+            // The side opposite `side` runs from `corner` to the third corner.
+            let third = if side == corner.next() { corner.prev() } else { corner.next() };
+            let w = topology.corner_vertex(third);
+            if sides.contains(&[v.min(w), v.max(w)]) {
+                // Both ends of an edge of the loop are on the same side within a face.
+                sets.union(number(corner)?, number(third)?);
+            } else {
+                let across = topology.opposite(side)?;
+                let same = [across.next(), across.prev()];
+                let same = same.into_iter().find(|c| topology.corner_vertex(*c) == v)?;
+                sets.union(number(corner)?, number(same)?);
+            }
+        }
+    }
+    let root = sets.find(0);
+    let is_other: Vec<bool> = (0..sorted.len() as u32).map(|i| sets.find(i) != root).collect();
+    let roots: BTreeSet<u32> = (0..sorted.len() as u32).map(|i| sets.find(i)).collect();
+    if roots.len() != 2 {
+        return None;
+    }
+    let n = mesh.n_vertices();
+    let mut cut = mesh.clone();
+    for (&corner, _) in sorted.iter().zip(&is_other).filter(|(_, other)| **other) {
+        let v = topology.corner_vertex(corner);
+        let place = around.iter().position(|x| *x == v)?;
+        cut.faces[corner.face().index()][corner.slot()] = VertexId::from(n + place);
+    }
+    cut.positions.extend(around.iter().map(|v| mesh.positions[v.index()]));
+    let copies = (0..around.len()).map(|i| VertexId::from(n + i)).collect();
+    Some((Refined { mesh: cut, origins: around.to_vec() }, [around.to_vec(), copies]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{cut_shortcuts, fill_holes, shapes, validate};
+
+    /// A ball with a tube between two openings: the vertices nearest to the poles are left out.
+    fn bridged(level: u32) -> TriMesh {
+        let ball = shapes::icosphere(level);
+        let pole = |z: f64| {
+            let gap = |v: &usize| (ball.positions[*v].z - z).abs() + ball.positions[*v].xy().coords.norm();
+            (0..ball.n_vertices()).min_by(|a, b| gap(a).total_cmp(&gap(b))).unwrap()
+        };
+        let poles = [pole(1.0), pole(-1.0)].map(VertexId::from);
+        let topology = Topology::new(ball.n_vertices(), ball.faces.clone());
+        let rim = |v: VertexId| {
+            let mut rim: Vec<VertexId> = Vec::new();
+            let mut next = topology.corner_vertex(topology.vertex_corners(v)[0].next());
+            while rim.first() != Some(&next) {
+                rim.push(next);
+                let corner =
+                    topology.vertex_corners(v).iter().find(|c| topology.corner_vertex(c.next()) == next);
+                next = topology.corner_vertex(corner.unwrap().prev());
+            }
+            rim
+        };
+        let [top, mut bottom] = poles.map(rim);
+        assert_eq!(top.len(), bottom.len());
+        bottom.reverse();
+        let n = top.len();
+        let mut mesh = ball.clone();
+        mesh.faces.retain(|face| !face.iter().any(|v| poles.contains(v)));
+        for i in 0..n {
+            let j = (i + 1) % n;
+            mesh.faces.push([top[i], top[j], bottom[i]]);
+            mesh.faces.push([top[j], bottom[j], bottom[i]]);
+        }
+        // Without the poles.
+        let number = |v: VertexId| v.0 - poles.iter().filter(|p| **p < v).count() as u32;
+        mesh.faces.iter_mut().flatten().for_each(|v| *v = VertexId(number(*v)));
+        let mut at = 0..;
+        mesh.positions.retain(|_| at.next().is_some_and(|i| !poles.contains(&VertexId(i))));
+        mesh
+    }
+
+    #[test]
+    fn a_narrow_handle_is_cut_and_its_holes_can_be_filled() {
+        let mesh = bridged(4);
+        assert_eq!(validate(&mesh).genus, Some(1));
+        let opened = cut_shortcuts(&mesh);
+        let [shortcut] = opened.shortcuts[..] else { panic!("{:?}", opened.shortcuts) };
+        assert_eq!(shortcut.kind, ShortcutKind::Handle);
+        assert!(shortcut.girth < 0.8 && shortcut.detour > 2.5, "{shortcut:?}");
+        let filled = fill_holes(&opened.refined.mesh, 1.0).mesh;
+        let report = validate(&filled);
+        assert_eq!((report.genus, report.n_boundary_edges, report.n_components), (Some(0), 0, 1));
+        assert_eq!(opened.refined.mesh.positions[..mesh.n_vertices()], mesh.positions);
+        // It is wider than that.
+        assert!(cut(&mesh, 0.2).is_none());
+    }
+
+    #[test]
+    fn handles_by_design_stay() {
+        for (mesh, girth) in [
+            (shapes::torus(120, 12, 2.0, 0.15), 1.0),
+            (shapes::torus(60, 20, 2.0, 0.3), 3.0),
+            (shapes::torus(60, 20, 2.0, 0.7), 6.0),
+            (shapes::icosphere(3), 100.0),
+        ] {
+            assert_eq!(cut(&mesh, girth), None);
+            assert_eq!(cut_shortcuts(&mesh).refined.mesh, mesh);
+        }
+    }
+}

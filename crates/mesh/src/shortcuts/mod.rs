@@ -1,0 +1,97 @@
+//! Topological shortcuts: places where two distant parts of a surface touch and became one.
+//!
+//! Scanners and reconstruction weld a hand to the hip that it touches. Paths through the contact are much shorter than those
+//! of the true surface, so distances all over the shape change. A contact in one vertex is a *pinch*, a wider one a *handle*
+//! whose girth is small beside the surfaces that it joins (topological noise, Guskov and Wood 2001, `guskov2001`).
+
+mod handle;
+mod pinch;
+mod reach;
+
+use serde::Serialize;
+use surface::VertexId;
+
+use crate::refine::Refined;
+use crate::tri_mesh::TriMesh;
+
+/// The kind of a shortcut.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum ShortcutKind {
+    /// Parts of the surface that share one vertex.
+    Pinch,
+    /// A short and narrow handle, or a short and narrow tunnel.
+    Handle,
+}
+
+/// A place where two distant parts of a surface are probably welded.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Shortcut {
+    /// Whether the parts share a vertex or a handle.
+    pub kind: ShortcutKind,
+    /// The shared vertex, or a vertex of the shortest loop around the handle.
+    pub vertex: VertexId,
+    /// Length of the shortest loop around the handle, in mesh units; 0 for a vertex.
+    pub girth: f64,
+    /// Distance along edges between the two sides once the shortcut is cut, in mesh units.
+    pub detour: f64,
+}
+
+/// A surface without its shortcuts.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Opened {
+    /// The mesh, with new vertices where it was cut. Vertices of a cut that a weld had pulled out of their surface are moved
+    /// back.
+    pub refined: Refined,
+    /// What was cut: pinches first, then handles from the narrowest to the widest.
+    pub shortcuts: Vec<Shortcut>,
+}
+
+/// Cuts the shortcuts of a surface: shared vertices get a copy for each part of the surface, handles are cut along the
+/// shortest loop around them, which leaves two holes for [`fill_holes`](crate::fill_holes).
+///
+/// The surface stays in one piece: a vertex that is the only connection of two parts stays shared. A handle is a shortcut if
+/// it is narrow, at most 0.3 times the square root of the area around, and the surface widens on both sides of its narrowest
+/// place, which the tube of a ring or of the handle of a cup does not. Edges of more than two faces stay, and so do all handles of a
+/// surface with such edges.
+///
+/// # Panics
+/// If a face has a repeated vertex or one that does not exist, see [`surface::Topology::new`].
+///
+/// ```
+/// use canonform_mesh::{cut_shortcuts, shapes, validate};
+/// use surface::VertexId;
+///
+/// // Two opposite vertices of a ball become one.
+/// let mut ball = shapes::icosphere(3);
+/// let far = (0..ball.n_vertices()).min_by(|&a, &b| {
+///     let height = |v: usize| (ball.positions[v] + ball.positions[0].coords).coords.norm();
+///     height(a).total_cmp(&height(b))
+/// });
+/// let far = VertexId::from(far.unwrap());
+/// ball.faces.iter_mut().flatten().filter(|v| **v == far).for_each(|v| *v = VertexId(0));
+/// let opened = cut_shortcuts(&ball);
+/// assert_eq!(opened.shortcuts.len(), 1);
+/// assert!(opened.shortcuts[0].detour > 2.5);
+/// assert_eq!(validate(&opened.refined.mesh).non_manifold_vertices, 0);
+/// ```
+#[must_use]
+pub fn cut_shortcuts(mesh: &TriMesh) -> Opened {
+    let girth = GIRTH * mesh.root_of_area();
+    let mut opened = pinch::cut(mesh);
+    while let Some((cut, shortcut)) = handle::cut(&opened.refined.mesh, girth) {
+        let n_cut = opened.shortcuts.len() + 1;
+        opened.refined = opened.refined.then(cut);
+        opened.shortcuts.push(shortcut);
+        if n_cut >= MOST {
+            break;
+        }
+    }
+    opened
+}
+
+/// Girth of the widest handle that is cut, relative to the square root of the area.
+const GIRTH: f64 = 0.3;
+
+/// Most handles that are cut. A surface with more has them by design.
+const MOST: usize = 32;

@@ -1,0 +1,332 @@
+//! Short loops that do not separate the surface: they run around handles or through tunnels.
+//!
+//! A spanning tree of the vertices and one of the faces that crosses no edge of the first leave two edges for each handle
+//! (Eppstein 2003, `eppstein2003`). Each of these edges closes a loop of faces; two loops of edges are homologous over the
+//! integers modulo two if they cross the same loops of faces equally often, up to even numbers. So every edge gets a random
+//! word for each loop of faces that crosses it, and the words of a loop add up to zero exactly if it separates.
+
+use std::cmp::Reverse;
+use std::collections::{BTreeMap, BinaryHeap};
+
+use crate::disjoint_sets::DisjointSets;
+use crate::ids::{EdgeId, VertexId};
+use crate::topology::Topology;
+
+/// Most edges that two spanning trees may leave: surfaces with more handles have them by design, and they would cost much time.
+const MOST_LEFT: usize = 128;
+
+/// A closed loop of edges that does not separate the surface.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SurfaceLoop {
+    /// The vertices, each once, in order.
+    pub vertices: Vec<VertexId>,
+    /// Sum of the lengths of the edges.
+    pub length: f64,
+}
+
+/// The shortest loop of each homology class that is at most `longest` long, from the shortest to the longest.
+///
+/// Loops around the same part of a handle are of one class, those around it and those through it are not. Boundaries
+/// count as filled. There are none on a surface with edges of more than two faces, and on one with more than 64 handles.
+///
+/// `lengths` are those of the edges, in the order of the topology. Linear time on a surface without handles; otherwise a
+/// search within `longest / 2` from every vertex of the loops of faces.
+///
+/// ```
+/// use canonform_surface::{Topology, VertexId, short_loops};
+///
+/// // A torus of 6 x 12 vertices with edges along the short way round of length 1, and 2 the long way.
+/// let at = |i: u32, j: u32| VertexId(i % 6 + 6 * (j % 12));
+/// let quads = (0..12).flat_map(|j| (0..6).map(move |i| (i, j)));
+/// let faces: Vec<_> = quads
+///     .flat_map(|(i, j)| {
+///         let [a, b, c, d] = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
+///         [[a, b, c], [a, c, d]]
+///     })
+///     .collect();
+/// let topology = Topology::new(72, faces);
+/// let length = |[a, b]: &[VertexId; 2]| if a.0 / 6 == b.0 / 6 { 1.0 } else { 2.0 };
+/// let lengths: Vec<f64> = topology.edges().iter().map(length).collect();
+/// let loops = short_loops(&topology, &lengths, 10.0);
+/// assert_eq!((loops.len(), loops[0].length), (1, 6.0));
+/// ```
+///
+/// # Panics
+/// If there is not one length for every edge.
+#[must_use]
+pub fn short_loops(topology: &Topology, lengths: &[f64], longest: f64) -> Vec<SurfaceLoop> {
+    assert_eq!(lengths.len(), topology.n_edges(), "one length for every edge");
+    let Some(words) = words(topology) else { return Vec::new() };
+    let mut sources: Vec<VertexId> = Vec::new();
+    for (edge, _) in topology.edges().iter().zip(&words).filter(|(_, word)| **word != 0) {
+        sources.extend(edge);
+    }
+    sources.sort_unstable();
+    sources.dedup();
+    let mut search = Search::new(topology, lengths, &words);
+    let mut shortest: BTreeMap<u64, SurfaceLoop> = BTreeMap::new();
+    for source in sources {
+        search.run(source, 0.5 * longest);
+        for (word, length, edge) in search.closing(longest) {
+            if shortest.get(&word).is_none_or(|known| length < known.length)
+                && let Some(vertices) = search.closed(edge)
+            {
+                shortest.insert(word, SurfaceLoop { vertices, length });
+            }
+        }
+    }
+    let mut loops: Vec<SurfaceLoop> = shortest.into_values().collect();
+    loops.sort_by(|a, b| a.length.total_cmp(&b.length).then_with(|| a.vertices.cmp(&b.vertices)));
+    loops
+}
+
+/// The word of every edge; `None` if no loop can be found.
+fn words(topology: &Topology) -> Option<Vec<u64>> {
+    let (n_faces, n_edges) = (topology.n_faces(), topology.n_edges());
+    let edges = || (0..n_edges).map(EdgeId::from);
+    if edges().any(|edge| topology.edge_corners(edge).len() > 2) {
+        return None;
+    }
+    // Every boundary is one more face.
+    let mut rims = DisjointSets::new(topology.n_vertices());
+    for edge in edges().filter(|edge| topology.edge_corners(*edge).len() == 1) {
+        let [a, b] = topology.edges()[edge.index()];
+        rims.union(a.0, b.0);
+    }
+    let mut sides = |edge: EdgeId| match topology.edge_corners(edge) {
+        [a, b] => [a.index() / 3, b.index() / 3],
+        corners => {
+            let rim = n_faces + rims.find(topology.edges()[edge.index()][0].0) as usize;
+            [corners.first().map_or(rim, |corner| corner.index() / 3), rim]
+        }
+    };
+    let mut tree = DisjointSets::new(topology.n_vertices());
+    let mut dual = DisjointSets::new(n_faces + topology.n_vertices());
+    let mut left = Vec::new();
+    let mut links: Vec<Vec<(u32, EdgeId)>> = vec![Vec::new(); n_faces + topology.n_vertices()];
+    for edge in edges() {
+        let [a, b] = topology.edges()[edge.index()];
+        if tree.union(a.0, b.0) {
+            continue;
+        }
+        let [f, g] = sides(edge);
+        if dual.union(f as u32, g as u32) {
+            links[f].push((g as u32, edge));
+            links[g].push((f as u32, edge));
+        } else {
+            left.push((edge, [f, g]));
+        }
+    }
+    if left.is_empty() || left.len() > MOST_LEFT {
+        return None;
+    }
+    let mut words = vec![0; n_edges];
+    let mut at_node = vec![0u64; links.len()];
+    for (i, (edge, [f, g])) in left.into_iter().enumerate() {
+        let word = random_word(i as u64);
+        words[edge.index()] = word;
+        at_node[f] ^= word;
+        at_node[g] ^= word;
+    }
+    // Each tree edge is crossed by the loops with one end below it.
+    let mut order = Vec::with_capacity(links.len());
+    let mut parent: Vec<Option<(u32, EdgeId)>> = vec![None; links.len()];
+    let mut is_seen = vec![false; links.len()];
+    for root in 0..links.len() {
+        if links[root].is_empty() || std::mem::replace(&mut is_seen[root], true) {
+            continue;
+        }
+        let first = order.len();
+        order.push(root);
+        let mut next = first;
+        while next < order.len() {
+            let node = order[next];
+            next += 1;
+            for &(other, edge) in &links[node] {
+                if !std::mem::replace(&mut is_seen[other as usize], true) {
+                    parent[other as usize] = Some((node as u32, edge));
+                    order.push(other as usize);
+                }
+            }
+        }
+    }
+    for &node in order.iter().rev() {
+        if let Some((above, edge)) = parent[node] {
+            words[edge.index()] ^= at_node[node];
+            at_node[above as usize] ^= at_node[node];
+        }
+    }
+    Some(words)
+}
+
+/// A word of 64 random bits that depends on `i` alone (splitmix64).
+fn random_word(i: u64) -> u64 {
+    let mut z = (i + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    z ^ (z >> 31)
+}
+
+/// Shortest paths along edges from one vertex, with the words along them.
+struct Search<'a> {
+    topology: &'a Topology,
+    lengths: &'a [f64],
+    words: &'a [u64],
+    distance: Vec<f64>,
+    word: Vec<u64>,
+    /// The edge by which a vertex was reached.
+    from: Vec<Option<EdgeId>>,
+    reached: Vec<VertexId>,
+    queue: BinaryHeap<Reverse<(u64, VertexId)>>,
+}
+
+impl<'a> Search<'a> {
+    fn new(topology: &'a Topology, lengths: &'a [f64], words: &'a [u64]) -> Self {
+        let n = topology.n_vertices();
+        Self {
+            topology,
+            lengths,
+            words,
+            distance: vec![f64::INFINITY; n],
+            word: vec![0; n],
+            from: vec![None; n],
+            reached: Vec::new(),
+            queue: BinaryHeap::new(),
+        }
+    }
+
+    fn run(&mut self, source: VertexId, radius: f64) {
+        for v in self.reached.drain(..) {
+            self.distance[v.index()] = f64::INFINITY;
+            self.from[v.index()] = None;
+        }
+        self.distance[source.index()] = 0.0;
+        self.word[source.index()] = 0;
+        self.reached.push(source);
+        // Nonnegative numbers are ordered as their bits are.
+        self.queue.push(Reverse((0, source)));
+        while let Some(Reverse((bits, v))) = self.queue.pop() {
+            let here = f64::from_bits(bits);
+            if here > self.distance[v.index()] {
+                continue;
+            }
+            for (edge, w) in edges_at(self.topology, v) {
+                let there = here + self.lengths[edge.index()];
+                if there < self.distance[w.index()] && there <= radius {
+                    if self.distance[w.index()].is_infinite() {
+                        self.reached.push(w);
+                    }
+                    self.distance[w.index()] = there;
+                    self.word[w.index()] = self.word[v.index()] ^ self.words[edge.index()];
+                    self.from[w.index()] = Some(edge);
+                    self.queue.push(Reverse((there.to_bits(), w)));
+                }
+            }
+        }
+    }
+
+    /// The edges that close a loop with the paths to their ends that does not separate, with its word and its length.
+    fn closing(&self, longest: f64) -> Vec<(u64, f64, EdgeId)> {
+        let mut found = Vec::new();
+        for &v in &self.reached {
+            for (edge, w) in edges_at(self.topology, v) {
+                let word = self.word[v.index()] ^ self.word[w.index()] ^ self.words[edge.index()];
+                let length = self.distance[v.index()] + self.distance[w.index()] + self.lengths[edge.index()];
+                // Infinite if `w` was not reached.
+                if v < w && length <= longest && word != 0 {
+                    found.push((word, length, edge));
+                }
+            }
+        }
+        found
+    }
+
+    /// The loop that an edge closes; `None` if its two paths share more than the source.
+    fn closed(&self, edge: EdgeId) -> Option<Vec<VertexId>> {
+        let [mut path, other] = self.topology.edges()[edge.index()].map(|v| self.path(v));
+        let shared = path.iter().filter(|v| other.contains(v)).count();
+        path.extend(other.iter().rev().skip(1));
+        (shared == 1).then_some(path)
+    }
+
+    /// The path from a vertex to the source.
+    fn path(&self, mut v: VertexId) -> Vec<VertexId> {
+        let mut path = vec![v];
+        while let Some(edge) = self.from[v.index()] {
+            let [a, b] = self.topology.edges()[edge.index()];
+            v = if a == v { b } else { a };
+            path.push(v);
+        }
+        path
+    }
+}
+
+/// The edges at a vertex with their other ends; inner edges come twice.
+fn edges_at(topology: &Topology, v: VertexId) -> impl Iterator<Item = (EdgeId, VertexId)> + '_ {
+    topology.vertex_corners(v).iter().flat_map(move |&corner| {
+        let [next, prev] = topology.corner_edges(corner);
+        [(next, topology.corner_vertex(corner.next())), (prev, topology.corner_vertex(corner.prev()))]
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A torus of m x n quadrilaterals, all edges of length 1, split along one diagonal.
+    fn torus(m: u32, n: u32) -> Vec<[VertexId; 3]> {
+        let at = |i: u32, j: u32| VertexId(i % m + m * (j % n));
+        let quads = (0..n).flat_map(|j| (0..m).map(move |i| (i, j)));
+        quads
+            .flat_map(|(i, j)| {
+                let [a, b, c, d] = [at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)];
+                [[a, b, c], [a, c, d]]
+            })
+            .collect()
+    }
+
+    fn loops(faces: Vec<[VertexId; 3]>, longest: f64) -> Vec<SurfaceLoop> {
+        let n = 1 + faces.iter().flatten().map(|v| v.index()).max().unwrap();
+        let topology = Topology::new(n, faces);
+        short_loops(&topology, &vec![1.0; topology.n_edges()], longest)
+    }
+
+    #[test]
+    fn the_loops_of_a_torus_run_around_and_along_it() {
+        let found = loops(torus(5, 9), 9.0);
+        let lengths: Vec<f64> = found.iter().map(|found| found.length).collect();
+        assert_eq!(&lengths[..2], &[5.0, 9.0], "{lengths:?}");
+        assert_eq!(found[0].vertices.len(), 5);
+        let row = found[0].vertices[0].0 / 5;
+        assert!(found[0].vertices.iter().all(|v| v.0 / 5 == row));
+        assert!(loops(torus(5, 9), 4.9).is_empty());
+    }
+
+    #[test]
+    fn a_pierced_torus_has_the_same_loops_and_a_sphere_has_none() {
+        let mut pierced = torus(6, 12);
+        pierced.remove(30);
+        let found = loops(pierced, 6.0);
+        assert_eq!((found.len(), found[0].length), (1, 6.0));
+        let octahedron =
+            [[0, 1, 2], [0, 2, 3], [0, 3, 4], [0, 4, 1], [5, 2, 1], [5, 3, 2], [5, 4, 3], [5, 1, 4]];
+        assert!(loops(octahedron.map(|f| f.map(VertexId)).to_vec(), 100.0).is_empty());
+        let open = octahedron[1..].iter().map(|f| f.map(VertexId)).collect();
+        assert!(loops(open, 100.0).is_empty());
+    }
+
+    #[test]
+    fn a_sheet_with_two_boundaries_has_no_handle() {
+        let mut tube = torus(6, 12);
+        tube.retain(|face| face.iter().all(|v| v.0 / 6 != 4));
+        assert!(loops(tube, 100.0).is_empty());
+    }
+
+    #[test]
+    fn edges_of_three_faces_leave_no_loops() {
+        let mut fin = torus(6, 12);
+        let [a, b, _] = fin[0];
+        fin.push([a, b, VertexId(72)]);
+        assert!(loops(fin, 100.0).is_empty());
+    }
+}

@@ -1,0 +1,138 @@
+//! Welds: two distant points of a surface become one.
+
+use mesh::TriMesh;
+use nalgebra::Point3;
+use surface::{OneRing, Topology, VertexId};
+
+use super::WeldPair;
+use super::holes::compacted;
+use super::paths::{Edges, farthest};
+use crate::stream::Stream;
+
+/// Least distance of the two points on the surface, relative to the largest distance from the first.
+const FAR: f64 = 0.5;
+
+/// Draws of the first of two points that are near in space; the pair that is closest for its distance on the surface is taken.
+const DRAWS: usize = 12;
+
+/// Radius of the bump by which two near points are pushed together, relative to the gap between them.
+const BUMP: f64 = 2.0;
+
+/// Two vertices with disjoint faces, far apart on the surface; `None` if there are none.
+fn pair(mesh: &TriMesh, edges: &Edges, draw: WeldPair, stream: &mut Stream) -> Option<[usize; 2]> {
+    let used: Vec<usize> = (0..mesh.n_vertices()).filter(|v| edges.is_used(*v)).collect();
+    if used.is_empty() {
+        return None;
+    }
+    let space = |a: usize, b: usize| (mesh.positions[a] - mesh.positions[b]).norm();
+    let mut best: Option<(f64, [usize; 2])> = None;
+    for _ in 0..if draw == WeldPair::Near { DRAWS } else { 1 } {
+        let first = used[stream.below(used.len())];
+        let lengths = edges.lengths(first);
+        let (_, reach) = farthest(&lengths);
+        let is_apart = |v: usize| {
+            let beside = |w: usize| w == first || edges.near(first).any(|near| near == w);
+            v != first && !edges.near(v).any(beside) && !beside(v)
+        };
+        let far = |v: &usize| {
+            lengths[*v].is_finite() && lengths[*v] >= FAR * reach && lengths[*v] > 0.0 && is_apart(*v)
+        };
+        let others: Vec<usize> = used.iter().copied().filter(far).collect();
+        if others.is_empty() {
+            continue;
+        }
+        let second = match draw {
+            WeldPair::Random => others[stream.below(others.len())],
+            WeldPair::Near => {
+                let by_gap = |a: &usize, b: &usize| space(first, *a).total_cmp(&space(first, *b));
+                others.into_iter().min_by(by_gap)?
+            }
+        };
+        let ratio = space(first, second) / lengths[second];
+        if best.is_none_or(|(known, _)| ratio < known) {
+            best = Some((ratio, [first, second]));
+        }
+    }
+    best.map(|(_, pair)| pair)
+}
+
+/// Pushes the surroundings of two near points together, until the points are at their middle.
+fn push(mesh: &mut TriMesh, edges: &Edges, ends: [usize; 2]) {
+    let middle = nalgebra::center(&mesh.positions[ends[0]], &mesh.positions[ends[1]]);
+    let radius = BUMP * (mesh.positions[ends[0]] - mesh.positions[ends[1]]).norm();
+    let old = mesh.positions.clone();
+    for end in ends {
+        let shift = middle - old[end];
+        for (p, length) in mesh.positions.iter_mut().zip(edges.lengths(end)) {
+            let share = (1.0 - length / radius.max(f64::MIN_POSITIVE)).max(0.0);
+            *p += shift * (share * share * (3.0 - 2.0 * share));
+        }
+        mesh.positions[end] = middle;
+    }
+}
+
+/// Merges `n` pairs of vertices. Random pairs meet in their middle, which leaves spikes.
+pub(super) fn weld(mesh: &TriMesh, draw: WeldPair, n: u32, stream: &mut Stream) -> TriMesh {
+    let mut welded = mesh.clone();
+    for _ in 0..n {
+        let edges = Edges::of(&welded);
+        let Some([a, b]) = pair(&welded, &edges, draw, stream) else { break };
+        match draw {
+            WeldPair::Near => push(&mut welded, &edges, [a, b]),
+            WeldPair::Random => {
+                welded.positions[a] = nalgebra::center(&welded.positions[a], &welded.positions[b]);
+            }
+        }
+        let (kept, gone) = (VertexId::from(a), VertexId::from(b));
+        welded.faces.iter_mut().flatten().filter(|v| **v == gone).for_each(|v| *v = kept);
+    }
+    compacted(&welded)
+}
+
+/// Joins `n` pairs of near points by handles: pushes them together, removes the faces around them, and connects the two
+/// boundaries.
+pub(super) fn contact(mesh: &TriMesh, n: u32, stream: &mut Stream) -> TriMesh {
+    let mut joined = mesh.clone();
+    for _ in 0..n {
+        let edges = Edges::of(&joined);
+        let Some(ends) = pair(&joined, &edges, WeldPair::Near, stream) else { break };
+        let topology = Topology::new(joined.n_vertices(), joined.faces.clone());
+        let [Some(a), Some(b)] = ends.map(|v| rim(&topology, VertexId::from(v))) else { continue };
+        push(&mut joined, &edges, ends);
+        joined.faces.retain(|face| !face.iter().any(|v| ends.contains(&v.index())));
+        let strip = strip(&a, &b, &joined.positions);
+        joined.faces.extend(strip);
+    }
+    compacted(&joined)
+}
+
+/// The neighbours of an inner vertex in the order of its faces; `None` at a boundary, or where faces are turned over.
+fn rim(topology: &Topology, v: VertexId) -> Option<Vec<VertexId>> {
+    let mut ring = OneRing::default();
+    ring.collect(topology, topology.vertex_corners(v));
+    let mut fans = ring.fans();
+    let fan = fans.next().filter(|fan| fan.is_closed)?;
+    let follows = fan.corners.iter().all(|c| c.winding == surface::Winding::Forward);
+    (fans.next().is_none() && follows)
+        .then(|| fan.corners.iter().map(|c| topology.corner_vertex(c.corner.next())).collect())
+}
+
+/// Faces between two boundaries, which run around removed faces, each in the direction of these.
+fn strip(a: &[VertexId], b: &[VertexId], positions: &[Point3<f64>]) -> Vec<[VertexId; 3]> {
+    let gap = |v: VertexId| (positions[v.index()] - positions[a[0].index()]).norm();
+    let nearest = (0..b.len()).min_by(|i, j| gap(b[*i]).total_cmp(&gap(b[*j]))).unwrap_or(0);
+    let on_a = |i: usize| a[i % a.len()];
+    let on_b = |j: usize| b[(nearest + b.len() - j % b.len()) % b.len()];
+    let (mut i, mut j) = (0, 0);
+    let mut faces = Vec::with_capacity(a.len() + b.len());
+    while i < a.len() || j < b.len() {
+        if j == b.len() || (i < a.len() && (i + 1) * b.len() <= (j + 1) * a.len()) {
+            faces.push([on_a(i), on_a(i + 1), on_b(j)]);
+            i += 1;
+        } else {
+            faces.push([on_b(j + 1), on_b(j), on_a(i)]);
+            j += 1;
+        }
+    }
+    faces
+}
