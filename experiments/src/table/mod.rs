@@ -10,6 +10,7 @@ mod figure8;
 mod figure9;
 mod invariance;
 mod retrieve;
+mod robustness;
 mod scaling;
 
 use anyhow::Result;
@@ -39,7 +40,7 @@ macro_rules! experiment {
 
 /// All experiments, in the order in which they run and appear on the page.
 #[rustfmt::skip]
-pub(crate) const EXPERIMENTS: [Experiment; 12] = [
+pub(crate) const EXPERIMENTS: [Experiment; 13] = [
     experiment!("figure1", "Figure 1. Shapes and their canonical forms", gallery, figure1::run),
     experiment!("figure3", "Figure 3. Canonical forms by several methods", charts::<Figure3Results>, figure3::run),
     experiment!("figure4", "Figure 4. Classification of shapes by their canonical forms", explorer, figure4::run),
@@ -51,6 +52,7 @@ pub(crate) const EXPERIMENTS: [Experiment; 12] = [
     experiment!("figure9", "Figure 9. Time and memory of whole embeddings", charts::<Figure9Results>, figure9::run),
     experiment!("retrieval", "Retrieval. Classification by signatures and canonical forms", charts::<RetrievalResults>, retrieve::run),
     experiment!("invariance", "Invariance. Retrieval of damaged shapes", charts::<InvarianceResults>, invariance::run),
+    experiment!("robustness", "Robustness. Scores of damaged shapes", charts::<CurvesResults>, robustness::run),
     experiment!("scaling", "Scaling. Time and memory up to a million vertices", charts::<CurvesResults>, scaling::run),
 ];
 

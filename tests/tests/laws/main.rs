@@ -15,6 +15,7 @@
 //! | `scale` | the same results in any unit of length |
 //! | `threads` | independence of the number of threads |
 //! | `signatures` | signatures of bodies |
+//! | `shortcuts` | welds that are found and cut |
 //! | `builtin` | the built-in dataset |
 //! | `real_meshes` | scans and TOSCA; skipped without the meshes |
 
@@ -45,6 +46,8 @@ mod packaging;
 mod real_meshes;
 #[cfg(test)]
 mod scale;
+#[cfg(test)]
+mod shortcuts;
 #[cfg(test)]
 mod signatures;
 #[cfg(test)]

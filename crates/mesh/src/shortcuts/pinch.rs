@@ -50,8 +50,8 @@ pub(super) fn cut(mesh: &TriMesh) -> Opened {
     let copies = kept.iter().map(|origin| mesh.positions[origin.index()]);
     let mesh = TriMesh { positions: positions.chain(copies).collect(), faces };
     let mut refined = Refined { mesh, origins: kept };
-    let shortcuts = shortcuts(&refined, n);
     put_back(&mut refined, n);
+    let shortcuts = shortcuts(&refined, n);
     Opened { refined, shortcuts }
 }
 

@@ -1,0 +1,46 @@
+//! Laws of topological shortcuts: welds are found and cut, and clean shapes are left alone.
+
+use canonform::{DescribeOptions, ShapeDescription, Surface, describe};
+use datasets::{CreatureOptions, DamageKind, creature_plans, creatures};
+use descriptors::ShapeMetric;
+use mesh::{TriMesh, cut_shortcuts};
+use rayon::prelude::*;
+
+fn bodies(n_vertices: usize) -> Vec<TriMesh> {
+    let n_families = creature_plans().len();
+    let options = CreatureOptions { n_families, n_poses: 2, n_vertices, ..CreatureOptions::default() };
+    creatures(&options).unwrap().into_iter().map(|shape| shape.mesh).collect()
+}
+
+#[test]
+fn clean_creatures_have_no_shortcuts_and_their_welds_are_found() {
+    let bodies = bodies(2000);
+    for (i, mesh) in bodies.iter().enumerate() {
+        let found = cut_shortcuts(mesh).shortcuts;
+        assert!(found.is_empty(), "body {i}: {found:?}");
+    }
+    for kind in [DamageKind::Weld, DamageKind::FarWeld, DamageKind::Contact] {
+        let found = |(i, mesh): (usize, &TriMesh)| {
+            cut_shortcuts(&kind.at(1).apply(mesh, i as u64)).shortcuts.len() == 1
+        };
+        let n_found = bodies.par_iter().enumerate().map(found).filter(|found| *found).count();
+        println!("{}: {n_found} of {}", kind.name(), bodies.len());
+        assert!(n_found * 20 >= bodies.len() * 19, "{}: {n_found} of {}", kind.name(), bodies.len());
+    }
+}
+
+#[test]
+fn a_welded_shape_is_described_like_the_clean_one() {
+    let describe = |mesh: &TriMesh| -> ShapeDescription {
+        describe(&Surface::new(mesh, &Default::default()).unwrap(), &DescribeOptions::default()).unwrap()
+    };
+    bodies(1000).par_iter().step_by(9).enumerate().for_each(|(i, mesh)| {
+        let clean = describe(mesh);
+        for kind in [DamageKind::Weld, DamageKind::FarWeld] {
+            let welded = describe(&kind.at(1).apply(mesh, i as u64));
+            let distance = ShapeMetric::fused(&clean.fused, &welded.fused);
+            println!("{} of body {i}: {distance:.2}", kind.name());
+            assert!(distance < ShapeMetric::SAME_SHAPE.at, "{} of body {i}: {distance}", kind.name());
+        }
+    });
+}
