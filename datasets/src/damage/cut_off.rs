@@ -7,15 +7,15 @@ use super::holes::compacted;
 use super::paths::{Edges, farthest};
 use crate::stream::Stream;
 
-/// Cuts off the end of a limb with the given share of the area: what is nearest along edges to the vertex farthest from a random
-/// one. Only the largest piece stays.
+/// Cuts off the end of a random limb with the given share of the area: what is nearest along edges to its tip. Only the
+/// largest piece stays.
 pub(super) fn cut_off(mesh: &TriMesh, share: f64, stream: &mut Stream) -> TriMesh {
     if mesh.faces.is_empty() {
         return mesh.clone();
     }
     let edges = Edges::of(mesh);
     let first = mesh.faces[stream.below(mesh.n_faces())][0].index();
-    let (tip, _) = farthest(&edges.lengths(first));
+    let tip = tip(&edges, first);
     let lengths = edges.lengths(tip);
     let from_tip = |f: usize| mesh.faces[f].iter().map(|v| lengths[v.index()]).fold(0.0, f64::max);
     let mut order: Vec<usize> = (0..mesh.n_faces()).collect();
@@ -40,4 +40,23 @@ pub(super) fn cut_off(mesh: &TriMesh, share: f64, stream: &mut Stream) -> TriMes
     let largest = (0..pieces.count).max_by(|a, b| areas[*a].total_cmp(&areas[*b]));
     let faces = rest.faces.iter().filter(|face| Some(pieces.of(face[0])) == largest).copied().collect();
     compacted(&TriMesh { positions: rest.positions, faces })
+}
+
+/// The end of the limb on which a vertex is: from there, the distance from the middle of the surface only falls.
+fn tip(edges: &Edges, first: usize) -> usize {
+    let (one, _) = farthest(&edges.lengths(first));
+    let from_one = edges.lengths(one);
+    let (other, _) = farthest(&from_one);
+    let from_other = edges.lengths(other);
+    // The middle of the longest path.
+    let reach = |v: usize| from_one[v].max(from_other[v]);
+    let middle = (0..from_one.len()).min_by(|a, b| reach(*a).total_cmp(&reach(*b))).unwrap_or(first);
+    let height = edges.lengths(middle);
+    let mut at = first;
+    while let Some(next) = edges.near(at).max_by(|a, b| height[*a].total_cmp(&height[*b]))
+        && height[next] > height[at]
+    {
+        at = next;
+    }
+    at
 }

@@ -1,5 +1,7 @@
 //! Welds: two distant points of a surface become one.
 
+use std::collections::HashSet;
+
 use mesh::TriMesh;
 use nalgebra::Point3;
 use surface::{OneRing, Topology, VertexId};
@@ -18,9 +20,18 @@ const DRAWS: usize = 12;
 /// Radius of the bump by which two near points are pushed together, relative to the gap between them.
 const BUMP: f64 = 2.0;
 
-/// Two vertices with disjoint faces, far apart on the surface; `None` if there are none.
-fn pair(mesh: &TriMesh, edges: &Edges, draw: WeldPair, stream: &mut Stream) -> Option<[usize; 2]> {
-    let used: Vec<usize> = (0..mesh.n_vertices()).filter(|v| edges.is_used(*v)).collect();
+/// Two vertices with disjoint faces, far apart on the surface and not beside those of earlier welds; `None` if there are none.
+fn pair(
+    mesh: &TriMesh,
+    edges: &Edges,
+    draw: WeldPair,
+    earlier: &HashSet<usize>,
+    stream: &mut Stream,
+) -> Option<[usize; 2]> {
+    let is_free = |v: &usize| {
+        edges.is_used(*v) && !earlier.contains(v) && !edges.near(*v).any(|near| earlier.contains(&near))
+    };
+    let used: Vec<usize> = (0..mesh.n_vertices()).filter(is_free).collect();
     if used.is_empty() {
         return None;
     }
@@ -74,15 +85,17 @@ fn push(mesh: &mut TriMesh, edges: &Edges, ends: [usize; 2]) {
 /// Merges `n` pairs of vertices. Random pairs meet in their middle, which leaves spikes.
 pub(super) fn weld(mesh: &TriMesh, draw: WeldPair, n: u32, stream: &mut Stream) -> TriMesh {
     let mut welded = mesh.clone();
+    let mut earlier = HashSet::new();
     for _ in 0..n {
         let edges = Edges::of(&welded);
-        let Some([a, b]) = pair(&welded, &edges, draw, stream) else { break };
+        let Some([a, b]) = pair(&welded, &edges, draw, &earlier, stream) else { break };
         match draw {
             WeldPair::Near => push(&mut welded, &edges, [a, b]),
             WeldPair::Random => {
                 welded.positions[a] = nalgebra::center(&welded.positions[a], &welded.positions[b]);
             }
         }
+        earlier.insert(a);
         let (kept, gone) = (VertexId::from(a), VertexId::from(b));
         welded.faces.iter_mut().flatten().filter(|v| **v == gone).for_each(|v| *v = kept);
     }
@@ -93,13 +106,15 @@ pub(super) fn weld(mesh: &TriMesh, draw: WeldPair, n: u32, stream: &mut Stream) 
 /// boundaries.
 pub(super) fn contact(mesh: &TriMesh, n: u32, stream: &mut Stream) -> TriMesh {
     let mut joined = mesh.clone();
+    let mut earlier = HashSet::new();
     for _ in 0..n {
         let edges = Edges::of(&joined);
-        let Some(ends) = pair(&joined, &edges, WeldPair::Near, stream) else { break };
+        let Some(ends) = pair(&joined, &edges, WeldPair::Near, &earlier, stream) else { break };
         let topology = Topology::new(joined.n_vertices(), joined.faces.clone());
         let [Some(a), Some(b)] = ends.map(|v| rim(&topology, VertexId::from(v))) else { continue };
         push(&mut joined, &edges, ends);
         joined.faces.retain(|face| !face.iter().any(|v| ends.contains(&v.index())));
+        earlier.extend(a.iter().chain(&b).map(|v| v.index()));
         let strip = strip(&a, &b, &joined.positions);
         joined.faces.extend(strip);
     }

@@ -25,6 +25,28 @@ fn info_reports_what_a_mesh_contains() {
 }
 
 #[test]
+fn info_names_places_where_distant_parts_are_joined() {
+    let place = Workplace::new();
+    let mut welded = mesh::shapes::icosphere(3);
+    let highest = (0..welded.n_vertices())
+        .max_by(|a, b| (welded.positions[*a].z).total_cmp(&welded.positions[*b].z))
+        .map(surface::VertexId::from);
+    let lowest = (0..welded.n_vertices())
+        .min_by(|a, b| (welded.positions[*a].z).total_cmp(&welded.positions[*b].z))
+        .map(surface::VertexId::from);
+    let (top, bottom) = highest.zip(lowest).unwrap();
+    welded.faces.iter_mut().flatten().filter(|v| **v == bottom).for_each(|v| *v = top);
+    place.add("welded.off", &welded);
+    let text = place.done(&["info", "welded.off"]).out;
+    assert!(text.contains("probable shortcut") && text.contains(&format!("vertex {}", top.0)), "{text}");
+    let json = place.json(&["info", "welded.off"]);
+    let shortcuts = json["meshes"][0]["shortcuts"].as_array().unwrap();
+    assert_eq!((shortcuts.len(), shortcuts[0]["kind"].as_str()), (1, Some("pinch")));
+    assert!(shortcuts[0]["detour"].as_f64().unwrap() > 2.5, "{shortcuts:?}");
+    assert_eq!(shortcuts[0]["vertex"], top.0);
+}
+
+#[test]
 fn geodesic_keeps_the_contract_of_its_json() {
     let place = Workplace::new();
     place.add("broken.off", &broken_ring());

@@ -13,16 +13,21 @@ use crate::tri_mesh::TriMesh;
 /// has 1; where two flat surfaces meet in a small contact, each side has 1 + π.
 const FLARE: f64 = 1.6;
 
-/// Cuts the narrowest handle that is a shortcut.
-pub(super) fn cut(mesh: &TriMesh, girth: f64) -> Option<(Refined, Shortcut)> {
+/// Cuts the narrowest handle that is at most `girth` around and joins sides that are otherwise at least `detour` apart.
+pub(super) fn cut(mesh: &TriMesh, girth: f64, detour: f64) -> Option<(Refined, Shortcut)> {
     let topology = Topology::new(mesh.n_vertices(), mesh.faces.clone());
     let length = |[a, b]: &[VertexId; 2]| (mesh.positions[a.index()] - mesh.positions[b.index()]).norm();
     let lengths: Vec<f64> = topology.edges().iter().map(length).collect();
-    short_loops(&topology, &lengths, girth).iter().find_map(|around| opened(mesh, &topology, around))
+    short_loops(&topology, &lengths, girth).iter().find_map(|around| opened(mesh, &topology, around, detour))
 }
 
 /// The surface cut along a loop, if the loop goes around a shortcut.
-fn opened(mesh: &TriMesh, topology: &Topology, around: &SurfaceLoop) -> Option<(Refined, Shortcut)> {
+fn opened(
+    mesh: &TriMesh,
+    topology: &Topology,
+    around: &SurfaceLoop,
+    least: f64,
+) -> Option<(Refined, Shortcut)> {
     let (cut, sides) = cut_along(mesh, topology, &around.vertices)?;
     let areas = cut.mesh.vertex_areas();
     let graph = Graph::of(&cut.mesh);
@@ -30,14 +35,11 @@ fn opened(mesh: &TriMesh, topology: &Topology, around: &SurfaceLoop) -> Option<(
         let near = graph.within(side, around.length, |_| false);
         near.iter().map(|(v, _)| areas[v.index()]).sum::<f64>() / (around.length * around.length)
     };
-    if sides.iter().any(|side| flare(side) < FLARE) {
-        return None;
-    }
+    let widens = sides.iter().all(|side| flare(side) >= FLARE);
     let detour = graph.between(&sides[0], &sides[1]);
-    // A loop that separates would leave no way around.
     let shortcut =
         Shortcut { kind: ShortcutKind::Handle, vertex: around.vertices[0], girth: around.length, detour };
-    detour.is_finite().then_some((cut, shortcut))
+    (widens && detour >= least && detour.is_finite()).then_some((cut, shortcut))
 }
 
 /// The mesh with two copies of every vertex of a loop, one for each side, and the loop on both sides; `None` if the loop has
@@ -150,8 +152,8 @@ mod tests {
         let report = validate(&filled);
         assert_eq!((report.genus, report.n_boundary_edges, report.n_components), (Some(0), 0, 1));
         assert_eq!(opened.refined.mesh.positions[..mesh.n_vertices()], mesh.positions);
-        // It is wider than that.
-        assert!(cut(&mesh, 0.2).is_none());
+        // It is wider than that, and its sides are nearer.
+        assert!(cut(&mesh, 0.2, 0.0).is_none() && cut(&mesh, 1.0, 9.0).is_none());
     }
 
     #[test]
@@ -162,7 +164,7 @@ mod tests {
             (shapes::torus(60, 20, 2.0, 0.7), 6.0),
             (shapes::icosphere(3), 100.0),
         ] {
-            assert_eq!(cut(&mesh, girth), None);
+            assert_eq!(cut(&mesh, girth, 0.0), None);
             assert_eq!(cut_shortcuts(&mesh).refined.mesh, mesh);
         }
     }

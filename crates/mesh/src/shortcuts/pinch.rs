@@ -4,7 +4,7 @@ use nalgebra::Point3;
 use surface::{CornerId, DisjointSets, EdgeId, OneRing, Topology, VertexId, components_of_faces};
 
 use super::reach::Graph;
-use super::{Opened, Shortcut, ShortcutKind};
+use super::{MOST, Opened, Shortcut, ShortcutKind};
 use crate::refine::Refined;
 use crate::spikes::flattened;
 use crate::tri_mesh::TriMesh;
@@ -13,8 +13,8 @@ use crate::tri_mesh::TriMesh;
 /// families with 3,400 vertices, 99.99 % are below it.
 const PULLED: f64 = 1.5;
 
-/// Splits shared vertices, unless that would take the surface apart.
-pub(super) fn cut(mesh: &TriMesh) -> Opened {
+/// Splits vertices that parts of the surface share which are otherwise at least `detour` apart and not in two pieces.
+pub(super) fn cut(mesh: &TriMesh, detour: f64) -> Opened {
     let n = mesh.n_vertices();
     let topology = Topology::new(n, mesh.faces.clone());
     let mut faces = mesh.faces.clone();
@@ -28,31 +28,52 @@ pub(super) fn cut(mesh: &TriMesh) -> Opened {
             sheet.into_iter().for_each(|corner| faces[corner.face().index()][corner.slot()] = copy);
         }
     }
+    if origins.is_empty() {
+        return Opened { refined: Refined { mesh: mesh.clone(), origins }, shortcuts: Vec::new() };
+    }
     // A vertex stays shared where it connects what is otherwise not connected.
     let pieces = components_of_faces(n + origins.len(), &faces);
     let piece = |v: VertexId| pieces.of(v) as u32;
     let mut connected = DisjointSets::new(pieces.count.max(1));
-    let mut kept = Vec::new();
-    let mut number = vec![VertexId(0); origins.len()];
-    for (i, &origin) in origins.iter().enumerate() {
-        number[i] = match connected.union(piece(origin), piece(VertexId::from(n + i))) {
-            true => origin,
-            false => {
-                kept.push(origin);
-                VertexId::from(n + kept.len() - 1)
-            }
-        };
+    let copies = origins.iter().enumerate().map(|(i, origin)| (*origin, VertexId::from(n + i)));
+    let separate: Vec<bool> =
+        copies.map(|(origin, copy)| !connected.union(piece(origin), piece(copy))).collect();
+    let split = with_copies(mesh, &faces, &origins, &separate);
+    // And where its parts meet nearby.
+    let graph = Graph::of(&split.mesh);
+    let copy = |i: usize| VertexId::from(n + i);
+    let is_far =
+        |(i, origin): (usize, &VertexId)| graph.between_within(&[*origin], &[copy(i)], detour).is_infinite();
+    let mut far: Vec<bool> = split.origins.iter().enumerate().map(is_far).collect();
+    if far.iter().filter(|far| **far).count() > MOST {
+        far.fill(false);
     }
-    for v in faces.iter_mut().flatten().filter(|v| v.index() >= n) {
-        *v = number[v.index() - n];
-    }
-    let positions = mesh.positions.iter().copied();
-    let copies = kept.iter().map(|origin| mesh.positions[origin.index()]);
-    let mesh = TriMesh { positions: positions.chain(copies).collect(), faces };
-    let mut refined = Refined { mesh, origins: kept };
+    let mut refined = with_copies(mesh, &split.mesh.faces, &split.origins, &far);
     put_back(&mut refined, n);
     let shortcuts = shortcuts(&refined, n);
     Opened { refined, shortcuts }
+}
+
+/// The mesh with those copies of vertices that are `kept`; in `faces`, copies follow the vertices of the mesh.
+fn with_copies(mesh: &TriMesh, faces: &[[VertexId; 3]], origins: &[VertexId], kept: &[bool]) -> Refined {
+    let n = mesh.n_vertices();
+    let mut left = Vec::new();
+    let number: Vec<VertexId> = origins
+        .iter()
+        .zip(kept)
+        .map(|(&origin, kept)| {
+            if !kept {
+                return origin;
+            }
+            left.push(origin);
+            VertexId::from(n + left.len() - 1)
+        })
+        .collect();
+    let renumbered = |v: VertexId| if v.index() < n { v } else { number[v.index() - n] };
+    let copies = left.iter().map(|origin| mesh.positions[origin.index()]);
+    let positions = mesh.positions.iter().copied().chain(copies).collect();
+    let faces = faces.iter().map(|face| face.map(renumbered)).collect();
+    Refined { mesh: TriMesh { positions, faces }, origins: left }
 }
 
 /// The corners at a vertex, by the parts of the surface that have only this vertex, or welded edges, in common.
@@ -140,10 +161,11 @@ mod tests {
     fn a_welded_vertex_is_split_and_goes_back_into_its_surface() {
         let ball = shapes::icosphere(4);
         let ends = [nearest(&ball, [0.0, 0.0, 1.0]), nearest(&ball, [1.0, 0.0, 0.0])];
-        let opened = cut(&welded(ball.clone(), ends));
+        let opened = cut(&welded(ball.clone(), ends), 1.0);
         let [shortcut] = opened.shortcuts[..] else { panic!("{:?}", opened.shortcuts) };
         assert_eq!((shortcut.kind, shortcut.vertex), (ShortcutKind::Pinch, ends[0]));
         assert!((shortcut.detour - 1.57).abs() < 1.0, "{}", shortcut.detour);
+        assert_eq!(cut(&welded(ball.clone(), ends), 2.0).refined.mesh, welded(ball.clone(), ends));
         let mesh = opened.refined.mesh;
         let report = validate(&mesh);
         assert_eq!((report.non_manifold_vertices, report.genus), (0, None));
@@ -158,12 +180,12 @@ mod tests {
         let two = shapes::disjoint(&[shapes::icosphere(2), shapes::icosphere(2)]);
         let n = shapes::icosphere(2).n_vertices();
         let once = welded(two.clone(), [VertexId(3), VertexId::from(n + 5)]);
-        let opened = cut(&once);
+        let opened = cut(&once, 0.5);
         assert!(opened.shortcuts.is_empty());
         assert_eq!(opened.refined.mesh, once);
         // A second shared vertex is a shortcut.
         let twice = welded(once, [VertexId(100), VertexId::from(n + 70)]);
-        let opened = cut(&twice);
+        let opened = cut(&twice, 0.5);
         assert_eq!(opened.shortcuts.len(), 1);
         let connected = components_of_faces(opened.refined.mesh.n_vertices(), &opened.refined.mesh.faces);
         assert_eq!(connected.count, 1);
@@ -179,13 +201,13 @@ mod tests {
         let ([a, b, _], [c, d, _]) = (face([0.0, 0.0, 1.0]), face([0.0, 1.0, 0.0]));
         let seam = welded(welded(ball.clone(), [a, d]), [b, c]);
         assert!(validate(&seam).non_manifold_edges > 0);
-        let opened = cut(&seam);
+        let opened = cut(&seam, 0.5);
         let report = validate(&opened.refined.mesh);
         assert_eq!((report.non_manifold_edges, report.n_boundary_edges, opened.shortcuts.len()), (0, 0, 2));
         let mut fin = shapes::grid(5, 5, 1.0);
         let tip = VertexId::from(fin.n_vertices());
         fin.positions.push(Point3::new(2.0, 2.0, 1.0));
         fin.faces.push([VertexId(12), VertexId(13), tip]);
-        assert_eq!(cut(&fin).refined.mesh, fin);
+        assert_eq!(cut(&fin, 0.0).refined.mesh, fin);
     }
 }

@@ -72,7 +72,12 @@ impl Graph {
 
     /// The distance between two sets of vertices; infinite if there is no path.
     pub(super) fn between(&self, sources: &[VertexId], targets: &[VertexId]) -> f64 {
-        let found = self.within(sources, f64::INFINITY, |v| targets.contains(&v));
+        self.between_within(sources, targets, f64::INFINITY)
+    }
+
+    /// The distance between two sets of vertices; infinite beyond `radius`.
+    pub(super) fn between_within(&self, sources: &[VertexId], targets: &[VertexId], radius: f64) -> f64 {
+        let found = self.within(sources, radius, |v| targets.contains(&v));
         found.last().filter(|(v, _)| targets.contains(v)).map_or(f64::INFINITY, |(_, distance)| *distance)
     }
 }
