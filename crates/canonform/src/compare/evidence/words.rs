@@ -27,6 +27,11 @@ impl Display for MatchEvidence {
                 write!(f, "{b} is {probably}{a} {}", self.pose())?;
                 self.write_changes(f, ", ")
             }
+            (EvidenceKind::SameClass, _)
+                if self.confidence < FIRM && self.verdict.same_shape > 1.0 - FIRM =>
+            {
+                write!(f, "{b} is of the same class as {a}, and perhaps {a} in another pose")
+            }
             (EvidenceKind::SameClass, _) => {
                 write!(f, "{b} is {probably}of the same class as {a}, but another shape")
             }
