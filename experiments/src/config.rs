@@ -43,6 +43,15 @@ pub(crate) struct Config {
     /// Number of nearest neighbours that vote.
     #[serde(default = "one")]
     pub(crate) knn: usize,
+    /// Training shapes of each class, for classification over random splits.
+    #[serde(default)]
+    pub(crate) training: Vec<usize>,
+    /// Number of random splits.
+    #[serde(default = "one")]
+    pub(crate) splits: usize,
+    /// Most shapes whose forms are all aligned with each other.
+    #[serde(default)]
+    pub(crate) aligned: usize,
     #[serde(default)]
     pub(crate) expect: Vec<Bound>,
     /// What the results show.

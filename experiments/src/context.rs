@@ -8,7 +8,7 @@ use anyhow::Result;
 use canonform::{FormOptions, Observer, StressChoice};
 use geodesics::{Sampling, Variance};
 use linalg::LandmarkDistances;
-use report::results::{CurvesPanel, CurvesResults, Expectation, Provenance, Record, Series};
+use report::results::{CurvesPanel, CurvesResults, Expectation, Provenance, Published, Record, Series};
 use report::{Results, save};
 use terminal::Bars;
 
@@ -28,6 +28,8 @@ pub(crate) struct Context<'a> {
     pub(crate) specimens: &'a [Specimen<'a>],
     pub(crate) seed: u64,
     pub(crate) folder: &'a Path,
+    /// Published scores to stand beside those measured.
+    pub(crate) published: Option<&'a Published>,
     /// The command line that repeats the run.
     pub(crate) command: String,
     /// Its options, each after a space.

@@ -6,9 +6,9 @@ use std::process::ExitCode;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;
 
-use anyhow::Result;
+use anyhow::{Context as _, Result};
 use report::page::write_report;
-use report::results::{Provenance, provenance};
+use report::results::{Provenance, Published, provenance};
 use terminal::{Bars, on_interruption};
 
 use crate::args::RunArgs;
@@ -34,6 +34,7 @@ pub(crate) fn run(args: &RunArgs) -> Result<ExitCode> {
     }
     let finished = Arc::new(Mutex::new(finished));
     keep_finished(args, Arc::clone(&finished));
+    let published = args.compare.as_deref().map(published).transpose()?;
     if !open.is_empty() {
         let bars = Bars::new(args.quiet);
         let collection = Collection::load(&args.source, &bars)?;
@@ -46,6 +47,7 @@ pub(crate) fn run(args: &RunArgs) -> Result<ExitCode> {
                 specimens: &specimens,
                 seed: args.source.seed,
                 folder: &args.output,
+                published: published.as_ref(),
                 command: args.command(),
                 arguments: args.arguments(),
                 observer: &bars,
@@ -57,6 +59,12 @@ pub(crate) fn run(args: &RunArgs) -> Result<ExitCode> {
         }
     }
     report(&args.output, None)
+}
+
+/// Reads published scores.
+fn published(path: &Path) -> Result<Published> {
+    let text = std::fs::read_to_string(path).with_context(|| path.display().to_string())?;
+    toml::from_str(&text).with_context(|| path.display().to_string())
 }
 
 /// Whether the folder has the record of an experiment that this program would make again.
@@ -107,4 +115,37 @@ pub(crate) fn report(folder: &Path, markdown: Option<&Path>) -> Result<ExitCode>
         writeln!(out, "summary: {}", path.display())?;
     }
     Ok(ExitCode::SUCCESS)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_files_of_published_scores_can_be_read() {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("published");
+        let files: Vec<_> = std::fs::read_dir(folder).unwrap().map(|file| file.unwrap().path()).collect();
+        assert!(!files.is_empty());
+        for path in files {
+            let found = published(&path).unwrap();
+            assert!(!found.method.is_empty(), "{}", path.display());
+            for method in &found.method {
+                let scores = [method.nn, method.ft, method.st, method.e, method.dcg, method.map];
+                assert!(
+                    !method.source.is_empty() && scores.iter().flatten().all(|s| (0.0..=1.0).contains(s))
+                );
+                assert!(scores.iter().any(Option::is_some), "{}", method.name);
+            }
+        }
+    }
+
+    #[test]
+    fn an_unknown_score_is_an_error_that_names_it() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.toml");
+        std::fs::write(&path, "collection = \"c\"\n[[method]]\nname = \"m\"\nsource = \"s\"\nftt = 1.0\n")
+            .unwrap();
+        let fault = format!("{:#}", published(&path).unwrap_err());
+        assert!(fault.contains("a.toml") && fault.contains("ftt"), "{fault}");
+    }
 }

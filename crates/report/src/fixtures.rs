@@ -43,6 +43,8 @@ pub(crate) fn evaluation() -> Evaluation {
         knn_k: 3,
         confusion: vec![vec![3, 0], vec![0, 2]],
         silhouette: -0.125,
+        intervals: None,
+        graph: None,
     }
 }
 
@@ -136,6 +138,7 @@ pub(crate) fn retrieval_record() -> Record<RetrievalResults> {
         knn_accuracy: 0.9,
         held_out_map: 0.625,
         precision: vec![1.0, 0.9, 0.6],
+        rankings: None,
     };
     let results = RetrievalResults {
         names: ["cat0", "cat1", "a0", "a1"].map(String::from).into(),
@@ -158,6 +161,8 @@ pub(crate) fn retrieval_record() -> Record<RetrievalResults> {
             missed: 0.25,
             mistaken: 0.0,
         },
+        protocol: Vec::new(),
+        published: None,
     };
     recorded(results, "Near is alike.")
 }

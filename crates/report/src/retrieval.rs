@@ -4,7 +4,10 @@ use crate::classes::Classes;
 use crate::error::ReportError;
 use crate::figure::{Axis, Content, Figure, Heat, Plot, Point, Series, Shape, Style};
 use crate::record::Results;
-use crate::results::{self, AxisScale, Classification, Misclassified, RetrievalResults, RetrievalRow, Scale};
+use crate::results::{
+    self, AxisScale, Classification, Misclassified, Published, PublishedMethod, RankedScores,
+    RetrievalResults, RetrievalRow, Scale,
+};
 use crate::table::{Cell, SCORES, Table, scores, scores_caption};
 
 /// The scales in the order of the panels, with their titles and their names in tables.
@@ -92,6 +95,61 @@ fn misclassified(c: &Classification) -> Table {
     Table::new(caption, headings, c.misclassified.iter().map(row).collect())
 }
 
+/// The ranking by distance and that on the graph, line by line, and published scores below them.
+fn rankings(rows: &[RetrievalRow], published: Option<&Published>, protocol: &[String]) -> Option<Table> {
+    let trained: Vec<usize> = rows
+        .iter()
+        .filter_map(|row| row.rankings.as_ref())
+        .flat_map(|both| both.plain.splits.iter().map(|split| split.n_train))
+        .fold(Vec::new(), |mut sizes, n_train| {
+            if !sizes.contains(&n_train) {
+                sizes.push(n_train);
+            }
+            sizes
+        });
+    let line = |row: &RetrievalRow, ranking: &str, ranked: &RankedScores| {
+        let mut cells = vec![Cell::text(&row.method), Cell::text(row.scale.name()), Cell::text(ranking)];
+        cells.extend(scores(&ranked.micro).map(Cell::score));
+        let interval = &ranked.micro_intervals;
+        cells.push(Cell::number(format!("{:.3} to {:.3}", interval.low.map, interval.high.map)));
+        cells.extend(
+            [ranked.macro_average.nn, ranked.macro_average.map, ranked.knn_accuracy].map(Cell::score),
+        );
+        for n_train in &trained {
+            let split = ranked.splits.iter().find(|split| split.n_train == *n_train);
+            cells.push(Cell::optional(split.map(|s| format!("{:.3} ± {:.3}", s.mean, s.deviation))));
+        }
+        cells
+    };
+    let mut lines = Vec::new();
+    for row in rows {
+        if let Some(both) = &row.rankings {
+            lines.push(line(row, "plain", &both.plain));
+            lines.push(line(row, "graph", &both.graph));
+        }
+    }
+    let published_line = |method: &PublishedMethod| {
+        let ranking = if method.uses_collection { "published, uses the collection" } else { "published" };
+        let mut cells = vec![Cell::text(&method.name), Cell::text(""), Cell::text(ranking)];
+        let own = [method.nn, method.ft, method.st, method.e, method.dcg, method.map];
+        cells.extend(own.map(|score| score.map_or(Cell::Missing, Cell::score)));
+        cells.extend((0..4 + trained.len()).map(|_| Cell::Missing));
+        cells
+    };
+    lines.extend(published.into_iter().flat_map(|published| &published.method).map(published_line));
+    let splits: Vec<String> = trained.iter().map(|n| format!("1-NN, {n} a class")).collect();
+    let headings = ["method", "size", "ranking"].into_iter().chain(SCORES);
+    let headings = headings.chain(["mAP interval", "macro NN", "macro mAP", "k-NN"]);
+    let headings = headings.chain(splits.iter().map(String::as_str));
+    let mut caption = protocol.join(" ");
+    if let Some(published) = published {
+        let sources: Vec<String> =
+            published.method.iter().map(|m| format!("{}: {}", m.name, m.source)).collect();
+        caption += &format!(" Published scores are on {}. {}.", published.collection, sources.join("; "));
+    }
+    (!lines.is_empty()).then(|| Table::new(caption, headings, lines))
+}
+
 impl Results for RetrievalResults {
     fn validate(&self) -> Result<(), ReportError> {
         let Classification { classes, confusion, .. } = &self.classification;
@@ -151,7 +209,8 @@ impl Results for RetrievalResults {
                        The thresholds are found without the class they are tested on.";
         let values = [c.missed, c.mistaken, c.threshold].map(Cell::score).to_vec();
         let unknown = Table::new(caption, ["missed", "mistaken", "threshold"], vec![values]);
-        vec![all, misclassified(c), unknown.folded("Unknown shapes")]
+        let both = rankings(&self.rows, self.published.as_ref(), &self.protocol);
+        both.into_iter().chain([all, misclassified(c), unknown.folded("Unknown shapes")]).collect()
     }
 }
 
@@ -181,6 +240,60 @@ mod tests {
         for text in ["cat", "a &amp; b", "unknown", "true class"] {
             assert!(svg[1].contains(text), "{text}");
         }
+    }
+
+    #[test]
+    fn both_rankings_stand_above_published_scores() {
+        let mut results = retrieval_record().results;
+        assert_eq!(results.tables().len(), 3, "a record without the graph");
+        let scores = results.rows[0].micro;
+        let level =
+            ::retrieval::ScoreIntervals { level: 0.95, resamples: 9, seed: 0, low: scores, high: scores };
+        let split = ::retrieval::SplitAccuracy {
+            n_train: 10,
+            runs: 3,
+            n_classes: 2,
+            n_test: 4,
+            mean: 0.75,
+            deviation: 0.125,
+        };
+        let ranked = RankedScores {
+            micro: scores,
+            micro_intervals: level,
+            macro_average: scores,
+            macro_intervals: level,
+            knn_accuracy: 0.9,
+            splits: vec![split],
+        };
+        results.rows[0].rankings = Some(results::BothRankings { plain: ranked.clone(), graph: ranked });
+        let method = PublishedMethod {
+            name: "theirs".into(),
+            source: "a paper".into(),
+            ft: Some(0.5),
+            ..PublishedMethod::default()
+        };
+        results.published = Some(Published {
+            collection: "a benchmark".into(),
+            shapes: None,
+            classes: None,
+            method: vec![method],
+        });
+        results.protocol = vec!["Every shape is a query.".into()];
+        let table = &results.tables()[0];
+        let text = table.to_text();
+        for words in
+            ["plain", "graph", "published", "0.875 to 0.875", "0.750 ± 0.125", "1-NN, 10 a class", "0.500"]
+        {
+            assert!(text.contains(words), "{words}: {text}");
+        }
+        assert!(
+            table
+                .caption
+                .contains("Every shape is a query. Published scores are on a benchmark. theirs: a paper.")
+        );
+        assert!(table.rows.iter().all(|row| row.len() == table.headings.len()));
+        let json = serde_json::to_string(&results).unwrap();
+        assert_eq!(serde_json::from_str::<RetrievalResults>(&json).unwrap(), results);
     }
 
     #[test]

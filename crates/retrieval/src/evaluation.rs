@@ -3,7 +3,21 @@
 use linalg::DistanceMatrix;
 use serde::{Deserialize, Serialize};
 
-use crate::{Averaging, Labels, RetrievalError, Scores, mean_scores, rank, silhouette, vote};
+use crate::{
+    Averaging, BootstrapOptions, GraphRankings, Labels, QueryScores, Rankings, RetrievalError,
+    ScoreIntervals, Scores, bootstrap, mean_scores, silhouette, vote,
+};
+
+/// How shapes are ordered.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum RankBy {
+    /// By distance.
+    #[default]
+    Plain,
+    /// By distance and by neighbours in common, see [`graph_rank`](crate::graph_rank).
+    Graph,
+}
 
 /// How well the distances of a matrix separate labelled shapes; see [`evaluate`].
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -23,6 +37,26 @@ pub struct Evaluation {
     pub confusion: Vec<Vec<usize>>,
     /// Mean silhouette of the classes, in -1..=1.
     pub silhouette: f64,
+    /// Confidence intervals of the mean scores.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub intervals: Option<ScoreIntervals>,
+    /// The same scores of the ranking on the neighbour graph; all others are those of the ranking by distance.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub graph: Option<GraphEvaluation>,
+}
+
+/// Scores of the ranking on the neighbour graph, which uses the rest of the collection without its classes.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct GraphEvaluation {
+    /// Mean retrieval scores over the queries; in JSON keys of this object.
+    #[serde(flatten)]
+    pub mean: Scores,
+    /// Leave-one-out k-nearest-neighbour accuracy, in 0..=1.
+    pub knn_accuracy: f64,
+    /// `confusion[true class][predicted class]`: counts of the leave-one-out k-NN vote.
+    pub confusion: Vec<Vec<usize>>,
+    /// Confidence intervals of the mean scores.
+    pub intervals: ScoreIntervals,
 }
 
 /// Scores a labelled distance matrix.
@@ -53,43 +87,84 @@ pub fn evaluate(
     knn_k: usize,
 ) -> Result<Evaluation, RetrievalError> {
     let mean = mean_scores(distances, labels, Averaging::Micro)?;
-    let confusion = confusion_matrix(distances, labels, knn_k)?;
-    let correct: usize = confusion.iter().enumerate().map(|(class, row)| row[class]).sum();
-    let n_queries: usize = confusion.iter().flatten().sum();
+    let (confusion, knn_accuracy) = classified(distances, labels, knn_k)?;
     Ok(Evaluation {
         n: distances.n_points(),
         classes: labels.classes().to_vec(),
         mean,
-        knn_accuracy: correct as f64 / n_queries as f64,
+        knn_accuracy,
         knn_k,
         confusion,
         silhouette: silhouette(distances, labels),
+        intervals: None,
+        graph: None,
     })
 }
 
-/// The most frequent class among the `k` nearest other shapes; ties go to the class of the nearest of them.
-fn knn_predict(
+/// As [`evaluate`], with confidence intervals, and with the scores of the neighbour graph beside those of the distances if
+/// `rank_by` asks for it.
+///
+/// # Errors
+/// Those of [`evaluate`].
+pub fn evaluate_ranked(
     distances: &DistanceMatrix,
+    labels: &Labels,
+    knn_k: usize,
+    rank_by: RankBy,
+) -> Result<Evaluation, RetrievalError> {
+    let plain =
+        Evaluation { intervals: Some(scored(distances, labels)?.1), ..evaluate(distances, labels, knn_k)? };
+    if rank_by == RankBy::Plain {
+        return Ok(plain);
+    }
+    let rankings = GraphRankings::new(distances);
+    let (mean, intervals) = scored(&rankings, labels)?;
+    let (confusion, knn_accuracy) = classified(&rankings, labels, knn_k)?;
+    Ok(Evaluation { graph: Some(GraphEvaluation { mean, knn_accuracy, confusion, intervals }), ..plain })
+}
+
+/// Mean scores over queries and their intervals.
+fn scored(rankings: &impl Rankings, labels: &Labels) -> Result<(Scores, ScoreIntervals), RetrievalError> {
+    let scores = QueryScores::new(rankings, labels)?;
+    let intervals = bootstrap(&scores, labels, Averaging::Micro, &BootstrapOptions::default())?;
+    Ok((scores.mean(labels, Averaging::Micro), intervals))
+}
+
+/// The confusion matrix of the leave-one-out vote and its accuracy.
+fn classified(
+    rankings: &impl Rankings,
+    labels: &Labels,
+    knn_k: usize,
+) -> Result<(Vec<Vec<usize>>, f64), RetrievalError> {
+    let confusion = confusion_matrix(rankings, labels, knn_k)?;
+    let correct: usize = confusion.iter().enumerate().map(|(class, row)| row[class]).sum();
+    let n_queries: usize = confusion.iter().flatten().sum();
+    Ok((confusion, correct as f64 / n_queries as f64))
+}
+
+/// The most frequent class among the `k` first other shapes; ties go to the class of the first of them.
+fn knn_predict(
+    rankings: &impl Rankings,
     labels: &Labels,
     query: usize,
     k: usize,
 ) -> Result<usize, RetrievalError> {
-    let available = distances.n_points() - 1;
-    let winner = vote(&rank(distances, query), |i| labels.class(i), k, None).class;
+    let available = rankings.n_points() - 1;
+    let winner = vote(&rankings.ranking(query), |i| labels.class(i), k, None).class;
     winner.ok_or(RetrievalError::BadNeighborCount { k, available })
 }
 
-/// `matrix[true class][predicted class]`: classifies each shape whose class has more than two members by the `k`
-/// nearest of all others.
+/// `matrix[true class][predicted class]`: classifies each shape whose class has more than two members by the first `k` of
+/// all others.
 fn confusion_matrix(
-    distances: &DistanceMatrix,
+    rankings: &impl Rankings,
     labels: &Labels,
     k: usize,
 ) -> Result<Vec<Vec<usize>>, RetrievalError> {
     let n_classes = labels.classes().len();
     let mut matrix = vec![vec![0; n_classes]; n_classes];
     for i in (0..labels.n_points()).filter(|&i| labels.is_query(i)) {
-        matrix[labels.class(i)][knn_predict(distances, labels, i, k)?] += 1;
+        matrix[labels.class(i)][knn_predict(rankings, labels, i, k)?] += 1;
     }
     Ok(matrix)
 }
@@ -137,6 +212,22 @@ mod tests {
             evaluate(&matrix, &Labels::new(&["a"]), 1),
             Err(RetrievalError::LabelCount { n_labels: 1, n_points: 5 })
         );
+    }
+
+    #[test]
+    fn the_graph_stands_beside_the_plain_ranking() {
+        let (matrix, labels) = two_clusters(0.5);
+        let plain = evaluate_ranked(&matrix, &labels, 1, RankBy::Plain).unwrap();
+        let both = evaluate_ranked(&matrix, &labels, 1, RankBy::Graph).unwrap();
+        assert_eq!(Evaluation { graph: None, ..both.clone() }, plain);
+        assert_eq!(Evaluation { intervals: None, ..plain }, evaluate(&matrix, &labels, 1).unwrap());
+        let graph = both.graph.clone().unwrap();
+        let rankings = GraphRankings::new(&matrix);
+        assert_eq!(graph.mean, mean_scores(&rankings, &labels, Averaging::Micro).unwrap());
+        assert_eq!(graph.confusion.iter().flatten().sum::<usize>(), 9);
+        let json = serde_json::to_value(&both).unwrap();
+        assert_eq!((&json["graph"]["map"], &json["map"]), (&graph.mean.map.into(), &both.mean.map.into()));
+        assert_eq!(serde_json::from_value::<Evaluation>(json).unwrap(), both);
     }
 
     #[test]

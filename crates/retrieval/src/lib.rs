@@ -1,6 +1,7 @@
 //! Retrieval from distances: rankings, scores, votes, and search with an expensive distance.
 //!
-//! `linalg::DistanceMatrix` -> [`rank`] -> **[`evaluate`]** -> [`Evaluation`]
+//! `linalg::DistanceMatrix` -> [`Rankings`] by distance or on the [neighbour graph](graph_rank) -> **[`evaluate`]** ->
+//! [`Evaluation`]
 //!
 //! Works on distances and labels alone; it knows nothing of meshes, files, or how distances were measured.
 //!
@@ -18,22 +19,28 @@
 //! # Ok::<(), canonform_retrieval::RetrievalError>(())
 //! ```
 
+mod bootstrap;
 mod clustering;
 mod error;
 mod evaluation;
+mod graph;
 mod labels;
 mod pairwise;
 mod ranking;
 mod refinement;
 mod scores;
+mod splits;
 mod vote;
 
+pub use bootstrap::{BootstrapOptions, ScoreIntervals, bootstrap};
 pub use clustering::silhouette;
 pub use error::RetrievalError;
-pub use evaluation::{Evaluation, evaluate};
+pub use evaluation::{Evaluation, GraphEvaluation, RankBy, evaluate, evaluate_ranked};
+pub use graph::{Graph, GraphNeighbor, GraphRankings, LINKS, graph_rank};
 pub use labels::Labels;
 pub use pairwise::pairwise_distances;
-pub use ranking::{Neighbor, rank};
+pub use ranking::{Neighbor, Rankings, rank};
 pub use refinement::{Candidate, Refinement, refine_nearest};
-pub use scores::{Averaging, Scores, mean_scores, precision_recall};
+pub use scores::{Averaging, QueryScores, Scores, mean_scores, precision_recall};
+pub use splits::{SplitAccuracy, SplitOptions, split_accuracy};
 pub use vote::{Tally, UnknownThreshold, Vote, vote};

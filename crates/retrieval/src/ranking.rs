@@ -18,6 +18,28 @@ impl Neighbor {
     }
 }
 
+/// The ranking of all other shapes for every shape of a collection.
+///
+/// Scores need only this. A [`DistanceMatrix`] ranks by distance, [`GraphRankings`](crate::GraphRankings) on the
+/// neighbour graph.
+pub trait Rankings: Sync {
+    /// Number of shapes.
+    fn n_points(&self) -> usize;
+
+    /// All shapes except `query`, nearest first by what these rankings order by.
+    fn ranking(&self, query: usize) -> Vec<Neighbor>;
+}
+
+impl Rankings for DistanceMatrix {
+    fn n_points(&self) -> usize {
+        self.n_points()
+    }
+
+    fn ranking(&self, query: usize) -> Vec<Neighbor> {
+        rank(self, query)
+    }
+}
+
 /// All shapes except `query`, nearest first; ties by index.
 ///
 /// ```

@@ -1,15 +1,15 @@
 //! Retrieval scores of one query, their means, and precision-recall curves.
 
-use linalg::DistanceMatrix;
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::{Labels, Neighbor, RetrievalError, rank};
+use crate::{Labels, Neighbor, Rankings, RetrievalError};
 
 /// Retrieval scores in 0..=1, of one query or averaged over queries, in the conventions of the Princeton shape
 /// benchmark's `psbTable`.
 ///
 /// `C` is the number of relevant shapes: the size of the query's class minus the query itself.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Scores {
     /// Nearest neighbour: 1 if the nearest shape is relevant, else 0.
     pub nn: f64,
@@ -58,6 +58,17 @@ impl Scores {
             map: precisions / c,
         })
     }
+
+    /// Number of scores.
+    pub(crate) const N: usize = 6;
+
+    pub(crate) fn to_array(self) -> [f64; Self::N] {
+        [self.nn, self.ft, self.st, self.e, self.dcg, self.map]
+    }
+
+    pub(crate) fn from_array([nn, ft, st, e, dcg, map]: [f64; Self::N]) -> Self {
+        Self { nn, ft, st, e, dcg, map }
+    }
 }
 
 /// How scores of queries are averaged.
@@ -70,20 +81,44 @@ pub enum Averaging {
     Macro,
 }
 
-/// The mean scores of a labelled distance matrix, in the conventions of [`evaluate`](crate::evaluate).
+/// The scores of all queries of a collection.
+#[derive(Debug, Clone, PartialEq)]
+pub struct QueryScores {
+    /// Number of shapes.
+    pub n_points: usize,
+    /// The queries in ascending order, with their scores.
+    pub of: Vec<(usize, Scores)>,
+}
+
+impl QueryScores {
+    /// Scores every shape whose class has more than two members as a query against all others.
+    ///
+    /// # Errors
+    /// [`RetrievalError::LabelCount`], [`RetrievalError::NothingToScore`].
+    pub fn new(rankings: &impl Rankings, labels: &Labels) -> Result<Self, RetrievalError> {
+        let score = |i: usize| Scores::of_query(&rankings.ranking(i), i, labels);
+        let of = of_queries(rankings.n_points(), labels, score)?;
+        Ok(Self { n_points: rankings.n_points(), of })
+    }
+
+    /// The mean scores; 0 without queries.
+    #[must_use]
+    pub fn mean(&self, labels: &Labels, averaging: Averaging) -> Scores {
+        let queries = self.of.iter().map(|(i, scores)| (*i, scores.to_array()));
+        Scores::from_array(averaged(queries, [0.0; Scores::N], labels, averaging))
+    }
+}
+
+/// The mean scores of a labelled collection, in the conventions of [`evaluate`](crate::evaluate).
 ///
 /// # Errors
 /// [`RetrievalError::LabelCount`], [`RetrievalError::NothingToScore`].
 pub fn mean_scores(
-    distances: &DistanceMatrix,
+    rankings: &impl Rankings,
     labels: &Labels,
     averaging: Averaging,
 ) -> Result<Scores, RetrievalError> {
-    let query = |i: usize| {
-        Scores::of_query(&rank(distances, i), i, labels).map(|s| vec![s.nn, s.ft, s.st, s.e, s.dcg, s.map])
-    };
-    let mean = mean_of_queries(distances, labels, averaging, 6, query)?;
-    Ok(Scores { nn: mean[0], ft: mean[1], st: mean[2], e: mean[3], dcg: mean[4], map: mean[5] })
+    Ok(QueryScores::new(rankings, labels)?.mean(labels, averaging))
 }
 
 /// Mean interpolated precision at `n` recalls spread evenly from 0 to 1: the precision of a query at a recall is
@@ -92,7 +127,7 @@ pub fn mean_scores(
 /// # Errors
 /// [`RetrievalError::LabelCount`], [`RetrievalError::NothingToScore`].
 pub fn precision_recall(
-    distances: &DistanceMatrix,
+    rankings: &impl Rankings,
     labels: &Labels,
     averaging: Averaging,
     n: usize,
@@ -101,7 +136,7 @@ pub fn precision_recall(
         let class = labels.class(i);
         let relevant = labels.size(class) - 1;
         let mut precisions = Vec::with_capacity(relevant);
-        for (at, other) in rank(distances, i).iter().enumerate() {
+        for (at, other) in rankings.ranking(i).iter().enumerate() {
             if labels.class(other.index) == class {
                 precisions.push((precisions.len() + 1) as f64 / (at + 1) as f64);
             }
@@ -113,43 +148,57 @@ pub fn precision_recall(
         }
         // The smallest number of hits that reaches the recall.
         let hits = |step: usize| (step * relevant).div_ceil(n.max(2) - 1).max(1);
-        Some((0..n).map(|step| precisions[hits(step) - 1]).collect())
+        Some((0..n).map(|step| precisions[hits(step) - 1]).collect::<Vec<f64>>())
     };
-    mean_of_queries(distances, labels, averaging, n, query)
+    let curves = of_queries(rankings.n_points(), labels, query)?;
+    Ok(averaged(curves.into_iter(), vec![0.0; n], labels, averaging))
 }
 
-/// Averages the values that `query` returns for each shape that is scored as a query.
-fn mean_of_queries(
-    distances: &DistanceMatrix,
+/// What `query` returns for each shape that is scored as a query, in parallel.
+fn of_queries<T: Send>(
+    n_points: usize,
     labels: &Labels,
-    averaging: Averaging,
-    length: usize,
-    query: impl Fn(usize) -> Option<Vec<f64>>,
-) -> Result<Vec<f64>, RetrievalError> {
-    let n_points = distances.n_points();
+    query: impl Fn(usize) -> Option<T> + Sync,
+) -> Result<Vec<(usize, T)>, RetrievalError> {
     if labels.n_points() != n_points {
         return Err(RetrievalError::LabelCount { n_labels: labels.n_points(), n_points });
     }
-    let (mut sum, mut total) = (vec![0.0; length], 0.0);
-    for i in (0..n_points).filter(|&i| labels.is_query(i)) {
+    let queries: Vec<usize> = (0..n_points).filter(|&i| labels.is_query(i)).collect();
+    let found: Vec<_> = queries.into_par_iter().filter_map(|i| Some((i, query(i)?))).collect();
+    match found.is_empty() {
+        true => Err(RetrievalError::NothingToScore { n_points, n_classes: labels.classes().len() }),
+        false => Ok(found),
+    }
+}
+
+/// Averages the values of queries, beginning with a `sum` of zeros.
+fn averaged<V: AsRef<[f64]>, S: AsMut<[f64]>>(
+    queries: impl Iterator<Item = (usize, V)>,
+    mut sum: S,
+    labels: &Labels,
+    averaging: Averaging,
+) -> S {
+    let mut total = 0.0;
+    for (i, values) in queries {
         let weight = match averaging {
             Averaging::Micro => 1.0,
             Averaging::Macro => 1.0 / labels.size(labels.class(i)) as f64,
         };
-        if let Some(values) = query(i) {
-            sum.iter_mut().zip(values).for_each(|(sum, value)| *sum += weight * value);
-            total += weight;
-        }
+        sum.as_mut().iter_mut().zip(values.as_ref()).for_each(|(sum, value)| *sum += weight * value);
+        total += weight;
     }
-    match total > 0.0 {
-        true => Ok(sum.into_iter().map(|sum| sum / total).collect()),
-        false => Err(RetrievalError::NothingToScore { n_points, n_classes: labels.classes().len() }),
+    if total > 0.0 {
+        sum.as_mut().iter_mut().for_each(|sum| *sum /= total);
     }
+    sum
 }
 
 #[cfg(test)]
 mod tests {
+    use linalg::DistanceMatrix;
+
     use super::*;
+    use crate::rank;
 
     fn line(positions: &[f64]) -> DistanceMatrix {
         DistanceMatrix::from_pairs(positions.len(), |i, j| (positions[i] - positions[j]).abs()).unwrap()

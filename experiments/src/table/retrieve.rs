@@ -2,14 +2,23 @@
 //!
 //! Measures `METHOD SCALE nn|ft|st|e|dcg|mAP|macro nn|macro mAP|knn|least mAP` for `METHOD` a signature, `aligned forms`,
 //! `fused`, `fused and forms`, with `SCALE` either `raw` (size counts) or `normalized`; at scale `raw` also for `forms in
-//! mesh units`; and `missed`, `mistaken`.
+//! mesh units`; and `missed`, `mistaken`. Each score but the last is also measured on the neighbour graph, as `METHOD SCALE
+//! graph SCORE`.
+
+use std::io::Write;
 
 use anyhow::Result;
 use canonform::{DescribeOptions, ShapeDescription, describe, form_matches};
 use descriptors::{CanonicalForm, FormDistance, Normalization, ShapeMetric, SignatureKind};
 use linalg::DistanceMatrix;
-use report::results::{Classification, Misclassified, RetrievalResults, RetrievalRow, Scale};
-use retrieval::{Averaging, Labels, UnknownThreshold, evaluate, mean_scores, precision_recall, rank, vote};
+use rayon::prelude::*;
+use report::results::{
+    BothRankings, Classification, Misclassified, RankedScores, RetrievalResults, RetrievalRow, Scale,
+};
+use retrieval::{
+    Averaging, BootstrapOptions, GraphRankings, Labels, Neighbor, QueryScores, Rankings, SplitOptions,
+    UnknownThreshold, bootstrap, mean_scores, precision_recall, rank, split_accuracy, vote,
+};
 
 use crate::collection::map;
 use crate::context::Context;
@@ -21,6 +30,9 @@ const RECALLS: usize = 21;
 /// The method that classifies.
 const CLASSIFIER: &str = "fused and forms";
 
+/// The method that classifies a collection too large for that.
+const LARGE_CLASSIFIER: &str = "fused";
+
 pub(crate) fn run(context: &Context<'_>) -> Result<()> {
     let options = DescribeOptions::default();
     let shapes = map(&context.collection.all(), "describing", context.observer, |shape| {
@@ -31,9 +43,13 @@ pub(crate) fn run(context: &Context<'_>) -> Result<()> {
     let labels = Labels::new(&names);
     let mut rows = Vec::new();
     let mut classification = Classification::default();
-    for (method, scale, distances) in distances(context, &shapes)? {
-        rows.push(row(&method, scale, &distances, &labels, context.config.knn)?);
-        if method == CLASSIFIER && scale == Scale::Normalized {
+    let classifier = if shapes.len() <= context.config.aligned { CLASSIFIER } else { LARGE_CLASSIFIER };
+    let found = distances(context, &shapes)?;
+    context.observer.begin("scoring", found.len());
+    for (method, scale, distances) in found {
+        rows.push(row(context, &method, scale, &distances, &labels)?);
+        context.observer.step();
+        if method == classifier && scale == Scale::Normalized {
             classification = classified(context, &method, &distances, &labels)?;
         }
     }
@@ -42,8 +58,64 @@ pub(crate) fn run(context: &Context<'_>) -> Result<()> {
     let measured = measured(&rows, &classification);
     let best_e = Some(best_e(&labels)?);
     let names_of_shapes = context.collection.names();
-    let results = RetrievalResults { names: names_of_shapes, labels: names, rows, best_e, classification };
+    let protocol = protocol(context, &labels);
+    context.bars.finish();
+    let mut out = std::io::stdout().lock();
+    protocol.iter().try_for_each(|line| writeln!(out, "{line}"))?;
+    drop(out);
+    let published = context.published.cloned();
+    let names = (names_of_shapes, names);
+    let results = RetrievalResults {
+        names: names.0,
+        labels: names.1,
+        rows,
+        best_e,
+        classification,
+        protocol,
+        published,
+    };
     context.publish(results, provenance, &measured)
+}
+
+/// How scores are measured.
+fn protocol(context: &Context<'_>, labels: &Labels) -> Vec<String> {
+    let n = labels.n_points();
+    let n_queries = (0..n).filter(|i| labels.is_query(*i)).count();
+    let n_classes = labels.classes().len();
+    let BootstrapOptions { resamples, level, seed } = BootstrapOptions::default();
+    let mut lines = vec![
+        format!("{n} shapes in {n_classes} classes."),
+        format!(
+            "Each shape is a query against all {} others, its own class included; {} shapes in classes of one or two are \
+             in the gallery but are no queries, so there are {n_queries} queries.",
+            n.saturating_sub(1),
+            n - n_queries
+        ),
+        "Equal distances are ordered by the position of the shape in the collection.".to_owned(),
+        "NN, FT, ST, E (at 32 results) and DCG as in the Princeton shape benchmark, mAP over the whole ranking; means \
+         are over queries (micro) and over classes (macro)."
+            .to_owned(),
+        format!(
+            "Intervals cover {:.0} % of {resamples} bootstrap resamples of the queries within classes, seed {seed}.",
+            100.0 * level
+        ),
+        format!(
+            "1-NN over {} random splits, seed {}: mean and standard deviation over the splits; classes with no more \
+             shapes than are trained with take no part.",
+            context.config.splits, context.seed
+        ),
+        format!("k-NN: leave-one-out vote of {} neighbours.", context.config.knn),
+        "Plain: ranked by distance alone. Graph: ranked on the graph of nearest neighbours of the whole collection, \
+         without its classes."
+            .to_owned(),
+    ];
+    if n > context.config.aligned {
+        lines.push(format!(
+            "Methods that align the forms of all pairs are left out: {n} shapes are more than {}.",
+            context.config.aligned
+        ));
+    }
+    lines
 }
 
 /// Every method with its distances between all pairs.
@@ -58,7 +130,8 @@ fn distances(
         let found = form_matches(&forms, normalization, context.observer);
         found.map(|found| found.distances)
     };
-    let form = aligned(Normalization::UnitArea)?;
+    let aligns = n <= context.config.aligned;
+    let form = if aligns { Some(aligned(Normalization::UnitArea)?) } else { None };
     let size_of = |i: usize| ShapeMetric::size_coordinate(shapes[i].area);
     let size = |i: usize, j: usize| size_of(i) - size_of(j);
     let unit = ShapeMetric::form_unit(FormDistance::NearestNeighborRms);
@@ -69,10 +142,12 @@ fn distances(
         let vectors: Vec<_> =
             shapes.iter().map(|shape| ShapeMetric::fuse(&shape.signatures, area(shape))).collect();
         let fused = all(&|i, j| ShapeMetric::fused(&vectors[i], &vectors[j]))?;
-        add(CLASSIFIER, all(&|i, j| ShapeMetric::combined(fused.get(i, j), form.get(i, j)))?);
+        if let Some(form) = &form {
+            add(CLASSIFIER, all(&|i, j| ShapeMetric::combined(fused.get(i, j), form.get(i, j)))?);
+            let sized = all(&|i, j| (form.get(i, j) / unit).hypot(size(i, j)))?;
+            add("aligned forms", if scale == Scale::Raw { sized } else { form.clone() });
+        }
         add("fused", fused);
-        let sized = all(&|i, j| (form.get(i, j) / unit).hypot(size(i, j)))?;
-        add("aligned forms", if scale == Scale::Raw { sized } else { form.clone() });
         for kind in SignatureKind::ALL {
             let signature = |shape: &ShapeDescription| {
                 let own = shape.signature(kind)?.clone();
@@ -81,22 +156,67 @@ fn distances(
             let signatures: Vec<_> = shapes.iter().filter_map(signature).collect();
             add(kind.name(), all(&|i, j| signatures[i].distance(&signatures[j]))?);
         }
-        if scale == Scale::Raw {
+        if scale == Scale::Raw && aligns {
             add("forms in mesh units", aligned(Normalization::Raw)?);
         }
     }
     Ok(found)
 }
 
+/// Rankings of all shapes, made once.
+struct Kept(Vec<Vec<Neighbor>>);
+
+impl Kept {
+    fn new(rankings: &impl Rankings) -> Self {
+        Self((0..rankings.n_points()).into_par_iter().map(|query| rankings.ranking(query)).collect())
+    }
+}
+
+impl Rankings for Kept {
+    fn n_points(&self) -> usize {
+        self.0.len()
+    }
+
+    fn ranking(&self, query: usize) -> Vec<Neighbor> {
+        self.0[query].clone()
+    }
+}
+
+/// All scores of one ranking.
+fn ranked(context: &Context<'_>, rankings: &Kept, labels: &Labels) -> Result<RankedScores> {
+    let scores = QueryScores::new(rankings, labels)?;
+    let intervals = |averaging| bootstrap(&scores, labels, averaging, &BootstrapOptions::default());
+    let (mut right, mut all) = (0, 0);
+    for query in (0..labels.n_points()).filter(|i| labels.is_query(*i)) {
+        let found = vote(&rankings.0[query], |i| labels.class(i), context.config.knn, None).class;
+        right += usize::from(found == Some(labels.class(query)));
+        all += 1;
+    }
+    let mut splits = Vec::new();
+    for n_train in context.config.training.iter().copied() {
+        let options = SplitOptions { n_train, runs: context.config.splits, seed: context.seed };
+        splits.extend(split_accuracy(rankings, labels, &options)?);
+    }
+    Ok(RankedScores {
+        micro: scores.mean(labels, Averaging::Micro),
+        micro_intervals: intervals(Averaging::Micro)?,
+        macro_average: scores.mean(labels, Averaging::Macro),
+        macro_intervals: intervals(Averaging::Macro)?,
+        knn_accuracy: f64::from(right as u32) / f64::from(all.max(1) as u32),
+        splits,
+    })
+}
+
 fn row(
+    context: &Context<'_>,
     method: &str,
     scale: Scale,
     distances: &DistanceMatrix,
     labels: &Labels,
-    knn: usize,
 ) -> Result<RetrievalRow> {
-    let scores = evaluate(distances, labels, knn)?;
-    let mut held_out_map = scores.mean.map;
+    let plain = ranked(context, &Kept::new(distances), labels)?;
+    let graph = ranked(context, &Kept::new(&GraphRankings::new(distances)), labels)?;
+    let mut held_out_map = plain.micro.map;
     for class in 0..labels.classes().len() {
         // Without one of two classes there is nothing to distinguish.
         let (rest, rest_labels) = without(distances, labels, class)?;
@@ -109,11 +229,12 @@ fn row(
     Ok(RetrievalRow {
         method: method.to_owned(),
         scale,
-        micro: scores.mean,
-        macro_average: mean_scores(distances, labels, Averaging::Macro)?,
-        knn_accuracy: scores.knn_accuracy,
+        micro: plain.micro,
+        macro_average: plain.macro_average,
+        knn_accuracy: plain.knn_accuracy,
         held_out_map,
         precision: precision_recall(distances, labels, Averaging::Micro, RECALLS)?,
+        rankings: Some(BothRankings { plain, graph }),
     })
 }
 
@@ -193,6 +314,16 @@ fn measured(rows: &[RetrievalRow], classification: &Classification) -> Measured 
         ];
         for (score, value) in named(&row.micro).into_iter().chain(own) {
             found.insert(format!("{} {} {score}", row.method, row.scale.name()), value);
+        }
+        if let Some(BothRankings { graph, .. }) = &row.rankings {
+            let own = [
+                ("macro nn", graph.macro_average.nn),
+                ("macro mAP", graph.macro_average.map),
+                ("knn", graph.knn_accuracy),
+            ];
+            for (score, value) in named(&graph.micro).into_iter().chain(own) {
+                found.insert(format!("{} {} graph {score}", row.method, row.scale.name()), value);
+            }
         }
     }
     found.insert("missed".to_owned(), classification.missed);

@@ -22,6 +22,9 @@ pub use figure4::{Figure4Panel, Figure4Results};
 pub use figure9::{Figure9Measured, Figure9Results, Figure9Row};
 pub use file::{provenance, read, write};
 pub use invariance::{InvarianceResults, InvarianceRow, SignatureChange};
-pub use retrieval::{Classification, Misclassified, RetrievalResults, RetrievalRow};
+pub use retrieval::{
+    BothRankings, Classification, Misclassified, Published, PublishedMethod, RankedScores, RetrievalResults,
+    RetrievalRow,
+};
 pub use shapes::{Motions, SHAPES_FILE, ShapesRecord, ShownForm, ShownShape};
 pub use tables::{Entry, RecordedTable, TablesResults};
