@@ -3,8 +3,8 @@
 //! ```text
 //! vectors build BASE.npy INDEX           builds an index and prints the seconds taken
 //! vectors add QUERIES.npy INDEX COUNT    adds the first rows one by one; prints the seconds and the bytes of each addition
-//! vectors serve INDEX QUERIES.npy        for each input line `memory|file|scan K FIRST COUNT`, prints
-//!                                        {"seconds": [..], "found": [[..], ..]}
+//! vectors serve INDEX QUERIES.npy        for each input line `memory|file|scan|graph K FIRST COUNT`, prints
+//!                                        {"seconds": [..], "found": [[..], ..]}; `graph` ranks on the graph, from the file
 //! ```
 //!
 //! Arrays are little-endian float32 in C order.
@@ -12,10 +12,12 @@
 use std::error::Error;
 use std::io::{BufRead, Write};
 use std::path::Path;
+use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
 use canonform_index::{
-    ContentHash, Found, Index, IndexWriter, Job, SearchMode, Searcher, Shape, ShapeEntry, ShapeVectors,
+    ContentHash, Found, Index, IndexWriter, Job, NearShape, Progress, SearchMode, Searcher, Shape,
+    ShapeEntry, ShapeVectors,
 };
 use serde_json::json;
 
@@ -78,10 +80,38 @@ fn build(base: &Path, path: &Path) -> Result<(), Box<dyn Error>> {
     let stored = start.elapsed().as_secs_f64();
     drop(shapes);
     drop(rows);
-    writer.finish()?;
+    let graph = GraphTime::default();
+    writer.finish_with(&graph)?;
     let finished = start.elapsed().as_secs_f64() - stored;
-    println!("{}", json!({ "stored": stored, "finished": finished, "megabytes": peak_memory() }));
+    let graph = graph.seconds();
+    println!(
+        "{}",
+        json!({ "stored": stored, "finished": finished, "graph": graph, "megabytes": peak_memory() })
+    );
     Ok(())
+}
+
+/// When the search for the neighbours of all shapes began, and its last step.
+#[derive(Default)]
+struct GraphTime(Mutex<Option<[Instant; 2]>>);
+
+impl GraphTime {
+    fn seconds(&self) -> f64 {
+        let times = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        times.map_or(0.0, |[begin, end]| (end - begin).as_secs_f64())
+    }
+}
+
+impl Progress for GraphTime {
+    fn begin(&self, _: usize) {
+        *self.0.lock().unwrap_or_else(PoisonError::into_inner) = Some([Instant::now(); 2]);
+    }
+
+    fn step(&self, _: usize) {
+        if let Some([_, end]) = self.0.lock().unwrap_or_else(PoisonError::into_inner).as_mut() {
+            *end = Instant::now();
+        }
+    }
 }
 
 fn serve(path: &Path, queries: &Path) -> Result<(), Box<dyn Error>> {
@@ -101,10 +131,18 @@ fn serve(path: &Path, queries: &Path) -> Result<(), Box<dyn Error>> {
         let words: Vec<&str> = line.split_whitespace().collect();
         let [from, k, first, count] = words[..] else { return Err(format!("`{line}`?").into()) };
         let (k, first, count): (usize, usize, usize) = (k.parse()?, first.parse()?, count.parse()?);
-        let (mut seconds, mut found, mut measured) = (Vec::new(), Vec::new(), 0);
+        let (mut seconds, mut found, mut measured, mut lists) = (Vec::new(), Vec::new(), 0, 0);
         for query in queries[first * dim..(first + count) * dim].chunks_exact(dim) {
             let start = Instant::now();
             let answer: Found = match from {
+                "graph" => {
+                    let on_graph = index.nearest_on_graph(query, k, SearchMode::Auto)?;
+                    let near = on_graph.shapes.into_iter();
+                    let shapes =
+                        near.map(|near| NearShape { id: near.id, distance: near.distance }).collect();
+                    lists += on_graph.n_lists;
+                    Found { shapes, ..on_graph.search }
+                }
                 "memory" => searcher.nearest(query, k, SearchMode::Auto)?,
                 "scan" => searcher.nearest(query, k, SearchMode::Exact)?,
                 _ => index.nearest(query, k, SearchMode::Auto)?,
@@ -115,7 +153,12 @@ fn serve(path: &Path, queries: &Path) -> Result<(), Box<dyn Error>> {
         }
         println!(
             "{}",
-            json!({ "seconds": seconds, "found": found, "measured": measured as f64 / count as f64 })
+            json!({
+                "seconds": seconds,
+                "found": found,
+                "measured": measured as f64 / count as f64,
+                "lists": lists as f64 / count as f64,
+            })
         );
         std::io::stdout().flush()?;
     }

@@ -44,14 +44,15 @@
 //! | module | contents |
 //! |---|---|
 //! | `texts`, `shape` | names, the record of one shape |
-//! | `vectors` | nearest vectors in memory: kernels, k-means, cells, calibration, the threshold of unknown classes. Knows no file |
-//! | `format` | the file: errors, encoding, checksummed blocks, tables, cells |
+//! | `vectors` | nearest vectors in memory: kernels, k-means, cells, the graph of nearest neighbours, calibration, the threshold of unknown classes. Knows no file |
+//! | `format` | the file: errors, encoding, checksummed blocks, tables, cells, the graph |
 //! | `reader`, `writer` | [`Index`], [`IndexWriter`] |
-//! | `search` | [`Index::nearest`], [`Searcher`] |
+//! | `search` | [`Index::nearest`], [`Index::nearest_on_graph`], [`Searcher`] |
 //! | `verify`, `export` | [`verify`], [`Index::export`] |
 
 mod export;
 mod format;
+mod progress;
 mod reader;
 mod search;
 mod shape;
@@ -65,8 +66,9 @@ mod tests;
 
 pub use export::ExportError;
 pub use format::{CodecError, FORMAT_VERSION, IndexError};
+pub use progress::Progress;
 pub use reader::Index;
-pub use search::{Found, NearShape, SearchMode, Searcher};
+pub use search::{Found, FoundOnGraph, NearShape, RankedShape, SearchMode, Searcher};
 pub use shape::{ContentHash, Shape, ShapeEntry, ShapeVectors};
 pub use verify::{Verification, verify};
 pub use writer::{IndexWriter, Job, damaged_path, work_path};

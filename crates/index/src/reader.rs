@@ -6,7 +6,7 @@ use std::sync::{Arc, OnceLock};
 
 use redb::Database;
 
-use crate::format::{CACHE, ENTRIES, Guarded, Heads, Overlay, Sealed, Snapshot, Store, call};
+use crate::format::{CACHE, ENTRIES, Graph, Guarded, Heads, Overlay, Sealed, Snapshot, Store, call};
 use crate::{IndexError, Shape, ShapeEntry, ShapeVectors};
 
 /// A finished index, open for reading.
@@ -99,6 +99,11 @@ impl Index {
         self.n_shapes == 0
     }
 
+    /// Whether it has a graph of nearest neighbours. Indexes of earlier formats have none until they are built again.
+    pub fn has_graph(&self) -> Result<bool, IndexError> {
+        Ok(Graph::open(&self.store().read()?)?.is_some())
+    }
+
     /// A number that changes with the content of the file.
     #[must_use]
     pub fn fingerprint(&self) -> u64 {
@@ -108,7 +113,7 @@ impl Index {
     /// Version of the format of the file.
     #[must_use]
     pub fn format(&self) -> u32 {
-        self.sealed.version
+        self.sealed.state.version
     }
 
     /// Size in bytes.

@@ -3,8 +3,8 @@
 use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
 
-use crate::format::{BODIES, FUSED, Sealed, all_shapes};
-use crate::vectors::{Rows, Trials, padded};
+use crate::format::{BODIES, FUSED, Graph, Sealed, all_shapes};
+use crate::vectors::{Divided, Links, NodeKey, Reach, Rows, Trials, node_key, padded};
 use crate::{Index, IndexError, Shape};
 
 /// The result of [`verify`].
@@ -41,7 +41,8 @@ pub fn verify(path: &Path, done: impl FnMut()) -> Result<Verification, IndexErro
         true => Ok(()),
         false => Err(IndexError::damaged(path, faults.join("; "))),
     });
-    for result in [read, check_entries(&index), searched] {
+    let graph = check_graph(&index);
+    for result in [read, check_entries(&index), searched, graph] {
         found.faults.extend(result.err().map(|error| error.to_string()));
     }
     found.n_shapes = n_shapes;
@@ -105,4 +106,53 @@ fn check_cells(index: &Index) -> Result<Vec<String>, IndexError> {
         }
     }
     Ok(faults)
+}
+
+/// Shapes whose neighbours are found again: those whose keys come first.
+const CHECKED: usize = 512;
+
+/// Checks that the graph holds all shapes and no others. If searches are exact, finds the neighbours of some shapes again.
+fn check_graph(index: &Index) -> Result<(), IndexError> {
+    let store = index.store();
+    let snapshot = store.read()?;
+    let Some(graph) = Graph::open(&snapshot)? else { return Ok(()) };
+    let damaged = |what: String| IndexError::damaged(index.path(), what);
+    let (shapes, dim) = all_shapes(&store)?;
+    let n = padded(dim);
+    let keys: Vec<NodeKey> = shapes.ids.iter().map(node_key).collect();
+    let mut places: HashMap<NodeKey, usize> = keys.iter().copied().zip(0..).collect();
+    let mut first: Vec<(usize, Links)> = Vec::new();
+    graph.each(|key, node| {
+        let place = places.remove(&key).filter(|place| shapes.ids.get(*place) == node.id);
+        let place =
+            place.ok_or_else(|| damaged(format!("`{}` is in its graph but is not a shape", node.id)))?;
+        if first.len() < CHECKED {
+            first.push((place, node.links));
+        }
+        Ok(())
+    })?;
+    if let Some(missing) = places.values().min() {
+        return Err(damaged(format!("`{}` is not in its graph", shapes.ids.get(*missing))));
+    }
+    let heads = index.heads()?;
+    if heads.header.is_exact() {
+        let starts = [0, keys.len()];
+        let all = Divided {
+            rows: shapes.rows(),
+            n,
+            keys: &keys,
+            starts: &starts,
+            centroids: &heads.centroids,
+            reach: Reach::ALL,
+        };
+        for (place, links) in first {
+            if !links.agrees(&all.links_of(place)) {
+                return Err(damaged(format!(
+                    "the neighbours of `{}` are not the nearest",
+                    shapes.ids.get(place)
+                )));
+            }
+        }
+    }
+    Ok(())
 }

@@ -101,6 +101,9 @@ pub enum IndexError {
         /// The name.
         id: String,
     },
+    /// The index has no graph of nearest neighbours, because an earlier version wrote it.
+    #[error("{path} has no graph of nearest neighbours", path = .0.display())]
+    NoGraph(PathBuf),
     /// A value cannot be stored.
     #[error("shape `{id}` cannot be stored: {source}")]
     Codec {

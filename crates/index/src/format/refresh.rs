@@ -1,31 +1,42 @@
-//! Brings the cells of a database up to date with its shapes.
+//! Brings the cells and the graph of a database up to date with its shapes.
 
-use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
+use std::collections::{BTreeMap, HashMap, HashSet};
 
 use redb::WriteTransaction;
 use serde::Serialize;
 
 use super::IndexError;
+use super::changed_cells::{Cells, Held, held};
 use super::codec::{Floats, encode};
 use super::guard::Guarded;
+use super::refresh_graph::{GraphChanges, follow};
 use super::stored_cells::{
     CELLS, CENTROIDS, FORMAT_1, HEADER, Heads, Key, Part, ROWS, TRIALS, all_shapes, rows_in_part,
     vector_length,
 };
+use super::stored_graph::{GRAPH, N_NODES, Node};
 use super::tables::{CHANGED, CellState, Snapshot, Store};
+use crate::progress::Progress;
 use crate::vectors::{
-    CellsHeader, Centroids, Change, Rows, Trial, TrialKey, Trials, divided, n_cells, nearest_cells, padded,
+    CellsHeader, Centroids, Change, Divided, NodeKey, Rows, Trial, TrialKey, Trials, divided, n_cells,
+    nearest_cells, node_key, padded,
 };
 
-/// Brings the cells of a database up to date with its shapes. `base` is the database that it was copied from, if there
-/// is one. Writes only what has changed since, unless that is much.
-pub(crate) fn refresh_cells(store: &Store<'_>, base: Option<&Store<'_>>) -> Result<(), IndexError> {
+/// Brings the cells and the graph of a database up to date with its shapes. `base` is the database that it was copied
+/// from, if there is one. Writes only what has changed since, unless that is much or there is no graph.
+pub(crate) fn refresh_cells(
+    store: &Store<'_>,
+    base: Option<&Store<'_>>,
+    progress: &dyn Progress,
+) -> Result<(), IndexError> {
     let snapshot = store.read()?;
+    let has_graph = snapshot.about::<u64>(N_NODES)?.is_some();
     let state = snapshot.about("cells")?.unwrap_or(CellState::Stale);
     let (n, dim) = (snapshot.len()?, vector_length(&snapshot)?);
     let follows = match (state, base) {
-        (CellState::Current, _) => return Ok(()),
-        (CellState::Stale, _) | (_, None) => None,
+        (CellState::Current, _) if has_graph => return Ok(()),
+        (CellState::Current | CellState::Stale, _) | (_, None) => None,
+        (CellState::Follow, _) if !has_graph => None,
         (CellState::Follow, Some(base)) => {
             let changed = snapshot.keys(CHANGED)?;
             let is_little = 2 * changed.len() <= n.max(64);
@@ -35,36 +46,60 @@ pub(crate) fn refresh_cells(store: &Store<'_>, base: Option<&Store<'_>>) -> Resu
     };
     match follows {
         Some((base, changed, heads)) => change(&snapshot, &base.read()?, &heads, changed, n),
-        None => train(store),
+        None => train(store, progress),
     }
 }
 
-/// Divides all vectors into new cells.
-fn train(store: &Store<'_>) -> Result<(), IndexError> {
-    let (shapes, dim) = all_shapes(store)?;
+/// Divides all vectors into new cells, and finds the neighbours of all.
+fn train(store: &Store<'_>, progress: &dyn Progress) -> Result<(), IndexError> {
+    let (mut shapes, dim) = all_shapes(store)?;
     let (n_rows, n) = (shapes.ids.len(), padded(dim));
-    let (centroids, cells) = divided(shapes.rows(), n, n_cells(n_rows));
+    let (centroids, mut cells) = divided(shapes.rows(), n, n_cells(n_rows));
     let n_cells = centroids.rows.len() / n;
-    let all = Rows { cells: &cells, ..shapes.in_cell(&0) };
-    let trials = Trials::of(all, n_cells);
     let mut order: Vec<usize> = (0..n_rows).collect();
     order.sort_by_key(|i| cells[*i]);
+    shapes.sort(&order, n);
+    cells.sort_unstable();
+    let all = Rows { cells: &cells, ..shapes.in_cell(&0) };
+    let trials = Trials::of(all, n_cells);
+    let header = header(dim, n_rows, n_rows, &centroids, &trials);
+    let keys: Vec<NodeKey> = shapes.ids.iter().map(node_key).collect();
+    let starts: Vec<usize> =
+        (0..=n_cells as u32).map(|cell| cells.partition_point(|other| *other < cell)).collect();
+    let divided = Divided {
+        rows: shapes.rows(),
+        n,
+        keys: &keys,
+        starts: &starts,
+        centroids: &centroids,
+        reach: header.reach,
+    };
+    progress.begin(n_rows);
+    let links = divided.links(&|done| progress.step(done));
+    let mut nodes: Vec<(NodeKey, usize)> = keys.iter().copied().zip(0..).collect();
+    nodes.sort_unstable();
     write(store, |put| {
         put.clear()?;
         for (i, rows) in centroids.rows.chunks(rows_in_part(n) * n).enumerate() {
             put.value((CENTROIDS, i as u32, 0), &Floats(rows.to_vec()))?;
         }
-        for of_cell in order.chunk_by(|a, b| cells[*a] == cells[*b]) {
-            for (i, of_part) in of_cell.chunks(rows_in_part(n)).enumerate() {
+        for (cell, range) in (0..).zip(starts.windows(2)) {
+            let rows: Vec<usize> = (range[0]..range[1]).collect();
+            for (i, of_part) in rows.chunks(rows_in_part(n)).enumerate() {
                 let mut part = Part::default();
                 for row in of_part {
                     part.push(shapes.ids.get(*row), shapes.classes.get(*row), &shapes.rows()[row * n..][..n]);
                 }
-                put.value((ROWS, cells[of_part[0]], i as u32), &part)?;
+                put.value((ROWS, cell, i as u32), &part)?;
             }
         }
         put.trials(&[], &trials.all)?;
-        put.header(header(dim, n_rows, n_rows, &centroids, &trials))
+        let node = |(key, i): &(NodeKey, usize)| {
+            (*key, Node { id: shapes.ids.get(*i).to_owned(), links: links[*i].clone() })
+        };
+        put.nodes(nodes.iter().map(node))?;
+        put.n_nodes(n_rows)?;
+        put.header(header)
     })
 }
 
@@ -72,18 +107,6 @@ fn header(dim: usize, n: usize, n_trained: usize, centroids: &Centroids, trials:
     let (reach, recall) = trials.calibrated(centroids);
     let n_cells = centroids.rows.len() / padded(dim);
     CellsHeader { dim, n, n_cells, n_trained, reach, recall, threshold: trials.threshold() }
-}
-
-/// A shape as cells hold it: its padded vector and its class.
-type Held = (Vec<f32>, String);
-
-fn held(snapshot: &Snapshot<'_>, id: &str, dim: usize) -> Result<Option<Held>, IndexError> {
-    let (Some(mut fused), Some(entry)) = (snapshot.fused(id)?, snapshot.entry(id)?) else { return Ok(None) };
-    if fused.len() != dim {
-        return Err(snapshot.store.damaged(format!("the vector of `{id}` has {} numbers", fused.len())));
-    }
-    fused.resize(padded(dim), 0.0);
-    Ok(Some((fused, entry.label)))
 }
 
 /// Takes shapes that have changed since `base` out of their cells and puts them into the nearest ones.
@@ -136,11 +159,12 @@ fn change(
             return Err(store.damaged(format!("`{id}` is in no cell")));
         }
     }
-    let mut now: HashMap<String, (Vec<f32>, String, u32)> = HashMap::new();
-    for (cell, (id, (row, class))) in to.into_iter().zip(come) {
-        cells.push(cell, &id, &class, &row)?;
-        now.insert(id, (row, class, cell));
+    for (cell, (id, (row, class))) in to.iter().zip(&come) {
+        cells.push(*cell, id, class, row)?;
     }
+    let GraphChanges { put: nodes, remove } = follow(snapshot, heads, &cells, &gone, &come)?;
+    let placed = to.into_iter().zip(come).map(|(cell, (id, (row, class)))| (id, (row, class, cell)));
+    let mut now: HashMap<String, (Vec<f32>, String, u32)> = placed.collect();
     changes.iter_mut().for_each(|change| change.now = now.remove(&change.id));
     let mut trials = heads.trials(snapshot)?;
     let before = trials.all.clone();
@@ -156,87 +180,11 @@ fn change(
             }
         }
         put.trials(&before, &trials.all)?;
+        put.remove_nodes(&remove)?;
+        put.nodes(nodes.into_iter())?;
+        put.n_nodes(n_shapes)?;
         put.header(header)
     })
-}
-
-/// Cells that are changed, over those that are stored.
-struct Cells<'a> {
-    snapshot: &'a Snapshot<'a>,
-    heads: &'a Heads,
-    loaded: BTreeMap<u32, Loaded>,
-}
-
-/// Parts of a cell by their numbers.
-#[derive(Default)]
-struct Loaded {
-    parts: BTreeMap<u32, Part>,
-    dirty: BTreeSet<u32>,
-    /// Whether all parts are here, not the last only.
-    is_whole: bool,
-}
-
-impl Cells<'_> {
-    /// Removes the shapes of these names, and the names of those that were there.
-    fn remove(&mut self, cell: u32, names: &mut HashSet<&str>) -> Result<(), IndexError> {
-        let loaded = self.loaded.entry(cell).or_default();
-        if !loaded.is_whole {
-            self.heads.each_stored(self.snapshot, cell, |i, part| {
-                loaded.parts.entry(i).or_insert(part);
-                Ok(())
-            })?;
-            loaded.is_whole = true;
-        }
-        let n = padded(self.heads.header.dim);
-        for (i, part) in &mut loaded.parts {
-            if !part.ids.iter().any(|id| names.contains(id)) {
-                continue;
-            }
-            let mut rest = Part::default();
-            for (row, (id, class)) in part.ids.iter().zip(part.classes.iter()).enumerate() {
-                if !names.remove(id) {
-                    rest.push(id, class, &part.rows()[row * n..][..n]);
-                }
-            }
-            *part = rest;
-            loaded.dirty.insert(*i);
-        }
-        Ok(())
-    }
-
-    fn push(&mut self, cell: u32, id: &str, class: &str, row: &[f32]) -> Result<(), IndexError> {
-        let loaded = self.loaded.entry(cell).or_default();
-        if !loaded.is_whole && loaded.parts.is_empty() {
-            loaded.parts.extend(self.heads.last_part(self.snapshot, cell)?);
-        }
-        let full = rows_in_part(row.len());
-        let last = match loaded.parts.last_key_value() {
-            Some((i, part)) if part.ids.len() < full => *i,
-            Some((i, _)) => i + 1,
-            None => 0,
-        };
-        loaded.parts.entry(last).or_default().push(id, class, row);
-        loaded.dirty.insert(last);
-        Ok(())
-    }
-
-    /// Visits all shapes as they are after the changes.
-    fn each(&self, visit: &mut dyn FnMut(Rows<'_>)) -> Result<(), IndexError> {
-        let none = Loaded::default();
-        for cell in 0..self.heads.header.n_cells as u32 {
-            let loaded = self.loaded.get(&cell).unwrap_or(&none);
-            if !loaded.is_whole {
-                self.heads.each_stored(self.snapshot, cell, |i, part| {
-                    if !loaded.parts.contains_key(&i) {
-                        visit(part.in_cell(&cell));
-                    }
-                    Ok(())
-                })?;
-            }
-            loaded.parts.values().for_each(|part| visit(part.in_cell(&cell)));
-        }
-        Ok(())
-    }
 }
 
 /// Writes the table of cells in one transaction, and marks it as up to date.
@@ -260,8 +208,47 @@ impl Put<'_> {
     fn clear(&self) -> Result<(), IndexError> {
         self.store.call(|| {
             self.transaction.delete_table(FORMAT_1)?;
+            self.transaction.delete_table(GRAPH)?;
             self.transaction.delete_table(CELLS).map(drop)
         })
+    }
+
+    /// Writes shapes of the graph.
+    fn nodes(&self, mut nodes: impl Iterator<Item = (NodeKey, Node)>) -> Result<(), IndexError> {
+        /// Shapes written between two looks at the table.
+        const BATCH: usize = 1024;
+        loop {
+            let mut batch = Vec::with_capacity(BATCH);
+            for (key, node) in nodes.by_ref().take(BATCH) {
+                let bytes = encode(&node).map_err(|source| IndexError::Codec { id: node.id, source })?;
+                batch.push((key, bytes));
+            }
+            if batch.is_empty() {
+                return Ok(());
+            }
+            self.store.call(|| {
+                let mut table = Guarded::new(self.transaction.open_table(GRAPH)?);
+                for (key, bytes) in &batch {
+                    table.insert(key, bytes.as_slice())?;
+                }
+                Ok::<_, redb::Error>(())
+            })?;
+        }
+    }
+
+    fn remove_nodes(&self, keys: &[NodeKey]) -> Result<(), IndexError> {
+        self.store.call(|| {
+            let mut table = Guarded::new(self.transaction.open_table(GRAPH)?);
+            for key in keys {
+                table.remove(key)?;
+            }
+            Ok::<_, redb::Error>(())
+        })
+    }
+
+    /// States that the graph holds all shapes.
+    fn n_nodes(&self, n: usize) -> Result<(), IndexError> {
+        self.store.set(self.transaction, N_NODES, &(n as u64))
     }
 
     fn value<T: Serialize>(&self, key: Key, value: &T) -> Result<(), IndexError> {

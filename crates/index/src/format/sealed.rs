@@ -21,6 +21,8 @@
 //! slot that is not in use. What follows the last segment of the newer slot was left by a writer that was interrupted,
 //! and does not count.
 //!
+//! Format 2 is the same without the [graph](super::stored_graph) of nearest neighbours.
+//!
 //! Format 1 has no head and no runs: the database, a mark of 24 bytes, the checksums of its blocks, and the last 40 bytes,
 //! which state the size of the database in the place of the start.
 
@@ -34,7 +36,7 @@ use std::time::Duration;
 use super::IndexError;
 
 /// Version of the file format.
-pub const FORMAT_VERSION: u32 = 2;
+pub const FORMAT_VERSION: u32 = 3;
 
 /// Bytes under one checksum: the size of redb's pages, so that reading a page checks exactly that page.
 pub(crate) const BLOCK: usize = 4096;
@@ -65,6 +67,8 @@ fn u64_at(bytes: &[u8], at: usize) -> u64 {
 /// A finished state of a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct State {
+    /// Version of the format that wrote it.
+    pub(crate) version: u32,
     /// Number of the change that led to it.
     pub(crate) number: u64,
     /// Where its last segment ends.
@@ -76,7 +80,7 @@ pub(crate) struct State {
 impl State {
     fn to_bytes(self) -> Vec<u8> {
         let mut bytes = MAGIC.to_vec();
-        bytes.extend(FORMAT_VERSION.to_le_bytes());
+        bytes.extend(self.version.to_le_bytes());
         bytes.extend(self.number.to_le_bytes());
         bytes.extend(self.end.to_le_bytes());
         bytes.extend(self.sums.to_le_bytes());
@@ -91,7 +95,8 @@ impl State {
         if slot[..16] != MAGIC || crc32fast::hash(&slot[..SLOT - 4]) != u32_at(slot, SLOT - 4) {
             return None;
         }
-        let state = Self { number: u64_at(slot, 20), end: u64_at(slot, 28), sums: u32_at(slot, 36) };
+        let (number, end, sums) = (u64_at(slot, 20), u64_at(slot, 28), u32_at(slot, 36));
+        let state = Self { version, number, end, sums };
         Some(if version > FORMAT_VERSION { Err(version) } else { Ok(state) })
     }
 
@@ -247,7 +252,8 @@ pub(crate) fn seal(file: &mut File, padding: u64) -> io::Result<()> {
     file.seek(SeekFrom::Start(end))?;
     file.write_all(&bytes)?;
     file.sync_all()?;
-    let state = State { number: 1, end: end + bytes.len() as u64, sums: sum_of([table_sum].into_iter()) };
+    let (end, sums) = (end + bytes.len() as u64, sum_of([table_sum].into_iter()));
+    let state = State { version: FORMAT_VERSION, number: 1, end, sums };
     let mut head = vec![0; BLOCK];
     SLOTS.iter().for_each(|at| head[*at..][..SLOT].copy_from_slice(&state.to_bytes()));
     file.seek(SeekFrom::Start(0))?;
@@ -301,7 +307,8 @@ impl<'a> Appending<'a> {
         self.out.get_ref().sync_all()?;
         let end = self.start + self.sums.len() as u64 / 4 * BLOCK as u64 + bytes.len() as u64;
         let known = base.segments.iter().map(|segment| segment.table_sum);
-        Ok(State { number: base.state.number + 1, end, sums: sum_of(known.chain([table_sum])) })
+        let (number, sums) = (base.state.number + 1, sum_of(known.chain([table_sum])));
+        Ok(State { version: FORMAT_VERSION, number, end, sums })
     }
 }
 
@@ -317,8 +324,6 @@ struct Place {
 pub(crate) struct Sealed {
     file: Mutex<File>,
     pub(crate) state: State,
-    /// The version of its format.
-    pub(crate) version: u32,
     /// From the first one on.
     segments: Vec<Segment>,
     /// Where block 0 is in the first segment, and the number of blocks there.
@@ -370,18 +375,12 @@ impl Sealed {
         {
             return Err(IndexError::damaged(path, "its checksums changed"));
         }
-        Ok(Self::new(file, state, FORMAT_VERSION, segments))
+        Ok(Self::new(file, state, segments))
     }
 
-    fn new(file: File, state: State, version: u32, segments: Vec<Segment>) -> Self {
-        let mut sealed = Self {
-            file: Mutex::new(file),
-            state,
-            version,
-            first: (0, 0),
-            changed: BTreeMap::new(),
-            segments,
-        };
+    fn new(file: File, state: State, segments: Vec<Segment>) -> Self {
+        let mut sealed =
+            Self { file: Mutex::new(file), state, first: (0, 0), changed: BTreeMap::new(), segments };
         for (i, segment) in sealed.segments.iter().enumerate() {
             let mut at = segment.start;
             let mut sums = segment.sums.as_chunks::<4>().0.iter();
@@ -437,9 +436,9 @@ impl Sealed {
         if crc32fast::hash(&sums) != table_sum || !is_marked || !database.is_multiple_of(BLOCK as u64) {
             return Err(IndexError::damaged(path, "its checksums changed"));
         }
-        let state = State { number: 0, end: database, sums: table_sum };
+        let state = State { version: 1, number: 0, end: database, sums: table_sum };
         let runs = vec![(0, database / BLOCK as u64)];
-        Ok(Self::new(file, state, 1, vec![Segment { start: 0, runs, sums, database, table_sum }]))
+        Ok(Self::new(file, state, vec![Segment { start: 0, runs, sums, database, table_sum }]))
     }
 
     /// Size of the database in bytes.
@@ -465,7 +464,7 @@ impl Sealed {
         let start = HEAD + self.first.1 * BLOCK as u64;
         let appended = self.state.end.saturating_sub(start);
         let room = self.first.1 * BLOCK as u64 / 2;
-        (self.version == FORMAT_VERSION && self.segments.len() < MOST_SEGMENTS)
+        (self.state.version == FORMAT_VERSION && self.segments.len() < MOST_SEGMENTS)
             .then(|| room.saturating_sub(appended))
     }
 

@@ -48,6 +48,32 @@ impl Part {
         Rows { rows: self.rows(), ids: &self.ids, classes: &self.classes, cells }
     }
 
+    /// Brings the shapes into an order: `order[i]` becomes the `i`-th. Vectors have `n` numbers.
+    pub(super) fn sort(&mut self, order: &[usize], n: usize) {
+        self.ids = order.iter().map(|i| self.ids.get(*i)).collect();
+        self.classes = order.iter().map(|i| self.classes.get(*i)).collect();
+        // In place, one cycle of the permutation after the other: the vectors of a million shapes take a gigabyte.
+        let rows = &mut self.rows.0;
+        let mut is_done = vec![false; order.len()];
+        for first in 0..order.len() {
+            if is_done[first] {
+                continue;
+            }
+            let start = rows[first * n..][..n].to_vec();
+            let mut to = first;
+            loop {
+                is_done[to] = true;
+                let from = order[to];
+                if from == first {
+                    rows[to * n..][..n].copy_from_slice(&start);
+                    break;
+                }
+                rows.copy_within(from * n..(from + 1) * n, to * n);
+                to = from;
+            }
+        }
+    }
+
     pub(super) fn push(&mut self, id: &str, class: &str, row: &[f32]) {
         self.ids.push(id);
         self.classes.push(class);
@@ -301,6 +327,18 @@ pub(crate) fn make_format_1(store: &Store<'_>) -> Result<(), IndexError> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn shapes_are_sorted_in_place() {
+        let mut part = Part::default();
+        (0..7).for_each(|i| part.push(&i.to_string(), &format!("c{i}"), &[i as f32, 0.5]));
+        let order = [3, 1, 0, 6, 5, 4, 2];
+        part.sort(&order, 2);
+        for (i, from) in order.into_iter().enumerate() {
+            assert_eq!((part.ids.get(i), part.classes.get(i)), (&*from.to_string(), &*format!("c{from}")));
+            assert_eq!(part.rows()[2 * i..][..2], [from as f32, 0.5]);
+        }
+    }
 
     #[test]
     fn parts_hold_at_least_one_row() {

@@ -117,6 +117,19 @@ impl Store<'_> {
         self.insert(transaction, ABOUT, name, value).map(drop)
     }
 
+    #[cfg(test)]
+    pub(crate) fn remove_property(
+        &self,
+        transaction: &WriteTransaction,
+        name: &str,
+    ) -> Result<(), IndexError> {
+        self.call(|| {
+            let mut table = Guarded::new(transaction.open_table(ABOUT)?);
+            table.remove(name)?;
+            Ok::<_, redb::Error>(())
+        })
+    }
+
     /// Writes a shape over the one of the same name.
     pub(crate) fn put(
         &self,

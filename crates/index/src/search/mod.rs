@@ -1,5 +1,6 @@
-//! Search for the nearest vectors, in the file or in memory.
+//! Search for the nearest vectors, in the file or in memory, and on the graph of nearest neighbours.
 
+mod graph;
 mod searcher;
 
 use crate::texts::Texts;
@@ -7,6 +8,7 @@ use crate::vectors::{CellsHeader, NEIGHBORS, Nearest, Reach, nearest_cells, padd
 use crate::{Index, IndexError};
 use retrieval::UnknownThreshold;
 
+pub use graph::{FoundOnGraph, RankedShape};
 pub use searcher::Searcher;
 
 /// How thoroughly to search.

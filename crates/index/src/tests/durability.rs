@@ -182,7 +182,7 @@ fn changes_after_an_interrupted_end_are_not_lost() {
     let path = folder.index("a", 60);
     let mut writer = IndexWriter::open(&path, Job::Add, None).unwrap();
     writer.put(&[shape(60), shape(61)]).unwrap();
-    writer.refresh().unwrap();
+    writer.refresh(&()).unwrap();
     drop(writer);
     let mut writer = IndexWriter::open(&path, Job::Add, None).unwrap();
     assert!(writer.is_resumed());

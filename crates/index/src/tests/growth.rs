@@ -1,9 +1,12 @@
 //! Changes cost what is changed, and lead where a new start leads.
 
+use std::collections::HashMap;
 use std::fs;
 use std::path::Path;
 
+use super::graph::nodes;
 use super::{Folder, OPTIONS, export, shape};
+use crate::format::Node;
 use crate::{
     ContentHash, Found, Index, IndexWriter, Job, SearchMode, Searcher, Shape, ShapeEntry, ShapeVectors,
     verify,
@@ -70,7 +73,7 @@ fn an_addition_writes_as_much_to_a_large_index_as_to_a_small_one() {
             let before = size();
             let mut writer = IndexWriter::open(&path, Job::Add, None).unwrap();
             writer.put(&[point(n + i)]).unwrap();
-            writer.refresh().unwrap();
+            writer.refresh(&()).unwrap();
             let work = writer.n_written().unwrap();
             writer.finish().unwrap();
             assert!(size() > before, "it is appended");
@@ -102,6 +105,7 @@ fn many_small_changes_lead_where_one_build_leads() {
     let index = Index::open(&path).unwrap();
     let fresh = built(&folder.path("b"), 300..1300);
     assert_eq!(export(&path), export(&folder.path("b")));
+    assert_eq!(nodes(&index), nodes(&fresh));
     assert_eq!(index.classes().unwrap(), fresh.classes().unwrap());
     for query in [point(5000), point(800)] {
         for mode in [SearchMode::Auto, SearchMode::Exact] {
@@ -165,6 +169,17 @@ fn cells_that_have_grown_find_as_much_as_new_ones() {
     let fresh =
         built(&folder.path("b"), (3000..64_000).filter(|i| !(20_000..21_000).step_by(3).any(|x| x == *i)));
     assert_eq!(export(&path), export(&folder.path("b")));
+    // Lists that changes did not reach are rare.
+    let [grown, new]: [HashMap<u64, Node>; 2] =
+        [&index, &fresh].map(|index| nodes(index).into_iter().collect());
+    let listed: usize = new.values().map(|node| node.links.0.len()).sum();
+    let kept = |(key, node): (&u64, &Node)| {
+        let old = &grown[key].links.0;
+        node.links.0.iter().filter(|link| old.iter().any(|known| known.key == link.key)).count()
+    };
+    let kept: usize = new.iter().map(kept).sum();
+    println!("{kept} of {listed} links");
+    assert!(grown.len() == new.len() && kept * 100 >= listed * 98, "{kept} of {listed}");
     let mut searchers = [&index, &fresh].map(|index| (Searcher::load(index).unwrap(), 0));
     for i in 0..300 {
         let query = point(70_000 + i).vectors.fused;

@@ -5,6 +5,7 @@ mod durability;
 mod equality;
 mod forged;
 mod format_1;
+mod graph;
 mod growth;
 
 use std::path::{Path, PathBuf};

@@ -6,12 +6,15 @@
 //! whenever the index is finished, so that searches for some of its own vectors find 99.4 % of the ten nearest. Vectors
 //! are not quantised.
 //!
+//! The [graph] lists the nearest neighbours of every vector, found by such searches.
+//!
 //! New vectors join the nearest cells; centres are chosen again when the set has grown by half.
 //!
 //! **Invariant.** Nothing depends on the number of threads. Exact searches and the threshold of unknown classes depend on
 //! the vectors only, not on the order or the history of insertions.
 
 pub(crate) mod cells;
+mod graph;
 pub(crate) mod kernels;
 mod kmeans;
 mod nearest;
@@ -20,7 +23,8 @@ mod testing;
 mod trials;
 
 pub(crate) use cells::{CellsHeader, Reach, divided, n_cells, nearest_cells, scan};
-pub(crate) use kernels::padded;
+pub(crate) use graph::{Divided, Link, Links, NodeKey, node_key};
+pub(crate) use kernels::{padded, sq_distances_into};
 pub(crate) use kmeans::Centroids;
 pub(crate) use nearest::{Hit, Nearest};
 pub(crate) use trials::{Change, NEIGHBORS, Rows, Trial, TrialKey, Trials};

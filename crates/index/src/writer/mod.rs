@@ -9,7 +9,10 @@ use std::path::{Path, PathBuf};
 use redb::{Database, WriteTransaction};
 
 use self::work::{Begun, open_exclusively, with_suffix};
-use crate::format::{CellState, Changes, ENTRIES, Guarded, Sealed, Store, WorkFile, call, refresh_cells};
+use crate::format::{
+    CellState, Changes, ENTRIES, Graph, Guarded, Sealed, Store, WorkFile, call, refresh_cells,
+};
+use crate::progress::Progress;
 use crate::{Index, IndexError, Shape, ShapeEntry};
 
 pub use self::work::work_path;
@@ -255,9 +258,15 @@ impl IndexWriter {
         })
     }
 
-    /// Brings the cells up to date with the shapes.
-    pub(crate) fn refresh(&self) -> Result<(), IndexError> {
-        refresh_cells(&self.store(), self.base.as_ref().map(Index::store).as_ref())
+    /// Brings the cells and the graph up to date with the shapes.
+    pub(crate) fn refresh(&self, progress: &dyn Progress) -> Result<(), IndexError> {
+        refresh_cells(&self.store(), self.base.as_ref().map(Index::store).as_ref(), progress)
+    }
+
+    /// Whether the index has a graph of nearest neighbours, which earlier versions did not write.
+    /// [`finish`](Self::finish) adds it.
+    pub fn has_graph(&self) -> Result<bool, IndexError> {
+        Ok(Graph::open(&self.store().read()?)?.is_some())
     }
 
     /// Finishes the index: appends what is new to it, or replaces it.
@@ -265,7 +274,16 @@ impl IndexWriter {
     /// # Errors
     /// [`IndexError::Io`]; then the index is unchanged, and the work is kept.
     pub fn finish(self) -> Result<Index, IndexError> {
-        self.refresh()?;
+        self.finish_with(&())
+    }
+
+    /// As [`finish`](Self::finish), with reports of its progress: for a large index, finding the neighbours of all shapes
+    /// takes minutes.
+    ///
+    /// # Errors
+    /// Those of [`finish`](Self::finish).
+    pub fn finish_with(self, progress: &dyn Progress) -> Result<Index, IndexError> {
+        self.refresh(progress)?;
         let n_shapes = self.store().read()?.len()?;
         let Self { path, work, lock, mut file, database, base, replaces_damaged, .. } = self;
         drop(database);

@@ -1,0 +1,138 @@
+//! Search on the graph of nearest neighbours.
+
+use std::collections::HashMap;
+
+use retrieval::{GraphNeighbor, LINKS, Neighbor, graph_rank};
+
+use super::{Found, SearchMode, distance};
+use crate::format::{Graph, Snapshot};
+use crate::vectors::{NodeKey, node_key};
+use crate::{Index, IndexError};
+
+/// A shape found on the graph.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RankedShape {
+    /// Its name.
+    pub id: String,
+    /// Euclidean distance of its vector from the query.
+    pub distance: f64,
+    /// Its rank distance, in 0..1, by which results are ordered; see [`retrieval::graph_rank`].
+    pub rank_distance: f64,
+    /// Its rank by distance, counted from 1; `None` if it is found through its neighbours only.
+    pub plain_rank: Option<usize>,
+}
+
+/// The result of a search on the graph.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FoundOnGraph {
+    /// Smallest rank distance first; ties by distance and name.
+    pub shapes: Vec<RankedShape>,
+    /// Number of lists of neighbours that were read.
+    pub n_lists: usize,
+    /// The search for the nearest vectors, without its shapes.
+    pub search: Found,
+}
+
+impl Index {
+    /// The `k` shapes whose rank distances from `query` are least, among its nearest shapes and their neighbours. Reads the
+    /// cells and the lists that it needs from the file.
+    ///
+    /// # Errors
+    /// [`IndexError::NoGraph`] and those of [`nearest`](Self::nearest).
+    pub fn nearest_on_graph(
+        &self,
+        query: &[f32],
+        k: usize,
+        mode: SearchMode,
+    ) -> Result<FoundOnGraph, IndexError> {
+        let mut search = self.nearest(query, k.max(LINKS), mode)?;
+        let store = self.store();
+        let snapshot = store.read()?;
+        let graph = Graph::open(&snapshot)?.ok_or_else(|| IndexError::NoGraph(self.path().to_owned()))?;
+        let mut walk = Walk { graph, snapshot: &snapshot, query, known: Names::default(), n_lists: 0 };
+        let nearest: Vec<Neighbor> = search
+            .shapes
+            .drain(..)
+            .map(|near| {
+                let index = walk.known.number(node_key(&near.id));
+                walk.known.ids[index] = Some(near.id);
+                Neighbor { index, distance: near.distance }
+            })
+            .collect();
+        let ranked = graph_rank(usize::MAX, &nearest, &mut walk)?;
+        let Walk { known, n_lists, .. } = walk;
+        let shape = |found: GraphNeighbor| {
+            let GraphNeighbor { index, distance, rank_distance } = found;
+            // The nearest were numbered first.
+            let plain_rank = (index < nearest.len()).then_some(index + 1);
+            Some(RankedShape { id: known.ids[index].clone()?, distance, rank_distance, plain_rank })
+        };
+        // A neighbour without a name is gone.
+        let mut shapes: Vec<RankedShape> =
+            ranked.into_iter().filter(|near| near.distance.is_finite()).filter_map(shape).collect();
+        shapes.sort_by(|a, b| {
+            let by_rank = a.rank_distance.total_cmp(&b.rank_distance);
+            by_rank.then(a.distance.total_cmp(&b.distance)).then_with(|| a.id.cmp(&b.id))
+        });
+        shapes.truncate(k);
+        Ok(FoundOnGraph { shapes, n_lists, search })
+    }
+}
+
+/// Shapes by the order in which a walk meets them.
+#[derive(Default)]
+struct Names {
+    numbers: HashMap<NodeKey, usize>,
+    keys: Vec<NodeKey>,
+    ids: Vec<Option<String>>,
+}
+
+impl Names {
+    fn number(&mut self, key: NodeKey) -> usize {
+        *self.numbers.entry(key).or_insert_with(|| {
+            self.keys.push(key);
+            self.ids.push(None);
+            self.keys.len() - 1
+        })
+    }
+}
+
+/// The part of the graph around a query.
+struct Walk<'a> {
+    graph: Graph<'a>,
+    snapshot: &'a Snapshot<'a>,
+    query: &'a [f32],
+    known: Names,
+    n_lists: usize,
+}
+
+impl retrieval::Graph for Walk<'_> {
+    type Error = IndexError;
+
+    fn links(&mut self, shape: usize) -> Result<Vec<Neighbor>, IndexError> {
+        self.n_lists += 1;
+        let Some(node) = self.graph.node(self.known.keys[shape])? else { return Ok(Vec::new()) };
+        let of = |link: crate::vectors::Link, known: &mut Names| Neighbor {
+            index: known.number(link.key),
+            distance: f64::from(link.sq).sqrt(),
+        };
+        let links = node.links.0.into_iter().map(|link| of(link, &mut self.known)).collect();
+        self.known.ids[shape].get_or_insert(node.id);
+        Ok(links)
+    }
+
+    /// Infinite for a shape that is gone.
+    fn distance(&mut self, shape: usize) -> Result<f64, IndexError> {
+        let id = match &self.known.ids[shape] {
+            Some(id) => id.clone(),
+            None => match self.graph.node(self.known.keys[shape])? {
+                Some(node) => node.id,
+                None => return Ok(f64::INFINITY),
+            },
+        };
+        let Some(vector) = self.snapshot.fused(&id)? else { return Ok(f64::INFINITY) };
+        let found = distance(self.query, &vector);
+        self.known.ids[shape] = Some(id);
+        Ok(found)
+    }
+}

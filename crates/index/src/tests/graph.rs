@@ -1,0 +1,134 @@
+//! The graph of nearest neighbours: what it lists, what it finds, and indexes without one.
+
+use std::fs;
+use std::path::Path;
+
+use retrieval::{Graph as _, LINKS, Neighbor, graph_rank};
+
+use super::{Folder, OPTIONS, shape};
+use crate::format::{Graph, HEAD, Node, drop_graph, seal};
+use crate::{Index, IndexError, IndexWriter, Job, SearchMode, Shape, ShapeVectors, verify, work_path};
+
+/// All shapes of the graph, in ascending order of keys.
+pub(super) fn nodes(index: &Index) -> Vec<(u64, Node)> {
+    let store = index.store();
+    let snapshot = store.read().unwrap();
+    let mut nodes = Vec::new();
+    let graph = Graph::open(&snapshot).unwrap().unwrap();
+    graph
+        .each(|key, node| {
+            nodes.push((key, node));
+            Ok(())
+        })
+        .unwrap();
+    nodes
+}
+
+/// Writes the index of shapes 0 to `n` in format 2.
+fn write_format_2(path: &Path, n: usize) {
+    let mut writer = IndexWriter::open(path, Job::Build, Some(OPTIONS)).unwrap();
+    writer.put(&(0..n).map(shape).collect::<Vec<_>>()).unwrap();
+    writer.refresh(&()).unwrap();
+    drop_graph(&writer.store()).unwrap();
+    drop(writer);
+    let mut file = fs::OpenOptions::new().read(true).write(true).open(work_path(path)).unwrap();
+    seal(&mut file, 0).unwrap();
+    drop(file);
+    fs::rename(work_path(path), path).unwrap();
+    let mut bytes = fs::read(path).unwrap();
+    for slot in [0, HEAD as usize / 2] {
+        bytes[slot + 16..slot + 20].copy_from_slice(&2u32.to_le_bytes());
+        let sum = crc32fast::hash(&bytes[slot..slot + 44]);
+        bytes[slot + 44..slot + 48].copy_from_slice(&sum.to_le_bytes());
+    }
+    fs::write(path, bytes).unwrap();
+}
+
+#[test]
+fn an_index_of_format_2_is_searched_and_gets_its_graph_with_the_next_change() {
+    let folder = Folder::new();
+    let path = folder.path("a");
+    write_format_2(&path, 60);
+    let old = Index::open(&path).unwrap();
+    assert_eq!((old.format(), old.len(), old.has_graph().unwrap()), (2, 60, false));
+    assert_eq!(verify(&path, || ()).unwrap().faults, Vec::<String>::new());
+    let query = shape(7).vectors.fused;
+    assert_eq!(old.nearest(&query, 3, SearchMode::Auto).unwrap().shapes[0].id, shape(7).id);
+    let error = old.nearest_on_graph(&query, 3, SearchMode::Auto).unwrap_err();
+    assert!(matches!(error, IndexError::NoGraph(_)) && error.to_string().contains("no graph"), "{error}");
+    // Nothing but the graph is missing.
+    let writer = IndexWriter::open(&path, Job::Build, Some(OPTIONS)).unwrap();
+    assert!(!writer.has_graph().unwrap());
+    let new = writer.finish().unwrap();
+    assert_eq!((new.format(), new.len()), (3, 60));
+    assert_eq!(nodes(&new), nodes(&Index::open(&folder.index("b", 60)).unwrap()));
+    assert_eq!(verify(&path, || ()).unwrap().faults, Vec::<String>::new());
+}
+
+#[test]
+fn an_index_finds_what_a_matrix_of_its_distances_finds() {
+    let folder = Folder::new();
+    let index = Index::open(&folder.index("a", 90)).unwrap();
+    let vectors: Vec<Vec<f32>> = (0..90).map(|i| shape(i).vectors.fused).collect();
+    let apart = |a: &[f32], b: &[f32]| -> f64 {
+        a.iter().zip(b).map(|(x, y)| (f64::from(*x) - f64::from(*y)).powi(2)).sum::<f64>().sqrt()
+    };
+    struct All<'a>(&'a [Vec<f32>], Vec<f32>, &'a dyn Fn(&[f32], &[f32]) -> f64);
+    impl All<'_> {
+        fn near(&self, row: &[f32], but: usize) -> Vec<Neighbor> {
+            let others = (0..self.0.len()).filter(|i| *i != but);
+            let mut near: Vec<Neighbor> =
+                others.map(|index| Neighbor { index, distance: (self.2)(row, &self.0[index]) }).collect();
+            near.sort_by(|a, b| a.distance.total_cmp(&b.distance));
+            near.truncate(LINKS);
+            near
+        }
+    }
+    impl retrieval::Graph for All<'_> {
+        type Error = std::convert::Infallible;
+
+        fn links(&mut self, shape: usize) -> Result<Vec<Neighbor>, Self::Error> {
+            Ok(self.near(&self.0[shape], shape))
+        }
+
+        fn distance(&mut self, shape: usize) -> Result<f64, Self::Error> {
+            Ok((self.2)(&self.1, &self.0[shape]))
+        }
+    }
+    for x in [40.3f32, 3.1, 88.0] {
+        let query = vec![x, 0.2, 0.1];
+        let mut all = All(&vectors, query.clone(), &apart);
+        assert!(all.links(0).unwrap().len() == LINKS);
+        let nearest = all.near(&query, usize::MAX);
+        let expected = graph_rank(usize::MAX, &nearest, &mut all).unwrap();
+        let found = index.nearest_on_graph(&query, 10, SearchMode::Auto).unwrap();
+        assert_eq!((found.shapes.len(), found.search.n_shapes, found.search.shapes.len()), (10, 90, 0));
+        for (near, expected) in found.shapes.iter().zip(&expected) {
+            assert_eq!(near.id, shape(expected.index).id);
+            assert!((near.rank_distance - expected.rank_distance).abs() < 1e-5);
+            assert!((near.distance - expected.distance).abs() < 1e-9);
+            let plain = nearest.iter().position(|plain| plain.index == expected.index);
+            assert_eq!(near.plain_rank, plain.map(|place| place + 1));
+        }
+    }
+}
+
+#[test]
+fn few_shapes_equal_shapes_and_none_have_a_graph() {
+    let folder = Folder::new();
+    let none = Index::open(&folder.index("none", 0)).unwrap();
+    assert!(none.has_graph().unwrap());
+    assert!(none.nearest_on_graph(&[1.0, 2.0], 3, SearchMode::Auto).unwrap().shapes.is_empty());
+    let few = Index::open(&folder.index("few", 3)).unwrap();
+    assert!(nodes(&few).iter().all(|(_, node)| node.links.0.len() == 2));
+    assert_eq!(few.nearest_on_graph(&[0.0, 0.0, 0.1], 9, SearchMode::Auto).unwrap().shapes.len(), 3);
+    let path = folder.path("equal");
+    let mut writer = IndexWriter::open(&path, Job::Build, Some(OPTIONS)).unwrap();
+    let vectors = ShapeVectors { fused: vec![1.0, 2.0], ..ShapeVectors::default() };
+    let copies = (0..80).map(|i| Shape { vectors: vectors.clone(), ..shape(i) });
+    writer.put(&copies.collect::<Vec<_>>()).unwrap();
+    let index = writer.finish().unwrap();
+    let found = index.nearest_on_graph(&[1.0, 2.0], 5, SearchMode::Auto).unwrap();
+    assert!(found.shapes.iter().all(|near| near.distance == 0.0 && near.rank_distance.is_finite()));
+    assert_eq!(verify(&path, || ()).unwrap().faults, Vec::<String>::new());
+}
