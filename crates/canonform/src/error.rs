@@ -236,6 +236,8 @@ pub enum Remedy {
     RestoreMesh,
     /// Build the index again.
     BuildIndexAgain,
+    /// Build the index again from its folder, or change it, which adds the graph of nearest neighbours.
+    AddGraph,
     /// Look at the names in the index.
     ListShapes,
     /// Evaluate a part of the collection, such as one shard.
@@ -274,6 +276,7 @@ impl Remedy {
         match fault {
             IndexError::Damaged { .. } => Some(Self::BuildIndexAgain),
             IndexError::NoSuchShape { .. } => Some(Self::ListShapes),
+            IndexError::NoGraph(_) => Some(Self::AddGraph),
             _ => None,
         }
     }

@@ -106,11 +106,12 @@ pub use input::{
     Skipped, Surface, SurfacePath, label_of, list_shapes,
 };
 pub use observer::Observer;
+pub use retrieval::RankBy;
 pub use shape_index::{
-    BuildOptions, BuildReport, ClassVotes, ComponentResult, Dropped, Elsewhere, Explain, Failure,
-    FailureReason, Inputs, Measure, MergeReport, NearestShape, Prediction, Query, Ranked, Reranked,
-    SearchOptions, SearchReport, SearchResult, SearchSeconds, ShapeLimits, ShapeSearch, Shard, Unknown,
-    add_to_index, build_index, content_hash, evaluate_index, evaluate_matrix, merge_indexes, mesh_path,
-    remove_from_index, rerank,
+    BuildOptions, BuildReport, ClassVotes, ComponentResult, Dropped, Elsewhere, EvaluateOptions, Explain,
+    Failure, FailureReason, GraphRank, Inputs, Measure, MergeReport, NearestShape, Prediction, Query, Ranked,
+    Reranked, SearchOptions, SearchReport, SearchResult, SearchSeconds, ShapeLimits, ShapeSearch, Shard,
+    Unknown, add_to_index, build_index, content_hash, evaluate_index, evaluate_matrix, merge_indexes,
+    mesh_path, remove_from_index, rerank,
 };
 pub use {descriptors, geodesics, index, linalg, mesh, nmds, retrieval, surface};

@@ -27,6 +27,10 @@ fn words(remedy: Remedy) -> &'static str {
         Remedy::BuildIndexAgain => {
             "restore the index from a copy, or build it again with `canonform index build`"
         }
+        Remedy::AddGraph => {
+            "run `canonform index build` with the same folder and file again, which describes no shape twice, or pass \
+             --rank plain"
+        }
         Remedy::ListShapes => "`canonform index list` names its shapes",
         Remedy::EvaluateShard => "evaluate one shard at a time",
         _ => "see `canonform --help`",

@@ -162,6 +162,9 @@ impl From<Error> for ApiError {
             Error::Index(IndexError::NoSuchShape { id, .. }) => {
                 (StatusCode::NOT_FOUND, format!("the index has no shape `{id}`"))
             }
+            Error::Index(IndexError::NoGraph(_)) => {
+                (StatusCode::CONFLICT, "the index has no graph of nearest neighbours".to_owned())
+            }
             Error::MeshGone { id, .. } => (StatusCode::NOT_FOUND, format!("cannot read the mesh of `{id}`")),
             Error::MeshChanged { id, .. } => {
                 (StatusCode::GONE, format!("the mesh of `{id}` has changed since it was indexed"))
@@ -186,6 +189,9 @@ fn remedy(fault: &Error) -> Option<&'static str> {
             "restore the mesh file, move the index back to the place where it was built, or build the index again"
         }
         Remedy::BuildIndexAgain => "build the index again",
+        Remedy::AddGraph => {
+            "build the index again, which describes no shape twice, or choose the plain ranking"
+        }
         Remedy::UseNystrom => "simplify the mesh, or build the index with NMDS, which needs less memory",
         _ => return None,
     })

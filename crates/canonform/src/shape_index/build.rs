@@ -6,7 +6,7 @@ use std::sync::mpsc::{Receiver, sync_channel};
 use std::time::Instant;
 
 use budget::{Budget, Exceeded};
-use index::{Index, IndexError, IndexWriter, Job, Shape, ShapeEntry, work_path};
+use index::{Index, IndexError, IndexWriter, Job, Progress, Shape, ShapeEntry, work_path};
 use mesh::{Fault, MeshError};
 use rayon::prelude::*;
 use serde::{Serialize, Serializer};
@@ -205,6 +205,8 @@ impl BuildReport {
 /// Makes `path` the index of the meshes in `folder`: describes new and changed meshes, removes shapes of the folder whose
 /// files are gone, and keeps the rest. Shapes that were added from elsewhere stay, unless the options say otherwise.
 ///
+/// An index that an earlier version wrote gets its graph of nearest neighbours, even if nothing has changed.
+///
 /// Every described shape is on disk before `observer` counts it, and the next run resumes an interrupted one.
 /// Meshes that cannot be described are reported and left out; if there are no others, no index is written.
 ///
@@ -248,6 +250,7 @@ pub fn build_index(
     let hashed = hash_all(listing.shapes, observer);
     if let Some(index) = &existing
         && !work_path(path).exists()
+        && index.has_graph()?
         && let Some(elsewhere) = is_current(index, &hashed, &root, options.elsewhere)?
     {
         let ids = hashed.iter().map(|(listed, _)| &listed.file.name);
@@ -279,13 +282,12 @@ pub fn build_index(
     writer.remove(&gone)?;
     let nothing_new =
         report.described + report.renamed + gone.len() == 0 && !report.resumed && !report.replaced_damaged;
+    let nothing_new = nothing_new && writer.has_graph()?;
     if nothing_new && path.exists() || writer.is_empty()? && !report.failed.is_empty() {
         report.n_shapes = writer.len()?;
         writer.discard()?;
     } else {
-        observer.begin("finishing", 1);
-        report.n_shapes = writer.finish()?.len();
-        observer.step();
+        report.n_shapes = writer.finish_with(&Finishing(observer))?.len();
     }
     report.seconds = start.elapsed().as_secs_f64();
     Ok(report)
@@ -370,6 +372,19 @@ pub(super) fn fill(
     failed.iter().for_each(|(place, fault)| report.fail(&wanted[*place].0, fault));
     report.list_dropped(writer.path(), kept.iter(), |id| writer.entry(id))?;
     Ok(kept)
+}
+
+/// Reports the search for the neighbours of all shapes.
+pub(super) struct Finishing<'a>(pub(super) &'a dyn Observer);
+
+impl Progress for Finishing<'_> {
+    fn begin(&self, total: usize) {
+        self.0.begin("linking neighbours", total);
+    }
+
+    fn step(&self, done: usize) {
+        (0..done).for_each(|_| self.0.step());
+    }
 }
 
 /// Describes a mesh within limits.

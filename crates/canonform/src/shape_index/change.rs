@@ -6,7 +6,7 @@ use std::time::Instant;
 use index::{Index, IndexError, IndexWriter, Job, Shape, ShapeEntry};
 use serde::Serialize;
 
-use super::build::{BuildReport, fill};
+use super::build::{BuildReport, Finishing, fill};
 use super::place::{Home, mesh_path};
 use super::record::options_of;
 use super::source::{Inputs, hash_all};
@@ -55,7 +55,7 @@ pub fn add_to_index(
     if report.described + report.renamed == 0 && !report.resumed {
         writer.discard()?;
     } else {
-        report.n_shapes = writer.finish()?.len();
+        report.n_shapes = writer.finish_with(&Finishing(observer))?.len();
     }
     report.seconds = start.elapsed().as_secs_f64();
     Ok(report)
@@ -123,5 +123,5 @@ pub fn merge_indexes(inputs: &[PathBuf], path: &Path, observer: &dyn Observer) -
         })?;
         writer.put(&batch)?;
     }
-    Ok(MergeReport { n_shapes: writer.finish()?.len(), repeated })
+    Ok(MergeReport { n_shapes: writer.finish_with(&Finishing(observer))?.len(), repeated })
 }

@@ -6,7 +6,7 @@ use descriptors::{ShapeMetric, SignatureKind};
 use files::FileError;
 use index::{Index, IndexError};
 use linalg::DistanceMatrix;
-use retrieval::{Evaluation, Labels, evaluate, pairwise_distances};
+use retrieval::{Evaluation, Labels, RankBy, evaluate_ranked, pairwise_distances};
 
 use crate::error::Error;
 use crate::input::{LabelFile, label_in};
@@ -25,18 +25,36 @@ pub enum Measure {
     Signature(SignatureKind),
 }
 
-/// Scores an index by the distances between all pairs of its shapes. Classes come from the index, or from `labels`; shapes
-/// without a class are left out.
+/// How a collection is scored.
+#[derive(Debug, Clone, Copy)]
+pub struct EvaluateOptions<'a> {
+    /// The vectors of an index that distances are measured between. Default: [`Measure::Fused`].
+    pub measure: Measure,
+    /// Classes by name. Default: those of the index, or from the names of a matrix.
+    pub labels: Option<&'a LabelFile>,
+    /// Number of neighbours that vote. Default: 1.
+    pub knn_k: usize,
+    /// Whether the ranking on the neighbour graph is scored beside that by distance. Default: [`RankBy::Plain`], that by
+    /// distance alone.
+    pub rank_by: RankBy,
+}
+
+impl Default for EvaluateOptions<'_> {
+    fn default() -> Self {
+        Self { measure: Measure::default(), labels: None, knn_k: 1, rank_by: RankBy::default() }
+    }
+}
+
+/// Scores an index by the distances between all pairs of its shapes. Shapes without a class are left out.
 ///
 /// # Errors
 /// [`Error::TooManyShapes`], [`Error::Index`], [`Error::Retrieval`].
 pub fn evaluate_index(
     path: &Path,
-    measure: Measure,
-    labels: Option<&LabelFile>,
-    knn_k: usize,
+    options: &EvaluateOptions<'_>,
     observer: &dyn Observer,
 ) -> Result<Evaluation, Error> {
+    let EvaluateOptions { measure, labels, knn_k, rank_by } = *options;
     let index = Index::open(path)?;
     let n = index.len();
     if n > MOST {
@@ -71,30 +89,31 @@ pub fn evaluate_index(
     observer.begin("distances", n * n.saturating_sub(1) / 2);
     let distance = |i: usize, j: usize| Ok::<_, Error>(ShapeMetric::fused(&rows[i], &rows[j]));
     let distances = pairwise_distances(n, distance, || observer.step())?;
-    Ok(evaluate(&distances, &Labels::new(&names), knn_k)?)
+    Ok(evaluate_ranked(&distances, &Labels::new(&names), knn_k, rank_by)?)
 }
 
 /// Scores a matrix of distances: lines of numbers separated by commas, optionally below a line of names.
 ///
-/// Classes come from `labels`, by name or, if the matrix has no names, by the order of its lines; without labels
-/// they come from the names. Both directions of a pair are averaged.
+/// Classes come from the labels of the options, by name or, if the matrix has no names, by the order of its lines; without
+/// labels they come from the names. Both directions of a pair are averaged.
 ///
 /// ```
-/// use canonform::evaluate_matrix;
+/// use canonform::{EvaluateOptions, evaluate_matrix};
 ///
 /// let folder = tempfile::tempdir()?;
 /// let path = folder.path().join("distances.csv");
 /// let rows = ["cat1,cat2,cat3,dog1,dog2,dog3", "0,1,2,9,9,9", "1,0,1,9,9,9", "2,1,0,9,9,9", "9,9,9,0,1,2",
 ///     "9,9,9,1,0,1", "9,9,9,2,1,0"];
 /// std::fs::write(&path, rows.join("\n"))?;
-/// let scores = evaluate_matrix(&path, None, 1)?;
+/// let scores = evaluate_matrix(&path, &EvaluateOptions::default())?;
 /// assert_eq!((scores.mean.nn, scores.mean.map), (1.0, 1.0));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
 /// # Errors
 /// [`Error::BadLine`], [`Error::NoNames`], [`Error::Retrieval`].
-pub fn evaluate_matrix(path: &Path, labels: Option<&LabelFile>, knn_k: usize) -> Result<Evaluation, Error> {
+pub fn evaluate_matrix(path: &Path, options: &EvaluateOptions<'_>) -> Result<Evaluation, Error> {
+    let EvaluateOptions { labels, knn_k, rank_by, .. } = *options;
     let text = std::fs::read_to_string(path).map_err(|source| FileError::read(path, source))?;
     let Matrix { names, rows } = Matrix::parse(&text, path)?;
     let classes: Vec<String> = match (labels, names) {
@@ -109,7 +128,7 @@ pub fn evaluate_matrix(path: &Path, labels: Option<&LabelFile>, knn_k: usize) ->
     };
     let n = rows.len();
     let distances = DistanceMatrix::from_pairs(n, |i, j| 0.5 * (rows[i][j] + rows[j][i]))?;
-    Ok(evaluate(&distances, &Labels::new(&classes), knn_k)?)
+    Ok(evaluate_ranked(&distances, &Labels::new(&classes), knn_k, rank_by)?)
 }
 
 /// The part of a matrix whose rows and columns have a class.

@@ -3,6 +3,7 @@
 use budget::Budget;
 use descriptors::{Handedness, PreparedShape, ShapeDistance, ShapeMetric, Verdict, VerdictKind};
 use index::ShapeEntry;
+use retrieval::RankBy;
 
 use super::components::described;
 use super::found::{ComponentResult, SearchResult, StoredComponent};
@@ -73,7 +74,8 @@ impl ShapeSearch {
                 _ => format!("each of {copies} components of {}", query.name),
             };
             let known = Query { name: &name, content: None, geometry: Some(part) };
-            let options = SearchOptions { k: 1, ..options.clone() };
+            // The nearest one is wanted.
+            let options = SearchOptions { k: 1, rank_by: RankBy::Plain, ..options.clone() };
             let complete = Completeness::default();
             let nearest = self.nearest(&description.prepare()?, &known, complete, &options, budget)?;
             found.push(ComponentResult {
@@ -120,6 +122,7 @@ impl ShapeSearch {
                 path: entry.path,
                 distance: fused,
                 fused,
+                on_graph: None,
                 verdict,
                 comparison: None,
                 evidence: Some(evidence),

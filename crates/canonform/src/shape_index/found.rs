@@ -5,6 +5,15 @@ use serde::Serialize;
 
 use crate::compare::{Comparison, MatchEvidence};
 
+/// The place of a shape in a ranking on the graph.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct GraphRank {
+    /// Rank distance, from 0 to 1: by fused distance and by neighbours in common, see [`retrieval::graph_rank`].
+    pub rank_distance: f64,
+    /// Its rank by fused distance, counted from 1; `None` if it is found through its neighbours only.
+    pub plain_rank: Option<usize>,
+}
+
 /// A shape that was found.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SearchResult {
@@ -16,10 +25,13 @@ pub struct SearchResult {
     pub label: String,
     /// Path of its mesh as the index states it; [`mesh_path`](crate::mesh_path) finds the file.
     pub path: String,
-    /// Combined distance, by signatures and aligned forms; results are ordered by it.
+    /// Combined distance, by signatures and aligned forms; results are ordered by it, unless they are ranked on the graph.
     pub distance: f64,
     /// Fused distance, by signatures alone.
     pub fused: f64,
+    /// What results are ordered by if they are ranked on the graph.
+    #[serde(flatten, skip_serializing_if = "Option::is_none")]
+    pub on_graph: Option<GraphRank>,
     /// How alike the query and the shape are, and why. It does not depend on size, and the handedness is unknown.
     pub verdict: Verdict,
     /// The comparison with the query, if results are explained.

@@ -3,6 +3,7 @@
 //! ```text
 //! files -> content hash -> unchanged? -> describe -> index::IndexWriter -> index::Index
 //! mesh -> describe -> Index::nearest (fused signatures) -> rerank (aligned forms) -> vote
+//!                  -> Index::nearest_on_graph -> aligned forms of the results -> vote
 //! ```
 
 mod build;
@@ -20,8 +21,8 @@ mod source;
 
 pub use build::{BuildOptions, BuildReport, Dropped, Elsewhere, Failure, FailureReason, build_index};
 pub use change::{MergeReport, add_to_index, merge_indexes, remove_from_index};
-pub use evaluate::{Measure, evaluate_index, evaluate_matrix};
-pub use found::{ComponentResult, SearchResult};
+pub use evaluate::{EvaluateOptions, Measure, evaluate_index, evaluate_matrix};
+pub use found::{ComponentResult, GraphRank, SearchResult};
 pub use place::mesh_path;
 pub use predict::{ClassVotes, NearestShape, Prediction, Unknown};
 pub use rerank::{Ranked, Reranked, rerank};

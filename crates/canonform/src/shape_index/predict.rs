@@ -243,6 +243,7 @@ mod tests {
             path: String::new(),
             distance,
             fused: distance,
+            on_graph: None,
             verdict: ShapeMetric::verdict(shape, Handedness::Unknown, 1.0),
             comparison: None,
             evidence: None,

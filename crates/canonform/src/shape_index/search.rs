@@ -6,13 +6,13 @@ use std::time::Instant;
 
 use budget::Budget;
 use descriptors::{PreparedShape, ShapeMetric, ShapePair};
-use index::{ContentHash, Index, SearchMode, ShapeEntry};
+use index::{ContentHash, Found, FoundOnGraph, Index, RankedShape, SearchMode, ShapeEntry};
 use mesh::TriMesh;
 use rayon::prelude::*;
-use retrieval::Candidate;
+use retrieval::{Candidate, RankBy};
 use serde::Serialize;
 
-use super::found::{ComponentResult, SearchResult, StoredComponent};
+use super::found::{ComponentResult, GraphRank, SearchResult, StoredComponent};
 use super::predict::{Completeness, Prediction, VOTERS, predicted};
 use super::record::{DROPPED, SHORTCUTS, options_of, prepared};
 use super::rerank::{Ranked, rerank};
@@ -40,6 +40,9 @@ pub struct SearchOptions {
     pub mode: SearchMode,
     /// Whether every result is compared with the query in detail. Default: no.
     pub explain: Explain,
+    /// How results are ordered. [`RankBy::Graph`] needs the graph of the index. Default: [`RankBy::Plain`], by combined
+    /// distance.
+    pub rank_by: RankBy,
 }
 
 /// Whether results are compared with the query in detail.
@@ -54,7 +57,7 @@ pub enum Explain {
 
 impl Default for SearchOptions {
     fn default() -> Self {
-        Self { k: 10, mode: SearchMode::Auto, explain: Explain::No }
+        Self { k: 10, mode: SearchMode::Auto, explain: Explain::No, rank_by: RankBy::Plain }
     }
 }
 
@@ -78,8 +81,10 @@ impl Default for Query<'_> {
 /// The answer to a search.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SearchReport {
-    /// Nearest first.
+    /// The best first, by what `rank_by` states.
     pub results: Vec<SearchResult>,
+    /// How results are ordered.
+    pub rank_by: RankBy,
     /// The components of a query that has several, if results are explained: what each of them is.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub components: Vec<ComponentResult>,
@@ -157,7 +162,8 @@ impl ShapeSearch {
         read_unchanged(self.index.path(), id, &self.index.entry(id)?)
     }
 
-    /// Finds the shapes nearest to a mesh: candidates by fused signatures, ordered by aligned forms.
+    /// Finds the shapes nearest to a mesh: candidates by fused signatures, ordered by aligned forms or, if the options say
+    /// so, by their places on the graph of nearest neighbours.
     ///
     /// ```
     /// use canonform::{BuildOptions, DescribeOptions, SearchOptions, ShapeSearch, build_index, mesh};
@@ -313,31 +319,33 @@ impl ShapeSearch {
         let start = Instant::now();
         // There are no more results than shapes, however many are requested.
         let wanted = options.k.max(VOTERS).min(self.index.len());
-        let n_candidates = CANDIDATES.saturating_mul(wanted).max(LEAST_CANDIDATES);
-        let found = self.index.nearest(query.fused(), n_candidates, options.mode)?;
-        let near = &found.shapes;
-        let candidates = near
-            .iter()
-            .enumerate()
-            .map(|(index, near)| Candidate { index, bound: near.distance * LOWER_BOUND });
-        let shape = |i: usize| {
-            budget.check()?;
-            self.prepared(&near[i].id)
+        let found = match options.rank_by {
+            RankBy::Plain => self.by_distance(query, wanted, options.mode, budget)?,
+            RankBy::Graph => self.on_graph(query, wanted, options.mode, budget)?,
         };
-        let ranked = rerank(query, candidates, wanted, shape)?;
-
-        let result = |(place, ranked): (usize, &Ranked)| {
-            let id = near[ranked.index].id.clone();
+        let result = |(place, (ranked, on_graph)): (usize, &(Ranked, Option<GraphRank>))| {
+            let id = found.ids[ranked.index].clone();
             let ShapeEntry { label, path, .. } = self.index.entry(&id)?;
             let Ranked { distance, fused, verdict, .. } = *ranked;
-            let (rank, comparison, evidence) = (place + 1, None, None);
-            Ok(SearchResult { rank, id, label, path, distance, fused, verdict, comparison, evidence })
+            let (rank, on_graph, comparison, evidence) = (place + 1, *on_graph, None, None);
+            Ok(SearchResult {
+                rank,
+                id,
+                label,
+                path,
+                distance,
+                fused,
+                on_graph,
+                verdict,
+                comparison,
+                evidence,
+            })
         };
-        let mut results = ranked.nearest.iter().enumerate().map(result).collect::<Result<Vec<_>, Error>>()?;
-        let predicted = predicted(&results, found.threshold, complete);
+        let mut results = found.ranked.iter().enumerate().map(result).collect::<Result<Vec<_>, Error>>()?;
+        let predicted = predicted(&results, found.search.threshold, complete);
         results.truncate(options.k);
         if options.explain == Explain::Kind {
-            results.par_iter_mut().zip(&ranked.nearest).try_for_each(|(result, ranked)| {
+            results.par_iter_mut().zip(&found.ranked).try_for_each(|(result, (ranked, _))| {
                 budget.check()?;
                 let shape = self.prepared(&result.id)?;
                 let pair =
@@ -349,16 +357,85 @@ impl ShapeSearch {
         }
         Ok(SearchReport {
             results,
+            rank_by: options.rank_by,
             components: Vec::new(),
             wholes: Vec::new(),
             predicted,
-            n_shapes: found.n_shapes,
-            measured: found.n_measured,
-            aligned: ranked.aligned,
-            recall: found.recall,
+            n_shapes: found.search.n_shapes,
+            measured: found.search.n_measured,
+            aligned: found.aligned,
+            recall: found.search.recall,
             seconds: SearchSeconds { describe: 0.0, search: start.elapsed().as_secs_f64() },
         })
     }
+
+    /// The nearest shapes by combined distance.
+    fn by_distance(
+        &self,
+        query: &PreparedShape,
+        wanted: usize,
+        mode: SearchMode,
+        budget: &Budget,
+    ) -> Result<Ranking, Error> {
+        let n_candidates = CANDIDATES.saturating_mul(wanted).max(LEAST_CANDIDATES);
+        let mut search = self.index.nearest(query.fused(), n_candidates, mode)?;
+        let near = std::mem::take(&mut search.shapes);
+        let candidates = near.iter().enumerate();
+        let candidates =
+            candidates.map(|(index, near)| Candidate { index, bound: near.distance * LOWER_BOUND });
+        let shape = |i: usize| {
+            budget.check()?;
+            self.prepared(&near[i].id)
+        };
+        let reranked = rerank(query, candidates, wanted, shape)?;
+        let ranked = reranked.nearest.into_iter().map(|ranked| (ranked, None)).collect();
+        let ids = near.into_iter().map(|near| near.id).collect();
+        Ok(Ranking { ids, ranked, aligned: reranked.aligned, search })
+    }
+
+    /// The first shapes by rank distance. The graph knows fused distances only, because aligning the forms of all pairs
+    /// would take too long; the forms of the results are aligned for their verdicts.
+    fn on_graph(
+        &self,
+        query: &PreparedShape,
+        wanted: usize,
+        mode: SearchMode,
+        budget: &Budget,
+    ) -> Result<Ranking, Error> {
+        let FoundOnGraph { shapes: near, search, .. } =
+            self.index.nearest_on_graph(query.fused(), wanted, mode)?;
+        let mut candidates: Vec<Candidate> = near
+            .iter()
+            .enumerate()
+            .map(|(index, near)| Candidate { index, bound: near.distance * LOWER_BOUND })
+            .collect();
+        candidates.sort_by(|a, b| a.bound.total_cmp(&b.bound));
+        let shape = |i: usize| {
+            budget.check()?;
+            self.prepared(&near[i].id)
+        };
+        // As many are wanted as there are, so all are aligned.
+        let reranked = rerank(query, candidates, near.len(), shape)?;
+        let on_graph = |ranked: Ranked| {
+            let RankedShape { rank_distance, plain_rank, .. } = near[ranked.index];
+            (ranked, Some(GraphRank { rank_distance, plain_rank }))
+        };
+        let mut ranked: Vec<_> = reranked.nearest.into_iter().map(on_graph).collect();
+        ranked.sort_by_key(|(ranked, _)| ranked.index);
+        let ids = near.into_iter().map(|near| near.id).collect();
+        Ok(Ranking { ids, ranked, aligned: reranked.aligned, search })
+    }
+}
+
+/// Shapes in the order of the results.
+struct Ranking {
+    /// Names of the candidates.
+    ids: Vec<String>,
+    ranked: Vec<(Ranked, Option<GraphRank>)>,
+    /// Shapes whose alignment was begun.
+    aligned: usize,
+    /// About the search for signatures.
+    search: Found,
 }
 
 #[cfg(test)]
@@ -440,6 +517,32 @@ mod tests {
         let fault = search.search_described(&query, &SearchOptions::default()).unwrap_err();
         assert!(matches!(fault, Error::Index(IndexError::OtherOptions { .. })));
         assert!(fault.to_string().contains("\"points\":500"), "{fault}");
+    }
+
+    #[test]
+    fn the_graph_ranks_the_same_shapes_in_its_own_order() {
+        let (_folder, search) = indexed(&DescribeOptions::default());
+        let plain = search.search_shape("ring0", &SearchOptions::default()).unwrap();
+        let options = SearchOptions { rank_by: RankBy::Graph, ..SearchOptions::default() };
+        let graph = search.search_shape("ring0", &options).unwrap();
+        assert_eq!((plain.rank_by, graph.rank_by), (RankBy::Plain, RankBy::Graph));
+        assert_eq!((graph.results.len(), graph.results[0].id.as_str()), (4, "ring0"));
+        let order = |found: &SearchResult| found.on_graph.unwrap().rank_distance;
+        assert!(graph.results.windows(2).all(|pair| order(&pair[0]) <= order(&pair[1])));
+        assert_eq!(graph.results[0].on_graph.unwrap().plain_rank, Some(1));
+        for found in &graph.results {
+            let same = plain.results.iter().find(|other| other.id == found.id).unwrap();
+            assert_eq!(
+                (same.distance, same.fused, same.verdict),
+                (found.distance, found.fused, found.verdict)
+            );
+            assert_eq!(same.on_graph, None);
+        }
+        let json = serde_json::to_value(&graph).unwrap();
+        assert_eq!(json["rank_by"], "graph");
+        assert_eq!(json["results"][0]["plain_rank"], 1);
+        assert!(json["results"][0]["rank_distance"].is_number());
+        assert!(serde_json::to_value(&plain).unwrap()["results"][0].get("rank_distance").is_none());
     }
 
     #[test]

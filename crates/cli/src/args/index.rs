@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use anyhow::Result;
 use canonform::descriptors::{DescriptorError, Normalization};
-use canonform::{DescribeOptions, Measure, ShapeLimits, Shard};
+use canonform::{DescribeOptions, Measure, RankBy, ShapeLimits, Shard};
 use clap::{Args, Subcommand};
 
 use super::embedding::EmbeddingArgs;
@@ -183,6 +183,10 @@ pub(crate) struct SearchArgs {
     /// Compare the signatures of all shapes, even in a large index
     #[arg(long)]
     pub(crate) exact: bool,
+    /// How to order results: `plain`, by distance; `graph`, by distance of signatures and by the neighbours that query
+    /// and shape have in common
+    #[arg(long, value_name = "plain|graph", default_value = "plain", value_parser = parse_rank)]
+    pub(crate) rank: RankBy,
 }
 
 #[derive(Debug, Args)]
@@ -201,6 +205,17 @@ pub(crate) struct EvaluateArgs {
     /// Number of neighbours that vote on the class of a shape
     #[arg(short, default_value_t = 1)]
     pub(crate) k: usize,
+    /// Rankings to score: `plain`, by distance; `graph`, both this and by the neighbours that two shapes have in common
+    #[arg(long, value_name = "plain|graph", default_value = "plain", value_parser = parse_rank)]
+    pub(crate) rank: RankBy,
+}
+
+fn parse_rank(text: &str) -> Result<RankBy, String> {
+    match text {
+        "plain" => Ok(RankBy::Plain),
+        "graph" => Ok(RankBy::Graph),
+        _ => Err("use `plain` or `graph`".to_owned()),
+    }
 }
 
 fn parse_measure(text: &str) -> Result<Measure, String> {

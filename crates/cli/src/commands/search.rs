@@ -6,8 +6,8 @@ use std::process::ExitCode;
 use anyhow::Result;
 use canonform::index::SearchMode;
 use canonform::{
-    Budget, ComponentResult, Explain, SearchOptions, SearchReport, ShapeSearch, content_hash, list_shapes,
-    mesh_path,
+    Budget, ComponentResult, Explain, RankBy, SearchOptions, SearchReport, ShapeSearch, content_hash,
+    list_shapes, mesh_path,
 };
 use serde::Serialize;
 
@@ -94,6 +94,7 @@ pub(crate) fn search(args: &SearchArgs, common: &Common) -> Result<ExitCode> {
         k: args.k,
         mode: if args.exact { SearchMode::Exact } else { SearchMode::Auto },
         explain: if args.explain { Explain::Kind } else { Explain::No },
+        rank_by: args.rank,
     };
     let queries = queries(args, &index)?;
     let (mut answers, mut failed) = (Vec::new(), Vec::new());
@@ -143,7 +144,11 @@ fn table(query: String, report: &SearchReport) -> String {
     let mut table = comfy_table::Table::new();
     table.load_style(comfy_table::presets::NOTHING);
     let explained = report.results.iter().any(|result| result.evidence.is_some());
+    let on_graph = report.rank_by == RankBy::Graph;
     let mut head = vec!["", "shape", "class", "distance", "path"];
+    if on_graph {
+        head.splice(3..3, ["rank distance", "plain"]);
+    }
     if explained {
         head.push("match");
     }
@@ -156,6 +161,12 @@ fn table(query: String, report: &SearchReport) -> String {
             format!("{:.4}", result.distance),
             result.path.clone(),
         ];
+        if on_graph {
+            let found = result.on_graph;
+            let rank_distance = found.map_or_else(String::new, |found| format!("{:.4}", found.rank_distance));
+            let plain = found.and_then(|found| found.plain_rank);
+            row.splice(3..3, [rank_distance, plain.map_or_else(|| "-".to_owned(), |rank| rank.to_string())]);
+        }
         if let Some(evidence) = &result.evidence {
             row.push(format!("{evidence} ({:.2}); {}", evidence.confidence, result.verdict));
         }
@@ -166,12 +177,18 @@ fn table(query: String, report: &SearchReport) -> String {
     } else {
         String::new()
     };
+    let order = match on_graph {
+        true => {
+            "\n  ordered by rank distance: signatures and neighbours in common; `plain` is the rank by signatures"
+        }
+        false => "",
+    };
     let mut components: String = report.components.iter().map(component).collect();
     for evidence in report.wholes.iter().filter_map(|whole| whole.evidence.as_ref()) {
         components += &format!("  {evidence} ({:.2})\n", evidence.confidence);
     }
     format!(
-        "{query}\n{table}\n{components}  class: {}\n  {} of {} shapes measured{exactness}, {} aligned, {:.3} s",
+        "{query}\n{table}{order}\n{components}  class: {}\n  {} of {} shapes measured{exactness}, {} aligned, {:.3} s",
         report.predicted.explanation,
         report.measured,
         report.n_shapes,

@@ -260,9 +260,35 @@ fn an_index_is_verified_described_and_scored() {
     let info = place.json(&["index", "info", "all.canonform"]);
     assert_eq!((&info["n_shapes"], &info["options"]["samples"]), (&9.into(), &20.into()));
     let scores = place.json(&["evaluate", "all.canonform"]);
-    let keys =
-        ["n", "classes", "nn", "ft", "st", "e", "dcg", "map", "knn_accuracy", "confusion", "silhouette"];
+    let keys = [
+        "n",
+        "classes",
+        "nn",
+        "ft",
+        "st",
+        "e",
+        "dcg",
+        "map",
+        "knn_accuracy",
+        "confusion",
+        "silhouette",
+        "intervals",
+    ];
     assert_keys(&scores, &keys);
+    // The plain scores keep their keys; those of the graph stand beside them.
+    let mut both = place.json(&["evaluate", "all.canonform", "--rank", "graph"]);
+    let graph = both.as_object_mut().and_then(|both| both.remove("graph")).unwrap();
+    assert_eq!(both, scores);
+    assert_keys(&graph, &["nn", "ft", "st", "e", "dcg", "map", "knn_accuracy", "confusion", "intervals"]);
+    let text = place.done(&["evaluate", "all.canonform", "--rank", "graph"]).out;
+    assert!(text.contains("plain") && text.contains("graph"), "{text}");
+    place.refused(&["evaluate", "all.canonform", "--rank", "best"], &["best", "`plain` or `graph`"]);
+    let found = place.json(&["search", "all.canonform", "--id", "ring1", "--rank", "graph"]);
+    assert_eq!((&found["rank_by"], &found["results"][0]["id"]), (&"graph".into(), &"ring1".into()));
+    let order = |i: usize| found["results"][i]["rank_distance"].as_f64().unwrap();
+    assert!((1..9).all(|i| order(i - 1) <= order(i)));
+    let text = place.done(&["search", "all.canonform", "--id", "ring1", "--rank", "graph"]).out;
+    assert!(text.contains("rank distance") && text.contains("neighbours in common"), "{text}");
     assert_eq!((&scores["nn"], &scores["map"], &scores["n"]), (&1.0.into(), &1.0.into(), &9.into()));
     let dna = place.json(&["evaluate", "all.canonform", "--by", "shape-dna"]);
     assert_ne!(dna["silhouette"], scores["silhouette"]);

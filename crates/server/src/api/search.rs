@@ -7,8 +7,8 @@ use std::time::Instant;
 use axum::extract::{Request, State};
 use canonform::index::{ContentHash, SearchMode};
 use canonform::{
-    Budget, Error, Explain, MeshGeometry, SearchOptions, SearchReport, SearchSeconds, ShapeDescription,
-    Surface, embed,
+    Budget, Error, Explain, MeshGeometry, RankBy, SearchOptions, SearchReport, SearchSeconds,
+    ShapeDescription, Surface, embed,
 };
 use mesh::RepairReport;
 use mesh::io::{MemoryFile, ReadLimits, is_mesh_path, mesh_files, read_memory};
@@ -38,6 +38,7 @@ pub(super) struct SearchParams {
     k: Option<usize>,
     exact: Option<bool>,
     explain: Option<bool>,
+    rank: Option<RankBy>,
     geometry: Option<bool>,
     format: Option<Format>,
 }
@@ -69,6 +70,13 @@ impl SearchParams {
                 "k" => self.k = Some(text.parse().map_err(|_| wrong("a number"))?),
                 "exact" => self.exact = Some(choice()?),
                 "explain" => self.explain = Some(choice()?),
+                "rank" => {
+                    self.rank = Some(match text.as_str() {
+                        "plain" => RankBy::Plain,
+                        "graph" => RankBy::Graph,
+                        _ => return Err(wrong("plain or graph")),
+                    });
+                }
                 "geometry" => self.geometry = Some(choice()?),
                 "format" => {
                     self.format = Some(match text.as_str() {
@@ -79,7 +87,7 @@ impl SearchParams {
                 }
                 _ => {
                     let error = format!("the form has an unknown field `{name}`");
-                    let remedy = "send files, `k`, `exact`, `explain`, `geometry` and `format`";
+                    let remedy = "send files, `k`, `exact`, `explain`, `rank`, `geometry` and `format`";
                     return Err(ApiError::bad_request(error).with_remedy(remedy));
                 }
             }
@@ -96,7 +104,8 @@ impl SearchParams {
         let mode = if self.exact == Some(true) { SearchMode::Exact } else { SearchMode::Auto };
         let format = self.format.unwrap_or(Format::Json);
         let geometry = format == Format::Json && self.geometry != Some(false);
-        Ok(Wanted { options: SearchOptions { k, explain, mode }, geometry, format })
+        let rank_by = self.rank.unwrap_or_default();
+        Ok(Wanted { options: SearchOptions { k, explain, mode, rank_by }, geometry, format })
     }
 }
 

@@ -59,13 +59,14 @@ export class Answer {
   }
 
   // How the address says to search.
-  controls({ k, exact }) {
+  controls({ k, exact, rank }) {
     const select = byId('k');
     const isListed = (value) => [...select.options].some((option) => Number(option.value) === value);
     // A number that someone typed into the address.
     if (!isListed(k)) select.add(new Option(k, k));
     select.value = String(k ?? USUAL_K);
     byId('exact').checked = exact;
+    byId('rank').value = rank;
   }
 
   show(found, state) {
@@ -86,8 +87,10 @@ export class Answer {
     view('form-view', found.form, { title: found.mesh ? 'Canonical form' : 'Canonical form, points stored in the index' });
     byId('mesh-view').hidden = !found.mesh;
     if (found.mesh) view('mesh-view', found.mesh, { title: 'Shape', linkedWith: views['form-view'] });
-    const tiles = found.results.map(({ rank, id, label, distance }) => {
+    const tiles = found.results.map(({ rank, id, label, distance, rank_distance: order }) => {
       const lines = [['more', label], ['more', `${distance.toFixed(3)} away`]];
+      // Distances do not ascend on the graph; what the order follows does.
+      if (order !== undefined) lines.push(['more', `rank distance ${order.toFixed(3)}`]);
       const item = tile(id, label, lines, this.picked);
       Object.assign(item.firstChild.dataset, { distance, rank });
       return item;

@@ -16,7 +16,7 @@
 //     #start #sample         shown without a query: tiles of some shapes
 //     #query-name #predicted[data-label] #facts #repaired (li: one line per repair)
 //     #mesh-view #form-view  viewers with linked cameras; data-state from viewer.js
-//     #k #exact #as-csv #as-json  number of results, exact search, downloads
+//     #k #rank #exact #as-csv #as-json  number and order of results, exact search, downloads
 //     #results button.tile[data-id][data-label][data-distance], aria-pressed on the one in the overlay
 //     #overlay               data-state: `busy`, `ready` or `failed`; data-id of the shape
 //       #overlay-title #overlay-kind[data-kind] #overlay-facts #overlay-view, input[name=shown] (both, first, second)
@@ -45,8 +45,8 @@ const sample = new Sample((shape) => go({ ...read(), shape, query: null, hit: nu
 const ask = new Ask({
   begin(name) { shown = null; answer.begin(name); shapes.mark(null); title(name); },
   answer(found) {
-    const { k, exact, filter, hit, query } = read();
-    const state = { k, exact, filter };
+    const { k, exact, rank, filter, hit, query } = read();
+    const state = { k, exact, rank, filter };
     if (found.query_id) Object.assign(state, { query: found.query_id });
     else Object.assign(state, { shape: found.query });
     // An upload gets its address here; the other searches have theirs.
@@ -103,11 +103,13 @@ function title(name) {
 
 addEventListener('popstate', follow);
 byId('k').addEventListener('change', () => go({ ...read(), k: Number(byId('k').value) }));
+byId('rank').addEventListener('change', () => go({ ...read(), rank: byId('rank').value }));
 byId('exact').addEventListener('change', () => go({ ...read(), exact: byId('exact').checked }));
 byId('home').addEventListener('click', (event) => {
   if (event.ctrlKey || event.metaKey || event.shiftKey) return;
   event.preventDefault();
-  go({ k: read().k, exact: read().exact });
+  const { k, exact, rank } = read();
+  go({ k, exact, rank });
 });
 byId('search-hit').addEventListener('click', () => go({ ...read(), shape: read().hit, query: null, hit: null }));
 byId('search-again').addEventListener('click', () => {

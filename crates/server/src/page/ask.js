@@ -42,6 +42,7 @@ export class Ask {
     for (const file of files) form.append('mesh', file, file.name);
     form.append('k', byId('k').value);
     form.append('exact', String(byId('exact').checked));
+    form.append('rank', byId('rank').value);
     const size = files.reduce((sum, file) => sum + file.size, 0);
     const name = files.map((file) => file.name).join(' and ');
     if (size > this.maxUpload) {

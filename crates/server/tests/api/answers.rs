@@ -147,6 +147,18 @@ fn an_upload_can_be_searched_again_and_exported() {
     let shape = get(&server, "/api/search?shape=ring0&geometry=false&exact=true").json();
     description.check("get", "/api/search", 200, &shape);
     assert_eq!((ids(&shape)[0], &shape["mesh"]), ("ring0", &Value::Null));
+    let graph = get(&server, "/api/search?shape=ring0&geometry=false&rank=graph").json();
+    description.check("get", "/api/search", 200, &graph);
+    assert_eq!(
+        (ids(&graph)[0], &graph["rank_by"], &shape["rank_by"]),
+        ("ring0", &"graph".into(), &"plain".into())
+    );
+    assert!(graph["results"][0]["rank_distance"].is_number());
+    let posted =
+        upload(server.address, &[("q.off", &mesh)], &[("rank", "graph"), ("format", "csv")]).unwrap();
+    let table = String::from_utf8(posted.body).unwrap();
+    assert!(table.lines().next().unwrap().ends_with(",signature_distance,rank_distance"), "{table}");
+    assert_eq!(upload(server.address, &[("q.off", &mesh)], &[("rank", "best")]).unwrap().status, 400);
 
     let gone = get(&server, "/api/search?query=0123456789abcdef0123456789abcdef");
     description.check("get", "/api/search", 410, &gone.json());

@@ -85,6 +85,14 @@ fn options_filters_and_downloads_follow_the_address() {
     page.browser.eval("history.back()").unwrap();
     page.wait_for("!document.querySelector('#exact').checked");
     page.answered();
+    page.browser
+        .eval("const r = document.querySelector('#rank'); r.value = 'graph'; r.dispatchEvent(new Event('change'))")
+        .unwrap();
+    page.wait_for("document.querySelector('#results').textContent.includes('rank distance')");
+    assert_eq!(page.address(), "/?shape=cat0&k=6&rank=graph&filter=cent");
+    page.browser.eval("history.back()").unwrap();
+    page.wait_for("document.querySelector('#rank').value === 'plain'");
+    page.answered();
     let table = page.eval("fetch(document.querySelector('#as-csv').href).then(found => found.text())");
     assert_eq!(table.as_str().unwrap().lines().count(), 7, "{table}");
     let json = page.eval("fetch(document.querySelector('#as-json').href).then(found => found.json())");
