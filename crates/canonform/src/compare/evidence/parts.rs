@@ -116,7 +116,7 @@ fn copy_of(mesh: &MeshGeometry, part: &MeshGeometry, align: bool) -> Option<Copy
     }
     let Aligned { map, gap, mirrored } = if align { aligned(mesh, part)? } else { return None };
     let confidence = same_surface(gap, [mesh, part], MeshChange::of([mesh, part], &map));
-    (confidence > 0.5).then(|| Copy { scale: map.scale * sizes, mirrored, gap: Some(gap), confidence })
+    (confidence > 0.5).then_some(Copy { scale: map.scale * sizes, mirrored, gap: Some(gap), confidence })
 }
 
 impl MeshGeometry {
