@@ -18,16 +18,7 @@ use nalgebra::{Matrix3, Point3};
 use crate::stream::{Purpose, Stream};
 
 pub use kind::DamageKind;
-
-/// How two points are drawn that become one. They are far apart on the surface: at least half as far as the farthest point
-/// is from the first.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum WeldPair {
-    /// Near in space, as a hand and the hip that it touches; their surroundings are pushed together.
-    Near,
-    /// At random; the points meet in their middle.
-    Random,
-}
+pub use weld::WeldPair;
 
 /// A change of a mesh that leaves the shape recognisable.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -6,10 +6,19 @@ use mesh::TriMesh;
 use nalgebra::Point3;
 use surface::{OneRing, Topology, VertexId};
 
-use super::WeldPair;
 use super::holes::compacted;
 use super::paths::{Edges, farthest};
 use crate::stream::Stream;
+
+/// How two points are drawn that become one. They are far apart on the surface: at least half as far as the farthest point
+/// is from the first. They meet in their middle.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum WeldPair {
+    /// Near in space, as a hand and the hip that it touches.
+    Near,
+    /// At random.
+    Random,
+}
 
 /// Least distance of the two points on the surface, relative to the largest distance from the first.
 const FAR: f64 = 0.5;
@@ -82,19 +91,14 @@ fn push(mesh: &mut TriMesh, edges: &Edges, ends: [usize; 2]) {
     }
 }
 
-/// Merges `n` pairs of vertices. Random pairs meet in their middle, which leaves spikes.
+/// Merges `n` pairs of vertices, which leaves spikes where they were not near in space.
 pub(super) fn weld(mesh: &TriMesh, draw: WeldPair, n: u32, stream: &mut Stream) -> TriMesh {
     let mut welded = mesh.clone();
     let mut earlier = HashSet::new();
     for _ in 0..n {
         let edges = Edges::of(&welded);
         let Some([a, b]) = pair(&welded, &edges, draw, &earlier, stream) else { break };
-        match draw {
-            WeldPair::Near => push(&mut welded, &edges, [a, b]),
-            WeldPair::Random => {
-                welded.positions[a] = nalgebra::center(&welded.positions[a], &welded.positions[b]);
-            }
-        }
+        welded.positions[a] = nalgebra::center(&welded.positions[a], &welded.positions[b]);
         earlier.insert(a);
         let (kept, gone) = (VertexId::from(a), VertexId::from(b));
         welded.faces.iter_mut().flatten().filter(|v| **v == gone).for_each(|v| *v = kept);

@@ -4,7 +4,7 @@ use nalgebra::Point3;
 use surface::{CornerId, DisjointSets, EdgeId, OneRing, Topology, VertexId, components_of_faces};
 
 use super::reach::Graph;
-use super::{MOST, Opened, Shortcut, ShortcutKind};
+use super::shortcut::{MOST, Opened, Shortcut, ShortcutKind};
 use crate::refine::Refined;
 use crate::spikes::flattened;
 use crate::tri_mesh::TriMesh;
