@@ -19,7 +19,8 @@ const VERTICES: [usize; 5] = [3400, 1500, 8000, 2500, 5000];
 
 /// `experiments units`: for every signature and for aligned forms, the root mean square distance between two shapes of
 /// one built-in family with poses and triangulations of their own, and the ratio of the mean squared distance between
-/// families to its square, next to the values in use; then the boundaries of verdicts.
+/// families to its square, next to the values in use; the same ratio of bodies of one family, which tells what a signature adds;
+/// then the boundaries of verdicts.
 pub(crate) fn units(seeds: usize, quiet: bool) -> Result<ExitCode> {
     let bars = Bars::new(quiet);
     let (mut shapes, mut others) = (Vec::new(), Vec::new());
@@ -37,6 +38,12 @@ pub(crate) fn units(seeds: usize, quiet: bool) -> Result<ExitCode> {
         .flat_map(|(i, a)| shapes[..i].iter().map(move |b| (a, b)))
         .partition(|(a, b)| a.label == b.label);
     bars.finish();
+    // Two bodies of one family, with their own poses.
+    let bodies: Vec<Pair<'_>> = shapes
+        .iter()
+        .flat_map(|a| others.iter().map(move |b| (a, b)))
+        .filter(|(a, b)| a.label == b.label && a.seed == b.seed)
+        .collect();
     let mut parts = Vec::new();
     for kind in SignatureKind::ALL {
         let distance = |(a, b): &Pair<'_>| {
@@ -44,11 +51,13 @@ pub(crate) fn units(seeds: usize, quiet: bool) -> Result<ExitCode> {
             of(a).zip(of(b)).map_or(f64::NAN, |(a, b)| a.distance(&b))
         };
         let means = [&within, &between].map(|pairs| mean_square(pairs.iter().map(distance)));
+        let bodies = mean_square(bodies.iter().map(distance)) / means[0];
         let in_use = [ShapeMetric::unit(kind), ShapeMetric::weight(kind)];
-        parts.push((kind.name(), means, components(&shapes, kind), in_use));
+        parts.push((kind.name(), means, bodies, components(&shapes, kind), in_use));
     }
     let separation = |[within, between]: [f64; 2]| between / within;
-    let total: f64 = parts.iter().map(|(_, means, components, _)| separation(*means) * components).sum();
+    let weighted = parts.iter().filter(|(.., [_, weight])| *weight > 0.0);
+    let total: f64 = weighted.map(|(_, means, _, components, _)| separation(*means) * components).sum();
     for (name, distance) in
         [("aligned forms", FormDistance::NearestNeighborRms), ("hausdorff95", FormDistance::Hausdorff95)]
     {
@@ -64,16 +73,22 @@ pub(crate) fn units(seeds: usize, quiet: bool) -> Result<ExitCode> {
                 .collect();
             *mean = mean_square(distances.into_iter());
         }
-        parts.push((name, means, 1.0, [ShapeMetric::form_unit(distance), ShapeMetric::FORM_WEIGHT]));
+        parts.push((
+            name,
+            means,
+            f64::NAN,
+            1.0,
+            [ShapeMetric::form_unit(distance), ShapeMetric::FORM_WEIGHT],
+        ));
     }
     let mut out = std::io::stdout().lock();
-    writeln!(out, "{:<18}    unit  separation  components  weight   in use: unit  weight", "")?;
-    for (name, means, components, [used_unit, used_weight]) in parts {
+    writeln!(out, "{:<18}    unit  separation  of bodies  components  weight   in use: unit  weight", "")?;
+    for (name, means, bodies, components, [used_unit, used_weight]) in parts {
         let (unit, separation) = (means[0].sqrt(), separation(means));
         let weight = separation * components / total;
         writeln!(
             out,
-            "{name:<18} {unit:>7.4} {separation:>11.1} {components:>11.1} {weight:>7.4} {used_unit:>14.4} {used_weight:>7.4}"
+            "{name:<18} {unit:>7.4} {separation:>11.1} {bodies:>10.1} {components:>11.1} {weight:>7.4} {used_unit:>14.4} {used_weight:>7.4}"
         )?;
     }
     shapes.extend(others);

@@ -26,15 +26,18 @@ pub enum FormDistance {
 /// the values within families: poses move the signature in that many independent ways, so that squared distances
 /// would grow with it if the values were whitened.
 ///
+/// Moments and D2 have no weight and are no part of fused vectors: two bodies of one family differ in them hardly more than
+/// two poses of one body.
+///
 /// All were measured on the built-in articulated families, in meshes of 1,500 to 8,000 vertices, and on nothing
 /// else. `cargo run --release -p experiments -- units` measures them again.
 const CALIBRATION: [(SignatureKind, f64, f64); SignatureKind::ALL.len()] = [
-    (SignatureKind::Moments, 0.114, 0.018),
-    (SignatureKind::D2, 0.068, 0.019),
-    (SignatureKind::GeodesicSpectrum, 0.0258, 0.03),
-    (SignatureKind::ShapeDna, 0.0842, 0.25),
-    (SignatureKind::HeatKernel, 0.192, 0.206),
-    (SignatureKind::WaveKernel, 0.257, 0.477),
+    (SignatureKind::Moments, 0.114, 0.0),
+    (SignatureKind::D2, 0.068, 0.0),
+    (SignatureKind::GeodesicSpectrum, 0.227, 0.06),
+    (SignatureKind::ShapeDna, 0.0842, 0.218),
+    (SignatureKind::HeatKernel, 0.192, 0.123),
+    (SignatureKind::WaveKernel, 0.257, 0.599),
 ];
 
 /// Forms of unit area with a smaller root mean square distance fit so well that the normals of their surfaces can be
@@ -53,6 +56,13 @@ const DECISIVE: f64 = 1.25;
 /// poses of one body are about 0.03 apart.
 const EXCESS: f64 = 0.02;
 
+/// Two values of fused vectors that differ by more standard deviations between poses count less, see
+/// [`ShapeMetric::robust`].
+///
+/// Chosen on bodies of the built-in families, each a class of its own, and on the same with two distant points welded in
+/// the query: see `docs/decisions/047-robust-distance.md`.
+const OUTLYING: f64 = 4.0;
+
 /// The distance between two shapes, and the verdict whether they are one shape.
 ///
 /// | symbol | meaning |
@@ -61,8 +71,10 @@ const EXCESS: f64 = 0.02;
 /// | `s` | difference of the [size coordinates](Self::size_coordinate), where size counts |
 /// | `f`, `u_f`, `w_f` | root mean square distance of the aligned forms of unit area, its unit and weight |
 ///
-/// The *fused* distance is `√(Σ_k w_k (d_k / u_k)² + s²)`, the Euclidean distance of two [fused](Self::fuse) vectors.
-/// The *combined* distance is `√(fused² + w_f (f / u_f)²)`. Two poses of one body are about one apart by either.
+/// The *fused* distance is `√(Σ_k w_k (d_k / u_k)² + s²)`, the Euclidean distance of two [fused](Self::fuse) vectors. An index is
+/// searched by it. The *robust* distance is the same with [Huber's](Self::robust) loss of every value, so that a few
+/// values that a weld or a hole changes count less; it is never larger. The *combined* distance is
+/// `√(robust² + w_f (f / u_f)²)`. Two poses of one body are about one apart by each.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct ShapeMetric {
     /// The distance between aligned forms that is reported. The combined distance always takes the root mean square.
@@ -114,25 +126,25 @@ pub enum MatchKind {
 
 impl ShapeMetric {
     /// Version of the calibration and of the signatures. Fused vectors of different versions cannot be compared.
-    pub const VERSION: u32 = 2;
+    pub const VERSION: u32 = 3;
 
     /// The boundary between two poses of one body and two bodies of one class.
     ///
     /// Fisher's linear discriminant of the logarithms of combined distances, poses and bodies being equally frequent. The
     /// bodies are those of `datasets::articulated_body`: lengths of trunk and limbs differ by 4 % and girths by 9 % (one
-    /// standard deviation), as among adults. Two poses are at most 1.98 apart, with a median of 0.92; two bodies at
-    /// least 0.80, with a median of 2.11. So a shape cannot always be told from another of its class.
+    /// standard deviation), as among adults. Two poses are at most 1.6 apart, with a median of 0.86; two bodies at
+    /// least 0.80, with a median of 1.9. So a shape cannot always be told from another of its class.
     ///
     /// Measured on the built-in families as the units of signatures, and on nothing else.
-    pub const SAME_SHAPE: Boundary = Boundary { at: 1.372, steepness: 7.83 };
+    pub const SAME_SHAPE: Boundary = Boundary { at: 1.308, steepness: 9.2 };
 
     /// The boundary between two bodies of one class and two classes: the geometric mean of the distance that 1 % of pairs
     /// of poses exceed and the one below which 1 % of the pairs from two families are. 95 % of two bodies of one family
-    /// are nearer than 3.5, two families are at least 6.8 apart.
+    /// are nearer than 2.9, two families are at least 4.7 apart.
     ///
     /// The steepness is Fisher's with the variance of bodies for both, since three families say little about the
     /// variance among families. Measured as [`SAME_SHAPE`](Self::SAME_SHAPE).
-    pub const SAME_CLASS: Boundary = Boundary { at: 3.525, steepness: 17.98 };
+    pub const SAME_CLASS: Boundary = Boundary { at: 2.795, steepness: 20.33 };
 
     /// Points of every form that are matched with the nearest points of another form.
     pub const MATCHED_POINTS: usize = 400;
@@ -141,8 +153,10 @@ impl ShapeMetric {
     pub const FUSED_LENGTH: usize = {
         let mut sum = 0;
         let mut i = 0;
-        while i < SignatureKind::ALL.len() {
-            sum += SignatureKind::ALL[i].n_values();
+        while i < CALIBRATION.len() {
+            if CALIBRATION[i].2 > 0.0 {
+                sum += CALIBRATION[i].0.n_values();
+            }
             i += 1;
         }
         sum
@@ -157,7 +171,7 @@ impl ShapeMetric {
         CALIBRATION[kind as usize].1
     }
 
-    /// The weight of this signature; all weights sum to one.
+    /// The weight of this signature; all weights sum to one. Signatures without weight are no part of fused vectors.
     pub fn weight(kind: SignatureKind) -> f64 {
         CALIBRATION[kind as usize].2
     }
@@ -178,10 +192,11 @@ impl ShapeMetric {
         0.5 * area.max(f64::MIN_POSITIVE).ln() / SAME_SIZE.ln()
     }
 
-    /// All signatures, in their order, as one vector whose Euclidean distance is the fused distance. With an `area` size
-    /// counts too. Values are rounded to 32 bits: half the memory to scan, and an error far below the noise.
+    /// All signatures with a weight, in their order, as one vector whose Euclidean distance is the fused distance. With an
+    /// `area` size counts too. Values are rounded to 32 bits: half the memory to scan, and an error far below the noise.
     pub fn fuse(signatures: &[Signature], area: Option<f64>) -> Vec<f32> {
-        let parts = signatures.iter().flat_map(|signature| {
+        let weighted = signatures.iter().filter(|signature| Self::weight(signature.kind) > 0.0);
+        let parts = weighted.flat_map(|signature| {
             let factor = Self::weight(signature.kind).sqrt() / Self::unit(signature.kind);
             signature.values.iter().map(move |value| (value * factor) as f32)
         });
@@ -201,25 +216,51 @@ impl ShapeMetric {
         a.iter().zip(b).map(|(a, b)| f64::from(a - b).powi(2)).sum::<f64>().sqrt()
     }
 
-    /// The combined distance, from a fused distance and the root mean square distance of the aligned forms of unit area.
-    pub fn combined(fused: f64, form_rms: f64) -> f64 {
-        let unit = Self::form_unit(FormDistance::NearestNeighborRms);
-        fused.hypot(form_rms / unit * Self::FORM_WEIGHT.sqrt())
+    /// The fused distance with Huber's loss (Huber 1964, `huber1964` in `REFERENCES.bib`): differences of two values beyond
+    /// four standard deviations count linearly, as if their loss went on along its tangent. Size is not limited.
+    ///
+    /// Two poses of one body are about one apart, so the standard deviation of a value is `1 / √n` with `n` the
+    /// [length](Self::FUSED_LENGTH) of fused vectors. A weld changes some values by many standard deviations and most
+    /// others little; between two poses, hardly any value is beyond the limit, so that little changes.
+    pub fn robust(a: &[f32], b: &[f32]) -> f64 {
+        let limit = OUTLYING / (Self::FUSED_LENGTH as f64).sqrt();
+        let loss = |(i, (a, b)): (usize, (&f32, &f32))| {
+            let change = f64::from(a - b).abs();
+            match i < Self::FUSED_LENGTH && change > limit {
+                true => limit * (2.0 * change - limit),
+                false => change * change,
+            }
+        };
+        a.iter().zip(b).enumerate().map(loss).sum::<f64>().sqrt()
     }
 
-    /// The distance between aligned forms at which the combined distance reaches `limit`; 0 if the fused distance alone
+    /// The combined distance, from a robust distance and the root mean square distance of the aligned forms of unit area.
+    pub fn combined(robust: f64, form_rms: f64) -> f64 {
+        robust.hypot(Self::form_part(form_rms))
+    }
+
+    /// The robust distance within a combined distance: the inverse of [`combined`](Self::combined).
+    pub fn robust_part(combined: f64, form_rms: f64) -> f64 {
+        (combined.powi(2) - Self::form_part(form_rms).powi(2)).max(0.0).sqrt()
+    }
+
+    fn form_part(form_rms: f64) -> f64 {
+        form_rms / Self::form_unit(FormDistance::NearestNeighborRms) * Self::FORM_WEIGHT.sqrt()
+    }
+
+    /// The distance between aligned forms at which the combined distance reaches `limit`; 0 if the robust distance alone
     /// is larger. For a distance other than the root mean square it is the one as many units large.
-    pub fn form_limit(fused: f64, limit: f64, distance: FormDistance) -> f64 {
+    pub fn form_limit(robust: f64, limit: f64, distance: FormDistance) -> f64 {
         // Rounding must not exclude a shape exactly at the limit.
         const SLACK: f64 = 1.0 + 1e-9;
-        let left = (limit.powi(2) - fused.powi(2)).max(0.0).sqrt();
+        let left = (limit.powi(2) - robust.powi(2)).max(0.0).sqrt();
         left * Self::form_unit(distance) / Self::FORM_WEIGHT.sqrt() * SLACK
     }
 
-    /// The reported distance between aligned forms below which shapes with this fused distance
+    /// The reported distance between aligned forms below which shapes with this robust distance
     /// [may be of one class](crate::Verdict::may_be_same_class); 0 if their signatures alone are too far apart.
-    pub fn same_below(&self, fused: f64) -> f64 {
-        Self::form_limit(fused, Self::SAME_CLASS.at, self.distance)
+    pub fn same_below(&self, robust: f64) -> f64 {
+        Self::form_limit(robust, Self::SAME_CLASS.at, self.distance)
     }
 
     /// Whether aligned forms of unit area fit well enough to compare normals at nearest points.
@@ -252,6 +293,28 @@ mod tests {
         assert!(SignatureKind::ALL.into_iter().eq(CALIBRATION.map(|(kind, ..)| kind)));
         let total: f64 = SignatureKind::ALL.into_iter().map(ShapeMetric::weight).sum();
         assert!((total - 1.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn outlying_values_count_linearly() {
+        let limit = OUTLYING / (ShapeMetric::FUSED_LENGTH as f64).sqrt();
+        let at = |change: f64| ShapeMetric::robust(&[0.0, 1.0], &[change as f32, 1.0]);
+        assert!((at(0.5 * limit) / (0.5 * limit) - 1.0).abs() < 1e-6, "small changes count fully");
+        for times in [2.0, 5.0, 20.0] {
+            let expected = limit * (2.0 * times - 1.0f64).sqrt();
+            assert!((at(times * limit) / expected - 1.0).abs() < 1e-6, "{times}");
+        }
+        let many = |change: f32| [vec![0.0; ShapeMetric::FUSED_LENGTH], vec![change]].concat();
+        assert!((ShapeMetric::robust(&many(0.0), &many(7.0)) - 7.0).abs() < 1e-12, "size is not limited");
+    }
+
+    #[test]
+    fn a_combined_distance_has_its_parts() {
+        for (robust, form) in [(0.0, 0.0), (1.0, 0.03), (0.0, 0.1), (3.0, 0.0)] {
+            let combined = ShapeMetric::combined(robust, form);
+            assert!((ShapeMetric::robust_part(combined, form) - robust).abs() < 1e-9);
+        }
+        assert_eq!(ShapeMetric::robust_part(0.1, 9.0), 0.0);
     }
 
     #[test]

@@ -125,8 +125,8 @@ impl<'a> ShapePair<'a> {
     pub fn distance(&self) -> ShapeDistance {
         let [a, b] =
             self.shapes.map(|shape| shape.fused.chunks(ShapeMetric::FUSED_LENGTH).next().unwrap_or_default());
-        let fused = ShapeMetric::fused(a, b);
-        ShapeDistance { fused, combined: ShapeMetric::combined(fused, self.best().rms) }
+        let combined = ShapeMetric::combined(ShapeMetric::robust(a, b), self.best().rms);
+        ShapeDistance { fused: ShapeMetric::fused(a, b), combined }
     }
 
     /// The verdict on the shapes.
@@ -179,7 +179,11 @@ mod tests {
         let known = FormMatch { rms: 0.5, ..ShapePair::new(metric, [&a, &b]).best() };
         let pair = ShapePair::new(metric, [&a, &b]).with_best(known);
         assert_eq!(pair.best(), known);
-        assert_eq!(pair.distance().combined, ShapeMetric::combined(1.0, 0.5));
+        let robust = ShapeMetric::robust(a.fused(), b.fused());
+        assert_eq!(
+            pair.distance(),
+            ShapeDistance { fused: 1.0, combined: ShapeMetric::combined(robust, 0.5) }
+        );
     }
 
     #[test]

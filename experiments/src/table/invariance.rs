@@ -77,7 +77,7 @@ pub(crate) fn run(context: &Context<'_>) -> Result<()> {
             let damaged = describe(&Surface::new(&mesh, &shape.surface.repair)?, &options)?;
             let (relative, units) = changes(&described[own], &damaged);
             let query = damaged.prepare()?;
-            let distance = |i: usize| ShapeMetric::fused(query.fused(), prepared[i].fused());
+            let distance = |i: usize| ShapeMetric::robust(query.fused(), prepared[i].fused());
             let mut candidates: Vec<_> =
                 (0..prepared.len()).map(|index| Candidate { index, bound: distance(index) }).collect();
             candidates.sort_by(|a, b| a.bound.total_cmp(&b.bound));

@@ -143,7 +143,8 @@ fn distances(
             shapes.iter().map(|shape| ShapeMetric::fuse(&shape.signatures, area(shape))).collect();
         let fused = all(&|i, j| ShapeMetric::fused(&vectors[i], &vectors[j]))?;
         if let Some(form) = &form {
-            add(CLASSIFIER, all(&|i, j| ShapeMetric::combined(fused.get(i, j), form.get(i, j)))?);
+            let robust = |i: usize, j: usize| ShapeMetric::robust(&vectors[i], &vectors[j]);
+            add(CLASSIFIER, all(&|i, j| ShapeMetric::combined(robust(i, j), form.get(i, j)))?);
             let sized = all(&|i, j| (form.get(i, j) / unit).hypot(size(i, j)))?;
             add("aligned forms", if scale == Scale::Raw { sized } else { form.clone() });
         }

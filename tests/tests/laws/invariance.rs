@@ -8,7 +8,7 @@ use rayon::prelude::*;
 
 use crate::support::surface;
 
-/// Largest combined distance of shapes with the same surface, at 250 vertices and more. A verdict of one shape is firm up to 1.2.
+/// Largest combined distance of shapes with the same surface, at 250 vertices and more. A verdict of one shape is firm up to 1.03.
 const SAME_SURFACE: f64 = 0.4;
 
 /// The same by one signature, in its unit.

@@ -44,7 +44,7 @@ fn the_nearest_shapes_are_poses_of_the_same_body() {
             .filter(|&i| i != query)
             .map(|index| Candidate {
                 index,
-                bound: ShapeMetric::fused(&shapes[query].fused, &shapes[index].fused),
+                bound: ShapeMetric::robust(&shapes[query].fused, &shapes[index].fused),
             })
             .collect();
         candidates.sort_by(|a, b| a.bound.total_cmp(&b.bound));

@@ -60,7 +60,7 @@ impl Comparison {
             kind: verdict.match_kind(),
             distance: shown(raw),
             normalized_distance: shown(best),
-            same_below: pair.metric.same_below(distance.fused),
+            same_below: pair.metric.same_below(ShapeMetric::robust_part(distance.combined, best.rms)),
             shape_distance: distance,
             scale,
             reflected,

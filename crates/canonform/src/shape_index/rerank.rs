@@ -18,7 +18,7 @@ pub struct Ranked {
     pub index: usize,
     /// Combined distance from the query.
     pub distance: f64,
-    /// Fused distance from the query.
+    /// Fused distance from the query, which may be larger.
     pub fused: f64,
     /// The verdict, without handedness.
     pub verdict: Verdict,
@@ -38,9 +38,10 @@ pub struct Reranked {
 }
 
 /// The `k` candidates nearest to a query by [combined](ShapeMetric::combined) distance. Candidates come in ascending
-/// order of their bounds, which are lower bounds of the fused distance. `shape` gives the shape of a candidate.
+/// order of their bounds, which are lower bounds of the [robust](ShapeMetric::robust) distance. `shape` gives the shape of a
+/// candidate.
 ///
-/// Forms are aligned only until the fused distance alone rules out the remaining candidates, and an alignment is
+/// Forms are aligned only until the robust distance alone rules out the remaining candidates, and an alignment is
 /// abandoned when it cannot come near enough, see [`match_forms_within`]. Apart from that heuristic the result is that
 /// of aligning all candidates. Alignments run in parallel; the result does not depend on the number of threads.
 ///
@@ -56,8 +57,9 @@ pub fn rerank<S: Borrow<PreparedShape>>(
     let refined = refine_nearest(candidates, k, |candidate, limit| {
         let shape = shape(candidate.index)?;
         let shape: &PreparedShape = shape.borrow();
-        let fused = ShapeMetric::fused(query.fused(), shape.fused());
-        let left = ShapeMetric::form_limit(fused, limit, FormDistance::NearestNeighborRms);
+        let [fused, robust] =
+            [ShapeMetric::fused, ShapeMetric::robust].map(|distance| distance(query.fused(), shape.fused()));
+        let left = ShapeMetric::form_limit(robust, limit, FormDistance::NearestNeighborRms);
         let (a, b) = (query.prepared_form(), shape.prepared_form());
         let Some(alignment) = match_forms_within(a, b, left) else { return Ok(None) };
         let pair = ShapePair::new(ShapeMetric::default(), [query, shape]).with_best(alignment);
@@ -66,7 +68,7 @@ pub fn rerank<S: Borrow<PreparedShape>>(
             .lock()
             .unwrap_or_else(PoisonError::into_inner)
             .insert(candidate.index, (fused, verdict, alignment));
-        Ok::<_, Error>(Some(ShapeMetric::combined(fused, alignment.rms)))
+        Ok::<_, Error>(Some(ShapeMetric::combined(robust, alignment.rms)))
     })?;
     let found = found.into_inner().unwrap_or_else(PoisonError::into_inner);
     let ranked = refined.nearest.iter().filter_map(|near| {
@@ -103,14 +105,15 @@ mod tests {
                 let shapes: Vec<_> = (0..30).map(|i| spiral(turns(i), fused(i))).collect();
                 let asked = spiral(turns(query), 0.0);
                 let fused = |i: usize| ShapeMetric::fused(asked.fused(), shapes[i].fused());
+                let robust = |i: usize| ShapeMetric::robust(asked.fused(), shapes[i].fused());
                 let mut candidates: Vec<_> =
-                    (0..30).map(|index| Candidate { index, bound: fused(index) }).collect();
+                    (0..30).map(|index| Candidate { index, bound: robust(index) }).collect();
                 candidates.sort_by(|a, b| a.bound.total_cmp(&b.bound));
                 let mut all: Vec<_> = (0..30)
                     .map(|index| {
                         let pair = ShapePair::new(ShapeMetric::default(), [&asked, &shapes[index]]);
                         let (fused, alignment) = (fused(index), pair.best());
-                        let distance = ShapeMetric::combined(fused, alignment.rms);
+                        let distance = ShapeMetric::combined(robust(index), alignment.rms);
                         let verdict = pair.verdict(Handedness::Unknown);
                         Ranked { index, distance, fused, verdict, alignment }
                     })

@@ -28,9 +28,6 @@ const CANDIDATES: usize = 4;
 /// ... and at least.
 const LEAST_CANDIDATES: usize = 40;
 
-/// The index measures fused distances with other rounding than the metric: this factor makes them lower bounds.
-const LOWER_BOUND: f64 = 1.0 - 1e-6;
-
 /// How an index is searched.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SearchOptions {
@@ -380,9 +377,7 @@ impl ShapeSearch {
         let n_candidates = CANDIDATES.saturating_mul(wanted).max(LEAST_CANDIDATES);
         let mut search = self.index.nearest(query.fused(), n_candidates, mode)?;
         let near = std::mem::take(&mut search.shapes);
-        let candidates = near.iter().enumerate();
-        let candidates =
-            candidates.map(|(index, near)| Candidate { index, bound: near.distance * LOWER_BOUND });
+        let candidates = self.candidates(query, near.iter().map(|near| near.id.as_str()))?;
         let shape = |i: usize| {
             budget.check()?;
             self.prepared(&near[i].id)
@@ -391,6 +386,21 @@ impl ShapeSearch {
         let ranked = reranked.nearest.into_iter().map(|ranked| (ranked, None)).collect();
         let ids = near.into_iter().map(|near| near.id).collect();
         Ok(Ranking { ids, ranked, aligned: reranked.aligned, search })
+    }
+
+    /// Shapes in the order of their robust distance from the query.
+    fn candidates<'n>(
+        &self,
+        query: &PreparedShape,
+        ids: impl Iterator<Item = &'n str>,
+    ) -> Result<Vec<Candidate>, Error> {
+        let candidate = |(index, id): (usize, &str)| {
+            let fused = self.index.vectors(id)?.fused;
+            Ok(Candidate { index, bound: ShapeMetric::robust(query.fused(), &fused) })
+        };
+        let mut candidates = ids.enumerate().map(candidate).collect::<Result<Vec<_>, Error>>()?;
+        candidates.sort_by(|a, b| a.bound.total_cmp(&b.bound).then(a.index.cmp(&b.index)));
+        Ok(candidates)
     }
 
     /// The first shapes by rank distance. The graph knows fused distances only, because aligning the forms of all pairs
@@ -404,12 +414,7 @@ impl ShapeSearch {
     ) -> Result<Ranking, Error> {
         let FoundOnGraph { shapes: near, search, .. } =
             self.index.nearest_on_graph(query.fused(), wanted, mode)?;
-        let mut candidates: Vec<Candidate> = near
-            .iter()
-            .enumerate()
-            .map(|(index, near)| Candidate { index, bound: near.distance * LOWER_BOUND })
-            .collect();
-        candidates.sort_by(|a, b| a.bound.total_cmp(&b.bound));
+        let candidates = self.candidates(query, near.iter().map(|near| near.id.as_str()))?;
         let shape = |i: usize| {
             budget.check()?;
             self.prepared(&near[i].id)

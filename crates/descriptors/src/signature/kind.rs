@@ -28,7 +28,7 @@ pub enum SignatureKind {
 const TABLE: [(&str, usize); SignatureKind::ALL.len()] = [
     ("moments", 13),
     ("d2", 8),
-    ("geodesic-spectrum", 12),
+    ("geodesic-spectrum", 24),
     ("shape-dna", 20),
     ("heat-kernel", 32),
     ("wave-kernel", 96),
