@@ -206,7 +206,7 @@ impl Draft {
         let nodes: Vec<Node> = axis
             .iter()
             .zip(&radii)
-            .map(|(at, radius)| node((*at).coords.into(), radius * squeezed, grain(*radius)))
+            .map(|(at, radius)| node(at.coords.into(), radius * squeezed, grain(*radius)))
             .collect();
         let inner = 1..axis.len() - 1;
         let joints = inner.map(|i| joint(&nodes, i, limb.bend)).collect();
