@@ -11,7 +11,7 @@ use crate::tri_mesh::TriMesh;
 
 /// Least area within the girth of a handle on either side of its narrowest loop, relative to the square of the girth. A tube
 /// has 1; where two flat surfaces meet in a small contact, each side has 1 + π.
-const FLARE: f64 = 1.3;
+const FLARE: f64 = 1.6;
 
 /// Cuts the narrowest handle that is at most `girth` around and joins sides that are otherwise at least `detour` apart.
 pub(super) fn cut(mesh: &TriMesh, girth: f64, detour: f64) -> Option<(Refined, Shortcut)> {

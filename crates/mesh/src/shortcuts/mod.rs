@@ -15,8 +15,8 @@ use shortcut::MOST;
 pub use shortcut::{Opened, Shortcut, ShortcutKind};
 
 /// Cuts the shortcuts of a surface between points that are otherwise at least 0.3 times the square root of the area apart:
-/// shared vertices get a copy for each part of the surface, handles are cut along the
-/// shortest loop around them, which leaves two holes for [`fill_holes`](crate::fill_holes).
+/// shared vertices get a copy for each part of the surface, handles are cut along the shortest loop around them, which leaves
+/// two holes for [`fill_holes`](crate::fill_holes).
 ///
 /// The surface stays in one piece: a vertex that is the only connection of two parts stays shared. A handle is a shortcut if
 /// it is narrow, at most 0.3 times the square root of the area around, and the surface widens on both sides of its narrowest
