@@ -32,12 +32,12 @@ pub enum FormDistance {
 /// All were measured on the built-in articulated families, in meshes of 1,500 to 8,000 vertices, and on nothing
 /// else. `cargo run --release -p experiments -- units` measures them again.
 const CALIBRATION: [(SignatureKind, f64, f64); SignatureKind::ALL.len()] = [
-    (SignatureKind::Moments, 0.114, 0.0),
-    (SignatureKind::D2, 0.068, 0.0),
-    (SignatureKind::GeodesicSpectrum, 0.227, 0.06),
-    (SignatureKind::ShapeDna, 0.0842, 0.218),
-    (SignatureKind::HeatKernel, 0.192, 0.123),
-    (SignatureKind::WaveKernel, 0.257, 0.599),
+    (SignatureKind::Moments, 0.115, 0.0),
+    (SignatureKind::D2, 0.067, 0.0),
+    (SignatureKind::GeodesicSpectrum, 0.237, 0.07),
+    (SignatureKind::ShapeDna, 0.084, 0.248),
+    (SignatureKind::HeatKernel, 0.191, 0.204),
+    (SignatureKind::WaveKernel, 0.254, 0.478),
 ];
 
 /// Forms of unit area with a smaller root mean square distance fit so well that the normals of their surfaces can be
@@ -136,7 +136,7 @@ impl ShapeMetric {
     /// least 0.80, with a median of 1.9. So a shape cannot always be told from another of its class.
     ///
     /// Measured on the built-in families as the units of signatures, and on nothing else.
-    pub const SAME_SHAPE: Boundary = Boundary { at: 1.308, steepness: 9.2 };
+    pub const SAME_SHAPE: Boundary = Boundary { at: 1.308, steepness: 8.76 };
 
     /// The boundary between two bodies of one class and two classes: the geometric mean of the distance that 1 % of pairs
     /// of poses exceed and the one below which 1 % of the pairs from two families are. 95 % of two bodies of one family
@@ -144,7 +144,7 @@ impl ShapeMetric {
     ///
     /// The steepness is Fisher's with the variance of bodies for both, since three families say little about the
     /// variance among families. Measured as [`SAME_SHAPE`](Self::SAME_SHAPE).
-    pub const SAME_CLASS: Boundary = Boundary { at: 2.795, steepness: 20.33 };
+    pub const SAME_CLASS: Boundary = Boundary { at: 2.849, steepness: 20.05 };
 
     /// Points of every form that are matched with the nearest points of another form.
     pub const MATCHED_POINTS: usize = 400;
@@ -164,7 +164,7 @@ impl ShapeMetric {
 
     /// Weight of the distance between aligned forms, relative to the weights of the signatures, which sum to one. It was
     /// measured as they were; a distance has one component.
-    pub const FORM_WEIGHT: f64 = 0.0097;
+    pub const FORM_WEIGHT: f64 = 0.0095;
 
     /// Root mean square distance between two poses of one body by this signature: see the table in the source.
     pub fn unit(kind: SignatureKind) -> f64 {
@@ -181,8 +181,8 @@ impl ShapeMetric {
     /// Hausdorff distance.
     pub fn form_unit(distance: FormDistance) -> f64 {
         match distance {
-            FormDistance::NearestNeighborRms => 0.0271,
-            FormDistance::Hausdorff95 => 0.0553,
+            FormDistance::NearestNeighborRms => 0.027,
+            FormDistance::Hausdorff95 => 0.0548,
         }
     }
 
