@@ -104,7 +104,7 @@ mod tests {
         shot.positions[1500].coords *= 0.3;
         let repaired = without_spikes(&shot).unwrap();
         let gap = |v: usize| (repaired.positions[v] - ball.positions[v]).norm();
-        assert!((0..ball.n_vertices()).all(|v| gap(v) < 0.08), "{:?}", near.map(|v| gap(v.index())));
+        assert!((0..ball.n_vertices()).all(|v| gap(v) < 0.1), "{:?}", near.map(|v| gap(v.index())));
     }
 
     #[test]

@@ -38,8 +38,9 @@ pub(super) fn cut(mesh: &TriMesh, detour: f64) -> Opened {
     let copies = origins.iter().enumerate().map(|(i, origin)| (*origin, VertexId::from(n + i)));
     let separate: Vec<bool> =
         copies.map(|(origin, copy)| !connected.union(piece(origin), piece(copy))).collect();
-    let split = with_copies(mesh, &faces, &origins, &separate);
-    // And where its parts meet nearby.
+    let mut split = with_copies(mesh, &faces, &origins, &separate);
+    // And where its parts meet nearby; a vertex that was pulled out of its surface is not far for that reason.
+    put_back(&mut split, n);
     let graph = Graph::of(&split.mesh);
     let copy = |i: usize| VertexId::from(n + i);
     let is_far =
@@ -165,10 +166,10 @@ mod tests {
         let [shortcut] = opened.shortcuts[..] else { panic!("{:?}", opened.shortcuts) };
         assert_eq!((shortcut.kind, shortcut.vertex), (ShortcutKind::Pinch, ends[0]));
         assert!((shortcut.detour - 1.57).abs() < 1.0, "{}", shortcut.detour);
-        assert_eq!(cut(&welded(ball.clone(), ends), 2.0).refined.mesh, welded(ball.clone(), ends));
+        assert!(cut(&welded(ball.clone(), ends), 2.0).refined.mesh == welded(ball.clone(), ends));
         let mesh = opened.refined.mesh;
         let report = validate(&mesh);
-        assert_eq!((report.non_manifold_vertices, report.genus), (0, None));
+        assert_eq!((report.non_manifold_vertices, report.genus), (0, Some(0)));
         assert_eq!((report.n_boundary_edges, report.n_components), (0, 1));
         assert!((mesh.area() / ball.area() - 1.0).abs() < 1e-3, "{}", mesh.area());
         let radius = |v: usize| (mesh.positions[v].coords.norm() - 1.0).abs();
