@@ -132,19 +132,19 @@ impl ShapeMetric {
     ///
     /// Fisher's linear discriminant of the logarithms of combined distances, poses and bodies being equally frequent. The
     /// bodies are those of `datasets::articulated_body`: lengths of trunk and limbs differ by 4 % and girths by 9 % (one
-    /// standard deviation), as among adults. Two poses are at most 1.6 apart, with a median of 0.86; two bodies at
-    /// least 0.80, with a median of 1.9. So a shape cannot always be told from another of its class.
+    /// standard deviation), as among adults. Two poses are at most 1.87 apart, with a median of 0.92; two bodies at
+    /// least 0.78, with a median of 1.95. So a shape cannot always be told from another of its class.
     ///
     /// Measured on the built-in families as the units of signatures, and on nothing else.
-    pub const SAME_SHAPE: Boundary = Boundary { at: 1.308, steepness: 8.76 };
+    pub const SAME_SHAPE: Boundary = Boundary { at: 1.313, steepness: 8.64 };
 
     /// The boundary between two bodies of one class and two classes: the geometric mean of the distance that 1 % of pairs
     /// of poses exceed and the one below which 1 % of the pairs from two families are. 95 % of two bodies of one family
-    /// are nearer than 2.9, two families are at least 4.7 apart.
+    /// are nearer than 2.84, two families are at least 4.77 apart.
     ///
     /// The steepness is Fisher's with the variance of bodies for both, since three families say little about the
     /// variance among families. Measured as [`SAME_SHAPE`](Self::SAME_SHAPE).
-    pub const SAME_CLASS: Boundary = Boundary { at: 2.849, steepness: 20.05 };
+    pub const SAME_CLASS: Boundary = Boundary { at: 2.874, steepness: 20.07 };
 
     /// Points of every form that are matched with the nearest points of another form.
     pub const MATCHED_POINTS: usize = 400;

@@ -8,7 +8,7 @@ use surface::{OneRing, Topology, VertexId};
 use crate::tri_mesh::TriMesh;
 
 /// Greatest height of a vertex that is no spike: its median edge, relative to the radius of a regular polygon with the
-/// median edge around it. On creatures and the articulated families with 3,400 vertices, 99.99 % of the vertices are below 1.5,
+/// median edge around it. On creatures with 3,400 vertices, 99.99 % of the vertices are below 1.5,
 /// and the highest at 2.6.
 const SPIKE: f64 = 3.0;
 

@@ -62,5 +62,6 @@ pub fn cut_shortcuts(mesh: &TriMesh) -> Opened {
 const GIRTH: f64 = 0.3;
 
 /// Least distance between the sides of a shortcut once it is cut, relative to the square root of the area. Parts that meet
-/// nearby, as at the seams of a coarse mesh, change few distances. The sides of all welds of creatures are 0.5 and more apart.
+/// nearby, as at the seams of a coarse mesh, change few distances. A round value: the law `shortcuts` finds all single welds
+/// of creatures with it.
 const DETOUR: f64 = 0.3;

@@ -9,8 +9,8 @@ use crate::refine::Refined;
 use crate::spikes::flattened;
 use crate::tri_mesh::TriMesh;
 
-/// Greatest height of a vertex of a cut that stays where it is, see [`flattened`]. Of the vertices of creatures and articulated
-/// families with 3,400 vertices, 99.99 % are below it.
+/// Greatest height of a vertex of a cut that stays where it is, see [`flattened`]. Of the vertices of creatures
+/// with 3,400 vertices, 99.99 % are below it.
 const PULLED: f64 = 1.5;
 
 /// Splits vertices that parts of the surface share which are otherwise at least `detour` apart and not in two pieces.
