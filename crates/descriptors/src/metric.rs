@@ -332,12 +332,13 @@ mod tests {
     #[test]
     fn a_form_at_the_limit_has_the_distance_at_which_classes_become_as_likely() {
         let metric = ShapeMetric::default();
-        for fused in [0.0, 1.0, 3.0] {
+        let at = ShapeMetric::SAME_CLASS.at;
+        for fused in [0.0, 0.3 * at, 0.85 * at] {
             let limit = metric.same_below(fused);
-            assert!(ShapeMetric::combined(fused, limit * 1.001) > ShapeMetric::SAME_CLASS.at);
-            assert!(ShapeMetric::combined(fused, limit * 0.999) < ShapeMetric::SAME_CLASS.at);
+            assert!(ShapeMetric::combined(fused, limit * 1.001) > at);
+            assert!(ShapeMetric::combined(fused, limit * 0.999) < at);
         }
-        assert_eq!(metric.same_below(4.0), 0.0);
+        assert_eq!(metric.same_below(1.15 * at), 0.0);
         let ratio =
             ShapeMetric { distance: FormDistance::Hausdorff95 }.same_below(1.0) / metric.same_below(1.0);
         let units = [FormDistance::Hausdorff95, FormDistance::NearestNeighborRms].map(ShapeMetric::form_unit);

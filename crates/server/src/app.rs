@@ -95,8 +95,7 @@ impl App {
         let mesh = collection.search.mesh(id)?;
         budget.check()?;
         let surface = Surface::within(&mesh, &options.repair, budget)?;
-        let refined = surface.for_description();
-        budget.check()?;
+        let refined = surface.for_description_within(budget)?;
         let embedded = embed(&refined, options, budget)?;
         let geometry = MeshGeometry::new(&mesh, Some(content));
         let measured = Arc::new(Measured::new(surface, geometry, &refined, &embedded)?);

@@ -8,6 +8,8 @@
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BinaryHeap};
 
+use budget::{Budget, Exceeded};
+
 use crate::disjoint_sets::DisjointSets;
 use crate::ids::{EdgeId, VertexId};
 use crate::topology::Topology;
@@ -47,16 +49,24 @@ pub struct SurfaceLoop {
 /// let topology = Topology::new(72, faces);
 /// let length = |[a, b]: &[VertexId; 2]| if a.0 / 6 == b.0 / 6 { 1.0 } else { 2.0 };
 /// let lengths: Vec<f64> = topology.edges().iter().map(length).collect();
-/// let loops = short_loops(&topology, &lengths, 10.0);
+/// let loops = short_loops(&topology, &lengths, 10.0, &budget::Budget::unlimited())?;
 /// assert_eq!((loops.len(), loops[0].length), (1, 6.0));
+/// # Ok::<(), budget::Exceeded>(())
 /// ```
+///
+/// # Errors
+/// [`Exceeded`] if the time of the budget is over or it was cancelled.
 ///
 /// # Panics
 /// If there is not one length for every edge.
-#[must_use]
-pub fn short_loops(topology: &Topology, lengths: &[f64], longest: f64) -> Vec<SurfaceLoop> {
+pub fn short_loops(
+    topology: &Topology,
+    lengths: &[f64],
+    longest: f64,
+    budget: &Budget,
+) -> Result<Vec<SurfaceLoop>, Exceeded> {
     assert_eq!(lengths.len(), topology.n_edges(), "one length for every edge");
-    let Some(words) = words(topology) else { return Vec::new() };
+    let Some(words) = words(topology) else { return Ok(Vec::new()) };
     let mut sources: Vec<VertexId> = Vec::new();
     for (edge, _) in topology.edges().iter().zip(&words).filter(|(_, word)| **word != 0) {
         sources.extend(edge);
@@ -66,6 +76,7 @@ pub fn short_loops(topology: &Topology, lengths: &[f64], longest: f64) -> Vec<Su
     let mut search = Search::new(topology, lengths, &words);
     let mut shortest: BTreeMap<u64, SurfaceLoop> = BTreeMap::new();
     for source in sources {
+        budget.check()?;
         search.run(source, 0.5 * longest);
         for (word, length, edge) in search.closing(longest) {
             if shortest.get(&word).is_none_or(|known| length < known.length)
@@ -77,7 +88,7 @@ pub fn short_loops(topology: &Topology, lengths: &[f64], longest: f64) -> Vec<Su
     }
     let mut loops: Vec<SurfaceLoop> = shortest.into_values().collect();
     loops.sort_by(|a, b| a.length.total_cmp(&b.length).then_with(|| a.vertices.cmp(&b.vertices)));
-    loops
+    Ok(loops)
 }
 
 /// The word of every edge; `None` if no loop can be found.
@@ -100,35 +111,27 @@ fn words(topology: &Topology) -> Option<Vec<u64>> {
             [corners.first().map_or(rim, |corner| corner.index() / 3), rim]
         }
     };
+    // How many edges are left does not depend on the trees.
+    let n_nodes = n_faces + topology.n_vertices();
     let mut tree = DisjointSets::new(topology.n_vertices());
-    let mut dual = DisjointSets::new(n_faces + topology.n_vertices());
-    let mut left = Vec::new();
-    let mut links: Vec<Vec<(u32, EdgeId)>> = vec![Vec::new(); n_faces + topology.n_vertices()];
-    for edge in edges() {
-        let [a, b] = topology.edges()[edge.index()];
-        if tree.union(a.0, b.0) {
-            continue;
-        }
-        let [f, g] = sides(edge);
-        if dual.union(f as u32, g as u32) {
-            links[f].push((g as u32, edge));
-            links[g].push((f as u32, edge));
-        } else {
-            left.push((edge, [f, g]));
-        }
-    }
-    if left.is_empty() || left.len() > MOST_LEFT {
+    let mut dual = DisjointSets::new(n_nodes);
+    let n_left = edges()
+        .filter(|edge| {
+            let [a, b] = topology.edges()[edge.index()];
+            let [f, g] = sides(*edge);
+            !tree.union(a.0, b.0) && !dual.union(f as u32, g as u32)
+        })
+        .count();
+    if n_left == 0 || n_left > MOST_LEFT {
         return None;
     }
-    let mut words = vec![0; n_edges];
-    let mut at_node = vec![0u64; links.len()];
-    for (i, (edge, [f, g])) in left.into_iter().enumerate() {
-        let word = random_word(i as u64);
-        words[edge.index()] = word;
-        at_node[f] ^= word;
-        at_node[g] ^= word;
+    // A tree of the faces by breadth keeps the loops of faces short, from which paths are searched.
+    let mut links: Vec<Vec<(u32, EdgeId)>> = vec![Vec::new(); n_nodes];
+    for edge in edges() {
+        let [f, g] = sides(edge);
+        links[f].push((g as u32, edge));
+        links[g].push((f as u32, edge));
     }
-    // Each tree edge is crossed by the loops with one end below it.
     let mut order = Vec::with_capacity(links.len());
     let mut parent: Vec<Option<(u32, EdgeId)>> = vec![None; links.len()];
     let mut is_seen = vec![false; links.len()];
@@ -150,6 +153,22 @@ fn words(topology: &Topology) -> Option<Vec<u64>> {
             }
         }
     }
+    let mut is_crossed = vec![false; n_edges];
+    parent.iter().flatten().for_each(|(_, edge)| is_crossed[edge.index()] = true);
+    let mut tree = DisjointSets::new(topology.n_vertices());
+    let mut words = vec![0; n_edges];
+    let mut at_node = vec![0u64; n_nodes];
+    let mut n_loops = 0;
+    for edge in edges().filter(|edge| !is_crossed[edge.index()]) {
+        let [a, b] = topology.edges()[edge.index()];
+        if !tree.union(a.0, b.0) {
+            let word = random_word(n_loops);
+            n_loops += 1;
+            words[edge.index()] = word;
+            sides(edge).into_iter().for_each(|node| at_node[node] ^= word);
+        }
+    }
+    // Each edge between faces of the tree is crossed by the loops with one end below it.
     for &node in order.iter().rev() {
         if let Some((above, edge)) = parent[node] {
             words[edge.index()] ^= at_node[node];
@@ -288,7 +307,7 @@ mod tests {
     fn loops(faces: Vec<[VertexId; 3]>, longest: f64) -> Vec<SurfaceLoop> {
         let n = 1 + faces.iter().flatten().map(|v| v.index()).max().unwrap();
         let topology = Topology::new(n, faces);
-        short_loops(&topology, &vec![1.0; topology.n_edges()], longest)
+        short_loops(&topology, &vec![1.0; topology.n_edges()], longest, &Budget::unlimited()).unwrap()
     }
 
     #[test]

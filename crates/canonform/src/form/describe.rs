@@ -70,7 +70,7 @@ pub fn describe_within(
     budget: &Budget,
 ) -> Result<ShapeDescription, Error> {
     options.validate()?;
-    let working = surface.for_description();
+    let working = surface.for_description_within(budget)?;
     budget.check_memory(working.mesh().n_vertices().saturating_mul(BYTES_PER_VERTEX))?;
     ShapeDescription::within(&working, &embed(&working, &options.form, budget)?, options, budget)
 }

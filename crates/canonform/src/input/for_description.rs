@@ -1,5 +1,6 @@
 //! The mesh on which a surface is measured for its description.
 
+use budget::{Budget, Exceeded};
 use mesh::{Refined, cut_shortcuts, fill_holes, refine, without_noise, without_spikes};
 
 use super::repaired::Surface;
@@ -35,20 +36,29 @@ impl Surface {
     /// ```
     #[must_use]
     pub fn for_description(&self) -> Self {
-        let opened = cut_shortcuts(self.mesh());
+        // An unlimited budget is never exceeded.
+        self.for_description_within(&Budget::unlimited()).unwrap_or_else(|_| self.clone())
+    }
+
+    /// As [`for_description`](Self::for_description), within a budget.
+    ///
+    /// # Errors
+    /// [`Exceeded`].
+    pub fn for_description_within(&self, budget: &Budget) -> Result<Self, Exceeded> {
+        let opened = cut_shortcuts(self.mesh(), budget)?;
         let smooth = without_spikes(&opened.refined.mesh);
         let smooth = without_noise(smooth.as_ref().unwrap_or(&opened.refined.mesh)).or(smooth);
         let mesh = smooth.as_ref().unwrap_or(&opened.refined.mesh);
         let size = mesh.root_of_area();
         if size.is_nan() || size <= 0.0 {
-            return self.clone();
+            return Ok(self.clone());
         }
         let filled = fill_holes(mesh, LONGEST_HOLE * size);
         let fine = refine(&filled.mesh, LONGEST * size, mesh.n_vertices() + MOST);
         let Refined { mesh, origins } = opened.refined.clone().then(filled).then(fine);
-        match smooth.is_some() || !origins.is_empty() {
+        Ok(match smooth.is_some() || !origins.is_empty() {
             true => self.with_mesh(mesh, &origins, opened.shortcuts),
             false => self.clone(),
-        }
+        })
     }
 }

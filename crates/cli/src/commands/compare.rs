@@ -67,7 +67,7 @@ fn side(path: &Path, args: &CompareArgs, options: &FormOptions, common: &Common)
     let usual = DescribeOptions { form: usual, ..DescribeOptions::default() };
     let measure = || {
         let budget = args.limits.budget();
-        let refined = surface.for_description();
+        let refined = surface.for_description_within(&budget)?;
         let embedded = embed(&refined, options, &Bars::with_budget(common.quiet, budget.clone()))?;
         let form = embedded.form(&refined)?.leading(surface.mesh().vertex_areas())?;
         if embedded.options == usual.form {

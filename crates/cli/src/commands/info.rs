@@ -4,6 +4,7 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::Result;
+use budget::Budget;
 use mesh::{MeshReport, RepairReport, Shortcut, ShortcutKind, cut_shortcuts, is_noisy, repair, validate};
 use serde::Serialize;
 
@@ -42,7 +43,7 @@ pub(crate) fn info(args: &InfoArgs, common: &Common) -> Result<ExitCode> {
         let report = read_mesh(&path, common).and_then(|mesh| {
             let repaired =
                 repair(&mesh, &args.repair.options()).map_err(|fault| named(&path, fault.into()))?;
-            let mut shortcuts = cut_shortcuts(&repaired.mesh).shortcuts;
+            let mut shortcuts = cut_shortcuts(&repaired.mesh, &Budget::unlimited())?.shortcuts;
             // The first vertex of the input that was mapped to that of the repaired mesh.
             for shortcut in &mut shortcuts {
                 let place = repaired.input_to_repaired.iter().position(|v| *v == Some(shortcut.vertex));

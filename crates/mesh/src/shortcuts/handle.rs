@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 
+use budget::{Budget, Exceeded};
 use surface::{CornerId, DisjointSets, SurfaceLoop, Topology, VertexId, short_loops};
 
 use super::reach::Graph;
@@ -14,11 +15,17 @@ use crate::tri_mesh::TriMesh;
 const FLARE: f64 = 1.6;
 
 /// Cuts the narrowest handle that is at most `girth` around and joins sides that are otherwise at least `detour` apart.
-pub(super) fn cut(mesh: &TriMesh, girth: f64, detour: f64) -> Option<(Refined, Shortcut)> {
+pub(super) fn cut(
+    mesh: &TriMesh,
+    girth: f64,
+    detour: f64,
+    budget: &Budget,
+) -> Result<Option<(Refined, Shortcut)>, Exceeded> {
     let topology = Topology::new(mesh.n_vertices(), mesh.faces.clone());
     let length = |[a, b]: &[VertexId; 2]| (mesh.positions[a.index()] - mesh.positions[b.index()]).norm();
     let lengths: Vec<f64> = topology.edges().iter().map(length).collect();
-    short_loops(&topology, &lengths, girth).iter().find_map(|around| opened(mesh, &topology, around, detour))
+    let loops = short_loops(&topology, &lengths, girth, budget)?;
+    Ok(loops.iter().find_map(|around| opened(mesh, &topology, around, detour)))
 }
 
 /// The surface cut along a loop, if the loop goes around a shortcut.
@@ -101,6 +108,10 @@ mod tests {
     use super::*;
     use crate::{cut_shortcuts, fill_holes, shapes, validate};
 
+    fn narrow(mesh: &TriMesh, girth: f64, detour: f64) -> Option<(Refined, Shortcut)> {
+        cut(mesh, girth, detour, &Budget::unlimited()).unwrap()
+    }
+
     /// A ball with a tube between two openings: the vertices nearest to the poles are left out.
     fn bridged(level: u32) -> TriMesh {
         let ball = shapes::icosphere(level);
@@ -144,7 +155,7 @@ mod tests {
     fn a_narrow_handle_is_cut_and_its_holes_can_be_filled() {
         let mesh = bridged(4);
         assert_eq!(validate(&mesh).genus, Some(1));
-        let opened = cut_shortcuts(&mesh);
+        let opened = cut_shortcuts(&mesh, &Budget::unlimited()).unwrap();
         let [shortcut] = opened.shortcuts[..] else { panic!("{:?}", opened.shortcuts) };
         assert_eq!(shortcut.kind, ShortcutKind::Handle);
         assert!(shortcut.girth < 0.8 && shortcut.detour > 2.5, "{shortcut:?}");
@@ -153,7 +164,7 @@ mod tests {
         assert_eq!((report.genus, report.n_boundary_edges, report.n_components), (Some(0), 0, 1));
         assert_eq!(opened.refined.mesh.positions[..mesh.n_vertices()], mesh.positions);
         // It is wider than that, and its sides are nearer.
-        assert!(cut(&mesh, 0.2, 0.0).is_none() && cut(&mesh, 1.0, 9.0).is_none());
+        assert!(narrow(&mesh, 0.2, 0.0).is_none() && narrow(&mesh, 1.0, 9.0).is_none());
     }
 
     #[test]
@@ -164,8 +175,8 @@ mod tests {
             (shapes::torus(60, 20, 2.0, 0.7), 6.0),
             (shapes::icosphere(3), 100.0),
         ] {
-            assert_eq!(cut(&mesh, girth, 0.0), None);
-            assert_eq!(cut_shortcuts(&mesh).refined.mesh, mesh);
+            assert_eq!(narrow(&mesh, girth, 0.0), None);
+            assert_eq!(cut_shortcuts(&mesh, &Budget::unlimited()).unwrap().refined.mesh, mesh);
         }
     }
 }

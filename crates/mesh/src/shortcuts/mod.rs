@@ -9,6 +9,8 @@ mod pinch;
 mod reach;
 mod shortcut;
 
+use budget::{Budget, Exceeded};
+
 use crate::tri_mesh::TriMesh;
 use shortcut::MOST;
 
@@ -22,6 +24,9 @@ pub use shortcut::{Opened, Shortcut, ShortcutKind};
 /// it is narrow, at most 0.3 times the square root of the area around, and the surface widens on both sides of its narrowest
 /// place, which the tube of a ring or of the handle of a cup does not. Edges of more than two faces stay, and so do all handles of a
 /// surface with such edges.
+///
+/// # Errors
+/// [`Exceeded`] if the time of the budget is over or it was cancelled.
 ///
 /// # Panics
 /// If a face has a repeated vertex or one that does not exist, see [`surface::Topology::new`].
@@ -38,16 +43,17 @@ pub use shortcut::{Opened, Shortcut, ShortcutKind};
 /// });
 /// let far = VertexId::from(far.unwrap());
 /// ball.faces.iter_mut().flatten().filter(|v| **v == far).for_each(|v| *v = VertexId(0));
-/// let opened = cut_shortcuts(&ball);
+/// let opened = cut_shortcuts(&ball, &budget::Budget::unlimited())?;
 /// assert_eq!(opened.shortcuts.len(), 1);
 /// assert!(opened.shortcuts[0].detour > 2.5);
 /// assert_eq!(validate(&opened.refined.mesh).non_manifold_vertices, 0);
+/// # Ok::<(), budget::Exceeded>(())
 /// ```
-#[must_use]
-pub fn cut_shortcuts(mesh: &TriMesh) -> Opened {
+pub fn cut_shortcuts(mesh: &TriMesh, budget: &Budget) -> Result<Opened, Exceeded> {
     let size = mesh.root_of_area();
     let mut opened = pinch::cut(mesh, DETOUR * size);
-    while let Some((cut, shortcut)) = handle::cut(&opened.refined.mesh, GIRTH * size, DETOUR * size) {
+    while let Some((cut, shortcut)) = handle::cut(&opened.refined.mesh, GIRTH * size, DETOUR * size, budget)?
+    {
         let n_cut = opened.shortcuts.len() + 1;
         opened.refined = opened.refined.then(cut);
         opened.shortcuts.push(shortcut);
@@ -55,7 +61,7 @@ pub fn cut_shortcuts(mesh: &TriMesh) -> Opened {
             break;
         }
     }
-    opened
+    Ok(opened)
 }
 
 /// Girth of the widest handle that is cut, relative to the square root of the area.

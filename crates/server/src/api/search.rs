@@ -280,8 +280,7 @@ fn measure(app: &App, collection: &Collection, upload: Upload, budget: &Budget) 
     budget.check()?;
     let describe = collection.search.describe_options();
     let surface = Surface::within(&mesh, &describe.form.repair, budget)?;
-    let refined = surface.for_description();
-    budget.check()?;
+    let refined = surface.for_description_within(budget)?;
     let embedded = embed(&refined, &describe.form, budget)?;
     budget.check()?;
     let description = ShapeDescription::within(&refined, &embedded, describe, budget)?;
