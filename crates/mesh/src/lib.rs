@@ -6,7 +6,7 @@
 //!   fault and remedy.
 //! * [`validate`] reports the properties and defects of a mesh.
 //! * [`repair()`] removes defects that algorithms cannot handle, as [`RepairOptions`] say, and reports every change.
-//! * [`cut_shortcuts`] separates surfaces that touch and were welded, [`without_spikes`] moves displaced vertices back.
+//! * [`cut_shortcuts`] separates surfaces that touch and were welded.
 //! * [`without_noise`] smooths noisy meshes, [`fill_holes`] closes small holes, [`refine()`] splits long edges.
 //! * [`shapes`] has small analytic surfaces for tests, benches and documentation.
 //!
@@ -56,6 +56,5 @@ pub use repair::{
     repair_within,
 };
 pub use shortcuts::{Opened, Shortcut, ShortcutKind, cut_shortcuts};
-pub use spikes::without_spikes;
 pub use tri_mesh::TriMesh;
 pub use validate::{MeshReport, validate};

@@ -8,7 +8,7 @@ use rayon::prelude::*;
 
 use crate::support::surface;
 
-/// Largest combined distance of shapes with the same surface, at 250 vertices and more. A verdict of one shape is firm up to 1.03.
+/// Largest combined distance of shapes with the same surface, at 250 vertices and more. A verdict of one shape is firm up to 1.02.
 const SAME_SURFACE: f64 = 0.4;
 
 /// The same by one signature, in its unit.
@@ -18,8 +18,8 @@ const SAME_SIGNATURE: f64 = 0.6;
 /// same. A verdict of one shape is firm here too.
 const SAME_SHAPE: f64 = 1.0;
 
-/// The same with 1,000 vertices. A verdict of one class is firm.
-const SAME_COARSE_SHAPE: f64 = 0.7 * ShapeMetric::SAME_CLASS.at;
+/// The same with 1,000 vertices. A verdict of one class is firm up to 2.57.
+const SAME_COARSE_SHAPE: f64 = 2.45;
 
 fn described(mesh: &TriMesh) -> ShapeDescription {
     describe(&surface(mesh), &DescribeOptions::default()).unwrap()

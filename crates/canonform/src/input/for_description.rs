@@ -1,7 +1,7 @@
 //! The mesh on which a surface is measured for its description.
 
 use budget::{Budget, Exceeded};
-use mesh::{Refined, cut_shortcuts, fill_holes, refine, without_noise, without_spikes};
+use mesh::{Refined, cut_shortcuts, fill_holes, refine, without_noise};
 
 use super::repaired::Surface;
 
@@ -19,7 +19,7 @@ const LONGEST_HOLE: f64 = 1.0;
 const MOST: usize = 10_000;
 
 impl Surface {
-    /// The surface that is described: without [shortcuts](mesh::cut_shortcuts), [spikes](mesh::without_spikes) and
+    /// The surface that is described: without [shortcuts](mesh::cut_shortcuts) and
     /// [noise](mesh::without_noise), with small [holes](mesh::fill_holes) closed and long edges split. Coarse meshes are then
     /// measured as accurately as fine ones, and neither subdivision, noise, small holes nor a weld of two parts that touch
     /// change much. The first vertices are those of the repaired mesh, and so are the links. A mesh without such damage
@@ -46,8 +46,7 @@ impl Surface {
     /// [`Exceeded`].
     pub fn for_description_within(&self, budget: &Budget) -> Result<Self, Exceeded> {
         let opened = cut_shortcuts(self.mesh(), budget)?;
-        let smooth = without_spikes(&opened.refined.mesh);
-        let smooth = without_noise(smooth.as_ref().unwrap_or(&opened.refined.mesh)).or(smooth);
+        let smooth = without_noise(&opened.refined.mesh);
         let mesh = smooth.as_ref().unwrap_or(&opened.refined.mesh);
         let size = mesh.root_of_area();
         if size.is_nan() || size <= 0.0 {

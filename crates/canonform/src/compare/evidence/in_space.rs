@@ -35,7 +35,7 @@ const DECISIVE: f64 = 1.25;
 
 /// ... and by this much in the mean square, since the distances of a surface that is its own mirror image are those at which the
 /// refinement ends.
-const EXCESS: f64 = 5e-4;
+const EXCESS: f64 = 1e-4;
 
 /// An alignment of the samples is refined unless the other handedness is better by this factor.
 const PROMISING: f64 = 1.6;
