@@ -165,6 +165,17 @@ fn two_poses_and_two_bodies_are_not_one_surface() {
     assert!(wrong.is_empty(), "{wrong:?}");
 }
 
+/// Whether two meshes have the same vertices without any motion, in any order.
+fn same_positions(a: &TriMesh, b: &TriMesh) -> bool {
+    let sorted = |mesh: &TriMesh| {
+        let mut points: Vec<[f64; 3]> = mesh.positions.iter().map(|p| [p.x, p.y, p.z]).collect();
+        points.sort_by(|p, q| p.partial_cmp(q).unwrap());
+        points
+    };
+    let is_near = |(p, q): ([f64; 3], [f64; 3])| p.iter().zip(q).all(|(x, y)| (x - y).abs() < 1e-5);
+    a.n_vertices() == b.n_vertices() && sorted(a).into_iter().zip(sorted(b)).all(is_near)
+}
+
 #[test]
 fn every_change_of_a_tosca_shape_is_told() {
     let Some(data) = data("kinds of match on TOSCA") else { return };
@@ -175,7 +186,9 @@ fn every_change_of_a_tosca_shape_is_told() {
         .collect();
     let neighbours = shapes.par_windows(2).map(|pair| {
         let found = evidence(&geometry(&pair[0].1), &geometry(&pair[1].1)).named(&pair[0].0, &pair[1].0);
-        assert!(found.kind > EvidenceKind::IdenticalGeometry, "{found}");
+        // Two pairs of victorias have the same vertices in another order.
+        let is_copy = same_positions(&pair[0].1, &pair[1].1);
+        assert_eq!(found.kind <= EvidenceKind::IdenticalGeometry, is_copy, "{found}");
         (found.kind < EvidenceKind::OtherPose).then(|| format!("{found} ({})", found.reason()))
     });
     let one: Vec<_> = neighbours.collect::<Vec<_>>().into_iter().flatten().collect();
