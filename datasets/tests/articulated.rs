@@ -37,14 +37,6 @@ fn threads(n: usize) -> Result<ThreadPool, ThreadPoolBuildError> {
     ThreadPoolBuilder::new().num_threads(n).build()
 }
 
-fn volume(mesh: &TriMesh) -> f64 {
-    let cone = |f| {
-        let [a, b, c] = mesh.triangle(f);
-        a.coords.dot(&b.coords.cross(&c.coords)) / 6.0
-    };
-    (0..mesh.n_faces()).map(cone).sum()
-}
-
 #[test]
 fn every_shape_is_a_clean_sphere_of_the_same_size() {
     let shapes = articulated(&ArticulatedOptions::default()).unwrap();
@@ -58,7 +50,7 @@ fn every_shape_is_a_clean_sphere_of_the_same_size() {
         let report = validate(mesh);
         assert!(report.is_clean() && report.genus == Some(0), "{name}: {report:?}");
         assert_eq!((report.n_vertices, report.n_boundary_edges), (3400, 0));
-        assert!(volume(mesh) > 0.0, "{name} is inside out");
+        assert!(mesh.signed_volume() > 0.0, "{name} is inside out");
         assert!((report.area / 18_000.0 - 1.0).abs() < 0.04, "{name}: area {}", report.area);
         assert!(report.obtuse_share < 0.35, "{name}: {} of the faces are obtuse", report.obtuse_share);
         assert!(report.max_edge_length < 12.0 * report.mean_edge_length);

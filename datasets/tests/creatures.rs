@@ -3,20 +3,12 @@
 use std::collections::HashSet;
 
 use canonform_datasets::{CreatureOptions, DatasetError, creature, creature_plans, creatures};
-use mesh::{TriMesh, validate};
+use mesh::validate;
 use rayon::ThreadPoolBuilder;
 use rayon::prelude::*;
 
 fn options(n_families: usize, n_poses: usize) -> CreatureOptions {
     CreatureOptions { n_families, n_poses, n_vertices: 1000, ..CreatureOptions::default() }
-}
-
-fn volume(mesh: &TriMesh) -> f64 {
-    let cone = |f| {
-        let [a, b, c] = mesh.triangle(f);
-        a.coords.dot(&b.coords.cross(&c.coords)) / 6.0
-    };
-    (0..mesh.n_faces()).map(cone).sum()
 }
 
 #[test]
@@ -32,7 +24,7 @@ fn every_creature_is_a_clean_surface_with_the_handles_of_its_plan() {
         };
         assert!(report.is_clean() && report.genus == Some(handles), "{}: {report:?}", shape.name);
         assert_eq!((report.n_vertices, report.n_boundary_edges), (1000, 0));
-        assert!(volume(&shape.mesh) > 0.0, "{} is inside out", shape.name);
+        assert!(shape.mesh.signed_volume() > 0.0, "{} is inside out", shape.name);
         assert!((report.area / 18_000.0 - 1.0).abs() < 0.15, "{}: area {}", shape.name, report.area);
     }
 }
@@ -49,7 +41,7 @@ fn families_have_their_own_labels_and_sizes() {
     for (first, second) in shapes.iter().zip(&shapes[n_plans..]) {
         let [a, b] = [first, second].map(|shape| {
             let [low, high] = shape.mesh.bounds().unwrap();
-            [volume(&shape.mesh), (high - low).norm()]
+            [shape.mesh.signed_volume(), (high - low).norm()]
         });
         let change = a.iter().zip(&b).map(|(a, b)| (a / b - 1.0).abs()).fold(0.0, f64::max);
         assert!(change > 0.02, "{} and {}: {change}", first.name, second.name);

@@ -8,6 +8,7 @@
 //! * [`repair()`] removes defects that algorithms cannot handle, as [`RepairOptions`] say, and reports every change.
 //! * [`cut_shortcuts`] separates surfaces that touch and were welded.
 //! * [`without_noise`] smooths noisy meshes, [`fill_holes`] closes small holes, [`refine()`] splits long edges.
+//! * [`EdgeGraph`] finds shortest paths along edges.
 //! * [`shapes`] has small analytic surfaces for tests, benches and documentation.
 //!
 //! **Invariant.** Vertices keep the order of the file: repair drops and merges vertices but never reorders
@@ -32,6 +33,7 @@
 //! ```
 
 mod coincidence;
+mod edge_graph;
 mod error;
 mod face_set;
 mod holes;
@@ -42,10 +44,10 @@ mod refine;
 mod repair;
 pub mod shapes;
 mod shortcuts;
-mod spikes;
 mod tri_mesh;
 mod validate;
 
+pub use edge_graph::EdgeGraph;
 pub use error::{Fault, MeshError, Place};
 pub use holes::fill_holes;
 pub use noise::{is_noisy, without_noise};

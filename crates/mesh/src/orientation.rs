@@ -119,15 +119,6 @@ mod tests {
     use super::*;
     use crate::shapes;
 
-    fn signed_volume(mesh: &TriMesh) -> f64 {
-        (0..mesh.n_faces())
-            .map(|f| {
-                let [a, b, c] = mesh.triangle(f);
-                a.coords.dot(&b.coords.cross(&c.coords)) / 6.0
-            })
-            .sum()
-    }
-
     #[test]
     fn a_closed_surface_ends_up_facing_outward() {
         let sphere = shapes::icosphere(2);
@@ -138,7 +129,7 @@ mod tests {
             }
             let flipped = sphere.n_faces().div_ceil(keep_every);
             assert_eq!(orient_consistently(&mut mixed), flipped);
-            assert!((signed_volume(&mixed) - signed_volume(&sphere)).abs() < 1e-12);
+            assert!((mixed.signed_volume() - sphere.signed_volume()).abs() < 1e-12);
         }
     }
 

@@ -78,6 +78,31 @@ impl TriMesh {
         (0..self.n_faces()).map(|f| 0.5 * self.area_vector_in(f, unit).norm()).sum::<f64>().sqrt() * unit
     }
 
+    /// The mesh without vertices that no face names; the others keep their order.
+    #[must_use]
+    pub fn without_unused_vertices(&self) -> Self {
+        let mut is_used = vec![false; self.n_vertices()];
+        self.faces.iter().flatten().for_each(|v| is_used[v.index()] = true);
+        let mut positions = Vec::new();
+        let mut number = vec![VertexId(0); self.n_vertices()];
+        for v in (0..self.n_vertices()).filter(|&v| is_used[v]) {
+            number[v] = VertexId::from(positions.len());
+            positions.push(self.positions[v]);
+        }
+        let faces = self.faces.iter().map(|face| face.map(|v| number[v.index()])).collect();
+        Self { positions, faces }
+    }
+
+    /// The volume that a closed surface encloses, in cubed mesh units; negative if its faces are turned inward.
+    #[must_use]
+    pub fn signed_volume(&self) -> f64 {
+        let cone = |f| {
+            let [a, b, c] = self.triangle(f);
+            a.coords.dot(&b.coords.cross(&c.coords)) / 6.0
+        };
+        (0..self.n_faces()).map(cone).sum()
+    }
+
     /// The lumped mass of each vertex, a third of the area of its faces, in squared mesh units.
     #[must_use]
     pub fn vertex_areas(&self) -> Vec<f64> {

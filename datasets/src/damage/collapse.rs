@@ -7,7 +7,6 @@ use mesh::{TriMesh, shapes};
 use nalgebra::{Matrix3, Point3, Vector3};
 use surface::VertexId;
 
-use super::holes::compacted;
 use crate::stream::Stream;
 
 /// Weight of the planes that hold boundaries in place, relative to those of faces.
@@ -103,7 +102,7 @@ struct Collapse<C> {
 /// The cost is a function of the quadric error, the squared length and the ends. Edges stay if their collapse would
 /// pinch the surface or invert a face, and so do edges of more than two faces.
 fn collapsed(mesh: &TriMesh, n_vertices: usize, cost: impl Fn(f64, f64, [usize; 2]) -> f64) -> TriMesh {
-    let mut work = Collapse::new(compacted(mesh), cost);
+    let mut work = Collapse::new(mesh.without_unused_vertices(), cost);
     let mut n_left = work.positions.len();
     while n_left > n_vertices.max(4)
         && let Some(Reverse((_, [a, b], changes))) = work.queue.pop()
@@ -116,7 +115,7 @@ fn collapsed(mesh: &TriMesh, n_vertices: usize, cost: impl Fn(f64, f64, [usize; 
     let mut alive = vec![false; work.faces.len()];
     work.faces_at.iter().flatten().for_each(|&f| alive[f as usize] = true);
     let faces = work.faces.iter().zip(alive).filter(|(_, alive)| *alive).map(|(face, _)| *face).collect();
-    compacted(&TriMesh { positions: work.positions, faces })
+    TriMesh { positions: work.positions, faces }.without_unused_vertices()
 }
 
 impl<C: Fn(f64, f64, [usize; 2]) -> f64> Collapse<C> {

@@ -1,10 +1,9 @@
 //! Parts that are missing.
 
-use mesh::TriMesh;
-use surface::components_of_faces;
+use mesh::{EdgeGraph, TriMesh};
+use surface::{VertexId, components_of_faces};
 
-use super::holes::compacted;
-use super::paths::{Edges, farthest};
+use super::paths::farthest;
 use crate::stream::Stream;
 
 /// Cuts off the end of a random limb with the given share of the area: what is nearest along edges to its tip. Only the
@@ -13,10 +12,10 @@ pub(super) fn cut_off(mesh: &TriMesh, share: f64, stream: &mut Stream) -> TriMes
     if mesh.faces.is_empty() {
         return mesh.clone();
     }
-    let edges = Edges::of(mesh);
-    let first = mesh.faces[stream.below(mesh.n_faces())][0].index();
-    let tip = tip(&edges, first);
-    let lengths = edges.lengths(tip);
+    let mut edges = EdgeGraph::of(mesh);
+    let first = mesh.faces[stream.below(mesh.n_faces())][0];
+    let tip = tip(&mut edges, first);
+    let lengths = edges.from(tip);
     let from_tip = |f: usize| mesh.faces[f].iter().map(|v| lengths[v.index()]).fold(0.0, f64::max);
     let mut order: Vec<usize> = (0..mesh.n_faces()).collect();
     order.sort_by(|a, b| from_tip(*a).total_cmp(&from_tip(*b)));
@@ -39,22 +38,23 @@ pub(super) fn cut_off(mesh: &TriMesh, share: f64, stream: &mut Stream) -> TriMes
     }
     let largest = (0..pieces.count).max_by(|a, b| areas[*a].total_cmp(&areas[*b]));
     let faces = rest.faces.iter().filter(|face| Some(pieces.of(face[0])) == largest).copied().collect();
-    compacted(&TriMesh { positions: rest.positions, faces })
+    TriMesh { positions: rest.positions, faces }.without_unused_vertices()
 }
 
 /// The end of the limb on which a vertex is: from there, the distance from the middle of the surface only falls.
-fn tip(edges: &Edges, first: usize) -> usize {
-    let (one, _) = farthest(&edges.lengths(first));
-    let from_one = edges.lengths(one);
+fn tip(edges: &mut EdgeGraph, first: VertexId) -> VertexId {
+    let (one, _) = farthest(&edges.from(first));
+    let from_one = edges.from(VertexId::from(one));
     let (other, _) = farthest(&from_one);
-    let from_other = edges.lengths(other);
+    let from_other = edges.from(VertexId::from(other));
     // The middle of the longest path.
     let reach = |v: usize| from_one[v].max(from_other[v]);
-    let middle = (0..from_one.len()).min_by(|a, b| reach(*a).total_cmp(&reach(*b))).unwrap_or(first);
-    let height = edges.lengths(middle);
+    let middle =
+        (0..from_one.len()).min_by(|a, b| reach(*a).total_cmp(&reach(*b))).map_or(first, VertexId::from);
+    let height = edges.from(middle);
     let mut at = first;
-    while let Some(next) = edges.near(at).max_by(|a, b| height[*a].total_cmp(&height[*b]))
-        && height[next] > height[at]
+    while let Some(next) = edges.neighbors(at).max_by(|a, b| height[a.index()].total_cmp(&height[b.index()]))
+        && height[next.index()] > height[at.index()]
     {
         at = next;
     }

@@ -32,7 +32,7 @@ pub(super) fn holes(mesh: &TriMesh, share: f64, stream: &mut Stream) -> TriMesh 
             }
         }
     }
-    compacted(&left)
+    left.without_unused_vertices()
 }
 
 /// The mesh without the faces around `first`, nearest in space first, until they cover `area`. They are connected by
@@ -64,20 +64,4 @@ fn without_disc(mesh: &TriMesh, first: usize, area: f64) -> TriMesh {
     }
     let kept = mesh.faces.iter().zip(&is_cut).filter(|(_, cut)| !**cut).map(|(face, _)| *face).collect();
     TriMesh { positions: mesh.positions.clone(), faces: kept }
-}
-
-/// The mesh without vertices that no face names.
-pub(super) fn compacted(mesh: &TriMesh) -> TriMesh {
-    let mut number = vec![None; mesh.n_vertices()];
-    mesh.faces.iter().flatten().for_each(|v| number[v.index()] = Some(0));
-    let mut positions = Vec::new();
-    for (p, number) in mesh.positions.iter().zip(&mut number) {
-        if let Some(number) = number {
-            *number = positions.len();
-            positions.push(*p);
-        }
-    }
-    let faces =
-        mesh.faces.iter().map(|face| face.map(|v| surface::VertexId::from(number[v.index()].unwrap_or(0))));
-    TriMesh { faces: faces.collect(), positions }
 }

@@ -2,12 +2,11 @@
 
 use std::collections::HashSet;
 
-use mesh::TriMesh;
+use mesh::{EdgeGraph, TriMesh};
 use nalgebra::Point3;
 use surface::{OneRing, Topology, VertexId};
 
-use super::holes::compacted;
-use super::paths::{Edges, farthest};
+use super::paths::farthest;
 use crate::stream::Stream;
 
 /// How two points are drawn that become one. They are far apart on the surface: at least half as far as the farthest point
@@ -32,13 +31,14 @@ const BUMP: f64 = 2.0;
 /// Two vertices with disjoint faces, far apart on the surface and not beside those of earlier welds; `None` if there are none.
 fn pair(
     mesh: &TriMesh,
-    edges: &Edges,
+    edges: &mut EdgeGraph,
     draw: WeldPair,
     earlier: &HashSet<usize>,
     stream: &mut Stream,
 ) -> Option<[usize; 2]> {
     let is_free = |v: &usize| {
-        edges.is_used(*v) && !earlier.contains(v) && !edges.near(*v).any(|near| earlier.contains(&near))
+        let mut near = edges.neighbors(VertexId::from(*v)).peekable();
+        near.peek().is_some() && !earlier.contains(v) && !near.any(|near| earlier.contains(&near.index()))
     };
     let used: Vec<usize> = (0..mesh.n_vertices()).filter(is_free).collect();
     if used.is_empty() {
@@ -48,11 +48,13 @@ fn pair(
     let mut best: Option<(f64, [usize; 2])> = None;
     for _ in 0..if draw == WeldPair::Near { DRAWS } else { 1 } {
         let first = used[stream.below(used.len())];
-        let lengths = edges.lengths(first);
+        let lengths = edges.from(VertexId::from(first));
         let (_, reach) = farthest(&lengths);
         let is_apart = |v: usize| {
-            let beside = |w: usize| w == first || edges.near(first).any(|near| near == w);
-            v != first && !edges.near(v).any(beside) && !beside(v)
+            let first = VertexId::from(first);
+            let beside = |w: VertexId| w == first || edges.neighbors(first).any(|near| near == w);
+            let v = VertexId::from(v);
+            v != first && !edges.neighbors(v).any(beside) && !beside(v)
         };
         let far = |v: &usize| {
             lengths[*v].is_finite() && lengths[*v] >= FAR * reach && lengths[*v] > 0.0 && is_apart(*v)
@@ -77,13 +79,13 @@ fn pair(
 }
 
 /// Pushes the surroundings of two near points together, until the points are at their middle.
-fn push(mesh: &mut TriMesh, edges: &Edges, ends: [usize; 2]) {
+fn push(mesh: &mut TriMesh, edges: &mut EdgeGraph, ends: [usize; 2]) {
     let middle = nalgebra::center(&mesh.positions[ends[0]], &mesh.positions[ends[1]]);
     let radius = BUMP * (mesh.positions[ends[0]] - mesh.positions[ends[1]]).norm();
     let old = mesh.positions.clone();
     for end in ends {
         let shift = middle - old[end];
-        for (p, length) in mesh.positions.iter_mut().zip(edges.lengths(end)) {
+        for (p, length) in mesh.positions.iter_mut().zip(edges.from(VertexId::from(end))) {
             let share = (1.0 - length / radius.max(f64::MIN_POSITIVE)).max(0.0);
             *p += shift * (share * share * (3.0 - 2.0 * share));
         }
@@ -96,14 +98,14 @@ pub(super) fn weld(mesh: &TriMesh, draw: WeldPair, n: u32, stream: &mut Stream) 
     let mut welded = mesh.clone();
     let mut earlier = HashSet::new();
     for _ in 0..n {
-        let edges = Edges::of(&welded);
-        let Some([a, b]) = pair(&welded, &edges, draw, &earlier, stream) else { break };
+        let mut edges = EdgeGraph::of(&welded);
+        let Some([a, b]) = pair(&welded, &mut edges, draw, &earlier, stream) else { break };
         welded.positions[a] = nalgebra::center(&welded.positions[a], &welded.positions[b]);
         earlier.insert(a);
         let (kept, gone) = (VertexId::from(a), VertexId::from(b));
         welded.faces.iter_mut().flatten().filter(|v| **v == gone).for_each(|v| *v = kept);
     }
-    compacted(&welded)
+    welded.without_unused_vertices()
 }
 
 /// Joins `n` pairs of near points by handles: pushes them together, removes the faces around them, and connects the two
@@ -112,17 +114,17 @@ pub(super) fn contact(mesh: &TriMesh, n: u32, stream: &mut Stream) -> TriMesh {
     let mut joined = mesh.clone();
     let mut earlier = HashSet::new();
     for _ in 0..n {
-        let edges = Edges::of(&joined);
-        let Some(ends) = pair(&joined, &edges, WeldPair::Near, &earlier, stream) else { break };
+        let mut edges = EdgeGraph::of(&joined);
+        let Some(ends) = pair(&joined, &mut edges, WeldPair::Near, &earlier, stream) else { break };
         let topology = Topology::new(joined.n_vertices(), joined.faces.clone());
         let [Some(a), Some(b)] = ends.map(|v| rim(&topology, VertexId::from(v))) else { continue };
-        push(&mut joined, &edges, ends);
+        push(&mut joined, &mut edges, ends);
         joined.faces.retain(|face| !face.iter().any(|v| ends.contains(&v.index())));
         earlier.extend(a.iter().chain(&b).map(|v| v.index()));
         let strip = strip(&a, &b, &joined.positions);
         joined.faces.extend(strip);
     }
-    compacted(&joined)
+    joined.without_unused_vertices()
 }
 
 /// The neighbours of an inner vertex in the order of its faces; `None` at a boundary, or where faces are turned over.

@@ -6,8 +6,8 @@
 
 mod handle;
 mod pinch;
-mod reach;
 mod shortcut;
+mod spike;
 
 use budget::{Budget, Exceeded};
 

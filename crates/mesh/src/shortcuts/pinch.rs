@@ -3,10 +3,10 @@
 use nalgebra::Point3;
 use surface::{CornerId, DisjointSets, EdgeId, OneRing, Topology, VertexId, components_of_faces};
 
-use super::reach::Graph;
 use super::shortcut::{MOST, Opened, Shortcut, ShortcutKind};
+use super::spike::flattened;
+use crate::edge_graph::EdgeGraph;
 use crate::refine::Refined;
-use crate::spikes::flattened;
 use crate::tri_mesh::TriMesh;
 
 /// Greatest height of a vertex of a cut that stays where it is, see [`flattened`]. Of the vertices of creatures
@@ -41,10 +41,10 @@ pub(super) fn cut(mesh: &TriMesh, detour: f64) -> Opened {
     let mut split = with_copies(mesh, &faces, &origins, &separate);
     // And where its parts meet nearby; a vertex that was pulled out of its surface is not far for that reason.
     put_back(&mut split, n);
-    let graph = Graph::of(&split.mesh);
+    let mut graph = EdgeGraph::of(&split.mesh);
     let copy = |i: usize| VertexId::from(n + i);
     let is_far =
-        |(i, origin): (usize, &VertexId)| graph.between_within(&[*origin], &[copy(i)], detour).is_infinite();
+        |(i, origin): (usize, &VertexId)| graph.between(&[*origin], &[copy(i)], detour).is_infinite();
     let mut far: Vec<bool> = split.origins.iter().enumerate().map(is_far).collect();
     if far.iter().filter(|far| **far).count() > MOST {
         far.fill(false);
@@ -118,9 +118,9 @@ fn shortcuts(refined: &Refined, n: usize) -> Vec<Shortcut> {
     if refined.origins.is_empty() {
         return Vec::new();
     }
-    let graph = Graph::of(&refined.mesh);
+    let mut graph = EdgeGraph::of(&refined.mesh);
     let copies = refined.origins.iter().enumerate().map(|(i, &vertex)| {
-        let detour = graph.between(&[VertexId::from(n + i)], &[vertex]);
+        let detour = graph.between(&[VertexId::from(n + i)], &[vertex], f64::INFINITY);
         Shortcut { kind: ShortcutKind::Pinch, vertex, girth: 0.0, detour }
     });
     copies.collect()

@@ -211,27 +211,13 @@ fn welded(mesh: &TriMesh) -> TriMesh {
     let mut faces: Vec<_> = faces.filter(|[a, b, c]| a != b && b != c && c != a).collect();
     let mut seen = std::collections::HashSet::with_capacity(faces.len());
     faces.retain(|face| seen.insert(sorted(*face)));
-    compact(&TriMesh { positions: mesh.positions.clone(), faces })
+    TriMesh { positions: mesh.positions.clone(), faces }.without_unused_vertices()
 }
 
 /// The vertices of a face in ascending order.
 pub(super) fn sorted(mut face: [VertexId; 3]) -> [VertexId; 3] {
     face.sort_unstable();
     face
-}
-
-/// The mesh without unused vertices.
-fn compact(mesh: &TriMesh) -> TriMesh {
-    let mut is_used = vec![false; mesh.n_vertices()];
-    mesh.faces.iter().flatten().for_each(|v| is_used[v.index()] = true);
-    let mut positions = Vec::new();
-    let mut number = vec![VertexId(0); mesh.n_vertices()];
-    for v in (0..mesh.n_vertices()).filter(|&v| is_used[v]) {
-        number[v] = VertexId::from(positions.len());
-        positions.push(mesh.positions[v]);
-    }
-    let faces = mesh.faces.iter().map(|face| face.map(|v| number[v.index()])).collect();
-    TriMesh { positions, faces }
 }
 
 /// The centroid of a surface of unit area, and the second moments about it.

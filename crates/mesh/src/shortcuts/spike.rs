@@ -9,7 +9,7 @@ use crate::tri_mesh::TriMesh;
 
 /// The mean of the neighbours of an inner vertex, if its median edge is more than `limit` times as long as the radius of a
 /// regular polygon with the median edge around it.
-pub(crate) fn flattened(mesh: &TriMesh, topology: &Topology, v: VertexId, limit: f64) -> Option<Point3<f64>> {
+pub(super) fn flattened(mesh: &TriMesh, topology: &Topology, v: VertexId, limit: f64) -> Option<Point3<f64>> {
     let corners = topology.vertex_corners(v);
     let mut ring = OneRing::default();
     ring.collect(topology, corners);
