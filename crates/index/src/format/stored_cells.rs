@@ -6,7 +6,6 @@ use serde::{Deserialize, Serialize};
 
 use super::IndexError;
 use super::codec::{Floats, LIMIT};
-use super::guard::Guarded;
 use super::tables::{ENTRIES, FUSED, Snapshot, Store};
 use crate::ShapeEntry;
 use crate::texts::Texts;
@@ -208,22 +207,8 @@ fn each_value<T: DeserializeOwned>(
 ) -> Result<(), IndexError> {
     let store = snapshot.store;
     let Some(table) = snapshot.table(CELLS)? else { return Ok(()) };
-    let mut rows = Guarded::new(store.call(|| table.range(from..=to))?);
-    let mut last = None;
-    loop {
-        let row = store.call(|| match rows.next() {
-            None => Ok(None),
-            Some(Ok((key, bytes))) => Ok(Some((key.value(), bytes.value().to_vec()))),
-            Some(Err(error)) => Err(error),
-        })?;
-        let Some((key, bytes)) = row else { return Ok(()) };
-        // A tree that was forged may visit its pages again and again.
-        if last.is_some_and(|last| last >= key) {
-            return Err(store.damaged("the parts of its cells are out of order"));
-        }
-        last = Some(key);
-        visit(key, store.decoded(&bytes, "a part of a cell")?)?;
-    }
+    let rows = store.call(|| table.range(from..=to))?;
+    store.each_row(rows, |key| key, |&key, bytes| visit(key, store.decoded(&bytes, "a part of a cell")?))
 }
 
 /// All shapes in ascending order of their names, and the length of a vector without padding.

@@ -62,22 +62,8 @@ impl<'a> Graph<'a> {
         mut visit: impl FnMut(NodeKey, Node) -> Result<(), IndexError>,
     ) -> Result<(), IndexError> {
         let Some(table) = &self.table else { return Ok(()) };
-        let mut rows = Guarded::new(self.store.call(|| table.range(0..))?);
-        let mut last = None;
-        loop {
-            let row = self.store.call(|| match rows.next() {
-                None => Ok(None),
-                Some(Ok((key, bytes))) => Ok(Some((key.value(), bytes.value().to_vec()))),
-                Some(Err(error)) => Err(error),
-            })?;
-            let Some((key, bytes)) = row else { return Ok(()) };
-            // A tree that was forged may visit its pages again and again.
-            if last.is_some_and(|last| last >= key) {
-                return Err(self.store.damaged("the lists of neighbours are out of order"));
-            }
-            last = Some(key);
-            visit(key, self.decoded(key, &bytes)?)?;
-        }
+        let rows = self.store.call(|| table.range(0..))?;
+        self.store.each_row(rows, |key| key, |&key, bytes| visit(key, self.decoded(key, &bytes)?))
     }
 }
 

@@ -388,23 +388,35 @@ impl Snapshot<'_> {
         mut visit: impl FnMut(String, Vec<u8>) -> Result<(), E>,
     ) -> Result<(), E> {
         let Some(table) = self.table(table)? else { return Ok(()) };
-        let mut rows = Guarded::new(self.store.call(|| table.iter())?);
-        let mut last: Option<String> = None;
-        for _ in 0..=self.most_rows() {
-            let row = self.store.call(|| match rows.next() {
+        let rows = self.store.call(|| table.range::<&str>(..))?;
+        self.store.each_row(rows, str::to_owned, |key, bytes| visit(key.clone(), bytes))
+    }
+}
+
+impl Store<'_> {
+    /// Calls `visit` with each key, made by `own`, and value of a range of a table, in ascending order of the keys.
+    pub(super) fn each_row<K: redb::Key + 'static, O: Ord, E: From<IndexError>>(
+        &self,
+        rows: redb::Range<'static, K, &'static [u8]>,
+        own: impl Fn(K::SelfType<'_>) -> O,
+        mut visit: impl FnMut(&O, Vec<u8>) -> Result<(), E>,
+    ) -> Result<(), E> {
+        let mut rows = Guarded::new(rows);
+        let mut last = None;
+        loop {
+            let row = self.call(|| match rows.next() {
                 None => Ok(None),
-                Some(Ok((key, bytes))) => Ok(Some((key.value().to_owned(), bytes.value().to_vec()))),
+                Some(Ok((key, bytes))) => Ok(Some((own(key.value()), bytes.value().to_vec()))),
                 Some(Err(error)) => Err(error),
             })?;
             let Some((key, bytes)) = row else { return Ok(()) };
+            // A tree that was forged may visit its pages again and again.
             if last.is_some_and(|last| last >= key) {
-                break;
+                return Err(self.damaged("the rows of a table are out of order").into());
             }
-            visit(key.clone(), bytes)?;
+            visit(&key, bytes)?;
             last = Some(key);
         }
-        // A tree that was forged may visit its pages again and again.
-        Err(self.store.damaged("the rows of a table are out of order").into())
     }
 }
 
