@@ -216,6 +216,11 @@ impl ShapeMetric {
         a.iter().zip(b).map(|(a, b)| f64::from(a - b).powi(2)).sum::<f64>().sqrt()
     }
 
+    /// A fused vector without its coordinate of size.
+    pub fn without_size(fused: &[f32]) -> &[f32] {
+        &fused[..Self::FUSED_LENGTH.min(fused.len())]
+    }
+
     /// The fused distance with Huber's loss (Huber 1964, `huber1964` in `REFERENCES.bib`): differences of two values beyond
     /// four standard deviations count linearly, as if their loss went on along its tangent. Size is not limited.
     ///

@@ -123,8 +123,7 @@ impl<'a> ShapePair<'a> {
 
     /// How far apart the shapes are, regardless of size.
     pub fn distance(&self) -> ShapeDistance {
-        let [a, b] =
-            self.shapes.map(|shape| shape.fused.chunks(ShapeMetric::FUSED_LENGTH).next().unwrap_or_default());
+        let [a, b] = self.shapes.map(|shape| ShapeMetric::without_size(&shape.fused));
         let combined = ShapeMetric::combined(ShapeMetric::robust(a, b), self.best().rms);
         ShapeDistance { fused: ShapeMetric::fused(a, b), combined }
     }

@@ -9,7 +9,7 @@ use super::components::described;
 use super::found::{ComponentResult, SearchResult, StoredComponent};
 use super::predict::Completeness;
 use super::record::{COMPONENTS, OTHER_COMPONENTS, components};
-use super::search::{Explain, Query, SearchOptions, ShapeSearch};
+use super::search::{Query, SearchOptions, ShapeSearch};
 use super::source::read_unchanged;
 use crate::compare::{MatchEvidence, MeshGeometry};
 use crate::error::Error;
@@ -62,9 +62,7 @@ impl ShapeSearch {
         options: &SearchOptions,
         budget: &Budget,
     ) -> Result<Vec<ComponentResult>, Error> {
-        let Some(whole) = query.geometry.filter(|_| options.explain == Explain::Kind) else {
-            return Ok(Vec::new());
-        };
+        let Some(whole) = query.geometry else { return Ok(Vec::new()) };
         let mut found = Vec::new();
         for (part, copies) in whole.different_components().into_iter().take(MOST_SEARCHED) {
             budget.check()?;
@@ -95,23 +93,27 @@ impl ShapeSearch {
         query: &Query<'_>,
         budget: &Budget,
     ) -> Result<Vec<SearchResult>, Error> {
-        let without_size = |fused: &[f32]| fused[..ShapeMetric::FUSED_LENGTH.min(fused.len())].to_vec();
-        let asked = without_size(shape.fused());
-        let mut near: Vec<(f64, &str)> = self
+        let asked = ShapeMetric::without_size(shape.fused());
+        // Components have no forms in the index, so signatures decide.
+        let distance = |stored: &StoredComponent| {
+            let known = ShapeMetric::without_size(&stored.fused);
+            let combined = ShapeMetric::robust(asked, known);
+            ShapeDistance { fused: ShapeMetric::fused(asked, known), combined }
+        };
+        let mut near: Vec<(ShapeDistance, &str)> = self
             .stored_components()?
             .iter()
-            .map(|stored| (ShapeMetric::fused(&asked, &without_size(&stored.fused)), stored.id.as_str()))
-            .filter(|(fused, _)| *fused < ShapeMetric::SAME_SHAPE.at)
+            .map(|stored| (distance(stored), stored.id.as_str()))
+            .filter(|(distance, _)| distance.combined < ShapeMetric::SAME_SHAPE.at)
             .collect();
-        near.sort_by(|x, y| x.0.total_cmp(&y.0).then(x.1.cmp(y.1)));
+        near.sort_by(|x, y| x.0.combined.total_cmp(&y.0.combined).then(x.1.cmp(y.1)));
         let mut wholes: Vec<SearchResult> = Vec::new();
-        for (fused, id) in near {
+        for (distance, id) in near {
             budget.check()?;
             if wholes.len() == MOST_WHOLES || wholes.iter().any(|known| known.id == id) {
                 continue;
             }
             let entry = self.index().entry(id)?;
-            let distance = ShapeDistance { fused, combined: fused };
             let verdict = ShapeMetric::verdict(distance, Handedness::Unknown, 1.0);
             let n_components = entry.fact(COMPONENTS).unwrap_or(2.0) as usize;
             let evidence = self.evidence(query, id, verdict)?.of_component(n_components);
@@ -120,8 +122,8 @@ impl ShapeSearch {
                 id: id.to_owned(),
                 label: entry.label,
                 path: entry.path,
-                distance: fused,
-                fused,
+                distance: distance.combined,
+                fused: distance.fused,
                 on_graph: None,
                 verdict,
                 comparison: None,
