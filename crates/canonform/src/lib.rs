@@ -87,6 +87,8 @@ mod form;
 mod input;
 mod observer;
 mod shape_index;
+#[cfg(test)]
+mod testing;
 
 pub use budget::{Budget, Exceeded};
 pub use compare::{

@@ -39,7 +39,7 @@ pub use evaluation::{Evaluation, GraphEvaluation, RankBy, evaluate, evaluate_ran
 pub use graph::{Graph, GraphNeighbor, GraphRankings, LINKS, graph_rank};
 pub use labels::Labels;
 pub use pairwise::pairwise_distances;
-pub use ranking::{Neighbor, Rankings, rank};
+pub use ranking::{Neighbor, Rankings, rank, rank_row};
 pub use refinement::{Candidate, Refinement, refine_nearest};
 pub use scores::{Averaging, QueryScores, Scores, mean_scores, precision_recall};
 pub use splits::{SplitAccuracy, SplitOptions, split_accuracy};

@@ -54,8 +54,13 @@ impl Rankings for DistanceMatrix {
 /// ```
 #[must_use]
 pub fn rank(distances: &DistanceMatrix, query: usize) -> Vec<Neighbor> {
-    let row = distances.row(query).iter().enumerate();
-    let others = row.filter(|(index, _)| *index != query);
+    rank_row(distances.row(query), query)
+}
+
+/// The same from the distances of `query` to all shapes.
+#[must_use]
+pub fn rank_row(distances: &[f64], query: usize) -> Vec<Neighbor> {
+    let others = distances.iter().enumerate().filter(|(index, _)| *index != query);
     let mut neighbors: Vec<_> = others.map(|(index, &distance)| Neighbor { index, distance }).collect();
     neighbors.sort_by(Neighbor::cmp);
     neighbors

@@ -39,8 +39,8 @@ pub(crate) fn run(context: &Context<'_>) -> Result<()> {
         Ok(describe(&shape.surface, &options)?)
     })?;
     let described = context.start.elapsed();
-    let names = context.collection.labels();
-    let labels = Labels::new(&names);
+    let class_names = context.collection.labels();
+    let labels = Labels::new(&class_names);
     let mut rows = Vec::new();
     let mut classification = Classification::default();
     let classifier = if shapes.len() <= context.config.aligned { CLASSIFIER } else { LARGE_CLASSIFIER };
@@ -57,17 +57,15 @@ pub(crate) fn run(context: &Context<'_>) -> Result<()> {
     provenance.seconds.insert("describing".to_owned(), described.as_secs_f64());
     let measured = measured(&rows, &classification);
     let best_e = Some(best_e(&labels)?);
-    let names_of_shapes = context.collection.names();
     let protocol = protocol(context, &labels);
     context.bars.finish();
     let mut out = std::io::stdout().lock();
     protocol.iter().try_for_each(|line| writeln!(out, "{line}"))?;
     drop(out);
     let published = context.published.cloned();
-    let names = (names_of_shapes, names);
     let results = RetrievalResults {
-        names: names.0,
-        labels: names.1,
+        names: context.collection.names(),
+        labels: class_names,
         rows,
         best_e,
         classification,

@@ -11,7 +11,7 @@ use canonform::{DescribeOptions, ShapeDescription, Surface, describe};
 use datasets::DamageKind;
 use descriptors::{FormDistance, PreparedShape, ShapeMetric, ShapePair, SignatureKind};
 use report::results::{CurvesPanel, CurvesResults, Series};
-use retrieval::Labels;
+use retrieval::{Labels, Scores, rank_row};
 
 use crate::collection::{Shape, map};
 use crate::context::Context;
@@ -109,8 +109,9 @@ fn scores(gallery: &Gallery, query: &ShapeDescription, own: usize, aligned: bool
     let mut found = Vec::new();
     let mut add = |method: &'static str, distance: &dyn Fn(usize) -> f64| {
         let distances: Vec<f64> = (0..n).map(distance).collect();
-        let [nn, map] = nearest_and_precision(&distances, &gallery.labels, own);
-        found.push(Found { method, nn, map });
+        // Of a shape that is alone in its class, nothing can be found.
+        let scores = Scores::of_query(&rank_row(&distances, own), own, &gallery.labels).unwrap_or_default();
+        found.push(Found { method, nn: scores.nn, map: scores.map });
     };
     for kind in SignatureKind::ALL {
         let signature = query.signature(kind).context("a signature of every kind")?;
@@ -132,18 +133,6 @@ fn scores(gallery: &Gallery, query: &ShapeDescription, own: usize, aligned: bool
         add(BOTH, &|i| pairs[i].1);
     }
     Ok(found)
-}
-
-/// Whether the nearest shape but `own` has its class, and the average precision of the ranking of the others.
-fn nearest_and_precision(distances: &[f64], labels: &Labels, own: usize) -> [f64; 2] {
-    let mut order: Vec<usize> = (0..distances.len()).filter(|i| *i != own).collect();
-    order.sort_by(|a, b| distances[*a].total_cmp(&distances[*b]));
-    let is_right = |i: &usize| labels.class(*i) == labels.class(own);
-    let nn = f64::from(u8::from(order.first().is_some_and(is_right)));
-    let places = order.iter().enumerate().filter(|(_, i)| is_right(i)).map(|(place, _)| place + 1);
-    let precisions: Vec<f64> =
-        (1..).zip(places).map(|(n, place): (usize, usize)| n as f64 / place as f64).collect();
-    [nn, precisions.iter().sum::<f64>() / precisions.len().max(1) as f64]
 }
 
 /// The means over queries.
@@ -173,16 +162,4 @@ fn panels_of(kind: DamageKind, curves: &[(usize, Vec<Found>)]) -> Vec<CurvesPane
         panel(title, linear("strength"), linear(name), series.collect())
     };
     vec![score("NN", &|f| f.nn), score("mAP", &|f| f.map)]
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_shape_itself_is_not_ranked() {
-        let labels = Labels::new(&["cat", "cat", "dog", "cat"]);
-        assert_eq!(nearest_and_precision(&[0.0, 1.0, 2.0, 3.0], &labels, 0), [1.0, (1.0 + 2.0 / 3.0) / 2.0]);
-        assert_eq!(nearest_and_precision(&[0.0, 2.0, 1.0, 3.0], &labels, 0), [0.0, (0.5 + 2.0 / 3.0) / 2.0]);
-    }
 }

@@ -154,6 +154,7 @@ mod tests {
 
     use super::*;
     use crate::form::{EmbedMethod, FormOptions, Samples};
+    use crate::testing::lopsided;
 
     fn described_by(mesh: &TriMesh, options: &DescribeOptions) -> ShapeDescription {
         describe(&Surface::new(mesh, &options.form.repair).unwrap(), options).unwrap()
@@ -202,16 +203,6 @@ mod tests {
 
     fn fused_distance(a: &ShapeDescription, b: &ShapeDescription) -> f64 {
         ShapeMetric::fused(&a.fused, &b.fused)
-    }
-
-    /// A torus with a bump: no symmetry.
-    fn lopsided() -> TriMesh {
-        let mut mesh = shapes::torus(40, 20, 2.0, 0.7);
-        for p in &mut mesh.positions {
-            let bump = (-(*p - Point3::new(2.4, 0.5, 0.3)).norm_squared()).exp();
-            p.coords *= 1.0 + 0.5 * bump + 0.1 * p.y;
-        }
-        mesh
     }
 
     #[test]

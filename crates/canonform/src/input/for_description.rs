@@ -54,7 +54,7 @@ impl Surface {
         }
         let filled = fill_holes(mesh, LONGEST_HOLE * size);
         let fine = refine(&filled.mesh, LONGEST * size, mesh.n_vertices() + MOST);
-        let Refined { mesh, origins } = opened.refined.clone().then(filled).then(fine);
+        let Refined { mesh, origins } = opened.refined.then(filled).then(fine);
         Ok(match smooth.is_some() || !origins.is_empty() {
             true => self.with_mesh(mesh, &origins, opened.shortcuts),
             false => self.clone(),

@@ -239,16 +239,7 @@ mod tests {
     use nalgebra::Rotation3;
 
     use super::*;
-
-    /// A torus with a bump: no symmetry.
-    fn lopsided() -> TriMesh {
-        let mut mesh = shapes::torus(40, 20, 2.0, 0.7);
-        for p in &mut mesh.positions {
-            let bump = (-(*p - Point3::new(2.4, 0.5, 0.3)).norm_squared()).exp();
-            p.coords *= 1.0 + 0.5 * bump + 0.1 * p.y;
-        }
-        mesh
-    }
+    use crate::testing::lopsided;
 
     /// The mesh moved, with vertices and faces in another order, and rounded as files do.
     fn moved(mesh: &TriMesh, scale: f64, flip: f64) -> TriMesh {
