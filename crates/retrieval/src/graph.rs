@@ -65,7 +65,7 @@ pub trait Graph {
     /// If the list cannot be read.
     fn links(&mut self, shape: usize) -> Result<Vec<Neighbor>, Self::Error>;
 
-    /// The distance from the query to a shape.
+    /// The distance from the query to a shape, whose list was asked for before.
     ///
     /// # Errors
     /// If the shape cannot be read.
@@ -100,6 +100,10 @@ pub fn graph_rank<G: Graph>(
     visited.dedup();
     let mut apart: HashMap<usize, f64> = HashMap::with_capacity(visited.len());
     for index in visited {
+        let mut links = match lists.remove(&index) {
+            Some(links) => links,
+            None => graph.links(index)?,
+        };
         let distance = match distances.get(&index) {
             Some(known) => *known,
             None => {
@@ -107,10 +111,6 @@ pub fn graph_rank<G: Graph>(
                 distances.insert(index, distance);
                 distance
             }
-        };
-        let mut links = match lists.remove(&index) {
-            Some(links) => links,
-            None => graph.links(index)?,
         };
         enter(&mut links, Neighbor { index: query, distance });
         apart.insert(index, around.jaccard(index, &links));

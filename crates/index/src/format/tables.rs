@@ -329,7 +329,12 @@ impl Snapshot<'_> {
     }
 
     pub(crate) fn fused(&self, id: &str) -> Result<Option<Vec<f32>>, IndexError> {
-        Ok(self.value::<Floats>(FUSED, id)?.map(|floats| floats.0))
+        self.fused_vectors()?.get(id)
+    }
+
+    /// All fused vectors, for many reads: opening a table costs about as much as a read.
+    pub(crate) fn fused_vectors(&self) -> Result<FusedVectors<'_>, IndexError> {
+        Ok(FusedVectors { store: self.store, table: self.table(FUSED)? })
     }
 
     pub(crate) fn vectors(&self, id: &str) -> Result<Option<ShapeVectors>, IndexError> {
@@ -417,6 +422,23 @@ impl Store<'_> {
             visit(&key, bytes)?;
             last = Some(key);
         }
+    }
+}
+
+/// The fused vectors of an index.
+pub(crate) struct FusedVectors<'a> {
+    store: &'a Store<'a>,
+    /// `None` if the index is empty.
+    table: Option<Guarded<Table<&'static str>>>,
+}
+
+impl FusedVectors<'_> {
+    /// `None` if there is no shape of this name.
+    pub(crate) fn get(&self, id: &str) -> Result<Option<Vec<f32>>, IndexError> {
+        let Some(table) = &self.table else { return Ok(None) };
+        let bytes =
+            self.store.call(|| Ok::<_, redb::Error>(table.get(id)?.map(|bytes| bytes.value().to_vec())))?;
+        bytes.map(|bytes| Ok(self.store.decoded::<Floats>(&bytes, id)?.0)).transpose()
     }
 }
 

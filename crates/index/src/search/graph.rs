@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use retrieval::{GraphNeighbor, LINKS, Neighbor, graph_rank};
 
 use super::{Found, SearchMode, distance};
-use crate::format::{Graph, Snapshot};
+use crate::format::{FusedVectors, Graph};
 use crate::vectors::{NodeKey, node_key};
 use crate::{Index, IndexError};
 
@@ -49,7 +49,8 @@ impl Index {
         let store = self.store();
         let snapshot = store.read()?;
         let graph = Graph::open(&snapshot)?.ok_or_else(|| IndexError::NoGraph(self.path().to_owned()))?;
-        let mut walk = Walk { graph, snapshot: &snapshot, query, known: Names::default(), n_lists: 0 };
+        let vectors = snapshot.fused_vectors()?;
+        let mut walk = Walk { graph, vectors, query, known: Names::default(), n_lists: 0 };
         let nearest: Vec<Neighbor> = search
             .shapes
             .drain(..)
@@ -100,7 +101,7 @@ impl Names {
 /// The part of the graph around a query.
 struct Walk<'a> {
     graph: Graph<'a>,
-    snapshot: &'a Snapshot<'a>,
+    vectors: FusedVectors<'a>,
     query: &'a [f32],
     known: Names,
     n_lists: usize,
@@ -121,18 +122,9 @@ impl retrieval::Graph for Walk<'_> {
         Ok(links)
     }
 
-    /// Infinite for a shape that is gone.
+    /// Infinite for a shape that is gone: its list named no shape.
     fn distance(&mut self, shape: usize) -> Result<f64, IndexError> {
-        let id = match &self.known.ids[shape] {
-            Some(id) => id.clone(),
-            None => match self.graph.node(self.known.keys[shape])? {
-                Some(node) => node.id,
-                None => return Ok(f64::INFINITY),
-            },
-        };
-        let Some(vector) = self.snapshot.fused(&id)? else { return Ok(f64::INFINITY) };
-        let found = distance(self.query, &vector);
-        self.known.ids[shape] = Some(id);
-        Ok(found)
+        let Some(id) = &self.known.ids[shape] else { return Ok(f64::INFINITY) };
+        Ok(self.vectors.get(id)?.map_or(f64::INFINITY, |vector| distance(self.query, &vector)))
     }
 }

@@ -102,10 +102,11 @@ impl Index {
             })?;
         }
         let mut shapes = Vec::with_capacity(k.min(self.len()));
+        let vectors = snapshot.fused_vectors()?;
         for hit in nearest.into_hits() {
             let id = ids.get(hit.slot as usize);
             let missing = || IndexError::damaged(self.path(), format!("`{id}` has no vector"));
-            let vector = snapshot.fused(id)?.ok_or_else(missing)?;
+            let vector = vectors.get(id)?.ok_or_else(missing)?;
             shapes.push(NearShape { distance: distance(query, &vector), id: id.to_owned() });
         }
         Ok(Found::new(shapes, k, ids.len(), &heads.header, mode))
