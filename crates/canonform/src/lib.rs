@@ -38,7 +38,8 @@
 //! 5. [`descriptors::CanonicalForm`]: the embedded surface, weighted by area, in three dimensions.
 //! 6. [`ShapeDescription`]: form, signatures and facts, made by [`describe`]: all that an index stores of a shape.
 //! 7. [`descriptors::ShapePair`]: two descriptions and the alignments of their forms, each found once.
-//!    [`compare`] and [`compare_surfaces`] turn it into a [`Comparison`]. All units, weights and thresholds of the
+//!    [`compare`] and [`compare_surfaces`] turn it into a [`Comparison`]; [`compare_meshes`] goes all the way from two
+//!    meshes. All units, weights and thresholds of the
 //!    comparison belong to [`descriptors::ShapeMetric`].
 //!
 //! # Collections
@@ -92,16 +93,16 @@ mod testing;
 
 pub use budget::{Budget, Exceeded};
 pub use compare::{
-    Basis, Change, Comparison, EvidenceKind, FormMatches, MatchEvidence, MeshGeometry, Overlay, Parts,
-    Residual, Side, SurfaceComparison, SurfaceGap, Triangulation, UnitChange, compare, compare_surfaces,
-    embedded_distances, form_matches,
+    Basis, Change, ComparedMesh, Comparison, EvidenceKind, FormMatches, MatchEvidence, MeshComparison,
+    MeshGeometry, Overlay, Parts, Residual, Side, SurfaceComparison, SurfaceGap, Triangulation, UnitChange,
+    compare, compare_meshes, compare_surfaces, embedded_distances, form_matches,
 };
 pub use error::{Error, Remedy};
 pub use form::{
-    DISTANCES_LIMIT, DescentReport, DescribeOptions, EmbedMethod, EmbedReport, Embedded, FormOptions,
-    MethodFacts, MethodReport, MethodsReport, Samples, SecondsReport, ShapeDescription, StressChoice,
-    StressKind, StressOptions, StressReport, compare_methods, describe, describe_within, embed,
-    embed_and_measure, embed_and_release,
+    DISTANCES_LIMIT, DescentReport, DescribeOptions, EmbedMethod, EmbedReport, EmbedSettings, Embedded,
+    FormOptions, MethodFacts, MethodReport, MethodsReport, NoEffect, Samples, SecondsReport,
+    ShapeDescription, StressChoice, StressKind, StressOptions, StressReport, compare_methods, describe,
+    describe_within, embed, embed_and_measure, embed_and_release,
 };
 pub use input::{
     AllPairs, Asymmetry, BadPoint, Dataset, InputMap, InputPoint, LabelFile, PathPoint, ShapeFile, SkipKind,

@@ -12,7 +12,7 @@ use crate::source::Source;
 
 /// Distances from points of one surface to all of its vertices.
 ///
-/// A solver is prepared once per surface. It may be called from several threads at once. It keeps to the
+/// A solver is prepared once per surface. It may be kept and called from several threads at once. It keeps to the
 /// [`Budget`] that it was prepared with: when that is exceeded, every call ends with an error, and what it has
 /// written so far is not to be used.
 ///
@@ -30,7 +30,7 @@ use crate::source::Source;
 /// assert!((diameter - (1.0 + 2.0 * 2f64.sqrt())).abs() < 1e-12);
 /// # Ok::<(), GeodesicError>(())
 /// ```
-pub trait DistanceSolver: Sync + std::fmt::Debug {
+pub trait DistanceSolver: Send + Sync + std::fmt::Debug {
     /// Number of vertices of the surface.
     fn n_vertices(&self) -> usize;
 

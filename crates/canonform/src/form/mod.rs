@@ -12,6 +12,7 @@ mod method;
 mod options;
 mod plan;
 mod report;
+mod settings;
 mod side_by_side;
 mod stress;
 
@@ -22,5 +23,6 @@ pub use method::EmbedMethod;
 pub use options::{DescribeOptions, FormOptions};
 pub use plan::DISTANCES_LIMIT;
 pub use report::{DescentReport, EmbedReport, SecondsReport};
+pub use settings::{EmbedSettings, NoEffect};
 pub use side_by_side::{MethodFacts, MethodReport, MethodsReport, compare_methods};
 pub use stress::{StressChoice, StressKind, StressOptions, StressReport};

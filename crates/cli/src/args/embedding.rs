@@ -1,10 +1,9 @@
 //! How a surface is embedded: the methods, and which options belong to which.
 
-use anyhow::{Result, bail};
-use canonform::geodesics::{FirstSample, Sampling};
+use anyhow::{Result, anyhow};
+use canonform::geodesics::Sampling;
 use canonform::nmds::{Bandwidth, Regularization, RpiAlpha};
-use canonform::surface::VertexId;
-use canonform::{EmbedMethod, FormOptions};
+use canonform::{EmbedMethod, EmbedSettings, FormOptions};
 use clap::Args;
 use clap::builder::TypedValueParser;
 
@@ -71,87 +70,27 @@ impl EmbeddingArgs {
     /// # Errors
     /// Options that do not apply together.
     pub(crate) fn options(&self, common: &Common) -> Result<FormOptions> {
-        self.check()?;
-        let mut method = self.method.clone();
-        match &mut method {
-            EmbedMethod::Nystrom { regularization } => *regularization = self.regularization(),
-            EmbedMethod::Spectral { eigenvectors, mu } => {
-                set(eigenvectors, self.eigenvectors);
-                set(mu, self.mu);
-            }
-            EmbedMethod::KernelPca { rank, bandwidth } => {
-                *rank = self.rank;
-                set(bandwidth, self.sigma);
-            }
-            EmbedMethod::Smacof { regularization, descent } => {
-                *regularization = self.regularization();
-                set(&mut descent.max_iterations, self.iterations);
-                set(&mut descent.tolerance, self.tolerance);
-            }
-            EmbedMethod::Classical | EmbedMethod::Landmark | EmbedMethod::Fmds => {}
-        }
-        let first_sample =
-            self.first_sample.map_or(FirstSample::Farthest, |v| FirstSample::Vertex(VertexId(v)));
-        let sampling = self.sampling.unwrap_or_default();
-        Ok(FormOptions { method, sampling, first_sample, ..self.form.options(common) })
-    }
-
-    fn regularization(&self) -> Regularization {
-        let mut chosen = self.regularization.unwrap_or_default();
-        match &mut chosen {
-            Regularization::LowRank { rank } | Regularization::Cur { rank } => *rank = self.rank,
-            Regularization::Rpi { alpha } => set(alpha, self.alpha),
-            Regularization::None => {}
-        }
-        chosen
-    }
-
-    /// Refuses options that would have no effect.
-    fn check(&self) -> Result<()> {
-        type AppliesTo = fn(&EmbedMethod) -> bool;
-        let of_method: [(&str, bool, AppliesTo); 9] = [
-            ("--rank", self.rank.is_some(), |m| {
-                m.regularization().is_some() || matches!(m, EmbedMethod::KernelPca { .. })
-            }),
-            ("--sampling", self.sampling.is_some(), EmbedMethod::is_sampled),
-            ("--first-sample", self.first_sample.is_some(), EmbedMethod::is_sampled),
-            ("--regularization", self.regularization.is_some(), |m| m.regularization().is_some()),
-            ("--eigenvectors", self.eigenvectors.is_some(), |m| matches!(m, EmbedMethod::Spectral { .. })),
-            ("--mu", self.mu.is_some(), |m| matches!(m, EmbedMethod::Spectral { .. })),
-            ("--sigma", self.sigma.is_some(), |m| matches!(m, EmbedMethod::KernelPca { .. })),
-            ("--iterations", self.iterations.is_some(), |m| matches!(m, EmbedMethod::Smacof { .. })),
-            ("--tolerance", self.tolerance.is_some(), |m| matches!(m, EmbedMethod::Smacof { .. })),
-        ];
-        for (option, is_given, applies) in of_method {
-            if is_given && !applies(&self.method) {
-                let methods = EmbedMethod::all();
-                let names: Vec<_> = methods.iter().filter(|m| applies(m)).map(EmbedMethod::name).collect();
-                bail!(
-                    "{option} has no effect with --method {}; leave it out, or use --method {}",
-                    self.method.name(),
-                    names.join(" or ")
-                );
-            }
-        }
-        match self.regularization {
-            Some(chosen @ (Regularization::Rpi { .. } | Regularization::None)) if self.rank.is_some() => {
-                bail!(
-                    "--rank has no effect with --regularization {}, which keeps all eigenpairs; leave it out, or use \
-                     --regularization low-rank or cur",
-                    chosen.name()
-                )
-            }
-            chosen if self.alpha.is_some() && !matches!(chosen, Some(Regularization::Rpi { .. })) => {
-                bail!("--alpha applies only to --regularization rpi; add that option, or leave out --alpha")
-            }
-            _ => Ok(()),
-        }
+        let settings = EmbedSettings {
+            method: self.method.clone(),
+            regularization: self.regularization,
+            rank: self.rank,
+            alpha: self.alpha,
+            sampling: self.sampling,
+            first_sample: self.first_sample,
+            sigma: self.sigma,
+            eigenvectors: self.eigenvectors,
+            mu: self.mu,
+            iterations: self.iterations,
+            tolerance: self.tolerance,
+        };
+        let options = settings.applied_to(self.form.options(common));
+        options.map_err(|fault| anyhow!(fault.in_words(spelled)))
     }
 }
 
-/// Replaces an option by the value given, if any.
-fn set<T: Copy>(option: &mut T, given: Option<T>) {
-    *option = given.unwrap_or(*option);
+/// A setting as an option of the command line.
+fn spelled(setting: &str, values: &[&str]) -> String {
+    format!("--{} {}", setting.replace('_', "-"), values.join(" or ")).trim_end().to_owned()
 }
 
 fn parse_alpha(text: &str) -> Result<RpiAlpha, String> {

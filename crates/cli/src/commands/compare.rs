@@ -4,12 +4,9 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::{Result, bail};
-use canonform::descriptors::{
-    CanonicalForm, Handedness, PreparedShape, ShapeMetric, ShapePair, Verdict, VerdictKind,
-};
+use canonform::descriptors::{Handedness, ShapeMetric, Verdict, VerdictKind};
 use canonform::{
-    Comparison, DescribeOptions, FormOptions, MatchEvidence, MeshGeometry, Residual, ShapeDescription,
-    Surface, SurfaceComparison, Triangulation, compare_surfaces, content_hash, describe_within, embed,
+    ComparedMesh, FormOptions, MeshComparison, Residual, Triangulation, compare_meshes, content_hash,
 };
 use mesh::io::{Content, writable};
 use serde::Serialize;
@@ -23,11 +20,8 @@ use terminal::Bars;
 struct CompareJson {
     a: PathBuf,
     b: PathBuf,
-    /// What kind of match the meshes are.
-    evidence: MatchEvidence,
     #[serde(flatten)]
-    comparison: Comparison,
-    triangulation: Triangulation,
+    found: MeshComparison,
     residual: ResidualJson,
     threshold: Option<f64>,
     /// Whether the threshold is exceeded or the shapes are different; none without a threshold.
@@ -44,42 +38,12 @@ struct ResidualJson {
     output: Option<PathBuf>,
 }
 
-/// One of the two meshes.
-struct Side {
-    surface: Surface,
-    /// The mesh in space, with the hash of its file.
-    geometry: Option<MeshGeometry>,
-    /// The form of all vertices.
-    form: CanonicalForm,
-    /// The shape with this form.
-    shape: PreparedShape,
-    /// The shape made with the options that the metric is calibrated for, if those differ.
-    usual: Option<PreparedShape>,
-}
-
-fn side(path: &Path, args: &CompareArgs, options: &FormOptions, common: &Common) -> Result<Side> {
+fn side(path: &Path, args: &CompareArgs, options: &FormOptions, common: &Common) -> Result<ComparedMesh> {
     let (mesh, surface) = read_both(path, &args.embedding.form.repair, common)?;
     print_repair(&file_name(path), &surface.repaired.report, &args.embedding.form.repair);
     let content = if is_stream(path) { None } else { Some(content_hash(path)?) };
-    let geometry = MeshGeometry::new(&mesh, content);
-    drop(mesh);
-    let usual = FormOptions { repair: options.repair, ..FormOptions::default() };
-    let usual = DescribeOptions { form: usual, ..DescribeOptions::default() };
-    let measure = || {
-        let budget = args.limits.budget();
-        let refined = surface.for_description_within(&budget)?;
-        let embedded = embed(&refined, options, &Bars::with_budget(common.quiet, budget.clone()))?;
-        let form = embedded.form(&refined)?.leading(surface.mesh().vertex_areas())?;
-        if embedded.options == usual.form {
-            return Ok((form, ShapeDescription::new(&refined, &embedded, &usual)?.prepare()?, None));
-        }
-        let description = describe_within(&surface, &usual, &budget)?;
-        let (fused, area) = (description.fused.clone(), Some(description.area));
-        let shape = PreparedShape::new(fused, &form.reduced(usual.points), area)?;
-        Ok((form, shape, Some(description.prepare()?)))
-    };
-    let (form, shape, usual) = measure().map_err(|fault| named(path, fault))?;
-    Ok(Side { surface, geometry, form, shape, usual })
+    let bars = Bars::with_budget(common.quiet, args.limits.budget());
+    ComparedMesh::new(&mesh, content, surface, options, &bars).map_err(|fault| named(path, fault))
 }
 
 /// What the two meshes are called: by their files, or by their paths if the files have one name.
@@ -102,38 +66,27 @@ pub(crate) fn compare(args: &CompareArgs, common: &Common) -> Result<ExitCode> {
         check_format(path, "a coloured mesh", &writable(Content::Field).collect::<Vec<_>>())?;
         check_folder(path)?;
     }
-    let metric = ShapeMetric { distance: args.distance };
     let [a, b] = [side(&args.a, args, &options, common)?, side(&args.b, args, &options, common)?];
-    let pair = ShapePair::new(metric, [&a.shape, &b.shape]);
-    // The verdict must not depend on the options.
-    let distance = match (&a.usual, &b.usual) {
-        (Some(a), Some(b)) => ShapePair::new(metric, [a, b]).distance(),
-        _ => pair.distance(),
-    };
-    let SurfaceComparison { comparison, triangulation, overlay } =
-        compare_surfaces(&pair, distance, [(&a.surface, &a.form), (&b.surface, &b.form)])?;
+    let mut found = compare_meshes(ShapeMetric { distance: args.distance }, [&a, &b])?;
     if let Some(path) = &args.residual_mesh {
-        write_colored(path, a.surface.mesh(), "residual", &overlay.residuals[0])?;
+        write_colored(path, a.surface().mesh(), "residual", &found.overlay.residuals[0])?;
     }
-    let evidence = match (&a.geometry, &b.geometry) {
-        (Some(a), Some(b)) => MatchEvidence::new([a, b], comparison.verdict),
-        _ => MatchEvidence::of_shapes([None, None], comparison.verdict),
-    };
     let [name_a, name_b] = names(args);
-    let [residual, _] = overlay.residual();
-    let max_vertex = a.surface.input_vertex(residual.max_point.into()).0;
-    let residual = ResidualJson { residual, max_vertex, output: args.residual_mesh.clone() };
-    let failed = args.threshold.map(|limit| {
-        comparison.normalized_distance > limit || comparison.verdict.kind == VerdictKind::Different
-    });
-    let not_alike = args.exit_code.is_some_and(|least| !is_at_least(&comparison.verdict, least));
+    found.evidence = found.evidence.named(&name_a, &name_b);
+    let verdict = found.comparison.verdict;
+    let failed = args
+        .threshold
+        .map(|limit| found.comparison.normalized_distance > limit || verdict.kind == VerdictKind::Different);
+    let not_alike = args.exit_code.is_some_and(|least| !is_at_least(&verdict, least));
     let json = CompareJson {
         a: args.a.clone(),
         b: args.b.clone(),
-        evidence: evidence.named(&name_a, &name_b),
-        comparison,
-        triangulation,
-        residual,
+        residual: ResidualJson {
+            residual: found.residual,
+            max_vertex: found.max_vertex.0,
+            output: args.residual_mesh.clone(),
+        },
+        found,
         threshold: args.threshold,
         failed,
     };
@@ -151,7 +104,7 @@ fn is_at_least(verdict: &Verdict, least: VerdictKind) -> bool {
 }
 
 fn table(json: &CompareJson) -> String {
-    let c = &json.comparison;
+    let (c, evidence) = (&json.found.comparison, &json.found.evidence);
     let limit = match c.same_below {
         0.0 => "the signatures alone are too far apart for one class".to_owned(),
         limit => format!("with these signatures, different from {limit:.6} on"),
@@ -162,16 +115,16 @@ fn table(json: &CompareJson) -> String {
         Handedness::Either => "either: the shape is its own mirror image",
         Handedness::Unknown => "unknown: a mesh encloses no volume, or the forms do not match",
     };
-    let triangulation = match json.triangulation {
+    let triangulation = match json.found.triangulation {
         Triangulation::Same => "the same faces",
         Triangulation::Other => "different faces",
     };
     let (Residual { median, max, .. }, vertex) = (json.residual.residual, json.residual.max_vertex);
     let residual = format!("median {median:.6}, maximum {max:.6} (at vertex {vertex}), mesh units");
     let mut rows = vec![
-        ("match", json.evidence.to_string()),
-        ("confidence", format!("{:.2}", json.evidence.confidence)),
-        ("because", json.evidence.reason()),
+        ("match", evidence.to_string()),
+        ("confidence", format!("{:.2}", evidence.confidence)),
+        ("because", evidence.reason()),
         ("shape", c.verdict.to_string()),
         ("by distance", c.verdict.reason()),
         ("distance of the forms", format!("{:.6} mesh units", c.distance)),
