@@ -15,7 +15,7 @@ enum May {
 const EVERYWHERE: [&str; 1] = ["budget"];
 
 /// All crates of the workspace, by folder name; packages are called `canonform-FOLDER`.
-const RULES: [(&str, May); 21] = [
+const RULES: [(&str, May); 22] = [
     ("budget", May::Know(&[])),
     ("files", May::Know(&[])),
     ("surface", May::Know(&[])),
@@ -60,6 +60,7 @@ const RULES: [(&str, May); 21] = [
             "terminal",
         ]),
     ),
+    ("py", May::Know(&["canonform", "datasets", "files", "index", "mesh", "surface", "view"])),
     ("bench", May::Know(&[])),
     ("browser", May::Know(&[])),
     ("experiments", May::KnowEverything),

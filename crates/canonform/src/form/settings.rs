@@ -156,7 +156,7 @@ impl EmbedSettings {
             ];
             for (setting, is_given, takes) in of_regularization {
                 if is_given && !takes(&chosen) {
-                    let all = Regularization::all().into_iter().filter(|r| takes(r));
+                    let all = Regularization::all().into_iter().filter(takes);
                     let instead = all.map(Regularization::name).collect();
                     return Err(NoEffect {
                         setting,

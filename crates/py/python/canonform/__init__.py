@@ -1,0 +1,61 @@
+"""Nonrigid 3D shape retrieval by canonical forms.
+
+A sitting cat and a leaping cat are the same shape. This package measures distances along surfaces, embeds surfaces so that
+straight lines equal these distances (their *canonical forms*), and aligns, compares, searches and classifies shapes by them.
+
+    >>> import canonform
+    >>> cat = canonform.datasets.generate("cat", n_vertices=1000)[0].surface()
+    >>> cat.distances(0).shape
+    (1000,)
+    >>> cat.canonical_form(n=50).points.shape
+    (1000, 3)
+
+`Surface` holds a mesh and everything that was prepared on it. `Index` is a searchable file of shapes.
+
+Arrays may be of any real type and layout. Vertices and faces are counted from 0, results are in the vertex order of the input, and
+lengths are in the units of the mesh. The same input, options and seed give the same numbers as the command line, for any number of
+threads.
+"""
+
+from __future__ import annotations
+
+import os as _os
+from . import datasets, errors
+from ._canonform import __version__, set_threads, threads
+from ._compare import Alignment, Comparison, align, compare
+from ._form import Form
+from ._index import Index, Result, SearchResults, ShapeEntry
+from ._surface import Path, RepairReport, Surface, distance_methods, embedding_methods
+from .errors import CanonformError
+
+__all__ = [
+    "Alignment",
+    "CanonformError",
+    "Comparison",
+    "Form",
+    "Index",
+    "Path",
+    "RepairReport",
+    "Result",
+    "SearchResults",
+    "ShapeEntry",
+    "Surface",
+    "__version__",
+    "align",
+    "compare",
+    "datasets",
+    "distance_methods",
+    "embedding_methods",
+    "errors",
+    "read",
+    "set_threads",
+    "threads",
+]
+
+
+def read(path: str | _os.PathLike[str], *, components: str = "largest", weld: str | float = "seams") -> Surface:
+    """Read and repair a mesh file; see `Surface` for the options.
+
+    Raises `MissingFileError`, `FileError` and `MeshError`.
+    """
+    return Surface.read(path, components=components, weld=weld)

@@ -1,0 +1,181 @@
+"""Alignment and comparison of two shapes."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from . import _canonform, _html
+from ._arrays import Floats
+from ._form import Form
+from ._settings import Progress, encoded, n_bytes, number_or_inf, shown
+from ._surface import Surface
+
+
+class Alignment:
+    """The rigid motion that takes one form onto another: `points @ rotation.T + translation`."""
+
+    def __init__(self, inner: _canonform.Alignment) -> None:
+        self.rotation: Floats = inner.rotation()
+        """An orthogonal matrix, shape (3, 3); its determinant is -1 if the motion includes a reflection."""
+        self.translation: Floats = inner.translation()
+        """In mesh units, shape (3,)."""
+        self.reflected: bool = inner.reflected
+        """Whether the motion includes a reflection."""
+        self.rms: float = inner.rms
+        """Root mean square distance between nearest points of the aligned forms, in mesh units."""
+        self.hausdorff95: float = inner.hausdorff95
+        """Hausdorff distance without the farthest 5 % of points, in mesh units."""
+
+    def apply(self, points: ArrayLike) -> Floats:
+        """Moves points, shape (k, 3)."""
+        moved: Floats = np.asarray(points, dtype=np.float64) @ self.rotation.T + self.translation
+        return moved
+
+    def __repr__(self) -> str:
+        reflected = ", reflected" if self.reflected else ""
+        return f"Alignment(rms={self.rms:.6g}, hausdorff95={self.hausdorff95:.6g}{reflected})"
+
+
+def align(a: Form | Surface, b: Form | Surface, *, reflections: bool = True) -> Alignment:
+    """The motion that takes the form of a onto that of b, in mesh units.
+
+    A surface stands for its canonical form with default options. The verdict of `compare` uses forms at equal size instead.
+
+    Raises `EmbeddingError` for forms that are not three-dimensional.
+    """
+    forms = [shape.canonical_form(stress="skip") if isinstance(shape, Surface) else shape for shape in (a, b)]
+    return Alignment(_canonform.align(forms[0]._inner, forms[1]._inner, reflections))
+
+
+class Comparison:
+    """How two shapes resemble each other."""
+
+    def __init__(self, report: dict[str, Any], residuals: Floats, shapes: tuple[Surface, Surface]) -> None:
+        self.report = report
+        """The object that `canonform compare --json` prints."""
+        self.residuals = residuals
+        """For each vertex of the first mesh, the distance of its form from that of the second, in mesh units; shape (n,)."""
+        self._shapes = shapes
+
+    @property
+    def verdict(self) -> str:
+        """How alike the shapes are: "same-shape", "same-class" or "different"."""
+        return str(self.report["verdict"]["kind"])
+
+    @property
+    def distance(self) -> float:
+        """Combined distance, by signatures and aligned forms at equal size; the verdict follows from it."""
+        return float(self.report["combined_distance"])
+
+    @property
+    def form_distance(self) -> float:
+        """Distance between the aligned forms at equal size."""
+        return float(self.report["normalized_distance"])
+
+    @property
+    def scale(self) -> float:
+        """Size of the second over that of the first, by the square roots of their areas."""
+        return float(self.report["scale"])
+
+    @property
+    def match(self) -> str:
+        """What kind of match the meshes are, such as "identical-file", "moved", "remeshed" or "same-shape"."""
+        return str(self.report["evidence"]["kind"])
+
+    @property
+    def confidence(self) -> float:
+        """Probability of the kind of match, 0 to 1."""
+        return float(self.report["evidence"]["confidence"])
+
+    def __str__(self) -> str:
+        evidence = self.report["evidence"]
+        return f"{evidence['text']} (confidence {evidence['confidence']:.2f}); {evidence['reason']}"
+
+    def __repr__(self) -> str:
+        return f"Comparison(verdict={self.verdict!r}, match={self.match!r}, distance={self.distance:.4g})"
+
+    def _repr_html_(self) -> str:
+        evidence, [a, b] = self.report["evidence"], self._shapes
+        rows = [
+            ("match", evidence["text"]),
+            ("confidence", f"{evidence['confidence']:.2f}"),
+            ("because", evidence["reason"]),
+            ("combined distance", f"{self.distance:.4f}"),
+            ("forms, at equal size", f"{self.form_distance:.6f}"),
+            ("scale, second over first", f"{self.scale:.6g}"),
+        ]
+        residuals = np.where(np.isfinite(self.residuals), self.residuals, np.nan)
+        pictures = [
+            _html.image(a.picture(residuals, width=440, height=440), title="the first, coloured by how far the forms are apart"),
+            _html.image(b.picture(width=440, height=440), title="the second"),
+        ]
+        return _html.card("Comparison", rows, pictures)
+
+
+def compare(
+    a: Surface,
+    b: Surface,
+    *,
+    names: tuple[str, str] | None = None,
+    distance: str = "nn-rms",
+    n: int | str = 100,
+    method: str = "nmds",
+    geodesic: str = "fast-marching",
+    update: str | None = None,
+    obtuse: str | None = None,
+    sampling: str | None = None,
+    first_sample: int | None = None,
+    regularization: str | None = None,
+    rank: int | None = None,
+    alpha: float | str | None = None,
+    sigma: float | str | None = None,
+    eigenvectors: int | None = None,
+    mu: float | None = None,
+    iterations: int | None = None,
+    tolerance: float | None = None,
+    seed: int = 0,
+    timeout: float | None = None,
+    memory: int | str | None = None,
+    progress: Progress = False,
+) -> Comparison:
+    """Compare two shapes: one shape, one class or different ones; the same geometry, scaled, mirrored, remeshed, part of the other.
+
+    Each side is described once, and kept.
+
+    Parameters
+    ----------
+    names
+        What the two are called in words; by default their file names.
+    distance
+        The distance of aligned forms that is stated: "nn-rms" or "hausdorff95". The verdict does not depend on it, nor on the
+        other options, which are those of `Surface.canonical_form`.
+    """
+    settings = encoded(
+        distance=distance,
+        n=n,
+        method=method,
+        geodesic=geodesic,
+        update=update,
+        obtuse=obtuse,
+        sampling=sampling,
+        first_sample=first_sample,
+        regularization=regularization,
+        rank=rank,
+        alpha=alpha,
+        sigma=sigma,
+        eigenvectors=eigenvectors,
+        mu=number_or_inf(mu),
+        iterations=iterations,
+        tolerance=tolerance,
+        seed=seed,
+        timeout=timeout,
+        memory=n_bytes(memory),
+    )
+    called = names or (a._name or "the first", b._name or "the second")
+    with shown(progress) as report:
+        found, residuals = _canonform.compare(a._inner, b._inner, list(called), settings, report)
+    return Comparison(json.loads(found), residuals, (a, b))

@@ -1,0 +1,455 @@
+"""Indexes of shape collections."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING, Any, TypeAlias, overload
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _canonform, _html
+from ._settings import Progress, encoded, n_bytes, shown
+from ._surface import Surface
+from .errors import CanonformError, OptionError
+
+if TYPE_CHECKING:
+    import pandas
+
+AnyPath: TypeAlias = str | os.PathLike[str]
+
+_PICTURED = 6
+
+
+@dataclass(frozen=True)
+class ShapeEntry:
+    """A shape of an index."""
+
+    id: str
+    label: str
+    """Its class; empty if it has none."""
+    path: str
+    """Its mesh file."""
+    n_vertices: int | None
+    n_faces: int | None
+
+
+@dataclass(frozen=True)
+class Result:
+    """A shape that was found."""
+
+    rank: int
+    """Counted from 1."""
+    id: str
+    label: str
+    """Its class; empty if it has none."""
+    path: str
+    """Its mesh file."""
+    distance: float
+    """Combined distance from the query, by signatures and aligned forms."""
+    fused: float
+    """Distance by signatures alone."""
+    verdict: dict[str, Any]
+    """How alike the query and the shape are, and why."""
+    evidence: dict[str, Any] | None
+    """What kind of match they are, if the search was asked to explain."""
+    rank_distance: float | None
+    """What results are ordered by if they are ranked on the graph of nearest neighbours."""
+
+
+class SearchResults(Sequence[Result]):
+    """The shapes nearest to a query, nearest first."""
+
+    def __init__(self, report: dict[str, Any], query: Surface | None, name: str, index: _canonform.Index) -> None:
+        self.report = report
+        """The answer that `canonform search --json` prints."""
+        self._results = [
+            Result(
+                **{key: found[key] for key in ("rank", "id", "label", "path", "distance", "fused", "verdict")},
+                evidence=found.get("evidence"),
+                rank_distance=found.get("rank_distance"),
+            )
+            for found in report["results"]
+        ]
+        self._query, self._name, self._index = query, name, index
+
+    @property
+    def predicted(self) -> dict[str, Any]:
+        """The class that the nearest shapes suggest: `label` (None if it is unknown), `votes`, `confidence`, `explanation`, ..."""
+        predicted: dict[str, Any] = self.report["predicted"]
+        return predicted
+
+    @property
+    def label(self) -> str | None:
+        """The predicted class; None if no shape is near enough."""
+        label = self.predicted["label"]
+        return None if label is None else str(label)
+
+    @overload
+    def __getitem__(self, i: int) -> Result: ...
+    @overload
+    def __getitem__(self, i: slice) -> list[Result]: ...
+    def __getitem__(self, i: int | slice) -> Result | list[Result]:
+        return self._results[i]
+
+    def __len__(self) -> int:
+        return len(self._results)
+
+    def to_pandas(self) -> pandas.DataFrame:
+        """One row for each result, with `rank` as the index."""
+        import pandas
+
+        rows = [
+            {
+                "rank": found.rank,
+                "id": found.id,
+                "label": found.label,
+                "distance": found.distance,
+                "fused": found.fused,
+                "verdict": found.verdict["kind"],
+                "path": found.path,
+            }
+            for found in self
+        ]
+        return pandas.DataFrame(rows, columns=["rank", "id", "label", "distance", "fused", "verdict", "path"]).set_index("rank")
+
+    def __repr__(self) -> str:
+        lines = [f"{found.rank:>3}  {found.id:<20} {found.label or '-':<12} {found.distance:.4f}" for found in self]
+        return "\n".join([f"SearchResults of {self._name}: {self.predicted['explanation']}", *lines])
+
+    def _repr_html_(self) -> str:
+        pictures = []
+        if self._query is not None:
+            pictures.append(_captioned(self._query, f"query: {self._name}"))
+        for found in self[:_PICTURED]:
+            try:
+                pictures.append(_captioned(Surface._of(self._index.surface(found.id)), f"{found.rank}. {found.id}"))
+            except CanonformError:
+                # The file may be gone, and the results are worth showing all the same.
+                pictures.append(_caption("", f"{found.rank}. {found.id}"))
+        strip = f'<div style="display:flex;gap:10px;flex-wrap:wrap">{"".join(pictures)}</div>'
+        rows = (
+            (str(f.rank), f.id, f.label or "-", f"{f.distance:.4f}", f.evidence["text"] if f.evidence else str(f.verdict["kind"]))
+            for f in self
+        )
+        head = ("", "shape", "class", "distance", "match")
+        return _html.box(f"class: {self.predicted['explanation']}", strip + _html.table(head, rows))
+
+
+def _captioned(surface: Surface, caption: str) -> str:
+    return _caption(_html.image(surface.picture(width=220, height=220), 110, caption), caption)
+
+
+def _caption(image: str, caption: str) -> str:
+    from html import escape
+
+    return f'<div style="text-align:center;max-width:120px">{image}<div style="font-size:11px">{escape(caption)}</div></div>'
+
+
+class Index:
+    """A searchable file of shapes.
+
+    `Index.build(folder, path)` makes one, `Index(path)` opens it. An index is one file; it finds shapes by their signatures and orders
+    them by their aligned forms. Other programs may search it at the same time, also while it is changed; methods that change it continue
+    to work with the new content.
+    """
+
+    def __init__(self, path: AnyPath) -> None:
+        self._inner = _canonform.Index.open(os.fspath(path))
+        self.build_report: dict[str, Any] | None = None
+        """What happened to each mesh when this object built or changed the index: the object that `canonform index build --json` prints."""
+
+    @classmethod
+    def open(cls, path: AnyPath) -> Index:
+        """Open an index; the same as `Index(path)`."""
+        return cls(path)
+
+    @classmethod
+    def build(
+        cls,
+        folder: AnyPath,
+        path: AnyPath,
+        *,
+        labels: Mapping[str, str] | AnyPath | None = None,
+        prune: bool = False,
+        shard: tuple[int, int] | None = None,
+        n: int = 100,
+        points: int = 1000,
+        size: bool = False,
+        method: str = "nmds",
+        geodesic: str = "fast-marching",
+        components: str = "largest",
+        weld: str | float = "seams",
+        seed: int = 0,
+        max_vertices: int | None = None,
+        timeout: float | None = None,
+        memory: int | str | None = None,
+        progress: Progress = False,
+    ) -> Index:
+        """Make a file the index of the meshes in a folder, and open it.
+
+        Only new and changed meshes are described. After an interruption, call it again: finished work is kept. Meshes that cannot be
+        described are left out and listed in `build_report["failed"]`.
+
+        Parameters
+        ----------
+        folder
+            Meshes, also in sub-folders. Classes are the names of the sub-folders, else the leading letters of the file names.
+        path
+            The index.
+        labels
+            Classes by name of the shape, or a file of lines `name,label`; shapes that it does not name have no class.
+        prune
+            Remove shapes of the index that did not come from this folder.
+        shard
+            (i, k) to index the i-th of k equal parts of the folder, counted from 1; `merge` joins them.
+        points
+            Number of points of each form to keep for alignment.
+        size
+            Whether to distinguish shapes by size; then all meshes need the same unit of length.
+        n, method, geodesic, seed
+            How forms are made, see `Surface.canonical_form`.
+        components, weld
+            How meshes are repaired, see `Surface`.
+        max_vertices, timeout, memory
+            Limits on each mesh; what exceeds them is left out.
+
+        Raises
+        ------
+        MeshError
+            If the folder has no meshes, or none of them can be described.
+        ShapeIndexError
+            If the file is not an index, or was made with other options.
+        """
+        settings = encoded(
+            n=n,
+            points=points,
+            size=size,
+            method=method,
+            geodesic=geodesic,
+            components=components,
+            weld=weld,
+            seed=seed,
+            max_vertices=max_vertices,
+            timeout=timeout,
+            memory=n_bytes(memory),
+        )
+        with shown(progress) as update, _label_file(labels) as label_file:
+            report = json.loads(
+                _canonform.Index.build(os.fspath(folder), os.fspath(path), label_file, prune, shard, settings, update)
+            )
+        if not os.path.exists(path):
+            from .errors import MeshError
+
+            first = report["failed"][0]["error"] if report["failed"] else "there are no meshes"
+            raise MeshError(f"no mesh of {os.fspath(folder)} could be described, so no index was written; the first: {first}")
+        index = cls(path)
+        index.build_report = report
+        return index
+
+    @classmethod
+    def merge(cls, indexes: Iterable[AnyPath], path: AnyPath, *, progress: Progress = False) -> Index:
+        """Merge indexes, for example those of shards, into one file, and open it."""
+        with shown(progress) as update:
+            report = json.loads(_canonform.merge_indexes([os.fspath(index) for index in indexes], os.fspath(path), update))
+        index = cls(path)
+        index.build_report = report
+        return index
+
+    def add(
+        self,
+        meshes: AnyPath | Iterable[AnyPath],
+        *,
+        label: str | None = None,
+        labels: Mapping[str, str] | AnyPath | None = None,
+        replace: bool = False,
+        max_vertices: int | None = None,
+        timeout: float | None = None,
+        memory: int | str | None = None,
+        progress: Progress = False,
+    ) -> dict[str, Any]:
+        """Add mesh files and folders of them, described with the options of the index. Returns what happened to each.
+
+        Parameters
+        ----------
+        label
+            The class of all of them. By default from their names, or from `labels`.
+        replace
+            Replace shapes that have the same name. Otherwise a shape of the same name with another content is an error, and nothing is
+            added.
+        """
+        if label is not None and labels is not None:
+            raise OptionError("label= has no effect with labels=; leave one of them out")
+        paths = [meshes] if isinstance(meshes, (str, os.PathLike)) else list(meshes)
+        settings = encoded(max_vertices=max_vertices, timeout=timeout, memory=n_bytes(memory))
+        with shown(progress) as update, _label_file(labels) as label_file:
+            report = _canonform.Index.add(
+                self.path, [os.fspath(path) for path in paths], label, label_file, replace, settings, update
+            )
+        self._reopen(json.loads(report))
+        return self.build_report or {}
+
+    def remove(self, ids: str | Iterable[str]) -> int:
+        """Remove shapes by name; none if one of the names is unknown. Returns how many shapes are left."""
+        left = _canonform.Index.remove(self.path, [ids] if isinstance(ids, str) else list(ids))
+        self._reopen(None)
+        return left
+
+    def _reopen(self, report: dict[str, Any] | None) -> None:
+        self._inner, self.build_report = _canonform.Index.open(self.path), report
+
+    def search(
+        self, query: Surface | AnyPath, k: int = 10, *, rank: str = "plain", explain: bool = False, exact: bool = False
+    ) -> SearchResults:
+        """Find the shapes nearest to a query.
+
+        Parameters
+        ----------
+        query
+            A surface, a mesh file, or the name of a shape of the index.
+        k
+            Number of results.
+        rank
+            "plain" orders results by distance, "graph" by distance and by the neighbours that query and shape have in common.
+        explain
+            Say what kind of match each result is, as `compare` does; reads the mesh files of the results.
+        exact
+            Compare the signatures of all shapes, even in a large index.
+        """
+        if isinstance(query, Surface):
+            name = query._name or "the query"
+            report = self._inner.search(query._inner, name, k, rank, explain, exact)
+            return SearchResults(json.loads(report), query, name, self._inner)
+        text = os.fspath(query)
+        if not os.path.exists(text) and text not in self:
+            from .errors import NoSuchShapeError
+
+            raise NoSuchShapeError(f"{text!r} is neither a file nor a shape of the index; Index.shapes() names its shapes")
+        name = os.path.basename(text) if os.path.exists(text) else text
+        report = self._inner.search(text, name, k, rank, explain, exact)
+        return SearchResults(json.loads(report), self._pictured(text), name, self._inner)
+
+    def _pictured(self, query: str) -> Surface | None:
+        try:
+            return Surface.read(query) if os.path.exists(query) else Surface._of(self._inner.surface(query))
+        except CanonformError:
+            return None
+
+    def classify(self, query: Surface | AnyPath, *, rank: str = "plain") -> str | None:
+        """The class of a query by the votes of the nearest shapes; None if no shape is near enough. `search` says why."""
+        return self.search(query, 0, rank=rank).label
+
+    def evaluate(
+        self,
+        *,
+        by: str = "fused",
+        k: int = 1,
+        rank: str = "plain",
+        labels: Mapping[str, str] | AnyPath | None = None,
+        progress: Progress = False,
+    ) -> dict[str, Any]:
+        """How well the index separates classes: the object that `canonform evaluate --json` prints, with `nn`, `ft`, `st`, `map`, ...
+
+        Parameters
+        ----------
+        by
+            "fused", or the kind of signatures that shapes are compared by, see `Surface.signature`.
+        k
+            Number of neighbours that vote on the class of a shape.
+        rank
+            "plain", or "graph" to score the ranking on the graph of nearest neighbours as well, under the key `graph`.
+        """
+        with shown(progress) as update, _label_file(labels) as label_file:
+            scores: dict[str, Any] = json.loads(self._inner.evaluate(by, k, rank, label_file, update))
+        return scores
+
+    @property
+    def path(self) -> str:
+        """The file."""
+        return os.fspath(self._inner.path)
+
+    def info(self) -> dict[str, Any]:
+        """Format, size, options and classes."""
+        info: dict[str, Any] = json.loads(self._inner.info())
+        return info
+
+    def shapes(self) -> list[ShapeEntry]:
+        """All shapes, by name."""
+        whole = lambda number: None if number is None else int(number)  # noqa: E731
+        return [
+            ShapeEntry(id, label, os.fspath(path), whole(vertices), whole(faces))
+            for id, label, path, vertices, faces in self._inner.shapes()
+        ]
+
+    def vectors(self) -> NDArray[np.float32]:
+        """The fused signatures of all shapes, in the order of `shapes`: shape (number of shapes, length)."""
+        return self._inner.vectors()
+
+    def vector(self, id: str) -> NDArray[np.float32]:
+        """The fused signature of one shape."""
+        return self._inner.vector(id)
+
+    def surface(self, id: str) -> Surface:
+        """The surface of a shape. Its mesh file must be where it was, and unchanged."""
+        return Surface._of(self._inner.surface(id), id)
+
+    def export(self, path: AnyPath) -> None:
+        """Write the index as lines of JSON, the same however it was built."""
+        self._inner.export(os.fspath(path))
+
+    def to_pandas(self) -> pandas.DataFrame:
+        """One row for each shape, with `id` as the index."""
+        import pandas
+
+        return pandas.DataFrame([vars(shape) for shape in self.shapes()]).set_index("id")
+
+    def __len__(self) -> int:
+        return self._inner.n_shapes
+
+    def __contains__(self, id: object) -> bool:
+        return isinstance(id, str) and self._inner.contains(id)
+
+    def __iter__(self) -> Iterator[str]:
+        return (shape.id for shape in self.shapes())
+
+    def __repr__(self) -> str:
+        return f"Index({self.path!r}, {len(self)} shapes)"
+
+    def _repr_html_(self) -> str:
+        info = self.info()
+        classes = info["classes"]
+        rows = [
+            ("shapes", f"{len(self):,}"),
+            ("classes", f"{len(classes)}: " + ", ".join(f"{label} {n}" for label, n in list(classes.items())[:20])),
+            ("unlabelled", str(info["unlabelled"])),
+            ("bytes", f"{info['n_bytes']:,}"),
+        ]
+        return _html.card(self.path, rows)
+
+
+class _label_file:  # noqa: N801
+    """The file of labels: the one given, or a temporary one with the labels given."""
+
+    def __init__(self, labels: Mapping[str, str] | AnyPath | None) -> None:
+        self._labels = labels
+        self._folder: TemporaryDirectory[str] | None = None
+
+    def __enter__(self) -> str | None:
+        if self._labels is None or isinstance(self._labels, (str, os.PathLike)):
+            return None if self._labels is None else os.fspath(self._labels)
+        self._folder = TemporaryDirectory()
+        path = os.path.join(self._folder.name, "labels.csv")
+        with open(path, "w", encoding="utf-8", newline="") as file:
+            for name, label in self._labels.items():
+                if any(c in f"{name}{label}" for c in ',\n\r"'):
+                    raise OptionError(f"labels={{{name!r}: {label!r}}} is not possible: a comma or quote in a name or class")
+                file.write(f"{name},{label}\n")
+        return path
+
+    def __exit__(self, *_: object) -> None:
+        if self._folder is not None:
+            self._folder.cleanup()

@@ -1,0 +1,412 @@
+"""Surfaces: distances, paths, samples, forms and signatures."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, TypeAlias, overload
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _canonform, _html
+from ._arrays import Floats, Ints, mesh_of
+from ._form import Form
+from ._settings import Progress, encoded, n_bytes, number_or_inf, shown
+
+Point: TypeAlias = int | np.integer[Any] | str
+"""A vertex by its number; a point of an edge, such as "17-42@0.3"; or of a face, such as "f8@2:1:1"."""
+
+
+def distance_methods() -> dict[str, str]:
+    """Methods that measure distances: names, and what they compute."""
+    return dict(_canonform.methods()[0])
+
+
+def embedding_methods() -> dict[str, str]:
+    """Methods that turn distances into coordinates: names, and what they compute."""
+    return dict(_canonform.methods()[1])
+
+
+class RepairReport(dict[str, Any]):
+    """What the repair of a mesh changed: the object `repair` that the command line prints, with the same keys.
+
+    `str(report)` says it in words.
+    """
+
+    def __init__(self, report: dict[str, Any], lines: list[str]) -> None:
+        super().__init__(report)
+        self.lines = lines
+        """One line for each kind of change; empty if nothing was changed."""
+
+    def __str__(self) -> str:
+        return "\n".join(self.lines) or "nothing to repair"
+
+
+@dataclass(frozen=True, repr=False)
+class Path:
+    """A shortest path along a surface."""
+
+    points: Floats
+    """Its points from start to end, joined by straight lines: shape (k, 3), in mesh units."""
+    at: list[str]
+    """The point of the mesh that each of them is, as `Point` writes them."""
+    along: Floats
+    """The distance of each from the start, along the path, in mesh units: shape (k,)."""
+    length: float
+    """Its length, in mesh units."""
+
+    def __len__(self) -> int:
+        return len(self.points)
+
+    def __array__(self, dtype: Any = None, copy: bool | None = None) -> NDArray[Any]:
+        return np.array(self.points, dtype=dtype, copy=True if copy is None else copy)
+
+    def __repr__(self) -> str:
+        return f"Path(length={self.length:.6g}, points={len(self)}, from {self.at[0]} to {self.at[-1]})"
+
+
+class Surface:
+    """A triangle mesh, repaired, with everything that was prepared on it.
+
+    Preparing a solver takes longer than one run of it, so it is kept: keep the surface, and call it as often as you like, from several
+    threads if you want.
+
+    Parameters
+    ----------
+    mesh
+        The vertices: an array of shape (n, 3), of any type of numbers, in any unit of length. Or a mesh of trimesh, meshio, PyVista or
+        Open3D; then leave out `faces`.
+    faces
+        The triangles: an array of shape (m, 3) of vertex numbers, counted from 0.
+    components
+        What happens to a mesh of several components: "largest" keeps the one of the largest area, "bridge" joins them by links, "error"
+        refuses the mesh.
+    weld
+        Which vertices are merged: "seams" merges those on boundaries that coincide or nearly do, "all" those in the same position, "none"
+        none, and a number those on boundaries within that distance, in mesh units.
+
+    Raises
+    ------
+    MeshError
+        If it is not a mesh of triangles with finite coordinates.
+
+    Examples
+    --------
+    >>> import canonform, numpy as np
+    >>> square = canonform.Surface(np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]), np.array([[0, 1, 2], [0, 2, 3]]))
+    >>> square.distances(0).round(6).tolist()
+    [0.0, 1.0, 1.414214, 1.0]
+    """
+
+    _inner: _canonform.Surface
+    _name: str
+
+    def __init__(
+        self,
+        mesh: ArrayLike | Any,
+        faces: ArrayLike | None = None,
+        *,
+        components: str = "largest",
+        weld: str | float = "seams",
+    ) -> None:
+        vertices, triangles = mesh_of(mesh, faces)
+        self._inner = _canonform.Surface(vertices, triangles, encoded(components=components, weld=weld))
+        self._name = ""
+
+    @classmethod
+    def read(cls, path: str | os.PathLike[str], *, components: str = "largest", weld: str | float = "seams") -> Surface:
+        """Read and repair a mesh file. The extension tells the format.
+
+        Raises `MissingFileError`, `FileError` and `MeshError`.
+        """
+        inner = _canonform.Surface.read(os.fspath(path), encoded(components=components, weld=weld))
+        return cls._of(inner, os.path.basename(os.fspath(path)))
+
+    @classmethod
+    def _of(cls, inner: _canonform.Surface, name: str = "") -> Surface:
+        surface = cls.__new__(cls)
+        surface._inner, surface._name = inner, name
+        return surface
+
+    @property
+    def n_vertices(self) -> int:
+        """Number of vertices of the input."""
+        return self._inner.n_vertices
+
+    @property
+    def n_faces(self) -> int:
+        """Number of faces of the input."""
+        return self._inner.n_faces
+
+    @property
+    def area(self) -> float:
+        """Area of the repaired surface, in squared mesh units."""
+        return self._inner.area
+
+    @cached_property
+    def vertices(self) -> Floats:
+        """The vertices of the input, shape (n, 3). Not writable."""
+        vertices = self._inner.vertices()
+        vertices.flags.writeable = False
+        return vertices
+
+    @cached_property
+    def faces(self) -> Ints:
+        """The faces of the input, shape (m, 3). Not writable."""
+        faces = self._inner.faces()
+        faces.flags.writeable = False
+        return faces
+
+    @cached_property
+    def repair_report(self) -> RepairReport:
+        """What the repair changed. Vertices that it dropped have infinite distances, and NaN as coordinates."""
+        report, lines = self._inner.repair_report()
+        return RepairReport(json.loads(report), lines)
+
+    def distances(
+        self,
+        sources: Point | Iterable[Point],
+        *,
+        method: str = "fast-marching",
+        update: str | None = None,
+        obtuse: str | None = None,
+        max_distance: float = np.inf,
+    ) -> Floats:
+        """Distances along the surface from the nearest of the sources to every vertex.
+
+        Parameters
+        ----------
+        sources
+            A vertex number, a point of an edge or face as text, or several of them.
+        method
+            One of `distance_methods()`: "fast-marching", "exact", "heat", "dijkstra", "bfs".
+        update, obtuse
+            Variants of fast marching: "point-source", "virtual-source" (most accurate) or "planar"; and "flip", "unfold" or "ignore" for
+            wide angles.
+        max_distance
+            Do not look farther than this, in mesh units; vertices beyond are infinitely far.
+
+        Returns
+        -------
+        ndarray of shape (n,)
+            In mesh units; infinite for vertices that the repair dropped.
+
+        Raises
+        ------
+        PointError
+            If the mesh has no such point, or the repair dropped it.
+        """
+        return self._inner.distances(_several(sources), method, update, obtuse, float(max_distance))
+
+    def distances_many(
+        self,
+        sources: Iterable[Point],
+        *,
+        method: str = "fast-marching",
+        update: str | None = None,
+        obtuse: str | None = None,
+        max_distance: float = np.inf,
+        progress: Progress = False,
+    ) -> Floats:
+        """Distances from each source on its own, computed in parallel. Row i equals `distances(sources[i])`.
+
+        Returns an array of shape (number of sources, n), in mesh units.
+        """
+        with shown(progress) as report:
+            return self._inner.distances_many(
+                _several(sources), method, update, obtuse, float(max_distance), report
+            )
+
+    @overload  # type: ignore[overload-overlap]
+    def path(self, a: Point, b: Point, *, method: str = ..., update: str | None = ..., obtuse: str | None = ...) -> Path: ...
+    @overload
+    def path(
+        self, a: Point, b: Sequence[Point] | Ints, *, method: str = ..., update: str | None = ..., obtuse: str | None = ...
+    ) -> list[Path]: ...
+    def path(
+        self,
+        a: Point,
+        b: Point | Sequence[Point] | Ints,
+        *,
+        method: str = "fast-marching",
+        update: str | None = None,
+        obtuse: str | None = None,
+    ) -> Path | list[Path]:
+        """The shortest path along the surface from a to b; one path for each point if b is a sequence of points.
+
+        The path crosses faces: it is straightened until it is locally shortest, so it may be shorter than the distance that an approximate
+        method states.
+
+        Raises `PointError`.
+        """
+        single = isinstance(b, (int, str, np.integer))
+        found = [Path(*path) for path in self._inner.paths(a, _several(b), method, update, obtuse)]
+        return found[0] if single else found
+
+    def farthest_points(
+        self,
+        n: int,
+        *,
+        first: int | None = None,
+        method: str = "fast-marching",
+        update: str | None = None,
+        obtuse: str | None = None,
+        progress: Progress = False,
+    ) -> Ints:
+        """Vertices spread evenly over the surface, each the farthest from those before it.
+
+        Parameters
+        ----------
+        n
+            How many; fewer if the surface has fewer vertices.
+        first
+            The first of them. By default, the vertex farthest from vertex 0, a tip of the surface.
+
+        Returns
+        -------
+        ndarray of shape (n,)
+            Vertex numbers of the input.
+        """
+        with shown(progress) as report:
+            return self._inner.farthest_points(n, first, method, update, obtuse, report)
+
+    def canonical_form(
+        self,
+        n: int | str = 100,
+        *,
+        method: str = "nmds",
+        dim: int = 3,
+        geodesic: str = "fast-marching",
+        update: str | None = None,
+        obtuse: str | None = None,
+        sampling: str | None = None,
+        first_sample: int | None = None,
+        regularization: str | None = None,
+        rank: int | None = None,
+        alpha: float | str | None = None,
+        sigma: float | str | None = None,
+        eigenvectors: int | None = None,
+        mu: float | None = None,
+        iterations: int | None = None,
+        tolerance: float | None = None,
+        seed: int = 0,
+        stress: str = "auto",
+        timeout: float | None = None,
+        memory: int | str | None = None,
+        progress: Progress = False,
+    ) -> Form:
+        """Embed the surface so that straight-line distances approximate those along it.
+
+        Parameters
+        ----------
+        n
+            Number of samples, or "auto" to take as many as needed.
+        method
+            One of `embedding_methods()`: "nmds", "landmark", "spectral", "fmds", "kpca", "mds", "smacof".
+        dim
+            Dimensions of the embedding.
+        geodesic, update, obtuse
+            How distances are measured, as in `distances`.
+        sampling
+            "farthest" (the default), "random", "min-variance" or "max-variance".
+        first_sample
+            A vertex. By default, farthest point sampling begins with the vertex farthest from vertex 0.
+        regularization, rank, alpha
+            How the matrix of the samples is inverted: "low-rank" keeps `rank` eigenvalues (by default half the samples), "cur" as many
+            columns, "rpi" damps small ones by `alpha`, and "none" keeps all.
+        sigma
+            Width of the kernel of "kpca": "mean", "median", "max" or a length in mesh units.
+        eigenvectors, mu
+            Eigenfunctions of "spectral", 300 by default, and the weight of the distances, 1000 by default.
+        iterations, tolerance
+            When "smacof" stops: 300 steps, or steps that reduce the stress by less than 1e-6.
+        seed
+            Of everything random.
+        stress
+            How the stress is found: "auto", "exact", "estimate" or "skip".
+        timeout, memory
+            Limits, in seconds and in bytes; memory may be text such as "2G".
+
+        Raises
+        ------
+        OptionError
+            If an option is not possible, or has no effect beside the others.
+        EmbeddingError, LimitError
+        """
+        settings = encoded(
+            n=n,
+            method=method,
+            dim=dim,
+            geodesic=geodesic,
+            update=update,
+            obtuse=obtuse,
+            sampling=sampling,
+            first_sample=first_sample,
+            regularization=regularization,
+            rank=rank,
+            alpha=alpha,
+            sigma=sigma,
+            eigenvectors=eigenvectors,
+            mu=number_or_inf(mu),
+            iterations=iterations,
+            tolerance=tolerance,
+            seed=seed,
+            stress=stress,
+            timeout=timeout,
+            memory=n_bytes(memory),
+        )
+        with shown(progress) as report:
+            return Form(self._inner.canonical_form(settings, report), self._name)
+
+    def signature(
+        self, kind: str = "fused", *, n: int = 100, size: bool = False, progress: Progress = False
+    ) -> NDArray[np.float32] | Floats:
+        """A vector that describes the shape regardless of pose, position, triangulation and, by default, size.
+
+        Parameters
+        ----------
+        kind
+            "fused" for all signatures as one vector, by which an index is searched: Euclidean distances between such vectors compare
+            shapes. Or one of "moments", "d2", "geodesic-spectrum", "shape-dna", "heat-kernel", "wave-kernel".
+        n
+            Number of samples.
+        size
+            Whether size counts; then all meshes need the same unit of length.
+
+        Returns
+        -------
+        ndarray
+            float32 for "fused", else float64. It is computed once and kept.
+        """
+        with shown(progress) as report:
+            return self._inner.signature(kind, encoded(n=n, size=size), report)
+
+    def picture(self, values: ArrayLike | None = None, *, width: int = 600, height: int = 600) -> bytes:
+        """A shaded picture of the surface as the bytes of a PNG file, coloured by values at its vertices if given."""
+        return _html.picture(self.vertices, self.faces, values, (width, height))
+
+    def __repr__(self) -> str:
+        name = f"{self._name!r}, " if self._name else ""
+        return f"Surface({name}{self.n_vertices} vertices, {self.n_faces} faces)"
+
+    def _repr_html_(self) -> str:
+        report = self.repair_report
+        rows = [
+            ("vertices, faces", f"{self.n_vertices:,}, {self.n_faces:,}"),
+            ("area", f"{self.area:.6g}"),
+            ("size", " x ".join(f"{side:.4g}" for side in np.ptp(self.vertices, axis=0))),
+            ("repair", str(report)),
+        ]
+        return _html.card(self._name or "Surface", rows, [_html.image(self.picture(width=440, height=440))])
+
+
+def _several(points: Any) -> list[Any]:
+    if isinstance(points, (int, str, np.integer)):
+        return [points]
+    if isinstance(points, np.ndarray):
+        points = points.ravel().tolist()
+    return list(points)

@@ -1,0 +1,109 @@
+"""Generated shapes: the same arguments give the same meshes on every machine. Nothing is downloaded."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+from . import _canonform, _html
+from ._arrays import Floats, Ints
+from ._settings import Progress, shown
+from ._surface import Surface
+from .errors import OptionError
+
+__all__ = ["Shape", "families", "generate", "write"]
+
+
+@dataclass(frozen=True, repr=False)
+class Shape:
+    """A generated mesh."""
+
+    name: str
+    """Family and number, such as "cat0"."""
+    label: str
+    """Family, such as "cat"."""
+    vertices: Floats
+    """Shape (n, 3)."""
+    faces: Ints
+    """Shape (m, 3)."""
+
+    def surface(self) -> Surface:
+        """The mesh as a surface. The same object every time, so that what is prepared on it is kept."""
+        kept = self.__dict__.get("_surface")
+        if kept is None:
+            kept = Surface(self.vertices, self.faces)
+            kept._name = self.name
+            self.__dict__["_surface"] = kept
+        return kept
+
+    def __repr__(self) -> str:
+        return f"Shape({self.name!r}, {len(self.vertices)} vertices, {len(self.faces)} faces)"
+
+    def _repr_html_(self) -> str:
+        picture = _html.picture(self.vertices, self.faces, None, (440, 440))
+        return _html.card(self.name, [("vertices, faces", f"{len(self.vertices):,}, {len(self.faces):,}")], [_html.image(picture)])
+
+
+def families() -> dict[str, int | None]:
+    """Families, and how many shapes each has; None for creatures, which have as many poses as you like."""
+    articulated, plans = _canonform.families()
+    return {**dict(articulated), **dict.fromkeys(plans)}
+
+
+def generate(
+    family: str | Iterable[str] = "all",
+    *,
+    poses: int | Sequence[int] | None = None,
+    n_vertices: int = 3400,
+    seed: int = 1,
+    progress: Progress = False,
+) -> list[Shape]:
+    """Generate labelled shapes in different poses.
+
+    Parameters
+    ----------
+    family
+        One or more of `families()`. "all" stands for cats, centaurs and davids: thirty shapes, as in Fig. 4 of the paper.
+    poses
+        How many poses of each family, or which. By default all of them, and 8 of a creature.
+    n_vertices
+        Vertices of every shape, 1,000 to 1,000,000.
+    seed
+        Of bodies, poses and triangulations.
+
+    Raises
+    ------
+    OptionError
+        If there is no such family, pose or number of vertices.
+    """
+    articulated, plans = _canonform.families()
+    known = dict(articulated)
+    names = list(known) if family == "all" else [family] if isinstance(family, str) else list(family)
+    made: list[Shape] = []
+    with shown(progress) as update:
+        for name in names:
+            if name not in known and name not in plans:
+                raise OptionError(f"family={name!r} is not possible: use \"all\", {', '.join(map(repr, families()))}")
+            count = known.get(name, 8)
+            wanted = range(count) if poses is None else range(poses) if isinstance(poses, int) else list(poses)
+            for pose in wanted:
+                if pose < 0 or (name in known and pose >= count):
+                    raise OptionError(f"poses={pose} is not possible: {name} has the poses 0 to {count - 1}")
+            if name in known:
+                shapes = [(list(known).index(name), pose) for pose in wanted]
+                found = _canonform.generate(shapes, n_vertices, seed, update)
+            else:
+                found = _canonform.creatures([(plans.index(name), pose) for pose in wanted], n_vertices, seed, update)
+            made.extend(Shape(*shape) for shape in found)
+    return made
+
+
+def write(shapes: Iterable[Shape], folder: str | os.PathLike[str], *, format: str = "off") -> list[str]:
+    """Write shapes into a folder, one file each, and return their paths."""
+    os.makedirs(folder, exist_ok=True)
+    paths = []
+    for shape in shapes:
+        paths.append(os.path.join(os.fspath(folder), f"{shape.name}.{format}"))
+        _canonform.write(shape.vertices, shape.faces, paths[-1])
+    return paths

@@ -1,0 +1,75 @@
+//! Alignment and comparison of two shapes.
+
+use canonform::compare_meshes;
+use canonform::descriptors::{FormMatch, Reflections, ShapeMetric, match_forms};
+use numpy::{PyArray1, PyArray2};
+use pyo3::prelude::*;
+
+use crate::arrays;
+use crate::form::Form;
+use crate::run::{run, run_alone};
+use crate::settings::Settings;
+use crate::surface::{Surface, json};
+
+/// The rigid motion that takes one form onto another.
+#[pyclass(frozen, module = "canonform._canonform")]
+pub(crate) struct Alignment(FormMatch);
+
+#[pymethods]
+impl Alignment {
+    fn rotation<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let rotation = self.0.alignment.rotation.transpose();
+        arrays::matrix(py, rotation.as_slice().to_vec(), [3, 3])
+    }
+
+    fn translation<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        arrays::vector(py, self.0.alignment.translation.as_slice().to_vec())
+    }
+
+    #[getter]
+    fn reflected(&self) -> bool {
+        self.0.alignment.reflected
+    }
+
+    #[getter]
+    fn rms(&self) -> f64 {
+        self.0.rms
+    }
+
+    #[getter]
+    fn hausdorff95(&self) -> f64 {
+        self.0.hausdorff95
+    }
+}
+
+/// Aligns two forms in mesh units.
+#[pyfunction]
+pub(crate) fn align(py: Python<'_>, a: &Form, b: &Form, reflections: bool) -> PyResult<Alignment> {
+    let reflections = if reflections { Reflections::Allow } else { Reflections::Forbid };
+    run_alone(py, None, |_| Ok(Alignment(match_forms(&a.prepared()?, &b.prepared()?, reflections))))
+}
+
+/// The comparison of two surfaces as the JSON of `canonform compare`, and the residuals of the vertices of both repaired
+/// meshes.
+#[pyfunction]
+pub(crate) fn compare<'py>(
+    py: Python<'py>,
+    a: &Surface,
+    b: &Surface,
+    names: [String; 2],
+    settings: &str,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<(String, Bound<'py, PyArray1<f64>>)> {
+    let settings = Settings::parse(settings)?;
+    let metric = ShapeMetric { distance: settings.distance()? };
+    let [of_a, of_b] = [settings.form(a.inner.repair)?, settings.form(b.inner.repair)?];
+    let (found, residuals) = run(py, &settings.budget()?, progress.as_ref(), |observer| {
+        let sides = [a.compared(&of_a, observer)?, b.compared(&of_b, observer)?];
+        let mut found = compare_meshes(metric, [&sides[0], &sides[1]])?;
+        let [name_a, name_b] = &names;
+        found.evidence = found.evidence.named(name_a, name_b);
+        let residuals = a.inner.in_input_order(&found.overlay.residuals[0], f64::NAN);
+        Ok((found, residuals))
+    })?;
+    Ok((json(&found), arrays::vector(py, residuals)))
+}

@@ -1,0 +1,76 @@
+//! Generated shapes.
+
+use ::datasets::{
+    ArticulatedOptions, CreatureOptions, DatasetError, Family, LabeledShape, articulated_shape, creature,
+    creature_plans,
+};
+use numpy::PyArray2;
+use pyo3::prelude::*;
+use rayon::prelude::*;
+
+use crate::arrays;
+use crate::error::of_dataset;
+use crate::run::run_alone;
+
+/// A shape: name, class, vertices and faces.
+type Generated<'py> = (String, String, Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<i64>>);
+
+/// The families of articulated shapes, each with its number of shapes, and the plans of creatures.
+#[pyfunction]
+pub(crate) fn families() -> (Vec<(&'static str, usize)>, Vec<&'static str>) {
+    (Family::all().map(|family| (family.name(), family.n_shapes())).to_vec(), creature_plans())
+}
+
+/// Shapes of one of the articulated families, by pose.
+#[pyfunction]
+pub(crate) fn generate<'py>(
+    py: Python<'py>,
+    shapes: Vec<(usize, usize)>,
+    n_vertices: usize,
+    seed: u64,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<Vec<Generated<'py>>> {
+    let options = ArticulatedOptions { seed, n_vertices };
+    options.validate().map_err(|fault| of_dataset(&fault))?;
+    let families = Family::all();
+    made(py, &shapes, progress, |(family, pose)| articulated_shape(families[family], pose, &options))
+}
+
+/// Creatures, by family and pose.
+#[pyfunction]
+pub(crate) fn creatures<'py>(
+    py: Python<'py>,
+    shapes: Vec<(usize, usize)>,
+    n_vertices: usize,
+    seed: u64,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<Vec<Generated<'py>>> {
+    let n_families = shapes.iter().map(|(family, _)| family + 1).max().unwrap_or(0);
+    let n_poses = shapes.iter().map(|(_, pose)| pose + 1).max().unwrap_or(0);
+    let options = CreatureOptions { seed, n_families, n_poses, n_vertices };
+    made(py, &shapes, progress, |(family, pose)| creature(family, pose, &options))
+}
+
+fn made<'py>(
+    py: Python<'py>,
+    shapes: &[(usize, usize)],
+    progress: Option<Py<PyAny>>,
+    make: impl Fn((usize, usize)) -> Result<LabeledShape, DatasetError> + Sync,
+) -> PyResult<Vec<Generated<'py>>> {
+    let made = run_alone(py, progress.as_ref(), |observer| {
+        observer.begin("shapes", shapes.len());
+        let of_shape = |shape: &(usize, usize)| {
+            // Generators have no budget.
+            observer.budget().check()?;
+            let made = make(*shape);
+            observer.step();
+            Ok(made)
+        };
+        shapes.par_iter().map(of_shape).collect::<Result<Vec<_>, canonform::Error>>()
+    })?;
+    let arrays = |shape: Result<LabeledShape, DatasetError>| {
+        let LabeledShape { name, label, mesh, .. } = shape.map_err(|fault| of_dataset(&fault))?;
+        Ok((name, label, arrays::positions(py, &mesh.positions)?, arrays::faces(py, &mesh.faces)?))
+    };
+    made.into_iter().map(arrays).collect()
+}

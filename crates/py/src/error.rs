@@ -1,0 +1,149 @@
+//! Library errors as Python exceptions, with remedies as keyword arguments. No other place words a remedy.
+
+use ::index::{ExportError, IndexError};
+use budget::Exceeded;
+use canonform::descriptors::DescriptorError;
+use canonform::{Error, Remedy};
+use datasets::DatasetError;
+use files::FileError;
+use mesh::MeshError;
+use pyo3::prelude::*;
+use pyo3::sync::PyOnceLock;
+use pyo3::types::PyModule;
+
+/// The exceptions of `canonform.errors`.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Exception {
+    Mesh,
+    Option,
+    Point,
+    Embedding,
+    Limit,
+    OutOfMemory,
+    OutOfTime,
+    File,
+    MissingFile,
+    Index,
+    NoSuchShape,
+    Canonform,
+}
+
+impl Exception {
+    fn name(self) -> &'static str {
+        match self {
+            Self::Mesh => "MeshError",
+            Self::Option => "OptionError",
+            Self::Point => "PointError",
+            Self::Embedding => "EmbeddingError",
+            Self::Limit => "LimitError",
+            Self::OutOfMemory => "MemoryLimitError",
+            Self::OutOfTime => "TimeLimitError",
+            Self::File => "FileError",
+            Self::MissingFile => "MissingFileError",
+            Self::Index => "ShapeIndexError",
+            Self::NoSuchShape => "NoSuchShapeError",
+            Self::Canonform => "CanonformError",
+        }
+    }
+
+    /// The exception with this message.
+    pub(crate) fn with(self, message: &str) -> PyErr {
+        Python::attach(|py| {
+            static MODULE: PyOnceLock<Py<PyModule>> = PyOnceLock::new();
+            let import = || Ok::<_, PyErr>(py.import("canonform.errors")?.unbind());
+            let raised = MODULE.get_or_try_init(py, import).and_then(|module| {
+                Ok(PyErr::from_value(module.bind(py).getattr(self.name())?.call1((message,))?))
+            });
+            raised.unwrap_or_else(|fault| fault)
+        })
+    }
+
+    fn of(fault: &Error) -> Self {
+        match fault {
+            Error::Mesh(MeshError::Io(file)) | Error::File(file) => Self::of_file(file),
+            Error::Mesh(_) | Error::NoShapes { .. } => Self::Mesh,
+            Error::Exceeded(Exceeded::Memory { .. } | Exceeded::Allocation { .. })
+            | Error::MemoryTooSmall { .. }
+            | Error::EmbeddingTooLarge { .. }
+            | Error::AllPairsTooLarge { .. }
+            | Error::TooManyShapes { .. } => Self::OutOfMemory,
+            Error::Exceeded(Exceeded::Time { .. }) => Self::OutOfTime,
+            Error::Exceeded(_) => Self::Limit,
+            Error::NoSuchPoint { .. } | Error::DroppedPoint { .. } | Error::NoPath { .. } => Self::Point,
+            Error::BadDescription { .. } | Error::NoSuchShard { .. } => Self::Option,
+            Error::Descriptor(DescriptorError::UnknownSignature { .. }) => Self::Option,
+            Error::Index(IndexError::NoSuchShape { .. }) => Self::NoSuchShape,
+            Error::Index(IndexError::Io { source, .. }) if source.kind() == std::io::ErrorKind::NotFound => {
+                Self::MissingFile
+            }
+            Error::MeshGone { .. } => Self::MissingFile,
+            Error::Index(_)
+            | Error::UnknownOptions { .. }
+            | Error::AlreadyThere { .. }
+            | Error::MeshChanged { .. } => Self::Index,
+            Error::Geodesic(_)
+            | Error::Linalg(_)
+            | Error::Nmds(_)
+            | Error::Descriptor(_)
+            | Error::Retrieval(_) => Self::Embedding,
+            _ => Self::Canonform,
+        }
+    }
+
+    fn of_file(fault: &FileError) -> Self {
+        match fault.source.kind() {
+            std::io::ErrorKind::NotFound => Self::MissingFile,
+            _ => Self::File,
+        }
+    }
+}
+
+fn words(remedy: Remedy) -> &'static str {
+    match remedy {
+        Remedy::KeepLargestOrBridge => "pass components=\"largest\" or components=\"bridge\"",
+        Remedy::BridgeComponents => "to keep all components, pass components=\"bridge\"",
+        Remedy::BridgeOrWeld => {
+            "pass components=\"bridge\" to keep all components, or weld=TOLERANCE to close gaps that wide"
+        }
+        Remedy::UseThreeDimensions => "leave out dim=",
+        Remedy::UseFastMarching => "use method=\"fast-marching\" (geodesic=\"fast-marching\" for a form)",
+        Remedy::UseNystrom => "use method=\"nmds\", which needs only a few columns",
+        Remedy::RaiseMemory => "raise memory=",
+        Remedy::RaiseTimeLimit => "raise timeout=",
+        Remedy::RaiseMaxDistance => "choose another target, or raise max_distance=",
+        Remedy::GiveLabels => "give classes with labels=",
+        Remedy::ReplaceShape => "rename the new shape, remove the old one, or pass replace=True",
+        Remedy::RestoreMesh => {
+            "restore the file, move the index back to the place where it was built, or build the index again"
+        }
+        Remedy::BuildIndexAgain => "restore the index from a copy, or build it again with Index.build",
+        Remedy::AddGraph => {
+            "call Index.build with the same folder and file again, which describes no shape twice, or pass rank=\"plain\""
+        }
+        Remedy::ListShapes => "Index.shapes() names its shapes",
+        Remedy::EvaluateShard => "evaluate one shard at a time",
+        _ => "see the documentation",
+    }
+}
+
+/// A message with its remedy as keyword arguments.
+pub(crate) fn with_remedy(message: String, remedy: Option<Remedy>) -> String {
+    remedy.map_or(message.clone(), |remedy| format!("{message}; {}", words(remedy)))
+}
+
+/// An error of the library as the exception that Python raises.
+pub(crate) fn to_python(fault: &Error) -> PyErr {
+    Exception::of(fault).with(&with_remedy(fault.to_string(), fault.remedy()))
+}
+
+pub(crate) fn of_dataset(fault: &DatasetError) -> PyErr {
+    Exception::Option.with(&fault.to_string())
+}
+
+/// An export that failed.
+pub(crate) fn of_export(fault: ExportError) -> PyErr {
+    match fault {
+        ExportError::Index(fault) => to_python(&fault.into()),
+        ExportError::Write(fault) => fault.into(),
+    }
+}

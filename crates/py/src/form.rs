@@ -1,0 +1,96 @@
+//! Embedded surfaces.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+
+use ::surface::VertexId;
+use canonform::Embedded;
+use canonform::descriptors::{CanonicalForm, PreparedForm};
+use mesh::TriMesh;
+use numpy::{PyArray1, PyArray2};
+use pyo3::prelude::*;
+
+use crate::arrays;
+use crate::error::{Exception, to_python};
+use crate::run::run_alone;
+use crate::surface::json;
+
+/// An embedding of a surface.
+#[pyclass(frozen, module = "canonform._canonform")]
+pub(crate) struct Form {
+    pub(crate) surface: Arc<canonform::Surface>,
+    pub(crate) embedded: Embedded,
+}
+
+impl Form {
+    /// The form, weighted by area.
+    pub(crate) fn weighted(&self) -> Result<CanonicalForm, canonform::Error> {
+        self.embedded.form(&self.surface)
+    }
+
+    /// The form, ready to be aligned.
+    pub(crate) fn prepared(&self) -> Result<PreparedForm, canonform::Error> {
+        Ok(PreparedForm::new(&self.weighted()?)?)
+    }
+
+    /// The faces of the input with the coordinates of the form, if there are three.
+    fn to_mesh(&self) -> PyResult<TriMesh> {
+        let coords = &self.embedded.embedding.coords;
+        if coords.ncols() != 3 {
+            let message = format!("a mesh has 3 dimensions, not {}; leave out dim=", coords.ncols());
+            return Err(Exception::Embedding.with(&message));
+        }
+        let points: Vec<_> = coords.row_iter().map(|row| [row[0], row[1], row[2]].into()).collect();
+        Ok(self.surface.with_positions(&points))
+    }
+}
+
+#[pymethods]
+impl Form {
+    /// Coordinates in the order of the input, NaN for vertices that the repair dropped.
+    fn points<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let coords = &self.embedded.embedding.coords;
+        let map = &self.surface.repaired.input_to_repaired;
+        let rows = map.iter().map(|vertex| vertex.map(VertexId::index));
+        arrays::matrix(py, arrays::picked_rows(coords, rows), [map.len(), coords.ncols()])
+    }
+
+    /// The faces of the input.
+    fn faces<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<i64>>> {
+        arrays::faces(py, &self.surface.input_faces)
+    }
+
+    fn eigenvalues<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        arrays::vector(py, self.embedded.embedding.eigenvalues.clone())
+    }
+
+    /// Distances from the samples to all vertices of the input, one row per sample.
+    fn distances<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let known = &self.embedded.distances;
+        let (n, p) = (known.n_landmarks(), self.surface.n_input_vertices());
+        let rows = run_alone(py, None, |_| {
+            let mut rows = Vec::with_capacity(n * p);
+            for landmark in 0..n {
+                rows.extend(self.surface.in_input_order(&known.column(landmark)?, f64::INFINITY));
+            }
+            Ok(rows)
+        })?;
+        arrays::matrix(py, rows, [n, p])
+    }
+
+    /// Facts about the embedding, as the JSON of `canonform embed`.
+    fn report(&self) -> String {
+        json(&self.embedded.report)
+    }
+
+    /// The options that it was made with, as JSON.
+    fn options(&self) -> String {
+        json(&self.embedded.options)
+    }
+
+    /// Writes the form as a mesh.
+    fn write(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
+        let mesh = self.to_mesh()?;
+        py.detach(|| mesh::io::write(&path, &mesh)).map_err(|fault| to_python(&fault.into()))
+    }
+}

@@ -1,0 +1,334 @@
+//! Indexes of shape collections.
+
+use std::collections::BTreeMap;
+use std::io::BufWriter;
+use std::path::PathBuf;
+
+use ::index::{ExportError, SearchMode, ShapeEntry};
+use canonform::descriptors::DescriptorError;
+use canonform::{
+    BuildOptions, Elsewhere, EvaluateOptions, Explain, Inputs, LabelFile, Measure, MeshGeometry, Query,
+    RankBy, SearchOptions, SearchReport, ShapeSearch, Shard, add_to_index, build_index, content_hash,
+    evaluate_index, mesh_path, remove_from_index,
+};
+use mesh::RepairOptions;
+use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods};
+use pyo3::prelude::*;
+use serde::Serialize;
+
+use crate::error::{Exception, of_export, to_python, with_remedy};
+use crate::run::run_alone;
+use crate::settings::Settings;
+use crate::surface::{Surface, json};
+
+/// An index that is open for searches.
+#[pyclass(frozen, module = "canonform._canonform")]
+pub(crate) struct Index {
+    path: PathBuf,
+    search: ShapeSearch,
+}
+
+#[derive(Serialize)]
+struct Info<'a> {
+    format: u32,
+    n_shapes: usize,
+    n_bytes: u64,
+    options: &'a canonform::DescribeOptions,
+    classes: BTreeMap<String, u64>,
+    /// Shapes without a class.
+    unlabelled: u64,
+}
+
+/// What a mesh is, or which shape of the index.
+#[derive(FromPyObject)]
+enum Wanted<'py> {
+    Surface(Bound<'py, Surface>),
+    Text(PathBuf),
+}
+
+/// Name, class, path, and numbers of vertices and faces of a shape.
+type Entry = (String, String, PathBuf, Option<f64>, Option<f64>);
+
+fn rank_by(rank: &str) -> PyResult<RankBy> {
+    match rank {
+        "plain" => Ok(RankBy::Plain),
+        "graph" => Ok(RankBy::Graph),
+        _ => Err(Exception::Option.with(&format!("rank={rank:?} is not possible: use \"plain\", \"graph\""))),
+    }
+}
+
+/// Reads a label file.
+fn labels_of(labels: Option<PathBuf>) -> PyResult<Option<LabelFile>> {
+    labels.map(|path| LabelFile::read(&path)).transpose().map_err(|fault| to_python(&fault))
+}
+
+/// The report on a build, with the remedies of failures in words.
+fn report_of(mut report: canonform::BuildReport) -> String {
+    for failure in &mut report.failed {
+        failure.error = with_remedy(std::mem::take(&mut failure.error), failure.remedy);
+    }
+    json(&report)
+}
+
+#[pymethods]
+impl Index {
+    #[staticmethod]
+    fn open(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
+        run_alone(py, None, |_| {
+            let search = ShapeSearch::open(&path)?;
+            Ok(Self { path: path.clone(), search })
+        })
+    }
+
+    /// Makes a file the index of the meshes in a folder; returns the report as JSON.
+    #[staticmethod]
+    #[expect(clippy::too_many_arguments, reason = "keyword arguments")]
+    fn build(
+        py: Python<'_>,
+        folder: PathBuf,
+        path: PathBuf,
+        labels: Option<PathBuf>,
+        prune: bool,
+        shard: Option<(usize, usize)>,
+        settings: &str,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<String> {
+        let settings = Settings::parse(settings)?;
+        let describe = settings.describe(settings.repair()?)?;
+        let labels = labels_of(labels)?;
+        let shard = shard.map(|(i, n)| Shard::new(i, n)).transpose().map_err(|fault| to_python(&fault))?;
+        let options = BuildOptions {
+            labels: labels.as_ref(),
+            shard,
+            elsewhere: if prune { Elsewhere::Prune } else { Elsewhere::Keep },
+            limits: settings.limits()?,
+            ..BuildOptions::new(&describe)
+        };
+        let built =
+            run_alone(py, progress.as_ref(), |observer| build_index(&folder, &path, &options, observer))?;
+        Ok(report_of(built))
+    }
+
+    /// Adds meshes and folders of them to the index at a path; returns the report as JSON.
+    #[staticmethod]
+    #[expect(clippy::too_many_arguments, reason = "keyword arguments")]
+    fn add(
+        py: Python<'_>,
+        path: PathBuf,
+        meshes: Vec<PathBuf>,
+        label: Option<String>,
+        labels: Option<PathBuf>,
+        replace: bool,
+        settings: &str,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<String> {
+        let labels = labels_of(labels)?;
+        let limits = Settings::parse(settings)?.limits()?;
+        let inputs = Inputs { paths: &meshes, labels: labels.as_ref(), label: label.as_deref(), limits };
+        let added =
+            run_alone(py, progress.as_ref(), |observer| add_to_index(&path, &inputs, replace, observer))?;
+        Ok(report_of(added))
+    }
+
+    /// Removes shapes from the index at a path by name; returns how many are left.
+    #[staticmethod]
+    fn remove(py: Python<'_>, path: PathBuf, ids: Vec<String>) -> PyResult<usize> {
+        run_alone(py, None, |_| remove_from_index(&path, &ids))
+    }
+
+    /// Scores how well the classes are separated; returns the scores as JSON.
+    #[pyo3(signature = (by, k, rank, labels, progress))]
+    fn evaluate(
+        &self,
+        py: Python<'_>,
+        by: &str,
+        k: usize,
+        rank: &str,
+        labels: Option<PathBuf>,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<String> {
+        let measure = match by {
+            "fused" => Measure::Fused,
+            kind => Measure::Signature(
+                kind.parse().map_err(|fault: DescriptorError| Exception::Option.with(&fault.to_string()))?,
+            ),
+        };
+        let labels = labels_of(labels)?;
+        let options = EvaluateOptions { measure, labels: labels.as_ref(), knn_k: k, rank_by: rank_by(rank)? };
+        let scores =
+            run_alone(py, progress.as_ref(), |observer| evaluate_index(&self.path, &options, observer))?;
+        Ok(json(&scores))
+    }
+
+    /// Finds the shapes nearest to a surface, a mesh file or a shape of the index; returns the report as JSON.
+    #[expect(clippy::too_many_arguments, reason = "keyword arguments")]
+    fn search(
+        &self,
+        py: Python<'_>,
+        query: Wanted<'_>,
+        name: &str,
+        k: usize,
+        rank: &str,
+        explain: bool,
+        exact: bool,
+    ) -> PyResult<String> {
+        let options = SearchOptions {
+            k,
+            mode: if exact { SearchMode::Exact } else { SearchMode::Auto },
+            explain: if explain { Explain::Kind } else { Explain::No },
+            rank_by: rank_by(rank)?,
+        };
+        let surface = match &query {
+            Wanted::Surface(surface) => Some(surface.get()),
+            Wanted::Text(_) => None,
+        };
+        let path = match &query {
+            Wanted::Surface(_) => None,
+            Wanted::Text(path) => Some(path.clone()),
+        };
+        let (search, describe) = (&self.search, self.search.describe_options());
+        let mut report = run_alone(py, None, |observer| {
+            let budget = observer.budget();
+            if let Some(surface) = surface {
+                // A surface that was repaired in another way is repaired again.
+                if surface.inner.repair != describe.form.repair {
+                    return search.search_named_within(
+                        &surface.mesh,
+                        name,
+                        surface.content,
+                        &options,
+                        &budget,
+                    );
+                }
+                let geometry = explain.then(|| MeshGeometry::new(&surface.mesh, surface.content)).flatten();
+                let query = Query { name, content: surface.content, geometry: geometry.as_ref() };
+                let described = surface.described(describe, &budget)?;
+                return search.search_query_within(&described, &query, &options, &budget);
+            }
+            let path = path.as_deref().unwrap_or(std::path::Path::new(""));
+            // As on the command line, a file goes before a shape of the same name.
+            let id =
+                path.to_str().filter(|id| !path.exists() && search.index().contains(id).unwrap_or(false));
+            if let Some(id) = id {
+                return search.search_shape(id, &options);
+            }
+            let mesh = mesh::io::read(path)?;
+            let content = explain.then(|| content_hash(path)).transpose()?;
+            search.search_named_within(&mesh, name, content, &options, &budget)
+        })?;
+        self.place_meshes(&mut report);
+        Ok(json(&report))
+    }
+
+    #[getter]
+    fn path(&self) -> PathBuf {
+        self.path.clone()
+    }
+
+    #[getter]
+    fn n_shapes(&self) -> usize {
+        self.search.index().len()
+    }
+
+    fn contains(&self, id: &str) -> PyResult<bool> {
+        self.search.index().contains(id).map_err(|fault| to_python(&fault.into()))
+    }
+
+    /// What the index holds, as JSON.
+    fn info(&self) -> PyResult<String> {
+        let index = self.search.index();
+        let classes = index.classes().map_err(|fault| to_python(&fault.into()))?;
+        let (format, n_shapes, n_bytes) = (index.format(), index.len(), index.n_bytes());
+        let unlabelled = n_shapes as u64 - classes.values().sum::<u64>();
+        let options = self.search.describe_options();
+        Ok(json(&Info { format, n_shapes, n_bytes, options, classes, unlabelled }))
+    }
+
+    /// Name, class, path and numbers of vertices and faces of all shapes.
+    fn shapes(&self, py: Python<'_>) -> PyResult<Vec<Entry>> {
+        run_alone(py, None, |_| {
+            let listed = |(id, entry): (String, ShapeEntry)| {
+                let (vertices, faces) = (entry.fact("vertices"), entry.fact("faces"));
+                (id, entry.label, mesh_path(&self.path, &entry.path), vertices, faces)
+            };
+            Ok(self.search.index().entries()?.into_iter().map(listed).collect())
+        })
+    }
+
+    /// The fused vectors of all shapes, in the order of `shapes`.
+    fn vectors<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f32>>> {
+        let index = self.search.index();
+        let (flat, length) = run_alone(py, None, |_| {
+            let (mut flat, mut length) = (Vec::new(), 0);
+            index.each(|shape| {
+                length = shape.vectors.fused.len();
+                flat.extend(shape.vectors.fused);
+                Ok::<(), ::index::IndexError>(())
+            })?;
+            Ok((flat, length))
+        })?;
+        flat.into_pyarray(py).reshape([index.len(), length])
+    }
+
+    /// The fused vector of one shape.
+    fn vector<'py>(&self, py: Python<'py>, id: &str) -> PyResult<Bound<'py, PyArray1<f32>>> {
+        let vectors = self.search.index().vectors(id).map_err(|fault| to_python(&fault.into()))?;
+        Ok(vectors.fused.into_pyarray(py))
+    }
+
+    /// The surface of the mesh of a shape, repaired as the index says.
+    fn surface(&self, py: Python<'_>, id: &str) -> PyResult<Surface> {
+        let repair: RepairOptions = self.search.describe_options().form.repair;
+        run_alone(py, None, |observer| {
+            let mesh = self.search.mesh(id)?;
+            let content = self.search.index().entry(id)?.content;
+            let inner = canonform::Surface::within(&mesh, &repair, &observer.budget())?;
+            Ok(Surface::of(mesh, inner, Some(content)))
+        })
+    }
+
+    /// Writes the index as lines of JSON.
+    fn export(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
+        py.detach(|| {
+            let mut unreadable = None;
+            let written = files::write_atomically(&path, |out| {
+                let mut out = BufWriter::new(out);
+                match self.search.index().export(&mut out) {
+                    Err(ExportError::Index(fault)) => {
+                        unreadable = Some(ExportError::Index(fault));
+                        Err(std::io::Error::other("the index cannot be read"))
+                    }
+                    Err(ExportError::Write(fault)) => Err(fault),
+                    Ok(()) => Ok(()),
+                }
+            });
+            match unreadable {
+                Some(fault) => Err(of_export(fault)),
+                None => written.map_err(|fault| to_python(&fault.into())),
+            }
+        })
+    }
+}
+
+impl Index {
+    /// Replaces the paths that the index states by those of the files.
+    fn place_meshes(&self, report: &mut SearchReport) {
+        let components = report.components.iter_mut().filter_map(|part| part.nearest.as_mut());
+        for result in report.results.iter_mut().chain(components).chain(&mut report.wholes) {
+            result.path = mesh_path(&self.path, &result.path).to_string_lossy().into_owned();
+        }
+    }
+}
+
+/// Merges indexes into one file; returns the report as JSON.
+#[pyfunction]
+pub(crate) fn merge_indexes(
+    py: Python<'_>,
+    inputs: Vec<PathBuf>,
+    path: PathBuf,
+    progress: Option<Py<PyAny>>,
+) -> PyResult<String> {
+    let merged =
+        run_alone(py, progress.as_ref(), |observer| canonform::merge_indexes(&inputs, &path, observer))?;
+    Ok(json(&merged))
+}

@@ -1,0 +1,49 @@
+//! The Rust half of the Python package `canonform`: thin bindings of the crate `canonform`.
+//!
+//! ```text
+//! canonform (Python: arrays of any kind, keyword arguments, pictures) -> _canonform (here) -> canonform (Rust)
+//! ```
+//!
+//! * Every heavy call releases the GIL and ends within a fraction of a second after Ctrl-C, see `run`.
+//! * Results come in the vertex order of the input, as NumPy arrays; reports come as the JSON of the command line.
+//! * Errors become the exceptions of `canonform.errors`, see `error`.
+
+mod arrays;
+mod compare;
+mod datasets;
+mod error;
+mod form;
+mod index;
+mod picture;
+mod run;
+mod settings;
+mod surface;
+
+use pyo3::prelude::*;
+
+#[pymodule(gil_used = false)]
+mod _canonform {
+    use pyo3::prelude::*;
+
+    #[pymodule_export]
+    use crate::compare::{Alignment, align, compare};
+    #[pymodule_export]
+    use crate::datasets::{creatures, families, generate};
+    #[pymodule_export]
+    use crate::form::Form;
+    #[pymodule_export]
+    use crate::index::{Index, merge_indexes};
+    #[pymodule_export]
+    use crate::picture::draw;
+    #[pymodule_export]
+    use crate::run::{set_threads, threads};
+    #[pymodule_export]
+    use crate::settings::{methods, signature_kinds};
+    #[pymodule_export]
+    use crate::surface::{Surface, write};
+
+    #[pymodule_init]
+    fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        module.add("__version__", env!("CARGO_PKG_VERSION"))
+    }
+}

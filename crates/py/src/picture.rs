@@ -1,0 +1,39 @@
+//! Shaded pictures.
+
+use mesh::TriMesh;
+use numpy::{PyReadonlyArray1, PyReadonlyArray2};
+use pyo3::prelude::*;
+use pyo3::types::PyBytes;
+use view::render::{Background, RenderOptions, Surface, render_within};
+
+use crate::arrays;
+use crate::run::run_alone;
+
+/// A picture of a mesh as the bytes of a PNG file with a transparent background, coloured by values at its vertices if
+/// there are some. Faces at vertices without finite coordinates are left out.
+#[pyfunction]
+pub(crate) fn draw<'py>(
+    py: Python<'py>,
+    vertices: PyReadonlyArray2<'py, f64>,
+    faces: PyReadonlyArray2<'py, i64>,
+    values: Option<PyReadonlyArray1<'py, f64>>,
+    size: [u32; 2],
+) -> PyResult<Bound<'py, PyBytes>> {
+    let mut mesh: TriMesh = arrays::mesh_of(&vertices, &faces)?;
+    let finite: Vec<bool> = mesh.positions.iter().map(|p| p.coords.iter().all(|x| x.is_finite())).collect();
+    mesh.faces.retain(|face| face.iter().all(|v| finite.get(v.index()).is_some_and(|finite| *finite)));
+    for (p, finite) in mesh.positions.iter_mut().zip(finite) {
+        if !finite {
+            *p = Default::default();
+        }
+    }
+    let surface = match values {
+        None => RenderOptions::default().surface,
+        Some(values) => Surface::Scalars { values: values.as_slice()?.to_vec(), range: None, isolines: 0 },
+    };
+    let [width, height] = size;
+    let background = Background::Transparent;
+    let options = RenderOptions { width, height, background, surface, ..RenderOptions::default() };
+    let image = run_alone(py, None, |observer| Ok(render_within(&mesh, &options, &observer.budget())?))?;
+    Ok(PyBytes::new(py, &image.to_png()?))
+}

@@ -1,0 +1,442 @@
+//! Surfaces: distances, paths, samples, forms and signatures.
+
+use std::path::PathBuf;
+use std::sync::{Arc, Mutex, PoisonError};
+
+use ::surface::VertexId;
+use budget::Budget;
+use canonform::descriptors::SignatureKind;
+use canonform::geodesics::{DistanceSolver, FirstSample, Method, PathTracer, Sampling, Source};
+use canonform::{
+    ComparedMesh, DescribeOptions, Error, FormOptions, InputPoint, Observer, ShapeDescription, content_hash,
+    embed_and_measure,
+};
+use index::ContentHash;
+use mesh::TriMesh;
+use numpy::{IntoPyArray, PyArray1, PyArray2, PyReadonlyArray2};
+use pyo3::prelude::*;
+use rayon::prelude::*;
+
+use crate::arrays;
+use crate::error::{Exception, to_python};
+use crate::form::Form;
+use crate::run::{Stopped, run, run_alone};
+use crate::settings::{Settings, distance_method};
+
+/// Most prepared solvers, descriptions and sides of comparisons that a surface keeps of each kind.
+const MOST_KEPT: usize = 4;
+
+/// A few values by what they were made from; the oldest goes when there are too many.
+struct Kept<K, V>(Mutex<Vec<(K, V)>>);
+
+impl<K, V> Default for Kept<K, V> {
+    fn default() -> Self {
+        Self(Mutex::default())
+    }
+}
+
+impl<K: PartialEq, V: Clone> Kept<K, V> {
+    fn lock(&self) -> std::sync::MutexGuard<'_, Vec<(K, V)>> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn get(&self, key: &K) -> Option<V> {
+        self.lock().iter().find(|(kept, _)| kept == key).map(|(_, value)| value.clone())
+    }
+
+    fn put(&self, key: K, value: V) {
+        let mut kept = self.lock();
+        kept.retain(|(other, _)| *other != key);
+        if kept.len() >= MOST_KEPT {
+            kept.remove(0);
+        }
+        kept.push((key, value));
+    }
+
+    fn remove(&self, key: &K) {
+        self.lock().retain(|(kept, _)| kept != key);
+    }
+}
+
+/// A solver, and the budget that it was prepared with: who cancels that has to prepare another.
+#[derive(Clone)]
+struct Prepared {
+    solver: Arc<dyn DistanceSolver>,
+    budget: Budget,
+}
+
+pub(crate) type Compared = ComparedMesh<Arc<canonform::Surface>>;
+
+/// A repaired triangle mesh, with everything that was prepared on it.
+#[pyclass(frozen, module = "canonform._canonform")]
+pub(crate) struct Surface {
+    /// The input.
+    pub(crate) mesh: TriMesh,
+    pub(crate) inner: Arc<canonform::Surface>,
+    /// The hash of the file that it was read from.
+    pub(crate) content: Option<ContentHash>,
+    /// Whether the repair left all vertices as they are, so that no values need to be reordered.
+    unchanged: bool,
+    solvers: Kept<Method, Prepared>,
+    descriptions: Kept<DescribeOptions, Arc<ShapeDescription>>,
+    compared: Kept<FormOptions, Arc<Compared>>,
+}
+
+impl Surface {
+    pub(crate) fn of(mesh: TriMesh, inner: canonform::Surface, content: Option<ContentHash>) -> Self {
+        let map = &inner.repaired.input_to_repaired;
+        let stays = |(input, vertex): (usize, &Option<VertexId>)| *vertex == Some(VertexId::from(input));
+        let unchanged = inner.mesh().n_vertices() == map.len() && map.iter().enumerate().all(stays);
+        let (solvers, descriptions, compared) = Default::default();
+        Self { mesh, inner: Arc::new(inner), content, unchanged, solvers, descriptions, compared }
+    }
+
+    /// Values of the repaired vertices in the order of the input; without a copy if that is the same.
+    fn in_input_order(&self, values: Vec<f64>) -> Vec<f64> {
+        match self.unchanged {
+            true => values,
+            false => self.inner.in_input_order(&values, f64::INFINITY),
+        }
+    }
+
+    /// Runs work with the solver of a method, which is prepared the first time.
+    fn solve<T: Send>(
+        &self,
+        py: Python<'_>,
+        method: Method,
+        progress: Option<&Py<PyAny>>,
+        work: impl Fn(&dyn DistanceSolver, &dyn Observer) -> Result<T, Error> + Sync,
+    ) -> PyResult<T> {
+        loop {
+            let kept = self.solvers.get(&method);
+            let budget = kept.as_ref().map_or_else(Budget::unlimited, |kept| kept.budget.clone());
+            let outcome = run(py, &budget, progress, |observer| {
+                let prepared = match kept {
+                    Some(prepared) => prepared,
+                    None => {
+                        let solver = method.prepare_within(&self.inner.intrinsic, &budget)?.into();
+                        let prepared = Prepared { solver, budget: budget.clone() };
+                        self.solvers.put(method, prepared.clone());
+                        prepared
+                    }
+                };
+                work(prepared.solver.as_ref(), observer)
+            });
+            match outcome {
+                // Another thread was interrupted while it used the same solver.
+                Err(stopped) if stopped.is_cancelled() => self.solvers.remove(&method),
+                Err(stopped @ Stopped::Interrupted(_)) => {
+                    self.solvers.remove(&method);
+                    return Err(stopped.into());
+                }
+                outcome => return Ok(outcome?),
+            }
+        }
+    }
+
+    fn sources(&self, points: &[InputPoint]) -> Result<Vec<Source>, Error> {
+        let located = |point: &InputPoint| Ok(Source::new(&self.inner.intrinsic, self.inner.locate(point)?)?);
+        points.iter().map(located).collect()
+    }
+
+    /// The description with these options, made once. Work may go on after the first of two threads has it.
+    pub(crate) fn described(
+        &self,
+        options: &DescribeOptions,
+        budget: &Budget,
+    ) -> Result<Arc<ShapeDescription>, Error> {
+        if let Some(kept) = self.descriptions.get(options) {
+            return Ok(kept);
+        }
+        let described = Arc::new(canonform::describe_within(&self.inner, options, budget)?);
+        self.descriptions.put(options.clone(), described.clone());
+        Ok(described)
+    }
+
+    /// The surface, ready to be compared, made once.
+    pub(crate) fn compared(
+        &self,
+        options: &FormOptions,
+        observer: &dyn Observer,
+    ) -> Result<Arc<Compared>, Error> {
+        if let Some(kept) = self.compared.get(options) {
+            return Ok(kept);
+        }
+        let surface = self.inner.clone();
+        let compared = Arc::new(ComparedMesh::new(&self.mesh, self.content, surface, options, observer)?);
+        self.compared.put(options.clone(), compared.clone());
+        Ok(compared)
+    }
+
+    fn description_of(
+        &self,
+        py: Python<'_>,
+        settings: &str,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<Arc<ShapeDescription>> {
+        let settings = Settings::parse(settings)?;
+        let options = settings.describe(self.inner.repair)?;
+        Ok(run(py, &settings.budget()?, progress.as_ref(), |observer| {
+            self.described(&options, &observer.budget())
+        })?)
+    }
+}
+
+/// Points of the input: vertex numbers, or text such as `17-42@0.3`.
+fn points_of(points: &Bound<'_, PyAny>) -> PyResult<Vec<InputPoint>> {
+    points.try_iter()?.map(|point| point_of(&point?)).collect()
+}
+
+fn point_of(point: &Bound<'_, PyAny>) -> PyResult<InputPoint> {
+    if let Ok(text) = point.extract::<&str>() {
+        return text.parse().map_err(|fault: canonform::BadPoint| Exception::Point.with(&fault.to_string()));
+    }
+    let number: i64 = point.extract()?;
+    let vertex = u32::try_from(number).map_err(|_| {
+        Exception::Point.with(&format!("{number} is not a vertex; vertices are counted from 0"))
+    })?;
+    Ok(InputPoint::Vertex(VertexId(vertex)))
+}
+
+/// A path: its points, the points of the input that they are, and its length.
+type FoundPath<'py> = (Bound<'py, PyArray2<f64>>, Vec<String>, Vec<f64>, f64);
+
+#[pymethods]
+impl Surface {
+    /// Repairs a mesh in memory.
+    #[new]
+    fn new(
+        py: Python<'_>,
+        vertices: PyReadonlyArray2<'_, f64>,
+        faces: PyReadonlyArray2<'_, i64>,
+        settings: &str,
+    ) -> PyResult<Self> {
+        let options = Settings::parse(settings)?.repair()?;
+        let mesh = arrays::mesh_of(&vertices, &faces)?;
+        let inner =
+            run_alone(py, None, |observer| canonform::Surface::within(&mesh, &options, &observer.budget()))?;
+        Ok(Self::of(mesh, inner, None))
+    }
+
+    /// Reads and repairs a mesh file.
+    #[staticmethod]
+    fn read(py: Python<'_>, path: PathBuf, settings: &str) -> PyResult<Self> {
+        let options = Settings::parse(settings)?.repair()?;
+        run_alone(py, None, |observer| {
+            let content = content_hash(&path)?;
+            let mesh = mesh::io::read(&path)?;
+            let inner = canonform::Surface::within(&mesh, &options, &observer.budget())?;
+            Ok(Self::of(mesh, inner, Some(content)))
+        })
+    }
+
+    #[getter]
+    fn n_vertices(&self) -> usize {
+        self.mesh.n_vertices()
+    }
+
+    #[getter]
+    fn n_faces(&self) -> usize {
+        self.mesh.n_faces()
+    }
+
+    #[getter]
+    fn area(&self) -> f64 {
+        self.inner.mesh().area()
+    }
+
+    fn vertices<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        arrays::positions(py, &self.mesh.positions)
+    }
+
+    fn faces<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<i64>>> {
+        arrays::faces(py, &self.mesh.faces)
+    }
+
+    /// The report on the repair, as JSON, and in words.
+    fn repair_report(&self) -> (String, Vec<String>) {
+        let report = &self.inner.repaired.report;
+        (json(report), report.summary())
+    }
+
+    /// Distances from the nearest of several points to all vertices of the input.
+    fn distances<'py>(
+        &self,
+        py: Python<'py>,
+        sources: &Bound<'py, PyAny>,
+        method: &str,
+        update: Option<&str>,
+        obtuse: Option<&str>,
+        max_distance: f64,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let (method, points) = (distance_method(method, update, obtuse)?, points_of(sources)?);
+        let distances = self.solve(py, method, None, |solver, _| {
+            let mut distances = solver.budget().vector(solver.n_vertices())?;
+            solver.solve_into(&self.sources(&points)?, max_distance, &mut distances)?;
+            Ok(self.in_input_order(distances))
+        })?;
+        Ok(arrays::vector(py, distances))
+    }
+
+    /// One row of distances for each of several points, computed in parallel.
+    #[expect(clippy::too_many_arguments, reason = "keyword arguments")]
+    fn distances_many<'py>(
+        &self,
+        py: Python<'py>,
+        sources: &Bound<'py, PyAny>,
+        method: &str,
+        update: Option<&str>,
+        obtuse: Option<&str>,
+        max_distance: f64,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let (method, points) = (distance_method(method, update, obtuse)?, points_of(sources)?);
+        let p = self.mesh.n_vertices();
+        let rows = self.solve(py, method, progress.as_ref(), |solver, observer| {
+            let sources = self.sources(&points)?;
+            observer.begin("distances", sources.len());
+            let mut rows = solver.budget().vector(p.saturating_mul(sources.len()))?;
+            rows.par_chunks_mut(p.max(1)).zip(&sources).try_for_each(|(row, source)| {
+                let source = std::slice::from_ref(source);
+                match self.unchanged {
+                    true => solver.solve_into(source, max_distance, row)?,
+                    false => {
+                        let mut solved = vec![0.0; solver.n_vertices()];
+                        solver.solve_into(source, max_distance, &mut solved)?;
+                        row.copy_from_slice(&self.in_input_order(solved));
+                    }
+                }
+                observer.step();
+                Ok::<_, Error>(())
+            })?;
+            Ok(rows)
+        })?;
+        arrays::matrix(py, rows, [points.len(), p])
+    }
+
+    /// Shortest paths from one point to each of several.
+    fn paths<'py>(
+        &self,
+        py: Python<'py>,
+        source: &Bound<'py, PyAny>,
+        targets: &Bound<'py, PyAny>,
+        method: &str,
+        update: Option<&str>,
+        obtuse: Option<&str>,
+    ) -> PyResult<Vec<FoundPath<'py>>> {
+        let method = distance_method(method, update, obtuse)?;
+        let (source, targets) = (point_of(source)?, points_of(targets)?);
+        let paths = self.solve(py, method, None, |solver, _| {
+            let inner = &self.inner;
+            let ends = targets.iter().map(|target| inner.locate(target)).collect::<Result<Vec<_>, _>>()?;
+            let sources = self.sources(std::slice::from_ref(&source))?;
+            let mut distances = vec![0.0; solver.n_vertices()];
+            solver.solve_into(&sources, f64::INFINITY, &mut distances)?;
+            let tracer = PathTracer::new(&inner.intrinsic, &sources, &distances).with_budget(solver.budget());
+            let path = |(target, end): (&InputPoint, &_)| {
+                let mut path = inner.path(&tracer, *end)?;
+                // The ends as the user wrote them.
+                let last = path.points.len() - 1;
+                path.points[0].at = source;
+                path.points[last].at = *target;
+                Ok(path)
+            };
+            targets.iter().zip(&ends).map(path).collect::<Result<Vec<_>, Error>>()
+        })?;
+        let found = |path: canonform::SurfacePath| {
+            let positions: Vec<_> = path.points.iter().map(|point| point.position).collect();
+            let at = path.points.iter().map(|point| point.at.to_string()).collect();
+            let along = path.points.iter().map(|point| point.distance).collect();
+            Ok((arrays::positions(py, &positions)?, at, along, path.length))
+        };
+        paths.into_iter().map(found).collect()
+    }
+
+    /// Vertices spread evenly, each the farthest from those before it.
+    #[expect(clippy::too_many_arguments, reason = "keyword arguments")]
+    fn farthest_points<'py>(
+        &self,
+        py: Python<'py>,
+        n: usize,
+        first: Option<u32>,
+        method: &str,
+        update: Option<&str>,
+        obtuse: Option<&str>,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<Bound<'py, PyArray1<i64>>> {
+        let method = distance_method(method, update, obtuse)?;
+        let samples = self.solve(py, method, progress.as_ref(), |solver, observer| {
+            let inner = &self.inner;
+            let first = match first {
+                None => FirstSample::Farthest,
+                Some(vertex) => FirstSample::Vertex(inner.repaired_vertex(VertexId(vertex))?),
+            };
+            observer.begin("samples", n);
+            let mut sampler = Sampling::Farthest.start(solver, first, 0)?;
+            sampler.extend_to(n)?;
+            let distances = sampler.into_distances(n)?;
+            let input = |&v: &usize| i64::from(inner.input_vertex(VertexId::from(v)).0);
+            Ok(distances.landmarks().iter().map(input).collect::<Vec<_>>())
+        })?;
+        Ok(samples.into_pyarray(py))
+    }
+
+    /// The embedded surface.
+    fn canonical_form(&self, py: Python<'_>, settings: &str, progress: Option<Py<PyAny>>) -> PyResult<Form> {
+        let settings = Settings::parse(settings)?;
+        let (options, stress) = (settings.form(self.inner.repair)?, settings.stress()?);
+        let embedded = run(py, &settings.budget()?, progress.as_ref(), |observer| {
+            embed_and_measure(&self.inner, &options, &stress, observer)
+        })?;
+        Ok(Form { surface: self.inner.clone(), embedded })
+    }
+
+    /// The signature of one kind, or all of them as one vector if the kind is `fused`.
+    fn signature<'py>(
+        &self,
+        py: Python<'py>,
+        kind: &str,
+        settings: &str,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        if kind == "fused" {
+            let described = self.description_of(py, settings, progress)?;
+            return Ok(described.fused.clone().into_pyarray(py).into_any());
+        }
+        let kind: SignatureKind = kind.parse().map_err(|_| {
+            let known = SignatureKind::ALL.map(|kind| format!("{:?}", kind.name())).join(", ");
+            Exception::Option.with(&format!("kind={kind:?} is not possible: use \"fused\", {known}"))
+        })?;
+        let described = self.description_of(py, settings, progress)?;
+        let values = described.signature(kind).map_or_else(Vec::new, |signature| signature.values.clone());
+        Ok(values.into_pyarray(py).into_any())
+    }
+
+    /// Facts of the description: area, diameter, the longest boundary, the number of shortcuts.
+    fn facts(
+        &self,
+        py: Python<'_>,
+        settings: &str,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<(f64, f64, f64, usize)> {
+        let described = self.description_of(py, settings, progress)?;
+        Ok((described.area, described.diameter, described.longest_boundary, described.shortcuts.len()))
+    }
+}
+
+/// Writes a mesh; the extension of the path tells the format.
+#[pyfunction]
+pub(crate) fn write(
+    py: Python<'_>,
+    vertices: PyReadonlyArray2<'_, f64>,
+    faces: PyReadonlyArray2<'_, i64>,
+    path: PathBuf,
+) -> PyResult<()> {
+    let mesh = arrays::mesh_of(&vertices, &faces)?;
+    py.detach(|| mesh::io::write(&path, &mesh)).map_err(|fault| to_python(&fault.into()))
+}
+
+/// A record as JSON.
+pub(crate) fn json(record: &impl serde::Serialize) -> String {
+    serde_json::to_string(record).unwrap_or_else(|fault| unreachable!("plain data: {fault}"))
+}

@@ -1,0 +1,33 @@
+#!/usr/bin/env bash
+# Builds the Python package and runs its tests in an environment of its own below target/. `--find` only prints the Python
+# that would be used. Further arguments go to pytest.
+set -euo pipefail
+cd "$(dirname "$0")"
+
+find_python() {
+    local name
+    for name in ${PYTHON:-python3 python3.11 python3.12 python3.13 python3.14}; do
+        if "$name" -c 'import sys, venv, ensurepip; sys.exit(sys.version_info < (3, 11))' 2>/dev/null; then
+            command -v "$name"
+            return
+        fi
+    done
+    echo "test-python: needs Python 3.11 or later with the module venv; install it, or name it with PYTHON=..." >&2
+    return 1
+}
+
+python=$(find_python)
+if [ "${1:-}" = --find ]; then
+    echo "$python"
+    exit
+fi
+
+# The package is built with the profile of the Rust tests, so that what they compiled is not compiled again.
+target=$(realpath -m "${CARGO_TARGET_DIR:-../../target}")
+environment=$target/python
+test -x "$environment/bin/python" || "$python" -m venv "$environment"
+"$environment/bin/pip" install --quiet --disable-pip-version-check 'maturin>=1.16,<2'
+export VIRTUAL_ENV=$environment CARGO_TARGET_DIR=$target
+cargo build --locked -p canonform-cli
+"$environment/bin/maturin" develop --quiet --locked --profile dev --extras test
+exec "$environment/bin/python" -m pytest "$@"

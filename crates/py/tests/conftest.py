@@ -1,0 +1,74 @@
+"""What all tests share."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import canonform
+from canonform.datasets import Shape
+
+ROOT = Path(__file__).resolve().parents[3]
+
+
+class Program:
+    """The program `canonform`, built from the same tree."""
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+
+    def run(self, *arguments: Any) -> str:
+        done = subprocess.run([self.path, *map(os.fspath, map(str, arguments))], capture_output=True, text=True)
+        assert done.returncode in (0, 1), done.stderr
+        return done.stdout
+
+    def json(self, *arguments: Any) -> Any:
+        return json.loads(self.run(*arguments, "--json"))
+
+
+@pytest.fixture(scope="session")
+def program() -> Program:
+    target = Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target"))
+    path = Path(os.environ.get("CANONFORM_PROGRAM", target / "debug" / "canonform"))
+    if not path.exists():
+        pytest.fail(f"{path} is missing: run `cargo build -p canonform-cli`, or name the program in CANONFORM_PROGRAM")
+    return Program(path)
+
+
+@pytest.fixture(scope="session")
+def cats() -> list[Shape]:
+    return canonform.datasets.generate("cat", poses=2, n_vertices=1000)
+
+
+@pytest.fixture(scope="session")
+def cat(cats: list[Shape]) -> Shape:
+    return cats[0]
+
+
+@pytest.fixture(scope="session")
+def collection(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder of nine meshes of three classes."""
+    folder = tmp_path_factory.mktemp("meshes")
+    shapes = canonform.datasets.generate(poses=3, n_vertices=1000)
+    canonform.datasets.write(shapes, folder)
+    return folder
+
+
+def grid(n: int = 9, size: float = 1.0) -> tuple[np.ndarray, np.ndarray]:
+    """A flat square of n x n vertices."""
+    x, y = np.meshgrid(np.linspace(0, size, n), np.linspace(0, size, n), indexing="ij")
+    vertices = np.column_stack([x.ravel(), y.ravel(), np.zeros(n * n)])
+    i = np.arange(n * n).reshape(n, n)
+    a, b, c, d = i[:-1, :-1].ravel(), i[1:, :-1].ravel(), i[1:, 1:].ravel(), i[:-1, 1:].ravel()
+    return vertices, np.concatenate([np.column_stack([a, b, c]), np.column_stack([a, c, d])])
+
+
+@pytest.fixture
+def square() -> canonform.Surface:
+    return canonform.Surface(*grid())

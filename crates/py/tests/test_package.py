@@ -1,0 +1,73 @@
+"""Types, documentation and examples of the package itself."""
+
+from __future__ import annotations
+
+import ast
+import doctest
+import importlib.util
+import inspect
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from conftest import ROOT
+
+import canonform
+from canonform import _canonform
+
+SOURCE = ROOT / "crates" / "py" / "python" / "canonform"
+MODULES = sorted(path.stem for path in SOURCE.glob("*.py") if path.stem != "__init__")
+
+
+def test_examples_in_docstrings_run() -> None:
+    for module in [canonform, *(sys.modules[f"canonform.{name}"] for name in MODULES if f"canonform.{name}" in sys.modules)]:
+        failed, _ = doctest.testmod(module)
+        assert failed == 0, module
+
+
+def test_the_readme_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    text = (ROOT / "crates" / "py" / "README.md").read_text()
+    blocks = re.findall(r"```python\n(.*?)```", text, re.S)
+    assert blocks
+    scope: dict[str, object] = {}
+    for block in blocks:
+        exec(compile(block, "README.md", "exec"), scope)
+
+
+def test_types_hold() -> None:
+    pytest.importorskip("mypy")
+    command = [sys.executable, "-m", "mypy", "--config-file", ROOT / "crates" / "py" / "pyproject.toml", SOURCE]
+    done = subprocess.run(command, capture_output=True, text=True, cwd=ROOT / "crates" / "py")
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_stubs_name_what_the_module_has() -> None:
+    stub = ast.parse((SOURCE / "_canonform.pyi").read_text())
+    public = {name for name in dir(_canonform) if not name.startswith("_")}
+    stated = {node.name for node in stub.body if isinstance(node, (ast.FunctionDef, ast.ClassDef))}
+    assert stated == public
+    for node in stub.body:
+        if isinstance(node, ast.ClassDef):
+            methods = {item.name for item in node.body if isinstance(item, ast.FunctionDef)} - {"__new__"}
+            assert methods == {name for name in vars(getattr(_canonform, node.name)) if not name.startswith("_")}, node.name
+
+
+def test_everything_public_is_documented() -> None:
+    for name in canonform.__all__:
+        if name in ("NystromMDS", "distributed") and importlib.util.find_spec("sklearn") is None:
+            continue
+        found = getattr(canonform, name)
+        if name == "__version__":
+            continue
+        assert inspect.getdoc(found), name
+        if inspect.isclass(found):
+            for member, value in vars(found).items():
+                if not member.startswith("_") and (callable(value) or isinstance(value, (property, classmethod))):
+                    assert inspect.getdoc(getattr(found, member)), f"{name}.{member}"
+
+
+def test_the_version_is_that_of_the_workspace() -> None:
+    assert f'version = "{canonform.__version__}"' in (ROOT / "Cargo.toml").read_text()

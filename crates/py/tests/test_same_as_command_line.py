@@ -1,0 +1,146 @@
+"""The same numbers as the command line, bit for bit."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import Program
+
+import canonform
+from canonform import Index
+from canonform.datasets import Shape
+
+SECONDS = {"seconds", "load_seconds", "repair_seconds"}
+
+
+def timeless(record):
+    """A record without its times and the names of outputs."""
+    if isinstance(record, dict):
+        return {key: timeless(value) for key, value in record.items() if key not in SECONDS | {"output", "path"}}
+    return [timeless(item) for item in record] if isinstance(record, list) else record
+
+
+@pytest.fixture(scope="module")
+def meshes(tmp_path_factory: pytest.TempPathFactory, cats: list[Shape]) -> list[Path]:
+    folder = tmp_path_factory.mktemp("cats")
+    return [Path(path) for path in canonform.datasets.write(cats, folder)]
+
+
+@pytest.mark.parametrize("method", list(canonform.distance_methods()))
+def test_distances(program: Program, meshes: list[Path], tmp_path: Path, method: str) -> None:
+    out = tmp_path / "rows.npy"
+    program.run("geodesic", meshes[0], "--source", "0,17,f3@1:2:1", "--method", method, "-o", out)
+    surface = canonform.read(meshes[0])
+    rows = np.load(out)
+    np.testing.assert_array_equal(surface.distances_many([0, 17, "f3@1:2:1"], method=method), rows)
+    np.testing.assert_array_equal(surface.distances(17, method=method), rows[1])
+    program.run("geodesic", meshes[0], "--source", "0,17", "--nearest", "--method", method, "-o", out)
+    np.testing.assert_array_equal(surface.distances([0, 17], method=method), np.load(out)[0])
+
+
+@pytest.mark.parametrize("update", ["point-source", "virtual-source", "planar"])
+def test_variants_of_fast_marching(program: Program, meshes: list[Path], tmp_path: Path, update: str) -> None:
+    out = tmp_path / "rows.npy"
+    program.run("geodesic", meshes[0], "--source", "5", "--update", update, "--obtuse", "unfold", "-o", out)
+    rows = canonform.read(meshes[0]).distances_many([5], update=update, obtuse="unfold")
+    np.testing.assert_array_equal(rows, np.load(out))
+
+
+def test_paths(program: Program, meshes: list[Path], tmp_path: Path) -> None:
+    out = tmp_path / "paths.json"
+    program.run("geodesic", meshes[0], "--source", "3", "--path-to", "700,12", "-o", out)
+    written = json.loads(out.read_text())["paths"]
+    for path, expected in zip(canonform.read(meshes[0]).path(3, [700, 12]), written, strict=True):
+        assert path.length == expected["length"]
+        np.testing.assert_array_equal(path.points, [point["position"] for point in expected["points"]])
+        assert path.at == [str(point["at"]) for point in expected["points"]]
+
+
+@pytest.mark.parametrize(
+    ("flags", "arguments"),
+    [
+        ([], {}),
+        (["-n", "40", "--rank", "9", "--geodesic", "heat"], {"n": 40, "rank": 9, "geodesic": "heat"}),
+        (["-n", "auto"], {"n": "auto"}),
+        (["-n", "30", "--method", "smacof", "--iterations", "5"], {"n": 30, "method": "smacof", "iterations": 5}),
+        (["--method", "spectral", "-n", "30", "--mu", "inf"], {"method": "spectral", "n": 30, "mu": float("inf")}),
+        (["--method", "kpca", "-n", "30", "--sigma", "median"], {"method": "kpca", "n": 30, "sigma": "median"}),
+        (
+            ["--regularization", "rpi", "--alpha", "1e-9", "--sampling", "random", "--seed", "4", "--dim", "5"],
+            {"regularization": "rpi", "alpha": 1e-9, "sampling": "random", "seed": 4, "dim": 5},
+        ),
+        (["--first-sample", "8", "--stress", "exact"], {"first_sample": 8, "stress": "exact"}),
+    ],
+)
+def test_forms(program: Program, meshes: list[Path], tmp_path: Path, flags: list[str], arguments: dict) -> None:
+    out = tmp_path / "form.npy"
+    report = program.json("embed", meshes[0], "-o", out, *flags)
+    form = canonform.read(meshes[0]).canonical_form(**arguments)
+    np.testing.assert_array_equal(form.points, np.load(out))
+    assert timeless(form.report) == timeless(report)
+
+
+def test_repairs(program: Program, tmp_path: Path, cats: list[Shape]) -> None:
+    # Two components: one is dropped, or both are bridged.
+    a, b = cats
+    vertices = np.concatenate([a.vertices, b.vertices + 1000])
+    path = tmp_path / "two.off"
+    canonform.datasets.write([Shape("two", "", vertices, np.concatenate([a.faces, b.faces + len(a.vertices)]))], tmp_path)
+    for components in ("largest", "bridge"):
+        out = tmp_path / "rows.npy"
+        source = "0" if components == "bridge" else "1500"
+        report = program.json("geodesic", path, "--source", source, "--components", components, "-o", out)
+        surface = canonform.read(path, components=components)
+        if components == "largest" and report["unreached"] and 1500 in report["unreached"]:
+            continue
+        np.testing.assert_array_equal(surface.distances_many([int(source)]), np.load(out))
+        assert dict(surface.repair_report) == report["repair"]
+
+
+def test_comparisons(program: Program, meshes: list[Path]) -> None:
+    for flags, arguments in [([], {}), (["-n", "40", "--method", "landmark"], {"n": 40, "method": "landmark"})]:
+        report = program.json("compare", *meshes, *flags)
+        a, b = map(canonform.read, meshes)
+        found = canonform.compare(a, b, **arguments)
+        for key in ("a", "b", "residual", "threshold", "failed"):
+            largest = report.pop(key)["max"] if key == "residual" else report.pop(key)
+            if key == "residual":
+                assert np.max(found.residuals) == largest
+        assert found.report == report
+        assert found.verdict == "same-shape"
+
+
+def test_indexes(program: Program, collection: Path, tmp_path: Path) -> None:
+    ours, theirs = tmp_path / "ours.canonform", tmp_path / "theirs.canonform"
+    report = program.json("index", "build", collection, "-o", theirs)
+    index = Index.build(collection, ours)
+    assert index.build_report is not None
+    expected = {key: value for key, value in report.items() if key != "index"}
+    assert timeless(index.build_report) == timeless(expected)
+    exported = [tmp_path / "ours.jsonl", tmp_path / "theirs.jsonl"]
+    index.export(exported[0])
+    program.run("index", "export", theirs, "-o", exported[1])
+    assert exported[0].read_bytes() == exported[1].read_bytes()
+
+    query = collection / "cat1.off"
+    for flags, arguments in [
+        (["-k", "4"], {"k": 4}),
+        (["-k", "4", "--explain"], {"k": 4, "explain": True}),
+        (["-k", "3", "--rank", "graph"], {"k": 3, "rank": "graph"}),
+        (["--exact"], {"exact": True}),
+    ]:
+        answer = timeless(program.json("search", theirs, query, *flags)["queries"][0])
+        answer.pop("query")
+        for asked in (query, canonform.read(query)):
+            assert timeless(index.search(asked, **arguments).report) == answer, flags
+    assert program.json("search", theirs, "--id", "david2")["predicted"] == index.search("david2").predicted
+
+    for flags, arguments in [([], {}), (["--by", "shape-dna", "-k", "3"], {"by": "shape-dna", "k": 3}), (["--rank", "graph"], {"rank": "graph"})]:
+        assert program.json("evaluate", theirs, *flags) == index.evaluate(**arguments)
+
+
+def test_generated_shapes_are_those_of_the_library(collection: Path, cat: Shape) -> None:
+    np.testing.assert_array_equal(canonform.read(collection / "cat0.off").faces, cat.faces)
