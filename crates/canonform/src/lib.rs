@@ -114,7 +114,7 @@ pub use shape_index::{
     BuildOptions, BuildReport, ClassVotes, ComponentResult, Dropped, Elsewhere, EvaluateOptions, Explain,
     Failure, FailureReason, GraphRank, Inputs, Measure, MergeReport, NearestShape, Prediction, Query, Ranked,
     Reranked, SearchOptions, SearchReport, SearchResult, SearchSeconds, ShapeLimits, ShapeSearch, Shard,
-    Unknown, add_to_index, build_index, content_hash, evaluate_index, evaluate_matrix, merge_indexes,
-    mesh_path, remove_from_index, rerank,
+    Unknown, add_to_index, build_index, content_hash, evaluate_index, evaluate_matrix, indexed_shapes,
+    merge_indexes, mesh_path, remove_from_index, rerank,
 };
 pub use {descriptors, geodesics, index, linalg, mesh, nmds, retrieval, surface};

@@ -54,18 +54,27 @@ impl Embedding {
     }
 
     /// Scales orthonormal columns by the roots of their eigenvalues and normalises their signs.
-    pub(crate) fn from_orthonormal(
+    pub(crate) fn from_orthonormal(columns: Matrix, eigenvalues: Vec<f64>, unit: f64, rank: usize) -> Self {
+        Self::from_orthonormal_with_factors(columns, eigenvalues, unit, rank).0
+    }
+
+    /// As [`from_orthonormal`](Self::from_orthonormal), with the factors that columns were multiplied by.
+    pub(crate) fn from_orthonormal_with_factors(
         mut columns: Matrix,
         eigenvalues: Vec<f64>,
         unit: f64,
         rank: usize,
-    ) -> Self {
+    ) -> (Self, Vec<f64>) {
+        let mut factors = Vec::with_capacity(columns.ncols());
         for (mut column, value) in columns.column_iter_mut().zip(&eigenvalues) {
-            column *= leading_sign(column.as_slice()) * (value.max(0.0).sqrt() * unit);
+            let factor = leading_sign(column.as_slice()) * (value.max(0.0).sqrt() * unit);
+            column *= factor;
+            factors.push(factor);
         }
+        factors.resize(columns.ncols(), 0.0);
         let eigenvalues: Vec<f64> = eigenvalues.iter().map(|value| value * unit * unit).collect();
         let negative_mass = negative_mass(&eigenvalues);
-        Self { coords: columns, eigenvalues, negative_mass, rank }
+        (Self { coords: columns, eigenvalues, negative_mass, rank }, factors)
     }
 
     /// Centres coordinates in units of `unit` and rotates them to their principal axes; `eigenvalues` become those of

@@ -13,6 +13,7 @@
 //! | [`fmds`] | the same, and a Laplacian | Shamai et al. 2015 |
 //! | [`spectral`] | distances between n samples, and eigenpairs of a Laplacian | Aflalo and Kimmel 2013 |
 //! | [`classical`], [`classical_full`] | all p x p distances | Torgerson 1952 |
+//! | [`OutOfSample`] | distances from further points to the n samples of [`nystrom`] | Bengio et al. 2003 |
 //! | [`smacof`] | all p x p distances, and a start | de Leeuw 1977 |
 
 mod classical;
@@ -23,6 +24,7 @@ mod fmds;
 mod kernel_pca;
 mod landmark;
 mod nystrom;
+mod out_of_sample;
 mod passes;
 mod reconstruction;
 mod regularization;
@@ -42,7 +44,8 @@ pub use estimate::{RowSample, StressEstimate, estimate_stress, sample_rows};
 pub use fmds::{fmds, fmds_within};
 pub use kernel_pca::{Bandwidth, KernelPcaOptions, kernel_pca};
 pub use landmark::landmark_mds;
-pub use nystrom::{NystromOptions, nystrom};
+pub use nystrom::{NystromOptions, nystrom, nystrom_extended};
+pub use out_of_sample::OutOfSample;
 pub use reconstruction::{Reconstruction, ReconstructionError, sample_eigenvalues};
 pub use regularization::{Regularization, RpiAlpha};
 pub use smacof::{SmacofOptions, SmacofReport, SmacofStop, smacof, smacof_within};

@@ -2,6 +2,7 @@
 
 use linalg::{LandmarkDistances, Matrix, SymmetricEigen, symmetric_eigen};
 
+use crate::out_of_sample::OutOfSample;
 use crate::passes::{product, sq_means, triangle};
 use crate::squares::{check_dim, check_extent, symmetrized};
 use crate::{Embedding, NmdsError, Regularization};
@@ -81,6 +82,17 @@ impl NystromOptions {
 /// # Ok::<(), canonform_nmds::NmdsError>(())
 /// ```
 pub fn nystrom(distances: &LandmarkDistances, options: &NystromOptions) -> Result<Embedding, NmdsError> {
+    Ok(nystrom_extended(distances, options)?.0)
+}
+
+/// As [`nystrom`], with the map that places further points.
+///
+/// # Errors
+/// As [`nystrom`].
+pub fn nystrom_extended(
+    distances: &LandmarkDistances,
+    options: &NystromOptions,
+) -> Result<(Embedding, OutOfSample), NmdsError> {
     let rank = options.validate(distances.n_landmarks())?;
     let unit = check_extent(distances.max(), distances.n_points())?;
     let block = distances.sq_block() / (unit * unit);
@@ -91,12 +103,14 @@ pub fn nystrom(distances: &LandmarkDistances, options: &NystromOptions) -> Resul
     let core = symmetrized(inverse.core) * -0.5;
     let inner = symmetrized(&w * &core * w.transpose());
     let (axes, values) = principal_axes(&(core * w.transpose()), &inner, options.dim)?;
-    let axes = match &inverse.basis {
+    let mut axes = match &inverse.basis {
         Some(basis) => basis * axes,
         None => axes,
     };
     let columns = product(distances, unit, &means, &axes)?;
-    Ok(Embedding::from_orthonormal(columns, values, unit, inverse.rank))
+    let (embedding, factors) = Embedding::from_orthonormal_with_factors(columns, values, unit, inverse.rank);
+    axes.column_iter_mut().zip(factors).for_each(|(mut axis, factor)| axis *= factor);
+    Ok((embedding, OutOfSample { unit, means, axes }))
 }
 
 /// The axes `A` for which `X A = Q U`, and all eigenvalues, descending, for `X = Q W`, `inner = W C W' = U L U'` and

@@ -17,7 +17,7 @@ use super::record::{DROPPED, Described, same_source, shape};
 use super::source::{Hashed, Listed, Listing, ShapeLimits, Shard, hash_all, share};
 use crate::error::{Error, Remedy};
 use crate::form::{DescribeOptions, describe_within};
-use crate::input::{LabelFile, Surface, count_skipped};
+use crate::input::{LabelFile, ShapeFile, Surface, count_skipped};
 use crate::observer::Observer;
 
 /// Most shapes written to disk in one transaction.
@@ -35,6 +35,8 @@ pub struct BuildOptions<'a> {
     pub labels: Option<&'a LabelFile>,
     /// The part of the folder to index. Default: all of it.
     pub shard: Option<Shard>,
+    /// The shapes to index, by name: part of them, as [`indexed_shapes`] names them. Default: all of them.
+    pub only: Option<&'a HashSet<String>>,
     /// What becomes of shapes of the index that did not come from the folder. Default: they are kept.
     pub elsewhere: Elsewhere,
     /// What describing each shape may use. Default: no limits.
@@ -46,7 +48,7 @@ impl<'a> BuildOptions<'a> {
     #[must_use]
     pub fn new(describe: &'a DescribeOptions) -> Self {
         let (elsewhere, limits) = (Elsewhere::default(), ShapeLimits::default());
-        Self { describe, labels: None, shard: None, elsewhere, limits }
+        Self { describe, labels: None, shard: None, only: None, elsewhere, limits }
     }
 }
 
@@ -246,6 +248,9 @@ pub fn build_index(
     let root = Root::new(folder, &home)?;
     let mut listing = Listing::of_folder(&root, options.labels)?;
     listing.shapes = share(listing.shapes, options.shard);
+    if let Some(only) = options.only {
+        listing.shapes.retain(|listed| only.contains(&listed.file.name));
+    }
     let mut report = BuildReport::of(&listing);
     let hashed = hash_all(listing.shapes, observer);
     if let Some(index) = &existing
@@ -291,6 +296,20 @@ pub fn build_index(
     }
     report.seconds = start.elapsed().as_secs_f64();
     Ok(report)
+}
+
+/// The shapes that [`build_index`] finds in a folder, with the names and classes that they get, without reading any mesh.
+///
+/// # Errors
+/// [`Error::NoShapes`], [`Error::File`].
+pub fn indexed_shapes(
+    folder: &Path,
+    path: &Path,
+    labels: Option<&LabelFile>,
+) -> Result<Vec<ShapeFile>, Error> {
+    let home = Home::of(path)?;
+    let listing = Listing::of_folder(&Root::new(folder, &home)?, labels)?;
+    Ok(listing.shapes.into_iter().map(|listed| listed.file).collect())
 }
 
 /// Whether an index already holds these files, and nothing that has to be removed. Returns the number of its other shapes.

@@ -19,7 +19,9 @@ mod rerank;
 mod search;
 mod source;
 
-pub use build::{BuildOptions, BuildReport, Dropped, Elsewhere, Failure, FailureReason, build_index};
+pub use build::{
+    BuildOptions, BuildReport, Dropped, Elsewhere, Failure, FailureReason, build_index, indexed_shapes,
+};
 pub use change::{MergeReport, add_to_index, merge_indexes, remove_from_index};
 pub use evaluate::{EvaluateOptions, Measure, evaluate_index, evaluate_matrix};
 pub use found::{ComponentResult, GraphRank, SearchResult};

@@ -1,0 +1,125 @@
+//! Further points in an embedding.
+
+use linalg::{LinalgError, Matrix};
+
+use crate::NmdsError;
+
+/// Places points in an embedding by NMDS that were not there when it was made, from their distances to its landmarks.
+///
+/// The coordinates of a point of the embedding are a linear function of its squared distances to the landmarks, less
+/// their means: `z = A' (r - m)`. The same function of the distances of another point is the Nystrom extension of the
+/// eigenvectors to it (Bengio et al. 2003, `bengio2003` in `REFERENCES.bib`). Points of the embedding get their own
+/// coordinates, up to rounding; the mean of the new ones need not be zero.
+///
+/// ```
+/// # extern crate linalg as canonform_linalg;
+/// use canonform_linalg::{LandmarkDistances, Matrix};
+/// use canonform_nmds::{NystromOptions, nystrom_extended};
+///
+/// // The points 0, 1, ..., 9 on a line, and the distances from three of them.
+/// let landmarks = vec![0, 4, 9];
+/// let columns = Matrix::from_fn(10, 3, |i, j| (i as f64 - landmarks[j] as f64).abs());
+/// let options = NystromOptions { dim: 1, ..NystromOptions::default() };
+/// let (embedding, extension) = nystrom_extended(&LandmarkDistances::new(landmarks, columns)?, &options)?;
+///
+/// // A point between the second and the third.
+/// let placed = extension.place(&Matrix::from_row_slice(1, 3, &[1.5, 2.5, 7.5]))?;
+/// assert!((placed[(0, 0)] - 0.5 * (embedding.coords[(1, 0)] + embedding.coords[(2, 0)])).abs() < 1e-9);
+/// # Ok::<(), canonform_nmds::NmdsError>(())
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct OutOfSample {
+    /// The unit of length in which `means` are squared distances.
+    pub unit: f64,
+    /// The mean squared distance of the points of the embedding from each landmark, in units of `unit²`.
+    pub means: Vec<f64>,
+    /// The coordinates for each squared distance, in the unit of the distances: landmarks x dim.
+    pub axes: Matrix,
+}
+
+impl OutOfSample {
+    /// Number of landmarks n.
+    #[must_use]
+    pub fn n_landmarks(&self) -> usize {
+        self.means.len()
+    }
+
+    /// The coordinates (q x k) of points with these distances to the landmarks (q x n), in the unit of the distances.
+    ///
+    /// # Errors
+    /// [`NmdsError::Linalg`] if there is not one distance for each landmark, or one is infinite, NaN or negative.
+    pub fn place(&self, distances: &Matrix) -> Result<Matrix, NmdsError> {
+        let (q, n) = (distances.nrows(), distances.ncols());
+        if n != self.n_landmarks() {
+            return Err(LinalgError::Shape { n_rows: q, n_columns: self.n_landmarks(), actual: q * n }.into());
+        }
+        let bad = |value: &f64| !(value.is_finite() && *value >= 0.0);
+        if let Some(at) = distances.iter().position(bad) {
+            let (row, column) = (at % q, at / q);
+            return Err(LinalgError::BadDistance { row, column, value: distances[(row, column)] }.into());
+        }
+        let mut squares = distances.map(|d| (d / self.unit).powi(2));
+        for (mut column, mean) in squares.column_iter_mut().zip(&self.means) {
+            column.add_scalar_mut(-mean);
+        }
+        Ok(squares * &self.axes)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::{Cloud, landmark_distances};
+    use crate::{NystromOptions, Regularization, RpiAlpha, nystrom_extended};
+
+    #[test]
+    fn points_of_the_embedding_keep_their_places() {
+        let distances = landmark_distances(&Cloud::new(400, 6, 3), 30);
+        for regularization in [
+            Regularization::LowRank { rank: None },
+            Regularization::Rpi { alpha: RpiAlpha::default() },
+            Regularization::None,
+            Regularization::Cur { rank: None },
+        ] {
+            let options = NystromOptions { regularization, dim: 3 };
+            let (embedding, extension) = nystrom_extended(&distances, &options).unwrap();
+            let placed = extension.place(&distances.to_matrix().unwrap()).unwrap();
+            let gap = (placed - &embedding.coords).amax();
+            assert!(gap < 1e-9 * embedding.coords.amax(), "{regularization:?}: {gap:e}");
+        }
+    }
+
+    #[test]
+    fn other_points_in_space_are_placed_exactly() {
+        // Both halves of a cloud, embedded together and one after the other.
+        let cloud = Cloud::new(200, 3, 5);
+        let landmarks: Vec<usize> = (0..12).collect();
+        let columns = |rows: std::ops::Range<usize>| {
+            Matrix::from_fn(rows.len(), 12, |i, j| cloud.distance(rows.start + i, landmarks[j]))
+        };
+        let known = linalg::LandmarkDistances::new(landmarks.clone(), columns(0..100)).unwrap();
+        let (embedding, extension) = nystrom_extended(&known, &NystromOptions::default()).unwrap();
+        let placed = extension.place(&columns(100..200)).unwrap();
+        for i in 0..100 {
+            for j in 0..100 {
+                let apart = (placed.row(i) - embedding.coords.row(j)).norm();
+                assert!((apart - cloud.distance(100 + i, j)).abs() < 1e-7, "{i}, {j}");
+            }
+        }
+    }
+
+    #[test]
+    fn distances_that_do_not_fit_are_refused() {
+        let distances = landmark_distances(&Cloud::new(50, 3, 1), 10);
+        let (_, extension) = nystrom_extended(&distances, &NystromOptions::default()).unwrap();
+        assert!(matches!(
+            extension.place(&Matrix::zeros(2, 9)),
+            Err(NmdsError::Linalg(LinalgError::Shape { .. }))
+        ));
+        let mut bad = Matrix::zeros(2, 10);
+        bad[(1, 4)] = f64::NAN;
+        let fault = extension.place(&bad).unwrap_err();
+        assert!(matches!(fault, NmdsError::Linalg(LinalgError::BadDistance { row: 1, column: 4, .. })));
+        assert_eq!(extension.place(&Matrix::zeros(0, 10)).unwrap().shape(), (0, 3));
+    }
+}
