@@ -1,21 +1,23 @@
 //! Indexes of shape collections.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashSet};
 use std::io::BufWriter;
 use std::path::PathBuf;
 
 use ::index::{ExportError, SearchMode, ShapeEntry};
-use canonform::descriptors::DescriptorError;
+use canonform::descriptors::{DescriptorError, ShapeMetric, ShapePair};
 use canonform::{
-    BuildOptions, Elsewhere, EvaluateOptions, Explain, Inputs, LabelFile, Measure, MeshGeometry, Query,
-    RankBy, SearchOptions, SearchReport, ShapeSearch, Shard, add_to_index, build_index, content_hash,
-    evaluate_index, mesh_path, remove_from_index,
+    BuildOptions, Elsewhere, Error, EvaluateOptions, Explain, Inputs, LabelFile, Measure, MeshGeometry,
+    Query, RankBy, SearchOptions, SearchReport, ShapeFile, ShapeSearch, Shard, add_to_index, build_index,
+    content_hash, evaluate_index, indexed_shapes, mesh_path, remove_from_index,
 };
 use mesh::RepairOptions;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
+use rayon::prelude::*;
 use serde::Serialize;
 
+use crate::arrays;
 use crate::error::{Exception, of_export, to_python, with_remedy};
 use crate::run::run_alone;
 use crate::settings::Settings;
@@ -90,6 +92,7 @@ impl Index {
         labels: Option<PathBuf>,
         prune: bool,
         shard: Option<(usize, usize)>,
+        only: Option<HashSet<String>>,
         settings: &str,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<String> {
@@ -100,6 +103,7 @@ impl Index {
         let options = BuildOptions {
             labels: labels.as_ref(),
             shard,
+            only: only.as_ref(),
             elsewhere: if prune { Elsewhere::Prune } else { Elsewhere::Keep },
             limits: settings.limits()?,
             ..BuildOptions::new(&describe)
@@ -276,6 +280,61 @@ impl Index {
         Ok(vectors.fused.into_pyarray(py))
     }
 
+    /// Distances between some shapes and others, or between all pairs of some, one row for each of the first: combined, by
+    /// aligned forms and signatures, or by signatures alone.
+    fn distances<'py>(
+        &self,
+        py: Python<'py>,
+        rows: Vec<String>,
+        columns: Option<Vec<String>>,
+        kind: &str,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let aligns = match kind {
+            "combined" => true,
+            "fused" => false,
+            _ => {
+                let message = format!("kind={kind:?} is not possible: use \"combined\", \"fused\"");
+                return Err(Exception::Option.with(&message));
+            }
+        };
+        let (distances, shape) = run_alone(py, progress.as_ref(), |observer| {
+            let prepared = |ids: &[String]| {
+                ids.iter().map(|id| self.search.prepared(id)).collect::<Result<Vec<_>, Error>>()
+            };
+            let rows = prepared(&rows)?;
+            let others = columns.as_deref().map(prepared).transpose()?;
+            let columns = others.as_ref().unwrap_or(&rows);
+            let (n, budget) = (columns.len(), observer.budget());
+            observer.begin("distances", rows.len() * n);
+            let distance = |place: usize| {
+                observer.step();
+                budget.check()?;
+                let (i, j) = (place / n, place % n);
+                // Distances of forms are symmetric up to the local minimum that an alignment ends in.
+                if others.is_none() && j < i {
+                    return Ok(f64::NAN);
+                }
+                let (a, b) = (&rows[i], &columns[j]);
+                Ok(match aligns {
+                    true => ShapePair::new(ShapeMetric::default(), [a, b]).distance().combined,
+                    false => ShapeMetric::fused(a.fused(), b.fused()),
+                })
+            };
+            let mut distances =
+                (0..rows.len() * n).into_par_iter().map(distance).collect::<Result<Vec<_>, Error>>()?;
+            if others.is_none() {
+                for i in 0..n {
+                    for j in 0..i {
+                        distances[i * n + j] = distances[j * n + i];
+                    }
+                }
+            }
+            Ok((distances, [rows.len(), n]))
+        })?;
+        arrays::matrix(py, distances, shape)
+    }
+
     /// The surface of the mesh of a shape, repaired as the index says.
     fn surface(&self, py: Python<'_>, id: &str) -> PyResult<Surface> {
         let repair: RepairOptions = self.search.describe_options().form.repair;
@@ -331,4 +390,32 @@ pub(crate) fn merge_indexes(
     let merged =
         run_alone(py, progress.as_ref(), |observer| canonform::merge_indexes(&inputs, &path, observer))?;
     Ok(json(&merged))
+}
+
+/// Name, class and path of the shapes that an index of a folder has, without reading any mesh, with the sizes of their files
+/// in bytes.
+#[pyfunction]
+pub(crate) fn list_folder(
+    py: Python<'_>,
+    folder: PathBuf,
+    path: PathBuf,
+    labels: Option<PathBuf>,
+) -> PyResult<Vec<(String, String, PathBuf, u64)>> {
+    let labels = labels_of(labels)?;
+    run_alone(py, None, |_| {
+        let size = |path: &PathBuf| std::fs::metadata(path).map_or(0, |found| found.len());
+        let listed = |shape: ShapeFile| {
+            let n_bytes = mesh::io::files_of(&shape.path).iter().map(size).sum();
+            (shape.name, shape.label, shape.path, n_bytes)
+        };
+        Ok(indexed_shapes(&folder, &path, labels.as_ref())?.into_iter().map(listed).collect())
+    })
+}
+
+/// The hashes of mesh files, as text. A file that cannot be read has none.
+#[pyfunction]
+pub(crate) fn content_hashes(py: Python<'_>, paths: Vec<PathBuf>) -> PyResult<Vec<Option<String>>> {
+    run_alone(py, None, |_| {
+        Ok(paths.par_iter().map(|path| content_hash(path).ok().map(|hash| hash.to_string())).collect())
+    })
 }

@@ -14,6 +14,7 @@ mod datasets;
 mod error;
 mod form;
 mod index;
+mod nystrom;
 mod picture;
 mod run;
 mod settings;
@@ -32,7 +33,9 @@ mod _canonform {
     #[pymodule_export]
     use crate::form::Form;
     #[pymodule_export]
-    use crate::index::{Index, merge_indexes};
+    use crate::index::{Index, content_hashes, list_folder, merge_indexes};
+    #[pymodule_export]
+    use crate::nystrom::{Extension, nystrom};
     #[pymodule_export]
     use crate::picture::draw;
     #[pymodule_export]

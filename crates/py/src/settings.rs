@@ -2,7 +2,7 @@
 
 use canonform::descriptors::{FormDistance, Normalization, SignatureKind};
 use canonform::geodesics::{FastMarchingOptions, Method, Sampling};
-use canonform::nmds::{Bandwidth, Regularization, RpiAlpha};
+use canonform::nmds::{Bandwidth, NystromOptions, Regularization, RpiAlpha};
 use canonform::{
     Budget, DescribeOptions, EmbedMethod, EmbedSettings, FormOptions, NoEffect, Samples, ShapeLimits,
     StressChoice, StressOptions,
@@ -110,6 +110,12 @@ impl Settings {
             tolerance: self.value("tolerance")?,
         };
         settings.applied_to(options).map_err(|fault| without_effect(&fault))
+    }
+
+    /// How NMDS inverts the matrix of the samples.
+    pub(crate) fn nystrom(&self) -> PyResult<NystromOptions> {
+        let FormOptions { method, dim, .. } = self.form(RepairOptions::default())?;
+        Ok(NystromOptions { regularization: method.regularization().unwrap_or_default(), dim })
     }
 
     /// A number, or one of several values that have names.

@@ -8,10 +8,9 @@ import subprocess
 from pathlib import Path
 from typing import Any
 
+import canonform
 import numpy as np
 import pytest
-
-import canonform
 from canonform.datasets import Shape
 
 ROOT = Path(__file__).resolve().parents[3]

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
+import canonform
 import numpy as np
 import pytest
-
-import canonform
 from canonform import Surface
 from canonform.datasets import Shape
 

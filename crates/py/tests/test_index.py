@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import canonform
 import numpy as np
 import pytest
-
-import canonform
 from canonform import Index
 from canonform.datasets import Shape
 from canonform.errors import MeshError, MissingFileError, NoSuchShapeError, OptionError, ShapeIndexError

@@ -8,10 +8,9 @@ import sys
 import textwrap
 from pathlib import Path
 
+import canonform
 import numpy as np
 import pytest
-
-import canonform
 from canonform import Surface
 from canonform.datasets import Shape
 from canonform.errors import MeshError

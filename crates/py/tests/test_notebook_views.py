@@ -7,9 +7,8 @@ import re
 import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
-import numpy as np
-
 import canonform
+import numpy as np
 from canonform import Index, Surface
 from canonform.datasets import Shape
 

@@ -11,11 +11,10 @@ import subprocess
 import sys
 from pathlib import Path
 
-import pytest
-from conftest import ROOT
-
 import canonform
+import pytest
 from canonform import _canonform
+from conftest import ROOT
 
 SOURCE = ROOT / "crates" / "py" / "python" / "canonform"
 MODULES = sorted(path.stem for path in SOURCE.glob("*.py") if path.stem != "__init__")

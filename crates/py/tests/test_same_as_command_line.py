@@ -5,13 +5,12 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
+import canonform
 import numpy as np
 import pytest
-from conftest import Program
-
-import canonform
 from canonform import Index
 from canonform.datasets import Shape
+from conftest import Program
 
 SECONDS = {"seconds", "load_seconds", "repair_seconds"}
 

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
+import canonform
 import numpy as np
 import pytest
-from conftest import grid
-
-import canonform
 from canonform import Surface
 from canonform.datasets import Shape
 from canonform.errors import EmbeddingError, MeshError, MissingFileError, OptionError, PointError, TimeLimitError
+from conftest import grid
 
 
 def test_distances_in_the_plane_are_euclidean(square: Surface) -> None:

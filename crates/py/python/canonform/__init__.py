@@ -10,7 +10,8 @@ straight lines equal these distances (their *canonical forms*), and aligns, comp
     >>> cat.canonical_form(n=50).points.shape
     (1000, 3)
 
-`Surface` holds a mesh and everything that was prepared on it. `Index` is a searchable file of shapes.
+`Surface` holds a mesh and everything that was prepared on it. `Index` is a searchable file of shapes. `NystromMDS` embeds any
+metric space (needs scikit-learn), and `canonform.distributed` builds indexes on several machines (needs Dask).
 
 Arrays may be of any real type and layout. Vertices and faces are counted from 0, results are in the vertex order of the input, and
 lengths are in the units of the mesh. The same input, options and seed give the same numbers as the command line, for any number of
@@ -20,6 +21,9 @@ threads.
 from __future__ import annotations
 
 import os as _os
+from typing import TYPE_CHECKING as _TYPE_CHECKING
+from typing import Any as _Any
+
 from . import datasets, errors
 from ._canonform import __version__, set_threads, threads
 from ._compare import Alignment, Comparison, align, compare
@@ -28,12 +32,17 @@ from ._index import Index, Result, SearchResults, ShapeEntry
 from ._surface import Path, RepairReport, Surface, distance_methods, embedding_methods
 from .errors import CanonformError
 
+if _TYPE_CHECKING:
+    from . import distributed
+    from .learn import NystromMDS
+
 __all__ = [
     "Alignment",
     "CanonformError",
     "Comparison",
     "Form",
     "Index",
+    "NystromMDS",
     "Path",
     "RepairReport",
     "Result",
@@ -45,6 +54,7 @@ __all__ = [
     "compare",
     "datasets",
     "distance_methods",
+    "distributed",
     "embedding_methods",
     "errors",
     "read",
@@ -59,3 +69,16 @@ def read(path: str | _os.PathLike[str], *, components: str = "largest", weld: st
     Raises `MissingFileError`, `FileError` and `MeshError`.
     """
     return Surface.read(path, components=components, weld=weld)
+
+
+def __getattr__(name: str) -> _Any:
+    # These need scikit-learn and Dask, which not everybody has.
+    if name == "NystromMDS":
+        from .learn import NystromMDS
+
+        return NystromMDS
+    if name == "distributed":
+        from importlib import import_module
+
+        return import_module(".distributed", __name__)
+    raise AttributeError(f"module 'canonform' has no attribute {name!r}")

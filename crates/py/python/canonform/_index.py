@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any, TypeAlias, overload
@@ -13,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _canonform, _html
+from ._arrays import Floats
 from ._settings import Progress, encoded, n_bytes, shown
 from ._surface import Surface
 from .errors import CanonformError, OptionError
@@ -240,7 +242,7 @@ class Index:
         )
         with shown(progress) as update, _label_file(labels) as label_file:
             report = json.loads(
-                _canonform.Index.build(os.fspath(folder), os.fspath(path), label_file, prune, shard, settings, update)
+                _canonform.Index.build(os.fspath(folder), os.fspath(path), label_file, prune, shard, None, settings, update)
             )
         if not os.path.exists(path):
             from .errors import MeshError
@@ -379,9 +381,8 @@ class Index:
 
     def shapes(self) -> list[ShapeEntry]:
         """All shapes, by name."""
-        whole = lambda number: None if number is None else int(number)  # noqa: E731
         return [
-            ShapeEntry(id, label, os.fspath(path), whole(vertices), whole(faces))
+            ShapeEntry(id, label, os.fspath(path), _whole(vertices), _whole(faces))
             for id, label, path, vertices, faces in self._inner.shapes()
         ]
 
@@ -392,6 +393,33 @@ class Index:
     def vector(self, id: str) -> NDArray[np.float32]:
         """The fused signature of one shape."""
         return self._inner.vector(id)
+
+    def distances(
+        self,
+        ids: Sequence[str] | None = None,
+        others: Sequence[str] | None = None,
+        *,
+        kind: str = "combined",
+        progress: Progress = False,
+    ) -> Floats:
+        """Distances between shapes of the index, in parallel: all of them by default.
+
+        Parameters
+        ----------
+        ids
+            Names of shapes. By default all, in the order of `shapes`.
+        others
+            Names of other shapes. By default the same, and the matrix is symmetric.
+        kind
+            "combined" aligns the forms of every pair; "fused" compares signatures only, and is much faster.
+
+        Returns
+        -------
+        ndarray of shape (len(ids), len(others))
+        """
+        rows = list(self) if ids is None else list(ids)
+        with shown(progress) as update:
+            return self._inner.distances(rows, None if others is None else list(others), kind, update)
 
     def surface(self, id: str) -> Surface:
         """The surface of a shape. Its mesh file must be where it was, and unchanged."""
@@ -431,25 +459,21 @@ class Index:
         return _html.card(self.path, rows)
 
 
-class _label_file:  # noqa: N801
+def _whole(number: float | None) -> int | None:
+    return None if number is None else int(number)
+
+
+@contextmanager
+def _label_file(labels: Mapping[str, str] | AnyPath | None) -> Iterator[str | None]:
     """The file of labels: the one given, or a temporary one with the labels given."""
-
-    def __init__(self, labels: Mapping[str, str] | AnyPath | None) -> None:
-        self._labels = labels
-        self._folder: TemporaryDirectory[str] | None = None
-
-    def __enter__(self) -> str | None:
-        if self._labels is None or isinstance(self._labels, (str, os.PathLike)):
-            return None if self._labels is None else os.fspath(self._labels)
-        self._folder = TemporaryDirectory()
-        path = os.path.join(self._folder.name, "labels.csv")
+    if labels is None or isinstance(labels, (str, os.PathLike)):
+        yield None if labels is None else os.fspath(labels)
+        return
+    with TemporaryDirectory() as folder:
+        path = os.path.join(folder, "labels.csv")
         with open(path, "w", encoding="utf-8", newline="") as file:
-            for name, label in self._labels.items():
+            for name, label in labels.items():
                 if any(c in f"{name}{label}" for c in ',\n\r"'):
                     raise OptionError(f"labels={{{name!r}: {label!r}}} is not possible: a comma or quote in a name or class")
                 file.write(f"{name},{label}\n")
-        return path
-
-    def __exit__(self, *_: object) -> None:
-        if self._folder is not None:
-            self._folder.cleanup()
+        yield path

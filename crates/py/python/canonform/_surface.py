@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, TypeAlias, overload
@@ -19,6 +19,9 @@ from ._settings import Progress, encoded, n_bytes, number_or_inf, shown
 
 Point: TypeAlias = int | np.integer[Any] | str
 """A vertex by its number; a point of an edge, such as "17-42@0.3"; or of a face, such as "f8@2:1:1"."""
+
+Points: TypeAlias = list[Point] | tuple[Point, ...] | range | Ints
+"""Several points."""
 
 
 def distance_methods() -> dict[str, str]:
@@ -221,22 +224,22 @@ class Surface:
                 _several(sources), method, update, obtuse, float(max_distance), report
             )
 
-    @overload  # type: ignore[overload-overlap]
+    @overload
     def path(self, a: Point, b: Point, *, method: str = ..., update: str | None = ..., obtuse: str | None = ...) -> Path: ...
     @overload
     def path(
-        self, a: Point, b: Sequence[Point] | Ints, *, method: str = ..., update: str | None = ..., obtuse: str | None = ...
+        self, a: Point, b: Points, *, method: str = ..., update: str | None = ..., obtuse: str | None = ...
     ) -> list[Path]: ...
     def path(
         self,
         a: Point,
-        b: Point | Sequence[Point] | Ints,
+        b: Point | Points,
         *,
         method: str = "fast-marching",
         update: str | None = None,
         obtuse: str | None = None,
     ) -> Path | list[Path]:
-        """The shortest path along the surface from a to b; one path for each point if b is a sequence of points.
+        """The shortest path along the surface from a to b; one path for each if b is a list, tuple or array of points.
 
         The path crosses faces: it is straightened until it is locally shortest, so it may be shorter than the distance that an approximate
         method states.

@@ -1,0 +1,231 @@
+"""Estimators for scikit-learn: embed points of any metric space, and place further points in the embedding."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, TypeAlias
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _canonform
+from ._arrays import Floats, Ints
+from ._settings import encoded
+
+try:
+    from sklearn.base import BaseEstimator, ClassNamePrefixFeaturesOutMixin, TransformerMixin
+    from sklearn.metrics import pairwise_distances
+    from sklearn.utils import check_random_state
+    from sklearn.utils.validation import check_is_fitted, validate_data
+except ImportError as missing:
+    raise ImportError("canonform.learn needs scikit-learn 1.6 or later: pip install 'canonform[learn]'") from missing
+
+__all__ = ["NystromMDS"]
+
+_ROUNDING = 1e-7
+"""Differences of distances that are not told from zero, relative to the largest distance."""
+
+Metric: TypeAlias = str | Callable[[Any, Any], ArrayLike]
+
+
+class NystromMDS(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEstimator):  # type: ignore[misc]
+    """Multidimensional scaling from the distances to a few landmarks, with `transform` for new points.
+
+    Classical scaling needs the distances between all pairs of n points, and O(n^2) memory. This estimator needs p columns of them, one for
+    each landmark, and O(n p) memory. It approximates the eigenvectors by the Nystrom method (Shamai, Zibulevsky and Kimmel 2015), and the
+    same formula places points that were not there when it was fitted, from their distances to the landmarks.
+
+    Parameters
+    ----------
+    n_landmarks : int, default=100
+        Number of landmarks, fewer if there are fewer different points.
+    n_components : int, default=3
+        Dimensions of the embedding.
+    metric : str or callable, default="euclidean"
+        * A name that `sklearn.metrics.pairwise_distances` knows: X are vectors.
+        * "precomputed": X is the matrix of distances between all points, or in `transform` those from new points to all points of the
+          fit, or to the landmarks only.
+        * A function `metric(a, X)` that returns the distances from the point a to each of the points X, a column of the matrix. X may then
+          be any sequence: vectors, images, nodes of a graph, vertices of a surface.
+    metric_params : dict, default=None
+        Further arguments of the metric.
+    sampling : {"farthest", "random"}, default="farthest"
+        How landmarks are chosen: each the farthest from those before it, or at random.
+    regularization : {"low-rank", "rpi", "none", "cur"}, default="low-rank"
+        How the matrix of the landmarks is inverted, see `Surface.canonical_form`.
+    rank : int, default=None
+        Number of eigenvalues that "low-rank" keeps. By default half the landmarks, at least n_components + 4.
+    alpha : float, default=None
+        How strongly "rpi" damps small eigenvalues.
+    random_state : int, RandomState or None, default=None
+        For `sampling="random"`.
+
+    Attributes
+    ----------
+    embedding_ : ndarray of shape (n, n_components)
+        Coordinates of the points of the fit, centred, in the unit of the distances.
+    landmarks_ : ndarray of shape (p,)
+        The landmarks: indices of points of the fit.
+    eigenvalues_ : ndarray
+        Eigenvalues, descending; the first n_components belong to the columns of the embedding.
+    negative_mass_ : float
+        Share of negative eigenvalues, 0 to 1: how far the distances are from Euclidean.
+    rank_ : int
+        Eigenpairs of the matrix of the landmarks that were used.
+    n_features_in_ : int
+        Number of features of the points of the fit.
+
+    Examples
+    --------
+    Distances along the arc of a circle, which are those of points on a line:
+
+    >>> import numpy as np
+    >>> from canonform import NystromMDS
+    >>> angles = np.linspace(0, 3, 50)
+    >>> along = NystromMDS(n_landmarks=8, n_components=1, metric=lambda a, b: abs(a - b)).fit(angles)
+    >>> new = along.transform(np.array([1.5]))
+    >>> bool(abs(new[0, 0] - along.embedding_[[24, 25], 0].mean()) < 1e-9)
+    True
+    """
+
+    embedding_: Floats
+    landmarks_: Ints
+    eigenvalues_: Floats
+    negative_mass_: float
+    rank_: int
+    _extension: _canonform.Extension
+
+    def __init__(
+        self,
+        n_landmarks: int = 100,
+        n_components: int = 3,
+        *,
+        metric: Metric = "euclidean",
+        metric_params: dict[str, Any] | None = None,
+        sampling: str = "farthest",
+        regularization: str = "low-rank",
+        rank: int | None = None,
+        alpha: float | None = None,
+        random_state: Any = None,
+    ) -> None:
+        self.n_landmarks = n_landmarks
+        self.n_components = n_components
+        self.metric = metric
+        self.metric_params = metric_params
+        self.sampling = sampling
+        self.regularization = regularization
+        self.rank = rank
+        self.alpha = alpha
+        self.random_state = random_state
+
+    def fit(self, X: Any, y: object = None) -> NystromMDS:
+        """Choose landmarks and embed the points X. y is ignored."""
+        X = self._points(X, reset=True)
+        n = len(X)
+        if n < 2:
+            raise ValueError(f"a metric space of 1 sample has no extent, and X has {n} sample(s); give at least 2")
+        landmarks, columns = self._measured(X)
+        settings = encoded(
+            dim=self.n_components, regularization=self.regularization, rank=self.rank, alpha=self.alpha
+        )
+        found = _canonform.nystrom(columns, landmarks.tolist(), settings)
+        self.embedding_, self.eigenvalues_, self.negative_mass_, self.rank_, self._extension = found
+        self.landmarks_ = landmarks
+        self._n_fitted = n
+        self._landmark_points: Any = None if self.metric == "precomputed" else _items(X, landmarks)
+        return self
+
+    def fit_transform(self, X: Any, y: object = None) -> Floats:
+        """Embed the points X, and return their coordinates: shape (n, n_components)."""
+        return self.fit(X).embedding_
+
+    def transform(self, X: Any) -> Floats:
+        """Place points in the embedding, from their distances to the landmarks: shape (len(X), n_components).
+
+        Points of the fit get their coordinates in `embedding_`, up to rounding.
+        """
+        check_is_fitted(self)
+        n_landmarks = len(self.landmarks_)
+        if self.metric == "precomputed":
+            given = np.shape(X)
+            # The library refuses distances that are not finite.
+            to_landmarks = len(given) == 2 and given[1] == n_landmarks != self._n_fitted
+            columns = np.asarray(X) if to_landmarks else self._points(X, reset=False)[:, self.landmarks_]
+        else:
+            X = self._points(X, reset=False)
+            columns = np.empty((len(X), n_landmarks))
+            for j in range(n_landmarks):
+                columns[:, j] = self._column(self._landmark_points[j], X)
+        placed: Floats = self._extension.place(np.asarray(columns, dtype=np.float64))
+        return placed
+
+    def _points(self, X: Any, *, reset: bool) -> Any:
+        """The points, checked if they are numbers."""
+        if callable(self.metric):
+            if reset:
+                array = np.asarray(X) if isinstance(X, np.ndarray) else None
+                self.n_features_in_ = array.shape[1] if array is not None and array.ndim == 2 else 1
+            return X
+        X = validate_data(self, X, dtype=np.float64, reset=reset, ensure_min_samples=2 if reset else 1)
+        if reset and self.metric == "precomputed" and X.shape[0] != X.shape[1]:
+            raise ValueError(f"metric='precomputed' needs the distances between all pairs, a square matrix; X has shape {X.shape}")
+        return X
+
+    def _column(self, a: Any, X: Any) -> Floats:
+        """The distances from a point to each of several."""
+        parameters = self.metric_params or {}
+        if callable(self.metric):
+            column = np.asarray(self.metric(a, X, **parameters), dtype=np.float64)
+            if column.shape != (len(X),):
+                raise ValueError(f"metric(a, X) must return {len(X)} distances, one for each point of X; got shape {column.shape}")
+            return column
+        distances: Floats = pairwise_distances(X, np.asarray(a)[None], metric=self.metric, **parameters)[:, 0]
+        return distances
+
+    def _measured(self, X: Any) -> tuple[Ints, Floats]:
+        """Landmarks, and the distances from each of them to all points, one column for each."""
+        n = len(X)
+        if not self.n_landmarks >= 1:
+            raise ValueError(f"n_landmarks={self.n_landmarks} is not possible: give a positive number")
+        most = min(self.n_landmarks, n)
+
+        def column(i: int) -> Floats:
+            measured: Floats = X[:, i] if self.metric == "precomputed" else self._column(X[i], X)
+            return measured
+
+        columns = np.empty((n, most), order="F")
+        if self.sampling == "random":
+            landmarks = check_random_state(self.random_state).permutation(n)[:most].astype(np.int64)
+            for j, i in enumerate(landmarks):
+                columns[:, j] = column(int(i))
+            return landmarks, columns
+        if self.sampling != "farthest":
+            raise ValueError(f"sampling={self.sampling!r} is not possible: use 'farthest' or 'random'")
+        # As on surfaces, the first is the point farthest from point 0, at a tip.
+        i = int(np.argmax(column(0)))
+        taken: list[int] = []
+        nearest = np.full(n, np.inf)
+        while len(taken) < most:
+            columns[:, len(taken)] = column(i)
+            np.minimum(nearest, columns[:, len(taken)], out=nearest)
+            nearest[i] = 0
+            taken.append(i)
+            i = int(np.argmax(nearest))
+            # The other points repeat landmarks, up to the rounding of Euclidean distances by scikit-learn.
+            if not nearest[i] > _ROUNDING * columns[:, 0].max():
+                break
+        return np.array(taken, dtype=np.int64), columns[:, : len(taken)]
+
+    @property
+    def _n_features_out(self) -> int:
+        return int(self.embedding_.shape[1])
+
+    def __sklearn_tags__(self) -> Any:
+        tags = super().__sklearn_tags__()
+        tags.input_tags.pairwise = self.metric == "precomputed"
+        tags.transformer_tags.preserves_dtype = ["float64"]
+        return tags
+
+
+def _items(X: Any, indices: NDArray[np.int64]) -> Any:
+    return X[indices] if isinstance(X, np.ndarray) else [X[i] for i in indices]

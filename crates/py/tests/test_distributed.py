@@ -1,0 +1,134 @@
+"""Indexes and distances on several workers."""
+
+from __future__ import annotations
+
+import os
+import signal
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+pytest.importorskip("distributed")
+
+from canonform import Index  # noqa: E402
+from canonform.distributed import batches_by_size, build_index, distance_matrix  # noqa: E402
+from canonform.errors import MeshError, OptionError  # noqa: E402
+from distributed import Client, LocalCluster  # noqa: E402
+
+# Dask and its dependencies warn of their own affairs.
+pytestmark = pytest.mark.filterwarnings("default")
+
+
+@pytest.fixture(scope="module")
+def client():
+    with LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster, Client(cluster) as client:
+        yield client
+
+
+def exported(index: Index, folder: Path, name: str) -> bytes:
+    index.export(folder / name)
+    return (folder / name).read_bytes()
+
+
+def test_batches_are_even_and_begin_with_the_largest() -> None:
+    sizes = [5, 1, 1, 100, 1, 40, 1, 1, 50, 3]
+    batches = batches_by_size(sizes, 3)
+    assert batches[0] == [3] and sorted(sum(batches, [])) == list(range(10))
+    # 203 in all: a batch holds 67, unless one item is larger.
+    assert [sum(sizes[item] for item in batch) for batch in batches] == [100, 50, 53]
+    assert [max(sizes[item] for item in batch) for batch in batches] == [100, 50, 40]
+    assert [len(batch) for batch in batches_by_size([1] * 10, 1, most=4)] == [4, 4, 2]
+    assert batches_by_size([], 3) == [] and batches_by_size([0, 0], 5) == [[0, 1]]
+
+
+def test_two_workers_make_the_index_of_one_process(client: Client, collection: Path, tmp_path: Path) -> None:
+    single = Index.build(collection, tmp_path / "single.canonform")
+    seen = []
+    index = build_index(
+        collection, client, tmp_path / "many.canonform", n_batches=4, progress=lambda *step: seen.append(step)
+    )
+    assert exported(index, tmp_path, "many.jsonl") == exported(single, tmp_path, "single.jsonl")
+    assert seen[-1] == ("shapes", 9, 9) and index.build_report is not None
+    assert index.build_report["described"] == 9 and index.build_report["batches"] >= 4
+    assert not (tmp_path / "many.canonform.shards").exists()
+    assert index.search(collection / "cat1.off", k=1)[0].id == "cat1"
+
+
+def test_a_finished_batch_is_not_described_again(client: Client, collection: Path, tmp_path: Path) -> None:
+    meshes = tmp_path / "meshes"
+    meshes.mkdir()
+    for mesh in collection.iterdir():
+        (meshes / mesh.name).write_bytes(mesh.read_bytes())
+    out = tmp_path / "i.canonform"
+    build_index(meshes, client, out, n_batches=9, keep_shards=True)
+    again = build_index(meshes, client, out, n_batches=9, keep_shards=True)
+    assert again.build_report is not None
+    assert (again.build_report["described"], again.build_report["unchanged"]) == (0, 9)
+    # One mesh changes, though not its size or name.
+    changed = meshes / "cat0.off"
+    text = changed.read_text().splitlines()
+    text[2], text[3] = text[3], text[2]
+    changed.write_text("\n".join(text) + "\n")
+    third = build_index(meshes, client, out, n_batches=9, keep_shards=True)
+    assert third.build_report is not None and third.build_report["unchanged"] >= 6
+    assert third.build_report["described"] >= 1
+
+
+def test_a_lost_worker_costs_its_batch_only(collection: Path, tmp_path: Path) -> None:
+    single = Index.build(collection, tmp_path / "single.canonform")
+    shards = tmp_path / "shards"
+    with LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster, Client(cluster) as client:
+        victims = client.run(os.getpid)
+        victim = next(iter(victims.values()))
+        finished: list[int] = []
+
+        def kill_after_the_first(_: str, done: int, total: int) -> None:
+            if not finished:
+                os.kill(victim, signal.SIGKILL)
+            finished.append(done)
+
+        index = build_index(
+            collection,
+            client,
+            tmp_path / "many.canonform",
+            n_batches=9,
+            shards=shards,
+            keep_shards=True,
+            progress=kill_after_the_first,
+        )
+    assert exported(index, tmp_path, "many.jsonl") == exported(single, tmp_path, "single.jsonl")
+    assert finished[-1] == 9 and index.build_report is not None
+    # Every batch was described to its end once: at most the one that the worker had was begun twice.
+    assert index.build_report["described"] + index.build_report["unchanged"] == 9
+    assert index.build_report["unchanged"] <= 1
+    assert len(list(shards.glob("*.canonform"))) == index.build_report["batches"]
+
+
+def test_failures_are_listed_and_nothing_at_all_is_an_error(client: Client, collection: Path, tmp_path: Path) -> None:
+    meshes = tmp_path / "meshes"
+    meshes.mkdir()
+    (meshes / "broken.off").write_text("OFF\n3 1 0\n0 0 0\n")
+    with pytest.raises(MeshError, match="broken"):
+        build_index(meshes, client, tmp_path / "none.canonform")
+    (meshes / "cat0.off").write_bytes((collection / "cat0.off").read_bytes())
+    index = build_index(meshes, client, tmp_path / "one.canonform", labels={"cat0": "feline"})
+    assert index.build_report is not None
+    assert [failure["id"] for failure in index.build_report["failed"]] == ["broken"]
+    assert index.info()["classes"] == {"feline": 1}
+    with pytest.raises(OptionError, match="geodesic="):
+        build_index(collection, client, tmp_path / "bad.canonform", geodesic="magic")
+
+
+def test_the_matrix_of_distances_is_that_of_the_index(client: Client, collection: Path, tmp_path: Path) -> None:
+    index = Index.build(collection, tmp_path / "i.canonform")
+    for kind in ("combined", "fused"):
+        ids, matrix = distance_matrix(index, client, kind=kind, block=4)
+        assert ids == list(index)
+        np.testing.assert_array_equal(matrix, index.distances(kind=kind))
+        np.testing.assert_array_equal(matrix, matrix.T)
+    found = index.search("cat0", k=9, exact=True)
+    row = dict(zip(ids, distance_matrix(index, client)[1][ids.index("cat0")], strict=True))
+    assert row[found[1].id] == pytest.approx(found[1].distance, rel=1e-6)
+    with pytest.raises(OptionError, match='"combined"'):
+        distance_matrix(index, client, kind="magic")
