@@ -411,17 +411,6 @@ impl Surface {
         let values = described.signature(kind).map_or_else(Vec::new, |signature| signature.values.clone());
         Ok(values.into_pyarray(py).into_any())
     }
-
-    /// Facts of the description: area, diameter, the longest boundary, the number of shortcuts.
-    fn facts(
-        &self,
-        py: Python<'_>,
-        settings: &str,
-        progress: Option<Py<PyAny>>,
-    ) -> PyResult<(f64, f64, f64, usize)> {
-        let described = self.description_of(py, settings, progress)?;
-        Ok((described.area, described.diameter, described.longest_boundary, described.shortcuts.len()))
-    }
 }
 
 /// Writes a mesh; the extension of the path tells the format.

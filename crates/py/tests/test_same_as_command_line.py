@@ -141,5 +141,15 @@ def test_indexes(program: Program, collection: Path, tmp_path: Path) -> None:
         assert program.json("evaluate", theirs, *flags) == index.evaluate(**arguments)
 
 
+def test_indexes_with_other_forms(program: Program, meshes: list[Path], tmp_path: Path) -> None:
+    folder = meshes[0].parent
+    flags = ["-n", "40", "--rank", "9", "--update", "virtual-source", "--points", "300", "--size"]
+    program.run("index", "build", folder, "-o", tmp_path / "theirs.canonform", *flags)
+    form = {"rank": 9, "update": "virtual-source"}
+    index = Index.build(folder, tmp_path / "ours.canonform", n=40, points=300, size=True, form=form)
+    index.export(tmp_path / "ours.jsonl")
+    assert program.run("index", "export", tmp_path / "theirs.canonform") == (tmp_path / "ours.jsonl").read_text()
+
+
 def test_generated_shapes_are_those_of_the_library(collection: Path, cat: Shape) -> None:
     np.testing.assert_array_equal(canonform.read(collection / "cat0.off").faces, cat.faces)

@@ -29,5 +29,7 @@ pub(crate) use stored_cells::{make_format_1, write_header};
 pub(crate) use stored_graph::Graph;
 #[cfg(test)]
 pub(crate) use stored_graph::{Node, drop_graph};
-pub(crate) use tables::{BODIES, CACHE, CellState, Changes, ENTRIES, FUSED, FusedVectors, Snapshot, Store, call};
+pub(crate) use tables::{
+    BODIES, CACHE, CellState, Changes, ENTRIES, FUSED, FusedVectors, Snapshot, Store, call,
+};
 pub(crate) use work::WorkFile;

@@ -29,7 +29,7 @@ from ._canonform import __version__, set_threads, threads
 from ._compare import Alignment, Comparison, align, compare
 from ._form import Form
 from ._index import Index, Result, SearchResults, ShapeEntry
-from ._surface import Path, RepairReport, Surface, distance_methods, embedding_methods
+from ._surface import Path, RepairReport, Surface, distance_methods, embedding_methods, signature_kinds
 from .errors import CanonformError
 
 if _TYPE_CHECKING:
@@ -59,6 +59,7 @@ __all__ = [
     "errors",
     "read",
     "set_threads",
+    "signature_kinds",
     "threads",
 ]
 

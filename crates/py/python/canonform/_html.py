@@ -32,12 +32,12 @@ def image(png: bytes, side: int = 220, title: str = "") -> str:
 def card(title: str, rows: Iterable[tuple[str, str]], pictures: Sequence[str] = ()) -> str:
     """A title, pictures side by side, and facts below them."""
     cells = "".join(
-        f'<tr style="background:none"><td style="{_CELL};opacity:.65">{escape(name)}</td>'
+        f'<tr style="background:none"><td style="{_CELL};opacity:.65;white-space:nowrap">{escape(name)}</td>'
         f'<td style="{_CELL};white-space:pre-line">{escape(value)}</td></tr>'
         for name, value in rows
     )
     shown = f'<div style="display:flex;gap:12px;flex-wrap:wrap;align-items:flex-end">{"".join(pictures)}</div>' if pictures else ""
-    return f'<div style="{_BOX}"><b>{escape(title)}</b>{shown}<table style="border:none;margin:6px 0 0">{cells}</table></div>'
+    return f'<div style="{_BOX}"><b>{escape(title)}</b>{shown}<table style="border:none;margin:6px 0 0;font-size:13px">{cells}</table></div>'
 
 
 def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
@@ -46,7 +46,7 @@ def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
     body = "".join(
         "<tr>" + "".join(f'<td style="{_CELL}">{escape(value)}</td>' for value in row) + "</tr>" for row in rows
     )
-    return f'<table style="border:none;margin:6px 0 0"><tr>{top}</tr>{body}</table>'
+    return f'<table style="border:none;margin:6px 0 0;font-size:13px"><tr>{top}</tr>{body}</table>'
 
 
 def box(title: str, content: str) -> str:

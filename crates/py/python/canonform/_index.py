@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from . import _canonform, _html
 from ._arrays import Floats
-from ._settings import Progress, encoded, n_bytes, shown
+from ._settings import Progress, encoded, form_options, n_bytes, shown
 from ._surface import Surface
 from .errors import CanonformError, OptionError
 
@@ -184,6 +184,7 @@ class Index:
         size: bool = False,
         method: str = "nmds",
         geodesic: str = "fast-marching",
+        form: Mapping[str, Any] | None = None,
         components: str = "largest",
         weld: str | float = "seams",
         seed: int = 0,
@@ -213,8 +214,8 @@ class Index:
             Number of points of each form to keep for alignment.
         size
             Whether to distinguish shapes by size; then all meshes need the same unit of length.
-        n, method, geodesic, seed
-            How forms are made, see `Surface.canonical_form`.
+        n, method, geodesic, seed, form
+            How forms are made, see `Surface.canonical_form`; `form` holds the options that are seldom needed, such as {"rank": 30}.
         components, weld
             How meshes are repaired, see `Surface`.
         max_vertices, timeout, memory
@@ -233,6 +234,7 @@ class Index:
             size=size,
             method=method,
             geodesic=geodesic,
+            **form_options(form),
             components=components,
             weld=weld,
             seed=seed,

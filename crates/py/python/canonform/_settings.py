@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from typing import Any, TypeAlias
 
@@ -24,6 +24,22 @@ def _plain(value: Any) -> Any:
     if hasattr(value, "item"):
         return value.item()
     raise TypeError(f"{value!r} is not a number, text or truth value")
+
+
+_FORM = frozenset(
+    "dim update obtuse sampling first_sample regularization rank alpha sigma eigenvectors mu iterations tolerance".split()
+)
+
+
+def form_options(form: Mapping[str, Any] | None) -> dict[str, Any]:
+    """Further options of forms, by name."""
+    from .errors import OptionError
+
+    options = dict(form or {})
+    unknown = sorted(set(options) - _FORM)
+    if unknown:
+        raise OptionError(f"form={{{unknown[0]!r}: ...}} is not possible: use {', '.join(map(repr, sorted(_FORM)))}")
+    return {**options, "mu": number_or_inf(options.get("mu"))}
 
 
 def number_or_inf(value: float | None) -> float | str | None:

@@ -34,6 +34,11 @@ def embedding_methods() -> dict[str, str]:
     return dict(_canonform.methods()[1])
 
 
+def signature_kinds() -> list[str]:
+    """Kinds of signatures that `Surface.signature` computes, besides "fused"."""
+    return _canonform.signature_kinds()
+
+
 class RepairReport(dict[str, Any]):
     """What the repair of a mesh changed: the object `repair` that the command line prints, with the same keys.
 

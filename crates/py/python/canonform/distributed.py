@@ -25,7 +25,7 @@ import numpy as np
 from . import _canonform
 from ._arrays import Floats
 from ._index import AnyPath, Index, _label_file
-from ._settings import Progress, encoded, n_bytes, shown
+from ._settings import Progress, encoded, form_options, n_bytes, shown
 from .errors import MeshError, OptionError
 
 try:
@@ -81,6 +81,7 @@ def build_index(
     size: bool = False,
     method: str = "nmds",
     geodesic: str = "fast-marching",
+    form: Mapping[str, Any] | None = None,
     components: str = "largest",
     weld: str | float = "seams",
     seed: int = 0,
@@ -101,7 +102,7 @@ def build_index(
 
     Parameters
     ----------
-    folder, labels, n, points, size, method, geodesic, components, weld, seed, max_vertices, timeout, memory
+    folder, labels, n, points, size, method, geodesic, form, components, weld, seed, max_vertices, timeout, memory
         As in `Index.build`.
     client
         A `distributed.Client`, of any cluster: local, over SSH, or of Slurm through dask-jobqueue.
@@ -127,6 +128,7 @@ def build_index(
         size=size,
         method=method,
         geodesic=geodesic,
+        **form_options(form),
         components=components,
         weld=weld,
         seed=seed,
