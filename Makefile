@@ -5,7 +5,7 @@ OUT ?= out
 # For `make reproduce`: a folder of meshes with the classes of the paper. Default: the built-in dataset.
 DATASET ?=
 
-.PHONY: help setup build run test test-python kills lint bench bench-peers bench-nmds bench-preparation bench-search bench-eigsh fmt doc reproduce report paper plotly deny sbom fuzz fuzz-seeds package ci clean
+.PHONY: help setup build run test test-python kills lint bench bench-peers bench-nmds bench-preparation bench-search bench-eigsh fmt doc guide reproduce report paper plotly deny sbom fuzz fuzz-seeds package ci clean
 
 help: ## List these commands
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "  make %-17s %s\n", $$1, $$2}'
@@ -71,6 +71,14 @@ fmt: ## Format the sources
 
 doc: ## Build the documentation
 	$(CARGO) doc --workspace --no-deps --locked
+
+# Of the program that builds the guide; installed into target/mdbook, so that the version is this one.
+MDBOOK = 0.5.4
+
+guide: ## Build the user guide, target/guide/index.html, with mdBook (installs it if missing)
+	@target/mdbook/bin/mdbook --version 2>/dev/null | grep -qx 'mdbook v$(MDBOOK)' || \
+	  $(CARGO) install --quiet --locked --debug --root target/mdbook --no-default-features --features search mdbook@$(MDBOOK)
+	target/mdbook/bin/mdbook build docs
 
 reproduce: ## Run all experiments, on DATASET=folder with the classes of the paper if given
 	$(CARGO) run --release --locked -p experiments -- run all --output $(OUT) \

@@ -48,6 +48,6 @@ pub use articulated::{
     ArticulatedOptions, Family, LabeledShape, articulated, articulated_body, articulated_shape,
 };
 pub use broken::{BrokenFile, broken_meshes};
-pub use creature::{CreatureOptions, creature, creature_plans, creatures};
+pub use creature::{CreatureOptions, creature, creature_family, creature_plans, creatures};
 pub use damage::{Damage, DamageKind, WeldPair};
 pub use error::DatasetError;

@@ -77,15 +77,21 @@ const SPACING: f64 = 0.55;
 /// # Ok::<(), canonform_datasets::DatasetError>(())
 /// ```
 pub fn creatures(options: &CreatureOptions) -> Result<Vec<LabeledShape>, DatasetError> {
+    let families: Vec<Vec<LabeledShape>> = (0..options.n_families)
+        .into_par_iter()
+        .map(|family| creature_family(family, options))
+        .collect::<Result<_, _>>()?;
+    Ok(families.into_iter().flatten().collect())
+}
+
+/// Generates the shapes of one family, the same as in [`creatures`]: a large collection can be made a family at a time.
+///
+/// # Errors
+/// As [`creatures`].
+pub fn creature_family(family: usize, options: &CreatureOptions) -> Result<Vec<LabeledShape>, DatasetError> {
     validate(options)?;
-    let models: Vec<Model> =
-        (0..options.n_families).into_par_iter().map(|f| model(f, options)).collect::<Result<_, _>>()?;
-    let n_shapes = options.n_families * options.n_poses;
-    let one = |i: usize| {
-        let (family, pose) = (i / options.n_poses, i % options.n_poses);
-        shape(family, &models[family], pose, options)
-    };
-    (0..n_shapes).into_par_iter().map(one).collect()
+    let model = model(family, options)?;
+    (0..options.n_poses).into_par_iter().map(|pose| shape(family, &model, pose, options)).collect()
 }
 
 /// Generates one creature, the same as in [`creatures`]; poses beyond the number in the options are further variations.

@@ -58,11 +58,13 @@ const RULES: [(&str, May); 22] = [
             "files",
             "server",
             "terminal",
+            "datasets",
         ]),
     ),
     ("py", May::Know(&["canonform", "datasets", "files", "index", "mesh", "surface", "view"])),
     ("bench", May::Know(&[])),
     ("browser", May::Know(&[])),
+    ("guide", May::Know(&[])),
     ("experiments", May::KnowEverything),
     ("tests", May::KnowEverything),
 ];

@@ -7,6 +7,7 @@
 //! | `packaging` | whether all packages can be published |
 //! | `licences` | licences of dependencies |
 //! | `guarantees` | the tests behind `docs/robustness.md` |
+//! | `pages` | links between pages, and the table of contents of the book |
 //! | `marching` | distances by fast marching |
 //! | `embedding` | embeddings through the whole pipeline |
 //! | `invariance` | signatures of subdivided, simplified, remeshed, noisy and moved shapes |
@@ -42,6 +43,8 @@ mod matches;
 mod memory;
 #[cfg(test)]
 mod packaging;
+#[cfg(test)]
+mod pages;
 #[cfg(test)]
 mod real_meshes;
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! The command line: a contract that other people's scripts rely on.
 
 mod embedding;
+mod generate;
 mod geodesic;
 mod index;
 mod render;
@@ -20,6 +21,7 @@ use mesh::io::{Content, mesh_files, or_list, writable};
 use self::shared::{COMPARED_STRESS, STRESS, distance_method, one_of};
 
 pub(crate) use embedding::EmbeddingArgs;
+pub(crate) use generate::{FamilyArg, GenerateArgs};
 pub(crate) use geodesic::GeodesicArgs;
 pub(crate) use index::{AddArgs, BuildArgs, EvaluateArgs, IndexCommand, ListArgs, SearchArgs};
 pub(crate) use render::{Place, RenderArgs};
@@ -70,6 +72,8 @@ pub(crate) enum Command {
     Evaluate(EvaluateArgs),
     /// Serve an index to browsers: drop a mesh and see the most similar shapes
     Serve(ServeArgs),
+    /// Write built-in shapes as mesh files: cats, centaurs, men, or random creatures in different poses
+    Generate(GenerateArgs),
     /// Print a completion script for a shell
     Completions {
         /// The shell

@@ -4,6 +4,7 @@ mod compare;
 mod completions;
 mod embed;
 mod evaluate;
+mod generate;
 mod geodesic;
 mod index;
 mod info;
@@ -28,6 +29,7 @@ pub(crate) fn run(command: &Command, common: &Common) -> anyhow::Result<ExitCode
         Command::Search(args) => search::search(args, common),
         Command::Evaluate(args) => evaluate::evaluate(args, common),
         Command::Serve(args) => serve::serve(args),
+        Command::Generate(args) => generate::generate(args, common),
         Command::Completions { shell } => completions::completions(*shell),
     }
 }

@@ -1,7 +1,7 @@
 //! The program as its users see it: arguments in; files, output and exit codes out.
 //!
 //! `collections` (folders and indexes as people keep them), `commands` (what each prints), `dropped` (lost surfaces),
-//! `forms` (files), `errors`, `folders` (many meshes), `geodesic` (sources, paths, all pairs), `index` (building,
+//! `forms` (files), `errors`, `folders` (many meshes), `geodesic` (sources, paths, all pairs), `guide` (the commands of the user guide), `index` (building,
 //! changing, searching), `killed` (interruptions, full disks), `render` (pictures), `serve`, `streams` (standard input and
 //! output, several meshes, limits), `zoo` (broken meshes).
 
@@ -19,6 +19,8 @@ mod folders;
 mod forms;
 #[cfg(test)]
 mod geodesic;
+#[cfg(test)]
+mod guide;
 #[cfg(test)]
 mod index;
 #[cfg(test)]

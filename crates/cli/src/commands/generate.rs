@@ -1,0 +1,100 @@
+//! `canonform generate`.
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use anyhow::{Context, Result};
+use datasets::{
+    ArticulatedOptions, CreatureOptions, DatasetError, Family, LabeledShape, articulated_shape,
+    creature_family,
+};
+use rayon::prelude::*;
+use serde::Serialize;
+use terminal::Bars;
+
+use crate::args::{Common, FamilyArg, GenerateArgs};
+use crate::output::report;
+
+#[derive(Serialize)]
+struct GenerateJson {
+    output: PathBuf,
+    n_classes: usize,
+    shapes: Vec<ShapeJson>,
+}
+
+#[derive(Serialize)]
+struct ShapeJson {
+    name: String,
+    label: String,
+    path: PathBuf,
+    n_vertices: usize,
+    n_faces: usize,
+}
+
+/// One class: its shapes can be generated without those of the others, so that a large collection needs little memory.
+enum Class {
+    Articulated(Family),
+    Creature(usize),
+}
+
+/// Writes the built-in shapes as mesh files.
+pub(crate) fn generate(args: &GenerateArgs, common: &Common) -> Result<ExitCode> {
+    let classes: Vec<Class> = match args.family {
+        FamilyArg::All => Family::all().map(Class::Articulated).into(),
+        FamilyArg::Cat => vec![Class::Articulated(Family::Cat)],
+        FamilyArg::Centaur => vec![Class::Articulated(Family::Centaur)],
+        FamilyArg::David => vec![Class::Articulated(Family::David)],
+        FamilyArg::Creatures => (0..args.classes).map(Class::Creature).collect(),
+    };
+    let bar = Bars::new(common.quiet).bar("classes", classes.len());
+    let mut json = GenerateJson { output: args.output.clone(), n_classes: classes.len(), shapes: Vec::new() };
+    for class in classes {
+        let shapes = shapes(&class, args, common)?;
+        let folder = match (&class, shapes.first()) {
+            (Class::Creature(_), Some(shape)) => args.output.join(&shape.label),
+            _ => args.output.clone(),
+        };
+        std::fs::create_dir_all(&folder)
+            .with_context(|| format!("cannot create the folder {}", folder.display()))?;
+        for shape in shapes {
+            let path = folder.join(format!("{}.{}", shape.name, args.output_format));
+            mesh::io::write(&path, &shape.mesh)?;
+            let (n_vertices, n_faces) = (shape.mesh.n_vertices(), shape.mesh.n_faces());
+            json.shapes.push(ShapeJson { name: shape.name, label: shape.label, path, n_vertices, n_faces });
+        }
+        bar.inc(1);
+    }
+    bar.finish_and_clear();
+    report(common, &json, |json| {
+        let (folder, n_vertices) = (json.output.display(), args.vertices);
+        let classes = if json.n_classes == 1 { "class" } else { "classes" };
+        format!(
+            "{} shapes of {} {classes} with {n_vertices} vertices each in {folder}",
+            json.shapes.len(),
+            json.n_classes
+        )
+    })
+}
+
+fn shapes(class: &Class, args: &GenerateArgs, common: &Common) -> Result<Vec<LabeledShape>, DatasetError> {
+    let n_vertices = args.vertices;
+    match class {
+        Class::Articulated(family) => {
+            // Seed 0, the default of every command, stands for the default of the dataset.
+            let seed = ArticulatedOptions::default().seed.wrapping_add(common.seed);
+            let options = ArticulatedOptions { seed, n_vertices };
+            let poses = (0..args.poses.unwrap_or(family.n_shapes())).into_par_iter();
+            poses.map(|pose| articulated_shape(*family, pose, &options)).collect()
+        }
+        Class::Creature(family) => {
+            let defaults = CreatureOptions::default();
+            let options = CreatureOptions {
+                seed: defaults.seed.wrapping_add(common.seed),
+                n_families: args.classes,
+                n_poses: args.poses.unwrap_or(defaults.n_poses),
+                n_vertices,
+            };
+            creature_family(*family, &options)
+        }
+    }
+}

@@ -1,0 +1,236 @@
+//! The user guide: its commands print what it shows, its pictures are those that they draw, and its tables of JSON keys are
+//! complete. Chapters that run `experiments` are tested beside that program.
+//!
+//! `CANONFORM_WRITE_DOCS=1 cargo test -p canonform-cli --test cli guide` writes the pictures again.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use guide::{Block, Chapter, Language, Ran, Run};
+use serde_json::Value;
+
+use crate::support::program;
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
+}
+
+fn chapters() -> Vec<Chapter> {
+    let chapters = Chapter::all(&root().join("docs/guide")).unwrap();
+    assert!(chapters.len() >= 8, "only {} chapters", chapters.len());
+    chapters
+}
+
+/// The names of the pictures that a chapter shows.
+fn pictures(chapter: &Chapter) -> Vec<&str> {
+    let links = chapter.text.split("](images/").skip(1);
+    links.filter_map(|rest| rest.split(')').next()).filter(|name| name.ends_with(".png")).collect()
+}
+
+/// Pixels of two pictures that differ visibly, as a share; 1 for different sizes.
+fn difference(a: &Path, b: &Path) -> f64 {
+    let read = |path: &Path| {
+        let decoder = png::Decoder::new(std::io::BufReader::new(fs::File::open(path).ok()?));
+        let mut reader = decoder.read_info().ok()?;
+        let mut pixels = vec![0; reader.output_buffer_size()];
+        let info = reader.next_frame(&mut pixels).ok()?;
+        Some((info.width, info.height, info.color_type.samples(), pixels))
+    };
+    match (read(a), read(b)) {
+        (Some((w, h, n, a)), Some((v, g, m, b))) if (w, h, n) == (v, g, m) => {
+            let differs = |(a, b): (&[u8], &[u8])| a.iter().zip(b).any(|(a, b)| a.abs_diff(*b) > 24);
+            a.chunks(n).zip(b.chunks(n)).filter(|pair| differs(*pair)).count() as f64 / f64::from(w * h)
+        }
+        _ => 1.0,
+    }
+}
+
+/// Compares the pictures of a chapter with those that its commands drew.
+fn check_pictures(chapter: &Chapter, run: &mut Run) {
+    let folder = chapter.path.parent().unwrap().join("images");
+    for name in pictures(chapter) {
+        let (shown, drawn) = (folder.join(name), run.folder.path().join(name));
+        if std::env::var_os("CANONFORM_WRITE_DOCS").is_some() && difference(&shown, &drawn) > 0.0 {
+            fs::create_dir_all(&folder).unwrap();
+            fs::copy(&drawn, &shown).unwrap();
+        }
+        let share = difference(&shown, &drawn);
+        if share > 0.01 {
+            let path = chapter.path.display();
+            run.faults.push(format!("{path}: {:.1} % of the pixels of {name} are not as drawn", 100.0 * share));
+        }
+    }
+}
+
+/// The paths of the keys of an object: `stress.value`, `results[].id`. Keys that are names, of signatures or of classes, are
+/// `*` if the guide says so.
+fn key_paths(value: &Value, prefix: &str, paths: &mut BTreeSet<String>) {
+    match value {
+        Value::Object(object) => {
+            for (key, value) in object {
+                let path = if prefix.is_empty() { key.clone() } else { format!("{prefix}.{key}") };
+                paths.insert(path.clone());
+                key_paths(value, &path, paths);
+            }
+        }
+        Value::Array(items) => items.iter().for_each(|item| key_paths(item, &format!("{prefix}[]"), paths)),
+        _ => {}
+    }
+}
+
+/// Whether `path` is described by `row`: the key itself, or a key below one whose row ends with `.*`.
+fn describes(row: &str, path: &str) -> bool {
+    match row.strip_suffix(".*") {
+        Some(parent) => {
+            path.strip_prefix(parent).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
+        }
+        None => row == path,
+    }
+}
+
+/// Compares the tables of keys in a chapter with the output of the commands above them. A table belongs to the last command
+/// with `--json` before it.
+fn check_keys(chapter: &Chapter, ran: &[Ran], faults: &mut Vec<String>) {
+    let mut tables: BTreeMap<usize, Vec<String>> = BTreeMap::new();
+    let commands: Vec<&Ran> = ran.iter().filter(|ran| ran.command.contains("--json")).collect();
+    let mut in_table = false;
+    for (number, line) in chapter.text.lines().enumerate() {
+        in_table = line.starts_with("| key |") || (in_table && line.starts_with('|'));
+        let Some(i) = commands.iter().rposition(|ran| ran.line <= number) else { continue };
+        if let Some(row) = line.strip_prefix("| `").filter(|_| in_table) {
+            let cell = row.split(" |").next().unwrap_or(row);
+            tables.entry(i).or_default().extend(cell.split('`').step_by(2).map(str::to_owned).filter(|s| !s.is_empty()));
+        }
+    }
+    for (i, rows) in tables {
+        let place = format!("{}:{}", chapter.path.display(), commands[i].line);
+        let Some(value) = commands[i].printed.lines().last().and_then(|line| serde_json::from_str(line).ok()) else {
+            faults.push(format!("{place} did not print an object: {}", commands[i].printed));
+            continue;
+        };
+        let mut paths = BTreeSet::new();
+        key_paths(&value, "", &mut paths);
+        let missing = paths.iter().filter(|path| !rows.iter().any(|row| describes(row, path)));
+        faults.extend(missing.map(|path| format!("{place}: the table does not describe `{path}`")));
+        let gone = rows.iter().filter(|row| !paths.iter().any(|path| describes(row, path)));
+        faults.extend(gone.map(|row| format!("{place}: the output has no `{row}`")));
+    }
+}
+
+#[test]
+fn the_guide_shows_what_its_commands_do() {
+    let chapters = chapters();
+    let pending: Vec<&Chapter> = chapters.iter().filter(|chapter| !chapter.runs("experiments")).collect();
+    let next = std::sync::atomic::AtomicUsize::new(0);
+    let faults = std::sync::Mutex::new(Vec::new());
+    let n_commands = std::sync::atomic::AtomicUsize::new(0);
+    std::thread::scope(|scope| {
+        for _ in 0..2 {
+            scope.spawn(|| {
+                while let Some(chapter) = pending.get(next.fetch_add(1, std::sync::atomic::Ordering::Relaxed)) {
+                    let mut run = guide::run(chapter, &[Path::new(program())], &[("CANONFORM_ROOT", &root())]).unwrap();
+                    check_pictures(chapter, &mut run);
+                    check_keys(chapter, &run.ran, &mut run.faults);
+                    n_commands.fetch_add(run.ran.len(), std::sync::atomic::Ordering::Relaxed);
+                    faults.lock().unwrap().extend(run.faults);
+                }
+            });
+        }
+    });
+    let (faults, n_commands) = (faults.into_inner().unwrap(), n_commands.into_inner());
+    println!("{n_commands} commands and scripts of {} chapters", pending.len());
+    assert!(faults.is_empty(), "{}", faults.join("\n"));
+    assert!(n_commands >= 40, "only {n_commands} commands");
+}
+
+#[test]
+fn pictures_of_the_guide_are_shown() {
+    let shown: BTreeSet<String> =
+        chapters().iter().flat_map(|chapter| pictures(chapter).into_iter().map(str::to_owned).collect::<Vec<_>>()).collect();
+    for entry in fs::read_dir(root().join("docs/guide/images")).unwrap() {
+        let name = entry.unwrap().file_name().into_string().unwrap();
+        assert!(shown.contains(&name), "no chapter shows docs/guide/images/{name}");
+    }
+}
+
+/// What `--help` says of a command, and of all commands.
+struct Help(BTreeMap<Vec<String>, String>);
+
+impl Help {
+    fn of(&mut self, command: &[&str]) -> &str {
+        let key: Vec<String> = command.iter().map(|word| (*word).to_owned()).collect();
+        self.0.entry(key).or_insert_with(|| {
+            let output = Command::new(program()).args(command).arg("--help").output().unwrap();
+            if output.status.success() { String::from_utf8(output.stdout).unwrap() } else { String::new() }
+        })
+    }
+
+    /// What is wrong with a call of the program, told from its words alone.
+    fn fault(&mut self, words: &[&str]) -> Option<String> {
+        let n_names = if words.first() == Some(&"index") { 2 } else { 1 };
+        if words.len() < n_names {
+            return (words.first() == Some(&"index")).then(|| "`canonform index` needs a command".to_owned());
+        }
+        let (command, arguments) = words.split_at(n_names);
+        if command[0].starts_with('-') || command == ["index", "..."] {
+            return None;
+        }
+        let help = self.of(command).to_owned();
+        if help.is_empty() {
+            return Some(format!("there is no command `{}`", command.join(" ")));
+        }
+        let options: BTreeSet<&str> = help
+            .split(|c: char| !(c.is_ascii_alphanumeric() || c == '-'))
+            .filter(|word| word.starts_with('-'))
+            .collect();
+        let flags = arguments.iter().filter(|word| word.starts_with('-') && word.len() > 1 && !is_number(word));
+        let unknown: Vec<&str> =
+            flags.map(|word| word.split('=').next().unwrap_or(word)).filter(|word| !options.contains(word)).collect();
+        (!unknown.is_empty()).then(|| format!("`{}` has no option {}", command.join(" "), unknown.join(", ")))
+    }
+}
+
+fn is_number(word: &str) -> bool {
+    word[1..].starts_with(|c: char| c.is_ascii_digit())
+}
+
+/// The calls of the program in a script: their words, without comments, redirections and what follows a pipe.
+fn calls(text: &str) -> Vec<Vec<&str>> {
+    let mut calls = Vec::new();
+    for line in text.lines() {
+        let line = line.trim().trim_start_matches("$ ");
+        let line = line.split(" #").next().unwrap_or(line);
+        for command in line.split([';', '|', '(', ')']).flat_map(|part| part.split("&&")) {
+            let mut words = command.split_whitespace().skip_while(|word| *word != "canonform");
+            if words.next().is_some() {
+                calls.push(words.take_while(|word| !matches!(*word, "<" | ">" | "\\" | "&")).collect());
+            }
+        }
+    }
+    calls
+}
+
+#[test]
+fn commands_on_every_page_exist_with_their_options() {
+    let mut pages = Chapter::all(&root().join("docs")).unwrap();
+    pages.push(Chapter::read(&root().join("README.md")).unwrap());
+    let (mut help, mut faults, mut n_calls) = (Help(BTreeMap::new()), Vec::new(), 0);
+    for page in &pages {
+        let blocks = page.blocks();
+        let scripts = blocks.iter().filter(|block| block.language != Language::Other);
+        for Block { line, text, .. } in scripts {
+            for words in calls(text) {
+                n_calls += 1;
+                let fault = help.fault(&words);
+                faults.extend(fault.map(|fault| format!("{}:{line}: {fault}", page.path.display())));
+            }
+        }
+    }
+    assert!(faults.is_empty(), "{}", faults.join("\n"));
+    assert!(n_calls >= 60, "only {n_calls} calls were found");
+    assert!(help.fault(&["embed", "a.off", "--no-such-option"]).is_some());
+    assert!(help.fault(&["no-such-command", "a.off"]).is_some());
+    assert!(help.fault(&["index", "build", "a", "--shard", "1/2"]).is_none());
+}

@@ -1,0 +1,125 @@
+//! Pages and their blocks of code.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// What a block of code is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Language {
+    /// Commands, each behind `$ `, with their output.
+    Console,
+    /// Commands without their output.
+    Script,
+    /// Commands that are not run.
+    Unrun,
+    /// Anything else, such as a snippet in another language.
+    Other,
+}
+
+/// A block of code.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Block {
+    /// The line of the page on which its text begins, counted from 1.
+    pub line: usize,
+    /// What it is.
+    pub language: Language,
+    /// Its lines.
+    pub text: String,
+}
+
+/// A page of the guide.
+#[derive(Debug, Clone)]
+pub struct Chapter {
+    /// Its file.
+    pub path: PathBuf,
+    /// Its text.
+    pub text: String,
+}
+
+impl Chapter {
+    /// Reads a page.
+    ///
+    /// # Errors
+    /// If the file cannot be read.
+    pub fn read(path: &Path) -> std::io::Result<Self> {
+        Ok(Self { path: path.to_owned(), text: fs::read_to_string(path)? })
+    }
+
+    /// Reads all pages in a folder and in the folders below, in the order of their names.
+    ///
+    /// # Errors
+    /// If a folder or a file cannot be read.
+    pub fn all(folder: &Path) -> std::io::Result<Vec<Self>> {
+        let mut paths = fs::read_dir(folder)?.map(|entry| Ok(entry?.path())).collect::<std::io::Result<Vec<_>>>()?;
+        paths.sort();
+        let mut pages = Vec::new();
+        for path in paths {
+            if path.is_dir() {
+                pages.extend(Self::all(&path)?);
+            } else if path.extension().is_some_and(|extension| extension == "md") {
+                pages.push(Self::read(&path)?);
+            }
+        }
+        Ok(pages)
+    }
+
+    /// The blocks of code of the page.
+    #[must_use]
+    pub fn blocks(&self) -> Vec<Block> {
+        blocks(&self.text)
+    }
+
+    /// Whether a command of the page that a test runs calls this program.
+    #[must_use]
+    pub fn runs(&self, program: &str) -> bool {
+        let blocks = self.blocks();
+        let mut run = blocks.iter().filter(|b| matches!(b.language, Language::Console | Language::Script));
+        run.any(|block| {
+            let words = |line: &str| line.trim_start_matches("$ ").split_whitespace().next() == Some(program);
+            block.text.lines().any(words)
+        })
+    }
+}
+
+/// The blocks of code of a page. Only fences of three backquotes at the start of a line count.
+#[must_use]
+pub fn blocks(text: &str) -> Vec<Block> {
+    let mut blocks = Vec::new();
+    let mut open: Option<Block> = None;
+    for (number, line) in text.lines().enumerate() {
+        match (line.strip_prefix("```"), &mut open) {
+            (Some(_), block @ Some(_)) => blocks.extend(block.take()),
+            (Some(info), None) => {
+                let language = match info.trim() {
+                    "console" => Language::Console,
+                    "sh" => Language::Script,
+                    "sh,norun" => Language::Unrun,
+                    _ => Language::Other,
+                };
+                open = Some(Block { line: number + 2, language, text: String::new() });
+            }
+            (None, Some(block)) => {
+                block.text += line;
+                block.text.push('\n');
+            }
+            (None, None) => {}
+        }
+    }
+    blocks
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn blocks_are_found_with_their_lines() {
+        let page = "text\n```sh\none\n\ntwo\n```\n\n```rust\nlet x = 1;\n```\n```sh,norun\nmake\n```\n";
+        let found: Vec<_> = blocks(page).into_iter().map(|b| (b.line, b.language, b.text)).collect();
+        assert_eq!(found, [
+            (3, Language::Script, "one\n\ntwo\n".to_owned()),
+            (9, Language::Other, "let x = 1;\n".to_owned()),
+            (12, Language::Unrun, "make\n".to_owned()),
+        ]);
+    }
+}

@@ -1,0 +1,153 @@
+//! Running the blocks of a chapter.
+
+use std::env;
+use std::ffi::OsString;
+use std::io;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use tempfile::TempDir;
+
+use crate::block::{Block, Chapter, Language};
+use crate::output::matches;
+
+/// A command that was run.
+#[derive(Debug, Clone)]
+pub struct Ran {
+    /// The line of the chapter.
+    pub line: usize,
+    /// The command.
+    pub command: String,
+    /// What it printed, to standard output and standard error.
+    pub printed: String,
+}
+
+/// What became of the commands of a chapter.
+#[derive(Debug)]
+pub struct Run {
+    /// The folder in which they ran; removed on drop.
+    pub folder: TempDir,
+    /// All commands, in order.
+    pub ran: Vec<Ran>,
+    /// What is wrong with the chapter, as `file:line: ...`.
+    pub faults: Vec<String>,
+}
+
+/// A command and what the chapter shows of its output.
+struct Step {
+    line: usize,
+    command: String,
+    shown: Option<String>,
+}
+
+/// Runs all commands of a chapter with these programs, in a new folder. `variables` are set for all of them.
+///
+/// # Errors
+/// If the shell cannot be started, or a folder not be written.
+pub fn run(chapter: &Chapter, programs: &[&Path], variables: &[(&str, &Path)]) -> io::Result<Run> {
+    let programs_folder = TempDir::new()?;
+    for program in programs {
+        link(program, &programs_folder.path().join(program.file_name().unwrap_or_default()))?;
+    }
+    let path = search_path(programs_folder.path());
+    let mut run = Run { folder: TempDir::new()?, ran: Vec::new(), faults: Vec::new() };
+    for step in chapter.blocks().iter().flat_map(steps) {
+        let mut command = Command::new("bash");
+        command.current_dir(run.folder.path()).env("PATH", &path).env("LC_ALL", "C.UTF-8");
+        command.envs(variables.iter().copied());
+        let output = command.args(["-c", &format!("set -euo pipefail; exec 2>&1\n{}", step.command)]).output()?;
+        let printed = String::from_utf8_lossy(&output.stdout).into_owned();
+        let place = format!("{}:{}: `{}`", chapter.path.display(), step.line, step.command.trim());
+        let expected = exit_code(&step.command);
+        if output.status.code() != Some(expected) {
+            run.faults.push(format!("{place} ended with {}, not {expected}:\n{printed}", output.status));
+        } else if step.shown.as_ref().is_some_and(|shown| !matches(shown, &printed)) {
+            run.faults.push(format!("{place} printed something else than the chapter shows:\n{printed}"));
+        }
+        run.ran.push(Ran { line: step.line, command: step.command, printed });
+    }
+    Ok(run)
+}
+
+/// The exit code that a command announces in a comment.
+fn exit_code(command: &str) -> i32 {
+    let comment = command.trim_end().rsplit_once("# exit code ");
+    comment.and_then(|(_, code)| code.trim().parse().ok()).unwrap_or(0)
+}
+
+fn steps(block: &Block) -> Vec<Step> {
+    match block.language {
+        Language::Script => vec![Step { line: block.line, command: block.text.clone(), shown: None }],
+        Language::Console => {
+            let mut steps: Vec<Step> = Vec::new();
+            for (number, line) in block.text.lines().enumerate() {
+                match (line.strip_prefix("$ "), steps.last_mut()) {
+                    (Some(command), _) => steps.push(Step {
+                        line: block.line + number,
+                        command: command.to_owned(),
+                        shown: Some(String::new()),
+                    }),
+                    (None, Some(Step { command, shown: Some(shown), .. })) => {
+                        if shown.is_empty() && command.ends_with('\\') {
+                            *command += &format!("\n{}", line.strip_prefix("> ").unwrap_or(line));
+                        } else {
+                            *shown += &format!("{line}\n");
+                        }
+                    }
+                    _ => {}
+                }
+            }
+            steps
+        }
+        Language::Unrun | Language::Other => Vec::new(),
+    }
+}
+
+/// The folders in which the shell looks for programs: ours first.
+fn search_path(first: &Path) -> OsString {
+    let others = env::var_os("PATH").unwrap_or_default();
+    let folders = std::iter::once(PathBuf::from(first)).chain(env::split_paths(&others));
+    env::join_paths(folders).unwrap_or_default()
+}
+
+#[cfg(unix)]
+fn link(from: &Path, to: &Path) -> io::Result<()> {
+    std::os::unix::fs::symlink(from, to)
+}
+
+#[cfg(not(unix))]
+fn link(from: &Path, to: &Path) -> io::Result<()> {
+    std::fs::copy(from, to).map(drop)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn faults(text: &str) -> Vec<String> {
+        run(&Chapter { path: "page.md".into(), text: text.to_owned() }, &[], &[]).unwrap().faults
+    }
+
+    #[test]
+    fn commands_run_in_one_folder_and_their_output_is_compared() {
+        let page = "```sh\necho 1 > a\n```\n```console\n$ cat a\n1\n$ wc -l \\\n>   a\n1 a\n$ exit 3 # exit code 3\n```\n";
+        assert!(faults(page).is_empty(), "{:?}", faults(page));
+        assert!(faults("```sh,norun\nexit 7\n```\n").is_empty());
+    }
+
+    #[test]
+    fn a_wrong_command_is_a_fault_with_its_place() {
+        for (page, place) in [
+            ("\n```sh\nno-such-program\n```\n", "page.md:3:"),
+            ("```sh\nfalse\ntrue\n```\n", "page.md:2:"),
+            ("```console\n$ true\n$ echo a\nb\n```\n", "page.md:3:"),
+            ("```console\n$ echo a\n```\n", "page.md:2:"),
+            ("```console\n$ true # exit code 1\n```\n", "page.md:2:"),
+            ("```console\n$ cat missing | sort\n```\n", "page.md:2:"),
+        ] {
+            let faults = faults(page);
+            assert_eq!(faults.len(), 1, "{page}: {faults:?}");
+            assert!(faults[0].starts_with(place), "{faults:?}");
+        }
+    }
+}

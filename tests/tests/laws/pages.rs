@@ -1,0 +1,164 @@
+//! Whether links between pages lead somewhere, and whether the book contains every page.
+//!
+//! `CANONFORM_WRITE_DOCS=1 cargo test -p tests --test laws decisions` writes the decisions in the table of contents again.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Component, Path, PathBuf};
+
+use crate::support::workspace_root;
+
+/// All Markdown files below a folder, sorted.
+fn pages(folder: &Path) -> Vec<PathBuf> {
+    let mut pages = Vec::new();
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            pages.extend(self::pages(&path));
+        } else if path.extension().is_some_and(|extension| extension == "md") {
+            pages.push(path);
+        }
+    }
+    pages.sort();
+    pages
+}
+
+/// The lines of a page outside blocks of code, without code in between.
+fn prose(text: &str) -> String {
+    let mut is_code = false;
+    let mut prose = String::new();
+    for line in text.lines() {
+        if line.starts_with("```") {
+            is_code = !is_code;
+        } else if !is_code {
+            prose.extend(line.split('`').step_by(2));
+            prose.push('\n');
+        }
+    }
+    prose
+}
+
+/// The targets of the links of a page that do not lead out of the repository.
+fn links(text: &str) -> Vec<String> {
+    let prose = prose(text);
+    let targets = prose.split("](").skip(1).filter_map(|rest| rest.split(')').next());
+    targets.filter(|target| !target.contains("://")).map(str::to_owned).collect()
+}
+
+/// The anchors of the headings of a page, as mdBook and GitHub name them.
+fn anchors(text: &str) -> BTreeSet<String> {
+    let mut is_code = false;
+    let mut anchors = BTreeSet::new();
+    for line in text.lines() {
+        is_code ^= line.starts_with("```");
+        let heading = line.trim_start_matches('#');
+        if is_code || heading.len() == line.len() || !heading.starts_with(' ') {
+            continue;
+        }
+        let letters = heading.trim().to_lowercase();
+        let letters = letters.chars().map(|c| if c.is_whitespace() { '-' } else { c });
+        anchors.insert(letters.filter(|c| c.is_alphanumeric() || matches!(c, '-' | '_')).collect());
+    }
+    anchors
+}
+
+/// The path without `.` and `..`.
+fn normal(path: &Path) -> PathBuf {
+    let mut normal = PathBuf::new();
+    for component in path.components() {
+        match component {
+            Component::CurDir => {}
+            Component::ParentDir if normal.file_name().is_some() => drop(normal.pop()),
+            component => normal.push(component),
+        }
+    }
+    normal
+}
+
+/// What is wrong with a link of a page; `book` is the folder that links of the book must not leave.
+fn fault(page: &Path, target: &str, book: &Path) -> Option<String> {
+    let (file, anchor) = target.split_once('#').unwrap_or((target, ""));
+    let path = if file.is_empty() { page.to_owned() } else { normal(&page.with_file_name("").join(file)) };
+    if page.starts_with(book) && !path.starts_with(book) {
+        return Some("leaves the book".to_owned());
+    }
+    if !path.exists() {
+        return Some("leads nowhere".to_owned());
+    }
+    let has_anchor = || anchors(&fs::read_to_string(&path).unwrap()).contains(anchor);
+    (!anchor.is_empty() && !has_anchor()).then(|| "names a heading that does not exist".to_owned())
+}
+
+#[test]
+fn links_between_pages_lead_somewhere() {
+    let root = workspace_root().canonicalize().unwrap();
+    let book = root.join("docs");
+    let mut all = pages(&book);
+    for folder in ["crates", "datasets", "experiments", "examples", "fuzz"] {
+        if root.join(folder).is_dir() {
+            let in_target = |page: &PathBuf| page.components().any(|part| {
+                matches!(part.as_os_str().to_str(), Some("target" | "node_modules" | ".venv"))
+            });
+            all.extend(pages(&root.join(folder)).into_iter().filter(|page| !in_target(page)));
+        }
+    }
+    let tops = fs::read_dir(&root).unwrap().map(|entry| entry.unwrap().path());
+    all.extend(tops.filter(|path| path.extension().is_some_and(|extension| extension == "md")));
+    let (mut faults, mut n_links) = (Vec::new(), 0);
+    for page in &all {
+        for link in links(&fs::read_to_string(page).unwrap()) {
+            n_links += 1;
+            let place = page.strip_prefix(&root).unwrap().display();
+            faults.extend(fault(page, &link, &book).map(|what| format!("{place}: the link to {link} {what}")));
+        }
+    }
+    assert!(faults.is_empty(), "{}", faults.join("\n"));
+    assert!(n_links >= 150, "only {n_links} links were found");
+    let page = book.join("program.md");
+    for (target, ok) in [
+        ("collections.md#searching", true),
+        ("#memory", true),
+        ("collections.md#no-such-heading", false),
+        ("no-such-page.md", false),
+        ("../README.md", false),
+    ] {
+        assert_eq!(fault(&page, target, &book).is_none(), ok, "{target}");
+    }
+}
+
+#[test]
+fn the_book_contains_every_page_once() {
+    let book = workspace_root().join("docs").canonicalize().unwrap();
+    let summary = fs::read_to_string(book.join("SUMMARY.md")).unwrap();
+    let listed = links(&summary);
+    let distinct: BTreeSet<PathBuf> = listed.iter().map(|link| book.join(link)).collect();
+    assert_eq!(distinct.len(), listed.len(), "docs/SUMMARY.md lists a page twice");
+    let missing: Vec<String> = pages(&book)
+        .into_iter()
+        .filter(|page| !distinct.contains(page) && *page != book.join("SUMMARY.md"))
+        .map(|page| page.strip_prefix(&book).unwrap().display().to_string())
+        .collect();
+    assert!(missing.is_empty(), "docs/SUMMARY.md does not list {}", missing.join(", "));
+}
+
+#[test]
+fn the_table_of_contents_lists_decisions_with_their_titles() {
+    let book = workspace_root().join("docs");
+    let path = book.join("SUMMARY.md");
+    let summary = fs::read_to_string(&path).unwrap();
+    let lines = pages(&book.join("decisions")).into_iter().map(|page| {
+        let text = fs::read_to_string(&page).unwrap();
+        let title = text.lines().next().unwrap_or_default().trim_start_matches("# ").to_owned();
+        format!("  - [{title}](decisions/{})\n", page.file_name().unwrap().to_string_lossy())
+    });
+    let decisions: String = lines.filter(|line| !line.contains("(decisions/README.md)")).collect();
+    let kept: String = summary.lines().filter(|line| !line.starts_with("  - [") || !line.contains("](decisions/")).map(|line| format!("{line}\n")).collect();
+    let anchor = "- [Decisions](decisions/README.md)\n";
+    assert!(kept.contains(anchor), "docs/SUMMARY.md has no line for decisions");
+    let written = kept.replace(anchor, &format!("{anchor}{decisions}"));
+    if std::env::var_os("CANONFORM_WRITE_DOCS").is_some() && written != summary {
+        fs::write(&path, &written).unwrap();
+        return;
+    }
+    assert_eq!(summary, written, "write docs/SUMMARY.md again with CANONFORM_WRITE_DOCS=1");
+}
