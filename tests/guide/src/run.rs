@@ -40,21 +40,22 @@ struct Step {
     shown: Option<String>,
 }
 
-/// Runs all commands of a chapter with these programs, in a new folder. `variables` are set for all of them.
+/// Runs all commands of a chapter with these programs, in a new folder with links to these files or folders.
 ///
 /// # Errors
 /// If the shell cannot be started, or a folder not be written.
-pub fn run(chapter: &Chapter, programs: &[&Path], variables: &[(&str, &Path)]) -> io::Result<Run> {
+pub fn run(chapter: &Chapter, programs: &[&Path], links: &[&Path]) -> io::Result<Run> {
     let programs_folder = TempDir::new()?;
-    for program in programs {
-        link(program, &programs_folder.path().join(program.file_name().unwrap_or_default()))?;
+    let mut run = Run { folder: TempDir::new()?, ran: Vec::new(), faults: Vec::new() };
+    for (targets, folder) in [(programs, programs_folder.path()), (links, run.folder.path())] {
+        for target in targets {
+            link(target, &folder.join(target.file_name().unwrap_or_default()))?;
+        }
     }
     let path = search_path(programs_folder.path());
-    let mut run = Run { folder: TempDir::new()?, ran: Vec::new(), faults: Vec::new() };
     for step in chapter.blocks().iter().flat_map(steps) {
         let mut command = Command::new("bash");
         command.current_dir(run.folder.path()).env("PATH", &path).env("LC_ALL", "C.UTF-8");
-        command.envs(variables.iter().copied());
         let output = command.args(["-c", &format!("set -euo pipefail; exec 2>&1\n{}", step.command)]).output()?;
         let printed = String::from_utf8_lossy(&output.stdout).into_owned();
         let place = format!("{}:{}: `{}`", chapter.path.display(), step.line, step.command.trim());

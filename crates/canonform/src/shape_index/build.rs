@@ -210,7 +210,8 @@ impl BuildReport {
 /// An index that an earlier version wrote gets its graph of nearest neighbours, even if nothing has changed.
 ///
 /// Every described shape is on disk before `observer` counts it, and the next run resumes an interrupted one.
-/// Meshes that cannot be described are reported and left out; if there are no others, no index is written.
+/// Meshes that cannot be described are reported and left out; if there are no others, no index is written, except for a
+/// shard.
 ///
 /// ```
 /// use canonform::{BuildOptions, DescribeOptions, build_index, mesh};
@@ -288,7 +289,9 @@ pub fn build_index(
     let nothing_new =
         report.described + report.renamed + gone.len() == 0 && !report.resumed && !report.replaced_damaged;
     let nothing_new = nothing_new && writer.has_graph()?;
-    if nothing_new && path.exists() || writer.is_empty()? && !report.failed.is_empty() {
+    // A shard without shapes is complete, and `merge_indexes` takes it.
+    let is_useless = options.shard.is_none() && writer.is_empty()? && !report.failed.is_empty();
+    if nothing_new && path.exists() || is_useless {
         report.n_shapes = writer.len()?;
         writer.discard()?;
     } else {

@@ -130,7 +130,7 @@ fn the_guide_shows_what_its_commands_do() {
         for _ in 0..2 {
             scope.spawn(|| {
                 while let Some(chapter) = pending.get(next.fetch_add(1, std::sync::atomic::Ordering::Relaxed)) {
-                    let mut run = guide::run(chapter, &[Path::new(program())], &[("CANONFORM_ROOT", &root())]).unwrap();
+                    let mut run = guide::run(chapter, &[Path::new(program())], &[&root().canonicalize().unwrap().join("examples")]).unwrap();
                     check_pictures(chapter, &mut run);
                     check_keys(chapter, &run.ran, &mut run.faults);
                     n_commands.fetch_add(run.ran.len(), std::sync::atomic::Ordering::Relaxed);
@@ -233,4 +233,21 @@ fn commands_on_every_page_exist_with_their_options() {
     assert!(help.fault(&["embed", "a.off", "--no-such-option"]).is_some());
     assert!(help.fault(&["no-such-command", "a.off"]).is_some());
     assert!(help.fault(&["index", "build", "a", "--shard", "1/2"]).is_none());
+}
+
+#[test]
+fn the_guide_explains_every_remedy() {
+    let source = fs::read_to_string(root().join("crates/cli/src/remedy.rs")).unwrap();
+    let words = source.split("fn words").nth(1).and_then(|rest| rest.split("\n}\n").next()).unwrap();
+    let page = fs::read_to_string(root().join("docs/guide/troubleshooting.md")).unwrap();
+    let literals = words.split('"').skip(1).step_by(2).map(|literal| {
+        let lines: Vec<&str> = literal.split("\\\n").map(str::trim_start).collect();
+        lines.concat().replace('`', "'")
+    });
+    let mut n_remedies = 0;
+    for remedy in literals {
+        assert!(page.contains(&format!("`{remedy}`")), "docs/guide/troubleshooting.md does not explain `{remedy}`");
+        n_remedies += 1;
+    }
+    assert!(n_remedies >= 15, "only {n_remedies} remedies were found");
 }

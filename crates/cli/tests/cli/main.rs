@@ -1,10 +1,12 @@
 //! The program as its users see it: arguments in; files, output and exit codes out.
 //!
-//! `collections` (folders and indexes as people keep them), `commands` (what each prints), `dropped` (lost surfaces),
-//! `forms` (files), `errors`, `folders` (many meshes), `geodesic` (sources, paths, all pairs), `guide` (the commands of the user guide), `index` (building,
-//! changing, searching), `killed` (interruptions, full disks), `render` (pictures), `serve`, `streams` (standard input and
+//! `cluster` (the scripts in `examples/cluster`), `collections` (folders and indexes as people keep them), `commands` (what
+//! each prints), `dropped` (lost surfaces), `forms` (files), `errors`, `folders` (many meshes), `geodesic` (sources, paths,
+//! all pairs), `guide` (the commands of the user guide), `index` (building, changing, searching), `killed` (interruptions, full disks), `render` (pictures), `serve`, `streams` (standard input and
 //! output, several meshes, limits), `zoo` (broken meshes).
 
+#[cfg(all(test, unix))]
+mod cluster;
 #[cfg(test)]
 mod collections;
 #[cfg(test)]
