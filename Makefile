@@ -5,7 +5,7 @@ OUT ?= out
 # For `make reproduce`: a folder of meshes with the classes of the paper. Default: the built-in dataset.
 DATASET ?=
 
-.PHONY: help setup build run test test-python kills lint bench bench-peers bench-nmds bench-preparation bench-search bench-eigsh fmt doc guide reproduce report paper plotly deny sbom fuzz fuzz-seeds package ci clean
+.PHONY: help setup build run test test-python kills lint bench bench-peers bench-nmds bench-preparation bench-search bench-capacity bench-eigsh fmt doc guide reproduce report paper plotly deny sbom fuzz fuzz-seeds package ci clean
 
 help: ## List these commands
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "  make %-17s %s\n", $$1, $$2}'
@@ -65,6 +65,12 @@ bench-search: ## Compare search among a million vectors with hnswlib and faiss a
 	test -x target/peers/bin/python || python3 -m venv target/peers
 	target/peers/bin/pip install --quiet numpy hnswlib faiss-cpu
 	target/peers/bin/python bench/search.py
+
+bench-capacity: build ## Measure what a shape costs, simulate ten million and write docs/capacity.md (needs Python; takes a quarter of an hour)
+	$(CARGO) build --release --locked -p canonform-index --example vectors
+	test -x target/peers/bin/python || python3 -m venv target/peers
+	target/peers/bin/pip install --quiet numpy
+	target/peers/bin/python bench/capacity.py
 
 fmt: ## Format the sources
 	$(CARGO) fmt --all

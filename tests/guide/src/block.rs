@@ -50,7 +50,8 @@ impl Chapter {
     /// # Errors
     /// If a folder or a file cannot be read.
     pub fn all(folder: &Path) -> std::io::Result<Vec<Self>> {
-        let mut paths = fs::read_dir(folder)?.map(|entry| Ok(entry?.path())).collect::<std::io::Result<Vec<_>>>()?;
+        let mut paths =
+            fs::read_dir(folder)?.map(|entry| Ok(entry?.path())).collect::<std::io::Result<Vec<_>>>()?;
         paths.sort();
         let mut pages = Vec::new();
         for path in paths {
@@ -116,10 +117,13 @@ mod tests {
     fn blocks_are_found_with_their_lines() {
         let page = "text\n```sh\none\n\ntwo\n```\n\n```rust\nlet x = 1;\n```\n```sh,norun\nmake\n```\n";
         let found: Vec<_> = blocks(page).into_iter().map(|b| (b.line, b.language, b.text)).collect();
-        assert_eq!(found, [
-            (3, Language::Script, "one\n\ntwo\n".to_owned()),
-            (9, Language::Other, "let x = 1;\n".to_owned()),
-            (12, Language::Unrun, "make\n".to_owned()),
-        ]);
+        assert_eq!(
+            found,
+            [
+                (3, Language::Script, "one\n\ntwo\n".to_owned()),
+                (9, Language::Other, "let x = 1;\n".to_owned()),
+                (12, Language::Unrun, "make\n".to_owned()),
+            ]
+        );
     }
 }

@@ -25,11 +25,13 @@ fn is_frame(c: char) -> bool {
 /// `distances: 40 of 100, 12 s, about 18 s left`, or shorter.
 fn is_progress(line: &str) -> bool {
     let is_seconds = |text: &str| {
-        text.strip_suffix(" s").is_some_and(|number| !number.is_empty() && number.bytes().all(|b| b.is_ascii_digit()))
+        text.strip_suffix(" s")
+            .is_some_and(|number| !number.is_empty() && number.bytes().all(|b| b.is_ascii_digit()))
     };
     line.split_once(", ").is_some_and(|(stage, rest)| {
         !stage.contains(' ') | stage.contains(" of ")
-            && (is_seconds(rest) || rest.split_once(", about ").is_some_and(|(elapsed, _)| is_seconds(elapsed)))
+            && (is_seconds(rest)
+                || rest.split_once(", about ").is_some_and(|(elapsed, _)| is_seconds(elapsed)))
     })
 }
 
@@ -68,7 +70,8 @@ fn next_length(word: &str) -> usize {
         return number;
     }
     let starts = word.char_indices().skip(1).map(|(start, _)| start);
-    let mut ends = starts.filter(|&start| word[start..].starts_with("...") || number_length(&word[start..]) > 0);
+    let mut ends =
+        starts.filter(|&start| word[start..].starts_with("...") || number_length(&word[start..]) > 0);
     ends.next().unwrap_or(word.len())
 }
 

@@ -3,6 +3,7 @@
 use std::env;
 use std::ffi::OsString;
 use std::io;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -20,6 +21,10 @@ pub struct Ran {
     pub command: String,
     /// What it printed, to standard output and standard error.
     pub printed: String,
+    /// Whether this is not what the chapter shows.
+    pub differs: bool,
+    /// The lines of the chapter that show its output, counted from 0.
+    shown: Range<usize>,
 }
 
 /// What became of the commands of a chapter.
@@ -33,11 +38,32 @@ pub struct Run {
     pub faults: Vec<String>,
 }
 
+impl Run {
+    /// The text of the chapter with what its commands printed in place of what it shows, where this differs.
+    #[must_use]
+    pub fn updated(&self, chapter: &Chapter) -> String {
+        let lines: Vec<&str> = chapter.text.lines().collect();
+        let (mut text, mut next) = (String::new(), 0);
+        let copy = |from: usize, to: usize, text: &mut String| {
+            lines[from..to].iter().for_each(|line| *text += &format!("{line}\n"));
+        };
+        for ran in self.ran.iter().filter(|ran| ran.differs) {
+            copy(next, ran.shown.start, &mut text);
+            ran.printed.lines().for_each(|line| text += &format!("{}\n", line.trim_end()));
+            next = ran.shown.end;
+        }
+        copy(next, lines.len(), &mut text);
+        text
+    }
+}
+
 /// A command and what the chapter shows of its output.
 struct Step {
     line: usize,
     command: String,
     shown: Option<String>,
+    /// The lines of the chapter behind the command, counted from 0.
+    lines: Range<usize>,
 }
 
 /// Runs all commands of a chapter with these programs, in a new folder with links to these files or folders.
@@ -56,16 +82,19 @@ pub fn run(chapter: &Chapter, programs: &[&Path], links: &[&Path]) -> io::Result
     for step in chapter.blocks().iter().flat_map(steps) {
         let mut command = Command::new("bash");
         command.current_dir(run.folder.path()).env("PATH", &path).env("LC_ALL", "C.UTF-8");
-        let output = command.args(["-c", &format!("set -euo pipefail; exec 2>&1\n{}", step.command)]).output()?;
+        let output =
+            command.args(["-c", &format!("set -euo pipefail; exec 2>&1\n{}", step.command)]).output()?;
         let printed = String::from_utf8_lossy(&output.stdout).into_owned();
         let place = format!("{}:{}: `{}`", chapter.path.display(), step.line, step.command.trim());
         let expected = exit_code(&step.command);
         if output.status.code() != Some(expected) {
             run.faults.push(format!("{place} ended with {}, not {expected}:\n{printed}", output.status));
-        } else if step.shown.as_ref().is_some_and(|shown| !matches(shown, &printed)) {
+        }
+        let differs = step.shown.as_ref().is_some_and(|shown| !matches(shown, &printed));
+        if differs {
             run.faults.push(format!("{place} printed something else than the chapter shows:\n{printed}"));
         }
-        run.ran.push(Ran { line: step.line, command: step.command, printed });
+        run.ran.push(Ran { line: step.line, command: step.command, printed, differs, shown: step.lines });
     }
     Ok(run)
 }
@@ -78,19 +107,23 @@ fn exit_code(command: &str) -> i32 {
 
 fn steps(block: &Block) -> Vec<Step> {
     match block.language {
-        Language::Script => vec![Step { line: block.line, command: block.text.clone(), shown: None }],
+        Language::Script => {
+            vec![Step { line: block.line, command: block.text.clone(), shown: None, lines: 0..0 }]
+        }
         Language::Console => {
             let mut steps: Vec<Step> = Vec::new();
             for (number, line) in block.text.lines().enumerate() {
                 match (line.strip_prefix("$ "), steps.last_mut()) {
-                    (Some(command), _) => steps.push(Step {
-                        line: block.line + number,
-                        command: command.to_owned(),
-                        shown: Some(String::new()),
-                    }),
-                    (None, Some(Step { command, shown: Some(shown), .. })) => {
+                    (Some(command), _) => {
+                        let next = block.line + number;
+                        let (command, shown) = (command.to_owned(), Some(String::new()));
+                        steps.push(Step { line: next, command, shown, lines: next..next });
+                    }
+                    (None, Some(Step { command, shown: Some(shown), lines, .. })) => {
+                        lines.end += 1;
                         if shown.is_empty() && command.ends_with('\\') {
                             *command += &format!("\n{}", line.strip_prefix("> ").unwrap_or(line));
+                            lines.start += 1;
                         } else {
                             *shown += &format!("{line}\n");
                         }
@@ -134,6 +167,15 @@ mod tests {
         let page = "```sh\necho 1 > a\n```\n```console\n$ cat a\n1\n$ wc -l \\\n>   a\n1 a\n$ exit 3 # exit code 3\n```\n";
         assert!(faults(page).is_empty(), "{:?}", faults(page));
         assert!(faults("```sh,norun\nexit 7\n```\n").is_empty());
+    }
+
+    #[test]
+    fn the_chapter_is_written_again_with_what_was_printed() {
+        let text = "# Page\n```console\n$ echo a\n...\n$ echo \\\n> b\nc\n$ echo d\n```\nend\n".to_owned();
+        let chapter = Chapter { path: "page.md".into(), text: text.clone() };
+        let updated = run(&chapter, &[], &[]).unwrap().updated(&chapter);
+        assert_eq!(updated, text.replace("> b\nc\n", "> b\nb\n").replace("echo d\n", "echo d\nd\n"));
+        assert!(faults(&updated).is_empty());
     }
 
     #[test]

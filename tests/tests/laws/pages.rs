@@ -96,9 +96,11 @@ fn links_between_pages_lead_somewhere() {
     let mut all = pages(&book);
     for folder in ["crates", "datasets", "experiments", "examples", "fuzz"] {
         if root.join(folder).is_dir() {
-            let in_target = |page: &PathBuf| page.components().any(|part| {
-                matches!(part.as_os_str().to_str(), Some("target" | "node_modules" | ".venv"))
-            });
+            let in_target = |page: &PathBuf| {
+                page.components().any(|part| {
+                    matches!(part.as_os_str().to_str(), Some("target" | "node_modules" | ".venv"))
+                })
+            };
             all.extend(pages(&root.join(folder)).into_iter().filter(|page| !in_target(page)));
         }
     }
@@ -109,7 +111,8 @@ fn links_between_pages_lead_somewhere() {
         for link in links(&fs::read_to_string(page).unwrap()) {
             n_links += 1;
             let place = page.strip_prefix(&root).unwrap().display();
-            faults.extend(fault(page, &link, &book).map(|what| format!("{place}: the link to {link} {what}")));
+            faults
+                .extend(fault(page, &link, &book).map(|what| format!("{place}: the link to {link} {what}")));
         }
     }
     assert!(faults.is_empty(), "{}", faults.join("\n"));
@@ -152,7 +155,11 @@ fn the_table_of_contents_lists_decisions_with_their_titles() {
         format!("  - [{title}](decisions/{})\n", page.file_name().unwrap().to_string_lossy())
     });
     let decisions: String = lines.filter(|line| !line.contains("(decisions/README.md)")).collect();
-    let kept: String = summary.lines().filter(|line| !line.starts_with("  - [") || !line.contains("](decisions/")).map(|line| format!("{line}\n")).collect();
+    let kept: String = summary
+        .lines()
+        .filter(|line| !line.starts_with("  - [") || !line.contains("](decisions/"))
+        .map(|line| format!("{line}\n"))
+        .collect();
     let anchor = "- [Decisions](decisions/README.md)\n";
     assert!(kept.contains(anchor), "docs/SUMMARY.md has no line for decisions");
     let written = kept.replace(anchor, &format!("{anchor}{decisions}"));

@@ -35,7 +35,8 @@ fn script(place: &Workplace, arguments: &[&str]) -> Output {
 
 fn done(place: &Workplace, arguments: &[&str]) -> String {
     let output = script(place, arguments);
-    let text = String::from_utf8_lossy(&output.stdout).into_owned() + &String::from_utf8_lossy(&output.stderr);
+    let text =
+        String::from_utf8_lossy(&output.stdout).into_owned() + &String::from_utf8_lossy(&output.stderr);
     assert!(output.status.success(), "{arguments:?}: {text}");
     text
 }
@@ -85,7 +86,8 @@ fn a_missing_part_is_not_merged() {
     }
     done(&place, &["merge.sh", "parts", "3", "index.canonform"]);
     assert_eq!(place.done(&["index", "export", "index.canonform"]).out, single);
-    let left: Vec<_> = fs::read_dir(place.path("parts")).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+    let left: Vec<_> =
+        fs::read_dir(place.path("parts")).unwrap().map(|entry| entry.unwrap().file_name()).collect();
     assert_eq!(left.len(), 6, "{left:?}");
 }
 

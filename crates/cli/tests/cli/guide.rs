@@ -1,7 +1,7 @@
 //! The user guide: its commands print what it shows, its pictures are those that they draw, and its tables of JSON keys are
 //! complete. Chapters that run `experiments` are tested beside that program.
 //!
-//! `CANONFORM_WRITE_DOCS=1 cargo test -p canonform-cli --test cli guide` writes the pictures again.
+//! `CANONFORM_WRITE_DOCS=1 cargo test -p canonform-cli --test cli guide` writes pictures and outputs that differ again.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -21,6 +21,10 @@ fn chapters() -> Vec<Chapter> {
     let chapters = Chapter::all(&root().join("docs/guide")).unwrap();
     assert!(chapters.len() >= 8, "only {} chapters", chapters.len());
     chapters
+}
+
+fn is_writing() -> bool {
+    std::env::var_os("CANONFORM_WRITE_DOCS").is_some()
 }
 
 /// The names of the pictures that a chapter shows.
@@ -52,14 +56,15 @@ fn check_pictures(chapter: &Chapter, run: &mut Run) {
     let folder = chapter.path.parent().unwrap().join("images");
     for name in pictures(chapter) {
         let (shown, drawn) = (folder.join(name), run.folder.path().join(name));
-        if std::env::var_os("CANONFORM_WRITE_DOCS").is_some() && difference(&shown, &drawn) > 0.0 {
+        if is_writing() && drawn.exists() && difference(&shown, &drawn) > 0.0 {
             fs::create_dir_all(&folder).unwrap();
             fs::copy(&drawn, &shown).unwrap();
         }
         let share = difference(&shown, &drawn);
         if share > 0.01 {
             let path = chapter.path.display();
-            run.faults.push(format!("{path}: {:.1} % of the pixels of {name} are not as drawn", 100.0 * share));
+            run.faults
+                .push(format!("{path}: {:.1} % of the pixels of {name} are not as drawn", 100.0 * share));
         }
     }
 }
@@ -101,12 +106,16 @@ fn check_keys(chapter: &Chapter, ran: &[Ran], faults: &mut Vec<String>) {
         let Some(i) = commands.iter().rposition(|ran| ran.line <= number) else { continue };
         if let Some(row) = line.strip_prefix("| `").filter(|_| in_table) {
             let cell = row.split(" |").next().unwrap_or(row);
-            tables.entry(i).or_default().extend(cell.split('`').step_by(2).map(str::to_owned).filter(|s| !s.is_empty()));
+            tables
+                .entry(i)
+                .or_default()
+                .extend(cell.split('`').step_by(2).map(str::to_owned).filter(|s| !s.is_empty()));
         }
     }
     for (i, rows) in tables {
         let place = format!("{}:{}", chapter.path.display(), commands[i].line);
-        let Some(value) = commands[i].printed.lines().last().and_then(|line| serde_json::from_str(line).ok()) else {
+        let Some(value) = commands[i].printed.lines().last().and_then(|line| serde_json::from_str(line).ok())
+        else {
             faults.push(format!("{place} did not print an object: {}", commands[i].printed));
             continue;
         };
@@ -129,8 +138,17 @@ fn the_guide_shows_what_its_commands_do() {
     std::thread::scope(|scope| {
         for _ in 0..2 {
             scope.spawn(|| {
-                while let Some(chapter) = pending.get(next.fetch_add(1, std::sync::atomic::Ordering::Relaxed)) {
-                    let mut run = guide::run(chapter, &[Path::new(program())], &[&root().canonicalize().unwrap().join("examples")]).unwrap();
+                while let Some(chapter) = pending.get(next.fetch_add(1, std::sync::atomic::Ordering::Relaxed))
+                {
+                    let mut run = guide::run(
+                        chapter,
+                        &[Path::new(program())],
+                        &[&root().canonicalize().unwrap().join("examples")],
+                    )
+                    .unwrap();
+                    if is_writing() {
+                        fs::write(&chapter.path, run.updated(chapter)).unwrap();
+                    }
                     check_pictures(chapter, &mut run);
                     check_keys(chapter, &run.ran, &mut run.faults);
                     n_commands.fetch_add(run.ran.len(), std::sync::atomic::Ordering::Relaxed);
@@ -147,8 +165,10 @@ fn the_guide_shows_what_its_commands_do() {
 
 #[test]
 fn pictures_of_the_guide_are_shown() {
-    let shown: BTreeSet<String> =
-        chapters().iter().flat_map(|chapter| pictures(chapter).into_iter().map(str::to_owned).collect::<Vec<_>>()).collect();
+    let shown: BTreeSet<String> = chapters()
+        .iter()
+        .flat_map(|chapter| pictures(chapter).into_iter().map(str::to_owned).collect::<Vec<_>>())
+        .collect();
     for entry in fs::read_dir(root().join("docs/guide/images")).unwrap() {
         let name = entry.unwrap().file_name().into_string().unwrap();
         assert!(shown.contains(&name), "no chapter shows docs/guide/images/{name}");
@@ -185,9 +205,12 @@ impl Help {
             .split(|c: char| !(c.is_ascii_alphanumeric() || c == '-'))
             .filter(|word| word.starts_with('-'))
             .collect();
-        let flags = arguments.iter().filter(|word| word.starts_with('-') && word.len() > 1 && !is_number(word));
-        let unknown: Vec<&str> =
-            flags.map(|word| word.split('=').next().unwrap_or(word)).filter(|word| !options.contains(word)).collect();
+        let flags =
+            arguments.iter().filter(|word| word.starts_with('-') && word.len() > 1 && !is_number(word));
+        let unknown: Vec<&str> = flags
+            .map(|word| word.split('=').next().unwrap_or(word))
+            .filter(|word| !options.contains(word))
+            .collect();
         (!unknown.is_empty()).then(|| format!("`{}` has no option {}", command.join(" "), unknown.join(", ")))
     }
 }
@@ -246,7 +269,10 @@ fn the_guide_explains_every_remedy() {
     });
     let mut n_remedies = 0;
     for remedy in literals {
-        assert!(page.contains(&format!("`{remedy}`")), "docs/guide/troubleshooting.md does not explain `{remedy}`");
+        assert!(
+            page.contains(&format!("`{remedy}`")),
+            "docs/guide/troubleshooting.md does not explain `{remedy}`"
+        );
         n_remedies += 1;
     }
     assert!(n_remedies >= 15, "only {n_remedies} remedies were found");

@@ -5,7 +5,8 @@
 //! all pairs), `guide` (the commands of the user guide), `index` (building, changing, searching), `killed` (interruptions, full disks), `render` (pictures), `serve`, `streams` (standard input and
 //! output, several meshes, limits), `zoo` (broken meshes).
 
-#[cfg(all(test, unix))]
+#[cfg(test)]
+#[cfg(unix)]
 mod cluster;
 #[cfg(test)]
 mod collections;

@@ -1,0 +1,250 @@
+#!/usr/bin/env python3
+"""Measures what a shape costs, and simulates the indexing of ten million shapes from that.
+
+    make bench-capacity         builds the programs, sets up the environment, writes docs/capacity.md
+
+Needs no data: shapes are generated. The processor time of describing a shape is measured by the number of its vertices,
+the bytes of an index by the number of its shapes, search and merging among synthetic signatures as in search.py. Sizes
+of meshes are then drawn from a log-normal distribution, and shards of them are handed to workers as a scheduler would.
+"""
+import heapq
+import json
+import os
+import platform
+import subprocess
+import sys
+import tempfile
+import time
+
+import numpy as np
+
+from search import Ours, signatures
+from support import answer, arguments, write_page
+
+SIZES = [1_000, 3_400, 10_000, 30_000, 100_000, 300_000]
+STORED = [30, 120, 480]
+VECTORS = [10_000, 100_000, 1_000_000]
+# Numbers in a fused vector.
+DIM = 172
+QUERIES = 300
+SHAPES = 10_000_000
+LARGEST = 1_000_000
+
+
+def processor_time(command):
+    """Processor time, elapsed time and peak memory (MB) of a program that must succeed."""
+    start = time.perf_counter()
+    process = subprocess.Popen(command, stdout=subprocess.DEVNULL)
+    _, status, usage = os.wait4(process.pid, 0)
+    elapsed = time.perf_counter() - start
+    process.returncode = os.waitstatus_to_exitcode(status)
+    if process.returncode:
+        sys.exit(f"{' '.join(command)} ended with {process.returncode}")
+    return usage.ru_utime + usage.ru_stime, elapsed, usage.ru_maxrss / 1000
+
+
+def describe(program, folder, sizes):
+    """Processor seconds, memory and file size per shape, for each number of vertices."""
+    rows = []
+    for n_vertices in sizes:
+        shapes, index = os.path.join(folder, f"of{n_vertices}"), os.path.join(folder, f"of{n_vertices}.canonform")
+        answer([program, "generate", "--poses", "1", "--vertices", str(n_vertices), "-o", shapes, "--json"])
+        names = os.listdir(shapes)
+        # The start of the program and the write of the file, which are paid once for an index.
+        empty = processor_time([program, "index", "build", shapes, "--shard", f"{len(names) + 1}/{len(names) + 1}",
+                                "--threads", "1", "-q", "-o", index + ".empty"])[0]
+        seconds, _, memory = processor_time([program, "index", "build", shapes, "--threads", "1", "-q", "-o", index])
+        size = sum(os.path.getsize(os.path.join(shapes, name)) for name in names) / len(names)
+        rows.append((n_vertices, (seconds - empty) / len(names), memory, size / 1e6))
+        print("described %d vertices: %.3f s" % rows[-1][:2], flush=True)
+    return rows
+
+
+def store(program, folder, counts):
+    """Bytes of an index and seconds of a search by the number of its shapes."""
+    rows = []
+    shapes = os.path.join(folder, "creatures")
+    for count in counts:
+        answer([program, "generate", "--family", "creatures", "--classes", str(count // 5), "--poses", "5",
+                "--vertices", "1000", "-o", shapes, "--json"])
+        index = os.path.join(folder, f"{count}.canonform")
+        start = time.perf_counter()
+        report = answer([program, "index", "build", shapes, "-o", index, "-q", "--json"])
+        built = time.perf_counter() - start
+        listed = [shape["id"] for shape in answer([program, "index", "list", index, "--json"])["shapes"]]
+        found = [answer([program, "search", index, "--id", name, "--json", "-q"]) for name in listed[:: max(1, count // 15)]]
+        seconds = float(np.median([query["seconds"]["search"] for query in found]))
+        aligned = float(np.median([query["aligned"] for query in found]))
+        rows.append((report["n_shapes"], built / report["n_shapes"], os.path.getsize(index), seconds, aligned))
+        print("stored", rows[-1], flush=True)
+    return rows
+
+
+def search(vectors, program, folder, counts):
+    """Build, memory and latency by the number of signatures, and the seconds of a merge."""
+    rows = []
+    for n in counts:
+        data = signatures(n + QUERIES, DIM, 7, 0.3)
+        base, queries = os.path.join(folder, "base.npy"), os.path.join(folder, "queries.npy")
+        np.save(queries, data[n:])
+        np.save(base, data[:n])
+        del data
+        index = os.path.join(folder, "vectors")
+        built = answer([vectors, "build", base, index])
+        ours = Ours(vectors, index, queries)
+        ours.ask("file", 0, QUERIES)
+        seconds = {source: np.array(ours.ask(source, 0, QUERIES)[0]) * 1e3 for source in ("memory", "file")}
+        measured, memory = ours.measured, ours.memory()
+        ours.end()
+        merge = processor_time([program, "index", "merge", index, "-q", "-o", index + ".merged"])[1]
+        rows.append(dict(n=n, build_seconds=built["stored"] + built["finished"], size=os.path.getsize(index), memory=memory,
+                         measured=measured, merge=merge,
+                         **{f"{source}_ms": [np.median(ms), np.percentile(ms, 99)] for source, ms in seconds.items()}))
+        for path in (base, index, index + ".merged"):
+            os.remove(path)
+        print("searched", rows[-1], flush=True)
+    return rows
+
+
+def power(x, y):
+    """Exponent and factor of y = factor x^exponent through the last two points."""
+    exponent = np.log(y[-1] / y[-2]) / np.log(x[-1] / x[-2])
+    return exponent, y[-1] / x[-1] ** exponent
+
+
+def costs(sizes, measured):
+    """Seconds of shapes with these numbers of vertices: interpolated, and beyond the measured sizes extrapolated, in logarithms."""
+    x, y = np.log([row[0] for row in measured]), np.log([row[1] for row in measured])
+    logs = np.log(sizes)
+    slope = (y[-1] - y[-2]) / (x[-1] - x[-2])
+    return np.exp(np.where(logs > x[-1], y[-1] + slope * (logs - x[-1]), np.interp(logs, x, y)))
+
+
+def schedule(tasks, workers):
+    """When the last of these tasks ends, if the next one always goes to the worker that is free first."""
+    free = [0.0] * min(workers, len(tasks))
+    for task in tasks:
+        heapq.heapreplace(free, free[0] + task)
+    return max(free)
+
+
+def simulate(cost, workers, n_shards):
+    shard = np.bincount(np.arange(len(cost)) % n_shards, cost, n_shards)
+    end, ideal = schedule(shard.tolist(), workers), cost.sum() / workers
+    return dict(workers=workers, shards=n_shards, shapes=len(cost) // n_shards, mean=shard.mean() / 3600,
+                longest=shard.max() / 3600, end=end / 3600, efficiency=ideal / end)
+
+
+def table(head, rows):
+    return "\n".join([f"| {' | '.join(head)} |", "|" + "---|" * len(head), *(f"| {' | '.join(row)} |" for row in rows)])
+
+
+def digits(x):
+    """Two or three significant digits, without an exponent."""
+    return f"{x:,.0f}" if abs(x) >= 100 else f"{x:.3g}"
+
+
+def page(args, described, stored, searched):
+    random = np.random.default_rng(1)
+    sizes = np.minimum(args.median * np.exp(args.sigma / 100 * random.standard_normal(SHAPES)), LARGEST)
+    sizes = np.maximum(sizes, 200)
+    cost = costs(sizes, described)
+    total = cost.sum()
+    order = np.sort(cost)[::-1]
+    quantile = lambda q: np.quantile(sizes, q)
+    runs = [simulate(cost, w, s * w) for w in (64, 1024) for s in (1, 10, 100)]
+    capped = cost[sizes <= 200_000]
+    n = [row["n"] for row in searched]
+    per_shape = (stored[-1][2] - stored[-2][2]) / (stored[-1][0] - stored[-2][0])
+    per_vector = (searched[-1]["memory"] - searched[-2]["memory"]) / (n[-1] - n[-2]) * 1e6
+    merge = power(n, [row["merge"] for row in searched])
+    at = lambda fit, x: fit[1] * x ** fit[0]
+    memory_latency = power(n, [row["memory_ms"][0] for row in searched])
+    file_latency = power(n, [row["file_ms"][0] for row in searched])
+    mean_file = float(np.interp(np.log(sizes.mean()), np.log([r[0] for r in described]), [r[3] for r in described]))
+    yield f"""# Plan for ten million shapes
+
+Measured by `make bench-capacity` on {platform.machine()}, {os.cpu_count()} cores, on generated shapes and synthetic signatures, and simulated for {SHAPES:,} shapes. Compare ratios; absolute times depend on the machine. Each table says what was measured and what follows from it.
+
+## A shape
+
+*Measured*: one thread, from the file to the index, means of a cat, a centaur and a man. Memory is that of the whole process.
+"""
+    yield table(["vertices", "processor seconds", "per 1,000 vertices", "peak memory MB", "`.off` file MB"],
+                [(f"{v:,}", digits(s), digits(1000 * s / v), digits(m), digits(f)) for v, s, m, f in described])
+    exponent = power([r[0] for r in described], [r[1] for r in described])[0]
+    yield f"""
+From the two largest sizes, the time grows with the number of vertices to the power {exponent:.2f}. A small mesh costs as much as one of a few thousand vertices, because long edges are split before a surface is described. Nothing is shared between shapes, so this scales with cores.
+
+*Measured*: indexes of creatures with 1,000 vertices, on all cores; searches with a shape of the index, as medians.
+"""
+    yield table(["shapes", "seconds per shape", "index bytes per shape", "search ms", "forms aligned"],
+                [(f"{c:,}", digits(b), f"{z / c:,.0f}", digits(1000 * s), digits(a)) for c, b, z, s, a in stored])
+    yield f"""
+An index takes {per_shape / 1000:.1f} kB for each further shape, whatever its mesh: 1,000 points of the form, six signatures and the fused vector. The cost per shape does not grow with the collection.
+
+## Ten million shapes
+
+**Sizes.** Collections of meshes are heavy-tailed. *Assumed*: a log-normal distribution with a median of {args.median:,} vertices and a standard deviation of the logarithm of {args.sigma / 100:.1f}, at most {LARGEST:,}. Its mean is {sizes.mean():,.0f}, its 99th percentile {quantile(0.99):,.0f}. Measure yours (`canonform info DIR --json`) and pass `--median` and `--sigma` (in hundredths) to `bench/capacity.py`.
+
+**Time.** *Simulated* from the measured times, in part extrapolated: {(sizes > described[-1][0]).mean() * 100:.2g} % of the shapes are larger than the largest measured mesh and take {cost[sizes > described[-1][0]].sum() / total * 100:.0f} % of the time. All shapes take **{total / 3600:,.0f} core hours**, {total / SHAPES:.2f} s each; the largest 1 % take {order[:SHAPES // 100].sum() / total * 100:.0f} % of it. With `--max-vertices 200000`, {(1 - len(capped) / SHAPES) * 100:.2g} % of the shapes are left out, and {(1 - capped.sum() / total) * 100:.0f} % of the time is saved.
+
+**Shards.** *Simulated*: the shards of `--shard I/N` go in order to the worker, one core each, that is free first.
+"""
+    yield table(["workers", "shards", "shapes per shard", "mean shard h", "longest shard h", "end after h", "efficiency"],
+                [(f"{r['workers']:,}", f"{r['shards']:,}", f"{r['shapes']:,}", digits(r["mean"]), digits(r["longest"]),
+                  digits(r["end"]), f"{100 * r['efficiency']:.1f} %") for r in runs])
+    yield f"""
+Take ten to a hundred shards for each worker: the end waits for little, and a worker that is lost costs at most one shard, less what it has stored in its work file.
+
+**Reading.** At {mean_file:.1f} MB for a mesh of mean size, a core reads {mean_file / (total / SHAPES):.1f} MB/s and 1,024 cores {1.024 * mean_file / (total / SHAPES):.1f} GB/s, as text. Binary `.ply` takes a third of it.
+
+**Storage.** *Extrapolated* from the table above: {per_shape * SHAPES / 1e9:,.0f} GB for the index, the same again for the shards while they are merged.
+
+## Search and merging
+
+*Measured* on one thread, on synthetic signatures of {DIM} numbers without forms, with {QUERIES} queries that are not among them. Building includes the graph of nearest neighbours.
+"""
+    yield table(["signatures", "file MB", "build s", "merge s", "memory MB", "in memory: p50, p99 ms", "from the file: p50, p99 ms"],
+                [(f"{r['n']:,}", digits(r["size"] / 1e6), digits(r["build_seconds"]), digits(r["merge"]), digits(r["memory"]),
+                  "{}, {}".format(*map(digits, r["memory_ms"])), "{}, {}".format(*map(digits, r["file_ms"])))
+                 for r in searched])
+    yield f"""
+*Extrapolated* to ten million from the last two rows: {per_vector * SHAPES / 1e9:.0f} GB of memory for all signatures, {at(merge, SHAPES) / 60:,.0f} minutes for the merge (without the forms, which add the time to copy {per_shape * SHAPES / 1e9:,.0f} GB), {at(memory_latency, SHAPES):.1f} ms for the nearest signatures in memory and {at(file_latency, SHAPES):.0f} ms from the file. To these add the alignment of the candidates, the same for any size of the index: {1000 * stored[-1][3]:.0f} ms in the table above.
+
+## Where each part saturates
+
+| part | bound by | ten million shapes | then |
+|---|---|---|---|
+| describing | cores | {total / 3600:,.0f} core hours | more workers; decimate large meshes first |
+| the largest shape | memory of a worker | {digits(described[-1][2])} MB at {described[-1][0]:,} vertices | `--max-vertices`, `--memory` |
+| reading | the file system | {1.024 * mean_file / (total / SHAPES):.1f} GB/s for 1,024 cores | binary formats, local copies |
+| merging | one process and one disk | {at(merge, SHAPES) / 60:,.0f} minutes and {per_shape * SHAPES / 1e9:,.0f} GB | several indexes, searched one by one |
+| search | memory | {per_vector * SHAPES / 1e9:.0f} GB | search from the file, {at(file_latency, SHAPES):.0f} ms |
+| `evaluate` | pairs | not possible: the limit is 10,000 shapes | evaluate a sample |
+
+Nothing here was run with ten million shapes. The largest index that was searched had {VECTORS[-1]:,} signatures, the largest mesh {SIZES[-1]:,} vertices.
+"""
+
+
+def main():
+    options = arguments(__doc__, "target/release/canonform", "docs/capacity.md", 1, median=5000, sigma=150)
+    options.add_argument("--vectors", default="target/release/examples/vectors")
+    options.add_argument("--record", help="measurements: read if the file exists, written if not")
+    args = options.parse_args()
+    if args.record and os.path.exists(args.record):
+        with open(args.record) as file:
+            described, stored, searched = json.load(file)
+    else:
+        with tempfile.TemporaryDirectory() as folder:
+            described = describe(args.program, folder, SIZES)
+            stored = store(args.program, folder, STORED)
+            searched = search(args.vectors, args.program, folder, VECTORS)
+        if args.record:
+            with open(args.record, "w") as file:
+                json.dump([described, stored, searched], file)
+    write_page(args.output, page(args, described, stored, searched))
+
+
+if __name__ == "__main__":
+    main()
