@@ -5,7 +5,7 @@ OUT ?= out
 # For `make reproduce`: a folder of meshes with the classes of the paper. Default: the built-in dataset.
 DATASET ?=
 
-.PHONY: help setup build run test test-python kills lint bench bench-peers bench-nmds bench-preparation bench-search bench-capacity bench-eigsh fmt doc guide reproduce report paper plotly deny sbom fuzz fuzz-seeds package ci clean
+.PHONY: help setup build run test test-python kills lint bench bench-peers bench-nmds bench-preparation bench-search bench-capacity bench-packages bench-eigsh fmt doc guide reproduce report paper plotly deny sbom fuzz fuzz-seeds package ci clean
 
 help: ## List these commands
 	@grep -hE '^[a-z-]+:.*## ' $(MAKEFILE_LIST) | awk -F ':.*## ' '{printf "  make %-17s %s\n", $$1, $$2}'
@@ -71,6 +71,11 @@ bench-capacity: build ## Measure what a shape costs, simulate ten million and wr
 	test -x target/peers/bin/python || python3 -m venv target/peers
 	target/peers/bin/pip install --quiet numpy
 	target/peers/bin/python bench/capacity.py
+
+bench-packages: build ## Compare distances, embeddings and refusals with Python packages and write docs/packages.md (needs Python)
+	test -x target/peers/bin/python || python3 -m venv target/peers
+	target/peers/bin/pip install --quiet numpy scipy potpourri3d pygeodesic gdist scikit-learn
+	target/peers/bin/python bench/packages.py
 
 fmt: ## Format the sources
 	$(CARGO) fmt --all

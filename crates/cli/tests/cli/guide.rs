@@ -29,8 +29,8 @@ fn is_writing() -> bool {
 
 /// The names of the pictures that a chapter shows.
 fn pictures(chapter: &Chapter) -> Vec<&str> {
-    let links = chapter.text.split("](images/").skip(1);
-    links.filter_map(|rest| rest.split(')').next()).filter(|name| name.ends_with(".png")).collect()
+    let targets = chapter.text.split("](").skip(1).filter_map(|rest| rest.split(')').next());
+    targets.filter_map(|target| target.rsplit_once("images/")).map(|(_, name)| name).collect()
 }
 
 /// Pixels of two pictures that differ visibly, as a share; 1 for different sizes.
@@ -53,7 +53,7 @@ fn difference(a: &Path, b: &Path) -> f64 {
 
 /// Compares the pictures of a chapter with those that its commands drew.
 fn check_pictures(chapter: &Chapter, run: &mut Run) {
-    let folder = chapter.path.parent().unwrap().join("images");
+    let folder = root().join("docs/guide/images");
     for name in pictures(chapter) {
         let (shown, drawn) = (folder.join(name), run.folder.path().join(name));
         if is_writing() && drawn.exists() && difference(&shown, &drawn) > 0.0 {
