@@ -74,7 +74,7 @@ bench-capacity: build ## Measure what a shape costs, simulate ten million and wr
 
 bench-packages: build ## Compare distances, embeddings and refusals with Python packages and write docs/packages.md (needs Python)
 	test -x target/peers/bin/python || python3 -m venv target/peers
-	target/peers/bin/pip install --quiet numpy scipy potpourri3d pygeodesic gdist scikit-learn
+	target/peers/bin/pip install --quiet --no-binary gdist numpy scipy potpourri3d pygeodesic gdist scikit-learn
 	target/peers/bin/python bench/packages.py
 
 fmt: ## Format the sources
