@@ -9,13 +9,18 @@
 /// - Lines that report progress do not count: they appear on slow machines.
 #[must_use]
 pub fn matches(shown: &str, printed: &str) -> bool {
-    let shown: Vec<&str> = lines(shown).collect();
-    let printed: Vec<&str> = lines(printed).filter(|line| !is_progress(line)).collect();
+    let shown: Vec<&str> = lines(shown.lines()).collect();
+    let printed: Vec<&str> = lines(without_progress(printed)).collect();
     match_lines(&shown, &printed)
 }
 
-fn lines(text: &str) -> impl Iterator<Item = &str> {
-    text.lines().map(str::trim).filter(|line| line.chars().any(|c| !is_frame(c)))
+/// The lines that do not report progress.
+pub(crate) fn without_progress(printed: &str) -> impl Iterator<Item = &str> {
+    printed.lines().filter(|line| !is_progress(line))
+}
+
+fn lines<'a>(lines: impl Iterator<Item = &'a str>) -> impl Iterator<Item = &'a str> {
+    lines.map(str::trim).filter(|line| line.chars().any(|c| !is_frame(c)))
 }
 
 fn is_frame(c: char) -> bool {

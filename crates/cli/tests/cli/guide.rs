@@ -220,9 +220,9 @@ fn is_number(word: &str) -> bool {
 }
 
 /// The calls of the program in a script: their words, without comments, redirections and what follows a pipe.
-fn calls(text: &str) -> Vec<Vec<&str>> {
+fn calls<'a>(lines: &[&'a str]) -> Vec<Vec<&'a str>> {
     let mut calls = Vec::new();
-    for line in text.lines() {
+    for line in lines {
         let line = line.trim().trim_start_matches("$ ");
         let line = line.split(" #").next().unwrap_or(line);
         for command in line.split([';', '|', '(', ')']).flat_map(|part| part.split("&&")) {
@@ -243,8 +243,10 @@ fn commands_on_every_page_exist_with_their_options() {
     for page in &pages {
         let blocks = page.blocks();
         let scripts = blocks.iter().filter(|block| block.language != Language::Other);
-        for Block { line, text, .. } in scripts {
-            for words in calls(text) {
+        for Block { line, text, language } in scripts {
+            let is_command = |line: &&str| *language != Language::Console || line.starts_with("$ ");
+            let commands: Vec<&str> = text.lines().filter(is_command).collect();
+            for words in calls(&commands) {
                 n_calls += 1;
                 let fault = help.fault(&words);
                 faults.extend(fault.map(|fault| format!("{}:{line}: {fault}", page.path.display())));
