@@ -5,7 +5,7 @@
 /// - A line `...` stands for any number of lines, and `...` in a line for anything.
 /// - Spaces, and what frames a table is made of, do not count, because a table adapts to the width of its numbers.
 /// - Numbers with a decimal point may differ by 1 %, or by 1 in the last digit: processors round differently.
-/// - A number before `s`, `ms` or `MB` stands for any number.
+/// - A number before `s`, `ms` or `MB`, or in a line that begins with `seconds`, stands for any number.
 /// - Lines that report progress do not count: they appear on slow machines.
 #[must_use]
 pub fn matches(shown: &str, printed: &str) -> bool {
@@ -46,7 +46,8 @@ fn match_lines(shown: &[&str], printed: &[&str]) -> bool {
         (Some((&"...", rest)), _) => (0..=printed.len()).any(|n| match_lines(rest, &printed[n..])),
         (Some(_), None) => false,
         (Some((line, shown)), Some((first, printed))) => {
-            match_words(&words(line), &words(first)) && match_lines(shown, printed)
+            let are_seconds = line.starts_with("seconds ");
+            match_words(&words(line), &words(first), are_seconds) && match_lines(shown, printed)
         }
     }
 }
@@ -104,13 +105,16 @@ fn number_length(text: &str) -> usize {
     end
 }
 
-fn match_words(shown: &[&str], printed: &[&str]) -> bool {
+fn match_words(shown: &[&str], printed: &[&str], are_seconds: bool) -> bool {
     match (shown.split_first(), printed.split_first()) {
         (None, rest) => rest.is_none(),
-        (Some((&"...", rest)), _) => (0..=printed.len()).any(|n| match_words(rest, &printed[n..])),
+        (Some((&"...", rest)), _) => {
+            (0..=printed.len()).any(|n| match_words(rest, &printed[n..], are_seconds))
+        }
         (Some(_), None) => false,
         (Some((word, shown)), Some((first, printed))) => {
-            match_word(word, first, shown.first().copied()) && match_words(shown, printed)
+            let unit = if are_seconds { Some("s") } else { shown.first().copied() };
+            match_word(word, first, unit) && match_words(shown, printed, are_seconds)
         }
     }
 }
@@ -171,6 +175,7 @@ mod tests {
     fn numbers_in_words_are_numbers_and_frames_do_not_count() {
         assert!(matches("cat0  (0.99 %, x=1.50e-3)", "cat0 (1.00 %, x=1.51e-3)"));
         assert!(!matches("cat0", "cat1"));
+        assert!(matches("seconds 0.1 (distances 0.2)", "seconds  9.5 (distances 3.25)"));
         assert!(matches("| a | b |\n|---|---|\n| 1 | 2 |", "┌───┐\n│ a ┆ b │\n│ 1 │ 2 │\n"));
         assert!(!matches("| 1 | 2 |", "| 1 | 3 |"));
     }
