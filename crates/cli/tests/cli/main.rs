@@ -1,7 +1,7 @@
 //! The program as its users see it: arguments in; files, output and exit codes out.
 //!
 //! `cluster` (the scripts in `examples/cluster`), `collections` (folders and indexes as people keep them), `commands` (what
-//! each prints), `dropped` (lost surfaces), `forms` (files), `errors`, `folders` (many meshes), `geodesic` (sources, paths,
+//! each prints), `dropped` (lost surfaces), `forms` (files), `errors`, `folders` (many meshes), `generate`, `geodesic` (sources, paths,
 //! all pairs), `guide` (the commands of the user guide), `index` (building, changing, searching), `killed` (interruptions, full disks), `render` (pictures), `serve`, `streams` (standard input and
 //! output, several meshes, limits), `zoo` (broken meshes).
 
@@ -20,6 +20,8 @@ mod errors;
 mod folders;
 #[cfg(test)]
 mod forms;
+#[cfg(test)]
+mod generate;
 #[cfg(test)]
 mod geodesic;
 #[cfg(test)]
