@@ -106,9 +106,9 @@ def search(vectors, program, folder, counts):
     return rows
 
 
-def power(x, y):
-    """Exponent and factor of y = factor x^exponent through the last two points."""
-    exponent = np.log(y[-1] / y[-2]) / np.log(x[-1] / x[-2])
+def power(x, y, least=0.0):
+    """Exponent and factor of y = factor x^exponent through the last two points, or with the least exponent through the last."""
+    exponent = max(least, np.log(y[-1] / y[-2]) / np.log(x[-1] / x[-2]))
     return exponent, y[-1] / x[-1] ** exponent
 
 
@@ -157,14 +157,14 @@ def page(args, described, stored, searched):
     n = [row["n"] for row in searched]
     per_shape = (stored[-1][2] - stored[-2][2]) / (stored[-1][0] - stored[-2][0])
     per_vector = (searched[-1]["memory"] - searched[-2]["memory"]) / (n[-1] - n[-2]) * 1e6
-    merge = power(n, [row["merge"] for row in searched])
+    merge = power(n, [row["merge"] for row in searched], 1)
     at = lambda fit, x: fit[1] * x ** fit[0]
-    memory_latency = power(n, [row["memory_ms"][0] for row in searched])
-    file_latency = power(n, [row["file_ms"][0] for row in searched])
+    memory_latency = power(n, [row["memory_ms"][0] for row in searched], 0.5)
+    file_latency = power(n, [row["file_ms"][0] for row in searched], 0.5)
     mean_file = float(np.interp(np.log(sizes.mean()), np.log([r[0] for r in described]), [r[3] for r in described]))
     yield f"""# Plan for ten million shapes
 
-Measured by `make bench-capacity` on {platform.machine()}, {os.cpu_count()} cores, on generated shapes and synthetic signatures, and simulated for {SHAPES:,} shapes. Compare ratios; absolute times depend on the machine. Each table says what was measured and what follows from it.
+Measured by `make bench-capacity` on {platform.machine()}, {os.cpu_count()} cores, on generated shapes and synthetic signatures (processor time for describing, elapsed time elsewhere), and simulated for {SHAPES:,} shapes. Compare ratios; absolute times depend on the machine. Each table says what was measured and what follows from it.
 
 ## A shape
 
@@ -197,7 +197,7 @@ An index takes {per_shape / 1000:.1f} kB for each further shape, whatever its me
     yield f"""
 Take ten to a hundred shards for each worker: the end waits for little, and a worker that is lost costs at most one shard, less what it has stored in its work file.
 
-**Reading.** At {mean_file:.1f} MB for a mesh of mean size, a core reads {mean_file / (total / SHAPES):.1f} MB/s and 1,024 cores {1.024 * mean_file / (total / SHAPES):.1f} GB/s, as text. Binary `.ply` takes a third of it.
+**Reading.** At {mean_file:.1f} MB for a mesh of mean size, a core reads {mean_file / (total / SHAPES):.1f} MB/s and 1,024 cores {1.024 * mean_file / (total / SHAPES):.1f} GB/s, as text. Binary `.ply` takes about half of it.
 
 **Storage.** *Extrapolated* from the table above: {per_shape * SHAPES / 1e9:,.0f} GB for the index, the same again for the shards while they are merged.
 
@@ -210,7 +210,7 @@ Take ten to a hundred shards for each worker: the end waits for little, and a wo
                   "{}, {}".format(*map(digits, r["memory_ms"])), "{}, {}".format(*map(digits, r["file_ms"])))
                  for r in searched])
     yield f"""
-*Extrapolated* to ten million from the last two rows: {per_vector * SHAPES / 1e9:.0f} GB of memory for all signatures, {at(merge, SHAPES) / 60:,.0f} minutes for the merge (without the forms, which add the time to copy {per_shape * SHAPES / 1e9:,.0f} GB), {at(memory_latency, SHAPES):.1f} ms for the nearest signatures in memory and {at(file_latency, SHAPES):.0f} ms from the file. To these add the alignment of the candidates, the same for any size of the index: {1000 * stored[-1][3]:.0f} ms in the table above.
+*Extrapolated* to ten million by powers of the number of signatures from the last two rows, for latency at least the square root, by which cells grow, and for merging at least in proportion: {per_vector * SHAPES / 1e9:.0f} GB of memory for all signatures, {at(merge, SHAPES) / 60:,.0f} minutes for the merge (without the forms, which add the time to copy {per_shape * SHAPES / 1e9:,.0f} GB), {digits(at(memory_latency, SHAPES))} ms for the nearest signatures in memory and {digits(at(file_latency, SHAPES))} ms from the file. To these add the alignment of the candidates, the same for any size of the index: {1000 * stored[-1][3]:.0f} ms in the table above.
 
 ## Where each part saturates
 
@@ -220,10 +220,10 @@ Take ten to a hundred shards for each worker: the end waits for little, and a wo
 | the largest shape | memory of a worker | {digits(described[-1][2])} MB at {described[-1][0]:,} vertices | `--max-vertices`, `--memory` |
 | reading | the file system | {1.024 * mean_file / (total / SHAPES):.1f} GB/s for 1,024 cores | binary formats, local copies |
 | merging | one process and one disk | {at(merge, SHAPES) / 60:,.0f} minutes and {per_shape * SHAPES / 1e9:,.0f} GB | several indexes, searched one by one |
-| search | memory | {per_vector * SHAPES / 1e9:.0f} GB | search from the file, {at(file_latency, SHAPES):.0f} ms |
+| search | memory | {per_vector * SHAPES / 1e9:.0f} GB | search from the file, {digits(at(file_latency, SHAPES))} ms |
 | `evaluate` | pairs | not possible: the limit is 10,000 shapes | evaluate a sample |
 
-Nothing here was run with ten million shapes. The largest index that was searched had {VECTORS[-1]:,} signatures, the largest mesh {SIZES[-1]:,} vertices.
+Nothing here was run with ten million shapes. The largest index that was searched had {n[-1]:,} signatures, the largest mesh {described[-1][0]:,} vertices.
 """
 
 
