@@ -22,7 +22,7 @@ pytestmark = pytest.mark.filterwarnings("default")
 
 @pytest.fixture(scope="module")
 def client():
-    with LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster, Client(cluster) as client:
+    with LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=":0") as cluster, Client(cluster) as client:
         yield client
 
 
@@ -78,7 +78,7 @@ def test_a_finished_batch_is_not_described_again(client: Client, collection: Pat
 def test_a_lost_worker_costs_its_batch_only(collection: Path, tmp_path: Path) -> None:
     single = Index.build(collection, tmp_path / "single.canonform")
     shards = tmp_path / "shards"
-    with LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster, Client(cluster) as client:
+    with LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=":0") as cluster, Client(cluster) as client:
         victims = client.run(os.getpid)
         victim = next(iter(victims.values()))
         finished: list[int] = []

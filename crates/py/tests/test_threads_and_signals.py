@@ -77,8 +77,8 @@ def test_a_handler_that_does_not_raise_does_not_interrupt(square: Surface) -> No
     try:
         timer = threading.Timer(0.1, signal.raise_signal, [signal.SIGINT])
         timer.start()
-        large = Surface(*grid(60))
-        assert np.isfinite(large.distances_many(range(3600), method="exact")).all()
+        large = Surface(*grid(45))
+        assert np.isfinite(large.distances_many(range(2025), method="exact")).all()
         timer.join()
     finally:
         signal.signal(signal.SIGINT, before)
@@ -124,11 +124,11 @@ def test_a_forked_process_has_threads_of_its_own(square: Surface) -> None:
 
 
 def test_progress_calls_a_function_or_a_bar(capsys: pytest.CaptureFixture[str]) -> None:
-    surface, seen = Surface(*grid(60)), []
-    surface.distances_many(range(3600), method="exact", progress=lambda *step: seen.append(step))
+    surface, seen = Surface(*grid(45)), []
+    surface.distances_many(range(2025), method="exact", progress=lambda *step: seen.append(step))
     assert seen and {stage for stage, _, _ in seen} == {"distances"}
     assert [done for _, done, _ in seen] == sorted(done for _, done, _ in seen)
-    surface.distances_many(range(3600), method="exact", progress=True)
+    surface.distances_many(range(2025), method="exact", progress=True)
     assert "distances" in capsys.readouterr().err
 
 
@@ -137,5 +137,5 @@ def test_an_exception_of_the_progress_function_ends_the_work() -> None:
         raise RuntimeError("enough")
 
     with pytest.raises(RuntimeError, match="enough"):
-        Surface(*grid(60)).distances_many(range(3600), method="exact", progress=stop)
+        Surface(*grid(45)).distances_many(range(2025), method="exact", progress=stop)
     assert canonform.threads() >= 1
