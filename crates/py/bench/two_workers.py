@@ -1,6 +1,6 @@
 """Two Dask workers over a folder of meshes: the speed-up over one, and what a lost worker costs.
 
-    python crates/py/bench/distributed.py FOLDER
+    python crates/py/bench/two_workers.py FOLDER
 
 Prints the seconds of one worker, of two, and of two of which one is killed in the middle, and whether all indexes export the same bytes as
 the index of one process.
