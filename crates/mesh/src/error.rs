@@ -196,6 +196,8 @@ pub enum Place {
     Line(usize),
     /// At this byte, counted from zero.
     Byte(u64),
+    /// In a numbered part of the file, such as an accessor.
+    Part(&'static str, usize),
 }
 
 impl fmt::Display for Place {
@@ -204,6 +206,7 @@ impl fmt::Display for Place {
             Self::File => Ok(()),
             Self::Line(line) => write!(f, ", line {line}"),
             Self::Byte(byte) => write!(f, ", byte {byte}"),
+            Self::Part(kind, number) => write!(f, ", {kind} {number}"),
         }
     }
 }
@@ -340,6 +343,23 @@ pub enum Fault {
         limit: u64,
     },
 
+    /// Copies of meshes that add up out of proportion.
+    #[error(
+        "its copies of meshes add up to more than {limit} vertices and faces, out of proportion to the file; \
+         the file is damaged or malicious: if it is neither, export a single copy"
+    )]
+    Copies {
+        /// The limit.
+        limit: u64,
+    },
+
+    /// A file without the data that it refers to.
+    #[error("its data is in {companion}, which is missing; put both files into the same folder")]
+    NoCompanion {
+        /// Name of the missing file.
+        companion: String,
+    },
+
     /// Half a `.vert`/`.tri` pair.
     #[error("its other half {partner} is missing; put both files of the pair into the same folder")]
     NoPartner {
@@ -353,6 +373,8 @@ pub enum Fault {
 pub(crate) struct Located {
     /// Which of the files of the mesh.
     pub(crate) file: usize,
+    /// The file inside the file, if it is an archive.
+    pub(crate) member: Option<String>,
     pub(crate) place: Place,
     pub(crate) fault: Fault,
 }
@@ -363,9 +385,15 @@ impl Located {
         Self { file, ..self }
     }
 
+    /// Moves the fault to a file inside the file.
+    pub(crate) fn of_member(self, member: &str) -> Self {
+        Self { member: Some(member.to_owned()), ..self }
+    }
+
     /// Names the file.
     pub(crate) fn in_file(self, path: &Path) -> MeshError {
-        MeshError::File { path: path.to_path_buf(), place: self.place, fault: self.fault }
+        let path = self.member.map_or_else(|| path.to_owned(), |member| path.join(member));
+        MeshError::File { path, place: self.place, fault: self.fault }
     }
 }
 
@@ -387,6 +415,6 @@ impl Fault {
 
     /// The fault at a place in the first file.
     pub(crate) fn at(self, place: Place) -> Located {
-        Located { file: 0, place, fault: self }
+        Located { file: 0, member: None, place, fault: self }
     }
 }

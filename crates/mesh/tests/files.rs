@@ -7,7 +7,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use canonform_mesh::io::{
-    Content, FORMATS, Format, MemoryFile, ReadLimits, VertexField, is_mesh_path, read, read_from,
+    Content, FORMATS, Format, MemoryFile, ReadLimits, VertexField, files_of, is_mesh_path, read, read_from,
     read_memory, read_within, write, write_polylines, write_scalar_field,
 };
 use canonform_mesh::{Fault, MeshError, TriMesh, shapes};
@@ -39,7 +39,10 @@ fn fault_of(name: &str, content: &[u8]) -> Fault {
     }
 }
 
-const EXACT: [&str; 6] = ["m.off", "m.obj", "m.ply", "m.vert", "m.tri", "M.PLY"];
+const EXACT: [&str; 11] = [
+    "m.off", "m.obj", "m.ply", "m.vert", "m.tri", "M.PLY", "m.3mf", "m.off.gz", "m.ply.gz", "M.TRI.GZ",
+    "m.3mf.gz",
+];
 
 #[test]
 fn awkward_numbers_and_unused_vertices_survive_a_round_trip() {
@@ -102,7 +105,7 @@ fn from_memory(files: &[(&str, &[u8])]) -> Result<TriMesh, MeshError> {
 fn files_in_memory_read_like_files_on_disk() {
     let sphere = shapes::icosphere(2);
     let folder = folder();
-    for name in ["m.off", "m.obj", "m.ply", "m.stl"] {
+    for name in ["m.off", "m.obj", "m.ply", "m.stl", "m.glb", "m.3mf", "m.obj.gz"] {
         let path = folder.path().join(name);
         write(&path, &sphere).unwrap();
         assert_eq!(from_memory(&[(name, &fs::read(&path).unwrap())]).unwrap(), read(&path).unwrap());
@@ -126,6 +129,11 @@ fn errors_of_files_in_memory_equal_those_of_files_on_disk() {
         ("a.stl", b""),
         ("a.obj", b"v 0 0 nan\n"),
         ("a.mat", b"MATLAB 7.3"),
+        ("a.glb", b"glTF\x01\0\0\0\0\0\0\0"),
+        ("a.gltf", b"{\"asset\": 1}"),
+        ("a.gltf", br#"{"asset":{"version":"2.0"},"buffers":[{"uri":"b.bin","byteLength":4}]}"#),
+        ("a.3mf", b"PK\x05\x06"),
+        ("a.off.gz", b"OFF\n3 1 0\n0 0 0\n"),
         ("a.vert", b"0 0 0\n"),
         ("a.tri", b"1 2 3\n"),
         ("a.txt", b"hello"),
@@ -148,10 +156,25 @@ fn errors_of_files_in_memory_equal_those_of_files_on_disk() {
 
 #[test]
 fn mesh_paths_are_recognised_by_extension() {
-    for name in ["a.off", "a.OBJ", "x/a.ply", "a.stl", "cat0.vert", "CAT0.VERT", "a.b.mat"] {
+    for name in [
+        "a.off",
+        "a.OBJ",
+        "x/a.ply",
+        "a.stl",
+        "cat0.vert",
+        "CAT0.VERT",
+        "a.b.mat",
+        "a.glb",
+        "a.GLTF",
+        "a.3mf",
+        "a.off.gz",
+        "a.VERT.GZ",
+    ] {
         assert!(is_mesh_path(Path::new(name)), "{name}");
     }
-    for name in ["cat0.tri", "CAT0.TRI", "a.txt", "off", "a", "", ".off"] {
+    for name in
+        ["cat0.tri", "CAT0.TRI", "a.tri.gz", "a.gz", ".off.gz", "a.txt.gz", "a.txt", "off", "a", "", ".off"]
+    {
         assert!(!is_mesh_path(Path::new(name)), "{name}");
     }
 }
@@ -198,7 +221,7 @@ fn errors_name_file_place_fault_and_remedy() {
 
 #[test]
 fn empty_and_foreign_files_are_errors_in_every_format() {
-    for name in ["a.off", "a.obj", "a.ply", "a.stl", "a.mat", "a.tri"] {
+    for name in ["a.off", "a.obj", "a.ply", "a.stl", "a.mat", "a.glb", "a.gltf", "a.3mf", "a.tri"] {
         if name != "a.tri" {
             assert_eq!(fault_of(name, b""), Fault::Empty, "{name}");
             assert_eq!(fault_of(name, b" \n\t\r\n"), Fault::Empty, "{name}");
@@ -247,6 +270,11 @@ fn a_file_of_zeros_is_refused_by_its_start() {
         ("a.stl", ""),
         ("b.stl", "solid"),
         ("a.mat", ""),
+        ("a.glb", ""),
+        ("b.glb", "glTF\x02\0\0\0"),
+        ("a.gltf", ""),
+        ("b.gltf", "{"),
+        ("a.3mf", ""),
         ("half.tri", "1 2 3\n"),
     ] {
         let path = folder.path().join(name);
@@ -279,9 +307,9 @@ fn a_stream_reads_like_a_file_within_its_limits() {
     let folder = folder();
     let name = Path::new("standard input");
     let from = |bytes: &[u8], extension: &str, limits: &ReadLimits| {
-        read_from(name, &mut &bytes[..], Format::named(extension).unwrap(), limits)
+        read_from(name, &mut &bytes[..], Format::named(extension).unwrap(), limits).map(|file| file.mesh)
     };
-    for extension in ["off", "OBJ", "ply", "stl"] {
+    for extension in ["off", "OBJ", "ply", "stl", "glb", "3mf"] {
         let path = folder.path().join("m").with_extension(extension);
         write(&path, &sphere).unwrap();
         let bytes = fs::read(&path).unwrap();
@@ -296,7 +324,7 @@ fn a_stream_reads_like_a_file_within_its_limits() {
         assert!(read_within(&path, &ReadLimits::of_vertices(2561)).is_err());
     }
     // Endless streams end with an error.
-    for extension in ["off", "obj", "ply", "stl", "mat"] {
+    for extension in ["off", "obj", "ply", "stl", "mat", "glb", "gltf", "3mf"] {
         let mut zeros = std::io::repeat(0);
         let format = Format::named(extension).unwrap();
         assert!(read_from(name, &mut zeros, format, &ReadLimits::default()).is_err(), "{extension}");
@@ -416,4 +444,76 @@ fn messages_about_extensions_list_the_formats() {
     for format in &FORMATS {
         assert!(listed("notes.txt").contains(&format!(".{}", format.extensions[0])));
     }
+}
+
+#[test]
+fn gltf_data_lies_beside_the_file() {
+    let folder = folder();
+    let cube = shapes::cube(1);
+    let glb = folder.path().join("cube.glb");
+    write(&glb, &cube).unwrap();
+    let bytes = fs::read(&glb).unwrap();
+    let length = u32::from_le_bytes(bytes[12..16].try_into().unwrap()) as usize;
+    let json = String::from_utf8(bytes[20..20 + length].to_vec()).unwrap();
+    let json = json.replace(r#""buffers":[{"#, r#""buffers":[{"uri":"more/cube%20data.bin","#);
+    let gltf = folder.path().join("cube.gltf");
+    fs::write(&gltf, &json).unwrap();
+    let error = read(&gltf).unwrap_err().to_string();
+    assert!(error.contains("its data is in cube data.bin, which is missing"), "{error}");
+    fs::create_dir(folder.path().join("more")).unwrap();
+    let data = folder.path().join("more/cube data.bin");
+    fs::write(&data, &bytes[28 + length..]).unwrap();
+    assert_eq!(read(&gltf).unwrap(), read(&glb).unwrap());
+    assert_eq!(files_of(&gltf), [gltf.clone(), data.clone()]);
+    let names = ["cube.gltf", "more/cube data.bin"];
+    let data = fs::read(&data).unwrap();
+    assert_eq!(from_memory(&[(names[0], json.as_bytes()), (names[1], &data)]).unwrap(), read(&glb).unwrap());
+    let stray = [(names[0], json.as_bytes()), (names[1], &data[..]), ("c.bin", &data[..])];
+    assert!(matches!(from_memory(&stray), Err(MeshError::StrayFile { .. })));
+    let stream = read_from(
+        Path::new("standard input"),
+        &mut json.as_bytes(),
+        Format::named("gltf").unwrap(),
+        &ReadLimits::default(),
+    );
+    assert!(stream.unwrap_err().to_string().contains("its data is in another file, `more/cube data.bin`"));
+    fs::write(&gltf, json.replace("more/cube%20data.bin", "../secret.bin")).unwrap();
+    let error = read(&gltf).unwrap_err().to_string();
+    assert!(
+        error.contains("buffer 0: its data is in `../secret.bin`, which is not a file in its own folder"),
+        "{error}"
+    );
+}
+
+#[test]
+fn compressed_files_are_read_within_their_limits() {
+    let folder = folder();
+    let sphere = shapes::icosphere(3);
+    let [plain, gzip] = ["s.obj", "s.obj.gz"].map(|name| folder.path().join(name));
+    write(&plain, &sphere).unwrap();
+    write(&gzip, &sphere).unwrap();
+    assert_eq!(read(&gzip).unwrap(), sphere);
+    let compressed = fs::read(&gzip).unwrap();
+    assert!(compressed.starts_with(&[0x1f, 0x8b]) && compressed.len() < fs::read(&plain).unwrap().len() / 2);
+    // From a stream the content tells.
+    let off = Format::named("obj").unwrap();
+    let limits = ReadLimits::default();
+    assert_eq!(read_from(Path::new("-"), &mut &compressed[..], off, &limits).unwrap().mesh, sphere);
+    // Both halves of a pair, or one of them.
+    write(&folder.path().join("t.vert.gz"), &sphere).unwrap();
+    assert_eq!(names_in(&folder), ["s.obj", "s.obj.gz", "t.tri.gz", "t.vert.gz"]);
+    assert_eq!(read(&folder.path().join("t.tri.gz")).unwrap(), sphere);
+    for damage in [compressed.len() / 2, compressed.len() - 4] {
+        fs::write(&gzip, &compressed[..damage]).unwrap();
+        let error = read(&gzip).unwrap_err().to_string();
+        assert!(error.contains("s.obj.gz: expected compressed data"), "{error}");
+    }
+    // A hundred thousand times the size of the file.
+    let mut bomb = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::best());
+    for _ in 0..100 {
+        std::io::Write::write_all(&mut bomb, &vec![b'\n'; 1 << 20]).unwrap();
+    }
+    fs::write(&gzip, bomb.finish().unwrap()).unwrap();
+    let error = read(&gzip).unwrap_err();
+    assert!(matches!(&error, MeshError::File { fault: Fault::Inflates { .. }, .. }), "{error}");
 }

@@ -1,23 +1,32 @@
-//! Mesh files: OFF, OBJ, PLY, STL, TOSCA's `.vert`/`.tri` pairs and MATLAB `.mat`.
+//! Mesh files: OFF, OBJ, PLY, STL, MATLAB `.mat`, TOSCA's `.vert`/`.tri` pairs, glTF, GLB and 3MF.
 //!
-//! The extension determines the format, in upper or lower case; [`FORMATS`] is the table of them. Vertices keep the
-//! order of the file, whether a face uses them or not. Polygons are triangulated: quadrilaterals along the better
-//! diagonal, larger ones as fans, so split concave polygons of five or more corners beforehand. Other content is
-//! ignored. A file that cannot be read faithfully is a [`MeshError`] that names the file, the place, the fault and a
-//! remedy. Readers never panic and reserve no more memory than the size of the file justifies.
+//! The extension determines the format, in upper or lower case; [`FORMATS`] is the table of them. Any file may be
+//! compressed, as `cat.obj.gz`. Vertices keep the order of the file, whether a face uses them or not. Polygons are
+//! triangulated: quadrilaterals along the better diagonal, larger ones as fans, so split concave polygons of five or more
+//! corners beforehand. Other content is ignored. A file that cannot be read faithfully is a [`MeshError`] that names the
+//! file, the place, the fault and a remedy. Readers never panic and reserve no more memory than the size of the file
+//! justifies.
+//!
+//! A file of several meshes, as glTF and 3MF files are, becomes one mesh: the vertices of all instances, one after the
+//! other, moved as the file says. [`read_file`] also tells the unit of length and what was ignored.
 
 mod binary;
+mod facts;
 mod field;
 mod formats;
 mod limits;
+mod name;
 mod polygons;
 mod source;
 mod text;
 
-use std::io::Read;
+use std::borrow::Cow;
+use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 
 use files::Pending;
+use flate2::Compression;
+use flate2::write::GzEncoder;
 use nalgebra::Point3;
 use surface::VertexId;
 
@@ -25,13 +34,15 @@ use crate::error::{Fault, Located, MeshError};
 use crate::face_set::check_input;
 use crate::tri_mesh::TriMesh;
 use formats::Precision;
-use source::{CheckStart, Disk, Memory, Source, read_checked};
+use source::{CheckStart, Memory, load, load_stream};
 
 pub use crate::error::Content;
+pub use facts::{FileFacts, LengthUnit, MeshFile};
 pub use field::{ScalarField, VertexField};
-pub use formats::{FORMATS, Format, extension, mesh_files, or_list, writable};
+pub use formats::{FORMATS, Format, mesh_files, or_list, writable};
 pub use limits::ReadLimits;
-pub use source::MemoryFile;
+pub use name::{extension, is_gzip, without_extension};
+pub use source::{Disk, MemoryFile, Opened, Source, inflated_limit};
 
 /// Whether a file name belongs to a mesh, judging by its extension alone.
 ///
@@ -42,10 +53,26 @@ pub fn is_mesh_path(path: &Path) -> bool {
     Format::of(path).is_ok_and(|format| format.extensions[0] == extension(path))
 }
 
-/// The files that [`read()`] opens for this name: two for a `.vert`/`.tri` pair, whichever half is named.
+/// The files that [`read()`] opens for this name: two for a `.vert`/`.tri` pair, whichever half is named, and those that
+/// a `.gltf` file names.
 #[must_use]
 pub fn files_of(path: &Path) -> Vec<PathBuf> {
-    Format::of(path).map_or_else(|_| vec![path.to_owned()], |format| format.files(path, &Disk))
+    files_in(path, &Disk)
+}
+
+/// As [`files_of`], in any place that holds files.
+#[must_use]
+pub fn files_in(path: &Path, source: &dyn Source) -> Vec<PathBuf> {
+    let Ok(format) = Format::of(path) else { return vec![path.to_owned()] };
+    let mut files = format.files(path, source);
+    // A file that cannot be read is reported when it is.
+    if let (Some(companions), [check]) = (format.companions, format.check_start)
+        && let Ok(content) = load(source, path, *check)
+    {
+        let names = companions(&content).unwrap_or_default();
+        files.extend(names.iter().map(|name| path.with_file_name(name)));
+    }
+    files
 }
 
 /// Reads a mesh; a `.vert`/`.tri` pair by either name.
@@ -73,15 +100,24 @@ pub fn read(path: &Path) -> Result<TriMesh, MeshError> {
 /// # Errors
 /// As [`read()`]; [`Fault::OverLimit`] beyond `limits`.
 pub fn read_within(path: &Path, limits: &ReadLimits) -> Result<TriMesh, MeshError> {
-    Ok(read_source(path, &Disk, limits, Format::parse)?.0)
+    Ok(read_source(path, &Disk, limits, Format::parse)?.mesh)
+}
+
+/// Reads a mesh from any place that holds files, with what else its file says: the unit of length, the scalar field of a PLY
+/// file, such as one by [`write_scalar_field`], and what was ignored.
+///
+/// # Errors
+/// As [`read_within`].
+pub fn read_file(path: &Path, source: &dyn Source, limits: &ReadLimits) -> Result<MeshFile, MeshError> {
+    read_source(path, source, limits, Format::parse_with_field)
 }
 
 /// Reads a mesh from a stream, such as standard input, to its end. `name` stands for it in messages. Formats of more
-/// than one file cannot be read from a stream.
+/// than one file cannot be read from a stream. A stream that is compressed by gzip is decompressed.
 ///
 /// # Errors
 /// As [`read()`]; [`Fault::OverLimit`] beyond `limits`, which bound the bytes of the stream too, and
-/// [`Fault::Unsupported`] for a format of more than one file.
+/// [`Fault::Unsupported`] for a mesh of more than one file.
 ///
 /// ```
 /// use std::path::Path;
@@ -89,8 +125,8 @@ pub fn read_within(path: &Path, limits: &ReadLimits) -> Result<TriMesh, MeshErro
 ///
 /// let mut stream = &b"OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"[..];
 /// let format = Format::named("off").unwrap();
-/// let mesh = io::read_from(Path::new("standard input"), &mut stream, format, &ReadLimits::default())?;
-/// assert_eq!(mesh.n_faces(), 1);
+/// let file = io::read_from(Path::new("standard input"), &mut stream, format, &ReadLimits::default())?;
+/// assert_eq!(file.mesh.n_faces(), 1);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn read_from(
@@ -98,51 +134,28 @@ pub fn read_from(
     stream: &mut dyn Read,
     format: &Format,
     limits: &ReadLimits,
-) -> Result<TriMesh, MeshError> {
-    Ok(read_stream(name, stream, format, limits, Format::parse)?.0)
-}
-
-/// As [`read_from`], with the scalar field that a PLY file carries.
-///
-/// # Errors
-/// As [`read_from`].
-pub fn read_from_with_field(
-    name: &Path,
-    stream: &mut dyn Read,
-    format: &Format,
-    limits: &ReadLimits,
-) -> Result<(TriMesh, Option<ScalarField>), MeshError> {
-    read_stream(name, stream, format, limits, Format::parse_with_field)
-}
-
-/// A mesh and its field, if there is one and it was asked for.
-type WithField = (TriMesh, Option<ScalarField>);
-
-type Parse = fn(&Format, &[&[u8]], &ReadLimits) -> Result<WithField, Located>;
-
-fn read_stream(
-    name: &Path,
-    stream: &mut dyn Read,
-    format: &Format,
-    limits: &ReadLimits,
-    parse: Parse,
-) -> Result<WithField, MeshError> {
-    let [check] = format.check_start else {
-        let what = format!("{} consists of two files and cannot be read from a stream", format.name);
-        let remedy = "name one of its files, or convert it to OFF or PLY";
-        return Err(Fault::Unsupported { what, remedy }.whole().in_file(name));
+) -> Result<MeshFile, MeshError> {
+    let of_several = |what: String| {
+        let remedy = "name one of its files, or convert it to PLY or GLB";
+        Fault::Unsupported { what, remedy }.whole().in_file(name)
     };
-    let bytes = read_checked(name, stream, *check, None, limits.max_bytes)?;
-    parse(format, &[&bytes], limits).map_err(|fault| fault.in_file(name))
+    let [check] = format.check_start else {
+        return Err(of_several(format!(
+            "{} consists of two files and cannot be read from a stream",
+            format.name
+        )));
+    };
+    let bytes = load_stream(name, stream, *check, limits.max_bytes)?;
+    let companions = format.companions.map_or(Ok(Vec::new()), |companions| companions(&bytes));
+    if let Some(companion) = companions.map_err(|fault| fault.in_file(name))?.first() {
+        return Err(of_several(format!(
+            "its data is in another file, `{companion}`, which cannot be read from a stream"
+        )));
+    }
+    format.parse_with_field(&[&bytes], limits).map_err(|fault| fault.in_file(name))
 }
 
-/// As [`read()`], with the scalar field that a PLY file carries, such as one by [`write_scalar_field`].
-///
-/// # Errors
-/// As [`read()`].
-pub fn read_with_field(path: &Path) -> Result<(TriMesh, Option<ScalarField>), MeshError> {
-    read_source(path, &Disk, &ReadLimits::default(), Format::parse_with_field)
-}
+type Parse = fn(&Format, &[&[u8]], &ReadLimits) -> Result<MeshFile, Located>;
 
 /// Reads a mesh from files in memory: one file, or a `.vert`/`.tri` pair in either order. Looks for no other file.
 ///
@@ -161,13 +174,19 @@ pub fn read_with_field(path: &Path) -> Result<(TriMesh, Option<ScalarField>), Me
 /// ```
 pub fn read_memory(files: &[MemoryFile<'_>], limits: &ReadLimits) -> Result<TriMesh, MeshError> {
     let nothing = MemoryFile { name: Path::new(""), bytes: &[] };
-    let (first, others) = files.split_first().unwrap_or((&nothing, &[]));
-    // Whether the files of a pair belong together is checked when they are loaded.
-    if let Some(extra) = others.get(Format::of(first.name)?.extensions.len() - 1) {
+    let first = files.first().unwrap_or(&nothing);
+    let format = Format::of(first.name)?;
+    let source = Memory(files);
+    // Whether the files of a mesh belong together is checked when they are loaded.
+    let most = match format.companions {
+        Some(_) => files_in(first.name, &source).len(),
+        None => format.extensions.len(),
+    };
+    if let Some(extra) = files.get(most) {
         let (path, extra) = (first.name.to_owned(), extra.name.to_owned());
         return Err(MeshError::StrayFile { path, extra, supported: mesh_files() });
     }
-    Ok(read_source(first.name, &Memory(files), limits, Format::parse)?.0)
+    Ok(read_source(first.name, &source, limits, Format::parse)?.mesh)
 }
 
 fn read_source(
@@ -175,17 +194,29 @@ fn read_source(
     source: &dyn Source,
     limits: &ReadLimits,
     parse: Parse,
-) -> Result<WithField, MeshError> {
+) -> Result<MeshFile, MeshError> {
     let format = Format::of(path)?;
-    let paths = format.files(path, source);
-    let load = |(file, check): (&PathBuf, &CheckStart)| {
+    let mut paths = format.files(path, source);
+    let open = |file: &PathBuf, check: CheckStart| {
         if file != path && !source.holds(file) {
             let partner = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
-            return Err(Fault::NoPartner { partner }.whole().in_file(path));
+            let fault = match format.companions {
+                Some(_) => Fault::NoCompanion { companion: partner },
+                None => Fault::NoPartner { partner },
+            };
+            return Err(fault.whole().in_file(path));
         }
-        source.load(file, *check)
+        load(source, file, check)
     };
-    let contents = paths.iter().zip(format.check_start).map(load).collect::<Result<Vec<_>, _>>()?;
+    let loaded = paths.iter().zip(format.check_start).map(|(file, check)| open(file, *check));
+    let mut contents = loaded.collect::<Result<Vec<Cow<'_, [u8]>>, _>>()?;
+    if let (Some(companions), Some(content)) = (format.companions, contents.first()) {
+        for name in companions(content).map_err(|fault| fault.in_file(path))? {
+            let file = path.with_file_name(name);
+            contents.push(open(&file, |_, _| Ok(()))?);
+            paths.push(file);
+        }
+    }
     let contents: Vec<&[u8]> = contents.iter().map(AsRef::as_ref).collect();
     parse(format, &contents, limits).map_err(|fault| {
         let file = &paths[fault.file];
@@ -193,10 +224,25 @@ fn read_source(
     })
 }
 
+/// Writes a file, compressed if its name says so. It appears once it is published.
+fn pending(
+    path: &Path,
+    content: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> Result<Pending<'_>, files::FileError> {
+    Pending::write(path, |out| match is_gzip(path) {
+        false => content(out),
+        true => {
+            let mut compressed = GzEncoder::new(out, Compression::default());
+            content(&mut compressed)?;
+            compressed.finish().map(drop)
+        }
+    })
+}
+
 /// Writes a mesh in the format of the extension; the file appears complete or not at all.
 ///
-/// OFF, OBJ, PLY and the `.vert`/`.tri` pair (both files under either name) read back bit for bit. STL rounds
-/// coordinates to 32 bits and has no vertex numbers.
+/// OFF, OBJ, PLY, 3MF and the `.vert`/`.tri` pair (both files under either name) read back bit for bit. STL and GLB round
+/// coordinates to 32 bits, and STL has no vertex numbers. A name that ends in `.gz` makes a compressed file.
 ///
 /// # Errors
 /// [`MeshError::Io`] if the file cannot be written, [`MeshError::UnknownFormat`] and
@@ -213,9 +259,8 @@ pub fn write(path: &Path, mesh: &TriMesh) -> Result<(), MeshError> {
         check_single_precision(mesh, format)?;
     }
     let paths = format.files(path, &Disk);
-    let pending =
-        paths.iter().zip(format.write).map(|(path, write)| Pending::write(path, |out| write(out, mesh)));
-    let pending = pending.collect::<Result<Vec<_>, _>>()?;
+    let written = paths.iter().zip(format.write).map(|(path, write)| pending(path, |out| write(out, mesh)));
+    let pending = written.collect::<Result<Vec<_>, _>>()?;
     Ok(pending.into_iter().try_for_each(Pending::publish)?)
 }
 
@@ -241,7 +286,7 @@ pub fn write_scalar_field(path: &Path, mesh: &TriMesh, field: &VertexField<'_>) 
     let write = format.write_field.ok_or_else(|| format.cannot_write(path, Content::Field))?;
     field.check(mesh.n_vertices())?;
     check_input(mesh)?;
-    Ok(files::write_atomically(path, |out| write(out, mesh, field))?)
+    Ok(pending(path, |out| write(out, mesh, field))?.publish()?)
 }
 
 /// Writes polylines as OBJ, or as PLY with an element `edge` per segment.
@@ -257,5 +302,5 @@ pub fn write_polylines(path: &Path, lines: &[Vec<Point3<f64>>]) -> Result<(), Me
     if let Some(vertex) = lines.iter().flatten().position(|p| !is_finite(p)) {
         return Err(MeshError::NonFinitePosition { vertex: VertexId::from(vertex) });
     }
-    Ok(files::write_atomically(path, |out| write(out, lines))?)
+    Ok(pending(path, |out| write(out, lines))?.publish()?)
 }

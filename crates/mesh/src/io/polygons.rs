@@ -1,6 +1,6 @@
 //! From the polygons of a file to a triangle mesh.
 
-use nalgebra::Point3;
+use nalgebra::{Matrix4, Point3};
 use surface::VertexId;
 
 use super::limits::ReadLimits;
@@ -40,6 +40,50 @@ fn prefers_second_diagonal(positions: &[Point3<f64>], quad: [VertexId; 4]) -> bo
         (true, false) => true,
         (false, true) => false,
         _ => (d - b).norm_squared() < (c - a).norm_squared(),
+    }
+}
+
+/// Appends a copy of a mesh, moved by an affine map. Where it mirrors, corners change their order.
+pub(super) fn append_placed(
+    vertices: &[Point3<f64>],
+    triangles: &[[u32; 3]],
+    place: Option<&Matrix4<f64>>,
+    positions: &mut Vec<Point3<f64>>,
+    faces: &mut Vec<[VertexId; 3]>,
+) -> Result<(), Fault> {
+    let start = positions.len() as u32;
+    let Some(place) = place else {
+        positions.extend_from_slice(vertices);
+        faces.extend(triangles.iter().map(|face| face.map(|v| VertexId(v + start))));
+        return Ok(());
+    };
+    let (linear, shift) =
+        (place.fixed_view::<3, 3>(0, 0).into_owned(), place.fixed_view::<3, 1>(0, 3).into_owned());
+    for (vertex, p) in vertices.iter().enumerate() {
+        let moved = Point3::from(linear * p.coords + shift);
+        if let Some(&value) = moved.iter().find(|x| !x.is_finite()) {
+            return Err(Fault::NonFinite { vertex: vertex as u64, value });
+        }
+        positions.push(moved);
+    }
+    let mirrors = linear.determinant() < 0.0;
+    faces.extend(triangles.iter().map(|&[a, b, c]| {
+        let face = if mirrors { [a, c, b] } else { [a, b, c] };
+        face.map(|v| VertexId(v + start))
+    }));
+    Ok(())
+}
+
+/// Vertices and faces that copies of meshes may always add up to.
+const COPIES: u64 = 1 << 22;
+/// Beyond, they may be this many times the bytes of the file.
+const COPIES_RATIO: u64 = 64;
+
+/// Refuses a small file in which copies of meshes add up to a huge one.
+pub(super) fn check_copies(items: u64, n_bytes: u64) -> Result<(), Fault> {
+    match COPIES.max(n_bytes.saturating_mul(COPIES_RATIO)) {
+        limit if items > limit => Err(Fault::Copies { limit }),
+        _ => Ok(()),
     }
 }
 

@@ -1,12 +1,15 @@
-//! Where the bytes of a mesh come from: the disk, or memory.
+//! Where the bytes of a mesh come from: the disk, memory, or whatever a program stores meshes in.
 
 use std::borrow::Cow;
+use std::fmt;
 use std::fs::{self, File};
 use std::io::{self, Read};
 use std::path::Path;
 
 use files::FileError;
+use flate2::read::MultiGzDecoder;
 
+use super::name;
 use crate::error::{Fault, Located, MeshError};
 
 /// Checks the first bytes of a file, given its size if that is known: whether the whole can be a file of the format.
@@ -14,6 +17,17 @@ pub(super) type CheckStart = fn(&[u8], Option<u64>) -> Result<(), Located>;
 
 /// Bytes that are checked before the rest of a file is read.
 const START: u64 = 16 << 10;
+
+/// Decompressed data of this size is read whatever the size of the file.
+const ALWAYS: u64 = 64 << 20;
+/// Larger data may be this many times the size of the file. Meshes as text compress by a factor of 3 to 30.
+const MOST_RATIO: u64 = 256;
+
+/// The most bytes that compressed data of `size` bytes may grow to.
+#[must_use]
+pub fn inflated_limit(size: u64) -> u64 {
+    ALWAYS.max(size.saturating_mul(MOST_RATIO))
+}
 
 /// A file in memory.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -24,33 +38,55 @@ pub struct MemoryFile<'a> {
     pub bytes: &'a [u8],
 }
 
-/// A place that holds files.
-pub(super) trait Source {
+/// An opened file.
+pub enum Opened<'a> {
+    /// All of its bytes.
+    Bytes(Cow<'a, [u8]>),
+    /// A stream, and its number of bytes if that is known.
+    Stream(Box<dyn Read + 'a>, Option<u64>),
+}
+
+impl fmt::Debug for Opened<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Bytes(bytes) => write!(f, "{} bytes", bytes.len()),
+            Self::Stream(_, size) => write!(f, "a stream of {size:?} bytes"),
+        }
+    }
+}
+
+/// A place that holds files: implement it to read meshes from a store of your own.
+pub trait Source {
     /// Whether there is a file with this name.
     fn holds(&self, path: &Path) -> bool;
 
-    /// Reads a file whose start passes a check.
-    fn load(&self, path: &Path, check: CheckStart) -> Result<Cow<'_, [u8]>, MeshError>;
+    /// Opens a file.
+    ///
+    /// # Errors
+    /// If there is none, or if it cannot be read.
+    fn open(&self, path: &Path) -> Result<Opened<'_>, FileError>;
 }
 
 /// The regular files of the file system.
-pub(super) struct Disk;
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Disk;
 
 impl Source for Disk {
     fn holds(&self, path: &Path) -> bool {
         path.exists()
     }
 
-    fn load(&self, path: &Path, check: CheckStart) -> Result<Cow<'_, [u8]>, MeshError> {
-        let cannot_read = |source| FileError::read(path, source);
-        let facts = fs::metadata(path).map_err(cannot_read)?;
-        if !facts.is_file() {
-            return Err(cannot_read(io::Error::new(io::ErrorKind::InvalidInput, not_regular(&facts))).into());
-        }
-        // A file of unknown size, as some file systems have, has the size zero.
-        let size = Some(facts.len()).filter(|size| *size > 0);
-        let mut file = File::open(path).map_err(cannot_read)?;
-        Ok(read_checked(path, &mut file, check, size, u64::MAX)?.into())
+    fn open(&self, path: &Path) -> Result<Opened<'_>, FileError> {
+        let open = || {
+            let facts = fs::metadata(path)?;
+            if !facts.is_file() {
+                return Err(io::Error::new(io::ErrorKind::InvalidInput, not_regular(&facts)));
+            }
+            // A file of unknown size, as some file systems have, has the size zero.
+            let size = Some(facts.len()).filter(|size| *size > 0);
+            Ok(Opened::Stream(Box::new(File::open(path)?), size))
+        };
+        open().map_err(|fault| FileError::read(path, fault))
     }
 }
 
@@ -62,9 +98,109 @@ fn not_regular(facts: &fs::Metadata) -> &'static str {
     }
 }
 
+/// Files in memory.
+pub(super) struct Memory<'a>(pub(super) &'a [MemoryFile<'a>]);
+
+impl Source for Memory<'_> {
+    fn holds(&self, path: &Path) -> bool {
+        self.0.iter().any(|file| file.name == path)
+    }
+
+    fn open(&self, path: &Path) -> Result<Opened<'_>, FileError> {
+        let file = self.0.iter().find(|file| file.name == path);
+        let file = file.ok_or_else(|| FileError::read(path, io::ErrorKind::NotFound.into()))?;
+        Ok(Opened::Bytes(file.bytes.into()))
+    }
+}
+
+/// Reads a file whose start passes a check, and decompresses it if its name says so.
+pub(super) fn load<'a>(
+    source: &'a dyn Source,
+    path: &Path,
+    check: CheckStart,
+) -> Result<Cow<'a, [u8]>, MeshError> {
+    match (source.open(path)?, name::is_gzip(path)) {
+        (Opened::Bytes(bytes), false) => {
+            let start = &bytes[..bytes.len().min(START as usize)];
+            check(start, Some(bytes.len() as u64)).map_err(|fault| fault.in_file(path))?;
+            Ok(bytes)
+        }
+        (Opened::Bytes(bytes), true) => {
+            let size = bytes.len() as u64;
+            Ok(read_gzip(path, &mut &*bytes, check, inflated_limit(size))?.into())
+        }
+        (Opened::Stream(mut stream, size), false) => {
+            Ok(read_checked(path, &mut stream, check, size, u64::MAX)?.into())
+        }
+        (Opened::Stream(mut stream, size), true) => {
+            Ok(read_gzip(path, &mut stream, check, size.map_or(u64::MAX, inflated_limit))?.into())
+        }
+    }
+}
+
+/// Reads a stream of unknown length, at most `max_bytes`. It is decompressed if it begins like a gzip file.
+pub(super) fn load_stream(
+    path: &Path,
+    stream: &mut dyn Read,
+    check: CheckStart,
+    max_bytes: u64,
+) -> Result<Vec<u8>, MeshError> {
+    const GZIP: [u8; 2] = [0x1f, 0x8b];
+    let mut start = Vec::new();
+    stream.take(2).read_to_end(&mut start).map_err(|fault| FileError::read(path, fault))?;
+    let is_gzip = start == GZIP;
+    let mut stream = start.chain(stream);
+    match is_gzip {
+        true => read_gzip(path, &mut stream, check, max_bytes),
+        false => read_checked(path, &mut stream, check, None, max_bytes),
+    }
+}
+
+fn read_gzip(
+    path: &Path,
+    stream: &mut dyn Read,
+    check: CheckStart,
+    limit: u64,
+) -> Result<Vec<u8>, MeshError> {
+    let mut damage = None;
+    let mut inflated = Watched { stream: MultiGzDecoder::new(stream), damage: &mut damage };
+    let read = read_checked(path, &mut inflated, check, None, limit);
+    match read {
+        Err(MeshError::Io(_)) if damage.is_some() => {
+            let found = damage.unwrap_or_default();
+            Err(Fault::Syntax { expected: "compressed data", found }.whole().in_file(path))
+        }
+        Err(MeshError::File { fault: Fault::OverLimit { items: "bytes", limit }, .. }) => {
+            Err(Fault::Inflates { limit }.whole().in_file(path))
+        }
+        other => other,
+    }
+}
+
+/// Notes what is wrong with compressed data, which is not the fault of the system.
+struct Watched<'a, R> {
+    stream: R,
+    damage: &'a mut Option<String>,
+}
+
+impl<R: Read> Read for Watched<'_, R> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let read = self.stream.read(buffer);
+        if let Err(fault) = &read
+            && matches!(
+                fault.kind(),
+                io::ErrorKind::InvalidInput | io::ErrorKind::InvalidData | io::ErrorKind::UnexpectedEof
+            )
+        {
+            *self.damage = Some(fault.to_string());
+        }
+        read
+    }
+}
+
 /// Reads a stream of `size` bytes, if that is known. Nothing is read beyond a start that fails the check, and at most
 /// `max_bytes`.
-pub(super) fn read_checked(
+fn read_checked(
     path: &Path,
     stream: &mut dyn Read,
     check: CheckStart,
@@ -87,21 +223,4 @@ pub(super) fn read_checked(
         }
     }
     Ok(bytes)
-}
-
-/// Files in memory.
-pub(super) struct Memory<'a>(pub(super) &'a [MemoryFile<'a>]);
-
-impl Source for Memory<'_> {
-    fn holds(&self, path: &Path) -> bool {
-        self.0.iter().any(|file| file.name == path)
-    }
-
-    fn load(&self, path: &Path, check: CheckStart) -> Result<Cow<'_, [u8]>, MeshError> {
-        let missing = || FileError::read(path, io::ErrorKind::NotFound.into());
-        let file = self.0.iter().find(|file| file.name == path).ok_or_else(missing)?;
-        let start = &file.bytes[..file.bytes.len().min(START as usize)];
-        check(start, Some(file.bytes.len() as u64)).map_err(|fault| fault.in_file(path))?;
-        Ok(file.bytes.into())
-    }
 }

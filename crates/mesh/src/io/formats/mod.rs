@@ -1,5 +1,6 @@
 //! The mesh formats, one module each, and the table of their names, extensions and abilities.
 
+mod gltf;
 mod mat;
 #[cfg(test)]
 mod mutations;
@@ -7,6 +8,7 @@ mod obj;
 mod off;
 mod ply;
 mod stl;
+mod threemf;
 mod tosca;
 
 use std::io::{self, Write};
@@ -15,14 +17,15 @@ use std::path::{Path, PathBuf};
 use nalgebra::Point3;
 
 use crate::error::{Content, Located, MeshError};
-use crate::io::field::{ScalarField, VertexField};
+use crate::io::facts::MeshFile;
+use crate::io::field::VertexField;
 use crate::io::limits::ReadLimits;
+use crate::io::name::{extension, inflated, with_extension};
 use crate::io::source::{CheckStart, Source};
 use crate::tri_mesh::TriMesh;
 
-type Parse = fn(&[&[u8]], &ReadLimits) -> Result<TriMesh, Located>;
-type ParsedMesh = (TriMesh, Option<ScalarField>);
-type ParseField = fn(&[u8], &ReadLimits) -> Result<ParsedMesh, Located>;
+type Parse = fn(&[&[u8]], &ReadLimits) -> Result<MeshFile, Located>;
+type Companions = fn(&[u8]) -> Result<Vec<String>, Located>;
 type WriteMesh = fn(&mut dyn Write, &TriMesh) -> io::Result<()>;
 type WriteField = fn(&mut dyn Write, &TriMesh, &VertexField<'_>) -> io::Result<()>;
 type WriteLines = fn(&mut dyn Write, &[Vec<Point3<f64>>]) -> io::Result<()>;
@@ -38,10 +41,12 @@ pub struct Format {
     pub(super) precision: Precision,
     /// Checks of the starts of the files, in the order of `extensions`.
     pub(super) check_start: &'static [CheckStart],
-    /// Parses the contents of [`files`](Self::files).
+    /// Names, relative to the file, of further files that its content refers to.
+    pub(super) companions: Option<Companions>,
+    /// Parses the contents of [`files`](Self::files), followed by those of its companions.
     pub(super) parse: Parse,
-    /// Parses the content of the file with its scalar field, if the format can hold one that reads back.
-    pub(super) parse_field: Option<ParseField>,
+    /// Parses the same with the scalar field, if the format can hold one that reads back.
+    pub(super) parse_field: Option<Parse>,
     /// Writers of the files, in the order of `extensions`; empty if the format is read-only.
     pub(super) write: &'static [WriteMesh],
     pub(super) write_field: Option<WriteField>,
@@ -58,35 +63,65 @@ pub(super) enum Precision {
 }
 
 /// All formats that can be read.
-pub static FORMATS: [Format; 6] = [
+pub static FORMATS: [Format; 9] = [
     Format {
         write: &[off::write],
         write_field: Some(off::write_field),
-        ..read_only("OFF", &["off"], &[off::check_start], |files, limits| off::parse(files[0], limits))
+        ..read_only("OFF", &["off"], &[off::check_start], |files, limits| {
+            Ok(off::parse(files[0], limits)?.into())
+        })
     },
     Format {
         write: &[obj::write],
         write_field: Some(obj::write_field),
         write_lines: Some(obj::write_lines),
-        ..read_only("OBJ", &["obj"], &[obj::check_start], |files, limits| obj::parse(files[0], limits))
+        ..read_only("OBJ", &["obj"], &[obj::check_start], |files, limits| {
+            Ok(obj::parse(files[0], limits)?.into())
+        })
     },
     Format {
-        parse_field: Some(ply::parse_field),
+        parse_field: Some(|files, limits| {
+            let (mesh, field) = ply::parse_field(files[0], limits)?;
+            Ok(MeshFile { field, ..mesh.into() })
+        }),
         write: &[ply::write],
         write_field: Some(ply::write_field),
         write_lines: Some(ply::write_lines),
-        ..read_only("PLY", &["ply"], &[ply::check_start], |files, limits| ply::parse(files[0], limits))
+        ..read_only("PLY", &["ply"], &[ply::check_start], |files, limits| {
+            Ok(ply::parse(files[0], limits)?.into())
+        })
     },
     Format {
         precision: Precision::Single,
         write: &[stl::write],
-        ..read_only("STL", &["stl"], &[stl::check_start], |files, limits| stl::parse(files[0], limits))
+        ..read_only("STL", &["stl"], &[stl::check_start], |files, limits| {
+            Ok(stl::parse(files[0], limits)?.into())
+        })
     },
-    read_only("MATLAB", &["mat"], &[mat::check_start], |files, limits| mat::parse(files[0], limits)),
+    read_only("MATLAB", &["mat"], &[mat::check_start], |files, limits| {
+        Ok(mat::parse(files[0], limits)?.into())
+    }),
     Format {
         write: &[tosca::write_positions, tosca::write_faces],
         ..read_only("TOSCA", &["vert", "tri"], &[tosca::check_start, tosca::check_start], |files, limits| {
-            tosca::parse(files[0], files[1], limits)
+            Ok(tosca::parse(files[0], files[1], limits)?.into())
+        })
+    },
+    Format {
+        precision: Precision::Single,
+        companions: Some(gltf::companions_of_binary),
+        write: &[gltf::write],
+        ..read_only("GLB", &["glb"], &[gltf::check_binary_start], gltf::parse_binary)
+    },
+    Format {
+        precision: Precision::Single,
+        companions: Some(gltf::companions),
+        ..read_only("glTF", &["gltf"], &[gltf::check_start], gltf::parse)
+    },
+    Format {
+        write: &[threemf::write],
+        ..read_only("3MF", &["3mf"], &[threemf::check_start], |files, limits| {
+            threemf::parse(files[0], limits)
         })
     },
 ];
@@ -104,6 +139,7 @@ const fn read_only(
         extensions,
         precision,
         check_start,
+        companions: None,
         parse,
         parse_field: None,
         write: &[],
@@ -134,20 +170,13 @@ impl Format {
     }
 
     /// Parses the contents of the [`files`](Self::files) of a mesh.
-    pub(super) fn parse(&self, files: &[&[u8]], limits: &ReadLimits) -> Result<ParsedMesh, Located> {
-        Ok(((self.parse)(files, limits)?, None))
+    pub(super) fn parse(&self, files: &[&[u8]], limits: &ReadLimits) -> Result<MeshFile, Located> {
+        (self.parse)(files, limits)
     }
 
     /// As [`parse`](Self::parse), with the scalar field, if there is one.
-    pub(super) fn parse_with_field(
-        &self,
-        files: &[&[u8]],
-        limits: &ReadLimits,
-    ) -> Result<ParsedMesh, Located> {
-        match self.parse_field {
-            Some(parse) => parse(files[0], limits),
-            None => self.parse(files, limits),
-        }
+    pub(super) fn parse_with_field(&self, files: &[&[u8]], limits: &ReadLimits) -> Result<MeshFile, Located> {
+        self.parse_field.unwrap_or(self.parse)(files, limits)
     }
 
     /// Whether files of this format can be written with this content.
@@ -170,10 +199,11 @@ impl Format {
     ///
     /// The extension of a companion file has the case of the given one, unless only the other one exists.
     pub(super) fn files(&self, path: &Path, source: &dyn Source) -> Vec<PathBuf> {
-        let given = path.extension().unwrap_or_default().to_string_lossy();
+        let given = inflated(path).extension().unwrap_or_default().to_string_lossy().into_owned();
         let prefers_upper = given.chars().all(|c| c.is_ascii_uppercase());
         let companion = |extension: &str| {
-            let cases = [path.with_extension(extension), path.with_extension(extension.to_ascii_uppercase())];
+            let cases = [extension.to_owned(), extension.to_ascii_uppercase()];
+            let cases = cases.map(|extension| with_extension(path, &extension));
             let [preferred, other] = if prefers_upper { [1, 0] } else { [0, 1] };
             let takes_other = source.holds(&cases[other]) && !source.holds(&cases[preferred]);
             cases[if takes_other { other } else { preferred }].clone()
@@ -184,12 +214,6 @@ impl Format {
         };
         self.extensions.iter().map(file).collect()
     }
-}
-
-/// The extension of a file name in lower case; empty if there is none.
-#[must_use]
-pub fn extension(path: &Path) -> String {
-    path.extension().unwrap_or_default().to_string_lossy().to_ascii_lowercase()
 }
 
 /// Extensions of the formats that can be written with this content, in the order of [`FORMATS`].
@@ -240,7 +264,10 @@ mod tests {
         assert_eq!(or_list(["npy", "csv", "ply"]), ".npy, .csv or .ply");
         assert_eq!(or_list(writable(Content::Lines)), ".obj or .ply");
         assert_eq!(or_list(writable(Content::Field)), ".off, .obj or .ply");
-        assert_eq!(or_list(writable(Content::Mesh)), ".off, .obj, .ply, .stl or .vert");
-        assert_eq!(mesh_files(), "a .off, .obj, .ply, .stl or .mat file, or a .vert with its .tri");
+        assert_eq!(or_list(writable(Content::Mesh)), ".off, .obj, .ply, .stl, .vert, .glb or .3mf");
+        assert_eq!(
+            mesh_files(),
+            "a .off, .obj, .ply, .stl, .mat, .glb, .gltf or .3mf file, or a .vert with its .tri"
+        );
     }
 }

@@ -1,0 +1,183 @@
+//! 3MF, the 3D Manufacturing Format: a zip archive with models as XML.
+//!
+//! **Vertices.** The items of the build are visited in their order, and the components of an object in theirs. Each object
+//! with a mesh adds its vertices in their order, whether a triangle uses them or not. An object that is placed three times
+//! adds them three times. A file with an empty build has each object once that is not a component of another.
+//!
+//! **Coordinates.** The transforms of components and items are applied. The unit of length is reported, not converted.
+
+mod model;
+mod package;
+mod write;
+
+use std::collections::HashMap;
+
+use nalgebra::{Matrix4, Point3};
+use surface::VertexId;
+
+use crate::error::{Fault, Located, Place};
+use crate::io::facts::{FileFacts, MeshFile};
+use crate::io::limits::ReadLimits;
+use crate::io::polygons::{append_placed, check_copies, finish};
+use model::{Model, Object, Reference};
+use package::Package;
+
+pub(super) use package::check_start;
+pub(super) use write::write;
+
+/// Components may be nested this deep.
+const DEEPEST: usize = 64;
+
+/// Reads a 3MF file.
+pub(super) fn parse(bytes: &[u8], limits: &ReadLimits) -> Result<MeshFile, Located> {
+    let mut package = Package::open(bytes)?;
+    let mut file = Parts { models: Vec::new(), numbers: HashMap::new() };
+    let root = package.root()?;
+    file.numbers.insert(root.to_ascii_lowercase(), 0);
+    let mut waiting = vec![root];
+    // Objects may be in other parts of the package.
+    while let Some(name) = waiting.get(file.models.len()).cloned() {
+        let content = package.read(&name)?;
+        let model = model::parse(&content, limits).map_err(|fault| fault.of_member(&name))?;
+        for other in model.parts() {
+            let next = file.numbers.len();
+            if *file.numbers.entry(other.to_ascii_lowercase()).or_insert(next) == next {
+                waiting.push(other.to_owned());
+            }
+        }
+        file.models.push(model);
+    }
+    assemble(&file, bytes.len() as u64, limits)
+}
+
+/// The models of all parts.
+struct Parts {
+    models: Vec<Model>,
+    /// Their numbers by name in lower case.
+    numbers: HashMap<String, usize>,
+}
+
+/// A part and the id of one of its objects.
+type Key = (usize, u64);
+
+impl Parts {
+    fn key(&self, reference: &Reference, part: usize) -> Key {
+        let other = reference.part.as_ref().and_then(|name| self.numbers.get(&name.to_ascii_lowercase()));
+        (other.copied().unwrap_or(part), reference.object)
+    }
+
+    fn object(&self, (part, id): Key) -> Result<&Object, Located> {
+        self.models[part].objects.get(&id).ok_or_else(|| {
+            let found = format!("object {id}");
+            Fault::Syntax { expected: "the id of an object that exists", found }.whole()
+        })
+    }
+}
+
+/// Vertices, faces and meshes of an object with its components.
+#[derive(Debug, Clone, Copy, Default)]
+struct Size {
+    vertices: u64,
+    faces: u64,
+    meshes: u64,
+}
+
+impl Size {
+    fn add(&mut self, other: Self) {
+        self.vertices = self.vertices.saturating_add(other.vertices);
+        self.faces = self.faces.saturating_add(other.faces);
+        self.meshes = self.meshes.saturating_add(other.meshes);
+    }
+}
+
+fn assemble(file: &Parts, n_bytes: u64, limits: &ReadLimits) -> Result<MeshFile, Located> {
+    let mut sizes = HashMap::new();
+    let root = &file.models[0];
+    let mut items: Vec<(Key, Option<Matrix4<f64>>)> =
+        root.items.iter().map(|item| (file.key(item, 0), item.place)).collect();
+    if items.is_empty() {
+        let of_others: Vec<Key> = root
+            .objects
+            .values()
+            .flat_map(|o| &o.components)
+            .map(|component| file.key(component, 0))
+            .collect();
+        let mut tops: Vec<&Object> =
+            root.objects.values().filter(|object| !of_others.contains(&(0, object.id))).collect();
+        tops.sort_by_key(|object| object.order);
+        items = tops.into_iter().map(|object| ((0, object.id), None)).collect();
+    }
+    let mut whole = Size::default();
+    for (key, _) in &items {
+        whole.add(measure(file, *key, 0, &mut sizes)?);
+    }
+    limits.check(whole.vertices, whole.faces).map_err(Fault::whole)?;
+    if whole.meshes > 1 {
+        check_copies(whole.vertices.saturating_add(whole.faces), n_bytes).map_err(Fault::whole)?;
+    }
+    let mut built = Built {
+        positions: Vec::with_capacity(whole.vertices as usize),
+        faces: Vec::with_capacity(whole.faces as usize),
+        sizes,
+    };
+    for (key, place) in items {
+        built.append(file, key, place)?;
+    }
+    let facts =
+        FileFacts { unit: Some(root.unit), instances: Some(whole.meshes as usize), ignored: Vec::new() };
+    Ok(MeshFile { mesh: finish(built.positions, built.faces, limits)?, field: None, facts })
+}
+
+/// The size of an object with its components, which must be a tree.
+fn measure(file: &Parts, key: Key, depth: usize, known: &mut HashMap<Key, Size>) -> Result<Size, Located> {
+    if let Some(size) = known.get(&key) {
+        return Ok(*size);
+    }
+    if depth > DEEPEST {
+        let what =
+            format!("object {} has components more than {DEEPEST} deep, or is its own component", key.1);
+        return Err(Fault::Unsupported { what, remedy: "export it as a single mesh" }.whole());
+    }
+    let object = file.object(key)?;
+    let n = |count: usize| count as u64;
+    let own = (n(object.positions.len()), n(object.faces.len()));
+    let mut size = Size { vertices: own.0, faces: own.1, meshes: u64::from(own.0 > 0) };
+    for component in &object.components {
+        size.add(measure(file, file.key(component, key.0), depth + 1, known)?);
+    }
+    known.insert(key, size);
+    Ok(size)
+}
+
+/// The mesh so far.
+struct Built {
+    positions: Vec<Point3<f64>>,
+    faces: Vec<[VertexId; 3]>,
+    sizes: HashMap<Key, Size>,
+}
+
+impl Built {
+    /// Appends an object with its components.
+    fn append(&mut self, file: &Parts, key: Key, place: Option<Matrix4<f64>>) -> Result<(), Located> {
+        // Without meshes there is nothing to visit, however many components there are.
+        if self.sizes.get(&key).is_none_or(|size| size.meshes == 0) {
+            return Ok(());
+        }
+        let object = file.object(key)?;
+        append_placed(&object.positions, &object.faces, place.as_ref(), &mut self.positions, &mut self.faces)
+            .map_err(|fault| fault.at(Place::Part("object", key.1 as usize)))?;
+        for component in &object.components {
+            let here = match (place, component.place) {
+                (Some(above), Some(own)) => Some(above * own),
+                (above, own) => above.or(own),
+            };
+            self.append(file, file.key(component, key.0), here)?;
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests;
+#[cfg(test)]
+pub(super) use tests::{model_of, package_of};

@@ -1,0 +1,348 @@
+//! A model part: the unit, objects and the build.
+
+use std::collections::HashMap;
+
+use nalgebra::{Matrix4, Point3};
+use quick_xml::events::{BytesStart, Event};
+use quick_xml::reader::Reader;
+
+use crate::error::{Fault, Located};
+use crate::io::facts::LengthUnit;
+use crate::io::limits::ReadLimits;
+use crate::io::text::{excerpt, parse_integer, parse_number};
+
+/// Required extensions that this reader knows or that change no positions, by the end of their namespaces.
+const KNOWN: [&str; 6] =
+    ["/production/", "/material/", "/slice/", "/trianglesets/", "/core/", "/productionalternatives/"];
+
+/// One model part.
+pub(super) struct Model {
+    pub(super) unit: LengthUnit,
+    pub(super) objects: HashMap<u64, Object>,
+    pub(super) items: Vec<Reference>,
+}
+
+/// A mesh, or other objects put together.
+#[derive(Default)]
+pub(super) struct Object {
+    pub(super) id: u64,
+    /// Its place among the objects.
+    pub(super) order: usize,
+    pub(super) positions: Vec<Point3<f64>>,
+    pub(super) faces: Vec<[u32; 3]>,
+    pub(super) components: Vec<Reference>,
+}
+
+/// An object that is placed somewhere.
+pub(super) struct Reference {
+    /// The other part that has the object, if it is not the same.
+    pub(super) part: Option<String>,
+    pub(super) object: u64,
+    /// `None` if it stays where it is.
+    pub(super) place: Option<Matrix4<f64>>,
+}
+
+impl Model {
+    /// Names of other parts, in order of appearance.
+    pub(super) fn parts(&self) -> impl Iterator<Item = &str> {
+        let mut objects: Vec<&Object> = self.objects.values().collect();
+        objects.sort_by_key(|object| object.order);
+        let components = objects.into_iter().flat_map(|object| &object.components);
+        self.items.iter().chain(components).filter_map(|reference| reference.part.as_deref())
+    }
+}
+
+/// Where in the file the parser is.
+struct Cursor<'a> {
+    bytes: &'a [u8],
+    at: usize,
+}
+
+impl Cursor<'_> {
+    /// Places a fault in the line of the element.
+    fn locate(&self, fault: Fault) -> Located {
+        let before = &self.bytes[..self.at.min(self.bytes.len())];
+        fault.in_line(1 + before.iter().filter(|byte| **byte == b'\n').count())
+    }
+
+    fn syntax(&self, expected: &'static str, found: &str) -> Located {
+        self.locate(Fault::Syntax { expected, found: excerpt(found.as_bytes()) })
+    }
+}
+
+/// What encloses an element. Elements of extensions may have the same names elsewhere.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Inside {
+    Nothing,
+    Model,
+    Resources,
+    Object,
+    Mesh,
+    Vertices,
+    Triangles,
+    Components,
+    Build,
+    Other,
+}
+
+/// Parses a part.
+pub(super) fn parse(bytes: &[u8], limits: &ReadLimits) -> Result<Model, Located> {
+    if bytes.starts_with(b"\xff\xfe") || bytes.starts_with(b"\xfe\xff") {
+        let what = "the model is encoded as UTF-16".into();
+        return Err(Fault::Unsupported { what, remedy: "save it with another program, as UTF-8" }.whole());
+    }
+    let text =
+        std::str::from_utf8(bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes)).map_err(|fault| {
+            let found = "other bytes".to_owned();
+            Fault::Syntax { expected: "text in UTF-8", found }.at_byte(fault.valid_up_to())
+        })?;
+    let mut reader = Reader::from_str(text);
+    reader.config_mut().expand_empty_elements = true;
+    let mut cursor = Cursor { bytes: text.as_bytes(), at: 0 };
+    let mut parser = Parser {
+        model: Model { unit: LengthUnit::Millimeter, objects: HashMap::new(), items: Vec::new() },
+        object: None,
+        prefix: String::new(),
+        limits,
+        n_vertices: 0,
+        n_faces: 0,
+    };
+    let mut path = vec![Inside::Nothing];
+    loop {
+        cursor.at = reader.buffer_position() as usize;
+        let event = reader.read_event().map_err(|fault| {
+            cursor.at = reader.error_position() as usize;
+            cursor.syntax("XML", &fault.to_string())
+        })?;
+        match event {
+            Event::Start(element) => {
+                let outer = *path.last().unwrap_or(&Inside::Nothing);
+                path.push(parser.start(&element, outer, &cursor)?);
+                if path.len() > 1000 {
+                    return Err(cursor.syntax("a model", "elements nested more than 1000 deep"));
+                }
+            }
+            Event::End(_) => {
+                let inner = path.pop();
+                if inner == Some(Inside::Object) {
+                    parser.end_object(&cursor)?;
+                }
+            }
+            Event::DocType(_) => return Err(cursor.syntax("a model", "<!DOCTYPE")),
+            Event::Eof if path.len() > 1 => {
+                return Err(cursor.locate(Fault::CutShort { expected: "the end of the model".into() }));
+            }
+            Event::Eof => return Ok(parser.model),
+            _ => {}
+        }
+    }
+}
+
+struct Parser<'a> {
+    model: Model,
+    object: Option<Object>,
+    /// The prefix of the core elements, with its colon.
+    prefix: String,
+    limits: &'a ReadLimits,
+    n_vertices: u64,
+    n_faces: u64,
+}
+
+impl Parser<'_> {
+    /// Handles the beginning of an element, and says where its content is.
+    fn start(
+        &mut self,
+        element: &BytesStart<'_>,
+        outer: Inside,
+        cursor: &Cursor<'_>,
+    ) -> Result<Inside, Located> {
+        let name = element.name();
+        if outer == Inside::Nothing {
+            if name.local_name().as_ref() != "model" {
+                return Err(cursor.syntax("the element `model`", name.as_ref()));
+            }
+            self.prefix = name.prefix().map_or_else(String::new, |prefix| format!("{}:", prefix.as_ref()));
+            return self.model(element, cursor);
+        }
+        let Some(local) = name.as_ref().strip_prefix(self.prefix.as_str()) else { return Ok(Inside::Other) };
+        Ok(match (outer, local) {
+            (Inside::Model, "resources") => Inside::Resources,
+            (Inside::Model, "build") => Inside::Build,
+            (Inside::Resources, "object") => {
+                let attributes = Attributes::of(element, cursor)?;
+                let order = self.model.objects.len();
+                let id = attributes.id("id")?;
+                self.object = Some(Object { id, order, ..Object::default() });
+                Inside::Object
+            }
+            (Inside::Object, "mesh") => Inside::Mesh,
+            (Inside::Object, "components") => Inside::Components,
+            (Inside::Mesh, "vertices") => Inside::Vertices,
+            (Inside::Mesh, "triangles") => Inside::Triangles,
+            (Inside::Vertices, "vertex") => {
+                self.vertex(element, cursor)?;
+                Inside::Other
+            }
+            (Inside::Triangles, "triangle") => {
+                self.triangle(element, cursor)?;
+                Inside::Other
+            }
+            (Inside::Components, "component") => {
+                let reference = Attributes::of(element, cursor)?.reference()?;
+                if let Some(object) = &mut self.object {
+                    object.components.push(reference);
+                }
+                Inside::Other
+            }
+            (Inside::Build, "item") => {
+                let reference = Attributes::of(element, cursor)?.reference()?;
+                self.model.items.push(reference);
+                Inside::Other
+            }
+            _ => Inside::Other,
+        })
+    }
+
+    fn model(&mut self, element: &BytesStart<'_>, cursor: &Cursor<'_>) -> Result<Inside, Located> {
+        let attributes = Attributes::of(element, cursor)?;
+        if let Some(unit) = attributes.find("unit") {
+            let named = LengthUnit::ALL.into_iter().find(|known| known.name() == unit.trim());
+            self.model.unit = named.ok_or_else(|| {
+                cursor.syntax("a unit: micron, millimeter, centimeter, inch, foot or meter", unit)
+            })?;
+        }
+        for prefix in attributes.find("requiredextensions").unwrap_or_default().split_ascii_whitespace() {
+            let namespace = attributes.find(&format!("xmlns:{prefix}")).unwrap_or(prefix);
+            if !KNOWN.iter().any(|known| namespace.contains(known)) {
+                let what = match namespace.contains("/securecontent/") {
+                    true => "its content is encrypted".to_owned(),
+                    false => format!(
+                        "it requires the extension {}, which is not supported",
+                        excerpt(namespace.as_bytes())
+                    ),
+                };
+                return Err(
+                    cursor.locate(Fault::Unsupported { what, remedy: "export it without this extension" })
+                );
+            }
+        }
+        Ok(Inside::Model)
+    }
+
+    fn vertex(&mut self, element: &BytesStart<'_>, cursor: &Cursor<'_>) -> Result<(), Located> {
+        let Some(object) = &mut self.object else { return Ok(()) };
+        let mut position = [None; 3];
+        for attribute in element.attributes().with_checks(false) {
+            let attribute = attribute.map_err(|fault| cursor.syntax("an attribute", &fault.to_string()))?;
+            let axis = match attribute.key.as_ref() {
+                "x" => 0,
+                "y" => 1,
+                "z" => 2,
+                _ => continue,
+            };
+            position[axis] = parse_number::<f64>(attribute.value.trim().as_bytes());
+        }
+        let [Some(x), Some(y), Some(z)] = position else {
+            return Err(cursor.syntax("the coordinates x, y and z as numbers", element_text(element)));
+        };
+        let p = Point3::new(x, y, z);
+        if let Some(&value) = p.iter().find(|x| !x.is_finite()) {
+            return Err(cursor.locate(Fault::NonFinite { vertex: object.positions.len() as u64, value }));
+        }
+        object.positions.push(p);
+        self.n_vertices += 1;
+        self.limits.check(self.n_vertices, 0).map_err(|fault| cursor.locate(fault))
+    }
+
+    fn triangle(&mut self, element: &BytesStart<'_>, cursor: &Cursor<'_>) -> Result<(), Located> {
+        let Some(object) = &mut self.object else { return Ok(()) };
+        let mut face = [None; 3];
+        for attribute in element.attributes().with_checks(false) {
+            let attribute = attribute.map_err(|fault| cursor.syntax("an attribute", &fault.to_string()))?;
+            let corner = match attribute.key.as_ref() {
+                "v1" => 0,
+                "v2" => 1,
+                "v3" => 2,
+                _ => continue,
+            };
+            face[corner] = parse_integer(attribute.value.trim().as_bytes());
+        }
+        let [Some(a), Some(b), Some(c)] = face else {
+            return Err(cursor.syntax("the vertices v1, v2 and v3 as numbers", element_text(element)));
+        };
+        // Triangles come after all vertices of their object.
+        let n = object.positions.len() as i64;
+        if let Some(index) = [a, b, c].into_iter().find(|v| !(0..n).contains(v)) {
+            let (index, last) = (index.to_string(), (n as u64).saturating_sub(1));
+            return Err(cursor.locate(Fault::IndexOutOfRange { index, first: 0, last }));
+        }
+        object.faces.push([a, b, c].map(|v| v as u32));
+        self.n_faces += 1;
+        self.limits.check(0, self.n_faces).map_err(|fault| cursor.locate(fault))
+    }
+
+    fn end_object(&mut self, cursor: &Cursor<'_>) -> Result<(), Located> {
+        let Some(object) = self.object.take() else { return Ok(()) };
+        let id = object.id;
+        match self.model.objects.insert(id, object) {
+            None => Ok(()),
+            Some(_) => Err(cursor.syntax("objects with different ids", &format!("id {id} twice"))),
+        }
+    }
+}
+
+fn element_text<'a>(element: &'a BytesStart<'_>) -> &'a str {
+    element.as_ref()
+}
+
+/// The attributes of an element.
+struct Attributes<'a> {
+    pairs: Vec<(String, String)>,
+    cursor: &'a Cursor<'a>,
+}
+
+impl<'a> Attributes<'a> {
+    fn of(element: &BytesStart<'_>, cursor: &'a Cursor<'a>) -> Result<Self, Located> {
+        let mut attributes = element.attributes();
+        let pairs = attributes.with_checks(false).map(|attribute| {
+            let attribute = attribute.map_err(|fault| cursor.syntax("an attribute", &fault.to_string()))?;
+            Ok((attribute.key.as_ref().to_owned(), attribute.value.into_owned()))
+        });
+        Ok(Self { pairs: pairs.collect::<Result<_, Located>>()?, cursor })
+    }
+
+    fn find(&self, name: &str) -> Option<&str> {
+        self.pairs.iter().find(|(known, _)| known == name).map(|(_, value)| value.as_str())
+    }
+
+    /// A number of a resource.
+    fn id(&self, name: &'static str) -> Result<u64, Located> {
+        let text = self.find(name).unwrap_or_default();
+        let id = parse_integer(text.trim().as_bytes()).and_then(|id| u64::try_from(id).ok());
+        id.ok_or_else(|| self.cursor.syntax("the id of an object, a positive number", text))
+    }
+
+    /// An object and where it is placed.
+    fn reference(&self) -> Result<Reference, Located> {
+        let path = self.pairs.iter().find(|(name, _)| name.rsplit(':').next() == Some("path"));
+        let part = path.map(|(_, part)| part.trim_start_matches('/').to_owned());
+        let object = self.id("objectid")?;
+        let Some(text) = self.find("transform") else { return Ok(Reference { part, object, place: None }) };
+        let expected = || self.cursor.syntax("a transform of 12 numbers", text);
+        let numbers: Option<Vec<f64>> =
+            text.split_ascii_whitespace().map(|word| parse_number(word.as_bytes())).collect();
+        let m: [f64; 12] = numbers.and_then(|numbers| numbers.try_into().ok()).ok_or_else(expected)?;
+        if m.iter().any(|x| !x.is_finite()) {
+            return Err(expected());
+        }
+        // The file has rows that a row vector is multiplied by.
+        #[rustfmt::skip]
+        let place = Matrix4::new(
+            m[0], m[3], m[6], m[9],
+            m[1], m[4], m[7], m[10],
+            m[2], m[5], m[8], m[11],
+            0.0, 0.0, 0.0, 1.0,
+        );
+        Ok(Reference { part, object, place: (place != Matrix4::identity()).then_some(place) })
+    }
+}
