@@ -193,9 +193,9 @@ pub enum Error {
     /// A folder or a text file that cannot be read.
     #[error(transparent)]
     File(#[from] FileError),
-    /// A folder without meshes.
+    /// A folder, an archive or a list without meshes.
     #[error(
-        "{path}: no mesh found in this folder or its sub-folders; \
+        "{path}: no mesh found in it or its sub-folders; \
          a mesh is {meshes}",
         path = path.display(),
         meshes = mesh::io::mesh_files()

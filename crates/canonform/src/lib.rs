@@ -27,8 +27,8 @@
 //!
 //! Data flows one way. Each step is a noun, made from the one before it:
 //!
-//! 1. [`mesh::TriMesh`]: vertices and faces, read by [`mesh::io::read`] from `.off`, `.obj`, `.ply`, `.stl`, `.vert` or
-//!    `.mat` files.
+//! 1. [`mesh::TriMesh`]: vertices and faces, read by [`read_mesh`] from files of any format in
+//!    [`FORMATS`](mesh::io::FORMATS), compressed by gzip or not, and from members of archives (`cats.zip/cat0.off`).
 //! 2. [`Surface`]: the repaired mesh, with its connectivity and edge lengths. Defects that would break distance
 //!    computation are repaired and reported; vertices keep their order. [`InputPoint`] and [`SurfacePath`] name points
 //!    and shortest paths in the numbers of the input.
@@ -44,7 +44,7 @@
 //!
 //! # Collections
 //!
-//! [`list_shapes`] finds the labelled meshes of a folder. [`build_index`] describes them into a durable file;
+//! [`list_shapes`] finds the labelled meshes of a folder, an archive or a list of paths. [`build_index`] describes them into a durable file;
 //! [`add_to_index`], [`remove_from_index`] and [`merge_indexes`] change it; [`ShapeSearch`] finds the shapes nearest to a
 //! mesh; [`evaluate_index`] scores how well an index separates classes, [`evaluate_matrix`] does the same for any matrix of
 //! distances. [`form_matches`] aligns all pairs of forms without an index.
@@ -106,7 +106,7 @@ pub use form::{
 };
 pub use input::{
     AllPairs, Asymmetry, BadPoint, Dataset, InputMap, InputPoint, LabelFile, PathPoint, ShapeFile, SkipKind,
-    Skipped, Surface, SurfacePath, label_of, list_shapes,
+    Skipped, Storage, Surface, SurfacePath, is_dataset, label_of, list_shapes, read_mesh, read_mesh_file,
 };
 pub use observer::Observer;
 pub use retrieval::RankBy;

@@ -6,8 +6,10 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 use anyhow::{Context, Result, bail};
-use canonform::{Remedy, ShapeFile, Surface, list_shapes};
-use mesh::io::{Format, ReadLimits, ScalarField, is_mesh_path};
+use canonform::{Remedy, ShapeFile, Storage, Surface, is_dataset, list_shapes, read_mesh_file};
+use mesh::io::{
+    FORMATS, Format, MeshFile, ReadLimits, Source, files_in, is_mesh_path, or_list, without_extension,
+};
 use mesh::{RepairReport, TriMesh};
 
 use crate::args::{Common, RepairArgs};
@@ -59,27 +61,29 @@ pub(crate) fn is_stream(path: &Path) -> bool {
 
 /// Reads a mesh from a file, or from standard input.
 pub(crate) fn read_mesh(path: &Path, common: &Common) -> Result<TriMesh> {
-    match is_stream(path) {
-        true => Ok(read_stream(common)?.0),
-        false => Ok(mesh::io::read(path)?),
-    }
+    Ok(read_file(path, common)?.mesh)
 }
 
-/// As [`read_mesh`], with the scalar field that the file carries.
-pub(crate) fn read_mesh_with_field(path: &Path, common: &Common) -> Result<(TriMesh, Option<ScalarField>)> {
-    match is_stream(path) {
-        true => read_stream(common),
-        false => Ok(mesh::io::read_with_field(path)?),
+/// As [`read_mesh`], with what else the file says.
+pub(crate) fn read_file(path: &Path, common: &Common) -> Result<MeshFile> {
+    if !is_stream(path) {
+        return Ok(read_mesh_file(path, &ReadLimits::default())?);
     }
-}
-
-fn read_stream(common: &Common) -> Result<(TriMesh, Option<ScalarField>)> {
-    let Some(format) = common.input_format else {
-        bail!("standard input has no file name: pass its format, such as --input-format ply");
+    let Some(format) = common.stream_format() else {
+        bail!("standard input has no file name: pass its format, such as --format ply");
     };
-    let format = Format::named(format).context("an unknown format")?;
+    let format = Format::named(format).with_context(|| {
+        let single = FORMATS.iter().filter(|format| format.extensions.len() == 1);
+        let known = or_list(single.map(|format| format.extensions[0]));
+        format!("`{format}` is not the format of a mesh; use one of {known}, without the dot")
+    })?;
     let mut stream = std::io::stdin().lock();
-    Ok(mesh::io::read_from_with_field(Path::new(STREAM), &mut stream, format, &ReadLimits::default())?)
+    Ok(mesh::io::read_from(Path::new(STREAM), &mut stream, format, &ReadLimits::default())?)
+}
+
+/// Whether there is a file of this name, or such a member of an archive.
+pub(crate) fn is_there(path: &Path) -> bool {
+    is_stream(path) || Storage.holds(path)
 }
 
 /// Reads and repairs a mesh, and reports repairs.
@@ -99,7 +103,7 @@ pub(crate) fn read_both(path: &Path, repair: &RepairArgs, common: &Common) -> Re
     Ok((mesh, surface))
 }
 
-/// The meshes that arguments name, in their order: files, standard input, folders, and patterns such as `scans/*.ply` that
+/// The meshes that arguments name, in their order: files, standard input, datasets, and patterns such as `scans/*.ply` that
 /// no shell has expanded.
 pub(crate) fn expand(arguments: &[PathBuf]) -> Result<Vec<ShapeFile>> {
     if arguments.iter().filter(|path| is_stream(path)).count() > 1 {
@@ -108,8 +112,8 @@ pub(crate) fn expand(arguments: &[PathBuf]) -> Result<Vec<ShapeFile>> {
     let mut shapes = Vec::new();
     for argument in arguments {
         match argument.to_str().filter(|text| text.contains(['*', '?', '['])) {
-            _ if argument.is_dir() => shapes.extend(list_shapes(argument, None)?),
-            Some(pattern) if !argument.exists() => {
+            _ if is_dataset(argument) => shapes.extend(list_shapes(argument, None)?),
+            Some(pattern) if !is_there(argument) => {
                 let found =
                     glob::glob(pattern).with_context(|| format!("`{pattern}` is not a valid pattern"))?;
                 let found: Vec<PathBuf> = found.flatten().filter(|path| is_mesh_path(path)).collect();
@@ -126,12 +130,13 @@ pub(crate) fn expand(arguments: &[PathBuf]) -> Result<Vec<ShapeFile>> {
 
 /// Whether arguments name exactly one mesh, whose results are not part of a list.
 pub(crate) fn is_single(arguments: &[PathBuf]) -> bool {
-    let is_file = |path: &PathBuf| path.exists() || !path.to_string_lossy().contains(['*', '?', '[']);
-    matches!(arguments, [path] if !path.is_dir() && is_file(path))
+    let is_file = |path: &PathBuf| is_there(path) || !path.to_string_lossy().contains(['*', '?', '[']);
+    matches!(arguments, [path] if !is_dataset(path) && is_file(path))
 }
 
 fn single(path: PathBuf) -> ShapeFile {
-    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+    let stem = without_extension(&path);
+    let stem = stem.file_name().unwrap_or_default().to_string_lossy();
     let name = if is_stream(&path) { "stdin".to_owned() } else { stem.into_owned() };
     ShapeFile { label: canonform::label_of(&name), name, path }
 }
@@ -185,6 +190,6 @@ pub(crate) fn is_named(path: &Path, text: &str) -> bool {
     if is_stream(path) {
         return text.contains(STREAM);
     }
-    let mut files = mesh::io::files_of(path).into_iter().chain([path.to_owned()]);
+    let mut files = files_in(path, &Storage).into_iter().chain([path.to_owned()]);
     files.any(|file| text.contains(&file.display().to_string()))
 }

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::{Result, bail};
-use mesh::io::{VertexField, extension, or_list};
+use mesh::io::{Content, Format, VertexField, extension, is_gzip, or_list};
 use mesh::{MeshError, TriMesh};
 use npyz::WriterBuilder;
 use serde::Serialize;
@@ -162,17 +162,29 @@ impl Output {
         if !self.is_stream() {
             return report(common, result, table);
         }
-        let mut out = io::stdout().lock();
-        io::copy(&mut File::open(&self.path)?, &mut out)?;
-        out.flush()?;
+        self.copy_to_stdout()?;
         terminal::note(&table(result));
         Ok(ExitCode::SUCCESS)
+    }
+
+    /// Copies the complete file to standard output, if it goes there.
+    pub(crate) fn copy_to_stdout(&self) -> Result<()> {
+        if self.is_stream() {
+            let mut out = io::stdout().lock();
+            io::copy(&mut File::open(&self.path)?, &mut out)?;
+            out.flush()?;
+        }
+        Ok(())
     }
 }
 
 /// The extension of a file name, which must be one of `formats`.
 pub(crate) fn check_format(path: &Path, what: &str, formats: &[&str]) -> Result<String> {
     let format = extension(path);
+    let is_mesh = |format: &str| Format::named(format).is_some_and(|format| format.can_write(Content::Mesh));
+    if is_gzip(path) && !is_mesh(&format) {
+        bail!("{}: {what} cannot be written compressed; leave out .gz", path.display());
+    }
     if !formats.contains(&format.as_str()) {
         bail!("{}: unsupported format for {what}; use {}", path.display(), or_list(formats.iter().copied()));
     }

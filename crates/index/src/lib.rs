@@ -48,7 +48,7 @@
 //! | `format` | the file: errors, encoding, checksummed blocks, tables, cells, the graph |
 //! | `reader`, `writer` | [`Index`], [`IndexWriter`] |
 //! | `search` | [`Index::nearest`], [`Index::nearest_on_graph`], [`Searcher`] |
-//! | `verify`, `export` | [`verify`], [`Index::export`] |
+//! | `verify`, `export` | [`verify`], [`Index::export`], [`Index::export_as`] |
 
 mod export;
 mod format;
@@ -64,7 +64,7 @@ mod writer;
 #[cfg(test)]
 mod tests;
 
-pub use export::ExportError;
+pub use export::{ExportError, ExportFormat};
 pub use format::{CodecError, FORMAT_VERSION, IndexError};
 pub use progress::Progress;
 pub use reader::Index;

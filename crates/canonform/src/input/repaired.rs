@@ -5,12 +5,13 @@ use std::time::Instant;
 
 use budget::Budget;
 use mesh::io::ReadLimits;
-use mesh::{MeshError, RepairOptions, RepairReport, Repaired, Shortcut, TriMesh, io, repair_and_measure};
+use mesh::{MeshError, RepairOptions, RepairReport, Repaired, Shortcut, TriMesh, repair_and_measure};
 use nalgebra::Point3;
 use surface::{IntrinsicMesh, VertexId};
 
 use super::boundary::longest_boundary;
 use super::point::InputPoint;
+use super::storage::read_mesh_file;
 use crate::error::Error;
 
 /// A repaired mesh, its intrinsic geometry, and the map back to the vertices of the input.
@@ -67,7 +68,7 @@ impl Surface {
         budget: &Budget,
     ) -> Result<Self, Error> {
         let start = Instant::now();
-        let mesh = io::read_within(path, limits)?;
+        let mesh = read_mesh_file(path, limits)?.mesh;
         let load_seconds = start.elapsed().as_secs_f64();
         Ok(Self { load_seconds, ..Self::within(&mesh, options, budget)? })
     }

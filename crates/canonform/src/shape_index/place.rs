@@ -4,7 +4,10 @@ use std::path::{Component, Path, PathBuf};
 
 use files::FileError;
 
+use mesh::io::{Source, without_extension};
+
 use crate::error::Error;
+use crate::input::{Storage, member_of};
 
 /// The folder of an index, without links.
 #[derive(Debug, Clone)]
@@ -29,31 +32,49 @@ impl Home {
         up.chain(down).collect::<Vec<_>>().join("/")
     }
 
+    /// The text for a file that is named on its own.
+    pub(super) fn file_text(&self, file: &Path) -> String {
+        absolute(file).map_or_else(|_| slashed(file), |path| self.text(&path))
+    }
+
     /// The text for a path that another index states.
     pub(super) fn text_of(&self, index: &Path, stored: &str) -> String {
         let path = mesh_path(index, stored);
-        let absolute = path
-            .parent()
-            .zip(path.file_name())
-            .and_then(|(_, name)| Some(folder_of(&path).canonicalize().ok()?.join(name)));
         // Without the folder of the mesh, the text says no less than before.
-        absolute.map_or_else(|| stored.to_owned(), |path| self.text(&path))
+        match path.file_name().is_some() && (folder_of(&path).exists() || member_of(&path).is_some()) {
+            true => self.file_text(&path),
+            false => stored.to_owned(),
+        }
     }
 }
 
-/// A folder of meshes, as seen from an index.
+/// A file's absolute path: without links in the folder, or the archive, that it is in.
+fn absolute(file: &Path) -> Result<PathBuf, Error> {
+    let start = folder_of(file);
+    for above in start.ancestors() {
+        let above = if above.as_os_str().is_empty() { Path::new(".") } else { above };
+        if let Ok(canonical) = above.canonicalize() {
+            let below = file.strip_prefix(above).unwrap_or(file);
+            return Ok(canonical.join(below));
+        }
+    }
+    Ok(canonical(start)?.join(file.file_name().unwrap_or_default()))
+}
+
+/// A folder, an archive or a list of meshes, as seen from an index.
 #[derive(Debug, Clone)]
 pub(super) struct Root<'a> {
     given: &'a Path,
     canonical: PathBuf,
     home: &'a Home,
+    is_archive: bool,
 }
 
 impl<'a> Root<'a> {
     /// # Errors
     /// [`Error::File`] if the folder does not exist.
     pub(super) fn new(given: &'a Path, home: &'a Home) -> Result<Self, Error> {
-        Ok(Self { given, canonical: canonical(given)?, home })
+        Ok(Self { given, canonical: canonical(given)?, home, is_archive: given.is_file() })
     }
 
     /// The folder as it was named.
@@ -61,10 +82,12 @@ impl<'a> Root<'a> {
         self.given
     }
 
-    /// The text for a file below this folder. It does not depend on how the folder was named.
+    /// The text for a file below this folder, or named by this list. It does not depend on how the folder was named.
     pub(super) fn text(&self, file: &Path) -> String {
-        let below = file.strip_prefix(self.given).unwrap_or(file);
-        self.home.text(&self.canonical.join(below))
+        match file.strip_prefix(self.given) {
+            Ok(below) => self.home.text(&self.canonical.join(below)),
+            Err(_) => self.home.file_text(file),
+        }
     }
 
     /// Whether a shape with this name and path came from this folder.
@@ -77,8 +100,16 @@ impl<'a> Root<'a> {
                 }
                 folder => stored.strip_prefix(folder).and_then(|rest| rest.strip_prefix('/')),
             };
-            // The name may hold the extension, if several files differ in nothing else.
-            below.is_some_and(|below| below == id || slashed(&Path::new(below).with_extension("")) == id)
+            // The name may hold the extension, if several files differ in nothing else. Folders around all meshes of an
+            // archive are no part of the names.
+            below.is_some_and(|below| {
+                let stem = slashed(&without_extension(Path::new(below)));
+                let is_named = |name: &str| {
+                    name == id
+                        || self.is_archive && name.strip_suffix(id).is_some_and(|rest| rest.ends_with('/'))
+                };
+                is_named(below) || is_named(&stem)
+            })
         })
     }
 }
@@ -100,7 +131,7 @@ pub fn mesh_path(index: &Path, stored: &str) -> PathBuf {
     let tidy = without_detours(&joined);
     // Leaving out `x/..` is wrong where `x` is a link.
     let found =
-        [&tidy, &joined, Path::new(stored)].into_iter().find(|path| path.exists()).map(Path::to_owned);
+        [&tidy, &joined, Path::new(stored)].into_iter().find(|path| Storage.holds(path)).map(Path::to_owned);
     found.unwrap_or(tidy)
 }
 

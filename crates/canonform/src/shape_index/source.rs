@@ -10,13 +10,16 @@ use std::time::Duration;
 use budget::Budget;
 use files::{FileError, FileId};
 use index::{ContentHash, ShapeEntry};
-use mesh::TriMesh;
-use mesh::io::{MemoryFile, ReadLimits};
+use mesh::io::{MemoryFile, Opened, ReadLimits, Source, without_extension};
+use mesh::{MeshError, TriMesh};
 use rayon::prelude::*;
 
 use super::place::{Home, Root, mesh_path};
 use crate::error::Error;
-use crate::input::{Dataset, LabelFile, ShapeFile, SkipKind, Skipped, drop_single_class, label_in};
+use crate::input::{
+    Dataset, LabelFile, ShapeFile, SkipKind, Skipped, Storage, drop_single_class, is_dataset, label_in,
+    member_of, read_mesh_file,
+};
 use crate::observer::Observer;
 
 /// One of several equal parts of a collection.
@@ -94,13 +97,12 @@ impl ShapeLimits {
     /// Reads a mesh within these limits.
     pub(super) fn read(&self, path: &Path, budget: &Budget) -> Result<TriMesh, Error> {
         let limits = self.max_vertices.map_or_else(ReadLimits::default, ReadLimits::of_vertices);
-        let files = mesh::io::files_of(path);
         let mut n_bytes = 0;
-        for file in &files {
-            n_bytes += open_regular(file)?.metadata().map_err(|source| FileError::read(file, source))?.len();
+        for file in mesh::io::files_in(path, &Storage) {
+            n_bytes += Storage.n_bytes(&file)?;
         }
         budget.check_memory(usize::try_from(n_bytes).unwrap_or(usize::MAX))?;
-        Ok(mesh::io::read_within(path, &limits)?)
+        Ok(read_mesh_file(path, &limits)?.mesh)
     }
 }
 
@@ -154,7 +156,7 @@ impl Inputs<'_> {
         let mut seen = HashSet::new();
         let mut skip = |path: &Path, kind| skipped.push(Skipped { path: path.to_owned(), kind });
         for path in self.paths {
-            if path.is_dir() {
+            if is_dataset(path) {
                 let root = Root::new(path, home)?;
                 let dataset = Dataset::read(path, self.labels)?;
                 dataset.skipped.into_iter().for_each(|it| skip(&it.path, it.kind));
@@ -169,7 +171,8 @@ impl Inputs<'_> {
                 }
                 continue;
             }
-            let Some(name) = path.file_stem().and_then(|name| name.to_str()) else {
+            let stem = without_extension(path);
+            let Some(name) = stem.file_name().and_then(|name| name.to_str()) else {
                 skip(path, SkipKind::NotUtf8);
                 continue;
             };
@@ -177,10 +180,7 @@ impl Inputs<'_> {
                 Ok(false) => skip(path, SkipKind::Repeated),
                 // What cannot be found is reported when it is read.
                 _ => {
-                    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
-                    let root = Root::new(folder.unwrap_or(Path::new(".")), home)?;
-                    let below = path.file_name().map_or(path.as_path(), Path::new);
-                    stored.push(root.text(below));
+                    stored.push(home.file_text(path));
                     let label = label_in(self.labels, name, Some(path));
                     shapes.push(ShapeFile { label, name: name.to_owned(), path: path.clone() });
                 }
@@ -201,11 +201,18 @@ pub(super) fn name_apart(shapes: &mut [ShapeFile]) {
     shapes.iter().for_each(|shape| *counts.entry(shape.name.clone()).or_default() += 1);
     for shape in shapes {
         if counts.get(&shape.name).is_some_and(|count| *count > 1)
-            && let Some(extension) = shape.path.extension()
+            && let Some(extension) = full_extension(&shape.path)
         {
-            shape.name = format!("{}.{}", shape.name, extension.to_string_lossy());
+            shape.name = format!("{}.{extension}", shape.name);
         }
     }
+}
+
+/// The extension of a mesh, that of a compressed one with `.gz`.
+fn full_extension(path: &Path) -> Option<String> {
+    let stem = without_extension(path).file_name()?.to_string_lossy().into_owned();
+    let name = path.file_name()?.to_string_lossy();
+    Some(name.strip_prefix(&stem)?.strip_prefix('.')?.to_owned())
 }
 
 /// The shapes of a shard.
@@ -234,17 +241,20 @@ pub(super) fn hash_all(shapes: Vec<Listed>, observer: &dyn Observer) -> Vec<Hash
 /// Reads the mesh of an indexed shape, if the file still has the content that was indexed.
 pub(super) fn read_unchanged(index: &Path, id: &str, entry: &ShapeEntry) -> Result<TriMesh, Error> {
     let path = mesh_path(index, &entry.path);
-    let files = mesh::io::files_of(&path);
-    let gone = |fault: FileError| {
-        let (id, path, source) = (id.to_owned(), path.clone(), fault.source);
-        Error::MeshGone { id, path, source }
+    let gone = |fault: Error| match fault {
+        Error::File(fault) | Error::Mesh(MeshError::Io(fault)) => {
+            let (id, path, source) = (id.to_owned(), path.clone(), fault.source);
+            Error::MeshGone { id, path, source }
+        }
+        other => other,
     };
     let changed = || Error::MeshChanged { id: id.to_owned(), path: path.clone() };
-    // Hashing takes no memory, whatever the path of a foreign index leads to.
+    let files = mesh::io::files_in(&path, &Storage);
+    // Hashing takes little memory, whatever the path of a foreign index leads to.
     if hash(&files).map_err(gone)? != entry.content {
         return Err(changed());
     }
-    let pieces = read_all(&files).map_err(gone)?;
+    let pieces = files.iter().map(|file| content(file)).collect::<Result<Vec<_>, _>>().map_err(gone)?;
     // The file might have changed in between.
     if ContentHash::of(&pieces) != entry.content {
         return Err(changed());
@@ -253,31 +263,44 @@ pub(super) fn read_unchanged(index: &Path, id: &str, entry: &ShapeEntry) -> Resu
     Ok(mesh::io::read_memory(&files.collect::<Vec<_>>(), &ReadLimits::default())?)
 }
 
-/// The hash of the files of a mesh, by which an index recognises them.
+/// The hash of the files of a mesh, by which an index recognises them. A member of an archive has the hash of the same file
+/// outside.
 ///
 /// # Errors
-/// [`Error::File`] if a file cannot be read.
+/// [`Error::File`] and [`Error::Mesh`] if a file cannot be read.
 pub fn content_hash(path: &Path) -> Result<ContentHash, Error> {
-    Ok(hash(&mesh::io::files_of(path))?)
+    hash(&mesh::io::files_in(path, &Storage))
 }
 
-fn hash(files: &[PathBuf]) -> Result<ContentHash, FileError> {
+fn hash(files: &[PathBuf]) -> Result<ContentHash, Error> {
+    if files.iter().any(|file| member_of(file).is_some()) {
+        let pieces = files.iter().map(|file| content(file)).collect::<Result<Vec<_>, _>>()?;
+        return Ok(ContentHash::of(&pieces));
+    }
     let mut open = Vec::new();
     for path in files {
         open.push((path.as_path(), open_regular(path)?));
     }
-    ContentHash::of_files(open.iter_mut().map(|(path, file)| (*path, file)))
-        .map_err(|(path, source)| FileError::read(&path, source))
+    Ok(ContentHash::of_files(open.iter_mut().map(|(path, file)| (*path, file)))
+        .map_err(|(path, source)| FileError::read(&path, source))?)
 }
 
-fn read_all(files: &[PathBuf]) -> Result<Vec<Vec<u8>>, FileError> {
-    let read = |path: &PathBuf| {
+/// All bytes of a file, or of a member of an archive.
+fn content(path: &Path) -> Result<Vec<u8>, Error> {
+    if member_of(path).is_none() {
         let mut bytes = Vec::new();
-        let mut file = open_regular(path)?;
-        io::Read::read_to_end(&mut file, &mut bytes).map_err(|source| FileError::read(path, source))?;
-        Ok(bytes)
-    };
-    files.iter().map(read).collect()
+        let read = io::Read::read_to_end(&mut open_regular(path)?, &mut bytes);
+        read.map_err(|source| FileError::read(path, source))?;
+        return Ok(bytes);
+    }
+    match Storage.open(path)? {
+        Opened::Bytes(bytes) => Ok(bytes.into_owned()),
+        Opened::Stream(mut stream, _) => {
+            let mut bytes = Vec::new();
+            stream.read_to_end(&mut bytes).map_err(|source| FileError::read(path, source))?;
+            Ok(bytes)
+        }
+    }
 }
 
 /// Opens a file. A pipe or a device would block, or never end, and no reader takes a larger file.

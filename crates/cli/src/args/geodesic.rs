@@ -24,7 +24,7 @@ Examples:
   canonform geodesic cat.off --source 0,f8 --nearest --max-distance 5 -o near.ply
   canonform geodesic cat.off --source 0 --path-to 17,42 --method exact -o paths.obj
   canonform geodesic cat.off --all-pairs --memory 2G -o pairs.npy
-  canonform geodesic - --input-format off --source 0 -o - --output-format csv < cat.off";
+  canonform geodesic - --format off --source 0 -o - --output-format csv < cat.off";
 
 #[derive(Debug, Args)]
 #[command(after_long_help = POINTS, after_help = "See `--help` for how to write points, and for examples.")]

@@ -12,14 +12,14 @@ use super::shared::{Common, LimitArgs};
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum IndexCommand {
-    /// Index every mesh in a folder; describe only new and changed ones
+    /// Index every mesh of a folder, an archive or a list; describe only new and changed ones
     ///
     /// An interrupted run keeps its finished work in INDEX.work; run the same command again to continue. Readers see
     /// the old index until the new one is complete. Meshes that cannot be described are listed at the end, and the exit
     /// code is then 2. Shapes of the folder whose files are gone are removed; shapes that came from elsewhere stay
     /// (see --prune). Links are followed, but nothing is indexed twice through them.
     Build(Box<BuildArgs>),
-    /// Add meshes, or folders of them
+    /// Add meshes, or datasets of them
     Add(AddArgs),
     /// Remove shapes
     Remove {
@@ -50,13 +50,19 @@ pub(crate) enum IndexCommand {
         /// The index
         index: PathBuf,
     },
-    /// Write an index as lines of JSON, the same however the index was built
+    /// Write an index as lines of JSON, Parquet, NumPy arrays or CSV, the same however the index was built
+    ///
+    /// .jsonl and .parquet hold everything, a row for every shape in the order of their names. .npz holds one array for every
+    /// column. .csv holds names, classes, facts and the fused vector, which search compares.
     Export {
         /// The index
         index: PathBuf,
-        /// Output file [default: standard output]
-        #[arg(short, long, value_name = "FILE.jsonl")]
+        /// Output file: .jsonl, .parquet, .npz or .csv, or `-` for standard output [default: -]
+        #[arg(short, long, value_name = "FILE")]
         output: Option<PathBuf>,
+        /// File format on standard output: jsonl, parquet, npz or csv [default: jsonl]
+        #[arg(long, value_name = "EXT")]
+        output_format: Option<String>,
     },
 }
 
@@ -74,8 +80,9 @@ pub(crate) struct ListArgs {
 
 #[derive(Debug, Args)]
 pub(crate) struct BuildArgs {
-    /// Folder of meshes. Classes are the names of sub-folders, else the leading letters of file names, unless nearly
-    /// all names begin with the same letters
+    /// Dataset: a folder of meshes, an archive (.zip, .tar, .tar.gz), a .parquet file with the columns id, label, format
+    /// and bytes, or a .txt file with a path in every line. Classes are the names of sub-folders, else the leading letters
+    /// of file names, unless nearly all names begin with the same letters
     #[arg(value_name = "DIR")]
     pub(crate) folder: PathBuf,
     /// Output index
@@ -142,7 +149,7 @@ impl DescribeArgs {
 pub(crate) struct AddArgs {
     /// The index
     pub(crate) index: PathBuf,
-    /// Meshes, or folders of them
+    /// Meshes, or datasets: folders, archives and lists
     #[arg(required = true, value_name = "MESH|DIR")]
     pub(crate) meshes: Vec<PathBuf>,
     /// Class of all these meshes [default: from their names]
@@ -168,7 +175,8 @@ query, the keys of its answer (`query`, `results`, `predicted`, ...) are also at
 pub(crate) struct SearchArgs {
     /// The index
     pub(crate) index: PathBuf,
-    /// Meshes, folders of meshes, or names of shapes in the index. A file goes before a shape of the same name
+    /// Meshes, datasets, `-` for standard input, or names of shapes in the index. A file goes before a shape of the same
+    /// name
     #[arg(required_unless_present = "id", value_name = "MESH|DIR|ID")]
     pub(crate) queries: Vec<PathBuf>,
     /// Search with this shape of the index, even if a file has its name; may be repeated

@@ -33,12 +33,22 @@ pub(crate) use shared::{Common, FormArgs, LimitArgs, MAX_DROPPED, RepairArgs};
 /// A sitting cat and a leaping cat are the same shape. canonform embeds a mesh so that straight-line distances equal its
 /// surface distances (Nystrom multidimensional scaling), which removes the effect of bending.
 #[derive(Debug, Parser)]
-#[command(name = "canonform", version, max_term_width = 100, after_help = format!("A mesh is {}.", mesh_files()))]
+#[command(name = "canonform", version, max_term_width = 100, after_help = inputs_help())]
 pub(crate) struct Arguments {
     #[command(flatten)]
     pub(crate) common: Common,
     #[command(subcommand)]
     pub(crate) command: Command,
+}
+
+/// What commands read.
+fn inputs_help() -> String {
+    format!(
+        "A mesh is {}; compressed, as cat.obj.gz; or a member of an archive, as cats.zip/cat0.off.\n\
+         A dataset is a folder, a .zip, .tar or .tar.gz archive, a .parquet file with the columns id, label, format and bytes, \
+         or a .txt file with a path in every line.",
+        mesh_files()
+    )
 }
 
 #[derive(Debug, Subcommand)]
@@ -47,7 +57,7 @@ pub(crate) enum Command {
     Info(InfoArgs),
     /// Measure distances and shortest paths along a surface
     Geodesic(GeodesicArgs),
-    /// Compute the canonical form of a mesh, or of every mesh in a folder
+    /// Compute the canonical form of a mesh, or of every mesh of a folder or an archive
     Embed(EmbedArgs),
     /// Embed a mesh by every method and tabulate stress, time and memory
     Methods(MethodsArgs),
@@ -61,6 +71,8 @@ pub(crate) enum Command {
     /// shape, different shapes of one class, undecided, different shapes. Its confidence is a probability, measured on
     /// poses and bodies of the built-in shapes.
     Compare(CompareArgs),
+    /// Convert a mesh, or every mesh of a folder or an archive, to another file format
+    Convert(ConvertArgs),
     /// Draw a shaded picture of a mesh, optionally coloured by distances or other values
     Render(RenderArgs),
     /// Build, change, check and export an index of shapes
@@ -85,7 +97,7 @@ pub(crate) enum Command {
 #[derive(Debug, Args)]
 #[command(after_help = "Exit code 2 if a mesh cannot be read; the others are reported all the same.")]
 pub(crate) struct InfoArgs {
-    /// Mesh files, folders of them, patterns such as 'scans/*.ply', or `-` for standard input
+    /// Meshes, datasets (folders, archives, lists), patterns such as 'scans/*.ply', or `-` for standard input
     #[arg(required = true, value_name = "MESH")]
     pub(crate) meshes: Vec<PathBuf>,
     #[command(flatten)]
@@ -104,25 +116,24 @@ stop the others; the exit code is then 2.
 Examples:
   canonform embed cat.off -o form.ply
   canonform embed cat.off dog.ply 'scans/*.obj' -o forms/ --output-format npy
-  canonform embed - --input-format off -o - --output-format ply < cat.off > form.ply";
+  canonform embed cats.zip -o forms/
+  canonform embed - --format off -o - --output-format ply < cat.off > form.ply";
 
 #[derive(Debug, Args)]
 #[command(after_long_help = EMBED_NOTES, after_help = "See `--help` for the formulas of the stress, and for examples.")]
 pub(crate) struct EmbedArgs {
-    /// Mesh files, folders of them, patterns such as 'scans/*.ply', or `-` for standard input
+    /// Meshes, datasets (folders, archives, lists), patterns such as 'scans/*.ply', or `-` for standard input
     #[arg(required = true, value_name = "MESH")]
     pub(crate) meshes: Vec<PathBuf>,
     #[arg(short, long, value_name = "FORM", help = form_help())]
     pub(crate) output: PathBuf,
-    /// File format of forms in a folder or on standard output
     #[arg(
         long,
-        visible_alias = "format",
         value_name = "EXT",
         value_parser = one_of(FORM_FORMATS.map(|(name, help)| (name, help, name))),
-        default_value = "ply"
+        help = "File format of forms in a folder or on standard output [default: ply]"
     )]
-    pub(crate) output_format: &'static str,
+    pub(crate) output_format: Option<&'static str>,
     /// How to find the stress; see below for its formulas
     #[arg(long, value_parser = one_of(STRESS), default_value = "auto")]
     pub(crate) stress: StressChoice,
@@ -133,6 +144,43 @@ pub(crate) struct EmbedArgs {
     pub(crate) embedding: EmbeddingArgs,
     #[command(flatten)]
     pub(crate) limits: LimitArgs,
+}
+
+/// What is kept and what is not.
+const CONVERT_NOTES: &str = "\
+Vertices keep their order, and coordinates their numbers: OFF, OBJ, PLY and 3MF files read back bit for bit, STL and GLB files
+round to 32 bits. Units are not converted. Colours, textures and materials are left out.
+
+Examples:
+  canonform convert cat.glb cat.ply
+  canonform convert scans.zip scans/ --output-format off
+  canonform convert --repair scan.obj scan.3mf
+  canonform convert - - --format obj --output-format glb < cat.obj > cat.glb";
+
+#[derive(Debug, Args)]
+#[command(after_long_help = CONVERT_NOTES, after_help = "See `--help` for what is kept, and for examples.")]
+pub(crate) struct ConvertArgs {
+    /// Mesh, dataset or pattern, or `-` for standard input
+    #[arg(value_name = "IN")]
+    pub(crate) input: PathBuf,
+    #[arg(value_name = "OUT", help = convert_help())]
+    pub(crate) output: PathBuf,
+    /// File format of meshes in a folder or on standard output
+    #[arg(long, value_name = "EXT")]
+    pub(crate) output_format: Option<String>,
+    /// Repair the mesh, as other commands do before they measure: the options below say how. Dropped vertices are left out
+    #[arg(long)]
+    pub(crate) repair: bool,
+    #[command(flatten)]
+    pub(crate) repair_options: RepairArgs,
+}
+
+fn convert_help() -> String {
+    format!(
+        "Output file: {}, also compressed as .ply.gz, or `-` for standard output; with several meshes, the folder to write \
+         NAME.EXT into",
+        or_list(writable(Content::Mesh))
+    )
 }
 
 #[derive(Debug, Args)]

@@ -33,7 +33,7 @@ Several meshes: a mesh that cannot be drawn is reported and does not stop the ot
 #[derive(Debug, Args)]
 #[command(after_long_help = NOTES, after_help = "See `--help` for how to write views and fields, and for examples.")]
 pub(crate) struct RenderArgs {
-    /// Mesh files, folders of them, patterns such as 'scans/*.ply', or `-` for standard input
+    /// Meshes, datasets (folders, archives, lists), patterns such as 'scans/*.ply', or `-` for standard input
     #[arg(required = true, value_name = "MESH")]
     pub(crate) meshes: Vec<PathBuf>,
     /// Output picture: .png, or `-` for standard output; with several meshes or a folder of them, the folder to write

@@ -21,12 +21,28 @@ pub(crate) struct Common {
     /// Seed for everything random
     #[arg(long, global = true, default_value_t = 0, value_name = "S")]
     pub(crate) seed: u64,
-    /// Format of a mesh from standard input, which the mesh argument `-` stands for
+    /// Format of a mesh from standard input, which the mesh argument `-` stands for; without `-`, for `embed`, the format
+    /// of forms in a folder
+    #[arg(long, global = true, value_name = "EXT")]
+    pub(crate) format: Option<String>,
+    /// The same, where --format means something else
     #[arg(long, global = true, value_name = "EXT", value_parser = input_format())]
     pub(crate) input_format: Option<&'static str>,
     /// Write nothing but errors to standard error: no progress, no notes on repairs
     #[arg(long, short, global = true)]
     pub(crate) quiet: bool,
+}
+
+impl Common {
+    /// The format of standard input, if it is known.
+    pub(crate) fn stream_format(&self) -> Option<&str> {
+        self.input_format.or(self.format.as_deref())
+    }
+
+    /// What `--format` says about the output: nothing if it is the format of the input.
+    pub(crate) fn format_of_output(&self, reads_stream: bool) -> Option<&str> {
+        self.format.as_deref().filter(|_| !reads_stream || self.input_format.is_some())
+    }
 }
 
 /// More threads than this do not help on any machine, and starting them may fail.

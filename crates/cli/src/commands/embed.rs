@@ -9,7 +9,7 @@ use canonform::linalg::Matrix;
 use canonform::{
     Budget, EmbedMethod, EmbedReport, FormOptions, InputMap, StressOptions, Surface, embed_and_release,
 };
-use mesh::io::extension;
+use mesh::io::{extension, or_list};
 use rayon::prelude::*;
 use serde::Serialize;
 use surface::VertexId;
@@ -72,7 +72,7 @@ fn one(
     common: &Common,
 ) -> Result<ExitCode> {
     let formats = FORM_FORMATS.map(|(extension, _)| extension);
-    let output = Output::new(&args.output, "a form", &formats, Some(args.output_format), common)?;
+    let output = Output::new(&args.output, "a form", &formats, Some(output_format(args, common)?), common)?;
     check_dim(output.path(), options.dim)?;
     let surface = read_surface(mesh, &args.embedding.form.repair, common)?;
     let bars = Bars::with_budget(common.quiet, budget(args, output.path(), 1));
@@ -113,6 +113,19 @@ fn embed_and_write(
     Ok(embedded.report)
 }
 
+/// The format of forms in a folder or on standard output.
+fn output_format(args: &EmbedArgs, common: &Common) -> Result<&'static str> {
+    let Some(stated) = common.format_of_output(args.meshes.iter().any(|mesh| is_stream(mesh))) else {
+        return Ok(args.output_format.unwrap_or("ply"));
+    };
+    let known = FORM_FORMATS.map(|(extension, _)| extension);
+    match (args.output_format, known.into_iter().find(|extension| *extension == stated)) {
+        (Some(given), _) => Ok(given),
+        (None, Some(stated)) => Ok(stated),
+        (None, None) => bail!("forms cannot be written as {stated}; use {}", or_list(known)),
+    }
+}
+
 /// Embeds meshes in parallel. Failures are listed at the end and do not stop the rest.
 fn batch(
     args: &EmbedArgs,
@@ -120,7 +133,7 @@ fn batch(
     stress: &StressOptions,
     common: &Common,
 ) -> Result<ExitCode> {
-    let extension = args.output_format;
+    let extension = output_format(args, common)?;
     if is_stream(&args.output) {
         bail!("several forms cannot go to standard output; name a folder with -o");
     }

@@ -5,11 +5,12 @@ use std::process::ExitCode;
 
 use anyhow::Result;
 use budget::Budget;
+use mesh::io::{FileFacts, MeshFile};
 use mesh::{MeshReport, RepairReport, Shortcut, ShortcutKind, cut_shortcuts, is_noisy, repair, validate};
 use serde::Serialize;
 
 use crate::args::{Common, InfoArgs};
-use crate::input::{check_dropped, expand, named, read_mesh};
+use crate::input::{check_dropped, expand, named, read_file};
 use crate::output::{exit_code, facts, print, print_json};
 
 #[derive(Serialize)]
@@ -21,6 +22,8 @@ struct InfoJson {
 #[derive(Serialize)]
 struct MeshInfo {
     path: PathBuf,
+    /// What the file says beside the mesh.
+    file: FileFacts,
     mesh: MeshReport,
     /// Whether comparison and search smooth the repaired mesh, because it is noisy.
     noisy: bool,
@@ -40,7 +43,7 @@ struct Failure {
 pub(crate) fn info(args: &InfoArgs, common: &Common) -> Result<ExitCode> {
     let mut json = InfoJson { meshes: Vec::new(), failed: Vec::new() };
     for path in expand(&args.meshes)?.into_iter().map(|shape| shape.path) {
-        let report = read_mesh(&path, common).and_then(|mesh| {
+        let report = read_file(&path, common).and_then(|MeshFile { mesh, facts, .. }| {
             let repaired =
                 repair(&mesh, &args.repair.options()).map_err(|fault| named(&path, fault.into()))?;
             let mut shortcuts = cut_shortcuts(&repaired.mesh, &Budget::unlimited())?.shortcuts;
@@ -49,11 +52,11 @@ pub(crate) fn info(args: &InfoArgs, common: &Common) -> Result<ExitCode> {
                 let place = repaired.input_to_repaired.iter().position(|v| *v == Some(shortcut.vertex));
                 shortcut.vertex = place.map_or(shortcut.vertex, Into::into);
             }
-            Ok((validate(&mesh), is_noisy(&repaired.mesh), shortcuts, repaired.report))
+            Ok((facts, validate(&mesh), is_noisy(&repaired.mesh), shortcuts, repaired.report))
         });
         match report {
-            Ok((mesh, noisy, shortcuts, repair)) => {
-                let info = MeshInfo { path, mesh, noisy, shortcuts, repair };
+            Ok((file, mesh, noisy, shortcuts, repair)) => {
+                let info = MeshInfo { path, file, mesh, noisy, shortcuts, repair };
                 if !common.json {
                     print(&table(&info))?;
                 }
@@ -76,6 +79,10 @@ pub(crate) fn info(args: &InfoArgs, common: &Common) -> Result<ExitCode> {
 
 fn table(info: &MeshInfo) -> String {
     let mut rows = facts_of(&info.mesh);
+    let FileFacts { unit, instances, ignored } = &info.file;
+    rows.extend(unit.map(|unit| ("unit of length", unit.name().to_owned())));
+    rows.extend(instances.filter(|n| *n > 1).map(|n| ("put together from", format!("{n} meshes"))));
+    rows.extend(ignored.iter().map(|what| ("ignored", (*what).to_owned())));
     if info.noisy {
         rows.push(("noisy", "yes; compare, index and search smooth it first".to_owned()));
     }

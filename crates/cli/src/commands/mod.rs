@@ -2,6 +2,7 @@
 
 mod compare;
 mod completions;
+mod convert;
 mod embed;
 mod evaluate;
 mod generate;
@@ -24,6 +25,7 @@ pub(crate) fn run(command: &Command, common: &Common) -> anyhow::Result<ExitCode
         Command::Embed(args) => embed::embed(args, common),
         Command::Methods(args) => methods::methods(args, common),
         Command::Compare(args) => compare::compare(args, common),
+        Command::Convert(args) => convert::convert(args, common),
         Command::Render(args) => render::draw(args, common),
         Command::Index(command) => index::index(command, common),
         Command::Search(args) => search::search(args, common),

@@ -7,7 +7,7 @@ use std::time::Instant;
 use anyhow::{Result, bail};
 use canonform::geodesics::{Method, Source};
 use canonform::{FormOptions, Surface, embed};
-use mesh::io::ScalarField;
+use mesh::io::{MeshFile, ScalarField};
 use mesh::{RepairReport, TriMesh};
 use serde::Serialize;
 use terminal::Bars;
@@ -16,8 +16,7 @@ use view::render::{RenderOptions, Surface as Paint, render_with_bar, render_with
 use crate::args::{Common, Place, RenderArgs};
 use crate::field::read_field;
 use crate::input::{
-    create_folder_of, expand, file_name, is_single, is_stream, named, outputs, print_repair,
-    read_mesh_with_field,
+    create_folder_of, expand, file_name, is_single, is_stream, named, outputs, print_repair, read_file,
 };
 use crate::output::{Output, exit_code, facts, report};
 
@@ -112,7 +111,7 @@ fn draw_one(
     common: &Common,
 ) -> Result<RenderJson> {
     let start = Instant::now();
-    let (mesh, carried) = read_mesh_with_field(path, common)?;
+    let MeshFile { mesh, field: carried, .. } = read_file(path, common)?;
     let is_measured = args.form || !args.distance_from.is_empty();
     let surface = is_measured.then(|| Surface::new(&mesh, &args.repair.options())).transpose();
     let surface = surface.map_err(|fault| named(path, fault))?;

@@ -7,12 +7,12 @@ use anyhow::Result;
 use canonform::index::SearchMode;
 use canonform::{
     Budget, ComponentResult, Explain, RankBy, SearchOptions, SearchReport, ShapeSearch, content_hash,
-    list_shapes, mesh_path,
+    is_dataset, list_shapes, mesh_path,
 };
 use serde::Serialize;
 
 use crate::args::{Common, SearchArgs};
-use crate::input::{file_name, named};
+use crate::input::{file_name, is_stream, is_there, named, read_mesh};
 use crate::output::{exit_code, print, print_json};
 
 #[derive(Serialize)]
@@ -52,13 +52,14 @@ impl Query {
         }
     }
 
-    fn search(&self, index: &ShapeSearch, options: &SearchOptions) -> Result<SearchReport> {
+    fn search(&self, index: &ShapeSearch, options: &SearchOptions, common: &Common) -> Result<SearchReport> {
         match self {
             Self::Indexed(id) => Ok(index.search_shape(id, options)?),
             Self::Mesh(path) => {
+                let mesh = read_mesh(path, common)?;
                 let search = || {
-                    let mesh = mesh::io::read(path)?;
                     let content = match options.explain {
+                        _ if is_stream(path) => None,
                         Explain::No => None,
                         Explain::Kind => Some(content_hash(path)?),
                     };
@@ -75,11 +76,11 @@ impl Query {
 fn queries(args: &SearchArgs, index: &ShapeSearch) -> Result<Vec<Query>> {
     let mut queries = Vec::new();
     for given in &args.queries {
-        if given.is_dir() {
+        if is_dataset(given) {
             queries.extend(list_shapes(given, None)?.into_iter().map(|shape| Query::Mesh(shape.path)));
             continue;
         }
-        let id = given.to_str().filter(|id| !given.exists() && index.index().contains(id).unwrap_or(false));
+        let id = given.to_str().filter(|id| !is_there(given) && index.index().contains(id).unwrap_or(false));
         queries.push(id.map_or_else(|| Query::Mesh(given.clone()), |id| Query::Indexed(id.to_owned())));
     }
     queries.extend(args.id.iter().cloned().map(Query::Indexed));
@@ -99,7 +100,7 @@ pub(crate) fn search(args: &SearchArgs, common: &Common) -> Result<ExitCode> {
     let queries = queries(args, &index)?;
     let (mut answers, mut failed) = (Vec::new(), Vec::new());
     for query in &queries {
-        match query.search(&index, &options) {
+        match query.search(&index, &options, common) {
             Ok(mut report) => {
                 for result in &mut report.results {
                     result.path = mesh_path(&args.index, &result.path).to_string_lossy().into_owned();
@@ -114,7 +115,7 @@ pub(crate) fn search(args: &SearchArgs, common: &Common) -> Result<ExitCode> {
                 answers.push(Answer { query: query.name(), report });
             }
             Err(fault) => {
-                let missing = matches!(query, Query::Mesh(path) if !path.exists());
+                let missing = matches!(query, Query::Mesh(path) if !is_there(path));
                 let fault = match missing {
                     true => fault.context(format!(
                         "{} is neither a file nor a shape of the index; `canonform index list` names its shapes",

@@ -16,21 +16,21 @@ use crate::{
     ContentHash, Index, IndexWriter, Job, SearchMode, Searcher, Shape, ShapeEntry, ShapeVectors, verify,
 };
 
-pub(super) const OPTIONS: &str = "n=100";
+pub(crate) const OPTIONS: &str = "n=100";
 
 /// A temporary folder for one test.
-pub(super) struct Folder(TempDir);
+pub(crate) struct Folder(TempDir);
 
 impl Folder {
-    pub(super) fn new() -> Self {
+    pub(crate) fn new() -> Self {
         Self(TempDir::new().unwrap())
     }
 
-    pub(super) fn path(&self, name: &str) -> PathBuf {
+    pub(crate) fn path(&self, name: &str) -> PathBuf {
         self.0.path().join(name)
     }
 
-    pub(super) fn names(&self) -> Vec<String> {
+    pub(crate) fn names(&self) -> Vec<String> {
         let entries = std::fs::read_dir(self.0.path()).unwrap();
         let mut names: Vec<String> =
             entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
@@ -39,7 +39,7 @@ impl Folder {
     }
 
     /// Adds shapes to a finished index and removes others.
-    pub(super) fn change(&self, path: &Path, added: &[usize], removed: &[String]) {
+    pub(crate) fn change(&self, path: &Path, added: &[usize], removed: &[String]) {
         let mut writer = IndexWriter::open(path, Job::Add, None).unwrap();
         writer.put(&added.iter().copied().map(shape).collect::<Vec<_>>()).unwrap();
         writer.remove(removed).unwrap();
@@ -47,17 +47,22 @@ impl Folder {
     }
 
     /// A finished index of shapes 0 to `n`.
-    pub(super) fn index(&self, name: &str, n: usize) -> PathBuf {
+    pub(crate) fn index(&self, name: &str, n: usize) -> PathBuf {
         let path = self.path(name);
-        let mut writer = IndexWriter::open(&path, Job::Build, Some(OPTIONS)).unwrap();
-        writer.put(&(0..n).map(shape).collect::<Vec<_>>()).unwrap();
-        writer.finish().unwrap();
+        self.fill(&path, &(0..n).map(shape).collect::<Vec<_>>());
         path
+    }
+
+    /// Makes a finished index of these shapes.
+    pub(crate) fn fill(&self, path: &Path, shapes: &[Shape]) {
+        let mut writer = IndexWriter::open(path, Job::Build, Some(OPTIONS)).unwrap();
+        writer.put(shapes).unwrap();
+        writer.finish().unwrap();
     }
 }
 
 /// A shape all of whose properties depend on its number.
-pub(super) fn shape(i: usize) -> Shape {
+pub(crate) fn shape(i: usize) -> Shape {
     let x = i as f32;
     Shape {
         id: format!("class{}/{i:04}", i % 3),

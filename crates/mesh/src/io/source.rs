@@ -63,8 +63,8 @@ pub trait Source {
     /// Opens a file.
     ///
     /// # Errors
-    /// If there is none, or if it cannot be read.
-    fn open(&self, path: &Path) -> Result<Opened<'_>, FileError>;
+    /// If there is none, or if it cannot be read: [`MeshError::Io`] or [`MeshError::File`].
+    fn open(&self, path: &Path) -> Result<Opened<'_>, MeshError>;
 }
 
 /// The regular files of the file system.
@@ -76,7 +76,7 @@ impl Source for Disk {
         path.exists()
     }
 
-    fn open(&self, path: &Path) -> Result<Opened<'_>, FileError> {
+    fn open(&self, path: &Path) -> Result<Opened<'_>, MeshError> {
         let open = || {
             let facts = fs::metadata(path)?;
             if !facts.is_file() {
@@ -86,7 +86,7 @@ impl Source for Disk {
             let size = Some(facts.len()).filter(|size| *size > 0);
             Ok(Opened::Stream(Box::new(File::open(path)?), size))
         };
-        open().map_err(|fault| FileError::read(path, fault))
+        open().map_err(|fault| FileError::read(path, fault).into())
     }
 }
 
@@ -106,7 +106,7 @@ impl Source for Memory<'_> {
         self.0.iter().any(|file| file.name == path)
     }
 
-    fn open(&self, path: &Path) -> Result<Opened<'_>, FileError> {
+    fn open(&self, path: &Path) -> Result<Opened<'_>, MeshError> {
         let file = self.0.iter().find(|file| file.name == path);
         let file = file.ok_or_else(|| FileError::read(path, io::ErrorKind::NotFound.into()))?;
         Ok(Opened::Bytes(file.bytes.into()))

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 use files::FileError;
-use mesh::io::is_mesh_path;
+use mesh::io::{is_mesh_path, without_extension};
 
 use super::shape_file::ShapeFile;
 use crate::error::Error;
@@ -69,7 +69,8 @@ impl LabelFile {
     fn key(&self, name: &str, mesh: Option<&Path>) -> Option<&str> {
         let found = self.labels.get_key_value(name);
         let found = found.or_else(|| match mesh.and_then(Path::extension) {
-            Some(extension) => self.labels.get_key_value(&format!("{name}.{}", extension.to_string_lossy())),
+            Some(_) => extensions_of(mesh)
+                .find_map(|extension| self.labels.get_key_value(&format!("{name}.{extension}"))),
             // The mesh is unknown: any mesh of this name.
             None => self.labels.iter().find(|(key, _)| is_mesh_named(key, name)),
         });
@@ -82,6 +83,16 @@ impl LabelFile {
             shapes.iter().filter_map(|shape| self.key(&shape.name, Some(&shape.path))).collect();
         self.labels.len() - used.len()
     }
+}
+
+/// The extension of a mesh: `off`, or for a compressed file both `off.gz` and `off`.
+fn extensions_of(mesh: Option<&Path>) -> impl Iterator<Item = String> {
+    let name = mesh.and_then(Path::file_name).unwrap_or_default().to_string_lossy().into_owned();
+    let stem = mesh.map(without_extension).unwrap_or_default();
+    let stem = stem.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let full = name.strip_prefix(&stem).unwrap_or_default().trim_start_matches('.').to_owned();
+    let short = full.split_once('.').map(|(short, _)| short.to_owned());
+    std::iter::once(full).chain(short)
 }
 
 /// Whether a key is this name with the extension of a mesh.

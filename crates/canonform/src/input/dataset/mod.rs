@@ -1,12 +1,15 @@
-//! A folder of meshes as a labelled dataset.
+//! A folder, an archive or a list of meshes as a labelled dataset.
 
 mod labels;
 mod shape_file;
 mod walk;
 
-use std::collections::BTreeMap;
-use std::path::Path;
+use std::collections::{BTreeMap, HashSet};
+use std::path::{Path, PathBuf};
 
+use mesh::io::{extension, files_in, is_mesh_path, mesh_files, without_extension};
+
+use super::storage::{Container, ListedPath, Storage, open_archive, read_list};
 use crate::error::Error;
 use labels::joined;
 use walk::Walk;
@@ -16,7 +19,7 @@ pub(crate) use labels::{drop_single_class, label_in};
 pub use shape_file::ShapeFile;
 pub use walk::{SkipKind, Skipped};
 
-/// What a folder holds.
+/// What a folder, an archive or a list holds.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Dataset {
     /// The meshes, in natural order of their names (`cat2` before `cat10`).
@@ -26,27 +29,116 @@ pub struct Dataset {
 }
 
 impl Dataset {
-    /// The meshes in a folder and its sub-folders. Links are followed, but no file or folder is found twice through them.
+    /// The meshes of a dataset, whose names are paths below it without extensions:
+    ///
+    /// * a folder and its sub-folders. Links are followed, but no file or folder is found twice through them;
+    /// * an archive, `.zip`, `.tar`, `.tar.gz` or `.tgz`. Folders around all of its meshes are left out of the names;
+    /// * a `.parquet` file with a mesh in every row: the column `bytes` holds the content of a file, `id` its name, `format`
+    ///   its extension and `label` its class;
+    /// * a `.txt` or `.list` file with a path in every line, relative to its folder. Folders around all of its meshes are left
+    ///   out of the names.
     ///
     /// # Errors
-    /// [`Error::File`], [`Error::NoShapes`].
-    pub fn read(folder: &Path, labels: Option<&LabelFile>) -> Result<Self, Error> {
-        let Walk { meshes, skipped, .. } = Walk::below(folder)?;
-        let mut shapes: Vec<ShapeFile> = meshes
+    /// [`Error::File`] and [`Error::Mesh`] if it cannot be read, [`Error::BadLine`], [`Error::NoShapes`].
+    pub fn read(path: &Path, labels: Option<&LabelFile>) -> Result<Self, Error> {
+        let found = match Container::of(path) {
+            Some(Container::List) => Found::in_list(path)?,
+            Some(Container::Zip | Container::Tar | Container::Parquet) => Found::in_archive(path)?,
+            Some(Container::Folder) | None => Found::in_folder(path)?,
+        };
+        let mut shapes: Vec<ShapeFile> = found
+            .meshes
             .into_iter()
-            .map(|path| {
-                let name = joined(&path.strip_prefix(folder).unwrap_or(&path).with_extension(""));
-                ShapeFile { label: label_in(labels, &name, Some(&path)), name, path }
+            .map(|mesh| {
+                let name =
+                    joined(&without_extension(mesh.path.strip_prefix(&found.root).unwrap_or(&mesh.path)));
+                let label = match (labels, mesh.label) {
+                    (None, Some(label)) => label,
+                    _ => label_in(labels, &name, Some(&mesh.path)),
+                };
+                ShapeFile { label, name, path: mesh.path }
             })
             .collect();
         if shapes.is_empty() {
-            return Err(Error::NoShapes { path: folder.to_owned() });
+            return Err(Error::NoShapes { path: path.to_owned() });
         }
         shapes.sort_by(|a, b| {
             natural_key(&a.name).cmp(&natural_key(&b.name)).then_with(|| a.path.cmp(&b.path))
         });
-        Ok(Self { shapes, skipped })
+        Ok(Self { shapes, skipped: found.skipped })
     }
+}
+
+/// Meshes before they have names.
+struct Found {
+    /// The folder that names are relative to.
+    root: PathBuf,
+    meshes: Vec<FoundMesh>,
+    skipped: Vec<Skipped>,
+}
+
+struct FoundMesh {
+    path: PathBuf,
+    /// Its class, if the dataset states one.
+    label: Option<String>,
+}
+
+impl Found {
+    fn in_folder(folder: &Path) -> Result<Self, Error> {
+        let Walk { meshes, skipped, .. } = Walk::below(folder)?;
+        let meshes = meshes.into_iter().map(|path| FoundMesh { path, label: None }).collect();
+        Ok(Self { root: folder.to_owned(), meshes, skipped })
+    }
+
+    fn in_archive(path: &Path) -> Result<Self, Error> {
+        let archive = open_archive(path)?;
+        let skip = |name: &str, kind| Skipped { path: path.join(name), kind };
+        let mut skipped: Vec<Skipped> =
+            archive.skipped.iter().map(|(name, kind)| skip(name, kind.clone())).collect();
+        let mut meshes = Vec::new();
+        for (name, member) in archive.members() {
+            let below = Path::new(name);
+            if is_mesh_path(below) {
+                meshes.push(FoundMesh { path: path.join(below), label: member.label.clone() });
+            } else if files_in(&path.join(below), &Storage).len() < 2 {
+                skipped.push(skip(name, SkipKind::Extension(extension(below))));
+            }
+        }
+        skipped.sort_by(|a, b| a.path.cmp(&b.path));
+        Ok(Self { root: common_folder(&meshes, path), meshes, skipped })
+    }
+
+    fn in_list(list: &Path) -> Result<Self, Error> {
+        let (mut meshes, mut skipped) = (Vec::new(), Vec::new());
+        let mut seen = HashSet::new();
+        for ListedPath { path, line } in read_list(list)? {
+            if !is_mesh_path(&path) {
+                let what = format!("{} is not a mesh; a mesh is {}", path.display(), mesh_files());
+                return Err(Error::BadLine { path: list.to_owned(), line, what });
+            }
+            match seen.insert(path.clone()) {
+                true => meshes.push(FoundMesh { path, label: None }),
+                false => skipped.push(Skipped { path, kind: SkipKind::Repeated }),
+            }
+        }
+        let folder = list.parent().unwrap_or(Path::new(""));
+        Ok(Self { root: common_folder(&meshes, folder), meshes, skipped })
+    }
+}
+
+/// The innermost folder that contains all meshes.
+fn common_folder(meshes: &[FoundMesh], otherwise: &Path) -> PathBuf {
+    let mut folders = meshes.iter().filter_map(|mesh| mesh.path.parent());
+    let Some(mut common) = folders.next() else { return otherwise.to_owned() };
+    for folder in folders {
+        while !folder.starts_with(common) {
+            match common.parent() {
+                Some(above) => common = above,
+                None => return PathBuf::new(),
+            }
+        }
+    }
+    common.to_owned()
 }
 
 /// How many things were skipped for each reason.
@@ -56,12 +148,12 @@ pub(crate) fn count_skipped(skipped: &[Skipped]) -> BTreeMap<String, usize> {
     counts
 }
 
-/// The meshes in a folder and its sub-folders, in natural order of their names; see [`Dataset::read`].
+/// The meshes of a folder, an archive or a list, in natural order of their names; see [`Dataset::read`].
 ///
 /// # Errors
 /// [`Error::File`], [`Error::NoShapes`].
-pub fn list_shapes(folder: &Path, labels: Option<&LabelFile>) -> Result<Vec<ShapeFile>, Error> {
-    Ok(Dataset::read(folder, labels)?.shapes)
+pub fn list_shapes(path: &Path, labels: Option<&LabelFile>) -> Result<Vec<ShapeFile>, Error> {
+    Ok(Dataset::read(path, labels)?.shapes)
 }
 
 /// Splits a name into texts and numbers, so that numbers sort by value.

@@ -29,7 +29,9 @@ pub enum SkipKind {
     Special,
     /// A mesh or a folder whose name is not UTF-8, so that the name cannot be stored.
     NotUtf8,
-    /// A link to a file or a folder that is found without it.
+    /// The name of a member that leads out of its archive.
+    UnsafeName,
+    /// A link to a file or a folder that is found without it, or a second line of a list for the same file.
     Repeated,
     /// A link that leads nowhere.
     BrokenLink,
@@ -52,6 +54,7 @@ impl fmt::Display for SkipKind {
             Self::Extension(extension) => write!(f, ".{extension}"),
             Self::Special => f.write_str("special file"),
             Self::NotUtf8 => f.write_str("name is not UTF-8"),
+            Self::UnsafeName => f.write_str("name leads out of the archive"),
             Self::Repeated => f.write_str("link to something found already"),
             Self::BrokenLink => f.write_str("broken link"),
             Self::Unreadable => f.write_str("unreadable folder"),
@@ -102,7 +105,7 @@ impl Walk {
         }
     }
 
-    fn skip(&mut self, path: PathBuf, kind: SkipKind) {
+    pub(super) fn skip(&mut self, path: PathBuf, kind: SkipKind) {
         self.skipped.push(Skipped { path, kind });
     }
 

@@ -7,11 +7,12 @@ use std::process::ExitCode;
 
 use anyhow::{Result, bail};
 use canonform::Remedy;
-use index::{ExportError, Index, Verification, work_path};
+use index::{ExportError, ExportFormat, Index, Verification, work_path};
 use serde::Serialize;
 
 use crate::args::Common;
-use crate::output::{check_folder, exit_code, facts, print, print_json, report};
+use crate::input::is_stream;
+use crate::output::{Output, exit_code, facts, print, print_json, report};
 use crate::remedy::with_remedy;
 
 #[derive(Serialize)]
@@ -88,30 +89,38 @@ fn table(json: &InfoJson) -> String {
     facts(&rows)
 }
 
-pub(super) fn export(index: &Path, output: Option<&Path>) -> Result<ExitCode> {
-    if let Some(path) = output
-        && [index.to_owned(), work_path(index)].iter().any(|taken| files::is_same_file(taken, path))
-    {
-        bail!("{} is the index itself; choose another file with -o", path.display());
+pub(super) fn export(
+    index: &Path,
+    output: Option<&Path>,
+    format: Option<&str>,
+    common: &Common,
+) -> Result<ExitCode> {
+    let output = output.unwrap_or(Path::new("-"));
+    if [index.to_owned(), work_path(index)].iter().any(|taken| files::is_same_file(taken, output)) {
+        bail!("{} is the index itself; choose another file with -o", output.display());
     }
+    let formats = ExportFormat::ALL.map(ExportFormat::extension);
+    let is_lines = format.is_none_or(|format| format == ExportFormat::JsonLines.extension());
     let index = Index::open(index)?;
-    let Some(path) = output else {
+    if is_stream(output) && is_lines {
         let mut out = BufWriter::with_capacity(1 << 16, std::io::stdout().lock());
         index.export(&mut out)?;
         out.flush()?;
         return Ok(ExitCode::SUCCESS);
-    };
-    check_folder(path)?;
+    }
+    let output = Output::new(output, "an index", &formats, format, common)?;
+    let format = ExportFormat::named(output.format()).unwrap_or(ExportFormat::JsonLines);
     let mut unreadable = None;
-    let written = files::write_atomically(path, |out| match index.export(out) {
+    let written = files::fill_atomically(output.path(), |file| match index.export_as(format, file) {
+        Err(ExportError::Write(fault)) => Err(fault),
         Err(ExportError::Index(fault)) => {
             unreadable = Some(fault);
             Err(std::io::Error::other("the index cannot be read"))
         }
-        Err(ExportError::Write(fault)) => Err(fault),
         Ok(()) => Ok(()),
     });
     unreadable.map_or(Ok(()), Err)?;
     written?;
+    output.copy_to_stdout()?;
     Ok(ExitCode::SUCCESS)
 }

@@ -19,6 +19,8 @@ pub(crate) fn index(command: &IndexCommand, common: &Common) -> Result<ExitCode>
         IndexCommand::Verify { index } => look::verify(index, common),
         IndexCommand::List(args) => list::list(args, common),
         IndexCommand::Info { index } => look::info(index, common),
-        IndexCommand::Export { index, output } => look::export(index, output.as_deref()),
+        IndexCommand::Export { index, output, output_format } => {
+            look::export(index, output.as_deref(), output_format.as_deref(), common)
+        }
     }
 }

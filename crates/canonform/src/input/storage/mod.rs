@@ -1,0 +1,160 @@
+//! Where meshes are stored: folders, archives, Parquet files and lists of paths.
+//!
+//! A member of an archive has a path like any other file: `collection.zip/cat/cat0.off`. Nothing is unpacked into a folder.
+//! Members of a `.zip` and a `.tar` are read where they are; a `.tar.gz` and a Parquet file are decompressed once into a
+//! temporary file without a name. Threads read members at the same time.
+
+mod archive;
+mod cache;
+mod list;
+mod parquet;
+mod tar;
+mod window;
+mod zip;
+
+use std::path::{Path, PathBuf};
+
+use mesh::io::{Disk, MeshFile, Opened, ReadLimits, Source, extension, is_gzip};
+use mesh::{Fault, MeshError, Place, TriMesh};
+
+use crate::error::Error;
+pub(super) use archive::Archive;
+pub(super) use list::ListedPath;
+
+/// What holds several meshes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Container {
+    Folder,
+    Zip,
+    Tar,
+    Parquet,
+    List,
+}
+
+impl Container {
+    /// Judges by the extension.
+    fn by_name(path: &Path) -> Option<Self> {
+        Some(match (extension(path).as_str(), is_gzip(path)) {
+            ("zip", false) => Self::Zip,
+            ("tar", _) | ("tgz", false) => Self::Tar,
+            ("parquet", false) => Self::Parquet,
+            ("txt" | "list", false) => Self::List,
+            _ => return None,
+        })
+    }
+
+    /// What a path leads to; `None` if that is no container.
+    pub(super) fn of(path: &Path) -> Option<Self> {
+        match Self::by_name(path) {
+            _ if path.is_dir() => Some(Self::Folder),
+            Some(container) if path.is_file() => Some(container),
+            _ => None,
+        }
+    }
+
+    fn is_archive(self) -> bool {
+        matches!(self, Self::Zip | Self::Tar | Self::Parquet)
+    }
+}
+
+/// Whether a path leads to a dataset: a folder, an archive (`.zip`, `.tar`, `.tar.gz`, `.tgz`), a `.parquet` file with a
+/// column of bytes, or a list of paths (`.txt`, `.list`).
+#[must_use]
+pub fn is_dataset(path: &Path) -> bool {
+    Container::of(path).is_some()
+}
+
+/// The file system, in which archives are folders: `collection.zip/cat/cat0.off` is a file.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Storage;
+
+impl Source for Storage {
+    fn holds(&self, path: &Path) -> bool {
+        path.exists()
+            || member_of(path).is_some_and(|(archive, member)| {
+                cache::open(&archive).is_ok_and(|archive| archive.member(&member).is_some())
+            })
+    }
+
+    fn open(&self, path: &Path) -> Result<Opened<'_>, MeshError> {
+        if let Some((archive, name)) = member_of(path) {
+            return Ok(Opened::Bytes(cache::open(&archive)?.read(&name, path)?.into()));
+        }
+        Disk.open(path)
+    }
+}
+
+impl Storage {
+    /// Bytes of a file.
+    pub(crate) fn n_bytes(self, path: &Path) -> Result<u64, Error> {
+        match member_of(path) {
+            Some((archive, name)) => {
+                let archive = cache::open(&archive)?;
+                Ok(archive.member(&name).map_or(0, |member| member.size))
+            }
+            None => Ok(std::fs::metadata(path).map_err(|source| files::FileError::read(path, source))?.len()),
+        }
+    }
+}
+
+/// The archive and the name of the member that a path means. `None` for a path that exists, or that leads to no archive.
+pub(crate) fn member_of(path: &Path) -> Option<(PathBuf, String)> {
+    for (depth, above) in path.ancestors().enumerate() {
+        if depth > 0 && Container::by_name(above).is_some_and(Container::is_archive) && above.is_file() {
+            let below = path.strip_prefix(above).ok()?;
+            let parts: Option<Vec<&str>> = below.iter().map(|part| part.to_str()).collect();
+            return Some((above.to_owned(), parts?.join("/")));
+        }
+        if above.exists() {
+            return None;
+        }
+    }
+    None
+}
+
+/// Reads a mesh, which may be compressed (`cat.obj.gz`) or the member of an archive (`cats.zip/cat0.off`).
+///
+/// ```
+/// let folder = tempfile::tempdir()?;
+/// let path = folder.path().join("ball.ply.gz");
+/// canonform::mesh::io::write(&path, &canonform::mesh::shapes::icosphere(2))?;
+/// assert_eq!(canonform::read_mesh(&path)?.n_vertices(), 162);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// [`Error::Mesh`].
+pub fn read_mesh(path: &Path) -> Result<TriMesh, Error> {
+    Ok(read_mesh_file(path, &ReadLimits::default())?.mesh)
+}
+
+/// As [`read_mesh`], with what else the file says, such as the unit of length.
+///
+/// # Errors
+/// [`Error::Mesh`].
+pub fn read_mesh_file(path: &Path, limits: &ReadLimits) -> Result<MeshFile, Error> {
+    if Container::of(path).is_some_and(Container::is_archive) {
+        let what = "this is an archive of meshes".to_owned();
+        let remedy = "name one of them, such as meshes.zip/cat0.off";
+        return Err(fault(path, Fault::Unsupported { what, remedy }).into());
+    }
+    Ok(mesh::io::read_file(path, &Storage, limits)?)
+}
+
+/// The members of an archive.
+pub(super) fn open_archive(path: &Path) -> Result<std::sync::Arc<Archive>, Error> {
+    Ok(cache::open(path)?)
+}
+
+/// The paths in a list.
+pub(super) fn read_list(path: &Path) -> Result<Vec<ListedPath>, Error> {
+    list::read(path)
+}
+
+/// The error that a file cannot be read faithfully.
+fn fault(path: &Path, fault: Fault) -> MeshError {
+    MeshError::File { path: path.to_owned(), place: Place::File, fault }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,198 @@
+//! Parquet files with one mesh a row: the bytes of a file, and columns for its name, class and format.
+
+use std::fs::File;
+
+use mesh::Fault;
+use mesh::io::Format;
+use parquet::basic::Type as Physical;
+use parquet::column::reader::{ColumnReader, get_typed_column_reader};
+use parquet::data_type::{ByteArray, ByteArrayType, DataType, Int32Type, Int64Type};
+use parquet::errors::ParquetError;
+use parquet::file::reader::{FileReader, RowGroupReader, SerializedFileReader};
+use parquet::schema::types::SchemaDescriptor;
+
+use super::archive::{Archive, Data, Member, Spool};
+
+/// Rows that are decoded at once.
+const BATCH: usize = 16;
+
+/// Names of columns; the first that a file has is taken.
+const BYTES: [&str; 4] = ["bytes", "data", "content", "mesh"];
+const IDS: [&str; 4] = ["id", "name", "path", "file_name"];
+const LABELS: [&str; 2] = ["label", "class"];
+const FORMATS: [&str; 2] = ["format", "extension"];
+
+/// The columns of a file, by number.
+struct Columns {
+    bytes: usize,
+    id: Option<usize>,
+    label: Option<usize>,
+    format: Option<usize>,
+}
+
+pub(super) fn open(file: File) -> Result<Archive, Fault> {
+    let size = file.metadata().map_or(0, |about| about.len());
+    if size == 0 {
+        return Err(Fault::Empty);
+    }
+    let reader = SerializedFileReader::new(file).map_err(damaged)?;
+    let columns = Columns::of(reader.metadata().file_metadata().schema_descr())?;
+    let mut spool = Spool::new(size)?;
+    let mut rows: Vec<(String, Member)> = Vec::new();
+    for group in 0..reader.num_row_groups() {
+        let group = reader.get_row_group(group).map_err(damaged)?;
+        let texts = |column: Option<usize>| match column {
+            Some(column) => texts(&*group, column),
+            None => Ok(Vec::new()),
+        };
+        let [ids, labels, formats] = [texts(columns.id)?, texts(columns.label)?, texts(columns.format)?];
+        let text = |texts: &[Option<String>], row: usize| texts.get(row).cloned().flatten();
+        let mut row = 0;
+        each(&*group, columns.bytes, |value| {
+            let Some(bytes) = value else {
+                row += 1;
+                return Ok(());
+            };
+            let id = text(&ids, row).unwrap_or_else(|| format!("row{}", rows.len()));
+            let name = named(id, text(&formats, row).as_deref(), rows.len())?;
+            let at = spool.append(bytes)?;
+            let member = Member { size: bytes.len() as u64, label: text(&labels, row), at };
+            rows.push((name, member));
+            row += 1;
+            Ok(())
+        })?;
+    }
+    let mut archive = Archive::of(Data::Plain(spool.finish()?));
+    for (name, member) in rows {
+        if archive.member(&name).is_some() {
+            return Err(Fault::Syntax { expected: "a different id in every row", found: name });
+        }
+        archive.add(&name, member);
+    }
+    Ok(archive)
+}
+
+/// The name of a row as a file: its id, with the format as its extension.
+fn named(id: String, format: Option<&str>, row: usize) -> Result<String, Fault> {
+    let known = |format: &str| Format::named(format.trim_start_matches('.').trim_end_matches(".gz"));
+    match format {
+        Some(format) => match known(format) {
+            Some(_) if mesh::io::extension(id.as_ref()) == format.trim_start_matches('.') => Ok(id),
+            Some(_) => Ok(format!("{id}.{}", format.trim_start_matches('.'))),
+            None => Err(Fault::Syntax {
+                expected: "the extension of a mesh, such as ply, in the column `format`",
+                found: format!("{format} in row {row}"),
+            }),
+        },
+        None if Format::of(id.as_ref()).is_ok() => Ok(id),
+        None => Err(Fault::Syntax {
+            expected: "a column `format`, or ids with the extension of a mesh",
+            found: format!("{id} in row {row}"),
+        }),
+    }
+}
+
+impl Columns {
+    fn of(schema: &SchemaDescriptor) -> Result<Self, Fault> {
+        // The last part of the name, so that `mesh.bytes` of a struct is found too.
+        let find = |names: &[&str], is_right: &dyn Fn(Physical) -> bool| {
+            names.iter().find_map(|name| {
+                (0..schema.num_columns()).find(|&column| {
+                    let about = schema.column(column);
+                    let last = about.path().parts().last().is_some_and(|part| part == name);
+                    last && about.max_rep_level() == 0 && is_right(about.physical_type())
+                })
+            })
+        };
+        let is_bytes = |kind| kind == Physical::BYTE_ARRAY;
+        let is_text = |kind| matches!(kind, Physical::BYTE_ARRAY | Physical::INT32 | Physical::INT64);
+        let bytes = find(&BYTES, &is_bytes).ok_or_else(|| {
+            let names: Vec<&str> = schema.columns().iter().map(|column| column.name()).collect();
+            Fault::Syntax {
+                expected: "a column `bytes` with the contents of mesh files, beside `id`, `label` and `format`",
+                found: names.join(", "),
+            }
+        })?;
+        let columns = Self {
+            bytes,
+            id: find(&IDS, &is_text),
+            label: find(&LABELS, &is_text),
+            format: find(&FORMATS, &is_bytes),
+        };
+        Ok(columns)
+    }
+}
+
+/// The values of a column as text.
+fn texts(group: &dyn RowGroupReader, column: usize) -> Result<Vec<Option<String>>, Fault> {
+    let mut texts = Vec::new();
+    each(group, column, |value| {
+        let text = value.map(|bytes| String::from_utf8(bytes.to_vec()));
+        texts.push(text.transpose().map_err(|error| {
+            let found = String::from_utf8_lossy(error.as_bytes()).into_owned();
+            Fault::Syntax { expected: "text in UTF-8", found }
+        })?);
+        Ok(())
+    })?;
+    Ok(texts)
+}
+
+/// Hands over the values of a column, row by row.
+fn each(
+    group: &dyn RowGroupReader,
+    column: usize,
+    take: impl FnMut(Option<&[u8]>) -> Result<(), Fault>,
+) -> Result<(), Fault> {
+    match group.get_column_reader(column).map_err(damaged)? {
+        reader @ ColumnReader::ByteArrayColumnReader(_) => {
+            each_of::<ByteArrayType>(reader, group, column, |value: &ByteArray| value.data().to_vec(), take)
+        }
+        reader @ ColumnReader::Int32ColumnReader(_) => {
+            each_of::<Int32Type>(reader, group, column, |value| value.to_string().into_bytes(), take)
+        }
+        reader @ ColumnReader::Int64ColumnReader(_) => {
+            each_of::<Int64Type>(reader, group, column, |value| value.to_string().into_bytes(), take)
+        }
+        _ => Err(Fault::Syntax {
+            expected: "a column of bytes, text or integers",
+            found: "another type".into(),
+        }),
+    }
+}
+
+fn each_of<T: DataType>(
+    reader: ColumnReader,
+    group: &dyn RowGroupReader,
+    column: usize,
+    bytes_of: impl Fn(&T::T) -> Vec<u8>,
+    mut take: impl FnMut(Option<&[u8]>) -> Result<(), Fault>,
+) -> Result<(), Fault> {
+    let most = group.metadata().column(column).column_descr().max_def_level();
+    let mut reader = get_typed_column_reader::<T>(reader);
+    let (mut values, mut levels) = (Vec::new(), Vec::new());
+    loop {
+        values.clear();
+        levels.clear();
+        let wants_levels = (most > 0).then_some(&mut levels);
+        let (records, _, _) = reader.read_records(BATCH, wants_levels, None, &mut values).map_err(damaged)?;
+        if records == 0 {
+            return Ok(());
+        }
+        let mut found = values.iter();
+        for row in 0..records {
+            let is_there = most == 0 || levels.get(row) == Some(&most);
+            let value = if is_there { found.next().map(&bytes_of) } else { None };
+            take(value.as_deref())?;
+        }
+    }
+}
+
+fn damaged(error: ParquetError) -> Fault {
+    match error {
+        ParquetError::NYI(what) => Fault::Unsupported {
+            what: format!("it uses a feature of Parquet that is not supported: {what}"),
+            remedy: "write it with Snappy compression or none",
+        },
+        other => Fault::Syntax { expected: "an intact Parquet file", found: other.to_string() },
+    }
+}

@@ -1,0 +1,154 @@
+//! `canonform convert`.
+
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+use anyhow::{Result, bail};
+use canonform::Surface;
+use mesh::RepairReport;
+use mesh::io::{Content, FileFacts, Format, MeshFile, or_list, writable};
+use rayon::prelude::*;
+use serde::Serialize;
+use terminal::Bars;
+
+use crate::args::{Common, ConvertArgs};
+use crate::input::{
+    create_folder_of, expand, file_name, is_single, is_stream, named, outputs, print_repair, read_file,
+};
+use crate::output::{Output, exit_code, facts, report};
+
+#[derive(Serialize)]
+struct Json {
+    input: PathBuf,
+    output: PathBuf,
+    n_vertices: usize,
+    n_faces: usize,
+    /// What the input says beside the mesh.
+    file: FileFacts,
+    /// How the mesh was repaired, with `--repair`.
+    repair: Option<RepairReport>,
+}
+
+#[derive(Serialize)]
+struct BatchJson {
+    meshes: Vec<Json>,
+    failed: Vec<Failure>,
+}
+
+#[derive(Serialize)]
+struct Failure {
+    path: PathBuf,
+    error: String,
+}
+
+/// Converts one mesh, or each of several.
+pub(crate) fn convert(args: &ConvertArgs, common: &Common) -> Result<ExitCode> {
+    let inputs = std::slice::from_ref(&args.input);
+    if is_single(inputs) { one(args, common) } else { batch(args, common) }
+}
+
+fn one(args: &ConvertArgs, common: &Common) -> Result<ExitCode> {
+    if is_stream(&args.output) && args.output_format.is_none() {
+        bail!("standard output has no file name: pass its format, such as --output-format ply");
+    }
+    let is_one_file =
+        |format: &&str| Format::named(format).is_some_and(|format| format.extensions.len() == 1);
+    let formats: Vec<&str> = match is_stream(&args.output) {
+        true => writable(Content::Mesh).filter(is_one_file).collect(),
+        // Either half of a pair names both.
+        false => writable(Content::Mesh).chain(["tri"]).collect(),
+    };
+    let output = Output::new(&args.output, "a mesh", &formats, args.output_format.as_deref(), common)?;
+    let result = write(&args.input, output.path(), args, common)?;
+    let json = Json { output: output.name(), ..result };
+    notes(&json, args);
+    output.report(common, &json, table)
+}
+
+/// Reads, repairs and writes a mesh.
+fn write(input: &Path, output: &Path, args: &ConvertArgs, common: &Common) -> Result<Json> {
+    let MeshFile { mesh, facts: file, .. } = read_file(input, common)?;
+    let (mesh, repair) = match args.repair {
+        false => (mesh, None),
+        true => {
+            let surface = Surface::new(&mesh, &args.repair_options.options());
+            let repaired = surface.map_err(|fault| named(input, fault))?.repaired;
+            (repaired.mesh, Some(repaired.report))
+        }
+    };
+    let (n_vertices, n_faces) = (mesh.n_vertices(), mesh.n_faces());
+    mesh::io::write(output, &mesh)?;
+    Ok(Json { input: input.to_owned(), output: output.to_owned(), n_vertices, n_faces, file, repair })
+}
+
+/// Says what was repaired and what the output does not say.
+fn notes(json: &Json, args: &ConvertArgs) {
+    let name = file_name(&json.input);
+    if let Some(report) = &json.repair {
+        print_repair(&name, report, &args.repair_options);
+    }
+    for what in &json.file.ignored {
+        terminal::note(&format!("{name}: ignored {what}"));
+    }
+    let is_3mf = mesh::io::extension(&json.output) == "3mf" || args.output_format.as_deref() == Some("3mf");
+    let kept = is_3mf && json.file.unit == Some(mesh::io::LengthUnit::Millimeter);
+    if let Some(unit) = json.file.unit.filter(|_| !kept) {
+        let says = if is_3mf { "states millimeter" } else { "does not state it" };
+        terminal::note(&format!(
+            "{name}: the unit of its coordinates is the {}, and the output {says}",
+            unit.name()
+        ));
+    }
+}
+
+/// Converts meshes in parallel. Failures are listed at the end and do not stop the rest.
+fn batch(args: &ConvertArgs, common: &Common) -> Result<ExitCode> {
+    if is_stream(&args.output) {
+        bail!("several meshes cannot go to standard output; name a folder");
+    }
+    let formats: Vec<&str> = writable(Content::Mesh).collect();
+    let Some(extension) = args.output_format.as_deref().map(|format| format.trim_start_matches('.')) else {
+        bail!("pass the format of the meshes in the folder, such as --output-format ply");
+    };
+    if !formats.contains(&extension.trim_end_matches(".gz")) {
+        bail!("meshes cannot be written as {extension}; use {}", or_list(formats));
+    }
+    let shapes = expand(std::slice::from_ref(&args.input))?;
+    let outputs = outputs(&shapes, &args.output, extension)?;
+    let bar = Bars::new(common.quiet).bar("meshes", shapes.len());
+    let results: Vec<Result<Json>> = shapes
+        .par_iter()
+        .zip(outputs)
+        .map(|(shape, output)| {
+            let result = create_folder_of(&output).and_then(|()| write(&shape.path, &output, args, common));
+            bar.inc(1);
+            result
+        })
+        .collect();
+    bar.finish_and_clear();
+    let mut json = BatchJson { meshes: Vec::new(), failed: Vec::new() };
+    for (shape, result) in shapes.into_iter().zip(results) {
+        match result {
+            Ok(result) => {
+                notes(&result, args);
+                json.meshes.push(result);
+            }
+            Err(fault) => {
+                let error = crate::remedy::message(&fault);
+                terminal::error(&error);
+                json.failed.push(Failure { path: shape.path, error });
+            }
+        }
+    }
+    report(common, &json, |json| {
+        format!("{} meshes in {}, {} failed", json.meshes.len(), args.output.display(), json.failed.len())
+    })?;
+    Ok(exit_code(json.failed.is_empty()))
+}
+
+fn table(json: &Json) -> String {
+    facts(&[
+        ("vertices, faces", format!("{}, {}", json.n_vertices, json.n_faces)),
+        ("wrote", json.output.display().to_string()),
+    ])
+}

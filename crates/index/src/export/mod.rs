@@ -1,0 +1,153 @@
+//! Export of an index as files that do not depend on its history.
+
+mod columns;
+mod csv;
+mod npz;
+mod parquet;
+#[cfg(test)]
+mod tests;
+
+use std::fs::File;
+use std::io::{self, BufWriter, Write};
+
+use serde::{Serialize, Serializer};
+
+use crate::{Index, IndexError, Shape};
+
+/// The first line of an export.
+#[derive(Serialize)]
+struct Head<'a> {
+    format: &'static str,
+    version: u32,
+    options: &'a str,
+    shapes: usize,
+}
+
+/// Each further line.
+#[derive(Serialize)]
+struct Line<'a> {
+    id: &'a str,
+    label: &'a str,
+    path: &'a str,
+    content: String,
+    facts: Named<'a, f64>,
+    fused: &'a [f32],
+    signatures: Named<'a, Vec<f32>>,
+    form: &'a [[f32; 4]],
+}
+
+/// Pairs serialised as an object, in order.
+struct Named<'a, T>(&'a [(String, T)]);
+
+impl<T: Serialize> Serialize for Named<'_, T> {
+    fn serialize<S: Serializer>(&self, out: S) -> Result<S::Ok, S::Error> {
+        out.collect_map(self.0.iter().map(|(name, value)| (name, value)))
+    }
+}
+
+/// Errors of an export.
+#[derive(Debug, thiserror::Error)]
+pub enum ExportError {
+    /// The index cannot be read.
+    #[error(transparent)]
+    Index(#[from] IndexError),
+    /// The text cannot be written.
+    #[error("cannot write the export: {0}")]
+    Write(#[from] io::Error),
+}
+
+/// A file format for an index; [`Index::export_as`] writes it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum ExportFormat {
+    /// Everything, as lines of JSON; see [`Index::export`].
+    JsonLines,
+    /// Everything, a row for every shape.
+    ///
+    /// Columns: `id`, `label`, `path` and `content` (text); `fact_NAME` (double, null if a shape lacks it); `fused` and
+    /// `signature_NAME` (lists of float, null if a shape lacks it); `form` (a list of float: x, y, z and weight of each
+    /// point). The metadata of the file has `canonform.options`.
+    Parquet,
+    /// Everything, an array for every column: text for `id`, `label`, `path` and `content`, which are n long; float64 for
+    /// `fact_NAME`; float32 for `fused` and `signature_NAME`, which are n x length, and for `form`, n x points x 4. NaN
+    /// stands for what a shape lacks. `options` is a text.
+    Npz,
+    /// Comma-separated values without the signatures and the form: `id`, `label`, `path`, `content`, `fact_NAME` and
+    /// `fused_0`, `fused_1`, ...
+    Csv,
+}
+
+impl ExportFormat {
+    /// All of them.
+    pub const ALL: [Self; 4] = [Self::JsonLines, Self::Parquet, Self::Npz, Self::Csv];
+
+    /// The extension of its files.
+    #[must_use]
+    pub fn extension(self) -> &'static str {
+        match self {
+            Self::JsonLines => "jsonl",
+            Self::Parquet => "parquet",
+            Self::Npz => "npz",
+            Self::Csv => "csv",
+        }
+    }
+
+    /// The format of files with this extension.
+    #[must_use]
+    pub fn named(extension: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|format| format.extension() == extension)
+    }
+}
+
+impl Index {
+    /// Writes the index into a file. Rows are in ascending order of names, and equal indexes give equal bytes.
+    ///
+    /// # Errors
+    /// [`ExportError`].
+    pub fn export_as(&self, format: ExportFormat, file: &mut File) -> Result<(), ExportError> {
+        match format {
+            ExportFormat::Parquet => parquet::write(self, file),
+            ExportFormat::Npz => npz::write(self, file),
+            ExportFormat::JsonLines | ExportFormat::Csv => {
+                let mut out = BufWriter::with_capacity(1 << 16, file);
+                match format {
+                    ExportFormat::Csv => csv::write(self, &mut out)?,
+                    _ => self.export(&mut out)?,
+                }
+                Ok(out.flush()?)
+            }
+        }
+    }
+
+    /// Writes the index as lines of JSON: first a header, then one line per shape in ascending order of names. Numbers
+    /// read back bit for bit.
+    ///
+    /// Equal indexes give equal bytes, whether they were built at once, after interruptions, or merged from parts.
+    ///
+    /// # Errors
+    /// [`ExportError`].
+    pub fn export(&self, out: &mut dyn Write) -> Result<(), ExportError> {
+        let head =
+            Head { format: "canonform-index", version: 1, options: self.options(), shapes: self.len() };
+        write_line(out, &head)?;
+        self.each(|shape| write_line(out, &line(&shape)).map_err(ExportError::from))
+    }
+}
+
+fn line(shape: &Shape) -> Line<'_> {
+    let Shape { id, entry, vectors } = shape;
+    Line {
+        id,
+        label: &entry.label,
+        path: &entry.path,
+        content: entry.content.to_string(),
+        facts: Named(&entry.facts),
+        fused: &vectors.fused,
+        signatures: Named(&vectors.signatures),
+        form: &vectors.form,
+    }
+}
+
+fn write_line(out: &mut dyn Write, value: &impl Serialize) -> io::Result<()> {
+    serde_json::to_writer(&mut *out, value)?;
+    out.write_all(b"\n")
+}

@@ -1,0 +1,139 @@
+//! What is exported reads back.
+
+use std::fs::File;
+use std::io::{Read, Seek};
+
+use parquet::file::reader::{FileReader, SerializedFileReader};
+use parquet::record::{Field, Row, RowAccessor};
+use zip::ZipArchive;
+
+use super::ExportFormat;
+use crate::tests::{Folder, OPTIONS, shape};
+use crate::{Index, Shape};
+
+fn exported(index: &Index, format: ExportFormat) -> File {
+    let mut file = tempfile::tempfile().unwrap();
+    index.export_as(format, &mut file).unwrap();
+    file.rewind().unwrap();
+    file
+}
+
+/// An index in which one shape lacks a fact and a signature that another one has.
+fn uneven() -> (Folder, Index, Vec<Shape>) {
+    let folder = Folder::new();
+    let mut shapes: Vec<Shape> = (0..5).map(shape).collect();
+    shapes[1].entry.facts.push(("extra, \"fact\"".to_owned(), -0.25));
+    shapes[2].vectors.signatures.push(("extra".to_owned(), vec![1.5, -2.5]));
+    shapes[3].entry.label = "a, \"b\" ä".to_owned();
+    let path = folder.path("uneven");
+    folder.fill(&path, &shapes);
+    let index = Index::open(&path).unwrap();
+    shapes.sort_by(|a, b| a.id.cmp(&b.id));
+    (folder, index, shapes)
+}
+
+fn floats(row: &Row, column: usize) -> Option<Vec<f32>> {
+    let Field::ListInternal(list) = row.get_column_iter().nth(column).unwrap().1 else { return None };
+    let number = |field: &Field| match field {
+        Field::Float(value) => *value,
+        other => panic!("{other:?}"),
+    };
+    Some(list.elements().iter().map(number).collect())
+}
+
+#[test]
+fn parquet_holds_everything() {
+    let (_folder, index, shapes) = uneven();
+    let reader = SerializedFileReader::new(exported(&index, ExportFormat::Parquet)).unwrap();
+    let about = reader.metadata().file_metadata();
+    let options = about.key_value_metadata().unwrap().iter().find(|pair| pair.key == "canonform.options");
+    assert_eq!(options.unwrap().value.as_deref(), Some(OPTIONS));
+    let rows: Vec<Row> = reader.get_row_iter(None).unwrap().map(Result::unwrap).collect();
+    assert_eq!(rows.len(), shapes.len());
+    for (row, shape) in rows.iter().zip(&shapes) {
+        assert_eq!(row.get_string(0).unwrap(), &shape.id);
+        assert_eq!(row.get_string(1).unwrap(), &shape.entry.label);
+        assert_eq!(row.get_string(2).unwrap(), &shape.entry.path);
+        assert_eq!(row.get_string(3).unwrap(), &shape.entry.content.to_string());
+        for (column, (name, field)) in row.get_column_iter().enumerate() {
+            if let Some(fact) = name.strip_prefix("fact_") {
+                let found = row.get_double(column).ok();
+                assert_eq!(found, shape.entry.fact(fact), "{name}: {field}");
+            } else if let Some(signature) = name.strip_prefix("signature_") {
+                let expected = super::columns::signature(shape, signature).map(<[f32]>::to_vec);
+                assert_eq!(floats(row, column), expected, "{name}");
+            } else if name == "fused" {
+                assert_eq!(floats(row, column).unwrap(), shape.vectors.fused);
+            } else if name == "form" {
+                assert_eq!(floats(row, column).unwrap(), shape.vectors.form.as_flattened());
+            }
+        }
+    }
+}
+
+#[test]
+fn npz_holds_everything() {
+    let (_folder, index, shapes) = uneven();
+    let mut archive = ZipArchive::new(exported(&index, ExportFormat::Npz)).unwrap();
+    let mut bytes = |name: &str| {
+        let mut bytes = Vec::new();
+        archive.by_name(&format!("{name}.npy")).unwrap().read_to_end(&mut bytes).unwrap();
+        bytes
+    };
+    let fused = bytes("fused");
+    let array = npyz::NpyFile::new(&fused[..]).unwrap();
+    assert_eq!(array.shape(), [shapes.len() as u64, shapes[0].vectors.fused.len() as u64]);
+    let values: Vec<f32> = array.into_vec().unwrap();
+    assert!(values.iter().eq(shapes.iter().flat_map(|shape| &shape.vectors.fused)));
+    let form = bytes("form");
+    assert_eq!(npyz::NpyFile::new(&form[..]).unwrap().shape()[2], 4);
+    let extra = bytes("signature_extra");
+    let extra: Vec<f32> = npyz::NpyFile::new(&extra[..]).unwrap().into_vec().unwrap();
+    assert_eq!(extra.iter().filter(|x| x.is_nan()).count(), 2 * (shapes.len() - 1));
+    let ids = bytes("id");
+    let text = String::from_utf8_lossy(&ids).into_owned();
+    assert!(text.contains("'descr': '<U") && (text.find('\n').unwrap() + 1) % 64 == 0, "{text}");
+    let characters: String = ids[text.find('\n').unwrap() + 1..]
+        .chunks(4)
+        .map(|c| char::from(c[0]))
+        .filter(|c| *c != '\0')
+        .collect();
+    assert_eq!(characters, shapes.iter().map(|shape| shape.id.as_str()).collect::<String>());
+}
+
+#[test]
+fn csv_holds_what_search_compares() {
+    let (_folder, index, shapes) = uneven();
+    let mut text = String::new();
+    exported(&index, ExportFormat::Csv).read_to_string(&mut text).unwrap();
+    let lines: Vec<&str> = text.lines().collect();
+    assert!(lines[0].starts_with("id,label,path,content,fact_"), "{}", lines[0]);
+    assert!(lines[0].contains("\"fact_extra, \"\"fact\"\"\""), "{}", lines[0]);
+    assert_eq!(lines.len(), 1 + shapes.len());
+    assert!(text.contains(",\"a, \"\"b\"\" ä\","));
+    let n = shapes[0].vectors.fused.len();
+    for (line, shape) in lines[1..].iter().zip(&shapes) {
+        let mut last: Vec<f32> = line.rsplit(',').take(n).map(|x| x.parse().unwrap()).collect();
+        last.reverse();
+        assert_eq!(last, shape.vectors.fused);
+    }
+}
+
+#[test]
+fn equal_indexes_give_equal_bytes_in_every_format() {
+    let folder = Folder::new();
+    let [a, b] = ["a", "b"].map(|name| folder.path(name));
+    let shapes: Vec<Shape> = (0..7).map(shape).collect();
+    folder.fill(&a, &shapes);
+    folder.fill(&b, &shapes.iter().rev().cloned().collect::<Vec<_>>());
+    let [a, b] = [a, b].map(|path| Index::open(&path).unwrap());
+    for format in ExportFormat::ALL {
+        let bytes = |index| {
+            let mut bytes = Vec::new();
+            exported(index, format).read_to_end(&mut bytes).unwrap();
+            bytes
+        };
+        assert!(!bytes(&a).is_empty());
+        assert_eq!(bytes(&a), bytes(&b), "{format:?}");
+    }
+}
