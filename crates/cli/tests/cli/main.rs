@@ -2,7 +2,8 @@
 //!
 //! `cluster` (the scripts in `examples/cluster`), `collections` (folders and indexes as people keep them), `commands` (what
 //! each prints), `dropped` (lost surfaces), `forms` (files), `errors`, `folders` (many meshes), `generate`, `geodesic` (sources, paths,
-//! all pairs), `guide` (the commands of the user guide), `index` (building, changing, searching), `killed` (interruptions, full disks), `render` (pictures), `serve`, `streams` (standard input and
+//! all pairs), `guide` (the commands of the user guide), `index` (building, changing, searching), `killed` (interruptions, full disks), `render` (pictures), `serve`, `storage` (archives, lists, conversion,
+//! exports), `streams` (standard input and
 //! output, several meshes, limits), `zoo` (broken meshes).
 
 #[cfg(test)]
@@ -34,6 +35,8 @@ mod killed;
 mod render;
 #[cfg(test)]
 mod serve;
+#[cfg(test)]
+mod storage;
 #[cfg(test)]
 mod streams;
 #[cfg(test)]

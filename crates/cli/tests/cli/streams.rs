@@ -78,7 +78,7 @@ fn results_go_to_standard_output_and_nothing_else_does() {
 #[test]
 fn streams_that_cannot_work_are_refused() {
     let place = place();
-    place.refused(&["info", "-"], &["standard input", "--input-format ply"]);
+    place.refused(&["info", "-"], &["standard input", "--format ply"]);
     place.refused(&["info", "-", "--input-format", "vert"], &["vert", "off"]);
     place.refused(&["info", "-", "-", "--input-format", "off"], &["only once"]);
     place.refused(&["compare", "-", "-", "--input-format", "off"], &["only once"]);

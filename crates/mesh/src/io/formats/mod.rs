@@ -253,7 +253,7 @@ mod tests {
         for format in &FORMATS {
             assert_eq!(format.check_start.len(), format.extensions.len());
             assert!(format.write.is_empty() || format.write.len() == format.extensions.len());
-            assert!(format.extensions.iter().all(|e| e.chars().all(|c| c.is_ascii_lowercase())));
+            assert!(format.extensions.iter().all(|e| **e == e.to_ascii_lowercase()));
         }
     }
 

@@ -119,7 +119,8 @@ fn check(sample: &Sample, bytes: &[u8]) -> Option<TriMesh> {
 
 #[test]
 fn meshes_beyond_the_limits_are_errors_in_every_format() {
-    for sample in samples().into_iter().filter(|sample| sample.name != "obj groups") {
+    let other_meshes = ["obj groups", "gltf rich", "gltf data"];
+    for sample in samples().into_iter().filter(|sample| !other_meshes.contains(&sample.name.as_str())) {
         let read = |max_vertices, max_faces| {
             sample.parse(sample.bytes(), &ReadLimits { max_vertices, max_faces, ..ReadLimits::default() })
         };

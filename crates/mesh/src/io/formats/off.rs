@@ -68,8 +68,10 @@ fn after_keyword(header: Line<'_>) -> Result<&[u8], Located> {
     };
     let at = text.windows(3).take(6).position(|w| w.eq_ignore_ascii_case(b"OFF")).ok_or_else(not_off)?;
     let (mut prefix, rest) = (&text[..at], text[at + 3..].trim_ascii());
-    for part in [&b"ST"[..], b"C", b"N"] {
-        prefix = prefix.strip_prefix(part).unwrap_or(prefix);
+    // The order is ST, C, N, but MeshLab writes NCOFF.
+    let mut parts = vec![&b"ST"[..], b"C", b"N"];
+    while let Some(found) = parts.iter().position(|part| prefix.starts_with(part)) {
+        prefix = &prefix[parts.remove(found).len()..];
     }
     if matches!(prefix, b"4" | b"n" | b"4n") {
         return Err(Fault::Unsupported {
@@ -170,6 +172,7 @@ mod tests {
         for text in [
             "COFF\n3 1 0\n0 0 0 255 0 0 255\n1 0 0 0 0 0 255\n0 1 0 9 9 9 9\n3 0 1 2 0.5 0.5 0.5\n",
             "NOFF\n3 1 0\n0 0 0 0 0 1\n1 0 0 0 0 1\n0 1 0 0 0 1\n3 0 1 2\n",
+            "NCOFF\n3 1 0\n0 0 0 0 0 1 9 9 9 9\n1 0 0 0 0 1\n0 1 0 0 0 1\n3 0 1 2 7\n",
             "STCNOFF\n3 1 0\n0 0 0 0 0 1 9 9 9 9 .1 .2\n1 0 0 0 0 1\n0 1 0 0 0 1\n3 0 1 2 7\n",
         ] {
             assert_eq!(parse(text.as_bytes()).unwrap(), plain);
@@ -207,7 +210,7 @@ mod tests {
 
     #[test]
     fn other_formats_are_not_mistaken_for_off() {
-        for text in ["ply\nformat", "v 0 0 0\n", "\u{0}\u{1}\u{2}", "XOFF\n"] {
+        for text in ["ply\nformat", "v 0 0 0\n", "\u{0}\u{1}\u{2}", "XOFF\n", "CCOFF\n"] {
             assert!(matches!(fault(text), (Place::Line(1), Fault::WrongFormat { .. })), "{text:?}");
         }
         for text in ["4OFF\n", "nOFF 3\n", "OFF BINARY\n"] {

@@ -47,7 +47,12 @@ pub(in super::super) fn check_binary_start(start: &[u8], size: Option<u64>) -> R
         }
         .at_byte(4));
     }
+    let least = (HEADER + CHUNK_HEADER) as u64;
     match size {
+        _ if u64::from(length) < least => {
+            let found = format!("{length} bytes in the header");
+            Err(Fault::Syntax { expected: "the length of a GLB file, which is not empty", found }.at_byte(8))
+        }
         Some(size) if size < u64::from(length) => {
             let promised = u64::from(length);
             Err(Fault::Truncated { items: "bytes".into(), promised, found: size }.at_byte(8))

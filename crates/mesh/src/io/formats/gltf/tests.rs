@@ -211,7 +211,8 @@ fn binary_faults_are_named() {
     let fault = |bytes: &[u8]| parse_binary(&[bytes], &ReadLimits::default()).unwrap_err().fault;
     assert!(matches!(fault(&bytes[..bytes.len() - 1]), Fault::Truncated { .. }));
     assert!(matches!(fault(b"glTF\x01\0\0\0\x0c\0\0\0"), Fault::Unsupported { .. }));
-    assert!(matches!(fault(b"glTF\x02\0\0\0\x0c\0\0\0"), Fault::CutShort { .. }));
+    assert!(matches!(fault(b"glTF\x02\0\0\0\x0c\0\0\0"), Fault::Syntax { .. }));
+    assert!(matches!(fault(b"glTF\x02\0\0\0\x14\0\0\0\0\0\0\0BIN\0"), Fault::CutShort { .. }));
     assert!(matches!(fault(b"ply\n"), Fault::WrongFormat { .. }));
     assert_eq!(fault(b" "), Fault::Empty);
     assert!(matches!(check_start(&bytes, None).unwrap_err().fault, Fault::WrongFormat { .. }));

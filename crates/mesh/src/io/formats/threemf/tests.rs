@@ -143,7 +143,7 @@ fn faults_name_part_line_and_remedy() {
     };
     let (fault, error) = located("v1=\"0\"", "v1=\"4\"");
     assert!(matches!(fault, Fault::IndexOutOfRange { last: 3, .. }), "{fault}");
-    assert!(error.starts_with("a.3mf/3D/3dmodel.model, line 7: "), "{error}");
+    assert!(error.starts_with("a.3mf/3D/3dmodel.model, line 8: "), "{error}");
     for (from, to, words) in [
         ("<vertex x=", "<vertex y=", "the coordinates x, y and z"),
         ("objectid=\"1\"", "objectid=\"5\"", "object 5"),

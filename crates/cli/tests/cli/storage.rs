@@ -1,0 +1,283 @@
+//! Archives, compressed files, lists, conversion and exports.
+
+use std::fs;
+use std::io::Write;
+use std::process::{Command, Stdio};
+
+use flate2::Compression;
+use flate2::write::GzEncoder;
+use mesh::{TriMesh, shapes};
+use serde_json::Value;
+use zip::ZipWriter;
+use zip::write::SimpleFileOptions;
+
+use crate::support::{Workplace, one_object, program, ring};
+
+fn files() -> Vec<(&'static str, TriMesh)> {
+    vec![
+        ("ring/ring0.off", ring()),
+        ("ring/ring1.ply", shapes::torus(18, 9, 2.0, 0.5)),
+        ("ball/ball0.off", shapes::icosphere(2)),
+        ("ball/ball1.obj", shapes::icosphere(3)),
+    ]
+}
+
+/// A folder `meshes`, and archives and a list of the same files.
+fn collection() -> Workplace {
+    let place = Workplace::new();
+    for (name, mesh) in files() {
+        place.add(&format!("meshes/{name}"), &mesh);
+    }
+    fs::write(place.path("meshes/notes.md"), "no mesh").unwrap();
+    let content = |name: &str| fs::read(place.path("meshes").join(name)).unwrap();
+    let names = || files().into_iter().map(|(name, _)| name).chain(["notes.md"]);
+    let mut zip = ZipWriter::new(fs::File::create(place.path("meshes.zip")).unwrap());
+    let mut tar = tar::Builder::new(GzEncoder::new(Vec::new(), Compression::fast()));
+    for name in names() {
+        zip.start_file(format!("meshes/{name}"), SimpleFileOptions::default()).unwrap();
+        zip.write_all(&content(name)).unwrap();
+        let mut header = tar::Header::new_gnu();
+        header.set_size(content(name).len() as u64);
+        header.set_mode(0o644);
+        tar.append_data(&mut header, format!("meshes/{name}"), &content(name)[..]).unwrap();
+    }
+    zip.finish().unwrap();
+    fs::write(place.path("meshes.tar.gz"), tar.into_inner().unwrap().finish().unwrap()).unwrap();
+    let lines: String = files().iter().map(|(name, _)| format!("meshes/{name}\n")).collect();
+    fs::write(place.path("list.txt"), lines).unwrap();
+    place
+}
+
+const BUILD: [&str; 4] = ["-n", "20", "--points", "50"];
+
+/// The lines of an export without the paths of files.
+fn shapes_of(place: &Workplace, index: &str) -> Vec<Value> {
+    let text = place.done(&["index", "export", index]).out;
+    let mut lines: Vec<Value> = text.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    for line in &mut lines {
+        line.as_object_mut().unwrap().remove("path");
+    }
+    lines
+}
+
+#[test]
+fn an_index_of_an_archive_or_a_list_equals_that_of_the_folder() {
+    let place = collection();
+    place.done(&[&["index", "build", "meshes", "-o", "folder.canonform"], &BUILD[..]].concat());
+    let expected = shapes_of(&place, "folder.canonform");
+    assert_eq!(expected.len(), 5);
+    for dataset in ["meshes.zip", "meshes.tar.gz", "list.txt"] {
+        let build = [&["index", "build", dataset, "-o", "other.canonform"], &BUILD[..]].concat();
+        let report = place.json(&build);
+        assert_eq!(
+            (&report["n_shapes"], &report["described"]),
+            (&4.into(), &4.into()),
+            "{dataset}: {report}"
+        );
+        assert_eq!(shapes_of(&place, "other.canonform"), expected, "{dataset}");
+        // Nothing is described twice, and nothing is taken for something from elsewhere.
+        let report = place.json(&build);
+        assert_eq!(
+            (&report["described"], &report["unchanged"]),
+            (&0.into(), &4.into()),
+            "{dataset}: {report}"
+        );
+        // The files of the shapes are found again.
+        let query = if dataset == "list.txt" { "meshes/ring/ring0.off" } else { "meshes/ball/ball0.off" };
+        let found = place.json(&["search", "other.canonform", query, "--explain", "-k", "1"]);
+        assert_eq!(found["results"][0]["evidence"]["kind"], "identical-file", "{dataset}: {found}");
+        place.done(&["index", "verify", "other.canonform"]);
+        fs::remove_file(place.path("other.canonform")).unwrap();
+    }
+}
+
+#[test]
+fn shards_of_an_archive_merge_into_the_index_of_the_whole() {
+    let place = collection();
+    place.done(&[&["index", "build", "meshes.zip", "-o", "whole"], &BUILD[..]].concat());
+    for shard in ["1/3", "2/3", "3/3", "2/3"] {
+        let output = format!("part{}", &shard[..1]);
+        let build = ["index", "build", "meshes.zip", "--shard", shard, "-o", &output];
+        place.done(&[&build[..], &BUILD[..]].concat());
+    }
+    place.done(&["index", "merge", "part3", "part1", "part2", "-o", "merged"]);
+    // A merge of the same parts in another order, on top of it, changes nothing.
+    place.done(&["index", "merge", "part1", "part2", "part3", "part2", "-o", "merged"]);
+    for format in ["jsonl", "parquet", "npz", "csv"] {
+        for index in ["whole", "merged"] {
+            place.done(&["index", "export", index, "-o", &format!("{index}.{format}")]);
+        }
+        let [whole, merged] =
+            ["whole", "merged"].map(|name| fs::read(place.path(&format!("{name}.{format}"))).unwrap());
+        assert_eq!(whole, merged, "{format}");
+    }
+}
+
+#[test]
+fn every_command_reads_members_and_compressed_files() {
+    let place = collection();
+    let plain = fs::read(place.path("meshes/ring/ring0.off")).unwrap();
+    let mut gzip = GzEncoder::new(Vec::new(), Compression::default());
+    gzip.write_all(&plain).unwrap();
+    fs::write(place.path("ring0.off.gz"), gzip.finish().unwrap()).unwrap();
+    let info = |path: &str| place.json(&["info", path])["meshes"][0]["mesh"].clone();
+    let expected = info("meshes/ring/ring0.off");
+    let form = |path: &str, output: &str| {
+        place.done(&["embed", path, "-n", "20", "-o", output]);
+        fs::read(place.path(output)).unwrap()
+    };
+    let expected_form = form("meshes/ring/ring0.off", "plain.ply");
+    for path in ["meshes.zip/meshes/ring/ring0.off", "meshes.tar.gz/meshes/ring/ring0.off", "ring0.off.gz"] {
+        assert_eq!(info(path), expected, "{path}");
+        assert_eq!(form(path, "form.ply"), expected_form, "{path}");
+        place.done(&["geodesic", path, "--source", "0", "-o", "rows.npy"]);
+        place.done(&["render", path, "--size", "40", "-o", "x.png"]);
+        let compared = place.json(&["compare", path, "meshes/ring/ring0.off", "-n", "20"]);
+        let kind = compared["evidence"]["kind"].as_str().unwrap();
+        let expected = if path.ends_with(".gz") { "identical-geometry" } else { "identical-file" };
+        assert_eq!(kind, expected, "{path}");
+    }
+    let embedded = place.json(&["embed", "meshes.zip", "-n", "20", "-o", "forms", "--format", "npy"]);
+    assert_eq!(embedded["shapes"].as_array().unwrap().len(), 4);
+    assert_eq!(embedded["shapes"][0]["label"], "ball");
+    assert!(place.path("forms/ring/ring1.npy").exists());
+    let all = place.json(&["info", "meshes.tar.gz", "list.txt", "meshes"]);
+    assert_eq!(all["meshes"].as_array().unwrap().len(), 12);
+    place.refused(&["info", "meshes.zip/meshes/ring/none.off"], &["none.off", "no such member"]);
+    place.refused(
+        &["geodesic", "meshes.zip", "--source", "0", "-o", "x.npy"],
+        &["meshes.zip", "archive", "name one of them"],
+    );
+}
+
+#[test]
+fn meshes_are_converted_between_all_formats() {
+    let place = Workplace::new();
+    place.add("ring.off", &ring());
+    let expected = fs::read(place.path("ring.off")).unwrap();
+    for format in ["off", "obj", "ply", "3mf", "vert", "tri", "obj.gz", "stl", "glb"] {
+        let name = format!("copy.{format}");
+        let json = place.json(&["convert", "ring.off", &name]);
+        assert_eq!((&json["n_vertices"], &json["n_faces"]), (&160.into(), &320.into()), "{json}");
+        let back = place.done(&["convert", &name, "back.off"]);
+        if matches!(format, "stl" | "glb") {
+            // These round coordinates to 32 bits.
+            assert_eq!(place.json(&["info", "back.off"])["meshes"][0]["mesh"]["n_faces"], 320);
+        } else {
+            assert_eq!(fs::read(place.path("back.off")).unwrap(), expected, "{format}");
+        }
+        assert_eq!(
+            back.err.contains("the unit of its coordinates"),
+            matches!(format, "3mf" | "glb"),
+            "{}",
+            back.err
+        );
+    }
+    let info = place.json(&["info", "copy.glb", "copy.3mf", "copy.ply"]);
+    let units: Vec<&Value> =
+        info["meshes"].as_array().unwrap().iter().map(|mesh| &mesh["file"]["unit"]).collect();
+    assert_eq!(units, [&Value::from("meter"), &"millimeter".into(), &Value::Null]);
+    place.refused(&["convert", "ring.off", "ring.mat"], &["ring.mat", "use .off"]);
+    place.refused(&["convert", "ring.off", "none/ring.ply"], &["none", "does not exist"]);
+    place.refused(&["embed", "ring.off", "-o", "form.npy.gz"], &["form.npy.gz", "leave out .gz"]);
+}
+
+#[test]
+fn every_format_that_stores_doubles_gives_the_same_form() {
+    let place = Workplace::new();
+    place.add("ring.off", &ring());
+    place.done(&["embed", "ring.off", "-n", "30", "-o", "expected.npy"]);
+    let expected = fs::read(place.path("expected.npy")).unwrap();
+    for format in ["obj", "ply", "3mf", "vert", "off.gz", "3mf.gz"] {
+        let name = format!("copy.{format}");
+        place.done(&["convert", "ring.off", &name]);
+        place.done(&["embed", &name, "-n", "30", "-o", "form.npy"]);
+        assert!(fs::read(place.path("form.npy")).unwrap() == expected, "{format}");
+    }
+}
+
+#[test]
+fn conversion_repairs_on_request_and_converts_datasets() {
+    let place = collection();
+    place.add("two.obj", &shapes::disjoint(&[ring(), shapes::cube(0)]));
+    assert_eq!(place.json(&["convert", "two.obj", "kept.ply"])["n_vertices"], 168);
+    let repaired = place.json(&["convert", "--repair", "two.obj", "one.ply", "--max-dropped", "1"]);
+    assert_eq!(repaired["n_vertices"], 160);
+    assert!(repaired["repair"]["dropped_area_share"].as_f64().unwrap() > 0.0);
+    place.refused(&["convert", "meshes.zip", "out"], &["--output-format"]);
+    let json = place.json(&["convert", "meshes.zip", "out", "--output-format", "ply.gz"]);
+    assert_eq!(json["meshes"].as_array().unwrap().len(), 4);
+    let counts = place.json(&["info", "out"]);
+    assert_eq!(counts["meshes"].as_array().unwrap().len(), 4);
+    assert!(place.path("out/ball/ball1.ply.gz").exists());
+}
+
+/// Runs the program with these bytes as standard input.
+fn piped(place: &Workplace, input: &[u8], arguments: &[&str]) -> (i32, Vec<u8>, String) {
+    let mut child = Command::new(program())
+        .current_dir(place.path("."))
+        .args(arguments)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    // The program may refuse before it has read everything.
+    let _ = child.stdin.take().unwrap().write_all(input);
+    let output = child.wait_with_output().unwrap();
+    (output.status.code().unwrap(), output.stdout, String::from_utf8(output.stderr).unwrap())
+}
+
+#[test]
+fn format_names_the_format_of_standard_input() {
+    let place = collection();
+    place.add("ring.glb", &ring());
+    place.add("ring.off", &ring());
+    let [glb, off] = ["ring.glb", "ring.off"].map(|name| fs::read(place.path(name)).unwrap());
+    let mut gzip = GzEncoder::new(Vec::new(), Compression::default());
+    gzip.write_all(&off).unwrap();
+    let gzip = gzip.finish().unwrap();
+    for (input, format) in [(&glb, "glb"), (&off, "off"), (&gzip, "off")] {
+        let (code, out, err) = piped(&place, input, &["info", "-", "--format", format, "--json"]);
+        assert_eq!(code, 0, "{err}");
+        assert_eq!(one_object(&String::from_utf8(out).unwrap())["meshes"][0]["mesh"]["n_faces"], 320);
+    }
+    // From standard input to standard output.
+    let (code, out, err) =
+        piped(&place, &glb, &["convert", "-", "-", "--format", "glb", "--output-format", "ply"]);
+    assert_eq!(code, 0, "{err}");
+    fs::write(place.path("out.ply"), out).unwrap();
+    assert_eq!(place.json(&["info", "out.ply"])["meshes"][0]["mesh"]["n_vertices"], 160);
+    let (code, _, err) = piped(&place, &off, &["convert", "-", "-", "--format", "off"]);
+    assert!(code == 2 && err.contains("--output-format"), "{err}");
+    let (code, _, err) = piped(&place, &off, &["info", "-", "--format", "txt"]);
+    assert!(code == 2 && err.contains("`txt`") && err.contains("off"), "{err}");
+    // With --input-format, and without standard input, it is the format of forms.
+    let embed = ["embed", "-", "--input-format", "off", "--format", "npy", "-n", "20", "-o", "-"];
+    let (code, out, err) = piped(&place, &off, &embed);
+    assert!(code == 0 && out.starts_with(b"\x93NUMPY"), "{err}");
+    let (code, out, err) = piped(&place, &off, &["embed", "-", "--format", "off", "-n", "20", "-o", "-"]);
+    assert!(code == 0 && out.starts_with(b"ply"), "{err}");
+    place.refused(&["embed", "ring.off", "--format", "stl", "-o", "x"], &["stl", ".npy"]);
+    // A query from standard input.
+    place.done(&[&["index", "build", "meshes.zip", "-o", "i"], &BUILD[..]].concat());
+    let (code, out, err) = piped(&place, &off, &["search", "i", "-", "--format", "off", "--json"]);
+    assert_eq!(code, 0, "{err}");
+    assert_eq!(one_object(&String::from_utf8(out).unwrap())["results"][0]["id"], "ring/ring0");
+}
+
+#[test]
+fn exports_go_to_files_and_to_standard_output() {
+    let place = collection();
+    place.done(&[&["index", "build", "list.txt", "-o", "i"], &BUILD[..]].concat());
+    for format in ["jsonl", "parquet", "npz", "csv"] {
+        let name = format!("x.{format}");
+        place.done(&["index", "export", "i", "-o", &name]);
+        let (code, out, err) =
+            piped(&place, b"", &["index", "export", "i", "-o", "-", "--output-format", format]);
+        assert_eq!((code, out), (0, fs::read(place.path(&name)).unwrap()), "{format}: {err}");
+    }
+    assert_eq!(place.done(&["index", "export", "i"]).out, fs::read_to_string(place.path("x.jsonl")).unwrap());
+    place.refused(&["index", "export", "i", "-o", "x.xlsx"], &["x.xlsx", ".parquet"]);
+    place.refused(&["index", "export", "i", "-o", "i"], &["is the index itself"]);
+}
