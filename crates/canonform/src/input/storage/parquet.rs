@@ -1,6 +1,7 @@
 //! Parquet files with one mesh a row: the bytes of a file, and columns for its name, class and format.
 
 use std::fs::File;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use mesh::Fault;
 use mesh::io::Format;
@@ -31,6 +32,14 @@ struct Columns {
 }
 
 pub(super) fn open(file: File) -> Result<Archive, Fault> {
+    // The library has assertions about what a file states; those that are known are checked before.
+    catch_unwind(AssertUnwindSafe(|| read(file))).unwrap_or_else(|_| {
+        let found = "data that contradicts itself".to_owned();
+        Err(Fault::Syntax { expected: "an intact Parquet file", found })
+    })
+}
+
+fn read(file: File) -> Result<Archive, Fault> {
     let size = file.metadata().map_or(0, |about| about.len());
     if size == 0 {
         return Err(Fault::Empty);
@@ -143,6 +152,12 @@ fn each(
     column: usize,
     take: impl FnMut(Option<&[u8]>) -> Result<(), Fault>,
 ) -> Result<(), Fault> {
+    let about = group.metadata().column(column);
+    let start = about.dictionary_page_offset().unwrap_or_else(|| about.data_page_offset());
+    if start < 0 || about.compressed_size() < 0 {
+        let found = "a column at a negative place".to_owned();
+        return Err(Fault::Syntax { expected: "an intact Parquet file", found });
+    }
     match group.get_column_reader(column).map_err(damaged)? {
         reader @ ColumnReader::ByteArrayColumnReader(_) => {
             each_of::<ByteArrayType>(reader, group, column, |value: &ByteArray| value.data().to_vec(), take)

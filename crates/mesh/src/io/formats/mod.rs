@@ -20,7 +20,7 @@ use crate::error::{Content, Located, MeshError};
 use crate::io::facts::MeshFile;
 use crate::io::field::VertexField;
 use crate::io::limits::ReadLimits;
-use crate::io::name::{extension, inflated, with_extension};
+use crate::io::name::{extension, inflated, is_gzip, with_extension};
 use crate::io::source::{CheckStart, Source};
 use crate::tri_mesh::TriMesh;
 
@@ -154,7 +154,10 @@ impl Format {
     /// # Errors
     /// [`MeshError::UnknownFormat`].
     pub fn of(path: &Path) -> Result<&'static Self, MeshError> {
-        let extension = extension(path);
+        let extension = match extension(path) {
+            none if none.is_empty() && is_gzip(path) => "gz".to_owned(),
+            extension => extension,
+        };
         Self::named(&extension).ok_or_else(|| MeshError::UnknownFormat {
             path: path.to_path_buf(),
             extension,
