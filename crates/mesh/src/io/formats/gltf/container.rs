@@ -66,7 +66,10 @@ fn wrong(expected: &'static str, start: &[u8]) -> Located {
 }
 
 /// The JSON of a GLB file, the byte at which it begins, and the binary chunk if there is one.
-pub(super) fn split_binary(bytes: &[u8]) -> Result<(&[u8], usize, Option<&[u8]>), Located> {
+type Parts<'a> = (&'a [u8], usize, Option<&'a [u8]>);
+
+/// Splits a GLB file.
+pub(super) fn split_binary(bytes: &[u8]) -> Result<Parts<'_>, Located> {
     check_binary_start(bytes, Some(bytes.len() as u64))?;
     let length = bytes.get(8..).and_then(<[u8]>::first_chunk).map_or(0, |word| u32::from_le_bytes(*word));
     // Bytes after the stated length belong to nobody.

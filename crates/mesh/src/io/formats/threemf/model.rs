@@ -218,7 +218,7 @@ impl Parser<'_> {
                     true => "its content is encrypted".to_owned(),
                     false => format!(
                         "it requires the extension {}, which is not supported",
-                        excerpt(namespace.as_bytes())
+                        excerpt(namespace.rsplit("/3dmanufacturing/").next().unwrap_or(namespace).as_bytes())
                     ),
                 };
                 return Err(
