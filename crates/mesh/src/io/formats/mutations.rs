@@ -10,6 +10,9 @@ use crate::io::limits::ReadLimits;
 use crate::shapes;
 use crate::tri_mesh::TriMesh;
 
+/// Makes a file of bytes.
+type Wrap = fn(&[u8]) -> Vec<u8>;
+
 /// The valid files of a mesh, one of which is to be damaged.
 struct Sample {
     name: String,
@@ -17,7 +20,7 @@ struct Sample {
     files: Vec<Vec<u8>>,
     damaged: usize,
     /// Makes the file of the damaged bytes, where checksums would reveal any damage.
-    wrap: Option<fn(&[u8]) -> Vec<u8>>,
+    wrap: Option<Wrap>,
 }
 
 /// A sample of each file of each format that can be written, and of what the writers do not write.
@@ -75,7 +78,7 @@ fn samples() -> Vec<Sample> {
     for (name, files, damaged) in gltf {
         samples.push(Sample { name: name.into(), format: named("gltf"), files, damaged, wrap: None });
     }
-    let wrap: fn(&[u8]) -> Vec<u8> = super::threemf::package_of;
+    let wrap: Wrap = super::threemf::package_of;
     let files = vec![super::threemf::model_of(&mesh).into_bytes()];
     samples.push(Sample {
         name: "3mf model".into(),
