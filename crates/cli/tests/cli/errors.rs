@@ -16,13 +16,13 @@ fn place() -> Workplace {
 fn errors_name_files_that_are_not_meshes() {
     let place = place();
     fs::write(place.path("empty.off"), "").unwrap();
-    fs::write(place.path("notes.txt"), "no mesh").unwrap();
+    fs::write(place.path("notes.md"), "no mesh").unwrap();
     fs::write(place.path("garbage.obj"), "v 0 0\nf 1 2 x\n").unwrap();
     let before = place.names();
     for (file, fault, remedy) in [
         ("missing.off", "No such file", "check"),
         ("empty.off", "empty", "export it again"),
-        ("notes.txt", "unknown mesh format `.txt`", "use .off, .obj, .ply"),
+        ("notes.md", "unknown mesh format `.md`", "use .off, .obj, .ply"),
         ("garbage.obj", "line 1", ""),
     ] {
         place.refused(&["info", file], &[file, fault, remedy]);
