@@ -216,7 +216,7 @@ impl Index {
             if let Some(id) = id {
                 return search.search_shape(id, &options);
             }
-            let mesh = mesh::io::read(path)?;
+            let mesh = canonform::read_mesh(path)?;
             let content = explain.then(|| content_hash(path)).transpose()?;
             search.search_named_within(&mesh, name, content, &options, &budget)
         })?;

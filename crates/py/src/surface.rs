@@ -224,7 +224,7 @@ impl Surface {
         let options = Settings::parse(settings)?.repair()?;
         run_alone(py, None, |observer| {
             let content = content_hash(&path)?;
-            let mesh = mesh::io::read(&path)?;
+            let mesh = canonform::read_mesh(&path)?;
             let inner = canonform::Surface::within(&mesh, &options, &observer.budget())?;
             Ok(Self::of(mesh, inner, Some(content)))
         })
