@@ -79,7 +79,7 @@ fn errors_of_meshes_equal_those_of_search() {
         ("a.stl", b""),
         ("a.mat", b"MATLAB 7.3"),
         ("a.vert", b"0 0 0\n"),
-        ("a.txt", b"hello"),
+        ("a.md", b"hello"),
         ("flat.off", b"OFF\n3 1 0\n0 0 0\n0 0 0\n0 0 0\n3 0 1 2\n"),
     ] {
         std::fs::write(place.path(name), content).unwrap();
