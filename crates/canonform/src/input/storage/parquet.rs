@@ -203,11 +203,14 @@ fn each_of<T: DataType>(
 }
 
 fn damaged(error: ParquetError) -> Fault {
+    let unsupported = |what: &str| Fault::Unsupported {
+        what: format!("it uses a feature of Parquet that is not supported: {what}"),
+        remedy: "write it with Snappy compression or none",
+    };
     match error {
-        ParquetError::NYI(what) => Fault::Unsupported {
-            what: format!("it uses a feature of Parquet that is not supported: {what}"),
-            remedy: "write it with Snappy compression or none",
-        },
+        // Compression by a library that was left out.
+        ParquetError::General(what) if what.contains("Disabled feature") => unsupported(&what),
+        ParquetError::NYI(what) => unsupported(&what),
         other => Fault::Syntax { expected: "an intact Parquet file", found: other.to_string() },
     }
 }
