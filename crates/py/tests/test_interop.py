@@ -44,7 +44,7 @@ def test_meshio(cat: Shape, tmp_path: Path) -> None:
 
 
 def test_pyvista(cat: Shape) -> None:
-    pyvista = pytest.importorskip("pyvista")
+    pyvista = pytest.importorskip("pyvista", exc_type=ImportError)
     mesh = pyvista.PolyData.from_regular_faces(cat.vertices, cat.faces)
     surface = Surface(mesh)
     same(surface, cat)
@@ -71,9 +71,9 @@ def test_matplotlib(cat: Shape, tmp_path: Path) -> None:
 
 
 def test_polyscope(cat: Shape, tmp_path: Path) -> None:
-    # Drawing needs a display or EGL; registering a mesh needs neither with the mock backend. In its own process, since it cannot be
+    # Drawing needs a display or EGL; the mock backend needs neither. In its own process, since it cannot be
     # shut down.
-    pytest.importorskip("polyscope")
+    pytest.importorskip("polyscope", exc_type=ImportError)
     canonform.datasets.write([cat], tmp_path)
     code = """
         import sys, canonform, polyscope
