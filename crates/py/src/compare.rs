@@ -7,9 +7,10 @@ use pyo3::prelude::*;
 
 use crate::arrays;
 use crate::form::Form;
+use crate::record::json;
 use crate::run::{run, run_alone};
 use crate::settings::Settings;
-use crate::surface::{Surface, json};
+use crate::surface::Surface;
 
 /// The rigid motion that takes one form onto another.
 #[pyclass(frozen, module = "canonform._canonform")]

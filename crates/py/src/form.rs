@@ -12,8 +12,8 @@ use pyo3::prelude::*;
 
 use crate::arrays;
 use crate::error::{Exception, to_python};
+use crate::record::json;
 use crate::run::run_alone;
-use crate::surface::json;
 
 /// An embedding of a surface.
 #[pyclass(frozen, module = "canonform._canonform")]

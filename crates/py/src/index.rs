@@ -19,9 +19,10 @@ use serde::Serialize;
 
 use crate::arrays;
 use crate::error::{Exception, of_export, to_python, with_remedy};
+use crate::record::json;
 use crate::run::run_alone;
 use crate::settings::Settings;
-use crate::surface::{Surface, json};
+use crate::surface::Surface;
 
 /// An index that is open for searches.
 #[pyclass(frozen, module = "canonform._canonform")]

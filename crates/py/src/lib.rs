@@ -16,6 +16,7 @@ mod form;
 mod index;
 mod nystrom;
 mod picture;
+mod record;
 mod run;
 mod settings;
 mod surface;

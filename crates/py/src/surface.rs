@@ -20,6 +20,7 @@ use rayon::prelude::*;
 use crate::arrays;
 use crate::error::{Exception, to_python};
 use crate::form::Form;
+use crate::record::json;
 use crate::run::{Stopped, run, run_alone};
 use crate::settings::{Settings, distance_method};
 
@@ -423,9 +424,4 @@ pub(crate) fn write(
 ) -> PyResult<()> {
     let mesh = arrays::mesh_of(&vertices, &faces)?;
     py.detach(|| mesh::io::write(&path, &mesh)).map_err(|fault| to_python(&fault.into()))
-}
-
-/// A record as JSON.
-pub(crate) fn json(record: &impl serde::Serialize) -> String {
-    serde_json::to_string(record).unwrap_or_else(|fault| unreachable!("plain data: {fault}"))
 }
