@@ -2,8 +2,8 @@
 
 use std::io::{self, Write};
 
-use super::ExportError;
 use super::columns::{Columns, TEXTS, texts};
+use super::error::ExportError;
 use crate::{Index, Shape};
 
 pub(super) fn write(index: &Index, out: &mut dyn Write) -> Result<(), ExportError> {

@@ -2,6 +2,7 @@
 
 mod columns;
 mod csv;
+mod error;
 mod npz;
 mod parquet;
 #[cfg(test)]
@@ -12,7 +13,9 @@ use std::io::{self, BufWriter, Write};
 
 use serde::{Serialize, Serializer};
 
-use crate::{Index, IndexError, Shape};
+use crate::{Index, Shape};
+
+pub use error::ExportError;
 
 /// The first line of an export.
 #[derive(Serialize)]
@@ -43,17 +46,6 @@ impl<T: Serialize> Serialize for Named<'_, T> {
     fn serialize<S: Serializer>(&self, out: S) -> Result<S::Ok, S::Error> {
         out.collect_map(self.0.iter().map(|(name, value)| (name, value)))
     }
-}
-
-/// Errors of an export.
-#[derive(Debug, thiserror::Error)]
-pub enum ExportError {
-    /// The index cannot be read.
-    #[error(transparent)]
-    Index(#[from] IndexError),
-    /// The text cannot be written.
-    #[error("cannot write the export: {0}")]
-    Write(#[from] io::Error),
 }
 
 /// A file format for an index; [`Index::export_as`] writes it.

@@ -7,8 +7,8 @@ use zip::result::ZipError;
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipWriter};
 
-use super::ExportError;
 use super::columns::{Columns, TEXTS, signature, texts};
+use super::error::ExportError;
 use crate::{Index, Shape};
 
 pub(super) fn write(index: &Index, file: &mut File) -> Result<(), ExportError> {

@@ -12,8 +12,8 @@ use parquet::file::properties::WriterProperties;
 use parquet::file::writer::{SerializedFileWriter, SerializedRowGroupWriter};
 use parquet::schema::types::{ColumnPath, Type, TypePtr};
 
-use super::ExportError;
 use super::columns::{Columns, TEXTS, signature, texts};
+use super::error::ExportError;
 use crate::{Index, Shape};
 
 /// Shapes that are written together.

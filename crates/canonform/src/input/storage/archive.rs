@@ -8,9 +8,8 @@ use std::path::{Component, Path};
 use mesh::io::inflated_limit;
 use mesh::{Fault, MeshError};
 
+use super::container::fault;
 use super::window::Window;
-use super::zip::Zip;
-use super::{Container, fault, parquet, tar, zip};
 use crate::input::SkipKind;
 
 /// A file in an archive.
@@ -38,21 +37,18 @@ pub(in crate::input) struct Archive {
 pub(super) enum Data {
     #[default]
     Nowhere,
-    Zip(Zip),
+    Entries(Box<dyn Entries>),
     /// As they are, one after the other.
     Plain(Window),
 }
 
-impl Archive {
-    /// Reads the names of all members.
-    pub(super) fn open(path: &Path, file: File, container: Container) -> Result<Self, Fault> {
-        match container {
-            Container::Zip => zip::open(file),
-            Container::Tar => tar::open(path, file),
-            _ => parquet::open(file),
-        }
-    }
+/// Members that are decompressed one by one.
+pub(super) trait Entries: std::fmt::Debug + Send + Sync {
+    /// The content of a member.
+    fn read(&self, member: &Member) -> Result<Vec<u8>, Fault>;
+}
 
+impl Archive {
     pub(super) fn of(data: Data) -> Self {
         Self { data, ..Self::default() }
     }
@@ -92,7 +88,7 @@ impl Archive {
         })?;
         match &self.data {
             Data::Nowhere => Ok(Vec::new()),
-            Data::Zip(zip) => zip.read(member).map_err(|what| fault(path, what)),
+            Data::Entries(entries) => entries.read(member).map_err(|what| fault(path, what)),
             Data::Plain(window) => {
                 let mut bytes = Vec::new();
                 let read = window.part(member.at, member.size).read_to_end(&mut bytes);

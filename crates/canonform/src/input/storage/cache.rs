@@ -10,7 +10,8 @@ use files::{FileError, FileId};
 use mesh::{Fault, MeshError};
 
 use super::archive::Archive;
-use super::{Container, fault};
+use super::container::{Container, fault};
+use super::{parquet, tar, zip};
 
 /// What tells whether a file is the one that was opened.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -49,12 +50,21 @@ pub(super) fn open(path: &Path) -> Result<Arc<Archive>, MeshError> {
         let file = File::open(path).map_err(cannot_read)?;
         let container = Container::by_name(path).unwrap_or(Container::Zip);
         return slot
-            .get_or_init(|| Archive::open(path, file, container).map(Arc::new))
+            .get_or_init(|| members(path, file, container).map(Arc::new))
             .clone()
             .map_err(|what| fault(path, what));
     }
     match slot.get() {
         Some(archive) => archive.clone().map_err(|what| fault(path, what)),
         None => Err(fault(path, Fault::Empty)),
+    }
+}
+
+/// Reads the names of all members.
+pub(super) fn members(path: &Path, file: File, container: Container) -> Result<Archive, Fault> {
+    match container {
+        Container::Zip => zip::open(file),
+        Container::Tar => tar::open(path, file),
+        _ => parquet::open(file),
     }
 }

@@ -6,6 +6,7 @@
 
 mod archive;
 mod cache;
+mod container;
 mod list;
 mod parquet;
 mod tar;
@@ -14,48 +15,14 @@ mod zip;
 
 use std::path::{Path, PathBuf};
 
-use mesh::io::{Disk, MeshFile, Opened, ReadLimits, Source, extension, is_gzip};
-use mesh::{Fault, MeshError, Place, TriMesh};
+use mesh::io::{Disk, MeshFile, Opened, ReadLimits, Source};
+use mesh::{Fault, MeshError, TriMesh};
 
 use crate::error::Error;
 pub(super) use archive::Archive;
+pub(super) use container::Container;
+use container::fault;
 pub(super) use list::ListedPath;
-
-/// What holds several meshes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Container {
-    Folder,
-    Zip,
-    Tar,
-    Parquet,
-    List,
-}
-
-impl Container {
-    /// Judges by the extension.
-    fn by_name(path: &Path) -> Option<Self> {
-        Some(match (extension(path).as_str(), is_gzip(path)) {
-            ("zip", false) => Self::Zip,
-            ("tar", _) | ("tgz", false) => Self::Tar,
-            ("parquet", false) => Self::Parquet,
-            ("txt" | "list", false) => Self::List,
-            _ => return None,
-        })
-    }
-
-    /// What a path leads to; `None` if that is no container.
-    pub(super) fn of(path: &Path) -> Option<Self> {
-        match Self::by_name(path) {
-            _ if path.is_dir() => Some(Self::Folder),
-            Some(container) if path.is_file() => Some(container),
-            _ => None,
-        }
-    }
-
-    fn is_archive(self) -> bool {
-        matches!(self, Self::Zip | Self::Tar | Self::Parquet)
-    }
-}
 
 /// Whether a path leads to a dataset: a folder, an archive (`.zip`, `.tar`, `.tar.gz`, `.tgz`), a `.parquet` file with a
 /// column of bytes, or a list of paths (`.txt`, `.list`).
@@ -149,11 +116,6 @@ pub(super) fn open_archive(path: &Path) -> Result<std::sync::Arc<Archive>, Error
 /// The paths in a list.
 pub(super) fn read_list(path: &Path) -> Result<Vec<ListedPath>, Error> {
     list::read(path)
-}
-
-/// The error that a file cannot be read faithfully.
-fn fault(path: &Path, fault: Fault) -> MeshError {
-    MeshError::File { path: path.to_owned(), place: Place::File, fault }
 }
 
 #[cfg(test)]

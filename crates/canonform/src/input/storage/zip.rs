@@ -8,7 +8,7 @@ use mesh::io::inflated_limit;
 use zip::ZipArchive;
 use zip::result::ZipError;
 
-use super::archive::{Archive, Data, Member};
+use super::archive::{Archive, Data, Entries, Member};
 use super::window::Window;
 use crate::input::SkipKind;
 
@@ -24,7 +24,7 @@ pub(super) fn open(file: File) -> Result<Archive, Fault> {
     }
     let zip = ZipArchive::new(window).map_err(damaged)?;
     let directory = zip.metadata();
-    let mut archive = Archive::of(Data::Zip(Zip(zip)));
+    let mut archive = Archive::of(Data::Entries(Box::new(Zip(zip))));
     for at in 0..directory.len() {
         let entry = directory.entry(at).map_err(damaged)?;
         // Many programs write UTF-8 without saying so.
@@ -48,9 +48,9 @@ pub(super) fn open(file: File) -> Result<Archive, Fault> {
     Ok(archive)
 }
 
-impl Zip {
+impl Entries for Zip {
     /// Decompresses a member, whose checksum must be right.
-    pub(super) fn read(&self, member: &Member) -> Result<Vec<u8>, Fault> {
+    fn read(&self, member: &Member) -> Result<Vec<u8>, Fault> {
         let mut archive = self.0.clone();
         let at = member.at as usize;
         let entry = archive.by_index_data(at).map_err(damaged)?;

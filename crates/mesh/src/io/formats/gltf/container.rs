@@ -14,7 +14,7 @@ const HEADER: usize = 12;
 const CHUNK_HEADER: usize = 8;
 
 /// Checks that a file is text that begins like JSON.
-pub(in super::super) fn check_start(start: &[u8], _: Option<u64>) -> Result<(), Located> {
+pub(in crate::io::formats) fn check_start(start: &[u8], _: Option<u64>) -> Result<(), Located> {
     let text = start.strip_prefix(b"\xef\xbb\xbf").unwrap_or(start).trim_ascii_start();
     match text.first() {
         None | Some(b'{') => check_is_text(start, "a glTF file"),
@@ -28,7 +28,7 @@ pub(in super::super) fn check_start(start: &[u8], _: Option<u64>) -> Result<(), 
 }
 
 /// Checks the header of a GLB file, and that the file has the length it states.
-pub(in super::super) fn check_binary_start(start: &[u8], size: Option<u64>) -> Result<(), Located> {
+pub(in crate::io::formats) fn check_binary_start(start: &[u8], size: Option<u64>) -> Result<(), Located> {
     if start.trim_ascii().is_empty() {
         return Err(Fault::Empty.whole());
     }

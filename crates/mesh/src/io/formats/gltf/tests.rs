@@ -8,7 +8,7 @@ use crate::shapes;
 use crate::tri_mesh::TriMesh;
 
 /// Files with dense, sparse, strided and quantized accessors, strips, fans and nodes, and which of them to damage.
-pub(in super::super) fn samples(mesh: &TriMesh) -> Vec<(&'static str, Vec<Vec<u8>>, usize)> {
+pub(in crate::io::formats) fn samples(mesh: &TriMesh) -> Vec<(&'static str, Vec<Vec<u8>>, usize)> {
     let rich = Rich::new().json("data.bin");
     let plain = as_text(mesh);
     let data = Rich::new().data;

@@ -19,7 +19,7 @@ const MODEL_TYPE: &str = "/3dmodel";
 const USUAL: &str = "3D/3dmodel.model";
 
 /// Checks that a file begins like a zip archive.
-pub(in super::super) fn check_start(start: &[u8], _: Option<u64>) -> Result<(), Located> {
+pub(in crate::io::formats) fn check_start(start: &[u8], _: Option<u64>) -> Result<(), Located> {
     match start {
         [b'P', b'K', 3 | 5, ..] => Ok(()),
         _ if start.trim_ascii().is_empty() => Err(Fault::Empty.whole()),

@@ -19,7 +19,7 @@ fn package(parts: &[(&str, &[u8])]) -> Vec<u8> {
 }
 
 /// A package with this model in the usual place.
-pub(in super::super) fn package_of(model: &[u8]) -> Vec<u8> {
+pub(in crate::io::formats) fn package_of(model: &[u8]) -> Vec<u8> {
     package(&[("3D/3dmodel.model", model)])
 }
 
@@ -42,7 +42,7 @@ const HEAD: &str = "<?xml version=\"1.0\"?>\n<model unit=\"inch\" requiredextens
     xmlns:p=\"http://schemas.microsoft.com/3dmanufacturing/production/2015/06\">";
 
 /// A model with an object, a component and a moved item, which add up to the mesh.
-pub(in super::super) fn model_of(mesh: &TriMesh) -> String {
+pub(in crate::io::formats) fn model_of(mesh: &TriMesh) -> String {
     format!(
         "{HEAD}<resources><object id=\"1\">{}</object><object id=\"2\"><components><component objectid=\"1\" \
          transform=\"1 0 0 0 1 0 0 0 1 0 0 1\"/></components></object></resources>\
