@@ -4,7 +4,7 @@
 //!
 //! | block | what is done |
 //! |---|---|
-//! | ```` ```console ```` | every line that begins with `$ ` is run; what it prints must be what the block shows ([`matches`]) |
+//! | ```` ```console ```` | every line that begins with `$ ` is run; what it prints must be what the block shows ([`matches()`]) |
 //! | ```` ```sh ```` | run as one script; its output is not shown |
 //! | ```` ```sh,norun ```` | not run, because it installs something or needs what a test does not have; checked by words |
 //! | ```` ```rust ```` | compiled and run by rustdoc, as part of this crate |
