@@ -22,12 +22,13 @@ if [ "${1:-}" = --find ]; then
     exit
 fi
 
-# The package is built with the profile of the Rust tests, so that what they compiled is not compiled again.
+# The package is built with the profile of the Rust tests, so that what they compiled need not be compiled again.
 target=$(realpath -m "${CARGO_TARGET_DIR:-../../target}")
 environment=$target/python
 test -x "$environment/bin/python" || "$python" -m venv "$environment"
 "$environment/bin/pip" install --quiet --disable-pip-version-check 'maturin>=1.16,<2'
 export VIRTUAL_ENV=$environment CARGO_TARGET_DIR=$target
-cargo build --locked -p canonform-cli
+# CI names the program that the Rust tests built: building it alone would compile half of its dependencies again.
+test -n "${CANONFORM_PROGRAM:-}" || cargo build --locked -p canonform-cli
 "$environment/bin/maturin" develop --quiet --locked --profile dev --extras test
 exec "$environment/bin/python" -m pytest "$@"
