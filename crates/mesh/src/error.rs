@@ -5,6 +5,9 @@ use std::path::{Path, PathBuf};
 
 use surface::VertexId;
 
+/// Fewest different points that can become a surface.
+pub(crate) const FEWEST_POINTS: usize = 12;
+
 /// Why a mesh could not be read, written or repaired. The message names the file, the place, the fault and a remedy.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -145,6 +148,24 @@ pub enum MeshError {
         n_faces: usize,
         /// Faces with a repeated vertex or with two corners in the same position.
         degenerate: usize,
+    },
+
+    /// Too few points without faces.
+    #[error("{n_points} different points without faces; a surface needs faces, or at least {least} points")]
+    TooFewPoints {
+        /// Number of different points.
+        n_points: usize,
+        /// The fewest that are triangulated.
+        least: usize,
+    },
+
+    /// Points without faces that are not spread over a surface.
+    #[error(
+        "no two of the {n_points} points agree on a triangle; they do not lie on a surface, or are too sparse"
+    )]
+    NoSurface {
+        /// Number of points.
+        n_points: usize,
     },
 
     /// The mesh has several components and the policy is [`ComponentPolicy::Error`](crate::ComponentPolicy::Error).
@@ -306,8 +327,11 @@ pub enum Fault {
         corners: usize,
     },
 
-    /// A file without faces.
-    #[error("the file has {n_vertices} vertices but no faces; triangulate the points first")]
+    /// A file without faces, and with too few vertices for a point cloud.
+    #[error(
+        "the file has {n_vertices} vertices but no faces; a surface needs faces, or at least {least} points",
+        least = FEWEST_POINTS
+    )]
     NoFaces {
         /// Number of vertices.
         n_vertices: usize,

@@ -8,6 +8,7 @@
 //! * [`repair()`] removes defects that algorithms cannot handle, as [`RepairOptions`] say, and reports every change.
 //! * [`cut_shortcuts`] separates surfaces that touch and were welded.
 //! * [`without_noise`] smooths noisy meshes, [`fill_holes`] closes small holes, [`refine()`] splits long edges.
+//! * [`triangulate_points`] makes a surface of a point cloud; [`repair()`] does so for a mesh without faces.
 //! * [`EdgeGraph`] finds shortest paths along edges.
 //! * [`shapes`] has small analytic surfaces for tests, benches and documentation.
 //!
@@ -40,6 +41,7 @@ mod holes;
 pub mod io;
 mod noise;
 mod orientation;
+mod points;
 mod refine;
 mod repair;
 pub mod shapes;
@@ -52,6 +54,7 @@ pub use error::{Fault, MeshError, Place};
 pub use holes::fill_holes;
 pub use noise::{is_noisy, without_noise};
 pub use orientation::orient_consistently;
+pub use points::{PointsReport, TriangulatedPoints, triangulate_points};
 pub use refine::{Refined, refine};
 pub use repair::{
     ComponentPolicy, Orient, RepairOptions, RepairReport, Repaired, Weld, repair, repair_and_measure,

@@ -221,7 +221,10 @@ fn errors_name_file_place_fault_and_remedy() {
 
 #[test]
 fn empty_and_foreign_files_are_errors_in_every_format() {
-    for name in ["a.off", "a.obj", "a.ply", "a.stl", "a.mat", "a.glb", "a.gltf", "a.3mf", "a.tri"] {
+    for name in [
+        "a.off", "a.obj", "a.ply", "a.stl", "a.mat", "a.glb", "a.gltf", "a.3mf", "a.xyz", "a.pts", "a.las",
+        "a.tri",
+    ] {
         if name != "a.tri" {
             assert_eq!(fault_of(name, b""), Fault::Empty, "{name}");
             assert_eq!(fault_of(name, b" \n\t\r\n"), Fault::Empty, "{name}");
@@ -275,6 +278,9 @@ fn a_file_of_zeros_is_refused_by_its_start() {
         ("a.gltf", ""),
         ("b.gltf", "{"),
         ("a.3mf", ""),
+        ("a.xyz", "0 0 0\n"),
+        ("a.las", ""),
+        ("b.las", "LASF"),
         ("half.tri", "1 2 3\n"),
     ] {
         let path = folder.path().join(name);
@@ -324,7 +330,7 @@ fn a_stream_reads_like_a_file_within_its_limits() {
         assert!(read_within(&path, &ReadLimits::of_vertices(2561)).is_err());
     }
     // Endless streams end with an error.
-    for extension in ["off", "obj", "ply", "stl", "mat", "glb", "gltf", "3mf"] {
+    for extension in ["off", "obj", "ply", "stl", "mat", "glb", "gltf", "3mf", "xyz", "pts", "las"] {
         let mut zeros = std::io::repeat(0);
         let format = Format::named(extension).unwrap();
         assert!(read_from(name, &mut zeros, format, &ReadLimits::default()).is_err(), "{extension}");

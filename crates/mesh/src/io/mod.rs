@@ -1,9 +1,10 @@
-//! Mesh files: OFF, OBJ, PLY, STL, MATLAB `.mat`, TOSCA's `.vert`/`.tri` pairs, glTF, GLB and 3MF.
+//! Mesh files: OFF, OBJ, PLY, STL, MATLAB `.mat`, TOSCA's `.vert`/`.tri` pairs, glTF, GLB and 3MF. Point clouds: the same
+//! without faces, XYZ, PTS and LAS.
 //!
 //! The extension determines the format, in upper or lower case; [`FORMATS`] is the table of them. Any file may be
 //! compressed, as `cat.obj.gz`. Vertices keep the order of the file, whether a face uses them or not. Polygons are
 //! triangulated: quadrilaterals along the better diagonal, larger ones as fans, so split concave polygons of five or more
-//! corners beforehand. Other content is ignored. A file that cannot be read faithfully is a [`MeshError`] that names the
+//! corners beforehand. A file of vertices without faces is a point cloud. Other content is ignored. A file that cannot be read faithfully is a [`MeshError`] that names the
 //! file, the place, the fault and a remedy. Readers never panic and reserve no more memory than the size of the file
 //! justifies.
 //!
@@ -78,7 +79,7 @@ pub fn files_in(path: &Path, source: &dyn Source) -> Vec<PathBuf> {
 /// Reads a mesh; a `.vert`/`.tri` pair by either name.
 ///
 /// # Errors
-/// [`MeshError::Io`] if a file cannot be opened, [`MeshError::File`] if it is not a mesh with at least one face
+/// [`MeshError::Io`] if a file cannot be opened, [`MeshError::File`] if it is neither a mesh nor a point cloud
 /// ([`Fault`] lists what can be wrong with it), [`MeshError::UnknownFormat`] if the extension is unknown.
 ///
 /// ```

@@ -4,7 +4,7 @@ use nalgebra::{Matrix4, Point3};
 use surface::VertexId;
 
 use super::limits::ReadLimits;
-use crate::error::{Fault, Located};
+use crate::error::{FEWEST_POINTS, Fault, Located};
 use crate::tri_mesh::TriMesh;
 
 /// Triangulates a polygon whose corners are in range and appends the triangles to `faces`.
@@ -87,13 +87,13 @@ pub(super) fn check_copies(items: u64, n_bytes: u64) -> Result<(), Fault> {
     }
 }
 
-/// The mesh, if it has a face and is within the limits.
+/// The mesh, if it has a face or enough vertices for a point cloud, and is within the limits.
 pub(super) fn finish(
     positions: Vec<Point3<f64>>,
     faces: Vec<[VertexId; 3]>,
     limits: &ReadLimits,
 ) -> Result<TriMesh, Located> {
-    if faces.is_empty() {
+    if faces.is_empty() && positions.len() < FEWEST_POINTS {
         return Err(Fault::NoFaces { n_vertices: positions.len() }.whole());
     }
     limits.check(positions.len() as u64, faces.len() as u64).map_err(Fault::whole)?;

@@ -16,6 +16,7 @@ use surface::{Components, DisjointSets, FaceId, IntrinsicMesh, Link, Topology, V
 use crate::error::MeshError;
 use crate::face_set::{check_input, remove_degenerate, remove_duplicates};
 use crate::orientation::orient_consistently;
+use crate::points::triangulate_points;
 use crate::tri_mesh::TriMesh;
 
 /// A repaired mesh and its relation to the input.
@@ -52,7 +53,8 @@ const MAX_PASSES: usize = 16;
 /// Always removed: degenerate and duplicate faces, edges of length zero (or below 1e-153 of the size of the mesh)
 /// together with their faces, and vertices without a face. [`RepairOptions`] select welding, orientation and the treatment of components.
 /// Faces without area stay if their corners are in three different positions, and so do non-manifold edges
-/// and vertices. A mesh without defects is returned unchanged.
+/// and vertices. A mesh without defects is returned unchanged. One without faces is a point cloud, whose surface is
+/// [found](triangulate_points) first.
 ///
 /// Measures in units of a power of two near the size of the mesh, so that scale changes nothing else. Linear time,
 /// except for sorting the vertices to weld and for bridges, about `O(n log n)` in the number of vertices for each
@@ -60,7 +62,8 @@ const MAX_PASSES: usize = 16;
 ///
 /// # Errors
 /// [`MeshError::FaceOutOfRange`], [`MeshError::NonFinitePosition`] and [`MeshError::OutOfRange`] for a mesh that
-/// no algorithm can use, [`MeshError::NoUsableFace`] if no face is left, and [`MeshError::Disconnected`] if
+/// no algorithm can use, [`MeshError::NoUsableFace`] if no face is left, [`MeshError::TooFewPoints`] and
+/// [`MeshError::NoSurface`] for points without a surface, and [`MeshError::Disconnected`] if
 /// there are several components and the policy is [`ComponentPolicy::Error`].
 ///
 /// ```
@@ -101,6 +104,9 @@ pub fn repair_and_measure(
 ) -> Result<(Repaired, IntrinsicMesh), MeshError> {
     check_input(mesh)?;
     let unit = checked_unit(mesh)?;
+    if mesh.faces.is_empty() && mesh.n_vertices() > 0 {
+        return surface_of_points(mesh, options, budget);
+    }
     let scaled: Vec<Point3<f64>> = mesh.positions.iter().map(|p| p / unit).collect();
     let n_input = mesh.n_vertices();
     let mut report =
@@ -183,6 +189,28 @@ pub fn repair_and_measure(
     };
     let surface = surface.with_links(links.clone());
     Ok((Repaired { mesh: repaired, links, input_to_repaired: compact.input_to_repaired, report }, surface))
+}
+
+/// The surface through the vertices of a mesh without faces, repaired. The vertex that stands for a point is its vertex.
+fn surface_of_points(
+    cloud: &TriMesh,
+    options: &RepairOptions,
+    budget: &Budget,
+) -> Result<(Repaired, IntrinsicMesh), MeshError> {
+    let found = triangulate_points(&cloud.positions, budget)?;
+    let (mut repaired, surface) = repair_and_measure(&found.mesh, options, budget)?;
+    let (to_repaired, report) = (&mut repaired.input_to_repaired, &mut repaired.report);
+    for (point, vertex) in found.vertex.iter().enumerate() {
+        if let Some(vertex) = vertex.filter(|v| v.index() != point) {
+            to_repaired[point] = to_repaired[vertex.index()];
+            report.unreferenced_vertices -= 1;
+            report.dropped_component_vertices += usize::from(to_repaired[point].is_none());
+        }
+    }
+    report.dropped_vertices.retain(|v| to_repaired[v.index()].is_none());
+    report.input_faces = 0;
+    report.points = Some(found.report);
+    Ok((repaired, surface))
 }
 
 /// The surface of faces that are not degenerate, over the vertices of a mesh, without duplicate faces.

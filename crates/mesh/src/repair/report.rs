@@ -4,6 +4,8 @@ use serde::Serialize;
 
 use surface::{Link, VertexId};
 
+use crate::points::PointsReport;
+
 /// All changes that [`repair()`](crate::repair()) made to a mesh.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct RepairReport {
@@ -15,6 +17,10 @@ pub struct RepairReport {
     pub output_vertices: usize,
     /// Faces after.
     pub output_faces: usize,
+
+    /// How points were joined by faces; `None` if the input has faces.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub points: Option<PointsReport>,
 
     /// Faces removed because of a repeated vertex.
     pub degenerate_faces: usize,
@@ -79,11 +85,12 @@ impl RepairReport {
             (self.unreferenced_vertices, VERTICES, "without a face dropped"),
             (self.flipped_faces, FACES, "flipped"),
         ];
-        let mut lines: Vec<String> = counts
+        let mut lines: Vec<String> = self.points.iter().map(PointsReport::summary).collect();
+        let counts = counts
             .into_iter()
             .filter(|(count, ..)| *count > 0)
-            .map(|(count, noun, what)| format!("{} {what}", counted(count, noun)))
-            .collect();
+            .map(|(count, noun, what)| format!("{} {what}", counted(count, noun)));
+        lines.extend(counts);
         if self.near_welded_vertices > 0 {
             lines.push(format!(
                 "{} merged with another across a gap of up to {:.3e} (tolerance {:.3e})",

@@ -1,6 +1,7 @@
 //! The mesh formats, one module each, and the table of their names, extensions and abilities.
 
 mod gltf;
+mod las;
 mod mat;
 #[cfg(test)]
 mod mutations;
@@ -10,6 +11,7 @@ mod ply;
 mod stl;
 mod threemf;
 mod tosca;
+mod xyz;
 
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -63,7 +65,7 @@ pub(super) enum Precision {
 }
 
 /// All formats that can be read.
-pub static FORMATS: [Format; 9] = [
+pub static FORMATS: [Format; 12] = [
     Format {
         write: &[off::write],
         write_field: Some(off::write_field),
@@ -124,6 +126,9 @@ pub static FORMATS: [Format; 9] = [
             threemf::parse(files[0], limits)
         })
     },
+    read_only("XYZ", &["xyz"], &[xyz::check_start], |files, limits| Ok(xyz::parse(files[0], limits)?.into())),
+    read_only("PTS", &["pts"], &[xyz::check_start], |files, limits| Ok(xyz::parse(files[0], limits)?.into())),
+    read_only("LAS", &["las"], &[las::check_start], |files, limits| Ok(las::parse(files[0], limits)?.into())),
 ];
 
 /// A format with 64-bit coordinates that cannot be written.
@@ -270,7 +275,7 @@ mod tests {
         assert_eq!(or_list(writable(Content::Mesh)), ".off, .obj, .ply, .stl, .vert, .glb or .3mf");
         assert_eq!(
             mesh_files(),
-            "a .off, .obj, .ply, .stl, .mat, .glb, .gltf or .3mf file, or a .vert with its .tri"
+            "a .off, .obj, .ply, .stl, .mat, .glb, .gltf, .3mf, .xyz, .pts or .las file, or a .vert with its .tri"
         );
     }
 }

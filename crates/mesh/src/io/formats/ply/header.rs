@@ -1,6 +1,6 @@
 //! The header of a PLY file: which numbers follow, and how they are stored.
 
-use crate::error::{Fault, Located};
+use crate::error::{FEWEST_POINTS, Fault, Located};
 use crate::io::binary::{ByteOrder, Scalar};
 use crate::io::limits::ReadLimits;
 use crate::io::text::{Lines, parse_number};
@@ -86,18 +86,22 @@ impl Header {
             return unsupported("the header declares no element `vertex`");
         };
         let vertex = &self.elements[vertex_at];
-        let Some(face_at) = position_of("face") else {
+        let face_at = position_of("face");
+        let n_faces = face_at.map_or(0, |at| self.elements[at].count);
+        limits.check(vertex.count, n_faces)?;
+        if n_faces == 0 && position_of("tristrips").is_some() {
+            return unsupported("the faces are strips of triangles");
+        }
+        if n_faces == 0 && vertex.count < FEWEST_POINTS as u64 {
             return Err(Fault::NoFaces { n_vertices: vertex.count as usize });
-        };
-        let face = &self.elements[face_at];
-        limits.check(vertex.count, face.count)?;
-        if face_at < vertex_at {
+        }
+        if face_at.is_some_and(|face_at| face_at < vertex_at) {
             return unsupported("the faces come before the vertices");
         }
         if (0..3).any(|axis| !vertex.properties.iter().any(|p| p.axis() == Some(axis))) {
             return unsupported("the vertices lack one of the properties `x y z`");
         }
-        if face.corner_list().is_none() {
+        if n_faces > 0 && face_at.is_some_and(|at| self.elements[at].corner_list().is_none()) {
             return unsupported("the faces lack a list of integers `vertex_indices`");
         }
 

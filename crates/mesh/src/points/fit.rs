@@ -1,0 +1,112 @@
+//! Patches: quadrics over planes, fitted to points.
+
+use nalgebra::{Matrix3, Matrix6, Point3, Vector3, Vector6};
+
+/// A smooth patch near a place: a height over a plane.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Patch {
+    /// The place, moved along the normal of the plane onto the patch.
+    pub(super) foot: Point3<f64>,
+    /// Weighted root mean square height of the points over the patch, corrected for the degrees of freedom.
+    pub(super) residual: f64,
+}
+
+/// Orthonormal axes of a tangent plane, and its normal.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Frame {
+    pub(super) u: Vector3<f64>,
+    pub(super) v: Vector3<f64>,
+    pub(super) normal: Vector3<f64>,
+}
+
+impl Frame {
+    /// The frame whose normal is the direction in which weighted points spread least.
+    pub(super) fn of(points: &[(Point3<f64>, f64)]) -> Self {
+        let total: f64 = points.iter().map(|(_, w)| w).sum();
+        let mean = points.iter().map(|(p, w)| p.coords * *w).sum::<Vector3<f64>>() / total;
+        let mut spread = Matrix3::zeros();
+        for (p, w) in points {
+            let d = p.coords - mean;
+            spread += d * d.transpose() * *w;
+        }
+        let axes = spread.symmetric_eigen();
+        let least = axes.eigenvalues.imin();
+        Self::with_normal(axes.eigenvectors.column(least).into_owned())
+    }
+
+    /// A frame with this normal, which is turned so that equal planes have equal frames.
+    pub(super) fn with_normal(normal: Vector3<f64>) -> Self {
+        let normal = normal.try_normalize(0.0).unwrap_or_else(Vector3::z);
+        let axis = Vector3::ith(normal.iamin(), 1.0);
+        let u = normal.cross(&axis).normalize();
+        Self { u, v: normal.cross(&u), normal }
+    }
+
+    /// Coordinates in the plane, and height over it.
+    pub(super) fn coordinates(&self, d: &Vector3<f64>) -> [f64; 3] {
+        [self.u.dot(d), self.v.dot(d), self.normal.dot(d)]
+    }
+}
+
+/// Rounds in which points that are far from the patch lose weight.
+const ROUNDS: usize = 3;
+
+/// The patch at a place, fitted to points that are sorted by distance. Points near the place count more, and those farther from
+/// the patch than three times the residual of most of them hardly count: they belong to other parts of the surface.
+/// `None` for fewer than seven points.
+pub(super) fn patch(place: &Point3<f64>, near: &[Point3<f64>]) -> Option<Patch> {
+    let n = near.len();
+    if n < 7 {
+        return None;
+    }
+    let radius = (near[n - 1] - place).norm();
+    if radius <= 0.0 {
+        return None;
+    }
+    // A Gaussian that has fallen to exp(-2) at the farthest point.
+    let by_distance = |p: &Point3<f64>| (-2.0 * ((p - place).norm() / radius).powi(2)).exp();
+    let mut weighted: Vec<(Point3<f64>, f64)> = near.iter().map(|p| (*p, by_distance(p))).collect();
+    let frame = Frame::of(&weighted);
+    let rows: Vec<([f64; 6], f64, f64)> = weighted
+        .drain(..)
+        .map(|(p, w)| {
+            let [u, v, h] = frame.coordinates(&((p - place) / radius));
+            ([1.0, u, v, u * u, u * v, v * v], h, w)
+        })
+        .collect();
+    let mut trust = vec![1.0; n];
+    let mut found = None;
+    for _ in 0..ROUNDS {
+        let mut normal = Matrix6::zeros();
+        let mut right = Vector6::zeros();
+        for ((row, h, w), t) in rows.iter().zip(&trust) {
+            let row = Vector6::from(*row);
+            normal += row * row.transpose() * (w * t);
+            right += row * (h * w * t);
+        }
+        // Keeps the fit to few or aligned points bounded: their heights are those of a plane.
+        let slight = 1e-6 * normal.trace();
+        for i in 0..6 {
+            normal[(i, i)] += slight;
+        }
+        let Some(solver) = normal.cholesky() else { break };
+        let c = solver.solve(&right);
+        let gap = |row: &[f64; 6], h: f64| h - Vector6::from(*row).dot(&c);
+        let mut gaps: Vec<f64> = rows.iter().map(|(row, h, _)| gap(row, *h).abs()).collect();
+        let (mut sum, mut total) = (0.0, 0.0);
+        for ((row, h, w), t) in rows.iter().zip(&trust) {
+            sum += w * t * gap(row, *h).powi(2);
+            total += w * t;
+        }
+        let freedom = n as f64 / (n as f64 - 6.0);
+        found = Some((c[0], (sum / total * freedom).sqrt()));
+        let (_, middle, _) = gaps.select_nth_unstable_by(n / 2, f64::total_cmp);
+        // The median of the absolute value of a normal deviate is 0.67 of its standard deviation.
+        let limit = 3.0 * (*middle / 0.6745).max(1e-9);
+        for ((row, h, _), t) in rows.iter().zip(&mut trust) {
+            *t = (1.0 + (gap(row, *h) / limit).powi(2)).powi(-2);
+        }
+    }
+    let (height, residual) = found?;
+    Some(Patch { foot: place + frame.normal * (height * radius), residual: residual * radius })
+}

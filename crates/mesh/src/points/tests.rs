@@ -1,0 +1,157 @@
+use nalgebra::Vector3;
+
+use super::*;
+use crate::{RepairOptions, repair, shapes, validate};
+
+fn triangulated(points: &[Point3<f64>]) -> TriangulatedPoints {
+    triangulate_points(points, &Budget::unlimited()).unwrap()
+}
+
+/// Random numbers, uniform in -0.5..0.5.
+fn uniform() -> impl FnMut() -> f64 {
+    let mut state = 1_u64;
+    move || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
+    }
+}
+
+/// Random points of the unit sphere, each coordinate moved by noise of this standard deviation.
+fn ball(n: usize, deviation: f64) -> Vec<Point3<f64>> {
+    let mut draw = uniform();
+    let mut points = Vec::new();
+    while points.len() < n {
+        let d = Vector3::from([(); 3].map(|()| 2.0 * draw()));
+        if (0.1..1.0).contains(&d.norm()) {
+            // The variance of a uniform number is 1/12.
+            let noise = Vector3::from([(); 3].map(|()| draw() * 12f64.sqrt()));
+            points.push(Point3::from(d.normalize() + noise * deviation));
+        }
+    }
+    points
+}
+
+/// Root mean square distance from the unit sphere.
+fn roughness(mesh: &TriMesh) -> f64 {
+    let sq = mesh.positions.iter().map(|p| (p.coords.norm() - 1.0).powi(2));
+    (sq.sum::<f64>() / mesh.n_vertices() as f64).sqrt()
+}
+
+const SPHERE: f64 = 4.0 * std::f64::consts::PI;
+
+#[test]
+fn random_points_of_a_sphere_become_a_closed_sphere() {
+    let found = triangulated(&ball(3000, 0.0));
+    let report = validate(&found.mesh);
+    assert_eq!((report.n_components, report.n_boundary_loops, report.genus), (1, 0, Some(0)), "{report:?}");
+    assert_eq!((report.non_manifold_edges, report.flipped_faces), (0, 0), "{report:?}");
+    assert!((found.mesh.area() / SPHERE - 1.0).abs() < 0.01, "{}", found.mesh.area());
+    assert_eq!(found.report.neighbors, 0, "without noise points stay where they are");
+    assert!((found.report.spacing - (SPHERE / 3000.0).sqrt()).abs() < 0.02, "{:?}", found.report);
+}
+
+#[test]
+fn noise_is_measured_and_smoothed() {
+    for (n, noise) in [(4000, 0.02), (4000, 0.05), (20_000, 0.05)] {
+        let points = ball(n, noise);
+        let found = triangulated(&points);
+        let before = roughness(&TriMesh { positions: points, faces: Vec::new() });
+        let after = roughness(&found.mesh);
+        assert!(after < 0.5 * before, "{n}, {noise}: {after} of {before}");
+        assert!((found.mesh.area() / SPHERE - 1.0).abs() < 0.03, "{n}, {noise}: {}", found.mesh.area());
+        assert!((found.report.noise / noise - 1.0).abs() < 0.4, "{n}, {noise}: {:?}", found.report);
+        let report = validate(&found.mesh);
+        assert!(report.n_components == 1 && report.non_manifold_edges == 0, "{n}, {noise}: {report:?}");
+        assert!(found.report.replaced_points + found.report.outliers < n / 20, "{:?}", found.report);
+    }
+}
+
+#[test]
+fn boundaries_stay_open_and_sheets_stay_apart() {
+    let sheet = shapes::jittered_grid(30, 20, 0.1, 0.2, 5);
+    let mut above = sheet.clone();
+    above.positions.iter_mut().for_each(|p| p.z += 0.5);
+    let both = shapes::disjoint(&[sheet.clone(), above]);
+    let found = triangulated(&both.positions);
+    let report = validate(&found.mesh);
+    assert_eq!((report.n_components, report.n_boundary_loops), (2, 2), "{report:?}");
+    assert!((found.mesh.area() / both.area() - 1.0).abs() < 0.03, "{} of {}", found.mesh.area(), both.area());
+}
+
+#[test]
+fn order_and_scale_change_nothing() {
+    let points = ball(800, 0.01);
+    let mut faces = triangulated(&points).mesh.faces;
+    faces.iter_mut().for_each(|face| face.sort_unstable());
+    faces.sort_unstable();
+    let scaled: Vec<_> = points.iter().map(|p| p * 1024.0).collect();
+    let mut same = triangulated(&scaled).mesh.faces;
+    same.iter_mut().for_each(|face| face.sort_unstable());
+    same.sort_unstable();
+    assert_eq!(faces, same);
+    let reversed: Vec<_> = points.iter().rev().copied().collect();
+    let mut same = triangulated(&reversed).mesh.faces;
+    same.iter_mut().for_each(|face| {
+        *face = face.map(|v| VertexId::from(points.len() - 1 - v.index()));
+        face.sort_unstable();
+    });
+    same.sort_unstable();
+    let common = same.iter().filter(|face| faces.binary_search(face).is_ok()).count();
+    assert!(common as f64 > 0.98 * faces.len() as f64, "{common} of {}", faces.len());
+}
+
+#[test]
+fn copies_share_a_vertex_and_outliers_are_dropped() {
+    let mut points = ball(1000, 0.0);
+    points.extend_from_within(..100);
+    points.push(Point3::new(0.0, 0.0, 40.0));
+    let repaired =
+        repair(&TriMesh { positions: points, faces: Vec::new() }, &RepairOptions::default()).unwrap();
+    let found = repaired.report.points.unwrap();
+    assert_eq!((found.n_points, found.outliers), (1101, 1));
+    assert!(found.replaced_points >= 100, "{found:?}");
+    for copy in 0..100 {
+        assert_eq!(repaired.input_to_repaired[1000 + copy], repaired.input_to_repaired[copy]);
+    }
+    assert_eq!(repaired.report.dropped_vertices, [VertexId(1100)]);
+    assert_eq!((repaired.report.input_faces, repaired.report.unreferenced_vertices), (0, 1));
+    let lines = repaired.report.summary();
+    assert!(lines[0].starts_with("1101 points without faces joined by "), "{lines:?}");
+    assert!(lines[0].ends_with("1 far from the others left out"), "{lines:?}");
+}
+
+#[test]
+fn points_without_a_surface_are_errors() {
+    let of = |points: &[Point3<f64>]| triangulate_points(points, &Budget::unlimited()).unwrap_err();
+    let line: Vec<_> = (0..40).map(|i| Point3::new(f64::from(i), 2.0, 3.0)).collect();
+    assert!(matches!(of(&line), MeshError::NoSurface { n_points: 40 }), "{:?}", of(&line));
+    let few = [Point3::origin(); 40];
+    assert!(matches!(of(&few), MeshError::TooFewPoints { n_points: 1, .. }));
+    assert!(matches!(of(&[]), MeshError::TooFewPoints { n_points: 0, .. }));
+    let mut bad = ball(40, 0.0);
+    bad[7].x = f64::NAN;
+    assert!(matches!(of(&bad), MeshError::NonFinitePosition { vertex: VertexId(7) }));
+}
+
+#[test]
+fn any_points_end_in_a_surface_or_an_error() {
+    let mut draw = uniform();
+    for n in [12, 13, 50, 700] {
+        let solid: Vec<_> = (0..n).map(|_| Point3::from([(); 3].map(|()| draw()))).collect();
+        let clumps: Vec<_> = solid.iter().map(|p| p.map(|x| (x * 4.0).round() + 1e-9 * x)).collect();
+        let lattice: Vec<_> = (0..n).map(|i| Point3::new((i % 7) as f64, (i / 7) as f64, 0.0)).collect();
+        for points in [solid, clumps, lattice] {
+            if let Ok(found) = triangulate_points(&points, &Budget::unlimited()) {
+                assert_eq!(found.mesh.n_vertices(), n);
+                assert_eq!(validate(&found.mesh).non_manifold_edges, 0);
+                assert!(found.mesh.positions.iter().all(|p| p.iter().all(|x| x.is_finite())));
+            }
+        }
+    }
+}
+
+#[test]
+fn a_cancelled_budget_ends_the_work() {
+    let budget = Budget::unlimited().with_time(std::time::Duration::ZERO);
+    assert!(matches!(triangulate_points(&ball(500, 0.0), &budget), Err(MeshError::Exceeded(_))));
+}
