@@ -1,6 +1,7 @@
 //! The built-in dataset: labelled shapes of articulated families.
 
 use mesh::TriMesh;
+use nalgebra::Point3;
 use rayon::prelude::*;
 
 use crate::clearance::entanglement;
@@ -173,15 +174,58 @@ pub fn articulated_body(
     shape(family, &family.model(), [body, pose], options)
 }
 
+/// A shape with the surface that it was bent from.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RestedShape {
+    /// The shape.
+    pub shape: LabeledShape,
+    /// The same vertices and faces at rest, in the units of the dataset. All shapes of a family are bent from one body, which is
+    /// its own mirror image at `x = 0`: so points of two shapes correspond if they are in the same place at rest.
+    pub rest: TriMesh,
+}
+
+/// Generates a shape as [`articulated_body`] does, with the surface at rest: the ground truth of maps between shapes.
+///
+/// # Errors
+/// As [`articulated()`].
+///
+/// ```
+/// use canonform_datasets::{ArticulatedOptions, Family, articulated_at_rest};
+///
+/// let options = ArticulatedOptions { n_vertices: 1000, ..Default::default() };
+/// let found = articulated_at_rest(Family::Cat, 0, 3, &options)?;
+/// assert_eq!(found.rest.faces, found.shape.mesh.faces);
+/// assert_ne!(found.rest.positions, found.shape.mesh.positions);
+/// # Ok::<(), canonform_datasets::DatasetError>(())
+/// ```
+pub fn articulated_at_rest(
+    family: Family,
+    body: usize,
+    pose: usize,
+    options: &ArticulatedOptions,
+) -> Result<RestedShape, DatasetError> {
+    options.validate()?;
+    rested(family, &family.model(), [body, pose], options)
+}
+
 /// Poses that have streams of random numbers of their own for every body.
 const POSES_PER_BODY: usize = 1 << 20;
 
 fn shape(
     family: Family,
     model: &Model,
-    [body, pose]: [usize; 2],
+    numbers: [usize; 2],
     options: &ArticulatedOptions,
 ) -> Result<LabeledShape, DatasetError> {
+    Ok(rested(family, model, numbers, options)?.shape)
+}
+
+fn rested(
+    family: Family,
+    model: &Model,
+    [body, pose]: [usize; 2],
+    options: &ArticulatedOptions,
+) -> Result<RestedShape, DatasetError> {
     let ArticulatedOptions { seed, n_vertices } = *options;
     let name = match body {
         0 => format!("{}{pose}", family.name()),
@@ -196,8 +240,10 @@ fn shape(
         posed = posed.built(&Build::random(&model.skeleton, &mut proportions));
     }
     let positions = posed_positions(&surface, &posed, scale(model));
-    let mesh = shuffled(&surface, &positions, &mut stream(Purpose::Numbering));
-    Ok(LabeledShape { name, label: family.name().to_owned(), mesh })
+    let numbered = |positions: &[Point3<f64>]| shuffled(&surface, positions, &mut stream(Purpose::Numbering));
+    let at_rest: Vec<_> = surface.positions.iter().map(|p| p * scale(model)).collect();
+    let shape = LabeledShape { name, label: family.name().to_owned(), mesh: numbered(&positions) };
+    Ok(RestedShape { shape, rest: numbered(&at_rest) })
 }
 
 /// From body units to the units of the dataset.
@@ -237,7 +283,6 @@ mod tests {
     use std::cmp::Reverse;
     use std::collections::BinaryHeap;
 
-    use nalgebra::Point3;
     use surface::VertexId;
 
     use super::*;

@@ -38,6 +38,7 @@ mod implicit;
 mod model;
 mod pose;
 mod relax;
+mod scan;
 mod shape;
 mod simplify;
 mod skeleton;
@@ -45,9 +46,11 @@ mod stream;
 mod trig;
 
 pub use articulated::{
-    ArticulatedOptions, Family, LabeledShape, articulated, articulated_body, articulated_shape,
+    ArticulatedOptions, Family, LabeledShape, RestedShape, articulated, articulated_at_rest,
+    articulated_body, articulated_shape,
 };
 pub use broken::{BrokenFile, broken_meshes};
 pub use creature::{CreatureOptions, creature, creature_family, creature_plans, creatures};
 pub use damage::{Damage, DamageKind, WeldPair};
 pub use error::DatasetError;
+pub use scan::{ScannedPoint, scan};

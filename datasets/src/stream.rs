@@ -20,6 +20,8 @@ pub(crate) enum Purpose {
     Build,
     /// Damage of a finished mesh.
     Damage,
+    /// Points on a surface.
+    Scan,
 }
 
 impl Purpose {
@@ -30,6 +32,7 @@ impl Purpose {
             Self::Numbering => 2,
             Self::Build => 3,
             Self::Damage => 12,
+            Self::Scan => 13,
         }
     }
 }
@@ -59,6 +62,11 @@ impl Stream {
         // 53 random bits give a double in [0, 1) exactly.
         let unit = (self.0.next_u64() >> 11) as f64 / (1u64 << 53) as f64;
         lo + (hi - lo) * unit
+    }
+
+    /// Close to normal, with mean 0 and variance 1: the sum of twelve uniform numbers. Logarithms depend on the platform.
+    pub(crate) fn normal(&mut self) -> f64 {
+        (0..12).map(|_| self.uniform(0.0, 1.0)).sum::<f64>() - 6.0
     }
 
     /// Uniform in `0..bound`, with a negligible bias of at most `bound / 2^64`.

@@ -30,8 +30,12 @@ pub(super) fn cut_off(mesh: &TriMesh, share: f64, stream: &mut Stream) -> TriMes
     }
     let left = |f: &usize| !is_cut[*f];
     let faces: Vec<_> = (0..mesh.n_faces()).filter(left).map(|f| mesh.faces[f]).collect();
-    let pieces = components_of_faces(mesh.n_vertices(), &faces);
-    let rest = TriMesh { positions: mesh.positions.clone(), faces };
+    largest_piece(TriMesh { positions: mesh.positions.clone(), faces })
+}
+
+/// The component with the largest area.
+pub(super) fn largest_piece(rest: TriMesh) -> TriMesh {
+    let pieces = components_of_faces(rest.n_vertices(), &rest.faces);
     let mut areas = vec![0.0; pieces.count];
     for f in 0..rest.n_faces() {
         areas[pieces.of(rest.faces[f][0])] += rest.area_vector(f).norm();

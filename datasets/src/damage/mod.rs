@@ -8,6 +8,7 @@ mod holes;
 mod kind;
 mod noise;
 mod paths;
+mod slice;
 mod weld;
 
 use std::fmt;
@@ -38,6 +39,8 @@ pub enum Damage {
     Contact(u32),
     /// The end of a limb with this share of the area is cut off.
     CutOff(f64),
+    /// A plane in a random direction cuts the shape, so that this share of the area stays.
+    Slice(f64),
     /// This share of the vertices, and at least one, is displaced by 4 % of the diagonal of the bounding box.
     ShotNoise(f64),
     /// Every coordinate of every vertex gets normal noise. Its standard deviation is this share of the diagonal of the
@@ -69,6 +72,7 @@ impl Damage {
             Self::Weld(pair, n) => weld::weld(mesh, pair, n, &mut stream),
             Self::Contact(n) => weld::contact(mesh, n, &mut stream),
             Self::CutOff(share) => cut_off::cut_off(mesh, share, &mut stream),
+            Self::Slice(share) => slice::slice(mesh, share, &mut stream),
             Self::ShotNoise(share) => noise::shot_noise(mesh, share, diagonal(mesh), &mut stream),
             Self::Noise(share) => noise::noise(mesh, share * diagonal(mesh), &mut stream),
             Self::Holes(share) => holes::holes(mesh, share, &mut stream),
@@ -113,6 +117,7 @@ impl fmt::Display for Damage {
             Self::Contact(1) => f.write_str("a handle"),
             Self::Contact(n) => write!(f, "{n} handles"),
             Self::CutOff(share) => write!(f, "{} % cut off", percent(*share)),
+            Self::Slice(share) => write!(f, "{} % behind a plane", percent(*share)),
             Self::ShotNoise(share) => write!(f, "shot noise {} %", percent(*share)),
             Self::Noise(share) => write!(f, "noise {} %", percent(*share)),
             Self::Holes(share) => write!(f, "holes {} %", percent(*share)),
@@ -145,12 +150,13 @@ mod tests {
     use super::*;
     use crate::{ArticulatedOptions, Family, articulated_shape};
 
-    const ALL: [Damage; 18] = [
+    const ALL: [Damage; 19] = [
         Damage::Sample(0.5),
         Damage::Weld(WeldPair::Near, 2),
         Damage::Weld(WeldPair::Random, 1),
         Damage::Contact(1),
         Damage::CutOff(0.1),
+        Damage::Slice(0.7),
         Damage::ShotNoise(0.01),
         Damage::Resize(2.0),
         Damage::Subdivide(1),
@@ -191,7 +197,7 @@ mod tests {
         let mesh = cat();
         for damage in ALL {
             let found = validate(&damage.apply(&mesh, 4));
-            let holes = matches!(damage, Damage::Holes(_) | Damage::CutOff(_));
+            let holes = matches!(damage, Damage::Holes(_) | Damage::CutOff(_) | Damage::Slice(_));
             let defects = [found.non_manifold_edges, found.inconsistent_edges, found.unreferenced_vertices];
             assert_eq!((found.n_components, defects), (1, [0; 3]), "{damage}");
             assert_eq!(found.n_boundary_loops > 0, holes, "{damage}: {found:?}");
