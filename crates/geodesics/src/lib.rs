@@ -42,6 +42,7 @@ mod heap;
 mod heat;
 mod instructions;
 mod method;
+mod oracle;
 mod path;
 mod plane;
 mod point;
@@ -60,11 +61,12 @@ pub use exact::Exact;
 pub use fast_marching::{FastMarching, FastMarchingOptions, ObtuseTreatment, Update};
 pub use heat::{HeatMethod, HeatOptions};
 pub use method::Method;
+pub use oracle::DistanceOracle;
 pub use path::{GeodesicPath, PathTracer};
 pub use point::SurfacePoint;
 pub use sampling::{
-    FarthestPointSampler, FirstSample, RandomSampler, Sampler, Sampling, Variance, VarianceSampler,
-    farthest_point_sampling,
+    FarthestPointSampler, FirstSample, RandomSampler, Sampler, Sampling, SpreadSamples, Variance,
+    VarianceSampler, farthest_point_sampling,
 };
 pub use solver::{DistanceSolver, PrunedSolver};
 pub use source::Source;

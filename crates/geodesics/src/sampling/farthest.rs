@@ -174,7 +174,7 @@ fn lower(nearest: &mut [f64], column: &[f64]) {
 }
 
 /// The lowest index of the largest value.
-fn farthest(values: &[f64]) -> usize {
+pub(super) fn farthest(values: &[f64]) -> usize {
     let mut best = 0;
     for (i, value) in values.iter().enumerate() {
         if *value > values[best] {

@@ -4,6 +4,7 @@ mod columns;
 mod farthest;
 mod random;
 mod sampler;
+mod spread;
 mod variance;
 
 use crate::error::GeodesicError;
@@ -11,6 +12,7 @@ use crate::solver::DistanceSolver;
 pub use farthest::{FarthestPointSampler, farthest_point_sampling};
 pub use random::RandomSampler;
 pub use sampler::{FirstSample, Sampler};
+pub use spread::SpreadSamples;
 pub use variance::{Variance, VarianceSampler};
 
 /// A rule for choosing landmarks.

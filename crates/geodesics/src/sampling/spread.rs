@@ -1,0 +1,117 @@
+//! More samples than distances are kept for.
+
+use linalg::LandmarkDistances;
+use surface::VertexId;
+
+use super::farthest::farthest;
+use crate::error::GeodesicError;
+use crate::solver::DistanceSolver;
+
+/// Samples spread evenly over a surface, and the cells of vertices around them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SpreadSamples {
+    /// The samples, the landmarks first; each further one is the vertex farthest from those before it.
+    pub samples: Vec<usize>,
+    /// For every vertex, the position in `samples` of the nearest one, the first in case of a tie.
+    pub nearest: Vec<usize>,
+    /// No vertex is farther from its sample, in mesh units.
+    pub covering: f64,
+}
+
+impl SpreadSamples {
+    /// Continues farthest point sampling from some landmarks up to `n` samples, without keeping their distances; fewer if
+    /// every vertex coincides with one, and never fewer than the landmarks.
+    ///
+    /// Cost: much less than a run of the solver for each sample if the solver can [prune](DistanceSolver::pruned), since a
+    /// front then stops where other samples are nearer; and `O(p n)`.
+    ///
+    /// ```
+    /// use canonform_geodesics::{FirstSample, Method, SpreadSamples, farthest_point_sampling};
+    /// use mesh::shapes;
+    ///
+    /// let solver = Method::default().prepare(&shapes::icosphere(3).intrinsic())?;
+    /// let few = farthest_point_sampling(solver.as_ref(), 10, FirstSample::default())?;
+    /// let many = SpreadSamples::new(solver.as_ref(), &few, 100)?;
+    /// assert_eq!(many.samples.len(), 100);
+    /// assert!(many.samples.starts_with(few.landmarks()) && many.covering < 0.4);
+    /// # Ok::<(), canonform_geodesics::GeodesicError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`GeodesicError::Exceeded`]; [`GeodesicError::Matrix`] if distances are in a file that cannot be read.
+    pub fn new(
+        solver: &dyn DistanceSolver,
+        distances: &LandmarkDistances,
+        n: usize,
+    ) -> Result<Self, GeodesicError> {
+        let n_vertices = solver.n_vertices();
+        let mut samples = distances.landmarks().to_vec();
+        let mut gaps = vec![f64::INFINITY; n_vertices];
+        let mut nearest = vec![0; n_vertices];
+        let mut lower = |gaps: &mut [f64], lowered: &[f64], sample: usize| {
+            for ((gap, owner), lowered) in gaps.iter_mut().zip(&mut nearest).zip(lowered) {
+                if *lowered < *gap {
+                    (*gap, *owner) = (*lowered, sample);
+                }
+            }
+        };
+        for sample in 0..samples.len() {
+            lower(&mut gaps, &distances.column(sample)?, sample);
+        }
+        let mut lowered = vec![0.0; n_vertices];
+        while samples.len() < n.min(n_vertices) {
+            let next = farthest(&gaps);
+            if gaps[next] == 0.0 {
+                break;
+            }
+            let source = VertexId::from(next);
+            match solver.pruned() {
+                Some(pruned) => {
+                    lowered.copy_from_slice(&gaps);
+                    pruned.lower(source, &mut lowered)?;
+                }
+                None => solver.distances_into(source, &mut lowered)?,
+            }
+            lower(&mut gaps, &lowered, samples.len());
+            samples.push(next);
+        }
+        let covering = gaps.iter().copied().fold(0.0, f64::max);
+        Ok(Self { samples, nearest, covering })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dijkstra::Dijkstra;
+    use crate::method::Method;
+    use crate::sampling::{FirstSample, farthest_point_sampling};
+    use mesh::shapes::icosphere;
+
+    #[test]
+    fn the_samples_are_those_of_farthest_point_sampling() {
+        let solver = Dijkstra::new(&icosphere(3).intrinsic());
+        let few = farthest_point_sampling(&solver, 5, FirstSample::default()).unwrap();
+        let all = farthest_point_sampling(&solver, 60, FirstSample::default()).unwrap();
+        let spread = SpreadSamples::new(&solver, &few, 60).unwrap();
+        assert_eq!(spread.samples, all.landmarks());
+        let mut covering = 0.0f64;
+        for v in 0..solver.n_vertices() {
+            let gap = |i: usize| all.column(i).unwrap()[v];
+            let least = (0..60).map(gap).fold(f64::INFINITY, f64::min);
+            assert_eq!(gap(spread.nearest[v]), least);
+            covering = covering.max(least);
+        }
+        assert_eq!(spread.covering, covering);
+    }
+
+    #[test]
+    fn there_are_at_least_the_landmarks_and_at_most_all_vertices() {
+        let solver = Method::default().prepare(&icosphere(1).intrinsic()).unwrap();
+        let few = farthest_point_sampling(solver.as_ref(), 5, FirstSample::default()).unwrap();
+        let spread = |n| SpreadSamples::new(solver.as_ref(), &few, n).unwrap();
+        assert_eq!(spread(2).samples, few.landmarks());
+        let all = spread(1000);
+        assert_eq!((all.samples.len(), all.covering), (42, 0.0));
+    }
+}
