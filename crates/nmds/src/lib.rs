@@ -15,6 +15,9 @@
 //! | [`classical`], [`classical_full`] | all p x p distances | Torgerson 1952 |
 //! | [`OutOfSample`] | distances from further points to the n samples of [`nystrom`] | Bengio et al. 2003 |
 //! | [`smacof`] | all p x p distances, and a start | de Leeuw 1977 |
+//!
+//! [`SampleSearch`] finds how many samples are enough.
+//! [`LandmarkMetric`] approximates all pairs of distances from the same n columns, with bounds, instead of embedding them.
 
 mod classical;
 mod embedding;
@@ -23,11 +26,13 @@ mod estimate;
 mod fmds;
 mod kernel_pca;
 mod landmark;
+mod landmark_metric;
 mod nystrom;
 mod out_of_sample;
 mod passes;
 mod reconstruction;
 mod regularization;
+mod sample_search;
 mod smacof;
 mod spectral;
 mod squares;
@@ -44,10 +49,15 @@ pub use estimate::{RowSample, StressEstimate, estimate_stress, sample_rows};
 pub use fmds::{fmds, fmds_within};
 pub use kernel_pca::{Bandwidth, KernelPcaOptions, kernel_pca};
 pub use landmark::landmark_mds;
+pub use landmark_metric::{
+    BoundsParts, ColumnError, FactorParts, Interval, LandmarkBounds, LandmarkMetric, PairEstimate,
+    SqDistanceFactors,
+};
 pub use nystrom::{NystromOptions, nystrom, nystrom_extended};
 pub use out_of_sample::OutOfSample;
 pub use reconstruction::{Reconstruction, ReconstructionError, sample_eigenvalues};
 pub use regularization::{Regularization, RpiAlpha};
+pub use sample_search::{SampleGoal, SampleSearch, SampleStep, SampleStop, SampleTrial};
 pub use smacof::{SmacofOptions, SmacofReport, SmacofStop, smacof, smacof_within};
 pub use spectral::{SpectralBasis, SpectralOptions, spectral};
 pub use stress::{DistanceRows, Stress, normalized_stress, paper_stress, stress};

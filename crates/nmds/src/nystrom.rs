@@ -5,7 +5,7 @@ use linalg::{LandmarkDistances, Matrix, SymmetricEigen, symmetric_eigen};
 use crate::out_of_sample::OutOfSample;
 use crate::passes::{product, sq_means, triangle};
 use crate::squares::{check_dim, check_extent, symmetrized};
-use crate::{Embedding, NmdsError, Regularization};
+use crate::{Embedding, NmdsError, Regularization, SampleSearch};
 
 /// Options of [`nystrom`].
 #[derive(Debug, Clone, PartialEq)]
@@ -31,6 +31,33 @@ impl NystromOptions {
         let rank = self.regularization.rank(n_landmarks, self.dim)?;
         check_dim(self.dim, rank)?;
         Ok(rank)
+    }
+
+    /// The number of samples that a [search](crate::SampleSearch) begins with: at least the rank, if one is given.
+    #[must_use]
+    pub fn first_samples(&self) -> usize {
+        let first = SampleSearch::first(self.dim);
+        match self.regularization {
+            Regularization::LowRank { rank: Some(rank) } | Regularization::Cur { rank: Some(rank) } => {
+                first.max(rank)
+            }
+            _ => first,
+        }
+    }
+
+    /// Ranks besides the default one that are worth trying for `n_landmarks` samples, since none is the best for all distances: the
+    /// least one that is safe, a quarter of the samples, and three quarters. None unless the regularisation is
+    /// [`Regularization::LowRank`] without a rank.
+    #[must_use]
+    pub fn other_ranks(&self, n_landmarks: usize) -> Vec<usize> {
+        let Regularization::LowRank { rank: None } = self.regularization else { return Vec::new() };
+        let (n, least) = (n_landmarks, (self.dim + 4).min(n_landmarks));
+        let usual = self.regularization.rank(n, self.dim).unwrap_or(n);
+        let mut ranks = vec![least, n / 4, n - n / 4];
+        ranks.retain(|rank| *rank >= least && *rank != usual);
+        ranks.sort_unstable();
+        ranks.dedup();
+        ranks
     }
 }
 
@@ -233,6 +260,16 @@ mod tests {
             let rpi = Regularization::Rpi { alpha: RpiAlpha::Relative(alpha) };
             assert_eq!(embed(rpi, 3), Err(NmdsError::BadAlpha(alpha)));
         }
+    }
+
+    #[test]
+    fn other_ranks_are_tried_unless_one_is_given() {
+        assert_eq!(NystromOptions::default().other_ranks(40), [7, 10, 30]);
+        assert_eq!(NystromOptions::default().other_ranks(12), [9]);
+        assert_eq!(NystromOptions::default().other_ranks(4), [0; 0]);
+        assert_eq!(low_rank(6).other_ranks(40), [0; 0]);
+        assert_eq!(options(Regularization::None).other_ranks(40), [0; 0]);
+        assert_eq!([NystromOptions::default(), low_rank(30)].map(|o| o.first_samples()), [8, 30]);
     }
 
     #[test]
