@@ -1,6 +1,6 @@
 //! Whether a surface is the mirror image of another.
 
-use mesh::{TriMesh, orient_consistently};
+use mesh::TriMesh;
 use nalgebra::{Point3, Vector3};
 
 use crate::alignment::Alignment;
@@ -9,13 +9,11 @@ use crate::error::DescriptorError;
 use crate::matching::Reflections;
 use crate::metric::{Handedness, ShapeMetric};
 use crate::nearest::NearestPoints;
+use crate::outward::outward;
 use crate::shape_pair::ShapePair;
 
 /// Normals agree, or disagree, if their mean agreement is beyond this.
 const AGREEMENT: f64 = 0.2;
-
-/// A surface encloses a volume if it is at least this share of the volume of a ball of the same area.
-const LEAST_VOLUME: f64 = 0.02;
 
 /// The points of a form at unit area, with the faces of the surface turned so that normals point outwards.
 struct OutwardForm {
@@ -27,24 +25,7 @@ struct OutwardForm {
 impl OutwardForm {
     /// `None` if the surface does not enclose a volume.
     fn new(points: Vec<Point3<f64>>, weights: &[f64], mesh: &TriMesh) -> Option<Self> {
-        let mut mesh = mesh.clone();
-        orient_consistently(&mut mesh);
-        let centre = mesh.positions.iter().fold(Vector3::zeros(), |sum, p| sum + p.coords)
-            / mesh.n_vertices().max(1) as f64;
-        let volume: f64 = (0..mesh.n_faces())
-            .map(|f| {
-                let [a, b, c] = mesh.triangle(f).map(|p| p.coords - centre);
-                a.dot(&b.cross(&c)) / 6.0
-            })
-            .sum();
-        let ball = mesh.area().powf(1.5) / (6.0 * std::f64::consts::PI.sqrt());
-        if volume.abs() < LEAST_VOLUME * ball {
-            return None;
-        }
-        if volume < 0.0 {
-            mesh.faces.iter_mut().for_each(|face| face.swap(1, 2));
-        }
-        Some(Self { points, weights: weights.to_vec(), mesh })
+        Some(Self { points, weights: weights.to_vec(), mesh: outward(mesh)? })
     }
 
     /// Normals at moved points, not normalised.

@@ -11,11 +11,14 @@
 mod alignment;
 mod boundary;
 mod canonical_form;
+mod correspondence;
 mod error;
 mod handedness;
 mod matching;
 mod metric;
 mod nearest;
+mod outward;
+mod partial;
 mod prepared;
 mod shape_pair;
 mod signature;
@@ -26,11 +29,13 @@ mod verdict;
 pub use alignment::Alignment;
 pub use boundary::Boundary;
 pub use canonical_form::{CanonicalForm, Normalization};
+pub use correspondence::{MapKind, MatchOptions, MatchShape, SurfaceMap, match_surfaces};
 pub use error::DescriptorError;
 pub use handedness::handedness;
 pub use matching::{FormMatch, Reflections, match_forms, match_forms_within};
 pub use metric::{FormDistance, Handedness, MatchKind, ShapeDistance, ShapeMetric};
 pub use nearest::NearestPoints;
+pub use partial::{DiscAreas, PartDiscAreas, PartDistance};
 pub use prepared::PreparedForm;
 pub use shape_pair::{PreparedShape, ShapePair};
 pub use signature::{

@@ -116,13 +116,32 @@ pub fn match_forms_within(a: &PreparedForm, b: &PreparedForm, limit: f64) -> Opt
 
 /// The best hypothesis after all stages but the last, and its error.
 fn refined_roughly(a: &PreparedForm, b: &PreparedForm, reflections: Reflections) -> (f64, Alignment) {
-    let refine_all = |stage, starts: Vec<Alignment>| {
-        let mut found: Vec<_> = starts.into_iter().map(|start| refine(a, b, start, stage)).collect();
-        found.sort_by(|x, y| x.0.total_cmp(&y.0));
-        found
-    };
-    let sketched = refine_all(SKETCH, hypotheses(a, b, reflections));
-    refine_all(ROUGH, sketched.into_iter().map(|(_, motion)| motion).take(REFINED).collect())[0]
+    let sketched = refine_all(a, b, hypotheses(a, b, reflections), SKETCH);
+    refine_all(a, b, sketched.into_iter().map(|(_, motion)| motion).take(REFINED), ROUGH)[0]
+}
+
+/// Motions of the principal axes of the first form to those of the second, the best of each handedness, after all stages
+/// but the last; by ascending error.
+pub(crate) fn alignments(a: &PreparedForm, b: &PreparedForm) -> Vec<Alignment> {
+    let mut found = Vec::new();
+    for reflections in [Reflections::Forbid, Reflections::Require] {
+        let sketched = refine_all(a, b, hypotheses(a, b, reflections), SKETCH);
+        found.extend(refine_all(a, b, sketched.into_iter().map(|(_, motion)| motion).take(REFINED), ROUGH));
+    }
+    found.sort_by(|x, y| x.0.total_cmp(&y.0));
+    found.into_iter().map(|(_, motion)| motion).collect()
+}
+
+/// All starts, refined, by ascending error.
+fn refine_all(
+    a: &PreparedForm,
+    b: &PreparedForm,
+    starts: impl IntoIterator<Item = Alignment>,
+    stage: Stage,
+) -> Vec<(f64, Alignment)> {
+    let mut found: Vec<_> = starts.into_iter().map(|start| refine(a, b, start, stage)).collect();
+    found.sort_by(|x, y| x.0.total_cmp(&y.0));
+    found
 }
 
 fn refined_fully(a: &PreparedForm, b: &PreparedForm, start: Alignment) -> FormMatch {

@@ -51,6 +51,11 @@ impl PreparedForm {
         })
     }
 
+    /// All points, in the principal axes.
+    pub(crate) fn points(&self) -> &[Point3<f64>] {
+        self.points.points()
+    }
+
     /// Evenly spread points, farthest first: any leading part of them is evenly spread too.
     pub(crate) fn samples(&self) -> &[Point3<f64>] {
         self.samples.points()

@@ -77,6 +77,12 @@ pub fn heat_kernel_signature(spectrum: &LaplaceSpectrum) -> Signature {
 ///   triangulation as the spectrum does.
 /// * On a mesh without a second eigenvalue all values are zero.
 pub fn wave_kernel_signature(spectrum: &LaplaceSpectrum) -> Signature {
+    let filters = wave_filters(spectrum);
+    Signature { kind: SignatureKind::WaveKernel, values: distributions(spectrum, &filters, WAVE_BINS) }
+}
+
+/// The weights of all eigenpairs at each energy.
+fn wave_filters(spectrum: &LaplaceSpectrum) -> Matrix {
     let ends = [weyl(1.0), weyl(0.7 * EIGENPAIRS as f64)].map(f64::ln);
     let energies: Vec<f64> = spaced(ends, ENERGIES).collect();
     let sigma = 1.5 * (energies[1] - energies[0]);
@@ -87,8 +93,13 @@ pub fn wave_kernel_signature(spectrum: &LaplaceSpectrum) -> Signature {
             curved(spectrum).map(|i| exponent(j, spectrum.corrected[i])).fold(f64::NEG_INFINITY, f64::max)
         })
         .collect();
-    let filters = filters(spectrum, ENERGIES, |j, value| (exponent(j, value) - nearest[j]).exp());
-    Signature { kind: SignatureKind::WaveKernel, values: distributions(spectrum, &filters, WAVE_BINS) }
+    filters(spectrum, ENERGIES, |j, value| (exponent(j, value) - nearest[j]).exp())
+}
+
+/// The wave kernels of [`wave_kernel_signature`] at some vertices, one row for each vertex and one column for each energy.
+pub(crate) fn wave_kernels(spectrum: &LaplaceSpectrum, vertices: &[usize]) -> Matrix {
+    let at = spectrum.vectors.select_rows(vertices).map(|x| x * x);
+    at * wave_filters(spectrum)
 }
 
 /// `n` values from one end to the other.

@@ -1,0 +1,158 @@
+//! Nearest rows of matrices with many columns.
+
+use linalg::Matrix;
+use rayon::prelude::*;
+
+/// Rows of the first matrix multiplied at a time. The result does not depend on it.
+const BLOCK: usize = 128;
+
+/// For every row of `x` the nearest row of `y`; the first in case of a tie.
+///
+/// By products of blocks of the matrices: in tens of dimensions no search tree is faster. Cost `O(m n d)`; parallel, and
+/// independent of the number of threads.
+pub(super) fn nearest_rows(x: &Matrix, y: &Matrix) -> Vec<u32> {
+    let halves = half_squares(y);
+    let starts: Vec<usize> = (0..x.nrows()).step_by(BLOCK).collect();
+    let blocks: Vec<Vec<u32>> = starts
+        .into_par_iter()
+        .map(|start| {
+            let rows = start..(start + BLOCK).min(x.nrows());
+            let products = y * x.rows_range(rows).transpose();
+            let gaps = |column: nalgebra::DVectorView<'_, f64>| {
+                least(column.iter().zip(&halves).map(|(dot, half)| half - dot)).0
+            };
+            products.column_iter().map(gaps).collect()
+        })
+        .collect();
+    blocks.concat()
+}
+
+/// Rows of a matrix in cells, each around one of them.
+pub(super) struct Cells<'a> {
+    /// All rows.
+    pub(super) rows: &'a Matrix,
+    /// The row in the middle of each cell.
+    pub(super) centres: &'a [usize],
+    /// The rows of each cell.
+    pub(super) members: &'a [Vec<u32>],
+}
+
+/// Cells searched for each row.
+const PROBED: usize = 8;
+
+impl Cells<'_> {
+    /// For every row of `x` the nearest row of the cells with the eight nearest centres; the one of the nearer centre, or
+    /// the first, in case of a tie.
+    ///
+    /// Cost `O(m c d)` for `c` centres; parallel, and independent of the number of threads.
+    pub(super) fn nearest(&self, x: &Matrix) -> Vec<u32> {
+        let centres = self.rows.select_rows(self.centres);
+        let of_centres = half_squares(&centres);
+        // Rows next to each other in memory.
+        let (sources, targets) = (x.transpose(), self.rows.transpose());
+        let starts: Vec<usize> = (0..x.nrows()).step_by(BLOCK).collect();
+        let blocks: Vec<Vec<u32>> = starts
+            .into_par_iter()
+            .map(|start| {
+                let rows = start..(start + BLOCK).min(x.nrows());
+                let products = &centres * sources.columns_range(rows.clone());
+                let one = |(i, column): (usize, nalgebra::DVectorView<'_, f64>)| {
+                    let mut order: Vec<(f64, u32)> = column
+                        .iter()
+                        .zip(&of_centres)
+                        .zip(0..)
+                        .map(|((dot, half), cell)| (half - dot, cell))
+                        .collect();
+                    let by_gap = |a: &(f64, u32), b: &(f64, u32)| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1));
+                    if order.len() > PROBED {
+                        order.select_nth_unstable_by(PROBED - 1, by_gap);
+                        order.truncate(PROBED);
+                    }
+                    order.sort_unstable_by(by_gap);
+                    let source = sources.column(i);
+                    let members = order.iter().flat_map(|(_, cell)| &self.members[*cell as usize]);
+                    let mut best = (f64::INFINITY, 0);
+                    for &v in members {
+                        let gap = sq_distance(source.as_slice(), targets.column(v as usize).as_slice());
+                        if gap < best.0 {
+                            best = (gap, v);
+                        }
+                    }
+                    best.1
+                };
+                rows.zip(products.column_iter()).map(one).collect()
+            })
+            .collect();
+        blocks.concat()
+    }
+}
+
+fn sq_distance(a: &[f64], b: &[f64]) -> f64 {
+    // Four sums, which vector instructions can take at once.
+    let mut sums = [0.0; 4];
+    let (mut a, mut b) = (a.chunks_exact(4), b.chunks_exact(4));
+    for (a, b) in (&mut a).zip(&mut b) {
+        for ((sum, a), b) in sums.iter_mut().zip(a).zip(b) {
+            *sum += (a - b) * (a - b);
+        }
+    }
+    let rest = a.remainder().iter().zip(b.remainder()).map(|(a, b)| (a - b) * (a - b));
+    sums[0] + sums[1] + sums[2] + sums[3] + rest.sum::<f64>()
+}
+
+/// Half of the squared length of every row.
+fn half_squares(x: &Matrix) -> Vec<f64> {
+    let mut halves = vec![0.0; x.nrows()];
+    for column in x.column_iter() {
+        halves.iter_mut().zip(column.iter()).for_each(|(half, v)| *half += 0.5 * v * v);
+    }
+    halves
+}
+
+/// The first position of the least value, and the value.
+fn least(values: impl Iterator<Item = f64>) -> (u32, f64) {
+    let mut best = (0, f64::INFINITY);
+    for (i, value) in (0..).zip(values) {
+        if value < best.1 {
+            best = (i, value);
+        }
+    }
+    best
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn rows(n: usize, d: usize, seed: f64) -> Matrix {
+        Matrix::from_fn(n, d, |i, j| (seed + 1.7 * i as f64 + 0.3 * (i * j) as f64).sin())
+    }
+
+    fn by_hand(x: &Matrix, y: &Matrix) -> Vec<u32> {
+        let gap = |i: usize, j: usize| (x.row(i) - y.row(j)).norm_squared();
+        (0..x.nrows()).map(|i| least((0..y.nrows()).map(|j| gap(i, j))).0).collect()
+    }
+
+    #[test]
+    fn nearest_rows_are_found_across_blocks() {
+        let (x, y) = (rows(300, 7, 0.1), rows(170, 7, 0.9));
+        assert_eq!(nearest_rows(&x, &y), by_hand(&x, &y));
+        assert_eq!(nearest_rows(&y, &x), by_hand(&y, &x));
+    }
+
+    #[test]
+    fn cells_find_the_nearest_row_if_cells_are_compact() {
+        // Points of a curve, in cells of ten neighbours.
+        let curve = |n: usize, shift: f64| {
+            Matrix::from_fn(n, 3, |i, j| {
+                let t = (i as f64 + shift) / n as f64;
+                [t, (3.0 * t).sin(), (5.0 * t).cos()][j]
+            })
+        };
+        let (x, y) = (curve(230, 0.3), curve(400, 0.0));
+        let members: Vec<Vec<u32>> = (0..40).map(|c| (10 * c..10 * c + 10).collect()).collect();
+        let centres: Vec<usize> = (0..40).map(|c| 10 * c + 5).collect();
+        let cells = Cells { rows: &y, centres: &centres, members: &members };
+        assert_eq!(cells.nearest(&x), by_hand(&x, &y));
+    }
+}

@@ -1,0 +1,214 @@
+//! Shapes of which a part is missing: what a cut cannot change is compared with whole shapes.
+
+use linalg::LandmarkDistances;
+
+use crate::error::DescriptorError;
+
+/// Radii at which areas of discs are compared, relative to the square root of the area of the whole.
+const RADII: usize = 20;
+
+/// The smallest and the largest radius.
+const RANGE: [f64; 2] = [0.06, 2.2];
+
+/// Shares of the whole that the part may be.
+const SHARES: [f64; 9] = [1.0, 0.93, 0.86, 0.8, 0.74, 0.69, 0.64, 0.57, 0.5];
+
+/// A disc begins to count a point at this share of its radius before its rim, and counts it fully as far behind it.
+const SOFT: f64 = 0.1;
+
+/// Differences of logarithms of areas beyond this count linearly.
+const OUTLYING: f64 = 0.3;
+
+/// The areas of geodesic discs of all radii around the landmarks of a whole surface.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DiscAreas {
+    /// Logarithms of shares of the area, a row for each landmark.
+    rows: Vec<[f64; RADII]>,
+}
+
+/// What is known of the areas of geodesic discs around the landmarks of a part of a surface, for every share of the whole that
+/// the part may be.
+///
+/// A disc that does not reach the cut is the disc of the whole. Of a larger one, the part knows bounds: paths in the part
+/// are paths in the whole, so the disc of the whole has at least the points of the part that are as near in the part. It has
+/// at most those, the points `y` with `b(x) + b(y) <= r`, where `b` is the distance from the cut, because a path
+/// through what is missing leaves and enters by the cut; and what is missing within `r - b(x)` of the cut.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PartDiscAreas {
+    /// The share of the part around each landmark.
+    weights: Vec<f64>,
+    /// For every share, and every landmark, the logarithms of the least and of the largest possible area.
+    bounds: Vec<Vec<[[f64; 2]; RADII]>>,
+}
+
+/// How well a part fits into a whole.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PartDistance {
+    /// Root mean square of the differences of logarithms of areas that no missing part explains; 0 if all fit.
+    pub distance: f64,
+    /// The share of the whole that the part has if it fits best.
+    pub share: f64,
+}
+
+fn radius(i: usize) -> f64 {
+    RANGE[0] * (RANGE[1] / RANGE[0]).powf(i as f64 / (RADII - 1) as f64)
+}
+
+/// How much of a point at distance `d` a disc of radius `r` counts.
+fn inside(d: f64, r: f64) -> f64 {
+    ((r - d) / (2.0 * SOFT * r) + 0.5).clamp(0.0, 1.0)
+}
+
+fn check(distances: &LandmarkDistances, masses: &[f64]) -> Result<f64, DescriptorError> {
+    let p = distances.n_points();
+    if masses.len() != p {
+        return Err(DescriptorError::SizeMismatch { n_points: p, n_vertices: masses.len() });
+    }
+    let area: f64 = masses.iter().sum();
+    match area > 0.0 {
+        true => Ok(area),
+        false => Err(DescriptorError::NoExtent { n_points: p }),
+    }
+}
+
+impl DiscAreas {
+    /// The areas around the landmarks. `masses` are areas around the points, in the squared unit of the distances.
+    ///
+    /// # Errors
+    /// [`DescriptorError::SizeMismatch`] unless there is one mass per point, [`DescriptorError::NoExtent`] without area,
+    /// [`DescriptorError::Linalg`].
+    pub fn new(distances: &LandmarkDistances, masses: &[f64]) -> Result<Self, DescriptorError> {
+        let area = check(distances, masses)?;
+        let unit = area.sqrt();
+        let row = |landmark| {
+            let column = distances.column(landmark)?;
+            Ok(std::array::from_fn(|i| {
+                let r = radius(i) * unit;
+                let sum: f64 = column.iter().zip(masses).map(|(d, m)| m * inside(*d, r)).sum();
+                (sum / area).ln()
+            }))
+        };
+        Ok(Self { rows: (0..distances.n_landmarks()).map(row).collect::<Result<_, DescriptorError>>()? })
+    }
+}
+
+impl PartDiscAreas {
+    /// The bounds around the landmarks of a part. `from_cut` are the distances of the points from the cut, infinite if nothing
+    /// is missing, and `cut` is its length.
+    ///
+    /// # Errors
+    /// As [`DiscAreas::new`].
+    pub fn new(
+        distances: &LandmarkDistances,
+        masses: &[f64],
+        from_cut: &[f64],
+        cut: f64,
+    ) -> Result<Self, DescriptorError> {
+        let part = check(distances, masses)?;
+        if from_cut.len() != masses.len() {
+            return Err(DescriptorError::SizeMismatch { n_points: masses.len(), n_vertices: from_cut.len() });
+        }
+        let n = distances.n_landmarks();
+        let columns: Vec<_> = (0..n).map(|j| distances.column(j)).collect::<Result<_, _>>()?;
+        let mut weights = vec![0.0; n];
+        for (v, mass) in masses.iter().enumerate() {
+            let nearest = (0..n).min_by(|a, b| columns[*a][v].total_cmp(&columns[*b][v]));
+            nearest.into_iter().for_each(|j| weights[j] += mass / part);
+        }
+        let bounds = SHARES
+            .map(|share| {
+                let (whole, unit) = (part / share, (part / share).sqrt());
+                let of_landmark = |j: usize| {
+                    let to_cut = from_cut[distances.landmarks()[j]];
+                    std::array::from_fn(|i| {
+                        let r = radius(i) * unit;
+                        let (mut least, mut most) = (0.0, 0.0);
+                        for ((d, m), b) in columns[j].iter().zip(masses).zip(from_cut) {
+                            least += m * inside(*d, r);
+                            most += m * inside(d.min(to_cut + b), r);
+                        }
+                        // What is missing begins at the cut and widens in all directions.
+                        let beyond = (r * (1.0 + SOFT) - to_cut).max(0.0);
+                        let missing =
+                            (cut * beyond + std::f64::consts::PI * beyond * beyond).min(whole - part);
+                        [(least / whole).ln(), ((most + missing) / whole).min(1.0).ln()]
+                    })
+                };
+                (0..n).map(of_landmark).collect()
+            })
+            .into();
+        Ok(Self { weights, bounds })
+    }
+
+    /// How well the part fits into a whole: every landmark of the part is compared with the landmark of the whole that fits it
+    /// best.
+    pub fn distance(&self, whole: &DiscAreas) -> PartDistance {
+        let misfits = self.bounds.iter().zip(SHARES).map(|(bounds, share)| {
+            let misfit = bounds.iter().zip(&self.weights).map(|(bounds, weight)| {
+                let best = whole.rows.iter().map(|row| misfit(bounds, row)).fold(f64::INFINITY, f64::min);
+                weight * best
+            });
+            PartDistance { distance: (misfit.sum::<f64>() / RADII as f64).sqrt(), share }
+        });
+        let nothing = PartDistance { distance: f64::INFINITY, share: 1.0 };
+        misfits.fold(nothing, |best, found| if found.distance < best.distance { found } else { best })
+    }
+}
+
+/// The sum of the losses of all radii.
+fn misfit(bounds: &[[f64; 2]; RADII], row: &[f64; RADII]) -> f64 {
+    let loss = |([low, high], value): (&[f64; 2], &f64)| {
+        let gap = (low - value).max(value - high).max(0.0);
+        if gap > OUTLYING { OUTLYING * (2.0 * gap - OUTLYING) } else { gap * gap }
+    };
+    bounds.iter().zip(row).map(loss).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use linalg::Matrix;
+
+    use super::*;
+
+    /// A strip of `n` points on a line, one apart, with landmarks at every fifth.
+    fn strip(points: std::ops::Range<usize>) -> (LandmarkDistances, Vec<f64>) {
+        let n = points.len();
+        let landmarks: Vec<usize> = (0..n).step_by(5).collect();
+        let columns = Matrix::from_fn(n, landmarks.len(), |i, j| i.abs_diff(landmarks[j]) as f64);
+        (LandmarkDistances::new(landmarks, columns).unwrap(), vec![1.0; n])
+    }
+
+    #[test]
+    fn a_whole_fits_itself_and_a_part_fits_its_whole() {
+        let (distances, masses) = strip(0..200);
+        let whole = DiscAreas::new(&distances, &masses).unwrap();
+        let uncut = vec![f64::INFINITY; 200];
+        let itself = PartDiscAreas::new(&distances, &masses, &uncut, 0.0).unwrap().distance(&whole);
+        assert!(itself.distance < 1e-9 && itself.share == 1.0, "{itself:?}");
+        // The first 140 points; the cut is beyond the last.
+        let (distances, masses) = strip(0..140);
+        let from_cut: Vec<f64> = (0..140).map(|i| 140.0 - f64::from(i)).collect();
+        let part = PartDiscAreas::new(&distances, &masses, &from_cut, 1.0).unwrap().distance(&whole);
+        assert!(part.distance < 0.05, "{part:?}");
+        // A square of 14 x 14 points is no strip.
+        let landmarks: Vec<usize> = (0..196).step_by(5).collect();
+        let apart = |i: usize, j: usize| (i % 14).abs_diff(j % 14) + (i / 14).abs_diff(j / 14);
+        let columns = Matrix::from_fn(196, landmarks.len(), |i, j| apart(i, landmarks[j]) as f64);
+        let square = LandmarkDistances::new(landmarks, columns).unwrap();
+        let square = DiscAreas::new(&square, &[1.0; 196]).unwrap();
+        let parts = PartDiscAreas::new(&distances, &masses, &from_cut, 1.0).unwrap();
+        let other = parts.distance(&square);
+        assert!(other.distance > 10.0 * part.distance, "{part:?}, {other:?}");
+    }
+
+    #[test]
+    fn lengths_that_do_not_match_are_errors() {
+        let (distances, masses) = strip(0..50);
+        assert!(matches!(
+            DiscAreas::new(&distances, &masses[1..]),
+            Err(DescriptorError::SizeMismatch { .. })
+        ));
+        assert!(PartDiscAreas::new(&distances, &masses, &[1.0], 1.0).is_err());
+        assert!(DiscAreas::new(&distances, &[0.0; 50]).is_err());
+    }
+}
