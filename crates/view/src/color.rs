@@ -1,5 +1,6 @@
 //! Colours: the sRGB curve, a palette for classes, a colour map for numbers.
 
+use nalgebra::Point3;
 use plotters::prelude::ViridisRGB;
 
 pub use crate::color_map::ColorMap;
@@ -59,6 +60,27 @@ pub fn perceptual(t: f64) -> Rgb {
     }
     let color = ViridisRGB::get_color(t.clamp(0.0, 1.0));
     [color.0, color.1, color.2]
+}
+
+/// A colour for each point, by its place in the box around all of them: corresponding points of two surfaces are easy to
+/// find by eye if both have the colours of one. Points that are not finite are grey.
+#[must_use]
+pub fn place_colors(points: &[Point3<f64>]) -> Vec<Rgb> {
+    let ranges = [0, 1, 2].map(|axis| {
+        let values: Vec<f64> = points.iter().map(|p| p[axis]).collect();
+        value_range(&values).unwrap_or_default()
+    });
+    let color = |p: &Point3<f64>| {
+        if !p.coords.iter().all(|x| x.is_finite()) {
+            return perceptual(f64::NAN);
+        }
+        [0, 1, 2].map(|axis| {
+            let [low, high] = ranges[axis];
+            let share = if high > low { (p[axis] - low) / (high - low) } else { 0.5 };
+            (30.0 + 215.0 * share).round() as u8
+        })
+    };
+    points.iter().map(color).collect()
 }
 
 /// The least and the greatest of the finite numbers.

@@ -30,6 +30,23 @@ impl RgbaImage {
         Self { width, height, pixels: (0..height as usize).flat_map(row).collect() }
     }
 
+    /// Two images side by side; a missing part at the bottom of the lower one has the colour of its first pixel.
+    #[must_use]
+    pub fn beside(&self, right: &Self) -> Self {
+        let pixel = |image: &Self, column: usize, row: usize| {
+            let at = row * image.width as usize + column;
+            let found = if row < image.height as usize { image.pixels.get(at) } else { image.pixels.first() };
+            found.copied().unwrap_or_default()
+        };
+        let left = self.width as usize;
+        Self::from_fn(self.width + right.width, self.height.max(right.height), |column, row| {
+            match column.checked_sub(left) {
+                None => pixel(self, column, row),
+                Some(column) => pixel(right, column, row),
+            }
+        })
+    }
+
     /// Width in pixels.
     #[must_use]
     pub fn width(&self) -> u32 {
@@ -136,6 +153,15 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let error = RgbaImage::new(0, 5, [0; 4]).write_png(folder.path().join("x.png")).unwrap_err();
         assert!(error.to_string().contains("x.png"), "{error}");
+    }
+
+    #[test]
+    fn images_of_different_height_stand_side_by_side() {
+        let (mut a, b) = (RgbaImage::new(1, 2, [1; 4]), RgbaImage::new(2, 1, [2; 4]));
+        a.pixels_mut()[1] = [3; 4];
+        let both = a.beside(&b);
+        assert_eq!((both.width(), both.height()), (3, 2));
+        assert_eq!(both.pixels(), [[1; 4], [2; 4], [2; 4], [3; 4], [2; 4], [2; 4]]);
     }
 
     #[test]

@@ -19,10 +19,15 @@ pub enum Surface {
         /// ends of the range, and none on faces where the value is constant.
         isolines: u32,
     },
+    /// One sRGB colour per vertex, interpolated across faces in linear light. Vertices beyond the list are grey.
+    Colors(Vec<[u8; 3]>),
 }
 
 /// The share of light that an isoline leaves of its surface.
 pub(super) const ISOLINE_LIGHT: f32 = 0.35;
+
+/// The colour of a vertex without one.
+const MISSING: [u8; 3] = [160, 160, 160];
 
 /// A [`Surface`] in linear light.
 pub(super) enum Paint {
@@ -36,12 +41,17 @@ pub(super) enum Paint {
         half_width: f32,
         colors: ColorMap,
     },
+    Colors(Vec<Vector3<f32>>),
 }
 
 impl Paint {
     pub(super) fn new(n_vertices: usize, surface: &Surface, colors: ColorMap, samples: u32) -> Self {
         match surface {
             Surface::Plain(color) => Self::Plain(color.map(to_linear)),
+            Surface::Colors(colors) => {
+                let color = |v: usize| colors.get(v).copied().unwrap_or(MISSING);
+                Self::Colors((0..n_vertices).map(|v| Vector3::from(color(v).map(to_linear))).collect())
+            }
             Surface::Scalars { values, range, isolines } => {
                 let [low, high] = range.or_else(|| value_range(values)).unwrap_or([0.0; 2]);
                 let span = if high > low { high - low } else { 1.0 };
@@ -67,6 +77,10 @@ impl Paint {
     ) -> Vector3<f32> {
         match self {
             Self::Plain(color) => Vector3::from(*color),
+            Self::Colors(colors) => {
+                let [a, b, c] = face.map(|v| colors[v]);
+                a * at.x + b * at.y + c * at.z
+            }
             Self::Scalars { values, steps, half_width, colors } => {
                 let corners = Vector3::from(face.map(|v| values[v]));
                 let value = corners.dot(&at);
