@@ -11,7 +11,9 @@ use linalg::LinalgError;
 use mesh::MeshError;
 use nmds::NmdsError;
 use retrieval::RetrievalError;
+use surface::VertexId;
 
+use crate::field::fault::FieldFault;
 use crate::input::point::InputPoint;
 
 /// Errors of this crate and of the crates it builds on; [`remedy`](Error::remedy) says what would help.
@@ -150,6 +152,46 @@ pub enum Error {
         /// The least value allowed.
         least: usize,
     },
+    /// A target of the stress where forms have to be comparable.
+    #[error(
+        "a description cannot have a target of the stress, since forms of different accuracy are hard to compare"
+    )]
+    TargetOfDescription,
+    /// A search for the number of samples by a method whose coordinates are no lengths.
+    #[error("how many samples {method} needs cannot be measured, since its coordinates are no lengths")]
+    NoStress {
+        /// Name of the embedding method.
+        method: &'static str,
+    },
+    /// A method that cannot place further points.
+    #[error("{method} cannot place further points in its embedding; nmds can")]
+    NoExtension {
+        /// Name of the embedding method.
+        method: &'static str,
+    },
+    /// A surface that an embedding is not of.
+    #[error(
+        "the embedding has {n_points} points and the surface {n_vertices} vertices; they do not belong together"
+    )]
+    OtherSurface {
+        /// Vertices of the surface after its repair.
+        n_vertices: usize,
+        /// Points of the embedding.
+        n_points: usize,
+    },
+    /// A finer mesh that has no vertex where the coarser one has a sample.
+    #[error(
+        "the finer mesh has no vertex near sample {sample} of the coarser one: the nearest is {gap:.4} away, and a mean edge is \
+         {allowed:.4} long; both must be meshes of one surface in one place"
+    )]
+    NotThere {
+        /// The sample, a vertex of the coarser input.
+        sample: VertexId,
+        /// Distance of the nearest vertex of the finer mesh, in mesh units.
+        gap: f64,
+        /// The largest distance allowed.
+        allowed: f64,
+    },
     /// Too little memory for distances between all pairs, a block at a time.
     #[error(
         "distances between all pairs of {n_vertices} vertices need at least {needed} bytes of memory at once, more \
@@ -193,6 +235,14 @@ pub enum Error {
     /// A folder or a text file that cannot be read.
     #[error(transparent)]
     File(#[from] FileError),
+    /// A file that is no distance field, or a damaged one.
+    #[error("{path}: {fault}", path = path.display())]
+    BadField {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        fault: FieldFault,
+    },
     /// A folder, an archive or a list without meshes.
     #[error(
         "{path}: no mesh found in it or its sub-folders; \
@@ -222,6 +272,8 @@ pub enum Remedy {
     UseFastMarching,
     /// Embed by NMDS, which needs a few columns of distances only.
     UseNystrom,
+    /// Give the number of samples.
+    GiveSamples,
     /// Allow more memory.
     RaiseMemory,
     /// Allow more time.
@@ -238,6 +290,8 @@ pub enum Remedy {
     BuildIndexAgain,
     /// Build the index again from its folder, or change it, which adds the graph of nearest neighbours.
     AddGraph,
+    /// Build the distance field again from its mesh.
+    BuildFieldAgain,
     /// Look at the names in the index.
     ListShapes,
     /// Evaluate a part of the collection, such as one shard.
@@ -295,6 +349,7 @@ impl Error {
             Self::Geodesic(GeodesicError::NotFactorised { .. }) => Remedy::UseFastMarching,
             Self::Geodesic(GeodesicError::NoWay { .. }) | Self::NoPath { .. } => Remedy::RaiseMaxDistance,
             Self::AllPairsTooLarge { .. } => Remedy::UseNystrom,
+            Self::TargetOfDescription | Self::NoStress { .. } => Remedy::GiveSamples,
             Self::MemoryTooSmall { .. }
             | Self::EmbeddingTooLarge { .. }
             | Self::Exceeded(Exceeded::Memory { .. }) => Remedy::RaiseMemory,
@@ -306,6 +361,7 @@ impl Error {
             Self::MeshGone { .. } | Self::MeshChanged { .. } => Remedy::RestoreMesh,
             Self::UnknownOptions { .. } => Remedy::BuildIndexAgain,
             Self::Index(fault) => return Remedy::of_index(fault),
+            Self::BadField { .. } => Remedy::BuildFieldAgain,
             Self::TooManyShapes { .. } => Remedy::EvaluateShard,
             _ => return None,
         })

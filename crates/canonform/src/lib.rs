@@ -32,7 +32,8 @@
 //! 2. [`Surface`]: the repaired mesh, with its connectivity and edge lengths. Defects that would break distance
 //!    computation are repaired and reported; vertices keep their order. [`InputPoint`] and [`SurfacePath`] name points
 //!    and shortest paths in the numbers of the input.
-//! 3. Distances along the surface, by any [`geodesics::Method`], from samples or between [`AllPairs`] of vertices.
+//! 3. Distances along the surface, by any [`geodesics::Method`], from samples or between [`AllPairs`] of vertices. A
+//!    [`DistanceField`] holds all pairs in little memory, with bounds.
 //! 4. [`Embedded`]: coordinates by any [`EmbedMethod`], made by [`embed`] as [`FormOptions`] say. The options travel with
 //!    everything that is made from here on. [`embed_and_measure`] adds the stress.
 //! 5. [`descriptors::CanonicalForm`]: the embedded surface, weighted by area, in three dimensions.
@@ -83,7 +84,9 @@
 //! * Nothing here knows terminals, plots or HTTP.
 
 mod compare;
+mod correspond;
 mod error;
+mod field;
 mod form;
 mod input;
 mod observer;
@@ -97,12 +100,16 @@ pub use compare::{
     MeshGeometry, Overlay, Parts, Residual, Side, SurfaceComparison, SurfaceGap, Triangulation, UnitChange,
     compare, compare_meshes, compare_surfaces, embedded_distances, form_matches,
 };
+pub use correspond::{CorrespondOptions, Correspondence, MatchedSurface, VertexMap, correspond};
 pub use error::{Error, Remedy};
+pub use field::{
+    DistanceField, FieldBounds, FieldFacts, FieldFault, FieldOptions, Finish, PairDistance, PairKind,
+};
 pub use form::{
     DISTANCES_LIMIT, DescentReport, DescribeOptions, EmbedMethod, EmbedReport, EmbedSettings, Embedded,
-    FormOptions, MethodFacts, MethodReport, MethodsReport, NoEffect, Samples, SecondsReport,
-    ShapeDescription, StressChoice, StressKind, StressOptions, StressReport, compare_methods, describe,
-    describe_within, embed, embed_and_measure, embed_and_release,
+    FormOptions, MethodFacts, MethodReport, MethodsReport, NoEffect, Samples, SamplesReport, SecondsReport,
+    ShapeDescription, StressChoice, StressKind, StressOptions, StressReport, TargetVerdict, compare_methods,
+    describe, describe_within, embed, embed_again, embed_and_measure, embed_and_release, embed_finer,
 };
 pub use input::{
     AllPairs, Asymmetry, BadPoint, Dataset, InputMap, InputPoint, LabelFile, PathPoint, ShapeFile, SkipKind,

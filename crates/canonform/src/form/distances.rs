@@ -1,46 +1,69 @@
 //! Measuring the distances that an embedding method needs.
 
+use std::borrow::Cow;
 use std::fmt;
 use std::str::FromStr;
 use std::time::Instant;
 
 use budget::{Budget, Exceeded};
-use geodesics::{DistanceSolver, FirstSample, Sampler, Sampling, Source};
-use linalg::{DistanceMatrix, LandmarkDistances};
-use nmds::{Embedding, NmdsError, RowSample, estimate_stress};
+use geodesics::{DistanceSolver, FirstSample, PrunedSolver, Sampler, Sampling, Source};
+use linalg::{DistanceMatrix, LandmarkDistances, Matrix};
+use nmds::{Embedding, NmdsError, SampleGoal, SampleSearch, SampleStep};
+use serde::{Deserialize, Serialize};
+use surface::VertexId;
 
 use super::plan::{Plan, check_memory};
-use super::stress::KnownRows;
+use super::samples_report::SamplesReport;
 use crate::error::Error;
 use crate::observer::Observer;
 
 /// Samples taken by default, as in the paper's Figure 4.
 const DEFAULT_COUNT: usize = 100;
 
-/// [`Samples::Auto`] starts from this many samples.
-const AUTO_FIRST: usize = 10;
-
 /// [`Samples::Auto`] stops at this many samples.
 const AUTO_LAST: usize = 640;
 
-/// [`Samples::Auto`] stops when doubling the samples reduces the stress by less than this share.
-const AUTO_GAIN: f64 = 0.01;
-
 /// How many samples are taken; written as a number or as `auto`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(into = "Stored", try_from = "Stored")]
 pub enum Samples {
     /// This many.
     Count(usize),
-    /// Doubled from 10 to at most 640, until the stress measured on the samples falls by less than 1 %.
-    Auto,
+    /// As many as needed, at most 640: see [`SampleSearch`].
+    Auto {
+        /// The most [normalised stress](nmds::normalized_stress) that is wanted. By default, samples are enough when twice as
+        /// many reduced the [stress of the paper](nmds::paper_stress) by less than 1 %.
+        target_stress: Option<f64>,
+    },
 }
 
 impl Samples {
+    /// As many as needed, without a target.
+    pub const AUTO: Self = Self::Auto { target_stress: None };
+
     /// The number, or `auto` if it is not fixed.
     pub(super) fn count_or(self, auto: usize) -> usize {
         match self {
             Self::Count(n) => n,
-            Self::Auto => auto,
+            Self::Auto { .. } => auto,
+        }
+    }
+
+    /// The target of a search, if there is one.
+    pub fn target_stress(self) -> Option<f64> {
+        match self {
+            Self::Auto { target_stress } => target_stress,
+            Self::Count(_) => None,
+        }
+    }
+
+    /// When a search ends; `None` for a fixed number.
+    pub fn goal(self) -> Option<SampleGoal> {
+        match self {
+            Self::Count(_) => None,
+            Self::Auto { target_stress } => {
+                Some(target_stress.map_or(SampleGoal::Settled, SampleGoal::Stress))
+            }
         }
     }
 }
@@ -55,7 +78,7 @@ impl fmt::Display for Samples {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Count(n) => n.fmt(f),
-            Self::Auto => f.write_str("auto"),
+            Self::Auto { .. } => f.write_str("auto"),
         }
     }
 }
@@ -65,16 +88,51 @@ impl FromStr for Samples {
 
     fn from_str(text: &str) -> Result<Self, String> {
         match text.parse() {
-            _ if text == "auto" => Ok(Self::Auto),
+            _ if text == "auto" => Ok(Self::AUTO),
             Ok(0) | Err(_) => Err(format!("`{text}` is neither a positive number nor `auto`")),
             Ok(n) => Ok(Self::Count(n)),
         }
     }
 }
 
+/// [`Samples`] as they are stored: `100`, `"auto"` or `{"target-stress":0.02}`.
+#[derive(Serialize, Deserialize)]
+#[serde(untagged)]
+enum Stored {
+    Count(usize),
+    Text(String),
+    Target {
+        #[serde(rename = "target-stress")]
+        target_stress: f64,
+    },
+}
+
+impl From<Samples> for Stored {
+    fn from(samples: Samples) -> Self {
+        match samples {
+            Samples::Count(n) => Self::Count(n),
+            Samples::Auto { target_stress: None } => Self::Text(samples.to_string()),
+            Samples::Auto { target_stress: Some(target_stress) } => Self::Target { target_stress },
+        }
+    }
+}
+
+impl TryFrom<Stored> for Samples {
+    type Error = String;
+
+    fn try_from(stored: Stored) -> Result<Self, String> {
+        match stored {
+            Stored::Count(n) => n.to_string().parse(),
+            Stored::Text(text) => text.parse(),
+            Stored::Target { target_stress } => Ok(Self::Auto { target_stress: Some(target_stress) }),
+        }
+    }
+}
+
 /// The memory of an embedding by distances from samples.
 pub(super) fn plan(n_vertices: usize, samples: Samples) -> Plan {
-    Plan::new(n_vertices, samples.count_or(AUTO_LAST))
+    let held_out = samples.goal().map_or(0, |goal| SampleSearch::most_rows(goal, n_vertices));
+    Plan::new(n_vertices, samples.count_or(AUTO_LAST)).with_held_out(held_out)
 }
 
 /// Measures distances on one surface and counts the time it takes.
@@ -92,14 +150,34 @@ pub(super) struct Measurement<'a> {
     pub(super) streams: bool,
     /// Seconds spent on distances so far.
     pub(super) seconds: f64,
+    /// How the number of samples was found, if it was not given.
+    pub(super) search: Option<SamplesReport>,
+}
+
+/// Embeds by distances, with a rank of the sample matrix if there is one.
+pub(super) type EmbedByRank<'a> =
+    dyn Fn(&LandmarkDistances, Option<usize>) -> Result<Embedding, NmdsError> + 'a;
+
+/// An embedding by distances from samples.
+pub(super) struct Sampled<'a> {
+    /// Embeds; with this rank of the sample matrix if one is given, else as the options say.
+    pub(super) embed: &'a EmbedByRank<'a>,
+    /// Other ranks worth trying for a number of samples; none if the options say the rank, or there is none.
+    pub(super) other_ranks: &'a dyn Fn(usize) -> Vec<usize>,
+    /// The number of samples that a search begins with.
+    pub(super) first_samples: usize,
+}
+
+impl Sampled<'_> {
+    fn others(&self, distances: &LandmarkDistances) -> Result<Vec<Embedding>, NmdsError> {
+        let ranks = (self.other_ranks)(distances.n_landmarks());
+        ranks.into_iter().map(|rank| (self.embed)(distances, Some(rank))).collect()
+    }
 }
 
 impl Measurement<'_> {
     /// Takes samples and embeds by the distances from them.
-    pub(super) fn sampled(
-        &mut self,
-        embed: impl Fn(&LandmarkDistances) -> Result<Embedding, NmdsError>,
-    ) -> Result<(Embedding, LandmarkDistances), Error> {
+    pub(super) fn sampled(&mut self, method: &Sampled<'_>) -> Result<(Embedding, LandmarkDistances), Error> {
         let (solver, sampling) = (self.solver, self.sampling);
         self.observer.begin("distances", self.samples.count_or(AUTO_LAST));
         let mut sampler = self.timed(|m| sampling.start(solver, m.first, m.seed))?;
@@ -107,40 +185,59 @@ impl Measurement<'_> {
             let store = plan(solver.n_vertices(), self.samples).store(&self.budget)?;
             self.timed(|_| sampler.move_to(store))?;
         }
-        match self.samples {
-            Samples::Count(n) => {
-                self.extend(sampler.as_mut(), n)?;
-                let distances = self.timed(|_| sampler.into_distances(n))?;
-                self.budget.check()?;
-                let embedding = embed(&distances)?;
-                self.budget.check()?;
-                Ok((embedding, distances))
-            }
-            Samples::Auto => self.enough(sampler.as_mut(), embed),
+        if let Some(goal) = self.samples.goal() {
+            return self.enough(sampler.as_mut(), goal, method);
         }
+        let n = self.samples.count_or(DEFAULT_COUNT);
+        self.extend(sampler.as_mut(), n)?;
+        let distances = self.timed(|_| sampler.into_distances(n))?;
+        self.budget.check()?;
+        let embedding = (method.embed)(&distances, None)?;
+        self.budget.check()?;
+        Ok((embedding, distances))
     }
 
-    /// Doubles the samples until that hardly reduces the stress measured on their own rows.
+    /// Takes samples until they are enough.
     fn enough(
         &mut self,
         sampler: &mut dyn Sampler,
-        embed: impl Fn(&LandmarkDistances) -> Result<Embedding, NmdsError>,
+        goal: SampleGoal,
+        method: &Sampled<'_>,
     ) -> Result<(Embedding, LandmarkDistances), Error> {
-        let mut n = AUTO_FIRST;
-        let mut embedding = embed(&self.take(sampler, n)?)?;
-        loop {
-            n *= 2;
-            let more = self.take(sampler, n)?;
-            let refined = embed(&more)?;
-            let rows = KnownRows(&more);
-            // All landmarks, so that both are compared on the same rows.
-            let sample = RowSample::of_rows(more.landmarks().to_vec(), more.n_points());
-            let stress = |e: &Embedding| Ok::<_, Error>(estimate_stress(&e.coords, &rows, &sample)?.value);
-            let settled = stress(&embedding)? <= (1.0 + AUTO_GAIN) * stress(&refined)?;
-            if settled || more.n_landmarks() < n || n >= AUTO_LAST {
-                return Ok((refined, more));
-            }
-            embedding = refined;
+        let limit = AUTO_LAST.min(self.solver.n_vertices());
+        let mut search = SampleSearch::new(goal, method.first_samples, limit, self.seed);
+        let (mut step, mut taken) = (search.start(), None);
+        let (stop, distances) = loop {
+            self.budget.check()?;
+            step = match (step, &taken) {
+                (SampleStep::Samples(n), _) => {
+                    let distances = taken.insert(self.take(sampler, n)?);
+                    let mut candidates = vec![(method.embed)(distances, None)?];
+                    if goal != SampleGoal::Settled {
+                        candidates.extend(method.others(distances)?);
+                    }
+                    search.offer(distances, candidates)?
+                }
+                (SampleStep::Rows(rows), _) => {
+                    check_memory(self.solver.n_vertices(), rows.len(), &self.budget)?;
+                    let sources: Vec<VertexId> = rows.iter().copied().map(VertexId::from).collect();
+                    let columns = self.timed(|m| m.solver.distance_columns(&sources))?;
+                    search.supply(&rows, &columns)?
+                }
+                (SampleStep::Done(stop), Some(distances)) => {
+                    if goal == SampleGoal::Settled {
+                        search.compare(method.others(distances)?)?;
+                    }
+                    let Some(distances) = taken.take() else { unreachable!("some were offered") };
+                    break (stop, distances);
+                }
+                (SampleStep::Done(_), None) => unreachable!("a search begins with samples"),
+            };
+        };
+        self.search = Some(SamplesReport::new(&search, self.samples.target_stress(), stop));
+        match search.into_embedding() {
+            Some(embedding) => Ok((embedding, distances)),
+            None => unreachable!("an embedding was offered"),
         }
     }
 
@@ -200,5 +297,65 @@ impl DistanceSolver for KnownDistances<'_> {
         }
         out.iter_mut().filter(|d| **d > max_distance).for_each(|d| *d = f64::INFINITY);
         Ok(())
+    }
+}
+
+/// A solver that looks up what is known and measures the rest.
+#[derive(Debug)]
+pub(super) struct KnownColumns<'a> {
+    pub(super) solver: &'a dyn DistanceSolver,
+    pub(super) known: &'a LandmarkDistances,
+}
+
+impl KnownColumns<'_> {
+    /// The distances from a vertex, if it is a known landmark whose column can be read.
+    fn column(&self, vertex: VertexId) -> Option<Cow<'_, [f64]>> {
+        let landmark = self.known.landmarks().iter().position(|&landmark| landmark == vertex.index())?;
+        self.known.column(landmark).ok()
+    }
+}
+
+impl DistanceSolver for KnownColumns<'_> {
+    fn n_vertices(&self) -> usize {
+        self.solver.n_vertices()
+    }
+
+    fn budget(&self) -> Budget {
+        self.solver.budget()
+    }
+
+    fn solve_into(&self, sources: &[Source], max_distance: f64, out: &mut [f64]) -> Result<(), Exceeded> {
+        self.solver.solve_into(sources, max_distance, out)
+    }
+
+    fn distances_into(&self, source: VertexId, out: &mut [f64]) -> Result<(), Exceeded> {
+        match self.column(source) {
+            Some(column) => {
+                out.copy_from_slice(&column);
+                Ok(())
+            }
+            None => self.solver.distances_into(source, out),
+        }
+    }
+
+    fn pruned(&self) -> Option<&dyn PrunedSolver> {
+        self.solver.pruned()
+    }
+
+    fn distance_columns(&self, sources: &[VertexId]) -> Result<Matrix, Exceeded> {
+        let known: Vec<_> = sources.iter().map(|&source| self.column(source)).collect();
+        let unknown = sources.iter().zip(&known).filter(|(_, known)| known.is_none());
+        let measured =
+            self.solver.distance_columns(&unknown.map(|(source, _)| *source).collect::<Vec<_>>())?;
+        let mut measured = measured.column_iter();
+        let mut columns = self.budget().vector(self.n_vertices().saturating_mul(sources.len()))?;
+        for (place, known) in columns.chunks_exact_mut(self.n_vertices().max(1)).zip(&known) {
+            match (known, known.is_none().then(|| measured.next()).flatten()) {
+                (Some(known), _) => place.copy_from_slice(known),
+                (None, Some(column)) => place.copy_from_slice(column.as_slice()),
+                (None, None) => unreachable!("every source is measured or known"),
+            }
+        }
+        Ok(Matrix::from_vec(self.n_vertices(), sources.len(), columns))
     }
 }

@@ -4,13 +4,13 @@ use std::borrow::Cow;
 use std::time::Instant;
 
 use descriptors::CanonicalForm;
-use geodesics::FirstSample;
+use geodesics::{DistanceSolver, FirstSample};
 use linalg::LandmarkDistances;
 use mesh::RepairReport;
-use nmds::Embedding;
+use nmds::{Embedding, OutOfSample};
 use surface::{IntrinsicMesh, VertexId};
 
-use super::distances::{Measurement, plan};
+use super::distances::{KnownColumns, Measurement, plan};
 use super::method::Outcome;
 use super::options::FormOptions;
 use super::report::{EmbedReport, SecondsReport};
@@ -30,6 +30,8 @@ pub struct Embedded {
     pub distances: LandmarkDistances,
     /// Facts about the run.
     pub report: EmbedReport,
+    /// What placed the points, if the coordinates are those of a coarser mesh.
+    pub(super) extension: Option<OutOfSample>,
 }
 
 impl Embedded {
@@ -63,8 +65,8 @@ impl Embedded {
 /// ```
 ///
 /// # Errors
-/// [`Error::AllPairsTooLarge`], [`Error::NoSuchPoint`] and [`Error::DroppedPoint`] for the first sample, [`Error::Exceeded`],
-/// and the errors of the stages.
+/// [`Error::AllPairsTooLarge`], [`Error::NoSuchPoint`] and [`Error::DroppedPoint`] for the first sample, [`Error::NoStress`],
+/// [`Error::Exceeded`], and the errors of the stages.
 pub fn embed(surface: &Surface, options: &FormOptions, observer: &dyn Observer) -> Result<Embedded, Error> {
     let skip = StressOptions { choice: StressChoice::Skip, ..StressOptions::default() };
     embed_and_measure(surface, options, &skip, observer)
@@ -82,13 +84,41 @@ pub fn embed_and_measure(
 ) -> Result<Embedded, Error> {
     let options = FormOptions { repair: surface.repair, ..options.clone() }.normalized();
     let first = first_sample(surface, &options)?;
-    let origin = Origin {
-        report: &surface.repaired.report,
-        input_vertex: &|v| surface.input_vertex(v),
-        load_seconds: surface.load_seconds,
-        repair_seconds: surface.repair_seconds,
-    };
-    run(Cow::Borrowed(&surface.intrinsic), &origin, options, first, stress, observer)
+    run(Cow::Borrowed(&surface.intrinsic), &Origin::of(surface), options, first, None, stress, observer)
+}
+
+/// Embeds a surface as [`embed_and_measure`] does, and looks up the distances that an earlier embedding of the same surface has
+/// measured: to take more samples, or to try another method or rank on the same ones. The result is the same, bit for bit.
+///
+/// ```
+/// use canonform::{FormOptions, Samples, StressOptions, Surface, embed_again, embed_and_measure, mesh::shapes};
+///
+/// let surface = Surface::new(&shapes::torus(24, 12, 2.0, 0.7), &Default::default())?;
+/// let few = FormOptions { samples: Samples::Count(20), ..FormOptions::default() };
+/// let many = FormOptions { samples: Samples::Count(50), ..few.clone() };
+/// let stress = StressOptions::default();
+/// let first = embed_and_measure(&surface, &few, &stress, &())?;
+///
+/// // Measures the distances from 30 samples, not from 50.
+/// let more = embed_again(&surface, &first, &many, &stress, &())?;
+/// assert_eq!(more.embedding, embed_and_measure(&surface, &many, &stress, &())?.embedding);
+/// # Ok::<(), canonform::Error>(())
+/// ```
+///
+/// # Errors
+/// [`Error::OtherSurface`] if the earlier embedding has another number of vertices, and as [`embed`].
+pub fn embed_again(
+    surface: &Surface,
+    earlier: &Embedded,
+    options: &FormOptions,
+    stress: &StressOptions,
+    observer: &dyn Observer,
+) -> Result<Embedded, Error> {
+    earlier.check_surface(surface)?;
+    let options = FormOptions { repair: surface.repair, ..options.clone() }.normalized();
+    let first = first_sample(surface, &options)?;
+    let known = (options.geodesic == earlier.options.geodesic).then_some(&earlier.distances);
+    run(Cow::Borrowed(&surface.intrinsic), &Origin::of(surface), options, first, known, stress, observer)
 }
 
 /// Embeds a surface as [`embed_and_measure`] does, in less memory: the mesh is dropped before distances are measured. The
@@ -122,11 +152,12 @@ pub fn embed_and_release(
     let (intrinsic, map) = surface.into_parts();
     let origin = Origin {
         report: &map.report,
-        input_vertex: &|v| map.input_vertex(v),
+        input_vertex: Box::new(|v| map.input_vertex(v)),
         load_seconds: map.load_seconds,
         repair_seconds: map.repair_seconds,
     };
-    let embedded = run(Cow::Owned(intrinsic), &origin, options, first, stress, observer)?;
+    let embedded = run(Cow::Owned(intrinsic), &origin, options, first, None, stress, observer)?;
+    drop(origin);
     Ok((embedded, map))
 }
 
@@ -139,12 +170,23 @@ fn first_sample(surface: &Surface, options: &FormOptions) -> Result<FirstSample,
 }
 
 /// What the report tells of the input.
-struct Origin<'a> {
+pub(super) struct Origin<'a> {
     report: &'a RepairReport,
     /// The input vertex of a vertex of the repaired mesh.
-    input_vertex: &'a dyn Fn(VertexId) -> VertexId,
+    input_vertex: Box<dyn Fn(VertexId) -> VertexId + 'a>,
     load_seconds: f64,
     repair_seconds: f64,
+}
+
+impl<'a> Origin<'a> {
+    pub(super) fn of(surface: &'a Surface) -> Self {
+        Self {
+            report: &surface.repaired.report,
+            input_vertex: Box::new(|v| surface.input_vertex(v)),
+            load_seconds: surface.load_seconds,
+            repair_seconds: surface.repair_seconds,
+        }
+    }
 }
 
 fn run(
@@ -152,11 +194,15 @@ fn run(
     origin: &Origin<'_>,
     options: FormOptions,
     first: FirstSample,
+    known: Option<&LandmarkDistances>,
     stress: &StressOptions,
     observer: &dyn Observer,
 ) -> Result<Embedded, Error> {
     let start = Instant::now();
     let budget = observer.budget();
+    if !options.method.has_unit() && options.samples.goal().is_some() {
+        return Err(Error::NoStress { method: options.method.name() });
+    }
     if options.method.streams() {
         plan(surface.n_vertices(), options.samples).check(&budget)?;
     }
@@ -169,8 +215,9 @@ fn run(
         surface => (options.geodesic.prepare_within(&surface, &budget)?, Some(surface)),
     };
     let solver = Observed { solver: solver.as_ref(), observer };
+    let reused = known.map(|known| KnownColumns { solver: &solver, known });
     let mut measurement = Measurement {
-        solver: &solver,
+        solver: reused.as_ref().map_or(&solver as &dyn DistanceSolver, |reused| reused),
         samples: options.samples,
         sampling: options.sampling,
         first,
@@ -179,13 +226,15 @@ fn run(
         budget: budget.clone(),
         streams: options.method.streams(),
         seconds: start.elapsed().as_secs_f64(),
+        search: None,
     };
     let Outcome { embedding, distances, all, descent } =
         options.method.run(surface.as_deref(), options.dim, &mut measurement)?;
     let (elapsed, geodesics) = (start.elapsed().as_secs_f64(), measurement.seconds);
+    let search = measurement.search.take();
 
     let start = Instant::now();
-    let known = Known { coords: &embedding.coords, samples: &distances };
+    let known = Known { coords: &embedding.coords, samples: &distances, searched: search.is_some() };
     let stress_report = match (against, surface.as_deref()) {
         _ if !measures => None,
         (Some(other), Some(surface)) => {
@@ -199,37 +248,63 @@ fn run(
         }
     };
     drop(all);
-    let seconds = SecondsReport {
-        load: origin.load_seconds,
-        repair: origin.repair_seconds,
-        geodesics,
-        embedding: elapsed - geodesics,
-        stress: start.elapsed().as_secs_f64(),
-        total: origin.load_seconds + origin.repair_seconds + elapsed,
-    };
-    let samples = match options.method.is_sampled() {
-        true => distances.landmarks(),
-        false => &[],
-    };
+    let auto = search.map(|search| search.judged(stress_report.as_ref()));
+    let [embedding_seconds, stress_seconds] = [elapsed - geodesics, start.elapsed().as_secs_f64()];
+    let seconds = origin.seconds(geodesics, embedding_seconds, stress_seconds);
     let report = EmbedReport {
-        method: options.method.name(),
-        geodesic: options.geodesic.name(),
-        sampling: options.method.is_sampled().then(|| options.sampling.name()),
-        regularization: options.method.regularization().map(|chosen| chosen.name()),
-        n_vertices: origin.report.input_vertices,
-        n_faces: origin.report.input_faces,
-        n_embedded: embedding.n_points(),
-        n_samples: if options.method.is_sampled() { samples.len() } else { embedding.n_points() },
-        rank: embedding.rank,
-        dim: embedding.dim(),
-        samples: samples.iter().map(|&v| (origin.input_vertex)(VertexId::from(v)).0).collect(),
-        eigenvalues: embedding.eigenvalues.clone(),
-        negative_mass: embedding.negative_mass,
-        empty_dimensions: embedding.dim() - embedding.positive_dims(),
-        stress: stress_report,
+        auto,
         descent: descent.map(Into::into),
-        seconds,
-        repair: origin.report.clone(),
+        ..origin.facts(&options, &embedding, &distances)
     };
-    Ok(Embedded { options, embedding, distances, report })
+    let report = EmbedReport { stress: stress_report, seconds, ..report };
+    Ok(Embedded { options, embedding, distances, report, extension: None })
+}
+
+impl Origin<'_> {
+    /// Wall-clock seconds of the stages.
+    pub(super) fn seconds(&self, geodesics: f64, embedding: f64, stress: f64) -> SecondsReport {
+        let [load, repair] = [self.load_seconds, self.repair_seconds];
+        SecondsReport {
+            load,
+            repair,
+            geodesics,
+            embedding,
+            stress,
+            total: load + repair + geodesics + embedding,
+        }
+    }
+
+    /// The report on an embedding, without what was measured on the way.
+    pub(super) fn facts(
+        &self,
+        options: &FormOptions,
+        embedding: &Embedding,
+        distances: &LandmarkDistances,
+    ) -> EmbedReport {
+        let samples = match options.method.is_sampled() {
+            true => distances.landmarks(),
+            false => &[],
+        };
+        EmbedReport {
+            method: options.method.name(),
+            geodesic: options.geodesic.name(),
+            sampling: options.method.is_sampled().then(|| options.sampling.name()),
+            regularization: options.method.regularization().map(|chosen| chosen.name()),
+            n_vertices: self.report.input_vertices,
+            n_faces: self.report.input_faces,
+            n_embedded: embedding.n_points(),
+            n_samples: if options.method.is_sampled() { samples.len() } else { embedding.n_points() },
+            rank: embedding.rank,
+            dim: embedding.dim(),
+            samples: samples.iter().map(|&v| (self.input_vertex)(VertexId::from(v)).0).collect(),
+            eigenvalues: embedding.eigenvalues.clone(),
+            negative_mass: embedding.negative_mass,
+            empty_dimensions: embedding.dim() - embedding.positive_dims(),
+            auto: None,
+            stress: None,
+            descent: None,
+            seconds: SecondsReport::default(),
+            repair: self.report.clone(),
+        }
+    }
 }

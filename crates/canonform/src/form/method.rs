@@ -3,16 +3,16 @@
 use descriptors::LaplaceSpectrum;
 use linalg::{DistanceMatrix, LandmarkDistances, SparseSymmetric};
 use nmds::{
-    Bandwidth, Embedding, KernelPcaOptions, NystromOptions, Regularization, SmacofOptions, SmacofReport,
-    SpectralBasis, SpectralOptions, classical_within, fmds_within, kernel_pca, landmark_mds, nystrom,
-    smacof_within, spectral,
+    Bandwidth, Embedding, KernelPcaOptions, NystromOptions, Regularization, SampleSearch, SmacofOptions,
+    SmacofReport, SpectralBasis, SpectralOptions, classical_within, fmds_within, kernel_pca, landmark_mds,
+    nystrom, smacof_within, spectral,
 };
 use serde::{Deserialize, Serialize};
 use surface::IntrinsicMesh;
 use surface::laplacian::Laplacian;
 
 use super::as_text;
-use super::distances::Measurement;
+use super::distances::{EmbedByRank, Measurement, Sampled};
 use super::plan::check_memory;
 use crate::error::Error;
 
@@ -163,10 +163,8 @@ impl EmbedMethod {
         let sampled = |(embedding, distances)| Outcome { embedding, distances, all: None, descent: None };
         let surface = || surface.unwrap_or_else(|| unreachable!("{} needs the surface", self.name()));
         Ok(match *self {
-            Self::Nystrom { regularization } => {
-                sampled(measurement.sampled(|d| nystrom(d, &NystromOptions { regularization, dim }))?)
-            }
-            Self::Landmark => sampled(measurement.sampled(|d| landmark_mds(d, dim))?),
+            Self::Nystrom { regularization } => sampled(by_nystrom(regularization, dim, measurement)?),
+            Self::Landmark => sampled(measurement.sampled(&of_one_rank(dim, &|d, _| landmark_mds(d, dim)))?),
             Self::Spectral { eigenvectors, mu } => {
                 let surface = surface();
                 let p = surface.n_vertices();
@@ -174,16 +172,19 @@ impl EmbedMethod {
                 let LaplaceSpectrum { values, vectors, masses, .. } =
                     LaplaceSpectrum::within(surface, eigenvectors, &budget)?;
                 let basis = SpectralBasis { values: &values, vectors: &vectors, masses: &masses };
-                sampled(measurement.sampled(|d| spectral(d, &basis, &SpectralOptions { mu, dim }))?)
+                let embed = |d: &_, _| spectral(d, &basis, &SpectralOptions { mu, dim });
+                sampled(measurement.sampled(&of_one_rank(dim, &embed))?)
             }
             Self::Fmds => {
                 let laplacian = Laplacian::new(surface());
                 let (p, masses) = (laplacian.n_vertices(), laplacian.masses());
                 let stiffness = SparseSymmetric::from_entries(p, laplacian.stiffness_entries());
-                sampled(measurement.sampled(|d| fmds_within(d, &stiffness, &masses, dim, &budget))?)
+                let embed = |d: &_, _| fmds_within(d, &stiffness, &masses, dim, &budget);
+                sampled(measurement.sampled(&of_one_rank(dim, &embed))?)
             }
             Self::KernelPca { rank, bandwidth } => {
-                sampled(measurement.sampled(|d| kernel_pca(d, &KernelPcaOptions { bandwidth, rank, dim }))?)
+                let embed = |d: &_, _| kernel_pca(d, &KernelPcaOptions { bandwidth, rank, dim });
+                sampled(measurement.sampled(&of_one_rank(dim, &embed))?)
             }
             Self::Classical => {
                 let all = measurement.all_pairs()?;
@@ -192,8 +193,7 @@ impl EmbedMethod {
                 Outcome { embedding, distances, all: Some(all), descent: None }
             }
             Self::Smacof { regularization, descent } => {
-                let (start, distances) =
-                    measurement.sampled(|d| nystrom(d, &NystromOptions { regularization, dim }))?;
+                let (start, distances) = by_nystrom(regularization, dim, measurement)?;
                 let all = measurement.all_pairs()?;
                 let (embedding, report) = smacof_within(&start.coords, &all, &descent, &budget)?;
                 let embedding = Embedding { rank: start.rank, ..embedding };
@@ -201,6 +201,27 @@ impl EmbedMethod {
             }
         })
     }
+}
+
+/// A method without a rank, or with one that its options fix.
+fn of_one_rank<'a>(dim: usize, embed: &'a EmbedByRank<'a>) -> Sampled<'a> {
+    Sampled { embed, other_ranks: &|_| Vec::new(), first_samples: SampleSearch::first(dim) }
+}
+
+/// NMDS, with the best rank if the number of samples is searched for and no rank is given.
+fn by_nystrom(
+    regularization: Regularization,
+    dim: usize,
+    measurement: &mut Measurement<'_>,
+) -> Result<(Embedding, LandmarkDistances), Error> {
+    let options = NystromOptions { regularization, dim };
+    let with = |rank: Option<usize>| match rank {
+        None => options.clone(),
+        rank => NystromOptions { regularization: Regularization::LowRank { rank }, dim },
+    };
+    let embed = |distances: &LandmarkDistances, rank| nystrom(distances, &with(rank));
+    let (other_ranks, first_samples) = (&|n| options.other_ranks(n), options.first_samples());
+    measurement.sampled(&Sampled { embed: &embed, other_ranks, first_samples })
 }
 
 /// The result of a method.

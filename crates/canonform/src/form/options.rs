@@ -5,7 +5,6 @@ use geodesics::{FirstSample, Method, Sampling};
 use mesh::RepairOptions;
 use serde::{Deserialize, Serialize};
 
-use super::as_text;
 use super::distances::Samples;
 use super::method::EmbedMethod;
 use crate::error::Error;
@@ -21,7 +20,6 @@ pub struct FormOptions {
     #[serde(skip_serializing_if = "is_default")]
     pub geodesic: Method,
     /// Number of samples. Default: 100, as in the paper's Figure 4.
-    #[serde(with = "as_text")]
     pub samples: Samples,
     /// How samples are taken. Default: farthest point sampling, as in the paper.
     #[serde(skip_serializing_if = "is_default")]
@@ -36,7 +34,7 @@ pub struct FormOptions {
     /// Dimensions of the embedding. Default: 3, the only one that makes a form.
     #[serde(skip_serializing_if = "is_three")]
     pub dim: usize,
-    /// Seed of the samples, where they are drawn. Default: 0.
+    /// Seed of the samples, where they are drawn, and of the rows that tell how many are enough. Default: 0.
     #[serde(skip_serializing_if = "is_default")]
     pub seed: u64,
 }
@@ -60,7 +58,7 @@ impl FormOptions {
     /// The same options without a seed that decides nothing.
     #[must_use]
     pub fn normalized(mut self) -> Self {
-        if self.sampling == Sampling::Farthest {
+        if self.sampling == Sampling::Farthest && matches!(self.samples, Samples::Count(_)) {
             self.seed = 0;
         }
         self
@@ -107,9 +105,13 @@ struct Provenance {
 
 impl DescribeOptions {
     /// # Errors
-    /// [`DescriptorError::NotThreeDimensional`]; [`Error::BadDescription`] names an option that is too small.
+    /// [`DescriptorError::NotThreeDimensional`]; [`Error::BadDescription`] names an option that is too small;
+    /// [`Error::TargetOfDescription`], since forms that are as coarse as a target allows differ for other reasons than shape.
     pub fn validate(&self) -> Result<(), Error> {
         self.form.validate()?;
+        if self.form.samples.target_stress().is_some() {
+            return Err(Error::TargetOfDescription);
+        }
         let samples = self.form.samples.count_or(usize::MAX);
         for (option, value, least) in [("samples", samples, 8), ("points", self.points, 4)] {
             if value < least {
@@ -176,7 +178,9 @@ mod tests {
         let of = |method| FormOptions { method, ..usual.clone() };
         let others = [
             FormOptions { geodesic: Method::Heat(HeatOptions { time: 0.3 }), ..usual.clone() },
-            FormOptions { samples: Samples::Auto, ..usual.clone() },
+            FormOptions { samples: Samples::AUTO, ..usual.clone() },
+            FormOptions { samples: Samples::AUTO, seed: 5, ..usual.clone() },
+            FormOptions { samples: Samples::Auto { target_stress: Some(0.02) }, ..usual.clone() },
             FormOptions { first_sample: FirstSample::Vertex(VertexId(17)), ..usual.clone() },
             FormOptions { sampling: Sampling::Incremental(Variance::Least), seed: 3, ..usual.clone() },
             of(EmbedMethod::low_rank(30)),
@@ -202,13 +206,33 @@ mod tests {
         texts.sort();
         texts.dedup();
         // Three times the default: as a method, as a solver and as a sampling without a seed.
-        assert_eq!(texts.len(), 7 + 5 + 4 + 9 - 2);
+        assert_eq!(texts.len(), 7 + 5 + 4 + 11 - 2);
+    }
+
+    #[test]
+    fn samples_are_stored_as_numbers_words_and_targets() {
+        let read = |text: &str| serde_json::from_str::<Samples>(text).ok();
+        for (samples, text) in [
+            (Samples::Count(20), "20"),
+            (Samples::AUTO, "\"auto\""),
+            (Samples::Auto { target_stress: Some(0.02) }, "{\"target-stress\":0.02}"),
+        ] {
+            assert_eq!(serde_json::to_string(&samples).unwrap(), text);
+            assert_eq!(read(text), Some(samples));
+        }
+        assert_eq!(read("\"20\""), Some(Samples::Count(20)), "a number as text");
+        for text in ["0", "-3", "\"many\"", "{}", "null"] {
+            assert_eq!(read(text), None, "{text}");
+        }
     }
 
     #[test]
     fn options_that_make_no_form_are_refused() {
         let of = |form| DescribeOptions { form, ..DescribeOptions::default() };
         let flat = of(FormOptions { dim: 2, ..FormOptions::default() });
+        let coarse =
+            of(FormOptions { samples: Samples::Auto { target_stress: Some(0.1) }, ..FormOptions::default() });
+        assert!(matches!(coarse.validate(), Err(Error::TargetOfDescription)));
         let fault = flat.validate().unwrap_err();
         assert!(matches!(fault, Error::Descriptor(DescriptorError::NotThreeDimensional { dim: 2 })));
         for (options, name) in [

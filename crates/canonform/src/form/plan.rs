@@ -25,12 +25,20 @@ const BYTES: usize = size_of::<f64>();
 pub(super) struct Plan {
     n_vertices: usize,
     n_columns: usize,
+    /// Further columns, which always stay in memory.
+    n_held_out: usize,
     n_threads: usize,
 }
 
 impl Plan {
     pub(super) fn new(n_vertices: usize, n_columns: usize) -> Self {
-        Self { n_vertices, n_columns: n_columns.min(n_vertices), n_threads: rayon::current_num_threads() }
+        let (n_columns, n_threads) = (n_columns.min(n_vertices), rayon::current_num_threads());
+        Self { n_vertices, n_columns, n_held_out: 0, n_threads }
+    }
+
+    /// With columns that are held out to measure the stress.
+    pub(super) fn with_held_out(self, n_held_out: usize) -> Self {
+        Self { n_held_out, ..self }
     }
 
     /// Bytes of the distances.
@@ -39,7 +47,7 @@ impl Plan {
     }
 
     fn per_vertex(self) -> usize {
-        PER_VERTEX + self.n_threads * PER_VERTEX_AND_THREAD
+        PER_VERTEX + self.n_threads * PER_VERTEX_AND_THREAD + self.n_held_out * BYTES
     }
 
     fn matrices(self) -> usize {

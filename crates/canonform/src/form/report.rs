@@ -4,6 +4,7 @@ use mesh::RepairReport;
 use nmds::{SmacofReport, SmacofStop};
 use serde::Serialize;
 
+use super::samples_report::SamplesReport;
 use super::stress::StressReport;
 
 /// Facts about an embedding; `canonform embed --json` prints them.
@@ -39,6 +40,8 @@ pub struct EmbedReport {
     pub empty_dimensions: usize,
     /// The stress, unless it was not measured or the coordinates have no unit.
     pub stress: Option<StressReport>,
+    /// How the number of samples was found; `None` if it was given.
+    pub auto: Option<SamplesReport>,
     /// How SMACOF reduced the stress.
     pub descent: Option<DescentReport>,
     /// Wall-clock seconds.

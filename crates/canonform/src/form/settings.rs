@@ -4,6 +4,7 @@ use geodesics::{FirstSample, Sampling};
 use nmds::{Bandwidth, Regularization, RpiAlpha};
 use surface::VertexId;
 
+use super::distances::Samples;
 use super::method::EmbedMethod;
 use super::options::FormOptions;
 
@@ -33,6 +34,8 @@ pub struct EmbedSettings {
     pub alpha: Option<RpiAlpha>,
     /// How samples are taken.
     pub sampling: Option<Sampling>,
+    /// The normalised stress up to which samples are taken; needs [`Samples::Auto`].
+    pub target_stress: Option<f64>,
     /// The first sample, a vertex of the input.
     pub first_sample: Option<u32>,
     /// Width of the kernel of [`EmbedMethod::KernelPca`].
@@ -86,6 +89,7 @@ impl EmbedSettings {
     /// [`NoEffect`] if a setting was given that would change nothing.
     pub fn applied_to(&self, options: FormOptions) -> Result<FormOptions, NoEffect> {
         self.check()?;
+        let samples = self.samples(options.samples)?;
         let mut method = self.method.clone();
         match &mut method {
             EmbedMethod::Nystrom { regularization } => *regularization = self.regularization(),
@@ -107,7 +111,21 @@ impl EmbedSettings {
         let first_sample =
             self.first_sample.map_or(FirstSample::Farthest, |v| FirstSample::Vertex(VertexId(v)));
         let sampling = self.sampling.unwrap_or_default();
-        Ok(FormOptions { method, sampling, first_sample, ..options })
+        Ok(FormOptions { method, samples, sampling, first_sample, ..options })
+    }
+
+    /// The number of samples with the target, if there is one.
+    fn samples(&self, samples: Samples) -> Result<Samples, NoEffect> {
+        match (self.target_stress, samples) {
+            (None, samples) => Ok(samples),
+            (target_stress, Samples::Auto { .. }) => Ok(Samples::Auto { target_stress }),
+            (Some(_), Samples::Count(_)) => Err(NoEffect {
+                setting: "target_stress",
+                beside: "samples",
+                value: "N",
+                instead: vec!["auto"],
+            }),
+        }
     }
 
     fn regularization(&self) -> Regularization {
@@ -124,12 +142,15 @@ impl EmbedSettings {
     fn check(&self) -> Result<(), NoEffect> {
         type AppliesTo = fn(&EmbedMethod) -> bool;
         let is_regularized: AppliesTo = |m| m.regularization().is_some();
-        let of_method: [(&str, bool, AppliesTo); 10] = [
+        let of_method: [(&str, bool, AppliesTo); 11] = [
             ("rank", self.rank.is_some(), |m| {
                 m.regularization().is_some() || matches!(m, EmbedMethod::KernelPca { .. })
             }),
             ("sampling", self.sampling.is_some(), EmbedMethod::is_sampled),
             ("first_sample", self.first_sample.is_some(), EmbedMethod::is_sampled),
+            ("target_stress", self.target_stress.is_some(), |m| {
+                m.is_sampled() && m.has_unit() && !matches!(m, EmbedMethod::Smacof { .. })
+            }),
             ("regularization", self.regularization.is_some(), is_regularized),
             ("alpha", self.alpha.is_some(), is_regularized),
             ("eigenvectors", self.eigenvectors.is_some(), |m| matches!(m, EmbedMethod::Spectral { .. })),
@@ -192,6 +213,18 @@ mod tests {
         let expected =
             EmbedMethod::Nystrom { regularization: Regularization::Rpi { alpha: RpiAlpha::Paper } };
         assert_eq!(of(rpi).method, expected);
+        let target = EmbedSettings { target_stress: Some(0.1), ..EmbedSettings::default() };
+        let auto = FormOptions { samples: Samples::AUTO, ..FormOptions::default() };
+        let reached = target.applied_to(auto.clone()).unwrap();
+        assert_eq!(reached.samples, Samples::Auto { target_stress: Some(0.1) });
+        assert_eq!(of(EmbedSettings::default()).samples, Samples::default());
+        let fault = target.applied_to(FormOptions::default()).unwrap_err();
+        assert_eq!(
+            (fault.setting, fault.beside, &fault.instead[..]),
+            ("target_stress", "samples", &["auto"][..])
+        );
+        let of_all = EmbedSettings { method: EmbedMethod::Classical, ..target };
+        assert_eq!(of_all.applied_to(auto).unwrap_err().beside, "method");
         let first = EmbedSettings { first_sample: Some(7), ..EmbedSettings::default() };
         assert_eq!(of(first).first_sample, FirstSample::Vertex(VertexId(7)));
     }

@@ -4,7 +4,7 @@ use std::borrow::Borrow;
 
 use geodesics::{DistanceSolver, Method};
 use linalg::{DistanceMatrix, LandmarkDistances, LinalgError, Matrix};
-use nmds::{DistanceRows, RowSample, StressEstimate, estimate_stress, sample_rows, stress};
+use nmds::{DistanceRows, RowSample, Stress, StressEstimate, estimate_stress, sample_rows, stress};
 use serde::Serialize;
 use surface::{VertexId, unit_for};
 
@@ -19,6 +19,9 @@ const SAMPLES_PER_ROW: usize = 5;
 
 /// Fewest rows with a useful interval.
 const FEWEST_ROWS: usize = 3;
+
+/// Fewest rows where the interval is what the number of samples was searched for.
+const FEWEST_ROWS_OF_SEARCH: usize = 32;
 
 /// Number of rows of [`StressChoice::Estimate`].
 const ESTIMATE_ROWS: usize = 100;
@@ -42,7 +45,8 @@ pub struct StressOptions {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum StressChoice {
     /// From all pairs up to 1,000 vertices and where the method has measured them, else estimated from one row for every 5
-    /// samples, at least 3, so that it takes less than a fifth of the time for distances.
+    /// samples, at least 3, so that it takes less than a fifth of the time for distances. If the number of samples
+    /// [was searched for](crate::Samples::Auto), from at least 32 rows.
     #[default]
     Auto,
     /// From the distances between all pairs of vertices.
@@ -55,10 +59,13 @@ pub enum StressChoice {
 
 impl StressChoice {
     /// Number of rows that an estimate for a form of `n_samples` samples is made from; `None` for all of them.
-    fn n_rows(self, n_vertices: usize, n_samples: usize) -> Option<usize> {
+    fn n_rows(self, n_vertices: usize, n_samples: usize, searched: bool) -> Option<usize> {
         let n = match self {
             Self::Auto if n_vertices <= EXACT_LIMIT => return None,
-            Self::Auto => (n_samples / SAMPLES_PER_ROW).max(FEWEST_ROWS),
+            Self::Auto => {
+                let fewest = if searched { FEWEST_ROWS_OF_SEARCH } else { FEWEST_ROWS };
+                (n_samples / SAMPLES_PER_ROW).max(fewest)
+            }
             Self::Exact => return None,
             Self::Estimate | Self::Skip => ESTIMATE_ROWS,
         };
@@ -88,6 +95,8 @@ pub struct StressReport {
     /// Kruskal's stress `sqrt(sum (d_ij - |z_i - z_j|)^2 / sum d_ij^2)` over the same pairs: the relative error of the
     /// distances, without a unit.
     pub normalized: f64,
+    /// A 95 % confidence interval of `normalized`.
+    pub normalized_interval: [f64; 2],
     /// Exact or estimated.
     pub kind: StressKind,
     /// A 95 % confidence interval; the value twice when it is exact.
@@ -127,19 +136,19 @@ impl StressReport {
             let back = |value: f64| value * unit * unit;
             return Ok(Self { value: back(scaled.value), interval: scaled.interval.map(back), ..scaled });
         }
-        let (value, normalized, kind, interval, rows) = match sample(coords, 1.0)? {
+        let (kind, found) = match sample(coords, 1.0)? {
             None => {
-                let found = stress(coords, distances)?;
-                let (exact, all) = (StressKind::Exact, distances.n_points());
-                (found.paper, found.normalized, exact, [found.paper; 2], all)
+                let Stress { paper: value, normalized } = stress(coords, distances)?;
+                let (interval, normalized_interval) = ([value; 2], [normalized; 2]);
+                let n_rows = distances.n_points();
+                let all = StressEstimate { value, normalized, interval, normalized_interval, n_rows };
+                (StressKind::Exact, all)
             }
-            Some(sample) => {
-                let StressEstimate { value, normalized, interval, n_rows } =
-                    estimate_stress(coords, distances, &sample)?;
-                (value, normalized, StressKind::Estimated, interval, n_rows)
-            }
+            Some(sample) => (StressKind::Estimated, estimate_stress(coords, distances, &sample)?),
         };
-        Ok(Self { measure: "paper_stress", geodesic: method.name(), value, normalized, kind, interval, rows })
+        let StressEstimate { value, normalized, interval, normalized_interval, n_rows: rows } = found;
+        let (measure, geodesic) = ("paper_stress", method.name());
+        Ok(Self { measure, geodesic, value, normalized, normalized_interval, kind, interval, rows })
     }
 }
 
@@ -196,6 +205,8 @@ pub(super) struct Known<'a> {
     pub(super) coords: &'a Matrix,
     /// Distances from the samples, which tell what rows are worth measuring.
     pub(super) samples: &'a LandmarkDistances,
+    /// Whether the number of samples was searched for.
+    pub(super) searched: bool,
 }
 
 /// The distances that a stress is measured against.
@@ -218,7 +229,7 @@ impl Known<'_> {
         let p = self.coords.nrows();
         let n_rows = match (&rows, options.choice) {
             (Rows::Known(_), StressChoice::Auto) => None,
-            (_, choice) => choice.n_rows(p, self.samples.n_landmarks()),
+            (_, choice) => choice.n_rows(p, self.samples.n_landmarks(), self.searched),
         };
         observer.begin("stress", n_rows.unwrap_or(p));
         let sample = |coords: &Matrix, unit: f64| {

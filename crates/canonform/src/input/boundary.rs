@@ -1,9 +1,16 @@
 //! The boundary of a surface.
 
-use surface::IntrinsicMesh;
+use std::collections::BTreeMap;
+
+use surface::{IntrinsicMesh, VertexId};
 
 /// Length of the longest boundary of a surface, in mesh units; 0 for a closed one. Boundaries that touch count as one.
 pub(super) fn longest_boundary(mesh: &IntrinsicMesh) -> f64 {
+    boundaries(mesh).into_iter().map(|(_, length)| length).fold(0.0, f64::max)
+}
+
+/// The vertices of each boundary, and its length. Boundaries that touch count as one.
+pub(super) fn boundaries(mesh: &IntrinsicMesh) -> Vec<(Vec<VertexId>, f64)> {
     let topology = mesh.topology();
     let mut root: Vec<usize> = (0..mesh.n_vertices()).collect();
     fn find(root: &mut [usize], mut v: usize) -> usize {
@@ -25,11 +32,18 @@ pub(super) fn longest_boundary(mesh: &IntrinsicMesh) -> f64 {
         let (a, b) = (find(&mut root, *a), find(&mut root, *b));
         root[a] = b;
     }
-    let mut lengths = vec![0.0f64; mesh.n_vertices()];
-    for ([a, _], length) in &boundary {
-        lengths[find(&mut root, *a)] += length;
+    let mut found: BTreeMap<usize, (Vec<VertexId>, f64)> = BTreeMap::new();
+    for ([a, b], length) in &boundary {
+        let (vertices, sum) = found.entry(find(&mut root, *a)).or_default();
+        vertices.extend([*a, *b].map(VertexId::from));
+        *sum += length;
     }
-    lengths.into_iter().fold(0.0, f64::max)
+    let mut found: Vec<_> = found.into_values().collect();
+    for (vertices, _) in &mut found {
+        vertices.sort_unstable();
+        vertices.dedup();
+    }
+    found
 }
 
 #[cfg(test)]

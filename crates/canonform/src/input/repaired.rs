@@ -9,7 +9,7 @@ use mesh::{MeshError, RepairOptions, RepairReport, Repaired, Shortcut, TriMesh, 
 use nalgebra::Point3;
 use surface::{IntrinsicMesh, VertexId};
 
-use super::boundary::longest_boundary;
+use super::boundary::{boundaries, longest_boundary};
 use super::point::InputPoint;
 use super::storage::read_mesh_file;
 use crate::error::Error;
@@ -23,7 +23,8 @@ pub struct Surface {
     pub repaired: Repaired,
     /// Connectivity and edge lengths of the repaired mesh, including bridges.
     pub intrinsic: IntrinsicMesh,
-    /// The faces of the input, in the vertex numbers of the input.
+    /// The faces of the input, or those of the surface through its points if it has none, in the vertex numbers of the
+    /// input.
     pub input_faces: Vec<[VertexId; 3]>,
     /// Length of the longest boundary of the surface of which this one is the prepared copy.
     open_boundary: Option<f64>,
@@ -73,7 +74,8 @@ impl Surface {
         Ok(Self { load_seconds, ..Self::within(&mesh, options, budget)? })
     }
 
-    /// Repairs a mesh in memory. Vertices keep their order; the report lists every change.
+    /// Repairs a mesh in memory. Vertices keep their order; the report lists every change. A mesh without faces is a
+    /// point cloud and gets [faces](mesh::triangulate_points) first.
     ///
     /// ```
     /// use canonform::{Surface, mesh::shapes};
@@ -109,13 +111,17 @@ impl Surface {
                 input_vertex[vertex.index()] = VertexId::from(input);
             }
         }
+        let input_faces = match mesh.faces.is_empty() {
+            false => mesh.faces.clone(),
+            true => repaired.mesh.faces.iter().map(|face| face.map(|v| input_vertex[v.index()])).collect(),
+        };
         Ok(Self {
             repair: *options,
             repaired,
             intrinsic,
             open_boundary: None,
             shortcuts: Vec::new(),
-            input_faces: mesh.faces.clone(),
+            input_faces,
             input_vertex,
             load_seconds: 0.0,
             repair_seconds: start.elapsed().as_secs_f64(),
@@ -158,6 +164,15 @@ impl Surface {
     /// Length of the longest boundary of the repaired mesh, in mesh units.
     pub(crate) fn longest_boundary(&self) -> f64 {
         self.open_boundary.unwrap_or_else(|| longest_boundary(&self.intrinsic))
+    }
+
+    /// The vertices on boundaries that are at least `least` long, and the sum of their lengths, in mesh units.
+    pub fn boundary_vertices(&self, least: f64) -> (Vec<VertexId>, f64) {
+        let long = boundaries(&self.intrinsic).into_iter().filter(|(_, length)| *length >= least);
+        long.fold((Vec::new(), 0.0), |(mut all, sum), (vertices, length)| {
+            all.extend(vertices);
+            (all, sum + length)
+        })
     }
 
     /// The shortcuts that were cut to [prepare](Self::for_description) the surface; none before.
@@ -203,6 +218,20 @@ impl Surface {
         with_positions(to_repaired.len(), &|input| to_repaired[input.index()], &self.input_faces, position)
     }
 
+    /// The input of this surface, to be shown: of a point cloud, the surface through its points, with a vertex for every
+    /// point; any other mesh as it is.
+    #[must_use]
+    pub fn shown(&self, input: TriMesh) -> TriMesh {
+        if !input.faces.is_empty() {
+            return input;
+        }
+        let moved = |(p, vertex): (&Point3<f64>, &Option<VertexId>)| {
+            vertex.map_or(*p, |v| self.mesh().positions[v.index()])
+        };
+        let positions = input.positions.iter().zip(&self.repaired.input_to_repaired).map(moved).collect();
+        TriMesh { positions, faces: self.input_faces.clone() }
+    }
+
     /// Puts values of the repaired vertices into the order of the input, with `missing` for dropped vertices.
     pub fn in_input_order<T: Copy>(&self, values: &[T], missing: T) -> Vec<T> {
         let value = |vertex: &Option<VertexId>| vertex.map_or(missing, |v| values[v.index()]);
@@ -217,7 +246,8 @@ pub struct InputMap {
     pub repair: RepairOptions,
     /// What was repaired.
     pub report: RepairReport,
-    /// The faces of the input, in the vertex numbers of the input.
+    /// The faces of the input, or those of the surface through its points if it has none, in the vertex numbers of the
+    /// input.
     pub input_faces: Vec<[VertexId; 3]>,
     /// The vertices that the repair changed; `None` if it kept them all.
     changes: Option<Changes>,

@@ -376,16 +376,15 @@ pub(super) fn fill(
     let whole = observer.budget();
     let (send, receive) = sync_channel(WAITING);
     let described = std::thread::scope(|scope| {
-        scope.spawn(|| {
-            // Sending fails only if the writer has failed; the error stops the loop.
-            let _ =
-                wanted.par_iter().enumerate().try_for_each_with(send, |send, (place, (listed, content))| {
-                    let described = describe_file(&listed.file.path, options, limits, whole.clone())
-                        .map(|described| shape(listed, *content, described));
-                    send.send((place, described)).map_err(drop)
-                });
+        // Describing stays on this thread, and so on the thread pool of the caller.
+        let stored = scope.spawn(|| store(writer, receive, observer));
+        // Sending fails only if the writer has failed; the error stops the loop.
+        let _ = wanted.par_iter().enumerate().try_for_each_with(send, |send, (place, (listed, content))| {
+            let described = describe_file(&listed.file.path, options, limits, whole.clone())
+                .map(|described| shape(listed, *content, described));
+            send.send((place, described)).map_err(drop)
         });
-        store(writer, receive, observer)
+        stored.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
     })?;
     report.described = described.stored.len();
     kept.extend(described.stored);

@@ -1,0 +1,82 @@
+//! The maps between two surfaces.
+
+use std::borrow::Borrow;
+use std::time::Instant;
+
+use descriptors::{MapKind, match_surfaces};
+use serde::Serialize;
+use surface::VertexId;
+
+use super::matched_surface::MatchedSurface;
+use super::options::CorrespondOptions;
+use crate::error::Error;
+use crate::input::Surface;
+use crate::observer::Observer;
+
+/// A map from the vertices of one surface to those of another.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct VertexMap {
+    /// Whether it keeps the orientation, as a motion does, or reverses it, as a mirror does.
+    pub kind: MapKind,
+    /// The mean change of distances, as a share of the square root of the area.
+    pub distortion: f64,
+    /// How far it keeps the orientation, from -1 to 1; `None` if a surface cannot be oriented.
+    pub agreement: Option<f64>,
+    /// For every vertex of the first input, its partner among the vertices of the second input; `None` for a vertex that the
+    /// repair dropped.
+    #[serde(skip)]
+    pub vertices: Vec<Option<VertexId>>,
+}
+
+/// The maps from one surface to another.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Correspondence {
+    /// At most two, of different kinds: the direct one first, unless it distorts distances clearly more.
+    pub maps: Vec<VertexMap>,
+    /// Seconds that the search took, after both surfaces were prepared.
+    pub seconds: f64,
+}
+
+/// Maps the vertices of one surface to those of another.
+///
+/// Shapes that are alike under a mirror have two maps of small distortion, one for each orientation. Both are returned. See
+/// [`match_surfaces`] for how they are found; the result does not depend on the number of threads.
+///
+/// ```
+/// use canonform::{CorrespondOptions, MatchedSurface, Surface, correspond, mesh::shapes};
+///
+/// // A sheet, flat and folded.
+/// let flat = shapes::grid(21, 17, 0.1);
+/// let folded = shapes::fold(&flat, 0.8, 1.2);
+/// let options = CorrespondOptions::default();
+/// let a = MatchedSurface::new(Surface::new(&flat, &options.form.repair)?, &options, &())?;
+/// let b = MatchedSurface::new(Surface::new(&folded, &options.form.repair)?, &options, &())?;
+/// let found = correspond(&a, &b, &options, &())?;
+/// assert_eq!(found.maps.len(), 2, "directly and mirrored");
+/// assert_eq!(found.maps[0].vertices.len(), 21 * 17);
+/// assert!(found.maps[0].distortion < 0.02);
+/// # Ok::<(), canonform::Error>(())
+/// ```
+///
+/// # Errors
+/// [`Error::Descriptor`] and [`Error::Exceeded`].
+pub fn correspond<S: Borrow<Surface>>(
+    a: &MatchedSurface<S>,
+    b: &MatchedSurface<S>,
+    options: &CorrespondOptions,
+    observer: &dyn Observer,
+) -> Result<Correspondence, Error> {
+    let start = Instant::now();
+    let found = match_surfaces(&a.shape, &b.shape, &options.matching, &observer.budget())?;
+    let (from, to) = (a.surface(), b.surface());
+    let maps = found.into_iter().map(|map| {
+        let partners: Vec<_> = map.vertices.iter().map(|v| Some(to.input_vertex(*v))).collect();
+        VertexMap {
+            kind: map.kind,
+            distortion: map.distortion,
+            agreement: map.agreement,
+            vertices: from.in_input_order(&partners, None),
+        }
+    });
+    Ok(Correspondence { maps: maps.collect(), seconds: start.elapsed().as_secs_f64() })
+}

@@ -1,0 +1,22 @@
+//! Options of maps between surfaces.
+
+use descriptors::MatchOptions;
+
+use crate::form::FormOptions;
+
+/// Everything that decides the maps between two surfaces.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CorrespondOptions {
+    /// How the canonical forms are made, whose alignments the search starts from.
+    pub form: FormOptions,
+    /// Vertices of each surface on which maps are refined before all others follow. Default: 1000.
+    pub spread: usize,
+    /// How maps are refined.
+    pub matching: MatchOptions,
+}
+
+impl Default for CorrespondOptions {
+    fn default() -> Self {
+        Self { form: FormOptions::default(), spread: 1000, matching: MatchOptions::default() }
+    }
+}

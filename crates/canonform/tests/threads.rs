@@ -1,0 +1,27 @@
+//! Work stays on the threads that the caller provides.
+
+#![cfg(test)]
+
+use canonform::mesh::{io, shapes};
+use canonform::{BuildOptions, DescribeOptions, SearchOptions, ShapeSearch, build_index};
+use rayon::ThreadPoolBuilder;
+
+/// The only test of this program: the global pool starts with its first use, and then cannot be built any more.
+#[test]
+fn an_index_is_built_and_searched_on_the_pool_of_the_caller() {
+    let folder = tempfile::tempdir().unwrap();
+    let index = folder.path().join("shapes.canonform");
+    let describe = DescribeOptions::default();
+    let pool = ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+    let nearest = pool.install(|| {
+        let ring = shapes::torus(24, 12, 2.0, 0.7);
+        io::write(&folder.path().join("ball1.off"), &shapes::icosphere(2)).unwrap();
+        io::write(&folder.path().join("ring1.off"), &ring).unwrap();
+        let report = build_index(folder.path(), &index, &BuildOptions::new(&describe), &()).unwrap();
+        assert_eq!(report.described, 2, "{report:?}");
+        let found = ShapeSearch::open(&index).unwrap().search(&ring, &SearchOptions::default()).unwrap();
+        found.results[0].id.clone()
+    });
+    assert_eq!(nearest, "ring1");
+    assert!(ThreadPoolBuilder::new().build_global().is_ok(), "some work ran on the global pool");
+}
