@@ -17,6 +17,12 @@ pub(crate) fn read_field(path: &Path, row: Option<usize>, n_vertices: usize) -> 
     choose(rows, row, n_vertices).with_context(|| path.display().to_string())
 }
 
+/// Reads a NumPy array of numbers: the number of its columns, and its rows, one after the other.
+pub(crate) fn read_numbers(path: &Path) -> Result<(usize, Vec<f64>)> {
+    let Rows { n_columns, values } = read_npy(path)?;
+    Ok((n_columns, values))
+}
+
 /// Rows of equal length, one after the other.
 struct Rows {
     n_columns: usize,

@@ -93,14 +93,14 @@ pub(crate) fn read_surface(path: &Path, repair: &RepairArgs, common: &Common) ->
     Ok(surface)
 }
 
-/// Reads a mesh, and repairs it as a surface.
+/// Reads a mesh, and repairs it as a surface. Points without faces come with those of the surface through them.
 pub(crate) fn read_both(path: &Path, repair: &RepairArgs, common: &Common) -> Result<(TriMesh, Surface)> {
     let start = Instant::now();
     let mesh = read_mesh(path, common)?;
     let load_seconds = start.elapsed().as_secs_f64();
     let mut surface = Surface::new(&mesh, &repair.options()).map_err(|fault| named(path, fault))?;
     surface.load_seconds = load_seconds;
-    Ok((mesh, surface))
+    Ok((surface.shown(mesh), surface))
 }
 
 /// The meshes that arguments name, in their order: files, standard input, datasets, and patterns such as `scans/*.ply` that

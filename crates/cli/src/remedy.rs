@@ -16,6 +16,7 @@ fn words(remedy: Remedy) -> &'static str {
         Remedy::UseThreeDimensions => "leave out --dim",
         Remedy::UseFastMarching => "use fast-marching",
         Remedy::UseNystrom => "use --method nmds, which needs only a few columns",
+        Remedy::GiveSamples => "give the number of samples, such as -n 100",
         Remedy::RaiseMemory => "raise --memory",
         Remedy::RaiseTimeLimit => "raise --timeout",
         Remedy::RaiseMaxDistance => "choose another target, or raise --max-distance",
@@ -31,6 +32,7 @@ fn words(remedy: Remedy) -> &'static str {
             "run `canonform index build` with the same folder and file again, which describes no shape twice, or pass \
              --rank plain"
         }
+        Remedy::BuildFieldAgain => "build it again with `canonform field build`",
         Remedy::ListShapes => "`canonform index list` names its shapes",
         Remedy::EvaluateShard => "evaluate one shard at a time",
         _ => "see `canonform --help`",

@@ -70,12 +70,22 @@ impl EmbeddingArgs {
     /// # Errors
     /// Options that do not apply together.
     pub(crate) fn options(&self, common: &Common) -> Result<FormOptions> {
+        self.options_with_target(common, None)
+    }
+
+    /// As [`options`](Self::options), with the normalised stress up to which samples are taken.
+    pub(crate) fn options_with_target(
+        &self,
+        common: &Common,
+        target_stress: Option<f64>,
+    ) -> Result<FormOptions> {
         let settings = EmbedSettings {
             method: self.method.clone(),
             regularization: self.regularization,
             rank: self.rank,
             alpha: self.alpha,
             sampling: self.sampling,
+            target_stress,
             first_sample: self.first_sample,
             sigma: self.sigma,
             eigenvectors: self.eigenvectors,

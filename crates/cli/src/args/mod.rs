@@ -1,6 +1,7 @@
 //! The command line: a contract that other people's scripts rely on.
 
 mod embedding;
+mod field;
 mod generate;
 mod geodesic;
 mod index;
@@ -10,9 +11,9 @@ mod shared;
 
 use std::path::PathBuf;
 
-use canonform::StressChoice;
-use canonform::descriptors::{FormDistance, VerdictKind};
+use canonform::descriptors::{FormDistance, MatchOptions, VerdictKind};
 use canonform::geodesics::Method;
+use canonform::{InputPoint, StressChoice};
 use clap::builder::TypedValueParser;
 use clap::{Args, Parser, Subcommand};
 use clap_complete::Shell;
@@ -21,6 +22,7 @@ use mesh::io::{Content, mesh_files, or_list, writable};
 use self::shared::{COMPARED_STRESS, STRESS, distance_method, one_of};
 
 pub(crate) use embedding::EmbeddingArgs;
+pub(crate) use field::{FieldBuildArgs, FieldCommand, FieldQueryArgs};
 pub(crate) use generate::{FamilyArg, GenerateArgs};
 pub(crate) use geodesic::GeodesicArgs;
 pub(crate) use index::{AddArgs, BuildArgs, EvaluateArgs, IndexCommand, ListArgs, SearchArgs};
@@ -57,6 +59,9 @@ pub(crate) enum Command {
     Info(InfoArgs),
     /// Measure distances and shortest paths along a surface
     Geodesic(GeodesicArgs),
+    /// Hold the distances between all pairs of vertices in little memory, with bounds
+    #[command(subcommand)]
+    Field(FieldCommand),
     /// Compute the canonical form of a mesh, or of every mesh of a folder or an archive
     Embed(EmbedArgs),
     /// Embed a mesh by every method and tabulate stress, time and memory
@@ -71,6 +76,8 @@ pub(crate) enum Command {
     /// shape, different shapes of one class, undecided, different shapes. Its confidence is a probability, measured on
     /// poses and bodies of the built-in shapes.
     Compare(CompareArgs),
+    /// Map the vertices of a mesh to those of another one, directly and mirrored
+    Match(MatchArgs),
     /// Convert a mesh, or every mesh of a folder or an archive, to another file format
     Convert(ConvertArgs),
     /// Draw a shaded picture of a mesh, optionally coloured by distances or other values
@@ -110,13 +117,20 @@ Stress, with the distances d_ij between p vertices along the surface and the coo
   stress             ||Z Z' + 1/2 J E J||_F / p, with E_ij = d_ij^2 and J = I - 1/p: the paper's, in squared mesh units
   normalised stress  sqrt(sum (d_ij - |z_i - z_j|)^2 / sum d_ij^2): the relative error of the distances, without a unit
 
+Number of samples: with -n auto, until twice as many reduced the stress by less than 1 %; with --target-stress, until the
+normalised stress is within the target. The choice is made on distances from points that are no samples; the stress and its
+interval are then estimated from others, so the choice does not bias them. If the normalised stress settles above the
+target, the form is written and the exit code is 1.
+
 Several meshes: each form is written to FOLDER/NAME.EXT. A mesh that cannot be embedded is reported and does not
 stop the others; the exit code is then 2.
 
 Examples:
   canonform embed cat.off -o form.ply
+  canonform embed cat.off -n auto --target-stress 0.08 -o form.ply
   canonform embed cat.off dog.ply 'scans/*.obj' -o forms/ --output-format npy
   canonform embed cats.zip -o forms/
+  canonform embed fine.off --extend coarse.off -o fine.ply
   canonform embed - --format off -o - --output-format ply < cat.off > form.ply";
 
 #[derive(Debug, Args)]
@@ -134,6 +148,17 @@ pub(crate) struct EmbedArgs {
         help = "File format of forms in a folder or on standard output [default: ply]"
     )]
     pub(crate) output_format: Option<&'static str>,
+    /// Take samples until the normalised stress, estimated from held-out distances, is at most this; needs -n auto. Exit with
+    /// code 1 if more samples do not get there
+    #[arg(long, value_name = "S", value_parser = parse_target)]
+    pub(crate) target_stress: Option<f64>,
+    /// Report the coordinates of these points too: 17 is a vertex, 17-42@0.3 a point on an edge, f8@2:1:1 one in a face, as in
+    /// `canonform geodesic`
+    #[arg(long, value_delimiter = ',', value_name = "POINT[,POINT...]")]
+    pub(crate) at: Vec<InputPoint>,
+    /// Place the mesh in the form of a coarser mesh of the same surface, by the distances from the samples of that form
+    #[arg(long, value_name = "COARSER", conflicts_with = "stress_against")]
+    pub(crate) extend: Option<PathBuf>,
     /// How to find the stress; see below for its formulas
     #[arg(long, value_parser = one_of(STRESS), default_value = "auto")]
     pub(crate) stress: StressChoice,
@@ -144,6 +169,12 @@ pub(crate) struct EmbedArgs {
     pub(crate) embedding: EmbeddingArgs,
     #[command(flatten)]
     pub(crate) limits: LimitArgs,
+}
+
+/// A share that distances may be off by.
+fn parse_target(text: &str) -> Result<f64, String> {
+    let target = text.parse().ok().filter(|target: &f64| *target > 0.0 && target.is_finite());
+    target.ok_or_else(|| format!("`{text}` is not a stress; give a positive number, such as 0.05"))
 }
 
 /// What is kept and what is not.
@@ -218,6 +249,50 @@ pub(crate) struct CompareArgs {
     pub(crate) embedding: EmbeddingArgs,
     #[command(flatten)]
     pub(crate) limits: LimitArgs,
+}
+
+/// What is written, and what the numbers mean.
+const MATCH_NOTES: &str = "\
+Shapes that are alike under a mirror, as animals are, have two maps: the direct one takes the left side to the left side, the
+mirrored one to the right side. Both are found. The direct one goes to -o, unless it distorts distances clearly more; the other
+one goes to a file beside it: map.npy and map-mirrored.npy. Without -o, only the table is printed.
+
+  .npy   one int64 for each vertex of A, in its order: the vertex of B, or -1 for a vertex that the repair dropped
+  .csv   a line `vertex,match` for each vertex of A
+  .ply   A in the colours of B; B is written beside it, as map-target.ply
+  .png   a picture of A in the colours of B, and of B
+
+distortion  the mean change of distances under the map, as a share of the square root of the area; both meshes at unit area
+agreement   how far the map keeps the orientation of the surface, from -1 to 1
+
+Examples:
+  canonform match cat0.off cat1.off -o map.npy
+  canonform match cat0.off cat1.off -o map.png
+  canonform match cat0.off cat1.off --json";
+
+#[derive(Debug, Args)]
+#[command(after_long_help = MATCH_NOTES, after_help = "See `--help` for what is written, and for examples.")]
+pub(crate) struct MatchArgs {
+    /// First mesh, a file or `-` for standard input
+    pub(crate) a: PathBuf,
+    /// Second mesh, a file or `-`
+    pub(crate) b: PathBuf,
+    #[arg(short, long, value_name = "MAP", help = match_help())]
+    pub(crate) output: Option<PathBuf>,
+    /// Most eigenfunctions of each surface that the map is refined with
+    #[arg(long, value_name = "K", default_value_t = MatchOptions::default().eigenfunctions)]
+    pub(crate) eigenfunctions: usize,
+    #[command(flatten)]
+    pub(crate) form: FormArgs,
+    #[command(flatten)]
+    pub(crate) limits: LimitArgs,
+}
+
+/// Extensions of the files that maps are written to.
+pub(crate) const MAP_FORMATS: [&str; 4] = ["npy", "csv", "ply", "png"];
+
+fn match_help() -> String {
+    format!("Output file of the first map: {}; a second map is written beside it", or_list(MAP_FORMATS))
 }
 
 /// Extensions of the files that forms are written to, each with a line of help.

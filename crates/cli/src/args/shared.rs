@@ -251,7 +251,7 @@ impl FormArgs {
 pub(crate) const STRESS: [(&str, &str, StressChoice); 4] = [
     (
         "auto",
-        "Exactly up to 1,000 vertices, beyond from one row for every 5 samples, at least 3",
+        "Exactly up to 1,000 vertices, beyond from one row for every 5 samples, at least 3, or 32 with -n auto",
         StressChoice::Auto,
     ),
     ("exact", "From the distances between all pairs of vertices", StressChoice::Exact),

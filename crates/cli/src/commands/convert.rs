@@ -68,7 +68,8 @@ fn one(args: &ConvertArgs, common: &Common) -> Result<ExitCode> {
 /// Reads, repairs and writes a mesh.
 fn write(input: &Path, output: &Path, args: &ConvertArgs, common: &Common) -> Result<Json> {
     let MeshFile { mesh, facts: file, .. } = read_file(input, common)?;
-    let (mesh, repair) = match args.repair {
+    // Few formats hold points without faces.
+    let (mesh, repair) = match args.repair || mesh.faces.is_empty() {
         false => (mesh, None),
         true => {
             let surface = Surface::new(&mesh, &args.repair_options.options());

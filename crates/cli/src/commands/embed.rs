@@ -6,8 +6,10 @@ use std::process::ExitCode;
 
 use anyhow::{Result, bail};
 use canonform::linalg::Matrix;
+use canonform::nmds::SampleStop;
 use canonform::{
-    Budget, EmbedMethod, EmbedReport, FormOptions, InputMap, StressOptions, Surface, embed_and_release,
+    Budget, EmbedMethod, EmbedReport, FormOptions, InputMap, InputPoint, SamplesReport, StressKind,
+    StressOptions, Surface, embed_and_measure, embed_and_release, embed_finer,
 };
 use mesh::io::{extension, or_list};
 use rayon::prelude::*;
@@ -25,7 +27,15 @@ use terminal::Bars;
 struct EmbedJson {
     #[serde(flatten)]
     report: EmbedReport,
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    points: Vec<PointJson>,
     output: PathBuf,
+}
+
+#[derive(Serialize)]
+struct PointJson {
+    at: InputPoint,
+    coordinates: Vec<f64>,
 }
 
 #[derive(Serialize)]
@@ -52,7 +62,7 @@ struct Failure {
 
 /// Embeds one mesh, or each of several.
 pub(crate) fn embed(args: &EmbedArgs, common: &Common) -> Result<ExitCode> {
-    let options = args.embedding.options(common)?;
+    let options = args.embedding.options_with_target(common, args.target_stress)?;
     let against = args.stress_against.map(|method| args.embedding.form.marching.of(method));
     let stress = StressOptions { choice: args.stress, against, seed: common.seed };
     if args.embedding.form.samples.is_some() && options.method == EmbedMethod::Classical {
@@ -60,6 +70,9 @@ pub(crate) fn embed(args: &EmbedArgs, common: &Common) -> Result<ExitCode> {
     }
     match &args.meshes[..] {
         [mesh] if is_single(&args.meshes) => one(mesh, args, &options, &stress, common),
+        _ if args.extend.is_some() || !args.at.is_empty() => {
+            bail!("--at and --extend are about one mesh; give one")
+        }
         _ => batch(args, &options, &stress, common),
     }
 }
@@ -76,11 +89,37 @@ fn one(
     check_dim(output.path(), options.dim)?;
     let surface = read_surface(mesh, &args.embedding.form.repair, common)?;
     let bars = Bars::with_budget(common.quiet, budget(args, output.path(), 1));
-    let report = embed_and_write(mesh, surface, output.path(), options, stress, &bars)?;
+    let (report, points) = match (&args.extend, &args.at[..]) {
+        (None, []) => (embed_and_write(mesh, surface, output.path(), options, stress, &bars)?, Vec::new()),
+        (coarser, at) => {
+            let embedded = match coarser {
+                None => embed_and_measure(&surface, options, stress, &bars),
+                Some(coarser) => {
+                    let coarser = read_surface(coarser, &args.embedding.form.repair, common)?;
+                    canonform::embed(&coarser, options, &bars)
+                        .and_then(|form| embed_finer(&surface, &coarser, &form, stress, &bars))
+                }
+            };
+            let embedded = embedded.map_err(|fault| named(mesh, fault))?;
+            let placed = embedded.place(&surface, at).map_err(|fault| named(mesh, fault))?;
+            let coordinates = placed.row_iter().map(|row| row.iter().copied().collect());
+            let points = at.iter().zip(coordinates);
+            let points = points.map(|(&at, coordinates)| PointJson { at, coordinates }).collect();
+            write(output.path(), &surface.into_parts().1, &embedded.embedding.coords)?;
+            (embedded.report, points)
+        }
+    };
     drop(bars);
     warn(&mesh.display().to_string(), &report);
-    let json = EmbedJson { report, output: output.name() };
-    output.report(common, &json, table)
+    let reached = target_reached([&report]);
+    let json = EmbedJson { report, points, output: output.name() };
+    let done = output.report(common, &json, table)?;
+    Ok(if reached { done } else { ExitCode::from(1) })
+}
+
+/// Whether no form has missed its target.
+fn target_reached<'a>(reports: impl IntoIterator<Item = &'a EmbedReport>) -> bool {
+    !reports.into_iter().any(|report| report.auto.as_ref().is_some_and(SamplesReport::is_missed))
 }
 
 /// The limits of an embedding, one of `n_at_once`. Distances that do not fit into memory are kept in a file beside the form.
@@ -149,7 +188,7 @@ fn batch(
                 let (_, surface) = read_both(&shape.path, &args.embedding.form.repair, common)?;
                 let bars = Bars::with_budget(true, budget(args, &output, rayon::current_num_threads()));
                 let report = embed_and_write(&shape.path, surface, &output, options, stress, &bars)?;
-                Ok(EmbedJson { report, output: output.clone() })
+                Ok(EmbedJson { report, points: Vec::new(), output: output.clone() })
             };
             let result = one();
             bar.inc(1);
@@ -176,7 +215,8 @@ fn batch(
         terminal::error(&failure.error);
     }
     report(common, &json, |json| batch_table(json, &args.output))?;
-    Ok(exit_code(json.failed.is_empty()))
+    let reached = target_reached(json.shapes.iter().map(|shape| &shape.result.report));
+    Ok(if json.failed.is_empty() && !reached { ExitCode::from(1) } else { exit_code(json.failed.is_empty()) })
 }
 
 /// Refuses a form whose file cannot hold this many dimensions, before any work is done.
@@ -207,8 +247,31 @@ fn write(output: &Path, map: &InputMap, coords: &Matrix) -> Result<()> {
     Ok(mesh::io::write(output, &map.with_positions(position))?)
 }
 
-/// Warns about dimensions without a positive eigenvalue.
+/// Warns about dimensions without a positive eigenvalue, and about a target that was missed.
 fn warn(name: &str, report: &EmbedReport) {
+    if let Some((search, target)) =
+        report.auto.as_ref().and_then(|search| Some((search, search.target_stress?)))
+        && search.is_missed()
+    {
+        let found = report.stress.as_ref().map(|stress| (stress.normalized, "")).or_else(|| {
+            let last = search.tried.last()?;
+            Some((last.normalized, " as far as the search could tell"))
+        });
+        let (stress, how) = found.unwrap_or((f64::NAN, ""));
+        let why = match search.stop {
+            SampleStop::Target => {
+                "the search ended at its estimate of the stress, which was too low; take a lower target"
+            }
+            SampleStop::Settled => {
+                "more samples do not reduce it; --method smacof with a number of samples fits distances better"
+            }
+            SampleStop::AllPoints => "all vertices are samples",
+            SampleStop::Limit => "the search ended at the most samples it may take",
+        };
+        terminal::note(&format!(
+            "{name}: the normalised stress is {stress:.4}{how}, above the target {target}: {why}"
+        ));
+    }
     if report.empty_dimensions > 0 {
         terminal::note(&format!(
             "{name}: {} of {} dimensions have no positive eigenvalue and are zero; take more samples with -n",
@@ -229,7 +292,27 @@ fn stress_text(report: &EmbedReport) -> String {
 }
 
 fn normalized_text(report: &EmbedReport) -> String {
-    report.stress.as_ref().map_or_else(|| "-".to_owned(), |s| format!("{:.4}", s.normalized))
+    match &report.stress {
+        None => "-".to_owned(),
+        Some(s) if report.auto.is_some() && s.kind == StressKind::Estimated => {
+            let [low, high] = s.normalized_interval;
+            format!("{:.4} (95 %: {low:.4} to {high:.4})", s.normalized)
+        }
+        Some(s) => format!("{:.4}", s.normalized),
+    }
+}
+
+/// The number of samples and the rank, and how they were found.
+fn samples_text(report: &EmbedReport) -> String {
+    let numbers = format!("{}, {}", report.n_samples, report.rank);
+    let Some(search) = &report.auto else { return numbers };
+    let why = match (search.stop, search.target_stress) {
+        (SampleStop::Target, Some(target)) => format!("to reach {target}"),
+        (SampleStop::Settled | SampleStop::Target, _) => format!("{} are within 1 %", search.sufficient),
+        (SampleStop::AllPoints, _) => "all vertices".to_owned(),
+        (SampleStop::Limit, _) => "the most that are taken".to_owned(),
+    };
+    format!("{numbers} ({why}; chosen on {} rows)", search.rows)
 }
 
 /// The method and its options.
@@ -246,10 +329,10 @@ fn method_text(report: &EmbedReport) -> String {
 fn table(json: &EmbedJson) -> String {
     let r = &json.report;
     let eigenvalues: Vec<String> = r.eigenvalues.iter().take(r.dim).map(|v| format!("{v:.5e}")).collect();
-    facts(&[
+    let rows = vec![
         ("method", method_text(r)),
         ("vertices, faces", format!("{}, {}", r.n_vertices, r.n_faces)),
-        ("samples, rank", format!("{}, {}", r.n_samples, r.rank)),
+        ("samples, rank", samples_text(r)),
         ("eigenvalues", eigenvalues.join(" ")),
         ("negative mass", format!("{:.4}", r.negative_mass)),
         ("stress", stress_text(r)),
@@ -262,7 +345,14 @@ fn table(json: &EmbedJson) -> String {
             ),
         ),
         ("wrote", json.output.display().to_string()),
-    ])
+    ];
+    let places = json.points.iter().map(|point| {
+        let coordinates: Vec<String> = point.coordinates.iter().map(|x| format!("{x:.6}")).collect();
+        (format!("at {}", point.at), coordinates.join(" "))
+    });
+    let places: Vec<_> = places.collect();
+    let places = places.iter().map(|(name, text)| (name.as_str(), text.clone()));
+    facts(&rows.into_iter().chain(places).collect::<Vec<_>>())
 }
 
 fn batch_table(json: &BatchJson, folder: &Path) -> String {

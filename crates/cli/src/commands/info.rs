@@ -52,7 +52,8 @@ pub(crate) fn info(args: &InfoArgs, common: &Common) -> Result<ExitCode> {
                 let place = repaired.input_to_repaired.iter().position(|v| *v == Some(shortcut.vertex));
                 shortcut.vertex = place.map_or(shortcut.vertex, Into::into);
             }
-            Ok((facts, validate(&mesh), is_noisy(&repaired.mesh), shortcuts, repaired.report))
+            let mesh = if mesh.faces.is_empty() { &repaired.mesh } else { &mesh };
+            Ok((facts, validate(mesh), is_noisy(&repaired.mesh), shortcuts, repaired.report))
         });
         match report {
             Ok((file, mesh, noisy, shortcuts, repair)) => {

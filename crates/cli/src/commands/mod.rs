@@ -5,10 +5,12 @@ mod completions;
 mod convert;
 mod embed;
 mod evaluate;
+mod field;
 mod generate;
 mod geodesic;
 mod index;
 mod info;
+mod matching;
 mod methods;
 mod render;
 mod search;
@@ -22,9 +24,11 @@ pub(crate) fn run(command: &Command, common: &Common) -> anyhow::Result<ExitCode
     match command {
         Command::Info(args) => info::info(args, common),
         Command::Geodesic(args) => geodesic::geodesic(args, common),
+        Command::Field(command) => field::field(command, common),
         Command::Embed(args) => embed::embed(args, common),
         Command::Methods(args) => methods::methods(args, common),
         Command::Compare(args) => compare::compare(args, common),
+        Command::Match(args) => matching::match_meshes(args, common),
         Command::Convert(args) => convert::convert(args, common),
         Command::Render(args) => render::draw(args, common),
         Command::Index(command) => index::index(command, common),

@@ -112,7 +112,8 @@ fn draw_one(
 ) -> Result<RenderJson> {
     let start = Instant::now();
     let MeshFile { mesh, field: carried, .. } = read_file(path, common)?;
-    let is_measured = args.form || !args.distance_from.is_empty();
+    // Points without faces are drawn as the surface through them.
+    let is_measured = args.form || !args.distance_from.is_empty() || mesh.faces.is_empty();
     let surface = is_measured.then(|| Surface::new(&mesh, &args.repair.options())).transpose();
     let surface = surface.map_err(|fault| named(path, fault))?;
     if let Some(surface) = &surface {
@@ -121,6 +122,7 @@ fn draw_one(
     let field = field(path, args, &mesh, carried, surface.as_ref())?;
     let drawn = match &surface {
         Some(surface) if args.form => form(surface, bars, common).map_err(|fault| named(path, fault))?,
+        Some(surface) => surface.shown(mesh),
         _ => mesh,
     };
     let options = options(args, field.as_ref());

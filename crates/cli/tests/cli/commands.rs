@@ -3,8 +3,9 @@
 use std::process::Stdio;
 
 use mesh::shapes;
+use serde_json::Value;
 
-use crate::support::{Workplace, assert_keys, broken_ring, one_object, program, ring};
+use crate::support::{Outcome, Workplace, assert_keys, broken_ring, one_object, program, read_npy, ring};
 
 #[test]
 fn info_reports_what_a_mesh_contains() {
@@ -151,7 +152,82 @@ fn embed_accepts_all_options() {
         .map(|o| embed(o)["stress"].clone());
     assert_eq!((&own["geodesic"], &marched["geodesic"]), (&"bfs".into(), &"fast-marching".into()));
     assert!(own["value"] != marched["value"]);
-    assert!(embed(&["-n", "auto"])["n_samples"].as_u64().unwrap() >= 20);
+    let found = embed(&["-n", "auto"]);
+    assert_eq!((&found["auto"]["stop"], &found["auto"]["verdict"]), (&"settled".into(), &Value::Null));
+    assert!(2 * found["auto"]["sufficient"].as_u64().unwrap() <= found["n_samples"].as_u64().unwrap());
+    assert!(embed(&["-n", "30"])["auto"].is_null());
+    assert_eq!(embed(&["-n", "auto", "--rank", "12"])["rank"], 12);
+}
+
+#[test]
+fn a_target_that_is_missed_has_an_exit_code_of_its_own() {
+    let place = Workplace::new();
+    place.add("ring.off", &ring());
+    let target = |target: &str| {
+        let options =
+            ["embed", "ring.off", "-n", "auto", "--target-stress", target, "-o", "form.npy", "--json"];
+        place.run(&options)
+    };
+    let reached = target("0.5");
+    assert_eq!((reached.code, &*reached.err), (0, ""));
+    let auto = |outcome: &Outcome| serde_json::from_str::<Value>(&outcome.out).unwrap()["auto"].clone();
+    assert_eq!((&auto(&reached)["stop"], &auto(&reached)["verdict"]), (&"target".into(), &"within".into()));
+    let missed = target("0.001");
+    assert_eq!((missed.code, &auto(&missed)["verdict"]), (1, &"exceeded".into()));
+    assert!(
+        missed.err.contains("above the target 0.001") && missed.err.contains("--method smacof"),
+        "{}",
+        missed.err
+    );
+    assert_eq!(place.names(), ["form.npy", "ring.off"], "the form is written");
+    let outcome = place.run(&[
+        "embed",
+        "ring.off",
+        "ring.off",
+        "-n",
+        "auto",
+        "--target-stress",
+        "0.001",
+        "-o",
+        "forms",
+    ]);
+    assert_eq!(outcome.code, 2, "two meshes of one name");
+    place.add("other.off", &ring());
+    let both = ["embed", "ring.off", "other.off", "-n", "auto", "--target-stress", "0.001", "-o", "forms"];
+    assert_eq!(place.run(&both).code, 1);
+    for (options, words) in [
+        (&["-n", "20", "--target-stress", "0.1"][..], &["--target-stress", "--samples auto"][..]),
+        (&["-n", "auto", "--target-stress", "0"], &["`0`", "positive"]),
+        (&["-n", "auto", "--target-stress", "0.1", "--method", "mds"], &["--target-stress", "--method mds"]),
+        (&["-n", "auto", "--method", "kpca"], &["kpca", "-n 100"]),
+    ] {
+        place.refused(&[&["embed", "ring.off", "-o", "f.npy"], options].concat(), words);
+    }
+}
+
+#[test]
+fn points_and_finer_meshes_are_placed_in_a_form() {
+    let place = Workplace::new();
+    for (name, level) in [("coarse.off", 2), ("fine.off", 3)] {
+        place.add(name, &shapes::icosphere(level));
+    }
+    let coarse = place.json(&["embed", "coarse.off", "-o", "coarse.npy", "--at", "7,f8@2:1:1"]);
+    let (_, rows) = read_npy(&place.path("coarse.npy"));
+    let at: Vec<f64> =
+        coarse["points"][0]["coordinates"].as_array().unwrap().iter().flat_map(Value::as_f64).collect();
+    assert_eq!((&coarse["points"][0]["at"], &coarse["points"][1]["at"]), (&7.into(), &"f8@2:1:1".into()));
+    assert!(at.iter().zip(&rows[21..24]).all(|(a, b)| (a - b).abs() < 1e-9), "{at:?}");
+    let fine = place.json(&["embed", "fine.off", "--extend", "coarse.off", "-o", "fine.npy"]);
+    let (shape, finer) = read_npy(&place.path("fine.npy"));
+    assert_eq!((shape, &fine["n_samples"]), (vec![642, 3], &coarse["n_samples"]));
+    let gap = rows.iter().zip(&finer).fold(0.0f64, |gap, (a, b)| gap.max((a - b).abs()));
+    assert!(gap < 0.1, "{gap}");
+    place.refused(&["embed", "coarse.off", "-o", "f.npy", "--at", "9000"], &["vertex 9000", "162 vertices"]);
+    place.refused(&["embed", "coarse.off", "fine.off", "-o", "forms", "--at", "1"], &["--at", "one mesh"]);
+    place.refused(
+        &["embed", "fine.off", "--extend", "coarse.off", "--method", "landmark", "-o", "f.npy"],
+        &["landmark", "nmds can"],
+    );
 }
 
 #[test]

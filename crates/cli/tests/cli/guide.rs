@@ -189,9 +189,10 @@ impl Help {
 
     /// What is wrong with a call of the program, told from its words alone.
     fn fault(&mut self, words: &[&str]) -> Option<String> {
-        let n_names = if words.first() == Some(&"index") { 2 } else { 1 };
+        let group = words.first().filter(|word| matches!(**word, "index" | "field"));
+        let n_names = if group.is_some() { 2 } else { 1 };
         if words.len() < n_names {
-            return (words.first() == Some(&"index")).then(|| "`canonform index` needs a command".to_owned());
+            return group.map(|group| format!("`canonform {group}` needs a command"));
         }
         let (command, arguments) = words.split_at(n_names);
         if command[0].starts_with('-') || command == ["index", "..."] {

@@ -1,0 +1,138 @@
+//! `field`: building, pairs, rows, nearest vertices, damaged files.
+
+use std::fs;
+
+use mesh::shapes;
+use serde_json::{Value, json};
+
+use crate::support::{Workplace, assert_keys, broken_ring, read_npy, ring};
+
+fn place() -> Workplace {
+    let place = Workplace::new();
+    place.add("ring.off", &ring());
+    let json = place.json(&[
+        "field",
+        "build",
+        "ring.off",
+        "--method",
+        "exact",
+        "--landmarks",
+        "20",
+        "-o",
+        "x.field",
+    ]);
+    assert_eq!(
+        (&json["bounds"]["kind"], &json["n_landmarks"], &json["rank"]),
+        (&json!("certified"), &json!(20), &json!(10))
+    );
+    assert_eq!(json["bytes"], json!(fs::metadata(place.path("x.field")).unwrap().len()));
+    assert_keys(&json, &["method", "n_vertices", "covering_radius", "output", "seconds", "repair"]);
+    place
+}
+
+/// Exact distances from a vertex.
+fn row(place: &Workplace, mesh: &str, source: usize) -> Vec<f64> {
+    place.done(&["geodesic", mesh, "--source", &source.to_string(), "--method", "exact", "-o", "exact.npy"]);
+    read_npy(&place.path("exact.npy")).1
+}
+
+fn number(value: &Value) -> f64 {
+    value.as_f64().unwrap()
+}
+
+#[test]
+fn pairs_have_distances_within_bounds() {
+    let place = place();
+    let exact = row(&place, "ring.off", 3);
+    fs::write(place.path("pairs.csv"), "a,b\n3,99\n99,3\n3,4\n3,3\n").unwrap();
+    let json = place.json(&["field", "query", "x.field", "--pairs", "pairs.csv", "--tolerance", "0.02"]);
+    let pairs = json["pairs"].as_array().unwrap();
+    assert_eq!(pairs.len(), 4);
+    for (pair, b) in pairs.iter().zip([99, 99, 4, 3]) {
+        let [distance, lower, upper] = ["distance", "lower", "upper"].map(|key| number(&pair[key]));
+        assert!(lower <= exact[b] && exact[b] <= upper && lower <= distance && distance <= upper, "{pair}");
+        assert!((distance - exact[b]).abs() <= 0.02 * exact[b], "{pair}");
+    }
+    assert_eq!((&pairs[0]["a"], &pairs[0]["b"], &pairs[1]["a"]), (&json!(3), &json!(99), &json!(99)));
+    assert_eq!(number(&json["estimated"]) + number(&json["exact"]), 4.0);
+    let text = place.done(&["field", "query", "x.field", "--pairs", "pairs.csv"]).out;
+    assert!(text.contains("distance") && text.contains(" exact"), "{text}");
+    // The same pairs as an array, and the answers as files.
+    let array = ["field", "query", "x.field", "--pairs", "pairs.csv", "-o", "found.npy"];
+    assert_eq!(place.json(&array)["pairs"], json!([]));
+    let (shape, rows) = read_npy(&place.path("found.npy"));
+    assert_eq!((shape, &rows[..2]), (vec![4, 5], &[3.0, 99.0][..]));
+    place.done(&["field", "query", "x.field", "--pairs", "pairs.csv", "-o", "found.csv"]);
+    let table = fs::read_to_string(place.path("found.csv")).unwrap();
+    assert!(table.starts_with("a,b,distance,lower,upper,kind\n3,99,") && table.lines().count() == 5);
+}
+
+#[test]
+fn rows_and_nearest_vertices_agree_with_exact_distances() {
+    let place = place();
+    let exact = row(&place, "ring.off", 17);
+    let json = place.json(&["field", "query", "x.field", "--source", "17"]);
+    for (pair, exact) in json["pairs"].as_array().unwrap().iter().zip(&exact) {
+        assert!(number(&pair["lower"]) <= *exact && *exact <= number(&pair["upper"]), "{pair}: {exact}");
+    }
+    let json = place.json(&["field", "query", "x.field", "--source", "17,40", "--nearest", "5"]);
+    let nearest: Vec<f64> =
+        json["pairs"].as_array().unwrap().iter().map(|pair| number(&pair["distance"])).collect();
+    let mut sorted = exact;
+    sorted.sort_by(f64::total_cmp);
+    assert_eq!(nearest.len(), 10);
+    assert!(nearest[..5].iter().zip(&sorted[1..]).all(|(a, b)| (a - b).abs() < 1e-9));
+}
+
+#[test]
+fn answers_use_the_numbers_of_the_input() {
+    let place = Workplace::new();
+    place.add("a.off", &broken_ring());
+    place.run(&["field", "build", "a.off", "--max-dropped", "1", "-o", "a.field"]);
+    let exact = row(&place, "a.off", 100);
+    let json = place.json(&["field", "query", "a.field", "--source", "100", "--tolerance", "none"]);
+    assert_eq!(json["bounds"]["kind"], "measured");
+    for (pair, exact) in json["pairs"].as_array().unwrap().iter().zip(&exact) {
+        match exact.is_finite() {
+            true => assert!(
+                number(&pair["lower"]) <= *exact && *exact <= number(&pair["upper"]),
+                "{pair}: {exact}"
+            ),
+            false => assert_eq!((&pair["kind"], &pair["distance"]), (&json!("dropped"), &Value::Null)),
+        }
+    }
+    assert_eq!(json["dropped"], 10);
+    let info = place.json(&["field", "info", "a.field"]);
+    assert_eq!((&info["n_vertices"], &info["method"]), (&json!(170), &json!("fast-marching")));
+}
+
+#[test]
+fn mistakes_are_named_and_leave_nothing_behind() {
+    let place = place();
+    place.add("b.off", &shapes::icosphere(0));
+    fs::write(place.path("bad.csv"), "1,2\n3\n").unwrap();
+    fs::write(place.path("far.csv"), "1,2\n3,999\n").unwrap();
+    let mut damaged = fs::read(place.path("x.field")).unwrap();
+    damaged[200] ^= 1;
+    fs::write(place.path("damaged.field"), damaged).unwrap();
+    let before = place.names();
+    let query = |words: &[&'static str]| [&["field", "query", "x.field"][..], words].concat();
+    place.refused(&query(&[]), &["--pairs"]);
+    place.refused(&query(&["--nearest", "3"]), &["--source"]);
+    place.refused(&query(&["--pairs", "bad.csv"]), &["bad.csv", "line 2", "`3`"]);
+    place.refused(&query(&["--pairs", "far.csv"]), &["x.field", "vertex 999", "160 vertices"]);
+    place.refused(&query(&["--source", "160"]), &["vertex 160"]);
+    place.refused(&query(&["--source", "1", "-o", "row.ply"]), &["row.ply", ".csv or .npy"]);
+    place.refused(&query(&["--source", "1", "--tolerance", "-1"]), &["-1", "none"]);
+    place.refused(
+        &["field", "query", "damaged.field", "--source", "1"],
+        &["damaged.field", "checksum", "field build"],
+    );
+    place.refused(&["field", "query", "ring.off", "--source", "1"], &["ring.off", "not a distance field"]);
+    place.refused(&["field", "query", "none.field", "--source", "1"], &["none.field"]);
+    place
+        .refused(&["field", "build", "b.off", "--landmarks", "0", "-o", "b.field"], &["b.off", "at least 1"]);
+    place.refused(&["field", "build", "b.off", "--rank", "200", "-o", "b.field"], &["rank 200"]);
+    place.refused(&["field", "build", "b.off", "-o", "no/b.field"], &["folder no"]);
+    assert_eq!(place.names(), before);
+}
