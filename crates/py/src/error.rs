@@ -3,6 +3,7 @@
 use ::index::{ExportError, IndexError};
 use budget::Exceeded;
 use canonform::descriptors::DescriptorError;
+use canonform::geodesics::GeodesicError;
 use canonform::{Error, Remedy};
 use datasets::DatasetError;
 use files::FileError;
@@ -69,7 +70,11 @@ impl Exception {
             | Error::TooManyShapes { .. } => Self::OutOfMemory,
             Error::Exceeded(Exceeded::Time { .. }) => Self::OutOfTime,
             Error::Exceeded(_) => Self::Limit,
-            Error::NoSuchPoint { .. } | Error::DroppedPoint { .. } | Error::NoPath { .. } => Self::Point,
+            Error::NoSuchPoint { .. }
+            | Error::DroppedPoint { .. }
+            | Error::NoPath { .. }
+            | Error::Geodesic(GeodesicError::NoSuchVertex { .. }) => Self::Point,
+            Error::BadField { .. } => Self::File,
             Error::BadDescription { .. } | Error::NoSuchShard { .. } => Self::Option,
             Error::Descriptor(DescriptorError::UnknownSignature { .. }) => Self::Option,
             Error::Index(IndexError::NoSuchShape { .. }) => Self::NoSuchShape,
@@ -120,6 +125,7 @@ fn words(remedy: Remedy) -> &'static str {
         Remedy::AddGraph => {
             "call Index.build with the same folder and file again, which describes no shape twice, or pass rank=\"plain\""
         }
+        Remedy::BuildFieldAgain => "build it again with Surface.distance_field",
         Remedy::ListShapes => "Index.shapes() names its shapes",
         Remedy::EvaluateShard => "evaluate one shard at a time",
         _ => "see the documentation",

@@ -12,6 +12,7 @@ use pyo3::prelude::*;
 
 use crate::arrays;
 use crate::error::{Exception, to_python};
+use crate::points::points_of;
 use crate::record::json;
 use crate::run::run_alone;
 
@@ -76,6 +77,14 @@ impl Form {
             Ok(rows)
         })?;
         arrays::matrix(py, rows, [n, p])
+    }
+
+    /// Coordinates of points of the surface, one row each.
+    fn place<'py>(&self, py: Python<'py>, points: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let points = points_of(points)?;
+        let placed = run_alone(py, None, |_| self.embedded.place(&self.surface, &points))?;
+        let rows = arrays::picked_rows(&placed, (0..placed.nrows()).map(Some));
+        arrays::matrix(py, rows, [placed.nrows(), placed.ncols()])
     }
 
     /// Facts about the embedding, as the JSON of `canonform embed`.

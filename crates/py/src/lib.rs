@@ -12,10 +12,13 @@ mod arrays;
 mod compare;
 mod datasets;
 mod error;
+mod field;
 mod form;
 mod index;
+mod matching;
 mod nystrom;
 mod picture;
+mod points;
 mod record;
 mod run;
 mod settings;
@@ -32,11 +35,15 @@ mod _canonform {
     #[pymodule_export]
     use crate::datasets::{creatures, families, generate};
     #[pymodule_export]
+    use crate::field::DistanceField;
+    #[pymodule_export]
     use crate::form::Form;
     #[pymodule_export]
     use crate::index::{Index, content_hashes, list_folder, merge_indexes};
     #[pymodule_export]
-    use crate::nystrom::{Extension, nystrom};
+    use crate::matching::match_surfaces;
+    #[pymodule_export]
+    use crate::nystrom::{Extension, SampleSearch, nystrom};
     #[pymodule_export]
     use crate::picture::draw;
     #[pymodule_export]

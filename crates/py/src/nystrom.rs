@@ -1,7 +1,10 @@
 //! Embeddings of any points with distances.
 
 use canonform::linalg::{LandmarkDistances, Matrix};
-use canonform::nmds::{Embedding, OutOfSample, nystrom_extended};
+use canonform::nmds::{
+    self, Embedding, NmdsError, NystromOptions, OutOfSample, Regularization, SampleGoal, SampleStep,
+    nystrom_extended,
+};
 use numpy::{PyArray1, PyArray2, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
@@ -53,6 +56,100 @@ impl Extension {
         let OutOfSample { unit, means, axes } = &self.0;
         let axes = arrays::matrix(py, rows_of(axes), [axes.nrows(), axes.ncols()])?;
         Ok((*unit, arrays::vector(py, means.clone()), axes))
+    }
+}
+
+/// What a search needs next: `n` samples, the distances from some rows, or nothing.
+type Step = (&'static str, Vec<usize>);
+
+fn step(next: SampleStep) -> Step {
+    match next {
+        SampleStep::Samples(n) => ("samples", vec![n]),
+        SampleStep::Rows(rows) => ("rows", rows),
+        SampleStep::Done(_) => ("done", Vec::new()),
+    }
+}
+
+/// Finds how many landmarks are enough; Python measures the distances.
+#[pyclass(module = "canonform._canonform")]
+pub(crate) struct SampleSearch {
+    search: nmds::SampleSearch,
+    options: NystromOptions,
+    goal: SampleGoal,
+}
+
+impl SampleSearch {
+    /// Embeddings with the default rank, or with other ranks.
+    fn embedded(&self, distances: &LandmarkDistances, others: bool) -> Result<Vec<Embedding>, NmdsError> {
+        let others = if others { self.options.other_ranks(distances.n_landmarks()) } else { Vec::new() };
+        let with = |rank| NystromOptions {
+            regularization: Regularization::LowRank { rank: Some(rank) },
+            ..self.options.clone()
+        };
+        let all = std::iter::once(self.options.clone()).chain(others.into_iter().map(with));
+        all.map(|options| nmds::nystrom(distances, &options)).collect()
+    }
+}
+
+#[pymethods]
+impl SampleSearch {
+    #[new]
+    fn new(settings: &str, limit: usize, seed: u64) -> PyResult<Self> {
+        let (options, goal) = Settings::parse(settings)?.searched_nystrom()?;
+        Ok(Self {
+            search: nmds::SampleSearch::new(goal, options.first_samples(), limit, seed),
+            options,
+            goal,
+        })
+    }
+
+    fn start(&self) -> Step {
+        step(self.search.start())
+    }
+
+    /// Embeds by the distances from landmarks, one column each.
+    fn offer(
+        &mut self,
+        py: Python<'_>,
+        columns: PyReadonlyArray2<'_, f64>,
+        landmarks: Vec<usize>,
+    ) -> PyResult<Step> {
+        let columns = matrix_of(&columns);
+        run_alone(py, None, |_| {
+            let distances = LandmarkDistances::new(landmarks, columns)?;
+            let candidates = self.embedded(&distances, self.goal != SampleGoal::Settled)?;
+            Ok(step(self.search.offer(&distances, candidates)?))
+        })
+    }
+
+    /// Takes the distances from rows, one column each.
+    fn supply(
+        &mut self,
+        py: Python<'_>,
+        rows: Vec<usize>,
+        columns: PyReadonlyArray2<'_, f64>,
+    ) -> PyResult<Step> {
+        let columns = matrix_of(&columns);
+        run_alone(py, None, |_| Ok(step(self.search.supply(&rows, &columns)?)))
+    }
+
+    /// The rank of the embedding found, for the last landmarks that were offered.
+    fn rank(
+        &mut self,
+        py: Python<'_>,
+        columns: PyReadonlyArray2<'_, f64>,
+        landmarks: Vec<usize>,
+    ) -> PyResult<Option<usize>> {
+        let columns = matrix_of(&columns);
+        run_alone(py, None, |_| {
+            if self.goal == SampleGoal::Settled {
+                let others = self.embedded(&LandmarkDistances::new(landmarks, columns)?, true)?;
+                self.search.compare(others)?;
+            }
+            let is_free = matches!(self.options.regularization, Regularization::LowRank { .. });
+            let found = self.search.trials().last().map(|trial| trial.rank);
+            Ok(found.filter(|_| is_free))
+        })
     }
 }
 

@@ -9,14 +9,15 @@ use view::render::{Background, RenderOptions, Surface, render_within};
 use crate::arrays;
 use crate::run::run_alone;
 
-/// A picture of a mesh as the bytes of a PNG file with a transparent background, coloured by values at its vertices if
-/// there are some. Faces at vertices without finite coordinates are left out.
+/// A picture of a mesh as the bytes of a PNG file with a transparent background, coloured by values or by colours at its
+/// vertices if there are some. Faces at vertices without finite coordinates are left out.
 #[pyfunction]
 pub(crate) fn draw<'py>(
     py: Python<'py>,
     vertices: PyReadonlyArray2<'py, f64>,
     faces: PyReadonlyArray2<'py, i64>,
     values: Option<PyReadonlyArray1<'py, f64>>,
+    colors: Option<PyReadonlyArray2<'py, u8>>,
     size: [u32; 2],
 ) -> PyResult<Bound<'py, PyBytes>> {
     let mut mesh: TriMesh = arrays::mesh_of(&vertices, &faces)?;
@@ -27,9 +28,12 @@ pub(crate) fn draw<'py>(
             *p = Default::default();
         }
     }
-    let surface = match values {
-        None => RenderOptions::default().surface,
-        Some(values) => Surface::Scalars { values: values.as_slice()?.to_vec(), range: None, isolines: 0 },
+    let surface = match (values, colors) {
+        (None, None) => RenderOptions::default().surface,
+        (None, Some(colors)) => Surface::Colors(colors.as_slice()?.as_chunks().0.to_vec()),
+        (Some(values), _) => {
+            Surface::Scalars { values: values.as_slice()?.to_vec(), range: None, isolines: 0 }
+        }
     };
     let [width, height] = size;
     let background = Background::Transparent;

@@ -2,10 +2,10 @@
 
 use canonform::descriptors::{FormDistance, Normalization, SignatureKind};
 use canonform::geodesics::{FastMarchingOptions, Method, Sampling};
-use canonform::nmds::{Bandwidth, NystromOptions, Regularization, RpiAlpha};
+use canonform::nmds::{Bandwidth, NystromOptions, Regularization, RpiAlpha, SampleGoal};
 use canonform::{
-    Budget, DescribeOptions, EmbedMethod, EmbedSettings, FormOptions, NoEffect, Samples, ShapeLimits,
-    StressChoice, StressOptions,
+    Budget, CorrespondOptions, DescribeOptions, EmbedMethod, EmbedSettings, FormOptions, NoEffect, Samples,
+    ShapeLimits, StressChoice, StressOptions,
 };
 use mesh::{RepairOptions, Weld};
 use pyo3::prelude::*;
@@ -97,6 +97,7 @@ impl Settings {
             rank: self.value("rank")?,
             alpha: self.number_or("alpha", [("paper", RpiAlpha::Paper)], RpiAlpha::Relative)?,
             sampling,
+            target_stress: self.target_stress()?,
             first_sample: self.value("first_sample")?,
             sigma: self.number_or(
                 "sigma",
@@ -112,10 +113,27 @@ impl Settings {
         settings.applied_to(options).map_err(|fault| without_effect(&fault))
     }
 
+    /// The normalised stress up to which samples are taken.
+    fn target_stress(&self) -> PyResult<Option<f64>> {
+        let target: Option<f64> = self.value("target_stress")?;
+        match target {
+            Some(target) if !(target > 0.0 && target.is_finite()) => {
+                Err(refused("target_stress", &json!(target), "give a positive number"))
+            }
+            target => Ok(target),
+        }
+    }
+
     /// How NMDS inverts the matrix of the samples.
     pub(crate) fn nystrom(&self) -> PyResult<NystromOptions> {
-        let FormOptions { method, dim, .. } = self.form(RepairOptions::default())?;
-        Ok(NystromOptions { regularization: method.regularization().unwrap_or_default(), dim })
+        Ok(self.searched_nystrom()?.0)
+    }
+
+    /// How NMDS inverts the matrix of the samples, and when there are enough of them.
+    pub(crate) fn searched_nystrom(&self) -> PyResult<(NystromOptions, SampleGoal)> {
+        let FormOptions { method, dim, samples, .. } = self.form(RepairOptions::default())?;
+        let options = NystromOptions { regularization: method.regularization().unwrap_or_default(), dim };
+        Ok((options, samples.goal().unwrap_or_default()))
     }
 
     /// A number, or one of several values that have names.
@@ -140,6 +158,15 @@ impl Settings {
             points: self.value("points")?.unwrap_or(usual.points),
             size,
         })
+    }
+
+    /// How surfaces are mapped to each other.
+    pub(crate) fn correspond(&self, repair: RepairOptions) -> PyResult<CorrespondOptions> {
+        let mut options = CorrespondOptions { form: self.form(repair)?, ..CorrespondOptions::default() };
+        if let Some(count) = self.value("eigenfunctions")? {
+            options.matching.eigenfunctions = count;
+        }
+        Ok(options)
     }
 
     /// How the stress of a form is measured.
@@ -232,6 +259,8 @@ fn refused(name: &str, value: &Value, what: &str) -> PyErr {
 fn without_effect(fault: &NoEffect) -> PyErr {
     let spell = |name: &str, values: &[&str]| {
         let values: Vec<_> = values.iter().map(|value| format!("{value:?}")).collect();
+        // The library calls the argument n by what it is.
+        let name = if name == "samples" { "n" } else { name };
         format!("{name}={}", values.join(" or "))
     };
     Exception::Option.with(&fault.in_words(spell))

@@ -8,8 +8,8 @@ use budget::Budget;
 use canonform::descriptors::SignatureKind;
 use canonform::geodesics::{DistanceSolver, FirstSample, Method, PathTracer, Sampling, Source};
 use canonform::{
-    ComparedMesh, DescribeOptions, Error, FormOptions, InputPoint, Observer, ShapeDescription, content_hash,
-    embed_and_measure,
+    ComparedMesh, CorrespondOptions, DescribeOptions, Error, FormOptions, InputPoint, MatchedSurface,
+    Observer, ShapeDescription, content_hash, embed_again, embed_and_measure, embed_finer,
 };
 use index::ContentHash;
 use mesh::TriMesh;
@@ -20,6 +20,7 @@ use rayon::prelude::*;
 use crate::arrays;
 use crate::error::{Exception, to_python};
 use crate::form::Form;
+use crate::points::{point_of, points_of};
 use crate::record::json;
 use crate::run::{Stopped, run, run_alone};
 use crate::settings::{Settings, distance_method};
@@ -67,6 +68,7 @@ struct Prepared {
 }
 
 pub(crate) type Compared = ComparedMesh<Arc<canonform::Surface>>;
+pub(crate) type Matched = MatchedSurface<Arc<canonform::Surface>>;
 
 /// A repaired triangle mesh, with everything that was prepared on it.
 #[pyclass(frozen, module = "canonform._canonform")]
@@ -81,6 +83,7 @@ pub(crate) struct Surface {
     solvers: Kept<Method, Prepared>,
     descriptions: Kept<DescribeOptions, Arc<ShapeDescription>>,
     compared: Kept<FormOptions, Arc<Compared>>,
+    matched: Kept<CorrespondOptions, Arc<Matched>>,
 }
 
 impl Surface {
@@ -88,8 +91,8 @@ impl Surface {
         let map = &inner.repaired.input_to_repaired;
         let stays = |(input, vertex): (usize, &Option<VertexId>)| *vertex == Some(VertexId::from(input));
         let unchanged = inner.mesh().n_vertices() == map.len() && map.iter().enumerate().all(stays);
-        let (solvers, descriptions, compared) = Default::default();
-        Self { mesh, inner: Arc::new(inner), content, unchanged, solvers, descriptions, compared }
+        let (solvers, descriptions, compared, matched) = Default::default();
+        Self { mesh, inner: Arc::new(inner), content, unchanged, solvers, descriptions, compared, matched }
     }
 
     /// Values of the repaired vertices in the order of the input; without a copy if that is the same.
@@ -169,6 +172,20 @@ impl Surface {
         Ok(compared)
     }
 
+    /// The surface, ready to be mapped to others, made once.
+    pub(crate) fn matched(
+        &self,
+        options: &CorrespondOptions,
+        observer: &dyn Observer,
+    ) -> Result<Arc<Matched>, Error> {
+        if let Some(kept) = self.matched.get(options) {
+            return Ok(kept);
+        }
+        let matched = Arc::new(MatchedSurface::new(self.inner.clone(), options, observer)?);
+        self.matched.put(options.clone(), matched.clone());
+        Ok(matched)
+    }
+
     fn description_of(
         &self,
         py: Python<'_>,
@@ -181,22 +198,6 @@ impl Surface {
             self.described(&options, &observer.budget())
         })?)
     }
-}
-
-/// Points of the input: vertex numbers, or text such as `17-42@0.3`.
-fn points_of(points: &Bound<'_, PyAny>) -> PyResult<Vec<InputPoint>> {
-    points.try_iter()?.map(|point| point_of(&point?)).collect()
-}
-
-fn point_of(point: &Bound<'_, PyAny>) -> PyResult<InputPoint> {
-    if let Ok(text) = point.extract::<&str>() {
-        return text.parse().map_err(|fault: canonform::BadPoint| Exception::Point.with(&fault.to_string()));
-    }
-    let number: i64 = point.extract()?;
-    let vertex = u32::try_from(number).map_err(|_| {
-        Exception::Point.with(&format!("{number} is not a vertex; vertices are counted from 0"))
-    })?;
-    Ok(InputPoint::Vertex(VertexId(vertex)))
 }
 
 /// A path: its points, the points of the input that they are, and its length.
@@ -238,7 +239,7 @@ impl Surface {
 
     #[getter]
     fn n_faces(&self) -> usize {
-        self.mesh.n_faces()
+        self.inner.input_faces.len()
     }
 
     #[getter]
@@ -251,7 +252,7 @@ impl Surface {
     }
 
     fn faces<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<i64>>> {
-        arrays::faces(py, &self.mesh.faces)
+        arrays::faces(py, &self.inner.input_faces)
     }
 
     /// The report on the repair, as JSON, and in words.
@@ -383,11 +384,35 @@ impl Surface {
     }
 
     /// The embedded surface.
-    fn canonical_form(&self, py: Python<'_>, settings: &str, progress: Option<Py<PyAny>>) -> PyResult<Form> {
+    fn canonical_form(
+        &self,
+        py: Python<'_>,
+        settings: &str,
+        reuse: Option<PyRef<'_, Form>>,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<Form> {
         let settings = Settings::parse(settings)?;
         let (options, stress) = (settings.form(self.inner.repair)?, settings.stress()?);
+        let earlier = reuse.as_ref().map(|form| &form.embedded);
+        let embedded = run(py, &settings.budget()?, progress.as_ref(), |observer| match earlier {
+            None => embed_and_measure(&self.inner, &options, &stress, observer),
+            Some(earlier) => embed_again(&self.inner, earlier, &options, &stress, observer),
+        })?;
+        Ok(Form { surface: self.inner.clone(), embedded })
+    }
+
+    /// This mesh, a finer one of the surface of a form, in the coordinates of that form.
+    fn finer(
+        &self,
+        py: Python<'_>,
+        form: PyRef<'_, Form>,
+        settings: &str,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<Form> {
+        let settings = Settings::parse(settings)?;
+        let (stress, form) = (settings.stress()?, &*form);
         let embedded = run(py, &settings.budget()?, progress.as_ref(), |observer| {
-            embed_and_measure(&self.inner, &options, &stress, observer)
+            embed_finer(&self.inner, &form.surface, &form.embedded, &stress, observer)
         })?;
         Ok(Form { surface: self.inner.clone(), embedded })
     }

@@ -120,6 +120,22 @@ def test_failures_are_listed_and_nothing_at_all_is_an_error(client: Client, coll
         build_index(collection, client, tmp_path / "bad.canonform", geodesic="magic")
 
 
+def test_paths_make_the_index_of_their_folder(client: Client, collection: Path, tmp_path: Path) -> None:
+    # The folder of the index decides which paths it states.
+    single = Index.build(collection, tmp_path / "single.canonform")
+    paths = sorted(collection.glob("*.off"), reverse=True)
+    alone = Index.build(iter(paths), tmp_path / "alone.canonform")
+    index = build_index(iter(paths), client, tmp_path / "many.canonform", n_batches=4)
+    expected = exported(single, tmp_path, "single.jsonl")
+    assert exported(alone, tmp_path, "alone.jsonl") == expected
+    assert exported(index, tmp_path, "many.jsonl") == expected
+    assert len(build_index(paths[:2], client, tmp_path / "two.canonform")) == 2
+    with pytest.raises(OptionError, match="give a folder"):
+        build_index([], client, tmp_path / "none.canonform")
+    with pytest.raises(OptionError, match="ends with space"):
+        Index.build([f"{paths[0]} "], tmp_path / "none.canonform")
+
+
 def test_the_matrix_of_distances_is_that_of_the_index(client: Client, collection: Path, tmp_path: Path) -> None:
     index = Index.build(collection, tmp_path / "i.canonform")
     for kind in ("combined", "fused"):

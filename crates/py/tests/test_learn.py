@@ -93,6 +93,32 @@ def test_it_works_in_a_pipeline_and_after_pickling() -> None:
     assert mds.get_feature_names_out().tolist() == ["nystrommds0", "nystrommds1"]
 
 
+def test_landmarks_are_taken_until_they_are_enough() -> None:
+    X = points(400, 6)
+    mds = NystromMDS(n_landmarks="auto", n_components=6).fit(X)
+    assert len(mds.landmarks_) == 11, "points in space are exact from the first landmarks"
+    # Not Euclidean, so the stress falls with the number of landmarks.
+    for sampling in ("farthest", "random"):
+        given = {"n_components": 3, "metric": "manhattan", "sampling": sampling, "random_state": 3}
+        settled = NystromMDS(n_landmarks="auto", **given).fit(X)
+        n = len(settled.landmarks_)
+        assert 8 < n < 400
+        fixed = NystromMDS(n_landmarks=n, rank=settled.rank_, **given).fit(X)
+        np.testing.assert_array_equal(settled.landmarks_, fixed.landmarks_)
+        np.testing.assert_array_equal(settled.embedding_, fixed.embedding_)
+    few = NystromMDS(n_landmarks="auto", target_stress=0.9, metric="manhattan").fit(X)
+    assert len(few.landmarks_) == 8
+
+
+def test_a_surface_needs_as_many_landmarks_as_its_form(cat: Shape) -> None:
+    surface = cat.surface()
+    form = surface.canonical_form(n="auto")
+    metric = lambda a, b: surface.distances(int(a))[b]  # noqa: E731
+    mds = NystromMDS(n_landmarks="auto", metric=metric).fit(np.arange(surface.n_vertices))
+    np.testing.assert_array_equal(mds.landmarks_, form.samples)
+    np.testing.assert_array_equal(mds.embedding_, form.points)
+
+
 def test_fewer_landmarks_are_taken_if_points_repeat() -> None:
     X = np.repeat(points(12, 3), 5, axis=0)
     mds = NystromMDS(n_landmarks=30).fit(X)
@@ -103,6 +129,9 @@ def test_fewer_landmarks_are_taken_if_points_repeat() -> None:
     ("parameters", "words"),
     [
         ({"n_landmarks": 0}, "n_landmarks=0"),
+        ({"n_landmarks": "many"}, "or 'auto'"),
+        ({"target_stress": 0.1}, "use n_landmarks='auto'"),
+        ({"n_landmarks": "auto", "target_stress": -1.0}, "give a positive number"),
         ({"sampling": "best"}, "'farthest' or 'random'"),
         ({"regularization": "magic"}, 'use "low-rank"'),
         ({"n_components": 200}, "200 dimensions"),

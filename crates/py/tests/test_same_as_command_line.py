@@ -63,7 +63,8 @@ def test_paths(program: Program, meshes: list[Path], tmp_path: Path) -> None:
     [
         ([], {}),
         (["-n", "40", "--rank", "9", "--geodesic", "heat"], {"n": 40, "rank": 9, "geodesic": "heat"}),
-        (["-n", "auto"], {"n": "auto"}),
+        (["-n", "auto", "--seed", "2"], {"n": "auto", "seed": 2}),
+        (["-n", "auto", "--target-stress", "0.2"], {"n": "auto", "target_stress": 0.2}),
         (["-n", "30", "--method", "smacof", "--iterations", "5"], {"n": 30, "method": "smacof", "iterations": 5}),
         (["--method", "spectral", "-n", "30", "--mu", "inf"], {"method": "spectral", "n": 30, "mu": float("inf")}),
         (["--method", "kpca", "-n", "30", "--sigma", "median"], {"method": "kpca", "n": 30, "sigma": "median"}),
@@ -80,6 +81,19 @@ def test_forms(program: Program, meshes: list[Path], tmp_path: Path, flags: list
     form = canonform.read(meshes[0]).canonical_form(**arguments)
     np.testing.assert_array_equal(form.points, np.load(out))
     assert timeless(form.report) == timeless(report)
+
+
+def test_points_and_finer_meshes(program: Program, meshes: list[Path], tmp_path: Path) -> None:
+    out = tmp_path / "form.npy"
+    report = program.json("embed", meshes[0], "-o", out, "--at", "17,f3@1:2:1,0")
+    form = canonform.read(meshes[0]).canonical_form()
+    expected = [point["coordinates"] for point in report["points"]]
+    np.testing.assert_array_equal(form.place(["17", "f3@1:2:1", 0]), expected)
+    np.testing.assert_allclose(form.place(17)[0], form.points[17], atol=1e-9)
+    # A mesh is the coarsest of its own levels.
+    program.json("embed", meshes[0], "--extend", meshes[0], "-o", out)
+    surface = canonform.read(meshes[0])
+    np.testing.assert_array_equal(surface.canonical_form().finer(surface).points, np.load(out))
 
 
 def test_repairs(program: Program, tmp_path: Path, cats: list[Shape]) -> None:

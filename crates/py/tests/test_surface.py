@@ -9,6 +9,7 @@ from canonform import Surface
 from canonform.datasets import Shape
 from canonform.errors import EmbeddingError, MeshError, MissingFileError, OptionError, PointError, TimeLimitError
 from conftest import grid
+from numpy.typing import NDArray
 
 
 def test_distances_in_the_plane_are_euclidean(square: Surface) -> None:
@@ -70,6 +71,37 @@ def test_the_mesh_is_not_changed_with_the_arrays(cat: Shape) -> None:
     np.testing.assert_array_equal(surface.faces, cat.faces)
     with pytest.raises(ValueError, match="read-only"):
         surface.vertices[0] = 1
+
+
+def ball(n: int) -> NDArray[np.float64]:
+    """Points spread evenly over the unit sphere."""
+    i = np.arange(n) + 0.5
+    height, turn = 1 - 2 * i / n, i * np.pi * (1 + 5**0.5)
+    radius = np.sqrt(1 - height**2)
+    return np.column_stack([radius * np.cos(turn), radius * np.sin(turn), height])
+
+
+def test_points_without_faces_are_a_surface(tmp_path) -> None:
+    points = ball(2000)
+    surface = Surface(np.concatenate([points, points[:5], [[0, 0, 50]]]))
+    assert (surface.n_vertices, surface.n_faces) == (2006, 3996)
+    report = surface.repair_report["points"]
+    assert (report["n_points"], report["replaced_points"], report["outliers"]) == (2006, 5, 1)
+    distances = surface.distances(0, method="exact")
+    assert np.isinf(distances[2005]) and distances[2000] == 0
+    straight = np.linalg.norm(points - points[0], axis=1)
+    np.testing.assert_allclose(distances[:2000], 2 * np.arcsin(straight / 2), rtol=0.001)
+    np.savetxt(tmp_path / "ball.xyz", points)
+    read = canonform.read(tmp_path / "ball.xyz")
+    np.testing.assert_allclose(read.distances(0, method="exact"), distances[:2000])
+    assert len(read.canonical_form(n=20).points) == 2000
+
+
+def test_noisy_points_are_smoothed() -> None:
+    random = np.random.default_rng(0)
+    surface = Surface(ball(4000) + random.normal(scale=0.03, size=(4000, 3)))
+    assert surface.repair_report["points"]["neighbors"] > 0
+    assert abs(surface.area / (4 * np.pi) - 1) < 0.03
 
 
 def test_results_are_in_the_order_of_the_input() -> None:
@@ -199,6 +231,7 @@ def test_settings_reach_the_library(cat: Shape) -> None:
         (lambda s: Surface(grid()[0][:, :2], grid()[1]), MeshError, "shape (n, 3)"),
         (lambda s: Surface(np.full((3, 3), np.nan), [[0, 1, 2]]), MeshError, "not finite"),
         (lambda s: Surface("cat.off"), MeshError, "canonform.read(path)"),
+        (lambda s: Surface(grid()[0][:11]), MeshError, "at least 12 points"),
         (lambda s: canonform.align(s.canonical_form(n=20, dim=2), s), EmbeddingError, "dim="),
         (lambda s: canonform.datasets.generate("whale"), OptionError, "'cat'"),
         (lambda s: canonform.datasets.generate("cat", n_vertices=10), OptionError, "1000"),
@@ -240,3 +273,16 @@ def test_threads_change_nothing(cat: Shape) -> None:
         canonform.set_threads(before)
     for a, b in zip(*results, strict=True):
         np.testing.assert_array_equal(a, b)
+
+
+def test_samples_are_taken_until_a_target_is_reached_and_reused(cat: Shape) -> None:
+    surface = cat.surface()
+    form = surface.canonical_form(n="auto", target_stress=0.5)
+    auto = form.report["auto"]
+    assert (auto["stop"], auto["verdict"], len(form.samples)) == ("target", "within", 8)
+    more = surface.canonical_form(n=30, reuse=form)
+    np.testing.assert_array_equal(more.points, surface.canonical_form(n=30).points)
+    with pytest.raises(canonform.errors.OptionError, match='use n="auto"'):
+        surface.canonical_form(n=30, target_stress=0.5)
+    missed = surface.canonical_form(n="auto", target_stress=1e-4).report["auto"]
+    assert (missed["stop"], missed["verdict"]) == ("settled", "exceeded")

@@ -27,8 +27,10 @@ from typing import Any as _Any
 from . import datasets, errors
 from ._canonform import __version__, set_threads, threads
 from ._compare import Alignment, Comparison, align, compare
+from ._field import DistanceField, PairDistance, PairDistances
 from ._form import Form
 from ._index import Index, Result, SearchResults, ShapeEntry
+from ._match import Match, SurfaceMap, match
 from ._surface import Path, RepairReport, Surface, distance_methods, embedding_methods, signature_kinds
 from .errors import CanonformError
 
@@ -40,15 +42,20 @@ __all__ = [
     "Alignment",
     "CanonformError",
     "Comparison",
+    "DistanceField",
     "Form",
     "Index",
+    "Match",
     "NystromMDS",
+    "PairDistance",
+    "PairDistances",
     "Path",
     "RepairReport",
     "Result",
     "SearchResults",
     "ShapeEntry",
     "Surface",
+    "SurfaceMap",
     "__version__",
     "align",
     "compare",
@@ -57,6 +64,7 @@ __all__ = [
     "distributed",
     "embedding_methods",
     "errors",
+    "match",
     "read",
     "set_threads",
     "signature_kinds",

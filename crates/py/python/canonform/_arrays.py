@@ -36,16 +36,18 @@ def faces_of(faces: ArrayLike) -> Ints:
 
 
 def mesh_of(mesh: Any, faces: Any) -> tuple[Floats, Ints]:
-    """Vertices and faces, from two arrays or from a mesh of trimesh, meshio, PyVista or Open3D."""
+    """Vertices and faces, from two arrays, from points without faces, or from a mesh of trimesh, meshio, PyVista or Open3D."""
     if faces is not None:
         return vertices_of(mesh), faces_of(faces)
+    if isinstance(mesh, np.ndarray) or isinstance(mesh, (list, tuple)):
+        return vertices_of(mesh), np.empty((0, 3), dtype=np.int64)
     for read in (_pyvista, _trimesh, _meshio, _open3d):
         found = read(mesh)
         if found is not None:
             return vertices_of(found[0]), faces_of(found[1])
     raise MeshError(
         f"{type(mesh).__name__} is not a mesh; give vertices and faces as arrays, a mesh of trimesh, meshio, PyVista or Open3D, "
-        "or read a file with canonform.read(path)"
+        "points as an array, or read a file with canonform.read(path)"
     )
 
 

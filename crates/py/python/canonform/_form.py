@@ -4,14 +4,19 @@ from __future__ import annotations
 
 import json
 import os
+from collections.abc import Sequence
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from . import _canonform, _html
 from ._arrays import Floats, Ints
+from ._settings import Progress, encoded, shown
+
+if TYPE_CHECKING:
+    from ._surface import Surface
 
 
 class Form:
@@ -79,6 +84,25 @@ class Form:
     def distances(self) -> Floats:
         """Distances from each sample to all vertices, shape (number of samples, n), in mesh units."""
         return self._inner.distances()
+
+    def place(self, points: int | str | Sequence[int | str]) -> Floats:
+        """Coordinates of points of the surface, shape (number of points, dim), in mesh units. Needs method="nmds".
+
+        Parameters
+        ----------
+        points
+            Points as in `Surface.distances`: vertex numbers, or text such as "17-42@0.3" on an edge and "f8@2:1:1" in a face.
+        """
+        one = isinstance(points, (int, np.integer, str))
+        return self._inner.place([points] if one else list(points))  # type: ignore[list-item,arg-type]
+
+    def finer(self, surface: Surface, *, stress: str = "auto", seed: int = 0, progress: Progress = False) -> Form:
+        """A finer mesh of the same surface in the coordinates of this form, placed by the distances from its samples.
+
+        The meshes are in the same place: each sample is the nearest vertex of the finer mesh. Needs method="nmds".
+        """
+        with shown(progress) as report:
+            return Form(surface._inner.finer(self._inner, encoded(stress=stress, seed=seed), report), self._name)
 
     def write(self, path: str | os.PathLike[str]) -> None:
         """Write the form as a mesh; the extension tells the format. Vertices that the repair dropped are left out."""

@@ -16,11 +16,16 @@ _CELL = "text-align:left;padding:2px 12px 2px 0;background:none;vertical-align:t
 
 
 def picture(
-    vertices: NDArray[np.float64], faces: NDArray[np.int64], values: ArrayLike | None, size: tuple[int, int]
+    vertices: NDArray[np.float64],
+    faces: NDArray[np.int64],
+    values: ArrayLike | None,
+    size: tuple[int, int],
+    colors: NDArray[np.uint8] | None = None,
 ) -> bytes:
-    """A PNG file of a mesh."""
-    colors = None if values is None else np.ascontiguousarray(values, dtype=np.float64)
-    return _canonform.draw(np.ascontiguousarray(vertices), np.ascontiguousarray(faces), colors, size)
+    """A PNG file of a mesh, coloured by values, or by one colour for each vertex."""
+    numbers = None if values is None else np.ascontiguousarray(values, dtype=np.float64)
+    shades = None if colors is None else np.ascontiguousarray(colors, dtype=np.uint8)
+    return _canonform.draw(np.ascontiguousarray(vertices), np.ascontiguousarray(faces), numbers, shades, size)
 
 
 def image(png: bytes, side: int = 220, title: str = "") -> str:

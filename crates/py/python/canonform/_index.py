@@ -155,7 +155,7 @@ def _caption(image: str, caption: str) -> str:
 class Index:
     """A searchable file of shapes.
 
-    `Index.build(folder, path)` makes one, `Index(path)` opens it. An index is one file; it finds shapes by their signatures and orders
+    `Index.build(meshes, path)` makes one, `Index(path)` opens it. An index is one file; it finds shapes by their signatures and orders
     them by their aligned forms. Other programs may search it at the same time, also while it is changed; methods that change it continue
     to work with the new content.
     """
@@ -173,7 +173,7 @@ class Index:
     @classmethod
     def build(
         cls,
-        folder: AnyPath,
+        meshes: AnyPath | Iterable[AnyPath],
         path: AnyPath,
         *,
         labels: Mapping[str, str] | AnyPath | None = None,
@@ -193,23 +193,24 @@ class Index:
         memory: int | str | None = None,
         progress: Progress = False,
     ) -> Index:
-        """Make a file the index of the meshes in a folder, and open it.
+        """Make a file the index of meshes, and open it.
 
         Only new and changed meshes are described. After an interruption, call it again: finished work is kept. Meshes that cannot be
         described are left out and listed in `build_report["failed"]`.
 
         Parameters
         ----------
-        folder
-            Meshes, also in sub-folders. Classes are the names of the sub-folders, else the leading letters of the file names.
+        meshes
+            A folder, also with sub-folders, an archive, a list file, or paths of mesh files. Classes are the names of the sub-folders,
+            else the leading letters of the file names.
         path
             The index.
         labels
             Classes by name of the shape, or a file of lines `name,label`; shapes that it does not name have no class.
         prune
-            Remove shapes of the index that did not come from this folder.
+            Remove shapes of the index that did not come from these meshes.
         shard
-            (i, k) to index the i-th of k equal parts of the folder, counted from 1; `merge` joins them.
+            (i, k) to index the i-th of k equal parts of the meshes, counted from 1; `merge` joins them.
         points
             Number of points of each form to keep for alignment.
         size
@@ -224,7 +225,7 @@ class Index:
         Raises
         ------
         MeshError
-            If the folder has no meshes, or none of them can be described.
+            If there are no meshes, or none of them can be described.
         ShapeIndexError
             If the file is not an index, or was made with other options.
         """
@@ -242,15 +243,13 @@ class Index:
             timeout=timeout,
             memory=n_bytes(memory),
         )
-        with shown(progress) as update, _label_file(labels) as label_file:
-            report = json.loads(
-                _canonform.Index.build(os.fspath(folder), os.fspath(path), label_file, prune, shard, None, settings, update)
-            )
+        with shown(progress) as update, _label_file(labels) as label_file, _dataset(meshes) as (dataset, name):
+            report = json.loads(_canonform.Index.build(dataset, os.fspath(path), label_file, prune, shard, None, settings, update))
         if not os.path.exists(path):
             from .errors import MeshError
 
             first = report["failed"][0]["error"] if report["failed"] else "there are no meshes"
-            raise MeshError(f"no mesh of {os.fspath(folder)} could be described, so no index was written; the first: {first}")
+            raise MeshError(f"no mesh of {name} could be described, so no index was written; the first: {first}")
         index = cls(path)
         index.build_report = report
         return index
@@ -463,6 +462,29 @@ class Index:
 
 def _whole(number: float | None) -> int | None:
     return None if number is None else int(number)
+
+
+@contextmanager
+def _dataset(meshes: AnyPath | Iterable[AnyPath], folder: str | None = None) -> Iterator[tuple[str, str]]:
+    """The path of a dataset, and what to call it: the one given, or a list file of the paths given.
+
+    The list is written to `folder`, which keeps it, or to a temporary one.
+    """
+    if isinstance(meshes, (str, os.PathLike)):
+        yield os.fspath(meshes), os.fspath(meshes)
+        return
+    paths = [os.path.abspath(path) for path in meshes]
+    for path in paths:
+        # A list has one path in each line, without the space around it.
+        if path != path.strip() or "\n" in path or "\r" in path:
+            raise OptionError(f"the path {path!r} is not possible in a list: it begins or ends with space, or has several lines")
+    if not paths:
+        raise OptionError("meshes=[] is not possible: give a folder, an archive, a list file, or paths of mesh files")
+    with TemporaryDirectory() as temporary:
+        name = os.path.join(folder or temporary, "meshes.txt")
+        with open(name, "w", encoding="utf-8") as file:
+            file.writelines(f"{path}\n" for path in paths)
+        yield name, f"{len(paths)} paths"
 
 
 @contextmanager

@@ -14,6 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _canonform, _html
 from ._arrays import Floats, Ints, mesh_of
+from ._field import DistanceField
 from ._form import Form
 from ._settings import Progress, encoded, n_bytes, number_or_inf, shown
 
@@ -87,9 +88,9 @@ class Surface:
     ----------
     mesh
         The vertices: an array of shape (n, 3), of any type of numbers, in any unit of length. Or a mesh of trimesh, meshio, PyVista or
-        Open3D; then leave out `faces`.
+        Open3D; then leave out `faces`. Or points without faces: they are smoothed if they are noisy, and joined by triangles.
     faces
-        The triangles: an array of shape (m, 3) of vertex numbers, counted from 0.
+        The triangles: an array of shape (m, 3) of vertex numbers, counted from 0. Leave it out for a point cloud.
     components
         What happens to a mesh of several components: "largest" keeps the one of the largest area, "bridge" joins them by links, "error"
         refuses the mesh.
@@ -108,6 +109,15 @@ class Surface:
     >>> square = canonform.Surface(np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]), np.array([[0, 1, 2], [0, 2, 3]]))
     >>> square.distances(0).round(6).tolist()
     [0.0, 1.0, 1.414214, 1.0]
+
+    A point cloud:
+
+    >>> i = np.arange(2000) + 0.5
+    >>> height, turn = 1 - 2 * i / 2000, i * np.pi * (1 + 5**0.5)
+    >>> radius = np.sqrt(1 - height**2)
+    >>> ball = canonform.Surface(np.column_stack([radius * np.cos(turn), radius * np.sin(turn), height]))
+    >>> bool(abs(ball.distances(0, method="exact").max() - np.pi) < 0.02), bool(abs(ball.area - 4 * np.pi) < 0.1)
+    (True, True)
     """
 
     _inner: _canonform.Surface
@@ -282,10 +292,37 @@ class Surface:
         with shown(progress) as report:
             return self._inner.farthest_points(n, first, method, update, obtuse, report)
 
+    def distance_field(
+        self,
+        landmarks: int = 100,
+        *,
+        rank: int | None = None,
+        method: str = "fast-marching",
+        update: str | None = None,
+        obtuse: str | None = None,
+        progress: Progress = False,
+    ) -> DistanceField:
+        """The distances between all pairs of vertices, with bounds, in little memory.
+
+        Parameters
+        ----------
+        landmarks
+            Number of landmarks; each takes 2 bytes per vertex.
+        rank
+            Number of eigenpairs behind the estimates, by default half the landmarks; each takes 2 bytes per vertex.
+        method, update, obtuse
+            How distances are measured, as in `distances`. Only "exact" certifies the bounds; with others they are widened by the error that
+            was measured on this surface.
+        """
+        with shown(progress) as report:
+            inner = _canonform.DistanceField.build(self._inner, landmarks, rank, method, update, obtuse, report)
+        return DistanceField(inner)
+
     def canonical_form(
         self,
         n: int | str = 100,
         *,
+        target_stress: float | None = None,
         method: str = "nmds",
         dim: int = 3,
         geodesic: str = "fast-marching",
@@ -303,6 +340,7 @@ class Surface:
         tolerance: float | None = None,
         seed: int = 0,
         stress: str = "auto",
+        reuse: Form | None = None,
         timeout: float | None = None,
         memory: int | str | None = None,
         progress: Progress = False,
@@ -312,7 +350,10 @@ class Surface:
         Parameters
         ----------
         n
-            Number of samples, or "auto" to take as many as needed.
+            Number of samples, or "auto" to take them until twice as many reduced the stress by less than 1 %.
+        target_stress
+            With n="auto", take samples until the normalised stress, estimated from held-out distances, is at most this. `report["auto"]`
+            says whether that was reached.
         method
             One of `embedding_methods()`: "nmds", "landmark", "spectral", "fmds", "kpca", "mds", "smacof".
         dim
@@ -336,6 +377,9 @@ class Surface:
             Of everything random.
         stress
             How the stress is found: "auto", "exact", "estimate" or "skip".
+        reuse
+            An earlier form of this surface. Distances that it has measured are looked up, so that further samples, another rank or another
+            method cost less; the result is the same.
         timeout, memory
             Limits, in seconds and in bytes; memory may be text such as "2G".
 
@@ -347,6 +391,7 @@ class Surface:
         """
         settings = encoded(
             n=n,
+            target_stress=target_stress,
             method=method,
             dim=dim,
             geodesic=geodesic,
@@ -368,7 +413,8 @@ class Surface:
             memory=n_bytes(memory),
         )
         with shown(progress) as report:
-            return Form(self._inner.canonical_form(settings, report), self._name)
+            earlier = None if reuse is None else reuse._inner
+            return Form(self._inner.canonical_form(settings, earlier, report), self._name)
 
     def signature(
         self, kind: str = "fused", *, n: int = 100, size: bool = False, progress: Progress = False

@@ -1,7 +1,7 @@
 """Indexes and distances on several machines, with Dask.
 
 Describing shapes is the heavy part of an index, and every shape is described on its own: a pool of tasks, without any exchange between
-them. `build_index` cuts a folder into batches, a worker makes an index of each, and the client merges them. Workers need this package
+them. `build_index` cuts a collection into batches, a worker makes an index of each, and the client merges them. Workers need this package
 and must see the meshes and the index under the same paths.
 
     >>> from distributed import Client, LocalCluster                             # doctest: +SKIP
@@ -24,7 +24,7 @@ import numpy as np
 
 from . import _canonform
 from ._arrays import Floats
-from ._index import AnyPath, Index, _label_file
+from ._index import AnyPath, Index, _dataset, _label_file
 from ._settings import Progress, encoded, form_options, n_bytes, shown
 from .errors import MeshError, OptionError
 
@@ -71,7 +71,7 @@ def batches_by_size(sizes: Sequence[int], n_batches: int, most: int = _MOST_IN_B
 
 
 def build_index(
-    folder: AnyPath,
+    meshes: AnyPath | Iterable[AnyPath],
     client: Client,
     out: AnyPath,
     *,
@@ -94,7 +94,7 @@ def build_index(
     keep_shards: bool = False,
     progress: Progress = False,
 ) -> Index:
-    """Make a file the index of the meshes in a folder, on the workers of a Dask client.
+    """Make a file the index of meshes, on the workers of a Dask client.
 
     Each batch becomes a small index in the folder `shards`, named by the hash of its options and of the content of its meshes. A batch
     that is there already is not described again, so a run that was interrupted goes on where it stopped. A batch whose worker is lost
@@ -102,7 +102,7 @@ def build_index(
 
     Parameters
     ----------
-    folder, labels, n, points, size, method, geodesic, form, components, weld, seed, max_vertices, timeout, memory
+    meshes, labels, n, points, size, method, geodesic, form, components, weld, seed, max_vertices, timeout, memory
         As in `Index.build`.
     client
         A `distributed.Client`, of any cluster: local, over SSH, or of Slurm through dask-jobqueue.
@@ -120,7 +120,7 @@ def build_index(
     Raises
     ------
     MeshError
-        If the folder has no meshes, or none of them can be described.
+        If there are no meshes, or none of them can be described.
     """
     settings = encoded(
         n=n,
@@ -136,28 +136,28 @@ def build_index(
         timeout=timeout,
         memory=n_bytes(memory),
     )
-    folder, out = os.path.abspath(folder), os.path.abspath(out)
+    out = os.path.abspath(out)
     place = os.path.abspath(shards if shards is not None else f"{out}.shards")
     os.makedirs(place, exist_ok=True)
-    with _label_file(labels) as given:
-        label_file = None
+    # Workers do not see temporary files of the client, so lists of meshes and labels are kept beside the shards.
+    with _label_file(labels) as given, _dataset(meshes, place) as (dataset, name):
+        dataset, label_file = os.path.abspath(dataset), None
         if given is not None:
-            # Workers do not see temporary files of the client.
             label_file = os.path.join(place, "labels.csv")
             shutil.copyfile(given, label_file)
-        found = _canonform.list_folder(folder, out, label_file)
+        found = _canonform.list_folder(dataset, out, label_file)
     threads = sum(client.nthreads().values()) or 1
     batches = batches_by_size([n_bytes for *_, n_bytes in found], n_batches or _BATCHES_PER_THREAD * threads)
     # The largest batches run first.
     tasks = [
         client.submit(
             _describe,
-            folder,
+            dataset,
             [found[item][:3] for item in batch],
             place,
             label_file,
             settings,
-            key=f"canonform-{_hash(settings, folder, [found[item] for item in batch])}",
+            key=f"canonform-{_hash(settings, dataset, [found[item] for item in batch])}",
             priority=-place_in_line,
             retries=retries,
             pure=False,
@@ -170,7 +170,7 @@ def build_index(
     written = sorted({path for path, _ in reports if os.path.exists(path)})
     if not written:
         first = failed[0]["error"] if failed else "there are no meshes"
-        raise MeshError(f"no mesh of {folder} could be described, so no index was written; the first: {first}")
+        raise MeshError(f"no mesh of {name} could be described, so no index was written; the first: {first}")
     index = Index.merge(written, out)
     index.build_report = {
         "n_shapes": len(index),
@@ -238,7 +238,7 @@ def distance_matrix(
 
 
 def _describe(
-    folder: str, shapes: list[tuple[str, str, str]], place: str, label_file: str | None, settings: str
+    dataset: str, shapes: list[tuple[str, str, str]], place: str, label_file: str | None, settings: str
 ) -> tuple[str, dict[str, Any]]:
     """Makes the index of a batch, on a worker. Returns its path and report."""
     _use_threads_of_worker()
@@ -247,7 +247,7 @@ def _describe(
     path = os.path.join(place, f"{name}.canonform")
     # An unfinished batch is resumed, and one that is there is recognised by the content of its meshes.
     report = _canonform.Index.build(
-        folder, path, label_file, False, None, {name for name, _, _ in shapes}, settings, None
+        dataset, path, label_file, False, None, {name for name, _, _ in shapes}, settings, None
     )
     return path, json.loads(report)
 

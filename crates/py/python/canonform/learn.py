@@ -25,6 +25,9 @@ __all__ = ["NystromMDS"]
 _ROUNDING = 1e-7
 """Differences of distances that are not told from zero, relative to the largest distance."""
 
+_MOST_LANDMARKS = 640
+"""As many as n_landmarks="auto" takes, as on surfaces."""
+
 Metric: TypeAlias = str | Callable[[Any, Any], ArrayLike]
 
 
@@ -37,8 +40,9 @@ class NystromMDS(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEstimato
 
     Parameters
     ----------
-    n_landmarks : int, default=100
-        Number of landmarks, fewer if there are fewer different points.
+    n_landmarks : int or "auto", default=100
+        Number of landmarks, fewer if there are fewer different points. "auto" takes landmarks until twice as many reduced the stress by
+        less than 1 %, at most 640.
     n_components : int, default=3
         Dimensions of the embedding.
     metric : str or callable, default="euclidean"
@@ -57,8 +61,11 @@ class NystromMDS(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEstimato
         Number of eigenvalues that "low-rank" keeps. By default half the landmarks, at least n_components + 4.
     alpha : float, default=None
         How strongly "rpi" damps small eigenvalues.
+    target_stress : float, default=None
+        With n_landmarks="auto": take landmarks until the normalised stress, the relative error of the distances, is at most this on
+        distances that the embedding does not know.
     random_state : int, RandomState or None, default=None
-        For `sampling="random"`.
+        For `sampling="random"`, and for the distances that n_landmarks="auto" looks at.
 
     Attributes
     ----------
@@ -97,7 +104,7 @@ class NystromMDS(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEstimato
 
     def __init__(
         self,
-        n_landmarks: int = 100,
+        n_landmarks: int | str = 100,
         n_components: int = 3,
         *,
         metric: Metric = "euclidean",
@@ -106,6 +113,7 @@ class NystromMDS(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEstimato
         regularization: str = "low-rank",
         rank: int | None = None,
         alpha: float | None = None,
+        target_stress: float | None = None,
         random_state: Any = None,
     ) -> None:
         self.n_landmarks = n_landmarks
@@ -116,6 +124,7 @@ class NystromMDS(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEstimato
         self.regularization = regularization
         self.rank = rank
         self.alpha = alpha
+        self.target_stress = target_stress
         self.random_state = random_state
 
     def fit(self, X: Any, y: object = None) -> NystromMDS:
@@ -124,11 +133,18 @@ class NystromMDS(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEstimato
         n = len(X)
         if n < 2:
             raise ValueError(f"a metric space of 1 sample has no extent, and X has {n} sample(s); give at least 2")
-        landmarks, columns = self._measured(X)
-        settings = encoded(
-            dim=self.n_components, regularization=self.regularization, rank=self.rank, alpha=self.alpha
-        )
-        found = _canonform.nystrom(columns, landmarks.tolist(), settings)
+        taken = _Landmarks(self, X)
+        rank = self.rank
+        if self.n_landmarks == "auto":
+            rank = self._searched(X, taken)
+        elif isinstance(self.n_landmarks, str) or not self.n_landmarks >= 1:
+            raise ValueError(f"n_landmarks={self.n_landmarks!r} is not possible: give a positive number, or 'auto'")
+        elif self.target_stress is not None:
+            raise ValueError(f"target_stress has no effect with n_landmarks={self.n_landmarks}; leave it out, or use n_landmarks='auto'")
+        else:
+            taken.extend_to(self.n_landmarks)
+        landmarks = taken.landmarks
+        found = _canonform.nystrom(taken.columns, landmarks.tolist(), encoded(**{**self._settings(), "rank": rank}))
         self.embedding_, self.eigenvalues_, self.negative_mass_, self.rank_, self._extension = found
         self.landmarks_ = landmarks
         self._n_fitted = n
@@ -182,39 +198,28 @@ class NystromMDS(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEstimato
         distances: Floats = pairwise_distances(X, np.asarray(a)[None], metric=self.metric, **parameters)[:, 0]
         return distances
 
-    def _measured(self, X: Any) -> tuple[Ints, Floats]:
-        """Landmarks, and the distances from each of them to all points, one column for each."""
-        n = len(X)
-        if not self.n_landmarks >= 1:
-            raise ValueError(f"n_landmarks={self.n_landmarks} is not possible: give a positive number")
-        most = min(self.n_landmarks, n)
+    def _settings(self) -> dict[str, Any]:
+        return {"dim": self.n_components, "regularization": self.regularization, "rank": self.rank, "alpha": self.alpha}
 
-        def column(i: int) -> Floats:
-            measured: Floats = X[:, i] if self.metric == "precomputed" else self._column(X[i], X)
-            return measured
+    def _measure(self, X: Any, i: int) -> Floats:
+        """The distances from a point of the fit to all."""
+        measured: Floats = X[:, i] if self.metric == "precomputed" else self._column(X[i], X)
+        return measured
 
-        columns = np.empty((n, most), order="F")
-        if self.sampling == "random":
-            landmarks = check_random_state(self.random_state).permutation(n)[:most].astype(np.int64)
-            for j, i in enumerate(landmarks):
-                columns[:, j] = column(int(i))
-            return landmarks, columns
-        if self.sampling != "farthest":
-            raise ValueError(f"sampling={self.sampling!r} is not possible: use 'farthest' or 'random'")
-        # As on surfaces, the first is the point farthest from point 0, at a tip.
-        i = int(np.argmax(column(0)))
-        taken: list[int] = []
-        nearest = np.full(n, np.inf)
-        while len(taken) < most:
-            columns[:, len(taken)] = column(i)
-            np.minimum(nearest, columns[:, len(taken)], out=nearest)
-            nearest[i] = 0
-            taken.append(i)
-            i = int(np.argmax(nearest))
-            # The other points repeat landmarks, up to the rounding of Euclidean distances by scikit-learn.
-            if not nearest[i] > _ROUNDING * columns[:, 0].max():
-                break
-        return np.array(taken, dtype=np.int64), columns[:, : len(taken)]
+    def _searched(self, X: Any, taken: _Landmarks) -> int | None:
+        """Takes landmarks until they are enough; the best rank for them."""
+        seed = int(check_random_state(self.random_state).randint(2**31 - 1)) if self.random_state is not None else 0
+        settings = encoded(**self._settings(), n="auto", target_stress=self.target_stress)
+        search = _canonform.SampleSearch(settings, min(_MOST_LANDMARKS, len(X)), seed)
+        step, numbers = search.start()
+        while step != "done":
+            if step == "samples":
+                taken.extend_to(numbers[0])
+                step, numbers = search.offer(taken.columns, taken.landmarks.tolist())
+            else:
+                rows = np.stack([self._measure(X, i) for i in numbers], axis=1)
+                step, numbers = search.supply(numbers, np.asarray(rows, dtype=np.float64))
+        return search.rank(taken.columns, taken.landmarks.tolist())
 
     @property
     def _n_features_out(self) -> int:
@@ -229,3 +234,48 @@ class NystromMDS(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEstimato
 
 def _items(X: Any, indices: NDArray[np.int64]) -> Any:
     return X[indices] if isinstance(X, np.ndarray) else [X[i] for i in indices]
+
+
+class _Landmarks:
+    """Landmarks, and the distances from each of them to all points, one column for each. More begin with the same ones."""
+
+    def __init__(self, estimator: NystromMDS, X: Any) -> None:
+        if estimator.sampling not in ("farthest", "random"):
+            raise ValueError(f"sampling={estimator.sampling!r} is not possible: use 'farthest' or 'random'")
+        n = len(X)
+        self._measure: Callable[[int], Floats] = lambda i: estimator._measure(X, i)
+        self._order: Ints | None = None
+        if estimator.sampling == "random":
+            self._order = check_random_state(estimator.random_state).permutation(n).astype(np.int64)
+        else:
+            # As on surfaces, the first is the point farthest from point 0, at a tip.
+            self._next = int(np.argmax(self._measure(0)))
+        self._nearest = np.full(n, np.inf)
+        self._taken: list[int] = []
+        self._columns = np.empty((n, 0), order="F")
+        self._is_complete = False
+
+    @property
+    def landmarks(self) -> Ints:
+        return np.array(self._taken, dtype=np.int64)
+
+    @property
+    def columns(self) -> Floats:
+        return self._columns
+
+    def extend_to(self, n: int) -> None:
+        """Take landmarks until there are n, or as many as there are different points."""
+        n = min(n, len(self._columns))
+        columns = np.empty((len(self._columns), max(n, len(self._taken))), order="F")
+        columns[:, : len(self._taken)] = self._columns
+        while len(self._taken) < n and not self._is_complete:
+            i = self._next if self._order is None else int(self._order[len(self._taken)])
+            columns[:, len(self._taken)] = self._measure(i)
+            np.minimum(self._nearest, columns[:, len(self._taken)], out=self._nearest)
+            self._nearest[i] = 0
+            self._taken.append(i)
+            if self._order is None:
+                self._next = int(np.argmax(self._nearest))
+                # The other points repeat landmarks, up to the rounding of Euclidean distances by scikit-learn.
+                self._is_complete = not self._nearest[self._next] > _ROUNDING * columns[:, 0].max()
+        self._columns = columns[:, : len(self._taken)]

@@ -1,0 +1,148 @@
+"""All pairs of distances in little memory, with bounds."""
+
+from __future__ import annotations
+
+import json
+import os
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from . import _canonform
+from ._arrays import Floats, Ints
+from ._settings import Progress, shown
+from .errors import PointError
+
+
+@dataclass(frozen=True)
+class PairDistance:
+    """The distance of two vertices, with bounds, in mesh units."""
+
+    distance: float
+    """The estimate, between the bounds."""
+    lower: float
+    """The distance is not below this."""
+    upper: float
+    """The distance is not above this."""
+    exact: bool
+    """Whether the distance is exact instead of an estimate."""
+
+
+@dataclass(frozen=True, repr=False)
+class PairDistances:
+    """The distances of several pairs, with bounds: arrays of one number for each pair, in mesh units.
+
+    `numpy.asarray(distances)` gives the distances.
+    """
+
+    distance: Floats
+    """The estimates, between the bounds. Infinite if the repair dropped one of the vertices."""
+    lower: Floats
+    """No distance is below these."""
+    upper: Floats
+    """No distance is above these."""
+    exact: NDArray[np.bool_]
+    """Which distances are exact instead of estimates."""
+
+    def __len__(self) -> int:
+        return len(self.distance)
+
+    def __array__(self, dtype: Any = None, copy: bool | None = None) -> NDArray[Any]:
+        return np.array(self.distance, dtype=dtype, copy=True if copy is None else copy)
+
+    def __repr__(self) -> str:
+        return f"PairDistances({len(self)} pairs, {int(self.exact.sum())} exact)"
+
+
+class DistanceField:
+    """The distances between all pairs of vertices of a surface, in a few hundred bytes per vertex, with bounds.
+
+    Made by `Surface.distance_field`, or read from a file by `DistanceField.load`. A file is that of the command line.
+
+    Examples
+    --------
+    >>> import canonform
+    >>> cat = canonform.datasets.generate("cat", n_vertices=1000)[0].surface()
+    >>> field = cat.distance_field(method="exact")
+    >>> pair = field.pair(3, 500)
+    >>> pair.lower <= pair.distance <= pair.upper
+    True
+    """
+
+    def __init__(self, inner: _canonform.DistanceField) -> None:
+        self._inner = inner
+
+    @classmethod
+    def load(cls, path: str | os.PathLike[str]) -> DistanceField:
+        """Read a field from a file. Raises `MissingFileError` and `FileError`."""
+        return cls(_canonform.DistanceField.open(os.fspath(path)))
+
+    def save(self, path: str | os.PathLike[str]) -> None:
+        """Write the field to a file. Raises `FileError`."""
+        self._inner.save(os.fspath(path))
+
+    @property
+    def n_vertices(self) -> int:
+        """Number of vertices of the input."""
+        return self._inner.n_vertices
+
+    @property
+    def landmarks(self) -> Ints:
+        """The landmarks: vertices of the input."""
+        return self._inner.landmarks()
+
+    @property
+    def facts(self) -> dict[str, Any]:
+        """How the field was built, and what its bounds rest on: the object that `canonform field info --json` prints."""
+        facts: dict[str, Any] = json.loads(self._inner.facts())
+        return facts
+
+    @property
+    def certified(self) -> bool:
+        """Whether the bounds rest on exact distances alone, so that no distance can lie outside."""
+        return bool(self.facts["bounds"]["kind"] == "certified")
+
+    def pair(self, a: int, b: int) -> PairDistance:
+        """The distance of two vertices, estimated. Raises `PointError`."""
+        return PairDistance(*self._inner.pair(int(a), int(b)))
+
+    def pairs(
+        self, pairs: ArrayLike, *, tolerance: float | None = 0.05, progress: Progress = False
+    ) -> PairDistances:
+        """The distances of many pairs of vertices, in parallel.
+
+        Parameters
+        ----------
+        pairs
+            Vertex numbers, shape (k, 2).
+        tolerance
+            Pairs whose bounds are farther apart than this share of the distance are finished by exact propagation on the surface. None
+            finishes no pair.
+
+        Raises
+        ------
+        PointError
+            If the mesh has no such vertex, or they are not pairs of vertices.
+        """
+        array = np.asarray(pairs)
+        if array.size == 0:
+            array = np.zeros((0, 2), dtype=np.int64)
+        if array.ndim != 2 or array.shape[1] != 2 or array.dtype.kind not in "iu":
+            raise PointError(f"pairs must be an array of vertex numbers of shape (k, 2), not {array.dtype} of shape {array.shape}")
+        with shown(progress) as report:
+            return PairDistances(*self._inner.pairs(np.ascontiguousarray(array, dtype=np.int64), tolerance, report))
+
+    def row(self, source: int, *, tolerance: float | None = 0.05) -> PairDistances:
+        """The distances from one vertex to all, in the order of the input; `tolerance` as in `pairs`."""
+        return PairDistances(*self._inner.row(int(source), tolerance))
+
+    def nearest(self, source: int, k: int) -> tuple[Ints, Floats]:
+        """The `k` vertices nearest to one of them along the surface, itself left out, and their exact distances, nearest first."""
+        return self._inner.nearest(int(source), int(k))
+
+    def __repr__(self) -> str:
+        facts = self.facts
+        bounds = facts["bounds"]["kind"]
+        return f"DistanceField({facts['n_vertices']} vertices, {facts['n_landmarks']} landmarks, {bounds} bounds)"

@@ -1,0 +1,144 @@
+//! Distance fields.
+
+use std::path::PathBuf;
+
+use ::surface::VertexId;
+use budget::Budget;
+use canonform::{FieldOptions, Finish, PairDistance, PairKind};
+use numpy::{IntoPyArray, PyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
+use pyo3::prelude::*;
+
+use crate::arrays;
+use crate::error::Exception;
+use crate::record::json;
+use crate::run::{run, run_alone};
+use crate::settings::distance_method;
+use crate::surface::Surface;
+
+/// The distances between all pairs of vertices of a surface.
+#[pyclass(frozen, module = "canonform._canonform")]
+pub(crate) struct DistanceField(canonform::DistanceField);
+
+/// Vertices, and their distances.
+type Neighbours<'py> = (Bound<'py, PyArray1<i64>>, Bound<'py, PyArray1<f64>>);
+
+/// Distances, lower and upper bounds, and which distances are exact.
+type Answers<'py> = (
+    Bound<'py, PyArray1<f64>>,
+    Bound<'py, PyArray1<f64>>,
+    Bound<'py, PyArray1<f64>>,
+    Bound<'py, PyArray1<bool>>,
+);
+
+fn vertex(number: i64) -> PyResult<VertexId> {
+    u32::try_from(number)
+        .map(VertexId)
+        .map_err(|_| Exception::Point.with(&format!("{number} is not a vertex; vertices are counted from 0")))
+}
+
+/// `None` finishes no pair.
+fn finish(tolerance: Option<f64>) -> PyResult<Finish> {
+    match tolerance {
+        None => Ok(Finish::Never),
+        Some(share) if share >= 0.0 => Ok(Finish::Beyond(share)),
+        Some(other) => {
+            let message = format!("tolerance={other} is not possible: give a share such as 0.05, or None");
+            Err(Exception::Option.with(&message))
+        }
+    }
+}
+
+fn answers<'py>(py: Python<'py>, found: &[PairDistance]) -> Answers<'py> {
+    let column = |value: fn(&PairDistance) -> f64| arrays::vector(py, found.iter().map(value).collect());
+    let exact: Vec<bool> = found.iter().map(|pair| pair.kind == PairKind::Exact).collect();
+    (
+        column(|pair| pair.distance),
+        column(|pair| pair.lower),
+        column(|pair| pair.upper),
+        exact.into_pyarray(py),
+    )
+}
+
+#[pymethods]
+impl DistanceField {
+    /// Measures the distances from landmarks of a surface.
+    #[staticmethod]
+    #[expect(clippy::too_many_arguments, reason = "keyword arguments")]
+    fn build(
+        py: Python<'_>,
+        surface: &Surface,
+        landmarks: usize,
+        rank: Option<usize>,
+        method: &str,
+        update: Option<&str>,
+        obtuse: Option<&str>,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<Self> {
+        let options = FieldOptions { method: distance_method(method, update, obtuse)?, landmarks, rank };
+        Ok(Self(run(py, &Budget::unlimited(), progress.as_ref(), |observer| {
+            canonform::DistanceField::build(&surface.inner, &options, observer)
+        })?))
+    }
+
+    #[staticmethod]
+    fn open(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
+        run_alone(py, None, |_| Ok(Self(canonform::DistanceField::open(&path)?)))
+    }
+
+    fn save(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
+        run_alone(py, None, |_| self.0.save(&path))
+    }
+
+    #[getter]
+    fn n_vertices(&self) -> usize {
+        self.0.n_vertices()
+    }
+
+    /// Facts about the field, as the JSON of `canonform field info`.
+    fn facts(&self) -> String {
+        json(&self.0.facts())
+    }
+
+    /// Vertices of the input.
+    fn landmarks<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<i64>> {
+        self.0.landmarks().iter().map(|v| i64::from(v.0)).collect::<Vec<_>>().into_pyarray(py)
+    }
+
+    /// The distance of two vertices, its bounds, and whether it is exact.
+    fn pair(&self, a: i64, b: i64) -> PyResult<(f64, f64, f64, bool)> {
+        let pair = self.0.pair(vertex(a)?, vertex(b)?).map_err(|fault| crate::error::to_python(&fault))?;
+        Ok((pair.distance, pair.lower, pair.upper, pair.kind == PairKind::Exact))
+    }
+
+    /// The distances of the rows of an n x 2 array.
+    fn pairs<'py>(
+        &self,
+        py: Python<'py>,
+        pairs: PyReadonlyArray2<'py, i64>,
+        tolerance: Option<f64>,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<Answers<'py>> {
+        debug_assert_eq!(pairs.shape()[1], 2);
+        let finish = finish(tolerance)?;
+        let rows = pairs.as_slice()?.as_chunks::<2>().0.iter();
+        let pairs = rows.map(|[a, b]| Ok([vertex(*a)?, vertex(*b)?])).collect::<PyResult<Vec<_>>>()?;
+        let found = run_alone(py, progress.as_ref(), |observer| self.0.pairs(&pairs, finish, observer))?;
+        Ok(answers(py, &found))
+    }
+
+    /// The distances from one vertex to all.
+    fn row<'py>(&self, py: Python<'py>, source: i64, tolerance: Option<f64>) -> PyResult<Answers<'py>> {
+        let (source, finish) = (vertex(source)?, finish(tolerance)?);
+        let found = run_alone(py, None, |observer| self.0.row(source, finish, observer))?;
+        Ok(answers(py, &found))
+    }
+
+    /// The nearest vertices, and their distances.
+    fn nearest<'py>(&self, py: Python<'py>, source: i64, k: usize) -> PyResult<Neighbours<'py>> {
+        let source = vertex(source)?;
+        let found = run_alone(py, None, |observer| self.0.nearest(source, k, observer))?;
+        let (vertices, distances): (Vec<i64>, Vec<f64>) =
+            found.iter().map(|pair| (i64::from(pair.b.0), pair.distance)).unzip();
+        Ok((vertices.into_pyarray(py), arrays::vector(py, distances)))
+    }
+}

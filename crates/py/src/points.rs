@@ -1,0 +1,23 @@
+//! Points of a surface as Python writes them.
+
+use ::surface::VertexId;
+use canonform::InputPoint;
+use pyo3::prelude::*;
+
+use crate::error::Exception;
+
+/// Points of the input: vertex numbers, or text such as `17-42@0.3`.
+pub(crate) fn points_of(points: &Bound<'_, PyAny>) -> PyResult<Vec<InputPoint>> {
+    points.try_iter()?.map(|point| point_of(&point?)).collect()
+}
+
+pub(crate) fn point_of(point: &Bound<'_, PyAny>) -> PyResult<InputPoint> {
+    if let Ok(text) = point.extract::<&str>() {
+        return text.parse().map_err(|fault: canonform::BadPoint| Exception::Point.with(&fault.to_string()));
+    }
+    let number: i64 = point.extract()?;
+    let vertex = u32::try_from(number).map_err(|_| {
+        Exception::Point.with(&format!("{number} is not a vertex; vertices are counted from 0"))
+    })?;
+    Ok(InputPoint::Vertex(VertexId(vertex)))
+}

@@ -1,0 +1,27 @@
+"""The examples that search an export of an index in other stores."""
+
+from __future__ import annotations
+
+import runpy
+import sys
+from pathlib import Path
+
+import pytest
+from canonform import Index
+from conftest import ROOT, Program
+
+# The stores warn of their own affairs.
+pytestmark = pytest.mark.filterwarnings("default")
+
+
+def test_duckdb_and_lancedb_find_the_neighbours_that_the_program_finds(
+    program: Program, collection: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for package in ("duckdb", "lancedb", "pyarrow"):
+        pytest.importorskip(package)
+    index = Index.build(collection, tmp_path / "shapes.canonform")
+    examples = ROOT / "examples" / "stores"
+    monkeypatch.syspath_prepend(str(examples))
+    monkeypatch.setattr(sys, "argv", ["check.py"])
+    check = runpy.run_path(str(examples / "check.py"))["check"]
+    assert check(index.path, str(program.path)) == len(index) == 9
