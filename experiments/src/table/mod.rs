@@ -9,6 +9,9 @@ mod figure7;
 mod figure8;
 mod figure9;
 mod invariance;
+mod matching;
+mod partial;
+mod points;
 mod retrieve;
 mod robustness;
 mod scaling;
@@ -40,7 +43,7 @@ macro_rules! experiment {
 
 /// All experiments, in the order in which they run and appear on the page.
 #[rustfmt::skip]
-pub(crate) const EXPERIMENTS: [Experiment; 13] = [
+pub(crate) const EXPERIMENTS: [Experiment; 16] = [
     experiment!("figure1", "Figure 1. Shapes and their canonical forms", gallery, figure1::run),
     experiment!("figure3", "Figure 3. Canonical forms by several methods", charts::<Figure3Results>, figure3::run),
     experiment!("figure4", "Figure 4. Classification of shapes by their canonical forms", explorer, figure4::run),
@@ -53,6 +56,9 @@ pub(crate) const EXPERIMENTS: [Experiment; 13] = [
     experiment!("retrieval", "Retrieval. Classification by signatures and canonical forms", charts::<RetrievalResults>, retrieve::run),
     experiment!("invariance", "Invariance. Retrieval of damaged shapes", charts::<InvarianceResults>, invariance::run),
     experiment!("robustness", "Robustness. Scores of damaged shapes", charts::<CurvesResults>, robustness::run),
+    experiment!("matching", "Matching. Dense maps between poses", charts::<CurvesResults>, matching::run),
+    experiment!("points", "Points. Distances and retrieval of point clouds", charts::<CurvesResults>, points::run),
+    experiment!("partial", "Parts. Retrieval of parts of shapes", charts::<CurvesResults>, partial::run),
     experiment!("scaling", "Scaling. Time and memory up to a million vertices", charts::<CurvesResults>, scaling::run),
 ];
 

@@ -1,0 +1,253 @@
+//! Matching: dense maps from each shape to the next one of its class.
+//!
+//! The truth is known for built-in shapes, by the place of a vertex on the body at rest, and for meshes with the same faces, by
+//! the number of the vertex. The error of a vertex is the distance on the second surface between its image and its true
+//! partner, as a share of the square root of the area. Without a truth, the distance from a vertex to its image under the map
+//! there and the map back takes its place.
+//!
+//! Measures `CLASS direct|mirrored` (mean error), `CLASS direct 5|10|25` (share of vertices with an error below so many
+//! hundredths), `CLASS failed` (share of pairs without a direct map whose mean error is below a tenth), `CLASS flipped` (share
+//! of pairs whose mirrored map has the lesser distortion), `CLASS distortion`, `CLASS return`, `CLASS seconds`, and `preparation
+//! seconds`; `all ...` over all pairs, and `worst direct`, the largest mean error of a class.
+
+use anyhow::{Context as _, Result};
+use canonform::{CorrespondOptions, Correspondence, MatchedSurface, VertexMap, correspond};
+use datasets::{ArticulatedOptions, Family, articulated_at_rest};
+use descriptors::{MapKind, NearestPoints};
+use geodesics::Method;
+use nalgebra::Point3;
+use rayon::prelude::*;
+use report::results::{CurvesPanel, CurvesResults, Series};
+use surface::VertexId;
+
+use crate::collection::{Setting, Shape, map};
+use crate::context::Context;
+use crate::sweep::{Measured, linear, panel, point};
+
+/// Vertices of a pair whose errors are measured.
+const CHECKED: usize = 300;
+
+/// Errors of the horizontal axis.
+const STEPS: usize = 50;
+const MOST: f64 = 0.25;
+
+/// The name of all classes together.
+const ALL: &str = "all";
+
+/// A shape with what is known of its vertices.
+struct Known<'a> {
+    shape: &'a Shape,
+    matched: MatchedSurface<&'a canonform::Surface>,
+    /// Vertices on the body at rest, which is its own mirror image at `x = 0`.
+    at_rest: Option<NearestPoints>,
+}
+
+/// The errors of one kind of map of a pair.
+#[derive(Clone, Default)]
+struct Errors {
+    direct: Vec<f64>,
+    mirrored: Vec<f64>,
+    /// From a vertex to its image under the better map there and the better map back of the same kind.
+    there_and_back: Vec<f64>,
+}
+
+struct Pair {
+    class: String,
+    errors: Errors,
+    is_flipped: bool,
+    distortion: f64,
+    seconds: f64,
+}
+
+pub(crate) fn run(context: &Context<'_>) -> Result<()> {
+    let options = CorrespondOptions::default();
+    let all = context.collection.all();
+    let is_built_in = context.collection.setting() == Setting::BuiltIn;
+    // One after the other, so that times are those of a machine at rest.
+    context.observer.begin("preparing", all.len());
+    let mut known = Vec::new();
+    for shape in &all {
+        let matched =
+            MatchedSurface::new(&shape.surface, &options, &()).with_context(|| shape.name.clone())?;
+        known.push(Known { shape, matched, at_rest: None });
+        context.observer.step();
+    }
+    if is_built_in {
+        let rested = map(&all, "bodies at rest", context.observer, |shape| at_rest(context, shape))?;
+        known.iter_mut().zip(rested).for_each(|(known, rested)| known.at_rest = Some(rested));
+    }
+    let pairs: Vec<[&Known<'_>; 2]> = known
+        .iter()
+        .enumerate()
+        .filter_map(|(i, a)| {
+            let later = known[i + 1..].iter().chain(&known[..i]);
+            let next = later.into_iter().find(|b| b.shape.label == a.shape.label)?;
+            Some([a, next])
+        })
+        .collect();
+    context.observer.begin("matching", pairs.len());
+    let mut found = Vec::new();
+    for [a, b] in pairs {
+        found.push(pair(a, b, &options).with_context(|| format!("{} to {}", a.shape.name, b.shape.name))?);
+        context.observer.step();
+    }
+    let mut measured = Measured::new();
+    let preparation: f64 = known.iter().map(|known| known.matched.seconds).sum();
+    measured.insert("preparation seconds".to_owned(), preparation / known.len().max(1) as f64);
+    let mut worst = f64::NEG_INFINITY;
+    for class in &context.collection.classes {
+        let of_class: Vec<&Pair> = found.iter().filter(|pair| pair.class == *class).collect();
+        worst = worst.max(measure(class, &of_class, &mut measured));
+    }
+    measure(ALL, &found.iter().collect::<Vec<_>>(), &mut measured);
+    measured.insert("worst direct".to_owned(), worst);
+    let panels = panels(&context.collection.classes, &found);
+    let caption = format!(
+        "Share of the vertices whose error is below a limit, for maps from each of {} shapes to the next one of its class. Bands \
+         span all pairs.",
+        found.len()
+    );
+    let provenance =
+        context.provenance(serde_json::json!({ "matching": options.matching, "spread": options.spread }));
+    context.publish(CurvesResults { caption, panels }, provenance, &measured)
+}
+
+/// The vertices of a built-in shape on the body at rest.
+fn at_rest(context: &Context<'_>, shape: &Shape) -> Result<NearestPoints> {
+    let family = Family::all().into_iter().find(|family| family.name() == shape.label);
+    let family = family.context("a built-in family")?;
+    let pose = shape.name.strip_prefix(family.name()).and_then(|pose| pose.parse().ok()).context("a pose")?;
+    let n_vertices = shape.surface.mesh().n_vertices();
+    let options = ArticulatedOptions { seed: context.seed, n_vertices };
+    let rested = articulated_at_rest(family, 0, pose, &options)?;
+    anyhow::ensure!(rested.shape.mesh == *shape.surface.mesh(), "the shape is generated again");
+    Ok(NearestPoints::new(rested.rest.positions)?)
+}
+
+fn pair(a: &Known<'_>, b: &Known<'_>, options: &CorrespondOptions) -> Result<Pair> {
+    let forth = correspond(&a.matched, &b.matched, options, &())?;
+    let back = correspond(&b.matched, &a.matched, options, &())?;
+    let best = forth.maps.first().context("a map")?;
+    Ok(Pair {
+        class: a.shape.label.clone(),
+        errors: errors(a, b, &forth, &back)?,
+        is_flipped: of_kind(&forth, MapKind::Mirrored).is_some_and(|mirrored| {
+            of_kind(&forth, MapKind::Direct).is_none_or(|direct| mirrored.distortion < direct.distortion)
+        }),
+        distortion: best.distortion,
+        seconds: forth.seconds,
+    })
+}
+
+fn of_kind(found: &Correspondence, kind: MapKind) -> Option<&VertexMap> {
+    found.maps.iter().find(|map| map.kind == kind)
+}
+
+/// The true partner of a vertex, directly or mirrored; `None` if it is not known.
+fn partner(a: &Known<'_>, b: &Known<'_>, x: usize, kind: MapKind) -> Option<usize> {
+    if let (Some(from), Some(to)) = (&a.at_rest, &b.at_rest) {
+        let p = from.points()[x];
+        let sign = if kind == MapKind::Mirrored { -1.0 } else { 1.0 };
+        return Some(to.nearest(&Point3::new(sign * p.x, p.y, p.z)).0);
+    }
+    let same = a.shape.surface.mesh().faces == b.shape.surface.mesh().faces;
+    (same && kind == MapKind::Direct).then_some(x)
+}
+
+fn errors(a: &Known<'_>, b: &Known<'_>, forth: &Correspondence, back: &Correspondence) -> Result<Errors> {
+    let [on_a, on_b] = [a, b].map(|side| Method::default().prepare(&side.shape.surface.intrinsic));
+    let [on_a, on_b] = [on_a?, on_b?];
+    let [size_a, size_b] = [a, b].map(|side| side.shape.surface.mesh().area().sqrt());
+    let n = a.shape.surface.mesh().n_vertices();
+    let checked: Vec<usize> = (0..n).step_by(n.div_ceil(CHECKED).max(1)).collect();
+    let error = |x: usize, kind: MapKind| -> Result<Option<f64>> {
+        let Some(map) = of_kind(forth, kind) else { return Ok(None) };
+        let (Some(truth), Some(image)) = (partner(a, b, x, kind), map.vertices[x]) else { return Ok(None) };
+        Ok(Some(on_b.distances(VertexId::from(truth))?[image.index()] / size_b))
+    };
+    let all = |kind| -> Result<Vec<f64>> {
+        let found = checked.par_iter().map(|x| error(*x, kind)).collect::<Result<Vec<_>>>()?;
+        Ok(found.into_iter().flatten().collect())
+    };
+    let mut there_and_back = Vec::new();
+    if let Some(map) = forth.maps.first()
+        && let Some(inverse) = of_kind(back, map.kind)
+    {
+        let gap = |x: &usize| -> Result<Option<f64>> {
+            let home = map.vertices[*x].and_then(|y| inverse.vertices[y.index()]);
+            let Some(home) = home else { return Ok(None) };
+            Ok(Some(on_a.distances(VertexId::from(*x))?[home.index()] / size_a))
+        };
+        let gaps = checked.par_iter().map(gap).collect::<Result<Vec<_>>>()?;
+        there_and_back = gaps.into_iter().flatten().collect();
+    }
+    Ok(Errors { direct: all(MapKind::Direct)?, mirrored: all(MapKind::Mirrored)?, there_and_back })
+}
+
+fn mean(values: impl IntoIterator<Item = f64>) -> f64 {
+    let (sum, n) = values.into_iter().fold((0.0, 0usize), |(sum, n), value| (sum + value, n + 1));
+    sum / n as f64
+}
+
+/// Adds the figures of some pairs, and returns the mean error of the direct map.
+fn measure(class: &str, pairs: &[&Pair], measured: &mut Measured) -> f64 {
+    let mut add = |what: &str, value: f64| measured.insert(format!("{class} {what}"), value);
+    let over = |of: &dyn Fn(&Errors) -> &Vec<f64>| -> Vec<f64> {
+        pairs.iter().flat_map(|pair| of(&pair.errors).iter().copied()).collect()
+    };
+    let direct = over(&|errors| &errors.direct);
+    if !direct.is_empty() {
+        add("direct", mean(direct.iter().copied()));
+        add("mirrored", mean(over(&|errors| &errors.mirrored)));
+        for (name, limit) in [("direct 5", 0.05), ("direct 10", 0.1), ("direct 25", 0.25)] {
+            add(name, mean(direct.iter().map(|error| f64::from(u8::from(*error < limit)))));
+        }
+        let failed = |pair: &&Pair| {
+            let error = mean(pair.errors.direct.iter().copied());
+            f64::from(u8::from(error.is_nan() || error > 0.1))
+        };
+        add("failed", mean(pairs.iter().map(failed)));
+    }
+    add("flipped", mean(pairs.iter().map(|pair| f64::from(u8::from(pair.is_flipped)))));
+    add("distortion", mean(pairs.iter().map(|pair| pair.distortion)));
+    add("return", mean(over(&|errors| &errors.there_and_back)));
+    add("seconds", mean(pairs.iter().map(|pair| pair.seconds)));
+    mean(direct)
+}
+
+/// Cumulative errors, a panel for each kind that was measured.
+fn panels(classes: &[String], pairs: &[Pair]) -> Vec<CurvesPanel> {
+    type Of = fn(&Errors) -> &Vec<f64>;
+    let kinds: [(&str, Of); 3] = [
+        ("direct map", |errors| &errors.direct),
+        ("mirrored map", |errors| &errors.mirrored),
+        ("there and back", |errors| &errors.there_and_back),
+    ];
+    let mut panels = Vec::new();
+    for (title, of) in kinds {
+        let mut curves = Vec::new();
+        for class in classes {
+            let runs: Vec<&Vec<f64>> = pairs
+                .iter()
+                .filter(|pair| pair.class == *class)
+                .map(|pair| of(&pair.errors))
+                .filter(|errors| !errors.is_empty())
+                .collect();
+            if runs.is_empty() {
+                continue;
+            }
+            let at = |step: usize| {
+                let limit = MOST * step as f64 / STEPS as f64;
+                let share = |errors: &&Vec<f64>| {
+                    errors.iter().filter(|error| **error <= limit).count() as f64 / errors.len() as f64
+                };
+                point(limit, &runs.iter().map(share).collect::<Vec<_>>())
+            };
+            curves.push(Series { name: class.clone(), points: (0..=STEPS).map(at).collect() });
+        }
+        if !curves.is_empty() {
+            panels.push(panel(title, linear("error / sqrt(area)"), linear("share of vertices"), curves));
+        }
+    }
+    panels
+}
