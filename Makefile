@@ -66,7 +66,7 @@ bench-search: ## Compare search among a million vectors with hnswlib and faiss a
 	target/peers/bin/pip install --quiet numpy hnswlib faiss-cpu
 	target/peers/bin/python bench/search.py
 
-bench-capacity: build ## Measure what a shape costs, simulate ten million and write docs/capacity.md (needs Python; takes a quarter of an hour)
+bench-capacity: build ## Measure what a shape costs, simulate ten million and write docs/capacity.md (needs Python; takes an hour)
 	$(CARGO) build --release --locked -p canonform-index --example vectors
 	test -x target/peers/bin/python || python3 -m venv target/peers
 	target/peers/bin/pip install --quiet numpy
