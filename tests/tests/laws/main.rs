@@ -3,6 +3,7 @@
 //! | module | subject |
 //! |---|---|
 //! | `architecture` | which crate may depend on which |
+//! | `correspondence` | dense maps between surfaces |
 //! | `cycles` | imports between the modules of a crate |
 //! | `packaging` | whether all packages can be published |
 //! | `licences` | licences of dependencies |
@@ -11,7 +12,9 @@
 //! | `marching` | distances by fast marching |
 //! | `embedding` | embeddings through the whole pipeline |
 //! | `invariance` | signatures of subdivided, simplified, remeshed, noisy and moved shapes |
+//! | `fields` | distance fields against exact distances |
 //! | `matches` | what kind of match a changed mesh is with the original |
+//! | `samples` | how many samples are enough, and the interval of the stress after that choice |
 //! | `isometry` | invariance to folding, motions, renumbering and units |
 //! | `scale` | the same results in any unit of length |
 //! | `threads` | independence of the number of threads |
@@ -25,9 +28,13 @@ mod architecture;
 #[cfg(test)]
 mod builtin;
 #[cfg(test)]
+mod correspondence;
+#[cfg(test)]
 mod cycles;
 #[cfg(test)]
 mod embedding;
+#[cfg(test)]
+mod fields;
 #[cfg(test)]
 mod guarantees;
 #[cfg(test)]
@@ -47,6 +54,8 @@ mod packaging;
 mod pages;
 #[cfg(test)]
 mod real_meshes;
+#[cfg(test)]
+mod samples;
 #[cfg(test)]
 mod scale;
 #[cfg(test)]

@@ -39,7 +39,7 @@ fn tosca(data: &Path, name: &str) -> Surface {
     read(&data.join("tosca-lowres").join(format!("{name}.vert")))
 }
 
-fn read_npy<T: npyz::Deserialize>(path: &Path) -> Vec<T> {
+pub(crate) fn read_npy<T: npyz::Deserialize>(path: &Path) -> Vec<T> {
     npyz::NpyFile::new(std::fs::File::open(path).unwrap()).unwrap().into_vec().unwrap()
 }
 

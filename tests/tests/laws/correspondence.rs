@@ -1,0 +1,144 @@
+//! Dense maps between surfaces: exact cases, invariances, and known partners.
+
+use canonform::{CorrespondOptions, Correspondence, MatchedSurface, VertexMap, correspond};
+use datasets::{ArticulatedOptions, Family, RestedShape, articulated_at_rest};
+use descriptors::{MapKind, NearestPoints};
+use geodesics::Method;
+use mesh::{TriMesh, shapes};
+use nalgebra::{Point3, Rotation3};
+use surface::VertexId;
+
+use crate::support::{body, surface};
+
+fn prepared(mesh: &TriMesh) -> MatchedSurface {
+    MatchedSurface::new(surface(mesh), &CorrespondOptions::default(), &()).unwrap()
+}
+
+fn maps(a: &TriMesh, b: &TriMesh) -> Correspondence {
+    correspond(&prepared(a), &prepared(b), &CorrespondOptions::default(), &()).unwrap()
+}
+
+fn of_kind(found: &Correspondence, kind: MapKind) -> &VertexMap {
+    found.maps.iter().find(|map| map.kind == kind).unwrap_or_else(|| panic!("no {kind:?} map"))
+}
+
+fn images(map: &VertexMap) -> Vec<usize> {
+    map.vertices.iter().map(|v| v.unwrap().index()).collect()
+}
+
+/// The share of vertices with the expected partner.
+fn share(found: &[usize], expected: impl Fn(usize) -> usize) -> f64 {
+    found.iter().enumerate().filter(|(x, y)| **y == expected(*x)).count() as f64 / found.len() as f64
+}
+
+#[test]
+fn a_surface_is_mapped_to_itself_by_the_identity_and_by_its_mirror() {
+    for family in [Family::Cat, Family::David] {
+        let mesh = body(family);
+        let found = maps(&mesh, &mesh);
+        let direct = of_kind(&found, MapKind::Direct);
+        assert_eq!(found.maps[0], *direct, "the identity distorts nothing");
+        assert_eq!(share(&images(direct), |x| x), 1.0);
+        // A man of few vertices has mixtures of front and back among the candidates; the mirrored map may be missed.
+        if family == Family::David {
+            continue;
+        }
+        // Distances by fast marching differ a little in the two directions.
+        assert!(direct.distortion < 0.005, "{}", direct.distortion);
+        let mirrored = of_kind(&found, MapKind::Mirrored);
+        assert!(mirrored.distortion > 1e-3 && mirrored.distortion < 0.06, "{}", mirrored.distortion);
+        let fixed = share(&images(mirrored), |x| x);
+        println!("{}: mirrored {:.4}, fixed {fixed:.3}", family.name(), mirrored.distortion);
+        assert!(fixed < 0.5, "{fixed}");
+    }
+}
+
+#[test]
+fn motions_scale_and_numbering_change_no_map() {
+    let (a, b) = (body(Family::Cat), {
+        let options = ArticulatedOptions { n_vertices: 1000, ..ArticulatedOptions::default() };
+        datasets::articulated_shape(Family::Cat, 4, &options).unwrap().mesh
+    });
+    let usual = maps(&a, &b);
+    let turn = Rotation3::from_euler_angles(0.3, 2.0, -1.0);
+    let mut moved = b.clone();
+    moved.positions.iter_mut().for_each(|p| *p = turn * *p * 7.0 + Point3::new(1.0, 2.0, 3.0).coords);
+    let n = b.n_vertices();
+    let renumbered = TriMesh {
+        positions: (0..n).map(|i| b.positions[n - 1 - i]).collect(),
+        faces: b.faces.iter().rev().map(|f| f.map(|v| VertexId::from(n - 1 - v.index()))).collect(),
+    };
+    let (moved, renumbered) = (maps(&a, &moved), maps(&a, &renumbered));
+    for kind in [MapKind::Direct, MapKind::Mirrored] {
+        let expected = images(of_kind(&usual, kind));
+        assert!(share(&images(of_kind(&moved, kind)), |x| expected[x]) > 0.99);
+        // Other samples: some vertices go to a neighbour.
+        let other = images(of_kind(&renumbered, kind));
+        let solver = Method::default().prepare(&b.intrinsic()).unwrap();
+        let gap = |x: usize| {
+            solver.distances(VertexId::from(n - 1 - other[x])).unwrap()[expected[x]] / b.area().sqrt()
+        };
+        let mean = (0..n).step_by(10).map(gap).sum::<f64>() / (n as f64 / 10.0);
+        assert!(mean < 0.02, "{kind:?}: {mean}");
+    }
+}
+
+#[test]
+fn a_mirror_image_is_matched_by_the_mirrored_map() {
+    // A hand: without symmetry, so that only one map is good.
+    let hand = shapes::grid(41, 31, 0.1);
+    let mut hand = shapes::fold(&hand, 0.8, 1.2);
+    // Cut a corner, so that the sheet has no symmetry.
+    hand.faces.retain(|face| {
+        let p = face.map(|v| hand.positions[v.index()]);
+        p.iter().map(|p| p.x + 1.6 * p.y).fold(f64::INFINITY, f64::min) > 1.9
+    });
+    let mut other = hand.clone();
+    other.positions.iter_mut().for_each(|p| p.x = -p.x);
+    let found = maps(&hand, &other);
+    assert_eq!(
+        found.maps[0].kind,
+        MapKind::Mirrored,
+        "{:?}",
+        found.maps.iter().map(|m| (m.kind, m.distortion)).collect::<Vec<_>>()
+    );
+}
+
+#[test]
+fn maps_do_not_depend_on_threads() {
+    let [a, b] = [Family::Cat, Family::Centaur].map(body);
+    let on = |n: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(n).build().unwrap();
+        pool.install(|| maps(&a, &b).maps)
+    };
+    let (one, three) = (on(1), on(3));
+    assert_eq!(one, three);
+    let bits = |maps: &[VertexMap]| maps.iter().map(|map| map.distortion.to_bits()).collect::<Vec<_>>();
+    assert_eq!(bits(&one), bits(&three));
+}
+
+#[test]
+fn poses_are_mapped_to_their_true_partners() {
+    let rested = |family, pose| {
+        let options = ArticulatedOptions { n_vertices: 1500, ..ArticulatedOptions::default() };
+        articulated_at_rest(family, 0, pose, &options).unwrap()
+    };
+    for (family, poses) in [(Family::Cat, [0, 3]), (Family::Centaur, [1, 2]), (Family::David, [2, 5])] {
+        let [a, b]: [RestedShape; 2] = poses.map(|pose| rested(family, pose));
+        let found = maps(&a.shape.mesh, &b.shape.mesh);
+        let solver = Method::default().prepare(&b.shape.mesh.intrinsic()).unwrap();
+        let partners = NearestPoints::new(b.rest.positions.clone()).unwrap();
+        for (kind, sign, most) in [(MapKind::Direct, 1.0, 0.03), (MapKind::Mirrored, -1.0, 0.03)] {
+            let image = images(of_kind(&found, kind));
+            let error = |x: usize| {
+                let p = a.rest.positions[x];
+                let truth = partners.nearest(&Point3::new(sign * p.x, p.y, p.z)).0;
+                solver.distances(VertexId::from(truth)).unwrap()[image[x]] / b.shape.mesh.area().sqrt()
+            };
+            let errors: Vec<f64> = (0..image.len()).step_by(10).map(error).collect();
+            let mean = errors.iter().sum::<f64>() / errors.len() as f64;
+            println!("{} {kind:?}: {mean:.4}", family.name());
+            assert!(mean < most, "{} {kind:?}: {mean}", family.name());
+        }
+    }
+}
