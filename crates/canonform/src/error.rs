@@ -243,6 +243,20 @@ pub enum Error {
         /// What is wrong with it.
         fault: FieldFault,
     },
+    /// A query that is to be taken as a part, but of which the description as a whole is known only.
+    #[error("a query can be ranked as a part only by its mesh, not by a description of the whole query")]
+    NoPart,
+    /// A shape of an index without the areas of discs, which parts are compared with.
+    #[error(
+        "{path} has no disc areas of `{id}`, which parts are compared with: an earlier version described it",
+        path = path.display()
+    )]
+    NoDiscAreas {
+        /// The index.
+        path: PathBuf,
+        /// The shape.
+        id: String,
+    },
     /// A folder, an archive or a list without meshes.
     #[error(
         "{path}: no mesh found in it or its sub-folders; \
@@ -290,6 +304,8 @@ pub enum Remedy {
     BuildIndexAgain,
     /// Build the index again from its folder, or change it, which adds the graph of nearest neighbours.
     AddGraph,
+    /// Build the index again in a new file, so that every shape is described again.
+    BuildIndexAnew,
     /// Build the distance field again from its mesh.
     BuildFieldAgain,
     /// Look at the names in the index.
@@ -361,6 +377,7 @@ impl Error {
             Self::MeshGone { .. } | Self::MeshChanged { .. } => Remedy::RestoreMesh,
             Self::UnknownOptions { .. } => Remedy::BuildIndexAgain,
             Self::Index(fault) => return Remedy::of_index(fault),
+            Self::NoDiscAreas { .. } => Remedy::BuildIndexAnew,
             Self::BadField { .. } => Remedy::BuildFieldAgain,
             Self::TooManyShapes { .. } => Remedy::EvaluateShard,
             _ => return None,

@@ -109,7 +109,8 @@ pub use form::{
     DISTANCES_LIMIT, DescentReport, DescribeOptions, EmbedMethod, EmbedReport, EmbedSettings, Embedded,
     FormOptions, MethodFacts, MethodReport, MethodsReport, NoEffect, Samples, SamplesReport, SecondsReport,
     ShapeDescription, StressChoice, StressKind, StressOptions, StressReport, TargetVerdict, compare_methods,
-    describe, describe_within, embed, embed_again, embed_and_measure, embed_and_release, embed_finer,
+    describe, describe_part, describe_within, embed, embed_again, embed_and_measure, embed_and_release,
+    embed_finer,
 };
 pub use input::{
     AllPairs, Asymmetry, BadPoint, Dataset, InputMap, InputPoint, LabelFile, PathPoint, ShapeFile, SkipKind,
@@ -119,9 +120,9 @@ pub use observer::Observer;
 pub use retrieval::RankBy;
 pub use shape_index::{
     BuildOptions, BuildReport, ClassVotes, ComponentResult, Dropped, Elsewhere, EvaluateOptions, Explain,
-    Failure, FailureReason, GraphRank, Inputs, Measure, MergeReport, NearestShape, Prediction, Query, Ranked,
-    Reranked, SearchOptions, SearchReport, SearchResult, SearchSeconds, ShapeLimits, ShapeSearch, Shard,
-    Unknown, add_to_index, build_index, content_hash, evaluate_index, evaluate_matrix, indexed_shapes,
-    merge_indexes, mesh_path, remove_from_index, rerank,
+    Failure, FailureReason, GraphRank, Inputs, Measure, MergeReport, NearestShape, PartRank, Prediction,
+    Query, Ranked, Reranked, SearchOptions, SearchRank, SearchReport, SearchResult, SearchSeconds,
+    ShapeLimits, ShapeSearch, Shard, Unknown, add_to_index, build_index, content_hash, evaluate_index,
+    evaluate_matrix, indexed_shapes, merge_indexes, mesh_path, remove_from_index, rerank,
 };
 pub use {descriptors, geodesics, index, linalg, mesh, nmds, retrieval, surface};

@@ -32,6 +32,7 @@ fn words(remedy: Remedy) -> &'static str {
             "run `canonform index build` with the same folder and file again, which describes no shape twice, or pass \
              --rank plain"
         }
+        Remedy::BuildIndexAnew => "build the index with `canonform index build` in a new file",
         Remedy::BuildFieldAgain => "build it again with `canonform field build`",
         Remedy::ListShapes => "`canonform index list` names its shapes",
         Remedy::EvaluateShard => "evaluate one shard at a time",

@@ -125,6 +125,7 @@ fn words(remedy: Remedy) -> &'static str {
         Remedy::AddGraph => {
             "call Index.build with the same folder and file again, which describes no shape twice, or pass rank=\"plain\""
         }
+        Remedy::BuildIndexAnew => "build the index with Index.build in a new file",
         Remedy::BuildFieldAgain => "build it again with Surface.distance_field",
         Remedy::ListShapes => "Index.shapes() names its shapes",
         Remedy::EvaluateShard => "evaluate one shard at a time",

@@ -56,8 +56,12 @@ fn rank_by(rank: &str) -> PyResult<RankBy> {
     match rank {
         "plain" => Ok(RankBy::Plain),
         "graph" => Ok(RankBy::Graph),
-        _ => Err(Exception::Option.with(&format!("rank={rank:?} is not possible: use \"plain\", \"graph\""))),
+        _ => Err(wrong_rank(rank, "use `plain` or `graph`")),
     }
+}
+
+fn wrong_rank(rank: &str, remedy: &str) -> PyErr {
+    Exception::Option.with(&format!("rank={rank:?} is not possible: {}", remedy.replace('`', "\"")))
 }
 
 /// Reads a label file.
@@ -181,7 +185,7 @@ impl Index {
             k,
             mode: if exact { SearchMode::Exact } else { SearchMode::Auto },
             explain: if explain { Explain::Kind } else { Explain::No },
-            rank_by: rank_by(rank)?,
+            rank_by: rank.parse().map_err(|fault: String| wrong_rank(rank, &fault))?,
         };
         let surface = match &query {
             Wanted::Surface(surface) => Some(surface.get()),
@@ -206,7 +210,9 @@ impl Index {
                     );
                 }
                 let geometry = explain.then(|| MeshGeometry::new(&surface.mesh, surface.content)).flatten();
-                let query = Query { name, content: surface.content, geometry: geometry.as_ref() };
+                let part = search.part(&surface.inner, &options, &budget)?;
+                let (content, geometry) = (surface.content, geometry.as_ref());
+                let query = Query { name, content, geometry, part: part.as_ref() };
                 let described = surface.described(describe, &budget)?;
                 return search.search_query_within(&described, &query, &options, &budget);
             }

@@ -31,8 +31,21 @@ def test_both_ranks_are_offered(index: Index) -> None:
     assert plain[0].rank_distance is None and graph[0].rank_distance is not None
     scores = index.evaluate(rank="graph")
     assert scores["nn"] == 1.0 and scores["graph"]["nn"] == 1.0
-    with pytest.raises(OptionError, match='use "plain", "graph"'):
+    with pytest.raises(OptionError, match='use "plain", "graph" or "part"'):
         index.search("cat0", rank="best")
+    with pytest.raises(OptionError, match='use "plain" or "graph"'):
+        index.evaluate(rank="part")
+
+
+def test_a_part_finds_its_class(index: Index, collection: Path) -> None:
+    cat = canonform.read(collection / "cat1.off")
+    # Two thirds of the faces, from one end of the cat.
+    middles = cat.vertices[cat.faces].mean(axis=1)[:, 0]
+    part = canonform.Surface(cat.vertices, cat.faces[middles < np.quantile(middles, 0.67)])
+    found = index.search(part, rank="part")
+    assert found.label == "cat" and found[0].label == "cat"
+    assert found[0].part_distance <= found[1].part_distance and 0.4 < found[0].part_share < 1
+    assert index.search(part)[0].part_distance is None
 
 
 def test_results_go_to_pandas(index: Index) -> None:

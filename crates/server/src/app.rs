@@ -59,7 +59,9 @@ impl Query {
         budget: &Budget,
     ) -> Result<SearchReport, Error> {
         let geometry = self.measured.geometry.as_ref();
-        let known = canonform::Query { name: &self.name, content: Some(self.content), geometry };
+        let part = collection.search.part(&self.measured.surface, options, budget)?;
+        let (content, part) = (Some(self.content), part.as_ref());
+        let known = canonform::Query { name: &self.name, content, geometry, part };
         collection.search.search_query_within(&self.description, &known, options, budget)
     }
 }

@@ -189,6 +189,7 @@ fn remedy(fault: &Error) -> Option<&'static str> {
             "restore the mesh file, move the index back to the place where it was built, or build the index again"
         }
         Remedy::BuildIndexAgain => "build the index again",
+        Remedy::BuildIndexAnew => "build the index in a new file",
         Remedy::AddGraph => {
             "build the index again, which describes no shape twice, or choose the plain ranking"
         }

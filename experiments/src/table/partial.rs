@@ -1,19 +1,20 @@
 //! Parts: shapes that are cut by planes, lose limbs or have holes are searched for in the collection of whole shapes. The shape
 //! itself is left out, so that another one of its class has to be found.
 //!
-//! Measures `CUT METHOD nn|mAP` with `METHOD` one of `fused` and `discs`.
+//! Measures `CUT METHOD nn|mAP` with `METHOD` one of `fused` and `discs`; `CUT discs own|other`, the median of the part distance
+//! from the nearest other shape of the class and from the nearest shape of another class, and `CUT discs own below|other below`,
+//! the shares of them below the boundary of a class.
 
 use anyhow::{Context as _, Result};
-use canonform::{DescribeOptions, Surface, describe, embed};
+use canonform::{Budget, DescribeOptions, Surface, describe, describe_part};
 use datasets::Damage;
-use descriptors::{DiscAreas, PartDiscAreas, ShapeMetric};
-use geodesics::{Method, Source};
+use descriptors::{DiscAreas, PartDistance, ShapeMetric};
 use report::results::{CurvesPanel, CurvesResults, Series};
 use retrieval::{Labels, Scores, rank_row};
 
 use crate::collection::map;
 use crate::context::Context;
-use crate::sweep::{Measured, linear, panel, point};
+use crate::sweep::{Measured, linear, median, panel, point};
 
 const METHODS: [&str; 2] = ["fused", "discs"];
 
@@ -31,6 +32,14 @@ fn cuts() -> Vec<(&'static str, f64, Damage)> {
     ]
 }
 
+/// What was found for one part.
+struct Found {
+    /// By every method.
+    scores: [Scores; 2],
+    /// Part distance from the nearest other shape of the class, and from the nearest of another class.
+    nearest: [f64; 2],
+}
+
 struct Whole {
     fused: Vec<f32>,
     discs: DiscAreas,
@@ -40,10 +49,8 @@ pub(crate) fn run(context: &Context<'_>) -> Result<()> {
     let options = DescribeOptions::default();
     let all = context.collection.all();
     let wholes = map(&all, "describing", context.observer, |shape| {
-        let fused = describe(&shape.surface, &options)?.fused;
-        let embedded = embed(&shape.surface, &options.form, &())?;
-        let discs = DiscAreas::new(&embedded.distances, &shape.surface.mesh().vertex_areas())?;
-        Ok(Whole { fused, discs })
+        let described = describe(&shape.surface, &options)?;
+        Ok(Whole { fused: described.fused, discs: described.disc_areas })
     })?;
     let labels = Labels::new(&context.collection.labels());
     let queries = context.collection.first_of_each_class(context.config.queries);
@@ -59,18 +66,30 @@ pub(crate) fn run(context: &Context<'_>) -> Result<()> {
                 &shape.surface.repair,
             )?;
             let query = describe(&part, &options)?.fused;
-            let discs = discs_of(&part, &options)?;
+            let discs = describe_part(&part, &options, &Budget::unlimited())?;
             let score = |distance: &dyn Fn(&Whole) -> f64| {
                 let distances: Vec<f64> = wholes.iter().map(distance).collect();
                 Scores::of_query(&rank_row(&distances, own), own, &labels).unwrap_or_default()
             };
             let plain = score(&|whole| ShapeMetric::robust(&query, &whole.fused));
             let partial = score(&|whole| discs.distance(&whole.discs).distance);
-            Ok([plain, partial])
+            let nearest = |is_own: bool| {
+                let others = (0..all.len()).filter(|i| *i != own);
+                let wanted = others.filter(|i| (labels.class(*i) == labels.class(own)) == is_own);
+                wanted.map(|i| discs.distance(&wholes[i].discs).distance).fold(f64::INFINITY, f64::min)
+            };
+            Ok(Found { scores: [plain, partial], nearest: [true, false].map(nearest) })
         })?;
+        for (i, whose) in ["own", "other"].into_iter().enumerate() {
+            let distances: Vec<f64> = found.iter().map(|found| found.nearest[i]).collect();
+            let below = distances.iter().filter(|d| **d < PartDistance::SAME_CLASS).count();
+            measured.insert(format!("{name} discs {whose}"), median(&distances).1);
+            measured
+                .insert(format!("{name} discs {whose} below"), below as f64 / distances.len().max(1) as f64);
+        }
         for (m, method) in METHODS.iter().enumerate() {
             let mean = |value: &dyn Fn(&Scores) -> f64| {
-                found.iter().map(|scores| value(&scores[m])).sum::<f64>() / found.len().max(1) as f64
+                found.iter().map(|found| value(&found.scores[m])).sum::<f64>() / found.len().max(1) as f64
             };
             let (nn, precision) = (mean(&|s| s.nn), mean(&|s| s.map));
             measured.insert(format!("{name} {method} nn"), nn);
@@ -85,28 +104,6 @@ pub(crate) fn run(context: &Context<'_>) -> Result<()> {
     );
     let provenance = context.provenance(serde_json::json!({ "description": options.text() }));
     context.publish(CurvesResults { caption, panels: panels(&rows) }, provenance, &measured)
-}
-
-/// The areas of discs of a part.
-fn discs_of(part: &Surface, options: &DescribeOptions) -> Result<PartDiscAreas> {
-    let embedded = embed(part, &options.form, &())?;
-    let masses = part.mesh().vertex_areas();
-    let least = 0.15 * part.mesh().root_of_area();
-    let (cut, length) = part.boundary_vertices(least);
-    let from_cut = match cut.is_empty() {
-        true => vec![f64::INFINITY; masses.len()],
-        false => {
-            let sources: Vec<Source> = cut.into_iter().map(Source::vertex).collect();
-            let mut distances = vec![f64::INFINITY; masses.len()];
-            Method::default().prepare(&part.intrinsic)?.solve_into(
-                &sources,
-                f64::INFINITY,
-                &mut distances,
-            )?;
-            distances
-        }
-    };
-    Ok(PartDiscAreas::new(&embedded.distances, &masses, &from_cut, length)?)
 }
 
 type Row = (&'static str, f64, usize, f64, f64);

@@ -2,9 +2,9 @@
 
 use budget::Budget;
 use descriptors::{
-    CanonicalForm, DescriptorError, LaplaceSpectrum, Normalization, PreparedShape, ShapeMetric, Signature,
-    SignatureKind, d2_histogram, geodesic_spectrum, heat_kernel_signature, moment_signature, shape_dna,
-    wave_kernel_signature,
+    CanonicalForm, DescriptorError, DiscAreas, LaplaceSpectrum, Normalization, PreparedShape, ShapeMetric,
+    Signature, SignatureKind, d2_histogram, geodesic_spectrum, heat_kernel_signature, moment_signature,
+    shape_dna, wave_kernel_signature,
 };
 use mesh::{RepairReport, Shortcut};
 
@@ -25,6 +25,8 @@ pub struct ShapeDescription {
     pub form: CanonicalForm,
     /// One signature of every kind, in the order of [`SignatureKind::ALL`], without size.
     pub signatures: Vec<Signature>,
+    /// The areas of geodesic discs, which parts of the shape are compared with.
+    pub disc_areas: DiscAreas,
     /// All signatures as one vector, with the size if it counts. An index searches by it.
     pub fused: Vec<f32>,
     /// Area of the surface, in squared mesh units.
@@ -122,6 +124,7 @@ impl ShapeDescription {
             fused,
             options,
             form: reduced,
+            disc_areas: DiscAreas::new(&embedded.distances, &surface.mesh().vertex_areas())?,
             signatures,
             area: spectrum.area,
             diameter: embedded.distances.max(),

@@ -11,6 +11,7 @@ mod embed;
 mod extend;
 mod method;
 mod options;
+mod part;
 mod plan;
 mod report;
 mod samples_report;
@@ -24,6 +25,7 @@ pub use embed::{Embedded, embed, embed_again, embed_and_measure, embed_and_relea
 pub use extend::embed_finer;
 pub use method::EmbedMethod;
 pub use options::{DescribeOptions, FormOptions};
+pub use part::describe_part;
 pub use plan::DISTANCES_LIMIT;
 pub use report::{DescentReport, EmbedReport, SecondsReport};
 pub use samples_report::{SamplesReport, TargetVerdict};

@@ -15,6 +15,10 @@ const LONGEST: f64 = 0.03;
 /// of the area; those of scans have jagged boundaries, or reach around limbs. The rim of a cup is longer.
 const LONGEST_HOLE: f64 = 1.0;
 
+/// The same if the surface may be a part of a shape, so that longer boundaries may be cuts. Rims of cut limbs are longer, holes
+/// of scans mostly shorter.
+const LONGEST_HOLE_OF_PART: f64 = 0.15;
+
 /// Most vertices that are added. Needles could need any number.
 const MOST: usize = 10_000;
 
@@ -45,6 +49,18 @@ impl Surface {
     /// # Errors
     /// [`Exceeded`].
     pub fn for_description_within(&self, budget: &Budget) -> Result<Self, Exceeded> {
+        self.prepared(LONGEST_HOLE, budget)
+    }
+
+    /// The surface that is described as a part: as [`for_description`](Self::for_description), but its long boundaries stay.
+    ///
+    /// # Errors
+    /// [`Exceeded`].
+    pub(crate) fn for_part_within(&self, budget: &Budget) -> Result<Self, Exceeded> {
+        self.prepared(LONGEST_HOLE_OF_PART, budget)
+    }
+
+    fn prepared(&self, longest_hole: f64, budget: &Budget) -> Result<Self, Exceeded> {
         let opened = cut_shortcuts(self.mesh(), budget)?;
         let smooth = without_noise(&opened.refined.mesh);
         let mesh = smooth.as_ref().unwrap_or(&opened.refined.mesh);
@@ -52,7 +68,7 @@ impl Surface {
         if size.is_nan() || size <= 0.0 {
             return Ok(self.clone());
         }
-        let filled = fill_holes(mesh, LONGEST_HOLE * size);
+        let filled = fill_holes(mesh, longest_hole * size);
         let fine = refine(&filled.mesh, LONGEST * size, mesh.n_vertices() + MOST);
         let Refined { mesh, origins } = opened.refined.then(filled).then(fine);
         Ok(match smooth.is_some() || !origins.is_empty() {

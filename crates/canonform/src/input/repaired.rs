@@ -166,13 +166,15 @@ impl Surface {
         self.open_boundary.unwrap_or_else(|| longest_boundary(&self.intrinsic))
     }
 
-    /// The vertices on boundaries that are at least `least` long, and the sum of their lengths, in mesh units.
-    pub fn boundary_vertices(&self, least: f64) -> (Vec<VertexId>, f64) {
-        let long = boundaries(&self.intrinsic).into_iter().filter(|(_, length)| *length >= least);
-        long.fold((Vec::new(), 0.0), |(mut all, sum), (vertices, length)| {
-            all.extend(vertices);
-            (all, sum + length)
-        })
+    /// The vertices on boundaries, and the length of all, in mesh units.
+    pub(crate) fn boundary_vertices(&self) -> (Vec<VertexId>, f64) {
+        boundaries(&self.intrinsic).into_iter().fold(
+            (Vec::new(), 0.0),
+            |(mut all, sum), (vertices, length)| {
+                all.extend(vertices);
+                (all, sum + length)
+            },
+        )
     }
 
     /// The shortcuts that were cut to [prepare](Self::for_description) the surface; none before.

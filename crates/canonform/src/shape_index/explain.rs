@@ -3,13 +3,12 @@
 use budget::Budget;
 use descriptors::{Handedness, PreparedShape, ShapeDistance, ShapeMetric, Verdict, VerdictKind};
 use index::ShapeEntry;
-use retrieval::RankBy;
 
 use super::components::described;
 use super::found::{ComponentResult, SearchResult, StoredComponent};
 use super::predict::Completeness;
 use super::record::{COMPONENTS, OTHER_COMPONENTS, components};
-use super::search::{Query, SearchOptions, ShapeSearch};
+use super::search::{Query, SearchOptions, SearchRank, ShapeSearch};
 use super::source::read_unchanged;
 use crate::compare::{MatchEvidence, MeshGeometry};
 use crate::error::Error;
@@ -71,9 +70,9 @@ impl ShapeSearch {
                 1 => format!("a component of {}", query.name),
                 _ => format!("each of {copies} components of {}", query.name),
             };
-            let known = Query { name: &name, content: None, geometry: Some(part) };
+            let known = Query { name: &name, content: None, geometry: Some(part), part: None };
             // The nearest one is wanted.
-            let options = SearchOptions { k: 1, rank_by: RankBy::Plain, ..options.clone() };
+            let options = SearchOptions { k: 1, rank_by: SearchRank::Plain, ..options.clone() };
             let complete = Completeness::default();
             let nearest = self.nearest(&description.prepare()?, &known, complete, &options, budget)?;
             found.push(ComponentResult {
@@ -125,6 +124,7 @@ impl ShapeSearch {
                 distance: distance.combined,
                 fused: distance.fused,
                 on_graph: None,
+                as_part: None,
                 verdict,
                 comparison: None,
                 evidence: Some(evidence),

@@ -14,6 +14,16 @@ pub struct GraphRank {
     pub plain_rank: Option<usize>,
 }
 
+/// How well a query fits into a shape as a part of it.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct PartRank {
+    /// Root mean square of the differences of logarithms of disc areas that no missing part explains; 0 if all fit. See
+    /// [`descriptors::PartDiscAreas`].
+    pub part_distance: f64,
+    /// The share of the area of the shape that the query has if it fits best.
+    pub part_share: f64,
+}
+
 /// A shape that was found.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct SearchResult {
@@ -25,13 +35,17 @@ pub struct SearchResult {
     pub label: String,
     /// Path of its mesh as the index states it; [`mesh_path`](crate::mesh_path) finds the file.
     pub path: String,
-    /// Combined distance, by signatures and aligned forms; results are ordered by it, unless they are ranked on the graph.
+    /// Combined distance, by signatures and aligned forms; results are ordered by it if they are ranked
+    /// plainly.
     pub distance: f64,
     /// Fused distance, by signatures alone.
     pub fused: f64,
     /// What results are ordered by if they are ranked on the graph.
     #[serde(flatten, skip_serializing_if = "Option::is_none")]
     pub on_graph: Option<GraphRank>,
+    /// What results are ordered by if the query is taken as a part.
+    #[serde(flatten, skip_serializing_if = "Option::is_none")]
+    pub as_part: Option<PartRank>,
     /// How alike the query and the shape are, and why. It does not depend on size, and the handedness is unknown.
     pub verdict: Verdict,
     /// The comparison with the query, if results are explained.

@@ -4,6 +4,7 @@
 //! files -> content hash -> unchanged? -> describe -> index::IndexWriter -> index::Index
 //! mesh -> describe -> Index::nearest (fused signatures) -> rerank (aligned forms) -> vote
 //!                  -> Index::nearest_on_graph -> aligned forms of the results -> vote
+//! mesh -> describe_part -> disc areas of all shapes -> aligned forms of the results -> vote
 //! ```
 
 mod build;
@@ -24,9 +25,9 @@ pub use build::{
 };
 pub use change::{MergeReport, add_to_index, merge_indexes, remove_from_index};
 pub use evaluate::{EvaluateOptions, Measure, evaluate_index, evaluate_matrix};
-pub use found::{ComponentResult, GraphRank, SearchResult};
+pub use found::{ComponentResult, GraphRank, PartRank, SearchResult};
 pub use place::mesh_path;
 pub use predict::{ClassVotes, NearestShape, Prediction, Unknown};
 pub use rerank::{Ranked, Reranked, rerank};
-pub use search::{Explain, Query, SearchOptions, SearchReport, SearchSeconds, ShapeSearch};
+pub use search::{Explain, Query, SearchOptions, SearchRank, SearchReport, SearchSeconds, ShapeSearch};
 pub use source::{Inputs, ShapeLimits, Shard, content_hash};

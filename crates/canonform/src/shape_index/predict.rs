@@ -1,10 +1,10 @@
 //! The class that the nearest shapes suggest, or why there is none.
 
-use descriptors::{ShapeMetric, Verdict};
+use descriptors::{PartDistance, ShapeMetric, Verdict};
 use retrieval::{Neighbor, Tally, UnknownThreshold, vote};
 use serde::Serialize;
 
-use super::found::SearchResult;
+use super::found::{PartRank, SearchResult};
 
 /// Neighbours that vote on the class of a query.
 pub(super) const VOTERS: usize = 5;
@@ -33,7 +33,8 @@ pub struct Prediction {
     /// Fused distance below which a shape votes whatever its verdict, since classes of this index are that wide; `None`
     /// if the classes are too small to estimate it.
     pub threshold: Option<f64>,
-    /// Combined distance below which a shape votes, as it may be of one class with the query by its verdict.
+    /// Combined distance below which a shape votes, as it may be of one class with the query by its verdict; part distance, if
+    /// the query is taken as a part.
     pub class_below: f64,
     /// The votes for every class, most first.
     pub tally: Vec<ClassVotes>,
@@ -77,7 +78,7 @@ pub enum Unknown {
     Unlabelled,
     /// No shape is near enough.
     NothingNear,
-    /// No shape is near enough, and the query looks like a part of a shape: parts are not matched with whole shapes.
+    /// No shape is near enough, and the query looks like a part of a shape, but was compared as a whole.
     Partial,
 }
 
@@ -122,13 +123,15 @@ impl Completeness {
 /// The vote of the first results.
 ///
 /// A result at combined distance `d` and fused distance `f` votes if `r = min(d / c, f / t)` is below 1, with `c` the
-/// boundary of a class by verdict and `t` the width of the classes of the index; its weight is `(1 - r²)²`.
+/// boundary of a class by verdict and `t` the width of the classes of the index; its weight is `(1 - r²)²`. If the query is
+/// taken as a part, `r` is the part distance over that of parts of shapes of one class.
 pub(super) fn predicted(
     results: &[SearchResult],
     threshold: Option<UnknownThreshold>,
     query: Completeness,
 ) -> Prediction {
-    let class_below = ShapeMetric::SAME_CLASS.at;
+    let as_part = results.first().and_then(|result| result.as_part);
+    let class_below = as_part.map_or(ShapeMetric::SAME_CLASS.at, |_| PartDistance::SAME_CLASS);
     let threshold = threshold.map(|threshold| threshold.distance);
     // Shapes without a class have no vote.
     let labelled = || results.iter().enumerate().filter(|(_, result)| !result.label.is_empty());
@@ -137,6 +140,9 @@ pub(super) fn predicted(
     classes.dedup();
     let class_of = |i: usize| classes.partition_point(|class| *class < results[i].label.as_str());
     let reach = |result: &SearchResult| {
+        if let Some(fit) = result.as_part {
+            return fit.part_distance / class_below;
+        }
         let by_verdict = result.verdict.distance / class_below;
         threshold.map_or(by_verdict, |threshold| by_verdict.min(result.fused / threshold))
     };
@@ -156,7 +162,7 @@ pub(super) fn predicted(
         (Some(_), _) => None,
         (None, None) => Some(Unknown::EmptyIndex),
         (None, Some(_)) if classes.is_empty() => Some(Unknown::Unlabelled),
-        (None, Some(_)) if signs.is_empty() => Some(Unknown::NothingNear),
+        (None, Some(_)) if signs.is_empty() || as_part.is_some() => Some(Unknown::NothingNear),
         (None, Some(_)) => Some(Unknown::Partial),
     };
     let mut found = Prediction {
@@ -171,12 +177,12 @@ pub(super) fn predicted(
         unknown,
         explanation: String::new(),
     };
-    found.explanation = found.in_words(&signs) + &query.warning();
+    found.explanation = found.in_words(&signs, as_part) + &query.warning();
     found
 }
 
 impl Prediction {
-    fn in_words(&self, signs: &[String]) -> String {
+    fn in_words(&self, signs: &[String], as_part: Option<PartRank>) -> String {
         if let Some(label) = &self.label {
             return self.vote_in_words(label);
         }
@@ -192,6 +198,12 @@ impl Prediction {
             "" => "without a class".to_owned(),
             label => format!("of the class {label}"),
         };
+        if let Some(fit) = as_part {
+            return format!(
+                "unknown. The query fits best as a part of {} {class}, at part distance {:.3}; parts of shapes of one class are below {:.3}",
+                nearest.id, fit.part_distance, self.class_below
+            );
+        }
         let mut words = format!(
             "unknown. The nearest shape, {} {class}, is at combined distance {distance:.3}: {}. Shapes of one class are below {:.3}",
             nearest.id, nearest.verdict, self.class_below
@@ -201,7 +213,7 @@ impl Prediction {
         }
         if self.unknown == Some(Unknown::Partial) {
             words += &format!(
-                ". The query may be a part of a shape ({}); parts are not matched with whole shapes",
+                ". The query may be a part of a shape ({}), but was compared as a whole; ranking by parts compares it as one",
                 signs.join(", ")
             );
         }
@@ -244,6 +256,7 @@ mod tests {
             distance,
             fused: distance,
             on_graph: None,
+            as_part: None,
             verdict: ShapeMetric::verdict(shape, Handedness::Unknown, 1.0),
             comparison: None,
             evidence: None,
@@ -299,11 +312,28 @@ mod tests {
         ] {
             let found = predicted(&far, None, query);
             assert_eq!(found.unknown, Some(Unknown::Partial));
-            assert!(found.explanation.contains(words) && found.explanation.contains("parts are not matched"));
+            assert!(found.explanation.contains(words) && found.explanation.contains("ranking by parts"));
             assert_eq!(predicted(&results(&[("cat", 0.5)]), None, query).unknown, None);
         }
         let small_holes = Completeness { dropped: 0.001, open: 0.05, shortcuts: 0 };
         assert_eq!(predicted(&far, None, small_holes).unknown, Some(Unknown::NothingNear));
+    }
+
+    #[test]
+    fn parts_vote_by_how_well_they_fit() {
+        let fit = |mut result: SearchResult, times: f64| {
+            let part_distance = times * PartDistance::SAME_CLASS;
+            result.as_part = Some(PartRank { part_distance, part_share: 0.7 });
+            result
+        };
+        let shapes = results(&[("cat", 9.0), ("dog", 9.0)]);
+        let fits = |cat, dog| vec![fit(shapes[0].clone(), cat), fit(shapes[1].clone(), dog)];
+        let open = Completeness { dropped: 0.0, open: 1.25, shortcuts: 0 };
+        let found = predicted(&fits(0.3, 1.2), None, open);
+        assert_eq!((found.label.as_deref(), found.votes, found.unknown), (Some("cat"), 1, None));
+        let found = predicted(&fits(1.1, 1.2), None, open);
+        assert_eq!(found.unknown, Some(Unknown::NothingNear));
+        assert!(found.explanation.contains("fits best as a part of cat1"), "{}", found.explanation);
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! A description as an index stores it.
 
-use descriptors::{CanonicalForm, PreparedShape};
+use descriptors::{CanonicalForm, DiscAreas, PreparedShape};
 use index::{ContentHash, Index, Shape, ShapeEntry, ShapeVectors};
 use nalgebra::Point3;
 use surface::unit_for;
@@ -24,6 +24,9 @@ const COMPONENT: &str = "component-";
 
 /// The number of these vectors. Indexes may lack it.
 pub(super) const OTHER_COMPONENTS: &str = "other_components";
+
+/// The areas of geodesic discs are stored as the signature of this name. Indexes may lack them.
+const DISC_AREAS: &str = "disc-areas";
 
 /// The number of shortcuts that were cut.
 pub(super) const SHORTCUTS: &str = "shortcuts";
@@ -71,6 +74,7 @@ pub(super) fn shape(listed: &Listed, content: ContentHash, described: Described)
     let points = described.form.points().iter().map(|p| p / unit);
     let form = points.zip(described.form.weights());
     let signatures = described.signatures.iter();
+    let disc_areas = (DISC_AREAS.to_owned(), described.disc_areas.to_numbers());
     Shape {
         id: listed.file.name.clone(),
         entry: ShapeEntry {
@@ -82,6 +86,7 @@ pub(super) fn shape(listed: &Listed, content: ContentHash, described: Described)
         vectors: ShapeVectors {
             signatures: signatures
                 .map(|s| (s.kind.name().to_owned(), s.values.iter().map(|x| *x as f32).collect()))
+                .chain([disc_areas])
                 .chain(components)
                 .collect(),
             form: form.map(|(p, w)| [p.x, p.y, p.z, *w].map(|x| x as f32)).collect(),
@@ -94,6 +99,12 @@ pub(super) fn shape(listed: &Listed, content: ContentHash, described: Described)
 pub(super) fn components(vectors: ShapeVectors) -> Vec<Vec<f32>> {
     let signatures = vectors.signatures.into_iter();
     signatures.filter(|(name, _)| name.starts_with(COMPONENT)).map(|(_, fused)| fused).collect()
+}
+
+/// The areas of geodesic discs of an indexed shape; `None` if they are not stored.
+pub(super) fn disc_areas(vectors: &ShapeVectors) -> Option<DiscAreas> {
+    let (_, numbers) = vectors.signatures.iter().find(|(name, _)| name == DISC_AREAS)?;
+    DiscAreas::from_numbers(numbers)
 }
 
 /// A described mesh file.

@@ -1,25 +1,26 @@
 //! Searching an index for the shapes nearest to a mesh.
 
 use std::path::Path;
+use std::str::FromStr;
 use std::sync::OnceLock;
 use std::time::Instant;
 
 use budget::Budget;
-use descriptors::{PreparedShape, ShapeMetric, ShapePair};
+use descriptors::{PartDiscAreas, PartDistance, PreparedShape, ShapeMetric, ShapePair};
 use index::{ContentHash, Found, FoundOnGraph, Index, RankedShape, SearchMode, ShapeEntry};
 use mesh::TriMesh;
 use rayon::prelude::*;
-use retrieval::{Candidate, RankBy};
-use serde::Serialize;
+use retrieval::Candidate;
+use serde::{Deserialize, Serialize};
 
-use super::found::{ComponentResult, GraphRank, SearchResult, StoredComponent};
+use super::found::{ComponentResult, GraphRank, PartRank, SearchResult, StoredComponent};
 use super::predict::{Completeness, Prediction, VOTERS, predicted};
-use super::record::{DROPPED, SHORTCUTS, options_of, prepared};
+use super::record::{DROPPED, SHORTCUTS, disc_areas, options_of, prepared};
 use super::rerank::{Ranked, rerank};
 use super::source::read_unchanged;
 use crate::compare::{MeshGeometry, compare};
 use crate::error::Error;
-use crate::form::{DescribeOptions, ShapeDescription, describe_within};
+use crate::form::{DescribeOptions, ShapeDescription, describe_part, describe_within};
 use crate::input::Surface;
 
 /// Shapes whose forms may be aligned, per result, ...
@@ -37,9 +38,35 @@ pub struct SearchOptions {
     pub mode: SearchMode,
     /// Whether every result is compared with the query in detail. Default: no.
     pub explain: Explain,
-    /// How results are ordered. [`RankBy::Graph`] needs the graph of the index. Default: [`RankBy::Plain`], by combined
-    /// distance.
-    pub rank_by: RankBy,
+    /// How results are ordered. Default: [`SearchRank::Plain`], by combined distance.
+    pub rank_by: SearchRank,
+}
+
+/// How the results of a search are ordered.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum SearchRank {
+    /// By combined distance.
+    #[default]
+    Plain,
+    /// By distance and by neighbours in common; needs the graph of the index.
+    Graph,
+    /// By how well the query fits as a part of the shape. Compares the query with every shape of the index, which must store
+    /// disc areas, and needs the [part](Query::part) or the mesh of the query.
+    Part,
+}
+
+impl FromStr for SearchRank {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text {
+            "plain" => Ok(Self::Plain),
+            "graph" => Ok(Self::Graph),
+            "part" => Ok(Self::Part),
+            _ => Err("use `plain`, `graph` or `part`".to_owned()),
+        }
+    }
 }
 
 /// Whether results are compared with the query in detail.
@@ -54,7 +81,7 @@ pub enum Explain {
 
 impl Default for SearchOptions {
     fn default() -> Self {
-        Self { k: 10, mode: SearchMode::Auto, explain: Explain::No, rank_by: RankBy::Plain }
+        Self { k: 10, mode: SearchMode::Auto, explain: Explain::No, rank_by: SearchRank::Plain }
     }
 }
 
@@ -67,11 +94,13 @@ pub struct Query<'a> {
     pub content: Option<ContentHash>,
     /// Its mesh in space.
     pub geometry: Option<&'a MeshGeometry>,
+    /// It as a part of a shape, as [`describe_part`](crate::describe_part) describes it.
+    pub part: Option<&'a PartDiscAreas>,
 }
 
 impl Default for Query<'_> {
     fn default() -> Self {
-        Self { name: "the query", content: None, geometry: None }
+        Self { name: "the query", content: None, geometry: None, part: None }
     }
 }
 
@@ -81,7 +110,7 @@ pub struct SearchReport {
     /// The best first, by what `rank_by` states.
     pub results: Vec<SearchResult>,
     /// How results are ordered.
-    pub rank_by: RankBy,
+    pub rank_by: SearchRank,
     /// The components of a query that has several, if results are explained: what each of them is.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub components: Vec<ComponentResult>,
@@ -219,9 +248,24 @@ impl ShapeSearch {
             Explain::No => None,
             Explain::Kind => MeshGeometry::new(mesh, content),
         };
-        let query = Query { name, content, geometry: geometry.as_ref() };
+        let part = self.part(&surface, options, budget)?;
+        let query = Query { name, content, geometry: geometry.as_ref(), part: part.as_ref() };
         let report = self.search_query_within(&description, &query, options, budget)?;
         Ok(SearchReport { seconds: SearchSeconds { describe, ..report.seconds }, ..report })
+    }
+
+    /// The surface of a query as a part, if results are ordered by it.
+    ///
+    /// # Errors
+    /// As [`describe_part`].
+    pub fn part(
+        &self,
+        surface: &Surface,
+        options: &SearchOptions,
+        budget: &Budget,
+    ) -> Result<Option<PartDiscAreas>, Error> {
+        let is_part = options.rank_by == SearchRank::Part;
+        is_part.then(|| describe_part(surface, &self.describe, budget)).transpose()
     }
 
     /// Searches with a mesh that was described with the [options of the index](Self::describe_options).
@@ -270,11 +314,11 @@ impl ShapeSearch {
         self.explained(&description.prepare()?, query, complete, options, budget)
     }
 
-    /// Searches with a shape of the index, which finds itself. Its mesh is read only if results are explained, and need not be
-    /// there.
+    /// Searches with a shape of the index, which finds itself. Its mesh is read if it is taken as a part, or if results are
+    /// explained; then it need not be there.
     ///
     /// # Errors
-    /// [`Error::Index`].
+    /// [`Error::Index`]; for [`SearchRank::Part`], those of [reading](Self::mesh) and of describing the mesh.
     pub fn search_shape(&self, id: &str, options: &SearchOptions) -> Result<SearchReport, Error> {
         let entry = self.index.entry(id)?;
         let dropped = entry.fact(DROPPED).unwrap_or(0.0);
@@ -284,8 +328,17 @@ impl ShapeSearch {
             Explain::No => None,
             Explain::Kind => self.geometry(id, &entry),
         };
-        let query = Query { name: id, content: Some(entry.content), geometry: geometry.as_ref() };
-        self.explained(&self.prepared(id)?, &query, complete, options, &Budget::unlimited())
+        let budget = Budget::unlimited();
+        let part = match options.rank_by {
+            SearchRank::Part => {
+                let surface = Surface::new(&self.mesh(id)?, &self.describe.form.repair)?;
+                self.part(&surface, options, &budget)?
+            }
+            SearchRank::Plain | SearchRank::Graph => None,
+        };
+        let (content, geometry) = (Some(entry.content), geometry.as_ref());
+        let query = Query { name: id, content, geometry, part: part.as_ref() };
+        self.explained(&self.prepared(id)?, &query, complete, options, &budget)
     }
 
     /// The nearest shapes and, if results are explained, what the components of the query are and of what it is one.
@@ -317,14 +370,19 @@ impl ShapeSearch {
         // There are no more results than shapes, however many are requested.
         let wanted = options.k.max(VOTERS).min(self.index.len());
         let found = match options.rank_by {
-            RankBy::Plain => self.by_distance(query, wanted, options.mode, budget)?,
-            RankBy::Graph => self.on_graph(query, wanted, options.mode, budget)?,
+            SearchRank::Plain => self.by_distance(query, wanted, options.mode, budget)?,
+            SearchRank::Graph => self.on_graph(query, wanted, options.mode, budget)?,
+            SearchRank::Part => {
+                let part = known.part.ok_or(Error::NoPart)?;
+                self.by_part(query, part, wanted, budget)?
+            }
         };
-        let result = |(place, (ranked, on_graph)): (usize, &(Ranked, Option<GraphRank>))| {
+        let result = |(place, (ranked, order)): (usize, &(Ranked, Order))| {
             let id = found.ids[ranked.index].clone();
             let ShapeEntry { label, path, .. } = self.index.entry(&id)?;
             let Ranked { distance, fused, verdict, .. } = *ranked;
-            let (rank, on_graph, comparison, evidence) = (place + 1, *on_graph, None, None);
+            let Order { on_graph, as_part } = *order;
+            let (rank, comparison, evidence) = (place + 1, None, None);
             Ok(SearchResult {
                 rank,
                 id,
@@ -333,6 +391,7 @@ impl ShapeSearch {
                 distance,
                 fused,
                 on_graph,
+                as_part,
                 verdict,
                 comparison,
                 evidence,
@@ -383,7 +442,7 @@ impl ShapeSearch {
             self.prepared(&near[i].id)
         };
         let reranked = rerank(query, candidates, wanted, shape)?;
-        let ranked = reranked.nearest.into_iter().map(|ranked| (ranked, None)).collect();
+        let ranked = reranked.nearest.into_iter().map(|ranked| (ranked, Order::default())).collect();
         let ids = near.into_iter().map(|near| near.id).collect();
         Ok(Ranking { ids, ranked, aligned: reranked.aligned, search })
     }
@@ -423,20 +482,68 @@ impl ShapeSearch {
         let reranked = rerank(query, candidates, near.len(), shape)?;
         let on_graph = |ranked: Ranked| {
             let RankedShape { rank_distance, plain_rank, .. } = near[ranked.index];
-            (ranked, Some(GraphRank { rank_distance, plain_rank }))
+            (ranked, Order { on_graph: Some(GraphRank { rank_distance, plain_rank }), ..Order::default() })
         };
         let mut ranked: Vec<_> = reranked.nearest.into_iter().map(on_graph).collect();
         ranked.sort_by_key(|(ranked, _)| ranked.index);
         let ids = near.into_iter().map(|near| near.id).collect();
         Ok(Ranking { ids, ranked, aligned: reranked.aligned, search })
     }
+
+    /// The shapes into which a part fits best, of all. Their forms are aligned for their verdicts.
+    fn by_part(
+        &self,
+        query: &PreparedShape,
+        part: &PartDiscAreas,
+        wanted: usize,
+        budget: &Budget,
+    ) -> Result<Ranking, Error> {
+        let ids: Vec<String> = self.index.entries()?.into_iter().map(|(id, _)| id).collect();
+        let fit = |id: &String| {
+            budget.check()?;
+            let areas = disc_areas(&self.index.vectors(id)?);
+            let missing = || Error::NoDiscAreas { path: self.index.path().to_owned(), id: id.clone() };
+            Ok(part.distance(&areas.ok_or_else(missing)?))
+        };
+        let fits = ids.par_iter().map(fit).collect::<Result<Vec<_>, Error>>()?;
+        let mut order: Vec<usize> = (0..ids.len()).collect();
+        // Names are in order, so equal distances keep it.
+        order.sort_by(|a, b| fits[*a].distance.total_cmp(&fits[*b].distance));
+        order.truncate(wanted);
+        let (near, fits): (Vec<String>, Vec<PartDistance>) =
+            order.into_iter().map(|i| (ids[i].clone(), fits[i])).unzip();
+        let candidates = self.candidates(query, near.iter().map(String::as_str))?;
+        let shape = |i: usize| {
+            budget.check()?;
+            self.prepared(&near[i])
+        };
+        let reranked = rerank(query, candidates, near.len(), shape)?;
+        let as_part = |ranked: Ranked| {
+            let PartDistance { distance, share } = fits[ranked.index];
+            let as_part = Some(PartRank { part_distance: distance, part_share: share });
+            (ranked, Order { as_part, ..Order::default() })
+        };
+        let mut ranked: Vec<_> = reranked.nearest.into_iter().map(as_part).collect();
+        ranked.sort_by_key(|(ranked, _)| ranked.index);
+        let n_shapes = ids.len();
+        let search =
+            Found { shapes: Vec::new(), n_measured: n_shapes, n_shapes, recall: 1.0, threshold: None };
+        Ok(Ranking { ids: near, ranked, aligned: reranked.aligned, search })
+    }
+}
+
+/// What a result is ordered by, other than its distance.
+#[derive(Debug, Clone, Copy, Default)]
+struct Order {
+    on_graph: Option<GraphRank>,
+    as_part: Option<PartRank>,
 }
 
 /// Shapes in the order of the results.
 struct Ranking {
     /// Names of the candidates.
     ids: Vec<String>,
-    ranked: Vec<(Ranked, Option<GraphRank>)>,
+    ranked: Vec<(Ranked, Order)>,
     /// Shapes whose alignment was begun.
     aligned: usize,
     /// About the search for signatures.
@@ -447,8 +554,9 @@ struct Ranking {
 mod tests {
     use std::fs;
 
-    use index::IndexError;
+    use index::{IndexError, IndexWriter, Job};
     use mesh::shapes;
+    use surface::VertexId;
     use tempfile::TempDir;
 
     use super::*;
@@ -528,9 +636,9 @@ mod tests {
     fn the_graph_ranks_the_same_shapes_in_its_own_order() {
         let (_folder, search) = indexed(&DescribeOptions::default());
         let plain = search.search_shape("ring0", &SearchOptions::default()).unwrap();
-        let options = SearchOptions { rank_by: RankBy::Graph, ..SearchOptions::default() };
+        let options = SearchOptions { rank_by: SearchRank::Graph, ..SearchOptions::default() };
         let graph = search.search_shape("ring0", &options).unwrap();
-        assert_eq!((plain.rank_by, graph.rank_by), (RankBy::Plain, RankBy::Graph));
+        assert_eq!((plain.rank_by, graph.rank_by), (SearchRank::Plain, SearchRank::Graph));
         assert_eq!((graph.results.len(), graph.results[0].id.as_str()), (4, "ring0"));
         let order = |found: &SearchResult| found.on_graph.unwrap().rank_distance;
         assert!(graph.results.windows(2).all(|pair| order(&pair[0]) <= order(&pair[1])));
@@ -548,6 +656,63 @@ mod tests {
         assert_eq!(json["results"][0]["plain_rank"], 1);
         assert!(json["results"][0]["rank_distance"].is_number());
         assert!(serde_json::to_value(&plain).unwrap()["results"][0].get("rank_distance").is_none());
+    }
+
+    #[test]
+    fn a_part_finds_its_whole_and_needs_a_mesh() {
+        let (folder, search) = indexed(&DescribeOptions::default());
+        let options = SearchOptions { rank_by: SearchRank::Part, ..SearchOptions::default() };
+        let mut part = search.mesh("ring1").unwrap();
+        let x = |v: VertexId, part: &TriMesh| part.positions[v.index()].x;
+        let kept = part.faces.iter().copied().filter(|face| face.iter().all(|v| x(*v, &part) < 1.0));
+        part.faces = kept.collect();
+        let found = search.search(&part, &options).unwrap();
+        assert_eq!(
+            (found.rank_by, found.results[0].id.as_str(), found.measured),
+            (options.rank_by, "ring1", 4)
+        );
+        let fit = |found: &SearchResult| found.as_part.unwrap().part_distance;
+        assert!(found.results.windows(2).all(|pair| fit(&pair[0]) <= fit(&pair[1])));
+        let share = found.results[0].as_part.unwrap().part_share;
+        assert!((0.5..0.9).contains(&share), "{share}");
+        let json = serde_json::to_value(&found).unwrap();
+        assert!(json["rank_by"] == "part" && json["results"][0]["part_distance"].is_number());
+        // As a whole, it is another shape.
+        let plain = search.search(&part, &SearchOptions::default()).unwrap();
+        assert!(!plain.results[0].verdict.may_be_same_class() && plain.results[0].as_part.is_none());
+        // A shape of the index is read again, and a description is not enough.
+        let itself = search.search_shape("box0", &options).unwrap();
+        assert!(itself.results[0].id == "box0" && itself.results[0].as_part.unwrap().part_share == 1.0);
+        fs::remove_file(folder.path().join("box0.tri")).unwrap();
+        assert!(matches!(search.search_shape("box0", &options), Err(Error::MeshGone { .. })));
+        let surface = Surface::new(&part, &Default::default()).unwrap();
+        let described = describe(&surface, search.describe_options()).unwrap();
+        assert!(matches!(search.search_described(&described, &options), Err(Error::NoPart)));
+    }
+
+    #[test]
+    fn an_index_without_disc_areas_is_named_with_its_remedy() {
+        let (_folder, search) = indexed(&DescribeOptions::default());
+        let old = tempfile::tempdir().unwrap();
+        let path = old.path().join("old.canonform");
+        let mut writer = IndexWriter::open(&path, Job::Build, Some(search.index().options())).unwrap();
+        search
+            .index()
+            .each(|mut shape| {
+                shape.vectors.signatures.retain(|(name, _)| name != "disc-areas");
+                writer.put(&[shape])
+            })
+            .unwrap();
+        writer.finish().unwrap();
+        let old = ShapeSearch::open(&path).unwrap();
+        let options = SearchOptions { rank_by: SearchRank::Part, ..SearchOptions::default() };
+        let fault = old.search(&shapes::icosphere(3), &options).unwrap_err();
+        assert!(
+            matches!(fault, Error::NoDiscAreas { .. }) && fault.to_string().contains("disc areas"),
+            "{fault}"
+        );
+        assert_eq!(fault.remedy(), Some(Remedy::BuildIndexAnew));
+        old.search(&shapes::icosphere(3), &SearchOptions::default()).unwrap();
     }
 
     #[test]

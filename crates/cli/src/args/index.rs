@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use anyhow::Result;
 use canonform::descriptors::{DescriptorError, Normalization};
-use canonform::{DescribeOptions, Measure, RankBy, ShapeLimits, Shard};
+use canonform::{DescribeOptions, Measure, RankBy, SearchRank, ShapeLimits, Shard};
 use clap::{Args, Subcommand};
 
 use super::embedding::EmbeddingArgs;
@@ -192,9 +192,10 @@ pub(crate) struct SearchArgs {
     #[arg(long)]
     pub(crate) exact: bool,
     /// How to order results: `plain`, by distance; `graph`, by distance of signatures and by the neighbours that query
-    /// and shape have in common
-    #[arg(long, value_name = "plain|graph", default_value = "plain", value_parser = parse_rank)]
-    pub(crate) rank: RankBy,
+    /// and shape have in common; `part`, by how well the query fits as a part of the shape, for a mesh that was cut or
+    /// scanned in part; compares it with every shape
+    #[arg(long, value_name = "plain|graph|part", default_value = "plain")]
+    pub(crate) rank: SearchRank,
 }
 
 #[derive(Debug, Args)]

@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use anyhow::Result;
 use canonform::index::SearchMode;
 use canonform::{
-    Budget, ComponentResult, Explain, RankBy, SearchOptions, SearchReport, ShapeSearch, content_hash,
+    Budget, ComponentResult, Explain, SearchOptions, SearchRank, SearchReport, ShapeSearch, content_hash,
     is_dataset, list_shapes, mesh_path,
 };
 use serde::Serialize;
@@ -145,10 +145,11 @@ fn table(query: String, report: &SearchReport) -> String {
     let mut table = comfy_table::Table::new();
     table.load_style(comfy_table::presets::NOTHING);
     let explained = report.results.iter().any(|result| result.evidence.is_some());
-    let on_graph = report.rank_by == RankBy::Graph;
     let mut head = vec!["", "shape", "class", "distance", "path"];
-    if on_graph {
-        head.splice(3..3, ["rank distance", "plain"]);
+    match report.rank_by {
+        SearchRank::Plain => {}
+        SearchRank::Graph => drop(head.splice(3..3, ["rank distance", "plain"])),
+        SearchRank::Part => drop(head.splice(3..3, ["part distance", "share"])),
     }
     if explained {
         head.push("match");
@@ -162,11 +163,13 @@ fn table(query: String, report: &SearchReport) -> String {
             format!("{:.4}", result.distance),
             result.path.clone(),
         ];
-        if on_graph {
-            let found = result.on_graph;
-            let rank_distance = found.map_or_else(String::new, |found| format!("{:.4}", found.rank_distance));
-            let plain = found.and_then(|found| found.plain_rank);
-            row.splice(3..3, [rank_distance, plain.map_or_else(|| "-".to_owned(), |rank| rank.to_string())]);
+        if let Some(found) = result.on_graph {
+            let plain = found.plain_rank.map_or_else(|| "-".to_owned(), |rank| rank.to_string());
+            row.splice(3..3, [format!("{:.4}", found.rank_distance), plain]);
+        }
+        if let Some(found) = result.as_part {
+            let share = format!("{:.0} %", 100.0 * found.part_share);
+            row.splice(3..3, [format!("{:.4}", found.part_distance), share]);
         }
         if let Some(evidence) = &result.evidence {
             row.push(format!("{evidence} ({:.2}); {}", evidence.confidence, result.verdict));
@@ -178,11 +181,14 @@ fn table(query: String, report: &SearchReport) -> String {
     } else {
         String::new()
     };
-    let order = match on_graph {
-        true => {
+    let order = match report.rank_by {
+        SearchRank::Plain => "",
+        SearchRank::Graph => {
             "\n  ordered by rank distance: signatures and neighbours in common; `plain` is the rank by signatures"
         }
-        false => "",
+        SearchRank::Part => {
+            "\n  ordered by part distance: how well the query fits as a part; `share` is its share of the shape"
+        }
     };
     let mut components: String = report.components.iter().map(component).collect();
     for evidence in report.wholes.iter().filter_map(|whole| whole.evidence.as_ref()) {

@@ -289,6 +289,12 @@ fn an_index_is_verified_described_and_scored() {
     assert!((1..9).all(|i| order(i - 1) <= order(i)));
     let text = place.done(&["search", "all.canonform", "--id", "ring1", "--rank", "graph"]).out;
     assert!(text.contains("rank distance") && text.contains("neighbours in common"), "{text}");
+    let found = place.json(&["search", "all.canonform", "--id", "ring1", "--rank", "part"]);
+    assert_eq!((&found["rank_by"], &found["results"][0]["id"]), (&"part".into(), &"ring1".into()));
+    assert_eq!(found["results"][0]["part_share"], 1.0);
+    let text = place.done(&["search", "all.canonform", "--id", "ring1", "--rank", "part"]).out;
+    assert!(text.contains("part distance") && text.contains("100 %"), "{text}");
+    place.refused(&["search", "all.canonform", "--id", "ring1", "--rank", "best"], &["best", "`part`"]);
     assert_eq!((&scores["nn"], &scores["map"], &scores["n"]), (&1.0.into(), &1.0.into(), &9.into()));
     let dna = place.json(&["evaluate", "all.canonform", "--by", "shape-dna"]);
     assert_ne!(dna["silhouette"], scores["silhouette"]);

@@ -61,6 +61,10 @@ class Result:
     """What kind of match they are, if the search was asked to explain."""
     rank_distance: float | None
     """What results are ordered by if they are ranked on the graph of nearest neighbours."""
+    part_distance: float | None
+    """What results are ordered by if the query is taken as a part: 0 if it fits."""
+    part_share: float | None
+    """The share of the area of the shape that the query has if it is taken as a part."""
 
 
 class SearchResults(Sequence[Result]):
@@ -73,7 +77,7 @@ class SearchResults(Sequence[Result]):
             Result(
                 **{key: found[key] for key in ("rank", "id", "label", "path", "distance", "fused", "verdict")},
                 evidence=found.get("evidence"),
-                rank_distance=found.get("rank_distance"),
+                **{key: found.get(key) for key in ("rank_distance", "part_distance", "part_share")},
             )
             for found in report["results"]
         ]
@@ -317,7 +321,8 @@ class Index:
         k
             Number of results.
         rank
-            "plain" orders results by distance, "graph" by distance and by the neighbours that query and shape have in common.
+            "plain" orders results by distance, "graph" by distance and by the neighbours that query and shape have in common,
+            "part" by how well the query fits as a part of the shape, for a mesh that was cut or scanned in part.
         explain
             Say what kind of match each result is, as `compare` does; reads the mesh files of the results.
         exact

@@ -1,17 +1,24 @@
 //! Results as CSV (RFC 4180).
 
-use canonform::{RankBy, SearchReport};
+use canonform::{SearchRank, SearchReport};
 
 /// One line per result, under a header.
 pub(super) fn of(query: &str, report: &SearchReport) -> String {
     let mut text = "query,rank,id,label,path,distance,signature_distance".to_owned();
-    text += if report.rank_by == RankBy::Graph { ",rank_distance\r\n" } else { "\r\n" };
+    text += match report.rank_by {
+        SearchRank::Plain => "\r\n",
+        SearchRank::Graph => ",rank_distance\r\n",
+        SearchRank::Part => ",part_distance,part_share\r\n",
+    };
     for found in &report.results {
         let (rank, distance, fused) =
             (found.rank.to_string(), found.distance.to_string(), found.fused.to_string());
         let fields = [query, &rank, &found.id, &found.label, &found.path, &distance, &fused];
-        let order = found.on_graph.map(|found| found.rank_distance.to_string());
-        let fields: Vec<String> = fields.into_iter().chain(order.as_deref()).map(quoted).collect();
+        let on_graph = found.on_graph.into_iter().map(|order| order.rank_distance);
+        let as_part = found.as_part.into_iter().flat_map(|fit| [fit.part_distance, fit.part_share]);
+        let order: Vec<String> = on_graph.chain(as_part).map(|number| number.to_string()).collect();
+        let fields: Vec<String> =
+            fields.into_iter().chain(order.iter().map(String::as_str)).map(quoted).collect();
         text += &(fields.join(",") + "\r\n");
     }
     text

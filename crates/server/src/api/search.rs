@@ -7,7 +7,7 @@ use std::time::Instant;
 use axum::extract::{Request, State};
 use canonform::index::{ContentHash, SearchMode};
 use canonform::{
-    Budget, Error, Explain, MeshGeometry, RankBy, SearchOptions, SearchReport, SearchSeconds,
+    Budget, Error, Explain, MeshGeometry, SearchOptions, SearchRank, SearchReport, SearchSeconds,
     ShapeDescription, Surface, embed,
 };
 use mesh::RepairReport;
@@ -38,7 +38,7 @@ pub(super) struct SearchParams {
     k: Option<usize>,
     exact: Option<bool>,
     explain: Option<bool>,
-    rank: Option<RankBy>,
+    rank: Option<SearchRank>,
     geometry: Option<bool>,
     format: Option<Format>,
 }
@@ -70,13 +70,7 @@ impl SearchParams {
                 "k" => self.k = Some(text.parse().map_err(|_| wrong("a number"))?),
                 "exact" => self.exact = Some(choice()?),
                 "explain" => self.explain = Some(choice()?),
-                "rank" => {
-                    self.rank = Some(match text.as_str() {
-                        "plain" => RankBy::Plain,
-                        "graph" => RankBy::Graph,
-                        _ => return Err(wrong("plain or graph")),
-                    });
-                }
+                "rank" => self.rank = Some(text.parse().map_err(|_| wrong("plain, graph or part"))?),
                 "geometry" => self.geometry = Some(choice()?),
                 "format" => {
                     self.format = Some(match text.as_str() {

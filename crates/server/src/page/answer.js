@@ -87,10 +87,14 @@ export class Answer {
     view('form-view', found.form, { title: found.mesh ? 'Canonical form' : 'Canonical form, points stored in the index' });
     byId('mesh-view').hidden = !found.mesh;
     if (found.mesh) view('mesh-view', found.mesh, { title: 'Shape', linkedWith: views['form-view'] });
-    const tiles = found.results.map(({ rank, id, label, distance, rank_distance: order }) => {
+    const tiles = found.results.map(({ rank, id, label, distance, ...order }) => {
       const lines = [['more', label], ['more', `${distance.toFixed(3)} away`]];
-      // Distances do not ascend on the graph; what the order follows does.
-      if (order !== undefined) lines.push(['more', `rank distance ${order.toFixed(3)}`]);
+      // Distances ascend in the plain order only; what another order follows does as well.
+      if (order.rank_distance !== undefined) lines.push(['more', `rank distance ${order.rank_distance.toFixed(3)}`]);
+      if (order.part_distance !== undefined) {
+        lines.push(['more', `part distance ${order.part_distance.toFixed(3)}`]);
+        lines.push(['more', `${Math.round(100 * order.part_share)} % of it`]);
+      }
       const item = tile(id, label, lines, this.picked);
       Object.assign(item.firstChild.dataset, { distance, rank });
       return item;

@@ -159,6 +159,12 @@ fn an_upload_can_be_searched_again_and_exported() {
     let table = String::from_utf8(posted.body).unwrap();
     assert!(table.lines().next().unwrap().ends_with(",signature_distance,rank_distance"), "{table}");
     assert_eq!(upload(server.address, &[("q.off", &mesh)], &[("rank", "best")]).unwrap().status, 400);
+    let part = get(&server, "/api/search?shape=ring0&geometry=false&rank=part").json();
+    description.check("get", "/api/search", 200, &part);
+    assert_eq!((ids(&part)[0], &part["results"][0]["part_share"]), ("ring0", &1.0.into()));
+    let posted = upload(server.address, &[("q.off", &mesh)], &[("rank", "part"), ("format", "csv")]).unwrap();
+    let table = String::from_utf8(posted.body).unwrap();
+    assert!(table.lines().next().unwrap().ends_with(",part_distance,part_share"), "{table}");
 
     let gone = get(&server, "/api/search?query=0123456789abcdef0123456789abcdef");
     description.check("get", "/api/search", 410, &gone.json());

@@ -1,0 +1,51 @@
+//! A part of a surface, to be compared with whole shapes.
+
+use budget::Budget;
+use descriptors::PartDiscAreas;
+use geodesics::{Method, Source};
+
+use super::embed::embed;
+use super::options::DescribeOptions;
+use crate::error::Error;
+use crate::input::Surface;
+
+/// What is known of the discs of a whole shape, of which the surface is a part that ends at its boundaries. Those of small
+/// holes do not count.
+///
+/// ```
+/// use canonform::{Budget, DescribeOptions, Surface, describe, describe_part, mesh::shapes};
+///
+/// let options = DescribeOptions::default();
+/// let (ball, mut half) = (shapes::icosphere(4), shapes::icosphere(4));
+/// half.faces.retain(|face| face.iter().all(|v| half.positions[v.index()].z >= 0.0));
+/// let ring = shapes::torus(48, 24, 2.0, 0.7);
+///
+/// let part = describe_part(&Surface::new(&half, &Default::default())?, &options, &Budget::unlimited())?;
+/// let distance = |mesh| {
+///     let whole = describe(&Surface::new(mesh, &Default::default())?, &options)?;
+///     Ok::<_, canonform::Error>(part.distance(&whole.disc_areas))
+/// };
+/// assert!(distance(&ball)?.distance < 0.2 * distance(&ring)?.distance);
+/// # Ok::<(), canonform::Error>(())
+/// ```
+///
+/// # Errors
+/// [`Error::BadDescription`], [`Error::Exceeded`] and those of measuring distances.
+pub fn describe_part(
+    surface: &Surface,
+    options: &DescribeOptions,
+    budget: &Budget,
+) -> Result<PartDiscAreas, Error> {
+    options.validate()?;
+    let part = surface.for_part_within(budget)?;
+    let embedded = embed(&part, &options.form, budget)?;
+    let masses = part.mesh().vertex_areas();
+    let (cut, length) = part.boundary_vertices();
+    let mut from_cut = vec![f64::INFINITY; masses.len()];
+    if !cut.is_empty() {
+        let sources: Vec<Source> = cut.into_iter().map(Source::vertex).collect();
+        let solver = Method::default().prepare(&part.intrinsic)?;
+        solver.solve_into(&sources, f64::INFINITY, &mut from_cut)?;
+    }
+    Ok(PartDiscAreas::new(&embedded.distances, &masses, &from_cut, length)?)
+}
