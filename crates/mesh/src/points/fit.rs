@@ -75,14 +75,20 @@ pub(super) fn patch(place: &Point3<f64>, near: &[Point3<f64>]) -> Option<Patch> 
         })
         .collect();
     let mut trust = vec![1.0; n];
+    let (mut gaps, mut order) = (Vec::with_capacity(n), Vec::with_capacity(n));
     let mut found = None;
     for _ in 0..ROUNDS {
-        let mut normal = Matrix6::zeros();
-        let mut right = Vector6::zeros();
+        let mut normal = Matrix6::<f64>::zeros();
+        let mut right = Vector6::<f64>::zeros();
         for ((row, h, w), t) in rows.iter().zip(&trust) {
-            let row = Vector6::from(*row);
-            normal += row * row.transpose() * (w * t);
-            right += row * (h * w * t);
+            for i in 0..6 {
+                let weighted = w * t * row[i];
+                right[i] += weighted * h;
+                // Only the lower triangle is read.
+                for j in i..6 {
+                    normal[(j, i)] += weighted * row[j];
+                }
+            }
         }
         // Keeps the fit to few or aligned points bounded: their heights are those of a plane.
         let slight = 1e-6 * normal.trace();
@@ -91,20 +97,22 @@ pub(super) fn patch(place: &Point3<f64>, near: &[Point3<f64>]) -> Option<Patch> 
         }
         let Some(solver) = normal.cholesky() else { break };
         let c = solver.solve(&right);
-        let gap = |row: &[f64; 6], h: f64| h - Vector6::from(*row).dot(&c);
-        let mut gaps: Vec<f64> = rows.iter().map(|(row, h, _)| gap(row, *h).abs()).collect();
+        let gap = |row: &[f64; 6], h: f64| h - row.iter().zip(c.iter()).map(|(x, c)| x * c).sum::<f64>();
+        gaps.clear();
+        gaps.extend(rows.iter().map(|(row, h, _)| gap(row, *h).abs()));
         let (mut sum, mut total) = (0.0, 0.0);
-        for ((row, h, w), t) in rows.iter().zip(&trust) {
-            sum += w * t * gap(row, *h).powi(2);
+        for (((_, _, w), t), gap) in rows.iter().zip(&trust).zip(&gaps) {
+            sum += w * t * gap * gap;
             total += w * t;
         }
         let freedom = n as f64 / (n as f64 - 6.0);
+        order.clone_from(&gaps);
         found = Some((c[0], (sum / total * freedom).sqrt()));
-        let (_, middle, _) = gaps.select_nth_unstable_by(n / 2, f64::total_cmp);
+        let (_, middle, _) = order.select_nth_unstable_by(n / 2, f64::total_cmp);
         // The median of the absolute value of a normal deviate is 0.67 of its standard deviation.
         let limit = 3.0 * (*middle / 0.6745).max(1e-9);
-        for ((row, h, _), t) in rows.iter().zip(&mut trust) {
-            *t = (1.0 + (gap(row, *h) / limit).powi(2)).powi(-2);
+        for (gap, t) in gaps.iter().zip(&mut trust) {
+            *t = (1.0 + (gap / limit).powi(2)).powi(-2);
         }
     }
     let (height, residual) = found?;

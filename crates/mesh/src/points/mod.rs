@@ -45,7 +45,7 @@ pub struct PointsReport {
     /// Standard deviation of the points from smooth patches, in mesh units: the noise, and curvature that the sampling is too
     /// coarse for.
     pub noise: f64,
-    /// Number of neighbours to which patches were fitted for smoothing; 0 if the points were left where they are.
+    /// Fewest neighbours to which patches were fitted for smoothing; 0 if the points were left where they are.
     pub neighbors: usize,
     /// Points without a face, for which a vertex nearby stands, and copies of other points.
     pub replaced_points: usize,
@@ -82,9 +82,10 @@ impl PointsReport {
 
 /// The surface through a cloud of points: triangles between neighbours, at most two at an edge.
 ///
-/// 1. **Smoothing.** The noise is measured with patches, quadrics fitted to the nearest points: the smallest patch that is
-///    flat for its size tells the noise. If that is more than a small part of the spacing, every point is projected
-///    onto the patch around it (moving least squares; `alexa2003` in `REFERENCES.bib`).
+/// 1. **Smoothing.** The noise is measured with patches, quadrics fitted to the nearest points: the smallest patches of
+///    which a quarter are flat for their size tell the noise. If there is more than a small part of the spacing, every
+///    point is projected onto the largest patch around it that fits within the noise (moving least squares; `alexa2003` in
+///    `REFERENCES.bib`).
 /// 2. **Triangles.** Every point takes its neighbours into its tangent plane, where the corners of its Voronoi cell are
 ///    the triangles of the Delaunay triangulation around it (`sharp2020` uses the union of these). Empty circles larger
 ///    than the neighbourhood make no triangle, so boundaries and holes stay open.

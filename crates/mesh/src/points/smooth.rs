@@ -7,8 +7,12 @@ use rayon::prelude::*;
 use super::fit::patch;
 use super::neighbors::Neighbors;
 
-/// Numbers of points of patches that are tried, from small to large.
-const SIZES: [usize; 12] = [12, 17, 24, 34, 48, 68, 96, 136, 192, 272, 384, 544];
+/// Points of the patches that tell whether there is noise.
+const FEW: usize = 12;
+
+/// Numbers of points of patches that measure the noise, from small to large. With fewer, the six coefficients of a quadric
+/// follow the noise.
+const SIZES: [usize; 8] = [48, 68, 96, 136, 192, 272, 384, 544];
 
 /// Points at which the noise is measured.
 const PROBES: usize = 400;
@@ -19,81 +23,168 @@ const FLAT: f64 = 0.14;
 /// Points that stick out by less than this share of their spacing are left where they are.
 const SLIGHT: f64 = 0.1;
 
-/// Fewest points of a patch that smooths: with fewer, the six coefficients of a quadric follow the noise.
-const LEAST: usize = 48;
+/// Radius of the smallest patch that smooths, in standard deviations of the noise.
+const REACH: f64 = 3.0;
 
-/// Projections of every point.
+/// Radius that no larger patch exceeds, in standard deviations of the noise.
+const FARTHEST: f64 = 8.0;
+
+/// Growth of a patch from one size to the next that is tried.
+const STEP: f64 = std::f64::consts::SQRT_2;
+
+/// Steps by which a patch may grow.
+const STEPS: usize = 4;
+
+/// Points stick out of a patch that fits by at most this multiple of the noise.
+const FITS: f64 = 1.1;
+
+/// Projections of every point onto patches of the points as they were measured.
 const ROUNDS: usize = 3;
+
+/// Projections of every point onto patches of smoothed points, for noise as large as the spacing; as many fewer as noise is
+/// smaller.
+const EVENING: f64 = 3.5;
+
+/// Most projections onto patches of smoothed points.
+const EVENING_ROUNDS: usize = 3;
 
 /// Points, smoothed if they are noisy.
 pub(super) struct Smooth {
     pub(super) points: Vec<Point3<f64>>,
     pub(super) spacing: f64,
     pub(super) noise: f64,
-    /// Points of a patch; 0 if nothing was smoothed.
+    /// Points of the smallest patches; 0 if nothing was smoothed.
     pub(super) neighbors: usize,
 }
 
+impl Smooth {
+    /// Number of points in a disc whose radius is a multiple of the noise.
+    fn in_disc(&self, radius: f64) -> usize {
+        (std::f64::consts::PI * (radius * self.noise / self.spacing).powi(2)) as usize
+    }
+}
+
 /// Smooths points that are noisy.
+///
+/// A point is projected onto the largest patch that fits within the noise: thin limbs have small patches, which do not shorten
+/// them, and flat parts have large ones, over which more noise is averaged. Patches of neighbours of different sizes leave
+/// the result uneven, so smoothed points are projected again, onto small patches of each other.
 pub(super) fn smooth(points: Vec<Point3<f64>>, budget: &Budget) -> Result<Smooth, Exceeded> {
     let neighbors = Neighbors::new(&points);
-    let found = measure(&points, &neighbors);
-    let mut smooth = Smooth { spacing: found.spacing, noise: found.noise, neighbors: 0, points };
-    if found.noise < SLIGHT * found.spacing {
+    let at = probes(&points);
+    let mut seen = residuals(&points, &neighbors, &at, FEW);
+    let (noise, spacing) = (quantile(&mut seen.residuals, 0.5), seen.spacing);
+    let mut smooth = Smooth { spacing, noise, neighbors: 0, points };
+    if noise < SLIGHT * spacing {
         return Ok(smooth);
     }
-    let size = found.size.max(LEAST);
-    smooth.neighbors = size;
+    (smooth.noise, smooth.spacing) = measure(&smooth.points, &neighbors, &at);
+    smooth.neighbors = smooth.in_disc(REACH).clamp(SIZES[0], SIZES[SIZES.len() - 1]);
+    budget.check()?;
+    let sizes = sizes(&smooth, &neighbors);
     let rough = smooth.points.clone();
     for _ in 0..ROUNDS {
         budget.check()?;
-        let project = |p: &Point3<f64>| {
-            let near = neighbors.nearest(p, size);
-            let near: Vec<Point3<f64>> = near.iter().map(|(i, _)| rough[*i as usize]).collect();
-            patch(p, &near).map_or(*p, |patch| patch.foot)
-        };
+        let project = |(p, size): (&Point3<f64>, &usize)| foot(p, &neighbors, &rough, *size);
+        smooth.points = smooth.points.par_iter().zip(&sizes).map(project).collect();
+    }
+    let evening = (EVENING * smooth.noise / smooth.spacing) as usize;
+    for _ in 0..evening.min(EVENING_ROUNDS) {
+        budget.check()?;
+        let near = Neighbors::new(&smooth.points);
+        let project = |p: &Point3<f64>| foot(p, &near, &smooth.points, smooth.neighbors);
         smooth.points = smooth.points.par_iter().map(project).collect();
     }
     Ok(smooth)
 }
 
-/// What patches of the smallest size that is flat say about points.
-struct Measured {
-    size: usize,
-    noise: f64,
-    spacing: f64,
+/// A place, projected onto the patch of this many points around it.
+fn foot(place: &Point3<f64>, neighbors: &Neighbors, points: &[Point3<f64>], size: usize) -> Point3<f64> {
+    patch(place, &nearest(place, neighbors, points, size)).map_or(*place, |patch| patch.foot)
 }
 
-fn measure(points: &[Point3<f64>], neighbors: &Neighbors) -> Measured {
+fn nearest(
+    place: &Point3<f64>,
+    neighbors: &Neighbors,
+    points: &[Point3<f64>],
+    size: usize,
+) -> Vec<Point3<f64>> {
+    neighbors.nearest(place, size).iter().map(|(i, _)| points[*i as usize]).collect()
+}
+
+/// For every point, the number of points of the largest patch that fits.
+fn sizes(rough: &Smooth, neighbors: &Neighbors) -> Vec<usize> {
+    let most = rough.in_disc(FARTHEST).min(rough.points.len() / 8);
+    let tried: Vec<usize> = (0..=STEPS)
+        .map(|step| (rough.neighbors as f64 * STEP.powi(step as i32)) as usize)
+        .take_while(|size| *size <= most.max(rough.neighbors))
+        .collect();
+    let largest = tried[tried.len() - 1];
+    let choose = |p: &Point3<f64>| {
+        let near = nearest(p, neighbors, &rough.points, largest);
+        let fits = |size: &&usize| {
+            let patch = patch(p, &near[..(**size).min(near.len())]);
+            patch.is_some_and(|patch| patch.residual <= FITS * rough.noise)
+        };
+        tried[1..].iter().take_while(fits).last().copied().unwrap_or(rough.neighbors)
+    };
+    rough.points.par_iter().map(choose).collect()
+}
+
+/// Points at which the noise is measured.
+fn probes(points: &[Point3<f64>]) -> Vec<Point3<f64>> {
     // Spread over the input by the golden ratio: neighbours in the input are often neighbours in space.
     const GOLDEN: f64 = 0.618_033_988_749_894_9;
     let n = points.len();
     let probe = |i: usize| ((i as f64 * GOLDEN).fract() * n as f64) as usize;
-    let probes: Vec<Point3<f64>> = (0..PROBES.min(n)).map(|i| points[probe(i).min(n - 1)]).collect();
-    let largest = SIZES.iter().rposition(|size| *size <= n / 8).unwrap_or(0);
-    let mut measured = Measured { size: SIZES[0], noise: 0.0, spacing: 0.0 };
+    (0..PROBES.min(n)).map(|i| points[probe(i).min(n - 1)]).collect()
+}
+
+/// What patches of one size say about points.
+struct Residuals {
+    /// How far points stick out of each patch.
+    residuals: Vec<f64>,
+    /// Median radius of the patches.
+    radius: f64,
+    /// Distance between points, if the disc of a patch is shared evenly.
+    spacing: f64,
+}
+
+fn residuals(
+    points: &[Point3<f64>],
+    neighbors: &Neighbors,
+    probes: &[Point3<f64>],
+    size: usize,
+) -> Residuals {
+    let of_probe = |p: &Point3<f64>| {
+        let near = nearest(p, neighbors, points, size);
+        let radius = near.last().map_or(0.0, |last| (last - p).norm());
+        (patch(p, &near).map_or(0.0, |patch| patch.residual), radius)
+    };
+    let (residuals, mut radii): (Vec<f64>, Vec<f64>) = probes.par_iter().map(of_probe).unzip();
+    let radius = quantile(&mut radii, 0.5);
+    Residuals { residuals, radius, spacing: radius * (std::f64::consts::PI / size as f64).sqrt() }
+}
+
+/// The noise and the spacing of points: those of the smallest patches of which a quarter are flat. Where the surface is
+/// more curved, points stick out of large patches without noise.
+fn measure(points: &[Point3<f64>], neighbors: &Neighbors, probes: &[Point3<f64>]) -> (f64, f64) {
+    let largest = SIZES.iter().rposition(|size| *size <= points.len() / 8).unwrap_or(0);
+    let mut measured = (0.0, 0.0);
     for &size in &SIZES[..=largest] {
-        let of_probe = |p: &Point3<f64>| {
-            let near = neighbors.nearest(p, size);
-            let radius = near.last().map_or(0.0, |(_, sq)| sq.sqrt());
-            let near: Vec<Point3<f64>> = near.iter().map(|(i, _)| points[*i as usize]).collect();
-            (patch(p, &near).map_or(0.0, |patch| patch.residual), radius)
-        };
-        let (mut residuals, mut radii): (Vec<f64>, Vec<f64>) = probes.par_iter().map(of_probe).unzip();
-        let (noise, radius) = (median(&mut residuals), median(&mut radii));
-        // The disc of the patch shared among its points.
-        let spacing = radius * (std::f64::consts::PI / size as f64).sqrt();
-        measured = Measured { size, noise, spacing };
-        if noise <= FLAT * radius {
+        let mut found = residuals(points, neighbors, probes, size);
+        let noise = quantile(&mut found.residuals, 0.25);
+        measured = (noise, found.spacing);
+        if noise <= FLAT * found.radius {
             break;
         }
     }
     measured
 }
 
-fn median(values: &mut [f64]) -> f64 {
+fn quantile(values: &mut [f64], share: f64) -> f64 {
     match values.len() {
         0 => 0.0,
-        n => *values.select_nth_unstable_by(n / 2, f64::total_cmp).1,
+        n => *values.select_nth_unstable_by((share * n as f64) as usize, f64::total_cmp).1,
     }
 }

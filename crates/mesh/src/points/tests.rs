@@ -66,6 +66,36 @@ fn noise_is_measured_and_smoothed() {
     }
 }
 
+/// Random points of a torus, each coordinate moved by noise of this standard deviation.
+fn torus(n: usize, thickness: f64, deviation: f64) -> Vec<Point3<f64>> {
+    let mut draw = uniform();
+    let mut points = Vec::new();
+    while points.len() < n {
+        let [turn, around, chance] = [(); 3].map(|()| draw());
+        let (sin, cos) = (std::f64::consts::TAU * around).sin_cos();
+        // The outer side has more area than the inner one.
+        if (chance + 0.5) * (1.0 + thickness) > 1.0 + thickness * cos {
+            continue;
+        }
+        let (y, x) = (std::f64::consts::TAU * turn).sin_cos();
+        let radius = 1.0 + thickness * cos;
+        let noise = Vector3::from([(); 3].map(|()| draw() * 12f64.sqrt()));
+        points.push(Point3::new(x * radius, y * radius, thickness * sin) + noise * deviation);
+    }
+    points
+}
+
+#[test]
+fn thin_parts_keep_their_size() {
+    // Six times as thick as the noise, which is as large as the spacing.
+    let found = triangulated(&torus(10_000, 0.12, 0.02));
+    let area = std::f64::consts::PI.powi(2) * 4.0 * 0.12;
+    assert!((found.mesh.area() / area - 1.0).abs() < 0.1, "{}", found.mesh.area() / area);
+    assert!((found.report.noise / 0.02 - 1.0).abs() < 0.3, "{:?}", found.report);
+    let report = validate(&found.mesh);
+    assert!(report.n_components == 1 && report.non_manifold_edges == 0, "{report:?}");
+}
+
 #[test]
 fn boundaries_stay_open_and_sheets_stay_apart() {
     let sheet = shapes::jittered_grid(30, 20, 0.1, 0.2, 5);
