@@ -181,7 +181,7 @@ From the two largest sizes, the time grows with the number of vertices to the po
     yield table(["shapes", "processor seconds per shape", "minutes in all", "index bytes per shape", "search ms", "forms aligned"],
                 [(f"{c:,}", digits(b), digits(e / 60), f"{z / c:,.0f}", digits(1000 * s), digits(a)) for c, b, z, s, a, e in stored])
     yield f"""
-An index takes {per_shape / 1000:.1f} kB for each further shape, whatever its mesh: 1,000 points of the form, six signatures and the fused vector. From {stored[0][0]:,} to {stored[-1][0]:,} shapes, the time for each changes by the factor {stored[-1][1] / stored[0][1]:.2f}.
+An index takes {per_shape / 1000:.1f} kB for each further shape, whatever its mesh: 1,000 points of the form, six signatures, the disc areas of 100 points and the fused vector. From {stored[0][0]:,} to {stored[-1][0]:,} shapes, the time for each changes by the factor {stored[-1][1] / stored[0][1]:.2f}.
 
 ## Ten million shapes
 

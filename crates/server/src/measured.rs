@@ -1,8 +1,10 @@
 //! A mesh with its form, as geometry for the browser.
 
 use canonform::descriptors::CanonicalForm;
-use canonform::{Embedded, Error, MeshGeometry, Overlay, Surface};
+use canonform::surface::VertexId;
+use canonform::{Embedded, Error, MeshGeometry, Overlay, Surface, VertexMap};
 use mesh::TriMesh;
+
 use view::interactive::Geometry;
 
 /// Bytes of a vertex and of a face in memory, with the connectivity, all arrays together.
@@ -49,6 +51,18 @@ impl Measured {
     /// The repaired mesh, coloured by distance from the first sample.
     pub(crate) fn mesh(&self) -> Geometry {
         Geometry::new(self.surface.mesh()).with_values(DISTANCE, &self.distances)
+    }
+
+    /// The repaired mesh in the colours of another, carried to it by a map to that one.
+    pub(crate) fn carried(&self, from: &Self, map: &VertexMap) -> Geometry {
+        let value = |v: usize| {
+            let input = self.surface.input_vertex(VertexId::from(v));
+            let partner = map.vertices.get(input.index()).copied().flatten()?;
+            from.distances.get(from.surface.repaired_vertex(partner).ok()?.index()).copied()
+        };
+        let values: Vec<f64> =
+            (0..self.surface.mesh().n_vertices()).map(|v| value(v).unwrap_or(f64::NAN)).collect();
+        Geometry::new(self.surface.mesh()).with_values(DISTANCE, &values)
     }
 
     /// The form with the faces and colours of the mesh.

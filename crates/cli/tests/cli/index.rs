@@ -94,7 +94,7 @@ fn an_unknown_class_is_explained() {
         nearest["id"].as_str().unwrap(),
         nearest["verdict"]["text"].as_str().unwrap(),
         &distance,
-        "parts are not matched",
+        "ranking by parts compares it as one",
     ] {
         assert!(text.contains(words), "no `{words}` in {text}");
     }

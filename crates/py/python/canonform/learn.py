@@ -66,6 +66,9 @@ class NystromMDS(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEstimato
         distances that the embedding does not know.
     random_state : int, RandomState or None, default=None
         For `sampling="random"`, and for the distances that n_landmarks="auto" looks at.
+    warm_start : bool, default=False
+        Keep the distances from the landmarks, so that the next fit to the same points measures those from further landmarks only:
+        `form.set_params(n_landmarks=200).fit(X)`. Takes the memory of n p numbers between fits.
 
     Attributes
     ----------
@@ -115,6 +118,7 @@ class NystromMDS(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEstimato
         alpha: float | None = None,
         target_stress: float | None = None,
         random_state: Any = None,
+        warm_start: bool = False,
     ) -> None:
         self.n_landmarks = n_landmarks
         self.n_components = n_components
@@ -126,6 +130,7 @@ class NystromMDS(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEstimato
         self.alpha = alpha
         self.target_stress = target_stress
         self.random_state = random_state
+        self.warm_start = warm_start
 
     def fit(self, X: Any, y: object = None) -> NystromMDS:
         """Choose landmarks and embed the points X. y is ignored."""
@@ -133,18 +138,20 @@ class NystromMDS(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEstimato
         n = len(X)
         if n < 2:
             raise ValueError(f"a metric space of 1 sample has no extent, and X has {n} sample(s); give at least 2")
-        taken = _Landmarks(self, X)
+        known: _Landmarks | None = getattr(self, "_taken", None) if self.warm_start else None
+        taken = known if known is not None and known.continues(self, X) else _Landmarks(self, X)
+        self._taken = taken if self.warm_start else None
         rank = self.rank
         if self.n_landmarks == "auto":
-            rank = self._searched(X, taken)
+            n_landmarks, rank = self._searched(X, taken)
         elif isinstance(self.n_landmarks, str) or not self.n_landmarks >= 1:
             raise ValueError(f"n_landmarks={self.n_landmarks!r} is not possible: give a positive number, or 'auto'")
         elif self.target_stress is not None:
             raise ValueError(f"target_stress has no effect with n_landmarks={self.n_landmarks}; leave it out, or use n_landmarks='auto'")
         else:
-            taken.extend_to(self.n_landmarks)
-        landmarks = taken.landmarks
-        found = _canonform.nystrom(taken.columns, landmarks.tolist(), encoded(**{**self._settings(), "rank": rank}))
+            n_landmarks = int(self.n_landmarks)
+        landmarks, columns = taken.first(n_landmarks)
+        found = _canonform.nystrom(columns, landmarks.tolist(), encoded(**{**self._settings(), "rank": rank}))
         self.embedding_, self.eigenvalues_, self.negative_mass_, self.rank_, self._extension = found
         self.landmarks_ = landmarks
         self._n_fitted = n
@@ -206,20 +213,21 @@ class NystromMDS(ClassNamePrefixFeaturesOutMixin, TransformerMixin, BaseEstimato
         measured: Floats = X[:, i] if self.metric == "precomputed" else self._column(X[i], X)
         return measured
 
-    def _searched(self, X: Any, taken: _Landmarks) -> int | None:
-        """Takes landmarks until they are enough; the best rank for them."""
+    def _searched(self, X: Any, taken: _Landmarks) -> tuple[int, int | None]:
+        """Takes landmarks until they are enough; their number, and the best rank for them."""
         seed = int(check_random_state(self.random_state).randint(2**31 - 1)) if self.random_state is not None else 0
         settings = encoded(**self._settings(), n="auto", target_stress=self.target_stress)
         search = _canonform.SampleSearch(settings, min(_MOST_LANDMARKS, len(X)), seed)
+        landmarks, columns = taken.first(0)
         step, numbers = search.start()
         while step != "done":
             if step == "samples":
-                taken.extend_to(numbers[0])
-                step, numbers = search.offer(taken.columns, taken.landmarks.tolist())
+                landmarks, columns = taken.first(numbers[0])
+                step, numbers = search.offer(columns, landmarks.tolist())
             else:
                 rows = np.stack([self._measure(X, i) for i in numbers], axis=1)
                 step, numbers = search.supply(numbers, np.asarray(rows, dtype=np.float64))
-        return search.rank(taken.columns, taken.landmarks.tolist())
+        return len(landmarks), search.rank(columns, landmarks.tolist())
 
     @property
     def _n_features_out(self) -> int:
@@ -243,6 +251,7 @@ class _Landmarks:
         if estimator.sampling not in ("farthest", "random"):
             raise ValueError(f"sampling={estimator.sampling!r} is not possible: use 'farthest' or 'random'")
         n = len(X)
+        self._sampling = estimator.sampling
         self._measure: Callable[[int], Floats] = lambda i: estimator._measure(X, i)
         self._order: Ints | None = None
         if estimator.sampling == "random":
@@ -255,16 +264,23 @@ class _Landmarks:
         self._columns = np.empty((n, 0), order="F")
         self._is_complete = False
 
-    @property
-    def landmarks(self) -> Ints:
-        return np.array(self._taken, dtype=np.int64)
+    def __getstate__(self) -> dict[str, Any]:
+        # The next fit says how to measure.
+        return {**self.__dict__, "_measure": None}
 
-    @property
-    def columns(self) -> Floats:
-        return self._columns
+    def continues(self, estimator: NystromMDS, X: Any) -> bool:
+        """Whether these are landmarks of the points X by the metric of the estimator; further ones are then measured by it."""
+        if self._sampling != estimator.sampling or len(X) != len(self._columns) or not self._taken:
+            return False
+        self._measure = lambda i: estimator._measure(X, i)
+        return bool(np.array_equal(self._measure(self._taken[0]), self._columns[:, 0]))
 
-    def extend_to(self, n: int) -> None:
-        """Take landmarks until there are n, or as many as there are different points."""
+    def first(self, n: int) -> tuple[Ints, Floats]:
+        """The first n landmarks, or as many as there are different points, and their columns."""
+        self._extend_to(n)
+        return np.array(self._taken[:n], dtype=np.int64), self._columns[:, :n]
+
+    def _extend_to(self, n: int) -> None:
         n = min(n, len(self._columns))
         columns = np.empty((len(self._columns), max(n, len(self._taken))), order="F")
         columns[:, : len(self._taken)] = self._columns

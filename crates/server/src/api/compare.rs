@@ -24,11 +24,24 @@ use crate::measured::{Measured, overlaid};
 #[serde(deny_unknown_fields)]
 pub(super) struct CompareParams {
     /// The `query_id` of an upload.
-    query: Option<String>,
+    pub(super) query: Option<String>,
     /// A shape of the index.
-    a: Option<String>,
+    pub(super) a: Option<String>,
     /// A shape of the index.
-    b: String,
+    pub(super) b: String,
+}
+
+impl CompareParams {
+    /// The size of the meshes, for [`Work::run`](crate::work::Work::run).
+    pub(super) fn cost(&self, app: &App, collection: &Collection) -> usize {
+        let ids = self.a.iter().chain([&self.b]);
+        ids.map(|id| app.cost(collection, id)).fold(0, usize::saturating_add)
+    }
+
+    /// The error that there is no first shape, or two of them.
+    pub(super) fn not_two() -> ApiError {
+        ApiError::bad_request("give either an upload with `query` or a shape with `a`")
+    }
 }
 
 #[derive(Serialize)]
@@ -95,8 +108,7 @@ pub(super) async fn compare(
     Params(params): Params<CompareParams>,
 ) -> Result<Written, ApiError> {
     let (shared, collection) = (app.clone(), app.served.collection());
-    let ids = params.a.iter().chain([&params.b]);
-    let cost = ids.map(|id| app.cost(&collection, id)).fold(0, usize::saturating_add);
+    let cost = params.cost(&app, &collection);
     let job = move |budget: &Budget| Written::new(&answer(&shared, &collection, params, budget)?);
     app.work.run(cost, None, job).await
 }
@@ -117,7 +129,7 @@ fn answer(
             let side = Side::of_shape(app, collection, &id, budget)?;
             (id, side)
         }
-        _ => return Err(ApiError::bad_request("give either an upload with `query` or a shape with `a`")),
+        _ => return Err(CompareParams::not_two()),
     };
     let b = Side::of_shape(app, collection, &params.b, budget)?;
     budget.check().map_err(ApiError::exceeded)?;

@@ -3,6 +3,7 @@
 mod answer;
 mod compare;
 mod csv;
+mod matching;
 mod search;
 mod shapes;
 
@@ -37,6 +38,7 @@ fn routes() -> Vec<Route> {
         ("get", "/api/shapes/{id}/form", get(shapes::form)),
         ("get", "/api/shapes/{id}/thumbnail", get(shapes::thumbnail)),
         ("get", "/api/compare", get(compare::compare)),
+        ("get", "/api/match", get(matching::matching)),
         ("get", "/api/openapi.json", get(openapi)),
         ("get", "/healthz", get(health)),
     ]

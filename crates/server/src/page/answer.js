@@ -1,4 +1,4 @@
-// The results: repairs, mesh and form, class, nearest shapes, and the overlay of two forms.
+// The results: repairs, mesh and form, class, nearest shapes, the overlay of two forms, and corresponding points.
 import { mark, tile } from './shapes.js';
 import { USUAL_K, searched } from './state.js';
 
@@ -14,6 +14,14 @@ function view(id, geometries, options) {
   return undefined;
 }
 
+async function ask(address) {
+  try {
+    return await (await fetch(address)).json();
+  } catch {
+    return { error: 'The server did not respond', remedy: 'check that it is running' };
+  }
+}
+
 export class Answer {
   // Calls `picked` with a result to overlay, and `closed` without one.
   constructor({ picked, closed }) {
@@ -22,6 +30,7 @@ export class Answer {
     this.root.dataset.state = 'empty';
     this.comparison = 0;
     byId('overlay-shown').addEventListener('change', () => this.drawOverlay());
+    byId('match-hit').addEventListener('click', () => this.match());
     byId('close-hit').addEventListener('click', () => {
       const result = byId('results').querySelector('[aria-pressed=true]');
       closed();
@@ -153,7 +162,9 @@ export class Answer {
     byId('overlay-facts').textContent = '';
     if (isNew) byId('overlay-title').focus({ preventScroll: true });
     overlay.scrollIntoView({ block: 'nearest' });
-    const answer = await this.ask(new URLSearchParams({ ...(queryId ? { query: queryId } : { a: query }), b: id }));
+    byId('match').hidden = true;
+    this.pair = new URLSearchParams({ ...(queryId ? { query: queryId } : { a: query }), b: id });
+    const answer = await ask(`/api/compare?${this.pair}`);
     if (comparison !== this.comparison) return;
     if (answer.error) {
       overlay.dataset.state = 'failed';
@@ -176,12 +187,26 @@ export class Answer {
     overlay.dataset.state = 'ready';
   }
 
-  async ask(params) {
-    try {
-      return await (await fetch(`/api/compare?${params}`)).json();
-    } catch {
-      return { error: 'The server did not respond', remedy: 'check that it is running' };
+  // Maps the query to the shape of the overlay, and shows both in corresponding colours.
+  async match() {
+    const { comparison } = this;
+    const [part, facts] = [byId('match'), byId('match-facts')];
+    part.hidden = false;
+    part.dataset.state = 'busy';
+    facts.textContent = 'Matching, which takes some seconds…';
+    const answer = await ask(`/api/match?${this.pair}`);
+    if (comparison !== this.comparison) return;
+    if (answer.error) {
+      part.dataset.state = 'failed';
+      facts.textContent = answer.remedy ? `${answer.error}; ${answer.remedy}` : answer.error;
+      return;
     }
+    const words = { direct: 'the map that keeps left and right', mirrored: 'the mirrored map', unoriented: 'the map' };
+    const change = ({ kind, distortion }) => `${words[kind]} changes distances by ${number(100 * distortion)} % of the square root of the area`;
+    facts.textContent = `${sentence(answer.maps.map(change).join(', '))} Points that the first map joins have the same colour.`;
+    await Promise.all(['match-first', 'match-second'].map(
+      (id, i) => view(id, answer.meshes[i], { title: [answer.a, answer.b][i] })));
+    part.dataset.state = 'ready';
   }
 
   // Coloured by the residual; with both shown, the second is a pale shell around the first.

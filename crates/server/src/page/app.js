@@ -21,6 +21,7 @@
 //     #overlay               data-state: `busy`, `ready` or `failed`; data-id of the shape
 //       #overlay-title #overlay-kind[data-kind] #overlay-facts #overlay-view, input[name=shown] (both, first, second)
 //       #search-hit #close-hit  a search with the shape of the overlay; back to the results alone
+//       #match-hit #match[data-state] #match-facts #match-first #match-second  corresponding points of both meshes
 // Texts from outside are set as text, never as HTML.
 import { Ask } from './ask.js';
 import { Sample, Shapes } from './shapes.js';

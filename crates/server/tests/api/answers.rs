@@ -366,10 +366,20 @@ fn an_upload_can_be_compared_with_its_results() {
         (format!("query={query}&a=ring0&b=ring1"), 400),
         ("a=ring1".to_owned(), 400),
     ] {
-        let answer = get(&server, &format!("/api/compare?{target}"));
-        assert_eq!(answer.status, status, "{target}");
-        description.check("get", "/api/compare", status, &answer.json());
+        for path in ["/api/compare", "/api/match"] {
+            let answer = get(&server, &format!("{path}?{target}"));
+            assert_eq!(answer.status, status, "{target}");
+            description.check("get", path, status, &answer.json());
+        }
     }
+    let matched = get(&server, &format!("/api/match?query={query}&b=ring1")).json();
+    description.check("get", "/api/match", 200, &matched);
+    assert_eq!((matched["a"].as_str(), matched["b"].as_str()), (Some("q.off"), Some("ring1")));
+    assert!(matched["maps"][0]["distortion"].as_f64().unwrap() < 0.05, "{}", matched["maps"]);
+    // The first mesh has values of the second.
+    let values = [0, 1].map(|i| geometry(&matched["meshes"][i]).values.unwrap());
+    assert!(values[0].iter().all(|value| values[1].contains(value)));
+    assert!(values[0].iter().any(|value| *value > 0.0));
 }
 
 #[test]

@@ -67,6 +67,11 @@ fn a_chosen_mesh_is_classified_and_overlaid_with_a_result() {
         let told = "document.querySelector('#overlay-kind').dataset.evidence";
         page.wait_for(&format!("['identical-file', 'identical-geometry', 'other-pose'].includes({told})"));
         page.picture("#overlay", &format!("overlay-{name}"));
+        page.browser.click("#match-hit").unwrap();
+        page.wait_for("document.querySelector('#match').dataset.state === 'ready'");
+        page.wait_for("document.querySelector('#match-second').dataset.state === 'ready'");
+        assert!(page.text("#match-facts").contains("same colour"), "{}", page.text("#match-facts"));
+        page.picture("#match", &format!("match-{name}"));
         page.browser.click("input[name=shown][value=second]").unwrap();
         page.wait_for("document.querySelector('#overlay-view .canonform-scene').data.length === 1");
         page.assert_sound();
