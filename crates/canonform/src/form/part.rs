@@ -25,7 +25,8 @@ use crate::input::Surface;
 ///     let whole = describe(&Surface::new(mesh, &Default::default())?, &options)?;
 ///     Ok::<_, canonform::Error>(part.distance(&whole.disc_areas))
 /// };
-/// assert!(distance(&ball)?.distance < 0.2 * distance(&ring)?.distance);
+/// let (of_ball, of_ring) = (distance(&ball)?, distance(&ring)?);
+/// assert!(of_ball.distance < of_ring.distance && of_ball.share == 0.5, "{of_ball:?}, {of_ring:?}");
 /// # Ok::<(), canonform::Error>(())
 /// ```
 ///
