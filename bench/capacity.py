@@ -23,7 +23,7 @@ from search import Ours, signatures
 from support import answer, arguments, write_page
 
 SIZES = [1_000, 3_400, 10_000, 30_000, 100_000, 300_000]
-STORED = [100, 1_000, 10_000]
+STORED = [100, 1_000, 4_000]
 VECTORS = [10_000, 100_000, 1_000_000]
 # Numbers in a fused vector.
 DIM = 172
