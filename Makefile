@@ -27,7 +27,7 @@ test-python: ## Build the Python package and run its tests in an environment of 
 
 kills: ## Kill writing commands 200 times: nothing half-written, and the next run works
 	CANONFORM_KILLS=200 $(CARGO) test --locked -p canonform-cli --test cli killed
-	CANONFORM_KILLS=200 $(CARGO) test --locked -p experiments --test killed
+	CANONFORM_KILLS=200 $(CARGO) test --locked -p experiments --test it killed
 
 lint: ## Check formatting, clippy and rustdoc; warnings are errors
 	$(CARGO) fmt --all --check
@@ -37,42 +37,42 @@ lint: ## Check formatting, clippy and rustdoc; warnings are errors
 bench: ## Time the distance solvers on meshes of several sizes
 	$(CARGO) bench --locked -p bench
 
-bench-peers: build ## Compare distance solvers with other programs and write docs/benchmarks.md (needs Python and test meshes)
+bench-peers: build ## Compare distance solvers with other programs and write its section of docs/benchmarks.md (needs Python and test meshes)
 	test -x target/peers/bin/python || python3 -m venv target/peers
 	target/peers/bin/pip install --quiet numpy scipy potpourri3d pygeodesic meshlib
 	target/peers/bin/python bench/peers.py
 
-bench-nmds: build ## Compare canonical forms with potpourri3d and NumPy and write docs/nmds.md (needs Python and test meshes)
+bench-nmds: build ## Compare canonical forms with potpourri3d and NumPy and write its section of docs/benchmarks.md (needs Python and test meshes)
 	$(CARGO) build --release --locked -p canonform --example forms
 	test -x target/peers/bin/python || python3 -m venv target/peers
 	target/peers/bin/pip install --quiet numpy potpourri3d
 	target/peers/bin/python bench/nmds.py
 
-bench-preparation: ## Time the preparation of meshes and write docs/preparation.md (needs Python and test meshes)
+bench-preparation: ## Time the preparation of meshes and write its section of docs/benchmarks.md (needs Python and test meshes)
 	$(CARGO) build --release --locked -p canonform --example preparation
 	test -x target/peers/bin/python || python3 -m venv target/peers
 	target/peers/bin/pip install --quiet numpy
 	target/peers/bin/python bench/preparation.py
 
-bench-eigsh: ## Compare eigenpairs with SciPy and write docs/eigenpairs.md (needs Python and test meshes)
+bench-eigsh: ## Compare eigenpairs with SciPy and write its section of docs/benchmarks.md (needs Python and test meshes)
 	$(CARGO) build --release --locked -p canonform-descriptors --example eigenpairs
 	test -x target/peers/bin/python || python3 -m venv target/peers
 	target/peers/bin/pip install --quiet numpy scipy
 	target/peers/bin/python bench/eigsh.py
 
-bench-search: ## Compare search among a million vectors with hnswlib and faiss and write docs/search.md (needs Python; takes half an hour)
+bench-search: ## Compare search among a million vectors with hnswlib and faiss and write its section of docs/benchmarks.md (needs Python; takes half an hour)
 	$(CARGO) build --release --locked -p canonform-index --example vectors
 	test -x target/peers/bin/python || python3 -m venv target/peers
 	target/peers/bin/pip install --quiet numpy hnswlib faiss-cpu
 	target/peers/bin/python bench/search.py
 
-bench-capacity: build ## Measure what a shape costs, simulate ten million and write docs/capacity.md (needs Python; takes an hour)
+bench-capacity: build ## Measure what a shape costs, simulate ten million and write its section of docs/benchmarks.md (needs Python; takes an hour)
 	$(CARGO) build --release --locked -p canonform-index --example vectors
 	test -x target/peers/bin/python || python3 -m venv target/peers
 	target/peers/bin/pip install --quiet numpy
 	target/peers/bin/python bench/capacity.py
 
-bench-packages: build ## Compare distances, embeddings and refusals with Python packages and write docs/packages.md (needs Python)
+bench-packages: build ## Compare distances, embeddings and refusals with Python packages and write its section of docs/benchmarks.md (needs Python)
 	test -x target/peers/bin/python || python3 -m venv target/peers
 	target/peers/bin/pip install --quiet --no-binary gdist numpy scipy potpourri3d pygeodesic gdist scikit-learn
 	target/peers/bin/python bench/packages.py
@@ -104,7 +104,7 @@ paper: ## Write docs/paper.md from the results in OUT of `make reproduce DATASET
 	$(CARGO) run --release --locked -p experiments -- report --output $(OUT) --markdown docs/paper.md
 
 plotly: ## Build the bundle of plotly.js that the pages embed (needs Node 20 and npm)
-	node crates/view/assets/plotly/build.mjs
+	node crates/report/assets/plotly/build.mjs
 
 deny: ## Check licences and sources of dependencies with cargo-deny (installs it if missing)
 	@command -v cargo-deny >/dev/null || $(CARGO) install --locked cargo-deny

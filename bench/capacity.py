@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Measures what a shape costs, and simulates the indexing of ten million shapes from that.
 
-    make bench-capacity         builds the programs, sets up the environment, writes docs/capacity.md
+    make bench-capacity         builds the programs, sets up the environment, writes its section of docs/benchmarks.md
 
 Needs no data: shapes are generated. The processor time of describing a shape is measured by the number of its vertices,
 the bytes of an index by the number of its shapes, search and merging among synthetic signatures as in search.py. Sizes
@@ -10,7 +10,6 @@ of meshes are then drawn from a log-normal distribution, and shards of them are 
 import heapq
 import json
 import os
-import platform
 import shutil
 import subprocess
 import sys
@@ -20,7 +19,7 @@ import time
 import numpy as np
 
 from search import Ours, signatures
-from support import answer, arguments, write_page
+from support import answer, arguments, machine, table, write_section
 
 SIZES = [1_000, 3_400, 10_000, 30_000, 100_000, 300_000]
 STORED = [100, 1_000, 4_000]
@@ -131,12 +130,7 @@ def schedule(tasks, workers):
 def simulate(cost, workers, n_shards):
     shard = np.bincount(np.arange(len(cost)) % n_shards, cost, n_shards)
     end, ideal = schedule(shard.tolist(), workers), cost.sum() / workers
-    return dict(workers=workers, shards=n_shards, shapes=len(cost) // n_shards, mean=shard.mean() / 3600,
-                longest=shard.max() / 3600, end=end / 3600, efficiency=ideal / end)
-
-
-def table(head, rows):
-    return "\n".join([f"| {' | '.join(head)} |", "|" + "---|" * len(head), *(f"| {' | '.join(row)} |" for row in rows)])
+    return dict(longest=shard.max() / 3600, end=end / 3600, efficiency=ideal / end)
 
 
 def digits(x):
@@ -144,15 +138,14 @@ def digits(x):
     return f"{x:,.0f}" if abs(x) >= 100 else f"{x:.3g}"
 
 
-def page(args, described, stored, searched):
+def section(args, described, stored, searched):
     random = np.random.default_rng(1)
     sizes = np.minimum(args.median * np.exp(args.sigma / 100 * random.standard_normal(SHAPES)), LARGEST)
     sizes = np.maximum(sizes, 200)
     cost = costs(sizes, described)
     total = cost.sum()
     order = np.sort(cost)[::-1]
-    quantile = lambda q: np.quantile(sizes, q)
-    runs = [simulate(cost, w, s * w) for w in (64, 1024) for s in (1, 10, 100)]
+    simulated = {w: {s: simulate(cost, w, s * w) for s in (1, 10, 100)} for w in (64, 1024)}
     capped = cost[sizes <= 200_000]
     n = [row["n"] for row in searched]
     per_shape = (stored[-1][2] - stored[-2][2]) / (stored[-1][0] - stored[-2][0])
@@ -162,73 +155,48 @@ def page(args, described, stored, searched):
     memory_latency = power(n, [row["memory_ms"][0] for row in searched], 0.5)
     file_latency = power(n, [row["file_ms"][0] for row in searched], 0.5)
     mean_file = float(np.interp(np.log(sizes.mean()), np.log([r[0] for r in described]), [r[3] for r in described]))
-    yield f"""# Plan for ten million shapes
-
-Measured by `make bench-capacity` on {platform.machine()}, {os.cpu_count()} cores, on generated shapes and synthetic signatures (processor time for describing, elapsed time elsewhere), and simulated for {SHAPES:,} shapes. Compare ratios; absolute times depend on the machine. Each table says what was measured and what follows from it.
-
-## A shape
-
-*Measured*: one thread, from the file to the index, means of a cat, a centaur and a man. Memory is that of the whole process.
-"""
-    yield table(["vertices", "processor seconds", "per 1,000 vertices", "peak memory MB", "`.off` file MB"],
-                [(f"{v:,}", digits(s), digits(1000 * s / v), digits(m), digits(f)) for v, s, m, f in described])
+    yield "## Plan for ten million shapes"
+    yield (f"`make bench-capacity` on {machine()}, on generated shapes and synthetic signatures. Nothing was run with ten million "
+           f"shapes: the largest index that was searched had {n[-1]:,} signatures, the largest mesh {described[-1][0]:,} vertices.")
     exponent = power([r[0] for r in described], [r[1] for r in described])[0]
-    yield f"""
-From the two largest sizes, the time grows with the number of vertices to the power {exponent:.2f}. A small mesh costs as much as one of a few thousand vertices, because long edges are split before a surface is described. Nothing is shared between shapes, so this scales with cores.
-
-*Measured*: indexes of creatures with 1,000 vertices, on all cores; searches with a shape of the index, as medians.
-"""
-    yield table(["shapes", "processor seconds per shape", "minutes in all", "index bytes per shape", "search ms", "forms aligned"],
-                [(f"{c:,}", digits(b), digits(e / 60), f"{z / c:,.0f}", digits(1000 * s), digits(a)) for c, b, z, s, a, e in stored])
-    yield f"""
-An index takes {per_shape / 1000:.1f} kB for each further shape, whatever its mesh: 1,000 points of the form, six signatures, the disc areas of 100 points and the fused vector. From {stored[0][0]:,} to {stored[-1][0]:,} shapes, the time for each changes by the factor {stored[-1][1] / stored[0][1]:.2f}.
-
-## Ten million shapes
-
-**Sizes.** Collections of meshes are heavy-tailed. *Assumed*: a log-normal distribution with a median of {args.median:,} vertices and a standard deviation of the logarithm of {args.sigma / 100:.1f}, at most {LARGEST:,}. Its mean is {sizes.mean():,.0f}, its 99th percentile {quantile(0.99):,.0f}. Measure yours (`canonform info DIR --json`) and pass `--median` and `--sigma` (in hundredths) to `bench/capacity.py`.
-
-**Time.** *Simulated* from the measured times, in part extrapolated: {(sizes > described[-1][0]).mean() * 100:.2g} % of the shapes are larger than the largest measured mesh and take {cost[sizes > described[-1][0]].sum() / total * 100:.0f} % of the time. All shapes take **{total / 3600:,.0f} core hours**, {total / SHAPES:.2f} s each; the largest 1 % take {order[:SHAPES // 100].sum() / total * 100:.0f} % of it. With `--max-vertices 200000`, {(1 - len(capped) / SHAPES) * 100:.2g} % of the shapes are left out, and {(1 - capped.sum() / total) * 100:.0f} % of the time is saved.
-
-**Shards.** *Simulated*: the shards of `--shard I/N` go in order to the worker, one core each, that is free first.
-"""
-    yield table(["workers", "shards", "shapes per shard", "mean shard h", "longest shard h", "end after h", "efficiency"],
-                [(f"{r['workers']:,}", f"{r['shards']:,}", f"{r['shapes']:,}", digits(r["mean"]), digits(r["longest"]),
-                  digits(r["end"]), f"{100 * r['efficiency']:.1f} %") for r in runs])
-    yield f"""
-Take ten to a hundred shards for each worker: the end waits for little, and a worker that is lost costs at most one shard, less what it has stored in its work file.
-
-**Reading.** At {mean_file:.1f} MB for a mesh of mean size, a core reads {mean_file / (total / SHAPES):.1f} MB/s and 1,024 cores {1.024 * mean_file / (total / SHAPES):.1f} GB/s, as text. Binary `.ply` takes about half of it.
-
-**Storage.** *Extrapolated* from the table above: {per_shape * SHAPES / 1e9:,.0f} GB for the index, the same again for the shards while they are merged.
-
-## Search and merging
-
-*Measured* on one thread, on synthetic signatures of {DIM} numbers without forms, with {QUERIES} queries that are not among them. Building includes the graph of nearest neighbours.
-"""
+    yield (f"*A shape*, one thread, from the file to the index. From the two largest sizes, time grows with vertices to the power "
+           f"{exponent:.2f}. Small meshes are refined before they are described, so they cost as much as larger ones.")
+    yield table(["vertices", "processor seconds", "peak MB", "`.off` MB"],
+                [(f"{v:,}", digits(s), digits(m), digits(f)) for v, s, m, f in described])
+    yield "*An index* of creatures with 1,000 vertices, all cores. A search aligns " + f"{digits(stored[-1][4])} forms."
+    yield table(["shapes", "processor seconds per shape", "bytes per shape", "search ms"],
+                [(f"{c:,}", digits(b), f"{z / c:,.0f}", digits(1000 * s)) for c, b, z, s, _, _ in stored])
+    yield (f"*Signatures* of {DIM} numbers without forms, one thread, {QUERIES} other queries. Building includes the graph of "
+           "neighbours.")
     yield table(["signatures", "file MB", "build s", "merge s", "memory MB", "in memory: p50, p99 ms", "from the file: p50, p99 ms"],
                 [(f"{r['n']:,}", digits(r["size"] / 1e6), digits(r["build_seconds"]), digits(r["merge"]), digits(r["memory"]),
                   "{}, {}".format(*map(digits, r["memory_ms"])), "{}, {}".format(*map(digits, r["file_ms"])))
                  for r in searched])
-    yield f"""
-*Extrapolated* to ten million by powers of the number of signatures from the last two rows, for latency at least the square root, by which cells grow, and for merging at least in proportion: {per_vector * SHAPES / 1e9:.0f} GB of memory for all signatures, {at(merge, SHAPES) / 60:,.0f} minutes for the merge (without the forms, which add the time to copy {per_shape * SHAPES / 1e9:,.0f} GB), {digits(at(memory_latency, SHAPES))} ms for the nearest signatures in memory and {digits(at(file_latency, SHAPES))} ms from the file. To these add the alignment of the candidates, the same for any size of the index: {1000 * stored[-1][3]:.0f} ms in the table above.
-
-## Where each part saturates
-
-| part | bound by | ten million shapes | then |
-|---|---|---|---|
-| describing | cores | {total / 3600:,.0f} core hours | more workers; decimate large meshes first |
-| the largest shape | memory of a worker | {digits(described[-1][2])} MB at {described[-1][0]:,} vertices | `--max-vertices`, `--memory` |
-| reading | the file system | {1.024 * mean_file / (total / SHAPES):.1f} GB/s for 1,024 cores | binary formats, local copies |
-| merging | one process and one disk | {at(merge, SHAPES) / 60:,.0f} minutes and {per_shape * SHAPES / 1e9:,.0f} GB | several indexes, searched one by one |
-| search | memory | {per_vector * SHAPES / 1e9:.0f} GB | search from the file, {digits(at(file_latency, SHAPES))} ms |
-| `evaluate` | pairs | not possible: the limit is 10,000 shapes | evaluate a sample |
-
-Nothing here was run with ten million shapes. The largest index that was searched had {n[-1]:,} signatures, the largest mesh {described[-1][0]:,} vertices.
-"""
+    yield (f"*Ten million shapes*, simulated: sizes are log-normal with a median of {args.median:,} vertices and a standard deviation of "
+           f"the logarithm of {args.sigma / 100:.1f}, at most {LARGEST:,} (mean {sizes.mean():,.0f}). Measure yours with "
+           "`canonform info DIR --json`, and pass `--median` and `--sigma` (in hundredths) to `bench/capacity.py`.")
+    yield table(["part", "bound by", "ten million shapes", "beyond"], [
+        ("describing", "cores", f"{total / 3600:,.0f} core hours, {total / SHAPES:.2f} s each; the largest 1 % take "
+                                f"{order[:SHAPES // 100].sum() / total * 100:.0f} %",
+         f"`--max-vertices 200000` leaves out {(1 - len(capped) / SHAPES) * 100:.2g} % and saves "
+         f"{(1 - capped.sum() / total) * 100:.0f} %"),
+        ("the largest shape", "memory of a worker", f"{digits(described[-1][2])} MB at {described[-1][0]:,} vertices", "`--memory`"),
+        ("reading", "the file system", f"{1.024 * mean_file / (total / SHAPES):.1f} GB/s for 1,024 cores", "binary formats"),
+        ("merging", "one process and disk", f"{at(merge, SHAPES) / 60:,.0f} minutes without forms, {per_shape * SHAPES / 1e9:,.0f} GB",
+         "several indexes"),
+        ("search", "memory", f"{per_vector * SHAPES / 1e9:.0f} GB, {digits(at(memory_latency, SHAPES))} ms, and "
+                             f"{1000 * stored[-1][3]:.0f} ms for alignment",
+         f"from the file: {digits(at(file_latency, SHAPES))} ms"),
+        ("`evaluate`", "pairs", "the limit is 10,000 shapes", "a sample")])
+    yield ("*Shards* of `--shard I/N` go to the worker, one core each, that is free first. Cells: hours until the end, efficiency, hours "
+           "of the longest shard. Take ten to a hundred for each worker: a lost worker costs one shard at most.")
+    yield table(["shards per worker", *(f"{w:,} workers" for w in simulated)], [
+        (str(s), *("{}, {:.1f} %, {}".format(digits(runs[s]["end"]), 100 * runs[s]["efficiency"], digits(runs[s]["longest"]))
+                   for runs in simulated.values())) for s in (1, 10, 100)])
 
 
 def main():
-    options = arguments(__doc__, "target/release/canonform", "docs/capacity.md", 1, median=5000, sigma=150)
+    options = arguments(__doc__, "target/release/canonform", 1, median=5000, sigma=150)
     options.add_argument("--vectors", default="target/release/examples/vectors")
     options.add_argument("--record", help="measurements: read if the file exists, written if not")
     args = options.parse_args()
@@ -243,7 +211,7 @@ def main():
         if args.record:
             with open(args.record, "w") as file:
                 json.dump([described, stored, searched], file)
-    write_page(args.output, page(args, described, stored, searched))
+    write_section(args.output, "bench-capacity", *section(args, described, stored, searched))
 
 
 if __name__ == "__main__":

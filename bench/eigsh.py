@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Compares Laplace-Beltrami eigenpairs with SciPy's `eigsh` on the same matrices.
 
-    make bench-eigsh            builds the example, sets up the environment, writes docs/eigenpairs.md
+    make bench-eigsh            builds the example, sets up the environment, writes its section of docs/benchmarks.md
 
 Each round runs both solvers on one thread each, so that other load on the machine affects both alike. The table gives
 the smallest wall-clock and processor time over the rounds. SciPy factorises the same shifted matrix (SuperLU) and runs
@@ -9,7 +9,6 @@ ARPACK, with its default tolerance and with that of canonform. Residuals are |W 
 largest over all pairs except the constant one.
 """
 import os
-import platform
 import resource
 import tempfile
 import time
@@ -22,7 +21,7 @@ import scipy
 import scipy.sparse as sp
 from scipy.sparse.linalg import eigsh
 
-from support import answer, mesh_arguments, mesh_sections, write_page
+from support import answer, machine, mesh_arguments, mesh_table, write_section
 
 
 def ours(program, path, pairs, folder, threads):
@@ -67,23 +66,18 @@ def measure(program, path, pairs, rounds):
             n, cores = w.shape[0], os.cpu_count()
             *_, spent = ours(program, path, pairs, folder, cores)
             note(f"canonform, {cores} threads", spent, faults["canonform"])
-    lines = ["| solver | seconds | relative time | processor seconds | largest residual |", "|---|---|---|---|---|"]
-    for name, (wall, cpu) in times.items():
-        lines.append(f"| {name} | {wall:.2f} | {wall / times['canonform'][0]:.2f} | {cpu:.2f} | {faults[name]:.1e} |")
-    return n, "\n".join(lines)
+    return n, {name: f"{wall:.2f}, {cpu:.2f}, {faults[name]:.1e}" for name, (wall, cpu) in times.items()}
 
 
 def main():
-    args = mesh_arguments(__doc__, "target/release/examples/eigenpairs", "docs/eigenpairs.md", rounds=3, pairs=300)
-    page = [
-        "# Eigenpairs compared with SciPy",
-        f"\nThe {args.pairs} smallest eigenpairs of the Laplacian, by `make bench-eigsh` on {platform.machine()}, "
-        f"{os.cpu_count()} cores, one thread unless stated, SciPy {scipy.__version__}: the fastest of {args.rounds} rounds, "
-        "interleaved. The processor time of canonform includes reading, repair and writing. Compare ratios; absolute "
-        "times depend on the machine.\n",
-    ]
-    page += mesh_sections(args.data, lambda path: measure(args.program, path, args.pairs, args.rounds))
-    write_page(args.output, page)
+    args = mesh_arguments(__doc__, "target/release/examples/eigenpairs", rounds=3, pairs=300)
+    solvers = mesh_table("solver", args.data, lambda path: measure(args.program, path, args.pairs, args.rounds))
+    write_section(
+        args.output, "bench-eigsh", "## Eigenpairs",
+        f"`make bench-eigsh` on {machine()}, one thread unless stated, SciPy {scipy.__version__}: the {args.pairs} smallest "
+        f"eigenpairs of the Laplacian, the fastest of {args.rounds} rounds. Cells: seconds, processor seconds (for canonform with "
+        "reading, repair and writing), largest residual.",
+        solvers)
 
 
 if __name__ == "__main__":

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Compares our pipeline from mesh to canonical form with the same pipeline on potpourri3d and NumPy.
 
-    make bench-nmds             builds the program, sets up the environment, writes docs/nmds.md
+    make bench-nmds             builds the program, sets up the environment, writes its section of docs/benchmarks.md
 
 Both sides start from vertices and faces in memory and end with coordinates: setup per mesh (for canonform including
 repair), ten farthest samples with their distances to all vertices, and Nystrom scaling of rank five, in processes
@@ -11,7 +11,6 @@ some vertices.
 """
 import json
 import os
-import platform
 import statistics
 import subprocess
 import tempfile
@@ -19,9 +18,10 @@ import time
 
 import numpy as np
 
-from support import distances, mesh_arguments, mesh_sections, read_mesh, write_page
+from support import distances, machine, mesh_arguments, mesh_table, read_mesh, write_section
 
 SAMPLES, RANK, DIM = 10, 5, 3
+SHARES = "canonform: % repair, distances, algebra"
 
 
 def farthest_samples(solve, n):
@@ -112,29 +112,25 @@ def measure(program, solver, path, rounds, folder):
             seconds.setdefault(peer, []).append(time.perf_counter() - start)
     for one in canonform.values():
         one.end()
-    best = statistics.median(seconds[name(cores)])
-    lines = ["| pipeline | ms | relative time | stress |", "|---|---|---|---|"]
+    cells = {}
     for who, spent in sorted(seconds.items(), key=lambda item: statistics.median(item[1])):
-        spent = statistics.median(spent)
-        lines.append(f"| {who} | {1e3 * spent:.1f} | {spent / best:.2f} | {stress(forms[who], sources, exact):.4g} |")
+        cells[who] = f"{1e3 * statistics.median(spent):.1f}, {stress(forms[who], sources, exact):.4g}"
     repair, geodesics, algebra = 100 * np.median(parts, 0)
-    lines.append(f"\nOn {cores} threads, canonform spends {repair:.1f} % of the time on repair and connectivity, "
-                 f"{geodesics:.1f} % on distances and their setup, {algebra:.1f} % on linear algebra.")
-    return len(vertices), "\n".join(lines)
+    cells[SHARES] = f"{repair:.1f}, {geodesics:.1f}, {algebra:.1f}"
+    return len(vertices), cells
 
 
 def main():
-    args = mesh_arguments(__doc__, "target/release/canonform", "docs/nmds.md", rounds=9)
-    page = [
-        "# Canonical forms compared with potpourri3d and NumPy",
-        f"\nMeasured by `make bench-nmds` on {platform.machine()}, {os.cpu_count()} cores: medians of {args.rounds} rounds, "
-        f"interleaved in one run, in processes that have run once before. {SAMPLES} samples, rank {RANK}, from vertices "
-        "and faces in memory, without file access. Compare ratios; absolute times depend on the machine.\n",
-    ]
+    args = mesh_arguments(__doc__, "target/release/canonform", rounds=9)
     solver = os.path.join(os.path.dirname(args.program), "examples", "forms")
     with tempfile.TemporaryDirectory() as folder:
-        page += mesh_sections(args.data, lambda path: measure(args.program, solver, path, args.rounds, folder), 1)
-    write_page(args.output, page)
+        pipelines = mesh_table("pipeline", args.data,
+                               lambda path: measure(args.program, solver, path, args.rounds, folder), 1)
+    write_section(
+        args.output, "bench-nmds", "## Canonical forms",
+        f"`make bench-nmds` on {machine()}: medians of {args.rounds} rounds in processes that have run once before, {SAMPLES} "
+        f"samples, rank {RANK}, from vertices and faces in memory. Cells: milliseconds, stress.",
+        pipelines)
 
 
 if __name__ == "__main__":

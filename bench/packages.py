@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Sets canonform beside the Python packages that people use: distances, embeddings, and what each does with broken meshes.
 
-    make bench-packages         builds the program, sets up the environment, writes docs/packages.md
+    make bench-packages         builds the program, sets up the environment, writes its section of docs/benchmarks.md
 
 Needs no data: shapes are generated. Distances are those of potpourri3d, pygeodesic and gdist, embeddings those of
 scikit-learn. Rounds are interleaved, one source each, and the tables give medians. Every package runs in a process of
@@ -10,7 +10,6 @@ the solvers of canonform it is elapsed time, the least of three runs of a source
 """
 import multiprocessing
 import os
-import platform
 import signal
 import statistics
 import subprocess
@@ -23,7 +22,7 @@ for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
 
 import numpy as np
 
-from support import answer, arguments, distances, write_page
+from support import answer, arguments, columns_table, distances, machine, table, write_section
 
 # Seconds after which a package is stopped.
 PATIENCE = 120
@@ -154,20 +153,16 @@ def write_off(path, vertices, faces):
         file.writelines("3 %d %d %d\n" % tuple(f) for f in faces)
 
 
-def table(head, rows):
-    return "\n".join([f"| {' | '.join(head)} |", "|" + "---|" * len(head), *(f"| {' | '.join(row)} |" for row in rows)])
-
-
 def measure_distances(program, path, rounds):
     vertices, faces = read_off(path)
     sources = [int(s) for s in np.random.default_rng(1).permutation(len(vertices))[:rounds]]
     exact = distances(program, path, "exact", sources)[0]
-    packages, rows, refused = {}, {}, []
+    packages, rows, refused = {}, {}, {}
     for name, make in SOLVERS.items():
         try:
             packages[name] = Package(make, vertices, faces)
         except Failed as fault:
-            refused.append((name, "-", "-", "-", str(fault), "-"))
+            refused[name] = str(fault)
     for i, source in enumerate(sources):
         for method in OURS:
             row, seconds, setup = distances(program, path, method, [source] * 3)
@@ -177,21 +172,18 @@ def measure_distances(program, path, rounds):
                 row, seconds = packages[name](source)
                 rows.setdefault(name, []).append((seconds, packages[name].setup, row, exact[i]))
             except Failed as fault:
-                refused.append((name, "-", "-", "-", str(fault), "-"))
+                refused[name] = str(fault)
                 packages.pop(name)
     for package in packages.values():
         package.end()
-    one = statistics.median(r[0] for r in rows["canonform fast-marching"])
     lines = []
     for name, runs in rows.items():
         seconds = statistics.median(run[0] for run in runs)
         setup = min(run[1] for run in runs)
         errors = np.concatenate([np.abs(row - truth)[truth > 0] / truth[truth > 0] for _, _, row, truth in runs])
-        lines.append((seconds, (name, f"{1e3 * seconds:.2f}", f"{seconds / one:.2f}", f"{1e3 * setup:.0f}",
-                                f"{100 * errors.mean():.3f} %", f"{100 * errors.max():.1f} %")))
-    lines = [line for _, line in sorted(lines)] + refused
-    head = ["solver", "ms per source", "relative time", "setup ms", "mean error", "largest error"]
-    return f"## Distances: a cat with {len(vertices):,} vertices\n\n{table(head, lines)}\n"
+        lines.append((seconds, name, f"{1e3 * seconds:.2f}, {1e3 * setup:.0f}, {100 * errors.mean():.3f}, "
+                                     f"{100 * errors.max():.1f}"))
+    return f"{len(vertices):,} vertices", {name: cells for _, name, cells in sorted(lines)} | refused
 
 
 def processor_time(command):
@@ -231,13 +223,8 @@ def measure_embeddings(program, folder, path):
             rows.append((name, seconds, f"{normalized_stress(result, truth, sources):.4f}"))
         except Failed as fault:
             rows.append((name, None, str(fault)))
-    one = rows[1][1]
-    lines = [(name, "-" if s is None else f"{s:.2f}", "-" if s is None else f"{s / one:.1f}", stress) for name, s, stress in rows]
-    head = ["embedding", "seconds", "relative time", "normalised stress"]
-    return (f"## Embeddings: the same cat with {len(vertices):,} vertices\n\nFor canonform the whole program, from "
-            f"the file of the mesh to that of the form; for scikit-learn the call. ClassicalMDS needs a matrix of distances, which canonform measured for it; "
-            f"this is part of its time. Isomap measures distances itself, along neighbours in space. Stress is relative to "
-            f"exact distances from 50 vertices.\n\n{table(head, lines)}\n")
+    lines = [(name, "-" if s is None else f"{s:.2f}", stress) for name, s, stress in rows]
+    return table(["embedding", "seconds", "normalised stress"], lines)
 
 
 def embedder(make, data):
@@ -295,7 +282,8 @@ def measure_refusals(program, folder, path):
         run = subprocess.run([program, "geodesic", changed, "--source", str(source), "--method", "exact", "-o", out],
                              capture_output=True, text=True)
         if run.returncode == 2:
-            cells.append("error: " + run.stderr.strip().removeprefix("error: ").replace(changed, "MESH").splitlines()[-1])
+            cells.append("error with the line")
+            assert ", line " in run.stderr, run.stderr
         else:
             cells.append(judged(np.load(out)[0], truth) + (", with a note" if run.stderr.strip() else ""))
         for make in SOLVERS.values():
@@ -305,15 +293,15 @@ def measure_refusals(program, folder, path):
                 package.end()
                 cells.append(judged(row, truth))
             except Failed as fault:
-                cells.append(str(fault)[:90])
-        lines.append((defect, *(cell.replace("|", "\\|") for cell in cells)))
-        print(lines[-1], flush=True)
-    return ("## Refusals: one defect in the mesh\n\nDistances from one vertex, beside the exact ones on the intact cat; *right* means a mean error "
-            f"below 10 % on the vertices of the cat.\n\n{table(['defect', *names], lines)}\n")
+                cells.append(str(fault).split(":")[0])
+        print(defect, cells, flush=True)
+        if set(cells) != {"right"}:
+            lines.append((defect, *cells))
+    return table(["defect", *names], lines)
 
 
 def main():
-    options = arguments(__doc__, "target/release/canonform", "docs/packages.md", 7, vertices=3400, fine=28_000)
+    options = arguments(__doc__, "target/release/canonform", 7, vertices=3400, fine=28_000)
     args = options.parse_args()
     with tempfile.TemporaryDirectory() as folder:
         paths = {}
@@ -322,16 +310,22 @@ def main():
             answer([args.program, "generate", "--family", "cat", "--poses", "1", "--vertices", str(n), "-o", shapes, "--json"])
             paths[n] = os.path.join(shapes, "cat0.off")
         packages = ", ".join(f"{name} {version(name)}" for name in ("potpourri3d", "pygeodesic", "gdist", "scikit-learn"))
-        page = [f"# canonform beside Python packages\n\nMeasured by `make bench-packages` on {platform.machine()}, one thread each, on a built-in "
-                f"cat: medians over {args.rounds} sources, all packages interleaved in one run; processor time, but elapsed time for the solvers of canonform. {packages}. Errors are relative to "
-                "exact polyhedral distances. Compare ratios; absolute times depend on the machine.\n"]
-        for section in [measure_distances(args.program, paths[args.vertices], args.rounds),
-                        measure_distances(args.program, paths[args.fine], args.rounds),
-                        measure_embeddings(args.program, folder, paths[args.vertices]),
-                        measure_refusals(args.program, folder, paths[args.vertices])]:
-            print(section, flush=True)
-            page.append(section)
-    write_page(args.output, page)
+        solvers = columns_table("solver", dict(measure_distances(args.program, path, args.rounds) for path in paths.values()))
+        embeddings = measure_embeddings(args.program, folder, paths[args.vertices])
+        refusals = measure_refusals(args.program, folder, paths[args.vertices])
+    write_section(
+        args.output, "bench-packages", "## Beside Python packages",
+        f"`make bench-packages` on {machine()}, one thread each, on a built-in cat, medians over {args.rounds} sources; processor "
+        f"time, but elapsed time for the solvers of canonform. {packages}. Cells: milliseconds per source, milliseconds of setup, "
+        "mean and largest error in per cent of exact distances.",
+        solvers,
+        f"*Embeddings* of {args.vertices:,} vertices: the whole program for canonform, the call for scikit-learn. The time of "
+        "ClassicalMDS includes the matrix of distances, which canonform measured. Stress is relative to exact distances from 50 "
+        "vertices.",
+        embeddings,
+        "*One defect in the mesh*: distances from one vertex, *right* if their mean error is below 10 %. Defects that all measure right are "
+        "left out.",
+        refusals)
 
 
 if __name__ == "__main__":

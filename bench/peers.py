@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Compares distance solvers with other programs: time per source on one thread, and error.
 
-    make bench-peers            builds the program, sets up the environment, writes docs/benchmarks.md
+    make bench-peers            builds the program, sets up the environment, writes its section of docs/benchmarks.md
 
 Each round runs all solvers on one source, so that other load on the machine affects all of them alike. The table
 gives medians over the rounds. `canonform` reports the time of its solver; its peers are timed around their solve
@@ -16,7 +16,6 @@ floats to the output, and the seconds of every run, one a line, to standard outp
 import math
 import multiprocessing
 import os
-import platform
 import statistics
 import subprocess
 import tempfile
@@ -27,11 +26,10 @@ for variable in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
 
 import numpy as np
 
-from support import (FINE, bisected, distances, in_cache_order, mesh_arguments, mesh_sections, read_mesh, subdivided,
-                     write_mesh, write_page)
+from support import (FINE, bisected, distances, in_cache_order, machine, mesh_arguments, mesh_table, read_mesh, subdivided,
+                     table, write_mesh, write_section)
 
 OURS = ["fast-marching", "exact", "heat", "dijkstra"]
-FIRST = "canonform fast-marching"
 
 
 def edges_of(faces):
@@ -149,17 +147,15 @@ def measure(program, path, rounds):
             seconds.setdefault(name, []).append(spent)
     exact = np.array(rows["canonform exact"])
     known = np.isfinite(exact) & (exact > 0)
-    ours = statistics.median(seconds[FIRST])
-    lines = ["| solver | ms per source | relative time | setup ms | mean error | largest error |", "|---|---|---|---|---|---|"]
+    cells = {}
     for name in sorted(seconds, key=lambda name: statistics.median(seconds[name])):
         if name in failed:
             continue
         relative = np.abs(np.array(rows[name]) - exact)[known] / exact[known]
         spent = statistics.median(seconds[name])
-        lines.append(f"| {name} | {1e3 * spent:.2f} | {spent / ours:.2f} | {1e3 * setup[name]:.0f} "
-                     f"| {100 * relative.mean():.3f} % | {100 * relative.max():.1f} % |")
-    lines += [f"\n{name} failed on this mesh: {why}." for name, why in failed.items()]
-    return len(vertices), "\n".join(lines)
+        cells[name] = (f"{1e3 * spent:.2f}, {1e3 * setup[name]:.0f}, {100 * relative.mean():.3f}, "
+                       f"{100 * relative.max():.1f}")
+    return len(vertices), cells | {name: f"failed: {why}" for name, why in failed.items()}
 
 
 def propagation_meshes(data):
@@ -182,8 +178,7 @@ def propagation(program, data, rounds):
     solvers = {"point source": ("fast-marching", "--update", "point-source"),
                "virtual source": ("fast-marching", "--update", "virtual-source")}
     names = [*solvers] + (["GSP"] if gsp else [])
-    lines = ["| mesh | vertices | " + " | ".join(f"{name}: ms, mean %, max %" for name in names) + " |",
-             "|---|---|" + "---|" * len(names)]
+    lines = []
     with tempfile.TemporaryDirectory() as folder:
         path, out = os.path.join(folder, "mesh.obj"), os.path.join(folder, "distances")
         for title, vertices, faces in propagation_meshes(data):
@@ -208,10 +203,10 @@ def propagation(program, data, rounds):
             for name in names:
                 error = 100 * np.abs(rows[name] - exact)[known] / exact[known]
                 cells.append(f"{1e3 * statistics.median(seconds[name]):.1f}, {error.mean():.3f}, {error.max():.1f}")
-            lines.append(f"| {title} | {len(vertices):,} | " + " | ".join(cells) + " |")
+            lines.append((f"{title}, {len(vertices):,}", *cells))
             print(lines[-1], flush=True)
     skipped = "" if gsp else "\n\nGSP is skipped: the variable GSP does not name its program."
-    return "\n".join(lines) + skipped
+    return table(["mesh, vertices", *names], lines) + skipped
 
 
 def wavy_torus(n_vertices):
@@ -239,29 +234,25 @@ def growth(program, folder):
         best.append(min(per_source))
         os.remove(path)
     exponent = np.polyfit(np.log(sizes), np.log(best), 1)[0]
-    table = "| vertices | ms per source |\n|---|---|\n"
-    table += "\n".join(f"| {size:,} | {1e3 * spent:.2f} |" for size, spent in zip(sizes, best))
-    return exponent, table
+    milliseconds = ", ".join(f"{1e3 * spent:.2f} ({size:,})" for size, spent in zip(sizes, best))
+    return (f"Milliseconds per source on an irregular torus (vertices): {milliseconds}. Time grows with the number of vertices "
+            f"to the power {exponent:.2f}.")
 
 
 def main():
-    args = mesh_arguments(__doc__, "target/release/canonform", "docs/benchmarks.md", rounds=7)
-    page = [
-        "# Distance solvers compared with other programs",
-        f"\nMeasured by `make bench-peers` on {platform.machine()}, {os.cpu_count()} cores, one thread each: "
-        f"medians over {args.rounds} sources, all solvers interleaved in one run. Errors are relative to exact "
-        "polyhedral distances. Compare ratios; absolute times depend on the machine.\n",
-    ]
-    page += mesh_sections(args.data, lambda path: measure(args.program, path, args.rounds))
-    page.append(
-        "## Virtual sources and geodesic source propagation\n\nTrettner, Bommes and Kobbelt 2021. Times are medians over "
-        "three sources and all rounds, of the fastest of three runs each.\n\n"
-        f"{propagation(args.program, args.data, args.rounds)}\n")
+    args = mesh_arguments(__doc__, "target/release/canonform", rounds=7)
+    solvers = mesh_table("solver", args.data, lambda path: measure(args.program, path, args.rounds))
+    beside = propagation(args.program, args.data, args.rounds)
     with tempfile.TemporaryDirectory() as folder:
-        exponent, table = growth(args.program, folder)
-    page.append(f"## Scaling of fast marching on an irregular torus\n\n{table}\n\nTime grows with the number of vertices to the power {exponent:.2f}.\n")
-    print(page[-1])
-    write_page(args.output, page)
+        scaling = growth(args.program, folder)
+    write_section(
+        args.output, "bench-peers", "## Distance solvers",
+        f"`make bench-peers` on {machine()}, one thread each, medians over {args.rounds} sources. Cells: milliseconds per source, "
+        "milliseconds of setup, mean and largest error in per cent of exact polyhedral distances.",
+        solvers, scaling,
+        "*Virtual sources and geodesic source propagation* (GSP; Trettner, Bommes and Kobbelt 2021), the fastest of three runs for "
+        "each of three sources. Cells: milliseconds, mean and largest error in per cent.",
+        beside)
 
 
 if __name__ == "__main__":

@@ -1,24 +1,21 @@
 #!/usr/bin/env python3
 """Times the preparation of a mesh, in milliseconds and in distance maps, over sizes, on one thread and on two.
 
-    make bench-preparation      builds the example, writes docs/preparation.md (needs Python with NumPy, and test meshes)
+    make bench-preparation      builds the example, writes its section of docs/benchmarks.md (needs Python with NumPy, and test meshes)
 
 Preparation leads from vertices and faces in memory to a solver that is ready for its first source: repair, connectivity,
 edge lengths, intrinsic Delaunay flips, and the layout of one-rings. The unit is one distance map from one source on one
 thread.
 """
 import json
-import os
-import platform
 import subprocess
 
-from support import mesh_arguments, test_meshes, write_page
+from support import machine, mesh_arguments, table, test_meshes, write_section
 
 
 def main():
-    args = mesh_arguments(__doc__, "target/release/examples/preparation", "docs/preparation.md", rounds=9)
-    lines = ["| mesh | vertices | threads | connectivity ms | solver ms | both ms | one map ms | preparation in maps |",
-             "|---|---|---|---|---|---|---|---|"]
+    args = mesh_arguments(__doc__, "target/release/examples/preparation", rounds=9)
+    lines = {}
     with test_meshes(args.data) as meshes:
         runs = [(title, path, 0) for title, path in meshes.items()]
         runs += [(f"armadillo, subdivided {times}", meshes["armadillo"], count)
@@ -28,19 +25,18 @@ def main():
             command = [args.program, path, str(subdivisions), str(rounds)]
             for line in subprocess.run(command, check=True, capture_output=True, text=True).stdout.splitlines():
                 row = json.loads(line)
-                spent = " | ".join(f"{1e3 * row[part]:.1f}" for part in ("connectivity", "solver", "both", "map"))
-                lines.append(f"| {title} | {row['vertices']:,} | {row['threads']} | {spent} "
-                             f"| {row['both'] / row['map']:.1f} |")
-                print(lines[-1], flush=True)
-    page = [
-        "# Preparation of a mesh",
-        f"\nMeasured by `make bench-preparation` on {platform.machine()}, {os.cpu_count()} cores: medians of {args.rounds} "
-        "rounds, fewer for subdivided meshes, one and two threads alternating in one process. Preparation leads from "
-        "vertices and faces in memory to a solver that is ready for its first source; the unit is one distance map from "
-        "one source. Compare ratios; absolute times depend on the machine.\n",
-        "\n".join(lines) + "\n",
-    ]
-    write_page(args.output, page)
+                spent = ", ".join(f"{1e3 * row[part]:.1f}" for part in ("connectivity", "solver", "map"))
+                cells = lines.setdefault(f"{title}, {row['vertices']:,}", {})
+                cells[row["threads"]] = f"{spent}, {row['both'] / row['map']:.1f}"
+                print(title, cells, flush=True)
+    threads = sorted({count for cells in lines.values() for count in cells})
+    head = ["mesh, vertices", *(f"{count} thread{'s' if count > 1 else ''}" for count in threads)]
+    write_section(
+        args.output, "bench-preparation", "## Preparation of a mesh",
+        f"`make bench-preparation` on {machine()}: from vertices and faces in memory to a solver that is ready for its first "
+        f"source, medians of {args.rounds} rounds, fewer for subdivided meshes. Cells: milliseconds of connectivity, of the solver "
+        "and of one distance map; preparation in maps.",
+        table(head, [[title, *(cells.get(count, "-") for count in threads)] for title, cells in lines.items()]))
 
 
 if __name__ == "__main__":

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Compares search among a million signatures with hnswlib and faiss: recall, latency, build time, memory.
 
-    make bench-search           builds the program, sets up the environment, writes docs/search.md
+    make bench-search           builds the program, sets up the environment, writes its section of docs/benchmarks.md
 
 Synthetic signatures imitate those of shapes: families, classes of different sizes within them, and poses of a class on
 a curved manifold of few dimensions, with noise. Queries are such signatures that are not in the index. Each solver
@@ -13,7 +13,6 @@ import gc
 import json
 import multiprocessing
 import os
-import platform
 import subprocess
 import sys
 import tempfile
@@ -21,12 +20,14 @@ import time
 
 import numpy as np
 
-from support import answer, arguments, write_page
+from support import answer, arguments, columns_table, machine, write_section
 
 K = 10
 RECALL = 0.99
 WARMING = 500
 ADDED = 20
+NOTES = "canonform: signatures measured per query; ms to open, to load, to store the shapes"
+ADDITION = "canonform, one shape added: ms, kB appended"
 
 
 def signatures(n, dim, seed, width):
@@ -212,52 +213,46 @@ def measure(program, folder, n, dim, width, n_queries, rounds):
             found[name] += [(int(span[0]) + i, row) for i, row in enumerate(ids)]
     ours.ask("memory", WARMING, 200)
     measured = ours.measured
-    lines = ["| | recall@10 | p50 ms | p99 ms | build s | memory MB |", "|---|---|---|---|---|---|"]
+    cells = {}
     for name in solvers:
         hit = recall([row for _, row in found[name]], [truth[i] for i, _ in found[name]])
         p50, p99 = 1e3 * np.percentile(seconds[name], [50, 99])
         if name in peers:
             peer = peers[name]
-            label = name if peer is exact else f"{name}, {'ef' if 'hnsw' in name else 'nprobe'} {peer.setting}"
-            build, memory = f"{peer.build:.1f}", peer.memory()
+            setting = "" if peer is exact else f" ({'ef' if 'hnsw' in name else 'nprobe'} {peer.setting})"
+            build, memory = f"{peer.build:.1f}", f"{peer.memory()}{setting}"
         else:
-            label, memory = name, ours.memory()
-            build = f"{built['finished']:.1f} (+ {built['stored']:.1f} to store the shapes)"
-            if "file" in name:
-                build, memory = "", f"(file of {size:.0f})"
-        lines.append(f"| {label} | {hit:.4f} | {p50:.3f} | {p99:.3f} | {build} | {memory} |")
-    note = (f"\ncanonform calibrates a recall of {ours.ready['recall']:.4f} while building and measures {measured:,.0f} signatures per "
-            f"query. Opening the file takes {1e3 * ours.ready['opened']:.1f} ms, reading it into memory "
-            f"{ours.ready['loaded']:.2f} s; building takes {built['megabytes']} MB.")
+            memory = f"file of {size:.0f}" if "file" in name else ours.memory()
+            build = f"{built['finished']:.1f}"
+        cells[name] = f"{hit:.4f}, {p50:.3f}, {p99:.3f}, {build}, {memory}"
+    cells[NOTES] = (f"{measured:,.0f}, {1e3 * ours.ready['opened']:.1f}, {1e3 * ours.ready['loaded']:.0f}, "
+                    f"{1e3 * built['stored']:.0f}")
     for process in [ours, *peers.values()]:
         process.end()
     added = answer([program, "add", queries_path, index, str(ADDED)])
-    note += (f" Adding one shape takes {np.median(added['seconds']):.2f} s and appends {np.median(added['bytes']) / 1e3:,.0f} kB "
-             f"(medians of {ADDED}).")
-    return "\n".join(lines) + "\n" + note
+    cells[ADDITION] = f"{1e3 * np.median(added['seconds']):.0f}, {np.median(added['bytes']) / 1e3:,.0f}"
+    return cells
 
 
 def main():
-    parser = arguments(__doc__, "target/release/examples/vectors", "docs/search.md", rounds=5, n=1_000_000, dim=128,
-                       queries=2500)
+    parser = arguments(__doc__, "target/release/examples/vectors", rounds=5, n=1_000_000, dim=128, queries=2500)
     parser.add_argument("--widths", type=float, nargs="+", default=[0.3, 1.0])
     args = parser.parse_args()
     if not os.path.exists(args.program):
         sys.exit(f"{args.program} is missing: run `make bench-search`")
-    page = [
-        "# Search among many signatures, compared with hnswlib and faiss",
-        f"\nMeasured by `make bench-search` on {platform.machine()}, {os.cpu_count()} cores: {args.n:,} synthetic signatures of "
-        f"{args.dim} numbers in families, classes and poses, {args.queries - WARMING:,} queries that are not among them, one at a time, "
-        "all solvers interleaved in one run. Peers use the cheapest setting that reaches a recall of "
-        f"{RECALL}. Compare ratios; absolute times depend on the machine.\n",
-    ]
+    columns = {}
     for width in args.widths:
-        kind = "separate classes" if width < 0.6 else "overlapping classes"
+        kind = "separate" if width < 0.6 else "overlapping"
         with tempfile.TemporaryDirectory(dir=os.path.dirname(args.program)) as folder:
-            table = measure(args.program, folder, args.n, args.dim, width, args.queries, args.rounds)
-        page.append(f"## {kind.capitalize()} (poses vary by {width} where classes differ by 0.6)\n\n{table}\n")
-        print(page[-1], flush=True)
-    write_page(args.output, page)
+            cells = measure(args.program, folder, args.n, args.dim, width, args.queries, args.rounds)
+        columns[f"{kind} classes (poses {width}, classes 0.6)"] = cells
+        print(kind, cells, flush=True)
+    write_section(
+        args.output, "bench-search", "## Search among many signatures",
+        f"`make bench-search` on {machine()}: {args.n:,} synthetic signatures of {args.dim} numbers, {args.queries - WARMING:,} "
+        f"other queries, one at a time. Peers use the cheapest setting that reaches a recall of {RECALL}. Cells: recall of the ten "
+        "nearest, median and 99th percentile in milliseconds, seconds to build, memory in MB.",
+        columns_table("solver", columns))
 
 
 if __name__ == "__main__":

@@ -34,7 +34,7 @@ fn solvers(criterion: &mut Criterion) {
                 continue;
             }
             let surface = torus(size);
-            let Ok(solver) = method.prepare(&surface) else { continue };
+            let Ok(solver) = method.prepare(&surface, &()) else { continue };
             let (mut out, mut sources) = (vec![0.0; surface.n_vertices()], sources(&surface));
             group.bench_function(BenchmarkId::new("source", size), |bencher| {
                 bencher
@@ -49,7 +49,7 @@ fn sampling(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("sampling");
     group.sample_size(10);
     let surface = torus(28_000);
-    let Ok(solver) = Method::default().prepare(&surface) else { return };
+    let Ok(solver) = Method::default().prepare(&surface, &()) else { return };
     let (mut out, mut sources) = (vec![0.0; surface.n_vertices()], sources(&surface));
     group.bench_function("one full map", |bencher| {
         bencher.iter(|| sources.by_ref().take(1).try_for_each(|v| solver.distances_into(v, &mut out)));

@@ -1,10 +1,11 @@
-"""Shared by the benchmarks: arguments, meshes, calls of the program, pages."""
+"""Shared by the benchmarks: arguments, meshes, calls of the program, tables, sections of the page."""
 import argparse
 import contextlib
 import heapq
 import json
 import math
 import os
+import platform
 import subprocess
 import sys
 import tempfile
@@ -14,12 +15,15 @@ import numpy as np
 # The number of vertices in the published figures of the peers.
 FINE = 27_894
 
+# The page of all benchmarks. Each writes its own section.
+PAGE = "docs/benchmarks.md"
 
-def arguments(doc, program, output, rounds, **more):
+
+def arguments(doc, program, rounds, **more):
     """A parser of the options of all benchmarks, and of `more` numbers, given by their defaults."""
     parser = argparse.ArgumentParser(description=doc.splitlines()[0])
     parser.add_argument("--program", default=program)
-    parser.add_argument("--output", default=output)
+    parser.add_argument("--output", default=PAGE, help="the page whose section is written")
     for name, default in {"rounds": rounds, **more}.items():
         parser.add_argument(f"--{name}", type=int, default=default)
     return parser
@@ -138,18 +142,39 @@ def distances(program, mesh, method, sources, *options):
         return np.atleast_2d(np.load(out)), seconds["per_source"], seconds["setup"]
 
 
-def mesh_sections(data, measure, first=0):
-    """A section with the table of `measure(path)`, which returns the number of vertices too, for each test mesh."""
+def machine():
+    return f"{platform.machine()}, {os.cpu_count()} cores"
+
+
+def table(head, rows):
+    return "\n".join([f"| {' | '.join(head)} |", "|" + "---|" * len(head), *(f"| {' | '.join(row)} |" for row in rows)])
+
+
+def mesh_table(corner, data, measure, first=0):
+    """A table of the test meshes, a column each. `measure(path)` returns the number of vertices and the cells by name; rows
+    are in the order of the last mesh."""
+    columns = {}
     with test_meshes(data) as meshes:
         for title, path in list(meshes.items())[first:]:
-            n_vertices, table = measure(path)
-            print(f"## {title}, {n_vertices:,} vertices\n\n{table}\n", flush=True)
-            yield f"## {title}, {n_vertices:,} vertices\n\n{table}\n"
+            n_vertices, cells = measure(path)
+            columns[f"{title}, {n_vertices:,}"] = cells
+            print(title, cells, flush=True)
+    return columns_table(corner, columns)
 
 
-def write_page(path, sections):
-    """Writes a page atomically."""
-    os.makedirs(os.path.dirname(path) or ".", exist_ok=True)
+def columns_table(corner, columns):
+    """A table of columns that map names of rows to cells, in the order of the last column."""
+    names = list(dict.fromkeys(name for cells in reversed(columns.values()) for name in cells))
+    return table([corner, *columns], [[name, *(cells.get(name, "-") for cells in columns.values())] for name in names])
+
+
+def write_section(path, name, *parts):
+    """Replaces the section between the comments `name begins` and `name ends` of a page, atomically."""
+    with open(path) as file:
+        page = file.read()
+    begin, end = f"<!-- {name} begins -->\n", f"<!-- {name} ends -->\n"
+    before, rest = page.split(begin)
+    _, after = rest.split(end)
     with open(path + ".part", "w") as file:
-        file.write("\n".join(sections))
+        file.write(before + begin + "\n\n".join(part.strip() for part in parts) + "\n" + end + after)
     os.replace(path + ".part", path)

@@ -6,11 +6,10 @@ use rayon::prelude::*;
 
 use crate::clearance::entanglement;
 use crate::error::DatasetError;
-use crate::model::Model;
+use crate::model::BodyModel;
 use crate::pose::{Build, PosedSkeleton};
 use crate::shape::{posed_positions, rest_surface, shuffled};
 use crate::stream::{Purpose, Stream};
-use crate::{cat, centaur, david};
 
 /// Area of the rest surface of every family, in squared units, so that families do not differ by size alone.
 /// Lengths are roughly centimetres of a grown man.
@@ -46,15 +45,16 @@ impl Family {
         self.entry().1
     }
 
-    pub(crate) fn model(self) -> Model {
-        self.entry().2()
+    pub(crate) fn model(self) -> BodyModel {
+        BodyModel::read(self.entry().2)
     }
 
-    fn entry(self) -> (&'static str, usize, fn() -> Model) {
+    /// Name, number of shapes, and description.
+    fn entry(self) -> (&'static str, usize, &'static str) {
         match self {
-            Self::Cat => ("cat", 9, cat::model),
-            Self::Centaur => ("centaur", 6, centaur::model),
-            Self::David => ("david", 15, david::model),
+            Self::Cat => ("cat", 9, include_str!("../bodies/cat.toml")),
+            Self::Centaur => ("centaur", 6, include_str!("../bodies/centaur.toml")),
+            Self::David => ("david", 15, include_str!("../bodies/david.toml")),
         }
     }
 }
@@ -213,7 +213,7 @@ const POSES_PER_BODY: usize = 1 << 20;
 
 fn shape(
     family: Family,
-    model: &Model,
+    model: &BodyModel,
     numbers: [usize; 2],
     options: &ArticulatedOptions,
 ) -> Result<LabeledShape, DatasetError> {
@@ -222,7 +222,7 @@ fn shape(
 
 fn rested(
     family: Family,
-    model: &Model,
+    model: &BodyModel,
     [body, pose]: [usize; 2],
     options: &ArticulatedOptions,
 ) -> Result<RestedShape, DatasetError> {
@@ -247,7 +247,7 @@ fn rested(
 }
 
 /// From body units to the units of the dataset.
-pub(crate) fn scale(model: &Model) -> f64 {
+pub(crate) fn scale(model: &BodyModel) -> f64 {
     (AREA / model.area).sqrt()
 }
 
@@ -256,7 +256,11 @@ const N_DRAWS: usize = 12;
 
 /// The skeleton in a random variation of a typical pose without intersecting limbs; number 0 is exactly the
 /// rest pose.
-pub(crate) fn posed_skeleton<'a>(model: &'a Model, pose: usize, stream: &mut Stream) -> PosedSkeleton<'a> {
+pub(crate) fn posed_skeleton<'a>(
+    model: &'a BodyModel,
+    pose: usize,
+    stream: &mut Stream,
+) -> PosedSkeleton<'a> {
     let typical = &model.poses[pose % model.poses.len()];
     if pose == 0 {
         return PosedSkeleton::new(&model.skeleton, typical);
@@ -286,11 +290,11 @@ mod tests {
     use surface::VertexId;
 
     use super::*;
-    use crate::implicit::{Blob, Body, Part};
-    use crate::simplify::Surface;
+    use crate::implicit::{Blob, BodyPart, ImplicitBody};
+    use crate::simplify::RestSurface;
 
     /// Lengths of shortest paths along edges from `source`.
-    fn path_lengths(surface: &Surface, positions: &[Point3<f64>], source: u32) -> Vec<f64> {
+    fn path_lengths(surface: &RestSurface, positions: &[Point3<f64>], source: u32) -> Vec<f64> {
         let mut lengths = vec![f64::INFINITY; positions.len()];
         let mut queue = BinaryHeap::from([Reverse((0u64, source))]);
         lengths[source as usize] = 0.0;
@@ -311,7 +315,7 @@ mod tests {
     }
 
     /// Relative changes of path lengths between two poses of one triangulation, in ascending order.
-    fn changes(surface: &Surface, a: &[Point3<f64>], b: &[Point3<f64>]) -> Vec<f64> {
+    fn changes(surface: &RestSurface, a: &[Point3<f64>], b: &[Point3<f64>]) -> Vec<f64> {
         let mut changes = Vec::new();
         for source in (0..a.len() as u32).step_by(67) {
             let (before, after) = (path_lengths(surface, a, source), path_lengths(surface, b, source));
@@ -366,9 +370,9 @@ mod tests {
     #[test]
     fn a_body_with_two_components_is_an_error() {
         let mut model = Family::Cat.model();
-        model.body = Body::new(vec![
-            Part::added(vec![Blob::ball([0.0, 0.0, 0.0], 10.0)]),
-            Part::added(vec![Blob::ball([0.0, 50.0, 0.0], 10.0)]),
+        model.body = ImplicitBody::new(vec![
+            BodyPart::added(vec![Blob::ball([0.0, 0.0, 0.0], 10.0)]),
+            BodyPart::added(vec![Blob::ball([0.0, 50.0, 0.0], 10.0)]),
         ]);
         let error = shape(Family::Cat, &model, [0, 3], &ArticulatedOptions::default()).unwrap_err();
         let expected = DatasetError::NoSurface { shape: "cat3".to_owned(), n_vertices: 3400, seed: 1 };

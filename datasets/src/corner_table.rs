@@ -12,7 +12,7 @@ use surface::{CornerId, Topology, VertexId};
 /// **Invariants.** Twins of living corners are living and mutual. The corners of a vertex form one cycle
 /// under [`around`](Self::around). The corners of removed faces have no vertex.
 #[derive(Debug, Clone)]
-pub(crate) struct CornerTable {
+pub(crate) struct EditableCorners {
     /// The vertex of each corner, [`NO_VERTEX`] once its face is removed.
     vertex: Vec<VertexId>,
     twin: Vec<CornerId>,
@@ -23,7 +23,7 @@ pub(crate) struct CornerTable {
 const NO_VERTEX: VertexId = VertexId(u32::MAX);
 const NO_CORNER: CornerId = CornerId(u32::MAX);
 
-impl CornerTable {
+impl EditableCorners {
     /// `None` unless the faces form a closed, consistently oriented manifold that uses every vertex.
     pub(crate) fn new(n_vertices: usize, faces: &[[VertexId; 3]]) -> Option<Self> {
         let topology = Topology::new(n_vertices, faces.to_vec());
@@ -186,17 +186,17 @@ mod tests {
     }
 
     /// A double pyramid over a polygon with `n` corners; the tips are `n` and `n + 1`.
-    fn double_pyramid(n: u32) -> CornerTable {
+    fn double_pyramid(n: u32) -> EditableCorners {
         let sides = (0..n).flat_map(|i| [[i, (i + 1) % n, n], [(i + 1) % n, i, n + 1]]);
-        CornerTable::new(n as usize + 2, &faces(&sides.collect::<Vec<_>>())).unwrap()
+        EditableCorners::new(n as usize + 2, &faces(&sides.collect::<Vec<_>>())).unwrap()
     }
 
-    fn check(table: &CornerTable) {
+    fn check(table: &EditableCorners) {
         let alive: Vec<VertexId> = table.vertices().collect();
         let renumber = |v: VertexId| VertexId::from(alive.binary_search(&v).unwrap());
         let faces: Vec<_> = table.faces().map(|f| f.map(renumber)).collect();
         assert_eq!(faces.len(), 2 * alive.len() - 4, "a sphere");
-        let again = CornerTable::new(alive.len(), &faces).unwrap();
+        let again = EditableCorners::new(alive.len(), &faces).unwrap();
         for (i, &v) in alive.iter().enumerate() {
             assert!(table.around(v).all(|c| table.vertex(c) == v));
             assert_eq!(table.around(v).count(), again.around(VertexId::from(i)).count());
@@ -246,13 +246,16 @@ mod tests {
     #[test]
     fn only_closed_oriented_manifolds_have_a_corner_table() {
         let tetrahedron = [[0, 1, 2], [0, 3, 1], [1, 3, 2], [2, 3, 0]];
-        assert!(CornerTable::new(4, &faces(&tetrahedron)).is_some());
-        assert!(CornerTable::new(5, &faces(&tetrahedron)).is_none(), "an unused vertex");
-        assert!(CornerTable::new(4, &faces(&tetrahedron[..3])).is_none(), "a hole");
+        assert!(EditableCorners::new(4, &faces(&tetrahedron)).is_some());
+        assert!(EditableCorners::new(5, &faces(&tetrahedron)).is_none(), "an unused vertex");
+        assert!(EditableCorners::new(4, &faces(&tetrahedron[..3])).is_none(), "a hole");
         let mut flipped = tetrahedron;
         flipped[3] = [2, 0, 3];
-        assert!(CornerTable::new(4, &faces(&flipped)).is_none(), "a flipped face");
+        assert!(EditableCorners::new(4, &faces(&flipped)).is_none(), "a flipped face");
         let twice = [tetrahedron.as_slice(), &tetrahedron.map(|f| f.map(|v| if v == 0 { 0 } else { v + 3 }))];
-        assert!(CornerTable::new(7, &faces(&twice.concat())).is_none(), "two surfaces touching in a point");
+        assert!(
+            EditableCorners::new(7, &faces(&twice.concat())).is_none(),
+            "two surfaces touching in a point"
+        );
     }
 }

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use surface::VertexId;
 
 use crate::cases::{EDGES, Loop, all_loops, corner};
-use crate::implicit::Body;
+use crate::implicit::ImplicitBody;
 
 /// Cells along the side of a block. Blocks are searched, skipped and distributed to threads.
 const BLOCK: usize = 8;
@@ -50,7 +50,7 @@ struct Leaf {
 /// manifold for any body. The search descends from a cube around the body and drops blocks that the surface
 /// cannot reach: those where the value of the 1-Lipschitz function at the centre exceeds half the diagonal.
 /// Time and memory are `O(area / spacing^2)`.
-pub(crate) fn extract(body: &Body, lattice: Lattice) -> RawSurface {
+pub(crate) fn extract(body: &ImplicitBody, lattice: Lattice) -> RawSurface {
     let loops = all_loops();
     let (center, radius) = body.bounding_ball();
     let leaves: Vec<Leaf> = crossed_blocks(body, lattice, center, radius)
@@ -79,7 +79,7 @@ impl Lattice {
 }
 
 /// Origins of the blocks that the surface may cross, in cells, in a fixed order.
-fn crossed_blocks(body: &Body, lattice: Lattice, center: Point3<f64>, radius: f64) -> Vec<[i64; 3]> {
+fn crossed_blocks(body: &ImplicitBody, lattice: Lattice, center: Point3<f64>, radius: f64) -> Vec<[i64; 3]> {
     // One extra block on each side leaves room for the shift.
     let needed = (radius / lattice.spacing + lattice.shift.amax() + 1.0).ceil() as i64;
     let mut half = BLOCK as i64;
@@ -131,7 +131,7 @@ fn each(n: usize) -> impl Iterator<Item = [usize; 3]> {
 ///
 /// If the value at the centre of 2 x 2 x 2 cells rules out that the surface passes, it is used for the
 /// corners too: they have the same sign, and only the sign matters.
-fn samples(body: &Body, spacing: f64, point: &impl Fn([f64; 3]) -> Point3<f64>) -> Vec<f64> {
+fn samples(body: &ImplicitBody, spacing: f64, point: &impl Fn([f64; 3]) -> Point3<f64>) -> Vec<f64> {
     let reach = 3f64.sqrt() * spacing * (1.0 + 1e-9);
     let mut values = vec![f64::NAN; SAMPLES * SAMPLES * SAMPLES];
     let mut crossed = Vec::new();
@@ -156,7 +156,13 @@ fn samples(body: &Body, spacing: f64, point: &impl Fn([f64; 3]) -> Point3<f64>) 
     values
 }
 
-fn leaf(body: &Body, lattice: Lattice, center: Point3<f64>, origin: [i64; 3], loops: &[Vec<Loop>]) -> Leaf {
+fn leaf(
+    body: &ImplicitBody,
+    lattice: Lattice,
+    center: Point3<f64>,
+    origin: [i64; 3],
+    loops: &[Vec<Loop>],
+) -> Leaf {
     let point = |at: [f64; 3]| lattice.point(center, [0, 1, 2].map(|i| origin[i] as f64 + at[i]));
     let values = samples(body, lattice.spacing, &point);
     let inside = |at: [usize; 3]| values[sample_index(at)] < 0.0;
@@ -247,8 +253,8 @@ fn triangles(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::corner_table::CornerTable;
-    use crate::implicit::{Blob, Part};
+    use crate::corner_table::EditableCorners;
+    use crate::implicit::{Blob, BodyPart};
     use crate::trig::rotation;
 
     fn lattice(spacing: f64) -> Lattice {
@@ -257,7 +263,7 @@ mod tests {
 
     #[test]
     fn a_ball_has_its_area_and_volume() {
-        let body = Body::new(vec![Part::added(vec![Blob::ball([0.0, 2.0, 1.0], 5.0)])]);
+        let body = ImplicitBody::new(vec![BodyPart::added(vec![Blob::ball([0.0, 2.0, 1.0], 5.0)])]);
         let raw = extract(&body, lattice(0.3));
         let (mut area, mut volume) = (0.0, 0.0);
         for face in &raw.faces {
@@ -282,9 +288,9 @@ mod tests {
             };
             blobs.push(Blob::ball([next(), next(), next()], 0.7));
         }
-        let raw = extract(&Body::new(vec![Part::added(blobs)]), lattice(0.6));
+        let raw = extract(&ImplicitBody::new(vec![BodyPart::added(blobs)]), lattice(0.6));
         assert!(raw.faces.len() > 1000);
-        let table = CornerTable::new(raw.positions.len(), &raw.faces);
+        let table = EditableCorners::new(raw.positions.len(), &raw.faces);
         assert!(table.is_some(), "an edge does not have two faces, or a vertex has two fans");
     }
 }

@@ -7,7 +7,7 @@
 use nalgebra::{Point3, Vector3};
 
 /// Value and gradient of an implicit function at a point.
-pub(crate) type Sample = (f64, Vector3<f64>);
+pub(crate) type ImplicitSample = (f64, Vector3<f64>);
 
 /// A round cone: the convex hull of two balls, possibly flattened along one direction.
 #[derive(Debug, Clone)]
@@ -18,12 +18,12 @@ pub(crate) struct Blob {
     flattening: Option<(Vector3<f64>, f64)>,
     /// Blending radius of the union with the blobs before it; see [`smooth_min`].
     blend: f64,
-    axis: Axis,
+    axis: ConeAxis,
 }
 
 /// Precomputed values for the distance to a round cone.
 #[derive(Debug, Clone, Default)]
-struct Axis {
+struct ConeAxis {
     start: Vector3<f64>,
     direction: Vector3<f64>,
     length: f64,
@@ -42,24 +42,10 @@ impl Blob {
             radii: [ra, rb],
             flattening: None,
             blend: 0.0,
-            axis: Axis::default(),
+            axis: ConeAxis::default(),
         };
         blob.prepare();
         blob
-    }
-
-    /// A bent tube: cones from the ball `root` along the points `axis`, with the given radii.
-    pub(crate) fn tube<const N: usize>(
-        root: ([f64; 3], f64),
-        axis: [[f64; 3]; N],
-        radii: [f64; N],
-    ) -> Vec<Self> {
-        let mut last = root;
-        let cone = |(b, rb)| {
-            let (a, ra) = std::mem::replace(&mut last, (b, rb));
-            Self::cone(a, ra, b, rb)
-        };
-        axis.into_iter().zip(radii).map(cone).collect()
     }
 
     /// The ball of radius `r` around `a`.
@@ -80,15 +66,6 @@ impl Blob {
         self
     }
 
-    fn moved(&self, scale: f64, offset: Vector3<f64>) -> Self {
-        let mut blob = self.clone();
-        blob.ends = blob.ends.map(|p| Point3::from(p.coords * scale + offset));
-        blob.radii = blob.radii.map(|r| r * scale);
-        blob.blend *= scale;
-        blob.prepare();
-        blob
-    }
-
     fn prepare(&mut self) {
         let [a, b] = self.ends.map(|p| self.stretch(p.coords));
         let [ra, rb] = self.radii;
@@ -104,7 +81,7 @@ impl Blob {
         }
         let slope = taper / (1.0 - taper * taper).sqrt();
         let scale = self.flattening.map_or(1.0, |(_, factor)| factor);
-        self.axis = Axis { start, direction, length, taper, slope, scale };
+        self.axis = ConeAxis { start, direction, length, taper, slope, scale };
     }
 
     /// Stretches space such that the flattened blob becomes a true round cone.
@@ -134,7 +111,7 @@ impl Blob {
     }
 
     #[inline]
-    fn sample(&self, p: Point3<f64>) -> Sample {
+    fn sample(&self, p: Point3<f64>) -> ImplicitSample {
         let (away, value) = self.offset_and_value(p);
         let distance = away.norm();
         if distance == 0.0 {
@@ -155,7 +132,7 @@ enum Effect {
 
 /// Blobs that belong together: an arm, a head.
 #[derive(Debug, Clone)]
-pub(crate) struct Part {
+pub(crate) struct BodyPart {
     blobs: Vec<Blob>,
     effect: Effect,
     /// Blending radius of the union with the parts before it.
@@ -168,7 +145,7 @@ pub(crate) struct Part {
     slack: f64,
 }
 
-impl Part {
+impl BodyPart {
     /// A part that is added to the body.
     pub(crate) fn added(blobs: Vec<Blob>) -> Self {
         Self::new(Effect::Add, blobs)
@@ -195,14 +172,8 @@ impl Part {
         Self { blobs, effect, blend: 0.0, center, radius, scale, slack }
     }
 
-    /// The part scaled about the origin, then shifted.
-    pub(crate) fn moved(&self, scale: f64, offset: [f64; 3]) -> Self {
-        let blobs = self.blobs.iter().map(|b| b.moved(scale, offset.into())).collect();
-        Self::new(self.effect, blobs).blend(self.blend * scale)
-    }
-
     #[inline]
-    fn sample(&self, p: Point3<f64>) -> Sample {
+    fn sample(&self, p: Point3<f64>) -> ImplicitSample {
         self.blobs
             .iter()
             .fold((f64::INFINITY, Vector3::zeros()), |sum, blob| smooth_min(sum, blob.sample(p), blob.blend))
@@ -239,7 +210,7 @@ impl Part {
 /// `min(a, b) - (reach - |a - b|)^2 / (4 reach)` is continuously differentiable, equals the smaller value
 /// where they differ by more, and its gradient is a convex combination of the two.
 #[inline]
-fn smooth_min(a: Sample, b: Sample, reach: f64) -> Sample {
+fn smooth_min(a: ImplicitSample, b: ImplicitSample, reach: f64) -> ImplicitSample {
     let (near, far) = if a.0 <= b.0 { (a, b) } else { (b, a) };
     let depth = dip(near.0, far.0, reach);
     if depth == 0.0 {
@@ -249,7 +220,7 @@ fn smooth_min(a: Sample, b: Sample, reach: f64) -> Sample {
     (near.0 - depth, near.1 * (1.0 - weight) + far.1 * weight)
 }
 
-fn negated(s: Sample) -> Sample {
+fn negated(s: ImplicitSample) -> ImplicitSample {
     (-s.0, -s.1)
 }
 
@@ -262,20 +233,20 @@ fn dip(a: f64, b: f64, reach: f64) -> f64 {
 
 /// A whole body.
 #[derive(Debug, Clone)]
-pub(crate) struct Body {
-    parts: Vec<Part>,
+pub(crate) struct ImplicitBody {
+    parts: Vec<BodyPart>,
     /// Whether the body is symmetric under `x -> -x`. Its parts then describe the half `x >= 0`.
     is_symmetric: bool,
 }
 
-impl Body {
+impl ImplicitBody {
     /// A symmetric body, of which the parts describe the half `x >= 0`.
-    pub(crate) fn new(parts: Vec<Part>) -> Self {
+    pub(crate) fn new(parts: Vec<BodyPart>) -> Self {
         Self { parts, is_symmetric: true }
     }
 
     /// A body of which the parts describe everything.
-    pub(crate) fn whole(parts: Vec<Part>) -> Self {
+    pub(crate) fn whole(parts: Vec<BodyPart>) -> Self {
         Self { parts, is_symmetric: false }
     }
 
@@ -286,7 +257,7 @@ impl Body {
     }
 
     /// Value and gradient at `p`. The value is 1-Lipschitz.
-    pub(crate) fn sample(&self, p: Point3<f64>) -> Sample {
+    pub(crate) fn sample(&self, p: Point3<f64>) -> ImplicitSample {
         let folded = self.folded(p);
         let mut sum = (f64::INFINITY, Vector3::zeros());
         for part in &self.parts {
@@ -350,15 +321,15 @@ impl Body {
 mod tests {
     use super::*;
 
-    fn body() -> Body {
-        Body::new(vec![
-            Part::added(vec![Blob::cone([0.0, 0.0, 0.0], 3.0, [0.0, 1.0, 9.0], 1.5)]),
-            Part::added(vec![
+    fn body() -> ImplicitBody {
+        ImplicitBody::new(vec![
+            BodyPart::added(vec![Blob::cone([0.0, 0.0, 0.0], 3.0, [0.0, 1.0, 9.0], 1.5)]),
+            BodyPart::added(vec![
                 Blob::ball([4.0, 0.0, 0.0], 2.0).flat([0.0, 1.0, 1.0], 0.4),
                 Blob::cone([5.0, 0.0, 0.0], 1.0, [9.0, 0.0, 1.0], 0.5).blend(0.7),
             ])
             .blend(1.0),
-            Part::carved(vec![Blob::ball([0.0, -3.0, 3.0], 1.5)]).blend(0.5),
+            BodyPart::carved(vec![Blob::ball([0.0, -3.0, 3.0], 1.5)]).blend(0.5),
         ])
     }
 
@@ -424,15 +395,5 @@ mod tests {
         for p in grid().filter(|p| body.value(*p).abs() < 1.0) {
             assert!(body.value(body.project(p, 12, 1.0)).abs() < 1e-3);
         }
-    }
-
-    #[test]
-    fn moving_a_part_moves_its_values() {
-        let part =
-            Part::added(vec![Blob::cone([1.0, 2.0, 3.0], 1.0, [2.0, 2.0, 5.0], 0.5).blend(0.3)]).blend(1.0);
-        let moved = part.moved(2.0, [1.0, -1.0, 0.5]);
-        let p = Point3::new(0.3, 0.1, 2.0);
-        let q = Point3::from(p.coords * 2.0 + Vector3::new(1.0, -1.0, 0.5));
-        assert!((moved.sample(q).0 - 2.0 * part.sample(p).0).abs() < 1e-12);
     }
 }

@@ -6,7 +6,7 @@
 //! poses. They need no download, unlike scanned datasets. A shape is made in steps, one module each:
 //!
 //! ```text
-//! cat | centaur | david   a body (implicit), a skeleton, typical poses
+//! model, bodies/*.toml    a body (implicit), a skeleton, typical poses
 //!   -> extract            the rest surface, on a randomly placed lattice
 //!   -> simplify, relax    the wanted number of vertices, well-shaped triangles
 //!   -> pose, clearance    the surface bent along the skeleton, without intersecting limbs
@@ -24,16 +24,12 @@
 mod articulated;
 mod broken;
 mod cases;
-mod cat;
-mod centaur;
 mod clearance;
 mod corner_table;
 mod creature;
 mod damage;
-mod david;
 mod error;
 mod extract;
-mod human;
 mod implicit;
 mod model;
 mod pose;

@@ -1,13 +1,17 @@
-//! The description of a family.
+//! Bodies: from their descriptions in `bodies/*.toml` to implicit surfaces, skeletons and poses.
 
-use crate::implicit::Body;
-use crate::pose::Pose;
-use crate::skeleton::Skeleton;
+use std::collections::{BTreeMap, HashMap};
+
+use serde::Deserialize;
+
+use crate::implicit::{Blob, BodyPart, ImplicitBody};
+use crate::pose::{JointTurn, Pose, turn};
+use crate::skeleton::{BoneNode, Joint, JointId, Skeleton};
 
 /// A body at rest, its skeleton and its poses.
 #[derive(Debug, Clone)]
-pub(crate) struct Model {
-    pub(crate) body: Body,
+pub(crate) struct BodyModel {
+    pub(crate) body: ImplicitBody,
     pub(crate) skeleton: Skeleton,
     /// Typical poses; the first is the rest pose.
     pub(crate) poses: Vec<Pose>,
@@ -17,4 +21,322 @@ pub(crate) struct Model {
     pub(crate) area: f64,
     /// Coarsest lattice that resolves the smallest features, in body units.
     pub(crate) spacing: f64,
+}
+
+/// The content of a file. Parts and chains are on the left (`x > 0`) or in the middle.
+#[derive(Debug, Default, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+struct BodyDescription {
+    area: f64,
+    spacing: f64,
+    /// The angle (degrees) about the y axis by which the topmost joints of legs turn in a pose.
+    spread: f64,
+    /// Where the upper half of a man is added: behind the first part, and behind the nodes of the first chain.
+    man: Option<ManAt>,
+    /// Coordinates in which some of the parts are given.
+    frames: HashMap<String, LocalFrame>,
+    parts: Vec<PartData>,
+    chains: Vec<ChainData>,
+    poses: Vec<PoseData>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct ManAt {
+    offset: [f64; 3],
+    /// Factor of the length of edges.
+    grain: f64,
+}
+
+/// Coordinates of its own: an origin, axes, and a factor of all lengths.
+#[derive(Debug, Deserialize)]
+#[serde(default, deny_unknown_fields)]
+struct LocalFrame {
+    origin: [f64; 3],
+    axes: [[f64; 3]; 3],
+    scale: f64,
+}
+
+impl Default for LocalFrame {
+    fn default() -> Self {
+        Self { origin: [0.0; 3], axes: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], scale: 1.0 }
+    }
+}
+
+/// Blobs that belong together; see [`BodyPart`].
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct PartData {
+    frame: Option<String>,
+    #[serde(default)]
+    carved: bool,
+    #[serde(default)]
+    blend: f64,
+    blobs: Vec<BlobData>,
+}
+
+/// A ball, or round cones in a row.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct BlobData {
+    /// Points with the radius there.
+    axis: Vec<[f64; 4]>,
+    /// A direction, and the factor of the thickness along it.
+    flat: Option<([f64; 3], f64)>,
+    #[serde(default)]
+    blend: f64,
+}
+
+/// Bones; see [`Chain`](crate::skeleton::Chain).
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct ChainData {
+    name: String,
+    /// The chain to which it is attached, at its `node`.
+    parent: Option<String>,
+    #[serde(default)]
+    node: usize,
+    /// Whether it has a mirror image on the right.
+    #[serde(default)]
+    pair: bool,
+    /// Position, radius and grain.
+    nodes: Vec<[f64; 5]>,
+    #[serde(default)]
+    joints: Vec<JointData>,
+}
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct JointData {
+    /// Its name in poses.
+    name: Option<String>,
+    /// Its node.
+    at: usize,
+    /// How far it bends the chain before and behind the node.
+    reach: [f64; 2],
+    play: [f64; 3],
+    /// The axis about which it flexes and the direction of the limb; otherwise it turns about the axes of the body.
+    hinge: Option<[[f64; 3]; 2]>,
+}
+
+/// The joints that are not at rest.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct PoseData {
+    root: Option<Angles>,
+    /// By the name of a chain, the angles that flex its joints from the trunk down, on the left and on the right.
+    #[serde(default)]
+    legs: BTreeMap<String, [Vec<f64>; 2]>,
+    tail: Option<TailData>,
+    /// By the name of a joint.
+    #[serde(default)]
+    turns: BTreeMap<String, BothSides>,
+}
+
+/// How a tail is curled, from root to tip.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct TailData {
+    up: Vec<f64>,
+    left: Vec<f64>,
+}
+
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(untagged)]
+enum Angles {
+    /// About `x` alone.
+    Flex(f64),
+    Turn([f64; 3]),
+}
+
+impl Angles {
+    fn turn(self) -> JointTurn {
+        match self {
+            Self::Flex(x) => turn(x, 0.0, 0.0),
+            Self::Turn([x, y, z]) => turn(x, y, z),
+        }
+    }
+}
+
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(untagged)]
+enum BothSides {
+    Same(Angles),
+    Apart { left: Angles, right: Angles },
+}
+
+impl BodyModel {
+    /// The body of a file.
+    ///
+    /// # Panics
+    /// If the text is no description: it is one of ours, which tests read.
+    pub(crate) fn read(text: &str) -> Self {
+        let all = BodyDescription::whole(text);
+        let body = ImplicitBody::new(all.parts.iter().map(PartData::part).collect());
+        let (skeleton, names) = all.skeleton();
+        let poses = all.poses.iter().map(|pose| pose.pose(&skeleton, &names, all.spread)).collect();
+        Self { body, skeleton, poses, genus: 0, area: all.area, spacing: all.spacing }
+    }
+}
+
+/// Joints by name, and the joints of a chain by its name; on the left and on the right.
+#[derive(Default)]
+struct JointNames<'a> {
+    joints: HashMap<&'a str, Vec<JointId>>,
+    chains: HashMap<&'a str, Vec<usize>>,
+}
+
+impl BodyDescription {
+    /// A file with all points in the coordinates of the body.
+    fn read(text: &str) -> Self {
+        let mut found: Self = toml::from_str(text).unwrap_or_else(|fault| panic!("a body: {fault}"));
+        for part in &mut found.parts {
+            if let Some(frame) = part.frame.take() {
+                part.place(&found.frames[&frame]);
+            }
+        }
+        found
+    }
+
+    /// A file with the upper half of a man, if it says so.
+    fn whole(text: &str) -> Self {
+        let mut found = Self::read(text);
+        let Some(ManAt { offset, grain }) = found.man.take() else { return found };
+        let mut man = Self::read(include_str!("../bodies/man.toml"));
+        let shift = |at: &mut [f64]| at.iter_mut().zip(offset).for_each(|(x, by)| *x += by);
+        man.parts
+            .iter_mut()
+            .flat_map(|part| &mut part.blobs)
+            .flat_map(|blob| &mut blob.axis)
+            .for_each(|p| shift(p));
+        for node in man.chains.iter_mut().flat_map(|chain| &mut chain.nodes) {
+            shift(node);
+            node[4] *= grain;
+        }
+        found.parts.splice(1..1, man.parts);
+        let first = found.chains[0].nodes.len();
+        let mut limbs = man.chains.split_off(1);
+        limbs.iter_mut().for_each(|limb| limb.node += first);
+        for mut spine in man.chains {
+            spine.joints.iter_mut().for_each(|joint| joint.at += first);
+            found.chains[0].nodes.append(&mut spine.nodes);
+            found.chains[0].joints.append(&mut spine.joints);
+        }
+        found.chains.splice(1..1, limbs);
+        found
+    }
+
+    fn skeleton(&self) -> (Skeleton, JointNames<'_>) {
+        let (mut skeleton, mut names) = (Skeleton::default(), JointNames::default());
+        for data in &self.chains {
+            let parent = data.parent.as_deref().map(|name| (names.chains[name][0], data.node));
+            let node = |[x, y, z, radius, grain]: &[f64; 5]| BoneNode {
+                at: [*x, *y, *z].into(),
+                radius: *radius,
+                grain: *grain,
+            };
+            let nodes = data.nodes.iter().map(node).collect();
+            let joints = data.joints.iter().map(JointData::joint).collect();
+            let chains = match parent.filter(|_| data.pair) {
+                Some(parent) => skeleton.pair(parent, nodes, joints).to_vec(),
+                None => vec![skeleton.chain(parent, nodes, joints)],
+            };
+            for (joint, JointData { name, .. }) in data.joints.iter().enumerate() {
+                let ids = chains.iter().map(|&chain| JointId { chain, joint }).collect();
+                name.iter().for_each(|name| drop(names.joints.insert(name, Vec::clone(&ids))));
+            }
+            names.chains.insert(&data.name, chains);
+        }
+        (skeleton, names)
+    }
+}
+
+impl PartData {
+    /// Changes its points from the coordinates of a frame to those of the body.
+    fn place(&mut self, LocalFrame { origin, axes, scale }: &LocalFrame) {
+        self.blend *= scale;
+        for blob in &mut self.blobs {
+            blob.blend *= scale;
+            for [x, y, z, radius] in &mut blob.axis {
+                let given = [*x, *y, *z];
+                let along = |i: usize| (0..3).fold(origin[i], |sum, k| sum + given[k] * scale * axes[k][i]);
+                ([*x, *y, *z], *radius) = ([0, 1, 2].map(along), *radius * scale);
+            }
+        }
+    }
+
+    fn part(&self) -> BodyPart {
+        let blobs = self.blobs.iter().flat_map(BlobData::blobs).collect();
+        let part = if self.carved { BodyPart::carved(blobs) } else { BodyPart::added(blobs) };
+        part.blend(self.blend)
+    }
+}
+
+impl BlobData {
+    fn blobs(&self) -> impl Iterator<Item = Blob> {
+        let last = self.axis.len() - 1;
+        (0..last.max(1)).map(move |i| {
+            let [[ax, ay, az, ra], [bx, by, bz, rb]] = [self.axis[i], self.axis[last.min(i + 1)]];
+            let cone = Blob::cone([ax, ay, az], ra, [bx, by, bz], rb).blend(self.blend);
+            self.flat.map_or(cone.clone(), |(direction, factor)| cone.flat(direction, factor))
+        })
+    }
+}
+
+impl JointData {
+    fn joint(&self) -> Joint {
+        let ball = Joint::ball(self.at, self.reach[0], self.reach[1], self.play);
+        self.hinge.map_or(ball.clone(), |[axis, along]| ball.hinge(axis, along))
+    }
+}
+
+impl PoseData {
+    fn pose(&self, skeleton: &Skeleton, names: &JointNames<'_>, spread: f64) -> Pose {
+        let mut set = Vec::new();
+        for (name, sides) in &self.legs {
+            for (&chain, angles) in names.chains[name.as_str()].iter().zip(sides) {
+                set.extend(angles.iter().enumerate().map(|(joint, &x)| {
+                    let y = if joint == 0 { spread } else { 0.0 };
+                    (JointId { chain, joint }, turn(x, y, 0.0))
+                }));
+            }
+        }
+        if let Some(TailData { up, left }) = &self.tail {
+            let chain = names.chains["tail"][0];
+            let turns = up.iter().zip(left).map(|(&up, &left)| turn(up, 0.0, -left));
+            set.extend(turns.enumerate().map(|(joint, turn)| (JointId { chain, joint }, turn)));
+        }
+        for (name, sides) in &self.turns {
+            let turns = match *sides {
+                BothSides::Same(both) => [both; 2],
+                BothSides::Apart { left, right } => [left, right],
+            };
+            set.extend(names.joints[name.as_str()].iter().copied().zip(turns.map(Angles::turn)));
+        }
+        let mut rest = Pose::rest(skeleton);
+        rest.root = self.root.map_or_else(JointTurn::default, Angles::turn);
+        set.into_iter().fold(rest, |pose, (id, turn)| pose.set(id, turn))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    #[should_panic(expected = "unknown field `feathers`")]
+    fn unknown_keys_are_errors() {
+        let _ = BodyModel::read("area = 1.0\nfeathers = 2");
+    }
+
+    #[test]
+    fn a_frame_moves_and_scales_a_part() {
+        let text = "[frames.a]\nscale = 2.0\norigin = [1.0, -1.0, 0.5]\n[[parts]]\nframe = 'a'\nblend = 1.0\n\
+            blobs = [{ axis = [[1.0, 2.0, 3.0, 1.0], [2.0, 2.0, 5.0, 0.5]], blend = 0.3 }]";
+        let body = |text: &str| ImplicitBody::whole(vec![BodyDescription::read(text).parts[0].part()]);
+        let (moved, body) = (body(text), body(&text.replace("frame = 'a'", "")));
+        let p = nalgebra::Vector3::new(0.3, 0.1, 2.0);
+        let q = p * 2.0 + nalgebra::Vector3::new(1.0, -1.0, 0.5);
+        assert!((moved.value(q.into()) - 2.0 * body.value(p.into())).abs() < 1e-12);
+    }
 }

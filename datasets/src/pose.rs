@@ -2,81 +2,43 @@
 
 use nalgebra::{Matrix3, Point3, Vector3};
 
-use crate::skeleton::{Chain, JointId, JointPair, Side, Skeleton};
+use crate::skeleton::{BodySide, Chain, JointId, Skeleton};
 use crate::stream::Stream;
 use crate::trig::rotation;
 
 /// A rotation of a joint in degrees: about its y axis first, then x, then z. It is mirrored for the right
 /// side, so that the same numbers give the mirror image.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(crate) struct Turn {
+pub(crate) struct JointTurn {
     pub(crate) x: f64,
     pub(crate) y: f64,
     pub(crate) z: f64,
 }
 
 /// Shorthand for tables of turns.
-pub(crate) fn turn(x: f64, y: f64, z: f64) -> Turn {
-    Turn { x, y, z }
-}
-
-/// A turn about `x` alone.
-pub(crate) fn flex(x: f64) -> Turn {
-    turn(x, 0.0, 0.0)
+pub(crate) fn turn(x: f64, y: f64, z: f64) -> JointTurn {
+    JointTurn { x, y, z }
 }
 
 /// The turns of all joints of one skeleton.
 #[derive(Debug, Clone)]
 pub(crate) struct Pose {
     /// Rotation of the whole body about its first node.
-    pub(crate) root: Turn,
-    turns: Vec<Vec<Turn>>,
+    pub(crate) root: JointTurn,
+    turns: Vec<Vec<JointTurn>>,
 }
 
 impl Pose {
     /// The rest pose.
     pub(crate) fn rest(skeleton: &Skeleton) -> Self {
-        let turns = skeleton.chains.iter().map(|c| vec![Turn::default(); c.joints.len()]).collect();
-        Self { root: Turn::default(), turns }
-    }
-
-    pub(crate) fn root(mut self, turn: Turn) -> Self {
-        self.root = turn;
-        self
+        let turns = skeleton.chains.iter().map(|c| vec![JointTurn::default(); c.joints.len()]).collect();
+        Self { root: JointTurn::default(), turns }
     }
 
     /// Sets one joint.
-    pub(crate) fn set(mut self, id: JointId, turn: Turn) -> Self {
+    pub(crate) fn set(mut self, id: JointId, turn: JointTurn) -> Self {
         self.turns[id.chain][id.joint] = turn;
         self
-    }
-
-    /// Sets a joint on the left and on the right.
-    pub(crate) fn both(self, [left, right]: JointPair, turns: [Turn; 2]) -> Self {
-        self.set(left, turns[0]).set(right, turns[1])
-    }
-
-    /// Sets both sides to the same turn.
-    pub(crate) fn same(self, pair: JointPair, turn: Turn) -> Self {
-        self.both(pair, [turn; 2])
-    }
-
-    /// Flexes a pair of legs from the trunk down, by angles for the left and the right one. The topmost
-    /// joints also turn by `spread` about the y axis.
-    pub(crate) fn legs<const N: usize>(
-        self,
-        joints: [JointPair; N],
-        spread: f64,
-        angles: [[f64; N]; 2],
-    ) -> Self {
-        (0..N).fold(self, |pose, i| {
-            pose.both(joints[i], angles.map(|leg| turn(leg[i], if i == 0 { spread } else { 0.0 }, 0.0)))
-        })
-    }
-
-    /// Curls a tail, from root to tip: upwards and to its left.
-    pub(crate) fn tail<const N: usize>(self, joints: [JointId; N], up: [f64; N], left: [f64; N]) -> Self {
-        (0..N).fold(self, |pose, i| pose.set(joints[i], turn(up[i], 0.0, -left[i])))
     }
 
     /// A random variation: every turn is scaled by up to 15 %, the play of every joint is added, and half of
@@ -87,19 +49,19 @@ impl Pose {
             for (joint, turn) in chain.joints.iter().zip(turns) {
                 let vigour = stream.uniform(0.85, 1.15);
                 let [x, y, z] = joint.play.map(|play| stream.uniform(-play, play));
-                *turn = Turn { x: turn.x * vigour + x, y: turn.y * vigour + y, z: turn.z * vigour + z };
+                *turn = JointTurn { x: turn.x * vigour + x, y: turn.y * vigour + y, z: turn.z * vigour + z };
             }
         }
         if stream.uniform(0.0, 1.0) < 0.5 { pose.mirrored(skeleton) } else { pose }
     }
 
     fn mirrored(&self, skeleton: &Skeleton) -> Self {
-        let flip = |t: Turn| Turn { x: t.x, y: -t.y, z: -t.z };
+        let flip = |t: JointTurn| JointTurn { x: t.x, y: -t.y, z: -t.z };
         let mut pose = self.clone();
         pose.root = flip(self.root);
         let mut c = 0;
         while c < skeleton.chains.len() {
-            let paired = skeleton.chains.get(c + 1).is_some_and(|next| next.side == Side::Right);
+            let paired = skeleton.chains.get(c + 1).is_some_and(|next| next.side == BodySide::Right);
             if paired {
                 pose.turns.swap(c, c + 1);
                 c += 2;
@@ -129,7 +91,7 @@ impl Build {
         let mut factors: Vec<[f64; 2]> = Vec::with_capacity(skeleton.chains.len());
         for chain in &skeleton.chains {
             let drawn = match (chain.side, factors.last()) {
-                (Side::Right, Some(left)) => *left,
+                (BodySide::Right, Some(left)) => *left,
                 _ => VARIATION.map(|range| 1.0 + stream.uniform(-range, range)),
             };
             factors.push(drawn);
@@ -243,10 +205,10 @@ fn interpolate(motions: &[Motion], fraction: f64) -> Motion {
 ///
 /// The rotation at arc length `s` is that of the base, followed by the turn of every joint times the share of the
 /// joint's interval before `s`. The axis is the integral of the rotated rest axis, which keeps its length exactly.
-fn bend(chain: &Chain, turns: &[Turn], base: Motion) -> Vec<Motion> {
+fn bend(chain: &Chain, turns: &[JointTurn], base: Motion) -> Vec<Motion> {
     let mirror = match chain.side {
-        Side::Left => 1.0,
-        Side::Right => -1.0,
+        BodySide::Left => 1.0,
+        BodySide::Right => -1.0,
     };
     let reflect = Matrix3::from_diagonal(&Vector3::new(mirror, 1.0, 1.0));
     let rotation_at = |arc: f64| {
@@ -304,7 +266,7 @@ mod tests {
     }
 
     const TRUNK: JointId = JointId { chain: 0, joint: 0 };
-    const ELBOWS: JointPair = [JointId { chain: 1, joint: 0 }, JointId { chain: 2, joint: 0 }];
+    const ELBOWS: [JointId; 2] = [JointId { chain: 1, joint: 0 }, JointId { chain: 2, joint: 0 }];
 
     fn mirrored(p: Point3<f64>) -> Point3<f64> {
         Point3::new(-p.x, p.y, p.z)
@@ -344,7 +306,7 @@ mod tests {
     fn a_build_lengthens_axes_and_widens_limbs_in_every_pose() {
         let skeleton = skeleton();
         let build = Build { factors: vec![[1.1, 0.8], [0.9, 1.2], [0.9, 1.2]] };
-        for turned in [Turn::default(), turn(70.0, 0.0, 0.0)] {
+        for turned in [JointTurn::default(), turn(70.0, 0.0, 0.0)] {
             let posed =
                 PosedSkeleton::new(&skeleton, &Pose::rest(&skeleton).set(TRUNK, turned)).built(&build);
             let length = |a: [f64; 3], b: [f64; 3]| (posed.deform(a.into()) - posed.deform(b.into())).norm();
@@ -371,17 +333,20 @@ mod tests {
     #[test]
     fn the_mirrored_pose_is_the_mirror_image() {
         let skeleton = skeleton();
-        let pose = Pose::rest(&skeleton)
-            .root(turn(5.0, 10.0, -20.0))
+        let mut pose = Pose::rest(&skeleton)
             .set(TRUNK, turn(20.0, -15.0, 30.0))
-            .both(ELBOWS, [turn(10.0, 40.0, -70.0), turn(-5.0, 8.0, 33.0)]);
+            .set(ELBOWS[0], turn(10.0, 40.0, -70.0))
+            .set(ELBOWS[1], turn(-5.0, 8.0, 33.0));
+        pose.root = turn(5.0, 10.0, -20.0);
         let (a, b) =
             (PosedSkeleton::new(&skeleton, &pose), PosedSkeleton::new(&skeleton, &pose.mirrored(&skeleton)));
         for p in [[0.3, 0.2, 12.0], [33.0, 1.0, 30.0], [-25.0, -0.5, 29.0]].map(Point3::from) {
             assert!((mirrored(a.deform(p)) - b.deform(mirrored(p))).norm() < 1e-9);
         }
-        let same =
-            PosedSkeleton::new(&skeleton, &Pose::rest(&skeleton).same(ELBOWS, turn(10.0, 40.0, -70.0)));
+        let both = ELBOWS
+            .into_iter()
+            .fold(Pose::rest(&skeleton), |pose, elbow| pose.set(elbow, turn(10.0, 40.0, -70.0)));
+        let same = PosedSkeleton::new(&skeleton, &both);
         let hand = Point3::new(38.0, 0.0, 30.0);
         assert!((mirrored(same.deform(hand)) - same.deform(mirrored(hand))).norm() < 1e-9);
     }

@@ -4,8 +4,8 @@ use nalgebra::{Point3, Vector3};
 use rayon::prelude::*;
 use surface::{CornerId, VertexId};
 
-use crate::implicit::Body;
-use crate::simplify::Surface;
+use crate::implicit::ImplicitBody;
+use crate::simplify::RestSurface;
 
 /// Vertices per task of the thread pool.
 const CHUNK: usize = 1024;
@@ -14,7 +14,7 @@ const RIDGE_COSINE: f64 = 0.7;
 
 /// Alternates flips and smoothing for `n_rounds` rounds; vertices end on the surface of the body. `surface` has
 /// no removed vertices.
-pub(crate) fn relax(surface: &mut Surface, body: &Body, n_rounds: usize) {
+pub(crate) fn relax(surface: &mut RestSurface, body: &ImplicitBody, n_rounds: usize) {
     flip_to_delaunay(surface);
     for _ in 0..n_rounds {
         smooth(surface, body);
@@ -23,7 +23,7 @@ pub(crate) fn relax(surface: &mut Surface, body: &Body, n_rounds: usize) {
 }
 
 /// Flips edges whose opposite angles add up to more than 180 degrees, in a few sweeps.
-fn flip_to_delaunay(surface: &mut Surface) {
+fn flip_to_delaunay(surface: &mut RestSurface) {
     const N_SWEEPS: usize = 3;
     for _ in 0..N_SWEEPS {
         let mut n_flips = 0usize;
@@ -39,7 +39,7 @@ fn flip_to_delaunay(surface: &mut Surface) {
     }
 }
 
-impl Surface {
+impl RestSurface {
     fn wants_flip(&self, c: CornerId) -> bool {
         let o = self.table.twin(c);
         if o < c {
@@ -67,7 +67,7 @@ fn cotangent(apex: Point3<f64>, a: Point3<f64>, b: Point3<f64>) -> f64 {
 /// Moves each vertex in its tangent plane towards the weighted centre of its neighbours, then back onto the surface.
 /// The weights are proportional to the length of an edge over its grain, so that edges approach lengths proportional
 /// to the grain. All vertices move at once, so the result does not depend on their order or on the number of threads.
-fn smooth(surface: &mut Surface, body: &Body) {
+fn smooth(surface: &mut RestSurface, body: &ImplicitBody) {
     let (table, old, grain) = (&surface.table, &surface.positions, &surface.grain);
     let target = |v: usize| {
         let mut pull = Vector3::zeros();
@@ -102,19 +102,20 @@ mod tests {
     use nalgebra::Matrix3;
 
     use super::*;
-    use crate::corner_table::CornerTable;
+    use crate::corner_table::EditableCorners;
     use crate::extract::{Lattice, extract};
-    use crate::implicit::{Blob, Part};
+    use crate::implicit::{Blob, BodyPart};
     use crate::simplify::simplify;
 
     #[test]
     fn triangles_become_well_shaped_and_stay_on_the_surface() {
-        let body = Body::new(vec![Part::added(vec![Blob::cone([0.0; 3], 3.0, [0.0, 0.0, 8.0], 1.5)])]);
+        let body =
+            ImplicitBody::new(vec![BodyPart::added(vec![Blob::cone([0.0; 3], 3.0, [0.0, 0.0, 8.0], 1.5)])]);
         let lattice = Lattice { rotation: Matrix3::identity(), shift: Vector3::repeat(0.37), spacing: 0.25 };
         let raw = extract(&body, lattice);
-        let table = CornerTable::new(raw.positions.len(), &raw.faces).unwrap();
+        let table = EditableCorners::new(raw.positions.len(), &raw.faces).unwrap();
         let grain = vec![1.0; raw.positions.len()];
-        let mut surface = Surface { table, positions: raw.positions, grain };
+        let mut surface = RestSurface { table, positions: raw.positions, grain };
         simplify(&mut surface, 800);
         surface.compact();
         relax(&mut surface, &body, 6);

@@ -5,12 +5,12 @@ use nalgebra::{Point3, Vector3};
 use rayon::prelude::*;
 use surface::{VertexId, components_of_faces};
 
-use crate::corner_table::CornerTable;
+use crate::corner_table::EditableCorners;
 use crate::extract::{Lattice, RawSurface, extract};
-use crate::model::Model;
+use crate::model::BodyModel;
 use crate::pose::PosedSkeleton;
 use crate::relax::relax;
-use crate::simplify::{Surface, simplify};
+use crate::simplify::{RestSurface, simplify};
 use crate::stream::Stream;
 
 /// Lower bound of the number of vertices of a lattice surface, per area over squared spacing.
@@ -30,7 +30,7 @@ const N_ROUNDS: usize = 6;
 
 /// The rest surface with `n_vertices` vertices; `None` if no lattice gives a closed surface of that size in one piece and
 /// with as many handles as the model says.
-pub(crate) fn rest_surface(model: &Model, n_vertices: usize, stream: &mut Stream) -> Option<Surface> {
+pub(crate) fn rest_surface(model: &BodyModel, n_vertices: usize, stream: &mut Stream) -> Option<RestSurface> {
     let dense = (CROSSINGS * model.area / (SURPLUS * n_vertices as f64)).sqrt();
     let mut spacing = model.spacing.min(dense);
     let grading = stream.uniform(GRADING[0], GRADING[1]);
@@ -46,14 +46,19 @@ pub(crate) fn rest_surface(model: &Model, n_vertices: usize, stream: &mut Stream
     None
 }
 
-fn closed_surface(model: &Model, raw: RawSurface, grading: f64, n_vertices: usize) -> Option<Surface> {
+fn closed_surface(
+    model: &BodyModel,
+    raw: RawSurface,
+    grading: f64,
+    n_vertices: usize,
+) -> Option<RestSurface> {
     let n_raw = raw.positions.len();
     if n_raw < n_vertices || genus(&raw) != Some(model.genus) {
         return None;
     }
-    let table = CornerTable::new(n_raw, &raw.faces)?;
+    let table = EditableCorners::new(n_raw, &raw.faces)?;
     let grain = raw.positions.par_iter().map(|&p| 1.0 + grading * (model.skeleton.grain(p) - 1.0)).collect();
-    let mut surface = Surface { table, positions: raw.positions, grain };
+    let mut surface = RestSurface { table, positions: raw.positions, grain };
     if simplify(&mut surface, n_vertices) != n_vertices {
         return None;
     }
@@ -72,7 +77,7 @@ pub(crate) fn genus(raw: &RawSurface) -> Option<usize> {
 }
 
 /// The positions of the surface in a pose, scaled and standing on the ground.
-pub(crate) fn posed_positions(surface: &Surface, posed: &PosedSkeleton, scale: f64) -> Vec<Point3<f64>> {
+pub(crate) fn posed_positions(surface: &RestSurface, posed: &PosedSkeleton, scale: f64) -> Vec<Point3<f64>> {
     let mut moved: Vec<Point3<f64>> =
         surface.positions.par_iter().map(|&p| posed.deform(p) * scale).collect();
     let ground = moved.iter().map(|p| p.z).fold(f64::INFINITY, f64::min);
@@ -81,7 +86,7 @@ pub(crate) fn posed_positions(surface: &Surface, posed: &PosedSkeleton, scale: f
 }
 
 /// A mesh of the surface with the given positions and with vertices and faces in random order.
-pub(crate) fn shuffled(surface: &Surface, positions: &[Point3<f64>], stream: &mut Stream) -> TriMesh {
+pub(crate) fn shuffled(surface: &RestSurface, positions: &[Point3<f64>], stream: &mut Stream) -> TriMesh {
     let order = stream.permutation(positions.len());
     let mut mesh = TriMesh { positions: vec![Point3::origin(); positions.len()], faces: Vec::new() };
     for (&p, &to) in positions.iter().zip(&order) {

@@ -6,12 +6,12 @@ use std::collections::BinaryHeap;
 use nalgebra::Point3;
 use surface::VertexId;
 
-use crate::corner_table::CornerTable;
+use crate::corner_table::EditableCorners;
 
 /// A closed surface under construction.
 #[derive(Debug, Clone)]
-pub(crate) struct Surface {
-    pub(crate) table: CornerTable,
+pub(crate) struct RestSurface {
+    pub(crate) table: EditableCorners,
     pub(crate) positions: Vec<Point3<f64>>,
     /// Target edge length at each vertex, up to a common factor.
     pub(crate) grain: Vec<f64>,
@@ -29,7 +29,7 @@ const MOST_NEIGHBORS: usize = 12;
 /// if its collapse would break the manifold or invert a triangle. Edges far shorter than those of the result are
 /// collapsed in a few sweeps, `O(m)` for the bulk, the others in the order of a queue, `O(k log k)` for the rest.
 /// Returns the number of vertices left, which exceeds `n_vertices` only if no other edge can be collapsed.
-pub(crate) fn simplify(surface: &mut Surface, n_vertices: usize) -> usize {
+pub(crate) fn simplify(surface: &mut RestSurface, n_vertices: usize) -> usize {
     let mut n_left = surface.table.vertices().count();
     // The cost c of the final edges: equilateral triangles cover 2 sqrt(3) c grains^2 per vertex.
     let final_cost = surface.area_in_grains() / (12f64.sqrt() * n_vertices as f64);
@@ -51,7 +51,7 @@ pub(crate) fn simplify(surface: &mut Surface, n_vertices: usize) -> usize {
 ///
 /// A vertex into which another was merged stays until the next sweep. Otherwise a whole region of short edges
 /// would collapse into a single vertex.
-fn sweep(surface: &mut Surface, limit: f64, mut n_left: usize, n_vertices: usize) -> usize {
+fn sweep(surface: &mut RestSurface, limit: f64, mut n_left: usize, n_vertices: usize) -> usize {
     let mut neighbors = Vec::new();
     let mut stays = vec![false; surface.positions.len()];
     for v in (0..surface.positions.len()).map(VertexId::from) {
@@ -75,7 +75,7 @@ fn sweep(surface: &mut Surface, limit: f64, mut n_left: usize, n_vertices: usize
     n_left
 }
 
-fn collapse_by_queue(surface: &mut Surface, mut n_left: usize, n_vertices: usize) -> usize {
+fn collapse_by_queue(surface: &mut RestSurface, mut n_left: usize, n_vertices: usize) -> usize {
     let mut entries = Vec::new();
     for v in surface.table.vertices() {
         entries.extend(surface.table.neighbors(v).filter(|&x| v < x).map(|x| Reverse(surface.entry(v, x))));
@@ -101,7 +101,7 @@ fn collapse_by_queue(surface: &mut Surface, mut n_left: usize, n_vertices: usize
     n_left
 }
 
-impl Surface {
+impl RestSurface {
     /// Renumbers vertices and faces without the removed ones.
     pub(crate) fn compact(&mut self) {
         self.positions = self.table.vertices().map(|v| self.positions[v.index()]).collect();
@@ -164,7 +164,7 @@ mod tests {
     use super::*;
 
     /// A sphere as a grid of latitudes and longitudes, dense at the poles.
-    fn globe(n: u32) -> Surface {
+    fn globe(n: u32) -> RestSurface {
         let pole = n * (n - 1);
         let at = |i: u32, j: u32| (i - 1) * n + j % n;
         let mut faces = Vec::new();
@@ -186,7 +186,7 @@ mod tests {
         positions.extend([Point3::new(0.0, 0.0, 1.0), Point3::new(0.0, 0.0, -1.0)]);
         let faces: Vec<_> = faces.iter().map(|f| f.map(VertexId)).collect();
         let grain = vec![1.0; positions.len()];
-        Surface { table: CornerTable::new(positions.len(), &faces).unwrap(), positions, grain }
+        RestSurface { table: EditableCorners::new(positions.len(), &faces).unwrap(), positions, grain }
     }
 
     #[test]
@@ -198,7 +198,7 @@ mod tests {
             assert_eq!(surface.positions.len(), n_vertices);
             let faces: Vec<_> = surface.table.faces().collect();
             assert_eq!(faces.len(), 2 * n_vertices - 4);
-            assert!(CornerTable::new(n_vertices, &faces).is_some());
+            assert!(EditableCorners::new(n_vertices, &faces).is_some());
         }
     }
 

@@ -4,7 +4,7 @@ use nalgebra::{Matrix3, Point3, Vector3};
 
 /// A point on the axis of a limb.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Node {
+pub(crate) struct BoneNode {
     pub(crate) at: Point3<f64>,
     /// Rough distance from the axis to the skin; it determines how far the chain reaches.
     pub(crate) radius: f64,
@@ -13,16 +13,8 @@ pub(crate) struct Node {
 }
 
 /// Short constructor for tables of nodes.
-pub(crate) fn node(at: [f64; 3], radius: f64, grain: f64) -> Node {
-    Node { at: at.into(), radius, grain }
-}
-
-impl Node {
-    /// The node scaled about the origin, then shifted, with the same grain.
-    pub(crate) fn moved(self, scale: f64, offset: [f64; 3]) -> Self {
-        let at = Point3::from(self.at.coords * scale + Vector3::from(offset));
-        Self { at, radius: self.radius * scale, grain: self.grain }
-    }
+pub(crate) fn node(at: [f64; 3], radius: f64, grain: f64) -> BoneNode {
+    BoneNode { at: at.into(), radius, grain }
 }
 
 /// A place where a chain bends.
@@ -50,30 +42,17 @@ pub(crate) struct JointId {
     pub(crate) joint: usize,
 }
 
-/// The same joint on the left (`x > 0`) and on the right.
-pub(crate) type JointPair = [JointId; 2];
-
-/// The first joints of a chain.
-pub(crate) fn joints<const N: usize>(chain: usize) -> [JointId; N] {
-    std::array::from_fn(|joint| JointId { chain, joint })
-}
-
-/// The first joints of a chain and of its mirror image.
-pub(crate) fn joint_pairs<const N: usize>(pair: [usize; 2]) -> [JointPair; N] {
-    std::array::from_fn(|joint| pair.map(|chain| JointId { chain, joint }))
-}
-
 /// A sequence of bones, such as an arm or a spine.
 #[derive(Debug, Clone)]
 pub(crate) struct Chain {
     /// The chain to which this one is attached, and the length along it; parents come earlier in the skeleton.
     pub(crate) parent: Option<(usize, f64)>,
-    pub(crate) nodes: Vec<Node>,
+    pub(crate) nodes: Vec<BoneNode>,
     /// Length of the axis from the first node to each node.
     pub(crate) arcs: Vec<f64>,
     pub(crate) joints: Vec<Joint>,
     /// Whether it is the mirror image, under `x -> -x`, of the chain for which its joints were described.
-    pub(crate) side: Side,
+    pub(crate) side: BodySide,
 }
 
 impl Chain {
@@ -91,7 +70,7 @@ impl Chain {
 }
 
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum Side {
+pub(crate) enum BodySide {
     /// As described: in the middle, or at `x > 0`.
     Left,
     /// Mirrored.
@@ -119,7 +98,7 @@ impl Skeleton {
     pub(crate) fn chain(
         &mut self,
         parent: Option<(usize, usize)>,
-        nodes: Vec<Node>,
+        nodes: Vec<BoneNode>,
         joints: Vec<Joint>,
     ) -> usize {
         let mut arcs = vec![0.0];
@@ -127,7 +106,7 @@ impl Skeleton {
             arcs.push(arcs[arcs.len() - 1] + (pair[1].at - pair[0].at).norm());
         }
         let parent = parent.map(|(chain, node)| (chain, self.chains[chain].arcs[node]));
-        self.chains.push(Chain { parent, nodes, arcs, joints, side: Side::Left });
+        self.chains.push(Chain { parent, nodes, arcs, joints, side: BodySide::Left });
         self.chains.len() - 1
     }
 
@@ -135,7 +114,7 @@ impl Skeleton {
     pub(crate) fn pair(
         &mut self,
         parent: (usize, usize),
-        nodes: Vec<Node>,
+        nodes: Vec<BoneNode>,
         joints: Vec<Joint>,
     ) -> [usize; 2] {
         let left = self.chain(Some(parent), nodes, joints);
@@ -143,26 +122,9 @@ impl Skeleton {
         for node in &mut mirrored.nodes {
             node.at.x = -node.at.x;
         }
-        mirrored.side = Side::Right;
+        mirrored.side = BodySide::Right;
         self.chains.push(mirrored);
         [left, left + 1]
-    }
-
-    /// Adds a tail attached to node `parent.1` of chain `parent.0`: from the node `root` along the points `axis` with
-    /// the given `grains`, with a joint at each of the first nodes of `axis` that has the given play.
-    pub(crate) fn tail<const N: usize>(
-        &mut self,
-        parent: (usize, usize),
-        root: Node,
-        axis: [[f64; 3]; N],
-        radius: f64,
-        grains: [f64; N],
-        plays: &[[f64; 3]],
-    ) -> usize {
-        let along = axis.into_iter().zip(grains).map(|(at, grain)| node(at, radius, grain));
-        let nodes = std::iter::once(root).chain(along).collect();
-        let joints = (1..).zip(plays).map(|(i, &play)| Joint::ball(i, 7.0, 9.0, play)).collect();
-        self.chain(Some(parent), nodes, joints)
     }
 
     /// The membership of `p` in each chain.
@@ -204,25 +166,12 @@ impl Joint {
         Self { node, before, after, frame: Matrix3::identity(), play }
     }
 
-    /// A joint of a leg that points down; it flexes about the x axis.
-    pub(crate) fn leg(node: usize, before: f64, after: f64, play: f64) -> Self {
-        Self::hinge(node, before, after, [1.0, 0.0, 0.0], [0.0, 0.0, -1.0], play)
-    }
-
-    /// A joint that flexes about `axis`; its second axis is the direction `along` of the limb.
-    pub(crate) fn hinge(
-        node: usize,
-        before: f64,
-        after: f64,
-        axis: [f64; 3],
-        along: [f64; 3],
-        play: f64,
-    ) -> Self {
+    /// The same joint with axes of its own: it flexes about `axis`, and its second axis is the direction `along` of the limb.
+    pub(crate) fn hinge(self, axis: [f64; 3], along: [f64; 3]) -> Self {
         let x = Vector3::from(axis).normalize();
         let along = Vector3::from(along);
         let y = (along - x * x.dot(&along)).normalize();
-        let frame = Matrix3::from_columns(&[x, y, x.cross(&y)]);
-        Self { node, before, after, frame, play: [play, 0.0, 0.0] }
+        Self { frame: Matrix3::from_columns(&[x, y, x.cross(&y)]), ..self }
     }
 }
 
@@ -261,7 +210,7 @@ mod tests {
 
     #[test]
     fn a_hinge_has_an_orthogonal_frame() {
-        let hinge = Joint::hinge(1, 1.0, 1.0, [1.0, 0.2, 0.0], [0.3, 0.1, -2.0], 5.0);
+        let hinge = Joint::ball(1, 1.0, 1.0, [5.0; 3]).hinge([1.0, 0.2, 0.0], [0.3, 0.1, -2.0]);
         assert!((hinge.frame.transpose() * hinge.frame - Matrix3::identity()).norm() < 1e-12);
         assert!((hinge.frame.determinant() - 1.0).abs() < 1e-12);
     }

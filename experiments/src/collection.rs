@@ -4,13 +4,12 @@ use std::collections::BTreeSet;
 use std::path::PathBuf;
 
 use anyhow::{Context, Result, bail};
-use canonform::{LabelFile, Observer, Surface, list_shapes};
+use canonform::{LabelFile, Observer, Surface, list_shapes, read_surface};
 use clap::Args;
 use mesh::RepairOptions;
 use rayon::prelude::*;
 
 use crate::families::Families;
-use crate::quoted::quoted;
 
 /// Name of the built-in dataset in records.
 pub(crate) const BUILT_IN: &str = "built-in articulated families";
@@ -31,7 +30,7 @@ const VERTICES: usize = 3400;
 
 /// Where the shapes come from, on the command line.
 #[derive(Debug, Args)]
-pub(crate) struct Source {
+pub(crate) struct ShapeSource {
     /// A folder of meshes; classes come from sub-folders or from the leading letters of file names
     /// [default: the built-in articulated families]
     #[arg(long, value_name = "DIR")]
@@ -60,32 +59,7 @@ pub(crate) struct Source {
     pub(crate) seed: u64,
 }
 
-impl Source {
-    /// The options that differ from their defaults, each after a space.
-    pub(crate) fn arguments(&self) -> String {
-        let mut arguments = String::new();
-        if let Some(folder) = &self.dataset {
-            arguments += &format!(" --dataset {}", quoted(&folder.display().to_string()));
-        } else {
-            if self.families != [Families::Articulated] {
-                arguments += &format!(" --families {}", self.families());
-            }
-            if self.vertices != VERTICES {
-                arguments += &format!(" --vertices {}", self.vertices);
-            }
-        }
-        if let Some(labels) = &self.labels {
-            arguments += &format!(" --labels {}", quoted(&labels.display().to_string()));
-        }
-        if !self.classes.is_empty() {
-            arguments += &format!(" --classes {}", quoted(&self.classes.join(",")));
-        }
-        if self.seed != 0 {
-            arguments += &format!(" --seed {}", self.seed);
-        }
-        arguments
-    }
-
+impl ShapeSource {
     /// The built-in families, as on the command line.
     fn families(&self) -> String {
         self.families.iter().map(ToString::to_string).collect::<Vec<_>>().join(",")
@@ -93,23 +67,23 @@ impl Source {
 }
 
 /// Labelled surfaces, sorted by class.
-pub(crate) struct Collection {
+pub(crate) struct SurfaceCollection {
     /// The folder, or the name of the built-in dataset.
     pub(crate) dataset: String,
     /// The classes, in the order of the shapes.
     pub(crate) classes: Vec<String>,
-    pub(crate) shapes: Vec<Shape>,
+    pub(crate) shapes: Vec<LabeledSurface>,
 }
 
-pub(crate) struct Shape {
+pub(crate) struct LabeledSurface {
     pub(crate) name: String,
     pub(crate) label: String,
     pub(crate) surface: Surface,
 }
 
-impl Collection {
+impl SurfaceCollection {
     /// Generates or reads the shapes. Files that cannot be read are reported on standard error and left out.
-    pub(crate) fn load(args: &Source, observer: &dyn Observer) -> Result<Self> {
+    pub(crate) fn load(args: &ShapeSource, observer: &dyn Observer) -> Result<Self> {
         let repair = RepairOptions::default();
         let takes_all = args.classes == [ALL_CLASSES];
         let mut wanted = if takes_all { Vec::new() } else { args.classes.clone() };
@@ -121,7 +95,8 @@ impl Collection {
                     shapes.extend(families.generate(args.seed, args.vertices)?);
                 }
                 let shape = |shape: datasets::LabeledShape| {
-                    (shape.name, shape.label, Surface::new(&shape.mesh, &repair))
+                    let surface = Surface::new(&shape.mesh, &repair, &()).map_err(canonform::Error::from);
+                    (shape.name, shape.label, surface)
                 };
                 let dataset = match args.families[..] {
                     [Families::Articulated] => BUILT_IN.to_owned(),
@@ -141,7 +116,7 @@ impl Collection {
                 files.retain(|file| wanted.is_empty() || wanted.contains(&file.label));
                 observer.begin("reading", files.len());
                 let shape = |file: canonform::ShapeFile| {
-                    let surface = Surface::read(&file.path, &repair);
+                    let surface = read_surface(&file.path, &repair, &Default::default(), &());
                     observer.step();
                     (file.name, file.label, surface)
                 };
@@ -151,7 +126,7 @@ impl Collection {
         let mut shapes = Vec::new();
         for (name, label, surface) in found {
             match surface {
-                Ok(surface) => shapes.push(Shape { name, label, surface }),
+                Ok(surface) => shapes.push(LabeledSurface { name, label, surface }),
                 Err(fault) => eprintln!("left out {name}: {fault}"),
             }
         }
@@ -159,7 +134,7 @@ impl Collection {
     }
 
     /// Sorts shapes by class, in the order of `wanted`, or of first appearance if it is empty.
-    fn in_class_order(dataset: String, mut shapes: Vec<Shape>, wanted: &[String]) -> Result<Self> {
+    fn in_class_order(dataset: String, mut shapes: Vec<LabeledSurface>, wanted: &[String]) -> Result<Self> {
         let mut classes = wanted.to_vec();
         if classes.is_empty() {
             for shape in &shapes {
@@ -197,12 +172,12 @@ impl Collection {
         }
     }
 
-    pub(crate) fn all(&self) -> Vec<&Shape> {
+    pub(crate) fn all(&self) -> Vec<&LabeledSurface> {
         self.shapes.iter().collect()
     }
 
     /// Up to `n` shapes of each class.
-    pub(crate) fn first_of_each_class(&self, n: usize) -> Vec<&Shape> {
+    pub(crate) fn first_of_each_class(&self, n: usize) -> Vec<&LabeledSurface> {
         let of = |class: &'_ String| {
             let class = class.clone();
             self.shapes.iter().filter(move |shape| shape.label == class).take(n)
@@ -213,13 +188,13 @@ impl Collection {
 
 /// Calls `work` on all shapes in parallel. Every shape is a step of `stage`.
 pub(crate) fn map<T: Send>(
-    shapes: &[&Shape],
+    shapes: &[&LabeledSurface],
     stage: &str,
     observer: &dyn Observer,
-    work: impl Fn(&Shape) -> Result<T> + Sync,
+    work: impl Fn(&LabeledSurface) -> Result<T> + Sync,
 ) -> Result<Vec<T>> {
     observer.begin(stage, shapes.len());
-    let one = |shape: &&Shape| {
+    let one = |shape: &&LabeledSurface| {
         let result = work(shape).with_context(|| shape.name.clone());
         observer.step();
         result

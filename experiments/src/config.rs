@@ -1,107 +1,77 @@
-//! The configuration of an experiment, `configs/*.toml`: options, expectations and analysis.
+//! The configuration of an experiment, `configs/*.toml`: options of its own, expectations and analysis.
+
+use std::collections::BTreeMap;
 
 use anyhow::{Context, Result, bail};
-use canonform::{EmbedMethod, FormOptions, Samples};
-use geodesics::{FastMarchingOptions, Method, ObtuseTreatment};
-use nmds::Bandwidth;
 use report::results::Expectation;
 use serde::Deserialize;
 
-use crate::bound::Bound;
 use crate::collection::Setting;
 use crate::prose::Paragraph;
-use crate::sweep::Measured;
+use crate::sweep::MeasuredNumbers;
 
+/// Numbers printed in the paper, by row (a class, or a number of vertices) and method.
+pub(crate) type Printed = BTreeMap<String, BTreeMap<String, f64>>;
+
+/// A configuration.
+#[derive(Debug)]
+pub(crate) struct Config {
+    /// What the experiment reads.
+    pub(crate) options: toml::Table,
+    pub(crate) findings: Findings,
+}
+
+/// What all configurations have in common.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct Config {
-    /// Samples of the Nyström methods; 0 if the experiment varies them.
+pub(crate) struct Findings {
     #[serde(default)]
-    pub(crate) samples: usize,
-    /// Eigenpairs that they keep; 0 if the experiment varies them.
+    expect: Vec<Bound>,
+    /// Of the figure, with numbers as in the analysis.
     #[serde(default)]
-    pub(crate) rank: usize,
-    /// Treatment of obtuse triangles in fast marching; by default that of the solver.
-    #[serde(default)]
-    pub(crate) obtuse: ObtuseTreatment,
-    /// Number of runs, which differ in the first sample or repeat a measurement of time.
-    #[serde(default = "one")]
-    pub(crate) runs: usize,
-    #[serde(default)]
-    pub(crate) eigenvectors: usize,
-    /// The values on the horizontal axis: numbers of samples, ranks or numbers of vertices.
-    #[serde(default)]
-    pub(crate) counts: Vec<usize>,
-    /// The values on the horizontal axis, as exponents of ten.
-    #[serde(default)]
-    pub(crate) exponents: Vec<f64>,
-    #[serde(default)]
-    printed: Vec<Printed>,
-    /// Shapes of each class that are damaged.
-    #[serde(default)]
-    pub(crate) queries: usize,
-    /// Number of nearest neighbours that vote.
-    #[serde(default = "one")]
-    pub(crate) knn: usize,
-    /// Training shapes of each class, for classification over random splits.
-    #[serde(default)]
-    pub(crate) training: Vec<usize>,
-    /// Number of random splits.
-    #[serde(default = "one")]
-    pub(crate) splits: usize,
-    /// Most shapes whose forms are all aligned with each other.
-    #[serde(default)]
-    pub(crate) aligned: usize,
-    #[serde(default)]
-    pub(crate) expect: Vec<Bound>,
+    pub(crate) caption: String,
     /// What the results show.
     analysis: Vec<Paragraph>,
 }
 
-fn one() -> usize {
-    1
-}
-
+/// Bounds on one of an experiment's numbers.
 #[derive(Debug, Clone, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct Printed {
-    /// Its row: a class, or a number of vertices.
-    pub(crate) row: String,
-    /// Its column: a method.
-    pub(crate) method: String,
-    pub(crate) value: f64,
+pub(crate) struct Bound {
+    /// Name of the number; the module of the experiment lists them.
+    pub(crate) value: String,
+    at_least: Option<f64>,
+    at_most: Option<f64>,
+    /// Whether the bounds themselves are excluded.
+    #[serde(default)]
+    strictly: bool,
+    /// Whether this is a goal that is known to be missed.
+    #[serde(default)]
+    goal: bool,
+    /// The collections to which it applies; all known ones if empty.
+    #[serde(default)]
+    on: Vec<Setting>,
 }
 
 impl Config {
     pub(crate) fn parse(name: &str, text: &str) -> Result<Self> {
-        toml::from_str(text).with_context(|| format!("experiments/configs/{name}.toml"))
+        let place = || format!("experiments/configs/{name}.toml");
+        let mut options: toml::Table = toml::from_str(text).with_context(place)?;
+        let findings =
+            ["expect", "caption", "analysis"].into_iter().filter_map(|key| options.remove_entry(key));
+        let findings = toml::Table::from_iter(findings).try_into().with_context(place)?;
+        Ok(Self { options, findings })
     }
 
-    /// The options of the paper's method.
-    pub(crate) fn nmds(&self, seed: u64) -> FormOptions {
-        let marching = FastMarchingOptions { obtuse: self.obtuse, ..FastMarchingOptions::default() };
-        FormOptions {
-            geodesic: Method::FastMarching(marching),
-            samples: Samples::Count(self.samples),
-            method: EmbedMethod::low_rank(self.rank),
-            seed,
-            ..FormOptions::default()
-        }
+    /// The options that are whole numbers, which texts may state.
+    pub(crate) fn counts(&self) -> impl Iterator<Item = (&str, f64)> {
+        self.options.iter().filter_map(|(name, value)| Some((name.as_str(), value.as_integer()? as f64)))
     }
+}
 
-    /// The options of the baseline, kernel PCA.
-    pub(crate) fn kernel_pca(&self, seed: u64) -> FormOptions {
-        let method = EmbedMethod::KernelPca { rank: Some(self.rank), bandwidth: Bandwidth::Mean };
-        FormOptions { method, ..self.nmds(seed) }
-    }
-
-    /// A number printed in the paper.
-    pub(crate) fn printed(&self, row: &str, method: &str) -> Option<f64> {
-        self.printed.iter().find(|p| p.row == row && p.method == method).map(|p| p.value)
-    }
-
+impl Findings {
     /// Compares the expectations that apply with what was measured.
-    pub(crate) fn check(&self, setting: Setting, measured: &Measured) -> Result<Vec<Expectation>> {
+    pub(crate) fn check(&self, setting: Setting, measured: &MeasuredNumbers) -> Result<Vec<Expectation>> {
         let applies = |bound: &&Bound| match setting {
             Setting::Other => false,
             _ => bound.on.is_empty() || bound.on.contains(&setting),
@@ -113,7 +83,12 @@ impl Config {
     ///
     /// A paragraph about a number that was not measured is left out if the collection is an unknown one, and an error
     /// otherwise.
-    pub(crate) fn analysis(&self, setting: Setting, numbers: &Measured, shapes: &[&str]) -> Result<String> {
+    pub(crate) fn analysis(
+        &self,
+        setting: Setting,
+        numbers: &MeasuredNumbers,
+        shapes: &[&str],
+    ) -> Result<String> {
         let mut text = Vec::new();
         for paragraph in self.analysis.iter().filter(|p| p.on.is_empty() || p.on.contains(&setting)) {
             match paragraph.write(numbers, shapes) {
@@ -135,7 +110,7 @@ impl Bound {
         self.at_least.is_none_or(above) && self.at_most.is_none_or(below)
     }
 
-    fn check(&self, measured: &Measured) -> Result<Expectation> {
+    fn check(&self, measured: &MeasuredNumbers) -> Result<Expectation> {
         let value =
             *measured.get(&self.value).with_context(|| format!("nothing measures `{}`", self.value))?;
         let strict = if self.strictly { " (strictly)" } else { "" };
@@ -162,7 +137,7 @@ fn digits(value: f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use report::results::Outcome;
+    use report::results::ExpectationOutcome;
 
     use super::*;
 
@@ -188,20 +163,20 @@ mod tests {
     fn bounds_apply_to_their_collections_and_may_be_strict() {
         let config = Config::parse("test", TEXT).unwrap();
         let held = |setting, x: f64| {
-            let found = config.check(setting, &[("x".to_owned(), x)].into()).unwrap();
+            let found = config.findings.check(setting, &[("x".to_owned(), x)].into()).unwrap();
             found.iter().map(|e| e.held).collect::<Vec<_>>()
         };
         assert_eq!(held(Setting::BuiltIn, 1.0), [true]);
         assert_eq!(held(Setting::Paper, 1.0), [true, false]);
         assert_eq!(held(Setting::Paper, 0.5), [false, false]);
         assert!(held(Setting::Other, 0.0).is_empty());
-        assert!(config.check(Setting::Paper, &Measured::new()).is_err());
+        assert!(config.findings.check(Setting::Paper, &MeasuredNumbers::new()).is_err());
     }
 
     #[test]
     fn texts_follow_the_numbers_and_the_collection() {
         let config = Config::parse("test", TEXT).unwrap();
-        let text = |setting, x: f64| config.analysis(setting, &[("x".to_owned(), x)].into(), &[]);
+        let text = |setting, x: f64| config.findings.analysis(setting, &[("x".to_owned(), x)].into(), &[]);
         assert_eq!(text(Setting::BuiltIn, 1.0).unwrap(), "x is 1.");
         assert_eq!(text(Setting::BuiltIn, 2.5).unwrap(), "x is 2.50.");
         assert_eq!(text(Setting::Other, 2.5).unwrap(), "x is 2.50.");
@@ -211,16 +186,16 @@ mod tests {
     #[test]
     fn a_goal_that_is_missed_is_no_failure() {
         let config = Config::parse("test", &TEXT.replacen("strictly = true", "goal = true", 1)).unwrap();
-        let found = config.check(Setting::Paper, &[("x".to_owned(), 0.5)].into()).unwrap();
+        let found = config.findings.check(Setting::Paper, &[("x".to_owned(), 0.5)].into()).unwrap();
         assert_eq!(
             found.iter().map(Expectation::outcome).collect::<Vec<_>>(),
-            [Outcome::Failed, Outcome::Missed]
+            [ExpectationOutcome::Failed, ExpectationOutcome::Missed]
         );
     }
 
     #[test]
     fn unknown_keys_are_errors_that_name_the_key() {
-        let fault = Config::parse("test", &format!("typo = 1\n{TEXT}")).unwrap_err();
+        let fault = Config::parse("test", &format!("{TEXT}\ntypo = 1")).unwrap_err();
         assert!(format!("{fault:#}").contains("typo"));
     }
 }

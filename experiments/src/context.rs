@@ -4,26 +4,28 @@ use std::io::Write;
 use std::path::Path;
 use std::time::Instant;
 
-use anyhow::Result;
-use canonform::{FormOptions, Observer, StressChoice};
+use anyhow::{Result, anyhow};
+use base::terminal::Bars;
+use canonform::{DescribeOptions, Observer};
 use geodesics::{Sampling, Variance};
 use linalg::LandmarkDistances;
-use report::results::{CurvesPanel, CurvesResults, Expectation, Provenance, Published, Record, Series};
+use report::results::{CurvesPanel, CurvesResults, Expectation, Published, Record, RunProvenance, Series};
 use report::{Results, save};
-use terminal::Bars;
+use serde_json::{Map, Value};
 
-use crate::collection::{Collection, Setting};
-use crate::config::Config;
+use crate::collection::{Setting, SurfaceCollection};
+use crate::config::{Config, Printed};
 use crate::machine;
+use crate::prose::filled;
 use crate::specimen::{Distances, Specimen};
-use crate::sweep::{Measured, curves, places};
+use crate::sweep::{MeasuredNumbers, curves, note, places};
 
 /// What every experiment gets.
 pub(crate) struct Context<'a> {
     /// Name of the experiment, and of its files.
     pub(crate) name: &'static str,
     pub(crate) config: Config,
-    pub(crate) collection: &'a Collection,
+    pub(crate) collection: &'a SurfaceCollection,
     /// A few of its shapes, with values that several experiments share, such as the distances of all pairs of vertices.
     pub(crate) specimens: &'a [Specimen<'a>],
     pub(crate) seed: u64,
@@ -40,9 +42,16 @@ pub(crate) struct Context<'a> {
 }
 
 impl Context<'_> {
-    /// How a record was made, up to now.
-    pub(crate) fn provenance(&self, options: serde_json::Value) -> Provenance {
-        Provenance {
+    /// How a record was made, up to now: with the configuration, and with these descriptions or forms by name.
+    pub(crate) fn provenance(&self, made: &[(&str, &DescribeOptions)]) -> RunProvenance {
+        let mut options: Map<String, Value> = self
+            .config
+            .options
+            .iter()
+            .map(|(name, value)| (name.clone(), serde_json::to_value(value).unwrap_or_default()))
+            .collect();
+        options.extend(made.iter().map(|(name, made)| ((*name).to_owned(), made.text().into())));
+        RunProvenance {
             program: "canonform experiments".to_owned(),
             version: env!("CARGO_PKG_VERSION").to_owned(),
             commit: env!("CANONFORM_COMMIT").to_owned(),
@@ -53,29 +62,22 @@ impl Context<'_> {
             dataset: self.collection.dataset.clone(),
             classes: self.collection.classes.clone(),
             seed: self.seed,
-            options,
+            options: options.into(),
             seconds: [("run".to_owned(), self.start.elapsed().as_secs_f64())].into(),
         }
     }
 
-    /// The options of an experiment on specimens, as a record states them.
-    pub(crate) fn setup(&self, specimens: &[Specimen<'_>]) -> serde_json::Value {
-        let config = &self.config;
-        serde_json::json!({
-            "shapes": specimens.iter().map(Specimen::name).collect::<Vec<_>>(),
-            "samples": config.samples,
-            "rank": config.rank,
-            "runs": config.runs,
-            "eigenvectors": config.eigenvectors,
-            "counts": config.counts,
-            "exponents": config.exponents,
-            "distances": format!("{:?}", Distances::default().method),
-        })
+    /// How a record on the specimens was made.
+    pub(crate) fn of_specimens(&self) -> RunProvenance {
+        let mut provenance = self.provenance(&[]);
+        provenance.options["shapes"] = self.specimens.iter().map(Specimen::name).collect();
+        provenance
     }
 
     /// A number printed in the paper, if the collection is that of the paper.
-    pub(crate) fn printed(&self, row: &str, method: &str) -> Option<f64> {
-        self.config.printed(row, method).filter(|_| self.collection.setting() == Setting::Paper)
+    pub(crate) fn printed(&self, printed: &Printed, row: &str, method: &str) -> Option<f64> {
+        let number = printed.get(row)?.get(method).copied();
+        number.filter(|_| self.collection.setting() == Setting::Paper)
     }
 
     /// Compares the results with the configured expectations, writes their record and figures, and prints the
@@ -83,18 +85,18 @@ impl Context<'_> {
     pub(crate) fn publish(
         &self,
         results: impl Results,
-        provenance: Provenance,
-        measured: &Measured,
+        provenance: RunProvenance,
+        measured: &MeasuredNumbers,
     ) -> Result<()> {
         let setting = self.collection.setting();
-        let expectations = self.config.check(setting, measured)?;
+        let expectations = self.config.findings.check(setting, measured)?;
         self.bars.finish();
         for Expectation { what, expected, measured, goal, .. } in expectations.iter().filter(|e| !e.held) {
             let kind = if *goal { "goal missed" } else { "not as expected" };
             eprintln!("{kind}: {what} is {measured}, {expected}");
         }
         let shapes: Vec<&str> = self.specimens.iter().map(Specimen::label).collect();
-        let analysis = self.config.analysis(setting, &self.known(measured), &shapes)?;
+        let analysis = self.config.findings.analysis(setting, &self.known(measured), &shapes)?;
         let measured = measured.iter().filter(|(_, value)| value.is_finite());
         let measured = measured.map(|(name, value)| (name.clone(), *value)).collect();
         let record = Record { provenance, results, measured, expectations, analysis };
@@ -105,37 +107,38 @@ impl Context<'_> {
         Ok(())
     }
 
-    /// The numbers that texts may use: what was measured, options, the size of the collection.
-    fn known(&self, measured: &Measured) -> Measured {
-        let Config { samples, rank, runs, eigenvectors, knn, .. } = self.config;
-        let own = [
-            ("samples", samples),
-            ("rank", rank),
-            ("runs", runs),
-            ("eigenvectors", eigenvectors),
-            ("voters", knn),
-            ("shapes", self.collection.shapes.len()),
+    /// The numbers that texts may use: what was measured, options, sizes.
+    fn known(&self, measured: &MeasuredNumbers) -> MeasuredNumbers {
+        let n = self.collection.shapes.len();
+        let queries = self.config.options.get("queries").and_then(toml::Value::as_integer);
+        let queried = queries.map_or(0, |n| self.collection.first_of_each_class(n as usize).len());
+        let sizes = [
+            ("shapes", n),
+            ("others", n.saturating_sub(1)),
             ("classes", self.collection.classes.len()),
+            ("queried", queried),
+            ("threads", rayon::current_num_threads()),
         ];
+        let own = self.config.counts().chain(sizes.map(|(name, n)| (name, n as f64)));
         let mut known = measured.clone();
-        known.extend(own.map(|(name, value)| (name.to_owned(), value as f64)));
+        known.extend(own.map(|(name, value)| (name.to_owned(), value)));
         known
     }
 
-    /// The curves of all methods over the configured counts n, from runs that differ in the first sample.
+    /// The curves of all methods over the counts n, from runs that differ in the first sample.
     ///
     /// `farthest` returns the values of all methods but the last two for n farthest samples. These are `half` of the
     /// columns of hop counts, and of samples of least variance.
     pub(crate) fn sweep(
         &self,
         specimen: &Specimen<'_>,
+        (n_runs, counts): (usize, &[usize]),
         methods: &[&str],
         farthest: impl Fn(&LandmarkDistances) -> Result<Vec<f64>>,
         half: impl Fn(&LandmarkDistances) -> Result<f64>,
     ) -> Result<Vec<Series>> {
-        let counts = &self.config.counts;
         let mut runs: Vec<Vec<Vec<f64>>> = vec![Vec::new(); methods.len()];
-        for first in specimen.first_samples(self.config.runs, self.seed) {
+        for first in specimen.first_samples(n_runs, self.seed) {
             let nested = |distances, sampling| specimen.nested(&distances, sampling, first, counts);
             let samples = nested(Distances::default(), Sampling::Farthest)?;
             let hops = nested(Distances::hops(), Sampling::Farthest)?;
@@ -151,28 +154,36 @@ impl Context<'_> {
         Ok(curves(methods, &places(counts), &runs))
     }
 
+    /// Publishes curves under the configured caption.
     pub(crate) fn publish_curves(
         &self,
-        caption: String,
         panels: Vec<CurvesPanel>,
-        measured: &Measured,
+        provenance: RunProvenance,
+        measured: &MeasuredNumbers,
     ) -> Result<()> {
-        let provenance = self.provenance(self.setup(self.specimens));
+        let number = |name: &str| self.known(measured).get(name).copied();
+        let caption = filled(&self.config.findings.caption, number);
+        let caption = caption.map_err(|name| anyhow!("the caption: nothing measures `{name}`"))?;
         self.publish(CurvesResults { caption, panels }, provenance, measured)
     }
-}
 
-/// The options of embeddings by name, as a record states them.
-pub(crate) fn described(options: &[(&str, &FormOptions)], stress: StressChoice) -> serde_json::Value {
-    let of_embedding = |options: &FormOptions| {
-        serde_json::json!({
-            "method": format!("{:?}", options.method),
-            "geodesic": format!("{:?}", options.geodesic),
-            "samples": format!("{:?}", options.samples),
-            "first_sample": format!("{:?}", options.first_sample),
-            "dim": options.dim,
-            "stress": format!("{stress:?}"),
-        })
-    };
-    options.iter().map(|(name, options)| ((*name).to_owned(), of_embedding(options))).collect()
+    /// Publishes a panel for every specimen, and its numbers after the class; each panel is `steps` of progress.
+    pub(crate) fn publish_panels(
+        &self,
+        steps: usize,
+        of: impl Fn(&Specimen<'_>) -> Result<(CurvesPanel, Vec<(String, f64)>)>,
+    ) -> Result<()> {
+        let (mut panels, mut measured) = (Vec::new(), MeasuredNumbers::new());
+        self.observer.begin(self.name, self.specimens.len() * steps);
+        for specimen in self.specimens {
+            let (panel, numbers) = of(specimen)?;
+            panels.push(panel);
+            note(
+                &mut measured,
+                specimen.label(),
+                numbers.iter().map(|(name, number)| (name.as_str(), *number)),
+            );
+        }
+        self.publish_curves(panels, self.of_specimens(), &measured)
+    }
 }

@@ -6,7 +6,7 @@ use datasets::LabeledShape;
 use descriptors::PreparedShape;
 
 /// A built-in shape, with the number of its body within the family.
-pub(crate) struct Described {
+pub(crate) struct DescribedBody {
     pub(crate) label: String,
     pub(crate) seed: u64,
     pub(crate) body: usize,
@@ -14,10 +14,10 @@ pub(crate) struct Described {
     pub(crate) shape: PreparedShape,
 }
 
-impl Described {
+impl DescribedBody {
     pub(crate) fn new(shape: &LabeledShape, seed: u64, body: usize) -> Result<Self> {
         let options = DescribeOptions::default();
-        let description = describe(&Surface::new(&shape.mesh, &options.form.repair)?, &options)?;
+        let description = describe(&Surface::new(&shape.mesh, &options.form.repair, &())?, &options, &())?;
         let prepared = description.prepare()?;
         Ok(Self { label: shape.label.clone(), seed, body, description, shape: prepared })
     }

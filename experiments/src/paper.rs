@@ -1,59 +1,62 @@
-//! The comparison with the paper as a page of Markdown, `docs/paper.md`.
+//! Our numbers beside those of the paper: a section of a page of Markdown, `docs/paper.md`.
 //!
-//! `paper.md` (a text with `{EXPERIMENT/NAME: FORMAT}` for numbers, see [`prose`](crate::prose)) + records -> the page, and
-//! beside it the numbers that it states, as JSON.
+//! `configs/paper.txt` (a text with `{EXPERIMENT/NAME: FORMAT}` for numbers, see [`prose`](crate::prose)) + records -> the
+//! section, and beside the page the numbers that it states, as JSON. The rest of the page is written by hand.
 
 use std::cell::RefCell;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-use anyhow::{Result, anyhow};
-use files::write_bytes;
-use report::results::{Provenance, read};
+use anyhow::{Context, Result, anyhow};
+use base::files::write_bytes;
+use report::results::{RunProvenance, read};
 use serde::{Deserialize, Serialize};
 
 use crate::prose::filled;
-use crate::sweep::Measured;
+use crate::sweep::MeasuredNumbers;
 
-const TEMPLATE: &str = include_str!("../paper.md");
+const TEMPLATE: &str = include_str!("../configs/paper.txt");
 
 /// Stands for how the numbers were made.
 const MADE: &str = "MADE";
 
+/// The comments around the section in its page.
+const BOUNDS: [&str; 2] = ["<!-- make paper begins -->\n", "<!-- make paper ends -->\n"];
+
 /// The numbers of one experiment that the page states.
 #[derive(Debug, Default, Serialize, Deserialize)]
-struct Numbers {
+struct StatedNumbers {
     /// Version, commit, machine and day.
     made: String,
-    measured: Measured,
+    measured: MeasuredNumbers,
 }
 
 /// The numbers by experiment.
-type Known = BTreeMap<String, Numbers>;
+type KnownNumbers = BTreeMap<String, StatedNumbers>;
 
-/// Writes the page and its numbers from the records in a folder.
+/// Writes the section of the page and its numbers from the records in a folder.
 pub(crate) fn write(folder: &Path, path: &Path) -> Result<()> {
     #[derive(Deserialize)]
-    struct Made {
-        provenance: Provenance,
+    struct MadeRecord {
+        provenance: RunProvenance,
         #[serde(default)]
-        measured: Measured,
+        measured: MeasuredNumbers,
     }
     let names = RefCell::new(BTreeSet::new());
     filled(TEMPLATE, |name| {
         names.borrow_mut().insert(name.to_owned());
         Some(0.0)
     })
-    .map_err(|field| anyhow!("experiments/paper.md: `{field}` is not closed"))?;
-    let mut known = Known::new();
+    .map_err(|field| anyhow!("experiments/configs/paper.txt: `{field}` is not closed"))?;
+    let mut known = KnownNumbers::new();
     for name in names.take() {
         let (experiment, number) = name.split_once('/').unwrap_or((&name, ""));
         if !known.contains_key(experiment) {
-            let Made { provenance: p, measured } = read(folder.join(format!("{experiment}.json")))?;
+            let MadeRecord { provenance: p, measured } = read(folder.join(format!("{experiment}.json")))?;
             let commit = if p.commit.is_empty() { String::new() } else { format!(", commit {}", p.commit) };
             let day = p.date.split(' ').next().unwrap_or_default();
             let made = format!("version {}{commit}, {}, {day}", p.version, p.machine);
-            known.insert(experiment.to_owned(), Numbers { made, measured });
+            known.insert(experiment.to_owned(), StatedNumbers { made, measured });
         }
         if !known.get(experiment).is_some_and(|numbers| numbers.measured.contains_key(number)) {
             return Err(anyhow!(
@@ -65,25 +68,35 @@ pub(crate) fn write(folder: &Path, path: &Path) -> Result<()> {
     for (experiment, numbers) in &mut known {
         numbers.measured.retain(|number, _| stated(experiment, number));
     }
-    write_bytes(path, page(&known)?.as_bytes())?;
+    let page = std::fs::read_to_string(path)
+        .with_context(|| format!("cannot read {}, whose section is to be written", path.display()))?;
+    write_bytes(path, updated(&page, &section(&known)?)?.as_bytes())?;
     let mut json = serde_json::to_vec_pretty(&known)?;
     json.push(b'\n');
     Ok(write_bytes(&path.with_extension("json"), &json)?)
 }
 
-/// The page with these numbers.
-fn page(known: &Known) -> Result<String> {
+/// The page with another section.
+fn updated(page: &str, section: &str) -> Result<String> {
+    let [begin, end] = BOUNDS;
+    let parts = page.split_once(begin).and_then(|(before, rest)| Some((before, rest.split_once(end)?.1)));
+    let (before, after) = parts.ok_or_else(|| anyhow!("the page has no section `make paper`"))?;
+    Ok([before, begin, section, end, after].concat())
+}
+
+/// The section with these numbers.
+fn section(known: &KnownNumbers) -> Result<String> {
     let number = |name: &str| -> Option<f64> {
         let (experiment, number) = name.split_once('/')?;
         known.get(experiment)?.measured.get(number).copied()
     };
-    let page = filled(TEMPLATE, number).map_err(|name| anyhow!("nothing measures `{name}`"))?;
+    let section = filled(TEMPLATE, number).map_err(|name| anyhow!("nothing measures `{name}`"))?;
     let mut made: BTreeMap<&str, Vec<&str>> = BTreeMap::new();
     for (experiment, numbers) in known {
         made.entry(&numbers.made).or_default().push(experiment);
     }
     let made = made.iter().map(|(made, experiments)| format!("* {made}: {}", experiments.join(", ")));
-    Ok(page.replacen(MADE, &made.collect::<Vec<_>>().join("\n"), 1) + "\n")
+    Ok(section.replacen(MADE, &made.collect::<Vec<_>>().join("\n"), 1) + "\n")
 }
 
 #[cfg(test)]
@@ -98,17 +111,18 @@ mod tests {
 
     #[test]
     fn the_committed_page_states_its_numbers() {
-        let known: Known = serde_json::from_str(&committed("json")).unwrap();
-        assert_eq!(page(&known).unwrap(), committed("md"), "run `make paper`");
+        let known: KnownNumbers = serde_json::from_str(&committed("json")).unwrap();
+        let page = committed("md");
+        assert_eq!(updated(&page, &section(&known).unwrap()).unwrap(), page, "run `make paper`");
     }
 
     #[test]
     fn the_page_follows_its_numbers() {
-        let mut known: Known = serde_json::from_str(&committed("json")).unwrap();
+        let mut known: KnownNumbers = serde_json::from_str(&committed("json")).unwrap();
         let stress = "default david MDS stress";
         known.get_mut("figure3").unwrap().measured.insert(stress.to_owned(), 1234.56);
-        assert!(page(&known).unwrap().contains("| 1,234.6 |"));
+        assert!(section(&known).unwrap().contains("| 1,234.6 |"));
         known.get_mut("figure3").unwrap().measured.remove(stress);
-        assert!(page(&known).unwrap_err().to_string().contains(stress));
+        assert!(section(&known).unwrap_err().to_string().contains(stress));
     }
 }

@@ -8,11 +8,11 @@
 //!
 //! `{shape1}` and `{shape2}` stand for the classes of the shapes that are examined closely, in names as well.
 
+use report::numbers::{bytes, seconds};
 use serde::Deserialize;
-use view::numbers::{bytes, seconds};
 
-use crate::bound::Bound;
-use crate::sweep::Measured;
+use crate::config::Bound;
+use crate::sweep::MeasuredNumbers;
 
 /// A paragraph of an analysis.
 #[derive(Debug, Clone, Deserialize)]
@@ -33,7 +33,7 @@ pub(crate) struct Paragraph {
 
 impl Paragraph {
     /// Its text for a run, which may be empty; an error is the name of a number that the run did not measure.
-    pub(crate) fn write(&self, numbers: &Measured, shapes: &[&str]) -> Result<String, String> {
+    pub(crate) fn write(&self, numbers: &MeasuredNumbers, shapes: &[&str]) -> Result<String, String> {
         let holds = |bound: &Bound| {
             let name = with_shapes(&bound.value, shapes);
             numbers.get(&name).map(|value| bound.holds(*value)).ok_or(name)
@@ -131,6 +131,6 @@ mod tests {
         let text = |off: f64| paragraph.write(&[("cat off".to_owned(), off)].into(), &["david", "cat"]);
         assert_eq!(text(0.0312).unwrap(), "On cat, 3.12 % is close.");
         assert_eq!(text(0.0789).unwrap(), "On cat, 7.89 % is far.");
-        assert_eq!(paragraph.write(&Measured::new(), &["david", "cat"]).unwrap_err(), "cat off");
+        assert_eq!(paragraph.write(&MeasuredNumbers::new(), &["david", "cat"]).unwrap_err(), "cat off");
     }
 }

@@ -7,28 +7,26 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;
 
 use anyhow::{Context as _, Result};
+use base::terminal::{Bars, on_interruption};
 use report::page::write_report;
-use report::results::{Provenance, Published, provenance};
-use terminal::{Bars, on_interruption};
+use report::results::{Published, RunProvenance, provenance};
 
 use crate::args::RunArgs;
-use crate::collection::Collection;
-use crate::config::Config;
+use crate::collection::SurfaceCollection;
 use crate::context::Context;
 use crate::specimen::specimens;
-use crate::table::{ALL, EXPERIMENTS, Experiment};
+use crate::table::{ALL, EXPERIMENTS, TableEntry};
 
 /// Exit code after an interruption, by the convention of shells: 128 plus the number of the signal.
 const INTERRUPTED: i32 = 130;
 
 /// `experiments run`.
 pub(crate) fn run(args: &RunArgs) -> Result<ExitCode> {
-    let is_wanted = |experiment: &&Experiment| {
-        args.names.iter().any(|name| name == experiment.section.name || name == ALL)
-    };
-    let (kept, open): (Vec<&Experiment>, Vec<&Experiment>) =
-        EXPERIMENTS.iter().filter(is_wanted).partition(|experiment| args.resume && is_made(args, experiment));
-    let finished: Vec<&'static str> = kept.iter().map(|experiment| experiment.section.name).collect();
+    let is_wanted =
+        |entry: &&TableEntry| args.names.iter().any(|name| name == entry.section.name || name == ALL);
+    let (kept, open): (Vec<&TableEntry>, Vec<&TableEntry>) =
+        EXPERIMENTS.iter().filter(is_wanted).partition(|entry| args.resume && is_made(args, entry));
+    let finished: Vec<&'static str> = kept.iter().map(|entry| entry.section.name).collect();
     for name in &finished {
         eprintln!("{name} is there already, made with these options");
     }
@@ -37,25 +35,26 @@ pub(crate) fn run(args: &RunArgs) -> Result<ExitCode> {
     let published = args.compare.as_deref().map(published).transpose()?;
     if !open.is_empty() {
         let bars = Bars::new(args.quiet);
-        let collection = Collection::load(&args.source, &bars)?;
+        let collection = SurfaceCollection::load(&args.source, &bars)?;
         let specimens = specimens(&collection);
-        for Experiment { section, config, run } in open {
+        for entry in open {
+            let (config, experiment) = entry.parse()?;
             let context = Context {
-                name: section.name,
-                config: Config::parse(section.name, config)?,
+                name: entry.section.name,
+                config,
                 collection: &collection,
                 specimens: &specimens,
                 seed: args.source.seed,
                 folder: &args.output,
                 published: published.as_ref(),
                 command: args.command(),
-                arguments: args.arguments(),
+                arguments: args.arguments.clone(),
                 observer: &bars,
                 bars: &bars,
                 start: Instant::now(),
             };
-            run(&context)?;
-            finished.lock().unwrap_or_else(PoisonError::into_inner).push(section.name);
+            experiment.run(&context)?;
+            finished.lock().unwrap_or_else(PoisonError::into_inner).push(entry.section.name);
         }
     }
     report(&args.output, None)
@@ -68,11 +67,11 @@ fn published(path: &Path) -> Result<Published> {
 }
 
 /// Whether the folder has the record of an experiment that this program would make again.
-fn is_made(args: &RunArgs, experiment: &Experiment) -> bool {
-    let path = args.output.join(format!("{}.json", experiment.section.name));
+fn is_made(args: &RunArgs, entry: &TableEntry) -> bool {
+    let path = args.output.join(format!("{}.json", entry.section.name));
     let [version, commit] = [env!("CARGO_PKG_VERSION"), env!("CANONFORM_COMMIT")];
-    provenance(path).is_ok_and(|made: Provenance| {
-        made.version == version && made.commit == commit && made.arguments == args.arguments()
+    provenance(path).is_ok_and(|made: RunProvenance| {
+        made.version == version && made.commit == commit && made.arguments == args.arguments
     })
 }
 
@@ -88,7 +87,7 @@ fn keep_finished(args: &RunArgs, finished: Arc<Mutex<Vec<&'static str>>>) {
             eprintln!("interrupted; finished: {names} (report: {page})");
             eprintln!("to continue: {command} --resume");
         }
-        files::abandon_unfinished();
+        base::files::abandon_unfinished();
         std::process::exit(INTERRUPTED);
     });
 }
@@ -96,14 +95,14 @@ fn keep_finished(args: &RunArgs, finished: Arc<Mutex<Vec<&'static str>>>) {
 /// `experiments list`.
 pub(crate) fn list() -> Result<ExitCode> {
     let mut out = std::io::stdout().lock();
-    for Experiment { section, .. } in &EXPERIMENTS {
+    for TableEntry { section, .. } in &EXPERIMENTS {
         writeln!(out, "{:<10} {}", section.name, section.title)?;
     }
     Ok(ExitCode::SUCCESS)
 }
 
 fn write_page(folder: &Path) -> Result<std::path::PathBuf> {
-    Ok(write_report(folder, &EXPERIMENTS.map(|experiment| experiment.section))?)
+    Ok(write_report(folder, &EXPERIMENTS.map(|entry| entry.section))?)
 }
 
 /// `experiments report`: writes the page and prints its path; with a path, also the summary of the paper.

@@ -3,13 +3,14 @@
 use std::sync::{Arc, Mutex, PoisonError};
 
 use anyhow::{Context, Result, bail};
+use canonform::{DescribeOptions, EmbedMethod, FormOptions, Samples};
 use descriptors::LaplaceSpectrum;
 use geodesics::{DistanceSolver, FirstSample, Method, Sampling};
 use linalg::{DistanceMatrix, LandmarkDistances};
 use nmds::{Embedding, Reconstruction, classical, paper_stress, sample_rows};
 use surface::VertexId;
 
-use crate::collection::{Collection, Shape};
+use crate::collection::{LabeledSurface, SurfaceCollection};
 
 /// The classes of Figures 3 and 5 to 9 of the paper, in its order.
 const PAPER: [&str; 2] = ["david", "cat"];
@@ -22,7 +23,7 @@ type Once<K, T> = Mutex<Vec<(K, Arc<T>)>>;
 
 /// A shape, and what has been measured on it.
 pub(crate) struct Specimen<'a> {
-    pub(crate) shape: &'a Shape,
+    pub(crate) shape: &'a LabeledSurface,
     all_pairs: Once<&'static str, DistanceMatrix>,
     optimum: Once<&'static str, Optimum>,
     spectrum: Once<usize, LaplaceSpectrum>,
@@ -36,9 +37,9 @@ pub(crate) struct Optimum {
 }
 
 /// The first david and the first cat; in other collections, the first shapes of two classes.
-pub(crate) fn specimens(collection: &Collection) -> Vec<Specimen<'_>> {
+pub(crate) fn specimens(collection: &SurfaceCollection) -> Vec<Specimen<'_>> {
     let first = |class: &str| collection.shapes.iter().find(|shape| shape.label == class);
-    let mut chosen: Vec<&Shape> = PAPER.into_iter().filter_map(first).collect();
+    let mut chosen: Vec<&LabeledSurface> = PAPER.into_iter().filter_map(first).collect();
     if chosen.len() < PAPER.len() {
         chosen = collection.first_of_each_class(1).into_iter().take(PAPER.len()).collect();
     }
@@ -46,7 +47,7 @@ pub(crate) fn specimens(collection: &Collection) -> Vec<Specimen<'_>> {
 }
 
 impl<'a> Specimen<'a> {
-    pub(crate) fn new(shape: &'a Shape) -> Self {
+    pub(crate) fn new(shape: &'a LabeledSurface) -> Self {
         let (all_pairs, optimum) = Default::default();
         let (spectrum, reconstruction) = Default::default();
         Self { shape, all_pairs, optimum, spectrum, reconstruction }
@@ -65,7 +66,7 @@ impl<'a> Specimen<'a> {
     }
 
     fn solver(&self, distances: &Distances) -> Result<Box<dyn DistanceSolver>> {
-        Ok(distances.method.prepare(&self.shape.surface.intrinsic)?)
+        Ok(distances.method.prepare(self.shape.surface.intrinsic(), &())?)
     }
 
     /// The distances between all pairs of vertices.
@@ -88,7 +89,7 @@ impl<'a> Specimen<'a> {
     pub(crate) fn optimum(&self, distances: &Distances) -> Result<Arc<Optimum>> {
         once(&self.optimum, distances.name, || {
             let all = self.all_pairs(distances)?;
-            let embedding = classical(&all, DIM)?;
+            let embedding = classical(&all, DIM, &())?;
             let stress = paper_stress(&embedding.coords, all.as_ref())?;
             Ok(Optimum { embedding, stress })
         })
@@ -97,7 +98,7 @@ impl<'a> Specimen<'a> {
     /// Eigenfunctions of the surface.
     pub(crate) fn spectrum(&self, n_eigenvectors: usize) -> Result<Arc<LaplaceSpectrum>> {
         once(&self.spectrum, n_eigenvectors, || {
-            Ok(LaplaceSpectrum::new(&self.shape.surface.intrinsic, n_eigenvectors)?)
+            Ok(LaplaceSpectrum::new(self.shape.surface.intrinsic(), n_eigenvectors, &())?)
         })
     }
 
@@ -129,6 +130,21 @@ impl<'a> Specimen<'a> {
         sampler.extend_to(counts.iter().copied().max().unwrap_or(0))?;
         counts.iter().map(|&n| Ok(sampler.distances(n)?)).collect()
     }
+}
+
+/// The options of the paper's method.
+pub(crate) fn low_rank(samples: usize, rank: usize, seed: u64) -> FormOptions {
+    FormOptions {
+        samples: Samples::Count(samples),
+        method: EmbedMethod::low_rank(rank),
+        seed,
+        ..FormOptions::default()
+    }
+}
+
+/// Descriptions by forms with these options.
+pub(crate) fn describing(form: FormOptions) -> DescribeOptions {
+    DescribeOptions { form, ..DescribeOptions::default() }
 }
 
 /// A kind of distances, with its name in records and expectations.

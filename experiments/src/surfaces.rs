@@ -2,17 +2,17 @@
 
 use anyhow::{Result, bail};
 use canonform::{Embedded, FormOptions};
-use descriptors::{Alignment, CanonicalForm, Normalization, PreparedForm, Reflections, match_forms};
+use descriptors::{Alignment, CanonicalForm, Normalization, PreparedForm, Reflections, align_forms};
 use geodesics::DistanceSolver;
 use linalg::Matrix;
 use mesh::{TriMesh, orient_consistently};
 use nalgebra::Point3;
 use report::results::{Motions, Scale, ShownForm, ShownShape};
+use report::viewer::Geometry;
 use surface::VertexId;
-use view::interactive::Geometry;
 
 use crate::coarse::coarse;
-use crate::collection::Shape;
+use crate::collection::LabeledSurface;
 
 /// The greatest number of vertices of all shapes together, for a page of about 20 MB.
 const ALL_VERTICES: usize = 200_000;
@@ -36,7 +36,7 @@ pub(crate) fn aligned(
     let mut surface = form.to_mesh(shape);
     let prepared = PreparedForm::new(form)?;
     if let Some(target) = first {
-        let motion = match_forms(&prepared, target, Reflections::Allow).alignment;
+        let motion = align_forms(&prepared, target, Reflections::Allow).alignment;
         surface.positions.iter_mut().for_each(|p| *p = motion.apply(p));
     } else {
         *first = Some(prepared);
@@ -59,7 +59,7 @@ pub(crate) struct Formed {
 
 impl Formed {
     /// The form of an embedded shape.
-    pub(crate) fn new(shape: &Shape, embedded: &Embedded) -> Result<Self> {
+    pub(crate) fn new(shape: &LabeledSurface, embedded: &Embedded) -> Result<Self> {
         let surface = &shape.surface;
         let form = embedded.form(surface)?;
         let to_repaired = |&input: &u32| surface.repaired_vertex(VertexId(input));
@@ -100,13 +100,13 @@ fn turned_like(points: &[Point3<f64>], shape: &[Point3<f64>]) -> Alignment {
 
 /// A shape with its forms by several methods, at no more than `limit` vertices.
 pub(crate) fn shown(
-    shape: &Shape,
+    shape: &LabeledSurface,
     forms: &[&Formed],
     options: &FormOptions,
     limit: usize,
 ) -> Result<ShownShape> {
     let mesh = oriented(shape.surface.mesh());
-    let solver: Box<dyn DistanceSolver> = options.geodesic.prepare(&shape.surface.intrinsic)?;
+    let solver: Box<dyn DistanceSolver> = options.geodesic.prepare(shape.surface.intrinsic(), &())?;
     let Some(first) = forms.first() else { bail!("there is no canonical form") };
     let (vertices, thin) = coarse(&mesh, limit);
     let distances = solver.distance_columns(&first.samples[..1.min(first.samples.len())])?;

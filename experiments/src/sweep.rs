@@ -8,7 +8,27 @@ use nmds::Regularization;
 use report::results::{Axis, AxisScale, CurvesPanel, Series, SeriesPoint};
 use retrieval::{Averaging, Labels, Scores, mean_scores};
 
-pub(crate) type Measured = BTreeMap<String, f64>;
+pub(crate) type MeasuredNumbers = BTreeMap<String, f64>;
+
+/// Notes numbers under `OF NAME`.
+pub(crate) fn note<'a>(
+    measured: &mut MeasuredNumbers,
+    of: &str,
+    numbers: impl IntoIterator<Item = (&'a str, f64)>,
+) {
+    measured.extend(numbers.into_iter().map(|(name, number)| (format!("{of} {name}"), number)));
+}
+
+/// The mean; not a number without values.
+pub(crate) fn mean(values: impl IntoIterator<Item = f64>) -> f64 {
+    let (sum, n) = values.into_iter().fold((0.0, 0usize), |(sum, n), value| (sum + value, n + 1));
+    sum / n as f64
+}
+
+/// The share of the elements of which something is true.
+pub(crate) fn share<T>(all: &[T], is: impl Fn(&T) -> bool) -> f64 {
+    mean(all.iter().map(|one| f64::from(u8::from(is(one)))))
+}
 
 /// Retrieval scores by the names that expectations use.
 pub(crate) fn named(s: &Scores) -> [(&'static str, f64); 6] {
@@ -65,6 +85,12 @@ pub(crate) fn last(series: &Series) -> f64 {
 /// The medians of a curve.
 pub(crate) fn medians(series: &Series) -> Vec<f64> {
     series.points.iter().map(|p| p.median).collect()
+}
+
+/// The place of the least median of a curve, and that median.
+pub(crate) fn least(series: &Series) -> (f64, f64) {
+    let points = series.points.iter().map(|p| (p.x, p.median));
+    points.min_by(|a, b| a.1.total_cmp(&b.1)).unwrap_or((f64::NAN, f64::NAN))
 }
 
 /// The share of places where the median of `a` is at most that of every other curve.

@@ -7,7 +7,7 @@ use datasets::{ArticulatedOptions, Family, articulated_body};
 use descriptors::{Boundary, ShapeMetric, ShapePair};
 use rayon::prelude::*;
 
-use crate::described::Described;
+use crate::described::DescribedBody;
 
 /// Other bodies of every family, and poses of each.
 const BODIES: usize = 5;
@@ -17,48 +17,36 @@ const POSES: usize = 3;
 const MOST_PAIRS: usize = 2000;
 
 /// The other bodies of every family, for the seed and the number of vertices in `options`.
-pub(crate) fn relatives(options: &ArticulatedOptions) -> Result<Vec<Described>> {
+pub(crate) fn relatives(options: &ArticulatedOptions) -> Result<Vec<DescribedBody>> {
     let one = |family: Family, i: usize| {
         let (body, pose) = (1 + i / POSES, (i % POSES + options.seed as usize) % family.n_shapes());
-        Described::new(&articulated_body(family, body, pose, options)?, options.seed, body)
+        DescribedBody::new(&articulated_body(family, body, pose, options)?, options.seed, body)
     };
     let all: Vec<_> =
         Family::all().into_iter().flat_map(|f| (0..BODIES * POSES).map(move |i| (f, i))).collect();
     all.into_par_iter().map(|(family, i)| one(family, i)).collect()
 }
 
-/// How two of the shapes are related.
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum Relation {
-    OneBody,
-    OneFamily,
-    TwoFamilies,
-}
+/// Kinds of pairs of shapes.
+const PAIRS: [&str; 3] = ["poses of one body", "bodies of one family", "families"];
 
-impl Relation {
-    const ALL: [(Self, &str); 3] = [
-        (Self::OneBody, "poses of one body"),
-        (Self::OneFamily, "bodies of one family"),
-        (Self::TwoFamilies, "families"),
-    ];
-
-    fn of(a: &Described, b: &Described) -> Self {
-        match (a.label == b.label, a.body == b.body) {
-            (true, true) => Self::OneBody,
-            (true, false) => Self::OneFamily,
-            (false, _) => Self::TwoFamilies,
-        }
+/// The number of the kind of a pair in [`PAIRS`].
+fn kind(a: &DescribedBody, b: &DescribedBody) -> usize {
+    match (a.label == b.label, a.body == b.body) {
+        (true, true) => 0,
+        (true, false) => 1,
+        (false, _) => 2,
     }
 }
 
 /// The distances of one kind of pairs, in ascending order, with the mean and the variance of their logarithms.
-struct Spread {
+struct DistanceSpread {
     distances: Vec<f64>,
     mean: f64,
     variance: f64,
 }
 
-impl Spread {
+impl DistanceSpread {
     fn new(mut distances: Vec<f64>) -> Self {
         distances.sort_by(f64::total_cmp);
         let n = distances.len() as f64;
@@ -74,7 +62,7 @@ impl Spread {
 
 /// The boundaries in use, from the distances of poses, bodies and families: see [`ShapeMetric::SAME_SHAPE`] and
 /// [`ShapeMetric::SAME_CLASS`].
-fn boundaries([poses, bodies, families]: [&Spread; 3]) -> [Boundary; 2] {
+fn boundaries([poses, bodies, families]: [&DistanceSpread; 3]) -> [Boundary; 2] {
     let shape = Boundary {
         at: (0.5 * (poses.mean + bodies.mean)).exp(),
         steepness: (bodies.mean - poses.mean) / (0.5 * (poses.variance + bodies.variance)),
@@ -88,20 +76,20 @@ fn boundaries([poses, bodies, families]: [&Spread; 3]) -> [Boundary; 2] {
 
 /// Prints the combined distances of poses of one body, of bodies of one family and of families, and the boundaries
 /// between them beside those in use.
-pub(crate) fn print(shapes: &[Described], out: &mut impl Write) -> Result<()> {
+pub(crate) fn print(shapes: &[DescribedBody], out: &mut impl Write) -> Result<()> {
     let pairs: Vec<_> =
         shapes.iter().enumerate().flat_map(|(i, a)| shapes[..i].iter().map(move |b| (a, b))).collect();
     writeln!(out, "\n{:<22}  pairs  least     5 %  median    95 %  largest", "combined distances")?;
     let mut spreads = Vec::new();
-    for (relation, name) in Relation::ALL {
-        let related: Vec<_> = pairs.iter().filter(|(a, b)| Relation::of(a, b) == relation).collect();
+    for (i, name) in PAIRS.into_iter().enumerate() {
+        let related: Vec<_> = pairs.iter().filter(|(a, b)| kind(a, b) == i).collect();
         let step = related.len().div_ceil(MOST_PAIRS).max(1);
         let distances: Vec<f64> = related
             .par_iter()
             .step_by(step)
             .map(|(a, b)| ShapePair::new(ShapeMetric::default(), [&a.shape, &b.shape]).distance().combined)
             .collect();
-        let spread = Spread::new(distances);
+        let spread = DistanceSpread::new(distances);
         let [least, low, median, high, largest] = [0.0, 0.05, 0.5, 0.95, 1.0].map(|q| spread.quantile(q));
         writeln!(
             out,

@@ -4,14 +4,14 @@ use std::io::Write;
 use std::process::ExitCode;
 
 use anyhow::Result;
+use base::terminal::Bars;
 use canonform::Observer;
 use datasets::{ArticulatedOptions, Family, LabeledShape, articulated};
 use descriptors::{FormDistance, ShapeMetric, ShapePair, SignatureKind};
 use linalg::Matrix;
 use rayon::prelude::*;
-use terminal::Bars;
 
-use crate::described::Described;
+use crate::described::DescribedBody;
 use crate::thresholds::{self, relatives};
 
 /// Vertices of the shapes of each seed, in turn, since collections mix resolutions.
@@ -28,26 +28,26 @@ pub(crate) fn units(seeds: usize, quiet: bool) -> Result<ExitCode> {
     for seed in 1..=seeds {
         let options =
             ArticulatedOptions { seed: seed as u64, n_vertices: VERTICES[(seed - 1) % VERTICES.len()] };
-        let one = |shape: &LabeledShape| Described::new(shape, options.seed, 0);
+        let one = |shape: &LabeledShape| DescribedBody::new(shape, options.seed, 0);
         shapes.extend(articulated(&options)?.par_iter().map(one).collect::<Result<Vec<_>>>()?);
         others.extend(relatives(&options)?);
     }
-    let (within, between): (Vec<Pair<'_>>, Vec<Pair<'_>>) = shapes
+    let (within, between): (Vec<BodyPair<'_>>, Vec<BodyPair<'_>>) = shapes
         .iter()
         .enumerate()
         .flat_map(|(i, a)| shapes[..i].iter().map(move |b| (a, b)))
         .partition(|(a, b)| a.label == b.label);
     bars.finish();
     // Two bodies of one family, with their own poses.
-    let bodies: Vec<Pair<'_>> = shapes
+    let bodies: Vec<BodyPair<'_>> = shapes
         .iter()
         .flat_map(|a| others.iter().map(move |b| (a, b)))
         .filter(|(a, b)| a.label == b.label && a.seed == b.seed)
         .collect();
     let mut parts = Vec::new();
     for kind in SignatureKind::ALL {
-        let distance = |(a, b): &Pair<'_>| {
-            let of = |shape: &Described| shape.description.signature(kind).cloned();
+        let distance = |(a, b): &BodyPair<'_>| {
+            let of = |shape: &DescribedBody| shape.description.signature(kind).cloned();
             of(a).zip(of(b)).map_or(f64::NAN, |(a, b)| a.distance(&b))
         };
         let means = [&within, &between].map(|pairs| mean_square(pairs.iter().map(distance)));
@@ -97,7 +97,7 @@ pub(crate) fn units(seeds: usize, quiet: bool) -> Result<ExitCode> {
 }
 
 /// The effective number of components, `tr(C)² / tr(C²)`, of the covariance `C` of a signature within families.
-fn components(shapes: &[Described], kind: SignatureKind) -> f64 {
+fn components(shapes: &[DescribedBody], kind: SignatureKind) -> f64 {
     let n_values = kind.n_values();
     let mut covariance = Matrix::zeros(n_values, n_values);
     for family in Family::all() {
@@ -114,7 +114,7 @@ fn components(shapes: &[Described], kind: SignatureKind) -> f64 {
     covariance.trace().powi(2) / covariance.norm_squared()
 }
 
-type Pair<'a> = (&'a Described, &'a Described);
+type BodyPair<'a> = (&'a DescribedBody, &'a DescribedBody);
 
 fn mean_square(values: impl Iterator<Item = f64>) -> f64 {
     let (sum, n) = values.fold((0.0, 0usize), |(sum, n), value| (sum + value * value, n + 1));

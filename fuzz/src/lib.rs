@@ -6,7 +6,7 @@
 use std::path::Path;
 use std::time::Duration;
 
-use budget::Budget;
+use base::Budget;
 use canonform::Observer;
 use mesh::TriMesh;
 use mesh::io::{FORMATS, MemoryFile, ReadLimits, read_memory};

@@ -3,15 +3,15 @@
 #![no_main]
 
 use canonform::descriptors::{ShapeMetric, ShapePair};
-use canonform::{DescribeOptions, Observer, Surface, compare, describe_within};
+use canonform::{DescribeOptions, Surface, compare, describe};
 use canonform_fuzz::{Limited, mesh_of, single_threaded};
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(init: single_threaded(), |data: &[u8]| {
     let Some(mesh) = mesh_of(data, 200) else { return };
     let options = DescribeOptions::default();
-    let Ok(surface) = Surface::new(&mesh, &options.form.repair) else { return };
-    let Ok(description) = describe_within(&surface, &options, &Limited::start().budget()) else { return };
+    let Ok(surface) = Surface::new(&mesh, &options.form.repair, &()) else { return };
+    let Ok(description) = describe(&surface, &options, &Limited::start()) else { return };
     assert!(description.fused.iter().all(|x| x.is_finite()), "a signature is not finite");
     let Ok(shape) = description.prepare() else { return };
     let pair = ShapePair::new(ShapeMetric::default(), [&shape, &shape]);

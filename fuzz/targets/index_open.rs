@@ -8,7 +8,7 @@ use std::panic;
 use std::path::PathBuf;
 use std::sync::OnceLock;
 
-use canonform::{BuildOptions, DescribeOptions, SearchOptions, ShapeSearch, build_index};
+use canonform::{BuildOptions, DescribeOptions, Query, SearchOptions, ShapeSearch, build_index};
 use canonform_fuzz::single_threaded;
 use libfuzzer_sys::fuzz_target;
 use mesh::shapes;
@@ -53,13 +53,13 @@ fuzz_target!(init: start(), |data: &[u8]| {
         rest = &tail[length..];
     }
     std::fs::write(path, &damaged).expect("a file");
-    let _ = index::verify(path, || {});
+    let _ = index::verify(path);
     if let Ok(search) = ShapeSearch::open(path) {
         for (id, entry) in search.index().entries().unwrap_or_default() {
             assert!(["ball1", "ring1"].contains(&id.as_str()), "a shape `{id}` that was never stored");
             assert_eq!(entry.label, id.trim_end_matches('1'), "another label");
         }
-        if let Ok(found) = search.search_shape("ball1", &SearchOptions::default()) {
+        if let Ok(found) = search.search(Query::Id("ball1"), &SearchOptions::default(), &()) {
             assert_eq!(found.results.len(), 2, "a shape is missing without an error");
             assert_eq!(found.results[0].id, "ball1", "a wrong answer without an error");
         }

@@ -21,7 +21,7 @@ fuzz_target!(init: single_threaded(), |data: &[u8]| {
         weld: pick(&[Weld::Seams, Weld::All, Weld::None], repair / 3),
         ..RepairOptions::default()
     };
-    let Ok(surface) = Surface::new(&mesh, &repair) else { return };
+    let Ok(surface) = Surface::new(&mesh, &repair, &()) else { return };
     let options = FormOptions {
         repair,
         geodesic: pick(&Method::all(), method),

@@ -13,7 +13,7 @@ use std::time::Instant;
 
 use canonform::geodesics::Method;
 use canonform::surface::VertexId;
-use canonform::{DistanceField, FieldOptions, Finish, PairDistance, PairKind, Surface};
+use canonform::{DistanceField, FieldOptions, Finish, PairDistance, PairKind, read_surface};
 
 const SOURCES: usize = 20;
 const TARGETS: usize = 500;
@@ -24,11 +24,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     let Some(path) = arguments.first() else { return Err("usage: fields MESH [LANDMARKS [RANK]]".into()) };
     let landmarks = arguments.get(1).map_or(Ok(FieldOptions::default().landmarks), |text| text.parse())?;
     let rank = arguments.get(2).map(|text| text.parse()).transpose()?;
-    let surface = Surface::read(Path::new(path), &Default::default())?;
+    let surface = read_surface(Path::new(path), &Default::default(), &Default::default(), &())?;
     let mut random = Random(7);
     let n = surface.n_input_vertices();
 
-    let solver = Method::Exact.prepare(&surface.intrinsic)?;
+    let solver = Method::Exact.prepare(surface.intrinsic(), &())?;
     let (mut pairs, mut exact) = (Vec::new(), Vec::new());
     for _ in 0..SOURCES {
         let source = random.vertex(n);

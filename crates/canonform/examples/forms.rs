@@ -33,7 +33,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     for line in std::io::stdin().lines() {
         line?;
         let start = Instant::now();
-        let surface = Surface::new(&mesh, &options.repair)?;
+        let surface = Surface::new(&mesh, &options.repair, &())?;
         let embedded = embed(&surface, &options, &())?;
         let total = start.elapsed().as_secs_f64();
         let rows = embedded.embedding.coords.transpose();

@@ -52,9 +52,9 @@ fn main() -> Result<(), Box<dyn Error>> {
 /// Seconds of connectivity, solver, both, and one distance map.
 fn one_round(mesh: &mesh::TriMesh, round: usize) -> Result<[f64; 4], canonform::Error> {
     let start = Instant::now();
-    let surface = Surface::new(mesh, &Default::default())?;
+    let surface = Surface::new(mesh, &Default::default(), &())?;
     let connectivity = start.elapsed().as_secs_f64();
-    let solver = Method::default().prepare(&surface.intrinsic)?;
+    let solver = Method::default().prepare(surface.intrinsic(), &())?;
     let both = start.elapsed().as_secs_f64();
     let mut out = vec![0.0; solver.n_vertices()];
     let mut map = 0.0;

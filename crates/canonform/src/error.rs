@@ -2,19 +2,18 @@
 
 use std::path::PathBuf;
 
-use budget::Exceeded;
+use base::Exceeded;
+use base::files::FileError;
+use collection::CollectionError;
 use descriptors::DescriptorError;
-use files::FileError;
+use fields::FieldError;
 use geodesics::GeodesicError;
 use index::IndexError;
 use linalg::LinalgError;
-use mesh::MeshError;
+use mesh::{InputPoint, MeshError, PointError};
 use nmds::NmdsError;
 use retrieval::RetrievalError;
 use surface::VertexId;
-
-use crate::field::fault::FieldFault;
-use crate::input::point::InputPoint;
 
 /// Errors of this crate and of the crates it builds on; [`remedy`](Error::remedy) says what would help.
 #[derive(Debug, thiserror::Error)]
@@ -22,7 +21,10 @@ use crate::input::point::InputPoint;
 pub enum Error {
     /// Reading, writing, validation or repair.
     #[error(transparent)]
-    Mesh(#[from] MeshError),
+    Mesh(MeshError),
+    /// A point that the surface does not have.
+    #[error(transparent)]
+    Point(#[from] PointError),
     /// Distances on the surface.
     #[error(transparent)]
     Geodesic(GeodesicError),
@@ -97,44 +99,11 @@ pub enum Error {
         /// The most that are evaluated at once.
         limit: usize,
     },
-    /// A line of a file of labels or distances.
-    #[error("{path}, line {line}: {what}", path = path.display())]
-    BadLine {
-        /// The file.
-        path: PathBuf,
-        /// The line, counted from one.
-        line: usize,
-        /// What is wrong and what is expected.
-        what: String,
-    },
     /// A matrix of distances whose rows have no class.
     #[error("{path}: the first line has no names, so the classes of the rows are unknown", path = path.display())]
     NoNames {
         /// The file.
         path: PathBuf,
-    },
-    /// A point of a vertex, edge or face that the input does not have.
-    #[error(
-        "{element} does not exist; the mesh has {n_faces} faces and {n_vertices} vertices, counted from 0",
-        element = point.element()
-    )]
-    NoSuchPoint {
-        /// The point.
-        point: InputPoint,
-        /// Vertices of the input.
-        n_vertices: usize,
-        /// Faces of the input.
-        n_faces: usize,
-    },
-    /// A point of a vertex, edge or face of the input that the repair dropped.
-    #[error(
-        "{element} was left out by the repair: it is degenerate, without a face, or not in the largest component; \
-         choose another point",
-        element = point.element()
-    )]
-    DroppedPoint {
-        /// The point.
-        point: InputPoint,
     },
     /// A path to a point without a known distance.
     #[error("there is no path to {target}: it lies beyond the distance limit")]
@@ -235,14 +204,12 @@ pub enum Error {
     /// A folder or a text file that cannot be read.
     #[error(transparent)]
     File(#[from] FileError),
+    /// A folder, an archive, a list or a file of labels or distances that cannot be read.
+    #[error(transparent)]
+    Collection(CollectionError),
     /// A file that is no distance field, or a damaged one.
-    #[error("{path}: {fault}", path = path.display())]
-    BadField {
-        /// The file.
-        path: PathBuf,
-        /// What is wrong with it.
-        fault: FieldFault,
-    },
+    #[error(transparent)]
+    Field(FieldError),
     /// A query that is to be taken as a part, but of which the description as a whole is known only.
     #[error("a query can be ranked as a part only by its mesh, not by a description of the whole query")]
     NoPart,
@@ -256,17 +223,6 @@ pub enum Error {
         path: PathBuf,
         /// The shape.
         id: String,
-    },
-    /// A folder, an archive or a list without meshes.
-    #[error(
-        "{path}: no mesh found in it or its sub-folders; \
-         a mesh is {meshes}",
-        path = path.display(),
-        meshes = mesh::io::mesh_files()
-    )]
-    NoShapes {
-        /// The folder.
-        path: PathBuf,
     },
 }
 
@@ -302,8 +258,6 @@ pub enum Remedy {
     RestoreMesh,
     /// Build the index again.
     BuildIndexAgain,
-    /// Build the index again from its folder, or change it, which adds the graph of nearest neighbours.
-    AddGraph,
     /// Build the index again in a new file, so that every shape is described again.
     BuildIndexAnew,
     /// Build the distance field again from its mesh.
@@ -329,6 +283,7 @@ macro_rules! from_stage {
 }
 
 from_stage! {
+    MeshError => Mesh: MeshError::Exceeded(limit) => limit;
     LinalgError => Linalg: LinalgError::Exceeded(limit) => limit;
     GeodesicError => Geodesic:
         GeodesicError::Exceeded(limit) => limit,
@@ -339,14 +294,36 @@ from_stage! {
     DescriptorError => Descriptor: DescriptorError::Linalg(LinalgError::Exceeded(limit)) => limit;
 }
 
+impl From<CollectionError> for Error {
+    fn from(error: CollectionError) -> Self {
+        match error {
+            CollectionError::File(fault) => Self::File(fault),
+            CollectionError::Mesh(fault) => fault.into(),
+            other => Self::Collection(other),
+        }
+    }
+}
+
+impl From<FieldError> for Error {
+    fn from(error: FieldError) -> Self {
+        match error {
+            FieldError::File(fault) => Self::File(fault),
+            FieldError::Geodesic(fault) => fault.into(),
+            FieldError::Linalg(fault) => fault.into(),
+            FieldError::Nmds(fault) => fault.into(),
+            FieldError::Exceeded(limit) => Self::Exceeded(limit),
+            other => Self::Field(other),
+        }
+    }
+}
+
 impl Remedy {
     /// What would help against an error of an index.
     #[must_use]
     pub fn of_index(fault: &IndexError) -> Option<Self> {
         match fault {
-            IndexError::Damaged { .. } => Some(Self::BuildIndexAgain),
+            IndexError::Damaged { .. } | IndexError::PastVersion { .. } => Some(Self::BuildIndexAgain),
             IndexError::NoSuchShape { .. } => Some(Self::ListShapes),
-            IndexError::NoGraph(_) => Some(Self::AddGraph),
             _ => None,
         }
     }
@@ -358,7 +335,7 @@ impl Error {
         Some(match self {
             Self::Mesh(MeshError::Disconnected { .. })
             | Self::Geodesic(GeodesicError::Disconnected { .. }) => Remedy::KeepLargestOrBridge,
-            Self::DroppedPoint { point: InputPoint::Vertex(_) | InputPoint::Face { .. } } => {
+            Self::Point(PointError::Dropped { point: InputPoint::Vertex(_) | InputPoint::Face { .. } }) => {
                 Remedy::BridgeComponents
             }
             Self::Descriptor(DescriptorError::NotThreeDimensional { .. }) => Remedy::UseThreeDimensions,
@@ -378,7 +355,7 @@ impl Error {
             Self::UnknownOptions { .. } => Remedy::BuildIndexAgain,
             Self::Index(fault) => return Remedy::of_index(fault),
             Self::NoDiscAreas { .. } => Remedy::BuildIndexAnew,
-            Self::BadField { .. } => Remedy::BuildFieldAgain,
+            Self::Field(_) => Remedy::BuildFieldAgain,
             Self::TooManyShapes { .. } => Remedy::EvaluateShard,
             _ => return None,
         })

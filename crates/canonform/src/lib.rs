@@ -5,8 +5,8 @@
 //! form*, does not depend on the pose, and rigid alignment compares it with other forms.
 //!
 //! ```
-//! use canonform::descriptors::{ShapeMetric, ShapePair, VerdictKind};
-//! use canonform::{DescribeOptions, Surface, compare, describe, mesh::shapes};
+//! use canonform::descriptors::{ShapeMetric, ShapePair};
+//! use canonform::{DescribeOptions, Surface, describe, mesh::shapes};
 //!
 //! // A flat sheet and the same sheet, folded.
 //! let flat = shapes::grid(21, 17, 0.1);
@@ -15,15 +15,15 @@
 //! let options = DescribeOptions::default();
 //! let mut shapes = Vec::new();
 //! for mesh in [&flat, &folded] {
-//!     let surface = Surface::new(mesh, &options.form.repair)?;
-//!     shapes.push(describe(&surface, &options)?.prepare()?);
+//!     let surface = Surface::new(mesh, &options.form.repair, &())?;
+//!     shapes.push(describe(&surface, &options, &())?.prepare()?);
 //! }
-//! let comparison = compare(&ShapePair::new(ShapeMetric::default(), [&shapes[0], &shapes[1]]))?;
-//! assert_eq!(comparison.verdict.kind, VerdictKind::SameShape);
+//! let distance = ShapePair::new(ShapeMetric::default(), [&shapes[0], &shapes[1]]).distance();
+//! assert!(distance.is_same_shape());
 //! # Ok::<(), canonform::Error>(())
 //! ```
 //!
-//! # From a file to a verdict
+//! # From a file to a relation
 //!
 //! Data flows one way. Each step is a noun, made from the one before it:
 //!
@@ -38,17 +38,17 @@
 //!    everything that is made from here on. [`embed_and_measure`] adds the stress.
 //! 5. [`descriptors::CanonicalForm`]: the embedded surface, weighted by area, in three dimensions.
 //! 6. [`ShapeDescription`]: form, signatures and facts, made by [`describe`]: all that an index stores of a shape.
-//! 7. [`descriptors::ShapePair`]: two descriptions and the alignments of their forms, each found once.
-//!    [`compare`] and [`compare_surfaces`] turn it into a [`Comparison`]; [`compare_meshes`] goes all the way from two
-//!    meshes. All units, weights and thresholds of the
-//!    comparison belong to [`descriptors::ShapeMetric`].
+//! 7. [`descriptors::ShapePair`]: two descriptions and the alignments of their forms, each found once. All units, weights
+//!    and thresholds of its distance belong to [`descriptors::ShapeMetric`].
+//! 8. [`Relation`]: how the two are related, by that distance and, where they are at hand, by files and meshes.
+//!    [`compare_meshes`] goes all the way from two meshes; [`compare`] gives the numbers of two descriptions.
 //!
 //! # Collections
 //!
 //! [`list_shapes`] finds the labelled meshes of a folder, an archive or a list of paths. [`build_index`] describes them into a durable file;
 //! [`add_to_index`], [`remove_from_index`] and [`merge_indexes`] change it; [`ShapeSearch`] finds the shapes nearest to a
 //! mesh; [`evaluate_index`] scores how well an index separates classes, [`evaluate_matrix`] does the same for any matrix of
-//! distances. [`form_matches`] aligns all pairs of forms without an index.
+//! distances. [`form_alignments`] aligns all pairs of forms without an index.
 //!
 //! # Distances and samples
 //!
@@ -60,9 +60,9 @@
 //! use canonform::surface::VertexId;
 //! use canonform::{Surface, mesh::shapes};
 //!
-//! let surface = Surface::new(&shapes::icosphere(3), &Default::default())?;
+//! let surface = Surface::new(&shapes::icosphere(3), &Default::default(), &())?;
 //! // Distances from vertex 0 by fast marching, at most half of the circumference of the unit sphere.
-//! let solver = Method::default().prepare(&surface.intrinsic)?;
+//! let solver = Method::default().prepare(surface.intrinsic(), &())?;
 //! let distances = solver.distances(VertexId(0))?;
 //! let farthest = distances.iter().copied().fold(0.0, f64::max);
 //! assert!((3.0..3.15).contains(&farthest));
@@ -86,43 +86,47 @@
 mod compare;
 mod correspond;
 mod error;
-mod field;
 mod form;
 mod input;
-mod observer;
 mod shape_index;
 #[cfg(test)]
 mod testing;
 
-pub use budget::{Budget, Exceeded};
-pub use compare::{
-    Basis, Change, ComparedMesh, Comparison, EvidenceKind, FormMatches, MatchEvidence, MeshComparison,
-    MeshGeometry, Overlay, Parts, Residual, Side, SurfaceComparison, SurfaceGap, Triangulation, UnitChange,
-    compare, compare_meshes, compare_surfaces, embedded_distances, form_matches,
+pub use ::mesh::{BadPoint, InputMap, InputPoint, PointError, Surface};
+pub use base::{Budget, ContentHash, Exceeded, Observer};
+pub use collection::{
+    Dataset, LabelFile, ShapeFile, SkipKind, Skipped, Storage, content_hash, is_dataset, label_of,
+    list_shapes, read_mesh, read_mesh_file,
 };
-pub use correspond::{CorrespondOptions, Correspondence, MatchedSurface, VertexMap, correspond};
+pub use compare::{
+    Compared, ComparedMesh, Comparison, FormAlignments, MeshComparison, Overlay, Residual, Triangulation,
+    compare, compare_meshes, embedded_distances, form_alignments,
+};
+pub use correspond::{CorrespondOptions, Correspondence, MappedSurface, VertexMap, correspond};
 pub use error::{Error, Remedy};
-pub use field::{
+pub use fields::{
     DistanceField, FieldBounds, FieldFacts, FieldFault, FieldOptions, Finish, PairDistance, PairKind,
 };
 pub use form::{
-    DISTANCES_LIMIT, DescentReport, DescribeOptions, EmbedMethod, EmbedReport, EmbedSettings, Embedded,
-    FormOptions, MethodFacts, MethodReport, MethodsReport, NoEffect, Samples, SamplesReport, SecondsReport,
+    DISTANCES_LIMIT, DescentReport, DescribeOptions, EmbedMethod, EmbedReport, Embedded, FormOptions,
+    MeasuredSurface, MethodFacts, MethodReport, MethodsReport, Samples, SamplesReport, SecondsReport,
     ShapeDescription, StressChoice, StressKind, StressOptions, StressReport, TargetVerdict, compare_methods,
-    describe, describe_part, describe_within, embed, embed_again, embed_and_measure, embed_and_release,
-    embed_finer,
+    describe, describe_part, embed, embed_again, embed_and_measure, embed_and_release, embed_finer, settings,
 };
-pub use input::{
-    AllPairs, Asymmetry, BadPoint, Dataset, InputMap, InputPoint, LabelFile, PathPoint, ShapeFile, SkipKind,
-    Skipped, Storage, Surface, SurfacePath, is_dataset, label_of, list_shapes, read_mesh, read_mesh_file,
+pub use input::{AllPairs, Asymmetry, PathPoint, SurfacePath, distance_rows, read_surface};
+pub use relations::{
+    Basis, Because, Change, Handedness, MeshGeometry, Parts, Relation, RelationKind, Side, SurfaceGap,
+    UnitChange,
 };
-pub use observer::Observer;
 pub use retrieval::RankBy;
 pub use shape_index::{
-    BuildOptions, BuildReport, ClassVotes, ComponentResult, Dropped, Elsewhere, EvaluateOptions, Explain,
-    Failure, FailureReason, GraphRank, Inputs, Measure, MergeReport, NearestShape, PartRank, Prediction,
-    Query, Ranked, Reranked, SearchOptions, SearchRank, SearchReport, SearchResult, SearchSeconds,
-    ShapeLimits, ShapeSearch, Shard, Unknown, add_to_index, build_index, content_hash, evaluate_index,
-    evaluate_matrix, indexed_shapes, merge_indexes, mesh_path, remove_from_index, rerank,
+    BuildOptions, BuildReport, ClassVotes, ComponentResult, DescribedQuery, Dropped, Elsewhere,
+    EvaluateOptions, Explain, Failure, FailureReason, GraphRank, Inputs, Measure, MergeReport, NearestShape,
+    PairwiseDistance, PartRank, Prediction, Query, Ranked, Reranked, SearchOptions, SearchRank, SearchReport,
+    SearchResult, SearchSeconds, ShapeLimits, ShapeSearch, Shard, Unknown, add_to_index, build_index,
+    evaluate_index, evaluate_matrix, export_index, indexed_shapes, merge_indexes, mesh_path,
+    remove_from_index, rerank,
 };
-pub use {descriptors, geodesics, index, linalg, mesh, nmds, retrieval, surface};
+pub use {
+    collection, descriptors, fields, geodesics, index, linalg, mesh, nmds, relations, retrieval, surface,
+};

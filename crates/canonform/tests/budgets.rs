@@ -8,7 +8,7 @@ use canonform::geodesics::Method;
 use canonform::mesh::shapes;
 use canonform::{
     Budget, BuildOptions, DescribeOptions, EmbedMethod, Error, Exceeded, FormOptions, Remedy, Samples,
-    SearchOptions, ShapeSearch, StressOptions, Surface, build_index, compare_methods, describe_within, embed,
+    SearchOptions, ShapeSearch, StressOptions, Surface, build_index, compare_methods, describe, embed,
     embed_and_measure,
 };
 
@@ -52,7 +52,7 @@ fn assert_cancellable<T: PartialEq + std::fmt::Debug>(
 }
 
 fn torus(n: usize) -> Surface {
-    Surface::new(&shapes::torus(2 * n, n, 2.0, 0.7), &Default::default()).unwrap()
+    Surface::new(&shapes::torus(2 * n, n, 2.0, 0.7), &Default::default(), &()).unwrap()
 }
 
 #[test]
@@ -82,7 +82,7 @@ fn every_solver_is_cancellable_in_an_embedding_and_its_stress() {
 fn describing_searching_and_comparing_methods_are_cancellable() {
     let surface = torus(30);
     let options = DescribeOptions::default();
-    assert_cancellable("describe", |budget| describe_within(&surface, &options, budget));
+    assert_cancellable("describe", |budget| describe(&surface, &options, budget));
 
     let folder = tempfile::tempdir().unwrap();
     for n in 0..8u32 {
@@ -94,7 +94,7 @@ fn describing_searching_and_comparing_methods_are_cancellable() {
     build_index(folder.path(), &path, &build, &()).unwrap();
     let (search, query) = (ShapeSearch::open(&path).unwrap(), shapes::torus(23, 12, 2.0, 0.5));
     assert_cancellable("search", |budget| {
-        let report = search.search_within(&query, &SearchOptions::default(), budget)?;
+        let report = search.search((&query).into(), &SearchOptions::default(), budget)?;
         Ok(report
             .results
             .into_iter()
@@ -129,7 +129,7 @@ fn distances_and_eigenpairs_keep_to_the_memory_of_the_budget() {
 #[test]
 fn arguments_beyond_the_surface_are_clamped_to_it() {
     let mesh = shapes::icosphere(2);
-    let surface = Surface::new(&mesh, &Default::default()).unwrap();
+    let surface = Surface::new(&mesh, &Default::default(), &()).unwrap();
     let all = surface.mesh().n_vertices();
     let samples = |n| {
         let options = FormOptions { samples: Samples::Count(n), ..FormOptions::default() };
@@ -156,7 +156,8 @@ fn more_results_than_shapes_are_all_shapes() {
     build_index(folder.path(), &path, &BuildOptions::new(&describe), &()).unwrap();
     let search = ShapeSearch::open(&path).unwrap();
     for k in [100_000_000, usize::MAX] {
-        let found = search.search(&mesh, &SearchOptions { k, ..SearchOptions::default() }).unwrap();
+        let found =
+            search.search((&mesh).into(), &SearchOptions { k, ..SearchOptions::default() }, &()).unwrap();
         assert_eq!(found.results.len(), 2);
     }
 }

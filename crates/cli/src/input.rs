@@ -6,11 +6,11 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 use anyhow::{Context, Result, bail};
-use canonform::{Remedy, ShapeFile, Storage, Surface, is_dataset, list_shapes, read_mesh_file};
-use mesh::io::{
+use canonform::mesh::io::{
     FORMATS, Format, MeshFile, ReadLimits, Source, files_in, is_mesh_path, or_list, without_extension,
 };
-use mesh::{RepairReport, TriMesh};
+use canonform::mesh::{RepairReport, TriMesh};
+use canonform::{Remedy, ShapeFile, Storage, Surface, is_dataset, list_shapes, read_mesh_file};
 
 use crate::args::{Common, RepairArgs};
 use crate::remedy::with_remedy;
@@ -24,7 +24,7 @@ static LOST_TOO_MUCH: AtomicBool = AtomicBool::new(false);
 /// Reports repairs on standard error; no repair is silent.
 pub(crate) fn print_repair(name: &str, report: &RepairReport, args: &RepairArgs) {
     for line in report.summary() {
-        terminal::note(&format!("{name}: {line}"));
+        base::terminal::note(&format!("{name}: {line}"));
     }
     check_dropped(name, report.dropped_area_share, args.max_dropped);
 }
@@ -39,7 +39,7 @@ pub(crate) fn check_dropped(name: &str, share: f64, allowed: f64) {
             100.0 * share,
             100.0 * allowed
         );
-        terminal::note(&format!("warning: {}", with_remedy(message, Some(Remedy::BridgeOrWeld))));
+        base::terminal::note(&format!("warning: {}", with_remedy(message, Some(Remedy::BridgeOrWeld))));
     }
 }
 
@@ -78,7 +78,7 @@ pub(crate) fn read_file(path: &Path, common: &Common) -> Result<MeshFile> {
         format!("`{format}` is not the format of a mesh; use one of {known}, without the dot")
     })?;
     let mut stream = std::io::stdin().lock();
-    Ok(mesh::io::read_from(Path::new(STREAM), &mut stream, format, &ReadLimits::default())?)
+    Ok(canonform::mesh::io::read_from(Path::new(STREAM), &mut stream, format, &ReadLimits::default())?)
 }
 
 /// Whether there is a file of this name, or such a member of an archive.
@@ -98,7 +98,8 @@ pub(crate) fn read_both(path: &Path, repair: &RepairArgs, common: &Common) -> Re
     let start = Instant::now();
     let mesh = read_mesh(path, common)?;
     let load_seconds = start.elapsed().as_secs_f64();
-    let mut surface = Surface::new(&mesh, &repair.options()).map_err(|fault| named(path, fault))?;
+    let mut surface =
+        Surface::new(&mesh, &repair.options(), &()).map_err(|fault| named(path, fault.into()))?;
     surface.load_seconds = load_seconds;
     Ok((surface.shown(mesh), surface))
 }
@@ -118,7 +119,10 @@ pub(crate) fn expand(arguments: &[PathBuf]) -> Result<Vec<ShapeFile>> {
                     glob::glob(pattern).with_context(|| format!("`{pattern}` is not a valid pattern"))?;
                 let found: Vec<PathBuf> = found.flatten().filter(|path| is_mesh_path(path)).collect();
                 if found.is_empty() {
-                    bail!("{pattern}: no mesh matches this pattern; a mesh is {}", mesh::io::mesh_files());
+                    bail!(
+                        "{pattern}: no mesh matches this pattern; a mesh is {}",
+                        canonform::mesh::io::mesh_files()
+                    );
                 }
                 shapes.extend(found.into_iter().map(single));
             }
@@ -139,39 +143,6 @@ fn single(path: PathBuf) -> ShapeFile {
     let stem = stem.file_name().unwrap_or_default().to_string_lossy();
     let name = if is_stream(&path) { "stdin".to_owned() } else { stem.into_owned() };
     ShapeFile { label: canonform::label_of(&name), name, path }
-}
-
-/// Where the result of each mesh goes: `FOLDER/NAME.EXTENSION`. Refuses results that would overwrite each other or a mesh.
-pub(crate) fn outputs(shapes: &[ShapeFile], folder: &Path, extension: &str) -> Result<Vec<PathBuf>> {
-    if folder.exists() && !folder.is_dir() {
-        bail!("{} is a file; with several meshes, -o names a folder", folder.display());
-    }
-    let inputs: std::collections::HashSet<PathBuf> =
-        shapes.iter().filter_map(|shape| shape.path.canonicalize().ok()).collect();
-    let mut first = std::collections::HashMap::new();
-    for shape in shapes {
-        let output = folder.join(format!("{}.{extension}", shape.name));
-        if output.canonicalize().is_ok_and(|output| inputs.contains(&output)) {
-            bail!("{}: the result would overwrite a mesh; choose another folder with -o", output.display());
-        }
-        if let Some(other) = first.insert(output, &shape.path) {
-            bail!(
-                "{} and {} would have the same result file; rename one of them",
-                other.display(),
-                shape.path.display()
-            );
-        }
-    }
-    Ok(shapes.iter().map(|shape| folder.join(format!("{}.{extension}", shape.name))).collect())
-}
-
-/// Creates the folder of a result.
-pub(crate) fn create_folder_of(output: &Path) -> Result<()> {
-    match output.parent() {
-        Some(folder) => std::fs::create_dir_all(folder)
-            .with_context(|| format!("cannot create the folder {}", folder.display())),
-        None => Ok(()),
-    }
 }
 
 /// An error that names the file exactly once.

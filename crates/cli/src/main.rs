@@ -1,6 +1,7 @@
 //! The program `canonform`: parses arguments, calls the library, prints. Contains no numerical code.
 
 mod args;
+mod batch;
 mod commands;
 mod field;
 mod input;
@@ -20,8 +21,8 @@ static ALLOCATOR: PeakAlloc = PeakAlloc;
 
 fn main() -> ExitCode {
     let Arguments { common, command } = Arguments::parse();
-    terminal::set_quiet(common.quiet);
-    terminal::run(common.threads.into(), || {
+    base::terminal::set_quiet(common.quiet);
+    base::terminal::run(common.threads.into(), || {
         commands::run(&command, &common).map(input::exit_code_of).map_err(remedy::remedied)
     })
 }

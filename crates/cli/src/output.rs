@@ -6,11 +6,11 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::{Result, bail};
-use mesh::io::{Content, Format, VertexField, extension, is_gzip, or_list};
-use mesh::{MeshError, TriMesh};
+use canonform::mesh::io::{Content, Format, VertexField, extension, is_gzip, or_list};
+use canonform::mesh::{MeshError, TriMesh};
 use npyz::WriterBuilder;
+use report::color::{Rgb, color_scale};
 use serde::Serialize;
-use view::color::{Rgb, color_scale};
 
 use crate::args::Common;
 use crate::input::is_stream;
@@ -43,7 +43,40 @@ pub(crate) fn print_json(value: &impl Serialize) -> Result<()> {
 
 /// Prints text to standard output, without codes that a terminal would obey.
 pub(crate) fn print(text: &str) -> Result<()> {
-    Ok(writeln!(io::stdout().lock(), "{}", terminal::printable(text))?)
+    Ok(writeln!(io::stdout().lock(), "{}", base::terminal::printable(text))?)
+}
+
+/// A name and a value.
+pub(crate) type Fact = (&'static str, String);
+
+/// What people read: the answer in one sentence, at most four facts, and the rest, which `--details` adds.
+pub(crate) struct Answer {
+    pub(crate) sentence: String,
+    pub(crate) facts: Vec<Fact>,
+    pub(crate) details: Vec<Fact>,
+}
+
+impl Answer {
+    /// The answer as text.
+    pub(crate) fn text(mut self, common: &Common) -> String {
+        if common.details {
+            self.facts.append(&mut self.details);
+        }
+        match self.facts.is_empty() {
+            true => self.sentence,
+            false => format!("{}\n{}", self.sentence, facts(&self.facts)),
+        }
+    }
+}
+
+/// A result file in a sentence.
+pub(crate) fn shown(path: &Path) -> String {
+    if is_stream(path) { "standard output".to_owned() } else { path.display().to_string() }
+}
+
+/// A number with a noun in the singular or, with an `s`, in the plural.
+pub(crate) fn count(n: usize, noun: &str) -> String {
+    if n == 1 { format!("1 {noun}") } else { format!("{n} {noun}s") }
 }
 
 /// A table of two columns: names and values.
@@ -77,7 +110,7 @@ pub(crate) fn fill_npy(
     let array: npyz::NpyWriter<f64, _> =
         npyz::WriteOptions::new().default_dtype().shape(&shape).writer(&mut header).begin_nd()?;
     drop(array);
-    Ok(files::fill_atomically(path, |file| {
+    Ok(base::files::fill_atomically(path, |file| {
         file.write_all(&header)?;
         content(file)
     })?)
@@ -85,7 +118,7 @@ pub(crate) fn fill_npy(
 
 /// Writes rows of comma-separated numbers in full precision.
 pub(crate) fn write_csv<'a>(path: &Path, rows: impl Iterator<Item = &'a [f64]>) -> Result<()> {
-    Ok(files::write_atomically(path, |out| {
+    Ok(base::files::write_atomically(path, |out| {
         for row in rows {
             let text: Vec<String> = row.iter().map(f64::to_string).collect();
             writeln!(out, "{}", text.join(","))?;
@@ -101,7 +134,7 @@ pub(crate) struct Output {
     path: PathBuf,
     format: String,
     /// Holds the file until it is complete and goes to standard output.
-    scratch: Option<files::Scratch>,
+    scratch: Option<base::files::Scratch>,
 }
 
 impl Output {
@@ -125,7 +158,7 @@ impl Output {
             );
         }
         let format = format.or(formats.first().copied()).unwrap_or_default().to_owned();
-        let scratch = files::Scratch::new()?;
+        let scratch = base::files::Scratch::new()?;
         let path = scratch.file(&format!("stdout.{format}"));
         check_format(&path, what, formats)?;
         Ok(Self { path, format, scratch: Some(scratch) })
@@ -163,7 +196,7 @@ impl Output {
             return report(common, result, table);
         }
         self.copy_to_stdout()?;
-        terminal::note(&table(result));
+        base::terminal::note(&table(result));
         Ok(ExitCode::SUCCESS)
     }
 
@@ -213,5 +246,5 @@ pub(crate) fn write_colored(
     values: &[f64],
 ) -> Result<(), MeshError> {
     let colors: Vec<Rgb> = values.iter().copied().map(color_scale(values)).collect();
-    mesh::io::write_scalar_field(path, mesh, &VertexField { name, values, colors: &colors })
+    canonform::mesh::io::write_scalar_field(path, mesh, &VertexField { name, values, colors: &colors })
 }

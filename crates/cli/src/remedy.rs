@@ -28,10 +28,6 @@ fn words(remedy: Remedy) -> &'static str {
         Remedy::BuildIndexAgain => {
             "restore the index from a copy, or build it again with `canonform index build`"
         }
-        Remedy::AddGraph => {
-            "run `canonform index build` with the same folder and file again, which describes no shape twice, or pass \
-             --rank plain"
-        }
         Remedy::BuildIndexAnew => "build the index with `canonform index build` in a new file",
         Remedy::BuildFieldAgain => "build it again with `canonform field build`",
         Remedy::ListShapes => "`canonform index list` names its shapes",
@@ -68,7 +64,7 @@ pub(crate) fn with_remedy(message: String, remedy: Option<Remedy>) -> String {
 
 /// The message of an error with its remedy.
 pub(crate) fn message(error: &anyhow::Error) -> String {
-    with_advice(terminal::message(error), error.chain().find_map(advice))
+    with_advice(base::terminal::message(error), error.chain().find_map(advice))
 }
 
 fn with_advice(message: String, advice: Option<&str>) -> String {

@@ -18,14 +18,14 @@ fn main() -> Result<(), Box<dyn Error>> {
     let [_, mesh, pairs, folder] = &arguments[..] else {
         return Err("usage: eigenpairs MESH PAIRS FOLDER".into());
     };
-    let surface = repair(&io::read(Path::new(mesh))?, &RepairOptions::default())?.intrinsic();
+    let surface = repair(&io::read(Path::new(mesh))?, &RepairOptions::default(), &())?.intrinsic;
     let start = Instant::now();
     let laplacian = Laplacian::new(&surface);
     let masses = laplacian.masses();
     let stiffness = SparseSymmetric::from_entries(laplacian.n_vertices(), laplacian.stiffness_entries());
     let assembly = start.elapsed().as_secs_f64();
     let start = Instant::now();
-    let eigen = smallest_eigenpairs(&stiffness, &masses, pairs.parse()?)?;
+    let eigen = smallest_eigenpairs(&stiffness, &masses, pairs.parse()?, &())?;
     let seconds = start.elapsed().as_secs_f64();
 
     let folder = Path::new(folder);

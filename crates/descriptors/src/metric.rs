@@ -40,30 +40,14 @@ const CALIBRATION: [(SignatureKind, f64, f64); SignatureKind::ALL.len()] = [
     (SignatureKind::WaveKernel, 0.254, 0.478),
 ];
 
-/// Forms of unit area with a smaller root mean square distance fit so well that the normals of their surfaces can be
-/// compared. Between poses of TOSCA's cats, centaurs and davids the distance is mostly below 0.07, between two of
-/// these animals mostly above 0.1; but a cat and a dog may be 0.06 apart, so a fit alone does not make one shape.
-const FITTING: f64 = 0.08;
-
-/// Sizes that differ by less than this factor count as equal. It is also the unit of differences in size: poses and
-/// scans of one body may well differ by 5 %.
-pub(crate) const SAME_SIZE: f64 = 1.05;
-
-/// One of two maps fits and the other does not if its distance is larger by this factor, ...
-const DECISIVE: f64 = 1.25;
-
-/// ... and larger by this much in the mean square at unit area, beyond the distance between samples of one surface. Two
-/// poses of one body are about 0.03 apart.
-const EXCESS: f64 = 0.02;
-
 /// Two values of fused vectors that differ by more standard deviations between poses count less, see
 /// [`ShapeMetric::robust`].
 ///
 /// Chosen on bodies of the built-in families, each a class of its own, and on the same with two distant points welded in
-/// the query: see `docs/decisions/047-robust-distance.md`.
+/// the query: see `docs/decisions/014-metric.md`.
 const OUTLYING: f64 = 4.0;
 
-/// The distance between two shapes, and the verdict whether they are one shape.
+/// The distance between two shapes, and the probability that they are one shape.
 ///
 /// | symbol | meaning |
 /// |---|---|
@@ -92,36 +76,42 @@ pub struct ShapeDistance {
     pub combined: f64,
 }
 
-/// Whether the second surface is the mirror image of the first.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Handedness {
-    /// It is not.
-    Same,
-    /// It is.
-    Mirrored,
-    /// Both fit, as for a body whose left and right are alike.
-    Either,
-    /// Unknown: a surface does not enclose a volume, or the forms do not fit well enough to compare normals.
-    #[default]
-    Unknown,
-}
+impl ShapeDistance {
+    /// Probability that both are one shape. One shape is of one class, so it is at most that of one class.
+    #[must_use]
+    pub fn same_shape(&self) -> f64 {
+        ShapeMetric::SAME_SHAPE.probability(self.combined).min(self.same_class())
+    }
 
-/// By which change of size and handedness a shape matches another, if they may be of one class. How alike they are is
-/// the [`Verdict`](crate::Verdict).
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum MatchKind {
-    /// None: the same size, and not mirrored.
-    Same,
-    /// Another size.
-    Scaled,
-    /// Mirror images.
-    Mirrored,
-    /// Mirror images of different size.
-    MirroredAndScaled,
-    /// The shapes are of different classes rather than of one.
-    Different,
+    /// Probability that both are of one class.
+    #[must_use]
+    pub fn same_class(&self) -> f64 {
+        ShapeMetric::SAME_CLASS.probability(self.combined)
+    }
+
+    /// Whether the shapes are certainly one shape.
+    #[must_use]
+    pub fn is_same_shape(&self) -> bool {
+        self.combined < ShapeMetric::SAME_SHAPE.gap()[0]
+    }
+
+    /// Whether the shapes are certainly of one class, one shape or not.
+    #[must_use]
+    pub fn is_same_class(&self) -> bool {
+        self.combined < ShapeMetric::SAME_CLASS.gap()[0]
+    }
+
+    /// Whether the shapes are at least as likely of one class as not. Neighbours as near as this vote on the class of a query.
+    #[must_use]
+    pub fn may_be_same_class(&self) -> bool {
+        self.combined < ShapeMetric::SAME_CLASS.at
+    }
+
+    /// Whether the shapes are certainly of different classes.
+    #[must_use]
+    pub fn is_different(&self) -> bool {
+        self.combined > ShapeMetric::SAME_CLASS.gap()[1]
+    }
 }
 
 impl ShapeMetric {
@@ -135,7 +125,8 @@ impl ShapeMetric {
     /// standard deviation), as among adults. Two poses are at most 1.87 apart, with a median of 0.92; two bodies at
     /// least 0.78, with a median of 1.95. So a shape cannot always be told from another of its class.
     ///
-    /// Measured on the built-in families as the units of signatures, and on nothing else.
+    /// Probabilities hold for bodies and poses that vary as much as those. Measured on the built-in families as the units of
+    /// signatures (`cargo run --release -p experiments -- units`), and on nothing else.
     pub const SAME_SHAPE: Boundary = Boundary { at: 1.313, steepness: 8.64 };
 
     /// The boundary between two bodies of one class and two classes: the geometric mean of the distance that 1 % of pairs
@@ -146,8 +137,15 @@ impl ShapeMetric {
     /// variance among families. Measured as [`SAME_SHAPE`](Self::SAME_SHAPE).
     pub const SAME_CLASS: Boundary = Boundary { at: 2.874, steepness: 20.07 };
 
-    /// Points of every form that are matched with the nearest points of another form.
-    pub const MATCHED_POINTS: usize = 400;
+    /// Sizes of poses and scans of one body differ by less than this factor, so that such sizes count as equal. It is also the
+    /// unit of differences in size. A convention: poses and scans of one body may well differ by 5 %.
+    pub const SIZE_OF_POSES: f64 = 1.05;
+
+    /// An answer is certain if it is at least this probable; below, a relation is called probable. A convention.
+    pub const CERTAIN: f64 = 0.9;
+
+    /// Points of every form that are aligned with the nearest points of another form.
+    pub const ALIGNED_POINTS: usize = 400;
 
     /// Length of a fused vector without the size.
     pub const FUSED_LENGTH: usize = {
@@ -189,7 +187,7 @@ impl ShapeMetric {
     /// The size of a surface as a coordinate whose differences are distances: `ln √area` in units of 5 %. The areas of two
     /// surfaces must be in the same unit of length.
     pub fn size_coordinate(area: f64) -> f64 {
-        0.5 * area.max(f64::MIN_POSITIVE).ln() / SAME_SIZE.ln()
+        0.5 * area.max(f64::MIN_POSITIVE).ln() / Self::SIZE_OF_POSES.ln()
     }
 
     /// All signatures with a weight, in their order, as one vector whose Euclidean distance is the fused distance. With an
@@ -263,29 +261,9 @@ impl ShapeMetric {
     }
 
     /// The reported distance between aligned forms below which shapes with this robust distance
-    /// [may be of one class](crate::Verdict::may_be_same_class); 0 if their signatures alone are too far apart.
+    /// [may be of one class](ShapeDistance::may_be_same_class); 0 if their signatures alone are too far apart.
     pub fn same_below(&self, robust: f64) -> f64 {
         Self::form_limit(robust, Self::SAME_CLASS.at, self.distance)
-    }
-
-    /// Whether aligned forms of unit area fit well enough to compare normals at nearest points.
-    pub fn fits(form_rms: f64) -> bool {
-        form_rms < FITTING
-    }
-
-    /// The handedness, from the root mean square distances of the best maps that preserve and that reverse orientation,
-    /// infinite if there is none. The second surface has unit area and `n_points` points.
-    pub fn handedness([preserving, reversing]: [f64; 2], n_points: usize) -> Handedness {
-        // A point is about half of √(1 / n) from the nearest of n others.
-        let least = EXCESS.powi(2) + 0.25 / n_points as f64;
-        let decided =
-            |better: f64, worse: f64| worse > DECISIVE * better && worse.powi(2) - better.powi(2) > least;
-        match preserving.is_finite() || reversing.is_finite() {
-            false => Handedness::Unknown,
-            _ if decided(preserving, reversing) => Handedness::Same,
-            _ if decided(reversing, preserving) => Handedness::Mirrored,
-            _ => Handedness::Either,
-        }
     }
 }
 
@@ -323,15 +301,21 @@ mod tests {
     }
 
     #[test]
-    fn the_handedness_follows_the_decisively_better_map() {
-        let of = |distances| ShapeMetric::handedness(distances, 1000);
-        let none = f64::INFINITY;
-        for worse in [0.06, none] {
-            assert_eq!(of([0.02, worse]), Handedness::Same);
-            assert_eq!(of([worse, 0.02]), Handedness::Mirrored);
+    fn answers_follow_each_other_as_the_distance_grows() {
+        let at = |combined| ShapeDistance { fused: combined, combined };
+        let mut last = at(0.0);
+        assert_eq!((last.same_shape(), last.same_class()), (1.0, 1.0));
+        for i in 1..4000 {
+            let next = at(f64::from(i) * 0.005);
+            assert!(next.same_shape() <= last.same_shape() && next.same_class() <= last.same_class());
+            assert!(next.same_shape() <= next.same_class());
+            assert!(!next.is_same_shape() || next.is_same_class());
+            assert!(!next.is_same_class() || next.may_be_same_class());
+            assert!(!(next.may_be_same_class() && next.is_different()));
+            assert_eq!(next.may_be_same_class(), next.same_class() > 0.5);
+            last = next;
         }
-        assert_eq!(of([0.021, 0.02]), Handedness::Either);
-        assert_eq!(of([none, none]), Handedness::Unknown);
+        assert!(last.is_different());
     }
 
     #[test]

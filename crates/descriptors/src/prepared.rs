@@ -1,4 +1,4 @@
-//! A form prepared to be matched with many others.
+//! A form prepared to be aligned with many others.
 
 use nalgebra::Point3;
 
@@ -32,7 +32,7 @@ pub(crate) enum Detail {
 
 impl PreparedForm {
     /// Turns a form into its area-weighted principal axes, which do not depend on the triangulation, and spreads
-    /// [`ShapeMetric::MATCHED_POINTS`] of its points evenly by farthest point sampling; fewer if it has no more.
+    /// [`ShapeMetric::ALIGNED_POINTS`] of its points evenly by farthest point sampling; fewer if it has no more.
     ///
     /// # Errors
     /// [`DescriptorError::NoExtent`].
@@ -40,7 +40,7 @@ impl PreparedForm {
         let (axes, axis_spread) = form.principal_axes();
         let to_principal = Alignment::about_origin(axes);
         let points: Vec<_> = form.points().iter().map(|p| to_principal.apply(p)).collect();
-        let spread = spread(&points, ShapeMetric::MATCHED_POINTS);
+        let spread = spread(&points, ShapeMetric::ALIGNED_POINTS);
         let samples: Vec<_> = spread.samples.iter().map(|&i| points[i]).collect();
         Ok(Self {
             extent: Extent::new(&samples, spread.covering),
@@ -52,7 +52,8 @@ impl PreparedForm {
     }
 
     /// All points, in the principal axes.
-    pub(crate) fn points(&self) -> &[Point3<f64>] {
+    #[must_use]
+    pub fn points(&self) -> &[Point3<f64>] {
         self.points.points()
     }
 

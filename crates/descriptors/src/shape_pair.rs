@@ -4,12 +4,11 @@ use std::cell::OnceCell;
 
 use nalgebra::Point3;
 
+use crate::align::{FormAlignment, Reflections, align_forms};
 use crate::canonical_form::{CanonicalForm, Normalization};
 use crate::error::DescriptorError;
-use crate::matching::{FormMatch, Reflections, match_forms};
-use crate::metric::{Handedness, ShapeDistance, ShapeMetric};
+use crate::metric::{ShapeDistance, ShapeMetric};
 use crate::prepared::PreparedForm;
-use crate::verdict::Verdict;
 
 /// A shape prepared for comparison: its fused vector, and its form rounded to the 32 bits that an index stores, so that a
 /// shape compares in the same way before and after it is stored.
@@ -57,7 +56,7 @@ impl PreparedShape {
         form.points().iter().map(|p| p / size).collect()
     }
 
-    /// The form at unit area, ready to be matched.
+    /// The form at unit area, ready to be aligned.
     pub fn prepared_form(&self) -> &PreparedForm {
         &self.unit
     }
@@ -71,8 +70,8 @@ pub struct ShapePair<'a> {
     pub metric: ShapeMetric,
     /// The two shapes.
     pub shapes: [&'a PreparedShape; 2],
-    best: OnceCell<FormMatch>,
-    other_handed: OnceCell<FormMatch>,
+    best: OnceCell<FormAlignment>,
+    other_handed: OnceCell<FormAlignment>,
 }
 
 impl<'a> ShapePair<'a> {
@@ -84,7 +83,7 @@ impl<'a> ShapePair<'a> {
 
     /// The pair with a [best](Self::best) alignment that is known already.
     #[must_use]
-    pub fn with_best(self, best: FormMatch) -> Self {
+    pub fn with_best(self, best: FormAlignment) -> Self {
         Self { best: OnceCell::from(best), ..self }
     }
 
@@ -95,12 +94,12 @@ impl<'a> ShapePair<'a> {
     }
 
     /// The best alignment of the forms at unit area, with or without a reflection.
-    pub fn best(&self) -> FormMatch {
+    pub fn best(&self) -> FormAlignment {
         *self.best.get_or_init(|| self.aligned(Reflections::Allow))
     }
 
     /// The best alignment at unit area under a restriction on reflections.
-    pub fn best_with(&self, reflections: Reflections) -> FormMatch {
+    pub fn best_with(&self, reflections: Reflections) -> FormAlignment {
         let best = self.best();
         let excluded = if best.alignment.reflected { Reflections::Forbid } else { Reflections::Require };
         match reflections == excluded {
@@ -113,12 +112,12 @@ impl<'a> ShapePair<'a> {
     ///
     /// # Errors
     /// [`DescriptorError::NoExtent`].
-    pub fn align_raw(&self) -> Result<FormMatch, DescriptorError> {
+    pub fn align_raw(&self) -> Result<FormAlignment, DescriptorError> {
         let [a, b] = self.shapes.map(PreparedShape::form);
         if a.area().or(b.area()).is_none() {
             return Ok(self.best());
         }
-        Ok(match_forms(&PreparedForm::new(a)?, &PreparedForm::new(b)?, Reflections::Allow))
+        Ok(align_forms(&PreparedForm::new(a)?, &PreparedForm::new(b)?, Reflections::Allow))
     }
 
     /// How far apart the shapes are, regardless of size.
@@ -128,13 +127,8 @@ impl<'a> ShapePair<'a> {
         ShapeDistance { fused: ShapeMetric::fused(a, b), combined }
     }
 
-    /// The verdict on the shapes.
-    pub fn verdict(&self, handedness: Handedness) -> Verdict {
-        ShapeMetric::verdict(self.distance(), handedness, self.scale())
-    }
-
-    fn aligned(&self, reflections: Reflections) -> FormMatch {
-        match_forms(&self.shapes[0].unit, &self.shapes[1].unit, reflections)
+    fn aligned(&self, reflections: Reflections) -> FormAlignment {
+        align_forms(&self.shapes[0].unit, &self.shapes[1].unit, reflections)
     }
 }
 
@@ -175,7 +169,7 @@ mod tests {
     fn a_known_alignment_is_not_searched_again() {
         let metric = ShapeMetric::default();
         let (a, b) = (spiral(4.0, 1.0, 1.0), spiral(5.0, 1.0, 1.0));
-        let known = FormMatch { rms: 0.5, ..ShapePair::new(metric, [&a, &b]).best() };
+        let known = FormAlignment { rms: 0.5, ..ShapePair::new(metric, [&a, &b]).best() };
         let pair = ShapePair::new(metric, [&a, &b]).with_best(known);
         assert_eq!(pair.best(), known);
         let robust = ShapeMetric::robust(a.fused(), b.fused());

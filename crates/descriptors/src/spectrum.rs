@@ -1,7 +1,7 @@
 //! The Laplace-Beltrami spectrum of a surface.
 
-use budget::Budget;
-use linalg::{GeneralizedEigen, LinalgError, Matrix, SparseSymmetric, smallest_eigenpairs_within};
+use base::Observer;
+use linalg::{GeneralizedEigen, LinalgError, Matrix, SparseSymmetric, smallest_eigenpairs};
 use surface::IntrinsicMesh;
 use surface::laplacian::{Element, Laplacian};
 
@@ -38,17 +38,10 @@ impl LaplaceSpectrum {
     /// quotients of the eigenfunctions with the mean of both masses, where the errors cancel.
     ///
     /// # Errors
-    /// [`DescriptorError::NoExtent`] for a surface without area; [`DescriptorError::Linalg`].
-    pub fn new(mesh: &IntrinsicMesh, m: usize) -> Result<Self, DescriptorError> {
-        Self::within(mesh, m, &Budget::unlimited())
-    }
-
-    /// As [`new`](Self::new), within a budget.
-    ///
-    /// # Errors
-    /// As [`new`](Self::new); a budget that is exceeded is a [`DescriptorError::Linalg`].
-    pub fn within(mesh: &IntrinsicMesh, m: usize, budget: &Budget) -> Result<Self, DescriptorError> {
-        budget.check().map_err(LinalgError::from)?;
+    /// [`DescriptorError::NoExtent`] for a surface without area; [`DescriptorError::Linalg`], also if the
+    /// budget of the observer is exceeded.
+    pub fn new(mesh: &IntrinsicMesh, m: usize, observer: &dyn Observer) -> Result<Self, DescriptorError> {
+        observer.budget().check().map_err(LinalgError::from)?;
         let laplacian = Laplacian::new(mesh);
         let mut masses = laplacian.masses();
         let area: f64 = masses.iter().sum();
@@ -57,8 +50,7 @@ impl LaplaceSpectrum {
         }
         masses.iter_mut().for_each(|mass| *mass /= area);
         let stiffness = SparseSymmetric::from_entries(mesh.n_vertices(), laplacian.stiffness_entries());
-        let GeneralizedEigen { values, vectors } =
-            smallest_eigenpairs_within(&stiffness, &masses, m, budget)?;
+        let GeneralizedEigen { values, vectors } = smallest_eigenpairs(&stiffness, &masses, m, observer)?;
         let corrected = corrected(&laplacian, area, &values, &vectors);
         Ok(Self { values, corrected, vectors, masses, area: area * laplacian.metric().unit.powi(2) })
     }
@@ -86,7 +78,7 @@ mod tests {
     use mesh::{TriMesh, shapes};
 
     fn spectrum(mesh: &TriMesh, m: usize) -> LaplaceSpectrum {
-        LaplaceSpectrum::new(&mesh.intrinsic(), m).unwrap()
+        LaplaceSpectrum::new(&mesh.intrinsic(), m, &()).unwrap()
     }
 
     #[test]
@@ -141,7 +133,7 @@ mod tests {
 
     #[test]
     fn a_surface_without_area_has_no_spectrum() {
-        let none = LaplaceSpectrum::new(&TriMesh::default().intrinsic(), 5);
+        let none = LaplaceSpectrum::new(&TriMesh::default().intrinsic(), 5, &());
         assert_eq!(none, Err(DescriptorError::NoExtent { n_points: 0 }));
     }
 }

@@ -2,10 +2,10 @@
 
 use std::collections::VecDeque;
 
-use budget::{Budget, Exceeded};
-use surface::IntrinsicMesh;
+use base::{Budget, Exceeded, Observer};
+use surface::{IntrinsicMesh, Rows};
 
-use crate::graph::EdgeGraph;
+use crate::graph::edge_graph;
 use crate::solver::{DistanceSolver, Pool, within};
 use crate::source::Source;
 
@@ -19,35 +19,29 @@ use crate::source::Source;
 ///
 /// let mesh = shapes::tetrahedron(0).intrinsic();
 /// let hop = mesh.mean_edge_length();
-/// assert_eq!(BreadthFirst::new(&mesh).distances(VertexId(0))?, [0.0, hop, hop, hop]);
+/// assert_eq!(BreadthFirst::new(&mesh, &()).distances(VertexId(0))?, [0.0, hop, hop, hop]);
 /// # Ok::<(), canonform_geodesics::GeodesicError>(())
 /// ```
 #[derive(Debug)]
 pub struct BreadthFirst {
-    graph: EdgeGraph,
+    graph: Rows<(u32, f64)>,
     hop: f64,
     scratch: Pool<VecDeque<u32>>,
     budget: Budget,
 }
 
 impl BreadthFirst {
-    /// Prepares a surface.
+    /// Prepares a surface. The solver keeps to the budget of the observer.
     #[must_use]
-    pub fn new(mesh: &IntrinsicMesh) -> Self {
-        let (graph, hop) = (EdgeGraph::new(mesh), mesh.mean_edge_length());
-        Self { graph, hop, scratch: Pool::default(), budget: Budget::unlimited() }
-    }
-
-    /// The same solver, which keeps to a budget.
-    #[must_use]
-    pub fn with_budget(self, budget: Budget) -> Self {
-        Self { budget, ..self }
+    pub fn new(mesh: &IntrinsicMesh, observer: &dyn Observer) -> Self {
+        let (graph, hop) = (edge_graph(mesh), mesh.mean_edge_length());
+        Self { graph, hop, scratch: Pool::default(), budget: observer.budget() }
     }
 }
 
 impl DistanceSolver for BreadthFirst {
     fn n_vertices(&self) -> usize {
-        self.graph.n_vertices()
+        self.graph.n_rows()
     }
 
     fn budget(&self) -> Budget {
@@ -69,7 +63,7 @@ impl DistanceSolver for BreadthFirst {
             }
             while let Some(vertex) = queue.pop_front() {
                 let hops = out[vertex as usize] + 1.0;
-                let neighbours = self.graph.neighbours(vertex);
+                let neighbours = self.graph.row(vertex as usize);
                 meter.count(1 + neighbours.len())?;
                 for &(target, _) in neighbours {
                     if out[target as usize] > hops {

@@ -1,9 +1,9 @@
 //! Distances along edges.
 
-use budget::{Budget, Exceeded};
-use surface::IntrinsicMesh;
+use base::{Budget, Exceeded, Observer};
+use surface::{IntrinsicMesh, Rows};
 
-use crate::graph::EdgeGraph;
+use crate::graph::edge_graph;
 use crate::heap::VertexHeap;
 use crate::solver::{DistanceSolver, Pool, within};
 use crate::source::Source;
@@ -17,34 +17,28 @@ use crate::source::Source;
 /// use surface::VertexId;
 ///
 /// // On a unit cube whose sides have one diagonal each, two corners are at most two edges apart.
-/// let along_edges = Dijkstra::new(&shapes::cube(0).intrinsic()).distances(VertexId(0))?;
+/// let along_edges = Dijkstra::new(&shapes::cube(0).intrinsic(), &()).distances(VertexId(0))?;
 /// assert!(along_edges.iter().all(|d| *d <= 1.0 + 2f64.sqrt()));
 /// # Ok::<(), canonform_geodesics::GeodesicError>(())
 /// ```
 #[derive(Debug)]
 pub struct Dijkstra {
-    graph: EdgeGraph,
+    graph: Rows<(u32, f64)>,
     scratch: Pool<VertexHeap>,
     budget: Budget,
 }
 
 impl Dijkstra {
-    /// Prepares a surface.
+    /// Prepares a surface. The solver keeps to the budget of the observer.
     #[must_use]
-    pub fn new(mesh: &IntrinsicMesh) -> Self {
-        Self { graph: EdgeGraph::new(mesh), scratch: Pool::default(), budget: Budget::unlimited() }
-    }
-
-    /// The same solver, which keeps to a budget.
-    #[must_use]
-    pub fn with_budget(self, budget: Budget) -> Self {
-        Self { budget, ..self }
+    pub fn new(mesh: &IntrinsicMesh, observer: &dyn Observer) -> Self {
+        Self { graph: edge_graph(mesh), scratch: Pool::default(), budget: observer.budget() }
     }
 }
 
 impl DistanceSolver for Dijkstra {
     fn n_vertices(&self) -> usize {
-        self.graph.n_vertices()
+        self.graph.n_rows()
     }
 
     fn budget(&self) -> Budget {
@@ -63,7 +57,7 @@ impl DistanceSolver for Dijkstra {
                 if distance > max_distance {
                     break;
                 }
-                let neighbours = self.graph.neighbours(vertex);
+                let neighbours = self.graph.row(vertex as usize);
                 meter.count(1 + neighbours.len())?;
                 for &(target, length) in neighbours {
                     heap.relax(target, distance + length);

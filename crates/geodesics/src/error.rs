@@ -2,7 +2,7 @@
 
 use surface::VertexId;
 
-use crate::point::SurfacePoint;
+use surface::SurfacePoint;
 
 /// Errors of this crate.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -59,7 +59,7 @@ pub enum GeodesicError {
     },
     /// A limit on time or memory, or a cancellation.
     #[error(transparent)]
-    Exceeded(#[from] budget::Exceeded),
+    Exceeded(#[from] base::Exceeded),
     /// Distances that are no matrix, because a vertex cannot be reached from another.
     #[error(transparent)]
     Matrix(linalg::LinalgError),

@@ -3,24 +3,10 @@
 use surface::{IntrinsicMesh, Link, Rows, VertexId};
 
 /// The neighbours of every vertex along edges and links, and their distances.
-#[derive(Debug, Clone)]
-pub(crate) struct EdgeGraph(Rows<(u32, f64)>);
-
-impl EdgeGraph {
-    pub(crate) fn new(mesh: &IntrinsicMesh) -> Self {
-        let edges = mesh.topology().edges().iter().zip(mesh.edge_lengths());
-        let edges = edges.map(|(ends, length)| Link { ends: *ends, length: *length });
-        Self(Link::by_vertex(mesh.n_vertices(), edges.chain(mesh.links().iter().copied())))
-    }
-
-    pub(crate) fn n_vertices(&self) -> usize {
-        self.0.n_rows()
-    }
-
-    #[inline]
-    pub(crate) fn neighbours(&self, vertex: u32) -> &[(u32, f64)] {
-        self.0.row(vertex as usize)
-    }
+pub(crate) fn edge_graph(mesh: &IntrinsicMesh) -> Rows<(u32, f64)> {
+    let edges = mesh.topology().edges().iter().zip(mesh.edge_lengths());
+    let edges = edges.map(|(ends, length)| Link { ends: *ends, length: *length });
+    Link::by_vertex(mesh.n_vertices(), edges.chain(mesh.links().iter().copied()))
 }
 
 /// Vertices in breadth-first order, one component after the other, so that neighbours are close in memory.

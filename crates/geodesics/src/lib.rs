@@ -7,6 +7,7 @@
 //! * A [`Source`] is a vertex, or any [`SurfacePoint`].
 //! * A [`PathTracer`] finds shortest paths with the distances of any solver.
 //! * A [`Sampling`] names a choice of landmarks; [`Sampling::start`] makes a [`Sampler`].
+//! * A solver keeps to the budget of the observer it is prepared with; [`Observed`] tells an observer of every solve.
 //!
 //! **Invariant.** This crate knows edge lengths only and cannot depend on vertex coordinates, so an isometry of the
 //! surface changes no result.
@@ -17,12 +18,12 @@
 //! use surface::VertexId;
 //!
 //! let surface = shapes::torus(40, 16, 2.0, 0.7).intrinsic();
-//! let solver = Method::default().prepare(&surface)?;
+//! let solver = Method::default().prepare(&surface, &())?;
 //!
 //! // Distances from one vertex to all, and the shortest path to one of them.
 //! let distances = solver.distances(VertexId(0))?;
 //! let sources = [Source::vertex(VertexId(0))];
-//! let path = PathTracer::new(&surface, &sources, &distances).path_to(SurfacePoint::Vertex(VertexId(330)))?;
+//! let path = PathTracer::new(&surface, &sources, &distances, &()).path_to(SurfacePoint::Vertex(VertexId(330)))?;
 //! assert!((path.length / distances[330] - 1.0).abs() < 0.05);
 //!
 //! // Ten landmarks spread over the surface, with their distances to all vertices.
@@ -40,19 +41,17 @@ mod fast_marching;
 mod graph;
 mod heap;
 mod heat;
-mod instructions;
 mod method;
+mod observed;
 mod oracle;
 mod path;
 mod plane;
-mod point;
 mod prefetch;
 mod sampling;
 mod solver;
 mod source;
 #[cfg(test)]
-mod testing;
-mod units;
+mod tests;
 
 pub use breadth_first::BreadthFirst;
 pub use dijkstra::Dijkstra;
@@ -61,12 +60,10 @@ pub use exact::Exact;
 pub use fast_marching::{FastMarching, FastMarchingOptions, ObtuseTreatment, Update};
 pub use heat::{HeatMethod, HeatOptions};
 pub use method::Method;
+pub use observed::Observed;
 pub use oracle::DistanceOracle;
 pub use path::{GeodesicPath, PathTracer};
-pub use point::SurfacePoint;
-pub use sampling::{
-    FarthestPointSampler, FirstSample, RandomSampler, Sampler, Sampling, SpreadSamples, Variance,
-    VarianceSampler, farthest_point_sampling,
-};
+pub use sampling::{FirstSample, Sampler, Sampling, SpreadSamples, Variance, farthest_point_sampling};
 pub use solver::{DistanceSolver, PrunedSolver};
 pub use source::Source;
+pub use surface::SurfacePoint;

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use budget::{Budget, Exceeded};
+use base::{Budget, Exceeded, Observer};
 use surface::VertexId;
 
 use crate::solver::DistanceSolver;
@@ -26,7 +26,7 @@ use crate::source::Source;
 ///         let apart = station.abs_diff(from.index());
 ///         *minutes = apart.min(stations - apart) as f64;
 ///     }
-/// });
+/// }, &());
 /// let mut sampler = Sampling::Farthest.start(&minutes, FirstSample::default(), 0)?;
 /// sampler.extend_to(20)?;
 /// let landmarks = sampler.distances(20)?;
@@ -42,15 +42,10 @@ pub struct DistanceOracle<F> {
 }
 
 impl<F: Fn(VertexId, &mut [f64]) + Send + Sync> DistanceOracle<F> {
-    /// `measure(from, to)` writes the distances from the point `from` to all points.
-    pub fn new(n_points: usize, measure: F) -> Self {
-        Self { n_points, measure, budget: Budget::unlimited() }
-    }
-
-    /// The same distances within a budget, which is checked before every call of the function.
-    #[must_use]
-    pub fn with_budget(self, budget: Budget) -> Self {
-        Self { budget, ..self }
+    /// `measure(from, to)` writes the distances from the point `from` to all points. The budget of the observer is
+    /// checked before every call of it.
+    pub fn new(n_points: usize, measure: F, observer: &dyn Observer) -> Self {
+        Self { n_points, measure, budget: observer.budget() }
     }
 }
 
@@ -98,10 +93,14 @@ mod tests {
     #[test]
     fn an_oracle_that_asks_a_solver_is_that_solver() {
         let mesh = shapes::icosphere(2).intrinsic();
-        let solver = Dijkstra::new(&mesh);
-        let oracle = DistanceOracle::new(mesh.n_vertices(), |from, to: &mut [f64]| {
-            solver.distances_into(from, to).unwrap();
-        });
+        let solver = Dijkstra::new(&mesh, &());
+        let oracle = DistanceOracle::new(
+            mesh.n_vertices(),
+            |from, to: &mut [f64]| {
+                solver.distances_into(from, to).unwrap();
+            },
+            &(),
+        );
         let face = SurfacePoint::Face { face: surface::FaceId(9), barycentric: [0.2, 0.3, 0.5] };
         let sources = [Source::vertex(VertexId(3)), Source::new(&mesh, face).unwrap()];
         for limit in [f64::INFINITY, 0.7] {
@@ -122,9 +121,10 @@ mod tests {
 
     #[test]
     fn distances_that_are_missing_are_infinite_and_budgets_are_kept() {
-        let oracle = DistanceOracle::new(3, |_, to: &mut [f64]| to[..2].copy_from_slice(&[1.0, f64::NAN]));
+        let measure = |_, to: &mut [f64]| to[..2].copy_from_slice(&[1.0, f64::NAN]);
+        let oracle = DistanceOracle::new(3, measure, &());
         assert_eq!(oracle.distances(VertexId(0)).unwrap(), [1.0, f64::INFINITY, f64::INFINITY]);
-        let late = oracle.with_budget(Budget::unlimited().with_time(Duration::ZERO));
+        let late = DistanceOracle::new(3, measure, &Budget::unlimited().with_time(Duration::ZERO));
         assert!(late.distances(VertexId(0)).is_err());
     }
 }

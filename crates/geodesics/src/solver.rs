@@ -2,7 +2,7 @@
 
 use std::sync::{Mutex, PoisonError};
 
-use budget::{Budget, Exceeded};
+use base::{Budget, Exceeded};
 use linalg::{DistanceMatrix, Matrix};
 use rayon::prelude::*;
 use surface::VertexId;
@@ -26,7 +26,7 @@ use crate::source::Source;
 /// }
 /// // Along the edges of a sheet of 4 x 3 vertices, with the diagonals of its cells.
 /// let sheet = shapes::grid(4, 3, 1.0).intrinsic();
-/// let diameter = farthest(&Dijkstra::new(&sheet), VertexId(0))?;
+/// let diameter = farthest(&Dijkstra::new(&sheet, &()), VertexId(0))?;
 /// assert!((diameter - (1.0 + 2.0 * 2f64.sqrt())).abs() < 1e-12);
 /// # Ok::<(), GeodesicError>(())
 /// ```

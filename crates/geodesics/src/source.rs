@@ -3,7 +3,7 @@
 use surface::{IntrinsicMesh, Triangle, VertexId};
 
 use crate::error::GeodesicError;
-use crate::point::SurfacePoint;
+use surface::SurfacePoint;
 
 /// A point that distances are measured from, with its straight distances to the vertices of its own faces.
 ///

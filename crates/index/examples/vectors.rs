@@ -15,9 +15,10 @@ use std::path::Path;
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
+use base::Observer;
 use canonform_index::{
-    ContentHash, Found, Index, IndexWriter, Job, NearShape, Progress, SearchMode, Searcher, Shape,
-    ShapeEntry, ShapeVectors,
+    ContentHash, Found, Index, IndexWriter, Job, NearShape, SearchMode, Searcher, Shape, ShapeEntry,
+    ShapeVectors,
 };
 use serde_json::json;
 
@@ -60,7 +61,7 @@ fn add(queries: &Path, path: &Path, count: usize) -> Result<(), Box<dyn Error>> 
         let start = Instant::now();
         let mut writer = IndexWriter::open(path, Job::Add, None)?;
         writer.put(&[shape(format!("added{i:04}"), row)])?;
-        writer.finish()?;
+        writer.finish(&())?;
         seconds.push(start.elapsed().as_secs_f64());
         bytes.push(std::fs::metadata(path)?.len() as i64 - before as i64);
     }
@@ -81,7 +82,7 @@ fn build(base: &Path, path: &Path) -> Result<(), Box<dyn Error>> {
     drop(shapes);
     drop(rows);
     let graph = GraphTime::default();
-    writer.finish_with(&graph)?;
+    writer.finish(&graph)?;
     let finished = start.elapsed().as_secs_f64() - stored;
     let graph = graph.seconds();
     println!(
@@ -102,12 +103,12 @@ impl GraphTime {
     }
 }
 
-impl Progress for GraphTime {
-    fn begin(&self, _: usize) {
+impl Observer for GraphTime {
+    fn begin(&self, _: &str, _: usize) {
         *self.0.lock().unwrap_or_else(PoisonError::into_inner) = Some([Instant::now(); 2]);
     }
 
-    fn step(&self, _: usize) {
+    fn step(&self) {
         if let Some([_, end]) = self.0.lock().unwrap_or_else(PoisonError::into_inner).as_mut() {
             *end = Instant::now();
         }

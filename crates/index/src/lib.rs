@@ -4,10 +4,11 @@
 //! Shape -> IndexWriter -> NAME.work -> finish -> NAME -> Index -> Searcher | each | verify | export
 //! ```
 //!
-//! Nothing that a reader uses is ever modified. A writer collects changed blocks in a file next to the index, `NAME.work`,
-//! and commits every `put` in a transaction. When it is done, it appends these blocks to the index, or writes the index
-//! anew if they are many. So readers need no lock, an addition takes time in proportion to what is added, and an
-//! interrupted writer loses nothing that it has put. Each block has a checksum that is compared whenever the block is read.
+//! An index is a sorted map from keys to values. Its file holds the map as it was written first, followed by what additions
+//! and removals have changed; nothing that a reader uses is ever modified. A writer logs every `put` in a file next to the
+//! index, `NAME.work`. When it is done, it appends the changes to the index, or writes the index anew if they are many. So
+//! readers need no lock, an addition takes time in proportion to what is added, and an interrupted writer loses nothing
+//! that it has put. Each block has a checksum that is compared whenever the block is read.
 //!
 //! Vectors come from outside; the index does not know what they describe.
 //!
@@ -29,7 +30,7 @@
 //! };
 //! let mut writer = IndexWriter::open(&path, Job::Build, Some("how the vectors were made"))?;
 //! writer.put(&[shape("cat0", "cat", [0.0, 0.1]), shape("dog0", "dog", [5.0, 0.2])])?;
-//! writer.finish()?;
+//! writer.finish(&())?;
 //!
 //! let index = Index::open(&path)?;
 //! assert_eq!((index.len(), index.entry("cat0")?.path.as_str()), (2, "cat0.off"));
@@ -45,17 +46,20 @@
 //! |---|---|
 //! | `texts`, `shape` | names, the record of one shape |
 //! | `vectors` | nearest vectors in memory: kernels, k-means, cells, the graph of nearest neighbours, calibration, the threshold of unknown classes. Knows no file |
-//! | `format` | the file: errors, encoding, checksummed blocks, tables, cells, the graph |
+//! | `store` | a sorted map in a file, a log of changes, and views of both. Knows no shapes |
+//! | `tables`, `derived` | the tables of an index, and those that follow from its shapes |
 //! | `reader`, `writer` | [`Index`], [`IndexWriter`] |
 //! | `search` | [`Index::nearest`], [`Index::nearest_on_graph`], [`Searcher`] |
 //! | `verify`, `export` | [`verify`], [`Index::export`], [`Index::export_as`] |
 
+mod derived;
+mod error;
 mod export;
-mod format;
-mod progress;
 mod reader;
 mod search;
 mod shape;
+mod store;
+mod tables;
 mod texts;
 mod vectors;
 mod verify;
@@ -64,11 +68,12 @@ mod writer;
 #[cfg(test)]
 mod tests;
 
+pub use base::ContentHash;
+pub use error::IndexError;
 pub use export::{ExportError, ExportFormat};
-pub use format::{CodecError, FORMAT_VERSION, IndexError};
-pub use progress::Progress;
 pub use reader::Index;
 pub use search::{Found, FoundOnGraph, NearShape, RankedShape, SearchMode, Searcher};
-pub use shape::{ContentHash, Shape, ShapeEntry, ShapeVectors};
+pub use shape::{Shape, ShapeEntry, ShapeVectors};
+pub use store::FORMAT_VERSION;
 pub use verify::{Verification, verify};
 pub use writer::{IndexWriter, Job, damaged_path, work_path};

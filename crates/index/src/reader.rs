@@ -1,12 +1,12 @@
 //! Reading a finished index.
 
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
-use std::sync::{Arc, OnceLock};
+use std::path::Path;
+use std::sync::OnceLock;
 
-use redb::Database;
-
-use crate::format::{CACHE, ENTRIES, Graph, Guarded, Heads, Overlay, Sealed, Snapshot, Store, call};
+use crate::derived::{Heads, about};
+use crate::store::{FORMAT_VERSION, Floats, StoredFile, View};
+use crate::tables::{BODIES, CLASSES, ENTRIES, FUSED, entries};
 use crate::{IndexError, Shape, ShapeEntry, ShapeVectors};
 
 /// A finished index, open for reading.
@@ -15,11 +15,9 @@ use crate::{IndexError, Shape, ShapeEntry, ShapeVectors};
 /// methods that read may return [`IndexError::Io`] and [`IndexError::Damaged`].
 #[derive(Debug)]
 pub struct Index {
-    path: PathBuf,
-    database: Guarded<Database>,
     options: String,
     n_shapes: usize,
-    pub(crate) sealed: Arc<Sealed>,
+    pub(crate) stored: StoredFile,
     /// Read with the first search.
     heads: OnceLock<Heads>,
 }
@@ -28,27 +26,16 @@ impl Index {
     /// Opens an index. Shapes are read on demand.
     ///
     /// # Errors
-    /// [`IndexError::Foreign`], [`IndexError::FutureVersion`], [`IndexError::Damaged`], [`IndexError::Io`].
+    /// [`IndexError::Foreign`], [`IndexError::FutureVersion`], [`IndexError::PastVersion`], [`IndexError::Damaged`],
+    /// [`IndexError::Io`].
     pub fn open(path: &Path) -> Result<Self, IndexError> {
-        Self::of(path, Sealed::open(path)?)
+        let stored = StoredFile::open(path)?;
+        let about = about(View::of_file(&stored))?;
+        Ok(Self { options: about.options, n_shapes: about.cells.n, stored, heads: OnceLock::new() })
     }
 
-    pub(crate) fn of(path: &Path, sealed: Sealed) -> Result<Self, IndexError> {
-        let sealed = Arc::new(sealed);
-        let database = Guarded::new(call(path, "read", || {
-            Database::builder().set_cache_size(CACHE).create_with_backend(Overlay::new(sealed.clone()))
-        })?);
-        let store = Store { database: &database, path, action: "read", n_bytes: sealed.n_bytes() };
-        let about = store.read()?;
-        let missing = || IndexError::damaged(path, "its options are missing");
-        let options = about.about("options")?.ok_or_else(missing)?;
-        let n_shapes = about.len()?;
-        drop(about);
-        Ok(Self { path: path.to_owned(), database, options, n_shapes, sealed, heads: OnceLock::new() })
-    }
-
-    pub(crate) fn store(&self) -> Store<'_> {
-        Store { database: &self.database, path: &self.path, action: "read", n_bytes: self.sealed.n_bytes() }
+    pub(crate) fn view(&self) -> View<'_> {
+        View::of_file(&self.stored)
     }
 
     /// What a search needs before it reads cells.
@@ -56,14 +43,14 @@ impl Index {
         if let Some(heads) = self.heads.get() {
             return Ok(heads);
         }
-        let heads = Heads::read(&self.store())?;
+        let heads = Heads::read(self.view())?;
         Ok(self.heads.get_or_init(|| heads))
     }
 
     /// The file.
     #[must_use]
     pub fn path(&self) -> &Path {
-        &self.path
+        self.stored.path()
     }
 
     /// The options its shapes were described with.
@@ -80,7 +67,7 @@ impl Index {
         match self.options == requested {
             true => Ok(()),
             false => Err(IndexError::OtherOptions {
-                path: self.path.clone(),
+                path: self.path().to_owned(),
                 found: self.options.clone(),
                 requested: requested.to_owned(),
             }),
@@ -99,73 +86,72 @@ impl Index {
         self.n_shapes == 0
     }
 
-    /// Whether it has a graph of nearest neighbours. Indexes of earlier formats have none until they are built again.
-    pub fn has_graph(&self) -> Result<bool, IndexError> {
-        Ok(Graph::open(&self.store().read()?)?.is_some())
-    }
-
     /// A number that changes with the content of the file.
     #[must_use]
     pub fn fingerprint(&self) -> u64 {
-        self.sealed.fingerprint()
+        self.stored.fingerprint()
     }
 
     /// Version of the format of the file.
     #[must_use]
     pub fn format(&self) -> u32 {
-        self.sealed.state.version
+        FORMAT_VERSION
     }
 
     /// Size in bytes.
     #[must_use]
     pub fn n_bytes(&self) -> u64 {
-        self.sealed.n_bytes()
+        self.stored.n_bytes()
     }
 
     /// The classes and the number of shapes in each. Shapes without a class do not count.
     pub fn classes(&self) -> Result<BTreeMap<String, u64>, IndexError> {
-        self.store().read()?.classes()
+        self.view().rows(&CLASSES, &[]).collect()
     }
 
-    fn with<T>(
-        &self,
-        read: impl FnOnce(&Snapshot<'_>) -> Result<Option<T>, IndexError>,
-        id: &str,
-    ) -> Result<T, IndexError> {
-        let store = self.store();
-        read(&store.read()?)?
-            .ok_or_else(|| IndexError::NoSuchShape { path: self.path.clone(), id: id.to_owned() })
+    fn missing(&self, id: &str) -> IndexError {
+        IndexError::NoSuchShape { path: self.path().to_owned(), id: id.to_owned() }
     }
 
     /// Whether there is a shape of this name.
     pub fn contains(&self, id: &str) -> Result<bool, IndexError> {
-        Ok(self.store().read()?.entry(id)?.is_some())
+        Ok(self.view().get(&ENTRIES, id)?.is_some())
     }
 
     /// The entry of a shape, or [`IndexError::NoSuchShape`].
     pub fn entry(&self, id: &str) -> Result<ShapeEntry, IndexError> {
-        self.with(|snapshot| snapshot.entry(id), id)
+        self.view().get(&ENTRIES, id)?.ok_or_else(|| self.missing(id))
     }
 
     /// The vectors of a shape, or [`IndexError::NoSuchShape`].
     pub fn vectors(&self, id: &str) -> Result<ShapeVectors, IndexError> {
-        self.with(|snapshot| snapshot.vectors(id), id)
+        let (body, fused) = (self.view().get(&BODIES, id)?, self.view().get(&FUSED, id)?);
+        let (body, fused) = body.zip(fused).ok_or_else(|| self.missing(id))?;
+        Ok(body.with(fused.0))
     }
 
     /// Calls `visit` with each shape in ascending order of names, up to its first error. Holds one shape in memory at a
     /// time.
     pub fn each<E: From<IndexError>>(&self, mut visit: impl FnMut(Shape) -> Result<(), E>) -> Result<(), E> {
-        let store = self.store();
-        let snapshot = store.read()?;
-        snapshot.each(ENTRIES, |id, entry| {
-            let missing = || IndexError::damaged(&self.path, format!("`{id}` has no vectors"));
-            let vectors = snapshot.vectors(id)?.ok_or_else(missing)?;
-            visit(Shape { id: id.to_owned(), entry, vectors })
-        })
+        let view = self.view();
+        let (mut fused, mut bodies) = (view.rows(&FUSED, &[]), view.rows(&BODIES, &[]));
+        for row in view.rows(&ENTRIES, &[]) {
+            let (id, entry) = row?;
+            let fused = fused.next().transpose()?.filter(|(known, _)| *known == id);
+            let body = bodies.next().transpose()?.filter(|(known, _)| *known == id);
+            let Some(((_, Floats(fused)), (_, body))) = fused.zip(body) else {
+                return Err(view.damaged(format!("`{id}` has no vectors")).into());
+            };
+            visit(Shape { id, entry, vectors: body.with(fused) })?;
+        }
+        match fused.next().is_some() || bodies.next().is_some() {
+            true => Err(view.damaged("there are vectors without an entry").into()),
+            false => Ok(()),
+        }
     }
 
     /// All names and entries, in ascending order of names.
     pub fn entries(&self) -> Result<Vec<(String, ShapeEntry)>, IndexError> {
-        self.store().read()?.all(ENTRIES)
+        entries(self.view())
     }
 }

@@ -1,91 +1,7 @@
 //! The record of one shape.
 
-use std::fmt;
-use std::fs::File;
-use std::io::{self, Read};
-use std::path::{Path, PathBuf};
-use std::str::FromStr;
-
+use base::ContentHash;
 use serde::{Deserialize, Serialize};
-use sha2::{Digest, Sha256};
-
-/// SHA-256 hash of what a shape was made from.
-#[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
-pub struct ContentHash([u8; 32]);
-
-impl ContentHash {
-    /// Hashes several pieces of bytes in order, including where each of them ends.
-    #[must_use]
-    pub fn of<B: AsRef<[u8]>>(pieces: &[B]) -> Self {
-        let mut hash = Sha256::new();
-        for piece in pieces.iter().map(AsRef::as_ref) {
-            hash.update((piece.len() as u64).to_le_bytes());
-            hash.update(piece);
-        }
-        Self(hash.finalize().into())
-    }
-
-    /// Its first 64 bits.
-    pub(crate) fn start(&self) -> u64 {
-        self.0.iter().take(8).fold(0, |bits, byte| bits << 8 | u64::from(*byte))
-    }
-
-    /// The same hash of the content of files, without holding it in memory.
-    ///
-    /// # Errors
-    /// The path and the error of the first file that cannot be read, or that changes meanwhile.
-    pub fn of_files<'a>(
-        files: impl Iterator<Item = (&'a Path, &'a mut File)>,
-    ) -> Result<Self, (PathBuf, io::Error)> {
-        let mut hash = Sha256::new();
-        let mut buffer = vec![0; 1 << 16];
-        for (path, file) in files {
-            let mut add = || {
-                let length = file.metadata()?.len();
-                hash.update(length.to_le_bytes());
-                let mut left = length;
-                loop {
-                    match file.read(&mut buffer)? {
-                        0 if left == 0 => return Ok(()),
-                        n if n > 0 && n as u64 <= left => {
-                            hash.update(&buffer[..n]);
-                            left -= n as u64;
-                        }
-                        _ => return Err(io::Error::other("the file changed while it was read")),
-                    }
-                }
-            };
-            add().map_err(|error| (path.to_owned(), error))?;
-        }
-        Ok(Self(hash.finalize().into()))
-    }
-}
-
-impl fmt::Display for ContentHash {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.0.iter().try_for_each(|byte| write!(f, "{byte:02x}"))
-    }
-}
-
-impl fmt::Debug for ContentHash {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "ContentHash({self})")
-    }
-}
-
-impl FromStr for ContentHash {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let digits = text
-            .as_bytes()
-            .chunks(2)
-            .map(|pair| std::str::from_utf8(pair).ok().and_then(|pair| u8::from_str_radix(pair, 16).ok()));
-        let bytes: Option<Vec<u8>> = if text.len() == 64 { digits.collect() } else { None };
-        let bytes: Option<[u8; 32]> = bytes.and_then(|bytes| bytes.try_into().ok());
-        bytes.map(Self).ok_or_else(|| format!("`{text}` is not 64 hexadecimal digits"))
-    }
-}
 
 /// Properties of a shape, without its vectors.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -114,10 +30,14 @@ pub struct ShapeVectors {
     /// The vector that is searched: similar shapes are near in the Euclidean norm. All vectors of an index have the
     /// same length.
     pub fused: Vec<f32>,
-    /// Named signatures.
-    pub signatures: Vec<(String, Vec<f32>)>,
     /// Points of its canonical form: `x y z` and weight.
     pub form: Vec<[f32; 4]>,
+    /// Areas of geodesic discs around its landmarks, one landmark after the other; empty if they are not known.
+    pub disc_areas: Vec<f32>,
+    /// The fused vectors of its components but the largest, which are searched on their own.
+    pub components: Vec<Vec<f32>>,
+    /// Named signatures.
+    pub signatures: Vec<(String, Vec<f32>)>,
 }
 
 /// A shape in an index.
@@ -129,33 +49,4 @@ pub struct Shape {
     pub entry: ShapeEntry,
     /// Its vectors.
     pub vectors: ShapeVectors,
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn files_have_the_hash_of_their_content() {
-        let mut files: Vec<File> = (0..2).map(|_| tempfile::tempfile().unwrap()).collect();
-        let pieces = [vec![7; 100_000], vec![1, 2, 3]];
-        for (file, piece) in files.iter_mut().zip(&pieces) {
-            std::io::Write::write_all(file, piece).unwrap();
-            std::io::Seek::rewind(file).unwrap();
-        }
-        let found = ContentHash::of_files(files.iter_mut().map(|file| (Path::new("x"), file))).unwrap();
-        assert_eq!(found, ContentHash::of(&pieces));
-    }
-
-    #[test]
-    fn hashes_are_sha_256_and_depend_on_where_pieces_end() {
-        let hash = ContentHash::of::<&[u8]>(&[]);
-        let empty = "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855";
-        assert_eq!(hash.to_string(), empty);
-        assert_eq!(empty.parse(), Ok(hash));
-        assert_ne!(ContentHash::of(&["ab", "c"]), ContentHash::of(&["a", "bc"]));
-        for bad in ["", "e3", &empty[1..], &empty.replace('e', "x"), &format!("{empty}00")] {
-            assert!(bad.parse::<ContentHash>().is_err(), "{bad}");
-        }
-    }
 }

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use budget::Budget;
+use base::Observer;
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::sparse::linalg::SupernodalThreshold;
 use faer::sparse::linalg::cholesky::{
@@ -36,16 +36,10 @@ impl EliminationOrder {
     /// Analyses the pattern of a matrix.
     ///
     /// # Errors
-    /// [`LinalgError::NotFactorised`] if the factor does not fit into memory.
-    pub fn new(matrix: &SparseSymmetric) -> Result<Self, LinalgError> {
-        Self::within(matrix, &Budget::unlimited())
-    }
-
-    /// As [`new`](Self::new), if the factor keeps to the limit of a budget on memory.
-    ///
-    /// # Errors
-    /// [`LinalgError::Exceeded`] and those of [`new`](Self::new).
-    pub fn within(matrix: &SparseSymmetric, budget: &Budget) -> Result<Self, LinalgError> {
+    /// [`LinalgError::NotFactorised`] if the factor does not fit into memory; [`LinalgError::Exceeded`] if it does not
+    /// fit into the budget of the observer.
+    pub fn new(matrix: &SparseSymmetric, observer: &dyn Observer) -> Result<Self, LinalgError> {
+        let budget = observer.budget();
         budget.check()?;
         let n = matrix.order();
         // Panels even where single columns would factorise faster, because they make solving fast.
@@ -97,11 +91,11 @@ impl EliminationOrder {
 /// Cost on a surface of n vertices: `O(n^1.5)` to factorise, `O(n log n)` memory and time to solve.
 ///
 /// ```
-/// use canonform_linalg::{SparseCholesky, SparseSymmetric};
+/// use canonform_linalg::{EliminationOrder, SparseCholesky, SparseSymmetric};
 ///
 /// let a = SparseSymmetric::from_entries(2, [(0, 0, 2.0), (1, 1, 2.0), (0, 1, 1.0)]);
 /// let mut x = [3.0, 3.0];
-/// SparseCholesky::new(&a)?.solve(&mut x);
+/// SparseCholesky::new(&EliminationOrder::new(&a, &())?, &a, &())?.solve(&mut x);
 /// assert!(x.iter().all(|x| (x - 1.0).abs() < 1e-12));
 /// # Ok::<(), canonform_linalg::LinalgError>(())
 /// ```
@@ -112,32 +106,18 @@ pub struct SparseCholesky {
 }
 
 impl SparseCholesky {
-    /// Factorises a matrix.
+    /// Factorises a matrix whose pattern has been analysed before, possibly on another matrix. The factorisation itself
+    /// cannot be interrupted: the budget of the observer is checked before and after it.
     ///
     /// # Errors
-    /// [`LinalgError::NotFactorised`] if an entry is not finite or the matrix is numerically not positive definite.
-    pub fn new(matrix: &SparseSymmetric) -> Result<Self, LinalgError> {
-        Self::with_order(&EliminationOrder::new(matrix)?, matrix)
-    }
-
-    /// Factorises a matrix whose pattern has been analysed before, possibly on another matrix.
-    ///
-    /// # Errors
-    /// As [`Self::new`]; also if the pattern has another number of entries.
-    pub fn with_order(order: &EliminationOrder, matrix: &SparseSymmetric) -> Result<Self, LinalgError> {
-        Self::within(order, matrix, &Budget::unlimited())
-    }
-
-    /// As [`with_order`](Self::with_order) within a budget. The factorisation itself cannot be interrupted: time and
-    /// cancellation are checked before and after it.
-    ///
-    /// # Errors
-    /// [`LinalgError::Exceeded`] and those of [`with_order`](Self::with_order).
-    pub fn within(
+    /// [`LinalgError::NotFactorised`] if an entry is not finite, the matrix is numerically not positive definite, or the
+    /// pattern has another number of entries; [`LinalgError::Exceeded`].
+    pub fn new(
         order: &EliminationOrder,
         matrix: &SparseSymmetric,
-        budget: &Budget,
+        observer: &dyn Observer,
     ) -> Result<Self, LinalgError> {
+        let budget = observer.budget();
         budget.check()?;
         let n = matrix.order();
         let failed = |reason: String| LinalgError::NotFactorised { n, reason };
@@ -241,6 +221,10 @@ impl SparseCholesky {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn factorise(matrix: &SparseSymmetric) -> Result<SparseCholesky, LinalgError> {
+        SparseCholesky::new(&EliminationOrder::new(matrix, &())?, matrix, &())
+    }
     use crate::SymmetricOperator;
 
     /// The graph Laplacian of a `side` x `side` grid plus `mass` on the diagonal. Rows are numbered by a stride, so
@@ -271,7 +255,7 @@ mod tests {
     fn solutions_have_small_residuals() {
         for (side, mass) in [(1, 1.0), (2, 0.1), (5, 1e-3), (40, 1.0), (60, 1e-6)] {
             let a = grid(side, mass);
-            let factor = SparseCholesky::new(&a).unwrap();
+            let factor = factorise(&a).unwrap();
             let b = right_hand_side(a.order(), 1);
             let mut x = b.clone();
             factor.solve(&mut x);
@@ -286,7 +270,7 @@ mod tests {
         let b = right_hand_side(81, 3);
         let expected = a.dense().cholesky().unwrap().solve(&nalgebra::DVector::from_column_slice(&b));
         let mut x = b;
-        SparseCholesky::new(&a).unwrap().solve(&mut x);
+        factorise(&a).unwrap().solve(&mut x);
         assert!(x.iter().zip(&expected).all(|(x, e)| (x - e).abs() < 1e-13 * 50.0));
     }
 
@@ -294,7 +278,7 @@ mod tests {
     fn lanes_do_not_affect_each_other() {
         let a = grid(45, 0.01);
         let n = a.order();
-        let factor = SparseCholesky::new(&a).unwrap();
+        let factor = factorise(&a).unwrap();
         let columns = [0, 1, 2, 3].map(|seed| right_hand_side(n, seed));
         // One sparse right-hand side among dense ones.
         let sparse = |i: usize| if i == n / 3 { 1e200 } else { 0.0 };
@@ -312,7 +296,7 @@ mod tests {
     #[test]
     fn columns_do_not_affect_each_other() {
         let a = grid(31, 0.1);
-        let factor = SparseCholesky::new(&a).unwrap();
+        let factor = factorise(&a).unwrap();
         for count in [0, 1, 3, 9] {
             let b = Matrix::from_fn(a.order(), count, |i, j| right_hand_side(a.order(), j)[i]);
             let mut expected = b.clone();
@@ -330,7 +314,7 @@ mod tests {
         let a = grid(50, 30.0);
         let mut x = vec![0.0; a.order()];
         x[0] = 1e280;
-        SparseCholesky::new(&a).unwrap().solve(&mut x);
+        factorise(&a).unwrap().solve(&mut x);
         assert!(x.iter().all(|x| *x > 0.0));
         assert!(x.iter().fold(f64::MAX, |m, x| m.min(*x)) < 1e200);
         let mut terms = vec![[0.0; 2]; a.order()];
@@ -350,7 +334,7 @@ mod tests {
     #[test]
     fn matrices_with_the_same_pattern_share_its_analysis() {
         let (light, heavy) = (grid(20, 1e-3), grid(20, 10.0));
-        let order = EliminationOrder::new(&light).unwrap();
+        let order = EliminationOrder::new(&light, &()).unwrap();
         let mut rows = order.rows().to_vec();
         rows.sort_unstable();
         assert!(rows.iter().copied().eq(0..400));
@@ -360,13 +344,13 @@ mod tests {
             factor.solve(&mut x);
             x
         };
-        let shared = solve(SparseCholesky::with_order(&order, &heavy).unwrap());
-        assert_eq!(shared, solve(SparseCholesky::new(&heavy).unwrap()));
+        let shared = solve(SparseCholesky::new(&order, &heavy, &()).unwrap());
+        assert_eq!(shared, solve(factorise(&heavy).unwrap()));
     }
 
     #[test]
     fn an_empty_matrix_has_a_factor() {
-        let factor = SparseCholesky::new(&SparseSymmetric::from_entries(0, [])).unwrap();
+        let factor = factorise(&SparseSymmetric::from_entries(0, [])).unwrap();
         factor.solve(&mut []);
         assert!(factor.order().rows().is_empty());
     }
@@ -375,14 +359,14 @@ mod tests {
     fn diagonal_matrices_and_blocks_have_factors() {
         let diagonal = SparseSymmetric::from_entries(3, [(0, 0, 2.0), (1, 1, 4.0), (2, 2, 8.0)]);
         let mut x = [2.0, 2.0, 2.0];
-        SparseCholesky::new(&diagonal).unwrap().solve(&mut x);
+        factorise(&diagonal).unwrap().solve(&mut x);
         assert!(x.iter().zip([1.0, 0.5, 0.25]).all(|(x, e)| (x - e).abs() < 1e-15));
         let blocks = SparseSymmetric::from_entries(
             4,
             [(0, 0, 2.0), (3, 3, 2.0), (0, 3, 1.0), (1, 1, 1.0), (2, 2, 1.0)],
         );
         let mut x = [3.0, 5.0, 7.0, 3.0];
-        SparseCholesky::new(&blocks).unwrap().solve(&mut x);
+        factorise(&blocks).unwrap().solve(&mut x);
         assert!(x.iter().zip([1.0, 5.0, 7.0, 1.0]).all(|(x, e)| (x - e).abs() < 1e-14));
     }
 
@@ -392,12 +376,12 @@ mod tests {
             Err(LinalgError::NotFactorised { reason, .. }) => reason,
             other => panic!("{other:?}"),
         };
-        assert!(reason(SparseCholesky::new(&grid(8, -0.5))).contains("not positive definite"));
-        assert!(reason(SparseCholesky::new(&grid(8, f64::NAN))).contains("is NaN"));
-        assert!(reason(SparseCholesky::new(&grid(8, f64::INFINITY))).contains("is inf"));
-        let order = EliminationOrder::new(&grid(8, 1.0)).unwrap();
-        assert!(reason(SparseCholesky::with_order(&order, &grid(9, 1.0))).contains("pattern"));
+        assert!(reason(factorise(&grid(8, -0.5))).contains("not positive definite"));
+        assert!(reason(factorise(&grid(8, f64::NAN))).contains("is NaN"));
+        assert!(reason(factorise(&grid(8, f64::INFINITY))).contains("is inf"));
+        let order = EliminationOrder::new(&grid(8, 1.0), &()).unwrap();
+        assert!(reason(SparseCholesky::new(&order, &grid(9, 1.0), &())).contains("pattern"));
         let diagonal = SparseSymmetric::from_entries(64, []);
-        assert!(reason(SparseCholesky::with_order(&order, &diagonal)).contains("pattern"));
+        assert!(reason(SparseCholesky::new(&order, &diagonal, &())).contains("pattern"));
     }
 }

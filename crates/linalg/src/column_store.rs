@@ -5,7 +5,7 @@ use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use budget::{Budget, Exceeded};
+use base::{Budget, Exceeded, Observer};
 
 use crate::{LinalgError, Matrix};
 
@@ -111,11 +111,11 @@ impl ColumnStore {
     ///
     /// # Errors
     /// [`LinalgError::Exceeded`] if they do not fit into memory.
-    pub fn grow(&mut self, more: usize, budget: &Budget) -> Result<Vec<ColumnSlot<'_>>, LinalgError> {
+    pub fn grow(&mut self, more: usize, observer: &dyn Observer) -> Result<Vec<ColumnSlot<'_>>, LinalgError> {
         let (n_rows, before) = (self.n_rows, self.n_columns);
         if let Backing::Memory(values) = &mut self.backing {
             let needed = n_rows.saturating_mul(before + more).saturating_mul(BYTES);
-            budget.check_memory(needed)?;
+            observer.budget().check_memory(needed)?;
             let more = n_rows.saturating_mul(more);
             values.try_reserve_exact(more).map_err(|_| Exceeded::Allocation { needed })?;
             values.resize(values.len() + more, 0.0);
@@ -141,7 +141,7 @@ impl ColumnStore {
     /// If it does not have `n_rows` numbers.
     pub fn push(&mut self, column: &[f64]) -> Result<(), LinalgError> {
         assert_eq!(column.len(), self.n_rows, "a number for each row");
-        let slots = self.grow(1, &Budget::unlimited())?;
+        let slots = self.grow(1, &())?;
         slots.into_iter().try_for_each(|slot| {
             slot.fill(|place| {
                 place.copy_from_slice(column);
@@ -317,7 +317,7 @@ mod tests {
         let n_rows = 2 * CHUNK + 17;
         let number = |i: usize, j: usize| ((i * 7 + j * 13) as f64).sin() / 3.0;
         let found = stores(n_rows).map(|mut store| {
-            let slots = store.grow(3, &Budget::unlimited()).unwrap();
+            let slots = store.grow(3, &()).unwrap();
             for (j, slot) in slots.into_iter().enumerate().rev() {
                 slot.fill(|column| {
                     column.iter_mut().enumerate().for_each(|(i, x)| *x = number(i, j));

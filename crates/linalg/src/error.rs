@@ -69,7 +69,7 @@ pub enum LinalgError {
     },
     /// A limit on time or memory, or a cancellation.
     #[error(transparent)]
-    Exceeded(#[from] budget::Exceeded),
+    Exceeded(#[from] base::Exceeded),
 }
 
 impl LinalgError {

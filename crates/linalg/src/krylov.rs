@@ -3,7 +3,7 @@
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use budget::{Budget, Exceeded};
+use base::{Budget, Exceeded, Observer};
 use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
 use faer::matrix_free::LinOp;
 use faer::matrix_free::eigen::{
@@ -34,30 +34,25 @@ const DENSE_ORDER: usize = 256;
 ///
 /// Cost: `O(m)` products and `O(n m^2)` operations for m a small multiple of `k`; `O(n m)` memory.
 ///
+/// The budget of the observer is checked before every product.
+///
 /// # Errors
-/// [`LinalgError::NotConverged`].
+/// [`LinalgError::NotConverged`], [`LinalgError::Exceeded`].
 ///
 /// ```
 /// use canonform_linalg::{SparseSymmetric, largest_eigenpairs};
 ///
 /// let diagonal = SparseSymmetric::from_entries(300, (0..300).map(|i| (i, i, 1.0 / (1.0 + i as f64))));
-/// let eigen = largest_eigenpairs(&diagonal, 2)?;
+/// let eigen = largest_eigenpairs(&diagonal, 2, &())?;
 /// assert!((eigen.values[0] - 1.0).abs() < 1e-9 && (eigen.values[1] - 0.5).abs() < 1e-9);
 /// # Ok::<(), canonform_linalg::LinalgError>(())
 /// ```
-pub fn largest_eigenpairs(operator: &dyn SymmetricOperator, k: usize) -> Result<SymmetricEigen, LinalgError> {
-    largest_eigenpairs_within(operator, k, &Budget::unlimited())
-}
-
-/// As [`largest_eigenpairs`], within a budget, which is checked before every product.
-///
-/// # Errors
-/// [`LinalgError::Exceeded`] and those of [`largest_eigenpairs`].
-pub fn largest_eigenpairs_within(
+pub fn largest_eigenpairs(
     operator: &dyn SymmetricOperator,
     k: usize,
-    budget: &Budget,
+    observer: &dyn Observer,
 ) -> Result<SymmetricEigen, LinalgError> {
+    let budget = &observer.budget();
     let n = operator.order();
     let k = k.min(n);
     let mut wanted = k + 4;
@@ -232,7 +227,7 @@ mod tests {
         sorted.sort_by(|a, b| b.total_cmp(a));
         let operator = Reflected { spectrum };
         let n = operator.order();
-        let found = largest_eigenpairs(&operator, k).unwrap();
+        let found = largest_eigenpairs(&operator, k, &()).unwrap();
         let scale = sorted[0].abs().max(sorted[n - 1].abs());
         assert_eq!(found.values.len(), k.min(n));
         for (j, value) in found.values.iter().enumerate() {
@@ -290,14 +285,14 @@ mod tests {
             let budget = Budget::unlimited();
             let reflected = Reflected { spectrum: (0..600).map(|i| 1.0 / (1.0 + f64::from(i))).collect() };
             let operator = Cancelling { reflected, budget: budget.clone(), left: at.into() };
-            let found = largest_eigenpairs_within(&operator, 3, &budget);
+            let found = largest_eigenpairs(&operator, 3, &budget);
             assert!(matches!(found, Err(LinalgError::Exceeded(Exceeded::Cancelled))), "{at}: {found:?}");
         }
     }
 
     #[test]
     fn the_pairs_of_zero_are_zero() {
-        let found = largest_eigenpairs(&Reflected { spectrum: vec![0.0; 400] }, 3).unwrap();
+        let found = largest_eigenpairs(&Reflected { spectrum: vec![0.0; 400] }, 3, &()).unwrap();
         assert!(found.values.iter().all(|value| value.abs() < 1e-90), "{:?}", found.values);
     }
 }

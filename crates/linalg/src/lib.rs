@@ -25,8 +25,8 @@ pub use decomposition::{
 };
 pub use distance_matrix::DistanceMatrix;
 pub use error::LinalgError;
-pub use generalized::{GeneralizedEigen, smallest_eigenpairs, smallest_eigenpairs_within};
-pub use krylov::{SymmetricOperator, largest_eigenpairs, largest_eigenpairs_within};
+pub use generalized::{GeneralizedEigen, smallest_eigenpairs};
+pub use krylov::{SymmetricOperator, largest_eigenpairs};
 pub use landmark_distances::LandmarkDistances;
 pub use sparse::SparseSymmetric;
 

@@ -30,7 +30,7 @@ struct Panel {
 }
 
 /// A panel with its rows and values.
-struct View<'a> {
+struct PanelView<'a> {
     columns: Range<usize>,
     rows: &'a [u32],
     values: &'a [f64],
@@ -50,8 +50,8 @@ impl Panels {
     }
 
     /// The panels with the values of a factor.
-    fn views<'a>(&'a self, factor: &'a [f64]) -> impl DoubleEndedIterator<Item = View<'a>> {
-        self.panels.iter().map(|panel| View {
+    fn views<'a>(&'a self, factor: &'a [f64]) -> impl DoubleEndedIterator<Item = PanelView<'a>> {
+        self.panels.iter().map(|panel| PanelView {
             columns: panel.columns.clone(),
             rows: &self.rows[panel.rows.clone()],
             values: &factor[panel.values.clone()],
@@ -60,7 +60,7 @@ impl Panels {
 
     /// The diagonal of a factor stored in this pattern, in elimination order.
     pub(crate) fn diagonal(&self, factor: &[f64]) -> Vec<f64> {
-        let of = |panel: View<'_>| {
+        let of = |panel: PanelView<'_>| {
             (0..panel.columns.len()).map(move |j| panel.values[j * panel.height() + j]).collect::<Vec<_>>()
         };
         self.views(factor).flat_map(of).collect()
@@ -94,7 +94,7 @@ fn subtract<const K: usize>(y: &mut Lanes<K>, a: f64, x: &Lanes<K>) {
     }
 }
 
-impl View<'_> {
+impl PanelView<'_> {
     /// Numbers per column.
     fn height(&self) -> usize {
         self.columns.len() + self.rows.len()

@@ -3,8 +3,6 @@
 use std::fmt;
 use std::path::{Path, PathBuf};
 
-use surface::VertexId;
-
 /// Fewest different points that can become a surface.
 pub(crate) const FEWEST_POINTS: usize = 12;
 
@@ -14,7 +12,7 @@ pub(crate) const FEWEST_POINTS: usize = 12;
 pub enum MeshError {
     /// The operating system could not open, read or write a file.
     #[error(transparent)]
-    Io(#[from] files::FileError),
+    Io(#[from] base::files::FileError),
 
     /// The file was opened but does not hold a usable mesh.
     #[error("{path}{place}: {fault}")]
@@ -53,120 +51,13 @@ pub enum MeshError {
         supported: String,
     },
 
-    /// The format cannot be written with this content.
-    #[error("{path}: {format} files cannot be written with {content}; use {supported}")]
-    UnsupportedContent {
-        /// The file.
-        path: PathBuf,
-        /// Name of its format.
-        format: &'static str,
-        /// What it was to hold.
-        content: Content,
-        /// The extensions of the formats that can, as a phrase.
-        supported: String,
-    },
-
-    /// A scalar field with more or fewer values or colours than there are vertices.
-    #[error("{values} values for {n_vertices} vertices; provide exactly one value and one colour per vertex")]
-    FieldLength {
-        /// Number of values or colours.
-        values: usize,
-        /// Number of vertices.
-        n_vertices: usize,
-    },
-
-    /// A field name that PLY cannot carry.
-    #[error(
-        "`{name}` is not a valid name of a PLY property; use letters, digits and `_`, begin with a letter, \
-         and avoid x y z red green blue"
-    )]
-    FieldName {
-        /// The name.
-        name: String,
-    },
-
-    /// A coordinate that the format's 32-bit floats cannot hold.
-    #[error(
-        "vertex {vertex} has the coordinate {value:e}, beyond the 32-bit floats of {format}; \
-         scale the mesh down or use another format"
-    )]
-    CoordinateOverflow {
-        /// The vertex.
-        vertex: VertexId,
-        /// The coordinate.
-        value: f64,
-        /// Name of the format.
-        format: &'static str,
-    },
-
-    /// NaN or infinity in a mesh in memory.
-    #[error("vertex {vertex} has a coordinate that is not finite; correct it or remove the vertex")]
-    NonFinitePosition {
-        /// The vertex.
-        vertex: VertexId,
-    },
-
-    /// A face of a mesh in memory refers to a vertex that does not exist.
-    #[error(
-        "face {face} refers to vertex {vertex}, but the mesh has {n_vertices} vertices; \
-         correct or remove the face"
-    )]
-    FaceOutOfRange {
-        /// Index of the face.
-        face: usize,
-        /// The vertex it refers to.
-        vertex: VertexId,
-        /// Number of vertices.
-        n_vertices: usize,
-    },
-
-    /// A mesh so large or so small that areas cannot be represented.
-    #[error(
-        "the mesh is {size:e} units across, but sizes from {smallest:e} to {largest:e} are supported, \
-         since areas beyond overflow or vanish; scale the mesh"
-    )]
-    OutOfRange {
-        /// Largest extent along an axis, in mesh units.
-        size: f64,
-        /// Smallest supported size.
-        smallest: f64,
-        /// Largest supported size.
-        largest: f64,
-    },
+    /// A mesh or field that cannot be written to a file or repaired: the message says why, where, and what to do.
+    #[error("{0}")]
+    Unusable(String),
 
     /// A limit on time or memory, or a cancellation.
     #[error(transparent)]
-    Exceeded(#[from] budget::Exceeded),
-
-    /// Repair leaves no face.
-    #[error(
-        "none of the {n_faces} faces is usable ({degenerate} degenerate); \
-         a surface needs at least one triangle with three distinct corners"
-    )]
-    NoUsableFace {
-        /// Faces in the input.
-        n_faces: usize,
-        /// Faces with a repeated vertex or with two corners in the same position.
-        degenerate: usize,
-    },
-
-    /// Too few points without faces.
-    #[error("{n_points} different points without faces; a surface needs faces, or at least {least} points")]
-    TooFewPoints {
-        /// Number of different points.
-        n_points: usize,
-        /// The fewest that are triangulated.
-        least: usize,
-    },
-
-    /// Points without faces that are not spread over a surface.
-    #[error(
-        "no two of the {n_points} points agree on a triangle; they do not lie on a surface, or are too sparse"
-    )]
-    NoSurface {
-        /// Number of points.
-        n_points: usize,
-    },
+    Exceeded(#[from] base::Exceeded),
 
     /// The mesh has several components and the policy is [`ComponentPolicy::Error`](crate::ComponentPolicy::Error).
     #[error(
@@ -365,30 +256,6 @@ pub enum Fault {
     Inflates {
         /// Largest decompressed size, in bytes.
         limit: u64,
-    },
-
-    /// Copies of meshes that add up out of proportion.
-    #[error(
-        "its copies of meshes add up to more than {limit} vertices and faces, out of proportion to the file; \
-         the file is damaged or malicious: if it is neither, export a single copy"
-    )]
-    Copies {
-        /// The limit.
-        limit: u64,
-    },
-
-    /// A file without the data that it refers to.
-    #[error("its data is in {companion}, which is missing; put both files into the same folder")]
-    NoCompanion {
-        /// Name of the missing file.
-        companion: String,
-    },
-
-    /// Half a `.vert`/`.tri` pair.
-    #[error("its other half {partner} is missing; put both files of the pair into the same folder")]
-    NoPartner {
-        /// Name of the missing half.
-        partner: String,
     },
 }
 

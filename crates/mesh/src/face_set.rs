@@ -1,5 +1,6 @@
 //! Faces that are out of range, degenerate or duplicate.
 
+use nalgebra::Point3;
 use surface::VertexId;
 
 use crate::error::MeshError;
@@ -11,11 +12,23 @@ pub(crate) fn check_input(mesh: &TriMesh) -> Result<(), MeshError> {
     let n_vertices = mesh.n_vertices();
     for (face, corners) in mesh.faces.iter().enumerate() {
         if let Some(&vertex) = corners.iter().find(|v| v.index() >= n_vertices) {
-            return Err(MeshError::FaceOutOfRange { face, vertex, n_vertices });
+            return Err(MeshError::Unusable(format!(
+                "face {face} refers to vertex {vertex}, but the mesh has {n_vertices} vertices; \
+                 correct or remove the face"
+            )));
         }
     }
-    match mesh.positions.iter().position(|p| !p.iter().all(|x| x.is_finite())) {
-        Some(vertex) => Err(MeshError::NonFinitePosition { vertex: VertexId::from(vertex) }),
+    check_finite(&mesh.positions)
+}
+
+/// Returns an error if a coordinate is not finite.
+pub(crate) fn check_finite<'a>(
+    positions: impl IntoIterator<Item = &'a Point3<f64>>,
+) -> Result<(), MeshError> {
+    match positions.into_iter().position(|p| !p.iter().all(|x| x.is_finite())) {
+        Some(vertex) => Err(MeshError::Unusable(format!(
+            "vertex {vertex} has a coordinate that is not finite; correct it or remove the vertex"
+        ))),
         None => Ok(()),
     }
 }
@@ -33,48 +46,26 @@ pub(crate) fn remove_degenerate(faces: &mut Vec<[VertexId; 3]>) -> usize {
 }
 
 /// Removes faces with the same vertices as an earlier one; returns how many.
-pub(crate) fn remove_duplicates(n_vertices: usize, faces: &mut Vec<[VertexId; 3]>) -> usize {
+pub(crate) fn remove_duplicates(faces: &mut Vec<[VertexId; 3]>) -> usize {
     let before = faces.len();
-    let mut duplicates = duplicates(n_vertices, faces).into_iter();
+    let mut duplicates = duplicates(faces).into_iter();
     faces.retain(|_| !duplicates.next().unwrap_or(false));
     before - faces.len()
 }
 
-/// For each face, whether an earlier one has the same three vertices in any order; linear time.
-fn duplicates(n_vertices: usize, faces: &[[VertexId; 3]]) -> Vec<bool> {
-    // Bucket the faces by their lowest vertex, keeping their order.
-    let mut ends = vec![0u32; n_vertices + 1];
-    for face in faces {
-        ends[sorted(*face)[0].index()] += 1;
-    }
-    let mut begin = 0;
-    for end in &mut ends {
-        begin += *end;
-        *end = begin - *end;
-    }
-    let mut buckets = vec![([VertexId(0); 2], 0u32); faces.len()];
-    for (f, face) in faces.iter().enumerate() {
-        let [lowest, middle, highest] = sorted(*face);
-        let slot = &mut ends[lowest.index()];
-        buckets[*slot as usize] = ([middle, highest], f as u32);
-        *slot += 1;
-    }
+/// For each face, whether an earlier one has the same three vertices in any order.
+fn duplicates(faces: &[[VertexId; 3]]) -> Vec<bool> {
+    let sorted = |(f, mut face): (usize, [VertexId; 3])| {
+        face.sort_unstable();
+        (face, f)
+    };
+    let mut faces: Vec<_> = faces.iter().copied().enumerate().map(sorted).collect();
+    faces.sort_unstable();
     let mut duplicate = vec![false; faces.len()];
-    let mut begin = 0;
-    for &end in &ends[..n_vertices] {
-        let bucket = &mut buckets[begin..end as usize];
-        begin = end as usize;
-        bucket.sort_unstable();
-        for pair in bucket.windows(2).filter(|pair| pair[0].0 == pair[1].0) {
-            duplicate[pair[1].1 as usize] = true;
-        }
+    for pair in faces.windows(2).filter(|pair| pair[0].0 == pair[1].0) {
+        duplicate[pair[1].1] = true;
     }
     duplicate
-}
-
-fn sorted(mut face: [VertexId; 3]) -> [VertexId; 3] {
-    face.sort_unstable();
-    face
 }
 
 #[cfg(test)]
@@ -85,7 +76,7 @@ mod tests {
     fn the_first_of_equal_faces_is_not_a_duplicate() {
         let faces =
             [[0, 1, 2], [2, 1, 3], [1, 2, 0], [0, 1, 3], [2, 1, 0], [3, 1, 2]].map(|f| f.map(VertexId));
-        assert_eq!(duplicates(5, &faces), [false, false, true, false, true, true]);
-        assert_eq!(duplicates(0, &[]), [false; 0]);
+        assert_eq!(duplicates(&faces), [false, false, true, false, true, true]);
+        assert_eq!(duplicates(&[]), [false; 0]);
     }
 }

@@ -24,12 +24,11 @@
 //! let path = folder.path().join("two-cubes.off");
 //! io::write(&path, &shapes::disjoint(&[shapes::cube(2), shapes::cube(0)]))?;
 //!
-//! let repaired = repair(&io::read(&path)?, &RepairOptions::default())?;
+//! let repaired = repair(&io::read(&path)?, &RepairOptions::default(), &())?;
 //! let summary = repaired.report.summary();
 //! assert_eq!(summary.len(), 1);
 //! assert!(summary[0].starts_with("1 of 2 components dropped, 12 faces and 8 vertices"));
-//! let surface = repaired.intrinsic();
-//! assert_eq!(surface.n_vertices(), 98);
+//! assert_eq!(repaired.intrinsic.n_vertices(), 98);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
@@ -38,6 +37,7 @@ mod edge_graph;
 mod error;
 mod face_set;
 mod holes;
+mod input;
 pub mod io;
 mod noise;
 mod orientation;
@@ -52,14 +52,12 @@ mod validate;
 pub use edge_graph::EdgeGraph;
 pub use error::{Fault, MeshError, Place};
 pub use holes::fill_holes;
+pub use input::{BadPoint, InputMap, InputPoint, PointError, Surface};
 pub use noise::{is_noisy, without_noise};
 pub use orientation::orient_consistently;
 pub use points::{PointsReport, TriangulatedPoints, triangulate_points};
 pub use refine::{Refined, refine};
-pub use repair::{
-    ComponentPolicy, Orient, RepairOptions, RepairReport, Repaired, Weld, repair, repair_and_measure,
-    repair_within,
-};
+pub use repair::{ComponentPolicy, Orient, RepairOptions, RepairReport, Repaired, Weld, repair};
 pub use shortcuts::{Opened, Shortcut, ShortcutKind, cut_shortcuts};
 pub use tri_mesh::TriMesh;
 pub use validate::{MeshReport, validate};

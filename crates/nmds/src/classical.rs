@@ -1,8 +1,8 @@
 //! Classical multidimensional scaling.
 
-use budget::Budget;
+use base::Observer;
 use linalg::{
-    DistanceMatrix, LinalgError, Matrix, SymmetricEigen, SymmetricOperator, largest_eigenpairs_within,
+    DistanceMatrix, LinalgError, Matrix, SymmetricEigen, SymmetricOperator, largest_eigenpairs,
     symmetric_eigen,
 };
 use rayon::prelude::*;
@@ -18,7 +18,8 @@ use crate::{Embedding, NmdsError};
 /// * Cost: `O(p^2)` per step of a Krylov iteration; `O(p)` memory besides the distances.
 ///
 /// # Errors
-/// [`NmdsError::BadDimension`], [`NmdsError::NoExtent`], [`NmdsError::Linalg`].
+/// [`NmdsError::BadDimension`], [`NmdsError::NoExtent`], [`NmdsError::Linalg`], also if the budget of the
+/// observer is exceeded.
 ///
 /// ```
 /// # extern crate linalg as canonform_linalg;
@@ -29,24 +30,16 @@ use crate::{Embedding, NmdsError};
 /// let distances = DistanceMatrix::from_pairs(4, |i, j| {
 ///     (corners[i][0] - corners[j][0]).hypot(corners[i][1] - corners[j][1])
 /// })?;
-/// let coords = canonform_nmds::classical(&distances, 2)?.coords;
+/// let coords = canonform_nmds::classical(&distances, 2, &())?.coords;
 /// assert!(((coords.row(0) - coords.row(2)).norm() - 5.0).abs() < 1e-9);
 /// # Ok::<(), canonform_nmds::NmdsError>(())
 /// ```
-pub fn classical(distances: &DistanceMatrix, dim: usize) -> Result<Embedding, NmdsError> {
-    classical_within(distances, dim, &Budget::unlimited())
-}
-
-/// As [`classical`], within a budget.
-///
-/// # Errors
-/// As [`classical`]; a budget that is exceeded is a [`NmdsError::Linalg`].
-pub fn classical_within(
+pub fn classical(
     distances: &DistanceMatrix,
     dim: usize,
-    budget: &Budget,
+    observer: &dyn Observer,
 ) -> Result<Embedding, NmdsError> {
-    embed(distances, dim, |operator| largest_eigenpairs_within(operator, dim, budget))
+    embed(distances, dim, |operator| largest_eigenpairs(operator, dim, observer))
 }
 
 /// [`classical`] by the full decomposition, with all eigenvalues and thus the true negative mass.
@@ -120,7 +113,7 @@ impl SymmetricOperator for CentredSquares<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::testing::{Cloud, procrustes_free_gap};
+    use crate::tests::support::{Cloud, procrustes_free_gap};
 
     /// Distances between points on a circle along its arc: far from Euclidean.
     fn circle(p: usize) -> DistanceMatrix {
@@ -132,7 +125,7 @@ mod tests {
         for p in [40, 700] {
             let cloud = Cloud::new(p, 3, 5);
             let distances = DistanceMatrix::from_pairs(p, |i, j| cloud.distance(i, j)).unwrap();
-            let embedding = classical(&distances, 3).unwrap();
+            let embedding = classical(&distances, 3, &()).unwrap();
             assert!(procrustes_free_gap(&cloud, &embedding) < 1e-9);
         }
     }
@@ -140,7 +133,7 @@ mod tests {
     #[test]
     fn a_few_eigenpairs_equal_those_of_the_full_decomposition() {
         let distances = circle(601);
-        let (few, all) = (classical(&distances, 4).unwrap(), classical_full(&distances, 4).unwrap());
+        let (few, all) = (classical(&distances, 4, &()).unwrap(), classical_full(&distances, 4).unwrap());
         for j in 0..4 {
             assert!((few.eigenvalues[j] - all.eigenvalues[j]).abs() < 1e-8 * all.eigenvalues[0]);
         }

@@ -50,7 +50,7 @@ pub enum NmdsError {
     NotDetermined(usize),
     /// A limit on time or memory, or a cancellation.
     #[error(transparent)]
-    Exceeded(#[from] budget::Exceeded),
+    Exceeded(#[from] base::Exceeded),
     /// A decomposition failed.
     #[error(transparent)]
     Linalg(#[from] linalg::LinalgError),

@@ -38,7 +38,8 @@ pub struct RowSample {
     correction: f64,
 }
 
-/// The share of the mean that is added to what is expected of every row, so that none is nearly impossible.
+/// The share of the mean that is added to what is expected of every row: a safety limit, so that none is nearly
+/// impossible. The estimate is unbiased for any share.
 const LEVEL: f64 = 0.5;
 
 impl RowSample {
@@ -310,14 +311,14 @@ mod tests {
     use linalg::DistanceMatrix;
 
     use super::*;
-    use crate::testing::Cloud;
+    use crate::tests::support::Cloud;
     use crate::{classical, stress};
 
     /// Distances that are not Euclidean, their best embedding in the plane, and the distances from 8 of the points.
     fn bent(p: usize) -> (DistanceMatrix, Matrix, LandmarkDistances) {
         let cloud = Cloud::new(p, 3, 21);
         let distances = DistanceMatrix::from_pairs(p, |i, j| cloud.distance(i, j).powf(0.7)).unwrap();
-        let coords = classical(&distances, 2).unwrap().coords;
+        let coords = classical(&distances, 2, &()).unwrap().coords;
         let landmarks: Vec<usize> = (0..8).map(|j| j * p / 8).collect();
         let columns = Matrix::from_fn(p, 8, |i, j| distances.get(i, landmarks[j]));
         (distances, coords, LandmarkDistances::new(landmarks, columns).unwrap())
@@ -386,7 +387,7 @@ mod tests {
     fn an_exact_embedding_has_no_stress() {
         let cloud = Cloud::new(60, 2, 4);
         let distances = DistanceMatrix::from_pairs(60, |i, j| cloud.distance(i, j)).unwrap();
-        let coords = classical(&distances, 2).unwrap().coords;
+        let coords = classical(&distances, 2, &()).unwrap().coords;
         let columns = Matrix::from_fn(60, 5, |i, j| distances.get(i, j));
         let landmarks = LandmarkDistances::new((0..5).collect(), columns).unwrap();
         let sample = RowSample::by_landmarks(&coords, &landmarks, 1.0, 4, 0).unwrap();

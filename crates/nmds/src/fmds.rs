@@ -1,6 +1,6 @@
 //! Fast multidimensional scaling.
 
-use budget::Budget;
+use base::{Budget, Observer};
 use linalg::{EliminationOrder, LandmarkDistances, Matrix, SparseCholesky, SparseSymmetric, thin_qr};
 
 use crate::squares::{Squares, center_columns, check_dim, check_points, solve_saddle_point, symmetrized};
@@ -27,29 +27,19 @@ use crate::{Embedding, NmdsError};
 /// splines, `M = H C + 1 d'` with `H = W^+ A W^+` at the samples and `1' C = 0`. This equals `-(L_ff)^-1 L_fs` with
 /// `L = W A^-1 W` but does not square the condition number of `W`.
 ///
+/// The budget of the observer is checked around the factorisation and the solutions, not within them.
+///
 /// # Errors
 /// [`NmdsError::PointMismatch`], [`NmdsError::NotDetermined`] if a component of the surface has no sample,
-/// [`NmdsError::BadDimension`], [`NmdsError::NoExtent`], [`NmdsError::Linalg`].
+/// [`NmdsError::BadDimension`], [`NmdsError::NoExtent`], [`NmdsError::Linalg`], [`NmdsError::Exceeded`].
 pub fn fmds(
     distances: &LandmarkDistances,
     stiffness: &SparseSymmetric,
     masses: &[f64],
     dim: usize,
+    observer: &dyn Observer,
 ) -> Result<Embedding, NmdsError> {
-    fmds_within(distances, stiffness, masses, dim, &Budget::unlimited())
-}
-
-/// As [`fmds`], within a budget. It is checked around the factorisation and the solutions, not within them.
-///
-/// # Errors
-/// As [`fmds`]; a budget that is exceeded is [`NmdsError::Exceeded`] or a [`NmdsError::Linalg`].
-pub fn fmds_within(
-    distances: &LandmarkDistances,
-    stiffness: &SparseSymmetric,
-    masses: &[f64],
-    dim: usize,
-    budget: &Budget,
-) -> Result<Embedding, NmdsError> {
+    let budget = &observer.budget();
     let (p, n) = (distances.n_points(), distances.n_landmarks());
     check_points(stiffness.order(), p)?;
     check_points(masses.len(), p)?;
@@ -74,10 +64,10 @@ fn interpolant(
     budget: &Budget,
 ) -> Result<Matrix, NmdsError> {
     let (p, n) = (masses.len(), samples.len());
-    let blocks = Blocks::new(stiffness, masses);
+    let blocks = StiffnessBlocks::new(stiffness, masses);
     let matrix = blocks.grounded(stiffness);
-    let order = EliminationOrder::within(&matrix, budget)?;
-    let factor = SparseCholesky::within(&order, &matrix, budget)?;
+    let order = EliminationOrder::new(&matrix, budget)?;
+    let factor = SparseCholesky::new(&order, &matrix, budget)?;
     let green = |mut b: Matrix| {
         factor.solve_columns(&mut b);
         blocks.subtract_means(&mut b);
@@ -117,7 +107,7 @@ fn interpolant(
 
 /// The connected blocks of a stiffness matrix, whose kernel are the functions that are constant on each.
 #[derive(Debug)]
-struct Blocks<'a> {
+struct StiffnessBlocks<'a> {
     /// The block of each row.
     of: Vec<usize>,
     /// The mass of each block.
@@ -125,7 +115,7 @@ struct Blocks<'a> {
     masses: &'a [f64],
 }
 
-impl<'a> Blocks<'a> {
+impl<'a> StiffnessBlocks<'a> {
     fn new(stiffness: &SparseSymmetric, masses: &'a [f64]) -> Self {
         let of = stiffness.blocks();
         let mut mass = vec![0.0; of.iter().max().map_or(0, |last| last + 1)];
@@ -253,7 +243,7 @@ mod tests {
         let (w, a) = ring.laplacian(1.0);
         let chord = |arc: f64| 2.0 * (0.5 * arc).sin();
         let worst = |step: usize| {
-            let found = fmds(&ring.columns(step, chord), &w, &a, 2).unwrap();
+            let found = fmds(&ring.columns(step, chord), &w, &a, 2, &()).unwrap();
             let pairs = (0..160).flat_map(|i| (0..i).map(move |j| (i, j)));
             let error = |(i, j): (usize, usize)| {
                 ((found.coords.row(i) - found.coords.row(j)).norm() - chord(ring.arc(i, j))).abs()
@@ -269,7 +259,7 @@ mod tests {
         let ring = Ring::new(12);
         let (w, a) = ring.laplacian(1.0);
         let distances = ring.columns(3, |d| d);
-        let result = fmds(&distances, &w, &a[1..], 2);
+        let result = fmds(&distances, &w, &a[1..], 2, &());
         assert_eq!(result, Err(NmdsError::PointMismatch { given: 11, n_points: 12 }));
     }
 }

@@ -20,6 +20,20 @@ pub enum Bandwidth {
     Value(f64),
 }
 
+impl std::str::FromStr for Bandwidth {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match (text, text.parse()) {
+            ("mean", _) => Ok(Self::Mean),
+            ("median", _) => Ok(Self::Median),
+            ("max", _) => Ok(Self::Max),
+            (_, Ok(sigma)) => Ok(Self::Value(sigma)),
+            (_, Err(_)) => Err(format!("`{text}` is neither a number nor `mean`, `median` or `max`")),
+        }
+    }
+}
+
 impl Bandwidth {
     fn sigma(self, distances: &Matrix) -> Result<f64, NmdsError> {
         let values = distances.as_slice();
@@ -99,7 +113,7 @@ pub fn kernel_pca(distances: &LandmarkDistances, options: &KernelPcaOptions) -> 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::testing::{Cloud, landmark_distances, procrustes_free_gap, scaled};
+    use crate::tests::support::{Cloud, landmark_distances, procrustes_free_gap};
 
     #[test]
     fn with_all_samples_equals_the_principal_components_of_the_centred_kernel() {
@@ -117,17 +131,6 @@ mod tests {
             assert!((embedding.eigenvalues[j] - reference.values[j]).abs() < 1e-9);
             let overlap = embedding.coords.column(j).dot(&reference.vectors.column(j)).abs();
             assert!((overlap - reference.values[j].sqrt()).abs() < 1e-8);
-        }
-    }
-
-    #[test]
-    fn relative_widths_do_not_depend_on_the_unit_of_length() {
-        let distances = landmark_distances(&Cloud::new(100, 3, 12), 10);
-        let scaled = scaled(&distances, 1e3);
-        for bandwidth in [Bandwidth::Mean, Bandwidth::Median, Bandwidth::Max] {
-            let options = KernelPcaOptions { bandwidth, ..Default::default() };
-            let (a, b) = (kernel_pca(&distances, &options).unwrap(), kernel_pca(&scaled, &options).unwrap());
-            assert!((a.coords - b.coords).amax() < 1e-9);
         }
     }
 

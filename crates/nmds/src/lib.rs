@@ -38,15 +38,13 @@ mod spectral;
 mod squares;
 mod stress;
 #[cfg(test)]
-mod testing;
-#[cfg(test)]
 mod tests;
 
-pub use classical::{classical, classical_full, classical_within};
+pub use classical::{classical, classical_full};
 pub use embedding::Embedding;
 pub use error::NmdsError;
 pub use estimate::{RowSample, StressEstimate, estimate_stress, sample_rows};
-pub use fmds::{fmds, fmds_within};
+pub use fmds::fmds;
 pub use kernel_pca::{Bandwidth, KernelPcaOptions, kernel_pca};
 pub use landmark::landmark_mds;
 pub use landmark_metric::{
@@ -58,6 +56,6 @@ pub use out_of_sample::OutOfSample;
 pub use reconstruction::{Reconstruction, ReconstructionError, sample_eigenvalues};
 pub use regularization::{Regularization, RpiAlpha};
 pub use sample_search::{SampleGoal, SampleSearch, SampleStep, SampleStop, SampleTrial};
-pub use smacof::{SmacofOptions, SmacofReport, SmacofStop, smacof, smacof_within};
+pub use smacof::{SmacofOptions, SmacofReport, SmacofStop, smacof};
 pub use spectral::{SpectralBasis, SpectralOptions, spectral};
 pub use stress::{DistanceRows, Stress, normalized_stress, paper_stress, stress};

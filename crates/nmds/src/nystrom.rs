@@ -158,7 +158,7 @@ fn principal_axes(half: &Matrix, inner: &Matrix, dim: usize) -> Result<(Matrix, 
 mod tests {
     use super::*;
     use crate::RpiAlpha;
-    use crate::testing::{Cloud, landmark_distances, procrustes_free_gap, scaled};
+    use crate::tests::support::{Cloud, landmark_distances, procrustes_free_gap, scaled};
 
     const ALL: [Regularization; 5] = [
         Regularization::LowRank { rank: None },

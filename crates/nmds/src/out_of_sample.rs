@@ -69,7 +69,7 @@ impl OutOfSample {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::testing::{Cloud, landmark_distances};
+    use crate::tests::support::{Cloud, landmark_distances};
     use crate::{NystromOptions, Regularization, RpiAlpha, nystrom_extended};
 
     #[test]

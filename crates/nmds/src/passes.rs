@@ -117,7 +117,7 @@ pub(crate) fn product(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::testing::{Cloud, landmark_distances};
+    use crate::tests::support::{Cloud, landmark_distances};
 
     #[test]
     fn passes_equal_operations_on_the_whole_matrix() {

@@ -145,7 +145,7 @@ pub fn sample_eigenvalues(distances: &LandmarkDistances) -> Result<Vec<f64>, Nmd
 mod tests {
     use super::*;
     use crate::RpiAlpha;
-    use crate::testing::{Cloud, scaled};
+    use crate::tests::support::{Cloud, scaled};
     use linalg::{DistanceMatrix, pseudo_inverse};
 
     /// All distances of a cloud raised to a power (1: Euclidean), and the columns of the first n points.

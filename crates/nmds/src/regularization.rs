@@ -60,6 +60,18 @@ impl Default for RpiAlpha {
     }
 }
 
+impl std::str::FromStr for RpiAlpha {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text.parse() {
+            _ if text == "paper" => Ok(Self::Paper),
+            Ok(c) => Ok(Self::Relative(c)),
+            Err(_) => Err(format!("`{text}` is neither a number nor `paper`")),
+        }
+    }
+}
+
 impl RpiAlpha {
     /// `α / σ1⁴`, which has no unit. `sigma_1` is the largest magnitude of the eigenvalues of `S`, in the squared unit of the
     /// distances.

@@ -17,10 +17,11 @@ const MOST_ROWS: usize = 64;
 /// With a target, the stress of at most this many points is measured on all rows.
 const EXACT_POINTS: usize = 1000;
 
-/// Samples grow by this share at a time.
+/// Samples grow by this share at a time: finer steps embed more often, coarser ones overshoot. A search then takes at most
+/// half again the samples needed, which a test holds.
 const GROWTH: f64 = 0.2;
 
-/// The stress has settled when twice the samples reduce it by less than this share.
+/// The stress has settled when twice the samples reduce it by less than this share, by definition of [`SampleGoal::Settled`].
 const GAIN: f64 = 0.01;
 
 /// Relative errors of distances below this are rounding.
@@ -385,7 +386,7 @@ mod tests {
     use linalg::DistanceMatrix;
 
     use super::*;
-    use crate::testing::Cloud;
+    use crate::tests::support::Cloud;
     use crate::{NystromOptions, Regularization, normalized_stress, nystrom};
 
     /// All distances of a problem, and landmarks in the order in which they are taken.

@@ -38,7 +38,7 @@ impl Default for SpectralOptions {
     }
 }
 
-/// Eigenvalues up to this count as zero, for a surface of unit area.
+/// Eigenvalues up to this are zero up to rounding, for a surface of unit area.
 const KERNEL: f64 = 1e-10;
 
 /// Spectral multidimensional scaling (SMDS): embeds p points from the distances between n of them,

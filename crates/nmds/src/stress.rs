@@ -192,7 +192,7 @@ mod tests {
     #[test]
     fn equals_its_definition_and_the_norm_of_the_omitted_eigenvalues() {
         let distances = circle(151);
-        let embedding = classical(&distances, 3).unwrap();
+        let embedding = classical(&distances, 3, &()).unwrap();
         let stress = paper_stress(&embedding.coords, &distances).unwrap();
         assert!((stress / by_definition(&embedding.coords, &distances) - 1.0).abs() < 1e-12);
         let all = crate::classical_full(&distances, 3).unwrap().eigenvalues;
@@ -213,7 +213,7 @@ mod tests {
     #[test]
     fn does_not_depend_on_the_number_of_threads() {
         let distances = circle(500);
-        let embedding = classical(&distances, 2).unwrap();
+        let embedding = classical(&distances, 2, &()).unwrap();
         let with = |threads: usize| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
             pool.install(|| paper_stress(&embedding.coords, &distances).unwrap().to_bits())
@@ -224,7 +224,7 @@ mod tests {
     #[test]
     fn the_normalised_stress_equals_its_definition_and_has_no_unit() {
         let distances = circle(151);
-        let embedding = classical(&distances, 3).unwrap();
+        let embedding = classical(&distances, 3, &()).unwrap();
         let found = stress(&embedding.coords, &distances).unwrap().normalized;
         assert!((found / normalized_stress(&embedding.coords, &distances) - 1.0).abs() < 1e-12);
         let large = DistanceMatrix::from_pairs(151, |i, j| 1024.0 * distances.get(i, j)).unwrap();

@@ -1,11 +1,11 @@
 //! NumPy arrays, to and from the types of the library.
 
 use canonform::linalg::Matrix;
-use mesh::TriMesh;
+use canonform::mesh::TriMesh;
+use canonform::surface::VertexId;
 use nalgebra::Point3;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2};
 use pyo3::prelude::*;
-use surface::VertexId;
 
 use crate::error::Exception;
 
@@ -55,6 +55,11 @@ pub(crate) fn matrix(
 /// A vector, without a copy.
 pub(crate) fn vector(py: Python<'_>, values: Vec<f64>) -> Bound<'_, PyArray1<f64>> {
     values.into_pyarray(py)
+}
+
+/// A matrix of the library.
+pub(crate) fn of_matrix<'py>(py: Python<'py>, values: &Matrix) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    matrix(py, picked_rows(values, (0..values.nrows()).map(Some)), [values.nrows(), values.ncols()])
 }
 
 /// Rows of a matrix, one after the other; NaN where `row` names none.

@@ -1,7 +1,7 @@
 //! Alignment and comparison of two shapes.
 
 use canonform::compare_meshes;
-use canonform::descriptors::{FormMatch, Reflections, ShapeMetric, match_forms};
+use canonform::descriptors::{FormAlignment, Reflections, ShapeMetric, align_forms};
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 
@@ -14,7 +14,7 @@ use crate::surface::Surface;
 
 /// The rigid motion that takes one form onto another.
 #[pyclass(frozen, module = "canonform._canonform")]
-pub(crate) struct Alignment(FormMatch);
+pub(crate) struct Alignment(FormAlignment);
 
 #[pymethods]
 impl Alignment {
@@ -47,7 +47,7 @@ impl Alignment {
 #[pyfunction]
 pub(crate) fn align(py: Python<'_>, a: &Form, b: &Form, reflections: bool) -> PyResult<Alignment> {
     let reflections = if reflections { Reflections::Allow } else { Reflections::Forbid };
-    run_alone(py, None, |_| Ok(Alignment(match_forms(&a.prepared()?, &b.prepared()?, reflections))))
+    run_alone(py, None, |_| Ok(Alignment(align_forms(&a.prepared()?, &b.prepared()?, reflections))))
 }
 
 /// The comparison of two surfaces as the JSON of `canonform compare`, and the residuals of the vertices of both repaired
@@ -62,13 +62,12 @@ pub(crate) fn compare<'py>(
     progress: Option<Py<PyAny>>,
 ) -> PyResult<(String, Bound<'py, PyArray1<f64>>)> {
     let settings = Settings::parse(settings)?;
-    let metric = ShapeMetric { distance: settings.distance()? };
+    let metric = ShapeMetric { distance: settings.chosen("distance") };
     let [of_a, of_b] = [settings.form(a.inner.repair)?, settings.form(b.inner.repair)?];
     let (found, residuals) = run(py, &settings.budget()?, progress.as_ref(), |observer| {
         let sides = [a.compared(&of_a, observer)?, b.compared(&of_b, observer)?];
-        let mut found = compare_meshes(metric, [&sides[0], &sides[1]])?;
-        let [name_a, name_b] = &names;
-        found.evidence = found.evidence.named(name_a, name_b);
+        let mut found = compare_meshes(metric, [sides[0].compared(), sides[1].compared()])?;
+        found.relation = found.relation.named(&names[0], &names[1]);
         let residuals = a.inner.in_input_order(&found.overlay.residuals[0], f64::NAN);
         Ok((found, residuals))
     })?;

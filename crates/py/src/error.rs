@@ -1,13 +1,14 @@
 //! Library errors as Python exceptions, with remedies as keyword arguments. No other place words a remedy.
 
-use ::index::{ExportError, IndexError};
-use budget::Exceeded;
+use base::Exceeded;
+use base::files::FileError;
+use canonform::collection::CollectionError;
 use canonform::descriptors::DescriptorError;
 use canonform::geodesics::GeodesicError;
+use canonform::index::IndexError;
+use canonform::mesh::MeshError;
 use canonform::{Error, Remedy};
 use datasets::DatasetError;
-use files::FileError;
-use mesh::MeshError;
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::PyModule;
@@ -62,7 +63,7 @@ impl Exception {
     fn of(fault: &Error) -> Self {
         match fault {
             Error::Mesh(MeshError::Io(file)) | Error::File(file) => Self::of_file(file),
-            Error::Mesh(_) | Error::NoShapes { .. } => Self::Mesh,
+            Error::Mesh(_) | Error::Collection(CollectionError::NoShapes { .. }) => Self::Mesh,
             Error::Exceeded(Exceeded::Memory { .. } | Exceeded::Allocation { .. })
             | Error::MemoryTooSmall { .. }
             | Error::EmbeddingTooLarge { .. }
@@ -70,11 +71,10 @@ impl Exception {
             | Error::TooManyShapes { .. } => Self::OutOfMemory,
             Error::Exceeded(Exceeded::Time { .. }) => Self::OutOfTime,
             Error::Exceeded(_) => Self::Limit,
-            Error::NoSuchPoint { .. }
-            | Error::DroppedPoint { .. }
-            | Error::NoPath { .. }
-            | Error::Geodesic(GeodesicError::NoSuchVertex { .. }) => Self::Point,
-            Error::BadField { .. } => Self::File,
+            Error::Point(_) | Error::NoPath { .. } | Error::Geodesic(GeodesicError::NoSuchVertex { .. }) => {
+                Self::Point
+            }
+            Error::Field(_) => Self::File,
             Error::BadDescription { .. } | Error::NoSuchShard { .. } => Self::Option,
             Error::Descriptor(DescriptorError::UnknownSignature { .. }) => Self::Option,
             Error::Index(IndexError::NoSuchShape { .. }) => Self::NoSuchShape,
@@ -122,9 +122,6 @@ fn words(remedy: Remedy) -> &'static str {
             "restore the file, move the index back to the place where it was built, or build the index again"
         }
         Remedy::BuildIndexAgain => "restore the index from a copy, or build it again with Index.build",
-        Remedy::AddGraph => {
-            "call Index.build with the same folder and file again, which describes no shape twice, or pass rank=\"plain\""
-        }
         Remedy::BuildIndexAnew => "build the index with Index.build in a new file",
         Remedy::BuildFieldAgain => "build it again with Surface.distance_field",
         Remedy::ListShapes => "Index.shapes() names its shapes",
@@ -145,12 +142,4 @@ pub(crate) fn to_python(fault: &Error) -> PyErr {
 
 pub(crate) fn of_dataset(fault: &DatasetError) -> PyErr {
     Exception::Option.with(&fault.to_string())
-}
-
-/// An export that failed.
-pub(crate) fn of_export(fault: ExportError) -> PyErr {
-    match fault {
-        ExportError::Index(fault) => to_python(&fault.into()),
-        ExportError::Write(fault) => fault.into(),
-    }
 }

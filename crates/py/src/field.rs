@@ -2,8 +2,7 @@
 
 use std::path::PathBuf;
 
-use ::surface::VertexId;
-use budget::Budget;
+use canonform::surface::VertexId;
 use canonform::{FieldOptions, Finish, PairDistance, PairKind};
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
@@ -11,7 +10,7 @@ use pyo3::prelude::*;
 use crate::arrays;
 use crate::error::Exception;
 use crate::record::json;
-use crate::run::{run, run_alone};
+use crate::run::run_alone;
 use crate::settings::distance_method;
 use crate::surface::Surface;
 
@@ -75,9 +74,9 @@ impl DistanceField {
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Self> {
         let options = FieldOptions { method: distance_method(method, update, obtuse)?, landmarks, rank };
-        Ok(Self(run(py, &Budget::unlimited(), progress.as_ref(), |observer| {
-            canonform::DistanceField::build(&surface.inner, &options, observer)
-        })?))
+        run_alone(py, progress.as_ref(), |observer| {
+            Ok(Self(canonform::DistanceField::build(&surface.inner, &options, observer)?))
+        })
     }
 
     #[staticmethod]
@@ -86,7 +85,7 @@ impl DistanceField {
     }
 
     fn save(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
-        run_alone(py, None, |_| self.0.save(&path))
+        run_alone(py, None, |_| Ok(self.0.save(&path)?))
     }
 
     #[getter]
@@ -106,7 +105,8 @@ impl DistanceField {
 
     /// The distance of two vertices, its bounds, and whether it is exact.
     fn pair(&self, a: i64, b: i64) -> PyResult<(f64, f64, f64, bool)> {
-        let pair = self.0.pair(vertex(a)?, vertex(b)?).map_err(|fault| crate::error::to_python(&fault))?;
+        let pair =
+            self.0.pair(vertex(a)?, vertex(b)?).map_err(|fault| crate::error::to_python(&fault.into()))?;
         Ok((pair.distance, pair.lower, pair.upper, pair.kind == PairKind::Exact))
     }
 
@@ -122,21 +122,22 @@ impl DistanceField {
         let finish = finish(tolerance)?;
         let rows = pairs.as_slice()?.as_chunks::<2>().0.iter();
         let pairs = rows.map(|[a, b]| Ok([vertex(*a)?, vertex(*b)?])).collect::<PyResult<Vec<_>>>()?;
-        let found = run_alone(py, progress.as_ref(), |observer| self.0.pairs(&pairs, finish, observer))?;
+        let found =
+            run_alone(py, progress.as_ref(), |observer| Ok(self.0.pairs(&pairs, finish, observer)?))?;
         Ok(answers(py, &found))
     }
 
     /// The distances from one vertex to all.
     fn row<'py>(&self, py: Python<'py>, source: i64, tolerance: Option<f64>) -> PyResult<Answers<'py>> {
         let (source, finish) = (vertex(source)?, finish(tolerance)?);
-        let found = run_alone(py, None, |observer| self.0.row(source, finish, observer))?;
+        let found = run_alone(py, None, |observer| Ok(self.0.row(source, finish, observer)?))?;
         Ok(answers(py, &found))
     }
 
     /// The nearest vertices, and their distances.
     fn nearest<'py>(&self, py: Python<'py>, source: i64, k: usize) -> PyResult<Neighbours<'py>> {
         let source = vertex(source)?;
-        let found = run_alone(py, None, |observer| self.0.nearest(source, k, observer))?;
+        let found = run_alone(py, None, |observer| Ok(self.0.nearest(source, k, observer)?))?;
         let (vertices, distances): (Vec<i64>, Vec<f64>) =
             found.iter().map(|pair| (i64::from(pair.b.0), pair.distance)).unzip();
         Ok((vertices.into_pyarray(py), arrays::vector(py, distances)))

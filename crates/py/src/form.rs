@@ -3,10 +3,10 @@
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use ::surface::VertexId;
 use canonform::Embedded;
 use canonform::descriptors::{CanonicalForm, PreparedForm};
-use mesh::TriMesh;
+use canonform::mesh::TriMesh;
+use canonform::surface::VertexId;
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 
@@ -83,8 +83,7 @@ impl Form {
     fn place<'py>(&self, py: Python<'py>, points: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let points = points_of(points)?;
         let placed = run_alone(py, None, |_| self.embedded.place(&self.surface, &points))?;
-        let rows = arrays::picked_rows(&placed, (0..placed.nrows()).map(Some));
-        arrays::matrix(py, rows, [placed.nrows(), placed.ncols()])
+        arrays::of_matrix(py, &placed)
     }
 
     /// Facts about the embedding, as the JSON of `canonform embed`.
@@ -100,6 +99,6 @@ impl Form {
     /// Writes the form as a mesh.
     fn write(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
         let mesh = self.to_mesh()?;
-        py.detach(|| mesh::io::write(&path, &mesh)).map_err(|fault| to_python(&fault.into()))
+        py.detach(|| canonform::mesh::io::write(&path, &mesh)).map_err(|fault| to_python(&fault.into()))
     }
 }

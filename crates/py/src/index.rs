@@ -1,24 +1,24 @@
 //! Indexes of shape collections.
 
 use std::collections::{BTreeMap, HashSet};
-use std::io::BufWriter;
 use std::path::PathBuf;
 
-use ::index::{ExportError, SearchMode, ShapeEntry};
-use canonform::descriptors::{DescriptorError, ShapeMetric, ShapePair};
+use canonform::descriptors::DescriptorError;
+use canonform::index::{ExportFormat, SearchMode, ShapeEntry};
+use canonform::mesh::RepairOptions;
 use canonform::{
-    BuildOptions, Elsewhere, Error, EvaluateOptions, Explain, Inputs, LabelFile, Measure, MeshGeometry,
-    Query, RankBy, SearchOptions, SearchReport, ShapeFile, ShapeSearch, Shard, add_to_index, build_index,
-    content_hash, evaluate_index, indexed_shapes, mesh_path, remove_from_index,
+    BuildOptions, DescribedQuery, Elsewhere, EvaluateOptions, Explain, Inputs, LabelFile, Measure,
+    MeshGeometry, PairwiseDistance, Query, RankBy, SearchOptions, SearchReport, ShapeFile, ShapeSearch,
+    Shard, add_to_index, build_index, content_hash, evaluate_index, export_index, indexed_shapes, mesh_path,
+    remove_from_index,
 };
-use mesh::RepairOptions;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 use rayon::prelude::*;
 use serde::Serialize;
 
 use crate::arrays;
-use crate::error::{Exception, of_export, to_python, with_remedy};
+use crate::error::{Exception, to_python, with_remedy};
 use crate::record::json;
 use crate::run::run_alone;
 use crate::settings::Settings;
@@ -66,7 +66,7 @@ fn wrong_rank(rank: &str, remedy: &str) -> PyErr {
 
 /// Reads a label file.
 fn labels_of(labels: Option<PathBuf>) -> PyResult<Option<LabelFile>> {
-    labels.map(|path| LabelFile::read(&path)).transpose().map_err(|fault| to_python(&fault))
+    labels.map(|path| LabelFile::read(&path)).transpose().map_err(|fault| to_python(&fault.into()))
 }
 
 /// The report on a build, with the remedies of failures in words.
@@ -102,7 +102,7 @@ impl Index {
         progress: Option<Py<PyAny>>,
     ) -> PyResult<String> {
         let settings = Settings::parse(settings)?;
-        let describe = settings.describe(settings.repair()?)?;
+        let describe = settings.describe(settings.repair())?;
         let labels = labels_of(labels)?;
         let shard = shard.map(|(i, n)| Shard::new(i, n)).transpose().map_err(|fault| to_python(&fault))?;
         let options = BuildOptions {
@@ -197,35 +197,31 @@ impl Index {
         };
         let (search, describe) = (&self.search, self.search.describe_options());
         let mut report = run_alone(py, None, |observer| {
-            let budget = observer.budget();
             if let Some(surface) = surface {
                 // A surface that was repaired in another way is repaired again.
+                let content = surface.content;
                 if surface.inner.repair != describe.form.repair {
-                    return search.search_named_within(
-                        &surface.mesh,
-                        name,
-                        surface.content,
+                    return search.search(
+                        Query::Mesh { mesh: &surface.mesh, name, content },
                         &options,
-                        &budget,
+                        observer,
                     );
                 }
-                let geometry = explain.then(|| MeshGeometry::new(&surface.mesh, surface.content)).flatten();
-                let part = search.part(&surface.inner, &options, &budget)?;
-                let (content, geometry) = (surface.content, geometry.as_ref());
-                let query = Query { name, content, geometry, part: part.as_ref() };
-                let described = surface.described(describe, &budget)?;
-                return search.search_query_within(&described, &query, &options, &budget);
+                let geometry = explain.then(|| MeshGeometry::new(&surface.mesh, content)).flatten();
+                let (description, surface) =
+                    (&*surface.described(describe, observer)?, Some(&*surface.inner));
+                let query =
+                    DescribedQuery { description, surface, geometry: geometry.as_ref(), name, content };
+                return search.search(Query::Described(query), &options, observer);
             }
             let path = path.as_deref().unwrap_or(std::path::Path::new(""));
             // As on the command line, a file goes before a shape of the same name.
-            let id =
-                path.to_str().filter(|id| !path.exists() && search.index().contains(id).unwrap_or(false));
-            if let Some(id) = id {
-                return search.search_shape(id, &options);
+            if let Some(id) = search.id_of(path) {
+                return search.search(Query::Id(id), &options, observer);
             }
             let mesh = canonform::read_mesh(path)?;
             let content = explain.then(|| content_hash(path)).transpose()?;
-            search.search_named_within(&mesh, name, content, &options, &budget)
+            search.search(Query::Mesh { mesh: &mesh, name, content }, &options, observer)
         })?;
         self.place_meshes(&mut report);
         Ok(json(&report))
@@ -274,7 +270,7 @@ impl Index {
             index.each(|shape| {
                 length = shape.vectors.fused.len();
                 flat.extend(shape.vectors.fused);
-                Ok::<(), ::index::IndexError>(())
+                Ok::<(), canonform::index::IndexError>(())
             })?;
             Ok((flat, length))
         })?;
@@ -297,49 +293,18 @@ impl Index {
         kind: &str,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let aligns = match kind {
-            "combined" => true,
-            "fused" => false,
+        let kind = match kind {
+            "combined" => PairwiseDistance::Combined,
+            "fused" => PairwiseDistance::Fused,
             _ => {
                 let message = format!("kind={kind:?} is not possible: use \"combined\", \"fused\"");
                 return Err(Exception::Option.with(&message));
             }
         };
-        let (distances, shape) = run_alone(py, progress.as_ref(), |observer| {
-            let prepared = |ids: &[String]| {
-                ids.iter().map(|id| self.search.prepared(id)).collect::<Result<Vec<_>, Error>>()
-            };
-            let rows = prepared(&rows)?;
-            let others = columns.as_deref().map(prepared).transpose()?;
-            let columns = others.as_ref().unwrap_or(&rows);
-            let (n, budget) = (columns.len(), observer.budget());
-            observer.begin("distances", rows.len() * n);
-            let distance = |place: usize| {
-                observer.step();
-                budget.check()?;
-                let (i, j) = (place / n, place % n);
-                // Distances of forms are symmetric up to the local minimum that an alignment ends in.
-                if others.is_none() && j < i {
-                    return Ok(f64::NAN);
-                }
-                let (a, b) = (&rows[i], &columns[j]);
-                Ok(match aligns {
-                    true => ShapePair::new(ShapeMetric::default(), [a, b]).distance().combined,
-                    false => ShapeMetric::fused(a.fused(), b.fused()),
-                })
-            };
-            let mut distances =
-                (0..rows.len() * n).into_par_iter().map(distance).collect::<Result<Vec<_>, Error>>()?;
-            if others.is_none() {
-                for i in 0..n {
-                    for j in 0..i {
-                        distances[i * n + j] = distances[j * n + i];
-                    }
-                }
-            }
-            Ok((distances, [rows.len(), n]))
+        let distances = run_alone(py, progress.as_ref(), |observer| {
+            self.search.distances(&rows, columns.as_deref(), kind, observer)
         })?;
-        arrays::matrix(py, distances, shape)
+        arrays::of_matrix(py, &distances)
     }
 
     /// The surface of the mesh of a shape, repaired as the index says.
@@ -348,31 +313,14 @@ impl Index {
         run_alone(py, None, |observer| {
             let mesh = self.search.mesh(id)?;
             let content = self.search.index().entry(id)?.content;
-            let inner = canonform::Surface::within(&mesh, &repair, &observer.budget())?;
+            let inner = canonform::Surface::new(&mesh, &repair, observer)?;
             Ok(Surface::of(mesh, inner, Some(content)))
         })
     }
 
     /// Writes the index as lines of JSON.
     fn export(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
-        py.detach(|| {
-            let mut unreadable = None;
-            let written = files::write_atomically(&path, |out| {
-                let mut out = BufWriter::new(out);
-                match self.search.index().export(&mut out) {
-                    Err(ExportError::Index(fault)) => {
-                        unreadable = Some(ExportError::Index(fault));
-                        Err(std::io::Error::other("the index cannot be read"))
-                    }
-                    Err(ExportError::Write(fault)) => Err(fault),
-                    Ok(()) => Ok(()),
-                }
-            });
-            match unreadable {
-                Some(fault) => Err(of_export(fault)),
-                None => written.map_err(|fault| to_python(&fault.into())),
-            }
-        })
+        run_alone(py, None, |_| export_index(self.search.index(), ExportFormat::JsonLines, &path))
     }
 }
 
@@ -412,7 +360,7 @@ pub(crate) fn list_folder(
     run_alone(py, None, |_| {
         let size = |path: &PathBuf| std::fs::metadata(path).map_or(0, |found| found.len());
         let listed = |shape: ShapeFile| {
-            let n_bytes = mesh::io::files_of(&shape.path).iter().map(size).sum();
+            let n_bytes = canonform::mesh::io::files_of(&shape.path).iter().map(size).sum();
             (shape.name, shape.label, shape.path, n_bytes)
         };
         Ok(indexed_shapes(&folder, &path, labels.as_ref())?.into_iter().map(listed).collect())

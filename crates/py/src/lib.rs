@@ -49,7 +49,7 @@ mod _canonform {
     #[pymodule_export]
     use crate::run::{set_threads, threads};
     #[pymodule_export]
-    use crate::settings::{methods, signature_kinds};
+    use crate::settings::{methods, option_names, signature_kinds};
     #[pymodule_export]
     use crate::surface::{Surface, write};
 

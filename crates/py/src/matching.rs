@@ -3,7 +3,7 @@
 use canonform::correspond;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
-use view::color::{perceptual, place_colors};
+use report::color::{perceptual, place_colors};
 
 use crate::record::json;
 use crate::run::run;
@@ -31,7 +31,7 @@ pub(crate) fn match_surfaces<'py>(
         Ok((found, b.inner.in_input_order(&colors, perceptual(f64::NAN))))
     })?;
     let maps = found.maps.iter().map(|map| {
-        let number = |v: &Option<::surface::VertexId>| v.map_or(-1, |v| i64::from(v.0));
+        let number = |v: &Option<canonform::surface::VertexId>| v.map_or(-1, |v| i64::from(v.0));
         map.vertices.iter().map(number).collect::<Vec<_>>().into_pyarray(py)
     });
     let n_colors = colors.len();

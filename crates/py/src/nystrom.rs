@@ -29,10 +29,6 @@ fn matrix_of(array: &PyReadonlyArray2<'_, f64>) -> Matrix {
     Matrix::from_fn(rows, columns, |i, j| array[(i, j)])
 }
 
-fn rows_of(matrix: &Matrix) -> Vec<f64> {
-    arrays::picked_rows(matrix, (0..matrix.nrows()).map(Some))
-}
-
 #[pymethods]
 impl Extension {
     #[new]
@@ -48,13 +44,13 @@ impl Extension {
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let distances = matrix_of(&distances);
         let placed = run_alone(py, None, |_| Ok(self.0.place(&distances)?))?;
-        arrays::matrix(py, rows_of(&placed), [placed.nrows(), placed.ncols()])
+        arrays::of_matrix(py, &placed)
     }
 
     /// What `pickle` needs to make it again.
     fn __getnewargs__<'py>(&self, py: Python<'py>) -> PyResult<Arguments<'py>> {
         let OutOfSample { unit, means, axes } = &self.0;
-        let axes = arrays::matrix(py, rows_of(axes), [axes.nrows(), axes.ncols()])?;
+        let axes = arrays::of_matrix(py, axes)?;
         Ok((*unit, arrays::vector(py, means.clone()), axes))
     }
 }
@@ -95,7 +91,7 @@ impl SampleSearch {
 impl SampleSearch {
     #[new]
     fn new(settings: &str, limit: usize, seed: u64) -> PyResult<Self> {
-        let (options, goal) = Settings::parse(settings)?.searched_nystrom()?;
+        let (options, goal) = Settings::parse(settings)?.nystrom()?;
         Ok(Self {
             search: nmds::SampleSearch::new(goal, options.first_samples(), limit, seed),
             options,
@@ -161,12 +157,12 @@ pub(crate) fn nystrom<'py>(
     landmarks: Vec<usize>,
     settings: &str,
 ) -> PyResult<Embedded<'py>> {
-    let options = Settings::parse(settings)?.nystrom()?;
+    let (options, _) = Settings::parse(settings)?.nystrom()?;
     let columns = matrix_of(&columns);
     let (embedding, extension) = run_alone(py, None, |_| {
         Ok(nystrom_extended(&LandmarkDistances::new(landmarks, columns)?, &options)?)
     })?;
     let Embedding { coords, eigenvalues, negative_mass, rank } = embedding;
-    let points = arrays::matrix(py, rows_of(&coords), [coords.nrows(), coords.ncols()])?;
+    let points = arrays::of_matrix(py, &coords)?;
     Ok((points, arrays::vector(py, eigenvalues), negative_mass, rank, Extension(extension)))
 }

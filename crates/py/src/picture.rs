@@ -1,10 +1,10 @@
 //! Shaded pictures.
 
-use mesh::TriMesh;
+use canonform::mesh::TriMesh;
 use numpy::{PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
-use view::render::{Background, RenderOptions, Surface, render_within};
+use report::render::{Background, Coloring, RenderOptions, render};
 
 use crate::arrays;
 use crate::run::run_alone;
@@ -28,16 +28,16 @@ pub(crate) fn draw<'py>(
             *p = Default::default();
         }
     }
-    let surface = match (values, colors) {
-        (None, None) => RenderOptions::default().surface,
-        (None, Some(colors)) => Surface::Colors(colors.as_slice()?.as_chunks().0.to_vec()),
+    let coloring = match (values, colors) {
+        (None, None) => RenderOptions::default().coloring,
+        (None, Some(colors)) => Coloring::Colors(colors.as_slice()?.as_chunks().0.to_vec()),
         (Some(values), _) => {
-            Surface::Scalars { values: values.as_slice()?.to_vec(), range: None, isolines: 0 }
+            Coloring::Scalars { values: values.as_slice()?.to_vec(), range: None, isolines: 0 }
         }
     };
     let [width, height] = size;
     let background = Background::Transparent;
-    let options = RenderOptions { width, height, background, surface, ..RenderOptions::default() };
-    let image = run_alone(py, None, |observer| Ok(render_within(&mesh, &options, &observer.budget())?))?;
+    let options = RenderOptions { width, height, background, coloring, ..RenderOptions::default() };
+    let image = run_alone(py, None, |observer| Ok(render(&mesh, &options, observer)?))?;
     Ok(PyBytes::new(py, &image.to_png()?))
 }

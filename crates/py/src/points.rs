@@ -1,7 +1,7 @@
 //! Points of a surface as Python writes them.
 
-use ::surface::VertexId;
 use canonform::InputPoint;
+use canonform::surface::VertexId;
 use pyo3::prelude::*;
 
 use crate::error::Exception;

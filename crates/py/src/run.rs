@@ -9,7 +9,7 @@ use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
-use budget::{Budget, Exceeded};
+use base::{Budget, Exceeded};
 use canonform::{Error, Observer};
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;

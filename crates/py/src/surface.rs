@@ -3,19 +3,19 @@
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
 
-use ::surface::VertexId;
-use budget::Budget;
+use base::Budget;
+use canonform::ContentHash;
 use canonform::descriptors::SignatureKind;
 use canonform::geodesics::{DistanceSolver, FirstSample, Method, PathTracer, Sampling, Source};
+use canonform::mesh::TriMesh;
+use canonform::surface::VertexId;
 use canonform::{
-    ComparedMesh, CorrespondOptions, DescribeOptions, Error, FormOptions, InputPoint, MatchedSurface,
-    Observer, ShapeDescription, content_hash, embed_again, embed_and_measure, embed_finer,
+    ComparedMesh, CorrespondOptions, DescribeOptions, Error, FormOptions, InputPoint, MappedSurface,
+    Observer, ShapeDescription, SurfacePath, content_hash, distance_rows, embed_again, embed_and_measure,
+    embed_finer,
 };
-use index::ContentHash;
-use mesh::TriMesh;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyReadonlyArray2};
 use pyo3::prelude::*;
-use rayon::prelude::*;
 
 use crate::arrays;
 use crate::error::{Exception, to_python};
@@ -60,6 +60,18 @@ impl<K: PartialEq, V: Clone> Kept<K, V> {
     }
 }
 
+impl<K: PartialEq + Clone, V> Kept<K, Arc<V>> {
+    /// The value kept for a key, or one that is made now and kept.
+    fn or_make(&self, key: &K, make: impl FnOnce() -> Result<V, Error>) -> Result<Arc<V>, Error> {
+        if let Some(kept) = self.get(key) {
+            return Ok(kept);
+        }
+        let made = Arc::new(make()?);
+        self.put(key.clone(), made.clone());
+        Ok(made)
+    }
+}
+
 /// A solver, and the budget that it was prepared with: who cancels that has to prepare another.
 #[derive(Clone)]
 struct Prepared {
@@ -68,7 +80,7 @@ struct Prepared {
 }
 
 pub(crate) type Compared = ComparedMesh<Arc<canonform::Surface>>;
-pub(crate) type Matched = MatchedSurface<Arc<canonform::Surface>>;
+pub(crate) type Matched = MappedSurface<Arc<canonform::Surface>>;
 
 /// A repaired triangle mesh, with everything that was prepared on it.
 #[pyclass(frozen, module = "canonform._canonform")]
@@ -118,7 +130,7 @@ impl Surface {
                 let prepared = match kept {
                     Some(prepared) => prepared,
                     None => {
-                        let solver = method.prepare_within(&self.inner.intrinsic, &budget)?.into();
+                        let solver = method.prepare(self.inner.intrinsic(), &budget)?.into();
                         let prepared = Prepared { solver, budget: budget.clone() };
                         self.solvers.put(method, prepared.clone());
                         prepared
@@ -139,7 +151,8 @@ impl Surface {
     }
 
     fn sources(&self, points: &[InputPoint]) -> Result<Vec<Source>, Error> {
-        let located = |point: &InputPoint| Ok(Source::new(&self.inner.intrinsic, self.inner.locate(point)?)?);
+        let located =
+            |point: &InputPoint| Ok(Source::new(self.inner.intrinsic(), self.inner.locate(point)?)?);
         points.iter().map(located).collect()
     }
 
@@ -147,14 +160,9 @@ impl Surface {
     pub(crate) fn described(
         &self,
         options: &DescribeOptions,
-        budget: &Budget,
+        observer: &dyn Observer,
     ) -> Result<Arc<ShapeDescription>, Error> {
-        if let Some(kept) = self.descriptions.get(options) {
-            return Ok(kept);
-        }
-        let described = Arc::new(canonform::describe_within(&self.inner, options, budget)?);
-        self.descriptions.put(options.clone(), described.clone());
-        Ok(described)
+        self.descriptions.or_make(options, || canonform::describe(&self.inner, options, observer))
     }
 
     /// The surface, ready to be compared, made once.
@@ -163,13 +171,9 @@ impl Surface {
         options: &FormOptions,
         observer: &dyn Observer,
     ) -> Result<Arc<Compared>, Error> {
-        if let Some(kept) = self.compared.get(options) {
-            return Ok(kept);
-        }
         let surface = self.inner.clone();
-        let compared = Arc::new(ComparedMesh::new(&self.mesh, self.content, surface, options, observer)?);
-        self.compared.put(options.clone(), compared.clone());
-        Ok(compared)
+        self.compared
+            .or_make(options, || ComparedMesh::new(&self.mesh, self.content, surface, options, observer))
     }
 
     /// The surface, ready to be mapped to others, made once.
@@ -178,12 +182,7 @@ impl Surface {
         options: &CorrespondOptions,
         observer: &dyn Observer,
     ) -> Result<Arc<Matched>, Error> {
-        if let Some(kept) = self.matched.get(options) {
-            return Ok(kept);
-        }
-        let matched = Arc::new(MatchedSurface::new(self.inner.clone(), options, observer)?);
-        self.matched.put(options.clone(), matched.clone());
-        Ok(matched)
+        self.matched.or_make(options, || MappedSurface::new(self.inner.clone(), options, observer))
     }
 
     fn description_of(
@@ -194,9 +193,7 @@ impl Surface {
     ) -> PyResult<Arc<ShapeDescription>> {
         let settings = Settings::parse(settings)?;
         let options = settings.describe(self.inner.repair)?;
-        Ok(run(py, &settings.budget()?, progress.as_ref(), |observer| {
-            self.described(&options, &observer.budget())
-        })?)
+        Ok(run(py, &settings.budget()?, progress.as_ref(), |observer| self.described(&options, observer))?)
     }
 }
 
@@ -213,21 +210,20 @@ impl Surface {
         faces: PyReadonlyArray2<'_, i64>,
         settings: &str,
     ) -> PyResult<Self> {
-        let options = Settings::parse(settings)?.repair()?;
+        let options = Settings::parse(settings)?.repair();
         let mesh = arrays::mesh_of(&vertices, &faces)?;
-        let inner =
-            run_alone(py, None, |observer| canonform::Surface::within(&mesh, &options, &observer.budget()))?;
+        let inner = run_alone(py, None, |observer| Ok(canonform::Surface::new(&mesh, &options, observer)?))?;
         Ok(Self::of(mesh, inner, None))
     }
 
     /// Reads and repairs a mesh file.
     #[staticmethod]
     fn read(py: Python<'_>, path: PathBuf, settings: &str) -> PyResult<Self> {
-        let options = Settings::parse(settings)?.repair()?;
+        let options = Settings::parse(settings)?.repair();
         run_alone(py, None, |observer| {
             let content = content_hash(&path)?;
             let mesh = canonform::read_mesh(&path)?;
-            let inner = canonform::Surface::within(&mesh, &options, &observer.budget())?;
+            let inner = canonform::Surface::new(&mesh, &options, observer)?;
             Ok(Self::of(mesh, inner, Some(content)))
         })
     }
@@ -295,23 +291,7 @@ impl Surface {
         let (method, points) = (distance_method(method, update, obtuse)?, points_of(sources)?);
         let p = self.mesh.n_vertices();
         let rows = self.solve(py, method, progress.as_ref(), |solver, observer| {
-            let sources = self.sources(&points)?;
-            observer.begin("distances", sources.len());
-            let mut rows = solver.budget().vector(p.saturating_mul(sources.len()))?;
-            rows.par_chunks_mut(p.max(1)).zip(&sources).try_for_each(|(row, source)| {
-                let source = std::slice::from_ref(source);
-                match self.unchanged {
-                    true => solver.solve_into(source, max_distance, row)?,
-                    false => {
-                        let mut solved = vec![0.0; solver.n_vertices()];
-                        solver.solve_into(source, max_distance, &mut solved)?;
-                        row.copy_from_slice(&self.in_input_order(solved));
-                    }
-                }
-                observer.step();
-                Ok::<_, Error>(())
-            })?;
-            Ok(rows)
+            distance_rows(&self.inner, solver, &self.sources(&points)?, max_distance, observer)
         })?;
         arrays::matrix(py, rows, [points.len(), p])
     }
@@ -334,9 +314,9 @@ impl Surface {
             let sources = self.sources(std::slice::from_ref(&source))?;
             let mut distances = vec![0.0; solver.n_vertices()];
             solver.solve_into(&sources, f64::INFINITY, &mut distances)?;
-            let tracer = PathTracer::new(&inner.intrinsic, &sources, &distances).with_budget(solver.budget());
+            let tracer = PathTracer::new(inner.intrinsic(), &sources, &distances, &solver.budget());
             let path = |(target, end): (&InputPoint, &_)| {
-                let mut path = inner.path(&tracer, *end)?;
+                let mut path = SurfacePath::trace(inner, &tracer, *end)?;
                 // The ends as the user wrote them.
                 let last = path.points.len() - 1;
                 path.points[0].at = source;
@@ -448,5 +428,5 @@ pub(crate) fn write(
     path: PathBuf,
 ) -> PyResult<()> {
     let mesh = arrays::mesh_of(&vertices, &faces)?;
-    py.detach(|| mesh::io::write(&path, &mesh)).map_err(|fault| to_python(&fault.into()))
+    py.detach(|| canonform::mesh::io::write(&path, &mesh)).map_err(|fault| to_python(&fault.into()))
 }

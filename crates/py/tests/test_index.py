@@ -50,7 +50,7 @@ def test_a_part_finds_its_class(index: Index, collection: Path) -> None:
 
 def test_results_go_to_pandas(index: Index) -> None:
     frame = index.search("cat0", k=4).to_pandas()
-    assert list(frame.columns) == ["id", "label", "distance", "fused", "verdict", "path"]
+    assert list(frame.columns) == ["id", "label", "distance", "fused", "relation", "path"]
     assert frame.loc[1, "id"] == "cat0" and len(frame) == 4
     assert index.to_pandas().loc["cat0", "label"] == "cat"
 

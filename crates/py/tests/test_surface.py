@@ -286,3 +286,14 @@ def test_samples_are_taken_until_a_target_is_reached_and_reused(cat: Shape) -> N
         surface.canonical_form(n=30, target_stress=0.5)
     missed = surface.canonical_form(n="auto", target_stress=1e-4).report["auto"]
     assert (missed["stop"], missed["verdict"]) == ("settled", "exceeded")
+
+
+def test_keywords_are_the_options_of_the_library() -> None:
+    import inspect
+
+    from canonform import Surface, _canonform
+
+    options, of_form = map(set, _canonform.option_names())
+    keywords = set(inspect.signature(Surface.canonical_form).parameters)
+    assert of_form | {"n", "method", "geodesic", "target_stress", "stress"} <= keywords
+    assert keywords - options == {"self", "reuse", "progress"}

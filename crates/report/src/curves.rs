@@ -2,9 +2,9 @@
 
 use crate::classes::Classes;
 use crate::error::ReportError;
-use crate::figure::{Content, Figure, Plot, Point, Series, Shape, Style};
+use crate::figure::{Figure, FigurePanels, Plot, PlotPoint, PlotSeries, SeriesKind, SeriesStyle};
 use crate::record::Results;
-use crate::results::{self, CurvesPanel, CurvesResults};
+use crate::results::{CurvesPanel, CurvesResults, Series, SeriesPoint};
 use crate::table::{Cell, Table, significant};
 
 /// The distinct names of the series of all panels.
@@ -37,14 +37,14 @@ impl Results for CurvesResults {
 
     fn figures(&self) -> Vec<Figure> {
         let names = series_names(&self.panels);
-        let series = |series: &results::Series| Series {
+        let series = |series: &Series| PlotSeries {
             name: series.name.clone(),
-            style: Style(names.index(&series.name)),
-            shape: Shape::Curve,
+            style: SeriesStyle(names.index(&series.name)),
+            kind: SeriesKind::Curve,
             points: series
                 .points
                 .iter()
-                .map(|p| Point {
+                .map(|p| PlotPoint {
                     x: p.x,
                     y: p.median,
                     low: p.low,
@@ -54,20 +54,20 @@ impl Results for CurvesResults {
                 .collect(),
         };
         let plot = |panel: &CurvesPanel| {
-            let mut series: Vec<Series> = panel.series.iter().map(series).collect();
+            let mut series: Vec<PlotSeries> = panel.series.iter().map(series).collect();
             series.sort_by_key(|series| series.style.0);
             let label = format!("{}: {}", self.caption, panel.title);
             Plot::new(&panel.title, label, &panel.x, &panel.y, series, panel.marks.clone())
         };
         let plots = self.panels.iter().map(plot).collect();
-        vec![Figure { part: "-curves", caption: self.caption.clone(), content: Content::Plots(plots) }]
+        vec![Figure { part: "-curves", caption: self.caption.clone(), panels: FigurePanels::Plots(plots) }]
     }
 
     /// One table per panel with every point of every curve.
     fn tables(&self) -> Vec<Table> {
         let table = |panel: &CurvesPanel| {
             let points = panel.series.iter().flat_map(|s| s.points.iter().map(move |p| (&s.name, p)));
-            let row = |(name, p): (&String, &results::SeriesPoint)| {
+            let row = |(name, p): (&String, &SeriesPoint)| {
                 let mut row = vec![Cell::text(name)];
                 row.extend([p.x, p.median, p.low, p.high].map(|v| Cell::number(significant(v))));
                 row.push(Cell::number(p.runs));
@@ -110,27 +110,9 @@ impl Results for CurvesResults {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fixtures::{assert_balanced, curves_record};
     use crate::record::save;
     use crate::results::Record;
-
-    #[test]
-    fn files_are_well_formed_deterministic_and_labelled() {
-        let record = curves_record();
-        let folder = tempfile::tempdir().unwrap();
-        let draw = |name: &str| {
-            save(&record, folder.path(), name).unwrap();
-            let read = |end: &str| std::fs::read(folder.path().join(format!("{name}-curves.{end}"))).unwrap();
-            (read("png"), String::from_utf8(read("svg")).unwrap())
-        };
-        let (png, svg) = draw("a");
-        assert_eq!((png, svg.clone()), draw("b"));
-        assert_balanced(&svg);
-        for text in ["NMDS", "a &amp; b", "samples n", "error (m⁴)", "recommended", "david0", "cat0", "100"]
-        {
-            assert!(svg.contains(text), "{text}");
-        }
-    }
+    use crate::tests::fixtures::curves_record;
 
     #[test]
     fn single_panels_and_values_that_are_not_positive_can_be_drawn() {

@@ -7,10 +7,18 @@ use std::path::PathBuf;
 pub enum ReportError {
     /// A file could not be read or written. A file that was not written completely does not remain.
     #[error(transparent)]
-    File(#[from] files::FileError),
-    /// A figure could not be drawn or written.
+    File(#[from] base::files::FileError),
+    /// The time is over.
     #[error(transparent)]
-    View(#[from] view::ViewError),
+    Exceeded(#[from] base::Exceeded),
+    /// The drawing backend failed.
+    #[error("cannot draw {figure}: {reason}; this is a bug, please report it")]
+    Draw {
+        /// What was drawn.
+        figure: String,
+        /// The message of the backend.
+        reason: String,
+    },
     /// A file does not hold the expected record.
     #[error("{}: not a record that this version reads: {source}; run the experiment again", path.display())]
     Parse {
@@ -52,6 +60,11 @@ pub enum ReportError {
 }
 
 impl ReportError {
+    /// The backend failed to draw `figure` for `reason`.
+    pub fn draw(figure: impl ToString, reason: impl ToString) -> Self {
+        Self::Draw { figure: figure.to_string(), reason: reason.to_string() }
+    }
+
     /// An error unless a part of a record has the `expected` number of entries.
     pub(crate) fn check_length(
         what: impl Into<String>,

@@ -4,11 +4,10 @@ use mesh::TriMesh;
 
 use crate::classes::Classes;
 use crate::error::ReportError;
-use crate::figure::{Content, Figure, Layout, Tile, Tiles};
+use crate::figure::{Figure, FigurePanels, Tile, Tiles};
 use crate::record::Results;
 use crate::results::{Figure1Results, Figure1Shape};
 use crate::table::{Cell, Table, stress};
-use view::canvas::TextStyle;
 
 const PART: &str = "-forms";
 
@@ -39,8 +38,8 @@ impl Figure1Results {
             let tiles = members.flat_map(|(facts, (shape, form))| {
                 let stress = format!("stress {}", stress(facts.stress));
                 [
-                    Tile::Shape(shape, vec![(facts.name.clone(), TextStyle::NAME)]),
-                    Tile::Form(form, vec![(stress, Layout::NOTE)]),
+                    Tile { mesh: shape, is_form: false, captions: vec![facts.name.clone()] },
+                    Tile { mesh: form, is_form: true, captions: vec![stress] },
                 ]
             });
             ((*class).to_owned(), tiles.collect())
@@ -49,7 +48,7 @@ impl Figure1Results {
         let columns = rows.iter().map(|(_, tiles)| tiles.len()).max().unwrap_or(0);
         let heads =
             ["shape", "canonical form"].map(str::to_owned).into_iter().cycle().take(columns).collect();
-        Ok(Tiles { part: PART, layout: &Layout::PAIRS, heads, rows })
+        Ok(Tiles { part: PART, is_paired: true, heads, rows })
     }
 }
 
@@ -58,7 +57,7 @@ impl Results for Figure1Results {
         let caption = "Up to three shapes of each class (left), each with its canonical form (right). All forms of a \
                        class are seen from the same side; the number under each is its stress in squared mesh units. \
                        Colours denote classes, as in Figure 4.";
-        vec![Figure { part: PART, caption: caption.to_owned(), content: Content::Surfaces }]
+        vec![Figure { part: PART, caption: caption.to_owned(), panels: FigurePanels::Surfaces }]
     }
 
     fn tables(&self) -> Vec<Table> {
@@ -90,7 +89,7 @@ mod tests {
     use super::*;
     use mesh::shapes::icosphere;
 
-    use crate::fixtures::{assert_balanced, figure1_record};
+    use crate::tests::fixtures::{assert_balanced, figure1_record};
 
     #[test]
     fn every_shape_is_named_and_the_files_are_deterministic() {
@@ -108,9 +107,16 @@ mod tests {
         assert_eq!(files, draw("b"));
         let svg = String::from_utf8(files[1].clone()).unwrap();
         assert_balanced(&svg);
-        for text in
-            ["cat0", "cat1", "cat2", "dog&lt;3&gt;", ">cat<", ">dog<", "stress 262.1", "canonical form"]
-        {
+        for text in [
+            "cat0",
+            "cat1",
+            "cat2",
+            "dog&lt;3&gt;",
+            ">\ncat\n<",
+            ">\ndog\n<",
+            "stress 262.1",
+            "canonical form",
+        ] {
             assert!(svg.contains(text), "{text}");
         }
         assert!(!svg.contains("cat3"), "three pairs per class");

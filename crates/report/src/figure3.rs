@@ -4,11 +4,10 @@ use mesh::TriMesh;
 
 use crate::classes::Classes;
 use crate::error::ReportError;
-use crate::figure::{Content, Figure, Group, Layout, Plot, Point, Tile, Tiles, grouped};
+use crate::figure::{Figure, FigurePanels, GroupedValue, Plot, PlotPoint, Tile, Tiles, grouped};
 use crate::record::Results;
 use crate::results::{Axis, AxisScale, Figure3Results, Figure3Shape, Figure3Stress};
 use crate::table::{Cell, Table, stress};
-use view::canvas::TextStyle;
 
 const PART: &str = "-forms";
 
@@ -32,17 +31,18 @@ impl Figure3Results {
         let methods = longest.into_iter().flat_map(|facts| facts.forms.iter().map(|f| f.method.clone()));
         let heads = std::iter::once("shape".to_owned()).chain(methods).collect();
         let row = |(facts, (shape, forms)): (&Figure3Shape, &'a (TriMesh, Vec<TriMesh>))| {
-            let vertices = (format!("{} vertices", facts.n_vertices), TextStyle::LABEL);
+            let captions = vec![format!("{} vertices", facts.n_vertices)];
             let forms = forms.iter().zip(&facts.forms).map(|(mesh, facts)| {
-                let stress = (format!("stress {}", stress(facts.stress)), TextStyle::LABEL);
-                let paper = facts.paper.map(|paper| (format!("paper {paper}"), Layout::NOTE));
-                Tile::Form(mesh, std::iter::once(stress).chain(paper).collect())
+                let paper = facts.paper.map(|paper| format!("paper {paper}"));
+                let captions =
+                    [format!("stress {}", stress(facts.stress))].into_iter().chain(paper).collect();
+                Tile { mesh, is_form: true, captions }
             });
-            let tiles = std::iter::once(Tile::Shape(shape, vec![vertices])).chain(forms);
+            let tiles = std::iter::once(Tile { mesh: shape, is_form: false, captions }).chain(forms);
             (facts.name.clone(), tiles.collect())
         };
         let rows = self.shapes.iter().zip(surfaces).map(row).collect();
-        Ok(Tiles { part: PART, layout: &Layout::LINE, heads, rows })
+        Ok(Tiles { part: PART, is_paired: false, heads, rows })
     }
 }
 
@@ -50,14 +50,20 @@ impl Figure3Results {
 fn plot(shape: &str, stresses: &[Figure3Stress]) -> Plot {
     let own: Vec<&Figure3Stress> = stresses.iter().filter(|s| s.shape == shape).collect();
     let kinds: Vec<String> = own.iter().map(|s| format!("{} distances", s.distances)).collect();
-    let groups = own.iter().zip(&kinds).map(|(s, kind)| Group {
+    let groups = own.iter().zip(&kinds).map(|(s, kind)| GroupedValue {
         category: &s.method,
         series: kind,
-        own: Some(Point { x: 0.0, y: s.median, low: s.low, high: s.high, note: format!("{} runs", s.runs) }),
+        own: Some(PlotPoint {
+            x: 0.0,
+            y: s.median,
+            low: s.low,
+            high: s.high,
+            note: format!("{} runs", s.runs),
+        }),
         // The paper has one number for all kinds of distances.
         paper: s.paper.filter(|_| *kind == kinds[0]),
     });
-    let groups: Vec<Group<'_>> = groups.collect();
+    let groups: Vec<GroupedValue<'_>> = groups.collect();
     let (name, unit) = ("stress".to_owned(), "squared mesh units".to_owned());
     grouped(shape, &Axis { name, unit, scale: AxisScale::Log }, &groups, |_| "paper".to_owned())
 }
@@ -71,8 +77,8 @@ impl Results for Figure3Results {
                       distances, and the numbers printed in the paper.";
         let shapes = Classes::of(self.stresses.iter().map(|s| s.shape.as_str()));
         let plots: Vec<Plot> = shapes.names().iter().map(|shape| plot(shape, &self.stresses)).collect();
-        let forms = Figure { part: PART, caption: forms.into(), content: Content::Surfaces };
-        let stress = Figure { part: "-stress", caption: stress.into(), content: Content::Plots(plots) };
+        let forms = Figure { part: PART, caption: forms.into(), panels: FigurePanels::Surfaces };
+        let stress = Figure { part: "-stress", caption: stress.into(), panels: FigurePanels::Plots(plots) };
         vec![forms, stress]
     }
 
@@ -92,10 +98,10 @@ impl Results for Figure3Results {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::figure::Shape;
+    use crate::figure::SeriesKind;
     use mesh::shapes::icosphere;
 
-    use crate::fixtures::{assert_balanced, figure3_record};
+    use crate::tests::fixtures::{assert_balanced, figure3_record};
 
     #[test]
     fn every_form_has_its_stress_and_that_of_the_paper() {
@@ -126,11 +132,11 @@ mod tests {
     fn the_plot_of_stress_has_ranges_and_the_number_of_the_paper() {
         let record = figure3_record();
         let figures = record.results.figures();
-        let Content::Plots(plots) = &figures[1].content else { panic!("{figures:?}") };
+        let FigurePanels::Plots(plots) = &figures[1].panels else { panic!("{figures:?}") };
         let [plot] = &plots[..] else { panic!("{plots:?}") };
         assert_eq!(plot.x.ticks[0].1, "MDS");
         let [default, paper] = &plot.series[..] else { panic!("{:?}", plot.series) };
         assert_eq!((default.points[0].low, default.points[0].high), (386.0, 387.0));
-        assert_eq!((paper.shape, paper.points[0].y), (Shape::Hollow, 394.41));
+        assert_eq!((paper.kind, paper.points[0].y), (SeriesKind::Hollow, 394.41));
     }
 }

@@ -1,10 +1,10 @@
 //! Figure 9: times and memory of whole embeddings.
 
-use crate::figure::{Content, Figure, Group, Plot, Point, grouped};
+use crate::figure::{Figure, FigurePanels, GroupedValue, Plot, PlotPoint, grouped};
+use crate::numbers::{bytes, seconds};
 use crate::record::Results;
 use crate::results::{Axis, AxisScale, Figure9Results, Figure9Row};
 use crate::table::{Cell, Table};
-use view::numbers::{bytes, seconds};
 
 /// The times of all methods on every shape.
 fn plot(rows: &[Figure9Row]) -> Plot {
@@ -14,11 +14,11 @@ fn plot(rows: &[Figure9Row]) -> Plot {
         let own = row.measured.map(|m| {
             let [distances, algebra] = [m.geodesics, m.embedding].map(seconds);
             let note = format!("{distances} s distances, {algebra} s algebra, {}", bytes(m.peak_bytes));
-            Point::new(0.0, m.total(), note)
+            PlotPoint::new(0.0, m.total(), note)
         });
-        Group { category, series: &row.method, own, paper: row.paper_seconds }
+        GroupedValue { category, series: &row.method, own, paper: row.paper_seconds }
     });
-    let groups: Vec<Group<'_>> = groups.collect();
+    let groups: Vec<GroupedValue<'_>> = groups.collect();
     let time = Axis { name: "time".into(), unit: "seconds".into(), scale: AxisScale::Log };
     grouped("From the repaired mesh to coordinates", &time, &groups, |method| format!("{method}, paper"))
 }
@@ -29,7 +29,7 @@ impl Results for Figure9Results {
         vec![Figure {
             part: "-times",
             caption: caption.into(),
-            content: Content::Plots(vec![plot(&self.rows)]),
+            panels: FigurePanels::Plots(vec![plot(&self.rows)]),
         }]
     }
 
@@ -62,9 +62,9 @@ impl Results for Figure9Results {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::figure::Shape;
-    use crate::fixtures::figure9_record;
+    use crate::figure::SeriesKind;
     use crate::record::save;
+    use crate::tests::fixtures::figure9_record;
 
     #[test]
     fn methods_that_were_not_run_have_dashes_and_no_points() {
@@ -73,8 +73,8 @@ mod tests {
         assert!(text.contains("0.025") && text.contains("3.0 MiB") && text.contains("0.24"), "{text}");
         assert!(text.lines().nth(2).is_some_and(|line| line.matches(" - ").count() >= 4), "{text}");
         let plot = plot(&record.results.rows);
-        let drawn: Vec<(&str, Shape)> = plot.series.iter().map(|s| (s.name.as_str(), s.shape)).collect();
-        assert_eq!(drawn, [("NMDS", Shape::Filled), ("NMDS, paper", Shape::Hollow)]);
+        let drawn: Vec<(&str, SeriesKind)> = plot.series.iter().map(|s| (s.name.as_str(), s.kind)).collect();
+        assert_eq!(drawn, [("NMDS", SeriesKind::Filled), ("NMDS, paper", SeriesKind::Hollow)]);
         assert_eq!(plot.x.ticks[0].1, "david0, 3400 vertices");
         save(&record, tempfile::tempdir().unwrap().path(), "figure9").unwrap();
     }

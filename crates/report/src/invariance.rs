@@ -29,8 +29,8 @@ impl Results for InvarianceResults {
                 "{} of {} shapes of about {} vertices, damaged and searched for in the undamaged collection. \
                  Distance: combined distance from the undamaged shape; at {:.2}, one shape and two are equally likely. \
                  Top 1: share of shapes whose nearest has their class; others: the same without the undamaged shape \
-                 itself. Unknown: share of shapes whose nearest is {:.2} or farther. Told: share of shapes whose kind of match \
-                 with the undamaged shape is right.",
+                 itself. Unknown: share of shapes whose nearest is {:.2} or farther. Told: share of shapes whose relation \
+                 to the undamaged shape is right.",
                 self.n_damaged, self.n_shapes, self.n_vertices, self.same_shape, self.same_class
             ),
             ["damage", "distance, median", "largest", "farthest shape", "top 1", "others", "unknown", "told"],

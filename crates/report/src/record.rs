@@ -35,7 +35,7 @@ pub trait Results: Serialize + DeserializeOwned {
 /// Writes the static figures of a record and `NAME.json` into a folder.
 ///
 /// # Errors
-/// Those of [`Results::validate`] and [`write`](crate::results::write), [`ReportError::View`].
+/// Those of [`Results::validate`] and [`write`](crate::results::write), [`ReportError::Draw`].
 pub fn save(record: &Record<impl Results>, folder: &Path, name: &str) -> Result<(), ReportError> {
     record.results.validate()?;
     for figure in record.results.figures() {

@@ -2,7 +2,9 @@
 
 use crate::classes::Classes;
 use crate::error::ReportError;
-use crate::figure::{Axis, Content, Figure, Heat, Plot, Point, Series, Shape, Style};
+use crate::figure::{
+    Figure, FigurePanels, Heat, Plot, PlotAxis, PlotPoint, PlotSeries, SeriesKind, SeriesStyle,
+};
 use crate::record::Results;
 use crate::results::{
     self, AxisScale, Classification, Misclassified, Published, PublishedMethod, RankedScores,
@@ -33,16 +35,16 @@ fn precision(rows: &[RetrievalRow]) -> Vec<Plot> {
     let series = |row: &RetrievalRow| {
         let last = row.precision.len().saturating_sub(1).max(1) as f64;
         let note = format!("mAP {:.3}", row.micro.map);
-        let point = |(i, &p): (usize, &f64)| Point::new(i as f64 / last, p, &note);
-        Series {
+        let point = |(i, &p): (usize, &f64)| PlotPoint::new(i as f64 / last, p, &note);
+        PlotSeries {
             name: row.method.clone(),
-            style: Style(methods.index(&row.method)),
-            shape: Shape::Curve,
+            style: SeriesStyle(methods.index(&row.method)),
+            kind: SeriesKind::Curve,
             points: row.precision.iter().enumerate().map(point).collect(),
         }
     };
     let plot = |(scale, title, _): &(Scale, &str, &str)| {
-        let mut series: Vec<Series> = of(*scale).map(series).collect();
+        let mut series: Vec<PlotSeries> = of(*scale).map(series).collect();
         series.sort_by_key(|series| series.style.0);
         let label = format!("Precision over recall of all methods, {title}");
         (!series.is_empty()).then(|| Plot::new(title, label, &x, &y, series, vec![]))
@@ -53,7 +55,7 @@ fn precision(rows: &[RetrievalRow]) -> Vec<Plot> {
 /// True classes down, predicted classes across.
 fn confusion(Classification { classes, confusion, .. }: &Classification) -> Heat {
     let columns: Vec<String> = classes.iter().cloned().chain([UNKNOWN.to_owned()]).collect();
-    let rows = Axis::categories("true class", classes.iter().cloned());
+    let rows = PlotAxis::categories("true class", classes.iter().cloned());
     let shares = |row: &Vec<usize>| {
         let total = row.iter().sum::<usize>().max(1) as f64;
         row.iter().map(|&count| count as f64 / total).collect()
@@ -61,8 +63,8 @@ fn confusion(Classification { classes, confusion, .. }: &Classification) -> Heat
     Heat {
         title: String::new(),
         label: "True classes against predicted ones".into(),
-        x: Axis::categories("predicted class", columns.iter().cloned()),
-        y: Axis { range: [rows.range[1], rows.range[0]], ..rows },
+        x: PlotAxis::categories("predicted class", columns.iter().cloned()),
+        y: PlotAxis { range: [rows.range[1], rows.range[0]], ..rows },
         values: confusion.iter().map(shares).collect(),
         max: 1.0,
         tint: Some(FULL),
@@ -180,10 +182,10 @@ impl Results for RetrievalResults {
              unknown if its nearest neighbour is farther than {:.3}. The colour is the share of the class.",
             c.voters, c.method, c.threshold
         );
-        let precision = Content::Plots(precision(&self.rows));
+        let precision = FigurePanels::Plots(precision(&self.rows));
         vec![
-            Figure { part: "-curves", caption: curves, content: precision },
-            Figure { part: "-confusion", caption: counts, content: Content::Heats(vec![confusion(c)]) },
+            Figure { part: "-curves", caption: curves, panels: precision },
+            Figure { part: "-confusion", caption: counts, panels: FigurePanels::Heats(vec![confusion(c)]) },
         ]
     }
 
@@ -217,30 +219,8 @@ impl Results for RetrievalResults {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fixtures::{assert_balanced, retrieval_record};
-    use crate::record::save;
     use crate::results::Record;
-
-    #[test]
-    fn files_are_well_formed_deterministic_and_labelled() {
-        let record = retrieval_record();
-        let folder = tempfile::tempdir().unwrap();
-        let draw = |name: &str| -> [String; 2] {
-            save(&record, folder.path(), name).unwrap();
-            ["curves", "confusion"].map(|part| {
-                std::fs::read_to_string(folder.path().join(format!("{name}-{part}.svg"))).unwrap()
-            })
-        };
-        let svg = draw("a");
-        assert_eq!(svg, draw("b"));
-        svg.iter().for_each(|text| assert_balanced(text));
-        for text in ["precision", "recall", "wave-kernel", "size ignored", "size counts"] {
-            assert!(svg[0].contains(text), "{text}");
-        }
-        for text in ["cat", "a &amp; b", "unknown", "true class"] {
-            assert!(svg[1].contains(text), "{text}");
-        }
-    }
+    use crate::tests::fixtures::retrieval_record;
 
     #[test]
     fn both_rankings_stand_above_published_scores() {

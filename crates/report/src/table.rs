@@ -1,10 +1,10 @@
 //! Tables as data, and their text for terminals.
 
+use crate::numbers::signed;
 use ::retrieval::Scores;
 use comfy_table::{CellAlignment, presets};
-use view::numbers::signed;
 
-use crate::results::Outcome;
+use crate::results::ExpectationOutcome;
 
 /// Rows of cells under headings.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -29,7 +29,7 @@ pub enum Cell {
     /// A number that does not exist.
     Missing,
     /// What came of an expectation.
-    Verdict(Outcome),
+    Verdict(ExpectationOutcome),
 }
 
 impl Cell {

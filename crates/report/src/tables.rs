@@ -3,15 +3,15 @@
 use crate::error::ReportError;
 use crate::figure::Figure;
 use crate::record::Results;
-use crate::results::{Entry, RecordedTable, TablesResults};
+use crate::results::{RecordedTable, TableEntry, TablesResults};
 use crate::table::{Cell, Table, significant};
 
-fn cell(entry: &Entry) -> Cell {
+fn cell(entry: &TableEntry) -> Cell {
     match entry {
-        Entry::Number(value) if value.fract() == 0.0 && value.abs() < 1e15 => Cell::number(value),
-        Entry::Number(value) => Cell::number(significant(*value)),
-        Entry::Text(text) => Cell::text(text),
-        Entry::Missing => Cell::Missing,
+        TableEntry::Number(value) if value.fract() == 0.0 && value.abs() < 1e15 => Cell::number(value),
+        TableEntry::Number(value) => Cell::number(significant(*value)),
+        TableEntry::Text(text) => Cell::text(text),
+        TableEntry::Missing => Cell::Missing,
     }
 }
 

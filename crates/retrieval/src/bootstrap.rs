@@ -80,7 +80,9 @@ pub fn bootstrap(
     }
     means.iter_mut().for_each(|means| means.sort_by(f64::total_cmp));
     let tail = 0.5 * (1.0 - options.level);
-    let end = |share: f64| Scores::from_array(std::array::from_fn(|i| quantile(&means[i], share)));
+    // Scores are shares; rounded sums may exceed 1.
+    let score = |i: usize, share: f64| quantile(&means[i], share).clamp(0.0, 1.0);
+    let end = |share: f64| Scores::from_array(std::array::from_fn(|i| score(i, share)));
     let (low, high) = (end(tail), end(1.0 - tail));
     Ok(ScoreIntervals { level: options.level, resamples: options.resamples, seed: options.seed, low, high })
 }
@@ -115,6 +117,9 @@ mod tests {
             let found = bootstrap(&scores, &labels, averaging, &BootstrapOptions::default()).unwrap();
             assert!((found.low.nn - 0.5).abs() < 1e-12 && (found.high.nn - 0.5).abs() < 1e-12);
         }
+        let perfect = scored(&[1.0; 6]);
+        let found = bootstrap(&perfect, &labels, Averaging::Macro, &BootstrapOptions::default()).unwrap();
+        assert!(found.low.nn <= found.high.nn && found.high.nn <= 1.0);
         // Classes that differ only from each other do not vary: resamples keep the sizes of classes.
         let scores = scored(&[0.0, 0.0, 0.0, 1.0, 1.0, 1.0]);
         let found = bootstrap(&scores, &labels, Averaging::Micro, &BootstrapOptions::default()).unwrap();

@@ -214,12 +214,12 @@ impl<'a> GraphRankings<'a> {
 }
 
 /// A row of a matrix, and the graph of all.
-struct Row<'a> {
+struct RankedRow<'a> {
     query: usize,
     rankings: &'a GraphRankings<'a>,
 }
 
-impl Graph for Row<'_> {
+impl Graph for RankedRow<'_> {
     type Error = std::convert::Infallible;
 
     fn links(&mut self, shape: usize) -> Result<Vec<Neighbor>, Self::Error> {
@@ -238,7 +238,7 @@ impl Rankings for GraphRankings<'_> {
 
     fn ranking(&self, query: usize) -> Vec<Neighbor> {
         let nearest = rank(self.distances, query);
-        let Ok(found) = graph_rank(query, &nearest, &mut Row { query, rankings: self });
+        let Ok(found) = graph_rank(query, &nearest, &mut RankedRow { query, rankings: self });
         found.into_iter().map(|near| Neighbor { index: near.index, distance: near.rank_distance }).collect()
     }
 }
@@ -266,7 +266,7 @@ mod tests {
         let distances = apart(&points);
         let graph = GraphRankings::new(&distances);
         let plain = rank(&distances, 7);
-        let found = graph_rank(7, &plain, &mut Row { query: 7, rankings: &graph }).unwrap();
+        let found = graph_rank(7, &plain, &mut RankedRow { query: 7, rankings: &graph }).unwrap();
         assert_eq!(found.len(), 199);
         assert!(found.windows(2).all(|pair| pair[0].rank_distance <= pair[1].rank_distance));
         assert!(found.iter().all(|near| (0.0..1.0).contains(&near.rank_distance)));
@@ -295,7 +295,7 @@ mod tests {
             }
         }
         let nearest = rank(&all, 149);
-        let inside = graph_rank(149, &nearest, &mut Row { query: 149, rankings: &graph }).unwrap();
+        let inside = graph_rank(149, &nearest, &mut RankedRow { query: 149, rankings: &graph }).unwrap();
         for few in [LINKS, 40, 149] {
             let outside = graph_rank(999, &nearest[..few], &mut Outside(&all, &without)).unwrap();
             for near in &outside {

@@ -12,7 +12,7 @@ use std::time::{Duration, Instant};
 
 use canonform_server::{ServeOptions, Server};
 
-#[path = "../tests/api/client.rs"]
+#[path = "../tests/server/client.rs"]
 mod client;
 
 /// Memory at the start is measured after this time, when the caches are filled.
@@ -48,7 +48,7 @@ fn resident() -> f64 {
 /// Names and contents of a mesh.
 fn files(mesh: &Path) -> std::io::Result<Vec<(String, Vec<u8>)>> {
     let name = |path: &Path| path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    mesh::io::files_of(mesh).iter().map(|path| Ok((name(path), fs::read(path)?))).collect()
+    canonform::mesh::io::files_of(mesh).iter().map(|path| Ok((name(path), fs::read(path)?))).collect()
 }
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {

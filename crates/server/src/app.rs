@@ -5,8 +5,10 @@ use std::sync::Arc;
 
 use axum::body::Bytes;
 use axum::http::StatusCode;
-use canonform::index::ContentHash;
-use canonform::{Budget, Error, MeshGeometry, SearchOptions, SearchReport, ShapeDescription, Surface, embed};
+use canonform::{
+    Budget, ContentHash, DescribedQuery, Error, MeasuredSurface, MeshGeometry, SearchOptions, SearchReport,
+    ShapeDescription, Surface,
+};
 
 use crate::cache::Cache;
 use crate::collection::{Collection, Served};
@@ -59,10 +61,10 @@ impl Query {
         budget: &Budget,
     ) -> Result<SearchReport, Error> {
         let geometry = self.measured.geometry.as_ref();
-        let part = collection.search.part(&self.measured.surface, options, budget)?;
-        let (content, part) = (Some(self.content), part.as_ref());
-        let known = canonform::Query { name: &self.name, content, geometry, part };
-        collection.search.search_query_within(&self.description, &known, options, budget)
+        let (name, content) = (&*self.name, Some(self.content));
+        let (description, surface) = (&self.description, Some(&self.measured.surface));
+        let query = DescribedQuery { description, surface, geometry, name, content };
+        collection.search.search(canonform::Query::Described(query), options, budget)
     }
 }
 
@@ -96,11 +98,10 @@ impl App {
         let options = &collection.search.describe_options().form;
         let mesh = collection.search.mesh(id)?;
         budget.check()?;
-        let surface = Surface::within(&mesh, &options.repair, budget)?;
-        let refined = surface.for_description_within(budget)?;
-        let embedded = embed(&refined, options, budget)?;
+        let surface = Surface::new(&mesh, &options.repair, budget)?;
+        let embedded = MeasuredSurface::new(&surface, options, budget)?;
         let geometry = MeshGeometry::new(&mesh, Some(content));
-        let measured = Arc::new(Measured::new(surface, geometry, &refined, &embedded)?);
+        let measured = Arc::new(Measured::new(surface, geometry, &embedded)?);
         self.measured.put(key, measured.clone(), measured.bytes());
         Ok(measured)
     }

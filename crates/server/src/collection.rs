@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, PoisonError, RwLock};
 use std::time::SystemTime;
 
-use canonform::index::ContentHash;
+use canonform::ContentHash;
 use canonform::{Error, ShapeSearch};
 use serde::Serialize;
 

@@ -8,9 +8,9 @@ use axum::Json;
 use axum::http::{HeaderValue, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use canonform::index::IndexError;
+use canonform::mesh::io::Format;
+use canonform::mesh::{Fault, MeshError};
 use canonform::{Error, Exceeded, Remedy};
-use mesh::io::Format;
-use mesh::{Fault, MeshError};
 use serde::Serialize;
 
 /// Why a server cannot start or continue.
@@ -162,9 +162,6 @@ impl From<Error> for ApiError {
             Error::Index(IndexError::NoSuchShape { id, .. }) => {
                 (StatusCode::NOT_FOUND, format!("the index has no shape `{id}`"))
             }
-            Error::Index(IndexError::NoGraph(_)) => {
-                (StatusCode::CONFLICT, "the index has no graph of nearest neighbours".to_owned())
-            }
             Error::MeshGone { id, .. } => (StatusCode::NOT_FOUND, format!("cannot read the mesh of `{id}`")),
             Error::MeshChanged { id, .. } => {
                 (StatusCode::GONE, format!("the mesh of `{id}` has changed since it was indexed"))
@@ -190,9 +187,6 @@ fn remedy(fault: &Error) -> Option<&'static str> {
         }
         Remedy::BuildIndexAgain => "build the index again",
         Remedy::BuildIndexAnew => "build the index in a new file",
-        Remedy::AddGraph => {
-            "build the index again, which describes no shape twice, or choose the plain ranking"
-        }
         Remedy::UseNystrom => "simplify the mesh, or build the index with NMDS, which needs less memory",
         _ => return None,
     })

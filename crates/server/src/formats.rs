@@ -1,6 +1,6 @@
 //! Texts with lists of the mesh formats.
 
-use mesh::io::{FORMATS, mesh_files};
+use canonform::mesh::io::{FORMATS, mesh_files};
 
 /// Replaces `{{mesh files}}` by a phrase and `{{mesh extensions}}` by a comma-separated list.
 pub(crate) fn filled_in(text: &str) -> String {

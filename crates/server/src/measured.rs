@@ -1,11 +1,11 @@
 //! A mesh with its form, as geometry for the browser.
 
 use canonform::descriptors::CanonicalForm;
+use canonform::mesh::TriMesh;
 use canonform::surface::VertexId;
-use canonform::{Embedded, Error, MeshGeometry, Overlay, Surface, VertexMap};
-use mesh::TriMesh;
+use canonform::{Error, MeasuredSurface, MeshGeometry, Overlay, Surface, VertexMap};
 
-use view::interactive::Geometry;
+use report::viewer::Geometry;
 
 /// Bytes of a vertex and of a face in memory, with the connectivity, all arrays together.
 const VERTEX_BYTES: usize = 250;
@@ -33,11 +33,11 @@ impl Measured {
     pub(crate) fn new(
         surface: Surface,
         geometry: Option<MeshGeometry>,
-        refined: &Surface,
-        embedded: &Embedded,
+        embedded: &MeasuredSurface,
     ) -> Result<Self, Error> {
-        let form = embedded.form(refined)?.leading(surface.mesh().vertex_areas())?;
-        let distances = embedded.distances.column(0)?[..surface.mesh().n_vertices()].to_vec();
+        let form = embedded.form_of(&surface)?;
+        let mut distances = embedded.distances_from_first()?;
+        distances.truncate(surface.mesh().n_vertices());
         Ok(Self { surface, geometry, form, distances })
     }
 
@@ -74,7 +74,7 @@ impl Measured {
 
 /// A form without a mesh: its points as dots.
 pub(crate) fn dots(form: &CanonicalForm) -> TriMesh {
-    view::render::dots(form.points(), DOT * form.spread())
+    report::render::dots(form.points(), DOT * form.spread())
 }
 
 /// One form of an overlay: with the faces of its mesh, or as dots if the mesh is missing.
@@ -86,7 +86,7 @@ pub(crate) fn overlaid(overlay: &Overlay, place: usize, measured: Option<&Measur
             Geometry::in_place(&TriMesh { positions: points.clone(), faces }).with_values(RESIDUAL, residuals)
         }
         None => {
-            let mesh = view::render::dots(points, DOT * dot);
+            let mesh = report::render::dots(points, DOT * dot);
             let each = mesh.n_vertices() / points.len().max(1);
             let values: Vec<f64> = residuals.iter().flat_map(|r| std::iter::repeat_n(*r, each)).collect();
             Geometry::in_place(&mesh).with_values(RESIDUAL, &values)

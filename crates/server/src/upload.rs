@@ -9,9 +9,9 @@ use std::time::Duration;
 use axum::body::{BodyDataStream, Bytes};
 use axum::extract::Request;
 use axum::http::{StatusCode, header};
+use canonform::mesh::io::mesh_files;
 use futures_util::future::{Either, select};
 use futures_util::{Stream, StreamExt};
-use mesh::io::mesh_files;
 use multer::{Multipart, parse_boundary};
 
 use crate::error::ApiError;
@@ -238,6 +238,6 @@ mod tests {
         }
         let long = clean_name(&format!("{}.off", "x".repeat(5000)));
         assert_eq!(long.to_string_lossy().len(), LONGEST_NAME);
-        assert!(mesh::io::is_mesh_path(&long));
+        assert!(canonform::mesh::io::is_mesh_path(&long));
     }
 }

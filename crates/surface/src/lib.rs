@@ -17,6 +17,7 @@ mod intrinsic;
 pub mod laplacian;
 mod loops;
 mod one_ring;
+mod point;
 mod rows;
 #[cfg(test)]
 mod testing;
@@ -31,6 +32,7 @@ pub use ids::{CornerId, EdgeId, FaceId, VertexId};
 pub use intrinsic::{IntrinsicMesh, Link, power_of_two_below, unit_for};
 pub use loops::{SurfaceLoop, short_loops};
 pub use one_ring::{AngleSum, CornerTable, Fan, FanCorner, OneRing, VertexKind, Winding};
+pub use point::SurfacePoint;
 pub use rows::Rows;
 pub use topology::Topology;
 pub use triangle::{Triangle, double_area, scalar_product};

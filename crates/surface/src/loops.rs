@@ -8,7 +8,7 @@
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, BinaryHeap};
 
-use budget::{Budget, Exceeded};
+use base::{Budget, Exceeded};
 
 use crate::disjoint_sets::DisjointSets;
 use crate::ids::{EdgeId, VertexId};
@@ -49,9 +49,9 @@ pub struct SurfaceLoop {
 /// let topology = Topology::new(72, faces);
 /// let length = |[a, b]: &[VertexId; 2]| if a.0 / 6 == b.0 / 6 { 1.0 } else { 2.0 };
 /// let lengths: Vec<f64> = topology.edges().iter().map(length).collect();
-/// let loops = short_loops(&topology, &lengths, 10.0, &budget::Budget::unlimited())?;
+/// let loops = short_loops(&topology, &lengths, 10.0, &base::Budget::unlimited())?;
 /// assert_eq!((loops.len(), loops[0].length), (1, 6.0));
-/// # Ok::<(), budget::Exceeded>(())
+/// # Ok::<(), base::Exceeded>(())
 /// ```
 ///
 /// # Errors

@@ -1,7 +1,7 @@
 //! A zoo of broken meshes: files that are damaged, surfaces with defects, and surfaces at the limits of numbers.
 //!
 //! What the programs say about each of them, what they repair and what comes out is the table in
-//! `docs/broken-meshes.md`, which a test keeps true.
+//! `crates/cli/tests/broken-meshes.tsv`, which a test keeps true.
 
 mod defects;
 mod file;

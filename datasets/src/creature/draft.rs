@@ -4,8 +4,8 @@ use std::f64::consts::PI;
 
 use nalgebra::{Matrix3, Point3, Vector3};
 
-use crate::implicit::{Blob, Body, Part};
-use crate::skeleton::{Joint, Node, Skeleton, node};
+use crate::implicit::{Blob, BodyPart, ImplicitBody};
+use crate::skeleton::{BoneNode, Joint, Skeleton, node};
 use crate::trig::{rotation, sin_cos};
 
 /// Greatest product of the angle of a joint in radians and the girth of the limb, over the length that bends. A straight
@@ -25,6 +25,8 @@ const N_SIDES: usize = 18;
 #[derive(Debug, Clone)]
 pub(crate) struct Limb {
     direction: Vector3<f64>,
+    /// From the node of the parent to its start; the start itself of a limb without a parent.
+    offset: Vector3<f64>,
     length: f64,
     /// At the root and at the tip.
     radii: [f64; 2],
@@ -46,6 +48,7 @@ impl Limb {
     pub(crate) fn new(direction: [f64; 3], length: f64, radii: [f64; 2]) -> Self {
         Self {
             direction: Vector3::from(direction).normalize(),
+            offset: Vector3::zeros(),
             length,
             radii,
             n_bones: 1,
@@ -77,6 +80,11 @@ impl Limb {
         Self { direction: Vector3::from(direction).normalize(), ..self.clone() }
     }
 
+    /// The same limb from another point, relative to the node of its parent.
+    pub(crate) fn at(&self, offset: [f64; 3]) -> Self {
+        Self { offset: offset.into(), ..self.clone() }
+    }
+
     /// The same limb with another length.
     pub(crate) fn long(self, length: f64) -> Self {
         Self { length, ..self }
@@ -97,7 +105,7 @@ impl Limb {
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Draft {
     pub(crate) skeleton: Skeleton,
-    parts: Vec<Part>,
+    parts: Vec<BodyPart>,
     /// Number of handles.
     pub(crate) genus: usize,
     /// The smallest radius.
@@ -106,49 +114,46 @@ pub(crate) struct Draft {
 
 impl Draft {
     /// The body that the parts make up.
-    pub(crate) fn body(&self) -> Body {
-        Body::whole(self.parts.clone())
+    pub(crate) fn body(&self) -> ImplicitBody {
+        ImplicitBody::whole(self.parts.clone())
     }
 
     /// Adds a part that has no bones of its own; its smallest radius is `finest`.
-    pub(crate) fn skin(&mut self, part: Part, finest: f64) {
+    pub(crate) fn skin(&mut self, part: BodyPart, finest: f64) {
         self.finest = Some(self.finest.map_or(finest, |least| least.min(finest)));
         self.parts.push(part);
     }
 
-    /// Adds the first limb, which starts at a point and carries the others.
-    pub(crate) fn trunk(&mut self, start: [f64; 3], limb: &Limb) -> usize {
-        let axis = axis(start.into(), 0.0, limb);
-        let chain = self.chain(None, &axis, limb);
+    /// Adds the first limb, which carries the others.
+    pub(crate) fn trunk(&mut self, limb: &Limb) -> usize {
+        let axis = axis(limb.offset.into(), 0.0, limb);
         self.tube(&axis, limb);
-        chain
+        self.chain(None, &axis, limb)
     }
 
     /// Adds the first chain of bones without any skin.
-    pub(crate) fn bones(&mut self, start: [f64; 3], limb: &Limb) -> usize {
-        self.chain(None, &axis(start.into(), 0.0, limb), limb)
+    pub(crate) fn bones(&mut self, limb: &Limb) -> usize {
+        self.chain(None, &axis(limb.offset.into(), 0.0, limb), limb)
     }
 
-    /// Adds a limb at a node of a chain, from a point with the given offset from the node. Its length is what sticks out of
-    /// the parent.
-    pub(crate) fn limb(&mut self, root: (usize, usize), offset: [f64; 3], limb: &Limb) -> usize {
-        let axis = self.rooted(root, offset, limb);
-        let chain = self.chain(Some(root), &axis, limb);
+    /// Adds a limb at a node of a chain. Its length is what sticks out of the parent.
+    pub(crate) fn limb(&mut self, root: (usize, usize), limb: &Limb) -> usize {
+        let axis = self.rooted(root, limb);
         self.tube(&axis, limb);
-        chain
+        self.chain(Some(root), &axis, limb)
     }
 
     /// Adds a limb and its mirror image under `x -> -x`.
-    pub(crate) fn limbs(&mut self, root: (usize, usize), offset: [f64; 3], limb: &Limb) -> [usize; 2] {
+    pub(crate) fn limbs(&mut self, root: (usize, usize), limb: &Limb) -> [usize; 2] {
         let mut other = limb.clone();
         other.direction.x = -other.direction.x;
+        other.offset.x = -other.offset.x;
         let flip = Matrix3::from_diagonal(&[-1.0, 1.0, 1.0].into());
         other.curl = flip * other.curl * flip;
         if let Some((direction, _)) = &mut other.flattening {
             direction[0] = -direction[0];
         }
-        let [x, y, z] = offset;
-        [self.limb(root, offset, limb), self.limb(root, [-x, y, z], &other)]
+        [limb, &other].map(|limb| self.limb(root, limb))
     }
 
     /// Adds a ring with the given radii around its hole and of its tube, which starts at a node of a chain. `limb` says
@@ -162,7 +167,7 @@ impl Draft {
     ) {
         let reach = 2.0 * hole;
         let bones = Limb { length: reach, radii: [hole; 2], ..limb.clone() };
-        let start = self.rooted(root, [0.0; 3], &Limb { radii: [tube; 2], ..bones.clone() });
+        let start = self.rooted(root, &Limb { radii: [tube; 2], ..bones.clone() });
         // From the root to the near side of the ring and to its far side.
         let near = start[1];
         let axis = [start[0], near, near + bones.direction * hole, near + bones.direction * reach];
@@ -185,16 +190,15 @@ impl Draft {
             (centre + (u * cos + v * sin) * hole).coords.into()
         };
         let sides = (0..N_SIDES).map(|i| Blob::cone(at(i), tube, at(i + 1), tube)).collect();
-        self.skin(Part::added(sides).blend(BLEND * tube), tube);
+        self.skin(BodyPart::added(sides).blend(BLEND * tube), tube);
         self.genus += 1;
     }
 
     /// The nodes of a limb of the chain `root`, the first inside its parent.
-    fn rooted(&self, (chain, at): (usize, usize), offset: [f64; 3], limb: &Limb) -> Vec<Point3<f64>> {
+    fn rooted(&self, (chain, at): (usize, usize), limb: &Limb) -> Vec<Point3<f64>> {
         let parent = self.skeleton.chains[chain].nodes[at];
-        let offset = Vector3::from(offset);
-        let default = (parent.radius - offset.norm()).max(0.5 * limb.radii[0]);
-        axis(parent.at + offset, limb.buried.unwrap_or(default), limb)
+        let default = (parent.radius - limb.offset.norm()).max(0.5 * limb.radii[0]);
+        axis(parent.at + limb.offset, limb.buried.unwrap_or(default), limb)
     }
 
     fn chain(&mut self, parent: Option<(usize, usize)>, axis: &[Point3<f64>], limb: &Limb) -> usize {
@@ -203,7 +207,7 @@ impl Draft {
         if let (Some(last), Some(knob)) = (radii.last_mut(), limb.knob) {
             *last = knob;
         }
-        let nodes: Vec<Node> = axis
+        let nodes: Vec<BoneNode> = axis
             .iter()
             .zip(&radii)
             .map(|(at, radius)| node(at.coords.into(), radius * squeezed, grain(*radius)))
@@ -227,7 +231,7 @@ impl Draft {
         }
         let squeezed = limb.flattening.map_or(1.0, |(_, factor)| factor);
         let finest = limb.radii[0].min(limb.radii[1]) * squeezed;
-        self.skin(Part::added(blobs).blend(BLEND * limb.radii[0]), finest);
+        self.skin(BodyPart::added(blobs).blend(BLEND * limb.radii[0]), finest);
     }
 }
 
@@ -259,7 +263,7 @@ fn grain(radius: f64) -> f64 {
 }
 
 /// The joint at an inner node.
-fn joint(nodes: &[Node], i: usize, bend: f64) -> Joint {
+fn joint(nodes: &[BoneNode], i: usize, bend: f64) -> Joint {
     let [before, after] = [nodes[i].at - nodes[i - 1].at, nodes[i + 1].at - nodes[i].at];
     let lengths = [before, after].map(|bone| 0.5 * bone.norm());
     let strained = (STRAIN * (lengths[0] + lengths[1]) / nodes[i].radius.max(1e-9)).to_degrees();

@@ -15,7 +15,7 @@ use crate::articulated::{ArticulatedOptions, LabeledShape, posed_skeleton, scale
 use crate::clearance::entanglement;
 use crate::error::DatasetError;
 use crate::extract::{Lattice, RawSurface, extract};
-use crate::model::Model;
+use crate::model::BodyModel;
 use crate::pose::{Pose, PosedSkeleton, turn};
 use crate::shape::{genus, posed_positions, rest_surface, shuffled};
 use crate::skeleton::{JointId, Skeleton};
@@ -129,11 +129,12 @@ fn no_surface(shape: String, options: &CreatureOptions) -> DatasetError {
     DatasetError::NoSurface { shape, n_vertices: options.n_vertices, seed: options.seed }
 }
 
-fn model(family: usize, options: &CreatureOptions) -> Result<Model, DatasetError> {
+fn model(family: usize, options: &CreatureOptions) -> Result<BodyModel, DatasetError> {
     let (plan, round) = (family % PLANS.len(), family / PLANS.len());
     for attempt in 0..N_ATTEMPTS {
         let mut proportions = Proportions::new(options.seed, plan, round, attempt);
-        let draft = PLANS[plan].1(&mut proportions);
+        let mut draft = Draft::default();
+        PLANS[plan].1(&mut proportions, &mut draft);
         if let Some(model) = measured(draft, &mut proportions.into_stream()) {
             return Ok(model);
         }
@@ -142,7 +143,7 @@ fn model(family: usize, options: &CreatureOptions) -> Result<Model, DatasetError
 }
 
 /// The model of a body with random poses; `None` if its limbs touch at rest.
-fn measured(draft: Draft, stream: &mut Stream) -> Option<Model> {
+fn measured(draft: Draft, stream: &mut Stream) -> Option<BodyModel> {
     let body = draft.body();
     let spacing = SPACING * draft.finest?;
     let raw =
@@ -153,7 +154,7 @@ fn measured(draft: Draft, stream: &mut Stream) -> Option<Model> {
     let mut poses = vec![Pose::rest(&draft.skeleton)];
     poses.extend((1..N_POSES).map(|_| typical_pose(&draft.skeleton, stream)));
     let Draft { skeleton, genus, .. } = draft;
-    Some(Model { area: area(&raw), body, skeleton, poses, genus, spacing })
+    Some(BodyModel { area: area(&raw), body, skeleton, poses, genus, spacing })
 }
 
 fn area(raw: &RawSurface) -> f64 {
@@ -189,7 +190,7 @@ fn random_pose(skeleton: &Skeleton, stream: &mut Stream) -> Pose {
 
 fn shape(
     family: usize,
-    model: &Model,
+    model: &BodyModel,
     pose: usize,
     options: &CreatureOptions,
 ) -> Result<LabeledShape, DatasetError> {

@@ -83,7 +83,7 @@ impl Quadric {
 }
 
 /// An edge in the queue: the bits of its cost, its ends, and how often these had changed.
-type Candidate = (u64, [u32; 2], [u32; 2]);
+type QueuedEdge = (u64, [u32; 2], [u32; 2]);
 
 /// A mesh under collapse. Dead faces have no vertices in `faces_at`.
 struct Collapse<C> {
@@ -94,7 +94,7 @@ struct Collapse<C> {
     quadrics: Vec<Quadric>,
     /// How often a vertex has changed; older entries of the queue are void.
     changes: Vec<u32>,
-    queue: BinaryHeap<Reverse<Candidate>>,
+    queue: BinaryHeap<Reverse<QueuedEdge>>,
     cost: C,
 }
 

@@ -272,7 +272,7 @@ mod tests {
             for damage in ALL {
                 let found = damage.apply(&mesh, 1);
                 assert!(
-                    mesh.faces.is_empty() || repair(&found, &RepairOptions::default()).is_ok(),
+                    mesh.faces.is_empty() || repair(&found, &RepairOptions::default(), &()).is_ok(),
                     "{damage}"
                 );
             }

@@ -7,47 +7,62 @@ use canonform::{StressChoice, StressOptions, embed_and_measure};
 use descriptors::CanonicalForm;
 use mesh::TriMesh;
 use report::results::{Figure1Results, Figure1Shape};
+use serde::Deserialize;
 
-use crate::collection::{Shape, map};
-use crate::context::{Context, described};
+use super::Experiment;
+use crate::collection::{LabeledSurface, map};
+use crate::context::Context;
+use crate::specimen::{describing, low_rank};
 use crate::surfaces::{aligned, oriented};
 
-pub(crate) fn run(context: &Context<'_>) -> Result<()> {
-    let options = context.config.nmds(context.seed);
-    let stress = StressOptions { choice: StressChoice::Estimate, against: None, seed: context.seed };
-    let shown = context.collection.first_of_each_class(Figure1Results::PAIRS);
-    let embedded = map(&shown, "figure 1", context.observer, |shape| {
-        let embedded = embed_and_measure(&shape.surface, &options, &stress, &())?;
-        let form = embedded.form(&shape.surface)?;
-        let stress = embedded.report.stress.map_or(f64::NAN, |stress| stress.value);
-        Ok((form, stress))
-    })?;
-    let forms = pictured(&shown, embedded.iter().map(|(form, _)| form))?;
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Figure1Options {
+    samples: usize,
+    rank: usize,
+}
 
-    let facts: Vec<Figure1Shape> = shown
-        .iter()
-        .zip(&embedded)
-        .map(|(shape, (_, stress))| Figure1Shape {
-            name: shape.name.clone(),
-            label: shape.label.clone(),
-            n_vertices: shape.surface.mesh().n_vertices(),
-            n_faces: shape.surface.mesh().n_faces(),
-            stress: *stress,
-            repair: shape.surface.repaired.report.summary(),
-        })
-        .collect();
-    let worst = embedded.iter().map(|(form, stress)| stress / form.spread().powi(2)).fold(0.0, f64::max);
-    let provenance = context.provenance(described(&[("embedding", &options)], stress.choice));
+impl Experiment for Figure1Options {
+    fn run(&self, context: &Context<'_>) -> Result<()> {
+        let options = low_rank(self.samples, self.rank, context.seed);
+        let stress = StressOptions { choice: StressChoice::Estimate, against: None, seed: context.seed };
+        let shown = context.collection.first_of_each_class(Figure1Results::PAIRS);
+        let embedded = map(&shown, "figure 1", context.observer, |shape| {
+            let embedded = embed_and_measure(&shape.surface, &options, &stress, &())?;
+            let form = embedded.form(&shape.surface)?;
+            let stress = embedded.report.stress.map_or(f64::NAN, |stress| stress.value);
+            Ok((form, stress))
+        })?;
+        let forms = pictured(&shown, embedded.iter().map(|(form, _)| form))?;
 
-    let shapes: Vec<TriMesh> = shown.iter().map(|shape| oriented(shape.surface.mesh())).collect();
-    let results = Figure1Results { shapes: facts };
-    results.tiles(&shapes, &forms)?.save(context.folder.join(context.name))?;
-    let measured = [("largest stress ratio".to_owned(), worst)].into();
-    context.publish(results, provenance, &measured)
+        let facts: Vec<Figure1Shape> = shown
+            .iter()
+            .zip(&embedded)
+            .map(|(shape, (_, stress))| Figure1Shape {
+                name: shape.name.clone(),
+                label: shape.label.clone(),
+                n_vertices: shape.surface.mesh().n_vertices(),
+                n_faces: shape.surface.mesh().n_faces(),
+                stress: *stress,
+                repair: shape.surface.repaired.report.summary(),
+            })
+            .collect();
+        let worst = embedded.iter().map(|(form, stress)| stress / form.spread().powi(2)).fold(0.0, f64::max);
+        let provenance = context.provenance(&[("embedding", &describing(options))]);
+
+        let shapes: Vec<TriMesh> = shown.iter().map(|shape| oriented(shape.surface.mesh())).collect();
+        let results = Figure1Results { shapes: facts };
+        results.tiles(&shapes, &forms)?.save(context.folder.join(context.name))?;
+        let measured = [("largest stress ratio".to_owned(), worst)].into();
+        context.publish(results, provenance, &measured)
+    }
 }
 
 /// The forms as meshes, each aligned with the first one of its class.
-fn pictured<'a>(shapes: &[&Shape], forms: impl Iterator<Item = &'a CanonicalForm>) -> Result<Vec<TriMesh>> {
+fn pictured<'a>(
+    shapes: &[&LabeledSurface],
+    forms: impl Iterator<Item = &'a CanonicalForm>,
+) -> Result<Vec<TriMesh>> {
     let (mut class, mut first) = ("", None);
     let mut surfaces = Vec::new();
     for (shape, form) in shapes.iter().zip(forms) {

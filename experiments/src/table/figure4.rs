@@ -5,52 +5,74 @@
 //! that of KPCA-Nystrom.
 
 use anyhow::{Context as _, Result};
-use canonform::{FormOptions, StressChoice, embed, embedded_distances, form_matches};
+use canonform::{EmbedMethod, FormOptions, embed, embedded_distances, form_alignments};
 use descriptors::{CanonicalForm, Normalization};
+use geodesics::{FastMarchingOptions, Method, ObtuseTreatment};
 use linalg::DistanceMatrix;
-use nmds::{classical_full, normalized_stress};
+use nmds::{Bandwidth, classical_full, normalized_stress};
 use rayon::prelude::*;
 use report::results::{Figure4Panel, Figure4Results, Motions, SHAPES_FILE, Scale, ShapesRecord, write};
 use retrieval::{Labels, evaluate, silhouette};
+use serde::Deserialize;
 
+use super::Experiment;
 use crate::collection::map;
-use crate::context::{Context, described};
+use crate::context::Context;
+use crate::specimen::{describing, low_rank};
 use crate::surfaces::{Formed, motions, shown, vertex_limit};
-use crate::sweep::{Measured, best_e, named};
+use crate::sweep::{MeasuredNumbers, best_e, named};
 
 /// Name of the paper's method in the record.
 const NMDS: &str = "NMDS";
 
 const BASELINE: &str = "KPCA-Nystrom";
 
-/// Runs the experiment, which also writes `figure4-shapes.json`.
-pub(crate) fn run(context: &Context<'_>) -> Result<()> {
-    let (seed, config) = (context.seed, &context.config);
-    let methods = [(NMDS, config.nmds(seed)), (BASELINE, config.kernel_pca(seed))];
-    let labels = context.collection.labels();
-    let classes = Labels::new(&labels);
-    let (mut panels, mut formed, mut moved) = (Vec::new(), Vec::new(), Vec::new());
-    for (method, options) in &methods {
-        let made = map(&context.collection.all(), options.method.name(), context.observer, |shape| {
-            Formed::new(shape, &embed(&shape.surface, options, &())?)
-        })?;
-        let forms: Vec<CanonicalForm> = made.iter().map(|made| made.form.clone()).collect();
-        let scales = [(Scale::Raw, Normalization::Raw), (Scale::Normalized, Normalization::UnitArea)];
-        for (scale, normalization) in scales {
-            let matches = form_matches(&forms, normalization, context.observer)?;
-            panels.push(panel(context, method, scale, &matches.distances, &classes)?);
-            moved.push(motions(method, scale, &made, &matches.alignments));
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Figure4Options {
+    samples: usize,
+    rank: usize,
+    /// Treatment of obtuse triangles in fast marching.
+    obtuse: ObtuseTreatment,
+    /// Number of nearest neighbours that vote.
+    voters: usize,
+}
+
+impl Experiment for Figure4Options {
+    /// Runs the experiment, which also writes `figure4-shapes.json`.
+    fn run(&self, context: &Context<'_>) -> Result<()> {
+        let marching = FastMarchingOptions { obtuse: self.obtuse, ..FastMarchingOptions::default() };
+        let nmds = FormOptions {
+            geodesic: Method::FastMarching(marching),
+            ..low_rank(self.samples, self.rank, context.seed)
+        };
+        let method = EmbedMethod::KernelPca { rank: Some(self.rank), bandwidth: Bandwidth::Mean };
+        let methods = [(NMDS, nmds.clone()), (BASELINE, FormOptions { method, ..nmds })];
+        let labels = context.collection.labels();
+        let classes = Labels::new(&labels);
+        let (mut panels, mut formed, mut moved) = (Vec::new(), Vec::new(), Vec::new());
+        for (method, options) in &methods {
+            let made = map(&context.collection.all(), options.method.name(), context.observer, |shape| {
+                Formed::new(shape, &embed(&shape.surface, options, &())?)
+            })?;
+            let forms: Vec<CanonicalForm> = made.iter().map(|made| made.form.clone()).collect();
+            let scales = [(Scale::Raw, Normalization::Raw), (Scale::Normalized, Normalization::UnitArea)];
+            for (scale, normalization) in scales {
+                let matches = form_alignments(&forms, normalization, context.observer)?;
+                panels.push(self.panel(method, scale, &matches.distances, &classes)?);
+                moved.push(motions(method, scale, &made, &matches.alignments));
+            }
+            formed.push(made);
         }
-        formed.push(made);
+        panels.sort_by_key(|panel| panel.scale);
+        let [nmds, baseline] = methods.clone().map(|(_, options)| describing(options));
+        let provenance = context.provenance(&[(NMDS, &nmds), (BASELINE, &baseline)]);
+        write(&shapes(context, &methods, &formed, moved)?, context.folder.join(SHAPES_FILE))?;
+        let measured = measured(&panels);
+        let best_e = Some(best_e(&classes)?);
+        let results = Figure4Results { names: context.collection.names(), labels, best_e, panels };
+        context.publish(results, provenance, &measured)
     }
-    panels.sort_by_key(|panel| panel.scale);
-    let options: Vec<_> = methods.iter().map(|(name, options)| (*name, options)).collect();
-    let provenance = context.provenance(described(&options, StressChoice::Skip));
-    write(&shapes(context, &methods, &formed, moved)?, context.folder.join(SHAPES_FILE))?;
-    let measured = measured(&panels);
-    let best_e = Some(best_e(&classes)?);
-    let results = Figure4Results { names: context.collection.names(), labels, best_e, panels };
-    context.publish(results, provenance, &measured)
 }
 
 /// The surfaces for the 3D views of the page.
@@ -77,29 +99,31 @@ fn shapes(
     })
 }
 
-fn panel(
-    context: &Context<'_>,
-    method: &str,
-    scale: Scale,
-    distances: &DistanceMatrix,
-    labels: &Labels,
-) -> Result<Figure4Panel> {
-    let plane = classical_full(distances, 2)?;
-    Ok(Figure4Panel {
-        method: method.to_owned(),
-        scale,
-        matrix: (0..distances.n_points()).map(|i| distances.row(i).to_vec()).collect(),
-        map: plane.coords.row_iter().map(|row| [row[0], row[1]]).collect(),
-        map_stress: normalized_stress(&plane.coords, distances),
-        negative_mass: plane.negative_mass,
-        scores: evaluate(distances, labels, context.config.knn)?,
-        map_silhouette: silhouette(&embedded_distances(&plane.coords)?, labels),
-    })
+impl Figure4Options {
+    fn panel(
+        &self,
+        method: &str,
+        scale: Scale,
+        distances: &DistanceMatrix,
+        labels: &Labels,
+    ) -> Result<Figure4Panel> {
+        let plane = classical_full(distances, 2)?;
+        Ok(Figure4Panel {
+            method: method.to_owned(),
+            scale,
+            matrix: (0..distances.n_points()).map(|i| distances.row(i).to_vec()).collect(),
+            map: plane.coords.row_iter().map(|row| [row[0], row[1]]).collect(),
+            map_stress: normalized_stress(&plane.coords, distances),
+            negative_mass: plane.negative_mass,
+            scores: evaluate(distances, labels, self.voters)?,
+            map_silhouette: silhouette(&embedded_distances(&plane.coords)?, labels),
+        })
+    }
 }
 
 /// Numbers by their names in the configuration.
-fn measured(panels: &[Figure4Panel]) -> Measured {
-    let mut found = Measured::new();
+fn measured(panels: &[Figure4Panel]) -> MeasuredNumbers {
+    let mut found = MeasuredNumbers::new();
     for panel in panels {
         let own = [
             ("knn", panel.scores.knn_accuracy),

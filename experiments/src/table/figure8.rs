@@ -11,10 +11,12 @@ use linalg::LandmarkDistances;
 use nmds::{NystromOptions, Regularization, RpiAlpha, SpectralBasis, SpectralOptions, nystrom, spectral};
 
 use descriptors::LaplaceSpectrum;
+use serde::Deserialize;
 
+use super::Experiment;
 use crate::context::Context;
 use crate::specimen::{DIM, Distances};
-use crate::sweep::{Measured, curves, half, last, linear, log, panel, places};
+use crate::sweep::{MeasuredNumbers, curves, half, last, linear, log, panel, places};
 
 const METHODS: [&str; 5] =
     ["NMDS, low rank", "NMDS, no regularisation", "NMDS, RPI", "SMDS", "SMDS, eigenfunctions given"];
@@ -22,58 +24,63 @@ const METHODS: [&str; 5] =
 /// Runs that compute the eigenfunctions, which take a hundred times as long as anything else.
 const BASES: usize = 2;
 
-pub(crate) fn run(context: &Context<'_>) -> Result<()> {
-    let config = &context.config;
-    let specimen = context.specimens.first().context("there is no shape to measure")?;
-    let surface = &specimen.shape.surface.intrinsic;
-    context.observer.begin("figure 8", config.runs);
-    let first = specimen.first_samples(1, context.seed)[0];
-    let sampled = specimen.nested(&Distances::default(), Sampling::Farthest, first, &config.counts)?;
-    let spectrum = specimen.spectrum(config.eigenvectors)?;
-    let basis =
-        SpectralBasis { values: &spectrum.values, vectors: &spectrum.vectors, masses: &spectrum.masses };
-    let mut of_basis = f64::INFINITY;
-    for _ in 0..BASES {
-        let begun = Instant::now();
-        LaplaceSpectrum::new(surface, config.eigenvectors)?;
-        of_basis = of_basis.min(begun.elapsed().as_secs_f64());
-    }
-    let nmds = |samples: &LandmarkDistances, regularization| -> Result<f64> {
-        let begun = Instant::now();
-        nystrom(samples, &NystromOptions { regularization, dim: DIM })?;
-        Ok(begun.elapsed().as_secs_f64())
-    };
-    let mut runs: Vec<Vec<Vec<f64>>> = vec![Vec::new(); METHODS.len()];
-    for _ in 0..config.runs {
-        let mut times: Vec<Vec<f64>> = vec![Vec::new(); METHODS.len()];
-        for samples in &sampled {
-            times[0].push(nmds(samples, half(samples.n_landmarks()))?);
-            times[1].push(nmds(samples, Regularization::None)?);
-            times[2].push(nmds(samples, Regularization::Rpi { alpha: RpiAlpha::default() })?);
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Figure8Options {
+    runs: usize,
+    eigenvectors: usize,
+    /// Numbers of samples.
+    counts: Vec<usize>,
+}
+
+impl Experiment for Figure8Options {
+    fn run(&self, context: &Context<'_>) -> Result<()> {
+        let specimen = context.specimens.first().context("there is no shape to measure")?;
+        let surface = specimen.shape.surface.intrinsic();
+        context.observer.begin("figure 8", self.runs);
+        let first = specimen.first_samples(1, context.seed)[0];
+        let sampled = specimen.nested(&Distances::default(), Sampling::Farthest, first, &self.counts)?;
+        let spectrum = specimen.spectrum(self.eigenvectors)?;
+        let basis =
+            SpectralBasis { values: &spectrum.values, vectors: &spectrum.vectors, masses: &spectrum.masses };
+        let mut of_basis = f64::INFINITY;
+        for _ in 0..BASES {
             let begun = Instant::now();
-            spectral(samples, &basis, &SpectralOptions::default())?;
-            let seconds = begun.elapsed().as_secs_f64();
-            times[3].push(of_basis + seconds);
-            times[4].push(seconds);
+            LaplaceSpectrum::new(surface, self.eigenvectors, &())?;
+            of_basis = of_basis.min(begun.elapsed().as_secs_f64());
         }
-        runs.iter_mut().zip(times).for_each(|(all, one)| all.push(one));
-        context.observer.step();
+        let nmds = |samples: &LandmarkDistances, regularization| -> Result<f64> {
+            let begun = Instant::now();
+            nystrom(samples, &NystromOptions { regularization, dim: DIM })?;
+            Ok(begun.elapsed().as_secs_f64())
+        };
+        let mut runs: Vec<Vec<Vec<f64>>> = vec![Vec::new(); METHODS.len()];
+        for _ in 0..self.runs {
+            let mut times: Vec<Vec<f64>> = vec![Vec::new(); METHODS.len()];
+            for samples in &sampled {
+                times[0].push(nmds(samples, half(samples.n_landmarks()))?);
+                times[1].push(nmds(samples, Regularization::None)?);
+                times[2].push(nmds(samples, Regularization::Rpi { alpha: RpiAlpha::default() })?);
+                let begun = Instant::now();
+                spectral(samples, &basis, &SpectralOptions::default())?;
+                let seconds = begun.elapsed().as_secs_f64();
+                times[3].push(of_basis + seconds);
+                times[4].push(seconds);
+            }
+            runs.iter_mut().zip(times).for_each(|(all, one)| all.push(one));
+            context.observer.step();
+        }
+        let curves = curves(&METHODS, &places(&self.counts), &runs);
+        let measured: MeasuredNumbers = [("none", 1), ("RPI", 2), ("SMDS", 3)]
+            .into_iter()
+            .map(|(name, i)| (format!("{name} over low-rank"), last(&curves[i]) / last(&curves[0])))
+            .collect();
+        let panels = vec![panel(
+            format!("{}, {} vertices", specimen.name(), specimen.n_vertices()),
+            linear("samples n"),
+            log("time without distances", "seconds"),
+            curves,
+        )];
+        context.publish_curves(panels, context.of_specimens(), &measured)
     }
-    let curves = curves(&METHODS, &places(&config.counts), &runs);
-    let measured: Measured = [("none", 1), ("RPI", 2), ("SMDS", 3)]
-        .into_iter()
-        .map(|(name, i)| (format!("{name} over low-rank"), last(&curves[i]) / last(&curves[0])))
-        .collect();
-    let panels = vec![panel(
-        format!("{}, {} vertices", specimen.name(), specimen.n_vertices()),
-        linear("samples n"),
-        log("time without distances", "seconds"),
-        curves,
-    )];
-    let caption = format!(
-        "Wall-clock seconds from the distances of the samples to the coordinates. SMDS uses {} eigenfunctions of the surface. \
-         Lines: medians of {} runs, in which the methods take turns; bands: range of the runs.",
-        config.eigenvectors, config.runs
-    );
-    context.publish_curves(caption, panels, &measured)
 }

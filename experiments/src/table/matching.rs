@@ -11,23 +11,26 @@
 //! seconds`; `all ...` over all pairs, and `worst direct`, the largest mean error of a class.
 
 use anyhow::{Context as _, Result};
-use canonform::{CorrespondOptions, Correspondence, MatchedSurface, VertexMap, correspond};
+use canonform::relations::MapKind;
+use canonform::{CorrespondOptions, Correspondence, MappedSurface, VertexMap, correspond};
 use datasets::{ArticulatedOptions, Family, articulated_at_rest};
-use descriptors::{MapKind, NearestPoints};
+use descriptors::NearestPoints;
 use geodesics::Method;
 use nalgebra::Point3;
 use rayon::prelude::*;
-use report::results::{CurvesPanel, CurvesResults, Series};
+use report::results::{CurvesPanel, Series};
+use serde::Deserialize;
 use surface::VertexId;
 
-use crate::collection::{Setting, Shape, map};
+use super::Experiment;
+use crate::collection::{LabeledSurface, Setting, map};
 use crate::context::Context;
-use crate::sweep::{Measured, linear, panel, point};
+use crate::sweep::{MeasuredNumbers, linear, mean, note, panel, point, share};
 
 /// Vertices of a pair whose errors are measured.
 const CHECKED: usize = 300;
 
-/// Errors of the horizontal axis.
+/// MapErrors of the horizontal axis.
 const STEPS: usize = 50;
 const MOST: f64 = 0.25;
 
@@ -35,85 +38,88 @@ const MOST: f64 = 0.25;
 const ALL: &str = "all";
 
 /// A shape with what is known of its vertices.
-struct Known<'a> {
-    shape: &'a Shape,
-    matched: MatchedSurface<&'a canonform::Surface>,
+struct Posed<'a> {
+    shape: &'a LabeledSurface,
+    matched: MappedSurface<&'a canonform::Surface>,
     /// Vertices on the body at rest, which is its own mirror image at `x = 0`.
     at_rest: Option<NearestPoints>,
 }
 
 /// The errors of one kind of map of a pair.
 #[derive(Clone, Default)]
-struct Errors {
+struct MapErrors {
     direct: Vec<f64>,
     mirrored: Vec<f64>,
     /// From a vertex to its image under the better map there and the better map back of the same kind.
     there_and_back: Vec<f64>,
 }
 
-struct Pair {
+struct MappedPair {
     class: String,
-    errors: Errors,
+    errors: MapErrors,
     is_flipped: bool,
     distortion: f64,
     seconds: f64,
 }
 
-pub(crate) fn run(context: &Context<'_>) -> Result<()> {
-    let options = CorrespondOptions::default();
-    let all = context.collection.all();
-    let is_built_in = context.collection.setting() == Setting::BuiltIn;
-    // One after the other, so that times are those of a machine at rest.
-    context.observer.begin("preparing", all.len());
-    let mut known = Vec::new();
-    for shape in &all {
-        let matched =
-            MatchedSurface::new(&shape.surface, &options, &()).with_context(|| shape.name.clone())?;
-        known.push(Known { shape, matched, at_rest: None });
-        context.observer.step();
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct MatchingOptions {}
+
+impl Experiment for MatchingOptions {
+    fn run(&self, context: &Context<'_>) -> Result<()> {
+        let options = CorrespondOptions::default();
+        let all = context.collection.all();
+        let is_built_in = context.collection.setting() == Setting::BuiltIn;
+        // One after the other, so that times are those of a machine at rest.
+        context.observer.begin("preparing", all.len());
+        let mut known = Vec::new();
+        for shape in &all {
+            let matched =
+                MappedSurface::new(&shape.surface, &options, &()).with_context(|| shape.name.clone())?;
+            known.push(Posed { shape, matched, at_rest: None });
+            context.observer.step();
+        }
+        if is_built_in {
+            let rested = map(&all, "bodies at rest", context.observer, |shape| at_rest(context, shape))?;
+            known.iter_mut().zip(rested).for_each(|(known, rested)| known.at_rest = Some(rested));
+        }
+        let pairs: Vec<[&Posed<'_>; 2]> = known
+            .iter()
+            .enumerate()
+            .filter_map(|(i, a)| {
+                let later = known[i + 1..].iter().chain(&known[..i]);
+                let next = later.into_iter().find(|b| b.shape.label == a.shape.label)?;
+                Some([a, next])
+            })
+            .collect();
+        context.observer.begin("matching", pairs.len());
+        let mut found = Vec::new();
+        for [a, b] in pairs {
+            found
+                .push(pair(a, b, &options).with_context(|| format!("{} to {}", a.shape.name, b.shape.name))?);
+            context.observer.step();
+        }
+        let mut measured = MeasuredNumbers::new();
+        let preparation: f64 = known.iter().map(|known| known.matched.seconds).sum();
+        measured.insert("preparation seconds".to_owned(), preparation / known.len().max(1) as f64);
+        let mut worst = f64::NEG_INFINITY;
+        for class in &context.collection.classes {
+            let of_class: Vec<&MappedPair> = found.iter().filter(|pair| pair.class == *class).collect();
+            worst = worst.max(measure(class, &of_class, &mut measured));
+        }
+        measure(ALL, &found.iter().collect::<Vec<_>>(), &mut measured);
+        measured.insert("worst direct".to_owned(), worst);
+        let panels = panels(&context.collection.classes, &found);
+        let mut provenance = context.provenance(&[]);
+        provenance.options["matching"] = serde_json::to_value(options.mapping)?;
+        provenance.options["spread"] = options.spread.into();
+        context.publish_curves(panels, provenance, &measured)
     }
-    if is_built_in {
-        let rested = map(&all, "bodies at rest", context.observer, |shape| at_rest(context, shape))?;
-        known.iter_mut().zip(rested).for_each(|(known, rested)| known.at_rest = Some(rested));
-    }
-    let pairs: Vec<[&Known<'_>; 2]> = known
-        .iter()
-        .enumerate()
-        .filter_map(|(i, a)| {
-            let later = known[i + 1..].iter().chain(&known[..i]);
-            let next = later.into_iter().find(|b| b.shape.label == a.shape.label)?;
-            Some([a, next])
-        })
-        .collect();
-    context.observer.begin("matching", pairs.len());
-    let mut found = Vec::new();
-    for [a, b] in pairs {
-        found.push(pair(a, b, &options).with_context(|| format!("{} to {}", a.shape.name, b.shape.name))?);
-        context.observer.step();
-    }
-    let mut measured = Measured::new();
-    let preparation: f64 = known.iter().map(|known| known.matched.seconds).sum();
-    measured.insert("preparation seconds".to_owned(), preparation / known.len().max(1) as f64);
-    let mut worst = f64::NEG_INFINITY;
-    for class in &context.collection.classes {
-        let of_class: Vec<&Pair> = found.iter().filter(|pair| pair.class == *class).collect();
-        worst = worst.max(measure(class, &of_class, &mut measured));
-    }
-    measure(ALL, &found.iter().collect::<Vec<_>>(), &mut measured);
-    measured.insert("worst direct".to_owned(), worst);
-    let panels = panels(&context.collection.classes, &found);
-    let caption = format!(
-        "Share of the vertices whose error is below a limit, for maps from each of {} shapes to the next one of its class. Bands \
-         span all pairs.",
-        found.len()
-    );
-    let provenance =
-        context.provenance(serde_json::json!({ "matching": options.matching, "spread": options.spread }));
-    context.publish(CurvesResults { caption, panels }, provenance, &measured)
 }
 
 /// The vertices of a built-in shape on the body at rest.
-fn at_rest(context: &Context<'_>, shape: &Shape) -> Result<NearestPoints> {
+fn at_rest(context: &Context<'_>, shape: &LabeledSurface) -> Result<NearestPoints> {
     let family = Family::all().into_iter().find(|family| family.name() == shape.label);
     let family = family.context("a built-in family")?;
     let pose = shape.name.strip_prefix(family.name()).and_then(|pose| pose.parse().ok()).context("a pose")?;
@@ -124,11 +130,11 @@ fn at_rest(context: &Context<'_>, shape: &Shape) -> Result<NearestPoints> {
     Ok(NearestPoints::new(rested.rest.positions)?)
 }
 
-fn pair(a: &Known<'_>, b: &Known<'_>, options: &CorrespondOptions) -> Result<Pair> {
+fn pair(a: &Posed<'_>, b: &Posed<'_>, options: &CorrespondOptions) -> Result<MappedPair> {
     let forth = correspond(&a.matched, &b.matched, options, &())?;
     let back = correspond(&b.matched, &a.matched, options, &())?;
     let best = forth.maps.first().context("a map")?;
-    Ok(Pair {
+    Ok(MappedPair {
         class: a.shape.label.clone(),
         errors: errors(a, b, &forth, &back)?,
         is_flipped: of_kind(&forth, MapKind::Mirrored).is_some_and(|mirrored| {
@@ -144,7 +150,7 @@ fn of_kind(found: &Correspondence, kind: MapKind) -> Option<&VertexMap> {
 }
 
 /// The true partner of a vertex, directly or mirrored; `None` if it is not known.
-fn partner(a: &Known<'_>, b: &Known<'_>, x: usize, kind: MapKind) -> Option<usize> {
+fn partner(a: &Posed<'_>, b: &Posed<'_>, x: usize, kind: MapKind) -> Option<usize> {
     if let (Some(from), Some(to)) = (&a.at_rest, &b.at_rest) {
         let p = from.points()[x];
         let sign = if kind == MapKind::Mirrored { -1.0 } else { 1.0 };
@@ -154,8 +160,8 @@ fn partner(a: &Known<'_>, b: &Known<'_>, x: usize, kind: MapKind) -> Option<usiz
     (same && kind == MapKind::Direct).then_some(x)
 }
 
-fn errors(a: &Known<'_>, b: &Known<'_>, forth: &Correspondence, back: &Correspondence) -> Result<Errors> {
-    let [on_a, on_b] = [a, b].map(|side| Method::default().prepare(&side.shape.surface.intrinsic));
+fn errors(a: &Posed<'_>, b: &Posed<'_>, forth: &Correspondence, back: &Correspondence) -> Result<MapErrors> {
+    let [on_a, on_b] = [a, b].map(|side| Method::default().prepare(side.shape.surface.intrinsic(), &()));
     let [on_a, on_b] = [on_a?, on_b?];
     let [size_a, size_b] = [a, b].map(|side| side.shape.surface.mesh().area().sqrt());
     let n = a.shape.surface.mesh().n_vertices();
@@ -181,18 +187,13 @@ fn errors(a: &Known<'_>, b: &Known<'_>, forth: &Correspondence, back: &Correspon
         let gaps = checked.par_iter().map(gap).collect::<Result<Vec<_>>>()?;
         there_and_back = gaps.into_iter().flatten().collect();
     }
-    Ok(Errors { direct: all(MapKind::Direct)?, mirrored: all(MapKind::Mirrored)?, there_and_back })
-}
-
-fn mean(values: impl IntoIterator<Item = f64>) -> f64 {
-    let (sum, n) = values.into_iter().fold((0.0, 0usize), |(sum, n), value| (sum + value, n + 1));
-    sum / n as f64
+    Ok(MapErrors { direct: all(MapKind::Direct)?, mirrored: all(MapKind::Mirrored)?, there_and_back })
 }
 
 /// Adds the figures of some pairs, and returns the mean error of the direct map.
-fn measure(class: &str, pairs: &[&Pair], measured: &mut Measured) -> f64 {
-    let mut add = |what: &str, value: f64| measured.insert(format!("{class} {what}"), value);
-    let over = |of: &dyn Fn(&Errors) -> &Vec<f64>| -> Vec<f64> {
+fn measure(class: &str, pairs: &[&MappedPair], measured: &mut MeasuredNumbers) -> f64 {
+    let mut add = |what: &str, value: f64| note(measured, class, [(what, value)]);
+    let over = |of: &dyn Fn(&MapErrors) -> &Vec<f64>| -> Vec<f64> {
         pairs.iter().flat_map(|pair| of(&pair.errors).iter().copied()).collect()
     };
     let direct = over(&|errors| &errors.direct);
@@ -200,15 +201,15 @@ fn measure(class: &str, pairs: &[&Pair], measured: &mut Measured) -> f64 {
         add("direct", mean(direct.iter().copied()));
         add("mirrored", mean(over(&|errors| &errors.mirrored)));
         for (name, limit) in [("direct 5", 0.05), ("direct 10", 0.1), ("direct 25", 0.25)] {
-            add(name, mean(direct.iter().map(|error| f64::from(u8::from(*error < limit)))));
+            add(name, share(&direct, |error| *error < limit));
         }
-        let failed = |pair: &&Pair| {
+        let failed = |pair: &&MappedPair| {
             let error = mean(pair.errors.direct.iter().copied());
-            f64::from(u8::from(error.is_nan() || error > 0.1))
+            error.is_nan() || error > 0.1
         };
-        add("failed", mean(pairs.iter().map(failed)));
+        add("failed", share(pairs, failed));
     }
-    add("flipped", mean(pairs.iter().map(|pair| f64::from(u8::from(pair.is_flipped)))));
+    add("flipped", share(pairs, |pair| pair.is_flipped));
     add("distortion", mean(pairs.iter().map(|pair| pair.distortion)));
     add("return", mean(over(&|errors| &errors.there_and_back)));
     add("seconds", mean(pairs.iter().map(|pair| pair.seconds)));
@@ -216,8 +217,8 @@ fn measure(class: &str, pairs: &[&Pair], measured: &mut Measured) -> f64 {
 }
 
 /// Cumulative errors, a panel for each kind that was measured.
-fn panels(classes: &[String], pairs: &[Pair]) -> Vec<CurvesPanel> {
-    type Of = fn(&Errors) -> &Vec<f64>;
+fn panels(classes: &[String], pairs: &[MappedPair]) -> Vec<CurvesPanel> {
+    type Of = fn(&MapErrors) -> &Vec<f64>;
     let kinds: [(&str, Of); 3] = [
         ("direct map", |errors| &errors.direct),
         ("mirrored map", |errors| &errors.mirrored),
@@ -238,10 +239,8 @@ fn panels(classes: &[String], pairs: &[Pair]) -> Vec<CurvesPanel> {
             }
             let at = |step: usize| {
                 let limit = MOST * step as f64 / STEPS as f64;
-                let share = |errors: &&Vec<f64>| {
-                    errors.iter().filter(|error| **error <= limit).count() as f64 / errors.len() as f64
-                };
-                point(limit, &runs.iter().map(share).collect::<Vec<_>>())
+                let below = |errors: &&Vec<f64>| share(errors, |error| *error <= limit);
+                point(limit, &runs.iter().map(below).collect::<Vec<_>>())
             };
             curves.push(Series { name: class.clone(), points: (0..=STEPS).map(at).collect() });
         }

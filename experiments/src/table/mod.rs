@@ -16,51 +16,74 @@ mod retrieve;
 mod robustness;
 mod scaling;
 
-use anyhow::Result;
+use anyhow::{Context as _, Result};
 use report::page::{Section, charts, explorer, gallery};
 use report::results::{CurvesResults, Figure3Results, Figure9Results, InvarianceResults, RetrievalResults};
+use serde::de::DeserializeOwned;
 
+use crate::config::Config;
 use crate::context::Context;
 
-/// One experiment.
-pub(crate) struct Experiment {
+/// An experiment: the options of its own in its configuration, and what is done with them.
+pub(crate) trait Experiment {
+    /// Measures, and [publishes](Context::publish) the results.
+    fn run(&self, context: &Context<'_>) -> Result<()>;
+}
+
+/// An experiment in the table.
+pub(crate) struct TableEntry {
     /// Its name, its title, and what the page shows of its record.
     pub(crate) section: Section,
     /// The text of its configuration.
-    pub(crate) config: &'static str,
-    pub(crate) run: fn(&Context<'_>) -> Result<()>,
+    config: &'static str,
+    read: fn(toml::Table) -> Result<Box<dyn Experiment>, toml::de::Error>,
 }
 
-macro_rules! experiment {
-    ($name:literal, $title:literal, $show:expr, $run:expr) => {
-        Experiment {
+impl TableEntry {
+    /// Reads the configuration.
+    pub(crate) fn parse(&self) -> Result<(Config, Box<dyn Experiment>)> {
+        let name = self.section.name;
+        let config = Config::parse(name, self.config)?;
+        let experiment = (self.read)(config.options.clone());
+        Ok((config, experiment.with_context(|| format!("experiments/configs/{name}.toml"))?))
+    }
+}
+
+fn read<T: Experiment + DeserializeOwned + 'static>(
+    options: toml::Table,
+) -> Result<Box<dyn Experiment>, toml::de::Error> {
+    Ok(Box::new(options.try_into::<T>()?))
+}
+
+macro_rules! table {
+    ($($name:literal $title:literal $show:expr, $options:ty;)*) => {
+        /// All experiments, in the order in which they run and appear on the page.
+        pub(crate) const EXPERIMENTS: [TableEntry; [$($name),*].len()] = [$(TableEntry {
             section: Section { name: $name, title: $title, show: $show },
             config: include_str!(concat!("../../configs/", $name, ".toml")),
-            run: $run,
-        }
+            read: read::<$options>,
+        }),*];
     };
 }
 
-/// All experiments, in the order in which they run and appear on the page.
-#[rustfmt::skip]
-pub(crate) const EXPERIMENTS: [Experiment; 16] = [
-    experiment!("figure1", "Figure 1. Shapes and their canonical forms", gallery, figure1::run),
-    experiment!("figure3", "Figure 3. Canonical forms by several methods", charts::<Figure3Results>, figure3::run),
-    experiment!("figure4", "Figure 4. Classification of shapes by their canonical forms", explorer, figure4::run),
-    experiment!("figure5a", "Figure 5a. Reconstruction error against the rank", charts::<CurvesResults>, figure5::rank),
-    experiment!("figure5b", "Figure 5b. Reconstruction error against alpha", charts::<CurvesResults>, figure5::alpha),
-    experiment!("figure6", "Figure 6. Reconstruction error against the number of samples", charts::<CurvesResults>, figure6::run),
-    experiment!("figure7", "Figure 7. Stress above the optimum against the number of samples", charts::<CurvesResults>, figure7::run),
-    experiment!("figure8", "Figure 8. Time against the number of samples", charts::<CurvesResults>, figure8::run),
-    experiment!("figure9", "Figure 9. Time and memory of whole embeddings", charts::<Figure9Results>, figure9::run),
-    experiment!("retrieval", "Retrieval. Classification by signatures and canonical forms", charts::<RetrievalResults>, retrieve::run),
-    experiment!("invariance", "Invariance. Retrieval of damaged shapes", charts::<InvarianceResults>, invariance::run),
-    experiment!("robustness", "Robustness. Scores of damaged shapes", charts::<CurvesResults>, robustness::run),
-    experiment!("matching", "Matching. Dense maps between poses", charts::<CurvesResults>, matching::run),
-    experiment!("points", "Points. Distances and retrieval of point clouds", charts::<CurvesResults>, points::run),
-    experiment!("partial", "Parts. Retrieval of parts of shapes", charts::<CurvesResults>, partial::run),
-    experiment!("scaling", "Scaling. Time and memory up to a million vertices", charts::<CurvesResults>, scaling::run),
-];
+table! {
+    "figure1" "Figure 1. Shapes and their canonical forms" gallery, figure1::Figure1Options;
+    "figure3" "Figure 3. Canonical forms by several methods" charts::<Figure3Results>, figure3::Figure3Options;
+    "figure4" "Figure 4. Classification of shapes by their canonical forms" explorer, figure4::Figure4Options;
+    "figure5a" "Figure 5a. Reconstruction error against the rank" charts::<CurvesResults>, figure5::RankOptions;
+    "figure5b" "Figure 5b. Reconstruction error against alpha" charts::<CurvesResults>, figure5::AlphaOptions;
+    "figure6" "Figure 6. Reconstruction error against the number of samples" charts::<CurvesResults>, figure6::Figure6Options;
+    "figure7" "Figure 7. Stress above the optimum against the number of samples" charts::<CurvesResults>, figure7::Figure7Options;
+    "figure8" "Figure 8. Time against the number of samples" charts::<CurvesResults>, figure8::Figure8Options;
+    "figure9" "Figure 9. Time and memory of whole embeddings" charts::<Figure9Results>, figure9::Figure9Options;
+    "retrieval" "Retrieval. Classification by signatures and canonical forms" charts::<RetrievalResults>, retrieve::RetrievalOptions;
+    "invariance" "Invariance. Retrieval of damaged shapes" charts::<InvarianceResults>, invariance::InvarianceOptions;
+    "robustness" "Robustness. Scores of damaged shapes" charts::<CurvesResults>, robustness::RobustnessOptions;
+    "matching" "Matching. Dense maps between poses" charts::<CurvesResults>, matching::MatchingOptions;
+    "points" "Points. Distances and retrieval of point clouds" charts::<CurvesResults>, points::PointsOptions;
+    "partial" "Parts. Retrieval of parts of shapes" charts::<CurvesResults>, partial::PartialOptions;
+    "scaling" "Scaling. Time and memory up to a million vertices" charts::<CurvesResults>, scaling::ScalingOptions;
+}
 
 /// Stands for all experiments on the command line.
 pub(crate) const ALL: &str = "all";
@@ -77,12 +100,14 @@ pub(crate) fn parse_name(name: &str) -> Result<String, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::config::Config;
 
     #[test]
-    fn every_configuration_is_valid() {
-        for Experiment { section, config, .. } in &EXPERIMENTS {
-            Config::parse(section.name, config).unwrap();
+    fn every_configuration_is_valid_and_has_no_option_that_its_experiment_does_not_know() {
+        for entry in &EXPERIMENTS {
+            let (mut config, _) = entry.parse().unwrap();
+            config.options.insert("typo".to_owned(), 1.into());
+            let fault = (entry.read)(config.options).err().unwrap();
+            assert!(fault.to_string().contains("typo"), "{}", entry.section.name);
         }
     }
 

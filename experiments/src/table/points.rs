@@ -11,20 +11,22 @@
 
 use std::fmt;
 
-use anyhow::{Context as _, Result};
-use canonform::{DescribeOptions, ShapeDescription, Surface, describe};
+use anyhow::Result;
+use canonform::{Surface, describe};
 use datasets::{ScannedPoint, scan};
 use descriptors::{NearestPoints, ShapeMetric};
 use geodesics::{Method, Source, SurfacePoint};
 use mesh::TriMesh;
 use nalgebra::Point3;
-use report::results::{CurvesPanel, CurvesResults, Series};
-use retrieval::{Labels, rank_row};
+use report::results::{CurvesPanel, Series};
+use serde::Deserialize;
 use surface::VertexId;
 
-use crate::collection::{Shape, map};
+use super::Experiment;
+use crate::collection::LabeledSurface;
 use crate::context::Context;
-use crate::sweep::{Measured, linear, panel, point};
+use crate::gallery::Gallery;
+use crate::sweep::{MeasuredNumbers, linear, mean, note, panel, point};
 
 const COUNTS: [usize; 2] = [10_000, 50_000];
 
@@ -80,15 +82,9 @@ impl fmt::Display for Noise {
     }
 }
 
-/// What was found for one cloud.
-struct Found {
-    errors: Errors,
-    is_top1: bool,
-}
-
 /// Mean relative errors of distances.
 #[derive(Default)]
-struct Errors {
+struct DistanceErrors {
     error: f64,
     /// The same with its sign.
     bias: f64,
@@ -98,89 +94,80 @@ struct Errors {
     own: f64,
 }
 
-pub(crate) fn run(context: &Context<'_>) -> Result<()> {
-    let options = DescribeOptions::default();
-    let all = context.collection.all();
-    let described =
-        map(&all, "describing", context.observer, |shape| Ok(describe(&shape.surface, &options)?))?;
-    let labels = Labels::new(&context.collection.labels());
-    let mut measured = Measured::new();
-    let mut least = f64::INFINITY;
-    let mut rows = Vec::new();
-    for noise in NOISES {
-        for n in noise.counts() {
-            let name = format!("{noise}, {} points", thousands(*n));
-            let most = if *n > COUNTS[0] { QUERIES_OF_MANY } else { usize::MAX };
-            let queries = context.collection.first_of_each_class(context.config.queries.min(most));
-            let found = map(&queries, &name, context.observer, |shape| {
-                let own = all.iter().position(|other| other.name == shape.name);
-                let own = own.context("a shape of the collection")?;
-                let cloud = Cloud::new(shape, *n, noise, context.seed + own as u64)?;
-                let errors = cloud.errors()?;
-                let query = describe(&cloud.surface, &options)?;
-                let is_top1 = is_top1(&described, &query, own, &labels);
-                Ok(Found { errors, is_top1 })
-            })?;
-            let mean = |value: &dyn Fn(&Found) -> f64| {
-                found.iter().map(value).sum::<f64>() / found.len().max(1) as f64
-            };
-            let nn = mean(&|found| f64::from(u8::from(found.is_top1)));
-            let error = mean(&|found| found.errors.error);
-            measured.insert(format!("{name}, error"), error);
-            measured.insert(format!("{name}, bias"), mean(&|found| found.errors.bias));
-            measured.insert(format!("{name}, moved"), mean(&|found| found.errors.moved));
-            measured.insert(format!("{name}, own"), mean(&|found| found.errors.own));
-            measured.insert(format!("{name}, nn"), nn);
-            least = least.min(nn);
-            rows.push((noise, *n, error, nn));
-        }
-    }
-    measured.insert("least nn".to_owned(), least);
-    let caption = format!(
-        "Distances between points of up to {} scanned shapes of each class, beside those on their meshes, and their nearest of \
-         the {} other meshes, by noise as a share of the square root of the area.",
-        context.config.queries,
-        all.len() - 1
-    );
-    let provenance = context.provenance(serde_json::json!({ "description": options.text() }));
-    context.publish(CurvesResults { caption, panels: panels(&rows) }, provenance, &measured)
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct PointsOptions {
+    /// Shapes of each class that are scanned.
+    queries: usize,
 }
 
-/// Whether the nearest shape, itself left out, is of the same class.
-fn is_top1(all: &[ShapeDescription], query: &ShapeDescription, own: usize, labels: &Labels) -> bool {
-    let distances: Vec<f64> =
-        all.iter().map(|shape| ShapeMetric::robust(&query.fused, &shape.fused)).collect();
-    let first = rank_row(&distances, own).first().copied();
-    first.is_some_and(|first| labels.class(first.index) == labels.class(own))
+impl Experiment for PointsOptions {
+    fn run(&self, context: &Context<'_>) -> Result<()> {
+        let gallery = Gallery::new(context)?;
+        let all = &gallery.described;
+        let mut measured = MeasuredNumbers::new();
+        let mut least = f64::INFINITY;
+        let mut rows = Vec::new();
+        for noise in NOISES {
+            for &n in noise.counts() {
+                let name = format!("{noise}, {} points", thousands(n));
+                let most = if n > COUNTS[0] { QUERIES_OF_MANY } else { usize::MAX };
+                let found = gallery.map(self.queries.min(most), &name, |query| {
+                    let cloud = ScannedCloud::new(query.shape, n, noise, query.seed)?;
+                    let errors = cloud.errors()?;
+                    let fused = describe(&cloud.surface, &gallery.options, &())?.fused;
+                    let scores = gallery.scores(query, |i| ShapeMetric::robust(&fused, &all[i].fused));
+                    Ok((errors, scores.nn))
+                })?;
+                let nn = mean(found.iter().map(|(_, nn)| *nn));
+                let over =
+                    |value: fn(&DistanceErrors) -> f64| mean(found.iter().map(|(errors, _)| value(errors)));
+                let error = over(|errors| errors.error);
+                let numbers = [
+                    ("error", error),
+                    ("bias", over(|errors| errors.bias)),
+                    ("moved", over(|errors| errors.moved)),
+                    ("own", over(|errors| errors.own)),
+                    ("nn", nn),
+                ];
+                note(&mut measured, &format!("{name},"), numbers);
+                least = least.min(nn);
+                rows.push((noise, n, [error, nn]));
+            }
+        }
+        measured.insert("least nn".to_owned(), least);
+        let provenance = context.provenance(&[("description", &gallery.options)]);
+        context.publish_curves(panels(&rows), provenance, &measured)
+    }
 }
 
 /// A scanned shape.
-struct Cloud<'a> {
-    shape: &'a Shape,
+struct ScannedCloud<'a> {
+    shape: &'a LabeledSurface,
     scanned: Vec<ScannedPoint>,
     surface: Surface,
 }
 
-impl<'a> Cloud<'a> {
-    fn new(shape: &'a Shape, n: usize, noise: Noise, seed: u64) -> Result<Self> {
+impl<'a> ScannedCloud<'a> {
+    fn new(shape: &'a LabeledSurface, n: usize, noise: Noise, seed: u64) -> Result<Self> {
         let mesh = shape.surface.mesh();
         let scanned = scan(mesh, n, noise.deviation(mesh), seed);
         let positions = scanned.iter().map(|point| point.position).collect();
         let points = TriMesh { positions, faces: Vec::new() };
-        let surface = Surface::new(&points, &shape.surface.repair)?;
+        let surface = Surface::new(&points, &shape.surface.repair, &())?;
         Ok(Self { shape, scanned, surface })
     }
 
     /// The mean errors of distances between points. Points that were left out are not counted, nor are those of the
     /// face of the source.
-    fn errors(&self) -> Result<Errors> {
+    fn errors(&self) -> Result<DistanceErrors> {
         let mesh = self.shape.surface.mesh();
-        let reference = Method::Exact.prepare(&self.shape.surface.intrinsic)?;
-        let solver = Method::default().prepare(&self.surface.intrinsic)?;
+        let reference = Method::Exact.prepare(self.shape.surface.intrinsic(), &())?;
+        let solver = Method::default().prepare(self.surface.intrinsic(), &())?;
         let exact = |from: &ScannedPoint| -> Result<Vec<f64>> {
             let mut distances = vec![f64::INFINITY; reference.n_vertices()];
             let at = SurfacePoint::Face { face: from.face, barycentric: from.barycentric };
-            let start = Source::new(&self.shape.surface.intrinsic, at)?;
+            let start = Source::new(self.shape.surface.intrinsic(), at)?;
             reference.solve_into(&[start], f64::INFINITY, &mut distances)?;
             Ok(distances)
         };
@@ -189,7 +176,7 @@ impl<'a> Cloud<'a> {
             corners.iter().zip(at.barycentric).map(|(v, b)| b * distances[v.index()]).sum()
         };
         let points: Vec<Triple> = self.triples()?;
-        let (mut sum, mut count) = (Errors::default(), 0.0);
+        let (mut sum, mut count) = (DistanceErrors::default(), 0.0);
         for from in points.iter().step_by((points.len() / SOURCES).max(1)).take(SOURCES) {
             let distances = [exact(&from.scanned)?, exact(&from.noisy)?, exact(&from.smooth)?];
             let found = solver.distances(from.vertex)?;
@@ -204,8 +191,13 @@ impl<'a> Cloud<'a> {
                 count += 1.0;
             }
         }
-        let Errors { error, bias, moved, own } = sum;
-        Ok(Errors { error: error / count, bias: bias / count, moved: moved / count, own: own / count })
+        let DistanceErrors { error, bias, moved, own } = sum;
+        Ok(DistanceErrors {
+            error: error / count,
+            bias: bias / count,
+            moved: moved / count,
+            own: own / count,
+        })
     }
 
     /// All points that were not left out.
@@ -235,19 +227,19 @@ fn thousands(n: usize) -> String {
     format!("{},{:03}", n / 1000, n % 1000)
 }
 
-/// Noise, number of points, error of distances, and share of queries whose nearest has their class.
-type Row = (Noise, usize, f64, f64);
+/// Noise, number of points; error of distances, and share of queries whose nearest has their class.
+type CloudRow = (Noise, usize, [f64; 2]);
 
-fn panels(rows: &[Row]) -> Vec<CurvesPanel> {
-    let of = |title: &str, value: &dyn Fn(&Row) -> f64| {
+fn panels(rows: &[CloudRow]) -> Vec<CurvesPanel> {
+    let of = |(i, title): (usize, &str)| {
         let series = COUNTS.map(|n| {
-            let at = |row: &Row| match row.0 {
-                Noise::OfArea(share) if row.1 == n => Some(point(100.0 * share, &[value(row)])),
+            let at = |row: &CloudRow| match row.0 {
+                Noise::OfArea(share) if row.1 == n => Some(point(100.0 * share, &[row.2[i]])),
                 _ => None,
             };
             Series { name: format!("{} points", thousands(n)), points: rows.iter().filter_map(at).collect() }
         });
-        panel(title.to_owned(), linear("noise, % of sqrt(area)"), linear(title), series.into())
+        panel(title, linear("noise, % of sqrt(area)"), linear(title), series.into())
     };
-    vec![of("mean relative error", &|row| row.2), of("NN", &|row| row.3)]
+    ["mean relative error", "NN"].into_iter().enumerate().map(of).collect()
 }

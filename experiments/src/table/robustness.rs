@@ -7,15 +7,16 @@
 //! welds.
 
 use anyhow::{Context as _, Result};
-use canonform::{DescribeOptions, ShapeDescription, Surface, describe};
+use canonform::{ShapeDescription, describe};
 use datasets::DamageKind;
 use descriptors::{FormDistance, PreparedShape, ShapeMetric, ShapePair, SignatureKind};
-use report::results::{CurvesPanel, CurvesResults, Series};
-use retrieval::{Labels, Scores, rank_row};
+use report::results::{CurvesPanel, Series};
+use serde::Deserialize;
 
-use crate::collection::{Shape, map};
+use super::Experiment;
 use crate::context::Context;
-use crate::sweep::{Measured, linear, panel, point};
+use crate::gallery::{Gallery, GalleryQuery};
+use crate::sweep::{MeasuredNumbers, linear, mean, note, panel, point, share};
 
 const FUSED: &str = "fused";
 const FORMS: &str = "aligned forms";
@@ -24,108 +25,84 @@ const BOTH: &str = "fused and forms";
 /// The strength at which forms are aligned, too; that takes most of the time.
 const ALIGNED_AT: usize = 3;
 
-/// The undamaged collection.
-struct Gallery {
-    described: Vec<ShapeDescription>,
-    prepared: Vec<PreparedShape>,
-    labels: Labels,
+/// Scores by method: nearest neighbour, and mean average precision.
+type MethodScores = Vec<(&'static str, [f64; 2])>;
+
+const SCORES: [&str; 2] = ["nn", "mAP"];
+
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct RobustnessOptions {
+    /// Shapes of each class that are damaged.
+    queries: usize,
 }
 
-/// The scores of the queries by one method.
-#[derive(Clone)]
-struct Found {
-    method: &'static str,
-    nn: f64,
-    map: f64,
-}
-
-pub(crate) fn run(context: &Context<'_>) -> Result<()> {
-    let options = DescribeOptions::default();
-    let all = context.collection.all();
-    let described =
-        map(&all, "describing", context.observer, |shape| Ok(describe(&shape.surface, &options)?))?;
-    let prepared = described.iter().map(ShapeDescription::prepare).collect::<Result<Vec<_>, _>>()?;
-    let gallery = Gallery { described, prepared, labels: Labels::new(&context.collection.labels()) };
-    let queries = context.collection.first_of_each_class(context.config.queries);
-    let own = |shape: &Shape| {
-        all.iter().position(|other| other.name == shape.name).context("a shape of the collection")
-    };
-    let mut measured = Measured::new();
-    let alarms = gallery.described.iter().filter(|shape| !shape.shortcuts.is_empty()).count();
-    measured.insert("false alarms".to_owned(), alarms as f64 / all.len().max(1) as f64);
-    let undamaged = map(&queries, "undamaged", context.observer, |shape| {
-        let own = own(shape)?;
-        scores(&gallery, &gallery.described[own], own, true)
-    })?;
-    let undamaged = means(&undamaged);
-    for Found { method, nn, map } in &undamaged {
-        measured.insert(format!("undamaged {method} nn"), *nn);
-        measured.insert(format!("undamaged {method} mAP"), *map);
-    }
-    let mut panels = Vec::new();
-    let mut least = f64::INFINITY;
-    for kind in DamageKind::ALL {
-        let mut curves: Vec<(usize, Vec<Found>)> = vec![(0, undamaged.clone())];
-        for strength in 1..=DamageKind::STRENGTHS {
-            let stage = format!("{} {strength}", kind.name());
-            let found = map(&queries, &stage, context.observer, |shape| {
-                let own = own(shape)?;
-                let mesh = kind.at(strength).apply(shape.surface.mesh(), context.seed + own as u64);
-                let damaged = describe(&Surface::new(&mesh, &shape.surface.repair)?, &options)?;
-                let found = scores(&gallery, &damaged, own, strength == ALIGNED_AT)?;
-                Ok((found, damaged.shortcuts.len()))
-            })?;
-            let (found, cut): (Vec<_>, Vec<_>) = found.into_iter().unzip();
-            if matches!(kind, DamageKind::Weld | DamageKind::FarWeld | DamageKind::Contact) {
-                let share = cut.iter().sum::<usize>() as f64 / (cut.len() * strength).max(1) as f64;
-                measured.insert(format!("{stage} cut"), share);
-            }
-            let found = means(&found);
-            for Found { method, nn, map } in &found {
-                measured.insert(format!("{stage} {method} nn"), *nn);
-                measured.insert(format!("{stage} {method} mAP"), *map);
-                if strength == ALIGNED_AT && *method == FUSED {
-                    least = least.min(*nn);
+impl Experiment for RobustnessOptions {
+    fn run(&self, context: &Context<'_>) -> Result<()> {
+        let gallery = Gallery::new(context)?;
+        let prepared =
+            gallery.described.iter().map(ShapeDescription::prepare).collect::<Result<Vec<_>, _>>()?;
+        let alarms = share(&gallery.described, |shape| !shape.shortcuts.is_empty());
+        let mut measured: MeasuredNumbers = [("false alarms".to_owned(), alarms)].into();
+        let undamaged = gallery.map(self.queries, "undamaged", |query| {
+            scores(&gallery, &prepared, query, &gallery.described[query.own], true)
+        })?;
+        let undamaged = means(&undamaged);
+        record("undamaged", &undamaged, &mut measured);
+        let mut panels = Vec::new();
+        let mut least = f64::INFINITY;
+        for kind in DamageKind::ALL {
+            let mut curves: Vec<(usize, MethodScores)> = vec![(0, undamaged.clone())];
+            for strength in 1..=DamageKind::STRENGTHS {
+                let stage = format!("{} {strength}", kind.name());
+                let found = gallery.map(self.queries, &stage, |query| {
+                    let damaged = describe(&query.damaged(kind.at(strength))?, &gallery.options, &())?;
+                    let found = scores(&gallery, &prepared, query, &damaged, strength == ALIGNED_AT)?;
+                    Ok((found, damaged.shortcuts.len()))
+                })?;
+                let (found, cut): (Vec<_>, Vec<_>) = found.into_iter().unzip();
+                if matches!(kind, DamageKind::Weld | DamageKind::FarWeld | DamageKind::Contact) {
+                    let cut = mean(cut.into_iter().map(|cut| cut as f64 / strength as f64));
+                    measured.insert(format!("{stage} cut"), cut);
                 }
+                let found = means(&found);
+                record(&stage, &found, &mut measured);
+                let fused = found.iter().find(|(method, _)| *method == FUSED && strength == ALIGNED_AT);
+                least = fused.map_or(least, |(_, [nn, _])| least.min(*nn));
+                curves.push((strength, found));
             }
-            curves.push((strength, found));
+            panels.extend(panels_of(kind, &curves));
         }
-        panels.extend(panels_of(kind, &curves));
+        measured.insert("least fused nn".to_owned(), least);
+        let provenance = context.provenance(&[("description", &gallery.options)]);
+        context.publish_curves(panels, provenance, &measured)
     }
-    measured.insert("least fused nn".to_owned(), least);
-    let caption = format!(
-        "Scores of {} damaged shapes, each compared with the {} undamaged ones but itself, by kind and strength of the damage; \
-         0 is undamaged.",
-        queries.len(),
-        all.len()
-    );
-    let provenance = context.provenance(serde_json::json!({ "description": options.text() }));
-    context.publish(CurvesResults { caption, panels }, provenance, &measured)
 }
 
 /// The scores of one query by every method.
-fn scores(gallery: &Gallery, query: &ShapeDescription, own: usize, aligned: bool) -> Result<Vec<Found>> {
-    let n = gallery.described.len();
+fn scores(
+    gallery: &Gallery<'_>,
+    prepared: &[PreparedShape],
+    query: &GalleryQuery<'_>,
+    description: &ShapeDescription,
+    aligned: bool,
+) -> Result<MethodScores> {
     let mut found = Vec::new();
     let mut add = |method: &'static str, distance: &dyn Fn(usize) -> f64| {
-        let distances: Vec<f64> = (0..n).map(distance).collect();
-        // Of a shape that is alone in its class, nothing can be found.
-        let scores = Scores::of_query(&rank_row(&distances, own), own, &gallery.labels).unwrap_or_default();
-        found.push(Found { method, nn: scores.nn, map: scores.map });
+        let scores = gallery.scores(query, distance);
+        found.push((method, [scores.nn, scores.map]));
     };
     for kind in SignatureKind::ALL {
-        let signature = query.signature(kind).context("a signature of every kind")?;
+        let signature = description.signature(kind).context("a signature of every kind")?;
         add(kind.name(), &|i| {
             gallery.described[i].signature(kind).map_or(f64::NAN, |s| signature.distance(s))
         });
     }
-    let query = query.prepare()?;
-    let fused: Vec<f64> =
-        gallery.prepared.iter().map(|shape| ShapeMetric::fused(query.fused(), shape.fused())).collect();
-    add(FUSED, &|i| fused[i]);
+    let shape = description.prepare()?;
+    add(FUSED, &|i| ShapeMetric::fused(shape.fused(), prepared[i].fused()));
     if aligned {
-        let pairs = gallery.prepared.iter().map(|shape| {
-            let pair = ShapePair::new(ShapeMetric::default(), [&query, shape]);
+        let pairs = prepared.iter().map(|other| {
+            let pair = ShapePair::new(ShapeMetric::default(), [&shape, other]);
             (pair.best().distance(FormDistance::NearestNeighborRms), pair.distance().combined)
         });
         let pairs: Vec<(f64, f64)> = pairs.collect();
@@ -136,30 +113,29 @@ fn scores(gallery: &Gallery, query: &ShapeDescription, own: usize, aligned: bool
 }
 
 /// The means over queries.
-fn means(queries: &[Vec<Found>]) -> Vec<Found> {
-    let n = queries.len().max(1) as f64;
+fn means(queries: &[MethodScores]) -> MethodScores {
     let methods = queries.first().map_or(&[][..], |found| found);
-    let mean = |(i, first): (usize, &Found)| Found {
-        method: first.method,
-        nn: queries.iter().map(|found| found[i].nn).sum::<f64>() / n,
-        map: queries.iter().map(|found| found[i].map).sum::<f64>() / n,
-    };
-    methods.iter().enumerate().map(mean).collect()
+    let over = |i: usize, score: usize| mean(queries.iter().map(|found| found[i].1[score]));
+    methods.iter().enumerate().map(|(i, (method, _))| (*method, [over(i, 0), over(i, 1)])).collect()
+}
+
+fn record(stage: &str, found: &MethodScores, measured: &mut MeasuredNumbers) {
+    for (method, scores) in found {
+        note(measured, &format!("{stage} {method}"), SCORES.into_iter().zip(*scores));
+    }
 }
 
 /// The panels of one kind: nearest neighbours, and mean average precision.
-fn panels_of(kind: DamageKind, curves: &[(usize, Vec<Found>)]) -> Vec<CurvesPanel> {
-    let score = |name: &str, value: &dyn Fn(&Found) -> f64| {
-        let methods = curves.first().map_or(&[][..], |(_, found)| found);
-        let series = methods.iter().map(|first| {
-            let at = |(strength, found): &(usize, Vec<Found>)| {
-                let own = found.iter().find(|f| f.method == first.method)?;
-                Some(point(*strength as f64, &[value(own)]))
+fn panels_of(kind: DamageKind, curves: &[(usize, MethodScores)]) -> [CurvesPanel; 2] {
+    let methods = curves.first().map_or(&[][..], |(_, found)| found);
+    [("NN", 0), ("mAP", 1)].map(|(name, score)| {
+        let series = methods.iter().map(|(method, _)| {
+            let at = |(strength, found): &(usize, MethodScores)| {
+                let (_, own) = found.iter().find(|(other, _)| other == method)?;
+                Some(point(*strength as f64, &[own[score]]))
             };
-            Series { name: first.method.to_owned(), points: curves.iter().filter_map(at).collect() }
+            Series { name: (*method).to_owned(), points: curves.iter().filter_map(at).collect() }
         });
-        let title = format!("{}: {name}", kind.name());
-        panel(title, linear("strength"), linear(name), series.collect())
-    };
-    vec![score("NN", &|f| f.nn), score("mAP", &|f| f.map)]
+        panel(format!("{}: {name}", kind.name()), linear("strength"), linear(name), series.collect())
+    })
 }

@@ -6,69 +6,73 @@
 use std::time::Instant;
 
 use anyhow::Result;
-use canonform::{EmbedMethod, FormOptions, Samples, Surface, embed};
+use base::terminal::with_peak_bytes;
+use canonform::{Surface, embed};
 use datasets::{ArticulatedOptions, Family, articulated_shape};
 use mesh::RepairOptions;
-use report::results::{CurvesResults, Series};
+use report::results::Series;
+use serde::Deserialize;
 use surface::VertexId;
-use terminal::with_peak_bytes;
 
+use super::Experiment;
 use crate::context::Context;
-use crate::specimen::Distances;
-use crate::sweep::{Measured, curves, log, panel, places, series};
+use crate::specimen::{Distances, low_rank};
+use crate::sweep::{MeasuredNumbers, curves, log, panel, places, series};
 
 /// The curves of time.
 const STEPS: [&str; 3] = ["preparation", "map", "NMDS"];
 
 const MIB: f64 = (1u64 << 20) as f64;
 
-pub(crate) fn run(context: &Context<'_>) -> Result<()> {
-    let config = &context.config;
-    let mut seconds = vec![vec![Vec::new(); config.runs]; STEPS.len()];
-    let mut memory = vec![Vec::new(); config.runs];
-    context.observer.begin("scaling", config.counts.len() * (config.runs + 1));
-    for &n_vertices in &config.counts {
-        let options = ArticulatedOptions { seed: context.seed, n_vertices };
-        let body = articulated_shape(Family::David, 0, &options)?;
-        let surface = Surface::new(&body.mesh, &RepairOptions::default())?;
-        drop(body);
-        context.observer.step();
-        for run in 0..config.runs {
-            let ([preparation, map], [whole, mib]) = (of_one_map(&surface)?, of_form(context, &surface)?);
-            for (curve, spent) in seconds.iter_mut().zip([preparation, map, whole]) {
-                curve[run].push(spent);
-            }
-            memory[run].push(mib);
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct ScalingOptions {
+    runs: usize,
+    samples: usize,
+    rank: usize,
+    /// Numbers of vertices.
+    counts: Vec<usize>,
+}
+
+impl Experiment for ScalingOptions {
+    fn run(&self, context: &Context<'_>) -> Result<()> {
+        let mut seconds = vec![vec![Vec::new(); self.runs]; STEPS.len()];
+        let mut memory = vec![Vec::new(); self.runs];
+        context.observer.begin("scaling", self.counts.len() * (self.runs + 1));
+        for &n_vertices in &self.counts {
+            let options = ArticulatedOptions { seed: context.seed, n_vertices };
+            let body = articulated_shape(Family::David, 0, &options)?;
+            let surface = Surface::new(&body.mesh, &RepairOptions::default(), &())?;
+            drop(body);
             context.observer.step();
+            for run in 0..self.runs {
+                let ([preparation, map], [whole, mib]) = (of_one_map(&surface)?, self.of_form(&surface)?);
+                for (curve, spent) in seconds.iter_mut().zip([preparation, map, whole]) {
+                    curve[run].push(spent);
+                }
+                memory[run].push(mib);
+                context.observer.step();
+            }
         }
+        let at = places(&self.counts);
+        let times = curves(&STEPS, &at, &seconds);
+        let memory = series("NMDS", &at, &memory);
+        let mut measured: MeasuredNumbers =
+            times.iter().map(|curve| (format!("{} growth", curve.name), growth(curve))).collect();
+        measured.insert("memory growth".to_owned(), growth(&memory));
+        measured.insert("NMDS seconds".to_owned(), times[2].points.last().map_or(f64::NAN, |p| p.low));
+        let panel = |title: &str, unit: &str, series| {
+            panel(title, log("vertices", ""), log(&title.to_lowercase(), unit), series)
+        };
+        let panels = vec![panel("Time", "seconds", times), panel("Memory", "MiB", vec![memory])];
+        context.publish_curves(panels, context.provenance(&[]), &measured)
     }
-    let at = places(&config.counts);
-    let times = curves(&STEPS, &at, &seconds);
-    let memory = series("NMDS", &at, &memory);
-    let mut measured: Measured =
-        times.iter().map(|curve| (format!("{} growth", curve.name), growth(curve))).collect();
-    measured.insert("memory growth".to_owned(), growth(&memory));
-    measured.insert("NMDS seconds".to_owned(), times[2].points.last().map_or(f64::NAN, |p| p.low));
-    let panel = |title: &str, unit: &str, series| {
-        panel(title, log("vertices", ""), log(&title.to_lowercase(), unit), series)
-    };
-    let panels = vec![panel("Time", "seconds", times), panel("Memory", "MiB", vec![memory])];
-    let caption = format!(
-        "A generated human body in increasingly fine triangulations. Preparation: fast marching is prepared for the surface. \
-         Map: the distances from one vertex, on one thread. NMDS: the whole form with {} samples, preparation included, on {} \
-         threads; memory is that in addition to the mesh. Lines: medians of {} runs; bands: range of the runs.",
-        config.samples,
-        rayon::current_num_threads(),
-        config.runs
-    );
-    let provenance = context.provenance(context.setup(&[]));
-    context.publish(CurvesResults { caption, panels }, provenance, &measured)
 }
 
 /// Seconds for preparing a surface, and for the distances from one vertex in a second run.
 fn of_one_map(surface: &Surface) -> Result<[f64; 2]> {
     let start = Instant::now();
-    let solver = Distances::default().method.prepare(&surface.intrinsic)?;
+    let solver = Distances::default().method.prepare(surface.intrinsic(), &())?;
     let preparation = start.elapsed().as_secs_f64();
     let mut distances = solver.distances(VertexId(0))?;
     let start = Instant::now();
@@ -76,17 +80,15 @@ fn of_one_map(surface: &Surface) -> Result<[f64; 2]> {
     Ok([preparation, start.elapsed().as_secs_f64()])
 }
 
-/// Seconds and MiB for a canonical form.
-fn of_form(context: &Context<'_>, surface: &Surface) -> Result<[f64; 2]> {
-    let options = FormOptions {
-        samples: Samples::Count(context.config.samples),
-        method: EmbedMethod::low_rank(context.config.rank),
-        ..FormOptions::default()
-    };
-    let start = Instant::now();
-    let (embedded, peak_bytes) = with_peak_bytes(|| embed(surface, &options, &()));
-    embedded?;
-    Ok([start.elapsed().as_secs_f64(), peak_bytes as f64 / MIB])
+impl ScalingOptions {
+    /// Seconds and MiB for a canonical form.
+    fn of_form(&self, surface: &Surface) -> Result<[f64; 2]> {
+        let options = low_rank(self.samples, self.rank, 0);
+        let start = Instant::now();
+        let (embedded, peak_bytes) = with_peak_bytes(|| embed(surface, &options, &()));
+        embedded?;
+        Ok([start.elapsed().as_secs_f64(), peak_bytes as f64 / MIB])
+    }
 }
 
 /// The exponent of the least values of a curve: the slope of the line that fits their logarithms best.

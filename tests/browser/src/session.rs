@@ -1,18 +1,13 @@
-//! WebDriver: JSON over HTTP (<https://www.w3.org/TR/webdriver2/>).
+//! chromedriver, and WebDriver: JSON over HTTP (<https://www.w3.org/TR/webdriver2/>).
 
-use std::path::Path;
+use std::io::{BufRead, BufReader};
+use std::path::{Path, PathBuf};
+use std::process::{Child, ChildStdout, Command, Stdio};
 use std::time::Duration;
 
+use anyhow::{Context, Result, bail};
 use serde_json::{Value, json};
-use ureq::{Agent, Body, http::Response};
-
-use crate::BrowserError;
-
-/// A browser window, closed when dropped.
-pub(crate) struct Session {
-    agent: Agent,
-    address: String,
-}
+use ureq::Agent;
 
 /// Headless, without a sandbox (containers do not provide one), with WebGL in software, and without network access of its
 /// own: only names of this machine are resolved.
@@ -32,16 +27,49 @@ const ARGUMENTS: [&str; 13] = [
     "--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE 127.0.0.1, EXCLUDE localhost",
 ];
 
+/// A browser window of a chromedriver of its own, both closed when dropped.
+pub(crate) struct Session {
+    driver: Child,
+    /// Stays open, because the driver stops when it cannot print.
+    _output: BufReader<ChildStdout>,
+    agent: Agent,
+    address: String,
+}
+
+/// The first of some programs in `PATH`; the error says how to install it.
+pub(crate) fn program(names: &[&str]) -> Result<PathBuf> {
+    let folders = std::env::var_os("PATH").unwrap_or_default();
+    let mut paths =
+        names.iter().flat_map(|name| std::env::split_paths(&folders).map(move |path| path.join(name)));
+    paths.find(|path| path.is_file()).with_context(|| {
+        let name = names[0];
+        format!("{name} is not installed; the browser tests need it (on Debian: apt-get install chromium chromium-driver)")
+    })
+}
+
 impl Session {
-    pub(crate) fn new(port: u16, browser: &Path, profile: &Path) -> Result<Self, BrowserError> {
-        let config = Agent::config_builder()
-            .http_status_as_error(false)
-            .proxy(None)
-            .timeout_global(Some(Duration::from_secs(120)))
-            .build();
-        let mut session =
-            Self { agent: config.new_agent(), address: format!("http://127.0.0.1:{port}/session") };
-        let profile = format!("--user-data-dir={}", profile.join("profile").display());
+    /// Starts the programs. Their temporary files, and the profile, are in `folder`.
+    pub(crate) fn start([browser, driver]: &[PathBuf; 2], folder: &Path) -> Result<Self> {
+        let mut command = Command::new(driver);
+        command.arg("--port=0").env("TMPDIR", folder).stdin(Stdio::null()).stderr(Stdio::null());
+        let mut driver = command.stdout(Stdio::piped()).spawn().context("chromedriver")?;
+        let mut output = BufReader::new(driver.stdout.take().context("a pipe")?);
+        let mut line = String::new();
+        // `ChromeDriver was started successfully on port 12345.`
+        let port = loop {
+            line.clear();
+            if output.read_line(&mut line)? == 0 {
+                bail!("chromedriver did not start: run it on a command line");
+            }
+            if let Some((_, port)) = line.split_once("started successfully on port ") {
+                break port.trim().trim_end_matches('.').to_owned();
+            }
+        };
+        let config = Agent::config_builder().http_status_as_error(false).proxy(None);
+        let agent = config.timeout_global(Some(Duration::from_secs(120))).build().new_agent();
+        let address = format!("http://127.0.0.1:{port}/session");
+        let mut session = Self { driver, _output: output, agent, address };
+        let profile = format!("--user-data-dir={}", folder.join("profile").display());
         let arguments: Vec<&str> = ARGUMENTS.into_iter().chain([profile.as_str()]).collect();
         let capabilities = json!({
             "browserName": "chrome",
@@ -52,28 +80,23 @@ impl Session {
             },
             "goog:loggingPrefs": { "browser": "ALL", "performance": "ALL" },
         });
-        let answer = session.send("", &json!({ "capabilities": { "alwaysMatch": capabilities } }))?;
-        match answer["sessionId"].as_str() {
-            Some(id) => session.address = format!("{}/{id}", session.address),
-            None => return Err(BrowserError::Connection(format!("no session in {answer}"))),
-        }
+        let answer = session.post("", &json!({ "capabilities": { "alwaysMatch": capabilities } }))?;
+        let id = answer["sessionId"].as_str().with_context(|| format!("no session in {answer}"))?;
+        session.address = format!("{}/{id}", session.address);
         Ok(session)
     }
 
-    /// Sends a command and returns the `value` of the response.
-    pub(crate) fn post(&self, command: &str, body: &Value) -> Result<Value, BrowserError> {
-        self.send(&format!("/{command}"), body)
-    }
-
-    pub(crate) fn get(&self, command: &str) -> Result<Value, BrowserError> {
-        let answer = self.agent.get(format!("{}/{command}", self.address)).call();
-        value(command, answer)
-    }
-
-    fn send(&self, command: &str, body: &Value) -> Result<Value, BrowserError> {
+    /// Sends a command, such as `/url`, and returns the `value` of the response.
+    pub(crate) fn post(&self, command: &str, body: &Value) -> Result<Value> {
         let request = self.agent.post(format!("{}{command}", self.address));
         let answer = request.content_type("application/json; charset=utf-8").send(body.to_string());
-        value(command.trim_start_matches('/'), answer)
+        let mut answer = answer.with_context(|| format!("chromedriver does not respond to {command}"))?;
+        let text = answer.body_mut().with_config().limit(1 << 30).read_to_string()?;
+        let value = serde_json::from_str::<Value>(&text).context(text)?["value"].take();
+        if let Some(kind) = value["error"].as_str().filter(|_| !answer.status().is_success()) {
+            bail!("{command}: {kind}: {}", value["message"].as_str().unwrap_or_default());
+        }
+        Ok(value)
     }
 }
 
@@ -81,35 +104,7 @@ impl Drop for Session {
     fn drop(&mut self) {
         // Closes the browser.
         let _ = self.agent.delete(&self.address).call();
-    }
-}
-
-fn value(command: &str, answer: Result<Response<Body>, ureq::Error>) -> Result<Value, BrowserError> {
-    let lost = |error: ureq::Error| BrowserError::Connection(format!("{command}: {error}"));
-    let mut answer = answer.map_err(lost)?;
-    let text = answer.body_mut().with_config().limit(1 << 30).read_to_string().map_err(lost)?;
-    let mut json: Value = serde_json::from_str(&text)
-        .map_err(|error| BrowserError::Connection(format!("{command}: {error} in {text}")))?;
-    let value = json["value"].take();
-    match value["error"].as_str() {
-        Some(kind) if !answer.status().is_success() => Err(BrowserError::Refused {
-            command: command.to_owned(),
-            kind: kind.to_owned(),
-            message: value["message"].as_str().unwrap_or_default().to_owned(),
-        }),
-        _ => Ok(value),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_closed_port_is_an_error() {
-        // Bound and closed at once, so nothing listens there.
-        let port = std::net::TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
-        let error = Session::new(port, Path::new("x"), Path::new("y")).err().unwrap();
-        assert!(matches!(error, BrowserError::Connection(_)), "{error}");
+        let _ = self.driver.kill();
+        let _ = self.driver.wait();
     }
 }

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use browser::{Browser, BrowserError};
+use browser::Browser;
 
 const PAGE: &str = r#"<!doctype html><meta charset="utf-8"><meta name="viewport" content="width=device-width">
 <style>body { margin: 0 } #pad { width: 200px; height: 200px; background: silver }
@@ -89,12 +89,8 @@ fn requests_and_errors_are_recorded_and_other_machines_are_unreachable() {
     assert!(console.iter().any(|m| m.text.contains("Content Security Policy")), "{console:?}");
 
     let error = browser.eval("throw new Error('of the page')").unwrap_err();
-    assert!(
-        matches!(&error, BrowserError::Refused { .. }) && error.to_string().contains("of the page"),
-        "{error}"
-    );
-    let error = browser.upload("body", &[Path::new("/no/such/file")]).unwrap_err();
-    assert!(matches!(error, BrowserError::Start(_)), "{error}");
+    assert!(error.to_string().contains("of the page"), "{error}");
+    browser.upload("body", &[Path::new("/no/such/file")]).unwrap_err();
     browser.eval("throw 1").unwrap_err();
 }
 

@@ -1,6 +1,7 @@
 //! Pages and their blocks of code.
 
 use std::fs;
+use std::io;
 use std::path::{Path, PathBuf};
 
 /// What a block of code is.
@@ -18,7 +19,7 @@ pub enum Language {
 
 /// A block of code.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Block {
+pub struct CodeBlock {
     /// The line of the page on which its text begins, counted from 1.
     pub line: usize,
     /// What it is.
@@ -41,7 +42,7 @@ impl Chapter {
     ///
     /// # Errors
     /// If the file cannot be read.
-    pub fn read(path: &Path) -> std::io::Result<Self> {
+    pub fn read(path: &Path) -> io::Result<Self> {
         Ok(Self { path: path.to_owned(), text: fs::read_to_string(path)? })
     }
 
@@ -49,24 +50,15 @@ impl Chapter {
     ///
     /// # Errors
     /// If a folder or a file cannot be read.
-    pub fn all(folder: &Path) -> std::io::Result<Vec<Self>> {
-        let mut paths =
-            fs::read_dir(folder)?.map(|entry| Ok(entry?.path())).collect::<std::io::Result<Vec<_>>>()?;
-        paths.sort();
-        let mut pages = Vec::new();
-        for path in paths {
-            if path.is_dir() {
-                pages.extend(Self::all(&path)?);
-            } else if path.extension().is_some_and(|extension| extension == "md") {
-                pages.push(Self::read(&path)?);
-            }
-        }
-        Ok(pages)
+    pub fn all(folder: &Path) -> io::Result<Vec<Self>> {
+        let pattern = folder.join("**/*.md");
+        let paths = glob::glob(&pattern.to_string_lossy()).map_err(io::Error::other)?;
+        paths.map(|path| Self::read(&path.map_err(io::Error::other)?)).collect()
     }
 
     /// The blocks of code of the page.
     #[must_use]
-    pub fn blocks(&self) -> Vec<Block> {
+    pub fn blocks(&self) -> Vec<CodeBlock> {
         blocks(&self.text)
     }
 
@@ -84,9 +76,9 @@ impl Chapter {
 
 /// The blocks of code of a page. Only fences of three backquotes at the start of a line count.
 #[must_use]
-pub fn blocks(text: &str) -> Vec<Block> {
+pub fn blocks(text: &str) -> Vec<CodeBlock> {
     let mut blocks = Vec::new();
-    let mut open: Option<Block> = None;
+    let mut open: Option<CodeBlock> = None;
     for (number, line) in text.lines().enumerate() {
         match (line.strip_prefix("```"), &mut open) {
             (Some(_), block @ Some(_)) => blocks.extend(block.take()),
@@ -97,7 +89,7 @@ pub fn blocks(text: &str) -> Vec<Block> {
                     "sh,norun" => Language::Unrun,
                     _ => Language::Other,
                 };
-                open = Some(Block { line: number + 2, language, text: String::new() });
+                open = Some(CodeBlock { line: number + 2, language, text: String::new() });
             }
             (None, Some(block)) => {
                 block.text += line;

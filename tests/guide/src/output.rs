@@ -11,7 +11,12 @@
 pub fn matches(shown: &str, printed: &str) -> bool {
     let shown: Vec<&str> = lines(shown.lines()).collect();
     let printed: Vec<&str> = lines(without_progress(printed)).collect();
-    match_lines(&shown, &printed)
+    equal(&shown, &printed, &|shown, line| {
+        let are_seconds = shown[0].starts_with("seconds ");
+        equal(&words(shown[0]), &words(line), &|shown, word| {
+            match_word(shown[0], word, if are_seconds { Some("s") } else { shown.get(1).copied() })
+        })
+    })
 }
 
 /// The lines that do not report progress.
@@ -40,15 +45,14 @@ fn is_progress(line: &str) -> bool {
     })
 }
 
-fn match_lines(shown: &[&str], printed: &[&str]) -> bool {
+/// Whether all elements are the `same` as those that are shown, where `...` stands for any number of them. `same` gets the
+/// shown element with those behind it.
+fn equal(shown: &[&str], printed: &[&str], same: &dyn Fn(&[&str], &str) -> bool) -> bool {
     match (shown.split_first(), printed.split_first()) {
         (None, rest) => rest.is_none(),
-        (Some((&"...", rest)), _) => (0..=printed.len()).any(|n| match_lines(rest, &printed[n..])),
+        (Some((&"...", rest)), _) => (0..=printed.len()).any(|n| equal(rest, &printed[n..], same)),
         (Some(_), None) => false,
-        (Some((line, shown)), Some((first, printed))) => {
-            let are_seconds = line.starts_with("seconds ");
-            match_words(&words(line), &words(first), are_seconds) && match_lines(shown, printed)
-        }
+        (Some((_, rest)), Some((first, others))) => same(shown, first) && equal(rest, others, same),
     }
 }
 
@@ -103,20 +107,6 @@ fn number_length(text: &str) -> usize {
         }
     }
     end
-}
-
-fn match_words(shown: &[&str], printed: &[&str], are_seconds: bool) -> bool {
-    match (shown.split_first(), printed.split_first()) {
-        (None, rest) => rest.is_none(),
-        (Some((&"...", rest)), _) => {
-            (0..=printed.len()).any(|n| match_words(rest, &printed[n..], are_seconds))
-        }
-        (Some(_), None) => false,
-        (Some((word, shown)), Some((first, printed))) => {
-            let unit = if are_seconds { Some("s") } else { shown.first().copied() };
-            match_word(word, first, unit) && match_words(shown, printed, are_seconds)
-        }
-    }
 }
 
 /// Whether a word is the shown one; `unit` is the word that follows in the guide.

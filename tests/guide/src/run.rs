@@ -9,7 +9,7 @@ use std::process::Command;
 
 use tempfile::TempDir;
 
-use crate::block::{Block, Chapter, Language};
+use crate::block::{Chapter, CodeBlock, Language};
 use crate::output::{matches, without_progress};
 
 /// A command that was run.
@@ -58,7 +58,7 @@ impl Run {
 }
 
 /// A command and what the chapter shows of its output.
-struct Step {
+struct GuideStep {
     line: usize,
     command: String,
     shown: Option<String>,
@@ -105,21 +105,21 @@ fn exit_code(command: &str) -> i32 {
     comment.and_then(|(_, code)| code.trim().parse().ok()).unwrap_or(0)
 }
 
-fn steps(block: &Block) -> Vec<Step> {
+fn steps(block: &CodeBlock) -> Vec<GuideStep> {
     match block.language {
         Language::Script => {
-            vec![Step { line: block.line, command: block.text.clone(), shown: None, lines: 0..0 }]
+            vec![GuideStep { line: block.line, command: block.text.clone(), shown: None, lines: 0..0 }]
         }
         Language::Console => {
-            let mut steps: Vec<Step> = Vec::new();
+            let mut steps: Vec<GuideStep> = Vec::new();
             for (number, line) in block.text.lines().enumerate() {
                 match (line.strip_prefix("$ "), steps.last_mut()) {
                     (Some(command), _) => {
                         let next = block.line + number;
                         let (command, shown) = (command.to_owned(), Some(String::new()));
-                        steps.push(Step { line: next, command, shown, lines: next..next });
+                        steps.push(GuideStep { line: next, command, shown, lines: next..next });
                     }
-                    (None, Some(Step { command, shown: Some(shown), lines, .. })) => {
+                    (None, Some(GuideStep { command, shown: Some(shown), lines, .. })) => {
                         lines.end += 1;
                         if shown.is_empty() && command.ends_with('\\') {
                             *command += &format!("\n{}", line.strip_prefix("> ").unwrap_or(line));

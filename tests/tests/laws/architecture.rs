@@ -1,9 +1,9 @@
 //! Which crate may depend on which.
 
-use cargo_metadata::{DependencyKind, Metadata, MetadataCommand, Package};
+use cargo_metadata::{DependencyKind, Package};
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::support::workspace_root;
+use crate::support::{metadata, workspace_root};
 
 /// The crates of the workspace that a crate may depend on.
 enum May {
@@ -11,72 +11,38 @@ enum May {
     KnowEverything,
 }
 
-/// Limits on time and memory reach every computation.
-const EVERYWHERE: [&str; 1] = ["budget"];
+/// Budgets, progress and files reach everything.
+const EVERYWHERE: [&str; 1] = ["base"];
 
 /// All crates of the workspace, by folder name; packages are called `canonform-FOLDER`.
 const RULES: [(&str, May); 23] = [
-    ("budget", May::Know(&[])),
-    ("files", May::Know(&[])),
+    ("base", May::Know(&[])),
     ("surface", May::Know(&[])),
     ("linalg", May::Know(&[])),
-    ("mesh", May::Know(&["surface", "files"])),
+    ("mesh", May::Know(&["surface"])),
     ("datasets", May::Know(&["mesh", "surface"])),
     ("geodesics", May::Know(&["surface", "linalg"])),
     ("nmds", May::Know(&["linalg"])),
     ("retrieval", May::Know(&["linalg"])),
-    ("index", May::Know(&["retrieval", "files"])),
+    ("collection", May::Know(&["mesh"])),
+    ("fields", May::Know(&["mesh", "surface", "linalg", "geodesics", "nmds"])),
+    ("relations", May::Know(&["mesh", "surface", "linalg", "descriptors"])),
+    ("index", May::Know(&["retrieval"])),
     ("descriptors", May::Know(&["mesh", "surface", "linalg", "nmds"])),
     (
         "canonform",
-        May::Know(&[
-            "files",
-            "surface",
-            "mesh",
-            "linalg",
-            "geodesics",
-            "nmds",
-            "retrieval",
-            "index",
-            "descriptors",
-        ]),
+        May::Know(&["surface", "mesh", "linalg", "geodesics", "nmds", "retrieval", "index", "descriptors"]),
     ),
-    ("view", May::Know(&["mesh", "surface", "files"])),
-    ("report", May::Know(&["view", "mesh", "surface", "retrieval", "linalg", "files"])),
-    ("terminal", May::Know(&["canonform", "files"])),
-    ("server", May::Know(&["canonform", "view", "report", "index", "mesh", "surface"])),
-    (
-        "cli",
-        May::Know(&[
-            "canonform",
-            "view",
-            "report",
-            "index",
-            "retrieval",
-            "mesh",
-            "surface",
-            "files",
-            "server",
-            "terminal",
-            "datasets",
-        ]),
-    ),
-    ("py", May::Know(&["canonform", "datasets", "files", "index", "mesh", "surface", "view"])),
+    ("report", May::Know(&["mesh", "surface", "retrieval", "linalg"])),
+    ("server", May::Know(&["canonform", "report"])),
+    ("cli", May::Know(&["canonform", "report", "server", "datasets"])),
+    ("py", May::Know(&["canonform", "datasets", "report"])),
     ("bench", May::Know(&[])),
     ("browser", May::Know(&[])),
     ("guide", May::Know(&[])),
     ("experiments", May::KnowEverything),
     ("tests", May::KnowEverything),
 ];
-
-pub(crate) fn metadata() -> Metadata {
-    MetadataCommand::new()
-        .manifest_path(workspace_root().join("Cargo.toml"))
-        .no_deps()
-        .other_options(["--offline".to_owned()])
-        .exec()
-        .unwrap()
-}
 
 fn normal_dependencies(package: &Package) -> BTreeSet<&str> {
     let normal = package.dependencies.iter().filter(|d| d.kind == DependencyKind::Normal);
@@ -130,5 +96,55 @@ fn only_linalg_depends_on_the_numerical_backend() {
             "the crate `{}` depends on `faer`; only `linalg` may",
             package.name
         );
+    }
+}
+
+/// The files with this extension below a folder.
+fn files_below(folder: &std::path::Path, extension: &str) -> Vec<std::path::PathBuf> {
+    let entries = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+    let files = entries.flat_map(|path| match path.is_dir() {
+        true => files_below(&path, extension),
+        false => vec![path],
+    });
+    files.filter(|path| path.extension().is_some_and(|found| found == extension)).collect()
+}
+
+/// The names of options that are also words of commands or of reports.
+const WORDS: [&str; 20] = [
+    "method",
+    "samples",
+    "target_stress",
+    "dim",
+    "geodesic",
+    "update",
+    "obtuse",
+    "components",
+    "weld",
+    "rank",
+    "sampling",
+    "regularization",
+    "alpha",
+    "iterations",
+    "tolerance",
+    "stress",
+    "points",
+    "size",
+    "distance",
+    "eigenfunctions",
+];
+
+#[test]
+fn programs_take_options_from_the_schema() {
+    let names: Vec<&str> = canonform::settings::SCHEMA.iter().map(|option| option.name).collect();
+    for program in ["cli", "py", "server"] {
+        for file in files_below(&workspace_root().join("crates").join(program).join("src"), "rs") {
+            let text = std::fs::read_to_string(&file).unwrap();
+            let is_word = |c: char| c.is_alphanumeric() || c == '_';
+            let words: BTreeSet<&str> = text.split(|c| !is_word(c)).collect();
+            for name in names.iter().filter(|name| !WORDS.contains(name)) {
+                let file = file.display();
+                assert!(!words.contains(name), "{file} names the option `{name}`; the schema declares it");
+            }
+        }
     }
 }

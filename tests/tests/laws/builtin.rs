@@ -1,8 +1,9 @@
 //! Expected results on the built-in dataset.
 
-use canonform::{DescribeOptions, FormOptions, describe, embed, form_matches};
+use canonform::{DescribeOptions, FormOptions, describe, embed, form_alignments};
+use canonform::{Handedness, Relation};
 use datasets::{ArticulatedOptions, articulated};
-use descriptors::{Boundary, Handedness, Normalization, ShapeMetric, ShapePair, VerdictKind};
+use descriptors::{Boundary, Normalization, ShapeMetric, ShapePair};
 use rayon::prelude::*;
 use retrieval::{Labels, evaluate};
 
@@ -20,7 +21,7 @@ fn canonical_forms_retrieve_their_families() {
             embed(&surface, &FormOptions::default(), &()).unwrap().form(&surface).unwrap()
         })
         .collect();
-    let distances = form_matches(&forms, Normalization::Raw, &()).unwrap().distances;
+    let distances = form_alignments(&forms, Normalization::Raw, &()).unwrap().distances;
     let scores = evaluate(&distances, &labels, 1).unwrap();
     println!("{} shapes: NN {}, mAP {:.4}", scores.n, scores.mean.nn, scores.mean.map);
     assert_eq!((scores.n, scores.mean.nn), (30, 1.0));
@@ -28,52 +29,56 @@ fn canonical_forms_retrieve_their_families() {
 }
 
 #[test]
-fn verdicts_distinguish_poses_from_families() {
+fn distances_distinguish_poses_from_families() {
     let options = ArticulatedOptions { n_vertices: 1000, ..ArticulatedOptions::default() };
     let shapes = articulated(&options).unwrap();
     let described: Vec<_> = shapes
         .par_iter()
         .map(|shape| {
-            let description = describe(&surface(&shape.mesh), &DescribeOptions::default());
+            let description = describe(&surface(&shape.mesh), &DescribeOptions::default(), &());
             description.and_then(|description| description.prepare()).unwrap()
         })
         .collect();
     let pairs: Vec<(usize, usize)> =
         (0..shapes.len()).flat_map(|i| (i + 1..shapes.len()).map(move |j| (i, j))).collect();
-    let verdicts: Vec<_> = pairs
+    let distances: Vec<_> = pairs
         .par_iter()
         .map(|&(i, j)| {
             let pair = ShapePair::new(ShapeMetric::default(), [&described[i], &described[j]]);
             let back = ShapePair::new(ShapeMetric::default(), [&described[j], &described[i]]);
-            let [there, back] = [pair, back].map(|pair| pair.verdict(Handedness::Unknown));
+            let [there, back] = [pair, back].map(|pair| pair.distance());
             let name = format!("{} {}", shapes[i].name, shapes[j].name);
-            assert!((there.distance / back.distance - 1.0).abs() < 0.01, "{name}: {there:?} {back:?}");
-            assert!((there.confidence - back.confidence).abs() < 0.05, "{name}: {there:?} {back:?}");
+            assert!((there.combined / back.combined - 1.0).abs() < 0.01, "{name}: {there:?} {back:?}");
+            let [one, other] =
+                [there, back].map(|found| Relation::by_distance(found, 1.0, Handedness::Unknown));
+            assert!((one.confidence - other.confidence).abs() < 0.05, "{name}: {one:?} {other:?}");
             let is_family = shapes[i].label == shapes[j].label;
             assert_eq!(there.may_be_same_class(), is_family, "{name}: {there:?}");
-            assert_eq!(there.kind == VerdictKind::Different, !is_family, "{name}: {there:?}");
-            (is_family, there.kind)
+            assert_eq!(there.is_different(), !is_family, "{name}: {there:?}");
+            (is_family, there)
         })
         .collect();
-    let poses: Vec<_> = verdicts.iter().filter(|(is_family, _)| *is_family).map(|(_, kind)| kind).collect();
-    let same = poses.iter().filter(|kind| ***kind == VerdictKind::SameShape).count();
-    println!("{same} of {} pairs of poses are firmly one shape", poses.len());
+    let poses: Vec<_> =
+        distances.iter().filter(|(is_family, _)| *is_family).map(|(_, found)| found).collect();
+    let same = poses.iter().filter(|found| found.is_same_shape()).count();
+    println!("{same} of {} pairs of poses are certainly one shape", poses.len());
     assert!(2 * same > poses.len(), "{same} of {}", poses.len());
 }
 
 #[test]
-fn the_manual_lists_the_limits_of_verdicts() {
-    let manual = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/program.md")).unwrap();
+fn the_guide_lists_the_limits_of_the_combined_distance() {
+    let manual =
+        std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/guide/compare.md")).unwrap();
     let limits =
         |boundary: Boundary| [0.9, 0.1].map(|probability| format!("{:.2}", boundary.distance(probability)));
     let ([shape, class], [near, far]) = (limits(ShapeMetric::SAME_SHAPE), limits(ShapeMetric::SAME_CLASS));
     for row in [
-        format!("below {shape} |"),
-        format!("{shape} to {class} |"),
-        format!("{class} to {near} |"),
-        format!("{near} to {far} |"),
-        format!("above {far} |"),
+        format!("| below {shape} |"),
+        format!("| {shape} to {class} |"),
+        format!("| {class} to {near} |"),
+        format!("| {near} to {far} |"),
+        format!("| above {far} |"),
     ] {
-        assert!(manual.contains(&row), "docs/program.md does not list `{row}`");
+        assert!(manual.contains(&row), "docs/guide/compare.md does not list `{row}`");
     }
 }

@@ -1,8 +1,9 @@
 //! Dense maps between surfaces: exact cases, invariances, and known partners.
 
-use canonform::{CorrespondOptions, Correspondence, MatchedSurface, VertexMap, correspond};
+use canonform::relations::MapKind;
+use canonform::{CorrespondOptions, Correspondence, MappedSurface, VertexMap, correspond};
 use datasets::{ArticulatedOptions, Family, RestedShape, articulated_at_rest};
-use descriptors::{MapKind, NearestPoints};
+use descriptors::NearestPoints;
 use geodesics::Method;
 use mesh::{TriMesh, shapes};
 use nalgebra::{Point3, Rotation3};
@@ -10,8 +11,8 @@ use surface::VertexId;
 
 use crate::support::{body, surface};
 
-fn prepared(mesh: &TriMesh) -> MatchedSurface {
-    MatchedSurface::new(surface(mesh), &CorrespondOptions::default(), &()).unwrap()
+fn prepared(mesh: &TriMesh) -> MappedSurface {
+    MappedSurface::new(surface(mesh), &CorrespondOptions::default(), &()).unwrap()
 }
 
 fn maps(a: &TriMesh, b: &TriMesh) -> Correspondence {
@@ -74,7 +75,7 @@ fn motions_scale_and_numbering_change_no_map() {
         assert!(share(&images(of_kind(&moved, kind)), |x| expected[x]) > 0.99);
         // Other samples: some vertices go to a neighbour.
         let other = images(of_kind(&renumbered, kind));
-        let solver = Method::default().prepare(&b.intrinsic()).unwrap();
+        let solver = Method::default().prepare(&b.intrinsic(), &()).unwrap();
         let gap = |x: usize| {
             solver.distances(VertexId::from(n - 1 - other[x])).unwrap()[expected[x]] / b.area().sqrt()
         };
@@ -126,7 +127,7 @@ fn poses_are_mapped_to_their_true_partners() {
     for (family, poses) in [(Family::Cat, [0, 3]), (Family::Centaur, [1, 2]), (Family::David, [2, 5])] {
         let [a, b]: [RestedShape; 2] = poses.map(|pose| rested(family, pose));
         let found = maps(&a.shape.mesh, &b.shape.mesh);
-        let solver = Method::default().prepare(&b.shape.mesh.intrinsic()).unwrap();
+        let solver = Method::default().prepare(&b.shape.mesh.intrinsic(), &()).unwrap();
         let partners = NearestPoints::new(b.rest.positions.clone()).unwrap();
         for (kind, sign, most) in [(MapKind::Direct, 1.0, 0.03), (MapKind::Mirrored, -1.0, 0.03)] {
             let image = images(of_kind(&found, kind));

@@ -2,27 +2,26 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
-use std::path::Path as FilePath;
+use std::path::Path;
 
-use crate::architecture::metadata;
-use crate::packaging::rust_files;
+use crate::support::{metadata, rust_files};
 
 /// The segments of a path, without `crate`.
-type Path = Vec<String>;
+type ModulePath = Vec<String>;
 
 /// The text of each module of a crate, without comments and tests.
-type Modules = BTreeMap<Path, String>;
+type Modules = BTreeMap<ModulePath, String>;
 
-fn path(text: &str) -> Path {
+fn path(text: &str) -> ModulePath {
     text.split("::").map(str::trim).filter(|s| !s.is_empty()).map(str::to_owned).collect()
 }
 
 /// The modules below a `src` folder. Modules of tests do not count.
-fn modules(src: &FilePath) -> Modules {
+fn modules(src: &Path) -> Modules {
     let mut modules = Modules::new();
     for file in rust_files(src) {
         let relative = file.strip_prefix(src).unwrap().with_extension("");
-        let mut module: Path = relative.iter().map(|part| part.to_str().unwrap().to_owned()).collect();
+        let mut module: ModulePath = relative.iter().map(|part| part.to_str().unwrap().to_owned()).collect();
         module.pop_if(|name| ["lib", "main", "mod"].contains(&name.as_str()));
         if !module.iter().any(|name| ["tests", "testing"].contains(&name.as_str())) {
             let text = fs::read_to_string(&file).unwrap();
@@ -37,7 +36,7 @@ fn modules(src: &FilePath) -> Modules {
 }
 
 /// Splits `a::{b, c::{d, e}}` into `a::b`, `a::c::d` and `a::c::e`.
-fn expand(tree: &str, start: &Path, paths: &mut Vec<Path>) {
+fn expand(tree: &str, start: &ModulePath, paths: &mut Vec<ModulePath>) {
     let Some((head, rest)) = tree.split_once('{') else {
         let name = tree.split(" as ").next().unwrap_or_default();
         return paths.push([start.as_slice(), &path(name)].concat());
@@ -53,7 +52,7 @@ fn expand(tree: &str, start: &Path, paths: &mut Vec<Path>) {
 }
 
 /// The paths that a module re-exports, and those that it uses.
-fn mentioned(text: &str) -> [Vec<Path>; 2] {
+fn mentioned(text: &str) -> [Vec<ModulePath>; 2] {
     let (mut exported, mut used) = (Vec::new(), Vec::new());
     let mut lines = text.lines().map(str::trim);
     while let Some(line) = lines.next() {
@@ -65,7 +64,7 @@ fn mentioned(text: &str) -> [Vec<Path>; 2] {
                 tree += lines.next().unwrap_or(";");
             }
             let paths = if visibility.is_empty() { &mut used } else { &mut exported };
-            expand(tree.trim_end_matches(';'), &Path::new(), paths);
+            expand(tree.trim_end_matches(';'), &ModulePath::new(), paths);
         } else {
             let words = line.split(|c: char| !(c.is_alphanumeric() || c == '_' || c == ':'));
             used.extend(words.filter(|word| word.contains("::")).map(path));
@@ -75,7 +74,7 @@ fn mentioned(text: &str) -> [Vec<Path>; 2] {
 }
 
 /// The path from the root of the crate; `None` for other crates and local names.
-fn absolute(path: &[String], module: &Path, modules: &Modules) -> Option<Path> {
+fn absolute(path: &[String], module: &ModulePath, modules: &Modules) -> Option<ModulePath> {
     let (first, rest) = path.split_first()?;
     let child = [module.as_slice(), std::slice::from_ref(first)].concat();
     match first.as_str() {
@@ -91,7 +90,11 @@ fn absolute(path: &[String], module: &Path, modules: &Modules) -> Option<Path> {
 }
 
 /// The module that defines the item at a path, found by following re-exports.
-fn definition(item: &Path, exports: &BTreeMap<Path, Path>, modules: &Modules) -> Path {
+fn definition(
+    item: &ModulePath,
+    exports: &BTreeMap<ModulePath, ModulePath>,
+    modules: &Modules,
+) -> ModulePath {
     let mut item = item.clone();
     // No chain of re-exports is longer.
     for _ in 0..8 {
@@ -110,21 +113,21 @@ fn cycles(modules: &Modules) -> Vec<String> {
     let mut uses = BTreeMap::new();
     for (module, text) in modules {
         let [exported, used] = mentioned(text);
-        let absolute = |path: Path| absolute(&path, module, modules);
+        let absolute = |path: ModulePath| absolute(&path, module, modules);
         for target in exported.into_iter().filter_map(absolute) {
             let name = target.last().cloned();
-            exports.insert(module.iter().cloned().chain(name).collect::<Path>(), target);
+            exports.insert(module.iter().cloned().chain(name).collect::<ModulePath>(), target);
         }
         uses.insert(module, used.into_iter().filter_map(absolute).collect::<Vec<_>>());
     }
-    let imports: BTreeMap<&Path, BTreeSet<Path>> = uses
+    let imports: BTreeMap<&ModulePath, BTreeSet<ModulePath>> = uses
         .into_iter()
         .map(|(module, used)| {
             let defined = used.iter().map(|item| definition(item, &exports, modules));
             (module, defined.filter(|other| other != module).collect())
         })
         .collect();
-    let reached = |start: &Path| {
+    let reached = |start: &ModulePath| {
         let (mut seen, mut stack) = (BTreeSet::new(), vec![start]);
         while let Some(next) = stack.pop() {
             stack.extend(
@@ -134,7 +137,7 @@ fn cycles(modules: &Modules) -> Vec<String> {
         seen
     };
     let in_cycles = imports.iter().filter(|(module, _)| reached(module).contains(**module));
-    let name = |module: &Path| format!("crate::{}", module.join("::"));
+    let name = |module: &ModulePath| format!("crate::{}", module.join("::"));
     in_cycles
         .map(|(m, others)| {
             format!("{} -> {}", name(m), others.iter().map(name).collect::<Vec<_>>().join(", "))

@@ -6,7 +6,8 @@ use geodesics::Method;
 use mesh::{RepairOptions, TriMesh};
 use surface::VertexId;
 
-use crate::real_meshes::{data, read_npy};
+use crate::real_meshes::read_npy;
+use crate::support::data;
 use crate::support::{body, moved, permutation, surface};
 
 fn field(surface: &Surface, method: Method) -> DistanceField {
@@ -15,17 +16,17 @@ fn field(surface: &Surface, method: Method) -> DistanceField {
 
 /// What a field says about pairs whose exact distances are known.
 #[derive(Debug, Default)]
-struct Score {
+struct FieldErrors {
     missed: usize,
     /// Mean relative errors before and after near pairs are finished.
     plain: f64,
     finished: f64,
 }
 
-fn scored(field: &DistanceField, pairs: &[[VertexId; 2]], exact: &[f64]) -> Score {
+fn scored(field: &DistanceField, pairs: &[[VertexId; 2]], exact: &[f64]) -> FieldErrors {
     let plain = field.pairs(pairs, Finish::Never, &()).unwrap();
     let finished = field.pairs(pairs, Finish::default(), &()).unwrap();
-    let mut score = Score::default();
+    let mut score = FieldErrors::default();
     for ((plain, finished), exact) in plain.iter().zip(&finished).zip(exact) {
         score.missed += usize::from(*exact < plain.lower || *exact > plain.upper);
         if *exact > 0.0 {
@@ -41,7 +42,7 @@ fn intervals_hold_all_pairs_of_bodies() {
     for family in Family::all() {
         let surface = surface(&body(family));
         let n = surface.n_input_vertices();
-        let solver = Method::Exact.prepare(&surface.intrinsic).unwrap();
+        let solver = Method::Exact.prepare(surface.intrinsic(), &()).unwrap();
         let vertices: Vec<VertexId> = (0..n).map(VertexId::from).collect();
         let columns = solver.distance_columns(&vertices).unwrap();
         let pairs: Vec<_> = vertices.iter().flat_map(|&b| vertices.iter().map(move |&a| [a, b])).collect();
@@ -96,7 +97,9 @@ fn intervals_hold_published_exact_distances_of_real_meshes() {
     let poses = ["cat0", "cat1", "centaur1", "centaur2", "horse0", "wolf0", "wolf1"];
     let poses = poses.map(|name| (name, format!("tosca-lowres/{name}.vert")));
     for (name, path) in scans.into_iter().chain(poses) {
-        let surface = Surface::read(&data.join(path), &RepairOptions::default()).unwrap();
+        let surface =
+            canonform::read_surface(&data.join(path), &RepairOptions::default(), &Default::default(), &())
+                .unwrap();
         let n = surface.n_input_vertices();
         let file = |what| data.join("exact").join(format!("{name}-{what}.npy"));
         let sources: Vec<u32> = read_npy(&file("sources"));

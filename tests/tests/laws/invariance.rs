@@ -8,21 +8,21 @@ use rayon::prelude::*;
 
 use crate::support::surface;
 
-/// Largest combined distance of shapes with the same surface, at 250 vertices and more. A verdict of one shape is firm up to 1.02.
+/// Largest combined distance of shapes with the same surface, at 250 vertices and more. One shape is certain up to 1.02.
 const SAME_SURFACE: f64 = 0.4;
 
 /// The same by one signature, in its unit.
 const SAME_SIGNATURE: f64 = 0.6;
 
 /// Largest combined distance of a shape with 4,000 vertices or more from the damaged one, whose surface is as good as the
-/// same. A verdict of one shape is firm here too.
+/// same. One shape is certain here too.
 const SAME_SHAPE: f64 = 1.0;
 
-/// The same with 1,000 vertices. A verdict of one class is firm up to 2.57.
+/// The same with 1,000 vertices. One class is certain up to 2.57.
 const SAME_COARSE_SHAPE: f64 = 2.45;
 
 fn described(mesh: &TriMesh) -> ShapeDescription {
-    describe(&surface(mesh), &DescribeOptions::default()).unwrap()
+    describe(&surface(mesh), &DescribeOptions::default(), &()).unwrap()
 }
 
 /// The largest change of a signature in its unit, and the combined distance.

@@ -1,6 +1,6 @@
 //! Invariance to folding, motions and renumbering, and up to the unit, to scaling.
 
-use canonform::{EmbedMethod, FormOptions, Samples, StressChoice, form_matches};
+use canonform::{EmbedMethod, FormOptions, Samples, StressChoice, form_alignments};
 use datasets::Family;
 use descriptors::Normalization;
 use geodesics::{FirstSample, Method};
@@ -128,11 +128,11 @@ fn scaled_pairs(pairs: &DistanceMatrix, factor: f64) -> Vec<f64> {
 #[test]
 fn scale_changes_only_the_unit() {
     let mesh = body(Family::Centaur);
-    let solver = marching().prepare(&mesh.intrinsic()).unwrap();
+    let solver = marching().prepare(&mesh.intrinsic(), &()).unwrap();
     let distances = solver.distances(VertexId(5)).unwrap();
     for factor in [1e-3, 1e3] {
         let scaled = moved(&mesh, |p| p * factor);
-        let found = marching().prepare(&scaled.intrinsic()).unwrap().distances(VertexId(5)).unwrap();
+        let found = marching().prepare(&scaled.intrinsic(), &()).unwrap().distances(VertexId(5)).unwrap();
         let expected: Vec<f64> = distances.iter().map(|d| d * factor).collect();
         assert!(gap(&found, &expected) < 1e-12);
     }
@@ -160,7 +160,7 @@ fn normalised_form_distances_do_not_depend_on_size() {
             canonform::embed(&surface, &few_samples(), &()).unwrap().form(&surface).unwrap()
         });
         let forms: Vec<_> = forms.collect();
-        let found = form_matches(&forms, Normalization::UnitArea, &()).unwrap();
+        let found = form_alignments(&forms, Normalization::UnitArea, &()).unwrap();
         found.distances.get(0, 1)
     };
     let one = distances(1.0);

@@ -5,15 +5,16 @@
 //! | `architecture` | which crate may depend on which |
 //! | `correspondence` | dense maps between surfaces |
 //! | `cycles` | imports between the modules of a crate |
+//! | `one_of_each` | unique names, no doubled functions, the packages of the project |
 //! | `packaging` | whether all packages can be published |
 //! | `licences` | licences of dependencies |
 //! | `guarantees` | the tests behind `docs/robustness.md` |
-//! | `pages` | links between pages, and the table of contents of the book |
+//! | `pages` | length of pages, links between them, and the table of contents of the book |
 //! | `marching` | distances by fast marching |
 //! | `embedding` | embeddings through the whole pipeline |
 //! | `invariance` | signatures of subdivided, simplified, remeshed, noisy and moved shapes |
 //! | `fields` | distance fields against exact distances |
-//! | `matches` | what kind of match a changed mesh is with the original |
+//! | `matches` | how a changed mesh is related to the original |
 //! | `samples` | how many samples are enough, and the interval of the stress after that choice |
 //! | `isometry` | invariance to folding, motions, renumbering and units |
 //! | `scale` | the same results in any unit of length |
@@ -48,6 +49,8 @@ mod marching;
 #[cfg(test)]
 mod matches;
 mod memory;
+#[cfg(test)]
+mod one_of_each;
 #[cfg(test)]
 mod packaging;
 #[cfg(test)]

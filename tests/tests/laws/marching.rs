@@ -21,7 +21,7 @@ fn error_on_plane(sheet: &TriMesh, source: usize, obtuse: ObtuseTreatment) -> f6
 }
 
 fn error_of(options: FastMarchingOptions, sheet: &TriMesh, source: usize) -> f64 {
-    let solver = FastMarching::new(&sheet.intrinsic(), options);
+    let solver = FastMarching::new(&sheet.intrinsic(), options, &());
     let found = solver.distances(VertexId::from(source)).unwrap();
     let straight: Vec<f64> = sheet.positions.iter().map(|p| (p - sheet.positions[source]).norm()).collect();
     crate::support::gap(&found, &straight)
@@ -98,7 +98,7 @@ fn errors_on_spheres_fall_with_edge_length() {
     let errors: Vec<f64> = (2..=5)
         .map(|level| {
             let sphere = shapes::icosphere(level);
-            let found = marching().prepare(&sphere.intrinsic()).unwrap().distances(VertexId(0)).unwrap();
+            let found = marching().prepare(&sphere.intrinsic(), &()).unwrap().distances(VertexId(0)).unwrap();
             let axis = sphere.positions[0].coords;
             let arc = |v: usize| {
                 axis.cross(&sphere.positions[v].coords).norm().atan2(axis.dot(&sphere.positions[v].coords))
@@ -115,8 +115,8 @@ fn errors_on_spheres_fall_with_edge_length() {
 /// The mean error relative to exact distances from a few vertices, and the largest.
 fn errors(mesh: &TriMesh, update: Update) -> [f64; 2] {
     let surface = mesh.intrinsic();
-    let marching = FastMarching::new(&surface, FastMarchingOptions { update, ..Default::default() });
-    let exact = Method::Exact.prepare(&surface).unwrap();
+    let marching = FastMarching::new(&surface, FastMarchingOptions { update, ..Default::default() }, &());
+    let exact = Method::Exact.prepare(&surface, &()).unwrap();
     let mut errors = Vec::new();
     for source in [3, 60, 500, 800].map(VertexId) {
         let exact = exact.distances(source).unwrap();
@@ -147,7 +147,7 @@ fn virtual_sources_are_exact_from_points_of_edges_and_faces_in_the_plane() {
     let sheet = shapes::sheared_grid(21, 17, 0.3, -0.3);
     let surface = sheet.intrinsic();
     let options = FastMarchingOptions { update: Update::VirtualSource, ..Default::default() };
-    let solver = FastMarching::new(&surface, options);
+    let solver = FastMarching::new(&surface, options, &());
     for i in (0..surface.topology().n_faces()).step_by(37) {
         let face = surface::FaceId::from(i);
         let barycentric = [0.2, 0.5, 0.3];
@@ -189,7 +189,7 @@ fn exactly_the_other_components_are_at_infinite_distance() {
         let end = start + part.n_vertices();
         for method in [marching(), Method::Dijkstra, Method::BreadthFirst] {
             let surface = whole.intrinsic();
-            let found = method.prepare(&surface).unwrap().distances(VertexId::from(start + 1)).unwrap();
+            let found = method.prepare(&surface, &()).unwrap().distances(VertexId::from(start + 1)).unwrap();
             for (v, d) in found.iter().enumerate() {
                 assert_eq!(d.is_finite(), (start..end).contains(&v), "{} {v}", method.name());
                 assert!(!d.is_nan() && *d >= 0.0);
@@ -261,7 +261,7 @@ impl PrunedSolver for Careless<'_> {
 
 /// Asserts that pruned fronts, even careless ones, choose the samples of Procedure 1 with the same distances.
 pub(crate) fn pruning_changes_nothing(name: &str, surface: &IntrinsicMesh, n: usize) {
-    let solver = FastMarching::new(surface, FastMarchingOptions::default());
+    let solver = FastMarching::new(surface, FastMarchingOptions::default(), &());
     let threads = rayon::ThreadPoolBuilder::new().num_threads(2).build().unwrap();
     for first in [FirstSample::Farthest, FirstSample::Vertex(VertexId(7))] {
         let full = farthest_point_sampling(&Unpruned(&solver), n, first).unwrap();

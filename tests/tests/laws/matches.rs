@@ -1,67 +1,64 @@
-//! What kind of match a changed mesh is with the original.
+//! How a changed mesh is related to the original.
 
 use std::collections::BTreeMap;
 
-use canonform::{Change, EvidenceKind, MatchEvidence, MeshGeometry, Side, list_shapes};
+use canonform::{Change, Handedness, MeshGeometry, Relation, RelationKind, Side, list_shapes};
 use datasets::{ArticulatedOptions, Damage, Family, articulated_body, articulated_shape};
-use descriptors::{Handedness, ShapeDistance, ShapeMetric, Verdict};
+use descriptors::ShapeDistance;
 use mesh::{TriMesh, shapes};
 use nalgebra::{Point3, Vector3};
 use rayon::prelude::*;
 
-use crate::real_meshes::data;
+use crate::support::data;
 
-/// Changes after one another, with the kind of match and the changes that must be told.
-type Variant = (&'static [Damage], EvidenceKind, &'static [Change]);
+/// Changes after one another, with the kind of relation and the changes that must be told.
+type Variant = (&'static [Damage], RelationKind, &'static [Change]);
 
 /// The changes of TOSCA's shapes.
 const VARIANTS: [Variant; 9] = [
-    (&[Damage::Move], EvidenceKind::IdenticalGeometry, &[Change::Moved, Change::Rotated]),
-    (&[Damage::Scale], EvidenceKind::Scaled, &[Change::Scaled]),
-    (&[Damage::Mirror], EvidenceKind::Mirrored, &[Change::Mirrored]),
-    (&[Damage::Decimate(0.5)], EvidenceKind::Remeshed, &[Change::Decimated]),
-    (&[Damage::Decimate(0.2)], EvidenceKind::Remeshed, &[Change::Decimated]),
-    (&[Damage::Subdivide(1)], EvidenceKind::Remeshed, &[Change::Subdivided]),
-    (&[Damage::Remesh], EvidenceKind::Remeshed, &[Change::Remeshed]),
-    (&[Damage::Noise(0.002)], EvidenceKind::Noisy, &[Change::Noisy]),
-    (&[Damage::Noise(0.005)], EvidenceKind::Noisy, &[Change::Noisy]),
+    (&[Damage::Move], RelationKind::IdenticalGeometry, &[Change::Moved, Change::Rotated]),
+    (&[Damage::Scale], RelationKind::Scaled, &[Change::Scaled]),
+    (&[Damage::Mirror], RelationKind::Mirrored, &[Change::Mirrored]),
+    (&[Damage::Decimate(0.5)], RelationKind::Remeshed, &[Change::Decimated]),
+    (&[Damage::Decimate(0.2)], RelationKind::Remeshed, &[Change::Decimated]),
+    (&[Damage::Subdivide(1)], RelationKind::Remeshed, &[Change::Subdivided]),
+    (&[Damage::Remesh], RelationKind::Remeshed, &[Change::Remeshed]),
+    (&[Damage::Noise(0.002)], RelationKind::Noisy, &[Change::Noisy]),
+    (&[Damage::Noise(0.005)], RelationKind::Noisy, &[Change::Noisy]),
 ];
 
 /// More of them, for the built-in shapes.
 const MORE: [Variant; 7] = [
-    (&[Damage::Subdivide(2)], EvidenceKind::Remeshed, &[Change::Subdivided]),
-    (&[Damage::Noise(0.001)], EvidenceKind::Noisy, &[Change::Noisy]),
-    (&[Damage::Holes(0.01)], EvidenceKind::Remeshed, &[]),
+    (&[Damage::Subdivide(2)], RelationKind::Remeshed, &[Change::Subdivided]),
+    (&[Damage::Noise(0.001)], RelationKind::Noisy, &[Change::Noisy]),
+    (&[Damage::Holes(0.01)], RelationKind::Remeshed, &[]),
     (
         &[Damage::Scale, Damage::Mirror, Damage::Move],
-        EvidenceKind::Mirrored,
+        RelationKind::Mirrored,
         &[Change::Scaled, Change::Mirrored],
     ),
     (
         &[Damage::Decimate(0.5), Damage::Mirror, Damage::Scale, Damage::Move],
-        EvidenceKind::Remeshed,
+        RelationKind::Remeshed,
         &[Change::Scaled, Change::Mirrored, Change::Decimated],
     ),
-    (&[Damage::Noise(0.002), Damage::Move], EvidenceKind::Noisy, &[Change::Noisy]),
-    (&[Damage::Remesh, Damage::Move], EvidenceKind::Remeshed, &[Change::Remeshed]),
+    (&[Damage::Noise(0.002), Damage::Move], RelationKind::Noisy, &[Change::Noisy]),
+    (&[Damage::Remesh, Damage::Move], RelationKind::Remeshed, &[Change::Remeshed]),
 ];
-
-/// The verdict on two poses. Evidence in space does not depend on it.
-fn one_shape() -> Verdict {
-    ShapeMetric::verdict(ShapeDistance { fused: 0.5, combined: 0.5 }, Handedness::Unknown, 1.0)
-}
 
 fn geometry(mesh: &TriMesh) -> MeshGeometry {
     MeshGeometry::new(mesh, None).unwrap()
 }
 
-fn evidence(a: &MeshGeometry, b: &MeshGeometry) -> MatchEvidence {
-    MatchEvidence::new([a, b], one_shape())
+/// The relation of two meshes at the distance of two poses. In space it does not depend on the distance.
+fn related(a: &MeshGeometry, b: &MeshGeometry) -> Relation {
+    let near = ShapeDistance { fused: 0.5, combined: 0.5 };
+    Relation::by_distance(near, 1.0, Handedness::Unknown).by_meshes([a, b])
 }
 
-/// How often a kind of match was told.
+/// How often a kind of relation was told.
 #[derive(Default)]
-struct Score {
+struct ToldKinds {
     right: usize,
     all: usize,
     falsely_identical: usize,
@@ -71,28 +68,28 @@ struct Score {
 }
 
 /// Changes all shapes in every way, and counts what is told right.
-fn scores(shapes: &[(String, TriMesh)], variants: &[Variant]) -> BTreeMap<String, Score> {
+fn scores(shapes: &[(String, TriMesh)], variants: &[Variant]) -> BTreeMap<String, ToldKinds> {
     let found: Vec<_> = shapes
         .par_iter()
         .flat_map_iter(|(name, mesh)| {
             let own = geometry(mesh);
             variants.iter().map(move |(damages, kind, changes)| {
                 let changed = damages.iter().fold(mesh.clone(), |mesh, damage| damage.apply(&mesh, 7));
-                let found = evidence(&own, &geometry(&changed)).named(name, "the copy");
+                let found = related(&own, &geometry(&changed)).named(name, "the copy");
                 let label = damages.iter().map(ToString::to_string).collect::<Vec<_>>().join(", ");
                 let is_right = found.kind == *kind && changes.iter().all(|change| found.has(*change));
                 (label, *kind, is_right, found)
             })
         })
         .collect();
-    let mut scores: BTreeMap<String, Score> = BTreeMap::new();
+    let mut scores: BTreeMap<String, ToldKinds> = BTreeMap::new();
     for (label, kind, is_right, found) in found {
         let score = scores.entry(label).or_default();
         score.all += 1;
         score.right += usize::from(is_right);
         score.falsely_identical +=
-            usize::from(found.kind <= EvidenceKind::IdenticalGeometry && kind != found.kind);
-        if let Some(gap) = found.surface_gap {
+            usize::from(found.kind <= RelationKind::IdenticalGeometry && kind != found.kind);
+        if let Some(gap) = found.because.surface_gap {
             score.gap = [score.gap[0].max(gap.rms), score.gap[1].max(gap.max)];
         }
         if !is_right {
@@ -100,7 +97,7 @@ fn scores(shapes: &[(String, TriMesh)], variants: &[Variant]) -> BTreeMap<String
         }
     }
     for (label, score) in &scores {
-        let Score { right, all, gap: [rms, max], .. } = score;
+        let ToldKinds { right, all, gap: [rms, max], .. } = score;
         println!("{label}: {right} of {all} right; largest distance {rms:.4}, maximum {max:.4}");
         score.wrong.iter().take(3).for_each(|wrong| println!("    {wrong}"));
     }
@@ -144,14 +141,14 @@ fn two_poses_and_two_bodies_are_not_one_surface() {
             pairs
                 .map(|(i, j)| {
                     let same_pose = geometries[i].0 == geometries[j].0;
-                    (same_pose, evidence(&geometries[i].1, &geometries[j].1))
+                    (same_pose, related(&geometries[i].1, &geometries[j].1))
                 })
                 .collect::<Vec<_>>()
         })
         .collect();
     let mut gaps: Vec<_> = all
         .iter()
-        .filter_map(|(same_pose, found)| found.surface_gap.map(|gap| (gap.rms, gap.max, same_pose)))
+        .filter_map(|(same_pose, found)| found.because.surface_gap.map(|gap| (gap.rms, gap.max, same_pose)))
         .collect();
     gaps.sort_by(|a, b| a.0.total_cmp(&b.0));
     println!("{} pairs, {} aligned, nearest:", all.len(), gaps.len());
@@ -161,7 +158,7 @@ fn two_poses_and_two_bodies_are_not_one_surface() {
             if **same_pose { ", two bodies in one pose" } else { "" }
         );
     }
-    let wrong: Vec<_> = all.iter().filter(|(_, found)| found.kind < EvidenceKind::OtherPose).collect();
+    let wrong: Vec<_> = all.iter().filter(|(_, found)| found.kind < RelationKind::OtherPose).collect();
     assert!(wrong.is_empty(), "{wrong:?}");
 }
 
@@ -178,18 +175,18 @@ fn same_positions(a: &TriMesh, b: &TriMesh) -> bool {
 
 #[test]
 fn every_change_of_a_tosca_shape_is_told() {
-    let Some(data) = data("kinds of match on TOSCA") else { return };
+    let Some(data) = data("relations on TOSCA") else { return };
     let files = list_shapes(&data.join("tosca-lowres"), None).unwrap();
     let shapes: Vec<_> = files
         .into_par_iter()
         .filter_map(|file| Some((file.name, mesh::io::read(&file.path).ok()?)))
         .collect();
     let neighbours = shapes.par_windows(2).map(|pair| {
-        let found = evidence(&geometry(&pair[0].1), &geometry(&pair[1].1)).named(&pair[0].0, &pair[1].0);
+        let found = related(&geometry(&pair[0].1), &geometry(&pair[1].1)).named(&pair[0].0, &pair[1].0);
         // Two pairs of victorias have the same vertices in another order.
         let is_copy = same_positions(&pair[0].1, &pair[1].1);
-        assert_eq!(found.kind <= EvidenceKind::IdenticalGeometry, is_copy, "{found}");
-        (found.kind < EvidenceKind::OtherPose).then(|| format!("{found} ({})", found.reason()))
+        assert_eq!(found.kind <= RelationKind::IdenticalGeometry, is_copy, "{found}");
+        (found.kind < RelationKind::OtherPose).then(|| format!("{found} ({})", found.reason()))
     });
     let one: Vec<_> = neighbours.collect::<Vec<_>>().into_iter().flatten().collect();
     println!(
@@ -198,7 +195,7 @@ fn every_change_of_a_tosca_shape_is_told() {
         shapes.len() - 1
     );
     let scores = scores(&shapes, &VARIANTS);
-    let total = |of: fn(&Score) -> usize| scores.values().map(of).sum::<usize>();
+    let total = |of: fn(&ToldKinds) -> usize| scores.values().map(of).sum::<usize>();
     let (right, all) = (total(|s| s.right), total(|s| s.all));
     println!("{} shapes: {right} of {all} right, {:.2} %", shapes.len(), 100.0 * right as f64 / all as f64);
     assert_eq!(total(|s| s.falsely_identical), 0);
@@ -224,28 +221,28 @@ fn copies_on_a_plate_are_counted() {
         let copy = if decimated { Damage::Decimate(0.5).apply(cat, 1) } else { cat.clone() };
         let copies = |n: usize| (0..n).map(|i| at(&Damage::Move.apply(&copy, i as u64), 9.0 * i as f64, 0.0));
         let six = geometry(&shapes::disjoint(&copies(6).collect::<Vec<_>>()));
-        let found = evidence(&single, &six).named("cat", "plate");
+        let found = related(&single, &six).named("cat", "plate");
         assert_eq!(
             (found.kind, found.to_string().starts_with("plate is six copies of cat")),
-            (EvidenceKind::Copies, true),
+            (RelationKind::Copies, true),
             "{found}"
         );
         assert_eq!(found.has(Change::Remeshed), decimated);
-        let back = evidence(&six, &single).named("plate", "cat");
-        assert_eq!(back.parts.unwrap().whole, Side::First);
+        let back = related(&six, &single).named("plate", "cat");
+        assert_eq!(back.because.parts.unwrap().whole, Side::First);
         assert!(back.to_string().starts_with("plate is six copies of cat"), "{back}");
         let mixed: Vec<_> = copies(2).chain([at(other, 0.0, 30.0), ball.clone()]).collect();
         let mixed = geometry(&shapes::disjoint(&mixed));
-        let found = evidence(&single, &mixed).named("cat", "plate");
-        assert_eq!(found.kind, EvidenceKind::PartOf, "{found}");
+        let found = related(&single, &mixed).named("cat", "plate");
+        assert_eq!(found.kind, RelationKind::PartOf, "{found}");
         assert!(
             found.to_string().starts_with("plate has two copies of cat among its four components"),
             "{found}"
         );
-        let found = evidence(&geometry(other), &mixed).named("dog", "plate");
-        assert_eq!(found.kind, EvidenceKind::PartOf);
+        let found = related(&geometry(other), &mixed).named("dog", "plate");
+        assert_eq!(found.kind, RelationKind::PartOf);
         assert_eq!(found.to_string(), "dog is part of plate, one of its four components");
-        assert_eq!(evidence(&geometry(&shapes::torus(30, 20, 2.0, 0.5)), &mixed).parts, None);
+        assert_eq!(related(&geometry(&shapes::torus(30, 20, 2.0, 0.5)), &mixed).because.parts, None);
     }
 }
 
@@ -259,21 +256,21 @@ fn scale_and_rounding_of_files_do_not_hide_one_geometry() {
         let moved = Damage::Move.apply(cat, 3);
         let rounded = |p: &Point3<f64>| (p * scale).map(|x| f64::from(x as f32));
         let copy = TriMesh { positions: moved.positions.iter().map(rounded).collect(), faces: moved.faces };
-        let found = evidence(&own, &geometry(&copy));
+        let found = related(&own, &geometry(&copy));
         assert_eq!(
-            (found.kind, found.units.map(|u| u.to_string()).as_deref()),
-            (EvidenceKind::Scaled, units)
+            (found.kind, found.because.units.map(|u| u.to_string()).as_deref()),
+            (RelationKind::Scaled, units)
         );
-        assert!((found.scale / scale - 1.0).abs() < 1e-6);
+        assert!((found.because.scale / scale - 1.0).abs() < 1e-6);
     }
     let folder = tempfile::tempdir().unwrap();
     for extension in ["off", "obj", "ply", "stl"] {
         let path = folder.path().join(format!("cat.{extension}"));
         mesh::io::write(&path, cat).unwrap();
-        let found = evidence(&own, &geometry(&mesh::io::read(&path).unwrap()));
+        let found = related(&own, &geometry(&mesh::io::read(&path).unwrap()));
         assert_eq!(
             (found.kind, found.changes.len()),
-            (EvidenceKind::IdenticalGeometry, 0),
+            (RelationKind::IdenticalGeometry, 0),
             "{extension}: {found}"
         );
     }

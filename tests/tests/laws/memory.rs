@@ -56,10 +56,10 @@ fn a_form_does_not_depend_on_memory() {
 #[test]
 fn samplers_take_the_same_samples_into_a_file() {
     let surface = surface(&body(Family::Centaur));
-    let solver = marching().prepare(&surface.intrinsic).unwrap();
+    let solver = marching().prepare(surface.intrinsic(), &()).unwrap();
     for sampling in Sampling::ALL {
         let start = || sampling.start(solver.as_ref(), FirstSample::default(), 3).unwrap();
-        let take = |mut sampler: Box<dyn Sampler + '_>| {
+        let take = |mut sampler: Sampler<'_>| {
             sampler.extend_to(7).unwrap();
             sampler.extend_to(30).unwrap();
             sampler.into_distances(25).unwrap()

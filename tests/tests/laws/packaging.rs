@@ -1,16 +1,8 @@
 //! Whether each package contains everything that it needs outside this workspace. `make package` checks its manifest.
 
 use std::fs;
-use std::path::{Path, PathBuf};
 
-use crate::architecture::metadata;
-
-/// All Rust files below a folder.
-pub(crate) fn rust_files(folder: &Path) -> Vec<PathBuf> {
-    let entries = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
-    let files = entries.flat_map(|path| if path.is_dir() { rust_files(&path) } else { vec![path] });
-    files.filter(|path| path.extension().is_some_and(|extension| extension == "rs")).collect()
-}
+use crate::support::{metadata, rust_files};
 
 /// The paths in the `include` macros of a file.
 fn included(text: &str) -> impl Iterator<Item = &str> {

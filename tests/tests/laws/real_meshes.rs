@@ -3,12 +3,12 @@
 //! The meshes are not part of the repository. Their folder is `CANONFORM_DATA`, or `../shared/data` next to the workspace.
 //! Without it the tests are skipped and print so.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use canonform::{
-    DescribeOptions, FormOptions, Surface, describe, embed, form_matches, label_of, list_shapes,
+    DescribeOptions, FormOptions, Surface, describe, embed, form_alignments, label_of, list_shapes,
 };
-use descriptors::{Handedness, Normalization, ShapeMetric, ShapePair, VerdictKind};
+use descriptors::{Normalization, ShapeMetric, ShapePair};
 use geodesics::{FirstSample, farthest_point_sampling};
 use mesh::RepairOptions;
 use nmds::{NystromOptions, Regularization, classical, nystrom, paper_stress};
@@ -16,22 +16,11 @@ use rayon::prelude::*;
 use retrieval::{Labels, evaluate};
 use surface::{IntrinsicMesh, VertexId};
 
-use crate::support::{marching, workspace_root};
-
-/// The folder of real meshes. Prints that the test is skipped if it does not exist.
-pub(crate) fn data(test: &str) -> Option<PathBuf> {
-    let folder = std::env::var_os("CANONFORM_DATA")
-        .map_or_else(|| workspace_root().join("../shared/data"), PathBuf::from);
-    if folder.is_dir() {
-        return Some(folder);
-    }
-    println!("skipped {test}: no folder {}; set CANONFORM_DATA", folder.display());
-    None
-}
+use crate::support::{data, marching};
 
 fn read(path: &Path) -> Surface {
-    let surface = Surface::read(path, &RepairOptions::default()).unwrap();
-    assert_eq!(surface.n_input_vertices(), surface.intrinsic.n_vertices(), "{}", path.display());
+    let surface = canonform::read_surface(path, &RepairOptions::default(), &Default::default(), &()).unwrap();
+    assert_eq!(surface.n_input_vertices(), surface.intrinsic().n_vertices(), "{}", path.display());
     surface
 }
 
@@ -51,7 +40,7 @@ fn errors(data: &Path, name: &str, surface: &IntrinsicMesh) -> (f64, f64) {
     let rows: Vec<f64> = read_npy(&exact("distances"));
     let p = surface.n_vertices();
     assert_eq!(rows.len(), sources.len() * p, "{name}");
-    let solver = marching().prepare(surface).unwrap();
+    let solver = marching().prepare(surface, &()).unwrap();
     let (mut total, mut count, mut worst) = (0.0, 0usize, 0.0f64);
     for (source, exact) in sources.into_iter().zip(rows.chunks(p)) {
         let source = VertexId(source);
@@ -73,7 +62,7 @@ fn fast_marching_is_close_to_exact_distances() {
     let Some(data) = data("fast marching against exact distances") else { return };
     for (name, limit) in [("armadillo", 0.0025), ("spot", 0.005)] {
         let surface = read(&data.join("single").join(format!("{name}.obj")));
-        let (mean, worst) = errors(&data, name, &surface.intrinsic);
+        let (mean, worst) = errors(&data, name, surface.intrinsic());
         println!(
             "{name}: mean error {:.3} %, worst outside the one-ring {:.2} %",
             100.0 * mean,
@@ -83,7 +72,7 @@ fn fast_marching_is_close_to_exact_distances() {
     }
     for name in ["cat0", "cat1", "centaur1", "horse0", "wolf0"] {
         let surface = tosca(&data, name);
-        let (mean, worst) = errors(&data, name, &surface.intrinsic);
+        let (mean, worst) = errors(&data, name, surface.intrinsic());
         println!(
             "{name}: mean error {:.3} %, worst outside the one-ring {:.2} %",
             100.0 * mean,
@@ -102,9 +91,9 @@ struct Excess {
 fn near_optimal_stress(name: &str, allowed: &Excess) {
     let Some(data) = data("stress against classical scaling") else { return };
     let surface = tosca(&data, name);
-    let solver = marching().prepare(&surface.intrinsic).unwrap();
+    let solver = marching().prepare(surface.intrinsic(), &()).unwrap();
     let distances = solver.distance_matrix().unwrap();
-    let optimum = paper_stress(&classical(&distances, 3).unwrap().coords, &distances).unwrap();
+    let optimum = paper_stress(&classical(&distances, 3, &()).unwrap().coords, &distances).unwrap();
     for (n, rank, limit) in [(10, 5, allowed.ten_samples), (100, 50, allowed.hundred_samples)] {
         let sampled = farthest_point_sampling(solver.as_ref(), n, FirstSample::default()).unwrap();
         let embedding = nystrom(
@@ -132,7 +121,9 @@ fn stress_of_a_cat_is_near_the_optimum() {
 fn a_mesh_without_faces_is_an_error_that_names_the_file() {
     let Some(data) = data("the damaged mesh") else { return };
     let path = data.join("tosca-lowres/victoria14.vert");
-    let message = Surface::read(&path, &RepairOptions::default()).unwrap_err().to_string();
+    let message = canonform::read_surface(&path, &RepairOptions::default(), &Default::default(), &())
+        .unwrap_err()
+        .to_string();
     println!("{message}");
     assert!(message.contains("victoria14"), "{message}");
 }
@@ -151,7 +142,7 @@ fn canonical_forms_of_animals_retrieve_their_class() {
         .collect();
     let labels = Labels::new(&names.map(label_of));
     for normalization in [Normalization::Raw, Normalization::UnitArea] {
-        let distances = form_matches(&forms, normalization, &()).unwrap().distances;
+        let distances = form_alignments(&forms, normalization, &()).unwrap().distances;
         let scores = evaluate(&distances, &labels, 1).unwrap();
         println!("{normalization:?}: NN {}, mAP {:.4}", scores.mean.nn, scores.mean.map);
         assert_eq!(scores.mean.nn, 1.0, "{normalization:?}");
@@ -162,13 +153,13 @@ fn canonical_forms_of_animals_retrieve_their_class() {
 fn pruned_fronts_choose_the_same_samples_on_real_meshes() {
     let Some(data) = data("pruned farthest point sampling") else { return };
     for name in ["cat0", "david0", "centaur3", "horse5", "wolf1", "michael2"] {
-        crate::marching::pruning_changes_nothing(name, &tosca(&data, name).intrinsic, 100);
+        crate::marching::pruning_changes_nothing(name, tosca(&data, name).intrinsic(), 100);
     }
 }
 
 #[test]
-fn verdicts_distinguish_poses_from_animals() {
-    let Some(data) = data("verdicts on poses and animals") else { return };
+fn distances_distinguish_poses_from_animals() {
+    let Some(data) = data("distances of poses and animals") else { return };
     let shapes = list_shapes(&data.join("tosca-lowres"), None).unwrap();
     // Every other pose; all poses give the same result but take four times as long.
     let classes = ["cat", "centaur", "david", "dog"];
@@ -176,7 +167,7 @@ fn verdicts_distinguish_poses_from_animals() {
         shapes.into_iter().filter(|s| classes.contains(&s.label.as_str())).step_by(2).collect();
     let described: Vec<_> = shapes
         .par_iter()
-        .map(|s| describe(&read(&s.path), &DescribeOptions::default()).unwrap().prepare().unwrap())
+        .map(|s| describe(&read(&s.path), &DescribeOptions::default(), &()).unwrap().prepare().unwrap())
         .collect();
     let pairs: Vec<(usize, usize)> =
         (0..shapes.len()).flat_map(|i| (i + 1..shapes.len()).map(move |j| (i, j))).collect();
@@ -186,7 +177,7 @@ fn verdicts_distinguish_poses_from_animals() {
         let fused = ShapeMetric::fused(pair[0].fused(), pair[1].fused());
         // The robust loss shortens large distances, so the ratio is one of squared losses.
         let euclidean = ShapeMetric::combined(fused, aligned.best().rms);
-        (shapes[i].label == shapes[j].label, aligned.verdict(Handedness::Unknown), euclidean)
+        (shapes[i].label == shapes[j].label, aligned.distance(), euclidean)
     };
     let distances: Vec<_> = pairs.par_iter().map(distance).collect();
     let of = |same| distances.iter().filter(move |d| d.0 == same).map(|d| d.2);
@@ -195,10 +186,10 @@ fn verdicts_distinguish_poses_from_animals() {
         "{} pairs: poses of one animal differ by up to {farthest:.2}, animals by at least {nearest:.2}",
         pairs.len()
     );
-    for (same, verdict, _) in &distances {
-        assert_eq!(verdict.may_be_same_class(), *same, "{verdict:?}");
-        assert!(*same || verdict.kind != VerdictKind::SameShape, "{verdict:?}");
-        assert!(!*same || verdict.kind != VerdictKind::Different, "{verdict:?}");
+    for (same, found, _) in &distances {
+        assert_eq!(found.may_be_same_class(), *same, "{found:?}");
+        assert!(*same || !found.is_same_shape(), "{found:?}");
+        assert!(!*same || !found.is_different(), "{found:?}");
     }
     assert!(nearest > 2.0 * farthest, "{farthest} {nearest}");
 }

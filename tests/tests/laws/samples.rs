@@ -10,7 +10,7 @@ use mesh::TriMesh;
 use nmds::{NystromOptions, Regularization, SampleStop, nystrom, stress};
 use rayon::prelude::*;
 
-use crate::real_meshes::data;
+use crate::support::data;
 use crate::support::{body, marching, surface};
 
 /// The first body of a kind, with this many vertices.
@@ -24,7 +24,7 @@ fn of_plan(plan: usize, n_vertices: usize) -> TriMesh {
 }
 
 fn all_pairs(surface: &Surface) -> DistanceMatrix {
-    marching().prepare(&surface.intrinsic).unwrap().distance_matrix().unwrap()
+    marching().prepare(surface.intrinsic(), &()).unwrap().distance_matrix().unwrap()
 }
 
 fn auto(target_stress: Option<f64>, seed: u64) -> FormOptions {
@@ -183,7 +183,8 @@ fn few_samples_are_enough_for_a_star_and_for_david() {
     assert!((8..=20).contains(&sufficient) && n <= 40, "{sufficient} of {n}");
     let Some(data) = data("few_samples_are_enough_for_a_star_and_for_david") else { return };
     let path = data.join("tosca-lowres").join("david0.vert");
-    let (n, sufficient) = enough(&Surface::read(&path, &Default::default()).unwrap());
+    let (n, sufficient) =
+        enough(&canonform::read_surface(&path, &Default::default(), &Default::default(), &()).unwrap());
     println!("david0: {sufficient} samples are enough, {n} taken");
     assert!(sufficient <= 12 && n <= 24, "{sufficient} of {n}");
 }

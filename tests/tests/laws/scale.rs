@@ -3,11 +3,13 @@
 
 use canonform::geodesics::{FirstSample, Method, Sampling};
 use canonform::{
-    DescribeOptions, EmbedMethod, Embedded, FormOptions, Samples, StressChoice, StressOptions, Surface,
-    describe, embed_and_measure,
+    DescribeOptions, EmbedMethod, Embedded, FormOptions, Samples, StressChoice, StressOptions, describe,
+    embed_and_measure,
 };
 use mesh::{TriMesh, shapes};
 use surface::VertexId;
+
+use crate::support::surface;
 
 /// Powers of two, and other factors with the gap that rounding of the coordinates may cause.
 fn factors() -> Vec<f64> {
@@ -47,17 +49,13 @@ fn meshes() -> [TriMesh; 2] {
     [shapes::jittered_grid(14, 11, 1.0, 0.3, 7), blob]
 }
 
-fn surface(mesh: &TriMesh) -> Surface {
-    Surface::new(mesh, &Default::default()).unwrap()
-}
-
 #[test]
 fn every_solver_measures_in_any_unit() {
     for mesh in meshes() {
         for method in Method::all() {
             let solve = |mesh: &TriMesh| {
                 let surface = surface(mesh);
-                let solver = method.prepare(&surface.intrinsic).unwrap();
+                let solver = method.prepare(surface.intrinsic(), &()).unwrap();
                 let mut sampler =
                     Sampling::Farthest.start(solver.as_ref(), FirstSample::default(), 0).unwrap();
                 sampler.extend_to(12).unwrap();
@@ -86,8 +84,8 @@ fn a_tiny_flat_sheet_has_straight_distances() {
     for factor in [1e-100, 1.0, 1e100] {
         let surface = surface(&scaled(&sheet, factor));
         for method in [Method::default(), Method::Exact] {
-            let far =
-                method.prepare(&surface.intrinsic).unwrap().distances(VertexId(0)).unwrap()[899] / factor;
+            let far = method.prepare(surface.intrinsic(), &()).unwrap().distances(VertexId(0)).unwrap()[899]
+                / factor;
             assert!((far - 29.0 * 2f64.sqrt()).abs() < 1e-9, "{} x {factor}: {far}", method.name());
         }
     }
@@ -123,7 +121,7 @@ fn every_embedding_and_its_stress_scale() {
 #[test]
 fn signatures_have_no_scale() {
     for mesh in meshes() {
-        let describe = |mesh: &TriMesh| describe(&surface(mesh), &DescribeOptions::default()).unwrap();
+        let describe = |mesh: &TriMesh| describe(&surface(mesh), &DescribeOptions::default(), &()).unwrap();
         let expected = describe(&mesh);
         for factor in factors() {
             let found = describe(&scaled(&mesh, factor));

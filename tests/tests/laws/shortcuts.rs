@@ -1,11 +1,12 @@
 //! Laws of topological shortcuts: welds are found and cut, and clean shapes are left alone.
 
-use budget::Budget;
-use canonform::{DescribeOptions, ShapeDescription, Surface, describe};
+use canonform::{DescribeOptions, ShapeDescription, describe};
 use datasets::{CreatureOptions, DamageKind, creature_plans, creatures};
 use descriptors::ShapeMetric;
 use mesh::{TriMesh, cut_shortcuts};
 use rayon::prelude::*;
+
+use crate::support::surface;
 
 fn bodies(n_vertices: usize) -> Vec<TriMesh> {
     let n_families = creature_plans().len();
@@ -17,14 +18,13 @@ fn bodies(n_vertices: usize) -> Vec<TriMesh> {
 fn clean_creatures_have_no_shortcuts_and_their_welds_are_found() {
     let bodies = bodies(2000);
     for (i, mesh) in bodies.iter().enumerate() {
-        let found = cut_shortcuts(mesh, &Budget::unlimited()).unwrap().shortcuts;
+        let found = cut_shortcuts(mesh, &()).unwrap().shortcuts;
         assert!(found.is_empty(), "body {i}: {found:?}");
     }
     // A handle as wide as the limb that it joins cannot be told from one by design.
     for (kind, least) in [(DamageKind::Weld, 0.95), (DamageKind::FarWeld, 0.95), (DamageKind::Contact, 0.7)] {
         let found = |(i, mesh): (usize, &TriMesh)| {
-            cut_shortcuts(&kind.at(1).apply(mesh, i as u64), &Budget::unlimited()).unwrap().shortcuts.len()
-                == 1
+            cut_shortcuts(&kind.at(1).apply(mesh, i as u64), &()).unwrap().shortcuts.len() == 1
         };
         let n_found = bodies.par_iter().enumerate().map(found).filter(|found| *found).count();
         println!("{}: {n_found} of {}", kind.name(), bodies.len());
@@ -36,7 +36,7 @@ fn clean_creatures_have_no_shortcuts_and_their_welds_are_found() {
 #[test]
 fn a_welded_shape_is_described_like_the_clean_one() {
     let describe = |mesh: &TriMesh| -> ShapeDescription {
-        describe(&Surface::new(mesh, &Default::default()).unwrap(), &DescribeOptions::default()).unwrap()
+        describe(&surface(mesh), &DescribeOptions::default(), &()).unwrap()
     };
     bodies(1000).par_iter().step_by(9).enumerate().for_each(|(i, mesh)| {
         let clean = describe(mesh);

@@ -1,13 +1,13 @@
 //! Signatures depend little on pose and triangulation, distinguish bodies, and exist for any mesh.
 
-use canonform::{DescribeOptions, ShapeDescription, Surface, describe, rerank};
+use canonform::{DescribeOptions, ShapeDescription, describe, rerank};
 use datasets::{ArticulatedOptions, Family, articulated_shape};
 use descriptors::{ShapeMetric, SignatureKind};
 use rayon::prelude::*;
 use retrieval::Candidate;
 
-use crate::real_meshes::data;
-use crate::support::{body, surface};
+use crate::support::data;
+use crate::support::surface;
 
 /// Three poses of each family, class by class, each with its own triangulation and resolution.
 fn described() -> Vec<ShapeDescription> {
@@ -15,7 +15,7 @@ fn described() -> Vec<ShapeDescription> {
         let (family, pose) = (Family::all()[i / 3], i % 3);
         let options = ArticulatedOptions { seed: 11 + pose as u64, n_vertices: 1000 + 500 * pose };
         let mesh = articulated_shape(family, pose + 1, &options).unwrap().mesh;
-        describe(&surface(&mesh), &DescribeOptions::default()).unwrap()
+        describe(&surface(&mesh), &DescribeOptions::default(), &()).unwrap()
     };
     (0..9).into_par_iter().map(shape).collect()
 }
@@ -55,25 +55,18 @@ fn the_nearest_shapes_are_poses_of_the_same_body() {
 }
 
 #[test]
-fn a_description_does_not_depend_on_threads() {
-    let mesh = body(Family::Cat);
-    let on = |n: usize| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(n).build().unwrap();
-        pool.install(|| describe(&surface(&mesh), &DescribeOptions::default()).unwrap())
-    };
-    let (one, three) = (on(1), on(3));
-    assert_eq!(one, three);
-}
-
-#[test]
 fn real_meshes_with_defects_have_signatures() {
     let Some(folder) = data("signatures of meshes with defects") else { return };
     // Several components, boundaries, edges with three faces, obtuse triangles.
     for name in ["gorilla0", "seahorse0", "lioness0", "shark0", "david0"] {
-        let surface =
-            Surface::read(&folder.join("tosca-lowres").join(format!("{name}.vert")), &Default::default())
-                .unwrap();
-        let found = describe(&surface, &DescribeOptions::default()).unwrap();
+        let surface = canonform::read_surface(
+            &folder.join("tosca-lowres").join(format!("{name}.vert")),
+            &Default::default(),
+            &Default::default(),
+            &(),
+        )
+        .unwrap();
+        let found = describe(&surface, &DescribeOptions::default(), &()).unwrap();
         assert!(found.fused.iter().all(|x| x.is_finite()), "{name}");
         // By Weyl's law the values of ShapeDNA are near one.
         let dna = &found.signature(SignatureKind::ShapeDna).unwrap().values;

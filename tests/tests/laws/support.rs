@@ -1,10 +1,11 @@
 //! Helpers of several modules.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use canonform::{
     Embedded, FormOptions, StressChoice, StressOptions, Surface, embed, embed_and_measure, embedded_distances,
 };
+use cargo_metadata::{Metadata, MetadataCommand};
 use datasets::{ArticulatedOptions, Family, articulated_shape};
 use geodesics::Method;
 use linalg::{DistanceMatrix, Matrix};
@@ -17,6 +18,35 @@ pub(crate) fn workspace_root() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("..")
 }
 
+/// The folder of real meshes. Prints that the test is skipped if it does not exist.
+pub(crate) fn data(test: &str) -> Option<PathBuf> {
+    let folder = std::env::var_os("CANONFORM_DATA")
+        .map_or_else(|| workspace_root().join("../shared/data"), PathBuf::from);
+    if folder.is_dir() {
+        return Some(folder);
+    }
+    println!("skipped: {test}: no folder {}; set CANONFORM_DATA", folder.display());
+    None
+}
+
+/// The packages of the workspace.
+pub(crate) fn metadata() -> Metadata {
+    let mut command = MetadataCommand::new();
+    command.manifest_path(workspace_root().join("Cargo.toml")).no_deps();
+    command.other_options(["--offline".to_owned()]).exec().unwrap()
+}
+
+/// All Rust files below a folder.
+pub(crate) fn rust_files(folder: &Path) -> Vec<PathBuf> {
+    let entries = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+    let files = entries.flat_map(|path| match path.is_dir() {
+        true if path.ends_with("target") => Vec::new(),
+        true => rust_files(&path),
+        false => vec![path],
+    });
+    files.filter(|path| path.extension().is_some_and(|extension| extension == "rs")).collect()
+}
+
 /// A shape of the built-in dataset with 1,000 vertices: a body with limbs, without symmetries.
 pub(crate) fn body(family: Family) -> TriMesh {
     let options = ArticulatedOptions { n_vertices: 1000, ..ArticulatedOptions::default() };
@@ -25,7 +55,7 @@ pub(crate) fn body(family: Family) -> TriMesh {
 
 /// The surface of a clean mesh.
 pub(crate) fn surface(mesh: &TriMesh) -> Surface {
-    Surface::new(mesh, &RepairOptions::default()).unwrap()
+    Surface::new(mesh, &RepairOptions::default(), &()).unwrap()
 }
 
 pub(crate) fn embedded(mesh: &TriMesh, options: &FormOptions) -> Embedded {
@@ -49,7 +79,7 @@ pub(crate) fn marching() -> Method {
 
 /// Distances from some vertices of a mesh, one column each.
 pub(crate) fn columns(mesh: &TriMesh, method: Method, sources: &[VertexId]) -> Matrix {
-    method.prepare(&mesh.intrinsic()).unwrap().distance_columns(sources).unwrap()
+    method.prepare(&mesh.intrinsic(), &()).unwrap().distance_columns(sources).unwrap()
 }
 
 pub(crate) fn all_vertices(mesh: &TriMesh) -> Vec<VertexId> {

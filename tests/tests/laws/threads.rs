@@ -1,6 +1,8 @@
 //! Results are bitwise equal for any number of threads.
 
-use canonform::{EmbedMethod, Embedded, FormOptions, Samples, StressChoice, form_matches};
+use canonform::{
+    DescribeOptions, EmbedMethod, Embedded, FormOptions, Samples, StressChoice, describe, form_alignments,
+};
 use datasets::Family;
 use descriptors::Normalization;
 
@@ -44,6 +46,13 @@ fn an_embedding_does_not_depend_on_threads() {
 }
 
 #[test]
+fn a_description_does_not_depend_on_threads() {
+    let surface = surface(&body(Family::Cat));
+    let [one, two, five] = on_each_pool(|| describe(&surface, &DescribeOptions::default(), &()).unwrap());
+    assert!(one == two && one == five);
+}
+
+#[test]
 fn distances_between_forms_do_not_depend_on_threads() {
     let forms: Vec<_> = Family::all()
         .into_iter()
@@ -54,7 +63,7 @@ fn distances_between_forms_do_not_depend_on_threads() {
         .collect();
     for normalization in [Normalization::Raw, Normalization::UnitArea] {
         let [one, two, five] = on_each_pool(|| {
-            let found = form_matches(&forms, normalization, &()).unwrap();
+            let found = form_alignments(&forms, normalization, &()).unwrap();
             bits(found.distances.as_slice())
         });
         assert!(one == two && one == five, "{normalization:?}");

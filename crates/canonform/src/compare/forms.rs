@@ -1,15 +1,15 @@
 //! Distances between the forms of a collection.
 
-use descriptors::{Alignment, CanonicalForm, Normalization, PreparedForm, Reflections, match_forms};
+use descriptors::{Alignment, CanonicalForm, Normalization, PreparedForm, Reflections, align_forms};
 use linalg::{DistanceMatrix, Matrix};
 use rayon::prelude::*;
 
 use crate::error::Error;
-use crate::observer::Observer;
+use base::Observer;
 
 /// The alignments of all pairs of forms.
 #[derive(Debug, Clone)]
-pub struct FormMatches {
+pub struct FormAlignments {
     /// Root mean square distances between the aligned forms.
     pub distances: DistanceMatrix,
     /// For every pair `i < j`, row by row, the motion that takes form `i` onto form `j`, both scaled as was chosen.
@@ -20,39 +20,39 @@ pub struct FormMatches {
 ///
 /// ```
 /// use canonform::descriptors::Normalization;
-/// use canonform::{FormOptions, Surface, embed, form_matches, mesh::shapes};
+/// use canonform::{FormOptions, Surface, embed, form_alignments, mesh::shapes};
 ///
 /// let sheet = shapes::grid(21, 17, 0.1);
 /// let forms = [&sheet, &shapes::fold(&sheet, 0.8, 1.2), &shapes::icosphere(3)].map(|mesh| {
-///     let surface = Surface::new(mesh, &Default::default()).unwrap();
+///     let surface = Surface::new(mesh, &Default::default(), &()).unwrap();
 ///     embed(&surface, &FormOptions::default(), &()).unwrap().form(&surface).unwrap()
 /// });
-/// let found = form_matches(&forms, Normalization::UnitArea, &())?;
+/// let found = form_alignments(&forms, Normalization::UnitArea, &())?;
 /// assert!(found.distances.get(0, 1) < 0.1 * found.distances.get(0, 2), "folding does not change the form");
 /// # Ok::<(), canonform::Error>(())
 /// ```
 ///
 /// # Errors
 /// [`Error::Descriptor`].
-pub fn form_matches(
+pub fn form_alignments(
     forms: &[CanonicalForm],
     normalization: Normalization,
     observer: &dyn Observer,
-) -> Result<FormMatches, Error> {
+) -> Result<FormAlignments, Error> {
     let prepare = |form: &CanonicalForm| PreparedForm::new(&form.normalized(normalization));
     let forms: Vec<_> = forms.par_iter().map(prepare).collect::<Result<_, _>>()?;
     let n = forms.len();
     let pairs: Vec<(usize, usize)> = (0..n).flat_map(|i| (i + 1..n).map(move |j| (i, j))).collect();
     observer.begin("alignment", pairs.len());
     let one = |&(i, j): &(usize, usize)| {
-        let found = match_forms(&forms[i], &forms[j], Reflections::Allow);
+        let found = align_forms(&forms[i], &forms[j], Reflections::Allow);
         observer.step();
         found
     };
     let found: Vec<_> = pairs.par_iter().map(one).collect();
     let mut next = found.iter();
     let distances = DistanceMatrix::from_pairs(n, |_, _| next.next().map_or(f64::NAN, |m| m.rms))?;
-    Ok(FormMatches { distances, alignments: found.iter().map(|m| m.alignment).collect() })
+    Ok(FormAlignments { distances, alignments: found.iter().map(|m| m.alignment).collect() })
 }
 
 /// Straight-line distances between the points of an embedding.

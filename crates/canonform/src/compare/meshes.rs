@@ -2,18 +2,15 @@
 
 use std::borrow::Borrow;
 
+use base::{ContentHash, Observer};
 use descriptors::{CanonicalForm, PreparedShape, ShapeMetric, ShapePair};
-use index::ContentHash;
-use mesh::TriMesh;
+use mesh::{Surface, TriMesh};
+use relations::{Handedness, MeshGeometry, Relation, handedness};
 use serde::Serialize;
-use surface::VertexId;
 
-use super::comparison::{Comparison, Overlay, Residual, Triangulation, compare_surfaces};
-use super::evidence::{MatchEvidence, MeshGeometry};
+use super::comparison::{Comparison, Overlay, Residual, Triangulation};
 use crate::error::Error;
-use crate::form::{DescribeOptions, FormOptions, ShapeDescription, describe_within, embed};
-use crate::input::Surface;
-use crate::observer::Observer;
+use crate::form::{DescribeOptions, FormOptions, MeasuredSurface, describe};
 
 /// A mesh, ready to be compared with others.
 #[derive(Debug)]
@@ -44,17 +41,16 @@ impl<S: Borrow<Surface>> ComparedMesh<S> {
     ) -> Result<Self, Error> {
         options.validate()?;
         let geometry = MeshGeometry::new(mesh, content);
-        let (repaired, budget) = (surface.borrow(), observer.budget());
+        let repaired = surface.borrow();
         let usual = FormOptions { repair: repaired.repair, ..FormOptions::default() };
         let usual = DescribeOptions { form: usual, ..DescribeOptions::default() };
-        let refined = repaired.for_description_within(&budget)?;
-        let embedded = embed(&refined, options, observer)?;
-        let form = embedded.form(&refined)?.leading(repaired.mesh().vertex_areas())?;
-        if embedded.options == usual.form {
-            let shape = ShapeDescription::within(&refined, &embedded, &usual, &budget)?.prepare()?;
+        let measured = MeasuredSurface::new(repaired, options, observer)?;
+        let form = measured.form_of(repaired)?;
+        if *measured.options() == usual.form {
+            let shape = measured.describe(&usual, observer)?.prepare()?;
             return Ok(Self { surface, geometry, form, shape, usual: None });
         }
-        let description = describe_within(repaired, &usual, &budget)?;
+        let description = describe(repaired, &usual, observer)?;
         let (fused, area) = (description.fused.clone(), Some(description.area));
         let shape = PreparedShape::new(fused, &form.reduced(usual.points), area)?;
         Ok(Self { geometry, form, shape, usual: Some(description.prepare()?), surface })
@@ -64,75 +60,276 @@ impl<S: Borrow<Surface>> ComparedMesh<S> {
     pub fn surface(&self) -> &Surface {
         self.surface.borrow()
     }
+
+    /// The mesh as one of two that are compared.
+    pub fn compared(&self) -> Compared<'_> {
+        Compared {
+            shape: &self.shape,
+            usual: self.usual.as_ref().unwrap_or(&self.shape),
+            form: &self.form,
+            surface: Some(self.surface()),
+            geometry: self.geometry.as_ref(),
+            content: None,
+        }
+    }
+}
+
+/// One of two shapes that are compared, with what is known of its mesh.
+#[derive(Debug, Clone, Copy)]
+pub struct Compared<'a> {
+    /// The shape whose form is compared.
+    pub shape: &'a PreparedShape,
+    /// The same shape, made with the options that the metric is calibrated for: shapes are related by it, whatever the options.
+    pub usual: &'a PreparedShape,
+    /// Its form: at all vertices of the surface if there is one.
+    pub form: &'a CanonicalForm,
+    /// Its repaired mesh.
+    pub surface: Option<&'a Surface>,
+    /// Its mesh in space.
+    pub geometry: Option<&'a MeshGeometry>,
+    /// The hash of its file, if the geometry does not have it.
+    pub content: Option<ContentHash>,
 }
 
 /// How two meshes resemble each other; `canonform compare --json` prints it.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct MeshComparison {
-    /// What kind of match the meshes are.
-    pub evidence: MatchEvidence,
-    /// The comparison of their shapes.
+    /// How they are related.
+    pub relation: Relation,
+    /// The numbers of their shapes.
     #[serde(flatten)]
     pub comparison: Comparison,
-    /// Whether the meshes have the same triangles.
-    pub triangulation: Triangulation,
+    /// Whether the meshes have the same triangles; unknown without both surfaces.
+    pub triangulation: Option<Triangulation>,
     /// The two forms laid over each other.
     #[serde(skip)]
     pub overlay: Overlay,
-    /// Distances from the vertices of the first mesh to the second, in brief.
+    /// Distances from the points of either form to the other, in brief.
     #[serde(skip)]
-    pub residual: Residual,
-    /// The input vertex of the first mesh with the largest distance.
-    #[serde(skip)]
-    pub max_vertex: VertexId,
+    pub residual: [Residual; 2],
 }
 
-/// Compares two meshes. The verdict does not depend on the options that their forms were made with.
+/// Compares two meshes: how they are related, how far apart their shapes are, and where they differ. The relation does not
+/// depend on the options that their forms were made with. What is not known of a mesh is not compared.
 ///
 /// ```
-/// use canonform::descriptors::{ShapeMetric, VerdictKind};
-/// use canonform::{ComparedMesh, FormOptions, Surface, compare_meshes, mesh::shapes};
+/// use canonform::descriptors::ShapeMetric;
+/// use canonform::{ComparedMesh, FormOptions, RelationKind, Surface, compare_meshes, mesh::shapes};
 ///
 /// let flat = shapes::grid(21, 17, 0.1);
 /// let folded = shapes::fold(&flat, 0.8, 1.2);
 /// let mut sides = Vec::new();
 /// for mesh in [&flat, &folded] {
-///     let surface = Surface::new(mesh, &Default::default())?;
+///     let surface = Surface::new(mesh, &Default::default(), &())?;
 ///     sides.push(ComparedMesh::new(mesh, None, surface, &FormOptions::default(), &())?);
 /// }
-/// let found = compare_meshes(ShapeMetric::default(), [&sides[0], &sides[1]])?;
-/// assert_eq!(found.comparison.verdict.kind, VerdictKind::SameShape);
+/// let found = compare_meshes(ShapeMetric::default(), [sides[0].compared(), sides[1].compared()])?;
+/// assert_eq!(found.relation.kind, RelationKind::OtherPose);
 /// # Ok::<(), canonform::Error>(())
 /// ```
 ///
 /// # Errors
 /// [`Error::Descriptor`].
-pub fn compare_meshes<S: Borrow<Surface>>(
-    metric: ShapeMetric,
-    [a, b]: [&ComparedMesh<S>; 2],
-) -> Result<MeshComparison, Error> {
-    let pair = ShapePair::new(metric, [&a.shape, &b.shape]);
-    // The verdict must not depend on the options.
-    let distance = match (&a.usual, &b.usual) {
-        (None, None) => pair.distance(),
-        (usual_a, usual_b) => {
-            let usual = [usual_a.as_ref().unwrap_or(&a.shape), usual_b.as_ref().unwrap_or(&b.shape)];
-            ShapePair::new(metric, usual).distance()
+pub fn compare_meshes(metric: ShapeMetric, [a, b]: [Compared<'_>; 2]) -> Result<MeshComparison, Error> {
+    let pair = ShapePair::new(metric, [a.shape, b.shape]);
+    let is_usual = std::ptr::eq(a.shape, a.usual) && std::ptr::eq(b.shape, b.usual);
+    let distance =
+        if is_usual { pair.distance() } else { ShapePair::new(metric, [a.usual, b.usual]).distance() };
+    let (handedness, triangulation) = match (a.surface, b.surface) {
+        (Some(of_a), Some(of_b)) => {
+            let same =
+                of_a.input_faces == of_b.input_faces && of_a.n_input_vertices() == of_b.n_input_vertices();
+            let triangulation = if same { Triangulation::Same } else { Triangulation::Other };
+            (handedness(&pair, [(a.form, of_a.mesh()), (b.form, of_b.mesh())])?, Some(triangulation))
         }
+        _ => (Handedness::Unknown, None),
     };
-    let found = compare_surfaces(&pair, distance, [(a.surface(), &a.form), (b.surface(), &b.form)])?;
-    let verdict = found.comparison.verdict;
-    let evidence = match (&a.geometry, &b.geometry) {
-        (Some(a), Some(b)) => MatchEvidence::new([a, b], verdict),
-        _ => MatchEvidence::of_shapes([None, None], verdict),
+    let relation = Relation::by_distance(distance, pair.scale(), handedness).by_files([a.content, b.content]);
+    let relation = match (a.geometry, b.geometry) {
+        (Some(a), Some(b)) => relation.by_meshes([a, b]),
+        _ => relation,
     };
-    let [residual, _] = found.overlay.residual();
+    let overlay = Overlay::new(&pair, [a.form, b.form])?;
     Ok(MeshComparison {
-        evidence,
-        comparison: found.comparison,
-        triangulation: found.triangulation,
-        max_vertex: a.surface().input_vertex(residual.max_point.into()),
-        overlay: found.overlay,
-        residual,
+        relation,
+        comparison: Comparison::new(&pair, distance)?,
+        triangulation,
+        residual: overlay.residual(),
+        overlay,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use descriptors::{FormDistance, Normalization, ShapeDistance};
+    use mesh::shapes;
+    use nalgebra::Point3;
+    use relations::{Change, RelationKind};
+
+    use super::*;
+    use crate::compare::compare;
+    use crate::form::EmbedMethod;
+
+    /// A ball with arms of these lengths towards the corners of a tetrahedron: its mirror image is another shape.
+    fn four_arms(lengths: [f64; 4]) -> TriMesh {
+        let corners = [[1.0, 1.0, 1.0], [1.0, -1.0, -1.0], [-1.0, 1.0, -1.0], [-1.0, -1.0, 1.0]];
+        let mut mesh = shapes::icosphere(4);
+        for p in &mut mesh.positions {
+            let direction = p.coords;
+            for (corner, length) in corners.iter().zip(lengths) {
+                let towards = direction.dot(&nalgebra::Vector3::from(*corner)) / 3f64.sqrt();
+                p.coords += direction * length * (-(1.0 - towards) * 12.0).exp();
+            }
+        }
+        mesh
+    }
+
+    struct Described {
+        surface: Surface,
+        form: CanonicalForm,
+        shape: PreparedShape,
+    }
+
+    fn described(mesh: &TriMesh, options: &DescribeOptions) -> Described {
+        let surface = Surface::new(mesh, &options.form.repair, &()).unwrap();
+        let measured = MeasuredSurface::new(&surface, &options.form, &()).unwrap();
+        let form = measured.form_of(&surface).unwrap();
+        let shape = measured.describe(options, &()).unwrap().prepare().unwrap();
+        Described { surface, form, shape }
+    }
+
+    /// Two meshes by their shapes and surfaces alone.
+    fn compared_by(metric: ShapeMetric, options: &DescribeOptions, meshes: [&TriMesh; 2]) -> MeshComparison {
+        let all = meshes.map(|mesh| described(mesh, options));
+        let sides = all.each_ref().map(|Described { surface, form, shape }| Compared {
+            shape,
+            usual: shape,
+            form,
+            surface: Some(surface),
+            geometry: None,
+            content: None,
+        });
+        let found = compare_meshes(metric, sides).unwrap();
+        // The same numbers without the surfaces.
+        let pair = ShapePair::new(metric, [&all[0].shape, &all[1].shape]);
+        assert_eq!(compare(&pair).unwrap(), found.comparison);
+        found
+    }
+
+    fn compared(a: &TriMesh, b: &TriMesh) -> MeshComparison {
+        compared_by(ShapeMetric::default(), &DescribeOptions::default(), [a, b])
+    }
+
+    fn scaled(mesh: &TriMesh, factor: f64) -> TriMesh {
+        let mut scaled = mesh.clone();
+        scaled.positions.iter_mut().for_each(|p| p.coords *= factor);
+        scaled
+    }
+
+    #[test]
+    fn mirror_images_differ_from_resized_and_from_equal_shapes() {
+        let hand = four_arms([1.0, 1.7, 2.6, 3.5]);
+        // Reflected as by a mirror: positions, and faces so that normals still point outwards.
+        let mut other = hand.clone();
+        other.positions.iter_mut().for_each(|p| p.x = -p.x);
+        let inside_out = other.clone();
+        other.faces.iter_mut().for_each(|face| face.swap(1, 2));
+        let found = compared(&hand, &hand);
+        assert_eq!((found.relation.changes.len(), found.triangulation), (0, Some(Triangulation::Same)));
+        assert_eq!(found.relation.because.handedness, Handedness::Same);
+        assert!(found.overlay.residuals.iter().flatten().all(|r| *r < 1e-4));
+        for mirrored in [&other, &inside_out] {
+            let found = compared(&hand, mirrored);
+            assert_eq!(found.relation.changes, [Change::Mirrored], "{:?}", found.relation);
+        }
+        let found = compared(&hand, &scaled(&other, 3.0));
+        assert_eq!(found.relation.changes, [Change::Scaled, Change::Mirrored]);
+        assert_eq!(found.triangulation, Some(Triangulation::Other), "the faces are reversed");
+        let ball = shapes::icosphere(3);
+        assert_eq!(compared(&ball, &ball).relation.because.handedness, Handedness::Either);
+        let sheet = shapes::grid(12, 9, 0.1);
+        assert_eq!(compared(&sheet, &sheet).relation.because.handedness, Handedness::Unknown);
+    }
+
+    #[test]
+    fn signatures_and_forms_together_decide() {
+        let (hand, ball) = (four_arms([1.0, 1.7, 2.6, 3.5]), shapes::icosphere(3));
+        for (other, kind) in
+            [(&scaled(&hand, 2.0), RelationKind::OtherPose), (&ball, RelationKind::Different)]
+        {
+            let found = compared(&hand, other);
+            assert_eq!(found.relation.kind, kind);
+            assert_eq!(found.relation.has(Change::Scaled), kind == RelationKind::OtherPose);
+            let Comparison { normalized_distance, same_below, .. } = found.comparison;
+            assert_eq!(normalized_distance < same_below, kind != RelationKind::Different);
+            // Forms that fit do not make one shape if signatures are far apart.
+            let [a, b] = [&hand, other].map(|mesh| described(mesh, &DescribeOptions::default()));
+            let pair = ShapePair::new(ShapeMetric::default(), [&a.shape, &b.shape]);
+            let apart = ShapeDistance { fused: 9.0, combined: 9.0 };
+            assert_eq!(Comparison::new(&pair, apart).unwrap().same_below, 0.0);
+        }
+    }
+
+    #[test]
+    fn the_distance_shown_does_not_change_the_relation_and_has_its_own_threshold() {
+        let (a, b) = (four_arms([1.0, 1.7, 2.6, 3.5]), four_arms([1.0, 1.6, 2.6, 3.4]));
+        let [rms, hausdorff] = [FormDistance::NearestNeighborRms, FormDistance::Hausdorff95]
+            .map(|distance| compared_by(ShapeMetric { distance }, &DescribeOptions::default(), [&a, &b]));
+        assert_eq!(rms.relation, hausdorff.relation);
+        let (rms, hausdorff) = (rms.comparison, hausdorff.comparison);
+        assert_eq!(rms.rotation, hausdorff.rotation);
+        assert!(hausdorff.normalized_distance > rms.normalized_distance);
+        assert!(hausdorff.same_below > rms.same_below);
+    }
+
+    #[test]
+    fn size_does_not_count_whether_or_not_vectors_contain_it() {
+        let small = shapes::torus(24, 12, 2.0, 0.7);
+        // A power of two, since other factors may change which of many equal first samples is chosen.
+        let large = scaled(&small, 4.0);
+        for size in [Normalization::UnitArea, Normalization::Raw] {
+            let options = DescribeOptions { size, ..DescribeOptions::default() };
+            let found = compared_by(ShapeMetric::default(), &options, [&small, &large]);
+            assert!(found.comparison.shape_distance.combined < 0.01, "{found:?}");
+            assert!(found.relation.has(Change::Scaled), "{found:?}");
+        }
+    }
+
+    #[test]
+    fn forms_without_a_unit_are_compared_and_sizes_still_are() {
+        let method = EmbedMethod::KernelPca { rank: None, bandwidth: Default::default() };
+        let form = FormOptions { method, ..FormOptions::default() };
+        let options = DescribeOptions { form, ..DescribeOptions::default() };
+        let hand = four_arms([1.0, 1.7, 2.6, 3.5]);
+        let found = compared_by(ShapeMetric::default(), &options, [&hand, &scaled(&hand, 2.0)]);
+        assert!(found.relation.has(Change::Scaled));
+        let found = found.comparison;
+        assert_eq!(found.distance, found.normalized_distance);
+        assert!((found.scale - 2.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn residuals_are_distances_to_the_other_aligned_form() {
+        let (hand, changed) = (four_arms([1.0, 1.7, 2.6, 3.5]), four_arms([1.0, 1.4, 2.6, 3.1]));
+        let overlay = compared(&hand, &scaled(&changed, 5.0)).overlay;
+        for (mine, other) in [(0, 1), (1, 0)] {
+            let (points, others) = (&overlay.points[mine], &overlay.points[other]);
+            for (p, residual) in points.iter().zip(&overlay.residuals[mine]).step_by(97) {
+                let nearest = others.iter().map(|q| (p - q).norm()).fold(f64::INFINITY, f64::min);
+                assert!((nearest - residual).abs() < 1e-9, "{nearest} {residual}");
+            }
+        }
+        let spread = |points: &[Point3<f64>]| points.iter().map(|p| p.coords.norm()).fold(0.0, f64::max);
+        let ratio = spread(&overlay.points[0]) / spread(&overlay.points[1]);
+        assert!((0.8..1.3).contains(&ratio), "of one size: {ratio}");
+    }
+
+    #[test]
+    fn residuals_are_largest_where_a_shape_was_changed() {
+        let (whole, changed) = (four_arms([1.0, 1.7, 2.6, 3.5]), four_arms([1.0, 1.7, 2.6, 3.1]));
+        let found = compared(&whole, &changed);
+        let residuals = &found.overlay.residuals[0];
+        let worst = (0..residuals.len()).max_by(|&i, &j| residuals[i].total_cmp(&residuals[j]));
+        assert!(whole.positions[worst.unwrap()].z > 2.0, "the tip of the long arm");
+    }
 }

@@ -3,15 +3,15 @@
 use std::borrow::Borrow;
 use std::time::Instant;
 
-use descriptors::{MapKind, match_surfaces};
+use relations::{MapKind, map_surfaces};
 use serde::Serialize;
 use surface::VertexId;
 
-use super::matched_surface::MatchedSurface;
+use super::mapped_surface::MappedSurface;
 use super::options::CorrespondOptions;
 use crate::error::Error;
-use crate::input::Surface;
-use crate::observer::Observer;
+use base::Observer;
+use mesh::Surface;
 
 /// A map from the vertices of one surface to those of another.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -40,17 +40,17 @@ pub struct Correspondence {
 /// Maps the vertices of one surface to those of another.
 ///
 /// Shapes that are alike under a mirror have two maps of small distortion, one for each orientation. Both are returned. See
-/// [`match_surfaces`] for how they are found; the result does not depend on the number of threads.
+/// [`map_surfaces`] for how they are found; the result does not depend on the number of threads.
 ///
 /// ```
-/// use canonform::{CorrespondOptions, MatchedSurface, Surface, correspond, mesh::shapes};
+/// use canonform::{CorrespondOptions, MappedSurface, Surface, correspond, mesh::shapes};
 ///
 /// // A sheet, flat and folded.
 /// let flat = shapes::grid(21, 17, 0.1);
 /// let folded = shapes::fold(&flat, 0.8, 1.2);
 /// let options = CorrespondOptions::default();
-/// let a = MatchedSurface::new(Surface::new(&flat, &options.form.repair)?, &options, &())?;
-/// let b = MatchedSurface::new(Surface::new(&folded, &options.form.repair)?, &options, &())?;
+/// let a = MappedSurface::new(Surface::new(&flat, &options.form.repair, &())?, &options, &())?;
+/// let b = MappedSurface::new(Surface::new(&folded, &options.form.repair, &())?, &options, &())?;
 /// let found = correspond(&a, &b, &options, &())?;
 /// assert_eq!(found.maps.len(), 2, "directly and mirrored");
 /// assert_eq!(found.maps[0].vertices.len(), 21 * 17);
@@ -61,13 +61,13 @@ pub struct Correspondence {
 /// # Errors
 /// [`Error::Descriptor`] and [`Error::Exceeded`].
 pub fn correspond<S: Borrow<Surface>>(
-    a: &MatchedSurface<S>,
-    b: &MatchedSurface<S>,
+    a: &MappedSurface<S>,
+    b: &MappedSurface<S>,
     options: &CorrespondOptions,
     observer: &dyn Observer,
 ) -> Result<Correspondence, Error> {
     let start = Instant::now();
-    let found = match_surfaces(&a.shape, &b.shape, &options.matching, &observer.budget())?;
+    let found = map_surfaces(&a.shape, &b.shape, &options.mapping, observer)?;
     let (from, to) = (a.surface(), b.surface());
     let maps = found.into_iter().map(|map| {
         let partners: Vec<_> = map.vertices.iter().map(|v| Some(to.input_vertex(*v))).collect();

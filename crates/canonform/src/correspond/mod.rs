@@ -1,9 +1,9 @@
 //! Dense maps between two surfaces.
 
 mod correspondence;
-mod matched_surface;
+mod mapped_surface;
 mod options;
 
 pub use correspondence::{Correspondence, VertexMap, correspond};
-pub use matched_surface::MatchedSurface;
+pub use mapped_surface::MappedSurface;
 pub use options::CorrespondOptions;

@@ -1,6 +1,6 @@
 //! Options of maps between surfaces.
 
-use descriptors::MatchOptions;
+use relations::MapOptions;
 
 use crate::form::FormOptions;
 
@@ -12,11 +12,11 @@ pub struct CorrespondOptions {
     /// Vertices of each surface on which maps are refined before all others follow. Default: 1000.
     pub spread: usize,
     /// How maps are refined.
-    pub matching: MatchOptions,
+    pub mapping: MapOptions,
 }
 
 impl Default for CorrespondOptions {
     fn default() -> Self {
-        Self { form: FormOptions::default(), spread: 1000, matching: MatchOptions::default() }
+        Self { form: FormOptions::default(), spread: 1000, mapping: MapOptions::default() }
     }
 }

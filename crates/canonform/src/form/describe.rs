@@ -1,6 +1,6 @@
 //! A shape without its mesh: form, signatures and facts.
 
-use budget::Budget;
+use base::Observer;
 use descriptors::{
     CanonicalForm, DescriptorError, DiscAreas, LaplaceSpectrum, Normalization, PreparedShape, ShapeMetric,
     Signature, SignatureKind, d2_histogram, geodesic_spectrum, heat_kernel_signature, moment_signature,
@@ -9,9 +9,9 @@ use descriptors::{
 use mesh::{RepairReport, Shortcut};
 
 use super::embed::{Embedded, embed};
-use super::options::DescribeOptions;
+use super::options::{DescribeOptions, FormOptions};
 use crate::error::Error;
-use crate::input::Surface;
+use mesh::Surface;
 
 /// What a description needs at its peak: 200 MB for 43,000 vertices, by the resident memory of `index build`.
 const BYTES_PER_VERTEX: usize = 5000;
@@ -46,8 +46,8 @@ pub struct ShapeDescription {
 /// ```
 /// use canonform::{DescribeOptions, Surface, describe, mesh::shapes};
 ///
-/// let surface = Surface::new(&shapes::torus(24, 12, 2.0, 0.7), &Default::default())?;
-/// let description = describe(&surface, &DescribeOptions::default())?;
+/// let surface = Surface::new(&shapes::torus(24, 12, 2.0, 0.7), &Default::default(), &())?;
+/// let description = describe(&surface, &DescribeOptions::default(), &())?;
 /// assert_eq!(description.signatures.len(), 6);
 /// assert!(description.diameter > 6.0 && description.area > 50.0);
 /// # Ok::<(), canonform::Error>(())
@@ -57,53 +57,79 @@ pub struct ShapeDescription {
 /// [options of the result](ShapeDescription::options) tell.
 ///
 /// # Errors
-/// [`Error::BadDescription`] and those of the stages: a mesh without area or without extent has no description.
-pub fn describe(surface: &Surface, options: &DescribeOptions) -> Result<ShapeDescription, Error> {
-    describe_within(surface, options, &Budget::unlimited())
-}
-
-/// As [`describe`], within a budget.
-///
-/// # Errors
-/// [`Error::Exceeded`] and those of [`describe`].
-pub fn describe_within(
+/// [`Error::BadDescription`], [`Error::Exceeded`] and those of the stages: a mesh without area or without extent has no
+/// description.
+pub fn describe(
     surface: &Surface,
     options: &DescribeOptions,
-    budget: &Budget,
+    observer: &dyn Observer,
 ) -> Result<ShapeDescription, Error> {
     options.validate()?;
-    let working = surface.for_description_within(budget)?;
-    budget.check_memory(working.mesh().n_vertices().saturating_mul(BYTES_PER_VERTEX))?;
-    ShapeDescription::within(&working, &embed(&working, &options.form, budget)?, options, budget)
+    MeasuredSurface::new(surface, &options.form, observer)?.describe(options, observer)
 }
 
-impl ShapeDescription {
-    /// Describes a surface that has been embedded. [`describe`] gives it a [prepared](Surface::for_description) one; a coarser one
-    /// has less accurate signatures. The form options are those of the embedding; `options` says
-    /// how many points are kept and whether size counts.
+/// A surface on the road to its description: [prepared](Surface::for_description) and embedded. Every description and every
+/// form that is compared is made from one.
+#[derive(Debug)]
+pub struct MeasuredSurface {
+    /// The prepared surface, whose first vertices are those of the repaired mesh.
+    prepared: Surface,
+    embedded: Embedded,
+}
+
+impl MeasuredSurface {
+    /// Prepares and embeds a surface, within the time and the memory of the observer's budget.
+    ///
+    /// # Errors
+    /// [`Error::Exceeded`] and those of [`embed`].
+    pub fn new(surface: &Surface, options: &FormOptions, observer: &dyn Observer) -> Result<Self, Error> {
+        let prepared = surface.for_description(observer)?;
+        let needed = prepared.mesh().n_vertices().saturating_mul(BYTES_PER_VERTEX);
+        observer.budget().check_memory(needed)?;
+        let embedded = embed(&prepared, options, observer)?;
+        Ok(Self { prepared, embedded })
+    }
+
+    /// How the surface was embedded.
+    #[must_use]
+    pub fn options(&self) -> &FormOptions {
+        &self.embedded.options
+    }
+
+    /// The form of the vertices of `surface`, from which this one was made.
+    ///
+    /// # Errors
+    /// [`Error::Descriptor`] unless the form has three dimensions.
+    pub fn form_of(&self, surface: &Surface) -> Result<CanonicalForm, Error> {
+        Ok(self.embedded.form(&self.prepared)?.leading(surface.mesh().vertex_areas())?)
+    }
+
+    /// Distances of the vertices of the prepared surface from the first sample, in mesh units. The vertices of the repaired
+    /// mesh come first.
+    ///
+    /// # Errors
+    /// [`Error::Linalg`] if distances are in a file that cannot be read.
+    pub fn distances_from_first(&self) -> Result<Vec<f64>, Error> {
+        Ok(self.embedded.distances.column(0)?.to_vec())
+    }
+
+    /// The description. The form options are those of the embedding; `options` says how many points are kept and whether size
+    /// counts.
     ///
     /// # Errors
     /// As [`describe`].
-    pub fn new(surface: &Surface, embedded: &Embedded, options: &DescribeOptions) -> Result<Self, Error> {
-        Self::within(surface, embedded, options, &Budget::unlimited())
-    }
-
-    /// As [`new`](Self::new), within a budget.
-    ///
-    /// # Errors
-    /// [`Error::Exceeded`] and those of [`new`](Self::new).
-    pub fn within(
-        surface: &Surface,
-        embedded: &Embedded,
+    pub fn describe(
+        &self,
         options: &DescribeOptions,
-        budget: &Budget,
-    ) -> Result<Self, Error> {
+        observer: &dyn Observer,
+    ) -> Result<ShapeDescription, Error> {
+        let Self { prepared, embedded } = self;
         let options = DescribeOptions { form: embedded.options.clone(), ..*options };
         options.validate()?;
-        let form = embedded.form(surface)?;
+        let form = embedded.form(prepared)?;
         let reduced = form.reduced(options.points);
-        let spectrum = LaplaceSpectrum::within(&surface.intrinsic, LaplaceSpectrum::DESCRIBING, budget)?;
-        budget.check()?;
+        let spectrum = LaplaceSpectrum::new(prepared.intrinsic(), LaplaceSpectrum::DESCRIBING, observer)?;
+        observer.budget().check()?;
         let signatures = vec![
             moment_signature(&form),
             d2_histogram(&reduced),
@@ -120,20 +146,22 @@ impl ShapeDescription {
         if fused.iter().any(|value| !value.is_finite()) {
             return Err(DescriptorError::NotFinite.into());
         }
-        Ok(Self {
+        Ok(ShapeDescription {
             fused,
             options,
             form: reduced,
-            disc_areas: DiscAreas::new(&embedded.distances, &surface.mesh().vertex_areas())?,
+            disc_areas: DiscAreas::new(&embedded.distances, &prepared.mesh().vertex_areas())?,
             signatures,
             area: spectrum.area,
             diameter: embedded.distances.max(),
-            longest_boundary: surface.longest_boundary(),
-            shortcuts: surface.shortcuts().to_vec(),
-            repair: surface.repaired.report.clone(),
+            longest_boundary: prepared.longest_boundary(),
+            shortcuts: prepared.shortcuts().to_vec(),
+            repair: prepared.repaired.report.clone(),
         })
     }
+}
 
+impl ShapeDescription {
     /// The shape, ready to be compared; exactly as an index would store it.
     ///
     /// # Errors
@@ -150,6 +178,7 @@ impl ShapeDescription {
 
 #[cfg(test)]
 mod tests {
+    use base::Budget;
     use geodesics::Method;
     use mesh::{RepairOptions, TriMesh, Weld, shapes};
     use nalgebra::{Point3, Rotation3};
@@ -160,7 +189,7 @@ mod tests {
     use crate::testing::lopsided;
 
     fn described_by(mesh: &TriMesh, options: &DescribeOptions) -> ShapeDescription {
-        describe(&Surface::new(mesh, &options.form.repair).unwrap(), options).unwrap()
+        describe(&Surface::new(mesh, &options.form.repair, &()).unwrap(), options, &()).unwrap()
     }
 
     fn described(mesh: &TriMesh) -> ShapeDescription {
@@ -169,10 +198,9 @@ mod tests {
 
     #[test]
     fn a_description_beyond_the_memory_of_its_budget_is_an_error() {
-        let surface = Surface::new(&lopsided(), &Default::default()).unwrap();
-        let within = |bytes| {
-            describe_within(&surface, &DescribeOptions::default(), &Budget::unlimited().with_memory(bytes))
-        };
+        let surface = Surface::new(&lopsided(), &Default::default(), &()).unwrap();
+        let within =
+            |bytes| describe(&surface, &DescribeOptions::default(), &Budget::unlimited().with_memory(bytes));
         assert!(matches!(within(1_000_000), Err(Error::Exceeded(_))));
         assert!(within(100_000_000).is_ok());
     }
@@ -214,8 +242,8 @@ mod tests {
             let mut mesh = shapes::grid(5, 4, 0.1);
             mesh.positions[8].z = 1.0;
             mesh.positions[18].y = far;
-            let surface = Surface::new(&mesh, &RepairOptions::default()).unwrap();
-            match describe(&surface, &DescribeOptions::default()) {
+            let surface = Surface::new(&mesh, &RepairOptions::default(), &()).unwrap();
+            match describe(&surface, &DescribeOptions::default(), &()) {
                 Ok(found) => assert!(found.fused.iter().all(|value| value.is_finite()), "{far:e}"),
                 Err(fault) => assert!(matches!(fault, Error::Descriptor(_)), "{far:e}: {fault}"),
             }
@@ -298,17 +326,14 @@ mod tests {
     #[test]
     fn every_method_is_described_and_the_form_is_a_part_of_the_embedded_one() {
         let mesh = lopsided();
-        let surface = Surface::new(&mesh, &Default::default()).unwrap();
+        let surface = Surface::new(&mesh, &Default::default(), &()).unwrap();
         for method in EmbedMethod::all() {
             let form = FormOptions { method, samples: Samples::Count(60), ..FormOptions::default() };
             let options = DescribeOptions { form, ..DescribeOptions::default() };
-            let description = describe(&surface, &options).unwrap();
-            let embedded = embed(&surface.for_description(), &options.form, &()).unwrap();
-            assert_eq!(
-                description,
-                ShapeDescription::new(&surface.for_description(), &embedded, &options).unwrap()
-            );
-            let whole = embedded.form(&surface.for_description()).unwrap();
+            let description = describe(&surface, &options, &()).unwrap();
+            let MeasuredSurface { prepared, embedded } =
+                MeasuredSurface::new(&surface, &options.form, &()).unwrap();
+            let whole = embedded.form(&prepared).unwrap();
             assert_eq!(whole.reduced(options.points), description.form);
             assert_eq!(description.form.area().is_some(), options.form.method.has_unit());
             assert_eq!(embedded.distances.n_landmarks(), 60, "{}", options.form.method.name());
@@ -318,7 +343,7 @@ mod tests {
 
     #[test]
     fn classical_scaling_and_nmds_measure_the_same_samples() {
-        let surface = Surface::new(&lopsided(), &Default::default()).unwrap();
+        let surface = Surface::new(&lopsided(), &Default::default(), &()).unwrap();
         let samples = |method| {
             // Its distances do not depend on the direction.
             let geodesic = Method::Dijkstra;
@@ -332,8 +357,8 @@ mod tests {
     #[test]
     fn the_repair_of_the_surface_is_part_of_the_options() {
         let repair = RepairOptions { weld: Weld::All, ..RepairOptions::default() };
-        let surface = Surface::new(&lopsided(), &repair).unwrap();
-        let description = describe(&surface, &DescribeOptions::default()).unwrap();
+        let surface = Surface::new(&lopsided(), &repair, &()).unwrap();
+        let description = describe(&surface, &DescribeOptions::default(), &()).unwrap();
         assert_eq!(description.options.form.repair, repair);
     }
 }

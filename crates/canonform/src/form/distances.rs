@@ -5,7 +5,7 @@ use std::fmt;
 use std::str::FromStr;
 use std::time::Instant;
 
-use budget::{Budget, Exceeded};
+use base::{Budget, Exceeded};
 use geodesics::{DistanceSolver, FirstSample, PrunedSolver, Sampler, Sampling, Source};
 use linalg::{DistanceMatrix, LandmarkDistances, Matrix};
 use nmds::{Embedding, NmdsError, SampleGoal, SampleSearch, SampleStep};
@@ -15,7 +15,7 @@ use surface::VertexId;
 use super::plan::{Plan, check_memory};
 use super::samples_report::SamplesReport;
 use crate::error::Error;
-use crate::observer::Observer;
+use base::Observer;
 
 /// Samples taken by default, as in the paper's Figure 4.
 const DEFAULT_COUNT: usize = 100;
@@ -186,10 +186,10 @@ impl Measurement<'_> {
             self.timed(|_| sampler.move_to(store))?;
         }
         if let Some(goal) = self.samples.goal() {
-            return self.enough(sampler.as_mut(), goal, method);
+            return self.enough(&mut sampler, goal, method);
         }
         let n = self.samples.count_or(DEFAULT_COUNT);
-        self.extend(sampler.as_mut(), n)?;
+        self.extend(&mut sampler, n)?;
         let distances = self.timed(|_| sampler.into_distances(n))?;
         self.budget.check()?;
         let embedding = (method.embed)(&distances, None)?;
@@ -200,7 +200,7 @@ impl Measurement<'_> {
     /// Takes samples until they are enough.
     fn enough(
         &mut self,
-        sampler: &mut dyn Sampler,
+        sampler: &mut Sampler,
         goal: SampleGoal,
         method: &Sampled<'_>,
     ) -> Result<(Embedding, LandmarkDistances), Error> {
@@ -242,7 +242,7 @@ impl Measurement<'_> {
     }
 
     /// Takes samples until there are `n`, or as many as there are vertices.
-    fn extend(&mut self, sampler: &mut dyn Sampler, n: usize) -> Result<(), Error> {
+    fn extend(&mut self, sampler: &mut Sampler, n: usize) -> Result<(), Error> {
         if !self.streams || self.budget.spill().is_none() {
             let p = self.solver.n_vertices();
             check_memory(p, n.min(p), &self.budget)?;
@@ -250,7 +250,7 @@ impl Measurement<'_> {
         Ok(self.timed(|_| sampler.extend_to(n))?)
     }
 
-    fn take(&mut self, sampler: &mut dyn Sampler, n: usize) -> Result<LandmarkDistances, Error> {
+    fn take(&mut self, sampler: &mut Sampler, n: usize) -> Result<LandmarkDistances, Error> {
         self.extend(sampler, n)?;
         Ok(self.timed(|_| sampler.distances(n))?)
     }
@@ -267,7 +267,7 @@ impl Measurement<'_> {
     pub(super) fn columns_of(&mut self, all: &DistanceMatrix) -> Result<LandmarkDistances, Error> {
         let known = KnownDistances(all);
         let mut sampler = self.sampling.start(&known, self.first, self.seed)?;
-        self.take(sampler.as_mut(), self.samples.count_or(DEFAULT_COUNT))
+        self.take(&mut sampler, self.samples.count_or(DEFAULT_COUNT))
     }
 
     /// Counts the time of `work` as time spent on distances.

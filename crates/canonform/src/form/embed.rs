@@ -4,7 +4,7 @@ use std::borrow::Cow;
 use std::time::Instant;
 
 use descriptors::CanonicalForm;
-use geodesics::{DistanceSolver, FirstSample};
+use geodesics::{DistanceSolver, FirstSample, Observed};
 use linalg::LandmarkDistances;
 use mesh::RepairReport;
 use nmds::{Embedding, OutOfSample};
@@ -16,8 +16,8 @@ use super::options::FormOptions;
 use super::report::{EmbedReport, SecondsReport};
 use super::stress::{Known, Rows, StressChoice, StressOptions};
 use crate::error::Error;
-use crate::input::{InputMap, Surface};
-use crate::observer::{Observed, Observer};
+use base::Observer;
+use mesh::{InputMap, Surface};
 
 /// An embedded surface.
 #[derive(Debug, Clone)]
@@ -50,12 +50,12 @@ impl Embedded {
 /// `observer` counts every run of the distance solver as a step. The result does not depend on the number of
 /// threads. A surface that was repaired in another way than the options say keeps its repair, and the
 /// [options of the result](Embedded::options) tell. The [budget](Observer::budget) of the observer limits the work; a
-/// [`Budget`](budget::Budget) is itself an observer.
+/// [`Budget`](base::Budget) is itself an observer.
 ///
 /// ```
 /// use canonform::{FormOptions, Samples, Surface, embed, mesh::shapes};
 ///
-/// let surface = Surface::new(&shapes::torus(24, 12, 2.0, 0.7), &Default::default())?;
+/// let surface = Surface::new(&shapes::torus(24, 12, 2.0, 0.7), &Default::default(), &())?;
 /// let options = FormOptions { samples: Samples::Count(40), ..FormOptions::default() };
 /// let embedded = embed(&surface, &options, &())?;
 /// assert_eq!(embedded.embedding.coords.shape(), (288, 3));
@@ -84,7 +84,7 @@ pub fn embed_and_measure(
 ) -> Result<Embedded, Error> {
     let options = FormOptions { repair: surface.repair, ..options.clone() }.normalized();
     let first = first_sample(surface, &options)?;
-    run(Cow::Borrowed(&surface.intrinsic), &Origin::of(surface), options, first, None, stress, observer)
+    run(Cow::Borrowed(surface.intrinsic()), &Origin::of(surface), options, first, None, stress, observer)
 }
 
 /// Embeds a surface as [`embed_and_measure`] does, and looks up the distances that an earlier embedding of the same surface has
@@ -93,7 +93,7 @@ pub fn embed_and_measure(
 /// ```
 /// use canonform::{FormOptions, Samples, StressOptions, Surface, embed_again, embed_and_measure, mesh::shapes};
 ///
-/// let surface = Surface::new(&shapes::torus(24, 12, 2.0, 0.7), &Default::default())?;
+/// let surface = Surface::new(&shapes::torus(24, 12, 2.0, 0.7), &Default::default(), &())?;
 /// let few = FormOptions { samples: Samples::Count(20), ..FormOptions::default() };
 /// let many = FormOptions { samples: Samples::Count(50), ..few.clone() };
 /// let stress = StressOptions::default();
@@ -118,7 +118,7 @@ pub fn embed_again(
     let options = FormOptions { repair: surface.repair, ..options.clone() }.normalized();
     let first = first_sample(surface, &options)?;
     let known = (options.geodesic == earlier.options.geodesic).then_some(&earlier.distances);
-    run(Cow::Borrowed(&surface.intrinsic), &Origin::of(surface), options, first, known, stress, observer)
+    run(Cow::Borrowed(surface.intrinsic()), &Origin::of(surface), options, first, known, stress, observer)
 }
 
 /// Embeds a surface as [`embed_and_measure`] does, in less memory: the mesh is dropped before distances are measured. The
@@ -130,7 +130,7 @@ pub fn embed_again(
 /// ```
 /// use canonform::{FormOptions, StressOptions, Surface, embed_and_measure, embed_and_release, mesh::shapes};
 ///
-/// let surface = Surface::new(&shapes::torus(40, 20, 2.0, 0.7), &Default::default())?;
+/// let surface = Surface::new(&shapes::torus(40, 20, 2.0, 0.7), &Default::default(), &())?;
 /// let (options, stress) = (FormOptions::default(), StressOptions::default());
 /// let usual = embed_and_measure(&surface, &options, &stress, &())?;
 /// let (lean, map) = embed_and_release(surface, &options, &stress, &())?;
@@ -210,9 +210,9 @@ fn run(
     let against = stress.against.filter(|other| measures && *other != options.geodesic);
     let (solver, surface) = match surface {
         Cow::Owned(surface) if against.is_none() && !options.method.needs_surface() => {
-            (options.geodesic.prepare_owned_within(surface, &budget)?, None)
+            (options.geodesic.prepare_owned(surface, observer)?, None)
         }
-        surface => (options.geodesic.prepare_within(&surface, &budget)?, Some(surface)),
+        surface => (options.geodesic.prepare(&surface, observer)?, Some(surface)),
     };
     let solver = Observed { solver: solver.as_ref(), observer };
     let reused = known.map(|known| KnownColumns { solver: &solver, known });
@@ -238,7 +238,7 @@ fn run(
     let stress_report = match (against, surface.as_deref()) {
         _ if !measures => None,
         (Some(other), Some(surface)) => {
-            let solver = other.prepare_within(surface, &budget)?;
+            let solver = other.prepare(surface, observer)?;
             let solver = Observed { solver: solver.as_ref(), observer };
             Some(known.stress(Rows::Solved(&solver), other, stress, observer)?)
         }

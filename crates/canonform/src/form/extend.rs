@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use geodesics::{DistanceSolver, SurfacePoint};
+use geodesics::{DistanceSolver, Observed, SurfacePoint};
 use linalg::{LandmarkDistances, Matrix};
 use nmds::{Embedding, NystromOptions, OutOfSample, Regularization, nystrom_extended};
 use surface::VertexId;
@@ -13,8 +13,8 @@ use super::plan::check_memory;
 use super::report::EmbedReport;
 use super::stress::{Known, Rows, StressChoice, StressOptions};
 use crate::error::Error;
-use crate::input::{InputPoint, Surface};
-use crate::observer::{Observed, Observer};
+use base::Observer;
+use mesh::{InputPoint, Surface};
 
 impl Embedded {
     /// Refuses a surface that the embedding is not of.
@@ -56,7 +56,7 @@ impl Embedded {
     /// ```
     /// use canonform::{FormOptions, Surface, embed, mesh::shapes};
     ///
-    /// let surface = Surface::new(&shapes::fold(&shapes::grid(9, 7, 0.5), 0.8, 2.0), &Default::default())?;
+    /// let surface = Surface::new(&shapes::fold(&shapes::grid(9, 7, 0.5), 0.8, 2.0), &Default::default(), &())?;
     /// let form = embed(&surface, &FormOptions::default(), &())?;
     /// let places = form.place(&surface, &["17".parse()?, "f8@2:1:1".parse()?, "0-1@0.3".parse()?])?;
     /// assert_eq!(places.shape(), (3, 3));
@@ -86,7 +86,7 @@ impl Embedded {
 
 /// The vertices of the face or edge of a point, each with its weight.
 fn corners(surface: &Surface, point: SurfacePoint) -> Vec<(VertexId, f64)> {
-    let topology = surface.intrinsic.topology();
+    let topology = surface.intrinsic().topology();
     match point {
         SurfacePoint::Vertex(vertex) => vec![(vertex, 1.0)],
         SurfacePoint::Edge { edge, t } => {
@@ -100,7 +100,7 @@ fn corners(surface: &Surface, point: SurfacePoint) -> Vec<(VertexId, f64)> {
 
 /// `sum w_i w_j l_ij^2` over the sides of the face, or the edge, of a point.
 fn moment(surface: &Surface, point: SurfacePoint, corners: &[(VertexId, f64)]) -> f64 {
-    let intrinsic = &surface.intrinsic;
+    let intrinsic = surface.intrinsic();
     let side = |[(a, v), (b, w)]: [(VertexId, f64); 2]| {
         let edge = intrinsic.topology().edge_between(a, b);
         v * w * edge.map_or(0.0, |edge| intrinsic.length(edge)).powi(2)
@@ -121,7 +121,7 @@ fn moment(surface: &Surface, point: SurfacePoint, corners: &[(VertexId, f64)]) -
 /// ```
 /// use canonform::{FormOptions, StressOptions, Surface, embed, embed_finer, mesh::shapes};
 ///
-/// let [coarse, fine] = [3, 4].map(|level| Surface::new(&shapes::icosphere(level), &Default::default()));
+/// let [coarse, fine] = [3, 4].map(|level| Surface::new(&shapes::icosphere(level), &Default::default(), &()));
 /// let (coarse, fine) = (coarse?, fine?);
 /// let form = embed(&coarse, &FormOptions::default(), &())?;
 /// let finer = embed_finer(&fine, &coarse, &form, &StressOptions::default(), &())?;
@@ -149,7 +149,7 @@ pub fn embed_finer(
     let (budget, geodesic, p) = (observer.budget(), form.options.geodesic, fine.mesh().n_vertices());
     check_memory(p, samples.len(), &budget)?;
     observer.begin("distances", samples.len());
-    let solver = geodesic.prepare_within(&fine.intrinsic, &budget)?;
+    let solver = geodesic.prepare(fine.intrinsic(), observer)?;
     let solver = Observed { solver: solver.as_ref(), observer };
     let sources: Vec<VertexId> = samples.iter().copied().map(VertexId::from).collect();
     let columns = solver.distance_columns(&sources)?;
@@ -174,7 +174,7 @@ pub fn embed_finer(
 
 /// The vertices of a finer mesh that are nearest to the samples of a form.
 fn samples_on(fine: &Surface, coarse: &Surface, form: &Embedded) -> Result<Vec<usize>, Error> {
-    let allowed = coarse.intrinsic.mean_edge_length();
+    let allowed = coarse.intrinsic().mean_edge_length();
     let positions = &fine.mesh().positions;
     let near = |&sample: &usize| {
         let place = coarse.mesh().positions[sample];
@@ -201,7 +201,7 @@ mod tests {
     use crate::testing::lopsided;
 
     fn surface(mesh: &mesh::TriMesh) -> Surface {
-        Surface::new(mesh, &Default::default()).unwrap()
+        Surface::new(mesh, &Default::default(), &()).unwrap()
     }
 
     #[test]
@@ -230,12 +230,13 @@ mod tests {
     fn points_are_placed_as_by_their_distances() {
         let surface = surface(&lopsided());
         let form = embed(&surface, &FormOptions::default(), &()).unwrap();
-        let solver = Method::Exact.prepare(&surface.intrinsic).unwrap();
+        let solver = Method::Exact.prepare(surface.intrinsic(), &()).unwrap();
         let extension = form.extension().unwrap();
         let size = form.embedding.coords.amax();
         for text in ["f100@1:2:4", "f7", "f300@1:1:0"] {
             let point: InputPoint = text.parse().unwrap();
-            let source = geodesics::Source::new(&surface.intrinsic, surface.locate(&point).unwrap()).unwrap();
+            let source =
+                geodesics::Source::new(surface.intrinsic(), surface.locate(&point).unwrap()).unwrap();
             let mut found = vec![0.0; surface.mesh().n_vertices()];
             solver.solve_into(&[source], f64::INFINITY, &mut found).unwrap();
             let samples = form.distances.landmarks();

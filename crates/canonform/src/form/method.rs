@@ -4,8 +4,8 @@ use descriptors::LaplaceSpectrum;
 use linalg::{DistanceMatrix, LandmarkDistances, SparseSymmetric};
 use nmds::{
     Bandwidth, Embedding, KernelPcaOptions, NystromOptions, Regularization, SampleSearch, SmacofOptions,
-    SmacofReport, SpectralBasis, SpectralOptions, classical_within, fmds_within, kernel_pca, landmark_mds,
-    nystrom, smacof_within, spectral,
+    SmacofReport, SpectralBasis, SpectralOptions, classical, fmds, kernel_pca, landmark_mds, nystrom, smacof,
+    spectral,
 };
 use serde::{Deserialize, Serialize};
 use surface::IntrinsicMesh;
@@ -170,7 +170,7 @@ impl EmbedMethod {
                 let p = surface.n_vertices();
                 check_memory(p, eigenvectors.min(p), &budget)?;
                 let LaplaceSpectrum { values, vectors, masses, .. } =
-                    LaplaceSpectrum::within(surface, eigenvectors, &budget)?;
+                    LaplaceSpectrum::new(surface, eigenvectors, &budget)?;
                 let basis = SpectralBasis { values: &values, vectors: &vectors, masses: &masses };
                 let embed = |d: &_, _| spectral(d, &basis, &SpectralOptions { mu, dim });
                 sampled(measurement.sampled(&of_one_rank(dim, &embed))?)
@@ -179,7 +179,7 @@ impl EmbedMethod {
                 let laplacian = Laplacian::new(surface());
                 let (p, masses) = (laplacian.n_vertices(), laplacian.masses());
                 let stiffness = SparseSymmetric::from_entries(p, laplacian.stiffness_entries());
-                let embed = |d: &_, _| fmds_within(d, &stiffness, &masses, dim, &budget);
+                let embed = |d: &_, _| fmds(d, &stiffness, &masses, dim, &budget);
                 sampled(measurement.sampled(&of_one_rank(dim, &embed))?)
             }
             Self::KernelPca { rank, bandwidth } => {
@@ -188,14 +188,14 @@ impl EmbedMethod {
             }
             Self::Classical => {
                 let all = measurement.all_pairs()?;
-                let embedding = classical_within(&all, dim, &budget)?;
+                let embedding = classical(&all, dim, &budget)?;
                 let distances = measurement.columns_of(&all)?;
                 Outcome { embedding, distances, all: Some(all), descent: None }
             }
             Self::Smacof { regularization, descent } => {
                 let (start, distances) = by_nystrom(regularization, dim, measurement)?;
                 let all = measurement.all_pairs()?;
-                let (embedding, report) = smacof_within(&start.coords, &all, &descent, &budget)?;
+                let (embedding, report) = smacof(&start.coords, &all, &descent, &budget)?;
                 let embedding = Embedding { rank: start.rank, ..embedding };
                 Outcome { embedding, distances, all: Some(all), descent: Some(report) }
             }

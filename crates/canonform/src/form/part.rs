@@ -1,28 +1,28 @@
 //! A part of a surface, to be compared with whole shapes.
 
-use budget::Budget;
+use base::Observer;
 use descriptors::PartDiscAreas;
 use geodesics::{Method, Source};
 
 use super::embed::embed;
 use super::options::DescribeOptions;
 use crate::error::Error;
-use crate::input::Surface;
+use mesh::Surface;
 
 /// What is known of the discs of a whole shape, of which the surface is a part that ends at its boundaries. Those of small
 /// holes do not count.
 ///
 /// ```
-/// use canonform::{Budget, DescribeOptions, Surface, describe, describe_part, mesh::shapes};
+/// use canonform::{DescribeOptions, Surface, describe, describe_part, mesh::shapes};
 ///
 /// let options = DescribeOptions::default();
 /// let (ball, mut half) = (shapes::icosphere(4), shapes::icosphere(4));
 /// half.faces.retain(|face| face.iter().all(|v| half.positions[v.index()].z >= 0.0));
 /// let ring = shapes::torus(48, 24, 2.0, 0.7);
 ///
-/// let part = describe_part(&Surface::new(&half, &Default::default())?, &options, &Budget::unlimited())?;
+/// let part = describe_part(&Surface::new(&half, &Default::default(), &())?, &options, &())?;
 /// let distance = |mesh| {
-///     let whole = describe(&Surface::new(mesh, &Default::default())?, &options)?;
+///     let whole = describe(&Surface::new(mesh, &Default::default(), &())?, &options, &())?;
 ///     Ok::<_, canonform::Error>(part.distance(&whole.disc_areas))
 /// };
 /// let (of_ball, of_ring) = (distance(&ball)?, distance(&ring)?);
@@ -35,17 +35,17 @@ use crate::input::Surface;
 pub fn describe_part(
     surface: &Surface,
     options: &DescribeOptions,
-    budget: &Budget,
+    observer: &dyn Observer,
 ) -> Result<PartDiscAreas, Error> {
     options.validate()?;
-    let part = surface.for_part_within(budget)?;
-    let embedded = embed(&part, &options.form, budget)?;
+    let part = surface.for_part(observer)?;
+    let embedded = embed(&part, &options.form, observer)?;
     let masses = part.mesh().vertex_areas();
     let (cut, length) = part.boundary_vertices();
     let mut from_cut = vec![f64::INFINITY; masses.len()];
     if !cut.is_empty() {
         let sources: Vec<Source> = cut.into_iter().map(Source::vertex).collect();
-        let solver = Method::default().prepare(&part.intrinsic)?;
+        let solver = Method::default().prepare(part.intrinsic(), observer)?;
         solver.solve_into(&sources, f64::INFINITY, &mut from_cut)?;
     }
     Ok(PartDiscAreas::new(&embedded.distances, &masses, &from_cut, length)?)

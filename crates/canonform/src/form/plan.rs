@@ -1,6 +1,6 @@
 //! Where the distances of an embedding are kept: in memory, or in a temporary file.
 
-use budget::Budget;
+use base::Budget;
 use linalg::ColumnStore;
 
 use crate::error::Error;
@@ -91,7 +91,7 @@ impl Plan {
         if fits && let Ok(store) = ColumnStore::with_capacity(self.n_vertices, self.n_columns) {
             return Ok(store);
         }
-        Ok(ColumnStore::in_file(self.n_vertices, files::nameless_in(folder)?))
+        Ok(ColumnStore::in_file(self.n_vertices, base::files::nameless_in(folder)?))
     }
 }
 

@@ -1,59 +1,42 @@
-//! Settings of a form as users give them, one by one.
+//! Settings as users give them, one by one: flags of a program or keyword arguments.
 
-use geodesics::{FirstSample, Sampling};
-use nmds::{Bandwidth, Regularization, RpiAlpha};
+use std::collections::BTreeMap;
+use std::str::FromStr;
+
+use descriptors::Normalization;
+use geodesics::{FastMarchingOptions, FirstSample, Method};
+use mesh::{Orient, RepairOptions};
+use nmds::Regularization;
 use surface::VertexId;
 
 use super::distances::Samples;
 use super::method::EmbedMethod;
-use super::options::FormOptions;
+use super::options::{DescribeOptions, FormOptions};
 
-/// Settings of an embedding as users give them: flags of a program or keyword arguments. `None` stands for a setting that
-/// was not given.
+pub use super::schema::{Named, OptionGroup, OptionSpec, SCHEMA};
+
+/// The settings that were given: values of options of the [`SCHEMA`].
 ///
 /// ```
-/// use canonform::{EmbedMethod, EmbedSettings, FormOptions};
+/// use canonform::EmbedMethod;
+/// use canonform::settings::Settings;
 ///
-/// let settings = EmbedSettings { rank: Some(30), ..EmbedSettings::default() };
-/// assert_eq!(settings.applied_to(FormOptions::default())?.method, EmbedMethod::low_rank(30));
+/// let mut settings = Settings::default();
+/// settings.set("rank", "30")?;
+/// assert_eq!(settings.form()?.method, EmbedMethod::low_rank(30));
 ///
-/// let landmark = EmbedSettings { method: EmbedMethod::Landmark, ..settings };
-/// let fault = landmark.applied_to(FormOptions::default()).unwrap_err();
+/// settings.set("method", "landmark")?;
+/// let fault = settings.form().unwrap_err();
 /// assert_eq!(fault.to_string(), "rank has no effect with method landmark; leave it out, or use method nmds or kpca or smacof");
-/// # Ok::<(), canonform::NoEffect>(())
+/// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct EmbedSettings {
-    /// The method, with default options; the other settings change them.
-    pub method: EmbedMethod,
-    /// How the inverse of the sample matrix is regularised, with default options.
-    pub regularization: Option<Regularization>,
-    /// Number of eigenpairs of the sample matrix to keep (of columns for CUR).
-    pub rank: Option<usize>,
-    /// How strongly [`Regularization::Rpi`] damps small eigenvalues.
-    pub alpha: Option<RpiAlpha>,
-    /// How samples are taken.
-    pub sampling: Option<Sampling>,
-    /// The normalised stress up to which samples are taken; needs [`Samples::Auto`].
-    pub target_stress: Option<f64>,
-    /// The first sample, a vertex of the input.
-    pub first_sample: Option<u32>,
-    /// Width of the kernel of [`EmbedMethod::KernelPca`].
-    pub sigma: Option<Bandwidth>,
-    /// Number of eigenfunctions of [`EmbedMethod::Spectral`].
-    pub eigenvectors: Option<usize>,
-    /// Weight of the distances of [`EmbedMethod::Spectral`].
-    pub mu: Option<f64>,
-    /// Most steps of [`EmbedMethod::Smacof`].
-    pub iterations: Option<usize>,
-    /// The share of the stress below which a step of [`EmbedMethod::Smacof`] is the last.
-    pub tolerance: Option<f64>,
-}
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Settings(BTreeMap<&'static str, String>);
 
 /// A setting that would change nothing beside another one.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct NoEffect {
-    /// Name of the setting: of the field of [`EmbedSettings`].
+    /// Name of the setting.
     pub setting: &'static str,
     /// Name of the other setting.
     pub beside: &'static str,
@@ -82,41 +65,138 @@ impl std::fmt::Display for NoEffect {
 
 impl std::error::Error for NoEffect {}
 
-impl EmbedSettings {
-    /// The options with these settings.
+impl Settings {
+    /// Gives an option a value.
     ///
     /// # Errors
-    /// [`NoEffect`] if a setting was given that would change nothing.
-    pub fn applied_to(&self, options: FormOptions) -> Result<FormOptions, NoEffect> {
-        self.check()?;
-        let samples = self.samples(options.samples)?;
-        let mut method = self.method.clone();
+    /// There is no such option, or the value is not possible; the message says what is.
+    pub fn set(&mut self, name: &str, text: &str) -> Result<(), String> {
+        let option = OptionSpec::named(name).ok_or_else(|| format!("there is no option {name}"))?;
+        option.check(text)?;
+        self.0.insert(option.name, text.to_owned());
+        Ok(())
+    }
+
+    /// These settings and those of another group.
+    #[must_use]
+    pub fn and(&self, others: &Self) -> Self {
+        Self(self.0.clone().into_iter().chain(others.0.clone()).collect())
+    }
+
+    /// Whether an option has been given a value.
+    pub fn is_given(&self, name: &str) -> bool {
+        self.0.contains_key(name)
+    }
+
+    /// The number or text given for an option.
+    pub fn get<T: FromStr>(&self, name: &str) -> Option<T> {
+        self.0.get(name)?.parse().ok()
+    }
+
+    /// The value chosen by name for an option.
+    pub fn chosen<T: Named>(&self, name: &str) -> Option<T> {
+        T::named(self.0.get(name)?)
+    }
+
+    /// How meshes are repaired.
+    pub fn repair(&self) -> RepairOptions {
+        let usual = RepairOptions::default();
+        RepairOptions {
+            components: self.chosen("components").unwrap_or(usual.components),
+            weld: self.get("weld").unwrap_or(usual.weld),
+            orient: Orient::Keep,
+        }
+    }
+
+    /// A method of distances, with the options of fast marching if it is that.
+    pub fn distances(&self, method: Method) -> Method {
+        match method {
+            Method::FastMarching(_) => Method::FastMarching(FastMarchingOptions {
+                update: self.chosen("update").unwrap_or_default(),
+                obtuse: self.chosen("obtuse").unwrap_or_default(),
+            }),
+            other => other,
+        }
+    }
+
+    /// Refuses options of fast marching beside another method, the value of the option `name`.
+    ///
+    /// # Errors
+    /// [`NoEffect`].
+    pub fn check_distances(&self, name: &'static str, method: Method) -> Result<(), NoEffect> {
+        let given = ["update", "obtuse"].into_iter().find(|option| self.is_given(option));
+        match (method, given) {
+            (Method::FastMarching(_), _) | (_, None) => Ok(()),
+            (other, Some(setting)) => {
+                let instead = vec![Method::default().name()];
+                Err(NoEffect { setting, beside: name, value: other.name(), instead })
+            }
+        }
+    }
+
+    /// How a form is made, with seed 0.
+    ///
+    /// # Errors
+    /// [`NoEffect`] if a setting of the method was given that would change nothing.
+    pub fn form(&self) -> Result<FormOptions, NoEffect> {
+        let mut method: EmbedMethod = self.chosen("method").unwrap_or_default();
+        self.check(&method)?;
         match &mut method {
             EmbedMethod::Nystrom { regularization } => *regularization = self.regularization(),
             EmbedMethod::Spectral { eigenvectors, mu } => {
-                set(eigenvectors, self.eigenvectors);
-                set(mu, self.mu);
+                self.apply("eigenvectors", eigenvectors);
+                self.apply("mu", mu);
             }
             EmbedMethod::KernelPca { rank, bandwidth } => {
-                *rank = self.rank;
-                set(bandwidth, self.sigma);
+                *rank = self.get("rank");
+                self.apply("sigma", bandwidth);
             }
             EmbedMethod::Smacof { regularization, descent } => {
                 *regularization = self.regularization();
-                set(&mut descent.max_iterations, self.iterations);
-                set(&mut descent.tolerance, self.tolerance);
+                self.apply("iterations", &mut descent.max_iterations);
+                self.apply("tolerance", &mut descent.tolerance);
             }
             EmbedMethod::Classical | EmbedMethod::Landmark | EmbedMethod::Fmds => {}
         }
-        let first_sample =
-            self.first_sample.map_or(FirstSample::Farthest, |v| FirstSample::Vertex(VertexId(v)));
-        let sampling = self.sampling.unwrap_or_default();
-        Ok(FormOptions { method, samples, sampling, first_sample, ..options })
+        let usual = FormOptions::default();
+        let first_sample = self.get("first_sample").map(|v| FirstSample::Vertex(VertexId(v)));
+        Ok(FormOptions {
+            repair: self.repair(),
+            geodesic: self.distances(self.chosen("geodesic").unwrap_or_default()),
+            samples: self.samples()?,
+            sampling: self.chosen("sampling").unwrap_or_default(),
+            first_sample: first_sample.unwrap_or(FirstSample::Farthest),
+            method,
+            dim: self.get("dim").unwrap_or(usual.dim),
+            seed: usual.seed,
+        })
+    }
+
+    /// How shapes are described, with seed 0.
+    ///
+    /// # Errors
+    /// As [`form`](Self::form).
+    pub fn describe(&self) -> Result<DescribeOptions, NoEffect> {
+        let usual = DescribeOptions::default();
+        let counts = self.get("size").unwrap_or(false);
+        Ok(DescribeOptions {
+            form: self.form()?,
+            points: self.get("points").unwrap_or(usual.points),
+            size: if counts { Normalization::Raw } else { usual.size },
+        })
+    }
+
+    /// Replaces a value by the one given, if any.
+    fn apply<T: FromStr>(&self, name: &str, value: &mut T) {
+        if let Some(given) = self.get(name) {
+            *value = given;
+        }
     }
 
     /// The number of samples with the target, if there is one.
-    fn samples(&self, samples: Samples) -> Result<Samples, NoEffect> {
-        match (self.target_stress, samples) {
+    fn samples(&self) -> Result<Samples, NoEffect> {
+        let samples = self.get("samples").unwrap_or_default();
+        match (self.get("target_stress"), samples) {
             (None, samples) => Ok(samples),
             (target_stress, Samples::Auto { .. }) => Ok(Samples::Auto { target_stress }),
             (Some(_), Samples::Count(_)) => Err(NoEffect {
@@ -129,139 +209,156 @@ impl EmbedSettings {
     }
 
     fn regularization(&self) -> Regularization {
-        let mut chosen = self.regularization.unwrap_or_default();
+        let mut chosen = self.chosen("regularization").unwrap_or_default();
         match &mut chosen {
-            Regularization::LowRank { rank } | Regularization::Cur { rank } => *rank = self.rank,
-            Regularization::Rpi { alpha } => set(alpha, self.alpha),
+            Regularization::LowRank { rank } | Regularization::Cur { rank } => *rank = self.get("rank"),
+            Regularization::Rpi { alpha } => self.apply("alpha", alpha),
             Regularization::None => {}
         }
         chosen
     }
 
     /// Refuses settings that would change nothing.
-    fn check(&self) -> Result<(), NoEffect> {
-        type AppliesTo = fn(&EmbedMethod) -> bool;
-        let is_regularized: AppliesTo = |m| m.regularization().is_some();
-        let of_method: [(&str, bool, AppliesTo); 11] = [
-            ("rank", self.rank.is_some(), |m| {
-                m.regularization().is_some() || matches!(m, EmbedMethod::KernelPca { .. })
-            }),
-            ("sampling", self.sampling.is_some(), EmbedMethod::is_sampled),
-            ("first_sample", self.first_sample.is_some(), EmbedMethod::is_sampled),
-            ("target_stress", self.target_stress.is_some(), |m| {
-                m.is_sampled() && m.has_unit() && !matches!(m, EmbedMethod::Smacof { .. })
-            }),
-            ("regularization", self.regularization.is_some(), is_regularized),
-            ("alpha", self.alpha.is_some(), is_regularized),
-            ("eigenvectors", self.eigenvectors.is_some(), |m| matches!(m, EmbedMethod::Spectral { .. })),
-            ("mu", self.mu.is_some(), |m| matches!(m, EmbedMethod::Spectral { .. })),
-            ("sigma", self.sigma.is_some(), |m| matches!(m, EmbedMethod::KernelPca { .. })),
-            ("iterations", self.iterations.is_some(), |m| matches!(m, EmbedMethod::Smacof { .. })),
-            ("tolerance", self.tolerance.is_some(), |m| matches!(m, EmbedMethod::Smacof { .. })),
-        ];
-        let methods = EmbedMethod::all();
-        for (setting, is_given, applies) in of_method {
-            if is_given && !applies(&self.method) {
-                let instead = methods.iter().filter(|m| applies(m)).map(EmbedMethod::name).collect();
-                return Err(NoEffect { setting, beside: "method", value: self.method.name(), instead });
-            }
+    fn check(&self, method: &EmbedMethod) -> Result<(), NoEffect> {
+        let given = || SCHEMA.iter().filter(|option| self.is_given(option.name));
+        if let Some(option) = given().find(|option| !option.applies_to(method)) {
+            let methods = EmbedMethod::all();
+            let instead = methods.iter().filter(|m| option.applies_to(m)).map(EmbedMethod::name).collect();
+            return Err(NoEffect { setting: option.name, beside: "method", value: method.name(), instead });
         }
-        if is_regularized(&self.method) {
-            let chosen = self.regularization.unwrap_or_default();
-            type Takes = fn(&Regularization) -> bool;
-            let of_regularization: [(&str, bool, Takes); 2] = [
-                ("rank", self.rank.is_some(), |r| {
-                    matches!(r, Regularization::LowRank { .. } | Regularization::Cur { .. })
-                }),
-                ("alpha", self.alpha.is_some(), |r| matches!(r, Regularization::Rpi { .. })),
-            ];
-            for (setting, is_given, takes) in of_regularization {
-                if is_given && !takes(&chosen) {
-                    let all = Regularization::all().into_iter().filter(takes);
-                    let instead = all.map(Regularization::name).collect();
-                    return Err(NoEffect {
-                        setting,
-                        beside: "regularization",
-                        value: chosen.name(),
-                        instead,
-                    });
-                }
-            }
+        if method.regularization().is_none() {
+            return Ok(());
         }
-        Ok(())
+        let chosen: Regularization = self.chosen("regularization").unwrap_or_default();
+        let has_rank =
+            |r: &Regularization| matches!(r, Regularization::LowRank { .. } | Regularization::Cur { .. });
+        let has_alpha = |r: &Regularization| matches!(r, Regularization::Rpi { .. });
+        let of_regularization: [(_, fn(&_) -> bool); 2] = [("rank", has_rank), ("alpha", has_alpha)];
+        let lost = of_regularization.into_iter().find(|(name, has)| self.is_given(name) && !has(&chosen));
+        lost.map_or(Ok(()), |(setting, has)| {
+            let instead = Regularization::all().into_iter().filter(has).map(Regularization::name).collect();
+            Err(NoEffect { setting, beside: "regularization", value: chosen.name(), instead })
+        })
     }
-}
-
-/// Replaces an option by the value given, if any.
-fn set<T: Copy>(option: &mut T, given: Option<T>) {
-    *option = given.unwrap_or(*option);
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
+    fn of(given: &[(&str, &str)]) -> Settings {
+        let mut settings = Settings::default();
+        given.iter().for_each(|(name, text)| settings.set(name, text).unwrap());
+        settings
+    }
+
+    /// A method, further settings and a value that is not the default, for every option of a description.
+    const OTHERS: [(&str, &str, &[(&str, &str)]); 19] = [
+        ("method", "spectral", &[]),
+        ("samples", "50", &[]),
+        ("dim", "2", &[]),
+        ("geodesic", "exact", &[]),
+        ("update", "planar", &[]),
+        ("obtuse", "ignore", &[]),
+        ("components", "bridge", &[]),
+        ("weld", "0.5", &[]),
+        ("rank", "30", &[]),
+        ("sampling", "random", &[]),
+        ("first_sample", "7", &[]),
+        ("regularization", "cur", &[]),
+        ("alpha", "paper", &[("regularization", "rpi")]),
+        ("sigma", "median", &[("method", "kpca")]),
+        ("eigenvectors", "60", &[("method", "spectral")]),
+        ("mu", "inf", &[("method", "spectral")]),
+        ("iterations", "5", &[("method", "smacof")]),
+        ("tolerance", "0.1", &[("method", "smacof")]),
+        ("points", "500", &[]),
+    ];
+
+    #[test]
+    fn every_option_of_a_description_is_stored_and_its_default_is_stated() {
+        let stored = [OptionGroup::Method, OptionGroup::Form, OptionGroup::Marching, OptionGroup::Repair];
+        for option in
+            SCHEMA.iter().filter(|o| stored.contains(&o.group) || o.group == OptionGroup::Description)
+        {
+            if option.is_switch() {
+                let text = |on: &str| of(&[(option.name, on)]).describe().unwrap().text();
+                assert!(text("true") != text("false") && text("false") == DescribeOptions::default().text());
+                continue;
+            }
+            let (name, other, beside) = OTHERS
+                .into_iter()
+                .find(|(name, ..)| *name == option.name)
+                .unwrap_or_else(|| panic!("{}", option.name));
+            let without = of(beside);
+            let with = |value: &str| without.and(&of(&[(name, value)])).describe().unwrap();
+            let usual = without.describe().unwrap();
+            let changed = with(other);
+            assert_ne!(changed.text(), usual.text(), "{name}");
+            assert_eq!(DescribeOptions::from_text(&changed.text()), Some(changed), "{name}");
+            if option.check(option.default).is_ok() {
+                assert_eq!(with(option.default), usual, "the default of {name}");
+            }
+        }
+    }
+
     #[test]
     fn settings_reach_the_options_that_they_belong_to() {
-        let of = |settings: EmbedSettings| settings.applied_to(FormOptions::default()).unwrap();
-        assert_eq!(of(EmbedSettings::default()), FormOptions::default());
-        let rpi = EmbedSettings {
-            regularization: Some(Regularization::Rpi { alpha: RpiAlpha::default() }),
-            alpha: Some(RpiAlpha::Paper),
-            ..EmbedSettings::default()
-        };
-        let expected =
-            EmbedMethod::Nystrom { regularization: Regularization::Rpi { alpha: RpiAlpha::Paper } };
-        assert_eq!(of(rpi).method, expected);
-        let target = EmbedSettings { target_stress: Some(0.1), ..EmbedSettings::default() };
-        let auto = FormOptions { samples: Samples::AUTO, ..FormOptions::default() };
-        let reached = target.applied_to(auto.clone()).unwrap();
+        assert_eq!(Settings::default().describe().unwrap(), DescribeOptions::default());
+        let reached = of(&[("samples", "auto"), ("target_stress", "0.1")]).form().unwrap();
         assert_eq!(reached.samples, Samples::Auto { target_stress: Some(0.1) });
-        assert_eq!(of(EmbedSettings::default()).samples, Samples::default());
-        let fault = target.applied_to(FormOptions::default()).unwrap_err();
-        assert_eq!(
-            (fault.setting, fault.beside, &fault.instead[..]),
-            ("target_stress", "samples", &["auto"][..])
-        );
-        let of_all = EmbedSettings { method: EmbedMethod::Classical, ..target };
-        assert_eq!(of_all.applied_to(auto).unwrap_err().beside, "method");
-        let first = EmbedSettings { first_sample: Some(7), ..EmbedSettings::default() };
-        assert_eq!(of(first).first_sample, FirstSample::Vertex(VertexId(7)));
+        assert_eq!(of(&[("stress", "skip")]).chosen("stress"), Some(crate::StressChoice::Skip));
+        let metric = of(&[("distance", "hausdorff95")]).chosen("distance");
+        assert_ne!(metric, Some(descriptors::ShapeMetric::default().distance));
+        let first = of(&[("first_sample", "7")]).form().unwrap();
+        assert_eq!(first.first_sample, FirstSample::Vertex(VertexId(7)));
+    }
+
+    #[test]
+    fn impossible_values_are_refused_with_what_is_possible() {
+        for (name, text, words) in [
+            ("method", "umap", "use \"nmds\""),
+            ("weld", "-1", "distance in mesh units"),
+            ("alpha", "ten", "neither a number nor `paper`"),
+            ("sigma", "wide", "`mean`"),
+            ("target_stress", "0", "give a positive number"),
+            ("samples", "0", "`auto`"),
+            ("rank", "1.5", "invalid digit"),
+            ("colour", "3", "no option colour"),
+        ] {
+            let fault = Settings::default().set(name, text).unwrap_err();
+            assert!(fault.contains(words), "{name} {text}: {fault}");
+        }
     }
 
     #[test]
     fn settings_without_effect_are_refused_with_what_would_use_them() {
-        let all = Regularization::all();
-        for (settings, setting, beside, instead) in [
-            (EmbedSettings { mu: Some(5.0), ..EmbedSettings::default() }, "mu", "method", "spectral"),
+        let cases: [(&[(&str, &str)], [&str; 3]); 6] = [
+            (&[("mu", "5")], ["mu", "method", "spectral"]),
+            (&[("alpha", "paper")], ["alpha", "regularization", "rpi"]),
+            (&[("rank", "5"), ("regularization", "none")], ["rank", "regularization", "low-rank"]),
+            (&[("first_sample", "1"), ("method", "mds")], ["first_sample", "method", "nmds"]),
+            (&[("target_stress", "0.1")], ["target_stress", "samples", "auto"]),
             (
-                EmbedSettings { alpha: Some(RpiAlpha::Paper), ..EmbedSettings::default() },
-                "alpha",
-                "regularization",
-                "rpi",
+                &[("target_stress", "0.1"), ("samples", "auto"), ("method", "mds")],
+                ["target_stress", "method", "nmds"],
             ),
-            (
-                EmbedSettings { rank: Some(5), regularization: Some(all[2]), ..EmbedSettings::default() },
-                "rank",
-                "regularization",
-                "low-rank",
-            ),
-            (
-                EmbedSettings {
-                    first_sample: Some(1),
-                    method: EmbedMethod::Classical,
-                    ..EmbedSettings::default()
-                },
-                "first_sample",
-                "method",
-                "nmds",
-            ),
-        ] {
-            let fault = settings.applied_to(FormOptions::default()).unwrap_err();
+        ];
+        for (given, [setting, beside, instead]) in cases {
+            let fault = of(given).form().unwrap_err();
             assert_eq!((fault.setting, fault.beside, fault.instead[0]), (setting, beside, instead));
             let words = fault.in_words(|name, values| format!("<{name}={}>", values.join("|")));
             assert!(words.starts_with(&format!("<{setting}=>")), "{words}");
             assert!(words.contains(&format!("or use <{beside}={instead}")), "{words}");
         }
+        let heat = Method::named("heat").unwrap();
+        let fault = of(&[("obtuse", "flip")]).check_distances("geodesic", heat).unwrap_err();
+        assert_eq!((fault.setting, fault.beside, fault.value), ("obtuse", "geodesic", "heat"));
+    }
+
+    #[test]
+    fn help_states_the_default_and_other_options() {
+        let rank = OptionSpec::named("rank").unwrap().help(|name| format!("--{name}"));
+        assert!(rank.ends_with("[default: half the samples, at least --dim + 4]"), "{rank}");
     }
 }

@@ -1,6 +1,6 @@
 //! Several embeddings of one surface, side by side.
 
-use budget::Exceeded;
+use base::Exceeded;
 use geodesics::Method;
 use linalg::{LandmarkDistances, Matrix};
 use mesh::RepairReport;
@@ -13,8 +13,8 @@ use super::options::FormOptions;
 use super::plan::check_memory;
 use super::stress::{KnownRows, StressOptions, StressReport};
 use crate::error::Error;
-use crate::input::Surface;
-use crate::observer::Observer;
+use base::Observer;
+use mesh::Surface;
 
 /// The results of every method on one surface, as `canonform methods --json` prints them.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -151,7 +151,7 @@ fn reference(
     let budget = observer.budget();
     check_memory(p, rows.as_ref().map_or(p, Vec::len), &budget)?;
     observer.begin("stress", 1);
-    let solver = method.prepare_within(&surface.intrinsic, &budget)?;
+    let solver = method.prepare(surface.intrinsic(), observer)?;
     let Some(rows) = rows else { return Ok((Box::new(solver.distance_matrix()?), None)) };
     let sources: Vec<VertexId> = rows.iter().copied().map(VertexId::from).collect();
     let known = LandmarkDistances::new(rows.clone(), solver.distance_columns(&sources)?)?;

@@ -9,7 +9,7 @@ use serde::Serialize;
 use surface::{VertexId, unit_for};
 
 use crate::error::Error;
-use crate::observer::Observer;
+use base::Observer;
 
 /// [`StressChoice::Auto`] is exact up to this many vertices, where that takes a tenth of a second.
 const EXACT_LIMIT: usize = 1000;

@@ -2,15 +2,15 @@
 
 use std::io::{self, Read, Seek, SeekFrom, Write};
 
-use budget::Exceeded;
+use base::Exceeded;
 use geodesics::DistanceSolver;
 use linalg::Matrix;
 use serde::Serialize;
 use surface::VertexId;
 
-use super::repaired::Surface;
 use crate::error::Error;
-use crate::observer::Observer;
+use base::Observer;
+use mesh::Surface;
 
 /// How much the two directions of a pair differ before they are averaged.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
@@ -193,12 +193,12 @@ mod tests {
     use crate::error::Remedy;
 
     fn surface(mesh: &TriMesh) -> Surface {
-        Surface::new(mesh, &RepairOptions::default()).unwrap()
+        Surface::new(mesh, &RepairOptions::default(), &()).unwrap()
     }
 
     /// The matrix, written behind a header with memory for this many rows.
     fn written(surface: &Surface, rows: usize) -> (Vec<f64>, Asymmetry) {
-        let solver = Method::default().prepare(&surface.intrinsic).unwrap();
+        let solver = Method::default().prepare(surface.intrinsic(), &()).unwrap();
         let memory = rows * surface.n_input_vertices() * BYTES;
         let mut out = Cursor::new(b"header".to_vec());
         out.set_position(6);
@@ -213,7 +213,7 @@ mod tests {
     fn the_matrix_averages_both_directions_and_does_not_depend_on_memory() {
         let surface = surface(&shapes::jittered_grid(13, 11, 1.0, 0.2, 4));
         let p = surface.n_input_vertices();
-        let solver = Method::default().prepare(&surface.intrinsic).unwrap();
+        let solver = Method::default().prepare(surface.intrinsic(), &()).unwrap();
         let all: Vec<VertexId> = (0..p).map(VertexId::from).collect();
         let columns = solver.distance_columns(&all).unwrap();
         let expected: Vec<f64> =
@@ -247,7 +247,7 @@ mod tests {
     #[test]
     fn memory_for_less_than_two_rows_is_refused() {
         let surface = surface(&shapes::grid(4, 4, 1.0));
-        let solver = Method::default().prepare(&surface.intrinsic).unwrap();
+        let solver = Method::default().prepare(surface.intrinsic(), &()).unwrap();
         let error = AllPairs::new(&surface, solver.as_ref(), 2 * 16 * BYTES - 1).unwrap_err();
         assert!(matches!(error, Error::MemoryTooSmall { needed: 256, limit: 255, .. }));
         assert_eq!(error.remedy(), Some(Remedy::RaiseMemory));

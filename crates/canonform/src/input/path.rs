@@ -3,8 +3,8 @@
 use geodesics::{GeodesicError, PathTracer, SurfacePoint};
 use nalgebra::Point3;
 
-use super::point::InputPoint;
-use super::repaired::Surface;
+use mesh::{InputPoint, Surface};
+
 use crate::error::Error;
 
 /// A shortest path along a surface.
@@ -27,22 +27,24 @@ pub struct PathPoint {
     pub distance: f64,
 }
 
-impl Surface {
-    /// The shortest path from the nearest source of `tracer` to a point. The tracer must belong to this surface.
+impl SurfacePath {
+    /// The shortest path from the nearest source of `tracer` to a point. The tracer must belong to the surface.
     ///
     /// # Errors
     /// [`Error::NoPath`], and [`Error::Geodesic`] if the point belongs to another surface.
-    pub fn path(&self, tracer: &PathTracer, target: SurfacePoint) -> Result<SurfacePath, Error> {
+    pub fn trace(surface: &Surface, tracer: &PathTracer, target: SurfacePoint) -> Result<Self, Error> {
         let path = tracer.path_to(target).map_err(|fault| match fault {
-            GeodesicError::NoWay { point } => Error::NoPath { target: self.input_point(point).to_string() },
+            GeodesicError::NoWay { point } => {
+                Error::NoPath { target: surface.input_point(point).to_string() }
+            }
             fault => fault.into(),
         })?;
         let mut points: Vec<PathPoint> = Vec::with_capacity(path.points.len());
         for point in path.points {
-            let position = self.position(point);
+            let position = surface.position(point);
             let step = points.last().map_or(0.0, |last| last.distance + (position - last.position).norm());
-            points.push(PathPoint { at: self.input_point(point), position, distance: step });
+            points.push(PathPoint { at: surface.input_point(point), position, distance: step });
         }
-        Ok(SurfacePath { points, length: path.length })
+        Ok(Self { points, length: path.length })
     }
 }

@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, sync_channel};
 use std::time::Instant;
 
-use budget::{Budget, Exceeded};
-use index::{Index, IndexError, IndexWriter, Job, Progress, Shape, ShapeEntry, work_path};
+use base::{Budget, Exceeded};
+use index::{Index, IndexError, IndexWriter, Job, Shape, ShapeEntry, work_path};
 use mesh::{Fault, MeshError};
 use rayon::prelude::*;
 use serde::{Serialize, Serializer};
@@ -16,9 +16,10 @@ use super::place::{Home, Root, mesh_path};
 use super::record::{DROPPED, Described, same_source, shape};
 use super::source::{Hashed, Listed, Listing, ShapeLimits, Shard, hash_all, share};
 use crate::error::{Error, Remedy};
-use crate::form::{DescribeOptions, describe_within};
-use crate::input::{LabelFile, ShapeFile, Surface, count_skipped};
-use crate::observer::Observer;
+use crate::form::{DescribeOptions, describe};
+use base::Observer;
+use collection::{LabelFile, ShapeFile, count_skipped};
+use mesh::Surface;
 
 /// Most shapes written to disk in one transaction.
 const BATCH: usize = 64;
@@ -148,7 +149,7 @@ pub struct BuildReport {
     /// What was skipped although its name is that of a mesh or a folder.
     #[serde(serialize_with = "as_text")]
     pub skipped_paths: Vec<PathBuf>,
-    /// Whether a damaged index was replaced; `NAME.damaged` keeps it.
+    /// Whether an index was replaced that is damaged or of a past version; `NAME.damaged` keeps it.
     pub replaced_damaged: bool,
     /// Whether an interrupted run was resumed.
     pub resumed: bool,
@@ -207,8 +208,6 @@ impl BuildReport {
 /// Makes `path` the index of the meshes in `folder`: describes new and changed meshes, removes shapes of the folder whose
 /// files are gone, and keeps the rest. Shapes that were added from elsewhere stay, unless the options say otherwise.
 ///
-/// An index that an earlier version wrote gets its graph of nearest neighbours, even if nothing has changed.
-///
 /// Every described shape is on disk before `observer` counts it, and the next run resumes an interrupted one.
 /// Meshes that cannot be described are reported and left out; if there are no others, no index is written, except for a
 /// shard.
@@ -240,8 +239,8 @@ pub fn build_index(
     // Refuse other options before any mesh is read.
     let existing = match Index::open(path) {
         Ok(index) => index.expect_options(&text).map(|()| Some(index))?,
-        // The writer takes care of a damaged index.
-        Err(IndexError::Damaged { .. }) => None,
+        // The writer takes care of an index that cannot be read.
+        Err(IndexError::Damaged { .. } | IndexError::PastVersion { .. }) => None,
         Err(IndexError::Io { source, .. }) if source.kind() == std::io::ErrorKind::NotFound => None,
         Err(fault) => return Err(fault.into()),
     };
@@ -256,7 +255,6 @@ pub fn build_index(
     let hashed = hash_all(listing.shapes, observer);
     if let Some(index) = &existing
         && !work_path(path).exists()
-        && index.has_graph()?
         && let Some(elsewhere) = is_current(index, &hashed, &root, options.elsewhere)?
     {
         let ids = hashed.iter().map(|(listed, _)| &listed.file.name);
@@ -288,14 +286,13 @@ pub fn build_index(
     writer.remove(&gone)?;
     let nothing_new =
         report.described + report.renamed + gone.len() == 0 && !report.resumed && !report.replaced_damaged;
-    let nothing_new = nothing_new && writer.has_graph()?;
     // A shard without shapes is complete, and `merge_indexes` takes it.
-    let is_useless = options.shard.is_none() && writer.is_empty()? && !report.failed.is_empty();
+    let is_useless = options.shard.is_none() && writer.is_empty() && !report.failed.is_empty();
     if nothing_new && path.exists() || is_useless {
-        report.n_shapes = writer.len()?;
+        report.n_shapes = writer.len();
         writer.discard()?;
     } else {
-        report.n_shapes = writer.finish_with(&Finishing(observer))?.len();
+        report.n_shapes = writer.finish(observer)?.len();
     }
     report.seconds = start.elapsed().as_secs_f64();
     Ok(report)
@@ -395,19 +392,6 @@ pub(super) fn fill(
     Ok(kept)
 }
 
-/// Reports the search for the neighbours of all shapes.
-pub(super) struct Finishing<'a>(pub(super) &'a dyn Observer);
-
-impl Progress for Finishing<'_> {
-    fn begin(&self, total: usize) {
-        self.0.begin("linking neighbours", total);
-    }
-
-    fn step(&self, done: usize) {
-        (0..done).for_each(|_| self.0.step());
-    }
-}
-
 /// Describes a mesh within limits.
 fn describe_file(
     path: &Path,
@@ -418,14 +402,13 @@ fn describe_file(
     let budget = limits.budget(whole);
     let mesh = limits.read(path, &budget)?;
     budget.check()?;
-    let surface = Surface::new(&mesh, &options.form.repair)?;
-    budget.check()?;
+    let surface = Surface::new(&mesh, &options.form.repair, &budget)?;
     let components = match surface.repaired.report.components {
         0 | 1 => Vec::new(),
         _ => other_components(&mesh, options, &budget)?,
     };
     drop(mesh);
-    Ok(Described { shape: describe_within(&surface, options, &budget)?, components })
+    Ok(Described { shape: describe(&surface, options, &budget)?, components })
 }
 
 /// Shapes that were described, and meshes that failed.

@@ -6,12 +6,12 @@ use std::time::Instant;
 use index::{Index, IndexError, IndexWriter, Job, Shape, ShapeEntry};
 use serde::Serialize;
 
-use super::build::{BuildReport, Finishing, fill};
+use super::build::{BuildReport, fill};
 use super::place::{Home, mesh_path};
 use super::record::options_of;
 use super::source::{Inputs, hash_all};
 use crate::error::Error;
-use crate::observer::Observer;
+use base::Observer;
 
 /// Shapes copied in one transaction.
 const BATCH: usize = 256;
@@ -55,7 +55,7 @@ pub fn add_to_index(
     if report.described + report.renamed == 0 && !report.resumed {
         writer.discard()?;
     } else {
-        report.n_shapes = writer.finish_with(&Finishing(observer))?.len();
+        report.n_shapes = writer.finish(observer)?.len();
     }
     report.seconds = start.elapsed().as_secs_f64();
     Ok(report)
@@ -77,7 +77,7 @@ pub fn remove_from_index(path: &Path, ids: &[String]) -> Result<usize, Error> {
     unique.dedup();
     let mut writer = IndexWriter::open(path, Job::Remove, None)?;
     writer.remove(&unique)?;
-    Ok(writer.finish()?.len())
+    Ok(writer.finish(&())?.len())
 }
 
 /// The outcome of a merge.
@@ -123,5 +123,5 @@ pub fn merge_indexes(inputs: &[PathBuf], path: &Path, observer: &dyn Observer) -
         })?;
         writer.put(&batch)?;
     }
-    Ok(MergeReport { n_shapes: writer.finish_with(&Finishing(observer))?.len(), repeated })
+    Ok(MergeReport { n_shapes: writer.finish(observer)?.len(), repeated })
 }

@@ -1,12 +1,12 @@
 //! Describing the components of a mesh.
 
-use budget::Budget;
+use base::Budget;
 use mesh::TriMesh;
 
-use crate::compare::MeshGeometry;
 use crate::error::Error;
-use crate::form::{DescribeOptions, ShapeDescription, describe_within};
-use crate::input::Surface;
+use crate::form::{DescribeOptions, ShapeDescription, describe};
+use mesh::Surface;
+use relations::MeshGeometry;
 
 /// Most different components of an indexed mesh that are described, the largest by area.
 const MOST: usize = 8;
@@ -20,8 +20,9 @@ pub(super) fn described(
     options: &DescribeOptions,
     budget: &Budget,
 ) -> Result<Option<ShapeDescription>, Error> {
-    let found = Surface::within(&component.to_mesh(), &options.form.repair, budget)
-        .and_then(|surface| describe_within(&surface, options, budget));
+    let found = Surface::new(&component.to_mesh(), &options.form.repair, budget)
+        .map_err(Error::from)
+        .and_then(|surface| describe(&surface, options, budget));
     match found {
         Ok(description) => Ok(Some(description)),
         Err(fault @ Error::Exceeded(_)) => Err(fault),

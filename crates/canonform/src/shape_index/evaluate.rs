@@ -2,15 +2,15 @@
 
 use std::path::Path;
 
+use base::files::FileError;
 use descriptors::{ShapeMetric, SignatureKind};
-use files::FileError;
 use index::{Index, IndexError};
 use linalg::DistanceMatrix;
 use retrieval::{Evaluation, Labels, RankBy, evaluate_ranked, pairwise_distances};
 
 use crate::error::Error;
-use crate::input::{LabelFile, label_in};
-use crate::observer::Observer;
+use base::Observer;
+use collection::{CollectionError, LabelFile, label_in};
 
 /// Most shapes evaluated at once: their matrix takes 800 MB.
 const MOST: usize = 10_000;
@@ -145,8 +145,8 @@ struct Matrix {
 }
 
 impl Matrix {
-    fn parse(text: &str, path: &Path) -> Result<Self, Error> {
-        let bad = |line: usize, what: String| Error::BadLine { path: path.to_owned(), line, what };
+    fn parse(text: &str, path: &Path) -> Result<Self, CollectionError> {
+        let bad = |line: usize, what: String| CollectionError::BadLine { path: path.to_owned(), line, what };
         let lines = text.lines().enumerate().map(|(i, line)| (i + 1, line.trim()));
         let mut lines = lines.filter(|(_, line)| !line.is_empty() && !line.starts_with('#')).peekable();
         let fields =

@@ -1,17 +1,18 @@
-//! What kind of match a query and a shape of an index are, what its components are, and of what it is a component.
+//! How a query and a shape of an index are related, what its components are, and of what it is a component.
 
-use budget::Budget;
-use descriptors::{Handedness, PreparedShape, ShapeDistance, ShapeMetric, Verdict, VerdictKind};
+use base::Budget;
+use descriptors::{ShapeDistance, ShapeMetric};
 use index::ShapeEntry;
 
 use super::components::described;
 use super::found::{ComponentResult, SearchResult, StoredComponent};
 use super::predict::Completeness;
-use super::record::{COMPONENTS, OTHER_COMPONENTS, components};
-use super::search::{Query, SearchOptions, SearchRank, ShapeSearch};
+use super::query::{HeldGeometry, KnownQuery};
+use super::record::{COMPONENTS, OTHER_COMPONENTS};
+use super::search::{SearchOptions, SearchRank, ShapeSearch};
 use super::source::read_unchanged;
-use crate::compare::{MatchEvidence, MeshGeometry};
 use crate::error::Error;
+use relations::{Handedness, MeshGeometry, Relation, RelationKind};
 
 /// Most different components of a query that are searched for, the largest by area.
 const MOST_SEARCHED: usize = 12;
@@ -20,31 +21,30 @@ const MOST_SEARCHED: usize = 12;
 const MOST_WHOLES: usize = 10;
 
 impl ShapeSearch {
-    /// The evidence on a query and a shape with this verdict. The file of the shape is read again if it is unchanged; otherwise
-    /// the evidence is [by descriptions](crate::Basis::Descriptions). Files of shapes that are firmly different are read only if
-    /// one of the two has several components, and may be part of the other.
-    pub(super) fn evidence(
+    /// How a query and a shape are related, once their files and meshes are known, too. The file of the shape is read again if it is
+    /// unchanged; otherwise the relation is [by descriptions](crate::Basis::Descriptions). Files of shapes that are certainly
+    /// different are read only if one of the two has several components, and may be part of the other.
+    pub(super) fn related(
         &self,
-        query: &Query<'_>,
+        query: &KnownQuery<'_>,
         id: &str,
-        verdict: Verdict,
-    ) -> Result<MatchEvidence, Error> {
+        by_distance: Relation,
+    ) -> Result<Relation, Error> {
         let entry = self.index().entry(id)?;
-        let content = [query.content, Some(entry.content)];
-        let described = MatchEvidence::of_shapes(content, verdict);
-        let is_file = query.content == Some(entry.content);
+        let known = by_distance.by_files([query.content, Some(entry.content)]);
+        let is_far = known.because.distance.is_different();
         let several = |geometry: &MeshGeometry| {
             geometry.n_components() > 1 || entry.fact(COMPONENTS).is_some_and(|n| n > 1.0)
         };
         let wanted = |geometry: &&MeshGeometry| {
-            !is_file && (verdict.kind != VerdictKind::Different || several(geometry))
+            known.kind != RelationKind::IdenticalFile && (!is_far || several(geometry))
         };
-        let pair = query.geometry.filter(wanted).and_then(|a| Some((a, self.geometry(id, &entry)?)));
-        let evidence = match &pair {
-            Some((a, b)) => MatchEvidence::new([a, b], verdict),
-            None => described,
-        };
-        Ok(evidence.named(query.name, id))
+        let pair =
+            query.geometry.as_deref().filter(wanted).and_then(|a| Some((a, self.geometry(id, &entry)?)));
+        Ok(match &pair {
+            Some((a, b)) => known.by_meshes([a, b]),
+            None => known,
+        })
     }
 
     /// The mesh of a shape in space, if its file can be read and is unchanged.
@@ -57,11 +57,11 @@ impl ShapeSearch {
     /// is left out.
     pub(super) fn search_components(
         &self,
-        query: &Query<'_>,
+        query: &KnownQuery<'_>,
         options: &SearchOptions,
         budget: &Budget,
     ) -> Result<Vec<ComponentResult>, Error> {
-        let Some(whole) = query.geometry else { return Ok(Vec::new()) };
+        let Some(whole) = query.geometry.as_deref() else { return Ok(Vec::new()) };
         let mut found = Vec::new();
         for (part, copies) in whole.different_components().into_iter().take(MOST_SEARCHED) {
             budget.check()?;
@@ -70,11 +70,17 @@ impl ShapeSearch {
                 1 => format!("a component of {}", query.name),
                 _ => format!("each of {copies} components of {}", query.name),
             };
-            let known = Query { name: &name, content: None, geometry: Some(part), part: None };
+            let known = KnownQuery {
+                shape: description.prepare()?,
+                name: &name,
+                content: None,
+                geometry: Some(HeldGeometry::Borrowed(part)),
+                part: None,
+                complete: Completeness::default(),
+            };
             // The nearest one is wanted.
             let options = SearchOptions { k: 1, rank_by: SearchRank::Plain, ..options.clone() };
-            let complete = Completeness::default();
-            let nearest = self.nearest(&description.prepare()?, &known, complete, &options, budget)?;
+            let nearest = self.nearest(&known, &options, budget)?;
             found.push(ComponentResult {
                 copies,
                 area_share: (part.size() / whole.size()).powi(2),
@@ -88,11 +94,10 @@ impl ShapeSearch {
     /// The shapes with a component, not the largest, that is the query: nearest first.
     pub(super) fn search_wholes(
         &self,
-        shape: &PreparedShape,
-        query: &Query<'_>,
+        query: &KnownQuery<'_>,
         budget: &Budget,
     ) -> Result<Vec<SearchResult>, Error> {
-        let asked = ShapeMetric::without_size(shape.fused());
+        let asked = ShapeMetric::without_size(query.shape.fused());
         // Components have no forms in the index, so signatures decide.
         let distance = |stored: &StoredComponent| {
             let known = ShapeMetric::without_size(&stored.fused);
@@ -113,9 +118,8 @@ impl ShapeSearch {
                 continue;
             }
             let entry = self.index().entry(id)?;
-            let verdict = ShapeMetric::verdict(distance, Handedness::Unknown, 1.0);
             let n_components = entry.fact(COMPONENTS).unwrap_or(2.0) as usize;
-            let evidence = self.evidence(query, id, verdict)?.of_component(n_components);
+            let relation = Relation::by_distance(distance, 1.0, Handedness::Unknown).named(query.name, id);
             wholes.push(SearchResult {
                 rank: wholes.len() + 1,
                 id: id.to_owned(),
@@ -125,9 +129,8 @@ impl ShapeSearch {
                 fused: distance.fused,
                 on_graph: None,
                 as_part: None,
-                verdict,
+                relation: self.related(query, id, relation)?.to_component(n_components),
                 comparison: None,
-                evidence: Some(evidence),
             });
         }
         Ok(wholes)
@@ -141,8 +144,10 @@ impl ShapeSearch {
         let mut stored = Vec::new();
         for (id, entry) in self.index().entries()? {
             if entry.fact(OTHER_COMPONENTS).is_some() {
-                let vectors = components(self.index().vectors(&id)?);
-                stored.extend(vectors.into_iter().map(|fused| StoredComponent { id: id.clone(), fused }));
+                let vectors = self.index().vectors(&id)?;
+                stored.extend(
+                    vectors.components.into_iter().map(|fused| StoredComponent { id: id.clone(), fused }),
+                );
             }
         }
         Ok(self.components.get_or_init(|| stored))

@@ -1,9 +1,9 @@
 //! What a search found.
 
-use descriptors::Verdict;
 use serde::Serialize;
 
-use crate::compare::{Comparison, MatchEvidence};
+use crate::compare::Comparison;
+use relations::Relation;
 
 /// The place of a shape in a ranking on the graph.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -46,14 +46,12 @@ pub struct SearchResult {
     /// What results are ordered by if the query is taken as a part.
     #[serde(flatten, skip_serializing_if = "Option::is_none")]
     pub as_part: Option<PartRank>,
-    /// How alike the query and the shape are, and why. It does not depend on size, and the handedness is unknown.
-    pub verdict: Verdict,
-    /// The comparison with the query, if results are explained.
-    #[serde(rename = "match", skip_serializing_if = "Option::is_none")]
-    pub comparison: Option<Comparison>,
-    /// What kind of match the query and the shape are, if results are explained.
+    /// How the query and the shape are related: by descriptions and, if results are explained, by files and meshes. The
+    /// handedness is unknown.
+    pub relation: Relation,
+    /// The numbers of the comparison with the query, if results are explained.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub evidence: Option<MatchEvidence>,
+    pub comparison: Option<Comparison>,
 }
 
 /// One of the components of a query, or several copies of one, and the shape nearest to it.
@@ -65,7 +63,7 @@ pub struct ComponentResult {
     pub area_share: f64,
     /// Vertices of one copy.
     pub n_vertices: usize,
-    /// The nearest shape of the index, and what kind of match it is.
+    /// The nearest shape of the index, and how it is related.
     pub nearest: Option<SearchResult>,
 }
 

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! files -> content hash -> unchanged? -> describe -> index::IndexWriter -> index::Index
-//! mesh -> describe -> Index::nearest (fused signatures) -> rerank (aligned forms) -> vote
+//! Query -> Index::nearest (fused signatures) -> rerank (aligned forms) -> vote
 //!                  -> Index::nearest_on_graph -> aligned forms of the results -> vote
 //! mesh -> describe_part -> disc areas of all shapes -> aligned forms of the results -> vote
 //! ```
@@ -10,11 +10,14 @@
 mod build;
 mod change;
 mod components;
+mod distances;
 mod evaluate;
 mod explain;
+mod export;
 mod found;
 mod place;
 mod predict;
+mod query;
 mod record;
 mod rerank;
 mod search;
@@ -24,10 +27,13 @@ pub use build::{
     BuildOptions, BuildReport, Dropped, Elsewhere, Failure, FailureReason, build_index, indexed_shapes,
 };
 pub use change::{MergeReport, add_to_index, merge_indexes, remove_from_index};
+pub use distances::PairwiseDistance;
 pub use evaluate::{EvaluateOptions, Measure, evaluate_index, evaluate_matrix};
+pub use export::export_index;
 pub use found::{ComponentResult, GraphRank, PartRank, SearchResult};
 pub use place::mesh_path;
 pub use predict::{ClassVotes, NearestShape, Prediction, Unknown};
+pub use query::{DescribedQuery, Query};
 pub use rerank::{Ranked, Reranked, rerank};
-pub use search::{Explain, Query, SearchOptions, SearchRank, SearchReport, SearchSeconds, ShapeSearch};
-pub use source::{Inputs, ShapeLimits, Shard, content_hash};
+pub use search::{Explain, SearchOptions, SearchRank, SearchReport, SearchSeconds, ShapeSearch};
+pub use source::{Inputs, ShapeLimits, Shard};

@@ -2,12 +2,12 @@
 
 use std::path::{Component, Path, PathBuf};
 
-use files::FileError;
+use base::files::FileError;
 
 use mesh::io::{Source, without_extension};
 
 use crate::error::Error;
-use crate::input::{Storage, member_of};
+use collection::{Storage, member_of};
 
 /// The folder of an index, without links.
 #[derive(Debug, Clone)]

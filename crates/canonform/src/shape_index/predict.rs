@@ -1,10 +1,12 @@
 //! The class that the nearest shapes suggest, or why there is none.
 
-use descriptors::{PartDistance, ShapeMetric, Verdict};
+use descriptors::{PartDistance, ShapeMetric};
+use relations::Relation;
 use retrieval::{Neighbor, Tally, UnknownThreshold, vote};
 use serde::Serialize;
 
 use super::found::{PartRank, SearchResult};
+use crate::form::ShapeDescription;
 
 /// Neighbours that vote on the class of a query.
 pub(super) const VOTERS: usize = 5;
@@ -30,10 +32,10 @@ pub struct Prediction {
     pub voters: usize,
     /// Share of the votes for the class, from 0 to 1; nearer neighbours count more.
     pub confidence: f64,
-    /// Fused distance below which a shape votes whatever its verdict, since classes of this index are that wide; `None`
+    /// Fused distance below which a shape votes whatever its combined distance, since classes of this index are that wide; `None`
     /// if the classes are too small to estimate it.
     pub threshold: Option<f64>,
-    /// Combined distance below which a shape votes, as it may be of one class with the query by its verdict; part distance, if
+    /// Combined distance below which a shape votes, as it may be of one class with the query; part distance, if
     /// the query is taken as a part.
     pub class_below: f64,
     /// The votes for every class, most first.
@@ -64,8 +66,8 @@ pub struct NearestShape {
     pub id: String,
     /// Its class.
     pub label: String,
-    /// The verdict on the query and this shape.
-    pub verdict: Verdict,
+    /// How the query and this shape are related.
+    pub relation: Relation,
 }
 
 /// Why a query has no class.
@@ -94,6 +96,14 @@ pub(super) struct Completeness {
 }
 
 impl Completeness {
+    pub(super) fn of(description: &ShapeDescription) -> Self {
+        Self {
+            dropped: description.repair.dropped_area_share,
+            open: description.longest_boundary / description.area.sqrt(),
+            shortcuts: description.shortcuts.len(),
+        }
+    }
+
     /// The signs of a part, in words.
     fn signs(self) -> Vec<String> {
         let mut signs = Vec::new();
@@ -123,7 +133,7 @@ impl Completeness {
 /// The vote of the first results.
 ///
 /// A result at combined distance `d` and fused distance `f` votes if `r = min(d / c, f / t)` is below 1, with `c` the
-/// boundary of a class by verdict and `t` the width of the classes of the index; its weight is `(1 - r²)²`. If the query is
+/// boundary of a class and `t` the width of the classes of the index; its weight is `(1 - r²)²`. If the query is
 /// taken as a part, `r` is the part distance over that of parts of shapes of one class.
 pub(super) fn predicted(
     results: &[SearchResult],
@@ -143,8 +153,8 @@ pub(super) fn predicted(
         if let Some(fit) = result.as_part {
             return fit.part_distance / class_below;
         }
-        let by_verdict = result.verdict.distance / class_below;
-        threshold.map_or(by_verdict, |threshold| by_verdict.min(result.fused / threshold))
+        let combined = result.relation.because.distance.combined / class_below;
+        threshold.map_or(combined, |threshold| combined.min(result.fused / threshold))
     };
     let neighbors: Vec<_> =
         labelled().map(|(index, result)| Neighbor { index, distance: reach(result) }).collect();
@@ -155,7 +165,7 @@ pub(super) fn predicted(
     let nearest = results.first().map(|result| NearestShape {
         id: result.id.clone(),
         label: result.label.clone(),
-        verdict: result.verdict,
+        relation: result.relation.clone(),
     });
     let signs = query.signs();
     let unknown = match (vote.class, &nearest) {
@@ -187,11 +197,12 @@ impl Prediction {
             return self.vote_in_words(label);
         }
         let Some(nearest) = &self.nearest else { return "unknown. The index is empty".to_owned() };
-        let Verdict { distance, .. } = nearest.verdict;
+        let distance = nearest.relation.because.distance.combined;
+        let relation = nearest.relation.in_brief();
         if self.unknown == Some(Unknown::Unlabelled) {
             return format!(
-                "unknown. None of the nearest shapes has a class; the nearest, {}, is at combined distance {distance:.3}: {}",
-                nearest.id, nearest.verdict
+                "unknown. None of the nearest shapes has a class; the nearest, {}, is at combined distance {distance:.3}: {relation}",
+                nearest.id
             );
         }
         let class = match nearest.label.as_str() {
@@ -205,8 +216,8 @@ impl Prediction {
             );
         }
         let mut words = format!(
-            "unknown. The nearest shape, {} {class}, is at combined distance {distance:.3}: {}. Shapes of one class are below {:.3}",
-            nearest.id, nearest.verdict, self.class_below
+            "unknown. The nearest shape, {} {class}, is at combined distance {distance:.3}: {relation}. Shapes of one class are below {:.3}",
+            nearest.id, self.class_below
         );
         if let Some(threshold) = self.threshold {
             words += &format!(", and classes of this index are up to {threshold:.3} wide by signatures");
@@ -230,10 +241,10 @@ impl Prediction {
             let split = if self.confidence < CLEAR { "; the vote is split" } else { "" };
             words += &format!("{split}; other votes: {}", others.join(", "));
         }
-        let by_verdict = self.nearest.as_ref().is_some_and(|nearest| nearest.verdict.may_be_same_class());
-        if let (false, Some(threshold)) = (by_verdict, self.threshold) {
+        let may_be = |nearest: &NearestShape| nearest.relation.because.distance.may_be_same_class();
+        if let (false, Some(threshold)) = (self.nearest.as_ref().is_some_and(may_be), self.threshold) {
             words += &format!(
-                "; no shape is of the class by its verdict, but classes of this index are up to {threshold:.3} wide by signatures"
+                "; no shape is near enough for one class elsewhere, but classes of this index are up to {threshold:.3} wide by signatures"
             );
         }
         words
@@ -242,7 +253,8 @@ impl Prediction {
 
 #[cfg(test)]
 mod tests {
-    use descriptors::{Handedness, ShapeDistance};
+    use descriptors::ShapeDistance;
+    use relations::Handedness;
 
     use super::*;
 
@@ -257,9 +269,8 @@ mod tests {
             fused: distance,
             on_graph: None,
             as_part: None,
-            verdict: ShapeMetric::verdict(shape, Handedness::Unknown, 1.0),
+            relation: Relation::by_distance(shape, 1.0, Handedness::Unknown),
             comparison: None,
-            evidence: None,
         }
     }
 
@@ -276,7 +287,7 @@ mod tests {
     #[test]
     fn a_shape_that_is_the_same_is_never_unknown() {
         let near = results(&[("cat", 0.9), ("cat", 1.0)]);
-        // Narrow classes do not overrule the verdict.
+        // Narrow classes do not overrule the distance.
         for width in [None, threshold(0.2), threshold(9.0)] {
             let found = predicted(&near, width, WHOLE);
             assert_eq!((found.label.as_deref(), found.votes, found.unknown), (Some("cat"), 2, None));
@@ -290,15 +301,15 @@ mod tests {
         let found = predicted(&far, threshold(2.0), WHOLE);
         assert_eq!((found.label.as_deref(), found.unknown), (None, Some(Unknown::NothingNear)));
         for words in
-            ["cat1", "9.250", "different shapes", "up to 2.000 wide", &format!("{:.3}", found.class_below)]
+            ["cat1", "9.250", "another class", "up to 2.000 wide", &format!("{:.3}", found.class_below)]
         {
             assert!(found.explanation.contains(words), "{}", found.explanation);
         }
-        assert_eq!(found.nearest.as_ref().map(|n| n.verdict), Some(far[0].verdict));
+        assert_eq!(found.nearest.as_ref().map(|n| &n.relation), Some(&far[0].relation));
         // Classes of a collection may be wider than those of the metric.
         let wide = predicted(&far, threshold(10.0), WHOLE);
         assert_eq!((wide.label.as_deref(), wide.voters), (Some("cat"), 2));
-        assert!(wide.explanation.contains("by its verdict"), "{}", wide.explanation);
+        assert!(wide.explanation.contains("up to 10.000 wide"), "{}", wide.explanation);
         let empty = predicted(&[], None, WHOLE);
         assert_eq!((empty.unknown, empty.nearest), (Some(Unknown::EmptyIndex), None));
     }

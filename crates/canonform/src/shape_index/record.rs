@@ -1,7 +1,8 @@
 //! A description as an index stores it.
 
+use base::ContentHash;
 use descriptors::{CanonicalForm, DiscAreas, PreparedShape};
-use index::{ContentHash, Index, Shape, ShapeEntry, ShapeVectors};
+use index::{Index, Shape, ShapeEntry, ShapeVectors};
 use nalgebra::Point3;
 use surface::unit_for;
 
@@ -18,15 +19,8 @@ pub(super) const DROPPED: &str = "dropped_area_share";
 /// The number of connected components before the repair. Indexes may lack it.
 pub(super) const COMPONENTS: &str = "components";
 
-/// The names of the fused vectors of components but the largest begin with this. They are stored as signatures; indexes may lack
-/// them.
-const COMPONENT: &str = "component-";
-
-/// The number of these vectors. Indexes may lack it.
+/// The number of components that are stored beside the largest. Indexes may lack it.
 pub(super) const OTHER_COMPONENTS: &str = "other_components";
-
-/// The areas of geodesic discs are stored as the signature of this name. Indexes may lack them.
-const DISC_AREAS: &str = "disc-areas";
 
 /// The number of shortcuts that were cut.
 pub(super) const SHORTCUTS: &str = "shortcuts";
@@ -68,13 +62,10 @@ pub(super) fn shape(listed: &Listed, content: ContentHash, described: Described)
     if !components.is_empty() {
         facts.push((OTHER_COMPONENTS, components.len() as f64));
     }
-    let components =
-        components.into_iter().enumerate().map(|(i, fused)| (format!("{COMPONENT}{}", i + 2), fused));
     let unit = form_unit(Some(described.area), &described.options);
     let points = described.form.points().iter().map(|p| p / unit);
     let form = points.zip(described.form.weights());
     let signatures = described.signatures.iter();
-    let disc_areas = (DISC_AREAS.to_owned(), described.disc_areas.to_numbers());
     Shape {
         id: listed.file.name.clone(),
         entry: ShapeEntry {
@@ -84,27 +75,20 @@ pub(super) fn shape(listed: &Listed, content: ContentHash, described: Described)
             facts: facts.into_iter().map(|(name, value)| (name.to_owned(), value)).collect(),
         },
         vectors: ShapeVectors {
-            signatures: signatures
-                .map(|s| (s.kind.name().to_owned(), s.values.iter().map(|x| *x as f32).collect()))
-                .chain([disc_areas])
-                .chain(components)
-                .collect(),
             form: form.map(|(p, w)| [p.x, p.y, p.z, *w].map(|x| x as f32)).collect(),
             fused: described.fused,
+            disc_areas: described.disc_areas.to_numbers(),
+            components,
+            signatures: signatures
+                .map(|s| (s.kind.name().to_owned(), s.values.iter().map(|x| *x as f32).collect()))
+                .collect(),
         },
     }
 }
 
-/// The fused vectors of the components of an indexed shape, but the largest.
-pub(super) fn components(vectors: ShapeVectors) -> Vec<Vec<f32>> {
-    let signatures = vectors.signatures.into_iter();
-    signatures.filter(|(name, _)| name.starts_with(COMPONENT)).map(|(_, fused)| fused).collect()
-}
-
 /// The areas of geodesic discs of an indexed shape; `None` if they are not stored.
 pub(super) fn disc_areas(vectors: &ShapeVectors) -> Option<DiscAreas> {
-    let (_, numbers) = vectors.signatures.iter().find(|(name, _)| name == DISC_AREAS)?;
-    DiscAreas::from_numbers(numbers)
+    DiscAreas::from_numbers(&vectors.disc_areas).filter(|_| !vectors.disc_areas.is_empty())
 }
 
 /// A described mesh file.

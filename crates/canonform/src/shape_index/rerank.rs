@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use std::sync::{Mutex, PoisonError};
 
 use descriptors::{
-    FormDistance, FormMatch, Handedness, PreparedShape, ShapeMetric, ShapePair, Verdict, match_forms_within,
+    FormAlignment, FormDistance, PreparedShape, ShapeDistance, ShapeMetric, ShapePair, align_near_forms,
 };
 use retrieval::{Candidate, refine_nearest};
 
@@ -20,10 +20,12 @@ pub struct Ranked {
     pub distance: f64,
     /// Fused distance from the query, which may be larger.
     pub fused: f64,
-    /// The verdict, without handedness.
-    pub verdict: Verdict,
+    /// How far the shapes are apart, regardless of size.
+    pub shape_distance: ShapeDistance,
+    /// Size of the shape over that of the query.
+    pub scale: f64,
     /// How the form of the query, at unit area, aligns with that of the shape.
-    pub alignment: FormMatch,
+    pub alignment: FormAlignment,
 }
 
 /// The shapes nearest to a query.
@@ -42,7 +44,7 @@ pub struct Reranked {
 /// candidate.
 ///
 /// Forms are aligned only until the robust distance alone rules out the remaining candidates, and an alignment is
-/// abandoned when it cannot come near enough, see [`match_forms_within`]. Apart from that heuristic the result is that
+/// abandoned when it cannot come near enough, see [`align_near_forms`]. Apart from that heuristic the result is that
 /// of aligning all candidates. Alignments run in parallel; the result does not depend on the number of threads.
 ///
 /// # Errors
@@ -61,20 +63,16 @@ pub fn rerank<S: Borrow<PreparedShape>>(
             [ShapeMetric::fused, ShapeMetric::robust].map(|distance| distance(query.fused(), shape.fused()));
         let left = ShapeMetric::form_limit(robust, limit, FormDistance::NearestNeighborRms);
         let (a, b) = (query.prepared_form(), shape.prepared_form());
-        let Some(alignment) = match_forms_within(a, b, left) else { return Ok(None) };
+        let Some(alignment) = align_near_forms(a, b, left) else { return Ok(None) };
         let pair = ShapePair::new(ShapeMetric::default(), [query, shape]).with_best(alignment);
-        let verdict = pair.verdict(Handedness::Unknown);
-        found
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner)
-            .insert(candidate.index, (fused, verdict, alignment));
-        Ok::<_, Error>(Some(ShapeMetric::combined(robust, alignment.rms)))
+        let distance = ShapeMetric::combined(robust, alignment.rms);
+        let (index, shape_distance, scale) = (candidate.index, pair.distance(), pair.scale());
+        let ranked = Ranked { index, distance, fused, shape_distance, scale, alignment };
+        found.lock().unwrap_or_else(PoisonError::into_inner).insert(index, ranked);
+        Ok::<_, Error>(Some(distance))
     })?;
     let found = found.into_inner().unwrap_or_else(PoisonError::into_inner);
-    let ranked = refined.nearest.iter().filter_map(|near| {
-        let (fused, verdict, alignment) = *found.get(&near.index)?;
-        Some(Ranked { index: near.index, distance: near.distance, fused, verdict, alignment })
-    });
+    let ranked = refined.nearest.iter().filter_map(|near| found.get(&near.index).copied());
     Ok(Reranked { nearest: ranked.collect(), aligned: refined.evaluated, abandoned: refined.abandoned })
 }
 
@@ -114,8 +112,8 @@ mod tests {
                         let pair = ShapePair::new(ShapeMetric::default(), [&asked, &shapes[index]]);
                         let (fused, alignment) = (fused(index), pair.best());
                         let distance = ShapeMetric::combined(robust(index), alignment.rms);
-                        let verdict = pair.verdict(Handedness::Unknown);
-                        Ranked { index, distance, fused, verdict, alignment }
+                        let (shape_distance, scale) = (pair.distance(), pair.scale());
+                        Ranked { index, distance, fused, shape_distance, scale, alignment }
                     })
                     .collect();
                 all.sort_by(|a, b| a.distance.total_cmp(&b.distance).then(a.index.cmp(&b.index)));

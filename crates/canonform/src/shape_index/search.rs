@@ -5,28 +5,31 @@ use std::str::FromStr;
 use std::sync::OnceLock;
 use std::time::Instant;
 
-use budget::Budget;
+use base::{Budget, Observer};
+use collection::Storage;
 use descriptors::{PartDiscAreas, PartDistance, PreparedShape, ShapeMetric, ShapePair};
-use index::{ContentHash, Found, FoundOnGraph, Index, RankedShape, SearchMode, ShapeEntry};
+use index::{Found, FoundOnGraph, Index, RankedShape, SearchMode, ShapeEntry};
 use mesh::TriMesh;
+use mesh::io::Source;
 use rayon::prelude::*;
 use retrieval::Candidate;
 use serde::{Deserialize, Serialize};
 
 use super::found::{ComponentResult, GraphRank, PartRank, SearchResult, StoredComponent};
-use super::predict::{Completeness, Prediction, VOTERS, predicted};
-use super::record::{DROPPED, SHORTCUTS, disc_areas, options_of, prepared};
-use super::rerank::{Ranked, rerank};
+use super::predict::{Prediction, VOTERS, predicted};
+use super::query::{KnownQuery, Query};
+use super::record::{disc_areas, options_of, prepared};
+use super::rerank::{Ranked, Reranked, rerank};
 use super::source::read_unchanged;
-use crate::compare::{MeshGeometry, compare};
+use crate::compare::compare;
 use crate::error::Error;
-use crate::form::{DescribeOptions, ShapeDescription, describe_part, describe_within};
-use crate::input::Surface;
+use crate::form::DescribeOptions;
+use relations::{Handedness, Relation};
 
-/// Shapes whose forms may be aligned, per result, ...
+/// Most forms that are aligned for each result.
 const CANDIDATES: usize = 4;
 
-/// ... and at least.
+/// Forms that may be aligned, however few results are wanted.
 const LEAST_CANDIDATES: usize = 40;
 
 /// How an index is searched.
@@ -52,7 +55,7 @@ pub enum SearchRank {
     /// By distance and by neighbours in common; needs the graph of the index.
     Graph,
     /// By how well the query fits as a part of the shape. Compares the query with every shape of the index, which must store
-    /// disc areas, and needs the [part](Query::part) or the mesh of the query.
+    /// disc areas, and needs the mesh or the surface of the query.
     Part,
 }
 
@@ -75,32 +78,13 @@ pub enum Explain {
     /// No.
     #[default]
     No,
-    /// With a [`Comparison`](crate::Comparison) and the [`MatchEvidence`](crate::MatchEvidence) for each result.
+    /// By files and meshes, too, and with a [`Comparison`](crate::Comparison) for each result.
     Kind,
 }
 
 impl Default for SearchOptions {
     fn default() -> Self {
         Self { k: 10, mode: SearchMode::Auto, explain: Explain::No, rank_by: SearchRank::Plain }
-    }
-}
-
-/// What is known of the mesh that is searched for, to explain results.
-#[derive(Debug, Clone, Copy)]
-pub struct Query<'a> {
-    /// What it is called in words.
-    pub name: &'a str,
-    /// The [hash](crate::content_hash) of its file.
-    pub content: Option<ContentHash>,
-    /// Its mesh in space.
-    pub geometry: Option<&'a MeshGeometry>,
-    /// It as a part of a shape, as [`describe_part`](crate::describe_part) describes it.
-    pub part: Option<&'a PartDiscAreas>,
-}
-
-impl Default for Query<'_> {
-    fn default() -> Self {
-        Self { name: "the query", content: None, geometry: None, part: None }
     }
 }
 
@@ -188,11 +172,17 @@ impl ShapeSearch {
         read_unchanged(self.index.path(), id, &self.index.entry(id)?)
     }
 
-    /// Finds the shapes nearest to a mesh: candidates by fused signatures, ordered by aligned forms or, if the options say
-    /// so, by their places on the graph of nearest neighbours.
+    /// The shape that a text names, unless there is a file of this name, which goes first.
+    #[must_use]
+    pub fn id_of<'p>(&self, given: &'p Path) -> Option<&'p str> {
+        given.to_str().filter(|id| !Storage.holds(given) && self.index.contains(id).unwrap_or(false))
+    }
+
+    /// Finds the shapes nearest to a query: candidates by fused signatures, ordered as the options say by aligned forms, by
+    /// their places on the graph of nearest neighbours, or as wholes of which the query is a part.
     ///
     /// ```
-    /// use canonform::{BuildOptions, DescribeOptions, SearchOptions, ShapeSearch, build_index, mesh};
+    /// use canonform::{BuildOptions, DescribeOptions, Query, SearchOptions, ShapeSearch, build_index, mesh};
     ///
     /// let folder = tempfile::tempdir()?;
     /// mesh::io::write(&folder.path().join("ball1.off"), &mesh::shapes::icosphere(2))?;
@@ -202,187 +192,65 @@ impl ShapeSearch {
     /// let options = BuildOptions::new(&describe);
     /// build_index(folder.path(), &index, &options, &())?;
     ///
-    /// let query = mesh::shapes::torus(22, 13, 1.0, 0.35);
-    /// let report = ShapeSearch::open(&index)?.search(&query, &SearchOptions::default())?;
+    /// let search = ShapeSearch::open(&index)?;
+    /// let ring = mesh::shapes::torus(22, 13, 1.0, 0.35);
+    /// let report = search.search(Query::from(&ring), &SearchOptions::default(), &())?;
     /// assert_eq!((report.results[0].id.as_str(), report.results.len()), ("ring1", 2));
+    /// let itself = search.search(Query::Id("ball1"), &SearchOptions::default(), &())?;
+    /// assert_eq!(itself.results[0].id, "ball1");
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     ///
     /// # Errors
-    /// [`Error::Index`], and those of describing the mesh.
-    pub fn search(&self, mesh: &TriMesh, options: &SearchOptions) -> Result<SearchReport, Error> {
-        self.search_within(mesh, options, &Budget::unlimited())
-    }
-
-    /// As [`search`](Self::search), within a budget.
-    ///
-    /// # Errors
-    /// [`Error::Exceeded`] and those of [`search`](Self::search).
-    pub fn search_within(
+    /// [`Error::Index`], also for an unknown shape and for a description with other options than those of the index; those of
+    /// describing a mesh; [`Error::NoPart`] for a description without its surface that is ranked as a part;
+    /// [`Error::Exceeded`].
+    pub fn search(
         &self,
-        mesh: &TriMesh,
+        query: Query<'_>,
         options: &SearchOptions,
-        budget: &Budget,
-    ) -> Result<SearchReport, Error> {
-        self.search_named_within(mesh, "the query", None, options, budget)
-    }
-
-    /// As [`search_within`](Self::search_within), with a mesh that is called `name` in words, and with the
-    /// [hash](crate::content_hash) of its file.
-    ///
-    /// # Errors
-    /// As [`search_within`](Self::search_within).
-    pub fn search_named_within(
-        &self,
-        mesh: &TriMesh,
-        name: &str,
-        content: Option<ContentHash>,
-        options: &SearchOptions,
-        budget: &Budget,
+        observer: &dyn Observer,
     ) -> Result<SearchReport, Error> {
         let start = Instant::now();
-        let surface = Surface::new(mesh, &self.describe.form.repair)?;
-        let description = describe_within(&surface, &self.describe, budget)?;
+        let budget = observer.budget();
+        let known = self.resolved(query, options, observer)?;
         let describe = start.elapsed().as_secs_f64();
-        let geometry = match options.explain {
-            Explain::No => None,
-            Explain::Kind => MeshGeometry::new(mesh, content),
-        };
-        let part = self.part(&surface, options, budget)?;
-        let query = Query { name, content, geometry: geometry.as_ref(), part: part.as_ref() };
-        let report = self.search_query_within(&description, &query, options, budget)?;
-        Ok(SearchReport { seconds: SearchSeconds { describe, ..report.seconds }, ..report })
-    }
-
-    /// The surface of a query as a part, if results are ordered by it.
-    ///
-    /// # Errors
-    /// As [`describe_part`].
-    pub fn part(
-        &self,
-        surface: &Surface,
-        options: &SearchOptions,
-        budget: &Budget,
-    ) -> Result<Option<PartDiscAreas>, Error> {
-        let is_part = options.rank_by == SearchRank::Part;
-        is_part.then(|| describe_part(surface, &self.describe, budget)).transpose()
-    }
-
-    /// Searches with a mesh that was described with the [options of the index](Self::describe_options).
-    ///
-    /// # Errors
-    /// [`Error::Index`], also if the mesh was described with other options.
-    pub fn search_described(
-        &self,
-        query: &ShapeDescription,
-        options: &SearchOptions,
-    ) -> Result<SearchReport, Error> {
-        self.search_described_within(query, options, &Budget::unlimited())
-    }
-
-    /// As [`search_described`](Self::search_described), within a budget.
-    ///
-    /// # Errors
-    /// [`Error::Exceeded`] and those of [`search_described`](Self::search_described).
-    pub fn search_described_within(
-        &self,
-        query: &ShapeDescription,
-        options: &SearchOptions,
-        budget: &Budget,
-    ) -> Result<SearchReport, Error> {
-        self.search_query_within(query, &Query::default(), options, budget)
-    }
-
-    /// As [`search_described_within`](Self::search_described_within), with what is known of the mesh: results are explained by
-    /// it.
-    ///
-    /// # Errors
-    /// As [`search_described_within`](Self::search_described_within).
-    pub fn search_query_within(
-        &self,
-        description: &ShapeDescription,
-        query: &Query<'_>,
-        options: &SearchOptions,
-        budget: &Budget,
-    ) -> Result<SearchReport, Error> {
-        self.index.expect_options(&description.options.text())?;
-        let complete = Completeness {
-            dropped: description.repair.dropped_area_share,
-            open: description.longest_boundary / description.area.sqrt(),
-            shortcuts: description.shortcuts.len(),
-        };
-        self.explained(&description.prepare()?, query, complete, options, budget)
-    }
-
-    /// Searches with a shape of the index, which finds itself. Its mesh is read if it is taken as a part, or if results are
-    /// explained; then it need not be there.
-    ///
-    /// # Errors
-    /// [`Error::Index`]; for [`SearchRank::Part`], those of [reading](Self::mesh) and of describing the mesh.
-    pub fn search_shape(&self, id: &str, options: &SearchOptions) -> Result<SearchReport, Error> {
-        let entry = self.index.entry(id)?;
-        let dropped = entry.fact(DROPPED).unwrap_or(0.0);
-        let shortcuts = entry.fact(SHORTCUTS).unwrap_or(0.0) as usize;
-        let complete = Completeness { dropped, shortcuts, ..Completeness::default() };
-        let geometry = match options.explain {
-            Explain::No => None,
-            Explain::Kind => self.geometry(id, &entry),
-        };
-        let budget = Budget::unlimited();
-        let part = match options.rank_by {
-            SearchRank::Part => {
-                let surface = Surface::new(&self.mesh(id)?, &self.describe.form.repair)?;
-                self.part(&surface, options, &budget)?
-            }
-            SearchRank::Plain | SearchRank::Graph => None,
-        };
-        let (content, geometry) = (Some(entry.content), geometry.as_ref());
-        let query = Query { name: id, content, geometry, part: part.as_ref() };
-        self.explained(&self.prepared(id)?, &query, complete, options, &budget)
-    }
-
-    /// The nearest shapes and, if results are explained, what the components of the query are and of what it is one.
-    fn explained(
-        &self,
-        shape: &PreparedShape,
-        query: &Query<'_>,
-        complete: Completeness,
-        options: &SearchOptions,
-        budget: &Budget,
-    ) -> Result<SearchReport, Error> {
-        let report = self.nearest(shape, query, complete, options, budget)?;
-        if options.explain == Explain::No {
-            return Ok(report);
+        let mut report = self.nearest(&known, options, &budget)?;
+        report.seconds.describe = describe;
+        if options.explain == Explain::Kind {
+            report.components = self.search_components(&known, options, &budget)?;
+            report.wholes = self.search_wholes(&known, &budget)?;
         }
-        let components = self.search_components(query, options, budget)?;
-        Ok(SearchReport { components, wholes: self.search_wholes(shape, query, budget)?, ..report })
+        Ok(report)
     }
 
+    /// The nearest shapes and the class.
     pub(super) fn nearest(
         &self,
-        query: &PreparedShape,
-        known: &Query<'_>,
-        complete: Completeness,
+        query: &KnownQuery<'_>,
         options: &SearchOptions,
         budget: &Budget,
     ) -> Result<SearchReport, Error> {
         let start = Instant::now();
         // There are no more results than shapes, however many are requested.
         let wanted = options.k.max(VOTERS).min(self.index.len());
-        let found = match options.rank_by {
-            SearchRank::Plain => self.by_distance(query, wanted, options.mode, budget)?,
-            SearchRank::Graph => self.on_graph(query, wanted, options.mode, budget)?,
+        let fused = query.shape.fused();
+        let shortlist = match options.rank_by {
+            SearchRank::Plain => self.by_distance(fused, wanted, options.mode)?,
+            SearchRank::Graph => self.on_graph(fused, wanted, options.mode)?,
             SearchRank::Part => {
-                let part = known.part.ok_or(Error::NoPart)?;
-                self.by_part(query, part, wanted, budget)?
+                let part = query.part.as_ref().ok_or(Error::NoPart)?;
+                self.by_part(part, wanted, budget)?
             }
         };
+        let found = self.aligned(&query.shape, shortlist, wanted, budget)?;
         let result = |(place, (ranked, order)): (usize, &(Ranked, Order))| {
             let id = found.ids[ranked.index].clone();
             let ShapeEntry { label, path, .. } = self.index.entry(&id)?;
-            let Ranked { distance, fused, verdict, .. } = *ranked;
+            let Ranked { distance, fused, shape_distance, scale, .. } = *ranked;
             let Order { on_graph, as_part } = *order;
-            let (rank, comparison, evidence) = (place + 1, None, None);
+            let relation = Relation::by_distance(shape_distance, scale, Handedness::Unknown);
+            let (rank, relation, comparison) = (place + 1, relation.named(query.name, &id), None);
             Ok(SearchResult {
                 rank,
                 id,
@@ -392,22 +260,21 @@ impl ShapeSearch {
                 fused,
                 on_graph,
                 as_part,
-                verdict,
+                relation,
                 comparison,
-                evidence,
             })
         };
         let mut results = found.ranked.iter().enumerate().map(result).collect::<Result<Vec<_>, Error>>()?;
-        let predicted = predicted(&results, found.search.threshold, complete);
+        let predicted = predicted(&results, found.search.threshold, query.complete);
         results.truncate(options.k);
         if options.explain == Explain::Kind {
             results.par_iter_mut().zip(&found.ranked).try_for_each(|(result, (ranked, _))| {
                 budget.check()?;
                 let shape = self.prepared(&result.id)?;
-                let pair =
-                    ShapePair::new(ShapeMetric::default(), [query, &shape]).with_best(ranked.alignment);
+                let pair = ShapePair::new(ShapeMetric::default(), [&query.shape, &shape])
+                    .with_best(ranked.alignment);
                 result.comparison = Some(compare(&pair)?);
-                result.evidence = Some(self.evidence(known, &result.id, result.verdict)?);
+                result.relation = self.related(query, &result.id, result.relation.clone())?;
                 Ok::<_, Error>(())
             })?;
         }
@@ -425,110 +292,79 @@ impl ShapeSearch {
         })
     }
 
-    /// The nearest shapes by combined distance.
-    fn by_distance(
-        &self,
-        query: &PreparedShape,
-        wanted: usize,
-        mode: SearchMode,
-        budget: &Budget,
-    ) -> Result<Ranking, Error> {
+    /// The shapes whose signatures are nearest.
+    fn by_distance(&self, fused: &[f32], wanted: usize, mode: SearchMode) -> Result<Shortlist, Error> {
         let n_candidates = CANDIDATES.saturating_mul(wanted).max(LEAST_CANDIDATES);
-        let mut search = self.index.nearest(query.fused(), n_candidates, mode)?;
-        let near = std::mem::take(&mut search.shapes);
-        let candidates = self.candidates(query, near.iter().map(|near| near.id.as_str()))?;
-        let shape = |i: usize| {
-            budget.check()?;
-            self.prepared(&near[i].id)
-        };
-        let reranked = rerank(query, candidates, wanted, shape)?;
-        let ranked = reranked.nearest.into_iter().map(|ranked| (ranked, Order::default())).collect();
-        let ids = near.into_iter().map(|near| near.id).collect();
-        Ok(Ranking { ids, ranked, aligned: reranked.aligned, search })
-    }
-
-    /// Shapes in the order of their robust distance from the query.
-    fn candidates<'n>(
-        &self,
-        query: &PreparedShape,
-        ids: impl Iterator<Item = &'n str>,
-    ) -> Result<Vec<Candidate>, Error> {
-        let candidate = |(index, id): (usize, &str)| {
-            let fused = self.index.vectors(id)?.fused;
-            Ok(Candidate { index, bound: ShapeMetric::robust(query.fused(), &fused) })
-        };
-        let mut candidates = ids.enumerate().map(candidate).collect::<Result<Vec<_>, Error>>()?;
-        candidates.sort_by(|a, b| a.bound.total_cmp(&b.bound).then(a.index.cmp(&b.index)));
-        Ok(candidates)
+        let mut search = self.index.nearest(fused, n_candidates, mode)?;
+        let ids = std::mem::take(&mut search.shapes).into_iter().map(|near| near.id).collect();
+        Ok(Shortlist { ids, orders: None, search })
     }
 
     /// The first shapes by rank distance. The graph knows fused distances only, because aligning the forms of all pairs
-    /// would take too long; the forms of the results are aligned for their verdicts.
-    fn on_graph(
-        &self,
-        query: &PreparedShape,
-        wanted: usize,
-        mode: SearchMode,
-        budget: &Budget,
-    ) -> Result<Ranking, Error> {
-        let FoundOnGraph { shapes: near, search, .. } =
-            self.index.nearest_on_graph(query.fused(), wanted, mode)?;
-        let candidates = self.candidates(query, near.iter().map(|near| near.id.as_str()))?;
-        let shape = |i: usize| {
-            budget.check()?;
-            self.prepared(&near[i].id)
+    /// would take too long.
+    fn on_graph(&self, fused: &[f32], wanted: usize, mode: SearchMode) -> Result<Shortlist, Error> {
+        let FoundOnGraph { shapes, search, .. } = self.index.nearest_on_graph(fused, wanted, mode)?;
+        let order = |near: &RankedShape| {
+            let RankedShape { rank_distance, plain_rank, .. } = *near;
+            Order { on_graph: Some(GraphRank { rank_distance, plain_rank }), ..Order::default() }
         };
-        // As many are wanted as there are, so all are aligned.
-        let reranked = rerank(query, candidates, near.len(), shape)?;
-        let on_graph = |ranked: Ranked| {
-            let RankedShape { rank_distance, plain_rank, .. } = near[ranked.index];
-            (ranked, Order { on_graph: Some(GraphRank { rank_distance, plain_rank }), ..Order::default() })
-        };
-        let mut ranked: Vec<_> = reranked.nearest.into_iter().map(on_graph).collect();
-        ranked.sort_by_key(|(ranked, _)| ranked.index);
-        let ids = near.into_iter().map(|near| near.id).collect();
-        Ok(Ranking { ids, ranked, aligned: reranked.aligned, search })
+        let orders = Some(shapes.iter().map(order).collect());
+        Ok(Shortlist { ids: shapes.into_iter().map(|near| near.id).collect(), orders, search })
     }
 
-    /// The shapes into which a part fits best, of all. Their forms are aligned for their verdicts.
-    fn by_part(
+    /// The shapes into which a part fits best, of all.
+    fn by_part(&self, part: &PartDiscAreas, wanted: usize, budget: &Budget) -> Result<Shortlist, Error> {
+        let ids: Vec<String> = self.index.entries()?.into_iter().map(|(id, _)| id).collect();
+        let n_shapes = ids.len();
+        let fit = |id: String| {
+            budget.check()?;
+            let areas = disc_areas(&self.index.vectors(&id)?);
+            let missing = || Error::NoDiscAreas { path: self.index.path().to_owned(), id: id.clone() };
+            let distance = part.distance(&areas.ok_or_else(missing)?);
+            Ok((distance, id))
+        };
+        let mut fits = ids.into_par_iter().map(fit).collect::<Result<Vec<_>, Error>>()?;
+        // Names are in order, so equal distances keep it.
+        fits.sort_by(|(a, _), (b, _)| a.distance.total_cmp(&b.distance));
+        fits.truncate(wanted);
+        let order = |(PartDistance { distance, share }, _): &(PartDistance, String)| Order {
+            as_part: Some(PartRank { part_distance: *distance, part_share: *share }),
+            ..Order::default()
+        };
+        let orders = Some(fits.iter().map(order).collect());
+        let search =
+            Found { shapes: Vec::new(), n_measured: n_shapes, n_shapes, recall: 1.0, threshold: None };
+        Ok(Shortlist { ids: fits.into_iter().map(|(_, id)| id).collect(), orders, search })
+    }
+
+    /// Aligns the forms of a shortlist: of as many as are needed for the `wanted` nearest by combined distance, or of all of
+    /// them for their relations if something else decides on their order.
+    fn aligned(
         &self,
         query: &PreparedShape,
-        part: &PartDiscAreas,
+        shortlist: Shortlist,
         wanted: usize,
         budget: &Budget,
     ) -> Result<Ranking, Error> {
-        let ids: Vec<String> = self.index.entries()?.into_iter().map(|(id, _)| id).collect();
-        let fit = |id: &String| {
-            budget.check()?;
-            let areas = disc_areas(&self.index.vectors(id)?);
-            let missing = || Error::NoDiscAreas { path: self.index.path().to_owned(), id: id.clone() };
-            Ok(part.distance(&areas.ok_or_else(missing)?))
+        let Shortlist { ids, orders, search } = shortlist;
+        let candidate = |(index, id): (usize, &String)| {
+            let fused = self.index.vectors(id)?.fused;
+            Ok(Candidate { index, bound: ShapeMetric::robust(query.fused(), &fused) })
         };
-        let fits = ids.par_iter().map(fit).collect::<Result<Vec<_>, Error>>()?;
-        let mut order: Vec<usize> = (0..ids.len()).collect();
-        // Names are in order, so equal distances keep it.
-        order.sort_by(|a, b| fits[*a].distance.total_cmp(&fits[*b].distance));
-        order.truncate(wanted);
-        let (near, fits): (Vec<String>, Vec<PartDistance>) =
-            order.into_iter().map(|i| (ids[i].clone(), fits[i])).unzip();
-        let candidates = self.candidates(query, near.iter().map(String::as_str))?;
+        let mut candidates = ids.iter().enumerate().map(candidate).collect::<Result<Vec<_>, Error>>()?;
+        candidates.sort_by(|a, b| a.bound.total_cmp(&b.bound).then(a.index.cmp(&b.index)));
         let shape = |i: usize| {
             budget.check()?;
-            self.prepared(&near[i])
+            self.prepared(&ids[i])
         };
-        let reranked = rerank(query, candidates, near.len(), shape)?;
-        let as_part = |ranked: Ranked| {
-            let PartDistance { distance, share } = fits[ranked.index];
-            let as_part = Some(PartRank { part_distance: distance, part_share: share });
-            (ranked, Order { as_part, ..Order::default() })
-        };
-        let mut ranked: Vec<_> = reranked.nearest.into_iter().map(as_part).collect();
-        ranked.sort_by_key(|(ranked, _)| ranked.index);
-        let n_shapes = ids.len();
-        let search =
-            Found { shapes: Vec::new(), n_measured: n_shapes, n_shapes, recall: 1.0, threshold: None };
-        Ok(Ranking { ids: near, ranked, aligned: reranked.aligned, search })
+        let n = if orders.is_some() { ids.len() } else { wanted };
+        let Reranked { mut nearest, aligned, .. } = rerank(query, candidates, n, shape)?;
+        if orders.is_some() {
+            nearest.sort_by_key(|ranked| ranked.index);
+        }
+        let order = |ranked: &Ranked| orders.as_ref().map_or_else(Order::default, |all| all[ranked.index]);
+        let ranked = nearest.into_iter().map(|ranked| (ranked, order(&ranked))).collect();
+        Ok(Ranking { ids, ranked, aligned, search })
     }
 }
 
@@ -537,6 +373,15 @@ impl ShapeSearch {
 struct Order {
     on_graph: Option<GraphRank>,
     as_part: Option<PartRank>,
+}
+
+/// Shapes that may be results.
+struct Shortlist {
+    ids: Vec<String>,
+    /// What they are ordered by, if not by combined distance.
+    orders: Option<Vec<Order>>,
+    /// About the search for signatures.
+    search: Found,
 }
 
 /// Shapes in the order of the results.
@@ -555,15 +400,15 @@ mod tests {
     use std::fs;
 
     use index::{IndexError, IndexWriter, Job};
-    use mesh::shapes;
+    use mesh::{Surface, shapes};
     use surface::VertexId;
     use tempfile::TempDir;
 
     use super::*;
-    use crate::compare::{Basis, EvidenceKind};
     use crate::error::Remedy;
     use crate::form::{EmbedMethod, FormOptions, describe};
     use crate::shape_index::{BuildOptions, build_index};
+    use relations::{Basis, RelationKind};
 
     /// An index of a few bodies.
     fn indexed(describe: &DescribeOptions) -> (TempDir, ShapeSearch) {
@@ -593,29 +438,30 @@ mod tests {
             assert_eq!(*search.describe_options(), describe_options);
             let options = SearchOptions { explain: Explain::Kind, ..SearchOptions::default() };
             let mesh = search.mesh("ring0").unwrap();
-            let by_mesh = search.search(&mesh, &options).unwrap();
-            let by_name = search.search_shape("ring0", &options).unwrap();
-            let surface = Surface::new(&mesh, &describe_options.form.repair).unwrap();
-            let described = describe(&surface, &describe_options).unwrap();
-            let by_description = search.search_described(&described, &options).unwrap();
+            let by_mesh = search.search(Query::from(&mesh), &options, &()).unwrap();
+            let by_name = search.search(Query::Id("ring0"), &options, &()).unwrap();
+            let surface = Surface::new(&mesh, &describe_options.form.repair, &()).unwrap();
+            let described = describe(&surface, &describe_options, &()).unwrap();
+            let by_description = search.search(Query::from(&described), &options, &()).unwrap();
             assert!(by_mesh.results[0].id == "ring0" && by_mesh.results[0].distance < 1e-6);
             let unexplained = |report: &SearchReport| {
                 let results = report.results.iter();
-                results.map(|r| SearchResult { evidence: None, ..r.clone() }).collect::<Vec<_>>()
+                let numbers = |r: &SearchResult| (r.id.clone(), r.distance, r.fused, r.comparison.clone());
+                results.map(numbers).collect::<Vec<_>>()
             };
             assert_eq!(unexplained(&by_mesh), unexplained(&by_name));
             assert_eq!(unexplained(&by_mesh), unexplained(&by_description));
-            let kind = |report: &SearchReport| report.results[0].evidence.clone().unwrap().kind;
-            assert_eq!(kind(&by_mesh), EvidenceKind::IdenticalGeometry);
-            assert_eq!(kind(&by_name), EvidenceKind::IdenticalFile);
-            assert_eq!(kind(&by_description), EvidenceKind::OtherPose, "only descriptions were compared");
+            let kind = |report: &SearchReport| report.results[0].relation.kind;
+            assert_eq!(kind(&by_mesh), RelationKind::IdenticalGeometry);
+            assert_eq!(kind(&by_name), RelationKind::IdenticalFile);
+            assert_eq!(kind(&by_description), RelationKind::OtherPose, "only descriptions were compared");
             // The comparison of the two shapes says the same.
             for result in &by_mesh.results {
                 let other = search.prepared(&result.id).unwrap();
                 let query = described.prepare().unwrap();
                 let direct = compare(&ShapePair::new(ShapeMetric::default(), [&query, &other])).unwrap();
                 assert_eq!(result.comparison.as_ref(), Some(&direct));
-                assert_eq!(result.verdict, direct.verdict);
+                assert_eq!(result.relation.because.distance, direct.shape_distance);
                 assert_eq!(result.distance, direct.shape_distance.combined);
             }
         }
@@ -625,9 +471,9 @@ mod tests {
     fn a_query_described_with_other_options_is_refused() {
         let (_folder, search) = indexed(&DescribeOptions::default());
         let options = DescribeOptions { points: 500, ..DescribeOptions::default() };
-        let surface = Surface::new(&shapes::icosphere(2), &Default::default()).unwrap();
-        let query = describe(&surface, &options).unwrap();
-        let fault = search.search_described(&query, &SearchOptions::default()).unwrap_err();
+        let surface = Surface::new(&shapes::icosphere(2), &Default::default(), &()).unwrap();
+        let query = describe(&surface, &options, &()).unwrap();
+        let fault = search.search(Query::from(&query), &SearchOptions::default(), &()).unwrap_err();
         assert!(matches!(fault, Error::Index(IndexError::OtherOptions { .. })));
         assert!(fault.to_string().contains("\"points\":500"), "{fault}");
     }
@@ -635,9 +481,9 @@ mod tests {
     #[test]
     fn the_graph_ranks_the_same_shapes_in_its_own_order() {
         let (_folder, search) = indexed(&DescribeOptions::default());
-        let plain = search.search_shape("ring0", &SearchOptions::default()).unwrap();
+        let plain = search.search(Query::Id("ring0"), &SearchOptions::default(), &()).unwrap();
         let options = SearchOptions { rank_by: SearchRank::Graph, ..SearchOptions::default() };
-        let graph = search.search_shape("ring0", &options).unwrap();
+        let graph = search.search(Query::Id("ring0"), &options, &()).unwrap();
         assert_eq!((plain.rank_by, graph.rank_by), (SearchRank::Plain, SearchRank::Graph));
         assert_eq!((graph.results.len(), graph.results[0].id.as_str()), (4, "ring0"));
         let order = |found: &SearchResult| found.on_graph.unwrap().rank_distance;
@@ -646,8 +492,8 @@ mod tests {
         for found in &graph.results {
             let same = plain.results.iter().find(|other| other.id == found.id).unwrap();
             assert_eq!(
-                (same.distance, same.fused, same.verdict),
-                (found.distance, found.fused, found.verdict)
+                (same.distance, same.fused, &same.relation),
+                (found.distance, found.fused, &found.relation)
             );
             assert_eq!(same.on_graph, None);
         }
@@ -666,7 +512,7 @@ mod tests {
         let x = |v: VertexId, part: &TriMesh| part.positions[v.index()].x;
         let kept = part.faces.iter().copied().filter(|face| face.iter().all(|v| x(*v, &part) < 1.0));
         part.faces = kept.collect();
-        let found = search.search(&part, &options).unwrap();
+        let found = search.search(Query::from(&part), &options, &()).unwrap();
         assert_eq!(
             (found.rank_by, found.results[0].id.as_str(), found.measured),
             (options.rank_by, "ring1", 4)
@@ -678,16 +524,19 @@ mod tests {
         let json = serde_json::to_value(&found).unwrap();
         assert!(json["rank_by"] == "part" && json["results"][0]["part_distance"].is_number());
         // As a whole, it is another shape.
-        let plain = search.search(&part, &SearchOptions::default()).unwrap();
-        assert!(!plain.results[0].verdict.may_be_same_class() && plain.results[0].as_part.is_none());
+        let plain = search.search(Query::from(&part), &SearchOptions::default(), &()).unwrap();
+        assert!(
+            !plain.results[0].relation.because.distance.may_be_same_class()
+                && plain.results[0].as_part.is_none()
+        );
         // A shape of the index is read again, and a description is not enough.
-        let itself = search.search_shape("box0", &options).unwrap();
+        let itself = search.search(Query::Id("box0"), &options, &()).unwrap();
         assert!(itself.results[0].id == "box0" && itself.results[0].as_part.unwrap().part_share == 1.0);
         fs::remove_file(folder.path().join("box0.tri")).unwrap();
-        assert!(matches!(search.search_shape("box0", &options), Err(Error::MeshGone { .. })));
-        let surface = Surface::new(&part, &Default::default()).unwrap();
-        let described = describe(&surface, search.describe_options()).unwrap();
-        assert!(matches!(search.search_described(&described, &options), Err(Error::NoPart)));
+        assert!(matches!(search.search(Query::Id("box0"), &options, &()), Err(Error::MeshGone { .. })));
+        let surface = Surface::new(&part, &Default::default(), &()).unwrap();
+        let described = describe(&surface, search.describe_options(), &()).unwrap();
+        assert!(matches!(search.search(Query::from(&described), &options, &()), Err(Error::NoPart)));
     }
 
     #[test]
@@ -699,27 +548,27 @@ mod tests {
         search
             .index()
             .each(|mut shape| {
-                shape.vectors.signatures.retain(|(name, _)| name != "disc-areas");
+                shape.vectors.disc_areas.clear();
                 writer.put(&[shape])
             })
             .unwrap();
-        writer.finish().unwrap();
+        writer.finish(&()).unwrap();
         let old = ShapeSearch::open(&path).unwrap();
         let options = SearchOptions { rank_by: SearchRank::Part, ..SearchOptions::default() };
-        let fault = old.search(&shapes::icosphere(3), &options).unwrap_err();
+        let fault = old.search(Query::from(&shapes::icosphere(3)), &options, &()).unwrap_err();
         assert!(
             matches!(fault, Error::NoDiscAreas { .. }) && fault.to_string().contains("disc areas"),
             "{fault}"
         );
         assert_eq!(fault.remedy(), Some(Remedy::BuildIndexAnew));
-        old.search(&shapes::icosphere(3), &SearchOptions::default()).unwrap();
+        old.search(Query::from(&shapes::icosphere(3)), &SearchOptions::default(), &()).unwrap();
     }
 
     #[test]
     fn shapes_are_found_by_name() {
         let (_folder, search) = indexed(&DescribeOptions::default());
         let options = SearchOptions::default();
-        assert!(matches!(search.search_shape("none", &options), Err(Error::Index(_))));
+        assert!(matches!(search.search(Query::Id("none"), &options, &()), Err(Error::Index(_))));
         let names: Vec<String> = search.index().entries().unwrap().into_iter().map(|(id, _)| id).collect();
         assert_eq!(names, ["ball0", "box0", "ring0", "ring1"]);
         assert_eq!(search.index().entry("box0").unwrap().label, "box");
@@ -746,16 +595,16 @@ mod tests {
         let options = SearchOptions { explain: Explain::Kind, ..SearchOptions::default() };
         let mut ring = search.mesh("ring0").unwrap();
         ring.positions.iter_mut().for_each(|p| *p /= 25.4);
-        let nearest = || search.search(&ring, &options).unwrap().results[0].clone();
-        let found = nearest().evidence.unwrap();
-        assert_eq!((found.kind, found.basis), (EvidenceKind::Scaled, Basis::Meshes));
+        let nearest = || search.search(Query::from(&ring), &options, &()).unwrap().results[0].clone();
+        let found = nearest().relation;
+        assert_eq!((found.kind, found.because.basis), (RelationKind::Scaled, Basis::Meshes));
         assert_eq!(found.to_string(), "ring0 is the query scaled by 25.4 (inches to millimetres)");
         fs::remove_file(folder.path().join("ring0.off")).unwrap();
-        let found = nearest().evidence.unwrap();
-        assert_eq!((found.kind, found.basis), (EvidenceKind::OtherPose, Basis::Descriptions));
+        let found = nearest().relation;
+        assert_eq!((found.kind, found.because.basis), (RelationKind::OtherPose, Basis::Descriptions));
         assert!(found.reason().ends_with("the mesh was not compared"), "{}", found.reason());
-        let by_name = search.search_shape("ring0", &options).unwrap();
-        assert_eq!(by_name.results[0].evidence.as_ref().unwrap().kind, EvidenceKind::IdenticalFile);
+        let by_name = search.search(Query::Id("ring0"), &options, &()).unwrap();
+        assert_eq!(by_name.results[0].relation.kind, RelationKind::IdenticalFile);
     }
 
     #[test]
@@ -766,9 +615,8 @@ mod tests {
         let content = crate::content_hash(&path).unwrap();
         let ring = mesh::io::read(&path).unwrap();
         let explained = |mesh: &TriMesh, name: &str, content| {
-            let budget = Budget::unlimited();
-            let found = search.search_named_within(mesh, name, content, &options, &budget).unwrap();
-            found.results[0].evidence.clone().unwrap().to_string()
+            let found = search.search(Query::Mesh { mesh, name, content }, &options, &()).unwrap();
+            found.results[0].relation.to_string()
         };
         assert_eq!(explained(&ring, "a.off", Some(content)), "ring1 is the same file as a.off");
         let plate = |mut meshes: [TriMesh; 3]| {
@@ -783,8 +631,9 @@ mod tests {
         let (mut other, ball) = (search.mesh("ring0").unwrap(), search.mesh("ball0").unwrap());
         other.positions.iter_mut().for_each(|p| p.coords *= 3.0);
         let plate = plate([ball.clone(), other, ball]);
-        let budget = Budget::unlimited();
-        let report = search.search_named_within(&plate, "plate.stl", None, &options, &budget).unwrap();
+        let report = search
+            .search(Query::Mesh { mesh: &plate, name: "plate.stl", content: None }, &options, &())
+            .unwrap();
         let found: Vec<_> =
             report.components.iter().map(|part| (part.copies, part.nearest.clone().unwrap())).collect();
         assert_eq!((found[0].0, found[0].1.id.as_str()), (1, "ring0"));
@@ -794,23 +643,24 @@ mod tests {
         let path = folder.path().join("all.canonform");
         build_index(folder.path(), &path, &BuildOptions::new(search.describe_options()), &()).unwrap();
         let again = ShapeSearch::open(&path).unwrap();
-        let wholes = again.search_shape("ball0", &options).unwrap().wholes;
+        let wholes = again.search(Query::Id("ball0"), &options, &()).unwrap().wholes;
         assert_eq!((wholes.len(), wholes[0].id.as_str()), (1, "plate7"));
-        let evidence = wholes[0].evidence.clone().unwrap();
-        assert_eq!(evidence.to_string(), "plate7 has two copies of ball0 among its three components");
-        fs::remove_file(folder.path().join("plate7.off")).unwrap();
-        let evidence = again.search_shape("ball0", &options).unwrap().wholes[0].evidence.clone().unwrap();
         assert_eq!(
-            evidence.to_string(),
+            wholes[0].relation.to_string(),
+            "plate7 has two copies of ball0 among its three components"
+        );
+        fs::remove_file(folder.path().join("plate7.off")).unwrap();
+        assert_eq!(
+            again.search(Query::Id("ball0"), &options, &()).unwrap().wholes[0].relation.to_string(),
             "ball0 is part of plate7, one of its three components, in this or another pose"
         );
-        assert!(again.search_shape("box0", &options).unwrap().wholes.is_empty());
+        assert!(again.search(Query::Id("box0"), &options, &()).unwrap().wholes.is_empty());
 
-        let kinds: Vec<_> = found.iter().map(|(_, result)| result.evidence.clone().unwrap().kind).collect();
-        assert_eq!(kinds, [EvidenceKind::Scaled, EvidenceKind::IdenticalGeometry]);
+        let kinds: Vec<_> = found.iter().map(|(_, result)| result.relation.kind).collect();
+        assert_eq!(kinds, [RelationKind::Scaled, RelationKind::IdenticalGeometry]);
         assert!(
             search
-                .search_named_within(&plate, "", None, &SearchOptions::default(), &budget)
+                .search(Query::Mesh { mesh: &plate, name: "", content: None }, &SearchOptions::default(), &())
                 .unwrap()
                 .components
                 .is_empty()

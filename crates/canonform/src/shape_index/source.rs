@@ -1,26 +1,25 @@
 //! The mesh files that become shapes of an index.
 
 use std::collections::{HashMap, HashSet};
-use std::fs::File;
-use std::io;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 use std::time::Duration;
 
-use budget::Budget;
-use files::{FileError, FileId};
-use index::{ContentHash, ShapeEntry};
-use mesh::io::{MemoryFile, Opened, ReadLimits, Source, without_extension};
+use base::Budget;
+use base::ContentHash;
+use base::files::FileId;
+use index::ShapeEntry;
+use mesh::io::{MemoryFile, ReadLimits, without_extension};
 use mesh::{MeshError, TriMesh};
 use rayon::prelude::*;
 
 use super::place::{Home, Root, mesh_path};
 use crate::error::Error;
-use crate::input::{
-    Dataset, LabelFile, ShapeFile, SkipKind, Skipped, Storage, drop_single_class, is_dataset, label_in,
-    member_of, read_mesh_file,
+use base::Observer;
+use collection::{
+    CollectionError, Dataset, LabelFile, ShapeFile, SkipKind, Skipped, Storage, content_hash, content_of,
+    drop_single_class, is_dataset, label_in, read_mesh_file,
 };
-use crate::observer::Observer;
 
 /// One of several equal parts of a collection.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -231,7 +230,7 @@ pub(super) fn hash_all(shapes: Vec<Listed>, observer: &dyn Observer) -> Vec<Hash
     shapes
         .into_par_iter()
         .map(|shape| {
-            let hash = content_hash(&shape.file.path);
+            let hash = content_hash(&shape.file.path).map_err(Error::from);
             observer.step();
             (shape, hash)
         })
@@ -241,80 +240,26 @@ pub(super) fn hash_all(shapes: Vec<Listed>, observer: &dyn Observer) -> Vec<Hash
 /// Reads the mesh of an indexed shape, if the file still has the content that was indexed.
 pub(super) fn read_unchanged(index: &Path, id: &str, entry: &ShapeEntry) -> Result<TriMesh, Error> {
     let path = mesh_path(index, &entry.path);
-    let gone = |fault: Error| match fault {
-        Error::File(fault) | Error::Mesh(MeshError::Io(fault)) => {
+    let gone = |fault: CollectionError| match fault {
+        CollectionError::File(fault) | CollectionError::Mesh(MeshError::Io(fault)) => {
             let (id, path, source) = (id.to_owned(), path.clone(), fault.source);
             Error::MeshGone { id, path, source }
         }
-        other => other,
+        other => other.into(),
     };
     let changed = || Error::MeshChanged { id: id.to_owned(), path: path.clone() };
     let files = mesh::io::files_in(&path, &Storage);
     // Hashing takes little memory, whatever the path of a foreign index leads to.
-    if hash(&files).map_err(gone)? != entry.content {
+    if content_hash(&path).map_err(gone)? != entry.content {
         return Err(changed());
     }
-    let pieces = files.iter().map(|file| content(file)).collect::<Result<Vec<_>, _>>().map_err(gone)?;
+    let pieces = files.iter().map(|file| content_of(file)).collect::<Result<Vec<_>, _>>().map_err(gone)?;
     // The file might have changed in between.
     if ContentHash::of(&pieces) != entry.content {
         return Err(changed());
     }
     let files = files.iter().zip(&pieces).map(|(name, bytes)| MemoryFile { name, bytes });
     Ok(mesh::io::read_memory(&files.collect::<Vec<_>>(), &ReadLimits::default())?)
-}
-
-/// The hash of the files of a mesh, by which an index recognises them. A member of an archive has the hash of the same file
-/// outside.
-///
-/// # Errors
-/// [`Error::File`] and [`Error::Mesh`] if a file cannot be read.
-pub fn content_hash(path: &Path) -> Result<ContentHash, Error> {
-    hash(&mesh::io::files_in(path, &Storage))
-}
-
-fn hash(files: &[PathBuf]) -> Result<ContentHash, Error> {
-    if files.iter().any(|file| member_of(file).is_some()) {
-        let pieces = files.iter().map(|file| content(file)).collect::<Result<Vec<_>, _>>()?;
-        return Ok(ContentHash::of(&pieces));
-    }
-    let mut open = Vec::new();
-    for path in files {
-        open.push((path.as_path(), open_regular(path)?));
-    }
-    Ok(ContentHash::of_files(open.iter_mut().map(|(path, file)| (*path, file)))
-        .map_err(|(path, source)| FileError::read(&path, source))?)
-}
-
-/// All bytes of a file, or of a member of an archive.
-fn content(path: &Path) -> Result<Vec<u8>, Error> {
-    if member_of(path).is_none() {
-        let mut bytes = Vec::new();
-        let read = io::Read::read_to_end(&mut open_regular(path)?, &mut bytes);
-        read.map_err(|source| FileError::read(path, source))?;
-        return Ok(bytes);
-    }
-    match Storage.open(path)? {
-        Opened::Bytes(bytes) => Ok(bytes.into_owned()),
-        Opened::Stream(mut stream, _) => {
-            let mut bytes = Vec::new();
-            stream.read_to_end(&mut bytes).map_err(|source| FileError::read(path, source))?;
-            Ok(bytes)
-        }
-    }
-}
-
-/// Opens a file. A pipe or a device would block, or never end, and no reader takes a larger file.
-fn open_regular(path: &Path) -> Result<File, FileError> {
-    let open = || {
-        let about = std::fs::metadata(path)?;
-        let most = ReadLimits::default().max_bytes;
-        match about.is_file() {
-            true if about.len() <= most => File::open(path),
-            true => Err(io::Error::other(format!("{} bytes are more than {most}", about.len()))),
-            false => Err(io::Error::new(io::ErrorKind::InvalidInput, "not a regular file")),
-        }
-    };
-    open().map_err(|source| FileError::read(path, source))
 }
 
 #[cfg(test)]

@@ -6,7 +6,8 @@ use canonform::Finish;
 use canonform::geodesics::Method;
 use clap::{Args, Subcommand};
 
-use super::shared::{LimitArgs, MarchingArgs, RepairArgs, distance_method};
+use super::settings::{OfDistances, RepairArgs, SettingArgs, distance_method};
+use super::shared::LimitArgs;
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum FieldCommand {
@@ -49,7 +50,7 @@ pub(crate) struct FieldBuildArgs {
     #[arg(long, value_parser = distance_method(), default_value = Method::default().name())]
     pub(crate) method: Method,
     #[command(flatten)]
-    pub(crate) marching: MarchingArgs,
+    pub(crate) marching: SettingArgs<OfDistances>,
     #[command(flatten)]
     pub(crate) repair: RepairArgs,
     #[command(flatten)]

@@ -2,9 +2,9 @@
 
 use std::path::PathBuf;
 
+use canonform::mesh::io::{Content, writable};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum};
-use mesh::io::{Content, writable};
 
 /// Where the shapes go.
 const NOTES: &str = "\

@@ -4,10 +4,11 @@ use std::path::PathBuf;
 
 use canonform::InputPoint;
 use canonform::geodesics::Method;
+use canonform::mesh::io::{Content, or_list, writable};
 use clap::Args;
-use mesh::io::{Content, or_list, writable};
 
-use super::shared::{LimitArgs, MarchingArgs, RepairArgs, distance_method};
+use super::settings::{OfDistances, RepairArgs, SettingArgs, distance_method};
+use super::shared::LimitArgs;
 
 /// How points are written.
 const POINTS: &str = "\
@@ -65,7 +66,7 @@ pub(crate) struct GeodesicArgs {
     #[arg(long, value_parser = distance_method(), default_value = Method::default().name())]
     pub(crate) method: Method,
     #[command(flatten)]
-    pub(crate) marching: MarchingArgs,
+    pub(crate) marching: SettingArgs<OfDistances>,
     #[command(flatten)]
     pub(crate) repair: RepairArgs,
     #[command(flatten)]

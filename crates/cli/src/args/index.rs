@@ -2,13 +2,12 @@
 
 use std::path::PathBuf;
 
-use anyhow::Result;
-use canonform::descriptors::{DescriptorError, Normalization};
-use canonform::{DescribeOptions, Measure, RankBy, SearchRank, ShapeLimits, Shard};
+use canonform::descriptors::DescriptorError;
+use canonform::{Measure, RankBy, SearchRank, ShapeLimits, Shard};
 use clap::{Args, Subcommand};
 
-use super::embedding::EmbeddingArgs;
-use super::shared::{Common, LimitArgs};
+use super::settings::{FormArgs, OfDescription};
+use super::shared::LimitArgs;
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum IndexCommand {
@@ -98,7 +97,7 @@ pub(crate) struct BuildArgs {
     #[arg(long, value_name = "I/N")]
     pub(crate) shard: Option<Shard>,
     #[command(flatten)]
-    pub(crate) describe: DescribeArgs,
+    pub(crate) describe: FormArgs<OfDescription>,
     #[command(flatten)]
     pub(crate) limits: BatchLimitArgs,
 }
@@ -117,31 +116,8 @@ impl BatchLimitArgs {
     /// Under `ulimit -v` each thread gets its share of half the memory: a shape beyond it would end the whole run.
     pub(crate) fn each(&self) -> ShapeLimits {
         let Self { max_vertices, limits } = *self;
-        let share = || Some(terminal::memory_limit()? / 2 / rayon::current_num_threads());
+        let share = || Some(base::terminal::memory_limit()? / 2 / rayon::current_num_threads());
         ShapeLimits { max_vertices, time: limits.timeout, memory: limits.memory.or_else(share) }
-    }
-}
-
-/// How shapes are described.
-#[derive(Debug, Clone, Args)]
-pub(crate) struct DescribeArgs {
-    /// Number of points of each form to keep for alignment [default: 1000]
-    #[arg(long)]
-    pub(crate) points: Option<usize>,
-    /// Distinguish shapes by size: all meshes have the same unit of length
-    #[arg(long)]
-    pub(crate) size: bool,
-    #[command(flatten)]
-    pub(crate) embedding: EmbeddingArgs,
-}
-
-impl DescribeArgs {
-    pub(crate) fn options(&self, common: &Common) -> Result<DescribeOptions> {
-        Ok(DescribeOptions {
-            form: self.embedding.options(common)?,
-            points: self.points.unwrap_or(DescribeOptions::default().points),
-            size: if self.size { Normalization::Raw } else { Normalization::UnitArea },
-        })
     }
 }
 
@@ -185,7 +161,7 @@ pub(crate) struct SearchArgs {
     /// Number of shapes to find; 0 predicts the class only
     #[arg(short, default_value_t = 10)]
     pub(crate) k: usize,
-    /// Say what kind of match every shape is, as `compare` does; reads the files of the shapes again
+    /// Say how every shape is related to the query, as `compare` does; reads the files of the shapes again
     #[arg(long)]
     pub(crate) explain: bool,
     /// Compare the signatures of all shapes, even in a large index

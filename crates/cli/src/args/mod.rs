@@ -1,34 +1,35 @@
 //! The command line: a contract that other people's scripts rely on.
 
-mod embedding;
 mod field;
 mod generate;
 mod geodesic;
 mod index;
 mod render;
 mod serve;
+mod settings;
 mod shared;
 
 use std::path::PathBuf;
 
-use canonform::descriptors::{FormDistance, MatchOptions, VerdictKind};
+use canonform::descriptors::{Boundary, ShapeMetric};
 use canonform::geodesics::Method;
+use canonform::mesh::io::{Content, mesh_files, or_list, writable};
+use canonform::settings::Named;
 use canonform::{InputPoint, StressChoice};
 use clap::builder::TypedValueParser;
 use clap::{Args, Parser, Subcommand};
 use clap_complete::Shell;
-use mesh::io::{Content, mesh_files, or_list, writable};
 
-use self::shared::{COMPARED_STRESS, STRESS, distance_method, one_of};
+use self::settings::{FormArgs, OfComparison, OfEmbedding, OfForm, OfMaps, distance_method, one_of};
 
-pub(crate) use embedding::EmbeddingArgs;
 pub(crate) use field::{FieldBuildArgs, FieldCommand, FieldQueryArgs};
 pub(crate) use generate::{FamilyArg, GenerateArgs};
 pub(crate) use geodesic::GeodesicArgs;
 pub(crate) use index::{AddArgs, BuildArgs, EvaluateArgs, IndexCommand, ListArgs, SearchArgs};
 pub(crate) use render::{Place, RenderArgs};
 pub(crate) use serve::ServeArgs;
-pub(crate) use shared::{Common, FormArgs, LimitArgs, MAX_DROPPED, RepairArgs};
+pub(crate) use settings::{MAX_DROPPED, RepairArgs};
+pub(crate) use shared::{Common, LimitArgs};
 
 /// Nonrigid 3D shapes: surface distances, canonical forms, comparison and search.
 ///
@@ -66,15 +67,14 @@ pub(crate) enum Command {
     Embed(EmbedArgs),
     /// Embed a mesh by every method and tabulate stress, time and memory
     Methods(MethodsArgs),
-    /// Say what kind of match two meshes are: one file, geometry, surface, shape or class, scaled, mirrored, or a part
+    /// Say how two meshes are related: one file, geometry, surface, shape or class, scaled, mirrored, or a part
     ///
-    /// The match is told from the files and from the meshes in space: the same bytes; the same vertices, perhaps moved, scaled
+    /// The relation is told from the files and from the meshes in space: the same bytes; the same vertices, perhaps moved, scaled
     /// or mirrored; the same surface, decimated, subdivided, remeshed or with noise; copies or a part of each other. If
     /// they are none of these, the shapes decide: another pose, one class, or different.
     ///
-    /// The verdict on the shapes follows from the combined distance, by signatures and aligned canonical forms, and is one of: the same
-    /// shape, different shapes of one class, undecided, different shapes. Its confidence is a probability, measured on
-    /// poses and bodies of the built-in shapes.
+    /// Shapes are compared by their combined distance, by signatures and aligned canonical forms. The certainty is a probability,
+    /// measured on poses and bodies of the built-in shapes.
     Compare(CompareArgs),
     /// Map the vertices of a mesh to those of another one, directly and mirrored
     Match(MatchArgs),
@@ -144,14 +144,10 @@ pub(crate) struct EmbedArgs {
     #[arg(
         long,
         value_name = "EXT",
-        value_parser = one_of(FORM_FORMATS.map(|(name, help)| (name, help, name))),
+        value_parser = one_of(FORM_FORMATS.map(|(name, help)| (name, help, name)).into()),
         help = "File format of forms in a folder or on standard output [default: ply]"
     )]
     pub(crate) output_format: Option<&'static str>,
-    /// Take samples until the normalised stress, estimated from held-out distances, is at most this; needs -n auto. Exit with
-    /// code 1 if more samples do not get there
-    #[arg(long, value_name = "S", value_parser = parse_target)]
-    pub(crate) target_stress: Option<f64>,
     /// Report the coordinates of these points too: 17 is a vertex, 17-42@0.3 a point on an edge, f8@2:1:1 one in a face, as in
     /// `canonform geodesic`
     #[arg(long, value_delimiter = ',', value_name = "POINT[,POINT...]")]
@@ -159,22 +155,13 @@ pub(crate) struct EmbedArgs {
     /// Place the mesh in the form of a coarser mesh of the same surface, by the distances from the samples of that form
     #[arg(long, value_name = "COARSER", conflicts_with = "stress_against")]
     pub(crate) extend: Option<PathBuf>,
-    /// How to find the stress; see below for its formulas
-    #[arg(long, value_parser = one_of(STRESS), default_value = "auto")]
-    pub(crate) stress: StressChoice,
     /// How to measure the distances that the stress compares the form with [default: as --geodesic]
     #[arg(long, value_parser = distance_method(), value_name = "METHOD")]
     pub(crate) stress_against: Option<Method>,
     #[command(flatten)]
-    pub(crate) embedding: EmbeddingArgs,
+    pub(crate) form: FormArgs<OfEmbedding>,
     #[command(flatten)]
     pub(crate) limits: LimitArgs,
-}
-
-/// A share that distances may be off by.
-fn parse_target(text: &str) -> Result<f64, String> {
-    let target = text.parse().ok().filter(|target: &f64| *target > 0.0 && target.is_finite());
-    target.ok_or_else(|| format!("`{text}` is not a stress; give a positive number, such as 0.05"))
 }
 
 /// What is kept and what is not.
@@ -219,12 +206,20 @@ pub(crate) struct MethodsArgs {
     /// Mesh file, or `-` for standard input
     pub(crate) mesh: PathBuf,
     /// How to find the stress
-    #[arg(long, value_parser = one_of([COMPARED_STRESS, STRESS[1], STRESS[2]]), default_value = "auto")]
+    #[arg(long, value_parser = compared_stress(), default_value = "auto")]
     pub(crate) stress: StressChoice,
     #[command(flatten)]
-    pub(crate) form: FormArgs,
+    pub(crate) form: FormArgs<OfForm>,
     #[command(flatten)]
     pub(crate) limits: LimitArgs,
+}
+
+/// How the stress is found when methods are compared.
+fn compared_stress() -> impl TypedValueParser<Value = StressChoice> {
+    let mut choices = StressChoice::table();
+    choices.retain(|(.., choice)| *choice != StressChoice::Skip);
+    choices[0].1 = "Exactly up to 5,000 vertices, beyond from 100 vertices to all others";
+    one_of(choices)
 }
 
 #[derive(Debug, Args)]
@@ -233,20 +228,20 @@ pub(crate) struct CompareArgs {
     pub(crate) a: PathBuf,
     /// Second mesh, a file or `-`
     pub(crate) b: PathBuf,
-    /// Distance between aligned forms
-    #[arg(long, value_parser = form_distance(), default_value = "nn-rms")]
-    pub(crate) distance: FormDistance,
     #[arg(long, value_name = "OUT", help = residual_help())]
     pub(crate) residual_mesh: Option<PathBuf>,
-    /// Exit with code 1 if the distance at equal size exceeds this, or if the verdict is "different shapes"
+    /// Exit with code 1 if the distance at equal size exceeds this, or if the shapes are certainly of different classes
     #[arg(long, value_name = "D")]
     pub(crate) threshold: Option<f64>,
-    /// Exit with code 0 if the verdict is at least this alike, and 1 if not: `same-shape` without a value
+    /// Exit with code 0 if the shapes are certainly at least this alike, and 1 if not: `same-shape` without a value
     #[arg(long, value_name = "KIND", num_args = 0..=1, require_equals = true, default_missing_value = "same-shape",
         value_parser = at_least())]
-    pub(crate) exit_code: Option<VerdictKind>,
+    pub(crate) exit_code: Option<Boundary>,
+    /// Print all numbers: of the alignment, the residual, and what decided
+    #[arg(long)]
+    pub(crate) details: bool,
     #[command(flatten)]
-    pub(crate) embedding: EmbeddingArgs,
+    pub(crate) form: FormArgs<OfComparison>,
     #[command(flatten)]
     pub(crate) limits: LimitArgs,
 }
@@ -279,11 +274,8 @@ pub(crate) struct MatchArgs {
     pub(crate) b: PathBuf,
     #[arg(short, long, value_name = "MAP", help = match_help())]
     pub(crate) output: Option<PathBuf>,
-    /// Most eigenfunctions of each surface that the map is refined with
-    #[arg(long, value_name = "K", default_value_t = MatchOptions::default().eigenfunctions)]
-    pub(crate) eigenfunctions: usize,
     #[command(flatten)]
-    pub(crate) form: FormArgs,
+    pub(crate) form: FormArgs<OfMaps>,
     #[command(flatten)]
     pub(crate) limits: LimitArgs,
 }
@@ -299,17 +291,10 @@ fn match_help() -> String {
 pub(crate) const FORM_FORMATS: [(&str, &str); 4] =
     [("npy", "NumPy array"), ("ply", "Binary PLY mesh"), ("obj", "Wavefront mesh"), ("off", "OFF mesh")];
 
-fn form_distance() -> impl TypedValueParser<Value = FormDistance> {
-    one_of([
-        ("nn-rms", "Root mean square of nearest-neighbour distances", FormDistance::NearestNeighborRms),
-        ("hausdorff95", "Hausdorff distance without the farthest 5 % of points", FormDistance::Hausdorff95),
-    ])
-}
-
-fn at_least() -> impl TypedValueParser<Value = VerdictKind> {
-    one_of([
-        ("same-shape", "One body in two poses, at any size, or its mirror image", VerdictKind::SameShape),
-        ("same-class", "One class, whether one shape or not", VerdictKind::SameClass),
+fn at_least() -> impl TypedValueParser<Value = Boundary> {
+    one_of(vec![
+        ("same-shape", "One body in two poses, at any size, or its mirror image", ShapeMetric::SAME_SHAPE),
+        ("same-class", "One class, whether one shape or not", ShapeMetric::SAME_CLASS),
     ])
 }
 

@@ -5,10 +5,11 @@ use std::path::PathBuf;
 use canonform::InputPoint;
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
-use view::color::ColorMap;
-use view::render::{Background, View};
+use report::color::ColorMap;
+use report::render::{Background, View};
 
-use super::shared::{LimitArgs, RepairArgs};
+use super::settings::RepairArgs;
+use super::shared::LimitArgs;
 
 /// How views and fields are written.
 const NOTES: &str = "\

@@ -4,17 +4,18 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::{Result, bail};
-use canonform::descriptors::{Handedness, ShapeMetric, Verdict, VerdictKind};
+use canonform::descriptors::ShapeMetric;
+use canonform::mesh::io::{Content, writable};
 use canonform::{
-    ComparedMesh, FormOptions, MeshComparison, Residual, Triangulation, compare_meshes, content_hash,
+    ComparedMesh, FormOptions, Handedness, MeshComparison, Residual, Triangulation, compare_meshes,
+    content_hash,
 };
-use mesh::io::{Content, writable};
 use serde::Serialize;
 
 use crate::args::{Common, CompareArgs};
 use crate::input::{file_name, is_stream, named, print_repair, read_both};
 use crate::output::{check_folder, check_format, facts, report, write_colored};
-use terminal::Bars;
+use base::terminal::Bars;
 
 #[derive(Serialize)]
 struct CompareJson {
@@ -39,8 +40,8 @@ struct ResidualJson {
 }
 
 fn side(path: &Path, args: &CompareArgs, options: &FormOptions, common: &Common) -> Result<ComparedMesh> {
-    let (mesh, surface) = read_both(path, &args.embedding.form.repair, common)?;
-    print_repair(&file_name(path), &surface.repaired.report, &args.embedding.form.repair);
+    let (mesh, surface) = read_both(path, &args.form.repair, common)?;
+    print_repair(&file_name(path), &surface.repaired.report, &args.form.repair);
     let content = if is_stream(path) { None } else { Some(content_hash(path)?) };
     let bars = Bars::with_budget(common.quiet, args.limits.budget());
     ComparedMesh::new(&mesh, content, surface, options, &bars).map_err(|fault| named(path, fault))
@@ -57,7 +58,7 @@ fn names(args: &CompareArgs) -> [String; 2] {
 
 /// Embeds, aligns and compares two meshes.
 pub(crate) fn compare(args: &CompareArgs, common: &Common) -> Result<ExitCode> {
-    let options = args.embedding.options(common)?;
+    let options = args.form.options(common)?;
     options.validate()?;
     if is_stream(&args.a) && is_stream(&args.b) {
         bail!("standard input can be read only once; give `-` for one mesh");
@@ -67,68 +68,95 @@ pub(crate) fn compare(args: &CompareArgs, common: &Common) -> Result<ExitCode> {
         check_folder(path)?;
     }
     let [a, b] = [side(&args.a, args, &options, common)?, side(&args.b, args, &options, common)?];
-    let mut found = compare_meshes(ShapeMetric { distance: args.distance }, [&a, &b])?;
+    let mut found =
+        compare_meshes(ShapeMetric { distance: args.form.chosen("distance") }, [a.compared(), b.compared()])?;
     if let Some(path) = &args.residual_mesh {
         write_colored(path, a.surface().mesh(), "residual", &found.overlay.residuals[0])?;
     }
     let [name_a, name_b] = names(args);
-    found.evidence = found.evidence.named(&name_a, &name_b);
-    let verdict = found.comparison.verdict;
-    let failed = args
-        .threshold
-        .map(|limit| found.comparison.normalized_distance > limit || verdict.kind == VerdictKind::Different);
-    let not_alike = args.exit_code.is_some_and(|least| !is_at_least(&verdict, least));
+    found.relation = found.relation.named(&name_a, &name_b);
+    let distance = found.comparison.shape_distance;
+    let failed =
+        args.threshold.map(|limit| found.comparison.normalized_distance > limit || distance.is_different());
+    let not_alike = args.exit_code.is_some_and(|least| distance.combined >= least.gap()[0]);
     let json = CompareJson {
         a: args.a.clone(),
         b: args.b.clone(),
         residual: ResidualJson {
-            residual: found.residual,
-            max_vertex: found.max_vertex.0,
+            residual: found.residual[0],
+            max_vertex: a.surface().input_vertex(found.residual[0].max_point.into()).0,
             output: args.residual_mesh.clone(),
         },
         found,
         threshold: args.threshold,
         failed,
     };
-    let code = report(common, &json, table)?;
+    let code = report(common, &json, |json| text(json, &name_a, args.details))?;
     Ok(if failed == Some(true) || not_alike { ExitCode::from(1) } else { code })
 }
 
-/// Whether a verdict is firm and at least this alike. Below the gap between one class and different ones, the shapes are
-/// of one class, whether they are one shape or not.
-fn is_at_least(verdict: &Verdict, least: VerdictKind) -> bool {
-    match least {
-        VerdictKind::SameClass => verdict.is_same_class(),
-        least => verdict.kind == least,
+/// The answer in one sentence, and what it rests on in a few lines.
+fn text(json: &CompareJson, name_a: &str, details: bool) -> String {
+    let relation = &json.found.relation;
+    let ([shape, _], [_, class]) = (ShapeMetric::SAME_SHAPE.gap(), ShapeMetric::SAME_CLASS.gap());
+    let distance = json.found.comparison.shape_distance.combined;
+    let limits = format!("one shape below {shape:.2}, another class above {class:.2}");
+    let times = format!("{:.4}", relation.because.scale);
+    let size =
+        if times == "1.0000" { "the same".to_owned() } else { format!("{times} times that of {name_a}") };
+    let mut rows = vec![
+        ("certainty", format!("{:.0} %", 100.0 * relation.confidence)),
+        ("distance", format!("{distance:.2}, whatever pose and size: {limits}")),
+        ("size", size),
+    ];
+    let (Residual { median, max, .. }, vertex) = (json.residual.residual, json.residual.max_vertex);
+    match json.threshold {
+        Some(limit) => rows.push(("threshold", threshold(json, limit))),
+        None => {
+            rows.push((
+                "form",
+                format!("differs most at vertex {vertex} of {name_a}, by {max:.4} mesh units"),
+            ));
+        }
     }
+    let mut text = format!("{relation}.\n{}", facts(&rows));
+    if details {
+        let residual = format!("median {median:.6}, maximum {max:.6} (at vertex {vertex}), mesh units");
+        text = format!("{text}\n\n{}", facts(&detailed(json, residual)));
+    }
+    text
 }
 
-fn table(json: &CompareJson) -> String {
-    let (c, evidence) = (&json.found.comparison, &json.found.evidence);
-    let limit = match c.same_below {
-        0.0 => "the signatures alone are too far apart for one class".to_owned(),
-        limit => format!("with these signatures, different from {limit:.6} on"),
+fn threshold(json: &CompareJson, limit: f64) -> String {
+    let distance = json.found.comparison.normalized_distance;
+    let held = match (distance > limit, json.failed == Some(true)) {
+        (true, _) => "exceeded",
+        (false, true) => "not exceeded, but the shapes are different",
+        (false, false) => "not exceeded",
     };
-    let handedness = match c.handedness {
+    format!("{limit} {held}: the forms are {distance:.6} apart at equal size")
+}
+
+/// Everything else that was measured.
+fn detailed(json: &CompareJson, residual: String) -> Vec<(&'static str, String)> {
+    let (c, relation) = (&json.found.comparison, &json.found.relation);
+    let handedness = match relation.because.handedness {
         Handedness::Same => "no",
         Handedness::Mirrored => "yes",
         Handedness::Either => "either: the shape is its own mirror image",
-        Handedness::Unknown => "unknown: a mesh encloses no volume, or the forms do not match",
+        Handedness::Unknown => "unknown: a mesh encloses no volume, or the forms do not fit",
     };
     let triangulation = match json.found.triangulation {
-        Triangulation::Same => "the same faces",
-        Triangulation::Other => "different faces",
+        Some(Triangulation::Same) => "the same faces",
+        _ => "different faces",
     };
-    let (Residual { median, max, .. }, vertex) = (json.residual.residual, json.residual.max_vertex);
-    let residual = format!("median {median:.6}, maximum {max:.6} (at vertex {vertex}), mesh units");
     let mut rows = vec![
-        ("match", evidence.to_string()),
-        ("confidence", format!("{:.2}", evidence.confidence)),
-        ("because", evidence.reason()),
-        ("shape", c.verdict.to_string()),
-        ("by distance", c.verdict.reason()),
-        ("distance of the forms", format!("{:.6} mesh units", c.distance)),
-        ("at equal size", format!("{:.6} ({limit})", c.normalized_distance)),
+        ("because", relation.reason()),
+        (
+            "distance of the forms",
+            format!("{:.6} mesh units, {:.6} at equal size", c.distance, c.normalized_distance),
+        ),
+        ("by signatures alone", format!("{:.6}", c.shape_distance.fused)),
         ("scale, second over first", format!("{:.6}", c.scale)),
         ("mirror image", handedness.to_owned()),
         ("triangulation", triangulation.to_owned()),
@@ -139,13 +167,5 @@ fn table(json: &CompareJson) -> String {
         rows.push((name, row.map(|x| format!("{x:>10.6}")).join(" ")));
     }
     rows.push(("translation", c.translation.map(|x| format!("{x:>10.4}")).join(" ")));
-    if let Some(limit) = json.threshold {
-        let held = match (c.normalized_distance > limit, json.failed == Some(true)) {
-            (true, _) => "exceeded",
-            (false, true) => "not exceeded, but the shapes are different",
-            (false, false) => "not exceeded",
-        };
-        rows.push(("threshold", format!("{limit} {held}")));
-    }
-    facts(&rows)
+    rows
 }

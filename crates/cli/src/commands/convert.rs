@@ -5,17 +5,14 @@ use std::process::ExitCode;
 
 use anyhow::{Result, bail};
 use canonform::Surface;
-use mesh::RepairReport;
-use mesh::io::{Content, FileFacts, Format, MeshFile, or_list, writable};
-use rayon::prelude::*;
+use canonform::mesh::RepairReport;
+use canonform::mesh::io::{Content, FileFacts, Format, MeshFile, or_list, writable};
 use serde::Serialize;
-use terminal::Bars;
 
 use crate::args::{Common, ConvertArgs};
-use crate::input::{
-    create_folder_of, expand, file_name, is_single, is_stream, named, outputs, print_repair, read_file,
-};
-use crate::output::{Output, exit_code, facts, report};
+use crate::batch::{Batch, Failure, Order, Results, create_folder_of};
+use crate::input::{file_name, is_single, is_stream, named, print_repair, read_file};
+use crate::output::{Output, exit_code, report, shown};
 
 #[derive(Serialize)]
 struct Json {
@@ -33,12 +30,6 @@ struct Json {
 struct BatchJson {
     meshes: Vec<Json>,
     failed: Vec<Failure>,
-}
-
-#[derive(Serialize)]
-struct Failure {
-    path: PathBuf,
-    error: String,
 }
 
 /// Converts one mesh, or each of several.
@@ -62,7 +53,7 @@ fn one(args: &ConvertArgs, common: &Common) -> Result<ExitCode> {
     let result = write(&args.input, output.path(), args, common)?;
     let json = Json { output: output.name(), ..result };
     notes(&json, args);
-    output.report(common, &json, table)
+    output.report(common, &json, sentence)
 }
 
 /// Reads, repairs and writes a mesh.
@@ -72,13 +63,13 @@ fn write(input: &Path, output: &Path, args: &ConvertArgs, common: &Common) -> Re
     let (mesh, repair) = match args.repair || mesh.faces.is_empty() {
         false => (mesh, None),
         true => {
-            let surface = Surface::new(&mesh, &args.repair_options.options());
-            let repaired = surface.map_err(|fault| named(input, fault))?.repaired;
+            let surface = Surface::new(&mesh, &args.repair_options.options(), &());
+            let repaired = surface.map_err(|fault| named(input, fault.into()))?.repaired;
             (repaired.mesh, Some(repaired.report))
         }
     };
     let (n_vertices, n_faces) = (mesh.n_vertices(), mesh.n_faces());
-    mesh::io::write(output, &mesh)?;
+    canonform::mesh::io::write(output, &mesh)?;
     Ok(Json { input: input.to_owned(), output: output.to_owned(), n_vertices, n_faces, file, repair })
 }
 
@@ -89,13 +80,14 @@ fn notes(json: &Json, args: &ConvertArgs) {
         print_repair(&name, report, &args.repair_options);
     }
     for what in &json.file.ignored {
-        terminal::note(&format!("{name}: ignored {what}"));
+        base::terminal::note(&format!("{name}: ignored {what}"));
     }
-    let is_3mf = mesh::io::extension(&json.output) == "3mf" || args.output_format.as_deref() == Some("3mf");
-    let kept = is_3mf && json.file.unit == Some(mesh::io::LengthUnit::Millimeter);
+    let is_3mf =
+        canonform::mesh::io::extension(&json.output) == "3mf" || args.output_format.as_deref() == Some("3mf");
+    let kept = is_3mf && json.file.unit == Some(canonform::mesh::io::LengthUnit::Millimeter);
     if let Some(unit) = json.file.unit.filter(|_| !kept) {
         let says = if is_3mf { "states millimeter" } else { "does not state it" };
-        terminal::note(&format!(
+        base::terminal::note(&format!(
             "{name}: the unit of its coordinates is the {}, and the output {says}",
             unit.name()
         ));
@@ -104,9 +96,6 @@ fn notes(json: &Json, args: &ConvertArgs) {
 
 /// Converts meshes in parallel. Failures are listed at the end and do not stop the rest.
 fn batch(args: &ConvertArgs, common: &Common) -> Result<ExitCode> {
-    if is_stream(&args.output) {
-        bail!("several meshes cannot go to standard output; name a folder");
-    }
     let formats: Vec<&str> = writable(Content::Mesh).collect();
     let Some(extension) = args.output_format.as_deref().map(|format| format.trim_start_matches('.')) else {
         bail!("pass the format of the meshes in the folder, such as --output-format ply");
@@ -114,42 +103,22 @@ fn batch(args: &ConvertArgs, common: &Common) -> Result<ExitCode> {
     if !formats.contains(&extension.trim_end_matches(".gz")) {
         bail!("meshes cannot be written as {extension}; use {}", or_list(formats));
     }
-    let shapes = expand(std::slice::from_ref(&args.input))?;
-    let outputs = outputs(&shapes, &args.output, extension)?;
-    let bar = Bars::new(common.quiet).bar("meshes", shapes.len());
-    let results: Vec<Result<Json>> = shapes
-        .par_iter()
-        .zip(outputs)
-        .map(|(shape, output)| {
-            let result = create_folder_of(&output).and_then(|()| write(&shape.path, &output, args, common));
-            bar.inc(1);
-            result
-        })
-        .collect();
-    bar.finish_and_clear();
-    let mut json = BatchJson { meshes: Vec::new(), failed: Vec::new() };
-    for (shape, result) in shapes.into_iter().zip(results) {
-        match result {
-            Ok(result) => {
-                notes(&result, args);
-                json.meshes.push(result);
-            }
-            Err(fault) => {
-                let error = crate::remedy::message(&fault);
-                terminal::error(&error);
-                json.failed.push(Failure { path: shape.path, error });
-            }
-        }
-    }
+    let (arguments, folder) = (std::slice::from_ref(&args.input), &args.output);
+    let results = Results { what: "meshes", arguments, folder, extension, order: Order::InParallel };
+    let Batch { done, failed } = results.make(common, |shape, output| {
+        create_folder_of(output)?;
+        write(&shape.path, output, args, common)
+    })?;
+    let meshes: Vec<Json> = done.into_iter().map(|(_, json)| json).collect();
+    meshes.iter().for_each(|json| notes(json, args));
+    let failed = failed.into_iter().map(|failure| Failure { name: None, ..failure }).collect();
+    let json = BatchJson { meshes, failed };
     report(common, &json, |json| {
         format!("{} meshes in {}, {} failed", json.meshes.len(), args.output.display(), json.failed.len())
     })?;
     Ok(exit_code(json.failed.is_empty()))
 }
 
-fn table(json: &Json) -> String {
-    facts(&[
-        ("vertices, faces", format!("{}, {}", json.n_vertices, json.n_faces)),
-        ("wrote", json.output.display().to_string()),
-    ])
+fn sentence(json: &Json) -> String {
+    format!("{} holds {} vertices and {} faces", shown(&json.output), json.n_vertices, json.n_faces)
 }

@@ -6,22 +6,20 @@ use std::process::ExitCode;
 
 use anyhow::{Result, bail};
 use canonform::linalg::Matrix;
+use canonform::mesh::io::{extension, or_list};
 use canonform::nmds::SampleStop;
+use canonform::surface::VertexId;
 use canonform::{
-    Budget, EmbedMethod, EmbedReport, FormOptions, InputMap, InputPoint, SamplesReport, StressKind,
-    StressOptions, Surface, embed_and_measure, embed_and_release, embed_finer,
+    Budget, EmbedMethod, EmbedReport, FormOptions, InputMap, InputPoint, SamplesReport, ShapeFile,
+    StressKind, StressOptions, Surface, embed_and_measure, embed_and_release, embed_finer,
 };
-use mesh::io::{extension, or_list};
-use rayon::prelude::*;
 use serde::Serialize;
-use surface::VertexId;
 
 use crate::args::{Common, EmbedArgs, FORM_FORMATS, LimitArgs};
-use crate::input::{
-    create_folder_of, expand, is_single, is_stream, named, outputs, print_repair, read_both, read_surface,
-};
-use crate::output::{Output, exit_code, facts, fill_npy, report};
-use terminal::Bars;
+use crate::batch::{Batch, Failure, Order, Results, create_folder_of};
+use crate::input::{is_single, is_stream, named, print_repair, read_both, read_surface};
+use crate::output::{Answer, Output, exit_code, fill_npy, report, shown};
+use base::terminal::Bars;
 
 #[derive(Serialize)]
 struct EmbedJson {
@@ -53,20 +51,15 @@ struct ShapeJson {
     result: EmbedJson,
 }
 
-#[derive(Serialize)]
-struct Failure {
-    name: String,
-    path: PathBuf,
-    error: String,
-}
-
 /// Embeds one mesh, or each of several.
 pub(crate) fn embed(args: &EmbedArgs, common: &Common) -> Result<ExitCode> {
-    let options = args.embedding.options_with_target(common, args.target_stress)?;
-    let against = args.stress_against.map(|method| args.embedding.form.marching.of(method));
-    let stress = StressOptions { choice: args.stress, against, seed: common.seed };
-    if args.embedding.form.samples.is_some() && options.method == EmbedMethod::Classical {
-        terminal::note("note: -n has no effect with --method mds, which measures all pairs of vertices");
+    let options = args.form.options(common)?;
+    let against = args.stress_against.map(|method| args.form.settings.distances(method));
+    let stress = StressOptions { choice: args.form.chosen("stress"), against, seed: common.seed };
+    if args.form.settings.given.is_given("samples") && options.method == EmbedMethod::Classical {
+        base::terminal::note(
+            "note: -n has no effect with --method mds, which measures all pairs of vertices",
+        );
     }
     match &args.meshes[..] {
         [mesh] if is_single(&args.meshes) => one(mesh, args, &options, &stress, common),
@@ -87,7 +80,7 @@ fn one(
     let formats = FORM_FORMATS.map(|(extension, _)| extension);
     let output = Output::new(&args.output, "a form", &formats, Some(output_format(args, common)?), common)?;
     check_dim(output.path(), options.dim)?;
-    let surface = read_surface(mesh, &args.embedding.form.repair, common)?;
+    let surface = read_surface(mesh, &args.form.repair, common)?;
     let bars = Bars::with_budget(common.quiet, budget(args, output.path(), 1));
     let (report, points) = match (&args.extend, &args.at[..]) {
         (None, []) => (embed_and_write(mesh, surface, output.path(), options, stress, &bars)?, Vec::new()),
@@ -95,7 +88,7 @@ fn one(
             let embedded = match coarser {
                 None => embed_and_measure(&surface, options, stress, &bars),
                 Some(coarser) => {
-                    let coarser = read_surface(coarser, &args.embedding.form.repair, common)?;
+                    let coarser = read_surface(coarser, &args.form.repair, common)?;
                     canonform::embed(&coarser, options, &bars)
                         .and_then(|form| embed_finer(&surface, &coarser, &form, stress, &bars))
                 }
@@ -113,7 +106,7 @@ fn one(
     warn(&mesh.display().to_string(), &report);
     let reached = target_reached([&report]);
     let json = EmbedJson { report, points, output: output.name() };
-    let done = output.report(common, &json, table)?;
+    let done = output.report(common, &json, |json| answer(json).text(common))?;
     Ok(if reached { done } else { ExitCode::from(1) })
 }
 
@@ -126,7 +119,7 @@ fn target_reached<'a>(reports: impl IntoIterator<Item = &'a EmbedReport>) -> boo
 ///
 /// Under `ulimit -v` they have their share of three quarters of that memory; the rest is for the program itself.
 fn budget(args: &EmbedArgs, output: &Path, n_at_once: usize) -> Budget {
-    let share = || Some(terminal::memory_limit()? / 4 * 3 / n_at_once);
+    let share = || Some(base::terminal::memory_limit()? / 4 * 3 / n_at_once);
     let limits = LimitArgs { memory: args.limits.memory.or_else(share), ..args.limits };
     let folder = output.ancestors().skip(1).find(|folder| folder.is_dir()).unwrap_or(Path::new("."));
     limits.budget().with_spill(folder.to_owned())
@@ -173,46 +166,20 @@ fn batch(
     common: &Common,
 ) -> Result<ExitCode> {
     let extension = output_format(args, common)?;
-    if is_stream(&args.output) {
-        bail!("several forms cannot go to standard output; name a folder with -o");
-    }
     check_dim(Path::new(&format!("form.{extension}")), options.dim)?;
-    let shapes = expand(&args.meshes)?;
-    let outputs = outputs(&shapes, &args.output, extension)?;
-    let bar = Bars::new(common.quiet).bar("shapes", shapes.len());
-    let results: Vec<Result<EmbedJson>> = shapes
-        .par_iter()
-        .zip(outputs)
-        .map(|(shape, output)| {
-            let one = || {
-                let (_, surface) = read_both(&shape.path, &args.embedding.form.repair, common)?;
-                let bars = Bars::with_budget(true, budget(args, &output, rayon::current_num_threads()));
-                let report = embed_and_write(&shape.path, surface, &output, options, stress, &bars)?;
-                Ok(EmbedJson { report, points: Vec::new(), output: output.clone() })
-            };
-            let result = one();
-            bar.inc(1);
-            result
-        })
-        .collect();
-    bar.finish_and_clear();
-
-    let mut json = BatchJson { shapes: Vec::new(), failed: Vec::new() };
-    for (shape, result) in shapes.into_iter().zip(results) {
-        let (name, path) = (shape.name, shape.path);
-        match result {
-            Ok(result) => {
-                print_repair(&name, &result.report.repair, &args.embedding.form.repair);
-                warn(&name, &result.report);
-                json.shapes.push(ShapeJson { name, label: shape.label, path, result });
-            }
-            Err(fault) => {
-                json.failed.push(Failure { name, path, error: crate::remedy::message(&fault) });
-            }
-        }
-    }
-    for failure in &json.failed {
-        terminal::error(&failure.error);
+    let (arguments, folder, order) = (&args.meshes, &args.output, Order::InParallel);
+    let results = Results { what: "forms", arguments, folder, extension, order };
+    let Batch { done, failed } = results.make(common, |shape, output| {
+        let (_, surface) = read_both(&shape.path, &args.form.repair, common)?;
+        let bars = Bars::with_budget(true, budget(args, output, rayon::current_num_threads()));
+        let report = embed_and_write(&shape.path, surface, output, options, stress, &bars)?;
+        Ok(EmbedJson { report, points: Vec::new(), output: output.to_owned() })
+    })?;
+    let mut json = BatchJson { shapes: Vec::new(), failed };
+    for (ShapeFile { name, label, path }, result) in done {
+        print_repair(&name, &result.report.repair, &args.form.repair);
+        warn(&name, &result.report);
+        json.shapes.push(ShapeJson { name, label, path, result });
     }
     report(common, &json, |json| batch_table(json, &args.output))?;
     let reached = target_reached(json.shapes.iter().map(|shape| &shape.result.report));
@@ -244,7 +211,7 @@ fn write(output: &Path, map: &InputMap, coords: &Matrix) -> Result<()> {
         });
     }
     let position = |v: VertexId| [0, 1, 2].map(|axis| coords[(v.index(), axis)]).into();
-    Ok(mesh::io::write(output, &map.with_positions(position))?)
+    Ok(canonform::mesh::io::write(output, &map.with_positions(position))?)
 }
 
 /// Warns about dimensions without a positive eigenvalue, and about a target that was missed.
@@ -268,12 +235,12 @@ fn warn(name: &str, report: &EmbedReport) {
             SampleStop::AllPoints => "all vertices are samples",
             SampleStop::Limit => "the search ended at the most samples it may take",
         };
-        terminal::note(&format!(
+        base::terminal::note(&format!(
             "{name}: the normalised stress is {stress:.4}{how}, above the target {target}: {why}"
         ));
     }
     if report.empty_dimensions > 0 {
-        terminal::note(&format!(
+        base::terminal::note(&format!(
             "{name}: {} of {} dimensions have no positive eigenvalue and are zero; take more samples with -n",
             report.empty_dimensions, report.dim
         ));
@@ -326,33 +293,37 @@ fn method_text(report: &EmbedReport) -> String {
     format!("{}{regularization} on {} distances{sampling}{descent}", report.method, report.geodesic)
 }
 
-fn table(json: &EmbedJson) -> String {
+fn answer(json: &EmbedJson) -> Answer {
     let r = &json.report;
+    let (output, n_vertices) = (shown(&json.output), r.n_vertices);
+    let off = r.stress.as_ref().map(|stress| 100.0 * stress.normalized);
+    let off = off.map_or_else(String::new, |off| {
+        format!("; its distances differ from those along the surface by {off:.1} %")
+    });
     let eigenvalues: Vec<String> = r.eigenvalues.iter().take(r.dim).map(|v| format!("{v:.5e}")).collect();
-    let rows = vec![
-        ("method", method_text(r)),
-        ("vertices, faces", format!("{}, {}", r.n_vertices, r.n_faces)),
-        ("samples, rank", samples_text(r)),
-        ("eigenvalues", eigenvalues.join(" ")),
-        ("negative mass", format!("{:.4}", r.negative_mass)),
-        ("stress", stress_text(r)),
-        ("normalised stress", normalized_text(r)),
-        (
-            "seconds",
-            format!(
-                "{:.3} (distances {:.3}, embedding {:.3}) + stress {:.3}",
-                r.seconds.total, r.seconds.geodesics, r.seconds.embedding, r.seconds.stress
-            ),
-        ),
-        ("wrote", json.output.display().to_string()),
-    ];
     let places = json.points.iter().map(|point| {
         let coordinates: Vec<String> = point.coordinates.iter().map(|x| format!("{x:.6}")).collect();
-        (format!("at {}", point.at), coordinates.join(" "))
+        ("point", format!("{} at {}", point.at, coordinates.join(" ")))
     });
-    let places: Vec<_> = places.collect();
-    let places = places.iter().map(|(name, text)| (name.as_str(), text.clone()));
-    facts(&rows.into_iter().chain(places).collect::<Vec<_>>())
+    let facts = [
+        ("method", method_text(r)),
+        ("normalised stress", normalized_text(r)),
+        ("seconds", format!("{:.3}", r.seconds.total)),
+    ];
+    Answer {
+        sentence: format!("{output} holds the canonical form of {n_vertices} vertices{off}"),
+        facts: facts.into_iter().chain(places).collect(),
+        details: vec![
+            ("vertices, faces", format!("{}, {}", r.n_vertices, r.n_faces)),
+            ("samples, rank", samples_text(r)),
+            ("eigenvalues", eigenvalues.join(" ")),
+            ("negative mass", format!("{:.4}", r.negative_mass)),
+            ("stress", stress_text(r)),
+            ("seconds for distances", format!("{:.3}", r.seconds.geodesics)),
+            ("seconds for embedding", format!("{:.3}", r.seconds.embedding)),
+            ("seconds for stress", format!("{:.3}", r.seconds.stress)),
+        ],
+    }
 }
 
 fn batch_table(json: &BatchJson, folder: &Path) -> String {

@@ -3,14 +3,14 @@
 use std::process::ExitCode;
 
 use anyhow::Result;
+use base::terminal::Bars;
+use canonform::mesh::io::extension;
 use canonform::retrieval::{Evaluation, ScoreIntervals, Scores};
 use canonform::{EvaluateOptions, LabelFile, evaluate_index, evaluate_matrix};
-use mesh::io::extension;
-use terminal::Bars;
 
 use crate::args::{Common, EvaluateArgs};
 use crate::input::named;
-use crate::output::report;
+use crate::output::{Answer, Fact, facts, report};
 
 /// Scores an index or a matrix.
 pub(crate) fn evaluate(args: &EvaluateArgs, common: &Common) -> Result<ExitCode> {
@@ -23,7 +23,7 @@ pub(crate) fn evaluate(args: &EvaluateArgs, common: &Common) -> Result<ExitCode>
         evaluate_index(&args.input, &options, &Bars::new(common.quiet))
     };
     let scores = scores.map_err(|fault| named(&args.input, fault))?;
-    report(common, &scores, table)
+    report(common, &scores, |scores| text(scores, common))
 }
 
 /// One column of scores: names, and values with their intervals.
@@ -53,36 +53,59 @@ fn confusion(title: &str, classes: &[String], counts: &[Vec<usize>]) -> comfy_ta
     table
 }
 
-fn table(scores: &Evaluation) -> String {
-    let votes = |accuracy: f64| format!("{accuracy:.4} (k = {})", scores.knn_k);
+/// The number of queries whose nearest shape is of their class, and the scores that say more.
+fn answer(scores: &Evaluation) -> Answer {
+    let (n, n_classes) = (scores.n, scores.classes.len());
     let plain = column(&scores.mean, scores.intervals.as_ref());
-    let mut table = comfy_table::Table::new();
-    table.load_style(comfy_table::presets::NOTHING);
-    let mut rows: Vec<Vec<String>> =
-        plain.into_iter().map(|(name, value)| vec![name.to_owned(), value]).collect();
-    rows.push(vec!["k-NN accuracy".to_owned(), votes(scores.knn_accuracy)]);
-    if let Some(graph) = &scores.graph {
-        table.set_header(["", "plain", "graph"]);
-        let values = column(&graph.mean, Some(&graph.intervals)).into_iter().map(|(_, value)| value);
-        let values = values.chain([votes(graph.knn_accuracy)]);
-        rows.iter_mut().zip(values).for_each(|(row, value)| row.push(value));
-    }
-    rows.push(vec!["silhouette".to_owned(), format!("{:.4}", scores.silhouette)]);
-    rows.push(vec!["shapes, classes".to_owned(), format!("{}, {}", scores.n, scores.classes.len())]);
-    rows.into_iter().for_each(|row| {
-        table.add_row(row);
-    });
-    let mut text = table.to_string();
+    let value = |name: &str| {
+        plain.iter().find(|(known, _)| *known == name).map_or_else(String::new, |(_, value)| value.clone())
+    };
+    let votes = format!("{:.4} (k = {})", scores.knn_accuracy, scores.knn_k);
+    let facts = vec![
+        (
+            "first tier",
+            format!("{}: of as many shapes as the class has, those of the class", value("first tier")),
+        ),
+        ("mAP", format!("{}: 1 if every shape finds its whole class first", value("mAP"))),
+        ("k-NN accuracy", votes),
+        ("silhouette", format!("{:.4}: from -1 to 1, above 0 if classes are apart", scores.silhouette)),
+    ];
+    let mut details: Vec<Fact> =
+        plain.iter().filter(|(name, _)| !["first tier", "mAP"].contains(name)).cloned().collect();
     if let Some(intervals) = &scores.intervals {
         let percent = 100.0 * intervals.level;
-        text += &format!(
-            "\n  in parentheses: {percent:.0} % intervals of the mean over queries, from {} resamples",
-            intervals.resamples
-        );
+        details.push((
+            "in parentheses",
+            format!(
+                "{percent:.0} % intervals of the mean over queries, from {} resamples",
+                intervals.resamples
+            ),
+        ));
     }
-    text += &format!("\n{}", confusion("true \\ predicted", &scores.classes, &scores.confusion));
+    Answer {
+        sentence: format!(
+            "the nearest neighbour is of the same class for {:.1} % of {n} shapes in {n_classes} classes",
+            100.0 * scores.mean.nn
+        ),
+        facts,
+        details,
+    }
+}
+
+fn text(scores: &Evaluation, common: &Common) -> String {
+    let mut text = answer(scores).text(common);
     if let Some(graph) = &scores.graph {
-        text += &format!("\n{}", confusion("true \\ predicted (graph)", &scores.classes, &graph.confusion));
+        let columns = column(&graph.mean, Some(&graph.intervals));
+        text += "\n  ranked on the graph of nearest neighbours, instead of plain:\n";
+        let votes = ("k-NN accuracy", format!("{:.4} (k = {})", graph.knn_accuracy, scores.knn_k));
+        text += &facts(&[&columns[..], &[votes]].concat());
+    }
+    if common.details {
+        text += &format!("\n{}", confusion("true \\ predicted", &scores.classes, &scores.confusion));
+        if let Some(graph) = &scores.graph {
+            let title = "true \\ predicted (graph)";
+            text += &format!("\n{}", confusion(title, &scores.classes, &graph.confusion));
+        }
     }
     text
 }

@@ -4,13 +4,13 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::{Context, Result};
+use base::terminal::Bars;
 use datasets::{
     ArticulatedOptions, CreatureOptions, DatasetError, Family, LabeledShape, articulated_shape,
     creature_family,
 };
 use rayon::prelude::*;
 use serde::Serialize;
-use terminal::Bars;
 
 use crate::args::{Common, FamilyArg, GenerateArgs};
 use crate::output::report;
@@ -58,7 +58,7 @@ pub(crate) fn generate(args: &GenerateArgs, common: &Common) -> Result<ExitCode>
             .with_context(|| format!("cannot create the folder {}", folder.display()))?;
         for shape in shapes {
             let path = folder.join(format!("{}.{}", shape.name, args.output_format));
-            mesh::io::write(&path, &shape.mesh)?;
+            canonform::mesh::io::write(&path, &shape.mesh)?;
             let (n_vertices, n_faces) = (shape.mesh.n_vertices(), shape.mesh.n_faces());
             json.shapes.push(ShapeJson { name: shape.name, label: shape.label, path, n_vertices, n_faces });
         }

@@ -4,14 +4,16 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use anyhow::Result;
-use budget::Budget;
-use mesh::io::{FileFacts, MeshFile};
-use mesh::{MeshReport, RepairReport, Shortcut, ShortcutKind, cut_shortcuts, is_noisy, repair, validate};
+use canonform::mesh::io::{FileFacts, MeshFile};
+use canonform::mesh::{
+    MeshReport, RepairReport, Shortcut, ShortcutKind, cut_shortcuts, is_noisy, repair, validate,
+};
 use serde::Serialize;
 
 use crate::args::{Common, InfoArgs};
+use crate::batch::Failure;
 use crate::input::{check_dropped, expand, named, read_file};
-use crate::output::{exit_code, facts, print, print_json};
+use crate::output::{Answer, Fact, count, exit_code, print, print_json};
 
 #[derive(Serialize)]
 struct InfoJson {
@@ -33,20 +35,14 @@ struct MeshInfo {
     repair: RepairReport,
 }
 
-#[derive(Serialize)]
-struct Failure {
-    path: PathBuf,
-    error: String,
-}
-
 /// Reports on meshes; unreadable ones are listed and do not stop the others.
 pub(crate) fn info(args: &InfoArgs, common: &Common) -> Result<ExitCode> {
     let mut json = InfoJson { meshes: Vec::new(), failed: Vec::new() };
     for path in expand(&args.meshes)?.into_iter().map(|shape| shape.path) {
         let report = read_file(&path, common).and_then(|MeshFile { mesh, facts, .. }| {
             let repaired =
-                repair(&mesh, &args.repair.options()).map_err(|fault| named(&path, fault.into()))?;
-            let mut shortcuts = cut_shortcuts(&repaired.mesh, &Budget::unlimited())?.shortcuts;
+                repair(&mesh, &args.repair.options(), &()).map_err(|fault| named(&path, fault.into()))?;
+            let mut shortcuts = cut_shortcuts(&repaired.mesh, &())?.shortcuts;
             // The first vertex of the input that was mapped to that of the repaired mesh.
             for shortcut in &mut shortcuts {
                 let place = repaired.input_to_repaired.iter().position(|v| *v == Some(shortcut.vertex));
@@ -59,17 +55,13 @@ pub(crate) fn info(args: &InfoArgs, common: &Common) -> Result<ExitCode> {
             Ok((file, mesh, noisy, shortcuts, repair)) => {
                 let info = MeshInfo { path, file, mesh, noisy, shortcuts, repair };
                 if !common.json {
-                    print(&table(&info))?;
+                    print(&answer(&info).text(common))?;
                 }
                 let name = info.path.display().to_string();
                 check_dropped(&name, info.repair.dropped_area_share, args.repair.max_dropped);
                 json.meshes.push(info);
             }
-            Err(fault) => {
-                let error = crate::remedy::message(&fault);
-                terminal::error(&error);
-                json.failed.push(Failure { path, error });
-            }
+            Err(fault) => json.failed.push(Failure::new(path, &fault)),
         }
     }
     if common.json {
@@ -78,22 +70,42 @@ pub(crate) fn info(args: &InfoArgs, common: &Common) -> Result<ExitCode> {
     Ok(exit_code(json.failed.is_empty()))
 }
 
-fn table(info: &MeshInfo) -> String {
-    let mut rows = facts_of(&info.mesh);
-    let FileFacts { unit, instances, ignored } = &info.file;
-    rows.extend(unit.map(|unit| ("unit of length", unit.name().to_owned())));
-    rows.extend(instances.filter(|n| *n > 1).map(|n| ("put together from", format!("{n} meshes"))));
-    rows.extend(ignored.iter().map(|what| ("ignored", (*what).to_owned())));
-    if info.noisy {
-        rows.push(("noisy", "yes; compare, index and search smooth it first".to_owned()));
-    }
-    rows.extend(info.shortcuts.iter().map(|shortcut| ("probable shortcut", shortcut_in_words(shortcut))));
+fn answer(info: &MeshInfo) -> Answer {
+    let mesh = &info.mesh;
+    let kind = match (mesh.n_components, mesh.n_boundary_edges) {
+        (1, 0) => "a closed surface".to_owned(),
+        (1, _) => format!("a surface with {}", count(mesh.n_boundary_loops, "boundary loop")),
+        (n, _) => format!("a surface in {n} pieces"),
+    };
     let changes = info.repair.summary();
-    if changes.is_empty() {
-        rows.push(("would repair", "nothing".to_owned()));
+    let repair = if changes.is_empty() { "nothing to repair" } else { "it would be repaired" };
+    let (path, n_vertices, n_faces) = (info.path.display(), mesh.n_vertices, mesh.n_faces);
+    let mut facts = Vec::new();
+    if !changes.is_empty() {
+        facts.push(("would repair", changes.join("; ")));
     }
-    rows.extend(changes.into_iter().map(|line| ("would repair", line)));
-    format!("{}\n{}", info.path.display(), facts(&rows))
+    if info.noisy {
+        facts.push(("noisy", "yes; compare, index and search smooth it first".to_owned()));
+    }
+    facts.extend(info.shortcuts.first().map(|first| {
+        let more = info.shortcuts.len() - 1;
+        let more = if more > 0 { format!(" (and {more} more, see --details)") } else { String::new() };
+        ("probable shortcut", shortcut_in_words(first) + &more)
+    }));
+    if !info.file.ignored.is_empty() {
+        facts.push(("ignored", info.file.ignored.join(", ")));
+    }
+    let mut details = facts_of(mesh);
+    let FileFacts { unit, instances, .. } = &info.file;
+    details.extend(unit.map(|unit| ("unit of length", unit.name().to_owned())));
+    details.extend(instances.filter(|n| *n > 1).map(|n| ("put together from", format!("{n} meshes"))));
+    let others = info.shortcuts.iter().skip(1);
+    details.extend(others.map(|shortcut| ("probable shortcut", shortcut_in_words(shortcut))));
+    Answer {
+        sentence: format!("{path}: {kind}, {n_vertices} vertices and {n_faces} faces; {repair}"),
+        facts,
+        details,
+    }
 }
 
 fn shortcut_in_words(shortcut: &Shortcut) -> String {
@@ -106,7 +118,7 @@ fn shortcut_in_words(shortcut: &Shortcut) -> String {
 }
 
 /// General properties, then the defects that were found.
-fn facts_of(mesh: &MeshReport) -> Vec<(&'static str, String)> {
+fn facts_of(mesh: &MeshReport) -> Vec<Fact> {
     let mut rows = vec![
         ("vertices, edges, faces", format!("{}, {}, {}", mesh.n_vertices, mesh.n_edges, mesh.n_faces)),
         ("components", mesh.n_components.to_string()),

@@ -5,15 +5,15 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::{Result, bail};
-use canonform::{CorrespondOptions, MatchedSurface, Surface, VertexMap, correspond};
-use mesh::TriMesh;
-use mesh::io::VertexField;
+use base::terminal::Bars;
+use canonform::mesh::TriMesh;
+use canonform::mesh::io::VertexField;
+use canonform::surface::VertexId;
+use canonform::{CorrespondOptions, MappedSurface, Surface, VertexMap, correspond};
 use npyz::WriterBuilder;
+use report::color::{Rgb, perceptual, place_colors};
+use report::render::{Coloring, RenderOptions, render};
 use serde::Serialize;
-use surface::VertexId;
-use terminal::Bars;
-use view::color::{Rgb, perceptual, place_colors};
-use view::render::{RenderOptions, Surface as Paint, render};
 
 use crate::args::{Common, MAP_FORMATS, MatchArgs};
 use crate::input::{file_name, is_stream, named, print_repair, read_both};
@@ -48,17 +48,17 @@ struct SecondsJson {
 }
 
 /// A mesh as it was read, and prepared.
-struct Side {
+struct MappedFile {
     mesh: TriMesh,
-    matched: MatchedSurface,
+    mapped: MappedSurface,
 }
 
-fn side(path: &Path, args: &MatchArgs, options: &CorrespondOptions, common: &Common) -> Result<Side> {
+fn side(path: &Path, args: &MatchArgs, options: &CorrespondOptions, common: &Common) -> Result<MappedFile> {
     let (mesh, surface) = read_both(path, &args.form.repair, common)?;
     print_repair(&file_name(path), &surface.repaired.report, &args.form.repair);
     let bars = Bars::with_budget(common.quiet, args.limits.budget());
-    let matched = MatchedSurface::new(surface, options, &bars).map_err(|fault| named(path, fault))?;
-    Ok(Side { mesh, matched })
+    let mapped = MappedSurface::new(surface, options, &bars).map_err(|fault| named(path, fault))?;
+    Ok(MappedFile { mesh, mapped })
 }
 
 /// Maps the vertices of one mesh to those of another.
@@ -73,14 +73,16 @@ pub(crate) fn match_meshes(args: &MatchArgs, common: &Common) -> Result<ExitCode
         }
         None => None,
     };
-    let mut options = CorrespondOptions { form: args.form.options(common), ..CorrespondOptions::default() };
-    options.matching.eigenfunctions = args.eigenfunctions;
+    let mut options = CorrespondOptions { form: args.form.options(common)?, ..CorrespondOptions::default() };
+    if let Some(most) = args.form.settings.given.get("eigenfunctions") {
+        options.mapping.eigenfunctions = most;
+    }
     let [a, b] = [side(&args.a, args, &options, common)?, side(&args.b, args, &options, common)?];
     let bars = Bars::with_budget(common.quiet, args.limits.budget());
-    let found = correspond(&a.matched, &b.matched, &options, &bars)?;
+    let found = correspond(&a.mapped, &b.mapped, &options, &bars)?;
     let mut maps = Vec::new();
     let mut target = None;
-    let colors = colors_of(&b.matched);
+    let colors = colors_of(&b.mapped);
     for (i, map) in found.maps.into_iter().enumerate() {
         let path = args.output.as_ref().map(|path| match i {
             0 => path.clone(),
@@ -94,12 +96,12 @@ pub(crate) fn match_meshes(args: &MatchArgs, common: &Common) -> Result<ExitCode
     if let (Some(path), Some("ply")) = (&args.output, format.as_deref()) {
         let path = beside(path, "target");
         let numbers: Vec<f64> = (0..b.mesh.n_vertices()).map(|v| v as f64).collect();
-        mesh::io::write_scalar_field(&path, &b.mesh, &field(&numbers, &colors))?;
+        canonform::mesh::io::write_scalar_field(&path, &b.mesh, &field(&numbers, &colors))?;
         target = Some(path);
     }
-    let surfaces = [a.matched.surface(), b.matched.surface()];
+    let surfaces = [a.mapped.surface(), b.mapped.surface()];
     let load = surfaces.map(|surface| surface.load_seconds + surface.repair_seconds).iter().sum();
-    let prepare = a.matched.seconds + b.matched.seconds;
+    let prepare = a.mapped.seconds + b.mapped.seconds;
     let json = MatchJson {
         a: args.a.clone(),
         b: args.b.clone(),
@@ -124,7 +126,7 @@ fn beside(path: &Path, what: &str) -> PathBuf {
 }
 
 /// A colour for each vertex of the input, by its place in the canonical form; grey for dropped vertices.
-fn colors_of(side: &MatchedSurface) -> Vec<Rgb> {
+fn colors_of(side: &MappedSurface) -> Vec<Rgb> {
     let surface: &Surface = side.surface();
     surface.in_input_order(&place_colors(side.shape.form_points()), perceptual(f64::NAN))
 }
@@ -134,30 +136,31 @@ fn field<'a>(values: &'a [f64], colors: &'a [Rgb]) -> VertexField<'a> {
 }
 
 /// Writes one map. `colors` are those of the vertices of the second mesh.
-fn write(path: &Path, format: &str, map: &VertexMap, [a, b]: [&Side; 2], colors: &[Rgb]) -> Result<()> {
+fn write(path: &Path, format: &str, map: &VertexMap, [a, b]: [&MappedFile; 2], colors: &[Rgb]) -> Result<()> {
     let number = |v: &Option<VertexId>| v.map_or(-1, |v| i64::from(v.0));
     let carried = || -> Vec<Rgb> {
         let color = |v: &Option<VertexId>| v.map_or(perceptual(f64::NAN), |v| colors[v.index()]);
         map.vertices.iter().map(color).collect()
     };
     match format {
-        "csv" => files::write_atomically(path, |out| {
+        "csv" => base::files::write_atomically(path, |out| {
             writeln!(out, "vertex,match")?;
             map.vertices.iter().enumerate().try_for_each(|(x, y)| writeln!(out, "{x},{}", number(y)))
         })?,
         "ply" => {
             let values: Vec<f64> = map.vertices.iter().map(|v| number(v) as f64).collect();
-            mesh::io::write_scalar_field(path, &a.mesh, &field(&values, &carried()))?;
+            canonform::mesh::io::write_scalar_field(path, &a.mesh, &field(&values, &carried()))?;
         }
         "png" => {
             let drawn = |mesh: &TriMesh, colors: Vec<Rgb>| {
-                render(mesh, &RenderOptions { surface: Paint::Colors(colors), ..RenderOptions::default() })
+                let coloring = Coloring::Colors(colors);
+                render(mesh, &RenderOptions { coloring, ..RenderOptions::default() }, &())
             };
-            drawn(&a.mesh, carried()).beside(&drawn(&b.mesh, colors.to_vec())).write_png(path)?;
+            drawn(&a.mesh, carried())?.beside(&drawn(&b.mesh, colors.to_vec())?).write_png(path)?;
         }
         _ => {
             let numbers: Vec<i64> = map.vertices.iter().map(number).collect();
-            files::write_atomically(path, |out| {
+            base::files::write_atomically(path, |out| {
                 let shape = [numbers.len() as u64];
                 let out = BufWriter::new(out);
                 let mut array =

@@ -4,15 +4,15 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use anyhow::Result;
-use budget::Budget;
+use base::Budget;
+use base::terminal::{Bars, with_peak_bytes};
 use canonform::geodesics::{Method, Sampling, Variance};
 use canonform::nmds::{Regularization, RpiAlpha};
+use canonform::surface::VertexId;
 use canonform::{
     DISTANCES_LIMIT, EmbedMethod, FormOptions, MethodFacts, MethodsReport, Observer, Samples, StressOptions,
     Surface, compare_methods,
 };
-use surface::VertexId;
-use terminal::{Bars, with_peak_bytes};
 
 use crate::args::{Common, MethodsArgs};
 use crate::input::{named, read_surface};
@@ -22,14 +22,14 @@ use crate::output::report;
 pub(crate) fn methods(args: &MethodsArgs, common: &Common) -> Result<ExitCode> {
     let stress = StressOptions { choice: args.stress, against: None, seed: common.seed };
     let surface = read_surface(&args.mesh, &args.form.repair, common)?;
-    let options = args.form.options(common);
+    let options = args.form.options(common)?;
     let variants = variants(&options);
     let bars = Bars::with_budget(common.quiet, args.limits.budget());
     announce(&surface, &options, &variants, &bars.budget()).map_err(|fault| named(&args.mesh, fault))?;
     let methods =
         compare_methods(&surface, &options, &variants, &stress, &bars, &|work| with_peak_bytes(work).1)
             .map_err(|fault| named(&args.mesh, fault))?;
-    report(common, &methods, table)
+    report(common, &methods, |methods| table(methods, common))
 }
 
 /// Most samples that `auto` takes.
@@ -46,7 +46,7 @@ fn announce(
     budget: &Budget,
 ) -> Result<(), canonform::Error> {
     let p = surface.mesh().n_vertices();
-    let solver = options.geodesic.prepare_within(&surface.intrinsic, budget)?;
+    let solver = options.geodesic.prepare(surface.intrinsic(), budget)?;
     let start = Instant::now();
     solver.distances(VertexId(0))?;
     let one = start.elapsed().as_secs_f64();
@@ -63,10 +63,10 @@ fn announce(
     let runs: usize = variants.iter().map(|(_, options)| runs(options)).sum();
     let seconds = runs as f64 * one / rayon::current_num_threads() as f64;
     if seconds > WORTH_ANNOUNCING {
-        terminal::note(&format!(
+        base::terminal::note(&format!(
             "about {} s for distances ({runs} runs of {} s), besides the embeddings; -n with fewer samples takes less",
-            view::numbers::seconds(seconds),
-            view::numbers::seconds(one)
+            report::numbers::seconds(seconds),
+            report::numbers::seconds(one)
         ));
     }
     Ok(())
@@ -92,44 +92,72 @@ fn variants(shared: &FormOptions) -> Vec<(&'static str, FormOptions)> {
     all
 }
 
+/// A column: its name, the value of a method as text, and as a number if the lowest one is marked.
+struct Column {
+    name: &'static str,
+    text: fn(&MethodFacts) -> String,
+    marked: Option<fn(&MethodFacts) -> Option<f64>>,
+    is_detail: bool,
+}
+
+const COLUMNS: [Column; 6] = [
+    Column {
+        name: "normalised stress  ",
+        text: |f| f.stress.as_ref().map_or_else(|| "no unit".to_owned(), |s| format!("{:.4}", s.normalized)),
+        marked: Some(|f| f.stress.as_ref().map(|s| s.normalized)),
+        is_detail: false,
+    },
+    Column {
+        name: "seconds  ",
+        text: |f| report::numbers::seconds(f.seconds),
+        marked: Some(|f| Some(f.seconds)),
+        is_detail: false,
+    },
+    Column {
+        name: "memory  ",
+        text: |f| report::numbers::bytes(f.peak_bytes),
+        marked: Some(|f| Some(f.peak_bytes as f64)),
+        is_detail: false,
+    },
+    Column { name: "samples", text: |f| f.n_samples.to_string(), marked: None, is_detail: true },
+    Column {
+        name: "stress  ",
+        text: |f| f.stress.as_ref().map_or_else(String::new, |s| format!("{:.4}", s.value)),
+        marked: Some(|f| f.stress.as_ref().map(|s| s.value)),
+        is_detail: true,
+    },
+    Column {
+        name: "negative mass",
+        text: |f| format!("{:.4}", f.negative_mass),
+        marked: None,
+        is_detail: true,
+    },
+];
+
 /// One row per method, with a star at the lowest value of a column.
-fn table(report: &MethodsReport) -> String {
-    let least = |value: &dyn Fn(&MethodFacts) -> Option<f64>| {
-        let facts = report.methods.iter().filter_map(|m| m.facts.as_ref());
-        facts.filter_map(value).fold(f64::INFINITY, f64::min)
-    };
-    let stress = |f: &MethodFacts| f.stress.as_ref().map(|s| s.value);
-    let seconds = |f: &MethodFacts| Some(f.seconds);
-    let memory = |f: &MethodFacts| Some(f.peak_bytes as f64);
-    let best = [least(&stress), least(&seconds), least(&memory)];
-    let star = |value: Option<f64>, best: f64| if value == Some(best) { " *" } else { "  " };
+fn table(report: &MethodsReport, common: &Common) -> String {
+    let columns: Vec<&Column> = COLUMNS.iter().filter(|c| common.details || !c.is_detail).collect();
+    let facts = || report.methods.iter().filter_map(|m| m.facts.as_ref());
+    let least =
+        |column: &&Column| column.marked.map(|value| facts().filter_map(value).fold(f64::INFINITY, f64::min));
+    let best: Vec<Option<f64>> = columns.iter().map(least).collect();
 
     let mut table = comfy_table::Table::new();
-    table.load_style(comfy_table::presets::NOTHING).set_header([
-        "method",
-        "options",
-        "samples",
-        "stress  ",
-        "normalised",
-        "seconds  ",
-        "memory  ",
-        "negative mass",
-    ]);
+    let header = ["method", "options"].into_iter().chain(columns.iter().map(|column| column.name));
+    table.load_style(comfy_table::presets::NOTHING).set_header(header);
     for method in &report.methods {
-        let mut row = vec![method.method.to_owned(), method.options.to_owned()];
-        match &method.facts {
-            Some(f) => {
-                let value = stress(f).map_or_else(|| "no unit".to_owned(), |s| format!("{s:.4}"));
-                row.extend([
-                    f.n_samples.to_string(),
-                    value + star(stress(f), best[0]),
-                    f.stress.as_ref().map_or_else(String::new, |s| format!("{:.4}", s.normalized)),
-                    view::numbers::seconds(f.seconds) + star(seconds(f), best[1]),
-                    view::numbers::bytes(f.peak_bytes) + star(memory(f), best[2]),
-                    format!("{:.4}", f.negative_mass),
-                ]);
+        let cell = |(column, best): (&&Column, &Option<f64>)| match (&method.facts, column.marked) {
+            (None, _) => String::new(),
+            (Some(facts), None) => (column.text)(facts),
+            (Some(facts), Some(value)) => {
+                let star = if value(facts).is_some() && value(facts) == *best { " *" } else { "  " };
+                (column.text)(facts) + star
             }
-            None => row.extend(["", "failed  ", "", "", "", ""].map(str::to_owned)),
+        };
+        let mut row = vec![method.method.to_owned(), method.options.to_owned()];
+        row.extend(columns.iter().zip(&best).map(cell));
+        if method.facts.is_none() {
+            row[2] = "failed  ".to_owned();
         }
         table.add_row(row);
     }
@@ -142,11 +170,11 @@ fn table(report: &MethodsReport) -> String {
             text += &format!("\n{} {} failed: {error}", method.method, method.options);
         }
     }
-    let kind = report.methods.iter().find_map(|m| m.facts.as_ref()?.stress.as_ref());
+    let kind = facts().find_map(|facts| facts.stress.as_ref());
     let kind = kind.map_or_else(String::new, |s| format!(", {:?}", s.kind).to_lowercase());
     text + &format!(
-        "\n* lowest of its column. {} vertices, {} dimensions; stress against {} distances{kind}; normalised \
-         stress without a unit, see `canonform embed --help`; seconds from the repaired mesh to the embedding.",
+        "\n* lowest of its column. {} vertices, {} dimensions; the normalised stress is the relative error of the {} \
+         distances{kind}; seconds from the repaired mesh to the embedding",
         report.n_embedded, report.dim, report.geodesic
     )
 }

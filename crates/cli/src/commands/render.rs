@@ -5,19 +5,18 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use anyhow::{Result, bail};
+use base::terminal::Bars;
 use canonform::geodesics::{Method, Source};
+use canonform::mesh::io::{MeshFile, ScalarField};
+use canonform::mesh::{RepairReport, TriMesh};
 use canonform::{FormOptions, Surface, embed};
-use mesh::io::{MeshFile, ScalarField};
-use mesh::{RepairReport, TriMesh};
+use report::render::{Coloring, RenderOptions, render, render_with_bar, value_range};
 use serde::Serialize;
-use terminal::Bars;
-use view::render::{RenderOptions, Surface as Paint, render_with_bar, render_within, value_range};
 
 use crate::args::{Common, Place, RenderArgs};
+use crate::batch::{Batch, Failure, Order, Results, create_folder_of};
 use crate::field::read_field;
-use crate::input::{
-    create_folder_of, expand, file_name, is_single, is_stream, named, outputs, print_repair, read_file,
-};
+use crate::input::{file_name, is_single, named, print_repair, read_file};
 use crate::output::{Output, exit_code, facts, report};
 
 #[derive(Serialize)]
@@ -52,12 +51,6 @@ struct BatchJson {
     failed: Vec<Failure>,
 }
 
-#[derive(Serialize)]
-struct Failure {
-    path: PathBuf,
-    error: String,
-}
-
 /// Draws one mesh, or each of several.
 pub(crate) fn draw(args: &RenderArgs, common: &Common) -> Result<ExitCode> {
     if let ([mesh], true) = (&args.meshes[..], is_single(&args.meshes)) {
@@ -72,29 +65,14 @@ pub(crate) fn draw(args: &RenderArgs, common: &Common) -> Result<ExitCode> {
         json.output = output.name();
         return output.report(common, &json, table);
     }
-    if is_stream(&args.output) {
-        bail!("several pictures cannot go to standard output; name a folder with -o");
-    }
-    let shapes = expand(&args.meshes)?;
-    let outputs = outputs(&shapes, &args.output, "png")?;
-    let bar = Bars::new(common.quiet).bar("pictures", shapes.len());
-    let mut json = BatchJson { pictures: Vec::new(), failed: Vec::new() };
-    for (shape, output) in shapes.into_iter().zip(outputs) {
-        let drawn = create_folder_of(&output).and_then(|()| {
-            let bars = Bars::with_budget(true, args.limits.budget());
-            draw_one(&shape.path, &output, args, &bars, common)
-        });
-        match drawn {
-            Ok(picture) => json.pictures.push(picture),
-            Err(fault) => {
-                let error = crate::remedy::message(&fault);
-                terminal::error(&error);
-                json.failed.push(Failure { path: shape.path, error });
-            }
-        }
-        bar.inc(1);
-    }
-    bar.finish_and_clear();
+    let (arguments, folder) = (&args.meshes, &args.output);
+    let results = Results { what: "pictures", arguments, folder, extension: "png", order: Order::OneByOne };
+    let Batch { done, failed } = results.make(common, |shape, output| {
+        create_folder_of(output)?;
+        draw_one(&shape.path, output, args, &Bars::with_budget(true, args.limits.budget()), common)
+    })?;
+    let failed = failed.into_iter().map(|failure| Failure { name: None, ..failure }).collect();
+    let json = BatchJson { pictures: done.into_iter().map(|(_, picture)| picture).collect(), failed };
     report(common, &json, |json| {
         let folder = args.output.display();
         format!("{} pictures in {folder}, {} failed", json.pictures.len(), json.failed.len())
@@ -114,8 +92,8 @@ fn draw_one(
     let MeshFile { mesh, field: carried, .. } = read_file(path, common)?;
     // Points without faces are drawn as the surface through them.
     let is_measured = args.form || !args.distance_from.is_empty() || mesh.faces.is_empty();
-    let surface = is_measured.then(|| Surface::new(&mesh, &args.repair.options())).transpose();
-    let surface = surface.map_err(|fault| named(path, fault))?;
+    let surface = is_measured.then(|| Surface::new(&mesh, &args.repair.options(), &())).transpose();
+    let surface = surface.map_err(|fault| named(path, fault.into()))?;
     if let Some(surface) = &surface {
         print_repair(&file_name(path), &surface.repaired.report, &args.repair);
     }
@@ -128,8 +106,8 @@ fn draw_one(
     let options = options(args, field.as_ref());
     let budget = args.limits.budget();
     let image = match &field {
-        Some(field) if !args.no_bar => render_with_bar(&drawn, &options, &field.name)?,
-        _ => render_within(&drawn, &options, &budget).map_err(|fault| named(path, fault.into()))?,
+        Some(field) if !args.no_bar => render_with_bar(&drawn, &options, &field.name, &budget)?,
+        _ => render(&drawn, &options, &budget).map_err(|fault| named(path, fault.into()))?,
     };
     image.write_png(output)?;
     Ok(RenderJson {
@@ -188,9 +166,9 @@ fn field(
 }
 
 fn distances(args: &RenderArgs, surface: &Surface) -> Result<Vec<f64>, canonform::Error> {
-    let source = |point| Ok(Source::new(&surface.intrinsic, surface.locate(point)?)?);
+    let source = |point| Ok(Source::new(surface.intrinsic(), surface.locate(point)?)?);
     let sources: Result<Vec<_>, canonform::Error> = args.distance_from.iter().map(source).collect();
-    let solver = Method::default().prepare_within(&surface.intrinsic, &args.limits.budget())?;
+    let solver = Method::default().prepare(surface.intrinsic(), &args.limits.budget())?;
     let mut distances = vec![0.0; solver.n_vertices()];
     solver.solve_into(&sources?, f64::INFINITY, &mut distances)?;
     Ok(surface.in_input_order(&distances, f64::INFINITY))
@@ -208,15 +186,15 @@ fn form(surface: &Surface, bars: &Bars, common: &Common) -> Result<TriMesh, cano
 
 fn options(args: &RenderArgs, field: Option<&ScalarField>) -> RenderOptions {
     let usual = RenderOptions::default();
-    let surface = match (field, args.color) {
-        (Some(field), _) => Paint::Scalars {
+    let coloring = match (field, args.color) {
+        (Some(field), _) => Coloring::Scalars {
             values: field.values.clone(),
             range: args.range,
             // N lines separate N + 1 steps.
             isolines: args.isolines + 1,
         },
-        (None, Some(color)) => Paint::Plain(color),
-        (None, None) => usual.surface,
+        (None, Some(color)) => Coloring::Plain(color),
+        (None, None) => usual.coloring,
     };
     let place = args.view.unwrap_or(if args.form { Place::Principal } else { Place::Angles([30.0, 12.0]) });
     let [width, height] = args.size;
@@ -229,7 +207,7 @@ fn options(args: &RenderArgs, field: Option<&ScalarField>) -> RenderOptions {
         height,
         view,
         background: args.background,
-        surface,
+        coloring,
         colors,
         supersampling,
         ..usual

@@ -6,7 +6,7 @@ use std::process::ExitCode;
 use anyhow::Result;
 use canonform::index::SearchMode;
 use canonform::{
-    Budget, ComponentResult, Explain, SearchOptions, SearchRank, SearchReport, ShapeSearch, content_hash,
+    ComponentResult, Explain, Relation, SearchOptions, SearchRank, SearchReport, ShapeSearch, content_hash,
     is_dataset, list_shapes, mesh_path,
 };
 use serde::Serialize;
@@ -22,11 +22,9 @@ struct Answer {
     report: SearchReport,
 }
 
-/// All answers; the only one also by its own keys.
+/// All answers.
 #[derive(Serialize)]
 struct Json<'a> {
-    #[serde(flatten)]
-    only: Option<&'a Answer>,
     queries: &'a [Answer],
     failed: &'a [Failure],
 }
@@ -54,7 +52,7 @@ impl Query {
 
     fn search(&self, index: &ShapeSearch, options: &SearchOptions, common: &Common) -> Result<SearchReport> {
         match self {
-            Self::Indexed(id) => Ok(index.search_shape(id, options)?),
+            Self::Indexed(id) => Ok(index.search(canonform::Query::Id(id), options, &())?),
             Self::Mesh(path) => {
                 let mesh = read_mesh(path, common)?;
                 let search = || {
@@ -63,8 +61,8 @@ impl Query {
                         Explain::No => None,
                         Explain::Kind => Some(content_hash(path)?),
                     };
-                    let (name, budget) = (file_name(path), Budget::unlimited());
-                    index.search_named_within(&mesh, &name, content, options, &budget)
+                    let name = &file_name(path);
+                    index.search(canonform::Query::Mesh { mesh: &mesh, name, content }, options, &())
                 };
                 search().map_err(|fault| named(path, fault))
             }
@@ -80,7 +78,7 @@ fn queries(args: &SearchArgs, index: &ShapeSearch) -> Result<Vec<Query>> {
             queries.extend(list_shapes(given, None)?.into_iter().map(|shape| Query::Mesh(shape.path)));
             continue;
         }
-        let id = given.to_str().filter(|id| !is_there(given) && index.index().contains(id).unwrap_or(false));
+        let id = index.id_of(given).filter(|_| !is_stream(given));
         queries.push(id.map_or_else(|| Query::Mesh(given.clone()), |id| Query::Indexed(id.to_owned())));
     }
     queries.extend(args.id.iter().cloned().map(Query::Indexed));
@@ -110,7 +108,7 @@ pub(crate) fn search(args: &SearchArgs, common: &Common) -> Result<ExitCode> {
                     result.path = mesh_path(&args.index, &result.path).to_string_lossy().into_owned();
                 }
                 if !common.json {
-                    print(&table(query.name(), &report))?;
+                    print(&text(query.name(), &report, args.explain))?;
                 }
                 answers.push(Answer { query: query.name(), report });
             }
@@ -127,7 +125,7 @@ pub(crate) fn search(args: &SearchArgs, common: &Common) -> Result<ExitCode> {
                     return Err(fault);
                 }
                 let error = crate::remedy::message(&fault);
-                terminal::error(&error);
+                base::terminal::error(&error);
                 failed.push(Failure { query: query.name(), error });
             }
         }
@@ -135,24 +133,52 @@ pub(crate) fn search(args: &SearchArgs, common: &Common) -> Result<ExitCode> {
     let nothing = answers.iter().any(|answer| answer.report.n_shapes == 0);
     let code = if failed.is_empty() && nothing { ExitCode::from(1) } else { exit_code(failed.is_empty()) };
     if common.json {
-        let only = answers.first().filter(|_| queries.len() == 1);
-        print_json(&Json { only, queries: &answers, failed: &failed })?;
+        print_json(&Json { queries: &answers, failed: &failed })?;
     }
     Ok(code)
 }
 
-fn table(query: String, report: &SearchReport) -> String {
+/// The shapes found and the class; with `details`, how each shape is related and what the search did.
+fn text(query: String, report: &SearchReport, details: bool) -> String {
+    let mut text = format!("{query}\n{}\n", table(report));
+    text += match report.rank_by {
+        SearchRank::Plain => "",
+        SearchRank::Graph => {
+            "  ordered by rank distance: signatures and neighbours in common; `plain` is the rank by signatures\n"
+        }
+        SearchRank::Part => {
+            "  ordered by part distance: how well the query fits as a part; `share` is its share of the shape\n"
+        }
+    };
+    if details {
+        for result in &report.results {
+            text += &format!("  {}. {} ({})\n", result.rank, explained(&result.relation), result.path);
+        }
+    }
+    text.extend(report.components.iter().map(component));
+    text.extend(report.wholes.iter().map(|whole| format!("  {}\n", explained(&whole.relation))));
+    text += &format!("  class: {}", report.predicted.explanation);
+    if details || report.recall < 1.0 {
+        text += &format!("\n  {} of {} shapes measured", report.measured, report.n_shapes);
+    }
+    if report.recall < 1.0 {
+        text += &format!(", {:.1} % of the nearest found", 100.0 * report.recall);
+    }
+    if details {
+        let seconds = report.seconds.describe + report.seconds.search;
+        text += &format!(", {} aligned, {seconds:.3} s", report.aligned);
+    }
+    text
+}
+
+fn table(report: &SearchReport) -> comfy_table::Table {
     let mut table = comfy_table::Table::new();
     table.load_style(comfy_table::presets::NOTHING);
-    let explained = report.results.iter().any(|result| result.evidence.is_some());
-    let mut head = vec!["", "shape", "class", "distance", "path"];
+    let mut head = vec!["", "shape", "class", "distance", "relation"];
     match report.rank_by {
         SearchRank::Plain => {}
         SearchRank::Graph => drop(head.splice(3..3, ["rank distance", "plain"])),
         SearchRank::Part => drop(head.splice(3..3, ["part distance", "share"])),
-    }
-    if explained {
-        head.push("match");
     }
     table.set_header(head);
     for result in &report.results {
@@ -161,7 +187,7 @@ fn table(query: String, report: &SearchReport) -> String {
             result.id.clone(),
             result.label.clone(),
             format!("{:.4}", result.distance),
-            result.path.clone(),
+            result.relation.in_brief(),
         ];
         if let Some(found) = result.on_graph {
             let plain = found.plain_rank.map_or_else(|| "-".to_owned(), |rank| rank.to_string());
@@ -171,44 +197,21 @@ fn table(query: String, report: &SearchReport) -> String {
             let share = format!("{:.0} %", 100.0 * found.part_share);
             row.splice(3..3, [format!("{:.4}", found.part_distance), share]);
         }
-        if let Some(evidence) = &result.evidence {
-            row.push(format!("{evidence} ({:.2}); {}", evidence.confidence, result.verdict));
-        }
         table.add_row(row);
     }
-    let exactness = if report.recall < 1.0 {
-        format!(", {:.1} % of the nearest found", 100.0 * report.recall)
-    } else {
-        String::new()
-    };
-    let order = match report.rank_by {
-        SearchRank::Plain => "",
-        SearchRank::Graph => {
-            "\n  ordered by rank distance: signatures and neighbours in common; `plain` is the rank by signatures"
-        }
-        SearchRank::Part => {
-            "\n  ordered by part distance: how well the query fits as a part; `share` is its share of the shape"
-        }
-    };
-    let mut components: String = report.components.iter().map(component).collect();
-    for evidence in report.wholes.iter().filter_map(|whole| whole.evidence.as_ref()) {
-        components += &format!("  {evidence} ({:.2})\n", evidence.confidence);
-    }
-    format!(
-        "{query}\n{table}{order}\n{components}  class: {}\n  {} of {} shapes measured{exactness}, {} aligned, {:.3} s",
-        report.predicted.explanation,
-        report.measured,
-        report.n_shapes,
-        report.aligned,
-        report.seconds.describe + report.seconds.search
-    )
+    table
+}
+
+/// A relation in a sentence, how certain it is, and why.
+fn explained(relation: &Relation) -> String {
+    format!("{relation}, {:.0} % certain: {}", 100.0 * relation.confidence, relation.reason())
 }
 
 /// What a component of the query is, as a line.
 fn component(found: &ComponentResult) -> String {
     let copies =
         if found.copies == 1 { "1 component".to_owned() } else { format!("{} components", found.copies) };
-    let evidence = found.nearest.as_ref().and_then(|nearest| nearest.evidence.as_ref());
-    let words = evidence.map_or_else(|| "nothing found".to_owned(), |e| format!("{e} ({:.2})", e.confidence));
+    let nearest = found.nearest.as_ref();
+    let words = nearest.map_or_else(|| "nothing found".to_owned(), |found| explained(&found.relation));
     format!("  {copies} of {} vertices: {words}\n", found.n_vertices)
 }

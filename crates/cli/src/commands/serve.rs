@@ -11,18 +11,18 @@ use crate::args::ServeArgs;
 pub(crate) fn serve(args: &ServeArgs) -> Result<ExitCode> {
     let server = Server::bind(&args.index, args.options())?;
     let stop = server.stop_handle();
-    terminal::on_interruption(move || {
+    base::terminal::on_interruption(move || {
         stop.stop();
-        terminal::note("finishing the requests in progress; interrupt again to stop at once");
+        base::terminal::note("finishing the requests in progress; interrupt again to stop at once");
     });
     let address = server.address();
     if !address.ip().is_loopback() {
-        terminal::note(&format!(
+        base::terminal::note(&format!(
             "warning: {address} is open to other machines: they can search, and see the index and its meshes"
         ));
     }
     let (n_shapes, index) = (server.n_shapes(), args.index.display());
-    terminal::note(&format!("listening on http://{address} ({n_shapes} shapes in {index})"));
+    base::terminal::note(&format!("listening on http://{address} ({n_shapes} shapes in {index})"));
     server.run()?;
     Ok(ExitCode::SUCCESS)
 }

@@ -5,7 +5,7 @@ use std::os::unix::fs::PermissionsExt;
 use std::path::Path;
 use std::process::{Command, Output};
 
-use mesh::shapes;
+use canonform::mesh::shapes;
 
 use crate::support::{Workplace, program};
 

@@ -2,7 +2,8 @@
 
 use std::process::Stdio;
 
-use mesh::shapes;
+use canonform::mesh::shapes;
+use canonform::settings::{OptionGroup, SCHEMA};
 use serde_json::Value;
 
 use crate::support::{Outcome, Workplace, assert_keys, broken_ring, one_object, program, read_npy, ring};
@@ -12,35 +13,35 @@ fn info_reports_what_a_mesh_contains() {
     let place = Workplace::new();
     place.add("ring.off", &ring());
     place.add("broken.ply", &broken_ring());
-    let text = place.done(&["info", "ring.off"]).out;
+    let text = place.done("info ring.off --details").out;
     assert!(text.contains("160, 480, 320") && text.contains("genus") && text.contains("nothing"), "{text}");
 
-    let json = place.json(&["info", "ring.off", "broken.ply"]);
+    let json = place.json("info ring.off broken.ply");
     let meshes = json["meshes"].as_array().unwrap();
     assert_eq!(meshes.len(), 2);
     assert_eq!(meshes[0]["mesh"]["genus"], 1);
     assert_eq!(meshes[1]["mesh"]["n_components"], 2);
     assert_eq!(meshes[1]["repair"]["dropped_components"], 1);
     // A folder means all meshes in it.
-    assert_eq!(place.json(&["info", "."])["meshes"].as_array().unwrap().len(), 2);
+    assert_eq!(place.json("info .")["meshes"].as_array().unwrap().len(), 2);
 }
 
 #[test]
 fn info_names_places_where_distant_parts_are_joined() {
     let place = Workplace::new();
-    let mut welded = mesh::shapes::icosphere(3);
+    let mut welded = canonform::mesh::shapes::icosphere(3);
     let highest = (0..welded.n_vertices())
         .max_by(|a, b| (welded.positions[*a].z).total_cmp(&welded.positions[*b].z))
-        .map(surface::VertexId::from);
+        .map(canonform::surface::VertexId::from);
     let lowest = (0..welded.n_vertices())
         .min_by(|a, b| (welded.positions[*a].z).total_cmp(&welded.positions[*b].z))
-        .map(surface::VertexId::from);
+        .map(canonform::surface::VertexId::from);
     let (top, bottom) = highest.zip(lowest).unwrap();
     welded.faces.iter_mut().flatten().filter(|v| **v == bottom).for_each(|v| *v = top);
     place.add("welded.off", &welded);
-    let text = place.done(&["info", "welded.off"]).out;
+    let text = place.done("info welded.off").out;
     assert!(text.contains("probable shortcut") && text.contains(&format!("vertex {}", top.0)), "{text}");
-    let json = place.json(&["info", "welded.off"]);
+    let json = place.json("info welded.off");
     let shortcuts = json["meshes"][0]["shortcuts"].as_array().unwrap();
     assert_eq!((shortcuts.len(), shortcuts[0]["kind"].as_str()), (1, Some("pinch")));
     assert!(shortcuts[0]["detour"].as_f64().unwrap() > 2.5, "{shortcuts:?}");
@@ -51,7 +52,7 @@ fn info_names_places_where_distant_parts_are_joined() {
 fn geodesic_keeps_the_contract_of_its_json() {
     let place = Workplace::new();
     place.add("broken.off", &broken_ring());
-    let json = place.json(&["geodesic", "broken.off", "--source", "0,7", "-o", "d.npy"]);
+    let json = place.json("geodesic broken.off --source 0,7 -o d.npy");
     assert_keys(&json, &["method", "n_vertices", "sources", "seconds", "unreached", "repair"]);
     assert_keys(&json["seconds"], &["load", "setup", "per_source"]);
     assert_eq!(json["method"], "fast-marching");
@@ -80,7 +81,7 @@ fn geodesic_accepts_all_methods() {
 fn embed_keeps_the_contract_of_its_json() {
     let place = Workplace::new();
     place.add("ring.off", &ring());
-    let json = place.json(&["embed", "ring.off", "-n", "20", "--rank", "9", "-o", "form.ply"]);
+    let json = place.json("embed ring.off -n 20 --rank 9 -o form.ply");
     assert_keys(
         &json,
         &[
@@ -108,7 +109,7 @@ fn embed_keeps_the_contract_of_its_json() {
     let value = json["stress"]["value"].as_f64().unwrap();
     assert!(low <= value && value <= high);
 
-    let text = place.done(&["embed", "ring.off", "-n", "20", "-o", "form.ply"]).out;
+    let text = place.done("embed ring.off -n 20 -o form.ply").out;
     assert!(text.contains("stress") && text.contains("form.ply"), "{text}");
 }
 
@@ -131,7 +132,7 @@ fn the_stress_of_a_large_mesh_comes_from_a_few_rows() {
         let value = number(&exact, "value");
         assert!(low <= value && value <= high, "{options:?}: {low} to {high}, not {value}");
     }
-    let text = place.done(&["embed", "ball.off", "-n", "20", "-o", "form.npy"]).out;
+    let text = place.done("embed ball.off -n 20 -o form.npy --details").out;
     assert!(text.contains("95 %") && text.contains("rows)"), "{text}");
 }
 
@@ -180,17 +181,7 @@ fn a_target_that_is_missed_has_an_exit_code_of_its_own() {
         missed.err
     );
     assert_eq!(place.names(), ["form.npy", "ring.off"], "the form is written");
-    let outcome = place.run(&[
-        "embed",
-        "ring.off",
-        "ring.off",
-        "-n",
-        "auto",
-        "--target-stress",
-        "0.001",
-        "-o",
-        "forms",
-    ]);
+    let outcome = place.run("embed ring.off ring.off -n auto --target-stress 0.001 -o forms");
     assert_eq!(outcome.code, 2, "two meshes of one name");
     place.add("other.off", &ring());
     let both = ["embed", "ring.off", "other.off", "-n", "auto", "--target-stress", "0.001", "-o", "forms"];
@@ -211,131 +202,88 @@ fn points_and_finer_meshes_are_placed_in_a_form() {
     for (name, level) in [("coarse.off", 2), ("fine.off", 3)] {
         place.add(name, &shapes::icosphere(level));
     }
-    let coarse = place.json(&["embed", "coarse.off", "-o", "coarse.npy", "--at", "7,f8@2:1:1"]);
+    let coarse = place.json("embed coarse.off -o coarse.npy --at 7,f8@2:1:1");
     let (_, rows) = read_npy(&place.path("coarse.npy"));
     let at: Vec<f64> =
         coarse["points"][0]["coordinates"].as_array().unwrap().iter().flat_map(Value::as_f64).collect();
     assert_eq!((&coarse["points"][0]["at"], &coarse["points"][1]["at"]), (&7.into(), &"f8@2:1:1".into()));
     assert!(at.iter().zip(&rows[21..24]).all(|(a, b)| (a - b).abs() < 1e-9), "{at:?}");
-    let fine = place.json(&["embed", "fine.off", "--extend", "coarse.off", "-o", "fine.npy"]);
+    let fine = place.json("embed fine.off --extend coarse.off -o fine.npy");
     let (shape, finer) = read_npy(&place.path("fine.npy"));
     assert_eq!((shape, &fine["n_samples"]), (vec![642, 3], &coarse["n_samples"]));
     let gap = rows.iter().zip(&finer).fold(0.0f64, |gap, (a, b)| gap.max((a - b).abs()));
     assert!(gap < 0.1, "{gap}");
-    place.refused(&["embed", "coarse.off", "-o", "f.npy", "--at", "9000"], &["vertex 9000", "162 vertices"]);
-    place.refused(&["embed", "coarse.off", "fine.off", "-o", "forms", "--at", "1"], &["--at", "one mesh"]);
-    place.refused(
-        &["embed", "fine.off", "--extend", "coarse.off", "--method", "landmark", "-o", "f.npy"],
-        &["landmark", "nmds can"],
-    );
+    place.refused("embed coarse.off -o f.npy --at 9000", &["vertex 9000", "162 vertices"]);
+    place.refused("embed coarse.off fine.off -o forms --at 1", &["--at", "one mesh"]);
+    place.refused("embed fine.off --extend coarse.off --method landmark -o f.npy", &["landmark", "nmds can"]);
 }
 
 #[test]
-fn embed_accepts_all_methods() {
+fn embed_accepts_all_methods_and_samplings() {
     let place = Workplace::new();
     place.add("ring.off", &ring());
-    let embed = |options: &str| {
-        let options: Vec<&str> = options.split(' ').collect();
-        place.json(&[&["embed", "ring.off", "-n", "30", "-o", "form.npy"], &options[..]].concat())
-    };
-    let stress = |json: &serde_json::Value| json["stress"]["value"].as_f64().unwrap();
-    let optimum = stress(&embed("--method mds"));
-    for (options, regularization) in [
-        ("--method nmds --regularization low-rank --rank 9", "low-rank"),
-        ("--method nmds --regularization rpi", "rpi"),
-        ("--method nmds --regularization rpi --alpha paper", "rpi"),
-        ("--method nmds --regularization none", "none"),
-        ("--method nmds --regularization cur --rank 9", "cur"),
+    let embed = |options: &str| place.json(format!("embed ring.off -n 30 -o form.npy {options}"));
+    for (options, expected) in [
+        ("--method nmds --regularization low-rank --rank 9", ["nmds", "low-rank", "9"]),
+        ("--method nmds --regularization rpi --alpha paper", ["nmds", "rpi", ""]),
+        ("--method nmds --regularization none", ["nmds", "none", ""]),
+        ("--method nmds --regularization cur --rank 9", ["nmds", "cur", ""]),
+        ("--method landmark", ["landmark", "", "3"]),
+        ("--method spectral --eigenvectors 60 --mu inf", ["spectral", "", "30"]),
+        ("--method fmds", ["fmds", "", "30"]),
+        ("--method mds", ["mds", "", ""]),
+        ("--method smacof --rank 9 --iterations 4 --tolerance 0", ["smacof", "low-rank", "9"]),
     ] {
         let json = embed(options);
-        assert_eq!((&json["method"], &json["regularization"]), (&"nmds".into(), &regularization.into()));
-        assert!(stress(&json) >= optimum * (1.0 - 1e-12), "{options}");
+        let text = |key: &str| json[key].as_str().map_or_else(|| json[key].to_string(), str::to_owned);
+        for (key, expected) in ["method", "regularization", "rank"].into_iter().zip(expected) {
+            assert!(expected.is_empty() || text(key) == expected, "{options}: {key}: {}", text(key));
+        }
+        if let Some(descent) = json["descent"].as_object() {
+            assert_eq!((&descent["iterations"], &descent["stop"]), (&4.into(), &"iteration-limit".into()));
+        }
     }
-    let landmark = embed("--method landmark");
-    assert_eq!((&landmark["method"], &landmark["rank"]), (&"landmark".into(), &3.into()));
-    assert!(landmark["regularization"].is_null() && stress(&landmark) >= optimum * (1.0 - 1e-12));
-
-    for (options, method) in [
-        ("--method spectral", "spectral"),
-        ("--method spectral --eigenvectors 60 --mu inf", "spectral"),
-        ("--method fmds", "fmds"),
-    ] {
-        let json = embed(options);
-        assert_eq!((&json["method"], &json["rank"]), (&method.into(), &30.into()));
-        let found = stress(&json);
-        assert!(found >= optimum * (1.0 - 1e-12) && found < 1.2 * optimum, "{options}: {found} {optimum}");
-    }
-
-    let smacof = embed("--method smacof --rank 9 --iterations 4 --tolerance 0");
-    assert_eq!((&smacof["method"], &smacof["rank"]), (&"smacof".into(), &9.into()));
-    let descent = &smacof["descent"];
-    assert_eq!((&descent["iterations"], &descent["stop"]), (&4.into(), &"iteration-limit".into()));
-    assert_eq!(descent["normalized_stress"].as_array().unwrap().len(), 5);
-
     let eigenvalue = |sigma: &str| embed(&format!("--method kpca --sigma {sigma}"))["eigenvalues"][0].clone();
     let [mean, median, max, value] = ["mean", "median", "max", "0.7"].map(eigenvalue);
     assert!(mean != median && median != max && max != value);
-}
-
-#[test]
-fn embed_accepts_all_samplings() {
-    let place = Workplace::new();
-    place.add("ring.off", &ring());
-    let samples = |options: &[&str]| {
-        let arguments = [&["embed", "ring.off", "-n", "12", "-o", "form.npy"], options].concat();
-        let json = place.json(&arguments);
-        (json["sampling"].as_str().unwrap().to_owned(), json["samples"].clone())
-    };
     for sampling in ["farthest", "random", "min-variance"] {
-        let [(name, one), (_, same), (_, other)] =
-            ["1", "1", "2"].map(|seed| samples(&["--sampling", sampling, "--seed", seed]));
-        assert_eq!((name.as_str(), &one), (sampling, &same));
-        assert_eq!(one == other, sampling == "farthest", "{sampling}");
-        let (_, from) = samples(&["--sampling", sampling, "--first-sample", "11"]);
-        assert_eq!((&from[0], from.as_array().unwrap().len()), (&11.into(), 12), "{sampling}");
+        let [one, same, other] = ["1", "1", "2"].map(|seed| {
+            let json = embed(&format!("--sampling {sampling} --seed {seed}"));
+            assert_eq!(json["sampling"], sampling);
+            json["samples"].clone()
+        });
+        assert!(one == same && (one == other) == (sampling == "farthest"), "{sampling}");
+        let from = embed(&format!("--sampling {sampling} --first-sample 11"))["samples"].clone();
+        assert_eq!((&from[0], from.as_array().unwrap().len()), (&11.into(), 30), "{sampling}");
     }
 }
 
 #[test]
-fn compare_reports_the_kind_of_match_and_checks_a_threshold() {
+fn compare_reports_a_relation_and_checks_a_threshold() {
     let place = Workplace::new();
     place.add("ring.off", &ring());
-    place.add("ball.off", &mesh::shapes::icosphere(3));
+    place.add("ball.off", &canonform::mesh::shapes::icosphere(3));
     let same = place.json(&["compare", "ring.off", "ring.off"]);
-    assert_keys(
-        &same,
-        &[
-            "distance",
-            "normalized_distance",
-            "rotation",
-            "translation",
-            "reflected",
-            "kind",
-            "same_below",
-            "verdict",
-            "combined_distance",
-            "fused_distance",
-        ],
-    );
-    assert_eq!(same["kind"], "same");
+    let keys = "relation distance normalized_distance rotation translation reflected same_below scale \
+                combined_distance fused_distance triangulation residual";
+    assert_keys(&same, &keys.split_whitespace().collect::<Vec<_>>());
+    assert_eq!(same["relation"]["kind"], "identical-file");
     assert!(same["normalized_distance"].as_f64().unwrap() < 1e-9);
     let apart = place.json(&["compare", "ring.off", "ball.off"]);
-    assert_eq!(apart["kind"], "different");
-    // The kind of match does not depend on the options.
+    assert_eq!(apart["relation"]["kind"], "different");
+    // The relation does not depend on the options.
     for options in [["-n", "20"], ["--method", "kpca"], ["--distance", "hausdorff95"], ["--geodesic", "bfs"]]
     {
         let again = place.json(&[&["compare", "ring.off", "ball.off"], &options[..]].concat());
-        assert_eq!(
-            (&again["kind"], &again["combined_distance"]),
-            (&apart["kind"], &apart["combined_distance"])
-        );
+        assert_eq!(again["combined_distance"], apart["combined_distance"], "{options:?}");
+        assert_eq!(again["relation"]["kind"], apart["relation"]["kind"], "{options:?}");
     }
 
-    assert_eq!(place.run(&["compare", "ring.off", "ring.off", "--threshold", "0.01"]).code, 0);
-    let apart = place.run(&["compare", "ring.off", "ball.off", "--threshold", "0.01"]);
+    assert_eq!(place.run("compare ring.off ring.off --threshold 0.01").code, 0);
+    let apart = place.run("compare ring.off ball.off --threshold 0.01");
     assert_eq!(apart.code, 1);
     assert!(apart.out.contains("exceeded"), "{}", apart.out);
-    let apart = place.run(&["compare", "ring.off", "ball.off", "--threshold", "0.01", "--json"]);
+    let apart = place.run("compare ring.off ball.off --threshold 0.01 --json");
     let json = one_object(&apart.out);
     assert_eq!((apart.code, &json["threshold"], &json["failed"]), (1, &0.01.into(), &true.into()));
 }
@@ -344,9 +292,9 @@ fn compare_reports_the_kind_of_match_and_checks_a_threshold() {
 fn text_json_and_exit_code_of_a_comparison_agree() {
     let place = Workplace::new();
     place.add("ring.off", &ring());
-    place.add("ball.off", &mesh::shapes::icosphere(3));
+    place.add("ball.off", &canonform::mesh::shapes::icosphere(3));
     for (other, alike) in [("ring.off", true), ("ball.off", false)] {
-        // The forms are always nearer than this: only the verdict can fail.
+        // The forms are always nearer than this: only the relation can fail.
         for option in [&["--threshold", "99"][..], &["--exit-code"], &["--exit-code=same-class"], &[]] {
             let asked = [&["compare", "ring.off", other], option].concat();
             let [text, json] =
@@ -354,13 +302,17 @@ fn text_json_and_exit_code_of_a_comparison_agree() {
             let expected = i32::from(!alike && !option.is_empty());
             assert_eq!((text.code, json.code), (expected, expected), "{asked:?}: {}", text.out);
             let json = one_object(&json.out);
-            let verdict = &json["verdict"];
-            assert_eq!(verdict["kind"], if alike { "same-shape" } else { "different" });
-            assert_eq!(json["kind"] == "different", !alike);
-            assert_eq!(verdict["distance"], json["combined_distance"]);
-            for words in [&verdict["text"], &verdict["reason"]] {
-                assert!(text.out.contains(words.as_str().unwrap()), "{}", text.out);
-            }
+            let relation = &json["relation"];
+            assert_eq!(relation["kind"], if alike { "identical-file" } else { "different" });
+            assert_eq!(relation["because"]["combined_distance"], json["combined_distance"]);
+            assert!(
+                text.out.starts_with(&format!("{}.\n", relation["text"].as_str().unwrap())),
+                "{}",
+                text.out
+            );
+            assert_eq!(text.out.trim_end().lines().count(), 5, "{}", text.out);
+            let details = place.run(&[&asked[..], &["--details"]].concat()).out;
+            assert!(details.contains(relation["because"]["text"].as_str().unwrap()), "{details}");
             match option.first() {
                 Some(&"--threshold") => {
                     assert_eq!(json["failed"], !alike);
@@ -371,11 +323,11 @@ fn text_json_and_exit_code_of_a_comparison_agree() {
         }
         let [there, back] =
             [["compare", "ring.off", other], ["compare", other, "ring.off"]].map(|asked| place.json(&asked));
-        assert_eq!(there["verdict"]["kind"], back["verdict"]["kind"]);
-        let distance = |json: &serde_json::Value| json["verdict"]["distance"].as_f64().unwrap();
+        assert_eq!(there["relation"]["kind"], back["relation"]["kind"]);
+        let distance = |json: &serde_json::Value| json["combined_distance"].as_f64().unwrap();
         assert!((distance(&there) - distance(&back)).abs() <= 0.01 * distance(&there));
     }
-    place.refused(&["compare", "ring.off", "ring.off", "--exit-code=maybe"], &["same-shape", "same-class"]);
+    place.refused("compare ring.off ring.off --exit-code=maybe", &["same-shape", "same-class"]);
 }
 
 #[test]
@@ -386,13 +338,13 @@ fn copies_are_told_from_other_shapes_and_named_by_their_files() {
     let mut inches = ring();
     inches.positions.iter_mut().for_each(|p| *p = nalgebra::Point3::new(p.y, -p.x, p.z) / 25.4);
     place.add("inches.ply", &inches);
-    place.add("fine.off", &mesh::shapes::subdivide(&ring()));
-    let mut plate = [ring(), mesh::shapes::icosphere(3), ring(), ring()];
+    place.add("fine.off", &canonform::mesh::shapes::subdivide(&ring()));
+    let mut plate = [ring(), canonform::mesh::shapes::icosphere(3), ring(), ring()];
     for (i, mesh) in plate.iter_mut().enumerate() {
         mesh.positions.iter_mut().for_each(|p| p.x += 40.0 * i as f64);
     }
-    place.add("plate.stl", &mesh::shapes::disjoint(&plate));
-    place.add("ball.off", &mesh::shapes::icosphere(3));
+    place.add("plate.stl", &canonform::mesh::shapes::disjoint(&plate));
+    place.add("ball.off", &canonform::mesh::shapes::icosphere(3));
     for (a, b, kind, text) in [
         ("ring.off", "copy.off", "identical-file", "copy.off is the same file as ring.off"),
         ("inches.ply", "ring.off", "scaled", "scaled by 25.4 (inches to millimetres)"),
@@ -407,19 +359,19 @@ fn copies_are_told_from_other_shapes_and_named_by_their_files() {
         ("ring.off", "ball.off", "different", "ball.off is another kind of shape than ring.off"),
     ] {
         let asked = ["compare", a, b, "--max-dropped", "1"];
-        let found = place.json(&asked)["evidence"].clone();
+        let found = place.json(&asked)["relation"].clone();
         assert_eq!(found["kind"], kind, "{found}");
         assert!(found["text"].as_str().unwrap().contains(text), "{found}");
-        let told = place.done(&asked).out;
-        for key in ["text", "reason"] {
-            assert!(told.contains(found[key].as_str().unwrap()), "{told}");
+        let told = place.done(&[&asked[..], &["--details"]].concat()).out;
+        for words in [&found["text"], &found["because"]["text"]] {
+            assert!(told.contains(words.as_str().unwrap()), "{told}");
         }
     }
-    let changed = place.json(&["compare", "ring.off", "inches.ply"])["evidence"].clone();
+    let changed = place.json(&["compare", "ring.off", "inches.ply"])["relation"]["because"].clone();
     assert_eq!(changed["units"], "millimetres to inches");
     std::fs::create_dir(place.path("other")).unwrap();
     std::fs::copy(place.path("ring.off"), place.path("other/ring.off")).unwrap();
-    let found = place.json(&["compare", "ring.off", "other/ring.off"])["evidence"].clone();
+    let found = place.json(&["compare", "ring.off", "other/ring.off"])["relation"].clone();
     assert_eq!(found["text"], "other/ring.off is the same file as ring.off");
 }
 
@@ -438,47 +390,41 @@ fn completions_cover_every_shell() {
 #[test]
 fn help_mentions_every_option() {
     let place = Workplace::new();
-    let common = ["--json", "--threads", "--seed"];
-    let embedding = "--method nmds mds landmark kpca smacof -n auto --rank --dim --sampling farthest random \
-                     min-variance --first-sample --regularization low-rank rpi none cur --alpha paper --sigma \
-                     median --iterations --tolerance --geodesic";
-    let embedding: Vec<&str> = embedding.split_whitespace().collect();
-    let geodesic = [
-        "--source",
-        "--nearest",
-        "--max-distance",
-        "--path-to",
-        "--all-pairs",
-        "--memory",
-        "17-42@0.3",
-        "f8@2:1:1",
-        "--method",
-        "--update",
-        "-o",
-        "fast-marching",
-        "dijkstra",
-        "bfs",
-        "planar",
-    ];
-    let render = "-o --size --view principal --up --background transparent --color --field --row --distance-from \
-                  --isolines --range --no-bar --form .npy .csv";
-    let pages: [(&str, Vec<&str>); 6] = [
-        ("render", render.split_whitespace().collect()),
-        ("info", vec!["MESH"]),
-        ("geodesic", geodesic.to_vec()),
-        ("embed", [&embedding[..], &["-o", "--stress", "--stress-against"]].concat()),
-        ("compare", [&embedding[..], &["--threshold", "--exit-code", "same-class"]].concat()),
-        ("completions", vec!["bash", "zsh", "fish"]),
-    ];
-    let front = place.done(&["--help"]).out;
-    for (command, words) in pages {
-        assert!(front.contains(command), "no `{command}` in {front}");
-        let page = place.done(&[command, "--help"]).out;
-        for word in words.iter().chain(&common) {
-            assert!(page.contains(word), "{command} --help does not mention {word}");
+    let front = place.done("--help").out;
+    let embedding = [OptionGroup::Method, OptionGroup::Form, OptionGroup::Marching, OptionGroup::Repair];
+    let of = |more: &[OptionGroup]| [&embedding[..], more].concat();
+    for (command, groups, words) in [
+        (
+            "geodesic",
+            vec![OptionGroup::Marching, OptionGroup::Repair],
+            "--source --nearest --max-distance \
+            --path-to --all-pairs --memory 17-42@0.3 f8@2:1:1 --method -o fast-marching dijkstra bfs",
+        ),
+        ("embed", of(&[OptionGroup::Target, OptionGroup::Stress]), "-o -n --stress-against --timeout"),
+        ("compare", of(&[OptionGroup::Comparison]), "--threshold --exit-code same-class"),
+        (
+            "render",
+            vec![OptionGroup::Repair],
+            "-o --size --view principal --up --background transparent \
+            --color --field --row --distance-from --isolines --range --no-bar --form .npy .csv",
+        ),
+        ("index build", of(&[OptionGroup::Description]), "--labels --prune --shard --max-vertices"),
+        ("match", vec![OptionGroup::Form, OptionGroup::Maps], "-o .npy .csv .ply .png"),
+        ("completions", vec![], "bash zsh fish"),
+    ] {
+        assert!(front.contains(command.split(' ').next().unwrap()), "no `{command}` in {front}");
+        let page = place.done(format!("{command} --help")).out;
+        let words = words.split_whitespace().chain(["--json", "--threads", "--seed", "--details"]);
+        words.for_each(|word| assert!(page.contains(word), "{command} --help does not mention {word}"));
+        for option in SCHEMA.iter().filter(|option| groups.contains(&option.group)) {
+            let flag = format!("--{}", option.name.replace('_', "-"));
+            let names = option.names().into_iter().map(|(name, _)| name.to_owned());
+            for word in names.chain([flag, option.placeholder.to_owned()]) {
+                assert!(page.contains(&word), "{command} --help does not mention {word}");
+            }
         }
     }
-    assert!(place.done(&["--version"]).out.starts_with("canonform "));
+    assert!(place.done("--version").out.starts_with("canonform "));
 }
 
 #[test]
@@ -529,7 +475,7 @@ fn a_closed_pipe_is_not_an_error() {
 fn methods_compares_every_method() {
     let place = Workplace::new();
     place.add("ring.off", &ring());
-    let json = place.json(&["methods", "ring.off", "-n", "20"]);
+    let json = place.json("methods ring.off -n 20");
     assert_keys(&json, &["n_vertices", "n_embedded", "dim", "geodesic", "methods", "best", "repair"]);
     let methods = json["methods"].as_array().unwrap();
     let name = |m: &serde_json::Value| m["method"].as_str().unwrap().to_owned();
@@ -553,8 +499,8 @@ fn methods_compares_every_method() {
 fn methods_marks_the_best_and_continues_after_a_failure() {
     let place = Workplace::new();
     place.add("ring.off", &ring());
-    let text = place.done(&["methods", "ring.off", "-n", "3", "--stress", "estimate"]).out;
+    let text = place.done("methods ring.off -n 3 --stress estimate").out;
     assert!(text.contains("landmark  ") && text.contains("landmark  failed: cannot embed"), "{text}");
     assert!(text.contains(" *") && text.contains("mds") && text.contains("estimated"), "{text}");
-    place.refused(&["methods", "absent.off"], &["absent.off"]);
+    place.refused("methods absent.off", &["absent.off"]);
 }

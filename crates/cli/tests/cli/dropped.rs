@@ -1,6 +1,6 @@
 //! Surfaces that a repair drops: what is said, and the exit code.
 
-use mesh::{TriMesh, shapes};
+use canonform::mesh::{TriMesh, shapes};
 use serde_json::Value;
 
 use crate::support::{Workplace, one_object, ring};
@@ -57,7 +57,7 @@ fn a_lost_surface_gives_exit_code_1_and_is_named_with_its_remedies() {
 #[test]
 fn welding_within_a_distance_is_reported() {
     let place = place();
-    let json = place.json(&["embed", "set/halves1.off", "-n", "20", "-o", "f.npy", "--weld", "0.25"]);
+    let json = place.json("embed set/halves1.off -n 20 -o f.npy --weld 0.25");
     let repair = &json["repair"];
     assert_eq!((repair["near_welded_vertices"].as_u64(), share(repair)), (Some(11), 0.0));
     assert!((repair["weld_gap"].as_f64().unwrap() - 0.2).abs() < 1e-12);
@@ -68,7 +68,7 @@ fn welding_within_a_distance_is_reported() {
 fn an_index_build_lists_the_shapes_that_lost_a_part() {
     let place = place();
     for run in 0..2 {
-        let outcome = place.run(&["index", "build", "set", "-o", "s.canonform", "--json"]);
+        let outcome = place.run("index build set -o s.canonform --json");
         assert_eq!(outcome.code, 1, "run {run}: {}", outcome.err);
         let json = one_object(&outcome.out);
         let dropped = json["dropped"].as_array().unwrap();
@@ -76,7 +76,7 @@ fn an_index_build_lists_the_shapes_that_lost_a_part() {
         assert!((share(&dropped[0]) - 1.0 / 3.0).abs() < 1e-12);
         assert!(outcome.err.contains("halves1: 33.3 % of the surface was dropped"), "{}", outcome.err);
     }
-    let table = place.run(&["index", "build", "set", "-o", "t.canonform", "-q"]);
+    let table = place.run("index build set -o t.canonform -q");
     assert!(table.out.contains("incomplete") && table.code == 1, "{}", table.out);
-    place.json(&["index", "build", "set", "-o", "u.canonform", "--components", "bridge"]);
+    place.json("index build set -o u.canonform --components bridge");
 }

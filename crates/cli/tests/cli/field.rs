@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use mesh::shapes;
+use canonform::mesh::shapes;
 use serde_json::{Value, json};
 
 use crate::support::{Workplace, assert_keys, broken_ring, read_npy, ring};
@@ -10,17 +10,7 @@ use crate::support::{Workplace, assert_keys, broken_ring, read_npy, ring};
 fn place() -> Workplace {
     let place = Workplace::new();
     place.add("ring.off", &ring());
-    let json = place.json(&[
-        "field",
-        "build",
-        "ring.off",
-        "--method",
-        "exact",
-        "--landmarks",
-        "20",
-        "-o",
-        "x.field",
-    ]);
+    let json = place.json("field build ring.off --method exact --landmarks 20 -o x.field");
     assert_eq!(
         (&json["bounds"]["kind"], &json["n_landmarks"], &json["rank"]),
         (&json!("certified"), &json!(20), &json!(10))
@@ -45,7 +35,7 @@ fn pairs_have_distances_within_bounds() {
     let place = place();
     let exact = row(&place, "ring.off", 3);
     fs::write(place.path("pairs.csv"), "a,b\n3,99\n99,3\n3,4\n3,3\n").unwrap();
-    let json = place.json(&["field", "query", "x.field", "--pairs", "pairs.csv", "--tolerance", "0.02"]);
+    let json = place.json("field query x.field --pairs pairs.csv --tolerance 0.02");
     let pairs = json["pairs"].as_array().unwrap();
     assert_eq!(pairs.len(), 4);
     for (pair, b) in pairs.iter().zip([99, 99, 4, 3]) {
@@ -55,14 +45,14 @@ fn pairs_have_distances_within_bounds() {
     }
     assert_eq!((&pairs[0]["a"], &pairs[0]["b"], &pairs[1]["a"]), (&json!(3), &json!(99), &json!(99)));
     assert_eq!(number(&json["estimated"]) + number(&json["exact"]), 4.0);
-    let text = place.done(&["field", "query", "x.field", "--pairs", "pairs.csv"]).out;
+    let text = place.done("field query x.field --pairs pairs.csv").out;
     assert!(text.contains("distance") && text.contains(" exact"), "{text}");
     // The same pairs as an array, and the answers as files.
     let array = ["field", "query", "x.field", "--pairs", "pairs.csv", "-o", "found.npy"];
     assert_eq!(place.json(&array)["pairs"], json!([]));
     let (shape, rows) = read_npy(&place.path("found.npy"));
     assert_eq!((shape, &rows[..2]), (vec![4, 5], &[3.0, 99.0][..]));
-    place.done(&["field", "query", "x.field", "--pairs", "pairs.csv", "-o", "found.csv"]);
+    place.done("field query x.field --pairs pairs.csv -o found.csv");
     let table = fs::read_to_string(place.path("found.csv")).unwrap();
     assert!(table.starts_with("a,b,distance,lower,upper,kind\n3,99,") && table.lines().count() == 5);
 }
@@ -71,11 +61,11 @@ fn pairs_have_distances_within_bounds() {
 fn rows_and_nearest_vertices_agree_with_exact_distances() {
     let place = place();
     let exact = row(&place, "ring.off", 17);
-    let json = place.json(&["field", "query", "x.field", "--source", "17"]);
+    let json = place.json("field query x.field --source 17");
     for (pair, exact) in json["pairs"].as_array().unwrap().iter().zip(&exact) {
         assert!(number(&pair["lower"]) <= *exact && *exact <= number(&pair["upper"]), "{pair}: {exact}");
     }
-    let json = place.json(&["field", "query", "x.field", "--source", "17,40", "--nearest", "5"]);
+    let json = place.json("field query x.field --source 17,40 --nearest 5");
     let nearest: Vec<f64> =
         json["pairs"].as_array().unwrap().iter().map(|pair| number(&pair["distance"])).collect();
     let mut sorted = exact;
@@ -88,9 +78,9 @@ fn rows_and_nearest_vertices_agree_with_exact_distances() {
 fn answers_use_the_numbers_of_the_input() {
     let place = Workplace::new();
     place.add("a.off", &broken_ring());
-    place.run(&["field", "build", "a.off", "--max-dropped", "1", "-o", "a.field"]);
+    place.run("field build a.off --max-dropped 1 -o a.field");
     let exact = row(&place, "a.off", 100);
-    let json = place.json(&["field", "query", "a.field", "--source", "100", "--tolerance", "none"]);
+    let json = place.json("field query a.field --source 100 --tolerance none");
     assert_eq!(json["bounds"]["kind"], "measured");
     for (pair, exact) in json["pairs"].as_array().unwrap().iter().zip(&exact) {
         match exact.is_finite() {
@@ -102,7 +92,7 @@ fn answers_use_the_numbers_of_the_input() {
         }
     }
     assert_eq!(json["dropped"], 10);
-    let info = place.json(&["field", "info", "a.field"]);
+    let info = place.json("field info a.field");
     assert_eq!((&info["n_vertices"], &info["method"]), (&json!(170), &json!("fast-marching")));
 }
 
@@ -124,15 +114,12 @@ fn mistakes_are_named_and_leave_nothing_behind() {
     place.refused(&query(&["--source", "160"]), &["vertex 160"]);
     place.refused(&query(&["--source", "1", "-o", "row.ply"]), &["row.ply", ".csv or .npy"]);
     place.refused(&query(&["--source", "1", "--tolerance", "-1"]), &["-1", "none"]);
-    place.refused(
-        &["field", "query", "damaged.field", "--source", "1"],
-        &["damaged.field", "checksum", "field build"],
-    );
-    place.refused(&["field", "query", "ring.off", "--source", "1"], &["ring.off", "not a distance field"]);
-    place.refused(&["field", "query", "none.field", "--source", "1"], &["none.field"]);
+    place.refused("field query damaged.field --source 1", &["damaged.field", "checksum", "field build"]);
+    place.refused("field query ring.off --source 1", &["ring.off", "not a distance field"]);
+    place.refused("field query none.field --source 1", &["none.field"]);
     place
         .refused(&["field", "build", "b.off", "--landmarks", "0", "-o", "b.field"], &["b.off", "at least 1"]);
-    place.refused(&["field", "build", "b.off", "--rank", "200", "-o", "b.field"], &["rank 200"]);
-    place.refused(&["field", "build", "b.off", "-o", "no/b.field"], &["folder no"]);
+    place.refused("field build b.off --rank 200 -o b.field", &["rank 200"]);
+    place.refused("field build b.off -o no/b.field", &["folder no"]);
     assert_eq!(place.names(), before);
 }

@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use mesh::{io, shapes};
+use canonform::mesh::{io, shapes};
 
 use crate::support::{Workplace, one_object, ring};
 
@@ -17,7 +17,7 @@ fn animals() -> Workplace {
 #[test]
 fn every_mesh_of_a_folder_becomes_a_form() {
     let place = animals();
-    let json = place.json(&["embed", "animals", "-n", "20", "--format", "off", "-o", "forms"]);
+    let json = place.json("embed animals -n 20 --format off -o forms");
     let shapes = json["shapes"].as_array().unwrap();
     let facts: Vec<_> =
         shapes.iter().map(|s| [&s["name"], &s["label"]].map(|v| v.as_str().unwrap())).collect();
@@ -26,7 +26,7 @@ fn every_mesh_of_a_folder_becomes_a_form() {
     assert_eq!(io::read(&place.path("forms/cat0.off")).unwrap().faces, ring().faces);
     assert!(io::read(&place.path("forms/dogs/rex.off")).is_ok());
     // A folder gives the same bytes as a single mesh.
-    place.done(&["embed", "animals/cat0.off", "-n", "20", "-o", "alone.off"]);
+    place.done("embed animals/cat0.off -n 20 -o alone.off");
     assert_eq!(fs::read(place.path("alone.off")).unwrap(), fs::read(place.path("forms/cat0.off")).unwrap());
 }
 
@@ -54,12 +54,12 @@ fn a_bad_file_is_listed_and_does_not_stop_the_others() {
 fn forms_never_overwrite_each_other_or_the_meshes() {
     let place = animals();
     place.add("animals/cat0.ply", &shapes::tetrahedron(3));
-    place.refused(&["embed", "animals", "-n", "20", "-o", "forms"], &["cat0.off", "cat0.ply", "rename one"]);
+    place.refused("embed animals -n 20 -o forms", &["cat0.off", "cat0.ply", "rename one"]);
     assert!(!place.path("forms").exists());
 
     let place = animals();
     let cat = fs::read(place.path("animals/cat1.ply")).unwrap();
-    place.refused(&["embed", "animals", "-n", "20", "-o", "animals"], &["animals", "choose another folder"]);
+    place.refused("embed animals -n 20 -o animals", &["animals", "choose another folder"]);
     assert_eq!(fs::read(place.path("animals/cat1.ply")).unwrap(), cat);
     assert!(!place.path("animals/cat0.ply").exists());
 }
@@ -68,7 +68,7 @@ fn forms_never_overwrite_each_other_or_the_meshes() {
 fn errors_name_a_folder_without_meshes() {
     let place = Workplace::new();
     fs::create_dir(place.path("void")).unwrap();
-    place.refused(&["embed", "void", "-o", "forms"], &["void", "no mesh found"]);
-    place.refused(&["info", "void"], &["void", "no mesh found"]);
+    place.refused("embed void -o forms", &["void", "no mesh found"]);
+    place.refused("info void", &["void", "no mesh found"]);
     assert_eq!(place.names(), ["void"]);
 }

@@ -2,16 +2,15 @@
 
 use std::fs;
 
+use canonform::mesh::io::read;
 use datasets::{ArticulatedOptions, CreatureOptions, Family, articulated_shape, creatures};
-use mesh::io::read;
 
 use crate::support::Workplace;
 
 #[test]
 fn built_in_shapes_are_written_as_they_are() {
     let place = Workplace::new();
-    let json =
-        place.json(&["generate", "--family", "cat", "--poses", "2", "--vertices", "1000", "-o", "cats"]);
+    let json = place.json("generate --family cat --poses 2 --vertices 1000 -o cats");
     let shapes = json["shapes"].as_array().unwrap();
     assert_eq!((shapes.len(), json["n_classes"].as_u64()), (2, Some(1)));
     let options = ArticulatedOptions { n_vertices: 1000, ..ArticulatedOptions::default() };
@@ -44,10 +43,10 @@ fn creatures_are_written_into_a_folder_for_each_class() {
 #[test]
 fn impossible_shapes_are_refused() {
     let place = Workplace::new();
-    place.refused(&["generate", "--vertices", "10", "-o", "few"], &["10 vertices", "1000 to 1000000"]);
+    place.refused("generate --vertices 10 -o few", &["10 vertices", "1000 to 1000000"]);
     fs::write(place.path("taken"), "").unwrap();
     place.refused(
-        &["generate", "--family", "cat", "--poses", "1", "--vertices", "1000", "-o", "taken"],
+        "generate --family cat --poses 1 --vertices 1000 -o taken",
         &["cannot create the folder taken"],
     );
 }

@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use mesh::{TriMesh, shapes};
+use canonform::mesh::{TriMesh, shapes};
 use serde_json::Value;
 
 use crate::support::{Workplace, assert_keys, one_object};
@@ -42,12 +42,12 @@ fn a_folder_becomes_an_index_that_finds_its_shapes() {
     let built = place.json(&BUILD);
     assert_eq!((&built["n_shapes"], &built["described"]), (&9.into(), &9.into()));
     place.add("query.ply", &body(0, 7));
-    let found = place.json(&["search", "all.canonform", "query.ply", "-k", "4", "--explain"]);
+    let found = place.found(&["all.canonform", "query.ply", "-k", "4", "--explain"]);
     assert_keys(&found, &["query", "results", "predicted", "seconds"]);
     let results = found["results"].as_array().unwrap();
     assert_eq!(results.len(), 4);
     for (i, result) in results.iter().enumerate() {
-        assert_keys(result, &["rank", "id", "label", "path", "distance", "match"]);
+        assert_keys(result, &["rank", "id", "label", "path", "distance", "relation", "comparison"]);
         assert_eq!(result["rank"], i + 1);
     }
     assert_eq!((&results[0]["label"], &results[0]["id"]), (&"ring".into(), &"ring2".into()));
@@ -55,7 +55,7 @@ fn a_folder_becomes_an_index_that_finds_its_shapes() {
     assert_eq!(found["predicted"]["label"], "ring");
     assert!(found["predicted"]["votes"].as_u64().unwrap() >= 3);
     // An indexed shape is at distance zero from itself.
-    let own = place.json(&["search", "all.canonform", "meshes/box1.off"]);
+    let own = place.found(&["all.canonform", "meshes/box1.off"]);
     assert_eq!(own["results"][0]["id"], "box1");
     assert!(own["results"][0]["distance"].as_f64().unwrap() < 1e-3, "{own}");
     assert_eq!(own["results"].as_array().unwrap().len(), 9);
@@ -75,24 +75,24 @@ fn an_unknown_class_is_explained() {
     (0..3).for_each(|i| place.add(&format!("meshes/rings/{i}.off"), &body(0, i)));
     place.done(&BUILD);
     // A long thin cone that is open at its base.
-    let mut cone = mesh::shapes::grid(40, 12, 1.0);
+    let mut cone = canonform::mesh::shapes::grid(40, 12, 1.0);
     for p in &mut cone.positions {
         let (turn, along) = (p.x / 39.0 * std::f64::consts::TAU, (p.y + 0.1) / 11.0);
         *p = [along * turn.cos(), along * turn.sin(), 30.0 * along].into();
     }
     place.add("part.off", &cone);
-    let found = place.json(&["search", "all.canonform", "part.off"]);
+    let found = place.found(&["all.canonform", "part.off"]);
     let (predicted, nearest) = (&found["predicted"], &found["results"][0]);
     assert_eq!((&predicted["label"], &predicted["unknown"]), (&serde_json::Value::Null, &"partial".into()));
     assert_eq!(predicted["nearest"]["id"], nearest["id"]);
-    assert_eq!(predicted["nearest"]["verdict"], nearest["verdict"]);
+    assert_eq!(predicted["nearest"]["relation"], nearest["relation"]);
     let text = place.done(&["search", "all.canonform", "part.off"]).out;
     let distance = format!("{:.3}", nearest["distance"].as_f64().unwrap());
     for words in [
         predicted["explanation"].as_str().unwrap(),
         "class: unknown. The nearest shape",
         nearest["id"].as_str().unwrap(),
-        nearest["verdict"]["text"].as_str().unwrap(),
+        "another class",
         &distance,
         "ranking by parts compares it as one",
     ] {
@@ -105,40 +105,24 @@ fn an_explained_result_has_the_numbers_of_the_comparison() {
     let place = collection();
     place.done(&["index", "build", "meshes", "-o", "all.canonform"]);
     place.add("query.ply", &body(0, 7));
-    let found = place.json(&["search", "all.canonform", "query.ply", "-k", "9", "--explain"]);
+    let found = place.found(&["all.canonform", "query.ply", "-k", "9", "--explain"]);
     for result in found["results"].as_array().unwrap().iter().step_by(4) {
-        let (explained, path) = (result["match"].as_object().unwrap(), result["path"].as_str().unwrap());
+        let (explained, path) = (result["comparison"].as_object().unwrap(), result["path"].as_str().unwrap());
         let compared = place.json(&["compare", "query.ply", path]);
-        // The handedness needs the surfaces.
-        for (key, value) in
-            explained.iter().filter(|(key, _)| !["kind", "handedness", "verdict"].contains(&key.as_str()))
-        {
+        for (key, value) in explained {
             assert_eq!(*value, compared[key], "{path}: {key}");
         }
-        assert_eq!(result["verdict"], explained["verdict"]);
-        let evidence = &result["evidence"];
-        assert_eq!(evidence["kind"], compared["evidence"]["kind"]);
-        for (key, value) in explained["verdict"].as_object().unwrap() {
-            if !["handedness", "text"].contains(&key.as_str()) {
-                assert_eq!(*value, compared["verdict"][key], "{path}: {key}");
-            }
+        let [told, compared_told] = [&result["relation"], &compared["relation"]];
+        assert_eq!(told["kind"], compared_told["kind"]);
+        for key in ["combined_distance", "fused_distance", "same_shape", "same_class", "content"] {
+            assert_eq!(told["because"][key], compared_told["because"][key], "{path}: {key}");
         }
-        if compared["handedness"] != "mirrored" {
-            assert_eq!(result["verdict"]["text"], compared["verdict"]["text"]);
-        }
-        // The text says the same.
-        let [text, found_text] =
-            [&["compare", "query.ply", path][..], &[]].map(|arguments| match arguments {
-                [] => place.done(&["search", "all.canonform", "query.ply", "-k", "9", "--explain"]).out,
-                arguments => place.done(arguments).out,
-            });
-        let [words, reason] = ["text", "reason"].map(|key| compared["verdict"][key].as_str().unwrap());
-        assert!(text.contains(words) && text.contains(reason), "{text}");
-        for words in [&result["verdict"]["text"], &evidence["text"]] {
-            assert!(found_text.contains(words.as_str().unwrap()), "{found_text}");
+        let text = place.done(&["search", "all.canonform", "query.ply", "-k", "9", "--explain"]).out;
+        for words in [&told["text"], &told["because"]["text"]] {
+            assert!(text.contains(words.as_str().unwrap()), "{text}");
         }
         // What may be of one class is never unknown.
-        let may_be = result["verdict"]["same_class"].as_f64().unwrap() > 0.5;
+        let may_be = told["because"]["same_class"].as_f64().unwrap() > 0.5;
         assert!(!may_be || !found["predicted"]["label"].is_null(), "{found}");
         assert_eq!(result["distance"], compared["combined_distance"]);
     }
@@ -283,13 +267,13 @@ fn an_index_is_verified_described_and_scored() {
     let text = place.done(&["evaluate", "all.canonform", "--rank", "graph"]).out;
     assert!(text.contains("plain") && text.contains("graph"), "{text}");
     place.refused(&["evaluate", "all.canonform", "--rank", "best"], &["best", "`plain` or `graph`"]);
-    let found = place.json(&["search", "all.canonform", "--id", "ring1", "--rank", "graph"]);
+    let found = place.found(&["all.canonform", "--id", "ring1", "--rank", "graph"]);
     assert_eq!((&found["rank_by"], &found["results"][0]["id"]), (&"graph".into(), &"ring1".into()));
     let order = |i: usize| found["results"][i]["rank_distance"].as_f64().unwrap();
     assert!((1..9).all(|i| order(i - 1) <= order(i)));
     let text = place.done(&["search", "all.canonform", "--id", "ring1", "--rank", "graph"]).out;
     assert!(text.contains("rank distance") && text.contains("neighbours in common"), "{text}");
-    let found = place.json(&["search", "all.canonform", "--id", "ring1", "--rank", "part"]);
+    let found = place.found(&["all.canonform", "--id", "ring1", "--rank", "part"]);
     assert_eq!((&found["rank_by"], &found["results"][0]["id"]), (&"part".into(), &"ring1".into()));
     assert_eq!(found["results"][0]["part_share"], 1.0);
     let text = place.done(&["search", "all.canonform", "--id", "ring1", "--rank", "part"]).out;
@@ -356,9 +340,12 @@ fn an_index_takes_the_options_of_embed_and_applies_them_to_queries() {
         assert!(export(&place, "other").contains(&text.replace('"', "\\\"")), "{text}");
         place.refused(&["index", "merge", "all.canonform", "other", "-o", "x"], &["other options"]);
         place.refused(&["index", "build", "meshes", "-n", "20", "-o", "other"], &["other options"]);
-        let found = place.json(&["search", "other", "meshes/box1.off", "-k", "3", "--explain"]);
+        let found = place.found(&["other", "meshes/box1.off", "-k", "3", "--explain"]);
         let results = found["results"].as_array().unwrap();
-        assert_eq!((&results[0]["id"], &results[0]["match"]["kind"]), (&"box1".into(), &"same".into()));
+        assert_eq!(
+            (&results[0]["id"], &results[0]["relation"]["kind"]),
+            (&"box1".into(), &"identical-file".into())
+        );
         assert!(results.iter().all(|result| result["label"] == "box"), "{options:?}: {found}");
         place.add("more/box9.off", &body(2, 9));
         assert_eq!(place.json(&["index", "add", "other", "more"])["described"], 1);
@@ -380,15 +367,12 @@ fn a_pair_has_the_same_numbers_in_a_comparison_and_in_a_search() {
     place.done(&["index", "build", "meshes", "-o", "usual"]);
     for k in ["1", "2"] {
         let query = format!("meshes/box{k}.off");
-        let found = place.json(&["search", "usual", &query, "--explain"]);
+        let found = place.found(&["usual", &query, "--explain"]);
         for result in found["results"].as_array().unwrap() {
-            let mut compared = place.json(&["compare", &query, result["path"].as_str().unwrap()]);
+            let compared = place.json(&["compare", &query, result["path"].as_str().unwrap()]);
             assert_eq!(result["distance"], compared["combined_distance"]);
-            // A search does not compare surfaces.
-            compared["handedness"] = "unknown".into();
-            compared["verdict"]["handedness"] = "unknown".into();
-            let keys = result["match"].as_object().unwrap();
-            assert!(keys.len() > 10);
+            let keys = result["comparison"].as_object().unwrap();
+            assert!(keys.len() >= 10);
             keys.iter()
                 .for_each(|(key, value)| assert_eq!(*value, compared[key], "{key} of {}", result["id"]));
         }

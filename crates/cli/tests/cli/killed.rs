@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-use index::{Index, IndexWriter, Job, work_path};
+use canonform::index::{Index, IndexWriter, Job, work_path};
 
 use crate::index::body;
 use crate::support::{Workplace, program};
@@ -34,7 +34,7 @@ fn kept(place: &Workplace, index: &str) -> usize {
     fs::copy(work, work_path(&look)).unwrap();
     let options = Index::open(&place.path("whole")).unwrap().options().to_owned();
     let writer = IndexWriter::open(&look, Job::Build, Some(&options)).unwrap();
-    let n = writer.len().unwrap();
+    let n = writer.len();
     writer.discard().unwrap();
     n
 }
@@ -82,7 +82,7 @@ fn is_leftover(path: &Path) -> bool {
 #[test]
 fn killed_commands_leave_whole_files_and_the_next_run_tidies_up() {
     let place = collection();
-    place.add("a.off", &mesh::shapes::icosphere(5));
+    place.add("a.off", &canonform::mesh::shapes::icosphere(5));
     place.add("b.off", &body(0, 3));
     place.done(&build("all"));
     let commands: [&[&str]; 8] = [
@@ -213,10 +213,7 @@ fn a_full_disk_is_reported_and_the_old_index_stays() {
     for blocks in [1, size / 4, size / 2, size - 20, size] {
         let (code, err) = run_limited(&place, blocks, &build("whole"));
         assert_eq!(code, Some(2), "{blocks}: {err}");
-        assert!(
-            err.contains("cannot write whole.work") && err.contains("free some space"),
-            "{blocks}: {err}"
-        );
+        assert!(err.contains("cannot write whole") && err.contains("free some space"), "{blocks}: {err}");
         assert_eq!(fs::read(place.path("whole")).unwrap(), old, "{blocks}");
     }
     // Without the limit the build continues.

@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use mesh::shapes;
+use canonform::mesh::shapes;
 
 use crate::support::{Workplace, assert_keys, broken_ring, ring};
 
@@ -30,7 +30,7 @@ fn drawn(place: &Workplace, options: &[&str]) -> Vec<[u8; 4]> {
 #[test]
 fn a_picture_has_the_requested_size_and_background() {
     let place = place();
-    let json = place.json(&["render", "ring.off", "--size", "90x60", "-o", "x.png"]);
+    let json = place.json("render ring.off --size 90x60 -o x.png");
     assert_keys(&json, &["mesh", "output", "width", "height", "n_vertices", "n_faces", "field", "seconds"]);
     assert_eq!((&json["width"], &json["height"], &json["n_faces"]), (&90.into(), &60.into(), &320.into()));
     assert!(json["field"].is_null());
@@ -83,7 +83,7 @@ fn distances_and_the_same_numbers_from_files_give_the_same_picture() {
         asked != drawn(&place, &["--distance-from", "3,90", "--isolines", "5", "--no-bar"]),
         "two sources"
     );
-    let narrow = place.json(&["render", "ring.off", "--distance-from", "3", "--range", "0,1", "-o", "n.png"]);
+    let narrow = place.json("render ring.off --distance-from 3 --range 0,1 -o n.png");
     assert_eq!(narrow["field"]["range"], serde_json::json!([0.0, 1.0]));
     assert_eq!((&narrow["field"]["values"][0], &narrow["field"]["missing"]), (&0.0.into(), &0.into()));
 }
@@ -91,8 +91,8 @@ fn distances_and_the_same_numbers_from_files_give_the_same_picture() {
 #[test]
 fn a_row_of_several_can_be_chosen() {
     let place = place();
-    place.done(&["geodesic", "ring.off", "--source", "3,90", "-o", "two.npy"]);
-    place.done(&["geodesic", "ring.off", "--source", "90", "-o", "one.csv"]);
+    place.done("geodesic ring.off --source 3,90 -o two.npy");
+    place.done("geodesic ring.off --source 90 -o one.csv");
     let row = |row: &str| drawn(&place, &["--field", "two.npy", "--row", row, "--no-bar"]);
     assert!(row("0") != row("1"));
     assert_eq!(row("1"), drawn(&place, &["--field", "one.csv", "--no-bar"]));
@@ -110,9 +110,9 @@ fn a_row_of_several_can_be_chosen() {
 fn vertices_without_a_value_are_grey_and_counted() {
     let place = place();
     place.add("broken.off", &broken_ring());
-    let json = place.json(&["render", "broken.off", "--distance-from", "0", "-o", "x.png"]);
+    let json = place.json("render broken.off --distance-from 0 -o x.png");
     assert_eq!(json["field"]["missing"], 10);
-    let text = place.done(&["render", "broken.off", "--distance-from", "0", "-o", "x.png"]).out;
+    let text = place.done("render broken.off --distance-from 0 -o x.png").out;
     assert!(text.contains("10 vertices without a finite value"), "{text}");
     fs::write(place.path("nan.csv"), vec!["nan"; 160].join(",")).unwrap();
     let grey = drawn(&place, &["--field", "nan.csv", "--background", "transparent"]);
@@ -124,12 +124,12 @@ fn a_form_can_be_drawn_instead_of_its_mesh() {
     let place = place();
     place.add("sheet.off", &shapes::grid(12, 9, 0.1));
     place.add("broken.off", &broken_ring());
-    place.done(&["render", "sheet.off", "--form", "-o", "form.png", "--size", "160"]);
-    place.done(&["render", "sheet.off", "--view", "principal", "-o", "mesh.png", "--size", "160"]);
+    place.done("render sheet.off --form -o form.png --size 160");
+    place.done("render sheet.off --view principal -o mesh.png --size 160");
     // A flat sheet is its own form, seen along the same axes.
     let covered = |name: &str| pixels(&place, name).1.iter().filter(|p| p[0] < 250).count();
     assert!(covered("form.png").abs_diff(covered("mesh.png")) < covered("mesh.png") / 20);
-    let json = place.json(&["render", "broken.off", "--form", "--distance-from", "0", "-o", "x.png"]);
+    let json = place.json("render broken.off --form --distance-from 0 -o x.png");
     assert_eq!(json["repair"]["dropped_components"], 1);
 }
 
@@ -155,7 +155,7 @@ fn errors_name_the_fault_and_leave_nothing() {
     fs::write(place.path("words.csv"), "1,two").unwrap();
     fs::write(place.path("no.npy"), "numbers").unwrap();
     fs::write(place.path("points.off"), "OFF\n3 0 0\n0 0 0\n1 0 0\n0 1 0\n").unwrap();
-    place.done(&["geodesic", "ring.off", "--source", "3,90", "-o", "two.npy"]);
+    place.done("geodesic ring.off --source 3,90 -o two.npy");
     let before = place.names();
     let refused = |options: &[&'static str], words: &[&str]| {
         place.refused(&[&["render", "ring.off"], options].concat(), words);
@@ -179,6 +179,6 @@ fn errors_name_the_fault_and_leave_nothing() {
     refused(&["-o", "x.png", "--field", "two.npy", "--row", "2"], &["two.npy", "row 2 does not exist"]);
     refused(&["-o", "x.png", "--distance-from", "160"], &["ring.off", "vertex 160"]);
     refused(&["-o", "x.png", "--distance-from", "0", "--field", "two.npy"], &["--field"]);
-    place.refused(&["render", "points.off", "-o", "x.png"], &["points.off"]);
+    place.refused("render points.off -o x.png", &["points.off"]);
     assert_eq!(place.names(), before);
 }

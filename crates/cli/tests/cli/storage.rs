@@ -4,9 +4,9 @@ use std::fs;
 use std::io::Write;
 use std::process::{Command, Stdio};
 
+use canonform::mesh::{TriMesh, shapes};
 use flate2::Compression;
 use flate2::write::GzEncoder;
-use mesh::{TriMesh, shapes};
 use serde_json::Value;
 use zip::ZipWriter;
 use zip::write::SimpleFileOptions;
@@ -84,8 +84,8 @@ fn an_index_of_an_archive_or_a_list_equals_that_of_the_folder() {
         );
         // The files of the shapes are found again.
         let query = if dataset == "list.txt" { "meshes/ring/ring0.off" } else { "meshes/ball/ball0.off" };
-        let found = place.json(&["search", "other.canonform", query, "--explain", "-k", "1"]);
-        assert_eq!(found["results"][0]["evidence"]["kind"], "identical-file", "{dataset}: {found}");
+        let found = place.found(&["other.canonform", query, "--explain", "-k", "1"]);
+        assert_eq!(found["results"][0]["relation"]["kind"], "identical-file", "{dataset}: {found}");
         place.done(&["index", "verify", "other.canonform"]);
         fs::remove_file(place.path("other.canonform")).unwrap();
     }
@@ -100,9 +100,9 @@ fn shards_of_an_archive_merge_into_the_index_of_the_whole() {
         let build = ["index", "build", "meshes.zip", "--shard", shard, "-o", &output];
         place.done(&[&build[..], &BUILD[..]].concat());
     }
-    place.done(&["index", "merge", "part3", "part1", "part2", "-o", "merged"]);
+    place.done("index merge part3 part1 part2 -o merged");
     // A merge of the same parts in another order, on top of it, changes nothing.
-    place.done(&["index", "merge", "part1", "part2", "part3", "part2", "-o", "merged"]);
+    place.done("index merge part1 part2 part3 part2 -o merged");
     for format in ["jsonl", "parquet", "npz", "csv"] {
         for index in ["whole", "merged"] {
             place.done(&["index", "export", index, "-o", &format!("{index}.{format}")]);
@@ -133,21 +133,18 @@ fn every_command_reads_members_and_compressed_files() {
         place.done(&["geodesic", path, "--source", "0", "-o", "rows.npy"]);
         place.done(&["render", path, "--size", "40", "-o", "x.png"]);
         let compared = place.json(&["compare", path, "meshes/ring/ring0.off", "-n", "20"]);
-        let kind = compared["evidence"]["kind"].as_str().unwrap();
+        let kind = compared["relation"]["kind"].as_str().unwrap();
         let expected = if path.ends_with(".gz") { "identical-geometry" } else { "identical-file" };
         assert_eq!(kind, expected, "{path}");
     }
-    let embedded = place.json(&["embed", "meshes.zip", "-n", "20", "-o", "forms", "--format", "npy"]);
+    let embedded = place.json("embed meshes.zip -n 20 -o forms --format npy");
     assert_eq!(embedded["shapes"].as_array().unwrap().len(), 4);
     assert_eq!(embedded["shapes"][0]["label"], "ball");
     assert!(place.path("forms/ring/ring1.npy").exists());
-    let all = place.json(&["info", "meshes.tar.gz", "list.txt", "meshes"]);
+    let all = place.json("info meshes.tar.gz list.txt meshes");
     assert_eq!(all["meshes"].as_array().unwrap().len(), 12);
-    place.refused(&["info", "meshes.zip/meshes/ring/none.off"], &["none.off", "no such member"]);
-    place.refused(
-        &["geodesic", "meshes.zip", "--source", "0", "-o", "x.npy"],
-        &["meshes.zip", "archive", "name one of them"],
-    );
+    place.refused("info meshes.zip/meshes/ring/none.off", &["none.off", "no such member"]);
+    place.refused("geodesic meshes.zip --source 0 -o x.npy", &["meshes.zip", "archive", "name one of them"]);
 }
 
 #[test]
@@ -162,7 +159,7 @@ fn meshes_are_converted_between_all_formats() {
         let back = place.done(&["convert", &name, "back.off"]);
         if matches!(format, "stl" | "glb") {
             // These round coordinates to 32 bits.
-            assert_eq!(place.json(&["info", "back.off"])["meshes"][0]["mesh"]["n_faces"], 320);
+            assert_eq!(place.json("info back.off")["meshes"][0]["mesh"]["n_faces"], 320);
         } else {
             assert_eq!(fs::read(place.path("back.off")).unwrap(), expected, "{format}");
         }
@@ -173,20 +170,20 @@ fn meshes_are_converted_between_all_formats() {
             back.err
         );
     }
-    let info = place.json(&["info", "copy.glb", "copy.3mf", "copy.ply"]);
+    let info = place.json("info copy.glb copy.3mf copy.ply");
     let units: Vec<&Value> =
         info["meshes"].as_array().unwrap().iter().map(|mesh| &mesh["file"]["unit"]).collect();
     assert_eq!(units, [&Value::from("meter"), &"millimeter".into(), &Value::Null]);
-    place.refused(&["convert", "ring.off", "ring.mat"], &["ring.mat", "use .off"]);
-    place.refused(&["convert", "ring.off", "none/ring.ply"], &["none", "does not exist"]);
-    place.refused(&["embed", "ring.off", "-o", "form.npy.gz"], &["form.npy.gz", "leave out .gz"]);
+    place.refused("convert ring.off ring.mat", &["ring.mat", "use .off"]);
+    place.refused("convert ring.off none/ring.ply", &["none", "does not exist"]);
+    place.refused("embed ring.off -o form.npy.gz", &["form.npy.gz", "leave out .gz"]);
 }
 
 #[test]
 fn every_format_that_stores_doubles_gives_the_same_form() {
     let place = Workplace::new();
     place.add("ring.off", &ring());
-    place.done(&["embed", "ring.off", "-n", "30", "-o", "expected.npy"]);
+    place.done("embed ring.off -n 30 -o expected.npy");
     let expected = fs::read(place.path("expected.npy")).unwrap();
     for format in ["obj", "ply", "3mf", "vert", "off.gz", "3mf.gz"] {
         let name = format!("copy.{format}");
@@ -200,14 +197,14 @@ fn every_format_that_stores_doubles_gives_the_same_form() {
 fn conversion_repairs_on_request_and_converts_datasets() {
     let place = collection();
     place.add("two.obj", &shapes::disjoint(&[ring(), shapes::cube(0)]));
-    assert_eq!(place.json(&["convert", "two.obj", "kept.ply"])["n_vertices"], 168);
-    let repaired = place.json(&["convert", "--repair", "two.obj", "one.ply", "--max-dropped", "1"]);
+    assert_eq!(place.json("convert two.obj kept.ply")["n_vertices"], 168);
+    let repaired = place.json("convert --repair two.obj one.ply --max-dropped 1");
     assert_eq!(repaired["n_vertices"], 160);
     assert!(repaired["repair"]["dropped_area_share"].as_f64().unwrap() > 0.0);
-    place.refused(&["convert", "meshes.zip", "out"], &["--output-format"]);
-    let json = place.json(&["convert", "meshes.zip", "out", "--output-format", "ply.gz"]);
+    place.refused("convert meshes.zip out", &["--output-format"]);
+    let json = place.json("convert meshes.zip out --output-format ply.gz");
     assert_eq!(json["meshes"].as_array().unwrap().len(), 4);
-    let counts = place.json(&["info", "out"]);
+    let counts = place.json("info out");
     assert_eq!(counts["meshes"].as_array().unwrap().len(), 4);
     assert!(place.path("out/ball/ball1.ply.gz").exists());
 }
@@ -247,7 +244,7 @@ fn format_names_the_format_of_standard_input() {
         piped(&place, &glb, &["convert", "-", "-", "--format", "glb", "--output-format", "ply"]);
     assert_eq!(code, 0, "{err}");
     fs::write(place.path("out.ply"), out).unwrap();
-    assert_eq!(place.json(&["info", "out.ply"])["meshes"][0]["mesh"]["n_vertices"], 160);
+    assert_eq!(place.json("info out.ply")["meshes"][0]["mesh"]["n_vertices"], 160);
     let (code, _, err) = piped(&place, &off, &["convert", "-", "-", "--format", "off"]);
     assert!(code == 2 && err.contains("--output-format"), "{err}");
     let (code, _, err) = piped(&place, &off, &["info", "-", "--format", "txt"]);
@@ -258,12 +255,12 @@ fn format_names_the_format_of_standard_input() {
     assert!(code == 0 && out.starts_with(b"\x93NUMPY"), "{err}");
     let (code, out, err) = piped(&place, &off, &["embed", "-", "--format", "off", "-n", "20", "-o", "-"]);
     assert!(code == 0 && out.starts_with(b"ply"), "{err}");
-    place.refused(&["embed", "ring.off", "--format", "stl", "-o", "x"], &["stl", ".npy"]);
+    place.refused("embed ring.off --format stl -o x", &["stl", ".npy"]);
     // A query from standard input.
     place.done(&[&["index", "build", "meshes.zip", "-o", "i"], &BUILD[..]].concat());
     let (code, out, err) = piped(&place, &off, &["search", "i", "-", "--format", "off", "--json"]);
     assert_eq!(code, 0, "{err}");
-    assert_eq!(one_object(&String::from_utf8(out).unwrap())["results"][0]["id"], "ring/ring0");
+    assert_eq!(one_object(&String::from_utf8(out).unwrap())["queries"][0]["results"][0]["id"], "ring/ring0");
 }
 
 #[test]
@@ -277,7 +274,7 @@ fn exports_go_to_files_and_to_standard_output() {
             piped(&place, b"", &["index", "export", "i", "-o", "-", "--output-format", format]);
         assert_eq!((code, out), (0, fs::read(place.path(&name)).unwrap()), "{format}: {err}");
     }
-    assert_eq!(place.done(&["index", "export", "i"]).out, fs::read_to_string(place.path("x.jsonl")).unwrap());
-    place.refused(&["index", "export", "i", "-o", "x.xlsx"], &["x.xlsx", ".parquet"]);
-    place.refused(&["index", "export", "i", "-o", "i"], &["is the index itself"]);
+    assert_eq!(place.done("index export i").out, fs::read_to_string(place.path("x.jsonl")).unwrap());
+    place.refused("index export i -o x.xlsx", &["x.xlsx", ".parquet"]);
+    place.refused("index export i -o i", &["is the index itself"]);
 }

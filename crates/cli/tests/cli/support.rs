@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use mesh::{TriMesh, io, shapes};
+use canonform::mesh::{TriMesh, io, shapes};
 use serde_json::Value;
 use tempfile::TempDir;
 
@@ -16,6 +16,41 @@ pub(crate) struct Outcome {
     pub(crate) code: i32,
     pub(crate) out: String,
     pub(crate) err: String,
+}
+
+/// Arguments of the program: words with a space between them, or one by one.
+pub(crate) trait Arguments {
+    fn words(&self) -> Vec<&str>;
+}
+
+impl Arguments for &str {
+    fn words(&self) -> Vec<&str> {
+        self.split(' ').collect()
+    }
+}
+
+impl Arguments for String {
+    fn words(&self) -> Vec<&str> {
+        self.split(' ').collect()
+    }
+}
+
+impl<S: AsRef<str>> Arguments for &[S] {
+    fn words(&self) -> Vec<&str> {
+        self.iter().map(AsRef::as_ref).collect()
+    }
+}
+
+impl<S: AsRef<str>, const N: usize> Arguments for &[S; N] {
+    fn words(&self) -> Vec<&str> {
+        self.iter().map(AsRef::as_ref).collect()
+    }
+}
+
+impl<S: AsRef<str>> Arguments for &Vec<S> {
+    fn words(&self) -> Vec<&str> {
+        self.iter().map(AsRef::as_ref).collect()
+    }
 }
 
 impl Workplace {
@@ -34,28 +69,41 @@ impl Workplace {
     }
 
     /// Runs the program in the folder.
-    pub(crate) fn run(&self, arguments: &[&str]) -> Outcome {
-        let output = Command::new(program()).current_dir(self.0.path()).args(arguments).output().unwrap();
+    pub(crate) fn run(&self, arguments: impl Arguments) -> Outcome {
+        let mut command = Command::new(program());
+        let output = command.current_dir(self.0.path()).args(arguments.words()).output().unwrap();
         let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
         Outcome { code: output.status.code().unwrap(), out: text(output.stdout), err: text(output.stderr) }
     }
 
     /// Runs the program, which must succeed.
-    pub(crate) fn done(&self, arguments: &[&str]) -> Outcome {
-        let outcome = self.run(arguments);
-        assert_eq!(outcome.code, 0, "{arguments:?}: {}", outcome.err);
+    pub(crate) fn done(&self, arguments: impl Arguments) -> Outcome {
+        let words = arguments.words();
+        let outcome = self.run(&words);
+        assert_eq!(outcome.code, 0, "{words:?}: {}", outcome.err);
         outcome
     }
 
     /// Runs the program with `--json`: standard output must be one object on one line.
-    pub(crate) fn json(&self, arguments: &[&str]) -> Value {
-        let outcome = self.done(&[arguments, &["--json"]].concat());
+    pub(crate) fn json(&self, arguments: impl Arguments) -> Value {
+        let outcome = self.done(&[&arguments.words()[..], &["--json"]].concat());
         one_object(&outcome.out)
     }
 
+    /// The answer to the only query of a search.
+    pub(crate) fn found(&self, arguments: &[&str]) -> Value {
+        let mut answers = self.json(&[&["search"], arguments].concat());
+        assert_eq!(
+            (answers["queries"].as_array().unwrap().len(), &answers["failed"]),
+            (1, &Value::Array(Vec::new()))
+        );
+        answers["queries"][0].take()
+    }
+
     /// Runs the program, which must fail with code 2 and a message that contains all of `words`.
-    pub(crate) fn refused(&self, arguments: &[&str], words: &[&str]) {
-        let outcome = self.run(arguments);
+    pub(crate) fn refused(&self, arguments: impl Arguments, words: &[&str]) {
+        let arguments = arguments.words();
+        let outcome = self.run(&arguments);
         assert_eq!(outcome.code, 2, "{arguments:?}: {}{}", outcome.out, outcome.err);
         assert!(outcome.out.is_empty(), "{arguments:?} printed {}", outcome.out);
         for word in words {

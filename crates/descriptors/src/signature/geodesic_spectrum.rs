@@ -9,7 +9,7 @@ use crate::error::DescriptorError;
 const EIGENVALUES: usize = SignatureKind::GeodesicSpectrum.n_values();
 
 /// Smaller eigenvalues count as this share of the largest. Those of surfaces are larger: number 24 is about 0.003 of the
-/// first.
+/// first. A tolerance of rounding.
 const LEAST: f64 = 1e-4;
 
 /// The spectrum of the square roots of all surface distances, every point weighted by the area around it.
@@ -28,7 +28,7 @@ const LEAST: f64 = 1e-4;
 ///
 /// Square roots and logarithms let short distances count: squares are dominated by the longest ones, and their spectrum by
 /// the first three eigenvalues, which are the spreads of the canonical form. The power was chosen on bodies of the
-/// built-in families, see `docs/decisions/046-fused-signatures.md`.
+/// built-in families, see `docs/decisions/013-signatures.md`.
 ///
 /// * Invariant to isometries (bending, rigid motions, mirror images), scale and the order of vertices. The
 ///   triangulation and the choice of samples change it by the error of distances and of the approximation.

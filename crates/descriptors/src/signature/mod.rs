@@ -18,5 +18,5 @@ mod spectral;
 pub use geodesic_spectrum::geodesic_spectrum;
 pub use kind::{Signature, SignatureKind};
 pub use of_form::{d2_histogram, moment_signature};
-pub(crate) use spectral::wave_kernels;
+pub use spectral::wave_kernels;
 pub use spectral::{heat_kernel_signature, shape_dna, wave_kernel_signature};

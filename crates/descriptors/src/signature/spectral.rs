@@ -97,7 +97,8 @@ fn wave_filters(spectrum: &LaplaceSpectrum) -> Matrix {
 }
 
 /// The wave kernels of [`wave_kernel_signature`] at some vertices, one row for each vertex and one column for each energy.
-pub(crate) fn wave_kernels(spectrum: &LaplaceSpectrum, vertices: &[usize]) -> Matrix {
+#[must_use]
+pub fn wave_kernels(spectrum: &LaplaceSpectrum, vertices: &[usize]) -> Matrix {
     let at = spectrum.vectors.select_rows(vertices).map(|x| x * x);
     at * wave_filters(spectrum)
 }
@@ -109,6 +110,7 @@ fn spaced(ends: [f64; 2], n: usize) -> impl Iterator<Item = f64> {
 
 /// The eigenpairs used, without those of constant functions.
 fn curved(spectrum: &LaplaceSpectrum) -> impl Iterator<Item = usize> {
+    // A tolerance of rounding: constant functions have the eigenvalue 0.
     const ZERO: f64 = 1e-6;
     let n = spectrum.values.len().min(EIGENPAIRS);
     (1..n).filter(|&i| spectrum.values[i] > ZERO)

@@ -1,7 +1,7 @@
 //! Paths through the windows at the base of a face to its apex.
 
-use super::frame::Frame;
-use super::window::Window;
+use super::frame::FaceFrame;
+use super::window::PathWindow;
 
 /// A ray that misses the apex by no more than this, in lengths of the base where it crosses it, bends there to meet
 /// it. Rounding opens such gaps between windows that share a ray, and diverging rays widen them. The bent path is too
@@ -32,7 +32,7 @@ pub(super) struct Apex {
 
 impl Apex {
     #[inline]
-    pub(super) fn new(frame: &Frame) -> Self {
+    pub(super) fn new(frame: &FaceFrame) -> Self {
         Self {
             at: frame.apex,
             slack: NEAR_MISS * frame.base,
@@ -46,20 +46,20 @@ impl Apex {
     /// Where the ray from the window's pseudo-source to the apex crosses the base, times the height of the apex over
     /// the pseudo-source, which saves a division.
     #[inline]
-    fn scaled_crossing(&self, window: &Window) -> [f64; 2] {
+    fn scaled_crossing(&self, window: &PathWindow) -> [f64; 2] {
         let [x, y] = self.at;
         [window.x * y + x * window.depth, window.depth + y]
     }
 
     /// Where the ray from the window's pseudo-source to the apex crosses the base.
     #[inline]
-    pub(super) fn crossing(&self, window: &Window) -> f64 {
+    pub(super) fn crossing(&self, window: &PathWindow) -> f64 {
         let [scaled, height] = self.scaled_crossing(window);
         scaled / height
     }
 
     #[inline]
-    pub(super) fn passes(&self, window: &Window) -> Passes {
+    pub(super) fn passes(&self, window: &PathWindow) -> Passes {
         let [scaled, height] = self.scaled_crossing(window);
         if scaled >= window.end * height {
             Passes::Left
@@ -72,7 +72,7 @@ impl Apex {
 
     /// Considers the path through a window, straight or with a bend at the end of the window.
     #[inline]
-    pub(super) fn consider(&mut self, index: usize, window: &Window) {
+    pub(super) fn consider(&mut self, index: usize, window: &PathWindow) {
         let [scaled, height] = self.scaled_crossing(window);
         if scaled < (window.start - self.slack) * height || scaled > (window.end + self.slack) * height {
             return;

@@ -5,7 +5,7 @@
 //! comes from further left changes at most once, where the line through both pseudo-sources meets the edge. On either
 //! part, the distances are equal at one point at most.
 
-use super::window::{Window, crossing, order};
+use super::window::{PathWindow, crossing, order};
 
 /// Up to this many windows, insertion sort is fastest.
 const FEW: usize = 40;
@@ -15,15 +15,16 @@ const FEW: usize = 40;
 /// passed.
 const SAME_SOURCE: f64 = 1e-12;
 
-/// Two windows with the same pseudo-source are joined over a gap of this many lengths of the edge.
+/// Two windows with the same pseudo-source are joined over a gap of this many lengths of the edge, which is rounding.
 const GAP: f64 = 1e-12;
 
-/// Share of the narrower of two windows up to which an overlap stays, as cutting it costs more than propagating it.
+/// Share of the narrower of two windows up to which an overlap stays, as cutting it costs more than propagating it. It
+/// affects time only, which `make bench` measures.
 const OVERLAP: f64 = 0.5;
 
 /// Reduces the windows at an edge of the given length to what may carry a shortest path, in order along the edge;
 /// `ends` are the labels of the edge's ends.
-pub(super) fn trim(windows: &mut Vec<Window>, length: f64, ends: [f64; 2]) {
+pub(super) fn trim(windows: &mut Vec<PathWindow>, length: f64, ends: [f64; 2]) {
     cut_ends(windows, length, ends);
     sort(windows);
     // Of the windows before the current one, `kept` are left, in place.
@@ -53,7 +54,7 @@ pub(super) fn trim(windows: &mut Vec<Window>, length: f64, ends: [f64; 2]) {
 }
 
 /// Insertion sort is cheap for few windows, and for those that come in order from either side.
-fn sort(windows: &mut [Window]) {
+fn sort(windows: &mut [PathWindow]) {
     if windows.len() > FEW {
         windows.sort_unstable_by(|p, q| p.start.total_cmp(&q.start));
         return;
@@ -72,7 +73,7 @@ fn sort(windows: &mut [Window]) {
 }
 
 /// Cuts the outermost windows where paths through the ends of the edge are shorter.
-fn cut_ends(windows: &mut Vec<Window>, length: f64, ends: [f64; 2]) {
+fn cut_ends(windows: &mut Vec<PathWindow>, length: f64, ends: [f64; 2]) {
     while windows.last_mut().is_some_and(|last| !last.cut_end(length, ends[1])) {
         windows.pop();
     }
@@ -95,7 +96,7 @@ enum Fate {
 
 /// Whether two windows have the same pseudo-source at the same place.
 #[inline]
-fn have_same_source(left: &Window, right: &Window) -> bool {
+fn have_same_source(left: &PathWindow, right: &PathWindow) -> bool {
     let same = SAME_SOURCE * (left.depth + left.x.abs());
     (left.x - right.x).abs() <= same
         && (left.depth - right.depth).abs() <= same
@@ -104,7 +105,7 @@ fn have_same_source(left: &Window, right: &Window) -> bool {
 
 /// Shares the overlap of two windows, of which `left` comes first.
 #[inline]
-fn meet(left: &mut Window, right: &mut Window) -> Fate {
+fn meet(left: &mut PathWindow, right: &mut PathWindow) -> Fate {
     if have_same_source(left, right) {
         left.end = left.end.max(right.end);
         return Fate::LeftStays;

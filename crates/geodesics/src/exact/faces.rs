@@ -1,6 +1,6 @@
 //! The faces of a surface, one cache line each.
 
-use surface::{CornerId, FaceId, IntrinsicMesh, Topology, double_area, scalar_product};
+use surface::{CornerId, FaceId, IntrinsicMesh, Topology, double_area, power_of_two_below, scalar_product};
 
 /// The faces of a surface and their neighbours.
 #[derive(Debug)]
@@ -61,7 +61,7 @@ impl Faces {
     pub(super) fn new(mesh: &IntrinsicMesh) -> Self {
         let topology = mesh.topology();
         let longest = mesh.edge_lengths().iter().copied().fold(0.0, f64::max);
-        let unit = power_of_two_near(longest);
+        let unit = power_of_two_below(longest);
         let mut non_manifold = Vec::new();
         let all = (0u32..)
             .zip(topology.faces())
@@ -138,11 +138,6 @@ impl Face {
 pub(super) fn next(slot: usize) -> usize {
     // A table, because a branch would be mispredicted every third time.
     [1, 2, 0][slot]
-}
-
-/// One for zero.
-fn power_of_two_near(length: f64) -> f64 {
-    if length > 0.0 { 2f64.powi(length.log2().floor().clamp(-1020.0, 1020.0) as i32) } else { 1.0 }
 }
 
 /// The sides of a triangle and twice its area, from lengths that may violate the triangle inequality by rounding.

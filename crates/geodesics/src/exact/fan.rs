@@ -7,12 +7,13 @@ use surface::{FanCorner, IntrinsicMesh, OneRing, Rows, VertexId, VertexKind, Win
 use super::faces::Faces;
 use super::front::Arrival;
 
-/// Excess of a total angle, in radians, below which paths do not bend at a vertex; it affects no distance measurably.
+/// Excess of a total angle, in radians, up to which it is rounding and paths do not bend at a vertex; it affects no
+/// distance measurably.
 const LEAST_EXCESS: f64 = 1e-12;
 
 /// A corner in the fan of a vertex, with angles.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Sector {
+pub(super) struct FanSector {
     pub(super) corner: FanCorner,
     /// Angles from the fan's first side to the corner's first and last.
     pub(super) start: f64,
@@ -22,7 +23,7 @@ pub(super) struct Sector {
 /// The corners around every vertex, fan by fan.
 #[derive(Debug)]
 pub(super) struct Fans {
-    sectors: Rows<Sector>,
+    sectors: Rows<FanSector>,
     kinds: Vec<VertexKind>,
 }
 
@@ -39,7 +40,7 @@ impl Fans {
             let sector = |corner: &FanCorner| {
                 let start = angle;
                 angle += faces.of(corner.corner.face()).angle(corner.corner.slot());
-                Sector { corner: *corner, start, end: angle }
+                FanSector { corner: *corner, start, end: angle }
             };
             fans.sectors.push_row(ring.fans().flat_map(|fan| fan.corners).map(sector));
             fans.kinds.push(ring.kind(angle, LEAST_EXCESS));
@@ -62,7 +63,7 @@ impl Fans {
         self.kinds[vertex as usize]
     }
 
-    pub(super) fn around(&self, vertex: u32) -> &[Sector] {
+    pub(super) fn around(&self, vertex: u32) -> &[FanSector] {
         self.sectors.row(vertex as usize)
     }
 
@@ -79,7 +80,7 @@ impl Fans {
             return None;
         };
         let fan = self.around(vertex);
-        let Sector { corner: FanCorner { winding, .. }, start, end } =
+        let FanSector { corner: FanCorner { winding, .. }, start, end } =
             *fan.iter().find(|sector| sector.corner.corner == corner)?;
         let angle = fan.last()?.end;
         let within = sin.atan2(cos);

@@ -3,12 +3,12 @@
 use surface::CornerId;
 
 use super::faces::{Beyond, Faces, next};
-use super::window::Window;
+use super::window::PathWindow;
 
 /// The face of a corner, laid out with its base `ab`, the side opposite the corner, on the x-axis from zero, and the
 /// corner `c` above.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Frame {
+pub(super) struct FaceFrame {
     /// Length of `ab`.
     pub(super) base: f64,
     /// Position of `c`.
@@ -34,7 +34,7 @@ pub(super) enum Until {
     Apex,
 }
 
-impl Frame {
+impl FaceFrame {
     /// The face of a corner whose base has a length.
     ///
     /// Does not use [`surface::Triangle`]: the area is known, which saves a square root in the innermost loop.
@@ -66,16 +66,16 @@ impl Frame {
     #[inline]
     pub(super) fn project_on_ac(
         &self,
-        window: &Window,
+        window: &PathWindow,
         [start, end]: [f64; 2],
         until: Until,
-        out: &mut Vec<Window>,
+        out: &mut Vec<PathWindow>,
     ) {
         let source = [window.x, window.depth];
         let ([x, depth], [start, end]) = project(self.from_a, self.sides[0], source, [start, end], until);
         if end > start {
             let turn = window.turn.max(0) + 1;
-            out.push(Window { start, end, x, depth, offset: window.offset, turn });
+            out.push(PathWindow { start, end, x, depth, offset: window.offset, turn });
         }
     }
 
@@ -83,10 +83,10 @@ impl Frame {
     #[inline]
     pub(super) fn project_on_cb(
         &self,
-        window: &Window,
+        window: &PathWindow,
         [start, end]: [f64; 2],
         until: Until,
-        out: &mut Vec<Window>,
+        out: &mut Vec<PathWindow>,
     ) {
         let side = self.sides[1];
         let source = [self.base - window.x, window.depth];
@@ -95,7 +95,7 @@ impl Frame {
         if end > start {
             let turn = window.turn.min(0) - 1;
             let (start, end, x) = (side - end, side - start, side - x);
-            out.push(Window { start, end, x, depth, offset: window.offset, turn });
+            out.push(PathWindow { start, end, x, depth, offset: window.offset, turn });
         }
     }
 }

@@ -2,11 +2,11 @@
 
 use std::collections::VecDeque;
 
-use budget::{Budget, Exceeded};
+use base::{Budget, Exceeded};
 
 use surface::CornerId;
 
-use super::window::Window;
+use super::window::PathWindow;
 use crate::heap::VertexHeap;
 
 /// No list of windows.
@@ -27,26 +27,26 @@ pub(super) enum Arrival {
 /// A window waits at the corner whose base it is about to cross, in no particular order. The corner waits for the end
 /// of its base that was nearer when the first window came.
 #[derive(Debug, Default)]
-pub(super) struct Front {
+pub(super) struct WindowFront {
     heap: VertexHeap,
     arrivals: Vec<Arrival>,
     /// The first list that waits for each vertex.
     waiting: Vec<u32>,
     /// The list of windows at the base of every corner.
     list_at: Vec<u32>,
-    lists: Vec<List>,
+    lists: Vec<WaitingList>,
     /// Lists at no corner.
     free: Vec<u32>,
     /// Lists whose vertex has left the heap.
     ready: VecDeque<u32>,
-    memory: Memory,
+    memory: WindowMemory,
     /// Windows delivered, and lists opened, since the last call of [`take_work`](Self::take_work).
     work: usize,
 }
 
 /// The memory of the windows that wait, in windows.
 #[derive(Debug, Default)]
-struct Memory {
+struct WindowMemory {
     /// Room in all lists.
     held: usize,
     limit: usize,
@@ -59,17 +59,17 @@ struct Memory {
 const MOST_BYTES: usize = 1 << 30;
 
 #[derive(Debug)]
-struct List {
-    windows: Vec<Window>,
+struct WaitingList {
+    windows: Vec<PathWindow>,
     corner: CornerId,
     /// The next list that waits for the same vertex.
     next: u32,
 }
 
-impl Memory {
+impl WindowMemory {
     /// Makes room for more windows, unless that would take twice the limit or the system has no more memory.
     #[cold]
-    fn may_grow(&mut self, room: &mut Vec<Window>, count: usize) -> bool {
+    fn may_grow(&mut self, room: &mut Vec<PathWindow>, count: usize) -> bool {
         let needed = self.held.saturating_add(count);
         let may = needed / 2 <= self.limit && room.try_reserve(count).is_ok();
         if !may {
@@ -79,14 +79,14 @@ impl Memory {
     }
 }
 
-impl Front {
+impl WindowFront {
     /// Prepares for a new run. Allocates only to grow.
     ///
     /// Runs on all threads share the memory of the budget.
     pub(super) fn reset(&mut self, n_vertices: usize, n_corners: usize, budget: &Budget) {
         let bytes = budget.memory().map_or(MOST_BYTES, |bytes| bytes / rayon::current_num_threads());
         let held = self.lists.iter().map(|list| list.windows.capacity()).sum();
-        self.memory = Memory { held, limit: bytes / size_of::<Window>(), missing: None };
+        self.memory = WindowMemory { held, limit: bytes / size_of::<PathWindow>(), missing: None };
         self.work = 0;
         self.heap.reset(n_vertices);
         self.arrivals.resize(n_vertices, Arrival::Anywhere);
@@ -128,51 +128,44 @@ impl Front {
         &mut self,
         corner: CornerId,
         ends: [u32; 2],
-        windows: impl ExactSizeIterator<Item = Window>,
+        windows: impl ExactSizeIterator<Item = PathWindow>,
     ) {
         let list = match self.list_at[corner.index()] {
             NONE => self.open(corner, ends),
             list => list,
         };
-        let count = windows.len();
-        self.work += count;
+        self.work += windows.len();
+        self.append(list, windows);
+    }
+
+    /// As [`deliver`](Self::deliver), but may exchange the memory of `windows` instead of copying it.
+    #[inline]
+    pub(super) fn deliver_all(&mut self, corner: CornerId, ends: [u32; 2], windows: &mut Vec<PathWindow>) {
+        self.work += windows.len();
+        let list = match self.list_at[corner.index()] {
+            NONE => self.open(corner, ends),
+            list => list,
+        };
+        let before = &mut self.lists[list as usize].windows;
+        // Both are in order, and one comes before the other except for overlaps.
+        if before.first().is_none_or(|first| windows.first().is_some_and(|window| window.start < first.start))
+        {
+            self.memory.held = self.memory.held + windows.capacity() - before.capacity();
+            std::mem::swap(before, windows);
+        }
+        self.append(list, windows.iter().copied());
+    }
+
+    /// Adds windows to a list, unless there is no memory for them.
+    #[inline]
+    fn append(&mut self, list: u32, windows: impl ExactSizeIterator<Item = PathWindow>) {
         let room = &mut self.lists[list as usize].windows;
-        let before = room.capacity();
+        let (count, before) = (windows.len(), room.capacity());
         if count > before - room.len() && !self.memory.may_grow(room, count) {
             return;
         }
         room.extend(windows);
         self.memory.held = self.memory.held + room.capacity() - before;
-    }
-
-    /// As [`deliver`](Self::deliver), but may exchange the memory of `windows` instead of copying it.
-    #[inline]
-    pub(super) fn deliver_all(&mut self, corner: CornerId, ends: [u32; 2], windows: &mut Vec<Window>) {
-        self.work += windows.len();
-        match self.list_at[corner.index()] {
-            NONE => {
-                let list = self.open(corner, ends);
-                let empty = &mut self.lists[list as usize].windows;
-                self.memory.held = self.memory.held + windows.capacity() - empty.capacity();
-                std::mem::swap(empty, windows);
-            }
-            list => {
-                let before = &mut self.lists[list as usize].windows;
-                let held = before.capacity();
-                // Both are in order, and one comes before the other except for overlaps.
-                let start = |windows: &[Window]| windows.first().map(|window| window.start);
-                if start(windows) < start(before) {
-                    std::mem::swap(before, windows);
-                }
-                if windows.len() > before.capacity() - before.len()
-                    && !self.memory.may_grow(before, windows.len())
-                {
-                    return;
-                }
-                before.extend_from_slice(windows);
-                self.memory.held = self.memory.held + before.capacity() - held;
-            }
-        }
     }
 
     /// The operations since the last call.
@@ -188,15 +181,15 @@ impl Front {
     #[inline]
     pub(super) fn check_memory(&mut self) -> Result<(), Exceeded> {
         match self.memory {
-            Memory { missing: None, held, limit } if held <= limit => Ok(()),
+            WindowMemory { missing: None, held, limit } if held <= limit => Ok(()),
             _ => self.free_memory(),
         }
     }
 
     #[cold]
     fn free_memory(&mut self) -> Result<(), Exceeded> {
-        let bytes = |windows: usize| windows.saturating_mul(size_of::<Window>());
-        let Memory { held, limit, missing } = self.memory;
+        let bytes = |windows: usize| windows.saturating_mul(size_of::<PathWindow>());
+        let WindowMemory { held, limit, missing } = self.memory;
         match missing {
             Some(needed) if needed <= limit => Err(Exceeded::Allocation { needed: bytes(needed) }),
             Some(needed) => Err(Exceeded::Memory { needed: bytes(needed), limit: bytes(limit) }),
@@ -217,7 +210,7 @@ impl Front {
     /// An empty list for the base of `corner`, which now waits for one of its ends.
     fn open(&mut self, corner: CornerId, [a, b]: [u32; 2]) -> u32 {
         let list = self.free.pop().unwrap_or_else(|| {
-            self.lists.push(List { windows: Vec::new(), corner, next: NONE });
+            self.lists.push(WaitingList { windows: Vec::new(), corner, next: NONE });
             (self.lists.len() - 1) as u32
         });
         self.work += 1;
@@ -245,7 +238,7 @@ impl Front {
     }
 
     /// The next corner that is ready; its windows replace those in `windows`.
-    pub(super) fn next_ready(&mut self, windows: &mut Vec<Window>) -> Option<CornerId> {
+    pub(super) fn next_ready(&mut self, windows: &mut Vec<PathWindow>) -> Option<CornerId> {
         let index = self.ready.pop_front()?;
         let list = &mut self.lists[index as usize];
         windows.clear();

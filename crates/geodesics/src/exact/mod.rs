@@ -27,13 +27,13 @@ mod window;
 #[cfg(test)]
 mod tests;
 
-use budget::{Budget, Exceeded};
+use base::{Budget, Exceeded, Observer};
 use surface::IntrinsicMesh;
 
 use crate::solver::{DistanceSolver, Pool, within};
 use crate::source::Source;
-use prepared::Prepared;
-use propagation::Scratch;
+use prepared::PreparedSurface;
+use propagation::ExactScratch;
 
 /// Exact distances on the surface: rounding is the only error.
 ///
@@ -79,28 +79,22 @@ use propagation::Scratch;
 /// use surface::VertexId;
 ///
 /// // From a corner of a unit cube to the opposite one, straight across two unfolded sides.
-/// let solver = Exact::new(&shapes::cube(0).intrinsic());
+/// let solver = Exact::new(&shapes::cube(0).intrinsic(), &());
 /// assert!((solver.distances(VertexId(0))?[7] - 5f64.sqrt()).abs() < 1e-12);
 /// # Ok::<(), canonform_geodesics::GeodesicError>(())
 /// ```
 #[derive(Debug)]
 pub struct Exact {
-    surface: Prepared,
-    scratch: Pool<Scratch>,
+    surface: PreparedSurface,
+    scratch: Pool<ExactScratch>,
     budget: Budget,
 }
 
 impl Exact {
-    /// Prepares a surface.
+    /// Prepares a surface. The solver keeps to the budget of the observer.
     #[must_use]
-    pub fn new(mesh: &IntrinsicMesh) -> Self {
-        Self { surface: Prepared::new(mesh), scratch: Pool::default(), budget: Budget::unlimited() }
-    }
-
-    /// The same solver, which keeps to a budget.
-    #[must_use]
-    pub fn with_budget(self, budget: Budget) -> Self {
-        Self { budget, ..self }
+    pub fn new(mesh: &IntrinsicMesh, observer: &dyn Observer) -> Self {
+        Self { surface: PreparedSurface::new(mesh), scratch: Pool::default(), budget: observer.budget() }
     }
 }
 

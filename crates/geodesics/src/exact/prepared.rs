@@ -8,7 +8,7 @@ use super::order::{Renumbered, renumbered};
 
 /// A surface prepared for the propagation of windows; vertices and faces are renumbered.
 #[derive(Debug)]
-pub(super) struct Prepared {
+pub(super) struct PreparedSurface {
     pub(super) faces: Faces,
     pub(super) fans: Fans,
     /// The other end and the length, in mesh units, of every link at a vertex.
@@ -20,7 +20,7 @@ pub(super) struct Prepared {
     pub(super) new_faces: Vec<u32>,
 }
 
-impl Prepared {
+impl PreparedSurface {
     pub(super) fn new(mesh: &IntrinsicMesh) -> Self {
         let Renumbered { mesh, vertices, faces: new_faces } = renumbered(mesh);
         let faces = Faces::new(&mesh);

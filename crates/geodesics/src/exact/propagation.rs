@@ -1,27 +1,27 @@
 //! The main loop: windows are propagated in the order of the vertices that they wait for.
 
-use budget::{Budget, Exceeded, Meter};
+use base::{Budget, Exceeded, Meter};
 use surface::{CornerId, VertexKind};
 
 use super::apex::{Apex, Passes};
 use super::envelope::trim;
 use super::faces::{Along, Facing, next};
-use super::frame::{Frame, Until};
-use super::front::{Arrival, Front};
-use super::prepared::Prepared;
+use super::frame::{FaceFrame, Until};
+use super::front::{Arrival, WindowFront};
+use super::prepared::PreparedSurface;
 use super::pseudo_sources::Emission;
-use super::window::Window;
+use super::window::PathWindow;
 use crate::source::Source;
 
 /// Memory that runs share.
 #[derive(Debug, Default)]
-pub(super) struct Scratch {
-    front: Front,
+pub(super) struct ExactScratch {
+    front: WindowFront,
     /// Windows on the base of a face.
-    arrived: Vec<Window>,
+    arrived: Vec<PathWindow>,
     /// Windows on its sides, left and right of its apex.
-    left: Vec<Window>,
-    right: Vec<Window>,
+    left: Vec<PathWindow>,
+    right: Vec<PathWindow>,
 }
 
 /// Limit of the mean number of windows propagated per face. Real surfaces of a million vertices need less than a
@@ -42,13 +42,13 @@ const OPERATIONS: usize = 16;
 /// # Errors
 /// [`Exceeded`]; windows have their share of the memory of the budget.
 pub(super) fn run<'a>(
-    surface: &Prepared,
-    scratch: &'a mut Scratch,
+    surface: &PreparedSurface,
+    scratch: &'a mut ExactScratch,
     max_distance: f64,
     sources: &[Source],
     limits: &Budget,
-) -> Result<&'a Front, Exceeded> {
-    let Scratch { front, arrived, left, right } = scratch;
+) -> Result<&'a WindowFront, Exceeded> {
+    let ExactScratch { front, arrived, left, right } = scratch;
     front.reset(surface.n_vertices(), 3 * surface.faces.all.len(), limits);
     let budget = BUDGET_PER_FACE.saturating_mul(surface.faces.all.len());
     let mut emission = Emission { surface, front, budget };
@@ -58,7 +58,7 @@ pub(super) fn run<'a>(
     loop {
         let result = propagation.advance(arrived);
         if let Err(Exceeded::Memory { .. } | Exceeded::Allocation { .. }) = result {
-            *propagation.emission.front = Front::default();
+            *propagation.emission.front = WindowFront::default();
         }
         result?;
         limits.check()?;
@@ -72,15 +72,15 @@ pub(super) fn run<'a>(
 /// One run over a surface.
 struct Propagation<'a> {
     emission: Emission<'a>,
-    left: &'a mut Vec<Window>,
-    right: &'a mut Vec<Window>,
+    left: &'a mut Vec<PathWindow>,
+    right: &'a mut Vec<PathWindow>,
     /// Windows beyond this need not be propagated.
     max_distance: f64,
     meter: Meter<'a>,
 }
 
 impl Propagation<'_> {
-    fn advance(&mut self, arrived: &mut Vec<Window>) -> Result<(), Exceeded> {
+    fn advance(&mut self, arrived: &mut Vec<PathWindow>) -> Result<(), Exceeded> {
         // The path to a vertex within the limit may cross an edge between two vertices beyond it.
         let last = self.max_distance + self.emission.surface.faces.longest_edge;
         while let Some((distance, vertex)) = self.emission.front.pop() {
@@ -130,9 +130,9 @@ impl Propagation<'_> {
     }
 
     /// Propagates the windows at the base of a corner across its face.
-    fn enter_face(&mut self, corner: CornerId, windows: &mut Vec<Window>) {
+    fn enter_face(&mut self, corner: CornerId, windows: &mut Vec<PathWindow>) {
         let Emission { surface, front, budget } = &mut self.emission;
-        let frame = Frame::new(&surface.faces, corner);
+        let frame = FaceFrame::new(&surface.faces, corner);
         let [a, b, c] = frame.vertices;
         let ends = [front.distance(a), front.distance(b)];
         if self.max_distance < f64::INFINITY {
@@ -160,7 +160,7 @@ impl Propagation<'_> {
     }
 
     /// Propagates windows, in order along the base, to the two sides of a face.
-    fn propagate(&mut self, frame: &Frame, windows: &[Window]) -> Apex {
+    fn propagate(&mut self, frame: &FaceFrame, windows: &[PathWindow]) -> Apex {
         let mut apex = Apex::new(frame);
         self.left.clear();
         self.right.clear();
@@ -198,7 +198,7 @@ impl Propagation<'_> {
     }
 
     /// Propagates a window to whichever sides it reaches.
-    fn split(&mut self, frame: &Frame, apex: &Apex, index: usize, window: &Window) {
+    fn split(&mut self, frame: &FaceFrame, apex: &Apex, index: usize, window: &PathWindow) {
         match apex.passes(window) {
             Passes::Left => self.push_left(frame, window, window.end, Until::Ray),
             Passes::Right => self.push_right(frame, window, window.start, Until::Ray),
@@ -224,21 +224,21 @@ impl Propagation<'_> {
     /// A shortest path crosses no face twice, so it crosses at most all faces of a vertex in a row: `max_turn` bounds
     /// how often windows circle around the tip of a needle.
     #[inline]
-    fn push_left(&mut self, frame: &Frame, window: &Window, end: f64, until: Until) {
+    fn push_left(&mut self, frame: &FaceFrame, window: &PathWindow, end: f64, until: Until) {
         if end > window.start && window.turn < self.emission.surface.max_turn {
             frame.project_on_ac(window, [window.start, end], until, self.left);
         }
     }
 
     #[inline]
-    fn push_right(&mut self, frame: &Frame, window: &Window, start: f64, until: Until) {
+    fn push_right(&mut self, frame: &FaceFrame, window: &PathWindow, start: f64, until: Until) {
         if start < window.end && -window.turn < self.emission.surface.max_turn {
             frame.project_on_cb(window, [start, window.end], until, self.right);
         }
     }
 
     /// Delivers the windows on the sides of a face to the faces beyond.
-    fn deliver(&mut self, frame: &Frame) {
+    fn deliver(&mut self, frame: &FaceFrame) {
         let [a, b, c] = frame.vertices;
         let Emission { surface, front, .. } = &mut self.emission;
         let sides = [(&mut *self.left, [a, c]), (&mut *self.right, [b, c])];

@@ -3,22 +3,22 @@
 use surface::{CornerId, FaceId, VertexId, Winding};
 
 use super::faces::{Along, next};
-use super::fan::Sector;
-use super::frame::Frame;
-use super::front::{Arrival, Front};
-use super::prepared::Prepared;
-use super::window::Window;
-use crate::point::SurfacePoint;
+use super::fan::FanSector;
+use super::frame::FaceFrame;
+use super::front::{Arrival, WindowFront};
+use super::prepared::PreparedSurface;
+use super::window::PathWindow;
 use crate::source::Source;
+use surface::SurfacePoint;
 
-/// Barycentric coordinates below this are zero: the point lies on the edge.
+/// Barycentric coordinates below this are rounding: the point lies on the edge.
 const ON_EDGE: f64 = 1e-12;
 
 /// Emits windows into a front.
 #[derive(Debug)]
 pub(super) struct Emission<'a> {
-    pub(super) surface: &'a Prepared,
-    pub(super) front: &'a mut Front,
+    pub(super) surface: &'a PreparedSurface,
+    pub(super) front: &'a mut WindowFront,
     /// How many windows may still be emitted or propagated.
     pub(super) budget: usize,
 }
@@ -75,14 +75,14 @@ impl Emission<'_> {
             if self.surface.face(corner).lengths[slot] == 0.0 {
                 continue;
             }
-            let frame = Frame::new(&self.surface.faces, corner);
+            let frame = FaceFrame::new(&self.surface.faces, corner);
             let ([x, height], at) = (frame.apex, barycentric[slot]);
             let source = [at * x + barycentric[next(next(slot))] * frame.base, at * height];
             let distance = (x - source[0]).hypot(height - source[1]);
             self.front.reach(frame.vertices[2], distance, Arrival::Anywhere);
             if at >= ON_EDGE {
                 let [x, depth] = source;
-                let window = Window { start: 0.0, end: frame.base, x, depth, offset: 0.0, turn: 0 };
+                let window = PathWindow { start: 0.0, end: frame.base, x, depth, offset: 0.0, turn: 0 };
                 self.emit_over_base(corner, &frame, window);
             }
         }
@@ -101,7 +101,7 @@ impl Emission<'_> {
             }
             return;
         };
-        for Sector { corner, start, end } in fan {
+        for FanSector { corner, start, end } in fan {
             for [low, high] in open {
                 if high > low && high > *start && low < *end {
                     let [low, high] = match corner.winding {
@@ -133,7 +133,7 @@ impl Emission<'_> {
         if face.lengths[slot] == 0.0 {
             return;
         }
-        let frame = Frame::new(&self.surface.faces, corner);
+        let frame = FaceFrame::new(&self.surface.faces, corner);
         let [x, height] = frame.apex;
         let meet_base = |angle: f64| {
             let (sin, cos) = angle.sin_cos();
@@ -147,12 +147,12 @@ impl Emission<'_> {
         self.emit_over_base(
             corner,
             &frame,
-            Window { start, end, x, depth: height, offset: distance, turn: 0 },
+            PathWindow { start, end, x, depth: height, offset: distance, turn: 0 },
         );
     }
 
     /// Delivers a window on the base of a corner, given from inside its face, to the faces beyond.
-    fn emit_over_base(&mut self, corner: CornerId, frame: &Frame, window: Window) {
+    fn emit_over_base(&mut self, corner: CornerId, frame: &FaceFrame, window: PathWindow) {
         if window.end <= window.start || self.budget == 0 {
             return;
         }

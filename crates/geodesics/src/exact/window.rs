@@ -5,7 +5,7 @@
 /// The edge lies on the x-axis from zero to its length, with the face to be entered above it and the unfolded
 /// sequence below. The distance at a point `t` of the window is `offset + |(t, 0) - (x, -depth)|`.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Window {
+pub(super) struct PathWindow {
     pub(super) start: f64,
     pub(super) end: f64,
     /// Position of the unfolded pseudo-source along the edge.
@@ -18,7 +18,7 @@ pub(super) struct Window {
     pub(super) turn: i32,
 }
 
-impl Window {
+impl PathWindow {
     /// Distance at the point `t` of the edge.
     #[inline]
     pub(super) fn distance(&self, t: f64) -> f64 {
@@ -74,11 +74,11 @@ fn nearer_until(x: f64, depth: f64, lead: f64) -> f64 {
 /// Positive where the paths of `left` come from further left than those of `right`, whose distance then decreases
 /// relative to `left` with increasing `t`; linear in `t`.
 #[inline]
-pub(super) fn order(left: &Window, right: &Window, t: f64) -> f64 {
+pub(super) fn order(left: &PathWindow, right: &PathWindow, t: f64) -> f64 {
     (t - left.x) * right.depth - (t - right.x) * left.depth
 }
 
-/// How far from equal two distances may be at a crossing, as a share of them.
+/// How far from equal rounding may leave two distances at a crossing, as a share of them.
 const EQUAL: f64 = 1e-12;
 
 /// Where in `low..high` the nearer of two windows changes from `left` to `right`; `None` if rounding hides it.
@@ -87,7 +87,7 @@ const EQUAL: f64 = 1e-12;
 /// squared is linear in the position but for `2 d s`; squared again it is quadratic. One of its roots may belong to
 /// `-d`. If the two pseudo-sources are in line with a nearly double root, rounding leaves little of either. So a root
 /// only counts if the distances agree there.
-pub(super) fn crossing(left: &Window, right: &Window, [low, high]: [f64; 2]) -> Option<f64> {
+pub(super) fn crossing(left: &PathWindow, right: &PathWindow, [low, high]: [f64; 2]) -> Option<f64> {
     let (p, q) = (left.x - low, right.x - low);
     let (rr, ss) = (p * p + left.depth * left.depth, q * q + right.depth * right.depth);
     let d = right.offset - left.offset;
@@ -113,17 +113,17 @@ pub(super) fn crossing(left: &Window, right: &Window, [low, high]: [f64; 2]) -> 
 mod tests {
     use super::*;
 
-    const NEAR: Window = Window { start: 0.0, end: 4.0, x: 1.0, depth: 2.0, offset: 0.5, turn: 3 };
+    const NEAR: PathWindow = PathWindow { start: 0.0, end: 4.0, x: 1.0, depth: 2.0, offset: 0.5, turn: 3 };
 
     #[test]
     fn a_mirrored_window_has_the_same_distances_from_the_other_end() {
-        let mirrored = Window { start: 1.0, ..NEAR }.mirrored(5.0);
+        let mirrored = PathWindow { start: 1.0, ..NEAR }.mirrored(5.0);
         assert_eq!((mirrored.start, mirrored.end, mirrored.turn), (1.0, 4.0, -3));
         for t in [0.0, 1.3, 5.0] {
             assert_eq!(NEAR.distance(t), mirrored.distance(5.0 - t));
         }
         assert_eq!(NEAR.least_distance(), 2.5);
-        assert_eq!(Window { start: 2.0, ..NEAR }.least_distance(), NEAR.distance(2.0));
+        assert_eq!(PathWindow { start: 2.0, ..NEAR }.least_distance(), NEAR.distance(2.0));
     }
 
     #[test]
@@ -146,14 +146,14 @@ mod tests {
     #[test]
     fn distances_are_equal_at_a_crossing_and_the_right_window_gains() {
         for (x, depth, offset) in [(3.0, 2.0, 0.5), (4.0, 1.0, 0.7), (2.5, 0.1, 1.0), (9.0, 0.5, -4.9)] {
-            let right = Window { x, depth, offset, ..NEAR };
+            let right = PathWindow { x, depth, offset, ..NEAR };
             let at = crossing(&NEAR, &right, [0.0, 4.0]).unwrap();
             assert!((NEAR.distance(at) - right.distance(at)).abs() < 1e-13);
             assert!(NEAR.distance(at - 0.1) < right.distance(at - 0.1), "{x}");
             assert!(NEAR.distance(at + 0.1) > right.distance(at + 0.1), "{x}");
         }
         // One pseudo-source behind the other: equal along one ray only, and `right` is never nearer elsewhere.
-        let behind = Window { x: 1.5, depth: 3.0, offset: 0.5 - 1.25f64.sqrt(), ..NEAR };
+        let behind = PathWindow { x: 1.5, depth: 3.0, offset: 0.5 - 1.25f64.sqrt(), ..NEAR };
         if let Some(at) = crossing(&NEAR, &behind, [0.0, 4.0]) {
             assert!((NEAR.distance(at) - behind.distance(at)).abs() < 1e-12);
         }

@@ -3,11 +3,11 @@
 //! The steps of a round are functions that are not inlined: side by side in one function they leave each other too
 //! few registers, which takes a tenth more time.
 
-use budget::{Budget, Exceeded};
+use base::{Budget, Exceeded};
 
 use super::buckets::Buckets;
 use super::one_ring::OneRings;
-use super::relaxation::{EdgeRelaxation, Label, ROUNDING, Relaxations, Round, TriangleSolver};
+use super::relaxation::{EdgeRelaxation, ROUNDING, Relaxations, Round, TriangleSolver, VertexLabel};
 use super::update::Stencil;
 
 /// Limit of the mean number of visits per vertex, after which finalized vertices are no longer corrected. Real
@@ -20,8 +20,8 @@ const OPERATIONS: usize = 8;
 
 /// A front that advances bucket by bucket, each in one round or a few.
 #[derive(Debug, Default)]
-pub(super) struct Front {
-    labels: Vec<Label>,
+pub(super) struct VertexFront {
+    labels: Vec<VertexLabel>,
     buckets: Buckets,
     /// The vertices of a round.
     round: Vec<u32>,
@@ -29,18 +29,18 @@ pub(super) struct Front {
     solver: TriangleSolver,
 }
 
-impl Front {
+impl VertexFront {
     /// Prepares for a new run. Allocates only to grow.
     pub(super) fn reset(&mut self, rings: &OneRings) {
         let n = rings.order.len();
         self.labels.clear();
-        self.labels.resize(n, Label::UNREACHED);
+        self.labels.resize(n, VertexLabel::UNREACHED);
         self.buckets.reset(n, rings.bucket_width, rings.longest);
     }
 
     /// Puts a vertex at a straight distance from the source into the front.
     pub(super) fn start(&mut self, vertex: u32, distance: f64) {
-        lower(&mut self.labels, &mut self.buckets, vertex, Label { distance, pseudo_source: 0.0 });
+        lower(&mut self.labels, &mut self.buckets, vertex, VertexLabel { distance, pseudo_source: 0.0 });
     }
 
     #[inline]
@@ -79,7 +79,7 @@ impl Front {
 
 /// Lowers the label of a vertex, if it is an improvement.
 #[inline]
-fn lower(labels: &mut [Label], buckets: &mut Buckets, vertex: u32, label: Label) {
+fn lower(labels: &mut [VertexLabel], buckets: &mut Buckets, vertex: u32, label: VertexLabel) {
     let known = &mut labels[vertex as usize];
     if label.distance < known.distance * (1.0 - ROUNDING) {
         *known = label;

@@ -50,17 +50,17 @@ mod virtual_source;
 use std::borrow::Cow;
 use std::cell::Cell;
 
-use budget::{Budget, Exceeded};
+use base::{Budget, Exceeded, Observer};
 use surface::{IntrinsicMesh, Loops, Triangulation, VertexId};
 
 use crate::graph::patches_of;
 use crate::solver::{DistanceSolver, Pool, PrunedSolver, within};
 use crate::source::Source;
-use front::Front;
+use front::VertexFront;
 use one_ring::OneRings;
 use unfold::split_obtuse_corners;
 pub(crate) use update::Stencil;
-use virtual_source::{Front as TriangleFront, Triangles};
+use virtual_source::{TriangleFront, Triangles};
 
 /// The local solver of fast marching.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
@@ -133,7 +133,7 @@ pub struct FastMarchingOptions {
 ///
 /// // A sheet of 9 x 5 vertices, one unit apart: distances in a plane are exact.
 /// let sheet = shapes::grid(9, 5, 1.0);
-/// let solver = FastMarching::new(&sheet.intrinsic(), FastMarchingOptions::default());
+/// let solver = FastMarching::new(&sheet.intrinsic(), FastMarchingOptions::default(), &());
 /// let distances = solver.distances(VertexId(0))?;
 /// assert!((distances[44] - 8f64.hypot(4.0)).abs() < 1e-12);
 /// # Ok::<(), canonform_geodesics::GeodesicError>(())
@@ -146,34 +146,39 @@ pub struct FastMarchingOptions {
 /// [`kim2001`]: https://doi.org/10.1137/S1064827500367130
 #[derive(Debug)]
 pub struct FastMarching {
-    layout: Layout,
+    /// The unit of all lengths in the layout, in mesh units. Other than 1 only for very short or very long edges.
+    unit: f64,
+    layout: MarchLayout,
     budget: Budget,
 }
 
 /// The surface as the local solver needs it, and memory for fronts.
 #[derive(Debug)]
-enum Layout {
+enum MarchLayout {
     Triangles(Triangles, Pool<TriangleFront>),
-    OneRings(OneRings, Update, Pool<Front>),
+    OneRings(OneRings, Update, Pool<VertexFront>),
 }
 
 /// Up to this many vertices, a mesh that is handed over is kept until one-rings are laid out, which is then faster.
 const LEAN: usize = 1 << 19;
 
 impl FastMarching {
-    /// Prepares a surface.
+    /// Prepares a surface. The solver keeps to the budget of the observer.
     #[must_use]
-    pub fn new(mesh: &IntrinsicMesh, options: FastMarchingOptions) -> Self {
-        Self::of(Cow::Borrowed(mesh), options)
+    pub fn new(mesh: &IntrinsicMesh, options: FastMarchingOptions, observer: &dyn Observer) -> Self {
+        Self::of(Cow::Borrowed(mesh), options, observer)
     }
 
-    /// Prepares a surface, whose memory is free before that of the solver is needed.
+    /// As [`new`](Self::new), with a surface whose memory is free before that of the solver is needed.
     #[must_use]
-    pub fn from_owned(mesh: IntrinsicMesh, options: FastMarchingOptions) -> Self {
-        Self::of(Cow::Owned(mesh), options)
+    pub fn from_owned(mesh: IntrinsicMesh, options: FastMarchingOptions, observer: &dyn Observer) -> Self {
+        Self::of(Cow::Owned(mesh), options, observer)
     }
 
-    fn of(owned: Cow<'_, IntrinsicMesh>, options: FastMarchingOptions) -> Self {
+    fn of(owned: Cow<'_, IntrinsicMesh>, options: FastMarchingOptions, observer: &dyn Observer) -> Self {
+        // Otherwise products of lengths would vanish or overflow.
+        let unit = owned.unit();
+        let owned = if unit == 1.0 { owned } else { Cow::Owned(owned.in_units_of(unit)) };
         let mesh = owned.as_ref();
         let carries_sources = options.update == Update::VirtualSource;
         let (prepared, order) = rayon::join(
@@ -200,20 +205,14 @@ impl FastMarching {
         };
         let layout = if carries_sources {
             let triangles = Triangles::new(order, &triangulation, &links, &segments, mean);
-            Layout::Triangles(triangles, Pool::default())
+            MarchLayout::Triangles(triangles, Pool::default())
         } else {
             let topology = kept.as_deref().map(IntrinsicMesh::topology);
             let links = [links, segments].concat();
             let rings = OneRings::new(order, topology, &triangulation, &links, &halves, mean);
-            Layout::OneRings(rings, options.update, Pool::default())
+            MarchLayout::OneRings(rings, options.update, Pool::default())
         };
-        Self { layout, budget: Budget::unlimited() }
-    }
-
-    /// The same solver, which keeps to a budget.
-    #[must_use]
-    pub fn with_budget(self, budget: Budget) -> Self {
-        Self { budget, ..self }
+        Self { unit, layout, budget: observer.budget() }
     }
 
     /// Gives the distances from the nearest of `sources` to `found`, by mesh vertex.
@@ -223,28 +222,39 @@ impl FastMarching {
         stops: impl Stops,
         mut found: impl FnMut(u32, f64),
     ) -> Result<(), Exceeded> {
+        let unit = self.unit;
+        let scaled: Vec<Source>;
+        let sources = if unit == 1.0 {
+            sources
+        } else {
+            scaled = sources.iter().map(|source| source.in_units_of(unit)).collect();
+            &scaled
+        };
         match &self.layout {
-            Layout::Triangles(triangles, scratch) => scratch.with(|front| {
+            MarchLayout::Triangles(triangles, scratch) => scratch.with(|front| {
                 front.run(triangles, sources, &self.budget, |number, distance| {
-                    let longest = || triangles.longest_of(number);
-                    triangles.mesh_vertices(number).into_iter().all(|v| stops(v, distance, &longest))
+                    let longest = || unit * triangles.longest_of(number);
+                    triangles.mesh_vertices(number).into_iter().all(|v| stops(v, unit * distance, &longest))
                 })?;
-                (0..).zip(&triangles.order).for_each(|(internal, v)| found(*v, front.distance(internal)));
+                (0..)
+                    .zip(&triangles.order)
+                    .for_each(|(internal, v)| found(*v, unit * front.distance(internal)));
                 Ok(())
             }),
-            Layout::OneRings(rings, update, scratch) => scratch.with(|front| {
+            MarchLayout::OneRings(rings, update, scratch) => scratch.with(|front| {
                 front.reset(rings);
                 for (vertex, distance) in sources.iter().flat_map(Source::reach) {
                     front.start(rings.rank[vertex.index()], *distance);
                 }
                 let stops = |vertex, distance| {
-                    stops(rings.order[vertex as usize], distance, &|| rings.longest_at(vertex))
+                    let longest = || unit * rings.longest_at(vertex);
+                    stops(rings.order[vertex as usize], unit * distance, &longest)
                 };
                 match update {
                     Update::Planar => front.run(rings, &self.budget, stops, Stencil::planar),
                     _ => front.run(rings, &self.budget, stops, Stencil::point_source),
                 }?;
-                (0..).zip(&rings.order).for_each(|(internal, v)| found(*v, front.distance(internal)));
+                (0..).zip(&rings.order).for_each(|(internal, v)| found(*v, unit * front.distance(internal)));
                 Ok(())
             }),
         }
@@ -257,14 +267,15 @@ trait Stops: Fn(u32, f64, &dyn Fn() -> f64) -> bool {}
 impl<F: Fn(u32, f64, &dyn Fn() -> f64) -> bool> Stops for F {}
 
 /// A pruned front stops this many times the longest edge at a vertex beyond the vertices nearest to the new source,
-/// so that distances near the border are the same as without pruning.
+/// so that distances near the border are the same as without pruning: a safety margin. Farthest points are checked
+/// against full distances; [`SpreadSamples`](crate::SpreadSamples) are not.
 const BORDER: f64 = 2.0;
 
 impl DistanceSolver for FastMarching {
     fn n_vertices(&self) -> usize {
         match &self.layout {
-            Layout::Triangles(triangles, _) => triangles.order.len(),
-            Layout::OneRings(rings, ..) => rings.order.len(),
+            MarchLayout::Triangles(triangles, _) => triangles.order.len(),
+            MarchLayout::OneRings(rings, ..) => rings.order.len(),
         }
     }
 

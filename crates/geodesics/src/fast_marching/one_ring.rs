@@ -135,7 +135,7 @@ pub(super) struct OneRings {
 }
 
 /// Width of the buckets, as a share of the mean edge length. In wider buckets more vertices have to be corrected, in
-/// narrower ones too few are handled together.
+/// narrower ones too few are handled together. It affects time only, which `make bench` measures.
 const BUCKET_WIDTH: f64 = 0.05;
 
 /// Number of vertices whose one-rings one thread lays out at a time.
@@ -145,7 +145,7 @@ const BLOCK: usize = 1024;
 const AHEAD: usize = 6;
 const MOST_AHEAD: usize = 16;
 
-/// Excess of a total angle, in radians, below which it is rounding.
+/// Excess of a total angle, in radians, up to which it counts as rounding.
 pub(super) const EXCESS: f64 = 5e-9;
 
 impl OneRings {
@@ -164,7 +164,7 @@ impl OneRings {
         let n = order.len();
         let rank = ranks(&order);
         let halves = Rows::collect(n, halves.iter().map(|(v, half)| (*v as usize, *half)));
-        let mut layout = Layout {
+        let mut layout = RingLayout {
             topology,
             triangulation,
             around: triangulation.vertex_corners(n),
@@ -176,7 +176,7 @@ impl OneRings {
             rank,
         };
         let Filled { neighbours, may_bend, longest } = layout.fill();
-        let Layout { order, rank, .. } = layout;
+        let RingLayout { order, rank, .. } = layout;
         Self { neighbours, may_bend, order, rank, longest, bucket_width: BUCKET_WIDTH * mean_edge_length }
     }
 
@@ -210,7 +210,7 @@ impl OneRings {
 }
 
 /// What the one-rings are made of.
-struct Layout<'a> {
+struct RingLayout<'a> {
     /// The connectivity of the mesh, if it is still there; a few edges may have been flipped since.
     topology: Option<&'a Topology>,
     triangulation: &'a Triangulation,
@@ -234,12 +234,12 @@ struct Filled {
 
 /// Memory for laying out one vertex after the other.
 #[derive(Default)]
-struct Scratch {
+struct RingScratch {
     ring: OneRing,
     neighbours: Vec<Neighbour>,
 }
 
-impl Layout<'_> {
+impl RingLayout<'_> {
     /// Lays out all one-rings in place, in parallel. Their sizes are computed before. Where that is wrong, in rare
     /// cases, they are corrected and all is laid out again.
     fn fill(&mut self) -> Filled {
@@ -252,7 +252,7 @@ impl Layout<'_> {
                 Err(wrong) => {
                     wrong.iter().for_each(|i| self.has_fans[self.order[*i] as usize] = true);
                     self.list_corners();
-                    let mut scratch = Scratch::default();
+                    let mut scratch = RingScratch::default();
                     for i in wrong {
                         self.lay_out(self.order[i], &mut scratch);
                         sizes[i] = scratch.neighbours.len() as u32;
@@ -307,7 +307,7 @@ impl Layout<'_> {
         let blocks: Vec<(f64, Vec<usize>)> = blocks
             .into_par_iter()
             .enumerate()
-            .map_init(Scratch::default, |scratch, (block, (may_bend, sizes, mut rest))| {
+            .map_init(RingScratch::default, |scratch, (block, (may_bend, sizes, mut rest))| {
                 let (mut longest, mut wrong) = (0.0, Vec::new());
                 for (i, (may_bend, size)) in (block * BLOCK..).zip(may_bend.iter_mut().zip(sizes)) {
                     self.prefetch(i);
@@ -350,8 +350,8 @@ impl Layout<'_> {
     }
 
     /// Lays out the neighbours of a mesh vertex in `scratch`; returns whether shortest paths may bend there.
-    fn lay_out(&self, v: u32, scratch: &mut Scratch) -> bool {
-        let Scratch { ring, neighbours } = scratch;
+    fn lay_out(&self, v: u32, scratch: &mut RingScratch) -> bool {
+        let RingScratch { ring, neighbours } = scratch;
         let v = v as usize;
         let (around, links, halves) = (&self.around[v], self.links.row(v), self.halves.row(v));
         neighbours.clear();

@@ -2,7 +2,6 @@
 
 use super::one_ring::{Allowed, OneRings};
 use super::update::{FAR, Stencil};
-use crate::instructions::Instructions;
 use crate::prefetch::prefetch;
 
 /// Distances that differ by less than this share are equal up to rounding: a smaller improvement causes no visit, and
@@ -11,19 +10,19 @@ pub(super) const ROUNDING: f64 = 1e-13;
 
 /// If shortest paths to the two ends of a base have different pseudo-sources, this share of the difference is added
 /// to the smaller pseudo-source distance. The mean error over the reference meshes is least between 0.3 and 0.4,
-/// where errors of either sign balance.
+/// where errors of either sign balance; `make bench-peers` measures them.
 const LATER_PSEUDO_SOURCE: f64 = 0.35;
 
 /// The tentative result at a vertex.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Label {
+pub(super) struct VertexLabel {
     /// Tentative distance from the source.
     pub(super) distance: f64,
     /// Distance of the pseudo-source: the vertex where the path to here last bent. Zero if the path is straight.
     pub(super) pseudo_source: f64,
 }
 
-impl Label {
+impl VertexLabel {
     /// Of a vertex that has not been reached.
     pub(super) const UNREACHED: Self = Self { distance: f64::INFINITY, pseudo_source: 0.0 };
 }
@@ -32,7 +31,7 @@ impl Label {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Round<'a> {
     pub(super) rings: &'a OneRings,
-    pub(super) labels: &'a [Label],
+    pub(super) labels: &'a [VertexLabel],
     /// The vertices of the round.
     pub(super) vertices: &'a [u32],
     /// All vertices at smaller distances are finalized, and for each vertex those that are nearer than itself.
@@ -45,7 +44,7 @@ pub(super) struct Round<'a> {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct EdgeRelaxation {
     pub(super) end: u32,
-    pub(super) label: Label,
+    pub(super) label: VertexLabel,
 }
 
 /// A triangle at a vertex of the round that may lower its third vertex.
@@ -116,11 +115,11 @@ impl Relaxations {
             prefetch(ring);
             most += ring.len();
         }
-        let blank = EdgeRelaxation { end: 0, label: Label::UNREACHED };
+        let blank = EdgeRelaxation { end: 0, label: VertexLabel::UNREACHED };
         let mut edges = Compaction::new(&mut self.edges, most, blank);
         let mut triangles = Compaction::new(&mut self.triangles, 2 * most, TriangleUpdate::default());
         for &vertex in vertices {
-            let Label { distance, pseudo_source } = labels[vertex as usize];
+            let VertexLabel { distance, pseudo_source } = labels[vertex as usize];
             if stops(vertex, distance) {
                 continue;
             }
@@ -138,7 +137,7 @@ impl Relaxations {
                 let at_neighbour = labels[neighbour.vertex as usize].distance;
                 let allowed = neighbour.allowed.only(allowed);
                 let along = distance + neighbour.length;
-                let label = Label { distance: along, pseudo_source: along_edges };
+                let label = VertexLabel { distance: along, pseudo_source: along_edges };
                 let edge = EdgeRelaxation { end: neighbour.vertex, label };
                 edges.add(edge, (along <= at_neighbour * (1.0 + ROUNDING)) & allowed.has(Allowed::EDGE));
                 let is_forward = at_before < at_neighbour;
@@ -204,7 +203,7 @@ struct Block {
 
 impl Block {
     #[inline]
-    fn set(&mut self, lane: usize, triangle: &TriangleUpdate, rings: &OneRings, labels: &[Label]) {
+    fn set(&mut self, lane: usize, triangle: &TriangleUpdate, rings: &OneRings, labels: &[VertexLabel]) {
         let (a, neighbour) = (labels[triangle.from as usize], rings.at(triangle.neighbour));
         let before = rings.at(triangle.before);
         let (base, side) = if triangle.is_forward == 1 { (before, neighbour) } else { (neighbour, before) };
@@ -238,7 +237,7 @@ impl Block {
 pub(super) struct TriangleSolver {
     blocks: Vec<Block>,
     n: usize,
-    instructions: Instructions,
+    instructions: pulp::Arch,
 }
 
 impl TriangleSolver {
@@ -248,7 +247,7 @@ impl TriangleSolver {
         &mut self,
         triangles: &[TriangleUpdate],
         rings: &OneRings,
-        labels: &[Label],
+        labels: &[VertexLabel],
         update: &impl Fn(Stencil, f64, f64) -> f64,
     ) {
         self.n = triangles.len();
@@ -266,10 +265,11 @@ impl TriangleSolver {
     }
 
     /// The vertices updated and their new labels; infinite where the triangle does not carry the front.
-    pub(super) fn results(&self) -> impl Iterator<Item = (u32, Label)> {
+    pub(super) fn results(&self) -> impl Iterator<Item = (u32, VertexLabel)> {
         (0..self.n).map(|i| {
             let (block, lane) = (&self.blocks[i / LANES], i % LANES);
-            let label = Label { distance: block.at_apex[lane], pseudo_source: block.pseudo_source[lane] };
+            let label =
+                VertexLabel { distance: block.at_apex[lane], pseudo_source: block.pseudo_source[lane] };
             (block.apex[lane], label)
         })
     }

@@ -7,7 +7,7 @@
 use surface::{CornerId, FaceId, IntrinsicMesh, Link, VertexId};
 
 use super::one_ring::HalfCorner;
-use crate::plane::{Point, Side, apex, beyond, sub};
+use crate::plane::{GateSide, apex, beyond, dot, norm, sub};
 
 /// Limit of the triangles in a strip; strips of slivers may have no end.
 const MAX_STEPS: usize = 12;
@@ -41,14 +41,6 @@ struct Split {
     bases: [f64; 2],
 }
 
-fn dot(a: Point, b: Point) -> f64 {
-    a[0] * b[0] + a[1] * b[1]
-}
-
-fn norm(a: Point) -> f64 {
-    dot(a, a).sqrt()
-}
-
 /// Unfolds the surface behind a corner. Returns `None` if the corner is not obtuse, or if the strip reaches the
 /// boundary or a non-manifold edge, or gets too long.
 fn split(mesh: &IntrinsicMesh, corner: CornerId) -> Option<Split> {
@@ -78,7 +70,7 @@ fn split(mesh: &IntrinsicMesh, corner: CornerId) -> Option<Split> {
             return None;
         }
         // The new vertex is on the other side of the edge than the apex.
-        let at = beyond([at_left, at_right], [edge, from_left, from_right], Side::Behind);
+        let at = beyond([at_left, at_right], [edge, from_left, from_right], GateSide::Behind);
         let ray = sub(at, apex);
         match (dot(ray, to_a) > 0.0, dot(ray, to_b) > 0.0) {
             (true, true) => {
@@ -101,9 +93,10 @@ mod tests {
     use surface::Topology;
 
     use super::*;
+    use crate::plane::PlanePoint;
 
     /// Vertices in the plane, and faces between them.
-    fn flat(points: &[Point], faces: &[[u32; 3]]) -> IntrinsicMesh {
+    fn flat(points: &[PlanePoint], faces: &[[u32; 3]]) -> IntrinsicMesh {
         let faces = faces.iter().map(|f| f.map(VertexId)).collect();
         let topology = Topology::new(points.len(), faces);
         let lengths =

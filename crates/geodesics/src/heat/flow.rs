@@ -3,7 +3,7 @@
 use surface::laplacian::Element;
 use surface::{Link, Triangle};
 
-/// A longer link, in units, transports heat as if it had this length, so that some heat arrives.
+/// A longer link, in units, transports heat as if it had this length: a safety limit, so that some heat arrives.
 pub(super) const LONGEST_BAR: f64 = 400.0;
 
 /// The same in heat lengths, for short times: `exp(-DEEPEST)` does not underflow.
@@ -43,7 +43,7 @@ pub(super) fn add_divergence<const K: usize>(element: &Element, u: &[[f64; K]], 
 /// Exact for the heat equation in one dimension: heat on it is a sum of `exp(x)` and `exp(-x)`, `x` in heat lengths,
 /// and falls along the bar as it does along the surface.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Bar {
+pub(super) struct HeatBar {
     pub(super) ends: [u32; 2],
     length: f64,
     /// `sqrt(t)`.
@@ -52,7 +52,7 @@ pub(super) struct Bar {
     depth: f64,
 }
 
-impl Bar {
+impl HeatBar {
     pub(super) fn new(link: &Link, heat_length: f64) -> Self {
         let depth = (link.length.min(LONGEST_BAR) / heat_length).min(DEEPEST);
         Self { ends: link.ends.map(|v| v.0), length: link.length, heat_length, depth }
@@ -112,7 +112,7 @@ mod tests {
     #[test]
     fn a_bar_rises_by_its_length_or_up_to_where_heat_from_both_ends_meets() {
         let link = Link { ends: [0, 1].map(surface::VertexId), length: 3.0 };
-        let bar = Bar::new(&link, 0.5);
+        let bar = HeatBar::new(&link, 0.5);
         let rise = |u: [f64; 2]| {
             let mut b = [[0.0]; 2];
             bar.add_divergence(&u.map(|u| [u]), &mut b);

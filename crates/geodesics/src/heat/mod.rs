@@ -3,7 +3,7 @@
 mod flow;
 mod system;
 
-use budget::{Budget, Exceeded};
+use base::{Budget, Exceeded, Observer};
 use linalg::Matrix;
 use rayon::prelude::*;
 use surface::laplacian::{Element, Laplacian, Metric};
@@ -11,10 +11,10 @@ use surface::{Components, IntrinsicMesh, Link, Rows, VertexId, components_with_l
 
 use crate::dijkstra::Dijkstra;
 use crate::error::GeodesicError;
-use crate::point::SurfacePoint;
 use crate::solver::{DistanceSolver, Pool, within};
 use crate::source::Source;
-use flow::{Bar, LONGEST_BAR};
+use flow::{HeatBar, LONGEST_BAR};
+use surface::SurfacePoint;
 use system::System;
 
 /// Options of [`HeatMethod`].
@@ -41,7 +41,7 @@ impl Default for HeatOptions {
 const AMPLITUDE: f64 = 1e280;
 
 /// The mean side, as a share of the square root of the area, below which heat flows for longer than the square of the
-/// side, so that the error vanishes under refinement.
+/// side, so that the error vanishes under refinement. `make bench-peers` measures the errors of the heat method.
 const FINE: f64 = 1.0 / 200.0;
 
 /// How far heat can travel, in heat lengths, before it underflows.
@@ -88,7 +88,7 @@ const LANES: usize = 4;
 /// use surface::VertexId;
 ///
 /// // From one pole of a unit sphere to the other.
-/// let method = HeatMethod::new(&shapes::icosphere(4).intrinsic(), HeatOptions::default())?;
+/// let method = HeatMethod::new(&shapes::icosphere(4).intrinsic(), HeatOptions::default(), &())?;
 /// let farthest = method.distances(VertexId(0))?.into_iter().fold(0.0, f64::max);
 /// assert!((farthest / std::f64::consts::PI - 1.0).abs() < 0.02);
 /// # Ok::<(), canonform_geodesics::GeodesicError>(())
@@ -109,7 +109,7 @@ pub struct HeatMethod {
     step: Vec<u32>,
     /// The triangles and links; their vertices are given by their steps.
     elements: Vec<Element>,
-    bars: Vec<Bar>,
+    bars: Vec<HeatBar>,
     system: System,
     scratch: Pool<Vec<f64>>,
     budget: Budget,
@@ -119,19 +119,18 @@ impl HeatMethod {
     /// Flips the surface to Delaunay and factorises its matrices.
     ///
     /// Lengths that violate the triangle inequality are corrected, see [`Metric`]. If rounding makes a matrix
-    /// indefinite, 1e-12, 1e-9 or 1e-6 of its diagonal is added.
+    /// indefinite, 1e-12, 1e-9 or 1e-6 of its diagonal is added. The solver keeps to the budget of the observer, as its
+    /// preparation does.
     ///
     /// # Errors
-    /// [`GeodesicError::BadHeatTime`]; [`GeodesicError::NotFactorised`] if that does not help, or memory runs out.
-    pub fn new(mesh: &IntrinsicMesh, options: HeatOptions) -> Result<Self, GeodesicError> {
-        Self::within(mesh, options, Budget::unlimited())
-    }
-
-    /// As [`new`](Self::new) within a budget, which the solver keeps to as well.
-    ///
-    /// # Errors
-    /// [`GeodesicError::Exceeded`] and those of [`new`](Self::new).
-    pub fn within(mesh: &IntrinsicMesh, options: HeatOptions, budget: Budget) -> Result<Self, GeodesicError> {
+    /// [`GeodesicError::BadHeatTime`]; [`GeodesicError::NotFactorised`] if that does not help, or memory runs out;
+    /// [`GeodesicError::Exceeded`].
+    pub fn new(
+        mesh: &IntrinsicMesh,
+        options: HeatOptions,
+        observer: &dyn Observer,
+    ) -> Result<Self, GeodesicError> {
+        let budget = observer.budget();
         if !(options.time > 0.0 && options.time.is_finite()) {
             return Err(GeodesicError::BadHeatTime { time: options.time });
         }
@@ -144,7 +143,7 @@ impl HeatMethod {
         let time = options.time * side * side.max(FINE * area.sqrt());
         let time = time.max((extent(mesh, metric, &components, &budget)? / RANGE).powi(2));
         let links = metric.links.iter().filter(|link| link.ends[0] != link.ends[1]);
-        let mut bars: Vec<Bar> = links.map(|link| Bar::new(link, time.sqrt())).collect();
+        let mut bars: Vec<HeatBar> = links.map(|link| HeatBar::new(link, time.sqrt())).collect();
         let system = System::new(&laplacian, &bars, time, &grounded, &budget)?;
         let neighbours = neighbours(mesh.n_vertices(), laplacian.elements());
         let mut step = vec![0; mesh.n_vertices()];
@@ -242,7 +241,7 @@ impl HeatMethod {
     }
 }
 
-/// A vertex this close to a source, in units, is at the source.
+/// A vertex this close to a source, in units, is at the source: a safety limit of the weights `1 / distance`.
 const AT_SOURCE: f64 = 1e-6;
 
 /// By how much the potential of a component exceeds known distances.
@@ -339,7 +338,7 @@ fn extent(
 ) -> Result<f64, Exceeded> {
     let links = metric.links.iter().map(|link| Link { length: link.length.min(LONGEST_BAR), ..*link });
     let scaled = IntrinsicMesh::new(mesh.topology().clone(), metric.edges.clone());
-    let graph = Dijkstra::new(&scaled.with_links(links.collect())).with_budget(budget.clone());
+    let graph = Dijkstra::new(&scaled.with_links(links.collect()), budget);
     let mut distances = vec![0.0; mesh.n_vertices()];
     let mut farthest = components.lowest_vertices();
     for _ in 0..2 {

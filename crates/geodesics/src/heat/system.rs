@@ -1,14 +1,14 @@
 //! The two matrices and their factors.
 
-use budget::Budget;
+use base::Budget;
 use linalg::{EliminationOrder, LinalgError, SparseCholesky, SparseSymmetric};
 use surface::VertexId;
 use surface::laplacian::{Element, Laplacian};
 
-use super::flow::Bar;
+use super::flow::HeatBar;
 use crate::error::GeodesicError;
 
-/// Shares of its diagonal added, one after the other, to a matrix that cannot be factorised.
+/// Shares of its diagonal added, one after the other, to a matrix that rounding keeps from being factorised.
 const SHIFTS: [f64; 4] = [0.0, 1e-12, 1e-9, 1e-6];
 
 /// The factors of `M + t L` and of `L`, in the same order of elimination.
@@ -27,7 +27,7 @@ impl System {
     /// makes it definite. As right-hand sides sum to zero over a component, this only makes the solution zero there.
     pub(super) fn new(
         laplacian: &Laplacian,
-        bars: &[Bar],
+        bars: &[HeatBar],
         time: f64,
         grounded: &[VertexId],
         budget: &Budget,
@@ -38,7 +38,7 @@ impl System {
         // A vertex without triangles and links has an equation of its own.
         let missing: Vec<f64> = heat.diagonal().iter().map(|d| if *d == 0.0 { 1.0 } else { 0.0 }).collect();
         heat.add_to_diagonal(missing.into_iter());
-        let order = EliminationOrder::within(&heat, budget).map_err(failed)?;
+        let order = EliminationOrder::new(&heat, budget).map_err(failed)?;
         let heat = factorise(&order, heat, budget)?;
 
         let mut poisson =
@@ -82,7 +82,7 @@ fn factorise(
     let mut result = Err(GeodesicError::NotFactorised { reason: String::new() });
     for shift in SHIFTS {
         matrix.add_to_diagonal(diagonal.iter().map(|d| shift * d));
-        result = SparseCholesky::within(order, &matrix, budget).map_err(failed);
+        result = SparseCholesky::new(order, &matrix, budget).map_err(failed);
         if !matches!(result, Err(GeodesicError::NotFactorised { .. })) {
             break;
         }
@@ -104,7 +104,7 @@ mod tests {
     #[test]
     fn a_semidefinite_matrix_is_shifted_and_an_indefinite_one_rejected() {
         let matrix = |at| SparseSymmetric::from_entries(2, [(0, 0, at), (1, 1, at), (0, 1, -1.0)]);
-        let order = EliminationOrder::new(&matrix(1.0)).unwrap();
+        let order = EliminationOrder::new(&matrix(1.0), &()).unwrap();
         // Constants are mapped to zero; the shift makes the solution large and keeps its difference.
         let mut x = [1.0, -1.0];
         factorise(&order, matrix(1.0), &Budget::unlimited()).unwrap().solve(&mut x);

@@ -4,16 +4,16 @@ use std::collections::BTreeSet;
 
 use surface::{EdgeId, FaceId, Triangle, VertexId};
 
-use super::field::Field;
-use super::plane::{Flat, faces_around, segment};
-use super::strip::{Path, Portal, Section, Strip};
+use super::field::PathField;
+use super::plane::{Flat, faces_around, is_on, segment};
+use super::strip::{PathSection, Portal, Strip, StripPath};
 use crate::fast_marching::Stencil;
-use crate::plane::{Point, between, distance};
-use crate::point::SurfacePoint;
+use crate::plane::{PlanePoint, between, distance};
+use surface::SurfacePoint;
 
 /// Where a step ends.
 #[derive(Debug, Clone, Copy)]
-enum Stop {
+enum StepEnd {
     /// At a source or a vertex.
     Node(SurfacePoint),
     Portal(Portal),
@@ -31,10 +31,10 @@ enum Over {
 /// edge twice; returns `None` if that blocks every step.
 ///
 /// The path may be far from shortest near a ridge of the field, and if the values of the field are not distances.
-pub(super) fn descend(field: &Field, target: SurfacePoint) -> Option<Path> {
+pub(super) fn descend(field: &PathField, target: SurfacePoint) -> Option<StripPath> {
     let topology = field.mesh.topology();
     let mut descent = Descent { field, vertices: BTreeSet::new(), edges: BTreeSet::new() };
-    let mut path = Path { nodes: vec![target], sections: Vec::new() };
+    let mut path = StripPath { nodes: vec![target], sections: Vec::new() };
     let mut strip = Strip::default();
     let mut here = target;
     let mut faces = faces_around(field.mesh, target);
@@ -48,10 +48,10 @@ pub(super) fn descend(field: &Field, target: SurfacePoint) -> Option<Path> {
         let (stop, over) = descent.best(here, &faces)?;
         match over {
             Over::Face(face) => strip.faces.push(face),
-            Over::Link(length) => path.sections.push(Section::Link(length)),
+            Over::Link(length) => path.sections.push(PathSection::Link(length)),
         }
         match stop {
-            Stop::Portal(portal) => {
+            StepEnd::Portal(portal) => {
                 descent.edges.insert(portal.edge);
                 strip.portals.push(portal);
                 here = portal.point();
@@ -59,9 +59,9 @@ pub(super) fn descend(field: &Field, target: SurfacePoint) -> Option<Path> {
                 faces = topology.edge_corners(portal.edge).iter().map(|corner| corner.face()).collect();
                 faces.retain(|face| Some(*face) != last);
             }
-            Stop::Node(node) => {
+            StepEnd::Node(node) => {
                 if !strip.faces.is_empty() {
-                    path.sections.push(Section::Strip(std::mem::take(&mut strip)));
+                    path.sections.push(PathSection::Strip(std::mem::take(&mut strip)));
                 }
                 here = node;
                 path.nodes.push(here);
@@ -75,7 +75,7 @@ pub(super) fn descend(field: &Field, target: SurfacePoint) -> Option<Path> {
 }
 
 struct Descent<'a> {
-    field: &'a Field<'a>,
+    field: &'a PathField<'a>,
     /// The vertices passed and the edges crossed.
     vertices: BTreeSet<VertexId>,
     edges: BTreeSet<EdgeId>,
@@ -83,7 +83,7 @@ struct Descent<'a> {
 
 impl Descent<'_> {
     /// The step over which the source is nearest.
-    fn best(&self, here: SurfacePoint, faces: &[FaceId]) -> Option<(Stop, Over)> {
+    fn best(&self, here: SurfacePoint, faces: &[FaceId]) -> Option<(StepEnd, Over)> {
         let (mut least, mut best) = (f64::INFINITY, None);
         let mut offer = |total: f64, stop, over| {
             if total < least {
@@ -97,17 +97,17 @@ impl Descent<'_> {
             for (other, length) in self.field.links(vertex) {
                 if !self.vertices.contains(&other) {
                     let total = length + self.field.distances[other.index()];
-                    offer(total, Stop::Node(SurfacePoint::Vertex(other)), Over::Link(length));
+                    offer(total, StepEnd::Node(SurfacePoint::Vertex(other)), Over::Link(length));
                 }
             }
         }
         best
     }
 
-    fn steps_within(&self, face: FaceId, here: SurfacePoint, offer: &mut impl FnMut(f64, Stop)) {
+    fn steps_within(&self, face: FaceId, here: SurfacePoint, offer: &mut impl FnMut(f64, StepEnd)) {
         let (mesh, at) = (self.field.mesh, |v: VertexId| self.field.distances[v.index()]);
         for source in self.field.sources_within(face) {
-            offer(segment(mesh, face, here, *source), Stop::Node(*source));
+            offer(segment(mesh, face, here, *source), StepEnd::Node(*source));
         }
         let flat = Flat::of_face(mesh, face);
         let place = flat.point(mesh, here);
@@ -115,19 +115,14 @@ impl Descent<'_> {
             let vertex = mesh.topology().corner_vertex(corner);
             if !self.vertices.contains(&vertex) {
                 let node = SurfacePoint::Vertex(vertex);
-                offer(segment(mesh, face, here, node) + at(vertex), Stop::Node(node));
+                offer(segment(mesh, face, here, node) + at(vertex), StepEnd::Node(node));
             }
             let edge = mesh.topology().opposite_edge(corner);
             let ends = mesh.topology().edges()[edge.index()];
-            let is_on = match here {
-                SurfacePoint::Vertex(v) => ends.contains(&v),
-                SurfacePoint::Edge { edge: other, .. } => other == edge,
-                SurfacePoint::Face { .. } => false,
-            };
-            if !is_on && !self.edges.contains(&edge) {
+            if !is_on(mesh, here, edge) && !self.edges.contains(&edge) {
                 let base = ends.map(|v| flat.vertex(v));
                 if let Some((total, t)) = distance_through(place, base, ends.map(at)) {
-                    offer(total, Stop::Portal(Portal { edge, t }));
+                    offer(total, StepEnd::Portal(Portal { edge, t }));
                 }
             }
         }
@@ -136,7 +131,7 @@ impl Descent<'_> {
 
 /// The distance at `here` of a front from a single point beyond the base, and where the straight line crosses the
 /// base; `None` if it misses the base.
-fn distance_through(here: Point, base: [Point; 2], [at_a, at_b]: [f64; 2]) -> Option<(f64, f64)> {
+fn distance_through(here: PlanePoint, base: [PlanePoint; 2], [at_a, at_b]: [f64; 2]) -> Option<(f64, f64)> {
     let [a, b] = base;
     let (length, side) = (distance(a, b), distance(a, here));
     let above = Triangle::from_sides([length, side, distance(b, here)]);

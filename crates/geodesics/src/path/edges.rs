@@ -2,24 +2,24 @@
 
 use surface::{FaceId, IntrinsicMesh, VertexId};
 
-use super::field::Field;
+use super::field::PathField;
 use super::plane::faces_around;
-use super::strip::{Path, Section, Strip};
+use super::strip::{PathSection, Strip, StripPath};
 use crate::heap::VertexHeap;
-use crate::point::SurfacePoint;
 use crate::source::Source;
+use surface::SurfacePoint;
 
 /// The shortest paths along edges from the sources to all vertices.
 #[derive(Debug)]
 pub(super) struct EdgeTree {
     pub(super) distances: Vec<f64>,
     /// The node and the section before every vertex on its path from the source.
-    before: Vec<Option<(SurfacePoint, Section)>>,
+    before: Vec<Option<(SurfacePoint, PathSection)>>,
 }
 
 impl EdgeTree {
     /// Cost: `O(p log p)`.
-    pub(super) fn new(field: &Field) -> Self {
+    pub(super) fn new(field: &PathField) -> Self {
         let n = field.mesh.n_vertices();
         let mut heap = VertexHeap::default();
         heap.reset(n);
@@ -37,8 +37,8 @@ impl EdgeTree {
         while let Some((distance, vertex)) = heap.pop() {
             let vertex = VertexId(vertex);
             let edges = edges_at(field.mesh, vertex)
-                .map(|(next, length, face)| (next, length, Section::Strip(Strip::within(face))));
-            let links = field.links(vertex).map(|(next, length)| (next, length, Section::Link(length)));
+                .map(|(next, length, face)| (next, length, PathSection::Strip(Strip::within(face))));
+            let links = field.links(vertex).map(|(next, length)| (next, length, PathSection::Link(length)));
             for (next, length, section) in edges.chain(links) {
                 if heap.relax(next.0, distance + length) {
                     before[next.index()] = Some((SurfacePoint::Vertex(vertex), section));
@@ -49,11 +49,11 @@ impl EdgeTree {
     }
 
     /// The shortest path along edges from `target` to a source, if there is one.
-    pub(super) fn path_from(&self, mesh: &IntrinsicMesh, target: SurfacePoint) -> Option<Path> {
+    pub(super) fn path_from(&self, mesh: &IntrinsicMesh, target: SurfacePoint) -> Option<StripPath> {
         let around = Source::new(mesh, target).ok()?;
         let total = |(vertex, distance): &(VertexId, f64)| distance + self.distances[vertex.index()];
         let mut here = around.reach().iter().min_by(|a, b| total(a).total_cmp(&total(b)))?.0;
-        let mut path = Path { nodes: vec![target], sections: Vec::new() };
+        let mut path = StripPath { nodes: vec![target], sections: Vec::new() };
         if target != SurfacePoint::Vertex(here) {
             path.sections.push(within_face(mesh, target, here)?);
             path.nodes.push(SurfacePoint::Vertex(here));
@@ -83,11 +83,11 @@ fn edges_at(mesh: &IntrinsicMesh, vertex: VertexId) -> impl Iterator<Item = (Ver
 }
 
 /// The section within a face from a point to a vertex of a face that holds it.
-fn within_face(mesh: &IntrinsicMesh, point: SurfacePoint, vertex: VertexId) -> Option<Section> {
+fn within_face(mesh: &IntrinsicMesh, point: SurfacePoint, vertex: VertexId) -> Option<PathSection> {
     let has_vertex = |face: &FaceId| mesh.topology().corner_at(*face, vertex).is_some();
     match faces_around(mesh, point).into_iter().find(has_vertex) {
-        Some(face) => Some(Section::Strip(Strip::within(face))),
+        Some(face) => Some(PathSection::Strip(Strip::within(face))),
         // A vertex without faces.
-        None => (point == SurfacePoint::Vertex(vertex)).then_some(Section::Link(0.0)),
+        None => (point == SurfacePoint::Vertex(vertex)).then_some(PathSection::Link(0.0)),
     }
 }

@@ -5,12 +5,12 @@ use std::collections::{BTreeMap, BTreeSet};
 use surface::{FaceId, IntrinsicMesh, Link, Rows, VertexId};
 
 use super::plane::faces_around;
-use crate::point::SurfacePoint;
 use crate::source::Source;
+use surface::SurfacePoint;
 
 /// Distances from sources, which paths lead to.
 #[derive(Debug)]
-pub(super) struct Field<'a> {
+pub(super) struct PathField<'a> {
     pub(super) mesh: &'a IntrinsicMesh,
     pub(super) sources: &'a [Source],
     pub(super) distances: &'a [f64],
@@ -21,7 +21,7 @@ pub(super) struct Field<'a> {
     in_faces: BTreeMap<FaceId, Vec<SurfacePoint>>,
 }
 
-impl<'a> Field<'a> {
+impl<'a> PathField<'a> {
     pub(super) fn new(mesh: &'a IntrinsicMesh, sources: &'a [Source], distances: &'a [f64]) -> Self {
         let links = Link::by_vertex(mesh.n_vertices(), mesh.links().iter().copied());
         let mut at_vertices = BTreeSet::new();

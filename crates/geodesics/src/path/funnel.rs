@@ -4,18 +4,19 @@ use std::collections::VecDeque;
 
 use surface::{IntrinsicMesh, VertexId};
 
-use super::strip::{Gate, Laid, Portal, Section, Strip};
-use crate::plane::{Point, cross, sub};
-use crate::point::SurfacePoint;
+use super::strip::{Gate, Laid, PathSection, Portal, Strip};
+use crate::plane::{PlanePoint, cross, sub};
+use surface::SurfacePoint;
 
-/// A path that crosses an edge within this share of its length from a vertex goes through the vertex.
+/// A path that crosses an edge within this share of its length from a vertex goes through the vertex: the difference is
+/// rounding.
 const SNAP: f64 = 1e-10;
 
 /// A vertex on the side of a strip that the shortest path touches.
 #[derive(Debug, Clone, Copy)]
 struct Touch {
     vertex: VertexId,
-    at: Point,
+    at: PlanePoint,
     /// The first and the last of the gates in a row that have it as an end.
     first: usize,
     last: usize,
@@ -27,7 +28,7 @@ pub(super) fn shortest_through(
     strip: Strip,
     start: SurfacePoint,
     end: SurfacePoint,
-) -> (Vec<SurfacePoint>, Vec<Section>) {
+) -> (Vec<SurfacePoint>, Vec<PathSection>) {
     let strip = strip.simplified(mesh, start, end);
     let laid = strip.lay_out(mesh, start, end);
     let touches = touches(&laid);
@@ -37,7 +38,7 @@ pub(super) fn shortest_through(
     let (mut here, mut first, mut next) = (laid.start, 0, 0);
     for touch in touches.iter().map(Some).chain([None]) {
         let (to, until) = touch.map_or((laid.end, laid.gates.len()), |t| (t.at, t.first));
-        sections.push(Section::Strip(if until < next {
+        sections.push(PathSection::Strip(if until < next {
             // Along an edge that is itself a gate.
             Strip::within(strip.faces[until.max(first)])
         } else {
@@ -59,7 +60,7 @@ pub(super) fn shortest_through(
 }
 
 /// Where a straight line crosses a gate, from 0 at its left end to 1 at its right.
-fn share(gate: &Gate, from: Point, to: Point) -> f64 {
+fn share(gate: &Gate, from: PlanePoint, to: PlanePoint) -> f64 {
     let direction = sub(to, from);
     let left = cross(direction, sub(gate.left.1, from));
     let right = cross(direction, sub(gate.right.1, from));
@@ -102,7 +103,7 @@ enum End {
 }
 
 impl End {
-    fn of(self, gate: &Gate) -> (VertexId, Point) {
+    fn of(self, gate: &Gate) -> (VertexId, PlanePoint) {
         match self {
             Self::Left => gate.left,
             Self::Right => gate.right,
@@ -125,7 +126,7 @@ fn touch(gates: &[Gate], gate: usize, end: End) -> Touch {
 /// A point that the funnel has reached, and the one before it on the shortest path.
 #[derive(Debug, Clone, Copy)]
 struct Reached {
-    at: Point,
+    at: PlanePoint,
     before: usize,
     gate: usize,
     end: End,
@@ -140,14 +141,15 @@ fn bends(laid: &Laid) -> Vec<Touch> {
     let mut reached = vec![Reached { at: laid.start, before: 0, gate: 0, end: End::Left }];
     let mut apex = 0;
     let mut chains = [VecDeque::new(), VecDeque::new()];
-    let mut extend = |at: Point, gate: usize, end: End| {
+    let mut extend = |at: PlanePoint, gate: usize, end: End| {
         let [left, right] = &mut chains;
         // For the left side; on the right, left and right are exchanged.
         let (own, other, sign) = match end {
             End::Left => (left, right, 1.0),
             End::Right => (right, left, -1.0),
         };
-        let turns_left = |a: Point, b: Point, c: Point| sign * cross(sub(b, a), sub(c, b)) > 0.0;
+        let turns_left =
+            |a: PlanePoint, b: PlanePoint, c: PlanePoint| sign * cross(sub(b, a), sub(c, b)) > 0.0;
         while let Some(&last) = own.back() {
             let before = own.len().checked_sub(2).map_or(apex, |i| own[i]);
             if turns_left(reached[before].at, reached[last].at, at) {
@@ -190,12 +192,12 @@ fn bends(laid: &Laid) -> Vec<Touch> {
 mod tests {
     use super::*;
 
-    fn gate(left: (u32, Point), right: (u32, Point)) -> Gate {
+    fn gate(left: (u32, PlanePoint), right: (u32, PlanePoint)) -> Gate {
         Gate { left: (VertexId(left.0), left.1), right: (VertexId(right.0), right.1) }
     }
 
     /// A corridor that goes up, to the right around vertex 1, and up again around vertex 4.
-    fn corridor(end: Point) -> Laid {
+    fn corridor(end: PlanePoint) -> Laid {
         let gates = vec![
             gate((0, [-1.0, 1.0]), (1, [1.0, 1.0])),
             gate((2, [0.0, 3.0]), (1, [1.0, 1.0])),

@@ -26,18 +26,18 @@ mod visibility;
 
 use std::sync::OnceLock;
 
-use budget::Budget;
+use base::{Budget, Observer};
 use surface::IntrinsicMesh;
 
 use crate::error::GeodesicError;
-use crate::point::SurfacePoint;
 use crate::source::Source;
 use descent::descend;
 use edges::EdgeTree;
-use field::Field;
+use field::PathField;
 use plane::faces_around;
 use straighten::straighten;
-use strip::{Path, Section};
+use strip::{PathSection, StripPath};
+use surface::SurfacePoint;
 use visibility::nearest_visible;
 
 /// A path along the surface, straight in every face it crosses.
@@ -83,38 +83,38 @@ const ROUNDING: f64 = 1e-11;
 /// // From a corner of a unit cube to the opposite one, across the middle of an edge.
 /// let cube = shapes::cube(0).intrinsic();
 /// let sources = [Source::vertex(VertexId(0))];
-/// let distances = Exact::new(&cube).distances(VertexId(0))?;
-/// let path = PathTracer::new(&cube, &sources, &distances).path_to(SurfacePoint::Vertex(VertexId(7)))?;
+/// let distances = Exact::new(&cube, &()).distances(VertexId(0))?;
+/// let path = PathTracer::new(&cube, &sources, &distances, &()).path_to(SurfacePoint::Vertex(VertexId(7)))?;
 /// assert!((path.length - 5f64.sqrt()).abs() < 1e-12);
 /// assert!(matches!(path.points[1], SurfacePoint::Edge { t, .. } if (t - 0.5).abs() < 1e-12));
 /// # Ok::<(), canonform_geodesics::GeodesicError>(())
 /// ```
 #[derive(Debug)]
 pub struct PathTracer<'a> {
-    field: Field<'a>,
+    field: PathField<'a>,
     tree: OnceLock<EdgeTree>,
     budget: Budget,
 }
 
 impl<'a> PathTracer<'a> {
-    /// Prepares paths to `sources`; `distances` are those of any solver on `mesh`, one per vertex, in mesh units.
+    /// Prepares paths to `sources`; `distances` are those of any solver on `mesh`, one per vertex, in mesh units. The
+    /// budget of the observer is checked before and after each attempt at a path.
     ///
     /// # Panics
     /// If there is not one distance per vertex.
     #[must_use]
-    pub fn new(mesh: &'a IntrinsicMesh, sources: &'a [Source], distances: &'a [f64]) -> Self {
+    pub fn new(
+        mesh: &'a IntrinsicMesh,
+        sources: &'a [Source],
+        distances: &'a [f64],
+        observer: &dyn Observer,
+    ) -> Self {
         assert_eq!(distances.len(), mesh.n_vertices(), "one distance per vertex");
         Self {
-            field: Field::new(mesh, sources, distances),
+            field: PathField::new(mesh, sources, distances),
             tree: OnceLock::new(),
-            budget: Budget::unlimited(),
+            budget: observer.budget(),
         }
-    }
-
-    /// The same tracer, which keeps to the time of a budget. It is checked before and after each attempt at a path.
-    #[must_use]
-    pub fn with_budget(self, budget: Budget) -> Self {
-        Self { budget, ..self }
     }
 
     /// The shortest path from the nearest source to `target`.
@@ -143,7 +143,7 @@ impl<'a> PathTracer<'a> {
         let mut rays = MAX_RAYS;
         let mut best = self.path_from(target, enough, MAX_LEGS, &mut rays);
         self.budget.check()?;
-        let length = |path: &Option<Path>| path.as_ref().map_or(f64::INFINITY, |path| path.length(mesh));
+        let length = |path: &Option<StripPath>| path.as_ref().map_or(f64::INFINITY, |path| path.length(mesh));
         if length(&best) > known && length(&best) > distance(&self.tree().distances) {
             let other = self.tree().path_from(mesh, target).map(|path| straighten(mesh, path));
             if length(&other) < length(&best) {
@@ -158,7 +158,13 @@ impl<'a> PathTracer<'a> {
     ///
     /// Descends the field first; if that is too long, goes straight to the visible vertex over which the source is
     /// nearest, and continues from there.
-    fn path_from(&self, target: SurfacePoint, enough: f64, legs: usize, rays: &mut usize) -> Option<Path> {
+    fn path_from(
+        &self,
+        target: SurfacePoint,
+        enough: f64,
+        legs: usize,
+        rays: &mut usize,
+    ) -> Option<StripPath> {
         let mesh = self.field.mesh;
         let best = descend(&self.field, target).map(|path| straighten(mesh, path));
         let known = best.as_ref().map_or(f64::INFINITY, |path| path.length(mesh));
@@ -170,9 +176,9 @@ impl<'a> PathTracer<'a> {
                 SurfacePoint::Vertex(vertex) => {
                     self.path_from(sight.end, self.field.distances[vertex.index()], legs - 1, rays)?
                 }
-                source => Path { nodes: vec![source], sections: Vec::new() },
+                source => StripPath { nodes: vec![source], sections: Vec::new() },
             };
-            let mut path = Path { nodes: vec![target], sections: vec![Section::Strip(sight.strip)] };
+            let mut path = StripPath { nodes: vec![target], sections: vec![PathSection::Strip(sight.strip)] };
             path.nodes.extend(rest.nodes);
             path.sections.extend(rest.sections);
             Some(straighten(mesh, path))
@@ -181,10 +187,10 @@ impl<'a> PathTracer<'a> {
     }
 
     /// The points of a path, from the source on.
-    fn points_of(&self, path: &Path) -> GeodesicPath {
+    fn points_of(&self, path: &StripPath) -> GeodesicPath {
         let mut points = vec![path.nodes[0]];
         for (section, node) in path.sections.iter().zip(&path.nodes[1..]) {
-            if let Section::Strip(strip) = section {
+            if let PathSection::Strip(strip) = section {
                 points.extend(strip.portals.iter().map(|portal| portal.point()));
             }
             points.push(*node);

@@ -2,14 +2,14 @@
 
 use surface::{CornerId, EdgeId, FaceId, IntrinsicMesh, VertexId};
 
-use crate::plane::{Point, apex, between, distance};
-use crate::point::SurfacePoint;
+use crate::plane::{PlanePoint, apex, between, distance};
+use surface::SurfacePoint;
 
 /// A face laid out in the plane.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Flat {
     pub(super) vertices: [VertexId; 3],
-    pub(super) at: [Point; 3],
+    pub(super) at: [PlanePoint; 3],
 }
 
 impl Flat {
@@ -26,11 +26,11 @@ impl Flat {
         Self::new(mesh, CornerId::new(face, 0))
     }
 
-    pub(super) fn vertex(&self, vertex: VertexId) -> Point {
+    pub(super) fn vertex(&self, vertex: VertexId) -> PlanePoint {
         self.at[self.vertices.iter().position(|v| *v == vertex).unwrap_or_default()]
     }
 
-    pub(super) fn point(&self, mesh: &IntrinsicMesh, point: SurfacePoint) -> Point {
+    pub(super) fn point(&self, mesh: &IntrinsicMesh, point: SurfacePoint) -> PlanePoint {
         match point {
             SurfacePoint::Vertex(vertex) => self.vertex(vertex),
             SurfacePoint::Edge { edge, t } => {
@@ -42,6 +42,15 @@ impl Flat {
                 [0, 1].map(|axis| (0..3).map(|i| barycentric[i] * corners[i][axis]).sum())
             }
         }
+    }
+}
+
+/// Whether a point of a face is on an edge of that face.
+pub(super) fn is_on(mesh: &IntrinsicMesh, point: SurfacePoint, edge: EdgeId) -> bool {
+    match point {
+        SurfacePoint::Vertex(vertex) => mesh.topology().edges()[edge.index()].contains(&vertex),
+        SurfacePoint::Edge { edge: other, .. } => other == edge,
+        SurfacePoint::Face { .. } => false,
     }
 }
 

@@ -3,11 +3,11 @@
 use surface::IntrinsicMesh;
 
 use super::funnel::shortest_through;
-use super::strip::{Path, Portal, Section, Strip};
+use super::strip::{PathSection, Portal, Strip, StripPath};
 use super::turn::{Direction, direction, inner_side};
-use crate::point::SurfacePoint;
+use surface::SurfacePoint;
 
-/// Share of its length that a detour must save.
+/// Share of its length that a detour must save; less is rounding.
 const GAIN: f64 = 1e-13;
 
 /// Limit of detours per node of the first path. Each makes the path shorter; real surfaces need fewer than two.
@@ -19,7 +19,7 @@ const DETOURS_PER_NODE: usize = 100;
 /// Replaces every section by the shortest path through its faces. Where the path then bends at a vertex with less
 /// than 180 degrees on one side, leads it through the faces on that side and shortens it again. The path never gets
 /// longer.
-pub(super) fn straighten(mesh: &IntrinsicMesh, path: Path) -> Path {
+pub(super) fn straighten(mesh: &IntrinsicMesh, path: StripPath) -> StripPath {
     let mut path = tightened(mesh, path);
     let mut budget = DETOURS_PER_NODE * path.nodes.len();
     let mut at = 1;
@@ -38,14 +38,14 @@ pub(super) fn straighten(mesh: &IntrinsicMesh, path: Path) -> Path {
 }
 
 /// The path with every section replaced by the shortest through its faces.
-fn tightened(mesh: &IntrinsicMesh, path: Path) -> Path {
+fn tightened(mesh: &IntrinsicMesh, path: StripPath) -> StripPath {
     let ends: Vec<_> = path.nodes.iter().copied().zip(path.nodes.iter().copied().skip(1)).collect();
     let mut tight =
-        Path { nodes: path.nodes[..1].to_vec(), sections: Vec::with_capacity(path.sections.len()) };
+        StripPath { nodes: path.nodes[..1].to_vec(), sections: Vec::with_capacity(path.sections.len()) };
     for (section, (start, end)) in path.sections.into_iter().zip(ends) {
         match section {
-            Section::Link(_) => tight.sections.push(section),
-            Section::Strip(strip) => {
+            PathSection::Link(_) => tight.sections.push(section),
+            PathSection::Strip(strip) => {
                 let (nodes, sections) = shortest_through(mesh, strip, start, end);
                 tight.nodes.extend(nodes);
                 tight.sections.extend(sections);
@@ -57,11 +57,15 @@ fn tightened(mesh: &IntrinsicMesh, path: Path) -> Path {
 }
 
 /// A shorter path past the node `at`: what replaces that node, and the sections on either side of it.
-fn detour(mesh: &IntrinsicMesh, path: &Path, at: usize) -> Option<(Vec<SurfacePoint>, Vec<Section>)> {
+fn detour(
+    mesh: &IntrinsicMesh,
+    path: &StripPath,
+    at: usize,
+) -> Option<(Vec<SurfacePoint>, Vec<PathSection>)> {
     let [start, node, end] = [path.nodes[at - 1], path.nodes[at], path.nodes[at + 1]];
     let [before, after] = [&path.sections[at - 1], &path.sections[at]];
     let SurfacePoint::Vertex(vertex) = node else { return None };
-    let (Section::Strip(first), Section::Strip(second)) = (before, after) else { return None };
+    let (PathSection::Strip(first), PathSection::Strip(second)) = (before, after) else { return None };
     let from = direction(mesh, vertex, *first.faces.last()?, first.portals.last(), start)?;
     let to = direction(mesh, vertex, *second.faces.first()?, second.portals.first(), end)?;
     let (faces, edges) = inner_side(mesh, vertex, from, to)?;
@@ -78,7 +82,7 @@ fn detour(mesh: &IntrinsicMesh, path: &Path, at: usize) -> Option<(Vec<SurfacePo
     strip.faces.extend_from_slice(&second.faces[second.faces.len() - m..]);
 
     let (nodes, sections) = shortest_through(mesh, strip, start, end);
-    let found = Path { nodes: [&[start], &nodes[..], &[end]].concat(), sections };
+    let found = StripPath { nodes: [&[start], &nodes[..], &[end]].concat(), sections };
     let known = before.length(mesh, start, node) + after.length(mesh, node, end);
     (found.length(mesh) < known * (1.0 - GAIN)).then_some((nodes, found.sections))
 }

@@ -2,21 +2,21 @@
 
 use surface::{EdgeId, FaceId, IntrinsicMesh, VertexId};
 
-use super::plane::{Flat, segment};
-use crate::plane::{Point, Side, beyond};
-use crate::point::SurfacePoint;
+use super::plane::{Flat, is_on, segment};
+use crate::plane::{GateSide, PlanePoint, beyond};
+use surface::SurfacePoint;
 
 /// A path along the surface: nodes and the sections between them.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Path {
+pub(super) struct StripPath {
     pub(super) nodes: Vec<SurfacePoint>,
     /// One fewer than nodes.
-    pub(super) sections: Vec<Section>,
+    pub(super) sections: Vec<PathSection>,
 }
 
 /// The part of a path between two nodes: a link of the given length, or straight lines through faces.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) enum Section {
+pub(super) enum PathSection {
     Link(f64),
     Strip(Strip),
 }
@@ -42,14 +42,14 @@ impl Portal {
     }
 }
 
-impl Path {
+impl StripPath {
     pub(super) fn length(&self, mesh: &IntrinsicMesh) -> f64 {
         let ends = self.nodes.iter().zip(self.nodes.iter().skip(1));
         self.sections.iter().zip(ends).map(|(section, (a, b))| section.length(mesh, *a, *b)).sum()
     }
 }
 
-impl Section {
+impl PathSection {
     pub(super) fn length(&self, mesh: &IntrinsicMesh, start: SurfacePoint, end: SurfacePoint) -> f64 {
         match self {
             Self::Link(length) => *length,
@@ -68,16 +68,16 @@ impl Section {
 /// A portal laid out in the plane, with its ends on the left and on the right of the path.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Gate {
-    pub(super) left: (VertexId, Point),
-    pub(super) right: (VertexId, Point),
+    pub(super) left: (VertexId, PlanePoint),
+    pub(super) right: (VertexId, PlanePoint),
 }
 
 /// A strip laid out in the plane.
 #[derive(Debug, Clone)]
 pub(super) struct Laid {
-    pub(super) start: Point,
+    pub(super) start: PlanePoint,
     pub(super) gates: Vec<Gate>,
-    pub(super) end: Point,
+    pub(super) end: PlanePoint,
 }
 
 impl Strip {
@@ -99,11 +99,7 @@ impl Strip {
                 simple.portals.push(portal);
             }
         }
-        let on = |point, portal: &Portal| match point {
-            SurfacePoint::Vertex(v) => mesh.topology().edges()[portal.edge.index()].contains(&v),
-            SurfacePoint::Edge { edge, .. } => edge == portal.edge,
-            SurfacePoint::Face { .. } => false,
-        };
+        let on = |point, portal: &Portal| is_on(mesh, point, portal.edge);
         let past_start = simple.portals.iter().take_while(|portal| on(start, portal)).count();
         simple.portals.drain(..past_start);
         simple.faces.drain(..past_start);
@@ -122,7 +118,7 @@ impl Strip {
             let flat = Flat::of_face(mesh, self.faces[0]);
             return Laid { start: flat.point(mesh, start), gates: Vec::new(), end: flat.point(mesh, end) };
         };
-        let triangle = |face: FaceId, gate: &Gate, side: Side| {
+        let triangle = |face: FaceId, gate: &Gate, side: GateSide| {
             let ((left, at_left), (right, at_right)) = (gate.left, gate.right);
             let vertices = topology.faces()[face.index()];
             let third = vertices.into_iter().find(|v| *v != left && *v != right).unwrap_or(left);
@@ -132,10 +128,10 @@ impl Strip {
         };
         let [left, right] = topology.edges()[first.edge.index()];
         let mut gate = Gate { left: (left, [0.0, 0.0]), right: (right, [mesh.length(first.edge), 0.0]) };
-        let start = triangle(self.faces[0], &gate, Side::Behind).2.point(mesh, start);
+        let start = triangle(self.faces[0], &gate, GateSide::Behind).2.point(mesh, start);
         let mut gates = vec![gate];
         for (face, portal) in self.faces[1..].iter().zip(&self.portals[1..]) {
-            let (third, at, _) = triangle(*face, &gate, Side::Ahead);
+            let (third, at, _) = triangle(*face, &gate, GateSide::Ahead);
             if topology.edges()[portal.edge.index()].contains(&gate.left.0) {
                 gate.right = (third, at);
             } else {
@@ -144,6 +140,6 @@ impl Strip {
             gates.push(gate);
         }
         let last = self.faces[self.faces.len() - 1];
-        Laid { start, gates, end: triangle(last, &gate, Side::Ahead).2.point(mesh, end) }
+        Laid { start, gates, end: triangle(last, &gate, GateSide::Ahead).2.point(mesh, end) }
     }
 }

@@ -6,9 +6,9 @@ use std::f64::consts::PI;
 
 use surface::{CornerId, EdgeId, FaceId, IntrinsicMesh, VertexId};
 
-use super::plane::Flat;
+use super::plane::{Flat, is_on};
 use super::strip::Portal;
-use crate::point::SurfacePoint;
+use surface::SurfacePoint;
 
 /// A path bends if the angle on one side is less than this: smaller bends are rounding.
 const STRAIGHT: f64 = PI - 1e-8;
@@ -36,13 +36,8 @@ pub(super) fn direction(
     let topology = mesh.topology();
     let corner = topology.corner_at(face, vertex)?;
     let edges = topology.corner_edges(corner);
-    let is_on = |edge: &&EdgeId| match towards {
-        SurfacePoint::Vertex(v) => topology.edges()[edge.index()].contains(&v),
-        SurfacePoint::Edge { edge: other, .. } => other == **edge,
-        SurfacePoint::Face { .. } => false,
-    };
-    if let Some(edge) = edges.iter().find(is_on) {
-        return Some(Direction::Along(*edge));
+    if let Some(edge) = edges.into_iter().find(|edge| is_on(mesh, towards, *edge)) {
+        return Some(Direction::Along(edge));
     }
     let [x, y] = Flat::new(mesh, corner).point(mesh, towards);
     // Rounding may put the point outside the face, but angles must not be negative.

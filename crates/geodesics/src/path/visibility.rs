@@ -5,13 +5,13 @@ use std::collections::BinaryHeap;
 
 use surface::{EdgeId, FaceId, VertexId};
 
-use super::field::Field;
+use super::field::PathField;
 use super::plane::{Flat, faces_around};
 use super::strip::{Gate, Portal, Strip};
-use crate::plane::{Point, Side, between, beyond, cross, distance, sub};
-use crate::point::SurfacePoint;
+use crate::plane::{GateSide, PlanePoint, between, beyond, cross, distance, sub};
+use surface::SurfacePoint;
 
-/// Share of a length within which two are the same.
+/// Share of a length within which two are the same up to rounding.
 const SAME: f64 = 1e-12;
 
 /// A straight line to a vertex or source, and the faces it crosses.
@@ -31,12 +31,12 @@ struct Rays {
     edge: EdgeId,
     gate: Gate,
     /// Points on the outermost rays on either side.
-    left: Point,
-    right: Point,
+    left: PlanePoint,
+    right: PlanePoint,
 }
 
-struct Search<'a> {
-    field: &'a Field<'a>,
+struct SightSearch<'a> {
+    field: &'a PathField<'a>,
     rays: Vec<Rays>,
     /// The largest number of bundles allowed.
     most: usize,
@@ -53,14 +53,14 @@ struct Search<'a> {
 /// `B` is at least `T(A) - |AP|` and `T(B) - |BP|`, which leaves a lens around the path. If `T` is exact, so is the
 /// result.
 pub(super) fn nearest_visible(
-    field: &Field,
+    field: &PathField,
     from: SurfacePoint,
     known: f64,
     enough: f64,
     n_rays: &mut usize,
 ) -> Option<Sight> {
     let best = (known * (1.0 - SAME), None);
-    let mut search = Search { field, rays: Vec::new(), most: *n_rays, queue: BinaryHeap::new(), best };
+    let mut search = SightSearch { field, rays: Vec::new(), most: *n_rays, queue: BinaryHeap::new(), best };
     search.start(from);
     while let Some(Reverse((bits, at))) = search.queue.pop() {
         let best = search.best.0;
@@ -83,7 +83,7 @@ pub(super) fn nearest_visible(
     Some(Sight { end, strip })
 }
 
-impl Search<'_> {
+impl SightSearch<'_> {
     /// Sends rays over all edges around a point that it does not lie on.
     fn start(&mut self, from: SurfacePoint) {
         let mesh = self.field.mesh;
@@ -122,7 +122,7 @@ impl Search<'_> {
             let [to_left, to_right] =
                 if topology.edges()[edges[0].index()].contains(&left) { edges } else { [edges[1], edges[0]] };
             let lengths = [rays.edge, to_left, to_right].map(|edge| mesh.length(edge));
-            let at = beyond([at_left, at_right], lengths, Side::Ahead);
+            let at = beyond([at_left, at_right], lengths, GateSide::Ahead);
             let flat = Flat { vertices: [left, right, third], at: [at_left, at_right, at] };
             self.offer_sources(face, &flat, [0.0; 2], Some(index));
             let before = Some(index);
@@ -147,7 +147,7 @@ impl Search<'_> {
     }
 
     /// Considers the sources in a face as ends.
-    fn offer_sources(&mut self, face: FaceId, flat: &Flat, origin: Point, before: Option<usize>) {
+    fn offer_sources(&mut self, face: FaceId, flat: &Flat, origin: PlanePoint, before: Option<usize>) {
         for source in self.field.sources_within(face) {
             let at = sub(flat.point(self.field.mesh, *source), origin);
             let is_visible = before.is_none_or(|i| {
@@ -177,7 +177,7 @@ impl Search<'_> {
             between(left.1, right.1, if share.is_nan() { 0.5 } else { share.clamp(0.0, 1.0) })
         });
         // The length of a path over the edge decreases towards the farther end.
-        let over = |(vertex, at): (VertexId, Point), far: Point| {
+        let over = |(vertex, at): (VertexId, PlanePoint), far: PlanePoint| {
             self.field.distances[vertex.index()] + distance(far, [0.0; 2]) - distance(far, at)
         };
         let least = over(left, q).max(over(right, p)).max(0.0);

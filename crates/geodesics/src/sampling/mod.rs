@@ -1,32 +1,87 @@
 //! Choice of landmarks.
 
-mod columns;
-mod farthest;
-mod random;
 mod sampler;
 mod spread;
-mod variance;
+
+use surface::VertexId;
 
 use crate::error::GeodesicError;
 use crate::solver::DistanceSolver;
-pub use farthest::{FarthestPointSampler, farthest_point_sampling};
-pub use random::RandomSampler;
-pub use sampler::{FirstSample, Sampler};
+pub use sampler::{Sampler, farthest_point_sampling};
 pub use spread::SpreadSamples;
-pub use variance::{Variance, VarianceSampler};
 
-/// A rule for choosing landmarks.
+/// A rule for choosing landmarks. Ties go to the lowest vertex, and the seed determines what is drawn at random, for any
+/// number of threads.
+///
+/// ```
+/// use canonform_geodesics::{Dijkstra, FirstSample, Sampling};
+/// use mesh::shapes;
+///
+/// let solver = Dijkstra::new(&shapes::icosphere(2).intrinsic(), &());
+/// for sampling in Sampling::ALL {
+///     let mut sampler = sampling.start(&solver, FirstSample::default(), 7)?;
+///     sampler.extend_to(20)?;
+///     assert_eq!(sampler.distances(20)?.n_landmarks(), 20);
+/// }
+/// # Ok::<(), canonform_geodesics::GeodesicError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Sampling {
-    /// [`FarthestPointSampler`]: each the farthest from those before it.
+    /// Farthest point sampling: each landmark is the vertex farthest from those before it (Procedure 1 of the paper).
+    ///
+    /// | paper | here | shape | meaning |
+    /// |---|---|---|---|
+    /// | `r_i` | `landmarks()` of the result | n | the samples |
+    /// | `F` | `matrix()` of the result | p x n | distances |
+    ///
+    /// * It covers the surface at most twice as coarsely as the best `n` vertices (Hochbaum and Shmoys 1985,
+    ///   `hochbaum1985`).
+    /// * It ends early, with fewer landmarks than requested, if every vertex coincides with one.
+    ///
+    /// Cost: one run of the solver per landmark. On several threads, the runs are parallel if the solver can prune: about
+    /// `1/2 + ... + 1/n` additional runs choose the landmarks in advance. The result is the same.
     #[default]
     Farthest,
-    /// [`RandomSampler`]: all vertices are equally likely.
+    /// Random sampling, the baseline: every set of n vertices is equally likely.
+    ///
+    /// Cost: one run of the solver per landmark, in parallel; `O(p)` to start.
     Random,
-    /// [`VarianceSampler`]: each the vertex whose squared distances to those before it vary least, or most.
+    /// Incremental sampling by variance ("Min-Var"; Yu, Zhao, Zhang and Yang 2012, `yu2012`): two landmarks are drawn at
+    /// random, then each is the vertex `j` with the least (or greatest) variance of the squared distances `E_ij` to the
+    /// landmarks `i` so far.
+    ///
+    /// A vertex with equal squared distances to all landmarks is central. So the least variance avoids the tips of a
+    /// surface and soon takes neighbours of landmarks: the samples are close together, and the stress is far above that
+    /// of farthest point sampling.
+    ///
+    /// Cost: one run of the solver and `O(p)` per landmark, as means and variances are updated (Welford 1962).
     #[serde(untagged)]
     Incremental(Variance),
+}
+
+/// The rule by which [`Sampling::Incremental`] takes the next vertex.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
+pub enum Variance {
+    /// The vertex whose squared distances to the landmarks vary least, as in Yu et al.
+    #[default]
+    #[serde(rename = "min-variance")]
+    Least,
+    /// The vertex whose squared distances vary most: the opposite rule, for comparison.
+    #[serde(rename = "max-variance")]
+    Greatest,
+}
+
+/// The first landmark.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum FirstSample {
+    /// The vertex farthest from vertex 0, a tip of the surface, for [`Sampling::Farthest`]; a random one for the other
+    /// rules.
+    #[default]
+    Farthest,
+    /// This vertex.
+    Vertex(VertexId),
 }
 
 impl Sampling {
@@ -75,12 +130,8 @@ impl Sampling {
         solver: &'a dyn DistanceSolver,
         first: FirstSample,
         seed: u64,
-    ) -> Result<Box<dyn Sampler + 'a>, GeodesicError> {
-        Ok(match self {
-            Self::Farthest => Box::new(FarthestPointSampler::new(solver, first)?),
-            Self::Random => Box::new(RandomSampler::new(solver, first, seed)?),
-            Self::Incremental(variance) => Box::new(VarianceSampler::new(solver, first, seed, variance)?),
-        })
+    ) -> Result<Sampler<'a>, GeodesicError> {
+        Sampler::new(solver, self, first, seed)
     }
 }
 
@@ -92,12 +143,13 @@ mod tests {
     use surface::VertexId;
 
     use super::*;
+    use crate::breadth_first::BreadthFirst;
     use crate::dijkstra::Dijkstra;
 
     const ALL: [Sampling; 4] = Sampling::ALL;
 
     fn solver(mesh: &TriMesh) -> Dijkstra {
-        Dijkstra::new(&mesh.intrinsic())
+        Dijkstra::new(&mesh.intrinsic(), &())
     }
 
     fn sample(sampling: Sampling, first: FirstSample, seed: u64, n: usize) -> LandmarkDistances {
@@ -177,6 +229,71 @@ mod tests {
             assert!(sampling.start(&empty, FirstSample::default(), 1).is_err());
             let none = sampling.start(&whole, FirstSample::default(), 1).unwrap().distances(0);
             assert_eq!(none, Err(GeodesicError::NoSamples));
+        }
+    }
+
+    #[test]
+    fn all_vertices_are_equally_likely() {
+        let solver = BreadthFirst::new(&grid(4, 3, 1.0).intrinsic(), &());
+        let p = solver.n_vertices();
+        let (runs, n) = (3000, 4);
+        let mut taken = vec![0usize; p];
+        for seed in 0..runs {
+            let mut sampler = Sampling::Random.start(&solver, FirstSample::default(), seed).unwrap();
+            sampler.extend_to(n).unwrap();
+            for landmark in sampler.distances(n).unwrap().landmarks() {
+                taken[*landmark] += 1;
+            }
+        }
+        // Each count is binomial; a deviation of five sigmas never happens.
+        let share = n as f64 / p as f64;
+        let (mean, deviation) = (runs as f64 * share, (runs as f64 * share * (1.0 - share)).sqrt());
+        assert!(taken.iter().all(|count| (*count as f64 - mean).abs() < 5.0 * deviation), "{taken:?}");
+    }
+
+    #[test]
+    fn every_landmark_has_the_least_or_greatest_variance() {
+        let solver = Dijkstra::new(&icosphere(2).intrinsic(), &());
+        for (variance, sign) in [(Variance::Least, 1.0), (Variance::Greatest, -1.0)] {
+            let mut sampler =
+                Sampling::Incremental(variance).start(&solver, FirstSample::default(), 5).unwrap();
+            sampler.extend_to(12).unwrap();
+            let distances = sampler.distances(12).unwrap();
+            for n in 2..12 {
+                let spread = |v: usize| {
+                    let squares: Vec<f64> = (0..n).map(|i| distances.column(i).unwrap()[v].powi(2)).collect();
+                    let mean = squares.iter().sum::<f64>() / n as f64;
+                    sign * squares.iter().map(|s| (s - mean).powi(2)).sum::<f64>() / n as f64
+                };
+                let taken = &distances.landmarks()[..n];
+                let free = (0..162).filter(|v| !taken.contains(v));
+                let best = free.map(spread).fold(f64::INFINITY, f64::min);
+                assert!(spread(distances.landmarks()[n]) <= best + 1e-12, "{variance:?} {n}");
+            }
+        }
+    }
+
+    #[test]
+    fn the_least_variance_is_in_the_middle_of_a_strip() {
+        // The middle of a long strip is equally far from both ends.
+        let strip = grid(41, 2, 1.0);
+        let middle = |v: usize| (strip.positions[v].x - 20.0).abs() < 1.1;
+        let solver = Dijkstra::new(&strip.intrinsic(), &());
+        let at_far_end = |seed: &u64| {
+            let sampling = Sampling::Incremental(Variance::Least);
+            let mut sampler = sampling.start(&solver, FirstSample::Vertex(VertexId(0)), *seed).unwrap();
+            sampler.extend_to(2).unwrap();
+            sampler.distances(2).unwrap().landmarks()[1] % 41 == 40
+        };
+        for seed in (0..).filter(at_far_end).take(3) {
+            let third = |variance| {
+                let first = FirstSample::Vertex(VertexId(0));
+                let mut sampler = Sampling::Incremental(variance).start(&solver, first, seed).unwrap();
+                sampler.extend_to(3).unwrap();
+                sampler.distances(3).unwrap().landmarks()[2]
+            };
+            assert!(middle(third(Variance::Least)));
+            assert!(!middle(third(Variance::Greatest)));
         }
     }
 }

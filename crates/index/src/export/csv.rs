@@ -2,34 +2,42 @@
 
 use std::io::{self, Write};
 
-use super::columns::{Columns, TEXTS, texts};
+use super::columns::{Column, columns, text_of};
 use super::error::ExportError;
 use crate::{Index, Shape};
 
 pub(super) fn write(index: &Index, out: &mut dyn Write) -> Result<(), ExportError> {
-    let columns = Columns::of(index)?;
-    let mut head: Vec<String> = TEXTS.map(str::to_owned).to_vec();
-    head.extend(columns.facts.iter().map(|name| quoted(&format!("fact_{name}"))));
-    head.extend((0..columns.fused).map(|i| format!("fused_{i}")));
+    let columns = columns(index)?;
+    let mut head: Vec<String> = Vec::new();
+    for column in &columns {
+        match column {
+            Column::Text(name, _) => head.push((*name).to_owned()),
+            Column::Fact(name) => head.push(quoted(&format!("fact_{name}"))),
+            Column::Floats(name, extents) if name == "fused" => {
+                head.extend((0..extents[0]).map(|i| format!("fused_{i}")));
+            }
+            Column::Floats(..) => {}
+        }
+    }
     writeln!(out, "{}", head.join(","))?;
     index.each(|shape| row(out, &columns, &shape).map_err(ExportError::from))
 }
 
-fn row(out: &mut dyn Write, columns: &Columns, shape: &Shape) -> io::Result<()> {
-    write!(out, "{}", texts(shape).map(|text| quoted(&text)).join(","))?;
-    for name in &columns.facts {
-        match shape.entry.fact(name) {
-            Some(value) => write!(out, ",{value}")?,
-            None => write!(out, ",")?,
+fn row(out: &mut dyn Write, columns: &[Column], shape: &Shape) -> io::Result<()> {
+    let mut cells: Vec<String> = Vec::new();
+    for column in columns {
+        match column {
+            Column::Text(name, _) => cells.push(quoted(&text_of(shape, name))),
+            Column::Fact(name) => {
+                cells.push(shape.entry.fact(name).map_or_else(String::new, |x| x.to_string()))
+            }
+            Column::Floats(name, _) if name == "fused" => {
+                cells.extend(shape.vectors.fused.iter().map(f32::to_string));
+            }
+            Column::Floats(..) => {}
         }
     }
-    for i in 0..columns.fused {
-        match shape.vectors.fused.get(i) {
-            Some(value) => write!(out, ",{value}")?,
-            None => write!(out, ",")?,
-        }
-    }
-    writeln!(out)
+    writeln!(out, "{}", cells.join(","))
 }
 
 /// A text in quotes, if it needs them.

@@ -37,6 +37,8 @@ struct Line<'a> {
     fused: &'a [f32],
     signatures: Named<'a, Vec<f32>>,
     form: &'a [[f32; 4]],
+    disc_areas: &'a [f32],
+    components: &'a [Vec<f32>],
 }
 
 /// Pairs serialised as an object, in order.
@@ -57,11 +59,12 @@ pub enum ExportFormat {
     ///
     /// Columns: `id`, `label`, `path` and `content` (text); `fact_NAME` (double, null if a shape lacks it); `fused` and
     /// `signature_NAME` (lists of float, null if a shape lacks it); `form` (a list of float: x, y, z and weight of each
-    /// point). The metadata of the file has `canonform.options`.
+    /// point); `disc_areas` and `components` (lists of float, one component after the other), if any shape has them. The
+    /// metadata of the file has `canonform.options`.
     Parquet,
     /// Everything, an array for every column: text for `id`, `label`, `path` and `content`, which are n long; float64 for
-    /// `fact_NAME`; float32 for `fused` and `signature_NAME`, which are n x length, and for `form`, n x points x 4. NaN
-    /// stands for what a shape lacks. `options` is a text.
+    /// `fact_NAME`; float32 for `fused`, `signature_NAME` and `disc_areas`, which are n x length, for `form`, n x points x
+    /// 4, and for `components`, n x components x length. NaN stands for what a shape lacks. `options` is a text.
     Npz,
     /// Comma-separated values without the signatures and the form: `id`, `label`, `path`, `content`, `fact_NAME` and
     /// `fused_0`, `fused_1`, ...
@@ -119,7 +122,7 @@ impl Index {
     /// [`ExportError`].
     pub fn export(&self, out: &mut dyn Write) -> Result<(), ExportError> {
         let head =
-            Head { format: "canonform-index", version: 1, options: self.options(), shapes: self.len() };
+            Head { format: "canonform-index", version: 2, options: self.options(), shapes: self.len() };
         write_line(out, &head)?;
         self.each(|shape| write_line(out, &line(&shape)).map_err(ExportError::from))
     }
@@ -136,6 +139,8 @@ fn line(shape: &Shape) -> Line<'_> {
         fused: &vectors.fused,
         signatures: Named(&vectors.signatures),
         form: &vectors.form,
+        disc_areas: &vectors.disc_areas,
+        components: &vectors.components,
     }
 }
 

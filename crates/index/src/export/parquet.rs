@@ -1,5 +1,6 @@
 //! Parquet, which databases and data frames read.
 
+use std::borrow::Cow;
 use std::fs::File;
 use std::io;
 use std::sync::Arc;
@@ -12,7 +13,7 @@ use parquet::file::properties::WriterProperties;
 use parquet::file::writer::{SerializedFileWriter, SerializedRowGroupWriter};
 use parquet::schema::types::{ColumnPath, Type, TypePtr};
 
-use super::columns::{Columns, TEXTS, signature, texts};
+use super::columns::{Column, columns, floats_of, text_of};
 use super::error::ExportError;
 use crate::{Index, Shape};
 
@@ -20,7 +21,7 @@ use crate::{Index, Shape};
 const GROUP: usize = 1024;
 
 pub(super) fn write(index: &Index, file: &mut File) -> Result<(), ExportError> {
-    let columns = Columns::of(index)?;
+    let columns = columns(index)?;
     let schema = schema(&columns).map_err(failed)?;
     let options = KeyValue::new("canonform.options".to_owned(), index.options().to_owned());
     let mut properties = WriterProperties::builder()
@@ -46,7 +47,7 @@ pub(super) fn write(index: &Index, file: &mut File) -> Result<(), ExportError> {
     Ok(())
 }
 
-fn schema(columns: &Columns) -> Result<TypePtr, ParquetError> {
+fn schema(columns: &[Column]) -> Result<TypePtr, ParquetError> {
     let text = |name: &str| {
         let column = Type::primitive_type_builder(name, Physical::BYTE_ARRAY)
             .with_repetition(Repetition::REQUIRED)
@@ -69,40 +70,46 @@ fn schema(columns: &Columns) -> Result<TypePtr, ParquetError> {
             .with_logical_type(Some(LogicalType::List));
         column.with_fields(vec![inner]).build().map(Arc::new)
     };
-    let mut fields = TEXTS.map(text).into_iter().collect::<Result<Vec<_>, _>>()?;
-    for name in &columns.facts {
-        fields.push(double(&format!("fact_{name}"))?);
-    }
-    fields.push(list("fused", Repetition::REQUIRED)?);
-    for (name, _) in &columns.signatures {
-        fields.push(list(&format!("signature_{name}"), Repetition::OPTIONAL)?);
-    }
-    fields.push(list("form", Repetition::REQUIRED)?);
+    let field = |column: &Column| match column {
+        Column::Text(name, _) => text(name),
+        Column::Fact(name) => double(&format!("fact_{name}")),
+        Column::Floats(name, _) => {
+            list(name, if is_signature(name) { Repetition::OPTIONAL } else { Repetition::REQUIRED })
+        }
+    };
+    let fields = columns.iter().map(field).collect::<Result<_, _>>()?;
     Type::group_type_builder("shapes").with_fields(fields).build().map(Arc::new)
+}
+
+/// Whether shapes may lack this column. Others are empty then.
+fn is_signature(name: &str) -> bool {
+    name.starts_with("signature_")
 }
 
 fn write_group(
     writer: &mut SerializedFileWriter<&mut File>,
-    columns: &Columns,
+    columns: &[Column],
     rows: &[Shape],
 ) -> Result<(), ExportError> {
     let mut group = writer.next_row_group().map_err(failed)?;
-    let rows_of_texts: Vec<[String; 4]> = rows.iter().map(texts).collect();
-    for which in 0..TEXTS.len() {
-        let values: Vec<ByteArray> = rows_of_texts.iter().map(|texts| texts[which].as_str().into()).collect();
-        put::<ByteArrayType>(&mut group, &values, None, None)?;
+    for column in columns {
+        match column {
+            Column::Text(name, _) => {
+                let values: Vec<ByteArray> =
+                    rows.iter().map(|shape| text_of(shape, name).into_bytes().into()).collect();
+                put::<ByteArrayType>(&mut group, &values, None, None)?;
+            }
+            Column::Fact(name) => {
+                let found: Vec<Option<f64>> = rows.iter().map(|shape| shape.entry.fact(name)).collect();
+                let levels: Vec<i16> = found.iter().map(|value| i16::from(value.is_some())).collect();
+                let values: Vec<f64> = found.into_iter().flatten().collect();
+                put::<DoubleType>(&mut group, &values, Some(&levels), None)?;
+            }
+            Column::Floats(name, _) => {
+                lists(&mut group, rows.iter().map(|shape| floats_of(shape, name)), is_signature(name))?;
+            }
+        }
     }
-    for name in &columns.facts {
-        let found: Vec<Option<f64>> = rows.iter().map(|shape| shape.entry.fact(name)).collect();
-        let levels: Vec<i16> = found.iter().map(|value| i16::from(value.is_some())).collect();
-        let values: Vec<f64> = found.into_iter().flatten().collect();
-        put::<DoubleType>(&mut group, &values, Some(&levels), None)?;
-    }
-    lists(&mut group, rows.iter().map(|shape| Some(shape.vectors.fused.as_slice())), false)?;
-    for (name, _) in &columns.signatures {
-        lists(&mut group, rows.iter().map(|shape| signature(shape, name)), true)?;
-    }
-    lists(&mut group, rows.iter().map(|shape| Some(shape.vectors.form.as_flattened())), false)?;
     group.close().map_err(failed)?;
     Ok(())
 }
@@ -111,18 +118,19 @@ fn write_group(
 /// levels are 0 where a list begins.
 fn lists<'a>(
     group: &mut SerializedRowGroupWriter<'_, &mut File>,
-    rows: impl Iterator<Item = Option<&'a [f32]>>,
+    rows: impl Iterator<Item = Option<Cow<'a, [f32]>>>,
     is_optional: bool,
 ) -> Result<(), ExportError> {
     let (mut values, mut definitions, mut repetitions) = (Vec::new(), Vec::new(), Vec::new());
     let of_empty = i16::from(is_optional);
     for row in rows {
-        match row {
-            None | Some([]) => {
-                definitions.push(if row.is_some() { of_empty } else { 0 });
+        let is_there = row.is_some();
+        match row.unwrap_or_default().as_ref() {
+            [] => {
+                definitions.push(if is_there { of_empty } else { 0 });
                 repetitions.push(0);
             }
-            Some(row) => {
+            row => {
                 values.extend_from_slice(row);
                 definitions.extend(row.iter().map(|_| of_empty + 1));
                 repetitions.extend((0..row.len()).map(|i| i16::from(i > 0)));

@@ -24,6 +24,7 @@ fn uneven() -> (Folder, Index, Vec<Shape>) {
     let mut shapes: Vec<Shape> = (0..5).map(shape).collect();
     shapes[1].entry.facts.push(("extra, \"fact\"".to_owned(), -0.25));
     shapes[2].vectors.signatures.push(("extra".to_owned(), vec![1.5, -2.5]));
+    shapes[2].vectors.components = vec![vec![1.0, 2.0, 3.0]; 2];
     shapes[3].entry.label = "a, \"b\" ä".to_owned();
     let path = folder.path("uneven");
     folder.fill(&path, &shapes);
@@ -60,8 +61,13 @@ fn parquet_holds_everything() {
                 let found = row.get_double(column).ok();
                 assert_eq!(found, shape.entry.fact(fact), "{name}: {field}");
             } else if let Some(signature) = name.strip_prefix("signature_") {
-                let expected = super::columns::signature(shape, signature).map(<[f32]>::to_vec);
+                let mut known = shape.vectors.signatures.iter();
+                let expected = known.find(|(name, _)| name == signature).map(|(_, values)| values.clone());
                 assert_eq!(floats(row, column), expected, "{name}");
+            } else if name == "components" {
+                assert_eq!(floats(row, column).unwrap(), shape.vectors.components.concat());
+            } else if name == "disc_areas" {
+                assert_eq!(floats(row, column).unwrap(), shape.vectors.disc_areas);
             } else if name == "fused" {
                 assert_eq!(floats(row, column).unwrap(), shape.vectors.fused);
             } else if name == "form" {
@@ -87,6 +93,8 @@ fn npz_holds_everything() {
     assert!(values.iter().eq(shapes.iter().flat_map(|shape| &shape.vectors.fused)));
     let form = bytes("form");
     assert_eq!(npyz::NpyFile::new(&form[..]).unwrap().shape()[2], 4);
+    let components = bytes("components");
+    assert_eq!(npyz::NpyFile::new(&components[..]).unwrap().shape(), [shapes.len() as u64, 2, 3]);
     let extra = bytes("signature_extra");
     let extra: Vec<f32> = npyz::NpyFile::new(&extra[..]).unwrap().into_vec().unwrap();
     assert_eq!(extra.iter().filter(|x| x.is_nan()).count(), 2 * (shapes.len() - 1));

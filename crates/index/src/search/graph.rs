@@ -5,7 +5,8 @@ use std::collections::HashMap;
 use retrieval::{GraphNeighbor, LINKS, Neighbor, graph_rank};
 
 use super::{Found, SearchMode, distance};
-use crate::format::{FusedVectors, Graph};
+use crate::store::View;
+use crate::tables::{FUSED, node};
 use crate::vectors::{NodeKey, node_key};
 use crate::{Index, IndexError};
 
@@ -38,7 +39,7 @@ impl Index {
     /// cells and the lists that it needs from the file.
     ///
     /// # Errors
-    /// [`IndexError::NoGraph`] and those of [`nearest`](Self::nearest).
+    /// Those of [`nearest`](Self::nearest).
     pub fn nearest_on_graph(
         &self,
         query: &[f32],
@@ -46,11 +47,7 @@ impl Index {
         mode: SearchMode,
     ) -> Result<FoundOnGraph, IndexError> {
         let mut search = self.nearest(query, k.max(LINKS), mode)?;
-        let store = self.store();
-        let snapshot = store.read()?;
-        let graph = Graph::open(&snapshot)?.ok_or_else(|| IndexError::NoGraph(self.path().to_owned()))?;
-        let vectors = snapshot.fused_vectors()?;
-        let mut walk = Walk { graph, vectors, query, known: Names::default(), n_lists: 0 };
+        let mut walk = Walk { view: self.view(), query, known: Names::default(), n_lists: 0 };
         let nearest: Vec<Neighbor> = search
             .shapes
             .drain(..)
@@ -100,8 +97,7 @@ impl Names {
 
 /// The part of the graph around a query.
 struct Walk<'a> {
-    graph: Graph<'a>,
-    vectors: FusedVectors<'a>,
+    view: View<'a>,
     query: &'a [f32],
     known: Names,
     n_lists: usize,
@@ -112,7 +108,7 @@ impl retrieval::Graph for Walk<'_> {
 
     fn links(&mut self, shape: usize) -> Result<Vec<Neighbor>, IndexError> {
         self.n_lists += 1;
-        let Some(node) = self.graph.node(self.known.keys[shape])? else { return Ok(Vec::new()) };
+        let Some(node) = node(self.view, self.known.keys[shape])? else { return Ok(Vec::new()) };
         let of = |link: crate::vectors::Link, known: &mut Names| Neighbor {
             index: known.number(link.key),
             distance: f64::from(link.sq).sqrt(),
@@ -125,6 +121,7 @@ impl retrieval::Graph for Walk<'_> {
     /// Infinite for a shape that is gone: its list named no shape.
     fn distance(&mut self, shape: usize) -> Result<f64, IndexError> {
         let Some(id) = &self.known.ids[shape] else { return Ok(f64::INFINITY) };
-        Ok(self.vectors.get(id)?.map_or(f64::INFINITY, |vector| distance(self.query, &vector)))
+        let vector = self.view.get(&FUSED, id.as_str())?;
+        Ok(vector.map_or(f64::INFINITY, |vector| distance(self.query, &vector.0)))
     }
 }

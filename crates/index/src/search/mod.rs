@@ -3,6 +3,7 @@
 mod graph;
 mod searcher;
 
+use crate::tables::FUSED;
 use crate::texts::Texts;
 use crate::vectors::{CellsHeader, NEIGHBORS, Nearest, Reach, nearest_cells, padded, scan};
 use crate::{Index, IndexError};
@@ -86,8 +87,7 @@ impl Index {
     /// # Errors
     /// [`IndexError::OtherLength`], [`IndexError::BadVector`], [`IndexError::Io`], [`IndexError::Damaged`].
     pub fn nearest(&self, query: &[f32], k: usize, mode: SearchMode) -> Result<Found, IndexError> {
-        let store = self.store();
-        let (heads, snapshot) = (self.heads()?, store.read()?);
+        let (heads, view) = (self.heads()?, self.view());
         let row = padded_query(query, &heads.header)?;
         let (mut nearest, mut ids) = (Nearest::new(k.max(NEIGHBORS)), Texts::default());
         let reach = mode.reach(&heads.header);
@@ -95,19 +95,18 @@ impl Index {
             if !reach.includes(&cell, nearest.bound()) {
                 continue;
             }
-            heads.each_part(&snapshot, cell.cell, |part| {
+            for part in heads.parts(view, cell.cell) {
+                let (_, part) = part?;
                 scan(&row, ids.len() as u32, part.rows(), &mut nearest);
                 ids.extend(&part.ids);
-                Ok(())
-            })?;
+            }
         }
         let mut shapes = Vec::with_capacity(k.min(self.len()));
-        let vectors = snapshot.fused_vectors()?;
         for hit in nearest.into_hits() {
             let id = ids.get(hit.slot as usize);
-            let missing = || IndexError::damaged(self.path(), format!("`{id}` has no vector"));
-            let vector = vectors.get(id)?.ok_or_else(missing)?;
-            shapes.push(NearShape { distance: distance(query, &vector), id: id.to_owned() });
+            let vector =
+                view.get(&FUSED, id)?.ok_or_else(|| view.damaged(format!("`{id}` has no vector")))?;
+            shapes.push(NearShape { distance: distance(query, &vector.0), id: id.to_owned() });
         }
         Ok(Found::new(shapes, k, ids.len(), &heads.header, mode))
     }

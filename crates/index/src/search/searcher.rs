@@ -27,18 +27,17 @@ impl Searcher {
     /// # Errors
     /// [`IndexError::Io`], [`IndexError::Damaged`].
     pub fn load(index: &Index) -> Result<Self, IndexError> {
-        let store = index.store();
-        let (heads, snapshot) = (index.heads()?, store.read()?);
+        let (heads, view) = (index.heads()?, index.view());
         let header = heads.header.clone();
         let mut ids = Texts::default();
         let mut rows = Vec::with_capacity(header.n * padded(header.dim));
         let mut starts = vec![0];
         for cell in 0..header.n_cells as u32 {
-            heads.each_part(&snapshot, cell, |part| {
+            for part in heads.parts(view, cell) {
+                let (_, part) = part?;
                 ids.extend(&part.ids);
                 rows.extend_from_slice(part.rows());
-                Ok(())
-            })?;
+            }
             starts.push(ids.len());
         }
         if ids.len() != header.n {

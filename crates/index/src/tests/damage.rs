@@ -32,7 +32,7 @@ fn a_changed_byte_is_detected_and_never_returned() {
     let bytes = fs::read(&path).unwrap();
     assert!(bytes[4096..].starts_with(&whole[4096..]), "it has two segments");
     let truth = read_all(&path).unwrap();
-    assert_eq!(verify(&path, || ()).unwrap().faults, Vec::<String>::new());
+    assert_eq!(verify(&path).unwrap().faults, Vec::<String>::new());
     // The start and the end completely, and a thousand other bytes.
     let tail = bytes.len().saturating_sub(100)..bytes.len();
     let mut random = ChaCha8Rng::seed_from_u64(3);
@@ -43,7 +43,7 @@ fn a_changed_byte_is_detected_and_never_returned() {
         let mut changed = bytes.clone();
         changed[at] ^= 1 << (at % 8);
         fs::write(&copy, &changed).unwrap();
-        match verify(&copy, || ()) {
+        match verify(&copy) {
             Ok(found) => assert!(!found.faults.is_empty(), "byte {at} of {}", bytes.len()),
             Err(IndexError::Damaged { .. } | IndexError::Foreign(_)) => {}
             Err(error) => panic!("byte {at}: {error}"),
@@ -61,7 +61,7 @@ fn a_truncated_file_is_damaged_and_bytes_after_the_end_do_not_count() {
     let folder = Folder::new();
     let bytes = fs::read(folder.index("a", 6)).unwrap();
     let copy = folder.path("b");
-    for length in [bytes.len() - 1, bytes.len() - 40, bytes.len() / 2, 4096, 50, 4] {
+    for length in [bytes.len() - 1, bytes.len() - 36, bytes.len() / 2, 4096, 50, 4] {
         fs::write(&copy, &bytes[..length]).unwrap();
         let error = Index::open(&copy).unwrap_err();
         assert!(matches!(error, IndexError::Damaged { .. }), "{length}: {error}");
@@ -69,7 +69,7 @@ fn a_truncated_file_is_damaged_and_bytes_after_the_end_do_not_count() {
     // What a writer left that was interrupted does not count.
     fs::write(&copy, [bytes.as_slice(), b"\n"].concat()).unwrap();
     assert_eq!(read_all(&copy).unwrap(), read_all(&folder.path("a")).unwrap());
-    assert_eq!(verify(&copy, || ()).unwrap().faults, Vec::<String>::new());
+    assert_eq!(verify(&copy).unwrap().faults, Vec::<String>::new());
     // Bytes missing from the middle.
     fs::write(&copy, [&bytes[..4096], &bytes[8192..]].concat()).unwrap();
     assert!(matches!(Index::open(&copy), Err(IndexError::Damaged { .. })));
@@ -83,7 +83,7 @@ fn other_files_are_never_overwritten() {
         fs::write(&path, content).unwrap();
         for error in [
             Index::open(&path).unwrap_err(),
-            verify(&path, || ()).unwrap_err(),
+            verify(&path).unwrap_err(),
             IndexWriter::open(&path, Job::Build, Some(OPTIONS)).unwrap_err(),
         ] {
             assert!(matches!(error, IndexError::Foreign(_)) && error.to_string().contains(name), "{error}");
@@ -95,14 +95,21 @@ fn other_files_are_never_overwritten() {
     assert_eq!(folder.names(), ["empty", "long", "notes.txt"]);
 }
 
+/// States another format in the head of an index.
+fn set_format(bytes: &mut [u8], format: u32) {
+    for slot in [0, 2048] {
+        bytes[slot + 16..slot + 20].copy_from_slice(&format.to_le_bytes());
+        let sum = crc32fast::hash(&bytes[slot..slot + 44]);
+        bytes[slot + 44..slot + 48].copy_from_slice(&sum.to_le_bytes());
+    }
+}
+
 #[test]
 fn a_newer_format_is_reported() {
     let folder = Folder::new();
     let path = folder.index("a", 3);
     let mut bytes = fs::read(&path).unwrap();
-    bytes[16..20].copy_from_slice(&7u32.to_le_bytes());
-    let sum = crc32fast::hash(&bytes[..44]);
-    bytes[44..48].copy_from_slice(&sum.to_le_bytes());
+    set_format(&mut bytes, 7);
     fs::write(&path, &bytes).unwrap();
     for error in
         [Index::open(&path).unwrap_err(), IndexWriter::open(&path, Job::Build, Some(OPTIONS)).unwrap_err()]
@@ -111,6 +118,35 @@ fn a_newer_format_is_reported() {
         assert!(error.to_string().contains("format 7") && error.to_string().contains("newer"), "{error}");
     }
     assert_eq!(fs::read(&path).unwrap(), bytes);
+}
+
+#[test]
+fn a_past_format_is_reported_and_built_again() {
+    let folder = Folder::new();
+    let path = folder.index("a", 3);
+    let whole = export(&path);
+    let mut format_3 = fs::read(&path).unwrap();
+    set_format(&mut format_3, 3);
+    let format_1 = [b"redb", &[7; 5000][..], b"canonform index\n"].concat();
+    for (found, bytes) in [(3, format_3), (1, format_1)] {
+        fs::write(&path, &bytes).unwrap();
+        for error in [Index::open(&path).unwrap_err(), IndexWriter::open(&path, Job::Add, None).unwrap_err()]
+        {
+            assert!(
+                matches!(error, IndexError::PastVersion { found: known, .. } if known == found),
+                "{error}"
+            );
+        }
+        let mut writer = IndexWriter::open(&path, Job::Build, Some(OPTIONS)).unwrap();
+        assert!(writer.replaces_damaged());
+        writer.put(&(0..3).map(shape).collect::<Vec<_>>()).unwrap();
+        writer.finish(&()).unwrap();
+        assert_eq!(export(&path), whole);
+        assert_eq!(fs::read(damaged_path(&path)).unwrap(), bytes);
+    }
+    // Any other database is not ours.
+    fs::write(&path, [b"redb", &[7; 5000][..]].concat()).unwrap();
+    assert!(matches!(Index::open(&path), Err(IndexError::Foreign(_))));
 }
 
 #[test]
@@ -142,11 +178,11 @@ fn a_damaged_index_is_built_again_and_kept_under_another_name() {
     bytes[5000] ^= 1;
     fs::write(&path, &bytes).unwrap();
     let mut writer = IndexWriter::open(&path, Job::Build, Some(OPTIONS)).unwrap();
-    assert!(writer.replaces_damaged() && writer.is_empty().unwrap());
+    assert!(writer.replaces_damaged() && writer.is_empty());
     writer.put(&(0..5).map(shape).collect::<Vec<_>>()).unwrap();
     // Until it is finished, the damaged one stays.
     assert_eq!(fs::read(&path).unwrap(), bytes);
-    writer.finish().unwrap();
+    writer.finish(&()).unwrap();
     assert_eq!(export(&path), whole);
     assert_eq!(fs::read(damaged_path(&path)).unwrap(), bytes);
     assert_eq!(folder.names(), ["a", "a.damaged"]);

@@ -1,68 +1,14 @@
-//! The graph of nearest neighbours: what it lists, what it finds, and indexes without one.
-
-use std::fs;
-use std::path::Path;
+//! The graph of nearest neighbours: what it lists and what it finds.
 
 use retrieval::{Graph as _, LINKS, Neighbor, graph_rank};
 
 use super::{Folder, OPTIONS, shape};
-use crate::format::{Graph, HEAD, Node, drop_graph, seal};
-use crate::{Index, IndexError, IndexWriter, Job, SearchMode, Shape, ShapeVectors, verify, work_path};
+use crate::tables::{self, Node};
+use crate::{Index, IndexWriter, Job, SearchMode, Shape, ShapeVectors, verify};
 
 /// All shapes of the graph, in ascending order of keys.
 pub(super) fn nodes(index: &Index) -> Vec<(u64, Node)> {
-    let store = index.store();
-    let snapshot = store.read().unwrap();
-    let mut nodes = Vec::new();
-    let graph = Graph::open(&snapshot).unwrap().unwrap();
-    graph
-        .each(|key, node| {
-            nodes.push((key, node));
-            Ok(())
-        })
-        .unwrap();
-    nodes
-}
-
-/// Writes the index of shapes 0 to `n` in format 2.
-fn write_format_2(path: &Path, n: usize) {
-    let mut writer = IndexWriter::open(path, Job::Build, Some(OPTIONS)).unwrap();
-    writer.put(&(0..n).map(shape).collect::<Vec<_>>()).unwrap();
-    writer.refresh(&()).unwrap();
-    drop_graph(&writer.store()).unwrap();
-    drop(writer);
-    let mut file = fs::OpenOptions::new().read(true).write(true).open(work_path(path)).unwrap();
-    seal(&mut file, 0).unwrap();
-    drop(file);
-    fs::rename(work_path(path), path).unwrap();
-    let mut bytes = fs::read(path).unwrap();
-    for slot in [0, HEAD as usize / 2] {
-        bytes[slot + 16..slot + 20].copy_from_slice(&2u32.to_le_bytes());
-        let sum = crc32fast::hash(&bytes[slot..slot + 44]);
-        bytes[slot + 44..slot + 48].copy_from_slice(&sum.to_le_bytes());
-    }
-    fs::write(path, bytes).unwrap();
-}
-
-#[test]
-fn an_index_of_format_2_is_searched_and_gets_its_graph_with_the_next_change() {
-    let folder = Folder::new();
-    let path = folder.path("a");
-    write_format_2(&path, 60);
-    let old = Index::open(&path).unwrap();
-    assert_eq!((old.format(), old.len(), old.has_graph().unwrap()), (2, 60, false));
-    assert_eq!(verify(&path, || ()).unwrap().faults, Vec::<String>::new());
-    let query = shape(7).vectors.fused;
-    assert_eq!(old.nearest(&query, 3, SearchMode::Auto).unwrap().shapes[0].id, shape(7).id);
-    let error = old.nearest_on_graph(&query, 3, SearchMode::Auto).unwrap_err();
-    assert!(matches!(error, IndexError::NoGraph(_)) && error.to_string().contains("no graph"), "{error}");
-    // Nothing but the graph is missing.
-    let writer = IndexWriter::open(&path, Job::Build, Some(OPTIONS)).unwrap();
-    assert!(!writer.has_graph().unwrap());
-    let new = writer.finish().unwrap();
-    assert_eq!((new.format(), new.len()), (3, 60));
-    assert_eq!(nodes(&new), nodes(&Index::open(&folder.index("b", 60)).unwrap()));
-    assert_eq!(verify(&path, || ()).unwrap().faults, Vec::<String>::new());
+    tables::nodes(index.view()).collect::<Result<_, _>>().unwrap()
 }
 
 #[test]
@@ -117,7 +63,6 @@ fn an_index_finds_what_a_matrix_of_its_distances_finds() {
 fn few_shapes_equal_shapes_and_none_have_a_graph() {
     let folder = Folder::new();
     let none = Index::open(&folder.index("none", 0)).unwrap();
-    assert!(none.has_graph().unwrap());
     assert!(none.nearest_on_graph(&[1.0, 2.0], 3, SearchMode::Auto).unwrap().shapes.is_empty());
     let few = Index::open(&folder.index("few", 3)).unwrap();
     assert!(nodes(&few).iter().all(|(_, node)| node.links.0.len() == 2));
@@ -127,8 +72,8 @@ fn few_shapes_equal_shapes_and_none_have_a_graph() {
     let vectors = ShapeVectors { fused: vec![1.0, 2.0], ..ShapeVectors::default() };
     let copies = (0..80).map(|i| Shape { vectors: vectors.clone(), ..shape(i) });
     writer.put(&copies.collect::<Vec<_>>()).unwrap();
-    let index = writer.finish().unwrap();
+    let index = writer.finish(&()).unwrap();
     let found = index.nearest_on_graph(&[1.0, 2.0], 5, SearchMode::Auto).unwrap();
     assert!(found.shapes.iter().all(|near| near.distance == 0.0 && near.rank_distance.is_finite()));
-    assert_eq!(verify(&path, || ()).unwrap().faults, Vec::<String>::new());
+    assert_eq!(verify(&path).unwrap().faults, Vec::<String>::new());
 }

@@ -4,7 +4,6 @@ mod damage;
 mod durability;
 mod equality;
 mod forged;
-mod format_1;
 mod graph;
 mod growth;
 
@@ -43,7 +42,7 @@ impl Folder {
         let mut writer = IndexWriter::open(path, Job::Add, None).unwrap();
         writer.put(&added.iter().copied().map(shape).collect::<Vec<_>>()).unwrap();
         writer.remove(removed).unwrap();
-        writer.finish().unwrap();
+        writer.finish(&()).unwrap();
     }
 
     /// A finished index of shapes 0 to `n`.
@@ -57,7 +56,7 @@ impl Folder {
     pub(crate) fn fill(&self, path: &Path, shapes: &[Shape]) {
         let mut writer = IndexWriter::open(path, Job::Build, Some(OPTIONS)).unwrap();
         writer.put(shapes).unwrap();
-        writer.finish().unwrap();
+        writer.finish(&()).unwrap();
     }
 }
 
@@ -75,6 +74,8 @@ pub(crate) fn shape(i: usize) -> Shape {
         vectors: ShapeVectors {
             fused: vec![x, (x * 0.7).sin(), 0.1],
             signatures: vec![("moments".to_owned(), vec![x; 4]), ("spectrum".to_owned(), vec![0.5 * x; 3])],
+            disc_areas: vec![0.25 * x; 5],
+            components: vec![vec![x, 1.0, 2.0]; i % 3],
             form: (0..40).map(|j| [x, j as f32, 0.1 + x * j as f32, 1.0]).collect(),
         },
     }
@@ -135,6 +136,6 @@ fn an_empty_index_finds_nothing() {
     let folder = Folder::new();
     let path = folder.index("empty", 0);
     let index = Index::open(&path).unwrap();
-    assert!(index.is_empty() && verify(&path, || ()).unwrap().faults.is_empty());
+    assert!(index.is_empty() && verify(&path).unwrap().faults.is_empty());
     assert!(index.nearest(&[1.0, 2.0], 5, SearchMode::Auto).unwrap().shapes.is_empty());
 }

@@ -3,6 +3,7 @@
 //! Lists are ordered by squared distance, ties by key. A key is a hash of a name, so lists depend on the shapes alone.
 //! Each pair has one squared distance on one machine, in either direction; another machine may round it differently.
 
+use base::Observer;
 use rayon::prelude::*;
 use retrieval::LINKS;
 use serde::{Deserialize, Serialize};
@@ -10,7 +11,7 @@ use serde::{Deserialize, Serialize};
 use super::cells::{Reach, nearest_cells, scan};
 use super::kmeans::Centroids;
 use super::nearest::{Hit, Nearest};
-use crate::shape::ContentHash;
+use base::ContentHash;
 
 /// Shapes whose lists are made together, and shapes that they meet while both are in the cache.
 const GROUP: usize = 16;
@@ -93,8 +94,8 @@ pub(crate) struct Divided<'a> {
 }
 
 impl Divided<'_> {
-    /// The lists of all shapes, in their order. Calls `done` with numbers of shapes, from any thread.
-    pub(crate) fn links(&self, done: &(dyn Fn(usize) + Sync)) -> Vec<Links> {
+    /// The lists of all shapes, in their order. A step is a list.
+    pub(crate) fn links(&self, observer: &dyn Observer) -> Vec<Links> {
         let groups = self.keys.par_chunks(GROUP).enumerate();
         groups
             .flat_map_iter(|(group, keys)| {
@@ -103,7 +104,7 @@ impl Divided<'_> {
                     2 => self.all_near(first, keys.len()),
                     _ => (first..first + keys.len()).map(|i| self.near(i)).collect(),
                 };
-                done(keys.len());
+                keys.iter().for_each(|_| observer.step());
                 found.into_iter().zip(keys).map(|(hits, key)| self.listed(*key, hits)).collect::<Vec<_>>()
             })
             .collect()
@@ -169,9 +170,9 @@ mod tests {
         let rows = noise(n, 16, 4);
         let keys: Vec<NodeKey> = (0..n).map(|i| node_key(&i.to_string())).collect();
         let one = Centroids::new(vec![0.0; 16], 16);
-        let whole = all(&rows, &keys, &one, &[0, n]).links(&|_| ());
+        let whole = all(&rows, &keys, &one, &[0, n]).links(&());
         let two = Centroids::new([vec![0.1; 16], vec![-0.1; 16]].concat(), 16);
-        assert_eq!(all(&rows, &keys, &two, &[0, 120, n]).links(&|_| ()), whole);
+        assert_eq!(all(&rows, &keys, &two, &[0, 120, n]).links(&()), whole);
         for (i, links) in whole.iter().enumerate() {
             let sq = |j: usize| -> f32 {
                 let [a, b] = [i, j].map(|i| &rows[16 * i..][..16]);

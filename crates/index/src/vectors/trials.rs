@@ -14,8 +14,8 @@ use serde::{Deserialize, Serialize};
 use super::cells::{Reach, nearest_cells};
 use super::kernels::sq_distances_into;
 use super::kmeans::Centroids;
-use crate::shape::ContentHash;
 use crate::texts::Texts;
+use base::ContentHash;
 
 /// Number of trials among all shapes, and among those with a class.
 const TRIALS: usize = 512;

@@ -11,7 +11,8 @@ const BLOCK: usize = 4;
 /// A vector that orthogonalisation reduces below this share of its length is rounding error.
 const ROUNDING: f64 = 1e-13;
 
-/// A vector that orthogonalisation reduces below this share of its length is orthogonalised again.
+/// A vector that orthogonalisation reduces below this share of its length has lost a digit to rounding and is
+/// orthogonalised again.
 const CANCELLED: f64 = 0.1;
 
 /// A block Lanczos process for the largest eigenvalues of an operator `C` that is symmetric in the inner product

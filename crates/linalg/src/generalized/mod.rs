@@ -5,20 +5,20 @@ mod lanczos;
 mod operator;
 mod strips;
 
-use budget::Budget;
+use base::{Budget, Observer};
 
 use self::inertia::n_negative;
 use self::lanczos::{Lanczos, Ritz};
 use self::operator::{ShiftInverse, shifted};
 use crate::{EliminationOrder, LinalgError, Matrix, SparseSymmetric, leading_sign};
 
-/// Residual `|C x - theta x| / theta` up to which a pair counts as found.
+/// Residual `|C x - theta x| / theta` up to which a pair counts as found: the promised accuracy.
 const TOLERANCE: f64 = 1e-9;
 
 /// Additional pairs to find, so that the count can be checked in a gap above the requested ones.
 const SPARE: usize = 6;
 
-/// Eigenvalues with a relative gap below this belong to one cluster.
+/// Eigenvalues with a relative gap below this belong to one cluster: a safety margin over [`TOLERANCE`].
 const CLUSTER: f64 = 1e-6;
 
 /// Positions in a gap at which eigenvalues are counted; the next one is tried if a pivot happens to be zero.
@@ -52,7 +52,8 @@ pub struct GeneralizedEigen {
 /// Cost: a sparse factorisation, about `2.5 m` solutions and `25 n m^2` operations; `O(n m)` memory.
 ///
 /// # Errors
-/// [`LinalgError::NotFactorised`], [`LinalgError::NotConverged`], [`LinalgError::MissedEigenvalues`].
+/// [`LinalgError::NotFactorised`], [`LinalgError::NotConverged`], [`LinalgError::MissedEigenvalues`];
+/// [`LinalgError::Exceeded`] if the budget of the observer is.
 ///
 /// # Panics
 /// If the number of masses differs from the order of `stiffness`.
@@ -62,7 +63,7 @@ pub struct GeneralizedEigen {
 ///
 /// // Three unit masses in a row, joined by two unit springs: eigenvalues 0, 1 and 3.
 /// let springs = [(0, 0, 1.0), (1, 1, 2.0), (2, 2, 1.0), (0, 1, -1.0), (1, 2, -1.0)];
-/// let eigen = smallest_eigenpairs(&SparseSymmetric::from_entries(3, springs), &[1.0; 3], 2)?;
+/// let eigen = smallest_eigenpairs(&SparseSymmetric::from_entries(3, springs), &[1.0; 3], 2, &())?;
 /// assert!(eigen.values[0].abs() < 1e-12 && (eigen.values[1] - 1.0).abs() < 1e-9);
 /// # Ok::<(), canonform_linalg::LinalgError>(())
 /// ```
@@ -70,23 +71,9 @@ pub fn smallest_eigenpairs(
     stiffness: &SparseSymmetric,
     masses: &[f64],
     m: usize,
+    observer: &dyn Observer,
 ) -> Result<GeneralizedEigen, LinalgError> {
-    smallest_eigenpairs_within(stiffness, masses, m, &Budget::unlimited())
-}
-
-/// As [`smallest_eigenpairs`], within a budget.
-///
-/// # Errors
-/// [`LinalgError::Exceeded`] and those of [`smallest_eigenpairs`].
-///
-/// # Panics
-/// As [`smallest_eigenpairs`].
-pub fn smallest_eigenpairs_within(
-    stiffness: &SparseSymmetric,
-    masses: &[f64],
-    m: usize,
-    budget: &Budget,
-) -> Result<GeneralizedEigen, LinalgError> {
+    let budget = &observer.budget();
     let n = stiffness.order();
     let m = m.min(n);
     // The basis has at least twice as many vectors as there are pairs.

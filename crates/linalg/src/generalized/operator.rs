@@ -1,6 +1,6 @@
 //! The shift-and-invert operator, whose largest eigenvalues belong to the smallest of the pencil.
 
-use budget::Budget;
+use base::Budget;
 
 use crate::{EliminationOrder, LinalgError, Matrix, SparseCholesky, SparseSymmetric};
 
@@ -37,7 +37,7 @@ impl ShiftInverse {
         };
         let shift = if median > 0.0 { median / stiffness.order() as f64 } else { 1.0 };
         let matrix = shifted(stiffness, masses, shift);
-        let factor = SparseCholesky::within(&EliminationOrder::within(&matrix, budget)?, &matrix, budget)?;
+        let factor = SparseCholesky::new(&EliminationOrder::new(&matrix, budget)?, &matrix, budget)?;
         let masses = factor.order().rows().iter().map(|&row| shift * masses[row]).collect();
         Ok(Self { factor, masses, shift })
     }

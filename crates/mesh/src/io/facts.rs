@@ -10,7 +10,7 @@ use crate::tri_mesh::TriMesh;
 pub struct MeshFile {
     /// The mesh, in the coordinates of the file.
     pub mesh: TriMesh,
-    /// A value per vertex, if the file has one and it was asked for.
+    /// A value per vertex, if the file has one.
     pub field: Option<ScalarField>,
     /// Everything else.
     pub facts: FileFacts,
@@ -61,11 +61,5 @@ impl LengthUnit {
             Self::Foot => "foot",
             Self::Meter => "meter",
         }
-    }
-}
-
-impl From<TriMesh> for MeshFile {
-    fn from(mesh: TriMesh) -> Self {
-        Self { mesh, ..Self::default() }
     }
 }

@@ -27,13 +27,19 @@ impl VertexField<'_> {
     pub(super) fn check(&self, n_vertices: usize) -> Result<(), MeshError> {
         for values in [self.values.len(), self.colors.len()] {
             if values != n_vertices {
-                return Err(MeshError::FieldLength { values, n_vertices });
+                return Err(MeshError::Unusable(format!(
+                    "{values} values for {n_vertices} vertices; provide exactly one value and one colour per vertex"
+                )));
             }
         }
         let is_word = self.name.starts_with(|c: char| c.is_ascii_alphabetic())
             && self.name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
         if !is_word || ["x", "y", "z", "red", "green", "blue"].contains(&self.name) {
-            return Err(MeshError::FieldName { name: self.name.into() });
+            return Err(MeshError::Unusable(format!(
+                "`{}` is not a valid name of a PLY property; use letters, digits and `_`, begin with a letter, \
+                 and avoid x y z red green blue",
+                self.name
+            )));
         }
         Ok(())
     }

@@ -25,14 +25,13 @@ use std::borrow::Cow;
 use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 
-use files::Pending;
+use base::files::Pending;
 use flate2::Compression;
 use flate2::write::GzEncoder;
 use nalgebra::Point3;
-use surface::VertexId;
 
-use crate::error::{Fault, Located, MeshError};
-use crate::face_set::check_input;
+use crate::error::{Fault, MeshError};
+use crate::face_set::{check_finite, check_input};
 use crate::tri_mesh::TriMesh;
 use formats::Precision;
 use source::{CheckStart, Memory, load, load_stream};
@@ -93,24 +92,48 @@ pub fn files_in(path: &Path, source: &dyn Source) -> Vec<PathBuf> {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn read(path: &Path) -> Result<TriMesh, MeshError> {
-    read_within(path, &ReadLimits::default())
+    Ok(read_file(path, &Disk, &ReadLimits::default())?.mesh)
 }
 
-/// Reads a mesh no larger than `limits`; otherwise as [`read()`].
+/// Reads a mesh no larger than `limits` from any place that holds files, with what else its file says: the unit of length, the
+/// scalar field of a PLY file, such as one by [`write_scalar_field`], and what was ignored.
 ///
 /// # Errors
 /// As [`read()`]; [`Fault::OverLimit`] beyond `limits`.
-pub fn read_within(path: &Path, limits: &ReadLimits) -> Result<TriMesh, MeshError> {
-    Ok(read_source(path, &Disk, limits, Format::parse)?.mesh)
-}
-
-/// Reads a mesh from any place that holds files, with what else its file says: the unit of length, the scalar field of a PLY
-/// file, such as one by [`write_scalar_field`], and what was ignored.
-///
-/// # Errors
-/// As [`read_within`].
 pub fn read_file(path: &Path, source: &dyn Source, limits: &ReadLimits) -> Result<MeshFile, MeshError> {
-    read_source(path, source, limits, Format::parse_with_field)
+    let format = Format::of(path)?;
+    let mut paths = format.files(path, source);
+    let open = |file: &PathBuf, check: CheckStart| {
+        if file != path && !source.holds(file) {
+            let partner = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
+            let (what, remedy) = match format.companions {
+                Some(_) => (
+                    format!("its data is in {partner}, which is missing"),
+                    "put both files into the same folder",
+                ),
+                None => (
+                    format!("its other half {partner} is missing"),
+                    "put both files of the pair into the same folder",
+                ),
+            };
+            return Err(Fault::Unsupported { what, remedy }.whole().in_file(path));
+        }
+        load(source, file, check)
+    };
+    let loaded = paths.iter().zip(format.check_start).map(|(file, check)| open(file, *check));
+    let mut contents = loaded.collect::<Result<Vec<Cow<'_, [u8]>>, _>>()?;
+    if let (Some(companions), Some(content)) = (format.companions, contents.first()) {
+        for name in companions(content).map_err(|fault| fault.in_file(path))? {
+            let file = path.with_file_name(name);
+            contents.push(open(&file, |_, _| Ok(()))?);
+            paths.push(file);
+        }
+    }
+    let contents: Vec<&[u8]> = contents.iter().map(AsRef::as_ref).collect();
+    (format.parse)(&contents, limits).map_err(|fault| {
+        let file = &paths[fault.file];
+        fault.in_file(file)
+    })
 }
 
 /// Reads a mesh from a stream, such as standard input, to its end. `name` stands for it in messages. Formats of more
@@ -153,10 +176,8 @@ pub fn read_from(
             "its data is in another file, `{companion}`, which cannot be read from a stream"
         )));
     }
-    format.parse_with_field(&[&bytes], limits).map_err(|fault| fault.in_file(name))
+    (format.parse)(&[&bytes], limits).map_err(|fault| fault.in_file(name))
 }
-
-type Parse = fn(&Format, &[&[u8]], &ReadLimits) -> Result<MeshFile, Located>;
 
 /// Reads a mesh from files in memory: one file, or a `.vert`/`.tri` pair in either order. Looks for no other file.
 ///
@@ -187,49 +208,14 @@ pub fn read_memory(files: &[MemoryFile<'_>], limits: &ReadLimits) -> Result<TriM
         let (path, extra) = (first.name.to_owned(), extra.name.to_owned());
         return Err(MeshError::StrayFile { path, extra, supported: mesh_files() });
     }
-    Ok(read_source(first.name, &source, limits, Format::parse)?.mesh)
-}
-
-fn read_source(
-    path: &Path,
-    source: &dyn Source,
-    limits: &ReadLimits,
-    parse: Parse,
-) -> Result<MeshFile, MeshError> {
-    let format = Format::of(path)?;
-    let mut paths = format.files(path, source);
-    let open = |file: &PathBuf, check: CheckStart| {
-        if file != path && !source.holds(file) {
-            let partner = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
-            let fault = match format.companions {
-                Some(_) => Fault::NoCompanion { companion: partner },
-                None => Fault::NoPartner { partner },
-            };
-            return Err(fault.whole().in_file(path));
-        }
-        load(source, file, check)
-    };
-    let loaded = paths.iter().zip(format.check_start).map(|(file, check)| open(file, *check));
-    let mut contents = loaded.collect::<Result<Vec<Cow<'_, [u8]>>, _>>()?;
-    if let (Some(companions), Some(content)) = (format.companions, contents.first()) {
-        for name in companions(content).map_err(|fault| fault.in_file(path))? {
-            let file = path.with_file_name(name);
-            contents.push(open(&file, |_, _| Ok(()))?);
-            paths.push(file);
-        }
-    }
-    let contents: Vec<&[u8]> = contents.iter().map(AsRef::as_ref).collect();
-    parse(format, &contents, limits).map_err(|fault| {
-        let file = &paths[fault.file];
-        fault.in_file(file)
-    })
+    Ok(read_file(first.name, &source, limits)?.mesh)
 }
 
 /// Writes a file, compressed if its name says so. It appears once it is published.
 fn pending(
     path: &Path,
     content: impl FnOnce(&mut dyn Write) -> io::Result<()>,
-) -> Result<Pending<'_>, files::FileError> {
+) -> Result<Pending<'_>, base::files::FileError> {
     Pending::write(path, |out| match is_gzip(path) {
         false => content(out),
         true => {
@@ -246,21 +232,18 @@ fn pending(
 /// coordinates to 32 bits, and STL has no vertex numbers. A name that ends in `.gz` makes a compressed file.
 ///
 /// # Errors
-/// [`MeshError::Io`] if the file cannot be written, [`MeshError::UnknownFormat`] and
-/// [`MeshError::UnsupportedContent`] for the wrong extension, [`MeshError::NonFinitePosition`],
-/// [`MeshError::FaceOutOfRange`] and [`MeshError::CoordinateOverflow`] for a mesh that the file could not hold.
+/// [`MeshError::Io`] if the file cannot be written, [`MeshError::UnknownFormat`] for an unknown extension, and
+/// [`MeshError::Unusable`] for a format that is only read and for a mesh that the file could not hold.
 pub fn write(path: &Path, mesh: &TriMesh) -> Result<(), MeshError> {
-    let format = Format::of(path)?;
-    if !format.can_write(Content::Mesh) {
-        return Err(format.cannot_write(path, Content::Mesh));
-    }
+    let format = Format::for_writing(path, Content::Mesh)?;
     // What `read` would refuse.
     check_input(mesh)?;
     if format.precision == Precision::Single {
         check_single_precision(mesh, format)?;
     }
     let paths = format.files(path, &Disk);
-    let written = paths.iter().zip(format.write).map(|(path, write)| pending(path, |out| write(out, mesh)));
+    let written =
+        paths.iter().zip(format.write).map(|(path, write)| pending(path, |out| write(out, mesh, None)));
     let pending = written.collect::<Result<Vec<_>, _>>()?;
     Ok(pending.into_iter().try_for_each(Pending::publish)?)
 }
@@ -269,8 +252,11 @@ fn check_single_precision(mesh: &TriMesh, format: &Format) -> Result<(), MeshErr
     let overflows = |x: &&f64| !(**x as f32).is_finite();
     for (vertex, p) in mesh.positions.iter().enumerate() {
         if let Some(&value) = p.iter().find(overflows) {
-            let vertex = VertexId::from(vertex);
-            return Err(MeshError::CoordinateOverflow { vertex, value, format: format.name });
+            return Err(MeshError::Unusable(format!(
+                "vertex {vertex} has the coordinate {value:e}, beyond the 32-bit floats of {}; \
+                 scale the mesh down or use another format",
+                format.name
+            )));
         }
     }
     Ok(())
@@ -280,28 +266,22 @@ fn check_single_precision(mesh: &TriMesh, format: &Format) -> Result<(), MeshErr
 /// `red green blue`; as OFF and OBJ with the colours alone.
 ///
 /// # Errors
-/// As [`write()`]; [`MeshError::UnsupportedContent`] for another extension,
-/// [`MeshError::FieldLength`] and [`MeshError::FieldName`] for a field that the file cannot hold.
+/// As [`write()`]; [`MeshError::Unusable`] also for another extension and for a field that the file cannot hold.
 pub fn write_scalar_field(path: &Path, mesh: &TriMesh, field: &VertexField<'_>) -> Result<(), MeshError> {
-    let format = Format::of(path)?;
-    let write = format.write_field.ok_or_else(|| format.cannot_write(path, Content::Field))?;
+    let format = Format::for_writing(path, Content::Field)?;
     field.check(mesh.n_vertices())?;
     check_input(mesh)?;
-    Ok(pending(path, |out| write(out, mesh, field))?.publish()?)
+    Ok(pending(path, |out| format.write.iter().try_for_each(|write| write(out, mesh, Some(field))))?
+        .publish()?)
 }
 
 /// Writes polylines as OBJ, or as PLY with an element `edge` per segment.
 ///
 /// # Errors
-/// [`MeshError::Io`] if the file cannot be written, [`MeshError::UnknownFormat`] and
-/// [`MeshError::UnsupportedContent`] for another extension, [`MeshError::NonFinitePosition`] if a coordinate
-/// is not finite.
+/// [`MeshError::Io`] if the file cannot be written, [`MeshError::UnknownFormat`] for an unknown extension, and
+/// [`MeshError::Unusable`] for another one and if a coordinate is not finite.
 pub fn write_polylines(path: &Path, lines: &[Vec<Point3<f64>>]) -> Result<(), MeshError> {
-    let format = Format::of(path)?;
-    let write = format.write_lines.ok_or_else(|| format.cannot_write(path, Content::Lines))?;
-    let is_finite = |p: &Point3<f64>| p.iter().all(|x| x.is_finite());
-    if let Some(vertex) = lines.iter().flatten().position(|p| !is_finite(p)) {
-        return Err(MeshError::NonFinitePosition { vertex: VertexId::from(vertex) });
-    }
-    Ok(pending(path, |out| write(out, lines))?.publish()?)
+    let format = Format::for_writing(path, Content::Lines)?;
+    check_finite(lines.iter().flatten())?;
+    Ok(pending(path, |out| format.write_lines.map_or(Ok(()), |write| write(out, lines)))?.publish()?)
 }

@@ -3,6 +3,7 @@
 use nalgebra::{Matrix4, Point3};
 use surface::VertexId;
 
+use super::facts::MeshFile;
 use super::limits::ReadLimits;
 use crate::error::{FEWEST_POINTS, Fault, Located};
 use crate::tri_mesh::TriMesh;
@@ -82,22 +83,27 @@ const COPIES_RATIO: u64 = 64;
 /// Refuses a small file in which copies of meshes add up to a huge one.
 pub(super) fn check_copies(items: u64, n_bytes: u64) -> Result<(), Fault> {
     match COPIES.max(n_bytes.saturating_mul(COPIES_RATIO)) {
-        limit if items > limit => Err(Fault::Copies { limit }),
+        limit if items > limit => Err(Fault::Unsupported {
+            what: format!(
+                "its copies of meshes add up to more than {limit} vertices and faces, out of proportion to the file"
+            ),
+            remedy: "the file is damaged or malicious: if it is neither, export a single copy",
+        }),
         _ => Ok(()),
     }
 }
 
-/// The mesh, if it has a face or enough vertices for a point cloud, and is within the limits.
+/// The file of a mesh, if that has a face or enough vertices for a point cloud, and is within the limits.
 pub(super) fn finish(
     positions: Vec<Point3<f64>>,
     faces: Vec<[VertexId; 3]>,
     limits: &ReadLimits,
-) -> Result<TriMesh, Located> {
+) -> Result<MeshFile, Located> {
     if faces.is_empty() && positions.len() < FEWEST_POINTS {
         return Err(Fault::NoFaces { n_vertices: positions.len() }.whole());
     }
     limits.check(positions.len() as u64, faces.len() as u64).map_err(Fault::whole)?;
-    Ok(TriMesh { positions, faces })
+    Ok(MeshFile { mesh: TriMesh { positions, faces }, ..MeshFile::default() })
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@ use std::fs::{self, File};
 use std::io::{self, Read};
 use std::path::Path;
 
-use files::FileError;
+use base::files::FileError;
 use flate2::read::MultiGzDecoder;
 
 use super::name;
@@ -162,40 +162,23 @@ fn read_gzip(
     check: CheckStart,
     limit: u64,
 ) -> Result<Vec<u8>, MeshError> {
-    let mut damage = None;
-    let mut inflated = Watched { stream: MultiGzDecoder::new(stream), damage: &mut damage };
-    let read = read_checked(path, &mut inflated, check, None, limit);
-    match read {
-        Err(MeshError::Io(_)) if damage.is_some() => {
-            let found = damage.unwrap_or_default();
-            Err(Fault::Syntax { expected: "compressed data", found }.whole().in_file(path))
+    // What is wrong with compressed data is not the fault of the system.
+    let is_damage = |kind| {
+        matches!(
+            kind,
+            io::ErrorKind::InvalidInput | io::ErrorKind::InvalidData | io::ErrorKind::UnexpectedEof
+        )
+    };
+    let fault = match read_checked(path, &mut MultiGzDecoder::new(stream), check, None, limit) {
+        Err(MeshError::Io(fault)) if is_damage(fault.source.kind()) => {
+            Fault::Syntax { expected: "compressed data", found: fault.source.to_string() }
         }
         Err(MeshError::File { fault: Fault::OverLimit { items: "bytes", limit }, .. }) => {
-            Err(Fault::Inflates { limit }.whole().in_file(path))
+            Fault::Inflates { limit }
         }
-        other => other,
-    }
-}
-
-/// Notes what is wrong with compressed data, which is not the fault of the system.
-struct Watched<'a, R> {
-    stream: R,
-    damage: &'a mut Option<String>,
-}
-
-impl<R: Read> Read for Watched<'_, R> {
-    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
-        let read = self.stream.read(buffer);
-        if let Err(fault) = &read
-            && matches!(
-                fault.kind(),
-                io::ErrorKind::InvalidInput | io::ErrorKind::InvalidData | io::ErrorKind::UnexpectedEof
-            )
-        {
-            *self.damage = Some(fault.to_string());
-        }
-        read
-    }
+        other => return other,
+    };
+    Err(fault.whole().in_file(path))
 }
 
 /// Reads a stream of `size` bytes, if that is known. Nothing is read beyond a start that fails the check, and at most

@@ -11,12 +11,14 @@ mod star;
 
 use std::collections::HashMap;
 
-use budget::Budget;
+use base::Observer;
 use nalgebra::Point3;
 use serde::Serialize;
 use surface::{VertexId, power_of_two_below};
 
+use crate::coincidence::position_key;
 use crate::error::{FEWEST_POINTS, MeshError};
+use crate::face_set::check_finite;
 use crate::orientation::orient_consistently;
 use crate::tri_mesh::TriMesh;
 use neighbors::Neighbors;
@@ -97,11 +99,11 @@ impl PointsReport {
 /// Parts that are closer to each other than the noise, or than two spacings, may be joined.
 ///
 /// ```
-/// use budget::Budget;
+/// use base::Observer;
 /// use canonform_mesh::{shapes, triangulate_points, validate};
 ///
 /// let ball = shapes::icosphere(4);
-/// let found = triangulate_points(&ball.positions, &Budget::unlimited())?;
+/// let found = triangulate_points(&ball.positions, &())?;
 /// assert_eq!(found.mesh.n_faces(), ball.n_faces());
 /// assert!((found.mesh.area() / ball.area() - 1.0).abs() < 1e-3);
 /// assert_eq!(validate(&found.mesh).n_boundary_loops, 0);
@@ -109,27 +111,35 @@ impl PointsReport {
 /// ```
 ///
 /// # Errors
-/// [`MeshError::NonFinitePosition`], [`MeshError::TooFewPoints`] if there are fewer than twelve different points,
-/// [`MeshError::NoSurface`] if no triangle is agreed on, and [`MeshError::Exceeded`].
-pub fn triangulate_points(points: &[Point3<f64>], budget: &Budget) -> Result<TriangulatedPoints, MeshError> {
-    if let Some(vertex) = points.iter().position(|p| p.iter().any(|x| !x.is_finite())) {
-        return Err(MeshError::NonFinitePosition { vertex: VertexId::from(vertex) });
-    }
+/// [`MeshError::Unusable`] if a coordinate is not finite, if there are fewer than twelve different points, and if no triangle
+/// is agreed on, and [`MeshError::Exceeded`].
+pub fn triangulate_points(
+    points: &[Point3<f64>],
+    observer: &dyn Observer,
+) -> Result<TriangulatedPoints, MeshError> {
+    let budget = observer.budget();
+    check_finite(points)?;
     let cloud = TriMesh { positions: points.to_vec(), faces: Vec::new() };
     let unit = power_of_two_below(cloud.size());
     let (distinct, of_point) = without_copies(points, unit);
     if distinct.len() < FEWEST_POINTS {
-        return Err(MeshError::TooFewPoints { n_points: distinct.len(), least: FEWEST_POINTS });
+        return Err(MeshError::Unusable(format!(
+            "{} different points without faces; a surface needs faces, or at least {FEWEST_POINTS} points",
+            distinct.len()
+        )));
     }
     let scaled: Vec<Point3<f64>> = distinct.iter().map(|&i| points[i] / unit).collect();
-    let smooth = smooth::smooth(scaled, budget)?;
+    let smooth = smooth::smooth(scaled, &budget)?;
     budget.check()?;
     let neighbors = Neighbors::new(&smooth.points);
     let stars = star::stars(&smooth.points, &neighbors);
     budget.check()?;
     let faces = select::agreed(&stars);
     if faces.is_empty() {
-        return Err(MeshError::NoSurface { n_points: points.len() });
+        return Err(MeshError::Unusable(format!(
+            "no two of the {} points agree on a triangle; they do not lie on a surface, or are too sparse",
+            points.len()
+        )));
     }
     let stands = stand_ins(&faces, &smooth.points, smooth.spacing);
 
@@ -161,18 +171,13 @@ pub fn triangulate_points(points: &[Point3<f64>], budget: &Budget) -> Result<Tri
 fn without_copies(points: &[Point3<f64>], unit: f64) -> (Vec<usize>, Vec<u32>) {
     let mut known = HashMap::with_capacity(points.len());
     let mut distinct = Vec::new();
-    let of_point = points
-        .iter()
-        .enumerate()
-        .map(|(i, p)| {
-            // Adding zero makes the two zeros one.
-            let key = [p.x, p.y, p.z].map(|x| (x / unit + 0.0).to_bits());
-            *known.entry(key).or_insert_with(|| {
-                distinct.push(i);
-                distinct.len() as u32 - 1
-            })
+    let mut number = |(i, p): (usize, &Point3<f64>)| {
+        *known.entry(position_key(&(p / unit))).or_insert_with(|| {
+            distinct.push(i);
+            distinct.len() as u32 - 1
         })
-        .collect();
+    };
+    let of_point = points.iter().enumerate().map(&mut number).collect();
     (distinct, of_point)
 }
 

@@ -1,6 +1,6 @@
 //! Measuring the noise of points, and smoothing it away.
 
-use budget::{Budget, Exceeded};
+use base::{Budget, Exceeded};
 use nalgebra::Point3;
 use rayon::prelude::*;
 

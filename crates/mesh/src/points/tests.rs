@@ -4,7 +4,7 @@ use super::*;
 use crate::{RepairOptions, repair, shapes, validate};
 
 fn triangulated(points: &[Point3<f64>]) -> TriangulatedPoints {
-    triangulate_points(points, &Budget::unlimited()).unwrap()
+    triangulate_points(points, &()).unwrap()
 }
 
 /// Random numbers, uniform in -0.5..0.5.
@@ -136,7 +136,7 @@ fn copies_share_a_vertex_and_outliers_are_dropped() {
     points.extend_from_within(..100);
     points.push(Point3::new(0.0, 0.0, 40.0));
     let repaired =
-        repair(&TriMesh { positions: points, faces: Vec::new() }, &RepairOptions::default()).unwrap();
+        repair(&TriMesh { positions: points, faces: Vec::new() }, &RepairOptions::default(), &()).unwrap();
     let found = repaired.report.points.unwrap();
     assert_eq!((found.n_points, found.outliers), (1101, 1));
     assert!(found.replaced_points >= 100, "{found:?}");
@@ -152,15 +152,15 @@ fn copies_share_a_vertex_and_outliers_are_dropped() {
 
 #[test]
 fn points_without_a_surface_are_errors() {
-    let of = |points: &[Point3<f64>]| triangulate_points(points, &Budget::unlimited()).unwrap_err();
+    let of = |points: &[Point3<f64>]| triangulate_points(points, &()).unwrap_err();
     let line: Vec<_> = (0..40).map(|i| Point3::new(f64::from(i), 2.0, 3.0)).collect();
-    assert!(matches!(of(&line), MeshError::NoSurface { n_points: 40 }), "{:?}", of(&line));
+    assert!(of(&line).to_string().contains("no two of the 40 points"), "{:?}", of(&line));
     let few = [Point3::origin(); 40];
-    assert!(matches!(of(&few), MeshError::TooFewPoints { n_points: 1, .. }));
-    assert!(matches!(of(&[]), MeshError::TooFewPoints { n_points: 0, .. }));
+    assert!(of(&few).to_string().starts_with("1 different points without faces"));
+    assert!(of(&[]).to_string().starts_with("0 different points without faces"));
     let mut bad = ball(40, 0.0);
     bad[7].x = f64::NAN;
-    assert!(matches!(of(&bad), MeshError::NonFinitePosition { vertex: VertexId(7) }));
+    assert!(of(&bad).to_string().starts_with("vertex 7 has a coordinate that is not finite"));
 }
 
 #[test]
@@ -171,7 +171,7 @@ fn any_points_end_in_a_surface_or_an_error() {
         let clumps: Vec<_> = solid.iter().map(|p| p.map(|x| (x * 4.0).round() + 1e-9 * x)).collect();
         let lattice: Vec<_> = (0..n).map(|i| Point3::new((i % 7) as f64, (i / 7) as f64, 0.0)).collect();
         for points in [solid, clumps, lattice] {
-            if let Ok(found) = triangulate_points(&points, &Budget::unlimited()) {
+            if let Ok(found) = triangulate_points(&points, &()) {
                 assert_eq!(found.mesh.n_vertices(), n);
                 assert_eq!(validate(&found.mesh).non_manifold_edges, 0);
                 assert!(found.mesh.positions.iter().all(|p| p.iter().all(|x| x.is_finite())));
@@ -182,6 +182,6 @@ fn any_points_end_in_a_surface_or_an_error() {
 
 #[test]
 fn a_cancelled_budget_ends_the_work() {
-    let budget = Budget::unlimited().with_time(std::time::Duration::ZERO);
+    let budget = base::Budget::unlimited().with_time(std::time::Duration::ZERO);
     assert!(matches!(triangulate_points(&ball(500, 0.0), &budget), Err(MeshError::Exceeded(_))));
 }

@@ -63,12 +63,12 @@ impl BoxTree {
         index
     }
 
-    /// Replaces `found` by the `k` points nearest to a position within a radius, as squared distances and numbers in
-    /// ascending order. `skips` excludes points, `prunes` nodes by their index.
+    /// Replaces `found` by the `k` points nearest to a position within a radius, which is squared, as squared distances and
+    /// numbers in ascending order. `skips` excludes points, `prunes` nodes by their index.
     pub(super) fn nearest(
         &self,
         position: &Point3<f64>,
-        radius: f64,
+        sq_radius: f64,
         k: usize,
         skips: impl Fn(u32) -> bool,
         prunes: impl Fn(usize) -> bool,
@@ -76,7 +76,6 @@ impl BoxTree {
     ) {
         found.clear();
         let at = [position.x, position.y, position.z];
-        let sq_radius = radius * radius;
         let mut pending = vec![0];
         while let Some(index) = pending.pop() {
             let node = &self.nodes[index];
@@ -110,20 +109,8 @@ impl BoxTree {
 }
 
 impl Node {
-    pub(super) fn width(&self) -> f64 {
-        (0..3).map(|axis| self.high[axis] - self.low[axis]).fold(0.0, f64::max)
-    }
-
-    /// Squared distance to another box. Never larger than that of two points in them, even with rounding, since every
-    /// step is monotonic.
-    pub(super) fn sq_gap(&self, other: &Self) -> f64 {
-        sq_norm(
-            [0, 1, 2].map(|axis| {
-                (self.low[axis] - other.high[axis]).max(other.low[axis] - self.high[axis]).max(0.0)
-            }),
-        )
-    }
-
+    /// Squared distance to a point. Never larger than that of a point in the box, even with rounding, since every step
+    /// is monotonic.
     fn sq_gap_to(&self, point: [f64; 3]) -> f64 {
         sq_norm(
             [0, 1, 2].map(|axis| (self.low[axis] - point[axis]).max(point[axis] - self.high[axis]).max(0.0)),
@@ -131,7 +118,7 @@ impl Node {
     }
 }
 
-pub(super) fn sq_norm([x, y, z]: [f64; 3]) -> f64 {
+fn sq_norm([x, y, z]: [f64; 3]) -> f64 {
     x * x + y * y + z * z
 }
 
@@ -150,7 +137,7 @@ mod tests {
         let mut found = Vec::new();
         for i in 0..500 {
             for (k, radius) in [(1, 9.0), (5, 2.0), (600, 3.0)] {
-                tree.nearest(&at(i), radius, k, |other| other == i, |_| false, &mut found);
+                tree.nearest(&at(i), radius * radius, k, |other| other == i, |_| false, &mut found);
                 let all = (0..500).filter(|j| *j != i).map(|j| (at(j) - at(i)).norm_squared());
                 let mut all: Vec<f64> = all.filter(|sq| *sq <= radius * radius).collect();
                 all.sort_by(f64::total_cmp);

@@ -3,16 +3,16 @@
 //! * [`shortest_links`] joins all components: a minimum spanning tree, where the distance of two components is that of
 //!   their nearest vertices. This is Boruvka's algorithm. In each round, every group of joined components finds its
 //!   nearest vertex outside, and all these links are added, so that the number of groups at least halves. The search
-//!   visits pairs of nodes of one box tree and prunes pairs within one group and pairs farther apart than the best
-//!   link so far. Nested and interwoven components therefore cost no more than separate ones.
+//!   prunes the parts of a tree of boxes that are of the same group or farther away than the best link so far. Nested
+//!   and interwoven components therefore cost no more than separate ones.
 //! * [`near_links`] joins the boundary of every component to the others all along a narrow gap, so that distances
 //!   across it are right.
 
-use budget::{Budget, Exceeded};
+use base::{Budget, Exceeded};
 use nalgebra::Point3;
 use surface::{DisjointSets, EdgeId, Link, Topology, VertexId};
 
-use super::box_tree::{BoxTree, Node, sq_norm};
+use super::box_tree::BoxTree;
 use crate::coincidence::coincident_pairs;
 
 /// The group of a node with points of several groups.
@@ -25,14 +25,24 @@ const REACH: f64 = 0.8;
 /// Searches between two checks of the budget.
 const BATCH: usize = 1024;
 
-/// The links of least total length that join the components of a set of points, ordered by their ends. `labels` are
-/// the components, numbered from zero. Of equally long links, the one with the lowest vertices is used.
-pub(super) fn shortest_links(
+/// A spanning tree of the components, and links all along narrow gaps, ordered by their ends.
+pub(super) fn links(
     positions: &[Point3<f64>],
+    topology: &Topology,
     labels: &[u32],
     budget: &Budget,
 ) -> Result<Vec<Link>, Exceeded> {
-    let mut tree = GroupTree::new((0..positions.len() as u32).collect(), positions, labels);
+    let mut links = shortest_links(positions, labels, budget)?;
+    links.extend(near_links(positions, topology, labels, budget)?);
+    links.sort_unstable_by_key(|link| link.ends);
+    links.dedup_by_key(|link| link.ends);
+    Ok(links)
+}
+
+/// The links of least total length that join the components of a set of points. `labels` are
+/// the components, numbered from zero. Of equally long links, the one with the lowest vertices is used.
+fn shortest_links(positions: &[Point3<f64>], labels: &[u32], budget: &Budget) -> Result<Vec<Link>, Exceeded> {
+    let mut tree = GroupTree::new(0..positions.len() as u32, positions);
     let n_components = labels.iter().max().map_or(0, |&most| most as usize + 1);
     let mut groups = DisjointSets::new(n_components);
     let mut links = Vec::with_capacity(n_components.saturating_sub(1));
@@ -45,9 +55,8 @@ pub(super) fn shortest_links(
     }
     while links.len() + 1 < n_components {
         budget.check()?;
-        tree.assign_groups(labels, |label| groups.find(label));
-        let mut nearest = vec![Candidate::NONE; n_components];
-        tree.search_all(&mut nearest, budget)?;
+        tree.assign_groups(|v| groups.find(labels[v as usize]));
+        let mut nearest = tree.nearest_of_groups(n_components, budget)?;
         nearest.retain(|candidate| candidate.sq_length.is_finite());
         nearest.sort_unstable_by(Candidate::order);
         let before = links.len();
@@ -61,13 +70,11 @@ pub(super) fn shortest_links(
             break;
         }
     }
-    links.sort_unstable_by_key(|link| link.ends);
     Ok(links)
 }
 
-/// Links from every boundary vertex to the nearest boundary vertex of another component, if that is within [`REACH`];
-/// ordered by their ends. About `O(n log n)`.
-pub(super) fn near_links(
+/// Links from every boundary vertex to the nearest boundary vertex of another component, if that is within [`REACH`]. About `O(n log n)`.
+fn near_links(
     positions: &[Point3<f64>],
     topology: &Topology,
     labels: &[u32],
@@ -84,23 +91,18 @@ pub(super) fn near_links(
         }
     }
     let boundary: Vec<u32> = (0..positions.len() as u32).filter(|&v| edges[v as usize].1 > 0).collect();
-    let mut tree = GroupTree::new(boundary.clone(), positions, labels);
-    tree.assign_groups(labels, |label| label);
-    let mut links = Vec::new();
-    let mut found = Vec::new();
+    let mut tree = GroupTree::new(boundary.iter().copied(), positions);
+    tree.assign_groups(|v| labels[v as usize]);
+    let (mut links, mut found) = (Vec::new(), Vec::new());
     for (i, &v) in boundary.iter().enumerate() {
         if i % BATCH == 0 {
             budget.check()?;
         }
         let (sum, count) = edges[v as usize];
-        let (own, radius) = (labels[v as usize], REACH * sum / f64::from(count));
-        let skips = |other: u32| labels[other as usize] == own;
-        let prunes = |node: usize| tree.node_groups[node] == own;
-        tree.boxes.nearest(&positions[v as usize], radius, 1, skips, prunes, &mut found);
+        let radius = REACH * sum / f64::from(count);
+        tree.nearest_outside(&positions[v as usize], labels[v as usize], radius * radius, &mut found);
         links.extend(found.iter().map(|&(_, other)| link(positions, [v.min(other), v.max(other)])));
     }
-    links.sort_unstable_by_key(|link| link.ends);
-    links.dedup_by_key(|link| link.ends);
     Ok(links)
 }
 
@@ -147,100 +149,59 @@ impl Candidate {
 /// A tree whose points belong to groups of components.
 struct GroupTree {
     boxes: BoxTree,
-    /// The group of every point, in the order of the tree.
+    /// The group of every vertex of the mesh.
     groups: Vec<u32>,
     /// The group of all points of a node, or [`MIXED`].
     node_groups: Vec<u32>,
 }
 
 impl GroupTree {
-    fn new(vertices: Vec<u32>, positions: &[Point3<f64>], labels: &[u32]) -> Self {
-        let boxes = BoxTree::new(vertices.into_iter().map(|v| (positions[v as usize], v)));
-        let groups = boxes.items.iter().map(|item| labels[item.id as usize]).collect();
+    fn new(vertices: impl Iterator<Item = u32>, positions: &[Point3<f64>]) -> Self {
+        let boxes = BoxTree::new(vertices.map(|v| (positions[v as usize], v)));
         let node_groups = vec![MIXED; boxes.nodes.len()];
-        Self { boxes, groups, node_groups }
+        Self { boxes, groups: vec![MIXED; positions.len()], node_groups }
     }
 
     /// Updates the groups of points and nodes.
-    fn assign_groups(&mut self, labels: &[u32], mut group_of: impl FnMut(u32) -> u32) {
-        for (group, item) in self.groups.iter_mut().zip(&self.boxes.items) {
-            *group = group_of(labels[item.id as usize]);
-        }
+    fn assign_groups(&mut self, group_of: impl FnMut(u32) -> u32) {
+        self.groups = (0..self.groups.len() as u32).map(group_of).collect();
+        let common = |a: u32, b: u32| if a == b { a } else { MIXED };
         for (index, node) in self.boxes.nodes.iter().enumerate().rev() {
+            let items = &self.boxes.items[node.items.clone()];
             self.node_groups[index] = match node.children {
-                Some([a, b]) if self.node_groups[a] == self.node_groups[b] => self.node_groups[a],
-                Some(_) => MIXED,
+                Some([a, b]) => common(self.node_groups[a], self.node_groups[b]),
                 None => {
-                    let groups = &self.groups[node.items.clone()];
-                    let first = groups.first().copied().unwrap_or(MIXED);
-                    if groups.iter().all(|group| *group == first) { first } else { MIXED }
+                    items.iter().map(|item| self.groups[item.id as usize]).reduce(common).unwrap_or(MIXED)
                 }
             };
         }
     }
 
-    /// Finds the shortest link from every group to another.
-    fn search_all(&self, nearest: &mut [Candidate], budget: &Budget) -> Result<(), Exceeded> {
-        let mut pending = vec![0];
-        let mut n_searched = 0usize;
-        while let Some(index) = pending.pop() {
-            n_searched += 1;
-            if n_searched.is_multiple_of(BATCH) {
+    /// The nearest vertex of another group than `own` within a radius, and its squared distance.
+    fn nearest_outside(&self, at: &Point3<f64>, own: u32, sq_radius: f64, found: &mut Vec<(f64, u32)>) {
+        let skips = |other: u32| self.groups[other as usize] == own;
+        let prunes = |node: usize| self.node_groups[node] == own;
+        self.boxes.nearest(at, sq_radius, 1, skips, prunes, found);
+    }
+
+    /// The shortest link from every group to another.
+    fn nearest_of_groups(&self, n_groups: usize, budget: &Budget) -> Result<Vec<Candidate>, Exceeded> {
+        let mut nearest = vec![Candidate::NONE; n_groups];
+        let mut found = Vec::new();
+        for (i, item) in self.boxes.items.iter().enumerate() {
+            if i % BATCH == 0 {
                 budget.check()?;
             }
-            match self.boxes.nodes[index].children {
-                Some(children) if self.node_groups[index] == MIXED => pending.extend(children),
-                _ => self.search(index, 0, nearest),
+            let own = self.groups[item.id as usize];
+            let sq_radius = nearest[own as usize].sq_length;
+            self.nearest_outside(&item.position.into(), own, sq_radius, &mut found);
+            for &(sq_length, other) in &found {
+                let candidate = Candidate { sq_length, ends: [item.id.min(other), item.id.max(other)] };
+                nearest[own as usize].improve(candidate);
+                nearest[self.groups[other as usize] as usize].improve(candidate);
             }
         }
-        Ok(())
-    }
-
-    /// Searches the points of node `there` for neighbours of the points of node `here`, which has a single
-    /// group or is a leaf.
-    fn search(&self, here: usize, there: usize, nearest: &mut [Candidate]) {
-        let nodes = &self.boxes.nodes;
-        let (h, t) = (&nodes[here], &nodes[there]);
-        let is_own = self.node_groups[here] != MIXED && self.node_groups[here] == self.node_groups[there];
-        if is_own || h.sq_gap(t) > self.bound(here, nearest) {
-            return;
-        }
-        match (h.children, t.children) {
-            (None, None) => self.compare(h, t, nearest),
-            (Some(children), None) => children.iter().for_each(|&c| self.search(c, there, nearest)),
-            (Some(children), Some(_)) if h.width() > t.width() => {
-                children.iter().for_each(|&c| self.search(c, there, nearest));
-            }
-            (_, Some([a, b])) => {
-                let a_first = h.sq_gap(&nodes[a]) <= h.sq_gap(&nodes[b]);
-                for child in if a_first { [a, b] } else { [b, a] } {
-                    self.search(here, child, nearest);
-                }
-            }
-        }
-    }
-
-    /// The largest squared length that can improve the link of a point of a node, which has a single group or
-    /// is a leaf.
-    fn bound(&self, node: usize, nearest: &[Candidate]) -> f64 {
-        if self.node_groups[node] != MIXED {
-            return nearest[self.node_groups[node] as usize].sq_length;
-        }
-        let groups = &self.groups[self.boxes.nodes[node].items.clone()];
-        groups.iter().map(|group| nearest[*group as usize].sq_length).fold(0.0, f64::max)
-    }
-
-    /// Compares all points of two leaves.
-    fn compare(&self, here: &Node, there: &Node, nearest: &mut [Candidate]) {
-        for i in here.items.clone() {
-            for j in there.items.clone().filter(|&j| self.groups[j] != self.groups[i]) {
-                let [p, q] = [i, j].map(|i| self.boxes.items[i]);
-                let gap = [0, 1, 2].map(|axis| p.position[axis] - q.position[axis]);
-                let candidate = Candidate { sq_length: sq_norm(gap), ends: [p.id.min(q.id), p.id.max(q.id)] };
-                nearest[self.groups[i] as usize].improve(candidate);
-                nearest[self.groups[j] as usize].improve(candidate);
-            }
-        }
+        Ok(nearest)
     }
 }
 
@@ -257,7 +218,9 @@ mod tests {
     }
 
     fn shortest_links(positions: &[Point3<f64>], labels: &[u32]) -> Vec<Link> {
-        super::shortest_links(positions, labels, &Budget::unlimited()).unwrap()
+        let mut links = super::shortest_links(positions, labels, &Budget::unlimited()).unwrap();
+        links.sort_unstable_by_key(|link| link.ends);
+        links
     }
 
     /// Kruskal on all pairs of points.
@@ -266,7 +229,7 @@ mod tests {
         for a in 0..positions.len() {
             for b in (a + 1..positions.len()).filter(|&b| labels[a] != labels[b]) {
                 let d = positions[b] - positions[a];
-                all.push(Candidate { sq_length: sq_norm([d.x, d.y, d.z]), ends: [a as u32, b as u32] });
+                all.push(Candidate { sq_length: d.norm_squared(), ends: [a as u32, b as u32] });
             }
         }
         all.sort_by(Candidate::order);

@@ -9,7 +9,7 @@ mod weld;
 pub use options::{ComponentPolicy, Orient, RepairOptions, Weld};
 pub use report::RepairReport;
 
-use budget::{Budget, Exceeded};
+use base::{Budget, Exceeded, Observer};
 use nalgebra::Point3;
 use surface::{Components, DisjointSets, FaceId, IntrinsicMesh, Link, Topology, VertexId, components_of};
 
@@ -25,20 +25,12 @@ pub struct Repaired {
     /// The repaired mesh. Its vertices are in the order of the input, and the three corners of each face are
     /// in three different positions.
     pub mesh: TriMesh,
-    /// Straight connections between components, in vertices of `mesh`; only with [`ComponentPolicy::Bridge`].
-    pub links: Vec<Link>,
+    /// Its intrinsic geometry. With [`ComponentPolicy::Bridge`] it has straight links between components.
+    pub intrinsic: IntrinsicMesh,
     /// For each input vertex, its vertex in `mesh`, which merged vertices share; `None` if it was dropped.
     pub input_to_repaired: Vec<Option<VertexId>>,
     /// All changes.
     pub report: RepairReport,
-}
-
-impl Repaired {
-    /// The intrinsic geometry of the mesh, with the links.
-    #[must_use]
-    pub fn intrinsic(&self) -> IntrinsicMesh {
-        self.mesh.intrinsic().with_links(self.links.clone())
-    }
 }
 
 /// Supported sizes of a mesh, in mesh units: the squares of its edges must be neither zero nor infinite.
@@ -61,69 +53,108 @@ const MAX_PASSES: usize = 16;
 /// doubling of the number of components.
 ///
 /// # Errors
-/// [`MeshError::FaceOutOfRange`], [`MeshError::NonFinitePosition`] and [`MeshError::OutOfRange`] for a mesh that
-/// no algorithm can use, [`MeshError::NoUsableFace`] if no face is left, [`MeshError::TooFewPoints`] and
-/// [`MeshError::NoSurface`] for points without a surface, and [`MeshError::Disconnected`] if
-/// there are several components and the policy is [`ComponentPolicy::Error`].
+/// [`MeshError::Unusable`] for a mesh that no algorithm can use, for one of which no face is left, and for points without
+/// a surface, [`MeshError::Disconnected`] if
+/// there are several components and the policy is [`ComponentPolicy::Error`], and [`MeshError::Exceeded`].
 ///
 /// ```
 /// use canonform_mesh::{RepairOptions, repair, shapes};
 ///
 /// let two_components = shapes::disjoint(&[shapes::icosphere(3), shapes::cube(0)]);
-/// let repaired = repair(&two_components, &RepairOptions::default())?;
+/// let repaired = repair(&two_components, &RepairOptions::default(), &())?;
 /// assert_eq!(repaired.mesh, shapes::icosphere(3));
 /// assert_eq!(repaired.report.dropped_component_vertices, 8);
 /// assert_eq!(repaired.input_to_repaired.last(), Some(&None));
 /// # Ok::<(), canonform_mesh::MeshError>(())
 /// ```
-pub fn repair(mesh: &TriMesh, options: &RepairOptions) -> Result<Repaired, MeshError> {
-    repair_within(mesh, options, &Budget::unlimited())
-}
-
-/// Repairs as [`repair()`] does, within a budget.
-///
-/// # Errors
-/// Those of [`repair()`], and [`MeshError::Exceeded`].
-pub fn repair_within(
+pub fn repair(
     mesh: &TriMesh,
     options: &RepairOptions,
-    budget: &Budget,
+    observer: &dyn Observer,
 ) -> Result<Repaired, MeshError> {
-    Ok(repair_and_measure(mesh, options, budget)?.0)
-}
-
-/// Repairs as [`repair_within()`] does, and returns the [intrinsic geometry](Repaired::intrinsic) as well, whose
-/// connectivity is built once for both where nothing has to be repaired.
-///
-/// # Errors
-/// Those of [`repair_within()`].
-pub fn repair_and_measure(
-    mesh: &TriMesh,
-    options: &RepairOptions,
-    budget: &Budget,
-) -> Result<(Repaired, IntrinsicMesh), MeshError> {
     check_input(mesh)?;
     let unit = checked_unit(mesh)?;
     if mesh.faces.is_empty() && mesh.n_vertices() > 0 {
-        return surface_of_points(mesh, options, budget);
+        return surface_of_points(mesh, options, observer);
     }
+    let budget = observer.budget();
     let scaled: Vec<Point3<f64>> = mesh.positions.iter().map(|p| p / unit).collect();
-    let n_input = mesh.n_vertices();
-    let mut report =
-        RepairReport { input_vertices: n_input, input_faces: mesh.n_faces(), ..RepairReport::default() };
+    let mut report = RepairReport {
+        input_vertices: mesh.n_vertices(),
+        input_faces: mesh.n_faces(),
+        ..RepairReport::default()
+    };
+    let mut merged = DisjointSets::new(mesh.n_vertices());
+    let surface = welded(mesh, &scaled, unit, options.weld, &mut merged, &mut report, &budget)?;
+    if surface.topology().n_faces() == 0 {
+        let degenerate = report.degenerate_faces + report.zero_length_faces;
+        return Err(MeshError::Unusable(format!(
+            "none of the {} faces is usable ({degenerate} degenerate); \
+             a surface needs at least one triangle with three distinct corners",
+            mesh.n_faces()
+        )));
+    }
 
+    budget.check()?;
+    report.coordinate_rounding = coordinate_rounding(&scaled, &surface, unit);
+    let components = components_of(surface.topology());
+    report.components = components.count;
+    let kept = match options.components {
+        _ if components.count == 1 => None,
+        ComponentPolicy::Bridge => None,
+        ComponentPolicy::Largest => Some(largest(&scaled, surface.topology(), &components, &mut report)),
+        ComponentPolicy::Error => return Err(disconnected(&components)),
+    };
+    let compact = Compact::of(mesh, &mut merged, &components, kept);
+    compact.report_dropped(&mut merged, &components, &mut report);
+    let faces = surface.topology().faces();
+    let renumbered = faces.iter().filter_map(|face| {
+        let [a, b, c] = face.map(|v| compact.input_to_repaired[v.index()]);
+        Some([a?, b?, c?])
+    });
+    let mut repaired = TriMesh { faces: renumbered.collect(), positions: compact.positions };
+    report.dropped_component_faces = faces.len() - repaired.n_faces();
+
+    let mut links = Vec::new();
+    if options.components == ComponentPolicy::Bridge && components.count > 1 {
+        let positions = compact.sources.iter().map(|v| scaled[v.index()]).collect::<Vec<_>>();
+        let topology = Topology::new(positions.len(), repaired.faces.clone());
+        links = bridge::links(&positions, &topology, &compact.labels, &budget)?;
+        links.iter_mut().for_each(|link| link.length *= unit);
+        let in_input = |link: &Link| Link { ends: link.ends.map(|v| compact.sources[v.index()]), ..*link };
+        report.bridges = links.iter().map(in_input).collect();
+        report.bridge_length = links.iter().map(|link| link.length).sum();
+    }
+    if options.orient == Orient::Consistent {
+        report.flipped_faces = orient_consistently(&mut repaired);
+    }
+    (report.output_vertices, report.output_faces) = (repaired.n_vertices(), repaired.n_faces());
+    let is_unchanged = repaired.n_vertices() == mesh.n_vertices() && report.flipped_faces == 0;
+    let intrinsic = if is_unchanged { surface } else { repaired.intrinsic() }.with_links(links);
+    Ok(Repaired { mesh: repaired, intrinsic, input_to_repaired: compact.input_to_repaired, report })
+}
+
+/// The surface of the faces, without degenerate and duplicate ones, after welding.
+fn welded(
+    mesh: &TriMesh,
+    scaled: &[Point3<f64>],
+    unit: f64,
+    policy: Weld,
+    merged: &mut DisjointSets,
+    report: &mut RepairReport,
+    budget: &Budget,
+) -> Result<IntrinsicMesh, Exceeded> {
     let mut faces = mesh.faces.clone();
     report.degenerate_faces = remove_degenerate(&mut faces);
-    let mut surface = without_duplicates(mesh, faces, &mut report);
-    let mut merged = DisjointSets::new(n_input);
-    let policy = match options.weld {
+    let mut surface = without_duplicates(mesh, faces, report);
+    let policy = match policy {
         Weld::Within(tolerance) => Weld::Within(tolerance / unit),
         other => other,
     };
     for _ in 0..MAX_PASSES {
         budget.check()?;
-        let welded = weld::weld(&mesh.positions, &scaled, surface.topology(), policy, &mut merged);
-        let collapsed = weld::collapse_zero_edges(&surface, unit, &mut merged);
+        let welded = weld::weld(&mesh.positions, scaled, surface.topology(), policy, merged);
+        let collapsed = weld::collapse_zero_edges(&surface, unit, merged);
         if welded.coincident + welded.near + collapsed == 0 {
             break;
         }
@@ -136,69 +167,19 @@ pub fn repair_and_measure(
         }
         report.collapsed_vertices += collapsed;
         report.zero_length_faces += remove_degenerate(&mut faces);
-        surface = without_duplicates(mesh, faces, &mut report);
+        surface = without_duplicates(mesh, faces, report);
     }
-    if surface.topology().n_faces() == 0 {
-        let degenerate = report.degenerate_faces + report.zero_length_faces;
-        return Err(MeshError::NoUsableFace { n_faces: mesh.n_faces(), degenerate });
-    }
-
-    budget.check()?;
-    report.coordinate_rounding = coordinate_rounding(&scaled, &surface, unit);
-    let components = components_of(surface.topology());
-    report.components = components.count;
-    // The faces, if some of their vertices have to be dropped or renumbered.
-    let (mut changed, mut kept) = (None, None);
-    if components.count > 1 && options.components == ComponentPolicy::Error {
-        return Err(disconnected(&components));
-    }
-    if components.count > 1 && options.components == ComponentPolicy::Largest {
-        let mut faces = surface.topology().faces().to_vec();
-        kept = Some(keep_largest(&scaled, &mut faces, &components, &mut report));
-        changed = Some(faces);
-    } else if components.labels.iter().any(Option::is_none) {
-        changed = Some(surface.topology().faces().to_vec());
-    }
-
-    let compact = Compact::of(mesh, &mut merged, &components, kept);
-    compact.report_dropped(&mut merged, &components, &mut report);
-    let is_changed = changed.is_some();
-    let mut faces = changed.unwrap_or_else(|| surface.topology().faces().to_vec());
-    if is_changed {
-        for v in faces.iter_mut().flatten() {
-            *v = compact.input_to_repaired[v.index()].unwrap_or(*v);
-        }
-    }
-    let mut links = Vec::new();
-    if options.components == ComponentPolicy::Bridge && components.count > 1 {
-        links = links_between(&scaled, &compact, &faces, budget)?;
-        links.iter_mut().for_each(|link| link.length *= unit);
-        let in_input = |link: &Link| Link { ends: link.ends.map(|v| compact.sources[v.index()]), ..*link };
-        report.bridges = links.iter().map(in_input).collect();
-        report.bridge_length = links.iter().map(|link| link.length).sum();
-    }
-    let mut repaired = TriMesh { positions: compact.positions, faces };
-    if options.orient == Orient::Consistent {
-        report.flipped_faces = orient_consistently(&mut repaired);
-    }
-    report.output_vertices = repaired.n_vertices();
-    report.output_faces = repaired.n_faces();
-    let surface = match is_changed || report.flipped_faces > 0 {
-        true => repaired.intrinsic(),
-        false => surface,
-    };
-    let surface = surface.with_links(links.clone());
-    Ok((Repaired { mesh: repaired, links, input_to_repaired: compact.input_to_repaired, report }, surface))
+    Ok(surface)
 }
 
 /// The surface through the vertices of a mesh without faces, repaired. The vertex that stands for a point is its vertex.
 fn surface_of_points(
     cloud: &TriMesh,
     options: &RepairOptions,
-    budget: &Budget,
-) -> Result<(Repaired, IntrinsicMesh), MeshError> {
-    let found = triangulate_points(&cloud.positions, budget)?;
-    let (mut repaired, surface) = repair_and_measure(&found.mesh, options, budget)?;
+    observer: &dyn Observer,
+) -> Result<Repaired, MeshError> {
+    let found = triangulate_points(&cloud.positions, observer)?;
+    let mut repaired = repair(&found.mesh, options, observer)?;
     let (to_repaired, report) = (&mut repaired.input_to_repaired, &mut repaired.report);
     for (point, vertex) in found.vertex.iter().enumerate() {
         if let Some(vertex) = vertex.filter(|v| v.index() != point) {
@@ -210,7 +191,7 @@ fn surface_of_points(
     report.dropped_vertices.retain(|v| to_repaired[v.index()].is_none());
     report.input_faces = 0;
     report.points = Some(found.report);
-    Ok((repaired, surface))
+    Ok(repaired)
 }
 
 /// The surface of faces that are not degenerate, over the vertices of a mesh, without duplicate faces.
@@ -218,7 +199,7 @@ fn without_duplicates(mesh: &TriMesh, faces: Vec<[VertexId; 3]>, report: &mut Re
     let mut topology = Topology::new(mesh.n_vertices(), faces);
     if topology.has_duplicate_faces() {
         let mut faces = topology.into_faces();
-        report.duplicate_faces += remove_duplicates(mesh.n_vertices(), &mut faces);
+        report.duplicate_faces += remove_duplicates(&mut faces);
         topology = Topology::new(mesh.n_vertices(), faces);
     }
     mesh.measured(topology)
@@ -231,7 +212,12 @@ fn checked_unit(mesh: &TriMesh) -> Result<f64, MeshError> {
         // All positions are the same, and no face is usable.
         0.0 => Ok(1.0),
         _ if SIZES.contains(&size) => Ok(mesh.unit()),
-        _ => Err(MeshError::OutOfRange { size, smallest: *SIZES.start(), largest: *SIZES.end() }),
+        _ => Err(MeshError::Unusable(format!(
+            "the mesh is {size:e} units across, but sizes from {:e} to {:e} are supported, \
+             since areas beyond overflow or vanish; scale the mesh",
+            SIZES.start(),
+            SIZES.end()
+        ))),
     }
 }
 
@@ -248,22 +234,6 @@ fn coordinate_rounding(positions: &[Point3<f64>], surface: &IntrinsicMesh, unit:
     f64::EPSILON * farthest * 3.0 * faces.len() as f64 / sides
 }
 
-/// A spanning tree of the components, and links all along narrow gaps; lengths in units of `scaled`.
-fn links_between(
-    scaled: &[Point3<f64>],
-    compact: &Compact,
-    faces: &[[VertexId; 3]],
-    budget: &Budget,
-) -> Result<Vec<Link>, Exceeded> {
-    let positions: Vec<Point3<f64>> = compact.sources.iter().map(|v| scaled[v.index()]).collect();
-    let topology = Topology::new(positions.len(), faces.to_vec());
-    let mut links = bridge::shortest_links(&positions, &compact.labels, budget)?;
-    links.extend(bridge::near_links(&positions, &topology, &compact.labels, budget)?);
-    links.sort_unstable_by_key(|link| link.ends);
-    links.dedup_by_key(|link| link.ends);
-    Ok(links)
-}
-
 fn disconnected(components: &Components) -> MeshError {
     let mut sizes = vec![0; components.count];
     components.labels.iter().flatten().for_each(|&label| sizes[label as usize] += 1);
@@ -272,24 +242,21 @@ fn disconnected(components: &Components) -> MeshError {
     MeshError::Disconnected { unreached: n_vertices - largest, n_vertices }
 }
 
-/// Removes all components but the one with the largest area, the first in case of a tie; returns its number.
-fn keep_largest(
+/// The component with the largest area, the first in case of a tie.
+fn largest(
     positions: &[Point3<f64>],
-    faces: &mut Vec<[VertexId; 3]>,
+    topology: &Topology,
     components: &Components,
     report: &mut RepairReport,
 ) -> u32 {
     let mut areas = vec![0.0; components.count];
-    for face in faces.iter() {
+    for face in topology.faces() {
         let [a, b, c] = face.map(|v| positions[v.index()]);
         areas[components.of(face[0])] += (b - a).cross(&(c - a)).norm() / 2.0;
     }
     let largest = (1..areas.len()).fold(0, |best, i| if areas[i] > areas[best] { i } else { best });
     let total: f64 = areas.iter().sum();
-    let before = faces.len();
-    faces.retain(|face| components.of(face[0]) == largest);
     report.dropped_components = components.count - 1;
-    report.dropped_component_faces = before - faces.len();
     report.dropped_area_share = if total > 0.0 { 1.0 - areas[largest] / total } else { 0.0 };
     largest as u32
 }

@@ -46,6 +46,22 @@ pub enum Weld {
     All,
 }
 
+impl std::str::FromStr for Weld {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let tolerance: Option<f64> = text.parse().ok().filter(|tolerance: &f64| tolerance.is_finite());
+        match text {
+            "none" => Ok(Self::None),
+            "seams" => Ok(Self::Seams),
+            "all" => Ok(Self::All),
+            _ => tolerance.filter(|tolerance| *tolerance >= 0.0).map(Self::Within).ok_or_else(|| {
+                format!("`{text}` is neither `seams`, `all` or `none` nor a distance in mesh units")
+            }),
+        }
+    }
+}
+
 /// Whether faces are flipped so that neighbours are oriented consistently.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]

@@ -81,7 +81,7 @@ fn vertex_pairs(positions: &[Point3<f64>], boundary: &[u32], tolerance: f64) -> 
     let (mut pairs, mut found) = (Vec::new(), Vec::new());
     for &v in boundary {
         let at = &positions[v as usize];
-        tree.nearest(at, tolerance, CANDIDATES, |other| other == v, |_| false, &mut found);
+        tree.nearest(at, tolerance * tolerance, CANDIDATES, |other| other == v, |_| false, &mut found);
         pairs.extend(found.iter().map(|&(sq, other)| Pair {
             gap: sq.sqrt(),
             tolerance,
@@ -109,7 +109,8 @@ fn seam_pairs(positions: &[Point3<f64>], topology: &Topology, edges: &[EdgeId]) 
     let tree = BoxTree::new((0..edges.len() as u32).map(|i| (middle(i), i)));
     let (mut pairs, mut found) = (Vec::new(), Vec::new());
     for i in 0..edges.len() as u32 {
-        tree.nearest(&middle(i), tolerances[i as usize], CANDIDATES, |j| j == i, |_| false, &mut found);
+        let sq_tolerance = tolerances[i as usize] * tolerances[i as usize];
+        tree.nearest(&middle(i), sq_tolerance, CANDIDATES, |j| j == i, |_| false, &mut found);
         for &(_, j) in &found {
             // Two faces over the same vertex would become one.
             if apex(i) == apex(j) {

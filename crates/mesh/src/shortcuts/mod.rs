@@ -9,7 +9,7 @@ mod pinch;
 mod shortcut;
 mod spike;
 
-use budget::{Budget, Exceeded};
+use base::{Exceeded, Observer};
 
 use crate::tri_mesh::TriMesh;
 use shortcut::MOST;
@@ -43,16 +43,17 @@ pub use shortcut::{Opened, Shortcut, ShortcutKind};
 /// });
 /// let far = VertexId::from(far.unwrap());
 /// ball.faces.iter_mut().flatten().filter(|v| **v == far).for_each(|v| *v = VertexId(0));
-/// let opened = cut_shortcuts(&ball, &budget::Budget::unlimited())?;
+/// let opened = cut_shortcuts(&ball, &())?;
 /// assert_eq!(opened.shortcuts.len(), 1);
 /// assert!(opened.shortcuts[0].detour > 2.5);
 /// assert_eq!(validate(&opened.refined.mesh).non_manifold_vertices, 0);
-/// # Ok::<(), budget::Exceeded>(())
+/// # Ok::<(), base::Exceeded>(())
 /// ```
-pub fn cut_shortcuts(mesh: &TriMesh, budget: &Budget) -> Result<Opened, Exceeded> {
+pub fn cut_shortcuts(mesh: &TriMesh, observer: &dyn Observer) -> Result<Opened, Exceeded> {
+    let budget = observer.budget();
     let size = mesh.root_of_area();
     let mut opened = pinch::cut(mesh, DETOUR * size);
-    while let Some((cut, shortcut)) = handle::cut(&opened.refined.mesh, GIRTH * size, DETOUR * size, budget)?
+    while let Some((cut, shortcut)) = handle::cut(&opened.refined.mesh, GIRTH * size, DETOUR * size, &budget)?
     {
         let n_cut = opened.shortcuts.len() + 1;
         opened.refined = opened.refined.then(cut);

@@ -112,7 +112,7 @@ pub fn validate(mesh: &TriMesh) -> MeshReport {
     let unit = mesh.unit();
     let mut faces = mesh.faces.clone();
     let degenerate_faces = remove_degenerate(&mut faces);
-    let duplicate_faces = remove_duplicates(n_vertices, &mut faces);
+    let duplicate_faces = remove_duplicates(&mut faces);
     let mut referenced = vec![false; n_vertices];
     mesh.faces.iter().flatten().for_each(|v| referenced[v.index()] = true);
     let n_faces = faces.len();

@@ -204,7 +204,7 @@ mod tests {
     use linalg::Matrix;
 
     use super::*;
-    use crate::testing::{Cloud, landmark_distances};
+    use crate::tests::support::{Cloud, landmark_distances};
 
     #[test]
     fn sums_beyond_sixteen_bits_are_not_cut_off() {

@@ -142,7 +142,7 @@ fn dot(a: &[i16], b: &[i16]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::testing::{Cloud, landmark_distances};
+    use crate::tests::support::{Cloud, landmark_distances};
 
     #[test]
     fn the_product_equals_the_sum_of_products() {

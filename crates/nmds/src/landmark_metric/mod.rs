@@ -149,7 +149,7 @@ mod tests {
     use linalg::Matrix;
 
     use super::*;
-    use crate::testing::{Cloud, landmark_distances, scaled};
+    use crate::tests::support::{Cloud, landmark_distances, scaled};
 
     fn metric(distances: &LandmarkDistances, rank: usize) -> LandmarkMetric {
         LandmarkMetric::new(distances, distances.n_landmarks(), ColumnError::NONE, rank).unwrap()

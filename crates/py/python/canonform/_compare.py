@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from . import _canonform, _html
 from ._arrays import Floats
 from ._form import Form
-from ._settings import Progress, encoded, n_bytes, number_or_inf, shown
+from ._settings import Progress, options_of, shown
 from ._surface import Surface
 
 
@@ -43,7 +43,7 @@ class Alignment:
 def align(a: Form | Surface, b: Form | Surface, *, reflections: bool = True) -> Alignment:
     """The motion that takes the form of a onto that of b, in mesh units.
 
-    A surface stands for its canonical form with default options. The verdict of `compare` uses forms at equal size instead.
+    A surface stands for its canonical form with default options. `compare` uses forms at equal size instead.
 
     Raises `EmbeddingError` for forms that are not three-dimensional.
     """
@@ -62,13 +62,14 @@ class Comparison:
         self._shapes = shapes
 
     @property
-    def verdict(self) -> str:
-        """How alike the shapes are: "same-shape", "same-class" or "different"."""
-        return str(self.report["verdict"]["kind"])
+    def relation(self) -> dict[str, Any]:
+        """How the meshes are related: `kind`, `confidence`, `changes`, `text`, and the numbers that decided in `because`."""
+        relation: dict[str, Any] = self.report["relation"]
+        return relation
 
     @property
     def distance(self) -> float:
-        """Combined distance, by signatures and aligned forms at equal size; the verdict follows from it."""
+        """Combined distance, by signatures and aligned forms at equal size."""
         return float(self.report["combined_distance"])
 
     @property
@@ -83,27 +84,26 @@ class Comparison:
 
     @property
     def match(self) -> str:
-        """What kind of match the meshes are, such as "identical-file", "moved", "remeshed" or "same-shape"."""
-        return str(self.report["evidence"]["kind"])
+        """The kind of relation, such as "identical-file", "scaled", "remeshed" or "other-pose"."""
+        return str(self.relation["kind"])
 
     @property
     def confidence(self) -> float:
-        """Probability of the kind of match, 0 to 1."""
-        return float(self.report["evidence"]["confidence"])
+        """Probability of the kind of relation, 0 to 1."""
+        return float(self.relation["confidence"])
 
     def __str__(self) -> str:
-        evidence = self.report["evidence"]
-        return f"{evidence['text']} (confidence {evidence['confidence']:.2f}); {evidence['reason']}"
+        return f"{self.relation['text']} (confidence {self.confidence:.2f}); {self.relation['because']['text']}"
 
     def __repr__(self) -> str:
-        return f"Comparison(verdict={self.verdict!r}, match={self.match!r}, distance={self.distance:.4g})"
+        return f"Comparison({self.match!r}, distance={self.distance:.4g})"
 
     def _repr_html_(self) -> str:
-        evidence, [a, b] = self.report["evidence"], self._shapes
+        a, b = self._shapes
         rows = [
-            ("match", evidence["text"]),
-            ("confidence", f"{evidence['confidence']:.2f}"),
-            ("because", evidence["reason"]),
+            ("relation", self.relation["text"]),
+            ("confidence", f"{self.confidence:.2f}"),
+            ("because", self.relation["because"]["text"]),
             ("combined distance", f"{self.distance:.4f}"),
             ("forms, at equal size", f"{self.form_distance:.6f}"),
             ("scale, second over first", f"{self.scale:.6g}"),
@@ -151,30 +151,10 @@ def compare(
     names
         What the two are called in words; by default their file names.
     distance
-        The distance of aligned forms that is stated: "nn-rms" or "hausdorff95". The verdict does not depend on it, nor on the
+        The distance of aligned forms that is stated: "nn-rms" or "hausdorff95". The relation does not depend on it, nor on the
         other options, which are those of `Surface.canonical_form`.
     """
-    settings = encoded(
-        distance=distance,
-        n=n,
-        method=method,
-        geodesic=geodesic,
-        update=update,
-        obtuse=obtuse,
-        sampling=sampling,
-        first_sample=first_sample,
-        regularization=regularization,
-        rank=rank,
-        alpha=alpha,
-        sigma=sigma,
-        eigenvectors=eigenvectors,
-        mu=number_or_inf(mu),
-        iterations=iterations,
-        tolerance=tolerance,
-        seed=seed,
-        timeout=timeout,
-        memory=n_bytes(memory),
-    )
+    settings = options_of(locals())
     called = names or (a._name or "the first", b._name or "the second")
     with shown(progress) as report:
         found, residuals = _canonform.compare(a._inner, b._inner, list(called), settings, report)

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from . import _canonform, _html
 from ._arrays import Floats
-from ._settings import Progress, encoded, form_options, n_bytes, shown
+from ._settings import Progress, encoded, form_options, options_of, shown
 from ._surface import Surface
 from .errors import CanonformError, OptionError
 
@@ -55,10 +55,8 @@ class Result:
     """Combined distance from the query, by signatures and aligned forms."""
     fused: float
     """Distance by signatures alone."""
-    verdict: dict[str, Any]
-    """How alike the query and the shape are, and why."""
-    evidence: dict[str, Any] | None
-    """What kind of match they are, if the search was asked to explain."""
+    relation: dict[str, Any]
+    """How the query and the shape are related, as in `Comparison.relation`; by files and meshes, too, if the search explains."""
     rank_distance: float | None
     """What results are ordered by if they are ranked on the graph of nearest neighbours."""
     part_distance: float | None
@@ -75,8 +73,7 @@ class SearchResults(Sequence[Result]):
         """The answer that `canonform search --json` prints."""
         self._results = [
             Result(
-                **{key: found[key] for key in ("rank", "id", "label", "path", "distance", "fused", "verdict")},
-                evidence=found.get("evidence"),
+                **{key: found[key] for key in ("rank", "id", "label", "path", "distance", "fused", "relation")},
                 **{key: found.get(key) for key in ("rank_distance", "part_distance", "part_share")},
             )
             for found in report["results"]
@@ -116,12 +113,12 @@ class SearchResults(Sequence[Result]):
                 "label": found.label,
                 "distance": found.distance,
                 "fused": found.fused,
-                "verdict": found.verdict["kind"],
+                "relation": found.relation["kind"],
                 "path": found.path,
             }
             for found in self
         ]
-        return pandas.DataFrame(rows, columns=["rank", "id", "label", "distance", "fused", "verdict", "path"]).set_index("rank")
+        return pandas.DataFrame(rows, columns=["rank", "id", "label", "distance", "fused", "relation", "path"]).set_index("rank")
 
     def __repr__(self) -> str:
         lines = [f"{found.rank:>3}  {found.id:<20} {found.label or '-':<12} {found.distance:.4f}" for found in self]
@@ -139,10 +136,9 @@ class SearchResults(Sequence[Result]):
                 pictures.append(_caption("", f"{found.rank}. {found.id}"))
         strip = f'<div style="display:flex;gap:10px;flex-wrap:wrap">{"".join(pictures)}</div>'
         rows = (
-            (str(f.rank), f.id, f.label or "-", f"{f.distance:.4f}", f.evidence["text"] if f.evidence else str(f.verdict["kind"]))
-            for f in self
+            (str(f.rank), f.id, f.label or "-", f"{f.distance:.4f}", f.relation["text"]) for f in self
         )
-        head = ("", "shape", "class", "distance", "match")
+        head = ("", "shape", "class", "distance", "relation")
         return _html.box(f"class: {self.predicted['explanation']}", strip + _html.table(head, rows))
 
 
@@ -233,20 +229,7 @@ class Index:
         ShapeIndexError
             If the file is not an index, or was made with other options.
         """
-        settings = encoded(
-            n=n,
-            points=points,
-            size=size,
-            method=method,
-            geodesic=geodesic,
-            **form_options(form),
-            components=components,
-            weld=weld,
-            seed=seed,
-            max_vertices=max_vertices,
-            timeout=timeout,
-            memory=n_bytes(memory),
-        )
+        settings = options_of({**locals(), **form_options(form)})
         with shown(progress) as update, _label_file(labels) as label_file, _dataset(meshes) as (dataset, name):
             report = json.loads(_canonform.Index.build(dataset, os.fspath(path), label_file, prune, shard, None, settings, update))
         if not os.path.exists(path):
@@ -292,7 +275,7 @@ class Index:
         if label is not None and labels is not None:
             raise OptionError("label= has no effect with labels=; leave one of them out")
         paths = [meshes] if isinstance(meshes, (str, os.PathLike)) else list(meshes)
-        settings = encoded(max_vertices=max_vertices, timeout=timeout, memory=n_bytes(memory))
+        settings = encoded(max_vertices=max_vertices, timeout=timeout, memory=memory)
         with shown(progress) as update, _label_file(labels) as label_file:
             report = _canonform.Index.add(
                 self.path, [os.fspath(path) for path in paths], label, label_file, replace, settings, update
@@ -324,7 +307,7 @@ class Index:
             "plain" orders results by distance, "graph" by distance and by the neighbours that query and shape have in common,
             "part" by how well the query fits as a part of the shape, for a mesh that was cut or scanned in part.
         explain
-            Say what kind of match each result is, as `compare` does; reads the mesh files of the results.
+            Say how each result is related to the query, as `compare` does; reads the mesh files of the results.
         exact
             Compare the signatures of all shapes, even in a large index.
         """

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _canonform, _html
 from ._arrays import Ints
-from ._settings import Progress, encoded, n_bytes, shown
+from ._settings import Progress, encoded, shown
 from ._surface import Surface
 
 
@@ -97,7 +97,7 @@ def match(
     n, geodesic
         How the canonical forms are made whose alignments the search starts from, as in `Surface.canonical_form`.
     """
-    settings = encoded(eigenfunctions=eigenfunctions, n=n, geodesic=geodesic, timeout=timeout, memory=n_bytes(memory))
+    settings = encoded(eigenfunctions=eigenfunctions, n=n, geodesic=geodesic, timeout=timeout, memory=memory)
     with shown(progress) as report:
         found, vertices, colors = _canonform.match_surfaces(a._inner, b._inner, settings, report)
     return Match(json.loads(found), vertices, colors, (a, b))

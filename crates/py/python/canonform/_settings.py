@@ -8,27 +8,35 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from typing import Any, TypeAlias
 
+from . import _canonform
+
 Progress: TypeAlias = bool | Callable[[str, int, int], None]
 """`True` shows a bar (needs the package tqdm); a function gets the stage, the steps done and all steps."""
 
 _SIZES = {"": 0, "K": 1, "M": 2, "G": 3, "T": 4}
 
 
+_OPTIONS, _FORM = map(frozenset, _canonform.option_names())
+
+
 def encoded(**settings: Any) -> str:
     """The settings that were given, as JSON."""
-    return json.dumps({name: value for name, value in settings.items() if value is not None}, default=_plain)
+    given = {name: _plain(value) for name, value in settings.items() if value is not None}
+    return json.dumps({**given, "memory": n_bytes(given["memory"])} if "memory" in given else given)
+
+
+def options_of(arguments: Mapping[str, Any]) -> str:
+    """The options among the arguments of a call, as JSON."""
+    return encoded(**{name: value for name, value in arguments.items() if name in _OPTIONS})
 
 
 def _plain(value: Any) -> Any:
     # NumPy numbers.
-    if hasattr(value, "item"):
-        return value.item()
-    raise TypeError(f"{value!r} is not a number, text or truth value")
-
-
-_FORM = frozenset(
-    "dim update obtuse sampling first_sample regularization rank alpha sigma eigenvectors mu iterations tolerance".split()
-)
+    value = value.item() if hasattr(value, "item") else value
+    if not isinstance(value, (bool, int, float, str)):
+        raise TypeError(f"{value!r} is not a number, text or truth value")
+    # JSON has no infinity.
+    return "inf" if isinstance(value, float) and math.isinf(value) and value > 0 else value
 
 
 def form_options(form: Mapping[str, Any] | None) -> dict[str, Any]:
@@ -39,20 +47,15 @@ def form_options(form: Mapping[str, Any] | None) -> dict[str, Any]:
     unknown = sorted(set(options) - _FORM)
     if unknown:
         raise OptionError(f"form={{{unknown[0]!r}: ...}} is not possible: use {', '.join(map(repr, sorted(_FORM)))}")
-    return {**options, "mu": number_or_inf(options.get("mu"))}
+    return options
 
 
-def number_or_inf(value: float | None) -> float | str | None:
-    """JSON has no infinity."""
-    return "inf" if value is not None and math.isinf(value) and value > 0 else value
-
-
-def n_bytes(size: int | str | None) -> int | None:
+def n_bytes(size: int | str) -> int:
     """A memory size such as 2_000_000_000 or "2G", in bytes."""
     from .errors import OptionError
 
-    if size is None or not isinstance(size, str):
-        return None if size is None else int(size)
+    if not isinstance(size, str):
+        return int(size)
     text = size.strip().upper().removesuffix("B").removesuffix("I")
     unit = text[-1:] if text[-1:].isalpha() else ""
     number = text.removesuffix(unit)

@@ -16,7 +16,7 @@ from . import _canonform, _html
 from ._arrays import Floats, Ints, mesh_of
 from ._field import DistanceField
 from ._form import Form
-from ._settings import Progress, encoded, n_bytes, number_or_inf, shown
+from ._settings import Progress, encoded, options_of, shown
 
 Point: TypeAlias = int | np.integer[Any] | str
 """A vertex by its number; a point of an edge, such as "17-42@0.3"; or of a face, such as "f8@2:1:1"."""
@@ -389,29 +389,7 @@ class Surface:
             If an option is not possible, or has no effect beside the others.
         EmbeddingError, LimitError
         """
-        settings = encoded(
-            n=n,
-            target_stress=target_stress,
-            method=method,
-            dim=dim,
-            geodesic=geodesic,
-            update=update,
-            obtuse=obtuse,
-            sampling=sampling,
-            first_sample=first_sample,
-            regularization=regularization,
-            rank=rank,
-            alpha=alpha,
-            sigma=sigma,
-            eigenvectors=eigenvectors,
-            mu=number_or_inf(mu),
-            iterations=iterations,
-            tolerance=tolerance,
-            seed=seed,
-            stress=stress,
-            timeout=timeout,
-            memory=n_bytes(memory),
-        )
+        settings = options_of(locals())
         with shown(progress) as report:
             earlier = None if reuse is None else reuse._inner
             return Form(self._inner.canonical_form(settings, earlier, report), self._name)

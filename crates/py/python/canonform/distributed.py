@@ -25,7 +25,7 @@ import numpy as np
 from . import _canonform
 from ._arrays import Floats
 from ._index import AnyPath, Index, _dataset, _label_file
-from ._settings import Progress, encoded, form_options, n_bytes, shown
+from ._settings import Progress, form_options, options_of, shown
 from .errors import MeshError, OptionError
 
 try:
@@ -122,20 +122,7 @@ def build_index(
     MeshError
         If there are no meshes, or none of them can be described.
     """
-    settings = encoded(
-        n=n,
-        points=points,
-        size=size,
-        method=method,
-        geodesic=geodesic,
-        **form_options(form),
-        components=components,
-        weld=weld,
-        seed=seed,
-        max_vertices=max_vertices,
-        timeout=timeout,
-        memory=n_bytes(memory),
-    )
+    settings = options_of({**locals(), **form_options(form)})
     out = os.path.abspath(out)
     place = os.path.abspath(shards if shards is not None else f"{out}.shards")
     os.makedirs(place, exist_ok=True)

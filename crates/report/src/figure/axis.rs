@@ -1,9 +1,12 @@
 //! Axes: their range, their ticks and how these are written.
 
+use std::ops::Range;
+
+use plotters::coord::ranged1d::{KeyPointHint, NoDefaultFormatting, Ranged, ValueFormatter};
 use serde::Serialize;
 
-use crate::results::{self, AxisScale};
-use view::numbers::{Numbers, superscript, ticks};
+use crate::numbers::{NumberFormat, superscript, ticks};
+use crate::results::{Axis, AxisScale};
 
 /// The most ticks of an axis, about.
 const TICKS: usize = 7;
@@ -12,7 +15,7 @@ const ROOM: f64 = 0.04;
 
 /// One axis of a plot or matrix.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Axis {
+pub struct PlotAxis {
     /// The quantity and its unit.
     pub name: String,
     /// How values are spaced.
@@ -23,10 +26,10 @@ pub struct Axis {
     pub ticks: Vec<(f64, String)>,
 }
 
-impl Axis {
+impl PlotAxis {
     /// An axis for a quantity whose range holds all of `values` that can be shown, with a little room at both ends.
-    pub fn holding(quantity: &results::Axis, values: impl Iterator<Item = f64>) -> Self {
-        let results::Axis { name, unit, scale } = quantity;
+    pub fn holding(quantity: &Axis, values: impl Iterator<Item = f64>) -> Self {
+        let Axis { name, unit, scale } = quantity;
         let range = range(values.filter_map(|value| place(value, *scale)));
         match scale {
             AxisScale::Log => {
@@ -39,11 +42,24 @@ impl Axis {
     /// A linear axis over a range, with at most about `most` ticks.
     #[must_use]
     pub fn linear(name: &str, unit: &str, range: [f64; 2], most: usize) -> Self {
-        let values = ticks(range, most);
-        let numbers = Numbers::for_ticks(&values);
+        Self::with_ticks(name, unit, range, ticks(range, most))
+    }
+
+    fn with_ticks(name: &str, unit: &str, range: [f64; 2], values: Vec<f64>) -> Self {
+        let numbers = NumberFormat::for_ticks(&values);
         let ticks = values.into_iter().map(|value| (value, numbers.write(value)));
         let name = with_unit(name, &numbers.unit(unit));
         Self { name, scale: AxisScale::Linear, range, ticks: ticks.collect() }
+    }
+
+    /// The axis of a colour bar, with a tick at both ends of a range that has no round values.
+    #[must_use]
+    pub fn bar(name: &str, unit: &str, range: [f64; 2], most: usize) -> Self {
+        let [low, high] = range;
+        // A step below the spacing of floating-point numbers would never arrive.
+        let is_narrow = high - low <= 1e-9 * low.abs().max(high.abs());
+        let values = if is_narrow { vec![] } else { ticks(range, most) };
+        Self::with_ticks(name, unit, range, if values.len() < 2 { range.to_vec() } else { values })
     }
 
     /// An axis of categories.
@@ -65,9 +81,42 @@ impl Axis {
         place(value, self.scale).map(|place| ((place - low) / (high - low)).clamp(0.0, 1.0))
     }
 
-    /// The ticks with their places.
-    pub(super) fn placed_ticks(&self) -> impl Iterator<Item = (f64, &str)> {
-        self.ticks.iter().filter_map(|(value, label)| Some((self.share(*value)?, label.as_str())))
+    /// The values at both ends.
+    pub(super) fn ends(&self) -> [f64; 2] {
+        if self.scale == AxisScale::Log { self.range.map(|end| 10f64.powf(end)) } else { self.range }
+    }
+
+    /// The label of a tick.
+    pub(super) fn label(&self, tick: f64) -> String {
+        self.ticks
+            .iter()
+            .find(|(value, _)| *value == tick)
+            .map_or_else(String::new, |(_, label)| label.clone())
+    }
+}
+
+/// A coordinate of plotters, with the ticks of the axis.
+impl Ranged for PlotAxis {
+    type FormatOption = NoDefaultFormatting;
+    type ValueType = f64;
+
+    fn map(&self, value: &f64, (low, high): (i32, i32)) -> i32 {
+        low + (self.share(*value).unwrap_or(0.0) * f64::from(high - low)).round() as i32
+    }
+
+    fn key_points<H: KeyPointHint>(&self, _: H) -> Vec<f64> {
+        self.ticks.iter().map(|(value, _)| *value).collect()
+    }
+
+    fn range(&self) -> Range<f64> {
+        let [low, high] = self.ends();
+        low..high
+    }
+}
+
+impl ValueFormatter<f64> for PlotAxis {
+    fn format_ext(&self, tick: &f64) -> String {
+        self.label(*tick)
     }
 }
 
@@ -127,9 +176,9 @@ fn power_label(tick: f64) -> String {
 mod tests {
     use super::*;
 
-    fn axis(values: &[f64], scale: AxisScale) -> Axis {
-        let quantity = results::Axis { name: "length".into(), unit: "m".into(), scale };
-        Axis::holding(&quantity, values.iter().copied())
+    fn axis(values: &[f64], scale: AxisScale) -> PlotAxis {
+        let quantity = Axis { name: "length".into(), unit: "m".into(), scale };
+        PlotAxis::holding(&quantity, values.iter().copied())
     }
 
     fn log(low: f64, high: f64) -> Vec<String> {
@@ -167,8 +216,11 @@ mod tests {
 
     #[test]
     fn categories_are_one_unit_apart() {
-        let axis = Axis::categories("kind", ["a", "b"].map(String::from));
+        let axis = PlotAxis::categories("kind", ["a", "b"].map(String::from));
         assert_eq!(axis.range, [-0.5, 1.5]);
-        assert_eq!(axis.placed_ticks().collect::<Vec<_>>(), [(0.25, "a"), (0.75, "b")]);
+        assert_eq!(
+            [0.0, 1.0].map(|tick| (axis.share(tick), axis.label(tick))),
+            [(Some(0.25), "a".into()), (Some(0.75), "b".into())]
+        );
     }
 }

@@ -1,163 +1,231 @@
-//! Static drawing of matrices: one with counts by itself, others two in a row with colour bars.
+//! Matrices: one with counts by itself, others two in a row with colour bars.
+//!
+//! Cells are a picture, as 148 shapes have 22,000 of them; axes, lines, counts and colour bars are drawn over it.
 
-use super::axis::Axis;
-use super::model::Heat;
-use view::RgbaImage;
-use view::canvas::{
-    Anchor, Canvas, GRID, PAGE_WIDTH, PALE_INK, PIXELS_PER_UNIT, Point as Place, TextStyle, text_width,
+use plotters::coord::ranged1d::ValueFormatter;
+use plotters::prelude::*;
+use plotters::style::text_anchor::HPos;
+
+use super::axis::PlotAxis;
+use super::drawing::{
+    Area, Drawing, Drawn, GRID, INK, LABEL, NAME, NAME_MARGIN, PAGE_WIDTH, PAPER, PICTURE_PX, PX, Picture,
+    TITLE, anchored, bold, drop_of, px, rgb, scaled_text, text, text_width, upwards, write,
 };
-use view::color::{Rgb, perceptual};
+use super::model::Heat;
+use crate::color::{Rgb, perceptual};
+use crate::error::ReportError;
+use crate::image::RgbaImage;
 
-const COLUMN: f64 = PAGE_WIDTH / 2.0;
-const WHITE: Rgb = [255; 3];
+/// White and ink over cells, in which dark pages keep them.
+const ON_DARK: Rgb = [254; 3];
+const ON_PALE: Rgb = [35; 3];
 /// Height of a line of names.
 const LINE: f64 = 16.0;
-/// Around a grid of counts.
-const MARGIN: f64 = 16.0;
 /// The greatest side of a cell with a count, and the least in which a count fits.
 const CELL: f64 = 46.0;
 const LEGIBLE: f64 = 18.0;
-/// Side of a matrix with a colour bar; above it the title, to its left the names.
+/// Side of a matrix with a colour bar, and the room for its names.
 const SIDE: f64 = 310.0;
-const TITLE_HEIGHT: f64 = 40.0;
 const LEFT: f64 = 92.0;
-/// To the right of it: a gap, then the colour bar.
+const TITLE_HEIGHT: f64 = 40.0;
+/// To the right of it: a gap, the colour bar, its labels.
 const GAP: f64 = 12.0;
 const BAR: f64 = 14.0;
+const BAR_LABELS: f64 = 70.0;
 /// Characters of a name that fit into [`LEFT`], about.
-const NAME: usize = 10;
+const LONGEST: usize = 10;
 
-pub(super) fn draw(heats: &[Heat]) -> Canvas {
-    match heats {
-        [heat] if heat.counts.is_some() => counts(heat),
-        _ => pairs(heats),
+/// The matrices of a figure.
+pub(super) struct Heats<'a>(pub(super) &'a [Heat]);
+
+impl Heats<'_> {
+    fn frames(&self) -> Vec<MatrixFrame<'_>> {
+        let columns = self.0.len().clamp(1, 2);
+        let mut frames: Vec<MatrixFrame<'_>> = self.0.iter().map(MatrixFrame::new).collect();
+        let below = frames.iter().map(|frame| frame.below).fold(0.0, f64::max);
+        let column = f64::from(PAGE_WIDTH) / columns as f64;
+        for (i, frame) in frames.iter_mut().enumerate() {
+            let room = if frame.heat.bar.is_some() { GAP + BAR + BAR_LABELS } else { 0.0 };
+            let before = (column - frame.wide - frame.names - room).max(0.0) / 2.0;
+            frame.left =
+                (i % columns) as f64 * column + frame.names + if columns == 1 { before } else { 0.0 };
+            let title = if frame.heat.title.is_empty() { LINE } else { TITLE_HEIGHT };
+            frame.top = (i / columns) as f64 * (title + frame.high + below) + title;
+            (frame.left, frame.top, frame.below) = (frame.left.round(), frame.top.round(), below);
+        }
+        frames
     }
 }
 
-/// A matrix with counts and grid lines, in the middle of the figure.
-fn counts(heat: &Heat) -> Canvas {
-    let (n_rows, n_columns) = (heat.rows.len() as f64, heat.columns.len() as f64);
-    let names = heat.columns.iter().map(|name| text_width(name, TextStyle::LABEL)).fold(0.0, f64::max) + 14.0;
-    let room = PAGE_WIDTH - 2.0 * MARGIN - names - 30.0;
-    let cell = CELL.min((room / n_columns).floor()).max(2.0);
-    let (wide, high) = (cell * n_columns, cell * n_rows);
-    let mut canvas = Canvas::new(PAGE_WIDTH as u32, (high + names + 3.0 * MARGIN + 30.0) as u32);
-    let grid = Grid { heat, left: (PAGE_WIDTH - wide + names + 30.0) / 2.0, top: MARGIN, wide, high };
-    canvas.image(grid.raster(), (grid.left, grid.top));
-    for (row, own) in heat.counts.iter().flatten().enumerate().filter(|_| cell >= LEGIBLE) {
-        for (column, count) in own.iter().enumerate().filter(|(_, count)| **count > 0) {
-            let is_dark = grid.share(heat.values[row][column]) > 0.5;
-            let [x, y] = [column, row].map(|at| (at as f64 + 0.5) * cell);
-            let style = TextStyle::LABEL;
-            let style = if is_dark { style.colored(WHITE).on_image() } else { style };
-            canvas.text(count.to_string(), (grid.left + x, grid.top + y), style);
-        }
+impl Drawing for Heats<'_> {
+    fn size(&self) -> [i32; 2] {
+        let bottom = |frame: &MatrixFrame<'_>| frame.top + frame.high + frame.below;
+        [PAGE_WIDTH, self.frames().iter().map(bottom).fold(0.0, f64::max) as i32 + 8]
     }
-    for row in 0..=heat.rows.len() {
-        let at = grid.top + row as f64 * cell;
-        canvas.line((grid.left, at), (grid.left + wide, at), 1.0, GRID);
+
+    fn pictures(&self) -> Result<Vec<Picture>, ReportError> {
+        Ok(self.frames().iter().flat_map(MatrixFrame::pictures).collect())
     }
-    for column in 0..=heat.columns.len() {
-        let at = grid.left + column as f64 * cell;
-        canvas.line((at, grid.top), (at, grid.top + high), 1.0, GRID);
+
+    fn draw<DB: DrawingBackend>(&self, area: &Area<DB>) -> Drawn<DB> {
+        self.frames().iter().try_for_each(|frame| frame.draw(area))
     }
-    grid.names(&mut canvas, str::to_owned);
-    canvas.text(&heat.y.name, (grid.left - names - 16.0, grid.top + high / 2.0), TextStyle::NAME.up());
-    canvas.text(&heat.x.name, (grid.left + wide / 2.0, grid.top + high + names + MARGIN), TextStyle::NAME);
-    canvas
 }
 
-/// Matrices with colour bars, two in a row.
-fn pairs(heats: &[Heat]) -> Canvas {
-    let foot = |heat: &Heat| {
-        let grid = Grid { heat, left: 0.0, top: 0.0, wide: SIDE, high: SIDE };
-        let longest = heat.x.ticks.iter().map(|(_, label)| text_width(&shortened(label), TextStyle::LABEL));
-        if grid.has_level_names(shortened) { 34.0 } else { 24.0 + longest.fold(0.0, f64::max) }
-    };
-    let panel = TITLE_HEIGHT + SIDE + heats.iter().map(foot).fold(0.0, f64::max);
-    let rows = heats.len().div_ceil(2) as f64;
-    let mut canvas = Canvas::new(PAGE_WIDTH as u32, (rows * panel + 4.0) as u32);
-    for (i, heat) in heats.iter().enumerate() {
-        let (edge, top) = ((i % 2) as f64 * COLUMN, 4.0 + (i / 2) as f64 * panel);
-        let grid = Grid { heat, left: edge + LEFT, top: top + TITLE_HEIGHT, wide: SIDE, high: SIDE };
-        canvas.text(&heat.title, (grid.left + SIDE / 2.0, top + TITLE_HEIGHT / 2.0), TextStyle::TITLE);
-        canvas.image(grid.raster(), (grid.left, grid.top));
-        for &border in &heat.borders {
-            let at = SIDE * border as f64 / heat.rows.len() as f64;
-            canvas.line((grid.left + at, grid.top), (grid.left + at, grid.top + SIDE), 1.5, WHITE);
-            canvas.line((grid.left, grid.top + at), (grid.left + SIDE, grid.top + at), 1.5, WHITE);
-        }
-        grid.names(&mut canvas, shortened);
-        if let Some(bar) = &heat.bar {
-            let corner = (grid.left + SIDE + GAP, grid.top);
-            color_bar(&mut canvas, corner, bar, heat.tint, edge + COLUMN - 10.0);
-        }
-    }
-    canvas
-}
-
-/// A matrix and its rectangle.
-struct Grid<'a> {
+/// A matrix and its place.
+struct MatrixFrame<'a> {
     heat: &'a Heat,
     left: f64,
     top: f64,
     wide: f64,
     high: f64,
+    /// Room for names at the left and below, with the names of the axes.
+    names: f64,
+    below: f64,
+    /// The axes with shortened names. Names that would touch the one before are left out.
+    x: PlotAxis,
+    y: PlotAxis,
+    /// Whether the names of columns fit side by side.
+    is_level: bool,
 }
 
-impl Grid<'_> {
-    fn share(&self, value: f64) -> f64 {
-        if self.heat.max > 0.0 { value / self.heat.max } else { 0.0 }
-    }
-
-    /// All cells as one image.
-    fn raster(&self) -> RgbaImage {
-        let size = [self.wide, self.high].map(|side| side as usize * PIXELS_PER_UNIT as usize);
-        let Heat { rows, columns, values, tint, .. } = self.heat;
-        RgbaImage::from_fn(size[0] as u32, size[1] as u32, |x, y| {
-            let (row, column) = (y * rows.len() / size[1], x * columns.len() / size[0]);
-            color(*tint, self.share(values[row][column]))
-        })
-    }
-
-    /// The place of a tick along a side.
-    fn middle(side: f64, tick: &(f64, String), n: usize) -> f64 {
-        side * (tick.0 + 0.5) / n as f64
-    }
-
-    /// Whether the names fit side by side under the matrix.
-    fn has_level_names(&self, written: impl Fn(&str) -> String) -> bool {
-        let middle = |tick: &(f64, String)| Self::middle(self.wide, tick, self.heat.columns.len());
-        let half = |tick: &(f64, String)| text_width(&written(&tick.1), TextStyle::LABEL) / 2.0 + 4.0;
-        self.heat.x.ticks.windows(2).all(|t| middle(&t[1]) - middle(&t[0]) > half(&t[0]) + half(&t[1]))
-    }
-
-    /// The names at the left and below. Names that would touch the one before are left out.
-    fn names(&self, canvas: &mut Canvas, written: impl Fn(&str) -> String) {
-        let Heat { x, y, rows, columns, .. } = self.heat;
-        let (gap, below) = match self.has_level_names(&written) {
-            true => (16.0, TextStyle::LABEL),
-            false => (8.0, TextStyle::LABEL.at(Anchor::Right).up()),
-        };
-        let mut free = [f64::NEG_INFINITY; 2];
-        for i in 0..x.ticks.len().max(y.ticks.len()) {
-            if let Some(tick) = y.ticks.get(i) {
-                let middle = Self::middle(self.high, tick, rows.len());
-                if middle >= free[0] {
-                    free[0] = middle + LINE;
-                    let place = (self.left - 8.0, self.top + middle);
-                    canvas.text(written(&tick.1), place, TextStyle::LABEL.at(Anchor::Right));
-                }
+impl<'a> MatrixFrame<'a> {
+    fn new(heat: &'a Heat) -> Self {
+        let (n_rows, n_columns) = (heat.rows.len() as f64, heat.columns.len() as f64);
+        let [mut x, mut y] = [heat.x.clone(), heat.y.clone()];
+        let width = |name: &str| text_width(name, &text(LABEL, INK)) / f64::from(PX);
+        let widest = |axis: &PlotAxis| axis.ticks.iter().map(|(_, name)| width(name)).fold(0.0, f64::max);
+        let (names, [wide, high]) = match heat.counts {
+            Some(_) => {
+                let names = widest(&y).max(widest(&x)) + 44.0;
+                let cell = CELL.min(((f64::from(PAGE_WIDTH) - names - 32.0) / n_columns).floor()).max(2.0);
+                (names, [n_columns, n_rows].map(|n| cell * n))
             }
-            if let Some(tick) = x.ticks.get(i) {
-                let middle = Self::middle(self.wide, tick, columns.len());
-                if middle >= free[1] {
-                    free[1] = middle + LINE;
-                    canvas.text(written(&tick.1), (self.left + middle, self.top + self.high + gap), below);
-                }
+            None => {
+                let ticks = x.ticks.iter_mut().chain(&mut y.ticks);
+                ticks.for_each(|(_, name)| *name = shortened(name));
+                (LEFT, [SIDE; 2])
+            }
+        };
+        let [column, row] = [wide / n_columns, high / n_rows];
+        let room = |t: &[(f64, String)]| (width(&t[0].1) + width(&t[1].1)) / 2.0 + 8.0;
+        let is_level = x.ticks.windows(2).all(|t| (t[1].0 - t[0].0) * column > room(t));
+        let below = if is_level { 24.0 } else { 16.0 + widest(&x) };
+        let below = below + if x.name.is_empty() { 10.0 } else { 30.0 };
+        y.ticks = thinned(&y, row);
+        if !is_level {
+            x.ticks = thinned(&x, column);
+        }
+        Self { heat, left: 0.0, top: 0.0, wide, high, names, below, x, y, is_level }
+    }
+
+    fn share(&self, row: usize, column: usize) -> f64 {
+        if self.heat.max > 0.0 { self.heat.values[row][column] / self.heat.max } else { 0.0 }
+    }
+
+    /// The cells, and the colours of the bar.
+    fn pictures(&self) -> Vec<Picture> {
+        let Heat { rows, columns, tint, bar, .. } = self.heat;
+        let [wide, high, thick] = [self.wide, self.high, BAR].map(|side| side as i32 * PICTURE_PX);
+        let cell = |x: usize, y: usize| {
+            color(*tint, self.share(y * rows.len() / high as usize, x * columns.len() / wide as usize))
+        };
+        let [left, top] = [self.left, self.top].map(|at| at as i32);
+        let cells = (RgbaImage::from_fn(wide as u32, high as u32, cell), [left, top]);
+        let shade = |_, row| color(*tint, 1.0 - row as f64 / f64::from(high - 1));
+        let shades = || RgbaImage::from_fn(thick as u32, high as u32, shade);
+        let bar = bar.iter().map(|_| (shades(), [(self.left + self.wide + GAP) as i32, top]));
+        std::iter::once(cells).chain(bar).collect()
+    }
+
+    fn draw<DB: DrawingBackend>(&self, area: &Area<DB>) -> Drawn<DB> {
+        let Self { heat, left, top, wide, high, names, below, x, y, is_level } = self;
+        let title = bold(text(TITLE, INK));
+        write(area, &heat.title, title, [left + wide / 2.0, top - TITLE_HEIGHT / 2.0])?;
+        let corner = (px(left - names), px(*top));
+        let panel = area.clone().shrink(corner, (px(names + wide), px(high + below)));
+        let across = PlotAxis { ticks: if *is_level { x.ticks.clone() } else { vec![] }, ..x.clone() };
+        let mut chart = ChartBuilder::on(&panel)
+            .x_label_area_size(px(*below))
+            .y_label_area_size(px(*names))
+            .build_cartesian_2d(across.clone(), y.clone())?;
+        let [x_label, y_label] = [&across, y].map(|axis| move |tick: &f64| axis.format_ext(tick));
+        let label = text(LABEL, INK);
+        let mut mesh = chart.configure_mesh();
+        mesh.disable_mesh().axis_style(TRANSPARENT).set_all_tick_mark_size(px(4.0));
+        mesh.y_label_offset(drop_of(&label)).label_style(label).axis_desc_style(text(NAME, INK));
+        mesh.x_label_formatter(&x_label).y_label_formatter(&y_label).x_desc(&x.name).y_desc(&y.name);
+        mesh.draw()?;
+        if !is_level {
+            // plotters centres the names under an axis, also those that run upwards.
+            for (tick, name) in &x.ticks {
+                let place = [left + (tick + 0.5) * wide / heat.columns.len() as f64, top + high + 8.0];
+                write(area, name, upwards(anchored(text(LABEL, INK), HPos::Right)), place)?;
             }
         }
+        let (n_rows, n_columns) = (heat.rows.len(), heat.columns.len());
+        let ends = [n_columns, n_rows].map(|n| n as f64 - 0.5);
+        let stroke = |color, width| rgb(color).stroke_width(px(width) as u32);
+        let (stroke, lines) = match &heat.counts {
+            Some(_) => (stroke(GRID, 1.0), [(0..=n_columns).collect(), (0..=n_rows).collect()]),
+            None => (stroke(PAPER, 1.5), [heat.borders.clone(), heat.borders.clone()]),
+        };
+        let [down, across] = lines.map(|at: Vec<usize>| at.into_iter().map(|at| at as f64 - 0.5));
+        chart.draw_series(down.map(|x| PathElement::new([(x, -0.5), (x, ends[1])], stroke)))?;
+        chart.draw_series(across.map(|y| PathElement::new([(-0.5, y), (ends[0], y)], stroke)))?;
+        let cell = wide / n_columns as f64;
+        for (row, own) in heat.counts.iter().flatten().enumerate().filter(|_| cell >= LEGIBLE) {
+            for (column, count) in own.iter().enumerate().filter(|(_, count)| **count > 0) {
+                let ink = if self.share(row, column) > 0.5 { ON_DARK } else { ON_PALE };
+                let at = [left + (column as f64 + 0.5) * cell, top + (row as f64 + 0.5) * cell];
+                write(area, &count.to_string(), text(LABEL, ink), at)?;
+            }
+        }
+        let Some(bar) = &heat.bar else { return Ok(()) };
+        let corner = (px(left + wide + GAP), px(*top));
+        bar_labels(
+            &area.clone().shrink(corner, (px(BAR + BAR_LABELS - NAME_MARGIN), px(*high))),
+            bar,
+            BAR,
+            LABEL,
+            PX,
+        )
     }
+}
+
+/// Draws the ticks and the name of a colour bar of this thickness at the left of an area, with `scale` pixels per unit.
+pub(crate) fn bar_labels<DB: DrawingBackend>(
+    area: &Area<DB>,
+    axis: &PlotAxis,
+    thickness: f64,
+    size: f64,
+    scale: i32,
+) -> Drawn<DB> {
+    let label = scaled_text(size, INK, scale);
+    let thickness = (thickness * f64::from(scale)) as u32;
+    let (width, _) = area.dim_in_pixel();
+    let mut chart = ChartBuilder::on(area)
+        .right_y_label_area_size(width.saturating_sub(thickness))
+        .build_cartesian_2d(0.0..1.0, axis.clone())?;
+    let format = |tick: &f64| axis.format_ext(tick);
+    let mut mesh = chart.configure_mesh();
+    mesh.disable_mesh().axis_style(rgb(INK).stroke_width(scale.max(1) as u32));
+    mesh.set_all_tick_mark_size((0.3 * size * f64::from(scale)) as i32).y_label_offset(drop_of(&label));
+    mesh.label_style(label.clone()).axis_desc_style(label).y_label_formatter(&format).y_desc(&axis.name);
+    mesh.draw()
+}
+
+/// The ticks whose names do not touch the one before, along an axis with cells of this size.
+fn thinned(axis: &PlotAxis, cell: f64) -> Vec<(f64, String)> {
+    let mut free = f64::NEG_INFINITY;
+    let mut is_free = |tick: &&(f64, String)| {
+        let fits = tick.0 * cell >= free;
+        if fits {
+            free = tick.0 * cell + LINE;
+        }
+        fits
+    };
+    axis.ticks.iter().filter(|tick| is_free(tick)).cloned().collect()
 }
 
 /// The pixel for a share of the greatest value. A tint covers the page as far as the share says.
@@ -168,27 +236,10 @@ fn color(tint: Option<Rgb>, share: f64) -> [u8; 4] {
 
 /// A name that fits to the left of a matrix with a colour bar.
 fn shortened(name: &str) -> String {
-    match name.char_indices().nth(NAME) {
-        Some((end, _)) if name.chars().count() > NAME + 1 => format!("{}…", &name[..end]),
+    match name.char_indices().nth(LONGEST) {
+        Some((end, _)) if name.chars().count() > LONGEST + 1 => format!("{}…", &name[..end]),
         _ => name.to_string(),
     }
-}
-
-/// A colour bar with its lower end at the bottom, and its ticks and name to its right, up to `limit`.
-fn color_bar(canvas: &mut Canvas, (left, top): Place, axis: &Axis, tint: Option<Rgb>, limit: f64) {
-    let [width, height] = [BAR, SIDE].map(|side| side as u32 * PIXELS_PER_UNIT);
-    let pixel = |_, row| color(tint, 1.0 - row as f64 / f64::from(height - 1));
-    canvas.image(RgbaImage::from_fn(width, height, pixel), (left, top));
-    let style = TextStyle::LABEL.at(Anchor::Left);
-    let mut widest = 0.0_f64;
-    for (share, label) in axis.placed_ticks() {
-        let y = top + SIDE * (1.0 - share);
-        canvas.line((left + BAR, y), (left + BAR + 4.0, y), 1.0, PALE_INK);
-        widest = widest.max(text_width(label, style));
-        canvas.text(label, (left + BAR + 7.0, y), style);
-    }
-    let right = (left + BAR + 7.0 + widest + 18.0).min(limit);
-    canvas.text(&axis.name, (right, top + SIDE / 2.0), TextStyle::NAME.up());
 }
 
 #[cfg(test)]

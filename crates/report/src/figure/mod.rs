@@ -1,23 +1,27 @@
 //! Figures as data. What a figure shows is decided here once, for the static files and for the page.
 //!
-//! record -> [`Figure`] -> PNG, SVG and PDF ([`Figure::save`]), or JSON that the script of the page draws
+//! record -> [`Figure`] -> PNG, SVG and PDF by plotters ([`Figure::save`]), or JSON that the script of the page draws
 //!
 //! A figure consists of plots or of matrices of the same kind. Surfaces are [`Tiles`]: rendered images in rows.
 
 mod axis;
-mod groups;
+mod drawing;
 mod heat;
 mod model;
+mod pdf;
 mod plot;
 mod style;
+#[cfg(test)]
+mod tests;
 mod tiles;
 
-pub use axis::Axis;
-pub use groups::{Group, grouped};
-pub use model::{Content, Figure, Heat, Plot, Point, Series, Shape};
+pub use axis::PlotAxis;
+pub(crate) use drawing::{INK, dark, pixels, scaled_text, text_width};
+pub(crate) use heat::bar_labels;
+pub use model::{Figure, FigurePanels, GroupedValue, Heat, Plot, PlotPoint, PlotSeries, SeriesKind, grouped};
 pub use plot::MAP_SIZE;
-pub use style::Style;
-pub use tiles::{Layout, Tile, Tiles};
+pub use style::SeriesStyle;
+pub use tiles::{Tile, Tiles};
 
 use std::path::{Path, PathBuf};
 
@@ -28,13 +32,12 @@ impl Figure {
     /// axes, values that are not positive are left out. A figure of surfaces has no files here.
     ///
     /// # Errors
-    /// [`ReportError::View`] if drawing or writing fails.
+    /// [`ReportError::Draw`] or [`ReportError::File`] if drawing or writing fails.
     pub fn save(&self, stem: &Path) -> Result<Vec<PathBuf>, ReportError> {
-        let canvas = match &self.content {
-            Content::Plots(plots) => plot::draw(plots),
-            Content::Heats(heats) => heat::draw(heats),
-            Content::Surfaces => return Ok(vec![]),
-        };
-        Ok(canvas.save(stem, self.part)?)
+        match &self.panels {
+            FigurePanels::Plots(plots) => drawing::save(&plot::Plots(plots), stem, self.part),
+            FigurePanels::Heats(heats) => drawing::save(&heat::Heats(heats), stem, self.part),
+            FigurePanels::Surfaces => Ok(vec![]),
+        }
     }
 }

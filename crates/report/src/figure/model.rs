@@ -2,11 +2,12 @@
 
 use serde::{Serialize, Serializer};
 
-use super::axis::Axis;
-use super::style::Style;
-use crate::results::{Axis as Quantity, Mark};
-use view::color::Rgb;
-use view::interactive::base64::encode;
+use super::axis::PlotAxis;
+use super::style::SeriesStyle;
+use crate::classes::Classes;
+use crate::color::Rgb;
+use crate::results::{Axis, Mark};
+use crate::viewer::base64::encode;
 
 /// Panels under one caption: one static figure, and one chart on the page.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -19,14 +20,14 @@ pub struct Figure {
     pub caption: String,
     /// The panels, in reading order.
     #[serde(flatten)]
-    pub content: Content,
+    pub panels: FigurePanels,
 }
 
 /// The panels of a figure.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Content {
-    /// Series over two axes.
+pub enum FigurePanels {
+    /// PlotSeries over two axes.
     Plots(Vec<Plot>),
     /// Matrices of coloured cells.
     Heats(Vec<Heat>),
@@ -34,7 +35,7 @@ pub enum Content {
     Surfaces,
 }
 
-/// Series over two axes.
+/// PlotSeries over two axes.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Plot {
     /// The heading.
@@ -42,13 +43,13 @@ pub struct Plot {
     /// A description for readers who cannot see the plot.
     pub label: String,
     /// The horizontal axis.
-    pub x: Axis,
+    pub x: PlotAxis,
     /// The vertical axis.
-    pub y: Axis,
+    pub y: PlotAxis,
     /// Whether both axes have the same scale, as a map has.
     pub is_map: bool,
     /// The series in the order of the legend; the first covers the others.
-    pub series: Vec<Series>,
+    pub series: Vec<PlotSeries>,
     /// Vertical lines at named values.
     pub marks: Vec<Mark>,
     /// Scores that a static figure lists under the plot.
@@ -62,35 +63,36 @@ impl Plot {
     pub fn new(
         title: &str,
         label: String,
-        x: &Quantity,
-        y: &Quantity,
-        series: Vec<Series>,
+        x: &Axis,
+        y: &Axis,
+        series: Vec<PlotSeries>,
         marks: Vec<Mark>,
     ) -> Self {
         let points = || series.iter().flat_map(|series| &series.points);
-        let x = Axis::holding(x, points().map(|p| p.x).chain(marks.iter().map(|mark| mark.x)));
-        let y = Axis::holding(y, points().flat_map(|p| [p.low, p.y, p.high]));
+        let x = PlotAxis::holding(x, points().map(|p| p.x).chain(marks.iter().map(|mark| mark.x)));
+        let y = PlotAxis::holding(y, points().flat_map(|p| [p.low, p.y, p.high]));
         Self { title: title.to_owned(), label, x, y, is_map: false, series, marks, scores: vec![] }
     }
 }
 
 /// Points of one name and look.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Series {
-    /// The name in the legend. Series of one name and shape share their entry there.
+pub struct PlotSeries {
+    /// The name in the legend. PlotSeries of one name and shape share their entry there.
     pub name: String,
     /// Colour and marker.
-    pub style: Style,
+    pub style: SeriesStyle,
     /// How the points are drawn.
-    pub shape: Shape,
+    #[serde(rename = "shape")]
+    pub kind: SeriesKind,
     /// The points, by ascending `x` if they form a curve.
-    pub points: Vec<Point>,
+    pub points: Vec<PlotPoint>,
 }
 
 /// How the points of a series are drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Shape {
+pub enum SeriesKind {
     /// A line with markers, and a band from the lower to the upper ends of the points.
     Curve,
     /// Markers with error bars.
@@ -101,7 +103,7 @@ pub enum Shape {
 
 /// A value with the range around it.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
-pub struct Point {
+pub struct PlotPoint {
     /// The place on the horizontal axis.
     pub x: f64,
     /// The value.
@@ -114,7 +116,7 @@ pub struct Point {
     pub note: String,
 }
 
-impl Point {
+impl PlotPoint {
     /// A value without a range.
     pub fn new(x: f64, y: f64, note: impl Into<String>) -> Self {
         Self { x, y, low: y, high: y, note: note.into() }
@@ -131,9 +133,9 @@ pub struct Heat {
     /// A description for readers who cannot see the matrix.
     pub label: String,
     /// The horizontal axis.
-    pub x: Axis,
+    pub x: PlotAxis,
     /// The vertical axis. Its range runs from the bottom to the top, so it is descending.
-    pub y: Axis,
+    pub y: PlotAxis,
     /// The value of every cell, row by row.
     #[serde(serialize_with = "single_precision")]
     pub values: Vec<Vec<f64>>,
@@ -142,7 +144,7 @@ pub struct Heat {
     /// The last colour, of a scale that begins with that of the page; `None` for the perceptual colour map.
     pub tint: Option<Rgb>,
     /// Axis of the colour bar beside the matrix, if it has one.
-    pub bar: Option<Axis>,
+    pub bar: Option<PlotAxis>,
     /// The rows, and columns, before which a line separates groups.
     pub borders: Vec<usize>,
     /// Counts written in the cells; cells with zero stay empty. Without counts, cells have no grid.
@@ -157,4 +159,45 @@ pub struct Heat {
 
 fn single_precision<S: Serializer>(values: &[Vec<f64>], to: S) -> Result<S::Ok, S::Error> {
     to.serialize_str(&encode(values.iter().flatten().map(|&value| value as f32)))
+}
+
+/// The value of a series at a category.
+#[derive(Debug, Clone)]
+pub struct GroupedValue<'a> {
+    /// Name of the category.
+    pub category: &'a str,
+    /// Name of the series.
+    pub series: &'a str,
+    /// Our value, with any `x`, if there is one.
+    pub own: Option<PlotPoint>,
+    /// The value printed in the paper, if there is one.
+    pub paper: Option<f64>,
+}
+
+/// A plot of our values (filled) and the paper's (hollow, with the name that `paper` makes of that of the series) over
+/// a vertical axis of this quantity. PlotSeries without a value are left out.
+pub fn grouped(title: &str, quantity: &Axis, groups: &[GroupedValue<'_>], paper: fn(&str) -> String) -> Plot {
+    let categories = Classes::of(groups.iter().map(|group| group.category));
+    let is_known = |group: &&GroupedValue<'_>| group.own.is_some() || group.paper.is_some();
+    let names = Classes::of(groups.iter().filter(is_known).map(|group| group.series));
+    let n = names.names().len() as f64;
+    let mut series = Vec::new();
+    for (i, name) in names.names().iter().enumerate() {
+        let side = (i as f64 - (n - 1.0) / 2.0) * 0.7 / n;
+        let members = || groups.iter().filter(|group| group.series == *name);
+        let x = |group: &GroupedValue<'_>| categories.index(group.category) as f64 + side;
+        let own = members().filter_map(|g| Some(PlotPoint { x: x(g), ..g.own.clone()? }));
+        let printed = members().filter_map(|g| Some(PlotPoint::new(x(g), g.paper?, "")));
+        for (name, kind, points) in [
+            ((*name).to_owned(), SeriesKind::Filled, own.collect::<Vec<_>>()),
+            (paper(name), SeriesKind::Hollow, printed.collect()),
+        ] {
+            if !points.is_empty() {
+                series.push(PlotSeries { name, style: SeriesStyle(i), kind, points });
+            }
+        }
+    }
+    let label = format!("{}: {title}", quantity.name);
+    let x = PlotAxis::categories("", categories.names().iter().map(|name| (*name).to_owned()));
+    Plot { x, ..Plot::new(title, label, quantity, quantity, series, vec![]) }
 }

@@ -1,214 +1,220 @@
-//! Static drawing of plots: a legend, then the plots, two in a row.
+//! Plots: a legend, then the plots, two in a row.
 
-use super::model::{Plot, Point, Series, Shape};
-use super::style::grown;
+use plotters::coord::ranged1d::ValueFormatter;
+use plotters::prelude::*;
+use plotters::style::text_anchor::HPos;
+
+use super::axis::PlotAxis;
+use super::drawing::{
+    Area, Drawing, Drawn, GRID, INK, LABEL, NAME, NAME_MARGIN, PAGE_WIDTH, PALE_INK, PX, Picture, TITLE,
+    anchored, bold, drop_of, line, px, rgb, text, text_width, upwards, write,
+};
+use super::model::{Plot, PlotPoint, PlotSeries, SeriesKind};
+use crate::color::{Rgb, mix};
+use crate::error::ReportError;
 use crate::results::AxisScale;
-use view::canvas::{Anchor, Canvas, GRID, INK, PAGE_WIDTH, PALE_INK, Point as Place, TextStyle, text_width};
-use view::color::mix;
 
 /// The area inside the axes, and the distances around it.
 const HEIGHT: f64 = 340.0;
 const TITLE_HEIGHT: f64 = 36.0;
 const LEFT: f64 = 92.0;
 const RIGHT: f64 = 14.0;
-const UNDER: f64 = 62.0;
+const UNDER: f64 = 60.0;
 /// Height of the scores under a plot.
-const SCORES: f64 = 66.0;
-const LEGEND: TextStyle = TextStyle::NAME.at(Anchor::Left);
+const SCORES: f64 = 72.0;
+/// Type size of scores.
+const SCORE: f64 = 13.0;
+/// Height of a line of the legend, and the space at its top.
 const LEGEND_LINE: f64 = 28.0;
+const LEGEND_TOP: f64 = 6.0;
 /// Width of curves.
 const STROKE: f64 = 2.0;
 /// Opacity of bands.
 const BAND: f64 = 0.16;
-/// Half the size of a marker, and the width of its dark rim.
+/// Half the size of a marker, and the width of its rim.
 const RADIUS: f64 = 5.8;
-const RIM: f64 = 1.1;
+const RIM: f64 = 1.4;
 
 /// Width and height of the area inside the axes where two plots share a row, for ranges that fill it.
-pub const MAP_SIZE: [f64; 2] = [PAGE_WIDTH / 2.0 - LEFT - RIGHT, HEIGHT];
+pub const MAP_SIZE: [f64; 2] = [PAGE_WIDTH as f64 / 2.0 - LEFT - RIGHT, HEIGHT];
 
-pub(super) fn draw(plots: &[Plot]) -> Canvas {
-    let columns = plots.len().clamp(1, 2);
-    let scores = if plots.iter().all(|plot| plot.scores.is_empty()) { 0.0 } else { SCORES };
-    let panel = TITLE_HEIGHT + HEIGHT + UNDER + scores;
-    let legend = legend_lines(plots);
-    let rows = plots.len().div_ceil(columns) as f64;
-    let height = legend.len() as f64 * LEGEND_LINE + rows * panel + 16.0;
-    let mut canvas = Canvas::new(PAGE_WIDTH as u32, height as u32);
-    let top = draw_legend(&mut canvas, &legend);
-    let column = PAGE_WIDTH / columns as f64;
-    for (i, plot) in plots.iter().enumerate() {
-        let edge = (i % columns) as f64 * column;
-        let top = top + (i / columns) as f64 * panel + TITLE_HEIGHT;
-        let frame = Frame { plot, left: edge + LEFT, top, width: column - LEFT - RIGHT };
-        frame.draw(&mut canvas);
-        draw_scores(&mut canvas, &plot.scores, (edge, top + HEIGHT + UNDER), column);
+/// The plots of a figure.
+pub(super) struct Plots<'a>(pub(super) &'a [Plot]);
+
+impl Plots<'_> {
+    fn columns(&self) -> usize {
+        self.0.len().clamp(1, 2)
     }
-    canvas
-}
 
-/// From the left end of an entry of the legend to its text.
-fn key_width(series: &Series) -> f64 {
-    if series.shape == Shape::Curve { 42.0 } else { 30.0 }
-}
-
-/// The entries of each line of the legend, one per name and shape, with their widths.
-fn legend_lines(plots: &[Plot]) -> Vec<Vec<(&Series, f64)>> {
-    let mut lines: Vec<Vec<(&Series, f64)>> = Vec::new();
-    let mut used = f64::INFINITY;
-    for series in plots.iter().flat_map(|plot| &plot.series) {
-        let is_same = |(other, _): &(&Series, f64)| other.name == series.name && other.shape == series.shape;
-        if lines.iter().flatten().any(is_same) {
-            continue;
-        }
-        let width = key_width(series) + 30.0 + text_width(&series.name, LEGEND);
-        if used + width > PAGE_WIDTH - 40.0 {
-            lines.push(Vec::new());
-            used = 0.0;
-        }
-        used += width;
-        lines.last_mut().into_iter().for_each(|line| line.push((series, width)));
+    fn panel_height(&self) -> f64 {
+        let scores = if self.0.iter().all(|plot| plot.scores.is_empty()) { 0.0 } else { SCORES };
+        TITLE_HEIGHT + HEIGHT + UNDER + scores
     }
-    lines
-}
 
-/// Draws the legend at the top and returns its lower end.
-fn draw_legend(canvas: &mut Canvas, lines: &[Vec<(&Series, f64)>]) -> f64 {
-    let mut top = 6.0;
-    for line in lines {
-        let width: f64 = line.iter().map(|(_, width)| width).sum();
-        let mut left = (PAGE_WIDTH - width) / 2.0 + 12.0;
-        for (series, width) in line {
-            let middle = top + LEGEND_LINE / 2.0;
-            if series.shape == Shape::Curve {
-                canvas.line((left, middle), (left + 32.0, middle), STROKE, series.style.color());
+    /// One entry per name and kind of series, and the number of them in a line.
+    fn legend(&self) -> (Vec<&PlotSeries>, usize) {
+        let mut entries: Vec<&PlotSeries> = Vec::new();
+        for series in self.0.iter().flat_map(|plot| &plot.series) {
+            if !entries.iter().any(|known| known.name == series.name && known.kind == series.kind) {
+                entries.push(series);
             }
-            marker(canvas, series, (left + 16.0, middle));
-            canvas.text(&series.name, (left + key_width(series), middle), LEGEND);
-            left += width;
         }
-        top += LEGEND_LINE;
+        let style = text(NAME, INK);
+        let width = |series: &&PlotSeries| text_width(&series.name, &style) / f64::from(PX) + 64.0;
+        let widest = entries.iter().map(width).fold(1.0, f64::max);
+        let most = (f64::from(PAGE_WIDTH) / widest).max(1.0) as usize;
+        let columns = entries.len().div_ceil(entries.len().div_ceil(most).max(1)).max(1);
+        (entries, columns)
     }
-    top
+
+    fn legend_height(&self) -> f64 {
+        let (entries, columns) = self.legend();
+        LEGEND_TOP + entries.len().div_ceil(columns) as f64 * LEGEND_LINE
+    }
 }
 
-/// A plot and the area inside its axes.
-struct Frame<'a> {
-    plot: &'a Plot,
-    left: f64,
-    top: f64,
-    width: f64,
+impl Drawing for Plots<'_> {
+    fn size(&self) -> [i32; 2] {
+        let rows = self.0.len().div_ceil(self.columns()) as f64;
+        [PAGE_WIDTH, (self.legend_height() + rows * self.panel_height()) as i32 + 12]
+    }
+
+    fn pictures(&self) -> Result<Vec<Picture>, ReportError> {
+        Ok(vec![])
+    }
+
+    fn draw<DB: DrawingBackend>(&self, area: &Area<DB>) -> Drawn<DB> {
+        // A legend of plotters has one column inside the axes, where it covers data.
+        let (entries, columns) = self.legend();
+        let (_, legend) = area.margin(px(LEGEND_TOP), 0, 0, 0).split_vertically(0);
+        let lines = entries.len().div_ceil(columns);
+        let width = f64::from(PAGE_WIDTH) / columns as f64;
+        for (i, series) in entries.into_iter().enumerate() {
+            let left = (i % columns) as f64 * width;
+            let used = 42.0 + text_width(&series.name, &text(NAME, INK)) / f64::from(PX);
+            let left = if lines > 1 { left + 20.0 } else { left + (width - used) / 2.0 };
+            entry(&legend, series, [left, (i / columns) as f64 * LEGEND_LINE + LEGEND_LINE / 2.0])?;
+        }
+        let column = f64::from(PAGE_WIDTH) / self.columns() as f64;
+        for (i, plot) in self.0.iter().enumerate() {
+            let (row, edge) = ((i / self.columns()) as f64, (i % self.columns()) as f64 * column);
+            let top = self.legend_height() + row * self.panel_height();
+            let panel = area.clone().shrink((px(edge), px(top)), (px(column), px(self.panel_height())));
+            draw_plot(plot, &panel, column)?;
+            draw_scores(&plot.scores, &panel, column)?;
+        }
+        Ok(())
+    }
 }
 
-impl Frame<'_> {
-    /// The place of a point, unless it cannot be shown.
-    fn at(&self, x: f64, y: f64) -> Option<Place> {
-        let (x, y) = (self.plot.x.share(x)?, self.plot.y.share(y)?);
-        Some((self.left + self.width * x, self.top + HEIGHT * (1.0 - y)))
+/// An entry of the legend.
+fn entry<DB: DrawingBackend>(area: &Area<DB>, series: &PlotSeries, [left, middle]: [f64; 2]) -> Drawn<DB> {
+    if series.kind == SeriesKind::Curve {
+        line(area, [left, middle], [left + 32.0, middle], STROKE, series.style.color())?;
     }
+    let (rim, face) = marker(series);
+    let place = (px(left + 16.0), px(middle));
+    area.draw(&(EmptyElement::at(place) + rim + face))?;
+    write(area, &series.name, anchored(text(NAME, INK), HPos::Left), [left + 42.0, middle])
+}
 
-    fn draw(&self, canvas: &mut Canvas) {
-        let middle = self.left + self.width / 2.0;
-        canvas.text(&self.plot.title, (middle, self.top - TITLE_HEIGHT / 2.0), TextStyle::TITLE);
-        self.axes(canvas);
-        for series in self.plot.series.iter().rev().filter(|series| series.shape == Shape::Curve) {
-            self.band(canvas, series);
-        }
-        for series in self.plot.series.iter().rev() {
-            self.series(canvas, series);
+type Pixels = (i32, i32);
+
+/// The marker of a series around its point: the rim, and the face over it, as plotters strokes small outlines unevenly.
+fn marker(series: &PlotSeries) -> (Polygon<Pixels>, Polygon<Pixels>) {
+    let color = series.style.color();
+    let (rim, fill) = match series.kind {
+        SeriesKind::Hollow => (color, [255; 3]),
+        SeriesKind::Curve | SeriesKind::Filled => (mix(color, [0; 3], 0.5), color),
+    };
+    let outline = |radius: f64, color: Rgb| {
+        let corners = series.style.outline().map(|[x, y]| (px(x * radius), -px(y * radius)));
+        Polygon::new(corners.collect::<Vec<_>>(), rgb(color).filled())
+    };
+    (outline(RADIUS + RIM, rim), outline(RADIUS, fill))
+}
+
+fn draw_plot<DB: DrawingBackend>(plot: &Plot, panel: &Area<DB>, width: f64) -> Drawn<DB> {
+    let Plot { title, x, y, series, marks, .. } = plot;
+    let middle = LEFT + (width - LEFT - RIGHT) / 2.0;
+    write(panel, title, bold(text(TITLE, INK)), [middle, TITLE_HEIGHT / 2.0])?;
+    let inside = [width - RIGHT - NAME_MARGIN, HEIGHT + UNDER].map(px);
+    let inside = panel.clone().shrink((px(NAME_MARGIN), px(TITLE_HEIGHT)), inside.into());
+    let mut chart = ChartBuilder::on(&inside)
+        .x_label_area_size(px(UNDER))
+        .y_label_area_size(px(LEFT - NAME_MARGIN))
+        .build_cartesian_2d(x.clone(), y.clone())?;
+    let label = text(LABEL, INK);
+    let [x_label, y_label] = [x, y].map(|axis| move |tick: &f64| axis.format_ext(tick));
+    let mut mesh = chart.configure_mesh();
+    mesh.bold_line_style(rgb(GRID).stroke_width(PX as u32)).light_line_style(TRANSPARENT);
+    mesh.axis_style(rgb(PALE_INK).stroke_width(PX as u32)).set_all_tick_mark_size(px(4.0));
+    mesh.y_label_offset(drop_of(&label)).label_style(label).axis_desc_style(text(NAME, INK));
+    mesh.x_label_formatter(&x_label).y_label_formatter(&y_label).x_desc(&x.name).y_desc(&y.name);
+    if x.scale == AxisScale::Category {
+        mesh.disable_x_mesh();
+    }
+    mesh.draw()?;
+    let shown = |at: &PlotPoint, value: f64| is_shown(x, at.x) && is_shown(y, value);
+    let [low, high] = y.ends();
+    for mark in marks.iter().filter(|mark| is_shown(x, mark.x)) {
+        let stroke = rgb(INK).stroke_width(px(1.5) as u32);
+        chart.draw_series([PathElement::new([(mark.x, low), (mark.x, high)], stroke)])?;
+        let name = upwards(anchored(text(LABEL, INK), HPos::Right));
+        let beside =
+            EmptyElement::at((mark.x, high)) + Text::new(mark.name.clone(), (px(-8.0), px(8.0)), name);
+        chart.draw_series([beside])?;
+    }
+    // The first series covers the others.
+    for one in series.iter().rev().filter(|one| one.kind == SeriesKind::Curve) {
+        let ranges = || one.points.iter().filter(|p| shown(p, p.low) && shown(p, p.high));
+        if ranges().any(|p| p.low < p.high) {
+            let upper = ranges().map(|p| (p.x, p.high));
+            let band: Vec<(f64, f64)> = upper.chain(ranges().rev().map(|p| (p.x, p.low))).collect();
+            chart.draw_series([Polygon::new(band, rgb(one.style.color()).mix(BAND))])?;
         }
     }
-
-    /// Grid, frame, tick labels, names of the axes, marks.
-    fn axes(&self, canvas: &mut Canvas) {
-        let Self { plot: Plot { x, y, marks, .. }, left, top, width } = *self;
-        let (right, bottom) = (left + width, top + HEIGHT);
-        for (share, label) in x.placed_ticks() {
-            let at = left + width * share;
-            if x.scale != AxisScale::Category {
-                canvas.line((at, top), (at, bottom), 1.0, GRID);
-            }
-            canvas.text(label, (at, bottom + 15.0), TextStyle::LABEL);
-        }
-        for (share, label) in y.placed_ticks() {
-            let at = bottom - HEIGHT * share;
-            canvas.line((left, at), (right, at), 1.0, GRID);
-            canvas.text(label, (left - 8.0, at), TextStyle::LABEL.at(Anchor::Right));
-        }
-        canvas.line((left, top), (left, bottom), 1.0, PALE_INK);
-        canvas.line((left, bottom), (right, bottom), 1.0, PALE_INK);
-        canvas.text(&x.name, ((left + right) / 2.0, bottom + 40.0), TextStyle::NAME);
-        canvas.text(&y.name, (left - LEFT + 14.0, (top + bottom) / 2.0), TextStyle::NAME.up());
-        for mark in marks {
-            let Some(share) = x.share(mark.x) else { continue };
-            let at = left + width * share;
-            canvas.line((at, top), (at, bottom), 1.5, INK);
-            let middle = top + 8.0 + text_width(&mark.name, TextStyle::LABEL) / 2.0;
-            canvas.text(&mark.name, (at - 10.0, middle), TextStyle::LABEL.up());
-        }
-    }
-
-    /// The ranges of a curve as a band.
-    fn band(&self, canvas: &mut Canvas, series: &Series) {
-        let ends = |p: &Point| Some((self.at(p.x, p.low)?, self.at(p.x, p.high)?, p.low < p.high));
-        let ends: Vec<(Place, Place, bool)> = series.points.iter().filter_map(ends).collect();
-        if ends.len() < 2 || ends.iter().all(|(.., is_range)| !is_range) {
-            return;
-        }
-        let upper = ends.iter().map(|(_, high, _)| *high);
-        let lower = ends.iter().rev().map(|(low, ..)| *low);
-        canvas.polygon((0.0, 0.0), upper.chain(lower).collect(), series.style.color(), BAND);
-    }
-
-    /// A line, or error bars, and a marker at every point.
-    fn series(&self, canvas: &mut Canvas, series: &Series) {
-        let color = mix(series.style.color(), [255; 3], 0.1);
-        let shown = || series.points.iter().filter_map(|p| Some((p, self.at(p.x, p.y)?)));
-        if series.shape == Shape::Curve {
-            canvas.path(shown().map(|(_, place)| place).collect(), STROKE, color);
+    for one in series.iter().rev() {
+        let stroke = rgb(mix(one.style.color(), [255; 3], 0.1)).stroke_width(px(STROKE) as u32);
+        let points = || one.points.iter().filter(|p| shown(p, p.y));
+        if one.kind == SeriesKind::Curve {
+            chart.draw_series(LineSeries::new(points().map(|p| (p.x, p.y)), stroke))?;
         } else {
-            for (p, _) in shown().filter(|(p, _)| p.low < p.high) {
-                if let (Some(low), Some(high)) = (self.at(p.x, p.low), self.at(p.x, p.high)) {
-                    canvas.line(low, high, STROKE, color);
-                }
-            }
+            let ranges = points().filter(|p| p.low < p.high && shown(p, p.low) && shown(p, p.high));
+            chart.draw_series(ranges.map(|p| ErrorBar::new_vertical(p.x, p.low, p.y, p.high, stroke, 0)))?;
         }
-        shown().for_each(|(_, place)| marker(canvas, series, place));
+        let marked = |p: &PlotPoint| {
+            let (rim, face) = marker(one);
+            EmptyElement::at((p.x, p.y)) + rim + face
+        };
+        chart.draw_series(points().map(marked))?;
     }
+    Ok(())
 }
 
-/// Writes scores as a small table in a column.
-fn draw_scores(canvas: &mut Canvas, scores: &[(&str, String)], (left, top): Place, column: f64) {
+fn is_shown(axis: &PlotAxis, value: f64) -> bool {
+    axis.share(value).is_some()
+}
+
+/// Writes scores as a small table at the foot of a panel.
+fn draw_scores<DB: DrawingBackend>(scores: &[(&str, String)], panel: &Area<DB>, width: f64) -> Drawn<DB> {
     if scores.is_empty() {
-        return;
+        return Ok(());
     }
-    let width = |(name, value): &(&str, String)| {
-        text_width(name, TextStyle::LABEL).max(text_width(value, TextStyle::LABEL))
-    };
-    let widths: Vec<f64> = scores.iter().map(width).collect();
-    let room = column - 16.0;
-    let gap = (room - widths.iter().sum::<f64>()) / widths.len() as f64;
-    let mut at = left + (column - room) / 2.0;
-    for ((name, value), width) in scores.iter().zip(widths) {
-        let middle = at + (width + gap) / 2.0;
-        canvas.text(*name, (middle, top + 20.0), TextStyle::LABEL.colored(PALE_INK));
-        canvas.text(value, (middle, top + 42.0), TextStyle::LABEL);
-        at += width + gap;
+    let top = TITLE_HEIGHT + HEIGHT + UNDER;
+    let pale = text(SCORE, PALE_INK);
+    let lengths = scores.iter().map(|(name, _)| text_width(name, &pale) / f64::from(PX));
+    let lengths: Vec<f64> = lengths.map(|length| length.max(44.0)).collect();
+    let gap = (width - 20.0 - lengths.iter().sum::<f64>()) / lengths.len() as f64;
+    let mut left = 10.0;
+    for ((name, value), length) in scores.iter().zip(lengths) {
+        let middle = left + (length + gap) / 2.0;
+        write(panel, name, pale.clone(), [middle, top + 20.0])?;
+        write(panel, value, text(SCORE, INK), [middle, top + 43.0])?;
+        left += length + gap;
     }
-    for (y, color) in [(8.0, INK), (31.0, GRID), (54.0, INK)] {
-        canvas.line((left + 10.0, top + y), (left + column - 10.0, top + y), 1.0, color);
+    for (down, color) in [(8.0, INK), (31.0, GRID), (55.0, INK)] {
+        line(panel, [10.0, top + down], [width - 10.0, top + down], 1.0, color)?;
     }
-}
-
-/// Draws the marker of a series around a point.
-fn marker(canvas: &mut Canvas, Series { style, shape, .. }: &Series, center: Place) {
-    let face: Vec<(f64, f64)> = style.outline().into_iter().map(|(x, y)| (x * RADIUS, y * RADIUS)).collect();
-    let (rim, fill) = match shape {
-        Shape::Hollow => (style.color(), [255; 3]),
-        Shape::Curve | Shape::Filled => (mix(style.color(), [0; 3], 0.5), style.color()),
-    };
-    // Two filled polygons, the rim below the face: backends stroke small outlines unevenly.
-    for (corners, color) in [(grown(&face, RIM), rim), (face, fill)] {
-        canvas.polygon(center, corners.into_iter().map(|(x, y)| (x, -y)).collect(), color, 1.0);
-    }
+    Ok(())
 }

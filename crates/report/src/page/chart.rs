@@ -9,24 +9,24 @@ use base64::engine::general_purpose::STANDARD;
 
 use super::html::escape;
 use super::scripts::island;
+
 use crate::error::ReportError;
-use crate::figure::{Content, Figure, Heat, Plot};
-use files::FileError;
-use view::canvas::dark;
+use crate::figure::{Figure, FigurePanels, Heat, Plot, dark};
+use base::files::FileError;
 
 /// The figure of an experiment, with the static files in the folder.
 pub(super) fn chart(folder: &Path, name: &str, figure: &Figure) -> Result<String, ReportError> {
     let still = picture(folder, name, figure)?;
     let id = format!("{name}{}", figure.part);
-    let (kind, labels): (&str, Vec<(&str, String)>) = match &figure.content {
-        Content::Plots(plots) => {
+    let (kind, labels): (&str, Vec<(&str, String)>) = match &figure.panels {
+        FigurePanels::Plots(plots) => {
             let class = |plot: &Plot| if plot.series.len() > 5 { " tall" } else { "" }.to_owned();
             ("plot", plots.iter().map(|plot| (plot.label.as_str(), class(plot))).collect())
         }
-        Content::Heats(heats) => {
+        FigurePanels::Heats(heats) => {
             ("heat", heats.iter().map(|heat| (heat.label.as_str(), room(heat))).collect())
         }
-        Content::Surfaces => return Ok(still),
+        FigurePanels::Surfaces => return Ok(still),
     };
     let mut boxes = String::new();
     for (panel, (label, class)) in labels.into_iter().enumerate() {

@@ -13,14 +13,13 @@ use super::chart::framed;
 use super::html::{escape, fill};
 use super::scripts::island;
 use crate::classes::Classes;
+use crate::color::{class_clay, hex};
 use crate::error::ReportError;
 use crate::figure4::shown;
+use crate::render::{Background, Coloring, RenderOptions, render};
 use crate::results::{
     Figure1Results, Figure4Results, Record, SHAPES_FILE, Scale, ShapesRecord, ShownShape, read,
 };
-use view::ViewError;
-use view::color::{class_clay, hex};
-use view::render::{Background, RenderOptions, Surface, render};
 
 /// Width and height of a thumbnail in pixels, twice those on the card.
 const THUMBNAIL: [u32; 2] = [224, 192];
@@ -97,11 +96,11 @@ fn thumbnails(record: &ShapesRecord, classes: &Classes<'_>) -> Result<Vec<Value>
             positions: positions.iter().map(|p| Point3::from(p.map(f64::from))).collect(),
             faces: shape.surface.faces.iter().map(|face| face.map(VertexId)).collect(),
         };
-        let surface = Surface::Plain(class_clay(classes.index(&shape.label)));
+        let coloring = Coloring::Plain(class_clay(classes.index(&shape.label)));
         let [width, height] = THUMBNAIL;
         let background = Background::Transparent;
-        let options = RenderOptions { width, height, surface, background, ..RenderOptions::default() };
-        let png = render(&mesh, &options).to_png().map_err(|e| ViewError::draw("a thumbnail", e))?;
+        let options = RenderOptions { width, height, coloring, background, ..RenderOptions::default() };
+        let png = render(&mesh, &options, &())?.to_png().map_err(|e| ReportError::draw("a thumbnail", e))?;
         Ok(format!("data:image/png;base64,{}", STANDARD.encode(png)))
     };
     let of_shape = |shape: &ShownShape| {

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use crate::results::Outcome;
+use crate::results::ExpectationOutcome;
 use crate::table::{Cell, Table};
 
 /// Text with the special characters of HTML escaped, for elements and attributes.
@@ -42,11 +42,11 @@ pub(super) fn paragraphs(text: &str) -> String {
 }
 
 /// The class and the sign of an outcome.
-pub(super) fn marked(outcome: Outcome) -> (&'static str, &'static str) {
+pub(super) fn marked(outcome: ExpectationOutcome) -> (&'static str, &'static str) {
     match outcome {
-        Outcome::Held => ("held", "✓"),
-        Outcome::Missed => ("goal", "○"),
-        Outcome::Failed => ("failed", "✗"),
+        ExpectationOutcome::Held => ("held", "✓"),
+        ExpectationOutcome::Missed => ("goal", "○"),
+        ExpectationOutcome::Failed => ("failed", "✗"),
     }
 }
 

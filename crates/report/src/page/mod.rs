@@ -13,10 +13,10 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 use crate::error::ReportError;
-use crate::results::{Expectation, Outcome};
-use files::write_bytes;
+use crate::results::{Expectation, ExpectationOutcome};
+use base::files::write_bytes;
 use html::{escape, marked};
-pub use section::{Content, Folder, Section, charts, explorer, gallery};
+pub use section::{ResultsFolder, Section, SectionContent, charts, explorer, gallery};
 
 /// Name of the page in the folder of results.
 pub const FILE: &str = "report.html";
@@ -31,15 +31,15 @@ pub const FILE: &str = "report.html";
 /// [`Results::validate`](crate::Results::validate), [`ReportError::File`] if the page cannot be written.
 pub fn write_report(folder: impl AsRef<Path>, sections: &[Section]) -> Result<PathBuf, ReportError> {
     let path = folder.as_ref().join(FILE);
-    let folder = Folder::new(folder.as_ref(), sections.iter().map(|section| section.name))?;
+    let folder = ResultsFolder::new(folder.as_ref(), sections.iter().map(|section| section.name))?;
     let content = |section: &Section| (section.show)(&folder, section.name);
-    let contents: Vec<Content> = sections.iter().map(content).collect::<Result<_, _>>()?;
+    let contents: Vec<SectionContent> = sections.iter().map(content).collect::<Result<_, _>>()?;
     write_bytes(&path, page(sections, &contents).as_bytes())?;
     Ok(path)
 }
 
 /// How many expectations held, and a link to each that did not.
-fn headline(sections: &[Section], contents: &[Content]) -> String {
+fn headline(sections: &[Section], contents: &[SectionContent]) -> String {
     let all: Vec<(&Section, &Expectation)> = sections
         .iter()
         .zip(contents)
@@ -49,11 +49,12 @@ fn headline(sections: &[Section], contents: &[Content]) -> String {
         return String::new();
     }
     let count = |outcome| all.iter().filter(|(_, e)| e.outcome() == outcome).count();
-    let [held, missed, failed] = [Outcome::Held, Outcome::Missed, Outcome::Failed].map(count);
+    let [held, missed, failed] =
+        [ExpectationOutcome::Held, ExpectationOutcome::Missed, ExpectationOutcome::Failed].map(count);
     let worst = match (failed, missed) {
-        (0, 0) => Outcome::Held,
-        (0, _) => Outcome::Missed,
-        _ => Outcome::Failed,
+        (0, 0) => ExpectationOutcome::Held,
+        (0, _) => ExpectationOutcome::Missed,
+        _ => ExpectationOutcome::Failed,
     };
     let counted = |n: usize, what: &str, word: &str| match n {
         0 => String::new(),
@@ -67,9 +68,9 @@ fn headline(sections: &[Section], contents: &[Content]) -> String {
         counted(failed, "expectation", "failed"),
         counted(missed, "goal", "missed")
     );
-    if worst != Outcome::Held {
+    if worst != ExpectationOutcome::Held {
         html.push_str("<ul class=\"outcomes\">\n");
-        for (section, e) in all.iter().filter(|(_, e)| e.outcome() != Outcome::Held) {
+        for (section, e) in all.iter().filter(|(_, e)| e.outcome() != ExpectationOutcome::Held) {
             let (class, sign) = marked(e.outcome());
             let _ = writeln!(
                 html,
@@ -87,11 +88,12 @@ fn headline(sections: &[Section], contents: &[Content]) -> String {
     html
 }
 
-fn page(sections: &[Section], contents: &[Content]) -> String {
+fn page(sections: &[Section], contents: &[SectionContent]) -> String {
     let link = |section: &Section| format!("<li><a href=\"#{}\">{}</a></li>", section.name, section.short());
-    let section = |(Section { name, title, .. }, Content { html, .. }): (&Section, &Content)| {
-        format!("<section id=\"{name}\">\n<h2>{title}</h2>\n{html}</section>\n")
-    };
+    let section =
+        |(Section { name, title, .. }, SectionContent { html, .. }): (&Section, &SectionContent)| {
+            format!("<section id=\"{name}\">\n<h2>{title}</h2>\n{html}</section>\n")
+        };
     format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\

@@ -5,7 +5,7 @@ use base64::engine::general_purpose::STANDARD;
 use serde_json::Value;
 use sha2::{Digest, Sha256};
 
-use view::interactive::{plotly_js, viewer_js};
+use crate::viewer::{plotly_js, viewer_js};
 
 /// Runs before anything is drawn, so that what scripts fill is shown instead of the static figures.
 const FIRST: &str = "document.documentElement.classList.add('js');";

@@ -11,7 +11,7 @@ use crate::error::ReportError;
 use crate::figure::Figure;
 use crate::record::Results;
 use crate::results::{
-    Expectation, Figure1Results, Figure4Results, Provenance, Record, ShapesRecord,
+    Expectation, Figure1Results, Figure4Results, Record, RunProvenance, ShapesRecord,
     provenance as provenance_of, read,
 };
 use crate::table::{Cell, Table};
@@ -24,7 +24,7 @@ pub struct Section {
     /// The heading. Its first sentence, such as `Figure 1.`, is the link to it.
     pub title: &'static str,
     /// Makes its content: [`charts`], [`gallery`] or [`explorer()`].
-    pub show: fn(&Folder<'_>, &str) -> Result<Content, ReportError>,
+    pub show: fn(&ResultsFolder<'_>, &str) -> Result<SectionContent, ReportError>,
 }
 
 impl Section {
@@ -37,7 +37,7 @@ impl Section {
 
 /// A folder of results.
 #[derive(Debug)]
-pub struct Folder<'a> {
+pub struct ResultsFolder<'a> {
     pub(super) path: &'a Path,
     /// The surfaces of Figure 4.
     pub(super) shapes: Option<ShapesRecord>,
@@ -45,11 +45,11 @@ pub struct Folder<'a> {
     pub(super) arguments: String,
 }
 
-impl<'a> Folder<'a> {
+impl<'a> ResultsFolder<'a> {
     /// A folder with records of experiments of these names.
     pub(super) fn new(path: &'a Path, names: impl Iterator<Item = &'a str>) -> Result<Self, ReportError> {
         let records = names.map(|name| path.join(format!("{name}.json"))).filter(|record| record.exists());
-        let sources: Vec<Provenance> = records.map(provenance_of).collect::<Result<_, _>>()?;
+        let sources: Vec<RunProvenance> = records.map(provenance_of).collect::<Result<_, _>>()?;
         // Records of several runs: the last one decides.
         let last = sources.into_iter().max_by(|a, b| a.date.cmp(&b.date));
         let arguments = last.map_or_else(String::new, |made| made.arguments);
@@ -64,7 +64,7 @@ impl<'a> Folder<'a> {
 
 /// A section.
 #[derive(Debug, Default)]
-pub struct Content {
+pub struct SectionContent {
     pub(super) html: String,
     pub(super) expectations: Vec<Expectation>,
 }
@@ -73,7 +73,7 @@ pub struct Content {
 ///
 /// # Errors
 /// Those of [`write_report`](super::write_report).
-pub fn charts<T: Results>(folder: &Folder<'_>, name: &str) -> Result<Content, ReportError> {
+pub fn charts<T: Results>(folder: &ResultsFolder<'_>, name: &str) -> Result<SectionContent, ReportError> {
     content(folder, name, |_: &Record<T>, figures| {
         figures.iter().map(|figure| chart(folder.path, name, figure)).collect()
     })
@@ -83,7 +83,7 @@ pub fn charts<T: Results>(folder: &Folder<'_>, name: &str) -> Result<Content, Re
 ///
 /// # Errors
 /// Those of [`write_report`](super::write_report).
-pub fn gallery(folder: &Folder<'_>, name: &str) -> Result<Content, ReportError> {
+pub fn gallery(folder: &ResultsFolder<'_>, name: &str) -> Result<SectionContent, ReportError> {
     content(folder, name, |record: &Record<Figure1Results>, figures| {
         let charts = figures.iter().map(|figure| chart(folder.path, name, figure));
         Ok(charts.collect::<Result<String, _>>()?
@@ -95,7 +95,7 @@ pub fn gallery(folder: &Folder<'_>, name: &str) -> Result<Content, ReportError> 
 ///
 /// # Errors
 /// Those of [`write_report`](super::write_report).
-pub fn explorer(folder: &Folder<'_>, name: &str) -> Result<Content, ReportError> {
+pub fn explorer(folder: &ResultsFolder<'_>, name: &str) -> Result<SectionContent, ReportError> {
     content(folder, name, |record: &Record<Figure4Results>, figures| {
         let still = figures.iter().map(|figure| picture(folder.path, name, figure));
         explorer::explorer(record, folder.shapes.as_ref(), &still.collect::<Result<String, _>>()?)
@@ -104,10 +104,10 @@ pub fn explorer(folder: &Folder<'_>, name: &str) -> Result<Content, ReportError>
 
 /// What `body` makes of the record and its figures, between the analysis and the numbers.
 fn content<T: Results>(
-    folder: &Folder<'_>,
+    folder: &ResultsFolder<'_>,
     name: &str,
     body: impl FnOnce(&Record<T>, &[Figure]) -> Result<String, ReportError>,
-) -> Result<Content, ReportError> {
+) -> Result<SectionContent, ReportError> {
     let path = folder.path.join(format!("{name}.json"));
     if !path.exists() {
         let html = format!(
@@ -115,7 +115,7 @@ fn content<T: Results>(
              run <code>{}</code>.</p></div>\n",
             escape(&folder.command(name))
         );
-        return Ok(Content { html, expectations: vec![] });
+        return Ok(SectionContent { html, expectations: vec![] });
     }
     let record: Record<T> = read(path)?;
     record.results.validate()?;
@@ -127,7 +127,7 @@ fn content<T: Results>(
         record.results.tables().iter().map(table).collect(),
         provenance(&record.provenance),
     ];
-    Ok(Content { html: html.concat(), expectations: record.expectations })
+    Ok(SectionContent { html: html.concat(), expectations: record.expectations })
 }
 
 /// The anchor of the expectations of an experiment.
@@ -159,7 +159,7 @@ fn expectations(name: &str, list: &[Expectation]) -> String {
     format!("<h3 id=\"{}\">Expectations</h3>\n{}", anchor(name), table(&expected))
 }
 
-fn provenance(p: &Provenance) -> String {
+fn provenance(p: &RunProvenance) -> String {
     let seconds: Vec<String> = p.seconds.iter().map(|(stage, s)| format!("{stage} {s:.2} s")).collect();
     let commit = if p.commit.is_empty() { String::new() } else { format!(", commit {}", p.commit) };
     let facts = [

@@ -2,14 +2,14 @@ use std::collections::BTreeMap;
 use std::fs;
 
 use super::*;
-use crate::fixtures::{
-    assert_balanced, curves_record, figure1_record, figure3_record, figure4_record, figure9_record,
-    retrieval_record, shapes_record, without_scripts,
-};
 use crate::record::{Results, save};
 use crate::results::{
     CurvesResults, Figure3Results, Figure4Results, Figure9Results, Record, RetrievalResults, SHAPES_FILE,
     ShapesRecord, write,
+};
+use crate::tests::fixtures::{
+    assert_balanced, curves_record, figure1_record, figure3_record, figure4_record, figure9_record,
+    retrieval_record, shapes_record, without_scripts,
 };
 
 /// The experiments that have curves.
@@ -120,8 +120,11 @@ fn counts_of_many_classes_have_room() {
     save(&record, folder.path(), "retrieval").unwrap();
     assert!(page_of(folder.path()).contains("class=\"plot counts\" style=\"--cells: 31\""));
     let svg = fs::read_to_string(folder.path().join("retrieval-confusion.svg")).unwrap();
-    assert!(svg.matches(">1</text>").count() == 30 * 31, "every count is written");
-    assert!((0..30).all(|i| svg.matches(&format!(">class{i}</text>")).count() == 2), "every class is named");
+    assert!(svg.matches(">\n1\n</text>").count() == 30 * 31, "every count is written");
+    assert!(
+        (0..30).all(|i| svg.matches(&format!(">\nclass{i}\n</text>")).count() == 2),
+        "every class is named"
+    );
 }
 
 #[test]

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Record<T> {
     /// How they were made.
-    pub provenance: Provenance,
+    pub provenance: RunProvenance,
     /// What was measured; its fields are fields of the record in JSON.
     #[serde(flatten)]
     pub results: T,
@@ -23,7 +23,7 @@ pub struct Record<T> {
 
 /// How a record was made.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-pub struct Provenance {
+pub struct RunProvenance {
     /// Name of the program.
     pub program: String,
     /// Its version.
@@ -73,18 +73,18 @@ pub struct Expectation {
 impl Expectation {
     /// What came of it.
     #[must_use]
-    pub fn outcome(&self) -> Outcome {
+    pub fn outcome(&self) -> ExpectationOutcome {
         match (self.held, self.goal) {
-            (true, _) => Outcome::Held,
-            (false, true) => Outcome::Missed,
-            (false, false) => Outcome::Failed,
+            (true, _) => ExpectationOutcome::Held,
+            (false, true) => ExpectationOutcome::Missed,
+            (false, false) => ExpectationOutcome::Failed,
         }
     }
 }
 
 /// What came of an expectation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Outcome {
+pub enum ExpectationOutcome {
     /// The measured value is in the expected range.
     Held,
     /// A goal is not reached yet.
@@ -93,7 +93,7 @@ pub enum Outcome {
     Failed,
 }
 
-impl Outcome {
+impl ExpectationOutcome {
     /// The word for it.
     #[must_use]
     pub fn name(self) -> &'static str {

@@ -5,9 +5,9 @@ use std::path::Path;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-use super::common::Provenance;
+use super::common::RunProvenance;
 use crate::error::ReportError;
-use files::{FileError, write_bytes};
+use base::files::{FileError, write_bytes};
 
 /// Writes a record as indented JSON, completely or not at all.
 ///
@@ -34,10 +34,10 @@ pub fn read<T: DeserializeOwned>(path: impl AsRef<Path>) -> Result<T, ReportErro
 ///
 /// # Errors
 /// As [`read`].
-pub fn provenance(path: impl AsRef<Path>) -> Result<Provenance, ReportError> {
+pub fn provenance(path: impl AsRef<Path>) -> Result<RunProvenance, ReportError> {
     #[derive(serde::Deserialize)]
     struct Made {
-        provenance: Provenance,
+        provenance: RunProvenance,
     }
     Ok(read::<Made>(path)?.provenance)
 }
@@ -45,8 +45,8 @@ pub fn provenance(path: impl AsRef<Path>) -> Result<Provenance, ReportError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fixtures::{figure1_record, figure4_record};
     use crate::results::{Figure1Results, Figure4Results, Record};
+    use crate::tests::fixtures::{figure1_record, figure4_record};
 
     #[test]
     fn records_read_back_to_the_bit() {

@@ -43,7 +43,7 @@ pub struct InvarianceRow {
     /// Share of shapes classified as unknown.
     pub unknown: f64,
     /// Share of shapes whose change is told when they are compared with the undamaged shape; none for damages that have no
-    /// kind of match of their own, and in older records.
+    /// relation of their own, and in older records.
     #[serde(default)]
     pub told: Option<f64>,
 }

@@ -14,7 +14,7 @@ mod retrieval;
 mod shapes;
 mod tables;
 
-pub use common::{Expectation, Outcome, Provenance, Record, Scale};
+pub use common::{Expectation, ExpectationOutcome, Record, RunProvenance, Scale};
 pub use curves::{Axis, AxisScale, CurvesPanel, CurvesResults, Mark, Series, SeriesPoint};
 pub use figure1::{Figure1Results, Figure1Shape};
 pub use figure3::{Figure3Form, Figure3Results, Figure3Shape, Figure3Stress};
@@ -27,4 +27,4 @@ pub use retrieval::{
     RetrievalRow,
 };
 pub use shapes::{Motions, SHAPES_FILE, ShapesRecord, ShownForm, ShownShape};
-pub use tables::{Entry, RecordedTable, TablesResults};
+pub use tables::{RecordedTable, TableEntry, TablesResults};

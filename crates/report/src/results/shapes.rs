@@ -5,8 +5,8 @@ use serde::{Deserialize, Serialize};
 use super::common::Scale;
 use super::figure4::Figure4Results;
 use crate::error::ReportError;
-use view::interactive::Geometry;
-use view::interactive::base64::{optional_list, triples};
+use crate::viewer::Geometry;
+use crate::viewer::base64::{optional_list, triples};
 
 /// Name of the file in a folder of results.
 pub const SHAPES_FILE: &str = "figure4-shapes.json";
@@ -103,8 +103,8 @@ impl ShapesRecord {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fixtures::{figure4_record, shapes_record};
     use crate::results::{read, write};
+    use crate::tests::fixtures::{figure4_record, shapes_record};
 
     #[test]
     fn the_record_reads_back_and_belongs_to_its_figure() {

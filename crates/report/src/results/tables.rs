@@ -20,13 +20,13 @@ pub struct RecordedTable {
     /// One heading per column.
     pub headings: Vec<String>,
     /// The rows, with one entry per column.
-    pub rows: Vec<Vec<Entry>>,
+    pub rows: Vec<Vec<TableEntry>>,
 }
 
 /// One entry of a table: a JSON number, text or null.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
-pub enum Entry {
+pub enum TableEntry {
     /// A number, shown with three significant digits; a whole number is shown in full.
     Number(f64),
     /// A name or remark.
@@ -35,14 +35,14 @@ pub enum Entry {
     Missing,
 }
 
-impl From<f64> for Entry {
+impl From<f64> for TableEntry {
     /// A number, or nothing if it is not finite.
     fn from(value: f64) -> Self {
         if value.is_finite() { Self::Number(value) } else { Self::Missing }
     }
 }
 
-impl From<&str> for Entry {
+impl From<&str> for TableEntry {
     fn from(text: &str) -> Self {
         Self::Text(text.to_owned())
     }

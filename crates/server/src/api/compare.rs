@@ -3,14 +3,11 @@
 use std::sync::Arc;
 
 use axum::extract::State;
-use canonform::descriptors::{CanonicalForm, PreparedShape, ShapeMetric, ShapePair};
-use canonform::index::ContentHash;
-use canonform::{
-    Budget, Comparison, Error, MatchEvidence, Overlay, Residual, SurfaceComparison, Triangulation,
-    compare_surfaces,
-};
+use canonform::ContentHash;
+use canonform::descriptors::{PreparedShape, ShapeMetric};
+use canonform::{Budget, Compared, Error, MeshComparison, Residual, compare_meshes};
+use report::viewer::Geometry;
 use serde::{Deserialize, Serialize};
-use view::interactive::Geometry;
 
 use super::answer::{Params, Written};
 use super::shapes::is_missing;
@@ -48,12 +45,8 @@ impl CompareParams {
 struct Answer {
     a: String,
     b: String,
-    /// What kind of match the shapes are.
-    evidence: MatchEvidence,
     #[serde(flatten)]
-    comparison: Comparison,
-    /// Whether both meshes have the same triangles; unknown if a mesh is missing.
-    triangulation: Option<Triangulation>,
+    found: MeshComparison,
     /// Of either form from the other, in units of the first mesh.
     residual: [Residual; 2],
     /// Both forms after alignment, coloured by the distance of each point from the other form.
@@ -61,13 +54,13 @@ struct Answer {
 }
 
 /// One of the two shapes.
-enum Side {
+enum ComparedShape {
     Query(Arc<Query>, Box<PreparedShape>),
     /// Not measured if the mesh is missing.
     Shape(Box<PreparedShape>, Option<Arc<Measured>>, ContentHash),
 }
 
-impl Side {
+impl ComparedShape {
     fn of_shape(app: &App, collection: &Collection, id: &str, budget: &Budget) -> Result<Self, Error> {
         let shape = Box::new(collection.search.prepared(id)?);
         let content = collection.search.index().entry(id)?.content;
@@ -90,16 +83,20 @@ impl Side {
         }
     }
 
-    /// The hash of the file.
-    fn content(&self) -> ContentHash {
-        match self {
+    fn compared(&self) -> Compared<'_> {
+        let (shape, measured) = (self.shape(), self.measured());
+        let content = match self {
             Self::Query(query, _) => query.content,
             Self::Shape(.., content) => *content,
+        };
+        Compared {
+            shape,
+            usual: shape,
+            form: measured.map_or(shape.form(), |measured| &measured.form),
+            surface: measured.map(|measured| &measured.surface),
+            geometry: measured.and_then(|measured| measured.geometry.as_ref()),
+            content: Some(content),
         }
-    }
-
-    fn form(&self) -> &CanonicalForm {
-        self.measured().map_or(self.shape().form(), |measured| &measured.form)
     }
 }
 
@@ -123,39 +120,21 @@ fn answer(
         (Some(query), None) => {
             let query = app.query(collection, &query)?;
             let shape = Box::new(query.description.prepare()?);
-            (query.name.clone(), Side::Query(query, shape))
+            (query.name.clone(), ComparedShape::Query(query, shape))
         }
         (None, Some(id)) => {
-            let side = Side::of_shape(app, collection, &id, budget)?;
+            let side = ComparedShape::of_shape(app, collection, &id, budget)?;
             (id, side)
         }
         _ => return Err(CompareParams::not_two()),
     };
-    let b = Side::of_shape(app, collection, &params.b, budget)?;
+    let b = ComparedShape::of_shape(app, collection, &params.b, budget)?;
     budget.check().map_err(ApiError::exceeded)?;
-    let pair = ShapePair::new(ShapeMetric::default(), [a.shape(), b.shape()]);
-    let (comparison, triangulation, overlay) = match (a.measured(), b.measured()) {
-        (Some(a), Some(b)) => {
-            let surfaces = [(&a.surface, &a.form), (&b.surface, &b.form)];
-            let SurfaceComparison { comparison, triangulation, overlay } =
-                compare_surfaces(&pair, pair.distance(), surfaces)?;
-            (comparison, Some(triangulation), overlay)
-        }
-        _ => (canonform::compare(&pair)?, None, Overlay::new(&pair, [a.form(), b.form()])?),
-    };
-    let geometries = [&a, &b].map(|side| side.measured().and_then(|measured| measured.geometry.as_ref()));
-    let evidence = match geometries {
-        [Some(a), Some(b)] => MatchEvidence::new([a, b], comparison.verdict),
-        _ => MatchEvidence::of_shapes([a.content(), b.content()].map(Some), comparison.verdict),
-    };
-    let dot = a.form().spread();
-    Ok(Answer {
-        evidence: evidence.named(&name, &params.b),
-        a: name,
-        b: params.b,
-        comparison,
-        triangulation,
-        residual: overlay.residual(),
-        forms: [overlaid(&overlay, 0, a.measured(), dot), overlaid(&overlay, 1, b.measured(), dot)],
-    })
+    let [of_a, of_b] = [a.compared(), b.compared()];
+    let dot = of_a.form.spread();
+    let mut found = compare_meshes(ShapeMetric::default(), [of_a, of_b])?;
+    found.relation = found.relation.named(&name, &params.b);
+    let forms =
+        [overlaid(&found.overlay, 0, a.measured(), dot), overlaid(&found.overlay, 1, b.measured(), dot)];
+    Ok(Answer { a: name, b: params.b, residual: found.residual, found, forms })
 }

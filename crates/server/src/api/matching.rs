@@ -3,9 +3,9 @@
 use std::sync::Arc;
 
 use axum::extract::State;
-use canonform::{Budget, CorrespondOptions, MatchedSurface, VertexMap, correspond};
+use canonform::{Budget, CorrespondOptions, MappedSurface, VertexMap, correspond};
+use report::viewer::Geometry;
 use serde::Serialize;
-use view::interactive::Geometry;
 
 use super::answer::{Params, Written};
 use super::compare::CompareParams;
@@ -74,7 +74,7 @@ fn answer(
     };
     let b = app.indexed(collection, &params.b, budget)?;
     let options = CorrespondOptions::default();
-    let [from, to] = [a.measured(), &b].map(|side| MatchedSurface::new(&side.surface, &options, budget));
+    let [from, to] = [a.measured(), &b].map(|side| MappedSurface::new(&side.surface, &options, budget));
     let maps = correspond(&from?, &to?, &options, budget)?.maps;
     let carried = maps.first().map_or_else(|| a.measured().mesh(), |map| a.measured().carried(&b, map));
     Ok(Answer { a: a.name().to_owned(), maps, meshes: [carried, b.mesh()], b: params.b })

@@ -6,14 +6,14 @@ use std::time::Instant;
 
 use axum::extract::{Request, State};
 use canonform::index::{ContentHash, SearchMode};
+use canonform::mesh::RepairReport;
+use canonform::mesh::io::{MemoryFile, ReadLimits, is_mesh_path, mesh_files, read_memory};
 use canonform::{
-    Budget, Error, Explain, MeshGeometry, SearchOptions, SearchRank, SearchReport, SearchSeconds,
-    ShapeDescription, Surface, embed,
+    Budget, Error, Explain, MeasuredSurface, MeshGeometry, SearchOptions, SearchRank, SearchReport,
+    SearchSeconds, Surface,
 };
-use mesh::RepairReport;
-use mesh::io::{MemoryFile, ReadLimits, is_mesh_path, mesh_files, read_memory};
+use report::viewer::Geometry;
 use serde::{Deserialize, Serialize};
-use view::interactive::Geometry;
 
 use super::answer::{Params, Written};
 use super::csv;
@@ -225,7 +225,7 @@ fn with_shape(
     wanted: &Wanted,
     budget: &Budget,
 ) -> Result<Answer, ApiError> {
-    let report = collection.search.search_shape(&id, &wanted.options)?;
+    let report = collection.search.search(canonform::Query::Id(&id), &wanted.options, budget)?;
     let answer = Answer::new(collection, id.clone(), report);
     if !wanted.geometry {
         return Ok(answer);
@@ -273,13 +273,11 @@ fn measure(app: &App, collection: &Collection, upload: Upload, budget: &Budget) 
     drop(upload);
     budget.check()?;
     let describe = collection.search.describe_options();
-    let surface = Surface::within(&mesh, &describe.form.repair, budget)?;
-    let refined = surface.for_description_within(budget)?;
-    let embedded = embed(&refined, &describe.form, budget)?;
-    budget.check()?;
-    let description = ShapeDescription::within(&refined, &embedded, describe, budget)?;
+    let surface = Surface::new(&mesh, &describe.form.repair, budget)?;
+    let embedded = MeasuredSurface::new(&surface, &describe.form, budget)?;
+    let description = embedded.describe(describe, budget)?;
     let geometry = MeshGeometry::new(&mesh, Some(content));
-    let measured = Measured::new(surface, geometry, &refined, &embedded)?;
+    let measured = Measured::new(surface, geometry, &embedded)?;
     Ok(Query::new(name, content, measured, description))
 }
 

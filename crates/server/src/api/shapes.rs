@@ -6,11 +6,11 @@ use axum::body::Bytes;
 use axum::extract::State;
 use axum::http::HeaderMap;
 use axum::response::Response;
+use canonform::mesh::TriMesh;
 use canonform::{Budget, Error};
-use mesh::TriMesh;
+use report::render::{Background, RenderOptions, View, render};
+use report::viewer::Geometry;
 use serde::{Deserialize, Serialize};
-use view::interactive::Geometry;
-use view::render::{Background, RenderOptions, View, render};
 
 use super::answer::{Id, Params, Written, is_known, tag, tagged};
 use crate::app::App;
@@ -136,14 +136,13 @@ pub(super) async fn thumbnail(
     }
     let drawing = move |budget: &Budget| match collection.search.mesh(&id) {
         Ok(mesh) => {
-            budget.check().map_err(ApiError::exceeded)?;
-            let picture = draw(&mesh, View::default())?;
+            let picture = draw(&mesh, View::default(), budget)?;
             shared.thumbnails.put(content, picture.clone(), picture.len());
             Ok(tagged(tag, PNG, Some(picture)))
         }
         // Under another tag, and not cached: the mesh may come back.
         Err(fault) if is_missing(&fault) => {
-            let picture = draw(&dots(collection.search.prepared(&id)?.form()), View::Principal)?;
+            let picture = draw(&dots(collection.search.prepared(&id)?.form()), View::Principal, budget)?;
             Ok(tagged(super::answer::tag("points"), PNG, Some(picture)))
         }
         Err(fault) => Err(fault.into()),
@@ -151,7 +150,7 @@ pub(super) async fn thumbnail(
     app.work.run(0, None, drawing).await
 }
 
-fn draw(mesh: &TriMesh, view: View) -> Result<Bytes, ApiError> {
+fn draw(mesh: &TriMesh, view: View, budget: &Budget) -> Result<Bytes, ApiError> {
     let options = RenderOptions {
         width: THUMBNAIL,
         height: THUMBNAIL,
@@ -159,5 +158,6 @@ fn draw(mesh: &TriMesh, view: View) -> Result<Bytes, ApiError> {
         view,
         ..RenderOptions::default()
     };
-    render(mesh, &options).to_png().map(Bytes::from).map_err(|_| ApiError::internal())
+    let image = render(mesh, &options, budget).map_err(ApiError::exceeded)?;
+    image.to_png().map(Bytes::from).map_err(|_| ApiError::internal())
 }

@@ -86,7 +86,7 @@ export class Answer {
     byId('found').classList.remove('busy');
     byId('overlay').hidden = true;
     byId('query-name').textContent = found.query;
-    this.showVerdict(found);
+    this.showClass(found);
     for (const format of ['csv', 'json']) {
       const params = searched(state);
       params.set('format', format);
@@ -116,7 +116,7 @@ export class Answer {
     if (this.root.getBoundingClientRect().top > 0.6 * innerHeight) this.root.scrollIntoView({ block: 'start' });
   }
 
-  showVerdict({ predicted, repair, repaired, mesh_missing: missing, n_shapes: known, seconds }) {
+  showClass({ predicted, repair, repaired, mesh_missing: missing, n_shapes: known, seconds }) {
     const [label, line] = [predicted.label, byId('predicted')];
     line.dataset.label = label ?? '';
     const words = predicted.explanation;
@@ -158,7 +158,6 @@ export class Answer {
     byId('overlay-title').textContent = `${query} over ${id}`;
     byId('overlay-kind').textContent = 'Aligning…';
     byId('overlay-kind').dataset.kind = '';
-    byId('overlay-kind').dataset.evidence = '';
     byId('overlay-facts').textContent = '';
     if (isNew) byId('overlay-title').focus({ preventScroll: true });
     overlay.scrollIntoView({ block: 'nearest' });
@@ -171,15 +170,14 @@ export class Answer {
       byId('overlay-kind').textContent = answer.remedy ? `${answer.error}; ${answer.remedy}` : answer.error;
       return;
     }
-    const { evidence, verdict, distance, normalized_distance: normalized, residual, handedness } = answer;
+    const { relation, distance, normalized_distance: normalized, residual } = answer;
     // Names keep their letters.
-    byId('overlay-kind').textContent = `${evidence.text} (${Math.round(100 * evidence.confidence)} % certain).`;
-    byId('overlay-kind').dataset.kind = verdict.kind;
-    byId('overlay-kind').dataset.evidence = evidence.kind;
-    byId('overlay-facts').textContent = `${sentence(evidence.reason)} ${sentence(verdict.text)} ` +
+    byId('overlay-kind').textContent = `${relation.text} (${Math.round(100 * relation.confidence)} % certain).`;
+    byId('overlay-kind').dataset.kind = relation.kind;
+    byId('overlay-facts').textContent = `${sentence(relation.because.text)} ` +
       `Distance between the forms: ${number(distance)}, ${number(normalized)} at equal size. ` +
       `Points of the first form are ${number(residual[0].median)} from the second (median), ` +
-      `${number(residual[0].max)} at most. Handedness: ${handedness}.`;
+      `${number(residual[0].max)} at most.`;
     byId('shown-first').textContent = answer.a;
     byId('shown-second').textContent = answer.b;
     this.overlaid = answer;

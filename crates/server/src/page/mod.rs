@@ -26,8 +26,8 @@ pub(crate) fn router() -> Router<Arc<App>> {
         ("/assets/ask.js", JS, include_str!("ask.js")),
         ("/assets/shapes.js", JS, include_str!("shapes.js")),
         ("/assets/answer.js", JS, include_str!("answer.js")),
-        ("/assets/viewer.js", JS, view::interactive::viewer_js()),
-        ("/assets/plotly.js", JS, view::interactive::plotly_js()),
+        ("/assets/viewer.js", JS, report::viewer::viewer_js()),
+        ("/assets/plotly.js", JS, report::viewer::plotly_js()),
     ];
     let page = ("/", HTML, Bytes::from(filled_in(include_str!("index.html"))));
     let files = files.map(|(path, kind, text)| (path, kind, Bytes::from_static(text.as_bytes())));

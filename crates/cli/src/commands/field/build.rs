@@ -5,14 +5,14 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use anyhow::Result;
+use base::terminal::Bars;
+use canonform::mesh::RepairReport;
 use canonform::{DistanceField, FieldBounds, FieldFacts, FieldOptions};
-use mesh::RepairReport;
 use serde::Serialize;
-use terminal::Bars;
 
 use crate::args::{Common, FieldBuildArgs};
 use crate::input::{named, read_surface};
-use crate::output::{check_folder, facts, report};
+use crate::output::{Answer, check_folder, report};
 
 #[derive(Serialize)]
 struct BuildJson {
@@ -35,12 +35,12 @@ struct Seconds {
 pub(super) fn build(args: &FieldBuildArgs, common: &Common) -> Result<ExitCode> {
     check_folder(&args.output)?;
     let surface = read_surface(&args.mesh, &args.repair, common)?;
-    let method = args.marching.of(args.method);
+    let method = args.marching.distances(args.method);
     let options = FieldOptions { method, landmarks: args.landmarks, rank: args.rank };
     let observer = Bars::with_budget(common.quiet, args.limits.budget());
     let start = Instant::now();
-    let field =
-        DistanceField::build(&surface, &options, &observer).map_err(|fault| named(&args.mesh, fault))?;
+    let field = DistanceField::build(&surface, &options, &observer)
+        .map_err(|fault| named(&args.mesh, fault.into()))?;
     let built = start.elapsed().as_secs_f64();
     field.save(&args.output)?;
     let seconds = Seconds {
@@ -51,12 +51,10 @@ pub(super) fn build(args: &FieldBuildArgs, common: &Common) -> Result<ExitCode> 
     };
     let (output, repair) = (args.output.clone(), surface.repaired.report.clone());
     report(common, &BuildJson { output, facts: field.facts(), seconds, repair }, |json| {
-        let mut lines = lines_of(&json.facts);
+        let mut answer = answer(&json.output, &json.facts);
         let Seconds { load, repair, build, write } = json.seconds;
-        let total = load + repair + build + write;
-        lines.push(("seconds", format!("{total:.3} (build {build:.3})")));
-        lines.push(("wrote", json.output.display().to_string()));
-        self::facts(&lines)
+        answer.facts.push(("seconds", format!("{:.3}", load + repair + build + write)));
+        answer.text(common)
     })
 }
 
@@ -65,29 +63,31 @@ struct InfoJson<'a> {
     field: &'a Path,
     #[serde(flatten)]
     facts: FieldFacts,
-    landmarks: Vec<surface::VertexId>,
+    landmarks: Vec<canonform::surface::VertexId>,
 }
 
 /// Reports how a field was built.
 pub(super) fn info(path: &Path, common: &Common) -> Result<ExitCode> {
     let field = DistanceField::open(path)?;
     let json = InfoJson { field: path, facts: field.facts(), landmarks: field.landmarks() };
-    report(common, &json, |json| self::facts(&lines_of(&json.facts)))
+    report(common, &json, |json| answer(path, &json.facts).text(common))
 }
 
-fn lines_of(facts: &FieldFacts) -> Vec<(&'static str, String)> {
+fn answer(path: &Path, facts: &FieldFacts) -> Answer {
     let bounds = match facts.bounds {
         FieldBounds::Certified => "certified: exact distances from all landmarks".to_owned(),
         FieldBounds::Measured { over, under, exact_columns } => format!(
             "measured: widened by errors of {over:.4} too long and {under:.4} too short; {exact_columns} columns are exact"
         ),
     };
-    vec![
-        ("method", facts.method.to_owned()),
-        ("vertices", facts.n_vertices.to_string()),
-        ("landmarks, rank", format!("{}, {}", facts.n_landmarks, facts.rank)),
-        ("covering radius", format!("{:.4}", facts.covering_radius)),
-        ("bounds", bounds),
-        ("size", format!("{:.2} MB", facts.bytes as f64 / 1e6)),
-    ]
+    let (path, n, size) = (path.display(), facts.n_vertices, facts.bytes as f64 / 1e6);
+    Answer {
+        sentence: format!("{path} holds the distances between all pairs of {n} vertices in {size:.2} MB"),
+        facts: vec![("bounds", bounds)],
+        details: vec![
+            ("method", facts.method.to_owned()),
+            ("landmarks, rank", format!("{}, {}", facts.n_landmarks, facts.rank)),
+            ("covering radius", format!("{:.4}", facts.covering_radius)),
+        ],
+    }
 }

@@ -4,7 +4,7 @@ use std::io::Read;
 use std::path::Path;
 
 use anyhow::{Context, Result, bail};
-use surface::VertexId;
+use canonform::surface::VertexId;
 
 use crate::field::read_numbers;
 use crate::input::is_stream;

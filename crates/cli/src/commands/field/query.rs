@@ -5,10 +5,10 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use anyhow::Result;
+use base::terminal::Bars;
+use canonform::surface::VertexId;
 use canonform::{DistanceField, FieldBounds, PairDistance, PairKind};
 use serde::Serialize;
-use surface::VertexId;
-use terminal::Bars;
 
 use super::pairs;
 use crate::args::{Common, FieldQueryArgs};
@@ -79,7 +79,7 @@ fn answers(
 ) -> Result<Vec<PairDistance>, canonform::Error> {
     let observer = Bars::with_budget(common.quiet, args.limits.budget());
     if let Some(pairs) = pairs {
-        return field.pairs(pairs, args.tolerance, &observer);
+        return Ok(field.pairs(pairs, args.tolerance, &observer)?);
     }
     let mut found = Vec::new();
     for source in args.source.iter().map(|source| VertexId(*source)) {
@@ -107,7 +107,7 @@ fn write(path: &Path, found: &[PairDistance]) -> Result<()> {
         let rows: Vec<[f64; 5]> = found.iter().map(row).collect();
         return write_npy(path, 5, rows.iter().map(|row| &row[..]));
     }
-    Ok(files::write_atomically(path, |out| {
+    Ok(base::files::write_atomically(path, |out| {
         writeln!(out, "a,b,distance,lower,upper,kind")?;
         for pair in found {
             let PairDistance { a, b, distance, lower, upper, .. } = pair;

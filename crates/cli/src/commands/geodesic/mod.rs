@@ -11,7 +11,7 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use anyhow::Result;
-use mesh::io::{Content, writable};
+use canonform::mesh::io::{Content, writable};
 
 use self::task::Task;
 use crate::args::{Common, GeodesicArgs};
@@ -36,9 +36,9 @@ pub(crate) fn geodesic(args: &GeodesicArgs, common: &Common) -> Result<ExitCode>
         pairs::check_size(surface.n_input_vertices(), args.force)?;
     }
     let start = Instant::now();
-    let method = args.marching.of(args.method);
+    let method = args.marching.distances(args.method);
     let solver = method
-        .prepare_within(&surface.intrinsic, &args.limits.budget())
+        .prepare(surface.intrinsic(), &args.limits.budget())
         .map_err(|fault| named(&args.mesh, fault.into()))?;
     let setup = surface.repair_seconds + start.elapsed().as_secs_f64();
     write(Task { args, common, output, mesh: &mesh, surface: &surface, solver: solver.as_ref(), setup })

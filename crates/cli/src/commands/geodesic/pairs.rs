@@ -5,16 +5,16 @@ use std::process::ExitCode;
 use std::time::Instant;
 
 use anyhow::{Result, bail};
+use base::files::FileError;
+use base::terminal::Bars;
+use canonform::mesh::RepairReport;
+use canonform::surface::VertexId;
 use canonform::{AllPairs, Asymmetry, Exceeded};
-use files::FileError;
-use mesh::RepairReport;
 use serde::Serialize;
-use surface::VertexId;
-use terminal::Bars;
 
 use super::task::Task;
 use crate::input::named;
-use crate::output::{facts, fill_npy};
+use crate::output::{Answer, fill_npy, shown};
 
 /// Default memory for distances, in bytes.
 const DEFAULT_MEMORY: usize = 1 << 30;
@@ -54,7 +54,7 @@ pub(super) fn check_size(n_vertices: usize, force: bool) -> Result<()> {
         );
     }
     if bytes > LARGEST_FILE / 100 {
-        terminal::note(&size);
+        base::terminal::note(&size);
     }
     Ok(())
 }
@@ -91,7 +91,8 @@ pub(super) fn write(task: Task<'_>) -> Result<ExitCode> {
         unreached: surface.repaired.report.dropped_vertices.clone(),
         repair: surface.repaired.report.clone(),
     };
-    task.output.report(task.common, &json, table)
+    let common = task.common;
+    task.output.report(common, &json, |json| answer(json).text(common))
 }
 
 /// The limit that ended the work, if it was not the file that failed.
@@ -100,28 +101,25 @@ fn stopped(fault: &anyhow::Error) -> Option<Exceeded> {
     source.get_ref()?.downcast_ref().copied()
 }
 
-fn table(json: &PairsJson) -> String {
+fn answer(json: &PairsJson) -> Answer {
     let percent = |share: f64| format!("{:.3} %", 100.0 * share);
     let Asymmetry { mean, largest } = json.asymmetry;
-    let mut lines = vec![
-        ("method", json.method.to_owned()),
-        ("vertices", json.n_vertices.to_string()),
-        ("setup", format!("{:.1} ms", 1e3 * json.seconds.setup)),
-        ("all pairs", format!("{:.1} s", json.seconds.all_pairs)),
-        (
-            "asymmetry",
-            format!(
-                "{} on average, {} at most; both directions are averaged",
-                percent(mean),
-                percent(largest)
-            ),
-        ),
-    ];
+    let mut facts = vec![("seconds", format!("{:.1}", json.seconds.all_pairs))];
     if !json.unreached.is_empty() {
-        lines.push(("unreached", format!("{} vertices, written as inf", json.unreached.len())));
+        facts.push(("unreached", format!("{} vertices, written as inf", json.unreached.len())));
     }
-    lines.push(("wrote", json.output.display().to_string()));
-    facts(&lines)
+    let (output, n) = (shown(&json.output), json.n_vertices);
+    let asymmetry =
+        format!("{} on average, {} at most; both directions are averaged", percent(mean), percent(largest));
+    Answer {
+        sentence: format!("{output} holds the distances between all pairs of {n} vertices"),
+        facts,
+        details: vec![
+            ("method", json.method.to_owned()),
+            ("setup", format!("{:.1} ms", 1e3 * json.seconds.setup)),
+            ("asymmetry", asymmetry),
+        ],
+    }
 }
 
 #[cfg(test)]

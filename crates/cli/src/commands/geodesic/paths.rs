@@ -7,13 +7,16 @@ use std::time::Instant;
 
 use anyhow::Result;
 use canonform::geodesics::{PathTracer, Source};
+use canonform::mesh::RepairReport;
 use canonform::{InputPoint, Surface, SurfacePath};
-use mesh::RepairReport;
 use serde::Serialize;
 
 use super::task::{Row, Seconds, Task, spelled};
 use crate::input::named;
-use crate::output::{Output, facts};
+use crate::output::{Answer, Output, count, shown};
+
+/// Most paths that are printed without `--details`.
+const MOST_PATHS: usize = 4;
 
 #[derive(Serialize)]
 struct PathsJson {
@@ -46,24 +49,24 @@ pub(super) fn write(task: Task<'_>) -> Result<ExitCode> {
     let fault = |fault| named(&args.mesh, fault);
     // Bad targets fail before any work is done.
     let targets: Result<Vec<_>, _> = args.path_to.iter().map(|point| surface.locate(point)).collect();
-    let targets = targets.map_err(fault)?;
+    let targets = targets.map_err(|point| fault(point.into()))?;
     let (rows, seconds) = task.solve()?;
     let start = Instant::now();
     let (mut paths, mut facts) = (Vec::new(), Vec::new());
     for row in &rows {
-        let tracer = PathTracer::new(&surface.intrinsic, &row.sources, &row.distances)
-            .with_budget(task.solver.budget());
+        let tracer =
+            PathTracer::new(surface.intrinsic(), &row.sources, &row.distances, &task.solver.budget());
         for (target, at) in args.path_to.iter().zip(&targets) {
-            let mut path = surface.path(&tracer, *at).map_err(fault)?;
+            let mut path = SurfacePath::trace(surface, &tracer, *at).map_err(fault)?;
             // The ends as the user wrote them.
             let source = source_of(&path, row, surface).unwrap_or(*target);
             let n = path.points.len();
             path.points[0].at = source;
             path.points[n - 1].at = *target;
             let distance = match target {
-                InputPoint::Vertex(v) => {
-                    Some(row.distances[surface.repaired_vertex(*v).map_err(fault)?.index()])
-                }
+                InputPoint::Vertex(v) => Some(
+                    row.distances[surface.repaired_vertex(*v).map_err(|point| fault(point.into()))?.index()],
+                ),
                 _ => None,
             };
             let (length, n_points) = (path.length, path.points.len());
@@ -84,7 +87,8 @@ pub(super) fn write(task: Task<'_>) -> Result<ExitCode> {
         path_seconds,
         repair: surface.repaired.report.clone(),
     };
-    task.output.report(task.common, &json, table)
+    let common = task.common;
+    task.output.report(common, &json, |json| answer(json).text(common))
 }
 
 /// The source where a path starts.
@@ -95,31 +99,37 @@ fn source_of(path: &SurfacePath, row: &Row, surface: &Surface) -> Option<InputPo
     all.min_by(|(_, a), (_, b)| away(a).total_cmp(&away(b))).map(|(from, _)| *from)
 }
 
-fn table(json: &PathsJson) -> String {
-    let mut lines = vec![
+fn answer(json: &PathsJson) -> Answer {
+    let outputs: Vec<String> = json.outputs.iter().map(|path| shown(path)).collect();
+    let path = |path: &PathFacts| {
+        let ends = format!("{} to {}", spelled(&[path.source]), spelled(&[path.target]));
+        ("path", format!("{ends}: length {:.6}, {} points", path.length, path.n_points))
+    };
+    let milliseconds = |seconds: f64| format!("{:.2} ms", 1e3 * seconds);
+    let (first, others) = json.paths.split_at(json.paths.len().min(MOST_PATHS));
+    let details = [
         ("method", json.method.to_owned()),
         ("vertices", json.n_vertices.to_string()),
-        ("setup", format!("{:.1} ms", 1e3 * json.seconds.setup)),
-        ("distances", format!("{:.2} ms", 1e3 * json.seconds.per_source.iter().sum::<f64>())),
-        ("paths", format!("{:.2} ms", 1e3 * json.path_seconds)),
+        ("setup", milliseconds(json.seconds.setup)),
+        ("distances", milliseconds(json.seconds.per_source.iter().sum())),
+        ("paths", milliseconds(json.path_seconds)),
     ];
-    for path in &json.paths {
-        let ends = format!("{} to {}", spelled(&[path.source]), spelled(&[path.target]));
-        lines.push(("path", format!("{ends}: length {:.6}, {} points", path.length, path.n_points)));
+    Answer {
+        sentence: format!("{} holds {}", outputs.join(", "), count(json.paths.len(), "path")),
+        facts: first.iter().map(path).collect(),
+        details: details.into_iter().chain(others.iter().map(path)).collect(),
     }
-    lines.extend(json.outputs.iter().map(|path| ("wrote", path.display().to_string())));
-    facts(&lines)
 }
 
 fn write_paths(output: &Output, paths: &[SurfacePath], facts: &[PathFacts]) -> Result<()> {
     let path = output.path();
     match output.format() {
-        "csv" => files::write_atomically(path, |out| write_csv(out, paths))?,
-        "json" => files::write_atomically(path, |out| write_json(out, paths, facts))?,
+        "csv" => base::files::write_atomically(path, |out| write_csv(out, paths))?,
+        "json" => base::files::write_atomically(path, |out| write_json(out, paths, facts))?,
         _ => {
             let lines: Vec<Vec<_>> =
                 paths.iter().map(|path| path.points.iter().map(|point| point.position).collect()).collect();
-            mesh::io::write_polylines(path, &lines)?;
+            canonform::mesh::io::write_polylines(path, &lines)?;
         }
     }
     Ok(())

@@ -5,11 +5,11 @@ use std::process::ExitCode;
 
 use anyhow::{Context, Result, bail};
 use canonform::InputPoint;
-use mesh::RepairReport;
+use canonform::mesh::RepairReport;
 use serde::Serialize;
 
 use super::task::{Row, Seconds, Task, spelled};
-use crate::output::{facts, write_colored, write_csv, write_npy};
+use crate::output::{Answer, count, shown, write_colored, write_csv, write_npy};
 
 #[derive(Serialize)]
 struct RowsJson {
@@ -60,29 +60,45 @@ pub(super) fn write(task: Task<'_>) -> Result<ExitCode> {
         },
         repair: surface.repaired.report.clone(),
     };
-    task.output.report(task.common, &json, |json| table(json, &solved))
+    let common = task.common;
+    task.output.report(common, &json, |json| answer(json, &solved).text(common))
 }
 
-fn table(json: &RowsJson, rows: &[Row]) -> String {
-    let mut lines = vec![
-        ("method", json.method.to_owned()),
-        ("vertices", json.n_vertices.to_string()),
-        ("setup", format!("{:.1} ms", 1e3 * json.seconds.setup)),
-    ];
+fn answer(json: &RowsJson, rows: &[Row]) -> Answer {
+    let from = match rows {
+        [row] if row.from.len() == 1 => spelled(&row.from),
+        [_] => format!("the nearest of {}", count(json.sources.len(), "source")),
+        rows => format!("each of {}", count(rows.len(), "source")),
+    };
+    let holds = match &json.outputs[..] {
+        [output] => format!("{} holds", shown(output)),
+        outputs => format!("{} files hold", outputs.len()),
+    };
+    let farthest = json.farthest.iter().copied().fold(0.0, f64::max);
+    let (beyond, unreached) = (json.beyond.iter().sum::<usize>(), json.unreached.len());
+    let mut facts = Vec::new();
+    if let (Some(limit), 1..) = (json.max_distance, beyond) {
+        facts.push(("beyond", format!("{} farther than {limit}, written as inf", count(beyond, "distance"))));
+    }
+    if unreached > 0 {
+        facts.push(("unreached", format!("{unreached} vertices, written as inf")));
+    }
+    let milliseconds = |seconds: f64| format!("{:.2} ms", 1e3 * seconds);
+    let mut details = vec![("method", json.method.to_owned()), ("setup", milliseconds(json.seconds.setup))];
     for (i, row) in rows.iter().enumerate() {
-        let [farthest, ms] = [json.farthest[i], 1e3 * json.seconds.per_source[i]];
-        let beyond = match (json.max_distance, json.beyond[i]) {
-            (Some(limit), 1..) => format!(", {} vertices beyond {limit} written as inf", json.beyond[i]),
-            _ => String::new(),
-        };
         let name = if row.from.len() == 1 { "source" } else { "nearest of" };
-        lines.push((name, format!("{}: farthest {farthest:.6}, {ms:.2} ms{beyond}", spelled(&row.from))));
+        let (farthest, time) = (json.farthest[i], milliseconds(json.seconds.per_source[i]));
+        details.push((name, format!("{}: farthest {farthest:.6}, {time}", spelled(&row.from))));
     }
-    if !json.unreached.is_empty() {
-        lines.push(("unreached", format!("{} vertices, written as inf", json.unreached.len())));
+    details.extend(json.outputs.iter().map(|path| ("wrote", path.display().to_string())));
+    Answer {
+        sentence: format!(
+            "{holds} the distances from {from} to {} vertices; the farthest is {farthest:.6} away",
+            json.n_vertices
+        ),
+        facts,
+        details,
     }
-    lines.extend(json.outputs.iter().map(|path| ("wrote", path.display().to_string())));
-    facts(&lines)
 }
 
 /// Writes the distances, in the vertex order of the input, and returns the files.

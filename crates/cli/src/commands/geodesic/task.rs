@@ -3,11 +3,11 @@
 use std::time::Instant;
 
 use anyhow::Result;
+use base::terminal::Bars;
 use canonform::geodesics::{DistanceSolver, Source};
+use canonform::mesh::TriMesh;
 use canonform::{InputPoint, Surface};
-use mesh::TriMesh;
 use serde::Serialize;
-use terminal::Bars;
 
 use crate::args::{Common, GeodesicArgs};
 use crate::input::named;
@@ -48,7 +48,7 @@ impl Task<'_> {
     pub(super) fn solve(&self) -> Result<(Vec<Row>, Seconds)> {
         let Self { args, surface, .. } = self;
         let located = |point: &InputPoint| {
-            let source = Source::new(&surface.intrinsic, surface.locate(point)?)?;
+            let source = Source::new(surface.intrinsic(), surface.locate(point)?)?;
             Ok((*point, source))
         };
         let points: Result<Vec<_>, _> = args.source.iter().map(located).collect();

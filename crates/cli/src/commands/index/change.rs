@@ -4,17 +4,17 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::Result;
+use base::terminal::Bars;
+use canonform::index::damaged_path;
 use canonform::{
     BuildOptions, BuildReport, Elsewhere, FailureReason, Inputs, LabelFile, MergeReport, add_to_index,
     build_index, merge_indexes, remove_from_index,
 };
-use index::damaged_path;
 use serde::Serialize;
-use terminal::Bars;
 
 use crate::args::{AddArgs, BuildArgs, Common, MAX_DROPPED};
 use crate::input::{check_dropped, is_named};
-use crate::output::{check_folder, exit_code, facts, report};
+use crate::output::{Answer, check_folder, count, exit_code, report};
 use crate::remedy::with_remedy;
 
 #[derive(Serialize)]
@@ -27,7 +27,7 @@ struct Json<T: Serialize> {
 pub(super) fn build(args: &BuildArgs, common: &Common) -> Result<ExitCode> {
     check_folder(&args.output)?;
     let labels = args.labels.as_deref().map(LabelFile::read).transpose()?;
-    let describe = args.describe.options(common)?;
+    let describe = args.describe.describe_options(common)?;
     let options = BuildOptions {
         labels: labels.as_ref(),
         shard: args.shard,
@@ -36,7 +36,7 @@ pub(super) fn build(args: &BuildArgs, common: &Common) -> Result<ExitCode> {
         ..BuildOptions::new(&describe)
     };
     let built = build_index(&args.folder, &args.output, &options, &Bars::new(common.quiet))?;
-    let max_dropped = args.describe.embedding.form.repair.max_dropped;
+    let max_dropped = args.describe.repair.max_dropped;
     summarize(&args.output, built, labels.as_ref(), max_dropped, common)
 }
 
@@ -64,9 +64,9 @@ fn summarize(
     common: &Common,
 ) -> Result<ExitCode> {
     let json = Json { index: index.to_owned(), report: built };
-    report(common, &json, |json| table(index, &json.report, max_dropped))?;
+    report(common, &json, |json| answer(index, &json.report, max_dropped).text(common))?;
     let built = &json.report;
-    notes(index, built, labels).iter().for_each(|note| terminal::note(note));
+    notes(index, built, labels).iter().for_each(|note| base::terminal::note(note));
     for shape in &built.dropped {
         check_dropped(&shape.id, shape.dropped_area_share, max_dropped);
     }
@@ -75,7 +75,7 @@ fn summarize(
             true => failure.error.clone(),
             false => format!("{}: {}", failure.path.display(), failure.error),
         };
-        terminal::error(&with_remedy(message, failure.remedy));
+        base::terminal::error(&with_remedy(message, failure.remedy));
     }
     Ok(exit_code(built.failed.is_empty()))
 }
@@ -85,7 +85,7 @@ fn notes(index: &Path, built: &BuildReport, labels: Option<&LabelFile>) -> Vec<S
     let mut notes = Vec::new();
     if built.replaced_damaged {
         notes.push(format!(
-            "warning: the damaged index was built again from this folder; {} keeps the damaged file",
+            "warning: the index could not be read and was built again from this folder; {} keeps the earlier file",
             damaged_path(index).display()
         ));
     }
@@ -113,35 +113,41 @@ fn notes(index: &Path, built: &BuildReport, labels: Option<&LabelFile>) -> Vec<S
     notes
 }
 
-fn table(index: &Path, report: &BuildReport, max_dropped: f64) -> String {
+fn answer(index: &Path, report: &BuildReport, max_dropped: f64) -> Answer {
+    let (name, described, unchanged) = (index.display(), report.described, report.unchanged);
+    let sentence = match index.exists() {
+        true => {
+            let holds = count(report.n_shapes, "shape");
+            format!("{name} holds {holds}: {described} described, {unchanged} unchanged")
+        }
+        false => format!("{name} was not written: no mesh could be described"),
+    };
+    let mut facts = Vec::new();
+    if !report.failed.is_empty() {
+        facts.push(("failed", failures(report)));
+    }
     let lossy = report.dropped.iter().filter(|shape| shape.dropped_area_share > max_dropped).count();
-    let mut rows =
-        vec![("described", report.described.to_string()), ("unchanged", report.unchanged.to_string())];
+    if lossy > 0 {
+        facts.push(("incomplete", lossy.to_string()));
+    }
+    if !report.skipped.is_empty() {
+        let kinds: Vec<String> = report.skipped.iter().map(|(kind, n)| format!("{kind} ({n})")).collect();
+        facts.push(("skipped", kinds.join(", ")));
+    }
     let rare = [
         ("renamed", report.renamed),
         ("removed", report.removed),
-        ("incomplete", lossy),
         ("pruned", report.pruned),
         ("from elsewhere", report.elsewhere),
         ("unlabelled", report.unlabelled),
     ];
-    rows.extend(rare.into_iter().filter(|(_, n)| *n > 0).map(|(name, n)| (name, n.to_string())));
-    if !report.skipped.is_empty() {
-        let kinds: Vec<String> = report.skipped.iter().map(|(kind, n)| format!("{kind} ({n})")).collect();
-        rows.push(("skipped", kinds.join(", ")));
+    let rare = rare.into_iter().filter(|(_, n)| *n > 0).map(|(name, n)| format!("{n} {name}"));
+    let resumed = report.resumed.then(|| "an interrupted run was resumed".to_owned());
+    let others: Vec<String> = rare.chain(resumed).collect();
+    if !others.is_empty() {
+        facts.push(("also", others.join(", ")));
     }
-    if !report.failed.is_empty() {
-        rows.push(("failed", failures(report)));
-    }
-    if report.resumed {
-        rows.push(("resumed", "an interrupted run".to_owned()));
-    }
-    rows.push(("seconds", format!("{:.2}", report.seconds)));
-    rows.push(match index.exists() {
-        true => ("index", format!("{}, {} shapes", index.display(), report.n_shapes)),
-        false => ("index", "not written: no mesh could be described".to_owned()),
-    });
-    facts(&rows)
+    Answer { sentence, facts, details: vec![("seconds", format!("{:.2}", report.seconds))] }
 }
 
 /// The number of failures, and how many there are for each reason.

@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::Result;
+use canonform::index::{Index, ShapeEntry};
 use canonform::mesh_path;
-use index::{Index, ShapeEntry};
 use serde::Serialize;
 
 use crate::args::{Common, ListArgs};

@@ -6,13 +6,13 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use anyhow::{Result, bail};
-use canonform::Remedy;
-use index::{ExportError, ExportFormat, Index, Verification, work_path};
+use canonform::index::{ExportFormat, Index, Verification, work_path};
+use canonform::{Remedy, export_index};
 use serde::Serialize;
 
 use crate::args::Common;
 use crate::input::is_stream;
-use crate::output::{Output, exit_code, facts, print, print_json, report};
+use crate::output::{Answer, Output, count, exit_code, print, print_json, report};
 use crate::remedy::with_remedy;
 
 #[derive(Serialize)]
@@ -25,7 +25,7 @@ struct VerifyJson<'a> {
 }
 
 pub(super) fn verify(index: &Path, common: &Common) -> Result<ExitCode> {
-    let Verification { n_shapes, n_bytes, faults } = &index::verify(index, || ())?;
+    let Verification { n_shapes, n_bytes, faults } = &canonform::index::verify(index)?;
     let (sound, name) = (faults.is_empty(), index.display());
     if common.json {
         print_json(&VerifyJson { index, sound, n_shapes: *n_shapes, n_bytes: *n_bytes, faults })?;
@@ -34,7 +34,7 @@ pub(super) fn verify(index: &Path, common: &Common) -> Result<ExitCode> {
     }
     for fault in faults {
         let message = format!("{name} is damaged: {fault}");
-        terminal::error(&with_remedy(message, Some(Remedy::BuildIndexAgain)));
+        base::terminal::error(&with_remedy(message, Some(Remedy::BuildIndexAgain)));
     }
     Ok(exit_code(sound))
 }
@@ -69,24 +69,35 @@ pub(super) fn info(path: &Path, common: &Common) -> Result<ExitCode> {
         classes,
         unfinished: Some(work_path(path)).filter(|work| work.exists()),
     };
-    report(common, &json, table)
+    report(common, &json, |json| answer(json).text(common))
 }
 
-fn table(json: &InfoJson) -> String {
+/// Most classes that are named without `--details`.
+const MOST_CLASSES: usize = 10;
+
+fn answer(json: &InfoJson) -> Answer {
     let classes = json.classes.iter().filter(|(class, _)| !class.is_empty());
     let classes: Vec<String> = classes.map(|(class, n)| format!("{class} {n}")).collect();
-    let mut rows = vec![
-        ("shapes", json.n_shapes.to_string()),
-        ("classes", format!("{}: {}", classes.len(), classes.join(", "))),
-        ("unlabelled", json.unlabelled.to_string()),
-        ("bytes", json.n_bytes.to_string()),
-        ("format", json.format.to_string()),
-        ("described by", json.options.to_string()),
-    ];
-    if let Some(work) = &json.unfinished {
-        rows.push(("unfinished", format!("{}: run the interrupted command again", work.display())));
+    let (index, n_shapes, n_classes) = (json.index.display(), json.n_shapes, classes.len());
+    let (first, more) = classes.split_at(n_classes.min(MOST_CLASSES));
+    let more = if more.is_empty() { String::new() } else { format!(" and {} more", more.len()) };
+    let mut facts = vec![("classes", first.join(", ") + &more)];
+    if json.unlabelled > 0 {
+        facts.push(("unlabelled", json.unlabelled.to_string()));
     }
-    facts(&rows)
+    if let Some(work) = &json.unfinished {
+        facts.push(("unfinished", format!("{}: run the interrupted command again", work.display())));
+    }
+    Answer {
+        sentence: format!("{index} holds {} of {n_classes} classes", count(n_shapes, "shape")),
+        facts,
+        details: vec![
+            ("all classes", classes.join(", ")),
+            ("bytes", json.n_bytes.to_string()),
+            ("format", json.format.to_string()),
+            ("described by", json.options.to_string()),
+        ],
+    }
 }
 
 pub(super) fn export(
@@ -96,7 +107,7 @@ pub(super) fn export(
     common: &Common,
 ) -> Result<ExitCode> {
     let output = output.unwrap_or(Path::new("-"));
-    if [index.to_owned(), work_path(index)].iter().any(|taken| files::is_same_file(taken, output)) {
+    if [index.to_owned(), work_path(index)].iter().any(|taken| base::files::is_same_file(taken, output)) {
         bail!("{} is the index itself; choose another file with -o", output.display());
     }
     let formats = ExportFormat::ALL.map(ExportFormat::extension);
@@ -110,17 +121,7 @@ pub(super) fn export(
     }
     let output = Output::new(output, "an index", &formats, format, common)?;
     let format = ExportFormat::named(output.format()).unwrap_or(ExportFormat::JsonLines);
-    let mut unreadable = None;
-    let written = files::fill_atomically(output.path(), |file| match index.export_as(format, file) {
-        Err(ExportError::Write(fault)) => Err(fault),
-        Err(ExportError::Index(fault)) => {
-            unreadable = Some(fault);
-            Err(std::io::Error::other("the index cannot be read"))
-        }
-        Ok(()) => Ok(()),
-    });
-    unreadable.map_or(Ok(()), Err)?;
-    written?;
+    export_index(&index, format, output.path())?;
     output.copy_to_stdout()?;
     Ok(ExitCode::SUCCESS)
 }

@@ -6,12 +6,12 @@ use surface::{FaceId, IntrinsicMesh, Topology, VertexId};
 
 use super::super::Exact;
 use super::{all_pairs, assert_close, bumpy, faces, points, spatial};
-use crate::testing::lengths_of_nothing;
+use crate::tests::{impossible, pinched};
 use crate::{Dijkstra, DistanceSolver, Source, SurfacePoint};
 
 /// No distance is missing, negative or longer than along the edges.
 fn assert_sane(mesh: &IntrinsicMesh) {
-    let (solver, dijkstra) = (Exact::new(mesh), Dijkstra::new(mesh));
+    let (solver, dijkstra) = (Exact::new(mesh, &()), Dijkstra::new(mesh, &()));
     for v in (0..mesh.n_vertices()).map(VertexId::from) {
         for (found, along_edges) in solver.distances(v).unwrap().iter().zip(dijkstra.distances(v).unwrap()) {
             assert!(*found >= 0.0, "{found}");
@@ -117,7 +117,7 @@ fn repeated_faces_and_pillows_have_the_distances_of_one_sheet() {
             let point = SurfacePoint::Face { face: FaceId::from(face), barycentric };
             let mut out = vec![0.0; mesh.n_vertices()];
             let source = Source::new(mesh, point).unwrap();
-            Exact::new(mesh).solve_into(&[source], f64::INFINITY, &mut out).unwrap();
+            Exact::new(mesh, &()).solve_into(&[source], f64::INFINITY, &mut out).unwrap();
             out
         };
         for [s, t, u] in [[0.2, 0.3, 0.5], [0.6, 0.4, 0.0], [0.0, 0.3, 0.7]] {
@@ -143,13 +143,7 @@ fn edges_without_length_are_points() {
 }
 
 #[test]
-fn surfaces_without_faces_or_area_do_not_fail() {
-    for n in [0, 1, 5] {
-        let mesh = IntrinsicMesh::new(Topology::new(n, Vec::new()), Vec::new());
-        for (v, row) in all_pairs(&mesh).iter().enumerate() {
-            assert!(row.iter().enumerate().all(|(w, d)| if v == w { *d == 0.0 } else { d.is_infinite() }));
-        }
-    }
+fn surfaces_without_area_do_not_fail() {
     let points = [[0.0; 3]; 4];
     let collapsed = spatial(&points, &[[0, 1, 2], [0, 2, 3], [1, 2, 3]]);
     assert!(all_pairs(&collapsed).iter().flatten().all(|d| *d == 0.0));
@@ -157,33 +151,12 @@ fn surfaces_without_faces_or_area_do_not_fail() {
 
 proptest! {
     #[test]
-    fn impossible_lengths_do_no_harm(
-        raw in prop::collection::vec((0..9u32, 1..9u32, 0..9u32), 1..30),
-        lengths in prop::collection::vec(lengths_of_nothing(), 40),
-    ) {
-        let faces: Vec<[VertexId; 3]> = raw
-            .iter()
-            .map(|(a, b, c)| [*a, (a + b) % 9, *c])
-            .filter(|[a, b, c]| a != c && b != c)
-            .map(|f| f.map(VertexId))
-            .collect();
-        let topology = Topology::new(9, faces);
-        let lengths = lengths[..topology.n_edges()].to_vec();
-        assert_sane(&IntrinsicMesh::new(topology, lengths));
+    fn impossible_lengths_do_no_harm(mesh in impossible()) {
+        assert_sane(&mesh);
     }
 
     #[test]
-    fn vertices_in_the_same_places_do_no_harm(
-        picks in prop::collection::vec(0..27usize, 40),
-        jitter in prop::collection::vec(-1.0..1.0f64, 120),
-        scale in prop_oneof![Just(0.0), Just(1e-16), Just(1e-13), Just(1e-8), Just(1e-3)],
-    ) {
-        // Points of a 3 x 3 x 3 lattice, hardly moved: collinear, coplanar, coincident.
-        let axis = |p: usize, i: usize| (p / 3usize.pow(i as u32) % 3) as f64;
-        let at: Vec<[f64; 3]> = (0..40)
-            .map(|v| [0, 1, 2].map(|i| axis(picks[v], i) + scale * jitter[3 * v + i]))
-            .collect();
-        let sheet = shapes::grid(8, 5, 1.0);
-        assert_sane(&spatial(&at, &faces(&sheet)));
+    fn vertices_in_the_same_places_do_no_harm(mesh in pinched(8, 5)) {
+        assert_sane(&mesh);
     }
 }

@@ -188,41 +188,33 @@ fn paths_of_equal_length_do_not_hide_each_other() {
     }
 }
 
+/// Steps between squares, with vertices hardly moved.
+fn stairs() -> impl Strategy<Value = IntrinsicMesh> {
+    let steps = prop::collection::vec((0..3u8, -1.0..1.0f64), 16);
+    let scale = prop_oneof![Just(0.0), Just(1e-15), Just(1e-12), Just(1e-9), Just(1e-6)];
+    (steps, scale).prop_map(|(steps, scale)| {
+        let at = |(v, (height, by)): (usize, &(u8, f64))| {
+            [(v % 4) as f64, (v / 4) as f64, f64::from(*height) + scale * by]
+        };
+        let at: Vec<[f64; 3]> = steps.iter().enumerate().map(at).collect();
+        spatial(&at, &faces(&mesh::shapes::grid(4, 4, 1.0)))
+    })
+}
+
 proptest! {
-    #[test]
-    fn soups_of_faces_have_the_distances_of_their_lines_of_sight(mesh in soup(8, 12)) {
-        assert_same(&mesh);
-    }
+    #![proptest_config(ProptestConfig::with_cases(1536))]
 
     #[test]
-    fn soups_over_a_lattice_too(mesh in lattice_soup(8, 12)) {
-        assert_same(&mesh);
-    }
-
-    #[test]
-    fn soups_with_links_too(mesh in soup(8, 7), a in 0..8u32, b in 1..8u32, length in 0.1..2.0f64) {
-        let ends = [a, (a + b) % 8].map(VertexId);
-        assert_same(&mesh.with_links(vec![Link { ends, length }]));
-    }
-
-    #[test]
-    fn landscapes_have_the_distances_of_their_lines_of_sight(height in 0.1..3.0f64, seed in any::<u32>()) {
-        assert_same(&bumpy(4, height, seed.into()));
-    }
-
-    #[test]
-    fn stairs_have_the_distances_of_their_lines_of_sight(
-        heights in prop::collection::vec(0..3u8, 16), moves in prop::collection::vec(-1.0..1.0f64, 16),
-        scale in prop_oneof![Just(0.0), Just(1e-15), Just(1e-12), Just(1e-9), Just(1e-6)],
-    ) {
-        let at: Vec<[f64; 3]> = (0..16)
-            .map(|v| [f64::from(v % 4), f64::from(v / 4), f64::from(heights[v as usize]) + scale * moves[v as usize]])
-            .collect();
-        assert_same(&spatial(&at, &faces(&mesh::shapes::grid(4, 4, 1.0))));
-    }
-
-    #[test]
-    fn stars_have_the_distances_of_their_lines_of_sight(mesh in star(8)) {
+    fn surfaces_have_the_distances_of_their_lines_of_sight(mesh in prop_oneof![
+        soup(8, 12),
+        lattice_soup(8, 12),
+        (0.1..3.0f64, any::<u32>()).prop_map(|(height, seed)| bumpy(4, height, seed.into())),
+        stairs(),
+        star(8),
+        (soup(8, 7), 0..8u32, 1..8u32, 0.1..2.0f64).prop_map(|(mesh, a, b, length)| {
+            mesh.with_links(vec![Link { ends: [a, (a + b) % 8].map(VertexId), length }])
+        }),
+    ]) {
         assert_same(&mesh);
     }
 }

@@ -11,7 +11,7 @@ use crate::{DistanceSolver, Source, SurfacePoint};
 
 fn solve(mesh: &IntrinsicMesh, sources: &[Source], max_distance: f64) -> Vec<f64> {
     let mut out = vec![0.0; mesh.n_vertices()];
-    Exact::new(mesh).solve_into(sources, max_distance, &mut out).unwrap();
+    Exact::new(mesh, &()).solve_into(sources, max_distance, &mut out).unwrap();
     out
 }
 
@@ -48,7 +48,7 @@ fn with_vertex(mesh: &IntrinsicMesh, source: &Source) -> IntrinsicMesh {
 fn assert_like_a_vertex(mesh: &IntrinsicMesh, point: SurfacePoint) {
     let source = Source::new(mesh, point).unwrap();
     let split = with_vertex(mesh, &source);
-    let expected = Exact::new(&split).distances(VertexId::from(mesh.n_vertices())).unwrap();
+    let expected = Exact::new(&split, &()).distances(VertexId::from(mesh.n_vertices())).unwrap();
     for (found, expected) in solve(mesh, &[source], f64::INFINITY).iter().zip(&expected) {
         assert_close(*found, *expected, 1e-9);
     }

@@ -1,6 +1,7 @@
 //! Windows that cross a side from one triangle to the next, several at a time.
 
-use super::window::{COLLINEAR, TEST_POINTS, Window, norm};
+use super::window::{COLLINEAR, SourceWindow, TEST_POINTS};
+use crate::plane::{cross, norm};
 
 /// Number of crossings solved together.
 pub(super) const LANES: usize = 8;
@@ -51,10 +52,31 @@ impl SideLanes {
     }
 }
 
+/// Windows in lanes.
+#[derive(Debug, Clone, Copy, Default)]
+struct WindowLanes {
+    source: [Lane; 2],
+    left: [Lane; 2],
+    right: [Lane; 2],
+    offset: Lane,
+}
+
+impl WindowLanes {
+    #[inline]
+    fn set(&mut self, lane: usize, window: &SourceWindow) {
+        for axis in 0..2 {
+            self.source[axis][lane] = window.source[axis];
+            self.left[axis][lane] = window.limits[0][axis];
+            self.right[axis][lane] = window.limits[1][axis];
+        }
+        self.offset[lane] = window.offset;
+    }
+}
+
 /// A window that leaves a triangle through a side.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Crossing<'a> {
-    pub(super) window: &'a Window,
+    pub(super) window: &'a SourceWindow,
     /// The triangle that is left, as seen through its entry.
     pub(super) from: Sides,
     /// Whether the side is on the right of the entry or on the left.
@@ -71,10 +93,7 @@ pub(super) struct Crossing<'a> {
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Crossings {
     /// The window before and after.
-    source: [Lane; 2],
-    left: [Lane; 2],
-    right: [Lane; 2],
-    offset: Lane,
+    window: WindowLanes,
     /// The triangle that is left, whether on its right, and the one that is entered.
     from: SideLanes,
     is_right: Lane,
@@ -98,23 +117,21 @@ fn below_or_nan(a: f64, b: f64) -> bool {
     (a < b) | a.is_nan() | b.is_nan()
 }
 
+/// Whether a point is in the shadow of the left and of the right limit, from products that are negative there. If it is
+/// in both, the deeper one counts.
 #[inline(always)]
-fn cross(a: [f64; 2], b: [f64; 2]) -> f64 {
-    a[0] * b[1] - a[1] * b[0]
+fn shadows(at_left: f64, at_right: f64) -> [bool; 2] {
+    let in_left = (at_left < 0.0) & (below_or_nan(at_left, at_right) | (at_left == at_right));
+    [in_left, (at_right < 0.0) & !in_left]
 }
 
 impl Crossings {
     #[inline]
     pub(super) fn set(&mut self, lane: usize, crossing: Crossing<'_>) {
         let Crossing { window, from, is_right, to, bends, entry } = crossing;
-        for axis in 0..2 {
-            self.source[axis][lane] = window.source[axis];
-            self.left[axis][lane] = window.limits[0][axis];
-            self.right[axis][lane] = window.limits[1][axis];
-        }
+        self.window.set(lane, window);
         self.bends[0][lane] = f64::from(bends[0]);
         self.bends[1][lane] = f64::from(bends[1]);
-        self.offset[lane] = window.offset;
         self.from.set(lane, from);
         self.is_right[lane] = f64::from(is_right);
         self.to.set(lane, to);
@@ -129,13 +146,10 @@ impl Crossings {
 
     /// The window behind the side.
     #[inline]
-    pub(super) fn window(&self, lane: usize) -> Window {
+    pub(super) fn window(&self, lane: usize) -> SourceWindow {
         let at = |point: &[Lane; 2]| [point[0][lane], point[1][lane]];
-        Window {
-            source: at(&self.source),
-            limits: [at(&self.left), at(&self.right)],
-            offset: self.offset[lane],
-        }
+        let WindowLanes { source, left, right, offset } = &self.window;
+        SourceWindow { source: at(source), limits: [at(left), at(right)], offset: offset[lane] }
     }
 
     /// Without branches, so that the same instructions solve all lanes.
@@ -153,8 +167,8 @@ impl Crossings {
                 let [x, y] = [point[0][i] - start[0], point[1][i] - start[1]];
                 [x * ux + y * uy, ux * y - uy * x]
             };
-            let source = turned(&self.source);
-            let [mut left, mut right] = [turned(&self.left), turned(&self.right)];
+            let source = turned(&self.window.source);
+            let [mut left, mut right] = [turned(&self.window.left), turned(&self.window.right)];
             let [bx, by] = self.to.apex(i);
             let target = [(base + bx) * (1.0 / 3.0), by * (1.0 / 3.0)];
             let from_source = |p: [f64; 2]| [p[0] - source[0], p[1] - source[1]];
@@ -171,9 +185,7 @@ impl Crossings {
             let (to_left, to_right) = (from_source(left), from_source(right));
             // Negative in the shadow.
             let [at_left, at_right] = [cross(ray, to_left), -cross(ray, to_right)];
-            // If a point is in both shadows, the deeper one counts.
-            let in_left = (at_left < 0.0) & (below_or_nan(at_left, at_right) | (at_left == at_right));
-            let in_right = (at_right < 0.0) & !in_left;
+            let [in_left, in_right] = shadows(at_left, at_right);
             let shade = |to: [f64; 2], sign: f64, at: f64| {
                 let [p, q, r] = [ends[0], ends[1], apex].map(|corner| sign * cross(corner, to));
                 let most = select(p > q, p, q);
@@ -196,14 +208,14 @@ impl Crossings {
             };
             let bend = [pick(0), pick(1)];
             let before = norm(bend);
-            self.distance[i] = self.offset[i] + before + norm([ray[0] - bend[0], ray[1] - bend[1]]);
+            self.distance[i] = self.window.offset[i] + before + norm([ray[0] - bend[0], ray[1] - bend[1]]);
             let is_new = is_end | (in_left & leaves_left) | (in_right & leaves_right);
             for axis in 0..2 {
-                self.source[axis][i] = source[axis] + select(is_new, bend[axis], 0.0);
-                self.left[axis][i] = select(is_new, f64::NAN, left[axis]);
-                self.right[axis][i] = select(is_new, f64::NAN, right[axis]);
+                self.window.source[axis][i] = source[axis] + select(is_new, bend[axis], 0.0);
+                self.window.left[axis][i] = select(is_new, f64::NAN, left[axis]);
+                self.window.right[axis][i] = select(is_new, f64::NAN, right[axis]);
             }
-            self.offset[i] += select(is_new, before, 0.0);
+            self.window.offset[i] += select(is_new, before, 0.0);
         }
     }
 }
@@ -211,10 +223,7 @@ impl Crossings {
 /// Windows and the distances of the vertices of their triangles, in lanes.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Views {
-    source: [Lane; 2],
-    left: [Lane; 2],
-    right: [Lane; 2],
-    offset: Lane,
+    window: WindowLanes,
     sides: SideLanes,
     /// At the left and right end of the entry and at the apex.
     distances: [Lane; 3],
@@ -222,13 +231,11 @@ pub(super) struct Views {
 
 impl Views {
     #[inline]
-    pub(super) fn set(&mut self, lane: usize, window: &Window, sides: Sides, is_reached: bool) {
-        for axis in 0..2 {
-            self.source[axis][lane] = window.source[axis];
-            self.left[axis][lane] = window.limits[0][axis];
-            self.right[axis][lane] = window.limits[1][axis];
+    pub(super) fn set(&mut self, lane: usize, window: &SourceWindow, sides: Sides, is_reached: bool) {
+        self.window.set(lane, window);
+        if !is_reached {
+            self.window.offset[lane] = f64::INFINITY;
         }
-        self.offset[lane] = if is_reached { window.offset } else { f64::INFINITY };
         self.sides.set(lane, sides);
     }
 
@@ -241,16 +248,15 @@ impl Views {
     #[inline(always)]
     pub(super) fn solve(&mut self) {
         for i in 0..LANES {
-            let source = [self.source[0][i], self.source[1][i]];
-            let from_source = |x: f64, y: f64| [x - source[0], y - source[1]];
-            let left = from_source(self.left[0][i], self.left[1][i]);
-            let right = from_source(self.right[0][i], self.right[1][i]);
+            let WindowLanes { source, left, right, offset } = &self.window;
+            let from_source = |x: f64, y: f64| [x - source[0][i], y - source[1][i]];
+            let left = from_source(left[0][i], left[1][i]);
+            let right = from_source(right[0][i], right[1][i]);
             let [x, y] = self.sides.apex(i);
             let ends = [from_source(0.0, 0.0), from_source(self.sides.base[i], 0.0)];
             for (corner, ray) in [ends[0], ends[1], from_source(x, y)].into_iter().enumerate() {
                 let [at_left, at_right] = [cross(ray, left), -cross(ray, right)];
-                let in_left = (at_left < 0.0) & (below_or_nan(at_left, at_right) | (at_left == at_right));
-                let in_right = (at_right < 0.0) & !in_left;
+                let [in_left, in_right] = shadows(at_left, at_right);
                 // Rays that miss the entry go along it.
                 let misses_left = (corner == 2) & (cross(ray, ends[0]) < 0.0);
                 let misses_right = (corner == 2) & (cross(ray, ends[1]) > 0.0);
@@ -259,7 +265,7 @@ impl Views {
                     select(in_left, left[axis], select(in_right, right[axis], end))
                 });
                 let rest = norm([ray[0] - bend[0], ray[1] - bend[1]]);
-                self.distances[corner][i] = self.offset[i] + norm(bend) + rest;
+                self.distances[corner][i] = offset[i] + norm(bend) + rest;
             }
         }
     }

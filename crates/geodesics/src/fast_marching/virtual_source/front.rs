@@ -3,14 +3,13 @@
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-use budget::{Budget, Exceeded};
+use base::{Budget, Exceeded};
 
 use super::super::buckets::Buckets;
 use super::super::relaxation::ROUNDING;
 use super::crossing::{Crossing, Crossings, LANES, Views};
-use super::triangles::{Entry, Triangles, around};
-use super::window::Window;
-use crate::instructions::Instructions;
+use super::triangles::{EntrySide, Triangles, around};
+use super::window::SourceWindow;
 use crate::plane;
 use crate::prefetch::prefetch;
 use crate::source::Source;
@@ -19,7 +18,7 @@ use crate::source::Source;
 const VISITS_PER_TRIANGLE: usize = 64;
 
 /// Three distances from a point are those of one point if its position from two of them agrees with the third to this
-/// share of the longest side.
+/// share of the longest side, which leaves room for rounding in flat triangles.
 const SAME_POINT: f64 = 1e-9;
 
 /// What a crossing counts for in the meter of a budget.
@@ -28,30 +27,30 @@ const OPERATIONS: usize = 16;
 /// What is known of a triangle: its window, and where that enters.
 #[derive(Debug, Clone, Copy)]
 #[repr(align(64))]
-struct Label {
-    window: Window,
-    entry: Entry,
+struct TriangleLabel {
+    window: SourceWindow,
+    entry: EntrySide,
 }
 
 /// A window that may be better than the one of its triangle.
 #[derive(Debug, Clone, Copy)]
-struct Candidate {
+struct WindowOffer {
     /// The distance of the centroid.
     distance: f64,
-    label: Label,
+    label: TriangleLabel,
 }
 
 /// A front that advances bucket by bucket from triangle to triangle.
 #[derive(Debug, Default)]
-pub(crate) struct Front {
+pub(crate) struct TriangleFront {
     /// The distance of the centroid of every triangle.
     distances: Vec<f64>,
     /// The labels of triangles at finite distances.
-    labels: Vec<Label>,
+    labels: Vec<TriangleLabel>,
     buckets: Buckets,
     /// The triangles of a round.
     round: Vec<u32>,
-    candidates: Vec<Candidate>,
+    candidates: Vec<WindowOffer>,
     /// The crossings of a round.
     crossings: Vec<Crossings>,
     n_crossings: usize,
@@ -62,16 +61,17 @@ pub(crate) struct Front {
     visits: usize,
     /// The distance of the middle of every hub.
     hubs: Vec<f64>,
-    instructions: Instructions,
+    instructions: pulp::Arch,
 }
 
-impl Front {
+impl TriangleFront {
     /// Prepares for a new run. Allocates only to grow.
     fn reset(&mut self, triangles: &Triangles) {
         let n = triangles.triangles.len();
         self.distances.clear();
         self.distances.resize(n, f64::INFINITY);
-        let blank = Label { window: Window::around([0.0; 2], 0.0), entry: Entry::new(0, false) };
+        let blank =
+            TriangleLabel { window: SourceWindow::around([0.0; 2], 0.0), entry: EntrySide::new(0, false) };
         self.labels.resize(n, blank);
         self.vertices.clear();
         self.vertices.resize(triangles.order.len(), f64::INFINITY);
@@ -113,17 +113,18 @@ impl Front {
             let from = [a, b, c];
             // A label leaves through two sides, so the point needs one more to leave through the third.
             for slot in [0, 1] {
-                let entry = Entry::new(3 * number + slot, false);
+                let entry = EntrySide::new(3 * number + slot, false);
                 let [left, right, apex] = entry.corners();
                 let entered = triangle.entered(entry);
-                let window = Window::around(plane::apex([entered.base, from[left], from[right]]), 0.0);
+                let window = SourceWindow::around(plane::apex([entered.base, from[left], from[right]]), 0.0);
                 let error = window.distance(entered.apex) - from[apex];
                 if error.is_nan() || error.abs() > SAME_POINT * triangles.longest {
                     break;
                 }
-                let label = Label { window, entry };
+                let label = TriangleLabel { window, entry };
                 if slot == 0 {
-                    self.candidates.push(Candidate { distance: window.distance(entered.centroid()), label });
+                    self.candidates
+                        .push(WindowOffer { distance: window.distance(entered.centroid()), label });
                 } else {
                     self.cross(triangles, number, &label, false);
                     self.cross(triangles, number, &label, true);
@@ -157,13 +158,13 @@ impl Front {
         let (number, slot) = (corner / 3, corner as usize % 3);
         let triangle = triangles.at(number);
         let Some(side) = around(slot).into_iter().find(|side| triangle.lengths[*side] > 0.0) else { return };
-        let entry = Entry::new(3 * number + side as u32, false);
+        let entry = EntrySide::new(3 * number + side as u32, false);
         let entered = triangle.entered(entry);
         let at = if entry.corners()[0] == slot { [0.0, 0.0] } else { [entered.base, 0.0] };
-        let window = Window::around(at, offset);
+        let window = SourceWindow::around(at, offset);
         let distance = window.distance(entered.centroid());
         if !stops(number, distance) && improves(distance, self.distances[number as usize]) {
-            self.candidates.push(Candidate { distance, label: Label { window, entry } });
+            self.candidates.push(WindowOffer { distance, label: TriangleLabel { window, entry } });
         }
     }
 
@@ -248,7 +249,7 @@ impl Front {
 
     /// Adds the crossings of the side of a triangle on the left or right of its entry.
     #[inline]
-    fn cross(&mut self, triangles: &Triangles, number: u32, label: &Label, is_right: bool) {
+    fn cross(&mut self, triangles: &Triangles, number: u32, label: &TriangleLabel, is_right: bool) {
         let triangle = triangles.at(number);
         let [left, right, apex] = label.entry.corners();
         let (start, side) = if is_right { (apex, left) } else { (left, right) };
@@ -270,7 +271,7 @@ impl Front {
             let slot = corner as usize % 3;
             if length > 0.0 {
                 let is_mirrored = behind.vertices[around(slot)[0]] != triangle.vertices[start];
-                let entry = Entry::new(corner, is_mirrored);
+                let entry = EntrySide::new(corner, is_mirrored);
                 let (block, lane) = (self.n_crossings / LANES, self.n_crossings % LANES);
                 if block == self.crossings.len() {
                     self.crossings.push(Crossings::default());
@@ -297,7 +298,7 @@ impl Front {
         for first in (0..self.n_crossings).step_by(LANES) {
             let block = &self.crossings[first / LANES];
             for lane in 0..LANES.min(self.n_crossings - first) {
-                let entry = Entry::numbered(block.entry[lane]);
+                let entry = EntrySide::numbered(block.entry[lane]);
                 let distance = block.distance(lane);
                 let state = (&mut self.distances[..], &mut self.labels[..], &mut self.buckets);
                 improve(state, distance, entry, self.visits > 0, || block.window(lane));
@@ -308,7 +309,7 @@ impl Front {
 
     /// Improves triangles at starts.
     fn apply(&mut self) {
-        for Candidate { distance, label } in self.candidates.drain(..) {
+        for WindowOffer { distance, label } in self.candidates.drain(..) {
             let state = (&mut self.distances[..], &mut self.labels[..], &mut self.buckets);
             improve(state, distance, label.entry, self.visits > 0, || label.window);
         }
@@ -404,11 +405,11 @@ fn improves(distance: f64, known: f64) -> bool {
 /// A triangle that has one already keeps it unless the front `corrects`.
 #[inline]
 fn improve(
-    (distances, labels, buckets): (&mut [f64], &mut [Label], &mut Buckets),
+    (distances, labels, buckets): (&mut [f64], &mut [TriangleLabel], &mut Buckets),
     distance: f64,
-    entry: Entry,
+    entry: EntrySide,
     corrects: bool,
-    window: impl FnOnce() -> Window,
+    window: impl FnOnce() -> SourceWindow,
 ) {
     let number = entry.triangle();
     let (known, label) = (&mut distances[number as usize], &mut labels[number as usize]);
@@ -418,7 +419,7 @@ fn improve(
     let window = window();
     if improves(distance, *known) || improves(window.offset, label.window.offset) {
         *known = distance;
-        *label = Label { window, entry };
+        *label = TriangleLabel { window, entry };
         buckets.put(number, distance);
     }
 }

@@ -21,5 +21,5 @@ mod front;
 mod triangles;
 mod window;
 
-pub(super) use front::Front;
+pub(super) use front::TriangleFront;
 pub(super) use triangles::Triangles;

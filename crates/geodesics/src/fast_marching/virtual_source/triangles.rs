@@ -16,7 +16,7 @@ use crate::graph::ranks;
 /// A triangle: one cache line. Corners are numbered 0, 1 and 2, sides by the corner opposite.
 #[derive(Debug, Clone, Copy)]
 #[repr(align(64))]
-pub(super) struct Triangle {
+pub(super) struct MarchTriangle {
     pub(super) lengths: [f64; 3],
     double_area: f64,
     /// For each side, the next of the corners opposite to it in the triangles that share it; the same corner again if
@@ -28,9 +28,9 @@ pub(super) struct Triangle {
 
 /// A corner and the side opposite, through which the triangle is entered.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Entry(u32);
+pub(super) struct EntrySide(u32);
 
-impl Entry {
+impl EntrySide {
     /// Whether the next corner is the right end of the side, not the left one.
     const MIRRORED: u32 = 1 << 31;
 
@@ -63,13 +63,13 @@ impl Entry {
     }
 }
 
-impl Triangle {
+impl MarchTriangle {
     /// The flag of the first corner's vertex: shortest paths may bend there.
     const BENDS: u32 = 1;
 
     /// The lengths of the triangle as seen through the side where it is entered.
     #[inline]
-    pub(super) fn sides(&self, entry: Entry) -> Sides {
+    pub(super) fn sides(&self, entry: EntrySide) -> Sides {
         let [left, right, apex] = entry.corners();
         Sides {
             base: self.lengths[apex],
@@ -81,14 +81,14 @@ impl Triangle {
 
     /// Whether shortest paths may bend at the left and at the right end of an entry.
     #[inline]
-    pub(super) fn bends(&self, entry: Entry) -> [bool; 2] {
+    pub(super) fn bends(&self, entry: EntrySide) -> [bool; 2] {
         let [left, right, _] = entry.corners();
         [left, right].map(|corner| self.flags & (Self::BENDS << corner) != 0)
     }
 
     /// The triangle laid out above an entry.
     #[inline]
-    pub(super) fn entered(&self, entry: Entry) -> Entered {
+    pub(super) fn entered(&self, entry: EntrySide) -> Entered {
         let sides = self.sides(entry);
         Entered { base: sides.base, apex: sides.apex() }
     }
@@ -98,7 +98,7 @@ impl Triangle {
 /// renumbered for locality.
 #[derive(Debug)]
 pub(crate) struct Triangles {
-    pub(super) triangles: Vec<Triangle>,
+    pub(super) triangles: Vec<MarchTriangle>,
     /// The corners at every vertex.
     pub(super) corners: Rows<u32>,
     /// Straight connections of vertices outside triangles.
@@ -119,7 +119,7 @@ pub(crate) struct Triangles {
     pub(super) bucket_width: f64,
 }
 
-/// Width of the buckets, as a share of the mean edge length.
+/// Width of the buckets, as a share of the mean edge length. It affects time only, which `make bench-peers` measures.
 const BUCKET_WIDTH: f64 = 0.3;
 
 /// Edges of more triangles are hubs.
@@ -150,12 +150,12 @@ impl Triangles {
         let (next, many) = around_edges(triangulation);
         let across =
             |corner| triangulation.opposite(corner).unwrap_or_else(|| *next.get(&corner).unwrap_or(&corner));
-        let mut triangles: Vec<Triangle> = place
+        let mut triangles: Vec<MarchTriangle> = place
             .par_iter()
             .map(|t| {
                 let face = FaceId(*t);
                 let lengths = glued[face.index()].lengths;
-                Triangle {
+                MarchTriangle {
                     lengths,
                     double_area: double_area(lengths),
                     across: face.corners().map(|corner| renamed(across(corner))),
@@ -177,7 +177,7 @@ impl Triangles {
         triangles.par_iter_mut().for_each(|triangle| {
             for slot in 0..3 {
                 if kinds[triangle.vertices[slot] as usize].may_bend {
-                    triangle.flags |= Triangle::BENDS << slot;
+                    triangle.flags |= MarchTriangle::BENDS << slot;
                 }
             }
         });
@@ -213,7 +213,7 @@ impl Triangles {
     }
 
     #[inline]
-    pub(super) fn at(&self, triangle: u32) -> &Triangle {
+    pub(super) fn at(&self, triangle: u32) -> &MarchTriangle {
         &self.triangles[triangle as usize]
     }
 
@@ -265,7 +265,7 @@ struct Kind {
 /// The kinds of the vertices, in the given order; `corners` are those of the triangles at each.
 fn kinds(
     triangulation: &Triangulation,
-    triangles: &[Triangle],
+    triangles: &[MarchTriangle],
     corners: &Rows<u32>,
     order: &[u32],
 ) -> Vec<Kind> {

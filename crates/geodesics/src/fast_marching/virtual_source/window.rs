@@ -1,13 +1,14 @@
 //! Windows: what one triangle sees of the source.
 
-use crate::plane::{Point, cross, sub};
+use crate::plane::{PlanePoint, cross, norm, sub};
 
 /// The test points of a triangle lie on the segments from its centroid to its corners, at this share of their length.
 /// If all of them are in the shadow of a limit, the window bends there. At 1 windows reach too far into shadows and
-/// distances become too short, at 0 they leave the light too early and distances become too long.
+/// distances become too short, at 0 they leave the light too early and distances become too long; `make bench-peers`
+/// measures the errors.
 pub(super) const TEST_POINTS: f64 = 0.75;
 
-/// A source is on the line through a side, and a ray meets its end, up to this share of the distance.
+/// A source is on the line through a side, and a ray meets its end, up to this share of the distance: rounding.
 pub(super) const COLLINEAR: f64 = 1e-12;
 
 /// The view of the source through one side of a triangle, the *entry*, laid out in the plane: the entry runs from the
@@ -17,53 +18,48 @@ pub(super) const COLLINEAR: f64 = 1e-12;
 /// *limits*, vertices at which shortest paths may bend. What lies beyond a limit is in its shadow: the path to there
 /// bends at the limit.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Window {
+pub(super) struct SourceWindow {
     /// The virtual source.
-    pub(super) source: Point,
+    pub(super) source: PlanePoint,
     /// The limits on the left and on the right; NaN without one.
-    pub(super) limits: [Point; 2],
+    pub(super) limits: [PlanePoint; 2],
     /// Distance of the virtual source from the source.
     pub(super) offset: f64,
 }
 
 /// No limit: comparisons with it are false.
-pub(super) const NO_LIMIT: Point = [f64::NAN; 2];
-
-#[inline(always)]
-pub(super) fn norm(a: Point) -> f64 {
-    (a[0] * a[0] + a[1] * a[1]).sqrt()
-}
+pub(super) const NO_LIMIT: PlanePoint = [f64::NAN; 2];
 
 /// A triangle above its entry, which starts at the origin.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Entered {
     /// Length of the entry.
     pub(super) base: f64,
-    pub(super) apex: Point,
+    pub(super) apex: PlanePoint,
 }
 
 impl Entered {
-    pub(super) fn centroid(self) -> Point {
+    pub(super) fn centroid(self) -> PlanePoint {
         [(self.base + self.apex[0]) / 3.0, self.apex[1] / 3.0]
     }
 }
 
-impl Window {
+impl SourceWindow {
     /// All rays from a point at the given distance from the source.
-    pub(super) fn around(source: Point, offset: f64) -> Self {
+    pub(super) fn around(source: PlanePoint, offset: f64) -> Self {
         Self { source, limits: [NO_LIMIT; 2], offset }
     }
 
     /// All rays from a point that the window sees, and the distance of `target` through it.
     #[inline]
-    fn bent(&self, at: Point, target: Point) -> (Self, f64) {
+    fn bent(&self, at: PlanePoint, target: PlanePoint) -> (Self, f64) {
         let offset = self.offset + norm(sub(at, self.source));
         (Self::around(at, offset), offset + norm(sub(target, at)))
     }
 
     /// The distance at a point of the triangle.
     #[inline]
-    pub(super) fn distance(&self, target: Point) -> f64 {
+    pub(super) fn distance(&self, target: PlanePoint) -> f64 {
         let ray = sub(target, self.source);
         for (limit, sign) in self.limits.into_iter().zip([1.0, -1.0]) {
             if sign * cross(ray, sub(limit, self.source)) < 0.0 {

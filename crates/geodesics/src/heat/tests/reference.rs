@@ -2,7 +2,7 @@
 
 use super::{heat, surface};
 use crate::DistanceSolver;
-use crate::testing::{Reference, data, reference};
+use crate::tests::{Reference, data, reference};
 
 #[test]
 fn errors_beside_exact_distances_are_no_larger_than_those_of_geometry_central() {

@@ -1,29 +1,11 @@
 //! Paths that can be drawn by hand.
 
-use std::f64::consts::PI;
-
 use mesh::{TriMesh, shapes};
 use surface::{FaceId, Link, VertexId};
 
 use super::{assert_path, shortest, vertex};
-use crate::testing::{assert_close, spatial};
+use crate::tests::{assert_close, spatial};
 use crate::{DistanceSolver, Exact, FastMarching, GeodesicError, PathTracer, Source, SurfacePoint};
-
-#[test]
-fn paths_in_the_plane_are_straight_for_any_triangles() {
-    for sheet in [
-        shapes::grid(9, 7, 0.5),
-        shapes::sheared_grid(9, 7, 0.5, 1.7),
-        shapes::sheared_grid(9, 7, 0.5, 6.0),
-        shapes::jittered_grid(9, 7, 0.5, 0.24, 3),
-    ] {
-        let mesh = sheet.intrinsic();
-        for (a, b) in [(0, 62), (8, 54), (3, 60), (31, 1), (20, 21), (0, 8)] {
-            let straight = (sheet.positions[a] - sheet.positions[b]).norm();
-            assert_close(shortest(&mesh, vertex(a), vertex(b)).length, straight, 1e-13);
-        }
-    }
-}
 
 #[test]
 fn a_path_to_its_own_source_is_a_point() {
@@ -37,33 +19,8 @@ fn a_path_to_its_own_source_is_a_point() {
     let [a, _] = mesh.topology().edges()[9];
     let edge = SurfacePoint::Edge { edge: surface::EdgeId(9), t: 0.0 };
     let sources = [Source::vertex(a)];
-    let distances = Exact::new(&mesh).distances(a).unwrap();
-    assert_eq!(PathTracer::new(&mesh, &sources, &distances).path_to(edge).unwrap().length, 0.0);
-}
-
-#[test]
-fn paths_around_a_cube_are_shortest() {
-    // The surface of the unit cube, unfolded: from a corner to the opposite one it is sqrt(5).
-    for level in [0, 1, 3] {
-        let cube = shapes::cube(level);
-        let mesh = cube.intrinsic();
-        let [low, high] = cube.bounds().unwrap();
-        let side = high.x - low.x;
-        let at = |corner| vertex(cube.positions.iter().position(|p| *p == corner).unwrap());
-        assert_close(shortest(&mesh, at(low), at(high)).length, side * 5f64.sqrt(), 1e-13);
-    }
-}
-
-#[test]
-fn paths_around_a_cylinder_are_shortest() {
-    let cylinder = shapes::cylinder(24, 9, 1.0, 3.0);
-    let mesh = cylinder.intrinsic();
-    let chord = 2.0 * (PI / 24.0).sin();
-    for (around, rings) in [(1, 5), (7, 8), (11, 3)] {
-        let height = cylinder.positions[24 * rings].z - cylinder.positions[0].z;
-        let path = shortest(&mesh, vertex(0), vertex(24 * rings + around));
-        assert_close(path.length, (around as f64 * chord).hypot(height), 1e-13);
-    }
+    let distances = Exact::new(&mesh, &()).distances(a).unwrap();
+    assert_eq!(PathTracer::new(&mesh, &sources, &distances, &()).path_to(edge).unwrap().length, 0.0);
 }
 
 #[test]
@@ -118,8 +75,8 @@ fn paths_cross_links_but_not_gaps_between_components() {
     assert_close(shortest(&linked, vertex(40), vertex(0)).length, expected, 1e-13);
 
     let sources = [Source::vertex(VertexId(0))];
-    let distances = Exact::new(&mesh).distances(VertexId(0)).unwrap();
-    let tracer = PathTracer::new(&mesh, &sources, &distances);
+    let distances = Exact::new(&mesh, &()).distances(VertexId(0)).unwrap();
+    let tracer = PathTracer::new(&mesh, &sources, &distances, &());
     let error = tracer.path_to(vertex(40)).unwrap_err();
     assert_eq!(error, GeodesicError::NoWay { point: vertex(40) });
     assert!(error.to_string().contains("vertex 40"));
@@ -136,8 +93,10 @@ fn paths_lead_to_the_nearest_of_several_sources() {
     let sources =
         [Source::vertex(VertexId(3)), Source::new(&mesh, point).unwrap(), Source::vertex(VertexId(115))];
     let mut distances = vec![0.0; mesh.n_vertices()];
-    FastMarching::new(&mesh, Default::default()).solve_into(&sources, f64::INFINITY, &mut distances).unwrap();
-    let tracer = PathTracer::new(&mesh, &sources, &distances);
+    FastMarching::new(&mesh, Default::default(), &())
+        .solve_into(&sources, f64::INFINITY, &mut distances)
+        .unwrap();
+    let tracer = PathTracer::new(&mesh, &sources, &distances, &());
     let corners = mesh.topology().faces()[100].map(|v| sheet.positions[v.index()].coords);
     let inside = corners[0] * 0.2 + corners[1] * 0.5 + corners[2] * 0.3;
     let places = [sheet.positions[3].coords, inside, sheet.positions[115].coords];

@@ -56,8 +56,8 @@ fn assert_path(mesh: &IntrinsicMesh, path: &GeodesicPath, source: SurfacePoint, 
 fn shortest(mesh: &IntrinsicMesh, source: SurfacePoint, target: SurfacePoint) -> GeodesicPath {
     let sources = [Source::new(mesh, source).unwrap()];
     let mut distances = vec![0.0; mesh.n_vertices()];
-    Exact::new(mesh).solve_into(&sources, f64::INFINITY, &mut distances).unwrap();
-    let path = PathTracer::new(mesh, &sources, &distances).path_to(target).unwrap();
+    Exact::new(mesh, &()).solve_into(&sources, f64::INFINITY, &mut distances).unwrap();
+    let path = PathTracer::new(mesh, &sources, &distances, &()).path_to(target).unwrap();
     assert_path(mesh, &path, source, target);
     path
 }

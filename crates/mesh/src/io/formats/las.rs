@@ -4,9 +4,9 @@ use nalgebra::Point3;
 
 use crate::error::{Fault, Located};
 use crate::io::binary::{ByteOrder, Scalar};
+use crate::io::facts::MeshFile;
 use crate::io::limits::ReadLimits;
 use crate::io::polygons::finish;
-use crate::tri_mesh::TriMesh;
 
 /// Bytes of the header that all versions have.
 const HEADER: usize = 227;
@@ -85,7 +85,8 @@ fn number(bytes: &[u8], at: usize, scalar: Scalar) -> f64 {
 }
 
 /// Reads the coordinates of all points; what else is known of them is ignored.
-pub(super) fn parse(bytes: &[u8], limits: &ReadLimits) -> Result<TriMesh, Located> {
+pub(super) fn parse(files: &[&[u8]], limits: &ReadLimits) -> Result<MeshFile, Located> {
+    let bytes = files[0];
     check_start(bytes, Some(bytes.len() as u64))?;
     let header = Header::parse(bytes)?;
     limits.check(header.promised, 0).map_err(Fault::whole)?;
@@ -131,10 +132,11 @@ pub(super) fn sample(points: &[Point3<f64>], minor: u8) -> Vec<u8> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::shapes;
+    use crate::{TriMesh, shapes};
 
     fn parse(bytes: &[u8]) -> Result<TriMesh, Fault> {
-        super::parse(bytes, &ReadLimits::default()).map_err(|located| located.fault)
+        let file = super::parse(&[bytes], &ReadLimits::default());
+        file.map(|file| file.mesh).map_err(|located| located.fault)
     }
 
     #[test]

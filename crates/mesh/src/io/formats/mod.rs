@@ -4,7 +4,7 @@ mod gltf;
 mod las;
 mod mat;
 #[cfg(test)]
-mod mutations;
+mod mutation_tests;
 mod obj;
 mod off;
 mod ply;
@@ -28,8 +28,7 @@ use crate::tri_mesh::TriMesh;
 
 type Parse = fn(&[&[u8]], &ReadLimits) -> Result<MeshFile, Located>;
 type Companions = fn(&[u8]) -> Result<Vec<String>, Located>;
-type WriteMesh = fn(&mut dyn Write, &TriMesh) -> io::Result<()>;
-type WriteField = fn(&mut dyn Write, &TriMesh, &VertexField<'_>) -> io::Result<()>;
+type WriteMesh = fn(&mut dyn Write, &TriMesh, Option<&VertexField<'_>>) -> io::Result<()>;
 type WriteLines = fn(&mut dyn Write, &[Vec<Point3<f64>>]) -> io::Result<()>;
 
 /// A mesh file format; [`FORMATS`] lists them.
@@ -47,11 +46,10 @@ pub struct Format {
     pub(super) companions: Option<Companions>,
     /// Parses the contents of [`files`](Self::files), followed by those of its companions.
     pub(super) parse: Parse,
-    /// Parses the same with the scalar field, if the format can hold one that reads back.
-    pub(super) parse_field: Option<Parse>,
     /// Writers of the files, in the order of `extensions`; empty if the format is read-only.
     pub(super) write: &'static [WriteMesh],
-    pub(super) write_field: Option<WriteField>,
+    /// Whether the writers can add a field.
+    has_fields: bool,
     pub(super) write_lines: Option<WriteLines>,
 }
 
@@ -68,46 +66,30 @@ pub(super) enum Precision {
 pub static FORMATS: [Format; 12] = [
     Format {
         write: &[off::write],
-        write_field: Some(off::write_field),
-        ..read_only("OFF", &["off"], &[off::check_start], |files, limits| {
-            Ok(off::parse(files[0], limits)?.into())
-        })
+        has_fields: true,
+        ..read_only("OFF", &["off"], &[off::check_start], off::parse)
     },
     Format {
         write: &[obj::write],
-        write_field: Some(obj::write_field),
+        has_fields: true,
         write_lines: Some(obj::write_lines),
-        ..read_only("OBJ", &["obj"], &[obj::check_start], |files, limits| {
-            Ok(obj::parse(files[0], limits)?.into())
-        })
+        ..read_only("OBJ", &["obj"], &[obj::check_start], obj::parse)
     },
     Format {
-        parse_field: Some(|files, limits| {
-            let (mesh, field) = ply::parse_field(files[0], limits)?;
-            Ok(MeshFile { field, ..mesh.into() })
-        }),
         write: &[ply::write],
-        write_field: Some(ply::write_field),
+        has_fields: true,
         write_lines: Some(ply::write_lines),
-        ..read_only("PLY", &["ply"], &[ply::check_start], |files, limits| {
-            Ok(ply::parse(files[0], limits)?.into())
-        })
+        ..read_only("PLY", &["ply"], &[ply::check_start], ply::parse)
     },
     Format {
         precision: Precision::Single,
         write: &[stl::write],
-        ..read_only("STL", &["stl"], &[stl::check_start], |files, limits| {
-            Ok(stl::parse(files[0], limits)?.into())
-        })
+        ..read_only("STL", &["stl"], &[stl::check_start], stl::parse)
     },
-    read_only("MATLAB", &["mat"], &[mat::check_start], |files, limits| {
-        Ok(mat::parse(files[0], limits)?.into())
-    }),
+    read_only("MATLAB", &["mat"], &[mat::check_start], mat::parse),
     Format {
         write: &[tosca::write_positions, tosca::write_faces],
-        ..read_only("TOSCA", &["vert", "tri"], &[tosca::check_start, tosca::check_start], |files, limits| {
-            Ok(tosca::parse(files[0], files[1], limits)?.into())
-        })
+        ..read_only("TOSCA", &["vert", "tri"], &[tosca::check_start, tosca::check_start], tosca::parse)
     },
     Format {
         precision: Precision::Single,
@@ -122,13 +104,11 @@ pub static FORMATS: [Format; 12] = [
     },
     Format {
         write: &[threemf::write],
-        ..read_only("3MF", &["3mf"], &[threemf::check_start], |files, limits| {
-            threemf::parse(files[0], limits)
-        })
+        ..read_only("3MF", &["3mf"], &[threemf::check_start], threemf::parse)
     },
-    read_only("XYZ", &["xyz"], &[xyz::check_start], |files, limits| Ok(xyz::parse(files[0], limits)?.into())),
-    read_only("PTS", &["pts"], &[xyz::check_start], |files, limits| Ok(xyz::parse(files[0], limits)?.into())),
-    read_only("LAS", &["las"], &[las::check_start], |files, limits| Ok(las::parse(files[0], limits)?.into())),
+    read_only("XYZ", &["xyz"], &[xyz::check_start], xyz::parse),
+    read_only("PTS", &["pts"], &[xyz::check_start], xyz::parse),
+    read_only("LAS", &["las"], &[las::check_start], las::parse),
 ];
 
 /// A format with 64-bit coordinates that cannot be written.
@@ -146,9 +126,8 @@ const fn read_only(
         check_start,
         companions: None,
         parse,
-        parse_field: None,
         write: &[],
-        write_field: None,
+        has_fields: false,
         write_lines: None,
     }
 }
@@ -177,30 +156,28 @@ impl Format {
         FORMATS.iter().find(|format| format.extensions.contains(&extension.as_str()))
     }
 
-    /// Parses the contents of the [`files`](Self::files) of a mesh.
-    pub(super) fn parse(&self, files: &[&[u8]], limits: &ReadLimits) -> Result<MeshFile, Located> {
-        (self.parse)(files, limits)
-    }
-
-    /// As [`parse`](Self::parse), with the scalar field, if there is one.
-    pub(super) fn parse_with_field(&self, files: &[&[u8]], limits: &ReadLimits) -> Result<MeshFile, Located> {
-        self.parse_field.unwrap_or(self.parse)(files, limits)
-    }
-
     /// Whether files of this format can be written with this content.
     #[must_use]
     pub fn can_write(&self, content: Content) -> bool {
         match content {
             Content::Mesh => !self.write.is_empty(),
-            Content::Field => self.write_field.is_some(),
+            Content::Field => self.has_fields,
             Content::Lines => self.write_lines.is_some(),
         }
     }
 
-    /// The error that files of this format cannot be written with this content.
-    pub(super) fn cannot_write(&self, path: &Path, content: Content) -> MeshError {
-        let (path, supported) = (path.to_path_buf(), or_list(writable(content)));
-        MeshError::UnsupportedContent { path, format: self.name, content, supported }
+    /// The format of a file to be written with this content.
+    pub(super) fn for_writing(path: &Path, content: Content) -> Result<&'static Self, MeshError> {
+        let format = Self::of(path)?;
+        match format.can_write(content) {
+            true => Ok(format),
+            false => Err(MeshError::Unusable(format!(
+                "{}: {} files cannot be written with {content}; use {}",
+                path.display(),
+                format.name,
+                or_list(writable(content))
+            ))),
+        }
     }
 
     /// The files of the mesh that `path` names, in the order of `extensions`.

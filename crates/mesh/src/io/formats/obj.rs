@@ -1,15 +1,17 @@
 //! Wavefront OBJ.
 
-use std::io::{self, Write};
+use std::io::{self, Read, Write};
 
 use nalgebra::Point3;
 use surface::VertexId;
+use tobj::{LoadError, LoadOptions, Model};
 
-use crate::error::{Fault, Located};
+use crate::error::{Fault, Located, Place};
+use crate::io::facts::MeshFile;
 use crate::io::field::VertexField;
 use crate::io::limits::ReadLimits;
 use crate::io::polygons::{finish, push_polygon};
-use crate::io::text::{Line, Lines, check_is_text, excerpt, parse_number, parse_position, write_position};
+use crate::io::text::{Line, Lines, check_is_text, excerpt, parse_number, write_position};
 use crate::tri_mesh::TriMesh;
 
 /// Checks that the file is text; any line may come first.
@@ -20,87 +22,124 @@ pub(super) fn check_start(start: &[u8], _: Option<u64>) -> Result<(), Located> {
 /// Reads all objects and groups of an OBJ file as one mesh: vertices in the order of the `v` lines, faces in
 /// the order of the `f` lines. Negative indices count back from the last vertex so far. Colours, normals,
 /// texture coordinates, materials, lines and points are ignored.
-pub(super) fn parse(bytes: &[u8], limits: &ReadLimits) -> Result<TriMesh, Located> {
+///
+/// tobj parses the statements. It numbers vertices in the order of their first use and drops the others, so a polygon
+/// of all vertices comes first: after it, every vertex has its place in the file. tobj does not say where a fault is, but
+/// it stops there.
+pub(super) fn parse(files: &[&[u8]], limits: &ReadLimits) -> Result<MeshFile, Located> {
+    let bytes = files[0];
     if Lines::new(bytes).next().is_none() {
         return Err(Fault::Empty.whole());
     }
-    let mut positions = Vec::new();
-    for (_, line) in statements(bytes).filter(|(is_vertex, _)| *is_vertex) {
-        positions.push(parse_vertex(line, positions.len() + 1)?);
-        limits.check(positions.len() as u64, 0).map_err(|fault| fault.in_line(line.number))?;
-    }
-    // A face may precede its vertices.
-    let (mut faces, mut corners, mut n_before) = (Vec::new(), Vec::new(), 0);
-    for (is_vertex, line) in statements(bytes) {
-        n_before += i64::from(is_vertex);
-        if !is_vertex {
-            corners.clear();
-            for token in line.tokens().skip(1) {
-                corners.push(parse_corner(line, token, n_before, positions.len())?);
-            }
-            let pushed = push_polygon(&positions, &corners, &mut faces, limits);
-            pushed.map_err(|fault| fault.in_line(line.number))?;
+    let (text, n_vertices) = plain_statements(bytes, limits)?;
+    let all: Vec<String> = (1..=n_vertices).map(|vertex| vertex.to_string()).collect();
+    let all = format!("f {}\n", all.join(" "));
+    let mut source = all.as_bytes().chain(text.as_slice());
+    // Positions have indices of their own, so that seams of texture stay closed, and polygons stay whole.
+    let options = LoadOptions { single_index: false, triangulate: false, ..LoadOptions::default() };
+    let loaded = tobj::load_obj_buf(&mut source, &options, |_| Err(LoadError::OpenFileFailed));
+    let n_read = text.len() - source.get_ref().1.len();
+    let (models, _) = loaded.map_err(|fault| locate(fault, bytes, &text[..n_read], n_vertices))?;
+    let Some(Model { mesh, .. }) = models.into_iter().next() else { return Err(Fault::Empty.whole()) };
+
+    let in_statement = |of_vertex: bool, number: usize, fault: Fault| {
+        let line = statements(bytes).filter(|(is_vertex, _)| *is_vertex == of_vertex).nth(number);
+        fault.at(line.map_or(Place::File, |(_, line)| Place::Line(line.number)))
+    };
+    let positions: Vec<Point3<f64>> = mesh.positions.as_chunks().0.iter().map(|p| Point3::from(*p)).collect();
+    for (vertex, p) in positions.iter().enumerate() {
+        if let Some(&value) = p.iter().find(|x| !x.is_finite()) {
+            return Err(in_statement(true, vertex, Fault::NonFinite { vertex: vertex as u64 + 1, value }));
         }
+    }
+    let corners: Vec<VertexId> = mesh.indices.into_iter().map(VertexId).collect();
+    let mut rest = corners.get(n_vertices..).unwrap_or_default();
+    // No arities mean triangles.
+    let arities = mesh.face_arities.iter().skip(1).copied().chain(std::iter::repeat(3));
+    let mut faces = Vec::new();
+    for (number, arity) in arities.enumerate() {
+        let Some((polygon, others)) = rest.split_at_checked(arity as usize).filter(|_| !rest.is_empty())
+        else {
+            break;
+        };
+        push_polygon(&positions, polygon, &mut faces, limits)
+            .map_err(|fault| in_statement(false, number, fault))?;
+        rest = others;
     }
     finish(positions, faces, limits)
 }
 
 /// The `v` and `f` lines, and whether each is a `v` line.
 fn statements(bytes: &[u8]) -> impl Iterator<Item = (bool, Line<'_>)> {
-    Lines::new(bytes).filter_map(|line| {
-        let is_keyword = line.text.get(1).is_none_or(u8::is_ascii_whitespace);
-        match line.text[0] {
-            b'v' if is_keyword => Some((true, line)),
-            b'f' if is_keyword => Some((false, line)),
-            _ => None,
-        }
+    Lines::new(bytes).filter_map(|line| match line.tokens().next() {
+        Some(b"v") => Some((true, line)),
+        Some(b"f") => Some((false, line)),
+        _ => None,
     })
 }
 
-/// Reads three coordinates. A fourth value is a weight, which divides them; more values are a colour.
-fn parse_vertex(line: Line<'_>, number: usize) -> Result<Point3<f64>, Located> {
-    let mut tokens = line.tokens().skip(1);
-    let position = parse_position(line, &mut tokens, number)?;
-    let (Some(weight), None) = (tokens.next(), tokens.next()) else { return Ok(position) };
-    let weight = parse_number(weight).filter(|weight: &f64| *weight != 0.0);
-    let position = position / weight.ok_or_else(|| line.expected("a weight other than zero"))?;
-    match position.iter().find(|x| !x.is_finite()) {
-        Some(&value) => Err(Fault::NonFinite { vertex: number as u64, value }.in_line(line.number)),
-        None => Ok(position),
+/// The statements without what tobj would refuse: comments, and colours, which it wants for all vertices or none; and the
+/// number of vertices.
+fn plain_statements(bytes: &[u8], limits: &ReadLimits) -> Result<(Vec<u8>, usize), Located> {
+    let mut text = Vec::with_capacity(bytes.len());
+    let (mut n_vertices, mut n_faces) = (0, 0);
+    for (is_vertex, line) in statements(bytes) {
+        let n_words = line.tokens().count();
+        let kept = match (is_vertex, n_words) {
+            (true, 5) | (false, 4..) => n_words,
+            (true, _) => 4,
+            (false, _) => return Err(Fault::TooFewCorners { corners: n_words - 1 }.in_line(line.number)),
+        };
+        *(if is_vertex { &mut n_vertices } else { &mut n_faces }) += 1;
+        limits.check(n_vertices, n_faces).map_err(|fault| fault.in_line(line.number))?;
+        for word in line.tokens().take(kept) {
+            text.extend_from_slice(word);
+            text.push(b' ');
+        }
+        text.push(b'\n');
     }
+    Ok((text, n_vertices as usize))
 }
 
-/// Reads the vertex of a corner, `VERTEX[/[TEXTURE][/NORMAL]]`, in a file of `n_vertices`, `n_before` of which
-/// precede the line.
-fn parse_corner(line: Line<'_>, token: &[u8], n_before: i64, n_vertices: usize) -> Result<VertexId, Located> {
-    let mut parts = token.split(|&b| b == b'/');
-    let index = parts.next().and_then(parse_number::<i64>);
-    let index = index.filter(|_| parts.all(|part| part.is_empty() || parse_number::<i64>(part).is_some()));
-    let index = index.ok_or_else(|| line.expected("a face such as `f 1 2 3` or `f 1/1/1 2/2/2 3/3/3`"))?;
-    let vertex = if index < 0 { n_before.saturating_add(index) } else { index - 1 };
-    if !(0..n_vertices as i64).contains(&vertex) {
-        let fault = Fault::IndexOutOfRange { index: excerpt(token), first: 1, last: n_vertices as u64 };
-        return Err(fault.in_line(line.number));
+/// The fault that tobj found, in the last line of what it has read; that of a face that refers to a missing vertex is
+/// somewhere before.
+fn locate(fault: LoadError, bytes: &[u8], read: &[u8], n_vertices: usize) -> Located {
+    if fault == LoadError::FaceVertexOutOfBounds {
+        let mut n_before = 0;
+        for (is_vertex, line) in statements(bytes) {
+            n_before += i64::from(is_vertex);
+            for corner in line.tokens().skip(1).filter(|_| !is_vertex) {
+                let index = corner.split(|b| *b == b'/').next().and_then(parse_number::<i64>).unwrap_or(0);
+                let vertex = if index < 0 { n_before.saturating_add(index) } else { index - 1 };
+                if !(0..n_vertices as i64).contains(&vertex) {
+                    let (index, last) = (excerpt(corner), n_vertices as u64);
+                    return Fault::IndexOutOfRange { index, first: 1, last }.in_line(line.number);
+                }
+            }
+        }
     }
-    Ok(VertexId(vertex as u32))
+    let number = read.iter().filter(|byte| **byte == b'\n').count();
+    let Some((is_vertex, line)) = statements(bytes).nth(number.saturating_sub(1)) else {
+        return Fault::Syntax { expected: "an OBJ file", found: fault.to_string() }.whole();
+    };
+    line.expected(match fault {
+        LoadError::ScalingByZeroError => "a weight other than zero",
+        _ if is_vertex => "three coordinates",
+        _ => "a face such as `f 1 2 3` or `f 1/1/1 2/2/2 3/3/3`",
+    })
 }
 
-/// Writes OBJ; coordinates read back bit for bit.
-pub(super) fn write(out: &mut dyn Write, mesh: &TriMesh) -> io::Result<()> {
-    mesh.positions.iter().try_for_each(|p| write_position(out, "v ", p))?;
-    write_faces(out, mesh)
-}
-
-/// Writes OBJ with a colour per vertex, behind its position. The format has no place for values.
-pub(super) fn write_field(out: &mut dyn Write, mesh: &TriMesh, field: &VertexField<'_>) -> io::Result<()> {
-    for (p, color) in mesh.positions.iter().zip(field.colors) {
-        let [r, g, b] = color.map(|channel| f64::from(channel) / 255.0);
-        writeln!(out, "v {:?} {:?} {:?} {r:.4} {g:.4} {b:.4}", p.x, p.y, p.z)?;
+/// Writes OBJ; coordinates read back bit for bit. A colour follows the position of its vertex; the format has no place for
+/// values.
+pub(super) fn write(out: &mut dyn Write, mesh: &TriMesh, field: Option<&VertexField<'_>>) -> io::Result<()> {
+    for (v, p) in mesh.positions.iter().enumerate() {
+        write!(out, "v {:?} {:?} {:?}", p.x, p.y, p.z)?;
+        if let Some(field) = field {
+            let [r, g, b] = field.colors[v].map(|channel| f64::from(channel) / 255.0);
+            write!(out, " {r:.4} {g:.4} {b:.4}")?;
+        }
+        writeln!(out)?;
     }
-    write_faces(out, mesh)
-}
-
-fn write_faces(out: &mut dyn Write, mesh: &TriMesh) -> io::Result<()> {
     for face in &mesh.faces {
         let [a, b, c] = face.map(|v| u64::from(v.0) + 1);
         writeln!(out, "f {a} {b} {c}")?;
@@ -126,10 +165,9 @@ pub(super) fn write_lines(out: &mut dyn Write, lines: &[Vec<Point3<f64>>]) -> io
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::error::Place;
 
     fn parse(bytes: &[u8]) -> Result<TriMesh, Located> {
-        super::parse(bytes, &ReadLimits::default())
+        super::parse(&[bytes], &ReadLimits::default()).map(|file| file.mesh)
     }
 
     fn faces(text: &str) -> Vec<[u32; 3]> {

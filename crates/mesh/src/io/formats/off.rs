@@ -5,10 +5,11 @@ use std::io::{self, Write};
 use surface::VertexId;
 
 use crate::error::{Fault, Located};
+use crate::io::facts::MeshFile;
 use crate::io::field::VertexField;
 use crate::io::limits::ReadLimits;
 use crate::io::polygons::{finish, push_polygon};
-use crate::io::text::{Line, Lines, check_is_text, excerpt, parse_integer, parse_position, write_position};
+use crate::io::text::{Line, Lines, check_is_text, excerpt, parse_integer, parse_position};
 use crate::tri_mesh::TriMesh;
 
 /// The fewest bytes of a vertex, `0 0 0` and a line end, and of a face, `3 0 1 2` and a line end.
@@ -25,7 +26,8 @@ pub(super) fn check_start(start: &[u8], _: Option<u64>) -> Result<(), Located> {
 
 /// Reads OFF, COFF, NOFF, STOFF and their combinations. Normals, colours and texture coordinates, which
 /// follow the position of a vertex, are ignored.
-pub(super) fn parse(bytes: &[u8], limits: &ReadLimits) -> Result<TriMesh, Located> {
+pub(super) fn parse(files: &[&[u8]], limits: &ReadLimits) -> Result<MeshFile, Located> {
+    let bytes = files[0];
     let mut lines = Lines::new(bytes);
     let header = lines.next().ok_or_else(|| Fault::Empty.whole())?;
     let counts = match after_keyword(header)? {
@@ -122,18 +124,16 @@ fn parse_corners(line: Line<'_>, n_vertices: u64, corners: &mut Vec<VertexId>) -
     Ok(())
 }
 
-/// Writes OFF; coordinates read back bit for bit.
-pub(super) fn write(out: &mut dyn Write, mesh: &TriMesh) -> io::Result<()> {
-    writeln!(out, "OFF\n{} {} 0", mesh.n_vertices(), mesh.n_faces())?;
-    mesh.positions.iter().try_for_each(|p| write_position(out, "", p))?;
-    mesh.faces.iter().try_for_each(|[a, b, c]| writeln!(out, "3 {a} {b} {c}"))
-}
-
-/// Writes COFF: a colour per vertex. The format has no place for values.
-pub(super) fn write_field(out: &mut dyn Write, mesh: &TriMesh, field: &VertexField<'_>) -> io::Result<()> {
-    writeln!(out, "COFF\n{} {} 0", mesh.n_vertices(), mesh.n_faces())?;
-    for (p, [r, g, b]) in mesh.positions.iter().zip(field.colors) {
-        writeln!(out, "{:?} {:?} {:?} {r} {g} {b} 255", p.x, p.y, p.z)?;
+/// Writes OFF; coordinates read back bit for bit. With a colour per vertex it is COFF, which has no place for values.
+pub(super) fn write(out: &mut dyn Write, mesh: &TriMesh, field: Option<&VertexField<'_>>) -> io::Result<()> {
+    let keyword = if field.is_some() { "COFF" } else { "OFF" };
+    writeln!(out, "{keyword}\n{} {} 0", mesh.n_vertices(), mesh.n_faces())?;
+    for (v, p) in mesh.positions.iter().enumerate() {
+        write!(out, "{:?} {:?} {:?}", p.x, p.y, p.z)?;
+        if let Some([r, g, b]) = field.map(|field| field.colors[v]) {
+            write!(out, " {r} {g} {b} 255")?;
+        }
+        writeln!(out)?;
     }
     mesh.faces.iter().try_for_each(|[a, b, c]| writeln!(out, "3 {a} {b} {c}"))
 }
@@ -144,7 +144,7 @@ mod tests {
     use crate::error::Place;
 
     fn parse(bytes: &[u8]) -> Result<TriMesh, Located> {
-        super::parse(bytes, &ReadLimits::default())
+        super::parse(&[bytes], &ReadLimits::default()).map(|file| file.mesh)
     }
 
     const SQUARE: &str = "4 1 4\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n";

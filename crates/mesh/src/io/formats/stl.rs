@@ -8,6 +8,8 @@ use surface::VertexId;
 
 use crate::coincidence::position_key;
 use crate::error::{Fault, Located};
+use crate::io::facts::MeshFile;
+use crate::io::field::VertexField;
 use crate::io::limits::ReadLimits;
 use crate::io::polygons::finish;
 use crate::io::text::{Line, Lines, check_is_text, excerpt, parse_number};
@@ -52,7 +54,8 @@ fn truncated(promised: u64, size: u64) -> Located {
 
 /// Reads STL. The format stores three corners per triangle; corners in the same position become one vertex,
 /// numbered in the order of first appearance.
-pub(super) fn parse(bytes: &[u8], limits: &ReadLimits) -> Result<TriMesh, Located> {
+pub(super) fn parse(files: &[&[u8]], limits: &ReadLimits) -> Result<MeshFile, Located> {
+    let bytes = files[0];
     let text = bytes.trim_ascii_start();
     if text.is_empty() {
         return Err(Fault::Empty.whole());
@@ -73,7 +76,7 @@ pub(super) fn parse(bytes: &[u8], limits: &ReadLimits) -> Result<TriMesh, Locate
     parse_binary(bytes, promised, limits)
 }
 
-fn parse_binary(bytes: &[u8], n_triangles: u64, limits: &ReadLimits) -> Result<TriMesh, Located> {
+fn parse_binary(bytes: &[u8], n_triangles: u64, limits: &ReadLimits) -> Result<MeshFile, Located> {
     limits.check(0, n_triangles).map_err(Fault::whole)?;
     let mut soup = Soup::default();
     for (t, triangle) in bytes[PREFIX..].chunks_exact(TRIANGLE).take(n_triangles as usize).enumerate() {
@@ -86,7 +89,7 @@ fn parse_binary(bytes: &[u8], n_triangles: u64, limits: &ReadLimits) -> Result<T
     soup.into_mesh(limits)
 }
 
-fn parse_ascii(bytes: &[u8], limits: &ReadLimits) -> Result<TriMesh, Located> {
+fn parse_ascii(bytes: &[u8], limits: &ReadLimits) -> Result<MeshFile, Located> {
     let mut soup = Soup::default();
     let mut lines = Lines::new(bytes);
     let mut is_open = true;
@@ -175,13 +178,13 @@ impl Soup {
         limits.check(self.positions.len() as u64, 0)
     }
 
-    fn into_mesh(self, limits: &ReadLimits) -> Result<TriMesh, Located> {
+    fn into_mesh(self, limits: &ReadLimits) -> Result<MeshFile, Located> {
         finish(self.positions, self.corners.as_chunks().0.to_vec(), limits)
     }
 }
 
 /// Writes binary STL. Rounds coordinates to 32 bits; vertex numbers and unused vertices are lost.
-pub(super) fn write(out: &mut dyn Write, mesh: &TriMesh) -> io::Result<()> {
+pub(super) fn write(out: &mut dyn Write, mesh: &TriMesh, _: Option<&VertexField<'_>>) -> io::Result<()> {
     out.write_all(&[0; HEADER])?;
     out.write_all(&(mesh.n_faces() as u32).to_le_bytes())?;
     for f in 0..mesh.n_faces() {
@@ -204,12 +207,12 @@ mod tests {
     const FACET: &str = "facet normal 0 0 1\n outer loop\n  vertex 0 0 0\n  vertex 1 0 0\n  vertex 0 1 0\n endloop\nendfacet\n";
 
     fn parse(bytes: &[u8]) -> Result<TriMesh, Located> {
-        super::parse(bytes, &ReadLimits::default())
+        super::parse(&[bytes], &ReadLimits::default()).map(|file| file.mesh)
     }
 
     fn binary(mesh: &TriMesh) -> Vec<u8> {
         let mut bytes = Vec::new();
-        write(&mut bytes, mesh).unwrap();
+        write(&mut bytes, mesh, None).unwrap();
         bytes
     }
 

@@ -6,6 +6,8 @@ use nalgebra::Point3;
 use surface::VertexId;
 
 use crate::error::{Fault, Located};
+use crate::io::facts::MeshFile;
+use crate::io::field::VertexField;
 use crate::io::limits::ReadLimits;
 use crate::io::polygons::finish;
 use crate::io::text::{Lines, check_is_text, excerpt, parse_integer, parse_position, write_position};
@@ -20,9 +22,9 @@ pub(super) fn check_start(start: &[u8], _: Option<u64>) -> Result<(), Located> {
 }
 
 /// Reads the two files of a shape.
-pub(super) fn parse(vert: &[u8], tri: &[u8], limits: &ReadLimits) -> Result<TriMesh, Located> {
-    let positions = parse_positions(vert, limits)?;
-    let faces = parse_faces(tri, positions.len(), limits).map_err(|fault| fault.of_file(1))?;
+pub(super) fn parse(files: &[&[u8]], limits: &ReadLimits) -> Result<MeshFile, Located> {
+    let positions = parse_positions(files[0], limits)?;
+    let faces = parse_faces(files[1], positions.len(), limits).map_err(|fault| fault.of_file(1))?;
     finish(positions, faces, limits).map_err(|fault| fault.of_file(1))
 }
 
@@ -72,12 +74,20 @@ fn parse_faces(bytes: &[u8], n_vertices: usize, limits: &ReadLimits) -> Result<V
 }
 
 /// Writes the `.vert` half; coordinates read back bit for bit.
-pub(super) fn write_positions(out: &mut dyn Write, mesh: &TriMesh) -> io::Result<()> {
+pub(super) fn write_positions(
+    out: &mut dyn Write,
+    mesh: &TriMesh,
+    _: Option<&VertexField<'_>>,
+) -> io::Result<()> {
     mesh.positions.iter().try_for_each(|p| write_position(out, "", p))
 }
 
 /// Writes the `.tri` half.
-pub(super) fn write_faces(out: &mut dyn Write, mesh: &TriMesh) -> io::Result<()> {
+pub(super) fn write_faces(
+    out: &mut dyn Write,
+    mesh: &TriMesh,
+    _: Option<&VertexField<'_>>,
+) -> io::Result<()> {
     mesh.faces.iter().try_for_each(|face| {
         let [a, b, c] = face.map(|v| u64::from(v.0) + 1);
         writeln!(out, "{a} {b} {c}")

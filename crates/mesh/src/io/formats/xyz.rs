@@ -1,10 +1,10 @@
 //! Point clouds as text: a point per line, as in `.xyz` and `.pts` files.
 
 use crate::error::{Fault, Located};
+use crate::io::facts::MeshFile;
 use crate::io::limits::ReadLimits;
 use crate::io::polygons::finish;
 use crate::io::text::{Line, Lines, check_is_text, parse_number, parse_position};
-use crate::tri_mesh::TriMesh;
 
 /// The fewest bytes of a line: three digits, two separators, a line end.
 const SHORTEST_LINE: usize = 6;
@@ -17,7 +17,8 @@ pub(super) fn check_start(start: &[u8], _: Option<u64>) -> Result<(), Located> {
 /// Reads three coordinates per line, separated by blanks, commas or semicolons. What follows them (intensity, colour,
 /// normal) is ignored, and so is a first line of names, such as `//X Y Z`. A line with a single integer, as `.pts` files
 /// begin with, promises so many points.
-pub(super) fn parse(bytes: &[u8], limits: &ReadLimits) -> Result<TriMesh, Located> {
+pub(super) fn parse(files: &[&[u8]], limits: &ReadLimits) -> Result<MeshFile, Located> {
+    let bytes = files[0];
     let mut positions = Vec::with_capacity(bytes.len() / (4 * SHORTEST_LINE));
     let mut promised: Option<u64> = None;
     let mut is_first = true;
@@ -73,7 +74,7 @@ mod tests {
     }
 
     fn fault(text: &str) -> (Place, Fault) {
-        let Located { place, fault, .. } = parse(text.as_bytes(), &ReadLimits::default()).unwrap_err();
+        let Located { place, fault, .. } = parse(&[text.as_bytes()], &ReadLimits::default()).unwrap_err();
         (place, fault)
     }
 
@@ -89,7 +90,7 @@ mod tests {
             format!("# scan\n7\n{0}", rows(" ", "").replacen("7 0.5", "5\n7 0.5", 1)),
         ];
         for text in texts {
-            let found = parse(text.as_bytes(), &ReadLimits::default()).unwrap();
+            let found = parse(&[text.as_bytes()], &ReadLimits::default()).unwrap().mesh;
             assert_eq!((found.n_vertices(), found.n_faces()), (12, 0), "{text}");
             assert_eq!(found.positions[11], nalgebra::Point3::new(11.0, 0.5, -10.0));
         }
@@ -113,7 +114,7 @@ mod tests {
     #[test]
     fn points_beyond_the_limit_are_refused() {
         let limits = ReadLimits::of_vertices(11);
-        let fault = parse(rows(" ", "").as_bytes(), &limits).unwrap_err().fault;
+        let fault = parse(&[rows(" ", "").as_bytes()], &limits).unwrap_err().fault;
         assert_eq!(fault, Fault::OverLimit { items: "vertices", limit: 11 });
     }
 }

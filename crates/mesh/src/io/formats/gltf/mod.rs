@@ -120,8 +120,7 @@ fn read(
         instances: Some(found.instances),
         ignored: scene::ignored(root),
     };
-    let mesh = finish(found.positions, found.faces, limits)?;
-    Ok(MeshFile { mesh, field: None, facts })
+    Ok(MeshFile { facts, ..finish(found.positions, found.faces, limits)? })
 }
 
 fn check_version(root: &Root) -> Result<(), Located> {

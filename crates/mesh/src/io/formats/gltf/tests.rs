@@ -22,7 +22,7 @@ pub(in crate::io::formats) fn samples(mesh: &TriMesh) -> Vec<(&'static str, Vec<
 /// What the writer writes, as text with a data URI.
 fn as_text(mesh: &TriMesh) -> String {
     let mut glb = Vec::new();
-    write(&mut glb, mesh).unwrap();
+    write(&mut glb, mesh, None).unwrap();
     let (json, _, data) = split_binary(&glb).unwrap();
     let uri = format!("data:application/octet-stream;base64,{}", STANDARD.encode(data.unwrap()));
     let json = std::str::from_utf8(json).unwrap().trim_end();
@@ -126,7 +126,7 @@ fn primitives_nodes_and_accessors_of_every_kind_become_one_mesh() {
 fn what_is_written_reads_back_with_the_numbers_of_vertices() {
     let mesh = shapes::disjoint(&[shapes::icosphere(2), shapes::cube(1)]);
     let mut bytes = Vec::new();
-    write(&mut bytes, &mesh).unwrap();
+    write(&mut bytes, &mesh, None).unwrap();
     let back = parse_binary(&[&bytes], &ReadLimits::default()).unwrap().mesh;
     assert_eq!(back.faces, mesh.faces);
     for (p, q) in back.positions.iter().zip(&mesh.positions) {
@@ -201,13 +201,14 @@ fn small_files_cannot_make_huge_meshes() {
     let copies = as_text(&mesh)
         .replace(r#""nodes":[{"mesh":0}]"#, &format!(r#""nodes":[{nodes}]"#))
         .replace(r#"{"nodes":[0]}"#, &format!(r#"{{"nodes":[{}]}}"#, numbers.join(",")));
-    assert!(matches!(parse_text(&copies, &[]).unwrap_err().fault, Fault::Copies { .. }));
+    let fault = parse_text(&copies, &[]).unwrap_err().fault;
+    assert!(fault.to_string().starts_with("its copies of meshes add up"), "{fault}");
 }
 
 #[test]
 fn binary_faults_are_named() {
     let mut bytes = Vec::new();
-    write(&mut bytes, &shapes::tetrahedron(0)).unwrap();
+    write(&mut bytes, &shapes::tetrahedron(0), None).unwrap();
     let fault = |bytes: &[u8]| parse_binary(&[bytes], &ReadLimits::default()).unwrap_err().fault;
     assert!(matches!(fault(&bytes[..bytes.len() - 1]), Fault::Truncated { .. }));
     assert!(matches!(fault(b"glTF\x01\0\0\0\x0c\0\0\0"), Fault::Unsupported { .. }));

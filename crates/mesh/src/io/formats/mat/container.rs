@@ -1,9 +1,8 @@
 //! The MAT-file level 5 container: a 128-byte header, then tagged elements, compressed or not.
-//!
-//! Everything is read as a stream with a budget, so that a wrong length costs no memory and a
-//! decompression bomb is cut off.
 
 use std::io::{self, Read};
+
+use flate2::read::ZlibDecoder;
 
 use crate::error::{Fault, Located};
 use crate::io::binary::{ByteOrder, Scalar};
@@ -16,22 +15,21 @@ pub(super) const COMPRESSED: u32 = 15;
 
 /// Type and length in bytes of an element.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Tag {
+pub(super) struct Tag<'a> {
     pub(super) kind: u32,
     pub(super) length: u32,
     /// Up to four bytes of data are stored in the tag itself.
-    inline: Option<[u8; 4]>,
+    inline: Option<&'a [u8]>,
 }
 
-/// A stream of elements.
+/// A sequence of elements.
 pub(super) struct Elements<'a> {
-    source: Box<dyn Read + 'a>,
+    pub(super) rest: &'a [u8],
     pub(super) order: ByteOrder,
-    /// Bytes that may still be read.
-    budget: u64,
-    limit: u64,
-    /// Byte of the file at which the stream begins, for messages.
+    /// Byte of the file at which the sequence begins, for messages.
     pub(super) start: usize,
+    /// Why there is no more.
+    pub(super) end: Fault,
 }
 
 /// Reads the header of the file.
@@ -55,57 +53,52 @@ pub(super) fn parse_header(bytes: &[u8]) -> Result<ByteOrder, Located> {
     }
 }
 
+/// The fault of data that ends too early.
+pub(super) fn cut_short() -> Fault {
+    Fault::CutShort { expected: "the rest of an element".into() }
+}
+
+/// Decompresses at most `limit` bytes; also returns why there are no more.
+pub(super) fn inflated(data: &[u8], limit: u64) -> (Vec<u8>, Fault) {
+    let mut bytes = Vec::new();
+    let read = ZlibDecoder::new(data).take(limit).read_to_end(&mut bytes);
+    let end = match read {
+        Err(e) if e.kind() != io::ErrorKind::UnexpectedEof => {
+            Fault::Syntax { expected: "compressed data", found: e.to_string() }
+        }
+        _ if bytes.len() as u64 == limit => Fault::Inflates { limit },
+        _ => cut_short(),
+    };
+    (bytes, end)
+}
+
 impl<'a> Elements<'a> {
-    /// The elements in `source`; reads at most `limit` bytes.
-    pub(super) fn new(source: impl Read + 'a, order: ByteOrder, limit: u64, start: usize) -> Self {
-        Self { source: Box::new(source), order, budget: limit, limit, start }
-    }
-
-    /// Lowers the number of bytes that may still be read to the declared length of an element.
-    pub(super) fn limit_to(&mut self, declared: u64) {
-        self.budget = self.budget.min(declared);
-    }
-
     /// Reads the next tag.
-    pub(super) fn tag(&mut self) -> Result<Tag, Located> {
-        let mut word = [0; 4];
-        self.fill(&mut word, "the tag of an element")?;
-        let first = self.u32(word);
-        self.fill(&mut word, "the tag of an element")?;
+    pub(super) fn tag(&mut self) -> Result<Tag<'a>, Located> {
+        let words = self.take(8)?;
+        let word = |at: usize| words[at..].first_chunk().map_or(0, |&word| self.u32(word));
+        let first = word(0);
         Ok(match first >> 16 {
-            0 => Tag { kind: first, length: self.u32(word), inline: None },
-            length => Tag { kind: first & 0xffff, length, inline: Some(word) },
+            0 => Tag { kind: first, length: word(4), inline: None },
+            length => Tag { kind: first & 0xffff, length, inline: Some(&words[4..]) },
         })
     }
 
     /// Reads the data of an element and skips the padding after it.
-    pub(super) fn data(&mut self, tag: Tag) -> Result<Vec<u8>, Located> {
+    pub(super) fn data(&mut self, tag: Tag<'a>) -> Result<&'a [u8], Located> {
+        let length = tag.length as usize;
         if let Some(word) = tag.inline {
-            let data = word.get(..tag.length as usize);
-            return data.map(<[u8]>::to_vec).ok_or_else(|| self.broken("a short element of 4 bytes at most"));
+            return word.get(..length).ok_or_else(|| self.broken("a short element of 4 bytes at most"));
         }
-        self.spend(u64::from(tag.length))?;
-        let mut data = Vec::new();
-        // Grows with the data, not with the declared length.
-        let read = self.source.by_ref().take(u64::from(tag.length)).read_to_end(&mut data);
-        self.check(read.map(|n| n == tag.length as usize), "the rest of an element")?;
-        self.skip(u64::from(tag.length.wrapping_neg() % 8))?;
+        let data = self.take(length)?;
+        self.take(length.wrapping_neg() % 8)?;
         Ok(data)
     }
 
-    /// Skips the data of an element.
-    pub(super) fn skip_data(&mut self, tag: Tag) -> Result<(), Located> {
-        match tag.inline {
-            Some(_) => Ok(()),
-            None => self.skip(u64::from(tag.length).next_multiple_of(8)),
-        }
-    }
-
-    /// Reads the data of a short element of a given kind.
-    pub(super) fn expect(&mut self, kind: u32, what: &'static str) -> Result<Vec<u8>, Located> {
-        const LONGEST: u32 = 1 << 16;
+    /// Reads the data of an element of a given kind.
+    pub(super) fn expect(&mut self, kind: u32, what: &'static str) -> Result<&'a [u8], Located> {
         let tag = self.tag()?;
-        if tag.kind != kind || tag.length > LONGEST {
+        if tag.kind != kind {
             return Err(self.broken(what));
         }
         self.data(tag)
@@ -116,33 +109,11 @@ impl<'a> Elements<'a> {
         Fault::Syntax { expected, found: "other data".into() }.at_byte(self.start)
     }
 
-    fn skip(&mut self, length: u64) -> Result<(), Located> {
-        self.spend(length)?;
-        let skipped = io::copy(&mut self.source.by_ref().take(length), &mut io::sink());
-        self.check(skipped.map(|n| n == length), "the rest of an element")
-    }
-
-    fn fill(&mut self, buffer: &mut [u8], what: &str) -> Result<(), Located> {
-        self.spend(buffer.len() as u64)?;
-        let read = self.source.read_exact(buffer);
-        self.check(read.map(|()| true), what)
-    }
-
-    fn spend(&mut self, length: u64) -> Result<(), Located> {
-        let exceeded = Fault::Inflates { limit: self.limit }.at_byte(self.start);
-        self.budget = self.budget.checked_sub(length).ok_or(exceeded)?;
-        Ok(())
-    }
-
-    /// A short read means that the file ends early; any other error means damaged compression.
-    fn check(&self, outcome: io::Result<bool>, what: &str) -> Result<(), Located> {
-        match outcome {
-            Ok(true) => Ok(()),
-            Err(e) if e.kind() != io::ErrorKind::UnexpectedEof => {
-                Err(Fault::Syntax { expected: "compressed data", found: e.to_string() }.at_byte(self.start))
-            }
-            _ => Err(Fault::CutShort { expected: what.into() }.at_byte(self.start)),
-        }
+    fn take(&mut self, length: usize) -> Result<&'a [u8], Located> {
+        let (taken, rest) =
+            self.rest.split_at_checked(length).ok_or_else(|| self.end.clone().at_byte(self.start))?;
+        self.rest = rest;
+        Ok(taken)
     }
 
     /// A 32-bit word in the byte order of the file.

@@ -1,15 +1,16 @@
 //! The surface in a MATLAB file.
 
-use flate2::read::ZlibDecoder;
 use nalgebra::Point3;
 use surface::VertexId;
 
-use super::container::{COMPRESSED, Elements, HEADER, MATRIX, Tag, parse_header, scalar};
+use super::container::{
+    COMPRESSED, Elements, HEADER, MATRIX, Tag, cut_short, inflated, parse_header, scalar,
+};
 use crate::error::{Fault, Located};
+use crate::io::facts::MeshFile;
 use crate::io::limits::ReadLimits;
 use crate::io::polygons::finish;
 use crate::io::text::excerpt;
-use crate::tri_mesh::TriMesh;
 
 /// The fields of the struct.
 const FIELDS: [&str; 4] = ["X", "Y", "Z", "TRIV"];
@@ -36,14 +37,15 @@ pub(in crate::io::formats) fn check_start(start: &[u8], _: Option<u64>) -> Resul
 
 /// Reads the first struct in the file with the numeric fields `X`, `Y`, `Z` (one column each) and `TRIV`
 /// (three columns, one-based). Other variables and fields are ignored.
-pub(in crate::io::formats) fn parse(bytes: &[u8], limits: &ReadLimits) -> Result<TriMesh, Located> {
+pub(in crate::io::formats) fn parse(files: &[&[u8]], limits: &ReadLimits) -> Result<MeshFile, Located> {
+    let bytes = files[0];
     let order = parse_header(bytes)?;
     let limit = SMALL_FILE + INFLATION * bytes.len() as u64;
     let mut at = HEADER;
     let (mut seen, mut n_more) = (Vec::new(), 0);
     while at < bytes.len() {
-        let mut top = Elements::new(&bytes[at..], order, bytes.len() as u64, at);
-        let Tag { kind, length, .. } = top.tag()?;
+        let elements = |rest, start, end| Elements { rest, order, start, end };
+        let Tag { kind, length, .. } = elements(&bytes[at..], at, cut_short()).tag()?;
         let begin = at + 8;
         let end = begin + length as usize;
         let Some(data) = bytes.get(begin..end) else {
@@ -51,17 +53,15 @@ pub(in crate::io::formats) fn parse(bytes: &[u8], limits: &ReadLimits) -> Result
             let items = "bytes of a variable".into();
             return Err(Fault::Truncated { items, promised: u64::from(length), found }.at_byte(at));
         };
-        let variable = match kind {
-            MATRIX => Some(Elements::new(data, order, limit, begin)),
-            COMPRESSED => {
-                let mut inflated = Elements::new(ZlibDecoder::new(data), order, limit, begin);
-                let tag = inflated.tag()?;
-                inflated.limit_to(u64::from(tag.length));
-                (tag.kind == MATRIX).then_some(inflated)
-            }
-            _ => None,
-        };
-        if let Some(variable) = variable {
+        let (content, fault);
+        let mut variable = elements(data, begin, cut_short());
+        let mut kind = kind;
+        if kind == COMPRESSED {
+            (content, fault) = inflated(data, limit);
+            variable = elements(&content, begin, fault);
+            kind = variable.tag()?.kind;
+        }
+        if kind == MATRIX {
             match Variable::parse(variable, limits)? {
                 Variable::Surface(surface) => return surface.into_mesh(begin, limits),
                 Variable::Other(name) if seen.len() < NAMED => seen.push(name),
@@ -115,7 +115,7 @@ impl MatrixHead {
         let dimensions = elements.expect(INT32, "the dimensions of a matrix")?;
         let dimensions = dimensions.as_chunks().0.iter().map(|&word| elements.u32(word)).collect();
         let name = elements.expect(INT8, "the name of a matrix")?;
-        Ok(Self { class, dimensions, name: excerpt(&name) })
+        Ok(Self { class, dimensions, name: excerpt(name) })
     }
 }
 
@@ -144,7 +144,7 @@ impl Variable {
                     surface.fields[i] = Some(Matrix::parse(&mut elements, limits)?)
                 }
                 Some(_) => return Err(elements.broken("a matrix in each field of the surface")),
-                None => elements.skip_data(tag)?,
+                None => drop(elements.data(tag)?),
             }
         }
         Ok(Self::Surface(surface))
@@ -184,7 +184,7 @@ impl Matrix {
 }
 
 impl Surface {
-    fn into_mesh(self, at: usize, limits: &ReadLimits) -> Result<TriMesh, Located> {
+    fn into_mesh(self, at: usize, limits: &ReadLimits) -> Result<MeshFile, Located> {
         let syntax = |expected, found: String| Fault::Syntax { expected, found }.at_byte(at);
         let [Some(x), Some(y), Some(z), Some(triv)] = self.fields else {
             return Err(syntax("a matrix in each of the fields X Y Z TRIV", "an empty field".into()));
@@ -216,127 +216,5 @@ impl Surface {
             .map(|face| Ok([corner(face, 0)?, corner(face, 1)?, corner(face, 2)?]))
             .collect::<Result<_, Located>>()?;
         finish(positions, faces, limits)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use std::io::Write;
-
-    use super::super::fixtures::{PLAIN, Style};
-    use super::*;
-    use crate::error::Place;
-    use crate::shapes;
-
-    fn parse(bytes: &[u8]) -> Result<TriMesh, Located> {
-        super::parse(bytes, &ReadLimits::default())
-    }
-
-    fn fault(bytes: &[u8]) -> Fault {
-        parse(bytes).unwrap_err().fault
-    }
-
-    #[test]
-    fn surfaces_read_in_every_encoding() {
-        let torus = shapes::torus(8, 5, 2.0, 0.5);
-        for index_type in [4, 5, 7, 9] {
-            for (big_endian, compressed) in [(false, false), (false, true), (true, false), (true, true)] {
-                let style = Style { big_endian, compressed, index_type };
-                assert_eq!(parse(&style.surface(&torus)).unwrap(), torus);
-            }
-        }
-    }
-
-    #[test]
-    fn coordinates_may_be_rows_or_columns() {
-        let tetrahedron = shapes::tetrahedron(0);
-        let mut fields = PLAIN.fields(&tetrahedron);
-        let x: Vec<f64> = tetrahedron.positions.iter().map(|p| p.x).collect();
-        fields[0].1 = PLAIN.matrix("", 9, 1, 4, &x);
-        assert_eq!(parse(&PLAIN.file(&[PLAIN.structure("s", &fields)])).unwrap(), tetrahedron);
-    }
-
-    #[test]
-    fn files_without_a_surface_are_errors() {
-        let other = PLAIN.file(&[PLAIN.matrix("other", 9, 1, 1, &[1.0])]);
-        assert!(
-            matches!(fault(&other), Fault::Unsupported { what, .. } if what.contains("variables: other"))
-        );
-        let empty = PLAIN.file(&[]);
-        assert!(matches!(fault(&empty), Fault::Unsupported { what, .. } if what.contains("variables: none")));
-        assert!(matches!(fault(b"MATLAB 7.3 MAT-file"), Fault::Unsupported { .. }));
-        assert!(matches!(fault(b"\x89HDF\r\n"), Fault::Unsupported { .. }));
-        assert!(matches!(fault(&[7; 300]), Fault::WrongFormat { .. }));
-        assert!(matches!(fault(b"OFF"), Fault::WrongFormat { .. }));
-        assert_eq!(fault(b"  "), Fault::Empty);
-    }
-
-    #[test]
-    fn faults_in_the_fields_are_errors() {
-        let mesh = shapes::tetrahedron(0);
-        let with = |i: usize, matrix: Vec<u8>| {
-            let mut fields = PLAIN.fields(&mesh);
-            fields[i].1 = matrix;
-            fault(&PLAIN.file(&[PLAIN.structure("surface", &fields)]))
-        };
-        let nan = with(1, PLAIN.matrix("", 9, 4, 1, &[0.0, 0.0, f64::NAN, 0.0]));
-        assert!(matches!(nan, Fault::NonFinite { vertex: 3, .. }));
-        assert!(matches!(with(1, PLAIN.matrix("", 9, 3, 1, &[0.0; 3])), Fault::Syntax { .. }));
-        assert!(matches!(with(3, PLAIN.matrix("", 9, 3, 4, &[1.0; 12])), Fault::Syntax { .. }));
-        let index = |index: &str| Fault::IndexOutOfRange { index: index.into(), first: 1, last: 4 };
-        assert_eq!(with(3, PLAIN.matrix("", 9, 1, 3, &[1.0, 2.0, 5.0])), index("5"));
-        assert_eq!(with(3, PLAIN.matrix("", 9, 1, 3, &[1.0, 2.0, 2.5])), index("2.5"));
-        assert_eq!(with(3, PLAIN.matrix("", 9, 1, 3, &[1.0, 2.0, f64::NAN])), index("NaN"));
-        assert_eq!(with(3, PLAIN.matrix("", 9, 0, 3, &[])), Fault::NoFaces { n_vertices: 4 });
-        // A header that promises more numbers than the element holds.
-        assert!(matches!(
-            with(0, PLAIN.matrix("", 9, 1_000_000, 1_000_000, &[0.0; 4])),
-            Fault::Truncated { promised: 1_000_000_000_000, found: 4, .. }
-        ));
-        assert!(matches!(with(0, PLAIN.structure("", &[])), Fault::Syntax { .. }));
-    }
-
-    #[test]
-    fn a_variable_longer_than_the_file_is_truncated() {
-        let bytes = PLAIN.surface(&shapes::tetrahedron(0));
-        let cut = parse(&bytes[..bytes.len() - 8]).unwrap_err();
-        assert!(matches!(cut.fault, Fault::Truncated { .. }));
-        assert!(matches!(cut.place, Place::Byte(byte) if byte > 128));
-    }
-
-    #[test]
-    fn decompression_bombs_are_cut_off() {
-        let style = Style { compressed: true, ..PLAIN };
-        // A column of 320 MB of zeros, declared as such, in a file of a few.
-        let length = 320u32 << 20;
-        let triangle = PLAIN.fields(&shapes::tetrahedron(0));
-        let mut small = style.structure("surface", &triangle);
-        let start =
-            small.len() - [&triangle[1], &triangle[2], &triangle[3]].map(|f| f.1.len()).iter().sum::<usize>();
-        let column = start - triangle[0].1.len();
-        let head = 8 + 16 + 16 + 8;
-        small[column + 32..column + 36].copy_from_slice(&(length / 8).to_le_bytes());
-        small[column + head + 4..column + head + 8].copy_from_slice(&length.to_le_bytes());
-        small.truncate(column + head + 8);
-        small[4..8].copy_from_slice(&(length + 4096).to_le_bytes());
-        let mut zlib = flate2::write::ZlibEncoder::new(Vec::new(), flate2::Compression::fast());
-        zlib.write_all(&small).unwrap();
-        let zeros = vec![0; 1 << 20];
-        (0..length >> 20).for_each(|_| zlib.write_all(&zeros).unwrap());
-        let data = zlib.finish().unwrap();
-        let mut bytes = PLAIN.file(&[]);
-        bytes.extend([COMPRESSED.to_le_bytes(), (data.len() as u32).to_le_bytes()].concat());
-        bytes.extend(data);
-        assert!(bytes.len() < 4 << 20);
-        assert!(matches!(fault(&bytes), Fault::Inflates { .. }), "{:?}", fault(&bytes));
-        let limited = super::parse(&bytes, &ReadLimits::of_vertices(1000)).unwrap_err();
-        assert_eq!(limited.fault, Fault::OverLimit { items: "vertices", limit: 1000 });
-    }
-
-    #[test]
-    fn messages_list_few_variables() {
-        let many: Vec<_> = (0..100).map(|i| PLAIN.matrix(&format!("{i:06000}"), 9, 1, 1, &[1.0])).collect();
-        let message = fault(&PLAIN.file(&many)).to_string();
-        assert!(message.contains("and 92 more") && message.len() < 1000, "{message}");
     }
 }

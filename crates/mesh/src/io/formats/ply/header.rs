@@ -152,30 +152,8 @@ impl Property {
 
     /// Whether a property of a vertex is a scalar field, judging by its type and name.
     pub(super) fn is_field(&self) -> bool {
-        const OTHERS: [&str; 21] = [
-            "x",
-            "y",
-            "z",
-            "nx",
-            "ny",
-            "nz",
-            "red",
-            "green",
-            "blue",
-            "alpha",
-            "r",
-            "g",
-            "b",
-            "a",
-            "s",
-            "t",
-            "u",
-            "v",
-            "texture_u",
-            "texture_v",
-            "w",
-        ];
-        self.length.is_none() && !self.item.is_integer() && !OTHERS.contains(&self.name.as_str())
+        const OTHERS: &str = "x y z nx ny nz red green blue alpha r g b a s t u v texture_u texture_v w";
+        self.length.is_none() && !self.item.is_integer() && OTHERS.split(' ').all(|other| other != self.name)
     }
 }
 

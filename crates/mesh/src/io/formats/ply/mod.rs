@@ -4,5 +4,5 @@ mod header;
 mod read;
 mod write;
 
-pub(super) use read::{check_start, parse, parse_field};
-pub(super) use write::{write, write_field, write_lines};
+pub(super) use read::{check_start, parse};
+pub(super) use write::{write, write_lines};

@@ -6,11 +6,11 @@ use surface::VertexId;
 use super::header::{Element, Encoding, Header};
 use crate::error::{Fault, Located, Place};
 use crate::io::binary::{ByteOrder, Scalar};
+use crate::io::facts::MeshFile;
 use crate::io::field::ScalarField;
 use crate::io::limits::ReadLimits;
 use crate::io::polygons::{finish, push_polygon};
 use crate::io::text::{Lines, check_is_text, excerpt, parse_integer, parse_number};
-use crate::tri_mesh::TriMesh;
 
 const FORMAT: &str = "a PLY file";
 /// The last line of the header.
@@ -35,28 +35,11 @@ fn check_first_line(lines: &mut Lines<'_>) -> Result<(), Located> {
     }
 }
 
-/// As [`parse`], with the scalar field of the vertices, if there is one: the first floating-point property other than
-/// positions, normals, colours and texture coordinates.
-pub(crate) fn parse_field(
-    bytes: &[u8],
-    limits: &ReadLimits,
-) -> Result<(TriMesh, Option<ScalarField>), Located> {
-    let mut field = None;
-    let mesh = parse_into(bytes, limits, &mut field)?;
-    Ok((mesh, field))
-}
-
-/// Reads PLY: the element `vertex` with `x y z`, then `face` with a list `vertex_indices` or `vertex_index`.
-/// Other elements and properties are ignored.
-pub(crate) fn parse(bytes: &[u8], limits: &ReadLimits) -> Result<TriMesh, Located> {
-    parse_into(bytes, limits, &mut None)
-}
-
-fn parse_into(
-    bytes: &[u8],
-    limits: &ReadLimits,
-    field: &mut Option<ScalarField>,
-) -> Result<TriMesh, Located> {
+/// Reads PLY: the element `vertex` with `x y z`, then `face` with a list `vertex_indices` or `vertex_index`. The first
+/// floating-point property of the vertices other than positions, normals, colours and texture coordinates is a scalar
+/// field. Other elements and properties are ignored.
+pub(crate) fn parse(files: &[&[u8]], limits: &ReadLimits) -> Result<MeshFile, Located> {
+    let (bytes, mut field) = (files[0], None);
     let mut lines = Lines::new(bytes);
     check_first_line(&mut lines)?;
     let header = Header::parse(&mut lines)?;
@@ -88,7 +71,7 @@ fn parse_into(
                     }
                     positions.push(p);
                 }
-                *field = carrier.map(|i| ScalarField { name: element.properties[i].name.clone(), values });
+                field = carrier.map(|i| ScalarField { name: element.properties[i].name.clone(), values });
             }
             "face" => {
                 faces.reserve_exact(element.count as usize);
@@ -125,7 +108,7 @@ fn parse_into(
         let promised = header.elements.iter().map(|element| element.count).sum();
         return Err(Fault::Leftover { items: "elements", promised }.at(place));
     }
-    finish(positions, faces, limits)
+    Ok(MeshFile { field, ..finish(positions, faces, limits)? })
 }
 
 /// What follows the header.
@@ -205,7 +188,7 @@ fn parse_scalar(scalar: Scalar, token: &[u8]) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::shapes;
+    use crate::{TriMesh, shapes};
 
     const HEADER: &str = "ply\nformat ascii 1.0\ncomment c\nelement vertex 4\nproperty float x\n\
         property float y\nproperty double z\nproperty uchar red\nelement face 2\n\
@@ -213,7 +196,7 @@ mod tests {
     const BODY: &str = "0 0 0 255\n1 0 0 9\n1 1 0 9\n0 1 .5 9\n3 0 1 2 7\n3 0 2 3 7\n";
 
     fn parse(bytes: &[u8]) -> Result<TriMesh, Located> {
-        super::parse(bytes, &ReadLimits::default())
+        super::parse(&[bytes], &ReadLimits::default()).map(|file| file.mesh)
     }
 
     fn fault(text: &str) -> (Place, Fault) {

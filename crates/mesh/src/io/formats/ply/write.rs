@@ -10,23 +10,23 @@ use crate::tri_mesh::TriMesh;
 const FACE_PROPERTIES: &str = "property list uchar uint vertex_indices\n";
 const FIELD_COLORS: &str = "property uchar red\nproperty uchar green\nproperty uchar blue\n";
 
-/// Writes a mesh; coordinates read back bit for bit.
-pub(crate) fn write(out: &mut dyn Write, mesh: &TriMesh) -> io::Result<()> {
-    write_header(out, mesh.n_vertices(), "", "face", mesh.n_faces(), FACE_PROPERTIES)?;
-    mesh.positions.iter().try_for_each(|p| write_position(out, p))?;
-    write_faces(out, mesh)
-}
-
-/// Writes a mesh with a value and a colour per vertex.
-pub(crate) fn write_field(out: &mut dyn Write, mesh: &TriMesh, field: &VertexField<'_>) -> io::Result<()> {
-    let properties = format!("property double {}\n{FIELD_COLORS}", field.name);
+/// Writes a mesh, perhaps with a value and a colour per vertex; coordinates read back bit for bit.
+pub(crate) fn write(out: &mut dyn Write, mesh: &TriMesh, field: Option<&VertexField<'_>>) -> io::Result<()> {
+    let properties = field.map(|field| format!("property double {}\n{FIELD_COLORS}", field.name));
+    let properties = properties.unwrap_or_default();
     write_header(out, mesh.n_vertices(), &properties, "face", mesh.n_faces(), FACE_PROPERTIES)?;
-    for ((p, value), color) in mesh.positions.iter().zip(field.values).zip(field.colors) {
+    for (v, p) in mesh.positions.iter().enumerate() {
         write_position(out, p)?;
-        out.write_all(&value.to_le_bytes())?;
-        out.write_all(color)?;
+        if let Some(field) = field {
+            out.write_all(&field.values[v].to_le_bytes())?;
+            out.write_all(&field.colors[v])?;
+        }
     }
-    write_faces(out, mesh)
+    for face in &mesh.faces {
+        out.write_all(&[3])?;
+        face.iter().try_for_each(|v| out.write_all(&v.0.to_le_bytes()))?;
+    }
+    Ok(())
 }
 
 /// Writes the points of polylines, and an element `edge` for each segment.
@@ -64,14 +64,6 @@ fn write_header(
 
 fn write_position(out: &mut dyn Write, p: &Point3<f64>) -> io::Result<()> {
     p.iter().try_for_each(|x| out.write_all(&x.to_le_bytes()))
-}
-
-fn write_faces(out: &mut dyn Write, mesh: &TriMesh) -> io::Result<()> {
-    for face in &mesh.faces {
-        out.write_all(&[3])?;
-        face.iter().try_for_each(|v| out.write_all(&v.0.to_le_bytes()))?;
-    }
-    Ok(())
 }
 
 #[cfg(test)]

@@ -29,7 +29,8 @@ pub(super) use write::write;
 const DEEPEST: usize = 64;
 
 /// Reads a 3MF file.
-pub(super) fn parse(bytes: &[u8], limits: &ReadLimits) -> Result<MeshFile, Located> {
+pub(super) fn parse(files: &[&[u8]], limits: &ReadLimits) -> Result<MeshFile, Located> {
+    let bytes = files[0];
     let mut package = Package::open(bytes)?;
     let mut file = Parts { models: Vec::new(), numbers: HashMap::new() };
     let root = package.root()?;
@@ -125,7 +126,7 @@ fn assemble(file: &Parts, n_bytes: u64, limits: &ReadLimits) -> Result<MeshFile,
     }
     let facts =
         FileFacts { unit: Some(root.unit), instances: Some(whole.meshes as usize), ignored: Vec::new() };
-    Ok(MeshFile { mesh: finish(built.positions, built.faces, limits)?, field: None, facts })
+    Ok(MeshFile { facts, ..finish(built.positions, built.faces, limits)? })
 }
 
 /// The size of an object with its components, which must be a tree.

@@ -68,6 +68,24 @@ impl Cursor<'_> {
     fn syntax(&self, expected: &'static str, found: &str) -> Located {
         self.locate(Fault::Syntax { expected, found: excerpt(found.as_bytes()) })
     }
+
+    /// Three attributes of an element, if it has them all.
+    fn numbers<T: Copy>(
+        &self,
+        element: &BytesStart<'_>,
+        names: [&str; 3],
+        parse: fn(&[u8]) -> Option<T>,
+    ) -> Result<Option<[T; 3]>, Located> {
+        let mut found = [None; 3];
+        for attribute in element.attributes().with_checks(false) {
+            let attribute = attribute.map_err(|fault| self.syntax("an attribute", &fault.to_string()))?;
+            if let Some(slot) = names.iter().position(|name| *name == attribute.key.as_ref()) {
+                found[slot] = parse(attribute.value.trim().as_bytes());
+            }
+        }
+        let [a, b, c] = found;
+        Ok(a.zip(b).zip(c).map(|((a, b), c)| [a, b, c]))
+    }
 }
 
 /// What encloses an element. Elements of extensions may have the same names elsewhere.
@@ -231,52 +249,29 @@ impl Parser<'_> {
 
     fn vertex(&mut self, element: &BytesStart<'_>, cursor: &Cursor<'_>) -> Result<(), Located> {
         let Some(object) = &mut self.object else { return Ok(()) };
-        let mut position = [None; 3];
-        for attribute in element.attributes().with_checks(false) {
-            let attribute = attribute.map_err(|fault| cursor.syntax("an attribute", &fault.to_string()))?;
-            let axis = match attribute.key.as_ref() {
-                "x" => 0,
-                "y" => 1,
-                "z" => 2,
-                _ => continue,
-            };
-            position[axis] = parse_number::<f64>(attribute.value.trim().as_bytes());
-        }
-        let [Some(x), Some(y), Some(z)] = position else {
-            return Err(cursor.syntax("the coordinates x, y and z as numbers", element_text(element)));
-        };
-        let p = Point3::new(x, y, z);
-        if let Some(&value) = p.iter().find(|x| !x.is_finite()) {
+        let position: [f64; 3] = cursor
+            .numbers(element, ["x", "y", "z"], parse_number)?
+            .ok_or_else(|| cursor.syntax("the coordinates x, y and z as numbers", element.as_ref()))?;
+        if let Some(&value) = position.iter().find(|x| !x.is_finite()) {
             return Err(cursor.locate(Fault::NonFinite { vertex: object.positions.len() as u64, value }));
         }
-        object.positions.push(p);
+        object.positions.push(position.into());
         self.n_vertices += 1;
         self.limits.check(self.n_vertices, 0).map_err(|fault| cursor.locate(fault))
     }
 
     fn triangle(&mut self, element: &BytesStart<'_>, cursor: &Cursor<'_>) -> Result<(), Located> {
         let Some(object) = &mut self.object else { return Ok(()) };
-        let mut face = [None; 3];
-        for attribute in element.attributes().with_checks(false) {
-            let attribute = attribute.map_err(|fault| cursor.syntax("an attribute", &fault.to_string()))?;
-            let corner = match attribute.key.as_ref() {
-                "v1" => 0,
-                "v2" => 1,
-                "v3" => 2,
-                _ => continue,
-            };
-            face[corner] = parse_integer(attribute.value.trim().as_bytes());
-        }
-        let [Some(a), Some(b), Some(c)] = face else {
-            return Err(cursor.syntax("the vertices v1, v2 and v3 as numbers", element_text(element)));
-        };
+        let face = cursor
+            .numbers(element, ["v1", "v2", "v3"], parse_integer)?
+            .ok_or_else(|| cursor.syntax("the vertices v1, v2 and v3 as numbers", element.as_ref()))?;
         // Triangles come after all vertices of their object.
         let n = object.positions.len() as i64;
-        if let Some(index) = [a, b, c].into_iter().find(|v| !(0..n).contains(v)) {
+        if let Some(index) = face.into_iter().find(|v| !(0..n).contains(v)) {
             let (index, last) = (index.to_string(), (n as u64).saturating_sub(1));
             return Err(cursor.locate(Fault::IndexOutOfRange { index, first: 0, last }));
         }
-        object.faces.push([a, b, c].map(|v| v as u32));
+        object.faces.push(face.map(|v| v as u32));
         self.n_faces += 1;
         self.limits.check(0, self.n_faces).map_err(|fault| cursor.locate(fault))
     }
@@ -289,10 +284,6 @@ impl Parser<'_> {
             Some(_) => Err(cursor.syntax("objects with different ids", &format!("id {id} twice"))),
         }
     }
-}
-
-fn element_text<'a>(element: &'a BytesStart<'_>) -> &'a str {
-    element.as_ref()
 }
 
 /// The attributes of an element.

@@ -1,0 +1,13 @@
+//! What every crate may use: limits and progress of long work, and files that are complete or absent. The feature `terminal`
+//! adds what programs share: messages, progress bars, threads, interruption, exit codes.
+
+mod budget;
+mod content;
+pub mod files;
+mod observer;
+#[cfg(feature = "terminal")]
+pub mod terminal;
+
+pub use budget::{Budget, Exceeded, Meter};
+pub use content::ContentHash;
+pub use observer::Observer;

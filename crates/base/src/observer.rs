@@ -1,0 +1,35 @@
+//! Progress and limits of long work.
+
+use crate::Budget;
+
+/// Receives the progress of long work, from any thread, and limits it.
+pub trait Observer: Sync {
+    /// Limits of the work, which ends with an error when it exceeds them.
+    fn budget(&self) -> Budget {
+        Budget::unlimited()
+    }
+
+    /// A stage of `total` steps begins; the previous one has ended.
+    fn begin(&self, stage: &str, total: usize);
+
+    /// A step of the current stage is done.
+    fn step(&self);
+}
+
+/// Ignores progress.
+impl Observer for () {
+    fn begin(&self, _: &str, _: usize) {}
+
+    fn step(&self) {}
+}
+
+/// Limits without progress.
+impl Observer for Budget {
+    fn budget(&self) -> Budget {
+        self.clone()
+    }
+
+    fn begin(&self, _: &str, _: usize) {}
+
+    fn step(&self) {}
+}

@@ -1,0 +1,36 @@
+//! Messages on standard error.
+
+use std::io::Write;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use super::text::printable;
+
+static QUIET: AtomicBool = AtomicBool::new(false);
+
+/// Hides all messages but errors, for the rest of the program.
+pub fn set_quiet(quiet: bool) {
+    QUIET.store(quiet, Ordering::Relaxed);
+}
+
+/// Whether all messages but errors are hidden.
+#[must_use]
+pub fn is_quiet() -> bool {
+    QUIET.load(Ordering::Relaxed)
+}
+
+/// Writes a line to standard error, unless the program is [quiet](set_quiet).
+pub fn note(text: &str) {
+    if !is_quiet() {
+        write_line(text);
+    }
+}
+
+/// Writes an error to standard error.
+pub fn error(text: &str) {
+    write_line(&format!("error: {text}"));
+}
+
+/// Standard error may be closed: that is no reason to stop, and `eprintln` would panic.
+pub(crate) fn write_line(text: &str) {
+    let _ = writeln!(std::io::stderr().lock(), "{}", printable(text));
+}

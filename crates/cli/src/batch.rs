@@ -1,0 +1,132 @@
+//! One result for each of several meshes.
+
+use std::collections::{HashMap, HashSet};
+use std::path::{Path, PathBuf};
+
+use anyhow::{Context, Result, bail};
+use base::terminal::Bars;
+use canonform::ShapeFile;
+use rayon::prelude::*;
+use serde::Serialize;
+
+use crate::args::Common;
+use crate::input::{expand, is_stream};
+
+/// A mesh without a result.
+#[derive(Serialize)]
+pub(crate) struct Failure {
+    /// Of commands that list names.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) name: Option<String>,
+    pub(crate) path: PathBuf,
+    pub(crate) error: String,
+}
+
+impl Failure {
+    /// Prints the error.
+    pub(crate) fn new(path: PathBuf, fault: &anyhow::Error) -> Self {
+        let error = crate::remedy::message(fault);
+        base::terminal::error(&error);
+        Self { name: None, path, error }
+    }
+}
+
+/// What was made of several meshes.
+pub(crate) struct Batch<T> {
+    pub(crate) done: Vec<(ShapeFile, T)>,
+    pub(crate) failed: Vec<Failure>,
+}
+
+/// Whether meshes share the threads, or each has all of them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Order {
+    InParallel,
+    OneByOne,
+}
+
+/// What is written, and where.
+pub(crate) struct Results<'a> {
+    /// In words.
+    pub(crate) what: &'a str,
+    /// The meshes.
+    pub(crate) arguments: &'a [PathBuf],
+    pub(crate) folder: &'a Path,
+    pub(crate) extension: &'a str,
+    pub(crate) order: Order,
+}
+
+impl Results<'_> {
+    /// Makes `FOLDER/NAME.EXTENSION` of every mesh. Failures are printed at the end and do not stop the rest.
+    ///
+    /// # Errors
+    /// Results that would overwrite each other or a mesh, before any work is done.
+    pub(crate) fn make<T: Send>(
+        &self,
+        common: &Common,
+        one: impl Fn(&ShapeFile, &Path) -> Result<T> + Sync,
+    ) -> Result<Batch<T>> {
+        if is_stream(self.folder) {
+            bail!("several {} cannot go to standard output; name a folder for them", self.what);
+        }
+        let shapes = expand(self.arguments)?;
+        let outputs = self.outputs(&shapes)?;
+        let bar = Bars::new(common.quiet).bar(self.what, shapes.len());
+        let work = |(shape, output): (&ShapeFile, &PathBuf)| {
+            let result = one(shape, output);
+            bar.inc(1);
+            result
+        };
+        let results: Vec<Result<T>> = match self.order {
+            Order::InParallel => shapes.par_iter().zip(&outputs).map(work).collect(),
+            Order::OneByOne => shapes.iter().zip(&outputs).map(work).collect(),
+        };
+        bar.finish_and_clear();
+        let mut batch = Batch { done: Vec::new(), failed: Vec::new() };
+        for (shape, result) in shapes.into_iter().zip(results) {
+            match result {
+                Ok(result) => batch.done.push((shape, result)),
+                Err(fault) => {
+                    let name = Some(shape.name);
+                    batch.failed.push(Failure { name, ..Failure::new(shape.path, &fault) });
+                }
+            }
+        }
+        Ok(batch)
+    }
+
+    /// Where the result of each mesh goes.
+    fn outputs(&self, shapes: &[ShapeFile]) -> Result<Vec<PathBuf>> {
+        let Self { folder, extension, .. } = self;
+        if folder.exists() && !folder.is_dir() {
+            bail!("{} is a file; with several meshes, -o names a folder", folder.display());
+        }
+        let inputs: HashSet<PathBuf> =
+            shapes.iter().filter_map(|shape| shape.path.canonicalize().ok()).collect();
+        let outputs: Vec<PathBuf> =
+            shapes.iter().map(|shape| folder.join(format!("{}.{extension}", shape.name))).collect();
+        let mut first = HashMap::new();
+        for (shape, output) in shapes.iter().zip(&outputs) {
+            if output.canonicalize().is_ok_and(|output| inputs.contains(&output)) {
+                let output = output.display();
+                bail!("{output}: the result would overwrite a mesh; choose another folder with -o");
+            }
+            if let Some(other) = first.insert(output, &shape.path) {
+                bail!(
+                    "{} and {} would have the same result file; rename one of them",
+                    other.display(),
+                    shape.path.display()
+                );
+            }
+        }
+        Ok(outputs)
+    }
+}
+
+/// Creates the folder of a result.
+pub(crate) fn create_folder_of(output: &Path) -> Result<()> {
+    match output.parent() {
+        Some(folder) => std::fs::create_dir_all(folder)
+            .with_context(|| format!("cannot create the folder {}", folder.display())),
+        None => Ok(()),
+    }
+}

@@ -1,0 +1,161 @@
+//! The files below a folder, each once, whatever links and special files there are.
+
+use std::collections::HashSet;
+use std::fmt;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use base::files::{FileError, FileId};
+use mesh::io::{extension, files_of, is_mesh_path};
+
+use crate::error::CollectionError;
+
+/// Something in a folder that is not a shape.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Skipped {
+    /// Where it is.
+    pub path: PathBuf,
+    /// Why it was skipped.
+    pub kind: SkipKind,
+}
+
+/// Why something in a folder was skipped.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
+#[non_exhaustive]
+pub enum SkipKind {
+    /// A file whose extension is not one of meshes; empty if it has none.
+    Extension(String),
+    /// Neither a file nor a folder: a pipe, a socket or a device.
+    Special,
+    /// A mesh or a folder whose name is not UTF-8, so that the name cannot be stored.
+    NotUtf8,
+    /// The name of a member that leads out of its archive.
+    UnsafeName,
+    /// A link to a file or a folder that is found without it, or a second line of a list for the same file.
+    Repeated,
+    /// A link that leads nowhere.
+    BrokenLink,
+    /// A sub-folder that cannot be read.
+    Unreadable,
+}
+
+impl SkipKind {
+    /// Whether users expect it: files that are not meshes.
+    #[must_use]
+    pub fn is_expected(&self) -> bool {
+        matches!(self, Self::Extension(_))
+    }
+}
+
+impl fmt::Display for SkipKind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Extension(extension) if extension.is_empty() => f.write_str("no extension"),
+            Self::Extension(extension) => write!(f, ".{extension}"),
+            Self::Special => f.write_str("special file"),
+            Self::NotUtf8 => f.write_str("name is not UTF-8"),
+            Self::UnsafeName => f.write_str("name leads out of the archive"),
+            Self::Repeated => f.write_str("link to something found already"),
+            Self::BrokenLink => f.write_str("broken link"),
+            Self::Unreadable => f.write_str("unreadable folder"),
+        }
+    }
+}
+
+/// What is below a folder.
+#[derive(Debug, Default)]
+pub(super) struct Walk {
+    /// Paths of meshes, in no particular order.
+    pub(super) meshes: Vec<PathBuf>,
+    pub(super) skipped: Vec<Skipped>,
+    /// Folders and meshes found so far.
+    seen: HashSet<FileId>,
+    folders: Vec<PathBuf>,
+    links: Vec<PathBuf>,
+}
+
+impl Walk {
+    /// Everything below `root`. Links are followed once, after all that is found without them; so no loop of links goes on
+    /// for ever, and what is found does not depend on the order in which the system lists names.
+    ///
+    /// # Errors
+    /// [`CollectionError::File`] if `root` cannot be read.
+    pub(super) fn below(root: &Path) -> Result<Self, CollectionError> {
+        let cannot_read = |source| CollectionError::from(FileError::read(root, source));
+        let mut walk = Self::default();
+        // A link to a folder around the root would lead back to it.
+        let place = root.canonicalize().map_err(cannot_read)?;
+        for folder in place.ancestors() {
+            walk.seen.extend(FileId::of(folder));
+        }
+        walk.read_folder(root).map_err(cannot_read)?;
+        loop {
+            while let Some(folder) = walk.folders.pop() {
+                if walk.read_folder(&folder).is_err() {
+                    walk.skip(folder, SkipKind::Unreadable);
+                }
+            }
+            if walk.links.is_empty() {
+                walk.skipped.sort_by(|a, b| a.path.cmp(&b.path));
+                return Ok(walk);
+            }
+            let mut links = std::mem::take(&mut walk.links);
+            links.sort();
+            links.into_iter().for_each(|link| walk.follow(link));
+        }
+    }
+
+    pub(super) fn skip(&mut self, path: PathBuf, kind: SkipKind) {
+        self.skipped.push(Skipped { path, kind });
+    }
+
+    fn read_folder(&mut self, folder: &Path) -> std::io::Result<()> {
+        for entry in fs::read_dir(folder)? {
+            let entry = entry?;
+            let (path, kind) = (entry.path(), entry.file_type()?);
+            if kind.is_symlink() {
+                self.links.push(path);
+            } else {
+                self.take(path, kind);
+            }
+        }
+        Ok(())
+    }
+
+    fn follow(&mut self, link: PathBuf) {
+        match fs::metadata(&link) {
+            Ok(target) => self.take(link, target.file_type()),
+            Err(_) => self.skip(link, SkipKind::BrokenLink),
+        }
+    }
+
+    /// Sorts a file or folder in.
+    fn take(&mut self, path: PathBuf, kind: fs::FileType) {
+        let is_mesh = kind.is_file() && is_mesh_path(&path);
+        if !kind.is_dir() && !is_mesh {
+            return match kind.is_file() {
+                false => self.skip(path, SkipKind::Special),
+                // The other half of a pair is no file of its own.
+                true if files_of(&path).len() > 1 => {}
+                true => {
+                    let extension = extension(&path);
+                    self.skip(path, SkipKind::Extension(extension));
+                }
+            };
+        }
+        if path.file_name().is_some_and(|name| name.to_str().is_none()) {
+            return self.skip(path, SkipKind::NotUtf8);
+        }
+        match FileId::of(&path).map(|id| self.seen.insert(id)) {
+            Err(_) => self.skip(path, SkipKind::BrokenLink),
+            Ok(false) if is_link(&path) => self.skip(path, SkipKind::Repeated),
+            Ok(_) if is_mesh => self.meshes.push(path),
+            Ok(_) => self.folders.push(path),
+        }
+    }
+}
+
+/// Hard links are files of their own.
+fn is_link(path: &Path) -> bool {
+    fs::symlink_metadata(path).is_ok_and(|about| about.file_type().is_symlink())
+}

@@ -1,0 +1,39 @@
+//! Errors of this crate.
+
+use std::path::PathBuf;
+
+use base::files::FileError;
+use mesh::MeshError;
+
+/// A collection that cannot be read.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum CollectionError {
+    /// A folder or a text file that cannot be read.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// An archive or a mesh that cannot be read.
+    #[error(transparent)]
+    Mesh(#[from] MeshError),
+    /// A line of a list of paths or of a file of labels.
+    #[error("{path}, line {line}: {what}", path = path.display())]
+    BadLine {
+        /// The file.
+        path: PathBuf,
+        /// The line, counted from one.
+        line: usize,
+        /// What is wrong and what is expected.
+        what: String,
+    },
+    /// A folder, an archive or a list without meshes.
+    #[error(
+        "{path}: no mesh found in it or its sub-folders; \
+         a mesh is {meshes}",
+        path = path.display(),
+        meshes = mesh::io::mesh_files()
+    )]
+    NoShapes {
+        /// The folder.
+        path: PathBuf,
+    },
+}

@@ -1,0 +1,25 @@
+//! Collections of meshes: folders, archives, Parquet files and lists of paths, with the classes of their shapes.
+//!
+//! ```
+//! use canonform_collection::{Dataset, read_mesh};
+//!
+//! let folder = tempfile::tempdir()?;
+//! mesh::io::write(&folder.path().join("ball1.off"), &mesh::shapes::icosphere(2))?;
+//! let found = Dataset::read(folder.path(), None)?;
+//! assert_eq!((found.shapes[0].name.as_str(), found.shapes[0].label.as_str()), ("ball1", "ball"));
+//! assert_eq!(read_mesh(&found.shapes[0].path)?.n_vertices(), 162);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod content;
+mod dataset;
+mod error;
+mod storage;
+
+pub use content::{content_hash, content_of};
+pub use dataset::{
+    Dataset, LabelFile, ShapeFile, SkipKind, Skipped, count_skipped, drop_single_class, label_in, label_of,
+    list_shapes,
+};
+pub use error::CollectionError;
+pub use storage::{Storage, is_dataset, member_of, read_mesh, read_mesh_file};

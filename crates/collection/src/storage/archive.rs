@@ -1,0 +1,179 @@
+//! What all archives have in common: members by name.
+
+use std::collections::BTreeMap;
+use std::fs::File;
+use std::io::{self, Read, Seek, Write};
+use std::path::{Component, Path};
+
+use mesh::io::inflated_limit;
+use mesh::{Fault, MeshError};
+
+use super::container::fault;
+use super::window::Window;
+use crate::dataset::SkipKind;
+
+/// A file in an archive.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Member {
+    /// Bytes after decompression.
+    pub(crate) size: u64,
+    /// Its class, if the archive states one.
+    pub(crate) label: Option<String>,
+    /// Where it is: the number of a zip entry, or the first byte.
+    pub(super) at: u64,
+}
+
+/// An opened archive.
+#[derive(Debug, Default)]
+pub(crate) struct Archive {
+    members: BTreeMap<String, Member>,
+    /// Names of what is no member, with the reason.
+    pub(crate) skipped: Vec<(String, SkipKind)>,
+    data: Data,
+}
+
+/// Where the bytes of members are.
+#[derive(Debug, Default)]
+pub(super) enum Data {
+    #[default]
+    Nowhere,
+    Entries(Box<dyn Entries>),
+    /// As they are, one after the other.
+    Plain(Window),
+}
+
+/// Members that are decompressed one by one.
+pub(super) trait Entries: std::fmt::Debug + Send + Sync {
+    /// The content of a member.
+    fn read(&self, member: &Member) -> Result<Vec<u8>, Fault>;
+}
+
+impl Archive {
+    pub(super) fn of(data: Data) -> Self {
+        Self { data, ..Self::default() }
+    }
+
+    /// Adds a member. A later one of the same name takes its place, as when an archive is unpacked.
+    pub(super) fn add(&mut self, name: &str, member: Member) {
+        match safe_name(name) {
+            // What macOS stores beside every file.
+            Some(name) if name.starts_with("__MACOSX/") => {}
+            Some(name) => {
+                self.members.insert(name, member);
+            }
+            None => self.skip(name, SkipKind::UnsafeName),
+        }
+    }
+
+    pub(super) fn skip(&mut self, name: &str, kind: SkipKind) {
+        self.skipped.push((name.to_owned(), kind));
+    }
+
+    pub(crate) fn member(&self, name: &str) -> Option<&Member> {
+        self.members.get(name)
+    }
+
+    /// All members in the order of their names.
+    pub(crate) fn members(&self) -> impl Iterator<Item = (&str, &Member)> {
+        self.members.iter().map(|(name, member)| (name.as_str(), member))
+    }
+
+    /// The content of a member; `path` names it in messages.
+    pub(super) fn read(&self, name: &str, path: &Path) -> Result<Vec<u8>, MeshError> {
+        let member = self.member(name).ok_or_else(|| {
+            MeshError::Io(base::files::FileError::read(
+                path,
+                io::Error::new(io::ErrorKind::NotFound, "the archive has no such member"),
+            ))
+        })?;
+        match &self.data {
+            Data::Nowhere => Ok(Vec::new()),
+            Data::Entries(entries) => entries.read(member).map_err(|what| fault(path, what)),
+            Data::Plain(window) => {
+                let mut bytes = Vec::new();
+                let read = window.part(member.at, member.size).read_to_end(&mut bytes);
+                match read.map_err(|source| base::files::FileError::read(path, source))? as u64 {
+                    n if n == member.size => Ok(bytes),
+                    found => {
+                        let items = "bytes".to_owned();
+                        Err(fault(path, Fault::Truncated { items, promised: member.size, found }))
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// A name separated by `/` that stays inside the archive; `None` if it would lead out of it.
+fn safe_name(name: &str) -> Option<String> {
+    let slashed = name.replace('\\', "/");
+    let mut parts = Vec::new();
+    for part in Path::new(&slashed).components() {
+        match part {
+            Component::Normal(part) => parts.push(part.to_str()?),
+            Component::CurDir => {}
+            _ => return None,
+        }
+    }
+    let is_strange = |c: char| c.is_control() || c == ':';
+    (!parts.is_empty() && !parts.iter().any(|part| part.contains(is_strange))).then(|| parts.join("/"))
+}
+
+/// Where what was decompressed is kept: the system removes the file when it is closed.
+pub(super) struct Spool {
+    file: File,
+    n_bytes: u64,
+    limit: u64,
+}
+
+impl Spool {
+    /// `size` is that of the compressed file.
+    pub(super) fn new(size: u64) -> Result<Self, Fault> {
+        let file =
+            base::files::nameless_in(&std::env::temp_dir()).map_err(|error| cannot_keep(&error.source))?;
+        Ok(Self { file, n_bytes: 0, limit: inflated_limit(size) })
+    }
+
+    /// Appends bytes and returns where they begin.
+    pub(super) fn append(&mut self, bytes: &[u8]) -> Result<u64, Fault> {
+        let start = self.n_bytes;
+        self.n_bytes += bytes.len() as u64;
+        if self.n_bytes > self.limit {
+            return Err(Fault::Inflates { limit: self.limit });
+        }
+        self.file.write_all(bytes).map_err(|error| cannot_keep(&error))?;
+        Ok(start)
+    }
+
+    /// Everything that was appended.
+    pub(super) fn finish(mut self) -> Result<Window, Fault> {
+        self.file.rewind().and_then(|()| Window::whole(self.file)).map_err(|error| cannot_keep(&error))
+    }
+}
+
+fn cannot_keep(error: &io::Error) -> Fault {
+    Fault::Unsupported {
+        what: format!("its decompressed data cannot be kept in a temporary file: {error}"),
+        remedy: "free space, set TMPDIR to another folder, or unpack the archive",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_stay_inside_the_archive() {
+        for (name, safe) in [
+            ("cat/cat0.off", "cat/cat0.off"),
+            ("./cat//cat0.off", "cat/cat0.off"),
+            ("cat\\cat0.off", "cat/cat0.off"),
+        ] {
+            assert_eq!(safe_name(name).as_deref(), Some(safe), "{name}");
+        }
+        for name in ["../a.off", "a/../../b.off", "/etc/a.off", "C:\\a.off", "..\\a.off", "", ".", "a\nb.off"]
+        {
+            assert_eq!(safe_name(name), None, "{name:?}");
+        }
+    }
+}

@@ -1,0 +1,70 @@
+//! Archives that are open, so that their directories are read once.
+
+use std::collections::VecDeque;
+use std::fs::File;
+use std::path::Path;
+use std::sync::{Arc, LazyLock, Mutex, OnceLock, PoisonError};
+use std::time::SystemTime;
+
+use base::files::{FileError, FileId};
+use mesh::{Fault, MeshError};
+
+use super::archive::Archive;
+use super::container::{Container, fault};
+use super::{parquet, tar, zip};
+
+/// What tells whether a file is the one that was opened.
+#[derive(Debug, Clone, PartialEq, Eq)]
+struct Key {
+    id: FileId,
+    length: u64,
+    modified: Option<SystemTime>,
+}
+
+/// Filled by the first thread that needs it; the others wait for it, but not for other archives.
+type Slot = Arc<OnceLock<Result<Arc<Archive>, Fault>>>;
+
+/// The archives used last, the newest first.
+static OPEN: LazyLock<Mutex<VecDeque<(Key, Slot)>>> = LazyLock::new(Mutex::default);
+
+/// Archives that stay open.
+const MOST: usize = 16;
+
+/// Opens an archive, or finds it open.
+pub(super) fn open(path: &Path) -> Result<Arc<Archive>, MeshError> {
+    let cannot_read = |source| MeshError::Io(FileError::read(path, source));
+    let about = std::fs::metadata(path).map_err(cannot_read)?;
+    let id = FileId::of(path).map_err(cannot_read)?;
+    let key = Key { id, length: about.len(), modified: about.modified().ok() };
+    let slot = {
+        let mut open = OPEN.lock().unwrap_or_else(PoisonError::into_inner);
+        let found = open.iter().position(|(known, _)| *known == key).and_then(|place| open.remove(place));
+        let entry = found.unwrap_or_else(|| (key, Slot::default()));
+        let slot = entry.1.clone();
+        open.push_front(entry);
+        open.truncate(MOST);
+        slot
+    };
+    if slot.get().is_none() {
+        // Outside of the slot, since the error of the system may go away.
+        let file = File::open(path).map_err(cannot_read)?;
+        let container = Container::by_name(path).unwrap_or(Container::Zip);
+        return slot
+            .get_or_init(|| members(path, file, container).map(Arc::new))
+            .clone()
+            .map_err(|what| fault(path, what));
+    }
+    match slot.get() {
+        Some(archive) => archive.clone().map_err(|what| fault(path, what)),
+        None => Err(fault(path, Fault::Empty)),
+    }
+}
+
+/// Reads the names of all members.
+pub(super) fn members(path: &Path, file: File, container: Container) -> Result<Archive, Fault> {
+    match container {
+        Container::Zip => zip::open(file),
+        Container::Tar => tar::open(path, file),
+        _ => parquet::open(file),
+    }
+}

@@ -1,0 +1,47 @@
+//! Kinds of files that hold meshes.
+
+use std::path::Path;
+
+use mesh::io::{extension, is_gzip};
+use mesh::{Fault, MeshError, Place};
+
+/// What holds several meshes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Container {
+    Folder,
+    Zip,
+    Tar,
+    Parquet,
+    List,
+}
+
+impl Container {
+    /// Judges by the extension.
+    pub(super) fn by_name(path: &Path) -> Option<Self> {
+        Some(match (extension(path).as_str(), is_gzip(path)) {
+            ("zip", false) => Self::Zip,
+            ("tar", _) | ("tgz", false) => Self::Tar,
+            ("parquet", false) => Self::Parquet,
+            ("txt" | "list", false) => Self::List,
+            _ => return None,
+        })
+    }
+
+    /// What a path leads to; `None` if that is no container.
+    pub(crate) fn of(path: &Path) -> Option<Self> {
+        match Self::by_name(path) {
+            _ if path.is_dir() => Some(Self::Folder),
+            Some(container) if path.is_file() => Some(container),
+            _ => None,
+        }
+    }
+
+    pub(super) fn is_archive(self) -> bool {
+        matches!(self, Self::Zip | Self::Tar | Self::Parquet)
+    }
+}
+
+/// The error that a file cannot be read faithfully.
+pub(super) fn fault(path: &Path, fault: Fault) -> MeshError {
+    MeshError::File { path: path.to_owned(), place: Place::File, fault }
+}

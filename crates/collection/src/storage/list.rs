@@ -1,0 +1,41 @@
+//! Lists of paths.
+
+use std::path::{Component, Path, PathBuf};
+
+use base::files::FileError;
+
+use crate::error::CollectionError;
+
+/// A line of a list.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct ListedPath {
+    /// The file, relative to the current folder.
+    pub(crate) path: PathBuf,
+    /// Its line, counted from one.
+    pub(crate) line: usize,
+}
+
+/// Reads a list: one path a line, relative to the folder of the list. Empty lines and lines that begin with `#` are skipped.
+pub(super) fn read(list: &Path) -> Result<Vec<ListedPath>, CollectionError> {
+    let text = std::fs::read_to_string(list).map_err(|source| FileError::read(list, source))?;
+    let folder = list.parent().unwrap_or(Path::new(""));
+    let lines = text.lines().enumerate().map(|(number, line)| (number + 1, line.trim()));
+    let lines = lines.filter(|(_, line)| !line.is_empty() && !line.starts_with('#'));
+    lines
+        .map(|(line, text)| {
+            let path = tidy(&folder.join(text));
+            match path.is_dir() {
+                false => Ok(ListedPath { path, line }),
+                true => {
+                    let what = format!("{text} is a folder; a list names meshes, one a line");
+                    Err(CollectionError::BadLine { path: list.to_owned(), line, what })
+                }
+            }
+        })
+        .collect()
+}
+
+/// A path without `.`.
+fn tidy(path: &Path) -> PathBuf {
+    path.components().filter(|part| *part != Component::CurDir).collect()
+}

@@ -1,0 +1,124 @@
+//! Where meshes are stored: folders, archives, Parquet files and lists of paths.
+//!
+//! A member of an archive has a path like any other file: `collection.zip/cat/cat0.off`. Nothing is unpacked into a folder.
+//! Members of a `.zip` and a `.tar` are read where they are; a `.tar.gz` and a Parquet file are decompressed once into a
+//! temporary file without a name. Threads read members at the same time.
+
+mod archive;
+mod cache;
+mod container;
+mod list;
+mod parquet;
+mod tar;
+mod window;
+mod zip;
+
+use std::path::{Path, PathBuf};
+
+use mesh::io::{Disk, MeshFile, Opened, ReadLimits, Source};
+use mesh::{Fault, MeshError, TriMesh};
+
+use crate::error::CollectionError;
+pub(crate) use archive::Archive;
+pub(crate) use container::Container;
+use container::fault;
+pub(crate) use list::ListedPath;
+
+/// Whether a path leads to a dataset: a folder, an archive (`.zip`, `.tar`, `.tar.gz`, `.tgz`), a `.parquet` file with a
+/// column of bytes, or a list of paths (`.txt`, `.list`).
+#[must_use]
+pub fn is_dataset(path: &Path) -> bool {
+    Container::of(path).is_some()
+}
+
+/// The file system, in which archives are folders: `collection.zip/cat/cat0.off` is a file.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Storage;
+
+impl Source for Storage {
+    fn holds(&self, path: &Path) -> bool {
+        path.exists()
+            || member_of(path).is_some_and(|(archive, member)| {
+                cache::open(&archive).is_ok_and(|archive| archive.member(&member).is_some())
+            })
+    }
+
+    fn open(&self, path: &Path) -> Result<Opened<'_>, MeshError> {
+        if let Some((archive, name)) = member_of(path) {
+            return Ok(Opened::Bytes(cache::open(&archive)?.read(&name, path)?.into()));
+        }
+        Disk.open(path)
+    }
+}
+
+impl Storage {
+    /// Bytes of a file.
+    pub fn n_bytes(self, path: &Path) -> Result<u64, CollectionError> {
+        match member_of(path) {
+            Some((archive, name)) => {
+                let archive = cache::open(&archive)?;
+                Ok(archive.member(&name).map_or(0, |member| member.size))
+            }
+            None => Ok(std::fs::metadata(path)
+                .map_err(|source| base::files::FileError::read(path, source))?
+                .len()),
+        }
+    }
+}
+
+/// The archive and the name of the member that a path means. `None` for a path that exists, or that leads to no archive.
+pub fn member_of(path: &Path) -> Option<(PathBuf, String)> {
+    for (depth, above) in path.ancestors().enumerate() {
+        if depth > 0 && Container::by_name(above).is_some_and(Container::is_archive) && above.is_file() {
+            let below = path.strip_prefix(above).ok()?;
+            let parts: Option<Vec<&str>> = below.iter().map(|part| part.to_str()).collect();
+            return Some((above.to_owned(), parts?.join("/")));
+        }
+        if above.exists() {
+            return None;
+        }
+    }
+    None
+}
+
+/// Reads a mesh, which may be compressed (`cat.obj.gz`) or the member of an archive (`cats.zip/cat0.off`).
+///
+/// ```
+/// let folder = tempfile::tempdir()?;
+/// let path = folder.path().join("ball.ply.gz");
+/// mesh::io::write(&path, &mesh::shapes::icosphere(2))?;
+/// assert_eq!(canonform_collection::read_mesh(&path)?.n_vertices(), 162);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// [`CollectionError::Mesh`].
+pub fn read_mesh(path: &Path) -> Result<TriMesh, CollectionError> {
+    Ok(read_mesh_file(path, &ReadLimits::default())?.mesh)
+}
+
+/// As [`read_mesh`], with what else the file says, such as the unit of length.
+///
+/// # Errors
+/// [`CollectionError::Mesh`].
+pub fn read_mesh_file(path: &Path, limits: &ReadLimits) -> Result<MeshFile, CollectionError> {
+    if Container::of(path).is_some_and(Container::is_archive) {
+        let what = "this is an archive of meshes".to_owned();
+        let remedy = "name one of them, such as meshes.zip/cat0.off";
+        return Err(fault(path, Fault::Unsupported { what, remedy }).into());
+    }
+    Ok(mesh::io::read_file(path, &Storage, limits)?)
+}
+
+/// The members of an archive.
+pub(crate) fn open_archive(path: &Path) -> Result<std::sync::Arc<Archive>, CollectionError> {
+    Ok(cache::open(path)?)
+}
+
+/// The paths in a list.
+pub(crate) fn read_list(path: &Path) -> Result<Vec<ListedPath>, CollectionError> {
+    list::read(path)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,62 @@
+//! Tar archives, compressed by gzip or not.
+
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+use flate2::read::MultiGzDecoder;
+use mesh::Fault;
+use tar::EntryType;
+
+use super::archive::{Archive, Data, Member, Spool};
+use super::window::Window;
+use crate::dataset::SkipKind;
+
+pub(super) fn open(path: &Path, file: File) -> Result<Archive, Fault> {
+    let damaged =
+        |error: std::io::Error| Fault::Syntax { expected: "an intact tar archive", found: error.to_string() };
+    let window = Window::whole(file).map_err(damaged)?;
+    if window.len() == 0 {
+        return Err(Fault::Empty);
+    }
+    let is_tar = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("tar"));
+    let window = if is_tar { window } else { inflated(window)? };
+    let mut archive = Archive::of(Data::Plain(window.clone()));
+    let mut headers = tar::Archive::new(window);
+    for entry in headers.entries_with_seek().map_err(damaged)? {
+        let entry = entry.map_err(damaged)?;
+        let bytes = entry.path_bytes();
+        let name = String::from_utf8_lossy(&bytes);
+        match entry.header().entry_type() {
+            EntryType::Regular | EntryType::Continuous => {
+                if std::str::from_utf8(&bytes).is_err() {
+                    archive.skip(&name, SkipKind::NotUtf8);
+                    continue;
+                }
+                let member = Member { size: entry.size(), label: None, at: entry.raw_file_position() };
+                archive.add(&name, member);
+            }
+            EntryType::Directory | EntryType::XGlobalHeader => {}
+            _ => archive.skip(&name, SkipKind::Special),
+        }
+    }
+    Ok(archive)
+}
+
+/// Decompresses everything.
+fn inflated(window: Window) -> Result<Window, Fault> {
+    let mut spool = Spool::new(window.len())?;
+    let mut stream = MultiGzDecoder::new(window);
+    let mut buffer = vec![0; 1 << 16];
+    loop {
+        match stream.read(&mut buffer) {
+            Ok(0) => return spool.finish(),
+            Ok(n) => {
+                spool.append(&buffer[..n])?;
+            }
+            Err(error) => {
+                return Err(Fault::Syntax { expected: "compressed data", found: error.to_string() });
+            }
+        }
+    }
+}

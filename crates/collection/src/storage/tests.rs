@@ -1,0 +1,410 @@
+//! Archives, compressed files and lists as datasets.
+
+use std::fs;
+use std::io::Write;
+
+use ::parquet::data_type::{ByteArray, ByteArrayType};
+use ::parquet::file::properties::WriterProperties;
+use ::parquet::file::writer::SerializedFileWriter;
+use ::parquet::schema::parser::parse_message_type;
+use ::zip::ZipWriter;
+use ::zip::write::SimpleFileOptions;
+use flate2::Compression;
+use flate2::write::GzEncoder;
+use mesh::shapes;
+use tempfile::TempDir;
+
+use super::*;
+use crate::{Dataset, LabelFile, SkipKind, list_shapes};
+use crate::{content_hash, count_skipped};
+
+fn folder() -> TempDir {
+    tempfile::tempdir().unwrap()
+}
+
+/// The bytes of a mesh file.
+fn bytes_of(mesh: &TriMesh, extension: &str) -> Vec<u8> {
+    let folder = folder();
+    let path = folder.path().join(format!("m.{extension}"));
+    mesh::io::write(&path, mesh).unwrap();
+    fs::read(path).unwrap()
+}
+
+/// Two classes of meshes, with other files between them.
+fn contents() -> Vec<(&'static str, Vec<u8>)> {
+    vec![
+        ("all/cat/cat10.off", bytes_of(&shapes::icosphere(1), "off")),
+        ("all/cat/cat9.ply.gz", bytes_of(&shapes::icosphere(2), "ply.gz")),
+        ("all/dog/dog0.glb", bytes_of(&shapes::cube(1), "glb")),
+        ("all/dog/dog1.vert", bytes_of(&shapes::cube(2), "vert")),
+        ("all/README.md", b"meshes".to_vec()),
+    ]
+}
+
+/// The other half of the pair in [`contents`].
+fn other_half() -> (&'static str, Vec<u8>) {
+    let folder = folder();
+    let path = folder.path().join("m.vert");
+    mesh::io::write(&path, &shapes::cube(2)).unwrap();
+    ("all/dog/dog1.tri", fs::read(path.with_extension("tri")).unwrap())
+}
+
+fn zip_of(files: &[(&str, Vec<u8>)]) -> Vec<u8> {
+    let mut archive = ZipWriter::new(std::io::Cursor::new(Vec::new()));
+    for (name, content) in files {
+        archive.start_file(*name, SimpleFileOptions::default()).unwrap();
+        archive.write_all(content).unwrap();
+    }
+    archive.finish().unwrap().into_inner()
+}
+
+fn tar_of(files: &[(&str, Vec<u8>)]) -> Vec<u8> {
+    let mut archive = ::tar::Builder::new(Vec::new());
+    for (name, content) in files {
+        let mut header = ::tar::Header::new_gnu();
+        header.set_size(content.len() as u64);
+        header.set_mode(0o644);
+        // The library refuses to write names that lead out of the archive.
+        let raw = name.as_bytes();
+        header.as_old_mut().name[..raw.len()].copy_from_slice(raw);
+        header.set_cksum();
+        archive.append(&header, &content[..]).unwrap();
+    }
+    archive.into_inner().unwrap()
+}
+
+fn gzip_of(bytes: &[u8]) -> Vec<u8> {
+    let mut out = GzEncoder::new(Vec::new(), Compression::default());
+    out.write_all(bytes).unwrap();
+    out.finish().unwrap()
+}
+
+/// Rows of id, label, format and bytes.
+type Rows<'a> = &'a [(&'a str, Option<&'a str>, &'a str, Vec<u8>)];
+
+fn parquet_of(rows: Rows<'_>) -> Vec<u8> {
+    let schema = "message meshes { REQUIRED BYTE_ARRAY id (UTF8); OPTIONAL BYTE_ARRAY label (UTF8);
+        REQUIRED BYTE_ARRAY format (UTF8); REQUIRED BYTE_ARRAY bytes; }";
+    let schema = parse_message_type(schema).unwrap().into();
+    let mut out = Vec::new();
+    let properties =
+        WriterProperties::builder().set_compression(::parquet::basic::Compression::SNAPPY).build();
+    let mut writer = SerializedFileWriter::new(&mut out, schema, properties.into()).unwrap();
+    for rows in rows.chunks(3) {
+        let mut group = writer.next_row_group().unwrap();
+        let levels: Vec<i16> = rows.iter().map(|row| i16::from(row.1.is_some())).collect();
+        let columns: [Vec<ByteArray>; 4] = [
+            rows.iter().map(|row| row.0.into()).collect(),
+            rows.iter().filter_map(|row| Some(row.1?.into())).collect(),
+            rows.iter().map(|row| row.2.into()).collect(),
+            rows.iter().map(|row| row.3.clone().into()).collect(),
+        ];
+        for (number, values) in columns.iter().enumerate() {
+            let mut column = group.next_column().unwrap().unwrap();
+            let levels = (number == 1).then_some(&levels[..]);
+            column.typed::<ByteArrayType>().write_batch(values, levels, None).unwrap();
+            column.close().unwrap();
+        }
+        group.close().unwrap();
+    }
+    writer.close().unwrap();
+    out
+}
+
+fn described(dataset: &Dataset) -> Vec<(String, String)> {
+    dataset.shapes.iter().map(|shape| (shape.name.clone(), shape.label.clone())).collect()
+}
+
+#[test]
+fn an_archive_is_the_dataset_that_it_was_made_from() {
+    let place = folder();
+    let mut files = contents();
+    files.push(other_half());
+    for (name, content) in &files {
+        let path = place.path().join("plain").join(name);
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+        fs::write(path, content).unwrap();
+    }
+    let plain = Dataset::read(&place.path().join("plain/all"), None).unwrap();
+    assert_eq!(plain.shapes.len(), 4);
+    let tar = tar_of(&files);
+    for (name, bytes) in [
+        ("a.zip", zip_of(&files)),
+        ("a.tar", tar.clone()),
+        ("a.tar.gz", gzip_of(&tar)),
+        ("A.TGZ", gzip_of(&tar)),
+    ] {
+        let path = place.path().join(name);
+        fs::write(&path, bytes).unwrap();
+        assert!(is_dataset(&path));
+        let dataset = Dataset::read(&path, None).unwrap();
+        assert_eq!(described(&dataset), described(&plain), "{name}");
+        assert_eq!(count_skipped(&dataset.skipped), count_skipped(&plain.skipped), "{name}");
+        for (member, file) in dataset.shapes.iter().zip(&plain.shapes) {
+            assert!(member.path.starts_with(&path) && Storage.holds(&member.path));
+            assert_eq!(read_mesh(&member.path).unwrap(), read_mesh(&file.path).unwrap(), "{name}");
+            assert_eq!(content_hash(&member.path).unwrap(), content_hash(&file.path).unwrap(), "{name}");
+        }
+        let missing = read_mesh(&path.join("all/cat/cat11.off")).unwrap_err().to_string();
+        assert!(missing.contains("cat11.off") && missing.contains("no such member"), "{missing}");
+        let archive = read_mesh(&path).unwrap_err().to_string();
+        assert!(
+            archive.contains("unknown mesh format") || archive.contains("this is an archive"),
+            "{archive}"
+        );
+    }
+}
+
+#[test]
+fn members_are_read_by_many_threads_at_once() {
+    use rayon::prelude::*;
+
+    let place = folder();
+    let files: Vec<(String, Vec<u8>)> =
+        (0..40).map(|i| (format!("m{i}.off"), bytes_of(&shapes::grid(3 + i, 4, 0.1), "off"))).collect();
+    let files: Vec<(&str, Vec<u8>)> =
+        files.iter().map(|(name, bytes)| (name.as_str(), bytes.clone())).collect();
+    for (name, bytes) in [("a.zip", zip_of(&files)), ("a.tar.gz", gzip_of(&tar_of(&files)))] {
+        let path = place.path().join(name);
+        fs::write(&path, bytes).unwrap();
+        let shapes = list_shapes(&path, None).unwrap();
+        shapes.par_iter().enumerate().for_each(|(i, shape)| {
+            assert_eq!(read_mesh(&shape.path).unwrap().n_vertices(), 4 * (3 + i), "{name}");
+        });
+    }
+}
+
+#[test]
+fn a_changed_archive_is_read_again() {
+    let place = folder();
+    let path = place.path().join("a.zip");
+    for n in [1, 2] {
+        fs::write(&path, zip_of(&[("m.off", bytes_of(&shapes::icosphere(n), "off"))])).unwrap();
+        assert_eq!(read_mesh(&path.join("m.off")).unwrap(), shapes::icosphere(n));
+    }
+}
+
+#[test]
+fn members_that_lead_out_of_an_archive_are_skipped() {
+    let place = folder();
+    let cube = bytes_of(&shapes::cube(0), "off");
+    let names = ["../evil.off", "/etc/evil.off", "a/../../evil.off", "C:\\evil.off", "good.off"];
+    let files: Vec<(&str, Vec<u8>)> = names.map(|name| (name, cube.clone())).to_vec();
+    let tar = tar_of(&files);
+    for (name, bytes) in [("a.zip", zip_of(&files)), ("a.tar", tar.clone()), ("a.tar.gz", gzip_of(&tar))] {
+        let path = place.path().join(name);
+        fs::write(&path, bytes).unwrap();
+        let dataset = Dataset::read(&path, None).unwrap();
+        assert_eq!(described(&dataset), [("good".to_owned(), "good".to_owned())], "{name}");
+        let unsafe_names = dataset.skipped.iter().filter(|skipped| skipped.kind == SkipKind::UnsafeName);
+        assert_eq!(unsafe_names.count(), 4, "{name}");
+        assert!(read_mesh(&path.join("../evil.off")).is_err());
+    }
+}
+
+#[test]
+fn names_that_are_not_utf_8_and_links_are_skipped() {
+    let place = folder();
+    let cube = bytes_of(&shapes::cube(0), "off");
+    let mut tar = tar_of(&[("good.off", cube.clone()), ("baX.off", cube.clone())]);
+    let at = tar.windows(7).position(|window| window == b"baX.off").unwrap();
+    tar[at + 2] = 0xff;
+    // The checksum of the header, six octal digits, counts the change.
+    let header = at..at + 512;
+    tar[at + 148..at + 156].copy_from_slice(b"        ");
+    let sum: u32 = tar[header].iter().map(|byte| u32::from(*byte)).sum();
+    tar[at + 148..at + 155].copy_from_slice(format!("{sum:06o}\0").as_bytes());
+    let path = place.path().join("a.tar");
+    fs::write(&path, tar).unwrap();
+    let dataset = Dataset::read(&path, None).unwrap();
+    assert_eq!(dataset.shapes.len(), 1);
+    assert_eq!(dataset.skipped[0].kind, SkipKind::NotUtf8);
+}
+
+#[test]
+fn encrypted_and_damaged_members_are_errors_that_name_them() {
+    let place = folder();
+    let path = place.path().join("a.zip");
+    let off = bytes_of(&shapes::icosphere(2), "off");
+    let intact = zip_of(&[("a.off", off.clone()), ("b.off", off.clone())]);
+    // Flags of the first entry, in its own header and in the directory.
+    let mut locked = intact.clone();
+    locked[6] |= 1;
+    let directory = locked.windows(4).position(|window| window == b"PK\x01\x02").unwrap();
+    locked[directory + 8] |= 1;
+    fs::write(&path, &locked).unwrap();
+    let error = read_mesh(&path.join("a.off")).unwrap_err().to_string();
+    assert!(error.contains("a.zip/a.off: this member is encrypted; unpack"), "{error}");
+    assert_eq!(read_mesh(&path.join("b.off")).unwrap(), shapes::icosphere(2));
+    let mut damaged = intact.clone();
+    damaged[200] ^= 0x55;
+    fs::write(&path, &damaged).unwrap();
+    let error = read_mesh(&path.join("a.off")).unwrap_err().to_string();
+    assert!(error.contains("a.zip/a.off: expected"), "{error}");
+    for (name, bytes) in [
+        ("cut.zip", &intact[..intact.len() / 2]),
+        ("cut.tar", &tar_of(&[("a.off", off.clone())])[..700]),
+        ("cut.tar.gz", &gzip_of(&tar_of(&[("a.off", off.clone())]))[..200]),
+        ("a.parquet", &b"PAR1xxxxPAR1"[..]),
+        ("empty.zip", b""),
+        ("empty.tar", b""),
+        ("empty.parquet", b""),
+    ] {
+        let path = place.path().join(name);
+        fs::write(&path, bytes).unwrap();
+        let error = list_shapes(&path, None).map(|shapes| read_mesh(&shapes[0].path));
+        let error = match error {
+            Ok(Ok(_)) => panic!("{name} was read"),
+            Ok(Err(error)) | Err(error) => error.to_string(),
+        };
+        assert!(error.contains(name), "{error}");
+    }
+}
+
+#[test]
+fn decompression_bombs_are_cut_off() {
+    let place = folder();
+    let blanks = vec![b'\n'; 100 << 20];
+    let files = [("bomb.obj", blanks.clone())];
+    for (name, bytes) in [("a.zip", zip_of(&files)), ("a.tar.gz", gzip_of(&tar_of(&files)))] {
+        let path = place.path().join(name);
+        fs::write(&path, bytes).unwrap();
+        let error = list_shapes(&path, None).and_then(|shapes| read_mesh(&shapes[0].path)).unwrap_err();
+        assert!(error.to_string().contains("out of proportion"), "{name}: {error}");
+    }
+}
+
+#[test]
+fn rows_of_a_parquet_file_are_meshes_with_classes() {
+    let place = folder();
+    let path = place.path().join("meshes.parquet");
+    let [ball, cube] = [shapes::icosphere(1), shapes::cube(1)];
+    let rows = [
+        ("a/one", Some("round"), "off", bytes_of(&ball, "off")),
+        ("two.ply", Some("round"), "ply", bytes_of(&ball, "ply")),
+        ("three", None, ".stl", bytes_of(&cube, "stl")),
+        ("four", Some("square"), "obj.gz", bytes_of(&cube, "obj.gz")),
+    ];
+    fs::write(&path, parquet_of(&rows)).unwrap();
+    let dataset = Dataset::read(&path, None).unwrap();
+    let expected = [("a/one", "round"), ("four", "square"), ("three", "three"), ("two", "round")];
+    assert_eq!(described(&dataset), expected.map(|(name, label)| (name.to_owned(), label.to_owned())));
+    for shape in &dataset.shapes {
+        let mesh = read_mesh(&shape.path).unwrap();
+        assert_eq!(mesh.n_faces(), if shape.label == "round" { ball.n_faces() } else { cube.n_faces() });
+    }
+    // A file of labels goes first.
+    let labels = place.path().join("labels.csv");
+    fs::write(&labels, "two,other\nfour.obj.gz,else\n").unwrap();
+    let dataset = Dataset::read(&path, Some(&LabelFile::read(&labels).unwrap())).unwrap();
+    let labels: Vec<_> = dataset.shapes.iter().map(|shape| shape.label.as_str()).collect();
+    assert_eq!(labels, ["", "else", "", "other"]);
+    for (rows, words) in [
+        (&[("x", None, "txt", vec![1])][..], "expected the extension of a mesh"),
+        (&[("x", None, "off", vec![1]), ("x", None, "off", vec![2])], "a different id in every row"),
+    ] {
+        fs::write(&path, parquet_of(rows)).unwrap();
+        let error = Dataset::read(&path, None).unwrap_err().to_string();
+        assert!(error.contains("meshes.parquet") && error.contains(words), "{error}");
+    }
+}
+
+#[test]
+fn parquet_files_with_bytes_changed_do_not_panic() {
+    let place = folder();
+    let mut file = tempfile::tempfile_in(place.path()).unwrap();
+    let rows = [("one", Some("round"), "off", b"OFF 3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n".to_vec())];
+    let intact = parquet_of(&rows);
+    let mut random = 0x2545_f491_4f6c_dd1du64;
+    let mut below = |n: usize| {
+        random ^= random << 13;
+        random ^= random >> 7;
+        random ^= random << 17;
+        (random % n as u64) as usize
+    };
+    let mut sound = 0;
+    for _ in 0..10_000 {
+        let mut bytes = intact.clone();
+        for _ in 0..=below(3) {
+            let at = below(bytes.len());
+            bytes[at] = below(256) as u8;
+        }
+        use std::io::Seek;
+        file.rewind().unwrap();
+        file.set_len(0).unwrap();
+        file.write_all(&bytes).unwrap();
+        sound += usize::from(parquet::open(file.try_clone().unwrap()).is_ok());
+    }
+    println!("parquet: 10000 mutations, {sound} of them still readable, no panic");
+}
+
+#[test]
+fn archives_with_bytes_changed_do_not_panic() {
+    use std::io::Seek;
+
+    let place = folder();
+    let off = b"OFF 3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n".to_vec();
+    let files = [("cat/cat0.off", off.clone()), ("dog/dog0.off", off)];
+    let tar = tar_of(&files);
+    let mut random = 0x9e37_79b9_7f4a_7c15u64;
+    let mut below = |n: usize| {
+        random ^= random << 13;
+        random ^= random >> 7;
+        random ^= random << 17;
+        (random % n.max(1) as u64) as usize
+    };
+    for (name, intact, container) in [
+        ("a.zip", zip_of(&files), Container::Zip),
+        ("a.tar", tar.clone(), Container::Tar),
+        ("a.tar.gz", gzip_of(&tar), Container::Tar),
+    ] {
+        let mut file = tempfile::tempfile_in(place.path()).unwrap();
+        let mut read = 0;
+        for _ in 0..10_000 {
+            let mut bytes = intact.clone();
+            for _ in 0..=below(3) {
+                let at = below(bytes.len());
+                match below(4) {
+                    0 => bytes.truncate(at.max(1)),
+                    _ => bytes[at] = below(256) as u8,
+                }
+            }
+            file.rewind().unwrap();
+            file.set_len(0).unwrap();
+            file.write_all(&bytes).unwrap();
+            let path = Path::new(name);
+            let Ok(archive) = cache::members(path, file.try_clone().unwrap(), container) else { continue };
+            for (member, _) in archive.members() {
+                read += usize::from(archive.read(member, path).is_ok());
+            }
+        }
+        println!("{name}: 10000 mutations, {read} members read, no panic");
+    }
+}
+
+#[test]
+fn lists_name_files_and_members_relative_to_themselves() {
+    let place = folder();
+    let at = |name: &str| place.path().join(name);
+    fs::create_dir_all(at("meshes/cat")).unwrap();
+    fs::create_dir_all(at("lists")).unwrap();
+    for name in ["meshes/cat/cat0.off", "meshes/dog1.off"] {
+        mesh::io::write(&at(name), &shapes::cube(0)).unwrap();
+    }
+    fs::write(at("meshes/more.zip"), zip_of(&[("x/dog2.off", bytes_of(&shapes::cube(1), "off"))])).unwrap();
+    let list = at("lists/all.txt");
+    let lines = "# comment\n../meshes/dog1.off\r\n\n ../meshes/more.zip/x/dog2.off\n./../meshes/cat/cat0.off\n../meshes/dog1.off\n";
+    fs::write(&list, lines).unwrap();
+    let dataset = Dataset::read(&list, None).unwrap();
+    let expected = [("cat/cat0", "cat"), ("dog1", "dog"), ("more.zip/x/dog2", "more.zip/x")];
+    assert_eq!(described(&dataset), expected.map(|(name, label)| (name.to_owned(), label.to_owned())));
+    assert_eq!(dataset.skipped.len(), 1);
+    assert!(dataset.shapes.iter().all(|shape| read_mesh(&shape.path).is_ok()));
+    for (line, words) in [("../meshes", "is a folder"), ("notes.md", "is not a mesh")] {
+        fs::write(&list, format!("\n{line}\n")).unwrap();
+        let error = Dataset::read(&list, None).unwrap_err().to_string();
+        assert!(error.contains("all.txt, line 2: ") && error.contains(words), "{error}");
+    }
+    fs::write(&list, "").unwrap();
+    assert!(Dataset::read(&list, None).unwrap_err().to_string().contains("no mesh found"));
+}

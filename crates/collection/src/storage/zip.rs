@@ -1,0 +1,86 @@
+//! Zip archives.
+
+use std::fs::File;
+use std::io::Read;
+
+use mesh::Fault;
+use mesh::io::inflated_limit;
+use zip::ZipArchive;
+use zip::result::ZipError;
+
+use super::archive::{Archive, Data, Entries, Member};
+use super::window::Window;
+use crate::dataset::SkipKind;
+
+/// A zip archive; clones share the directory and have positions of their own.
+#[derive(Debug, Clone)]
+pub(super) struct Zip(ZipArchive<Window>);
+
+pub(super) fn open(file: File) -> Result<Archive, Fault> {
+    let window = Window::whole(file)
+        .map_err(|error| Fault::Syntax { expected: "a file that can be read", found: error.to_string() })?;
+    if window.len() == 0 {
+        return Err(Fault::Empty);
+    }
+    let zip = ZipArchive::new(window).map_err(damaged)?;
+    let directory = zip.metadata();
+    let mut archive = Archive::of(Data::Entries(Box::new(Zip(zip))));
+    for at in 0..directory.len() {
+        let entry = directory.entry(at).map_err(damaged)?;
+        // Many programs write UTF-8 without saying so.
+        let raw = entry.name_raw();
+        let name = match std::str::from_utf8(raw) {
+            Ok(name) => name.to_owned(),
+            Err(_) => match entry.name() {
+                Ok(name) => name.into_owned(),
+                Err(_) => {
+                    archive.skip(&String::from_utf8_lossy(raw), SkipKind::NotUtf8);
+                    continue;
+                }
+            },
+        };
+        if entry.is_symlink() {
+            archive.skip(&name, SkipKind::Special);
+        } else if !entry.is_dir() {
+            archive.add(&name, Member { size: entry.size(), label: None, at: at as u64 });
+        }
+    }
+    Ok(archive)
+}
+
+impl Entries for Zip {
+    /// Decompresses a member, whose checksum must be right.
+    fn read(&self, member: &Member) -> Result<Vec<u8>, Fault> {
+        let mut archive = self.0.clone();
+        let at = member.at as usize;
+        let entry = archive.by_index_data(at).map_err(damaged)?;
+        if entry.encrypted() {
+            return Err(Fault::Unsupported {
+                what: "this member is encrypted".into(),
+                remedy: "unpack the archive with its password, or store it without one",
+            });
+        }
+        // The stated sizes may be wrong.
+        let limit = inflated_limit(entry.compressed_size());
+        let entry = archive.by_index(at).map_err(damaged)?;
+        let mut bytes = Vec::new();
+        entry
+            .take(limit + 1)
+            .read_to_end(&mut bytes)
+            .map_err(|error| Fault::Syntax { expected: "compressed data", found: error.to_string() })?;
+        match bytes.len() as u64 > limit {
+            true => Err(Fault::Inflates { limit }),
+            false => Ok(bytes),
+        }
+    }
+}
+
+fn damaged(error: ZipError) -> Fault {
+    match error {
+        ZipError::UnsupportedArchive(_) | ZipError::CompressionMethodNotSupported(_) => Fault::Unsupported {
+            what: error.to_string(),
+            remedy: "unpack the archive, or create it with Deflate compression",
+        },
+        other => Fault::Syntax { expected: "an intact zip archive", found: other.to_string() },
+    }
+}

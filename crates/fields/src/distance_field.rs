@@ -1,0 +1,203 @@
+//! What a distance field holds.
+
+use std::sync::OnceLock;
+
+use geodesics::{DistanceSolver, GeodesicError, Method};
+use mesh::RepairOptions;
+use nmds::LandmarkMetric;
+use serde::{Deserialize, Serialize};
+use surface::{IntrinsicMesh, VertexId};
+
+use crate::error::FieldError;
+
+/// The distances between all pairs of vertices of a surface, in a few hundred bytes per vertex instead of eight bytes per
+/// pair.
+///
+/// Every answer is an estimate and an interval that holds the true distance, see [`LandmarkMetric`]. With columns by
+/// [`Method::Exact`] the intervals are [certified](FieldBounds::Certified). With other methods they are widened by the error of
+/// the method, [measured](FieldBounds::Measured) on this surface.
+///
+/// | query | time | answer |
+/// |---|---|---|
+/// | [`pair`](Self::pair) | well below a microsecond | estimate and interval |
+/// | [`pairs`](Self::pairs) | the same, and 1 to 20 milliseconds for each pair that is finished | exact where the interval is wide |
+/// | [`row`](Self::row) | the same for all vertices | as `pairs` |
+/// | [`nearest`](Self::nearest) | some milliseconds | exact |
+///
+/// The field keeps the edge lengths of the surface, 48 bytes per vertex, so it can finish pairs by itself: by exact
+/// propagation from one vertex, no farther than the interval allows.
+///
+/// ```
+/// use canonform_fields::{DistanceField, FieldOptions, Finish};
+/// use mesh::{Surface, shapes};
+/// use surface::VertexId;
+///
+/// let surface = Surface::new(&shapes::icosphere(3), &Default::default(), &())?;
+/// let field = DistanceField::build(&surface, &FieldOptions::default(), &())?;
+///
+/// // From pole to pole of the unit sphere: half of its circumference.
+/// let [a, b] = [VertexId(0), VertexId(3)];
+/// let pair = field.pair(a, b)?;
+/// assert!(pair.lower <= pair.distance && pair.distance <= pair.upper);
+/// // Every vertex, exact wherever the landmarks leave more than 5 % open.
+/// let row = field.row(a, Finish::default(), &())?;
+/// assert_eq!(row[3].b, b);
+/// // The six neighbours of a vertex.
+/// assert_eq!(field.nearest(VertexId(100), 6, &())?.len(), 6);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug)]
+pub struct DistanceField {
+    /// How it was made.
+    pub(crate) provenance: Provenance,
+    pub(crate) metric: LandmarkMetric,
+    /// Vertices of the repaired mesh.
+    pub(crate) landmarks: Vec<VertexId>,
+    pub(crate) surface: IntrinsicMesh,
+    pub(crate) map: VertexMap,
+    /// Prepared when the first pair is finished.
+    pub(crate) exact: OnceLock<Box<dyn DistanceSolver>>,
+}
+
+/// How the columns of a field were measured.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) struct Provenance {
+    pub(crate) method: Method,
+    pub(crate) repair: RepairOptions,
+}
+
+/// The vertices of the input on the repaired mesh.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct VertexMap {
+    pub(crate) n_input: usize,
+    /// For each input vertex, its vertex in the repaired mesh; `None` if the repair dropped it. None at all if the repair kept
+    /// every vertex.
+    pub(crate) to_repaired: Option<Vec<Option<VertexId>>>,
+}
+
+impl VertexMap {
+    pub(crate) fn new(to_repaired: &[Option<VertexId>], n_repaired: usize) -> Self {
+        let stays = |(input, vertex): (usize, &Option<VertexId>)| *vertex == Some(VertexId::from(input));
+        let n_input = to_repaired.len();
+        let is_identity = n_input == n_repaired && to_repaired.iter().enumerate().all(stays);
+        Self { n_input, to_repaired: (!is_identity).then(|| to_repaired.to_vec()) }
+    }
+
+    /// The vertex of the repaired mesh; `None` if it was dropped.
+    pub(crate) fn get(&self, input: VertexId) -> Option<VertexId> {
+        self.to_repaired.as_ref().map_or(Some(input), |map| map[input.index()])
+    }
+}
+
+/// What the intervals of a field rest on.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case", tag = "kind")]
+pub enum FieldBounds {
+    /// Exact distances from all landmarks and the triangle inequality: no interval can miss the distance.
+    Certified,
+    /// Distances by an approximate method. Twice its largest error in the exact columns widens the intervals.
+    Measured {
+        /// The most that a distance of the method counts as too long, in mesh units.
+        over: f64,
+        /// The most that it counts as too short.
+        under: f64,
+        /// Number of exact columns; they are not widened.
+        exact_columns: usize,
+    },
+}
+
+/// Facts about a field.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct FieldFacts {
+    /// Name of the method that measured the columns.
+    pub method: &'static str,
+    /// What the intervals rest on.
+    pub bounds: FieldBounds,
+    /// Vertices of the input.
+    pub n_vertices: usize,
+    /// Number of landmarks.
+    pub n_landmarks: usize,
+    /// Number of eigenpairs behind the estimates.
+    pub rank: usize,
+    /// The largest distance of a vertex from its nearest landmark, in mesh units.
+    pub covering_radius: f64,
+    /// Size of the file, in bytes.
+    pub bytes: usize,
+}
+
+impl DistanceField {
+    /// Number of vertices of the input.
+    pub fn n_vertices(&self) -> usize {
+        self.map.n_input
+    }
+
+    /// Facts about the field.
+    pub fn facts(&self) -> FieldFacts {
+        let parts = self.metric.bounds().parts();
+        FieldFacts {
+            method: self.provenance.method.name(),
+            bounds: self.bounds(),
+            n_vertices: self.n_vertices(),
+            n_landmarks: parts.n_landmarks,
+            rank: self.metric.factors().parts().rank,
+            covering_radius: self.metric.covering_radius(),
+            bytes: self.n_bytes(),
+        }
+    }
+
+    /// What its intervals rest on.
+    pub fn bounds(&self) -> FieldBounds {
+        let parts = self.metric.bounds().parts();
+        match parts.n_exact == parts.n_landmarks {
+            true => FieldBounds::Certified,
+            false => FieldBounds::Measured {
+                over: parts.error.over,
+                under: parts.error.under,
+                exact_columns: parts.n_exact,
+            },
+        }
+    }
+
+    /// The method that measured the columns.
+    pub fn method(&self) -> Method {
+        self.provenance.method
+    }
+
+    /// How the mesh was repaired.
+    pub fn repair(&self) -> RepairOptions {
+        self.provenance.repair
+    }
+
+    /// The landmarks: vertices of the input.
+    pub fn landmarks(&self) -> Vec<VertexId> {
+        let Some(map) = &self.map.to_repaired else { return self.landmarks.clone() };
+        let mut first = vec![None; self.surface.n_vertices()];
+        for (input, vertex) in map.iter().enumerate().rev() {
+            if let Some(vertex) = vertex {
+                first[vertex.index()] = Some(VertexId::from(input));
+            }
+        }
+        self.landmarks.iter().filter_map(|landmark| first[landmark.index()]).collect()
+    }
+
+    /// The vertex of the repaired mesh that an input vertex became; `None` if it was dropped.
+    pub(crate) fn repaired(&self, input: VertexId) -> Result<Option<VertexId>, FieldError> {
+        match input.index() < self.n_vertices() {
+            true => Ok(self.map.get(input)),
+            false => Err(GeodesicError::NoSuchVertex { vertex: input, n_vertices: self.n_vertices() }.into()),
+        }
+    }
+
+    /// The exact solver of the surface.
+    pub(crate) fn exact(&self) -> Result<&dyn DistanceSolver, FieldError> {
+        if self.exact.get().is_none() {
+            // Another thread may have been faster.
+            let _ = self.exact.set(Method::Exact.prepare(&self.surface, &())?);
+        }
+        match self.exact.get() {
+            Some(solver) => Ok(solver.as_ref()),
+            None => unreachable!("it has just been set"),
+        }
+    }
+}

@@ -1,0 +1,256 @@
+//! Questions to a field.
+
+use geodesics::Source;
+use nmds::PairEstimate;
+use rayon::prelude::*;
+use serde::Serialize;
+use surface::VertexId;
+
+use crate::distance_field::DistanceField;
+use crate::error::FieldError;
+use base::Observer;
+
+/// Which pairs are finished by exact propagation.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Finish {
+    /// None.
+    Never,
+    /// Those whose interval is wider than this share of its lower end. What the error of the columns adds does not count. In a
+    /// certified field no distance is then wrong by a larger share.
+    Beyond(f64),
+}
+
+impl Default for Finish {
+    /// Beyond 5 %.
+    fn default() -> Self {
+        Self::Beyond(0.05)
+    }
+}
+
+impl Finish {
+    fn wants(self, pair: &PairEstimate) -> bool {
+        match self {
+            Self::Never => false,
+            Self::Beyond(share) => pair.open.width() > share * pair.open.lower,
+        }
+    }
+}
+
+/// The distance between two vertices, with bounds.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct PairDistance {
+    /// A vertex of the input.
+    pub a: VertexId,
+    /// Another.
+    pub b: VertexId,
+    /// Their distance along the surface, in mesh units. Infinite if the repair dropped one of them.
+    pub distance: f64,
+    /// No distance is below this.
+    pub lower: f64,
+    /// No distance is above this.
+    pub upper: f64,
+    /// How the distance was found.
+    pub kind: PairKind,
+}
+
+/// How the distance of a pair was found.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum PairKind {
+    /// Estimated from the landmarks.
+    Estimated,
+    /// By exact propagation; only rounding is left.
+    Exact,
+    /// The repair dropped one of the vertices.
+    Dropped,
+}
+
+/// The rounding of exact distances, as a share of them.
+const ROUNDING: f64 = 1e-9;
+
+impl PairDistance {
+    fn exact([a, b]: [VertexId; 2], distance: f64) -> Self {
+        let [lower, upper] = [distance * (1.0 - ROUNDING), distance * (1.0 + ROUNDING)];
+        Self { a, b, distance, lower, upper, kind: PairKind::Exact }
+    }
+
+    fn dropped([a, b]: [VertexId; 2]) -> Self {
+        let infinite = f64::INFINITY;
+        Self { a, b, distance: infinite, lower: infinite, upper: infinite, kind: PairKind::Dropped }
+    }
+
+    fn estimated([a, b]: [VertexId; 2], pair: &PairEstimate) -> Self {
+        let PairEstimate { distance, bounds, .. } = *pair;
+        Self { a, b, distance, lower: bounds.lower, upper: bounds.upper, kind: PairKind::Estimated }
+    }
+}
+
+/// An estimate that can be finished, and its vertices on the repaired mesh.
+type Open = (PairEstimate, [VertexId; 2]);
+
+/// A pair that is to be finished: its place among the answers and its vertices on the repaired mesh.
+#[derive(Debug, Clone, Copy)]
+struct Unfinished {
+    place: usize,
+    source: VertexId,
+    target: VertexId,
+    /// The upper end of its interval.
+    upper: f64,
+}
+
+impl DistanceField {
+    /// The distance of two vertices of the input, estimated, in well below a microsecond.
+    ///
+    /// # Errors
+    /// [`FieldError::Geodesic`] for a vertex that does not exist.
+    pub fn pair(&self, a: VertexId, b: VertexId) -> Result<PairDistance, FieldError> {
+        Ok(self.estimate([a, b])?.0)
+    }
+
+    /// The estimate of a pair, and what it takes to finish it; `None` if nothing is left to finish.
+    fn estimate(&self, pair: [VertexId; 2]) -> Result<(PairDistance, Option<Open>), FieldError> {
+        let [a, b] = pair;
+        let (Some(a), Some(b)) = (self.repaired(a)?, self.repaired(b)?) else {
+            return Ok((PairDistance::dropped(pair), None));
+        };
+        if a == b {
+            return Ok((PairDistance::exact(pair, 0.0), None));
+        }
+        let estimate = self.metric.pair(a.index(), b.index());
+        Ok((PairDistance::estimated(pair, &estimate), Some((estimate, [a, b]))))
+    }
+
+    /// The distances of many pairs of vertices of the input, in parallel, in their order. Finished pairs are grouped by vertex,
+    /// so pairs that share one cost less.
+    ///
+    /// # Errors
+    /// [`FieldError::Geodesic`] for a vertex that does not exist; [`FieldError::Exceeded`].
+    pub fn pairs(
+        &self,
+        pairs: &[[VertexId; 2]],
+        finish: Finish,
+        observer: &dyn Observer,
+    ) -> Result<Vec<PairDistance>, FieldError> {
+        let answers = pairs.par_iter().enumerate().with_min_len(1024).map(|(place, pair)| {
+            let (answer, open) = self.estimate(*pair)?;
+            let unfinished = open.filter(|(estimate, _)| finish.wants(estimate)).map(|(estimate, [a, b])| {
+                let upper = estimate.bounds.upper;
+                Unfinished { place, source: a.min(b), target: a.max(b), upper }
+            });
+            Ok((answer, unfinished))
+        });
+        let (mut answers, unfinished): (Vec<_>, Vec<_>) =
+            answers.collect::<Result<Vec<_>, FieldError>>()?.into_iter().unzip();
+        let mut unfinished: Vec<Unfinished> = unfinished.into_iter().flatten().collect();
+        // From the lower vertex, so that both directions of a pair give the same number.
+        unfinished.sort_by_key(|pair| (pair.source, pair.place));
+        let groups: Vec<&[Unfinished]> = unfinished.chunk_by(|a, b| a.source == b.source).collect();
+        observer.begin("near pairs", groups.len());
+        let finished = groups.par_iter().map_init(Vec::new, |distances, group| {
+            let radius = group.iter().fold(0.0, |radius: f64, pair| radius.max(pair.upper));
+            self.propagate(group[0].source, radius, distances, observer)?;
+            if group.iter().any(|pair| distances[pair.target.index()].is_infinite()) {
+                // The error of the columns was larger than stated.
+                self.propagate(group[0].source, f64::INFINITY, distances, observer)?;
+            }
+            observer.step();
+            Ok(group.iter().map(|pair| (pair.place, distances[pair.target.index()])).collect::<Vec<_>>())
+        });
+        for (place, distance) in finished.collect::<Result<Vec<_>, FieldError>>()?.into_iter().flatten() {
+            answers[place] = PairDistance::exact(pairs[place], distance);
+        }
+        Ok(answers)
+    }
+
+    /// The distances from one vertex of the input to all, in the order of the input.
+    ///
+    /// # Errors
+    /// As [`pairs`](Self::pairs).
+    pub fn row(
+        &self,
+        source: VertexId,
+        finish: Finish,
+        observer: &dyn Observer,
+    ) -> Result<Vec<PairDistance>, FieldError> {
+        let from = self.repaired(source)?;
+        let vertices = (0..self.n_vertices()).into_par_iter().with_min_len(1024);
+        let answers = vertices.map(|vertex| self.estimate([source, VertexId::from(vertex)]));
+        let answers = answers.collect::<Result<Vec<_>, FieldError>>()?;
+        let open =
+            answers.iter().filter_map(|(_, open)| open.as_ref()).filter(|(pair, _)| finish.wants(pair));
+        let radius = open
+            .fold(None, |radius: Option<f64>, (pair, _)| Some(radius.unwrap_or(0.0).max(pair.bounds.upper)));
+        let mut row: Vec<PairDistance> = answers.into_iter().map(|(answer, _)| answer).collect();
+        if let (Some(from), Some(radius)) = (from, radius) {
+            let mut distances = Vec::new();
+            self.propagate(from, radius, &mut distances, observer)?;
+            for (vertex, answer) in row.iter_mut().enumerate() {
+                if let Some(to) = self.map.get(VertexId::from(vertex))
+                    && distances[to.index()].is_finite()
+                {
+                    *answer = PairDistance::exact([answer.a, answer.b], distances[to.index()]);
+                }
+            }
+        }
+        Ok(row)
+    }
+
+    /// The `k` vertices of the input nearest to one of them along the surface, itself left out: exact distances, nearest
+    /// first, equally near ones by their numbers. Fewer if there are fewer.
+    ///
+    /// # Errors
+    /// As [`pairs`](Self::pairs).
+    pub fn nearest(
+        &self,
+        source: VertexId,
+        k: usize,
+        observer: &dyn Observer,
+    ) -> Result<Vec<PairDistance>, FieldError> {
+        let Some(from) = self.repaired(source)? else { return Ok(Vec::new()) };
+        let others: Vec<(VertexId, VertexId)> = (0..self.n_vertices())
+            .map(VertexId::from)
+            .filter(|input| *input != source)
+            .filter_map(|input| Some((input, self.map.get(input)?)))
+            .collect();
+        let k = k.min(others.len());
+        if k == 0 {
+            return Ok(Vec::new());
+        }
+        // At least k vertices are no farther than the k-th smallest upper bound.
+        let upper =
+            |(_, to): &(VertexId, VertexId)| self.metric.bounds().interval(from.index(), to.index()).upper;
+        let mut uppers: Vec<f64> = others.par_iter().with_min_len(1024).map(upper).collect();
+        let (_, radius, _) = uppers.select_nth_unstable_by(k - 1, f64::total_cmp);
+        let mut distances = Vec::new();
+        let mut nearest = Vec::new();
+        // The second limit is for columns whose error is larger than stated.
+        for radius in [*radius, f64::INFINITY] {
+            self.propagate(from, radius, &mut distances, observer)?;
+            let found = others.iter().map(|(input, to)| (distances[to.index()], *input));
+            nearest = found.filter(|(distance, _)| distance.is_finite()).collect();
+            if nearest.len() >= k {
+                break;
+            }
+        }
+        nearest.sort_unstable_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        nearest.truncate(k);
+        Ok(nearest
+            .into_iter()
+            .map(|(distance, input)| PairDistance::exact([source, input], distance))
+            .collect())
+    }
+
+    /// Exact distances from a vertex of the repaired mesh, infinite beyond the radius.
+    fn propagate(
+        &self,
+        source: VertexId,
+        radius: f64,
+        distances: &mut Vec<f64>,
+        observer: &dyn Observer,
+    ) -> Result<(), FieldError> {
+        observer.budget().check()?;
+        distances.resize(self.surface.n_vertices(), f64::INFINITY);
+        let limit = radius * (1.0 + ROUNDING);
+        Ok(self.exact()?.solve_into(&[Source::vertex(source)], limit, distances)?)
+    }
+}

@@ -1,0 +1,345 @@
+//! Laws of fields: what holds for every surface and for every file.
+
+use geodesics::{GeodesicError, Method};
+use mesh::{ComponentPolicy, RepairOptions, TriMesh, shapes};
+use nmds::NmdsError;
+use surface::VertexId;
+
+use crate::error::FieldError;
+use crate::*;
+use mesh::Surface;
+
+fn surface(mesh: &TriMesh) -> Surface {
+    Surface::new(mesh, &RepairOptions::default(), &()).unwrap()
+}
+
+fn exact(landmarks: usize) -> FieldOptions {
+    FieldOptions { method: Method::Exact, landmarks, rank: None }
+}
+
+fn built(mesh: &TriMesh, options: &FieldOptions) -> DistanceField {
+    DistanceField::build(&surface(mesh), options, &()).unwrap()
+}
+
+/// All pairs of vertices.
+fn all_pairs(n: usize) -> Vec<[VertexId; 2]> {
+    (0..n).flat_map(|a| (0..n).map(move |b| [VertexId::from(a), VertexId::from(b)])).collect()
+}
+
+/// A torus with a crack, whose vertices are merged, beside a small component, which is dropped.
+fn repaired() -> TriMesh {
+    let mut mesh = shapes::disjoint(&[shapes::grid(2, 2, 0.01), shapes::torus(14, 8, 2.0, 0.6)]);
+    let twin = VertexId::from(mesh.n_vertices());
+    mesh.positions.push(mesh.positions[10]);
+    let faces = mesh.faces.iter_mut().filter(|f| f.contains(&VertexId(10)));
+    faces.take(2).flatten().filter(|v| **v == VertexId(10)).for_each(|v| *v = twin);
+    mesh
+}
+
+/// Surfaces of every kind: closed, open, with handles, with needles, with a fold.
+fn zoo() -> Vec<TriMesh> {
+    vec![
+        shapes::icosphere(2),
+        shapes::torus(16, 9, 2.0, 0.7),
+        shapes::jittered_grid(14, 11, 1.0, 0.3, 5),
+        shapes::sheared_grid(12, 9, 1.0, 4.0),
+        shapes::folded_sheet(12, 8, 1.0, 5, 1.5),
+        shapes::cube(2),
+        shapes::cylinder(24, 3, 1.0, 9.0),
+    ]
+}
+
+#[test]
+fn certified_intervals_hold_every_exact_distance() {
+    for mesh in zoo() {
+        let field = built(&mesh, &exact(12));
+        assert_eq!(field.bounds(), FieldBounds::Certified);
+        let solver = Method::Exact.prepare(surface(&mesh).intrinsic(), &()).unwrap();
+        for a in (0..mesh.n_vertices()).map(VertexId::from) {
+            let distances = solver.distances(a).unwrap();
+            for (b, distance) in distances.iter().enumerate() {
+                let pair = field.pair(a, VertexId::from(b)).unwrap();
+                assert!(pair.lower <= *distance && *distance <= pair.upper, "{pair:?}: {distance}");
+                assert!(pair.lower <= pair.distance && pair.distance <= pair.upper, "{pair:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn measured_intervals_hold_every_exact_distance() {
+    let methods = [Method::default(), Method::Dijkstra, Method::Heat(Default::default())];
+    for mesh in zoo() {
+        let solver = Method::Exact.prepare(surface(&mesh).intrinsic(), &()).unwrap();
+        let fields = methods.map(|method| built(&mesh, &FieldOptions { method, ..exact(16) }));
+        for field in &fields {
+            assert!(matches!(field.bounds(), FieldBounds::Measured { exact_columns: 4, .. }));
+        }
+        for a in (0..mesh.n_vertices()).map(VertexId::from) {
+            let distances = solver.distances(a).unwrap();
+            for (b, distance) in distances.iter().enumerate() {
+                for field in &fields {
+                    let pair = field.pair(a, VertexId::from(b)).unwrap();
+                    let holds = pair.lower <= *distance && *distance <= pair.upper;
+                    assert!(holds, "{}: {pair:?}: {distance}", field.facts().method);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn finished_pairs_are_exact_and_the_others_as_near_as_promised() {
+    for mesh in zoo() {
+        let field = built(&mesh, &exact(12));
+        let n = mesh.n_vertices();
+        let solver = Method::Exact.prepare(surface(&mesh).intrinsic(), &()).unwrap();
+        let columns = solver.distance_columns(&(0..n).map(VertexId::from).collect::<Vec<_>>()).unwrap();
+        let pairs = all_pairs(n);
+        let share = 0.1;
+        let found = field.pairs(&pairs, Finish::Beyond(share), &()).unwrap();
+        for pair in &found {
+            let distance = columns[(pair.a.index(), pair.b.index())];
+            let error = (pair.distance - distance).abs();
+            match pair.kind {
+                PairKind::Exact => assert!(error <= 1e-9 * distance, "{pair:?}: {distance}"),
+                _ => assert!(error <= share * distance, "{pair:?}: {distance}"),
+            }
+            assert!(pair.lower <= distance && distance <= pair.upper, "{pair:?}: {distance}");
+        }
+        assert!(found.iter().any(|pair| pair.kind == PairKind::Estimated));
+        // Rows give the same answers, or exact ones.
+        for source in [0, n / 2] {
+            let row = field.row(VertexId::from(source), Finish::Beyond(share), &()).unwrap();
+            for (answer, same) in row.iter().zip(&found[source * n..]) {
+                assert_eq!((answer.a, answer.b), (same.a, same.b));
+                match answer.kind {
+                    PairKind::Exact => {
+                        assert!(answer.distance >= same.lower && answer.distance <= same.upper)
+                    }
+                    _ => assert_eq!(answer, same),
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn distances_are_symmetric_and_zero_on_the_diagonal() {
+    for method in [Method::default(), Method::Exact] {
+        let mesh = shapes::torus(16, 9, 2.0, 0.7);
+        let field = built(&mesh, &FieldOptions { method, landmarks: 10, rank: None });
+        let n = mesh.n_vertices();
+        for finish in [Finish::Never, Finish::default()] {
+            let all = field.pairs(&all_pairs(n), finish, &()).unwrap();
+            for a in 0..n {
+                assert_eq!((all[a * n + a].distance, all[a * n + a].upper), (0.0, 0.0));
+                for b in 0..a {
+                    let [there, back] = [all[a * n + b], all[b * n + a]];
+                    assert_eq!(
+                        (there.distance, there.lower, there.upper),
+                        (back.distance, back.lower, back.upper)
+                    );
+                    assert_eq!(there.kind, back.kind);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn intervals_agree_with_the_triangle_inequality() {
+    let mesh = shapes::jittered_grid(9, 8, 1.0, 0.3, 2);
+    let field = built(&mesh, &exact(8));
+    let n = mesh.n_vertices();
+    let all = field.pairs(&all_pairs(n), Finish::Never, &()).unwrap();
+    let at = |a: usize, b: usize| all[a * n + b];
+    for (a, b, c) in (0..n).flat_map(|a| (0..n).map(move |b| (a, b, (7 * a + 3 * b) % n))) {
+        assert!(at(a, c).lower <= at(a, b).upper + at(b, c).upper, "{a} {b} {c}");
+        assert!(at(a, b).lower - at(b, c).upper <= at(a, c).upper, "{a} {b} {c}");
+    }
+}
+
+#[test]
+fn the_nearest_vertices_are_those_of_the_exact_distances() {
+    for method in [Method::default(), Method::Exact] {
+        for mesh in zoo() {
+            let field = built(&mesh, &FieldOptions { method, landmarks: 9, rank: None });
+            let solver = Method::Exact.prepare(surface(&mesh).intrinsic(), &()).unwrap();
+            for source in [0, mesh.n_vertices() / 3].map(VertexId::from) {
+                let distances = solver.distances(source).unwrap();
+                let mut sorted = distances.clone();
+                sorted.sort_by(f64::total_cmp);
+                for k in [1, 7, mesh.n_vertices() + 5] {
+                    let nearest = field.nearest(source, k, &()).unwrap();
+                    assert_eq!(nearest.len(), k.min(mesh.n_vertices() - 1));
+                    for (pair, expected) in nearest.iter().zip(&sorted[1..]) {
+                        assert_eq!((pair.a, pair.kind), (source, PairKind::Exact));
+                        assert!((distances[pair.b.index()] - pair.distance).abs() <= 1e-9 * expected);
+                        assert!((pair.distance - expected).abs() <= 1e-9 * expected);
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn answers_are_in_the_vertex_numbers_of_the_input() {
+    let mesh = repaired();
+    let twin = mesh.n_vertices() - 1;
+    let field = built(&mesh, &exact(10));
+    assert_eq!(field.n_vertices(), mesh.n_vertices());
+    assert!(field.landmarks().iter().all(|v| v.index() >= 4), "the first component was dropped");
+    let solver = Method::Exact.prepare(surface(&mesh).intrinsic(), &()).unwrap();
+    let source = surface(&mesh).repaired_vertex(VertexId(30)).unwrap();
+    let distances = surface(&mesh).in_input_order(&solver.distances(source).unwrap(), f64::INFINITY);
+    let row = field.row(VertexId(30), Finish::Never, &()).unwrap();
+    for (pair, distance) in row.iter().zip(&distances) {
+        assert!(pair.lower <= *distance && *distance <= pair.upper, "{pair:?}: {distance}");
+        assert_eq!(pair.kind == PairKind::Dropped, distance.is_infinite());
+    }
+    let [a, b] = [VertexId(10), VertexId::from(twin)];
+    assert_eq!(field.pair(a, b).unwrap().distance, 0.0);
+    assert_eq!(field.nearest(a, 1, &()).unwrap()[0].b, b, "the merged vertex is nearest");
+    assert!(field.nearest(VertexId(0), 3, &()).unwrap().is_empty(), "a dropped vertex has no neighbours");
+    let beyond = VertexId::from(mesh.n_vertices());
+    let fault = field.pairs(&[[a, beyond]], Finish::Never, &()).unwrap_err();
+    let n_vertices = mesh.n_vertices();
+    assert!(
+        matches!(fault, FieldError::Geodesic(f) if f == GeodesicError::NoSuchVertex { vertex: beyond, n_vertices })
+    );
+}
+
+#[test]
+fn bridged_components_are_measured_over_their_bridges() {
+    let mesh = shapes::disjoint(&[shapes::icosphere(1), shapes::cube(1)]);
+    let options = RepairOptions { components: ComponentPolicy::Bridge, ..Default::default() };
+    let surface = Surface::new(&mesh, &options, &()).unwrap();
+    let field = DistanceField::build(&surface, &exact(6), &()).unwrap();
+    let again = DistanceField::from_bytes(&field.to_bytes()).unwrap();
+    let solver = Method::Exact.prepare(surface.intrinsic(), &()).unwrap();
+    let distances = solver.distances(VertexId(3)).unwrap();
+    for (b, distance) in distances.iter().enumerate() {
+        let pair = again.pairs(&[[VertexId(3), VertexId::from(b)]], Finish::Beyond(0.0), &()).unwrap()[0];
+        assert!((pair.distance - distance).abs() <= 1e-9 * distance);
+    }
+}
+
+#[test]
+fn a_field_that_was_saved_gives_the_same_answers() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("x.field");
+    for (mesh, method) in [(repaired(), Method::default()), (shapes::icosphere(2), Method::Exact)] {
+        let field = built(&mesh, &FieldOptions { method, landmarks: 9, rank: Some(4) });
+        field.save(&path).unwrap();
+        let again = DistanceField::open(&path).unwrap();
+        assert_eq!(again.facts(), field.facts());
+        assert_eq!(again.facts().bytes as u64, std::fs::metadata(&path).unwrap().len());
+        assert_eq!((again.method(), again.repair()), (field.method(), field.repair()));
+        assert_eq!(again.landmarks(), field.landmarks());
+        let pairs = all_pairs(mesh.n_vertices());
+        for finish in [Finish::Never, Finish::default()] {
+            // Infinity equals itself, so whole answers can be compared.
+            assert_eq!(again.pairs(&pairs, finish, &()).unwrap(), field.pairs(&pairs, finish, &()).unwrap());
+        }
+        assert_eq!(
+            again.nearest(VertexId(20), 9, &()).unwrap(),
+            field.nearest(VertexId(20), 9, &()).unwrap()
+        );
+        assert_eq!(again.to_bytes(), field.to_bytes());
+    }
+}
+
+#[test]
+fn a_field_does_not_depend_on_the_number_of_threads() {
+    let mesh = shapes::torus(30, 14, 2.0, 0.7);
+    for method in [Method::default(), Method::Exact] {
+        let of = |threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| {
+                let field = built(&mesh, &FieldOptions { method, landmarks: 20, rank: None });
+                let pairs: Vec<_> = all_pairs(mesh.n_vertices()).into_iter().step_by(7).collect();
+                (field.to_bytes(), field.pairs(&pairs, Finish::default(), &()).unwrap())
+            })
+        };
+        let one = of(1);
+        assert_eq!(of(2), one);
+        assert_eq!(of(5), one);
+    }
+}
+
+#[test]
+fn every_changed_byte_of_a_file_is_detected() {
+    let field = built(&shapes::icosphere(0), &exact(3));
+    let bytes = field.to_bytes();
+    assert!(DistanceField::from_bytes(&bytes).is_ok());
+    for at in 0..bytes.len() {
+        for change in [1, 0x80, 0xff] {
+            let mut changed = bytes.clone();
+            changed[at] ^= change;
+            let fault = DistanceField::from_bytes(&changed).unwrap_err();
+            match at {
+                0..8 => assert_eq!(fault, FieldFault::NotAField),
+                8..12 => assert!(matches!(fault, FieldFault::OtherVersion { known: 1, .. })),
+                _ => assert_eq!(fault, FieldFault::Damaged("its checksum is wrong")),
+            }
+        }
+        assert!(DistanceField::from_bytes(&bytes[..at]).is_err());
+    }
+    assert!(DistanceField::from_bytes(&[&bytes[..], &[0]].concat()).is_err());
+}
+
+#[test]
+fn a_forged_file_is_refused_or_answers_without_a_panic() {
+    let original = built(&repaired(), &FieldOptions { landmarks: 5, ..exact(5) });
+    let bytes = original.to_bytes();
+    let end = bytes.len() - 4;
+    let mut refused = 0;
+    for at in 12..end {
+        for change in [1, 0x80, 0xff] {
+            let mut changed = bytes.clone();
+            changed[at] ^= change;
+            let sum = crc32fast::hash(&changed[..end]);
+            changed[end..].copy_from_slice(&sum.to_le_bytes());
+            let Ok(field) = DistanceField::from_bytes(&changed) else {
+                refused += 1;
+                continue;
+            };
+            let _ = (field.facts(), field.landmarks());
+            // Propagation on every forged surface would take too long.
+            let finish = if at % 97 == 0 { Finish::default() } else { Finish::Never };
+            let last = VertexId::from(field.n_vertices() - 1);
+            let _ = field.pairs(&[[VertexId(5), VertexId(60)], [last, VertexId(9)]], finish, &());
+            let _ = field.row(VertexId(7), finish, &());
+        }
+    }
+    assert!(refused > 500, "only {refused} forged files were refused");
+}
+
+#[test]
+fn files_that_are_no_fields_are_errors_that_name_them() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("x.field");
+    let missing = DistanceField::open(&path).unwrap_err();
+    assert!(matches!(missing, FieldError::File(_)) && missing.to_string().contains("x.field"));
+    std::fs::write(&path, "solid cat").unwrap();
+    let other = DistanceField::open(&path).unwrap_err();
+    assert!(matches!(other, FieldError::BadField { fault: FieldFault::NotAField, .. }));
+    assert!(other.to_string().contains("x.field"));
+    assert!(matches!(other, FieldError::BadField { .. }));
+}
+
+#[test]
+fn impossible_options_are_refused() {
+    let surface = surface(&shapes::icosphere(1));
+    let fault = |options| DistanceField::build(&surface, &options, &()).unwrap_err();
+    assert!(matches!(fault(exact(0)), FieldError::Geodesic(GeodesicError::NoSamples)));
+    let rank = FieldOptions { rank: Some(9), ..exact(8) };
+    assert!(matches!(fault(rank), FieldError::Nmds(NmdsError::BadRank { rank: 9, n_landmarks: 8 })));
+    // As many landmarks as there are vertices: every distance is known.
+    let all = DistanceField::build(&surface, &exact(1000), &()).unwrap();
+    assert_eq!(all.facts().n_landmarks, 42);
+    let pair = all.pair(VertexId(0), VertexId(40)).unwrap();
+    assert!(pair.upper - pair.lower < 1e-3 * pair.distance);
+}

@@ -1,0 +1,10 @@
+//! Laws of the crate, through what it exports.
+
+// Helper functions are test code too, which clippy cannot see.
+#![allow(clippy::unwrap_used)]
+
+mod budgets;
+mod every_method;
+mod hubs;
+mod properties;
+mod support;

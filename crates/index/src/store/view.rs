@@ -1,0 +1,201 @@
+//! Tables: keys and values with types.
+
+use std::marker::PhantomData;
+use std::path::Path;
+
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+
+use super::codec::{decode, encode};
+use super::file::StoredFile;
+use super::log::Log;
+use super::records::{Changes, Rows, Run, run_of};
+use crate::IndexError;
+
+/// Keys of one kind. The order of keys is that of their bytes.
+pub(crate) trait Key {
+    type Owned: std::fmt::Debug;
+
+    fn write(&self, out: &mut Vec<u8>);
+
+    fn read(bytes: &[u8]) -> Option<Self::Owned>;
+}
+
+impl Key for str {
+    type Owned = String;
+
+    fn write(&self, out: &mut Vec<u8>) {
+        out.extend(self.as_bytes());
+    }
+
+    fn read(bytes: &[u8]) -> Option<String> {
+        String::from_utf8(bytes.to_vec()).ok()
+    }
+}
+
+impl Key for u64 {
+    type Owned = Self;
+
+    fn write(&self, out: &mut Vec<u8>) {
+        out.extend(self.to_be_bytes());
+    }
+
+    fn read(bytes: &[u8]) -> Option<Self> {
+        Some(Self::from_be_bytes(bytes.try_into().ok()?))
+    }
+}
+
+/// A pair of numbers, such as a cell and a part of it.
+impl Key for [u32; 2] {
+    type Owned = Self;
+
+    fn write(&self, out: &mut Vec<u8>) {
+        self.iter().for_each(|number| out.extend(number.to_be_bytes()));
+    }
+
+    fn read(bytes: &[u8]) -> Option<Self> {
+        let (numbers, rest) = bytes.as_chunks::<4>();
+        let [a, b] = *numbers else { return None };
+        rest.is_empty().then(|| [a, b].map(u32::from_be_bytes))
+    }
+}
+
+/// A part of the map: keys that begin with the same byte, and values of one type.
+pub(crate) struct Table<K: ?Sized, V> {
+    tag: u8,
+    /// What a value is, for errors.
+    what: &'static str,
+    types: PhantomData<fn(&K) -> V>,
+}
+
+impl<K: Key + ?Sized, V: Serialize + DeserializeOwned> Table<K, V> {
+    pub(crate) const fn new(tag: u8, what: &'static str) -> Self {
+        Self { tag, what, types: PhantomData }
+    }
+
+    pub(crate) fn key(&self, key: &K) -> Vec<u8> {
+        let mut bytes = vec![self.tag];
+        key.write(&mut bytes);
+        bytes
+    }
+
+    /// Puts a value, or removes it.
+    ///
+    /// # Errors
+    /// [`IndexError::Codec`].
+    pub(crate) fn put(&self, changes: &mut Changes, key: &K, value: Option<&V>) -> Result<(), IndexError> {
+        let key = self.key(key);
+        let bytes = value.map(encode).transpose().map_err(|reason| {
+            let id = String::from_utf8_lossy(&key[1..]).into_owned();
+            IndexError::Codec { id, reason }
+        })?;
+        changes.insert(key, bytes);
+        Ok(())
+    }
+}
+
+/// A file, a log, or a log over a file.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct View<'a> {
+    path: &'a Path,
+    log: Option<&'a Log>,
+    file: Option<&'a StoredFile>,
+}
+
+impl<'a> View<'a> {
+    pub(crate) fn of_file(file: &'a StoredFile) -> Self {
+        Self { path: file.path(), log: None, file: Some(file) }
+    }
+
+    pub(crate) fn of_log(log: &'a Log, file: Option<&'a StoredFile>) -> Self {
+        Self { path: log.path(), log: Some(log), file }
+    }
+
+    /// Bytes of what it reads, which limits what it can hold.
+    pub(crate) fn n_bytes(&self) -> u64 {
+        self.file.map_or(0, StoredFile::n_bytes) + self.log.map_or(0, Log::n_bytes)
+    }
+
+    pub(crate) fn damaged(&self, what: impl Into<String>) -> IndexError {
+        IndexError::damaged(self.path, what)
+    }
+
+    fn decoded<K: ?Sized, V: DeserializeOwned>(
+        &self,
+        table: &Table<K, V>,
+        bytes: &[u8],
+    ) -> Result<V, IndexError> {
+        decode(bytes).map_err(|error| self.damaged(format!("{}: {error}", table.what)))
+    }
+
+    pub(crate) fn get<K: Key + ?Sized, V: Serialize + DeserializeOwned>(
+        &self,
+        table: &Table<K, V>,
+        key: &K,
+    ) -> Result<Option<V>, IndexError> {
+        let key = table.key(key);
+        let bytes = match self.log.map_or(Ok(None), |log| log.get(&key))? {
+            Some(changed) => changed,
+            None => self.file.map_or(Ok(None), |file| file.get(&key))?,
+        };
+        bytes.map(|bytes| self.decoded(table, &bytes)).transpose()
+    }
+
+    /// The rows of a table whose keys begin with `prefix`, in ascending order.
+    pub(crate) fn rows<K: Key + ?Sized, V: Serialize + DeserializeOwned>(
+        self,
+        table: &'a Table<K, V>,
+        prefix: &[u8],
+    ) -> impl Iterator<Item = Result<(K::Owned, V), IndexError>> + use<'a, K, V> {
+        let prefix = [&[table.tag], prefix].concat();
+        let rows = self.records(&prefix);
+        let is_inside = move |row: &Result<(Vec<u8>, _), _>| {
+            row.as_ref().map_or(true, |(key, _)| key.starts_with(&prefix))
+        };
+        rows.take_while(is_inside).filter_map(move |row| match row {
+            Err(error) => Some(Err(error)),
+            Ok((_, None)) => None,
+            Ok((key, Some(value))) => {
+                let key =
+                    K::read(&key[1..]).ok_or_else(|| self.damaged(format!("{} has no key", table.what)));
+                Some(key.and_then(|key| Ok((key, self.decoded(table, &value)?))))
+            }
+        })
+    }
+
+    /// The runs of everything from a key on, what counts more first.
+    fn runs(self, from: &[u8]) -> Vec<Run<'a>> {
+        let of_file = self.file.into_iter().flat_map(|file| file.runs(from).collect::<Vec<_>>());
+        self.log.map(|log| log.run(from)).into_iter().chain(of_file).collect()
+    }
+
+    /// Everything from a key on.
+    pub(crate) fn records(self, from: &[u8]) -> Rows<'a> {
+        Rows::of(self.runs(from))
+    }
+
+    /// Everything, with further changes.
+    pub(crate) fn records_with(self, changes: &'a Changes) -> Rows<'a> {
+        Rows::of(std::iter::once(run_of(changes, &[])).chain(self.runs(&[])).collect())
+    }
+
+    /// Appends the log and further changes to the file. Returns whether it did; see [`StoredFile::append`].
+    pub(crate) fn append(self, changes: &'a Changes) -> Result<bool, IndexError> {
+        let Some(file) = self.file else { return Ok(false) };
+        let n_changes: usize =
+            changes.iter().map(|(key, value)| key.len() + value.iter().map(Vec::len).sum::<usize>()).sum();
+        let n_bytes = n_changes as u64 + self.log.map_or(0, Log::n_bytes);
+        let runs = std::iter::once(run_of(changes, &[])).chain(self.log.map(|log| log.run(&[]))).collect();
+        file.append(runs, n_bytes)
+    }
+
+    /// The keys of a table that the log has changed, and whether they have a value.
+    pub(crate) fn changed<K: Key + ?Sized, V: Serialize + DeserializeOwned>(
+        self,
+        table: &Table<K, V>,
+    ) -> Vec<(K::Owned, bool)> {
+        let prefix = [table.tag];
+        let keys = self.log.into_iter().flat_map(|log| log.keys(&prefix));
+        keys.filter_map(|(key, is_there)| Some((K::read(&key[1..])?, is_there))).collect()
+    }
+}

@@ -1,0 +1,55 @@
+//! The boundary of a surface.
+
+use std::collections::BTreeMap;
+
+use ::surface::{DisjointSets, IntrinsicMesh, VertexId};
+
+/// Length of the longest boundary of a surface, in mesh units; 0 for a closed one. Boundaries that touch count as one.
+pub(super) fn longest_boundary(mesh: &IntrinsicMesh) -> f64 {
+    boundaries(mesh).into_iter().map(|(_, length)| length).fold(0.0, f64::max)
+}
+
+/// The vertices of each boundary, and its length. Boundaries that touch count as one.
+pub(super) fn boundaries(mesh: &IntrinsicMesh) -> Vec<(Vec<VertexId>, f64)> {
+    let topology = mesh.topology();
+    let mut joined = DisjointSets::new(mesh.n_vertices());
+    let edges = topology.edges().iter().zip(mesh.edge_lengths()).enumerate();
+    let boundary = edges.filter(|(edge, _)| topology.edge_corners((*edge).into()).len() == 1);
+    let boundary: Vec<_> = boundary.map(|(_, (ends, length))| (*ends, *length)).collect();
+    for ([a, b], _) in &boundary {
+        joined.union(a.0, b.0);
+    }
+    let mut found: BTreeMap<u32, (Vec<VertexId>, f64)> = BTreeMap::new();
+    for (ends, length) in &boundary {
+        let (vertices, sum) = found.entry(joined.find(ends[0].0)).or_default();
+        vertices.extend(ends);
+        *sum += length;
+    }
+    let mut found: Vec<_> = found.into_values().collect();
+    for (vertices, _) in &mut found {
+        vertices.sort_unstable();
+        vertices.dedup();
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::shapes;
+
+    use super::*;
+    use crate::Surface;
+
+    #[test]
+    fn boundaries_are_measured_one_by_one() {
+        let length =
+            |mesh| longest_boundary(&Surface::new(&mesh, &Default::default(), &()).unwrap().intrinsic());
+        assert_eq!(length(shapes::icosphere(2)), 0.0);
+        let (large, small) = (shapes::grid(11, 6, 0.1), shapes::grid(3, 3, 0.1));
+        assert!((length(large.clone()) - 3.0).abs() < 1e-9);
+        let bridged =
+            crate::RepairOptions { components: crate::ComponentPolicy::Bridge, ..Default::default() };
+        let two = Surface::new(&shapes::disjoint(&[large, small]), &bridged, &()).unwrap();
+        assert!((longest_boundary(two.intrinsic()) - 3.0).abs() < 1e-9);
+    }
+}

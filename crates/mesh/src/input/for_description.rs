@@ -1,0 +1,72 @@
+//! The mesh on which a surface is measured for its description.
+
+use base::{Budget, Exceeded, Observer};
+
+use super::surface::Surface;
+use crate::{Refined, cut_shortcuts, fill_holes, refine, without_noise};
+
+/// Longest edge, relative to the square root of the area. Equilateral triangles of this size have about 1,300 vertices.
+///
+/// Errors of the spectrum and of distances fall with the square of the edge length. With shorter edges, the usual 3,400
+/// vertices would be refined too, and cost more.
+const LONGEST: f64 = 0.03;
+
+/// Longest boundary of a hole that is closed, relative to the square root of the area. A round hole of this length has 8 %
+/// of the area; those of scans have jagged boundaries, or reach around limbs. The rim of a cup is longer.
+const LONGEST_HOLE: f64 = 1.0;
+
+/// The same if the surface may be a part of a shape, so that longer boundaries may be cuts. Rims of cut limbs are longer, holes
+/// of scans mostly shorter.
+const LONGEST_HOLE_OF_PART: f64 = 0.15;
+
+/// Most vertices that are added. Needles could need any number.
+const MOST: usize = 10_000;
+
+impl Surface {
+    /// The surface that is described: without [shortcuts](crate::cut_shortcuts) and
+    /// [noise](crate::without_noise), with small [holes](crate::fill_holes) closed and long edges split. Coarse meshes are then
+    /// measured as accurately as fine ones, and neither subdivision, noise, small holes nor a weld of two parts that touch
+    /// change much. The first vertices are those of the repaired mesh, and so are the links. A mesh without such damage
+    /// stays the same surface.
+    ///
+    /// ```
+    /// use canonform_mesh::{Surface, shapes};
+    ///
+    /// let coarse = Surface::new(&shapes::icosphere(2), &Default::default(), &())?;
+    /// let fine = coarse.for_description(&())?;
+    /// assert!(fine.mesh().n_vertices() > 1000);
+    /// assert!((fine.mesh().area() / coarse.mesh().area() - 1.0).abs() < 1e-12);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`Exceeded`].
+    pub fn for_description(&self, observer: &dyn Observer) -> Result<Self, Exceeded> {
+        self.prepared(LONGEST_HOLE, &observer.budget())
+    }
+
+    /// The surface that is described as a part: as [`for_description`](Self::for_description), but its long boundaries stay.
+    ///
+    /// # Errors
+    /// [`Exceeded`].
+    pub fn for_part(&self, observer: &dyn Observer) -> Result<Self, Exceeded> {
+        self.prepared(LONGEST_HOLE_OF_PART, &observer.budget())
+    }
+
+    fn prepared(&self, longest_hole: f64, budget: &Budget) -> Result<Self, Exceeded> {
+        let opened = cut_shortcuts(self.mesh(), budget)?;
+        let smooth = without_noise(&opened.refined.mesh);
+        let mesh = smooth.as_ref().unwrap_or(&opened.refined.mesh);
+        let size = mesh.root_of_area();
+        if size.is_nan() || size <= 0.0 {
+            return Ok(self.clone());
+        }
+        let filled = fill_holes(mesh, longest_hole * size);
+        let fine = refine(&filled.mesh, LONGEST * size, mesh.n_vertices() + MOST);
+        let Refined { mesh, origins } = opened.refined.then(filled).then(fine);
+        Ok(match smooth.is_some() || !origins.is_empty() {
+            true => self.with_mesh(mesh, &origins, opened.shortcuts),
+            false => self.clone(),
+        })
+    }
+}

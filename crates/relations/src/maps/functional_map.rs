@@ -1,0 +1,114 @@
+//! Maps of functions, and how maps of points follow from them.
+
+use linalg::Matrix;
+use nalgebra::Cholesky;
+
+use super::nearest_rows::nearest_rows;
+
+/// A map of the samples of a surface to those of another, and one back: positions in the lists of samples.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct SampleMaps {
+    pub(super) forth: Vec<u32>,
+    pub(super) back: Vec<u32>,
+}
+
+impl SampleMaps {
+    /// These maps, followed by others.
+    pub(super) fn then(&self, next: &Self) -> Self {
+        let follow = |first: &[u32], second: &[u32]| first.iter().map(|&i| second[i as usize]).collect();
+        Self { forth: follow(&self.forth, &next.forth), back: follow(&next.back, &self.back) }
+    }
+}
+
+/// Eigenfunctions at the samples of two surfaces, evenly spread, one row for each sample.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct SampledPair<'a> {
+    pub(super) a: &'a Matrix,
+    pub(super) b: &'a Matrix,
+}
+
+/// The maps of functions that follow from maps of points, with `k` eigenfunctions on each side.
+#[derive(Debug, Clone)]
+pub(super) struct FunctionalMaps {
+    /// `C`, k x k: coefficients on the first surface of the eigenfunctions of the second, pulled back by `forth`.
+    pub(super) forth: Matrix,
+    /// `D`, k x k: coefficients on the second surface of the eigenfunctions of the first, pulled back by `back`.
+    pub(super) back: Matrix,
+}
+
+impl FunctionalMaps {
+    /// The maps of functions by least squares over the samples.
+    pub(super) fn new(pair: SampledPair<'_>, maps: &SampleMaps, k: usize) -> Self {
+        let one = |own: &Matrix, other: &Matrix, map: &[u32]| {
+            let own = own.columns(0, k);
+            let pulled = Matrix::from_fn(map.len(), k, |i, j| other[(map[i] as usize, j)]);
+            let transposed = own.transpose();
+            let (gram, right) = (&transposed * own, transposed * pulled);
+            match Cholesky::new(gram) {
+                Some(factor) => factor.solve(&right),
+                // As many functions as samples, or more.
+                None => right / map.len() as f64,
+            }
+        };
+        Self { forth: one(pair.a, pair.b, &maps.forth), back: one(pair.b, pair.a, &maps.back) }
+    }
+
+    /// Number of eigenfunctions.
+    pub(super) fn k(&self) -> usize {
+        self.forth.nrows()
+    }
+
+    /// Points of the first surface, where [`partners_b`](Self::partners_b) are near those that they correspond to: `Φ`.
+    pub(super) fn points_a(&self, rows: &Matrix) -> Matrix {
+        rows.columns(0, self.k()).into_owned()
+    }
+
+    /// Points of the second surface among those of the first: `Ψ C'`.
+    pub(super) fn partners_b(&self, rows: &Matrix) -> Matrix {
+        rows.columns(0, self.k()) * self.forth.transpose()
+    }
+
+    /// Points of the second surface, where [`partners_a`](Self::partners_a) are near those that they correspond to: `Ψ`.
+    pub(super) fn points_b(&self, rows: &Matrix) -> Matrix {
+        rows.columns(0, self.k()).into_owned()
+    }
+
+    /// Points of the first surface among those of the second: `Φ D'`.
+    pub(super) fn partners_a(&self, rows: &Matrix) -> Matrix {
+        rows.columns(0, self.k()) * self.back.transpose()
+    }
+
+    /// The maps of samples that follow.
+    pub(super) fn sample_maps(&self, pair: SampledPair<'_>) -> SampleMaps {
+        SampleMaps {
+            forth: nearest_rows(&self.points_a(pair.a), &self.partners_b(pair.b)),
+            back: nearest_rows(&self.points_b(pair.b), &self.partners_a(pair.a)),
+        }
+    }
+}
+
+/// The numbers of eigenfunctions from `first` to `last`: each a step of a tenth, at least two, more than the one before.
+pub(super) fn schedule(first: usize, last: usize) -> Vec<usize> {
+    let next = |k: &usize| Some(k + (k / 10).max(2)).filter(|next| *next < last);
+    let mut counts: Vec<usize> = std::iter::successors(Some(first.min(last)), next).collect();
+    if counts.last() != Some(&last) {
+        counts.push(last);
+    }
+    counts
+}
+
+/// Refines maps by taking in eigenfunctions of higher and higher frequency (ZoomOut, `melzi2019` in `REFERENCES.bib`).
+/// Returns the maps, and the maps of functions that they follow from.
+pub(super) fn zoom_out(
+    pair: SampledPair<'_>,
+    start: SampleMaps,
+    counts: &[usize],
+) -> (SampleMaps, FunctionalMaps) {
+    let mut maps = start;
+    let mut functional = FunctionalMaps::new(pair, &maps, counts[0]);
+    for &k in counts {
+        functional = FunctionalMaps::new(pair, &maps, k);
+        maps = functional.sample_maps(pair);
+    }
+    (maps, functional)
+}

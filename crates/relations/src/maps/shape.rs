@@ -1,0 +1,109 @@
+//! A surface, prepared to be mapped to others.
+
+use linalg::{LandmarkDistances, Matrix};
+use mesh::TriMesh;
+use nalgebra::Point3;
+
+use super::orientation::Oriented;
+use descriptors::DescriptorError;
+use descriptors::LaplaceSpectrum;
+use descriptors::PreparedForm;
+use descriptors::wave_kernels;
+use descriptors::{CanonicalForm, Normalization};
+
+/// A surface with everything that maps to other surfaces are found by. Lengths are those of the surface at unit area.
+#[derive(Debug)]
+pub struct MapShape {
+    pub(super) form: PreparedForm,
+    /// The form at the samples, in its principal axes.
+    pub(super) points: Vec<Point3<f64>>,
+    /// Eigenfunctions at the vertices.
+    pub(super) vectors: Matrix,
+    /// Vertices spread evenly over the surface; the landmarks first.
+    pub(super) samples: Vec<usize>,
+    /// The vertices nearest to each sample.
+    pub(super) cells: Vec<Vec<u32>>,
+    /// Eigenfunctions at the samples.
+    pub(super) at_samples: Matrix,
+    /// Wave kernels at the samples.
+    pub(super) waves: Matrix,
+    distances: LandmarkDistances,
+    size: f64,
+    /// `None` if the surface cannot be oriented.
+    pub(super) oriented: Option<Oriented>,
+}
+
+impl MapShape {
+    /// Prepares a surface.
+    ///
+    /// * `form` is the canonical form of its vertices; if it has a unit of length, it is scaled to unit area.
+    /// * `distances` are those from landmarks to all vertices. The landmarks are the first of `samples`, vertices spread
+    ///   evenly over the surface; `nearest` is the position in `samples` of the one nearest to each vertex.
+    /// * `mesh` gives the orientation: outwards if it encloses a volume, else as most faces turn.
+    ///
+    /// # Errors
+    /// [`DescriptorError::SizeMismatch`] if the parts differ in their numbers of vertices; [`DescriptorError::NoExtent`];
+    /// [`DescriptorError::Linalg`].
+    ///
+    /// # Panics
+    /// If `samples` do not begin with the landmarks, or `nearest` names a sample that does not exist.
+    pub fn new(
+        form: &CanonicalForm,
+        mesh: &TriMesh,
+        spectrum: LaplaceSpectrum,
+        distances: LandmarkDistances,
+        samples: Vec<usize>,
+        nearest: &[usize],
+    ) -> Result<Self, DescriptorError> {
+        let n_vertices = mesh.n_vertices();
+        for n_points in [form.points().len(), spectrum.masses.len(), distances.n_points(), nearest.len()] {
+            if n_points != n_vertices {
+                return Err(DescriptorError::SizeMismatch { n_points, n_vertices });
+            }
+        }
+        assert!(samples.starts_with(distances.landmarks()), "samples begin with the landmarks");
+        let form = PreparedForm::new(&form.normalized(Normalization::UnitArea))?;
+        let at: Vec<Point3<f64>> = samples.iter().map(|&v| form.points()[v]).collect();
+        let mut cells = vec![Vec::new(); samples.len()];
+        for (vertex, &sample) in (0..).zip(nearest) {
+            cells[sample].push(vertex);
+        }
+        Ok(Self {
+            points: at,
+            at_samples: spectrum.vectors.select_rows(&samples),
+            oriented: Oriented::new(mesh, &spectrum.masses),
+            waves: wave_kernels(&spectrum, &samples),
+            size: spectrum.area.sqrt(),
+            vectors: spectrum.vectors,
+            form,
+            samples,
+            cells,
+            distances,
+        })
+    }
+
+    /// Number of vertices.
+    pub fn n_vertices(&self) -> usize {
+        self.vectors.nrows()
+    }
+
+    /// The form of all vertices in its principal axes, at unit area.
+    pub fn form_points(&self) -> &[Point3<f64>] {
+        self.form.points()
+    }
+
+    /// The vertices from which distances are known.
+    pub(super) fn landmarks(&self) -> &[usize] {
+        self.distances.landmarks()
+    }
+
+    /// Distances from all landmarks to some vertices, one row for each landmark, at unit area.
+    pub(super) fn distances_to(&self, vertices: &[usize]) -> Result<Matrix, DescriptorError> {
+        let mut found = Matrix::zeros(self.distances.n_landmarks(), vertices.len());
+        for i in 0..found.nrows() {
+            let column = self.distances.column(i)?;
+            vertices.iter().enumerate().for_each(|(j, &v)| found[(i, j)] = column[v] / self.size);
+        }
+        Ok(found)
+    }
+}

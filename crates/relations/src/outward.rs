@@ -1,0 +1,108 @@
+//! Faces that all turn the same way, outwards if there is an outside.
+
+use std::collections::HashMap;
+
+use mesh::{TriMesh, orient_consistently};
+use nalgebra::Vector3;
+use surface::VertexId;
+
+/// A surface encloses a volume if it is at least this share of the volume of a ball of the same area. A safety limit: a flat
+/// sheet encloses none.
+const LEAST_VOLUME: f64 = 0.02;
+
+/// Share of edges whose two faces may turn in opposite ways, as non-manifold edges of scans make them. A
+/// tolerance.
+const TOLERATED: f64 = 0.01;
+
+/// The signed volume of a mesh over that of a ball of the same area.
+fn volume(mesh: &TriMesh) -> f64 {
+    let centre = mesh.positions.iter().fold(Vector3::zeros(), |sum, p| sum + p.coords)
+        / mesh.n_vertices().max(1) as f64;
+    let volume: f64 = (0..mesh.n_faces())
+        .map(|f| {
+            let [a, b, c] = mesh.triangle(f).map(|p| p.coords - centre);
+            a.dot(&b.cross(&c)) / 6.0
+        })
+        .sum();
+    volume / (mesh.area().powf(1.5) / (6.0 * std::f64::consts::PI.sqrt()))
+}
+
+/// The mesh with its faces turned alike.
+fn turned_alike(mesh: &TriMesh) -> (TriMesh, f64) {
+    let mut mesh = mesh.clone();
+    orient_consistently(&mut mesh);
+    let volume = volume(&mesh);
+    if volume < -LEAST_VOLUME {
+        mesh.faces.iter_mut().for_each(|face| face.swap(1, 2));
+    }
+    (mesh, volume)
+}
+
+/// The mesh with its normals outwards; `None` if it does not enclose a volume.
+pub(crate) fn outward(mesh: &TriMesh) -> Option<TriMesh> {
+    let (mesh, volume) = turned_alike(mesh);
+    (volume.abs() >= LEAST_VOLUME).then_some(mesh)
+}
+
+/// The faces, turned alike: outwards if the mesh encloses a volume, else as most of them are. `None` if the surface cannot
+/// be oriented, such as a Moebius strip.
+pub(crate) fn oriented_faces(mesh: &TriMesh) -> Option<Vec<[VertexId; 3]>> {
+    let (mesh, _) = turned_alike(mesh);
+    // Times an edge is passed from its lower to its higher vertex, less the times in the other direction; and all times.
+    let mut passes: HashMap<[VertexId; 2], (i32, u32)> = HashMap::new();
+    for [a, b, c] in &mesh.faces {
+        for [v, w] in [[*a, *b], [*b, *c], [*c, *a]] {
+            let (balance, total) = passes.entry([v.min(w), v.max(w)]).or_default();
+            *balance += if v < w { 1 } else { -1 };
+            *total += 1;
+        }
+    }
+    let inner = passes.values().filter(|(_, total)| *total == 2).count();
+    let twisted = passes.values().filter(|(balance, total)| *total == 2 && *balance != 0).count();
+    (twisted as f64 <= TOLERATED * inner as f64).then_some(mesh.faces)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use mesh::shapes;
+    use nalgebra::Point3;
+
+    /// A strip of `n` squares, closed with or without a twist.
+    fn band(n: usize, twisted: bool) -> TriMesh {
+        let angle = |i: usize| std::f64::consts::TAU * i as f64 / n as f64;
+        let turn = |i: usize| if twisted { 0.5 * angle(i) } else { 0.0 };
+        let at = |i: usize, s: f64| {
+            let r = 3.0 + s * turn(i).cos();
+            Point3::new(r * angle(i).cos(), r * angle(i).sin(), s * turn(i).sin())
+        };
+        let positions = (0..n).flat_map(|i| [at(i, -0.5), at(i, 0.5)]).collect();
+        let vertex = |i: usize, side: usize| {
+            let crossed = twisted && i == n;
+            VertexId::from(2 * (i % n) + if crossed { 1 - side } else { side })
+        };
+        let faces = (0..n).flat_map(|i| {
+            let [a, b, c, d] = [vertex(i, 0), vertex(i, 1), vertex(i + 1, 0), vertex(i + 1, 1)];
+            [[a, c, b], [b, c, d]]
+        });
+        TriMesh { positions, faces: faces.collect() }
+    }
+
+    #[test]
+    fn closed_surfaces_face_outwards_and_open_ones_have_no_outside() {
+        let mut ball = shapes::icosphere(2);
+        ball.faces.iter_mut().step_by(3).for_each(|face| face.swap(1, 2));
+        let turned = outward(&ball).unwrap();
+        assert!(volume(&turned) > 0.9);
+        assert_eq!(oriented_faces(&ball).unwrap(), turned.faces);
+        let sheet = shapes::grid(5, 4, 1.0);
+        assert!(outward(&sheet).is_none());
+        assert_eq!(oriented_faces(&sheet).unwrap(), sheet.faces);
+    }
+
+    #[test]
+    fn a_moebius_strip_cannot_be_oriented() {
+        assert!(oriented_faces(&band(30, false)).is_some());
+        assert!(oriented_faces(&band(30, true)).is_none());
+    }
+}

@@ -1,0 +1,88 @@
+//! What a relation is told from.
+
+use base::ContentHash;
+use descriptors::ShapeDistance;
+use serde::{Serialize, Serializer};
+
+use super::handedness::Handedness;
+use super::in_space::SurfaceGap;
+use super::parts::Parts;
+use super::units::UnitChange;
+
+/// What a relation is taken from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Basis {
+    /// The bytes of both files.
+    Files,
+    /// Both meshes. In a search, the file of the shape was read again.
+    Meshes,
+    /// What an index stores of the shapes: the file of one is missing or has changed, or was not read.
+    Descriptions,
+}
+
+/// Everything that a relation is told from.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Because {
+    /// What the relation is taken from.
+    pub basis: Basis,
+    /// How far the shapes are apart: of meshes with several components, the largest ones.
+    #[serde(flatten)]
+    pub distance: ShapeDistance,
+    /// Probability, by this distance, that both are one shape in any pose.
+    pub same_shape: f64,
+    /// Probability, by this distance, that both are of one class.
+    pub same_class: f64,
+    /// Whether the second shape is the mirror image of the first.
+    pub handedness: Handedness,
+    /// Size of the second over that of the first.
+    pub scale: f64,
+    /// The change of the unit of length that explains the scale.
+    pub units: Option<UnitChange>,
+    /// Hashes of the files, where they are known.
+    #[serde(serialize_with = "as_text")]
+    pub content: [Option<ContentHash>; 2],
+    /// Numbers of vertices in different positions.
+    pub vertices: Option<[usize; 2]>,
+    /// Numbers of faces.
+    pub faces: Option<[usize; 2]>,
+    /// Numbers of connected components.
+    pub components: Option<[usize; 2]>,
+    /// The angle of the rotation of the second mesh relative to the first, in degrees, if they have the same vertices and are
+    /// not mirror images.
+    pub rotation: Option<f64>,
+    /// The largest distance between corresponding vertices of one geometry, relative to the size, the square root of the
+    /// area.
+    pub vertex_gap: Option<f64>,
+    /// How far the surfaces are apart in space.
+    pub surface_gap: Option<SurfaceGap>,
+    /// How often one mesh occurs among the components of the other.
+    pub parts: Option<Parts>,
+}
+
+impl Because {
+    /// The distance of two shapes, and nothing else.
+    pub(super) fn by_distance(distance: ShapeDistance) -> Self {
+        Self {
+            basis: Basis::Descriptions,
+            distance,
+            same_shape: distance.same_shape(),
+            same_class: distance.same_class(),
+            handedness: Handedness::Unknown,
+            scale: 1.0,
+            units: None,
+            content: [None; 2],
+            vertices: None,
+            faces: None,
+            components: None,
+            rotation: None,
+            vertex_gap: None,
+            surface_gap: None,
+            parts: None,
+        }
+    }
+}
+
+fn as_text<S: Serializer>(hashes: &[Option<ContentHash>; 2], out: S) -> Result<S::Ok, S::Error> {
+    hashes.map(|hash| hash.map(|hash| hash.to_string())).serialize(out)
+}

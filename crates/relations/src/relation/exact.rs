@@ -1,0 +1,301 @@
+//! Whether two meshes have the same vertices, after a motion, a reflection and a change of size.
+
+use std::collections::HashSet;
+
+use descriptors::{Alignment, NearestPoints};
+use nalgebra::{Matrix3, Point3, Vector3};
+
+use super::geometry::{MeshGeometry, sorted};
+
+/// Most pairs of vertices that are tried as images of two vertices of the first mesh.
+const MOST_PAIRS: usize = 2_000_000;
+
+/// Most motions that are checked on all vertices.
+const MOST_CHECKED: usize = 500;
+
+/// Vertices on which a motion is checked first.
+const PROBES: usize = 24;
+
+/// A motion is found from two vertices and the centroid, and moves the others a few times as far as these are off. A
+/// tolerance: the motion is made precise afterwards.
+const LEVERAGE: f64 = 20.0;
+
+/// Vertices nearer to the centroid than this do not determine a motion, relative to the size. A safety limit.
+const LEAST_LEVER: f64 = 0.1;
+
+/// Vertices of two meshes that coincide after a similarity.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct SameVertices {
+    /// The orthogonal part of the map from the first to the second.
+    pub(super) rotation: Matrix3<f64>,
+    pub(super) mirrored: bool,
+    /// The vertex of the second for every vertex of the first.
+    pub(super) partners: Vec<usize>,
+    /// The largest distance between partners, relative to the size.
+    pub(super) gap: f64,
+    /// Size of the second relative to the first, both at unit area.
+    pub(super) scale: f64,
+    /// Whether the faces are the same too, apart from their orientation.
+    pub(super) same_faces: bool,
+}
+
+/// The map that takes the vertices of `a` onto those of `b`, up to the rounding of files. One that maps faces to faces comes
+/// first, then one without reflection.
+pub(super) fn same_vertices(a: &MeshGeometry, b: &MeshGeometry) -> Option<SameVertices> {
+    if a.n_vertices() != b.n_vertices() {
+        return None;
+    }
+    let tolerance = a.rounding + b.rounding;
+    let search = VertexSearch::new(a, b, tolerance)?;
+    let mut fallback: Option<SameVertices> = None;
+    for reflected in [false, true] {
+        let found = search.run(reflected);
+        match found {
+            Some(found) if found.same_faces => return Some(found),
+            Some(found) => fallback = fallback.or(Some(found)),
+            None => (),
+        }
+    }
+    fallback
+}
+
+struct VertexSearch<'a> {
+    geometries: [&'a MeshGeometry; 2],
+    tolerance: f64,
+    nearest: NearestPoints,
+    faces: HashSet<[surface::VertexId; 3]>,
+    /// Two vertices of the first mesh, and the vertices of the second at the same distance from the centroid.
+    base: [Point3<f64>; 2],
+    images: [Vec<Point3<f64>>; 2],
+    probes: Vec<Point3<f64>>,
+}
+
+impl<'a> VertexSearch<'a> {
+    /// `None` if distances from the centroids differ.
+    fn new(a: &'a MeshGeometry, b: &'a MeshGeometry, tolerance: f64) -> Option<Self> {
+        let (p, q) = (&a.mesh.positions, &b.mesh.positions);
+        // The centroid is off by rounding too.
+        let slack = 2.0 * tolerance;
+        let by_radius = |points: &[Point3<f64>]| {
+            let mut radii: Vec<(f64, usize)> =
+                points.iter().enumerate().map(|(i, p)| (p.coords.norm(), i)).collect();
+            radii.sort_by(|x, y| x.0.total_cmp(&y.0));
+            radii
+        };
+        let (radii_a, radii_b) = (by_radius(p), by_radius(q));
+        if radii_a.iter().zip(&radii_b).any(|(x, y)| (x.0 - y.0).abs() > slack) {
+            return None;
+        }
+        let at_radius = |r: f64| {
+            let start = radii_b.partition_point(|x| x.0 < r - slack);
+            let end = radii_b.partition_point(|x| x.0 <= r + slack);
+            &radii_b[start..end]
+        };
+        // The vertices with the fewest images.
+        let count = |i: usize| at_radius(p[i].coords.norm()).len();
+        let rarest = |allowed: &dyn Fn(usize) -> bool| {
+            (0..p.len()).filter(|&i| allowed(i)).min_by(|&i, &j| {
+                let radius = |i: usize| p[i].coords.norm();
+                count(i).cmp(&count(j)).then(radius(j).total_cmp(&radius(i))).then(i.cmp(&j))
+            })
+        };
+        let first = rarest(&|i| p[i].coords.norm() > LEAST_LEVER)?;
+        let direction = p[first].coords.normalize();
+        let second = rarest(&|i| p[i].coords.cross(&direction).norm() > LEAST_LEVER)?;
+        let images = [first, second].map(|i| {
+            let mut found: Vec<usize> = at_radius(p[i].coords.norm()).iter().map(|&(_, j)| j).collect();
+            // Most copies keep the order of vertices.
+            found.sort_by_key(|&j| j != i);
+            found.into_iter().map(|j| q[j]).collect::<Vec<_>>()
+        });
+        let step = (p.len() / PROBES).max(1);
+        Some(Self {
+            geometries: [a, b],
+            tolerance,
+            nearest: NearestPoints::new(q.clone()).ok()?,
+            faces: b.mesh.faces.iter().map(|face| sorted(*face)).collect(),
+            base: [p[first], p[second]],
+            images,
+            probes: p.iter().step_by(step).copied().collect(),
+        })
+    }
+
+    /// The first map with the same faces, else the first one.
+    fn run(&self, reflected: bool) -> Option<SameVertices> {
+        let [p1, p2] = self.base;
+        let apart = (p1 - p2).norm();
+        let (mut n_pairs, mut n_checked) = (0, 0);
+        let mut fallback = None;
+        for q1 in &self.images[0] {
+            for q2 in &self.images[1] {
+                n_pairs += 1;
+                if n_pairs > MOST_PAIRS || n_checked > MOST_CHECKED {
+                    return fallback;
+                }
+                if ((q1 - q2).norm() - apart).abs() > 4.0 * self.tolerance {
+                    continue;
+                }
+                let Some(rotation) = from_frames([&p1, &p2], [q1, q2], reflected) else { continue };
+                let motion = Alignment::about_origin(rotation);
+                let off = LEVERAGE * self.tolerance;
+                let is_near = |p: &Point3<f64>| self.nearest.nearest(&motion.apply(p)).1 <= off * off;
+                if !self.probes.iter().all(is_near) {
+                    continue;
+                }
+                n_checked += 1;
+                match self.checked(&motion, off) {
+                    Some(found) if found.same_faces => return Some(found),
+                    Some(found) => fallback = fallback.or(Some(found)),
+                    None => (),
+                }
+            }
+        }
+        fallback
+    }
+
+    /// The vertices as partners under a motion that is off by at most `off`, which is made precise.
+    fn checked(&self, motion: &Alignment, off: f64) -> Option<SameVertices> {
+        let [p, q] = self.geometries.map(|geometry| &geometry.mesh.positions);
+        let mut is_taken = vec![false; q.len()];
+        let mut partners = Vec::with_capacity(p.len());
+        for point in p {
+            let (i, sq) = self.nearest.nearest(&motion.apply(point));
+            if sq > off * off || std::mem::replace(&mut is_taken[i], true) {
+                return None;
+            }
+            partners.push(i);
+        }
+        let pairs: Vec<_> = p.iter().zip(&partners).map(|(p, &i)| (*p, q[i])).collect();
+        let Similarity { motion, scale } = Similarity::fit(&pairs, motion.reflected)?;
+        let gaps = pairs.iter().map(|(x, y)| (motion.apply(&(x * scale)) - y).norm());
+        let gap = gaps.fold(0.0, f64::max);
+        if gap > self.tolerance {
+            return None;
+        }
+        let mapped = self.geometries[0]
+            .mesh
+            .faces
+            .iter()
+            .map(|face| sorted(face.map(|v| surface::VertexId::from(partners[v.index()]))));
+        let same_faces = self.geometries[0].n_faces() == self.geometries[1].n_faces()
+            && mapped.into_iter().all(|face| self.faces.contains(&face));
+        let (rotation, mirrored) = (motion.rotation, motion.reflected);
+        Some(SameVertices { rotation, mirrored, partners, gap, scale, same_faces })
+    }
+}
+
+/// The map `x -> rotation (scale x) + translation`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Similarity {
+    pub(super) motion: Alignment,
+    pub(super) scale: f64,
+}
+
+impl Similarity {
+    /// The map that minimises the squared distances of pairs (Umeyama 1991, `umeyama1991` in `REFERENCES.bib`).
+    pub(super) fn fit(pairs: &[(Point3<f64>, Point3<f64>)], reflected: bool) -> Option<Self> {
+        let motion = Alignment::fit(pairs, reflected)?;
+        let n = pairs.len() as f64;
+        let (x, y) = pairs
+            .iter()
+            .fold((Vector3::zeros(), Vector3::zeros()), |(x, y), (p, q)| (x + p.coords, y + q.coords));
+        let (x, y) = (x / n, y / n);
+        let (mut product, mut square) = (0.0, 0.0);
+        for (p, q) in pairs {
+            let p = p.coords - x;
+            product += (motion.rotation * p).dot(&(q.coords - y));
+            square += p.norm_squared();
+        }
+        let scale = product / square;
+        if !(scale > 0.0 && scale.is_finite()) {
+            return None;
+        }
+        let motion = Alignment { translation: y - motion.rotation * x * scale, ..motion };
+        Some(Self { motion, scale })
+    }
+
+    pub(super) fn apply(&self, p: &Point3<f64>) -> Point3<f64> {
+        self.motion.apply(&(p * self.scale))
+    }
+}
+
+/// The orthogonal matrix that takes the plane through the origin and two points to that of two others.
+fn from_frames(from: [&Point3<f64>; 2], to: [&Point3<f64>; 2], reflected: bool) -> Option<Matrix3<f64>> {
+    let frame = |[p, q]: [&Point3<f64>; 2]| {
+        let x = p.coords.try_normalize(0.0)?;
+        let z = x.cross(&q.coords).try_normalize(1e-9)?;
+        Some(Matrix3::from_columns(&[x, z.cross(&x), z]))
+    };
+    let (from, mut to) = (frame(from)?, frame(to)?);
+    if reflected {
+        let normal = -to.column(2);
+        to.set_column(2, &normal);
+    }
+    Some(to * from.transpose())
+}
+
+#[cfg(test)]
+mod tests {
+    use mesh::{TriMesh, shapes};
+    use nalgebra::Rotation3;
+
+    use super::*;
+    use crate::testing::lopsided;
+
+    /// The mesh moved, with vertices and faces in another order, and rounded as files do.
+    fn moved(mesh: &TriMesh, scale: f64, flip: f64) -> TriMesh {
+        let turn = Rotation3::from_euler_angles(0.3, 2.0, -1.0);
+        let n = mesh.n_vertices();
+        let to = |p: &Point3<f64>| {
+            let p = turn * Point3::new(flip * p.x, p.y, p.z) * scale + Vector3::new(1.0, 2.0, 3.0);
+            p.map(|x| f64::from(x as f32))
+        };
+        TriMesh {
+            positions: (0..n).map(|i| to(&mesh.positions[n - 1 - i])).collect(),
+            faces: mesh
+                .faces
+                .iter()
+                .rev()
+                .map(|face| face.map(|v| surface::VertexId::from(n - 1 - v.index())))
+                .collect(),
+        }
+    }
+
+    fn found(a: &TriMesh, b: &TriMesh) -> Option<SameVertices> {
+        let [a, b] = [a, b].map(|mesh| MeshGeometry::new(mesh, None).unwrap());
+        same_vertices(&a, &b)
+    }
+
+    #[test]
+    fn moved_and_reordered_vertices_are_found_again() {
+        let symmetric = [shapes::icosphere(3), shapes::cube(4), shapes::tetrahedron(2)];
+        for mesh in symmetric.iter().chain([&lopsided()]) {
+            let same = found(mesh, &moved(mesh, 25.4, 1.0)).unwrap();
+            assert!(same.same_faces && !same.mirrored && same.gap < 1e-6, "{same:?}");
+            assert!((same.scale - 1.0).abs() < 1e-6, "at unit area: {}", same.scale);
+        }
+        let mirrored = found(&lopsided(), &moved(&lopsided(), 1.0, -1.0)).unwrap();
+        assert!(mirrored.same_faces && mirrored.mirrored);
+        assert!(mirrored.rotation.determinant() < 0.0);
+    }
+
+    #[test]
+    fn other_vertices_and_other_faces_are_told_apart() {
+        let mesh = lopsided();
+        let mut nudged = mesh.clone();
+        nudged.positions[77].x += 0.01;
+        assert_eq!(found(&mesh, &nudged), None);
+        // Two triangles of a square with the other diagonal.
+        let mut flipped = shapes::grid(4, 5, 1.0);
+        let whole = flipped.clone();
+        let [first, second] = [whole.faces[0], whole.faces[1]];
+        let shared: Vec<_> = first.into_iter().filter(|v| second.contains(v)).collect();
+        let apart = |face: [surface::VertexId; 3]| face.into_iter().find(|v| !shared.contains(v)).unwrap();
+        for (i, end) in shared.iter().enumerate() {
+            flipped.faces[i] = [apart(first), *end, apart(second)];
+        }
+        let same = found(&whole, &flipped).unwrap();
+        assert!(!same.same_faces && same.gap < 1e-9);
+        assert_eq!(found(&mesh, &shapes::icosphere(3)), None);
+    }
+}

@@ -1,0 +1,75 @@
+//! Kinds of relation, and changes between two meshes.
+
+use serde::Serialize;
+
+/// How two meshes are related, by what changed least. The kinds are in descending order of what the meshes have in common.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum RelationKind {
+    /// The files have the same bytes.
+    IdenticalFile,
+    /// The same vertices and faces at the same size, perhaps moved, turned or in another order.
+    IdenticalGeometry,
+    /// The same vertices and faces at another size.
+    Scaled,
+    /// The same vertices and faces after a reflection, perhaps at another size.
+    Mirrored,
+    /// The same faces, with noise on the vertices.
+    Noisy,
+    /// The same surface with other triangles: decimated, subdivided or remeshed.
+    Remeshed,
+    /// All components of one mesh are the other mesh.
+    Copies,
+    /// Some components of one mesh are the other mesh.
+    PartOf,
+    /// The same shape in another pose.
+    OtherPose,
+    /// Two shapes of one class.
+    SameClass,
+    /// Shapes of different classes.
+    Different,
+}
+
+impl RelationKind {
+    /// What the two have in common, in a few words.
+    #[must_use]
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::IdenticalFile => "the same file",
+            Self::IdenticalGeometry => "the same geometry",
+            Self::Scaled => "the same geometry, scaled",
+            Self::Mirrored => "the mirror image",
+            Self::Noisy => "the same surface with noise",
+            Self::Remeshed => "the same surface, remeshed",
+            Self::Copies => "several copies",
+            Self::PartOf => "one is part of the other",
+            Self::OtherPose => "the same shape",
+            Self::SameClass => "the same class",
+            Self::Different => "another class",
+        }
+    }
+}
+
+/// A change from the first mesh to the second. Several can be combined.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Change {
+    /// It lies elsewhere.
+    Moved,
+    /// It is turned.
+    Rotated,
+    /// It has another size.
+    Scaled,
+    /// It is the mirror image.
+    Mirrored,
+    /// It has fewer vertices.
+    Decimated,
+    /// It has the same vertices and more.
+    Subdivided,
+    /// It has other triangles.
+    Remeshed,
+    /// One of the two has noise.
+    Noisy,
+    /// It is in another pose, or may be.
+    Posed,
+}

@@ -1,0 +1,96 @@
+//! How the triangles of one surface changed.
+
+use descriptors::NearestPoints;
+use surface::{Topology, VertexId};
+
+use super::Change;
+use super::exact::Similarity;
+use super::geometry::MeshGeometry;
+
+/// Meshes with numbers of vertices that differ by less than this share have about as many vertices. A convention.
+const AS_MANY: f64 = 0.05;
+
+/// Vertices that a subdivision keeps are found again within this distance, relative to the mean edge of the finer mesh. A
+/// tolerance: their places are those of an alignment.
+const KEPT: f64 = 0.05;
+
+/// Displacements of neighbouring vertices are independent, as those by noise, if their correlation along edges is below
+/// this. A safety limit: it is 0 for noise and 1 for a smooth deformation.
+const INDEPENDENT: f64 = 0.5;
+
+/// What happened to the triangles of a surface.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum MeshChange {
+    /// The same faces, and displacements that do not depend on those of neighbours.
+    Noisy,
+    /// The same faces, and displacements that do.
+    Deformed,
+    /// Fewer vertices.
+    Decimated,
+    /// The same vertices and more.
+    Subdivided,
+    /// Other triangles.
+    Remeshed,
+}
+
+impl MeshChange {
+    /// The change between two triangulations of one surface; `map` takes the first onto the second.
+    pub(super) fn of([a, b]: [&MeshGeometry; 2], map: &Similarity) -> Self {
+        if a.n_vertices() == b.n_vertices() && a.mesh.faces == b.mesh.faces {
+            let is_noise = displacements([a, b]).is_some_and(|coherence| coherence < INDEPENDENT);
+            return if is_noise { Self::Noisy } else { Self::Deformed };
+        }
+        let ratio = b.n_vertices() as f64 / a.n_vertices() as f64;
+        if ratio < 1.0 - AS_MANY {
+            Self::Decimated
+        } else if ratio > 1.0 + AS_MANY && has_vertices(b, a, map) {
+            Self::Subdivided
+        } else {
+            Self::Remeshed
+        }
+    }
+
+    /// The change of the triangles, if any.
+    pub(super) fn triangles(self) -> Option<Change> {
+        match self {
+            Self::Noisy | Self::Deformed => None,
+            Self::Decimated => Some(Change::Decimated),
+            Self::Subdivided => Some(Change::Subdivided),
+            Self::Remeshed => Some(Change::Remeshed),
+        }
+    }
+
+    /// Whether one of the two meshes has noise, and the other has not.
+    pub(super) fn has_noise(self, [a, b]: [&MeshGeometry; 2]) -> bool {
+        self == Self::Noisy || a.is_noisy() != b.is_noisy()
+    }
+}
+
+/// The correlation of the displacements of vertices along edges, in meshes with the same faces.
+fn displacements([a, b]: [&MeshGeometry; 2]) -> Option<f64> {
+    let pairs: Vec<_> = a.mesh.positions.iter().copied().zip(b.mesh.positions.iter().copied()).collect();
+    let fits = [false, true].map(|reflected| {
+        let map = Similarity::fit(&pairs, reflected)?;
+        let moved: Vec<_> = pairs.iter().map(|(p, q)| map.apply(p) - q).collect();
+        let square: f64 = moved.iter().map(|d| d.norm_squared()).sum();
+        Some((square, moved))
+    });
+    let (_, moved) = fits.into_iter().flatten().min_by(|x, y| x.0.total_cmp(&y.0))?;
+    let topology = Topology::new(a.n_vertices(), a.mesh.faces.clone());
+    let (mut product, mut square) = (0.0, 0.0);
+    for [v, w] in topology.edges().iter().map(|edge| edge.map(VertexId::index)) {
+        product += moved[v].dot(&moved[w]);
+        square += 0.5 * (moved[v].norm_squared() + moved[w].norm_squared());
+    }
+    (square > 0.0).then(|| product / square)
+}
+
+/// Whether nearly all vertices of `coarse` are vertices of `fine`; `map` takes the first onto the second.
+fn has_vertices(fine: &MeshGeometry, coarse: &MeshGeometry, map: &Similarity) -> bool {
+    let Ok(nearest) = NearestPoints::new(fine.mesh.positions.clone()) else { return false };
+    // About the side of equilateral triangles of unit area in total.
+    let edge = (2.3 / fine.n_faces() as f64).sqrt();
+    let is_kept = |p: &nalgebra::Point3<f64>| nearest.nearest(&map.apply(p)).1 < (KEPT * edge).powi(2);
+    let kept = coarse.mesh.positions.iter().filter(|p| is_kept(p)).count();
+    kept as f64 > 0.95 * coarse.n_vertices() as f64
+}

@@ -1,0 +1,202 @@
+//! How two shapes are related: one file, one geometry, one surface, one shape, one class, or a part of each other.
+//!
+//! ```text
+//! ShapeDistance -> Relation by descriptions
+//! TriMesh -> MeshGeometry -> same vertices? components? one surface in space? -> Relation by meshes
+//! ```
+
+mod because;
+mod exact;
+mod geometry;
+mod handedness;
+mod in_space;
+mod kind;
+mod mesh_change;
+mod of_meshes;
+mod parts;
+mod same_surface;
+mod triangles;
+mod units;
+mod words;
+
+use base::ContentHash;
+use descriptors::{ShapeDistance, ShapeMetric};
+
+pub use because::{Basis, Because};
+pub use geometry::MeshGeometry;
+pub use handedness::{Handedness, handedness};
+pub use in_space::SurfaceGap;
+pub use kind::{Change, RelationKind};
+pub use parts::{Parts, Side};
+pub use units::UnitChange;
+
+/// Sizes of two meshes with the same vertices are equal up to this share, and so are their places. A tolerance of rounding:
+/// that of coordinates in files.
+const SIZE_OF_VERTICES: f64 = 1e-4;
+
+/// Sizes of two triangulations of one surface, and of copies on one plate, are equal up to this share. A tolerance: fewer
+/// triangles cut off more of a curved surface, so that a decimated copy of the same size is aligned at a slightly different one.
+const SIZE_OF_SURFACES: f64 = 0.01;
+
+/// How two shapes are related: the one answer of every program. [`Display`](std::fmt::Display) says it in a sentence,
+/// [`reason`](Self::reason) the numbers that decided.
+///
+/// The first of these that applies decides:
+///
+/// 1. The files have the same hash.
+/// 2. The vertices are the same after a motion, a reflection and a change of size, up to the rounding of files.
+/// 3. A mesh is among the components of the other, in this sense or the next.
+/// 4. The surfaces coincide up to a small distance after the best motion, reflection and change of size in space.
+/// 5. The distance of their shapes: one shape, which is then in another pose, one class, or different ones.
+///
+/// The last needs descriptions only, as an index stores them; the others need the files or the meshes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Relation {
+    /// The kind, by what changed least.
+    pub kind: RelationKind,
+    /// From the first mesh to the second, or to the copies that are part of one of them.
+    pub changes: Vec<Change>,
+    /// Probability of the kind, 0 to 1.
+    pub confidence: f64,
+    /// What it is told from.
+    pub because: Because,
+    /// What the two are called in words.
+    names: [String; 2],
+}
+
+impl Relation {
+    /// The relation of two shapes by their distance alone, the likeliest. `scale` is the size of the second over that of the
+    /// first.
+    ///
+    /// ```
+    /// use canonform_relations::{Handedness, Relation, RelationKind};
+    ///
+    /// # use descriptors::ShapeDistance;
+    /// let at = |d| Relation::by_distance(ShapeDistance { fused: d, combined: d }, 1.0, Handedness::Unknown);
+    /// assert_eq!(at(0.5).kind, RelationKind::OtherPose);
+    /// assert_eq!(at(20.0).named("cat", "hand").to_string(), "hand is another kind of shape than cat");
+    /// assert!(at(0.5).confidence > at(1.0).confidence);
+    /// ```
+    #[must_use]
+    pub fn by_distance(distance: ShapeDistance, scale: f64, handedness: Handedness) -> Self {
+        let mut because = Because { scale, handedness, ..Because::by_distance(distance) };
+        let (same_shape, same_class) = (because.same_shape, because.same_class);
+        let mut changes = Vec::new();
+        let (kind, confidence) = if same_shape > 0.5 {
+            because.units = UnitChange::of(scale, SIZE_OF_SURFACES);
+            if scale.max(1.0 / scale) > ShapeMetric::SIZE_OF_POSES {
+                changes.push(Change::Scaled);
+            }
+            if handedness == Handedness::Mirrored {
+                changes.push(Change::Mirrored);
+            }
+            (RelationKind::OtherPose, same_shape)
+        } else if same_class > 0.5 {
+            (RelationKind::SameClass, same_class - same_shape)
+        } else {
+            (RelationKind::Different, 1.0 - same_class)
+        };
+        let names = ["the first", "the second"].map(str::to_owned);
+        Self { kind, changes, confidence, because, names }
+    }
+
+    /// The relation once the hashes of the files are known, too.
+    #[must_use]
+    pub fn by_files(mut self, content: [Option<ContentHash>; 2]) -> Self {
+        self.because.content = content;
+        if matches!(content, [Some(a), Some(b)] if a == b) {
+            (self.kind, self.confidence) = (RelationKind::IdenticalFile, 1.0);
+            self.changes.clear();
+            self.because = Because { basis: Basis::Files, scale: 1.0, units: None, ..self.because };
+        }
+        self
+    }
+
+    /// The relation with names for the first and the second mesh.
+    #[must_use]
+    pub fn named(self, first: &str, second: &str) -> Self {
+        Self { names: [first, second].map(str::to_owned), ..self }
+    }
+
+    /// The relation of the first mesh and one of the components of the second, when the distance is that of these two.
+    #[must_use]
+    pub fn to_component(mut self, n_components: usize) -> Self {
+        if self.kind != RelationKind::PartOf && self.kind != RelationKind::Copies {
+            self.kind = RelationKind::PartOf;
+            self.because.parts = Some(Parts { whole: Side::Second, found: 1, components: n_components });
+            self.changes.push(Change::Posed);
+        }
+        self
+    }
+
+    /// Whether the second mesh changed from the first in this way.
+    #[must_use]
+    pub fn has(&self, change: Change) -> bool {
+        self.changes.contains(&change)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn at(combined: f64, scale: f64, handedness: Handedness) -> Relation {
+        Relation::by_distance(ShapeDistance { fused: combined, combined }, scale, handedness).named("a", "b")
+    }
+
+    #[test]
+    fn kinds_follow_each_other_as_the_distance_grows() {
+        let mut kinds = Vec::new();
+        for i in 0..4000 {
+            let next = at(f64::from(i) * 0.005, 1.0, Handedness::Unknown);
+            assert!(next.confidence > 0.45 && next.confidence <= 1.0, "{next:?}");
+            if kinds.last() != Some(&next.kind) {
+                kinds.push(next.kind);
+            }
+        }
+        assert_eq!(kinds, [RelationKind::OtherPose, RelationKind::SameClass, RelationKind::Different]);
+    }
+
+    #[test]
+    fn size_and_handedness_are_changes_of_one_shape_only() {
+        let (near, far) = (0.5, 30.0);
+        for unclear in [Handedness::Same, Handedness::Either, Handedness::Unknown] {
+            assert_eq!(at(near, 1.0, unclear).to_string(), "b is a in this or another pose");
+            assert_eq!(
+                at(near, 1.129, unclear).to_string(),
+                "b is a in this or another pose, scaled by 1.129"
+            );
+        }
+        let mirrored = at(near, 1.02, Handedness::Mirrored);
+        assert_eq!(mirrored.to_string(), "b is a in this or another pose, mirrored");
+        assert_eq!(at(near, 2.0, Handedness::Mirrored).changes, [Change::Scaled, Change::Mirrored]);
+        let apart = at(far, 3.0, Handedness::Mirrored);
+        assert_eq!(
+            (apart.changes.len(), apart.to_string().as_str()),
+            (0, "b is another kind of shape than a")
+        );
+    }
+
+    #[test]
+    fn what_is_not_certain_is_probable() {
+        let unsure = at(ShapeMetric::SAME_SHAPE.at * 1.01, 1.0, Handedness::Unknown);
+        assert_eq!(unsure.to_string(), "b is of the same class as a, and perhaps a in another pose");
+        let unsure = at(ShapeMetric::SAME_CLASS.at * 1.01, 1.0, Handedness::Unknown);
+        assert_eq!(unsure.to_string(), "b is probably another kind of shape than a");
+    }
+
+    #[test]
+    fn a_record_has_the_sentence_and_the_numbers() {
+        let json = serde_json::to_value(at(0.25, 1.0, Handedness::Unknown)).unwrap();
+        assert_eq!(
+            (&json["kind"], &json["text"]),
+            (&"other-pose".into(), &"b is a in this or another pose".into())
+        );
+        let because = &json["because"];
+        assert_eq!(
+            (&because["combined_distance"], &because["handedness"]),
+            (&0.25.into(), &"unknown".into())
+        );
+        assert!(because["text"].as_str().unwrap().starts_with("combined distance 0.250 (same shape below "));
+    }
+}

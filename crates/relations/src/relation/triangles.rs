@@ -1,0 +1,181 @@
+//! The point of a surface that is nearest to another point.
+
+use mesh::TriMesh;
+use nalgebra::{Point3, Vector3};
+
+/// Most triangles in a leaf of the tree.
+const LEAF: usize = 6;
+
+/// A tree of bounding boxes over the triangles of a mesh, parents before their children.
+#[derive(Debug)]
+pub(super) struct TriangleTree {
+    triangles: Vec<[Point3<f64>; 3]>,
+    nodes: Vec<Node>,
+}
+
+#[derive(Debug)]
+struct Node {
+    low: Point3<f64>,
+    high: Point3<f64>,
+    content: NodeContent,
+}
+
+#[derive(Debug)]
+enum NodeContent {
+    Triangles(std::ops::Range<usize>),
+    Children([usize; 2]),
+}
+
+/// The nearest point of a surface.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct NearestOnSurface {
+    pub(super) point: Point3<f64>,
+    /// Unit normal of its triangle.
+    pub(super) normal: Vector3<f64>,
+    /// Squared distance to it.
+    pub(super) sq_distance: f64,
+}
+
+impl TriangleTree {
+    /// The tree over the triangles that have an area. `O(n log n)`.
+    pub(super) fn new(mesh: &TriMesh) -> Self {
+        let all = (0..mesh.n_faces()).map(|f| mesh.triangle(f));
+        let triangles: Vec<_> = all.filter(|t| normal(t).norm() > 0.0).collect();
+        let mut tree = Self { nodes: Vec::with_capacity(triangles.len() / 2 + 1), triangles };
+        if !tree.triangles.is_empty() {
+            tree.grow(0..tree.triangles.len());
+        }
+        tree
+    }
+
+    fn grow(&mut self, range: std::ops::Range<usize>) -> usize {
+        let infinite = Point3::from([f64::INFINITY; 3]);
+        let corners = self.triangles[range.clone()].iter().flatten();
+        let (low, high) = corners.fold((infinite, -infinite), |(low, high), p| (low.inf(p), high.sup(p)));
+        let index = self.nodes.len();
+        self.nodes.push(Node { low, high, content: NodeContent::Triangles(range.clone()) });
+        if range.len() > LEAF {
+            let axis = (high - low).imax();
+            let middle = range.len() / 2;
+            let centre = |t: &[Point3<f64>; 3]| t.iter().map(|p| p[axis]).sum::<f64>();
+            self.triangles[range.clone()]
+                .select_nth_unstable_by(middle, |a, b| centre(a).total_cmp(&centre(b)));
+            let middle = range.start + middle;
+            let children = [self.grow(range.start..middle), self.grow(middle..range.end)];
+            self.nodes[index].content = NodeContent::Children(children);
+        }
+        index
+    }
+
+    /// The point of the surface that is nearest to `query`; `None` for a surface without area.
+    pub(super) fn nearest(&self, query: &Point3<f64>) -> Option<NearestOnSurface> {
+        let mut best: Option<(Point3<f64>, usize, f64)> = None;
+        let mut pending = vec![(0, 0.0)];
+        while let Some((index, bound)) = pending.pop() {
+            let Some(node) = self.nodes.get(index) else { break };
+            if best.is_some_and(|best| bound >= best.2) {
+                continue;
+            }
+            match &node.content {
+                NodeContent::Triangles(range) => {
+                    for i in range.clone() {
+                        let point = nearest_of_triangle(query, &self.triangles[i]);
+                        let sq = (point - query).norm_squared();
+                        if best.is_none_or(|best| sq < best.2) {
+                            best = Some((point, i, sq));
+                        }
+                    }
+                }
+                NodeContent::Children(children) => {
+                    let [a, b] = children.map(|child| (child, self.nodes[child].sq_distance(query)));
+                    // The nearer one is searched first.
+                    pending.extend(if a.1 < b.1 { [b, a] } else { [a, b] });
+                }
+            }
+        }
+        best.map(|(point, i, sq_distance)| {
+            let normal = normal(&self.triangles[i]).normalize();
+            NearestOnSurface { point, normal, sq_distance }
+        })
+    }
+}
+
+impl Node {
+    fn sq_distance(&self, p: &Point3<f64>) -> f64 {
+        let beyond = |i: usize| (self.low[i] - p[i]).max(p[i] - self.high[i]).max(0.0);
+        (0..3).map(|i| beyond(i).powi(2)).sum()
+    }
+}
+
+fn normal([a, b, c]: &[Point3<f64>; 3]) -> Vector3<f64> {
+    (b - a).cross(&(c - a))
+}
+
+/// The point of a triangle nearest to `p` (Ericson 2005, section 5.1.5, `ericson2005` in `REFERENCES.bib`).
+fn nearest_of_triangle(p: &Point3<f64>, [a, b, c]: &[Point3<f64>; 3]) -> Point3<f64> {
+    let (ab, ac) = (b - a, c - a);
+    let along = |from: &Point3<f64>| (ab.dot(&(p - from)), ac.dot(&(p - from)));
+    let ((d1, d2), (d3, d4), (d5, d6)) = (along(a), along(b), along(c));
+    if d1 <= 0.0 && d2 <= 0.0 {
+        return *a;
+    }
+    if d3 >= 0.0 && d4 <= d3 {
+        return *b;
+    }
+    if d6 >= 0.0 && d5 <= d6 {
+        return *c;
+    }
+    let vc = d1 * d4 - d3 * d2;
+    if vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0 {
+        return a + ab * (d1 / (d1 - d3));
+    }
+    let vb = d5 * d2 - d1 * d6;
+    if vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0 {
+        return a + ac * (d2 / (d2 - d6));
+    }
+    let va = d3 * d6 - d5 * d4;
+    if va <= 0.0 && d4 >= d3 && d5 >= d6 {
+        return b + (c - b) * ((d4 - d3) / ((d4 - d3) + (d5 - d6)));
+    }
+    let total = va + vb + vc;
+    a + ab * (vb / total) + ac * (vc / total)
+}
+
+#[cfg(test)]
+mod tests {
+    use mesh::shapes;
+
+    use super::*;
+
+    #[test]
+    fn the_nearest_point_is_the_nearest_of_all_triangles() {
+        let mesh = shapes::torus(20, 12, 2.0, 0.7);
+        let tree = TriangleTree::new(&mesh);
+        for i in 0..200 {
+            let i = f64::from(i);
+            let query = Point3::new(3.0 * (1.3 * i).sin(), 3.0 * (0.7 * i).cos(), (2.1 * i).sin());
+            let found = tree.nearest(&query).unwrap();
+            let all = (0..mesh.n_faces())
+                .map(|f| (nearest_of_triangle(&query, &mesh.triangle(f)) - query).norm_squared());
+            assert_eq!(found.sq_distance, all.fold(f64::INFINITY, f64::min));
+            assert!(((found.point - query).norm_squared() - found.sq_distance).abs() < 1e-15);
+            assert!((found.normal.norm() - 1.0).abs() < 1e-12);
+        }
+        assert_eq!(TriangleTree::new(&TriMesh::default()).nearest(&Point3::origin()), None);
+    }
+
+    #[test]
+    fn the_nearest_point_of_a_triangle_is_no_farther_than_points_inside() {
+        let triangle = [[0.0, 0.0, 0.0], [2.0, 0.1, 0.0], [0.5, 1.0, 0.3]].map(Point3::from);
+        for i in 0..300 {
+            let i = f64::from(i);
+            let query = Point3::new(3.0 * (1.1 * i).sin(), 2.0 * (0.6 * i).cos(), (1.7 * i).sin());
+            let found = (nearest_of_triangle(&query, &triangle) - query).norm();
+            for (u, v) in (0..=20).flat_map(|u| (0..=20 - u).map(move |v| (f64::from(u), f64::from(v)))) {
+                let [a, b, c] = triangle;
+                let inside = a + (b - a) * (u / 20.0) + (c - a) * (v / 20.0);
+                assert!(found <= (inside - query).norm() + 1e-12);
+            }
+        }
+    }
+}

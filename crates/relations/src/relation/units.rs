@@ -1,0 +1,78 @@
+//! Changes of size that are changes of the unit of length.
+
+use std::fmt;
+
+use serde::{Serialize, Serializer};
+
+/// Units that meshes are stored in, and by how much numbers grow from the first to the second.
+const UNITS: [(&str, &str, f64); 11] = [
+    ("inches", "millimetres", 25.4),
+    ("inches", "centimetres", 2.54),
+    ("metres", "millimetres", 1000.0),
+    ("metres", "centimetres", 100.0),
+    ("centimetres", "millimetres", 10.0),
+    ("metres", "inches", 1.0 / 0.0254),
+    ("feet", "millimetres", 304.8),
+    ("feet", "centimetres", 30.48),
+    ("metres", "feet", 1.0 / 0.3048),
+    ("feet", "inches", 12.0),
+    ("metres", "micrometres", 1e6),
+];
+
+/// A change of the unit of length, which explains a change of size.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct UnitChange {
+    /// The unit of the first mesh.
+    pub from: &'static str,
+    /// The unit of the second.
+    pub to: &'static str,
+}
+
+impl UnitChange {
+    /// The change of unit that multiplies sizes by `scale`, up to a relative error.
+    ///
+    /// ```
+    /// use canonform_relations::UnitChange;
+    ///
+    /// assert_eq!(UnitChange::of(25.4, 1e-4).unwrap().to_string(), "inches to millimetres");
+    /// assert_eq!(UnitChange::of(0.001, 1e-4).unwrap().to_string(), "millimetres to metres");
+    /// assert_eq!(UnitChange::of(2.0, 1e-4), None);
+    /// ```
+    #[must_use]
+    pub fn of(scale: f64, tolerance: f64) -> Option<Self> {
+        let is = |factor: f64| (scale / factor).ln().abs() <= tolerance;
+        UNITS.iter().find_map(|&(from, to, factor)| match () {
+            () if is(factor) => Some(Self { from, to }),
+            () if is(1.0 / factor) => Some(Self { from: to, to: from }),
+            () => None,
+        })
+    }
+}
+
+impl fmt::Display for UnitChange {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} to {}", self.from, self.to)
+    }
+}
+
+impl Serialize for UnitChange {
+    fn serialize<S: Serializer>(&self, out: S) -> Result<S::Ok, S::Error> {
+        out.collect_str(self)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_change_of_unit_is_named_in_both_directions() {
+        for (from, to, factor) in UNITS {
+            assert_eq!(UnitChange::of(factor * 1.00001, 1e-4), Some(UnitChange { from, to }));
+            assert_eq!(UnitChange::of(1.0 / factor, 1e-4), Some(UnitChange { from: to, to: from }));
+        }
+        for scale in [1.0, 3.0, f64::NAN, 0.0] {
+            assert_eq!(UnitChange::of(scale, 0.01), None);
+        }
+    }
+}

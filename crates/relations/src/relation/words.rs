@@ -1,0 +1,243 @@
+//! Relations in words, and as a record.
+
+use std::fmt::{self, Display, Formatter};
+
+use descriptors::ShapeMetric;
+use serde::{Serialize, Serializer};
+
+use super::in_space::SurfaceGap;
+use super::parts::{Parts, Side};
+use super::{Basis, Because, Change, Relation, RelationKind};
+
+impl Display for Relation {
+    fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let [a, b] = &self.names;
+        let probably = self.probably();
+        let perhaps_same = self.because.same_shape > 1.0 - ShapeMetric::CERTAIN;
+        match (self.kind, self.because.parts) {
+            (RelationKind::IdenticalFile, _) => write!(f, "{b} is the same file as {a}"),
+            (RelationKind::IdenticalGeometry, _) if self.changes.is_empty() => {
+                write!(f, "{b} has the same geometry as {a}")
+            }
+            (RelationKind::OtherPose, _) => {
+                write!(f, "{b} is {probably}{a} {}", self.pose())?;
+                self.write_changes(f, ", ")
+            }
+            (RelationKind::SameClass, _) if !probably.is_empty() && perhaps_same => {
+                write!(f, "{b} is of the same class as {a}, and perhaps {a} in another pose")
+            }
+            (RelationKind::SameClass, _) => {
+                write!(f, "{b} is {probably}of the same class as {a}, but another shape")
+            }
+            (RelationKind::Different, _) => write!(f, "{b} is {probably}another kind of shape than {a}"),
+            (RelationKind::Copies | RelationKind::PartOf, Some(parts)) => self.write_parts(f, parts),
+            _ => {
+                write!(f, "{b} is {probably}{a}")?;
+                self.write_changes(f, " ")
+            }
+        }
+    }
+}
+
+impl Relation {
+    /// What the two have in common, in a few words.
+    #[must_use]
+    pub fn in_brief(&self) -> String {
+        format!("{}{}", self.probably(), self.kind.words())
+    }
+
+    /// The numbers that decided.
+    #[must_use]
+    pub fn reason(&self) -> String {
+        let Because { vertex_gap, surface_gap, content, vertices, .. } = &self.because;
+        let vertices = match vertices {
+            Some([a, b]) if a == b => format!("{a} vertices on both sides"),
+            Some([a, b]) => format!("{a} and {b} vertices"),
+            None => String::new(),
+        };
+        let shape = self.by_distance_in_words();
+        match (self.kind, vertex_gap, surface_gap) {
+            (RelationKind::IdenticalFile, ..) => match content[0] {
+                Some(hash) => format!("the files have the same SHA-256 hash, {}...", &hash.to_string()[..12]),
+                None => "the files have the same hash".to_owned(),
+            },
+            (RelationKind::PartOf, ..) if self.has(Change::Posed) => {
+                format!("by the signatures of the component alone; {shape}")
+            }
+            (_, Some(gap), _) => {
+                let faces = if self.has(Change::Remeshed) { "other faces" } else { "the same faces" };
+                format!("{vertices}, at most {gap:.1e} of the size apart once aligned in space; {faces}")
+            }
+            (RelationKind::Copies | RelationKind::PartOf, None, None) => {
+                "the components have the same vertices once aligned in space".to_owned()
+            }
+            (kind, None, Some(gap)) if kind < RelationKind::OtherPose => {
+                format!("the surfaces are {} once aligned in space; {vertices}", apart(gap))
+            }
+            (_, None, Some(gap)) => format!("{shape}; in space, the surfaces are {}", apart(gap)),
+            (_, None, None) if self.because.basis == Basis::Descriptions => {
+                format!("{shape}; the mesh was not compared")
+            }
+            (_, None, None) => format!("{shape}; in space, they are not one surface"),
+        }
+    }
+
+    /// The distance of the shapes, and what it is compared with.
+    fn by_distance_in_words(&self) -> String {
+        let ([shape, _], [_, class]) = (ShapeMetric::SAME_SHAPE.gap(), ShapeMetric::SAME_CLASS.gap());
+        let distance = self.because.distance.combined;
+        format!(
+            "combined distance {distance:.3} (same shape below {shape:.3}, another class above {class:.3})"
+        )
+    }
+
+    fn probably(&self) -> &'static str {
+        if self.confidence < ShapeMetric::CERTAIN { "probably " } else { "" }
+    }
+
+    /// The changes, the first after `start`, which is left out if there are none.
+    fn write_changes(&self, f: &mut Formatter<'_>, start: &str) -> fmt::Result {
+        let mut separator = start;
+        for change in &self.changes {
+            f.write_str(separator)?;
+            separator = ", ";
+            let vertices = self.because.vertices.unwrap_or([1, 1]).map(|n| n.max(1) as f64);
+            let share = vertices[1] / vertices[0];
+            match change {
+                Change::Moved => f.write_str("moved")?,
+                Change::Rotated => write!(f, "rotated by {:.1}°", self.because.rotation.unwrap_or_default())?,
+                Change::Scaled => self.write_scale(f)?,
+                Change::Mirrored => f.write_str("mirrored")?,
+                Change::Decimated => write!(f, "decimated to {} of the vertices", percent(share))?,
+                Change::Subdivided => write!(f, "subdivided to {share:.1} times the vertices")?,
+                Change::Remeshed if self.because.vertex_gap.is_some() => f.write_str("with other faces")?,
+                Change::Remeshed if (share - 1.0).abs() < 0.005 => f.write_str("remeshed")?,
+                Change::Remeshed => write!(f, "remeshed with {share:.2} times the vertices")?,
+                Change::Posed => f.write_str(self.pose())?,
+                Change::Noisy => {
+                    let gap = self.because.surface_gap.map_or(0.0, |gap| gap.rms);
+                    write!(f, "with noise of {} of the size", percent(gap))?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Without meshes the pose is unknown.
+    fn pose(&self) -> &'static str {
+        match self.because.basis {
+            Basis::Descriptions => "in this or another pose",
+            Basis::Files | Basis::Meshes => "in another pose",
+        }
+    }
+
+    fn write_scale(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        write!(f, "scaled by {}", significant(self.because.scale))?;
+        match self.because.units {
+            Some(units) => write!(f, " ({units})"),
+            None => Ok(()),
+        }
+    }
+
+    fn write_parts(&self, f: &mut Formatter<'_>, parts: Parts) -> fmt::Result {
+        let [a, b] = &self.names;
+        let (part, whole) = if parts.whole == Side::Second { (a, b) } else { (b, a) };
+        let Parts { found, components, .. } = parts;
+        match (self.kind, found) {
+            (RelationKind::Copies, _) => write!(f, "{whole} is {} copies of {part}", in_words(found))?,
+            (_, 1) => write!(f, "{part} is part of {whole}, one of its {} components", in_words(components))?,
+            _ => write!(
+                f,
+                "{whole} has {} copies of {part} among its {} components",
+                in_words(found),
+                in_words(components)
+            )?,
+        }
+        if self.has(Change::Scaled) {
+            // From the first to the second, whichever is the whole.
+            f.write_str(", ")?;
+            self.write_scale(f)?;
+        }
+        if self.has(Change::Mirrored) {
+            f.write_str(", mirrored")?;
+        }
+        if self.has(Change::Remeshed) {
+            f.write_str(", remeshed")?;
+        }
+        match self.has(Change::Posed) {
+            true => write!(f, ", {}", self.pose()),
+            false => Ok(()),
+        }
+    }
+}
+
+fn apart(gap: &SurfaceGap) -> String {
+    format!("{} of the size apart (root mean square; at most {})", percent(gap.rms), percent(gap.max))
+}
+
+/// A share in percent, with two significant digits.
+fn percent(share: f64) -> String {
+    let percent = 100.0 * share;
+    match percent {
+        p if p >= 10.0 => format!("{p:.0} %"),
+        p if p >= 1.0 => format!("{p:.1} %"),
+        p if p >= 0.01 => format!("{p:.2} %"),
+        p => format!("{p:.1e} %"),
+    }
+}
+
+/// A number with five significant digits and no zeros at the end.
+fn significant(x: f64) -> String {
+    let digits = (4.0 - x.abs().log10().floor()).clamp(0.0, 9.0) as usize;
+    let text = format!("{x:.digits$}");
+    match text.contains('.') {
+        true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
+        false => text,
+    }
+}
+
+fn in_words(n: usize) -> String {
+    const WORDS: [&str; 13] = [
+        "no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven",
+        "twelve",
+    ];
+    WORDS.get(n).map_or_else(|| n.to_string(), |word| (*word).to_owned())
+}
+
+/// A relation with its words, as it is written.
+#[derive(Serialize)]
+struct RelationRecord<'a> {
+    kind: RelationKind,
+    confidence: f64,
+    changes: &'a [Change],
+    text: String,
+    because: BecauseRecord<'a>,
+}
+
+#[derive(Serialize)]
+struct BecauseRecord<'a> {
+    text: String,
+    #[serde(flatten)]
+    because: &'a Because,
+}
+
+impl Serialize for Relation {
+    fn serialize<S: Serializer>(&self, out: S) -> Result<S::Ok, S::Error> {
+        let Self { kind, confidence, changes, because, .. } = self;
+        let (text, because) = (self.to_string(), BecauseRecord { text: self.reason(), because });
+        RelationRecord { kind: *kind, confidence: *confidence, changes, text, because }.serialize(out)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_short() {
+        let shown = [25.4, 1000.0, 0.001, 1.0 / 25.4, 2.0 / 3.0, 123_456.7].map(significant);
+        assert_eq!(shown, ["25.4", "1000", "0.001", "0.03937", "0.66667", "123457"]);
+        assert_eq!([0.5, 0.0312, 0.0025].map(percent), ["50 %", "3.1 %", "0.25 %"]);
+        assert_eq!([0, 6, 13].map(in_words), ["no", "six", "13"]);
+    }
+}

@@ -1,0 +1,175 @@
+//! Raster images and their PNG encoding.
+
+use std::io;
+use std::path::Path;
+
+use base::files::{FileError, write_bytes};
+
+/// An image of 8-bit sRGB pixels with straight (not premultiplied) alpha.
+///
+/// **Invariant.** `pixels.len() == width * height`, row by row from the top left.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct RgbaImage {
+    width: u32,
+    height: u32,
+    pixels: Vec<[u8; 4]>,
+}
+
+impl RgbaImage {
+    /// An image of one colour.
+    #[must_use]
+    pub fn new(width: u32, height: u32, color: [u8; 4]) -> Self {
+        Self { width, height, pixels: vec![color; width as usize * height as usize] }
+    }
+
+    /// An image of `color(column, row)` at each pixel.
+    #[must_use]
+    pub fn from_fn(width: u32, height: u32, color: impl Fn(usize, usize) -> [u8; 4]) -> Self {
+        let color = &color;
+        let row = |row| (0..width as usize).map(move |column| color(column, row));
+        Self { width, height, pixels: (0..height as usize).flat_map(row).collect() }
+    }
+
+    /// Two images side by side; a missing part at the bottom of the lower one has the colour of its first pixel.
+    #[must_use]
+    pub fn beside(&self, right: &Self) -> Self {
+        let pixel = |image: &Self, column: usize, row: usize| {
+            let at = row * image.width as usize + column;
+            let found = if row < image.height as usize { image.pixels.get(at) } else { image.pixels.first() };
+            found.copied().unwrap_or_default()
+        };
+        let left = self.width as usize;
+        Self::from_fn(self.width + right.width, self.height.max(right.height), |column, row| {
+            match column.checked_sub(left) {
+                None => pixel(self, column, row),
+                Some(column) => pixel(right, column, row),
+            }
+        })
+    }
+
+    /// Width in pixels.
+    #[must_use]
+    pub fn width(&self) -> u32 {
+        self.width
+    }
+
+    /// Height in pixels.
+    #[must_use]
+    pub fn height(&self) -> u32 {
+        self.height
+    }
+
+    /// All pixels as `[red, green, blue, alpha]`, row by row from the top left.
+    #[must_use]
+    pub fn pixels(&self) -> &[[u8; 4]] {
+        &self.pixels
+    }
+
+    /// All pixels, to change them.
+    #[must_use]
+    pub fn pixels_mut(&mut self) -> &mut [[u8; 4]] {
+        &mut self.pixels
+    }
+
+    /// Red, green and blue bytes over white, with every pixel repeated in a square of `zoom` x `zoom`.
+    pub(crate) fn rgb_bytes(&self, zoom: u32) -> Vec<u8> {
+        let zoom = zoom as usize;
+        let over_white = |[r, g, b, alpha]: &[u8; 4]| {
+            [r, g, b].map(|&c| {
+                let (c, alpha) = (u32::from(c), u32::from(*alpha));
+                ((c * alpha + 255 * (255 - alpha) + 127) / 255) as u8
+            })
+        };
+        let mut bytes = Vec::with_capacity(self.pixels.len() * 3 * zoom * zoom);
+        for row in self.pixels.chunks(self.width.max(1) as usize) {
+            let line: Vec<u8> =
+                row.iter().flat_map(|p| std::iter::repeat_n(over_white(p), zoom)).flatten().collect();
+            (0..zoom).for_each(|_| bytes.extend_from_slice(&line));
+        }
+        bytes
+    }
+
+    /// Writes the image as a PNG file, completely or not at all.
+    ///
+    /// # Errors
+    /// If the file cannot be written or the image has no pixels.
+    pub fn write_png(&self, path: impl AsRef<Path>) -> Result<(), FileError> {
+        let path = path.as_ref();
+        let encoded = self.to_png().map_err(|source| FileError::write(path, source))?;
+        write_bytes(path, &encoded)
+    }
+
+    /// The image as the bytes of a PNG file.
+    ///
+    /// # Errors
+    /// If the image has no pixels.
+    pub fn to_png(&self) -> io::Result<Vec<u8>> {
+        let bytes = self.pixels.as_flattened();
+        Ok(encode_png(self.width, self.height, png::ColorType::Rgba, bytes)?)
+    }
+}
+
+/// The bytes of a PNG file of 8-bit sRGB; `bytes` holds the channels of `color`, row by row.
+pub(crate) fn encode_png(
+    width: u32,
+    height: u32,
+    color: png::ColorType,
+    bytes: &[u8],
+) -> Result<Vec<u8>, png::EncodingError> {
+    let mut file = Vec::new();
+    let mut encoder = png::Encoder::new(&mut file, width, height);
+    encoder.set_color(color);
+    encoder.set_depth(png::BitDepth::Eight);
+    encoder.set_source_srgb(png::SrgbRenderingIntent::Perceptual);
+    encoder.set_compression(png::Compression::Default);
+    encoder.set_adaptive_filter(png::AdaptiveFilterType::Adaptive);
+    let mut writer = encoder.write_header()?;
+    writer.write_image_data(bytes)?;
+    writer.finish()?;
+    Ok(file)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_png_reads_back_unchanged() {
+        let mut image = RgbaImage::new(3, 2, [10, 20, 30, 255]);
+        image.pixels_mut()[4] = [1, 2, 3, 4];
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("x.png");
+        image.write_png(&path).unwrap();
+        let mut reader = png::Decoder::new(std::fs::File::open(&path).unwrap()).read_info().unwrap();
+        let mut bytes = vec![0; reader.output_buffer_size()];
+        let info = reader.next_frame(&mut bytes).unwrap();
+        assert_eq!((info.width, info.height), (3, 2));
+        assert_eq!(bytes, image.pixels().as_flattened());
+        assert_eq!(image.pixels()[4], [1, 2, 3, 4]);
+    }
+
+    #[test]
+    fn an_image_without_pixels_cannot_be_written() {
+        let folder = tempfile::tempdir().unwrap();
+        let error = RgbaImage::new(0, 5, [0; 4]).write_png(folder.path().join("x.png")).unwrap_err();
+        assert!(error.to_string().contains("x.png"), "{error}");
+    }
+
+    #[test]
+    fn images_of_different_height_stand_side_by_side() {
+        let (mut a, b) = (RgbaImage::new(1, 2, [1; 4]), RgbaImage::new(2, 1, [2; 4]));
+        a.pixels_mut()[1] = [3; 4];
+        let both = a.beside(&b);
+        assert_eq!((both.width(), both.height()), (3, 2));
+        assert_eq!(both.pixels(), [[1; 4], [2; 4], [2; 4], [3; 4], [2; 4], [2; 4]]);
+    }
+
+    #[test]
+    fn zooming_repeats_columns_and_rows() {
+        let mut image = RgbaImage::new(2, 1, [1, 1, 1, 255]);
+        image.pixels_mut()[1] = [2, 2, 2, 255];
+        let line = [1, 1, 1, 1, 1, 1, 2, 2, 2, 2, 2, 2];
+        assert_eq!(image.rgb_bytes(2), [line, line].concat());
+        assert_eq!(RgbaImage::new(1, 1, [100, 0, 255, 51]).rgb_bytes(1), [224, 204, 255]);
+    }
+}

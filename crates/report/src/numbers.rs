@@ -1,0 +1,138 @@
+//! Numbers as text: ticks of an axis, durations, amounts of memory.
+
+use plotters::coord::ranged1d::Ranged;
+use plotters::coord::types::RangedCoordf64;
+
+/// Round values within `range` at equal steps, at most about `most` of them.
+#[must_use]
+pub fn ticks([low, high]: [f64; 2], most: usize) -> Vec<f64> {
+    RangedCoordf64::from(low..high).key_points(most)
+}
+
+/// The number format of an axis: a common power of ten and a number of decimals.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct NumberFormat {
+    exponent: i32,
+    decimals: usize,
+}
+
+impl NumberFormat {
+    /// The format with the fewest digits that tells all of `ticks` apart. Very large and very small ones share a
+    /// power of ten.
+    #[must_use]
+    pub fn for_ticks(ticks: &[f64]) -> Self {
+        let largest = ticks.iter().fold(0.0_f64, |m, t| m.max(t.abs()));
+        let plain = largest == 0.0 || (0.01..10_000.0).contains(&largest);
+        let exponent = if plain { 0 } else { 3 * (largest.log10() / 3.0).floor() as i32 };
+        let unit = 10f64.powi(exponent);
+        let exact = |t: &f64, decimals: i32| {
+            let digits = t / unit * 10f64.powi(decimals);
+            (digits - digits.round()).abs() < 1e-6 * (largest / unit * 10f64.powi(decimals)).max(1.0)
+        };
+        let decimals = (0..9).find(|&d| ticks.iter().all(|t| exact(t, d))).unwrap_or(9);
+        Self { exponent, decimals: decimals as usize }
+    }
+
+    /// A number without the common power of ten.
+    #[must_use]
+    pub fn write(self, value: f64) -> String {
+        signed(value / 10f64.powi(self.exponent), self.decimals)
+    }
+
+    /// The unit of the axis with the power of ten that [`NumberFormat::write`] leaves out. Either may be missing.
+    #[must_use]
+    pub fn unit(self, unit: &str) -> String {
+        match (self.exponent, unit) {
+            (0, unit) => unit.to_owned(),
+            (exponent, "") => format!("×10{}", superscript(exponent)),
+            (exponent, unit) => format!("×10{}, {unit}", superscript(exponent)),
+        }
+    }
+}
+
+/// An exponent in superscript digits.
+#[must_use]
+pub fn superscript(exponent: i32) -> String {
+    const DIGITS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
+    let sign = if exponent < 0 { "⁻" } else { "" };
+    let digits: String =
+        exponent.unsigned_abs().to_string().bytes().map(|d| DIGITS[usize::from(d - b'0')]).collect();
+    format!("{sign}{digits}")
+}
+
+/// A number with a fixed number of decimals and a typographic minus sign, without a sign if it rounds to zero.
+#[must_use]
+pub fn signed(value: f64, decimals: usize) -> String {
+    let text = format!("{value:.decimals$}");
+    match text.strip_prefix('-') {
+        Some(zero) if zero.chars().all(|c| matches!(c, '0' | '.')) => zero.to_string(),
+        Some(positive) => format!("\u{2212}{positive}"),
+        None => text,
+    }
+}
+
+/// A duration in seconds with at least two significant digits.
+#[must_use]
+pub fn seconds(seconds: f64) -> String {
+    match seconds {
+        s if s >= 10.0 => format!("{s:.1}"),
+        s if s >= 1.0 => format!("{s:.2}"),
+        s if s >= 0.01 => format!("{s:.3}"),
+        s => format!("{s:.4}"),
+    }
+}
+
+/// An amount of memory in MiB or GiB.
+#[must_use]
+pub fn bytes(bytes: usize) -> String {
+    let mib = bytes as f64 / f64::from(1 << 20);
+    match mib {
+        m if m >= 1024.0 => format!("{:.2} GiB", m / 1024.0),
+        m if m >= 100.0 => format!("{m:.0} MiB"),
+        m => format!("{m:.1} MiB"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn written(ticks: &[f64]) -> (Vec<String>, String) {
+        let numbers = NumberFormat::for_ticks(ticks);
+        (ticks.iter().map(|&t| numbers.write(t)).collect(), numbers.unit("m"))
+    }
+
+    #[test]
+    fn tick_labels_have_as_few_digits_as_tell_them_apart() {
+        assert_eq!(
+            written(&[-20.0, 0.0, 20.0]),
+            (vec!["\u{2212}20".into(), "0".into(), "20".into()], "m".into())
+        );
+        assert_eq!(written(&[0.1, 0.2, 0.1 + 0.2]).0, ["0.1", "0.2", "0.3"]);
+        assert_eq!(written(&[0.25, 0.5]).0, ["0.25", "0.50"]);
+        assert_eq!(written(&[-0.001, 0.0015]), (vec!["\u{2212}1.0".into(), "1.5".into()], "×10⁻³, m".into()));
+        assert_eq!(written(&[20_000.0, 40_000.0]), (vec!["20".into(), "40".into()], "×10³, m".into()));
+        assert_eq!(written(&[2e12]).1, "×10¹², m");
+        assert_eq!(NumberFormat::for_ticks(&[2e12]).unit(""), "×10¹²");
+        assert_eq!(NumberFormat::for_ticks(&[2.0]).unit(""), "");
+        assert_eq!(written(&[]), (vec![], "m".into()));
+        assert_eq!(written(&[0.0]).0, ["0"]);
+    }
+
+    #[test]
+    fn only_numbers_that_differ_from_zero_have_a_sign() {
+        let signs = [signed(-0.004, 2), signed(-0.4, 1), signed(3.0, 0), signed(-0.0, 1)];
+        assert_eq!(signs, ["0.00", "\u{2212}0.4", "3", "0.0"]);
+    }
+
+    #[test]
+    fn durations_and_memory_have_digits_to_suit_their_size() {
+        assert_eq!([123.0, 1.5, 0.5, 0.0012].map(seconds), ["123.0", "1.50", "0.500", "0.0012"]);
+        assert_eq!([1 << 19, 200 << 20, 3 << 30].map(bytes), ["0.5 MiB", "200 MiB", "3.00 GiB"]);
+    }
+
+    #[test]
+    fn ticks_are_round_and_inside_the_range() {
+        assert_eq!(ticks([-1.0, 21.0], 5), [0.0, 5.0, 10.0, 15.0, 20.0]);
+    }
+}

@@ -1,0 +1,237 @@
+//! A colour bar with ticks next to an image.
+
+use base::Observer;
+use mesh::TriMesh;
+
+use super::coloring::{Coloring, ISOLINE_LIGHT};
+use super::draw::render;
+use super::options::{Background, RenderOptions};
+use crate::color::{ColorMap, Rgb, from_linear, mix, to_linear, value_range};
+use crate::error::ReportError;
+use crate::figure::{INK, PlotAxis, bar_labels, pixels, scaled_text, text_width};
+use crate::image::RgbaImage;
+
+/// Draws like [`render`], with a colour bar, its ticks and its `name` to the right of the mesh, in an image of the
+/// same size.
+///
+/// There is no bar if the surface has no finite numbers, or if the bar would take more than half of the image.
+///
+/// # Errors
+/// [`ReportError::Exceeded`], and [`ReportError::Draw`] if text cannot be written.
+pub fn render_with_bar(
+    mesh: &TriMesh,
+    options: &RenderOptions,
+    name: &str,
+    observer: &dyn Observer,
+) -> Result<RgbaImage, ReportError> {
+    let Some(bar) = ColorBar::new(options, name) else { return Ok(render(mesh, options, observer)?) };
+    let room = RenderOptions { width: bar.size[0] - bar.width, ..options.clone() };
+    let mut image = bar.with_room(&render(mesh, &room, observer)?, options.background);
+    bar.paint(&mut image);
+    let pen = pen(options.background);
+    // Drawn dark on white: the darker a pixel, the more of it is covered.
+    let drawn = pixels(bar.size, |area| {
+        let [left, top, height] = [bar.left(), bar.top, bar.height].map(|at| at as i32);
+        let width = bar.size[0] as i32 - left - (0.4 * bar.em) as i32;
+        let place = area.clone().shrink((left, top), (width, height));
+        bar_labels(&place, &bar.axis, bar.em, bar.em, 1)
+    });
+    let drawn = drawn.map_err(|reason| ReportError::draw("a colour bar", reason))?;
+    for (pixel, drawn) in image.pixels_mut().iter_mut().zip(drawn.chunks_exact(3)) {
+        let cover = f64::from(255 - drawn[1]) / f64::from(255 - INK[1]);
+        *pixel = over(*pixel, pen, cover);
+    }
+    Ok(image)
+}
+
+/// The bar and its labels, in pixels.
+struct ColorBar {
+    /// Size of the whole image.
+    size: [u32; 2],
+    /// Pixels taken from the mesh.
+    width: u32,
+    /// Type size, and width of the bar.
+    em: f64,
+    top: usize,
+    height: usize,
+    /// Steps between isolines, 0 for none.
+    steps: u32,
+    /// The values, their ticks and the name.
+    axis: PlotAxis,
+    colors: ColorMap,
+}
+
+impl ColorBar {
+    fn new(options: &RenderOptions, name: &str) -> Option<Self> {
+        let Coloring::Scalars { values, range, isolines } = &options.coloring else { return None };
+        let [low, high] = range.or_else(|| value_range(values))?;
+        // The range of the surface's colours if there is only one value.
+        let high = if high > low { high } else { low + 1.0 };
+        let size = [options.width, options.height].map(|side| side.clamp(1, 8192));
+        let [wide, high_side] = size.map(f64::from);
+        let em = (wide.min(high_side) / 36.0).clamp(11.0, 64.0).round();
+        if !(high - low).is_finite() || em * 8.0 > high_side {
+            return None;
+        }
+        let height = (high_side * 0.72).round();
+        let most = (height / (2.5 * em)).clamp(2.0, 8.0) as usize;
+        let axis = PlotAxis::bar(name, "", [low, high], most);
+        // Measured large, as plotters rounds to whole pixels.
+        let style = scaled_text(em, INK, 8);
+        let numbers = axis.ticks.iter().map(|(_, text)| text_width(text, &style) / 8.0).fold(0.0, f64::max);
+        // The bar, ticks, numbers and name.
+        let width = (em * (1.0 + 0.8 + 2.4) + numbers.ceil()) as u32;
+        let top = ((high_side - height) / 2.0).round() as usize;
+        let (steps, colors, height) = (*isolines, options.colors, height as usize);
+        (width <= size[0] / 2).then_some(Self { size, width, em, top, height, steps, axis, colors })
+    }
+
+    fn left(&self) -> usize {
+        (self.size[0] - self.width) as usize + (0.3 * self.em) as usize
+    }
+
+    /// The image of the mesh, extended to the right by empty space for the bar.
+    fn with_room(&self, mesh: &RgbaImage, background: Background) -> RgbaImage {
+        let empty = match background {
+            Background::White => [255; 4],
+            Background::Color([r, g, b]) => [r, g, b, 255],
+            Background::Transparent => [0; 4],
+        };
+        mesh.beside(&RgbaImage::new(self.width, self.size[1], empty))
+    }
+
+    /// Fills the bar with the colour map and its isolines.
+    fn paint(&self, image: &mut RgbaImage) {
+        let (left, right) = (self.left(), self.left() + self.em as usize);
+        let half_line = self.em / 24.0;
+        let rows =
+            image.pixels_mut().chunks_exact_mut(self.size[0] as usize).skip(self.top).take(self.height);
+        for (i, row) in rows.enumerate() {
+            let share = 1.0 - (i as f64 + 0.5) / self.height as f64;
+            let level = share * f64::from(self.steps);
+            let line = level.round();
+            let pixels_away = (level - line).abs() * self.height as f64 / f64::from(self.steps.max(1));
+            let is_inside = line > 0.5 && line < f64::from(self.steps) - 0.5;
+            let light = if is_inside && pixels_away <= half_line.max(0.5) { ISOLINE_LIGHT } else { 1.0 };
+            let [r, g, b] = self.colors.color(share).map(|c| from_linear(to_linear(c) * light));
+            row[left..right].fill([r, g, b, 255]);
+        }
+    }
+}
+
+/// A text colour that contrasts with the background.
+fn pen(background: Background) -> Rgb {
+    let light = match background {
+        // As far from white as from black.
+        Background::Transparent => return [118; 3],
+        Background::White => 1.0,
+        Background::Color(color) => {
+            let [r, g, b] = color.map(to_linear);
+            0.2126 * r + 0.7152 * g + 0.0722 * b
+        }
+    };
+    if light > 0.18 { [34; 3] } else { [235; 3] }
+}
+
+/// A pixel of which an opaque colour covers `share`.
+fn over([r, g, b, alpha]: [u8; 4], color: Rgb, share: f64) -> [u8; 4] {
+    if share <= 0.0 {
+        return [r, g, b, alpha];
+    }
+    let below = f64::from(alpha) / 255.0 * (1.0 - share);
+    let whole = below + share;
+    let [r, g, b] = mix([r, g, b], color, share / whole);
+    [r, g, b, (whole * 255.0).round() as u8]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::tests::meshes::sphere;
+
+    fn options(values: Vec<f64>) -> RenderOptions {
+        let coloring = Coloring::Scalars { values, range: None, isolines: 4 };
+        RenderOptions { width: 320, height: 240, coloring, ..RenderOptions::default() }
+    }
+
+    fn with_bar(options: &RenderOptions) -> RgbaImage {
+        render_with_bar(&sphere(12), options, "z", &()).unwrap()
+    }
+
+    fn heights() -> Vec<f64> {
+        sphere(12).positions.iter().map(|p| p.z).collect()
+    }
+
+    #[test]
+    fn the_bar_shares_the_image_with_the_mesh() {
+        let options = options(heights());
+        let (plain, image) = (render(&sphere(12), &options, &()).unwrap(), with_bar(&options));
+        assert_eq!((image.width(), image.height()), (320, 240));
+        assert!(plain != image);
+        let other = RenderOptions { colors: ColorMap::Magma, ..options.clone() };
+        assert!(with_bar(&other) != image);
+        let bar = ColorBar::new(&options, "z").unwrap();
+        let column = bar.left() as u32 + bar.em as u32 / 2;
+        let [low, high] = [bar.top + bar.height - 1, bar.top].map(|row| row as u32);
+        for (row, end) in [(low, ColorMap::Viridis.color(0.0)), (high, ColorMap::Viridis.color(1.0))] {
+            let found = image.pixel(column, row);
+            assert!(found.iter().zip(end).all(|(a, b)| a.abs_diff(b) < 8), "{found:?} {end:?}");
+        }
+        let lines = (high..=low).filter(|&y| image.pixel(column, y).iter().all(|c| *c > 150)).count();
+        assert_eq!(lines, 0, "the bar has no holes");
+        assert_eq!(image, with_bar(&options));
+    }
+
+    #[test]
+    fn ticks_are_round_and_inside_the_range() {
+        let bar = |values| ColorBar::new(&options(values), "field").unwrap();
+        let written = |bar: ColorBar| bar.axis.ticks.into_iter().map(|(_, text)| text).collect::<Vec<_>>();
+        assert_eq!(written(bar(vec![0.0, 20.0])), ["0", "5", "10", "15", "20"]);
+        assert_eq!(bar(vec![0.0, 20_000.0]).axis.name, "field (×10³)");
+        // A single value, and two neighbouring floating-point numbers.
+        assert_eq!(bar(vec![3.0, 3.0]).axis.range, [3.0, 4.0]);
+        assert_eq!(bar(vec![1e17, 1e17 + 16.0]).axis.ticks.len(), 2);
+    }
+
+    #[test]
+    fn surfaces_without_finite_numbers_and_small_images_have_no_bar() {
+        let has_bar = |options: &RenderOptions| ColorBar::new(options, "").is_some();
+        assert!(has_bar(&options(heights())));
+        assert!(!has_bar(&options(vec![f64::NAN])) && !has_bar(&options(vec![])));
+        assert!(!has_bar(&options(vec![-1e308, 1e308])));
+        assert!(!has_bar(&RenderOptions { width: 90, ..options(heights()) }));
+        assert!(!has_bar(&RenderOptions { height: 60, ..options(heights()) }));
+        assert!(!has_bar(&RenderOptions::default()));
+    }
+
+    #[test]
+    fn labels_contrast_with_every_background() {
+        let on = |background| {
+            let options = RenderOptions { background, ..options(heights()) };
+            let image = with_bar(&options);
+            let right = |p: &(usize, &[u8; 4])| p.0 % 320 > 270;
+            image
+                .pixels()
+                .iter()
+                .copied()
+                .enumerate()
+                .filter(|(i, p)| right(&(*i, p)))
+                .map(|(_, p)| p)
+                .collect::<Vec<_>>()
+        };
+        assert!(on(Background::White).iter().any(|p| p[0] < 60));
+        assert!(on(Background::Color([20, 20, 24])).iter().any(|p| p[0] > 200));
+        let clear = on(Background::Transparent);
+        assert!(
+            clear.iter().any(|p| p[3] == 0) && clear.iter().any(|p| p[0].abs_diff(118) < 3 && p[3] > 200)
+        );
+    }
+
+    #[test]
+    fn a_partly_covered_pixel_mixes_both_colours() {
+        assert_eq!(over([10, 20, 30, 40], [0; 3], 0.0), [10, 20, 30, 40]);
+        assert_eq!(over([10, 20, 30, 40], [1, 2, 3], 1.0), [1, 2, 3, 255]);
+        assert_eq!(over([200, 200, 200, 255], [0; 3], 0.5), [100, 100, 100, 255]);
+        assert_eq!(over([0; 4], [80; 3], 0.5), [80, 80, 80, 128]);
+    }
+}

@@ -1,0 +1,40 @@
+//! From a mesh to an image.
+
+use base::{Exceeded, Observer};
+use mesh::TriMesh;
+
+use super::camera::{Camera, drawable_faces};
+use super::coloring::Paint;
+use super::normals::corner_normals;
+use super::options::RenderOptions;
+use super::raster::DepthBuffer;
+use super::shade::shade;
+use crate::image::RgbaImage;
+
+/// Draws a mesh as a shaded orthographic image in which it fits.
+///
+/// * Faces are lit on both sides, so neither their orientation nor holes matter.
+/// * Faces that are degenerate, or have a corner that does not exist or is not finite, are left out. Without any
+///   other face the image is empty.
+/// * Cost: linear in faces and pixels where few faces hide each other. 28 k vertices at 600 x 600 take about 0.1 s.
+///   Of faces hidden by earlier ones, only one in 64 samples is computed.
+///
+/// # Errors
+/// [`Exceeded`] if the budget of the observer does not suffice.
+pub fn render(
+    mesh: &TriMesh,
+    options: &RenderOptions,
+    observer: &dyn Observer,
+) -> Result<RgbaImage, Exceeded> {
+    let budget = observer.budget();
+    budget.check()?;
+    let faces = drawable_faces(mesh);
+    let samples = options.supersampling.clamp(1, 4);
+    let size = [options.width, options.height].map(|side| side.clamp(1, 8192) * samples);
+    let camera = Camera::fit(mesh, &faces, &options.view, size, options.margin.clamp(0.0, 0.45));
+    let buffer = DepthBuffer::draw(mesh, &faces, &camera, size, &budget)?;
+    let normals = corner_normals(mesh, &faces, &camera, options.crease.clamp(0.0, 90.0));
+    let paint = Paint::new(mesh.n_vertices(), &options.coloring, options.colors, samples);
+    budget.check()?;
+    Ok(shade(&buffer, &normals, &paint, samples, options.background))
+}

@@ -1,0 +1,55 @@
+//! What an image shows and how.
+
+use super::camera::View;
+use super::coloring::Coloring;
+use crate::color::ColorMap;
+
+/// Options of [`render`](super::render). Every value is usable: sizes are clamped to the stated ranges.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RenderOptions {
+    /// Width in pixels, clamped to 1..=8192. Default: 600.
+    pub width: u32,
+    /// Height in pixels, clamped to 1..=8192. Default: 600.
+    pub height: u32,
+    /// Empty border, as a share of the shorter side, clamped to 0..=0.45. Default: 0.04.
+    pub margin: f64,
+    /// Direction of the view. Default: [`View::default`].
+    pub view: View,
+    /// What is behind the surface. Default: [`Background::White`].
+    pub background: Background,
+    /// Colours of the surface. Default: a light clay.
+    pub coloring: Coloring,
+    /// The colours of numbers. Default: [`ColorMap::Viridis`].
+    pub colors: ColorMap,
+    /// Dihedral angle in degrees, clamped to 0..=90, above which an edge is shaded as a crease. Default: 80.
+    pub crease: f64,
+    /// Samples along each side of a pixel, clamped to 1..=4. Default: 3, nine samples per pixel.
+    pub supersampling: u32,
+}
+
+impl Default for RenderOptions {
+    fn default() -> Self {
+        Self {
+            width: 600,
+            height: 600,
+            margin: 0.04,
+            view: View::default(),
+            background: Background::White,
+            coloring: Coloring::Plain([214, 206, 194]),
+            colors: ColorMap::default(),
+            crease: 80.0,
+            supersampling: 3,
+        }
+    }
+}
+
+/// What is behind the surface.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Background {
+    /// Opaque white.
+    White,
+    /// An opaque sRGB colour.
+    Color([u8; 3]),
+    /// Alpha 0; at edges, alpha is the covered share of the pixel.
+    Transparent,
+}

@@ -1,0 +1,210 @@
+//! Attacks: the server still answers `/healthz`, and a normal upload within its time limit.
+
+use std::fs;
+use std::io::{Read, Write};
+use std::net::TcpStream;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+use canonform::mesh::shapes;
+use canonform_server::ServeOptions;
+
+use crate::client::{Answer, ask, connect, form, read_answer, upload, upload_head};
+use crate::running::options;
+use crate::support::{Served, written};
+
+/// Asks for the health of the server and searches with a normal mesh, several times.
+fn assert_serves(server: &Served) {
+    let mesh = fs::read(server.mesh("ring0")).unwrap();
+    for _ in 0..5 {
+        assert_eq!(ask(server.address, "GET", "/healthz", &[], b"").unwrap().status, 200);
+        let found = upload(server.address, &[("q.off", &mesh)], &[("geometry", "false")]).unwrap();
+        assert_eq!(found.status, 200, "{}", String::from_utf8_lossy(&found.body));
+    }
+}
+
+/// A polygon with this many corners: one vertex of its triangulation has all of them as neighbours.
+fn polygon(corners: usize) -> Vec<u8> {
+    let mut text = format!("OFF\n{corners} 1 0\n");
+    for i in 0..corners {
+        let angle = std::f64::consts::TAU * i as f64 / corners as f64;
+        text += &format!("{:.7} {:.7} 0\n", angle.cos(), angle.sin());
+    }
+    text += &corners.to_string();
+    (0..corners).for_each(|i| text += &format!(" {i}"));
+    text.into_bytes()
+}
+
+#[test]
+fn uploads_of_huge_polygons_free_their_places_at_the_time_limit() {
+    let limit = Duration::from_secs(8);
+    let server = Served::start_alone(ServeOptions { time_limit: limit, ..options() });
+    let mesh = polygon(100_000);
+    let attack = |_| upload(server.address, &[("hub.off", &mesh)], &[("geometry", "false")]).unwrap();
+    std::thread::scope(|scope| {
+        let attackers: Vec<_> = (0..4).map(|i| scope.spawn(move || attack(i))).collect();
+        std::thread::sleep(Duration::from_millis(500));
+        assert_serves(&server);
+        for attacker in attackers {
+            let status = attacker.join().unwrap().status;
+            assert!([200, 422, 503].contains(&status), "{status}");
+        }
+    });
+    assert_serves(&server);
+}
+
+#[test]
+fn large_uploads_are_answered_in_time_or_refused_at_once() {
+    let limit = Duration::from_secs(30);
+    let server = Served::start_alone(ServeOptions { time_limit: limit, max_uploads: 20, ..options() });
+    // 5 MB, some ten seconds each.
+    let mesh = written("large.off", &shapes::torus(300, 240, 2.0, 0.6));
+    let attack = |_| upload(server.address, &[("large.off", &mesh)], &[("geometry", "false")]).unwrap();
+    let answers: Vec<Answer> = std::thread::scope(|scope| {
+        let attackers: Vec<_> = (0..20).map(|i| scope.spawn(move || attack(i))).collect();
+        std::thread::sleep(Duration::from_millis(500));
+        assert_serves(&server);
+        attackers.into_iter().map(|attacker| attacker.join().unwrap()).collect()
+    });
+    let (done, refused): (Vec<_>, Vec<_>) = answers.iter().partition(|answer| answer.status == 200);
+    assert!(!done.is_empty(), "some are answered");
+    assert!(refused.iter().all(|answer| answer.status == 503));
+    // Those without a place are told so before their upload is taken.
+    let early = refused.iter().filter(|answer| answer.header("retry-after").is_some()).count();
+    assert!(early >= 12, "{} answered, {early} refused at once", done.len());
+}
+
+#[test]
+fn the_job_of_a_client_that_disconnects_is_cancelled() {
+    let server = Served::start_alone(ServeOptions { jobs: 1, queue: 0, ..options() });
+    let mesh = written("large.off", &shapes::torus(440, 440, 2.0, 0.6));
+    let (body, boundary) = form(&[("large.off", &mesh)], &[]);
+    let small = fs::read(server.mesh("ring0")).unwrap();
+    let status = || upload(server.address, &[("q.off", &small)], &[]).unwrap().status;
+    let start = Instant::now();
+    let attacker = loop {
+        let mut stream = connect(server.address).unwrap();
+        stream.write_all(upload_head(server.address, boundary, body.len()).as_bytes()).unwrap();
+        stream.write_all(&body).unwrap();
+        // Its job takes the only place, and would for much longer than a test waits; unless it came too late for it.
+        std::thread::sleep(Duration::from_secs(2));
+        if status() == 503 {
+            break stream;
+        }
+        assert!(start.elapsed() < Duration::from_secs(30), "the large job never begins");
+    };
+    let start = Instant::now();
+    drop(attacker);
+    while status() != 200 {
+        assert!(start.elapsed() < Duration::from_secs(5), "the large job goes on");
+        std::thread::sleep(Duration::from_millis(50));
+    }
+}
+
+/// Keeps connections open and does something on each of them again and again, until the end of `meanwhile`.
+fn besieged(
+    server: &Served,
+    n: usize,
+    open: impl Fn(&mut TcpStream) + Sync,
+    again: impl Fn(&mut TcpStream) + Sync,
+    meanwhile: impl FnOnce(),
+) {
+    let done = AtomicBool::new(false);
+    std::thread::scope(|scope| {
+        scope.spawn(|| {
+            let start = || {
+                let mut stream = connect(server.address).unwrap();
+                open(&mut stream);
+                stream
+            };
+            let mut streams: Vec<TcpStream> = (0..n).map(|_| start()).collect();
+            while !done.load(Ordering::Relaxed) {
+                for stream in &mut streams {
+                    again(stream);
+                    // Whoever is disconnected comes back.
+                    stream.set_nonblocking(true).unwrap();
+                    if matches!(stream.read(&mut [0; 1]), Ok(0)) {
+                        *stream = start();
+                    } else {
+                        stream.set_nonblocking(false).unwrap();
+                    }
+                }
+                std::thread::sleep(Duration::from_millis(200));
+            }
+        });
+        std::thread::sleep(Duration::from_secs(1));
+        // Ends the attack also if this panics.
+        let outcome = std::panic::catch_unwind(std::panic::AssertUnwindSafe(meanwhile));
+        done.store(true, Ordering::Relaxed);
+        outcome.unwrap_or_else(|panic| std::panic::resume_unwind(panic));
+    });
+}
+
+#[test]
+fn idle_connections_give_way() {
+    let server = Served::start_alone(options());
+    besieged(&server, 300, |_| (), |_| (), || assert_serves(&server));
+}
+
+#[test]
+fn clients_that_never_read_give_way() {
+    let server = Served::start_alone(options());
+    let request = format!("GET /assets/plotly.js HTTP/1.1\r\nHost: {}\r\n\r\n", server.address).repeat(4);
+    let streams: Vec<TcpStream> = (0..300)
+        .map(|_| {
+            let mut stream = connect(server.address).unwrap();
+            stream.write_all(request.as_bytes()).unwrap();
+            stream
+        })
+        .collect();
+    std::thread::sleep(Duration::from_secs(1));
+    assert_serves(&server);
+    drop(streams);
+}
+
+#[test]
+fn a_client_that_never_reads_is_disconnected() {
+    let idle = Duration::from_millis(500);
+    let server = Served::start_alone(ServeOptions { idle_time: idle, ..options() });
+    let mut stream = connect(server.address).unwrap();
+    let request = format!("GET /assets/plotly.js HTTP/1.1\r\nHost: {}\r\n\r\n", server.address).repeat(20);
+    stream.write_all(request.as_bytes()).unwrap();
+    std::thread::sleep(8 * idle);
+    let mut taken = 0;
+    let mut piece = vec![0; 1 << 20];
+    // Reset and closed are both fine.
+    while let Ok(n @ 1..) = stream.read(&mut piece) {
+        taken += n;
+    }
+    let whole = ask(server.address, "GET", "/assets/plotly.js", &[], b"").unwrap().body.len();
+    assert!(taken < 20 * whole, "the server kept sending to a client that did not read");
+}
+
+#[test]
+fn uploads_of_a_byte_now_and_then_give_way() {
+    let server = Served::start_alone(options());
+    let (_, boundary) = form(&[], &[]);
+    let head = upload_head(server.address, boundary, 1_000_000) + &format!("--{boundary}\r\n");
+    let open = |stream: &mut TcpStream| drop(stream.write_all(head.as_bytes()));
+    let again = |stream: &mut TcpStream| drop(stream.write_all(b"C"));
+    besieged(&server, 40, open, again, || assert_serves(&server));
+}
+
+#[test]
+fn an_upload_below_the_minimum_rate_is_told_so() {
+    let idle = Duration::from_millis(500);
+    let server = Served::start_alone(ServeOptions { idle_time: idle, ..options() });
+    let (body, boundary) = form(&[("q.off", &[b'0'; 2000])], &[]);
+    let mut stream = connect(server.address).unwrap();
+    stream.write_all(upload_head(server.address, boundary, body.len()).as_bytes()).unwrap();
+    // Never silent for long.
+    for byte in &body {
+        if stream.write_all(&[*byte]).is_err() {
+            break;
+        }
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    let answer = read_answer(&mut stream).unwrap();
+    assert_eq!(answer.status, 408);
+    assert!(answer.json()["error"].as_str().unwrap().contains("did not arrive in time"));
+}

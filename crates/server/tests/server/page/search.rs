@@ -1,0 +1,153 @@
+//! Searching with a mesh or a shape of the index, and the display of results.
+
+use std::fs;
+
+use datasets::Family;
+use serde_json::json;
+
+use super::support::{AWKWARD, Page, body};
+
+/// Position of the camera of a view.
+fn eye(page: &Page, css: &str) -> serde_json::Value {
+    page.eval(&format!(
+        "(({{ x, y, z }}) => [x, y, z])(document.querySelector('{css} .canonform-scene')._fullLayout.scene._scene.getCamera().eye)"
+    ))
+}
+
+/// A mesh in a file of its own.
+pub(crate) fn file(folder: &tempfile::TempDir, name: &str, family: Family) -> std::path::PathBuf {
+    let path = folder.path().join(name);
+    canonform::mesh::io::write(&path, &body(family, 4).mesh).unwrap();
+    path
+}
+
+#[test]
+fn a_chosen_mesh_is_classified_and_overlaid_with_a_result() {
+    for (name, size) in [("1280", [1280, 900]), ("390", [390, 844])] {
+        let Some(page) = Page::open(size[0], size[1]) else { return };
+        page.picture("body", &format!("start-{name}"));
+        let folder = tempfile::tempdir().unwrap();
+        page.browser.upload("#file", &[&file(&folder, "new.off", Family::Cat)]).unwrap();
+        page.answered();
+        page.wait_for("document.querySelector('#mesh-view').dataset.state === 'ready'");
+        assert_eq!(page.eval("document.querySelector('#predicted').dataset.label"), "cat");
+        assert_eq!(page.text("#query-name"), "new.off");
+        assert!(page.text("#facts").contains("1000 vertices"), "{}", page.text("#facts"));
+        let labels =
+            "[...document.querySelectorAll('#results .tile')].slice(0, 3).map(tile => tile.dataset.label)";
+        assert_eq!(page.eval(labels), json!(["cat", "cat", "cat"]));
+        page.picture("#answer", &format!("answer-{name}"));
+
+        let before = eye(&page, "#mesh-view");
+        page.browser.drag("#mesh-view .canonform-scene", [60, 10]).unwrap();
+        page.wait_for(&format!(
+            "document.querySelector('#mesh-view .canonform-scene')._fullLayout.scene._scene.getCamera().eye.x !== {}",
+            before[0]
+        ));
+        let near = "(a, b) => ['x', 'y', 'z'].every(k => Math.abs(a[k] - b[k]) < 1e-6)";
+        let camera = |css| {
+            format!(
+                "document.querySelector('{css} .canonform-scene')._fullLayout.scene._scene.getCamera().eye"
+            )
+        };
+        page.wait_for(&format!("({near})({}, {})", camera("#mesh-view"), camera("#form-view")));
+        assert!(before != eye(&page, "#form-view"));
+
+        // Content that arrives late must not shift the layout.
+        page.browser
+            .eval(
+                "const fetch = window.fetch;
+                 window.fetch = async (...asked) => { await new Promise(done => setTimeout(done, 900)); return fetch(...asked); };",
+            )
+            .unwrap();
+        page.browser.click("#results li:first-child .tile").unwrap();
+        page.wait_for("document.querySelector('#overlay').dataset.state === 'ready'");
+        page.wait_for("document.querySelector('#overlay-view').dataset.state === 'ready'");
+        let told = "document.querySelector('#overlay-kind').dataset.kind";
+        page.wait_for(&format!("['identical-file', 'identical-geometry', 'other-pose'].includes({told})"));
+        page.picture("#overlay", &format!("overlay-{name}"));
+        page.browser.click("#match-hit").unwrap();
+        page.wait_for("document.querySelector('#match').dataset.state === 'ready'");
+        page.wait_for("document.querySelector('#match-second').dataset.state === 'ready'");
+        assert!(page.text("#match-facts").contains("same colour"), "{}", page.text("#match-facts"));
+        page.picture("#match", &format!("match-{name}"));
+        page.browser.click("input[name=shown][value=second]").unwrap();
+        page.wait_for("document.querySelector('#overlay-view .canonform-scene').data.length === 1");
+        page.assert_sound();
+        let (shifts, moved) = page.browser.shifts().unwrap();
+        assert!(shifts < 0.01, "{name}: the layout shifts by {shifts}: {moved}");
+    }
+}
+
+#[test]
+fn a_dropped_mesh_and_a_picked_shape_can_be_queries() {
+    let Some(page) = Page::open(1280, 900) else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let bytes = fs::read(file(&folder, "x.off", Family::David)).unwrap();
+    page.browser.drop_file("#drop", "dropped.off", &bytes).unwrap();
+    page.answered();
+    assert_eq!(page.eval("document.querySelector('#predicted').dataset.label"), "david");
+    assert_eq!(page.eval("document.querySelector('#drop').classList.contains('over')"), false);
+
+    page.browser.type_into("#filter", "centaur").unwrap();
+    page.wait_for("document.querySelectorAll('#shapes .tile').length === 3");
+    page.browser.click("#shapes li:nth-child(2) .tile").unwrap();
+    page.wait_for("document.querySelector('#predicted').dataset.label === 'centaur'");
+    page.answered();
+    // A shape is its own nearest neighbour.
+    assert_eq!(
+        page.eval("document.querySelector('#results .tile').dataset.id"),
+        page.eval("document.querySelector('#shapes .tile[aria-pressed=true]').dataset.id")
+    );
+    page.browser.prefer("prefers-color-scheme", "dark").unwrap();
+    page.wait_for("document.querySelector('#form-view').dataset.state === 'ready'");
+    page.picture("body", "dark-1280");
+    page.assert_sound();
+}
+
+#[test]
+fn a_bad_mesh_is_reported_as_on_the_command_line_and_the_page_still_works() {
+    let Some(page) = Page::open(1280, 900) else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("bad.off");
+    fs::write(&path, "OFF\n3 1 0\n0 0 0\n1 0 0\n").unwrap();
+    let words = canonform::mesh::io::read(&path).unwrap_err().to_string();
+    // The command line names the path, the page only the file name.
+    let words = words.replace(&path.display().to_string(), "bad.off");
+    page.browser.upload("#file", &[&path]).unwrap();
+    page.wait_for("document.querySelector('#answer').dataset.state === 'failed'");
+    assert!(page.text("#error").contains(&words), "{} is not {words}", page.text("#error"));
+    page.picture("body", "error-1280");
+    page.browser.upload("#file", &[&file(&folder, "good.off", Family::Centaur)]).unwrap();
+    page.answered();
+    assert_eq!(page.text("#error"), "");
+    assert_eq!(page.eval("document.querySelector('#predicted').dataset.label"), "centaur");
+    // The browser itself logs the failed response.
+    let console = page.browser.console().unwrap();
+    assert!(
+        console.iter().all(|m| m.text.contains("/api/search") && m.text.contains("status of 4")),
+        "{console:?}"
+    );
+}
+
+#[test]
+fn names_are_never_interpreted_as_html() {
+    let Some(page) = Page::open(1280, 900) else { return };
+    assert_eq!(page.eval("document.querySelectorAll('#shapes .tile')[0].dataset.id"), AWKWARD);
+    page.browser.click("#shapes li:first-child .tile").unwrap();
+    page.answered();
+    assert_eq!(page.text("#query-name"), AWKWARD);
+    page.browser.click("#results li:nth-child(2) .tile").unwrap();
+    page.wait_for("document.querySelector('#overlay').dataset.state === 'ready'");
+    assert!(page.text("#overlay-title").starts_with(AWKWARD));
+    let folder = tempfile::tempdir().unwrap();
+    let bytes = fs::read(file(&folder, "x.off", Family::Cat)).unwrap();
+    // Browsers write quotes in the names of files as %22 when they send them.
+    let name = format!("{AWKWARD}.off").replace('"', "");
+    page.browser.drop_file("#drop", &name, &bytes).unwrap();
+    page.wait_for(&format!("document.querySelector('#query-name').textContent === {}", json!(name)));
+    page.answered();
+    // An element made from a name would have requested its image and logged an error.
+    assert_eq!(page.eval("document.querySelectorAll('img[src=\"x\"]').length"), 0);
+    page.assert_sound();
+}

@@ -1,0 +1,176 @@
+//! Every state of the page has an address: it can be opened, reloaded, and left with the back button.
+
+use std::time::Duration;
+
+use canonform_server::ServeOptions;
+use datasets::Family;
+use serde_json::json;
+
+use super::search::file;
+use super::support::Page;
+use crate::running::options;
+
+const N_RESULTS: &str = "document.querySelectorAll('#results .tile').length";
+const AT_THE_START: &str = "document.querySelector('#answer').dataset.state === 'empty' && \
+                            document.querySelectorAll('#sample .tile').length === 10";
+
+/// The first result that is not the query itself.
+fn hit(page: &Page) -> String {
+    let hit = page.eval("document.querySelector('#results li:nth-child(2) .tile').dataset.id");
+    hit.as_str().unwrap().to_owned()
+}
+
+#[test]
+fn every_state_of_an_indexed_shape_is_reached_by_its_address() {
+    let Some(page) = Page::open(1280, 900) else { return };
+    page.wait_for(AT_THE_START);
+    assert_eq!(page.address(), "/");
+    page.browser.click("#sample .tile[data-id^=cat]").unwrap();
+    page.answered();
+    let shape = page.text("#query-name");
+    assert_eq!(page.address(), format!("/?shape={shape}"));
+    assert!(page.eval("document.title").as_str().unwrap().starts_with(&shape));
+    let other = hit(&page);
+    page.browser.click("#results li:nth-child(2) .tile").unwrap();
+    page.overlaid(&other);
+    let overlay = format!("/?shape={shape}&hit={other}");
+    assert_eq!(page.address(), overlay);
+
+    // Open the address again, which replaces the entry of the history, reload, back twice, and forward.
+    page.go(&overlay);
+    page.answered();
+    page.overlaid(&other);
+    page.browser.eval("location.reload()").unwrap();
+    page.answered();
+    page.overlaid(&other);
+    page.browser.eval("history.back()").unwrap();
+    page.wait_for(&format!("location.search === '?shape={shape}'"));
+    page.answered();
+    page.wait_for("document.querySelector('#overlay').hidden");
+    page.browser.eval("history.back()").unwrap();
+    page.wait_for(AT_THE_START);
+    page.browser.eval("history.go(2)").unwrap();
+    page.answered();
+    page.overlaid(&other);
+
+    page.browser.click("#close-hit").unwrap();
+    page.wait_for("document.querySelector('#overlay').hidden");
+    assert_eq!(page.address(), format!("/?shape={shape}"));
+    page.browser.click("#results li:nth-child(2) .tile").unwrap();
+    page.overlaid(&other);
+    page.browser.click("#search-hit").unwrap();
+    page.wait_for(&format!("document.querySelector('#query-name').textContent === {}", json!(other)));
+    page.answered();
+    assert_eq!(page.address(), format!("/?shape={other}"));
+    assert_eq!(page.eval("document.querySelector('#overlay').hidden"), true);
+    page.assert_sound();
+}
+
+#[test]
+fn options_filters_and_downloads_follow_the_address() {
+    let Some(page) = Page::open(1280, 900) else { return };
+    page.go("/?shape=cat0&k=3&filter=cent");
+    page.answered();
+    assert_eq!(page.eval(N_RESULTS), 3);
+    assert_eq!(page.eval("document.querySelector('#k').value"), "3");
+    page.wait_for("document.querySelectorAll('#shapes .tile').length === 3");
+    page.browser
+        .eval("const k = document.querySelector('#k'); k.value = '6'; k.dispatchEvent(new Event('change'))")
+        .unwrap();
+    page.wait_for(&format!("{N_RESULTS} === 6"));
+    assert_eq!(page.address(), "/?shape=cat0&k=6&filter=cent");
+    page.browser.click("#exact").unwrap();
+    page.wait_for("location.search.includes('exact=true')");
+    page.answered();
+    page.browser.eval("history.back()").unwrap();
+    page.wait_for("!document.querySelector('#exact').checked");
+    page.answered();
+    page.browser
+        .eval("const r = document.querySelector('#rank'); r.value = 'graph'; r.dispatchEvent(new Event('change'))")
+        .unwrap();
+    page.wait_for("document.querySelector('#results').textContent.includes('rank distance')");
+    assert_eq!(page.address(), "/?shape=cat0&k=6&rank=graph&filter=cent");
+    page.browser.eval("history.back()").unwrap();
+    page.wait_for("document.querySelector('#rank').value === 'plain'");
+    page.answered();
+    let table = page.eval("fetch(document.querySelector('#as-csv').href).then(found => found.text())");
+    assert_eq!(table.as_str().unwrap().lines().count(), 7, "{table}");
+    let json = page.eval("fetch(document.querySelector('#as-json').href).then(found => found.json())");
+    assert_eq!((json["results"].as_array().unwrap().len(), &json["mesh"]), (6, &serde_json::Value::Null));
+    page.assert_sound();
+}
+
+#[test]
+fn an_upload_has_an_address_until_it_expires() {
+    let lifetime = Duration::from_secs(20);
+    let brief = ServeOptions { query_lifetime: lifetime, ..options() };
+    let Some(page) = Page::with(1280, 900, brief) else { return };
+    let folder = tempfile::tempdir().unwrap();
+    page.browser.upload("#file", &[&file(&folder, "new.off", Family::David)]).unwrap();
+    page.answered();
+    let query = page.address();
+    assert!(query.starts_with("/?query=") && query.len() == 8 + 32, "{query}");
+    page.browser.eval("location.reload()").unwrap();
+    page.answered();
+    assert_eq!((page.text("#query-name"), page.address()), ("new.off".to_owned(), query.clone()));
+    let other = hit(&page);
+    page.browser.click("#results li:nth-child(2) .tile").unwrap();
+    page.overlaid(&other);
+    assert_eq!(page.address(), format!("{query}&hit={other}"));
+    page.browser.eval("history.back()").unwrap();
+    page.wait_for("document.querySelector('#overlay').hidden");
+    page.browser.eval("history.back()").unwrap();
+    page.wait_for(AT_THE_START);
+
+    std::thread::sleep(lifetime);
+    page.browser.eval("history.forward()").unwrap();
+    page.wait_for("document.querySelector('#answer').dataset.state === 'failed'");
+    assert_eq!(page.text("#error"), "new.off: this upload has expired; choose the file again");
+    page.picture("body", "expired-1280");
+    page.browser.upload("#file", &[&file(&folder, "new.off", Family::David)]).unwrap();
+    page.answered();
+    assert_eq!((page.text("#error"), page.address()), (String::new(), query));
+}
+
+#[test]
+fn the_page_can_be_used_with_the_keyboard_alone() {
+    let Some(page) = Page::open(1280, 900) else { return };
+    page.wait_for(AT_THE_START);
+    // Every control is reached by Tab, in the order of the page, and shows its focus.
+    let reached = page.eval(
+        "[...document.querySelectorAll('a, button, input, select')].filter(e => e.getClientRects().length > 0) \
+         .every(e => { e.focus({ preventScroll: true }); return document.activeElement === e && e.tabIndex === 0; })",
+    );
+    assert_eq!(reached, true);
+    page.browser.type_into("#sample .tile[data-id^=cat]", "\u{e007}").unwrap();
+    page.answered();
+    page.browser.type_into("#results li:nth-child(2) .tile", "\u{e00d}").unwrap();
+    page.wait_for("document.querySelector('#overlay').dataset.state === 'ready'");
+    assert_eq!(page.eval("document.activeElement.id"), "overlay-title");
+    page.browser.type_into("#close-hit", "\u{e007}").unwrap();
+    page.wait_for("document.querySelector('#overlay').hidden");
+    assert_eq!(page.eval("document.activeElement.closest('#results') !== null"), true);
+    page.assert_sound();
+}
+
+#[test]
+fn pictures_of_every_state_in_both_colour_schemes() {
+    for (scheme, width) in [("light", 1280), ("dark", 1280), ("light", 390), ("dark", 390)] {
+        let Some(page) = Page::open(width, 900) else { return };
+        page.browser.prefer("prefers-color-scheme", scheme).unwrap();
+        page.wait_for(AT_THE_START);
+        page.picture("body", &format!("{scheme}-{width}-start"));
+        page.go("/?shape=cat0");
+        page.answered();
+        page.wait_for("document.querySelector('#mesh-view').dataset.state === 'ready'");
+        page.picture("body", &format!("{scheme}-{width}-shape"));
+        page.picture("#answer", &format!("{scheme}-{width}-answer"));
+        page.picture("#results-title", &format!("{scheme}-{width}-results"));
+        page.go("/?shape=cat0&hit=cat1");
+        page.answered();
+        page.overlaid("cat1");
+        page.wait_for("document.querySelector('#overlay-view').dataset.state === 'ready'");
+        page.picture("#overlay", &format!("{scheme}-{width}-hit"));
+        page.assert_sound();
+    }
+}

@@ -1,0 +1,150 @@
+//! A server on a small index of the built-in shapes, and a browser on its page.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
+
+use browser::Browser;
+use canonform::{BuildOptions, DescribeOptions, build_index};
+use canonform_server::ServeOptions;
+use datasets::{ArticulatedOptions, Family, LabeledShape, articulated_shape};
+use serde_json::{Value, json};
+
+use crate::running::{Running, options};
+use crate::support::{Turn, shared_turn};
+
+/// A file name that contains HTML.
+pub(crate) const AWKWARD: &str = "<img src=x onerror=console.error(1)>&'\" ü";
+
+/// A body of 1,000 vertices; no two numbers give the same pose.
+pub(crate) fn body(family: Family, number: usize) -> LabeledShape {
+    let options = ArticulatedOptions { n_vertices: 1000, ..ArticulatedOptions::default() };
+    articulated_shape(family, number, &options).unwrap()
+}
+
+/// A folder with `all.canonform` and the `meshes` it was built from; built once.
+fn collection() -> PathBuf {
+    static FOLDER: OnceLock<PathBuf> = OnceLock::new();
+    let make = || {
+        let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("page");
+        let meshes = folder.join("meshes");
+        fs::create_dir_all(&meshes).unwrap();
+        for family in [Family::Cat, Family::Centaur, Family::David] {
+            for number in 0..3 {
+                let body = body(family, number);
+                canonform::mesh::io::write(&meshes.join(format!("{}.off", body.name)), &body.mesh).unwrap();
+            }
+        }
+        canonform::mesh::io::write(
+            &meshes.join(format!("{AWKWARD}.off")),
+            &canonform::mesh::shapes::torus(24, 12, 2.0, 0.6),
+        )
+        .unwrap();
+        let describe = DescribeOptions::default();
+        let options = BuildOptions::new(&describe);
+        let path = folder.join("all.canonform");
+        if build_index(&meshes, &path, &options, &()).is_err() {
+            // An index of an earlier version was left here.
+            fs::remove_file(&path).unwrap();
+            build_index(&meshes, &path, &options, &()).unwrap();
+        }
+        folder
+    };
+    FOLDER.get_or_init(make).clone()
+}
+
+/// The page of a server in a browser.
+pub(crate) struct Page {
+    pub(crate) browser: Browser,
+    server: Running,
+    _turn: Turn,
+}
+
+impl Page {
+    /// Opens the page in a window of this size; `None` where there is no browser.
+    pub(crate) fn open(width: u32, height: u32) -> Option<Self> {
+        Self::with(width, height, options())
+    }
+
+    /// As [`open`](Self::open), with options of the server.
+    pub(crate) fn with(width: u32, height: u32, options: ServeOptions) -> Option<Self> {
+        let browser = Browser::start()?;
+        let turn = shared_turn();
+        let server = Running::start(&collection().join("all.canonform"), options);
+        browser.resize(width, height).unwrap();
+        browser.watch_layout().unwrap();
+        browser.open(&format!("http://{}/", server.address)).unwrap();
+        browser.wait_for("document.querySelectorAll('#shapes .tile').length === 10").unwrap();
+        Some(Self { browser, server, _turn: turn })
+    }
+
+    /// Opens an address of the page.
+    pub(crate) fn go(&self, target: &str) {
+        self.browser.open(&format!("http://{}{target}", self.server.address)).unwrap();
+    }
+
+    /// The path and the parameters of the address.
+    pub(crate) fn address(&self) -> String {
+        self.eval("location.pathname + location.search").as_str().unwrap().to_owned()
+    }
+
+    /// Waits until one of the results is overlaid with the query.
+    pub(crate) fn overlaid(&self, id: &str) {
+        self.wait_for(&format!(
+            "document.querySelector('#overlay').dataset.state === 'ready' && \
+             document.querySelector('#overlay').dataset.id === {}",
+            json!(id)
+        ));
+    }
+
+    pub(crate) fn eval(&self, expression: &str) -> Value {
+        self.browser.eval(&format!("return {expression}")).unwrap()
+    }
+
+    pub(crate) fn wait_for(&self, expression: &str) {
+        self.browser.wait_for(expression).unwrap();
+    }
+
+    /// The text of an element.
+    pub(crate) fn text(&self, css: &str) -> String {
+        let text = self.eval(&format!("document.querySelector({}).textContent", json!(css)));
+        text.as_str().unwrap().to_owned()
+    }
+
+    /// Waits until results are shown.
+    pub(crate) fn answered(&self) {
+        self.wait_for("document.querySelector('#answer').dataset.state === 'ready'");
+        self.wait_for("document.querySelector('#form-view').dataset.state === 'ready'");
+    }
+
+    /// Scrolls an element to the top and takes a screenshot.
+    pub(crate) fn picture(&self, css: &str, name: &str) {
+        let scroll = format!(
+            "document.querySelector({}).scrollIntoView({{ block: 'start', behavior: 'instant' }})",
+            json!(css)
+        );
+        self.browser.eval(&scroll).unwrap();
+        let seen =
+            "[...document.images].every(i => i.complete || i.getBoundingClientRect().top > innerHeight)";
+        self.wait_for(seen);
+        // One more frame for the latest changes.
+        self.browser
+            .eval("return new Promise(done => requestAnimationFrame(() => setTimeout(done, 300)))")
+            .unwrap();
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../target/browser");
+        self.browser.screenshot(&folder.join(format!("server-{name}.png"))).unwrap();
+    }
+
+    /// The console is empty, all requests went to this server, and nothing is wider than the window.
+    pub(crate) fn assert_sound(&self) {
+        assert_eq!(self.browser.console().unwrap(), []);
+        let origin = format!("http://{}/", self.server.address);
+        let inside =
+            |address: &String| ["data:", "blob:", &origin].iter().any(|own| address.starts_with(own));
+        let asked: Vec<String> =
+            self.browser.requests().unwrap().into_iter().filter(|a| !inside(a)).collect();
+        assert!(asked.is_empty(), "{asked:?}");
+        let widths = self.eval("[document.documentElement.scrollWidth, innerWidth]");
+        assert!(widths[0].as_f64() <= widths[1].as_f64(), "{widths}");
+    }
+}

@@ -1,0 +1,6 @@
+//! Laws of the generated shapes.
+
+#[cfg(test)]
+mod articulated;
+#[cfg(test)]
+mod creatures;
