@@ -7,7 +7,7 @@ use std::time::Instant;
 
 use anyhow::{Context, Result, bail};
 use canonform::mesh::io::{
-    FORMATS, Format, MeshFile, ReadLimits, Source, files_in, is_mesh_path, or_list, without_extension,
+    FORMATS, FileSource, Format, MeshFile, ReadLimits, files_in, is_mesh_path, or_list, without_extension,
 };
 use canonform::mesh::{RepairReport, TriMesh};
 use canonform::{Remedy, ShapeFile, Storage, Surface, is_dataset, list_shapes, read_mesh_file};

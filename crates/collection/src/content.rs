@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use base::ContentHash;
 use base::files::FileError;
-use mesh::io::{Opened, ReadLimits, Source};
+use mesh::io::{FileSource, Opened, ReadLimits};
 
 use crate::error::CollectionError;
 use crate::storage::{Storage, member_of};

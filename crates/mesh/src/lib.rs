@@ -58,6 +58,6 @@ pub use orientation::orient_consistently;
 pub use points::{PointsReport, TriangulatedPoints, triangulate_points};
 pub use refine::{Refined, refine};
 pub use repair::{ComponentPolicy, Orient, RepairOptions, RepairReport, Repaired, Weld, repair};
-pub use shortcuts::{Opened, Shortcut, ShortcutKind, cut_shortcuts};
+pub use shortcuts::{CutSurface, Shortcut, ShortcutKind, cut_shortcuts};
 pub use tri_mesh::TriMesh;
 pub use validate::{MeshReport, validate};

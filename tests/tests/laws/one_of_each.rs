@@ -35,9 +35,7 @@ fn a_budget_is_an_observer_and_needs_no_second_function() {
     for (file, text) in sources() {
         let names = text.lines().filter_map(|line| declared(line, &["pub fn "]));
         doubles.extend(
-            names
-                .filter(|name| name.ends_with("_within") || *name == "within")
-                .map(|name| format!("{}: {name}", file.display())),
+            names.filter(|name| name.ends_with("_within")).map(|name| format!("{}: {name}", file.display())),
         );
     }
     assert!(doubles.is_empty(), "take an observer instead of a second function:\n{}", doubles.join("\n"));

@@ -111,6 +111,7 @@ fn pages_are_short() {
     let total: usize = all_pages(&root).iter().map(|page| words(page)).sum();
     assert!(total <= 25_000, "all pages have {total} words");
     assert!(words(&root.join("README.md")) < 700);
+    assert!(words(&root.join("ARCHITECTURE.md")) <= 1000);
     let decisions = pages(&root.join("docs/decisions"));
     assert!(decisions.len() <= 26, "more than 25 decisions and their introduction");
     for page in decisions {

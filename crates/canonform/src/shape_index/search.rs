@@ -10,7 +10,7 @@ use collection::Storage;
 use descriptors::{PartDiscAreas, PartDistance, PreparedShape, ShapeMetric, ShapePair};
 use index::{Found, FoundOnGraph, Index, RankedShape, SearchMode, ShapeEntry};
 use mesh::TriMesh;
-use mesh::io::Source;
+use mesh::io::FileSource;
 use rayon::prelude::*;
 use retrieval::Candidate;
 use serde::{Deserialize, Serialize};

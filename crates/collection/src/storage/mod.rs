@@ -15,7 +15,7 @@ mod zip;
 
 use std::path::{Path, PathBuf};
 
-use mesh::io::{Disk, MeshFile, Opened, ReadLimits, Source};
+use mesh::io::{Disk, FileSource, MeshFile, Opened, ReadLimits};
 use mesh::{Fault, MeshError, TriMesh};
 
 use crate::error::CollectionError;
@@ -35,7 +35,7 @@ pub fn is_dataset(path: &Path) -> bool {
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Storage;
 
-impl Source for Storage {
+impl FileSource for Storage {
     fn holds(&self, path: &Path) -> bool {
         path.exists()
             || member_of(path).is_some_and(|(archive, member)| {

@@ -43,7 +43,7 @@ mod tests {
     #[test]
     fn boundaries_are_measured_one_by_one() {
         let length =
-            |mesh| longest_boundary(&Surface::new(&mesh, &Default::default(), &()).unwrap().intrinsic());
+            |mesh| longest_boundary(Surface::new(&mesh, &Default::default(), &()).unwrap().intrinsic());
         assert_eq!(length(shapes::icosphere(2)), 0.0);
         let (large, small) = (shapes::grid(11, 6, 0.1), shapes::grid(3, 3, 0.1));
         assert!((length(large.clone()) - 3.0).abs() < 1e-9);

@@ -42,7 +42,7 @@ pub use field::{ScalarField, VertexField};
 pub use formats::{FORMATS, Format, mesh_files, or_list, writable};
 pub use limits::ReadLimits;
 pub use name::{extension, is_gzip, without_extension};
-pub use source::{Disk, MemoryFile, Opened, Source, inflated_limit};
+pub use source::{Disk, FileSource, MemoryFile, Opened, inflated_limit};
 
 /// Whether a file name belongs to a mesh, judging by its extension alone.
 ///
@@ -62,7 +62,7 @@ pub fn files_of(path: &Path) -> Vec<PathBuf> {
 
 /// As [`files_of`], in any place that holds files.
 #[must_use]
-pub fn files_in(path: &Path, source: &dyn Source) -> Vec<PathBuf> {
+pub fn files_in(path: &Path, source: &dyn FileSource) -> Vec<PathBuf> {
     let Ok(format) = Format::of(path) else { return vec![path.to_owned()] };
     let mut files = format.files(path, source);
     // A file that cannot be read is reported when it is.
@@ -100,7 +100,7 @@ pub fn read(path: &Path) -> Result<TriMesh, MeshError> {
 ///
 /// # Errors
 /// As [`read()`]; [`Fault::OverLimit`] beyond `limits`.
-pub fn read_file(path: &Path, source: &dyn Source, limits: &ReadLimits) -> Result<MeshFile, MeshError> {
+pub fn read_file(path: &Path, source: &dyn FileSource, limits: &ReadLimits) -> Result<MeshFile, MeshError> {
     let format = Format::of(path)?;
     let mut paths = format.files(path, source);
     let open = |file: &PathBuf, check: CheckStart| {

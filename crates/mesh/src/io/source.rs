@@ -56,7 +56,7 @@ impl fmt::Debug for Opened<'_> {
 }
 
 /// A place that holds files: implement it to read meshes from a store of your own.
-pub trait Source {
+pub trait FileSource {
     /// Whether there is a file with this name.
     fn holds(&self, path: &Path) -> bool;
 
@@ -71,7 +71,7 @@ pub trait Source {
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Disk;
 
-impl Source for Disk {
+impl FileSource for Disk {
     fn holds(&self, path: &Path) -> bool {
         path.exists()
     }
@@ -101,7 +101,7 @@ fn not_regular(facts: &fs::Metadata) -> &'static str {
 /// Files in memory.
 pub(super) struct Memory<'a>(pub(super) &'a [MemoryFile<'a>]);
 
-impl Source for Memory<'_> {
+impl FileSource for Memory<'_> {
     fn holds(&self, path: &Path) -> bool {
         self.0.iter().any(|file| file.name == path)
     }
@@ -115,7 +115,7 @@ impl Source for Memory<'_> {
 
 /// Reads a file whose start passes a check, and decompresses it if its name says so.
 pub(super) fn load<'a>(
-    source: &'a dyn Source,
+    source: &'a dyn FileSource,
     path: &Path,
     check: CheckStart,
 ) -> Result<Cow<'a, [u8]>, MeshError> {

@@ -14,7 +14,7 @@ use base::{Exceeded, Observer};
 use crate::tri_mesh::TriMesh;
 use shortcut::MOST;
 
-pub use shortcut::{Opened, Shortcut, ShortcutKind};
+pub use shortcut::{CutSurface, Shortcut, ShortcutKind};
 
 /// Cuts the shortcuts of a surface between points that are otherwise at least 0.3 times the square root of the area apart:
 /// shared vertices get a copy for each part of the surface, handles are cut along the shortest loop around them, which leaves
@@ -49,7 +49,7 @@ pub use shortcut::{Opened, Shortcut, ShortcutKind};
 /// assert_eq!(validate(&opened.refined.mesh).non_manifold_vertices, 0);
 /// # Ok::<(), base::Exceeded>(())
 /// ```
-pub fn cut_shortcuts(mesh: &TriMesh, observer: &dyn Observer) -> Result<Opened, Exceeded> {
+pub fn cut_shortcuts(mesh: &TriMesh, observer: &dyn Observer) -> Result<CutSurface, Exceeded> {
     let budget = observer.budget();
     let size = mesh.root_of_area();
     let mut opened = pinch::cut(mesh, DETOUR * size);

@@ -3,7 +3,7 @@
 use nalgebra::Point3;
 use surface::{CornerId, DisjointSets, EdgeId, OneRing, Topology, VertexId, components_of_faces};
 
-use super::shortcut::{MOST, Opened, Shortcut, ShortcutKind};
+use super::shortcut::{CutSurface, MOST, Shortcut, ShortcutKind};
 use super::spike::flattened;
 use crate::edge_graph::EdgeGraph;
 use crate::refine::Refined;
@@ -14,7 +14,7 @@ use crate::tri_mesh::TriMesh;
 const PULLED: f64 = 1.5;
 
 /// Splits vertices that parts of the surface share which are otherwise at least `detour` apart and not in two pieces.
-pub(super) fn cut(mesh: &TriMesh, detour: f64) -> Opened {
+pub(super) fn cut(mesh: &TriMesh, detour: f64) -> CutSurface {
     let n = mesh.n_vertices();
     let topology = Topology::new(n, mesh.faces.clone());
     let mut faces = mesh.faces.clone();
@@ -29,7 +29,7 @@ pub(super) fn cut(mesh: &TriMesh, detour: f64) -> Opened {
         }
     }
     if origins.is_empty() {
-        return Opened { refined: Refined { mesh: mesh.clone(), origins }, shortcuts: Vec::new() };
+        return CutSurface { refined: Refined { mesh: mesh.clone(), origins }, shortcuts: Vec::new() };
     }
     // A vertex stays shared where it connects what is otherwise not connected.
     let pieces = components_of_faces(n + origins.len(), &faces);
@@ -52,7 +52,7 @@ pub(super) fn cut(mesh: &TriMesh, detour: f64) -> Opened {
     let mut refined = with_copies(mesh, &split.mesh.faces, &split.origins, &far);
     put_back(&mut refined, n);
     let shortcuts = shortcuts(&refined, n);
-    Opened { refined, shortcuts }
+    CutSurface { refined, shortcuts }
 }
 
 /// The mesh with those copies of vertices that are `kept`; in `faces`, copies follow the vertices of the mesh.

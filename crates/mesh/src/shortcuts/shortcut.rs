@@ -30,7 +30,7 @@ pub struct Shortcut {
 
 /// A surface without its shortcuts.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Opened {
+pub struct CutSurface {
     /// The mesh, with new vertices where it was cut. Vertices of a cut that a weld had pulled out of their surface are moved
     /// back.
     pub refined: Refined,

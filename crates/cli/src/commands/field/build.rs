@@ -68,7 +68,7 @@ struct InfoJson<'a> {
 
 /// Reports how a field was built.
 pub(super) fn info(path: &Path, common: &Common) -> Result<ExitCode> {
-    let field = DistanceField::open(path)?;
+    let field = DistanceField::open(path).map_err(canonform::Error::from)?;
     let json = InfoJson { field: path, facts: field.facts(), landmarks: field.landmarks() };
     report(common, &json, |json| answer(path, &json.facts).text(common))
 }

@@ -44,7 +44,7 @@ pub(super) fn query(args: &FieldQueryArgs, common: &Common) -> Result<ExitCode> 
         check_folder(output)?;
     }
     let start = Instant::now();
-    let field = DistanceField::open(&args.field)?;
+    let field = DistanceField::open(&args.field).map_err(canonform::Error::from)?;
     let load = start.elapsed().as_secs_f64();
     let wanted = args.pairs.as_deref().map(pairs::read).transpose()?;
     let start = Instant::now();

@@ -23,7 +23,7 @@ use crate::io::facts::MeshFile;
 use crate::io::field::VertexField;
 use crate::io::limits::ReadLimits;
 use crate::io::name::{extension, inflated, is_gzip, with_extension};
-use crate::io::source::{CheckStart, Source};
+use crate::io::source::{CheckStart, FileSource};
 use crate::tri_mesh::TriMesh;
 
 type Parse = fn(&[&[u8]], &ReadLimits) -> Result<MeshFile, Located>;
@@ -183,7 +183,7 @@ impl Format {
     /// The files of the mesh that `path` names, in the order of `extensions`.
     ///
     /// The extension of a companion file has the case of the given one, unless only the other one exists.
-    pub(super) fn files(&self, path: &Path, source: &dyn Source) -> Vec<PathBuf> {
+    pub(super) fn files(&self, path: &Path, source: &dyn FileSource) -> Vec<PathBuf> {
         let given = inflated(path).extension().unwrap_or_default().to_string_lossy().into_owned();
         let prefers_upper = given.chars().all(|c| c.is_ascii_uppercase());
         let companion = |extension: &str| {
