@@ -31,7 +31,7 @@ impl<S: Borrow<Surface>> ComparedMesh<S> {
     /// Embeds and describes a mesh. `surface` is the repaired one, `content` the hash of its file.
     ///
     /// # Errors
-    /// [`Error::Descriptor`] unless the form has three dimensions; those of [`embed`].
+    /// [`Error::Descriptor`] unless the form has three dimensions; those of [`MeasuredSurface::new`].
     pub fn new(
         mesh: &TriMesh,
         content: Option<ContentHash>,

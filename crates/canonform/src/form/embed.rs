@@ -65,7 +65,7 @@ impl Embedded {
 /// ```
 ///
 /// # Errors
-/// [`Error::AllPairsTooLarge`], [`Error::NoSuchPoint`] and [`Error::DroppedPoint`] for the first sample, [`Error::NoStress`],
+/// [`Error::AllPairsTooLarge`], [`Error::Point`] for the first sample, [`Error::NoStress`],
 /// [`Error::Exceeded`], and the errors of the stages.
 pub fn embed(surface: &Surface, options: &FormOptions, observer: &dyn Observer) -> Result<Embedded, Error> {
     let skip = StressOptions { choice: StressChoice::Skip, ..StressOptions::default() };

@@ -65,7 +65,7 @@ impl Embedded {
     /// ```
     ///
     /// # Errors
-    /// [`Error::NoExtension`], [`Error::OtherSurface`], [`Error::NoSuchPoint`], [`Error::DroppedPoint`].
+    /// [`Error::NoExtension`], [`Error::OtherSurface`], [`Error::Point`].
     pub fn place(&self, surface: &Surface, points: &[InputPoint]) -> Result<Matrix, Error> {
         self.check_surface(surface)?;
         let located = points.iter().map(|point| surface.locate(point)).collect::<Result<Vec<_>, _>>()?;

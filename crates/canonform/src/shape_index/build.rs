@@ -226,7 +226,7 @@ impl BuildReport {
 /// ```
 ///
 /// # Errors
-/// [`Error::NoShapes`], [`Error::Index`], and those of [invalid options](DescribeOptions::validate).
+/// [`Error::Collection`], [`Error::Index`], and those of [invalid options](DescribeOptions::validate).
 pub fn build_index(
     folder: &Path,
     path: &Path,
@@ -301,7 +301,7 @@ pub fn build_index(
 /// The shapes that [`build_index`] finds in a folder, with the names and classes that they get, without reading any mesh.
 ///
 /// # Errors
-/// [`Error::NoShapes`], [`Error::File`].
+/// [`Error::Collection`], [`Error::File`].
 pub fn indexed_shapes(
     folder: &Path,
     path: &Path,

@@ -21,7 +21,7 @@ const BATCH: usize = 256;
 ///
 /// # Errors
 /// [`Error::AlreadyThere`] if another shape has one of the names, unless `replace` is set; nothing is added then.
-/// [`Error::Index`], [`Error::NoShapes`].
+/// [`Error::Index`], [`Error::Collection`].
 pub fn add_to_index(
     path: &Path,
     inputs: &Inputs<'_>,

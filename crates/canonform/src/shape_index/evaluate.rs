@@ -111,7 +111,7 @@ pub fn evaluate_index(
 /// ```
 ///
 /// # Errors
-/// [`Error::BadLine`], [`Error::NoNames`], [`Error::Retrieval`].
+/// [`Error::Collection`], [`Error::NoNames`], [`Error::Retrieval`].
 pub fn evaluate_matrix(path: &Path, options: &EvaluateOptions<'_>) -> Result<Evaluation, Error> {
     let EvaluateOptions { labels, knn_k, rank_by, .. } = *options;
     let text = std::fs::read_to_string(path).map_err(|source| FileError::read(path, source))?;
