@@ -6,11 +6,13 @@
 //! its options, and a line in [`table::EXPERIMENTS`]. Its results are data, of which `report` makes figures, tables and the page.
 
 mod args;
+mod bound;
 mod coarse;
 mod collection;
 mod config;
 mod context;
 mod described;
+mod experiment;
 mod families;
 mod gallery;
 mod machine;

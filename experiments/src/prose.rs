@@ -11,7 +11,7 @@
 use report::numbers::{bytes, seconds};
 use serde::Deserialize;
 
-use crate::config::Bound;
+use crate::bound::Bound;
 use crate::sweep::MeasuredNumbers;
 
 /// A paragraph of an analysis.

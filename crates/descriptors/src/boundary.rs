@@ -1,7 +1,5 @@
 //! The boundary between two answers about a distance.
 
-use crate::metric::ShapeMetric;
-
 /// The distance at which one answer becomes less likely than the other.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Boundary {
@@ -12,6 +10,9 @@ pub struct Boundary {
 }
 
 impl Boundary {
+    /// An answer is certain if it is at least this probable; below, a relation is called probable. A convention.
+    pub const CERTAIN: f64 = 0.9;
+
     /// The probability of the nearer answer at a distance: 1 at distance 0, falling towards 0.
     #[must_use]
     pub fn probability(&self, distance: f64) -> f64 {
@@ -24,10 +25,10 @@ impl Boundary {
         self.at * (1.0 / probability - 1.0).powf(1.0 / self.steepness)
     }
 
-    /// The range of distances within which neither answer is [certain](ShapeMetric::CERTAIN).
+    /// The range of distances within which neither answer is [certain](Self::CERTAIN).
     #[must_use]
     pub fn gap(&self) -> [f64; 2] {
-        [ShapeMetric::CERTAIN, 1.0 - ShapeMetric::CERTAIN].map(|probability| self.distance(probability))
+        [Self::CERTAIN, 1.0 - Self::CERTAIN].map(|probability| self.distance(probability))
     }
 }
 

@@ -141,8 +141,8 @@ impl ShapeMetric {
     /// unit of differences in size. A convention: poses and scans of one body may well differ by 5 %.
     pub const SIZE_OF_POSES: f64 = 1.05;
 
-    /// An answer is certain if it is at least this probable; below, a relation is called probable. A convention.
-    pub const CERTAIN: f64 = 0.9;
+    /// An answer is [certain](Boundary::CERTAIN) if it is at least this probable.
+    pub const CERTAIN: f64 = Boundary::CERTAIN;
 
     /// Points of every form that are aligned with the nearest points of another form.
     pub const ALIGNED_POINTS: usize = 400;

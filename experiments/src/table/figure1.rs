@@ -9,9 +9,9 @@ use mesh::TriMesh;
 use report::results::{Figure1Results, Figure1Shape};
 use serde::Deserialize;
 
-use super::Experiment;
 use crate::collection::{LabeledSurface, map};
 use crate::context::Context;
+use crate::experiment::Experiment;
 use crate::specimen::{describing, low_rank};
 use crate::surfaces::{aligned, oriented};
 

@@ -21,9 +21,9 @@ use report::results::{Figure3Form, Figure3Results, Figure3Shape, Figure3Stress, 
 use serde::Deserialize;
 use surface::VertexId;
 
-use super::Experiment;
 use crate::config::Printed;
 use crate::context::Context;
+use crate::experiment::Experiment;
 use crate::specimen::{DIM, Distances, Specimen};
 use crate::surfaces::{aligned, oriented};
 use crate::sweep::{MeasuredNumbers, median, note, point};

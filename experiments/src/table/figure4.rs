@@ -15,9 +15,9 @@ use report::results::{Figure4Panel, Figure4Results, Motions, SHAPES_FILE, Scale,
 use retrieval::{Labels, evaluate, silhouette};
 use serde::Deserialize;
 
-use super::Experiment;
 use crate::collection::map;
 use crate::context::Context;
+use crate::experiment::Experiment;
 use crate::specimen::{describing, low_rank};
 use crate::surfaces::{Formed, motions, shown, vertex_limit};
 use crate::sweep::{MeasuredNumbers, best_e, named};

@@ -19,8 +19,8 @@ use nmds::{Reconstruction, Regularization, RpiAlpha, sample_eigenvalues};
 use report::results::{CurvesPanel, Mark, Series};
 use serde::Deserialize;
 
-use super::Experiment;
 use crate::context::Context;
+use crate::experiment::Experiment;
 use crate::specimen::{Distances, Specimen};
 use crate::sweep::{error_axis, half, least, linear, log, median, panel, places, series, share_lowest};
 

@@ -10,8 +10,8 @@ use nmds::{Reconstruction, Regularization};
 use report::results::Series;
 use serde::Deserialize;
 
-use super::Experiment;
 use crate::context::Context;
+use crate::experiment::Experiment;
 use crate::specimen::Distances;
 use crate::sweep::{error_axis, half, linear, mean, medians, panel, share_lowest};
 

@@ -15,8 +15,8 @@ use nmds::{
 use report::results::Series;
 use serde::Deserialize;
 
-use super::Experiment;
 use crate::context::Context;
+use crate::experiment::Experiment;
 use crate::specimen::{DIM, Distances, Specimen};
 use crate::sweep::{half, last, linear, log, panel, share_lowest};
 

@@ -13,8 +13,8 @@ use nmds::{NystromOptions, Regularization, RpiAlpha, SpectralBasis, SpectralOpti
 use descriptors::LaplaceSpectrum;
 use serde::Deserialize;
 
-use super::Experiment;
 use crate::context::Context;
+use crate::experiment::Experiment;
 use crate::specimen::{DIM, Distances};
 use crate::sweep::{MeasuredNumbers, curves, half, last, linear, log, panel, places};
 

@@ -16,10 +16,10 @@ use report::results::{Figure9Measured, Figure9Results, Figure9Row};
 use serde::Deserialize;
 use surface::VertexId;
 
-use super::Experiment;
 use crate::collection::LabeledSurface;
 use crate::config::Printed;
 use crate::context::Context;
+use crate::experiment::Experiment;
 use crate::specimen::{DIM, Distances, low_rank};
 use crate::sweep::{MeasuredNumbers, note};
 

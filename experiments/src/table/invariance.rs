@@ -12,8 +12,8 @@ use report::results::{InvarianceResults, InvarianceRow, SignatureChange};
 use retrieval::Candidate;
 use serde::Deserialize;
 
-use super::Experiment;
 use crate::context::Context;
+use crate::experiment::Experiment;
 use crate::gallery::Gallery;
 use crate::sweep::{MeasuredNumbers, share};
 

@@ -22,9 +22,9 @@ use report::results::{CurvesPanel, Series};
 use serde::Deserialize;
 use surface::VertexId;
 
-use super::Experiment;
 use crate::collection::{LabeledSurface, Setting, map};
 use crate::context::Context;
+use crate::experiment::Experiment;
 use crate::sweep::{MeasuredNumbers, linear, mean, note, panel, point, share};
 
 /// Vertices of a pair whose errors are measured.

@@ -22,13 +22,7 @@ use report::results::{CurvesResults, Figure3Results, Figure9Results, InvarianceR
 use serde::de::DeserializeOwned;
 
 use crate::config::Config;
-use crate::context::Context;
-
-/// An experiment: the options of its own in its configuration, and what is done with them.
-pub(crate) trait Experiment {
-    /// Measures, and [publishes](Context::publish) the results.
-    fn run(&self, context: &Context<'_>) -> Result<()>;
-}
+use crate::experiment::Experiment;
 
 /// An experiment in the table.
 pub(crate) struct TableEntry {

@@ -13,8 +13,8 @@ use report::results::{CurvesPanel, Series};
 use retrieval::Scores;
 use serde::Deserialize;
 
-use super::Experiment;
 use crate::context::Context;
+use crate::experiment::Experiment;
 use crate::gallery::Gallery;
 use crate::sweep::{MeasuredNumbers, linear, mean, median, note, panel, point, share};
 

@@ -22,9 +22,9 @@ use report::results::{CurvesPanel, Series};
 use serde::Deserialize;
 use surface::VertexId;
 
-use super::Experiment;
 use crate::collection::LabeledSurface;
 use crate::context::Context;
+use crate::experiment::Experiment;
 use crate::gallery::Gallery;
 use crate::sweep::{MeasuredNumbers, linear, mean, note, panel, point};
 

@@ -21,9 +21,9 @@ use retrieval::{
 };
 use serde::Deserialize;
 
-use super::Experiment;
 use crate::collection::map;
 use crate::context::Context;
+use crate::experiment::Experiment;
 use crate::sweep::{MeasuredNumbers, best_e, named, note};
 
 /// The number of recalls at which precision is measured.

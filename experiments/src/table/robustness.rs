@@ -13,8 +13,8 @@ use descriptors::{FormDistance, PreparedShape, ShapeMetric, ShapePair, Signature
 use report::results::{CurvesPanel, Series};
 use serde::Deserialize;
 
-use super::Experiment;
 use crate::context::Context;
+use crate::experiment::Experiment;
 use crate::gallery::{Gallery, GalleryQuery};
 use crate::sweep::{MeasuredNumbers, linear, mean, note, panel, point, share};
 

@@ -14,8 +14,8 @@ use report::results::Series;
 use serde::Deserialize;
 use surface::VertexId;
 
-use super::Experiment;
 use crate::context::Context;
+use crate::experiment::Experiment;
 use crate::specimen::{Distances, low_rank};
 use crate::sweep::{MeasuredNumbers, curves, log, panel, places, series};
 

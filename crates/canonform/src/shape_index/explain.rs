@@ -6,10 +6,11 @@ use index::ShapeEntry;
 
 use super::components::described;
 use super::found::{ComponentResult, SearchResult, StoredComponent};
+use super::options::{SearchOptions, SearchRank};
 use super::predict::Completeness;
 use super::query::{HeldGeometry, KnownQuery};
 use super::record::{COMPONENTS, OTHER_COMPONENTS};
-use super::search::{SearchOptions, SearchRank, ShapeSearch};
+use super::search::ShapeSearch;
 use super::source::read_unchanged;
 use crate::error::Error;
 use relations::{Handedness, MeshGeometry, Relation, RelationKind};

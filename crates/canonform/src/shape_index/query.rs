@@ -2,16 +2,13 @@
 
 use std::ops::Deref;
 
-use base::{ContentHash, Observer};
+use base::ContentHash;
 use descriptors::{PartDiscAreas, PreparedShape};
 use mesh::{Surface, TriMesh};
 use relations::MeshGeometry;
 
 use super::predict::Completeness;
-use super::record::{DROPPED, SHORTCUTS};
-use super::search::{Explain, SearchOptions, SearchRank, ShapeSearch};
-use crate::error::Error;
-use crate::form::{ShapeDescription, describe, describe_part};
+use crate::form::ShapeDescription;
 
 /// What a query is called unless it has a name.
 const UNNAMED: &str = "the query";
@@ -28,7 +25,7 @@ pub enum Query<'a> {
         /// The [hash](crate::content_hash) of its file.
         content: Option<ContentHash>,
     },
-    /// A mesh that was described with the [options of the index](ShapeSearch::describe_options).
+    /// A mesh that was described with the [options of the index](crate::ShapeSearch::describe_options).
     Described(DescribedQuery<'a>),
     /// A shape of the index, which finds itself. Its mesh is read if it is taken as a part, or if results are explained; then
     /// it need not be there.
@@ -88,66 +85,6 @@ impl Deref for HeldGeometry<'_> {
         match self {
             Self::Owned(geometry) => geometry,
             Self::Borrowed(geometry) => geometry,
-        }
-    }
-}
-
-impl ShapeSearch {
-    /// Describes or looks up a query.
-    pub(super) fn resolved<'a>(
-        &self,
-        query: Query<'a>,
-        options: &SearchOptions,
-        observer: &dyn Observer,
-    ) -> Result<KnownQuery<'a>, Error> {
-        let explains = options.explain == Explain::Kind;
-        let as_part = options.rank_by == SearchRank::Part;
-        let part_of = |surface: &Surface| describe_part(surface, self.describe_options(), observer);
-        match query {
-            Query::Mesh { mesh, name, content } => {
-                let surface = Surface::new(mesh, &self.describe_options().form.repair, observer)?;
-                let description = describe(&surface, self.describe_options(), observer)?;
-                Ok(KnownQuery {
-                    shape: description.prepare()?,
-                    name,
-                    content,
-                    geometry: explains
-                        .then(|| MeshGeometry::new(mesh, content))
-                        .flatten()
-                        .map(|geometry| HeldGeometry::Owned(Box::new(geometry))),
-                    part: as_part.then(|| part_of(&surface)).transpose()?,
-                    complete: Completeness::of(&description),
-                })
-            }
-            Query::Described(DescribedQuery { description, surface, geometry, name, content }) => {
-                self.index().expect_options(&description.options.text())?;
-                Ok(KnownQuery {
-                    shape: description.prepare()?,
-                    name,
-                    content,
-                    geometry: geometry.filter(|_| explains).map(HeldGeometry::Borrowed),
-                    part: surface.filter(|_| as_part).map(part_of).transpose()?,
-                    complete: Completeness::of(description),
-                })
-            }
-            Query::Id(id) => {
-                let entry = self.index().entry(id)?;
-                let geometry = explains.then(|| self.geometry(id, &entry)).flatten();
-                let repair = &self.describe_options().form.repair;
-                let part = || part_of(&Surface::new(&self.mesh(id)?, repair, observer)?);
-                Ok(KnownQuery {
-                    shape: self.prepared(id)?,
-                    name: id,
-                    content: Some(entry.content),
-                    geometry: geometry.map(|geometry| HeldGeometry::Owned(Box::new(geometry))),
-                    part: as_part.then(part).transpose()?,
-                    complete: Completeness {
-                        dropped: entry.fact(DROPPED).unwrap_or(0.0),
-                        shortcuts: entry.fact(SHORTCUTS).unwrap_or(0.0) as usize,
-                        ..Completeness::default()
-                    },
-                })
-            }
         }
     }
 }

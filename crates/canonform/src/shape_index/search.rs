@@ -1,7 +1,6 @@
 //! Searching an index for the shapes nearest to a mesh.
 
 use std::path::Path;
-use std::str::FromStr;
 use std::sync::OnceLock;
 use std::time::Instant;
 
@@ -13,9 +12,10 @@ use mesh::TriMesh;
 use mesh::io::FileSource;
 use rayon::prelude::*;
 use retrieval::Candidate;
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 
 use super::found::{ComponentResult, GraphRank, PartRank, SearchResult, StoredComponent};
+use super::options::{Explain, SearchOptions, SearchRank};
 use super::predict::{Prediction, VOTERS, predicted};
 use super::query::{KnownQuery, Query};
 use super::record::{disc_areas, options_of, prepared};
@@ -31,62 +31,6 @@ const CANDIDATES: usize = 4;
 
 /// Forms that may be aligned, however few results are wanted.
 const LEAST_CANDIDATES: usize = 40;
-
-/// How an index is searched.
-#[derive(Debug, Clone, PartialEq)]
-pub struct SearchOptions {
-    /// Number of results. Default: 10.
-    pub k: usize,
-    /// How signatures are searched. Default: [`SearchMode::Auto`].
-    pub mode: SearchMode,
-    /// Whether every result is compared with the query in detail. Default: no.
-    pub explain: Explain,
-    /// How results are ordered. Default: [`SearchRank::Plain`], by combined distance.
-    pub rank_by: SearchRank,
-}
-
-/// How the results of a search are ordered.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum SearchRank {
-    /// By combined distance.
-    #[default]
-    Plain,
-    /// By distance and by neighbours in common; needs the graph of the index.
-    Graph,
-    /// By how well the query fits as a part of the shape. Compares the query with every shape of the index, which must store
-    /// disc areas, and needs the mesh or the surface of the query.
-    Part,
-}
-
-impl FromStr for SearchRank {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        match text {
-            "plain" => Ok(Self::Plain),
-            "graph" => Ok(Self::Graph),
-            "part" => Ok(Self::Part),
-            _ => Err("use `plain`, `graph` or `part`".to_owned()),
-        }
-    }
-}
-
-/// Whether results are compared with the query in detail.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Explain {
-    /// No.
-    #[default]
-    No,
-    /// By files and meshes, too, and with a [`Comparison`](crate::Comparison) for each result.
-    Kind,
-}
-
-impl Default for SearchOptions {
-    fn default() -> Self {
-        Self { k: 10, mode: SearchMode::Auto, explain: Explain::No, rank_by: SearchRank::Plain }
-    }
-}
 
 /// The answer to a search.
 #[derive(Debug, Clone, PartialEq, Serialize)]

@@ -1,67 +1,13 @@
 //! Vectors divided into cells, as stored.
 
-use serde::{Deserialize, Serialize};
-
+use super::part::Part;
 use crate::IndexError;
 use crate::store::{Floats, LIMIT, View};
 use crate::tables::{ABOUT, About, CELLS, CENTROIDS, ENTRIES, FUSED, TRIALS};
-use crate::texts::Texts;
-use crate::vectors::{CellsHeader, Centroids, Rows, Trial, Trials, padded};
+use crate::vectors::{CellsHeader, Centroids, Trial, Trials, padded};
 
 /// Bytes of vectors in one part of a cell, so that a change writes little.
 const PART: usize = 56 << 10;
-
-/// Some shapes of one cell.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Part {
-    pub(crate) ids: Texts,
-    pub(crate) classes: Texts,
-    rows: Floats,
-}
-
-impl Part {
-    /// The padded vectors.
-    pub(crate) fn rows(&self) -> &[f32] {
-        &self.rows.0
-    }
-
-    pub(crate) fn in_cell<'a>(&'a self, cell: &'a u32) -> Rows<'a> {
-        let cells = std::slice::from_ref(cell);
-        Rows { rows: self.rows(), ids: &self.ids, classes: &self.classes, cells }
-    }
-
-    /// Brings the shapes into an order: `order[i]` becomes the `i`-th. Vectors have `n` numbers.
-    pub(super) fn sort(&mut self, order: &[usize], n: usize) {
-        self.ids = order.iter().map(|i| self.ids.get(*i)).collect();
-        self.classes = order.iter().map(|i| self.classes.get(*i)).collect();
-        // In place, one cycle of the permutation after the other: the vectors of a million shapes take a gigabyte.
-        let rows = &mut self.rows.0;
-        let mut is_done = vec![false; order.len()];
-        for first in 0..order.len() {
-            if is_done[first] {
-                continue;
-            }
-            let start = rows[first * n..][..n].to_vec();
-            let mut to = first;
-            loop {
-                is_done[to] = true;
-                let from = order[to];
-                if from == first {
-                    rows[to * n..][..n].copy_from_slice(&start);
-                    break;
-                }
-                rows.copy_within(from * n..(from + 1) * n, to * n);
-                to = from;
-            }
-        }
-    }
-
-    pub(super) fn push(&mut self, id: &str, class: &str, row: &[f32]) {
-        self.ids.push(id);
-        self.classes.push(class);
-        self.rows.0.extend_from_slice(row);
-    }
-}
 
 /// Number of vectors, `n` long, in one part.
 pub(super) fn rows_in_part(n: usize) -> usize {

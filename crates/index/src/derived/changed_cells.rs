@@ -2,7 +2,8 @@
 
 use std::collections::{BTreeMap, BTreeSet, HashSet};
 
-use super::cells::{Heads, Part, rows_in_part};
+use super::cells::{Heads, rows_in_part};
+use super::part::Part;
 use crate::IndexError;
 use crate::store::{Changes, Floats, View};
 use crate::tables::{CELLS, ENTRIES, FUSED};

@@ -5,8 +5,10 @@ mod cells;
 mod change;
 mod change_graph;
 mod changed_cells;
+mod part;
 mod train;
 
-pub(crate) use cells::{Heads, Part, about, all_shapes};
+pub(crate) use cells::{Heads, about, all_shapes};
 pub(crate) use change::changes;
+pub(crate) use part::Part;
 pub(crate) use train::trained;

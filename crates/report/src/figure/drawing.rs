@@ -16,16 +16,10 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{FontTransform, register_font};
 
 use super::pdf::{self, PdfBackend};
+pub(super) use super::units::{LINE, PAGE_WIDTH, PICTURE_PX, PX, Picture};
 use crate::color::{Rgb, class_color, class_color_on_dark, hex};
 use crate::error::ReportError;
-use crate::image::{RgbaImage, encode_png};
-
-/// Pixels of plotters per unit.
-pub(crate) const PX: i32 = 4;
-/// Pixels per unit of a [`Picture`] and of the PNG: 286 dots per inch in print.
-pub(crate) const PICTURE_PX: i32 = 2;
-/// Width of a figure that fills the text of a page, in units.
-pub(crate) const PAGE_WIDTH: i32 = 1000;
+use crate::image::encode_png;
 
 /// The background. Dark pages have other colours for it, for ink and for grid lines.
 pub(crate) const PAPER: Rgb = [255; 3];
@@ -47,13 +41,9 @@ pub(crate) const TITLE: f64 = 19.0;
 
 /// The embedded font of the PNG and the PDF; for the SVG with fonts of similar width after it.
 const FONT: &str = "DejaVu Sans, Bitstream Vera Sans, Verdana, sans-serif";
-/// plotters measures a font by its line, which is 1.164 em in DejaVu.
-pub(super) const LINE: f64 = 1.164;
 
 pub(crate) type Area<DB> = DrawingArea<DB, Shift>;
 pub(crate) type Drawn<DB> = Result<(), DrawingAreaErrorKind<<DB as DrawingBackend>::ErrorType>>;
-/// A raster of [`PICTURE_PX`], and its top left corner in units.
-pub(crate) type Picture = (RgbaImage, [i32; 2]);
 
 /// What plotters draws on any backend.
 pub(crate) trait Drawing {

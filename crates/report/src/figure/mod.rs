@@ -14,6 +14,7 @@ mod style;
 #[cfg(test)]
 mod tests;
 mod tiles;
+mod units;
 
 pub use axis::PlotAxis;
 pub(crate) use drawing::{INK, dark, pixels, scaled_text, text_width};

@@ -16,7 +16,7 @@ use plotters_backend::{
 use subsetter::{GlyphRemapper, subset};
 use ttf_parser::{Face, GlyphId};
 
-use super::drawing::{LINE, PAGE_WIDTH, PICTURE_PX, PX, Picture};
+use super::units::{LINE, PAGE_WIDTH, PICTURE_PX, PX, Picture};
 
 /// Points per pixel.
 const SCALE: f32 = 7.0 * 72.0 / (PAGE_WIDTH * PX) as f32;

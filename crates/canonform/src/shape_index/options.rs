@@ -1,0 +1,62 @@
+//! How an index is searched.
+
+use std::str::FromStr;
+
+use index::SearchMode;
+use serde::{Deserialize, Serialize};
+
+/// How an index is searched.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SearchOptions {
+    /// Number of results. Default: 10.
+    pub k: usize,
+    /// How signatures are searched. Default: [`SearchMode::Auto`].
+    pub mode: SearchMode,
+    /// Whether every result is compared with the query in detail. Default: no.
+    pub explain: Explain,
+    /// How results are ordered. Default: [`SearchRank::Plain`], by combined distance.
+    pub rank_by: SearchRank,
+}
+
+impl Default for SearchOptions {
+    fn default() -> Self {
+        Self { k: 10, mode: SearchMode::Auto, explain: Explain::No, rank_by: SearchRank::Plain }
+    }
+}
+
+/// How the results of a search are ordered.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum SearchRank {
+    /// By combined distance.
+    #[default]
+    Plain,
+    /// By distance and by neighbours in common; needs the graph of the index.
+    Graph,
+    /// By how well the query fits as a part of the shape. Compares the query with every shape of the index, which must store
+    /// disc areas, and needs the mesh or the surface of the query.
+    Part,
+}
+
+impl FromStr for SearchRank {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text {
+            "plain" => Ok(Self::Plain),
+            "graph" => Ok(Self::Graph),
+            "part" => Ok(Self::Part),
+            _ => Err("use `plain`, `graph` or `part`".to_owned()),
+        }
+    }
+}
+
+/// Whether results are compared with the query in detail.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Explain {
+    /// No.
+    #[default]
+    No,
+    /// By files and meshes, too, and with a [`Comparison`](crate::Comparison) for each result.
+    Kind,
+}
