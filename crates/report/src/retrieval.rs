@@ -10,7 +10,7 @@ use crate::results::{
     self, AxisScale, Classification, Misclassified, Published, PublishedMethod, RankedScores,
     RetrievalResults, RetrievalRow, Scale,
 };
-use crate::table::{Cell, SCORES, Table, scores, scores_caption};
+use crate::table::{Cell, SCORES, Table, scores_caption};
 
 /// The scales in the order of the panels, with their titles and their names in tables.
 const SCALES: [(Scale, &str, &str); 2] =
@@ -111,7 +111,7 @@ fn rankings(rows: &[RetrievalRow], published: Option<&Published>, protocol: &[St
         });
     let line = |row: &RetrievalRow, ranking: &str, ranked: &RankedScores| {
         let mut cells = vec![Cell::text(&row.method), Cell::text(row.scale.name()), Cell::text(ranking)];
-        cells.extend(scores(&ranked.micro).map(Cell::score));
+        cells.extend(ranked.micro.to_array().map(Cell::score));
         let interval = &ranked.micro_intervals;
         cells.push(Cell::number(format!("{:.3} to {:.3}", interval.low.map, interval.high.map)));
         cells.extend(
@@ -194,7 +194,7 @@ impl Results for RetrievalResults {
             let size = SCALES.iter().find(|(scale, ..)| *scale == row.scale).map_or("", |(.., name)| name);
             let own = [row.macro_average.nn, row.macro_average.map, row.knn_accuracy, row.held_out_map];
             let mut cells = vec![Cell::text(&row.method), Cell::text(size)];
-            cells.extend(scores(&row.micro).into_iter().chain(own).map(Cell::score));
+            cells.extend(row.micro.to_array().into_iter().chain(own).map(Cell::score));
             cells
         };
         let caption = format!(

@@ -60,9 +60,11 @@ impl Scores {
     }
 
     /// Number of scores.
-    pub(crate) const N: usize = 6;
+    pub const N: usize = 6;
 
-    pub(crate) fn to_array(self) -> [f64; Self::N] {
+    /// NN, FT, ST, E, DCG and mAP.
+    #[must_use]
+    pub fn to_array(self) -> [f64; Self::N] {
         [self.nn, self.ft, self.st, self.e, self.dcg, self.map]
     }
 
