@@ -201,10 +201,7 @@ mod tests {
 
     use super::*;
     use crate::rank;
-
-    fn line(positions: &[f64]) -> DistanceMatrix {
-        DistanceMatrix::from_pairs(positions.len(), |i, j| (positions[i] - positions[j]).abs()).unwrap()
-    }
+    use crate::ranking::line;
 
     /// Class `a` of four on the left; class `b` of three on the right, one of them among `a`.
     fn example() -> (DistanceMatrix, Labels) {
