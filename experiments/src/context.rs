@@ -1,5 +1,6 @@
 //! What every experiment gets, and what it does with its results.
 
+use std::fmt::Display;
 use std::io::Write;
 use std::path::Path;
 use std::time::Instant;
@@ -168,21 +169,17 @@ impl Context<'_> {
     }
 
     /// Publishes a panel for every specimen, and its numbers after the class; each panel is `steps` of progress.
-    pub(crate) fn publish_panels(
+    pub(crate) fn publish_panels<N: Display>(
         &self,
         steps: usize,
-        of: impl Fn(&Specimen<'_>) -> Result<(CurvesPanel, Vec<(String, f64)>)>,
+        of: impl Fn(&Specimen<'_>) -> Result<(CurvesPanel, Vec<(N, f64)>)>,
     ) -> Result<()> {
         let (mut panels, mut measured) = (Vec::new(), MeasuredNumbers::new());
         self.observer.begin(self.name, self.specimens.len() * steps);
         for specimen in self.specimens {
             let (panel, numbers) = of(specimen)?;
             panels.push(panel);
-            note(
-                &mut measured,
-                specimen.label(),
-                numbers.iter().map(|(name, number)| (name.as_str(), *number)),
-            );
+            note(&mut measured, specimen.label(), numbers);
         }
         self.publish_curves(panels, self.of_specimens(), &measured)
     }

@@ -3,6 +3,7 @@
 use anyhow::{Context as _, Result};
 use canonform::{DescribeOptions, ShapeDescription, Surface, describe};
 use datasets::Damage;
+use descriptors::PreparedShape;
 use retrieval::{Labels, Scores, rank_row};
 
 use crate::collection::{LabeledSurface, map};
@@ -32,6 +33,11 @@ impl<'a> Gallery<'a> {
             Ok(describe(&shape.surface, &options, &())?)
         })?;
         Ok(Self { context, options, described, labels: Labels::new(&context.collection.labels()) })
+    }
+
+    /// The collection, ready for comparisons.
+    pub(crate) fn prepared(&self) -> Result<Vec<PreparedShape>> {
+        Ok(self.described.iter().map(ShapeDescription::prepare).collect::<Result<_, _>>()?)
     }
 
     /// Calls `work` for up to `n` shapes of every class.

@@ -1,6 +1,8 @@
 //! Curves of repeated runs, and numbers by the names that expectations use.
 
 use std::collections::BTreeMap;
+use std::fmt::Display;
+use std::time::Instant;
 
 use anyhow::Result;
 use linalg::DistanceMatrix;
@@ -11,12 +13,24 @@ use retrieval::{Averaging, Labels, Scores, mean_scores};
 pub(crate) type MeasuredNumbers = BTreeMap<String, f64>;
 
 /// Notes numbers under `OF NAME`.
-pub(crate) fn note<'a>(
+pub(crate) fn note<N: Display>(
     measured: &mut MeasuredNumbers,
     of: &str,
-    numbers: impl IntoIterator<Item = (&'a str, f64)>,
+    numbers: impl IntoIterator<Item = (N, f64)>,
 ) {
     measured.extend(numbers.into_iter().map(|(name, number)| (format!("{of} {name}"), number)));
+}
+
+/// The measured numbers by their names.
+pub(crate) fn numbers<const N: usize>(named: [(&str, f64); N]) -> MeasuredNumbers {
+    named.map(|(name, number)| (name.to_owned(), number)).into()
+}
+
+/// What work gives, and the seconds that it takes.
+pub(crate) fn timed<T, E>(work: impl FnOnce() -> Result<T, E>) -> Result<(T, f64), E> {
+    let start = Instant::now();
+    let made = work()?;
+    Ok((made, start.elapsed().as_secs_f64()))
 }
 
 /// The mean; not a number without values.

@@ -63,19 +63,12 @@ impl CanonicalForm {
     /// same weight.
     ///
     /// # Errors
-    /// [`DescriptorError::NoExtent`].
-    pub fn from_points(mut points: Vec<Point3<f64>>, mut weights: Vec<f64>) -> Result<Self, DescriptorError> {
-        let total: f64 = weights.iter().sum();
-        let even = 1.0 / points.len().max(1) as f64;
-        weights.iter_mut().for_each(|w| *w = if total > 0.0 { *w / total } else { even });
+    /// [`DescriptorError::NoExtent`], [`DescriptorError::SizeMismatch`].
+    pub fn from_points(mut points: Vec<Point3<f64>>, weights: Vec<f64>) -> Result<Self, DescriptorError> {
+        let weights = shares(weights);
         let centroid = points.iter().zip(&weights).fold(Vector3::zeros(), |sum, (p, w)| sum + p.coords * *w);
         points.iter_mut().for_each(|p| *p -= centroid);
-        let spread =
-            points.iter().zip(&weights).map(|(p, w)| w * p.coords.norm_squared()).sum::<f64>().sqrt();
-        if !(spread > 0.0 && spread.is_finite()) {
-            return Err(DescriptorError::NoExtent { n_points: points.len() });
-        }
-        Ok(Self { points, weights, area: None })
+        Self::from_parts(points, weights, None)
     }
 
     /// A form from exactly these points, weights and area: nothing is centred or normalised.
@@ -117,14 +110,11 @@ impl CanonicalForm {
     /// # Errors
     /// [`DescriptorError::SizeMismatch`] for more weights than points; [`DescriptorError::NoExtent`] if one is negative or the
     /// points coincide.
-    pub fn leading(&self, mut weights: Vec<f64>) -> Result<Self, DescriptorError> {
+    pub fn leading(&self, weights: Vec<f64>) -> Result<Self, DescriptorError> {
         let n_points = self.points.len();
         let points = self.points.get(..weights.len());
         let points = points.ok_or(DescriptorError::SizeMismatch { n_points, n_vertices: weights.len() })?;
-        let total: f64 = weights.iter().sum();
-        let even = 1.0 / weights.len().max(1) as f64;
-        weights.iter_mut().for_each(|w| *w = if total > 0.0 { *w / total } else { even });
-        Self::from_parts(points.to_vec(), weights, self.area)
+        Self::from_parts(points.to_vec(), shares(weights), self.area)
     }
 
     /// The centred points, one per vertex, in the unit of the distances.
@@ -179,6 +169,14 @@ impl CanonicalForm {
     pub fn to_mesh(&self, mesh: &TriMesh) -> TriMesh {
         TriMesh { positions: self.points.clone(), faces: mesh.faces.clone() }
     }
+}
+
+/// Weights as shares of their sum; equal ones if there is none.
+fn shares(mut weights: Vec<f64>) -> Vec<f64> {
+    let total: f64 = weights.iter().sum();
+    let even = 1.0 / weights.len().max(1) as f64;
+    weights.iter_mut().for_each(|w| *w = if total > 0.0 { *w / total } else { even });
+    weights
 }
 
 /// Root of the weighted mean squared distance from the origin.

@@ -95,12 +95,6 @@ impl ShapeDistance {
         self.combined < ShapeMetric::SAME_SHAPE.gap()[0]
     }
 
-    /// Whether the shapes are certainly of one class, one shape or not.
-    #[must_use]
-    pub fn is_same_class(&self) -> bool {
-        self.combined < ShapeMetric::SAME_CLASS.gap()[0]
-    }
-
     /// Whether the shapes are at least as likely of one class as not. Neighbours as near as this vote on the class of a query.
     #[must_use]
     pub fn may_be_same_class(&self) -> bool {
@@ -309,8 +303,7 @@ mod tests {
             let next = at(f64::from(i) * 0.005);
             assert!(next.same_shape() <= last.same_shape() && next.same_class() <= last.same_class());
             assert!(next.same_shape() <= next.same_class());
-            assert!(!next.is_same_shape() || next.is_same_class());
-            assert!(!next.is_same_class() || next.may_be_same_class());
+            assert!(!next.is_same_shape() || next.may_be_same_class());
             assert!(!(next.may_be_same_class() && next.is_different()));
             assert_eq!(next.may_be_same_class(), next.same_class() > 0.5);
             last = next;

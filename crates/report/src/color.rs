@@ -142,12 +142,7 @@ mod tests {
     }
 
     #[test]
-    fn the_color_map_grows_lighter_and_accepts_any_number() {
-        let luminance = |t: f64| {
-            let [r, g, b] = perceptual(t).map(to_linear);
-            0.2126 * r + 0.7152 * g + 0.0722 * b
-        };
-        assert!((0..20).all(|i| luminance(f64::from(i) / 20.0) < luminance(f64::from(i + 1) / 20.0)));
+    fn the_color_map_accepts_any_number_and_is_linear_between_its_stops() {
         assert_eq!(perceptual(-5.0), perceptual(0.0));
         assert_eq!(perceptual(f64::INFINITY), perceptual(1.0));
         assert_eq!(perceptual(f64::NAN), [160, 160, 160]);
@@ -161,10 +156,7 @@ mod tests {
         assert_eq!([1.0, 2.0, 3.0].map(color), [0.0, 0.5, 1.0].map(perceptual));
         let color = color_scale(&[f64::INFINITY, 1.0, 2.0]);
         assert_eq!([color(f64::NAN), color(f64::INFINITY)], [perceptual(f64::NAN); 2]);
-    }
-
-    #[test]
-    fn a_scale_without_a_range_is_dark() {
+        // Without a range it is dark.
         assert_eq!(color_scale(&[])(f64::NAN), perceptual(f64::NAN));
         assert_eq!(color_scale(&[5.0; 3])(5.0), perceptual(0.0));
         let wide = color_scale(&[f64::MIN, f64::MAX]);

@@ -101,7 +101,7 @@ mod tests {
     use crate::figure::SeriesKind;
     use mesh::shapes::icosphere;
 
-    use crate::tests::fixtures::{assert_balanced, figure3_record};
+    use crate::tests::fixtures::{assert_balanced, assert_holds, figure3_record};
 
     #[test]
     fn every_form_has_its_stress_and_that_of_the_paper() {
@@ -112,9 +112,10 @@ mod tests {
         let files = record.results.tiles(&surfaces).unwrap().save(folder.path().join("figure3")).unwrap();
         let svg = std::fs::read_to_string(&files[1]).unwrap();
         assert_balanced(&svg);
-        for text in ["david&lt;0&gt;", "MDS", "NMDS", "stress 262.1", "paper 394.41", "3400 vertices"] {
-            assert!(svg.contains(text), "{text}");
-        }
+        assert_holds(
+            &svg,
+            &["david&lt;0&gt;", "MDS", "NMDS", "stress 262.1", "paper 394.41", "3400 vertices"],
+        );
         assert_eq!(svg.matches("data:image/png;base64,").count(), 6);
     }
 

@@ -10,7 +10,7 @@ use crate::figure::{
 use crate::numbers::signed;
 use crate::record::Results;
 use crate::results::{Figure4Panel, Figure4Results, Scale};
-use crate::table::{Cell, SCORES, Table, scores, scores_caption};
+use crate::table::{Cell, SCORES, Table, scores_caption};
 
 /// What each scale is called in titles, in captions and in file names.
 const SCALES: [(Scale, &str, &str, [&str; 2]); 2] = [
@@ -60,7 +60,7 @@ fn map(record: &Figure4Results, panel: &Figure4Panel, classes: &Classes<'_>, tit
         PlotSeries { name: (*name).to_owned(), style: SeriesStyle(class), kind: SeriesKind::Filled, points }
     };
     let (unit, [across, up]) = (panel.scale.unit(), equal_ranges(&panel.map));
-    let retrieval = SCORES.into_iter().zip(scores(&panel.scores.mean)).filter(|(name, _)| *name != "E");
+    let retrieval = SCORES.into_iter().zip(panel.scores.mean.to_array()).filter(|(name, _)| *name != "E");
     let own = [
         ("silhouette", panel.scores.silhouette),
         ("2D silhouette", panel.map_silhouette),
@@ -161,7 +161,7 @@ impl Results for Figure4Results {
                 ("k-NN", panel.scores.knn_accuracy),
                 ("silhouette", panel.scores.silhouette),
             ];
-            for (name, value) in own.into_iter().chain(SCORES.into_iter().zip(scores(&panel.scores.mean))) {
+            for (name, value) in own.into_iter().chain(SCORES.into_iter().zip(panel.scores.mean.to_array())) {
                 ReportError::check_finite(value, || of(name))?;
             }
         }
@@ -197,7 +197,7 @@ impl Results for Figure4Results {
             let Figure4Panel { scores: s, map_silhouette, map_stress, negative_mass, .. } = panel;
             let own = [s.knn_accuracy, s.silhouette, *map_silhouette, *map_stress, *negative_mass];
             let mut row = vec![Cell::text(&panel.method), Cell::text(panel.scale.name())];
-            row.extend(scores(&s.mean).into_iter().chain(own).map(Cell::score));
+            row.extend(s.mean.to_array().into_iter().chain(own).map(Cell::score));
             row
         };
         let caption = format!(
@@ -307,7 +307,7 @@ mod tests {
         assert_eq!(text.lines().count(), 1 + record.results.panels.len());
         assert!(text.contains("normalized") && text.contains("2D stress"), "{text}");
         let lines: Vec<&str> = text.lines().collect();
-        for (heading, value) in SCORES.iter().zip(scores(&record.results.panels[0].scores.mean)) {
+        for (heading, value) in SCORES.iter().zip(record.results.panels[0].scores.mean.to_array()) {
             let end = lines[0].find(heading).map(|at| at + heading.len()).unwrap();
             assert!(lines[1][..end].ends_with(&format!("{value:.3}")), "{heading} {value}\n{text}");
         }

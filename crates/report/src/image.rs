@@ -4,6 +4,8 @@ use std::io;
 use std::path::Path;
 
 use base::files::{FileError, write_bytes};
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
 
 /// An image of 8-bit sRGB pixels with straight (not premultiplied) alpha.
 ///
@@ -106,6 +108,11 @@ impl RgbaImage {
     pub fn to_png(&self) -> io::Result<Vec<u8>> {
         let bytes = self.pixels.as_flattened();
         Ok(encode_png(self.width, self.height, png::ColorType::Rgba, bytes)?)
+    }
+
+    /// The image as the address of a PNG in a page.
+    pub(crate) fn to_data_url(&self) -> io::Result<String> {
+        Ok(format!("data:image/png;base64,{}", STANDARD.encode(self.to_png()?)))
     }
 }
 

@@ -10,7 +10,7 @@ use crate::results::{
     self, AxisScale, Classification, Misclassified, Published, PublishedMethod, RankedScores,
     RetrievalResults, RetrievalRow, Scale,
 };
-use crate::table::{Cell, SCORES, Table, scores, scores_caption};
+use crate::table::{Cell, SCORES, Table, scores_caption};
 
 /// The scales in the order of the panels, with their titles and their names in tables.
 const SCALES: [(Scale, &str, &str); 2] =
@@ -111,7 +111,7 @@ fn rankings(rows: &[RetrievalRow], published: Option<&Published>, protocol: &[St
         });
     let line = |row: &RetrievalRow, ranking: &str, ranked: &RankedScores| {
         let mut cells = vec![Cell::text(&row.method), Cell::text(row.scale.name()), Cell::text(ranking)];
-        cells.extend(scores(&ranked.micro).map(Cell::score));
+        cells.extend(ranked.micro.to_array().map(Cell::score));
         let interval = &ranked.micro_intervals;
         cells.push(Cell::number(format!("{:.3} to {:.3}", interval.low.map, interval.high.map)));
         cells.extend(
@@ -194,7 +194,7 @@ impl Results for RetrievalResults {
             let size = SCALES.iter().find(|(scale, ..)| *scale == row.scale).map_or("", |(.., name)| name);
             let own = [row.macro_average.nn, row.macro_average.map, row.knn_accuracy, row.held_out_map];
             let mut cells = vec![Cell::text(&row.method), Cell::text(size)];
-            cells.extend(scores(&row.micro).into_iter().chain(own).map(Cell::score));
+            cells.extend(row.micro.to_array().into_iter().chain(own).map(Cell::score));
             cells
         };
         let caption = format!(
@@ -220,57 +220,33 @@ impl Results for RetrievalResults {
 mod tests {
     use super::*;
     use crate::results::Record;
-    use crate::tests::fixtures::retrieval_record;
+    use crate::tests::fixtures::{assert_holds, retrieval_record};
+    use serde_json::json;
 
     #[test]
     fn both_rankings_stand_above_published_scores() {
         let mut results = retrieval_record().results;
         assert_eq!(results.tables().len(), 3, "a record without the graph");
-        let scores = results.rows[0].micro;
-        let level =
-            ::retrieval::ScoreIntervals { level: 0.95, resamples: 9, seed: 0, low: scores, high: scores };
-        let split = ::retrieval::SplitAccuracy {
-            n_train: 10,
-            runs: 3,
-            n_classes: 2,
-            n_test: 4,
-            mean: 0.75,
-            deviation: 0.125,
-        };
-        let ranked = RankedScores {
-            micro: scores,
-            micro_intervals: level,
-            macro_average: scores,
-            macro_intervals: level,
-            knn_accuracy: 0.9,
-            splits: vec![split],
-        };
-        results.rows[0].rankings = Some(results::BothRankings { plain: ranked.clone(), graph: ranked });
-        let method = PublishedMethod {
-            name: "theirs".into(),
-            source: "a paper".into(),
-            ft: Some(0.5),
-            ..PublishedMethod::default()
-        };
-        results.published = Some(Published {
-            collection: "a benchmark".into(),
-            shapes: None,
-            classes: None,
-            method: vec![method],
+        let scores = json!(results.rows[0].micro);
+        let level = json!({"level": 0.95, "resamples": 9, "seed": 0, "low": scores, "high": scores});
+        let split = json!({
+            "n_train": 10, "runs": 3, "n_classes": 2, "n_test": 4, "mean": 0.75, "deviation": 0.125,
         });
+        let ranked = json!({
+            "micro": scores, "micro_intervals": level, "macro_average": scores, "macro_intervals": level,
+            "knn_accuracy": 0.9, "splits": [split],
+        });
+        let method = json!({"name": "theirs", "source": "a paper", "ft": 0.5});
+        results.rows[0].rankings = serde_json::from_value(json!({"plain": ranked, "graph": ranked})).unwrap();
+        results.published =
+            serde_json::from_value(json!({"collection": "a benchmark", "method": [method]})).unwrap();
         results.protocol = vec!["Every shape is a query.".into()];
         let table = &results.tables()[0];
         let text = table.to_text();
-        for words in
-            ["plain", "graph", "published", "0.875 to 0.875", "0.750 ± 0.125", "1-NN, 10 a class", "0.500"]
-        {
-            assert!(text.contains(words), "{words}: {text}");
-        }
-        assert!(
-            table
-                .caption
-                .contains("Every shape is a query. Published scores are on a benchmark. theirs: a paper.")
-        );
+        assert_holds(&text, &["plain", "graph", "published", "0.875 to 0.875", "0.750 ± 0.125", "0.500"]);
+        assert_holds(&text, &["1-NN, 10 a class"]);
+        let caption = "Every shape is a query. Published scores are on a benchmark. theirs: a paper.";
+        assert_holds(&table.caption, &[caption]);
         assert!(table.rows.iter().all(|row| row.len() == table.headings.len()));
         let json = serde_json::to_string(&results).unwrap();
         assert_eq!(serde_json::from_str::<RetrievalResults>(&json).unwrap(), results);

@@ -1,7 +1,6 @@
 //! Tables as data, and their text for terminals.
 
 use crate::numbers::signed;
-use ::retrieval::Scores;
 use comfy_table::{CellAlignment, presets};
 
 use crate::results::ExpectationOutcome;
@@ -120,11 +119,6 @@ pub(crate) fn scores_caption(best_e: Option<f64>) -> String {
         "NN: nearest neighbour; FT and ST: first and second tier; E: E-measure; DCG: discounted cumulative gain; mAP: \
          mean average precision. {best}"
     )
-}
-
-/// The scores under [`SCORES`].
-pub(crate) fn scores(s: &Scores) -> [f64; 6] {
-    [s.nn, s.ft, s.st, s.e, s.dcg, s.map]
 }
 
 /// A number with three significant digits, as short as possible.

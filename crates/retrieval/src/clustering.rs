@@ -41,10 +41,7 @@ pub fn silhouette(distances: &DistanceMatrix, labels: &Labels) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    fn line(positions: &[f64]) -> DistanceMatrix {
-        DistanceMatrix::from_pairs(positions.len(), |i, j| (positions[i] - positions[j]).abs()).unwrap()
-    }
+    use crate::ranking::line;
 
     #[test]
     fn matches_its_definition() {

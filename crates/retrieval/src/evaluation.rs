@@ -172,12 +172,12 @@ fn confusion_matrix(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::ranking::line;
 
     fn two_clusters(gap: f64) -> (DistanceMatrix, Labels) {
-        let position = |i: usize| if i < 4 { i as f64 } else { gap + i as f64 };
-        let matrix = DistanceMatrix::from_pairs(9, |i, j| (position(i) - position(j)).abs()).unwrap();
-        let names: Vec<&str> = (0..9).map(|i| ["a", "b"][usize::from(i >= 4)]).collect();
-        (matrix, Labels::new(&names))
+        let positions: Vec<f64> = (0..9).map(|i| f64::from(i) + if i < 4 { 0.0 } else { gap }).collect();
+        let names: Vec<&str> = (0..9).map(|i| if i < 4 { "a" } else { "b" }).collect();
+        (line(&positions), Labels::new(&names))
     }
 
     #[test]
@@ -201,17 +201,11 @@ mod tests {
 
     #[test]
     fn shapes_in_classes_of_two_are_not_queries() {
-        let matrix = DistanceMatrix::from_pairs(5, |i, j| (j - i) as f64).unwrap();
+        let matrix = line(&[0.0, 1.0, 2.0, 3.0, 4.0]);
         let scores = evaluate(&matrix, &Labels::new(&["a", "a", "a", "b", "b"]), 1).unwrap();
         assert_eq!(scores.confusion, [[3, 0], [0, 0]]);
-        assert_eq!(
-            evaluate(&matrix, &Labels::new(&["a", "a", "b", "b", "c"]), 1),
-            Err(RetrievalError::NothingToScore { n_points: 5, n_classes: 3 })
-        );
-        assert_eq!(
-            evaluate(&matrix, &Labels::new(&["a"]), 1),
-            Err(RetrievalError::LabelCount { n_labels: 1, n_points: 5 })
-        );
+        let error = evaluate(&matrix, &Labels::new(&["a", "a", "b", "b", "c"]), 1).unwrap_err();
+        assert_eq!(error, RetrievalError::NothingToScore { n_points: 5, n_classes: 3 });
     }
 
     #[test]
@@ -241,8 +235,7 @@ mod tests {
 
     #[test]
     fn the_majority_wins_and_the_nearest_breaks_a_tie() {
-        let positions = [0.0f64, 1.0, 2.0, 3.0];
-        let distances = DistanceMatrix::from_pairs(4, |i, j| (positions[i] - positions[j]).abs()).unwrap();
+        let distances = line(&[0.0, 1.0, 2.0, 3.0]);
         let labels = Labels::new(&["a", "a", "b", "b"]);
         assert_eq!(knn_predict(&distances, &labels, 0, 1), Ok(0));
         assert_eq!(knn_predict(&distances, &labels, 0, 2), Ok(0), "one vote each, and a is nearer");

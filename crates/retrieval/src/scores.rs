@@ -60,9 +60,11 @@ impl Scores {
     }
 
     /// Number of scores.
-    pub(crate) const N: usize = 6;
+    pub const N: usize = 6;
 
-    pub(crate) fn to_array(self) -> [f64; Self::N] {
+    /// NN, FT, ST, E, DCG and mAP.
+    #[must_use]
+    pub fn to_array(self) -> [f64; Self::N] {
         [self.nn, self.ft, self.st, self.e, self.dcg, self.map]
     }
 
@@ -199,10 +201,7 @@ mod tests {
 
     use super::*;
     use crate::rank;
-
-    fn line(positions: &[f64]) -> DistanceMatrix {
-        DistanceMatrix::from_pairs(positions.len(), |i, j| (positions[i] - positions[j]).abs()).unwrap()
-    }
+    use crate::ranking::line;
 
     /// Class `a` of four on the left; class `b` of three on the right, one of them among `a`.
     fn example() -> (DistanceMatrix, Labels) {

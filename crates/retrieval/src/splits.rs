@@ -100,13 +100,8 @@ pub fn split_accuracy(
 
 #[cfg(test)]
 mod tests {
-    use linalg::DistanceMatrix;
-
     use super::*;
-
-    fn line(positions: &[f64]) -> DistanceMatrix {
-        DistanceMatrix::from_pairs(positions.len(), |i, j| (positions[i] - positions[j]).abs()).unwrap()
-    }
+    use crate::ranking::line;
 
     const ONCE: SplitOptions = SplitOptions { n_train: 2, runs: 50, seed: 7 };
 

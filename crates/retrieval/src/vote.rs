@@ -144,6 +144,7 @@ pub fn vote(neighbors: &[Neighbor], class_of: impl Fn(usize) -> usize, k: usize,
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::ranking::line;
 
     fn neighbors(distances: &[f64]) -> Vec<Neighbor> {
         distances.iter().enumerate().map(|(index, &distance)| Neighbor { index, distance }).collect()
@@ -162,8 +163,7 @@ mod tests {
 
     #[test]
     fn leave_one_out_uses_every_shape() {
-        let positions = [0.0f64, 1.0, 2.5, 10.0, 11.0, 30.0];
-        let distances = DistanceMatrix::from_pairs(6, |i, j| (positions[i] - positions[j]).abs()).unwrap();
+        let distances = line(&[0.0, 1.0, 2.5, 10.0, 11.0, 30.0]);
         let labels = Labels::new(&["a", "a", "a", "b", "b", "c"]);
         let found = UnknownThreshold::leave_one_out(&distances, &labels).unwrap();
         // Own: 1, 1, 1.5, 1, 1; foreign: 10, 9, 7.5, 7.5, 8.5, 19.

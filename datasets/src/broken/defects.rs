@@ -4,11 +4,7 @@ use mesh::{TriMesh, shapes};
 use nalgebra::{Point3, Vector3};
 use surface::VertexId;
 
-use super::file::{BrokenFile, off};
-
-fn ball() -> TriMesh {
-    shapes::icosphere(2)
-}
+use super::file::{BrokenFile, BrokenSurfaces, ball};
 
 fn face(corners: [usize; 3]) -> [VertexId; 3] {
     corners.map(VertexId::from)
@@ -109,160 +105,115 @@ fn projective_plane() -> TriMesh {
         let angle = f64::from(i);
         Point3::new(angle.cos(), angle.sin(), f64::from(i % 3))
     });
-    let faces = [
-        [0, 1, 2],
-        [0, 2, 3],
-        [0, 3, 4],
-        [0, 4, 5],
-        [0, 5, 1],
-        [1, 2, 4],
-        [2, 3, 5],
-        [3, 4, 1],
-        [4, 5, 2],
-        [5, 1, 3],
-    ];
-    TriMesh { positions: positions.collect(), faces: faces.into_iter().map(face).collect() }
+    // Around vertex 0, and between the others.
+    let faces = (1..6).map(|i| [0, i, i % 5 + 1]).chain((1..6).map(|i| [i, i % 5 + 1, (i + 2) % 5 + 1]));
+    TriMesh { positions: positions.collect(), faces: faces.map(face).collect() }
 }
 
 pub(super) fn defective() -> Vec<BrokenFile> {
-    let mut all = Vec::new();
-    let mut add = |name, defect, mesh: TriMesh| all.push(BrokenFile { name, defect, content: off(&mesh) });
-    let changed = |change: &dyn Fn(&mut TriMesh)| {
-        let mut mesh = ball();
-        change(&mut mesh);
-        mesh
-    };
-    let pair = |by: [f64; 3]| shapes::disjoint(&[ball(), moved(ball(), by)]);
+    let mut zoo = BrokenSurfaces::default();
+    degenerate_faces(&mut zoo);
+    open_surfaces(&mut zoo);
+    several_bodies(&mut zoo);
+    non_manifold(&mut zoo);
+    without_a_side(&mut zoo);
+    zoo.add("fan.off", "2,000 faces around one vertex", fan(2000));
+    zoo.add("triangle.off", "a single triangle", TriMesh { faces: vec![face([0, 1, 2])], ..fan(5) });
+    zoo.add("two-triangles.off", "two triangles", shapes::grid(2, 2, 1.0));
+    zoo.0
+}
 
-    add("repeated-corner.off", "a face with one vertex twice", changed(&|m| m.faces[9][1] = m.faces[9][0]));
-    add(
-        "no-usable-face.off",
-        "only faces with one vertex twice",
-        changed(&|m| {
-            m.faces.iter_mut().for_each(|f| f[1] = f[0]);
-        }),
-    );
-    add("duplicate-face.off", "a face twice", changed(&|m| m.faces.push(m.faces[9])));
-    add(
-        "reversed-duplicate.off",
-        "a face twice, once reversed",
-        changed(&|m| {
-            let [a, b, c] = m.faces[9];
-            m.faces.push([a, c, b]);
-        }),
-    );
-    add(
-        "doubled.off",
-        "every face twice, once reversed",
-        changed(&|m| {
-            let reversed: Vec<_> = m.faces.iter().map(|&[a, b, c]| [a, c, b]).collect();
-            m.faces.extend(reversed);
-        }),
-    );
-    add(
-        "stray-vertices.off",
-        "ten vertices without a face",
-        changed(&|m| {
-            m.positions.extend((0..10).map(|i| Point3::new(f64::from(i), 5.0, 5.0)));
-        }),
-    );
-    add("soup.off", "every face with corners of its own", soup(&ball()));
-    add("seam.off", "cut along the equator, the copies in the same positions", cut(&ball(), |_| 0.0));
-    add(
-        "loose-seam.off",
-        "cut along the equator, the copies 1e-6 away",
-        cut(&ball(), |v| 1e-6 * (v % 7) as f64),
-    );
-    add("gap.off", "cut along the equator, the copies a fifth of an edge away", cut(&ball(), |_| 0.06));
-    add("hole.off", "one face missing", changed(&|m| m.faces.truncate(319)));
-    add(
-        "half.off",
-        "half of the faces missing",
-        changed(&|m| m.faces.retain(|f| f.iter().all(|v| v.0 % 3 != 1))),
-    );
-    add(
-        "sieve.off",
-        "every fifth face missing",
-        changed(&|m| {
-            let mut i = 0;
-            m.faces.retain(|_| {
-                i += 1;
-                i % 5 != 0
-            });
-        }),
-    );
-    add("twins.off", "two components of one size", pair([3.0, 0.0, 0.0]));
-    add("crumb.off", "a small second component", shapes::disjoint(&[ball(), crumb([9.0; 3])]));
-    add(
-        "crumbs.off",
-        "sixty components",
-        shapes::disjoint(
-            &(0..60)
-                .map(|i| moved(shapes::tetrahedron(0), [f64::from(i) * 3.0, 0.0, 0.0]))
-                .collect::<Vec<_>>(),
-        ),
-    );
-    add(
-        "nested.off",
-        "a body inside another",
-        shapes::disjoint(&[shapes::icosphere(3), {
-            let mut inner = ball();
-            inner.positions.iter_mut().for_each(|p| p.coords *= 0.5);
-            inner
-        }]),
-    );
-    add("crossing.off", "two bodies that cross", pair([0.7, 0.0, 0.0]));
-    add("touching-vertex.off", "two bodies that share a vertex", {
-        let mut both = shapes::disjoint(&[shapes::tetrahedron(2), shapes::tetrahedron(2)]);
+fn degenerate_faces(zoo: &mut BrokenSurfaces) {
+    zoo.changed("repeated-corner.off", "a face with one vertex twice", ball(), |m| {
+        m.faces[9][1] = m.faces[9][0];
+    });
+    zoo.changed("no-usable-face.off", "only faces with one vertex twice", ball(), |m| {
+        m.faces.iter_mut().for_each(|f| f[1] = f[0]);
+    });
+    zoo.changed("duplicate-face.off", "a face twice", ball(), |m| m.faces.push(m.faces[9]));
+    zoo.changed("reversed-duplicate.off", "a face twice, once reversed", ball(), |m| {
+        let [a, b, c] = m.faces[9];
+        m.faces.push([a, c, b]);
+    });
+    zoo.changed("doubled.off", "every face twice, once reversed", ball(), |m| {
+        let reversed: Vec<_> = m.faces.iter().map(|&[a, b, c]| [a, c, b]).collect();
+        m.faces.extend(reversed);
+    });
+    zoo.changed("stray-vertices.off", "ten vertices without a face", ball(), |m| {
+        m.positions.extend((0..10).map(|i| Point3::new(f64::from(i), 5.0, 5.0)));
+    });
+}
+
+fn open_surfaces(zoo: &mut BrokenSurfaces) {
+    zoo.add("soup.off", "every face with corners of its own", soup(&ball()));
+    zoo.add("seam.off", "cut along the equator, the copies in the same positions", cut(&ball(), |_| 0.0));
+    let loose = cut(&ball(), |v| 1e-6 * (v % 7) as f64);
+    zoo.add("loose-seam.off", "cut along the equator, the copies 1e-6 away", loose);
+    zoo.add("gap.off", "cut along the equator, the copies a fifth of an edge away", cut(&ball(), |_| 0.06));
+    zoo.changed("hole.off", "one face missing", ball(), |m| m.faces.truncate(319));
+    zoo.changed("half.off", "half of the faces missing", ball(), |m| {
+        m.faces.retain(|f| f.iter().all(|v| v.0 % 3 != 1));
+    });
+    zoo.changed("sieve.off", "every fifth face missing", ball(), |m| {
+        let mut i = 0;
+        m.faces.retain(|_| {
+            i += 1;
+            i % 5 != 0
+        });
+    });
+}
+
+fn several_bodies(zoo: &mut BrokenSurfaces) {
+    let pair = |by: [f64; 3]| shapes::disjoint(&[ball(), moved(ball(), by)]);
+    zoo.add("twins.off", "two components of one size", pair([3.0, 0.0, 0.0]));
+    zoo.add("crumb.off", "a small second component", shapes::disjoint(&[ball(), crumb([9.0; 3])]));
+    let crumbs = (0..60).map(|i| moved(shapes::tetrahedron(0), [f64::from(i) * 3.0, 0.0, 0.0]));
+    zoo.add("crumbs.off", "sixty components", shapes::disjoint(&crumbs.collect::<Vec<_>>()));
+    let mut inner = ball();
+    inner.positions.iter_mut().for_each(|p| p.coords *= 0.5);
+    zoo.add("nested.off", "a body inside another", shapes::disjoint(&[shapes::icosphere(3), inner]));
+    zoo.add("crossing.off", "two bodies that cross", pair([0.7, 0.0, 0.0]));
+    let two = shapes::disjoint(&[shapes::tetrahedron(2), shapes::tetrahedron(2)]);
+    zoo.changed("touching-vertex.off", "two bodies that share a vertex", two, |both| {
         let n = shapes::tetrahedron(2).n_vertices();
         let by = both.positions[0] - both.positions[n + 1];
         both.positions[n..].iter_mut().for_each(|p| *p += by);
         both.faces.iter_mut().flatten().filter(|v| v.index() == n + 1).for_each(|v| *v = VertexId(0));
-        both
     });
-    add(
-        "fin.off",
-        "a third face on an edge",
-        changed(&|m| m.faces.push([m.faces[0][0], m.faces[0][1], m.faces[200][2]])),
-    );
-    add("book.off", "ten faces on one edge", {
-        let mut positions = vec![Point3::origin(), Point3::new(0.0, 0.0, 1.0)];
-        positions.extend((0..10).map(|i| Point3::new(f64::from(i).cos(), f64::from(i).sin(), 0.5)));
-        TriMesh { positions, faces: (0..10).map(|i| face([0, 1, 2 + i])).collect() }
+}
+
+fn non_manifold(zoo: &mut BrokenSurfaces) {
+    zoo.changed("fin.off", "a third face on an edge", ball(), |m| {
+        m.faces.push([m.faces[0][0], m.faces[0][1], m.faces[200][2]]);
     });
-    add("all-triangles.off", "all triangles over ten points", all_triangles(10));
-    add(
-        "wall.off",
-        "a wall through a closed body",
-        changed(&|m| {
-            let mut rim: Vec<usize> =
-                (0..m.n_vertices()).filter(|&v| m.positions[v].z.abs() < 1e-9).collect();
-            let angle = |v: usize| m.positions[v].y.atan2(m.positions[v].x);
-            rim.sort_by(|&a, &b| angle(a).total_cmp(&angle(b)));
-            let centre = m.n_vertices();
-            m.positions.push(Point3::origin());
-            for (i, &a) in rim.iter().enumerate() {
-                m.faces.push(face([a, rim[(i + 1) % rim.len()], centre]));
-            }
-        }),
-    );
-    add("t-junction.off", "a vertex on the edge of another face", {
-        let points = [[0.0, 0.0], [2.0, 0.0], [1.0, 1.0], [1.0, 0.0], [0.0, -1.0], [2.0, -1.0]];
-        let positions = points.map(|[x, y]| Point3::new(x, y, 0.0)).to_vec();
-        TriMesh { positions, faces: vec![face([0, 1, 2]), face([0, 4, 3]), face([3, 4, 5]), face([3, 5, 1])] }
+    let mut positions = vec![Point3::origin(), Point3::new(0.0, 0.0, 1.0)];
+    positions.extend((0..10).map(|i| Point3::new(f64::from(i).cos(), f64::from(i).sin(), 0.5)));
+    let faces = (0..10).map(|i| face([0, 1, 2 + i])).collect();
+    zoo.add("book.off", "ten faces on one edge", TriMesh { positions, faces });
+    zoo.add("all-triangles.off", "all triangles over ten points", all_triangles(10));
+    zoo.changed("wall.off", "a wall through a closed body", ball(), |m| {
+        let mut rim: Vec<usize> = (0..m.n_vertices()).filter(|&v| m.positions[v].z.abs() < 1e-9).collect();
+        let angle = |v: usize| m.positions[v].y.atan2(m.positions[v].x);
+        rim.sort_by(|&a, &b| angle(a).total_cmp(&angle(b)));
+        let centre = m.n_vertices();
+        m.positions.push(Point3::origin());
+        for (i, &a) in rim.iter().enumerate() {
+            m.faces.push(face([a, rim[(i + 1) % rim.len()], centre]));
+        }
     });
-    add(
-        "flipped.off",
-        "every third face reversed",
-        changed(&|m| {
-            m.faces.iter_mut().step_by(3).for_each(|f| f.swap(0, 1));
-        }),
-    );
-    add("inside-out.off", "every face reversed", changed(&|m| m.faces.iter_mut().for_each(|f| f.swap(0, 1))));
-    add("moebius.off", "a band with one side", moebius(40));
-    add("projective-plane.off", "a closed surface with one side", projective_plane());
-    add("fan.off", "2,000 faces around one vertex", fan(2000));
-    add("triangle.off", "a single triangle", TriMesh { faces: vec![face([0, 1, 2])], ..fan(5) });
-    add("two-triangles.off", "two triangles", shapes::grid(2, 2, 1.0));
-    all
+    let points = [[0.0, 0.0], [2.0, 0.0], [1.0, 1.0], [1.0, 0.0], [0.0, -1.0], [2.0, -1.0]];
+    let positions = points.map(|[x, y]| Point3::new(x, y, 0.0)).to_vec();
+    let faces = [[0, 1, 2], [0, 4, 3], [3, 4, 5], [3, 5, 1]].map(face).to_vec();
+    zoo.add("t-junction.off", "a vertex on the edge of another face", TriMesh { positions, faces });
+}
+
+fn without_a_side(zoo: &mut BrokenSurfaces) {
+    zoo.changed("flipped.off", "every third face reversed", ball(), |m| {
+        m.faces.iter_mut().step_by(3).for_each(|f| f.swap(0, 1));
+    });
+    zoo.changed("inside-out.off", "every face reversed", ball(), |m| {
+        m.faces.iter_mut().for_each(|f| f.swap(0, 1));
+    });
+    zoo.add("moebius.off", "a band with one side", moebius(40));
+    zoo.add("projective-plane.off", "a closed surface with one side", projective_plane());
 }

@@ -1,6 +1,6 @@
 //! The file of a broken mesh.
 
-use mesh::TriMesh;
+use mesh::{TriMesh, shapes};
 
 /// The file of a broken mesh.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -11,6 +11,32 @@ pub struct BrokenFile {
     pub defect: &'static str,
     /// Its content.
     pub content: Vec<u8>,
+}
+
+/// Broken surfaces, as files.
+#[derive(Default)]
+pub(super) struct BrokenSurfaces(pub(super) Vec<BrokenFile>);
+
+impl BrokenSurfaces {
+    pub(super) fn add(&mut self, name: &'static str, defect: &'static str, mesh: TriMesh) {
+        self.0.push(BrokenFile { name, defect, content: off(&mesh) });
+    }
+
+    /// Adds a mesh after a change.
+    pub(super) fn changed(
+        &mut self,
+        name: &'static str,
+        defect: &'static str,
+        mut mesh: TriMesh,
+        change: impl FnOnce(&mut TriMesh),
+    ) {
+        change(&mut mesh);
+        self.add(name, defect, mesh);
+    }
+}
+
+pub(super) fn ball() -> TriMesh {
+    shapes::icosphere(2)
 }
 
 /// A mesh as text, also with coordinates that our writer refuses.

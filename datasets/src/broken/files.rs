@@ -1,8 +1,6 @@
 //! Files that are damaged, or that are not what their name says.
 
-use mesh::shapes;
-
-use super::file::{BrokenFile, off};
+use super::file::{BrokenFile, ball, off};
 
 /// A PLY file of one triangle whose header has other lines for vertices.
 fn ply(vertices: &str, rows: &str) -> String {
@@ -14,7 +12,7 @@ fn ply(vertices: &str, rows: &str) -> String {
 const XYZ: &str = "element vertex 3\nproperty float x\nproperty float y\nproperty float z\n";
 
 pub(super) fn damaged() -> Vec<BrokenFile> {
-    let ball = String::from_utf8(off(&shapes::icosphere(2))).unwrap_or_default();
+    let ball = String::from_utf8(off(&ball())).unwrap_or_default();
     let lines: Vec<&str> = ball.lines().collect();
     let first = |n: usize| lines[..n].join("\n") + "\n";
     let changed = |line: usize, text: &str| {

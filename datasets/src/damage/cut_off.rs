@@ -17,20 +17,30 @@ pub(super) fn cut_off(mesh: &TriMesh, share: f64, stream: &mut Stream) -> TriMes
     let tip = tip(&mut edges, first);
     let lengths = edges.from(tip);
     let from_tip = |f: usize| mesh.faces[f].iter().map(|v| lengths[v.index()]).fold(0.0, f64::max);
+    let is_cut = first_faces(mesh, share * mesh.area(), from_tip);
+    largest_piece(with_faces(mesh, |f| !is_cut[f]))
+}
+
+/// Whether each face is among the first by `place` that cover an area.
+pub(super) fn first_faces(mesh: &TriMesh, area: f64, place: impl Fn(usize) -> f64) -> Vec<bool> {
     let mut order: Vec<usize> = (0..mesh.n_faces()).collect();
-    order.sort_by(|a, b| from_tip(*a).total_cmp(&from_tip(*b)));
-    let (mut covered, limit) = (0.0, share * mesh.area());
-    let mut is_cut = vec![false; mesh.n_faces()];
+    order.sort_by(|a, b| place(*a).total_cmp(&place(*b)));
+    let mut is_first = vec![false; mesh.n_faces()];
+    let mut covered = 0.0;
     for f in order {
-        if covered >= limit {
+        if covered >= area {
             break;
         }
-        is_cut[f] = true;
+        is_first[f] = true;
         covered += 0.5 * mesh.area_vector(f).norm();
     }
-    let left = |f: &usize| !is_cut[*f];
-    let faces: Vec<_> = (0..mesh.n_faces()).filter(left).map(|f| mesh.faces[f]).collect();
-    largest_piece(TriMesh { positions: mesh.positions.clone(), faces })
+    is_first
+}
+
+/// The mesh with some of its faces only.
+pub(super) fn with_faces(mesh: &TriMesh, is_kept: impl Fn(usize) -> bool) -> TriMesh {
+    let faces = (0..mesh.n_faces()).filter(|f| is_kept(*f)).map(|f| mesh.faces[f]).collect();
+    TriMesh { positions: mesh.positions.clone(), faces }
 }
 
 /// The component with the largest area.

@@ -6,6 +6,7 @@ use std::collections::BinaryHeap;
 use mesh::TriMesh;
 use surface::components_of_faces;
 
+use super::cut_off::with_faces;
 use crate::stream::Stream;
 
 /// Number of discs.
@@ -62,6 +63,5 @@ fn without_disc(mesh: &TriMesh, first: usize, area: f64) -> TriMesh {
             }
         }
     }
-    let kept = mesh.faces.iter().zip(&is_cut).filter(|(_, cut)| !**cut).map(|(face, _)| *face).collect();
-    TriMesh { positions: mesh.positions.clone(), faces: kept }
+    with_faces(mesh, |f| !is_cut[f])
 }

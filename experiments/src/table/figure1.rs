@@ -14,6 +14,7 @@ use crate::context::Context;
 use crate::experiment::Experiment;
 use crate::specimen::{describing, low_rank};
 use crate::surfaces::{aligned, oriented};
+use crate::sweep::numbers;
 
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -53,7 +54,7 @@ impl Experiment for Figure1Options {
         let shapes: Vec<TriMesh> = shown.iter().map(|shape| oriented(shape.surface.mesh())).collect();
         let results = Figure1Results { shapes: facts };
         results.tiles(&shapes, &forms)?.save(context.folder.join(context.name))?;
-        let measured = [("largest stress ratio".to_owned(), worst)].into();
+        let measured = numbers([("largest stress ratio", worst)]);
         context.publish(results, provenance, &measured)
     }
 }

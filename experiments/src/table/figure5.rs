@@ -72,7 +72,7 @@ impl Experiment for RankOptions {
             let (best, error) = least(&low_rank);
             let last = low_rank.points.last().map_or(f64::NAN, |p| p.median);
             let good = || low_rank.points.iter().filter(|p| p.median <= 1.5 * error).map(|p| p.x);
-            let numbers = [
+            let numbers = vec![
                 ("good from", good().next().unwrap_or(f64::NAN)),
                 ("good to", good().next_back().unwrap_or(f64::NAN)),
                 ("best rank", best),
@@ -83,8 +83,7 @@ impl Experiment for RankOptions {
             ];
             let x = linear(&format!("rank n₁ of n = {n} samples"));
             context.observer.step();
-            let numbers = numbers.map(|(name, number)| (name.to_owned(), number));
-            Ok((panel(specimen.name(), x, error_axis(), vec![low_rank, cur]), numbers.into()))
+            Ok((panel(specimen.name(), x, error_axis(), vec![low_rank, cur]), numbers))
         })
     }
 }
@@ -107,7 +106,7 @@ impl Experiment for AlphaOptions {
             let paper = fixed("paper", Regularization::Rpi { alpha: RpiAlpha::Paper })?;
             let ours = fixed("default", Regularization::Rpi { alpha: RpiAlpha::default() })?;
             let (best_alpha, best) = least(&rpi);
-            let numbers = [
+            let numbers = vec![
                 ("best alpha", best_alpha),
                 ("paper over best", least(&paper).1 / best),
                 ("default over best", least(&ours).1 / best),
@@ -120,8 +119,7 @@ impl Experiment for AlphaOptions {
             ];
             let plain = panel(specimen.name(), log("α / σ₁⁴", ""), error_axis(), vec![rpi, none, low_rank]);
             context.observer.step();
-            let numbers = numbers.map(|(name, number)| (name.to_owned(), number));
-            Ok((CurvesPanel { marks, ..plain }, numbers.into()))
+            Ok((CurvesPanel { marks, ..plain }, numbers))
         })
     }
 }

@@ -3,8 +3,6 @@
 //! Measures, at the greatest n: `RPI over low-rank`, `none over low-rank` and `SMDS over low-rank`, ratios of the times of
 //! methods that take turns.
 
-use std::time::Instant;
-
 use anyhow::{Context as _, Result};
 use geodesics::Sampling;
 use linalg::LandmarkDistances;
@@ -16,7 +14,7 @@ use serde::Deserialize;
 use crate::context::Context;
 use crate::experiment::Experiment;
 use crate::specimen::{DIM, Distances};
-use crate::sweep::{MeasuredNumbers, curves, half, last, linear, log, panel, places};
+use crate::sweep::{MeasuredNumbers, curves, half, last, linear, log, panel, places, timed};
 
 const METHODS: [&str; 5] =
     ["NMDS, low rank", "NMDS, no regularisation", "NMDS, RPI", "SMDS", "SMDS, eigenfunctions given"];
@@ -45,14 +43,11 @@ impl Experiment for Figure8Options {
             SpectralBasis { values: &spectrum.values, vectors: &spectrum.vectors, masses: &spectrum.masses };
         let mut of_basis = f64::INFINITY;
         for _ in 0..BASES {
-            let begun = Instant::now();
-            LaplaceSpectrum::new(surface, self.eigenvectors, &())?;
-            of_basis = of_basis.min(begun.elapsed().as_secs_f64());
+            let (_, seconds) = timed(|| LaplaceSpectrum::new(surface, self.eigenvectors, &()))?;
+            of_basis = of_basis.min(seconds);
         }
         let nmds = |samples: &LandmarkDistances, regularization| -> Result<f64> {
-            let begun = Instant::now();
-            nystrom(samples, &NystromOptions { regularization, dim: DIM })?;
-            Ok(begun.elapsed().as_secs_f64())
+            Ok(timed(|| nystrom(samples, &NystromOptions { regularization, dim: DIM }))?.1)
         };
         let mut runs: Vec<Vec<Vec<f64>>> = vec![Vec::new(); METHODS.len()];
         for _ in 0..self.runs {
@@ -61,9 +56,7 @@ impl Experiment for Figure8Options {
                 times[0].push(nmds(samples, half(samples.n_landmarks()))?);
                 times[1].push(nmds(samples, Regularization::None)?);
                 times[2].push(nmds(samples, Regularization::Rpi { alpha: RpiAlpha::default() })?);
-                let begun = Instant::now();
-                spectral(samples, &basis, &SpectralOptions::default())?;
-                let seconds = begun.elapsed().as_secs_f64();
+                let (_, seconds) = timed(|| spectral(samples, &basis, &SpectralOptions::default()))?;
                 times[3].push(of_basis + seconds);
                 times[4].push(seconds);
             }

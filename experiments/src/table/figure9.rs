@@ -4,8 +4,6 @@
 //! decomposition) and `SMDS over NMDS`; at the larger one, `large SMDS over NMDS` and `algebra share`, the share of linear
 //! algebra in the time of NMDS; `small|large METHOD seconds|bytes`, the time and memory of each method; and `growth`, the exponent of the time of NMDS in the number of vertices.
 
-use std::time::Instant;
-
 use anyhow::{Context as _, Result};
 use base::terminal::with_peak_bytes;
 use canonform::{EmbedMethod, FormOptions, Surface, embed};
@@ -21,7 +19,7 @@ use crate::config::Printed;
 use crate::context::Context;
 use crate::experiment::Experiment;
 use crate::specimen::{DIM, Distances, low_rank};
-use crate::sweep::{MeasuredNumbers, note};
+use crate::sweep::{MeasuredNumbers, note, numbers, timed};
 
 /// The ratio of the numbers of vertices of both shapes: 28,000 and 3,400 in the paper.
 const LARGER: f64 = 28_000.0 / 3_400.0;
@@ -117,12 +115,11 @@ impl Figure9Options {
 
 /// Classical scaling with all eigenpairs.
 fn full(shape: &LabeledSurface) -> Result<Figure9Measured> {
+    let method = Distances::default().method;
     let run = || -> Result<[f64; 2]> {
-        let start = Instant::now();
-        let all = Distances::default().method.prepare(shape.surface.intrinsic(), &())?.distance_matrix()?;
-        let geodesics = start.elapsed().as_secs_f64();
-        classical_full(&all, DIM)?;
-        Ok([geodesics, start.elapsed().as_secs_f64() - geodesics])
+        let (all, geodesics) = timed(|| method.prepare(shape.surface.intrinsic(), &())?.distance_matrix())?;
+        let (_, embedding) = timed(|| classical_full(&all, DIM))?;
+        Ok([geodesics, embedding])
     };
     let (seconds, peak_bytes) = with_peak_bytes(run);
     let [geodesics, embedding] = seconds?;
@@ -135,9 +132,8 @@ fn all_pairs_seconds(shape: &LabeledSurface) -> Result<f64> {
     let solver = Distances::default().method.prepare(shape.surface.intrinsic(), &())?;
     let sources: Vec<VertexId> =
         (0..TIMED_SOURCES).map(|i| VertexId::from(i * (p / TIMED_SOURCES).max(1) % p)).collect();
-    let start = Instant::now();
-    solver.distance_columns(&sources)?;
-    Ok(start.elapsed().as_secs_f64() * p as f64 / TIMED_SOURCES as f64)
+    let (_, seconds) = timed(|| solver.distance_columns(&sources))?;
+    Ok(seconds * p as f64 / TIMED_SOURCES as f64)
 }
 
 fn ratios(rows: &[Figure9Row]) -> MeasuredNumbers {
@@ -149,20 +145,18 @@ fn ratios(rows: &[Figure9Row]) -> MeasuredNumbers {
     let total = |is_small, method| of(is_small, method).map_or(f64::NAN, |m: Figure9Measured| m.total());
     let ratio = |is_small, method| total(is_small, method) / total(is_small, "NMDS");
     let factor = sizes[1] as f64 / sizes[0].max(1) as f64;
-    let mut measured: MeasuredNumbers = [
+    let mut measured = numbers([
         ("full MDS over NMDS", ratio(true, "MDS, all eigenpairs")),
         ("MDS over NMDS", ratio(true, "MDS, three eigenpairs")),
         ("SMDS over NMDS", ratio(true, "SMDS")),
         ("large SMDS over NMDS", ratio(false, "SMDS")),
         ("algebra share", of(false, "NMDS").map_or(f64::NAN, |m| m.embedding / m.total())),
         ("growth", (total(false, "NMDS") / total(true, "NMDS")).ln() / factor.ln()),
-    ]
-    .map(|(name, value)| (name.to_owned(), value))
-    .into();
+    ]);
     for (row, found) in rows.iter().filter_map(|row| Some((row, row.measured?))) {
         let size = if row.n_vertices == sizes[0] { "small" } else { "large" };
-        let numbers = [("seconds", found.total()), ("bytes", found.peak_bytes as f64)];
-        note(&mut measured, &format!("{size} {}", row.method), numbers);
+        let spent = [("seconds", found.total()), ("bytes", found.peak_bytes as f64)];
+        note(&mut measured, &format!("{size} {}", row.method), spent);
     }
     measured
 }

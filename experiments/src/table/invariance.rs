@@ -15,7 +15,7 @@ use serde::Deserialize;
 use crate::context::Context;
 use crate::experiment::Experiment;
 use crate::gallery::Gallery;
-use crate::sweep::{MeasuredNumbers, share};
+use crate::sweep::{numbers, share};
 
 const DAMAGES: [Damage; 13] = [
     Damage::Subdivide(1),
@@ -70,8 +70,7 @@ impl Experiment for InvarianceOptions {
     fn run(&self, context: &Context<'_>) -> Result<()> {
         let gallery = Gallery::new(context)?;
         let all = &context.collection.shapes;
-        let prepared =
-            gallery.described.iter().map(ShapeDescription::prepare).collect::<Result<Vec<_>, _>>()?;
+        let prepared = gallery.prepared()?;
         let mut rows = Vec::new();
         for damage in DAMAGES {
             let found = gallery.map(self.queries, &damage.to_string(), |query| {
@@ -113,9 +112,7 @@ impl Experiment for InvarianceOptions {
         let least = rows.iter().map(|row| row.top1).fold(1.0, f64::min);
         let unknown = rows.iter().filter(|row| row.keeps_surface).map(|row| row.unknown).fold(0.0, f64::max);
         let told = rows.iter().filter_map(|row| row.told).fold(1.0, f64::min);
-        let measured: MeasuredNumbers = [("least top1", least), ("unknown", unknown), ("least told", told)]
-            .map(|(name, value)| (name.to_owned(), value))
-            .into();
+        let measured = numbers([("least top1", least), ("unknown", unknown), ("least told", told)]);
         let vertices = all.iter().map(|shape| shape.surface.mesh().n_vertices() as f64);
         let results = InvarianceResults {
             n_shapes: all.len(),

@@ -8,7 +8,7 @@
 use std::io::Write;
 
 use anyhow::Result;
-use canonform::{DescribeOptions, ShapeDescription, describe, form_alignments};
+use canonform::{ShapeDescription, form_alignments};
 use descriptors::{CanonicalForm, FormDistance, Normalization, ShapeMetric, SignatureKind};
 use linalg::DistanceMatrix;
 use rayon::prelude::*;
@@ -21,9 +21,9 @@ use retrieval::{
 };
 use serde::Deserialize;
 
-use crate::collection::map;
-use crate::context::Context;
 use crate::experiment::Experiment;
+use crate::context::Context;
+use crate::gallery::Gallery;
 use crate::sweep::{MeasuredNumbers, best_e, named, note};
 
 /// The number of recalls at which precision is measured.
@@ -50,30 +50,26 @@ pub(crate) struct RetrievalOptions {
 
 impl Experiment for RetrievalOptions {
     fn run(&self, context: &Context<'_>) -> Result<()> {
-        let options = DescribeOptions::default();
-        let shapes = map(&context.collection.all(), "describing", context.observer, |shape| {
-            Ok(describe(&shape.surface, &options, &())?)
-        })?;
+        let gallery = Gallery::new(context)?;
+        let (shapes, labels) = (&gallery.described, &gallery.labels);
         let described = context.start.elapsed();
-        let class_names = context.collection.labels();
-        let labels = Labels::new(&class_names);
         let mut rows = Vec::new();
         let mut classification = Classification::default();
         let classifier = if shapes.len() <= self.aligned { CLASSIFIER } else { LARGE_CLASSIFIER };
-        let found = self.distances(context, &shapes)?;
+        let found = self.distances(context, shapes)?;
         context.observer.begin("scoring", found.len());
         for (method, scale, distances) in found {
-            rows.push(self.row(context, &method, scale, &distances, &labels)?);
+            rows.push(self.row(context, &method, scale, &distances, labels)?);
             context.observer.step();
             if method == classifier && scale == Scale::Normalized {
-                classification = self.classified(context, &method, &distances, &labels)?;
+                classification = self.classified(context, &method, &distances, labels)?;
             }
         }
-        let mut provenance = context.provenance(&[("description", &options)]);
+        let mut provenance = context.provenance(&[("description", &gallery.options)]);
         provenance.seconds.insert("describing".to_owned(), described.as_secs_f64());
         let measured = measured(&rows, &classification);
-        let best_e = Some(best_e(&labels)?);
-        let protocol = self.protocol(context, &labels);
+        let best_e = Some(best_e(labels)?);
+        let protocol = self.protocol(context, labels);
         context.bars.finish();
         let mut out = std::io::stdout().lock();
         protocol.iter().try_for_each(|line| writeln!(out, "{line}"))?;
@@ -81,7 +77,7 @@ impl Experiment for RetrievalOptions {
         let published = context.published.cloned();
         let results = RetrievalResults {
             names: context.collection.names(),
-            labels: class_names,
+            labels: context.collection.labels(),
             rows,
             best_e,
             classification,

@@ -16,7 +16,7 @@ use serde::Deserialize;
 use crate::context::Context;
 use crate::experiment::Experiment;
 use crate::gallery::{Gallery, GalleryQuery};
-use crate::sweep::{MeasuredNumbers, linear, mean, note, panel, point, share};
+use crate::sweep::{MeasuredNumbers, linear, mean, note, numbers, panel, point, share};
 
 const FUSED: &str = "fused";
 const FORMS: &str = "aligned forms";
@@ -40,10 +40,9 @@ pub(crate) struct RobustnessOptions {
 impl Experiment for RobustnessOptions {
     fn run(&self, context: &Context<'_>) -> Result<()> {
         let gallery = Gallery::new(context)?;
-        let prepared =
-            gallery.described.iter().map(ShapeDescription::prepare).collect::<Result<Vec<_>, _>>()?;
+        let prepared = gallery.prepared()?;
         let alarms = share(&gallery.described, |shape| !shape.shortcuts.is_empty());
-        let mut measured: MeasuredNumbers = [("false alarms".to_owned(), alarms)].into();
+        let mut measured = numbers([("false alarms", alarms)]);
         let undamaged = gallery.map(self.queries, "undamaged", |query| {
             scores(&gallery, &prepared, query, &gallery.described[query.own], true)
         })?;

@@ -3,8 +3,6 @@
 //! Measures `map growth`, `preparation growth`, `NMDS growth` and `memory growth`, exponents in the number of vertices, and
 //! `NMDS seconds`, the time of a whole form at the greatest number.
 
-use std::time::Instant;
-
 use anyhow::Result;
 use base::terminal::with_peak_bytes;
 use canonform::{Surface, embed};
@@ -17,7 +15,7 @@ use surface::VertexId;
 use crate::context::Context;
 use crate::experiment::Experiment;
 use crate::specimen::{Distances, low_rank};
-use crate::sweep::{MeasuredNumbers, curves, log, panel, places, series};
+use crate::sweep::{MeasuredNumbers, curves, log, panel, places, series, timed};
 
 /// The curves of time.
 const STEPS: [&str; 3] = ["preparation", "map", "NMDS"];
@@ -71,23 +69,19 @@ impl Experiment for ScalingOptions {
 
 /// Seconds for preparing a surface, and for the distances from one vertex in a second run.
 fn of_one_map(surface: &Surface) -> Result<[f64; 2]> {
-    let start = Instant::now();
-    let solver = Distances::default().method.prepare(surface.intrinsic(), &())?;
-    let preparation = start.elapsed().as_secs_f64();
+    let method = Distances::default().method;
+    let (solver, preparation) = timed(|| method.prepare(surface.intrinsic(), &()))?;
     let mut distances = solver.distances(VertexId(0))?;
-    let start = Instant::now();
-    solver.distances_into(VertexId(0), &mut distances)?;
-    Ok([preparation, start.elapsed().as_secs_f64()])
+    let (_, map) = timed(|| solver.distances_into(VertexId(0), &mut distances))?;
+    Ok([preparation, map])
 }
 
 impl ScalingOptions {
     /// Seconds and MiB for a canonical form.
     fn of_form(&self, surface: &Surface) -> Result<[f64; 2]> {
         let options = low_rank(self.samples, self.rank, 0);
-        let start = Instant::now();
-        let (embedded, peak_bytes) = with_peak_bytes(|| embed(surface, &options, &()));
-        embedded?;
-        Ok([start.elapsed().as_secs_f64(), peak_bytes as f64 / MIB])
+        let (embedded, peak_bytes) = with_peak_bytes(|| timed(|| embed(surface, &options, &())));
+        Ok([embedded?.1, peak_bytes as f64 / MIB])
     }
 }
 

@@ -21,8 +21,19 @@ fn interrupted_after(mut run: Child, file: &Path) -> Output {
     }
     // The record of the first experiment is the last of its files.
     std::thread::sleep(Duration::from_millis(200));
+    interrupted(run)
+}
+
+fn interrupted(run: Child) -> Output {
     assert!(Command::new("kill").args(["-INT", &run.id().to_string()]).status().unwrap().success());
     run.wait_with_output().unwrap()
+}
+
+/// What a run says in some seconds, after which it is interrupted.
+fn said_in(seconds: u64, folder: &Path, more: &[&str]) -> String {
+    let run = command(folder, more).stderr(Stdio::piped()).spawn().unwrap();
+    std::thread::sleep(Duration::from_secs(seconds));
+    String::from_utf8_lossy(&interrupted(run).stderr).into_owned()
 }
 
 #[cfg(unix)]
@@ -51,17 +62,11 @@ fn an_interrupted_run_keeps_what_is_finished_and_can_be_continued() {
 
     // The second run keeps the first experiment: its record does not change.
     let before = std::fs::metadata(&record).unwrap().modified().unwrap();
-    let run = command(&folder, &["--resume"]).stderr(Stdio::piped()).spawn().unwrap();
-    std::thread::sleep(Duration::from_secs(2));
-    assert!(Command::new("kill").args(["-INT", &run.id().to_string()]).status().unwrap().success());
-    let said = String::from_utf8_lossy(&run.wait_with_output().unwrap().stderr).into_owned();
+    let said = said_in(2, &folder, &["--resume"]);
     assert!(said.contains("figure1 is there already"), "{said}");
     assert_eq!(std::fs::metadata(&record).unwrap().modified().unwrap(), before);
 
     // Other options make another record.
-    let run = command(&folder, &["--resume", "--seed", "1"]).stderr(Stdio::piped()).spawn().unwrap();
-    std::thread::sleep(Duration::from_secs(1));
-    assert!(Command::new("kill").args(["-INT", &run.id().to_string()]).status().unwrap().success());
-    let said = String::from_utf8_lossy(&run.wait_with_output().unwrap().stderr).into_owned();
+    let said = said_in(1, &folder, &["--resume", "--seed", "1"]);
     assert!(!said.contains("is there already"), "{said}");
 }

@@ -129,6 +129,22 @@ fn assert_printable(browser: &Browser) {
     browser.screenshot_all(&picture("report-print")).unwrap();
 }
 
+/// Whether something becomes true within five seconds.
+fn soon(is_true: impl Fn() -> bool) -> bool {
+    (0..50).any(|_| {
+        let found = is_true();
+        if !found {
+            std::thread::sleep(std::time::Duration::from_millis(100));
+        }
+        found
+    })
+}
+
+fn text(browser: &Browser, css: &str) -> String {
+    let found = browser.eval(&format!("return document.querySelector('{css}').textContent")).unwrap();
+    found.as_str().unwrap().to_owned()
+}
+
 #[test]
 fn hovering_shows_a_card_and_clicking_chooses_shapes() {
     let Some(browser) = opened([1280, 900]) else { return };
@@ -138,11 +154,9 @@ fn hovering_shows_a_card_and_clicking_chooses_shapes() {
     };
     browser.hover_at(point_on_map(&browser, 20)).unwrap();
     browser.wait_for("!document.querySelector('#figure4-card').hidden").unwrap();
-    let name = browser
-        .eval("return JSON.parse(document.querySelector('#figure4-data').textContent).names[20]")
-        .unwrap();
-    let card = browser.eval("return document.querySelector('#figure4-card .name').textContent").unwrap();
-    assert_eq!(card, name);
+    let names: Value = serde_json::from_str(&text(&browser, "#figure4-data")).unwrap();
+    let names = &names["names"];
+    assert_eq!(text(&browser, "#figure4-card .name"), names[20]);
     let drawn =
         "[...document.querySelectorAll('#figure4-card img')].every(i => i.complete && i.naturalWidth > 0)";
     browser.wait_for(drawn).unwrap();
@@ -153,10 +167,7 @@ fn hovering_shows_a_card_and_clicking_chooses_shapes() {
     for view in ["first-shape", "first-form", "second-shape", "second-form", "overlay"] {
         shown(&browser, &format!("#figure4-{view}"));
     }
-    let title = browser
-        .eval("return document.querySelector('#figure4-first-shape .canonform-title').textContent")
-        .unwrap();
-    assert_eq!(title, name);
+    assert_eq!(text(&browser, "#figure4-first-shape .canonform-title"), names[20]);
 
     // A cell of the matrix names its two shapes; a click chooses both.
     shown(&browser, "#figure4-matrix");
@@ -171,13 +182,8 @@ fn hovering_shows_a_card_and_clicking_chooses_shapes() {
     let cell = [0, 1].map(|i| number(&cell[i]).round() as i32);
     browser.hover_at(cell).unwrap();
     browser.wait_for("document.querySelector('#figure4-matrix .hoverlayer').textContent !== ''").unwrap();
-    let label =
-        browser.eval("return document.querySelector('#figure4-matrix .hoverlayer').textContent").unwrap();
-    let names =
-        browser.eval("return JSON.parse(document.querySelector('#figure4-data').textContent).names").unwrap();
-    for shape in [12, 3] {
-        assert!(label.as_str().unwrap().contains(names[shape].as_str().unwrap()), "{label}");
-    }
+    let label = text(&browser, "#figure4-matrix .hoverlayer");
+    assert!([12, 3].iter().all(|shape| label.contains(names[*shape].as_str().unwrap())), "{label}");
     browser.click_at(cell).unwrap();
     browser.wait_for("document.querySelector('#figure4-facts').dataset.first === '12'").unwrap();
     assert_eq!(facts("second"), "3");
@@ -194,27 +200,15 @@ fn views_rotate_together_by_mouse_and_keyboard() {
     browser.drag(&format!("{} .canonform-scene", views[0]), [70, -25]).unwrap();
     let same = |a: [f64; 3], b: [f64; 3]| a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-6);
     let settled = || {
-        for _ in 0..50 {
-            let eyes = views.map(|view| eye(&browser, view));
-            if eyes.iter().all(|e| same(*e, eyes[0])) && !same(eyes[0], before) {
-                return true;
-            }
-            std::thread::sleep(std::time::Duration::from_millis(100));
-        }
-        false
+        let eyes = views.map(|view| eye(&browser, view));
+        eyes.iter().all(|e| same(*e, eyes[0])) && !same(eyes[0], before)
     };
-    assert!(settled(), "{:?}", views.map(|view| eye(&browser, view)));
+    assert!(soon(settled), "{:?}", views.map(|view| eye(&browser, view)));
     browser.screenshot(&picture("report-turned-1280")).unwrap();
     // The drag moved the keyboard focus to the scene.
     let turned = eye(&browser, views[2]);
     browser.eval("document.activeElement.dispatchEvent(new KeyboardEvent('keydown', { key: 'ArrowLeft', bubbles: true }))").unwrap();
-    for _ in 0..50 {
-        if !same(eye(&browser, views[2]), turned) {
-            break;
-        }
-        std::thread::sleep(std::time::Duration::from_millis(100));
-    }
-    assert!(!same(eye(&browser, views[2]), turned));
+    assert!(soon(|| !same(eye(&browser, views[2]), turned)));
     for choice in ["distance", "residual", "class"] {
         browser
             .eval(&format!(

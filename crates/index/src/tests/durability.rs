@@ -58,14 +58,19 @@ fn other_jobs_and_other_options_are_not_mixed() {
 }
 
 #[test]
-fn an_interrupted_removal_starts_over() {
+fn interrupted_removals_and_additions_to_an_index_that_changed_start_over() {
     let folder = Folder::new();
     let path = folder.index("a", 5);
     let mut writer = IndexWriter::open(&path, Job::Remove, None).unwrap();
     writer.remove(&[shape(1).id]).unwrap();
     drop(writer);
-    let writer = IndexWriter::open(&path, Job::Add, None).unwrap();
+    let mut writer = IndexWriter::open(&path, Job::Add, None).unwrap();
     assert_eq!((writer.is_resumed(), writer.len()), (false, 5));
+    writer.put(&[shape(9)]).unwrap();
+    drop(writer);
+    fs::rename(folder.index("b", 7), &path).unwrap();
+    let writer = IndexWriter::open(&path, Job::Add, None).unwrap();
+    assert_eq!((writer.is_resumed(), writer.len()), (false, 7));
 }
 
 #[test]
@@ -85,18 +90,6 @@ fn a_writer_interrupted_before_it_began_blocks_nobody() {
             }
         }
     }
-}
-
-#[test]
-fn additions_start_over_if_the_index_changed() {
-    let folder = Folder::new();
-    let path = folder.index("a", 5);
-    let mut writer = IndexWriter::open(&path, Job::Add, None).unwrap();
-    writer.put(&[shape(9)]).unwrap();
-    drop(writer);
-    fs::rename(folder.index("b", 7), &path).unwrap();
-    let writer = IndexWriter::open(&path, Job::Add, None).unwrap();
-    assert_eq!((writer.is_resumed(), writer.len()), (false, 7));
 }
 
 /// The work file of an interrupted job.
@@ -133,10 +126,13 @@ fn a_build_survives_an_interruption_at_any_byte() {
     let mut resumed = IndexWriter::open(&path, Job::Build, Some(OPTIONS)).unwrap();
     resumed.put(&[shape(30), shape(31)]).unwrap();
     drop(resumed);
+    assert_eq!(folder.names(), ["a.work"]);
     let mut resumed = IndexWriter::open(&path, Job::Build, Some(OPTIONS)).unwrap();
-    assert_eq!(resumed.len(), 32);
+    assert_eq!((resumed.len(), resumed.entries().unwrap().len()), (32, 32));
+    assert_eq!(resumed.entry(&shape(32).id).unwrap(), None);
     resumed.remove(&[shape(31).id]).unwrap();
     resumed.finish(&()).unwrap();
+    assert_eq!(folder.names(), ["a"]);
     assert_eq!(export(&path), export(&folder.index("c", 31)));
     assert_eq!(verify(&path).unwrap().faults, Vec::<String>::new());
 }

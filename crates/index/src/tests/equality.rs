@@ -31,28 +31,6 @@ fn order_batches_and_history_do_not_matter() {
 }
 
 #[test]
-fn an_interrupted_writer_is_resumed() {
-    let folder = Folder::new();
-    let whole = export(&folder.index("whole", 30));
-    let path = folder.path("cut");
-    for part in 0..3 {
-        let mut writer = IndexWriter::open(&path, Job::Build, Some(OPTIONS)).unwrap();
-        assert_eq!((writer.is_resumed(), writer.len()), (part > 0, 10 * part));
-        for i in 10 * part..10 * part + 10 {
-            assert_eq!(writer.entry(&shape(i).id).unwrap(), None);
-            writer.put(&[shape(i)]).unwrap();
-        }
-        // Dropped without `finish`, as after an error.
-    }
-    assert_eq!(folder.names(), ["cut.work", "whole"]);
-    let writer = IndexWriter::open(&path, Job::Build, Some(OPTIONS)).unwrap();
-    assert_eq!(writer.entries().unwrap().len(), 30);
-    writer.finish(&()).unwrap();
-    assert_eq!(export(&path), whole);
-    assert_eq!(folder.names(), ["cut", "whole"]);
-}
-
-#[test]
 fn entries_change_without_vectors() {
     let folder = Folder::new();
     let path = folder.index("a", 4);

@@ -8,8 +8,6 @@ use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
 use base::files::write_bytes;
-use base64::Engine;
-use base64::engine::general_purpose::STANDARD;
 use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
@@ -226,10 +224,10 @@ fn svg(drawing: &impl Drawing, pictures: &[Picture]) -> Result<Vec<u8>, String> 
     // The background is the first element.
     let mut place = svg.find("/>\n").map_or(0, |end| end + 3);
     for (picture, [left, top]) in pictures {
-        let data = STANDARD.encode(picture.to_png().map_err(|e| e.to_string())?);
+        let data = picture.to_data_url().map_err(|e| e.to_string())?;
         let [wide, high] = [picture.width(), picture.height()].map(|side| side as i32 * PX / PICTURE_PX);
         let image = format!(
-            "<image x=\"{}\" y=\"{}\" width=\"{wide}\" height=\"{high}\" href=\"data:image/png;base64,{data}\"/>\n",
+            "<image x=\"{}\" y=\"{}\" width=\"{wide}\" height=\"{high}\" href=\"{data}\"/>\n",
             left * PX,
             top * PX
         );

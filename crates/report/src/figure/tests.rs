@@ -5,6 +5,7 @@ use super::drawing::*;
 use crate::RgbaImage;
 use crate::color::class_color;
 use crate::error::ReportError;
+use crate::tests::fixtures::{assert_balanced, assert_holds};
 
 /// Words of every look, a line and a translucent picture.
 struct Sample([i32; 2]);
@@ -27,42 +28,26 @@ impl Drawing for Sample {
 }
 
 #[test]
-fn all_files_have_the_size_of_the_drawing_and_the_same_bytes_every_time() {
+fn files_have_the_size_of_the_drawing_its_text_and_pictures_and_the_same_bytes_every_time() {
     let folder = tempfile::tempdir().unwrap();
-    let files = save(&Sample([60, 30]), &folder.path().join("a"), ".b").unwrap();
-    assert_eq!(files, [".png", ".svg", ".pdf"].map(|end| folder.path().join(format!("a.b{end}"))));
-    let bytes = |files: &[std::path::PathBuf]| -> Vec<Vec<u8>> {
-        files.iter().map(|file| std::fs::read(file).unwrap()).collect()
+    let saved = |name: &str, part: &str| {
+        let files = save(&Sample([60, 30]), &folder.path().join(name), part).unwrap();
+        let ends = [".png", ".svg", ".pdf"];
+        assert_eq!(files, ends.map(|end| folder.path().join(format!("{name}{part}{end}"))));
+        ends.map(|end| std::fs::read(folder.path().join(format!("{name}{part}{end}"))).unwrap())
     };
-    let drawn = bytes(&files);
-    assert_eq!(drawn, bytes(&save(&Sample([60, 30]), &folder.path().join("again"), "").unwrap()));
-    let png = png::Decoder::new(&drawn[0][..]).read_info().unwrap();
+    let [png, svg, pdf] = saved("a", ".b");
+    assert!([&png, &svg, &pdf].into_iter().eq(&saved("again", "")));
+    let png = png::Decoder::new(&png[..]).read_info().unwrap();
     assert_eq!((png.info().width, png.info().height), (120, 60));
-    let svg = String::from_utf8_lossy(&drawn[1]);
+    assert!(pdf.len() < 60_000, "the fonts are subsets: {}", pdf.len());
+    let pdf = String::from_utf8_lossy(&pdf);
+    assert_holds(&pdf, &["/MediaBox [0 0 30.24 15.12]", "/FontFile2", "/SMask", "<03C3>"]);
+    assert!(pdf.trim_end().ends_with("%%EOF"));
+    let svg = String::from_utf8(svg).unwrap();
+    assert_balanced(&svg);
     assert!(svg.starts_with("<svg width=\"60\" height=\"30\" viewBox=\"0 0 240 120\""), "{svg}");
-    let pdf = String::from_utf8_lossy(&drawn[2]);
-    assert!(pdf.contains("/MediaBox [0 0 30.24 15.12]") && pdf.trim_end().ends_with("%%EOF"));
-}
-
-#[test]
-fn a_pdf_embeds_the_letters_it_uses_and_their_characters() {
-    let folder = tempfile::tempdir().unwrap();
-    let files = save(&Sample([60, 30]), &folder.path().join("a"), "").unwrap();
-    let bytes = std::fs::read(&files[2]).unwrap();
-    let text = String::from_utf8_lossy(&bytes);
-    for part in ["/FontFile2", "/SMask", "<03C3>"] {
-        assert!(text.contains(part), "{part}");
-    }
-    assert!(bytes.len() < 60_000, "the fonts are subsets: {}", bytes.len());
-}
-
-#[test]
-fn an_svg_holds_its_text_and_pictures_and_follows_dark_mode() {
-    let folder = tempfile::tempdir().unwrap();
-    let files = save(&Sample([60, 30]), &folder.path().join("a"), "").unwrap();
-    let svg = std::fs::read_to_string(&files[1]).unwrap();
-    crate::tests::fixtures::assert_balanced(&svg);
-    assert!(svg.contains("a &lt; b") && svg.contains("font-family=\"DejaVu Sans, "), "{svg}");
+    assert_holds(&svg, &["a &lt; b", "font-family=\"DejaVu Sans, "]);
     let [background, image, first_text] =
         ["<rect", "<image x=\"120\" y=\"60\"", "<text"].map(|part| svg.find(part));
     assert!(background < image && image < first_text, "pictures are under the drawing: {svg}");

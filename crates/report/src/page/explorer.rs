@@ -2,8 +2,6 @@
 
 use std::path::Path;
 
-use base64::Engine;
-use base64::engine::general_purpose::STANDARD;
 use mesh::TriMesh;
 use nalgebra::Point3;
 use serde_json::{Value, json};
@@ -100,8 +98,7 @@ fn thumbnails(record: &ShapesRecord, classes: &Classes<'_>) -> Result<Vec<Value>
         let [width, height] = THUMBNAIL;
         let background = Background::Transparent;
         let options = RenderOptions { width, height, coloring, background, ..RenderOptions::default() };
-        let png = render(&mesh, &options, &())?.to_png().map_err(|e| ReportError::draw("a thumbnail", e))?;
-        Ok(format!("data:image/png;base64,{}", STANDARD.encode(png)))
+        render(&mesh, &options, &())?.to_data_url().map_err(|e| ReportError::draw("a thumbnail", e))
     };
     let of_shape = |shape: &ShownShape| {
         let forms: Result<Vec<String>, ReportError> =

@@ -176,12 +176,7 @@ fn scalars_follow_the_color_map_with_isolines_at_equal_steps() {
     let darker = |x: u32| light(lined.pixel(x, 60)) < 0.93 * light(plain.pixel(x, 60));
     let lines = (8..112).filter(|&x| darker(x) && !darker(x - 1)).count();
     assert_eq!(lines, 3, "at a quarter, a half and three quarters");
-}
-
-#[test]
-fn constant_fields_have_no_isolines() {
-    let square = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 0.0, 1.0], [0.0, 0.0, 1.0]];
-    let flat = mesh(&square, &[[0, 1, 2], [0, 2, 3]]);
+    // Constant fields have none.
     let image = |level, isolines| {
         let surface = Coloring::Scalars { values: vec![level; 4], range: Some([0.0, 4.0]), isolines };
         drawn(&flat, &RenderOptions { coloring: surface, ..small(FRONT) })
@@ -192,21 +187,16 @@ fn constant_fields_have_no_isolines() {
 }
 
 #[test]
-fn coloured_backgrounds_are_opaque() {
-    let options = RenderOptions { background: Background::Color([20, 30, 40]), ..small(View::default()) };
-    let image = drawn(&pear(), &options);
-    assert_eq!(image.pixel(0, 0), [20, 30, 40, 255]);
-    assert!(image.pixels().iter().all(|p| p[3] == 255));
-    assert!(light(image.pixel(60, 60)) > 300.0);
-}
-
-#[test]
-fn white_backgrounds_are_opaque_and_images_are_deterministic() {
-    let options = RenderOptions { background: Background::White, ..small(View::default()) };
-    let image = drawn(&pear(), &options);
-    assert_eq!(image.pixel(0, 0), [255; 4]);
-    assert!(image.pixels().iter().all(|p| p[3] == 255));
-    assert_eq!(image, drawn(&pear(), &options));
+fn backgrounds_are_opaque_and_images_are_deterministic() {
+    for (background, color) in
+        [(Background::Color([20, 30, 40]), [20, 30, 40, 255]), (Background::White, [255; 4])]
+    {
+        let options = RenderOptions { background, ..small(View::default()) };
+        let image = drawn(&pear(), &options);
+        assert_eq!(image.pixel(0, 0), color);
+        assert!(image.pixels().iter().all(|p| p[3] == 255) && light(image.pixel(60, 60)) > 300.0);
+        assert_eq!(image, drawn(&pear(), &options));
+    }
 }
 
 #[test]

@@ -1,169 +1,113 @@
 //! Small invented records and meshes for the tests.
 
-use retrieval::{Evaluation, Scores};
-use serde_json::json;
+use serde::de::DeserializeOwned;
+use serde_json::{Value, json};
 
 use crate::results::{
-    Axis, AxisScale, Classification, CurvesPanel, CurvesResults, Expectation, Figure1Results, Figure1Shape,
-    Figure3Form, Figure3Results, Figure3Shape, Figure3Stress, Figure4Panel, Figure4Results, Figure9Measured,
-    Figure9Results, Figure9Row, Mark, Misclassified, Motions, Record, RetrievalResults, RetrievalRow,
-    RunProvenance, Scale, Series, SeriesPoint, ShapesRecord, ShownForm, ShownShape,
+    CurvesResults, Expectation, Figure1Results, Figure3Results, Figure4Panel, Figure4Results, Figure9Results,
+    Motions, Record, RetrievalResults, ShapesRecord, ShownForm, ShownShape,
 };
 use crate::viewer::Geometry;
 
-fn provenance() -> RunProvenance {
-    RunProvenance {
-        program: "experiments".into(),
-        version: "0.1.0".into(),
-        commit: "abc1234".into(),
-        date: "2026-01-31 12:00".into(),
-        machine: "a processor, 2 threads, linux".into(),
-        arguments: " --dataset 'a & b' --output results".into(),
-        command: "experiments run all --dataset 'a & b'".into(),
-        dataset: "a & b".into(),
-        classes: vec!["cat".into(), "dog".into()],
-        seed: 7,
-        options: json!({"embedding": {"rank": 5, "note": "<b>"}}),
-        seconds: [("embedding".to_string(), 0.25)].into(),
-    }
-}
-
-/// A record without expectations.
-fn recorded<T>(results: T, analysis: &str) -> Record<T> {
-    let (measured, expectations) = Default::default();
-    Record { provenance: provenance(), results, measured, expectations, analysis: analysis.into() }
-}
-
-pub(crate) fn evaluation() -> Evaluation {
-    Evaluation {
-        n: 5,
-        classes: vec!["cat".into(), "dog".into()],
-        mean: Scores { nn: 1.0, ft: 0.91, st: 0.92, e: 0.5, dcg: 0.93, map: 0.94 },
-        knn_accuracy: 0.95,
-        knn_k: 3,
-        confusion: vec![vec![3, 0], vec![0, 2]],
-        silhouette: -0.125,
-        intervals: None,
-        graph: None,
-    }
+/// The record of results, as its file holds them. It has no expectations.
+fn recorded<T: DeserializeOwned>(mut results: Value, analysis: &str) -> Record<T> {
+    results["provenance"] = json!({
+        "program": "experiments", "version": "0.1.0", "commit": "abc1234", "date": "2026-01-31 12:00",
+        "machine": "a processor, 2 threads, linux", "arguments": " --dataset 'a & b' --output results",
+        "command": "experiments run all --dataset 'a & b'", "dataset": "a & b", "classes": ["cat", "dog"],
+        "seed": 7, "options": {"embedding": {"rank": 5, "note": "<b>"}}, "seconds": {"embedding": 0.25},
+    });
+    results["expectations"] = json!([]);
+    results["analysis"] = analysis.into();
+    serde_json::from_value(results).unwrap()
 }
 
 pub(crate) fn figure1_record() -> Record<Figure1Results> {
-    let shape = |name: &str, label: &str| Figure1Shape {
-        name: name.into(),
-        label: label.into(),
-        n_vertices: 3400,
-        n_faces: 6796,
-        stress: 262.05,
-        repair: vec!["2 duplicate faces removed".into()],
+    let shape = |name: &str, label: &str| {
+        json!({
+            "name": name, "label": label, "n_vertices": 3400, "n_faces": 6796, "stress": 262.05,
+            "repair": ["2 duplicate faces removed"],
+        })
     };
-    let results = Figure1Results { shapes: vec![shape("cat0", "cat"), shape("dog<3>", "dog")] };
-    recorded(results, "Forms of one class agree.\n\nSecond paragraph.")
+    let shapes = [shape("cat0", "cat"), shape("dog<3>", "dog")];
+    recorded(json!({"shapes": shapes}), "Forms of one class agree.\n\nSecond paragraph.")
 }
 
 /// Two shapes with two forms each, and one stress.
 pub(crate) fn figure3_record() -> Record<Figure3Results> {
-    let form = |method: &str, stress, paper| Figure3Form { method: method.into(), stress, paper };
-    let shape = |name: &str, label: &str| Figure3Shape {
-        name: name.into(),
-        label: label.into(),
-        n_vertices: 3400,
-        forms: vec![form("MDS", 262.05, Some(394.41)), form("NMDS", 300.0, None)],
-    };
-    let stress = Figure3Stress {
-        shape: "david<0>".into(),
-        distances: "default".into(),
-        method: "MDS".into(),
-        median: 386.25,
-        low: 386.0,
-        high: 387.0,
-        runs: 3,
-        paper: Some(394.41),
-    };
-    let results = Figure3Results {
-        shapes: vec![shape("david<0>", "david"), shape("cat0", "cat")],
-        stresses: vec![stress],
-    };
+    let forms = json!([
+        {"method": "MDS", "stress": 262.05, "paper": 394.41},
+        {"method": "NMDS", "stress": 300.0, "paper": null},
+    ]);
+    let results = json!({
+        "shapes": [
+            {"name": "david<0>", "label": "david", "n_vertices": 3400, "forms": forms},
+            {"name": "cat0", "label": "cat", "n_vertices": 3400, "forms": forms},
+        ],
+        "stresses": [{
+            "shape": "david<0>", "distances": "default", "method": "MDS", "median": 386.25, "low": 386.0,
+            "high": 387.0, "runs": 3, "paper": 394.41,
+        }],
+    });
     recorded(results, "Order as printed.")
 }
 
 /// Two panels of two curves with a logarithmic vertical axis.
 pub(crate) fn curves_record() -> Record<CurvesResults> {
-    let axis = |name: &str, unit: &str, scale| Axis { name: name.into(), unit: unit.into(), scale };
-    let points = |factor: f64| -> Vec<SeriesPoint> {
-        let at = |x: f64| factor * 1e5 / x;
-        let point = |x| SeriesPoint { x, median: at(x), low: 0.7 * at(x), high: 1.5 * at(x), runs: 5 };
-        [10.0, 50.0, 100.0].map(point).to_vec()
+    let points = |factor: f64| {
+        [10.0, 50.0, 100.0].map(|x| {
+            let y = factor * 1e5 / x;
+            json!({"x": x, "median": y, "low": 0.7 * y, "high": 1.5 * y, "runs": 5})
+        })
     };
-    let panel = |title: &str| CurvesPanel {
-        title: title.into(),
-        x: axis("samples n", "", AxisScale::Linear),
-        y: axis("error", "m⁴", AxisScale::Log),
-        series: vec![
-            Series { name: "NMDS".into(), points: points(1.0) },
-            Series { name: "a & b".into(), points: points(30.0) },
-        ],
-        marks: vec![Mark { x: 70.0, name: "recommended".into() }],
+    let panel = |title: &str| {
+        json!({
+            "title": title,
+            "x": {"name": "samples n", "unit": "", "scale": "linear"},
+            "y": {"name": "error", "unit": "m⁴", "scale": "log"},
+            "series": [{"name": "NMDS", "points": points(1.0)}, {"name": "a & b", "points": points(30.0)}],
+            "marks": [{"x": 70.0, "name": "recommended"}],
+        })
     };
-    let results = CurvesResults { caption: "Errors.".into(), panels: vec![panel("david0"), panel("cat0")] };
-    recorded(results, "Falls.")
+    recorded(json!({"caption": "Errors.", "panels": [panel("david0"), panel("cat0")]}), "Falls.")
 }
 
 /// A method that was run and one that was not.
 pub(crate) fn figure9_record() -> Record<Figure9Results> {
-    let measured = Figure9Measured { geodesics: 0.02, embedding: 0.005, runs: 3, peak_bytes: 3 << 20 };
-    let row = Figure9Row {
-        shape: "david0".into(),
-        n_vertices: 3400,
-        method: "NMDS".into(),
-        measured: Some(measured),
-        paper_seconds: Some(0.24),
-        note: String::new(),
+    let measured = json!({"geodesics": 0.02, "embedding": 0.005, "runs": 3, "peak_bytes": 3 << 20});
+    let row = |method: &str, measured: Value, paper_seconds: Value, note: &str| {
+        json!({
+            "shape": "david0", "n_vertices": 3400, "method": method, "measured": measured,
+            "paper_seconds": paper_seconds, "note": note,
+        })
     };
-    let note = "all pairs need <5.8> GiB".to_string();
-    let absent =
-        Figure9Row { method: "MDS".into(), measured: None, paper_seconds: None, note, ..row.clone() };
-    let results = Figure9Results { threads: 2, rows: vec![row, absent] };
-    recorded(results, "")
+    let absent = row("MDS", Value::Null, Value::Null, "all pairs need <5.8> GiB");
+    recorded(json!({"threads": 2, "rows": [row("NMDS", measured, json!(0.24), ""), absent]}), "")
 }
 
 /// One signature at both scales, for two classes.
 pub(crate) fn retrieval_record() -> Record<RetrievalResults> {
-    let scores = Scores { nn: 1.0, ft: 0.75, st: 0.9, e: 0.5, dcg: 0.95, map: 0.875 };
-    let row = |scale| RetrievalRow {
-        method: "wave-kernel".into(),
-        scale,
-        micro: scores,
-        macro_average: scores,
-        knn_accuracy: 0.9,
-        held_out_map: 0.625,
-        precision: vec![1.0, 0.9, 0.6],
-        rankings: None,
+    let scores = json!({"nn": 1.0, "ft": 0.75, "st": 0.9, "e": 0.5, "dcg": 0.95, "map": 0.875});
+    let row = |scale: &str| {
+        json!({
+            "method": "wave-kernel", "scale": scale, "micro": scores, "macro_average": scores,
+            "knn_accuracy": 0.9, "held_out_map": 0.625, "precision": [1.0, 0.9, 0.6],
+        })
     };
-    let results = RetrievalResults {
-        names: ["cat0", "cat1", "a0", "a1"].map(String::from).into(),
-        labels: ["cat", "cat", "a & b", "a & b"].map(String::from).into(),
-        rows: vec![row(Scale::Normalized), row(Scale::Raw)],
-        best_e: Some(0.512),
-        classification: Classification {
-            method: "wave-kernel".into(),
-            voters: 3,
-            classes: vec!["a & b".into(), "cat".into()],
-            confusion: vec![vec![1, 0, 1], vec![0, 2, 0]],
-            misclassified: vec![Misclassified {
-                name: "a1".into(),
-                label: "a & b".into(),
-                predicted: None,
-                nearest: "cat0".into(),
-                distance: 0.75,
-            }],
-            threshold: 0.5,
-            missed: 0.25,
-            mistaken: 0.0,
+    let results = json!({
+        "names": ["cat0", "cat1", "a0", "a1"],
+        "labels": ["cat", "cat", "a & b", "a & b"],
+        "rows": [row("normalized"), row("raw")],
+        "best_e": 0.512,
+        "classification": {
+            "method": "wave-kernel", "voters": 3, "classes": ["a & b", "cat"],
+            "confusion": [[1, 0, 1], [0, 2, 0]],
+            "misclassified": [
+                {"name": "a1", "label": "a & b", "predicted": null, "nearest": "cat0", "distance": 0.75},
+            ],
+            "threshold": 0.5, "missed": 0.25, "mistaken": 0.0,
         },
-        protocol: Vec::new(),
-        published: None,
-    };
+    });
     recorded(results, "Near is alike.")
 }
 
@@ -197,8 +141,7 @@ pub(crate) fn shapes_record(classes: &[(&str, usize)]) -> ShapesRecord {
 
 /// Points in one cluster per class, at both scales and for two methods.
 pub(crate) fn figure4_record(classes: &[(&str, usize)]) -> Record<Figure4Results> {
-    let labels: Vec<String> =
-        classes.iter().flat_map(|(name, n)| std::iter::repeat_n(name.to_string(), *n)).collect();
+    let labels: Vec<&str> = classes.iter().flat_map(|(name, n)| std::iter::repeat_n(*name, *n)).collect();
     let place = |shape: usize| {
         let class = classes.iter().position(|(name, _)| *name == labels[shape]).unwrap() as f64;
         [10.0 * class + (shape as f64 * 0.7).sin(), (shape as f64 * 1.3).cos()]
@@ -206,42 +149,40 @@ pub(crate) fn figure4_record(classes: &[(&str, usize)]) -> Record<Figure4Results
     let map: Vec<[f64; 2]> = (0..labels.len()).map(place).collect();
     let distance = |a: &[f64; 2], b: &[f64; 2]| (a[0] - b[0]).hypot(a[1] - b[1]);
     let matrix: Vec<Vec<f64>> = map.iter().map(|a| map.iter().map(|b| distance(a, b)).collect()).collect();
-    let panel = |method: &str, scale| Figure4Panel {
-        method: method.into(),
-        scale,
-        matrix: matrix.clone(),
-        map: map.clone(),
-        map_stress: 0.0521,
-        negative_mass: 0.01,
-        scores: evaluation(),
-        map_silhouette: 0.875,
+    let panel = |(scale, method): (&str, &str)| {
+        json!({
+            "method": method, "scale": scale, "matrix": matrix, "map": map, "map_stress": 0.0521,
+            "negative_mass": 0.01, "map_silhouette": 0.875,
+            "scores": {
+                "n": 5, "classes": ["cat", "dog"], "nn": 1.0, "ft": 0.91, "st": 0.92, "e": 0.5, "dcg": 0.93,
+                "map": 0.94, "knn_accuracy": 0.95, "knn_k": 3, "confusion": [[3, 0], [0, 2]],
+                "silhouette": -0.125,
+            },
+        })
     };
-    let results = Figure4Results {
-        names: (0..labels.len()).map(|i| format!("{}{i}", labels[i])).collect(),
-        best_e: None,
-        panels: [Scale::Raw, Scale::Normalized]
-            .into_iter()
-            .flat_map(|scale| [panel("NMDS", scale), panel("KPCA-Nyström", scale)])
-            .collect(),
-        labels,
+    let (nmds, kpca) = ("NMDS", "KPCA-Nyström");
+    let panels = [("raw", nmds), ("raw", kpca), ("normalized", nmds), ("normalized", kpca)].map(panel);
+    let names: Vec<String> = labels.iter().enumerate().map(|(i, label)| format!("{label}{i}")).collect();
+    let results = json!({"names": names, "labels": labels, "panels": panels});
+    let expectation = |what: &str, measured: &str, held| Expectation {
+        what: what.into(),
+        expected: "at least 0.9".into(),
+        measured: measured.into(),
+        held,
+        goal: false,
     };
     let expectations = vec![
-        Expectation {
-            what: "NMDS, raw: first tier".into(),
-            expected: "at least 0.9".into(),
-            measured: "0.910".into(),
-            held: true,
-            goal: false,
-        },
-        Expectation {
-            what: "NMDS, raw: silhouette".into(),
-            expected: "at least 0.9".into(),
-            measured: "-0.125".into(),
-            held: false,
-            goal: false,
-        },
+        expectation("NMDS, raw: first tier", "0.910", true),
+        expectation("NMDS, raw: silhouette", "-0.125", false),
     ];
     Record { expectations, ..recorded(results, "Two clusters.") }
+}
+
+/// Panics unless a text holds all parts.
+pub(crate) fn assert_holds(text: &str, parts: &[&str]) {
+    for part in parts {
+        assert!(text.contains(part), "{part} in {text}");
+    }
 }
 
 /// A page without the contents of its scripts and islands of data.
