@@ -246,14 +246,17 @@ impl Settings {
 mod tests {
     use super::*;
 
-    fn of(given: &[(&str, &str)]) -> Settings {
+    /// Names and values of settings.
+    type Given<'a> = &'a [(&'a str, &'a str)];
+
+    fn of(given: Given<'_>) -> Settings {
         let mut settings = Settings::default();
         given.iter().for_each(|(name, text)| settings.set(name, text).unwrap());
         settings
     }
 
     /// A method, further settings and a value that is not the default, for every option of a description.
-    const OTHERS: [(&str, &str, &[(&str, &str)]); 19] = [
+    const OTHERS: [(&str, &str, Given<'static>); 19] = [
         ("method", "spectral", &[]),
         ("samples", "50", &[]),
         ("dim", "2", &[]),
@@ -333,7 +336,7 @@ mod tests {
 
     #[test]
     fn settings_without_effect_are_refused_with_what_would_use_them() {
-        let cases: [(&[(&str, &str)], [&str; 3]); 6] = [
+        let cases: [(Given<'_>, [&str; 3]); 6] = [
             (&[("mu", "5")], ["mu", "method", "spectral"]),
             (&[("alpha", "paper")], ["alpha", "regularization", "rpi"]),
             (&[("rank", "5"), ("regularization", "none")], ["rank", "regularization", "low-rank"]),
