@@ -116,7 +116,7 @@ impl BatchLimitArgs {
     pub(crate) fn each(&self) -> ShapeLimits {
         let Self { max_vertices, limits } = *self;
         let share = || Some(base::terminal::memory_limit()? / 2 / rayon::current_num_threads());
-        ShapeLimits { max_vertices, time: limits.timeout, memory: limits.memory.or_else(share) }
+        LimitArgs { memory: limits.memory.or_else(share), ..limits }.each(max_vertices)
     }
 }
 
