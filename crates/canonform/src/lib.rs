@@ -99,7 +99,7 @@ pub use collection::{
     list_shapes, read_mesh, read_mesh_file,
 };
 pub use compare::{
-    Compared, ComparedMesh, Comparison, FormAlignments, MeshComparison, Overlay, Residual, Triangulation,
+    Compared, ComparedMesh, Comparison, FaceAgreement, FormAlignments, MeshComparison, Overlay, Residual,
     compare, compare_meshes, embedded_distances, form_alignments,
 };
 pub use correspond::{CorrespondOptions, Correspondence, MappedSurface, VertexMap, correspond};

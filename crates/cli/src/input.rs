@@ -6,13 +6,14 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 use anyhow::{Context, Result, bail};
+use base::terminal::Bars;
 use canonform::mesh::io::{
     FORMATS, FileSource, Format, MeshFile, ReadLimits, files_in, is_mesh_path, or_list, without_extension,
 };
 use canonform::mesh::{RepairReport, TriMesh};
 use canonform::{Remedy, ShapeFile, Storage, Surface, is_dataset, list_shapes, read_mesh_file};
 
-use crate::args::{Common, RepairArgs};
+use crate::args::{Common, LimitArgs, PairArgs, RepairArgs};
 use crate::remedy::with_remedy;
 
 /// The name of standard input in messages.
@@ -88,9 +89,38 @@ pub(crate) fn is_there(path: &Path) -> bool {
 
 /// Reads and repairs a mesh, and reports repairs.
 pub(crate) fn read_surface(path: &Path, repair: &RepairArgs, common: &Common) -> Result<Surface> {
-    let (_, surface) = read_both(path, repair, common)?;
+    Ok(read_reported(path, repair, common)?.1)
+}
+
+/// As [`read_surface`], with the mesh as [`read_both`] returns it.
+pub(crate) fn read_reported(path: &Path, repair: &RepairArgs, common: &Common) -> Result<(TriMesh, Surface)> {
+    let (mesh, surface) = read_both(path, repair, common)?;
     print_repair(&file_name(path), &surface.repaired.report, repair);
-    Ok(surface)
+    Ok((mesh, surface))
+}
+
+/// Reads and repairs two meshes, reports repairs, and prepares each of them within the limits.
+pub(crate) fn read_pair<T>(
+    pair: &PairArgs,
+    repair: &RepairArgs,
+    limits: &LimitArgs,
+    common: &Common,
+    prepare: impl Fn(&Path, TriMesh, Surface, &Bars) -> Result<T, canonform::Error>,
+) -> Result<[T; 2]> {
+    read_stream_once([&pair.a, &pair.b])?;
+    let side = |path: &Path| {
+        let (mesh, surface) = read_reported(path, repair, common)?;
+        let bars = Bars::with_budget(common.quiet, limits.budget());
+        prepare(path, mesh, surface, &bars).map_err(|fault| named(path, fault))
+    };
+    Ok([side(&pair.a)?, side(&pair.b)?])
+}
+
+fn read_stream_once<'a>(arguments: impl IntoIterator<Item = &'a PathBuf>) -> Result<()> {
+    if arguments.into_iter().filter(|path| is_stream(path)).count() > 1 {
+        bail!("standard input can be read only once; give `-` for one mesh");
+    }
+    Ok(())
 }
 
 /// Reads a mesh, and repairs it as a surface. Points without faces come with those of the surface through them.
@@ -107,9 +137,7 @@ pub(crate) fn read_both(path: &Path, repair: &RepairArgs, common: &Common) -> Re
 /// The meshes that arguments name, in their order: files, standard input, datasets, and patterns such as `scans/*.ply` that
 /// no shell has expanded.
 pub(crate) fn expand(arguments: &[PathBuf]) -> Result<Vec<ShapeFile>> {
-    if arguments.iter().filter(|path| is_stream(path)).count() > 1 {
-        bail!("standard input can be read only once; give `-` for one mesh");
-    }
+    read_stream_once(arguments)?;
     let mut shapes = Vec::new();
     for argument in arguments {
         match argument.to_str().filter(|text| text.contains(['*', '?', '['])) {

@@ -86,6 +86,13 @@ pub(crate) fn facts(rows: &[(&str, String)]) -> String {
     rows.iter().map(line).collect::<Vec<_>>().join("\n")
 }
 
+/// An empty table without lines between its cells.
+pub(crate) fn table_of<H: Into<comfy_table::Row>>(header: H) -> comfy_table::Table {
+    let mut table = comfy_table::Table::new();
+    table.load_style(comfy_table::presets::NOTHING).set_header(header);
+    table
+}
+
 /// Writes rows of equal length as a little-endian float64 NumPy array.
 pub(crate) fn write_npy<'a>(
     path: &Path,

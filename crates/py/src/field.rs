@@ -2,13 +2,13 @@
 
 use std::path::PathBuf;
 
-use canonform::surface::VertexId;
 use canonform::{FieldOptions, Finish, PairDistance, PairKind};
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 
 use crate::arrays;
 use crate::error::Exception;
+use crate::points::vertex;
 use crate::record::json;
 use crate::run::run_alone;
 use crate::settings::distance_method;
@@ -28,12 +28,6 @@ type Answers<'py> = (
     Bound<'py, PyArray1<f64>>,
     Bound<'py, PyArray1<bool>>,
 );
-
-fn vertex(number: i64) -> PyResult<VertexId> {
-    u32::try_from(number)
-        .map(VertexId)
-        .map_err(|_| Exception::Point.with(&format!("{number} is not a vertex; vertices are counted from 0")))
-}
 
 /// `None` finishes no pair.
 fn finish(tolerance: Option<f64>) -> PyResult<Finish> {

@@ -2,15 +2,15 @@
 
 use std::collections::{BTreeMap, HashSet};
 use std::path::PathBuf;
+use std::str::FromStr;
 
 use canonform::descriptors::DescriptorError;
 use canonform::index::{ExportFormat, SearchMode, ShapeEntry};
 use canonform::mesh::RepairOptions;
 use canonform::{
-    BuildOptions, DescribedQuery, Elsewhere, EvaluateOptions, Explain, Inputs, LabelFile, Measure,
-    MeshGeometry, PairwiseDistance, Query, RankBy, SearchOptions, SearchReport, ShapeFile, ShapeSearch,
-    Shard, add_to_index, build_index, content_hash, evaluate_index, export_index, indexed_shapes, mesh_path,
-    remove_from_index,
+    BuildOptions, DescribedQuery, Elsewhere, EvaluateOptions, Explain, Inputs, LabelFile, MeshGeometry,
+    PairwiseDistance, Query, SearchOptions, ShapeFile, ShapeSearch, Shard, add_to_index, build_index,
+    content_hash, evaluate_index, export_index, indexed_shapes, mesh_path, remove_from_index,
 };
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
@@ -52,16 +52,11 @@ enum Wanted<'py> {
 /// Name, class, path, and numbers of vertices and faces of a shape.
 type Entry = (String, String, PathBuf, Option<f64>, Option<f64>);
 
-fn rank_by(rank: &str) -> PyResult<RankBy> {
-    match rank {
-        "plain" => Ok(RankBy::Plain),
-        "graph" => Ok(RankBy::Graph),
-        _ => Err(wrong_rank(rank, "use `plain` or `graph`")),
-    }
-}
-
-fn wrong_rank(rank: &str, remedy: &str) -> PyErr {
-    Exception::Option.with(&format!("rank={rank:?} is not possible: {}", remedy.replace('`', "\"")))
+/// An order of results by its name.
+fn rank_by<T: FromStr<Err = String>>(rank: &str) -> PyResult<T> {
+    rank.parse().map_err(|remedy: String| {
+        Exception::Option.with(&format!("rank={rank:?} is not possible: {}", remedy.replace('`', "\"")))
+    })
 }
 
 /// Reads a label file.
@@ -156,12 +151,8 @@ impl Index {
         labels: Option<PathBuf>,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<String> {
-        let measure = match by {
-            "fused" => Measure::Fused,
-            kind => Measure::Signature(
-                kind.parse().map_err(|fault: DescriptorError| Exception::Option.with(&fault.to_string()))?,
-            ),
-        };
+        let measure =
+            by.parse().map_err(|fault: DescriptorError| Exception::Option.with(&fault.to_string()))?;
         let labels = labels_of(labels)?;
         let options = EvaluateOptions { measure, labels: labels.as_ref(), knn_k: k, rank_by: rank_by(rank)? };
         let scores =
@@ -185,15 +176,11 @@ impl Index {
             k,
             mode: if exact { SearchMode::Exact } else { SearchMode::Auto },
             explain: if explain { Explain::Kind } else { Explain::No },
-            rank_by: rank.parse().map_err(|fault: String| wrong_rank(rank, &fault))?,
+            rank_by: rank_by(rank)?,
         };
-        let surface = match &query {
-            Wanted::Surface(surface) => Some(surface.get()),
-            Wanted::Text(_) => None,
-        };
-        let path = match &query {
-            Wanted::Surface(_) => None,
-            Wanted::Text(path) => Some(path.clone()),
+        let (surface, path) = match &query {
+            Wanted::Surface(surface) => (Some(surface.get()), PathBuf::new()),
+            Wanted::Text(path) => (None, path.clone()),
         };
         let (search, describe) = (&self.search, self.search.describe_options());
         let mut report = run_alone(py, None, |observer| {
@@ -214,16 +201,15 @@ impl Index {
                     DescribedQuery { description, surface, geometry: geometry.as_ref(), name, content };
                 return search.search(Query::Described(query), &options, observer);
             }
-            let path = path.as_deref().unwrap_or(std::path::Path::new(""));
             // As on the command line, a file goes before a shape of the same name.
-            if let Some(id) = search.id_of(path) {
+            if let Some(id) = search.id_of(&path) {
                 return search.search(Query::Id(id), &options, observer);
             }
-            let mesh = canonform::read_mesh(path)?;
-            let content = explain.then(|| content_hash(path)).transpose()?;
+            let mesh = canonform::read_mesh(&path)?;
+            let content = explain.then(|| content_hash(&path)).transpose()?;
             search.search(Query::Mesh { mesh: &mesh, name, content }, &options, observer)
         })?;
-        self.place_meshes(&mut report);
+        report.place(|path| mesh_path(&self.path, path).to_string_lossy().into_owned());
         Ok(json(&report))
     }
 
@@ -321,16 +307,6 @@ impl Index {
     /// Writes the index as lines of JSON.
     fn export(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
         run_alone(py, None, |_| export_index(self.search.index(), ExportFormat::JsonLines, &path))
-    }
-}
-
-impl Index {
-    /// Replaces the paths that the index states by those of the files.
-    fn place_meshes(&self, report: &mut SearchReport) {
-        let components = report.components.iter_mut().filter_map(|part| part.nearest.as_mut());
-        for result in report.results.iter_mut().chain(components).chain(&mut report.wholes) {
-            result.path = mesh_path(&self.path, &result.path).to_string_lossy().into_owned();
-        }
     }
 }
 

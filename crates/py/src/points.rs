@@ -15,9 +15,11 @@ pub(crate) fn point_of(point: &Bound<'_, PyAny>) -> PyResult<InputPoint> {
     if let Ok(text) = point.extract::<&str>() {
         return text.parse().map_err(|fault: canonform::BadPoint| Exception::Point.with(&fault.to_string()));
     }
-    let number: i64 = point.extract()?;
-    let vertex = u32::try_from(number).map_err(|_| {
-        Exception::Point.with(&format!("{number} is not a vertex; vertices are counted from 0"))
-    })?;
-    Ok(InputPoint::Vertex(VertexId(vertex)))
+    Ok(InputPoint::Vertex(vertex(point.extract()?)?))
+}
+
+pub(crate) fn vertex(number: i64) -> PyResult<VertexId> {
+    u32::try_from(number)
+        .map(VertexId)
+        .map_err(|_| Exception::Point.with(&format!("{number} is not a vertex; vertices are counted from 0")))
 }

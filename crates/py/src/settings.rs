@@ -118,9 +118,7 @@ impl Settings {
 
     /// The limits of the work, from now on.
     pub(crate) fn budget(&self) -> PyResult<Budget> {
-        let ShapeLimits { time, memory, .. } = self.limits()?;
-        let budget = time.map_or_else(Budget::unlimited, |limit| Budget::unlimited().with_time(limit));
-        Ok(memory.map_or(budget.clone(), |bytes| budget.with_memory(bytes)))
+        Ok(self.limits()?.budget(Budget::unlimited()))
     }
 
     /// The limits of each of several shapes.

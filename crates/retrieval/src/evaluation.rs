@@ -1,5 +1,7 @@
 //! Retrieval, classification and clustering scores of a labelled distance matrix.
 
+use std::str::FromStr;
+
 use linalg::DistanceMatrix;
 use serde::{Deserialize, Serialize};
 
@@ -17,6 +19,18 @@ pub enum RankBy {
     Plain,
     /// By distance and by neighbours in common, see [`graph_rank`](crate::graph_rank).
     Graph,
+}
+
+impl FromStr for RankBy {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        match text {
+            "plain" => Ok(Self::Plain),
+            "graph" => Ok(Self::Graph),
+            _ => Err("use `plain` or `graph`".to_owned()),
+        }
+    }
 }
 
 /// How well the distances of a matrix separate labelled shapes; see [`evaluate`].

@@ -33,7 +33,7 @@ pub(crate) struct App {
 /// An upload that was searched for.
 pub(crate) struct Query {
     pub(crate) name: String,
-    pub(crate) measured: Measured,
+    pub(crate) measured: Arc<Measured>,
     pub(crate) description: ShapeDescription,
     /// Hash of its files.
     pub(crate) content: ContentHash,
@@ -48,11 +48,10 @@ impl Query {
         measured: Measured,
         description: ShapeDescription,
     ) -> Self {
+        let measured = Arc::new(measured);
         Self { name, content, options: description.options.text(), measured, description }
     }
-}
 
-impl Query {
     /// Searches the collection with it.
     pub(crate) fn search(
         &self,

@@ -163,43 +163,6 @@ fn virtual_sources_are_exact_from_points_of_edges_and_faces_in_the_plane() {
 }
 
 #[test]
-fn distances_are_1_lipschitz_along_edges_and_at_most_those_of_dijkstra() {
-    for mesh in [body(datasets::Family::Cat), shapes::icosphere(4), shapes::sheared_grid(20, 15, 1.0, 1.7)] {
-        let sources: Vec<VertexId> = (0..10).map(|i| VertexId::from(i * mesh.n_vertices() / 10)).collect();
-        let surface = mesh.intrinsic();
-        let marched = columns(&mesh, marching(), &sources);
-        let along_edges = columns(&mesh, Method::Dijkstra, &sources);
-        let slack = 1e-12 * along_edges.max();
-        for s in 0..sources.len() {
-            for (edge, ends) in surface.topology().edges().iter().enumerate() {
-                let [a, b] = ends.map(|v| marched[(v.index(), s)]);
-                assert!((a - b).abs() <= surface.edge_lengths()[edge] + slack);
-            }
-        }
-        assert!(marched.iter().zip(along_edges.iter()).all(|(m, w)| m.is_finite() && *m <= w + slack));
-    }
-}
-
-#[test]
-fn exactly_the_other_components_are_at_infinite_distance() {
-    let parts = [shapes::icosphere(2), shapes::grid(6, 5, 1.0), shapes::torus(8, 6, 2.0, 0.5)];
-    let whole = shapes::disjoint(&parts);
-    let mut start = 0;
-    for part in &parts {
-        let end = start + part.n_vertices();
-        for method in [marching(), Method::Dijkstra, Method::BreadthFirst] {
-            let surface = whole.intrinsic();
-            let found = method.prepare(&surface, &()).unwrap().distances(VertexId::from(start + 1)).unwrap();
-            for (v, d) in found.iter().enumerate() {
-                assert_eq!(d.is_finite(), (start..end).contains(&v), "{} {v}", method.name());
-                assert!(!d.is_nan() && *d >= 0.0);
-            }
-        }
-        start = end;
-    }
-}
-
-#[test]
 fn distances_are_nearly_symmetric() {
     let mesh = body(Family::David);
     let d = columns(&mesh, marching(), &all_vertices(&mesh));

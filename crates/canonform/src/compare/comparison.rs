@@ -80,7 +80,7 @@ pub fn compare(pair: &ShapePair<'_>) -> Result<Comparison, Error> {
 /// Whether two meshes have the same triangles.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Triangulation {
+pub enum FaceAgreement {
     /// The same faces over the same vertex numbers: one mesh in two poses.
     Same,
     /// Different faces or vertex numbers.

@@ -8,7 +8,7 @@ use mesh::{Surface, TriMesh};
 use relations::{Handedness, MeshGeometry, Relation, handedness};
 use serde::Serialize;
 
-use super::comparison::{Comparison, Overlay, Residual, Triangulation};
+use super::comparison::{Comparison, FaceAgreement, Overlay, Residual};
 use crate::error::Error;
 use crate::form::{DescribeOptions, FormOptions, MeasuredSurface, describe};
 
@@ -100,7 +100,7 @@ pub struct MeshComparison {
     #[serde(flatten)]
     pub comparison: Comparison,
     /// Whether the meshes have the same triangles; unknown without both surfaces.
-    pub triangulation: Option<Triangulation>,
+    pub triangulation: Option<FaceAgreement>,
     /// The two forms laid over each other.
     #[serde(skip)]
     pub overlay: Overlay,
@@ -139,7 +139,7 @@ pub fn compare_meshes(metric: ShapeMetric, [a, b]: [Compared<'_>; 2]) -> Result<
         (Some(of_a), Some(of_b)) => {
             let same =
                 of_a.input_faces == of_b.input_faces && of_a.n_input_vertices() == of_b.n_input_vertices();
-            let triangulation = if same { Triangulation::Same } else { Triangulation::Other };
+            let triangulation = if same { FaceAgreement::Same } else { FaceAgreement::Other };
             (handedness(&pair, [(a.form, of_a.mesh()), (b.form, of_b.mesh())])?, Some(triangulation))
         }
         _ => (Handedness::Unknown, None),
@@ -235,7 +235,7 @@ mod tests {
         let inside_out = other.clone();
         other.faces.iter_mut().for_each(|face| face.swap(1, 2));
         let found = compared(&hand, &hand);
-        assert_eq!((found.relation.changes.len(), found.triangulation), (0, Some(Triangulation::Same)));
+        assert_eq!((found.relation.changes.len(), found.triangulation), (0, Some(FaceAgreement::Same)));
         assert_eq!(found.relation.because.handedness, Handedness::Same);
         assert!(found.overlay.residuals.iter().flatten().all(|r| *r < 1e-4));
         for mirrored in [&other, &inside_out] {
@@ -244,7 +244,7 @@ mod tests {
         }
         let found = compared(&hand, &scaled(&other, 3.0));
         assert_eq!(found.relation.changes, [Change::Scaled, Change::Mirrored]);
-        assert_eq!(found.triangulation, Some(Triangulation::Other), "the faces are reversed");
+        assert_eq!(found.triangulation, Some(FaceAgreement::Other), "the faces are reversed");
         let ball = shapes::icosphere(3);
         assert_eq!(compared(&ball, &ball).relation.because.handedness, Handedness::Either);
         let sheet = shapes::grid(12, 9, 0.1);

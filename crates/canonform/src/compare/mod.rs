@@ -4,6 +4,6 @@ mod comparison;
 mod forms;
 mod meshes;
 
-pub use comparison::{Comparison, Overlay, Residual, Triangulation, compare};
+pub use comparison::{Comparison, FaceAgreement, Overlay, Residual, compare};
 pub use forms::{FormAlignments, embedded_distances, form_alignments};
 pub use meshes::{Compared, ComparedMesh, MeshComparison, compare_meshes};

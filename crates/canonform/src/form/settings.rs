@@ -246,10 +246,10 @@ impl Settings {
 mod tests {
     use super::*;
 
-    /// Options in text: name and value.
+    /// Names and values of settings.
     type Given<'a> = &'a [(&'a str, &'a str)];
 
-    fn of(given: &[(&str, &str)]) -> Settings {
+    fn of(given: Given<'_>) -> Settings {
         let mut settings = Settings::default();
         given.iter().for_each(|(name, text)| settings.set(name, text).unwrap());
         settings

@@ -1,9 +1,10 @@
 //! How well an index, or a matrix of distances, separates classes.
 
 use std::path::Path;
+use std::str::FromStr;
 
 use base::files::FileError;
-use descriptors::{ShapeMetric, SignatureKind};
+use descriptors::{DescriptorError, ShapeMetric, SignatureKind};
 use index::{Index, IndexError};
 use linalg::DistanceMatrix;
 use retrieval::{Evaluation, Labels, RankBy, evaluate_ranked, pairwise_distances};
@@ -23,6 +24,17 @@ pub enum Measure {
     Fused,
     /// Signatures of one kind.
     Signature(SignatureKind),
+}
+
+impl FromStr for Measure {
+    type Err = DescriptorError;
+
+    fn from_str(text: &str) -> Result<Self, DescriptorError> {
+        match text {
+            "fused" => Ok(Self::Fused),
+            kind => kind.parse().map(Self::Signature),
+        }
+    }
 }
 
 /// How a collection is scored.

@@ -60,6 +60,16 @@ pub struct SearchReport {
     pub seconds: SearchSeconds,
 }
 
+impl SearchReport {
+    /// Replaces the path of every shape that was found, which the index states as seen from its folder.
+    pub fn place(&mut self, path: impl Fn(&str) -> String) {
+        let components = self.components.iter_mut().filter_map(|part| part.nearest.as_mut());
+        for found in self.results.iter_mut().chain(components).chain(&mut self.wholes) {
+            found.path = path(&found.path);
+        }
+    }
+}
+
 /// Wall-clock seconds of a search.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
 pub struct SearchSeconds {

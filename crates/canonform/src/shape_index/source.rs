@@ -81,8 +81,9 @@ pub struct ShapeLimits {
 }
 
 impl ShapeLimits {
-    /// The budget of a shape that is begun now.
-    pub(super) fn budget(&self, whole: Budget) -> Budget {
+    /// The budget of a shape that is begun now, as part of that of the whole.
+    #[must_use]
+    pub fn budget(&self, whole: Budget) -> Budget {
         let budget = match self.time {
             Some(limit) => whole.with_time(limit),
             None => whole,

@@ -2,7 +2,6 @@
 
 use std::path::PathBuf;
 
-use canonform::descriptors::DescriptorError;
 use canonform::{Measure, RankBy, SearchRank, ShapeLimits, Shard};
 use clap::{Args, Subcommand};
 
@@ -117,7 +116,7 @@ impl BatchLimitArgs {
     pub(crate) fn each(&self) -> ShapeLimits {
         let Self { max_vertices, limits } = *self;
         let share = || Some(base::terminal::memory_limit()? / 2 / rayon::current_num_threads());
-        ShapeLimits { max_vertices, time: limits.timeout, memory: limits.memory.or_else(share) }
+        LimitArgs { memory: limits.memory.or_else(share), ..limits }.each(max_vertices)
     }
 }
 
@@ -185,27 +184,12 @@ pub(crate) struct EvaluateArgs {
     pub(crate) labels: Option<PathBuf>,
     /// Signatures of an index to measure distances between: `fused`, `moments`, `d2`, `geodesic-spectrum`,
     /// `shape-dna`, `heat-kernel` or `wave-kernel`
-    #[arg(long, value_name = "SIGNATURE", default_value = "fused", value_parser = parse_measure)]
+    #[arg(long, value_name = "SIGNATURE", default_value = "fused")]
     pub(crate) by: Measure,
     /// Number of neighbours that vote on the class of a shape
     #[arg(short, default_value_t = 1)]
     pub(crate) k: usize,
     /// Rankings to score: `plain`, by distance; `graph`, both this and by the neighbours that two shapes have in common
-    #[arg(long, value_name = "plain|graph", default_value = "plain", value_parser = parse_rank)]
+    #[arg(long, value_name = "plain|graph", default_value = "plain")]
     pub(crate) rank: RankBy,
-}
-
-fn parse_rank(text: &str) -> Result<RankBy, String> {
-    match text {
-        "plain" => Ok(RankBy::Plain),
-        "graph" => Ok(RankBy::Graph),
-        _ => Err("use `plain` or `graph`".to_owned()),
-    }
-}
-
-fn parse_measure(text: &str) -> Result<Measure, String> {
-    match text {
-        "fused" => Ok(Measure::Fused),
-        kind => kind.parse().map(Measure::Signature).map_err(|fault: DescriptorError| fault.to_string()),
-    }
 }

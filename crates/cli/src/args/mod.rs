@@ -222,12 +222,19 @@ fn compared_stress() -> impl TypedValueParser<Value = StressChoice> {
     one_of(choices)
 }
 
+/// Two meshes.
 #[derive(Debug, Args)]
-pub(crate) struct CompareArgs {
+pub(crate) struct PairArgs {
     /// First mesh, a file or `-` for standard input
     pub(crate) a: PathBuf,
     /// Second mesh, a file or `-`
     pub(crate) b: PathBuf,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct CompareArgs {
+    #[command(flatten)]
+    pub(crate) pair: PairArgs,
     #[arg(long, value_name = "OUT", help = residual_help())]
     pub(crate) residual_mesh: Option<PathBuf>,
     /// Exit with code 1 if the distance at equal size exceeds this, or if the shapes are certainly of different classes
@@ -268,10 +275,8 @@ Examples:
 #[derive(Debug, Args)]
 #[command(after_long_help = MATCH_NOTES, after_help = "See `--help` for what is written, and for examples.")]
 pub(crate) struct MatchArgs {
-    /// First mesh, a file or `-` for standard input
-    pub(crate) a: PathBuf,
-    /// Second mesh, a file or `-`
-    pub(crate) b: PathBuf,
+    #[command(flatten)]
+    pub(crate) pair: PairArgs,
     #[arg(short, long, value_name = "MAP", help = match_help())]
     pub(crate) output: Option<PathBuf>,
     #[command(flatten)]

@@ -3,6 +3,7 @@
 use std::time::Duration;
 
 use base::Budget;
+use canonform::ShapeLimits;
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 
@@ -76,12 +77,12 @@ pub(crate) struct LimitArgs {
 impl LimitArgs {
     /// A budget that starts now.
     pub(crate) fn budget(&self) -> Budget {
-        let budget =
-            self.timeout.map_or_else(Budget::unlimited, |limit| Budget::unlimited().with_time(limit));
-        match self.memory {
-            Some(bytes) => budget.with_memory(bytes),
-            None => budget,
-        }
+        self.each(None).budget(Budget::unlimited())
+    }
+
+    /// The limits of each of several shapes.
+    pub(crate) fn each(&self, max_vertices: Option<u64>) -> ShapeLimits {
+        ShapeLimits { max_vertices, time: self.timeout, memory: self.memory }
     }
 }
 

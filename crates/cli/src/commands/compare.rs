@@ -1,21 +1,19 @@
 //! `canonform compare`.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 
-use anyhow::{Result, bail};
+use anyhow::Result;
 use canonform::descriptors::ShapeMetric;
 use canonform::mesh::io::{Content, writable};
 use canonform::{
-    ComparedMesh, FormOptions, Handedness, MeshComparison, Residual, Triangulation, compare_meshes,
-    content_hash,
+    ComparedMesh, FaceAgreement, Handedness, MeshComparison, Residual, compare_meshes, content_hash,
 };
 use serde::Serialize;
 
-use crate::args::{Common, CompareArgs};
-use crate::input::{file_name, is_stream, named, print_repair, read_both};
+use crate::args::{Common, CompareArgs, PairArgs};
+use crate::input::{file_name, is_stream, read_pair};
 use crate::output::{check_folder, check_format, facts, report, write_colored};
-use base::terminal::Bars;
 
 #[derive(Serialize)]
 struct CompareJson {
@@ -39,19 +37,11 @@ struct ResidualJson {
     output: Option<PathBuf>,
 }
 
-fn side(path: &Path, args: &CompareArgs, options: &FormOptions, common: &Common) -> Result<ComparedMesh> {
-    let (mesh, surface) = read_both(path, &args.form.repair, common)?;
-    print_repair(&file_name(path), &surface.repaired.report, &args.form.repair);
-    let content = if is_stream(path) { None } else { Some(content_hash(path)?) };
-    let bars = Bars::with_budget(common.quiet, args.limits.budget());
-    ComparedMesh::new(&mesh, content, surface, options, &bars).map_err(|fault| named(path, fault))
-}
-
 /// What the two meshes are called: by their files, or by their paths if the files have one name.
-fn names(args: &CompareArgs) -> [String; 2] {
-    let [a, b] = [&args.a, &args.b].map(|path| file_name(path));
+fn names(PairArgs { a: path_a, b: path_b }: &PairArgs) -> [String; 2] {
+    let [a, b] = [path_a, path_b].map(|path| file_name(path));
     match a == b {
-        true => [&args.a, &args.b].map(|path| path.display().to_string()),
+        true => [path_a, path_b].map(|path| path.display().to_string()),
         false => [a, b],
     }
 }
@@ -60,28 +50,29 @@ fn names(args: &CompareArgs) -> [String; 2] {
 pub(crate) fn compare(args: &CompareArgs, common: &Common) -> Result<ExitCode> {
     let options = args.form.options(common)?;
     options.validate()?;
-    if is_stream(&args.a) && is_stream(&args.b) {
-        bail!("standard input can be read only once; give `-` for one mesh");
-    }
     if let Some(path) = &args.residual_mesh {
         check_format(path, "a coloured mesh", &writable(Content::Field).collect::<Vec<_>>())?;
         check_folder(path)?;
     }
-    let [a, b] = [side(&args.a, args, &options, common)?, side(&args.b, args, &options, common)?];
+    let [a, b] =
+        read_pair(&args.pair, &args.form.repair, &args.limits, common, |path, mesh, surface, bars| {
+            let content = if is_stream(path) { None } else { Some(content_hash(path)?) };
+            ComparedMesh::new(&mesh, content, surface, &options, bars)
+        })?;
     let mut found =
         compare_meshes(ShapeMetric { distance: args.form.chosen("distance") }, [a.compared(), b.compared()])?;
     if let Some(path) = &args.residual_mesh {
         write_colored(path, a.surface().mesh(), "residual", &found.overlay.residuals[0])?;
     }
-    let [name_a, name_b] = names(args);
+    let [name_a, name_b] = names(&args.pair);
     found.relation = found.relation.named(&name_a, &name_b);
     let distance = found.comparison.shape_distance;
     let failed =
         args.threshold.map(|limit| found.comparison.normalized_distance > limit || distance.is_different());
     let not_alike = args.exit_code.is_some_and(|least| distance.combined >= least.gap()[0]);
     let json = CompareJson {
-        a: args.a.clone(),
-        b: args.b.clone(),
+        a: args.pair.a.clone(),
+        b: args.pair.b.clone(),
         residual: ResidualJson {
             residual: found.residual[0],
             max_vertex: a.surface().input_vertex(found.residual[0].max_point.into()).0,
@@ -147,7 +138,7 @@ fn detailed(json: &CompareJson, residual: String) -> Vec<(&'static str, String)>
         Handedness::Unknown => "unknown: a mesh encloses no volume, or the forms do not fit",
     };
     let triangulation = match json.found.triangulation {
-        Some(Triangulation::Same) => "the same faces",
+        Some(FaceAgreement::Same) => "the same faces",
         _ => "different faces",
     };
     let mut rows = vec![

@@ -18,7 +18,7 @@ use serde::Serialize;
 use crate::args::{Common, EmbedArgs, FORM_FORMATS, LimitArgs};
 use crate::batch::{Batch, Failure, Order, Results, create_folder_of};
 use crate::input::{is_single, is_stream, named, print_repair, read_both, read_surface};
-use crate::output::{Answer, Output, exit_code, fill_npy, report, shown};
+use crate::output::{Answer, Output, exit_code, fill_npy, report, shown, table_of};
 use base::terminal::Bars;
 
 #[derive(Serialize)]
@@ -327,16 +327,8 @@ fn answer(json: &EmbedJson) -> Answer {
 }
 
 fn batch_table(json: &BatchJson, folder: &Path) -> String {
-    let mut table = comfy_table::Table::new();
-    table.load_style(comfy_table::presets::NOTHING).set_header([
-        "shape",
-        "class",
-        "vertices",
-        "samples",
-        "stress",
-        "normalised stress",
-        "seconds",
-    ]);
+    let header = ["shape", "class", "vertices", "samples", "stress", "normalised stress", "seconds"];
+    let mut table = table_of(header);
     for shape in &json.shapes {
         let r = &shape.result.report;
         table.add_row([

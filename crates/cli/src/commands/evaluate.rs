@@ -10,7 +10,7 @@ use canonform::{EvaluateOptions, LabelFile, evaluate_index, evaluate_matrix};
 
 use crate::args::{Common, EvaluateArgs};
 use crate::input::named;
-use crate::output::{Answer, Fact, facts, report};
+use crate::output::{Answer, Fact, facts, report, table_of};
 
 /// Scores an index or a matrix.
 pub(crate) fn evaluate(args: &EvaluateArgs, common: &Common) -> Result<ExitCode> {
@@ -44,9 +44,7 @@ fn column(mean: &Scores, intervals: Option<&ScoreIntervals>) -> [(&'static str, 
 }
 
 fn confusion(title: &str, classes: &[String], counts: &[Vec<usize>]) -> comfy_table::Table {
-    let mut table = comfy_table::Table::new();
-    table.load_style(comfy_table::presets::NOTHING);
-    table.set_header([title].into_iter().chain(classes.iter().map(String::as_str)));
+    let mut table = table_of([title].into_iter().chain(classes.iter().map(String::as_str)));
     for (class, row) in classes.iter().zip(counts) {
         table.add_row([class.clone()].into_iter().chain(row.iter().map(usize::to_string)));
     }

@@ -4,7 +4,7 @@ use std::io::BufWriter;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-use anyhow::{Result, bail};
+use anyhow::Result;
 use base::terminal::Bars;
 use canonform::mesh::TriMesh;
 use canonform::mesh::io::VertexField;
@@ -16,7 +16,7 @@ use report::render::{Coloring, RenderOptions, render};
 use serde::Serialize;
 
 use crate::args::{Common, MAP_FORMATS, MatchArgs};
-use crate::input::{file_name, is_stream, named, print_repair, read_both};
+use crate::input::read_pair;
 use crate::output::{check_folder, check_format, facts, report};
 
 #[derive(Serialize)]
@@ -53,19 +53,8 @@ struct MappedFile {
     mapped: MappedSurface,
 }
 
-fn side(path: &Path, args: &MatchArgs, options: &CorrespondOptions, common: &Common) -> Result<MappedFile> {
-    let (mesh, surface) = read_both(path, &args.form.repair, common)?;
-    print_repair(&file_name(path), &surface.repaired.report, &args.form.repair);
-    let bars = Bars::with_budget(common.quiet, args.limits.budget());
-    let mapped = MappedSurface::new(surface, options, &bars).map_err(|fault| named(path, fault))?;
-    Ok(MappedFile { mesh, mapped })
-}
-
 /// Maps the vertices of one mesh to those of another.
 pub(crate) fn match_meshes(args: &MatchArgs, common: &Common) -> Result<ExitCode> {
-    if is_stream(&args.a) && is_stream(&args.b) {
-        bail!("standard input can be read only once; give `-` for one mesh");
-    }
     let format = match &args.output {
         Some(path) => {
             check_folder(path)?;
@@ -77,7 +66,9 @@ pub(crate) fn match_meshes(args: &MatchArgs, common: &Common) -> Result<ExitCode
     if let Some(most) = args.form.settings.given.get("eigenfunctions") {
         options.mapping.eigenfunctions = most;
     }
-    let [a, b] = [side(&args.a, args, &options, common)?, side(&args.b, args, &options, common)?];
+    let [a, b] = read_pair(&args.pair, &args.form.repair, &args.limits, common, |_, mesh, surface, bars| {
+        Ok(MappedFile { mesh, mapped: MappedSurface::new(surface, &options, bars)? })
+    })?;
     let bars = Bars::with_budget(common.quiet, args.limits.budget());
     let found = correspond(&a.mapped, &b.mapped, &options, &bars)?;
     let mut maps = Vec::new();
@@ -103,8 +94,8 @@ pub(crate) fn match_meshes(args: &MatchArgs, common: &Common) -> Result<ExitCode
     let load = surfaces.map(|surface| surface.load_seconds + surface.repair_seconds).iter().sum();
     let prepare = a.mapped.seconds + b.mapped.seconds;
     let json = MatchJson {
-        a: args.a.clone(),
-        b: args.b.clone(),
+        a: args.pair.a.clone(),
+        b: args.pair.b.clone(),
         n_vertices: [a.mesh.n_vertices(), b.mesh.n_vertices()],
         maps,
         target,

@@ -16,7 +16,7 @@ use canonform::{
 
 use crate::args::{Common, MethodsArgs};
 use crate::input::{named, read_surface};
-use crate::output::report;
+use crate::output::{report, table_of};
 
 /// Embeds a mesh by every method and tabulates the results.
 pub(crate) fn methods(args: &MethodsArgs, common: &Common) -> Result<ExitCode> {
@@ -142,9 +142,8 @@ fn table(report: &MethodsReport, common: &Common) -> String {
         |column: &&Column| column.marked.map(|value| facts().filter_map(value).fold(f64::INFINITY, f64::min));
     let best: Vec<Option<f64>> = columns.iter().map(least).collect();
 
-    let mut table = comfy_table::Table::new();
     let header = ["method", "options"].into_iter().chain(columns.iter().map(|column| column.name));
-    table.load_style(comfy_table::presets::NOTHING).set_header(header);
+    let mut table = table_of(header);
     for method in &report.methods {
         let cell = |(column, best): (&&Column, &Option<f64>)| match (&method.facts, column.marked) {
             (None, _) => String::new(),

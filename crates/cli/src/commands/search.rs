@@ -13,7 +13,7 @@ use serde::Serialize;
 
 use crate::args::{Common, SearchArgs};
 use crate::input::{file_name, is_stream, is_there, named, read_mesh};
-use crate::output::{exit_code, print, print_json};
+use crate::output::{count, exit_code, print, print_json, table_of};
 
 #[derive(Serialize)]
 struct Answer {
@@ -100,13 +100,7 @@ pub(crate) fn search(args: &SearchArgs, common: &Common) -> Result<ExitCode> {
     for query in &queries {
         match query.search(&index, &options, common) {
             Ok(mut report) => {
-                for result in &mut report.results {
-                    result.path = mesh_path(&args.index, &result.path).to_string_lossy().into_owned();
-                }
-                let components = report.components.iter_mut().filter_map(|part| part.nearest.as_mut());
-                for result in components.chain(&mut report.wholes) {
-                    result.path = mesh_path(&args.index, &result.path).to_string_lossy().into_owned();
-                }
+                report.place(|path| mesh_path(&args.index, path).to_string_lossy().into_owned());
                 if !common.json {
                     print(&text(query.name(), &report, args.explain))?;
                 }
@@ -172,15 +166,13 @@ fn text(query: String, report: &SearchReport, details: bool) -> String {
 }
 
 fn table(report: &SearchReport) -> comfy_table::Table {
-    let mut table = comfy_table::Table::new();
-    table.load_style(comfy_table::presets::NOTHING);
     let mut head = vec!["", "shape", "class", "distance", "relation"];
     match report.rank_by {
         SearchRank::Plain => {}
         SearchRank::Graph => drop(head.splice(3..3, ["rank distance", "plain"])),
         SearchRank::Part => drop(head.splice(3..3, ["part distance", "share"])),
     }
-    table.set_header(head);
+    let mut table = table_of(head);
     for result in &report.results {
         let mut row = vec![
             result.rank.to_string(),
@@ -209,8 +201,7 @@ fn explained(relation: &Relation) -> String {
 
 /// What a component of the query is, as a line.
 fn component(found: &ComponentResult) -> String {
-    let copies =
-        if found.copies == 1 { "1 component".to_owned() } else { format!("{} components", found.copies) };
+    let copies = count(found.copies, "component");
     let nearest = found.nearest.as_ref();
     let words = nearest.map_or_else(|| "nothing found".to_owned(), |found| explained(&found.relation));
     format!("  {copies} of {} vertices: {words}\n", found.n_vertices)

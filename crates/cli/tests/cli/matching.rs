@@ -25,13 +25,13 @@ fn numbers(place: &Workplace, name: &str) -> Vec<i64> {
 fn both_maps_of_a_pair_are_written_in_every_format() {
     let place = cats();
     let json = place.json("match cat0.off cat1.off -o map.npy");
-    assert_keys(&json, &["a", "b", "n_vertices", "maps", "target", "seconds"]);
-    assert_keys(&json["seconds"], &["load", "prepare", "matching", "total"]);
+    assert_keys(&json, "a b n_vertices maps target seconds");
+    assert_keys(&json["seconds"], "load prepare matching total");
     let maps = json["maps"].as_array().unwrap();
     assert_eq!(maps.len(), 2);
     let other = maps[1]["kind"].as_str().unwrap();
     for (map, path) in maps.iter().zip(["map.npy".to_owned(), format!("map-{other}.npy")]) {
-        assert_keys(map, &["kind", "distortion", "agreement", "matched", "path"]);
+        assert_keys(map, "kind distortion agreement matched path");
         assert_eq!(map["path"], path.as_str());
         assert!(map["distortion"].as_f64().unwrap() < 0.06, "{map}");
         let found = numbers(&place, &path);

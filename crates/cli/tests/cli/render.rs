@@ -31,7 +31,7 @@ fn drawn(place: &Workplace, options: &[&str]) -> Vec<[u8; 4]> {
 fn a_picture_has_the_requested_size_and_background() {
     let place = place();
     let json = place.json("render ring.off --size 90x60 -o x.png");
-    assert_keys(&json, &["mesh", "output", "width", "height", "n_vertices", "n_faces", "field", "seconds"]);
+    assert_keys(&json, "mesh output width height n_vertices n_faces field seconds");
     assert_eq!((&json["width"], &json["height"], &json["n_faces"]), (&90.into(), &60.into(), &320.into()));
     assert!(json["field"].is_null());
     let (size, seen) = pixels(&place, "x.png");

@@ -1,12 +1,15 @@
 //! Standard input and output, several meshes, limits, and quiet runs.
 
 use std::fs;
-use std::io::Write;
-use std::process::{Command, Stdio};
 
-use canonform::mesh::shapes;
+use canonform::mesh::{io, shapes};
 
-use crate::support::{Workplace, broken_ring, one_object, program, read_npy, ring};
+use crate::support::{Arguments, Workplace, broken_ring, one_object, read_npy, ring};
+
+/// Runs the program with a file as standard input.
+fn piped(place: &Workplace, input: &str, arguments: impl Arguments) -> (i32, Vec<u8>, String) {
+    place.piped(&fs::read(place.path(input)).unwrap(), arguments)
+}
 
 fn place() -> Workplace {
     let place = Workplace::new();
@@ -14,23 +17,6 @@ fn place() -> Workplace {
         place.add(name, &ring());
     }
     place
-}
-
-/// Runs the program with a file as standard input: exit code, standard output, standard error.
-fn piped(place: &Workplace, input: &str, arguments: &[&str]) -> (i32, Vec<u8>, String) {
-    let mut child = Command::new(program())
-        .current_dir(place.path("."))
-        .args(arguments)
-        .stdin(Stdio::piped())
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
-    let bytes = fs::read(place.path(input)).unwrap();
-    // The program may refuse before it has read everything.
-    let _ = child.stdin.take().unwrap().write_all(&bytes);
-    let output = child.wait_with_output().unwrap();
-    (output.status.code().unwrap(), output.stdout, String::from_utf8(output.stderr).unwrap())
 }
 
 #[test]
@@ -112,6 +98,25 @@ fn lists_folders_and_patterns_are_embedded_and_drawn() {
 }
 
 #[test]
+fn every_mesh_of_a_folder_becomes_a_form() {
+    let place = Workplace::new();
+    place.add("animals/cat0.off", &ring());
+    place.add("animals/cat1.ply", &shapes::icosphere(2));
+    place.add("animals/dogs/rex.obj", &shapes::cube(2));
+    let json = place.json("embed animals -n 20 --format off -o forms");
+    let shapes = json["shapes"].as_array().unwrap();
+    let facts: Vec<_> =
+        shapes.iter().map(|s| [&s["name"], &s["label"]].map(|v| v.as_str().unwrap())).collect();
+    assert_eq!(facts, [["cat0", "cat"], ["cat1", "cat"], ["dogs/rex", "dogs"]]);
+    assert!(json["failed"].as_array().unwrap().is_empty());
+    assert_eq!(io::read(&place.path("forms/cat0.off")).unwrap().faces, ring().faces);
+    assert!(io::read(&place.path("forms/dogs/rex.off")).is_ok());
+    // A folder gives the same bytes as a single mesh.
+    place.done("embed animals/cat0.off -n 20 -o alone.off");
+    assert_eq!(fs::read(place.path("alone.off")).unwrap(), fs::read(place.path("forms/cat0.off")).unwrap());
+}
+
+#[test]
 fn two_inputs_of_one_name_are_refused_and_a_bad_mesh_does_not_stop_the_rest() {
     let place = place();
     let before = place.names();
@@ -127,6 +132,7 @@ fn two_inputs_of_one_name_are_refused_and_a_bad_mesh_does_not_stop_the_rest() {
         let json = one_object(&outcome.out);
         assert_eq!(json[key].as_array().unwrap().len(), 2);
         assert_eq!(json["failed"][0]["path"], "absent.off");
+        assert_eq!(json["failed"][0]["name"].as_str(), (command == "embed").then_some("absent"));
     }
 }
 
@@ -145,25 +151,6 @@ fn quiet_runs_write_nothing_but_errors_to_standard_error() {
         assert_eq!(place.run(&[&arguments[..], &["-q"]].concat()).err, "", "{arguments:?}");
     }
     assert!(place.run("info absent.off -q").err.contains("absent.off"));
-}
-
-#[test]
-fn the_stress_has_a_form_without_a_unit() {
-    let place = place();
-    let mut large = ring();
-    large.positions.iter_mut().for_each(|p| p.coords *= 1024.0);
-    place.add("large.off", &large);
-    for kind in ["exact", "estimate"] {
-        let [small, large] = ["ring.off", "large.off"].map(|mesh| {
-            let json = place.json(&["embed", mesh, "-n", "20", "--stress", kind, "-o", "form.npy"]);
-            json["stress"]["normalized"].as_f64().unwrap()
-        });
-        assert!(small > 0.0 && small < 0.5 && small == large, "{small} {large}");
-    }
-    let text = place.done("embed ring.off -n 20 -o form.npy").out;
-    assert!(text.contains("normalised stress"), "{text}");
-    let help = place.done("embed --help").out;
-    assert!(help.contains("||Z Z' + 1/2 J E J||_F / p") && help.contains("sqrt(sum (d_ij"), "{help}");
 }
 
 #[test]

@@ -1,8 +1,9 @@
 //! A temporary folder, test meshes, and the program.
 
 use std::fs;
+use std::io::Write;
 use std::path::{Path, PathBuf};
-use std::process::Command;
+use std::process::{Command, Stdio};
 
 use canonform::mesh::{TriMesh, io, shapes};
 use serde_json::Value;
@@ -76,6 +77,22 @@ impl Workplace {
         Outcome { code: output.status.code().unwrap(), out: text(output.stdout), err: text(output.stderr) }
     }
 
+    /// Runs the program with these bytes as standard input: exit code, standard output, standard error.
+    pub(crate) fn piped(&self, input: &[u8], arguments: impl Arguments) -> (i32, Vec<u8>, String) {
+        let mut child = Command::new(program())
+            .current_dir(self.0.path())
+            .args(arguments.words())
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        // The program may refuse before it has read everything.
+        let _ = child.stdin.take().unwrap().write_all(input);
+        let output = child.wait_with_output().unwrap();
+        (output.status.code().unwrap(), output.stdout, String::from_utf8(output.stderr).unwrap())
+    }
+
     /// Runs the program, which must succeed.
     pub(crate) fn done(&self, arguments: impl Arguments) -> Outcome {
         let words = arguments.words();
@@ -91,8 +108,8 @@ impl Workplace {
     }
 
     /// The answer to the only query of a search.
-    pub(crate) fn found(&self, arguments: &[&str]) -> Value {
-        let mut answers = self.json(&[&["search"], arguments].concat());
+    pub(crate) fn found(&self, arguments: impl Arguments) -> Value {
+        let mut answers = self.json(&[&["search"], &arguments.words()[..]].concat());
         assert_eq!(
             (answers["queries"].as_array().unwrap().len(), &answers["failed"]),
             (1, &Value::Array(Vec::new()))
@@ -132,8 +149,8 @@ pub(crate) fn one_object(text: &str) -> Value {
     value
 }
 
-pub(crate) fn assert_keys(value: &Value, keys: &[&str]) {
-    for key in keys {
+pub(crate) fn assert_keys(value: &Value, keys: impl Arguments) {
+    for key in keys.words() {
         assert!(value.get(key).is_some(), "no `{key}` in {value}");
     }
 }

@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 
 use super::answer::{Params, Written};
 use super::shapes::is_missing;
-use crate::app::{App, Query};
+use crate::app::App;
 use crate::collection::Collection;
 use crate::error::ApiError;
 use crate::measured::{Measured, overlaid};
@@ -29,10 +29,17 @@ pub(super) struct CompareParams {
 }
 
 impl CompareParams {
-    /// The size of the meshes, for [`Work::run`](crate::work::Work::run).
-    pub(super) fn cost(&self, app: &App, collection: &Collection) -> usize {
+    /// Answers in a job, which costs as much as both meshes.
+    pub(super) async fn answered<T: Serialize + 'static>(
+        self,
+        app: &Arc<App>,
+        answer: fn(&App, &Collection, Self, &Budget) -> Result<T, ApiError>,
+    ) -> Result<Written, ApiError> {
+        let (shared, collection) = (app.clone(), app.served.collection());
         let ids = self.a.iter().chain([&self.b]);
-        ids.map(|id| app.cost(collection, id)).fold(0, usize::saturating_add)
+        let cost = ids.map(|id| app.cost(&collection, id)).fold(0, usize::saturating_add);
+        let job = move |budget: &Budget| Written::new(&answer(&shared, &collection, self, budget)?);
+        app.work.run(cost, None, job).await
     }
 
     /// The error that there is no first shape, or two of them.
@@ -54,48 +61,32 @@ struct Answer {
 }
 
 /// One of the two shapes.
-enum ComparedShape {
-    Query(Arc<Query>, Box<PreparedShape>),
-    /// Not measured if the mesh is missing.
-    Shape(Box<PreparedShape>, Option<Arc<Measured>>, ContentHash),
+struct ComparedShape {
+    shape: PreparedShape,
+    /// None if the mesh is missing.
+    measured: Option<Arc<Measured>>,
+    content: ContentHash,
 }
 
 impl ComparedShape {
     fn of_shape(app: &App, collection: &Collection, id: &str, budget: &Budget) -> Result<Self, Error> {
-        let shape = Box::new(collection.search.prepared(id)?);
+        let shape = collection.search.prepared(id)?;
         let content = collection.search.index().entry(id)?.content;
         match app.indexed(collection, id, budget) {
             Err(fault) if !is_missing(&fault) => Err(fault),
-            measured => Ok(Self::Shape(shape, measured.ok(), content)),
-        }
-    }
-
-    fn shape(&self) -> &PreparedShape {
-        match self {
-            Self::Query(_, shape) | Self::Shape(shape, ..) => shape,
-        }
-    }
-
-    fn measured(&self) -> Option<&Measured> {
-        match self {
-            Self::Query(query, _) => Some(&query.measured),
-            Self::Shape(_, measured, _) => measured.as_deref(),
+            measured => Ok(Self { shape, measured: measured.ok(), content }),
         }
     }
 
     fn compared(&self) -> Compared<'_> {
-        let (shape, measured) = (self.shape(), self.measured());
-        let content = match self {
-            Self::Query(query, _) => query.content,
-            Self::Shape(.., content) => *content,
-        };
+        let (shape, measured) = (&self.shape, self.measured.as_deref());
         Compared {
             shape,
             usual: shape,
             form: measured.map_or(shape.form(), |measured| &measured.form),
             surface: measured.map(|measured| &measured.surface),
             geometry: measured.and_then(|measured| measured.geometry.as_ref()),
-            content: Some(content),
+            content: Some(self.content),
         }
     }
 }
@@ -104,10 +95,7 @@ pub(super) async fn compare(
     State(app): State<Arc<App>>,
     Params(params): Params<CompareParams>,
 ) -> Result<Written, ApiError> {
-    let (shared, collection) = (app.clone(), app.served.collection());
-    let cost = params.cost(&app, &collection);
-    let job = move |budget: &Budget| Written::new(&answer(&shared, &collection, params, budget)?);
-    app.work.run(cost, None, job).await
+    params.answered(&app, answer).await
 }
 
 fn answer(
@@ -119,8 +107,8 @@ fn answer(
     let (name, a) = match (params.query, params.a) {
         (Some(query), None) => {
             let query = app.query(collection, &query)?;
-            let shape = Box::new(query.description.prepare()?);
-            (query.name.clone(), ComparedShape::Query(query, shape))
+            let (shape, measured) = (query.description.prepare()?, Some(query.measured.clone()));
+            (query.name.clone(), ComparedShape { shape, measured, content: query.content })
         }
         (None, Some(id)) => {
             let side = ComparedShape::of_shape(app, collection, &id, budget)?;
@@ -134,7 +122,7 @@ fn answer(
     let dot = of_a.form.spread();
     let mut found = compare_meshes(ShapeMetric::default(), [of_a, of_b])?;
     found.relation = found.relation.named(&name, &params.b);
-    let forms =
-        [overlaid(&found.overlay, 0, a.measured(), dot), overlaid(&found.overlay, 1, b.measured(), dot)];
+    let form = |i, side: &ComparedShape| overlaid(&found.overlay, i, side.measured.as_deref(), dot);
+    let forms = [form(0, &a), form(1, &b)];
     Ok(Answer { a: name, b: params.b, residual: found.residual, found, forms })
 }

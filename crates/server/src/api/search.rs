@@ -125,10 +125,7 @@ struct Answer {
 impl Answer {
     /// Without geometry and repair. Paths are shown as clients may see them.
     fn new(collection: &Collection, query: String, mut report: SearchReport) -> Self {
-        let components = report.components.iter_mut().filter_map(|part| part.nearest.as_mut());
-        for result in report.results.iter_mut().chain(components).chain(&mut report.wholes) {
-            result.path = collection.public_path(&result.path);
-        }
+        report.place(|path| collection.public_path(path));
         Self {
             query,
             report,

@@ -149,24 +149,20 @@ fn an_upload_can_be_searched_again_and_exported() {
     let shape = get(&server, "/api/search?shape=ring0&geometry=false&exact=true").json();
     description.check("get", "/api/search", 200, &shape);
     assert_eq!((ids(&shape)[0], &shape["mesh"]), ("ring0", &Value::Null));
-    let graph = get(&server, "/api/search?shape=ring0&geometry=false&rank=graph").json();
-    description.check("get", "/api/search", 200, &graph);
-    assert_eq!(
-        (ids(&graph)[0], &graph["rank_by"], &shape["rank_by"]),
-        ("ring0", &"graph".into(), &"plain".into())
-    );
-    assert!(graph["results"][0]["rank_distance"].is_number());
-    let posted =
-        upload(server.address, &[("q.off", &mesh)], &[("rank", "graph"), ("format", "csv")]).unwrap();
-    let table = String::from_utf8(posted.body).unwrap();
-    assert!(table.lines().next().unwrap().ends_with(",signature_distance,rank_distance"), "{table}");
+    for (rank, key, columns) in
+        [("graph", "rank_distance", ",rank_distance"), ("part", "part_share", ",part_distance,part_share")]
+    {
+        let found = get(&server, &format!("/api/search?shape=ring0&geometry=false&rank={rank}")).json();
+        description.check("get", "/api/search", 200, &found);
+        assert_eq!((ids(&found)[0], &found["rank_by"]), ("ring0", &rank.into()));
+        assert!(found["results"][0][key].is_number(), "{found}");
+        let fields = [("rank", rank), ("format", "csv")];
+        let table = upload(server.address, &[("q.off", &mesh)], &fields).unwrap().body;
+        let head = String::from_utf8(table).unwrap().lines().next().unwrap().to_owned();
+        assert!(head.ends_with(&format!(",signature_distance{columns}")), "{head}");
+    }
+    assert_eq!(shape["rank_by"], "plain");
     assert_eq!(upload(server.address, &[("q.off", &mesh)], &[("rank", "best")]).unwrap().status, 400);
-    let part = get(&server, "/api/search?shape=ring0&geometry=false&rank=part").json();
-    description.check("get", "/api/search", 200, &part);
-    assert_eq!((ids(&part)[0], &part["results"][0]["part_share"]), ("ring0", &1.0.into()));
-    let posted = upload(server.address, &[("q.off", &mesh)], &[("rank", "part"), ("format", "csv")]).unwrap();
-    let table = String::from_utf8(posted.body).unwrap();
-    assert!(table.lines().next().unwrap().ends_with(",part_distance,part_share"), "{table}");
 
     let gone = get(&server, "/api/search?query=0123456789abcdef0123456789abcdef");
     description.check("get", "/api/search", 410, &gone.json());

@@ -5,11 +5,11 @@ use std::io::{Read, Write};
 use std::time::Duration;
 
 use canonform::mesh::shapes;
-use canonform_server::{ServeOptions, Server, ServerError};
+use canonform_server::ServeOptions;
 
 use crate::client::{ask, connect, form, upload, upload_head};
 use crate::running::options;
-use crate::support::{INDEX, Served, written};
+use crate::support::{Served, written};
 
 /// The bytes of a mesh that takes a while.
 fn large() -> Vec<u8> {
@@ -127,16 +127,4 @@ fn requests_in_progress_are_finished_after_a_stop() {
     assert_eq!(client.join().unwrap().status, 200);
     server.join().unwrap();
     assert!(connect(address).is_err(), "nobody listens any more");
-}
-
-#[test]
-fn errors_name_a_taken_address_and_a_missing_index() {
-    let server = Served::start(options());
-    let index = server.folder.join(INDEX);
-    let taken = Server::bind(&index, ServeOptions { listen: server.address, ..options() }).unwrap_err();
-    assert!(matches!(&taken, ServerError::Listen { address, .. } if *address == server.address));
-    let text = taken.to_string();
-    assert!(text.starts_with(&format!("cannot listen on {}", server.address)), "{text}");
-    let missing = Server::bind(&server.folder.join("none"), options()).unwrap_err();
-    assert!(matches!(missing, ServerError::Index(_)), "{missing}");
 }

@@ -15,7 +15,7 @@ use canonform::mesh::io::{Content, writable};
 
 use self::task::Task;
 use crate::args::{Common, GeodesicArgs};
-use crate::input::{file_name, named, print_repair, read_both};
+use crate::input::{named, read_reported};
 use crate::output::Output;
 
 type Write = fn(Task<'_>) -> Result<ExitCode>;
@@ -30,8 +30,7 @@ pub(crate) fn geodesic(args: &GeodesicArgs, common: &Common) -> Result<ExitCode>
         ("paths", writable(Content::Lines).chain(["csv", "json"]).collect(), paths::write)
     };
     let output = Output::new(&args.output, what, &formats, Some(&args.output_format), common)?;
-    let (mesh, surface) = read_both(&args.mesh, &args.repair, common)?;
-    print_repair(&file_name(&args.mesh), &surface.repaired.report, &args.repair);
+    let (mesh, surface) = read_reported(&args.mesh, &args.repair, common)?;
     if args.all_pairs {
         pairs::check_size(surface.n_input_vertices(), args.force)?;
     }

@@ -9,7 +9,7 @@ use canonform::mesh_path;
 use serde::Serialize;
 
 use crate::args::{Common, ListArgs};
-use crate::output::report;
+use crate::output::{report, table_of};
 
 #[derive(Serialize)]
 struct Json {
@@ -48,8 +48,7 @@ fn listed(index: &Path, id: String, entry: ShapeEntry) -> Listed {
 }
 
 fn table(json: &Json) -> String {
-    let mut table = comfy_table::Table::new();
-    table.load_style(comfy_table::presets::NOTHING).set_header(["shape", "class", "vertices", "path"]);
+    let mut table = table_of(["shape", "class", "vertices", "path"]);
     for shape in &json.shapes {
         let class = if shape.label.is_empty() { "-" } else { &shape.label };
         let vertices = shape.vertices.map_or_else(|| "-".to_owned(), |n| n.to_string());
