@@ -21,8 +21,8 @@ use retrieval::{
 };
 use serde::Deserialize;
 
-use crate::experiment::Experiment;
 use crate::context::Context;
+use crate::experiment::Experiment;
 use crate::gallery::Gallery;
 use crate::sweep::{MeasuredNumbers, best_e, named, note};
 

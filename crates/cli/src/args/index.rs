@@ -142,8 +142,8 @@ pub(crate) struct AddArgs {
 
 /// What --json prints.
 const SEARCH_JSON: &str = "\
-With --json, `queries` holds the answer to each query and `failed` the queries that could not be read. If there is one
-query, the keys of its answer (`query`, `results`, `predicted`, ...) are also at the top.";
+With --json, `queries` holds the answer to each query and `failed` the queries that could not be read, for one
+query as for many.";
 
 #[derive(Debug, Args)]
 #[command(after_help = SEARCH_JSON)]
