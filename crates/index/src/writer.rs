@@ -138,14 +138,26 @@ impl IndexWriter {
         let path = path.to_owned();
         let mut writer =
             Self { path, log, base, options, n_shapes: 0, length: None, resumed, replaces_damaged };
-        writer.n_shapes = writer.base.as_ref().map_or(0, Index::len);
-        for (id, is_there) in writer.view().changed(&ENTRIES) {
-            let was_there = writer.base.as_ref().map_or(Ok(false), |base| base.contains(&id))?;
-            writer.n_shapes = writer.n_shapes + usize::from(is_there) - usize::from(was_there);
+        if let Err(fault) = writer.count() {
+            // A job that has not begun leaves nothing to resume, so that a damaged index can be built again.
+            if !resumed {
+                writer.discard()?;
+            }
+            return Err(fault);
         }
-        let first = writer.view().rows(&FUSED, &[]).next().transpose()?;
-        writer.length = first.map(|(_, fused)| fused.0.len());
         Ok(writer)
+    }
+
+    /// Counts the shapes so far, and the numbers of their vectors.
+    fn count(&mut self) -> Result<(), IndexError> {
+        self.n_shapes = self.base.as_ref().map_or(0, Index::len);
+        for (id, is_there) in self.view().changed(&ENTRIES) {
+            let was_there = self.base.as_ref().map_or(Ok(false), |base| base.contains(&id))?;
+            self.n_shapes = self.n_shapes + usize::from(is_there) - usize::from(was_there);
+        }
+        let first = self.view().rows(&FUSED, &[]).next().transpose()?;
+        self.length = first.map(|(_, fused)| fused.0.len());
+        Ok(())
     }
 
     fn view(&self) -> View<'_> {

@@ -244,10 +244,8 @@ fn an_interrupted_run_leaves_nothing_behind() {
         assert!(sent.unwrap().success());
         let ended = child.wait_with_output().unwrap();
         assert_eq!(ended.status.code(), Some(130), "{signal}");
-        assert_eq!(
-            String::from_utf8_lossy(&ended.stderr),
-            "all pairs of 20000 vertices take a file of 3.2 GB\ninterrupted\n"
-        );
+        let said = String::from_utf8_lossy(&ended.stderr);
+        assert!(said.ends_with("interrupted\n") && !said.contains("error"), "{signal}: {said}");
         assert_eq!(n_files(folder), before, "{signal}");
     }
 }

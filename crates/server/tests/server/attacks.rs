@@ -57,8 +57,8 @@ fn uploads_of_huge_polygons_free_their_places_at_the_time_limit() {
 fn large_uploads_are_answered_in_time_or_refused_at_once() {
     let limit = Duration::from_secs(30);
     let server = Served::start_alone(ServeOptions { time_limit: limit, max_uploads: 20, ..options() });
-    // 5 MB, some ten seconds each.
-    let mesh = written("large.off", &shapes::torus(300, 240, 2.0, 0.6));
+    // 2 MB, some seconds each.
+    let mesh = written("large.off", &shapes::torus(200, 160, 2.0, 0.6));
     let attack = |_| upload(server.address, &[("large.off", &mesh)], &[("geometry", "false")]).unwrap();
     let answers: Vec<Answer> = std::thread::scope(|scope| {
         let attackers: Vec<_> = (0..20).map(|i| scope.spawn(move || attack(i))).collect();
