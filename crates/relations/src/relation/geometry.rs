@@ -9,6 +9,7 @@ use mesh::{TriMesh, is_noisy};
 use nalgebra::{Matrix3, Point3, Vector3};
 use surface::{VertexId, components_of_faces};
 
+use super::regions::Regions;
 use super::triangles::TriangleTree;
 
 /// Points of a surface that look for their nearest points when two surfaces are aligned.
@@ -63,6 +64,7 @@ pub struct MeshGeometry {
     tree: OnceLock<TriangleTree>,
     form: OnceLock<Option<PreparedForm>>,
     noisy: OnceLock<bool>,
+    regions: OnceLock<Regions>,
     parts: OnceLock<Vec<MeshGeometry>>,
 }
 
@@ -101,6 +103,7 @@ impl MeshGeometry {
             tree: OnceLock::new(),
             form: OnceLock::new(),
             noisy: OnceLock::new(),
+            regions: OnceLock::new(),
             parts: OnceLock::new(),
         })
     }
@@ -165,6 +168,16 @@ impl MeshGeometry {
             PreparedForm::new(&CanonicalForm::from_parts(points, weights, Some(1.0)).ok()?).ok()
         };
         self.form.get_or_init(prepare).as_ref()
+    }
+
+    /// The smooth pieces between sharp edges.
+    pub(super) fn regions(&self) -> &Regions {
+        self.regions.get_or_init(|| Regions::of(&self.mesh))
+    }
+
+    /// Whether planes and cylinders with sharp edges between them make up the surface, as in parts of machines.
+    pub(super) fn is_mechanical(&self) -> bool {
+        self.regions().is_mechanical
     }
 
     /// Whether vertices have noise that is independent of their neighbours'.

@@ -14,9 +14,11 @@ mod kind;
 mod mesh_change;
 mod of_meshes;
 mod parts;
+mod regions;
 mod same_surface;
 mod triangles;
 mod units;
+mod variant;
 mod words;
 
 use base::ContentHash;
@@ -29,6 +31,7 @@ pub use in_space::SurfaceGap;
 pub use kind::{Change, RelationKind};
 pub use parts::{Parts, Side};
 pub use units::UnitChange;
+pub use variant::{Dimension, Difference};
 
 /// Sizes of two meshes with the same vertices are equal up to this share, and so are their places. A tolerance of rounding:
 /// that of coordinates in files.
