@@ -5,11 +5,10 @@ use std::sync::OnceLock;
 
 use base::ContentHash;
 use descriptors::{CanonicalForm, PreparedForm};
-use mesh::{TriMesh, is_noisy};
+use mesh::{SmoothRegions, TriMesh, is_noisy};
 use nalgebra::{Matrix3, Point3, Vector3};
 use surface::{VertexId, components_of_faces};
 
-use super::regions::Regions;
 use super::triangles::TriangleTree;
 
 /// Points of a surface that look for their nearest points when two surfaces are aligned.
@@ -64,7 +63,7 @@ pub struct MeshGeometry {
     tree: OnceLock<TriangleTree>,
     form: OnceLock<Option<PreparedForm>>,
     noisy: OnceLock<bool>,
-    regions: OnceLock<Regions>,
+    regions: OnceLock<SmoothRegions>,
     parts: OnceLock<Vec<MeshGeometry>>,
 }
 
@@ -171,8 +170,8 @@ impl MeshGeometry {
     }
 
     /// The smooth pieces between sharp edges.
-    pub(super) fn regions(&self) -> &Regions {
-        self.regions.get_or_init(|| Regions::of(&self.mesh))
+    pub(super) fn regions(&self) -> &SmoothRegions {
+        self.regions.get_or_init(|| SmoothRegions::of(&self.mesh))
     }
 
     /// Whether planes and cylinders with sharp edges between them make up the surface, as in parts of machines.

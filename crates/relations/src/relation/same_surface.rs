@@ -3,13 +3,13 @@
 //! Two triangulations of one surface differ by the error of flat triangles: at most the height of the arcs that stand over
 //! them. What else differs is a difference of the surfaces, and one that is measured anywhere is enough.
 
-use descriptors::Boundary;
+use descriptors::{Alignment, Boundary};
 use nalgebra::Point3;
 use surface::Topology;
 
-use super::exact::Similarity;
+use super::exact::{SameVertices, Similarity};
 use super::geometry::MeshGeometry;
-use super::in_space::Aligned;
+use super::in_space::{Aligned, gap};
 use super::mesh_change::MeshChange;
 
 /// What is allowed in copies of one organic surface besides the error of flat triangles, root mean square, relative to the
@@ -40,7 +40,7 @@ const LARGEST: f64 = 14.0;
 const EXACT: f64 = 4e-4;
 
 /// The error of flat triangles that counts in copies of a mechanical surface, in multiples of the height of the arcs.
-const ARCS: f64 = 1.1;
+const ARCS: f64 = 1.5;
 
 /// Odds of a mechanical surface by its largest distance, in multiples of what is allowed. Measured as [`EXACT`].
 const SAME_PART: Boundary = Boundary { at: 1.6, steepness: 8.0 };
@@ -62,7 +62,7 @@ pub(super) fn same_surface(aligned: &Aligned, meshes: [&MeshGeometry; 2], change
 
 /// Organic surfaces: the root mean square decides, unless the largest distance is out of proportion.
 fn same_body(aligned: &Aligned, meshes: [&MeshGeometry; 2], change: MeshChange) -> f64 {
-    let flatness: f64 = meshes.map(|mesh| rms_chord_error(mesh)).iter().sum();
+    let flatness: f64 = meshes.map(rms_chord_error).iter().sum();
     let at = match change {
         MeshChange::Noisy => MOST_NOISE,
         _ if meshes.iter().any(|mesh| mesh.is_noisy()) => ALLOWED + ALLOWED_NOISE + CHORDS * flatness,
@@ -70,6 +70,16 @@ fn same_body(aligned: &Aligned, meshes: [&MeshGeometry; 2], change: MeshChange) 
     };
     let gap = aligned.gap;
     Boundary { at, steepness: STEEPNESS }.probability(gap.rms.max(gap.max / LARGEST))
+}
+
+/// Whether the faces between the same vertices make up one surface.
+pub(super) fn is_one_surface(same: &SameVertices, [a, b]: [&MeshGeometry; 2]) -> bool {
+    let motion = Alignment::about_origin(same.rotation);
+    let map = Similarity { motion, scale: same.scale };
+    gap(a, b, &map, usize::MAX).is_some_and(|gap| {
+        let aligned = Aligned { map, gap, mirrored: same.mirrored };
+        same_surface(&aligned, [a, b], MeshChange::Remeshed) > 0.5
+    })
 }
 
 fn rms_chord_error(mesh: &MeshGeometry) -> f64 {
@@ -94,7 +104,8 @@ fn worst([a, b]: [&MeshGeometry; 2], map: &Similarity) -> f64 {
     let [errors_a, errors_b] = [a, b].map(|mesh| &mesh.regions().chord_errors);
     let probe = |(p, face): (Point3<f64>, usize)| {
         let near = b.tree().nearest(&map.apply(&p))?;
-        let allowed = EXACT + a.rounding + b.rounding + ARCS * (errors_a[face] * map.scale + errors_b[near.face]);
+        let allowed =
+            EXACT + a.rounding + b.rounding + ARCS * (errors_a[face] * map.scale + errors_b[near.face]);
         Some(near.sq_distance.sqrt() / allowed)
     };
     probes(a).into_iter().filter_map(probe).fold(0.0, f64::max)
@@ -118,15 +129,16 @@ pub(super) fn euler_characteristic_if_closed(geometry: &MeshGeometry) -> Option<
     let topology = Topology::new(geometry.n_vertices(), geometry.mesh.faces.clone());
     let edges = 0..topology.n_edges();
     let is_closed = edges.map(surface::EdgeId::from).all(|edge| topology.edge_corners(edge).len() == 2);
-    is_closed.then(|| {
-        geometry.n_vertices() as isize - topology.n_edges() as isize + geometry.n_faces() as isize
-    })
+    is_closed
+        .then(|| geometry.n_vertices() as isize - topology.n_edges() as isize + geometry.n_faces() as isize)
 }
 
 /// The map back.
 fn inverse(map: &Similarity) -> Similarity {
     // y = R s x + t, so x = R^T (y - t) / s.
     let back = map.motion.inverse();
-    Similarity { motion: descriptors::Alignment { translation: back.translation / map.scale, ..back }, scale: 1.0 / map.scale }
+    Similarity {
+        motion: Alignment { translation: back.translation / map.scale, ..back },
+        scale: 1.0 / map.scale,
+    }
 }
-

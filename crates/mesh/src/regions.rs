@@ -5,16 +5,20 @@
 //!                                             -> chord errors (how far flats are from the curved surface they stand for)
 //! ```
 
-use mesh::TriMesh;
 use nalgebra::{Matrix2, Matrix3, Point3, Unit, Vector2, Vector3};
 use surface::{DisjointSets, EdgeId, Topology};
 
-/// Triangles with vertices this near to a plane, at unit area, lie in it. A tolerance: the rounding of coordinates in files.
+use crate::tri_mesh::TriMesh;
+
+/// Triangles with vertices this near to a plane, relative to the square root of the area, lie in it. A tolerance: the rounding of coordinates in files.
 const IN_PLANE: f64 = 2e-5;
 
 /// Flats that meet at more than this angle have a sharp edge between them. A convention: arcs in CAD exports have twelve
 /// segments and more, which turn by 30° each.
 const SHARP: f64 = 40.0;
+
+/// The same for organic surfaces, on which few triangles turn by more at fingers and ears. A convention.
+const ORGANIC_SHARP: f64 = 60.0;
 
 /// Vertices of a flat beyond which its width is not measured; such a flat is wide. A safety limit on time.
 const MOST_CORNERS: usize = 64;
@@ -30,32 +34,68 @@ const ACROSS: f64 = 1e-3;
 /// bodies of the built-in families have none, mechanical parts at least .5 (`cargo test -p tests --test laws mechanical`).
 const MECHANICAL: f64 = 0.3;
 
+/// A surface with this many planes of at least [`WIDE`] triangles is mechanical, too, such as a bent pipe with its two ends.
+/// A convention: one plane may be the base of a bust.
+const LEAST_WIDE: usize = 2;
+const WIDE: usize = 6;
+
 /// Least share of the area of a plane that counts for [`MECHANICAL`]. A convention.
 const LARGE: f64 = 0.005;
 
-/// What a region is.
+/// Directions nearer to each other than this are one (cosine). A tolerance of rounding and of arcs.
+const PARALLEL: f64 = 0.999;
+
+/// What a smooth piece of a surface is.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum RegionShape {
-    Plane { normal: Vector3<f64>, offset: f64 },
-    Cylinder { axis: Vector3<f64>, centre: Point3<f64>, radius: f64, is_hole: bool },
+pub enum RegionShape {
+    /// Triangles in one plane.
+    Plane {
+        /// Unit normal.
+        normal: Vector3<f64>,
+        /// Distance of the plane from the origin along it.
+        offset: f64,
+    },
+    /// Flats around an axis.
+    Cylinder {
+        /// Unit direction of the axis.
+        axis: Vector3<f64>,
+        /// A point of the axis.
+        centre: Point3<f64>,
+        /// The largest distance of a vertex from the axis.
+        radius: f64,
+        /// Whether the normals point to the axis.
+        is_hole: bool,
+    },
+    /// Anything else.
     Curved,
 }
 
 /// A smooth piece between sharp edges.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Region {
-    pub(super) shape: RegionShape,
+pub struct SmoothRegion {
+    /// What it is.
+    pub shape: RegionShape,
     /// Share of the area.
-    pub(super) area: f64,
+    pub area: f64,
 }
 
-/// The smooth pieces of a surface of unit area.
+/// The smooth pieces of a surface.
+///
+/// ```
+/// use canonform_mesh::{SmoothRegions, shapes};
+///
+/// let cube = SmoothRegions::of(&shapes::cube(4));
+/// assert!(cube.is_mechanical && cube.all.len() == 6);
+/// assert!(!SmoothRegions::of(&shapes::icosphere(3)).is_mechanical);
+/// ```
 #[derive(Debug)]
-pub(super) struct Regions {
-    pub(super) all: Vec<Region>,
+pub struct SmoothRegions {
+    /// The pieces.
+    pub all: Vec<SmoothRegion>,
     /// For every face, how far the curved surface may be from it.
-    pub(super) chord_errors: Vec<f64>,
-    pub(super) is_mechanical: bool,
+    pub chord_errors: Vec<f64>,
+    /// Whether planes and cylinders with sharp edges between them make up the surface, as in parts of machines.
+    pub is_mechanical: bool,
 }
 
 /// Triangles in one plane.
@@ -74,8 +114,13 @@ struct Crease {
     turn: f64,
 }
 
-impl Regions {
-    pub(super) fn of(mesh: &TriMesh) -> Self {
+impl SmoothRegions {
+    /// Finds the pieces.
+    ///
+    /// # Panics
+    /// If a face has a repeated vertex or one that does not exist, see [`surface::Topology::new`].
+    #[must_use]
+    pub fn of(mesh: &TriMesh) -> Self {
         let topology = Topology::new(mesh.n_vertices(), mesh.faces.clone());
         let (flats, of_face) = flats(mesh, &topology);
         let creases = creases(mesh, &topology, &flats, &of_face);
@@ -86,8 +131,8 @@ impl Regions {
         let mut members = vec![Vec::new(); flats.len()];
         (0..flats.len()).for_each(|flat| members[sets.find(flat as u32) as usize].push(flat));
         let members = members.into_iter().filter(|members| !members.is_empty());
-        let mut several = 0.0;
-        let all: Vec<Region> = members
+        let (mut plain, mut wide) = (0.0, 0);
+        let all: Vec<SmoothRegion> = members
             .map(|members| {
                 let region = region(mesh, &flats, &members);
                 // A single triangle is a plane by itself; organic meshes of few triangles have many.
@@ -97,16 +142,38 @@ impl Regions {
                     RegionShape::Curved => false,
                 };
                 if is_plain && region.area > LARGE {
-                    several += region.area;
+                    plain += region.area;
+                    wide += usize::from(flats[members[0]].faces.len() >= WIDE);
                 }
                 region
             })
             .collect();
-        let is_mechanical = several >= MECHANICAL;
-        let sharp = if is_mechanical { SHARP.to_radians() } else { std::f64::consts::FRAC_PI_2 };
+        let is_mechanical = plain >= MECHANICAL || wide >= LEAST_WIDE;
+        let sharp = if is_mechanical { SHARP } else { ORGANIC_SHARP }.to_radians();
         let blunt = creases.iter().filter(|crease| crease.turn < sharp);
         let chord_errors = chord_errors(mesh, &flats, &of_face, blunt);
         Self { all, chord_errors, is_mechanical }
+    }
+}
+
+impl SmoothRegions {
+    /// Directions of planes and axes with the share of the area across or around them, the largest first.
+    #[must_use]
+    pub fn directions(&self) -> Vec<(Vector3<f64>, f64)> {
+        let mut all: Vec<(Vector3<f64>, f64)> = Vec::new();
+        for region in self.all.iter().filter(|region| region.area > LARGE) {
+            let direction = match region.shape {
+                RegionShape::Plane { normal, .. } => normal,
+                RegionShape::Cylinder { axis, .. } => axis,
+                RegionShape::Curved => continue,
+            };
+            match all.iter_mut().find(|(known, _)| known.dot(&direction).abs() > PARALLEL) {
+                Some((_, area)) => *area += region.area,
+                None => all.push((direction, region.area)),
+            }
+        }
+        all.sort_by(|a, b| b.1.total_cmp(&a.1));
+        all
     }
 }
 
@@ -114,6 +181,8 @@ impl Regions {
 fn flats(mesh: &TriMesh, topology: &Topology) -> (Vec<Flat>, Vec<usize>) {
     const NONE: usize = usize::MAX;
     let vectors: Vec<Vector3<f64>> = (0..mesh.n_faces()).map(|f| mesh.area_vector(f)).collect();
+    let (total, unit) = (mesh.area(), mesh.root_of_area());
+    let [near, sliver] = [IN_PLANE * unit, IN_PLANE * total];
     let mut order: Vec<usize> = (0..mesh.n_faces()).collect();
     order.sort_by(|&f, &g| vectors[g].norm_squared().total_cmp(&vectors[f].norm_squared()).then(f.cmp(&g)));
     let mut of_face = vec![NONE; mesh.n_faces()];
@@ -125,16 +194,16 @@ fn flats(mesh: &TriMesh, topology: &Topology) -> (Vec<Flat>, Vec<usize>) {
         let normal = vectors[seed].try_normalize(0.0).unwrap_or_default();
         let origin = mesh.triangle(seed)[0];
         let in_plane = |f: usize| {
-            let is_near = mesh.triangle(f).iter().all(|p| normal.dot(&(p - origin)).abs() < IN_PLANE);
+            let is_near = mesh.triangle(f).iter().all(|p| normal.dot(&(p - origin)).abs() < near);
             // The normal of a sliver is rounding.
-            is_near && vectors[f].dot(&normal) > -IN_PLANE
+            is_near && vectors[f].dot(&normal) > -sliver
         };
         let mut flat = Flat { normal, faces: Vec::new(), area: 0.0 };
         let mut pending = vec![seed];
         of_face[seed] = flats.len();
         while let Some(f) = pending.pop() {
             flat.faces.push(f);
-            flat.area += vectors[f].norm();
+            flat.area += vectors[f].norm() / total;
             for corner in surface::FaceId::from(f).corners() {
                 for &other in topology.edge_corners(topology.opposite_edge(corner)) {
                     let g = other.face().index();
@@ -204,22 +273,27 @@ fn width(mesh: &TriMesh, flat: &Flat, [start, end]: [Point3<f64>; 2]) -> f64 {
     corners.map(|p| (p - start).cross(&along).norm()).fold(0.0, f64::max)
 }
 
-fn region(mesh: &TriMesh, flats: &[Flat], members: &[usize]) -> Region {
+fn region(mesh: &TriMesh, flats: &[Flat], members: &[usize]) -> SmoothRegion {
     let area = members.iter().map(|&flat| flats[flat].area).sum();
     let shape = match members {
         [flat] => {
             let flat = &flats[*flat];
-            RegionShape::Plane { normal: flat.normal, offset: flat.normal.dot(&mesh.triangle(flat.faces[0])[0].coords) }
+            RegionShape::Plane {
+                normal: flat.normal,
+                offset: flat.normal.dot(&mesh.triangle(flat.faces[0])[0].coords),
+            }
         }
         _ => cylinder(mesh, flats, members).unwrap_or(RegionShape::Curved),
     };
-    Region { shape, area }
+    SmoothRegion { shape, area }
 }
 
 /// The cylinder through flats, if there is one.
 fn cylinder(mesh: &TriMesh, flats: &[Flat], members: &[usize]) -> Option<RegionShape> {
-    let covariance: Matrix3<f64> =
-        members.iter().map(|&flat| flats[flat].normal * flats[flat].normal.transpose() * flats[flat].area).sum();
+    let covariance: Matrix3<f64> = members
+        .iter()
+        .map(|&flat| flats[flat].normal * flats[flat].normal.transpose() * flats[flat].area)
+        .sum();
     let eigen = covariance.symmetric_eigen();
     let least = eigen.eigenvalues.imin();
     if eigen.eigenvalues[least] > ACROSS * eigen.eigenvalues.sum() {
@@ -239,7 +313,7 @@ fn cylinder(mesh: &TriMesh, flats: &[Flat], members: &[usize]) -> Option<RegionS
     }
     let outward: f64 = faces()
         .map(|f| {
-            let middle = mesh.triangle(f).iter().map(|p| flat(p)).sum::<Vector2<f64>>() / 3.0 - centre;
+            let middle = mesh.triangle(f).iter().map(&flat).sum::<Vector2<f64>>() / 3.0 - centre;
             let normal = mesh.area_vector(f);
             middle.dot(&Vector2::new(u.dot(&normal), v.dot(&normal)))
         })
@@ -252,7 +326,8 @@ fn cylinder(mesh: &TriMesh, flats: &[Flat], members: &[usize]) -> Option<RegionS
 fn centre_of_circle(points: &[Vector2<f64>]) -> Option<Vector2<f64>> {
     let mean = points.iter().sum::<Vector2<f64>>() / points.len().max(1) as f64;
     let (mut matrix, mut right) = (Matrix2::zeros(), Vector2::zeros());
-    let mean_square = points.iter().map(|p| (p - mean).norm_squared()).sum::<f64>() / points.len().max(1) as f64;
+    let mean_square =
+        points.iter().map(|p| (p - mean).norm_squared()).sum::<f64>() / points.len().max(1) as f64;
     for d in points.iter().map(|p| p - mean) {
         matrix += d * d.transpose();
         right += d * (0.5 * (d.norm_squared() - mean_square));
