@@ -15,6 +15,8 @@
 //!
 //! [`creatures`] generates any number of further families from a seed, some with handles.
 //!
+//! [`mechanical_parts`] makes screws, brackets and other parts as CAD programs export them.
+//!
 //! [`Damage`] changes meshes, generated or not, in ways that leave the shape recognisable.
 //!
 //! **Invariant.** The same options give the same bytes on any machine and any number of threads: every shape
@@ -32,6 +34,7 @@ mod error;
 mod extract;
 mod implicit;
 mod model;
+mod parts;
 mod pose;
 mod relax;
 mod scan;
@@ -49,4 +52,5 @@ pub use broken::{BrokenFile, broken_meshes};
 pub use creature::{CreatureOptions, creature, creature_family, creature_plans, creatures};
 pub use damage::{Damage, DamageKind, WeldPair};
 pub use error::DatasetError;
+pub use parts::{Diagonals, MechanicalPart, PartFamily, PartMesh, mechanical_parts};
 pub use scan::{ScannedPoint, scan};

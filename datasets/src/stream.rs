@@ -22,6 +22,8 @@ pub(crate) enum Purpose {
     Damage,
     /// Points on a surface.
     Scan,
+    /// Parameters of mechanical parts.
+    Part,
 }
 
 impl Purpose {
@@ -33,6 +35,7 @@ impl Purpose {
             Self::Build => 3,
             Self::Damage => 12,
             Self::Scan => 13,
+            Self::Part => 14,
         }
     }
 }

@@ -1,5 +1,7 @@
 //! Nearest points.
 
+use std::num::NonZero;
+
 use kiddo::{ImmutableKdTree, SquaredEuclidean};
 use nalgebra::Point3;
 
@@ -38,5 +40,13 @@ impl NearestPoints {
         let query: [f64; 3] = query.coords.into();
         let hit = self.tree.query(&query).nearest_one::<SquaredEuclidean<f64>>().execute();
         (hit.item as usize, hit.distance)
+    }
+
+    /// The indices of up to `most` points within a distance of `query`, the nearest first.
+    pub fn near(&self, query: &Point3<f64>, distance: f64, most: NonZero<usize>) -> Vec<usize> {
+        let query: [f64; 3] = query.coords.into();
+        let hits =
+            self.tree.query(&query).nearest_n::<SquaredEuclidean<f64>>(most).within(distance * distance);
+        hits.execute().iter().map(|hit| hit.item as usize).collect()
     }
 }

@@ -4,6 +4,7 @@ use nalgebra::Vector3;
 use surface::{EdgeId, Topology, VertexId};
 
 use crate::orientation::orient_consistently;
+use crate::regions::SmoothRegions;
 use crate::tri_mesh::TriMesh;
 
 /// Below this [coherence](Bending::coherence) a mesh is noisy. Of the built-in shapes, clean ones with 1,000 to 8,000 vertices
@@ -52,7 +53,7 @@ const STEPS: [f64; 2] = [0.5, -0.53];
 #[must_use]
 pub fn without_noise(mesh: &TriMesh) -> Option<TriMesh> {
     let (mut smooth, umbrellas) = prepared(mesh);
-    if !umbrellas.bending(&smooth).is_noisy() {
+    if !umbrellas.bending(&smooth).is_noisy() || SmoothRegions::of(mesh).is_mechanical {
         return None;
     }
     for _ in 0..MOST {
@@ -67,14 +68,14 @@ pub fn without_noise(mesh: &TriMesh) -> Option<TriMesh> {
     Some(TriMesh { faces: mesh.faces.clone(), ..smooth })
 }
 
-/// Whether [`without_noise`] changes a mesh.
+/// Whether [`without_noise`] changes a mesh. The edges of [mechanical parts](SmoothRegions::is_mechanical) are not noise.
 ///
 /// # Panics
 /// As [`without_noise`].
 #[must_use]
 pub fn is_noisy(mesh: &TriMesh) -> bool {
     let (oriented, umbrellas) = prepared(mesh);
-    umbrellas.bending(&oriented).is_noisy()
+    umbrellas.bending(&oriented).is_noisy() && !SmoothRegions::of(mesh).is_mechanical
 }
 
 fn prepared(mesh: &TriMesh) -> (TriMesh, Umbrellas) {

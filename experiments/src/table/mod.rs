@@ -1,5 +1,6 @@
 //! The experiments, one module each, and the table of them.
 
+mod evidence;
 mod figure1;
 mod figure3;
 mod figure4;
@@ -76,6 +77,7 @@ table! {
     "matching" "Matching. Dense maps between poses" charts::<CurvesResults>, matching::MatchingOptions;
     "points" "Points. Distances and retrieval of point clouds" charts::<CurvesResults>, points::PointsOptions;
     "partial" "Parts. Retrieval of parts of shapes" charts::<CurvesResults>, partial::PartialOptions;
+    "evidence" "Evidence. Relations of mechanical parts" charts::<CurvesResults>, evidence::EvidenceOptions;
     "scaling" "Scaling. Time and memory up to a million vertices" charts::<CurvesResults>, scaling::ScalingOptions;
 }
 

@@ -10,12 +10,14 @@ use clap::{Args, ValueEnum};
 const NOTES: &str = "\
 Shapes of the families cat, centaur and david are written to FOLDER/NAME.EXT, creatures to FOLDER/CLASS/NAME.EXT; both
 are datasets for `canonform index build`. The default seed gives the shapes that the experiments use. Files that are
-there already are replaced.
+there already are replaced. Mechanical parts go to FOLDER/FAMILY-PARAMETERS.EXT, such as washer-m5-d10-t1.off; --vertices
+and --poses do not concern them.
 
 Examples:
   canonform generate -o shapes/
   canonform generate --family cat --poses 3 --vertices 28000 -o cats/
-  canonform generate --family creatures --classes 500 --poses 20 --vertices 1000 -o many/";
+  canonform generate --family creatures --classes 500 --poses 20 --vertices 1000 -o many/
+  canonform generate --family parts --output-format stl -o parts/";
 
 #[derive(Debug, Args)]
 #[command(after_long_help = NOTES, after_help = "See `--help` for the names of the files, and for examples.")]
@@ -32,6 +34,12 @@ pub(crate) struct GenerateArgs {
     /// Shapes of each class [default: 9 cats, 6 centaurs, 15 davids, 8 of each class of creatures]
     #[arg(long, value_name = "N")]
     pub(crate) poses: Option<usize>,
+    /// Number of mechanical parts
+    #[arg(long, value_name = "N", default_value_t = 112)]
+    pub(crate) parts: usize,
+    /// Segments of a full circle of mechanical parts
+    #[arg(long, value_name = "N", default_value_t = 32)]
+    pub(crate) arcs: usize,
     /// Number of classes of creatures
     #[arg(long, value_name = "N", default_value_t = 48)]
     pub(crate) classes: usize,
@@ -53,6 +61,8 @@ pub(crate) enum FamilyArg {
     David,
     /// Random bodies of 28 kinds, from worms to scissors; each class is one body
     Creatures,
+    /// Screws, brackets and other mechanical parts in millimetres, many of nearly the same size
+    Parts,
 }
 
 fn mesh_format() -> impl TypedValueParser<Value = String> {

@@ -6,8 +6,8 @@ use std::process::ExitCode;
 use anyhow::{Context, Result};
 use base::terminal::Bars;
 use datasets::{
-    ArticulatedOptions, CreatureOptions, DatasetError, Family, LabeledShape, articulated_shape,
-    creature_family,
+    ArticulatedOptions, CreatureOptions, DatasetError, Family, LabeledShape, MechanicalPart, PartMesh,
+    articulated_shape, creature_family, mechanical_parts,
 };
 use rayon::prelude::*;
 use serde::Serialize;
@@ -35,6 +35,7 @@ struct ShapeJson {
 enum Class {
     Articulated(Family),
     Creature(usize),
+    Parts,
 }
 
 /// Writes the built-in shapes as mesh files.
@@ -45,6 +46,7 @@ pub(crate) fn generate(args: &GenerateArgs, common: &Common) -> Result<ExitCode>
         FamilyArg::Centaur => vec![Class::Articulated(Family::Centaur)],
         FamilyArg::David => vec![Class::Articulated(Family::David)],
         FamilyArg::Creatures => (0..args.classes).map(Class::Creature).collect(),
+        FamilyArg::Parts => vec![Class::Parts],
     };
     let bar = Bars::new(common.quiet).bar("classes", classes.len());
     let mut json = GenerateJson { output: args.output.clone(), n_classes: classes.len(), shapes: Vec::new() };
@@ -95,6 +97,16 @@ fn shapes(class: &Class, args: &GenerateArgs, common: &Common) -> Result<Vec<Lab
                 n_vertices,
             };
             creature_family(*family, &options)
+        }
+        Class::Parts => {
+            let options = PartMesh { arcs: args.arcs, ..PartMesh::default() };
+            let parts = mechanical_parts(common.seed, args.parts).into_par_iter();
+            let shape = |part: MechanicalPart| LabeledShape {
+                name: part.name(),
+                label: part.family().name().to_owned(),
+                mesh: part.mesh(&options),
+            };
+            Ok(parts.map(shape).collect())
         }
     }
 }

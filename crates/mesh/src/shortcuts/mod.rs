@@ -11,6 +11,7 @@ mod spike;
 
 use base::{Exceeded, Observer};
 
+use crate::regions::SmoothRegions;
 use crate::tri_mesh::TriMesh;
 use shortcut::MOST;
 
@@ -23,7 +24,7 @@ pub use shortcut::{CutSurface, Shortcut, ShortcutKind};
 /// The surface stays in one piece: a vertex that is the only connection of two parts stays shared. A handle is a shortcut if
 /// it is narrow, at most 0.3 times the square root of the area around, and the surface widens on both sides of its narrowest
 /// place, which the tube of a ring or of the handle of a cup does not. Edges of more than two faces stay, and so do all handles of a
-/// surface with such edges.
+/// surface with such edges and of a [mechanical part](crate::SmoothRegions).
 ///
 /// # Errors
 /// [`Exceeded`] if the time of the budget is over or it was cancelled.
@@ -53,6 +54,10 @@ pub fn cut_shortcuts(mesh: &TriMesh, observer: &dyn Observer) -> Result<CutSurfa
     let budget = observer.budget();
     let size = mesh.root_of_area();
     let mut opened = pinch::cut(mesh, DETOUR * size);
+    // The holes of a part that is made of planes and cylinders are meant.
+    if SmoothRegions::of(mesh).is_mechanical {
+        return Ok(opened);
+    }
     while let Some((cut, shortcut)) = handle::cut(&opened.refined.mesh, GIRTH * size, DETOUR * size, &budget)?
     {
         let n_cut = opened.shortcuts.len() + 1;

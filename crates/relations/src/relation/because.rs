@@ -4,10 +4,12 @@ use base::ContentHash;
 use descriptors::ShapeDistance;
 use serde::{Serialize, Serializer};
 
+use super::cut::CutPiece;
 use super::handedness::Handedness;
 use super::in_space::SurfaceGap;
 use super::parts::Parts;
 use super::units::UnitChange;
+use super::variant::Difference;
 
 /// What a relation is taken from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
@@ -58,6 +60,12 @@ pub struct Because {
     pub surface_gap: Option<SurfaceGap>,
     /// How often one mesh occurs among the components of the other.
     pub parts: Option<Parts>,
+    /// What was cut out of what.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub cut: Option<CutPiece>,
+    /// The dimensions in which variants of one part differ.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub differences: Vec<Difference>,
 }
 
 impl Because {
@@ -79,6 +87,8 @@ impl Because {
             vertex_gap: None,
             surface_gap: None,
             parts: None,
+            cut: None,
+            differences: Vec::new(),
         }
     }
 }

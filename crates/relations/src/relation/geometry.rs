@@ -5,7 +5,7 @@ use std::sync::OnceLock;
 
 use base::ContentHash;
 use descriptors::{CanonicalForm, PreparedForm};
-use mesh::{TriMesh, is_noisy};
+use mesh::{SmoothRegions, TriMesh, is_noisy};
 use nalgebra::{Matrix3, Point3, Vector3};
 use surface::{VertexId, components_of_faces};
 
@@ -63,6 +63,7 @@ pub struct MeshGeometry {
     tree: OnceLock<TriangleTree>,
     form: OnceLock<Option<PreparedForm>>,
     noisy: OnceLock<bool>,
+    regions: OnceLock<SmoothRegions>,
     parts: OnceLock<Vec<MeshGeometry>>,
 }
 
@@ -101,6 +102,7 @@ impl MeshGeometry {
             tree: OnceLock::new(),
             form: OnceLock::new(),
             noisy: OnceLock::new(),
+            regions: OnceLock::new(),
             parts: OnceLock::new(),
         })
     }
@@ -165,6 +167,16 @@ impl MeshGeometry {
             PreparedForm::new(&CanonicalForm::from_parts(points, weights, Some(1.0)).ok()?).ok()
         };
         self.form.get_or_init(prepare).as_ref()
+    }
+
+    /// The smooth pieces between sharp edges.
+    pub(super) fn regions(&self) -> &SmoothRegions {
+        self.regions.get_or_init(|| SmoothRegions::of(&self.mesh))
+    }
+
+    /// Whether planes and cylinders with sharp edges between them make up the surface, as in parts of machines.
+    pub(super) fn is_mechanical(&self) -> bool {
+        self.regions().is_mechanical
     }
 
     /// Whether vertices have noise that is independent of their neighbours'.

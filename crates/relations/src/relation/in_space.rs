@@ -28,6 +28,18 @@ const NEAR_EQUAL_AXES: f64 = 1.05;
 /// least 0.0045 apart (`cargo test -p tests --test laws matches`).
 const CLOSE: f64 = 0.003;
 
+/// Mechanical parts that are nearer than this are aligned: their planes lie in each other. A tolerance of rounding.
+const SEATED: f64 = 1e-5;
+
+/// Directions of planes and axes that are tried for frames and mirror planes, those with the largest area. A safety limit.
+const MOST_DIRECTIONS: usize = 6;
+
+/// Directions that span a frame are at least this far from parallel (sine). A safety limit.
+const ACROSS: f64 = 0.2;
+
+/// Shares of the area and cosines that differ by less than this are alike, so that more frames are tried. A safety limit.
+const ALIKE: f64 = 0.05;
+
 /// Turned starts about one axis, and about all, the samples that rank them, and how many of them are refined.
 const TURNS: usize = 36;
 const ORIENTATIONS: usize = 300;
@@ -79,14 +91,76 @@ pub(super) fn aligned(a: &MeshGeometry, b: &MeshGeometry) -> Option<Aligned> {
     let proper_found = found(proper, worth(proper, reflected));
     let reflected_found = found(reflected, worth(reflected, proper));
     let ((map, gap), mirrored) = match (proper_found, reflected_found) {
-        (Some(proper), Some(reflected)) if proper.1.rms > (DECISIVE * reflected.1.rms).hypot(EXCESS) => {
-            (reflected, true)
+        (Some(proper), Some(reflected)) if is_decisive(&reflected.1, &proper.1) => {
+            match unmirrored(a, b, &reflected) {
+                Some(turned) => (turned, false),
+                None => (reflected, true),
+            }
         }
         (Some(proper), _) => (proper, false),
-        (None, Some(reflected)) => (reflected, true),
+        (None, Some(reflected)) => match unmirrored(a, b, &reflected) {
+            Some(turned) => (turned, false),
+            None => (reflected, true),
+        },
         (None, None) => return None,
     };
     Some(Aligned { map, gap, mirrored })
+}
+
+/// Whether one map is better than another by more than the limits of refinement.
+fn is_decisive(better: &SurfaceGap, worse: &SurfaceGap) -> bool {
+    worse.rms > (DECISIVE * better.rms).hypot(EXCESS)
+}
+
+/// The map without a reflection that is as good as one with a reflection, if the surface is its own mirror image.
+fn unmirrored(
+    a: &MeshGeometry,
+    b: &MeshGeometry,
+    (map, apart): &(Similarity, SurfaceGap),
+) -> Option<(Similarity, SurfaceGap)> {
+    let after = |mirror: Alignment| Similarity { motion: mirror.after(&map.motion), scale: map.scale };
+    let mut ranked: Vec<(f64, Similarity)> = mirror_planes(b)
+        .into_iter()
+        .filter_map(|mirror| Some((gap(a, b, &after(mirror), RANKING)?.rms, after(mirror))))
+        .collect();
+    ranked.sort_by(|x, y| x.0.total_cmp(&y.0));
+    ranked.into_iter().take(RANKED).find_map(|(_, start)| {
+        let found = refined(a, b, start);
+        let distance = gap(a, b, &found, usize::MAX)?;
+        (!is_decisive(apart, &distance)).then_some((found, distance))
+    })
+}
+
+/// Whether a surface is its own mirror image.
+pub(super) fn is_symmetric(geometry: &MeshGeometry) -> bool {
+    let still = Similarity { motion: Alignment::about_origin(Matrix3::identity()), scale: 1.0 };
+    let zero = SurfaceGap { rms: 0.0, max: 0.0 };
+    // A reflection of the surface, undone by itself, is a map without a reflection.
+    let is_image = |mirror: Alignment| {
+        let map = Similarity { motion: mirror.after(&still.motion), scale: 1.0 };
+        let near = gap(geometry, geometry, &map, RANKING).is_some_and(|gap| gap.rms < CLOSE);
+        near && gap(geometry, geometry, &refined(geometry, geometry, map), usize::MAX)
+            .is_some_and(|gap| !is_decisive(&zero, &gap))
+    };
+    mirror_planes(geometry).into_iter().any(is_image)
+}
+
+/// Reflections in planes through the centroid that may leave a surface as it is: across its principal axes, and across its
+/// planes and axes and halfway between them.
+fn mirror_planes(geometry: &MeshGeometry) -> Vec<Alignment> {
+    let covariance: Matrix3<f64> = geometry.samples().iter().map(|p| p.coords * p.coords.transpose()).sum();
+    let axes = covariance.symmetric_eigen().eigenvectors;
+    let directions = geometry.regions().directions();
+    let main: Vec<Vector3<f64>> = directions.iter().take(MOST_DIRECTIONS).map(|(d, _)| *d).collect();
+    let mut normals: Vec<Vector3<f64>> =
+        axes.column_iter().map(|axis| axis.into_owned()).chain(main.iter().copied()).collect();
+    for (i, d) in main.iter().enumerate() {
+        normals
+            .extend(main[..i].iter().flat_map(|e| [d + e, d - e]).filter_map(|sum| sum.try_normalize(1e-3)));
+        normals.extend(main[..i].iter().filter_map(|e| d.cross(e).try_normalize(1e-3)));
+    }
+    let reflection = |n: Vector3<f64>| Alignment::about_origin(Matrix3::identity() - 2.0 * n * n.transpose());
+    normals.into_iter().map(reflection).collect()
 }
 
 /// The best alignment from a motion between the forms, with a reflection if and only if that has one.
@@ -98,10 +172,14 @@ fn best(a: &MeshGeometry, b: &MeshGeometry, start: &Alignment) -> Option<(Simila
     };
     let found = refined(a, b, scaled(*start));
     let mut best = (found, gap(a, b, &found, usize::MAX)?);
-    if best.1.rms < CLOSE {
+    let is_mechanical = a.is_mechanical() && b.is_mechanical();
+    if best.1.rms < if is_mechanical { SEATED } else { CLOSE } {
         return Some(best);
     }
-    let turned = turned_starts(a, b, start);
+    let mut turned = turned_starts(a, b, start);
+    if is_mechanical {
+        turned.extend(framed_starts(a, b, start.reflected));
+    }
     let mut ranked: Vec<(f64, Similarity)> = turned
         .into_iter()
         .filter_map(|motion| {
@@ -125,6 +203,39 @@ fn equal_axes(a: &MeshGeometry, b: &MeshGeometry) -> [bool; 2] {
     [0, 1].map(|i| {
         [a, b].iter().all(|geometry| geometry.spreads[i] <= NEAR_EQUAL_AXES * geometry.spreads[i + 1])
     })
+}
+
+/// Motions that take the two main directions of planes and axes of one part to two of the other.
+fn framed_starts(a: &MeshGeometry, b: &MeshGeometry, reflected: bool) -> Vec<Alignment> {
+    let [of_a, of_b] = [a, b].map(|part| part.regions().directions());
+    let Some(&(first, area)) = of_a.first() else { return Vec::new() };
+    let Some(&(second, other_area)) = of_a.iter().find(|(d, _)| d.cross(&first).norm() > ACROSS) else {
+        return Vec::new();
+    };
+    let frame = |x: Vector3<f64>, y: Vector3<f64>| {
+        let z = x.cross(&y).normalize();
+        Matrix3::from_columns(&[x, z.cross(&x), z])
+    };
+    let from = frame(first, second);
+    let flip = if reflected { -1.0 } else { 1.0 };
+    let alike = |x: f64, y: f64| (x - y).abs() < ALIKE;
+    let main = || of_b.iter().take(MOST_DIRECTIONS);
+    let pairs = main().flat_map(|x| main().map(move |y| (*x, *y)));
+    let fitting = pairs.filter(|((x, area_x), (y, area_y))| {
+        let is_across = x.cross(y).norm() > ACROSS;
+        is_across
+            && alike(*area_x, area)
+            && alike(*area_y, other_area)
+            && alike(x.dot(y).abs(), first.dot(&second).abs())
+    });
+    fitting
+        .flat_map(|((x, _), (y, _))| [(x, y), (x, -y), (-x, y), (-x, -y)])
+        .map(|(x, y)| {
+            let mut to = frame(x, y);
+            to.column_mut(2).scale_mut(flip);
+            Alignment::about_origin(to * from.transpose())
+        })
+        .collect()
 }
 
 /// Starts that are turned about axes which the spreads of a surface do not determine.
@@ -186,7 +297,7 @@ fn contacts(a: &MeshGeometry, b: &MeshGeometry, map: &Similarity, n: usize) -> V
 }
 
 /// The distance under a map, by at least `n` samples of either surface.
-fn gap(a: &MeshGeometry, b: &MeshGeometry, map: &Similarity, n: usize) -> Option<SurfaceGap> {
+pub(super) fn gap(a: &MeshGeometry, b: &MeshGeometry, map: &Similarity, n: usize) -> Option<SurfaceGap> {
     let contacts = contacts(a, b, map, n);
     let squares = || contacts.iter().map(|contact| (contact.from - contact.to).norm_squared());
     (!contacts.is_empty()).then(|| SurfaceGap {

@@ -20,8 +20,10 @@ pub enum RelationKind {
     Remeshed,
     /// All components of one mesh are the other mesh.
     Copies,
-    /// Some components of one mesh are the other mesh.
+    /// Some components of one mesh are the other mesh, or one was cut out of the other.
     PartOf,
+    /// The same part with another hole, thickness, length or detail.
+    Variant,
     /// The same shape in another pose.
     OtherPose,
     /// Two shapes of one class.
@@ -43,6 +45,7 @@ impl RelationKind {
             Self::Remeshed => "the same surface, remeshed",
             Self::Copies => "several copies",
             Self::PartOf => "one is part of the other",
+            Self::Variant => "a variant of the same part",
             Self::OtherPose => "the same shape",
             Self::SameClass => "the same class",
             Self::Different => "another class",
@@ -72,4 +75,6 @@ pub enum Change {
     Noisy,
     /// It is in another pose, or may be.
     Posed,
+    /// One was cut out of the other.
+    Cut,
 }

@@ -6,29 +6,34 @@
 //! ```
 
 mod because;
+mod cut;
 mod exact;
 mod geometry;
 mod handedness;
 mod in_space;
 mod kind;
 mod mesh_change;
+mod numbers;
 mod of_meshes;
 mod parts;
 mod same_surface;
 mod triangles;
 mod units;
+mod variant;
 mod words;
 
 use base::ContentHash;
 use descriptors::{ShapeDistance, ShapeMetric};
 
 pub use because::{Basis, Because};
+pub use cut::CutPiece;
 pub use geometry::MeshGeometry;
 pub use handedness::{Handedness, handedness};
 pub use in_space::SurfaceGap;
 pub use kind::{Change, RelationKind};
 pub use parts::{Parts, Side};
 pub use units::UnitChange;
+pub use variant::{Difference, Dimension};
 
 /// Sizes of two meshes with the same vertices are equal up to this share, and so are their places. A tolerance of rounding:
 /// that of coordinates in files.

@@ -1,13 +1,22 @@
 //! The relation of two meshes.
 
+use super::cut::{CutPiece, left_of};
 use super::exact::{SameVertices, same_vertices};
 use super::geometry::MeshGeometry;
-use super::in_space::{Aligned, aligned};
+use super::in_space::{Aligned, aligned, is_symmetric};
 use super::mesh_change::MeshChange;
 use super::parts::{Occurrences, Parts, Side, occurrences};
-use super::same_surface::same_surface;
+use super::same_surface::{is_one_surface, same_surface};
 use super::units::UnitChange;
+use super::variant::differences;
 use super::{Basis, Change, Relation, RelationKind, SIZE_OF_SURFACES, SIZE_OF_VERTICES};
+
+/// Triangles in common are hardly chance. A convention.
+const CUT: f64 = 0.99;
+
+/// The share of parts called variants that are variants of one part. Measured on generated parts (`cargo test -p tests
+/// --test laws mechanical -- --nocapture`).
+const VARIANT: f64 = 0.95;
 
 impl Relation {
     /// The relation once both meshes are known, too.
@@ -38,7 +47,9 @@ impl Relation {
             return found;
         }
         found.because.basis = Basis::Meshes;
-        if let Some(same) = same_vertices(a, b) {
+        // Other faces between the same vertices may be another surface.
+        if let Some(same) = same_vertices(a, b).filter(|same| same.same_faces || is_one_surface(same, [a, b]))
+        {
             return found.with_same_vertices(&same, [a, b]);
         }
         let (whole, copies) = match (occurrences(a, b), occurrences(b, a)) {
@@ -75,11 +86,13 @@ impl Relation {
             changes.push(Change::Scaled);
             kind = RelationKind::Scaled;
         }
-        if same.mirrored {
+        // A surface that is its own mirror image is not another one for being mirrored, only its triangles are.
+        let is_turned = same.mirrored && is_symmetric(b);
+        if same.mirrored && !is_turned {
             changes.push(Change::Mirrored);
             kind = RelationKind::Mirrored;
         }
-        if !same.same_faces {
+        if is_turned || !same.same_faces {
             changes.push(Change::Remeshed);
             kind = RelationKind::Remeshed;
         }
@@ -111,14 +124,15 @@ impl Relation {
         self.found(kind, found.confidence, changes, scale)
     }
 
-    /// Of meshes with different vertices: one surface, or what their distance says.
+    /// Of meshes with different vertices: one surface, variants of one part, or what their distance says.
     fn with_surfaces(mut self, [a, b]: [&MeshGeometry; 2]) -> Self {
-        let Some(Aligned { map, gap, mirrored }) = aligned(a, b) else { return self };
+        let Some(aligned) = aligned(a, b) else { return self.with_differences([a, b], None) };
+        let Aligned { map, gap, mirrored } = aligned;
         let change = MeshChange::of([a, b], &map);
-        let probability = same_surface(gap, [a, b], change);
+        let probability = same_surface(&aligned, [a, b], change);
         self.because.surface_gap = Some(gap);
         if probability < 0.5 || change == MeshChange::Deformed {
-            return self;
+            return self.with_differences([a, b], Some(gap.rms));
         }
         let scale = map.scale * b.size / a.size;
         let mut changes = Vec::new();
@@ -139,5 +153,25 @@ impl Relation {
         }
         self.because.units = UnitChange::of(scale, SIZE_OF_SURFACES);
         self.found(kind, probability, changes, scale)
+    }
+
+    /// Of meshes that are not one surface. Parts of machines do not bend, so they are variants of one part, or other parts.
+    fn with_differences(mut self, meshes: [&MeshGeometry; 2], rms: Option<f64>) -> Self {
+        let [a, b] = meshes;
+        let cuts = [(Side::First, left_of(a, b)), (Side::Second, left_of(b, a))];
+        if let Some((whole, left)) = cuts.into_iter().find_map(|(whole, left)| Some((whole, left?))) {
+            self.because.cut = Some(CutPiece { whole, left });
+            return self.found(RelationKind::PartOf, CUT, vec![Change::Cut], 1.0);
+        }
+        if let Some(differences) = differences(meshes, rms) {
+            self.because.differences = differences;
+            self.changes.clear();
+            return Self { kind: RelationKind::Variant, confidence: VARIANT, ..self };
+        }
+        if meshes.iter().any(|mesh| mesh.is_mechanical()) && self.kind == RelationKind::OtherPose {
+            self.changes.clear();
+            return Self { kind: RelationKind::SameClass, confidence: self.because.same_class, ..self };
+        }
+        self
     }
 }

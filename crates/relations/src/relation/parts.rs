@@ -112,8 +112,9 @@ fn copy_of(mesh: &MeshGeometry, part: &MeshGeometry, align: bool) -> Option<Part
     if let Some(SameVertices { mirrored, scale, .. }) = same_vertices(mesh, part) {
         return Some(PartCopy { scale: scale * sizes, mirrored, gap: None, confidence: 1.0 });
     }
-    let Aligned { map, gap, mirrored } = if align { aligned(mesh, part)? } else { return None };
-    let confidence = same_surface(gap, [mesh, part], MeshChange::of([mesh, part], &map));
+    let aligned = if align { aligned(mesh, part)? } else { return None };
+    let Aligned { map, gap, mirrored } = aligned;
+    let confidence = same_surface(&aligned, [mesh, part], MeshChange::of([mesh, part], &map));
     (confidence > 0.5).then_some(PartCopy { scale: map.scale * sizes, mirrored, gap: Some(gap), confidence })
 }
 

@@ -1,40 +1,144 @@
 //! Whether two surfaces are one, by their distance in space.
+//!
+//! Two triangulations of one surface differ by the error of flat triangles: at most the height of the arcs that stand over
+//! them. What else differs is a difference of the surfaces, and one that is measured anywhere is enough.
 
-use descriptors::Boundary;
+use descriptors::{Alignment, Boundary};
+use nalgebra::Point3;
+use surface::Topology;
 
+use super::exact::{SameVertices, Similarity};
 use super::geometry::MeshGeometry;
-use super::in_space::SurfaceGap;
+use super::in_space::{Aligned, gap};
 use super::mesh_change::MeshChange;
 
-/// Two triangulations of one surface are at most this far apart, root mean square and times the number of vertices of the
-/// coarser one, relative to the size: the error of flat triangles. Measured on the built-in families with 200 to 10,000 vertices
-/// (`cargo test -p tests --test laws -- matches --nocapture`), where decimation brings the largest.
-const FLATNESS: f64 = 0.7;
-
-/// What else is allowed in copies of one surface. Measured as [`FLATNESS`]. Two bodies of one family in one pose are at least 0.0045 apart there, two
-/// poses 0.037.
+/// What is allowed in copies of one organic surface besides the error of flat triangles, root mean square, relative to the
+/// size. Measured on the built-in families with 200 to 10,000 vertices (`cargo test -p tests --test laws -- matches
+/// --nocapture`). Two bodies of one family in one pose are at least 0.0045 apart there, two poses 0.037.
 const ALLOWED: f64 = 0.0015;
 
-/// What noise adds: 0.5 % of the diagonal is 0.0054, measured as [`FLATNESS`].
+/// Decimated copies are at most this far apart, root mean square, in multiples of the error of flat triangles in both.
+/// Measured as [`ALLOWED`].
+const CHORDS: f64 = 1.3;
+
+/// What noise adds: 0.5 % of the diagonal is 0.0054, measured as [`ALLOWED`].
 const ALLOWED_NOISE: f64 = 0.006;
 
 /// How far vertices may be apart on which independent noise is the only change, which needs no small distance to be told.
 /// A safety limit.
 const MOST_NOISE: f64 = 0.02;
 
-/// The odds of one surface are `(limit / distance)^STEEPNESS`. The distances measured as [`FLATNESS`] are then told with 90 % and
-/// more.
+/// The odds of one surface are `(limit / distance)^STEEPNESS`. The distances measured as [`ALLOWED`] are then told with 90 %
+/// and more.
 const STEEPNESS: f64 = 6.0;
 
+/// The largest distance of copies, in multiples of the limit of their root mean square. Measured as [`ALLOWED`].
+const LARGEST: f64 = 14.0;
+
+/// What is allowed everywhere in copies of a mechanical surface besides the error of flat triangles, relative to the size.
+/// Measured on generated parts (`cargo test -p tests --test laws mechanical -- --nocapture`).
+const EXACT: f64 = 4e-4;
+
+/// The error of flat triangles that counts in copies of a mechanical surface, in multiples of the height of the arcs.
+const ARCS: f64 = 1.5;
+
+/// Odds of a mechanical surface by its largest distance, in multiples of what is allowed. Measured as [`EXACT`].
+const SAME_PART: Boundary = Boundary { at: 1.6, steepness: 8.0 };
+
+/// Most probes of either surface.
+const MOST_PROBES: usize = 12_000;
+
+/// What is measured is never certain: only equal files and vertices are.
+const MOST_CERTAIN: f64 = 0.99;
+
 /// The probability that surfaces this far apart are one surface.
-pub(super) fn same_surface(gap: SurfaceGap, meshes: [&MeshGeometry; 2], change: MeshChange) -> f64 {
-    let fewest = meshes.map(MeshGeometry::n_vertices).into_iter().min().unwrap_or(1).max(1);
+pub(super) fn same_surface(aligned: &Aligned, meshes: [&MeshGeometry; 2], change: MeshChange) -> f64 {
+    let probability = match meshes.map(MeshGeometry::is_mechanical) {
+        [true, true] => same_part(aligned, meshes),
+        _ => same_body(aligned, meshes, change),
+    };
+    probability.min(MOST_CERTAIN)
+}
+
+/// Organic surfaces: the root mean square decides, unless the largest distance is out of proportion.
+fn same_body(aligned: &Aligned, meshes: [&MeshGeometry; 2], change: MeshChange) -> f64 {
+    let flatness: f64 = meshes.map(rms_chord_error).iter().sum();
     let at = match change {
         MeshChange::Noisy => MOST_NOISE,
-        _ if meshes.iter().any(|mesh| mesh.is_noisy()) => {
-            ALLOWED + ALLOWED_NOISE + 2.0 * FLATNESS / fewest as f64
-        }
-        _ => ALLOWED + 2.0 * FLATNESS / fewest as f64,
+        _ if meshes.iter().any(|mesh| mesh.is_noisy()) => ALLOWED + ALLOWED_NOISE + CHORDS * flatness,
+        _ => ALLOWED + CHORDS * flatness,
     };
-    Boundary { at, steepness: STEEPNESS }.probability(gap.rms)
+    let gap = aligned.gap;
+    Boundary { at, steepness: STEEPNESS }.probability(gap.rms.max(gap.max / LARGEST))
+}
+
+/// Whether the faces between the same vertices make up one surface.
+pub(super) fn is_one_surface(same: &SameVertices, [a, b]: [&MeshGeometry; 2]) -> bool {
+    let motion = Alignment::about_origin(same.rotation);
+    let map = Similarity { motion, scale: same.scale };
+    gap(a, b, &map, usize::MAX).is_some_and(|gap| {
+        let aligned = Aligned { map, gap, mirrored: same.mirrored };
+        same_surface(&aligned, [a, b], MeshChange::Remeshed) > 0.5
+    })
+}
+
+fn rms_chord_error(mesh: &MeshGeometry) -> f64 {
+    let errors = mesh.regions().chord_errors.iter();
+    mesh.mesh.face_areas().zip(errors).map(|(area, error)| area * error * error).sum::<f64>().sqrt()
+}
+
+/// Mechanical surfaces: no point of either may be farther from the other than arcs and rounding explain, and closed ones
+/// have equally many handles.
+fn same_part(aligned: &Aligned, [a, b]: [&MeshGeometry; 2]) -> f64 {
+    let handles = [a, b].map(euler_characteristic_if_closed);
+    if matches!(handles, [Some(x), Some(y)] if x != y) {
+        return 0.0;
+    }
+    let back = inverse(&aligned.map);
+    let worst = worst([a, b], &aligned.map).max(worst([b, a], &back));
+    SAME_PART.probability(worst)
+}
+
+/// The largest distance from points of one surface to the other, in multiples of what is allowed there.
+fn worst([a, b]: [&MeshGeometry; 2], map: &Similarity) -> f64 {
+    let [errors_a, errors_b] = [a, b].map(|mesh| &mesh.regions().chord_errors);
+    let probe = |(p, face): (Point3<f64>, usize)| {
+        let near = b.tree().nearest(&map.apply(&p))?;
+        let allowed =
+            EXACT + a.rounding + b.rounding + ARCS * (errors_a[face] * map.scale + errors_b[near.face]);
+        Some(near.sq_distance.sqrt() / allowed)
+    };
+    probes(a).into_iter().filter_map(probe).fold(0.0, f64::max)
+}
+
+/// Corners, middles of edges and centres of faces, with the face that each lies in: small features have them too, where
+/// points at random may miss them.
+fn probes(geometry: &MeshGeometry) -> Vec<(Point3<f64>, usize)> {
+    let step = (7 * geometry.n_faces()).div_ceil(MOST_PROBES);
+    let of_face = |f: usize| {
+        let [a, b, c] = geometry.mesh.triangle(f);
+        let centre = nalgebra::center(&nalgebra::center(&a, &b), &c);
+        [a, b, c, nalgebra::center(&a, &b), nalgebra::center(&b, &c), nalgebra::center(&c, &a), centre]
+            .map(|p| (p, f))
+    };
+    (0..geometry.n_faces()).step_by(step.max(1)).flat_map(of_face).collect()
+}
+
+/// Vertices less edges plus faces, if every edge has two faces.
+pub(super) fn euler_characteristic_if_closed(geometry: &MeshGeometry) -> Option<isize> {
+    let topology = Topology::new(geometry.n_vertices(), geometry.mesh.faces.clone());
+    let edges = 0..topology.n_edges();
+    let is_closed = edges.map(surface::EdgeId::from).all(|edge| topology.edge_corners(edge).len() == 2);
+    is_closed
+        .then(|| geometry.n_vertices() as isize - topology.n_edges() as isize + geometry.n_faces() as isize)
+}
+
+/// The map back.
+fn inverse(map: &Similarity) -> Similarity {
+    // y = R s x + t, so x = R^T (y - t) / s.
+    let back = map.motion.inverse();
+    Similarity {
+        motion: Alignment { translation: back.translation / map.scale, ..back },
+        scale: 1.0 / map.scale,
+    }
 }

@@ -9,7 +9,7 @@ const LEAF: usize = 6;
 /// A tree of bounding boxes over the triangles of a mesh, parents before their children.
 #[derive(Debug)]
 pub(super) struct TriangleTree {
-    triangles: Vec<[Point3<f64>; 3]>,
+    triangles: Vec<Placed>,
     nodes: Vec<Node>,
 }
 
@@ -26,6 +26,13 @@ enum NodeContent {
     Children([usize; 2]),
 }
 
+/// A triangle, and the face of the mesh that it is.
+#[derive(Debug, Clone, Copy)]
+struct Placed {
+    corners: [Point3<f64>; 3],
+    face: u32,
+}
+
 /// The nearest point of a surface.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct NearestOnSurface {
@@ -34,13 +41,15 @@ pub(super) struct NearestOnSurface {
     pub(super) normal: Vector3<f64>,
     /// Squared distance to it.
     pub(super) sq_distance: f64,
+    /// Its face.
+    pub(super) face: usize,
 }
 
 impl TriangleTree {
     /// The tree over the triangles that have an area. `O(n log n)`.
     pub(super) fn new(mesh: &TriMesh) -> Self {
-        let all = (0..mesh.n_faces()).map(|f| mesh.triangle(f));
-        let triangles: Vec<_> = all.filter(|t| normal(t).norm() > 0.0).collect();
+        let all = (0..mesh.n_faces()).map(|f| Placed { corners: mesh.triangle(f), face: f as u32 });
+        let triangles: Vec<_> = all.filter(|t| normal(&t.corners).norm() > 0.0).collect();
         let mut tree = Self { nodes: Vec::with_capacity(triangles.len() / 2 + 1), triangles };
         if !tree.triangles.is_empty() {
             tree.grow(0..tree.triangles.len());
@@ -50,14 +59,14 @@ impl TriangleTree {
 
     fn grow(&mut self, range: std::ops::Range<usize>) -> usize {
         let infinite = Point3::from([f64::INFINITY; 3]);
-        let corners = self.triangles[range.clone()].iter().flatten();
-        let (low, high) = corners.fold((infinite, -infinite), |(low, high), p| (low.inf(p), high.sup(p)));
+        let corners = self.triangles[range.clone()].iter().flat_map(|t| t.corners);
+        let (low, high) = corners.fold((infinite, -infinite), |(low, high), p| (low.inf(&p), high.sup(&p)));
         let index = self.nodes.len();
         self.nodes.push(Node { low, high, content: NodeContent::Triangles(range.clone()) });
         if range.len() > LEAF {
             let axis = (high - low).imax();
             let middle = range.len() / 2;
-            let centre = |t: &[Point3<f64>; 3]| t.iter().map(|p| p[axis]).sum::<f64>();
+            let centre = |t: &Placed| t.corners.iter().map(|p| p[axis]).sum::<f64>();
             self.triangles[range.clone()]
                 .select_nth_unstable_by(middle, |a, b| centre(a).total_cmp(&centre(b)));
             let middle = range.start + middle;
@@ -79,7 +88,7 @@ impl TriangleTree {
             match &node.content {
                 NodeContent::Triangles(range) => {
                     for i in range.clone() {
-                        let point = nearest_of_triangle(query, &self.triangles[i]);
+                        let point = nearest_of_triangle(query, &self.triangles[i].corners);
                         let sq = (point - query).norm_squared();
                         if best.is_none_or(|best| sq < best.2) {
                             best = Some((point, i, sq));
@@ -94,8 +103,8 @@ impl TriangleTree {
             }
         }
         best.map(|(point, i, sq_distance)| {
-            let normal = normal(&self.triangles[i]).normalize();
-            NearestOnSurface { point, normal, sq_distance }
+            let Placed { corners, face } = &self.triangles[i];
+            NearestOnSurface { point, normal: normal(corners).normalize(), sq_distance, face: *face as usize }
         })
     }
 }

@@ -5,8 +5,11 @@ use std::fmt::{self, Display, Formatter};
 use descriptors::ShapeMetric;
 use serde::{Serialize, Serializer};
 
+use super::cut::CutPiece;
 use super::in_space::SurfaceGap;
+use super::numbers::{in_words, percent, significant};
 use super::parts::{Parts, Side};
+use super::variant::Difference;
 use super::{Basis, Because, Change, Relation, RelationKind};
 
 impl Display for Relation {
@@ -31,6 +34,10 @@ impl Display for Relation {
             }
             (RelationKind::Different, _) => write!(f, "{b} is {probably}another kind of shape than {a}"),
             (RelationKind::Copies | RelationKind::PartOf, Some(parts)) => self.write_parts(f, parts),
+            (RelationKind::PartOf, None) => self.write_cut(f),
+            (RelationKind::Variant, _) => {
+                write!(f, "{b} is {probably}a variant of {a}: {}", list(&self.because.differences))
+            }
             _ => {
                 write!(f, "{b} is {probably}{a}")?;
                 self.write_changes(f, " ")
@@ -64,6 +71,9 @@ impl Relation {
             (RelationKind::PartOf, ..) if self.has(Change::Posed) => {
                 format!("by the signatures of the component alone; {shape}")
             }
+            (RelationKind::PartOf, ..) if self.has(Change::Cut) => {
+                format!("its triangles are triangles of the other mesh; {vertices}")
+            }
             (_, Some(gap), _) => {
                 let faces = if self.has(Change::Remeshed) { "other faces" } else { "the same faces" };
                 format!("{vertices}, at most {gap:.1e} of the size apart once aligned in space; {faces}")
@@ -71,7 +81,7 @@ impl Relation {
             (RelationKind::Copies | RelationKind::PartOf, None, None) => {
                 "the components have the same vertices once aligned in space".to_owned()
             }
-            (kind, None, Some(gap)) if kind < RelationKind::OtherPose => {
+            (kind, None, Some(gap)) if kind <= RelationKind::PartOf => {
                 format!("the surfaces are {} once aligned in space; {vertices}", apart(gap))
             }
             (_, None, Some(gap)) => format!("{shape}; in space, the surfaces are {}", apart(gap)),
@@ -114,6 +124,7 @@ impl Relation {
                 Change::Remeshed if (share - 1.0).abs() < 0.005 => f.write_str("remeshed")?,
                 Change::Remeshed => write!(f, "remeshed with {share:.2} times the vertices")?,
                 Change::Posed => f.write_str(self.pose())?,
+                Change::Cut => f.write_str("cut")?,
                 Change::Noisy => {
                     let gap = self.because.surface_gap.map_or(0.0, |gap| gap.rms);
                     write!(f, "with noise of {} of the size", percent(gap))?;
@@ -137,6 +148,14 @@ impl Relation {
             Some(units) => write!(f, " ({units})"),
             None => Ok(()),
         }
+    }
+
+    fn write_cut(&self, f: &mut Formatter<'_>) -> fmt::Result {
+        let [a, b] = &self.names;
+        let CutPiece { whole, left } =
+            self.because.cut.unwrap_or(CutPiece { whole: Side::Second, left: 1.0 });
+        let (part, whole) = if whole == Side::Second { (a, b) } else { (b, a) };
+        write!(f, "{part} is a piece of {whole}: {} of its surface", percent(left))
     }
 
     fn write_parts(&self, f: &mut Formatter<'_>, parts: Parts) -> fmt::Result {
@@ -175,33 +194,14 @@ fn apart(gap: &SurfaceGap) -> String {
     format!("{} of the size apart (root mean square; at most {})", percent(gap.rms), percent(gap.max))
 }
 
-/// A share in percent, with two significant digits.
-fn percent(share: f64) -> String {
-    let percent = 100.0 * share;
-    match percent {
-        p if p >= 10.0 => format!("{p:.0} %"),
-        p if p >= 1.0 => format!("{p:.1} %"),
-        p if p >= 0.01 => format!("{p:.2} %"),
-        p => format!("{p:.1e} %"),
+/// The first differences, and how many more there are.
+fn list(differences: &[Difference]) -> String {
+    const SHOWN: usize = 3;
+    let shown: Vec<String> = differences.iter().take(SHOWN).map(Difference::to_string).collect();
+    match differences.len() {
+        n if n > SHOWN => format!("{}, and {} more", shown.join(", "), n - SHOWN),
+        _ => shown.join(", "),
     }
-}
-
-/// A number with five significant digits and no zeros at the end.
-fn significant(x: f64) -> String {
-    let digits = (4.0 - x.abs().log10().floor()).clamp(0.0, 9.0) as usize;
-    let text = format!("{x:.digits$}");
-    match text.contains('.') {
-        true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
-        false => text,
-    }
-}
-
-fn in_words(n: usize) -> String {
-    const WORDS: [&str; 13] = [
-        "no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine", "ten", "eleven",
-        "twelve",
-    ];
-    WORDS.get(n).map_or_else(|| n.to_string(), |word| (*word).to_owned())
 }
 
 /// A relation with its words, as it is written.
@@ -226,18 +226,5 @@ impl Serialize for Relation {
         let Self { kind, confidence, changes, because, .. } = self;
         let (text, because) = (self.to_string(), BecauseRecord { text: self.reason(), because });
         RelationRecord { kind: *kind, confidence: *confidence, changes, text, because }.serialize(out)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn numbers_are_short() {
-        let shown = [25.4, 1000.0, 0.001, 1.0 / 25.4, 2.0 / 3.0, 123_456.7].map(significant);
-        assert_eq!(shown, ["25.4", "1000", "0.001", "0.03937", "0.66667", "123457"]);
-        assert_eq!([0.5, 0.0312, 0.0025].map(percent), ["50 %", "3.1 %", "0.25 %"]);
-        assert_eq!([0, 6, 13].map(in_words), ["no", "six", "13"]);
     }
 }

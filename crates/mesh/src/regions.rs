@@ -1,0 +1,336 @@
+//! The smooth pieces of a surface, which CAD programs call faces: planes, cylinders and others, apart at sharp edges.
+//!
+//! ```text
+//! triangles -> flats (triangles in one plane) -> regions (flats that meet at blunt edges) -> plane, cylinder or curved
+//!                                             -> chord errors (how far flats are from the curved surface they stand for)
+//! ```
+
+use nalgebra::{Matrix2, Matrix3, Point3, Unit, Vector2, Vector3};
+use surface::{DisjointSets, EdgeId, Topology};
+
+use crate::tri_mesh::TriMesh;
+
+/// Triangles with vertices this near to a plane, relative to the square root of the area, lie in it. A tolerance: the rounding of coordinates in files.
+const IN_PLANE: f64 = 2e-5;
+
+/// Flats that meet at more than this angle have a sharp edge between them. A convention: arcs in CAD exports have twelve
+/// segments and more, which turn by 30° each.
+const SHARP: f64 = 40.0;
+
+/// The same for organic surfaces, on which few triangles turn by more at fingers and ears. A convention.
+const ORGANIC_SHARP: f64 = 60.0;
+
+/// Vertices of a flat beyond which its width is not measured; such a flat is wide. A safety limit on time.
+const MOST_CORNERS: usize = 64;
+
+/// Distances from the axis of a cylinder differ by less than this share: a circle of twelve chords, divided once more, has
+/// points at cos 15° of the radius. A tolerance.
+const ROUND: f64 = 0.05;
+
+/// Normals of a cylinder are this near to a plane, in the mean square. A tolerance.
+const ACROSS: f64 = 1e-3;
+
+/// A surface is mechanical if planes and cylinders between sharp edges have at least this share of its area. Organic
+/// bodies of the built-in families have none, mechanical parts at least .5 (`cargo test -p tests --test laws mechanical`).
+const MECHANICAL: f64 = 0.3;
+
+/// A surface with this many planes of at least [`WIDE`] triangles is mechanical, too, such as a bent pipe with its two ends.
+/// A convention: one plane may be the base of a bust.
+const LEAST_WIDE: usize = 2;
+const WIDE: usize = 6;
+
+/// Least share of the area of a plane that counts for [`MECHANICAL`]. A convention.
+const LARGE: f64 = 0.005;
+
+/// Directions nearer to each other than this are one (cosine). A tolerance of rounding and of arcs.
+const PARALLEL: f64 = 0.999;
+
+/// What a smooth piece of a surface is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum RegionShape {
+    /// Triangles in one plane.
+    Plane {
+        /// Unit normal.
+        normal: Vector3<f64>,
+        /// Distance of the plane from the origin along it.
+        offset: f64,
+    },
+    /// Flats around an axis.
+    Cylinder {
+        /// Unit direction of the axis.
+        axis: Vector3<f64>,
+        /// A point of the axis.
+        centre: Point3<f64>,
+        /// The largest distance of a vertex from the axis.
+        radius: f64,
+        /// Whether the normals point to the axis.
+        is_hole: bool,
+    },
+    /// Anything else.
+    Curved,
+}
+
+/// A smooth piece between sharp edges.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SmoothRegion {
+    /// What it is.
+    pub shape: RegionShape,
+    /// Share of the area.
+    pub area: f64,
+}
+
+/// The smooth pieces of a surface.
+///
+/// ```
+/// use canonform_mesh::{SmoothRegions, shapes};
+///
+/// let cube = SmoothRegions::of(&shapes::cube(4));
+/// assert!(cube.is_mechanical && cube.all.len() == 6);
+/// assert!(!SmoothRegions::of(&shapes::icosphere(3)).is_mechanical);
+/// ```
+#[derive(Debug)]
+pub struct SmoothRegions {
+    /// The pieces.
+    pub all: Vec<SmoothRegion>,
+    /// For every face, how far the curved surface may be from it.
+    pub chord_errors: Vec<f64>,
+    /// Whether planes and cylinders with sharp edges between them make up the surface, as in parts of machines.
+    pub is_mechanical: bool,
+}
+
+/// Triangles in one plane.
+#[derive(Debug, Clone)]
+struct Flat {
+    normal: Vector3<f64>,
+    faces: Vec<usize>,
+    area: f64,
+}
+
+/// An edge between two flats.
+struct Crease {
+    flats: [usize; 2],
+    ends: [Point3<f64>; 2],
+    /// The angle by which the normal turns.
+    turn: f64,
+}
+
+impl SmoothRegions {
+    /// Finds the pieces.
+    ///
+    /// # Panics
+    /// If a face has a repeated vertex or one that does not exist, see [`surface::Topology::new`].
+    #[must_use]
+    pub fn of(mesh: &TriMesh) -> Self {
+        let topology = Topology::new(mesh.n_vertices(), mesh.faces.clone());
+        let (flats, of_face) = flats(mesh, &topology);
+        let creases = creases(mesh, &topology, &flats, &of_face);
+        let mut sets = DisjointSets::new(flats.len());
+        for crease in creases.iter().filter(|crease| crease.turn < SHARP.to_radians()) {
+            sets.union(crease.flats[0] as u32, crease.flats[1] as u32);
+        }
+        let mut members = vec![Vec::new(); flats.len()];
+        (0..flats.len()).for_each(|flat| members[sets.find(flat as u32) as usize].push(flat));
+        let members = members.into_iter().filter(|members| !members.is_empty());
+        let (mut plain, mut wide) = (0.0, 0);
+        let all: Vec<SmoothRegion> = members
+            .map(|members| {
+                let region = region(mesh, &flats, &members);
+                // A single triangle is a plane by itself; organic meshes of few triangles have many.
+                let is_plain = match region.shape {
+                    RegionShape::Plane { .. } => members.len() == 1 && flats[members[0]].faces.len() > 1,
+                    RegionShape::Cylinder { .. } => true,
+                    RegionShape::Curved => false,
+                };
+                if is_plain && region.area > LARGE {
+                    plain += region.area;
+                    wide += usize::from(flats[members[0]].faces.len() >= WIDE);
+                }
+                region
+            })
+            .collect();
+        let is_mechanical = plain >= MECHANICAL || wide >= LEAST_WIDE;
+        let sharp = if is_mechanical { SHARP } else { ORGANIC_SHARP }.to_radians();
+        let blunt = creases.iter().filter(|crease| crease.turn < sharp);
+        let chord_errors = chord_errors(mesh, &flats, &of_face, blunt);
+        Self { all, chord_errors, is_mechanical }
+    }
+}
+
+impl SmoothRegions {
+    /// Directions of planes and axes with the share of the area across or around them, the largest first.
+    #[must_use]
+    pub fn directions(&self) -> Vec<(Vector3<f64>, f64)> {
+        let mut all: Vec<(Vector3<f64>, f64)> = Vec::new();
+        for region in self.all.iter().filter(|region| region.area > LARGE) {
+            let direction = match region.shape {
+                RegionShape::Plane { normal, .. } => normal,
+                RegionShape::Cylinder { axis, .. } => axis,
+                RegionShape::Curved => continue,
+            };
+            match all.iter_mut().find(|(known, _)| known.dot(&direction).abs() > PARALLEL) {
+                Some((_, area)) => *area += region.area,
+                None => all.push((direction, region.area)),
+            }
+        }
+        all.sort_by(|a, b| b.1.total_cmp(&a.1));
+        all
+    }
+}
+
+/// Grows flats from the largest triangles, and tells the flat of every face.
+fn flats(mesh: &TriMesh, topology: &Topology) -> (Vec<Flat>, Vec<usize>) {
+    const NONE: usize = usize::MAX;
+    let vectors: Vec<Vector3<f64>> = (0..mesh.n_faces()).map(|f| mesh.area_vector(f)).collect();
+    let (total, unit) = (mesh.area(), mesh.root_of_area());
+    let [near, sliver] = [IN_PLANE * unit, IN_PLANE * total];
+    let mut order: Vec<usize> = (0..mesh.n_faces()).collect();
+    order.sort_by(|&f, &g| vectors[g].norm_squared().total_cmp(&vectors[f].norm_squared()).then(f.cmp(&g)));
+    let mut of_face = vec![NONE; mesh.n_faces()];
+    let mut flats = Vec::new();
+    for seed in order {
+        if of_face[seed] != NONE {
+            continue;
+        }
+        let normal = vectors[seed].try_normalize(0.0).unwrap_or_default();
+        let origin = mesh.triangle(seed)[0];
+        let in_plane = |f: usize| {
+            let is_near = mesh.triangle(f).iter().all(|p| normal.dot(&(p - origin)).abs() < near);
+            // The normal of a sliver is rounding.
+            is_near && vectors[f].dot(&normal) > -sliver
+        };
+        let mut flat = Flat { normal, faces: Vec::new(), area: 0.0 };
+        let mut pending = vec![seed];
+        of_face[seed] = flats.len();
+        while let Some(f) = pending.pop() {
+            flat.faces.push(f);
+            flat.area += vectors[f].norm() / total;
+            for corner in surface::FaceId::from(f).corners() {
+                for &other in topology.edge_corners(topology.opposite_edge(corner)) {
+                    let g = other.face().index();
+                    if of_face[g] == NONE && in_plane(g) {
+                        of_face[g] = flats.len();
+                        pending.push(g);
+                    }
+                }
+            }
+        }
+        flats.push(flat);
+    }
+    (flats, of_face)
+}
+
+fn creases(mesh: &TriMesh, topology: &Topology, flats: &[Flat], of_face: &[usize]) -> Vec<Crease> {
+    let edges = (0..topology.n_edges()).filter_map(|e| {
+        let edge = EdgeId::from(e);
+        let &[a, b] = topology.edge_corners(edge) else { return None };
+        let flats_of = [a, b].map(|corner| of_face[corner.face().index()]);
+        let [f, g] = flats_of.map(|flat| &flats[flat]);
+        // Both may be oriented alike or not.
+        let sign = if is_consistent(topology, [a, b]) { 1.0 } else { -1.0 };
+        let turn = f.normal.cross(&g.normal).norm().atan2(sign * f.normal.dot(&g.normal));
+        let ends = topology.edges()[e].map(|v| mesh.positions[v.index()]);
+        (flats_of[0] != flats_of[1]).then_some(Crease { flats: flats_of, ends, turn })
+    });
+    edges.collect()
+}
+
+/// Whether two faces run along their common edge in opposite directions.
+fn is_consistent(topology: &Topology, corners: [surface::CornerId; 2]) -> bool {
+    let [p, q] = corners.map(|corner| topology.edge_ends(corner));
+    p[0] == q[1]
+}
+
+/// How far a curved surface may be from every face: the height of the arcs over the flats whose normals turn at their
+/// edges. Of the flats at an edge, the narrower one tells how wide the chords are.
+fn chord_errors<'c>(
+    mesh: &TriMesh,
+    flats: &[Flat],
+    of_face: &[usize],
+    creases: impl Iterator<Item = &'c Crease>,
+) -> Vec<f64> {
+    let mut of_flat = vec![0.0f64; flats.len()];
+    for crease in creases {
+        let width = crease.flats.map(|flat| width(mesh, &flats[flat], crease.ends));
+        let error = 0.5 * f64::min(width[0], width[1]) * (crease.turn / 4.0).tan();
+        if error.is_finite() {
+            crease.flats.iter().for_each(|&flat| of_flat[flat] = of_flat[flat].max(error));
+        }
+    }
+    let mut of_vertex = vec![0.0f64; mesh.n_vertices()];
+    for (f, face) in mesh.faces.iter().enumerate() {
+        face.iter().for_each(|v| of_vertex[v.index()] = of_vertex[v.index()].max(of_flat[of_face[f]]));
+    }
+    mesh.faces.iter().map(|face| face.iter().map(|v| of_vertex[v.index()]).fold(0.0, f64::max)).collect()
+}
+
+/// How far a flat reaches from one of its edges.
+fn width(mesh: &TriMesh, flat: &Flat, [start, end]: [Point3<f64>; 2]) -> f64 {
+    if flat.faces.len() > MOST_CORNERS {
+        return f64::INFINITY;
+    }
+    let Some(along) = (end - start).try_normalize(0.0) else { return 0.0 };
+    let corners = flat.faces.iter().flat_map(|&f| mesh.triangle(f));
+    corners.map(|p| (p - start).cross(&along).norm()).fold(0.0, f64::max)
+}
+
+fn region(mesh: &TriMesh, flats: &[Flat], members: &[usize]) -> SmoothRegion {
+    let area = members.iter().map(|&flat| flats[flat].area).sum();
+    let shape = match members {
+        [flat] => {
+            let flat = &flats[*flat];
+            RegionShape::Plane {
+                normal: flat.normal,
+                offset: flat.normal.dot(&mesh.triangle(flat.faces[0])[0].coords),
+            }
+        }
+        _ => cylinder(mesh, flats, members).unwrap_or(RegionShape::Curved),
+    };
+    SmoothRegion { shape, area }
+}
+
+/// The cylinder through flats, if there is one.
+fn cylinder(mesh: &TriMesh, flats: &[Flat], members: &[usize]) -> Option<RegionShape> {
+    let covariance: Matrix3<f64> = members
+        .iter()
+        .map(|&flat| flats[flat].normal * flats[flat].normal.transpose() * flats[flat].area)
+        .sum();
+    let eigen = covariance.symmetric_eigen();
+    let least = eigen.eigenvalues.imin();
+    if eigen.eigenvalues[least] > ACROSS * eigen.eigenvalues.sum() {
+        return None;
+    }
+    let axis = Unit::new_normalize(eigen.eigenvectors.column(least).into_owned());
+    let u = axis.cross(&Vector3::ith(axis.iamin(), 1.0)).normalize();
+    let v = axis.cross(&u);
+    let flat = |p: &Point3<f64>| Vector2::new(u.dot(&p.coords), v.dot(&p.coords));
+    let faces = || members.iter().flat_map(|&flat| flats[flat].faces.iter().copied());
+    let points: Vec<Vector2<f64>> = faces().flat_map(|f| mesh.triangle(f)).map(|p| flat(&p)).collect();
+    let centre = centre_of_circle(&points)?;
+    let radii = || points.iter().map(|p| (p - centre).norm());
+    let (radius, least) = (radii().fold(0.0, f64::max), radii().fold(f64::INFINITY, f64::min));
+    if least < (1.0 - ROUND) * radius {
+        return None;
+    }
+    let outward: f64 = faces()
+        .map(|f| {
+            let middle = mesh.triangle(f).iter().map(&flat).sum::<Vector2<f64>>() / 3.0 - centre;
+            let normal = mesh.area_vector(f);
+            middle.dot(&Vector2::new(u.dot(&normal), v.dot(&normal)))
+        })
+        .sum();
+    let centre = Point3::from(u * centre.x + v * centre.y);
+    Some(RegionShape::Cylinder { axis: axis.into_inner(), centre, radius, is_hole: outward < 0.0 })
+}
+
+/// The centre of the circle nearest to points, in algebraic least squares (Kåsa 1976).
+fn centre_of_circle(points: &[Vector2<f64>]) -> Option<Vector2<f64>> {
+    let mean = points.iter().sum::<Vector2<f64>>() / points.len().max(1) as f64;
+    let (mut matrix, mut right) = (Matrix2::zeros(), Vector2::zeros());
+    let mean_square =
+        points.iter().map(|p| (p - mean).norm_squared()).sum::<f64>() / points.len().max(1) as f64;
+    for d in points.iter().map(|p| p - mean) {
+        matrix += d * d.transpose();
+        right += d * (0.5 * (d.norm_squared() - mean_square));
+    }
+    Some(mean + matrix.try_inverse()? * right)
+}

@@ -1,0 +1,224 @@
+//! In what two mechanical parts of one build differ: holes, bosses, lengths and steps.
+
+use mesh::{RegionShape, SmoothRegion};
+use nalgebra::Vector3;
+use serde::Serialize;
+
+use super::geometry::MeshGeometry;
+use super::numbers::in_four_digits;
+use super::same_surface::euler_characteristic_if_closed;
+
+/// Directions nearer to each other than this are one (cosine). A tolerance of rounding and of arcs.
+const PARALLEL: f64 = 0.999;
+
+/// Regions with a smaller share of the area are details. A convention.
+const LEAST_AREA: f64 = 5e-4;
+
+/// Dimensions that differ by less than this share are equal, and so are those that differ by less than [`EQUAL_LENGTH`] of
+/// the size. A tolerance: arcs of few segments are measured a little too small.
+const EQUAL: f64 = 2e-3;
+const EQUAL_LENGTH: f64 = 4e-4;
+
+/// No dimension of a variant differs by more than this factor, and no overall dimension by more than [`MOST_EXTENT`]. A
+/// convention: what differs more is another part.
+const MOST_CHANGE: f64 = 2.5;
+const MOST_EXTENT: f64 = 1.6;
+
+/// Surfaces this near to each other are variants even where their dimensions cannot be compared one by one: root mean
+/// square, relative to the size. A convention.
+const NEAR: f64 = 0.012;
+
+/// What is measured of a part.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Dimension {
+    /// Number of cylindrical holes.
+    Holes,
+    /// Diameter of a hole.
+    HoleDiameter,
+    /// Diameter of a cylinder that is not a hole.
+    Diameter,
+    /// The largest overall dimension.
+    Length,
+    /// The second overall dimension.
+    Width,
+    /// The smallest overall dimension.
+    Height,
+    /// The distance between two parallel planes.
+    Step,
+    /// The enclosed volume.
+    Volume,
+}
+
+impl Dimension {
+    fn words(self) -> &'static str {
+        match self {
+            Self::Holes => "number of holes",
+            Self::HoleDiameter => "hole diameter",
+            Self::Diameter => "diameter",
+            Self::Length => "length",
+            Self::Width => "width",
+            Self::Height => "height",
+            Self::Step => "step",
+            Self::Volume => "volume",
+        }
+    }
+}
+
+/// A dimension in which two parts differ.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Difference {
+    /// What differs.
+    pub what: Dimension,
+    /// In the first part, in units of its file.
+    pub first: f64,
+    /// In the second part.
+    pub second: f64,
+}
+
+impl std::fmt::Display for Difference {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let [first, second] = [self.first, self.second].map(in_four_digits);
+        write!(f, "{} {first} → {second}", self.what.words())
+    }
+}
+
+/// The dimensions of a part, in units of its file.
+#[derive(Debug)]
+struct Dimensions {
+    /// Regions that are planes, cylinders outside, and others.
+    n_regions: [usize; 3],
+    /// Diameters, ascending.
+    holes: Vec<f64>,
+    bosses: Vec<f64>,
+    /// Overall, descending.
+    extents: [f64; 3],
+    /// Distances between neighbouring planes in all directions, ascending.
+    steps: Vec<f64>,
+    volume: Option<f64>,
+    euler: Option<isize>,
+    size: f64,
+}
+
+impl Dimensions {
+    fn of(part: &MeshGeometry) -> Self {
+        let regions: Vec<&SmoothRegion> = part.regions().all.iter().filter(|r| r.area > LEAST_AREA).collect();
+        let mut found = Self {
+            n_regions: [0; 3],
+            holes: Vec::new(),
+            bosses: Vec::new(),
+            extents: [0.0; 3],
+            steps: Vec::new(),
+            volume: None,
+            euler: euler_characteristic_if_closed(part),
+            size: part.size,
+        };
+        for region in &regions {
+            match region.shape {
+                RegionShape::Plane { .. } => found.n_regions[0] += 1,
+                RegionShape::Cylinder { radius, is_hole: true, .. } => {
+                    found.holes.push(2.0 * radius * part.size)
+                }
+                RegionShape::Cylinder { radius, .. } => {
+                    found.n_regions[1] += 1;
+                    found.bosses.push(2.0 * radius * part.size);
+                }
+                RegionShape::Curved => found.n_regions[2] += 1,
+            }
+        }
+        [&mut found.holes, &mut found.bosses].into_iter().for_each(|all| all.sort_by(f64::total_cmp));
+        found.volume = found.euler.map(|_| part.mesh.signed_volume().abs() * part.size.powi(3));
+        let directions: Vec<Vector3<f64>> = part.regions().directions().into_iter().map(|(d, _)| d).collect();
+        found.steps = directions.iter().flat_map(|d| steps(&regions, d)).map(|x| x * part.size).collect();
+        found.steps.sort_by(f64::total_cmp);
+        found.extents = extents(part, &directions).map(|x| x * part.size);
+        found
+    }
+}
+
+/// Distances between neighbouring planes across a direction.
+fn steps(regions: &[&SmoothRegion], direction: &Vector3<f64>) -> Vec<f64> {
+    let offset = |region: &&SmoothRegion| match region.shape {
+        RegionShape::Plane { normal, offset } if normal.dot(direction).abs() > PARALLEL => {
+            Some(offset * normal.dot(direction).signum())
+        }
+        _ => None,
+    };
+    let mut offsets: Vec<f64> = regions.iter().filter_map(offset).collect();
+    offsets.sort_by(f64::total_cmp);
+    offsets.dedup_by(|a, b| (*a - *b).abs() < EQUAL_LENGTH);
+    offsets.windows(2).map(|pair| pair[1] - pair[0]).collect()
+}
+
+/// Overall dimensions in the frame of the part: along its main direction, along one across, and along the third. A part
+/// that is round has its diameter across.
+fn extents(part: &MeshGeometry, directions: &[Vector3<f64>]) -> [f64; 3] {
+    let first = directions.first().copied().unwrap_or_else(Vector3::x);
+    let across = directions.iter().find(|d| d.dot(&first).abs() < 1.0 - PARALLEL).copied();
+    let second = across.unwrap_or_else(|| first.cross(&Vector3::ith(first.iamin(), 1.0)).normalize());
+    let frame = [first, second, first.cross(&second)];
+    let along = |d: &Vector3<f64>| {
+        let values = || part.mesh.positions.iter().map(|p| p.coords.dot(d));
+        values().fold(f64::NEG_INFINITY, f64::max) - values().fold(f64::INFINITY, f64::min)
+    };
+    let mut extents = frame.each_ref().map(along);
+    extents.sort_by(|a, b| b.total_cmp(a));
+    extents
+}
+
+/// In what two mechanical parts differ, if they are variants of one part. `rms` is how far their surfaces are apart, if
+/// they can be laid over each other at one size.
+pub(super) fn differences([a, b]: [&MeshGeometry; 2], rms: Option<f64>) -> Option<Vec<Difference>> {
+    if !(a.is_mechanical() && b.is_mechanical()) {
+        return None;
+    }
+    let [a, b] = [a, b].map(Dimensions::of);
+    let tolerance = EQUAL_LENGTH * f64::max(a.size, b.size);
+    let differs = |x: f64, y: f64| (x - y).abs() > tolerance + EQUAL * f64::max(x, y);
+    let mut found = Vec::new();
+    let mut compare = |what: Dimension, x: f64, y: f64| {
+        if differs(x, y) {
+            found.push(Difference { what, first: x, second: y });
+        }
+    };
+    let same_build = a.n_regions == b.n_regions;
+    let same_holes = a.holes.len() == b.holes.len();
+    let pairs = |x: &[f64], y: &[f64]| x.iter().copied().zip(y.iter().copied()).collect::<Vec<_>>();
+    if same_holes {
+        pairs(&a.holes, &b.holes).into_iter().for_each(|(x, y)| compare(Dimension::HoleDiameter, x, y));
+    }
+    if a.bosses.len() == b.bosses.len() {
+        pairs(&a.bosses, &b.bosses).into_iter().for_each(|(x, y)| compare(Dimension::Diameter, x, y));
+    }
+    let names = [Dimension::Length, Dimension::Width, Dimension::Height];
+    names.into_iter().zip(pairs(&a.extents, &b.extents)).for_each(|(what, (x, y))| compare(what, x, y));
+    if a.steps.len() == b.steps.len() {
+        let extents: Vec<f64> = a.extents.iter().chain(&b.extents).copied().collect();
+        let is_extent = |x: f64| extents.iter().any(|&y| !differs(x, y));
+        let steps = pairs(&a.steps, &b.steps).into_iter().filter(|(x, y)| !is_extent(*x) && !is_extent(*y));
+        steps.for_each(|(x, y)| compare(Dimension::Step, x, y));
+    }
+    let far = |d: &Difference| {
+        let most = if d.what >= Dimension::Length && d.what <= Dimension::Height {
+            MOST_EXTENT
+        } else {
+            MOST_CHANGE
+        };
+        f64::max(d.first / d.second, d.second / d.first) > most
+    };
+    let is_near = found.iter().all(|d| !far(d));
+    if !same_holes {
+        let [first, second] = [a.holes.len() as f64, b.holes.len() as f64];
+        found.insert(0, Difference { what: Dimension::Holes, first, second });
+    }
+    if found.is_empty()
+        && let (Some(first), Some(second)) = (a.volume, b.volume)
+        && (first - second).abs() > EQUAL * f64::max(first, second)
+    {
+        found.push(Difference { what: Dimension::Volume, first, second });
+    }
+    found.dedup();
+    let same_parts = same_build && (same_holes || a.euler != b.euler);
+    let is_variant = (same_parts || rms.is_some_and(|rms| rms < NEAR)) && is_near && !found.is_empty();
+    is_variant.then_some(found)
+}

@@ -1,0 +1,280 @@
+//! The surfaces of the parts, put together from prisms, revolved lines and swept circles.
+
+use std::f64::consts::{PI, TAU};
+
+use nalgebra::{Point3, Vector3};
+
+use super::solid::{Loop, Outline, Solid, circle, hexagon, on_circle, rectangle};
+use super::{MechanicalPart, PartFamily};
+use crate::trig::sin_cos;
+
+/// Diameter of the holes in the floor of an enclosure.
+const FLOOR_HOLE: f64 = 3.0;
+
+/// Rows of vertices along one turn of a thread.
+const ROWS_PER_TURN: usize = 6;
+
+impl MechanicalPart {
+    pub(super) fn build(&self, solid: &mut Solid) {
+        let v = &self.values[..];
+        let arcs = solid.arcs();
+        let disc = |diameter: f64| circle([0.0, 0.0], diameter / 2.0, arcs);
+        match self.family {
+            PartFamily::Bracket => bracket(solid, v),
+            PartFamily::Plate => {
+                let holes: Vec<Outline> =
+                    plate_holes(v).into_iter().map(|at| circle(at, v[4] / 2.0, arcs)).collect();
+                solid.extrude(&rectangle([v[0], v[1]], v[3], arcs), &holes, [0.0, v[2]]);
+            }
+            PartFamily::Washer => solid.extrude(&disc(v[1]), &[disc(clearance(v[0]))], [0.0, v[2]]),
+            PartFamily::Gear => solid.extrude(&gear_outline(v[0], v[1]), &[disc(v[3])], [0.0, v[2]]),
+            PartFamily::HexScrew => {
+                let size = v[0];
+                let [under, top] = solid.prism(&hexagon(1.6 * size), [0.0, 0.7 * size], false);
+                solid.cap(&top, &[], Vector3::z());
+                let shank = thread(solid, size, v[1], v[2]);
+                solid.cap(&under, &[shank], -Vector3::z());
+            }
+            PartFamily::SocketScrew => socket_screw(solid, v[0], v[1]),
+            PartFamily::Nut => solid.extrude(&hexagon(1.6 * v[0]), &[disc(v[0])], [0.0, v[1]]),
+            PartFamily::Enclosure => enclosure(solid, v),
+            PartFamily::Knob => knob(solid, v),
+            PartFamily::Pipe => solid.extrude(&disc(v[0]), &[disc(v[0] - 2.0 * v[1])], [0.0, v[2]]),
+            PartFamily::BentPipe => bent_pipe(solid, v),
+            PartFamily::Shaft => {
+                let [a, b, c] = [v[0], v[1], v[2]].map(|diameter| diameter / 2.0);
+                let [d, e, f] = [v[3], v[3] + v[4], v[3] + v[4] + v[5]];
+                solid.revolve(&[[a, 0.0], [a, d], [b, d], [b, e], [c, e], [c, f]]);
+            }
+            PartFamily::Block => solid.extrude(&rectangle([v[0], v[1]], 0.0, arcs), &[], [0.0, v[2]]),
+            PartFamily::Cylinder => solid.revolve(&[[v[0] / 2.0, 0.0], [v[0] / 2.0, v[1]]]),
+            PartFamily::Sphere => sphere(solid, v[0] / 2.0),
+            PartFamily::Frustum => solid.revolve(&[[v[0] / 2.0, 0.0], [v[1] / 2.0, v[2]]]),
+        }
+    }
+
+    /// The volume in cubic millimetres of the exact part, whose circles are round; `None` where there is no simple formula.
+    #[must_use]
+    pub fn volume(&self) -> Option<f64> {
+        let v = &self.values[..];
+        let disc = |diameter: f64| PI / 4.0 * diameter * diameter;
+        let ring = |outer: f64, wall: f64| disc(outer) - disc(outer - 2.0 * wall);
+        Some(match self.family {
+            PartFamily::Bracket => v[3] * ((v[0] + v[1] - v[3]) * v[2] - 2.0 * v[5] * disc(v[4])),
+            PartFamily::Plate => v[2] * (v[0] * v[1] - (4.0 - PI) * v[3] * v[3] - v[5] * disc(v[4])),
+            PartFamily::Washer => v[2] * (disc(v[1]) - disc(clearance(v[0]))),
+            PartFamily::Gear => v[2] * (area(&gear_outline(v[0], v[1])) - disc(v[3])),
+            PartFamily::Nut => v[1] * (area(&hexagon(1.6 * v[0])) - disc(v[0])),
+            PartFamily::Enclosure => {
+                let inside = (v[0] - 2.0 * v[3]) * (v[1] - 2.0 * v[3]) * (v[2] - v[3]);
+                v[0] * v[1] * v[2] - inside - v[4] * v[3] * disc(FLOOR_HOLE)
+            }
+            PartFamily::HexScrew | PartFamily::SocketScrew | PartFamily::Knob => return None,
+            PartFamily::Pipe => v[2] * ring(v[0], v[1]),
+            // The centre of a section moves this far (Pappus).
+            PartFamily::BentPipe => ring(v[0], v[1]) * (2.0 * v[4] + v[2] * v[3].to_radians()),
+            PartFamily::Shaft => (0..3).map(|i| disc(v[i]) * v[i + 3]).sum(),
+            PartFamily::Block => v[0] * v[1] * v[2],
+            PartFamily::Cylinder => disc(v[0]) * v[1],
+            PartFamily::Sphere => PI / 6.0 * v[0] * v[0] * v[0],
+            PartFamily::Frustum => PI / 12.0 * v[2] * (v[0] * v[0] + v[0] * v[1] + v[1] * v[1]),
+        })
+    }
+
+    /// The number of handles of the surface: one for each hole through the part.
+    #[must_use]
+    pub fn genus(&self) -> usize {
+        match self.family {
+            PartFamily::Bracket => 2 * self.values[5] as usize,
+            PartFamily::Plate => self.values[5] as usize,
+            PartFamily::Enclosure => self.values[4] as usize,
+            PartFamily::Washer | PartFamily::Gear | PartFamily::Nut => 1,
+            PartFamily::Pipe | PartFamily::BentPipe => 1,
+            _ => 0,
+        }
+    }
+}
+
+/// The hole that a screw passes through.
+fn clearance(size: f64) -> f64 {
+    1.05 * size
+}
+
+fn area(outline: &[[f64; 2]]) -> f64 {
+    let next = outline.iter().cycle().skip(1);
+    outline.iter().zip(next).map(|(a, b)| a[0] * b[1] - a[1] * b[0]).sum::<f64>() / 2.0
+}
+
+fn plate_holes(v: &[f64]) -> Vec<[f64; 2]> {
+    let columns = v[5] as usize / 2;
+    let [x, y] = [v[0] / 2.0 - 5.0, v[1] / 2.0 - 5.0];
+    let column = |i: usize| -x + 2.0 * x * i as f64 / (columns - 1) as f64;
+    (0..columns).flat_map(|i| [[column(i), -y], [column(i), y]]).collect()
+}
+
+/// Teeth with straight flanks between the circles of roots and tips.
+fn gear_outline(teeth: f64, module: f64) -> Outline {
+    let [root, tip] = [module * (teeth / 2.0 - 1.25), module * (teeth / 2.0 + 1.0)];
+    let tooth = |i: usize| {
+        [(root, -0.3), (tip, -0.12), (tip, 0.12), (root, 0.3)]
+            .map(|(radius, turn)| on_circle([0.0, 0.0], radius, TAU * (i as f64 + turn) / teeth))
+    };
+    (0..teeth as usize).flat_map(tooth).collect()
+}
+
+/// An L in the plane of x and z, drawn along y; the holes go through the legs along z and x.
+fn bracket(solid: &mut Solid, v: &[f64]) {
+    let &[length, height, width, t, diameter, holes] = v else { return };
+    let profile = [[0.0, 0.0], [length, 0.0], [length, t], [t, t], [t, height], [0.0, height]];
+    let [front, back] = [0.0, width].map(|y| solid.ring(profile.iter().map(|&[x, z]| Point3::new(x, y, z))));
+    solid.cap(&front, &[], -Vector3::y());
+    solid.cap(&back, &[], Vector3::y());
+    let side = |i: usize| [front[i], front[(i + 1) % 6], back[(i + 1) % 6], back[i]];
+    for (end, up) in [(1, Vector3::x()), (4, Vector3::z())] {
+        solid.cap(&side(end), &[], up);
+    }
+    // Seen against the direction of a leg, all its loops run the same way.
+    for (leg, up, outer, inner) in [(length, Vector3::z(), 0, 2), (height, Vector3::x(), 5, 3)] {
+        let mut rims: [Vec<Loop>; 2] = Default::default();
+        for hole in 0..holes as usize {
+            let along = t + (leg - t) * (hole as f64 + 1.0) / (holes + 1.0);
+            let outline = circle([along, width / 2.0], diameter / 2.0, solid.arcs());
+            let place = |depth: f64| {
+                move |&[a, b]: &[f64; 2]| {
+                    if up.z > 0.0 { Point3::new(a, b, depth) } else { Point3::new(depth, b, a) }
+                }
+            };
+            let lower = solid.ring(outline.iter().map(place(0.0)));
+            let upper = solid.ring(outline.iter().map(place(t)));
+            // Exchanging x and z turns the circle over.
+            if up.z > 0.0 {
+                solid.wall(&upper, &lower)
+            } else {
+                solid.wall(&lower, &upper)
+            };
+            rims[0].push(lower);
+            rims[1].push(upper);
+        }
+        solid.cap(&side(outer), &rims[0], -up);
+        solid.cap(&side(inner), &rims[1], up);
+    }
+}
+
+/// A threaded shank from z = 0 down to its end, which is closed: the loop at its upper end. The thread fades out within
+/// one turn of the ends.
+fn thread(solid: &mut Solid, size: f64, length: f64, hand: f64) -> Loop {
+    let (pitch, depth, arcs) = (0.1 * size + 0.3, 0.06 * size + 0.18, solid.arcs());
+    let rows = (length / pitch).ceil() as usize * ROWS_PER_TURN;
+    let rings: Vec<Loop> = (0..=rows)
+        .map(|row| {
+            let z = -length * row as f64 / rows as f64;
+            let fade = (z + length).min(-z).min(pitch) / pitch;
+            let point = |i: usize| {
+                let turn = i as f64 / arcs as f64;
+                let phase = (z / pitch - hand * turn).rem_euclid(1.0);
+                let radius = size / 2.0 - depth * fade * (2.0 * phase - 1.0).abs();
+                let [x, y] = on_circle([0.0, 0.0], radius, TAU * turn);
+                Point3::new(x, y, z)
+            };
+            solid.ring((0..arcs).map(point))
+        })
+        .collect();
+    rings.windows(2).for_each(|pair| solid.wall(&pair[1], &pair[0]));
+    solid.cap(&rings[rows], &[], -Vector3::z());
+    rings[0].clone()
+}
+
+fn socket_screw(solid: &mut Solid, size: f64, length: f64) {
+    let head = circle([0.0, 0.0], 0.75 * size, solid.arcs());
+    let [under, top] = solid.prism(&head, [0.0, size], false);
+    let [floor, rim] = solid.prism(&hexagon(0.8 * size), [0.5 * size, size], true);
+    solid.cap(&floor, &[], Vector3::z());
+    solid.cap(&top, &[rim], Vector3::z());
+    let shank = thread(solid, size, length, 1.0);
+    solid.cap(&under, &[shank], -Vector3::z());
+}
+
+fn enclosure(solid: &mut Solid, v: &[f64]) {
+    let &[length, width, height, wall, holes] = v else { return };
+    let arcs = solid.arcs();
+    let [under, top] = solid.prism(&rectangle([length, width], 0.0, arcs), [0.0, height], false);
+    let inner = rectangle([length - 2.0 * wall, width - 2.0 * wall], 0.0, arcs);
+    let [floor, rim] = solid.prism(&inner, [wall, height], true);
+    solid.cap(&top, &[rim], Vector3::z());
+    let [x, y] = [length / 2.0 - 8.0, width / 2.0 - 8.0];
+    let places = [[-x, -y], [x, y], [-x, y], [x, -y]];
+    let bores: Vec<[Loop; 2]> = places[..holes as usize]
+        .iter()
+        .map(|&at| solid.prism(&circle(at, FLOOR_HOLE / 2.0, arcs), [0.0, wall], true))
+        .collect();
+    let [lower, upper] = [0, 1].map(|side| bores.iter().map(|bore| bore[side].clone()).collect::<Vec<_>>());
+    solid.cap(&under, &lower, -Vector3::z());
+    solid.cap(&floor, &upper, Vector3::z());
+}
+
+fn knob(solid: &mut Solid, v: &[f64]) {
+    let &[diameter, height, flutes, bore] = v else { return };
+    let n = flutes as usize * solid.arcs().div_ceil(4).max(4);
+    let grip = |radius: f64| -> Outline {
+        let point = |i: usize| {
+            let turn = i as f64 / n as f64;
+            let (_, wave) = sin_cos(TAU * (flutes * turn).fract());
+            on_circle([0.0, 0.0], radius * (0.95 + 0.05 * wave), TAU * turn)
+        };
+        (0..n).map(point).collect()
+    };
+    let [under, edge] = solid.prism(&grip(diameter / 2.0), [0.0, height - 2.0], false);
+    let top = solid.level(&grip(diameter / 2.0 - 2.0), height);
+    solid.wall(&edge, &top);
+    solid.cap(&top, &[], Vector3::z());
+    let outline = circle([0.0, 0.0], bore / 2.0, solid.arcs());
+    let [mouth, end] = solid.prism(&outline, [0.0, 0.6 * height], true);
+    solid.cap(&under, &[mouth], -Vector3::z());
+    solid.cap(&end, &[], -Vector3::z());
+}
+
+/// From the origin along z, then bent towards x.
+fn bent_pipe(solid: &mut Solid, v: &[f64]) {
+    let &[diameter, wall, bend, degrees, straight] = v else { return };
+    let angle = degrees * (PI / 180.0);
+    let steps = (solid.arcs() as f64 * degrees / 360.0).ceil() as usize + 1;
+    let forward = |turn: f64| {
+        let (sin, cos) = sin_cos(turn);
+        Vector3::new(sin, 0.0, cos)
+    };
+    let mut stations = vec![(Point3::origin(), 0.0)];
+    stations.extend((0..=steps).map(|i| {
+        let turn = angle * i as f64 / steps as f64;
+        let (sin, cos) = sin_cos(turn);
+        (Point3::new(bend * (1.0 - cos), 0.0, straight + bend * sin), turn)
+    }));
+    stations.push((stations[steps + 1].0 + forward(angle) * straight, angle));
+
+    let mut tube = |radius: f64| -> Vec<Loop> {
+        let outline = circle([0.0, 0.0], radius, solid.arcs());
+        let place = |&(center, turn): &(Point3<f64>, f64)| {
+            let (sin, cos) = sin_cos(turn);
+            let across = Vector3::new(cos, 0.0, -sin);
+            solid.ring(outline.iter().map(|&[a, b]| center + across * a + Vector3::y() * b))
+        };
+        stations.iter().map(place).collect()
+    };
+    let [outer, inner] = [diameter / 2.0, diameter / 2.0 - wall].map(&mut tube);
+    outer.windows(2).for_each(|pair| solid.wall(&pair[0], &pair[1]));
+    inner.windows(2).for_each(|pair| solid.wall(&pair[1], &pair[0]));
+    for (end, up) in [(0, -forward(0.0)), (steps + 2, forward(angle))] {
+        solid.cap(&outer[end], &inner[end..=end], up);
+    }
+}
+
+/// Meridians and circles of latitude.
+fn sphere(solid: &mut Solid, radius: f64) {
+    let n = solid.arcs().div_ceil(2);
+    let mut line = vec![[0.0, -radius]];
+    line.extend((1..n).map(|i| {
+        let (sin, cos) = sin_cos(PI * i as f64 / n as f64);
+        [radius * sin, -radius * cos]
+    }));
+    line.push([0.0, radius]);
+    solid.revolve(&line);
+}
